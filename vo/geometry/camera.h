@@ -1,0 +1,36 @@
+// Purpose: the camera as the odometry knows it: pinhole with radial-tangential distortion, presets and files.
+// Source:  docs/conventions.md, "Camera model" (the model of OpenCV, TUM RGB-D and Kalibr).
+// Units:   pixels; the centre of the first pixel is (0, 0). Rays are in C, on the plane z = 1.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <Eigen/Core>
+
+namespace vo {
+
+struct Camera {
+  int width = 640, height = 480;                             // [px]
+  double fx = 525, fy = 525, cx = 319.5, cy = 239.5;         // [px]
+  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;             // [-]
+
+  // Point in C with z > 0 -> pixel, lens distortion included.
+  Eigen::Vector2d Project(const Eigen::Vector3d& X_C) const;
+  // Pixel -> undistorted ray (x, y) on the plane z = 1, to 1e-12 by Newton's method.
+  Eigen::Vector2d Undistort(const Eigen::Vector2d& pixel) const;
+  // Where a camera of the same fx, fy, cx, cy without distortion would see that ray [px].
+  Eigen::Vector2d Ideal(const Eigen::Vector2d& pixel) const;
+  bool Sees(const Eigen::Vector2d& pixel, double border_px = 0) const;
+  // d(pixel)/d(x, y) of the lens at the undistorted ray (x, y).
+  Eigen::Matrix2d LensJacobian(const Eigen::Vector2d& xy) const;
+};
+
+// "freiburg1|freiburg2|freiburg3" (TUM RGB-D), "icl" (ICL-NUIM). Throws std::invalid_argument naming the presets.
+Camera CameraPreset(const std::string& name);
+// camera.yaml of docs/sequence_format.md. Throws settings::Error with file:line:column of every problem.
+Camera ReadCamera(const std::filesystem::path& file);
+// A preset's name or a file.
+Camera CameraFrom(const std::string& preset_or_file);
+
+}  // namespace vo

@@ -1,0 +1,21 @@
+// Purpose: the rigid pose of the camera in the world and the small types every part of vo shares.
+// Frames:  W world, C camera (x right, y down, z forward). T_WC maps points from C to W. See docs/conventions.md.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace vo {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Matrix12 = Eigen::Matrix<double, 12, 12>;
+using Matrix23 = Eigen::Matrix<double, 2, 3>;
+using Matrix26 = Eigen::Matrix<double, 2, 6>;
+
+struct Pose {
+  Eigen::Vector3d p_WC = Eigen::Vector3d::Zero();                // [m]
+  Eigen::Quaterniond q_WC = Eigen::Quaterniond::Identity();      // unit, maps C to W
+};
+
+}  // namespace vo

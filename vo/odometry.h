@@ -1,0 +1,86 @@
+// Purpose: the whole odometry behind one call per frame: image in, estimate out. Never throws on image content: with few or
+//          no matches it coasts on its motion model with growing covariance.
+// Source:  Zhou & Maskell, "RB2-PF: A Novel Filter-based Monocular Visual Odometry Algorithm", Algorithm 1.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "vo/geometry/camera.h"
+#include "vo/geometry/pose.h"
+#include "vo/params.h"
+#include "vo/sequence/reader.h"
+
+namespace vo {
+
+// What is known before the first frame: it fixes the gauge (start pose), and through velocity and the inverse-depth prior
+// the scale. Covariance orders: (dp in W, dphi in C) and (dv in W, dw in C).
+struct Prior {
+  Pose pose;
+  Eigen::Vector3d v_WC = Eigen::Vector3d::Zero();    // [m/s]
+  Eigen::Vector3d w_WC_C = Eigen::Vector3d::Zero();  // [rad/s]
+  Matrix6 pose_covariance = Matrix6::Zero();
+  Matrix6 velocity_covariance = Matrix6::Identity() * 0.25;
+};
+
+struct FrameDiagnostics {
+  int searched = 0;             // landmarks looked for
+  int matched = 0;              // found, and inliers
+  int landmarks = 0;            // in the map after this frame
+  int permanent = 0;
+  double nis = 0;               // sum of nu' S^-1 nu over matched features (mixture mean), nis_dof = 2 per feature
+  int nis_dof = 0;
+  double effective_particles = 0;  // before resampling
+  double ms_features = 0, ms_matching = 0, ms_filter = 0;
+  bool tracked() const { return matched >= 10; }
+};
+
+struct Estimate {
+  std::int64_t stamp_ns = 0;
+  Pose pose;                                         // mean over particles
+  Eigen::Vector3d v_WC = Eigen::Vector3d::Zero();    // [m/s]
+  Eigen::Vector3d w_WC_C = Eigen::Vector3d::Zero();  // [rad/s]
+  Matrix12 covariance = Matrix12::Zero();            // (dp W, dphi C, dv W, dw C), of the particle mixture
+  FrameDiagnostics diagnostics;
+};
+
+struct MapPoint {
+  int id = 0;
+  Eigen::Vector3d X_W = Eigen::Vector3d::Zero();  // [m]
+  double inverse_depth = 0, inverse_depth_sigma = 0;  // [1/m] from the anchor
+  bool permanent = false;
+};
+
+// A feature as seen in the last frame, for drawing.
+struct FeatureView {
+  enum class Status { matched, missed, rejected, fresh };
+  int id = 0;
+  Eigen::Vector2d predicted = Eigen::Vector2d::Zero();  // [px]
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();      // [px], of the match (or the prediction when missed)
+  Eigen::Matrix2d S = Eigen::Matrix2d::Zero();          // innovation covariance [px^2]
+  Status status = Status::missed;
+};
+
+class Odometry {
+ public:
+  // Throws std::invalid_argument listing every bad parameter.
+  Odometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed);
+  ~Odometry();
+  Odometry(Odometry&&) noexcept;
+
+  // Frames in order of time. Throws std::invalid_argument when the stamp does not increase, or the image has another size
+  // than the camera.
+  Estimate Track(const Frame& frame);
+
+  std::vector<MapPoint> Map() const;
+  const std::vector<FeatureView>& Features() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vo
