@@ -1,0 +1,90 @@
+// Purpose: every setting of the odometry, with unit, default and what changing it does. Plain values; Validate lists all that is
+//          wrong at once. Defaults are the paper's (Section V-A) unless the comment says otherwise.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vo {
+
+// Nearly constant velocity (6)-(9). Larger: the filter follows violent motion and trusts its prediction less.
+struct MotionParams {
+  double position_noise = 2.5;     // square root of the power spectral density of acceleration [m/s^1.5]
+  double orientation_noise = 1.0;  // the same for angular acceleration [rad/s^1.5]
+};
+
+enum class Sampled {
+  pose,               // RB2-PF: velocity stays Gaussian in each particle
+  pose_and_velocity,  // RB-PF (FastSLAM 2.0): velocity is sampled too
+};
+
+enum class Proposal {
+  ekf,       // one linearisation at the prediction, landmarks at their prior mean
+  iterated,  // pose and landmarks re-linearised together until they settle
+};
+
+enum class Bearing {
+  fixed,      // the paper: a landmark is its inverse depth alone (1-D)
+  estimated,  // ray and inverse depth (3-D): the pixel noise of the first view is part of the state
+};
+
+struct FilterParams {
+  Sampled sampled = Sampled::pose;
+  Proposal proposal = Proposal::iterated;  // the paper: unscented; its first-order twin is ekf
+  int particles = 8;
+  double resample_below = 0.5;  // resample when N_eff < this fraction of the particles
+  int max_iterations = 10;      // of the iterated proposal, and of a landmark given its pose
+  bool equal_weights = false;   // ignore (17); only to show what it is worth
+};
+
+struct LandmarkParams {
+  Bearing bearing = Bearing::estimated;
+  double inverse_depth = 0.25;        // of a new landmark [1/m]
+  double inverse_depth_sigma = 0.15;  // [1/m]
+  double permanent_ratio = 0.05;      // permanent when sigma_rho < ratio * rho (our choice; the paper gives no number)
+  int forget_after = 90;              // drop a non-permanent landmark that could not be searched for so many frames
+  int max_landmarks = 1000;           // flat memory: beyond it the longest unseen are dropped
+};
+
+// Existence score (44)-(49).
+struct ScoreParams {
+  double initial = 0.5;
+  double delete_below = 0.4;
+  double stay_visible = 0.95;      // P22
+  double become_visible = 0.05;    // P12
+  double detection = 0.75;         // P_D
+  double gate_probability = 0.995; // P_G
+  double gate = 9.21;              // G, on the squared Mahalanobis distance (the paper's pair; 0.995 would be 10.6)
+  int grace_frames = 0;            // a landmark younger than this is not deleted for its score (0: the paper)
+};
+
+struct FeatureParams {
+  double sigma_px = 2.0;           // standard deviation of a matched pixel, per axis [px]
+  int grid_columns = 8, grid_rows = 6;
+  int per_cell = 3;                // corners wanted in every cell of the grid
+  int fast_threshold_start = 60;   // grey levels; lowered per cell ...
+  int fast_threshold_min = 7;      // ... to this at the least
+  double min_distance_px = 10;     // between a new corner and any feature in the image
+  double brisk_size_px = 12;       // diameter given to BRISK: larger is more distinct, less invariant
+  double max_hamming = 0.15;       // of 512 bits
+  int window_px = 9;               // side of the search window about the prediction ...
+  int window_enlarged_px = 17;     // ... and when nothing fits there
+  int window_lost_px = 49;         // at most, when the prediction itself is uncertain (recovery)
+  bool subpixel = true;            // refine the match by registering the patch of the first view (our addition)
+  double max_view_angle_deg = 45;  // between the present and the first viewing ray
+  double max_baseline_ratio = 0.3; // camera's distance from the first view / depth there
+  int max_searched = 200;          // landmarks searched per frame
+};
+
+struct Params {
+  MotionParams motion;
+  FilterParams filter;
+  LandmarkParams landmark;
+  ScoreParams score;
+  FeatureParams features;
+};
+
+// Everything wrong with the parameters, one sentence each, with the value; empty when all is well.
+std::vector<std::string> Problems(const Params& params);
+
+}  // namespace vo
