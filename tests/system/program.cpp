@@ -1,0 +1,73 @@
+#include "tests/system/program.h"
+
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace vobench::system_test {
+namespace fs = std::filesystem;
+
+std::string Quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+Outcome RunVobench(const std::vector<std::string>& arguments, const fs::path& where, const std::string& shell,
+                   const std::string& after) {
+  const TemporaryFolder output;
+  std::string command = "cd " + Quoted(where.string()) + " && { " + shell + "\n" + Quoted(VOBENCH_PROGRAM);
+  for (const std::string& argument : arguments) command += " " + Quoted(argument);
+  command += "\n" + after + "\n} > " + Quoted((output / "out").string()) + " 2> " + Quoted((output / "err").string()) +
+             " < /dev/null";
+  // The shell of the command line is sh; what tests ask of it (ulimit, trap) all shells have.
+  const int status = std::system(command.c_str());
+  Outcome outcome;
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  outcome.out = ReadFile(output / "out");
+  outcome.err = ReadFile(output / "err");
+  return outcome;
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "vobench-test-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a temporary folder like " + name);
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+std::string ReadFile(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw std::runtime_error("cannot read " + path.string());
+  std::ostringstream content;
+  content << file.rdbuf();
+  return content.str();
+}
+
+void WriteFile(const fs::path& path, const std::string& text) {
+  fs::create_directories(path.parent_path());
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
+}
+
+std::map<std::string, std::string> Tree(const fs::path& folder) {
+  std::map<std::string, std::string> tree;
+  if (!fs::exists(folder)) return tree;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    tree[fs::relative(entry.path(), folder).string()] = entry.is_regular_file() ? ReadFile(entry.path()) : "";
+  }
+  return tree;
+}
+
+fs::path TinyScenario() { return fs::path(VOBENCH_SOURCE_DIR) / "scenes" / "tiny.yaml"; }
+
+}  // namespace vobench::system_test

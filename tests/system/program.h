@@ -1,0 +1,47 @@
+// Purpose: runs the built program as a user would, and small helpers to spoil its inputs.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace vobench::system_test {
+
+struct Outcome {
+  int status = -1;  // exit status; 128 + n when signal n ended it
+  std::string out;  // what it wrote to stdout ...
+  std::string err;  // ... and to stderr
+};
+
+// Runs `vobench ARGUMENTS` in the folder `where`. `shell` is put before it in the same shell (limits, mounts), `after` behind.
+Outcome RunVobench(const std::vector<std::string>& arguments, const std::filesystem::path& where,
+                   const std::string& shell = "", const std::string& after = "");
+
+// A new empty folder, removed at the end of its life.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string ReadFile(const std::filesystem::path& path);
+void WriteFile(const std::filesystem::path& path, const std::string& text);
+
+// Every entry below a folder, hidden ones too: relative path -> content ("" for folders).
+std::map<std::string, std::string> Tree(const std::filesystem::path& folder);
+
+// One argument for the shell.
+std::string Quoted(const std::string& text);
+
+// A small scenario of the project's own: scenes/tiny.yaml.
+std::filesystem::path TinyScenario();
+
+}  // namespace vobench::system_test

@@ -1,0 +1,185 @@
+#include "tools/vobench/arguments.h"
+
+#include <algorithm>
+#include <iostream>
+#include <limits>
+#include <sstream>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+
+namespace vobench {
+namespace {
+
+int DefaultJobs() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
+
+// "key=value"
+std::pair<std::string, std::string> ParseOverride(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos) {
+    throw CLI::ValidationError("--set", "'" + text + "' is not key=value");
+  }
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+// "A:B": the frames A, A+1, ..., B-1
+std::pair<std::int64_t, std::int64_t> ParseFrames(const std::string& text) {
+  std::istringstream stream(text);
+  std::int64_t first = 0, last = 0;
+  char colon = 0, rest = 0;
+  if (!(stream >> first >> colon >> last) || colon != ':' || stream >> rest || first < 0 || last <= first) {
+    throw CLI::ValidationError("--frames", "'" + text + "' is not A:B with 0 <= A < B (frames A to B-1)");
+  }
+  return {first, last};
+}
+
+// What the options are first read into, as text, where CLI11 does not know their type.
+struct Raw {
+  std::vector<std::string> set;
+  std::string frames;
+  std::uint64_t seed = 1;
+  int jobs = DefaultJobs();
+
+  Overrides overrides() const {
+    Overrides all;
+    for (const std::string& text : set) all.push_back(ParseOverride(text));
+    return all;
+  }
+};
+
+void AddSet(CLI::App& command, Raw& raw, const std::string& example) {
+  command.add_option("--set", raw.set, "Change one setting, such as " + example + " (may be given again)")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+void AddJobs(CLI::App& command, Raw& raw) {
+  command.add_option("--jobs,-j", raw.jobs, "Threads; the results do not depend on it")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+}
+
+CLI::Option* AddSeed(CLI::App& command, Raw& raw, const std::string& help) {
+  return command.add_option("--seed", raw.seed, help)->type_name("N");
+}
+
+CLI::App& AddCommand(CLI::App& app, const std::string& name, const std::string& help, const std::string& example) {
+  CLI::App& command = *app.add_subcommand(name, help);
+  command.footer("Example:\n  " + example);
+  return command;
+}
+
+}  // namespace
+
+std::variant<Command, int> ParseArguments(int argc, char** argv) {
+  CLI::App app("vobench: synthetic data for visual odometry, and the bench that tests it.", "vobench");
+  app.set_version_flag("--version", "vobench " VOBENCH_VERSION);
+  app.require_subcommand(1);
+  app.footer("`vobench COMMAND --help` tells more. Exit status: 0 done, 1 the work failed, 2 bad usage or input.");
+  Raw raw;
+
+  RenderOptions render;
+  CLI::App& render_command =
+      AddCommand(app, "render", "Render a scenario into a sequence: images with exact truth, in TUM RGB-D layout",
+                 "vobench render scenes/room.yaml -o room --frames 0:30 --set sensor.exposure='5 ms'");
+  render_command.add_option("SCENARIO", render.scenario, "Scenario file (scenes/*.yaml)")->required();
+  render_command.add_option("-o,--output", render.output, "Sequence folder to make")->required()->type_name("SEQ");
+  render_command.add_option("--frames", raw.frames, "Only the frames A to B-1; each is the same as in the whole")
+      ->type_name("A:B");
+  const CLI::Option* render_seed = AddSeed(render_command, raw, "Seed instead of the scenario's");
+  AddJobs(render_command, raw);
+  AddSet(render_command, raw, "camera.width=320");
+
+  TrackOptions track;
+  CLI::App& track_command =
+      AddCommand(app, "track", "Run an odometry on a sequence (TUM RGB-D layout) from disk",
+                 "vobench track rgbd_dataset_freiburg1_xyz -o out/xyz --camera freiburg1 --seed 3");
+  track_command.add_option("SEQ", track.sequence, "Sequence folder")->required();
+  track_command.add_option("-o,--output", track.output, "Result folder to make")->required()->type_name("OUT");
+  track_command.add_option("--system", track.system, "rb2pf or rbpf")
+      ->check(CLI::IsMember(SystemNames()))
+      ->capture_default_str();
+  track_command
+      .add_option("--camera", track.camera,
+                  "freiburg1, freiburg2, freiburg3, icl or a camera.yaml; the sequence's own unless told")
+      ->type_name("PRESET|FILE");
+  track_command.add_option("--settings", track.settings, "YAML file with an `odometry:` and perhaps a `prior:` section")
+      ->type_name("FILE");
+  AddSeed(track_command, raw, "Seed of the filter")->capture_default_str();
+  AddSet(track_command, raw, "odometry.filter.particles=16");
+
+  EvaluateOptions evaluate;
+  CLI::App& evaluate_command = AddCommand(app, "evaluate", "Hold an estimated trajectory against the truth",
+                                          "vobench evaluate out/xyz/estimate.txt --truth room --align sim3");
+  evaluate_command.add_option("ESTIMATE", evaluate.estimate, "Trajectory in TUM format, or a run folder")->required();
+  evaluate_command.add_option("--truth", evaluate.truth, "Trajectory in TUM format, or a sequence folder")
+      ->required()
+      ->type_name("SEQ|FILE");
+  evaluate_command.add_option("--align", evaluate.align, "What the estimate may be moved by first")
+      ->check(CLI::IsMember({"none", "se3", "sim3", "first"}))
+      ->capture_default_str();
+
+  RunOptions run;
+  CLI::App& run_command =
+      AddCommand(app, "run", "Render a scenario, track it and judge the result, in memory, frame by frame",
+                 "vobench run scenes/room.yaml -o out/room --system rb2pf,rbpf --runs 5");
+  run_command.add_option("SCENARIO", run.scenario, "Scenario file (scenes/*.yaml)")->required();
+  run_command.add_option("-o,--output", run.output, "Result folder to make; without it only the table is printed")
+      ->type_name("OUT");
+  run_command.add_option("--system", run.systems, "Systems to compare, separated by commas: rb2pf, rbpf")
+      ->delimiter(',')
+      ->check(CLI::IsMember(SystemNames()))
+      ->allow_extra_args(false)
+      ->type_name("NAME,...")
+      ->capture_default_str();
+  run_command.add_option("--runs", run.runs, "Runs of each system, each with its own seed")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  AddSeed(run_command, raw, "Seed of the first run's filter and prior; the scene keeps its own (--set seed=N)")
+      ->capture_default_str();
+  AddJobs(run_command, raw);
+  AddSet(run_command, raw, "odometry.filter.particles=16 or time.duration='2 s'");
+
+  CheckOptions check;
+  CLI::App& check_command = AddCommand(app, "check", "Read a scenario and all it names, and say what is wrong with it",
+                                       "vobench check scenes/room.yaml");
+  check_command.add_option("SCENARIO", check.scenario, "Scenario file (scenes/*.yaml)")->required();
+  AddSet(check_command, raw, "camera.width=320");
+
+  ReportOptions report;
+  CLI::App& report_command = AddCommand(app, "report", "Make report.html anew from a result folder", "vobench report out/room");
+  report_command.add_option("OUT", report.output, "Result folder")->required();
+
+  try {
+    app.parse(argc, argv);
+    const auto asked = [](const CLI::App& command) { return command.parsed(); };
+    if (asked(render_command)) {
+      if (!raw.frames.empty()) render.frames = ParseFrames(raw.frames);
+      if (render_seed->count() > 0) render.seed = raw.seed;
+      render.jobs = raw.jobs;
+      render.overrides = raw.overrides();
+      return render;
+    }
+    if (asked(track_command)) {
+      track.seed = raw.seed;
+      track.overrides = raw.overrides();
+      return track;
+    }
+    if (asked(evaluate_command)) return evaluate;
+    if (asked(run_command)) {
+      run.seed = raw.seed;
+      run.jobs = raw.jobs;
+      run.overrides = raw.overrides();
+      return run;
+    }
+    if (asked(check_command)) {
+      check.overrides = raw.overrides();
+      return check;
+    }
+    return report;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+}
+
+}  // namespace vobench

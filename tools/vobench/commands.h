@@ -1,0 +1,79 @@
+// Purpose: what each sub-command is asked to do, and the function that does it. Each throws BadInput for what the caller can
+//          mend and any other exception when the work fails; results go to stdout, progress and warnings to stderr.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace vobench {
+
+// --set key=value, in the order given; a later one wins.
+using Overrides = std::vector<std::pair<std::string, std::string>>;
+
+// A scenario is rendered into a sequence on disk (docs/sequence_format.md).
+struct RenderOptions {
+  std::filesystem::path scenario;
+  std::filesystem::path output;
+  std::optional<std::pair<std::int64_t, std::int64_t>> frames;  // [first, last)
+  std::optional<std::uint64_t> seed;                            // instead of the scenario's
+  int jobs = 1;
+  Overrides overrides;
+};
+void Render(const RenderOptions& options);
+
+// An odometry runs on a sequence and leaves a result folder (docs/result_folder.md).
+struct TrackOptions {
+  std::filesystem::path sequence;
+  std::filesystem::path output;
+  std::string system = "rb2pf";
+  std::optional<std::string> camera;  // a preset or a file; the sequence's camera.yaml unless told
+  std::optional<std::filesystem::path> settings;
+  std::uint64_t seed = 1;
+  Overrides overrides;
+};
+void Track(const TrackOptions& options);
+
+// An estimated trajectory is held against the truth.
+struct EvaluateOptions {
+  std::filesystem::path estimate;  // TUM file or a run folder
+  std::filesystem::path truth;     // TUM file or a sequence
+  std::string align = "sim3";
+};
+void Evaluate(const EvaluateOptions& options);
+
+// All of it in memory: rendered once, tracked by each system with each seed, judged, reported.
+struct RunOptions {
+  std::filesystem::path scenario;
+  std::optional<std::filesystem::path> output;
+  std::vector<std::string> systems = {"rb2pf"};
+  int runs = 1;
+  std::uint64_t seed = 1;  // of the first run; the others count up from it
+  int jobs = 1;
+  Overrides overrides;
+};
+void Run(const RunOptions& options);
+
+// A scenario is read, its world loaded, and what it says is summed up.
+struct CheckOptions {
+  std::filesystem::path scenario;
+  Overrides overrides;
+};
+void Check(const CheckOptions& options);
+
+// report.html is made anew from a result folder.
+struct ReportOptions {
+  std::filesystem::path output;
+};
+void Report(const ReportOptions& options);
+
+using Command = std::variant<RenderOptions, TrackOptions, EvaluateOptions, RunOptions, CheckOptions, ReportOptions>;
+
+// The systems by name, for --system.
+const std::vector<std::string>& SystemNames();
+
+}  // namespace vobench

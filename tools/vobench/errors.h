@@ -1,0 +1,32 @@
+// Purpose: what decides the exit status: BadInput is the caller's to mend (2), every other exception means that the work
+//          failed (1).
+#pragma once
+
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+namespace vobench {
+
+struct BadInput : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// The work was stopped by a signal (exit 1); what was half done has been removed.
+struct Interrupted : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Reads an input: whatever goes wrong in there is the input's fault. The libraries' messages name file, line and value.
+template <class Function>
+auto Input(Function&& read) {
+  try {
+    return std::forward<Function>(read)();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw BadInput(error.what());
+  }
+}
+
+}  // namespace vobench

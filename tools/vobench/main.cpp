@@ -1,0 +1,43 @@
+// Purpose: the program. Exit status: 0 done, 1 the work failed, 2 bad usage or bad input.
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "tools/vobench/arguments.h"
+#include "tools/vobench/errors.h"
+#include "tools/vobench/interrupt.h"
+
+namespace vobench {
+namespace {
+
+void Execute(const RenderOptions& options) { Render(options); }
+void Execute(const TrackOptions& options) { Track(options); }
+void Execute(const EvaluateOptions& options) { Evaluate(options); }
+void Execute(const RunOptions& options) { Run(options); }
+void Execute(const CheckOptions& options) { Check(options); }
+void Execute(const ReportOptions& options) { Report(options); }
+
+int Main(int argc, char** argv) {
+  HoldInterrupts();
+  const std::variant<Command, int> asked = ParseArguments(argc, argv);
+  if (const int* status = std::get_if<int>(&asked)) return *status;
+  try {
+    std::visit([](const auto& options) { Execute(options); }, std::get<Command>(asked));
+    if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to standard output");
+    return 0;
+  } catch (const BadInput& error) {
+    std::fprintf(stderr, "vobench: %s\n", error.what());
+    return 2;
+  } catch (const std::bad_alloc&) {
+    std::fputs("vobench: out of memory\n", stderr);
+    return 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "vobench: %s\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace
+}  // namespace vobench
+
+int main(int argc, char** argv) { return vobench::Main(argc, argv); }

@@ -1,0 +1,89 @@
+#include "tools/vobench/output_folder.h"
+
+#include <unistd.h>
+
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "tools/vobench/errors.h"
+
+namespace vobench {
+namespace fs = std::filesystem;
+namespace {
+
+// "out/demo/" and "out/./demo" name the same folder: out/demo.
+fs::path Clean(const fs::path& path) {
+  fs::path clean = fs::absolute(path).lexically_normal();
+  return clean.has_filename() ? clean : clean.parent_path();
+}
+
+// Hidden, beside its final name (the same file system, so that renaming is atomic), and another for each process.
+fs::path Beside(const fs::path& path, const std::string& what) {
+  return path.parent_path() / fmt::format(".{}.{}-{}", path.filename().string(), what, getpid());
+}
+
+}  // namespace
+
+void RequireReplaceable(const fs::path& folder, const std::string& marker, const std::set<std::string>& ours) {
+  if (!fs::exists(fs::symlink_status(folder))) return;
+  if (!fs::is_directory(folder)) throw BadInput(fmt::format("{}: is there and is no folder", folder.string()));
+  if (fs::is_empty(folder)) return;
+  if (!fs::exists(folder / marker)) {
+    throw BadInput(fmt::format("{}: is there already and not made by this command (it has no {}); choose another name",
+                               folder.string(), marker));
+  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (!ours.contains(entry.path().filename().string())) {
+      throw BadInput(fmt::format("{}: is in the folder that would be replaced, and not ours; move it or choose another name",
+                                 entry.path().string()));
+    }
+  }
+}
+
+OutputFolder::OutputFolder(const fs::path& final_path, const std::string& marker, const std::set<std::string>& ours)
+    : final_(Clean(final_path)) {
+  RequireReplaceable(final_, marker, ours);
+  for (fs::path parent = final_.parent_path(); !fs::exists(parent); parent = parent.parent_path()) {
+    made_parents_.insert(made_parents_.begin(), parent);
+  }
+  std::error_code error;
+  fs::create_directories(final_.parent_path(), error);
+  // A folder that a killed process of the same number left behind is not taken over.
+  for (int n = 0; !error; ++n) {
+    temporary_ = Beside(final_, fmt::format("partial{}", n));
+    if (fs::create_directory(temporary_, error)) break;
+  }
+  if (error) {
+    Discard();
+    throw std::runtime_error(fmt::format("{}: cannot make this folder: {}", final_.string(), error.message()));
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  if (!committed_) Discard();
+}
+
+void OutputFolder::Discard() {
+  std::error_code ignored;
+  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+  for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) fs::remove(*parent, ignored);
+}
+
+void OutputFolder::Commit() {
+  const fs::path old = Beside(final_, "old");
+  const bool replaces = fs::exists(fs::symlink_status(final_));
+  std::error_code error;
+  if (replaces) fs::rename(final_, old, error);
+  if (!error) {
+    fs::rename(temporary_, final_, error);
+    std::error_code ignored;
+    if (error && replaces) fs::rename(old, final_, ignored);
+  }
+  if (error) throw std::runtime_error(fmt::format("{}: cannot give the result this name: {}", final_.string(), error.message()));
+  committed_ = true;
+  std::error_code ignored;
+  if (replaces) fs::remove_all(old, ignored);
+}
+
+}  // namespace vobench

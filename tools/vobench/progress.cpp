@@ -1,0 +1,66 @@
+#include "tools/vobench/progress.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "tools/vobench/errors.h"
+#include "tools/vobench/interrupt.h"
+
+namespace vobench {
+namespace {
+
+constexpr auto kRedraw = std::chrono::milliseconds(100);
+constexpr auto kPlainLine = std::chrono::seconds(10);
+
+double Seconds(std::chrono::steady_clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+}  // namespace
+
+Progress::Progress(std::string what, std::int64_t total)
+    : what_(std::move(what)),
+      total_(total),
+      terminal_(isatty(STDERR_FILENO) == 1),
+      start_(std::chrono::steady_clock::now()),
+      drawn_(start_) {
+  if (!terminal_) fmt::print(stderr, "{}: {} frames\n", what_, total_);
+}
+
+Progress::~Progress() {
+  if (terminal_ && done_ > 0) std::fputc('\n', stderr);
+}
+
+void Progress::Step() {
+  ++done_;
+  const auto now = std::chrono::steady_clock::now();
+  if (done_ == total_ || now - drawn_ >= (terminal_ ? std::chrono::duration_cast<decltype(now - drawn_)>(kRedraw)
+                                                    : std::chrono::duration_cast<decltype(now - drawn_)>(kPlainLine))) {
+    drawn_ = now;
+    Draw();
+  }
+  if (InterruptPending()) throw Interrupted(what_ + " was interrupted; nothing was kept");
+}
+
+void Progress::Draw() const {
+  const double elapsed = Seconds(drawn_ - start_);
+  if (!terminal_) {
+    fmt::print(stderr, "{}: {}/{} frames, {}\n", what_, done_, total_, Duration(elapsed));
+    return;
+  }
+  constexpr int kWidth = 30;
+  const int filled = total_ > 0 ? static_cast<int>(kWidth * done_ / total_) : kWidth;
+  const double left = elapsed / static_cast<double>(done_) * static_cast<double>(total_ - done_);
+  const std::string time = done_ == total_ ? "took " + Duration(elapsed) : Duration(left) + " left";
+  fmt::print(stderr, "\r{} [{}{}] {}/{}, {}    ", what_, std::string(static_cast<std::size_t>(filled), '#'),
+             std::string(static_cast<std::size_t>(kWidth - filled), '.'), done_, total_, time);
+}
+
+std::string Duration(double seconds) {
+  const auto whole = static_cast<std::int64_t>(seconds + 0.5);
+  const std::int64_t h = whole / 3600, m = whole / 60 % 60, s = whole % 60;
+  return h > 0 ? fmt::format("{}:{:02}:{:02}", h, m, s) : fmt::format("{}:{:02}", m, s);
+}
+
+}  // namespace vobench

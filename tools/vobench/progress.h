@@ -1,0 +1,34 @@
+// Purpose: how far the work has come, on stderr: a bar with the remaining time on a terminal, plain lines otherwise.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace vobench {
+
+class Progress {
+ public:
+  Progress(std::string what, std::int64_t total);
+  ~Progress();  // ends the bar's line
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  // One more of the total is done. Throws Interrupted when Ctrl-C or a request to end has arrived.
+  void Step();
+
+ private:
+  void Draw() const;
+
+  std::string what_;
+  std::int64_t total_;
+  std::int64_t done_ = 0;
+  bool terminal_;
+  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point drawn_;
+};
+
+// "1:05", "2:03:04": minutes and seconds, with hours where there are any.
+std::string Duration(double seconds);
+
+}  // namespace vobench
