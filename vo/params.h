@@ -28,13 +28,18 @@ enum class Bearing {
   estimated,  // ray and inverse depth (3-D): the pixel noise of the first view is part of the state
 };
 
+enum class Weight {
+  importance,  // (17) at the sample: the paper
+  evidence,    // p(z_t | path) by Laplace's approximation: the same on a linear-Gaussian model, without the sample's noise
+};
+
 struct FilterParams {
   Sampled sampled = Sampled::pose;
   Proposal proposal = Proposal::iterated;  // the paper: unscented; its first-order twin is ekf
   int particles = 8;
   double resample_below = 0.5;  // resample when N_eff < this fraction of the particles
   int max_iterations = 10;      // of the iterated proposal, and of a landmark given its pose
-  bool equal_weights = false;   // ignore (17); only to show what it is worth
+  Weight weight = Weight::evidence;
 };
 
 struct LandmarkParams {

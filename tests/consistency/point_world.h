@@ -1,0 +1,123 @@
+// Purpose: a world of points for the filter's own tests: landmarks on the walls of a room, a camera in smooth hand-held motion,
+//          known association and Gaussian pixel noise. Truth and filter share no code: projection is written out here.
+#pragma once
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "vo/filter/particle_filter.h"
+#include "vo/geometry/so3.h"
+
+namespace point_world {
+
+struct World {
+  double focal_px = 525, width_px = 640, height_px = 480;
+  double noise_px = 1;
+  double rate_hz = 30;
+  std::vector<Eigen::Vector3d> points;                        // W [m]
+  std::vector<vo::Pose> truth;                                // per frame
+  std::vector<std::vector<std::pair<int, Eigen::Vector2d>>> views;  // per frame: (point, noisy point on the plane z = 1)
+};
+
+// Points on the walls of a room of `side` metres; the camera starts at the identity and looks along +z.
+inline World MakeRoom(unsigned seed, int frames, double noise_px, double side = 5) {
+  World world;
+  world.noise_px = noise_px;
+  std::mt19937_64 bits(seed);
+  const auto uniform = [&] { return (static_cast<double>(bits() >> 11) + 0.5) * 0x1.0p-53; };
+  const auto normal = [&] { return std::sqrt(-2 * std::log(uniform())) * std::cos(2 * M_PI * uniform()); };
+  for (int i = 0; i < 3000; ++i) {
+    Eigen::Vector3d X(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5);
+    const int axis = static_cast<int>(3 * uniform());
+    X[axis] = X[axis] < 0 ? -0.5 : 0.5;
+    world.points.push_back(side * X);
+  }
+  Eigen::Matrix<double, 6, 3> amplitude, phase, frequency;  // sums of slow sines
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 3; ++j) {
+      amplitude(i, j) = (i < 3 ? 0.25 : 0.12) * normal() / (1 + j);
+      frequency(i, j) = 2 * M_PI * (0.15 + 0.2 * j) * (0.7 + 0.6 * uniform());
+      phase(i, j) = 2 * M_PI * uniform();
+    }
+  const auto at = [&](int i, double t) {
+    double sum = 0;
+    for (int j = 0; j < 3; ++j) sum += amplitude(i, j) * (std::sin(frequency(i, j) * t + phase(i, j)) - std::sin(phase(i, j)));
+    return sum;
+  };
+  for (int k = 0; k < frames; ++k) {
+    const double t = k / world.rate_hz;
+    vo::Pose pose;
+    pose.p_WC = {at(0, t), at(1, t), at(2, t)};
+    const Eigen::Vector3d r(at(3, t), at(4, t), at(5, t));
+    const double angle = r.norm();
+    pose.q_WC = angle > 0 ? Eigen::Quaterniond(Eigen::AngleAxisd(angle, r / angle)) : Eigen::Quaterniond::Identity();
+    world.truth.push_back(pose);
+    auto& views = world.views.emplace_back();
+    for (int n = 0; n < static_cast<int>(world.points.size()); ++n) {
+      const Eigen::Vector3d X = pose.q_WC.conjugate() * (world.points[n] - pose.p_WC);
+      if (X.z() < 0.2) continue;
+      const Eigen::Vector2d z = X.head<2>() / X.z();
+      if (std::abs(z.x()) > 0.5 * world.width_px / world.focal_px || std::abs(z.y()) > 0.5 * world.height_px / world.focal_px)
+        continue;
+      views.emplace_back(n, z + noise_px / world.focal_px * Eigen::Vector2d(normal(), normal()));
+    }
+  }
+  return world;
+}
+
+struct Result {
+  std::vector<vo::Belief> beliefs;
+};
+
+// Runs the filter over the world; at most `features` landmarks are followed at a time.
+inline Result Run(const World& world, const vo::Params& params, int features, unsigned seed,
+                  const vo::Matrix6& velocity_covariance = vo::Matrix6::Identity() * 0.25,
+                  const vo::Vector6& velocity = vo::Vector6::Zero()) {
+  vo::FilterPrior prior;
+  prior.pose.mean = world.truth[0];
+  prior.velocity = velocity;
+  prior.velocity_covariance = velocity_covariance;
+  vo::ParticleFilter filter(params.motion, params.filter, params.landmark, prior, seed);
+  const double sigma = params.features.sigma_px / world.focal_px;
+  const Eigen::Matrix2d R = Eigen::Matrix2d::Identity() * sigma * sigma;
+  std::vector<int> point_of;  // per landmark of the filter
+  Result result;
+  for (std::size_t k = 0; k < world.truth.size(); ++k) {
+    std::vector<vo::Match> matches;
+    std::vector<bool> seen(point_of.size(), false);
+    std::vector<std::pair<int, Eigen::Vector2d>> unknown;
+    for (const auto& [point, z] : world.views[k]) {
+      const auto it = std::find(point_of.begin(), point_of.end(), point);
+      if (it == point_of.end()) {
+        unknown.emplace_back(point, z);
+      } else {
+        seen[it - point_of.begin()] = true;
+        matches.push_back({static_cast<int>(it - point_of.begin()), z, R});
+      }
+    }
+    if (k > 0) {
+      filter.Predict(1 / world.rate_hz);
+      filter.Update(matches);
+    }
+    result.beliefs.push_back(filter.belief());
+    filter.KeepLandmarks(seen);
+    std::vector<int> kept;
+    for (std::size_t n = 0; n < point_of.size(); ++n)
+      if (seen[n]) kept.push_back(point_of[n]);
+    point_of = kept;
+    std::vector<Eigen::Vector2d> rays;
+    for (const auto& [point, z] : unknown) {
+      if (static_cast<int>(point_of.size()) >= features) break;
+      point_of.push_back(point);
+      rays.push_back(z);
+    }
+    filter.AddLandmarks(rays, std::vector<Eigen::Matrix2d>(rays.size(), R));
+  }
+  return result;
+}
+
+}  // namespace point_world

@@ -1,0 +1,19 @@
+// Purpose: the nearly-constant-velocity model over one time step, (6)-(9), for the camera state of section 1 of the algorithm:
+//          s_pf = (p, delta) with delta the rotation since the last frame, s_kf = (v, w). One block of 3 axes each.
+// Shapes:  F and Q are 12 x 12 in the order (p, delta, v, w); the noise of p and v (and of delta and w) is correlated.
+#pragma once
+
+#include "vo/geometry/pose.h"
+#include "vo/params.h"
+
+namespace vo {
+
+struct MotionModel {
+  Matrix12 F = Matrix12::Identity();
+  Matrix12 Q = Matrix12::Zero();
+};
+
+// dt > 0 [s].
+MotionModel NearlyConstantVelocity(const MotionParams& params, double dt);
+
+}  // namespace vo

@@ -1,0 +1,206 @@
+#include "vo/filter/particle_filter.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include "vo/filter/mixture.h"
+#include "vo/filter/resampling.h"
+#include "vo/geometry/so3.h"
+
+namespace vo {
+namespace {
+
+CameraVelocityFilter StepOf(const MotionParams& motion, double dt) {
+  const MotionModel model = NearlyConstantVelocity(motion, dt);
+  return {model.F, model.Q};
+}
+
+// s_pf as the velocity filter sees it: position, and the rotation since the last frame (section 4).
+Vector6 PathState(const Pose& pose, const Pose& previous) {
+  Vector6 s;
+  s << pose.p_WC, Log(previous.q_WC.conjugate() * pose.q_WC);
+  return s;
+}
+
+Vector6 SampleNormal(const Vector6& mean, const Matrix6& covariance, const RandomKey& key) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(covariance);  // semi-definite covariances are legal here
+  return mean + eigen.eigenvectors() *
+                    eigen.eigenvalues().cwiseMax(0).cwiseSqrt().cwiseProduct(NormalVector<Vector6>(key));
+}
+
+}  // namespace
+
+ParticleFilter::ParticleFilter(const MotionParams& motion, const FilterParams& filter, const LandmarkParams& landmark,
+                               const FilterPrior& prior, std::uint64_t seed)
+    : motion_(motion),
+      params_(filter),
+      landmark_params_(landmark),
+      seed_(seed),
+      step_(StepOf(motion, 1.0)),
+      particles_(filter.particles),
+      weights_(filter.particles, 1.0 / filter.particles),
+      effective_particles_(filter.particles) {
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+    Particle& particle = particles_[i];
+    particle.pose = prior.pose.Sample({seed_, Stream::prior_pose, 0, i});
+    particle.velocity = {prior.velocity, prior.velocity_covariance};
+    if (params_.sampled == Sampled::pose_and_velocity)
+      particle.velocity = {SampleNormal(prior.velocity, prior.velocity_covariance, {seed_, Stream::prior_velocity, 0, i}),
+                           Matrix6::Zero()};
+  }
+  belief_.pose = prior.pose.mean;
+  belief_.velocity = prior.velocity;
+  belief_.covariance.topLeftCorner<6, 6>() = prior.pose.covariance;
+  belief_.covariance.bottomRightCorner<6, 6>() = prior.velocity_covariance;
+}
+
+void ParticleFilter::Predict(double dt) {
+  ++frame_;
+  step_ = StepOf(motion_, dt);
+  for (Particle& particle : particles_) particle.prediction = PredictPose(particle);
+}
+
+void ParticleFilter::Update(std::span<const Match> matches) {
+  std::vector<BeliefComponent> mixture;
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) {                                          // line 1
+    Particle& particle = particles_[i];
+    const PoseGaussian& prediction = particle.prediction;                                          // 2, (12)(13)
+    const PoseProposal proposal = Propose(prediction, MapOf(particle), matches, params_);          // (15)(16)
+    mixture.push_back(Component(proposal.pose, particle.pose, VelocityGiven(particle)));
+    const Pose s = proposal.pose.Sample({seed_, Stream::pose, frame_, i});                         // 4
+    UpdateVelocity(particle, s, i);                                                                // 5-7, (37)-(43)
+    const double log_likelihood = UpdateLandmarks(particle, s, matches);
+    particle.log_weight += params_.weight == Weight::evidence                                      // 8
+                               ? proposal.log_evidence
+                               : prediction.LogDensity(s) + log_likelihood - proposal.pose.LogDensity(s);  // (17)
+    particle.pose = s;
+  }
+  Weigh();
+  belief_ = Moments(mixture, weights_);
+  if (effective_particles_ < params_.resample_below * params_.particles) Resample();               // 11
+}
+
+PoseGaussian ParticleFilter::PredictPose(const Particle& particle) const {
+  const Vector6 s = step_.PredictedMean(PathState(particle.pose, particle.pose), particle.velocity);  // (12)
+  const Pose mean{s.head<3>(), (particle.pose.q_WC * Exp(s.tail<3>())).normalized()};
+  // (13) is a covariance of delta, about delta-hat; the tangent space at the mean is turned by the right Jacobian.
+  Matrix6 J = Matrix6::Identity();
+  J.bottomRightCorner<3, 3>() = RightJacobian(s.tail<3>());
+  return {mean, J * step_.PredictedCovariance(particle.velocity) * J.transpose()};
+}
+
+CameraVelocityFilter::Gain ParticleFilter::VelocityGiven(const Particle& particle) const {
+  return step_.Condition(PathState(particle.pose, particle.pose), particle.velocity);
+}
+
+void ParticleFilter::UpdateVelocity(Particle& particle, const Pose& pose, std::uint32_t index) const {
+  particle.velocity = step_.Update(PathState(particle.pose, particle.pose), PathState(pose, particle.pose), particle.velocity);
+  // RB-PF: the velocity is sampled as well, from its exact conditional; this leaves the weight as it is.
+  if (params_.sampled == Sampled::pose_and_velocity)
+    particle.velocity = {SampleNormal(particle.velocity.mean, particle.velocity.covariance,
+                                      {seed_, Stream::velocity, frame_, index}),
+                         Matrix6::Zero()};
+}
+
+double ParticleFilter::UpdateLandmarks(Particle& particle, const Pose& pose, std::span<const Match> matches) const {
+  const int iterations = params_.proposal == Proposal::ekf ? 1 : params_.max_iterations;
+  std::vector<AnchorView> views;
+  for (const Pose& anchor : particle.anchors) views.emplace_back(pose, anchor);
+  double log_likelihood = 0;
+  for (const Match& match : matches) {
+    Landmark& landmark = particle.landmarks[match.landmark];
+    const LandmarkUpdate update = UpdateLandmark(landmark, views[anchor_of_[match.landmark]], match, iterations);
+    landmark = update.landmark;
+    log_likelihood += update.log_likelihood;
+  }
+  return log_likelihood;
+}
+
+void ParticleFilter::Weigh() {
+  std::vector<double> log_weights;
+  for (const Particle& particle : particles_) log_weights.push_back(particle.log_weight);
+  weights_ = Normalised(log_weights);
+  const double peak = *std::max_element(log_weights.begin(), log_weights.end());
+  for (Particle& particle : particles_) particle.log_weight -= peak;
+  effective_particles_ = EffectiveParticles(weights_);
+}
+
+void ParticleFilter::Resample() {
+  const std::vector<int> ancestors = SystematicAncestors(weights_, Uniform({seed_, Stream::resampling, frame_, 0}, 0));
+  std::vector<Particle> children;
+  children.reserve(particles_.size());
+  for (const int ancestor : ancestors) {
+    children.push_back(particles_[ancestor]);
+    children.back().log_weight = 0;
+  }
+  particles_ = std::move(children);
+  weights_.assign(weights_.size(), 1.0 / static_cast<double>(weights_.size()));
+}
+
+void ParticleFilter::AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<const Eigen::Matrix2d> R) {
+  if (rays.empty()) return;
+  // The slot of an anchor that no landmark uses any more is used again, so that long runs stay small.
+  const int slots = static_cast<int>(particles_[0].anchors.size());
+  std::vector<bool> used(slots, false);
+  for (const int anchor : anchor_of_) used[anchor] = true;
+  const int slot = static_cast<int>(std::find(used.begin(), used.end(), false) - used.begin());
+  for (Particle& particle : particles_) {
+    if (slot == slots) particle.anchors.emplace_back();
+    particle.anchors[slot] = particle.pose;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      particle.landmarks.push_back(NewLandmark(rays[i], R[i], landmark_params_));
+  }
+  anchor_of_.insert(anchor_of_.end(), rays.size(), slot);
+}
+
+void ParticleFilter::KeepLandmarks(const std::vector<bool>& keep) {
+  const auto compact = [&](auto& items) {
+    std::size_t to = 0;
+    for (std::size_t from = 0; from < items.size(); ++from)
+      if (keep[from]) items[to++] = items[from];
+    items.resize(to);
+  };
+  for (Particle& particle : particles_) compact(particle.landmarks);
+  compact(anchor_of_);
+}
+
+ImagePrediction ParticleFilter::PredictImage(int landmark) const {
+  ImagePrediction prediction;
+  double weight = 0;
+  Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const Particle& particle = particles_[i];
+    const Landmark& l = particle.landmarks[landmark];
+    const Projection h = Project({particle.prediction.mean, particle.anchors[anchor_of_[landmark]]}, l.mean);
+    if (!h.in_front) continue;
+    weight += weights_[i];
+    prediction.z += weights_[i] * h.z;
+    second += weights_[i] * (h.z * h.z.transpose() + h.J_pose * particle.prediction.covariance * h.J_pose.transpose() +
+                             h.J_landmark * l.covariance * h.J_landmark.transpose());
+  }
+  if (weight < 0.5) return prediction;
+  prediction.in_front = true;
+  prediction.z /= weight;
+  prediction.covariance = second / weight - prediction.z * prediction.z.transpose();
+  return prediction;
+}
+
+const Particle& ParticleFilter::Heaviest() const {
+  return particles_[std::max_element(weights_.begin(), weights_.end()) - weights_.begin()];
+}
+
+ParticleFilter::LandmarkBelief ParticleFilter::BeliefOf(int landmark) const {
+  double mean = 0, second = 0;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const Landmark& l = particles_[i].landmarks[landmark];
+    mean += weights_[i] * l.mean.z();
+    second += weights_[i] * (l.mean.z() * l.mean.z() + l.covariance(2, 2));
+  }
+  const Particle& best = Heaviest();
+  return {PointInWorld(best.anchors[anchor_of_[landmark]], best.landmarks[landmark].mean), mean,
+          std::sqrt(std::max(0.0, second - mean * mean))};
+}
+
+}  // namespace vo

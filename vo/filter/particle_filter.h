@@ -1,0 +1,108 @@
+// Purpose: RB2-PF (and RB-PF) without images: particles over the camera's pose, each with a Kalman filter for the velocity and one
+//          for every landmark. Between Predict and Update the caller finds the landmarks in the image, once for all particles.
+// Source:  Zhou & Maskell, Algorithm 1. Section numbers in the comments are those of the algorithm's description.
+// Frames:  poses T_WC; image points on the plane z = 1 of an undistorted camera.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vo/filter/motion_model.h"
+#include "vo/filter/pose_gaussian.h"
+#include "vo/filter/proposal.h"
+#include "vo/filter/velocity_filter.h"
+#include "vo/map/landmark.h"
+#include "vo/params.h"
+
+namespace vo {
+
+using CameraVelocityFilter = VelocityFilter<6, 6>;  // s_pf = (p, delta), s_kf = (v, w)
+
+struct Particle {
+  Pose pose;                               // sampled
+  CameraVelocityFilter::State velocity;    // Gaussian given the path: (v in W, w in C)
+  std::vector<Landmark> landmarks;         // Gaussian given the path
+  std::vector<Pose> anchors;               // of the landmarks' first views, on this particle's path
+  double log_weight = 0;
+  PoseGaussian prediction;                 // (12)(13), valid between Predict and Update
+};
+
+// The filter's answer: moments of the mixture over particles of the pose just before it is sampled, and the velocity with it.
+struct Belief {
+  Pose pose;
+  Vector6 velocity = Vector6::Zero();      // (v in W, w in C)
+  Matrix12 covariance = Matrix12::Zero();  // (dp in W, dphi in C, dv in W, dw in C)
+};
+
+// Where a landmark should appear: moments over the particles, on the plane z = 1.
+struct ImagePrediction {
+  bool in_front = false;                          // in front of every particle that matters
+  Eigen::Vector2d z = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  // pose and landmark; R not yet in it
+};
+
+// Start of the filter. Covariances: (dp in W, dphi in C) and (dv in W, dw in C).
+struct FilterPrior {
+  PoseGaussian pose;
+  Vector6 velocity = Vector6::Zero();
+  Matrix6 velocity_covariance = Matrix6::Identity();
+};
+
+class ParticleFilter {
+ public:
+  ParticleFilter(const MotionParams& motion, const FilterParams& filter, const LandmarkParams& landmark,
+                 const FilterPrior& prior, std::uint64_t seed);
+
+  // Algorithm 1, line 2. dt > 0 [s].
+  void Predict(double dt);
+  // Algorithm 1, lines 4-11, with the matches of line 3. No matches: the filter coasts.
+  void Update(std::span<const Match> matches);
+
+  // A landmark for every ray (plane z = 1), first seen at the present pose of each particle. Indices follow those in use.
+  void AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<const Eigen::Matrix2d> R);
+  // Keeps the landmarks marked true, in their order.
+  void KeepLandmarks(const std::vector<bool>& keep);
+
+  int landmark_count() const { return static_cast<int>(anchor_of_.size()); }
+  // Valid after Predict.
+  ImagePrediction PredictImage(int landmark) const;
+  // The particle that the association's outlier test works with.
+  const Particle& Heaviest() const;
+  LocalMap MapOf(const Particle& particle) const { return {particle.landmarks, anchor_of_, particle.anchors}; }
+
+  struct LandmarkBelief {
+    Eigen::Vector3d X_W;       // of the heaviest particle
+    double inverse_depth;      // mixture mean [1/m]
+    double inverse_depth_sigma;
+  };
+  LandmarkBelief BeliefOf(int landmark) const;
+  const Belief& belief() const { return belief_; }
+  double effective_particles() const { return effective_particles_; }
+  const std::vector<Particle>& particles() const { return particles_; }
+  const std::vector<double>& weights() const { return weights_; }
+  Pose AnchorOf(int landmark) const { return Heaviest().anchors[anchor_of_[landmark]]; }
+  const FilterParams& params() const { return params_; }
+
+ private:
+  PoseGaussian PredictPose(const Particle& particle) const;
+  CameraVelocityFilter::Gain VelocityGiven(const Particle& particle) const;
+  double UpdateLandmarks(Particle& particle, const Pose& pose, std::span<const Match> matches) const;
+  void UpdateVelocity(Particle& particle, const Pose& pose, std::uint32_t index) const;
+  void Weigh();
+  void Resample();
+
+  MotionParams motion_;
+  FilterParams params_;
+  LandmarkParams landmark_params_;
+  std::uint64_t seed_;
+  std::uint32_t frame_ = 0;
+  CameraVelocityFilter step_;       // of the present time step
+  std::vector<Particle> particles_;
+  std::vector<double> weights_;     // normalised
+  std::vector<int> anchor_of_;      // shared: all particles associate alike
+  Belief belief_;
+  double effective_particles_ = 0;
+};
+
+}  // namespace vo

@@ -1,0 +1,35 @@
+#include "vo/filter/pose_gaussian.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Cholesky>
+
+#include "vo/geometry/so3.h"
+
+namespace vo {
+
+Pose Plus(const Pose& pose, const Vector6& d) {
+  return {pose.p_WC + d.head<3>(), (pose.q_WC * Exp(d.tail<3>())).normalized()};
+}
+
+Vector6 Minus(const Pose& to, const Pose& from) {
+  Vector6 d;
+  d << to.p_WC - from.p_WC, Log(from.q_WC.conjugate() * to.q_WC);
+  return d;
+}
+
+double PoseGaussian::LogDensity(const Pose& pose) const {
+  const Vector6 d = Minus(pose, mean);
+  const Eigen::LLT<Matrix6> llt(covariance);
+  const double log_det = 2.0 * llt.matrixLLT().diagonal().array().log().sum();
+  return -0.5 * d.dot(llt.solve(d)) - 0.5 * log_det - 3.0 * std::log(2.0 * std::numbers::pi) - LogVolume(d.tail<3>());
+}
+
+Pose PoseGaussian::Sample(const RandomKey& key) const {
+  if (covariance.isZero(0)) return mean;
+  const Vector6 n = NormalVector<Vector6>(key);
+  return Plus(mean, covariance.llt().matrixL() * n);
+}
+
+}  // namespace vo

@@ -1,0 +1,24 @@
+// Purpose: a Gaussian over poses: mean and covariance in the tangent space at the mean, with its density and samples.
+// Tangent: (dp in W [m], dphi in C [rad]), right perturbation: pose = mean (+) d.
+#pragma once
+
+#include "vo/geometry/pose.h"
+#include "vo/random.h"
+
+namespace vo {
+
+Pose Plus(const Pose& pose, const Vector6& d);
+// to (-) from: the d with from (+) d = to.
+Vector6 Minus(const Pose& to, const Pose& from);
+
+struct PoseGaussian {
+  Pose mean;
+  Matrix6 covariance = Matrix6::Zero();
+
+  // Density with respect to volume on R^3 x SO(3), normalised in the tangent space.
+  double LogDensity(const Pose& pose) const;
+  // A covariance of zero returns the mean.
+  Pose Sample(const RandomKey& key) const;
+};
+
+}  // namespace vo

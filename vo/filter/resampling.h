@@ -1,0 +1,18 @@
+// Purpose: systematic resampling and the effective number of particles.
+// Source:  Doucet & Johansen, "A tutorial on particle filtering and smoothing", section 3.4.
+#pragma once
+
+#include <vector>
+
+namespace vo {
+
+// 1 / sum w^2, for normalised weights.
+double EffectiveParticles(const std::vector<double>& weights);
+
+// Ancestor of each new particle: expected number of copies of i is N w_i, off by less than 1. u in [0, 1).
+std::vector<int> SystematicAncestors(const std::vector<double>& weights, double u);
+
+// exp(log_weights) scaled to sum 1. -inf is weight 0; if all are -inf or not finite, all become equal.
+std::vector<double> Normalised(const std::vector<double>& log_weights);
+
+}  // namespace vo

@@ -1,0 +1,103 @@
+#include "vo/geometry/camera.h"
+
+#include <stdexcept>
+
+#include <Eigen/LU>
+
+#include "tools/settings/settings.h"
+
+namespace vo {
+namespace {
+
+Eigen::Vector2d Distort(const Camera& c, const Eigen::Vector2d& xy) {
+  const double x = xy.x(), y = xy.y(), r2 = x * x + y * y;
+  const double d = 1 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
+  return {x * d + 2 * c.p1 * x * y + c.p2 * (r2 + 2 * x * x), y * d + c.p1 * (r2 + 2 * y * y) + 2 * c.p2 * x * y};
+}
+
+Eigen::Matrix2d DistortJacobian(const Camera& c, const Eigen::Vector2d& xy) {
+  const double x = xy.x(), y = xy.y(), r2 = x * x + y * y;
+  const double d = 1 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
+  const double d_r2 = c.k1 + r2 * (2 * c.k2 + r2 * 3 * c.k3);  // dd / d(r2)
+  Eigen::Matrix2d J;
+  J(0, 0) = d + 2 * x * x * d_r2 + 2 * c.p1 * y + 6 * c.p2 * x;
+  J(0, 1) = 2 * x * y * d_r2 + 2 * c.p1 * x + 2 * c.p2 * y;
+  J(1, 0) = J(0, 1);
+  J(1, 1) = d + 2 * y * y * d_r2 + 6 * c.p1 * y + 2 * c.p2 * x;
+  return J;
+}
+
+}  // namespace
+
+Eigen::Vector2d Camera::Project(const Eigen::Vector3d& X_C) const {
+  const Eigen::Vector2d d = Distort(*this, X_C.head<2>() / X_C.z());
+  return {fx * d.x() + cx, fy * d.y() + cy};
+}
+
+Eigen::Vector2d Camera::Undistort(const Eigen::Vector2d& pixel) const {
+  const Eigen::Vector2d target((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
+  Eigen::Vector2d xy = target;
+  for (int i = 0; i < 30; ++i) {
+    const Eigen::Vector2d step = DistortJacobian(*this, xy).inverse() * (target - Distort(*this, xy));
+    xy += step;
+    if (step.squaredNorm() < 1e-26) break;
+  }
+  return xy;
+}
+
+Eigen::Matrix2d Camera::LensJacobian(const Eigen::Vector2d& xy) const {
+  return Eigen::Vector2d(fx, fy).asDiagonal() * DistortJacobian(*this, xy);
+}
+
+bool Camera::Sees(const Eigen::Vector2d& pixel, double border_px) const {
+  return pixel.x() >= border_px - 0.5 && pixel.y() >= border_px - 0.5 && pixel.x() <= width - 0.5 - border_px &&
+         pixel.y() <= height - 0.5 - border_px;
+}
+
+Camera CameraPreset(const std::string& name) {
+  Camera camera;
+  if (name == "freiburg1") {
+    camera = {640, 480, 517.306408, 516.469215, 318.643040, 255.313989, 0.262383, -0.953104, -0.005358, 0.002628, 1.163314};
+  } else if (name == "freiburg2") {
+    camera = {640, 480, 520.908620, 521.007327, 325.141442, 249.701764, 0.231222, -0.784899, -0.003257, -0.000105, 0.917205};
+  } else if (name == "freiburg3") {
+    camera = {640, 480, 535.4, 539.2, 320.1, 247.6};
+  } else if (name == "icl") {
+    camera = {640, 480, 481.2, 480.0, 319.5, 239.5};
+  } else {
+    throw std::invalid_argument("unknown camera preset '" + name + "': expected freiburg1, freiburg2, freiburg3 or icl");
+  }
+  return camera;
+}
+
+Camera ReadCamera(const std::filesystem::path& file) {
+  Camera camera;
+  settings::Document document = settings::Document::FromFile(file);
+  settings::Section root = document.root();
+  const settings::Range positive{1e-9, 1e9};
+  root.Require("width", camera.width);
+  root.Require("height", camera.height);
+  root.Require("fx", camera.fx);
+  root.Require("fy", camera.fy);
+  root.Require("cx", camera.cx);
+  root.Require("cy", camera.cy);
+  settings::Section lens = root.Child("distortion");
+  lens.Read("k1", camera.k1);
+  lens.Read("k2", camera.k2);
+  lens.Read("p1", camera.p1);
+  lens.Read("p2", camera.p2);
+  lens.Read("k3", camera.k3);
+  document.ThrowIfBad();
+  return camera;
+}
+
+Camera CameraFrom(const std::string& preset_or_file) {
+  if (std::filesystem::exists(preset_or_file)) return ReadCamera(preset_or_file);
+  try {
+    return CameraPreset(preset_or_file);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string(error.what()) + ", or a camera file that exists");
+  }
+}
+
+}  // namespace vo

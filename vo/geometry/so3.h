@@ -1,0 +1,62 @@
+// Purpose: rotations as the filter needs them: exponential, logarithm, right Jacobian and its inverse.
+// Source:  Sola, Deray, Atchuthan, "A micro Lie theory for state estimation in robotics", (132)-(147).
+// Convention: right perturbation, q = q_hat (x) Exp(phi), phi in radians in the body (camera) frame.
+#pragma once
+
+#include <cmath>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace vo {
+
+inline Eigen::Matrix3d Hat(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+inline Eigen::Quaterniond Exp(const Eigen::Vector3d& phi) {
+  const double angle_sq = phi.squaredNorm();
+  const double angle = std::sqrt(angle_sq);
+  const double k = angle < 1e-4 ? 0.5 - angle_sq / 48.0 : std::sin(0.5 * angle) / angle;  // error < 1e-19 below 1e-4
+  Eigen::Quaterniond q;
+  q.w() = std::cos(0.5 * angle);
+  q.vec() = k * phi;
+  return q;
+}
+
+// The rotation vector of length at most pi.
+inline Eigen::Vector3d Log(const Eigen::Quaterniond& q) {
+  const double n = q.vec().norm();
+  const double w = q.w();
+  if (n < 1e-9) return (2.0 / w) * q.vec();
+  const double half_angle = w < 0 ? std::atan2(-n, -w) : std::atan2(n, w);
+  return (2.0 * half_angle / n) * q.vec();
+}
+
+// Exp(phi + d) = Exp(phi) Exp(J_r(phi) d) to first order in d.
+inline Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& phi) {
+  const double t2 = phi.squaredNorm();
+  const double t = std::sqrt(t2);
+  const double a = t < 1e-3 ? 0.5 - t2 / 24.0 : (1.0 - std::cos(t)) / t2;
+  const double b = t < 1e-3 ? 1.0 / 6.0 - t2 / 120.0 : (t - std::sin(t)) / (t2 * t);
+  const Eigen::Matrix3d K = Hat(phi);
+  return Eigen::Matrix3d::Identity() - a * K + b * K * K;
+}
+
+inline Eigen::Matrix3d InverseRightJacobian(const Eigen::Vector3d& phi) {
+  const double t2 = phi.squaredNorm();
+  const double t = std::sqrt(t2);
+  const double b = t < 1e-3 ? 1.0 / 12.0 + t2 / 720.0 : 1.0 / t2 - (1.0 + std::cos(t)) / (2.0 * t * std::sin(t));
+  const Eigen::Matrix3d K = Hat(phi);
+  return Eigen::Matrix3d::Identity() + 0.5 * K + b * K * K;
+}
+
+// log det J_r(phi): the volume that Exp changes.
+inline double LogVolume(const Eigen::Vector3d& phi) {
+  const double t2 = phi.squaredNorm();
+  return t2 < 1e-6 ? -t2 / 12.0 : std::log(2.0 * (1.0 - std::cos(std::sqrt(t2))) / t2);
+}
+
+}  // namespace vo

@@ -1,0 +1,55 @@
+// Purpose: a landmark anchored at the camera pose of its first view: a ray (x, y, 1) in that camera and an inverse depth.
+// Source:  algorithm, section 5. Projection X ~ R_CW (rho (p_A - p) + R_WA m), finite as rho -> 0; rho <= 0 is legal.
+// Units:   image points here are on the plane z = 1 of an undistorted camera [-]; rho is 1 / depth along z of the anchor [1/m].
+#pragma once
+
+#include "vo/geometry/pose.h"
+#include "vo/params.h"
+
+namespace vo {
+
+struct Landmark {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();        // (x, y, rho)
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // with a fixed bearing only the last entry is not 0
+};
+
+// A feature found in the present image: which landmark, where on the plane z = 1, and the covariance of that.
+struct Match {
+  int landmark = 0;
+  Eigen::Vector2d z = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d R = Eigen::Matrix2d::Zero();
+};
+
+// The anchor's camera A seen from the present camera C.
+struct AnchorView {
+  AnchorView(const Pose& camera, const Pose& anchor)
+      : R_CW(camera.q_WC.conjugate().toRotationMatrix()),
+        R_CA(R_CW * anchor.q_WC.toRotationMatrix()),
+        t_C(R_CW * (anchor.p_WC - camera.p_WC)) {}
+  Eigen::Matrix3d R_CW;
+  Eigen::Matrix3d R_CA;
+  Eigen::Vector3d t_C;  // [m]
+};
+
+struct Projection {
+  bool in_front = false;                          // X_C,z > 0; the rest is valid only then
+  Eigen::Vector2d z = Eigen::Vector2d::Zero();    // on the plane z = 1
+  Matrix26 J_pose = Matrix26::Zero();             // dz / d(dp in W, dphi in C)
+  Matrix23 J_landmark = Matrix23::Zero();         // dz / d(x, y, rho)
+};
+
+Projection Project(const AnchorView& view, const Eigen::Vector3d& landmark);
+
+Landmark NewLandmark(const Eigen::Vector2d& ray, const Eigen::Matrix2d& R, const LandmarkParams& params);
+
+// In W; far away for a vanishing rho.
+Eigen::Vector3d PointInWorld(const Pose& anchor, const Eigen::Vector3d& landmark);
+
+// What a matched feature says about a landmark once the pose is known (EKF at max_iterations = 1, else iterated to the mode).
+struct LandmarkUpdate {
+  Landmark landmark;
+  double log_likelihood = 0;  // log p(z | pose): (3) for the EKF, Laplace's approximation at the mode else
+};
+LandmarkUpdate UpdateLandmark(const Landmark& prior, const AnchorView& view, const Match& match, int max_iterations);
+
+}  // namespace vo
