@@ -1,0 +1,75 @@
+// The same scenario and seed give the same bytes, whatever the number of threads, the range of frames, and the way: through the
+// disk or in memory.
+#include <filesystem>
+#include <string>
+
+#include <gmock/gmock.h>
+
+#include "tests/system/program.h"
+
+namespace vobench::system_test {
+namespace {
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class DeterminismTest : public testing::Test {
+ protected:
+  void Succeeds(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin() + 1, TinyScenario().string());
+    Vobench(arguments);
+  }
+  void Vobench(const std::vector<std::string>& arguments) {
+    const Outcome outcome = RunVobench(arguments, here_.path());
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+  std::string Read(const std::string& name) const { return ReadFile(here_ / name); }
+
+  TemporaryFolder here_;
+};
+
+TEST_F(DeterminismTest, RenderedBytesDoNotDependOnThreads) {
+  Succeeds({"render", "-o", "one", "--frames", "0:6", "--jobs", "1"});
+  Succeeds({"render", "-o", "two", "--frames", "0:6", "--jobs", "2"});
+  const auto one = Tree(here_ / "one");
+  EXPECT_GE(one.size(), 6U);
+  EXPECT_TRUE(one == Tree(here_ / "two"));
+  // The check can fail: another seed gives other pictures.
+  Succeeds({"render", "-o", "other", "--frames", "0:6", "--seed", "12345"});
+  EXPECT_FALSE(Tree(here_ / "one" / "rgb") == Tree(here_ / "other" / "rgb"));
+}
+
+TEST_F(DeterminismTest, ARangeHasTheFramesOfTheWhole) {
+  Succeeds({"render", "-o", "whole", "--frames", "0:8"});
+  Succeeds({"render", "-o", "part", "--frames", "3:6"});
+  const auto whole = Tree(here_ / "whole" / "rgb"), part = Tree(here_ / "part" / "rgb");
+  ASSERT_EQ(part.size(), 3U);
+  for (const auto& [name, content] : part) {
+    ASSERT_TRUE(whole.contains(name)) << name;
+    EXPECT_TRUE(whole.at(name) == content) << name;
+  }
+  // Its truth is a piece of the whole's, character for character.
+  const std::string truth = Read("part/groundtruth.txt"), all = Read("whole/groundtruth.txt");
+  const std::string lines = truth.substr(truth.find("\n0.") + 1);
+  EXPECT_THAT(all, HasSubstr(lines));
+}
+
+TEST_F(DeterminismTest, RunsDoNotDependOnThreads) {
+  const std::vector<std::string> run = {"run", "--system", "rb2pf,rbpf", "--runs", "2", "--set", "time.duration=0.5 s"};
+  for (const std::string jobs : {"1", "2"}) {
+    std::vector<std::string> arguments = run;
+    arguments.insert(arguments.end(), {"-o", "jobs" + jobs, "--jobs", jobs});
+    Succeeds(arguments);
+  }
+  for (const std::string system : {"rb2pf", "rbpf"}) {
+    for (const std::string seed : {"1", "2"}) {
+      for (const std::string file : {"estimate.txt", "covariance.txt", "landmarks.csv", "truth.txt"}) {
+        const std::string name = "/" + system + "/seed_" + seed + "/" + file;
+        EXPECT_TRUE(Read("jobs1" + name) == Read("jobs2" + name)) << name;
+      }
+    }
+  }
+  EXPECT_FALSE(Read("jobs1/rb2pf/seed_1/estimate.txt") == Read("jobs1/rb2pf/seed_2/estimate.txt"));
+}
+
+}  // namespace
+}  // namespace vobench::system_test

@@ -1,0 +1,233 @@
+// What goes wrong is said in one message that names the file; the exit status is 2 for the caller's mistakes and 1 for failed
+// work, and nothing half-written stays behind.
+#include <csignal>
+#include <filesystem>
+#include <string>
+
+#include <gmock/gmock.h>
+
+#include "tests/system/program.h"
+
+namespace vobench::system_test {
+namespace {
+namespace fs = std::filesystem;
+using testing::AnyOf;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+// The program must have said why, in its own words, and left the folder as it was.
+void ExpectFailure(const Outcome& outcome, int status, const std::string& named, const fs::path& where,
+                   const std::map<std::string, std::string>& before) {
+  EXPECT_EQ(outcome.status, status) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("vobench: "));
+  EXPECT_THAT(outcome.err, HasSubstr(named));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("terminate called")));
+  EXPECT_TRUE(Tree(where) == before) << "something was left behind, or lost";
+}
+
+class ErrorsTest : public testing::Test {
+ protected:
+  // Runs in the temporary folder, expects failure.
+  void Fails(const std::vector<std::string>& arguments, int status, const std::string& named) {
+    const auto before = Tree(here_.path());
+    ExpectFailure(RunVobench(arguments, here_.path()), status, named, here_.path(), before);
+  }
+  // A sequence of five frames in here_/seq.
+  void RenderSequence() {
+    const Outcome outcome = RunVobench({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:5"}, here_.path());
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+  // The project's scenes, to be spoiled, in here_/scenes.
+  fs::path CopyScenes() {
+    fs::copy(TinyScenario().parent_path(), here_ / "scenes", fs::copy_options::recursive);
+    return here_ / "scenes";
+  }
+  // The first file below a folder whose name ends so.
+  static fs::path FirstFile(const fs::path& folder, const std::vector<std::string>& extensions) {
+    for (const auto& [name, content] : Tree(folder)) {
+      for (const std::string& extension : extensions) {
+        if (fs::path(name).extension() == extension) return folder / name;
+      }
+    }
+    throw std::runtime_error("no such file in " + folder.string());
+  }
+
+  TemporaryFolder here_;
+};
+
+TEST_F(ErrorsTest, MissingFiles) {
+  Fails({"render", "nowhere.yaml", "-o", "out"}, 2, "nowhere.yaml");
+  Fails({"run", "nowhere.yaml", "-o", "out"}, 2, "nowhere.yaml");
+  Fails({"check", "nowhere.yaml"}, 2, "nowhere.yaml");
+  Fails({"track", "nowhere", "-o", "out", "--camera", "icl"}, 2, "nowhere");
+  Fails({"evaluate", "nowhere.txt", "--truth", "nothing.txt"}, 2, "nowhere.txt");
+  Fails({"report", "nowhere"}, 2, "nowhere");
+}
+
+TEST_F(ErrorsTest, EmptyDirectory) {
+  fs::create_directory(here_ / "empty");
+  Fails({"track", "empty", "-o", "out", "--camera", "icl"}, 2, "empty");
+  Fails({"evaluate", "empty", "--truth", "empty"}, 2, "empty");
+  Fails({"report", "empty"}, 2, "empty");
+  Fails({"render", "empty", "-o", "out"}, 2, "empty");
+}
+
+TEST_F(ErrorsTest, TruncatedPng) {
+  RenderSequence();
+  const fs::path last = std::prev(Tree(here_ / "seq" / "rgb").end())->first;
+  const fs::path image = here_ / "seq" / "rgb" / last;
+  fs::resize_file(image, fs::file_size(image) / 2);
+  Fails({"track", "seq", "-o", "out"}, 2, last.string());
+}
+
+TEST_F(ErrorsTest, MissingCamera) {
+  RenderSequence();
+  fs::remove(here_ / "seq" / "camera.yaml");
+  Fails({"track", "seq", "-o", "out"}, 2, "camera");
+  Fails({"track", "seq", "-o", "out", "--camera", "freiburg9"}, 2, "freiburg1");
+  Fails({"track", "seq", "-o", "out", "--camera", "icl"}, 2, "640");  // has another size than the images
+}
+
+TEST_F(ErrorsTest, CorruptMesh) {
+  const fs::path scenes = CopyScenes();
+  const fs::path mesh = FirstFile(scenes, {".obj", ".glb", ".gltf", ".ply", ".fbx"});
+  WriteFile(mesh, "v 1 2\nf one two three\n");
+  Fails({"render", "scenes/tiny.yaml", "-o", "out"}, 2, mesh.filename().string());
+  Fails({"run", "scenes/tiny.yaml", "-o", "out"}, 2, mesh.filename().string());
+  Fails({"check", "scenes/tiny.yaml"}, 2, mesh.filename().string());
+  fs::remove(mesh);
+  Fails({"render", "scenes/tiny.yaml", "-o", "out"}, 2, mesh.filename().string());
+}
+
+TEST_F(ErrorsTest, MissingTexture) {
+  const fs::path scenes = CopyScenes();
+  const fs::path texture = FirstFile(scenes / "room", {".jpg", ".jpeg", ".png"});
+  fs::resize_file(texture, fs::file_size(texture) / 2);
+  Fails({"render", "scenes/tiny.yaml", "-o", "out"}, 2, texture.filename().string());
+  fs::remove(texture);
+  Fails({"render", "scenes/tiny.yaml", "-o", "out"}, 2, texture.filename().string());
+  Fails({"check", "scenes/tiny.yaml"}, 2, texture.filename().string());
+}
+
+TEST_F(ErrorsTest, NanInATrajectory) {
+  const std::string good = "1.0 0 0 0 0 0 0 1\n1.1 0.1 0 0 0 0 0 1\n1.2 0.2 0 0 0 0 0 1\n";
+  const std::string bad = "1.0 0 0 0 0 0 0 1\n1.1 nan 0 0 0 0 0 1\n1.2 0.2 0 0 0 0 0 1\n";
+  WriteFile(here_ / "good.txt", good);
+  WriteFile(here_ / "bad.txt", bad);
+  Fails({"evaluate", "bad.txt", "--truth", "good.txt"}, 2, "bad.txt:2");
+  Fails({"evaluate", "good.txt", "--truth", "bad.txt"}, 2, "bad.txt:2");
+}
+
+TEST_F(ErrorsTest, EveryMistakeInAScenarioIsNamedWithItsPlace) {
+  const fs::path scenes = CopyScenes();
+  WriteFile(scenes / "tiny.yaml", ReadFile(scenes / "tiny.yaml") + "exposhure: 3\nodometry: {filter: {particels: 9}}\n");
+  const auto before = Tree(here_.path());
+  const Outcome outcome = RunVobench({"check", "scenes/tiny.yaml"}, here_.path());
+  ExpectFailure(outcome, 2, "exposhure", here_.path(), before);
+  EXPECT_THAT(outcome.err, ContainsRegex("tiny.yaml:[0-9]+:[0-9]+: "));
+  EXPECT_THAT(outcome.err, HasSubstr("particles")) << "names the nearest key";
+}
+
+TEST_F(ErrorsTest, BadUsage) {
+  const std::string tiny = TinyScenario().string();
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {},
+           {"fly"},
+           {"render", tiny},
+           {"render", tiny, "-o", "out", "--frames", "5"},
+           {"render", tiny, "-o", "out", "--frames", "5:5"},
+           {"render", tiny, "-o", "out", "--frames", "0:1000000"},
+           {"render", tiny, "-o", "out", "--jobs", "0"},
+           {"render", tiny, "-o", "out", "--seed", "-1"},
+           {"render", tiny, "-o", "out", "--set", "camera"},
+           {"render", tiny, "-o", "out", "--set", "camera.widht=3"},
+           {"render", tiny, "-o", "out", "--set", "camera.width=three"},
+           {"run", tiny, "--system", "orbslam"},
+           {"run", tiny, "--system", "rb2pf,rb2pf"},
+           {"run", tiny, "--runs", "0"},
+           {"run", tiny, "--set", "odometry.filter.particles=0"},
+           {"run", tiny, "--set", "odometry.filter.particules=4"},
+           {"run", tiny, "--set", "prior.velocity_sigma=-1"},
+           {"evaluate", "a", "--truth", "b", "--align", "affine"},
+       }) {
+    const Outcome outcome = RunVobench(arguments, here_.path());
+    EXPECT_EQ(outcome.status, 2) << testing::PrintToString(arguments) << outcome.err;
+    EXPECT_FALSE(outcome.err.empty()) << testing::PrintToString(arguments);
+    EXPECT_TRUE(Tree(here_.path()).empty());
+  }
+}
+
+TEST_F(ErrorsTest, HelpAndVersionSucceed) {
+  EXPECT_EQ(RunVobench({"--version"}, here_.path()).status, 0);
+  for (const std::string command : {"render", "track", "evaluate", "run", "check", "report"}) {
+    const Outcome outcome = RunVobench({command, "--help"}, here_.path());
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("Example:\n  vobench " + command));
+  }
+}
+
+TEST_F(ErrorsTest, WhatIsNotOursIsNotReplaced) {
+  WriteFile(here_ / "out" / "thesis.tex", "years of work");
+  const std::string tiny = TinyScenario().string();
+  Fails({"run", tiny, "-o", "out"}, 2, "out");
+  Fails({"render", tiny, "-o", "out"}, 2, "out");
+}
+
+TEST_F(ErrorsTest, AnOldResultOutlivesAFailure) {
+  RenderSequence();
+  ASSERT_EQ(RunVobench({"track", "seq", "-o", "out"}, here_.path()).status, 0);
+  const fs::path image = here_ / "seq" / "rgb" / std::prev(Tree(here_ / "seq" / "rgb").end())->first;
+  fs::resize_file(image, 100);
+  Fails({"track", "seq", "-o", "out"}, 2, image.filename().string());
+}
+
+// A disk of so many kilobytes where root (or a user namespace) allows to mount one; a limit on the size of files elsewhere, which
+// fails the same writes. What is left behind is listed on stdout after the program's own output.
+Outcome RunOnAFullDisk(const std::vector<std::string>& arguments, const fs::path& where, int kilobytes) {
+  const std::string end = "status=$?; echo; echo LEFT: $(ls -A disk); exit $status";
+  const std::string size = std::to_string(kilobytes);
+  if (std::system("unshare -rm sh -c 'mount -t tmpfs none /tmp' > /dev/null 2>&1") == 0) {
+    std::string inner = "mount -t tmpfs -o size=" + size + "k none disk\n" + Quoted(VOBENCH_PROGRAM);
+    for (const std::string& argument : arguments) inner += " " + Quoted(argument);
+    return RunVobench({}, where, "mkdir -p disk; exec unshare -rm sh -c " + Quoted(inner + "\n" + end) + "\n");
+  }
+  // In blocks of 512 bytes; the signal ignored, writing fails with an error as it does on a full disk.
+  return RunVobench(arguments, where, "mkdir -p disk; trap '' XFSZ; ulimit -f 8", end);
+}
+
+void ExpectFullDisk(const Outcome& outcome) {
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("vobench: "));
+  EXPECT_THAT(outcome.err, ContainsRegex("disk/")) << "names the file";
+  EXPECT_THAT(outcome.err, AnyOf(HasSubstr("No space left"), HasSubstr("File too large")));
+  EXPECT_THAT(outcome.out, HasSubstr("LEFT:\n")) << "nothing is left on the disk";
+}
+
+TEST_F(ErrorsTest, FullDiskWhileRendering) {
+  ExpectFullDisk(RunOnAFullDisk({"render", TinyScenario().string(), "-o", "disk/seq"}, here_.path(), 200));
+}
+
+TEST_F(ErrorsTest, FullDiskWhileTracking) {
+  RenderSequence();
+  ExpectFullDisk(RunOnAFullDisk({"track", "seq", "-o", "disk/out"}, here_.path(), 20));
+}
+
+TEST_F(ErrorsTest, FullDiskWhileRunning) {
+  ExpectFullDisk(RunOnAFullDisk({"run", TinyScenario().string(), "-o", "disk/out"}, here_.path(), 20));
+}
+
+TEST_F(ErrorsTest, InterruptedWorkLeavesNothing) {
+  // timeout sends SIGINT to the program after half a second, in the middle of thousands of frames.
+  const auto before = Tree(here_.path());
+  for (const std::string command : {"render", "run"}) {
+    const Outcome outcome = RunVobench({command, TinyScenario().string(), "-o", "out", "--set", "time.duration=1000 s"},
+                                       here_.path(), "exec timeout -s INT 1.5 \\");
+    EXPECT_THAT(outcome.err, HasSubstr("interrupted")) << command;
+    EXPECT_TRUE(Tree(here_.path()) == before) << command;
+  }
+}
+
+}  // namespace
+}  // namespace vobench::system_test
