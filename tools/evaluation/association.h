@@ -1,0 +1,43 @@
+// Purpose: which estimated pose belongs to which true pose, by time.
+// Source:  TUM RGB-D associate (one to one), evo (nearest), ov_eval (forward scan); see docs/metrics.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "tools/evaluation/trajectory.h"
+
+namespace evaluation {
+
+enum class AssociationRule {
+  one_to_one,  // ours and TUM's: all pairs closer than the gap, closest first, each pose used once
+  nearest,     // evo's: each pose of the shorter trajectory takes the nearest of the longer, at most the gap away; one
+               // pose of the longer may be used twice
+  forward_scan,  // ov_eval's: each estimate in turn takes the nearest truth after those already passed, closer than the
+                 // gap
+};
+
+struct AssociationOptions {
+  AssociationRule rule = AssociationRule::one_to_one;
+  std::int64_t gap_ns = 20'000'000;
+};
+
+struct Match {
+  std::size_t estimate = 0, truth = 0;  // indices
+};
+
+// In order of the estimate's time. Both inputs in order of time. Empty when nothing fits.
+std::vector<Match> Associate(const std::vector<std::int64_t>& estimate_ns, const std::vector<std::int64_t>& truth_ns,
+                             const AssociationOptions& options);
+
+// Two trajectories of equal length, pose k beside pose k. Each keeps its own stamps.
+struct MatchedTrajectories {
+  Trajectory estimate, truth;
+};
+
+// Throws InputError saying what time each covers when nothing fits.
+MatchedTrajectories MatchTrajectories(const Trajectory& estimate, const Trajectory& truth,
+                                      const AssociationOptions& options);
+
+}  // namespace evaluation

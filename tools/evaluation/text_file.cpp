@@ -1,0 +1,165 @@
+#include "tools/evaluation/text_file.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <system_error>
+
+namespace evaluation {
+namespace {
+
+constexpr std::size_t kMostProblems = 50;
+
+std::string Join(const std::vector<std::string>& problems) {
+  std::string text;
+  for (std::size_t i = 0; i < problems.size() && i < kMostProblems; ++i) {
+    if (i > 0) text += '\n';
+    text += problems[i];
+  }
+  if (problems.size() > kMostProblems) {
+    text += "\n... and " + std::to_string(problems.size() - kMostProblems) + " more problems";
+  }
+  return text;
+}
+
+std::vector<Token> Split(const std::string& line, char separator) {
+  std::vector<Token> tokens;
+  std::size_t begin = 0;
+  const bool blanks = separator == ' ';
+  while (true) {
+    if (blanks) {
+      begin = line.find_first_not_of(" \t", begin);
+      if (begin == std::string::npos) return tokens;
+    }
+    std::size_t end = blanks ? line.find_first_of(" \t", begin) : line.find(separator, begin);
+    if (end == std::string::npos) end = line.size();
+    tokens.push_back({line.substr(begin, end - begin), static_cast<int>(begin) + 1});
+    if (end == line.size()) return tokens;
+    begin = end + 1;
+  }
+}
+
+}  // namespace
+
+InputError::InputError(const std::vector<std::string>& problems) : std::invalid_argument(Join(problems)) {}
+
+void Problems::Add(const std::filesystem::path& file, const std::string& message) {
+  problems_.push_back(file.string() + ": " + message);
+}
+
+void Problems::Add(const std::filesystem::path& file, int line, int column, const std::string& message) {
+  problems_.push_back(file.string() + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + message);
+}
+
+void Problems::ThrowIfAny() const {
+  if (!problems_.empty()) throw InputError(problems_);
+}
+
+std::vector<Line> ReadLines(const std::filesystem::path& file, char separator) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) throw InputError({file.string() + ": is a folder, not a file"});
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError({file.string() + ": cannot be opened"});
+  std::vector<Line> lines;
+  std::string text;
+  for (int number = 1; std::getline(stream, text); ++number) {
+    if (!text.empty() && text.back() == '\r') text.pop_back();
+    const std::size_t first = text.find_first_not_of(" \t");
+    if (first == std::string::npos || text[first] == '#') continue;
+    lines.push_back({number, Split(text, separator)});
+  }
+  if (stream.bad()) throw InputError({file.string() + ": cannot be read"});
+  return lines;
+}
+
+std::optional<double> ParseNumber(const std::string& text) {
+  double value = 0;
+  const char* begin = text.data() + (text.size() > 1 && text[0] == '+' ? 1 : 0);
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::optional<std::int64_t> ParseSeconds(const std::string& text) {
+  std::size_t i = 0;
+  const bool negative = !text.empty() && text[0] == '-';
+  if (!text.empty() && (text[0] == '-' || text[0] == '+')) ++i;
+  std::string digits;
+  int exponent = 0;  // of the number that the digits make, in powers of ten
+  bool point = false, any = false;
+  for (; i < text.size(); ++i) {
+    if (text[i] == '.' && !point) {
+      point = true;
+    } else if (text[i] >= '0' && text[i] <= '9') {
+      any = true;
+      if (!digits.empty() || text[i] != '0') digits += text[i];
+      if (point) --exponent;
+    } else {
+      break;
+    }
+  }
+  if (!any) return std::nullopt;
+  if (i < text.size()) {
+    if (text[i] != 'e' && text[i] != 'E') return std::nullopt;
+    const char* begin = text.data() + i + 1;
+    if (begin != text.data() + text.size() && *begin == '+') ++begin;
+    int written = 0;
+    const auto [end, error] = std::from_chars(begin, text.data() + text.size(), written);
+    if (error != std::errc() || end != text.data() + text.size() || written > 100 || written < -100)
+      return std::nullopt;
+    exponent += written;
+  }
+  const int shift = exponent + 9;  // to nanoseconds
+  const int whole = static_cast<int>(digits.size()) + shift;
+  if (digits.empty() || whole < 0) return 0;
+  if (whole > 19) return std::nullopt;
+  std::uint64_t value = 0;  // 19 digits fit
+  for (int k = 0; k < whole; ++k) {
+    const std::size_t at = static_cast<std::size_t>(k);
+    value = value * 10 + static_cast<std::uint64_t>(at < digits.size() ? digits[at] - '0' : 0);
+  }
+  if (whole < static_cast<int>(digits.size()) && digits[static_cast<std::size_t>(whole)] >= '5') ++value;
+  if (value > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) return std::nullopt;
+  return negative ? -static_cast<std::int64_t>(value) : static_cast<std::int64_t>(value);
+}
+
+std::string FormatSeconds(std::int64_t stamp_ns) {
+  const std::uint64_t magnitude =
+      stamp_ns < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(stamp_ns) : static_cast<std::uint64_t>(stamp_ns);
+  char text[40];
+  std::snprintf(text, sizeof text, "%s%llu.%09llu", stamp_ns < 0 ? "-" : "",
+                static_cast<unsigned long long>(magnitude / 1'000'000'000u),
+                static_cast<unsigned long long>(magnitude % 1'000'000'000u));
+  return text;
+}
+
+std::string FormatNumber(double value, int digits) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+void WriteWhole(const std::filesystem::path& file, const std::string& content) {
+  std::filesystem::path temporary = file;
+  temporary += ".part";
+  std::error_code error;
+  const auto fail = [&](const std::string& why) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw std::runtime_error(file.string() + ": cannot be written: " + why);
+  };
+  std::FILE* stream = std::fopen(temporary.string().c_str(), "wb");
+  if (stream == nullptr) fail(std::generic_category().message(errno));
+  errno = 0;
+  const bool written = std::fwrite(content.data(), 1, content.size(), stream) == content.size();
+  const int write_error = errno;
+  const bool closed = std::fclose(stream) == 0;
+  if (!written || !closed) fail(std::generic_category().message(written ? errno : write_error));
+  std::filesystem::rename(temporary, file, error);
+  if (error) fail(error.message());
+}
+
+}  // namespace evaluation

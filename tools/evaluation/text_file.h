@@ -1,0 +1,64 @@
+// Purpose: reading tables of text strictly, and writing files whole or not at all. Every problem of a file is collected
+// and
+//          reported at once, with file, line, column and the text found there.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace evaluation {
+
+// Input that cannot be used. what() has one problem per line; beyond the first 50 they are counted.
+class InputError : public std::invalid_argument {
+ public:
+  explicit InputError(const std::vector<std::string>& problems);
+};
+
+// Collects problems; ThrowIfAny throws InputError with all of them.
+class Problems {
+ public:
+  void Add(const std::filesystem::path& file, const std::string& message);
+  void Add(const std::filesystem::path& file, int line, int column, const std::string& message);
+  void ThrowIfAny() const;
+
+ private:
+  std::vector<std::string> problems_;
+};
+
+struct Token {
+  std::string text;
+  int column = 1;
+};
+
+struct Line {
+  int number = 1;
+  std::vector<Token> tokens;
+};
+
+// The lines that carry data: no empty ones, none that starts with '#'. separator ' ' stands for any run of spaces and
+// tabs; with any other, fields may be empty. Throws InputError when the file cannot be read.
+std::vector<Line> ReadLines(const std::filesystem::path& file, char separator = ' ');
+
+// The whole text as a finite number; nothing when it is anything else ("nan", "1.2x", "").
+std::optional<double> ParseNumber(const std::string& text);
+
+// Decimal seconds to nanoseconds, exactly (no double between; a tenth decimal is rounded). Exponents are understood.
+std::optional<std::int64_t> ParseSeconds(const std::string& text);
+
+// Nanoseconds as seconds with nine decimals.
+std::string FormatSeconds(std::int64_t stamp_ns);
+
+// A number with so many significant digits, shortest form ("%.*g").
+std::string FormatNumber(double value, int digits);
+
+// Writes under a temporary name beside the file and renames when all of it is on disk. Throws std::runtime_error naming
+// the file and the reason (disk full, no such folder); then the old file, if any, is untouched and no temporary one
+// remains.
+void WriteWhole(const std::filesystem::path& file, const std::string& content);
+
+}  // namespace evaluation
