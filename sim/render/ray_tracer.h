@@ -1,0 +1,26 @@
+// Purpose: the renderer on Embree: primary rays, Lambert shading, shadow rays, filtered textures.
+#pragma once
+
+#include <memory>
+
+#include "sim/render/renderer.h"
+#include "sim/world/scene.h"
+
+namespace sim {
+
+struct RayTracerOptions {
+  // Rays per pixel and time sample. More than one pays only where there are few time samples: each has its own point in
+  // the pixel.
+  int rays_per_time_sample = 1;
+  bool jitter = true;  // false: every ray goes through the pixel's centre (for comparisons with closed forms)
+  int jobs = 0;        // threads; 0: as many as the machine has. Never changes the result
+};
+
+// Copies what it needs of the scene. The radiance of a surface with albedo a is
+//   L = emission + a * (sum of ambient radiances + 1/pi * sum over the other lights of V * E),
+// with E the irradiance of sim/world/light.h and V = 0 where a shadow ray meets a surface. Textures are filtered over
+// each ray's share of the pixel, 1/sqrt(number of rays) of its side. Throws std::invalid_argument for options out of
+// range and for a scene whose indices are; std::runtime_error when Embree fails.
+std::unique_ptr<Renderer> MakeRayTracer(const Scene& scene, const RayTracerOptions& options = {});
+
+}  // namespace sim

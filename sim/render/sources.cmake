@@ -1,0 +1,2 @@
+target_sources(vobench_sim PRIVATE
+  ${CMAKE_CURRENT_LIST_DIR}/ray_tracer.cpp)

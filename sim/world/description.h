@@ -1,0 +1,27 @@
+// Purpose: what a scenario says about its world, before any file is read.
+#pragma once
+
+#include <filesystem>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "sim/world/light.h"
+
+namespace sim {
+
+// A mesh file set into the world: X_W = position + R(orientation) * scale * X_file.
+struct MeshDescription {
+  std::filesystem::path file;  // glTF, GLB, OBJ, PLY, FBX and whatever else assimp reads
+  glm::dvec3 position{0.0};    // [m]
+  glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
+  double scale = 1.0;  // metres per unit of the file, > 0
+};
+
+struct WorldDescription {
+  std::vector<MeshDescription> meshes;
+  std::vector<Light> lights;
+  glm::dvec3 background{0.0};  // linear radiance of a ray that meets nothing
+};
+
+}  // namespace sim

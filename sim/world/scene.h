@@ -1,0 +1,62 @@
+// Purpose: a world in memory, ready to be rendered: triangles in W, materials, textures in linear light, lights.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sim/world/description.h"
+#include "sim/world/light.h"
+#include "sim/world/texture.h"
+
+namespace sim {
+
+// Lambert. Albedo = base_color * vertex colour * texture, each where present; radiance = emission + reflected light.
+struct Material {
+  std::string name;
+  glm::vec3 base_color{1.0f};  // linear
+  glm::vec3 emission{0.0f};    // linear radiance
+  int texture = -1;            // index in Scene::textures; -1: none
+};
+
+// Per-vertex arrays are empty or as long as positions. Surfaces are two-sided: what is seen faces the viewer.
+struct Mesh {
+  std::string name;
+  std::vector<glm::vec3> positions;  // in W [m]
+  std::vector<glm::vec3> normals;    // in W, unit; empty: flat
+  std::vector<glm::vec2> uvs;     // (0, 0) = upper left corner of the texture's image, v down; repeats outside [0, 1)
+  std::vector<glm::vec3> colors;  // linear
+  std::vector<glm::uvec3> triangles;
+  int material = 0;  // index in Scene::materials
+};
+
+struct Scene {
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  std::vector<Light> lights;
+  glm::vec3 background{0.0f};
+  std::vector<std::string> warnings;  // what was readable but is probably not meant
+};
+
+// what(): every problem that was found, one per line, each naming its file.
+class SceneError : public std::runtime_error {
+ public:
+  explicit SceneError(std::vector<std::string> problems);
+  const std::vector<std::string>& problems() const { return problems_; }
+
+ private:
+  std::vector<std::string> problems_;
+};
+
+// Reads all mesh files and their textures (beside the mesh file or embedded in it). Colour factors in files are taken
+// as linear; vertex colours are linear in glTF (its specification) and sRGB-coded in the other formats. Throws
+// SceneError with all problems of the world at once: a mesh that is missing, corrupt, without triangles, or with a
+// coordinate that is not finite; a texture that is missing, truncated, not an image, or named by an absolute path or
+// one that leaves the mesh file's folder; a light that is not finite or has no direction. A textured material on a mesh
+// without texture coordinates is a warning; its base colour is used.
+Scene LoadScene(const WorldDescription& description);
+
+}  // namespace sim

@@ -1,0 +1,5 @@
+target_sources(vobench_sim PRIVATE
+  ${CMAKE_CURRENT_LIST_DIR}/image_file.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/mesh_file.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/scene.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/texture.cpp)

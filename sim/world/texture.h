@@ -1,0 +1,49 @@
+// Purpose: a picture as a surface's colour: linear light, mip chain, trilinear filtering.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace sim {
+
+// One level of the mip chain: level l has max(1, floor(size / 2^l)) texels a side.
+struct TextureLevel {
+  int width = 0, height = 0;
+  std::uint32_t first = 0;  // index of its first texel in Texture::texels()
+};
+
+// Texels are kept as the square roots of linear red, green, blue in 10 bits each (red lowest): at most 1/1023 * sqrt(c)
+// from the truth, which is a ninth to a half of the step of the 8-bit sRGB picture that they come from, in 4 bytes.
+// Texture coordinates: (0, 0) is the upper left corner of the picture, (1, 1) the lower right; the centre of texel (i,
+// j) is at
+// ((i + 0.5) / width, (j + 0.5) / height). The picture repeats outside.
+class Texture {
+ public:
+  // rgb: width * height * 3 bytes, sRGB-coded, rows from the top. Each level is the area-weighted mean of the one below
+  // it, in linear light. Throws std::invalid_argument when the size is wrong.
+  Texture(std::string name, int width, int height, std::span<const std::uint8_t> rgb);
+
+  // Linear light at uv, averaged over about `footprint` level-0 texels: blends the two nearest levels by
+  // log2(footprint).
+  glm::vec3 Sample(glm::vec2 uv, float footprint) const;
+
+  // The stored value of a texel, linear.
+  glm::vec3 Texel(int level, int x, int y) const;
+
+  const std::string& name() const { return name_; }
+  int width() const { return levels_[0].width; }
+  int height() const { return levels_[0].height; }
+  const std::vector<TextureLevel>& levels() const { return levels_; }
+  const std::vector<std::uint32_t>& texels() const { return texels_; }
+
+ private:
+  std::string name_;
+  std::vector<TextureLevel> levels_;
+  std::vector<std::uint32_t> texels_;
+};
+
+}  // namespace sim
