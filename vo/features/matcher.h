@@ -1,0 +1,32 @@
+// Purpose: finds each predicted landmark in the image: smallest Hamming distance over every pixel of a small window, the window
+//          enlarged where nothing fits; then refined below the pixel.
+// Source:  algorithm, section 7.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "vo/features/brisk_field.h"
+#include "vo/features/patch.h"
+#include "vo/params.h"
+
+namespace vo {
+
+// How a landmark looked when it was first seen.
+struct Appearance {
+  Descriptor descriptor{};
+  Patch patch;
+};
+
+struct SearchRequest {
+  const Appearance* appearance = nullptr;
+  Eigen::Vector2d predicted = Eigen::Vector2d::Zero();          // [px]
+  Eigen::Matrix2d S = Eigen::Matrix2d::Zero();                  // its covariance, pixel noise included [px^2]
+  Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();           // d(present pixel)/d(pixel of the first view)
+};
+
+// Where each request was found [px], in its order. `field` holds the present image; `grey` is the same image.
+std::vector<std::optional<Eigen::Vector2d>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& grey,
+                                                         BriskField& field, const FeatureParams& params);
+
+}  // namespace vo

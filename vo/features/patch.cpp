@@ -1,0 +1,88 @@
+#include "vo/features/patch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace vo {
+namespace {
+
+constexpr int kWindowRadius = 4;  // of the registered window
+constexpr int kWindow = 2 * kWindowRadius + 1;
+constexpr int kPixels = kWindow * kWindow;
+constexpr int kIterations = 10;
+constexpr double kSettledPx = 0.01;
+
+using Window = Eigen::Matrix<double, kPixels, 1>;
+
+double Bilinear(const std::uint8_t* data, std::size_t stride, double x, double y) {
+  const int ix = static_cast<int>(x), iy = static_cast<int>(y);
+  const double fx = x - ix, fy = y - iy;
+  const std::uint8_t* p = data + static_cast<std::size_t>(iy) * stride + ix;
+  return (1 - fy) * ((1 - fx) * p[0] + fx * p[1]) + fy * ((1 - fx) * p[stride] + fx * p[stride + 1]);
+}
+
+// The patch as the present view should show it; one pixel wider than the window for its gradient. False: leaves the patch.
+bool WarpPatch(const Patch& patch, const Eigen::Matrix2d& warp, Eigen::Matrix<double, kWindow + 2, kWindow + 2>& out) {
+  const Eigen::Matrix2d to_first = warp.inverse();
+  for (int v = -kWindowRadius - 1; v <= kWindowRadius + 1; ++v)
+    for (int u = -kWindowRadius - 1; u <= kWindowRadius + 1; ++u) {
+      const Eigen::Vector2d p = to_first * Eigen::Vector2d(u, v) + Eigen::Vector2d::Constant(Patch::kRadius);
+      if (!(p.minCoeff() >= 0 && p.maxCoeff() < Patch::kSide - 1)) return false;
+      out(v + kWindowRadius + 1, u + kWindowRadius + 1) = Bilinear(patch.grey.data(), Patch::kSide, p.x(), p.y());
+    }
+  return true;
+}
+
+}  // namespace
+
+Patch CutPatch(const cv::Mat& grey, const Eigen::Vector2i& centre) {
+  Patch patch;
+  for (int row = 0; row < Patch::kSide; ++row)
+    std::copy_n(grey.ptr(centre.y() - Patch::kRadius + row) + centre.x() - Patch::kRadius, Patch::kSide,
+                patch.grey.begin() + row * Patch::kSide);
+  return patch;
+}
+
+std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& warp, const cv::Mat& grey,
+                                     const Eigen::Vector2d& start, double max_shift_px) {
+  Eigen::Matrix<double, kWindow + 2, kWindow + 2> wide;
+  if (!(std::abs(warp.determinant()) > 0.1) || !WarpPatch(patch, warp, wide)) return std::nullopt;
+
+  Window templ;
+  Eigen::Matrix<double, kPixels, 2> gradient;
+  for (int v = 0, i = 0; v < kWindow; ++v)
+    for (int u = 0; u < kWindow; ++u, ++i) {
+      templ[i] = wide(v + 1, u + 1);
+      gradient(i, 0) = 0.5 * (wide(v + 1, u + 2) - wide(v + 1, u));
+      gradient(i, 1) = 0.5 * (wide(v + 2, u + 1) - wide(v, u + 1));
+    }
+  templ.array() -= templ.mean();
+  gradient.rowwise() -= gradient.colwise().mean().eval();
+  const double template_norm = templ.norm();
+  const Eigen::Matrix2d H = gradient.transpose() * gradient;
+  if (!(template_norm > 1) || !(H.determinant() > 1e-3 * H.trace() * H.trace())) return std::nullopt;
+  const Eigen::Matrix2d H_inverse = H.inverse();
+
+  Eigen::Vector2d x = start;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    if (!(x.x() >= kWindowRadius && x.y() >= kWindowRadius && x.x() < grey.cols - kWindowRadius - 1 &&
+          x.y() < grey.rows - kWindowRadius - 1))
+      return std::nullopt;
+    Window seen;
+    for (int v = -kWindowRadius, i = 0; v <= kWindowRadius; ++v)
+      for (int u = -kWindowRadius; u <= kWindowRadius; ++u, ++i) seen[i] = Bilinear(grey.data, grey.step[0], x.x() + u, x.y() + v);
+    seen.array() -= seen.mean();
+    const double seen_norm = seen.norm();
+    if (!(seen_norm > 1)) return std::nullopt;
+    seen *= template_norm / seen_norm;  // gain
+    const Eigen::Vector2d step = H_inverse * (gradient.transpose() * (templ - seen));
+    x += step;
+    if ((x - start).norm() > max_shift_px) return std::nullopt;
+    if (step.norm() < kSettledPx) return Registration{x, templ.dot(seen) / (template_norm * template_norm)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace vo

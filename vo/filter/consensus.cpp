@@ -1,0 +1,48 @@
+#include "vo/filter/consensus.h"
+
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace vo {
+namespace {
+
+constexpr int kRounds = 4;
+constexpr double kCauchySq = 5.7;  // 2.385^2: 95 % efficient on Gaussian residuals
+constexpr double kFar = 1e6;
+
+std::vector<double> SquaredDistances(const Pose& pose, const LocalMap& map, std::span<const Match> matches) {
+  std::vector<AnchorView> views;
+  for (const Pose& anchor : map.anchors) views.emplace_back(pose, anchor);
+  std::vector<double> distances;
+  for (const Match& match : matches) {
+    const Landmark& landmark = map.landmarks[match.landmark];
+    const Projection h = Project(views[map.anchor_of[match.landmark]], landmark.mean);
+    if (!h.in_front) {
+      distances.push_back(INFINITY);
+      continue;
+    }
+    const Eigen::Vector2d r = match.z - h.z;
+    const Eigen::Matrix2d S = h.J_landmark * landmark.covariance * h.J_landmark.transpose() + match.R;
+    distances.push_back(r.dot(S.inverse() * r));
+  }
+  return distances;
+}
+
+}  // namespace
+
+std::vector<bool> FindInliers(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
+                              const FilterParams& params) {
+  std::vector<Match> reweighted(matches.begin(), matches.end());
+  std::vector<double> distances = SquaredDistances(prediction.mean, map, matches);
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t i = 0; i < matches.size(); ++i)
+      reweighted[i].R = matches[i].R * (1.0 + std::min(distances[i], kFar) / kCauchySq);
+    distances = SquaredDistances(Propose(prediction, map, reweighted, params).pose.mean, map, matches);
+  }
+  std::vector<bool> inlier;
+  for (const double d : distances) inlier.push_back(d < gate);
+  return inlier;
+}
+
+}  // namespace vo

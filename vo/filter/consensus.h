@@ -1,0 +1,17 @@
+// Purpose: tells outliers from inliers among the matches of one frame, once for all particles.
+// Source:  M-estimation by iteratively re-weighted covariances (Cauchy), then the chi-square gate on each residual.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "vo/filter/proposal.h"
+
+namespace vo {
+
+// Fits the pose of one particle robustly and marks the matches whose residual there, with the landmark's and the pixel's
+// covariance, has a squared Mahalanobis distance below `gate`.
+std::vector<bool> FindInliers(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
+                              const FilterParams& params);
+
+}  // namespace vo
