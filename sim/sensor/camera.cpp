@@ -1,0 +1,130 @@
+#include "sim/sensor/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat2x2.hpp>
+#include <glm/matrix.hpp>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+namespace sim {
+namespace {
+
+bool HasDistortion(const CameraParams& c) { return c.k1 != 0 || c.k2 != 0 || c.p1 != 0 || c.p2 != 0 || c.k3 != 0; }
+
+glm::dvec2 Distort(const CameraParams& c, const glm::dvec2& p) {
+  const double x = p.x, y = p.y, r2 = x * x + y * y;
+  const double d = 1 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
+  return {x * d + 2 * c.p1 * x * y + c.p2 * (r2 + 2 * x * x), y * d + c.p1 * (r2 + 2 * y * y) + 2 * c.p2 * x * y};
+}
+
+// d Distort / d(x, y). It is symmetric.
+glm::dmat2 DistortJacobian(const CameraParams& c, const glm::dvec2& p) {
+  const double x = p.x, y = p.y, r2 = x * x + y * y;
+  const double d = 1 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
+  const double d_by_r2 = c.k1 + r2 * (2 * c.k2 + r2 * 3 * c.k3);
+  const double cross = 2 * x * y * d_by_r2 + 2 * c.p1 * x + 2 * c.p2 * y;
+  return {d + 2 * x * x * d_by_r2 + 2 * c.p1 * y + 6 * c.p2 * x, cross,  //
+          cross, d + 2 * y * y * d_by_r2 + 6 * c.p1 * y + 2 * c.p2 * x};
+}
+
+glm::dvec2 Normalized(const CameraParams& c, const glm::dvec2& pixel) {
+  return {(pixel.x - c.cx) / c.fx, (pixel.y - c.cy) / c.fy};
+}
+
+// Newton's method from p, for a goal not far from Distort(p). False where the lens is not one-to-one on the way.
+bool Approach(const CameraParams& c, const glm::dvec2& goal, glm::dvec2& p) {
+  for (int i = 0; i < 20; ++i) {
+    const glm::dmat2 jacobian = DistortJacobian(c, p);
+    if (!(glm::determinant(jacobian) > 1e-6)) return false;
+    const glm::dvec2 move = glm::inverse(jacobian) * (goal - Distort(c, p));
+    p += move;
+    if (glm::length(move) < 1e-14) return glm::determinant(DistortJacobian(c, p)) > 1e-6;
+  }
+  return false;
+}
+
+// The undistorted point, in the part of the plane around the optical axis on which the lens is one-to-one; none outside of
+// it. The target is approached in steps from the principal point, so that Newton's method does not jump over a fold.
+std::optional<glm::dvec2> Solve(const CameraParams& c, const glm::dvec2& target, int steps) {
+  glm::dvec2 p(0.0);
+  for (int step = 1; step <= steps; ++step) {
+    if (!Approach(c, target * (static_cast<double>(step) / steps), p)) return std::nullopt;
+  }
+  return p;
+}
+
+}  // namespace
+
+std::vector<std::string> Problems(const CameraParams& c) {
+  std::vector<std::string> problems;
+  const auto require = [&](bool ok, const char* name, double value, const char* rule) {
+    if (ok && std::isfinite(value)) return;
+    std::ostringstream text;
+    text << name << " = " << value << " " << rule;
+    problems.push_back(text.str());
+  };
+  constexpr int kMaxSide = 1 << 14;
+  require(c.width >= 1 && c.width <= kMaxSide, "width", c.width, "must lie in 1 ... 16384");
+  require(c.height >= 1 && c.height <= kMaxSide, "height", c.height, "must lie in 1 ... 16384");
+  require(c.fx > 0, "fx", c.fx, "must be positive");
+  require(c.fy > 0, "fy", c.fy, "must be positive");
+  for (const auto& [name, value] : {std::pair{"cx", c.cx}, {"cy", c.cy}, {"k1", c.k1}, {"k2", c.k2}, {"p1", c.p1},
+                                    {"p2", c.p2}, {"k3", c.k3}}) {
+    require(true, name, value, "must be finite");
+  }
+  if (!problems.empty() || !HasDistortion(c)) return problems;
+  // The lines from the principal point to the border cover the image.
+  const double right = c.width - 0.5, bottom = c.height - 0.5;
+  const auto check = [&](double u, double v) {
+    if (!problems.empty() || Solve(c, Normalized(c, {u, v}), 16)) return;
+    std::ostringstream text;
+    text << "distortion: folds over inside the image, before pixel (" << u << ", " << v << ") is reached from its middle";
+    problems.push_back(text.str());
+  };
+  for (int i = 0; i <= c.width; ++i) check(i - 0.5, -0.5), check(i - 0.5, bottom);
+  for (int j = 0; j <= c.height; ++j) check(-0.5, j - 0.5), check(right, j - 0.5);
+  return problems;
+}
+
+Camera::Camera(const CameraParams& params)
+    : params_(params),
+      cx_(static_cast<float>(params.cx)),
+      cy_(static_cast<float>(params.cy)),
+      inverse_fx_(static_cast<float>(1 / params.fx)),
+      inverse_fy_(static_cast<float>(1 / params.fy)) {
+  const std::vector<std::string> problems = Problems(params);
+  if (!problems.empty()) {
+    std::string text = "camera: ";
+    for (const std::string& problem : problems) text += (text.size() > 8 ? "; " : "") + problem;
+    throw std::invalid_argument(text);
+  }
+  if (!HasDistortion(params)) return;
+  auto table = std::make_shared<std::vector<glm::vec2>>();
+  table->reserve((static_cast<std::size_t>(params.width) + 1) * (static_cast<std::size_t>(params.height) + 1));
+  for (int j = 0; j <= params.height; ++j) {
+    glm::dvec2 ray = Undistort({-0.5, j - 0.5});
+    for (int i = 0; i <= params.width; ++i) {
+      if (!Approach(params, Normalized(params, {i - 0.5, j - 0.5}), ray)) ray = Undistort({i - 0.5, j - 0.5});
+      table->push_back(ray);
+    }
+  }
+  table_ = std::move(table);
+}
+
+glm::dvec2 Camera::Project(const glm::dvec3& X_C) const {
+  const glm::dvec2 d = Distort(params_, {X_C.x / X_C.z, X_C.y / X_C.z});
+  return {params_.fx * d.x + params_.cx, params_.fy * d.y + params_.cy};
+}
+
+glm::dvec2 Camera::Undistort(const glm::dvec2& pixel) const {
+  const glm::dvec2 target = Normalized(params_, pixel);
+  if (!HasDistortion(params_)) return target;
+  const std::optional<glm::dvec2> solution = Solve(params_, target, 4);
+  if (!solution) throw std::invalid_argument("camera: pixel outside the part of the plane where the lens is one-to-one");
+  return *solution;
+}
+
+}  // namespace sim
