@@ -1,0 +1,151 @@
+#include "tools/settings/node.h"
+
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+namespace settings {
+namespace {
+
+// Builds the tree from the parser's events. Aliases are refused: they are no use here, and expanding them can take
+// exponential space.
+class Builder : public YAML::EventHandler {
+ public:
+  Builder(std::string name, bool with_lines, std::vector<Problem>& problems)
+      : name_(std::move(name)), with_lines_(with_lines), problems_(problems) {}
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { Add(MakeNode(Node::Kind::null, mark)); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    Complain(mark, "aliases (*name) are not supported: write the value out");
+    Add(MakeNode(Node::Kind::null, mark));
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, const std::string& value) override {
+    CheckTag(mark, tag);
+    Node node = MakeNode(Node::Kind::scalar, mark);
+    node.text = value;
+    const bool plain = tag == "?" || tag.empty();
+    if (plain && (value.empty() || value == "~" || value == "null")) node.kind = Node::Kind::null;
+    Add(std::move(node));
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    CheckTag(mark, tag);
+    open_.push_back({MakeNode(Node::Kind::list, mark), {}, false});
+  }
+  void OnSequenceEnd() override { Close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    CheckTag(mark, tag);
+    open_.push_back({MakeNode(Node::Kind::map, mark), {}, false});
+  }
+  void OnMapEnd() override { Close(); }
+
+  Node TakeRoot() { return std::move(root_); }
+
+ private:
+  struct Open {
+    Node node;
+    Node key;  // of a map: the key that waits for its value
+    bool has_key = false;
+  };
+
+  Place PlaceOf(const YAML::Mark& mark) const {
+    return with_lines_ && mark.line >= 0 ? Place{name_, mark.line + 1, mark.column + 1} : Place{name_, 0, 0};
+  }
+  Node MakeNode(Node::Kind kind, const YAML::Mark& mark) const {
+    Node node;
+    node.kind = kind;
+    node.place = PlaceOf(mark);
+    return node;
+  }
+  void Complain(const Place& place, std::string message) {
+    problems_.push_back({place.file, place.line, place.column, std::move(message)});
+  }
+  void Complain(const YAML::Mark& mark, std::string message) { Complain(PlaceOf(mark), std::move(message)); }
+  void CheckTag(const YAML::Mark& mark, const std::string& tag) {
+    if (tag != "?" && tag != "!" && !tag.empty()) Complain(mark, "tags (" + tag + ") are not supported");
+  }
+  void Close() {
+    Node node = std::move(open_.back().node);
+    open_.pop_back();
+    Add(std::move(node));
+  }
+  void Add(Node node) {
+    if (open_.empty()) {
+      root_ = std::move(node);
+      return;
+    }
+    Open& parent = open_.back();
+    if (parent.node.kind == Node::Kind::list) {
+      parent.node.items.push_back(std::move(node));
+    } else if (!parent.has_key) {
+      if (node.kind != Node::Kind::scalar) Complain(node.place, "a key must be a plain word, not " + Describe(node));
+      parent.key = std::move(node);
+      parent.has_key = true;
+    } else {
+      parent.has_key = false;
+      if (parent.key.kind != Node::Kind::scalar) return;
+      if (const Node* first = parent.node.Find(parent.key.text)) {
+        std::string message = "duplicate key '" + parent.key.text + "'";
+        if (first->place.line > 0) message += ", given already on line " + std::to_string(first->place.line);
+        Complain(parent.key.place, std::move(message));
+        return;
+      }
+      parent.node.entries.push_back({std::move(parent.key.text), parent.key.place, std::move(node)});
+    }
+  }
+
+  std::string name_;
+  bool with_lines_;
+  std::vector<Problem>& problems_;
+  std::vector<Open> open_;
+  Node root_;
+};
+
+}  // namespace
+
+const Node* Node::Find(const std::string& key) const {
+  const auto at = std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) { return entry.key == key; });
+  return at == entries.end() ? nullptr : &at->value;
+}
+
+std::string Describe(const Node& node) {
+  switch (node.kind) {
+    case Node::Kind::null:
+      return "nothing";
+    case Node::Kind::scalar:
+      return "'" + node.text + "'";
+    case Node::Kind::list:
+      return "a list";
+    case Node::Kind::map:
+      return "a section";
+  }
+  return "nothing";
+}
+
+Node ParseYaml(const std::string& text, const std::string& name, bool with_lines, std::vector<Problem>& problems) {
+  Builder builder(name, with_lines, problems);
+  try {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    Builder rest(name, with_lines, problems);
+    if (parser.HandleNextDocument(builder) && parser.HandleNextDocument(rest)) {
+      problems.push_back({name, 0, 0, "holds more than one YAML document"});
+    }
+  } catch (const YAML::Exception& error) {
+    const bool place = with_lines && error.mark.line >= 0;
+    problems.push_back(
+        {name, place ? error.mark.line + 1 : 0, place ? error.mark.column + 1 : 0, "not valid YAML: " + error.msg});
+  }
+  Node root = builder.TakeRoot();
+  if (root.place.file.empty()) root.place.file = name;
+  return root;
+}
+
+}  // namespace settings

@@ -1,0 +1,30 @@
+// Purpose: what is wrong with a settings file: every problem at once, each with its place.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace settings {
+
+struct Problem {
+  std::string file;  // or "--set a.b.c" for a value from the command line
+  int line = 0;      // 1-based; 0: the whole file
+  int column = 0;    // 1-based, in bytes
+  std::string message;
+};
+
+// "file:line:column: message", or "file: message" without a line.
+std::string ToString(const Problem& problem);
+
+// what(): all problems, one per line, in the order of the file.
+class Error : public std::runtime_error {
+ public:
+  explicit Error(std::vector<Problem> problems);
+  const std::vector<Problem>& problems() const { return problems_; }
+
+ private:
+  std::vector<Problem> problems_;
+};
+
+}  // namespace settings
