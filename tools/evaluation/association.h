@@ -1,5 +1,5 @@
 // Purpose: which estimated pose belongs to which true pose, by time.
-// Source:  TUM RGB-D associate (one to one), evo (nearest), ov_eval (forward scan); see docs/metrics.md.
+// Source:  TUM RGB-D associate (one to one), evo (nearest); see docs/metrics.md.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,6 @@ enum class AssociationRule {
   one_to_one,  // ours and TUM's: all pairs closer than the gap, closest first, each pose used once
   nearest,     // evo's: each pose of the shorter trajectory takes the nearest of the longer, at most the gap away; one
                // pose of the longer may be used twice
-  forward_scan,  // ov_eval's: each estimate in turn takes the nearest truth after those already passed, closer than the
-                 // gap
 };
 
 struct AssociationOptions {
@@ -26,6 +24,11 @@ struct AssociationOptions {
 struct Match {
   std::size_t estimate = 0, truth = 0;  // indices
 };
+
+std::vector<std::int64_t> StampsOf(const Trajectory& trajectory);
+
+// Index of the stamp nearest to t, the earlier of two equally near. Stamps not empty (a precondition), in order.
+std::size_t NearestIndex(const std::vector<std::int64_t>& stamps_ns, std::int64_t t_ns);
 
 // In order of the estimate's time. Both inputs in order of time. Empty when nothing fits.
 std::vector<Match> Associate(const std::vector<std::int64_t>& estimate_ns, const std::vector<std::int64_t>& truth_ns,

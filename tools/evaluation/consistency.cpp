@@ -59,14 +59,12 @@ double NeesWithoutDirection(const Eigen::VectorXd& error, const Eigen::MatrixXd&
 std::vector<FrameConsistency> ComputeConsistency(const EstimateRun& run, const Trajectory& truth,
                                                  const std::optional<Velocities>& truth_velocities, std::int64_t gap_ns,
                                                  Gauge gauge) {
-  std::vector<std::int64_t> estimate_ns, truth_ns;
-  for (const StampedPose& pose : run.trajectory) estimate_ns.push_back(pose.stamp_ns);
-  for (const StampedPose& pose : truth) truth_ns.push_back(pose.stamp_ns);
   const Similarity to_estimate = GaugeOf(run.trajectory, truth, gap_ns, gauge);
 
   std::vector<FrameConsistency> frames;
   std::size_t next_belief = 0;
-  for (const Match& match : Associate(estimate_ns, truth_ns, {AssociationRule::one_to_one, gap_ns})) {
+  for (const Match& match :
+       Associate(StampsOf(run.trajectory), StampsOf(truth), {AssociationRule::one_to_one, gap_ns})) {
     const StampedPose& estimate = run.trajectory[match.estimate];
     while (next_belief < run.beliefs.size() && run.beliefs[next_belief].velocity.stamp_ns < estimate.stamp_ns)
       ++next_belief;

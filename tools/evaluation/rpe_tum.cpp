@@ -8,17 +8,7 @@
 namespace evaluation {
 namespace {
 
-// Index of the pose nearest in time, the earlier of two equally near.
-std::size_t Nearest(const Trajectory& trajectory, std::int64_t t) {
-  const auto after = std::lower_bound(trajectory.begin(), trajectory.end(), t,
-                                      [](const StampedPose& pose, std::int64_t time) { return pose.stamp_ns < time; });
-  if (after == trajectory.begin()) return 0;
-  const auto index = static_cast<std::size_t>(after - trajectory.begin());
-  if (after == trajectory.end()) return index - 1;
-  return t - trajectory[index - 1].stamp_ns <= trajectory[index].stamp_ns - t ? index - 1 : index;
-}
-
-// A motion from_inverse * to, as (R, t) with B^-1 etc. spelt out.
+// from^-1 to.
 Eigen::Isometry3d Motion(const StampedPose& from, const StampedPose& to) {
   const auto matrix = [](const StampedPose& pose) {
     return Eigen::Translation3d(pose.p_WC) * Eigen::Isometry3d(pose.q_WC);
@@ -31,11 +21,12 @@ Rpe Errors(const Trajectory& estimate, const Trajectory& truth, const std::vecto
   for (std::size_t i = 1; i < truth.size(); ++i) {
     intervals.push_back(static_cast<double>(truth[i].stamp_ns - truth[i - 1].stamp_ns));
   }
+  const std::vector<std::int64_t> truth_ns = StampsOf(truth);
   const double allowed = 2 * Median(intervals);
   Rpe rpe;
   for (const auto& [i, j] : candidates) {
-    const StampedPose& truth_i = truth[Nearest(truth, estimate[i].stamp_ns)];
-    const StampedPose& truth_j = truth[Nearest(truth, estimate[j].stamp_ns)];
+    const StampedPose& truth_i = truth[NearestIndex(truth_ns, estimate[i].stamp_ns)];
+    const StampedPose& truth_j = truth[NearestIndex(truth_ns, estimate[j].stamp_ns)];
     if (static_cast<double>(std::abs(truth_i.stamp_ns - estimate[i].stamp_ns)) > allowed ||
         static_cast<double>(std::abs(truth_j.stamp_ns - estimate[j].stamp_ns)) > allowed) {
       continue;
@@ -55,8 +46,9 @@ Rpe Errors(const Trajectory& estimate, const Trajectory& truth, const std::vecto
 Rpe ComputeTumRpeByTime(const Trajectory& estimate, const Trajectory& truth, std::int64_t delta_ns) {
   if (estimate.size() < 2 || truth.size() < 2) return {};
   std::vector<IndexPair> candidates;
+  const std::vector<std::int64_t> stamps_ns = StampsOf(estimate);
   for (std::size_t i = 0; i < estimate.size(); ++i) {
-    const std::size_t j = Nearest(estimate, estimate[i].stamp_ns + delta_ns);
+    const std::size_t j = NearestIndex(stamps_ns, estimate[i].stamp_ns + delta_ns);
     if (j + 1 != estimate.size()) candidates.emplace_back(i, j);
   }
   return Errors(estimate, truth, candidates);

@@ -16,7 +16,7 @@ Stamps FrameStamps(const EstimateRun& run, const JudgeOptions& options) {
   } else if (options.frame_stamps_ns) {
     stamps = *options.frame_stamps_ns;
   } else {
-    for (const StampedPose& pose : run.trajectory) stamps.push_back(pose.stamp_ns);
+    stamps = StampsOf(run.trajectory);
   }
   return stamps;
 }

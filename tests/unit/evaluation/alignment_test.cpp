@@ -1,0 +1,139 @@
+#include "tools/evaluation/alignment.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/evaluation/random.h"
+#include "tools/evaluation/ate.h"
+#include "tools/evaluation/baseline.h"
+
+namespace evaluation {
+namespace {
+
+Similarity RandomSimilarity(TestRandom& random, double scale) {
+  Similarity s;
+  s.scale = scale;
+  s.R = random.Orientation().toRotationMatrix();
+  s.t = 3 * random.Normals(3);
+  return s;
+}
+
+// A walk and a noisy copy of it.
+MatchedTrajectories NoisyPair(TestRandom& random, int poses) {
+  MatchedTrajectories matched;
+  matched.truth = random.Walk(poses);
+  for (const StampedPose& pose : matched.truth) {
+    matched.estimate.push_back(
+        {pose.stamp_ns, pose.p_WC + 0.02 * random.Normals(3), pose.q_WC * Exp(0.02 * random.Normals(3))});
+  }
+  return matched;
+}
+
+TEST(Align, FindsTheSimilarityThatWasApplied) {
+  TestRandom random(5);
+  for (int trial = 0; trial < 100; ++trial) {
+    const double scale = trial % 2 == 0 ? 1 : std::exp(random.Normal());
+    const Similarity applied = RandomSimilarity(random, scale);
+    const Trajectory estimate = random.Walk(3 + trial);
+    const MatchedTrajectories matched{estimate, Apply(applied, estimate)};
+    for (const Alignment alignment : {Alignment::se3, Alignment::sim3, Alignment::first}) {
+      if (scale != 1 && alignment != Alignment::sim3) continue;
+      const Similarity found = Align(matched, alignment);
+      EXPECT_NEAR(found.scale, scale, 1e-9 * scale);
+      EXPECT_LT((found.R - applied.R).norm(), 1e-9);
+      EXPECT_LT((found.t - applied.t).norm(), 1e-8);
+      EXPECT_NEAR(found.R.determinant(), 1, 1e-12);
+      EXPECT_TRUE(found.rotation_determined);
+      const Ate ate = ComputeAte(matched, alignment);
+      EXPECT_LT(ate.position.max, 1e-8);
+      EXPECT_LT(ate.orientation.max, 1e-7);
+    }
+  }
+}
+
+// The alignment is the best one: no small change of scale, rotation or translation makes the errors smaller.
+TEST(Align, IsAMinimum) {
+  TestRandom random(6);
+  const MatchedTrajectories matched = NoisyPair(random, 60);
+  const auto rmse = [&](const Similarity& similarity) {
+    double sum = 0;
+    for (std::size_t i = 0; i < matched.truth.size(); ++i) {
+      sum += (Apply(similarity, matched.estimate[i]).p_WC - matched.truth[i].p_WC).squaredNorm();
+    }
+    return std::sqrt(sum / static_cast<double>(matched.truth.size()));
+  };
+  for (const Alignment alignment : {Alignment::se3, Alignment::sim3}) {
+    const Similarity best = Align(matched, alignment);
+    for (int trial = 0; trial < 100; ++trial) {
+      Similarity other = best;
+      other.R = Exp(1e-3 * random.Normals(3)).toRotationMatrix() * best.R;
+      other.t += 1e-3 * random.Normals(3);
+      if (alignment == Alignment::sim3) other.scale *= 1 + 1e-3 * random.Normal();
+      EXPECT_LT(rmse(best), rmse(other));
+    }
+  }
+}
+
+TEST(Align, DoesNotMirror) {
+  TestRandom random(7);
+  MatchedTrajectories matched = NoisyPair(random, 30);
+  for (StampedPose& pose : matched.estimate) pose.p_WC.x() *= -1;
+  EXPECT_NEAR(Align(matched, Alignment::sim3).R.determinant(), 1, 1e-12);
+  EXPECT_GT(ComputeAte(matched, Alignment::sim3).position.rmse, 0.05);
+}
+
+TEST(Align, SaysWhatIsNotDetermined) {
+  TestRandom random(8);
+  const Trajectory truth = random.Walk(50);
+  const auto standing = MatchedTrajectories{ConstantPose(StampsOf(truth), truth[10]), truth};
+  const Ate still = ComputeAte(standing, Alignment::sim3);
+  EXPECT_FALSE(still.similarity.scale_determined);
+  EXPECT_FALSE(still.similarity.rotation_determined);
+  EXPECT_TRUE(still.orientation_errors.empty());
+  // All that is left is the spread of the truth about its mean.
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const StampedPose& pose : truth) mean += pose.p_WC / 50;
+  double variance = 0;
+  for (const StampedPose& pose : truth) variance += (pose.p_WC - mean).squaredNorm() / 50;
+  EXPECT_NEAR(still.position.rmse, std::sqrt(variance), 1e-12);
+
+  const StampedVelocity velocity{0, random.Normals(3), random.Normals(3)};
+  const auto straight = MatchedTrajectories{ConstantVelocity(StampsOf(truth), truth[0], velocity), truth};
+  const Ate line = ComputeAte(straight, Alignment::sim3);
+  EXPECT_TRUE(line.similarity.scale_determined);
+  EXPECT_FALSE(line.similarity.rotation_determined);
+  EXPECT_LE(line.position.rmse, still.position.rmse);
+}
+
+// The aligned error does not depend on the world the estimate was given in.
+TEST(Ate, IsInvariantUnderSimilaritiesOfTheEstimate) {
+  TestRandom random(9);
+  for (int trial = 0; trial < 30; ++trial) {
+    const MatchedTrajectories matched = NoisyPair(random, 40);
+    const Similarity moved = RandomSimilarity(random, std::exp(random.Normal()));
+    const MatchedTrajectories other{Apply(moved, matched.estimate), matched.truth};
+    const Ate before = ComputeAte(matched, Alignment::sim3), after = ComputeAte(other, Alignment::sim3);
+    for (std::size_t i = 0; i < before.position_errors.size(); ++i) {
+      EXPECT_NEAR(before.position_errors[i], after.position_errors[i], 1e-10);
+      EXPECT_NEAR(before.orientation_errors[i], after.orientation_errors[i], 1e-9);
+    }
+    EXPECT_NEAR(before.similarity.scale, after.similarity.scale * moved.scale, 1e-9);
+    // And with scale left out it does depend on it: the test above is not blind.
+    EXPECT_GT(
+        std::abs(ComputeAte(other, Alignment::se3).position.rmse - ComputeAte(matched, Alignment::se3).position.rmse),
+        1e-3 * std::abs(std::log(moved.scale)));
+  }
+}
+
+TEST(Ate, MoreFreedomNeverHurts) {
+  TestRandom random(10);
+  for (int trial = 0; trial < 20; ++trial) {
+    const MatchedTrajectories matched = NoisyPair(random, 25);
+    const auto rmse = [&](Alignment alignment) { return ComputeAte(matched, alignment).position.rmse; };
+    EXPECT_LE(rmse(Alignment::sim3), rmse(Alignment::se3));
+    EXPECT_LE(rmse(Alignment::se3), rmse(Alignment::none));
+    EXPECT_LE(rmse(Alignment::se3), rmse(Alignment::first));
+  }
+}
+
+}  // namespace
+}  // namespace evaluation

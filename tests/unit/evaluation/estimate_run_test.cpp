@@ -1,0 +1,121 @@
+#include "tools/evaluation/estimate_run.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/unit/evaluation/random.h"
+#include "tests/unit/evaluation/temporary_folder.h"
+#include "tools/evaluation/text_file.h"
+
+namespace evaluation {
+namespace {
+
+using testing::HasSubstr;
+
+EstimateRun Sample() {
+  TestRandom random(40);
+  EstimateRun run;
+  run.trajectory = random.Walk(4);
+  for (const StampedPose& pose : run.trajectory) {
+    Matrix12d A;
+    for (int i = 0; i < 12; ++i) A.col(i) = random.Normals(12);
+    run.beliefs.push_back({{pose.stamp_ns, random.Normals(3), random.Normals(3)}, A * A.transpose()});
+    FrameRecord frame;
+    frame.stamp_ns = pose.stamp_ns;
+    frame.searched = 50;
+    frame.matched = 40;
+    frame.landmarks = 120;
+    frame.permanent = 7;
+    frame.nis = 81.25;
+    frame.nis_dof = 80;
+    frame.effective_particles = 5.5;
+    frame.ms_features = 1.5, frame.ms_matching = 2.25, frame.ms_filter = 0.75;
+    frame.tracked = pose.stamp_ns % 2 == 0;
+    run.frames.push_back(frame);
+  }
+  return run;
+}
+
+TEST(EstimateRun, ReadsBackTheSame) {
+  const TemporaryFolder folder;
+  const EstimateRun run = Sample();
+  WriteEstimateRun(folder.path(), run);
+  const EstimateRun back = ReadEstimateRun(folder.path());
+  ASSERT_EQ(back.trajectory.size(), 4u);
+  ASSERT_EQ(back.beliefs.size(), 4u);
+  ASSERT_EQ(back.frames.size(), 4u);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Matrix12d &P = run.beliefs[k].covariance, &Q = back.beliefs[k].covariance;
+    EXPECT_LT((P - Q).cwiseAbs().maxCoeff(), 1e-13 * P.cwiseAbs().maxCoeff());
+    EXPECT_LT((run.beliefs[k].velocity.v_WC - back.beliefs[k].velocity.v_WC).norm(), 1e-10);
+    EXPECT_LT((run.beliefs[k].velocity.w_WC_C - back.beliefs[k].velocity.w_WC_C).norm(), 1e-10);
+    const FrameRecord &f = run.frames[k], &g = back.frames[k];
+    EXPECT_EQ(std::tie(f.stamp_ns, f.searched, f.matched, f.landmarks, f.permanent, f.nis, f.nis_dof),
+              std::tie(g.stamp_ns, g.searched, g.matched, g.landmarks, g.permanent, g.nis, g.nis_dof));
+    EXPECT_EQ(std::tie(f.effective_particles, f.ms_features, f.ms_matching, f.ms_filter, f.tracked),
+              std::tie(g.effective_particles, g.ms_features, g.ms_matching, g.ms_filter, g.tracked));
+  }
+}
+
+TEST(EstimateRun, PartsMayBeMissingAndOldOnesDoNotLinger) {
+  const TemporaryFolder folder;
+  EstimateRun run = Sample();
+  WriteEstimateRun(folder.path(), run);
+  run.beliefs.clear();
+  run.frames.clear();
+  WriteEstimateRun(folder.path(), run);
+  const EstimateRun back = ReadEstimateRun(folder.path());
+  EXPECT_TRUE(back.beliefs.empty());
+  EXPECT_TRUE(back.frames.empty());
+  EXPECT_EQ(back.trajectory.size(), 4u);
+}
+
+TEST(EstimateRun, ListsTheProblemsOfAllFilesAtOnce) {
+  const TemporaryFolder folder;
+  WriteEstimateRun(folder.path(), Sample());
+  folder.Write("estimate.txt", "1 0 0 x 0 0 0 1\n");
+  folder.Write("covariance.txt", "1 2 3\n");
+  folder.Write("frames.csv",
+               "timestamp,searched,matched,landmarks,permanent,nis,nis_dof,effective_particles,ms_features,ms_matching,"
+               "ms_filter,status\n1,2,-3,4,5,nan,6,7,8,9,10,lost\n");
+  try {
+    ReadEstimateRun(folder.path());
+    FAIL();
+  } catch (const InputError& error) {
+    for (const char* part :
+         {"estimate.txt:1:7: 'x'", "covariance.txt:1:1: 3 columns", "frames.csv:2:5: '-3' is not a count",
+          "frames.csv:2:12: 'nan'", "frames.csv:2:27: 'lost' is not 'tracked' or 'coasted'"}) {
+      EXPECT_THAT(error.what(), HasSubstr(part));
+    }
+  }
+}
+
+TEST(EstimateRun, RefusesAWrongHeaderAndNegativeVariances) {
+  const TemporaryFolder folder;
+  EstimateRun run = Sample();
+  run.beliefs[2].covariance(4, 4) = -1;
+  WriteEstimateRun(folder.path(), run);
+  std::string frames = TemporaryFolder::Read(folder.path() / "frames.csv");
+  frames.replace(frames.find("matched"), 7, "matches");
+  folder.Write("frames.csv", frames);
+  try {
+    ReadEstimateRun(folder.path());
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("variance 5 is negative: -1"));
+    EXPECT_THAT(error.what(), HasSubstr("column 'matches' where 'matched' is expected"));
+  }
+}
+
+TEST(EstimateRun, WritesNothingWhenANumberIsNotFinite) {
+  const TemporaryFolder folder;
+  EstimateRun run = Sample();
+  run.frames[1].nis = std::nan("");
+  EXPECT_THROW(WriteEstimateRun(folder.path(), run), std::invalid_argument);
+  run = Sample();
+  run.beliefs[1].covariance(3, 4) = INFINITY;
+  EXPECT_THROW(WriteEstimateRun(folder.path(), run), std::invalid_argument);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace evaluation

@@ -1,0 +1,52 @@
+#include "tools/evaluation/nis.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/evaluation/random.h"
+
+namespace evaluation {
+namespace {
+
+// NIS of frames with a varying number of features; `memory` makes the innovations of neighbouring frames alike.
+std::vector<FrameRecord> Frames(TestRandom& random, int count, double scale, double memory = 0) {
+  std::vector<FrameRecord> frames;
+  Eigen::VectorXd innovation = random.Normals(80);
+  for (int k = 0; k < count; ++k) {
+    innovation = memory * innovation + std::sqrt(1 - memory * memory) * random.Normals(80);
+    FrameRecord frame;
+    frame.stamp_ns = k;
+    frame.nis_dof = 20 + 2 * (k % 30);
+    frame.nis = scale * innovation.head(frame.nis_dof).squaredNorm();
+    frames.push_back(frame);
+  }
+  frames.push_back({});  // coasted: no degrees of freedom, not counted
+  return frames;
+}
+
+// All limits at five standard deviations: false alarm below 1e-6 each.
+TEST(SummariseNis, HonestInnovationsPassAndWrongOnesDoNot) {
+  const int n = 2000;
+  const double share_limit = 5 * std::sqrt(0.95 * 0.05 / n), mean_limit = 5 * std::sqrt(2.0 / (n * 49.0));
+  TestRandom random(30);
+  const NisSummary honest = SummariseNis(Frames(random, n, 1));
+  EXPECT_EQ(honest.frames, static_cast<std::size_t>(n));
+  EXPECT_NEAR(honest.mean_per_dof, 1, mean_limit);
+  EXPECT_NEAR(honest.share_inside, 0.95, share_limit);
+  ASSERT_EQ(honest.autocorrelation.size(), 5u);
+  for (const double rho : honest.autocorrelation) EXPECT_LT(std::abs(rho), 5 / std::sqrt(n));
+  EXPECT_NEAR(honest.whiteness_bound, 1.96 / std::sqrt(n), 1e-12);
+
+  const NisSummary confident = SummariseNis(Frames(random, n, 2));  // S x 0.5
+  EXPECT_GT(confident.mean_per_dof, 1 + mean_limit);
+  EXPECT_LT(confident.share_inside, 0.95 - share_limit);
+  EXPECT_GT(SummariseNis(Frames(random, n, 1, 0.7)).autocorrelation[0], 5 / std::sqrt(n));
+}
+
+TEST(SummariseNis, SaysNothingOfNothing) {
+  const NisSummary summary = SummariseNis({FrameRecord{}});
+  EXPECT_EQ(summary.frames, 0u);
+  EXPECT_TRUE(summary.autocorrelation.empty());
+}
+
+}  // namespace
+}  // namespace evaluation

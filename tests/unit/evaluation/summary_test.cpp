@@ -1,0 +1,136 @@
+#include "tools/evaluation/summary.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/evaluation/random.h"
+#include "tools/evaluation/baseline.h"
+#include "tools/evaluation/text_file.h"
+
+namespace evaluation {
+namespace {
+
+EstimateRun RunOf(const Trajectory& trajectory, const std::vector<std::int64_t>& frames, std::size_t tracked) {
+  EstimateRun run;
+  run.trajectory = trajectory;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    FrameRecord frame;
+    frame.stamp_ns = frames[i];
+    frame.tracked = i < tracked;
+    frame.ms_filter = static_cast<double>(i);
+    run.frames.push_back(frame);
+  }
+  return run;
+}
+
+TEST(Judge, APerfectEstimateHasNoError) {
+  TestRandom random(50);
+  const Trajectory truth = random.Walk(90);
+  const Metrics metrics = Judge(RunOf(truth, StampsOf(truth), 81), truth, std::nullopt);
+  EXPECT_EQ(metrics.errors.pairs, 90u);
+  for (const Alignment alignment : {Alignment::none, Alignment::se3, Alignment::sim3, Alignment::first}) {
+    EXPECT_LT(metrics.errors.Aligned(alignment).position.max, 1e-12);
+    EXPECT_EQ(metrics.errors.Aligned(alignment).alignment, alignment);
+  }
+  EXPECT_LT(metrics.errors.rpe.position_statistics.max, 1e-12);
+  EXPECT_EQ(metrics.errors.rpe.pairs.size(), metrics.errors.rpe_pairs_offered);
+  EXPECT_NEAR(metrics.path_length_m, PathLength(truth), 1e-12);
+  EXPECT_NEAR(metrics.duration_s, 89 * 0.033333333, 1e-6);
+  ASSERT_TRUE(metrics.coverage);
+  EXPECT_EQ(metrics.coverage->pose_coverage(), 1);
+  EXPECT_NEAR(*metrics.coverage->tracked_coverage(), 0.9, 1e-12);
+  EXPECT_EQ(metrics.timing->ms_filter, 44.5);
+  EXPECT_FALSE(metrics.consistency);
+  EXPECT_GT(metrics.constant_pose.sim3.position.rmse, 0.05);
+}
+
+// A tracker that gives up after a third of the way has small errors; what it did not answer is counted.
+TEST(Judge, GivingUpShowsInCoverageAndInPairs) {
+  TestRandom random(51);
+  const Trajectory truth = random.Walk(150);
+  const Trajectory third(truth.begin(), truth.begin() + 50);
+  const Metrics metrics = Judge(RunOf(third, StampsOf(truth), 50), truth, std::nullopt);
+  EXPECT_LT(metrics.errors.sim3.position.max, 1e-12);
+  EXPECT_NEAR(metrics.coverage->pose_coverage(), 1.0 / 3, 1e-12);
+  // 30 frames are a second; the last pair of each is one frame short of it, which the tolerance admits.
+  EXPECT_EQ(metrics.errors.rpe_pairs_offered, 121u);
+  EXPECT_EQ(metrics.errors.rpe.pairs.size(), 21u);
+  EXPECT_EQ(metrics.constant_pose.pairs, 150u) << "the baselines answer on every frame";
+}
+
+TEST(Judge, BaselinesStartAtTheFirstFrameThatHasTruth) {
+  TestRandom random(52);
+  Trajectory truth = random.Walk(60);
+  const std::vector<std::int64_t> frames = StampsOf(truth);
+  const Trajectory estimate = truth;
+  truth.erase(truth.begin(), truth.begin() + 2);
+  const Metrics metrics = Judge(RunOf(estimate, frames, 60), truth, std::nullopt);
+  EXPECT_EQ(metrics.errors.pairs, 58u);
+  EXPECT_EQ(metrics.coverage->frames, 60u);
+  EXPECT_EQ(metrics.constant_pose.none.position_errors[0], 0);
+  EXPECT_EQ(metrics.constant_velocity.none.position_errors[0], 0);
+}
+
+TEST(Judge, WithoutFrameListCoverageIsUnknown) {
+  TestRandom random(53);
+  const Trajectory truth = random.Walk(60);
+  EstimateRun run;
+  run.trajectory = {truth.begin(), truth.begin() + 45};
+  EXPECT_FALSE(Judge(run, truth, std::nullopt).coverage);
+  JudgeOptions options;
+  options.frame_stamps_ns = StampsOf(truth);
+  const Metrics metrics = Judge(run, truth, std::nullopt, options);
+  ASSERT_TRUE(metrics.coverage);
+  EXPECT_EQ(metrics.coverage->pose_coverage(), 0.75);
+  EXPECT_FALSE(metrics.coverage->tracked_coverage());
+}
+
+TEST(Judge, RpeScalesTheEstimateWhereItSaysSo) {
+  TestRandom random(54);
+  const Trajectory truth = random.Walk(90);
+  Similarity half;
+  half.scale = 0.5;
+  const Metrics metrics = Judge(RunOf(Apply(half, truth), StampsOf(truth), 90), truth, std::nullopt);
+  EXPECT_NEAR(metrics.errors.rpe.scale, 2, 1e-9);
+  EXPECT_LT(metrics.errors.rpe.position_statistics.max, 1e-9);
+  EXPECT_GT(metrics.errors.rpe_unscaled.position_statistics.rmse, 0.05);
+}
+
+TEST(Judge, ThrowsWhenNothingOverlaps) {
+  TestRandom random(55);
+  Trajectory late = random.Walk(10);
+  for (StampedPose& pose : late) pose.stamp_ns += 1'000'000'000'000;
+  const Trajectory truth = random.Walk(10);
+  EXPECT_THROW(Judge(RunOf(late, StampsOf(late), 10), truth, std::nullopt), InputError);
+}
+
+TEST(Baseline, ConstantVelocityIsExactOnAScrew) {
+  TestRandom random(56);
+  const StampedPose start{1'000'000'000, random.Normals(3), random.Orientation()};
+  const StampedVelocity velocity{0, random.Normals(3), random.Normals(3)};
+  std::vector<std::int64_t> stamps;
+  for (std::int64_t i = 0; i < 50; ++i) stamps.push_back(1'000'000'000 + i * 40'000'000);
+  const Trajectory screw = ConstantVelocity(stamps, start, velocity);
+  const StampedVelocity measured = StartVelocity(screw);
+  EXPECT_LT((measured.v_WC - velocity.v_WC).norm(), 1e-10);
+  EXPECT_LT((measured.w_WC_C - velocity.w_WC_C).norm(), 1e-10);
+  EXPECT_EQ(StartVelocity({start}).v_WC.norm(), 0);
+  const Metrics metrics = Judge(RunOf(screw, stamps, 50), screw, std::nullopt);
+  EXPECT_LT(metrics.constant_velocity.none.position.max, 1e-10);
+  EXPECT_LT(metrics.constant_velocity.none.orientation.max, 1e-7);
+  EXPECT_GT(metrics.constant_pose.none.position.max, 0.1);
+}
+
+TEST(Statistics, WorkedByHand) {
+  const Statistics s = Summarise({1, 2, 3, 6});
+  EXPECT_EQ(s.count, 4u);
+  EXPECT_NEAR(s.rmse, std::sqrt(12.5), 1e-12);
+  EXPECT_NEAR(s.mean, 3, 1e-12);
+  EXPECT_NEAR(s.median, 2.5, 1e-12);
+  EXPECT_NEAR(s.std, std::sqrt(3.5), 1e-12);
+  EXPECT_EQ(s.min, 1);
+  EXPECT_EQ(s.max, 6);
+  EXPECT_EQ(Summarise({}).count, 0u);
+}
+
+}  // namespace
+}  // namespace evaluation

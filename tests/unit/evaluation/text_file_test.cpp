@@ -1,0 +1,107 @@
+#include "tools/evaluation/text_file.h"
+
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include "tests/unit/evaluation/temporary_folder.h"
+
+namespace evaluation {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(ParseSeconds, IsExactWhereADoubleIsNot) {
+  EXPECT_EQ(ParseSeconds("1305031102.160407123"), 1305031102'160407123);
+  EXPECT_EQ(ParseSeconds("1305031102.1604"), 1305031102'160400000);
+  EXPECT_EQ(ParseSeconds("0.033333333"), 33333333);
+  EXPECT_EQ(ParseSeconds("1.305031102160407066e+09"), 1305031102'160407066);
+  EXPECT_EQ(ParseSeconds("5e-10"), 1);  // rounded
+  EXPECT_EQ(ParseSeconds("4e-10"), 0);
+  EXPECT_EQ(ParseSeconds("-1.5"), -1'500'000'000);
+  EXPECT_EQ(ParseSeconds("7"), 7'000'000'000);
+  EXPECT_EQ(ParseSeconds("000000000000000000001.5"), 1'500'000'000);
+  EXPECT_EQ(ParseSeconds("9223372036.854775807"), 9223372036'854775807);
+}
+
+TEST(ParseSeconds, RejectsWhatIsNoTime) {
+  for (const char* text :
+       {"", ".", "-", "nan", "1.2.3", "1s", "1e", "1e+", "0x10", "1 ", "9223372036.854775808", "1e300"}) {
+    EXPECT_EQ(ParseSeconds(text), std::nullopt) << text;
+  }
+}
+
+TEST(FormatSeconds, IsTheInverse) {
+  for (const std::int64_t t : {0L, 1L, 999'999'999L, 1305031102'160407123L, -1'500'000'000L, -1L}) {
+    EXPECT_EQ(ParseSeconds(FormatSeconds(t)), t);
+  }
+  EXPECT_EQ(FormatSeconds(33333333), "0.033333333");
+}
+
+TEST(ParseNumber, TakesFiniteNumbersOnly) {
+  EXPECT_EQ(ParseNumber("-1.5e-3"), -1.5e-3);
+  EXPECT_EQ(ParseNumber("+2"), 2.0);
+  for (const char* text : {"", "nan", "inf", "1.2x", "1,2", "+-1", "1e999"})
+    EXPECT_EQ(ParseNumber(text), std::nullopt) << text;
+}
+
+TEST(ReadLines, SplitsAndCountsColumns) {
+  const TemporaryFolder folder;
+  const auto lines = ReadLines(folder.Write("a.txt", "# comment\n\n  1 \t two\r\n   # indented comment\n3\n"));
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].number, 3);
+  ASSERT_EQ(lines[0].tokens.size(), 2u);
+  EXPECT_EQ(lines[0].tokens[1].text, "two");
+  EXPECT_EQ(lines[0].tokens[1].column, 7);
+  const auto csv = ReadLines(folder.Write("a.csv", "a,,b,\n"), ',');
+  ASSERT_EQ(csv[0].tokens.size(), 4u);
+  EXPECT_EQ(csv[0].tokens[1].text, "");
+  EXPECT_EQ(csv[0].tokens[2].column, 4);
+}
+
+TEST(ReadLines, NamesWhatCannotBeRead) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(ReadLines(folder.path() / "absent"), InputError);
+  EXPECT_THROW(ReadLines(folder.path()), InputError);
+}
+
+TEST(InputError, CountsBeyondFifty) {
+  const InputError error(std::vector<std::string>(70, "x"));
+  EXPECT_THAT(error.what(), HasSubstr("and 20 more"));
+}
+
+TEST(WriteWhole, LeavesTheOldFileWhenTheDiskIsFull) {
+  const TemporaryFolder folder;
+  const auto file = folder.Write("a.txt", "old");
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = signal(SIGXFSZ, SIG_IGN);
+  rlimit limit = before;
+  limit.rlim_cur = 1000;  // bytes: writing fails beyond, as on a full disk
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::string said;
+  try {
+    WriteWhole(file, std::string(100'000, 'x'));
+  } catch (const std::runtime_error& error) {
+    said = error.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  signal(SIGXFSZ, handler);
+  EXPECT_THAT(said, HasSubstr(file.string()));
+  EXPECT_EQ(TemporaryFolder::Read(file), "old");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "something temporary remains";
+}
+
+TEST(WriteWhole, NamesTheFolderThatIsNotThere) {
+  const TemporaryFolder folder;
+  try {
+    WriteWhole(folder.path() / "no" / "a.txt", "x");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no/a.txt"));
+    EXPECT_THAT(error.what(), HasSubstr("No such file"));
+  }
+}
+
+}  // namespace
+}  // namespace evaluation
