@@ -1,0 +1,24 @@
+// Purpose: where in a pixel, and where on an area light, the i-th ray of an exposure goes.
+// Source:  the first two dimensions of Sobol's sequence: any 2^k consecutive aligned points lie one in each elementary
+//          interval of area 2^-k (Niederreiter's (0, 2)-sequence); exclusive-oring all points with the same bits keeps
+//          that (Kollig and Keller 2002). Bits by pixel: Philox 4x32-10 (Salmon et al. 2011).
+#pragma once
+
+#include <cstdint>
+
+namespace sim {
+
+// A point of the unit square as two 32-bit fractions.
+struct PatternPoint {
+  std::uint32_t u = 0, v = 0;
+};
+
+inline double ToUnit(std::uint32_t fraction) { return (fraction + 0.5) * 0x1p-32; }
+
+// The i-th point of the sequence.
+PatternPoint SobolPoint(std::uint32_t i);
+
+// Random bits of a pixel: a function of the arguments alone.
+PatternPoint PixelScramble(std::uint64_t key, std::uint32_t x, std::uint32_t y);
+
+}  // namespace sim

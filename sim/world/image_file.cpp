@@ -1,0 +1,98 @@
+#include "sim/world/image_file.h"
+
+#include <algorithm>
+#include <array>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+
+namespace sim {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+constexpr std::array<std::uint8_t, 8> kPngSignature{0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a};
+
+std::uint32_t BigEndian32(Bytes b) {
+  return (std::uint32_t{b[0]} << 24) | (std::uint32_t{b[1]} << 16) | (std::uint32_t{b[2]} << 8) | b[3];
+}
+
+// The checksum of PNG (ISO 3309).
+std::uint32_t Crc32(Bytes bytes) {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t i = 0; i < 256; ++i) {
+    std::uint32_t c = i;
+    for (int k = 0; k < 8; ++k) c = (c & 1u) ? 0xedb88320u ^ (c >> 1) : c >> 1;
+    table[i] = c;
+  }
+  std::uint32_t crc = 0xffffffffu;
+  for (const std::uint8_t b : bytes) crc = table[(crc ^ b) & 255u] ^ (crc >> 8);
+  return crc ^ 0xffffffffu;
+}
+
+void CheckPng(Bytes bytes) {
+  std::size_t at = kPngSignature.size();
+  for (;;) {  // length, type, data, checksum
+    if (at + 12 > bytes.size()) throw std::runtime_error("truncated PNG: the end chunk is missing");
+    const std::size_t length = BigEndian32(bytes.subspan(at));
+    if (length > bytes.size() - at - 12) throw std::runtime_error("truncated PNG: a chunk is cut off");
+    const Bytes type_and_data = bytes.subspan(at + 4, length + 4);
+    if (Crc32(type_and_data) != BigEndian32(bytes.subspan(at + 8 + length))) {
+      throw std::runtime_error("damaged PNG: wrong checksum in the chunk at byte " + std::to_string(at));
+    }
+    const std::array<std::uint8_t, 4> end{'I', 'E', 'N', 'D'};
+    if (std::equal(end.begin(), end.end(), type_and_data.begin())) return;
+    at += length + 12;
+  }
+}
+
+void CheckJpeg(Bytes bytes) {
+  constexpr std::uint8_t kStartOfScan = 0xda, kEndOfImage = 0xd9;
+  const auto truncated = [] { return std::runtime_error("truncated JPEG: the end marker is missing"); };
+  std::size_t at = 2;
+  bool in_scan = false;
+  for (;;) {
+    if (in_scan) {  // entropy-coded data goes on until a marker that is neither a stuffed zero nor a restart
+      while (at + 1 < bytes.size() &&
+             (bytes[at] != 0xff || bytes[at + 1] == 0x00 || (bytes[at + 1] >= 0xd0 && bytes[at + 1] <= 0xd7))) {
+        ++at;
+      }
+    }
+    while (at + 1 < bytes.size() && bytes[at] == 0xff && bytes[at + 1] == 0xff) ++at;  // fill bytes
+    if (at + 2 > bytes.size()) throw truncated();
+    if (bytes[at] != 0xff) throw std::runtime_error("damaged JPEG: no marker at byte " + std::to_string(at));
+    const std::uint8_t marker = bytes[at + 1];
+    if (marker == kEndOfImage) return;
+    if (at + 4 > bytes.size()) throw truncated();
+    at += 2 + ((std::size_t{bytes[at + 2]} << 8) | bytes[at + 3]);
+    in_scan = marker == kStartOfScan;
+  }
+}
+
+}  // namespace
+
+DecodedImage DecodeImage(Bytes bytes) {
+  if (bytes.empty()) throw std::runtime_error("the file is empty");
+  if (bytes.size() >= kPngSignature.size() && std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin())) {
+    CheckPng(bytes);
+  } else if (bytes.size() >= 2 && bytes[0] == 0xff && bytes[1] == 0xd8) {
+    CheckJpeg(bytes);
+  }
+  cv::Mat bgr;
+  try {
+    const cv::Mat data(1, static_cast<int>(bytes.size()), CV_8U, const_cast<std::uint8_t*>(bytes.data()));
+    bgr = cv::imdecode(data, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+  } catch (const cv::Exception& error) {
+    throw std::runtime_error("cannot be decoded: " + error.err);
+  }
+  if (bgr.empty()) throw std::runtime_error("not a picture that can be decoded");
+
+  DecodedImage image{bgr.cols, bgr.rows, {}};
+  image.rgb.reserve(bgr.total() * 3);
+  for (int y = 0; y < bgr.rows; ++y) {
+    const std::uint8_t* row = bgr.ptr<std::uint8_t>(y);
+    for (int x = 0; x < bgr.cols; ++x) image.rgb.insert(image.rgb.end(), {row[3 * x + 2], row[3 * x + 1], row[3 * x]});
+  }
+  return image;
+}
+
+}  // namespace sim

@@ -1,0 +1,76 @@
+#include "sim/world/scene.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <initializer_list>
+#include <utility>
+
+#include "sim/world/mesh_file.h"
+
+namespace sim {
+namespace {
+
+std::string Join(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
+  return text;
+}
+
+bool IsFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+bool IsLight(const glm::dvec3& v) { return IsFinite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0; }
+
+// What is wrong with a light; empty: nothing.
+struct LightProblem {
+  std::string operator()(const AmbientLight& l) const { return Power(l.radiance, "radiance"); }
+  std::string operator()(const SunLight& l) const {
+    if (!IsFinite(l.direction) || !(glm::length(l.direction) > 0)) return "the sun's direction is zero or not finite";
+    return Power(l.irradiance, "irradiance");
+  }
+  std::string operator()(const PointLight& l) const {
+    if (!IsFinite(l.position)) return "the position of a point light is not finite";
+    return Power(l.intensity, "intensity");
+  }
+  std::string operator()(const RectLight& l) const {
+    const double area = glm::length(glm::cross(l.side_u, l.side_v));
+    if (!IsFinite(l.corner) || !(area > 0) || !std::isfinite(area))
+      return "a rectangular light has no area or is not finite";
+    return Power(l.radiance, "radiance");
+  }
+  static std::string Power(const glm::dvec3& power, const std::string& name) {
+    return IsLight(power) ? "" : name + " is negative or not finite";
+  }
+};
+
+}  // namespace
+
+SceneError::SceneError(std::vector<std::string> problems)
+    : std::runtime_error(Join(problems)), problems_(std::move(problems)) {}
+
+Scene LoadScene(const WorldDescription& description) {
+  Scene scene;
+  std::vector<std::string> problems;
+  for (std::size_t i = 0; i < description.lights.size(); ++i) {
+    const std::string problem = std::visit(LightProblem{}, description.lights[i]);
+    if (!problem.empty()) problems.push_back("world.lights[" + std::to_string(i) + "]: " + problem);
+  }
+  if (!IsLight(description.background)) problems.push_back("world.background: negative or not finite");
+
+  TextureCache textures;
+  for (const MeshDescription& mesh : description.meshes) {
+    const glm::dquat& q = mesh.orientation;
+    if (!IsFinite(mesh.position) || !(mesh.scale > 0) || !std::isfinite(mesh.scale) ||
+        !(std::abs(glm::dot(q, q) - 1.0) < 1e-6)) {
+      problems.push_back(mesh.file.string() +
+                         ": its position, orientation (unit) or scale (> 0) in the world is unusable");
+      continue;
+    }
+    AppendMeshFile(mesh, scene, textures, problems);
+  }
+  if (!problems.empty()) throw SceneError(std::move(problems));
+  scene.lights = description.lights;
+  scene.background = description.background;
+  return scene;
+}
+
+}  // namespace sim

@@ -1,0 +1,133 @@
+#include "sim/world/texture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "sim/world/srgb.h"
+
+namespace sim {
+namespace {
+
+constexpr float kTexelMax = 1023.0f;
+
+std::uint32_t Encode(const float* linear) {
+  std::uint32_t bits = 0;
+  for (int c = 0; c < 3; ++c) {
+    const float root = std::sqrt(std::clamp(linear[c], 0.0f, 1.0f));
+    bits |= static_cast<std::uint32_t>(std::lround(root * kTexelMax)) << (10 * c);
+  }
+  return bits;
+}
+
+glm::vec3 Decode(std::uint32_t bits) {
+  const glm::vec3 root(static_cast<float>(bits & 1023u), static_cast<float>((bits >> 10) & 1023u),
+                       static_cast<float>((bits >> 20) & 1023u));
+  return root * root * (1.0f / (kTexelMax * kTexelMax));
+}
+
+// Area-weighted mean of n values into m <= n, along one axis: output i covers the inputs [i n/m, (i + 1) n/m).
+struct Shrink {
+  int first = 0;
+  std::array<float, 4> weight{};  // of inputs first, first + 1, ...; n/m <= 3, so never more than four
+};
+
+std::vector<Shrink> ShrinkWeights(int n, int m) {
+  std::vector<Shrink> result(static_cast<std::size_t>(m));
+  const double ratio = static_cast<double>(n) / m;
+  for (int i = 0; i < m; ++i) {
+    Shrink& out = result[static_cast<std::size_t>(i)];
+    const double begin = i * ratio, end = (i + 1) * ratio;
+    out.first = static_cast<int>(std::floor(begin));
+    for (int k = 0; k < 4; ++k) {
+      const double overlap = std::min(end, out.first + k + 1.0) - std::max(begin, out.first + static_cast<double>(k));
+      out.weight[static_cast<std::size_t>(k)] = static_cast<float>(std::max(0.0, overlap) / ratio);
+    }
+  }
+  return result;
+}
+
+std::vector<float> Halve(const std::vector<float>& in, int width, int height, int new_width, int new_height) {
+  const auto size = [](int w, int h) { return static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * 3; };
+  std::vector<float> wide(size(new_width, height)), out(size(new_width, new_height));
+  const std::vector<Shrink> across = ShrinkWeights(width, new_width), down = ShrinkWeights(height, new_height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < new_width; ++x) {
+      const Shrink& s = across[static_cast<std::size_t>(x)];
+      float* to = &wide[size(new_width, y) + static_cast<std::size_t>(x) * 3];
+      for (int k = 0; k < 4; ++k) {
+        const float* from = &in[size(width, y) + static_cast<std::size_t>(std::min(s.first + k, width - 1)) * 3];
+        for (int c = 0; c < 3; ++c) to[c] += s.weight[static_cast<std::size_t>(k)] * from[c];
+      }
+    }
+  }
+  for (int y = 0; y < new_height; ++y) {
+    const Shrink& s = down[static_cast<std::size_t>(y)];
+    float* to = &out[size(new_width, y)];
+    for (int k = 0; k < 4; ++k) {
+      const float* from = &wide[size(new_width, std::min(s.first + k, height - 1))];
+      for (int i = 0; i < 3 * new_width; ++i) to[i] += s.weight[static_cast<std::size_t>(k)] * from[i];
+    }
+  }
+  return out;
+}
+
+int Wrap(int i, int n) {
+  const int r = i % n;
+  return r < 0 ? r + n : r;
+}
+
+}  // namespace
+
+Texture::Texture(std::string name, int width, int height, std::span<const std::uint8_t> rgb) : name_(std::move(name)) {
+  constexpr int kMaxSide = 1 << 15;
+  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
+      rgb.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3) {
+    throw std::invalid_argument("texture " + name_ + ": " + std::to_string(width) + " x " + std::to_string(height) +
+                                " with " + std::to_string(rgb.size()) + " bytes of RGB");
+  }
+  std::array<float, 256> linear_of_code{};
+  for (int i = 0; i < 256; ++i) {
+    linear_of_code[static_cast<std::size_t>(i)] = static_cast<float>(SrgbToLinear(i / 255.0));
+  }
+  std::vector<float> linear(rgb.size());
+  std::transform(rgb.begin(), rgb.end(), linear.begin(), [&](std::uint8_t code) { return linear_of_code[code]; });
+
+  for (;;) {
+    levels_.push_back({width, height, static_cast<std::uint32_t>(texels_.size())});
+    for (std::size_t i = 0; i < linear.size(); i += 3) texels_.push_back(Encode(&linear[i]));
+    if (width == 1 && height == 1) break;
+    const int half_width = std::max(1, width / 2), half_height = std::max(1, height / 2);
+    linear = Halve(linear, width, height, half_width, half_height);
+    width = half_width;
+    height = half_height;
+  }
+}
+
+glm::vec3 Texture::Texel(int level, int x, int y) const {
+  const TextureLevel& l = levels_.at(static_cast<std::size_t>(level));
+  return Decode(texels_[l.first + static_cast<std::size_t>(Wrap(y, l.height)) * static_cast<std::size_t>(l.width) +
+                        static_cast<std::size_t>(Wrap(x, l.width))]);
+}
+
+glm::vec3 Texture::Sample(glm::vec2 uv, float footprint) const {
+  const float top = static_cast<float>(levels_.size() - 1);
+  const float level = std::clamp(std::log2(std::max(footprint, 1.0f)), 0.0f, top);
+  const int lower = static_cast<int>(level);
+  const auto bilinear = [&](int l) {
+    const TextureLevel& size = levels_[static_cast<std::size_t>(l)];
+    const float x = (uv.x - std::floor(uv.x)) * static_cast<float>(size.width) - 0.5f;
+    const float y = (uv.y - std::floor(uv.y)) * static_cast<float>(size.height) - 0.5f;
+    const float x0 = std::floor(x), y0 = std::floor(y);
+    const int i = static_cast<int>(x0), j = static_cast<int>(y0);
+    const float fx = x - x0, fy = y - y0;
+    return (1 - fy) * ((1 - fx) * Texel(l, i, j) + fx * Texel(l, i + 1, j)) +
+           fy * ((1 - fx) * Texel(l, i, j + 1) + fx * Texel(l, i + 1, j + 1));
+  };
+  const float blend = level - static_cast<float>(lower);
+  return blend > 0 ? (1 - blend) * bilinear(lower) + blend * bilinear(lower + 1) : bilinear(lower);
+}
+
+}  // namespace sim
