@@ -8,7 +8,7 @@ namespace sim {
 
 // X_W = R(q_WC) X_C + p_WC. glm::dquat's constructor takes (w, x, y, z).
 struct Pose {
-  glm::dvec3 p_WC{0.0};                // [m]
+  glm::dvec3 p_WC{0.0};                 // [m]
   glm::dquat q_WC{1.0, 0.0, 0.0, 0.0};  // unit
 };
 

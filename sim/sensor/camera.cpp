@@ -46,8 +46,8 @@ bool Approach(const CameraParams& c, const glm::dvec2& goal, glm::dvec2& p) {
   return false;
 }
 
-// The undistorted point, in the part of the plane around the optical axis on which the lens is one-to-one; none outside of
-// it. The target is approached in steps from the principal point, so that Newton's method does not jump over a fold.
+// The undistorted point, in the part of the plane around the optical axis on which the lens is one-to-one; none outside
+// of it. The target is approached in steps from the principal point, so that Newton's method does not jump over a fold.
 std::optional<glm::dvec2> Solve(const CameraParams& c, const glm::dvec2& target, int steps) {
   glm::dvec2 p(0.0);
   for (int step = 1; step <= steps; ++step) {
@@ -71,8 +71,8 @@ std::vector<std::string> Problems(const CameraParams& c) {
   require(c.height >= 1 && c.height <= kMaxSide, "height", c.height, "must lie in 1 ... 16384");
   require(c.fx > 0, "fx", c.fx, "must be positive");
   require(c.fy > 0, "fy", c.fy, "must be positive");
-  for (const auto& [name, value] : {std::pair{"cx", c.cx}, {"cy", c.cy}, {"k1", c.k1}, {"k2", c.k2}, {"p1", c.p1},
-                                    {"p2", c.p2}, {"k3", c.k3}}) {
+  for (const auto& [name, value] :
+       {std::pair{"cx", c.cx}, {"cy", c.cy}, {"k1", c.k1}, {"k2", c.k2}, {"p1", c.p1}, {"p2", c.p2}, {"k3", c.k3}}) {
     require(true, name, value, "must be finite");
   }
   if (!problems.empty() || !HasDistortion(c)) return problems;
@@ -81,7 +81,8 @@ std::vector<std::string> Problems(const CameraParams& c) {
   const auto check = [&](double u, double v) {
     if (!problems.empty() || Solve(c, Normalized(c, {u, v}), 16)) return;
     std::ostringstream text;
-    text << "distortion: folds over inside the image, before pixel (" << u << ", " << v << ") is reached from its middle";
+    text << "distortion: folds over inside the image, before pixel (" << u << ", " << v
+         << ") is reached from its middle";
     problems.push_back(text.str());
   };
   for (int i = 0; i <= c.width; ++i) check(i - 0.5, -0.5), check(i - 0.5, bottom);
@@ -123,7 +124,8 @@ glm::dvec2 Camera::Undistort(const glm::dvec2& pixel) const {
   const glm::dvec2 target = Normalized(params_, pixel);
   if (!HasDistortion(params_)) return target;
   const std::optional<glm::dvec2> solution = Solve(params_, target, 4);
-  if (!solution) throw std::invalid_argument("camera: pixel outside the part of the plane where the lens is one-to-one");
+  if (!solution)
+    throw std::invalid_argument("camera: pixel outside the part of the plane where the lens is one-to-one");
   return *solution;
 }
 

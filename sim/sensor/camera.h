@@ -39,12 +39,14 @@ class Camera {
   // where the lens is not one-to-one.
   glm::dvec2 Undistort(const glm::dvec2& pixel) const;
 
-  // The same for rendering: from a table made once, within 0.003 px of Undistort for lenses that are one-to-one in the image
-  // (float rounding is 0.0001 px of it; without distortion nothing else). Any pixel of the image, borders included.
+  // The same for rendering: from a table made once, within 0.003 px of Undistort for lenses that are one-to-one in the
+  // image (float rounding is 0.0001 px of it; without distortion nothing else). Any pixel of the image, borders
+  // included.
   glm::vec2 Ray(float u, float v) const {
     if (!table_) return {(u - cx_) * inverse_fx_, (v - cy_) * inverse_fy_};
     const float x = u + 0.5f, y = v + 0.5f;  // the table holds the corners of the pixels
-    const int i = std::min(static_cast<int>(x), params_.width - 1), j = std::min(static_cast<int>(y), params_.height - 1);
+    const int i = std::min(static_cast<int>(x), params_.width - 1),
+              j = std::min(static_cast<int>(y), params_.height - 1);
     const float a = x - static_cast<float>(i), b = y - static_cast<float>(j);
     const std::size_t stride = static_cast<std::size_t>(params_.width) + 1;
     const glm::vec2* at = table_->data() + static_cast<std::size_t>(j) * stride + static_cast<std::size_t>(i);

@@ -1,5 +1,6 @@
 #include "tools/settings/node.h"
 
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/mark.h>
@@ -138,6 +139,8 @@ Node ParseYaml(const std::string& text, const std::string& name, bool with_lines
     if (parser.HandleNextDocument(builder) && parser.HandleNextDocument(rest)) {
       problems.push_back({name, 0, 0, "holds more than one YAML document"});
     }
+  } catch (const YAML::DeepRecursion&) {
+    problems.push_back({name, 0, 0, "not valid YAML: nested too deeply"});
   } catch (const YAML::Exception& error) {
     const bool place = with_lines && error.mark.line >= 0;
     problems.push_back(

@@ -23,6 +23,7 @@ constexpr UnitName kAngle[] = {{"rad"}, {"mrad", 1, 1e3}, {"deg", kPi, 180}};
 constexpr UnitName kSpeed[] = {{"m/s"}, {"cm/s", 1, 1e2}, {"mm/s", 1, 1e3}, {"km/h", 1, 3.6}};
 constexpr UnitName kAngularRate[] = {{"rad/s"}, {"deg/s", kPi, 180}};
 constexpr UnitName kFrequency[] = {{"Hz"}, {"kHz", 1e3, 1}};
+constexpr UnitName kRate[] = {{"1/s"}};
 constexpr UnitName kPixel[] = {{"px"}};
 constexpr UnitName kElectrons[] = {{"e"}};
 constexpr UnitName kAccelerationDensity[] = {{"m/s^1.5"}, {"cm/s^1.5", 1, 1e2}};
@@ -49,6 +50,8 @@ Kind KindOf(Unit unit) {
       return {"an angular rate", kAngularRate};
     case Unit::frequency:
       return {"a frequency", kFrequency};
+    case Unit::rate:
+      return {"a rate", kRate};
     case Unit::pixel:
       return {"a number of pixels", kPixel};
     case Unit::electrons:

@@ -16,6 +16,7 @@ enum class Unit {
   speed,                         // m/s, cm/s, mm/s, km/h
   angular_rate,                  // rad/s, deg/s
   frequency,                     // Hz, kHz
+  rate,                          // 1/s
   pixel,                         // px
   electrons,                     // e
   acceleration_density,          // m/s^1.5, cm/s^1.5: square root of the power spectral density of white acceleration

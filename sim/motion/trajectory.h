@@ -1,0 +1,26 @@
+// Purpose: how the camera moves: pose and velocity at any time, in closed form.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "sim/motion/pose.h"
+
+namespace sim {
+
+struct Motion {
+  Pose pose;
+  glm::dvec3 v_WC{0.0};  // of the camera centre, in W [m/s]: the exact derivative of pose.p_WC
+  glm::dvec3 w_WC_C{
+      0.0};  // of C against W, in C [rad/s]: q(t + dt) = q(t) * Exp(w dt) to first order, exactly so as dt -> 0
+};
+
+// Time is in seconds; 0 is the stamp of the first frame. A trajectory goes on smoothly for a while before 0 and after
+// end_s() (half an exposure is all that is needed), at constant velocity.
+class Trajectory {
+ public:
+  virtual ~Trajectory() = default;
+  virtual Motion At(double t_s) const = 0;
+  virtual double end_s() const = 0;
+};
+
+}  // namespace sim

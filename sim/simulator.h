@@ -1,0 +1,71 @@
+// Purpose: a scenario rendered into frames with exact truth.
+#pragma once
+
+#include <cstdint>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/scenario/scenario.h"
+#include "sim/sensor/camera.h"
+
+namespace sim {
+
+struct Image {
+  int width = 0, height = 0;
+  int channels = 0;                // 1: grey, 3: red, green, blue
+  std::vector<std::uint8_t> data;  // width * height * channels, rows from the top
+};
+
+// At the stamp; conventions as in docs/conventions.md.
+struct Truth {
+  glm::dvec3 p_WC{0.0};                 // [m]
+  glm::dquat q_WC{1.0, 0.0, 0.0, 0.0};  // unit, w >= 0
+  glm::dvec3 v_WC{0.0};                 // in W [m/s]
+  glm::dvec3 w_WC_C{0.0};               // in C [rad/s]
+};
+
+struct Frame {
+  std::int64_t index = 0;
+  std::int64_t stamp_ns = 0;  // mid-exposure
+  Image image;
+  Truth truth;
+};
+
+class Simulator {
+ public:
+  // Loads the world and the trajectory. At most `jobs` threads work in one call; their number never changes a result.
+  // Throws SceneError, settings::Error or std::runtime_error naming the files at fault; std::invalid_argument for a
+  // scenario whose values contradict each other (one from LoadScenario has been checked) and for jobs < 1.
+  Simulator(const Scenario& scenario, int jobs);
+  ~Simulator();
+  Simulator(Simulator&&) noexcept;
+  Simulator& operator=(Simulator&&) noexcept;
+
+  std::int64_t frame_count() const;
+  const Camera& camera() const;
+  const Scenario& scenario() const;
+  // What was readable in the world but is probably not meant.
+  const std::vector<std::string>& warnings() const;
+
+  // Pure functions of the scenario, its seed and the index in [0, frame_count); std::out_of_range otherwise. They may
+  // be called at the same time from several threads.
+  Frame Render(std::int64_t index) const;
+  std::int64_t StampNs(std::int64_t index) const;
+  Truth TruthAt(std::int64_t index) const;
+  // Z in the camera frame [m] at each pixel's centre at the stamp, rows from the top; 0: nothing there.
+  std::vector<float> Depth(std::int64_t index) const;
+
+  // Frames 0, 1, ... one after the other; none after the last.
+  std::optional<Frame> Next();
+
+ private:
+  struct Parts;
+  std::unique_ptr<const Parts> parts_;
+  std::int64_t next_ = 0;
+};
+
+}  // namespace sim
