@@ -1,0 +1,105 @@
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "vo/geometry/camera.h"
+#include "vo/geometry/so3.h"
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// Series of the matrix exponential: an oracle that shares nothing with Exp.
+Matrix3d MatrixExponential(const Matrix3d& A) {
+  Matrix3d sum = Matrix3d::Identity(), power = Matrix3d::Identity();
+  for (int k = 1; k < 60; ++k) {
+    power = power * A / k;
+    sum += power;
+  }
+  return sum;
+}
+
+// Three regimes: nothing, tiny, and anything below pi.
+std::vector<Vector3d> RotationVectors() {
+  std::vector<Vector3d> vectors = {Vector3d::Zero()};
+  std::mt19937_64 bits(1);
+  const auto uniform = [&] { return (static_cast<double>(bits() >> 11) + 0.5) * 0x1.0p-52 - 1; };
+  for (const double size : {1e-8, 1e-5, 0.9e-4, 1.1e-4, 0.9e-3, 1.1e-3, 0.1, 1.0, 2.5, 3.1})
+    for (int i = 0; i < 20; ++i) vectors.push_back(size * Vector3d(uniform(), uniform(), uniform()).normalized());
+  return vectors;
+}
+
+TEST(So3, ExpIsTheMatrixExponential) {
+  for (const Vector3d& phi : RotationVectors()) {
+    EXPECT_LT((vo::Exp(phi).toRotationMatrix() - MatrixExponential(vo::Hat(phi))).norm(), 3e-15) << phi.transpose();
+    EXPECT_NEAR(vo::Exp(phi).norm(), 1, 1e-15);
+  }
+}
+
+TEST(So3, LogUndoesExp) {
+  for (const Vector3d& phi : RotationVectors()) {
+    EXPECT_LT((vo::Log(vo::Exp(phi)) - phi).norm(), 1e-14 * (1 + phi.norm()) + (phi.norm() > 3 ? 1e-13 : 0)) << phi.transpose();
+    const Eigen::Quaterniond q = vo::Exp(phi);
+    EXPECT_LT((vo::Log(Eigen::Quaterniond(-q.coeffs())) - phi).norm(), 1e-13) << "the other sign of the same rotation";
+  }
+}
+
+TEST(So3, RightJacobianIsTheDerivative) {
+  for (const Vector3d& phi : RotationVectors()) {
+    Matrix3d numeric;
+    const double h = 1e-6;
+    for (int i = 0; i < 3; ++i) {
+      const Vector3d d = h * Vector3d::Unit(i);
+      numeric.col(i) = (vo::Log(vo::Exp(phi).conjugate() * vo::Exp(phi + d)) - vo::Log(vo::Exp(phi).conjugate() * vo::Exp(phi - d))) / (2 * h);
+    }
+    EXPECT_LT((vo::RightJacobian(phi) - numeric).norm(), 1e-9) << phi.transpose();
+    EXPECT_GT((vo::RightJacobian(-phi) - numeric).norm() + (phi.norm() < 1e-4), 1e-5) << "the wrong sign must show";
+    EXPECT_LT((vo::RightJacobian(phi) * vo::InverseRightJacobian(phi) - Matrix3d::Identity()).norm(), 1e-12) << phi.transpose();
+    EXPECT_NEAR(vo::LogVolume(phi), std::log(vo::RightJacobian(phi).determinant()), 1e-9) << phi.transpose();
+  }
+}
+
+vo::Camera HandWorkedCamera() { return {640, 480, 500, 400, 320, 240, 0.1, -0.2, 0.01, -0.02, 0.05}; }
+
+TEST(Camera, ProjectsAsWorkedByHand) {  // docs/conventions.md
+  const Vector2d pixel = HandWorkedCamera().Project({0.5, -0.25, 1});
+  EXPECT_NEAR(pixel.x(), 563.9361572265625, 1e-10);
+  EXPECT_NEAR(pixel.y(), 142.425537109375, 1e-10);
+}
+
+TEST(Camera, UndistortUndoesProject) {
+  for (const vo::Camera& camera : {vo::CameraPreset("freiburg1"), vo::CameraPreset("freiburg2"), vo::CameraPreset("icl"), HandWorkedCamera()})
+    for (double u = 0; u < 640; u += 71)
+      for (double v = 0; v < 480; v += 53) {
+        const Vector2d xy = camera.Undistort({u, v});
+        const Vector2d again = camera.Project({2 * xy.x(), 2 * xy.y(), 2});
+        EXPECT_LT((again - Vector2d(u, v)).norm(), 1e-9) << u << " " << v;
+      }
+}
+
+TEST(Camera, LensJacobianIsTheDerivative) {
+  const vo::Camera camera = HandWorkedCamera();
+  for (const Vector2d& xy : {Vector2d(0, 0), Vector2d(0.3, -0.2), Vector2d(-0.5, 0.4)}) {
+    Eigen::Matrix2d numeric;
+    const double h = 1e-6;
+    for (int i = 0; i < 2; ++i) {
+      const Vector3d d = h * Vector3d::Unit(i), X(xy.x(), xy.y(), 1);
+      numeric.col(i) = (camera.Project(X + d) - camera.Project(X - d)) / (2 * h);
+    }
+    EXPECT_LT((camera.LensJacobian(xy) - numeric).norm(), 1e-6);
+  }
+}
+
+TEST(Camera, UnknownPresetNamesThePresets) {
+  try {
+    vo::CameraFrom("freiburg9");
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("freiburg9"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("freiburg3"), std::string::npos);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,218 @@
+#include "vo/filter/proposal.h"
+
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <gtest/gtest.h>
+
+#include "vo/filter/consensus.h"
+#include "vo/filter/resampling.h"
+#include "vo/geometry/so3.h"
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+double Uniform(std::mt19937_64& bits) { return (static_cast<double>(bits() >> 11) + 0.5) * 0x1.0p-53; }
+double Normal(std::mt19937_64& bits) {
+  return std::sqrt(-2 * std::log(Uniform(bits))) * std::cos(2 * std::numbers::pi * Uniform(bits));
+}
+
+// Landmarks anchored at two poses, seen from a third with pixel noise.
+struct Scene {
+  std::vector<vo::Landmark> landmarks;
+  std::vector<int> anchor_of;
+  std::vector<vo::Pose> anchors;
+  std::vector<vo::Match> matches;
+  vo::PoseGaussian prediction;
+  vo::LocalMap map() const { return {landmarks, anchor_of, anchors}; }
+};
+
+Scene MakeScene(unsigned seed, int count, double depth_sigma, double noise = 1.0 / 500) {
+  std::mt19937_64 bits(seed);
+  Scene scene;
+  scene.anchors = {vo::Pose{}, vo::Pose{Vector3d(0.05, 0.02, -0.03), vo::Exp({0.01, -0.02, 0.01})}};
+  scene.prediction.mean = {Vector3d(0.15, -0.05, 0.1), vo::Exp({0.02, 0.03, -0.02})};
+  scene.prediction.covariance.diagonal() << 1e-4, 1e-4, 1e-4, 2e-5, 2e-5, 2e-5;
+  vo::Vector6 off;
+  for (int i = 0; i < 6; ++i) off[i] = std::sqrt(scene.prediction.covariance(i, i)) * Normal(bits);
+  const vo::Pose truth = vo::Plus(scene.prediction.mean, off);
+  for (int n = 0; n < count; ++n) {
+    vo::Landmark landmark;
+    const Vector3d theta(Uniform(bits) - 0.5, 0.7 * (Uniform(bits) - 0.5), 0.2 + 0.5 * Uniform(bits));
+    landmark.mean = theta + Vector3d(noise * Normal(bits), noise * Normal(bits), depth_sigma * Normal(bits));
+    landmark.covariance.diagonal() << noise * noise, noise * noise, depth_sigma * depth_sigma;
+    scene.landmarks.push_back(landmark);
+    scene.anchor_of.push_back(n % 2);
+    const vo::Projection h = vo::Project({truth, scene.anchors[n % 2]}, theta);
+    scene.matches.push_back({n, h.z + noise * Vector2d(Normal(bits), Normal(bits)), noise * noise * Eigen::Matrix2d::Identity()});
+  }
+  return scene;
+}
+
+// The cost that the iterated proposal minimises, as one stacked residual over (pose, all landmarks): the oracle.
+VectorXd StackedResidual(const Scene& scene, const vo::Pose& pose, const VectorXd& landmarks) {
+  const int n = static_cast<int>(scene.landmarks.size());
+  VectorXd r(6 + 5 * n);
+  r.head<6>() = scene.prediction.covariance.llt().matrixL().solve(vo::Minus(pose, scene.prediction.mean));
+  for (int i = 0; i < n; ++i) {
+    const Vector3d theta = landmarks.segment<3>(3 * i);
+    r.segment<3>(6 + 5 * i) = (theta - scene.landmarks[i].mean).cwiseQuotient(scene.landmarks[i].covariance.diagonal().cwiseSqrt());
+    const vo::Projection h = vo::Project({pose, scene.anchors[scene.anchor_of[i]]}, theta);
+    r.segment<2>(9 + 5 * i) = (h.z - scene.matches[i].z) / std::sqrt(scene.matches[i].R(0, 0));
+  }
+  return r;
+}
+
+// Gauss-Newton on everything at once with numeric Jacobians.
+struct Joint {
+  vo::Pose pose;
+  vo::Matrix6 covariance;
+};
+Joint SolveJointly(const Scene& scene) {
+  const int n = static_cast<int>(scene.landmarks.size());
+  vo::Pose pose = scene.prediction.mean;
+  VectorXd landmarks(3 * n);
+  for (int i = 0; i < n; ++i) landmarks.segment<3>(3 * i) = scene.landmarks[i].mean;
+  MatrixXd J(6 + 5 * n, 6 + 3 * n);
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    const double h = 1e-6;
+    for (int k = 0; k < 6 + 3 * n; ++k) {
+      VectorXd d = VectorXd::Zero(6 + 3 * n);
+      d[k] = h;
+      J.col(k) = (StackedResidual(scene, vo::Plus(pose, d.head<6>()), landmarks + d.tail(3 * n)) -
+                  StackedResidual(scene, vo::Plus(pose, -d.head<6>()), landmarks - d.tail(3 * n))) / (2 * h);
+    }
+    const VectorXd step = -J.householderQr().solve(StackedResidual(scene, pose, landmarks));
+    pose = vo::Plus(pose, step.head<6>());
+    landmarks += step.tail(3 * n);
+    if (step.norm() < 1e-11) break;
+  }
+  const MatrixXd covariance = (J.transpose() * J).inverse();
+  return {pose, covariance.topLeftCorner<6, 6>()};
+}
+
+TEST(Proposal, SchurEliminationIsTheJointSolution) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Scene scene = MakeScene(seed, 12, 0.15);
+    const Joint joint = SolveJointly(scene);
+    const vo::PoseProposal proposal = vo::Propose(scene.prediction, scene.map(), scene.matches, {.max_iterations = 50});
+    const vo::Vector6 d = vo::Minus(proposal.pose.mean, joint.pose);
+    EXPECT_LT(d.norm(), 1e-7) << "seed " << seed;
+    EXPECT_LT((proposal.pose.covariance - joint.covariance).norm() / joint.covariance.norm(), 1e-5) << "seed " << seed;
+  }
+}
+
+TEST(Proposal, EkfIsOneStepOfIt) {
+  const Scene scene = MakeScene(3, 12, 0.15);
+  const vo::PoseProposal ekf = vo::Propose(scene.prediction, scene.map(), scene.matches, {.proposal = vo::Proposal::ekf});
+  const vo::PoseProposal one = vo::Propose(scene.prediction, scene.map(), scene.matches, {.max_iterations = 1});
+  EXPECT_EQ(vo::Minus(ekf.pose.mean, one.pose.mean).norm(), 0);
+  EXPECT_GT(vo::Minus(ekf.pose.mean, SolveJointly(scene).pose).norm(), 1e-4) << "where depths are unknown it is not the mode";
+}
+
+TEST(Proposal, NoMatchesIsThePrediction) {
+  const Scene scene = MakeScene(1, 5, 0.1);
+  const vo::PoseProposal proposal = vo::Propose(scene.prediction, scene.map(), {}, {});
+  EXPECT_EQ(vo::Minus(proposal.pose.mean, scene.prediction.mean).norm(), 0);
+  EXPECT_EQ(proposal.pose.covariance, scene.prediction.covariance);
+}
+
+// Where the model is linear and Gaussian in a small region the importance weight (17) is the same at every sample and equals the
+// evidence. Noise is made so small that curvature vanishes; what remains is rounding.
+TEST(Proposal, EvidenceEqualsTheImportanceWeightWhenLinear) {
+  const double tiny = 1e-7;
+  Scene scene = MakeScene(4, 10, 1e-6, tiny);
+  scene.prediction.covariance *= 1e-10;
+  std::mt19937_64 bits(9);
+  for (vo::Match& match : scene.matches) {  // measurements consistent with the small prior
+    const vo::Projection h = vo::Project({scene.prediction.mean, scene.anchors[scene.anchor_of[match.landmark]]},
+                                         scene.landmarks[match.landmark].mean);
+    match.z = h.z + tiny * Vector2d(Normal(bits), Normal(bits));
+  }
+  const vo::PoseProposal proposal = vo::Propose(scene.prediction, scene.map(), scene.matches, {});
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    const vo::Pose s = proposal.pose.Sample({.seed = 5, .particle = i});
+    double log_weight = scene.prediction.LogDensity(s) - proposal.pose.LogDensity(s);
+    for (const vo::Match& match : scene.matches)
+      log_weight += vo::UpdateLandmark(scene.landmarks[match.landmark], {s, scene.anchors[scene.anchor_of[match.landmark]]}, match, 10).log_likelihood;
+    EXPECT_NEAR(log_weight, proposal.log_evidence, 1e-4 * std::abs(proposal.log_evidence) * 1e-2) << i;
+  }
+}
+
+TEST(Consensus, ThrowsOutGrossErrorsAndKeepsTheRest) {
+  // A residual has about 1.6 px per axis, so the gate's radius is 4.8 px: an outlier of 12 px stays only by a 4.5 sigma accident
+  // (240 outliers: 1e-3).
+  int refused_inliers = 0, kept_outliers = 0, inliers = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Scene scene = MakeScene(seed, 60, 0.01);
+    std::mt19937_64 bits(seed + 100);
+    std::vector<bool> corrupted(60, false);
+    for (int n = 0; n < 60; n += 5) {
+      corrupted[n] = true;
+      const double angle = 2 * std::numbers::pi * Uniform(bits), length = (12 + 28 * Uniform(bits)) / 500;
+      scene.matches[n].z += length * Vector2d(std::cos(angle), std::sin(angle));
+    }
+    const std::vector<bool> inlier = vo::FindInliers(scene.prediction, scene.map(), scene.matches, 9.21, {});
+    for (int n = 0; n < 60; ++n) {
+      if (corrupted[n]) kept_outliers += inlier[n];
+      if (!corrupted[n]) refused_inliers += !inlier[n];
+      inliers += !corrupted[n];
+    }
+  }
+  // Binomial(960, 0.01): more than 24 has probability 1e-4.
+  EXPECT_LE(refused_inliers, 24) << "of " << inliers;
+  EXPECT_EQ(kept_outliers, 0);
+}
+
+TEST(PoseGaussian, DensityIntegratesAndSamplesHaveItsCovariance) {
+  vo::PoseGaussian g;
+  g.mean = {Vector3d(1, 2, 3), vo::Exp({0.3, -0.2, 0.5})};
+  vo::Matrix6 root;
+  for (int k = 0; k < 36; ++k) root(k / 6, k % 6) = 0.03 * std::sin(1.7 * (k + 1));
+  g.covariance = root * root.transpose() + 1e-4 * vo::Matrix6::Identity();
+  const int n = 20000;
+  vo::Matrix6 second = vo::Matrix6::Zero();
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const vo::Vector6 d = vo::Minus(g.Sample({.seed = 3, .particle = i}), g.mean);
+    second += d * d.transpose() / n;
+  }
+  // Each whitened second moment is 1 +- sqrt(2/n), off-diagonal 0 +- 1/sqrt(n): 5 sigma, 21 entries: false alarms 1e-5.
+  const vo::Matrix6 L = g.covariance.llt().matrixL();
+  const vo::Matrix6 white = L.inverse() * second * L.inverse().transpose();
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j <= i; ++j) EXPECT_NEAR(white(i, j), i == j, 5 * std::sqrt((i == j ? 2.0 : 1.0) / n)) << i << j;
+  EXPECT_NEAR(g.LogDensity(g.mean), -0.5 * std::log(g.covariance.determinant()) - 3 * std::log(2 * std::numbers::pi), 1e-9);
+}
+
+TEST(Resampling, CopiesAreWithinOneOfExpected) {
+  const std::vector<double> w = {0.05, 0.45, 0.0, 0.3, 0.2};
+  for (const double u : {0.0, 0.13, 0.5, 0.999}) {
+    std::vector<int> copies(w.size(), 0);
+    for (const int a : vo::SystematicAncestors(w, u)) ++copies[a];
+    for (std::size_t i = 0; i < w.size(); ++i) EXPECT_LT(std::abs(copies[i] - 5 * w[i]), 1.0);
+  }
+  // Unbiased: over all u the mean number of copies is N w exactly.
+  std::vector<double> mean(w.size(), 0);
+  const int n = 10000;
+  for (int k = 0; k < n; ++k)
+    for (const int a : vo::SystematicAncestors(w, (k + 0.5) / n)) mean[a] += 1.0 / n;
+  for (std::size_t i = 0; i < w.size(); ++i) EXPECT_NEAR(mean[i], 5 * w[i], 1e-3);
+}
+
+TEST(Resampling, WeightsSurviveExtremes) {
+  const auto w = vo::Normalised({-1e5, -1e5 + std::log(3.0), -INFINITY, NAN});
+  EXPECT_NEAR(w[0], 0.25, 1e-12);
+  EXPECT_NEAR(w[1], 0.75, 1e-12);
+  EXPECT_EQ(w[2] + w[3], 0);
+  EXPECT_EQ(vo::Normalised({-INFINITY, NAN})[0], 0.5);
+  EXPECT_NEAR(vo::EffectiveParticles({0.25, 0.25, 0.25, 0.25}), 4, 1e-12);
+}
+
+}  // namespace
