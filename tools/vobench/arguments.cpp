@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <iostream>
-#include <limits>
+#include <set>
 #include <sstream>
 #include <thread>
 
 #include <CLI/CLI.hpp>
+
+#include "tools/vobench/systems.h"
 
 namespace vobench {
 namespace {
@@ -31,6 +33,19 @@ std::pair<std::int64_t, std::int64_t> ParseFrames(const std::string& text) {
     throw CLI::ValidationError("--frames", "'" + text + "' is not A:B with 0 <= A < B (frames A to B-1)");
   }
   return {first, last};
+}
+
+// As it could be typed again.
+std::string CommandLine(int argc, char** argv) {
+  std::string line = "vobench";
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const bool plain = !argument.empty() && argument.find_first_of(" \t\n'\"\\$`*?;&|<>(){}[]~#!") == std::string::npos;
+    std::string quoted;
+    for (const char c : argument) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += " " + (plain ? argument : "'" + quoted + "'");
+  }
+  return line;
 }
 
 // What the options are first read into, as text, where CLI11 does not know their type.
@@ -163,13 +178,18 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
     if (asked(track_command)) {
       track.seed = raw.seed;
       track.overrides = raw.overrides();
+      track.command_line = CommandLine(argc, argv);
       return track;
     }
     if (asked(evaluate_command)) return evaluate;
     if (asked(run_command)) {
+      if (std::set<std::string>(run.systems.begin(), run.systems.end()).size() != run.systems.size()) {
+        throw CLI::ValidationError("--system", "names a system twice");
+      }
       run.seed = raw.seed;
       run.jobs = raw.jobs;
       run.overrides = raw.overrides();
+      run.command_line = CommandLine(argc, argv);
       return run;
     }
     if (asked(check_command)) {

@@ -35,6 +35,7 @@ struct TrackOptions {
   std::optional<std::filesystem::path> settings;
   std::uint64_t seed = 1;
   Overrides overrides;
+  std::string command_line;  // for the record
 };
 void Track(const TrackOptions& options);
 
@@ -55,6 +56,7 @@ struct RunOptions {
   std::uint64_t seed = 1;  // of the first run; the others count up from it
   int jobs = 1;
   Overrides overrides;
+  std::string command_line;  // for the record
 };
 void Run(const RunOptions& options);
 
@@ -72,8 +74,5 @@ struct ReportOptions {
 void Report(const ReportOptions& options);
 
 using Command = std::variant<RenderOptions, TrackOptions, EvaluateOptions, RunOptions, CheckOptions, ReportOptions>;
-
-// The systems by name, for --system.
-const std::vector<std::string>& SystemNames();
 
 }  // namespace vobench

@@ -32,8 +32,8 @@ Progress::~Progress() {
   if (terminal_ && done_ > 0) std::fputc('\n', stderr);
 }
 
-void Progress::Step() {
-  ++done_;
+void Progress::Step(std::int64_t count) {
+  done_ += count;
   const auto now = std::chrono::steady_clock::now();
   if (done_ == total_ || now - drawn_ >= (terminal_ ? std::chrono::duration_cast<decltype(now - drawn_)>(kRedraw)
                                                     : std::chrono::duration_cast<decltype(now - drawn_)>(kPlainLine))) {

@@ -14,8 +14,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // One more of the total is done. Throws Interrupted when Ctrl-C or a request to end has arrived.
-  void Step();
+  // So many more of the total are done. Throws Interrupted when Ctrl-C or a request to end has arrived.
+  void Step(std::int64_t count = 1);
 
  private:
   void Draw() const;

@@ -1,0 +1,119 @@
+// The simulator's camera and the odometry's, each held against the numbers worked by hand in docs/conventions.md, and against each
+// other. They share no code.
+#include <cmath>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "sim/sensor/camera.h"
+#include "vo/geometry/camera.h"
+
+namespace {
+
+// fx 500, fy 400, cx 320, cy 240, k1 0.1, k2 -0.2, p1 0.01, p2 -0.02, k3 0.05 of the worked example.
+constexpr double kU = 563.9361572265625, kV = 142.425537109375;
+
+vo::Camera Odometry(int width, int height, double fx, double fy, double cx, double cy, double k1, double k2, double p1,
+                    double p2, double k3) {
+  vo::Camera camera;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = fx;
+  camera.fy = fy;
+  camera.cx = cx;
+  camera.cy = cy;
+  camera.k1 = k1;
+  camera.k2 = k2;
+  camera.p1 = p1;
+  camera.p2 = p2;
+  camera.k3 = k3;
+  return camera;
+}
+
+sim::CameraParams Simulator(const vo::Camera& c) {
+  sim::CameraParams params;
+  params.width = c.width;
+  params.height = c.height;
+  params.fx = c.fx;
+  params.fy = c.fy;
+  params.cx = c.cx;
+  params.cy = c.cy;
+  params.k1 = c.k1;
+  params.k2 = c.k2;
+  params.p1 = c.p1;
+  params.p2 = c.p2;
+  params.k3 = c.k3;
+  return params;
+}
+
+vo::Camera WorkedByHand() { return Odometry(640, 480, 500, 400, 320, 240, 0.1, -0.2, 0.01, -0.02, 0.05); }
+vo::Camera Freiburg1() {
+  return Odometry(640, 480, 517.306408, 516.469215, 318.643040, 255.313989, 0.262383, -0.953104, -0.005358, 0.002628,
+                  1.163314);
+}
+
+TEST(CameraContract, OdometryProjectsAsWorkedByHand) {
+  const Eigen::Vector2d pixel = WorkedByHand().Project({0.5, -0.25, 1});
+  EXPECT_NEAR(pixel.x(), kU, 1e-10);
+  EXPECT_NEAR(pixel.y(), kV, 1e-10);
+  const Eigen::Vector2d same_ray = WorkedByHand().Project({1.5, -0.75, 3});
+  EXPECT_NEAR((same_ray - pixel).norm(), 0, 1e-10);
+}
+
+TEST(CameraContract, SimulatorProjectsAsWorkedByHand) {
+  const glm::dvec2 pixel = sim::Camera(Simulator(WorkedByHand())).Project({0.5, -0.25, 1});
+  EXPECT_NEAR(pixel.x, kU, 1e-10);
+  EXPECT_NEAR(pixel.y, kV, 1e-10);
+}
+
+TEST(CameraContract, TheMiddleOfTheFirstPixelIsTheOrigin) {
+  // A ray whose pinhole image is exactly (0, 0): the direction (-cx / fx, -cy / fy).
+  const vo::Camera pinhole = Odometry(640, 480, 500, 400, 320, 240, 0, 0, 0, 0, 0);
+  const Eigen::Vector2d a = pinhole.Project({-320.0 / 500, -240.0 / 400, 1});
+  const glm::dvec2 b = sim::Camera(Simulator(pinhole)).Project({-320.0 / 500, -240.0 / 400, 1});
+  EXPECT_NEAR(a.norm(), 0, 1e-12);
+  EXPECT_NEAR(std::hypot(b.x, b.y), 0, 1e-12);
+}
+
+// What the one projects, the other finds back, over the whole image of a real lens.
+TEST(CameraContract, EachUndoesTheOther) {
+  const vo::Camera odometry = Freiburg1();
+  const sim::Camera simulator(Simulator(odometry));
+  for (double v = -0.5; v <= 479.5; v += 24) {
+    for (double u = -0.5; u <= 639.5; u += 32) {
+      const Eigen::Vector2d a = odometry.Undistort({u, v});
+      const glm::dvec2 b = simulator.Undistort({u, v});
+      EXPECT_NEAR(a.x(), b.x, 1e-11) << u << ' ' << v;
+      EXPECT_NEAR(a.y(), b.y, 1e-11) << u << ' ' << v;
+      const glm::dvec2 forth = simulator.Project({a.x(), a.y(), 1});
+      EXPECT_NEAR(forth.x, u, 1e-8);
+      EXPECT_NEAR(forth.y, v, 1e-8);
+      const Eigen::Vector2d back = odometry.Project({b.x, b.y, 1});
+      EXPECT_NEAR(back.x(), u, 1e-8);
+      EXPECT_NEAR(back.y(), v, 1e-8);
+    }
+  }
+}
+
+// The comparison can fail: swapping the tangential terms moves a pixel at the border by more than the tolerance above.
+TEST(CameraContract, ASwappedTangentialTermWouldBeSeen) {
+  const vo::Camera right = Freiburg1();
+  vo::Camera wrong = right;
+  std::swap(wrong.p1, wrong.p2);
+  EXPECT_GT((right.Project({0.5, 0.3, 1}) - wrong.Project({0.5, 0.3, 1})).norm(), 0.1);
+}
+
+TEST(CameraContract, PresetsAreTheDataSets) {
+  const vo::Camera preset = vo::CameraPreset("freiburg1"), written = Freiburg1();
+  EXPECT_EQ(preset.fx, written.fx);
+  EXPECT_EQ(preset.fy, written.fy);
+  EXPECT_EQ(preset.cx, written.cx);
+  EXPECT_EQ(preset.cy, written.cy);
+  EXPECT_EQ(preset.k1, written.k1);
+  EXPECT_EQ(preset.k2, written.k2);
+  EXPECT_EQ(preset.p1, written.p1);
+  EXPECT_EQ(preset.p2, written.p2);
+  EXPECT_EQ(preset.k3, written.k3);
+}
+
+}  // namespace

@@ -1,0 +1,61 @@
+#include "tools/vobench/bridge.h"
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+namespace vobench {
+namespace {
+
+Eigen::Vector3d ToEigen(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+Eigen::Quaterniond ToEigen(const glm::dquat& q) { return {q.w, q.x, q.y, q.z}; }
+
+}  // namespace
+
+vo::Camera ToOdometry(const sim::CameraParams& camera) {
+  vo::Camera out;
+  out.width = camera.width;
+  out.height = camera.height;
+  out.fx = camera.fx;
+  out.fy = camera.fy;
+  out.cx = camera.cx;
+  out.cy = camera.cy;
+  out.k1 = camera.k1;
+  out.k2 = camera.k2;
+  out.p1 = camera.p1;
+  out.p2 = camera.p2;
+  out.k3 = camera.k3;
+  return out;
+}
+
+vo::Frame ToOdometry(const sim::Frame& frame) {
+  const sim::Image& image = frame.image;
+  // OpenCV's header over pixels that it only reads.
+  const cv::Mat pixels(image.height, image.width, image.channels == 1 ? CV_8UC1 : CV_8UC3,
+                       const_cast<std::uint8_t*>(image.data.data()));
+  vo::Frame out;
+  out.stamp_ns = frame.stamp_ns;
+  if (image.channels == 1) {
+    out.image = pixels.clone();
+  } else {
+    cv::cvtColor(pixels, out.image, cv::COLOR_RGB2BGR);
+  }
+  return out;
+}
+
+void Append(std::int64_t stamp_ns, const sim::Truth& of_frame, Truth& truth) {
+  truth.poses.push_back({stamp_ns, ToEigen(of_frame.p_WC), ToEigen(of_frame.q_WC)});
+  if (!truth.velocities) truth.velocities.emplace();
+  truth.velocities->push_back({stamp_ns, ToEigen(of_frame.v_WC), ToEigen(of_frame.w_WC_C)});
+}
+
+Truth TruthOf(const sim::Simulator& simulator, std::int64_t frame) {
+  Truth truth;
+  Append(simulator.StampNs(frame), simulator.TruthAt(frame), truth);
+  return truth;
+}
+
+void PrintWarnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) fmt::print(stderr, "vobench: warning: {}\n", warning);
+}
+
+}  // namespace vobench

@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <numbers>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "tools/evaluation/summary.h"
+#include "tools/vobench/commands.h"
+#include "tools/vobench/errors.h"
+
+namespace vobench {
+namespace fs = std::filesystem;
+namespace {
+
+using evaluation::Statistics;
+
+evaluation::Alignment AlignmentOf(const std::string& name) {
+  using evaluation::Alignment;
+  for (const Alignment alignment : {Alignment::none, Alignment::se3, Alignment::sim3, Alignment::first}) {
+    if (evaluation::Name(alignment) == name) return alignment;
+  }
+  throw BadInput("no alignment " + name);
+}
+
+// A run folder with all that it has, or a trajectory alone.
+evaluation::EstimateRun ReadEstimate(const fs::path& path) {
+  if (fs::is_directory(path)) return evaluation::ReadEstimateRun(path);
+  evaluation::EstimateRun run;
+  run.trajectory = evaluation::ReadTrajectory(path);
+  return run;
+}
+
+evaluation::Trajectory ReadTruth(const fs::path& path) {
+  return evaluation::ReadTrajectory(fs::is_directory(path) ? path / "groundtruth.txt" : path);
+}
+
+void PrintStatistics(std::string_view what, const Statistics& s, double factor, std::string_view unit) {
+  fmt::print("{:<28} rmse {:9.4f}  mean {:9.4f}  median {:9.4f}  max {:9.4f}  [{}]\n", what, factor * s.rmse,
+             factor * s.mean, factor * s.median, factor * s.max, unit);
+}
+
+void Print(const evaluation::Metrics& metrics, evaluation::Alignment alignment) {
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  const evaluation::TrajectoryErrors& errors = metrics.errors;
+  const evaluation::Ate& ate = errors.Aligned(alignment);
+  const evaluation::Rpe& rpe = alignment == evaluation::Alignment::sim3 ? errors.rpe : errors.rpe_unscaled;
+  fmt::print("{} poses associated (within {:.0f} ms), {:.3f} m of path in {:.3f} s\n", errors.pairs,
+             static_cast<double>(metrics.options.association.gap_ns) * 1e-6, metrics.path_length_m, metrics.duration_s);
+  fmt::print("alignment: {}, scale {:.6f}\n", evaluation::Name(alignment), ate.similarity.scale);
+  PrintStatistics("ATE position", ate.position, 100, "cm");
+  if (ate.orientation.count > 0) PrintStatistics("ATE orientation", ate.orientation, kDegrees, "deg");
+  if (rpe.position_statistics.count > 0) {
+    PrintStatistics("RPE position, per second", rpe.position_statistics, 100, "cm/s");
+    PrintStatistics("RPE orientation, per second", rpe.orientation_statistics, kDegrees, "deg/s");
+  }
+  PrintStatistics("ATE of a constant pose", metrics.constant_pose.Aligned(alignment).position, 100, "cm");
+  if (metrics.coverage) {
+    fmt::print("{:<28} {:.4f}\n", "pose coverage", metrics.coverage->pose_coverage());
+    if (const auto tracked = metrics.coverage->tracked_coverage()) fmt::print("{:<28} {:.4f}\n", "tracked coverage", *tracked);
+  }
+  if (metrics.consistency) {
+    const evaluation::NeesSummary& nees = metrics.consistency->pose;
+    fmt::print("{:<28} {:.3f}  (ideal 1; no alignment)\n", "NEES of the pose, per dof", nees.mean / nees.dof);
+  }
+  if (metrics.nis) fmt::print("{:<28} {:.3f}  (ideal 1)\n", "NIS, per dof", metrics.nis->mean_per_dof);
+}
+
+}  // namespace
+
+void Evaluate(const EvaluateOptions& options) {
+  Print(Input([&] { return evaluation::Judge(ReadEstimate(options.estimate), ReadTruth(options.truth), std::nullopt); }),
+        AlignmentOf(options.align));
+}
+
+}  // namespace vobench

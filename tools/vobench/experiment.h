@@ -1,0 +1,23 @@
+// Purpose: a scenario file with its three readers: the simulator's part, the odometry's and the prior.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "sim/scenario/scenario.h"
+#include "tools/vobench/commands.h"
+#include "tools/vobench/odometry_settings.h"
+
+namespace vobench {
+
+struct Experiment {
+  sim::Scenario scenario;
+  vo::Params odometry;
+  PriorSettings prior;
+  std::string resolved;  // all of it, defaults included: JSON, which is a scenario again
+};
+
+// Throws BadInput with every problem of all three parts.
+Experiment ReadExperiment(const std::filesystem::path& scenario, const Overrides& overrides);
+
+}  // namespace vobench

@@ -1,0 +1,49 @@
+#include "tools/vobench/prior.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <Random123/philox.h>
+
+namespace vobench {
+namespace {
+
+// Standard normals as a function of (seed, dimension), by Box and Muller. The stream's number keeps them apart from the
+// simulator's and the filter's, which may have the same seed.
+double Normal(std::uint64_t seed, std::uint32_t dimension) {
+  constexpr std::uint32_t kStream = 0x7072696f;  // "prio"
+  r123::Philox4x32 philox;
+  const r123::Philox4x32::ctr_type counter = {{dimension, kStream, 0, 0}};
+  const r123::Philox4x32::key_type key = {{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
+  const r123::Philox4x32::ctr_type bits = philox(counter, key);
+  const auto uniform = [&](std::size_t i) {  // on (0, 1), 53 bits
+    const std::uint64_t wide = (static_cast<std::uint64_t>(bits[i]) << 32 | bits[i + 1]) >> 11;
+    return (static_cast<double>(wide) + 0.5) * 0x1p-53;
+  };
+  return std::sqrt(-2 * std::log(uniform(0))) * std::cos(2 * std::numbers::pi * uniform(2));
+}
+
+}  // namespace
+
+vo::Prior PriorAtOrigin(const PriorSettings& settings) {
+  const auto square = [](double sigma) { return sigma * sigma; };
+  vo::Prior prior;
+  prior.pose_covariance = vo::Matrix6::Identity() * square(kStartSigma);
+  prior.velocity_covariance.setZero();
+  prior.velocity_covariance.diagonal().head<3>().setConstant(square(settings.velocity_sigma));
+  prior.velocity_covariance.diagonal().tail<3>().setConstant(square(settings.angular_rate_sigma));
+  return prior;
+}
+
+vo::Prior PriorFromTruth(const PriorSettings& settings, const evaluation::StampedPose& pose,
+                         const evaluation::StampedVelocity& velocity, std::uint64_t seed) {
+  vo::Prior prior = PriorAtOrigin(settings);
+  prior.pose = {pose.p_WC, pose.q_WC};
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    prior.v_WC[axis] = velocity.v_WC[axis] + settings.velocity_sigma * Normal(seed, axis);
+    prior.w_WC_C[axis] = velocity.w_WC_C[axis] + settings.angular_rate_sigma * Normal(seed, 3 + axis);
+  }
+  return prior;
+}
+
+}  // namespace vobench

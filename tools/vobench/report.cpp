@@ -1,0 +1,24 @@
+#include "tools/report/report.h"
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "tools/report/run_json.h"
+#include "tools/vobench/commands.h"
+#include "tools/vobench/errors.h"
+
+namespace vobench {
+
+void Report(const ReportOptions& options) {
+  // Read here first, so that what is wrong with the folder is told from a report that cannot be written.
+  Input([&] { return report::ReadRunJson(options.output); });
+  try {
+    report::WriteReport(options.output);
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(error.what());
+  }
+  fmt::print("{}\n", (options.output / "report.html").string());
+}
+
+}  // namespace vobench

@@ -1,0 +1,113 @@
+// A scenario is rendered into a sequence with exact truth, an odometry runs on the sequence, and a judge that knows both says how
+// wrong and how honest the odometry is.
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "sim/simulator.h"
+#include "tools/report/text_summary.h"
+#include "tools/vobench/bridge.h"
+#include "tools/vobench/commands.h"
+#include "tools/vobench/errors.h"
+#include "tools/vobench/experiment.h"
+#include "tools/vobench/output_folder.h"
+#include "tools/vobench/parallel.h"
+#include "tools/vobench/prior.h"
+#include "tools/vobench/progress.h"
+#include "tools/vobench/result.h"
+#include "tools/vobench/tracker.h"
+
+namespace vobench {
+namespace {
+
+using Folder = std::unique_ptr<OutputFolder>;  // none: nothing is kept
+
+Folder MakeFolder(const RunOptions& options) {
+  return options.output ? std::make_unique<OutputFolder>(*options.output, kResultMarker, ResultNames()) : nullptr;
+}
+
+vo::Prior PriorOf(const PriorSettings& settings, const Truth& start, std::uint64_t seed) {
+  if (settings.start == PriorSettings::Start::origin) return PriorAtOrigin(settings);
+  return PriorFromTruth(settings, start.poses.front(), start.velocities->front(), seed);
+}
+
+// Each system with each seed. Of the truth they are told the start alone.
+std::vector<Tracker> MakeTrackers(const RunOptions& options, const Experiment& experiment, const sim::Simulator& simulator,
+                                  const Folder& folder) {
+  const vo::Camera camera = ToOdometry(simulator.camera().params());
+  const Truth start = TruthOf(simulator, 0);
+  const std::optional<std::filesystem::path> out = folder ? std::optional(folder->path()) : std::nullopt;
+  std::vector<Tracker> trackers;
+  for (const std::string& system : options.systems) {
+    for (int run = 0; run < options.runs; ++run) {
+      const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(run);
+      const TrackerSetup setup{system, seed, experiment.odometry, PriorOf(experiment.prior, start, seed)};
+      trackers.emplace_back(setup, camera, simulator.frame_count(), out, fmt::format("{}/seed_{}", system, seed));
+    }
+  }
+  return trackers;
+}
+
+std::vector<report::JudgedRun> Judge(const std::vector<Tracker>& trackers, const Truth& truth, const PriorSettings& prior) {
+  evaluation::JudgeOptions how;
+  if (prior.start == PriorSettings::Start::origin) how.gauge = evaluation::Gauge::first_pose;
+  std::vector<report::JudgedRun> judged;
+  for (const Tracker& tracker : trackers) {
+    judged.push_back({tracker.entry(), evaluation::Judge(tracker.estimates(), truth.poses, truth.velocities, how)});
+  }
+  return judged;
+}
+
+void Write(OutputFolder& folder, const std::vector<Tracker>& trackers, const Truth& truth,
+           const std::vector<report::JudgedRun>& judged, report::RunDescription description) {
+  for (const Tracker& tracker : trackers) {
+    tracker.Write();
+    WriteTruth(folder.path() / tracker.entry().path, truth);
+    description.runs.push_back(tracker.entry());
+  }
+  WriteResult(folder.path(), description, judged);
+  folder.Commit();
+}
+
+report::RunDescription Describe(const RunOptions& options, const Experiment& experiment, const sim::Simulator& simulator,
+                                const Clock& clock) {
+  report::RunDescription description;
+  description.title = experiment.scenario.name;
+  description.input = options.scenario.string();
+  description.command = options.command_line;
+  description.started_utc = clock.started_utc();
+  description.seconds = clock.seconds();
+  description.settings = experiment.resolved;
+  description.versions = Versions();
+  description.notes = simulator.warnings();
+  return description;
+}
+
+}  // namespace
+
+void Run(const RunOptions& options) {
+  const Clock clock;
+  const Experiment experiment = ReadExperiment(options.scenario, options.overrides);
+  sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, options.jobs); });
+  PrintWarnings(simulator.warnings());
+  Folder folder = MakeFolder(options);
+  std::vector<Tracker> odometries = MakeTrackers(options, experiment, simulator, folder);
+  Truth truth;
+  {
+    Progress progress("running", simulator.frame_count());
+    while (const std::optional<sim::Frame> rendered = simulator.Next()) {
+      const vo::Frame frame = ToOdometry(*rendered);
+      Append(rendered->stamp_ns, rendered->truth, truth);
+      ForEach(odometries, options.jobs, [&](Tracker& odometry) { odometry.Track(frame); });
+      progress.Step();
+    }
+  }
+  const std::vector<report::JudgedRun> judged = Judge(odometries, truth, experiment.prior);
+  if (folder) Write(*folder, odometries, truth, judged, Describe(options, experiment, simulator, clock));
+  fmt::print("{}", report::TextSummary(judged));
+  if (folder) fmt::print("The report is in {}\n", (*options.output / "report.html").string());
+}
+
+}  // namespace vobench

@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "tools/evaluation/text_file.h"
+#include "tools/report/text_summary.h"
+#include "tools/vobench/commands.h"
+#include "tools/vobench/errors.h"
+#include "tools/vobench/odometry_settings.h"
+#include "tools/vobench/output_folder.h"
+#include "tools/vobench/prior.h"
+#include "tools/vobench/progress.h"
+#include "tools/vobench/result.h"
+#include "tools/vobench/tracker.h"
+#include "vo/sequence/reader.h"
+
+namespace vobench {
+namespace fs = std::filesystem;
+namespace {
+
+struct TrackSettings {
+  vo::Params params;
+  PriorSettings prior{PriorSettings::Start::origin, 0.5, 0.5};
+  std::string resolved;
+};
+
+TrackSettings ReadSettings(const TrackOptions& options) {
+  settings::Document document = options.settings ? settings::Document::FromFile(*options.settings)
+                                                 : settings::Document::FromText("", "--set");
+  for (const auto& [key, value] : options.overrides) document.Override(key, value);
+  TrackSettings out;
+  ReadOdometry(document.root().Child("odometry"), out.params);
+  settings::Section prior = document.root().Child("prior");
+  ReadPrior(prior, out.prior);
+  if (out.prior.start == PriorSettings::Start::truth) {
+    prior.Reject("start", "'truth' is for `vobench run`: this command tells the odometry nothing of the truth");
+  }
+  document.ThrowIfBad();
+  out.resolved = document.Resolved();
+  return out;
+}
+
+vo::Camera ReadCamera(const TrackOptions& options) {
+  if (options.camera) return vo::CameraFrom(*options.camera);
+  const fs::path file = options.sequence / "camera.yaml";
+  if (!fs::exists(file)) {
+    throw BadInput(fmt::format("{}: is not there; say which camera with --camera PRESET|FILE", file.string()));
+  }
+  return vo::ReadCamera(file);
+}
+
+// For the judge alone.
+std::optional<Truth> ReadTruth(const fs::path& sequence) {
+  if (!fs::exists(sequence / "groundtruth.txt")) return std::nullopt;
+  Truth truth;
+  truth.poses = evaluation::ReadTrajectory(sequence / "groundtruth.txt");
+  if (fs::exists(sequence / "velocity.txt")) truth.velocities = evaluation::ReadVelocities(sequence / "velocity.txt");
+  return truth;
+}
+
+std::string Record(const vo::Camera& c, const std::string& resolved) {
+  nlohmann::ordered_json all;
+  all["camera"] = {{"width", c.width}, {"height", c.height}, {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy},
+                   {"distortion", {{"k1", c.k1}, {"k2", c.k2}, {"p1", c.p1}, {"p2", c.p2}, {"k3", c.k3}}}};
+  all.update(nlohmann::ordered_json::parse(resolved));
+  return all.dump(2);
+}
+
+// A trajectory that starts at the origin is judged in its own world.
+evaluation::JudgeOptions StartedAtTheOrigin() {
+  evaluation::JudgeOptions options;
+  options.gauge = evaluation::Gauge::first_pose;
+  return options;
+}
+
+}  // namespace
+
+void Track(const TrackOptions& options) {
+  const Clock clock;
+  vo::SequenceReader sequence = Input([&] { return vo::SequenceReader(options.sequence); });
+  const vo::Camera camera = Input([&] { return ReadCamera(options); });
+  const TrackSettings settings = Input([&] { return ReadSettings(options); });
+  const std::optional<Truth> truth = Input([&] { return ReadTruth(options.sequence); });
+  const auto frames = static_cast<std::int64_t>(sequence.size());
+  OutputFolder out(options.output, kResultMarker, ResultNames());
+
+  Tracker tracker({options.system, options.seed, settings.params, PriorAtOrigin(settings.prior)}, camera, frames,
+                  out.path(), ".");
+  {
+    Progress progress("tracking", frames);
+    while (const std::optional<vo::Frame> frame = Input([&] { return sequence.Next(); })) {
+      tracker.Track(*frame);
+      progress.Step();
+    }
+  }
+  tracker.Write();
+
+  report::RunDescription description;
+  std::vector<report::JudgedRun> judged;
+  if (truth) {
+    try {
+      judged.push_back({tracker.entry(), evaluation::Judge(tracker.estimates(), truth->poses, truth->velocities, StartedAtTheOrigin())});
+      WriteTruth(out.path(), *truth);
+    } catch (const evaluation::InputError& error) {  // of another time: the estimate is worth keeping all the same
+      description.notes.push_back(fmt::format("Not judged: {}", error.what()));
+      fmt::print(stderr, "vobench: not judged: {}\n", error.what());
+    }
+  }
+  description.title = fs::weakly_canonical(options.sequence).filename().string();
+  description.input = options.sequence.string();
+  description.command = options.command_line;
+  description.started_utc = clock.started_utc();
+  description.seconds = clock.seconds();
+  description.settings = Record(camera, settings.resolved);
+  description.versions = Versions();
+  description.runs = {tracker.entry()};
+  WriteResult(out.path(), description, judged);
+  out.Commit();
+
+  fmt::print("{}The report is in {}\n", report::TextSummary(judged), (options.output / "report.html").string());
+}
+
+}  // namespace vobench

@@ -1,0 +1,44 @@
+// Purpose: one odometry at work on frames as they come, with all that must be kept of it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "tools/report/run_json.h"
+#include "tools/vobench/recorder.h"
+#include "vo/odometry.h"
+
+namespace vobench {
+
+// Which system, with which parameters and seed.
+struct TrackerSetup {
+  std::string system;
+  std::uint64_t seed = 1;
+  vo::Params params;
+  vo::Prior prior;
+};
+
+class Tracker {
+ public:
+  // `folder`, if any, is the run folder of the finished run inside `out`: pictures go there on the way. Throws BadInput.
+  Tracker(const TrackerSetup& setup, const vo::Camera& camera, std::int64_t frames,
+          const std::optional<std::filesystem::path>& out, const std::string& folder);
+
+  // Throws BadInput when the frame does not fit the camera, or time goes back.
+  void Track(const vo::Frame& frame);
+
+  // The files of the run folder, but for the truth. Throws std::runtime_error.
+  void Write() const { recorder_.Write(odometry_.Map()); }
+
+  const report::RunEntry& entry() const { return entry_; }
+  const evaluation::EstimateRun& estimates() const { return recorder_.run(); }
+
+ private:
+  report::RunEntry entry_;
+  vo::Odometry odometry_;
+  Recorder recorder_;
+};
+
+}  // namespace vobench
