@@ -84,18 +84,18 @@ inline Result Run(const World& world, const vo::Params& params, int features, un
   vo::ParticleFilter filter(params.motion, params.filter, params.landmark, prior, seed);
   const double sigma = params.features.sigma_px / world.focal_px;
   const Eigen::Matrix2d R = Eigen::Matrix2d::Identity() * sigma * sigma;
-  std::vector<int> point_of;  // per landmark of the filter
+  std::vector<int> point_of;    // per landmark of the filter
+  std::vector<std::size_t> last_seen;
   Result result;
   for (std::size_t k = 0; k < world.truth.size(); ++k) {
     std::vector<vo::Match> matches;
-    std::vector<bool> seen(point_of.size(), false);
     std::vector<std::pair<int, Eigen::Vector2d>> unknown;
     for (const auto& [point, z] : world.views[k]) {
       const auto it = std::find(point_of.begin(), point_of.end(), point);
       if (it == point_of.end()) {
         unknown.emplace_back(point, z);
       } else {
-        seen[it - point_of.begin()] = true;
+        last_seen[it - point_of.begin()] = k;
         matches.push_back({static_cast<int>(it - point_of.begin()), z, R});
       }
     }
@@ -104,15 +104,26 @@ inline Result Run(const World& world, const vo::Params& params, int features, un
       filter.Update(matches);
     }
     result.beliefs.push_back(filter.belief());
-    filter.KeepLandmarks(seen);
+    // Landmarks unseen for a second are dropped; `features` of those in view are followed.
+    std::vector<bool> keep;
     std::vector<int> kept;
-    for (std::size_t n = 0; n < point_of.size(); ++n)
-      if (seen[n]) kept.push_back(point_of[n]);
+    std::vector<std::size_t> kept_seen;
+    int followed = 0;
+    for (std::size_t n = 0; n < point_of.size(); ++n) {
+      keep.push_back(k - last_seen[n] < static_cast<std::size_t>(world.rate_hz));
+      if (!keep.back()) continue;
+      kept.push_back(point_of[n]);
+      kept_seen.push_back(last_seen[n]);
+      followed += last_seen[n] == k;
+    }
+    filter.KeepLandmarks(keep);
     point_of = kept;
+    last_seen = kept_seen;
     std::vector<Eigen::Vector2d> rays;
     for (const auto& [point, z] : unknown) {
-      if (static_cast<int>(point_of.size()) >= features) break;
+      if (followed++ >= features) break;
       point_of.push_back(point);
+      last_seen.push_back(k);
       rays.push_back(z);
     }
     filter.AddLandmarks(rays, std::vector<Eigen::Matrix2d>(rays.size(), R));
