@@ -1,0 +1,13 @@
+#include "tools/report/report.h"
+
+#include "tools/evaluation/text_file.h"
+#include "tools/report/page.h"
+#include "tools/report/result_data.h"
+
+namespace report {
+
+void WriteReport(const std::filesystem::path& out) {
+  evaluation::WriteWhole(out / "report.html", Page(ReadResult(out)));
+}
+
+}  // namespace report

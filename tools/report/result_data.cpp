@@ -1,0 +1,149 @@
+#include "tools/report/result_data.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/evaluation/text_file.h"
+#include "tools/report/text.h"
+
+namespace report {
+namespace {
+
+namespace fs = std::filesystem;
+namespace ev = evaluation;
+
+std::vector<Landmark> ReadLandmarks(const fs::path& file) {
+  ev::Problems problems;
+  std::vector<Landmark> landmarks;
+  bool header = true;
+  for (const ev::Line& line : ev::ReadLines(file, ',')) {
+    if (line.tokens.size() != 7) {
+      problems.Add(file, line.number, 1, std::to_string(line.tokens.size()) + " columns where 7 are expected");
+      continue;
+    }
+    if (header) {
+      header = false;
+      if (line.tokens[0].text == "id") continue;
+      problems.Add(file, line.number, 1, "no header line");
+    }
+    Landmark landmark;
+    for (int k = 0; k < 3; ++k) {
+      const ev::Token& token = line.tokens[static_cast<std::size_t>(k) + 1];
+      const auto value = ev::ParseNumber(token.text);
+      if (!value) problems.Add(file, line.number, token.column, "'" + token.text + "' is not a finite number");
+      landmark.X_W[k] = value.value_or(0);
+    }
+    const ev::Token& last = line.tokens[6];
+    landmark.permanent = last.text == "1";
+    if (last.text != "0" && last.text != "1")
+      problems.Add(file, line.number, last.column, "'" + last.text + "' is not 0 or 1");
+    landmarks.push_back(landmark);
+  }
+  problems.ThrowIfAny();
+  return landmarks;
+}
+
+std::vector<fs::path> Pictures(const fs::path& folder) {
+  std::vector<std::pair<std::int64_t, fs::path>> found;
+  if (fs::is_directory(folder)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+      const auto stamp = ev::ParseSeconds(entry.path().stem().string());
+      if (entry.path().extension() == ".jpg" && stamp) found.emplace_back(*stamp, entry.path());
+    }
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<fs::path> paths;
+  for (auto& [stamp, path] : found) paths.push_back(path);
+  return paths;
+}
+
+JudgedSeries JudgeSeries(const ev::EstimateRun& run, const ev::Trajectory& truth,
+                         const std::optional<ev::Velocities>& velocities, const ev::JudgeOptions& options) {
+  JudgedSeries series;
+  series.metrics = ev::Judge(run, truth, velocities, options);
+  ev::MatchedTrajectories matched = ev::MatchTrajectories(run.trajectory, truth, options.association);
+  series.aligned = ev::Apply(series.metrics.errors.sim3.similarity, matched.estimate);
+  series.truth = std::move(matched.truth);
+  if (!run.beliefs.empty()) {
+    series.consistency = ev::ComputeConsistency(run, truth, velocities, options.association.gap_ns, options.gauge);
+  }
+  return series;
+}
+
+RunData ReadRun(const fs::path& out, const RunEntry& entry, const std::vector<RecordedMetrics>& recorded,
+                std::vector<std::string>& warnings) {
+  const fs::path folder = out / entry.path;
+  RunData data;
+  data.entry = entry;
+  data.run = ev::ReadEstimateRun(folder);
+  if (fs::exists(folder / "landmarks.csv")) data.landmarks = ReadLandmarks(folder / "landmarks.csv");
+  data.pictures = Pictures(folder / "frames");
+  if (!fs::exists(folder / "truth.txt")) return data;
+
+  std::optional<ev::Velocities> velocities;
+  if (fs::exists(folder / "truth_velocity.txt")) velocities = ev::ReadVelocities(folder / "truth_velocity.txt");
+  const auto found =
+      std::find_if(recorded.begin(), recorded.end(), [&](const RecordedMetrics& r) { return r.path == entry.path; });
+  data.judged = JudgeSeries(data.run, ev::ReadTrajectory(folder / "truth.txt"), velocities,
+                            found != recorded.end() ? found->options : ev::JudgeOptions{});
+  const std::string name = DisplayName(entry.system) + ", seed " + std::to_string(entry.seed);
+  if (found == recorded.end()) {
+    warnings.push_back(name + ": not in metrics.json; judged here with the default options.");
+    return data;
+  }
+  const double ate = data.judged->metrics.errors.sim3.position.rmse;
+  // Files are written with twelve digits.
+  if (!(std::abs(ate - found->ate_sim3_rmse_m) <= 1e-6 * ate + 1e-9)) {
+    warnings.push_back(name + ": metrics.json has an ATE of " + ev::FormatNumber(found->ate_sim3_rmse_m, 6) +
+                       " m, the files beside it give " + ev::FormatNumber(ate, 6) + " m. One of them was changed.");
+  }
+  return data;
+}
+
+}  // namespace
+
+std::vector<JudgedRun> ResultData::JudgedRuns() const {
+  std::vector<JudgedRun> judged;
+  for (const RunData& run : runs) {
+    if (run.judged) judged.push_back({run.entry, run.judged->metrics});
+  }
+  return judged;
+}
+
+std::vector<std::string> ResultData::Systems() const {
+  std::vector<std::string> systems;
+  for (const RunData& run : runs) {
+    if (std::find(systems.begin(), systems.end(), run.entry.system) == systems.end())
+      systems.push_back(run.entry.system);
+  }
+  return systems;
+}
+
+const RunData& ResultData::Typical(const std::string& system) const {
+  std::vector<const RunData*> own;
+  for (const RunData& run : runs) {
+    if (run.entry.system == system) own.push_back(&run);
+  }
+  const auto ate = [](const RunData* run) { return run->judged ? run->judged->metrics.errors.sim3.position.rmse : 0; };
+  std::stable_sort(own.begin(), own.end(), [&](const RunData* a, const RunData* b) { return ate(a) < ate(b); });
+  return *own.at((own.size() - 1) / 2);
+}
+
+ResultData ReadResult(const fs::path& out) {
+  ResultData data;
+  data.description = ReadRunJson(out);
+  std::vector<RecordedMetrics> recorded;
+  if (fs::exists(out / "metrics.json")) recorded = ReadMetricsJson(out);
+  std::vector<std::string> problems;
+  for (const RunEntry& entry : data.description.runs) {
+    try {
+      data.runs.push_back(ReadRun(out, entry, recorded, data.warnings));
+    } catch (const ev::InputError& error) {
+      problems.push_back(error.what());
+    }
+  }
+  if (!problems.empty()) throw ev::InputError(problems);
+  return data;
+}
+
+}  // namespace report

@@ -1,0 +1,53 @@
+// Purpose: everything that a report shows, read from a result folder and judged.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/evaluation/consistency.h"
+#include "tools/evaluation/summary.h"
+#include "tools/report/metrics_json.h"
+#include "tools/report/run_json.h"
+
+namespace report {
+
+struct Landmark {
+  Eigen::Vector3d X_W = Eigen::Vector3d::Zero();  // [m]
+  bool permanent = false;
+};
+
+// What a run says against the truth, frame by frame: pose k of `aligned` belongs to pose k of `truth`.
+struct JudgedSeries {
+  evaluation::Metrics metrics;
+  evaluation::Trajectory aligned, truth;                  // aligned by Sim(3), in the truth's world
+  std::vector<evaluation::FrameConsistency> consistency;  // not aligned; empty without covariances
+};
+
+struct RunData {
+  RunEntry entry;
+  evaluation::EstimateRun run;
+  std::vector<Landmark> landmarks;
+  std::vector<std::filesystem::path> pictures;  // in order of time
+  std::optional<JudgedSeries> judged;           // where the run has a truth
+};
+
+struct ResultData {
+  RunDescription description;
+  std::vector<RunData> runs;
+  std::vector<std::string> warnings;  // metrics.json and the files disagree
+
+  // Positions in `runs` of the judged ones and their metrics, as the summaries take them.
+  std::vector<JudgedRun> JudgedRuns() const;
+  // Systems in the order of first appearance.
+  std::vector<std::string> Systems() const;
+  // Of a system's runs the one whose ATE is the (lower) median, or the first where nothing is judged.
+  const RunData& Typical(const std::string& system) const;
+};
+
+// Throws evaluation::InputError with every problem of every file.
+ResultData ReadResult(const std::filesystem::path& out);
+
+}  // namespace report
