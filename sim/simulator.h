@@ -11,14 +11,9 @@
 
 #include "sim/scenario/scenario.h"
 #include "sim/sensor/camera.h"
+#include "sim/sensor/image.h"
 
 namespace sim {
-
-struct Image {
-  int width = 0, height = 0;
-  int channels = 0;                // 1: grey, 3: red, green, blue
-  std::vector<std::uint8_t> data;  // width * height * channels, rows from the top
-};
 
 // At the stamp; conventions as in docs/conventions.md.
 struct Truth {

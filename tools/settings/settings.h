@@ -82,6 +82,9 @@ class Section {
     return good;
   }
 
+  // A key that may be there though it is not read: the alternative to one that is.
+  void Allow(const std::string& key) { Ask(key); }
+
   Section Child(const std::string& key);
   // The sections of a list; none when it is absent.
   std::vector<Section> List(const std::string& key);

@@ -1,0 +1,159 @@
+#include "sim/motion/recorded.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <glm/geometric.hpp>
+#include <string>
+#include <string_view>
+
+#include "sim/motion/spline.h"
+#include "tools/settings/problem.h"
+#include "tools/settings/quantity.h"
+
+namespace sim {
+namespace {
+
+struct Word {
+  std::string_view text;
+  int column;
+};
+
+std::vector<Word> Split(std::string_view line) {
+  constexpr std::string_view kBlank = " \t\r";
+  std::vector<Word> words;
+  for (std::size_t at = line.find_first_not_of(kBlank); at != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(kBlank, at), line.size());
+    words.push_back({line.substr(at, end - at), static_cast<int>(at) + 1});
+    at = line.find_first_not_of(kBlank, end);
+  }
+  return words;
+}
+
+// Decimal seconds as nanoseconds, exactly: a double cannot hold the nanoseconds of a stamp in the 21st century.
+bool ParseStamp(std::string_view text, std::int64_t& stamp_ns) {
+  const std::size_t point = std::min(text.find('.'), text.size());
+  const std::string_view whole = text.substr(0, point);
+  std::string fraction(text.substr(std::min(point + 1, text.size())));
+  if (whole.empty() || whole.size() > 10 || whole.find_first_not_of("0123456789") != std::string_view::npos ||
+      fraction.find_first_not_of("0123456789") != std::string::npos) {
+    return false;
+  }
+  fraction.resize(9, '0');
+  std::int64_t seconds = 0, nanoseconds = 0;
+  std::from_chars(whole.data(), whole.data() + whole.size(), seconds);
+  std::from_chars(fraction.data(), fraction.data() + fraction.size(), nanoseconds);
+  stamp_ns = seconds * 1000000000 + nanoseconds;
+  return true;
+}
+
+// Collects what is wrong with a file; the first 20 are enough to see what it is.
+class Problems {
+ public:
+  explicit Problems(const std::filesystem::path& file) : file_(file.string()) {}
+  void Add(int line, int column, std::string message) {
+    if (list_.size() < 20) list_.push_back({file_, line, column, std::move(message)});
+    if (++count_ == 21) list_.push_back({file_, 0, 0, "further problems are not listed"});
+  }
+  void ThrowIfAny() const {
+    if (!list_.empty()) throw settings::Error(list_);
+  }
+
+ private:
+  std::string file_;
+  std::vector<settings::Problem> list_;
+  int count_ = 0;
+};
+
+}  // namespace
+
+std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file) {
+  Problems problems(file);
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(file)) {
+    problems.Add(0, 0, std::string("cannot be read: ") + std::strerror(errno ? errno : EISDIR));
+    problems.ThrowIfAny();
+  }
+  std::vector<KeyPose> keys;
+  std::int64_t first_ns = 0, last_ns = 0;
+  int last_line = 0, number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    const std::vector<Word> words = Split(line);
+    if (words.empty() || words[0].text.front() == '#') continue;
+    if (words.size() != 8) {
+      problems.Add(number, 1,
+                   "expected timestamp tx ty tz qx qy qz qw, not " + std::to_string(words.size()) + " words");
+      continue;
+    }
+    std::int64_t stamp_ns = 0;
+    bool good = ParseStamp(words[0].text, stamp_ns);
+    if (!good)
+      problems.Add(number, words[0].column, "'" + std::string(words[0].text) + "' is not a timestamp in seconds");
+    double v[7] = {};
+    for (std::size_t i = 0; i < 7; ++i) {
+      std::string problem;
+      if (settings::ParseQuantity(words[i + 1].text, settings::Unit::none, {}, v[i], problem)) continue;
+      problems.Add(number, words[i + 1].column, problem);
+      good = false;
+    }
+    if (!good) continue;
+    const glm::dquat q(v[6], v[3], v[4], v[5]);
+    if (!(std::abs(glm::length(q) - 1) <= 1e-3)) {
+      problems.Add(number, words[4].column,
+                   "the quaternion's length is " + settings::FormatNumber(glm::length(q)) + ", not 1");
+    }
+    if (last_line > 0 && stamp_ns <= last_ns) {
+      problems.Add(number, words[0].column,
+                   "time " + std::string(words[0].text) + " is not after that of line " + std::to_string(last_line));
+    }
+    if (last_line == 0) first_ns = stamp_ns;
+    last_line = number;
+    last_ns = stamp_ns;
+    keys.push_back({static_cast<double>(stamp_ns - first_ns) * 1e-9, {{v[0], v[1], v[2]}, q}});
+  }
+  if (stream.bad()) problems.Add(0, 0, "cannot be read to its end");
+  problems.ThrowIfAny();
+  if (keys.size() < 2)
+    problems.Add(0, 0, "holds " + std::to_string(keys.size()) + " poses; a motion needs two at least");
+  problems.ThrowIfAny();
+  for (KeyPose& key : keys) key.pose.q_WC = glm::normalize(key.pose.q_WC);
+  return keys;
+}
+
+std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion, double end_s) {
+  std::vector<KeyPose> keys = ReadTumTrajectory(motion.file);
+  Problems problems(motion.file);
+  const double length_s = keys.back().t_s;
+  if (!(motion.start_s >= 0) || !(motion.start_s + end_s <= length_s)) {
+    problems.Add(0, 0,
+                 "lasts " + settings::FormatNumber(length_s) + " s; asked for is " +
+                     settings::FormatNumber(motion.start_s) + " s to " +
+                     settings::FormatNumber(motion.start_s + end_s) + " s");
+    problems.ThrowIfAny();
+  }
+  for (KeyPose& key : keys) key.t_s -= motion.start_s;
+  const auto make = [&] {
+    try {
+      return std::make_unique<SplineTrajectory>(keys);
+    } catch (const std::invalid_argument& error) {
+      problems.Add(0, 0, error.what());
+      problems.ThrowIfAny();
+      throw;
+    }
+  };
+  std::unique_ptr<Trajectory> trajectory = make();
+  if (!motion.place) return trajectory;
+  // T = place * first^-1, applied from the left: the path keeps its shape.
+  const Pose first = trajectory->At(0).pose;
+  const glm::dquat turn = glm::normalize(motion.place->q_WC) * glm::conjugate(first.q_WC);
+  for (KeyPose& key : keys) {
+    key.pose = {motion.place->p_WC + turn * (key.pose.p_WC - first.p_WC), glm::normalize(turn * key.pose.q_WC)};
+  }
+  return make();
+}
+
+}  // namespace sim

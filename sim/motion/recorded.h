@@ -1,0 +1,24 @@
+// Purpose: a recorded trajectory, to be flown in a simulated world.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "sim/motion/description.h"
+#include "sim/motion/trajectory.h"
+
+namespace sim {
+
+// The poses of a TUM trajectory file, "timestamp tx ty tz qx qy qz qw", '#' starting comments; times are counted from
+// the first stamp. Throws settings::Error with all problems, file:line each (the first 20): a line without eight finite
+// numbers, times that do not increase, a quaternion whose length is not 1 within 1e-3 (it is normalised), fewer than
+// two poses, an unreadable file.
+std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file);
+
+// A spline through the recorded poses (sim/motion/spline.h), moved in time and space as described. What the recording's
+// noise and rounding do to its derivatives is then real motion of the simulated camera. Throws settings::Error as
+// above, and when the recording ends before end_s, starts after 0, or turns too fast for a spline.
+std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion, double end_s);
+
+}  // namespace sim

@@ -1,0 +1,113 @@
+#include "sim/motion/sampled.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "sim/motion/so3.h"
+#include "sim/random/random.h"
+
+namespace sim {
+namespace {
+
+struct Noise {
+  glm::dvec3 n1, n2;
+};
+
+// Cholesky: Q = L L^T with L = sigma [h^1.5/sqrt(3) 0; sqrt(3 h)/2 sqrt(h)/2].
+Noise Draw(std::uint64_t seed, Stream stream, std::size_t knot, double sigma, double h) {
+  Noise noise{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto z =
+        Normals(RandomWords(seed, stream, static_cast<std::uint32_t>(knot), 0, static_cast<std::uint32_t>(axis)));
+    noise.n1[axis] = sigma * std::sqrt(h * h * h / 3) * z[0];
+    noise.n2[axis] = sigma * (std::sqrt(3 * h) / 2 * z[0] + std::sqrt(h) / 2 * z[1]);
+  }
+  return noise;
+}
+
+void Check(const SampledMotion& m, double end_s) {
+  std::ostringstream problems;
+  const auto require = [&](bool ok, const char* name, double value, const char* rule) {
+    if (!ok || !std::isfinite(value)) problems << "; " << name << " = " << value << " " << rule;
+  };
+  require(m.position_noise >= 0, "position_noise", m.position_noise, "must be at least 0");
+  require(m.orientation_noise >= 0, "orientation_noise", m.orientation_noise, "must be at least 0");
+  require(m.knot_step_s > 0 && m.knot_step_s <= 0.1, "knot_step", m.knot_step_s, "must lie between 0 and 0.1 s");
+  require(m.position_return >= 0 && m.position_return * m.knot_step_s <= 0.2, "position_return", m.position_return,
+          "must lie between 0 and 0.2 / knot_step");
+  require(m.orientation_return >= 0 && m.orientation_return * m.knot_step_s <= 0.2, "orientation_return",
+          m.orientation_return, "must lie between 0 and 0.2 / knot_step");
+  require(end_s >= 0 && end_s / m.knot_step_s < (1 << 25), "duration", end_s,
+          "must be at least 0 and less than 2^25 knots");
+  require(glm::length(m.start.q_WC) > 0, "orientation of length", glm::length(m.start.q_WC), "must not be 0");
+  require(true, "length of the start position", glm::length(m.start.p_WC), "must be finite");
+  require(true, "velocity", glm::length(m.velocity), "must be finite");
+  require(true, "angular_rate", glm::length(m.angular_rate), "must be finite");
+  if (!problems.str().empty()) throw std::invalid_argument("sampled motion: " + problems.str().substr(2));
+}
+
+Motion GoOn(const Motion& from, double dt) {
+  Motion to = from;
+  to.pose.p_WC += dt * from.v_WC;
+  to.pose.q_WC = glm::normalize(from.pose.q_WC * Exp(dt * from.w_WC_C));
+  return to;
+}
+
+}  // namespace
+
+SampledTrajectory::SampledTrajectory(const SampledMotion& m, std::uint64_t seed, double end_s)
+    : step_s_(m.knot_step_s), end_s_(end_s) {
+  Check(m, end_s);
+  const double h = step_s_;
+  Motion x{m.start, m.velocity, m.angular_rate};
+  x.pose.q_WC = glm::normalize(x.pose.q_WC);
+  const Pose start = x.pose;
+  const std::size_t steps = static_cast<std::size_t>(std::ceil(end_s / h - 1e-9)) + 1;
+  knots_.reserve(steps + 1);
+  knots_.push_back(x);
+  for (std::size_t k = 0; k < steps; ++k) {
+    const Noise moved = Draw(seed, Stream::position_noise, k, m.position_noise, h);
+    const Noise turned = Draw(seed, Stream::orientation_noise, k, m.orientation_noise, h);
+    const double r = m.position_return, s = m.orientation_return;
+    const glm::dvec3 a = -r * r * (x.pose.p_WC - start.p_WC) - 2 * r * x.v_WC;
+    const glm::dvec3 b = -s * s * Log(glm::conjugate(start.q_WC) * x.pose.q_WC) - 2 * s * x.w_WC_C;
+    x.pose.p_WC += h * x.v_WC + h * h / 2 * a + moved.n1;
+    x.v_WC += h * a + moved.n2;
+    x.pose.q_WC = glm::normalize(x.pose.q_WC * Exp(h * x.w_WC_C + h * h / 2 * b + turned.n1));
+    x.w_WC_C += h * b + turned.n2;
+    knots_.push_back(x);
+  }
+}
+
+Motion SampledTrajectory::At(double t_s) const {
+  if (t_s <= 0) return GoOn(knots_.front(), t_s);
+  const double last = step_s_ * static_cast<double>(knots_.size() - 1);
+  if (t_s >= last) return GoOn(knots_.back(), t_s - last);
+  const std::size_t k = std::min(static_cast<std::size_t>(t_s / step_s_), knots_.size() - 2);
+  const Motion &from = knots_[k], &to = knots_[k + 1];
+  const double h = step_s_, u = t_s / h - static_cast<double>(k);
+
+  // Hermite's cubics and their derivatives by u: of the value at 1, of the slopes at 0 and 1 (per h); the value at 0
+  // has 1 - h01.
+  const double h01 = u * u * (3 - 2 * u), h10 = u * (1 - u) * (1 - u), h11 = u * u * (u - 1);
+  const double d01 = 6 * u * (1 - u), d10 = (1 - u) * (1 - 3 * u), d11 = u * (3 * u - 2);
+
+  Motion motion;
+  const glm::dvec3 moved = to.pose.p_WC - from.pose.p_WC;
+  motion.pose.p_WC = from.pose.p_WC + h01 * moved + h * (h10 * from.v_WC + h11 * to.v_WC);
+  motion.v_WC = d01 / h * moved + d10 * from.v_WC + d11 * to.v_WC;
+
+  // The same for the rotation vector from the earlier knot, whose slope at the later one is J_r^-1 w.
+  const glm::dvec3 turned = Log(glm::conjugate(from.pose.q_WC) * to.pose.q_WC);
+  const glm::dvec3 slope = InverseRightJacobianTimes(turned, to.w_WC_C);
+  const glm::dvec3 phi = h01 * turned + h * (h10 * from.w_WC_C + h11 * slope);
+  const glm::dvec3 rate = d01 / h * turned + d10 * from.w_WC_C + d11 * slope;
+  motion.pose.q_WC = glm::normalize(from.pose.q_WC * Exp(phi));
+  motion.w_WC_C = RightJacobianTimes(phi, rate);
+  return motion;
+}
+
+}  // namespace sim

@@ -1,0 +1,46 @@
+// Purpose: a trajectory sampled from the nearly-constant-velocity model (Bar-Shalom, Li, Kirubarajan 2001,
+// section 6.2.2;
+//          docs/conventions.md).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/motion/description.h"
+#include "sim/motion/trajectory.h"
+
+namespace sim {
+
+// Knots lie h = knot_step_s apart. From knot to knot, per axis, with correlated noise (n1, n2) of covariance
+// Q = sigma^2 [h^3/3 h^2/2; h^2/2 h], drawn by Q's Cholesky factor from numbers keyed by (seed, knot, axis):
+//
+//   p' = p + h v + h^2/2 a + n1     v' = v + h a + n2       a = -r^2 (p - p_start) - 2 r v
+//   q' = q * Exp(h w + h^2/2 b + n1)   w' = w + h b + n2    b = -r^2 Log(q_start^-1 q) - 2 r w     (r: *_return)
+//
+// Without return (r = 0) positions and velocities at knots are an exact sample of the model, also over several knots;
+// orientation is so from knot to knot, in the tangent space at the earlier one, the velocity being the true angular
+// velocity. With return the model is another: a pull towards the start, critically damped, held over one step; in the
+// long run the standard deviations are sigma / (2 r^1.5) of a position and sigma / (2 r^0.5) of a velocity per axis,
+// and for small angles of the orientation.
+//
+// Between knots the path is the cubic with the knots' values and derivatives: for the position that is its expectation
+// given the knots. What it lacks of the model there is at most sigma^2 h^3/192 of a position's and sigma^2 h/16 of a
+// velocity's variance. Velocities are the exact derivatives of this path everywhere. Frames whose rate divides 1/h lie
+// on knots.
+class SampledTrajectory : public Trajectory {
+ public:
+  // Throws std::invalid_argument for noises or returns that are negative, a step outside (0, 0.1] s, return * step >
+  // 0.2, a start that is not finite, or more than 2^25 knots.
+  SampledTrajectory(const SampledMotion& motion, std::uint64_t seed, double end_s);
+
+  Motion At(double t_s) const override;
+  double end_s() const override { return end_s_; }
+
+  const std::vector<Motion>& knots() const { return knots_; }
+
+ private:
+  double step_s_, end_s_;
+  std::vector<Motion> knots_;
+};
+
+}  // namespace sim

@@ -1,0 +1,226 @@
+#include "sim/scenario/scenario.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <stdexcept>
+
+#include "sim/motion/spline.h"
+#include "sim/scenario/pose_reader.h"
+#include "sim/sensor/sensor.h"
+#include "tools/settings/settings.h"
+
+namespace sim {
+namespace {
+
+using settings::Range;
+using settings::Section;
+using settings::Unit;
+
+const Range kNotNegative = Range::AtLeast(0);
+
+// A file beside the scenario. Whether it is there is said when it is opened.
+std::filesystem::path ReadFile(Section& section, const std::string& key, const std::filesystem::path& folder) {
+  std::string name;
+  return section.Require(key, name) ? folder / name : std::filesystem::path();
+}
+
+// Of a light: none of the three may be negative.
+void ReadColor(Section& section, const std::string& key, glm::dvec3& color) {
+  if (ReadVector(section, key, color) && (color.x < 0 || color.y < 0 || color.z < 0)) {
+    section.Reject(key, "'" + key + "': light is not negative");
+  }
+}
+
+Light ReadLight(Section& section) {
+  enum class Kind { ambient, sun, point, rectangle } kind = Kind::ambient;
+  section.RequireChoice(
+      "type", kind,
+      {{"ambient", Kind::ambient}, {"sun", Kind::sun}, {"point", Kind::point}, {"rectangle", Kind::rectangle}});
+  if (kind == Kind::sun) {
+    SunLight light;
+    if (ReadVector(section, "direction", light.direction) && glm::length(light.direction) == 0) {
+      section.Reject("direction", "'direction' has no length");
+    }
+    ReadColor(section, "irradiance", light.irradiance);
+    return light;
+  }
+  if (kind == Kind::point) {
+    PointLight light;
+    ReadVector(section, "position", light.position, Unit::length);
+    ReadColor(section, "intensity", light.intensity);
+    return light;
+  }
+  if (kind == Kind::rectangle) {
+    RectLight light;
+    ReadVector(section, "corner", light.corner, Unit::length);
+    ReadVector(section, "side_u", light.side_u, Unit::length);
+    ReadVector(section, "side_v", light.side_v, Unit::length);
+    if (glm::length(glm::cross(light.side_u, light.side_v)) == 0) section.Reject("side_u", "the rectangle has no area");
+    ReadColor(section, "radiance", light.radiance);
+    return light;
+  }
+  AmbientLight light;
+  ReadColor(section, "radiance", light.radiance);
+  return light;
+}
+
+void ReadWorld(Section section, const std::filesystem::path& folder, WorldDescription& world) {
+  for (Section& mesh : section.List("meshes")) {
+    MeshDescription description;
+    description.file = ReadFile(mesh, "file", folder);
+    ReadVector(mesh, "position", description.position, Unit::length);
+    ReadOrientation(mesh, "orientation", description.orientation);
+    mesh.Read("scale", description.scale, Range{1e-9, 1e9});
+    world.meshes.push_back(description);
+  }
+  if (world.meshes.empty()) section.Reject("meshes", "'world.meshes': the world is empty");
+  for (Section& light : section.List("lights")) world.lights.push_back(ReadLight(light));
+  ReadColor(section, "background", world.background);
+}
+
+void ReadCamera(Section section, CameraParams& camera) {
+  section.Require("width", camera.width);
+  section.Require("height", camera.height);
+  section.Require("fx", camera.fx, Unit::pixel);
+  section.Require("fy", camera.fy, Unit::pixel);
+  section.Require("cx", camera.cx, Unit::pixel);
+  section.Require("cy", camera.cy, Unit::pixel);
+  Section lens = section.Child("distortion");
+  lens.Read("k1", camera.k1);
+  lens.Read("k2", camera.k2);
+  lens.Read("p1", camera.p1);
+  lens.Read("p2", camera.p2);
+  lens.Read("k3", camera.k3);
+  for (const std::string& problem : Problems(camera)) {
+    section.Reject(problem.substr(0, problem.find_first_of(" :")), "camera: " + problem);
+  }
+}
+
+void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
+  section.Read("exposure", sensor.exposure_s, Unit::time, kNotNegative);
+  section.Read("time_samples", sensor.time_samples);
+  section.Read("white", sensor.white);
+  section.Read("shot_noise", sensor.shot_noise);
+  section.Read("full_well", sensor.full_well_e, Unit::electrons);
+  section.Read("read_noise", sensor.read_noise_e, Unit::electrons, kNotNegative);
+  section.ReadChoice("response", sensor.response, {{"linear", Response::linear}, {"srgb", Response::srgb}});
+  section.Read("color", sensor.color);
+  for (const std::string& problem : Problems(sensor)) {
+    section.Reject(problem.substr(0, problem.find(' ')), "sensor: " + problem);
+  }
+  if (sensor.exposure_s * rate_hz > 1) {
+    section.Reject("exposure", "sensor: exposure = " + settings::FormatNumber(sensor.exposure_s) +
+                                   " s is longer than the time between two frames");
+  }
+}
+
+SampledMotion ReadSampled(Section& section) {
+  SampledMotion motion;
+  Section start = section.Child("start");
+  ReadPose(start, motion.start);
+  ReadVector(start, "velocity", motion.velocity, Unit::speed);
+  ReadVector(start, "angular_rate", motion.angular_rate, Unit::angular_rate);
+  section.Require("position_noise", motion.position_noise, Unit::acceleration_density, kNotNegative);
+  section.Require("orientation_noise", motion.orientation_noise, Unit::angular_acceleration_density, kNotNegative);
+  section.Read("knot_step", motion.knot_step_s, Unit::time, Range{1e-5, 0.1});
+  const Range range{0, 0.2 / motion.knot_step_s};
+  section.Read("position_return", motion.position_return, Unit::rate, range);
+  section.Read("orientation_return", motion.orientation_return, Unit::rate, range);
+  return motion;
+}
+
+ScriptedMotion ReadScripted(Section& section) {
+  ScriptedMotion motion;
+  bool good = true;
+  const auto reject = [&](Section& where, const std::string& key, const std::string& message) {
+    where.Reject(key, message);
+    good = false;
+  };
+  for (Section& item : section.List("keys")) {
+    KeyPose key;
+    const bool has_time = item.Require("time", key.t_s, Unit::time, kNotNegative);
+    if (has_time && motion.keys.empty() && key.t_s != 0)
+      reject(item, "time", "'time': the first key pose must be at 0 s");
+    if (has_time && !motion.keys.empty() && key.t_s <= motion.keys.back().t_s) {
+      reject(item, "time",
+             "'time': the times of key poses must increase, but " + settings::FormatNumber(key.t_s) +
+                 " s comes after " + settings::FormatNumber(motion.keys.back().t_s) + " s");
+    }
+    good = ReadPose(item, key.pose) && has_time && good;
+    motion.keys.push_back(key);
+  }
+  if (motion.keys.size() < 2) reject(section, "keys", "'trajectory.keys': two key poses are needed at least");
+  if (!good) return motion;
+  try {
+    SplineTrajectory{motion.keys};
+  } catch (const std::invalid_argument& error) {
+    section.Reject("keys", std::string("'trajectory.keys': ") + error.what());
+  }
+  return motion;
+}
+
+RecordedMotion ReadRecorded(Section& section, const std::filesystem::path& folder) {
+  RecordedMotion motion;
+  motion.file = ReadFile(section, "file", folder);
+  section.Read("start", motion.start_s, Unit::time, kNotNegative);
+  section.Allow("place");
+  if (section.Has("place")) {
+    Section place = section.Child("place");
+    ReadPose(place, motion.place.emplace());
+  }
+  return motion;
+}
+
+void ReadMotionAndTime(Section root, const std::filesystem::path& folder, Scenario& scenario) {
+  Section section = root.Child("trajectory");
+  enum class Kind { sampled, scripted, recorded } kind = Kind::sampled;
+  const bool known = section.RequireChoice(
+      "type", kind, {{"sampled", Kind::sampled}, {"scripted", Kind::scripted}, {"recorded", Kind::recorded}});
+  if (!known) {
+    section.IgnoreRest();
+  } else if (kind == Kind::sampled) {
+    scenario.motion = ReadSampled(section);
+  } else if (kind == Kind::scripted) {
+    scenario.motion = ReadScripted(section);
+  } else {
+    scenario.motion = ReadRecorded(section, folder);
+  }
+
+  Section time = root.Child("time");
+  time.Read("rate", scenario.time.rate_hz, Unit::frequency, Range{0.01, 10000});
+  const auto* script = std::get_if<ScriptedMotion>(&scenario.motion);
+  const double longest_s = script && !script->keys.empty() ? script->keys.back().t_s : 1e6;
+  if (script) scenario.time.duration_s = longest_s;  // the default, of a script only
+  if (!script) time.RequirePresent("duration");
+  const bool has_duration = time.Read("duration", scenario.time.duration_s, Unit::time, Range{0, longest_s});
+  const double frames = scenario.time.rate_hz * scenario.time.duration_s;
+  if ((has_duration || script) && std::round(frames) < 1)
+    time.Reject("duration", "'time.duration': there is not one frame in it");
+  if (frames > 1e7) time.Reject("duration", "'time.duration': more than ten million frames");
+}
+
+}  // namespace
+
+Scenario LoadScenario(const std::filesystem::path& path,
+                      const std::vector<std::pair<std::string, std::string>>& overrides) {
+  settings::Document document = settings::Document::FromFile(path);
+  for (const auto& [key, value] : overrides) document.Override(key, value);
+  const std::filesystem::path folder = path.parent_path();
+  Section root = document.root();
+  Scenario scenario;
+  scenario.name = path.stem().string();
+  root.Read("name", scenario.name);
+  root.Read("seed", scenario.seed);
+  ReadWorld(root.Child("world"), folder, scenario.world);
+  ReadCamera(root.Child("camera"), scenario.camera);
+  ReadMotionAndTime(root, folder, scenario);
+  ReadSensor(root.Child("sensor"), scenario.time.rate_hz, scenario.sensor);
+  root.Child("render").Read("rays_per_time_sample", scenario.render.rays_per_time_sample, Range{1, 256});
+  root.Ignore("odometry");
+  root.Ignore("prior");
+  document.ThrowIfBad();
+  scenario.resolved = document.Resolved();
+  return scenario;
+}
+
+}  // namespace sim
