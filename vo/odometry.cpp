@@ -230,6 +230,7 @@ void Odometry::Impl::UpdateScores(const std::vector<Candidate>& candidates, cons
     ++track.age;
     ++track.frames_unsearched;
   }
+  if (static_cast<double>(matches.size()) < params.score.blind_share * static_cast<double>(candidates.size())) return;
   std::size_t m = 0;
   for (const Candidate& c : candidates) {
     struct Track& track = tracks[c.landmark];

@@ -52,6 +52,7 @@ std::vector<std::string> Problems(const Params& params) {
   check.Probability("score.detection", score.detection);
   check.Probability("score.gate_probability", score.gate_probability);
   check.Positive("score.gate", score.gate);
+  check.Require(score.blind_share >= 0 && score.blind_share < 1, "score.blind_share", score.blind_share, "must lie in 0 ... 1");
   check.Require(score.grace_frames >= 0, "score.grace_frames", score.grace_frames, "must not be negative");
 
   const FeatureParams& features = params.features;

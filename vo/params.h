@@ -60,11 +60,13 @@ struct ScoreParams {
   double detection = 0.75;         // P_D
   double gate_probability = 0.995; // P_G
   double gate = 9.21;              // G, on the squared Mahalanobis distance (the paper's pair; 0.995 would be 10.6)
+  double blind_share = 0.2;        // fewer found than this share of those searched: the frame was blind (blur, darkness), and no
+                                   // feature is judged by it; 0 is the paper
   int grace_frames = 0;            // a landmark younger than this is not deleted for its score (0: the paper)
 };
 
 struct FeatureParams {
-  double sigma_px = 2.0;           // standard deviation of a matched pixel, per axis [px]
+  double sigma_px = 0.6;           // standard deviation of a matched pixel, per axis [px] (the paper, to whole pixels: 2)
   int grid_columns = 8, grid_rows = 6;
   int per_cell = 3;                // corners wanted in every cell of the grid
   int fast_threshold_start = 60;   // grey levels; lowered per cell ...

@@ -58,11 +58,26 @@ ParticleFilter::ParticleFilter(const MotionParams& motion, const FilterParams& f
 
 void ParticleFilter::Predict(double dt) {
   ++frame_;
-  step_ = StepOf(motion_, dt);
+  since_sampled_ += dt;
+  step_ = StepOf(motion_, since_sampled_);
   for (Particle& particle : particles_) particle.prediction = PredictPose(particle);
 }
 
 void ParticleFilter::Update(std::span<const Match> matches) {
+  if (matches.empty())
+    Coast();
+  else
+    SampleStep(matches);
+}
+
+void ParticleFilter::Coast() {
+  std::vector<BeliefComponent> mixture;
+  for (const Particle& particle : particles_)
+    mixture.push_back(Component(particle.prediction, particle.pose, VelocityGiven(particle)));
+  belief_ = Moments(mixture, weights_);
+}
+
+void ParticleFilter::SampleStep(std::span<const Match> matches) {
   std::vector<BeliefComponent> mixture;
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {                                          // line 1
     Particle& particle = particles_[i];
@@ -77,6 +92,7 @@ void ParticleFilter::Update(std::span<const Match> matches) {
                                : prediction.LogDensity(s) + log_likelihood - proposal.pose.LogDensity(s);  // (17)
     particle.pose = s;
   }
+  since_sampled_ = 0;
   Weigh();
   belief_ = Moments(mixture, weights_);
   if (effective_particles_ < params_.resample_below * params_.particles) Resample();               // 11
@@ -141,6 +157,7 @@ void ParticleFilter::Resample() {
 
 void ParticleFilter::AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<const Eigen::Matrix2d> R) {
   if (rays.empty()) return;
+  if (since_sampled_ > 0) SampleStep({});
   // The slot of an anchor that no landmark uses any more is used again, so that long runs stay small.
   const int slots = static_cast<int>(particles_[0].anchors.size());
   std::vector<bool> used(slots, false);

@@ -56,10 +56,12 @@ class ParticleFilter {
 
   // Algorithm 1, line 2. dt > 0 [s].
   void Predict(double dt);
-  // Algorithm 1, lines 4-11, with the matches of line 3. No matches: the filter coasts.
+  // Algorithm 1, lines 4-11, with the matches of line 3. No matches: the filter coasts. Nothing is sampled then, and the next
+  // Predict goes on from the last sampled pose over the whole time since: exact, and the covariance grows as the model says.
   void Update(std::span<const Match> matches);
 
-  // A landmark for every ray (plane z = 1), first seen at the present pose of each particle. Indices follow those in use.
+  // A landmark for every ray (plane z = 1), first seen at the present pose of each particle, which is sampled now if the filter
+  // coasts. Indices follow those in use.
   void AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<const Eigen::Matrix2d> R);
   // Keeps the landmarks marked true, in their order.
   void KeepLandmarks(const std::vector<bool>& keep);
@@ -85,6 +87,8 @@ class ParticleFilter {
   const FilterParams& params() const { return params_; }
 
  private:
+  void Coast();
+  void SampleStep(std::span<const Match> matches);
   PoseGaussian PredictPose(const Particle& particle) const;
   CameraVelocityFilter::Gain VelocityGiven(const Particle& particle) const;
   double UpdateLandmarks(Particle& particle, const Pose& pose, std::span<const Match> matches) const;
@@ -97,7 +101,8 @@ class ParticleFilter {
   LandmarkParams landmark_params_;
   std::uint64_t seed_;
   std::uint32_t frame_ = 0;
-  CameraVelocityFilter step_;       // of the present time step
+  double since_sampled_ = 0;        // [s]; 0 when the present pose is sampled
+  CameraVelocityFilter step_;       // from the last sampled pose to the present
   std::vector<Particle> particles_;
   std::vector<double> weights_;     // normalised
   std::vector<int> anchor_of_;      // shared: all particles associate alike

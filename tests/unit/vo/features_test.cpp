@@ -1,12 +1,11 @@
-#include <array>
 #include <cstring>
-#include <random>
 
 #include <Eigen/LU>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "tests/unit/vo/texture.h"
 #include "vo/features/corner_detector.h"
 #include "vo/features/matcher.h"
 
@@ -16,30 +15,7 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector2i;
 
-// A smooth random texture with known value everywhere, so that it can be shifted by a fraction of a pixel exactly.
-class Texture {
- public:
-  explicit Texture(unsigned seed) {
-    std::mt19937_64 bits(seed);
-    const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1.0p-53; };
-    for (int i = 0; i < 60; ++i) waves_.push_back({0.9 * (uniform() - 0.5), 0.9 * (uniform() - 0.5), 6.2832 * uniform()});
-  }
-  double At(const Vector2d& p) const {
-    double sum = 0;
-    for (const auto& w : waves_) sum += std::sin(w[0] * p.x() + w[1] * p.y() + w[2]);
-    return 128 + 12 * sum;
-  }
-  // Pixel x of the image shows the texture at map * x + shift.
-  cv::Mat Image(int width, int height, const Vector2d& shift, const Matrix2d& map = Matrix2d::Identity()) const {
-    cv::Mat image(height, width, CV_8UC1);
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x) image.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(At(map * Vector2d(x, y) + shift));
-    return image;
-  }
-
- private:
-  std::vector<std::array<double, 3>> waves_;
-};
+using vo_test::Texture;
 
 TEST(CornerDetector, FillsEveryCellAndKeepsItsDistance) {
   const cv::Mat image = Texture(1).Image(640, 480, {0, 0});

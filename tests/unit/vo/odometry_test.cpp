@@ -1,0 +1,163 @@
+// The whole odometry on images with exact geometry: a camera in front of two textured planes.
+
+#include "vo/odometry.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/vo/texture.h"
+#include "vo/geometry/so3.h"
+#include "vo/params.h"
+
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+const vo::Camera kCamera{320, 240, 260, 260, 159.5, 119.5};
+constexpr std::int64_t kFrameNs = 33'333'333;
+
+vo::Pose TruthAt(int k) {
+  const double t = k / 30.0;
+  return {Vector3d(0.25 * std::sin(1.9 * t), 0.15 * std::sin(2.6 * t), 0.1 * std::sin(1.3 * t)),
+          vo::Exp({0.05 * std::sin(1.7 * t), 0.08 * std::sin(1.1 * t), 0.04 * std::sin(2.1 * t)})};
+}
+
+// Walls z = 2 for x < 0 and z = 2 + x / 2 beyond.
+cv::Mat ViewFrom(const vo::Pose& pose, const vo_test::Texture& texture) {
+  cv::Mat image(kCamera.height, kCamera.width, CV_8UC1);
+  const Eigen::Matrix3d R = pose.q_WC.toRotationMatrix();
+  for (int y = 0; y < kCamera.height; ++y)
+    for (int x = 0; x < kCamera.width; ++x) {
+      const Vector3d ray = R * Vector3d((x - kCamera.cx) / kCamera.fx, (y - kCamera.cy) / kCamera.fy, 1);
+      Vector3d X = pose.p_WC + ray * (2 - pose.p_WC.z()) / ray.z();
+      if (X.x() > 0) X = pose.p_WC + ray * (2 + 0.5 * pose.p_WC.x() - pose.p_WC.z()) / (ray.z() - 0.5 * ray.x());
+      image.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(texture.At(X.head<2>()));
+    }
+  return image;
+}
+
+vo::Params SmallImageParams() {
+  vo::Params params;
+  params.features.grid_columns = 6;
+  params.features.grid_rows = 4;
+  params.features.per_cell = 2;
+  return params;
+}
+
+vo::Prior KnownStart() {
+  vo::Prior prior;
+  prior.pose = TruthAt(0);
+  prior.v_WC = (TruthAt(1).p_WC - TruthAt(0).p_WC) * 30;
+  prior.w_WC_C = vo::Log(TruthAt(0).q_WC.conjugate() * TruthAt(1).q_WC) * 30;
+  prior.velocity_covariance = 1e-3 * vo::Matrix6::Identity();
+  return prior;
+}
+
+// Position error after the scale is fitted [m], and how many frames were tracked.
+struct Outcome {
+  double rms = 0;
+  double path_extent = 0;
+  int tracked = 0;
+};
+
+template <class Image>
+Outcome Fly(vo::Odometry& odometry, int frames, std::vector<vo::Estimate>& estimates, Image image) {
+  Outcome outcome;
+  Eigen::Matrix3Xd x(3, frames), y(3, frames);
+  for (int k = 0; k < frames; ++k) {
+    estimates.push_back(odometry.Track({k * kFrameNs, image(k)}));
+    outcome.tracked += estimates.back().diagnostics.tracked();
+    x.col(k) = estimates.back().pose.p_WC;
+    y.col(k) = TruthAt(k).p_WC;
+  }
+  const Eigen::Matrix4d T = Eigen::umeyama(x, y, true);
+  outcome.rms = std::sqrt((((T.topLeftCorner<3, 3>() * x).colwise() + Vector3d(T.topRightCorner<3, 1>())) - y).squaredNorm() / frames);
+  outcome.path_extent = std::sqrt((y.colwise() - y.rowwise().mean().eval()).squaredNorm() / frames);
+  return outcome;
+}
+
+TEST(Odometry, FollowsACameraInFrontOfTexturedWalls) {
+  const vo_test::Texture texture(1, 40.0, 24);
+  vo::Odometry odometry(kCamera, SmallImageParams(), KnownStart(), 1);
+  std::vector<vo::Estimate> estimates;
+  const Outcome outcome = Fly(odometry, 45, estimates, [&](int k) { return ViewFrom(TruthAt(k), texture); });
+  EXPECT_GE(outcome.tracked, 43);
+  EXPECT_LT(outcome.rms, 0.15 * outcome.path_extent);  // a constant pose scores path_extent
+  EXPECT_GT(outcome.path_extent, 0.1);
+  EXPECT_GT(odometry.Map().size(), 30u);
+  EXPECT_GT(odometry.Features().size(), 30u);
+}
+
+TEST(Odometry, CoastsOverBlankFramesAndRecovers) {
+  const vo_test::Texture texture(2, 40.0, 24);
+  vo::Odometry odometry(kCamera, SmallImageParams(), KnownStart(), 1);
+  std::vector<vo::Estimate> estimates;
+  const Outcome outcome = Fly(odometry, 45, estimates, [&](int k) {
+    return k >= 20 && k < 25 ? cv::Mat(kCamera.height, kCamera.width, CV_8UC1, cv::Scalar(90)) : ViewFrom(TruthAt(k), texture);
+  });
+  const auto spread = [&](std::size_t k) { return estimates[k].covariance.topLeftCorner<6, 6>().trace(); };
+  for (std::size_t k = 20; k < 25; ++k) {
+    EXPECT_FALSE(estimates[k].diagnostics.tracked());
+    EXPECT_GT(spread(k), spread(k - 1)) << k;
+  }
+  EXPECT_TRUE(estimates[27].diagnostics.tracked()) << "recovers within three frames";
+  EXPECT_GE(outcome.tracked, 36);
+  EXPECT_LT(outcome.rms, 0.3 * outcome.path_extent);
+}
+
+TEST(Odometry, NeverStopsOnImagesThatSayNothing) {
+  cv::Mat noise(kCamera.height, kCamera.width, CV_8UC3);
+  for (const int kind : {0, 1, 2}) {
+    vo::Odometry odometry(kCamera, SmallImageParams(), {}, 1);
+    double last = 0;
+    for (int k = 0; k < 15; ++k) {
+      if (kind == 0) noise.setTo(0);
+      if (kind == 1) noise.setTo(255);
+      if (kind == 2) cv::randu(noise, 0, 255);
+      const vo::Estimate e = odometry.Track({k * kFrameNs, noise});
+      ASSERT_TRUE(e.covariance.allFinite() && e.pose.p_WC.allFinite() && e.pose.q_WC.coeffs().allFinite());
+      if (kind < 2 && k > 0) {
+        EXPECT_GT(e.covariance.trace(), last);
+      }
+      last = e.covariance.trace();
+    }
+  }
+}
+
+TEST(Odometry, TakesVaryingTimeStepsAndALongGap) {
+  const vo_test::Texture texture(3, 40.0, 24);
+  vo::Odometry odometry(kCamera, SmallImageParams(), KnownStart(), 1);
+  for (const int k : {0, 1, 3, 4, 7, 8, 9}) {
+    const vo::Estimate e = odometry.Track({k * kFrameNs, ViewFrom(TruthAt(k), texture)});
+    EXPECT_EQ(e.diagnostics.tracked(), k > 0) << k;
+  }
+  const vo::Estimate e = odometry.Track({3'000'000'000, ViewFrom(TruthAt(90), texture)});
+  EXPECT_TRUE(e.covariance.allFinite());
+}
+
+TEST(Odometry, RefusesTimeThatDoesNotIncreaseAndImagesOfAnotherSize) {
+  vo::Odometry odometry(kCamera, {}, {}, 1);
+  const cv::Mat image(kCamera.height, kCamera.width, CV_8UC1, cv::Scalar(0));
+  odometry.Track({5, image});
+  EXPECT_THROW(odometry.Track({5, image}), std::invalid_argument);
+  EXPECT_THROW(odometry.Track({6, cv::Mat(10, 10, CV_8UC1, cv::Scalar(0))}), std::invalid_argument);
+}
+
+TEST(Params, EveryProblemIsNamedAtOnce) {
+  EXPECT_TRUE(vo::Problems({}).empty());
+  vo::Params params;
+  params.filter.particles = 0;
+  params.features.window_px = 8;
+  params.motion.position_noise = std::numeric_limits<double>::quiet_NaN();
+  const auto problems = vo::Problems(params);
+  ASSERT_EQ(problems.size(), 3u);
+  EXPECT_NE(problems[0].find("motion.position_noise = nan"), std::string::npos);
+  EXPECT_NE(problems[1].find("filter.particles = 0"), std::string::npos);
+  EXPECT_NE(problems[2].find("features.window_px = 8"), std::string::npos);
+  EXPECT_THROW(vo::Odometry(kCamera, params, {}, 1), std::invalid_argument);
+}
+
+}  // namespace

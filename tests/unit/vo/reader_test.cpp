@@ -1,0 +1,83 @@
+#include "vo/sequence/reader.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Reader : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) / ("reader_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "rgb");
+    cv::imwrite((folder_ / "rgb/a.png").string(), cv::Mat(4, 6, CV_8UC3, cv::Scalar(10, 20, 30)));
+    cv::imwrite((folder_ / "rgb/b.png").string(), cv::Mat(4, 6, CV_8UC1, cv::Scalar(77)));
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  void List(const std::string& text) const { std::ofstream(folder_ / "rgb.txt") << text; }
+  std::string ErrorOfOpening() const {
+    try {
+      vo::SequenceReader reader(folder_);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+  fs::path folder_;
+};
+
+TEST_F(Reader, ReadsColourAndGreyWithExactStamps) {
+  List("# comment\n1305031102.175304 rgb/a.png\n1305031102.2 rgb/b.png\n");
+  vo::SequenceReader reader(folder_);
+  ASSERT_EQ(reader.size(), 2u);
+  const auto a = reader.Next(), b = reader.Next();
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->stamp_ns, 1305031102175304000);
+  EXPECT_EQ(b->stamp_ns, 1305031102200000000);
+  EXPECT_EQ(a->image.type(), CV_8UC3);
+  EXPECT_EQ(a->image.at<cv::Vec3b>(1, 1), cv::Vec3b(10, 20, 30));
+  EXPECT_EQ(b->image.type(), CV_8UC1);
+  EXPECT_FALSE(reader.Next());
+}
+
+TEST_F(Reader, NamesEveryProblemWithItsLine) {
+  List("1.0 rgb/a.png\nnan rgb/b.png\n0.5 rgb/b.png\n2.0 rgb/none.png\n3.0\n");
+  const std::string error = ErrorOfOpening();
+  const std::string list = (folder_ / "rgb.txt").string();
+  EXPECT_NE(error.find(list + ":2: 'nan'"), std::string::npos) << error;
+  EXPECT_NE(error.find(list + ":3: time stamp 0.5 does not increase over line 1"), std::string::npos) << error;
+  EXPECT_NE(error.find(list + ":4: image"), std::string::npos) << error;
+  EXPECT_NE(error.find(list + ":5: expected"), std::string::npos) << error;
+}
+
+TEST_F(Reader, RefusesFoldersWithoutFrames) {
+  EXPECT_NE(ErrorOfOpening().find("rgb.txt: cannot be read"), std::string::npos);
+  List("# nothing\n");
+  EXPECT_NE(ErrorOfOpening().find("no frames"), std::string::npos);
+  fs::remove_all(folder_);
+  EXPECT_NE(ErrorOfOpening().find("no such folder"), std::string::npos);
+}
+
+TEST_F(Reader, NamesATruncatedImage) {
+  const fs::path file = folder_ / "rgb/a.png";
+  cv::Mat noise(60, 60, CV_8UC1);
+  cv::randu(noise, 0, 255);
+  cv::imwrite(file.string(), noise);
+  fs::resize_file(file, fs::file_size(file) / 2);
+  List("1.0 rgb/a.png\n");
+  vo::SequenceReader reader(folder_);
+  try {
+    reader.Next();
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos);
+  }
+}
+
+}  // namespace
