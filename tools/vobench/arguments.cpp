@@ -75,7 +75,7 @@ void AddJobs(CLI::App& command, Raw& raw) {
 }
 
 CLI::Option* AddSeed(CLI::App& command, Raw& raw, const std::string& help) {
-  return command.add_option("--seed", raw.seed, help)->type_name("N");
+  return command.add_option("--seed", raw.seed, help)->check(CLI::NonNegativeNumber)->type_name("N");
 }
 
 CLI::App& AddCommand(CLI::App& app, const std::string& name, const std::string& help, const std::string& example) {

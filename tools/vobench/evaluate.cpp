@@ -68,8 +68,9 @@ void Print(const evaluation::Metrics& metrics, evaluation::Alignment alignment) 
 }  // namespace
 
 void Evaluate(const EvaluateOptions& options) {
-  Print(Input([&] { return evaluation::Judge(ReadEstimate(options.estimate), ReadTruth(options.truth), std::nullopt); }),
-        AlignmentOf(options.align));
+  const evaluation::EstimateRun estimate = Input([&] { return ReadEstimate(options.estimate); });
+  const evaluation::Trajectory truth = Input([&] { return ReadTruth(options.truth); });
+  Print(Input([&] { return evaluation::Judge(estimate, truth, std::nullopt); }), AlignmentOf(options.align));
 }
 
 }  // namespace vobench

@@ -39,7 +39,8 @@ void ReadLandmark(Section section, vo::LandmarkParams& params) {
 }
 
 void ReadScore(Section section, vo::ScoreParams& params) {
-  auto& [initial, delete_below, stay_visible, become_visible, detection, gate_probability, gate, grace_frames] = params;
+  auto& [initial, delete_below, stay_visible, become_visible, detection, gate_probability, gate, blind_share, grace_frames] =
+      params;
   section.Read("initial", initial, Range{0, 1});
   section.Read("delete_below", delete_below, Range{0, 1});
   section.Read("stay_visible", stay_visible, Range{0, 1});
@@ -47,6 +48,7 @@ void ReadScore(Section section, vo::ScoreParams& params) {
   section.Read("detection", detection, Range{0, 1});
   section.Read("gate_probability", gate_probability, Range{0, 1});
   section.Read("gate", gate, Range::Positive());
+  section.Read("blind_share", blind_share, Range{0, 1});
   section.Read("grace_frames", grace_frames, Range::AtLeast(0));
 }
 
