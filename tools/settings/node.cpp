@@ -91,6 +91,7 @@ class Builder : public YAML::EventHandler {
       parent.has_key = true;
     } else {
       parent.has_key = false;
+      if (node.kind == Node::Kind::null) node.place = parent.key.place;  // the parser's mark is after the line
       if (parent.key.kind != Node::Kind::scalar) return;
       if (const Node* first = parent.node.Find(parent.key.text)) {
         std::string message = "duplicate key '" + parent.key.text + "'";

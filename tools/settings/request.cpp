@@ -27,20 +27,21 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
 
 std::string Suggest(const std::string& given, const std::vector<std::string>& known) {
   if (known.empty()) return "; none is known here";
-  const std::string* nearest = &known.front();
-  std::size_t distance = std::string::npos;
   constexpr std::size_t kLongestKey = 64;  // a hostile key is not measured
+  std::vector<std::pair<std::size_t, std::string>> nearest;
   for (const std::string& candidate : known) {
-    if (given.size() > kLongestKey) break;
-    const std::size_t d = EditDistance(given, candidate);
-    if (d < distance) {
-      distance = d;
-      nearest = &candidate;
-    }
+    const bool begins = !given.empty() && (candidate.starts_with(given) || given.starts_with(candidate));
+    nearest.emplace_back(begins                       ? 1
+                         : given.size() > kLongestKey ? kLongestKey
+                                                      : EditDistance(given, candidate),
+                         candidate);
   }
-  if (distance <= std::max<std::size_t>(2, nearest->size() / 3)) return "; did you mean '" + *nearest + "'?";
+  std::stable_sort(nearest.begin(), nearest.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+  const auto& [distance, best] = nearest.front();
+  if (distance <= std::max<std::size_t>(2, best.size() / 3) && distance < best.size())
+    return "; did you mean '" + best + "'?";
   std::string text = "; known: ";
-  for (const std::string& candidate : known) text += (&candidate == &known.front() ? "" : ", ") + candidate;
+  for (const auto& [d, candidate] : nearest) text += (&candidate != &nearest.front().second ? ", " : "") + candidate;
   return text;
 }
 

@@ -32,7 +32,7 @@ std::string QuoteJson(const std::string& text);
 
 // The number of insertions, deletions, replacements and swaps of neighbours that make b of a.
 std::size_t EditDistance(const std::string& a, const std::string& b);
-// "; did you mean 'x'?", or else "; known: a, b, c".
+// "; did you mean 'x'?", or else "; known: a, b, c", the nearest first.
 std::string Suggest(const std::string& given, const std::vector<std::string>& known);
 
 }  // namespace settings
