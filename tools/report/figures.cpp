@@ -195,7 +195,7 @@ std::string ErrorFigures(const RunData& run, std::size_t system, const std::vect
 
 std::string NeesFigure(const ResultData& data, const std::string& title, double ev::FrameConsistency::*member,
                        int dof) {
-  Plot plot(title + ", per degree of freedom",
+  Plot plot(title,
             "Normalised estimation error squared in time, averaged over runs; an honest filter stays inside the band "
             "around 1 "
             "in 95 of 100 frames.",
@@ -283,12 +283,10 @@ std::string PathFigures(const ResultData& data) {
     y.push_back(Core(up));
   }
   if (any) {
-    Plot unlabelled = plot;
-    std::vector<Series> path_x, path_y;
-    DrawPaths(data, above, unlabelled, path_x, path_y);
-    x.insert(x.end(), path_x.begin(), path_x.end());
-    y.insert(y.end(), path_y.begin(), path_y.end());
-    for (std::size_t i = 0; i < path_x.size(); ++i) plot.Line(path_x[i], path_y[i], "truth");
+    const auto path = Positions(judged ? judged->judged->truth : data.runs.front().run.trajectory);
+    x.push_back(Along(path, above.right));
+    y.push_back(Along(path, above.up));
+    plot.Line(x.back(), y.back(), "truth", judged ? "truth" : "path");
     plot.SetXRange(RangeOf(x));
     plot.SetYRange(RangeOf(y));
     html += Figure(plot.Svg(kPanelWidth, kPathHeight));
@@ -406,7 +404,7 @@ std::string NisFigures(const ResultData& data) {
       high.push_back(bands[frame.nis_dof].high / frame.nis_dof);
     }
     if (bands.empty()) continue;
-    Plot plot("NIS of " + DisplayName(systems[s]) + ", per degree of freedom",
+    Plot plot("NIS of " + DisplayName(systems[s]),
               "Normalised innovation squared in time, with the band that 95 of 100 honest frames fall in.",
               {"time [s]"}, {"NIS / dof"});
     plot.Band(t, low, high, "limit", "95 %");

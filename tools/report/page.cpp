@@ -17,7 +17,7 @@ namespace {
 namespace ev = evaluation;
 
 constexpr double kDegrees = 180 / M_PI;
-constexpr std::size_t kPictureBytes = 1'800'000;
+constexpr std::size_t kPictureBytes = 1'400'000;
 
 std::string Count(std::size_t n, const std::string& noun) {
   return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
@@ -28,8 +28,9 @@ std::string Section(const std::string& title, const std::string& words, const st
   return "<section><h2>" + title + "</h2>\n" + (words.empty() ? "" : "<p>" + words + "</p>\n") + body + "</section>\n";
 }
 
-std::string Grid(const std::string& figures) {
-  return figures.empty() ? "" : "<div class=\"grid\">" + figures + "</div>\n";
+// Panels three abreast where there is room; "grid two": two.
+std::string Grid(const std::string& figures, const char* style = "grid") {
+  return figures.empty() ? "" : "<div class=\"" + std::string(style) + "\">" + figures + "</div>\n";
 }
 
 // What the mean NEES per degree of freedom says in words.
@@ -143,11 +144,12 @@ std::vector<std::string> ErrorCells(const ev::TrajectoryErrors& errors, double p
 std::string Table(const std::vector<JudgedRun>& judged) {
   if (judged.empty()) return "";
   std::string html =
-      "<div class=\"scroll\"><table><caption>Every run, and the baselines. Aligned by Sim(3) unless the column says "
+      "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Table of runs\"><table><caption>Every run, and "
+      "the baselines. Aligned by Sim(3) unless the column says "
       "otherwise."
       "</caption><thead>";
   html += Row({"system", "seed", "ATE [cm]", "of path [%]", "ATE SE(3) [cm]", "scale", "RPE [cm/s]", "RPE [°/s]",
-               "poses [%]", "tracked [%]", "NEES / dof", "scale-free", "velocity", "NIS / dof", "ms / frame"},
+               "poses [%]", "tracked [%]", "NEES / dof", "… scale-free", "… of velocity", "NIS / dof", "ms / frame"},
               "th") +
           "</thead><tbody>";
   const double nan = std::nan("");
@@ -258,7 +260,7 @@ std::string Page(const ResultData& data) {
           typical,
       Grid(PathFigures(data)));
   html += Section("Errors", "Distance from the truth, after the same alignment." + typical,
-                  Grid(AlignedErrorFigures(data)));
+                  Grid(AlignedErrorFigures(data), "grid two"));
   html += Section("Runs", "", Table(judged));
   html += Section(
       "Is it as uncertain as it is wrong?",
@@ -270,7 +272,7 @@ std::string Page(const ResultData& data) {
       "Innovations",
       "NIS compares what the filter expected to see with what it saw; it needs no truth. Gating drops the largest "
       "innovations, so an honest filter sits slightly below 1.",
-      Grid(NisFigures(data)));
+      Grid(NisFigures(data), "grid two"));
   const auto systems = data.Systems();
   for (std::size_t s = 0; s < systems.size(); ++s) {
     const RunData& run = data.Typical(systems[s]);
@@ -284,7 +286,7 @@ std::string Page(const ResultData& data) {
         body);
   }
   html += Section("Pose in time", judged.empty() ? "" : "Aligned by Sim(3).", Grid(PoseFigures(data)));
-  html += Section("Features", "", Grid(FeatureFigures(data)));
+  html += Section("Features", "", Grid(FeatureFigures(data), "grid two"));
   html += Section(
       "Frames",
       "Green ring: matched, with a line from where it was expected. Orange cross: looked for and not found. Red ring: "

@@ -7,7 +7,7 @@
 
 namespace report {
 
-// No scripts, nothing loaded from elsewhere. Pictures are embedded until they fill 1.8 MB, evenly over the sequence.
+// No scripts, nothing loaded from elsewhere. Pictures are embedded until they fill 1.4 MB, evenly over the sequence.
 std::string Page(const ResultData& data);
 
 }  // namespace report

@@ -33,33 +33,35 @@ std::string Coordinate(double value) {
   return text == "-0" ? "0" : text;
 }
 
-// Keeps at most the first, lowest, highest and last point of each column of the drawing, in order.
-std::vector<std::size_t> Thin(const std::vector<double>& px, const std::vector<double>& py) {
+// Of a series in time: at most the lowest and the highest point of each two units across, in order.
+std::vector<std::size_t> ThinSeries(const std::vector<double>& px, const std::vector<double>& py) {
   std::vector<std::size_t> kept;
-  for (std::size_t begin = 0; begin < px.size();) {
-    std::size_t end = begin + 1;
-    while (end < px.size() && std::floor(px[end]) == std::floor(px[begin])) ++end;
+  const auto column = [&](std::size_t i) { return std::floor(px[i] / 2); };
+  for (std::size_t begin = 0, end = 0; begin < px.size(); begin = end) {
     std::size_t low = begin, high = begin;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (py[i] < py[low]) low = i;
-      if (py[i] > py[high]) high = i;
+    for (end = begin; end < px.size() && column(end) == column(begin); ++end) {
+      if (py[end] < py[low]) low = end;
+      if (py[end] > py[high]) high = end;
     }
-    std::vector<std::size_t> column = {begin, low, high, end - 1};
-    std::sort(column.begin(), column.end());
-    column.erase(std::unique(column.begin(), column.end()), column.end());
-    kept.insert(kept.end(), column.begin(), column.end());
-    begin = end;
+    kept.push_back(std::min(low, high));
+    if (low != high) kept.push_back(std::max(low, high));
   }
   return kept;
 }
 
-std::string PathData(const std::vector<double>& px, const std::vector<double>& py, bool thin) {
+// Of a path: without what is within half a unit of the last point kept; the last point stays.
+std::vector<std::size_t> ThinPath(const std::vector<double>& px, const std::vector<double>& py) {
   std::vector<std::size_t> kept;
-  if (thin) {
-    kept = Thin(px, py);
-  } else {
-    for (std::size_t i = 0; i < px.size(); ++i) kept.push_back(i);
+  for (std::size_t i = 0; i < px.size(); ++i) {
+    if (!kept.empty() && i + 1 < px.size() && std::hypot(px[i] - px[kept.back()], py[i] - py[kept.back()]) < 0.5)
+      continue;
+    kept.push_back(i);
   }
+  return kept;
+}
+
+std::string PathData(const std::vector<double>& px, const std::vector<double>& py, bool series) {
+  const std::vector<std::size_t> kept = series ? ThinSeries(px, py) : ThinPath(px, py);
   std::string data;
   for (std::size_t i = 0; i < kept.size(); ++i) {
     data += i == 0 ? "M" : i == 1 ? "L" : " ";
@@ -142,13 +144,12 @@ std::string Plot::Svg(double width, double height) const {
     std::vector<double> px, py, ph;
     const auto flush = [&] {
       if (px.empty()) return;
-      const bool thin = !equal_scale_ && static_cast<double>(px.size()) > 2 * (right - left);
       if (item.kind == Kind::line) {
-        svg += "<path class=\"line " + item.style + "\" d=\"" + PathData(px, py, thin) + "\"/>";
+        svg += "<path class=\"line " + item.style + "\" d=\"" + PathData(px, py, !equal_scale_) + "\"/>";
       } else {
-        std::string data = PathData(px, py, thin);
+        std::string data = PathData(px, py, !equal_scale_);
         std::vector<double> rx(px.rbegin(), px.rend()), rh(ph.rbegin(), ph.rend());
-        std::string back = PathData(rx, rh, thin);
+        std::string back = PathData(rx, rh, !equal_scale_);
         back[0] = 'L';
         svg += "<path class=\"area " + item.style + "\" d=\"" + data + back + "Z\"/>";
       }
@@ -194,7 +195,7 @@ std::string Plot::Svg(double width, double height) const {
     text("legend", at + 22, row + 3.5, item.label);
     const auto letters = std::count_if(item.label.begin(), item.label.end(),
                                        [](char letter) { return (static_cast<unsigned char>(letter) & 0xC0) != 0x80; });
-    at += 32 + 5.6 * static_cast<double>(letters);
+    at += 38 + 5.6 * static_cast<double>(letters);
   }
   return svg + "</svg>";
 }

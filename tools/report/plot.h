@@ -26,8 +26,9 @@ class Plot {
   Plot(std::string title, std::string description, Axis x, Axis y, bool equal_scale = false);
 
   // Style classes are those of the page: "truth", "s0" ... "s4", "faint", "band", "limit". NaN interrupts a line; on a
-  // logarithmic axis so does a value that is not positive. More points than the drawing has columns are thinned to the
-  // extremes of each column. Lines, bands and dots that have a label appear in the legend.
+  // logarithmic axis so does a value that is not positive. Points that a screen could not tell apart are left out: of a
+  // series the lowest and the highest stay in each two units across, of a path (equal scale) one in half a unit. Lines,
+  // bands and dots that have a label appear in the legend.
   void Line(const std::vector<double>& x, const std::vector<double>& y, const std::string& style,
             const std::string& label = "");
   void Band(const std::vector<double>& x, const std::vector<double>& low, const std::vector<double>& high,

@@ -25,6 +25,7 @@ p,li{max-width:78ch}
 .key{display:inline-block;width:.8em;height:.8em;border-radius:2px;margin-right:.4em}
 .key.s0{background:var(--s0)}.key.s1{background:var(--s1)}.key.s2{background:var(--s2)}.key.s3{background:var(--s3)}.key.s4{background:var(--s4)}
 .grid{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(360px,100%),1fr));gap:12px}
+.two{max-width:880px}
 figure{margin:0;background:var(--card);border-radius:8px;padding:8px;min-width:0}
 figcaption{color:var(--dim);font-size:.85rem}
 svg{display:block;width:100%;height:auto}

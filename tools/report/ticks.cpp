@@ -18,13 +18,16 @@ std::string Text(double value, int decimals) {
 
 std::vector<Tick> LinearTicks(double low, double high, int wanted) {
   if (!(high > low) || wanted < 1) return {};
-  const double raw = (high - low) / wanted;
-  const double power = std::pow(10, std::floor(std::log10(raw)));
-  double step = 10 * power;
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= raw * (1 - 1e-9)) {
+  // The widest round step that still gives half of the marks wanted, and three at the least.
+  const double size = high - low, enough = std::max(3.0, 0.5 * wanted);
+  double power = std::pow(10, std::floor(std::log10(size)));
+  double step = power;
+  const auto count = [&](double s) { return std::floor(high / s + 1e-9) - std::ceil(low / s - 1e-9) + 1; };
+  for (bool found = false; !found; power /= 10) {
+    for (const double factor : {5.0, 2.0, 1.0}) {
       step = factor * power;
-      break;
+      found = count(step) >= enough;
+      if (found) break;
     }
   }
   const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
@@ -40,7 +43,7 @@ std::vector<Tick> LogTicks(double low, double high, int wanted) {
   const int first = static_cast<int>(std::floor(std::log10(low)));
   const int last = static_cast<int>(std::ceil(std::log10(high)));
   const bool few = std::log10(high / low) < 2;
-  const int every = std::max(1, (last - first + wanted - 1) / wanted);
+  const int every = std::max(1, static_cast<int>(std::ceil(std::log10(high / low) / wanted)));
   std::vector<Tick> ticks;
   for (int exponent = first; exponent <= last; ++exponent) {
     if (exponent % every != 0) continue;

@@ -1,0 +1,112 @@
+#include "tools/report/text.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/unit/evaluation/temporary_folder.h"
+#include "tests/unit/report/fake_result.h"
+#include "tools/report/text_summary.h"
+#include "tools/report/ticks.h"
+
+namespace report {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Text, Numbers) {
+  EXPECT_EQ(Fixed(1.005, 1), "1.0");
+  EXPECT_EQ(Fixed(std::nan(""), 1), "–");
+  EXPECT_EQ(Readable(123.4), "123");
+  EXPECT_EQ(Readable(12.34), "12.3");
+  EXPECT_EQ(Readable(1.234), "1.23");
+  EXPECT_EQ(Readable(0.1234), "0.123");
+  EXPECT_EQ(Readable(0), "0.000");
+  EXPECT_EQ(Readable(1234567), "1.2e+06");
+  EXPECT_EQ(Percent(0.9876), "98.8 %");
+}
+
+TEST(Text, EscapesWhatHtmlWouldRead) { EXPECT_EQ(Escape("a<b> & \"c'"), "a&lt;b&gt; &amp; &quot;c&#39;"); }
+
+// RFC 4648, section 10.
+TEST(Text, Base64) {
+  const char* vectors[][2] = {{"", ""},
+                              {"f", "Zg=="},
+                              {"fo", "Zm8="},
+                              {"foo", "Zm9v"},
+                              {"foob", "Zm9vYg=="},
+                              {"fooba", "Zm9vYmE="},
+                              {"foobar", "Zm9vYmFy"}};
+  for (const auto& [plain, coded] : vectors) EXPECT_EQ(Base64(plain), coded);
+  EXPECT_EQ(Base64("\xff\xfe\xfd"), "//79");
+}
+
+std::vector<std::string> Texts(const std::vector<Tick>& ticks) {
+  std::vector<std::string> texts;
+  for (const Tick& tick : ticks) texts.push_back(tick.text);
+  return texts;
+}
+
+TEST(Ticks, AreRoundAndInside) {
+  EXPECT_THAT(Texts(LinearTicks(0, 6, 6)), testing::ElementsAre("0", "2", "4", "6"));
+  EXPECT_THAT(Texts(LinearTicks(-0.031, 0.029, 3)), testing::ElementsAre("−0.02", "0.00", "0.02"));
+  EXPECT_THAT(Texts(LogTicks(0.05, 2000, 5)), testing::ElementsAre("0.1", "1", "10", "100", "1000"));
+  EXPECT_THAT(Texts(LogTicks(0.3, 7, 5)), testing::ElementsAre("0.5", "1", "2", "5"));
+  EXPECT_TRUE(LinearTicks(1, 1, 5).empty());
+  EXPECT_TRUE(LogTicks(0, 1, 5).empty());
+  for (double low = -3; low < 3; low += 0.37) {
+    for (double size = 1e-6; size < 1e6; size *= 3.3) {
+      const auto ticks = LinearTicks(low, low + size, 5);
+      EXPECT_GE(ticks.size(), 3u) << low << " " << size;
+      EXPECT_LE(ticks.size(), 9u) << low << " " << size;
+      for (const Tick& tick : ticks) {
+        EXPECT_GE(tick.value, low - 1e-6 * size);
+        EXPECT_LE(tick.value, low + size * (1 + 1e-6));
+      }
+    }
+  }
+}
+
+TEST(TextSummary, ShowsMediansOfEachSystemAndTheBaselines) {
+  const evaluation::TemporaryFolder folder;
+  const auto judged = WriteFakeResult(folder.path(), {});
+  const auto systems = SummariseSystems(judged);
+  ASSERT_EQ(systems.size(), 2u);
+  EXPECT_EQ(systems[0].system, "rb2pf");
+  EXPECT_EQ(systems[0].runs, 3u);
+  std::vector<double> ates;
+  for (int i = 0; i < 3; ++i) ates.push_back(judged[static_cast<std::size_t>(i)].metrics.errors.sim3.position.rmse);
+  EXPECT_EQ(systems[0].ate_m, evaluation::Median(ates));
+  EXPECT_EQ(systems[0].ate_worst_m, *std::max_element(ates.begin(), ates.end()));
+  const auto baselines = SummariseBaselines(judged);
+  EXPECT_EQ(baselines[0].ate_m, judged[0].metrics.constant_pose.sim3.position.rmse);
+  EXPECT_TRUE(std::isnan(baselines[0].tracked_coverage));
+
+  const std::string text = TextSummary(judged);
+  for (const std::string& part :
+       {std::string("RB²-PF"), std::string("RB-PF"), std::string("constant pose"), std::string("constant velocity"),
+        Fixed(100 * systems[0].ate_m, 2), Fixed(100 * baselines[1].ate_m, 2), std::string("in 3 of 3 seeds")}) {
+    EXPECT_THAT(text, HasSubstr(part));
+  }
+  EXPECT_EQ(TextSummary({}), "");
+}
+
+TEST(Compare, CountsSeedsThatBothRan) {
+  std::vector<JudgedRun> runs(5);
+  const auto set = [&](std::size_t i, const char* system, std::uint64_t seed, double ate) {
+    runs[i].run.system = system;
+    runs[i].run.seed = seed;
+    runs[i].metrics.errors.sim3.position.rmse = ate;
+  };
+  set(0, "a", 1, 0.1);
+  set(1, "a", 2, 0.4);
+  set(2, "a", 3, 0.1);
+  set(3, "b", 2, 0.3);
+  set(4, "b", 1, 0.2);
+  const Duel duel = Compare(runs, "a", "b");
+  EXPECT_EQ(duel.seeds, 2u);
+  EXPECT_EQ(duel.wins, 1u);
+}
+
+}  // namespace
+}  // namespace report
