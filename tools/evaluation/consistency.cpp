@@ -63,8 +63,10 @@ std::vector<FrameConsistency> ComputeConsistency(const EstimateRun& run, const T
 
   std::vector<FrameConsistency> frames;
   std::size_t next_belief = 0;
-  for (const Match& match :
-       Associate(StampsOf(run.trajectory), StampsOf(truth), {AssociationRule::one_to_one, gap_ns})) {
+  const auto matches = Associate(StampsOf(run.trajectory), StampsOf(truth), {AssociationRule::one_to_one, gap_ns});
+  if (matches.empty()) return frames;
+  const Eigen::Vector3d true_start = Apply(to_estimate, truth[matches.front().truth]).p_WC;
+  for (const Match& match : matches) {
     const StampedPose& estimate = run.trajectory[match.estimate];
     while (next_belief < run.beliefs.size() && run.beliefs[next_belief].velocity.stamp_ns < estimate.stamp_ns)
       ++next_belief;
@@ -87,8 +89,8 @@ std::vector<FrameConsistency> ComputeConsistency(const EstimateRun& run, const T
     frame.sigma = P.diagonal().cwiseMax(0).cwiseSqrt();
 
     Vector12d scale_direction = Vector12d::Zero();
-    scale_direction.segment<3>(0) = estimate.p_WC - run.trajectory.front().p_WC;
-    scale_direction.segment<3>(6) = belief.velocity.v_WC;
+    scale_direction.segment<3>(0) = true_pose.p_WC - true_start;
+    if (true_velocity) scale_direction.segment<3>(6) = to_estimate.R * true_velocity->v_WC;
     frame.nees_pose = Nees(frame.error.head<6>(), P.topLeftCorner<6, 6>());
     frame.nees_pose_scale_free =
         NeesWithoutDirection(frame.error.head<6>(), P.topLeftCorner<6, 6>(), scale_direction.head<6>());

@@ -37,8 +37,9 @@ struct FrameConsistency {
   double nees_velocity = 0;   // 6
   double nees_joint = 0;      // 12
   // The same, but blind to a wrong scale: the smallest over s of (e - s g)' P^-1 (e - s g), g the direction in which
-  // the estimate moves when the map about the start is scaled: (p^ - p^_start, 0, v^, 0). Of an honest Gaussian error
-  // it is chi-square with one degree less; nothing is fitted across frames.
+  // the truth moves when it is scaled about its start: (p - p_start, 0, v, 0). The truth takes on the estimate's scale,
+  // so that error and covariance are in the same measure. Of an honest Gaussian error it is chi-square with one degree
+  // less; nothing is fitted across frames. NaN at the start itself, where scale does not show.
   double nees_pose_scale_free = 0;   // 5
   double nees_joint_scale_free = 0;  // 11
 };

@@ -33,14 +33,23 @@ std::string Grid(const std::string& figures, const char* style = "grid") {
   return figures.empty() ? "" : "<div class=\"" + std::string(style) + "\">" + figures + "</div>\n";
 }
 
-// What the mean NEES per degree of freedom says in words.
-std::string Honesty(double nees_per_dof) {
-  if (!std::isfinite(nees_per_dof)) return "its uncertainty was not judged";
-  const std::string factor = Readable(std::sqrt(nees_per_dof));
-  const std::string number = " (NEES " + Readable(nees_per_dof) + " per degree of freedom, 1 is ideal)";
-  if (nees_per_dof > 1.5) return "it is over-confident: errors are about " + factor + " times what it claims" + number;
-  if (nees_per_dof < 1 / 1.5) return "it is cautious: errors are about " + factor + " times what it claims" + number;
-  return "it is about as uncertain as it is wrong" + number;
+// What the mean NEES per degree of freedom says in words, with and without the error of scale.
+std::string Honesty(const SystemSummary& s) {
+  const double nees = s.nees_pose_per_dof;
+  if (!std::isfinite(nees)) return "its uncertainty was not judged";
+  std::string text;
+  if (nees > 1.5) {
+    text = "it is over-confident: errors are about " + Readable(std::sqrt(nees)) + " times what it claims";
+  } else if (nees < 1 / 1.5) {
+    text = "it is cautious: errors are about " + Readable(std::sqrt(nees)) + " times what it claims";
+  } else {
+    text = "it is about as uncertain as it is wrong";
+  }
+  text += " (NEES " + Readable(nees) + " per degree of freedom, 1 is ideal";
+  if (std::isfinite(s.nees_pose_scale_free_per_dof)) {
+    text += "; " + Readable(s.nees_pose_scale_free_per_dof) + " when the scale of the map is not counted";
+  }
+  return text + ")";
 }
 
 std::string SystemSentence(const SystemSummary& s, const std::vector<SystemSummary>& baselines) {
@@ -49,7 +58,7 @@ std::string SystemSentence(const SystemSummary& s, const std::vector<SystemSumma
   text += "<b>" + Fixed(100 * s.ate_m, 2) + " cm</b> (" + Percent(s.ate_share_of_path, 2) + " of the path";
   if (s.runs > 1) text += "; worst run " + Fixed(100 * s.ate_worst_m, 2) + " cm";
   text += "), drift " + Fixed(100 * s.rpe_m, 2) + " cm/s and " + Fixed(kDegrees * s.rpe_rad, 2) + " °/s, " +
-          Percent(s.tracked_coverage) + " of the frames tracked; " + Honesty(s.nees_pose_per_dof) + ". ";
+          Percent(s.tracked_coverage) + " of the frames tracked; " + Honesty(s) + ". ";
   const double best = std::min(baselines[0].ate_m, baselines[1].ate_m);
   text += s.ate_m < best ? "The better of the two blind baselines is " + Readable(best / s.ate_m) + " times as far off."
                          : "<b>It does no better than a baseline that never looks at the images.</b>";
@@ -231,6 +240,11 @@ std::string Strips(const ResultData& data) {
   return html;
 }
 
+bool OwnWorld(const std::vector<JudgedRun>& judged) {
+  return std::any_of(judged.begin(), judged.end(),
+                     [](const JudgedRun& run) { return run.metrics.options.gauge == ev::Gauge::first_pose; });
+}
+
 std::string Record(const RunDescription& d) {
   std::string html = "<p>Command</p><pre>" + Escape(d.command) + "</pre><p>Versions</p><pre>";
   for (const auto& [name, version] : d.versions) html += Escape(name + " " + version) + "\n";
@@ -266,7 +280,10 @@ std::string Page(const ResultData& data) {
       "Is it as uncertain as it is wrong?",
       "NEES compares errors, not aligned, with the covariance the filter claims: 1 is ideal, above the band it is "
       "over-confident, below it cautious. Frames of one run depend on each other, so the band holds for each frame by "
-      "itself. Scale: monocular odometry cannot see it; the second diagram does not count it.",
+      "itself. Scale: monocular odometry cannot see it; the second diagram does not count it." +
+          std::string(OwnWorld(judged) ? " These runs began in a world of their own: the truth was moved there by its "
+                                         "first pose, whose own error counts as theirs."
+                                       : ""),
       Grid(NeesFigures(data)));
   html += Section(
       "Innovations",
