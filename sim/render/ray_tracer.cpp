@@ -4,12 +4,16 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
-#include <numbers>
+#include <limits>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "sim/render/packet.h"
 #include "sim/render/ray_scene.h"
@@ -25,9 +29,11 @@ void Store(float (&to)[3], const glm::dvec3& from) {
   for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(from[c]);
 }
 
-// A light as ray i of n sees it; only a rectangular one differs between rays.
+// A light as ray i of n sees it; only a rectangular one differs between rays. The n points of the pattern lie on
+// multiples of 1 / n (n a power of two): half of that more centres them on the light.
 struct SampleLight {
   PatternPoint point;
+  double centring;
   std::vector<LightSample>& out;
 
   void operator()(const AmbientLight&) const {}
@@ -42,7 +48,8 @@ struct SampleLight {
   void operator()(const PointLight& light) const { At(light.position, light.intensity, nullptr); }
   void operator()(const RectLight& light) const {
     const glm::dvec3 cross = glm::cross(light.side_u, light.side_v);
-    const glm::dvec3 at = light.corner + ToUnit(point.u) * light.side_u + ToUnit(point.v) * light.side_v;
+    const glm::dvec3 at =
+        light.corner + (ToUnit(point.u) + centring) * light.side_u + (ToUnit(point.v) + centring) * light.side_v;
     const glm::dvec3 normal = glm::normalize(cross);
     At(at, light.radiance * glm::length(cross), &normal);
   }
@@ -170,9 +177,10 @@ class RayTracer final : public Renderer {
     const std::size_t rays = static_cast<std::size_t>(options_.rays_per_time_sample), count = poses.size() * rays;
     std::vector<RaySample> samples(count);
     lights.resize(count);
+    const double centring = 0.5 / static_cast<double>(std::bit_ceil(count));
     for (std::size_t i = 0; i < count; ++i) {
       const PatternPoint point = SobolPoint(static_cast<std::uint32_t>(i));
-      for (const Light& light : lights_) std::visit(SampleLight{point, lights[i]}, light);
+      for (const Light& light : lights_) std::visit(SampleLight{point, centring, lights[i]}, light);
       const Pose& pose = poses[i / rays];
       const glm::dmat3 rotation = glm::mat3_cast(pose.q_WC);
       RaySample& s = samples[i];

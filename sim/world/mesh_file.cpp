@@ -6,6 +6,7 @@
 #include <assimp/scene.h>
 
 #include <algorithm>
+#include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
@@ -15,8 +16,11 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 #include <iterator>
+#include <memory>
 #include <set>
 #include <sstream>
+#include <stdexcept>
+#include <utility>
 
 #include "sim/world/image_file.h"
 #include "sim/world/srgb.h"
@@ -26,13 +30,38 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A file that cannot be read past its end for ever: assimp's PLY importer (5.2) does so when a header is cut off.
+class BoundedStream : public Assimp::IOStream {
+ public:
+  explicit BoundedStream(std::unique_ptr<Assimp::IOStream> stream) : stream_(std::move(stream)) {}
+
+  std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
+    const std::size_t read = stream_->Read(buffer, size, count);
+    constexpr int kPatience = 1000;
+    if (read == 0 && ++empty_reads_ > kPatience) throw std::runtime_error("the file ends too early");
+    return read;
+  }
+  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+  aiReturn Seek(std::size_t offset, aiOrigin origin) override { return stream_->Seek(offset, origin); }
+  std::size_t Tell() const override { return stream_->Tell(); }
+  std::size_t FileSize() const override { return stream_->FileSize(); }
+  void Flush() override {}
+
+ private:
+  std::unique_ptr<Assimp::IOStream> stream_;
+  int empty_reads_ = 0;
+};
+
 // Importers quietly do without a side file (an OBJ's materials, say) that cannot be opened: this remembers which.
 class NotingFiles : public Assimp::DefaultIOSystem {
  public:
   Assimp::IOStream* Open(const char* file, const char* mode) override {
-    Assimp::IOStream* stream = DefaultIOSystem::Open(file, mode);
-    if (stream == nullptr) missing_.insert(fs::path(file).filename().string());
-    return stream;
+    std::unique_ptr<Assimp::IOStream> stream(DefaultIOSystem::Open(file, mode));
+    if (stream == nullptr) {
+      missing_.insert(fs::path(file).filename().string());
+      return nullptr;
+    }
+    return new BoundedStream(std::move(stream));  // Close() deletes it
   }
   const std::set<std::string>& missing() const { return missing_; }
 
@@ -81,7 +110,11 @@ class FileReader {
     const unsigned steps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
                            aiProcess_ValidateDataStructure;
     ai_ = importer.ReadFile(file_.string(), steps);
-    if (ai_ == nullptr) return Problem(std::string("cannot be read: ") + importer.GetErrorString());
+    if (ai_ == nullptr) {
+      const std::string reason = importer.GetErrorString();
+      const bool only_lines = reason.find("No meshes remaining") != std::string::npos;  // the importer's words for it
+      return Problem(only_lines ? "has no triangles" : "cannot be read: " + reason);
+    }
     for (const std::string& missing : files->missing()) {
       scene_.warnings.push_back(file_.string() + ": names " + missing + ", which cannot be opened");
     }

@@ -1,0 +1,65 @@
+// The inner loop for each instruction set that this machine has gives the same picture, up to rounding.
+#include "sim/render/packet.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "sim/render/ray_scene.h"
+#include "sim/render/sample_pattern.h"
+#include "tests/unit/sim/render/worlds.h"
+
+namespace sim::test {
+namespace {
+
+TEST(Packet, InstructionSetsAgree) {
+  Scene scene;
+  std::vector<std::uint8_t> rgb;
+  for (unsigned i = 0; i < 30 * 20 * 3; ++i) rgb.push_back(static_cast<std::uint8_t>((i * 2654435761u) >> 24));
+  scene.textures.emplace_back("noise", 30, 20, rgb);
+  AddMaterial(scene, {0.9f, 0.8f, 0.7f}, glm::vec3(0.1f), 0);
+  AddMaterial(scene, {0.3f, 0.8f, 0.4f});
+  AddQuad(scene, {-6, -6, 4}, {12, 0, 1}, {0, 12, 1}, 0, 3.0f);
+  AddSphere(scene, {0.0, 0.0, 2.2}, 0.5, 20, 1);
+  scene.lights = {AmbientLight{{0.1, 0.1, 0.1}}};
+  const RayScene rays(scene);
+
+  LightSample lamp{};
+  lamp.x = 1, lamp.y = -1, lamp.z = 0;
+  for (float& p : lamp.power) p = 9;
+  RaySample samples[4]{};
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    for (int c = 0; c < 3; ++c) samples[i].rotation[c][c] = 1;
+    samples[i].point_u = SobolPoint(i).u;
+    samples[i].point_v = SobolPoint(i).v;
+    samples[i].lights = &lamp;
+    samples[i].light_count = 1;
+  }
+  PixelBlock block{};
+  for (int i = 0; i < kLanes; ++i) {
+    block.x.v[i] = 0.05f * static_cast<float>(i % 4), block.y.v[i] = 0.08f * static_cast<float>(i / 4);
+    block.x_du.v[i] = block.y_dv.v[i] = block.width.v[i] = 0.01f;
+    block.valid.v[i] = i == 5 ? 0 : -1;
+    block.scramble_u.v[i] = static_cast<std::int32_t>(PixelScramble(1, static_cast<std::uint32_t>(i), 0).u);
+  }
+  Lanes base[3];
+  packet_base::ExposeBlock(rays.packet_scene(), samples, 4, true, 0.5f, block, base);
+  for (int i = 0; i < kLanes; ++i) EXPECT_GE(base[0].v[i], i == 5 ? 0.0f : 0.01f);
+
+  const std::string best = PacketKernel().name;
+  std::vector<ExposeBlockFunction> others;
+  if (best != "base") others.push_back(packet_avx2::ExposeBlock);
+  if (best == "avx512") others.push_back(packet_avx512::ExposeBlock);
+  if (others.empty()) GTEST_SKIP() << "this machine has only the base instruction set";
+  for (const ExposeBlockFunction other : others) {
+    Lanes sum[3];
+    other(rays.packet_scene(), samples, 4, true, 0.5f, block, sum);
+    for (int c = 0; c < 3; ++c) {
+      for (int i = 0; i < kLanes; ++i)
+        EXPECT_NEAR(sum[c].v[i], base[c].v[i], 1e-4f * (1 + base[c].v[i])) << c << ", " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sim::test

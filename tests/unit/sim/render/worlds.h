@@ -1,0 +1,112 @@
+// Purpose: small worlds and cameras whose pictures are known in closed form.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+#include <vector>
+
+#include "sim/motion/pose.h"
+#include "sim/render/ray_tracer.h"
+#include "sim/sensor/camera.h"
+#include "sim/world/scene.h"
+
+namespace sim::test {
+
+inline CameraParams SmallCamera(int width = 83, int height = 61) {
+  CameraParams params;
+  params.width = width;
+  params.height = height;
+  params.fx = params.fy = 70.0;
+  params.cx = (width - 1) / 2.0;
+  params.cy = (height - 1) / 2.0;
+  return params;
+}
+
+// A picture of strong distortion in all five terms.
+inline CameraParams DistortedCamera() {
+  CameraParams params = SmallCamera(120, 90);
+  params.k1 = 0.12;
+  params.k2 = -0.05;
+  params.p1 = 0.006;
+  params.p2 = -0.004;
+  params.k3 = 0.01;
+  return params;
+}
+
+inline int AddMaterial(Scene& scene, glm::vec3 base_color, glm::vec3 emission = glm::vec3(0.0f), int texture = -1) {
+  scene.materials.push_back({"material", base_color, emission, texture});
+  return static_cast<int>(scene.materials.size()) - 1;
+}
+
+// A parallelogram: corner, corner + a, corner + a + b, corner + b, with texture coordinates (0, 0), (1, 0), (1, 1), (0,
+// 1).
+inline void AddQuad(Scene& scene, glm::vec3 corner, glm::vec3 a, glm::vec3 b, int material, float repeats = 1.0f) {
+  Mesh mesh;
+  mesh.name = "quad";
+  mesh.positions = {corner, corner + a, corner + a + b, corner + b};
+  mesh.uvs = {{0, 0}, {repeats, 0}, {repeats, repeats}, {0, repeats}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.material = material;
+  scene.meshes.push_back(mesh);
+}
+
+inline void AddBox(Scene& scene, glm::vec3 low, glm::vec3 high, int material) {
+  const glm::vec3 x(high.x - low.x, 0, 0), y(0, high.y - low.y, 0), z(0, 0, high.z - low.z);
+  AddQuad(scene, low, x, y, material);
+  AddQuad(scene, low, y, z, material);
+  AddQuad(scene, low, z, x, material);
+  AddQuad(scene, high, -x, -y, material);
+  AddQuad(scene, high, -y, -z, material);
+  AddQuad(scene, high, -z, -x, material);
+}
+
+// A sphere of latitude and longitude with `rings` bands and the true normals.
+inline void AddSphere(Scene& scene, glm::dvec3 center, double radius, int rings, int material) {
+  Mesh mesh;
+  mesh.name = "sphere";
+  mesh.material = material;
+  const int around = 2 * rings;
+  for (int i = 0; i <= rings; ++i) {
+    for (int k = 0; k <= around; ++k) {
+      const double polar = std::numbers::pi * i / rings, turn = 2 * std::numbers::pi * k / around;
+      const glm::dvec3 n(std::sin(polar) * std::cos(turn), std::cos(polar), std::sin(polar) * std::sin(turn));
+      mesh.positions.emplace_back(center + radius * n);
+      mesh.normals.emplace_back(n);
+    }
+  }
+  for (int i = 0; i < rings; ++i) {
+    for (int k = 0; k < around; ++k) {
+      const auto a = static_cast<std::uint32_t>(i * (around + 1) + k), b = a + static_cast<std::uint32_t>(around) + 1;
+      if (i > 0) mesh.triangles.emplace_back(a, a + 1, b);
+      if (i + 1 < rings) mesh.triangles.emplace_back(a + 1, b + 1, b);
+    }
+  }
+  scene.meshes.push_back(mesh);
+}
+
+// Some pose that is not aligned with anything.
+inline Pose TiltedPose() { return {{0.2, -0.1, -0.3}, glm::normalize(glm::dquat(0.97, 0.08, -0.12, 0.06))}; }
+
+inline glm::dvec3 RayInWorld(const Camera& camera, const Pose& pose, double u, double v) {
+  const glm::dvec2 ray = camera.Undistort({u, v});
+  return pose.q_WC * glm::dvec3(ray, 1.0);
+}
+
+inline RayTracerOptions Centred(int jobs = 1) {
+  RayTracerOptions options;
+  options.jitter = false;
+  options.jobs = jobs;
+  return options;
+}
+
+inline RadianceImage Render(const Scene& scene, const Camera& camera, const Pose& pose,
+                            const RayTracerOptions& options = Centred()) {
+  RadianceImage image;
+  MakeRayTracer(scene, options)->Expose(camera, std::span(&pose, 1), 1, image);
+  return image;
+}
+
+}  // namespace sim::test

@@ -1,0 +1,244 @@
+// The same small world through glTF, GLB and FBX: node transforms, linear colour factors, textures inside the file.
+#include <assimp/material.h>
+#include <assimp/scene.h>
+#include <gmock/gmock.h>
+
+#include <assimp/Exporter.hpp>
+#include <cstdint>
+#include <cstring>
+#include <glm/geometric.hpp>
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/world/scene.h"
+#include "tests/unit/sim/world/files.h"
+
+namespace sim::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+std::string Base64(const std::string& bytes) {
+  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = (group << 8) | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kDigits[(group >> (18 - 6 * k)) & 63u];
+  }
+  return text;
+}
+
+template <class T>
+void Append(std::string& bytes, std::initializer_list<T> values) {
+  for (const T value : values) bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+// A triangle with colours and texture coordinates under two nodes: the outer moves by (0, 0, 5), the inner scales by 2.
+std::string Gltf(const std::string& picture) {
+  std::string data;
+  Append<float>(data, {0, 0, 0, 1, 0, 0, 0, 1, 0});                    // positions, 36 bytes
+  Append<float>(data, {0, 0, 1, 0, 0, 1});                             // texture coordinates, 24
+  Append<float>(data, {0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 1, 1, 1});  // colours, 36
+  Append<std::uint16_t>(data, {0, 1, 2, 0});                           // indices, 6 of 8
+  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+    "nodes": [{"translation": [0, 0, 5], "children": [1]}, {"scale": [2, 2, 2], "mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1, "COLOR_0": 2}, "indices": 3, "material": 0}]}],
+    "materials": [{"name": "paint", "emissiveFactor": [0.5, 0, 0.25],
+      "pbrMetallicRoughness": {"baseColorFactor": [0.25, 0.5, 1, 1], "baseColorTexture": {"index": 0}}}],
+    "textures": [{"source": 0}], "images": [{"mimeType": "image/png", "uri": "data:image/png;base64,)" +
+         Base64(picture) + R"("}],
+    "accessors": [
+      {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
+      {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"},
+      {"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC3"},
+      {"bufferView": 3, "componentType": 5123, "count": 3, "type": "SCALAR"}],
+    "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 24},
+      {"buffer": 0, "byteOffset": 60, "byteLength": 36}, {"buffer": 0, "byteOffset": 96, "byteLength": 6}],
+    "buffers": [{"byteLength": )" +
+         std::to_string(data.size()) + R"(, "uri": "data:application/octet-stream;base64,)" + Base64(data) + R"("}]})";
+}
+
+WorldDescription WorldOf(const std::filesystem::path& file) {
+  WorldDescription world;
+  world.meshes.push_back({file, glm::dvec3(0), {1, 0, 0, 0}, 1});
+  return world;
+}
+
+TEST(MeshFormats, GltfWithTextureInside) {
+  const Folder folder;
+  const Scene scene = LoadScene(WorldOf(folder.Write("triangle.gltf", Gltf(EncodeNoise(".png", 8, 4)))));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  ASSERT_THAT(scene.meshes, SizeIs(1));
+  const Mesh& mesh = scene.meshes[0];
+  EXPECT_THAT(mesh.positions, ElementsAre(glm::vec3(0, 0, 5), glm::vec3(2, 0, 5), glm::vec3(0, 2, 5)));
+  EXPECT_THAT(mesh.uvs,
+              ElementsAre(glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)));  // glTF's v points down, as ours
+  EXPECT_THAT(mesh.colors, ElementsAre(glm::vec3(0.5f), glm::vec3(0.5f), glm::vec3(1.0f)));  // linear
+  const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+  EXPECT_EQ(material.base_color, glm::vec3(0.25f, 0.5f, 1.0f));
+  EXPECT_EQ(material.emission, glm::vec3(0.5f, 0.0f, 0.25f));
+  ASSERT_EQ(material.texture, 0);
+  EXPECT_EQ(scene.textures[0].width(), 8);
+  EXPECT_EQ(scene.textures[0].height(), 4);
+}
+
+TEST(MeshFormats, TruncatedTextureInside) {
+  const Folder folder;
+  const std::string picture = EncodeNoise(".png", 8, 4);
+  try {
+    LoadScene(WorldOf(folder.Write("cut.gltf", Gltf(picture.substr(0, picture.size() / 2)))));
+    FAIL() << "nothing was thrown";
+  } catch (const SceneError& error) {
+    EXPECT_THAT(error.problems(),
+                ElementsAre(testing::AllOf(HasSubstr("cut.gltf"), HasSubstr("truncated PNG"), HasSubstr("paint"))));
+  }
+}
+
+// A triangle at (1, 2, 3) + {0, x, y}, blue, under a node that moves it by (10, 0, 0).
+aiScene* TriangleForExport() {
+  auto* scene = new aiScene;
+  auto* mesh = new aiMesh;
+  mesh->mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
+  mesh->mNumVertices = 3;
+  mesh->mVertices = new aiVector3D[3]{{1, 2, 3}, {2, 2, 3}, {1, 3, 3}};
+  mesh->mNormals = new aiVector3D[3]{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+  mesh->mNumFaces = 1;
+  mesh->mFaces = new aiFace[1];
+  mesh->mFaces[0].mNumIndices = 3;
+  mesh->mFaces[0].mIndices = new unsigned[3]{0, 1, 2};
+  scene->mNumMeshes = 1;
+  scene->mMeshes = new aiMesh* [1] { mesh };
+  auto* material = new aiMaterial;
+  const aiColor3D blue(0.125f, 0.25f, 0.75f);
+  material->AddProperty(&blue, 1, AI_MATKEY_COLOR_DIFFUSE);
+  scene->mNumMaterials = 1;
+  scene->mMaterials = new aiMaterial* [1] { material };
+  scene->mRootNode = new aiNode("root");
+  auto* child = new aiNode("child");
+  child->mTransformation = aiMatrix4x4({1, 1, 1}, aiQuaternion(), {10, 0, 0});
+  child->mNumMeshes = 1;
+  child->mMeshes = new unsigned[1]{0};
+  scene->mRootNode->addChildren(1, &child);
+  return scene;
+}
+
+void ExpectTriangle(const Scene& loaded, const std::string& name, bool has_material) {
+  ASSERT_THAT(loaded.meshes, SizeIs(1)) << name;
+  ASSERT_THAT(loaded.meshes[0].positions, SizeIs(3)) << name;
+  for (const glm::vec3& p : {glm::vec3(11, 2, 3), glm::vec3(12, 2, 3), glm::vec3(11, 3, 3)}) {
+    bool found = false;
+    for (const glm::vec3& q : loaded.meshes[0].positions) found = found || glm::distance(p, q) < 1e-5f;
+    EXPECT_TRUE(found) << name << ": " << p.x << " " << p.y << " " << p.z;
+  }
+  if (!has_material) return;
+  const glm::vec3 color = loaded.materials[static_cast<std::size_t>(loaded.meshes[0].material)].base_color;
+  EXPECT_NEAR(color.x, 0.125f, 1e-5) << name;
+  EXPECT_NEAR(color.z, 0.75f, 1e-5) << name;
+}
+
+TEST(MeshFormats, AsAssimpWritesThem) {
+  const Folder folder;
+  const std::unique_ptr<aiScene> scene(TriangleForExport());
+  for (const auto& [format, name] :
+       {std::pair{"glb2", "t.glb"}, {"fbxa", "t.fbx"}, {"ply", "t.ply"}, {"obj", "t.obj"}}) {
+    Assimp::Exporter exporter;
+    const std::string file = (folder.path() / name).string();
+    ASSERT_EQ(exporter.Export(scene.get(), format, file), AI_SUCCESS) << exporter.GetErrorString();
+    ExpectTriangle(LoadScene(WorldOf(file)), name, std::string(format) != "ply");
+  }
+}
+
+// Binary FBX by hand, since assimp 5.2 cannot read back what it writes. A record is: end offset, number and size of the
+// properties, name, properties, nested records and 13 zeros after the last of them.
+struct Record {
+  std::string name;
+  std::vector<std::string> properties;
+  std::vector<Record> nested;
+};
+
+std::string Long(std::int64_t value) {
+  std::string bytes = "L";
+  Append(bytes, {value});
+  return bytes;
+}
+std::string Text(const std::string& value) {
+  std::string bytes = "S";
+  Append(bytes, {static_cast<std::uint32_t>(value.size())});
+  return bytes + value;
+}
+std::string Int(std::int32_t value) {
+  std::string bytes = "I";
+  Append(bytes, {value});
+  return bytes;
+}
+std::string Real(double value) {
+  std::string bytes = "D";
+  Append(bytes, {value});
+  return bytes;
+}
+template <class T>
+std::string Array(char type, std::initializer_list<T> values) {
+  std::string bytes(1, type);
+  const auto size = static_cast<std::uint32_t>(values.size() * sizeof(T));
+  Append(bytes, {static_cast<std::uint32_t>(values.size()), 0u, size});
+  Append(bytes, values);
+  return bytes;
+}
+
+void AppendRecord(const Record& record, std::string& file) {
+  std::string properties;
+  for (const std::string& property : record.properties) properties += property;
+  const std::size_t begin = file.size();
+  Append<std::uint32_t>(
+      file, {0u, static_cast<std::uint32_t>(record.properties.size()), static_cast<std::uint32_t>(properties.size())});
+  file += static_cast<char>(record.name.size());
+  file += record.name + properties;
+  for (const Record& nested : record.nested) AppendRecord(nested, file);
+  if (!record.nested.empty()) file.append(13, '\0');
+  const auto end = static_cast<std::uint32_t>(file.size());
+  std::memcpy(&file[begin], &end, sizeof end);
+}
+
+Record Vector(const std::string& name, double x, double y, double z) {
+  return {"P", {Text(name), Text("Vector3D"), Text(""), Text("A"), Real(x), Real(y), Real(z)}, {}};
+}
+
+TEST(MeshFormats, BinaryFbx) {
+  const std::string separator("\0\1", 2);
+  const std::vector<Record> records = {{"FBXHeaderExtension", {}, {{"FBXVersion", {Int(7400)}, {}}}},
+                                       {"GlobalSettings", {}, {{"Properties70", {}, {Vector("Unused", 0, 0, 0)}}}},
+                                       {"Objects",
+                                        {},
+                                        {{"Geometry",
+                                          {Long(1), Text("triangle" + separator + "Geometry"), Text("Mesh")},
+                                          {{"Vertices", {Array<double>('d', {1, 2, 3, 2, 2, 3, 1, 3, 3})}, {}},
+                                           {"PolygonVertexIndex", {Array<std::int32_t>('i', {0, 1, -3})}, {}}}},
+                                         {"Model",
+                                          {Long(2), Text("node" + separator + "Model"), Text("Mesh")},
+                                          {{"Properties70", {}, {Vector("Lcl Translation", 10, 0, 0)}}}},
+                                         {"Material",
+                                          {Long(3), Text("paint" + separator + "Material"), Text("")},
+                                          {{"ShadingModel", {Text("lambert")}, {}},
+                                           {"Properties70", {}, {Vector("DiffuseColor", 0.125, 0.25, 0.75)}}}}}},
+                                       {"Connections",
+                                        {},
+                                        {{"C", {Text("OO"), Long(2), Long(0)}, {}},
+                                         {"C", {Text("OO"), Long(1), Long(2)}, {}},
+                                         {"C", {Text("OO"), Long(3), Long(2)}, {}}}}};
+  std::string file("Kaydara FBX Binary  \0\x1a\0", 23);
+  Append<std::uint32_t>(file, {7400});
+  for (const Record& record : records) AppendRecord(record, file);
+  file.append(13, '\0');
+  const Folder folder;
+  ExpectTriangle(LoadScene(WorldOf(folder.Write("binary.fbx", file))), "binary.fbx", true);
+}
+
+}  // namespace
+}  // namespace sim::test

@@ -1,0 +1,126 @@
+#include "sim/world/texture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/world/srgb.h"
+
+namespace sim {
+namespace {
+
+std::vector<std::uint8_t> Noise(int width, int height) {
+  std::vector<std::uint8_t> rgb;
+  for (unsigned i = 0; i < static_cast<unsigned>(width * height * 3); ++i)
+    rgb.push_back(static_cast<std::uint8_t>((i * 2654435761u) >> 24));
+  return rgb;
+}
+
+// Half a step of the square root's 10 bits.
+double CodingError(double linear) { return std::sqrt(linear) / 1023 + 0.25 / (1023.0 * 1023.0); }
+
+TEST(Srgb, KnownValues) {
+  EXPECT_EQ(SrgbToLinear(0.0), 0.0);
+  EXPECT_DOUBLE_EQ(SrgbToLinear(1.0), 1.0);
+  EXPECT_NEAR(SrgbToLinear(0.5), 0.21404114048223255, 1e-15);  // ((0.5 + 0.055) / 1.055)^2.4
+  EXPECT_NEAR(SrgbToLinear(10 / 255.0), 10 / 255.0 / 12.92, 1e-15);
+  EXPECT_NEAR(SrgbToLinear(0.04045 - 1e-9), SrgbToLinear(0.04045 + 1e-9), 1e-7);
+}
+
+TEST(Texture, TexelCentresGiveThePicture) {
+  const int width = 37, height = 23;
+  const std::vector<std::uint8_t> rgb = Noise(width, height);
+  const Texture texture("noise", width, height, rgb);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const glm::vec3 at_centre =
+          texture.Sample({(static_cast<float>(x) + 0.5f) / width, (static_cast<float>(y) + 0.5f) / height}, 1.0f);
+      for (int c = 0; c < 3; ++c) {
+        const double exact = SrgbToLinear(rgb[static_cast<std::size_t>((y * width + x) * 3 + c)] / 255.0);
+        ASSERT_NEAR(texture.Texel(0, x, y)[c], exact, CodingError(exact) + 1e-7);
+        ASSERT_NEAR(at_centre[c], texture.Texel(0, x, y)[c], 1e-5);
+      }
+    }
+  }
+}
+
+// What 8 bits distinguish stays distinct.
+TEST(Texture, AllCodesStayApart) {
+  for (int code = 0; code + 1 < 256; ++code) {
+    const auto a = static_cast<std::uint8_t>(code), b = static_cast<std::uint8_t>(code + 1);
+    const Texture texture("step", 2, 1, std::vector<std::uint8_t>{a, a, a, b, b, b});
+    EXPECT_LT(texture.Texel(0, 0, 0).x, texture.Texel(0, 1, 0).x) << code;
+  }
+}
+
+TEST(Texture, EveryLevelHasTheMeanOfThePicture) {
+  for (const auto& [width, height] : {std::pair{64, 64}, {37, 23}, {100, 1}, {3, 5}, {255, 130}}) {
+    const std::vector<std::uint8_t> rgb = Noise(width, height);
+    const Texture texture("noise", width, height, rgb);
+    glm::dvec3 exact(0);
+    for (std::size_t i = 0; i < rgb.size(); ++i)
+      exact[static_cast<int>(i % 3)] += SrgbToLinear(rgb[i] / 255.0) / (width * height);
+    for (std::size_t l = 0; l < texture.levels().size(); ++l) {
+      const TextureLevel& level = texture.levels()[l];
+      ASSERT_EQ(level.width, std::max(1, width >> l));
+      ASSERT_EQ(level.height, std::max(1, height >> l));
+      glm::dvec3 mean(0);
+      for (int y = 0; y < level.height; ++y) {
+        for (int x = 0; x < level.width; ++x)
+          mean += glm::dvec3(texture.Texel(static_cast<int>(l), x, y)) / (1.0 * level.width * level.height);
+      }
+      // The rounding of single texels, which averages out over many.
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c], exact[c], 0.0011) << width << " x " << height << " level " << l;
+    }
+    EXPECT_EQ(texture.levels().back().width, 1);
+    EXPECT_EQ(texture.levels().back().height, 1);
+  }
+}
+
+// A level is the area average of the picture, place by place: 6 texels into 3.
+TEST(Texture, LevelsAverageByPlace) {
+  std::vector<std::uint8_t> rgb;
+  for (const int code : {0, 255, 255, 255, 0, 0, 255}) {  // 7 into 3: each covers 7/3 texels
+    for (int c = 0; c < 3; ++c) rgb.push_back(static_cast<std::uint8_t>(code));
+  }
+  const Texture texture("row", 7, 1, rgb);
+  ASSERT_EQ(texture.levels()[1].width, 3);
+  EXPECT_NEAR(texture.Texel(1, 0, 0).x, (1 + 1 / 3.0) / (7 / 3.0), 0.001);
+  EXPECT_NEAR(texture.Texel(1, 1, 0).x, (2 / 3.0 + 1) / (7 / 3.0), 0.001);
+  EXPECT_NEAR(texture.Texel(1, 2, 0).x, 1 / (7 / 3.0), 0.001);
+}
+
+TEST(Texture, InterpolatesBetweenTexelsAndLevels) {
+  const Texture texture("four", 2, 2, std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255});
+  const glm::vec3 middle = texture.Sample({0.5f, 0.5f}, 1.0f);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(middle[c], 0.5f, 1e-6);
+  const glm::vec3 quarter = texture.Sample({0.375f, 0.25f}, 1.0f);  // upper row, a quarter of the way from red to green
+  EXPECT_NEAR(quarter.x, 0.75f, 1e-6);
+  EXPECT_NEAR(quarter.y, 0.25f, 1e-6);
+  const glm::vec3 fine = texture.Sample({0.25f, 0.25f}, 1.0f), coarse = texture.Sample({0.25f, 0.25f}, 2.0f),
+                  between = texture.Sample({0.25f, 0.25f}, std::sqrt(2.0f)),
+                  beyond = texture.Sample({0.25f, 0.25f}, 1e9f);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(between[c], (fine[c] + coarse[c]) / 2, 1e-6);
+    EXPECT_NEAR(beyond[c], coarse[c], 1e-6);
+  }
+}
+
+TEST(Texture, Repeats) {
+  const Texture texture("noise", 8, 4, Noise(8, 4));
+  for (const glm::vec2 uv : {glm::vec2(0.01f, 0.02f), glm::vec2(0.99f, 0.5f), glm::vec2(0.4f, 0.999f)}) {
+    const glm::vec3 a = texture.Sample(uv, 1.3f), b = texture.Sample(uv + glm::vec2(3, -5), 1.3f);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 1e-4);
+  }
+  // The border between two repeats lies halfway between the last and the first texel.
+  const glm::vec3 border = texture.Sample({0.0f, 0.125f}, 1.0f);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(border[c], (texture.Texel(0, 0, 0)[c] + texture.Texel(0, 7, 0)[c]) / 2, 1e-6);
+}
+
+TEST(Texture, WrongSizeIsRefused) {
+  EXPECT_THROW(Texture("bad", 2, 2, std::vector<std::uint8_t>(11)), std::invalid_argument);
+  EXPECT_THROW(Texture("bad", 0, 2, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace sim
