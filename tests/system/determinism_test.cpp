@@ -71,5 +71,20 @@ TEST_F(DeterminismTest, RunsDoNotDependOnThreads) {
   EXPECT_FALSE(Read("jobs1/rb2pf/seed_1/estimate.txt") == Read("jobs1/rb2pf/seed_2/estimate.txt"));
 }
 
+// `track` tells the odometry nothing of the truth; `run` told as little must come to the same.
+TEST_F(DeterminismTest, ThroughTheDiskOrInMemoryIsTheSame) {
+  const std::string duration = "time.duration=0.5 s";
+  Succeeds({"render", "-o", "seq", "--set", duration});
+  Vobench({"track", "seq", "-o", "disk", "--seed", "3"});
+  Succeeds({"run", "-o", "memory", "--seed", "3", "--set", duration, "--set",
+            "prior={start: origin, velocity_sigma: 0.5, angular_rate_sigma: 0.5}"});
+  for (const std::string file : {"estimate.txt", "covariance.txt", "landmarks.csv"}) {
+    EXPECT_TRUE(Read("disk/" + file) == Read("memory/rb2pf/seed_3/" + file)) << file;
+  }
+  // Told the true start, it comes to something else: the comparison can fail.
+  Succeeds({"run", "-o", "told", "--seed", "3", "--set", duration});
+  EXPECT_FALSE(Read("disk/estimate.txt") == Read("told/rb2pf/seed_3/estimate.txt"));
+}
+
 }  // namespace
 }  // namespace vobench::system_test

@@ -118,6 +118,9 @@ TEST_F(ErrorsTest, NanInATrajectory) {
   WriteFile(here_ / "bad.txt", bad);
   Fails({"evaluate", "bad.txt", "--truth", "good.txt"}, 2, "bad.txt:2");
   Fails({"evaluate", "good.txt", "--truth", "bad.txt"}, 2, "bad.txt:2");
+  const std::string recorded = "trajectory={type: recorded, file: '" + (here_ / "bad.txt").string() + "'}";
+  Fails({"render", TinyScenario().string(), "-o", "out", "--set", recorded, "--set", "time.duration=0.1 s"}, 2, "bad.txt:2");
+  Fails({"check", TinyScenario().string(), "--set", recorded, "--set", "time.duration=0.1 s"}, 2, "bad.txt:2");
 }
 
 TEST_F(ErrorsTest, EveryMistakeInAScenarioIsNamedWithItsPlace) {
@@ -219,11 +222,14 @@ TEST_F(ErrorsTest, FullDiskWhileRunning) {
 }
 
 TEST_F(ErrorsTest, InterruptedWorkLeavesNothing) {
-  // timeout sends SIGINT to the program after half a second, in the middle of thousands of frames.
+  // timeout sends SIGINT, in the middle of tens of thousands of frames.
   const auto before = Tree(here_.path());
   for (const std::string command : {"render", "run"}) {
-    const Outcome outcome = RunVobench({command, TinyScenario().string(), "-o", "out", "--set", "time.duration=1000 s"},
-                                       here_.path(), "exec timeout -s INT 1.5 \\");
+    const Outcome outcome = RunVobench(
+        {command, TinyScenario().string(), "-o", "out", "--set", "time.duration=1000 s", "--set",
+         "trajectory={type: sampled, start: {position: [2.5, 1.4, 2], look_at: [3, 1.2, 0]}, "
+         "position_noise: 0.1, orientation_noise: 0.1, position_return: 1 1/s}"},
+        here_.path(), "exec timeout -s INT 1.5 \\");
     EXPECT_THAT(outcome.err, HasSubstr("interrupted")) << command;
     EXPECT_TRUE(Tree(here_.path()) == before) << command;
   }

@@ -29,13 +29,13 @@ Overrides WithSeed(Overrides overrides, const std::optional<std::uint64_t>& seed
 
 void Render(const RenderOptions& options) {
   const Experiment experiment = ReadExperiment(options.scenario, WithSeed(options.overrides, options.seed));
+  OutputFolder out(options.output, "manifest.json", SequenceNames());
   const sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, options.jobs); });
   PrintWarnings(simulator.warnings());
   const auto [first, last] = options.frames.value_or(std::pair<std::int64_t, std::int64_t>(0, simulator.frame_count()));
   if (last > simulator.frame_count()) {
     throw BadInput(fmt::format("--frames {}:{}: the scenario has the frames 0 to {}", first, last, simulator.frame_count() - 1));
   }
-  OutputFolder out(options.output, "manifest.json", SequenceNames());
   sim::SequenceWriter writer(simulator, out.path(), first, last, options.jobs, "vobench " VOBENCH_VERSION);
   {
     Progress progress("rendering", last - first);

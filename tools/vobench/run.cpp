@@ -90,9 +90,9 @@ report::RunDescription Describe(const RunOptions& options, const Experiment& exp
 void Run(const RunOptions& options) {
   const Clock clock;
   const Experiment experiment = ReadExperiment(options.scenario, options.overrides);
+  const Folder folder = MakeFolder(options);
   sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, options.jobs); });
   PrintWarnings(simulator.warnings());
-  Folder folder = MakeFolder(options);
   std::vector<Tracker> odometries = MakeTrackers(options, experiment, simulator, folder);
   Truth truth;
   {
