@@ -1,7 +1,9 @@
 #include "sim/simulator.h"
 
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -16,9 +18,10 @@
 namespace sim {
 namespace {
 
-int RequireJobs(int jobs) {
+// No more than the machine has: TBB would complain on stderr.
+int Threads(int jobs) {
   if (jobs < 1) throw std::invalid_argument("simulator: jobs must be at least 1, not " + std::to_string(jobs));
-  return jobs;
+  return std::min(jobs, tbb::info::default_concurrency());
 }
 
 std::int64_t CountFrames(const TimeParams& time) {
@@ -45,12 +48,12 @@ struct Simulator::Parts {
         camera(s.camera),
         sensor(s.sensor, s.seed),
         trajectory(MakeTrajectory(s.motion, s.seed, Seconds(Stamp(frames - 1, s.time)), 0.5 * s.sensor.exposure_s)),
-        arena(RequireJobs(jobs)) {
+        arena(Threads(jobs)) {
     const Scene scene = LoadScene(s.world);
     warnings = scene.warnings;
     RayTracerOptions options;
     options.rays_per_time_sample = s.render.rays_per_time_sample;
-    options.jobs = jobs;
+    options.jobs = Threads(jobs);
     renderer = MakeRayTracer(scene, options);
   }
 

@@ -37,6 +37,7 @@ struct ScriptedMotion {
 struct RecordedMotion {
   std::filesystem::path file;  // TUM: timestamp tx ty tz qx qy qz qw
   double start_s = 0.0;        // of t = 0 after the file's first stamp
+  double average_s = 0.030;    // poses within such a time count as one, their mean; 0: each counts
   std::optional<Pose> place;   // the whole motion is moved rigidly so that it starts here; without: as recorded
 };
 

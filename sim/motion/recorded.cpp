@@ -124,6 +124,24 @@ std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file) {
   return keys;
 }
 
+std::vector<KeyPose> Average(const std::vector<KeyPose>& keys, double average_s) {
+  if (!(average_s > 0)) return keys;
+  std::vector<KeyPose> means;
+  for (std::size_t first = 0, last = 0; first < keys.size(); first = last) {
+    const double interval = std::floor(keys[first].t_s / average_s);
+    KeyPose sum{0, {glm::dvec3(0), glm::dquat(0, 0, 0, 0)}};
+    for (; last < keys.size() && std::floor(keys[last].t_s / average_s) == interval; ++last) {
+      const glm::dquat& q = keys[last].pose.q_WC;
+      sum.t_s += keys[last].t_s;
+      sum.pose.p_WC += keys[last].pose.p_WC;
+      sum.pose.q_WC = sum.pose.q_WC + (glm::dot(keys[first].pose.q_WC, q) < 0 ? -q : q);
+    }
+    const double count = static_cast<double>(last - first);
+    means.push_back({sum.t_s / count, {sum.pose.p_WC / count, glm::normalize(sum.pose.q_WC)}});
+  }
+  return means;
+}
+
 std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion, double end_s) {
   std::vector<KeyPose> keys = ReadTumTrajectory(motion.file);
   Problems problems(motion.file);
@@ -135,6 +153,7 @@ std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion,
                      settings::FormatNumber(motion.start_s + end_s) + " s");
     problems.ThrowIfAny();
   }
+  keys = Average(keys, motion.average_s);
   for (KeyPose& key : keys) key.t_s -= motion.start_s;
   const auto make = [&] {
     try {

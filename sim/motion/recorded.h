@@ -16,9 +16,13 @@ namespace sim {
 // two poses, an unreadable file.
 std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file);
 
-// A spline through the recorded poses (sim/motion/spline.h), moved in time and space as described. What the recording's
-// noise and rounding do to its derivatives is then real motion of the simulated camera. Throws settings::Error as
-// above, and when the recording ends before end_s, starts after 0, or turns too fast for a spline.
+// The mean stamp, position and orientation of the poses in each interval [k average_s, (k + 1) average_s) that has any.
+// Stamps of motion capture are uneven by milliseconds, some fall together: a curve through every pose would jerk.
+std::vector<KeyPose> Average(const std::vector<KeyPose>& keys, double average_s);
+
+// A spline (sim/motion/spline.h) through the averaged poses, moved in time and space as described; up to average_s at
+// the file's ends it goes on at constant velocity. What noise remains is real motion of the simulated camera. Throws
+// settings::Error as above, and when the recording ends before end_s or turns too fast for a spline.
 std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion, double end_s);
 
 }  // namespace sim

@@ -163,6 +163,7 @@ RecordedMotion ReadRecorded(Section& section, const std::filesystem::path& folde
   RecordedMotion motion;
   motion.file = ReadFile(section, "file", folder);
   section.Read("start", motion.start_s, Unit::time, kNotNegative);
+  section.Read("average", motion.average_s, Unit::time, Range{0, 0.5});
   section.Allow("place");
   if (section.Has("place")) {
     Section place = section.Child("place");

@@ -51,7 +51,11 @@ bool Approach(const CameraParams& c, const glm::dvec2& goal, glm::dvec2& p) {
 std::optional<glm::dvec2> Solve(const CameraParams& c, const glm::dvec2& target, int steps) {
   glm::dvec2 p(0.0);
   for (int step = 1; step <= steps; ++step) {
+    const glm::dvec2 last = p;
     if (!Approach(c, target * (static_cast<double>(step) / steps), p)) return std::nullopt;
+    for (const double part : {0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875}) {
+      if (!(glm::determinant(DistortJacobian(c, last + part * (p - last))) > 1e-6)) return std::nullopt;
+    }
   }
   return p;
 }

@@ -1,0 +1,105 @@
+#include "sim/random/random.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace sim {
+namespace {
+
+constexpr double kZ = 4.8916;  // |z| beyond it: 1e-6, two-sided
+
+// Vectors of Random123 1.14 (kat_vectors, philox4x32 10).
+TEST(Random, KnownAnswersOfPhilox) {
+  EXPECT_EQ(RandomWords(0, static_cast<Stream>(0), 0, 0, 0), (Words{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
+  EXPECT_EQ(RandomWords(~0ull, static_cast<Stream>(0xffffffff), 0xffffffff, 0xffffffff, 0xffffffff),
+            (Words{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
+  EXPECT_EQ(RandomWords(0x299f31d0a4093822ull, static_cast<Stream>(0x03707344), 0x13198a2e, 0x85a308d3, 0x243f6a88),
+            (Words{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
+}
+
+TEST(Random, UniformNeverReachesItsEnds) {
+  EXPECT_GT(Uniform(0), 0.0);
+  EXPECT_LT(Uniform(0xffffffff), 1.0);
+  EXPECT_GT(Uniform(0, 0), 0.0);
+  EXPECT_LT(Uniform(0xffffffff, 0xffffffff), 1.0);
+  EXPECT_EQ(Uniform(0x80000000, 0), 0.5 + 0x1p-53);
+  for (const std::uint32_t word : {0u, 1u, 0x7fffffffu, 0xffffff7fu, 0xffffffffu}) {
+    EXPECT_TRUE(std::isfinite(NormalsFast(word, 5)[0])) << word;
+  }
+}
+
+struct Moments {
+  double mean = 0, variance = 0, skewness = 0, kurtosis = 0;
+};
+
+Moments MomentsOf(const std::vector<double>& x) {
+  Moments m;
+  const double n = static_cast<double>(x.size());
+  for (const double v : x) m.mean += v / n;
+  double m2 = 0, m3 = 0, m4 = 0;
+  for (const double v : x) {
+    const double d = v - m.mean;
+    m2 += d * d / n;
+    m3 += d * d * d / n;
+    m4 += d * d * d * d / n;
+  }
+  m.variance = m2;
+  m.skewness = m3 / std::pow(m2, 1.5);
+  m.kurtosis = m4 / (m2 * m2) - 3;
+  return m;
+}
+
+// The largest of four z-scores of a sample that should be standard normal. Above kZ with probability 4e-6 if it is.
+double WorstScore(const std::vector<double>& x) {
+  const double n = static_cast<double>(x.size());
+  const Moments m = MomentsOf(x);
+  return std::max({std::abs(m.mean) * std::sqrt(n), std::abs(m.variance - 1) * std::sqrt(n / 2),
+                   std::abs(m.skewness) * std::sqrt(n / 6), std::abs(m.kurtosis) * std::sqrt(n / 24)});
+}
+
+// False alarms: 8e-6 in all.
+TEST(Random, NormalsAreStandardNormal) {
+  std::vector<double> exact, fast;
+  for (std::uint32_t i = 0; i < 200000; ++i) {
+    const Words words = RandomWords(42, Stream::pixel_noise, 0, i, 0);
+    for (const double z : Normals(words)) exact.push_back(z);
+    for (const float z : NormalsFast(words[0], words[1])) fast.push_back(static_cast<double>(z));
+  }
+  EXPECT_LT(WorstScore(exact), kZ);
+  EXPECT_LT(WorstScore(fast), kZ);
+  // Rejected: sums of twelve uniform numbers, whose first three moments are the same.
+  std::vector<double> sums;
+  for (std::uint32_t i = 0; i < 200000; ++i) {
+    double sum = -6;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      for (const std::uint32_t word : RandomWords(42, Stream::pixel_noise, 0, i, k)) sum += Uniform(word);
+    }
+    sums.push_back(sum);
+  }
+  EXPECT_GT(WorstScore(sums), kZ);
+}
+
+// Numbers whose keys differ in any one part are uncorrelated. False alarms: 6e-6.
+TEST(Random, EveryPartOfTheKeyMakesOtherNumbers) {
+  constexpr int kCount = 20000;
+  const auto correlation = [](auto&& a, auto&& b) {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < kCount; ++i) sum += Normals(a(i))[0] * Normals(b(i))[0];
+    return std::abs(sum / std::sqrt(static_cast<double>(kCount)));
+  };
+  const auto base = [](std::uint32_t i) { return RandomWords(7, Stream::pixel_noise, 3, i, 1); };
+  EXPECT_LT(correlation(base, [](std::uint32_t i) { return RandomWords(8, Stream::pixel_noise, 3, i, 1); }), kZ);
+  EXPECT_LT(
+      correlation(base, [](std::uint32_t i) { return RandomWords(7 + (1ull << 32), Stream::pixel_noise, 3, i, 1); }),
+      kZ);
+  EXPECT_LT(correlation(base, [](std::uint32_t i) { return RandomWords(7, Stream::ray_jitter, 3, i, 1); }), kZ);
+  EXPECT_LT(correlation(base, [](std::uint32_t i) { return RandomWords(7, Stream::pixel_noise, 4, i, 1); }), kZ);
+  EXPECT_LT(correlation(base, [](std::uint32_t i) { return RandomWords(7, Stream::pixel_noise, 3, i + 1, 1); }), kZ);
+  EXPECT_LT(correlation(base, [](std::uint32_t i) { return RandomWords(7, Stream::pixel_noise, 3, i, 2); }), kZ);
+  EXPECT_GT(correlation(base, base), kZ) << "the check can fail";
+}
+
+}  // namespace
+}  // namespace sim

@@ -1,0 +1,206 @@
+#include "sim/scenario/scenario.h"
+
+#include <gmock/gmock.h>
+
+#include <glm/geometric.hpp>
+#include <string>
+
+#include "sim/motion/so3.h"
+#include "sim/scenario/pose_reader.h"
+#include "tests/unit/sim/small_world.h"
+#include "tools/settings/settings.h"
+
+namespace sim {
+namespace {
+
+using testing::HasSubstr;
+
+std::string Message(const std::filesystem::path& path,
+                    const std::vector<std::pair<std::string, std::string>>& overrides = {}) {
+  try {
+    LoadScenario(path, overrides);
+  } catch (const settings::Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Scenario, EveryKeyIsRead) {
+  const TemporaryFolder folder;
+  const auto file = folder.Write("s.yaml", R"(
+name: all
+seed: 18446744073709551615
+world:
+  meshes: [{file: a/b.obj, position: [1 cm, 2, 3], orientation: [0, 0.6, 0, 0.8], scale: 0.01}]
+  lights:
+    - {type: ambient, radiance: [0.1, 0.2, 0.3]}
+    - {type: sun, direction: [0, -1, 0], irradiance: [1, 2, 3]}
+    - {type: point, position: [1, 2, 3], intensity: [4, 5, 6]}
+    - {type: rectangle, corner: [1, 2, 3], side_u: [1, 0, 0], side_v: [0, 0, 2], radiance: [7, 8, 9]}
+  background: [0.1, 0.1, 0.2]
+camera: {width: 320, height: 240, fx: 260 px, fy: 261, cx: 159.5, cy: 119.5, distortion: {k1: 0.1, k2: -0.01, p1: 0.001, p2: 0.002, k3: 0.003}}
+sensor: {exposure: 8 ms, time_samples: 7, white: 2, full_well: 5000 e, shot_noise: false, read_noise: 3 e, response: linear, color: false}
+render: {rays_per_time_sample: 3}
+time: {rate: 20 Hz, duration: 1.5 s}
+trajectory:
+  type: sampled
+  start: {position: [0, 1, 0], look_at: [0, 1, -5], velocity: [1 cm/s, 2, 3], angular_rate: [90 deg/s, 0, 0]}
+  position_noise: 0.3 m/s^1.5
+  orientation_noise: 0.4 rad/s^1.5
+  position_return: 1.5 1/s
+  orientation_return: 2.5
+  knot_step: 5 ms
+odometry: {what: [ever]}
+prior: 3
+)");
+  const Scenario s = LoadScenario(file);
+  EXPECT_EQ(s.name, "all");
+  EXPECT_EQ(s.seed, 18446744073709551615u);
+  ASSERT_EQ(s.world.meshes.size(), 1u);
+  EXPECT_EQ(s.world.meshes[0].file, folder.path() / "a/b.obj");
+  EXPECT_EQ(s.world.meshes[0].position, glm::dvec3(0.01, 2, 3));
+  EXPECT_DOUBLE_EQ(s.world.meshes[0].orientation.y, 0.6);
+  EXPECT_DOUBLE_EQ(s.world.meshes[0].orientation.w, 0.8);
+  EXPECT_EQ(s.world.meshes[0].scale, 0.01);
+  ASSERT_EQ(s.world.lights.size(), 4u);
+  EXPECT_EQ(std::get<AmbientLight>(s.world.lights[0]).radiance, glm::dvec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(std::get<SunLight>(s.world.lights[1]).irradiance, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(std::get<PointLight>(s.world.lights[2]).intensity, glm::dvec3(4, 5, 6));
+  EXPECT_EQ(std::get<RectLight>(s.world.lights[3]).side_v, glm::dvec3(0, 0, 2));
+  EXPECT_EQ(s.world.background, glm::dvec3(0.1, 0.1, 0.2));
+  EXPECT_EQ(s.camera.width, 320);
+  EXPECT_EQ(s.camera.fx, 260);
+  EXPECT_EQ(s.camera.p2, 0.002);
+  EXPECT_EQ(s.sensor.exposure_s, 0.008);
+  EXPECT_EQ(s.sensor.time_samples, 7);
+  EXPECT_EQ(s.sensor.full_well_e, 5000);
+  EXPECT_FALSE(s.sensor.shot_noise);
+  EXPECT_EQ(s.sensor.response, Response::linear);
+  EXPECT_FALSE(s.sensor.color);
+  EXPECT_EQ(s.render.rays_per_time_sample, 3);
+  EXPECT_EQ(s.time.rate_hz, 20);
+  EXPECT_EQ(s.time.duration_s, 1.5);
+  const auto& motion = std::get<SampledMotion>(s.motion);
+  EXPECT_EQ(motion.velocity, glm::dvec3(0.01, 2, 3));
+  EXPECT_DOUBLE_EQ(motion.angular_rate.x, std::acos(-1.0) / 2);
+  EXPECT_EQ(motion.orientation_noise, 0.4);
+  EXPECT_EQ(motion.position_return, 1.5);
+  EXPECT_EQ(motion.orientation_return, 2.5);
+  EXPECT_EQ(motion.knot_step_s, 0.005);
+
+  // What it resolves to, read again, is the same scenario.
+  const Scenario again = LoadScenario(folder.Write("again.yaml", s.resolved));
+  EXPECT_EQ(again.resolved, s.resolved);
+  EXPECT_THAT(s.resolved, testing::Not(HasSubstr("odometry")));
+}
+
+TEST(Scenario, ScriptedAndRecordedMotion) {
+  const SmallWorld world;
+  const std::string base = WallScenario().substr(0, WallScenario().find("time:"));
+  const auto scripted = world.folder.Write("scripted.yaml", base + R"(
+trajectory:
+  type: scripted
+  keys:
+    - {time: 0 s, position: [0, 1, 0], look_at: [0, 1, -2]}
+    - {time: 500 ms, position: [0.1, 1, 0], look_at: [0.1, 1, -2], roll: 10 deg}
+    - {time: 2 s, position: [0.2, 1, 0], orientation: [1, 0, 0, 0]}
+)");
+  const Scenario a = LoadScenario(scripted);
+  EXPECT_EQ(a.time.duration_s, 2) << "up to the last key";
+  EXPECT_EQ(std::get<ScriptedMotion>(a.motion).keys.size(), 3u);
+  EXPECT_EQ(std::get<ScriptedMotion>(a.motion).keys[1].t_s, 0.5);
+  EXPECT_THAT(Message(scripted, {{"time.duration", "3 s"}}),
+              HasSubstr("--set time.duration: 'time.duration': '3 s' must lie in 0 ... 2 s"));
+
+  const Scenario b = LoadScenario(world.folder.Write("recorded.yaml", base + R"(
+time: {duration: 1 s}
+trajectory: {type: recorded, file: f.txt, start: 2 s, place: {position: [1, 2, 3], look_at: [1, 2, 0]}}
+)"));
+  EXPECT_EQ(std::get<RecordedMotion>(b.motion).file, world.folder.path() / "f.txt");
+  EXPECT_EQ(std::get<RecordedMotion>(b.motion).start_s, 2);
+  EXPECT_EQ(std::get<RecordedMotion>(b.motion).place->p_WC, glm::dvec3(1, 2, 3));
+}
+
+TEST(Scenario, AllProblemsAtOnce) {
+  const TemporaryFolder folder;
+  const std::string file =
+      folder
+          .Write("bad.yaml",
+                 "world:\n"
+                 "  lights: [{type: torch}, {type: sun, direction: [0, 0, 0], irradiance: [-1, 0, 0]}]\n"
+                 "camera: {width: 640, hieght: 480, fx: 3 ms, fy: 525, cx: 319.5, cy: 239.5}\n"
+                 "sensor: {exposure: 50 ms, exposhure: 3, read_noise: -1}\n"
+                 "time: {rate: 30 Hz}\n"
+                 "trajectory:\n"
+                 "  type: scripted\n"
+                 "  keys:\n"
+                 "    - {time: 1 s, position: [0, 0, 0], look_at: [0, 0, 0]}\n"
+                 "    - {time: 0.5 s, position: [0, 0], roll: 3 deg}\n")
+          .string();
+  const std::string message = Message(file);
+  for (const char* problem : {
+           ":2:19: 'world.lights.0.type': 'torch' is not known; known: ",
+           ":2:50: 'direction' has no length",
+           ":2:73: 'irradiance': light is not negative",
+           ": missing key 'camera.height'",
+           ":3:22: unknown key 'hieght'; did you mean 'height'?",
+           ":3:39: 'camera.fx': '3 ms' is not a number of pixels: expected a number with px",
+           ":4:20: sensor: exposure = 0.05 s is longer than the time between two frames",
+           ":4:27: unknown key 'exposhure'; did you mean 'exposure'?",
+           ":4:53: 'sensor.read_noise': '-1' must be at least 0 e",
+           ":9:14: 'time': the first key pose must be at 0 s",
+           ":9:49: 'look_at' is where the camera is",
+           ":10:14: 'time': the times of key poses must increase, but 0.5 s comes after 1 s",
+           ":10:31: 'trajectory.keys.1.position': expected 3 numbers, not 2",
+           ":10:45: 'roll' goes with 'look_at', which is not there",
+           "'world.meshes': the world is empty",
+       }) {
+    EXPECT_THAT(message, HasSubstr(problem));
+  }
+}
+
+TEST(Scenario, TurnsThatASplineCannotFollow) {
+  const SmallWorld world;
+  const std::string base = WallScenario().substr(0, WallScenario().find("time:"));
+  const auto file = world.folder.Write("s.yaml", base + R"(
+trajectory:
+  type: scripted
+  keys:
+    - {time: 0 s, position: [0, 1, 0], look_at: [0, 1, -2]}
+    - {time: 1 s, position: [0, 1, 0], look_at: [0, 1, 2]}
+)");
+  EXPECT_THAT(Message(file), HasSubstr("'trajectory.keys': the camera turns by more than 120 deg between 0 s and 1 s"));
+}
+
+TEST(Scenario, OverridesAreChecked) {
+  const SmallWorld world;
+  EXPECT_EQ(LoadScenario(world.scenario(), {{"seed", "9"}}).seed, 9u);
+  EXPECT_EQ(LoadScenario(world.scenario(), {{"odometry.filter.particles", "16"}}).seed, 5u) << "another reader's";
+  EXPECT_EQ(Message(world.scenario(), {{"camera.widht", "3"}, {"seed", "-1"}, {"time.duration", "10 ms"}}),
+            "--set seed: 'seed': '-1' is not a whole number of at least 0\n"
+            "--set time.duration: 'time.duration': there is not one frame in it\n"
+            "--set camera.widht: unknown key 'widht'; did you mean 'width'?");
+}
+
+TEST(LookAt, AxesByHand) {
+  const auto axes = [](const glm::dquat& q) {
+    return std::array{q * glm::dvec3(1, 0, 0), q * glm::dvec3(0, 1, 0), q * glm::dvec3(0, 0, 1)};
+  };
+  // Along -z, upright: x to the right is +x, y down is -y.
+  const auto ahead = axes(LookAt({0, 1, 0}, {0, 1, -3}, 0));
+  EXPECT_LT(glm::length(ahead[0] - glm::dvec3(1, 0, 0)), 1e-15);
+  EXPECT_LT(glm::length(ahead[1] - glm::dvec3(0, -1, 0)), 1e-15);
+  EXPECT_LT(glm::length(ahead[2] - glm::dvec3(0, 0, -1)), 1e-15);
+  // Along +x: what is to the right is +z.
+  EXPECT_LT(glm::length(axes(LookAt({0, 0, 0}, {2, 0, 0}, 0))[0] - glm::dvec3(0, 0, 1)), 1e-15);
+  // Rolled to the right by a quarter turn, the camera's right is the world's down.
+  EXPECT_LT(glm::length(axes(LookAt({0, 1, 0}, {0, 1, -3}, std::acos(-1.0) / 2))[0] - glm::dvec3(0, -1, 0)), 1e-15);
+  // Straight down and up are not singular.
+  EXPECT_LT(glm::length(axes(LookAt({0, 3, 0}, {0, 0, 0}, 0))[1] - glm::dvec3(0, 0, 1)), 1e-15)
+      << "the upper edge is towards -z";
+  EXPECT_LT(glm::length(axes(LookAt({0, 0, 0}, {0, 3, 0}, 0))[1] - glm::dvec3(0, 0, -1)), 1e-15)
+      << "the upper edge is towards +z";
+}
+
+}  // namespace
+}  // namespace sim
