@@ -22,7 +22,6 @@ namespace {
 struct Track {
   int id = 0;
   Appearance appearance;
-  Eigen::Vector2d first_pixel;
   double score = 0;
   int age = 0;                // frames since it was first seen
   int frames_unsearched = 0;  // in a row
@@ -277,9 +276,8 @@ void Odometry::Impl::AddFeatures(const cv::Mat& grey) {
     if (!descriptor) continue;
     const Eigen::Vector2d pixel = corner.cast<double>();
     struct Track track;
-    track.id = next_id++;
     track.appearance = {*descriptor, CutPatch(grey, corner)};
-    track.first_pixel = pixel;
+    track.id = next_id++;
     track.score = params.score.initial;
     tracks.push_back(track);
     rays.push_back(camera.Undistort(pixel));

@@ -72,6 +72,7 @@ struct FeatureParams {
   int fast_threshold_start = 60;   // grey levels; lowered per cell ...
   int fast_threshold_min = 7;      // ... to this at the least
   double min_distance_px = 10;     // between a new corner and any feature in the image
+  double min_cornerness = 0.0;     // 0 ... 1, of a new feature: above 0 refuses straight edges, along which matches slide (0: the paper)
   double brisk_size_px = 12;       // diameter given to BRISK: larger is more distinct, less invariant
   double max_hamming = 0.15;       // of 512 bits
   int window_px = 9;               // side of the search window about the prediction ...

@@ -7,6 +7,7 @@
 #include "tools/evaluation/summary.h"
 #include "tools/vobench/commands.h"
 #include "tools/vobench/errors.h"
+#include "tools/vobench/sequence_truth.h"
 
 namespace vobench {
 namespace fs = std::filesystem;
@@ -31,7 +32,10 @@ evaluation::EstimateRun ReadEstimate(const fs::path& path) {
 }
 
 evaluation::Trajectory ReadTruth(const fs::path& path) {
-  return evaluation::ReadTrajectory(fs::is_directory(path) ? path / "groundtruth.txt" : path);
+  if (!fs::is_directory(path)) return evaluation::ReadTrajectory(path);
+  const std::optional<Truth> truth = ReadSequenceTruth(path);
+  if (!truth) throw BadInput(fmt::format("{}: no groundtruth.txt in it", path.string()));
+  return truth->poses;
 }
 
 void PrintStatistics(std::string_view what, const Statistics& s, double factor, std::string_view unit) {

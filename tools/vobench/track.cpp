@@ -10,6 +10,7 @@
 #include "tools/vobench/prior.h"
 #include "tools/vobench/progress.h"
 #include "tools/vobench/result.h"
+#include "tools/vobench/sequence_truth.h"
 #include "tools/vobench/tracker.h"
 #include "vo/sequence/reader.h"
 
@@ -48,15 +49,6 @@ vo::Camera ReadCamera(const TrackOptions& options) {
   return vo::ReadCamera(file);
 }
 
-// For the judge alone.
-std::optional<Truth> ReadTruth(const fs::path& sequence) {
-  if (!fs::exists(sequence / "groundtruth.txt")) return std::nullopt;
-  Truth truth;
-  truth.poses = evaluation::ReadTrajectory(sequence / "groundtruth.txt");
-  if (fs::exists(sequence / "velocity.txt")) truth.velocities = evaluation::ReadVelocities(sequence / "velocity.txt");
-  return truth;
-}
-
 std::string Record(const vo::Camera& c, const std::string& resolved) {
   nlohmann::ordered_json all;
   all["camera"] = {{"width", c.width}, {"height", c.height}, {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy},
@@ -79,7 +71,7 @@ void Track(const TrackOptions& options) {
   vo::SequenceReader sequence = Input([&] { return vo::SequenceReader(options.sequence); });
   const vo::Camera camera = Input([&] { return ReadCamera(options); });
   const TrackSettings settings = Input([&] { return ReadSettings(options); });
-  const std::optional<Truth> truth = Input([&] { return ReadTruth(options.sequence); });
+  const std::optional<Truth> truth = Input([&] { return ReadSequenceTruth(options.sequence); });
   const auto frames = static_cast<std::int64_t>(sequence.size());
   OutputFolder out(options.output, kResultMarker, ResultNames());
 

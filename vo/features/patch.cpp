@@ -45,6 +45,21 @@ Patch CutPatch(const cv::Mat& grey, const Eigen::Vector2i& centre) {
   return patch;
 }
 
+double Cornerness(const Patch& patch) {
+  Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
+  const auto grey = [&](int x, int y) {
+    return static_cast<double>(patch.grey[static_cast<std::size_t>((y + Patch::kRadius) * Patch::kSide + x + Patch::kRadius)]);
+  };
+  for (int y = -kWindowRadius; y <= kWindowRadius; ++y)
+    for (int x = -kWindowRadius; x <= kWindowRadius; ++x) {
+      const Eigen::Vector2d g(grey(x + 1, y) - grey(x - 1, y), grey(x, y + 1) - grey(x, y - 1));
+      moments += g * g.transpose();
+    }
+  const double half_trace = 0.5 * moments.trace();
+  const double root = std::sqrt(std::max(0.0, half_trace * half_trace - moments.determinant()));
+  return half_trace > 0 ? (half_trace - root) / (half_trace + root) : 0.0;
+}
+
 std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& warp, const cv::Mat& grey,
                                      const Eigen::Vector2d& start, double max_shift_px) {
   Eigen::Matrix<double, kWindow + 2, kWindow + 2> wide;

@@ -21,6 +21,10 @@ struct Patch {
 // `centre` at least kRadius from the edge of the CV_8UC1 image.
 Patch CutPatch(const cv::Mat& grey, const Eigen::Vector2i& centre);
 
+// Ratio of the smaller to the larger eigenvalue of the gradients' second moments about the centre, 0 ... 1: near 0 on a straight edge,
+// along which a match slides.
+double Cornerness(const Patch& patch);
+
 struct Registration {
   Eigen::Vector2d pixel;
   double correlation = 0;  // normalised, -1 ... 1

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -24,6 +25,18 @@ std::optional<std::int64_t> ParseStamp(const std::string& text) {
   return std::stoll(whole) * 1'000'000'000 + std::stoll(fraction);
 }
 
+// ICL-NUIM numbers its frames at 30 Hz.
+std::optional<std::int64_t> StampOfIndex(const std::string& text) {
+  if (text.empty() || text.size() > 9 || !std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }))
+    return std::nullopt;
+  return (std::stoll(text) * 1'000'000'000 + 15) / 30;
+}
+
+std::vector<std::string> Words(const std::string& line) {
+  std::istringstream in(line);
+  return {std::istream_iterator<std::string>(in), std::istream_iterator<std::string>()};
+}
+
 // OpenCV decodes a PNG or JPEG that breaks off and fills the rest with grey; a whole file ends with its end mark.
 bool EndsAsItShould(const std::vector<std::uint8_t>& bytes) {
   static constexpr std::uint8_t png[] = {0x89, 'P', 'N', 'G'};
@@ -37,8 +50,10 @@ bool EndsAsItShould(const std::vector<std::uint8_t>& bytes) {
 }
 
 cv::Mat ReadImage(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  std::vector<std::uint8_t> bytes(in ? static_cast<std::size_t>(in.tellg()) : 0);
+  in.seekg(0);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!in || bytes.empty()) throw std::runtime_error(file.string() + ": cannot be read, or is empty");
   if (!EndsAsItShould(bytes)) throw std::runtime_error(file.string() + ": image breaks off before its end");
   const cv::Mat image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
@@ -52,7 +67,8 @@ cv::Mat ReadImage(const fs::path& file) {
 
 SequenceReader::SequenceReader(const fs::path& folder) {
   if (!fs::is_directory(folder)) throw std::runtime_error(folder.string() + ": no such folder");
-  const fs::path list = folder / "rgb.txt";
+  const bool icl_nuim = !fs::exists(folder / "rgb.txt") && fs::exists(folder / "associations.txt");
+  const fs::path list = folder / (icl_nuim ? "associations.txt" : "rgb.txt");
   std::ifstream in(list);
   if (!in) throw std::runtime_error(list.string() + ": cannot be read (a sequence folder has one, see docs/sequence_format.md)");
   std::ostringstream problems;
@@ -60,23 +76,23 @@ SequenceReader::SequenceReader(const fs::path& folder) {
   int number = 0, last_number = 0;
   while (std::getline(in, line)) {
     ++number;
-    std::istringstream words(line);
-    std::string stamp, name, more;
-    if (!(words >> stamp) || stamp[0] == '#') continue;
     const auto complain = [&](const std::string& text) { problems << list.string() << ":" << number << ": " << text << "\n"; };
-    const auto stamp_ns = ParseStamp(stamp);
+    const std::vector<std::string> words = Words(line);
+    if (words.empty() || words[0][0] == '#') continue;
+    const auto stamp_ns = icl_nuim ? StampOfIndex(words[0]) : ParseStamp(words[0]);
     if (!stamp_ns) {
-      complain("'" + stamp + "' is not a time stamp in seconds");
+      complain("'" + words[0] + (icl_nuim ? "' is not the number of a frame" : "' is not a time stamp in seconds"));
       continue;
     }
-    if (!(words >> name) || (words >> more)) {
-      complain("expected 'timestamp filename'");
+    if (words.size() != (icl_nuim ? 4 : 2)) {
+      complain(icl_nuim ? "expected 'index depth-file index image-file'" : "expected 'timestamp filename'");
       continue;
     }
     if (!entries_.empty() && *stamp_ns <= entries_.back().stamp_ns)
-      complain("time stamp " + stamp + " does not increase over line " + std::to_string(last_number));
-    if (!fs::is_regular_file(folder / name)) complain("image " + (folder / name).string() + " is not there");
-    entries_.push_back({*stamp_ns, folder / name});
+      complain("time stamp " + words[0] + " does not increase over line " + std::to_string(last_number));
+    const fs::path image = folder / words.back();
+    if (!fs::is_regular_file(image)) complain("image " + image.string() + " is not there");
+    entries_.push_back({*stamp_ns, image});
     last_number = number;
   }
   std::string text = problems.str();

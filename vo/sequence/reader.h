@@ -1,4 +1,5 @@
-// Purpose: frames from a folder in TUM RGB-D layout (docs/sequence_format.md); ICL-NUIM comes in the same layout.
+// Purpose: frames from a folder in TUM RGB-D layout (docs/sequence_format.md), or in that of the original ICL-NUIM files, which have
+//          associations.txt (`index depth-file index image-file`) instead of rgb.txt: their time is index / 30 s.
 //          Truth is not read here: what the odometry is fed has no field for it.
 #pragma once
 
@@ -18,7 +19,7 @@ struct Frame {
 
 class SequenceReader {
  public:
-  // Reads and checks rgb.txt. Throws std::runtime_error naming file and lines: folder or rgb.txt missing, no frames,
+  // Reads and checks the list of frames. Throws std::runtime_error naming file and lines: folder or list missing, no frames,
   // a malformed line, stamps that do not increase (both lines named), image files that are not there.
   explicit SequenceReader(const std::filesystem::path& folder);
 

@@ -46,6 +46,14 @@ TEST_F(Reader, ReadsColourAndGreyWithExactStamps) {
   EXPECT_FALSE(reader.Next());
 }
 
+TEST_F(Reader, ReadsTheOriginalIclNuimLayout) {
+  std::ofstream(folder_ / "associations.txt") << "1 depth/1.png 1 rgb/a.png\n2 depth/2.png 2 rgb/b.png\n";
+  vo::SequenceReader reader(folder_);
+  ASSERT_EQ(reader.size(), 2u);
+  EXPECT_EQ(reader.Next()->stamp_ns, 33333333);
+  EXPECT_EQ(reader.Next()->stamp_ns, 66666667);
+}
+
 TEST_F(Reader, NamesEveryProblemWithItsLine) {
   List("1.0 rgb/a.png\nnan rgb/b.png\n0.5 rgb/b.png\n2.0 rgb/none.png\n3.0\n");
   const std::string error = ErrorOfOpening();
