@@ -64,7 +64,6 @@ void ReadFeatures(Section section, vo::FeatureParams& params) {
   section.Read("fast_threshold_min", fast_threshold_min, Range{1, 255});
   section.Read("min_distance", min_distance_px, Unit::pixel, Range::AtLeast(0));
   section.Read("min_cornerness", min_cornerness, Range{0, 1});
-  section.Read("min_cornerness", min_cornerness, Range{0, 1});
   section.Read("brisk_size", brisk_size_px, Unit::pixel, Range::Positive());
   section.Read("max_hamming", max_hamming, Range{0, 1});
   section.Read("window", window_px, Range::AtLeast(1));
