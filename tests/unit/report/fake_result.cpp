@@ -56,7 +56,7 @@ ev::EstimateRun FakeRun(const FakeSystem& system, int frames, TestRandom& random
     ev::FrameRecord frame;
     frame.stamp_ns = truth.stamp_ns;
     frame.searched = 70 + static_cast<int>(20 * std::sin(1.3 * t) + 5 * random.Uniform());
-    const bool blur = t > 3 && t < 3.3;
+    const bool blur = t > 1.5 && t < 1.8;
     frame.matched =
         blur ? static_cast<int>(9 * random.Uniform()) : frame.searched - static_cast<int>(20 * random.Uniform());
     frame.landmarks = 60 + 2 * k;

@@ -20,7 +20,7 @@ struct FakeSystem {
 };
 
 struct FakeOptions {
-  int frames = 180;
+  int frames = 90;
   int seeds = 3;
   bool truth = true;
   bool pictures = true;
