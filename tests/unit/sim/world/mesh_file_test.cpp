@@ -154,7 +154,7 @@ TEST(BadWorld, CorruptMeshes) {
                                       {"b.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"meshes\": ["},
                                       {"c.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"},
                                       {"d.fbx", "Kaydara FBX Binary  \x00\x1a and then nothing"},
-                                      {"e.obj", std::string("\x7f\x45LF\x01\x02\x03\x00 not a mesh\n", 22)},
+                                      {"e.obj", "\x7f\x45LF\x01\x02\x03 not a mesh\n"},
                                       {"f.unknown", "whatever"},
                                       {"g.obj", ""}}) {
     EXPECT_THAT(Problems(WorldOf(folder.Write(name, content))), ElementsAre(HasSubstr(name))) << name;
