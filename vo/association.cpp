@@ -1,0 +1,114 @@
+#include "vo/association.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/LU>
+
+#include "vo/features/matcher.h"
+#include "vo/filter/consensus.h"
+
+namespace vo {
+namespace {
+
+struct Candidate {
+  int landmark = 0;
+  ImagePrediction prediction;  // on the plane z = 1
+  Eigen::Vector2d pixel;       // the same in the image
+  Eigen::Matrix2d lens;        // d pixel / d(plane z = 1)
+};
+
+bool WorthSearching(const ParticleFilter& filter, const LandmarkRecord& record, int landmark, const ImagePrediction& prediction,
+                    const Params& params) {
+  if (record.score < params.score.delete_below) return false;
+  const Particle& particle = filter.Heaviest();
+  const Pose& now = particle.prediction.mean;
+  const Pose first = filter.AnchorOf(landmark);
+  const Eigen::Vector3d& estimate = particle.landmarks[landmark].mean;
+  const Eigen::Vector3d first_ray = first.q_WC * Eigen::Vector3d(estimate.x(), estimate.y(), 1.0).normalized();
+  const Eigen::Vector3d present_ray = now.q_WC * Eigen::Vector3d(prediction.z.x(), prediction.z.y(), 1.0).normalized();
+  if (first_ray.dot(present_ray) < std::cos(params.features.max_view_angle_deg * std::numbers::pi / 180)) return false;
+  const double rho = estimate.z();
+  return rho <= 0 || (now.p_WC - first.p_WC).norm() * rho < params.features.max_baseline_ratio;
+}
+
+// Section 7: assessed in this order; then no more than max_searched, the surest first.
+std::vector<Candidate> FindCandidates(const ParticleFilter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
+                                      int border_px, const Params& params) {
+  std::vector<Candidate> candidates;
+  for (int n = 0; n < filter.landmark_count(); ++n) {
+    const ImagePrediction prediction = filter.PredictImage(n);
+    if (!prediction.in_front || !WorthSearching(filter, records[n], n, prediction, params)) continue;
+    const Eigen::Vector2d pixel = camera.Project({prediction.z.x(), prediction.z.y(), 1.0});
+    if (!camera.Sees(pixel, border_px)) continue;
+    candidates.push_back({n, prediction, pixel, camera.LensJacobian(prediction.z)});
+  }
+  if (static_cast<int>(candidates.size()) > params.features.max_searched) {
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [&](const Candidate& a, const Candidate& b) { return records[a.landmark].score > records[b.landmark].score; });
+    candidates.resize(params.features.max_searched);
+  }
+  return candidates;
+}
+
+SearchRequest RequestFor(const Candidate& candidate, const ParticleFilter& filter, const LandmarkRecord& record, const Camera& camera,
+                         double sigma_px) {
+  const Particle& particle = filter.Heaviest();
+  const Eigen::Vector3d& estimate = particle.landmarks[candidate.landmark].mean;
+  const Projection view = Project({particle.prediction.mean, filter.AnchorOf(candidate.landmark)}, estimate);
+  SearchRequest request{&record.appearance, candidate.pixel,
+                        candidate.lens * candidate.prediction.covariance * candidate.lens.transpose() +
+                            sigma_px * sigma_px * Eigen::Matrix2d::Identity(),
+                        Eigen::Matrix2d::Identity()};
+  if (view.in_front)
+    request.warp = candidate.lens * view.J_landmark.leftCols<2>() * camera.LensJacobian(estimate.head<2>()).inverse();
+  return request;
+}
+
+}  // namespace
+
+Eigen::Matrix2d PixelNoise(const Eigen::Matrix2d& lens, double sigma_px) {
+  const Eigen::Matrix2d root = lens.inverse() * sigma_px;
+  return root * root.transpose();
+}
+
+Association Associate(const ParticleFilter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
+                      BriskField& field, int border_px, const Params& params) {
+  const std::vector<Candidate> candidates = FindCandidates(filter, records, camera, border_px, params);
+  std::vector<SearchRequest> requests;
+  for (const Candidate& c : candidates)
+    requests.push_back(RequestFor(c, filter, records[c.landmark], camera, params.features.sigma_px));
+  const auto found = FindFeatures(requests, grey, field, params.features);
+
+  std::vector<Match> matches;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (found[i])
+      matches.push_back({candidates[i].landmark, camera.Undistort(*found[i]), PixelNoise(candidates[i].lens, params.features.sigma_px)});
+  const Particle& particle = filter.Heaviest();
+  const std::vector<bool> inlier =
+      FindInliers(particle.prediction, filter.MapOf(particle), matches, params.score.gate, params.filter);
+
+  Association result;
+  for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
+    const Candidate& c = candidates[i];
+    Searched searched{c.landmark, std::nullopt};
+    FeatureView view{records[c.landmark].id, c.pixel, found[i].value_or(c.pixel), requests[i].S, FeatureView::Status::missed};
+    if (found[i]) {
+      const Match& match = matches[m];
+      view.status = inlier[m] ? FeatureView::Status::matched : FeatureView::Status::rejected;
+      if (inlier[m]) {
+        const Eigen::Vector2d nu = match.z - c.prediction.z;
+        searched.mahalanobis_sq = nu.dot(Eigen::Matrix2d(c.prediction.covariance + match.R).inverse() * nu);
+        result.nis += *searched.mahalanobis_sq;
+        result.matches.push_back(match);
+      }
+      ++m;
+    }
+    result.searched.push_back(searched);
+    result.views.push_back(view);
+  }
+  return result;
+}
+
+}  // namespace vo

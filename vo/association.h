@@ -1,0 +1,38 @@
+// Purpose: Algorithm 1, line 3: which landmarks are worth looking for, where they are in the image, and which of the matches to believe.
+//          Once per frame for all particles, so that all are weighted on the same data.
+// Source:  algorithm, section 7.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "vo/features/brisk_field.h"
+#include "vo/filter/particle_filter.h"
+#include "vo/geometry/camera.h"
+#include "vo/map/landmark_record.h"
+#include "vo/odometry.h"
+#include "vo/params.h"
+
+namespace vo {
+
+// A landmark that was looked for.
+struct Searched {
+  int landmark = 0;
+  std::optional<double> mahalanobis_sq;  // of its match under the prediction, before sampling; none: not found, or an outlier
+};
+
+struct Association {
+  std::vector<Searched> searched;
+  std::vector<Match> matches;      // inliers
+  std::vector<FeatureView> views;  // for drawing, in the order of `searched`
+  double nis = 0;                  // sum of the matches' mahalanobis_sq
+};
+
+// After filter.Predict. `records` are in the order of the filter's landmarks; `field` holds the image `grey` (CV_8UC1).
+Association Associate(const ParticleFilter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
+                      BriskField& field, int border_px, const Params& params);
+
+// The covariance of a pixel, seen on the plane z = 1. `lens` = d pixel / d(plane z = 1).
+Eigen::Matrix2d PixelNoise(const Eigen::Matrix2d& lens, double sigma_px);
+
+}  // namespace vo

@@ -1,0 +1,17 @@
+// Purpose: what all particles share about a landmark: how it looks, and whether it still exists. Its estimate is each particle's own.
+#pragma once
+
+#include "vo/features/matcher.h"
+
+namespace vo {
+
+struct LandmarkRecord {
+  int id = 0;
+  Appearance appearance;
+  double score = 0;           // existence (44)-(49)
+  int age = 0;                // frames since it was first seen
+  int frames_unsearched = 0;  // in a row
+  bool permanent = false;
+};
+
+}  // namespace vo
