@@ -1,5 +1,7 @@
 #include "sim/render/ray_scene.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -161,7 +163,8 @@ void RayScene::Build() {
     }
     rtcReleaseGeometry(geometry);
   }
-  rtcCommitScene(scene_.get());
+  // In one thread: where triangles touch, which one a ray meets may depend on the tree, and the tree on the threads.
+  tbb::task_arena(1).execute([this] { rtcCommitScene(scene_.get()); });
   const RTCError error = rtcGetDeviceError(device_.get());
   if (error != RTC_ERROR_NONE)
     throw std::runtime_error("Embree: building the scene failed, error " + std::to_string(error));

@@ -86,11 +86,13 @@ DecodedImage DecodeImage(Bytes bytes) {
   }
   if (bgr.empty()) throw std::runtime_error("not a picture that can be decoded");
 
-  DecodedImage image{bgr.cols, bgr.rows, {}};
-  image.rgb.reserve(bgr.total() * 3);
+  DecodedImage image{bgr.cols, bgr.rows, std::vector<std::uint8_t>(bgr.total() * 3)};
+  std::uint8_t* to = image.rgb.data();
   for (int y = 0; y < bgr.rows; ++y) {
     const std::uint8_t* row = bgr.ptr<std::uint8_t>(y);
-    for (int x = 0; x < bgr.cols; ++x) image.rgb.insert(image.rgb.end(), {row[3 * x + 2], row[3 * x + 1], row[3 * x]});
+    for (int x = 0; x < bgr.cols; ++x, to += 3) {
+      for (int c = 0; c < 3; ++c) to[c] = row[3 * x + 2 - c];
+    }
   }
   return image;
 }

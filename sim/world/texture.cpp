@@ -17,7 +17,7 @@ std::uint32_t Encode(const float* linear) {
   std::uint32_t bits = 0;
   for (int c = 0; c < 3; ++c) {
     const float root = std::sqrt(std::clamp(linear[c], 0.0f, 1.0f));
-    bits |= static_cast<std::uint32_t>(std::lround(root * kTexelMax)) << (10 * c);
+    bits |= static_cast<std::uint32_t>(root * kTexelMax + 0.5f) << (10 * c);
   }
   return bits;
 }
@@ -94,10 +94,13 @@ Texture::Texture(std::string name, int width, int height, std::span<const std::u
   }
   std::vector<float> linear(rgb.size());
   std::transform(rgb.begin(), rgb.end(), linear.begin(), [&](std::uint8_t code) { return linear_of_code[code]; });
+  texels_.reserve(linear.size() / 3 * 3 / 2 + 64);  // 4/3 for a square picture, more for a narrow one
 
   for (;;) {
-    levels_.push_back({width, height, static_cast<std::uint32_t>(texels_.size())});
-    for (std::size_t i = 0; i < linear.size(); i += 3) texels_.push_back(Encode(&linear[i]));
+    const std::size_t first = texels_.size();
+    levels_.push_back({width, height, static_cast<std::uint32_t>(first)});
+    texels_.resize(first + linear.size() / 3);
+    for (std::size_t i = 0; 3 * i < linear.size(); ++i) texels_[first + i] = Encode(&linear[3 * i]);
     if (width == 1 && height == 1) break;
     const int half_width = std::max(1, width / 2), half_height = std::max(1, height / 2);
     linear = Halve(linear, width, height, half_width, half_height);
