@@ -3,11 +3,14 @@
 #include <assimp/scene.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <assimp/Exporter.hpp>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <glm/geometric.hpp>
 #include <initializer_list>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -247,6 +250,33 @@ TEST(MeshFormats, BinaryFbx) {
   file.append(13, '\0');
   const Folder folder;
   ExpectTriangle(LoadScene(WorldOf(folder.Write("binary.fbx", file))), "binary.fbx", true);
+}
+
+// Cut off anywhere, a file is refused or is a smaller world (a PLY or OBJ that lost its end may be whole): it never
+// hangs.
+TEST(MeshFormats, TruncatedFilesEndWell) {
+  const Folder folder;
+  const std::unique_ptr<aiScene> scene(TriangleForExport());
+  for (const auto& [format, name] :
+       {std::pair{"glb2", "t.glb"}, {"fbxa", "t.fbx"}, {"ply", "t.ply"}, {"obj", "t.obj"}}) {
+    Assimp::Exporter exporter;
+    const std::string file = (folder.path() / name).string();
+    ASSERT_EQ(exporter.Export(scene.get(), format, file), AI_SUCCESS) << exporter.GetErrorString();
+    std::ifstream stream(file, std::ios::binary);
+    const std::string whole{std::istreambuf_iterator<char>(stream), {}};
+    int refused = 0;
+    const std::size_t step = std::max<std::size_t>(1, whole.size() / 100);
+    for (std::size_t length = 0; length < whole.size(); length += step) {
+      folder.Write(name, whole.substr(0, length));
+      try {
+        EXPECT_THAT(LoadScene(WorldOf(file)).meshes, testing::Not(IsEmpty())) << name << " cut off at " << length;
+      } catch (const SceneError& error) {
+        ++refused;
+        EXPECT_THAT(error.problems(), ElementsAre(HasSubstr(name)));
+      }
+    }
+    EXPECT_GT(refused, 25) << name;
+  }
 }
 
 }  // namespace
