@@ -13,6 +13,8 @@
 namespace sim {
 namespace {
 
+constexpr float kFewElectrons = 16.0f;
+
 // By inversion of the distribution function, from a uniform number.
 float Poisson(float mean, double u) {
   double probability = std::exp(-static_cast<double>(mean)), sum = probability;
@@ -51,48 +53,61 @@ Sensor::Sensor(const SensorParams& params, std::uint64_t seed)
   if (!text.empty()) throw std::invalid_argument(text);
 }
 
-float Sensor::Electrons(float expected, std::uint32_t frame, std::uint32_t pixel, std::uint32_t channel) const {
-  const Words words = RandomWords(seed_, Stream::pixel_noise, frame, pixel, channel);
-  const auto [z, z_read] = NormalsFast(words[0], words[1]);
-  float electrons = expected;
-  if (params_.shot_noise) {
-    constexpr float kFew = 16.0f;
-    electrons = expected < kFew ? Poisson(expected, Uniform(words[2]))
-                                : expected + std::sqrt(expected) * z + (z * z - 1.0f) / 6.0f;
+void Sensor::AddNoise(std::uint32_t frame, std::uint32_t first_pixel, std::uint32_t channels,
+                      std::span<float> electrons) const {
+  const std::size_t n = electrons.size();
+  // In passes, of which the compiler makes vector code.
+  std::vector<std::uint32_t> a(n), b(n), few(n);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const Words words = RandomWords(seed_, Stream::pixel_noise, frame, first_pixel + i / channels, i % channels);
+    a[i] = words[0];
+    b[i] = words[1];
+    few[i] = words[2];
   }
-  return electrons + static_cast<float>(params_.read_noise_e) * z_read;
+  std::vector<float> shot(n), read(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto [z, z_read] = NormalsFast(a[i], b[i]);
+    shot[i] = electrons[i] + std::sqrt(electrons[i]) * z + (z * z - 1.0f) / 6.0f;
+    read[i] = static_cast<float>(params_.read_noise_e) * z_read;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (params_.shot_noise)
+      electrons[i] = electrons[i] < kFewElectrons ? Poisson(electrons[i], Uniform(few[i])) : shot[i];
+    electrons[i] += read[i];
+  }
 }
 
 Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame) const {
-  const int channels = params_.color ? 3 : 1;
-  const std::size_t width = static_cast<std::size_t>(radiance.width);
-  Image image{radiance.width, radiance.height, channels, {}};
-  image.data.resize(width * static_cast<std::size_t>(radiance.height) * static_cast<std::size_t>(channels));
+  const std::size_t channels = params_.color ? 3 : 1;
+  const std::size_t width = static_cast<std::size_t>(radiance.width),
+                    height = static_cast<std::size_t>(radiance.height);
+  Image image{radiance.width, radiance.height, static_cast<int>(channels), {}};
+  image.data.resize(width * height * channels);
   const float full_well = static_cast<float>(params_.full_well_e);
   const float to_electrons = static_cast<float>(params_.full_well_e / params_.white);
   const bool noisy = params_.shot_noise || params_.read_noise_e > 0;
-  const auto code = [&](float light, std::size_t pixel, int channel) {
+  const auto expected = [&](float light) {
     if (!(light >= 0.0f))
       throw std::logic_error("sensor: the renderer delivered a radiance that is negative or not a number");
     // Far beyond the full well a pixel is white whatever the noise.
-    const float expected = std::min(light * to_electrons, 4.0f * full_well);
-    const float electrons = noisy ? Electrons(expected, static_cast<std::uint32_t>(frame),
-                                              static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(channel))
-                                  : expected;
-    return response_.Encode(electrons / full_well);
+    return std::min(light * to_electrons, 4.0f * full_well);
   };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, static_cast<std::size_t>(radiance.height), 16),
-                    [&](const auto& rows) {
-                      for (std::size_t pixel = rows.begin() * width; pixel < rows.end() * width; ++pixel) {
-                        const float* rgb = &radiance.rgb[3 * pixel];
-                        std::uint8_t* out = &image.data[static_cast<std::size_t>(channels) * pixel];
-                        if (channels == 1) {
-                          out[0] = code(0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2], pixel, 0);
-                        } else {
-                          for (int c = 0; c < 3; ++c) out[c] = code(rgb[c], pixel, c);
-                        }
-                      }
-                    });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height, 16), [&](const auto& rows) {
+    std::vector<float> electrons(width * channels);
+    for (std::size_t y = rows.begin(); y < rows.end(); ++y) {
+      const float* rgb = &radiance.rgb[3 * y * width];
+      for (std::size_t i = 0; i < electrons.size(); ++i) {
+        electrons[i] = expected(
+            channels == 3 ? rgb[i] : 0.2126f * rgb[3 * i] + 0.7152f * rgb[3 * i + 1] + 0.0722f * rgb[3 * i + 2]);
+      }
+      if (noisy) {
+        AddNoise(static_cast<std::uint32_t>(frame), static_cast<std::uint32_t>(y * width),
+                 static_cast<std::uint32_t>(channels), electrons);
+      }
+      std::uint8_t* codes = &image.data[y * width * channels];
+      for (std::size_t i = 0; i < electrons.size(); ++i) codes[i] = response_.Encode(electrons[i] / full_well);
+    }
+  });
   return image;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,9 @@ class Sensor {
   Image Capture(const RadianceImage& radiance, std::int64_t frame) const;
 
  private:
-  // Electrons that are read out where N are expected.
-  float Electrons(float expected, std::uint32_t frame, std::uint32_t pixel, std::uint32_t channel) const;
+  // Expected electrons of pixels one after the other, `channels` numbers each -> electrons that are read out.
+  void AddNoise(std::uint32_t frame, std::uint32_t first_pixel, std::uint32_t channels,
+                std::span<float> electrons) const;
 
   SensorParams params_;
   std::uint64_t seed_;

@@ -30,6 +30,27 @@ TEST(Random, UniformNeverReachesItsEnds) {
   }
 }
 
+TEST(Random, FastNormalsAreTheExactOnesInSinglePrecision) {
+  const auto check = [](std::uint32_t a, std::uint32_t b) {
+    const auto exact = Normals(Uniform(a), (b >> 8) * 0x1p-24);
+    const auto fast = NormalsFast(a, b);
+    // Near u = 1, where the radius is small, its square is exact to 1e-6.
+    ASSERT_NEAR(static_cast<double>(fast[0]), exact[0], 1e-3) << a << " " << b;
+    const double radius2 = static_cast<double>(fast[0] * fast[0] + fast[1] * fast[1]);
+    ASSERT_NEAR(radius2, exact[0] * exact[0] + exact[1] * exact[1], 1e-5) << a << " " << b;
+    if (Uniform(a) > 0.99) return;
+    ASSERT_NEAR(static_cast<double>(fast[0]), exact[0], 1e-5) << a << " " << b;
+    ASSERT_NEAR(static_cast<double>(fast[1]), exact[1], 1e-5) << a << " " << b;
+  };
+  for (const std::uint32_t end :
+       {0u, 1u, 2u, 0x3fffffffu, 0x40000000u, 0x7fffffffu, 0x80000000u, 0xfffffffeu, 0xffffffffu}) {
+    for (const std::uint32_t b :
+         {0u, 0x1fffffffu, 0x20000000u, 0x60000000u, 0xa0000000u, 0xdfffffffu, 0xe0000000u, 0xffffffffu})
+      check(end, b);
+  }
+  for (std::uint32_t i = 0; i < 300000; ++i) check(i * 2654435761u, i * 2246822519u);
+}
+
 struct Moments {
   double mean = 0, variance = 0, skewness = 0, kurtosis = 0;
 };
