@@ -1,11 +1,12 @@
-// The simulator's camera and the odometry's, each held against the numbers worked by hand in docs/conventions.md, and against each
-// other. They share no code.
-#include <cmath>
-#include <utility>
+// The simulator's camera and the odometry's, each held against the numbers worked by hand in docs/conventions.md, and
+// against each other. They share no code.
+#include "sim/sensor/camera.h"
 
 #include <gtest/gtest.h>
 
-#include "sim/sensor/camera.h"
+#include <cmath>
+#include <utility>
+
 #include "vo/geometry/camera.h"
 
 namespace {

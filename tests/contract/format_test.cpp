@@ -1,4 +1,7 @@
 // What the simulator writes, the odometry and the judge read: stamps, cameras, colours, truth.
+#include "sim/sequence/format.h"
+
+#include <gtest/gtest.h>
 #include <stdlib.h>
 
 #include <filesystem>
@@ -7,9 +10,6 @@
 #include <string>
 #include <vector>
 
-#include <gtest/gtest.h>
-
-#include "sim/sequence/format.h"
 #include "tools/evaluation/text_file.h"
 #include "tools/evaluation/trajectory.h"
 #include "vo/geometry/camera.h"

@@ -1,13 +1,14 @@
-// The nearly-constant-velocity model: the odometry's matrices against numbers worked by hand, and the simulator's sampled motion
-// against the odometry's matrices. "position_noise: 2 m/s^1.5" must mean the same to both.
+// The nearly-constant-velocity model: the odometry's matrices against numbers worked by hand, and the simulator's
+// sampled motion against the odometry's matrices. "position_noise: 2 m/s^1.5" must mean the same to both.
+#include "vo/filter/motion_model.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Cholesky>
-#include <gtest/gtest.h>
-
 #include "sim/motion/sampled.h"
-#include "vo/filter/motion_model.h"
 #include "vo/geometry/so3.h"
 
 namespace {
@@ -84,8 +85,9 @@ TEST(MotionModelContract, TheSimulatorsMotionIsTheOdometrysModel) {
   EXPECT_GT(std::abs(Surprise(innovations, vo::NearlyConstantVelocity(squared, step).Q)), 5);
 }
 
-// Of noises drawn without their correlation the surprise above can look right: the correlation is checked by itself. It is sqrt(3)/2
-// = 0.866 in the model, and estimated here with a standard deviation of (1 - 0.75) / sqrt(3 * 1920) = 0.0033.
+// Of noises drawn without their correlation the surprise above can look right: the correlation is checked by itself. It
+// is sqrt(3)/2 = 0.866 in the model, and estimated here with a standard deviation of (1 - 0.75) / sqrt(3 * 1920) =
+// 0.0033.
 TEST(MotionModelContract, PositionAndVelocityNoiseAreCorrelated) {
   const auto innovations = Innovations(1.0 / 240);
   vo::Matrix12 covariance = vo::Matrix12::Zero();
@@ -93,7 +95,8 @@ TEST(MotionModelContract, PositionAndVelocityNoiseAreCorrelated) {
   for (int half = 0; half < 2; ++half) {
     double correlation = 0;
     for (int axis = 3 * half; axis < 3 * half + 3; ++axis) {
-      correlation += covariance(axis, axis + 6) / std::sqrt(covariance(axis, axis) * covariance(axis + 6, axis + 6)) / 3;
+      correlation +=
+          covariance(axis, axis + 6) / std::sqrt(covariance(axis, axis) * covariance(axis + 6, axis + 6)) / 3;
     }
     EXPECT_NEAR(correlation, std::sqrt(0.75), 5 * 0.0033);
   }

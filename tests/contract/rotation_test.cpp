@@ -1,10 +1,10 @@
-// Poses and rates as docs/conventions.md defines them, worked by hand, in the simulator and in the odometry; and the one's motion in
-// the other's terms.
+// Poses and rates as docs/conventions.md defines them, worked by hand, in the simulator and in the odometry; and the
+// one's motion in the other's terms.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include <gtest/gtest.h>
 
 #include "sim/motion/sampled.h"
 #include "sim/motion/so3.h"
@@ -58,8 +58,8 @@ sim::SplineTrajectory SomeMotion() {
                                 {2, {{0.6, 0.2, 0.9}, sim::Exp({-0.2, 0.4, 0.6})}}});
 }
 
-// How far the simulator's rate is from the convention's q(t + dt) = q(t) (x) Exp(w dt), by a central difference with the
-// odometry's logarithm; and from the same with the rate taken in W, which must not fit.
+// How far the simulator's rate is from the convention's q(t + dt) = q(t) (x) Exp(w dt), by a central difference with
+// the odometry's logarithm; and from the same with the rate taken in W, which must not fit.
 TEST(RotationContract, TheSimulatorsRatesAreInTheCameraFrame) {
   const sim::SplineTrajectory motion = SomeMotion();
   const double dt = 1e-4;

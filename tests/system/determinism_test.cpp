@@ -1,9 +1,9 @@
-// The same scenario and seed give the same bytes, whatever the number of threads, the range of frames, and the way: through the
-// disk or in memory.
+// The same scenario and seed give the same bytes, whatever the number of threads, the range of frames, and the way:
+// through the disk or in memory.
+#include <gmock/gmock.h>
+
 #include <filesystem>
 #include <string>
-
-#include <gmock/gmock.h>
 
 #include "tests/system/program.h"
 

@@ -1,10 +1,10 @@
-// What goes wrong is said in one message that names the file; the exit status is 2 for the caller's mistakes and 1 for failed
-// work, and nothing half-written stays behind.
+// What goes wrong is said in one message that names the file; the exit status is 2 for the caller's mistakes and 1 for
+// failed work, and nothing half-written stays behind.
+#include <gmock/gmock.h>
+
 #include <csignal>
 #include <filesystem>
 #include <string>
-
-#include <gmock/gmock.h>
 
 #include "tests/system/program.h"
 
@@ -36,7 +36,8 @@ class ErrorsTest : public testing::Test {
   }
   // A sequence of five frames in here_/seq.
   void RenderSequence() {
-    const Outcome outcome = RunVobench({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:5"}, here_.path());
+    const Outcome outcome =
+        RunVobench({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:5"}, here_.path());
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   }
   // The project's scenes, to be spoiled, in here_/scenes.
@@ -119,13 +120,15 @@ TEST_F(ErrorsTest, NanInATrajectory) {
   Fails({"evaluate", "bad.txt", "--truth", "good.txt"}, 2, "bad.txt:2");
   Fails({"evaluate", "good.txt", "--truth", "bad.txt"}, 2, "bad.txt:2");
   const std::string recorded = "trajectory={type: recorded, file: '" + (here_ / "bad.txt").string() + "'}";
-  Fails({"render", TinyScenario().string(), "-o", "out", "--set", recorded, "--set", "time.duration=0.1 s"}, 2, "bad.txt:2");
+  Fails({"render", TinyScenario().string(), "-o", "out", "--set", recorded, "--set", "time.duration=0.1 s"}, 2,
+        "bad.txt:2");
   Fails({"check", TinyScenario().string(), "--set", recorded, "--set", "time.duration=0.1 s"}, 2, "bad.txt:2");
 }
 
 TEST_F(ErrorsTest, EveryMistakeInAScenarioIsNamedWithItsPlace) {
   const fs::path scenes = CopyScenes();
-  WriteFile(scenes / "tiny.yaml", ReadFile(scenes / "tiny.yaml") + "exposhure: 3\nodometry: {filter: {particels: 9}}\n");
+  WriteFile(scenes / "tiny.yaml",
+            ReadFile(scenes / "tiny.yaml") + "exposhure: 3\nodometry: {filter: {particels: 9}}\n");
   const auto before = Tree(here_.path());
   const Outcome outcome = RunVobench({"check", "scenes/tiny.yaml"}, here_.path());
   ExpectFailure(outcome, 2, "exposhure", here_.path(), before);
@@ -186,13 +189,13 @@ TEST_F(ErrorsTest, AnOldResultOutlivesAFailure) {
   Fails({"track", "seq", "-o", "out"}, 2, image.filename().string());
 }
 
-// A disk of so many kilobytes where root (or a user namespace) allows to mount one; a limit on the size of files elsewhere, which
-// fails the same writes. What is left behind is listed on stdout after the program's own output.
+// A disk of so many kilobytes where root (or a user namespace) allows to mount one; a limit on the size of files
+// elsewhere, which fails the same writes. What is left behind is listed on stdout after the program's own output.
 Outcome RunOnAFullDisk(const std::vector<std::string>& arguments, const fs::path& where, int kilobytes) {
   const std::string end = "status=$?; echo; echo LEFT: $(ls -A disk); exit $status";
   const std::string size = std::to_string(kilobytes);
   if (std::system("unshare -rm sh -c 'mount -t tmpfs none /tmp' > /dev/null 2>&1") == 0) {
-    std::string inner = "mount -t tmpfs -o size=" + size + "k none disk\n" + Quoted(VOBENCH_PROGRAM);
+    std::string inner = "mount -t tmpfs -o size=" + size + "k none disk\n" + Quoted(Program());
     for (const std::string& argument : arguments) inner += " " + Quoted(argument);
     return RunVobench({}, where, "mkdir -p disk; exec unshare -rm sh -c " + Quoted(inner + "\n" + end) + "\n");
   }
@@ -225,11 +228,11 @@ TEST_F(ErrorsTest, InterruptedWorkLeavesNothing) {
   // timeout sends SIGINT, in the middle of tens of thousands of frames.
   const auto before = Tree(here_.path());
   for (const std::string command : {"render", "run"}) {
-    const Outcome outcome = RunVobench(
-        {command, TinyScenario().string(), "-o", "out", "--set", "time.duration=1000 s", "--set",
-         "trajectory={type: sampled, start: {position: [2.5, 1.4, 2], look_at: [3, 1.2, 0]}, "
-         "position_noise: 0.1, orientation_noise: 0.1, position_return: 1 1/s}"},
-        here_.path(), "exec timeout -s INT 1.5 \\");
+    const Outcome outcome =
+        RunVobench({command, TinyScenario().string(), "-o", "out", "--set", "time.duration=1000 s", "--set",
+                    "trajectory={type: sampled, start: {position: [2.5, 1.4, 2], look_at: [3, 1.2, 0]}, "
+                    "position_noise: 0.1, orientation_noise: 0.1, position_return: 1 1/s}"},
+                   here_.path(), "exec timeout -s INT 1.5 \\");
     EXPECT_THAT(outcome.err, HasSubstr("interrupted")) << command;
     EXPECT_TRUE(Tree(here_.path()) == before) << command;
   }

@@ -11,6 +11,8 @@
 namespace vobench::system_test {
 namespace fs = std::filesystem;
 
+std::string Program() { return VOBENCH_PROGRAM; }
+
 std::string Quoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -20,7 +22,7 @@ std::string Quoted(const std::string& text) {
 Outcome RunVobench(const std::vector<std::string>& arguments, const fs::path& where, const std::string& shell,
                    const std::string& after) {
   const TemporaryFolder output;
-  std::string command = "cd " + Quoted(where.string()) + " && { " + shell + "\n" + Quoted(VOBENCH_PROGRAM);
+  std::string command = "cd " + Quoted(where.string()) + " && { " + shell + "\n" + Quoted(Program());
   for (const std::string& argument : arguments) command += " " + Quoted(argument);
   command += "\n" + after + "\n} > " + Quoted((output / "out").string()) + " 2> " + Quoted((output / "err").string()) +
              " < /dev/null";

@@ -8,13 +8,17 @@
 
 namespace vobench::system_test {
 
+// Where the program is.
+std::string Program();
+
 struct Outcome {
   int status = -1;  // exit status; 128 + n when signal n ended it
   std::string out;  // what it wrote to stdout ...
   std::string err;  // ... and to stderr
 };
 
-// Runs `vobench ARGUMENTS` in the folder `where`. `shell` is put before it in the same shell (limits, mounts), `after` behind.
+// Runs `vobench ARGUMENTS` in the folder `where`. `shell` is put before it in the same shell (limits, mounts), `after`
+// behind.
 Outcome RunVobench(const std::vector<std::string>& arguments, const std::filesystem::path& where,
                    const std::string& shell = "", const std::string& after = "");
 

@@ -1,12 +1,11 @@
 #include "tools/vobench/arguments.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <set>
 #include <sstream>
 #include <thread>
-
-#include <CLI/CLI.hpp>
 
 #include "tools/vobench/systems.h"
 
@@ -118,7 +117,8 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
       .add_option("--camera", track.camera,
                   "freiburg1, freiburg2, freiburg3, icl or a camera.yaml; the sequence's own unless told")
       ->type_name("PRESET|FILE");
-  track_command.add_option("--settings", track.settings, "YAML file with an `odometry:` and perhaps a `prior:` section")
+  track_command
+      .add_option("--settings", track.settings, "YAML file with an `odometry:` and perhaps a `prior:` section")
       ->type_name("FILE");
   AddSeed(track_command, raw, "Seed of the filter")->capture_default_str();
   AddSet(track_command, raw, "odometry.filter.particles=16");
@@ -162,7 +162,8 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
   AddSet(check_command, raw, "camera.width=320");
 
   ReportOptions report;
-  CLI::App& report_command = AddCommand(app, "report", "Make report.html anew from a result folder", "vobench report out/room");
+  CLI::App& report_command =
+      AddCommand(app, "report", "Make report.html anew from a result folder", "vobench report out/room");
   report_command.add_option("OUT", report.output, "Result folder")->required();
 
   try {

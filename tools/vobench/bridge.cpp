@@ -1,6 +1,7 @@
 #include "tools/vobench/bridge.h"
 
 #include <fmt/format.h>
+
 #include <opencv2/imgproc.hpp>
 
 namespace vobench {

@@ -1,4 +1,5 @@
-// Purpose: from the simulator's types to those of the odometry and of the judge. The image goes to the one, the truth to the other.
+// Purpose: from the simulator's types to those of the odometry and of the judge. The image goes to the one, the truth
+// to the other.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Purpose: what each sub-command is asked to do, and the function that does it. Each throws BadInput for what the caller can
+// Purpose: what each sub-command is asked to do, and the function that does it. Each throws BadInput for what the
+// caller can
 //          mend and any other exception when the work fails; results go to stdout, progress and warnings to stderr.
 #pragma once
 

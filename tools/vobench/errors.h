@@ -1,4 +1,5 @@
-// Purpose: what decides the exit status: BadInput is the caller's to mend (2), every other exception means that the work
+// Purpose: what decides the exit status: BadInput is the caller's to mend (2), every other exception means that the
+// work
 //          failed (1).
 #pragma once
 

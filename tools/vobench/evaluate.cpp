@@ -1,8 +1,8 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numbers>
 #include <string_view>
-
-#include <fmt/format.h>
 
 #include "tools/evaluation/summary.h"
 #include "tools/vobench/commands.h"
@@ -60,7 +60,8 @@ void Print(const evaluation::Metrics& metrics, evaluation::Alignment alignment) 
   PrintStatistics("ATE of a constant pose", metrics.constant_pose.Aligned(alignment).position, 100, "cm");
   if (metrics.coverage) {
     fmt::print("{:<28} {:.4f}\n", "pose coverage", metrics.coverage->pose_coverage());
-    if (const auto tracked = metrics.coverage->tracked_coverage()) fmt::print("{:<28} {:.4f}\n", "tracked coverage", *tracked);
+    if (const auto tracked = metrics.coverage->tracked_coverage())
+      fmt::print("{:<28} {:.4f}\n", "tracked coverage", *tracked);
   }
   if (metrics.consistency) {
     const evaluation::NeesSummary& nees = metrics.consistency->pose;

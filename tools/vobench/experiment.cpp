@@ -1,8 +1,7 @@
 #include "tools/vobench/experiment.h"
 
-#include <set>
-
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tools/settings/settings.h"
 #include "tools/vobench/errors.h"

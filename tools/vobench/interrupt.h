@@ -1,4 +1,5 @@
-// Purpose: Ctrl-C and requests to end are noticed between two frames, so that destructors run and nothing half-written stays.
+// Purpose: Ctrl-C and requests to end are noticed between two frames, so that destructors run and nothing half-written
+// stays.
 #pragma once
 
 namespace vobench {

@@ -10,7 +10,8 @@ using settings::Range;
 using settings::Section;
 using settings::Unit;
 
-// The members are taken apart by structured bindings: one that is added to a struct and forgotten here does not compile.
+// The members are taken apart by structured bindings: one that is added to a struct and forgotten here does not
+// compile.
 
 void ReadMotion(Section section, vo::MotionParams& params) {
   auto& [position_noise, orientation_noise] = params;
@@ -39,8 +40,8 @@ void ReadLandmark(Section section, vo::LandmarkParams& params) {
 }
 
 void ReadScore(Section section, vo::ScoreParams& params) {
-  auto& [initial, delete_below, stay_visible, become_visible, detection, gate_probability, gate, blind_share, grace_frames] =
-      params;
+  auto& [initial, delete_below, stay_visible, become_visible, detection, gate_probability, gate, blind_share,
+         grace_frames] = params;
   section.Read("initial", initial, Range{0, 1});
   section.Read("delete_below", delete_below, Range{0, 1});
   section.Read("stay_visible", stay_visible, Range{0, 1});
@@ -54,8 +55,8 @@ void ReadScore(Section section, vo::ScoreParams& params) {
 
 void ReadFeatures(Section section, vo::FeatureParams& params) {
   auto& [sigma_px, grid_columns, grid_rows, per_cell, fast_threshold_start, fast_threshold_min, min_distance_px,
-         min_cornerness, brisk_size_px, max_hamming, window_px, window_enlarged_px, window_lost_px, subpixel, max_view_angle_deg,
-         max_baseline_ratio, max_searched] = params;
+         min_cornerness, brisk_size_px, max_hamming, window_px, window_enlarged_px, window_lost_px, subpixel,
+         max_view_angle_deg, max_baseline_ratio, max_searched] = params;
   section.Read("sigma", sigma_px, Unit::pixel, Range::Positive());
   section.Read("grid_columns", grid_columns, Range::AtLeast(1));
   section.Read("grid_rows", grid_rows, Range::AtLeast(1));
@@ -94,7 +95,8 @@ void ReadOdometry(Section section, vo::Params& params) {
 
 void ReadPrior(Section section, PriorSettings& prior) {
   auto& [start, velocity_sigma, angular_rate_sigma] = prior;
-  section.ReadChoice("start", start, {{"truth", PriorSettings::Start::truth}, {"origin", PriorSettings::Start::origin}});
+  section.ReadChoice("start", start,
+                     {{"truth", PriorSettings::Start::truth}, {"origin", PriorSettings::Start::origin}});
   section.Read("velocity_sigma", velocity_sigma, Unit::speed, Range::Positive());
   section.Read("angular_rate_sigma", angular_rate_sigma, Unit::angular_rate, Range::Positive());
 }

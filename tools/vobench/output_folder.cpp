@@ -1,10 +1,9 @@
 #include "tools/vobench/output_folder.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <system_error>
-
-#include <fmt/format.h>
 
 #include "tools/vobench/errors.h"
 
@@ -35,8 +34,9 @@ void RequireReplaceable(const fs::path& folder, const std::string& marker, const
   }
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (!ours.contains(entry.path().filename().string())) {
-      throw BadInput(fmt::format("{}: is in the folder that would be replaced, and not ours; move it or choose another name",
-                                 entry.path().string()));
+      throw BadInput(
+          fmt::format("{}: is in the folder that would be replaced, and not ours; move it or choose another name",
+                      entry.path().string()));
     }
   }
 }
@@ -80,7 +80,8 @@ void OutputFolder::Commit() {
     std::error_code ignored;
     if (error && replaces) fs::rename(old, final_, ignored);
   }
-  if (error) throw std::runtime_error(fmt::format("{}: cannot give the result this name: {}", final_.string(), error.message()));
+  if (error)
+    throw std::runtime_error(fmt::format("{}: cannot give the result this name: {}", final_.string(), error.message()));
   committed_ = true;
   std::error_code ignored;
   if (replaces) fs::remove_all(old, ignored);

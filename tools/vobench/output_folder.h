@@ -1,4 +1,5 @@
-// Purpose: a folder that appears whole or not at all. It is filled under a temporary name beside its final one, and renamed
+// Purpose: a folder that appears whole or not at all. It is filled under a temporary name beside its final one, and
+// renamed
 //          when done; whatever stops the work before leaves the disk as it was.
 #pragma once
 
@@ -11,9 +12,9 @@ namespace vobench {
 
 class OutputFolder {
  public:
-  // May replace an existing folder only if that is empty, or is one of ours: it has the file `marker`, and at its top level
-  // nothing but the names in `ours`. Throws BadInput naming what is in the way, std::runtime_error when the temporary folder
-  // cannot be made.
+  // May replace an existing folder only if that is empty, or is one of ours: it has the file `marker`, and at its top
+  // level nothing but the names in `ours`. Throws BadInput naming what is in the way, std::runtime_error when the
+  // temporary folder cannot be made.
   OutputFolder(const std::filesystem::path& final_path, const std::string& marker, const std::set<std::string>& ours);
   // Removes what was not committed.
   ~OutputFolder();

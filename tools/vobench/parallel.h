@@ -1,11 +1,12 @@
-// Purpose: one task per item, on a given number of threads. Tasks share nothing, so the results do not depend on that number.
+// Purpose: one task per item, on a given number of threads. Tasks share nothing, so the results do not depend on that
+// number.
 #pragma once
-
-#include <cstddef>
-#include <vector>
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include <cstddef>
+#include <vector>
 
 namespace vobench {
 
@@ -14,7 +15,8 @@ template <class Item, class Task>
 void ForEach(std::vector<Item>& items, int jobs, const Task& task) {
   tbb::task_arena arena(jobs);
   arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t i) { task(items[i]); }, tbb::simple_partitioner());
+    tbb::parallel_for(
+        std::size_t{0}, items.size(), [&](std::size_t i) { task(items[i]); }, tbb::simple_partitioner());
   });
 }
 

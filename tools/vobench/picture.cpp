@@ -1,10 +1,9 @@
 #include "tools/vobench/picture.h"
 
 #include <cmath>
-#include <string>
-
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
 
 #include "tools/evaluation/text_file.h"
 
@@ -19,7 +18,8 @@ constexpr int kShift = 4;  // coordinates in sixteenths of a pixel
 bool Drawable(const Eigen::Vector2d& pixel) { return pixel.allFinite() && pixel.cwiseAbs().maxCoeff() < 1e5; }
 
 cv::Point Fixed(const Eigen::Vector2d& pixel) {
-  return {static_cast<int>(std::lround(pixel.x() * (1 << kShift))), static_cast<int>(std::lround(pixel.y() * (1 << kShift)))};
+  return {static_cast<int>(std::lround(pixel.x() * (1 << kShift))),
+          static_cast<int>(std::lround(pixel.y() * (1 << kShift)))};
 }
 
 void Ring(cv::Mat& picture, const Eigen::Vector2d& pixel, double radius_px, const cv::Scalar& colour) {
@@ -42,7 +42,9 @@ void Draw(cv::Mat& picture, const vo::FeatureView& feature) {
       Line(picture, p + Eigen::Vector2d(-3, -3), p + Eigen::Vector2d(3, 3), kMissed);
       Line(picture, p + Eigen::Vector2d(-3, 3), p + Eigen::Vector2d(3, -3), kMissed);
       break;
-    case vo::FeatureView::Status::rejected: Ring(picture, p, 4, kRejected); break;
+    case vo::FeatureView::Status::rejected:
+      Ring(picture, p, 4, kRejected);
+      break;
     case vo::FeatureView::Status::fresh:
       cv::rectangle(picture, Fixed(p + Eigen::Vector2d(-2, -2)), Fixed(p + Eigen::Vector2d(2, 2)), kFresh, 1,
                     cv::LINE_AA, kShift);
@@ -52,7 +54,8 @@ void Draw(cv::Mat& picture, const vo::FeatureView& feature) {
 
 }  // namespace
 
-void WritePicture(const std::filesystem::path& file, const cv::Mat& image, const std::vector<vo::FeatureView>& features) {
+void WritePicture(const std::filesystem::path& file, const cv::Mat& image,
+                  const std::vector<vo::FeatureView>& features) {
   cv::Mat picture;
   if (image.channels() == 1) {
     cv::cvtColor(image, picture, cv::COLOR_GRAY2BGR);

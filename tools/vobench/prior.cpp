@@ -1,9 +1,9 @@
 #include "tools/vobench/prior.h"
 
+#include <Random123/philox.h>
+
 #include <cmath>
 #include <numbers>
-
-#include <Random123/philox.h>
 
 namespace vobench {
 namespace {

@@ -15,8 +15,8 @@ inline constexpr double kStartSigma = 1e-6;
 // At the origin and at rest, with the sigmas given.
 vo::Prior PriorAtOrigin(const PriorSettings& settings);
 
-// At the true pose. The velocity is the true one plus noise drawn from N(0, sigma^2) per axis, a function of the seed alone, and
-// its covariance says so: an honest prior.
+// At the true pose. The velocity is the true one plus noise drawn from N(0, sigma^2) per axis, a function of the seed
+// alone, and its covariance says so: an honest prior.
 vo::Prior PriorFromTruth(const PriorSettings& settings, const evaluation::StampedPose& pose,
                          const evaluation::StampedVelocity& velocity, std::uint64_t seed);
 

@@ -1,10 +1,9 @@
 #include "tools/vobench/progress.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstdio>
-
-#include <fmt/format.h>
 
 #include "tools/vobench/errors.h"
 #include "tools/vobench/interrupt.h"

@@ -1,8 +1,8 @@
 #include "tools/vobench/recorder.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "tools/evaluation/text_file.h"
 #include "tools/vobench/picture.h"

@@ -1,4 +1,5 @@
-// Purpose: what one run of an odometry leaves behind (docs/result_folder.md): kept as it runs, written at the end. Memory is
+// Purpose: what one run of an odometry leaves behind (docs/result_folder.md): kept as it runs, written at the end.
+// Memory is
 //          one estimate per frame; pictures go to disk at once.
 #pragma once
 
@@ -22,7 +23,8 @@ class Recorder {
 
   const evaluation::EstimateRun& run() const { return run_; }
 
-  // estimate.txt, covariance.txt, frames.csv and landmarks.csv, in the folder given at first. Throws std::runtime_error.
+  // estimate.txt, covariance.txt, frames.csv and landmarks.csv, in the folder given at first. Throws
+  // std::runtime_error.
   void Write(const std::vector<vo::MapPoint>& map) const;
 
  private:

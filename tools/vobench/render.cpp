@@ -1,6 +1,6 @@
-#include <set>
-
 #include <fmt/format.h>
+
+#include <set>
 
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"
@@ -15,8 +15,8 @@ namespace vobench {
 namespace {
 
 const std::set<std::string>& SequenceNames() {
-  static const std::set<std::string> names = {"rgb",          "rgb.txt",     "depth",         "depth.txt", "groundtruth.txt",
-                                              "velocity.txt", "camera.yaml", "manifest.json"};
+  static const std::set<std::string> names = {
+      "rgb", "rgb.txt", "depth", "depth.txt", "groundtruth.txt", "velocity.txt", "camera.yaml", "manifest.json"};
   return names;
 }
 
@@ -34,7 +34,8 @@ void Render(const RenderOptions& options) {
   PrintWarnings(simulator.warnings());
   const auto [first, last] = options.frames.value_or(std::pair<std::int64_t, std::int64_t>(0, simulator.frame_count()));
   if (last > simulator.frame_count()) {
-    throw BadInput(fmt::format("--frames {}:{}: the scenario has the frames 0 to {}", first, last, simulator.frame_count() - 1));
+    throw BadInput(
+        fmt::format("--frames {}:{}: the scenario has the frames 0 to {}", first, last, simulator.frame_count() - 1));
   }
   sim::SequenceWriter writer(simulator, out.path(), first, last, options.jobs, "vobench " VOBENCH_VERSION);
   {

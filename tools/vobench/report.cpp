@@ -1,8 +1,8 @@
 #include "tools/report/report.h"
 
-#include <stdexcept>
-
 #include <fmt/format.h>
+
+#include <stdexcept>
 
 #include "tools/report/run_json.h"
 #include "tools/vobench/commands.h"

@@ -1,10 +1,10 @@
 #include "tools/vobench/result.h"
 
-#include <ctime>
-
-#include <Eigen/Core>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <ctime>
 #include <opencv2/core/version.hpp>
 
 #include "tools/report/report.h"
@@ -14,8 +14,8 @@ namespace vobench {
 
 const std::set<std::string>& ResultNames() {
   static const std::set<std::string> names = [] {
-    std::set<std::string> all = {"run.json",   "metrics.json", "report.html",        "estimate.txt", "covariance.txt",
-                                 "frames.csv", "frames",       "landmarks.csv",      "truth.txt",    "truth_velocity.txt"};
+    std::set<std::string> all = {"run.json",   "metrics.json", "report.html",   "estimate.txt", "covariance.txt",
+                                 "frames.csv", "frames",       "landmarks.csv", "truth.txt",    "truth_velocity.txt"};
     for (const std::string& system : SystemNames()) all.insert(system);
     return all;
   }();

@@ -1,4 +1,5 @@
-// Purpose: the top of a result folder (docs/result_folder.md): run.json, metrics.json, report.html, and the truth beside each run.
+// Purpose: the top of a result folder (docs/result_folder.md): run.json, metrics.json, report.html, and the truth
+// beside each run.
 #pragma once
 
 #include <chrono>
@@ -20,7 +21,8 @@ struct Truth {
   std::optional<evaluation::Velocities> velocities;
 };
 
-// How to tell a result folder (see OutputFolder): this file is in it, and nothing but these names, those of systems included.
+// How to tell a result folder (see OutputFolder): this file is in it, and nothing but these names, those of systems
+// included.
 inline const std::string kResultMarker = "run.json";
 const std::set<std::string>& ResultNames();
 

@@ -1,10 +1,10 @@
-// A scenario is rendered into a sequence with exact truth, an odometry runs on the sequence, and a judge that knows both says how
-// wrong and how honest the odometry is.
+// A scenario is rendered into a sequence with exact truth, an odometry runs on the sequence, and a judge that knows
+// both says how wrong and how honest the odometry is.
+#include <fmt/format.h>
+
 #include <memory>
 #include <optional>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "sim/simulator.h"
 #include "tools/report/text_summary.h"
@@ -34,8 +34,8 @@ vo::Prior PriorOf(const PriorSettings& settings, const Truth& start, std::uint64
 }
 
 // Each system with each seed. Of the truth they are told the start alone.
-std::vector<Tracker> MakeTrackers(const RunOptions& options, const Experiment& experiment, const sim::Simulator& simulator,
-                                  const Folder& folder) {
+std::vector<Tracker> MakeTrackers(const RunOptions& options, const Experiment& experiment,
+                                  const sim::Simulator& simulator, const Folder& folder) {
   const vo::Camera camera = ToOdometry(simulator.camera().params());
   const Truth start = TruthOf(simulator, 0);
   const std::optional<std::filesystem::path> out = folder ? std::optional(folder->path()) : std::nullopt;
@@ -50,7 +50,8 @@ std::vector<Tracker> MakeTrackers(const RunOptions& options, const Experiment& e
   return trackers;
 }
 
-std::vector<report::JudgedRun> Judge(const std::vector<Tracker>& trackers, const Truth& truth, const PriorSettings& prior) {
+std::vector<report::JudgedRun> Judge(const std::vector<Tracker>& trackers, const Truth& truth,
+                                     const PriorSettings& prior) {
   evaluation::JudgeOptions how;
   if (prior.start == PriorSettings::Start::origin) how.gauge = evaluation::Gauge::first_pose;
   std::vector<report::JudgedRun> judged;
@@ -71,8 +72,8 @@ void Write(OutputFolder& folder, const std::vector<Tracker>& trackers, const Tru
   folder.Commit();
 }
 
-report::RunDescription Describe(const RunOptions& options, const Experiment& experiment, const sim::Simulator& simulator,
-                                const Clock& clock) {
+report::RunDescription Describe(const RunOptions& options, const Experiment& experiment,
+                                const sim::Simulator& simulator, const Clock& clock) {
   report::RunDescription description;
   description.title = experiment.scenario.name;
   description.input = options.scenario.string();

@@ -1,10 +1,10 @@
 #include "tools/vobench/sequence_truth.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <vector>
-
-#include <fmt/format.h>
 
 namespace vobench {
 namespace fs = std::filesystem;

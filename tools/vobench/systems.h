@@ -11,7 +11,8 @@ namespace vobench {
 // "rb2pf", "rbpf".
 const std::vector<std::string>& SystemNames();
 
-// The parameters with what makes the system out of them: rb2pf samples the pose only, rbpf the velocity too. Everything else stays.
+// The parameters with what makes the system out of them: rb2pf samples the pose only, rbpf the velocity too. Everything
+// else stays.
 vo::Params ForSystem(const std::string& name, vo::Params params);
 
 }  // namespace vobench

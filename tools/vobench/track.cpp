@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "tools/evaluation/text_file.h"
@@ -25,8 +26,8 @@ struct TrackSettings {
 };
 
 TrackSettings ReadSettings(const TrackOptions& options) {
-  settings::Document document = options.settings ? settings::Document::FromFile(*options.settings)
-                                                 : settings::Document::FromText("", "--set");
+  settings::Document document =
+      options.settings ? settings::Document::FromFile(*options.settings) : settings::Document::FromText("", "--set");
   for (const auto& [key, value] : options.overrides) document.Override(key, value);
   TrackSettings out;
   ReadOdometry(document.root().Child("odometry"), out.params);
@@ -51,7 +52,12 @@ vo::Camera ReadCamera(const TrackOptions& options) {
 
 std::string Record(const vo::Camera& c, const std::string& resolved) {
   nlohmann::ordered_json all;
-  all["camera"] = {{"width", c.width}, {"height", c.height}, {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy},
+  all["camera"] = {{"width", c.width},
+                   {"height", c.height},
+                   {"fx", c.fx},
+                   {"fy", c.fy},
+                   {"cx", c.cx},
+                   {"cy", c.cy},
                    {"distortion", {{"k1", c.k1}, {"k2", c.k2}, {"p1", c.p1}, {"p2", c.p2}, {"k3", c.k3}}}};
   all.update(nlohmann::ordered_json::parse(resolved));
   return all.dump(2);
@@ -90,7 +96,8 @@ void Track(const TrackOptions& options) {
   std::vector<report::JudgedRun> judged;
   if (truth) {
     try {
-      judged.push_back({tracker.entry(), evaluation::Judge(tracker.estimates(), truth->poses, truth->velocities, StartedAtTheOrigin())});
+      judged.push_back({tracker.entry(),
+                        evaluation::Judge(tracker.estimates(), truth->poses, truth->velocities, StartedAtTheOrigin())});
       WriteTruth(out.path(), *truth);
     } catch (const evaluation::InputError& error) {  // of another time: the estimate is worth keeping all the same
       description.notes.push_back(fmt::format("Not judged: {}", error.what()));

@@ -9,7 +9,8 @@
 namespace vobench {
 namespace {
 
-std::optional<std::filesystem::path> Within(const std::optional<std::filesystem::path>& out, const std::string& folder) {
+std::optional<std::filesystem::path> Within(const std::optional<std::filesystem::path>& out,
+                                            const std::string& folder) {
   if (!out) return std::nullopt;
   return (*out / folder).lexically_normal();
 }
@@ -19,9 +20,8 @@ std::optional<std::filesystem::path> Within(const std::optional<std::filesystem:
 Tracker::Tracker(const TrackerSetup& setup, const vo::Camera& camera, std::int64_t frames,
                  const std::optional<std::filesystem::path>& out, const std::string& folder)
     : entry_{setup.system, setup.seed, folder, 0},
-      odometry_(Input([&] {
-        return vo::Odometry(camera, ForSystem(setup.system, setup.params), setup.prior, setup.seed);
-      })),
+      odometry_(
+          Input([&] { return vo::Odometry(camera, ForSystem(setup.system, setup.params), setup.prior, setup.seed); })),
       recorder_(frames, Within(out, folder)) {}
 
 void Tracker::Track(const vo::Frame& frame) {

@@ -22,7 +22,8 @@ struct TrackerSetup {
 
 class Tracker {
  public:
-  // `folder`, if any, is the run folder of the finished run inside `out`: pictures go there on the way. Throws BadInput.
+  // `folder`, if any, is the run folder of the finished run inside `out`: pictures go there on the way. Throws
+  // BadInput.
   Tracker(const TrackerSetup& setup, const vo::Camera& camera, std::int64_t frames,
           const std::optional<std::filesystem::path>& out, const std::string& folder);
 

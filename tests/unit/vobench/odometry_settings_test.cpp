@@ -1,9 +1,9 @@
 #include "tools/vobench/odometry_settings.h"
 
+#include <gmock/gmock.h>
+
 #include <numbers>
 #include <string>
-
-#include <gmock/gmock.h>
 
 namespace vobench {
 namespace {

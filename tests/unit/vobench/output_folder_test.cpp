@@ -1,12 +1,11 @@
 #include "tools/vobench/output_folder.h"
 
+#include <gmock/gmock.h>
 #include <stdlib.h>
 
 #include <fstream>
 #include <stdexcept>
 #include <string>
-
-#include <gmock/gmock.h>
 
 #include "tools/vobench/errors.h"
 

@@ -1,8 +1,8 @@
 #include "tools/vobench/prior.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace vobench {
 namespace {
@@ -34,14 +34,16 @@ TEST(PriorTest, ThePoseIsTheTrueOne) {
 }
 
 TEST(PriorTest, TheVelocityIsOffByWhatItsCovarianceSays) {
-  // Chi-square with 6 * 1000 degrees of freedom: mean 6000, sigma 109.5. The band of 5 sigma is left once in 1.7 million.
+  // Chi-square with 6 * 1000 degrees of freedom: mean 6000, sigma 109.5. The band of 5 sigma is left once in 1.7
+  // million.
   EXPECT_NEAR(Nees(1000, 1), 6000, 5 * std::sqrt(2 * 6000.0));
   // A prior that claimed 10 % less noise than is drawn is rejected.
   EXPECT_GT(Nees(1000, 0.9), 6000 + 5 * std::sqrt(2 * 6000.0));
 }
 
 TEST(PriorTest, IsAFunctionOfTheSeed) {
-  const vo::Prior a = PriorFromTruth({}, SomePose(), SomeVelocity(), 7), b = PriorFromTruth({}, SomePose(), SomeVelocity(), 7);
+  const vo::Prior a = PriorFromTruth({}, SomePose(), SomeVelocity(), 7),
+                  b = PriorFromTruth({}, SomePose(), SomeVelocity(), 7);
   EXPECT_EQ(a.v_WC, b.v_WC);
   EXPECT_EQ(a.w_WC_C, b.w_WC_C);
   EXPECT_NE(a.v_WC, PriorFromTruth({}, SomePose(), SomeVelocity(), 8).v_WC);

@@ -1,9 +1,9 @@
 #include "tools/vobench/sequence_truth.h"
 
+#include <gtest/gtest.h>
+
 #include <filesystem>
 #include <fstream>
-
-#include <gtest/gtest.h>
 
 namespace {
 
@@ -14,7 +14,8 @@ TEST(SequenceTruth, MirrorsOriginalIclNuimPoses) {
   fs::remove_all(folder);
   fs::create_directories(folder);
   EXPECT_FALSE(vobench::ReadSequenceTruth(folder));
-  std::ofstream(folder / "traj0.gt.freiburg") << "1 0.1 0.2 0.3 0 0 0 1\n2 0.1 0.2 0.3 0.1825741858 0.3651483717 0.5477225575 0.7302967433\n";
+  std::ofstream(folder / "traj0.gt.freiburg")
+      << "1 0.1 0.2 0.3 0 0 0 1\n2 0.1 0.2 0.3 0.1825741858 0.3651483717 0.5477225575 0.7302967433\n";
   const auto truth = vobench::ReadSequenceTruth(folder);
   ASSERT_TRUE(truth);
   ASSERT_EQ(truth->poses.size(), 2u);
@@ -22,7 +23,8 @@ TEST(SequenceTruth, MirrorsOriginalIclNuimPoses) {
   EXPECT_EQ(truth->poses[1].stamp_ns, 66666667);
   // S R S and S p by matrices.
   const Eigen::Matrix3d S = Eigen::Vector3d(1, -1, 1).asDiagonal();
-  const Eigen::Matrix3d R = Eigen::Quaterniond(0.7302967433, 0.1825741858, 0.3651483717, 0.5477225575).toRotationMatrix();
+  const Eigen::Matrix3d R =
+      Eigen::Quaterniond(0.7302967433, 0.1825741858, 0.3651483717, 0.5477225575).toRotationMatrix();
   EXPECT_LT((truth->poses[1].q_WC.toRotationMatrix() - S * R * S).norm(), 1e-9);
   EXPECT_LT((truth->poses[1].p_WC - Eigen::Vector3d(0.1, -0.2, 0.3)).norm(), 1e-12);
   fs::remove_all(folder);

@@ -1,0 +1,29 @@
+// Purpose: the program on recorded sequences, which are not part of the project: they are looked for in $VOBENCH_DATA,
+// or else
+//          in ../shared/data beside the checkout.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace vobench::system_test {
+
+// The folder of a sequence, if it is at hand.
+std::optional<std::filesystem::path> RecordedSequence(const std::string& name);
+
+// A sequence of the first frames of another, in `folder`. Images are linked, truth is copied.
+void FirstFrames(const std::filesystem::path& sequence, int frames, const std::filesystem::path& folder);
+
+// What metrics.json says of one `vobench track`.
+struct Scores {
+  double ate_cm = 0, constant_pose_ate_cm = 0, constant_velocity_ate_cm = 0;  // position RMSE after Sim(3)
+  double rpe_cm_per_s = 0;
+  double pose_coverage = 0, tracked_coverage = 0;
+};
+
+// Throws std::runtime_error with the program's message when it fails.
+Scores TrackRecorded(const std::filesystem::path& sequence, const std::string& camera, std::uint64_t seed);
+
+}  // namespace vobench::system_test

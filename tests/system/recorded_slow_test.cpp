@@ -1,0 +1,50 @@
+// Recorded sequences to the last frame, ten seeds each. recorded_test.cpp is the quick twin.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+#include "tests/system/recorded.h"
+
+namespace vobench::system_test {
+namespace {
+
+struct Limits {
+  double ate_cm, rpe_cm_per_s;  // of the median over seeds
+};
+
+double Median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+void ExpectWithin(const Limits& limits, const std::string& name, const std::string& camera) {
+  const auto sequence = RecordedSequence(name);
+  if (!sequence)
+    GTEST_SKIP() << "no recorded sequence " << name << "; VOBENCH_DATA names the folder it is looked for in";
+  std::vector<double> ate, rpe;
+  double constant_pose = 0, constant_velocity = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Scores scores = TrackRecorded(*sequence, camera, seed);
+    std::printf("%s seed %2d: ATE %.2f cm, RPE %.2f cm/s, tracked %.3f\n", name.c_str(), static_cast<int>(seed),
+                scores.ate_cm, scores.rpe_cm_per_s, scores.tracked_coverage);
+    EXPECT_GE(scores.pose_coverage, 0.98) << seed;
+    EXPECT_GE(scores.tracked_coverage, 0.95) << seed;
+    ate.push_back(scores.ate_cm);
+    rpe.push_back(scores.rpe_cm_per_s);
+    constant_pose = scores.constant_pose_ate_cm;
+    constant_velocity = scores.constant_velocity_ate_cm;
+  }
+  EXPECT_LE(Median(ate), limits.ate_cm);
+  EXPECT_LE(Median(rpe), limits.rpe_cm_per_s);
+  EXPECT_LE(3 * Median(ate), constant_pose);
+  EXPECT_LE(3 * Median(ate), constant_velocity);
+}
+
+TEST(RecordedSlowTest, Freiburg1) { ExpectWithin({4, 5}, "tum_fr1_xyz", "freiburg1"); }
+TEST(RecordedSlowTest, IclOffice) { ExpectWithin({2, 5}, "icl_office_kt0", "icl"); }
+
+}  // namespace
+}  // namespace vobench::system_test
