@@ -43,7 +43,7 @@ inline std::array<double, 2> Normals(double u1, double u2) {
 inline std::array<double, 2> Normals(const Words& words) {
   return Normals(Uniform(words[0], words[1]), Uniform(words[2], words[3]));
 }
-// ln of x in [0.5, 2^32], and the cosine and sine of `turns` * 2 pi, turns in [0, 1), to 3e-7: polynomials of Cephes
+// ln of x in [0.5, 2^32], and the cosine and sine of `turns_24` * 2^-24 turns, to 3e-7: polynomials of Cephes
 // (Moshier), written without branches so that loops over them become vector code, and with the same result on every
 // machine.
 inline float LogFast(float x) {
@@ -64,9 +64,9 @@ inline float LogFast(float x) {
   y = y * z + 3.3333331174e-1f;
   return exponent * 0.69314718f + (z + (y * z - 0.5f) * z * z);
 }
-inline std::array<float, 2> CosSinFast(float turns) {
-  const std::int32_t quarter = static_cast<std::int32_t>(turns * 4.0f + 0.5f);
-  const float x = 6.2831853f * (turns - 0.25f * static_cast<float>(quarter)), x2 = x * x;
+inline std::array<float, 2> CosSinFast(std::uint32_t turns_24) {
+  const std::int32_t n = static_cast<std::int32_t>(turns_24), quarter = (n + (1 << 21)) >> 22;  // the nearest one
+  const float x = 6.2831853f * 0x1p-24f * static_cast<float>(n - (quarter << 22)), x2 = x * x;
   const float s = x + x * x2 * ((-1.9515295891e-4f * x2 + 8.3321608736e-3f) * x2 - 1.6666654611e-1f);
   const float c =
       1.0f - 0.5f * x2 + x2 * x2 * ((2.443315711809948e-5f * x2 - 1.388731625493765e-3f) * x2 + 4.166664568298827e-2f);
@@ -80,7 +80,7 @@ inline std::array<float, 2> NormalsFast(std::uint32_t a, std::uint32_t b) {
   constexpr float kLogOf2To32 = 22.180710f;
   const float log_u = LogFast(static_cast<float>(a) + 0.5f) - kLogOf2To32;
   const float radius = std::sqrt(std::max(0.0f, -2.0f * log_u));
-  const auto [cosine, sine] = CosSinFast(static_cast<float>(b >> 8) * 0x1p-24f);
+  const auto [cosine, sine] = CosSinFast(b >> 8);
   return {radius * cosine, radius * sine};
 }
 

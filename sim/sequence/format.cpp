@@ -14,7 +14,7 @@ namespace {
 // OpenCV writes blue first, and its matrices borrow what they look at.
 cv::Mat ToMat(const Image& image) {
   const int type = image.channels == 3 ? CV_8UC3 : CV_8UC1;
-  const cv::Mat view(image.height, image.width, type, const_cast<std::uint8_t*>(image.data.data()));
+  cv::Mat view(image.height, image.width, type, const_cast<std::uint8_t*>(image.data.data()));
   if (image.channels == 1) return view;
   cv::Mat bgr;
   cv::cvtColor(view, bgr, cv::COLOR_RGB2BGR);

@@ -50,14 +50,15 @@ SequenceWriter::SequenceWriter(const Simulator& simulator, const fs::path& folde
     throw std::runtime_error(folder_.string() + ": is there already and not an empty folder");
   }
   for (fs::path parent = folder_.parent_path(); !fs::exists(parent); parent = parent.parent_path()) {
-    made_parents_.insert(made_parents_.begin(), parent);
+    made_parents_.push_back(parent);
   }
   std::error_code error;
   fs::create_directories(folder_.parent_path(), error);
   // Another name for each process, and none that is there: what a killed one left behind is not taken over.
   for (int n = 0; !error; ++n) {
-    temporary_ = folder_.parent_path() /
-                 ("." + folder_.filename().string() + ".partial-" + std::to_string(getpid()) + "-" + std::to_string(n));
+    std::string name = ".";
+    name.append(folder_.filename().string()).append(".partial-").append(std::to_string(getpid())).append("-");
+    temporary_ = folder_.parent_path() / name.append(std::to_string(n));
     if (fs::create_directory(temporary_, error)) break;
   }
   for (const char* name : {"rgb", "depth"}) {
@@ -74,7 +75,7 @@ SequenceWriter::~SequenceWriter() { Discard(); }
 void SequenceWriter::Discard() {
   std::error_code ignored;
   if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
-  for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) fs::remove(*parent, ignored);
+  for (const fs::path& parent : made_parents_) fs::remove(parent, ignored);
   temporary_.clear();
   made_parents_.clear();
 }
@@ -111,8 +112,8 @@ void SequenceWriter::Finish() {
     const std::int64_t stamp_ns = simulator_.StampNs(index);
     const Truth at_stamp = simulator_.TruthAt(index);
     const std::string stamp = FormatStamp(stamp_ns);
-    rgb += stamp + " rgb/" + stamp + ".png\n";
-    depth += stamp + " depth/" + stamp + ".png\n";
+    rgb.append(stamp).append(" rgb/").append(stamp).append(".png\n");
+    depth.append(stamp).append(" depth/").append(stamp).append(".png\n");
     truth += TruthLine(stamp_ns, at_stamp);
     velocity += VelocityLine(stamp_ns, at_stamp);
   }

@@ -39,7 +39,7 @@ class SequenceWriter {
 
   const Simulator& simulator_;
   std::filesystem::path folder_, temporary_;
-  std::vector<std::filesystem::path> made_parents_;  // outermost first
+  std::vector<std::filesystem::path> made_parents_;  // innermost first
   std::int64_t first_, last_, next_;
   int jobs_;
   std::string version_;

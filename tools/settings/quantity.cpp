@@ -64,7 +64,8 @@ Kind KindOf(Unit unit) {
   return {"a number", {}};
 }
 
-std::string Quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
+// Joined piece by piece: GCC 12 warns of "literal" + std::string where it inlines it (its bug 105651).
+std::string Quoted(std::string_view text) { return std::string("'").append(text).append("'"); }
 
 std::string Expected(const Kind& kind) {
   if (kind.units.empty()) return "expected a bare number";
@@ -89,7 +90,7 @@ bool IsNotFinite(std::string_view text) {
 
 bool InRange(double value, std::string_view text, const Range& range, std::string_view unit, std::string& problem) {
   if (value >= range.min && value <= range.max) return true;
-  const std::string suffix = unit.empty() ? "" : " " + std::string(unit);
+  const std::string suffix = unit.empty() ? std::string() : std::string(" ").append(unit);
   const bool from = std::isfinite(range.min), to = std::isfinite(range.max);
   problem = Quoted(text);
   if (range.min == std::numeric_limits<double>::denorm_min()) {

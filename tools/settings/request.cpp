@@ -46,10 +46,10 @@ std::string Suggest(const std::string& given, const std::vector<std::string>& kn
 }
 
 void FindUnknownKeys(const Request& section, std::vector<Problem>& problems) {
-  if (section.kind == Request::Kind::section && section.node && section.node->kind == Node::Kind::map) {
+  if (section.kind == Request::Kind::section && section.element && section.element->kind == Element::Kind::map) {
     std::vector<std::string> known;
     for (const auto& child : section.children) known.push_back(child.first);
-    for (const Entry& entry : section.node->entries) {
+    for (const Entry& entry : section.element->entries) {
       if (section.ignores_rest || section.Find(entry.key)) continue;
       problems.push_back({entry.place.file, entry.place.line, entry.place.column,
                           "unknown key '" + entry.key + "'" + Suggest(entry.key, known)});

@@ -6,14 +6,14 @@
 #include <utility>
 #include <vector>
 
-#include "tools/settings/node.h"
+#include "tools/settings/element.h"
 
 namespace settings {
 
 struct Request {
   enum class Kind { section, list, value, absent, ignored };  // absent: required but not there, or without a default
   Kind kind = Kind::section;
-  const Node* node = nullptr;                                              // in the file; null when it is not there
+  const Element* element = nullptr;                                        // in the file; null when it is not there
   Place place;                                                             // where to complain
   std::string path;                                                        // dotted; empty for the root
   std::string json;                                                        // of a value

@@ -7,13 +7,13 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "tools/settings/node.h"
+#include "tools/settings/element.h"
 #include "tools/settings/request.h"
 
 namespace settings {
 
 struct State {
-  Node root;
+  Element root;
   Request requests;
   bool reading = false;
   std::vector<Problem> problems;
@@ -38,29 +38,30 @@ std::string JsonNumbers(const double* values, std::size_t count) {
 }
 
 // The scalar's text, or a problem.
-const std::string* Scalar(State& state, const Node& node, const std::string& key, const char* expected) {
-  if (node.kind == Node::Kind::scalar) return &node.text;
-  state.Complain(node.place, "'" + key + "': expected " + expected + ", not " + Describe(node));
+const std::string* Scalar(State& state, const Element& element, const std::string& key, const char* expected) {
+  if (element.kind == Element::Kind::scalar) return &element.text;
+  state.Complain(element.place, "'" + key + "': expected " + expected + ", not " + Describe(element));
   return nullptr;
 }
 
-bool Number(State& state, const Node& node, const std::string& key, Unit unit, const Range& range, double& value) {
-  const std::string* text = Scalar(state, node, key, "a number");
+bool Number(State& state, const Element& element, const std::string& key, Unit unit, const Range& range,
+            double& value) {
+  const std::string* text = Scalar(state, element, key, "a number");
   std::string problem;
   if (text && ParseQuantity(*text, unit, range, value, problem)) return true;
-  if (text) state.Complain(node.place, "'" + key + "': " + problem);
+  if (text) state.Complain(element.place, "'" + key + "': " + problem);
   return false;
 }
 
 // All items, so that each bad one is named.
-bool Numbers(State& state, const Node& node, const std::string& key, Unit unit, const Range& range,
+bool Numbers(State& state, const Element& element, const std::string& key, Unit unit, const Range& range,
              std::vector<double>& values) {
-  if (node.kind != Node::Kind::list) {
-    state.Complain(node.place, "'" + key + "': expected a list of numbers, not " + Describe(node));
+  if (element.kind != Element::Kind::list) {
+    state.Complain(element.place, "'" + key + "': expected a list of numbers, not " + Describe(element));
     return false;
   }
   bool good = true;
-  for (const Node& item : node.items) {
+  for (const Element& item : element.items) {
     double value = 0;
     good = Number(state, item, key, unit, range, value) && good;
     values.push_back(value);
@@ -72,17 +73,17 @@ bool Numbers(State& state, const Node& node, const std::string& key, Unit unit, 
 
 bool Section::Has(const std::string& key) const { return Find(key) != nullptr; }
 
-const Node* Section::Find(const std::string& key) const {
-  const Node* node = request_->node;
-  return node && node->kind == Node::Kind::map ? node->Find(key) : nullptr;
+const Element* Section::Find(const std::string& key) const {
+  const Element* element = request_->element;
+  return element && element->kind == Element::Kind::map ? element->Find(key) : nullptr;
 }
 
 Request& Section::Ask(const std::string& key) {
   if (Request* known = request_->Find(key)) return *known;
   auto request = std::make_unique<Request>();
   request->kind = Request::Kind::absent;
-  request->node = Find(key);
-  request->place = request->node ? request->node->place : request_->place;
+  request->element = Find(key);
+  request->place = request->element ? request->element->place : request_->place;
   request->path = request_->path.empty() ? key : request_->path + "." + key;
   request_->children.emplace_back(key, std::move(request));
   return *request_->children.back().second;
@@ -90,7 +91,7 @@ Request& Section::Ask(const std::string& key) {
 
 bool Section::Read(const std::string& key, double& value, Unit unit, const Range& range) {
   Request& request = Ask(key);
-  const bool good = request.node && Number(*state_, *request.node, request.path, unit, range, value);
+  const bool good = request.element && Number(*state_, *request.element, request.path, unit, range, value);
   request.kind = Request::Kind::value;
   request.json = FormatNumber(value);
   return good;
@@ -100,11 +101,11 @@ template <class T>
 bool Section::ReadWhole(const std::string& key, T& value, const Range& range) {
   Request& request = Ask(key);
   bool good = false;
-  if (request.node) {
-    const std::string* text = Scalar(*state_, *request.node, request.path, "a whole number");
+  if (request.element) {
+    const std::string* text = Scalar(*state_, *request.element, request.path, "a whole number");
     std::string problem;
     good = text && ParseInteger(*text, range, value, problem);
-    if (text && !good) state_->Complain(request.node->place, "'" + request.path + "': " + problem);
+    if (text && !good) state_->Complain(request.element->place, "'" + request.path + "': " + problem);
   }
   request.kind = Request::Kind::value;
   request.json = std::to_string(value);
@@ -122,12 +123,12 @@ bool Section::Read(const std::string& key, std::uint64_t& value, const Range& ra
 bool Section::Read(const std::string& key, bool& value) {
   Request& request = Ask(key);
   bool good = false;
-  if (request.node) {
-    const std::string* text = Scalar(*state_, *request.node, request.path, "true or false");
+  if (request.element) {
+    const std::string* text = Scalar(*state_, *request.element, request.path, "true or false");
     good = text && (*text == "true" || *text == "false");
     if (good) value = *text == "true";
     if (text && !good)
-      state_->Complain(request.node->place, "'" + request.path + "': '" + *text + "' is neither true nor false");
+      state_->Complain(request.element->place, "'" + request.path + "': '" + *text + "' is neither true nor false");
   }
   request.kind = Request::Kind::value;
   request.json = value ? "true" : "false";
@@ -136,10 +137,10 @@ bool Section::Read(const std::string& key, bool& value) {
 
 bool Section::Read(const std::string& key, std::string& value) {
   Request& request = Ask(key);
-  const std::string* text = request.node ? Scalar(*state_, *request.node, request.path, "a text") : nullptr;
+  const std::string* text = request.element ? Scalar(*state_, *request.element, request.path, "a text") : nullptr;
   const bool good = text && !text->empty();
   if (good) value = *text;
-  if (text && !good) state_->Complain(request.node->place, "'" + request.path + "': is empty");
+  if (text && !good) state_->Complain(request.element->place, "'" + request.path + "': is empty");
   request.kind = Request::Kind::value;
   request.json = QuoteJson(value);
   return good;
@@ -148,7 +149,7 @@ bool Section::Read(const std::string& key, std::string& value) {
 bool Section::Read(const std::string& key, std::vector<double>& value, Unit unit, const Range& range) {
   Request& request = Ask(key);
   std::vector<double> read;
-  const bool good = request.node && Numbers(*state_, *request.node, request.path, unit, range, read);
+  const bool good = request.element && Numbers(*state_, *request.element, request.path, unit, range, read);
   if (good) value = std::move(read);
   request.kind = Request::Kind::value;
   request.json = JsonNumbers(value.data(), value.size());
@@ -157,14 +158,14 @@ bool Section::Read(const std::string& key, std::vector<double>& value, Unit unit
 
 bool Section::Read(const std::string& key, std::vector<std::string>& value) {
   Request& request = Ask(key);
-  bool good = request.node != nullptr;
+  bool good = request.element != nullptr;
   std::vector<std::string> read;
-  if (request.node && request.node->kind != Node::Kind::list) {
-    state_->Complain(request.node->place,
-                     "'" + request.path + "': expected a list of texts, not " + Describe(*request.node));
+  if (request.element && request.element->kind != Element::Kind::list) {
+    state_->Complain(request.element->place,
+                     "'" + request.path + "': expected a list of texts, not " + Describe(*request.element));
     good = false;
-  } else if (request.node) {
-    for (const Node& item : request.node->items) {
+  } else if (request.element) {
+    for (const Element& item : request.element->items) {
       const std::string* text = Scalar(*state_, item, key, "a text");
       good = good && text;
       read.push_back(text ? *text : "");
@@ -172,6 +173,7 @@ bool Section::Read(const std::string& key, std::vector<std::string>& value) {
   }
   if (good) value = std::move(read);
   std::vector<std::string> items;
+  items.reserve(value.size());
   for (const std::string& text : value) items.push_back(QuoteJson(text));
   request.kind = Request::Kind::value;
   request.json = JsonList(items);
@@ -181,10 +183,10 @@ bool Section::Read(const std::string& key, std::vector<std::string>& value) {
 bool Section::ReadNumbers(const std::string& key, double* values, std::size_t count, Unit unit, const Range& range) {
   Request& request = Ask(key);
   std::vector<double> read;
-  bool good = request.node && Numbers(*state_, *request.node, request.path, unit, range, read);
+  bool good = request.element && Numbers(*state_, *request.element, request.path, unit, range, read);
   if (good && read.size() != count) {
-    state_->Complain(request.node->place, "'" + request.path + "': expected " + std::to_string(count) +
-                                              " numbers, not " + std::to_string(read.size()));
+    state_->Complain(request.element->place, "'" + request.path + "': expected " + std::to_string(count) +
+                                                 " numbers, not " + std::to_string(read.size()));
     good = false;
   }
   if (good) std::copy(read.begin(), read.end(), values);
@@ -198,13 +200,13 @@ bool Section::ReadName(const std::string& key, const std::vector<std::string>& n
     throw std::logic_error("settings: the default of '" + request_->path + "." + key + "' has no name");
   Request& request = Ask(key);
   bool good = false;
-  if (request.node) {
-    const std::string* text = Scalar(*state_, *request.node, request.path, "a name");
+  if (request.element) {
+    const std::string* text = Scalar(*state_, *request.element, request.path, "a name");
     const auto at = text ? std::find(names.begin(), names.end(), *text) : names.end();
     good = at != names.end();
     if (good) index = static_cast<std::size_t>(at - names.begin());
     if (text && !good) {
-      state_->Complain(request.node->place,
+      state_->Complain(request.element->place,
                        "'" + request.path + "': '" + *text + "' is not known" + Suggest(*text, names));
     }
   }
@@ -217,9 +219,10 @@ Section Section::Child(const std::string& key) {
   Request& request = Ask(key);
   if (request.kind == Request::Kind::absent) {
     request.kind = Request::Kind::section;
-    if (request.node && request.node->kind != Node::Kind::map && request.node->kind != Node::Kind::null) {
-      state_->Complain(request.node->place,
-                       "'" + request.path + "': expected a section, not " + Describe(*request.node));
+    if (request.element && request.element->kind != Element::Kind::map &&
+        request.element->kind != Element::Kind::null) {
+      state_->Complain(request.element->place,
+                       "'" + request.path + "': expected a section, not " + Describe(*request.element));
     }
   }
   return Section(state_, &request);
@@ -229,16 +232,16 @@ std::vector<Section> Section::List(const std::string& key) {
   Request& request = Ask(key);
   if (request.kind == Request::Kind::absent) {
     request.kind = Request::Kind::list;
-    if (request.node && request.node->kind != Node::Kind::list) {
-      state_->Complain(request.node->place,
-                       "'" + request.path + "': expected a list of sections, not " + Describe(*request.node));
-    } else if (request.node) {
-      for (const Node& item : request.node->items) {
+    if (request.element && request.element->kind != Element::Kind::list) {
+      state_->Complain(request.element->place,
+                       "'" + request.path + "': expected a list of sections, not " + Describe(*request.element));
+    } else if (request.element) {
+      for (const Element& item : request.element->items) {
         auto child = std::make_unique<Request>();
-        child->node = &item;
+        child->element = &item;
         child->place = item.place;
         child->path = request.path + "." + std::to_string(request.children.size());
-        if (item.kind != Node::Kind::map) {
+        if (item.kind != Element::Kind::map) {
           state_->Complain(item.place, "'" + request.path + "': expected a list of sections, not of " + Describe(item));
         }
         request.children.emplace_back("", std::move(child));
@@ -251,19 +254,19 @@ std::vector<Section> Section::List(const std::string& key) {
 }
 
 void Section::Reject(const std::string& key, const std::string& message) {
-  const Node* node = request_->node;
+  const Element* element = request_->element;
   Place place = request_->place;
   std::istringstream parts(key);
-  for (std::string part; node && std::getline(parts, part, '.');) {
-    node = node->kind == Node::Kind::map ? node->Find(part) : nullptr;
-    if (node) place = node->place;
+  for (std::string part; element && std::getline(parts, part, '.');) {
+    element = element->kind == Element::Kind::map ? element->Find(part) : nullptr;
+    if (element) place = element->place;
   }
   state_->Complain(place, message);
 }
 
 void Section::RequirePresent(const std::string& key) {
   Request& request = Ask(key);
-  if (request.node) return;
+  if (request.element) return;
   request.kind = Request::Kind::absent;
   state_->Complain(request_->place, "missing key '" + request.path + "'");
 }
@@ -291,7 +294,7 @@ Document Document::FromText(const std::string& text, const std::string& name) {
   const bool invalid = std::any_of(problems.begin(), problems.end(), [](const Problem& problem) {
     return problem.message.starts_with("not valid YAML");
   });
-  if (state->root.kind != Node::Kind::map && state->root.kind != Node::Kind::null) {
+  if (state->root.kind != Element::Kind::map && state->root.kind != Element::Kind::null) {
     problems.push_back({name, state->root.place.line, state->root.place.column,
                         "expected keys with values, not " + Describe(state->root)});
     throw Error(std::move(problems));
@@ -310,38 +313,39 @@ void Document::Override(const std::string& key, const std::string& value) {
   if (key.empty() || key.back() == '.' || std::find(parts.begin(), parts.end(), "") != parts.end()) {
     return state_->Complain(place, "not a key: expected words with dots between them");
   }
-  Node* node = &state_->root;
+  Element* element = &state_->root;
   for (const std::string& part : parts) {
-    if (node->kind == Node::Kind::null) node->kind = Node::Kind::map;
-    if (node->kind == Node::Kind::list) {
+    if (element->kind == Element::Kind::null) element->kind = Element::Kind::map;
+    if (element->kind == Element::Kind::list) {
       std::uint64_t index = 0;
       std::string problem;
       if (!ParseInteger(part, {}, index, problem)) return state_->Complain(place, "in a list: " + problem);
-      if (index >= node->items.size()) {
+      if (index >= element->items.size()) {
         return state_->Complain(place, "there is no item " + part + " in a list of " +
-                                           std::to_string(node->items.size()) + " (the first is 0)");
+                                           std::to_string(element->items.size()) + " (the first is 0)");
       }
-      node = &node->items[index];
-    } else if (node->kind == Node::Kind::map) {
-      auto at = std::find_if(node->entries.begin(), node->entries.end(), [&](const Entry& e) { return e.key == part; });
-      if (at == node->entries.end()) {
-        Node null;
+      element = &element->items[index];
+    } else if (element->kind == Element::Kind::map) {
+      auto at =
+          std::find_if(element->entries.begin(), element->entries.end(), [&](const Entry& e) { return e.key == part; });
+      if (at == element->entries.end()) {
+        Element null;
         null.place = place;
-        node->entries.push_back({part, place, std::move(null)});
-        at = node->entries.end() - 1;
+        element->entries.push_back({part, place, std::move(null)});
+        at = element->entries.end() - 1;
       }
-      node = &at->value;
+      element = &at->value;
     } else {
-      return state_->Complain(place, "'" + part + "' cannot be set inside " + Describe(*node));
+      return state_->Complain(place, "'" + part + "' cannot be set inside " + Describe(*element));
     }
   }
-  *node = ParseYaml(value, place.file, false, state_->problems);
+  *element = ParseYaml(value, place.file, false, state_->problems);
 }
 
 Section Document::root() {
   if (!state_->reading) {
     state_->reading = true;
-    state_->requests.node = &state_->root;
+    state_->requests.element = &state_->root;
     state_->requests.place = Place{state_->root.place.file, 0, 0};
   }
   return Section(state_, &state_->requests);

@@ -27,7 +27,7 @@
 
 namespace settings {
 
-struct Node;     // of the file
+struct Element;  // of the file
 struct Request;  // what was asked for
 struct State;    // of a document
 
@@ -103,7 +103,7 @@ class Section {
   friend class Document;
   Section(std::shared_ptr<State> state, Request* request) : state_(std::move(state)), request_(request) {}
 
-  const Node* Find(const std::string& key) const;
+  const Element* Find(const std::string& key) const;
   Request& Ask(const std::string& key);
   bool ReadNumbers(const std::string& key, double* values, std::size_t count, Unit unit, const Range& range);
   bool ReadName(const std::string& key, const std::vector<std::string>& names, std::size_t& index);

@@ -15,29 +15,29 @@ struct Place {
 
 struct Entry;
 
-struct Node {
+struct Element {
   enum class Kind { null, scalar, list, map };
   Kind kind = Kind::null;
   Place place;
   std::string text;            // of a scalar
-  std::vector<Node> items;     // of a list
+  std::vector<Element> items;  // of a list
   std::vector<Entry> entries;  // of a map, in the order of the file
 
-  const Node* Find(const std::string& key) const;  // of a map; null when there is none
+  const Element* Find(const std::string& key) const;  // of a map; null when there is none
 };
 
 struct Entry {
   std::string key;
   Place place;  // of the key
-  Node value;
+  Element value;
 };
 
 // "a list", "a section", ...: for messages.
-std::string Describe(const Node& node);
+std::string Describe(const Element& element);
 
-// Reads one YAML document; an empty text is a null node. Appends a problem for each duplicate key, alias, tag and key
-// that is not a scalar, and goes on; a syntax error ends it with one problem. Without `with_lines` every place is just
-// the name.
-Node ParseYaml(const std::string& text, const std::string& name, bool with_lines, std::vector<Problem>& problems);
+// Reads one YAML document; an empty text is a null element. Appends a problem for each duplicate key, alias, tag and
+// key that is not a scalar, and goes on; a syntax error ends it with one problem. Without `with_lines` every place is
+// just the name.
+Element ParseYaml(const std::string& text, const std::string& name, bool with_lines, std::vector<Problem>& problems);
 
 }  // namespace settings

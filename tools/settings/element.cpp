@@ -1,4 +1,4 @@
-#include "tools/settings/node.h"
+#include "tools/settings/element.h"
 
 #include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/eventhandler.h>
@@ -22,48 +22,48 @@ class Builder : public YAML::EventHandler {
 
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { Add(MakeNode(Node::Kind::null, mark)); }
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { Add(MakeElement(Element::Kind::null, mark)); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
     Complain(mark, "aliases (*name) are not supported: write the value out");
-    Add(MakeNode(Node::Kind::null, mark));
+    Add(MakeElement(Element::Kind::null, mark));
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, const std::string& value) override {
     CheckTag(mark, tag);
-    Node node = MakeNode(Node::Kind::scalar, mark);
-    node.text = value;
+    Element element = MakeElement(Element::Kind::scalar, mark);
+    element.text = value;
     const bool plain = tag == "?" || tag.empty();
-    if (plain && (value.empty() || value == "~" || value == "null")) node.kind = Node::Kind::null;
-    Add(std::move(node));
+    if (plain && (value.empty() || value == "~" || value == "null")) element.kind = Element::Kind::null;
+    Add(std::move(element));
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                        YAML::EmitterStyle::value) override {
     CheckTag(mark, tag);
-    open_.push_back({MakeNode(Node::Kind::list, mark), {}, false});
+    open_.push_back({MakeElement(Element::Kind::list, mark), {}, false});
   }
   void OnSequenceEnd() override { Close(); }
   void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, YAML::EmitterStyle::value) override {
     CheckTag(mark, tag);
-    open_.push_back({MakeNode(Node::Kind::map, mark), {}, false});
+    open_.push_back({MakeElement(Element::Kind::map, mark), {}, false});
   }
   void OnMapEnd() override { Close(); }
 
-  Node TakeRoot() { return std::move(root_); }
+  Element TakeRoot() { return std::move(root_); }
 
  private:
   struct Open {
-    Node node;
-    Node key;  // of a map: the key that waits for its value
+    Element element;
+    Element key;  // of a map: the key that waits for its value
     bool has_key = false;
   };
 
   Place PlaceOf(const YAML::Mark& mark) const {
     return with_lines_ && mark.line >= 0 ? Place{name_, mark.line + 1, mark.column + 1} : Place{name_, 0, 0};
   }
-  Node MakeNode(Node::Kind kind, const YAML::Mark& mark) const {
-    Node node;
-    node.kind = kind;
-    node.place = PlaceOf(mark);
-    return node;
+  Element MakeElement(Element::Kind kind, const YAML::Mark& mark) const {
+    Element element;
+    element.kind = kind;
+    element.place = PlaceOf(mark);
+    return element;
   }
   void Complain(const Place& place, std::string message) {
     problems_.push_back({place.file, place.line, place.column, std::move(message)});
@@ -73,33 +73,34 @@ class Builder : public YAML::EventHandler {
     if (tag != "?" && tag != "!" && !tag.empty()) Complain(mark, "tags (" + tag + ") are not supported");
   }
   void Close() {
-    Node node = std::move(open_.back().node);
+    Element element = std::move(open_.back().element);
     open_.pop_back();
-    Add(std::move(node));
+    Add(std::move(element));
   }
-  void Add(Node node) {
+  void Add(Element element) {
     if (open_.empty()) {
-      root_ = std::move(node);
+      root_ = std::move(element);
       return;
     }
     Open& parent = open_.back();
-    if (parent.node.kind == Node::Kind::list) {
-      parent.node.items.push_back(std::move(node));
+    if (parent.element.kind == Element::Kind::list) {
+      parent.element.items.push_back(std::move(element));
     } else if (!parent.has_key) {
-      if (node.kind != Node::Kind::scalar) Complain(node.place, "a key must be a plain word, not " + Describe(node));
-      parent.key = std::move(node);
+      if (element.kind != Element::Kind::scalar)
+        Complain(element.place, "a key must be a plain word, not " + Describe(element));
+      parent.key = std::move(element);
       parent.has_key = true;
     } else {
       parent.has_key = false;
-      if (node.kind == Node::Kind::null) node.place = parent.key.place;  // the parser's mark is after the line
-      if (parent.key.kind != Node::Kind::scalar) return;
-      if (const Node* first = parent.node.Find(parent.key.text)) {
+      if (element.kind == Element::Kind::null) element.place = parent.key.place;  // the parser's mark is after the line
+      if (parent.key.kind != Element::Kind::scalar) return;
+      if (const Element* first = parent.element.Find(parent.key.text)) {
         std::string message = "duplicate key '" + parent.key.text + "'";
         if (first->place.line > 0) message += ", given already on line " + std::to_string(first->place.line);
         Complain(parent.key.place, std::move(message));
         return;
       }
-      parent.node.entries.push_back({std::move(parent.key.text), parent.key.place, std::move(node)});
+      parent.element.entries.push_back({std::move(parent.key.text), parent.key.place, std::move(element)});
     }
   }
 
@@ -107,31 +108,31 @@ class Builder : public YAML::EventHandler {
   bool with_lines_;
   std::vector<Problem>& problems_;
   std::vector<Open> open_;
-  Node root_;
+  Element root_;
 };
 
 }  // namespace
 
-const Node* Node::Find(const std::string& key) const {
+const Element* Element::Find(const std::string& key) const {
   const auto at = std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) { return entry.key == key; });
   return at == entries.end() ? nullptr : &at->value;
 }
 
-std::string Describe(const Node& node) {
-  switch (node.kind) {
-    case Node::Kind::null:
+std::string Describe(const Element& element) {
+  switch (element.kind) {
+    case Element::Kind::null:
       return "nothing";
-    case Node::Kind::scalar:
-      return "'" + node.text + "'";
-    case Node::Kind::list:
+    case Element::Kind::scalar:
+      return "'" + element.text + "'";
+    case Element::Kind::list:
       return "a list";
-    case Node::Kind::map:
+    case Element::Kind::map:
       return "a section";
   }
   return "nothing";
 }
 
-Node ParseYaml(const std::string& text, const std::string& name, bool with_lines, std::vector<Problem>& problems) {
+Element ParseYaml(const std::string& text, const std::string& name, bool with_lines, std::vector<Problem>& problems) {
   Builder builder(name, with_lines, problems);
   try {
     std::istringstream stream(text);
@@ -147,7 +148,7 @@ Node ParseYaml(const std::string& text, const std::string& name, bool with_lines
     problems.push_back(
         {name, place ? error.mark.line + 1 : 0, place ? error.mark.column + 1 : 0, "not valid YAML: " + error.msg});
   }
-  Node root = builder.TakeRoot();
+  Element root = builder.TakeRoot();
   if (root.place.file.empty()) root.place.file = name;
   return root;
 }
