@@ -74,6 +74,7 @@ std::vector<std::string> Problems(const Params& params) {
   check.Positive("features.brisk_size_px", features.brisk_size_px);
   check.Require(features.max_hamming > 0 && features.max_hamming <= 1, "features.max_hamming", features.max_hamming,
                 "must lie in 0 ... 1");
+  odd("features.window_quick_px", features.window_quick_px);
   odd("features.window_px", features.window_px);
   odd("features.window_enlarged_px", features.window_enlarged_px);
   odd("features.window_lost_px", features.window_lost_px);

@@ -75,6 +75,7 @@ struct FeatureParams {
   double min_cornerness = 0.0;     // 0 ... 1, of a new feature: above 0 refuses straight edges, along which matches slide (0: the paper)
   double brisk_size_px = 12;       // diameter given to BRISK: larger is more distinct, less invariant
   double max_hamming = 0.15;       // of 512 bits
+  int window_quick_px = 5;         // looked at first; believed only when the best pixel is not on its border. 1: the paper, without it
   int window_px = 9;               // side of the search window about the prediction ...
   int window_enlarged_px = 17;     // ... and when nothing fits there
   int window_lost_px = 49;         // at most, when the prediction itself is uncertain (recovery)

@@ -43,30 +43,40 @@ std::optional<Eigen::Vector2i> BestPixel(const SearchRequest& request, int side,
   return best;
 }
 
+bool OnBorder(const Eigen::Vector2i& pixel, const Eigen::Vector2i& centre, int side) {
+  return (pixel - centre).cwiseAbs().maxCoeff() == side / 2;
+}
+
 }  // namespace
 
 std::vector<std::optional<Eigen::Vector2d>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& grey,
                                                          BriskField& field, const FeatureParams& params) {
   const int max_distance = static_cast<int>(std::lround(params.max_hamming * 512));
   std::vector<std::optional<Eigen::Vector2d>> found(requests.size());
-  std::vector<int> side(requests.size(), 0);
-  for (int stage = 0; stage < 3; ++stage) {
+  std::vector<int> searched(requests.size(), 0);  // side of the window so far
+  enum Stage { quick, window, enlarged, lost, end };
+  for (int stage = quick; stage < end; ++stage) {
+    const auto side_of = [&](std::size_t i) {
+      switch (stage) {
+        case quick: return params.window_quick_px;
+        case window: return params.window_px;
+        case enlarged: return params.window_enlarged_px;
+        default: return LostWindow(requests[i].S, params);
+      }
+    };
+    std::vector<std::size_t> active;
     std::vector<Eigen::Vector2i> pixels;
     for (std::size_t i = 0; i < requests.size(); ++i) {
-      const int wanted = stage == 0   ? params.window_px
-                         : stage == 1 ? params.window_enlarged_px
-                                      : LostWindow(requests[i].S, params);
-      if (found[i] || wanted <= side[i]) {
-        side[i] = found[i] ? 0 : side[i];
-        continue;
-      }
-      side[i] = wanted;
-      ForEachPixel(Rounded(requests[i].predicted), wanted, [&](const Eigen::Vector2i& p) { pixels.push_back(p); });
+      if (found[i] || side_of(i) <= searched[i]) continue;
+      searched[i] = side_of(i);
+      active.push_back(i);
+      ForEachPixel(Rounded(requests[i].predicted), searched[i], [&](const Eigen::Vector2i& p) { pixels.push_back(p); });
     }
     field.Compute(pixels);
-    for (std::size_t i = 0; i < requests.size(); ++i) {
-      if (found[i]) continue;
-      if (const auto pixel = BestPixel(requests[i], side[i], field, max_distance)) found[i] = pixel->cast<double>();
+    for (const std::size_t i : active) {
+      const auto pixel = BestPixel(requests[i], searched[i], field, max_distance);
+      if (!pixel || (stage == quick && OnBorder(*pixel, Rounded(requests[i].predicted), searched[i]))) continue;
+      found[i] = pixel->cast<double>();
     }
   }
   if (params.subpixel) {
