@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -88,6 +89,11 @@ std::int64_t Simulator::StampNs(std::int64_t index) const {
 Truth Simulator::TruthAt(std::int64_t index) const {
   const Motion motion = parts_->trajectory->At(Seconds(StampNs(index)));
   const glm::dquat q = motion.pose.q_WC.w < 0 ? -motion.pose.q_WC : motion.pose.q_WC;
+  const double size = glm::length(motion.pose.p_WC) + glm::length(motion.v_WC) + glm::length(motion.w_WC_C);
+  if (!std::isfinite(size) || !(std::abs(glm::length(q) - 1) < 1e-9)) {
+    throw std::logic_error("simulator: the truth of frame " + std::to_string(index) +
+                           " is not finite or not a rotation");
+  }
   return {motion.pose.p_WC, q, motion.v_WC, motion.w_WC_C};
 }
 

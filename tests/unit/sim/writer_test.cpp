@@ -151,6 +151,12 @@ TEST(SequenceWriter, RefusesWhatIsThereAndBadRanges) {
     EXPECT_THROW(make(folder, first, last, 1), std::invalid_argument) << first << ":" << last;
   }
   EXPECT_THROW(make(folder, 0, 1, 0), std::invalid_argument);
+  try {
+    make(world.scenario() / "below" / "a file", 0, 1, 1);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("wall.yaml/below/a file: cannot make this folder: Not a directory"));
+  }
   EXPECT_FALSE(std::filesystem::exists(folder));
   std::filesystem::create_directory(folder);
   Write(simulator, folder, 0, 1, 1);
