@@ -66,7 +66,7 @@ struct ScoreParams {
 };
 
 struct FeatureParams {
-  double sigma_px = 0.8;           // standard deviation of a matched pixel, per axis [px] (the paper, to whole pixels: 2)
+  double sigma_px = 0.7;           // standard deviation of a matched pixel, per axis [px] (the paper, to whole pixels: 2)
   int grid_columns = 8, grid_rows = 6;
   int per_cell = 3;                // corners wanted in every cell of the grid
   int fast_threshold_start = 60;   // grey levels; lowered per cell ...
