@@ -54,7 +54,7 @@ TEST_F(DeterminismTest, ARangeHasTheFramesOfTheWhole) {
 }
 
 TEST_F(DeterminismTest, RunsDoNotDependOnThreads) {
-  const std::vector<std::string> run = {"run", "--system", "rb2pf,rbpf", "--runs", "2", "--set", "time.duration=0.5 s"};
+  const std::vector<std::string> run = {"run", "--system", "rb2pf,rbpf", "--runs", "2", "--set", "time.duration=0.3 s"};
   for (const std::string jobs : {"1", "2"}) {
     std::vector<std::string> arguments = run;
     arguments.insert(arguments.end(), {"-o", "jobs" + jobs, "--jobs", jobs});
@@ -73,7 +73,7 @@ TEST_F(DeterminismTest, RunsDoNotDependOnThreads) {
 
 // `track` tells the odometry nothing of the truth; `run` told as little must come to the same.
 TEST_F(DeterminismTest, ThroughTheDiskOrInMemoryIsTheSame) {
-  const std::string duration = "time.duration=0.5 s";
+  const std::string duration = "time.duration=0.3 s";
   Succeeds({"render", "-o", "seq", "--set", duration});
   Vobench({"track", "seq", "-o", "disk", "--seed", "3"});
   Succeeds({"run", "-o", "memory", "--seed", "3", "--set", duration, "--set",

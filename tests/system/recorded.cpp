@@ -18,12 +18,12 @@ std::optional<fs::path> RecordedSequence(const std::string& name) {
   return fs::exists(folder / "rgb.txt") ? std::optional(folder) : std::nullopt;
 }
 
-void FirstFrames(const fs::path& sequence, int frames, const fs::path& folder) {
+void SomeFrames(const fs::path& sequence, int first, int last, const fs::path& folder) {
   std::istringstream list(ReadFile(sequence / "rgb.txt"));
   std::string line, kept;
-  for (int frame = 0; frame < frames && std::getline(list, line);) {
+  for (int frame = 0; frame < last && std::getline(list, line);) {
     if (line.empty() || line[0] == '#') continue;
-    kept += line + "\n";
+    if (frame >= first) kept += line + "\n";
     ++frame;
   }
   WriteFile(folder / "rgb.txt", kept);

@@ -13,8 +13,8 @@ namespace vobench::system_test {
 // The folder of a sequence, if it is at hand.
 std::optional<std::filesystem::path> RecordedSequence(const std::string& name);
 
-// A sequence of the first frames of another, in `folder`. Images are linked, truth is copied.
-void FirstFrames(const std::filesystem::path& sequence, int frames, const std::filesystem::path& folder);
+// A sequence of the frames [first, last) of another, in `folder`. Images are linked, truth is copied.
+void SomeFrames(const std::filesystem::path& sequence, int first, int last, const std::filesystem::path& folder);
 
 // What metrics.json says of one `vobench track`.
 struct Scores {
