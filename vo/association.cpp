@@ -68,11 +68,6 @@ SearchRequest RequestFor(const Candidate& candidate, const ParticleFilter& filte
 
 }  // namespace
 
-Eigen::Matrix2d PixelNoise(const Eigen::Matrix2d& lens, double sigma_px) {
-  const Eigen::Matrix2d root = lens.inverse() * sigma_px;
-  return root * root.transpose();
-}
-
 Association Associate(const ParticleFilter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
                       BriskField& field, int border_px, const Params& params) {
   const std::vector<Candidate> candidates = FindCandidates(filter, records, camera, border_px, params);
@@ -87,7 +82,9 @@ Association Associate(const ParticleFilter& filter, std::span<const LandmarkReco
       matches.push_back({candidates[i].landmark, camera.Undistort(*found[i]), PixelNoise(candidates[i].lens, params.features.sigma_px)});
   const Particle& particle = filter.Heaviest();
   const std::vector<bool> inlier =
-      FindInliers(particle.prediction, filter.MapOf(particle), matches, params.score.gate, params.filter);
+      params.filter.reject_outliers
+          ? FindInliers(particle.prediction, filter.MapOf(particle), matches, params.score.gate, params.filter)
+          : std::vector<bool>(matches.size(), true);
 
   Association result;
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {

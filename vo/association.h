@@ -32,7 +32,4 @@ struct Association {
 Association Associate(const ParticleFilter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
                       BriskField& field, int border_px, const Params& params);
 
-// The covariance of a pixel, seen on the plane z = 1. `lens` = d pixel / d(plane z = 1).
-Eigen::Matrix2d PixelNoise(const Eigen::Matrix2d& lens, double sigma_px);
-
 }  // namespace vo

@@ -1,7 +1,6 @@
 #include "vo/odometry.h"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -9,41 +8,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "vo/association.h"
+#include "vo/estimate.h"
 #include "vo/features/corner_detector.h"
 #include "vo/map/existence.h"
 
 namespace vo {
 namespace {
-
-class Stopwatch {
- public:
-  // Milliseconds since the last call, or since the start.
-  double Lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-    return ms;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
-Params Checked(const Params& params) {
-  const std::vector<std::string> problems = Problems(params);
-  if (problems.empty()) return params;
-  std::string text;
-  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
-  throw std::invalid_argument(text);
-}
-
-FilterPrior ToFilterPrior(const Prior& prior) {
-  FilterPrior out;
-  out.pose = {prior.pose, prior.pose_covariance};
-  out.velocity << prior.v_WC, prior.w_WC_C;
-  out.velocity_covariance = prior.velocity_covariance;
-  return out;
-}
 
 cv::Mat Grey(const cv::Mat& image) {
   if (image.channels() == 1) return image;
@@ -83,9 +53,7 @@ Estimate Odometry::Impl::Process(const Frame& frame) {
   if (frame.image.cols != camera.width || frame.image.rows != camera.height)
     throw std::invalid_argument("image is " + std::to_string(frame.image.cols) + " x " + std::to_string(frame.image.rows) +
                                 ", the camera " + std::to_string(camera.width) + " x " + std::to_string(camera.height));
-  if (last_stamp_ns && frame.stamp_ns <= *last_stamp_ns)
-    throw std::invalid_argument("time stamp " + std::to_string(frame.stamp_ns) + " ns does not increase over " +
-                                std::to_string(*last_stamp_ns) + " ns");
+  if (last_stamp_ns) RequireIncreasing(frame.stamp_ns, *last_stamp_ns);
   FrameDiagnostics diagnostics;
   Stopwatch watch;
   const cv::Mat grey = Grey(frame.image);
@@ -177,9 +145,7 @@ Estimate Odometry::Impl::Answer(std::int64_t stamp_ns, FrameDiagnostics diagnost
   diagnostics.landmarks = static_cast<int>(records.size());
   diagnostics.permanent =
       static_cast<int>(std::count_if(records.begin(), records.end(), [](const LandmarkRecord& r) { return r.permanent; }));
-  diagnostics.effective_particles = filter.effective_particles();
-  const Belief& belief = filter.belief();
-  return {stamp_ns, belief.pose, belief.velocity.head<3>(), belief.velocity.tail<3>(), belief.covariance, diagnostics};
+  return MakeEstimate(filter, stamp_ns, diagnostics);
 }
 
 Odometry::Odometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)

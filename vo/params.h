@@ -40,6 +40,7 @@ struct FilterParams {
   double resample_below = 0.5;  // resample when N_eff < this fraction of the particles
   int max_iterations = 10;      // of the iterated proposal, and of a landmark given its pose
   Weight weight = Weight::evidence;
+  bool reject_outliers = true;  // matches that contradict the others are set aside before the update
 };
 
 struct LandmarkParams {

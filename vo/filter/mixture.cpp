@@ -11,7 +11,7 @@ BeliefComponent Component(const PoseGaussian& pose, const Pose& previous, const 
   Matrix6 J = Matrix6::Identity();  // d(p, delta) / d(tangent at the mean)
   J.bottomRightCorner<3, 3>() = InverseRightJacobian(delta);
   const Matrix6 G = gain.matrix * J;
-  BeliefComponent component{pose.mean, gain.mean + gain.matrix * s_pf, Matrix12::Zero()};
+  BeliefComponent component{0, pose.mean, gain.mean + gain.matrix * s_pf, Matrix12::Zero()};
   component.covariance.topLeftCorner<6, 6>() = pose.covariance;
   component.covariance.bottomLeftCorner<6, 6>() = G * pose.covariance;
   component.covariance.topRightCorner<6, 6>() = component.covariance.bottomLeftCorner<6, 6>().transpose();
@@ -19,27 +19,27 @@ BeliefComponent Component(const PoseGaussian& pose, const Pose& previous, const 
   return component;
 }
 
-Belief Moments(const std::vector<BeliefComponent>& mixture, const std::vector<double>& weights) {
+Belief Moments(const std::vector<BeliefComponent>& mixture) {
   std::size_t heaviest = 0;
   for (std::size_t i = 1; i < mixture.size(); ++i)
-    if (weights[i] > weights[heaviest]) heaviest = i;
+    if (mixture[i].weight > mixture[heaviest].weight) heaviest = i;
 
   Belief belief;
   belief.pose = mixture[heaviest].pose;
   for (int iteration = 0; iteration < 10; ++iteration) {  // mean on SO(3); two or three rounds suffice
     Vector6 mean_offset = Vector6::Zero();
-    for (std::size_t i = 0; i < mixture.size(); ++i) mean_offset += weights[i] * Minus(mixture[i].pose, belief.pose);
+    for (std::size_t i = 0; i < mixture.size(); ++i) mean_offset += mixture[i].weight * Minus(mixture[i].pose, belief.pose);
     belief.pose = Plus(belief.pose, mean_offset);
     if (mean_offset.squaredNorm() < 1e-24) break;
   }
-  for (std::size_t i = 0; i < mixture.size(); ++i) belief.velocity += weights[i] * mixture[i].velocity;
+  for (std::size_t i = 0; i < mixture.size(); ++i) belief.velocity += mixture[i].weight * mixture[i].velocity;
 
   for (std::size_t i = 0; i < mixture.size(); ++i) {
     Eigen::Matrix<double, 12, 1> d;
     d << Minus(mixture[i].pose, belief.pose), mixture[i].velocity - belief.velocity;
     Matrix12 J = Matrix12::Identity();  // from the tangent space at the component to that at the mean
     J.block<3, 3>(3, 3) = InverseRightJacobian(d.segment<3>(3));
-    belief.covariance += weights[i] * (J * mixture[i].covariance * J.transpose() + d * d.transpose());
+    belief.covariance += mixture[i].weight * (J * mixture[i].covariance * J.transpose() + d * d.transpose());
   }
   return belief;
 }

@@ -4,20 +4,32 @@
 
 #include <vector>
 
-#include "vo/filter/particle_filter.h"
+#include "vo/filter/velocity_filter.h"
+#include "vo/geometry/pose.h"
+#include "vo/filter/pose_gaussian.h"
 
 namespace vo {
 
+using CameraVelocityFilter = VelocityFilter<6, 6>;  // s_pf = (p, delta), s_kf = (v, w)
+
 // One particle's Gaussian over (pose, velocity) just before the pose is sampled; covariance in the tangent space at `pose`.
 struct BeliefComponent {
+  double weight = 0;
   Pose pose;
-  Vector6 velocity;
-  Matrix12 covariance;
+  Vector6 velocity;     // (v in W, w in C)
+  Matrix12 covariance;  // (dp in W, dphi in C, dv in W, dw in C)
+};
+
+struct Belief {
+  Pose pose;
+  Vector6 velocity = Vector6::Zero();
+  Matrix12 covariance = Matrix12::Zero();
 };
 
 // The velocity is an affine function of the pose still to be sampled, plus its own covariance.
 BeliefComponent Component(const PoseGaussian& pose, const Pose& previous, const CameraVelocityFilter::Gain& gain);
 
-Belief Moments(const std::vector<BeliefComponent>& mixture, const std::vector<double>& weights);
+// Weights sum to 1.
+Belief Moments(const std::vector<BeliefComponent>& mixture);
 
 }  // namespace vo

@@ -71,19 +71,19 @@ void ParticleFilter::Update(std::span<const Match> matches) {
 }
 
 void ParticleFilter::Coast() {
-  std::vector<BeliefComponent> mixture;
+  mixture_.clear();
   for (const Particle& particle : particles_)
-    mixture.push_back(Component(particle.prediction, particle.pose, VelocityGiven(particle)));
-  belief_ = Moments(mixture, weights_);
+    mixture_.push_back(Component(particle.prediction, particle.pose, VelocityGiven(particle)));
+  Answer();
 }
 
 void ParticleFilter::SampleStep(std::span<const Match> matches) {
-  std::vector<BeliefComponent> mixture;
+  mixture_.clear();
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {                                          // line 1
     Particle& particle = particles_[i];
     const PoseGaussian& prediction = particle.prediction;                                          // 2, (12)(13)
     const PoseProposal proposal = Propose(prediction, MapOf(particle), matches, params_);          // (15)(16)
-    mixture.push_back(Component(proposal.pose, particle.pose, VelocityGiven(particle)));
+    mixture_.push_back(Component(proposal.pose, particle.pose, VelocityGiven(particle)));
     const Pose s = proposal.pose.Sample({seed_, Stream::pose, frame_, i});                         // 4
     UpdateVelocity(particle, s, i);                                                                // 5-7, (37)-(43)
     const double log_likelihood = UpdateLandmarks(particle, s, matches);
@@ -94,7 +94,7 @@ void ParticleFilter::SampleStep(std::span<const Match> matches) {
   }
   since_sampled_ = 0;
   Weigh();
-  belief_ = Moments(mixture, weights_);
+  Answer();
   if (effective_particles_ < params_.resample_below * params_.particles) Resample();               // 11
 }
 
@@ -141,6 +141,11 @@ void ParticleFilter::Weigh() {
   const double peak = *std::max_element(log_weights.begin(), log_weights.end());
   for (Particle& particle : particles_) particle.log_weight -= peak;
   effective_particles_ = EffectiveParticles(weights_);
+}
+
+void ParticleFilter::Answer() {
+  for (std::size_t i = 0; i < mixture_.size(); ++i) mixture_[i].weight = weights_[i];
+  belief_ = Moments(mixture_);
 }
 
 void ParticleFilter::Resample() {

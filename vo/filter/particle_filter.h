@@ -8,16 +8,14 @@
 #include <span>
 #include <vector>
 
+#include "vo/filter/mixture.h"
 #include "vo/filter/motion_model.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/filter/proposal.h"
-#include "vo/filter/velocity_filter.h"
 #include "vo/map/landmark.h"
 #include "vo/params.h"
 
 namespace vo {
-
-using CameraVelocityFilter = VelocityFilter<6, 6>;  // s_pf = (p, delta), s_kf = (v, w)
 
 struct Particle {
   Pose pose;                               // sampled
@@ -26,13 +24,6 @@ struct Particle {
   std::vector<Pose> anchors;               // of the landmarks' first views, on this particle's path
   double log_weight = 0;
   PoseGaussian prediction;                 // (12)(13), valid between Predict and Update
-};
-
-// The filter's answer: moments of the mixture over particles of the pose just before it is sampled, and the velocity with it.
-struct Belief {
-  Pose pose;
-  Vector6 velocity = Vector6::Zero();      // (v in W, w in C)
-  Matrix12 covariance = Matrix12::Zero();  // (dp in W, dphi in C, dv in W, dw in C)
 };
 
 // Where a landmark should appear: moments over the particles, on the plane z = 1.
@@ -79,7 +70,10 @@ class ParticleFilter {
     double inverse_depth_sigma;
   };
   LandmarkBelief BeliefOf(int landmark) const;
+  // The filter's answer: moments of the mixture over particles of the pose just before it is sampled, and the velocity with it.
   const Belief& belief() const { return belief_; }
+  // The mixture itself; empty before the first Update.
+  const std::vector<BeliefComponent>& mixture() const { return mixture_; }
   double effective_particles() const { return effective_particles_; }
   const std::vector<Particle>& particles() const { return particles_; }
   const std::vector<double>& weights() const { return weights_; }
@@ -94,6 +88,7 @@ class ParticleFilter {
   double UpdateLandmarks(Particle& particle, const Pose& pose, std::span<const Match> matches) const;
   void UpdateVelocity(Particle& particle, const Pose& pose, std::uint32_t index) const;
   void Weigh();
+  void Answer();
   void Resample();
 
   MotionParams motion_;
@@ -107,6 +102,7 @@ class ParticleFilter {
   std::vector<double> weights_;     // normalised
   std::vector<int> anchor_of_;      // shared: all particles associate alike
   Belief belief_;
+  std::vector<BeliefComponent> mixture_;
   double effective_particles_ = 0;
 };
 

@@ -99,4 +99,9 @@ Camera CameraFrom(const std::string& preset_or_file) {
   }
 }
 
+Eigen::Matrix2d PixelNoise(const Eigen::Matrix2d& lens, double sigma_px) {
+  const Eigen::Matrix2d root = lens.inverse() * sigma_px;
+  return root * root.transpose();
+}
+
 }  // namespace vo

@@ -33,4 +33,7 @@ Camera ReadCamera(const std::filesystem::path& file);
 // A preset's name or a file.
 Camera CameraFrom(const std::string& preset_or_file);
 
+// The covariance of a pixel, seen on the plane z = 1. `lens` = d pixel / d(plane z = 1), Camera::LensJacobian.
+Eigen::Matrix2d PixelNoise(const Eigen::Matrix2d& lens, double sigma_px);
+
 }  // namespace vo

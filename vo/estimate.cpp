@@ -1,0 +1,36 @@
+#include "vo/estimate.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace vo {
+
+Params Checked(const Params& params) {
+  const std::vector<std::string> problems = Problems(params);
+  if (problems.empty()) return params;
+  std::string text;
+  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
+  throw std::invalid_argument(text);
+}
+
+FilterPrior ToFilterPrior(const Prior& prior) {
+  FilterPrior out;
+  out.pose = {prior.pose, prior.pose_covariance};
+  out.velocity << prior.v_WC, prior.w_WC_C;
+  out.velocity_covariance = prior.velocity_covariance;
+  return out;
+}
+
+Estimate MakeEstimate(const ParticleFilter& filter, std::int64_t stamp_ns, FrameDiagnostics diagnostics) {
+  diagnostics.effective_particles = filter.effective_particles();
+  const Belief& belief = filter.belief();
+  return {stamp_ns, belief.pose, belief.velocity.head<3>(), belief.velocity.tail<3>(), belief.covariance, diagnostics};
+}
+
+void RequireIncreasing(std::int64_t stamp_ns, std::int64_t last_ns) {
+  if (stamp_ns <= last_ns)
+    throw std::invalid_argument("time stamp " + std::to_string(stamp_ns) + " ns does not increase over " + std::to_string(last_ns) +
+                                " ns");
+}
+
+}  // namespace vo

@@ -1,0 +1,36 @@
+// Purpose: what Odometry and PointOdometry share: checked parameters, the start, the answer, the time spent. Not for users.
+#pragma once
+
+#include <chrono>
+
+#include "vo/filter/particle_filter.h"
+#include "vo/odometry.h"
+#include "vo/params.h"
+
+namespace vo {
+
+// Throws std::invalid_argument listing every bad parameter.
+Params Checked(const Params& params);
+
+FilterPrior ToFilterPrior(const Prior& prior);
+
+Estimate MakeEstimate(const ParticleFilter& filter, std::int64_t stamp_ns, FrameDiagnostics diagnostics);
+
+// Throws std::invalid_argument when `stamp_ns` is not after `last_ns`.
+void RequireIncreasing(std::int64_t stamp_ns, std::int64_t last_ns);
+
+class Stopwatch {
+ public:
+  // Milliseconds since the last call, or since the start.
+  double Lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
+    last_ = now;
+    return ms;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace vo

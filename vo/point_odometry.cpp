@@ -1,0 +1,141 @@
+#include "vo/point_odometry.h"
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "vo/estimate.h"
+#include "vo/filter/consensus.h"
+
+namespace vo {
+
+struct PointOdometry::Impl {
+  Impl(const Camera& camera_, const Params& params_, const Prior& prior, std::uint64_t seed)
+      : camera(camera_), params(Checked(params_)), filter(params.motion, params.filter, params.landmark, ToFilterPrior(prior), seed) {}
+
+  Estimate Process(const PointFrame& frame);
+  std::vector<Match> MatchesIn(const PointFrame& frame, FrameDiagnostics& diagnostics);
+  void Forget();
+  void AddNew(const PointFrame& frame);
+
+  struct Record {
+    std::int64_t id = 0;
+    int frames_unseen = 0;  // in a row
+  };
+
+  Camera camera;
+  Params params;
+  ParticleFilter filter;
+  std::vector<Record> records;                         // in the order of the filter's landmarks
+  std::unordered_map<std::int64_t, int> landmark_of;   // id -> index
+  std::optional<std::int64_t> last_stamp_ns;
+};
+
+Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
+  if (last_stamp_ns) RequireIncreasing(frame.stamp_ns, *last_stamp_ns);
+  FrameDiagnostics diagnostics;
+  Stopwatch watch;
+  if (last_stamp_ns) {
+    filter.Predict(static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9);
+    const std::vector<Match> matches = MatchesIn(frame, diagnostics);
+    diagnostics.ms_matching = watch.Lap();
+    filter.Update(matches);
+    diagnostics.ms_filter = watch.Lap();
+  }
+  last_stamp_ns = frame.stamp_ns;
+  Forget();
+  AddNew(frame);
+  diagnostics.landmarks = static_cast<int>(records.size());
+  for (int n = 0; n < diagnostics.landmarks; ++n) {
+    const auto belief = filter.BeliefOf(n);
+    diagnostics.permanent += belief.inverse_depth_sigma < params.landmark.permanent_ratio * belief.inverse_depth;
+  }
+  diagnostics.ms_features = watch.Lap();
+  return MakeEstimate(filter, frame.stamp_ns, diagnostics);
+}
+
+std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, FrameDiagnostics& diagnostics) {
+  for (Record& record : records) ++record.frames_unseen;
+  std::vector<Match> matches;
+  for (const PointObservation& observation : frame.observations) {
+    const auto known = landmark_of.find(observation.id);
+    if (known == landmark_of.end()) continue;
+    Record& record = records[static_cast<std::size_t>(known->second)];
+    if (record.frames_unseen == 0)
+      throw std::invalid_argument("point " + std::to_string(observation.id) + " comes twice in the frame at " +
+                                  std::to_string(frame.stamp_ns) + " ns");
+    record.frames_unseen = 0;
+    const Eigen::Vector2d z = camera.Undistort(observation.pixel);
+    matches.push_back({known->second, z, PixelNoise(camera.LensJacobian(z), params.features.sigma_px)});
+  }
+  diagnostics.searched = static_cast<int>(matches.size());
+  if (params.filter.reject_outliers) {
+    const Particle& particle = filter.Heaviest();
+    const std::vector<bool> inlier =
+        FindInliers(particle.prediction, filter.MapOf(particle), matches, params.score.gate, params.filter);
+    std::size_t to = 0;
+    for (std::size_t from = 0; from < matches.size(); ++from)
+      if (inlier[from]) matches[to++] = matches[from];
+    matches.resize(to);
+  }
+  for (const Match& match : matches) {
+    const ImagePrediction prediction = filter.PredictImage(match.landmark);
+    if (!prediction.in_front) continue;
+    const Eigen::Vector2d nu = match.z - prediction.z;
+    diagnostics.nis += nu.dot(Eigen::Matrix2d(prediction.covariance + match.R).inverse() * nu);
+    diagnostics.nis_dof += 2;
+  }
+  diagnostics.matched = static_cast<int>(matches.size());
+  return matches;
+}
+
+void PointOdometry::Impl::Forget() {
+  std::vector<bool> keep;
+  std::vector<Record> kept;
+  for (const Record& record : records) {
+    keep.push_back(record.frames_unseen < params.landmark.forget_after);
+    if (keep.back()) kept.push_back(record);
+  }
+  if (kept.size() == records.size()) return;
+  filter.KeepLandmarks(keep);
+  records = std::move(kept);
+  landmark_of.clear();
+  for (std::size_t n = 0; n < records.size(); ++n) landmark_of[records[n].id] = static_cast<int>(n);
+}
+
+void PointOdometry::Impl::AddNew(const PointFrame& frame) {
+  std::vector<Eigen::Vector2d> rays;
+  std::vector<Eigen::Matrix2d> noises;
+  for (const PointObservation& observation : frame.observations) {
+    if (!landmark_of.try_emplace(observation.id, static_cast<int>(records.size())).second) continue;
+    records.push_back({observation.id, 0});
+    rays.push_back(camera.Undistort(observation.pixel));
+    noises.push_back(PixelNoise(camera.LensJacobian(rays.back()), params.features.sigma_px));
+  }
+  filter.AddLandmarks(rays, noises);
+}
+
+PointOdometry::PointOdometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)
+    : impl_(std::make_unique<Impl>(camera, params, prior, seed)) {}
+PointOdometry::~PointOdometry() = default;
+PointOdometry::PointOdometry(PointOdometry&&) noexcept = default;
+
+Estimate PointOdometry::Track(const PointFrame& frame) { return impl_->Process(frame); }
+
+const std::vector<BeliefComponent>& PointOdometry::Mixture() const { return impl_->filter.mixture(); }
+
+std::vector<MapPoint> PointOdometry::Map() const {
+  std::vector<MapPoint> points;
+  for (int n = 0; n < impl_->filter.landmark_count(); ++n) {
+    const auto belief = impl_->filter.BeliefOf(n);
+    points.push_back({static_cast<int>(impl_->records[static_cast<std::size_t>(n)].id), belief.X_W, belief.inverse_depth,
+                      belief.inverse_depth_sigma, false});
+  }
+  return points;
+}
+
+}  // namespace vo
