@@ -1,0 +1,33 @@
+// Purpose: the judge's own random numbers: each a function of (seed, stream, index), the same everywhere.
+// Source:  Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011 (Philox 4x32-10); Box-Muller.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+namespace evaluation {
+
+// Philox 4x32 with ten rounds, as Random123 has it.
+std::array<std::uint32_t, 4> Philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
+
+// The stream named by (seed, stream): each call gives its next number.
+class Draws {
+ public:
+  explicit Draws(std::uint64_t seed, std::uint64_t stream = 0) : seed_(seed), stream_(stream) {}
+
+  // On the open interval (0, 1), 2^-32 apart.
+  double Uniform();
+  // Standard normal; beyond 6.7 sigma there is none.
+  double Normal();
+  Eigen::VectorXd Normals(Eigen::Index n);
+
+ private:
+  std::uint64_t seed_, stream_, block_ = 0;
+  std::array<std::uint32_t, 4> bits_{};
+  unsigned used_ = 4;
+  double spare_ = 0;
+  bool has_spare_ = false;
+};
+
+}  // namespace evaluation
