@@ -4,14 +4,13 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
 #include <stdexcept>
 #include <utility>
 
 #include "sim/motion/make.h"
 #include "sim/random/random.h"
 #include "sim/render/ray_tracer.h"
+#include "sim/scenario/stamps.h"
 #include "sim/sensor/exposure.h"
 #include "sim/sensor/sensor.h"
 #include "sim/world/scene.h"
@@ -25,21 +24,6 @@ int Threads(int jobs) {
   return std::min(jobs, tbb::info::default_concurrency());
 }
 
-std::int64_t CountFrames(const TimeParams& time) {
-  const double frames = std::round(time.rate_hz * time.duration_s);
-  if (!(time.rate_hz > 0) || !(frames >= 1 && frames <= 1e7)) {
-    throw std::invalid_argument("simulator: the scenario has no frame, or more than ten million");
-  }
-  return static_cast<std::int64_t>(frames);
-}
-
-std::int64_t Stamp(std::int64_t index, const TimeParams& time) {
-  return std::llround(static_cast<double>(index) * 1e9 / time.rate_hz);
-}
-
-// Truth is that of the rounded stamp, the one that is written.
-double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
-
 }  // namespace
 
 struct Simulator::Parts {
@@ -48,7 +32,8 @@ struct Simulator::Parts {
         frames(CountFrames(s.time)),
         camera(s.camera),
         sensor(s.sensor, s.seed),
-        trajectory(MakeTrajectory(s.motion, s.seed, Seconds(Stamp(frames - 1, s.time)), 0.5 * s.sensor.exposure_s)),
+        trajectory(
+            MakeTrajectory(s.motion, s.seed, Seconds(sim::StampNs(frames - 1, s.time)), 0.5 * s.sensor.exposure_s)),
         arena(Threads(jobs)) {
     const Scene scene = LoadScene(s.world);
     warnings = scene.warnings;
@@ -78,23 +63,10 @@ const Camera& Simulator::camera() const { return parts_->camera; }
 const Scenario& Simulator::scenario() const { return parts_->scenario; }
 const std::vector<std::string>& Simulator::warnings() const { return parts_->warnings; }
 
-std::int64_t Simulator::StampNs(std::int64_t index) const {
-  if (index < 0 || index >= parts_->frames) {
-    throw std::out_of_range("simulator: there is no frame " + std::to_string(index) + " of " +
-                            std::to_string(parts_->frames));
-  }
-  return Stamp(index, parts_->scenario.time);
-}
+std::int64_t Simulator::StampNs(std::int64_t index) const { return sim::StampNs(index, parts_->scenario.time); }
 
 Truth Simulator::TruthAt(std::int64_t index) const {
-  const Motion motion = parts_->trajectory->At(Seconds(StampNs(index)));
-  const glm::dquat q = motion.pose.q_WC.w < 0 ? -motion.pose.q_WC : motion.pose.q_WC;
-  const double size = glm::length(motion.pose.p_WC) + glm::length(motion.v_WC) + glm::length(motion.w_WC_C);
-  if (!std::isfinite(size) || !(std::abs(glm::length(q) - 1) < 1e-9)) {
-    throw std::logic_error("simulator: the truth of frame " + std::to_string(index) +
-                           " is not finite or not a rotation");
-  }
-  return {motion.pose.p_WC, q, motion.v_WC, motion.w_WC_C};
+  return sim::TruthAt(*parts_->trajectory, Seconds(StampNs(index)));
 }
 
 Frame Simulator::Render(std::int64_t index) const {

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/gtc/quaternion.hpp>
-#include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,16 +10,9 @@
 #include "sim/scenario/scenario.h"
 #include "sim/sensor/camera.h"
 #include "sim/sensor/image.h"
+#include "sim/truth.h"
 
 namespace sim {
-
-// At the stamp; conventions as in docs/conventions.md.
-struct Truth {
-  glm::dvec3 p_WC{0.0};                 // [m]
-  glm::dquat q_WC{1.0, 0.0, 0.0, 0.0};  // unit, w >= 0
-  glm::dvec3 v_WC{0.0};                 // in W [m/s]
-  glm::dvec3 w_WC_C{0.0};               // in C [rad/s]
-};
 
 struct Frame {
   std::int64_t index = 0;

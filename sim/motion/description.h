@@ -16,6 +16,8 @@ struct SampledMotion {
   Pose start;                        // at t = 0
   glm::dvec3 velocity{0.0};          // v_WC at t = 0 [m/s]
   glm::dvec3 angular_rate{0.0};      // w_WC_C at t = 0 [rad/s]
+  double velocity_sigma = 0.0;       // above 0: v_WC at t = 0 is drawn about `velocity`, per axis of W [m/s]
+  double angular_rate_sigma = 0.0;   // above 0: the same for w_WC_C, per axis of C [rad/s]
   double position_noise = 0.5;       // square root of the power spectral density of acceleration [m/s^1.5]
   double orientation_noise = 0.5;    // the same for angular acceleration [rad/s^1.5]
   double position_return = 0.0;      // [1/s] 0: none. Larger: pulled back to the start harder and sooner

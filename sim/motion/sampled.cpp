@@ -28,6 +28,15 @@ Noise Draw(std::uint64_t seed, Stream stream, std::size_t knot, double sigma, do
   return noise;
 }
 
+glm::dvec3 Drawn(const glm::dvec3& mean, double sigma, std::uint64_t seed, std::uint32_t which) {
+  glm::dvec3 drawn = mean;
+  for (int axis = 0; axis < 3 && sigma > 0; ++axis) {
+    const Words words = RandomWords(seed, Stream::start_velocity, 0, which, static_cast<std::uint32_t>(axis));
+    drawn[axis] += sigma * Normals(words)[0];
+  }
+  return drawn;
+}
+
 void Check(const SampledMotion& m, double end_s) {
   std::ostringstream problems;
   const auto require = [&](bool ok, const char* name, double value, const char* rule) {
@@ -35,6 +44,8 @@ void Check(const SampledMotion& m, double end_s) {
   };
   require(m.position_noise >= 0, "position_noise", m.position_noise, "must be at least 0");
   require(m.orientation_noise >= 0, "orientation_noise", m.orientation_noise, "must be at least 0");
+  require(m.velocity_sigma >= 0, "velocity_sigma", m.velocity_sigma, "must be at least 0");
+  require(m.angular_rate_sigma >= 0, "angular_rate_sigma", m.angular_rate_sigma, "must be at least 0");
   require(m.knot_step_s > 0 && m.knot_step_s <= 0.1, "knot_step", m.knot_step_s, "must lie between 0 and 0.1 s");
   require(m.position_return >= 0 && m.position_return * m.knot_step_s <= 0.2, "position_return", m.position_return,
           "must lie between 0 and 0.2 / knot_step");
@@ -62,7 +73,7 @@ SampledTrajectory::SampledTrajectory(const SampledMotion& m, std::uint64_t seed,
     : step_s_(m.knot_step_s), end_s_(end_s) {
   Check(m, end_s);
   const double h = step_s_;
-  Motion x{m.start, m.velocity, m.angular_rate};
+  Motion x{m.start, Drawn(m.velocity, m.velocity_sigma, seed, 0), Drawn(m.angular_rate, m.angular_rate_sigma, seed, 1)};
   x.pose.q_WC = glm::normalize(x.pose.q_WC);
   const Pose start = x.pose;
   const std::size_t steps = static_cast<std::size_t>(std::ceil(end_s / h - 1e-9)) + 1;

@@ -14,7 +14,17 @@
 namespace sim {
 
 // What a number is for. Numbers of different streams are independent.
-enum class Stream : std::uint32_t { position_noise = 1, orientation_noise = 2, ray_jitter = 3, pixel_noise = 4 };
+enum class Stream : std::uint32_t {
+  position_noise = 1,
+  orientation_noise = 2,
+  ray_jitter = 3,
+  pixel_noise = 4,
+  start_velocity = 16,
+  point_place = 17,    // landmarks without images: where they are,
+  point_noise = 18,    // the noise of their views,
+  point_outlier = 19,  // which are replaced, and by what,
+  point_loss = 20      // and which are missing
+};
 
 using Words = std::array<std::uint32_t, 4>;
 

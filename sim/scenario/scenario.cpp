@@ -120,6 +120,8 @@ SampledMotion ReadSampled(Section& section) {
   ReadPose(start, motion.start);
   ReadVector(start, "velocity", motion.velocity, Unit::speed);
   ReadVector(start, "angular_rate", motion.angular_rate, Unit::angular_rate);
+  start.Read("velocity_sigma", motion.velocity_sigma, Unit::speed, kNotNegative);
+  start.Read("angular_rate_sigma", motion.angular_rate_sigma, Unit::angular_rate, kNotNegative);
   section.Require("position_noise", motion.position_noise, Unit::acceleration_density, kNotNegative);
   section.Require("orientation_noise", motion.orientation_noise, Unit::angular_acceleration_density, kNotNegative);
   section.Read("knot_step", motion.knot_step_s, Unit::time, Range{1e-5, 0.1});

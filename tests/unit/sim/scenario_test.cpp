@@ -44,7 +44,7 @@ render: {rays_per_time_sample: 3}
 time: {rate: 20 Hz, duration: 1.5 s}
 trajectory:
   type: sampled
-  start: {position: [0, 1, 0], look_at: [0, 1, -5], velocity: [1 cm/s, 2, 3], angular_rate: [90 deg/s, 0, 0]}
+  start: {position: [0, 1, 0], look_at: [0, 1, -5], velocity: [1 cm/s, 2, 3], angular_rate: [90 deg/s, 0, 0], velocity_sigma: 5 cm/s, angular_rate_sigma: 0.2}
   position_noise: 0.3 m/s^1.5
   orientation_noise: 0.4 rad/s^1.5
   position_return: 1.5 1/s
@@ -83,6 +83,8 @@ prior: 3
   const auto& motion = std::get<SampledMotion>(s.motion);
   EXPECT_EQ(motion.velocity, glm::dvec3(0.01, 2, 3));
   EXPECT_DOUBLE_EQ(motion.angular_rate.x, std::acos(-1.0) / 2);
+  EXPECT_EQ(motion.velocity_sigma, 0.05);
+  EXPECT_EQ(motion.angular_rate_sigma, 0.2);
   EXPECT_EQ(motion.orientation_noise, 0.4);
   EXPECT_EQ(motion.position_return, 1.5);
   EXPECT_EQ(motion.orientation_return, 2.5);

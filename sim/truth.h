@@ -1,0 +1,22 @@
+// Purpose: what the judge knows about a frame.
+#pragma once
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+#include "sim/motion/trajectory.h"
+
+namespace sim {
+
+// At the stamp; conventions as in docs/conventions.md.
+struct Truth {
+  glm::dvec3 p_WC{0.0};                 // [m]
+  glm::dquat q_WC{1.0, 0.0, 0.0, 0.0};  // unit, w >= 0
+  glm::dvec3 v_WC{0.0};                 // in W [m/s]
+  glm::dvec3 w_WC_C{0.0};               // in C [rad/s]
+};
+
+// Throws std::logic_error when the motion is not finite or not a rotation: our bug.
+Truth TruthAt(const Trajectory& trajectory, double t_s);
+
+}  // namespace sim
