@@ -1,0 +1,211 @@
+#include "tools/evaluation/anees_test.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string>
+
+#include "tools/evaluation/chi2.h"
+#include "tools/evaluation/draws.h"
+
+namespace evaluation {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+
+// The error of one axis: e_t = A e_t-1 + N noise, with covariance P at every t.
+struct SteadyState {
+  Matrix2d P, A, N;
+};
+
+SteadyState SteadyStateOf(const LinearFilter& filter, double variance) {
+  const double dt = filter.dt;
+  Matrix2d F, Q;
+  F << 1, dt, 0, 1;
+  Q << dt * dt * dt / 3, dt * dt / 2, dt * dt / 2, dt;
+  Q *= filter.psd;
+  SteadyState state;
+  state.P << variance, 0, 0, filter.psd * dt + variance / (dt * dt);
+  for (int i = 0; i < 1'000'000; ++i) {
+    const Matrix2d prior = F * state.P * F.transpose() + Q;
+    const Vector2d K = prior.col(0) / (prior(0, 0) + variance);
+    Matrix2d keep = Matrix2d::Identity();
+    keep.col(0) -= K;
+    const Matrix2d noise = keep * Q * keep.transpose() + variance * K * K.transpose();
+    const Matrix2d P = keep * prior * keep.transpose() + variance * K * K.transpose();
+    const bool settled = ((P - state.P).array().abs() <= 1e-14 * P.array().abs()).all();
+    state = {P, keep * F, noise.llt().matrixL()};
+    if (settled) break;
+  }
+  return state;
+}
+
+double VarianceOfMeasurement(const LinearFilter& filter) {
+  const bool valid = filter.axes > 0 && filter.dt > 0 && filter.psd > 0 && filter.sigma_position > 0;
+  if (!valid) throw std::invalid_argument("LinearFilter: axes, dt, psd and sigma_position must be positive");
+  const double wanted = filter.sigma_position * filter.sigma_position;
+  double low = wanted, high = wanted;  // a filter is never worse than one measurement
+  while (SteadyStateOf(filter, high).P(0, 0) < wanted) high *= 4;
+  for (int i = 0; i < 200 && high > low * (1 + 1e-13); ++i) {
+    const double middle = std::sqrt(low * high);
+    (SteadyStateOf(filter, middle).P(0, 0) < wanted ? low : high) = middle;
+  }
+  return std::sqrt(low * high);
+}
+
+// Calls add(frame, NEES) for every axis of one run.
+template <typename Add>
+void SimulateRun(const LinearFilter& filter, const SteadyState& state, int frames, Draws& random, Add add) {
+  const Matrix2d start = state.P.llt().matrixL();
+  const Matrix2d inverse = state.P.inverse();
+  for (int axis = 0; axis < filter.axes; ++axis) {
+    Vector2d e = start * Vector2d(random.Normal(), random.Normal());
+    for (int k = 0; k < frames; ++k) {
+      if (k > 0) e = state.A * e + state.N * Vector2d(random.Normal(), random.Normal());
+      double nees = 0;
+      switch (filter.judged) {
+        case LinearFilter::Judged::position:
+          nees = e[0] * e[0] / state.P(0, 0);
+          break;
+        case LinearFilter::Judged::velocity:
+          nees = e[1] * e[1] / state.P(1, 1);
+          break;
+        case LinearFilter::Judged::both:
+          nees = e.dot(inverse * e);
+          break;
+      }
+      add(static_cast<std::size_t>(k), nees);
+    }
+  }
+}
+
+double ShareOfSums(const std::vector<double>& sums, int runs, const Band& band) {
+  const auto inside = std::count_if(sums.begin(), sums.end(),
+                                    [&](double sum) { return sum / runs >= band.low && sum / runs <= band.high; });
+  return static_cast<double>(inside) / static_cast<double>(sums.size());
+}
+
+std::uint64_t StreamOf(std::uint64_t trial, int run) { return (trial << 24) + static_cast<std::uint64_t>(run); }
+
+void RequireCounts(int runs, std::size_t frames, int trials) {
+  if (runs < 1 || frames < 1 || trials < 1)
+    throw std::invalid_argument("ANEES of an exact filter: needs at least one run, frame and trial");
+}
+
+}  // namespace
+
+double MeasurementSigma(const LinearFilter& filter) { return std::sqrt(VarianceOfMeasurement(filter)); }
+
+std::vector<std::vector<double>> SimulateNees(const LinearFilter& filter, int runs, int frames, std::uint64_t seed,
+                                              std::uint64_t trial) {
+  RequireCounts(runs, static_cast<std::size_t>(std::max(frames, 0)), 1);
+  const SteadyState state = SteadyStateOf(filter, VarianceOfMeasurement(filter));
+  std::vector<std::vector<double>> nees(static_cast<std::size_t>(runs),
+                                        std::vector<double>(static_cast<std::size_t>(frames)));
+  for (int m = 0; m < runs; ++m) {
+    Draws random(seed, StreamOf(trial, m));
+    auto& run = nees[static_cast<std::size_t>(m)];
+    SimulateRun(filter, state, frames, random, [&](std::size_t k, double value) { run[k] += value; });
+  }
+  return nees;
+}
+
+std::vector<double> SharesOf(const LinearFilter& filter, int runs, int frames, int trials, std::uint64_t seed) {
+  RequireCounts(runs, static_cast<std::size_t>(std::max(frames, 0)), trials);
+  const SteadyState state = SteadyStateOf(filter, VarianceOfMeasurement(filter));
+  const Band band = Chi2MeanBand(filter.dof(), runs);
+  std::vector<double> shares;
+  for (int trial = 0; trial < trials; ++trial) {
+    std::vector<double> sums(static_cast<std::size_t>(frames));
+    for (int m = 0; m < runs; ++m) {
+      Draws random(seed, StreamOf(static_cast<std::uint64_t>(trial), m));
+      SimulateRun(filter, state, frames, random, [&](std::size_t k, double value) { sums[k] += value; });
+    }
+    shares.push_back(ShareOfSums(sums, runs, band));
+  }
+  std::sort(shares.begin(), shares.end());
+  return shares;
+}
+
+std::vector<double> SharesOfPool(const std::vector<std::vector<double>>& nees, int dof, int runs, int trials,
+                                 std::uint64_t seed) {
+  RequireCounts(runs, nees.empty() ? 0 : nees.front().size(), trials);
+  for (const auto& run : nees) {
+    if (run.size() != nees.front().size() ||
+        std::any_of(run.begin(), run.end(), [](double v) { return std::isnan(v); }))
+      throw std::invalid_argument("SharesOfPool: runs must be of one length, without gaps");
+  }
+  const Band band = Chi2MeanBand(dof, runs);
+  std::vector<double> shares;
+  for (int trial = 0; trial < trials; ++trial) {
+    Draws random(seed, static_cast<std::uint64_t>(trial));
+    std::vector<double> sums(nees.front().size());
+    for (int m = 0; m < runs; ++m) {
+      const auto& run = nees[static_cast<std::size_t>(random.Uniform() * static_cast<double>(nees.size()))];
+      for (std::size_t k = 0; k < run.size(); ++k) sums[k] += run[k];
+    }
+    shares.push_back(ShareOfSums(sums, runs, band));
+  }
+  std::sort(shares.begin(), shares.end());
+  return shares;
+}
+
+AneesShare ShareInBand(const std::vector<std::vector<double>>& nees, int dof) {
+  std::vector<double> sum;
+  std::vector<int> count;
+  for (const auto& run : nees) {
+    if (run.size() > sum.size()) {
+      sum.resize(run.size());
+      count.resize(run.size());
+    }
+    for (std::size_t k = 0; k < run.size(); ++k) {
+      if (std::isnan(run[k])) continue;
+      sum[k] += run[k];
+      ++count[k];
+    }
+  }
+  std::map<int, Band> bands;
+  AneesShare share;
+  for (std::size_t k = 0; k < sum.size(); ++k) {
+    if (count[k] == 0) continue;
+    if (!bands.contains(count[k])) bands[count[k]] = Chi2MeanBand(dof, count[k]);
+    const Band& band = bands[count[k]];
+    const double anees = sum[k] / count[k];
+    ++share.frames;
+    share.mean += anees / dof;
+    share.above += anees > band.high;
+    share.below += anees < band.low;
+  }
+  if (share.frames == 0) return share;
+  const auto n = static_cast<double>(share.frames);
+  share.mean /= n;
+  share.above /= n;
+  share.below /= n;
+  share.share = 1 - share.above - share.below;
+  return share;
+}
+
+AneesVerdict TestAnees(const std::vector<std::vector<double>>& nees, int dof,
+                       const std::vector<double>& shares_of_exact, double false_alarm) {
+  const auto n = static_cast<double>(shares_of_exact.size());
+  const double rank = std::floor(false_alarm * (n + 1));  // P(share of an exact filter < this order statistic) < rate
+  if (!(rank >= 1)) {
+    throw std::invalid_argument("TestAnees: " + std::to_string(shares_of_exact.size()) +
+                                " trials of the exact filter are too few for a false-alarm rate of " +
+                                std::to_string(false_alarm));
+  }
+  AneesVerdict verdict;
+  verdict.measured = ShareInBand(nees, dof);
+  verdict.false_alarm = false_alarm;
+  verdict.threshold = shares_of_exact[static_cast<std::size_t>(rank) - 1];
+  verdict.expected = shares_of_exact[shares_of_exact.size() / 2];
+  verdict.pass = verdict.measured.frames > 0 && verdict.measured.share >= verdict.threshold;
+  return verdict;
+}
+
+}  // namespace evaluation
