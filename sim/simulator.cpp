@@ -24,11 +24,16 @@ int Threads(int jobs) {
   return std::min(jobs, tbb::info::default_concurrency());
 }
 
+const Scenario& WithImages(const Scenario& scenario) {
+  if (!scenario.points) return scenario;
+  throw std::invalid_argument(scenario.name + ": a world of points has no images");
+}
+
 }  // namespace
 
 struct Simulator::Parts {
   Parts(const Scenario& s, int jobs)
-      : scenario(s),
+      : scenario(WithImages(s)),
         frames(CountFrames(s.time)),
         camera(s.camera),
         sensor(s.sensor, s.seed),

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "sim/motion/spline.h"
+#include "sim/scenario/points_reader.h"
 #include "sim/scenario/pose_reader.h"
 #include "sim/sensor/sensor.h"
 #include "tools/settings/settings.h"
@@ -214,11 +215,17 @@ Scenario LoadScenario(const std::filesystem::path& path,
   scenario.name = path.stem().string();
   root.Read("name", scenario.name);
   root.Read("seed", scenario.seed);
-  ReadWorld(root.Child("world"), folder, scenario.world);
   ReadCamera(root.Child("camera"), scenario.camera);
+  Section world = root.Child("world");
+  world.Allow("points");
+  if (world.Has("points")) {
+    scenario.points = ReadPoints(root, world, scenario.camera);
+  } else {
+    ReadWorld(world, folder, scenario.world);
+    ReadSensor(root.Child("sensor"), scenario.time.rate_hz, scenario.sensor);
+    root.Child("render").Read("rays_per_time_sample", scenario.render.rays_per_time_sample, Range{1, 256});
+  }
   ReadMotionAndTime(root, folder, scenario);
-  ReadSensor(root.Child("sensor"), scenario.time.rate_hz, scenario.sensor);
-  root.Child("render").Read("rays_per_time_sample", scenario.render.rays_per_time_sample, Range{1, 256});
   root.Ignore("odometry");
   root.Ignore("prior");
   document.ThrowIfBad();

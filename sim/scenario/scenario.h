@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "sim/sensor/camera.h"
 #include "sim/sensor/description.h"
 #include "sim/world/description.h"
+#include "sim/world/point_description.h"
 
 namespace sim {
 
@@ -26,7 +28,8 @@ struct RenderParams {
 struct Scenario {
   std::string name;
   std::uint64_t seed = 1;
-  WorldDescription world;
+  WorldDescription world;                  // to be rendered: empty where there are points
+  std::optional<PointDescription> points;  // landmarks without images
   CameraParams camera;
   SensorParams sensor;
   RenderParams render;
