@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -140,13 +141,20 @@ std::vector<double> SharesOfPool(const std::vector<std::vector<double>>& nees, i
         std::any_of(run.begin(), run.end(), [](double v) { return std::isnan(v); }))
       throw std::invalid_argument("SharesOfPool: runs must be of one length, without gaps");
   }
+  if (nees.size() < static_cast<std::size_t>(runs))
+    throw std::invalid_argument("SharesOfPool: the pool has fewer runs than a trial");
   const Band band = Chi2MeanBand(dof, runs);
+  std::vector<std::size_t> order(nees.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
   std::vector<double> shares;
   for (int trial = 0; trial < trials; ++trial) {
     Draws random(seed, static_cast<std::uint64_t>(trial));
     std::vector<double> sums(nees.front().size());
     for (int m = 0; m < runs; ++m) {
-      const auto& run = nees[static_cast<std::size_t>(random.Uniform() * static_cast<double>(nees.size()))];
+      const auto at = static_cast<std::size_t>(m);
+      const auto left = static_cast<double>(order.size() - at);
+      std::swap(order[at], order[at + static_cast<std::size_t>(random.Uniform() * left)]);
+      const auto& run = nees[order[at]];
       for (std::size_t k = 0; k < run.size(); ++k) sums[k] += run[k];
     }
     shares.push_back(ShareOfSums(sums, runs, band));

@@ -34,9 +34,9 @@ std::vector<std::vector<double>> SimulateNees(const LinearFilter& filter, int ru
 std::vector<double> SharesOf(const LinearFilter& filter, int runs, int frames, int trials = 500,
                              std::uint64_t seed = 1);
 
-// The same from a pool of honest runs, nees[run][frame]: each trial draws `runs` of them with replacement. For exact
-// filters that cost more than one axis, as the linearised point world of cramer_rao.h. The pool should be ten times
-// `runs`: its own deviations are shared by all trials.
+// The same from a pool of honest runs, nees[run][frame]: each trial takes `runs` of them, none twice, so that each by
+// itself is a set of independent runs; trials share runs, the less the larger the pool: ten times `runs` or more. For
+// exact filters that cost more than one axis, as the linearised point world of cramer_rao.h.
 std::vector<double> SharesOfPool(const std::vector<std::vector<double>>& nees, int dof, int runs, int trials = 1000,
                                  std::uint64_t seed = 1);
 

@@ -156,14 +156,19 @@ ConsistencyVerdict JudgeConsistency(const std::vector<JudgedRun>& runs, const Ve
   JudgeRanks(runs, options, frames, verdict);
   JudgeInnovations(runs, options, verdict);
   CompareRunsWithBound(runs, options, verdict);
+  std::array<double, 4> with_energy{};
   double judged = 0;
   for (const JudgedRun& run : runs) {
     for (std::size_t k = options.first_frame; k < run.size(); ++k, ++judged) {
-      for (std::size_t b = 0; b < 4; ++b) verdict.energy[b] += run[k].scores.energy[b];
       verdict.effective_components += run[k].scores.effective_components;
+      for (std::size_t b = 0; b < 4; ++b) {
+        if (run[k].scores.draws == 0 || std::isnan(run[k].scores.energy[b])) continue;
+        verdict.energy[b] += run[k].scores.energy[b];
+        ++with_energy[b];
+      }
     }
   }
-  for (double& energy : verdict.energy) energy /= judged;
+  for (std::size_t b = 0; b < 4; ++b) verdict.energy[b] /= with_energy[b];
   verdict.effective_components /= judged;
   return verdict;
 }

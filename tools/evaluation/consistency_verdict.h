@@ -32,8 +32,9 @@ struct VerdictOptions {
   double false_alarm = 0.01;  // of each check
   LinearFilter reference;     // axes and part are set by the block that is judged
   int trials = 500;           // of the reference
-  // Honest runs of the world itself (cramer_rao.h), in place of the linear filter; at least ten times as many as
-  // judged.
+  // Honest runs of the world itself (cramer_rao.h), at least ten times as many as are judged; same frames. Prefer them:
+  // pose drifts, so that its ANEES remembers for seconds, and the linear filter, whose position is measured, would
+  // reject an exact odometry in one case of six (docs/metrics.md).
   const LinearisedRuns* linearised = nullptr;
   std::size_t first_frame = 1;           // frames before are not judged (a start known exactly has no error)
   std::vector<std::size_t> rank_frames;  // for ranks and coverage; empty: four, the last among them, evenly spread
@@ -58,7 +59,7 @@ struct ConsistencyVerdict {
   std::optional<NisVerdict> nis;
   std::optional<WhitenessVerdict> whiteness;
   std::optional<BoundRatio> bound_ratio;
-  std::array<double, 4> energy{};   // mean over frames and runs [m, rad, m/s, rad/s]
+  std::array<double, 4> energy{};   // mean where there were draws; NaN without [m, rad, m/s, rad/s]
   double effective_components = 0;  // mean
   bool pass() const;
   double false_alarm() const;  // at most: the sum over the checks

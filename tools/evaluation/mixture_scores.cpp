@@ -84,6 +84,7 @@ double HpdMass(const Mixture& mixture, const Density& density, const Eigen::Matr
   if (mixture.size() == 1) {
     return Chi2Cdf(Nees(error - mixture[0].offset, mixture[0].covariance), static_cast<double>(error.size()));
   }
+  if (draws.cols() == 0) return kNaN;
   const double at_error = density.Log(error)[0];
   const auto higher = (density.Log(draws).array() > at_error).count();
   return (static_cast<double>(higher) + 0.5) / (static_cast<double>(draws.cols()) + 1);
@@ -92,7 +93,7 @@ double HpdMass(const Mixture& mixture, const Density& density, const Eigen::Matr
 void Check(const Mixture& mixture, const Vector12d& error, int draws) {
   std::string problems;
   if (mixture.empty()) problems += " no component;";
-  if (draws < 2) problems += " fewer than two draws;";
+  if (draws < 0 || draws == 1) problems += " draws must be none or at least two;";
   if (!error.allFinite()) problems += " the error is not finite;";
   for (std::size_t i = 0; i < mixture.size(); ++i) {
     const MixtureComponent& component = mixture[i];
@@ -148,7 +149,7 @@ Eigen::VectorXd Pit(const Mixture& mixture, const Eigen::VectorXd& error) {
       pit[i] += component.weight / total * below;
     }
   }
-  return pit;
+  return pit.cwiseMin(1);  // weights add up to 1 to rounding only
 }
 
 double LogDensity(const Mixture& mixture, const Eigen::VectorXd& error) {

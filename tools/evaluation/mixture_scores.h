@@ -84,8 +84,10 @@ struct MixtureScores {
 };
 
 // `error` is truth less the mixture's mean. `stream` names the frame and run: equal streams share their random numbers.
-// draws >= 2; ranks divide evenly into b bins when draws + 1 is a multiple of b. Throws std::invalid_argument listing
-// what is wrong (no component, a weight below zero or no positive one, a dimension other than 12, numbers not finite).
+// draws: 2 or more; ranks divide evenly into b bins when draws + 1 is a multiple of b. Or 0, where time matters (many
+// particles, frames whose ranks nobody asks for): no ranks, energies NaN, coverage of one Gaussian only. Throws
+// std::invalid_argument listing what is wrong (no component, a weight below zero or no positive one, a dimension other
+// than 12, numbers not finite).
 MixtureScores ScoreMixture(const Mixture& mixture, const Vector12d& error, std::uint64_t stream, int draws = 99,
                            std::uint64_t seed = 1);
 

@@ -1,0 +1,334 @@
+// The bound against finite differences, against the inverse of the dense information matrix of the whole problem in its
+// anchored form (the recursion uses another), and against closed forms.
+#include "tools/evaluation/cramer_rao.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <chrono>
+#include <cmath>
+#include <functional>
+
+#include "tests/unit/evaluation/point_world.h"
+#include "tools/evaluation/anees_test.h"
+#include "tools/evaluation/mixture_scores.h"
+#include "tools/evaluation/text_file.h"
+
+namespace evaluation {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Central differences of f at zero.
+MatrixXd Differences(const std::function<VectorXd(const VectorXd&)>& f, int n, double h = 1e-5) {
+  MatrixXd J(f(VectorXd::Zero(n)).size(), n);
+  for (int i = 0; i < n; ++i) J.col(i) = (f(h * VectorXd::Unit(n, i)) - f(-h * VectorXd::Unit(n, i))) / (2 * h);
+  return J;
+}
+
+// One step of the model from a disturbed state with given noise; error of the result against the undisturbed one.
+VectorXd Step(const StampedPose& from, const StampedPose& to, double dt, const VectorXd& state, const VectorXd& noise) {
+  const Eigen::Vector3d v = (to.p_WC - from.p_WC) / dt, w = Log(from.q_WC.conjugate() * to.q_WC) / dt;
+  const StampedPose start = Moved(from, state);
+  VectorXd e(12);
+  e.segment<3>(0) = start.p_WC + dt * (v + state.segment<3>(6)) + noise.segment<3>(0) - to.p_WC;
+  const Eigen::Quaterniond q = start.q_WC * Exp(dt * (w + state.segment<3>(9)) + noise.segment<3>(3));
+  e.segment<3>(3) = Log(to.q_WC.conjugate() * q);
+  e.segment<6>(6) = state.segment<6>(6) + noise.segment<6>(6);
+  return e;
+}
+
+TEST(LinearisedMotion, AgreesWithFiniteDifferences) {
+  TestRandom random(80);
+  for (const double turn : {1e-9, 1e-4, 0.05, 1.5}) {
+    const double dt = 0.04, sp = 2.5, so = 0.7;
+    const StampedPose from{0, random.Normals(3), random.Orientation()};
+    const StampedPose to{40'000'000, random.Normals(3), from.q_WC * Exp(turn * random.Normals(3))};
+    const VectorXd zero = VectorXd::Zero(12);
+    const MotionJacobian motion = LinearisedMotion(from, to, sp, so);
+    EXPECT_LT((motion.F - Differences([&](const VectorXd& x) { return Step(from, to, dt, x, zero); }, 12)).norm(),
+              1e-8);
+    const MatrixXd G = Differences([&](const VectorXd& n) { return Step(from, to, dt, zero, n); }, 12);
+    MatrixXd Q = MatrixXd::Zero(12, 12);
+    for (int i = 0; i < 6; ++i) {
+      const double psd = i < 3 ? sp * sp : so * so;
+      Q(i, i) = psd * dt * dt * dt / 3;
+      Q(i, i + 6) = Q(i + 6, i) = psd * dt * dt / 2;
+      Q(i + 6, i + 6) = psd * dt;
+    }
+    EXPECT_LT((motion.Q - G * Q * G.transpose()).norm(), 1e-8 * Q.norm());
+  }
+}
+
+// d(view) / d(pose, anchor, (x, y, rho)) of the pieces put together, against See(); also at rho = 0 and below.
+TEST(LinearisedView, AgreesWithFiniteDifferences) {
+  TestRandom random(81);
+  for (const double rho : {0.4, 1e-3, 0.0, -0.1}) {
+    const StampedPose anchor{0, random.Normals(3), random.Orientation()};
+    const StampedPose pose = Moved(anchor, 0.1 * random.Normals(6));
+    PointLandmark landmark;
+    landmark.ray = {0.3, -0.2};
+    landmark.inverse_depth = rho;
+    const HomogeneousPoint point = PointOf(landmark, anchor);
+    EXPECT_LT((point.across * point.across.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+    EXPECT_LT((point.across * point.direction).norm(), 1e-14 * point.direction.norm());
+    const AnchorJacobian of_anchor = LinearisedAnchor(landmark, anchor);
+    const ViewJacobian view = LinearisedView(point, pose);
+    const Eigen::Vector3d x_y_rho(0.3, -0.2, rho);
+    EXPECT_LT((view.seen - See(anchor, x_y_rho, pose)).norm(), 1e-14);
+    const auto agree = [&](const MatrixXd& J, const MatrixXd& differences) {
+      EXPECT_LT((J - differences).norm(), 1e-8 * (1 + J.norm())) << "rho " << rho;
+    };
+    agree(view.of_pose, Differences([&](const VectorXd& d) { return See(anchor, x_y_rho, Moved(pose, d)); }, 6));
+    const MatrixXd H = view.of_point * point.across.transpose() * point.across;  // what the recursion keeps of it
+    agree(H * of_anchor.of_pose,
+          Differences([&](const VectorXd& d) { return See(Moved(anchor, d), x_y_rho, pose); }, 6));
+    agree(H * of_anchor.of_landmark, Differences([&](const VectorXd& d) { return See(anchor, x_y_rho + d, pose); }, 3));
+  }
+}
+
+TEST(LinearisedView, TheCheckSeesAFlippedSign) {
+  TestRandom random(82);
+  const StampedPose anchor{0, random.Normals(3), random.Orientation()}, pose = Moved(anchor, 0.1 * random.Normals(6));
+  PointLandmark landmark;
+  landmark.inverse_depth = 0.3;
+  MatrixXd J = LinearisedView(PointOf(landmark, anchor), pose).of_pose;
+  J.col(4) *= -1;
+  const MatrixXd differences = Differences(
+      [&](const VectorXd& d) {
+        return See(anchor, {0, 0, 0.3}, Moved(pose, d));
+      },
+      6);
+  EXPECT_GT((J - differences).norm(), 0.1);
+}
+
+using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+
+// Covariance of the last frame's state from the information matrix of every frame's state and every landmark's (x, y,
+// rho), with views in their anchored form.
+Matrix12d BatchBound(const PointWorldProblem& problem, std::size_t last) {
+  const Eigen::Index frames = static_cast<Eigen::Index>(last) + 1;
+  const Eigen::Index n = 12 * frames + 3 * static_cast<Eigen::Index>(problem.landmarks.size());
+  Wide information = Wide::Zero(n, n);
+  const auto add = [&](const MatrixXd& J, const MatrixXd& covariance) {  // J: rows x n
+    const Wide wide = J.cast<long double>();
+    const Wide inverse = covariance.cast<long double>().inverse();
+    information += wide.transpose() * inverse * wide;
+  };
+  MatrixXd start = MatrixXd::Zero(12, n);
+  start.leftCols(12).setIdentity();
+  add(start, problem.start_covariance);
+  for (Eigen::Index k = 1; k < frames; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const MotionJacobian motion =
+        LinearisedMotion(problem.truth[i - 1], problem.truth[i], problem.position_noise, problem.orientation_noise);
+    MatrixXd J = MatrixXd::Zero(12, n);
+    J.middleCols(12 * k, 12).setIdentity();
+    J.middleCols(12 * (k - 1), 12) = -motion.F;
+    add(J, motion.Q);
+  }
+  for (std::size_t l = 0; l < problem.landmarks.size(); ++l) {
+    const PointLandmark& landmark = problem.landmarks[l];
+    const Eigen::Index at = 12 * frames + 3 * static_cast<Eigen::Index>(l);
+    MatrixXd prior = MatrixXd::Zero(3, n);
+    prior.middleCols(at, 3).setIdentity();
+    const Eigen::Vector3d sigma(problem.anchor_sigma, problem.anchor_sigma, landmark.inverse_depth_sigma);
+    add(prior, sigma.cwiseAbs2().asDiagonal());
+    if (landmark.anchor_frame > last) continue;
+    const StampedPose& anchor = problem.truth[landmark.anchor_frame];
+    const Eigen::Matrix3d R_a = anchor.q_WC.toRotationMatrix();
+    const Eigen::Vector3d ray(landmark.ray[0], landmark.ray[1], 1);
+    for (const std::size_t k : landmark.frames) {
+      if (k > last) break;
+      const StampedPose& pose = problem.truth[k];
+      const Eigen::Matrix3d R = pose.q_WC.toRotationMatrix().transpose();
+      const Eigen::Vector3d X = R * (landmark.inverse_depth * (anchor.p_WC - pose.p_WC) + R_a * ray);
+      Eigen::Matrix<double, 2, 3> D;
+      D << 1 / X.z(), 0, -X.x() / (X.z() * X.z()), 0, 1 / X.z(), -X.y() / (X.z() * X.z());
+      MatrixXd J = MatrixXd::Zero(2, n);
+      const Eigen::Index here = 12 * static_cast<Eigen::Index>(k),
+                         there = 12 * static_cast<Eigen::Index>(landmark.anchor_frame);
+      J.middleCols(here, 3) = -landmark.inverse_depth * D * R;
+      J.middleCols(there, 3) = landmark.inverse_depth * D * R;
+      for (int i = 0; i < 3; ++i) {
+        J.col(here + 3 + i) = D * X.cross(Eigen::Vector3d::Unit(i));
+        J.col(there + 3 + i) = -D * R * R_a * ray.cross(Eigen::Vector3d::Unit(i));
+      }
+      J.middleCols(at, 2) = D * R * R_a.leftCols<2>();
+      J.col(at + 2) = D * R * (anchor.p_WC - pose.p_WC);
+      add(J, problem.sigma * problem.sigma * MatrixXd::Identity(2, 2));
+    }
+  }
+  const Wide scale = information.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
+  const Wide covariance = scale * Wide(scale * information * scale).inverse() * scale;
+  return covariance.block(12 * (frames - 1), 12 * (frames - 1), 12, 12).cast<double>();
+}
+
+// Largest difference in units of the standard deviations.
+double Difference(const Matrix12d& a, const Matrix12d& b) {
+  const Vector12d w = b.diagonal().cwiseSqrt().cwiseInverse();
+  return (w.asDiagonal() * (a - b) * w.asDiagonal()).cwiseAbs().maxCoeff();
+}
+
+TEST(FilteringBound, IsTheInverseOfTheWholeInformation) {
+  TestRandom random(83);
+  PointWorldProblem problem = MakePointWorld(random, 9, 7, 3);
+  problem.landmarks[2].inverse_depth_sigma = 0.01;
+  // Interruptions, a second anchor, a point that leaves early and one that is never seen again.
+  problem.landmarks[0].frames = {1, 2, 6};
+  problem.landmarks[1].frames = {3};
+  problem.landmarks[3].frames.clear();
+  problem.landmarks[4].anchor_frame = 2;
+  problem.landmarks[4].frames = {4, 5, 8};
+  problem.landmarks[5].inverse_depth = 0;
+  for (std::size_t k = 5; k < 9; ++k) problem.truth[k].stamp_ns += 20'000'000;  // an uneven step
+  const auto bound = FilteringBound(problem);
+  ASSERT_EQ(bound.size(), 9u);
+  double worst = 0;
+  for (std::size_t k = 0; k < 9; ++k) worst = std::max(worst, Difference(bound[k], BatchBound(problem, k)));
+  RecordProperty("worst_1e12", std::to_string(1e12 * worst));
+  EXPECT_LT(worst, 1e-9);
+  // And the comparison sees a hundredth of a pixel.
+  problem.sigma *= 1.01;
+  EXPECT_GT(Difference(bound[8], BatchBound(problem, 8)), 1e-4);
+}
+
+// A camera that stands still, its orientation known, its velocity unknown but constant; one point straight ahead with
+// known inverse depth. The x of the view at t is x_0 - rho v t + noise: a regression with known intercept or one known
+// with the noise of the first view.
+TEST(FilteringBound, OfAConstantVelocityIsALinearRegression) {
+  const double rho = 0.25, sigma = 2e-3, P0 = 1e-4, V0 = 0.04;
+  for (const double anchor_sigma : {0.0, 3e-3}) {
+    PointWorldProblem problem;
+    problem.position_noise = problem.orientation_noise = 0;
+    problem.sigma = sigma;
+    problem.anchor_sigma = anchor_sigma;
+    problem.start_covariance(0, 0) = P0;
+    problem.start_covariance(6, 6) = V0;
+    PointLandmark landmark;
+    landmark.inverse_depth = rho;
+    landmark.inverse_depth_sigma = 0.15;  // tells nothing while nothing moves
+    double tt = 0, t1 = 0, count = 0;
+    for (std::size_t k = 0; k < 50; ++k) {
+      problem.truth.push_back(
+          {static_cast<std::int64_t>(k) * 33'333'333, Eigen::Vector3d(1, 2, 3), Eigen::Quaterniond::Identity()});
+      if (k > 0) landmark.frames.push_back(k);
+    }
+    problem.landmarks = {landmark};
+    const auto bound = FilteringBound(problem);
+    for (std::size_t k = 1; k < 50; ++k) {
+      const double t = static_cast<double>(k) * 0.033333333;
+      tt += rho * rho * t * t / (sigma * sigma);
+      t1 += rho * t / (sigma * sigma);
+      count += 1 / (sigma * sigma);
+      double information = 1 / V0 + tt;  // of v
+      if (anchor_sigma > 0) information -= t1 * t1 / (count + 1 / (anchor_sigma * anchor_sigma));
+      EXPECT_NEAR(bound[k](6, 6) * information, 1, 1e-9);
+      EXPECT_NEAR(bound[k](0, 0) / (P0 + t * t / information), 1, 1e-9) << "relative views do not improve the start";
+      EXPECT_EQ(bound[k](1, 1), 0);
+    }
+  }
+}
+
+// Without points the bound is the motion model's: P = F P F' + Q, in closed form for constant orientation.
+TEST(FilteringBound, WithoutPointsIsDeadReckoning) {
+  PointWorldProblem problem;
+  problem.start_covariance(6, 6) = 0.04;
+  for (std::size_t k = 0; k < 31; ++k)
+    problem.truth.push_back(
+        {static_cast<std::int64_t>(k) * 100'000'000, Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity()});
+  const Matrix12d P = FilteringBound(problem).back();
+  EXPECT_NEAR(P(0, 0), 6.25 * 27 / 3 + 0.04 * 9, 1e-9);  // 3 s
+  EXPECT_NEAR(P(0, 6), 6.25 * 9 / 2 + 0.04 * 3, 1e-9);
+  EXPECT_NEAR(P(6, 6), 6.25 * 3 + 0.04, 1e-9);
+  EXPECT_NEAR(P(3, 3), 27.0 / 3, 1e-9);
+}
+
+TEST(FilteringBound, RefusesWhatCannotBe) {
+  TestRandom random(84);
+  PointWorldProblem problem = MakePointWorld(random, 5, 3);
+  problem.landmarks[0].frames = {9};
+  problem.landmarks[1].frames = {2, 2};
+  problem.landmarks[2].anchor_frame = 7;
+  problem.sigma = 0;
+  problem.truth[3].stamp_ns = problem.truth[2].stamp_ns;
+  try {
+    FilteringBound(problem);
+    FAIL();
+  } catch (const InputError& e) {
+    const std::string what = e.what();
+    for (const char* part : {"sigma must be positive", "time stands still at frame 3", "landmark 0: measured beyond",
+                             "landmark 1: frames must ascend", "landmark 2: anchored beyond"})
+      EXPECT_NE(what.find(part), std::string::npos) << part << " in " << what;
+  }
+  PointWorldProblem behind = MakePointWorld(random, 2, 1);
+  behind.truth[1].q_WC = behind.truth[1].q_WC * Exp({0, M_PI, 0});
+  behind.landmarks[0].frames = {1};
+  EXPECT_THROW(FilteringBound(behind), InputError);
+}
+
+// The linearised world's exact filter is honest, at every block: mean NEES of 400 runs at three frames against a band
+// left once in a million (false alarm rate 3e-5), and a bound halved is rejected.
+TEST(SimulateLinearised, HasTheBoundAsItsCovariance) {
+  TestRandom random(85);
+  const LinearisedRuns runs = SimulateLinearised(MakePointWorld(random, 60, 15), 400, 3);
+  for (const StateBlock& block : kStateBlocks) {
+    const auto nees = NeesOf(runs, block.start, block.size);
+    const Band band = Chi2MeanBand(block.size, 400, 1 - 1e-6);
+    for (const std::size_t k : {0u, 20u, 59u}) {
+      double mean = 0;
+      for (const auto& run : nees) mean += run[k] / 400;
+      EXPECT_GT(mean, band.low) << block.name << " at " << k;
+      EXPECT_LT(mean, band.high) << block.name << " at " << k;
+      EXPECT_GT(2 * mean, band.high);
+    }
+    EXPECT_NEAR(nees[7][20] / Nees(runs.error[7][20].segment(block.start, block.size),
+                                   runs.bound[20].block(block.start, block.start, block.size, block.size)),
+                1, 1e-6);
+  }
+  // RMSE / bound of all frames and runs; frames are dependent, so wide: 400 runs leave about 2 %.
+  const std::vector<std::vector<Matrix12d>> bounds(400, runs.bound);
+  const BoundRatio ratio = CompareWithBound(runs.error, bounds);
+  for (std::size_t b = 0; b < 4; ++b) EXPECT_NEAR(ratio.overall[b], 1, 0.1);
+  auto worse = runs.error;
+  for (auto& run : worse)
+    for (Vector12d& e : run) e *= 1.5;
+  const BoundRatio half_again = CompareWithBound(worse, bounds);
+  for (std::size_t b = 0; b < 4; ++b) {
+    EXPECT_NEAR(half_again.overall[b], 1.5 * ratio.overall[b], 1e-12);
+    EXPECT_NEAR(half_again.per_frame[30][b], 1.5 * ratio.per_frame[30][b], 1e-12);
+  }
+}
+
+TEST(CompareWithBound, ByHand) {
+  Vector12d e = Vector12d::Zero();
+  e.head<3>() << 3, 4, 0;
+  Matrix12d B = Matrix12d::Identity();
+  const BoundRatio ratio = CompareWithBound({{e, e}}, {{B, 4 * B}});
+  EXPECT_NEAR(ratio.per_frame[0][0], 5 / std::sqrt(3), 1e-12);
+  EXPECT_NEAR(ratio.overall[0], std::sqrt(50.0 / 15), 1e-12);
+  EXPECT_NEAR(ratio.rmse[0], 5, 1e-12);
+  EXPECT_NEAR(ratio.bound[0], std::sqrt(7.5), 1e-12);
+  EXPECT_EQ(ratio.overall[1], 0);
+  EXPECT_TRUE(std::isnan(CompareWithBound({{e}}, {{Matrix12d::Zero()}}).overall[0]));
+  EXPECT_THROW(CompareWithBound({{e}}, {}), std::logic_error);
+}
+
+// The size. The time is written into the test's record, not judged.
+TEST(FilteringBound, OfAHundredFeaturesAndTenSeconds) {
+  TestRandom random(86);
+  const PointWorldProblem problem = MakePointWorld(random, 300, 100, 0.3);
+  const auto start = std::chrono::steady_clock::now();
+  const auto bound = FilteringBound(problem);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  RecordProperty("seconds", std::to_string(seconds));
+  for (const Matrix12d& P : bound) {
+    ASSERT_TRUE(P.allFinite());
+    EXPECT_EQ(P.llt().info(), Eigen::Success);
+  }
+}
+
+}  // namespace
+}  // namespace evaluation

@@ -1,0 +1,169 @@
+// Innovations of a linear Kalman filter that is exact, and of ones that are not.
+#include "tools/evaluation/whiteness.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "tests/unit/evaluation/random.h"
+
+namespace evaluation {
+namespace {
+
+TEST(TestWhiteness, ByHand) {
+  // 1 ... 5: deviations -2 ... 2, sum of squares 10; rho = 4/10, -1/10, -4/10.
+  // Q(2) = 5 * 7 * (0.16 / 4 + 0.01 / 3); p = exp(-Q / 2).
+  const Whiteness result = TestWhiteness({1, 2, 3, 4, 5}, 2);
+  ASSERT_EQ(result.autocorrelation.size(), 2u);
+  EXPECT_NEAR(result.autocorrelation[0], 0.4, 1e-15);
+  EXPECT_NEAR(result.autocorrelation[1], -0.1, 1e-15);
+  EXPECT_NEAR(result.ljung_box, 35 * (0.04 + 0.01 / 3), 1e-13);
+  EXPECT_NEAR(result.p_value, std::exp(-35 * (0.04 + 0.01 / 3) / 2), 1e-12);
+  EXPECT_NEAR(result.bound, 1.96 / std::sqrt(5), 1e-15);
+  EXPECT_EQ(TestWhiteness({1, 2, 3}, 10).autocorrelation.size(), 2u);
+  EXPECT_TRUE(TestWhiteness({4, 4, 4, 4}, 2).autocorrelation.empty()) << "a constant has no correlation";
+  EXPECT_EQ(TestWhiteness(std::vector<double>{}, 2).p_value, 1);
+}
+
+// Luteinising hormone in 48 samples (P. J. Diggle 1990, the data set `lh` of R): acf as printed there, to three digits.
+TEST(TestWhiteness, PublishedSeries) {
+  const std::vector<double> lh{2.4, 2.4, 2.4, 2.2, 2.1, 1.5, 2.3, 2.3, 2.5, 2.0, 1.9, 1.7, 2.2, 1.8, 3.2, 3.2,
+                               2.7, 2.2, 2.2, 1.9, 1.9, 1.8, 2.7, 3.0, 2.3, 2.0, 2.0, 2.9, 2.9, 2.7, 2.7, 2.3,
+                               2.6, 2.4, 1.8, 1.7, 1.5, 1.4, 2.1, 3.3, 3.5, 3.5, 3.1, 2.6, 2.1, 3.4, 3.0, 2.9};
+  const Whiteness result = TestWhiteness(lh, 4);
+  const double printed[4] = {0.576, 0.182, -0.145, -0.175};
+  for (std::size_t l = 0; l < 4; ++l) EXPECT_NEAR(result.autocorrelation[l], printed[l], 6e-4);
+}
+
+TEST(BinomialLimit, AgreesWithTheSums) {
+  // n = 3, p = 0.5: P(> 2) = 1/8, P(> 1) = 1/2.
+  EXPECT_EQ(BinomialLimit(3, 0.5, 0.6), 1u);
+  EXPECT_EQ(BinomialLimit(3, 0.5, 0.2), 2u);
+  EXPECT_EQ(BinomialLimit(3, 0.5, 0.1), 3u);
+  EXPECT_EQ(BinomialLimit(100, 0.05, 0.01), 11u);  // P(> 10) = 0.0115, P(> 11) = 0.0043
+  EXPECT_EQ(BinomialLimit(0, 0.05, 0.01), 0u);
+}
+
+enum class Filter { exact, half_R, double_R, late_position };
+
+struct Run {
+  std::vector<double> nis, innovation;
+  std::vector<int> dof;
+};
+
+// A body with random acceleration whose position and speed are measured; in `late_position` the position that comes is
+// that of the frame before.
+Run Simulate(TestRandom& random, Filter kind, const Eigen::Vector2d& variances, int frames = 300) {
+  const double dt = 1.0 / 30, psd = 6.25;
+  Eigen::Matrix2d F, Q, R = variances.asDiagonal();
+  F << 1, dt, 0, 1;
+  Q << dt * dt * dt / 3, dt * dt / 2, dt * dt / 2, dt;
+  Q *= psd;
+  Eigen::Matrix2d P = Eigen::Vector2d(0.01, 1).asDiagonal();
+  const Eigen::Matrix2d assumed = R * (kind == Filter::half_R ? 0.5 : kind == Filter::double_R ? 2 : 1);
+  Eigen::Vector2d x = P.llt().matrixL() * random.Normals(2), estimate(0, 0), before = x;
+  Run run;
+  for (int k = 0; k < frames; ++k) {
+    before = x;
+    x = F * x + Q.llt().matrixL() * random.Normals(2);
+    const Eigen::Vector2d seen(kind == Filter::late_position ? before[0] : x[0], x[1]);
+    const Eigen::Vector2d z = seen + R.llt().matrixL() * random.Normals(2);
+    estimate = F * estimate;
+    P = F * P * F.transpose() + Q;
+    const Eigen::Matrix2d S = P + assumed;
+    const Eigen::Vector2d nu = z - estimate;
+    run.nis.push_back(nu.dot(S.inverse() * nu));
+    run.dof.push_back(2);
+    const Eigen::Vector2d white = S.llt().matrixL().solve(nu);
+    run.innovation.push_back(white.sum() / std::sqrt(2));
+    const Eigen::Matrix2d K = P * S.inverse();
+    estimate += K * nu;
+    P = (P - K * S * K.transpose()).eval();
+  }
+  return run;
+}
+
+struct Runs {
+  std::vector<std::vector<double>> nis, innovation;
+  std::vector<std::vector<int>> dof;
+};
+const Eigen::Vector2d kRough(1e-4, 4e-2), kFine(1e-6, 1e-4);  // variances of the sensors
+
+Runs SimulateRuns(std::uint32_t seed, Filter kind, const Eigen::Vector2d& variances = kRough, int runs = 100) {
+  TestRandom random(seed);
+  Runs all;
+  for (int m = 0; m < runs; ++m) {
+    Run run = Simulate(random, kind, variances);
+    all.nis.push_back(run.nis);
+    all.innovation.push_back(run.innovation);
+    all.dof.push_back(run.dof);
+  }
+  return all;
+}
+
+// False alarm rate: 1e-4 for each of the two.
+TEST(Innovations, OfAnExactFilterAreWhiteAndOfTheirSize) {
+  const Runs runs = SimulateRuns(60, Filter::exact);
+  EXPECT_TRUE(TestNis(runs.nis, runs.dof, 1e-4).pass);
+  const WhitenessVerdict white = TestWhiteness(runs.innovation, 10, 1e-4);
+  EXPECT_TRUE(white.pass) << white.rejected;
+  EXPECT_EQ(white.mean_autocorrelation.size(), 10u);
+  // At each frame over runs: binomial of 300 frames, five standard deviations.
+  int inside = 0;
+  for (const NisBand& band : NisOverRuns(runs.nis, runs.dof)) inside += band.inside;
+  EXPECT_NEAR(inside, 285, 5 * std::sqrt(300 * 0.95 * 0.05));
+}
+
+TEST(Innovations, OfAFilterWithTheWrongNoiseAreOfTheWrongSize) {
+  const Runs halved = SimulateRuns(61, Filter::half_R), doubled = SimulateRuns(61, Filter::double_R);
+  EXPECT_FALSE(TestNis(halved.nis, halved.dof, 1e-4).pass);
+  EXPECT_GT(TestNis(halved.nis, halved.dof).per_dof, 1.1);
+  EXPECT_FALSE(TestNis(doubled.nis, doubled.dof, 1e-4).pass);
+  EXPECT_LT(TestNis(doubled.nis, doubled.dof).per_dof, 0.9);
+}
+
+// One frame's delay between the two sensors shows in how a frame's innovations depend on those of the frame before: in
+// a scalar that mixes them all, not in the position's alone. (A delay of all that a filter sees shows nowhere here: it
+// then estimates, perfectly, the state of a frame ago. NEES and ranks see that one.) False alarm rate of the honest
+// twin: 1e-4.
+TEST(Innovations, OfASensorOneFrameLateAreNotWhite) {
+  const WhitenessVerdict late = TestWhiteness(SimulateRuns(62, Filter::late_position, kFine).innovation, 10, 1e-4);
+  EXPECT_FALSE(late.pass);
+  EXPECT_GT(late.rejected, 90u);
+  EXPECT_TRUE(TestWhiteness(SimulateRuns(62, Filter::exact, kFine).innovation, 10, 1e-4).pass);
+}
+
+// The stated rate of 1 %, at most 13 of 400 sets of 25 runs (a binomial of 0.01 exceeds that once in 10 000 times).
+TEST(Innovations, VerdictsKeepTheirFalseAlarmRate) {
+  int by_size = 0, by_colour = 0;
+  TestRandom random(63);
+  for (int i = 0; i < 400; ++i) {
+    std::vector<std::vector<double>> nis, white;
+    for (int m = 0; m < 25; ++m) {
+      const Eigen::VectorXd a = random.Normals(100);
+      white.emplace_back(a.begin(), a.end());
+      const Eigen::VectorXd squares = a.cwiseAbs2();
+      nis.emplace_back(squares.begin(), squares.end());
+    }
+    by_size += !TestNis(nis, std::vector<std::vector<int>>(25, std::vector<int>(100, 1))).pass;
+    by_colour += !TestWhiteness(white).pass;
+  }
+  EXPECT_LE(by_size, 13);
+  EXPECT_LE(by_colour, 13);
+}
+
+TEST(NisOfRun, LeavesOutFramesWithoutInnovation) {
+  const NisBand band = NisOfRun({5, 99, 3}, {4, 0, 4});
+  EXPECT_EQ(band.nis, 8);
+  EXPECT_EQ(band.dof, 8);
+  EXPECT_EQ(band.per_dof, 1);
+  EXPECT_TRUE(band.inside);
+  EXPECT_NEAR(band.band.high, Chi2Quantile(0.975, 8) / 8, 1e-12);
+  EXPECT_FALSE(NisOfRun({}, {}).inside);
+  EXPECT_THROW(NisOfRun({1}, {}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace evaluation
