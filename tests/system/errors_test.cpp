@@ -136,6 +136,13 @@ TEST_F(ErrorsTest, EveryMistakeInAScenarioIsNamedWithItsPlace) {
   EXPECT_THAT(outcome.err, HasSubstr("particles")) << "names the nearest key";
 }
 
+TEST_F(ErrorsTest, PointsAreNotRendered) {
+  const std::string scene = (TinyScenario().parent_path() / "points.yaml").string();
+  Fails({"render", scene, "-o", "out"}, 2, "points: a world of points has no images");
+  Fails({"run", scene, "--set", "world.points.count=0"}, 2, "--set world.points.count: points: count = 0 must lie in");
+  Fails({"check", scene, "--set", "world.meshes=[{file: a.obj}]"}, 2, "'world.meshes' is for worlds that are rendered");
+}
+
 TEST_F(ErrorsTest, BadUsage) {
   const std::string tiny = TinyScenario().string();
   for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{

@@ -5,13 +5,6 @@
 #include <opencv2/imgproc.hpp>
 
 namespace vobench {
-namespace {
-
-Eigen::Vector3d ToEigen(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-Eigen::Quaterniond ToEigen(const glm::dquat& q) { return {q.w, q.x, q.y, q.z}; }
-
-}  // namespace
-
 vo::Camera ToOdometry(const sim::CameraParams& camera) {
   vo::Camera out;
   out.width = camera.width;
@@ -43,10 +36,11 @@ vo::Frame ToOdometry(const sim::Frame& frame) {
   return out;
 }
 
-void Append(std::int64_t stamp_ns, const sim::Truth& of_frame, Truth& truth) {
-  truth.poses.push_back({stamp_ns, ToEigen(of_frame.p_WC), ToEigen(of_frame.q_WC)});
-  if (!truth.velocities) truth.velocities.emplace();
-  truth.velocities->push_back({stamp_ns, ToEigen(of_frame.v_WC), ToEigen(of_frame.w_WC_C)});
+vo::PointFrame ToOdometry(const sim::PointFrame& frame) {
+  vo::PointFrame out;
+  out.stamp_ns = frame.stamp_ns;
+  for (const sim::PointObservation& o : frame.observations) out.observations.push_back({o.id, {o.x_px, o.y_px}});
+  return out;
 }
 
 Truth TruthOf(const sim::Simulator& simulator, std::int64_t frame) {

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "sim/simulator.h"
-#include "tools/vobench/result.h"
+#include "sim/world/point_world.h"
+#include "tools/vobench/truth.h"
 #include "vo/geometry/camera.h"
+#include "vo/point_odometry.h"
 #include "vo/sequence/reader.h"
 
 namespace vobench {
@@ -16,9 +18,8 @@ namespace vobench {
 vo::Camera ToOdometry(const sim::CameraParams& camera);
 // A copy of the pixels, in OpenCV's order of colours.
 vo::Frame ToOdometry(const sim::Frame& frame);
+vo::PointFrame ToOdometry(const sim::PointFrame& frame);
 
-// Adds the truth of a frame.
-void Append(std::int64_t stamp_ns, const sim::Truth& of_frame, Truth& truth);
 // The truth of one frame alone.
 Truth TruthOf(const sim::Simulator& simulator, std::int64_t frame);
 

@@ -46,4 +46,16 @@ vo::Prior PriorFromTruth(const PriorSettings& settings, const evaluation::Stampe
   return prior;
 }
 
+vo::Prior PriorOf(const PriorSettings& settings, const sim::MotionDescription& motion, const Truth& start,
+                  std::uint64_t seed) {
+  if (settings.start == PriorSettings::Start::origin) return PriorAtOrigin(settings);
+  vo::Prior prior = PriorFromTruth(settings, start.poses.front(), start.velocities->front(), seed);
+  if (const auto* sampled = std::get_if<sim::SampledMotion>(&motion)) {
+    const glm::dvec3 &v = sampled->velocity, &w = sampled->angular_rate;
+    if (sampled->velocity_sigma > 0) prior.v_WC = {v.x, v.y, v.z};
+    if (sampled->angular_rate_sigma > 0) prior.w_WC_C = {w.x, w.y, w.z};
+  }
+  return prior;
+}
+
 }  // namespace vobench

@@ -3,8 +3,9 @@
 
 #include <cstdint>
 
+#include "sim/motion/description.h"
 #include "tools/vobench/odometry_settings.h"
-#include "tools/vobench/result.h"
+#include "tools/vobench/truth.h"
 #include "vo/odometry.h"
 
 namespace vobench {
@@ -19,5 +20,10 @@ vo::Prior PriorAtOrigin(const PriorSettings& settings);
 // alone, and its covariance says so: an honest prior.
 vo::Prior PriorFromTruth(const PriorSettings& settings, const evaluation::StampedPose& pose,
                          const evaluation::StampedVelocity& velocity, std::uint64_t seed);
+
+// As the settings have it. A velocity that the scenario draws for each seed (velocity_sigma, angular_rate_sigma of a
+// sampled motion) is not told with noise of its own: the odometry is told what it is drawn about.
+vo::Prior PriorOf(const PriorSettings& settings, const sim::MotionDescription& motion, const Truth& start,
+                  std::uint64_t seed);
 
 }  // namespace vobench

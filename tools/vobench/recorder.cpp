@@ -55,10 +55,18 @@ Recorder::Recorder(std::int64_t frames, std::optional<fs::path> folder)
   if (folder_) fs::create_directories(*folder_ / "frames");
 }
 
-void Recorder::Add(const vo::Frame& frame, const vo::Estimate& estimate, const std::vector<vo::FeatureView>& features) {
+Recorder::Recorder(std::optional<fs::path> folder) : folder_(std::move(folder)) {
+  if (folder_) fs::create_directories(*folder_);
+}
+
+void Recorder::Add(const vo::Estimate& estimate) {
   run_.trajectory.push_back(PoseOf(estimate));
   run_.beliefs.push_back(BeliefOf(estimate));
   run_.frames.push_back(RecordOf(estimate));
+}
+
+void Recorder::Add(const vo::Frame& frame, const vo::Estimate& estimate, const std::vector<vo::FeatureView>& features) {
+  Add(estimate);
   // The middle frame of each tenth: the very first has nothing tracked to show.
   if (folder_ && added_ % picture_every_ == picture_every_ / 2) {
     WritePicture(*folder_ / "frames" / (evaluation::FormatSeconds(frame.stamp_ns) + ".jpg"), frame.image, features);

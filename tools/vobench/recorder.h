@@ -17,9 +17,12 @@ class Recorder {
  public:
   // With a folder, about ten of `frames` frames are kept there as pictures; the folder is made. Without one, none.
   Recorder(std::int64_t frames, std::optional<std::filesystem::path> folder);
+  // For frames without images.
+  explicit Recorder(std::optional<std::filesystem::path> folder);
 
   // Throws std::runtime_error naming a picture that cannot be written.
   void Add(const vo::Frame& frame, const vo::Estimate& estimate, const std::vector<vo::FeatureView>& features);
+  void Add(const vo::Estimate& estimate);
 
   const evaluation::EstimateRun& run() const { return run_; }
 
@@ -29,7 +32,7 @@ class Recorder {
 
  private:
   std::optional<std::filesystem::path> folder_;
-  std::int64_t picture_every_;
+  std::int64_t picture_every_ = 1;
   std::int64_t added_ = 0;
   evaluation::EstimateRun run_;
 };

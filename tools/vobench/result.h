@@ -9,17 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "tools/evaluation/trajectory.h"
 #include "tools/report/metrics_json.h"
 #include "tools/report/run_json.h"
+#include "tools/vobench/truth.h"
 
 namespace vobench {
-
-// What the judge knows and the odometry does not.
-struct Truth {
-  evaluation::Trajectory poses;
-  std::optional<evaluation::Velocities> velocities;
-};
 
 // How to tell a result folder (see OutputFolder): this file is in it, and nothing but these names, those of systems
 // included.

@@ -12,26 +12,15 @@
 #include "tools/vobench/commands.h"
 #include "tools/vobench/errors.h"
 #include "tools/vobench/experiment.h"
-#include "tools/vobench/output_folder.h"
 #include "tools/vobench/parallel.h"
 #include "tools/vobench/prior.h"
 #include "tools/vobench/progress.h"
 #include "tools/vobench/result.h"
+#include "tools/vobench/run_common.h"
 #include "tools/vobench/tracker.h"
 
 namespace vobench {
 namespace {
-
-using Folder = std::unique_ptr<OutputFolder>;  // none: nothing is kept
-
-Folder MakeFolder(const RunOptions& options) {
-  return options.output ? std::make_unique<OutputFolder>(*options.output, kResultMarker, ResultNames()) : nullptr;
-}
-
-vo::Prior PriorOf(const PriorSettings& settings, const Truth& start, std::uint64_t seed) {
-  if (settings.start == PriorSettings::Start::origin) return PriorAtOrigin(settings);
-  return PriorFromTruth(settings, start.poses.front(), start.velocities->front(), seed);
-}
 
 // Each system with each seed. Of the truth they are told the start alone.
 std::vector<Tracker> MakeTrackers(const RunOptions& options, const Experiment& experiment,
@@ -43,7 +32,8 @@ std::vector<Tracker> MakeTrackers(const RunOptions& options, const Experiment& e
   for (const std::string& system : options.systems) {
     for (int run = 0; run < options.runs; ++run) {
       const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(run);
-      const TrackerSetup setup{system, seed, experiment.odometry, PriorOf(experiment.prior, start, seed)};
+      const TrackerSetup setup{system, seed, experiment.odometry,
+                               PriorOf(experiment.prior, experiment.scenario.motion, start, seed)};
       trackers.emplace_back(setup, camera, simulator.frame_count(), out, fmt::format("{}/seed_{}", system, seed));
     }
   }
@@ -52,11 +42,10 @@ std::vector<Tracker> MakeTrackers(const RunOptions& options, const Experiment& e
 
 std::vector<report::JudgedRun> Judge(const std::vector<Tracker>& trackers, const Truth& truth,
                                      const PriorSettings& prior) {
-  evaluation::JudgeOptions how;
-  if (prior.start == PriorSettings::Start::origin) how.gauge = evaluation::Gauge::first_pose;
   std::vector<report::JudgedRun> judged;
   for (const Tracker& tracker : trackers) {
-    judged.push_back({tracker.entry(), evaluation::Judge(tracker.estimates(), truth.poses, truth.velocities, how)});
+    judged.push_back({tracker.entry(),
+                      evaluation::Judge(tracker.estimates(), truth.poses, truth.velocities, JudgeOptionsOf(prior))});
   }
   return judged;
 }
@@ -72,25 +61,12 @@ void Write(OutputFolder& folder, const std::vector<Tracker>& trackers, const Tru
   folder.Commit();
 }
 
-report::RunDescription Describe(const RunOptions& options, const Experiment& experiment,
-                                const sim::Simulator& simulator, const Clock& clock) {
-  report::RunDescription description;
-  description.title = experiment.scenario.name;
-  description.input = options.scenario.string();
-  description.command = options.command_line;
-  description.started_utc = clock.started_utc();
-  description.seconds = clock.seconds();
-  description.settings = experiment.resolved;
-  description.versions = Versions();
-  description.notes = simulator.warnings();
-  return description;
-}
-
 }  // namespace
 
 void Run(const RunOptions& options) {
   const Clock clock;
   const Experiment experiment = ReadExperiment(options.scenario, options.overrides);
+  if (experiment.scenario.points) return RunOnPoints(options, experiment, clock);
   const Folder folder = MakeFolder(options);
   sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, options.jobs); });
   PrintWarnings(simulator.warnings());
@@ -106,7 +82,7 @@ void Run(const RunOptions& options) {
     }
   }
   const std::vector<report::JudgedRun> judged = Judge(odometries, truth, experiment.prior);
-  if (folder) Write(*folder, odometries, truth, judged, Describe(options, experiment, simulator, clock));
+  if (folder) Write(*folder, odometries, truth, judged, Describe(options, experiment, simulator.warnings(), clock));
   fmt::print("{}", report::TextSummary(judged));
   if (folder) fmt::print("The report is in {}\n", (*options.output / "report.html").string());
 }

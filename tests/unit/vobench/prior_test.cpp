@@ -50,6 +50,24 @@ TEST(PriorTest, IsAFunctionOfTheSeed) {
   EXPECT_NE(a.v_WC, PriorFromTruth({}, SomePose(), SomeVelocity(), 7 + (1ULL << 32)).v_WC) << "all 64 bits count";
 }
 
+// Where the scenario draws the velocity itself, the odometry is told what it was drawn about, and no truth.
+TEST(PriorTest, OfADrawnVelocityTheMeanIsTold) {
+  sim::SampledMotion motion;
+  motion.velocity = {1, 2, 3};
+  motion.angular_rate = {4, 5, 6};
+  const Truth start{{SomePose()}, evaluation::Velocities{SomeVelocity()}};
+  const vo::Prior noisy = PriorFromTruth({}, SomePose(), SomeVelocity(), 7);
+  EXPECT_EQ(PriorOf({}, motion, start, 7).v_WC, noisy.v_WC);
+  EXPECT_EQ(PriorOf({}, motion, start, 7).w_WC_C, noisy.w_WC_C);
+  motion.velocity_sigma = 0.3;
+  EXPECT_EQ(PriorOf({}, motion, start, 7).v_WC, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(PriorOf({}, motion, start, 7).w_WC_C, noisy.w_WC_C);
+  motion.angular_rate_sigma = 0.3;
+  EXPECT_EQ(PriorOf({}, motion, start, 7).w_WC_C, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(PriorOf({}, motion, start, 7).pose.p_WC, SomePose().p_WC);
+  EXPECT_TRUE(PriorOf({PriorSettings::Start::origin, 0.1, 0.1}, motion, start, 7).v_WC.isZero());
+}
+
 TEST(PriorTest, AtTheOriginNothingOfTheTruthIsKnown) {
   const vo::Prior prior = PriorAtOrigin({PriorSettings::Start::origin, 0.5, 0.25});
   EXPECT_TRUE(prior.pose.p_WC.isZero());

@@ -1,0 +1,28 @@
+// Purpose: is a system as uncertain as it is wrong? Over many runs of the same kind, part of the state by part.
+// Source:  docs/metrics.md, NEES; docs/point_world.md.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/evaluation/summary.h"
+#include "tools/vobench/point_bench.h"
+
+namespace vobench {
+
+// All runs of one system.
+struct SystemRuns {
+  std::string system;
+  std::vector<evaluation::Metrics> metrics;
+  std::vector<std::vector<BlockNees>> nees;  // [run][frame]
+};
+
+// Per system, for a terminal: ATE by alignment, and ANEES per degree of freedom by block, with the band that the
+// average of so many honest runs falls in with probability 95 % at one frame. The first frame, whose pose is given, is
+// left out.
+std::string AneesTable(const std::vector<SystemRuns>& systems);
+
+// The same frame by frame: system,block,dof,frame,runs,anees_per_dof,low,high.
+std::string AneesCsv(const std::vector<SystemRuns>& systems);
+
+}  // namespace vobench

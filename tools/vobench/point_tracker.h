@@ -1,0 +1,36 @@
+// Purpose: one odometry at work on a world of points with known identity, with all that must be kept of it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "tools/report/run_json.h"
+#include "tools/vobench/recorder.h"
+#include "tools/vobench/tracker.h"
+#include "vo/point_odometry.h"
+
+namespace vobench {
+
+class PointTracker {
+ public:
+  // `out` and `folder` as of Tracker. Throws BadInput.
+  PointTracker(const TrackerSetup& setup, const vo::Camera& camera, const std::optional<std::filesystem::path>& out,
+               const std::string& folder);
+
+  void Track(const vo::PointFrame& frame);
+
+  // The files of the run folder, but for the truth. Throws std::runtime_error.
+  void Write() const { recorder_.Write(odometry_.Map()); }
+
+  const report::RunEntry& entry() const { return entry_; }
+  const evaluation::EstimateRun& estimates() const { return recorder_.run(); }
+
+ private:
+  report::RunEntry entry_;
+  vo::PointOdometry odometry_;
+  Recorder recorder_;
+};
+
+}  // namespace vobench
