@@ -85,10 +85,21 @@ void SimulateRun(const LinearFilter& filter, const SteadyState& state, int frame
   }
 }
 
-double ShareOfSums(const std::vector<double>& sums, int runs, const Band& band) {
-  const auto inside = std::count_if(sums.begin(), sums.end(),
-                                    [&](double sum) { return sum / runs >= band.low && sum / runs <= band.high; });
-  return static_cast<double>(inside) / static_cast<double>(sums.size());
+// sums: of NEES over the runs, per frame.
+void AddTrial(const std::vector<double>& sums, int runs, int dof, const Band& band, ExactAnees& exact) {
+  double inside = 0, mean = 0;
+  for (const double sum : sums) {
+    inside += sum / runs >= band.low && sum / runs <= band.high;
+    mean += sum / runs / dof;
+  }
+  exact.shares.push_back(inside / static_cast<double>(sums.size()));
+  exact.means.push_back(mean / static_cast<double>(sums.size()));
+}
+
+ExactAnees Sorted(ExactAnees exact) {
+  std::sort(exact.shares.begin(), exact.shares.end());
+  std::sort(exact.means.begin(), exact.means.end());
+  return exact;
 }
 
 std::uint64_t StreamOf(std::uint64_t trial, int run) { return (trial << 24) + static_cast<std::uint64_t>(run); }
@@ -116,37 +127,36 @@ std::vector<std::vector<double>> SimulateNees(const LinearFilter& filter, int ru
   return nees;
 }
 
-std::vector<double> SharesOf(const LinearFilter& filter, int runs, int frames, int trials, std::uint64_t seed) {
+ExactAnees ExactAneesOf(const LinearFilter& filter, int runs, int frames, int trials, std::uint64_t seed) {
   RequireCounts(runs, static_cast<std::size_t>(std::max(frames, 0)), trials);
   const SteadyState state = SteadyStateOf(filter, VarianceOfMeasurement(filter));
   const Band band = Chi2MeanBand(filter.dof(), runs);
-  std::vector<double> shares;
+  ExactAnees exact;
   for (int trial = 0; trial < trials; ++trial) {
     std::vector<double> sums(static_cast<std::size_t>(frames));
     for (int m = 0; m < runs; ++m) {
       Draws random(seed, StreamOf(static_cast<std::uint64_t>(trial), m));
       SimulateRun(filter, state, frames, random, [&](std::size_t k, double value) { sums[k] += value; });
     }
-    shares.push_back(ShareOfSums(sums, runs, band));
+    AddTrial(sums, runs, filter.dof(), band, exact);
   }
-  std::sort(shares.begin(), shares.end());
-  return shares;
+  return Sorted(std::move(exact));
 }
 
-std::vector<double> SharesOfPool(const std::vector<std::vector<double>>& nees, int dof, int runs, int trials,
-                                 std::uint64_t seed) {
+ExactAnees ExactAneesOfPool(const std::vector<std::vector<double>>& nees, int dof, int runs, int trials,
+                            std::uint64_t seed) {
   RequireCounts(runs, nees.empty() ? 0 : nees.front().size(), trials);
   for (const auto& run : nees) {
     if (run.size() != nees.front().size() ||
         std::any_of(run.begin(), run.end(), [](double v) { return std::isnan(v); }))
-      throw std::invalid_argument("SharesOfPool: runs must be of one length, without gaps");
+      throw std::invalid_argument("ExactAneesOfPool: runs must be of one length, without gaps");
   }
   if (nees.size() < static_cast<std::size_t>(runs))
-    throw std::invalid_argument("SharesOfPool: the pool has fewer runs than a trial");
+    throw std::invalid_argument("ExactAneesOfPool: the pool has fewer runs than a trial");
   const Band band = Chi2MeanBand(dof, runs);
   std::vector<std::size_t> order(nees.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::vector<double> shares;
+  ExactAnees exact;
   for (int trial = 0; trial < trials; ++trial) {
     Draws random(seed, static_cast<std::uint64_t>(trial));
     std::vector<double> sums(nees.front().size());
@@ -157,10 +167,9 @@ std::vector<double> SharesOfPool(const std::vector<std::vector<double>>& nees, i
       const auto& run = nees[order[at]];
       for (std::size_t k = 0; k < run.size(); ++k) sums[k] += run[k];
     }
-    shares.push_back(ShareOfSums(sums, runs, band));
+    AddTrial(sums, runs, dof, band, exact);
   }
-  std::sort(shares.begin(), shares.end());
-  return shares;
+  return Sorted(std::move(exact));
 }
 
 AneesShare ShareInBand(const std::vector<std::vector<double>>& nees, int dof) {
@@ -198,21 +207,27 @@ AneesShare ShareInBand(const std::vector<std::vector<double>>& nees, int dof) {
   return share;
 }
 
-AneesVerdict TestAnees(const std::vector<std::vector<double>>& nees, int dof,
-                       const std::vector<double>& shares_of_exact, double false_alarm) {
-  const auto n = static_cast<double>(shares_of_exact.size());
-  const double rank = std::floor(false_alarm * (n + 1));  // P(share of an exact filter < this order statistic) < rate
-  if (!(rank >= 1)) {
-    throw std::invalid_argument("TestAnees: " + std::to_string(shares_of_exact.size()) +
-                                " trials of the exact filter are too few for a false-alarm rate of " +
-                                std::to_string(false_alarm));
+AneesVerdict TestAnees(const std::vector<std::vector<double>>& nees, int dof, const ExactAnees& exact,
+                       double false_alarm) {
+  const std::size_t n = std::min(exact.shares.size(), exact.means.size());
+  // P(an exact filter is below the k-th smallest of n, counted from 1) = k / (n + 1).
+  const auto order = [&](double rate) {
+    return static_cast<std::size_t>(std::floor(rate * (static_cast<double>(n) + 1) * (1 + 1e-12)));
+  };
+  if (order(false_alarm / 2) < 1) {
+    throw std::invalid_argument("TestAnees: " + std::to_string(n) + " trials of the exact filter are too few for a " +
+                                "false-alarm rate of " + std::to_string(false_alarm));
   }
   AneesVerdict verdict;
   verdict.measured = ShareInBand(nees, dof);
   verdict.false_alarm = false_alarm;
-  verdict.threshold = shares_of_exact[static_cast<std::size_t>(rank) - 1];
-  verdict.expected = shares_of_exact[shares_of_exact.size() / 2];
-  verdict.pass = verdict.measured.frames > 0 && verdict.measured.share >= verdict.threshold;
+  verdict.threshold = exact.shares[order(false_alarm) - 1];
+  verdict.expected = exact.shares[n / 2];
+  verdict.share_pass = verdict.measured.frames > 0 && verdict.measured.share >= verdict.threshold;
+  verdict.mean_low = exact.means[order(false_alarm / 2) - 1];
+  verdict.mean_high = exact.means[n - order(false_alarm / 2)];
+  const double mean = verdict.measured.mean;
+  verdict.mean_pass = verdict.measured.frames > 0 && mean >= verdict.mean_low && mean <= verdict.mean_high;
   return verdict;
 }
 

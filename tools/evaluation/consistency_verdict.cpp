@@ -17,12 +17,12 @@ std::vector<std::vector<T>> Collect(const std::vector<JudgedRun>& runs, std::siz
   return values;
 }
 
-std::vector<double> ExactShares(const VerdictOptions& options, const StateBlock& block, int runs, int frames) {
+ExactAnees ExactOf(const VerdictOptions& options, const StateBlock& block, int runs, int frames) {
   if (options.linearised != nullptr) {
     auto nees = NeesOf(*options.linearised, block.start, block.size);
     for (auto& run : nees)
       run.erase(run.begin(), run.begin() + static_cast<std::ptrdiff_t>(std::min(options.first_frame, run.size())));
-    return SharesOfPool(nees, block.size, runs, options.trials);
+    return ExactAneesOfPool(nees, block.size, runs, options.trials);
   }
   LinearFilter filter = options.reference;
   const bool joint = block.size == 12;
@@ -30,7 +30,7 @@ std::vector<double> ExactShares(const VerdictOptions& options, const StateBlock&
   filter.judged = joint              ? LinearFilter::Judged::both
                   : block.start >= 6 ? LinearFilter::Judged::velocity
                                      : LinearFilter::Judged::position;
-  return SharesOf(filter, runs, frames, options.trials);
+  return ExactAneesOf(filter, runs, frames, options.trials);
 }
 
 std::vector<std::size_t> RankFrames(const VerdictOptions& options, std::size_t frames) {
@@ -147,11 +147,15 @@ ConsistencyVerdict JudgeConsistency(const std::vector<JudgedRun>& runs, const Ve
   for (std::size_t b = 0; b < kStateBlocks.size(); ++b) {
     const auto nees =
         Collect<double>(runs, options.first_frame, [&](const JudgedFrame& frame) { return frame.scores.nees[b]; });
-    const auto exact = ExactShares(options, kStateBlocks[b], count, static_cast<int>(frames - options.first_frame));
+    const auto exact = ExactOf(options, kStateBlocks[b], count, static_cast<int>(frames - options.first_frame));
     verdict.anees.push_back(TestAnees(nees, kStateBlocks[b].size, exact, options.false_alarm));
     const AneesVerdict& anees = verdict.anees.back();
-    verdict.checks.push_back({std::string("ANEES share, ") + kStateBlocks[b].name, anees.measured.share,
-                              anees.threshold, true, anees.pass, anees.false_alarm});
+    const std::string name = kStateBlocks[b].name;
+    verdict.checks.push_back(
+        {"ANEES share, " + name, anees.measured.share, anees.threshold, true, anees.share_pass, anees.false_alarm});
+    const bool low = anees.measured.mean < 1;  // the side that it is on
+    verdict.checks.push_back({"ANEES mean, " + name, anees.measured.mean, low ? anees.mean_low : anees.mean_high, low,
+                              anees.mean_pass, anees.false_alarm});
   }
   JudgeRanks(runs, options, frames, verdict);
   JudgeInnovations(runs, options, verdict);

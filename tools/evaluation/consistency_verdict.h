@@ -31,7 +31,7 @@ using JudgedRun = std::vector<JudgedFrame>;
 struct VerdictOptions {
   double false_alarm = 0.01;  // of each check
   LinearFilter reference;     // axes and part are set by the block that is judged
-  int trials = 500;           // of the reference
+  int trials = 500;           // of the reference; at least 2 / false_alarm
   // Honest runs of the world itself (cramer_rao.h), at least ten times as many as are judged; same frames. Prefer them:
   // pose drifts, so that its ANEES remembers for seconds, and the linear filter, whose position is measured, would
   // reject an exact odometry in one case of six (docs/metrics.md).

@@ -19,7 +19,7 @@ namespace evaluation {
 std::vector<Matrix12d> FilteringBound(const PointWorldProblem& problem);
 
 // The exact Kalman filter of the world linearised at the truth, run `runs` times: errors[run][frame], whose covariance
-// is the bound and whose dependence over time is that of an honest filter. For SharesOfPool.
+// is the bound and whose dependence over time is that of an honest filter. For ExactAneesOfPool.
 struct LinearisedRuns {
   std::vector<Matrix12d> bound;               // per frame
   std::vector<std::vector<Vector12d>> error;  // [run][frame]
