@@ -81,6 +81,14 @@ std::string AneesTable(const std::vector<SystemRuns>& systems) {
                           fmt::format("{:.2f} ... {:.2f}", band.low / dof, band.high / dof), 100 * share.share,
                           100 * share.above, 100 * share.below);
     }
+    if (runs.bound) {
+      text += "RMSE / Cramer-Rao bound:";
+      for (std::size_t b = 0; b < runs.bound->overall.size(); ++b) {
+        text +=
+            fmt::format("{} {} {}", b == 0 ? "" : ",", kStateBlocks[b].name, report::Readable(runs.bound->overall[b]));
+      }
+      text += '\n';
+    }
   }
   text +=
       "Nothing is aligned for ANEES; 1 is ideal, more is over-confident. The band is that of one frame: of an honest "

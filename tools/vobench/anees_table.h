@@ -2,9 +2,11 @@
 // Source:  docs/metrics.md, NEES; docs/point_world.md.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tools/evaluation/cramer_rao.h"
 #include "tools/evaluation/summary.h"
 #include "tools/vobench/point_bench.h"
 
@@ -15,6 +17,8 @@ struct SystemRuns {
   std::string system;
   std::vector<evaluation::Metrics> metrics;
   std::vector<std::vector<BlockNees>> nees;  // [run][frame]
+  // RMSE / Cramer-Rao bound over all frames and runs, of the first four of kStateBlocks; where it was asked for.
+  std::optional<evaluation::BoundRatio> bound;
 };
 
 // Per system, for a terminal: ATE by alignment, and ANEES per degree of freedom by block, with the band that the

@@ -152,6 +152,8 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
       ->capture_default_str();
   AddSeed(run_command, raw, "Seed of the first run's filter and prior; the scene keeps its own (--set seed=N)")
       ->capture_default_str();
+  run_command.add_flag("--bound", run.bound,
+                       "Also the Cramer-Rao bound of worlds of points, and RMSE / bound; takes seconds a run");
   AddJobs(run_command, raw);
   AddSet(run_command, raw, "odometry.filter.particles=16 or time.duration='2 s'");
 

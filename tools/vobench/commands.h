@@ -55,6 +55,7 @@ struct RunOptions {
   std::vector<std::string> systems = {"rb2pf"};
   int runs = 1;
   std::uint64_t seed = 1;  // of the first run; the others count up from it
+  bool bound = false;      // the Cramer-Rao bound too, of worlds of points
   int jobs = 1;
   Overrides overrides;
   std::string command_line;  // for the record

@@ -13,6 +13,7 @@
 #include "tools/vobench/bridge.h"
 #include "tools/vobench/errors.h"
 #include "tools/vobench/parallel.h"
+#include "tools/vobench/point_bound.h"
 #include "tools/vobench/point_tracker.h"
 #include "tools/vobench/prior.h"
 #include "tools/vobench/progress.h"
@@ -27,6 +28,8 @@ struct PointRun {
   // When it is done:
   report::JudgedRun judged;
   std::vector<BlockNees> nees;
+  std::vector<evaluation::Vector12d> errors;  // only where the bound is asked for
+  std::vector<evaluation::Matrix12d> bound;   // of the first system's runs
   std::vector<std::string> warnings;
 };
 
@@ -42,24 +45,44 @@ vo::Prior PriorIn(const sim::PointWorld& world, const PriorSettings& settings, s
   return PriorOf(settings, world.scenario().motion, start, seed);
 }
 
+evaluation::Matrix12d StartCovariance(const vo::Prior& prior) {
+  evaluation::Matrix12d start = evaluation::Matrix12d::Zero();
+  start.topLeftCorner<6, 6>() = prior.pose_covariance;
+  start.bottomRightCorner<6, 6>() = prior.velocity_covariance;
+  return start;
+}
+
 // `step` is told of each frame. Nothing but the answers is kept when it is done.
 template <class Step>
-void Play(const Experiment& experiment, const Folder& folder, PointRun& run, const Step& step) {
+void Play(const RunOptions& options, const Experiment& experiment, const Folder& folder, PointRun& run,
+          const Step& step) {
   sim::PointWorld world = WorldOf(experiment, run.seed);
   const TrackerSetup setup{run.system, run.seed, experiment.odometry, PriorIn(world, experiment.prior, run.seed)};
   PointTracker tracker(setup, ToOdometry(world.camera().params()),
                        folder ? std::optional(folder->path()) : std::nullopt,
                        fmt::format("{}/seed_{}", run.system, run.seed));
   Truth truth;
+  std::vector<sim::PointFrame> frames;
   while (const std::optional<sim::PointFrame> frame = world.Next()) {
     Append(frame->stamp_ns, frame->truth, truth);
     tracker.Track(ToOdometry(*frame));
+    if (options.bound) frames.push_back(*frame);
     step();
   }
   const evaluation::JudgeOptions how = JudgeOptionsOf(experiment.prior);
   run.judged = {tracker.entry(), evaluation::Judge(tracker.estimates(), truth.poses, truth.velocities, how)};
   run.nees = NeesByBlock(tracker.estimates(), truth, how.gauge);
   run.warnings = world.Warnings();
+  if (options.bound) {
+    for (const evaluation::FrameConsistency& frame : evaluation::ComputeConsistency(
+             tracker.estimates(), truth.poses, truth.velocities, how.association.gap_ns, how.gauge)) {
+      run.errors.push_back(frame.error);
+    }
+    if (run.system == options.systems.front()) {
+      run.bound =
+          evaluation::FilteringBound(Input([&] { return ProblemOf(world, frames, StartCovariance(setup.prior)); }));
+    }
+  }
   if (!folder) return;
   tracker.Write();
   WriteTruth(folder->path() / tracker.entry().path, truth);
@@ -82,11 +105,16 @@ std::vector<SystemRuns> BySystem(const RunOptions& options, std::vector<PointRun
   for (const std::string& system : options.systems) {
     SystemRuns& all = systems.emplace_back();
     all.system = system;
+    std::vector<std::vector<evaluation::Vector12d>> errors;
+    std::vector<std::vector<evaluation::Matrix12d>> bounds;
     for (PointRun& run : runs) {
       if (run.system != system) continue;
       all.metrics.push_back(run.judged.metrics);
       all.nees.push_back(std::move(run.nees));
+      errors.push_back(run.errors);
+      bounds.push_back(runs[errors.size() - 1].bound);  // the first system's runs come first
     }
+    if (options.bound) all.bound = evaluation::CompareWithBound(errors, bounds);
   }
   return systems;
 }
@@ -98,7 +126,7 @@ void RunOnPoints(const RunOptions& options, const Experiment& experiment, const 
   std::vector<PointRun> runs;
   for (const std::string& system : options.systems) {
     for (int run = 0; run < options.runs; ++run) {
-      runs.push_back({system, options.seed + static_cast<std::uint64_t>(run), {}, {}, {}});
+      runs.push_back({system, options.seed + static_cast<std::uint64_t>(run), {}, {}, {}, {}, {}});
     }
   }
   {
@@ -106,7 +134,7 @@ void RunOnPoints(const RunOptions& options, const Experiment& experiment, const 
     Progress progress("running", frames * static_cast<std::int64_t>(runs.size()));
     std::mutex mutex;
     ForEach(runs, options.jobs, [&](PointRun& run) {
-      Play(experiment, folder, run, [&] {
+      Play(options, experiment, folder, run, [&] {
         const std::lock_guard lock(mutex);
         progress.Step();
       });

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "tools/vobench/anees_table.h"
+#include "tools/vobench/point_bound.h"
 
 namespace vobench {
 namespace {
@@ -67,6 +68,58 @@ TEST(PointBench, RefusesNonsense) {
   EXPECT_THROW(says(estimate), std::invalid_argument);
 }
 
+std::vector<sim::PointFrame> Play(sim::PointWorld& world) {
+  std::vector<sim::PointFrame> frames;
+  while (auto frame = world.Next()) frames.push_back(*std::move(frame));
+  return frames;
+}
+
+TEST(PointBound, TheProblemIsTheWorldThatWasPlayed) {
+  sim::PointWorld world = ShortWorld(3);
+  const std::vector<sim::PointFrame> frames = Play(world);
+  const evaluation::Matrix12d start = 0.01 * evaluation::Matrix12d::Identity();
+  const evaluation::PointWorldProblem problem = ProblemOf(world, frames, start);
+  EXPECT_NO_THROW(evaluation::Validate(problem));
+  EXPECT_EQ(problem.sigma, 1.0 / 525);
+  EXPECT_EQ(problem.position_noise, 0.5);
+  EXPECT_EQ(problem.orientation_noise, 0.3);
+  EXPECT_EQ(problem.truth.size(), 6u);
+  ASSERT_EQ(problem.landmarks.size(), world.landmarks().size());
+  std::size_t views = 0;
+  for (const evaluation::PointLandmark& landmark : problem.landmarks) {
+    views += 1 + landmark.frames.size();
+    EXPECT_EQ(landmark.inverse_depth_sigma, 0.0125);
+    EXPECT_NEAR(landmark.inverse_depth, 0.25, 6 * 0.0125);
+    // Seen by the judge's own projection where the world says it is.
+    for (const std::size_t frame : landmark.frames) {
+      const auto& id = world.landmarks()[static_cast<std::size_t>(&landmark - problem.landmarks.data())];
+      const glm::dvec2 seen = world.Project(id, static_cast<std::int64_t>(frame)).value();
+      const Eigen::Vector2d judged =
+          evaluation::LinearisedView(evaluation::PointOf(landmark, problem.truth[landmark.anchor_frame]),
+                                     problem.truth[frame])
+              .seen;
+      EXPECT_NEAR(525 * judged.x() + 319.5, seen.x, 1e-8);
+      EXPECT_NEAR(525 * judged.y() + 239.5, seen.y, 1e-8);
+    }
+  }
+  std::size_t observations = 0;
+  for (const sim::PointFrame& frame : frames) observations += frame.observations.size();
+  EXPECT_EQ(views, observations);
+  // More views, less doubt: below what the motion alone would leave.
+  const auto bound = evaluation::FilteringBound(problem);
+  EXPECT_LT(bound[5](0, 0), bound[0](0, 0) + 25 * bound[0](6, 6) / 900);
+}
+
+TEST(PointBound, RefusesAWorldWithoutAPrior) {
+  sim::PointWorld world(VOBENCH_SOURCE_DIR "/scenes/points_room.yaml", 1);
+  try {
+    ProblemOf(world, {}, evaluation::Matrix12d::Zero());
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "points_room: no Cramer-Rao bound: landmarks are not from a prior");
+  }
+}
+
 // Two runs of three frames: ANEES of the position, per degree of freedom, is (3 + 6) / 2 / 3 = 1.5 and (9 + 12) / 2 / 3
 // = 3.5. The band of two honest runs with three degrees of freedom is [1.237, 14.449] / 6.
 SystemRuns TwoRuns() {
@@ -87,8 +140,8 @@ SystemRuns TwoRuns() {
 TEST(AneesTable, HandWorkedNumbers) {
   const std::string table = AneesTable({TwoRuns()});
   EXPECT_THAT(table, HasSubstr("RB²-PF, 2 runs. Median ATE [cm]: 3.00 as it is"));
-  EXPECT_THAT(table,
-              HasSubstr("position             3        2.50        3.50  0.21 ... 2.41      50.0 %   50.0 %    0.0 %"));
+  EXPECT_THAT(
+      table, HasSubstr("position             3        2.50        3.50  0.21 ... 2.41       50.0 %   50.0 %    0.0 %"));
   EXPECT_THAT(AneesCsv({TwoRuns()}), HasSubstr("rb2pf,position,3,1,2,1.5,0.206224,2.40823\n"
                                                "rb2pf,position,3,2,2,3.5,0.206224,2.40823\n"));
 }
