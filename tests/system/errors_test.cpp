@@ -140,6 +140,9 @@ TEST_F(ErrorsTest, PointsAreNotRendered) {
   const std::string scene = (TinyScenario().parent_path() / "points.yaml").string();
   Fails({"render", scene, "-o", "out"}, 2, "points: a world of points has no images");
   Fails({"run", scene, "--set", "world.points.count=0"}, 2, "--set world.points.count: points: count = 0 must lie in");
+  Fails({"run", scene, "--set", "seed=3"}, 2, "say --seed 3");
+  Fails({"run", scene, "--bound", "--set", "time.duration=0.1 s", "--set", "world.points.measurement.noise=0"}, 2,
+        "no Cramer-Rao bound: views have no noise");
   Fails({"check", scene, "--set", "world.meshes=[{file: a.obj}]"}, 2, "'world.meshes' is for worlds that are rendered");
 }
 

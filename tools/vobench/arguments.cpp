@@ -150,7 +150,8 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
   run_command.add_option("--runs", run.runs, "Runs of each system, each with its own seed")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  AddSeed(run_command, raw, "Seed of the first run's filter and prior; the scene keeps its own (--set seed=N)")
+  AddSeed(run_command, raw,
+          "Seed of the first run's filter and prior, and of its world of points; a scene keeps its own (--set seed=N)")
       ->capture_default_str();
   run_command.add_flag("--bound", run.bound,
                        "Also the Cramer-Rao bound of worlds of points, and RMSE / bound; takes seconds a run");

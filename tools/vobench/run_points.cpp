@@ -122,6 +122,9 @@ std::vector<SystemRuns> BySystem(const RunOptions& options, std::vector<PointRun
 }  // namespace
 
 void RunOnPoints(const RunOptions& options, const Experiment& experiment, const Clock& clock) {
+  for (const auto& [key, value] : options.overrides) {
+    if (key == "seed") throw BadInput("--set seed=" + value + ": each run has a world of its own; say --seed " + value);
+  }
   const Folder folder = MakeFolder(options);
   std::vector<PointRun> runs;
   for (const std::string& system : options.systems) {
