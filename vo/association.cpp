@@ -25,7 +25,7 @@ bool WorthSearching(const ParticleFilter& filter, const LandmarkRecord& record, 
   const Particle& particle = filter.Heaviest();
   const Pose& now = particle.prediction.mean;
   const Pose first = filter.AnchorOf(landmark);
-  const Eigen::Vector3d& estimate = particle.landmarks[landmark].mean;
+  const Eigen::Vector3d& estimate = particle.modes[landmark];
   const Eigen::Vector3d first_ray = first.q_WC * Eigen::Vector3d(estimate.x(), estimate.y(), 1.0).normalized();
   const Eigen::Vector3d present_ray = now.q_WC * Eigen::Vector3d(prediction.z.x(), prediction.z.y(), 1.0).normalized();
   if (first_ray.dot(present_ray) < std::cos(params.features.max_view_angle_deg * std::numbers::pi / 180)) return false;
@@ -55,7 +55,7 @@ std::vector<Candidate> FindCandidates(const ParticleFilter& filter, std::span<co
 SearchRequest RequestFor(const Candidate& candidate, const ParticleFilter& filter, const LandmarkRecord& record, const Camera& camera,
                          double sigma_px) {
   const Particle& particle = filter.Heaviest();
-  const Eigen::Vector3d& estimate = particle.landmarks[candidate.landmark].mean;
+  const Eigen::Vector3d& estimate = particle.modes[candidate.landmark];
   const Projection view = Project({particle.prediction.mean, filter.AnchorOf(candidate.landmark)}, estimate);
   SearchRequest request{&record.appearance, candidate.pixel,
                         candidate.lens * candidate.prediction.covariance * candidate.lens.transpose() +
@@ -83,7 +83,7 @@ Association Associate(const ParticleFilter& filter, std::span<const LandmarkReco
   const Particle& particle = filter.Heaviest();
   const std::vector<bool> inlier =
       params.filter.reject_outliers
-          ? FindInliers(particle.prediction, filter.MapOf(particle), matches, params.score.gate, params.filter)
+          ? FindInliers(particle.prediction, filter.HeaviestMap(), matches, params.score.gate, params.filter)
           : std::vector<bool>(matches.size(), true);
 
   Association result;

@@ -36,6 +36,11 @@ std::vector<std::string> Problems(const Params& params) {
   check.Require(filter.resample_below >= 0 && filter.resample_below <= 1, "filter.resample_below",
                 filter.resample_below, "must lie in 0 ... 1");
   check.Require(filter.max_iterations >= 1, "filter.max_iterations", filter.max_iterations, "must be at least 1");
+  check.Require(filter.lag >= 0, "filter.lag", filter.lag, "must not be negative");
+  if (filter.lag > 0) {
+    check.Require(filter.sampled == Sampled::pose, "filter.lag", filter.lag, "needs the velocity unsampled (rb2pf)");
+    check.Require(filter.weight == Weight::evidence, "filter.lag", filter.lag, "needs weight: evidence");
+  }
 
   const LandmarkParams& landmark = params.landmark;
   check.Positive("landmark.inverse_depth", landmark.inverse_depth);

@@ -40,6 +40,9 @@ struct FilterParams {
   double resample_below = 0.5;  // resample when N_eff < this fraction of the particles
   int max_iterations = 10;      // of the iterated proposal, and of a landmark given its pose
   Weight weight = Weight::evidence;
+  int lag = 0;                  // poses kept un-sampled, so that later images speak before the map is committed to them (0: the paper)
+  bool marginal_mode = false;   // propose at the mode of the poses' marginal, not of poses and landmarks jointly: unbiased in scale, but it
+                                // believes features.sigma_px, which must then be right
   bool reject_outliers = true;  // matches that contradict the others are set aside before the update
 };
 

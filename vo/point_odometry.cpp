@@ -76,7 +76,7 @@ std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, Frame
   if (params.filter.reject_outliers) {
     const Particle& particle = filter.Heaviest();
     const std::vector<bool> inlier =
-        FindInliers(particle.prediction, filter.MapOf(particle), matches, params.score.gate, params.filter);
+        FindInliers(particle.prediction, filter.HeaviestMap(), matches, params.score.gate, params.filter);
     std::size_t to = 0;
     for (std::size_t from = 0; from < matches.size(); ++from)
       if (inlier[from]) matches[to++] = matches[from];

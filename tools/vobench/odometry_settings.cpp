@@ -21,12 +21,15 @@ void ReadMotion(Section section, vo::MotionParams& params) {
 
 void ReadFilter(Section section, vo::FilterParams& params) {
   // Which velocities are sampled is what tells the systems apart: --system says it.
-  [[maybe_unused]] auto& [sampled, proposal, particles, resample_below, max_iterations, weight, reject_outliers] = params;
+  [[maybe_unused]] auto& [sampled, proposal, particles, resample_below, max_iterations, weight, lag, marginal_mode,
+                          reject_outliers] = params;
   section.ReadChoice("proposal", proposal, {{"ekf", vo::Proposal::ekf}, {"iterated", vo::Proposal::iterated}});
   section.Read("particles", particles, Range{1, 100'000});
   section.Read("resample_below", resample_below, Range{0, 1});
   section.Read("max_iterations", max_iterations, Range{1, 1000});
   section.ReadChoice("weight", weight, {{"importance", vo::Weight::importance}, {"evidence", vo::Weight::evidence}});
+  section.Read("lag", lag, Range{0, 100});
+  section.Read("marginal_mode", marginal_mode);
   section.Read("reject_outliers", reject_outliers);
 }
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "vo/filter/mixture.h"
 #include "vo/filter/resampling.h"
 #include "vo/geometry/so3.h"
@@ -22,12 +20,6 @@ Vector6 PathState(const Pose& pose, const Pose& previous) {
   Vector6 s;
   s << pose.p_WC, Log(previous.q_WC.conjugate() * pose.q_WC);
   return s;
-}
-
-Vector6 SampleNormal(const Vector6& mean, const Matrix6& covariance, const RandomKey& key) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(covariance);  // semi-definite covariances are legal here
-  return mean + eigen.eigenvectors() *
-                    eigen.eigenvalues().cwiseMax(0).cwiseSqrt().cwiseProduct(NormalVector<Vector6>(key));
 }
 
 }  // namespace
@@ -58,13 +50,16 @@ ParticleFilter::ParticleFilter(const MotionParams& motion, const FilterParams& f
 
 void ParticleFilter::Predict(double dt) {
   ++frame_;
+  if (delayed()) return PredictPath(dt);
   since_sampled_ += dt;
   step_ = StepOf(motion_, since_sampled_);
   for (Particle& particle : particles_) particle.prediction = PredictPose(particle);
 }
 
 void ParticleFilter::Update(std::span<const Match> matches) {
-  if (matches.empty())
+  if (delayed())
+    UpdatePath(matches);
+  else if (matches.empty())
     Coast();
   else
     SampleStep(matches);
@@ -129,6 +124,7 @@ double ParticleFilter::UpdateLandmarks(Particle& particle, const Pose& pose, std
     Landmark& landmark = particle.landmarks[match.landmark];
     const LandmarkUpdate update = UpdateLandmark(landmark, views[anchor_of_[match.landmark]], match, iterations);
     landmark = update.landmark;
+    particle.modes[match.landmark] = landmark.mean;
     log_likelihood += update.log_likelihood;
   }
   return log_likelihood;
@@ -162,7 +158,7 @@ void ParticleFilter::Resample() {
 
 void ParticleFilter::AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<const Eigen::Matrix2d> R) {
   if (rays.empty()) return;
-  if (since_sampled_ > 0) SampleStep({});
+  if (!delayed() && since_sampled_ > 0) SampleStep({});
   // The slot of an anchor that no landmark uses any more is used again, so that long runs stay small.
   const int slots = static_cast<int>(particles_[0].anchors.size());
   std::vector<bool> used(slots, false);
@@ -170,10 +166,14 @@ void ParticleFilter::AddLandmarks(std::span<const Eigen::Vector2d> rays, std::sp
   const int slot = static_cast<int>(std::find(used.begin(), used.end(), false) - used.begin());
   for (Particle& particle : particles_) {
     if (slot == slots) particle.anchors.emplace_back();
-    particle.anchors[slot] = particle.pose;
-    for (std::size_t i = 0; i < rays.size(); ++i)
+    particle.anchors[slot] = steps_.empty() ? particle.pose : particle.path.mean.back();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
       particle.landmarks.push_back(NewLandmark(rays[i], R[i], landmark_params_));
+      particle.modes.push_back(particle.landmarks.back().mean);
+    }
   }
+  if (slot == slots) anchor_slot_.emplace_back();
+  anchor_slot_[slot] = static_cast<int>(steps_.size()) - 1;
   anchor_of_.insert(anchor_of_.end(), rays.size(), slot);
 }
 
@@ -184,8 +184,18 @@ void ParticleFilter::KeepLandmarks(const std::vector<bool>& keep) {
       if (keep[from]) items[to++] = items[from];
     items.resize(to);
   };
-  for (Particle& particle : particles_) compact(particle.landmarks);
+  for (Particle& particle : particles_) {
+    compact(particle.landmarks);
+    compact(particle.modes);
+  }
   compact(anchor_of_);
+  std::vector<int> index(keep.size(), -1);
+  for (int from = 0, to = 0; from < static_cast<int>(keep.size()); ++from)
+    if (keep[from]) index[from] = to++;
+  for (Step& step : steps_) {
+    std::erase_if(step.matches, [&](const Match& match) { return index[match.landmark] < 0; });
+    for (Match& match : step.matches) match.landmark = index[match.landmark];
+  }
 }
 
 ImagePrediction ParticleFilter::PredictImage(int landmark) const {
@@ -193,14 +203,11 @@ ImagePrediction ParticleFilter::PredictImage(int landmark) const {
   double weight = 0;
   Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const Particle& particle = particles_[i];
-    const Landmark& l = particle.landmarks[landmark];
-    const Projection h = Project({particle.prediction.mean, particle.anchors[anchor_of_[landmark]]}, l.mean);
-    if (!h.in_front) continue;
+    const ImagePrediction one = PredictImage(particles_[i], landmark);
+    if (!one.in_front) continue;
     weight += weights_[i];
-    prediction.z += weights_[i] * h.z;
-    second += weights_[i] * (h.z * h.z.transpose() + h.J_pose * particle.prediction.covariance * h.J_pose.transpose() +
-                             h.J_landmark * l.covariance * h.J_landmark.transpose());
+    prediction.z += weights_[i] * one.z;
+    second += weights_[i] * (one.z * one.z.transpose() + one.covariance);
   }
   if (weight < 0.5) return prediction;
   prediction.in_front = true;
@@ -209,19 +216,35 @@ ImagePrediction ParticleFilter::PredictImage(int landmark) const {
   return prediction;
 }
 
+ImagePrediction ParticleFilter::PredictImage(const Particle& particle, int landmark) const {
+  if (delayed()) return PredictImageOnPath(particle, landmark);
+  const Landmark& l = particle.landmarks[landmark];
+  const Projection h = Project({particle.prediction.mean, particle.anchors[anchor_of_[landmark]]}, l.mean);
+  return {h.in_front, h.z,
+          h.J_pose * particle.prediction.covariance * h.J_pose.transpose() +
+              h.J_landmark * l.covariance * h.J_landmark.transpose()};
+}
+
 const Particle& ParticleFilter::Heaviest() const {
   return particles_[std::max_element(weights_.begin(), weights_.end()) - weights_.begin()];
+}
+
+LocalMap ParticleFilter::HeaviestMap() const {
+  LocalMap map = MapOf(Heaviest());
+  if (delayed()) map.landmarks = heaviest_landmarks_;
+  return map;
 }
 
 ParticleFilter::LandmarkBelief ParticleFilter::BeliefOf(int landmark) const {
   double mean = 0, second = 0;
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const Landmark& l = particles_[i].landmarks[landmark];
-    mean += weights_[i] * l.mean.z();
-    second += weights_[i] * (l.mean.z() * l.mean.z() + l.covariance(2, 2));
+    const double rho = particles_[i].modes[landmark].z();
+    mean += weights_[i] * rho;
+    second += weights_[i] * (rho * rho + l.covariance(2, 2));
   }
   const Particle& best = Heaviest();
-  return {PointInWorld(best.anchors[anchor_of_[landmark]], best.landmarks[landmark].mean), mean,
+  return {PointInWorld(best.anchors[anchor_of_[landmark]], best.modes[landmark]), mean,
           std::sqrt(std::max(0.0, second - mean * mean))};
 }
 

@@ -5,11 +5,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "vo/filter/mixture.h"
 #include "vo/filter/motion_model.h"
+#include "vo/filter/path_prior.h"
+#include "vo/filter/path_window.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/filter/proposal.h"
 #include "vo/map/landmark.h"
@@ -24,13 +27,10 @@ struct Particle {
   std::vector<Pose> anchors;               // of the landmarks' first views, on this particle's path
   double log_weight = 0;
   PoseGaussian prediction;                 // (12)(13), valid between Predict and Update
-};
 
-// Where a landmark should appear: moments over the particles, on the plane z = 1.
-struct ImagePrediction {
-  bool in_front = false;                          // in front of every particle that matters
-  Eigen::Vector2d z = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  // pose and landmark; R not yet in it
+  // Delayed sampling only: the poses after `pose`, and each landmark where all images put it.
+  PathGaussian path;
+  std::vector<Eigen::Vector3d> modes;
 };
 
 // Start of the filter. Covariances: (dp in W, dphi in C) and (dv in W, dw in C).
@@ -58,11 +58,11 @@ class ParticleFilter {
   void KeepLandmarks(const std::vector<bool>& keep);
 
   int landmark_count() const { return static_cast<int>(anchor_of_.size()); }
-  // Valid after Predict.
+  // Moments over the particles. Valid after Predict.
   ImagePrediction PredictImage(int landmark) const;
-  // The particle that the association's outlier test works with.
+  // The particle that the association's outlier test works with, and its landmarks as all images until now have them.
   const Particle& Heaviest() const;
-  LocalMap MapOf(const Particle& particle) const { return {particle.landmarks, anchor_of_, particle.anchors}; }
+  LocalMap HeaviestMap() const;
 
   struct LandmarkBelief {
     Eigen::Vector3d X_W;       // of the heaviest particle
@@ -81,6 +81,25 @@ class ParticleFilter {
   const FilterParams& params() const { return params_; }
 
  private:
+  // A frame whose pose is not sampled yet.
+  struct Step {
+    double dt = 0;  // [s] since the one before
+    std::vector<Match> matches;
+  };
+
+  LocalMap MapOf(const Particle& particle) const { return {particle.landmarks, anchor_of_, particle.anchors}; }
+  bool delayed() const { return params_.lag > 0; }
+  // delayed_sampling.cpp
+  void PredictPath(double dt);
+  void UpdatePath(std::span<const Match> matches);
+  void SolvePaths();
+  void BuildTracks();
+  void CommitOldest();
+  void CommitOldest(Particle& particle, std::uint32_t index) const;
+  BeliefComponent ComponentOnPath(const Particle& particle) const;
+  ImagePrediction PredictImageOnPath(const Particle& particle, int landmark) const;
+
+  ImagePrediction PredictImage(const Particle& particle, int landmark) const;
   void Coast();
   void SampleStep(std::span<const Match> matches);
   PoseGaussian PredictPose(const Particle& particle) const;
@@ -101,6 +120,16 @@ class ParticleFilter {
   std::vector<Particle> particles_;
   std::vector<double> weights_;     // normalised
   std::vector<int> anchor_of_;      // shared: all particles associate alike
+
+  // Delayed sampling only.
+  std::vector<Step> steps_;         // the last is the present frame
+  std::vector<int> anchor_slot_;    // per anchor: the step of its pose, -1: sampled
+  std::vector<Track> tracks_;       // of the landmarks seen from these steps
+  std::vector<int> track_of_;       // per landmark: index into tracks_ or -1
+  std::optional<PathPrior> path_prior_;
+  PathWindow window_;
+  std::vector<Landmark> heaviest_landmarks_;
+
   Belief belief_;
   std::vector<BeliefComponent> mixture_;
   double effective_particles_ = 0;

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "vo/geometry/so3.h"
 
@@ -30,6 +31,12 @@ Pose PoseGaussian::Sample(const RandomKey& key) const {
   if (covariance.isZero(0)) return mean;
   const Vector6 n = NormalVector<Vector6>(key);
   return Plus(mean, covariance.llt().matrixL() * n);
+}
+
+Vector6 SampleNormal(const Vector6& mean, const Matrix6& covariance, const RandomKey& key) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(covariance);
+  return mean + eigen.eigenvectors() *
+                    eigen.eigenvalues().cwiseMax(0).cwiseSqrt().cwiseProduct(NormalVector<Vector6>(key));
 }
 
 }  // namespace vo

@@ -21,4 +21,7 @@ struct PoseGaussian {
   Pose Sample(const RandomKey& key) const;
 };
 
+// A covariance that is only semi-definite is legal.
+Vector6 SampleNormal(const Vector6& mean, const Matrix6& covariance, const RandomKey& key);
+
 }  // namespace vo

@@ -1,6 +1,7 @@
 #include "vo/filter/proposal.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -36,7 +37,21 @@ Row Linearise(const Projection& h, const Landmark& landmark, const Eigen::Vector
   return row;
 }
 
-double LogDeterminant(const Eigen::LLT<Matrix6>& llt) { return 2.0 * llt.matrixLLT().diagonal().array().log().sum(); }
+constexpr double kSettled = 1e-10;   // Newton decrement squared: 1e-5 standard deviations
+constexpr double kTolerated = 1e-6;
+
+// Gradient and Fisher information of -1/2 log|S|, through dz/drho = J_shift (p_A - p): the mode of the pose's marginal, not of pose
+// and landmarks jointly.
+void AddMarginal(const Projection& h, const Row& row, const Landmark& landmark, Matrix6& A, Vector6& b) {
+  const Eigen::Vector2d w = row.landmark_gain.row(2);  // S^-1 J P e_3
+  const Eigen::Vector3d gradient = h.J_shift.transpose() * w;
+  const double explained = (h.J_landmark * landmark.covariance.col(2)).dot(w);
+  b.head<3>() += gradient;
+  A.topLeftCorner<3, 3>().noalias() +=
+      explained * h.J_shift.transpose() * row.S_inverse * h.J_shift + gradient * gradient.transpose();
+}
+
+double HalfLogDeterminant(const Eigen::LLT<Matrix6>& llt) { return llt.matrixLLT().diagonal().array().log().sum(); }
 
 }  // namespace
 
@@ -54,6 +69,8 @@ PoseProposal Propose(const PoseGaussian& prediction, const LocalMap& map, std::s
   std::vector<Row> rows(matches.size());
   std::vector<AnchorView> views;
 
+  double best = std::numeric_limits<double>::infinity();  // objective: -2 log density at its mode, up to a constant
+  Vector6 step = Vector6::Zero();
   for (int iteration = 0; iteration < iterations; ++iteration) {
     views.clear();
     for (const Pose& anchor : map.anchors) views.emplace_back(s, anchor);
@@ -63,6 +80,8 @@ PoseProposal Propose(const PoseGaussian& prediction, const LocalMap& map, std::s
     J_prior.bottomRightCorner<3, 3>() = InverseRightJacobian(offset.tail<3>());
     Matrix6 A = J_prior.transpose() * prior_information * J_prior;
     Vector6 b = -J_prior.transpose() * (prior_information * offset);
+    double cost = offset.dot(prior_information * offset);
+    double log_det = 2.0 * HalfLogDeterminant(prior_llt);
 
     for (std::size_t i = 0; i < matches.size(); ++i) {
       const int n = matches[i].landmark;
@@ -72,24 +91,29 @@ PoseProposal Propose(const PoseGaussian& prediction, const LocalMap& map, std::s
       const Eigen::Matrix<double, 6, 2> JtW = row.J_pose.transpose() * row.S_inverse;
       A.noalias() += JtW * row.J_pose;
       b.noalias() += JtW * row.e;
+      cost += row.e.dot(row.S_inverse * row.e);
+      log_det += row.log_det_S + 2.0 * std::log(2.0 * std::numbers::pi);
+      if (params.marginal_mode) AddMarginal(h, row, map.landmarks[n], A, b);
     }
 
+    const double objective = params.marginal_mode ? cost + log_det : cost;
+    if (objective > best + kTolerated && iteration + 1 < iterations) {  // the step was too long: half of it
+      step *= 0.5;
+      s = Plus(s, -step);
+      continue;
+    }
+    best = objective;
     const Eigen::LLT<Matrix6> llt(A);
-    const Vector6 d = llt.solve(b);
-    s = Plus(s, d);
+    step = llt.solve(b);
+    s = Plus(s, step);
+    for (std::size_t i = 0; i < matches.size(); ++i)
+      if (rows[i].used)
+        theta[i] = map.landmarks[matches[i].landmark].mean + rows[i].landmark_gain * (rows[i].e - rows[i].J_pose * step);
     proposal.pose.covariance = llt.solve(Matrix6::Identity());
-
-    // p(z) = p(s) p(z | s) / p(s | z), taken at the new mean.
-    const Vector6 off_prior = offset + J_prior * d;
-    proposal.log_evidence =
-        -0.5 * off_prior.dot(prior_information * off_prior) - 0.5 * LogDeterminant(prior_llt) - 0.5 * LogDeterminant(llt);
-    for (std::size_t i = 0; i < matches.size(); ++i) {
-      if (!rows[i].used) continue;
-      const Eigen::Vector2d r = rows[i].e - rows[i].J_pose * d;
-      theta[i] = map.landmarks[matches[i].landmark].mean + rows[i].landmark_gain * r;
-      proposal.log_evidence += -0.5 * r.dot(rows[i].S_inverse * r) - 0.5 * rows[i].log_det_S - std::log(2 * std::numbers::pi);
-    }
-    if (d.squaredNorm() < 1e-18) break;
+    // p(z) = p(s) p(z | s) / p(s | z), taken at the new mean, where the quadratic cost is less by the decrement.
+    const double decrement = b.dot(step);
+    proposal.log_evidence = -0.5 * (cost - decrement + log_det + 2.0 * HalfLogDeterminant(llt));
+    if (decrement < kSettled) break;
   }
   return proposal;
 }

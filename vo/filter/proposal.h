@@ -23,7 +23,7 @@ struct PoseProposal {
   double log_evidence = 0;  // log p(z_t | path of the particle): exact when linear and Gaussian, else Laplace's approximation
 };
 
-// Proposal::ekf: one linearisation at the prediction. Proposal::iterated: until the step is below 1e-9 or max_iterations.
+// Proposal::ekf: one linearisation at the prediction. Proposal::iterated: until the step is below 1e-5 standard deviations or max_iterations.
 // Landmarks that come to lie behind the camera are left out of that iteration. No matches: the prediction itself.
 PoseProposal Propose(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,
                      const FilterParams& params);

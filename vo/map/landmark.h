@@ -35,10 +35,14 @@ struct Projection {
   bool in_front = false;                          // X_C,z > 0; the rest is valid only then
   Eigen::Vector2d z = Eigen::Vector2d::Zero();    // on the plane z = 1
   Matrix26 J_pose = Matrix26::Zero();             // dz / d(dp in W, dphi in C)
+  Matrix23 J_shift = Matrix23::Zero();            // dz / d(rho (p_A - p)) in W: J_pose is -rho times it; d2z / drho dp to first order
   Matrix23 J_landmark = Matrix23::Zero();         // dz / d(x, y, rho)
 };
 
 Projection Project(const AnchorView& view, const Eigen::Vector3d& landmark);
+
+// dz / d(dp in W, dphi in A) of the anchor's pose, for a landmark in front.
+Matrix26 AnchorJacobian(const Projection& projection, const Eigen::Vector3d& landmark);
 
 Landmark NewLandmark(const Eigen::Vector2d& ray, const Eigen::Matrix2d& R, const LandmarkParams& params);
 
@@ -49,7 +53,11 @@ Eigen::Vector3d PointInWorld(const Pose& anchor, const Eigen::Vector3d& landmark
 struct LandmarkUpdate {
   Landmark landmark;
   double log_likelihood = 0;  // log p(z | pose): (3) for the EKF, Laplace's approximation at the mode else
+  bool behind = false;        // the camera: nothing learnt
+  bool settled = false;       // the point of linearisation is the answer, far below a pixel
 };
 LandmarkUpdate UpdateLandmark(const Landmark& prior, const AnchorView& view, const Match& match, int max_iterations);
+// The same linearised once, at `mode`: where later images have put the landmark.
+LandmarkUpdate UpdateLandmarkAt(const Landmark& prior, const Eigen::Vector3d& mode, const AnchorView& view, const Match& match);
 
 }  // namespace vo

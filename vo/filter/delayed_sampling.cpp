@@ -1,0 +1,161 @@
+// ParticleFilter with lag > 0: algorithm, section 9. Poses stay Gaussian for a while; the oldest of them is sampled once the images
+// after it have spoken, and only then are the velocity and the landmarks updated with its frame.
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "vo/filter/particle_filter.h"
+#include "vo/geometry/so3.h"
+
+namespace vo {
+
+void ParticleFilter::PredictPath(double dt) {
+  const int present = static_cast<int>(steps_.size()) - 1;
+  const bool coasted = present >= 0 && steps_.back().matches.empty() &&
+                       std::find(anchor_slot_.begin(), anchor_slot_.end(), present) == anchor_slot_.end();
+  if (coasted) {  // a pose that nothing refers to: integrated out exactly
+    dt += steps_.back().dt;
+    steps_.pop_back();
+    for (Particle& particle : particles_) particle.path.mean.pop_back();
+  }
+  // First guess: each particle's own at the start, where there can be several solutions (depth reversal); the evidence tells.
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+    const Particle& particle = particles_[i];
+    std::vector<Pose>& mean = particles_[i].path.mean;
+    const Pose last = mean.empty() ? particle.pose : mean.back();
+    const Pose before = mean.size() < 2 ? particle.pose : mean[mean.size() - 2];
+    Vector6 u = SampleNormal(particle.velocity.mean, particle.velocity.covariance, {seed_, Stream::first_guess, frame_, i}) * dt;
+    if (!mean.empty()) u = Minus(last, before) * (dt / steps_.back().dt);
+    mean.push_back({last.p_WC + u.head<3>(), (last.q_WC * Exp(u.tail<3>())).normalized()});
+  }
+  steps_.push_back({dt, {}});
+  std::vector<MotionModel> models;
+  for (const Step& step : steps_) models.push_back(NearlyConstantVelocity(motion_, step.dt));
+  path_prior_.emplace(models, particles_[0].velocity.covariance);
+  BuildTracks();
+  SolvePaths();
+  for (Particle& particle : particles_)
+    particle.prediction = {particle.path.mean.back(), particle.path.covariance.bottomRightCorner<6, 6>()};
+
+  // The landmarks of the particle that outliers are told by.
+  const Particle& heaviest = Heaviest();
+  heaviest_landmarks_ = heaviest.landmarks;
+  const WindowInput in{heaviest.pose, heaviest.velocity.mean, heaviest.landmarks, heaviest.anchors};
+  for (const Track& track : tracks_)
+    heaviest_landmarks_[track.landmark] = PathWindow::Smoothed(in, track, heaviest.path, heaviest.modes[track.landmark]);
+}
+
+void ParticleFilter::UpdatePath(std::span<const Match> matches) {
+  if (!matches.empty()) {
+    steps_.back().matches.assign(matches.begin(), matches.end());
+    for (Particle& particle : particles_) particle.log_weight -= particle.path.log_evidence;
+    BuildTracks();
+    SolvePaths();
+    for (Particle& particle : particles_) particle.log_weight += particle.path.log_evidence;
+  }
+  mixture_.clear();
+  for (const Particle& particle : particles_) mixture_.push_back(ComponentOnPath(particle));
+  if (!matches.empty()) Weigh();
+  Answer();
+  while (static_cast<int>(steps_.size()) > params_.lag) CommitOldest();
+  if (effective_particles_ < params_.resample_below * params_.particles) Resample();
+}
+
+void ParticleFilter::BuildTracks() {
+  tracks_.clear();
+  track_of_.assign(anchor_of_.size(), -1);
+  for (int slot = 0; slot < static_cast<int>(steps_.size()); ++slot) {
+    for (const Match& match : steps_[slot].matches) {
+      int& index = track_of_[match.landmark];
+      if (index < 0) {
+        index = static_cast<int>(tracks_.size());
+        const int anchor = anchor_of_[match.landmark];
+        tracks_.push_back({match.landmark, anchor, anchor_slot_[anchor], {}});
+      }
+      tracks_[index].views.push_back({slot, match.z, match.R.inverse(), std::log(match.R.determinant())});
+    }
+  }
+}
+
+void ParticleFilter::SolvePaths() {
+  const WindowOptions options{params_.proposal == Proposal::ekf ? 1 : params_.max_iterations, params_.marginal_mode};
+  std::vector<Eigen::Vector3d> modes(tracks_.size());
+  for (Particle& particle : particles_) {
+    for (std::size_t i = 0; i < tracks_.size(); ++i) modes[i] = particle.modes[tracks_[i].landmark];
+    window_.Solve(*path_prior_, {particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors}, tracks_, options,
+                  particle.path, modes);
+    for (std::size_t i = 0; i < tracks_.size(); ++i) particle.modes[tracks_[i].landmark] = modes[i];
+    for (std::size_t a = 0; a < particle.anchors.size(); ++a)
+      if (anchor_slot_[a] >= 0) particle.anchors[a] = particle.path.mean[anchor_slot_[a]];
+  }
+}
+
+void ParticleFilter::CommitOldest() {
+  const MotionModel model = NearlyConstantVelocity(motion_, steps_.front().dt);
+  step_ = {model.F, model.Q};
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) CommitOldest(particles_[i], i);
+  for (int& slot : anchor_slot_) slot = std::max(slot - 1, -1);
+  steps_.erase(steps_.begin());
+}
+
+void ParticleFilter::CommitOldest(Particle& particle, std::uint32_t index) const {
+  PathGaussian& path = particle.path;
+  const PoseGaussian oldest{path.mean[0], path.covariance.topLeftCorner<6, 6>()};
+  const Pose s = oldest.Sample({seed_, Stream::pose, frame_, index});
+  const int rest = static_cast<int>(path.covariance.rows()) - 6;
+  const Vector6 d = oldest.covariance.llt().solve(Minus(s, oldest.mean));
+  for (int k = 1; k <= rest / 6; ++k)
+    path.mean[k] = Plus(path.mean[k], path.covariance.block<6, 6>(6 * k, 0) * d);
+  path.mean.erase(path.mean.begin());
+
+  UpdateVelocity(particle, s, index);                                                               // (37)-(43)
+  for (std::size_t a = 0; a < particle.anchors.size(); ++a)
+    if (anchor_slot_[a] >= 0) particle.anchors[a] = anchor_slot_[a] == 0 ? s : path.mean[anchor_slot_[a] - 1];
+  std::vector<AnchorView> views;
+  for (const Pose& anchor : particle.anchors) views.emplace_back(s, anchor);
+  for (const Match& match : steps_.front().matches) {
+    Landmark& landmark = particle.landmarks[match.landmark];
+    landmark = UpdateLandmarkAt(landmark, particle.modes[match.landmark], views[anchor_of_[match.landmark]], match).landmark;
+  }
+  particle.pose = s;
+}
+
+// The velocity is linear in the steps u, and these in the poses.
+BeliefComponent ParticleFilter::ComponentOnPath(const Particle& particle) const {
+  const PathGaussian& path = particle.path;
+  const int m = path_prior_->size();
+  Eigen::VectorXd off(6 * m);
+  Eigen::Matrix<double, 6, Eigen::Dynamic> by_pose = Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, 6 * m);
+  for (int k = 0; k < m; ++k) {
+    const Vector6 u = Minus(path.mean[k], k == 0 ? particle.pose : path.mean[k - 1]);
+    off.segment<6>(6 * k) = u - path_prior_->MeanStep(k, particle.velocity.mean);
+    Matrix6 J = Matrix6::Identity();
+    J.bottomRightCorner<3, 3>() = InverseRightJacobian(u.tail<3>());
+    const auto gain = path_prior_->gain().middleCols<6>(6 * k);
+    by_pose.middleCols<6>(6 * k) += gain * J;
+    if (k == 0) continue;
+    J.bottomRightCorner<3, 3>() = InverseRightJacobian(-u.tail<3>());
+    by_pose.middleCols<6>(6 * (k - 1)) -= gain * J;
+  }
+  BeliefComponent component;
+  component.pose = path.mean.back();
+  component.velocity = path_prior_->LastMean(particle.velocity.mean) + path_prior_->gain() * off;
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> cross = by_pose * path.covariance;
+  component.covariance.topLeftCorner<6, 6>() = path.covariance.bottomRightCorner<6, 6>();
+  component.covariance.bottomLeftCorner<6, 6>() = cross.rightCols<6>();
+  component.covariance.topRightCorner<6, 6>() = cross.rightCols<6>().transpose();
+  component.covariance.bottomRightCorner<6, 6>() = path_prior_->last_covariance() + cross * by_pose.transpose();
+  return component;
+}
+
+ImagePrediction ParticleFilter::PredictImageOnPath(const Particle& particle, int landmark) const {
+  const int anchor = anchor_of_[landmark];
+  const Track untracked{landmark, anchor, anchor_slot_[anchor], {}};
+  const Track& track = track_of_[landmark] < 0 ? untracked : tracks_[track_of_[landmark]];
+  const WindowInput in{particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors};
+  return PathWindow::PredictLast(in, track, particle.path, particle.modes[landmark]);
+}
+
+}  // namespace vo

@@ -1,0 +1,257 @@
+#include "vo/filter/path_window.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <Eigen/LU>
+
+#include "vo/filter/pose_gaussian.h"
+#include "vo/geometry/so3.h"
+
+namespace vo {
+namespace {
+
+constexpr double kSettled = 1e-10;  // Newton decrement squared: 1e-5 standard deviations
+
+constexpr double kTolerated = 1e-6;
+constexpr double kNegligible = 1e-4;  // of the information, through the unknown depth
+
+using Matrix62 = Eigen::Matrix<double, 6, 2>;
+
+// L with L L' = P, lower triangular; P may be singular (a fixed bearing).
+Eigen::Matrix3d Root(const Eigen::Matrix3d& P) {
+  Eigen::Matrix3d L = Eigen::Matrix3d::Zero();
+  for (int j = 0; j < 3; ++j) {
+    const double d = P(j, j) - L.row(j).head(j).squaredNorm();
+    if (d <= 0) continue;
+    L(j, j) = std::sqrt(d);
+    for (int i = j + 1; i < 3; ++i) L(i, j) = (P(i, j) - L.row(i).head(j).dot(L.row(j).head(j))) / L(j, j);
+  }
+  return L;
+}
+
+}  // namespace
+
+void PathWindow::AddPrior(const PathPrior& prior, const WindowInput& in, const PathGaussian& path) {
+  const int m = prior.size();
+  log_det_ = -prior.log_det_precision();
+  for (int k = 0; k < m; ++k) {
+    const Pose& from = k == 0 ? in.start : path.mean[k - 1];
+    const Vector6 u = Minus(path.mean[k], from);
+    r_.segment<6>(6 * k) = u - prior.MeanStep(k, in.velocity);
+    auto J = J_.middleRows<6>(6 * k);
+    J.setZero();
+    J.topLeftCorner<3, 3>() = -Eigen::Matrix3d::Identity();
+    J.block<3, 3>(3, 3) = -InverseRightJacobian(-u.tail<3>());
+    J.block<3, 3>(0, 6).setIdentity();
+    J.block<3, 3>(3, 9) = InverseRightJacobian(u.tail<3>());
+    log_det_ += 2 * LogVolume(u.tail<3>());
+  }
+  const Eigen::MatrixXd& W = prior.precision();
+  d_.noalias() = W * r_;
+  cost_ = r_.dot(d_);
+  b_.setZero();
+  A_.setZero();
+  for (int k = 0; k < m; ++k) {
+    const auto J_k = J_.middleRows<6>(6 * k);
+    for (int a = k == 0 ? 1 : 0; a < 2; ++a) {  // pose k - 1 (not for the sampled start), pose k
+      const int i = k - 1 + a;
+      const auto J_a = J_k.middleCols<6>(6 * a);
+      b_.segment<6>(6 * i).noalias() -= J_a.transpose() * d_.segment<6>(6 * k);
+      for (int l = 0; l < m; ++l) {
+        const Matrix6 JW = J_a.transpose() * W.block<6, 6>(6 * k, 6 * l);
+        if (l > 0) A_.block<6, 6>(6 * i, 6 * (l - 1)).noalias() += JW * J_.block<6, 6>(6 * l, 0);
+        A_.block<6, 6>(6 * i, 6 * l).noalias() += JW * J_.block<6, 6>(6 * l, 6);
+      }
+    }
+  }
+}
+
+void PathWindow::AddTrack(const WindowInput& in, const Track& track, const PathGaussian& path, const Eigen::Vector3d& theta,
+                          bool marginal) {
+  Eliminated& landmark = eliminated_[static_cast<std::size_t>(rows_) / 3];
+  const Eigen::Matrix3d& L = landmark.L;
+  const Pose& anchor = track.anchor_slot < 0 ? in.anchors[track.anchor] : path.mean[track.anchor_slot];
+  const Eigen::Vector3d off = in.landmarks[track.landmark].mean - theta;
+  auto E = Y_.middleCols<3>(rows_);  // coupling of the poses with u
+  seen_.clear();
+  E.setZero();
+  Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+  landmark.used = false;
+  for (const Track::View& view : track.views) {
+    const AnchorView geometry(path.mean[view.slot], anchor);
+    const Projection h = Project(geometry, theta);
+    if (!h.in_front) continue;
+    landmark.used = true;
+    const Eigen::Vector2d e = view.z - h.z - h.J_landmark * off;
+    const Eigen::Vector2d We = view.R_inverse * e;
+    const Matrix23 M = h.J_landmark * L;
+    const Matrix23 WM = view.R_inverse * M;
+    const Matrix62 JtW = h.J_pose.transpose() * view.R_inverse;
+    const int i = 6 * view.slot;
+    A_.block<6, 6>(i, i).noalias() += JtW * h.J_pose;
+    b_.segment<6>(i).noalias() += JtW * e;
+    E.middleRows<6>(i).noalias() += JtW * M;
+    if (track.anchor_slot >= 0) {
+      const Matrix26 J_anchor = AnchorJacobian(h, theta);
+      const Matrix62 AtW = J_anchor.transpose() * view.R_inverse;
+      const int j = 6 * track.anchor_slot;
+      A_.block<6, 6>(j, j).noalias() += AtW * J_anchor;
+      A_.block<6, 6>(i, j).noalias() += JtW * J_anchor;
+      A_.block<6, 6>(j, i).noalias() += AtW * h.J_pose;
+      b_.segment<6>(j).noalias() += AtW * e;
+      E.middleRows<6>(j).noalias() += AtW * M;
+    }
+    G.noalias() += M.transpose() * WM;
+    g.noalias() += WM.transpose() * e;
+    cost_ += e.dot(We);
+    if (marginal) seen_.push_back({view.slot, h.J_shift, WM, view.R_inverse});
+    log_det_ += view.log_det_R + 2 * std::log(2 * std::numbers::pi);
+  }
+  landmark.G.compute(G);
+  const Eigen::Vector3d whitened = landmark.G.matrixL().solve(g);
+  cost_ -= whitened.squaredNorm();
+  log_det_ += 2 * std::log(landmark.G.matrixLLT().diagonal().prod());
+  if (marginal && landmark.used) AddMarginal(track, landmark, theta.z());
+  y_.segment<3>(rows_) = whitened;
+  landmark.G.matrixU().solveInPlace<Eigen::OnTheRight>(E);
+  rows_ += 3;
+}
+
+// Gradient and Fisher information of -1/2 log|S|, S = J P J' + R of all views of one landmark, through dz/drho = J_shift (p_A - p).
+// With q = J P e_3: gradient J_shift' S^-1 q, information (q'S^-1 q) J_shift' S^-1 J_shift + gradient gradient'.
+void PathWindow::AddMarginal(const Track& track, const Eliminated& landmark, double rho) {
+  const Eigen::Vector3d a = landmark.L.row(2);
+  const Eigen::Vector3d alpha = landmark.G.solve(a);
+  const double explained = a.dot(a - alpha);  // of the variance of rho
+  const bool matters = explained > kNegligible * rho * rho;
+  auto C = Y_.middleCols<3>(columns_);
+  auto gradient = Z_.col(added_);
+  if (matters) {
+    C.setZero();
+    gradient.setZero();
+  }
+  for (const Seen& view : seen_) {
+    const Eigen::Matrix3d c = view.J_shift.transpose() * view.WM;
+    const Eigen::Vector3d g = c * alpha;
+    const int i = 6 * view.slot, j = 6 * track.anchor_slot;
+    b_.segment<3>(i) += g;
+    if (j >= 0) b_.segment<3>(j) -= g;
+    if (!matters) continue;
+    const Eigen::Matrix3d B = explained * view.J_shift.transpose() * view.R_inverse * view.J_shift;
+    A_.block<3, 3>(i, i) += B;
+    C.middleRows<3>(i) += c;
+    gradient.segment<3>(i) += g;
+    if (j < 0) continue;
+    A_.block<3, 3>(j, j) += B;
+    A_.block<3, 3>(i, j) -= B;
+    A_.block<3, 3>(j, i) -= B;
+    C.middleRows<3>(j) -= c;
+    gradient.segment<3>(j) -= g;
+  }
+  if (!matters) return;
+  C *= std::sqrt(explained);
+  landmark.G.matrixU().solveInPlace<Eigen::OnTheRight>(C);
+  columns_ += 3;
+  added_ += 1;
+}
+
+void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks, const WindowOptions& options,
+                       PathGaussian& path, std::vector<Eigen::Vector3d>& theta) {
+  const int size = 6 * prior.size();
+  A_.resize(size, size);
+  b_.resize(size);
+  d_.resize(size);
+  r_.resize(size);
+  step_.resize(size);
+  J_.resize(size, 12);
+  const Eigen::Index count = static_cast<Eigen::Index>(tracks.size());
+  Y_.resize(size, 6 * count);
+  Z_.resize(size, count);
+  y_.resize(3 * count);
+  eliminated_.resize(tracks.size());
+  for (std::size_t i = 0; i < tracks.size(); ++i) eliminated_[i].L = Root(in.landmarks[tracks[i].landmark].covariance);
+
+  double best = std::numeric_limits<double>::infinity();  // objective: -2 log density at its mode, up to a constant
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    AddPrior(prior, in, path);
+    rows_ = 0;
+    columns_ = static_cast<int>(3 * count);
+    added_ = 0;
+    for (std::size_t i = 0; i < tracks.size(); ++i) AddTrack(in, tracks[i], path, theta[i], options.marginal);
+    const double objective = options.marginal ? cost_ + log_det_ : cost_;
+    if (objective > best + kTolerated && iteration + 1 < options.max_iterations) {  // the step was too long: half of it
+      step_ *= 0.5;
+      for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], -step_.segment<6>(6 * k));
+      continue;
+    }
+    best = objective;
+    A_.selfadjointView<Eigen::Lower>().rankUpdate(Y_.leftCols(columns_), -1.0);
+    if (added_ > 0) A_.selfadjointView<Eigen::Lower>().rankUpdate(Z_.leftCols(added_), 1.0);
+    b_.noalias() -= Y_.leftCols(3 * count) * y_;
+    llt_.compute(A_.selfadjointView<Eigen::Lower>());
+    step_ = b_;
+    llt_.solveInPlace(step_);
+    const double decrement = b_.dot(step_);
+
+    for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], step_.segment<6>(6 * k));
+    y_.noalias() -= Y_.leftCols(3 * count).transpose() * step_;
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+      if (!eliminated_[i].used) continue;
+      const Eigen::Vector3d u = eliminated_[i].G.matrixU().solve(Eigen::Vector3d(y_.segment<3>(3 * static_cast<Eigen::Index>(i))));
+      theta[i] = in.landmarks[tracks[i].landmark].mean + eliminated_[i].L * u;
+    }
+    path.log_evidence = -0.5 * (cost_ - decrement + log_det_) - llt_.matrixLLT().diagonal().array().log().sum();
+    if (decrement < kSettled) break;
+  }
+  path.covariance.setIdentity(size, size);
+  llt_.solveInPlace(path.covariance);
+}
+
+namespace {
+
+// One landmark of a solved window, linearised at its mode: theta = mode - by_pose (poses - their means) + N(0, covariance).
+struct Conditional {
+  Eigen::Matrix3d covariance;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> by_pose;
+};
+
+Conditional Condition(const WindowInput& in, const Track& track, const PathGaussian& path, const Eigen::Vector3d& theta) {
+  const Eigen::Matrix3d L = Root(in.landmarks[track.landmark].covariance);
+  const Pose& anchor = track.anchor_slot < 0 ? in.anchors[track.anchor] : path.mean[track.anchor_slot];
+  Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
+  Eigen::Matrix<double, 3, Eigen::Dynamic> E = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, path.covariance.cols());
+  for (const Track::View& view : track.views) {
+    const Projection h = Project({path.mean[view.slot], anchor}, theta);
+    if (!h.in_front) continue;
+    const Matrix23 M = h.J_landmark * L;
+    const Eigen::Matrix<double, 3, 2> MtW = M.transpose() * view.R_inverse;
+    G.noalias() += MtW * M;
+    E.middleCols<6>(6 * view.slot).noalias() += MtW * h.J_pose;
+    if (track.anchor_slot >= 0) E.middleCols<6>(6 * track.anchor_slot).noalias() += MtW * AnchorJacobian(h, theta);
+  }
+  const Eigen::Matrix3d LG = L * G.inverse();
+  return {LG * L.transpose(), LG * E};
+}
+
+}  // namespace
+
+Landmark PathWindow::Smoothed(const WindowInput& in, const Track& track, const PathGaussian& path, const Eigen::Vector3d& theta) {
+  return {theta, Condition(in, track, path, theta).covariance};
+}
+
+ImagePrediction PathWindow::PredictLast(const WindowInput& in, const Track& track, const PathGaussian& path,
+                                        const Eigen::Vector3d& theta) {
+  const Pose& anchor = track.anchor_slot < 0 ? in.anchors[track.anchor] : path.mean[track.anchor_slot];
+  const Projection h = Project({path.mean.back(), anchor}, theta);
+  if (!h.in_front) return {};
+  const Conditional landmark = Condition(in, track, path, theta);
+  Eigen::Matrix<double, 2, Eigen::Dynamic> J = -h.J_landmark * landmark.by_pose;
+  J.rightCols<6>() += h.J_pose;
+  if (track.anchor_slot >= 0) J.middleCols<6>(6 * track.anchor_slot) += AnchorJacobian(h, theta);
+  return {true, h.z, J * path.covariance * J.transpose() + h.J_landmark * landmark.covariance * h.J_landmark.transpose()};
+}
+
+}  // namespace vo
