@@ -14,6 +14,7 @@ class Checker {
     text << name << " = " << value << " " << rule;
     problems_.push_back(text.str());
   }
+  void Refuse(const char* sentence) { problems_.emplace_back(sentence); }
   void Positive(const char* name, double value) { Require(value > 0, name, value, "must be positive"); }
   void Probability(const char* name, double value) {
     Require(value > 0 && value < 1, name, value, "must lie between 0 and 1");
@@ -37,7 +38,15 @@ std::vector<std::string> Problems(const Params& params) {
                 filter.resample_below, "must lie in 0 ... 1");
   check.Require(filter.max_iterations >= 1, "filter.max_iterations", filter.max_iterations, "must be at least 1");
   check.Require(filter.lag >= 0, "filter.lag", filter.lag, "must not be negative");
+  check.Require(filter.ukf_alpha > 0 && filter.ukf_alpha <= 1, "filter.ukf_alpha", filter.ukf_alpha, "must be above 0 and at most 1");
+  check.Require(filter.ukf_beta >= filter.ukf_alpha * filter.ukf_alpha, "filter.ukf_beta", filter.ukf_beta,
+                "must be at least filter.ukf_alpha squared, or covariances lose their sign");
+  check.Require(filter.ukf_kappa >= 0, "filter.ukf_kappa", filter.ukf_kappa, "must not be negative");
+  if (filter.proposal == Proposal::bootstrap && filter.weight != Weight::importance)
+    check.Refuse("filter.weight must be importance where filter.proposal is bootstrap: a proposal blind to the image has no evidence");
   if (filter.lag > 0) {
+    check.Require(filter.proposal == Proposal::ekf || filter.proposal == Proposal::iterated, "filter.lag", filter.lag,
+                  "needs filter.proposal ekf or iterated: bootstrap and ukf know no window of poses");
     check.Require(filter.sampled == Sampled::pose, "filter.lag", filter.lag, "needs the velocity unsampled (rb2pf)");
     check.Require(filter.weight == Weight::evidence, "filter.lag", filter.lag, "needs weight: evidence");
   }

@@ -19,7 +19,9 @@ enum class Sampled {
 };
 
 enum class Proposal {
+  bootstrap, // the motion model, blind to the image; the weight is the likelihood at the sample (FastSLAM 1.0)
   ekf,       // one linearisation at the prediction, landmarks at their prior mean
+  ukf,       // unscented transform of the predicted pose, and of each landmark given the pose: the paper
   iterated,  // pose and landmarks re-linearised together until they settle
 };
 
@@ -35,7 +37,7 @@ enum class Weight {
 
 struct FilterParams {
   Sampled sampled = Sampled::pose;
-  Proposal proposal = Proposal::iterated;  // the paper: unscented; its first-order twin is ekf
+  Proposal proposal = Proposal::iterated;  // the paper: ukf; its first-order twin is ekf
   int particles = 8;
   double resample_below = 0.5;  // resample when N_eff < this fraction of the particles
   int max_iterations = 10;      // of the iterated proposal, and of a landmark given its pose
@@ -44,6 +46,9 @@ struct FilterParams {
   bool marginal_mode = false;   // propose at the mode of the poses' marginal, not of poses and landmarks jointly: unbiased in scale, but it
                                 // believes features.sigma_px, which must then be right
   bool reject_outliers = true;  // matches that contradict the others are set aside before the update
+  double ukf_alpha = 1;         // spread of the sigma points, squared a factor of n + kappa (the paper gives no values: no weight is
+  double ukf_beta = 2;          // negative with these). beta: weight of the curvature in the covariance, 2 for a Gaussian
+  double ukf_kappa = 0;
 };
 
 struct LandmarkParams {

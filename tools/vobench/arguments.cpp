@@ -110,7 +110,7 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
                  "vobench track rgbd_dataset_freiburg1_xyz -o out/xyz --camera freiburg1 --seed 3");
   track_command.add_option("SEQ", track.sequence, "Sequence folder")->required();
   track_command.add_option("-o,--output", track.output, "Result folder to make")->required()->type_name("OUT");
-  track_command.add_option("--system", track.system, "rb2pf or rbpf")
+  track_command.add_option("--system", track.system, "One of " + SystemList())
       ->check(CLI::IsMember(SystemNames()))
       ->capture_default_str();
   track_command
@@ -141,7 +141,7 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
   run_command.add_option("SCENARIO", run.scenario, "Scenario file (scenes/*.yaml)")->required();
   run_command.add_option("-o,--output", run.output, "Result folder to make; without it only the table is printed")
       ->type_name("OUT");
-  run_command.add_option("--system", run.systems, "Systems to compare, separated by commas: rb2pf, rbpf")
+  run_command.add_option("--system", run.systems, "Systems to compare, separated by commas, of " + SystemList())
       ->delimiter(',')
       ->check(CLI::IsMember(SystemNames()))
       ->allow_extra_args(false)

@@ -22,8 +22,11 @@ void ReadMotion(Section section, vo::MotionParams& params) {
 void ReadFilter(Section section, vo::FilterParams& params) {
   // Which velocities are sampled is what tells the systems apart: --system says it.
   [[maybe_unused]] auto& [sampled, proposal, particles, resample_below, max_iterations, weight, lag, marginal_mode,
-                          reject_outliers] = params;
-  section.ReadChoice("proposal", proposal, {{"ekf", vo::Proposal::ekf}, {"iterated", vo::Proposal::iterated}});
+                          reject_outliers, ukf_alpha, ukf_beta, ukf_kappa] = params;
+  section.ReadChoice("proposal", proposal, {{"bootstrap", vo::Proposal::bootstrap},
+                                             {"ekf", vo::Proposal::ekf},
+                                             {"ukf", vo::Proposal::ukf},
+                                             {"iterated", vo::Proposal::iterated}});
   section.Read("particles", particles, Range{1, 100'000});
   section.Read("resample_below", resample_below, Range{0, 1});
   section.Read("max_iterations", max_iterations, Range{1, 1000});
@@ -31,6 +34,9 @@ void ReadFilter(Section section, vo::FilterParams& params) {
   section.Read("lag", lag, Range{0, 100});
   section.Read("marginal_mode", marginal_mode);
   section.Read("reject_outliers", reject_outliers);
+  section.Read("ukf_alpha", ukf_alpha, Range{0, 1});
+  section.Read("ukf_beta", ukf_beta, Range::AtLeast(0));
+  section.Read("ukf_kappa", ukf_kappa, Range::AtLeast(0));
 }
 
 void ReadLandmark(Section section, vo::LandmarkParams& params) {

@@ -5,7 +5,7 @@
 namespace vobench {
 
 const std::vector<std::string>& SystemNames() {
-  static const std::vector<std::string> names = {"rb2pf", "rbpf"};
+  static const std::vector<std::string> names = {"rb2pf", "rbpf", "fastslam1"};
   return names;
 }
 
@@ -14,10 +14,22 @@ vo::Params ForSystem(const std::string& name, vo::Params params) {
     params.filter.sampled = vo::Sampled::pose;
   } else if (name == "rbpf") {
     params.filter.sampled = vo::Sampled::pose_and_velocity;
+    params.filter.lag = 0;
+  } else if (name == "fastslam1") {
+    params.filter.sampled = vo::Sampled::pose_and_velocity;
+    params.filter.proposal = vo::Proposal::bootstrap;
+    params.filter.weight = vo::Weight::importance;
+    params.filter.lag = 0;
   } else {
     throw std::logic_error("no system " + name);
   }
   return params;
+}
+
+std::string SystemList() {
+  std::string list;
+  for (const std::string& name : SystemNames()) list += (list.empty() ? "" : ", ") + name;
+  return list;
 }
 
 }  // namespace vobench

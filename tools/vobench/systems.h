@@ -8,11 +8,13 @@
 
 namespace vobench {
 
-// "rb2pf", "rbpf".
+// "rb2pf", "rbpf", "fastslam1".
 const std::vector<std::string>& SystemNames();
+// The same for a help text, separated by commas.
+std::string SystemList();
 
-// The parameters with what makes the system out of them: rb2pf samples the pose only, rbpf the velocity too. Everything
-// else stays.
+// The parameters with what makes the system out of them. rb2pf samples the pose only; rbpf the velocity too, at once whatever
+// the lag; fastslam1 is rbpf with the motion model as its proposal and importance weights. Everything else stays.
 vo::Params ForSystem(const std::string& name, vo::Params params);
 
 }  // namespace vobench

@@ -5,6 +5,7 @@
 
 #include "vo/filter/mixture.h"
 #include "vo/filter/resampling.h"
+#include "vo/filter/unscented_proposal.h"
 #include "vo/geometry/so3.h"
 
 namespace vo {
@@ -21,6 +22,8 @@ Vector6 PathState(const Pose& pose, const Pose& previous) {
   s << pose.p_WC, Log(previous.q_WC.conjugate() * pose.q_WC);
   return s;
 }
+
+UnscentedParams UnscentedOf(const FilterParams& params) { return {params.ukf_alpha, params.ukf_beta, params.ukf_kappa}; }
 
 }  // namespace
 
@@ -77,9 +80,11 @@ void ParticleFilter::SampleStep(std::span<const Match> matches) {
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {                                          // line 1
     Particle& particle = particles_[i];
     const PoseGaussian& prediction = particle.prediction;                                          // 2, (12)(13)
-    const PoseProposal proposal = Propose(prediction, MapOf(particle), matches, params_);          // (15)(16)
-    mixture_.push_back(Component(proposal.pose, particle.pose, VelocityGiven(particle)));
+    const PoseProposal proposal = ProposePose(particle, matches);                                  // (15)(16)
     const Pose s = proposal.pose.Sample({seed_, Stream::pose, frame_, i});                         // 4
+    // The motion model knows nothing of the image: what is believed then is the weighted samples themselves.
+    const PoseGaussian believed = params_.proposal == Proposal::bootstrap ? PoseGaussian{s, Matrix6::Zero()} : proposal.pose;
+    mixture_.push_back(Component(believed, particle.pose, VelocityGiven(particle)));
     UpdateVelocity(particle, s, i);                                                                // 5-7, (37)-(43)
     const double log_likelihood = UpdateLandmarks(particle, s, matches);
     particle.log_weight += params_.weight == Weight::evidence                                      // 8
@@ -102,6 +107,16 @@ PoseGaussian ParticleFilter::PredictPose(const Particle& particle) const {
   return {mean, J * step_.PredictedCovariance(particle.velocity) * J.transpose()};
 }
 
+PoseProposal ParticleFilter::ProposePose(const Particle& particle, std::span<const Match> matches) const {
+  switch (params_.proposal) {
+    case Proposal::bootstrap: return {particle.prediction, 0};
+    case Proposal::ukf: return ProposeUnscented(particle.prediction, MapOf(particle), matches, UnscentedOf(params_));
+    case Proposal::ekf:
+    case Proposal::iterated: break;
+  }
+  return Propose(particle.prediction, MapOf(particle), matches, params_);
+}
+
 CameraVelocityFilter::Gain ParticleFilter::VelocityGiven(const Particle& particle) const {
   return step_.Condition(PathState(particle.pose, particle.pose), particle.velocity);
 }
@@ -122,7 +137,10 @@ double ParticleFilter::UpdateLandmarks(Particle& particle, const Pose& pose, std
   double log_likelihood = 0;
   for (const Match& match : matches) {
     Landmark& landmark = particle.landmarks[match.landmark];
-    const LandmarkUpdate update = UpdateLandmark(landmark, views[anchor_of_[match.landmark]], match, iterations);
+    const AnchorView& view = views[anchor_of_[match.landmark]];
+    const LandmarkUpdate update = params_.proposal == Proposal::ukf
+                                      ? UpdateLandmarkUnscented(landmark, view, match, UnscentedOf(params_))
+                                      : UpdateLandmark(landmark, view, match, iterations);
     landmark = update.landmark;
     particle.modes[match.landmark] = landmark.mean;
     log_likelihood += update.log_likelihood;

@@ -103,6 +103,7 @@ class ParticleFilter {
   void Coast();
   void SampleStep(std::span<const Match> matches);
   PoseGaussian PredictPose(const Particle& particle) const;
+  PoseProposal ProposePose(const Particle& particle, std::span<const Match> matches) const;
   CameraVelocityFilter::Gain VelocityGiven(const Particle& particle) const;
   double UpdateLandmarks(Particle& particle, const Pose& pose, std::span<const Match> matches) const;
   void UpdateVelocity(Particle& particle, const Pose& pose, std::uint32_t index) const;

@@ -1,0 +1,138 @@
+// The members of the filter family that differ from RB2-PF in one step: bootstrap and unscented proposals.
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <gmock/gmock.h>
+
+#include "vo/filter/particle_filter.h"
+#include "vo/geometry/so3.h"
+
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kSigma = 1.0 / 525;
+
+// Landmarks of a first view and their places in the second, from a camera that moved as told.
+struct TwoViews {
+  std::vector<Vector2d> rays;
+  std::vector<vo::Match> matches;
+  std::vector<Matrix2d> R;
+};
+
+TwoViews Look(const vo::Pose& second, int count, double sigma = kSigma) {
+  TwoViews views;
+  for (int n = 0; n < count; ++n) {
+    const Vector2d ray(0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n));
+    const double rho = 0.25 + 0.05 * std::sin(0.9 * n);
+    const Vector3d X = second.q_WC.conjugate() * (Vector3d(ray.x(), ray.y(), 1) / rho - second.p_WC);
+    views.rays.push_back(ray);
+    views.matches.push_back({n, X.head<2>() / X.z(), sigma * sigma * Matrix2d::Identity()});
+  }
+  views.R.assign(views.rays.size(), sigma * sigma * Matrix2d::Identity());
+  return views;
+}
+
+vo::ParticleFilter Start(const vo::FilterParams& params, std::uint64_t seed) {
+  vo::FilterPrior prior;
+  prior.velocity_covariance = 0.04 * vo::Matrix6::Identity();
+  return {vo::MotionParams{}, params, vo::LandmarkParams{}, prior, seed};
+}
+
+// The bootstrap filter samples the motion model, so with importance weights each weight is the product of the landmark
+// likelihoods at the sample, and nothing else.
+TEST(Bootstrap, WeightIsTheLikelihoodAtTheSample) {
+  vo::FilterParams params;
+  params.proposal = vo::Proposal::bootstrap;
+  params.weight = vo::Weight::importance;
+  params.particles = 50;
+  params.resample_below = 0;
+  vo::ParticleFilter filter = Start(params, 5);
+  const TwoViews views = Look({Vector3d(0.01, 0, 0), vo::Exp({0, 0.005, 0})}, 3, 20 * kSigma);
+  filter.AddLandmarks(views.rays, views.R);
+  filter.Predict(1.0 / 30);
+  const std::vector<vo::Particle> before = filter.particles();
+  filter.Update(views.matches);
+  double peak = -INFINITY;
+  std::vector<double> expected;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    double log_likelihood = 0;
+    for (const vo::Match& match : views.matches)
+      log_likelihood += vo::UpdateLandmark(before[i].landmarks[static_cast<std::size_t>(match.landmark)],
+                                           {filter.particles()[i].pose, before[i].anchors[0]}, match, params.max_iterations).log_likelihood;
+    expected.push_back(log_likelihood);
+    peak = std::max(peak, log_likelihood);
+  }
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(filter.particles()[i].log_weight, expected[i] - peak, 1e-9);
+}
+
+// With many particles and features that say little, the bootstrap filter's answer is that of the optimal proposal: two roads to the
+// same posterior.
+TEST(Bootstrap, AgreesWithTheOptimalProposalInTheLimit) {
+  const TwoViews views = Look({Vector3d(0.01, -0.01, 0.005), vo::Exp({0.01, 0.005, 0})}, 4, 30 * kSigma);
+  const auto answer = [&](vo::Proposal proposal, vo::Weight weight) {
+    vo::FilterParams params;
+    params.proposal = proposal;
+    params.weight = weight;
+    params.particles = 4000;
+    vo::ParticleFilter filter = Start(params, 11);
+    filter.AddLandmarks(views.rays, views.R);
+    filter.Predict(1.0 / 30);
+    filter.Update(views.matches);
+    return filter.belief();
+  };
+  const vo::Belief optimal = answer(vo::Proposal::iterated, vo::Weight::evidence);
+  const vo::Belief bootstrap = answer(vo::Proposal::bootstrap, vo::Weight::importance);
+  const vo::Belief ukf = answer(vo::Proposal::ukf, vo::Weight::importance);
+  for (const vo::Belief& belief : {bootstrap, ukf}) {
+    // Errors in standard deviations of the posterior; a sampled mean is off by 1 / sqrt(4000) = 0.016 and more with uneven weights.
+    Eigen::Matrix<double, 12, 1> d;
+    d << vo::Minus(belief.pose, optimal.pose), belief.velocity - optimal.velocity;
+    EXPECT_LT(d.cwiseQuotient(optimal.covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff(), 0.15);
+    EXPECT_LT((belief.covariance.diagonal().cwiseQuotient(optimal.covariance.diagonal()).array() - 1).abs().maxCoeff(), 0.15);
+  }
+}
+
+TEST(Unscented, ProposalTracksAStepAndStaysSymmetric) {
+  const vo::Pose truth{Vector3d(0.01, -0.004, 0.006), vo::Exp({0.004, 0.006, -0.003})};
+  const TwoViews views = Look(truth, 60);
+  for (const vo::Sampled sampled : {vo::Sampled::pose, vo::Sampled::pose_and_velocity}) {
+    vo::FilterParams params;
+    params.proposal = vo::Proposal::ukf;
+    params.weight = vo::Weight::importance;
+    params.sampled = sampled;
+    vo::ParticleFilter filter = Start(params, 3);
+    filter.AddLandmarks(views.rays, views.R);
+    filter.Predict(1.0 / 30);
+    filter.Update(views.matches);
+    const vo::Belief& belief = filter.belief();
+    EXPECT_LT(vo::Minus(belief.pose, truth).tail<3>().norm(), 0.002);
+    EXPECT_LT((belief.covariance - belief.covariance.transpose()).norm(), 1e-12);
+    EXPECT_EQ(belief.covariance.llt().info(), Eigen::Success);
+  }
+}
+
+TEST(Problems, RefuseWhatCannotBe) {
+  using testing::ElementsAre;
+  using testing::HasSubstr;
+  vo::Params params;
+  params.filter.proposal = vo::Proposal::ukf;
+  EXPECT_TRUE(vo::Problems(params).empty());
+  params.filter.lag = 5;
+  EXPECT_THAT(vo::Problems(params), ElementsAre(HasSubstr("filter.lag = 5 needs filter.proposal ekf or iterated")));
+  params.filter.lag = 0;
+  params.filter.proposal = vo::Proposal::bootstrap;
+  EXPECT_THAT(vo::Problems(params), ElementsAre(HasSubstr("filter.weight must be importance")));
+  params.filter.weight = vo::Weight::importance;
+  EXPECT_TRUE(vo::Problems(params).empty());
+  params.filter.ukf_alpha = 0;
+  params.filter.ukf_kappa = -1;
+  EXPECT_EQ(vo::Problems(params).size(), 2u);
+}
+
+}  // namespace
