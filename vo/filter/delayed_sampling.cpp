@@ -117,7 +117,7 @@ void ParticleFilter::CommitOldest(Particle& particle, std::uint32_t index) const
   for (const Pose& anchor : particle.anchors) views.emplace_back(s, anchor);
   for (const Match& match : steps_.front().matches) {
     Landmark& landmark = particle.landmarks[match.landmark];
-    landmark = UpdateLandmarkAt(landmark, particle.modes[match.landmark], views[anchor_of_[match.landmark]], match).landmark;
+    landmark = UpdateLandmark(landmark, particle.modes[match.landmark], views[anchor_of_[match.landmark]], match, 1).landmark;
   }
   particle.pose = s;
 }

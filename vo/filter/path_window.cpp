@@ -1,5 +1,6 @@
 #include "vo/filter/path_window.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -12,9 +13,9 @@
 namespace vo {
 namespace {
 
-constexpr double kSettled = 1e-10;  // Newton decrement squared: 1e-5 standard deviations
+constexpr double kSettled = 1e-6;     // squared distance from the mode that may be left [standard deviations squared]
 
-constexpr double kTolerated = 1e-6;
+constexpr double kTolerated = 0.1;    // rise of the objective, which the landmarks' relinearisation may cause
 constexpr double kNegligible = 1e-4;  // of the information, through the unknown depth
 
 using Matrix62 = Eigen::Matrix<double, 6, 2>;
@@ -175,6 +176,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
   for (std::size_t i = 0; i < tracks.size(); ++i) eliminated_[i].L = Root(in.landmarks[tracks[i].landmark].covariance);
 
   double best = std::numeric_limits<double>::infinity();  // objective: -2 log density at its mode, up to a constant
+  double former = 0.1;  // decrement; the first must be small by itself
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     AddPrior(prior, in, path);
     rows_ = 0;
@@ -204,7 +206,8 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
       theta[i] = in.landmarks[tracks[i].landmark].mean + eliminated_[i].L * u;
     }
     path.log_evidence = -0.5 * (cost_ - decrement + log_det_) - llt_.matrixLLT().diagonal().array().log().sum();
-    if (decrement < kSettled) break;
+    if (decrement * std::min(1.0, decrement / former) < kSettled) break;  // what the next step would be, at the rate until now
+    former = decrement;
   }
   path.covariance.setIdentity(size, size);
   llt_.solveInPlace(path.covariance);

@@ -31,6 +31,8 @@ struct AnchorView {
   Eigen::Vector3d t_C;  // [m]
 };
 
+constexpr double kMinDepth = 1e-6;  // of X_C ~ rho-scaled points: what is nearer or behind is not in front
+
 struct Projection {
   bool in_front = false;                          // X_C,z > 0; the rest is valid only then
   Eigen::Vector2d z = Eigen::Vector2d::Zero();    // on the plane z = 1
@@ -49,15 +51,18 @@ Landmark NewLandmark(const Eigen::Vector2d& ray, const Eigen::Matrix2d& R, const
 // In W; far away for a vanishing rho.
 Eigen::Vector3d PointInWorld(const Pose& anchor, const Eigen::Vector3d& landmark);
 
-// What a matched feature says about a landmark once the pose is known (EKF at max_iterations = 1, else iterated to the mode).
+// What a matched feature says about a landmark once the pose is known.
 struct LandmarkUpdate {
   Landmark landmark;
   double log_likelihood = 0;  // log p(z | pose): (3) for the EKF, Laplace's approximation at the mode else
   bool behind = false;        // the camera: nothing learnt
-  bool settled = false;       // the point of linearisation is the answer, far below a pixel
 };
-LandmarkUpdate UpdateLandmark(const Landmark& prior, const AnchorView& view, const Match& match, int max_iterations);
-// The same linearised once, at `mode`: where later images have put the landmark.
-LandmarkUpdate UpdateLandmarkAt(const Landmark& prior, const Eigen::Vector3d& mode, const AnchorView& view, const Match& match);
+// Linearised first at `guess`, then, up to max_iterations in all, at the mode (EKF: guess = prior.mean, max_iterations = 1).
+// A landmark behind the camera stays as it is.
+LandmarkUpdate UpdateLandmark(const Landmark& prior, const Eigen::Vector3d& guess, const AnchorView& view, const Match& match,
+                              int max_iterations);
+inline LandmarkUpdate UpdateLandmark(const Landmark& prior, const AnchorView& view, const Match& match, int max_iterations) {
+  return UpdateLandmark(prior, prior.mean, view, match, max_iterations);
+}
 
 }  // namespace vo
