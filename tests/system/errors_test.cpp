@@ -143,6 +143,8 @@ TEST_F(ErrorsTest, PointsAreNotRendered) {
   Fails({"run", scene, "--set", "seed=3"}, 2, "say --seed 3");
   Fails({"run", scene, "--bound", "--set", "time.duration=0.1 s", "--set", "world.points.measurement.noise=0"}, 2,
         "no Cramer-Rao bound: views have no noise");
+  Fails({"run", scene, "--verdict", "--runs", "9"}, 2, "--verdict needs 10 runs or more, not 9");
+  Fails({"run", TinyScenario().string(), "--verdict"}, 2, "--verdict is for worlds of points");
   Fails({"check", scene, "--set", "world.meshes=[{file: a.obj}]"}, 2, "'world.meshes' is for worlds that are rendered");
 }
 

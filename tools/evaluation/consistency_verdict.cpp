@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace evaluation {
 namespace {
@@ -18,10 +19,14 @@ std::vector<std::vector<T>> Collect(const std::vector<JudgedRun>& runs, std::siz
 }
 
 ExactAnees ExactOf(const VerdictOptions& options, const StateBlock& block, int runs, int frames) {
-  if (options.linearised != nullptr) {
-    auto nees = NeesOf(*options.linearised, block.start, block.size);
-    for (auto& run : nees)
-      run.erase(run.begin(), run.begin() + static_cast<std::ptrdiff_t>(std::min(options.first_frame, run.size())));
+  if (!options.linearised.empty()) {
+    std::vector<std::vector<double>> nees;
+    for (const LinearisedRuns& world : options.linearised) {
+      for (auto& run : NeesOf(world, block.start, block.size)) {
+        run.erase(run.begin(), run.begin() + static_cast<std::ptrdiff_t>(std::min(options.first_frame, run.size())));
+        nees.push_back(std::move(run));
+      }
+    }
     return ExactAneesOfPool(nees, block.size, runs, options.trials);
   }
   LinearFilter filter = options.reference;
@@ -84,8 +89,15 @@ void JudgeInnovations(const std::vector<JudgedRun>& runs, const VerdictOptions& 
   const auto dof = Collect<int>(runs, options.first_frame, [](const JudgedFrame& f) { return f.nis_dof; });
   auto innovations = Collect<double>(runs, options.first_frame, [](const JudgedFrame& f) { return f.innovation; });
   for (auto& run : innovations) std::erase_if(run, [](double value) { return std::isnan(value); });
-  const NisVerdict size = TestNis(nis, dof, options.false_alarm);
-  if (size.runs > 0) {
+  if (options.nis_by_feature) {
+    const NisMeanVerdict mean = TestNisMean(nis, dof, options.nis_tolerance, options.false_alarm);
+    if (mean.runs > 1) {
+      verdict.nis_mean = mean;
+      const bool low = mean.per_dof < 1;
+      verdict.checks.push_back(
+          {"NIS / dof, mean over runs", mean.per_dof, low ? mean.low : mean.high, low, mean.pass, mean.false_alarm});
+    }
+  } else if (const NisVerdict size = TestNis(nis, dof, options.false_alarm); size.runs > 0) {
     verdict.nis = size;
     verdict.checks.push_back({"NIS, runs outside 95 %", static_cast<double>(size.outside),
                               static_cast<double>(size.most_allowed), false, size.pass, size.false_alarm});
@@ -124,6 +136,11 @@ void CompareRunsWithBound(const std::vector<JudgedRun>& runs, const VerdictOptio
 
 bool ConsistencyVerdict::pass() const {
   return std::all_of(checks.begin(), checks.end(), [](const Check& check) { return check.pass; });
+}
+
+bool ConsistencyVerdict::honest() const {
+  return std::all_of(checks.begin(), checks.end(),
+                     [](const Check& check) { return check.pass || check.name.starts_with("RMSE / bound"); });
 }
 
 double ConsistencyVerdict::false_alarm() const {

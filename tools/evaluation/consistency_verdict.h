@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,13 +33,18 @@ struct VerdictOptions {
   double false_alarm = 0.01;  // of each check
   LinearFilter reference;     // axes and part are set by the block that is judged
   int trials = 500;           // of the reference; at least 2 / false_alarm
-  // Honest runs of the world itself (cramer_rao.h), at least ten times as many as are judged; same frames. Prefer them:
-  // pose drifts, so that its ANEES remembers for seconds, and the linear filter, whose position is measured, would
-  // reject an exact odometry in one case of six (docs/metrics.md).
-  const LinearisedRuns* linearised = nullptr;
+  // Honest runs of the world itself, or of each run's own world (cramer_rao.h), in all at least ten times as many as
+  // are judged; same frames. Prefer them: pose drifts, so that its ANEES remembers for seconds, and the linear filter,
+  // whose position is measured, would reject an exact odometry in one case of six (docs/metrics.md).
+  std::span<const LinearisedRuns> linearised;
   std::size_t first_frame = 1;           // frames before are not judged (a start known exactly has no error)
   std::vector<std::size_t> rank_frames;  // for ranks and coverage; empty: four, the last among them, evenly spread
   double largest_bound_ratio = 1.2;
+  // The NIS of a frame is a sum over features, each with its own S: what the features share (the pose) is in every one
+  // of them, and the sum is no chi-square though its mean is the degrees of freedom. Its mean over runs is then tested,
+  // by the spread of the runs themselves, and may be off by nis_tolerance.
+  bool nis_by_feature = false;
+  double nis_tolerance = 0.01;
 };
 
 struct Check {
@@ -57,11 +63,13 @@ struct ConsistencyVerdict {
   UniformityVerdict ranks, coverage;
   std::vector<RankHistogram> rank_histograms;  // [frame of rank_frames][dimension], frame by frame
   std::optional<NisVerdict> nis;
+  std::optional<NisMeanVerdict> nis_mean;  // nis_by_feature
   std::optional<WhitenessVerdict> whiteness;
   std::optional<BoundRatio> bound_ratio;
   std::array<double, 4> energy{};   // mean where there were draws; NaN without [m, rad, m/s, rad/s]
   double effective_components = 0;  // mean
   bool pass() const;
+  bool honest() const;         // all but RMSE / bound, which says how good it is
   double false_alarm() const;  // at most: the sum over the checks
 };
 

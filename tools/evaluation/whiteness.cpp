@@ -122,6 +122,41 @@ NisVerdict TestNis(const std::vector<std::vector<double>>& nis, const std::vecto
   return verdict;
 }
 
+double StudentQuantile(double p, double dof) {
+  if (!(p > 0 && p < 1) || !(dof >= 5)) throw std::invalid_argument("StudentQuantile: p or dof out of range");
+  const double z = (p < 0.5 ? -1 : 1) * std::sqrt(Chi2Quantile(p < 0.5 ? 1 - 2 * p : 2 * p - 1, 1));
+  const double z2 = z * z;
+  return z * (1 + (z2 + 1) / (4 * dof) + ((5 * z2 + 16) * z2 + 3) / (96 * dof * dof) +
+              (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * dof * dof * dof));
+}
+
+NisMeanVerdict TestNisMean(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof,
+                           double tolerance, double false_alarm) {
+  RequireEqual(nis.size(), dof.size());
+  std::vector<double> means;
+  for (std::size_t m = 0; m < nis.size(); ++m) {
+    const NisBand run = NisOfRun(nis[m], dof[m]);
+    if (run.dof > 0) means.push_back(run.per_dof);
+  }
+  NisMeanVerdict verdict;
+  verdict.runs = means.size();
+  verdict.false_alarm = false_alarm;
+  for (const double mean : means) verdict.per_dof += mean / static_cast<double>(means.size());
+  if (means.size() < 6) {  // no spread to speak of
+    verdict.runs = 0;
+    return verdict;
+  }
+  double squares = 0;
+  for (const double mean : means) squares += (mean - verdict.per_dof) * (mean - verdict.per_dof);
+  const auto n = static_cast<double>(means.size());
+  verdict.standard_error = std::sqrt(squares / (n * (n - 1)));
+  const double half = tolerance + StudentQuantile(1 - false_alarm / 2, n - 1) * verdict.standard_error;
+  verdict.low = 1 - half;
+  verdict.high = 1 + half;
+  verdict.pass = verdict.per_dof >= verdict.low && verdict.per_dof <= verdict.high;
+  return verdict;
+}
+
 std::size_t BinomialLimit(std::size_t n, double p, double tail) {
   const auto log_choose = [&](std::size_t c) {
     return std::lgamma(static_cast<double>(n) + 1) - std::lgamma(static_cast<double>(c) + 1) -

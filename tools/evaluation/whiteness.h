@@ -57,6 +57,24 @@ struct NisVerdict {
 NisVerdict TestNis(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof,
                    double false_alarm = 0.01);
 
+// NIS whose sum is no chi-square, because its terms depend on each other, but whose mean is the degrees of freedom: the
+// mean over runs of each run's NIS per degree of freedom, with Student's t on the spread of the runs. With hundreds of
+// thousands of degrees of freedom a thousandth is significant: rejected only where the mean is beyond 1 +- tolerance.
+struct NisMeanVerdict {
+  std::size_t runs = 0;
+  double per_dof = 0;         // mean over runs
+  double standard_error = 0;  // of it
+  double low = 0, high = 0;   // 1 -+ (tolerance + t standard_error): passes within
+  double false_alarm = 0;     // at most
+  bool pass = true;
+};
+NisMeanVerdict TestNisMean(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof,
+                           double tolerance, double false_alarm = 0.01);
+
+// Quantile of Student's t, p in (0, 1), five degrees of freedom or more: Cornish-Fisher to the third order about the
+// normal's, within 0.5 % of it for 0.001 < p < 0.999 (of more than nine degrees).
+double StudentQuantile(double p, double dof);
+
 // The smallest c with P(more than c of n events of probability p) <= tail.
 std::size_t BinomialLimit(std::size_t n, double p, double tail);
 

@@ -89,7 +89,9 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
   CLI::App app("vobench: synthetic data for visual odometry, and the bench that tests it.", "vobench");
   app.set_version_flag("--version", "vobench " VOBENCH_VERSION);
   app.require_subcommand(1);
-  app.footer("`vobench COMMAND --help` tells more. Exit status: 0 done, 1 the work failed, 2 bad usage or input.");
+  app.footer(
+      "`vobench COMMAND --help` tells more. Exit status: 0 done, 1 the work failed, 2 bad usage or input, 3 not "
+      "consistent\nthough `run --require-consistent` asked for it.");
   Raw raw;
 
   RenderOptions render;
@@ -155,6 +157,11 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
       ->capture_default_str();
   run_command.add_flag("--bound", run.bound,
                        "Also the Cramer-Rao bound of worlds of points, and RMSE / bound; takes seconds a run");
+  run_command.add_flag("--verdict", run.verdict,
+                       "Also whether each system is consistent with its own model, check by check, in worlds of points "
+                       "from a prior; 10 runs or more");
+  run_command.add_flag("--require-consistent", run.require_consistent,
+                       "As --verdict, and exit status 3 where a system is not");
   AddJobs(run_command, raw);
   AddSet(run_command, raw, "odometry.filter.particles=16 or time.duration='2 s'");
 
@@ -190,6 +197,7 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
       if (std::set<std::string>(run.systems.begin(), run.systems.end()).size() != run.systems.size()) {
         throw CLI::ValidationError("--system", "names a system twice");
       }
+      run.verdict = run.verdict || run.require_consistent;
       run.seed = raw.seed;
       run.jobs = raw.jobs;
       run.overrides = raw.overrides();

@@ -54,8 +54,10 @@ struct RunOptions {
   std::optional<std::filesystem::path> output;
   std::vector<std::string> systems = {"rb2pf"};
   int runs = 1;
-  std::uint64_t seed = 1;  // of the first run; the others count up from it
-  bool bound = false;      // the Cramer-Rao bound too, of worlds of points
+  std::uint64_t seed = 1;           // of the first run; the others count up from it
+  bool bound = false;               // the Cramer-Rao bound too, of worlds of points
+  bool verdict = false;             // and whether the systems are consistent, as pass or fail
+  bool require_consistent = false;  // NotConsistent is thrown where one is not, after all is printed and written
   int jobs = 1;
   Overrides overrides;
   std::string command_line;  // for the record

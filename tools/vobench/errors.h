@@ -1,6 +1,6 @@
-// Purpose: what decides the exit status: BadInput is the caller's to mend (2), every other exception means that the
-// work
-//          failed (1).
+// Purpose: what decides the exit status: BadInput is the caller's to mend (2), NotConsistent is an answer that was
+// asked
+//          to be another (3), every other exception means that the work failed (1).
 #pragma once
 
 #include <new>
@@ -10,6 +10,11 @@
 namespace vobench {
 
 struct BadInput : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// The work is done and written; a system is not consistent with its own model though that was required.
+struct NotConsistent : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 

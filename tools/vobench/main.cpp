@@ -1,4 +1,5 @@
-// Purpose: the program. Exit status: 0 done, 1 the work failed, 2 bad usage or bad input.
+// Purpose: the program. Exit status: 0 done, 1 the work failed, 2 bad usage or bad input, 3 not consistent
+//          though that was required.
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -28,6 +29,10 @@ int Main(int argc, char** argv) {
   } catch (const BadInput& error) {
     std::fprintf(stderr, "vobench: %s\n", error.what());
     return 2;
+  } catch (const NotConsistent& error) {
+    std::fflush(stdout);
+    std::fprintf(stderr, "vobench: %s\n", error.what());
+    return 3;
   } catch (const std::bad_alloc&) {
     std::fputs("vobench: out of memory\n", stderr);
     return 1;

@@ -13,11 +13,12 @@ PointTracker::PointTracker(const TrackerSetup& setup, const vo::Camera& camera,
           [&] { return vo::PointOdometry(camera, ForSystem(setup.system, setup.params), setup.prior, setup.seed); })),
       recorder_(out ? std::optional(*out / folder) : std::nullopt) {}
 
-void PointTracker::Track(const vo::PointFrame& frame) {
+vo::Estimate PointTracker::Track(const vo::PointFrame& frame) {
   const Clock clock;
   const vo::Estimate estimate = odometry_.Track(frame);
   entry_.seconds += clock.seconds();
   recorder_.Add(estimate);
+  return estimate;
 }
 
 }  // namespace vobench

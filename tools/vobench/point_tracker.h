@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tools/report/run_json.h"
 #include "tools/vobench/recorder.h"
@@ -19,7 +20,9 @@ class PointTracker {
   PointTracker(const TrackerSetup& setup, const vo::Camera& camera, const std::optional<std::filesystem::path>& out,
                const std::string& folder);
 
-  void Track(const vo::PointFrame& frame);
+  vo::Estimate Track(const vo::PointFrame& frame);
+  // What the last estimate is the moments of.
+  const std::vector<vo::BeliefComponent>& mixture() const { return odometry_.Mixture(); }
 
   // The files of the run folder, but for the truth. Throws std::runtime_error.
   void Write() const { recorder_.Write(odometry_.Map()); }

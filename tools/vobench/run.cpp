@@ -68,6 +68,8 @@ void Run(const RunOptions& options) {
   const Experiment experiment = ReadExperiment(options.scenario, options.overrides);
   if (experiment.scenario.points) return RunOnPoints(options, experiment, clock);
   if (options.bound) throw BadInput("--bound is for worlds of points: " + options.scenario.string() + " has images");
+  if (options.verdict)
+    throw BadInput("--verdict is for worlds of points: " + options.scenario.string() + " has images");
   const Folder folder = MakeFolder(options);
   sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, options.jobs); });
   PrintWarnings(simulator.warnings());

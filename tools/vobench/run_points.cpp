@@ -15,6 +15,7 @@
 #include "tools/vobench/parallel.h"
 #include "tools/vobench/point_bound.h"
 #include "tools/vobench/point_tracker.h"
+#include "tools/vobench/point_verdict.h"
 #include "tools/vobench/prior.h"
 #include "tools/vobench/progress.h"
 #include "tools/vobench/run_common.h"
@@ -29,7 +30,8 @@ struct PointRun {
   report::JudgedRun judged;
   std::vector<BlockNees> nees;
   std::vector<evaluation::Vector12d> errors;  // only where the bound is asked for
-  std::vector<evaluation::Matrix12d> bound;   // of the first system's runs
+  evaluation::LinearisedRuns linearised;  // of the first system's runs: the bound, and for the verdict exact filters
+  evaluation::JudgedRun judged_frames;    // only where the verdict is asked for
   std::vector<std::string> warnings;
 };
 
@@ -52,6 +54,12 @@ evaluation::Matrix12d StartCovariance(const vo::Prior& prior) {
   return start;
 }
 
+constexpr int kExactRuns = 10;  // of each world, against which the verdict is held
+
+std::vector<std::size_t> RanksAmong(const sim::PointWorld& world) {
+  return RankFrames(static_cast<std::size_t>(world.frame_count()), world.scenario().time.rate_hz);
+}
+
 // `step` is told of each frame. Nothing but the answers is kept when it is done.
 template <class Step>
 void Play(const RunOptions& options, const Experiment& experiment, const Folder& folder, PointRun& run,
@@ -62,26 +70,31 @@ void Play(const RunOptions& options, const Experiment& experiment, const Folder&
                        folder ? std::optional(folder->path()) : std::nullopt,
                        fmt::format("{}/seed_{}", run.system, run.seed));
   Truth truth;
+  const bool bound = options.bound || options.verdict;
   std::vector<sim::PointFrame> frames;
+  VerdictRecorder recorder(options.verdict ? RanksAmong(world) : std::vector<std::size_t>());
   while (const std::optional<sim::PointFrame> frame = world.Next()) {
     Append(frame->stamp_ns, frame->truth, truth);
-    tracker.Track(ToOdometry(*frame));
-    if (options.bound) frames.push_back(*frame);
+    const vo::Estimate estimate = tracker.Track(ToOdometry(*frame));
+    if (options.verdict) recorder.Add(estimate, tracker.mixture());
+    if (bound) frames.push_back(*frame);
     step();
   }
   const evaluation::JudgeOptions how = JudgeOptionsOf(experiment.prior);
   run.judged = {tracker.entry(), evaluation::Judge(tracker.estimates(), truth.poses, truth.velocities, how)};
   run.nees = NeesByBlock(tracker.estimates(), truth, how.gauge);
   run.warnings = world.Warnings();
-  if (options.bound) {
+  if (bound) {
     for (const evaluation::FrameConsistency& frame : evaluation::ComputeConsistency(
              tracker.estimates(), truth.poses, truth.velocities, how.association.gap_ns, how.gauge)) {
       run.errors.push_back(frame.error);
     }
     if (run.system == options.systems.front()) {
-      run.bound =
-          evaluation::FilteringBound(Input([&] { return ProblemOf(world, frames, StartCovariance(setup.prior)); }));
+      run.linearised =
+          evaluation::SimulateLinearised(Input([&] { return ProblemOf(world, frames, StartCovariance(setup.prior)); }),
+                                         options.verdict ? kExactRuns : 0, run.seed);
     }
+    if (options.verdict) run.judged_frames = recorder.Finish(run.errors, run.nees, run.seed);
   }
   if (!folder) return;
   tracker.Write();
@@ -112,11 +125,51 @@ std::vector<SystemRuns> BySystem(const RunOptions& options, std::vector<PointRun
       all.metrics.push_back(run.judged.metrics);
       all.nees.push_back(std::move(run.nees));
       errors.push_back(run.errors);
-      bounds.push_back(runs[errors.size() - 1].bound);  // the first system's runs come first
+      bounds.push_back(runs[errors.size() - 1].linearised.bound);  // the first system's runs come first
     }
-    if (options.bound) all.bound = evaluation::CompareWithBound(errors, bounds);
+    if (options.bound || options.verdict) all.bound = evaluation::CompareWithBound(errors, bounds);
   }
   return systems;
+}
+
+struct SystemVerdict {
+  std::string system;
+  std::size_t runs = 0, frames = 0;
+  evaluation::ConsistencyVerdict verdict;
+};
+
+std::vector<SystemVerdict> Verdicts(const RunOptions& options, const std::vector<std::size_t>& rank_frames,
+                                    std::vector<PointRun>& runs) {
+  std::vector<SystemVerdict> verdicts;
+  std::vector<evaluation::LinearisedRuns> linearised;
+  for (PointRun& run : runs) {
+    if (run.system == options.systems.front()) linearised.push_back(std::move(run.linearised));
+  }
+  for (const std::string& system : options.systems) {
+    std::vector<evaluation::JudgedRun> judged;
+    for (PointRun& run : runs) {
+      if (run.system != system) continue;
+      judged.push_back(std::move(run.judged_frames));
+      const std::vector<evaluation::Matrix12d>& bound = linearised[judged.size() - 1].bound;
+      for (std::size_t k = 0; k < judged.back().size(); ++k) judged.back()[k].bound = bound[k];
+    }
+    verdicts.push_back({system, judged.size(), judged.front().size(),
+                        evaluation::JudgeConsistency(judged, VerdictOptionsFor(rank_frames, linearised))});
+  }
+  return verdicts;
+}
+
+std::string SettingOf(const vo::FilterParams& filter) {
+  return fmt::format("{} particles, lag {}{}", filter.particles, filter.lag,
+                     filter.marginal_mode ? ", marginal mode" : "");
+}
+
+void Require(const std::vector<SystemVerdict>& verdicts, const std::string& setting) {
+  std::string failed;
+  for (const SystemVerdict& v : verdicts) {
+    if (!v.verdict.honest()) failed += (failed.empty() ? "" : "\n") + VerdictSentence(v.system, setting, v.verdict);
+  }
+  if (!failed.empty()) throw NotConsistent(failed);
 }
 
 }  // namespace
@@ -125,15 +178,21 @@ void RunOnPoints(const RunOptions& options, const Experiment& experiment, const 
   for (const auto& [key, value] : options.overrides) {
     if (key == "seed") throw BadInput("--set seed=" + value + ": each run has a world of its own; say --seed " + value);
   }
+  if (options.verdict && options.runs < 10) {
+    throw BadInput(fmt::format("--verdict needs 10 runs or more, not {}: say --runs 100", options.runs));
+  }
   const Folder folder = MakeFolder(options);
   std::vector<PointRun> runs;
   for (const std::string& system : options.systems) {
     for (int run = 0; run < options.runs; ++run) {
-      runs.push_back({system, options.seed + static_cast<std::uint64_t>(run), {}, {}, {}, {}, {}});
+      runs.push_back({system, options.seed + static_cast<std::uint64_t>(run), {}, {}, {}, {}, {}, {}});
     }
   }
+  std::vector<std::size_t> rank_frames;
   {
-    const std::int64_t frames = WorldOf(experiment, options.seed).frame_count();
+    const sim::PointWorld first = WorldOf(experiment, options.seed);
+    const std::int64_t frames = first.frame_count();
+    if (options.verdict) rank_frames = RanksAmong(first);
     Progress progress("running", frames * static_cast<std::int64_t>(runs.size()));
     std::mutex mutex;
     ForEach(runs, options.jobs, [&](PointRun& run) {
@@ -148,15 +207,26 @@ void RunOnPoints(const RunOptions& options, const Experiment& experiment, const 
   std::vector<report::JudgedRun> judged;
   for (const PointRun& run : runs) judged.push_back(run.judged);
   const std::vector<SystemRuns> systems = BySystem(options, runs);
+  const std::string setting = SettingOf(experiment.odometry.filter);
+  std::vector<SystemVerdict> verdicts;
+  if (options.verdict) verdicts = Verdicts(options, rank_frames, runs);
   if (folder) {
     report::RunDescription description = Describe(options, experiment, notes, clock);
     for (const report::JudgedRun& run : judged) description.runs.push_back(run.run);
     evaluation::WriteWhole(folder->path() / "anees.csv", AneesCsv(systems));
+    if (options.verdict) {
+      std::string table = "system,check,value,relation,threshold,pass,false_alarm\n";
+      for (const SystemVerdict& v : verdicts) table += VerdictCsv(v.system, v.verdict);
+      evaluation::WriteWhole(folder->path() / "verdict.csv", table);
+    }
     WriteResult(folder->path(), description, judged);
     folder->Commit();
   }
   fmt::print("{}{}", report::TextSummary(judged), AneesTable(systems));
+  for (const SystemVerdict& v : verdicts)
+    fmt::print("{}", VerdictTable(v.system, setting, v.runs, v.frames, v.verdict));
   if (folder) fmt::print("The report is in {}\n", (*options.output / "report.html").string());
+  if (options.require_consistent) Require(verdicts, setting);
 }
 
 }  // namespace vobench

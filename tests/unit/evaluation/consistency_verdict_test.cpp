@@ -50,7 +50,7 @@ class Verdict : public testing::Test {
   }
   static VerdictOptions Options(double false_alarm = 0.01) {
     VerdictOptions options;
-    options.linearised = pool_;
+    options.linearised = {pool_, 1};
     options.false_alarm = false_alarm;
     options.trials = 1000;
     return options;

@@ -154,6 +154,41 @@ TEST(Innovations, VerdictsKeepTheirFalseAlarmRate) {
   EXPECT_LE(by_colour, 13);
 }
 
+// Tables of Student's t.
+TEST(StudentQuantile, IsTheTables) {
+  EXPECT_NEAR(StudentQuantile(0.995, 99), 2.6264, 0.001);
+  EXPECT_NEAR(StudentQuantile(0.995, 9), 3.2498, 0.015);
+  EXPECT_NEAR(StudentQuantile(0.975, 19), 2.0930, 0.001);
+  EXPECT_NEAR(StudentQuantile(0.025, 19), -2.0930, 0.001);
+  EXPECT_THROW(StudentQuantile(0.5, 4), std::invalid_argument);
+  EXPECT_THROW(StudentQuantile(1, 10), std::invalid_argument);
+}
+
+// Runs whose terms share half of their variance: their sum is far from a chi-square of as many degrees, and TestNis
+// rejects nearly always. By the runs' own spread 1 % is 1 %: at most 13 of 400 (exceeded once in 10 000 times).
+TEST(Innovations, TheMeanOfDependentTermsIsTestedByTheSpreadOfRuns) {
+  TestRandom random(64);
+  int of_sum = 0, of_mean = 0, of_wrong = 0;
+  for (int i = 0; i < 400; ++i) {
+    std::vector<std::vector<double>> nis, wrong;
+    for (int m = 0; m < 25; ++m) {
+      std::vector<double>& run = nis.emplace_back();
+      for (int k = 0; k < 20; ++k) {
+        const double shared = random.Normal();
+        run.push_back((random.Normals(50).array() * std::sqrt(0.5) + std::sqrt(0.5) * shared).square().sum());
+      }
+      for (double& value : wrong.emplace_back(run)) value *= 1.4;
+    }
+    const std::vector<std::vector<int>> dof(25, std::vector<int>(20, 50));
+    of_sum += !TestNis(nis, dof).pass;
+    of_mean += !TestNisMean(nis, dof, 0).pass;
+    of_wrong += !TestNisMean(wrong, dof, 0.01).pass;
+  }
+  EXPECT_GT(of_sum, 300);
+  EXPECT_LE(of_mean, 13);
+  EXPECT_GT(of_wrong, 300);
+}
+
 TEST(NisOfRun, LeavesOutFramesWithoutInnovation) {
   const NisBand band = NisOfRun({5, 99, 3}, {4, 0, 4});
   EXPECT_EQ(band.nis, 8);
