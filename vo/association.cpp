@@ -19,13 +19,12 @@ struct Candidate {
   Eigen::Matrix2d lens;        // d pixel / d(plane z = 1)
 };
 
-bool WorthSearching(const ParticleFilter& filter, const LandmarkRecord& record, int landmark, const ImagePrediction& prediction,
+bool WorthSearching(const Filter& filter, const LandmarkRecord& record, int landmark, const ImagePrediction& prediction,
                     const Params& params) {
   if (record.score < params.score.delete_below) return false;
-  const Particle& particle = filter.Heaviest();
-  const Pose& now = particle.prediction.mean;
+  const Pose& now = filter.ReferencePrediction().mean;
   const Pose first = filter.AnchorOf(landmark);
-  const Eigen::Vector3d& estimate = particle.modes[landmark];
+  const Eigen::Vector3d estimate = filter.ModeOf(landmark);
   const Eigen::Vector3d first_ray = first.q_WC * Eigen::Vector3d(estimate.x(), estimate.y(), 1.0).normalized();
   const Eigen::Vector3d present_ray = now.q_WC * Eigen::Vector3d(prediction.z.x(), prediction.z.y(), 1.0).normalized();
   if (first_ray.dot(present_ray) < std::cos(params.features.max_view_angle_deg * std::numbers::pi / 180)) return false;
@@ -34,7 +33,7 @@ bool WorthSearching(const ParticleFilter& filter, const LandmarkRecord& record, 
 }
 
 // Section 7: assessed in this order; then no more than max_searched, the surest first.
-std::vector<Candidate> FindCandidates(const ParticleFilter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
+std::vector<Candidate> FindCandidates(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
                                       int border_px, const Params& params) {
   std::vector<Candidate> candidates;
   for (int n = 0; n < filter.landmark_count(); ++n) {
@@ -52,11 +51,10 @@ std::vector<Candidate> FindCandidates(const ParticleFilter& filter, std::span<co
   return candidates;
 }
 
-SearchRequest RequestFor(const Candidate& candidate, const ParticleFilter& filter, const LandmarkRecord& record, const Camera& camera,
+SearchRequest RequestFor(const Candidate& candidate, const Filter& filter, const LandmarkRecord& record, const Camera& camera,
                          double sigma_px) {
-  const Particle& particle = filter.Heaviest();
-  const Eigen::Vector3d& estimate = particle.modes[candidate.landmark];
-  const Projection view = Project({particle.prediction.mean, filter.AnchorOf(candidate.landmark)}, estimate);
+  const Eigen::Vector3d estimate = filter.ModeOf(candidate.landmark);
+  const Projection view = Project({filter.ReferencePrediction().mean, filter.AnchorOf(candidate.landmark)}, estimate);
   SearchRequest request{&record.appearance, candidate.pixel,
                         candidate.lens * candidate.prediction.covariance * candidate.lens.transpose() +
                             sigma_px * sigma_px * Eigen::Matrix2d::Identity(),
@@ -68,7 +66,7 @@ SearchRequest RequestFor(const Candidate& candidate, const ParticleFilter& filte
 
 }  // namespace
 
-Association Associate(const ParticleFilter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
+Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
                       BriskField& field, int border_px, const Params& params) {
   const std::vector<Candidate> candidates = FindCandidates(filter, records, camera, border_px, params);
   std::vector<SearchRequest> requests;
@@ -80,10 +78,9 @@ Association Associate(const ParticleFilter& filter, std::span<const LandmarkReco
   for (std::size_t i = 0; i < candidates.size(); ++i)
     if (found[i])
       matches.push_back({candidates[i].landmark, camera.Undistort(*found[i]), PixelNoise(candidates[i].lens, params.features.sigma_px)});
-  const Particle& particle = filter.Heaviest();
   const std::vector<bool> inlier =
       params.filter.reject_outliers
-          ? FindInliers(particle.prediction, filter.HeaviestMap(), matches, params.score.gate, params.filter)
+          ? FindInliers(filter.ReferencePrediction(), filter.ReferenceMap(), matches, params.score.gate, params.filter)
           : std::vector<bool>(matches.size(), true);
 
   Association result;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "vo/features/brisk_field.h"
-#include "vo/filter/particle_filter.h"
+#include "vo/filter/filter.h"
 #include "vo/geometry/camera.h"
 #include "vo/map/landmark_record.h"
 #include "vo/odometry.h"
@@ -29,7 +29,7 @@ struct Association {
 };
 
 // After filter.Predict. `records` are in the order of the filter's landmarks; `field` holds the image `grey` (CV_8UC1).
-Association Associate(const ParticleFilter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
+Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
                       BriskField& field, int border_px, const Params& params);
 
 }  // namespace vo

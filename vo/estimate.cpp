@@ -3,6 +3,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "vo/filter/ekf_slam.h"
+#include "vo/filter/particle_filter.h"
+
 namespace vo {
 
 Params Checked(const Params& params) {
@@ -13,15 +16,16 @@ Params Checked(const Params& params) {
   throw std::invalid_argument(text);
 }
 
-FilterPrior ToFilterPrior(const Prior& prior) {
+std::unique_ptr<Filter> MakeFilter(const Params& params, const Prior& prior, std::uint64_t seed) {
   FilterPrior out;
   out.pose = {prior.pose, prior.pose_covariance};
   out.velocity << prior.v_WC, prior.w_WC_C;
   out.velocity_covariance = prior.velocity_covariance;
-  return out;
+  if (params.filter.sampled == Sampled::nothing) return std::make_unique<EkfSlam>(params.motion, params.filter, params.landmark, out);
+  return std::make_unique<ParticleFilter>(params.motion, params.filter, params.landmark, out, seed);
 }
 
-Estimate MakeEstimate(const ParticleFilter& filter, std::int64_t stamp_ns, FrameDiagnostics diagnostics) {
+Estimate MakeEstimate(const Filter& filter, std::int64_t stamp_ns, FrameDiagnostics diagnostics) {
   diagnostics.effective_particles = filter.effective_particles();
   const Belief& belief = filter.belief();
   return {stamp_ns, belief.pose, belief.velocity.head<3>(), belief.velocity.tail<3>(), belief.covariance, diagnostics};

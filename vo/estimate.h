@@ -1,9 +1,11 @@
-// Purpose: what Odometry and PointOdometry share: checked parameters, the start, the answer, the time spent. Not for users.
+// Purpose: what Odometry and PointOdometry share: checked parameters, the filter and its start, the answer, the time spent. Not for users.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <memory>
 
-#include "vo/filter/particle_filter.h"
+#include "vo/filter/filter.h"
 #include "vo/odometry.h"
 #include "vo/params.h"
 
@@ -12,9 +14,10 @@ namespace vo {
 // Throws std::invalid_argument listing every bad parameter.
 Params Checked(const Params& params);
 
-FilterPrior ToFilterPrior(const Prior& prior);
+// The member of the family that params.filter.sampled names.
+std::unique_ptr<Filter> MakeFilter(const Params& params, const Prior& prior, std::uint64_t seed);
 
-Estimate MakeEstimate(const ParticleFilter& filter, std::int64_t stamp_ns, FrameDiagnostics diagnostics);
+Estimate MakeEstimate(const Filter& filter, std::int64_t stamp_ns, FrameDiagnostics diagnostics);
 
 // Throws std::invalid_argument when `stamp_ns` is not after `last_ns`.
 void RequireIncreasing(std::int64_t stamp_ns, std::int64_t last_ns);

@@ -28,7 +28,7 @@ struct Odometry::Impl {
   Impl(const Camera& camera_, const Params& params_, const Prior& prior, std::uint64_t seed)
       : camera(camera_),
         params(Checked(params_)),
-        filter(params.motion, params.filter, params.landmark, ToFilterPrior(prior), seed),
+        filter(MakeFilter(params, prior, seed)),
         brisk(params.features.brisk_size_px),
         border_px(std::max(brisk.border_px(), Patch::kRadius + 1)) {}
 
@@ -40,7 +40,7 @@ struct Odometry::Impl {
 
   Camera camera;
   Params params;
-  ParticleFilter filter;
+  std::unique_ptr<Filter> filter;
   BriskField brisk;
   int border_px;
   std::vector<LandmarkRecord> records;  // in the order of the filter's landmarks
@@ -60,11 +60,11 @@ Estimate Odometry::Impl::Process(const Frame& frame) {
   views.clear();
 
   if (last_stamp_ns) {
-    filter.Predict(static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9);
+    filter->Predict(static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9);
     brisk.SetImage(grey);
-    Association association = Associate(filter, records, camera, grey, brisk, border_px, params);
+    Association association = Associate(*filter, records, camera, grey, brisk, border_px, params);
     diagnostics.ms_matching = watch.Lap();
-    filter.Update(association.matches);
+    filter->Update(association.matches);
     UpdateScores(association);
     diagnostics.searched = static_cast<int>(association.searched.size());
     diagnostics.matched = static_cast<int>(association.matches.size());
@@ -103,14 +103,14 @@ void Odometry::Impl::Forget() {
   int kept = 0;
   for (int n = static_cast<int>(records.size()) - 1; n >= 0; --n) {  // the newest first: they win when the map is full
     LandmarkRecord& record = records[n];
-    const auto belief = filter.BeliefOf(n);
+    const auto belief = filter->BeliefOf(n);
     record.permanent = belief.inverse_depth_sigma < params.landmark.permanent_ratio * belief.inverse_depth;
     const bool exists = record.score >= params.score.delete_below || record.age < params.score.grace_frames;
     keep[n] = (record.permanent || (exists && record.frames_unsearched < params.landmark.forget_after)) &&
               kept < params.landmark.max_landmarks;
     kept += keep[n];
   }
-  filter.KeepLandmarks(keep);
+  filter->KeepLandmarks(keep);
   std::size_t to = 0;
   for (std::size_t from = 0; from < records.size(); ++from)
     if (keep[from]) std::swap(records[to++], records[from]);
@@ -138,14 +138,14 @@ void Odometry::Impl::AddFeatures(const cv::Mat& grey) {
     noises.push_back(PixelNoise(camera.LensJacobian(rays.back()), params.features.sigma_px));
     views.push_back({record.id, pixel, pixel, Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
   }
-  filter.AddLandmarks(rays, noises);
+  filter->AddLandmarks(rays, noises);
 }
 
 Estimate Odometry::Impl::Answer(std::int64_t stamp_ns, FrameDiagnostics diagnostics) const {
   diagnostics.landmarks = static_cast<int>(records.size());
   diagnostics.permanent =
       static_cast<int>(std::count_if(records.begin(), records.end(), [](const LandmarkRecord& r) { return r.permanent; }));
-  return MakeEstimate(filter, stamp_ns, diagnostics);
+  return MakeEstimate(*filter, stamp_ns, diagnostics);
 }
 
 Odometry::Odometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)
@@ -157,8 +157,8 @@ Estimate Odometry::Track(const Frame& frame) { return impl_->Process(frame); }
 
 std::vector<MapPoint> Odometry::Map() const {
   std::vector<MapPoint> points;
-  for (int n = 0; n < impl_->filter.landmark_count(); ++n) {
-    const auto belief = impl_->filter.BeliefOf(n);
+  for (int n = 0; n < impl_->filter->landmark_count(); ++n) {
+    const auto belief = impl_->filter->BeliefOf(n);
     points.push_back({impl_->records[n].id, belief.X_W, belief.inverse_depth, belief.inverse_depth_sigma, impl_->records[n].permanent});
   }
   return points;

@@ -14,6 +14,7 @@ struct MotionParams {
 };
 
 enum class Sampled {
+  nothing,            // EKF-SLAM: one Gaussian over everything
   pose,               // RB2-PF: velocity stays Gaussian in each particle
   pose_and_velocity,  // RB-PF (FastSLAM 2.0): velocity is sampled too
 };

@@ -15,7 +15,7 @@ namespace vo {
 
 struct PointOdometry::Impl {
   Impl(const Camera& camera_, const Params& params_, const Prior& prior, std::uint64_t seed)
-      : camera(camera_), params(Checked(params_)), filter(params.motion, params.filter, params.landmark, ToFilterPrior(prior), seed) {}
+      : camera(camera_), params(Checked(params_)), filter(MakeFilter(params, prior, seed)) {}
 
   Estimate Process(const PointFrame& frame);
   std::vector<Match> MatchesIn(const PointFrame& frame, FrameDiagnostics& diagnostics);
@@ -29,7 +29,7 @@ struct PointOdometry::Impl {
 
   Camera camera;
   Params params;
-  ParticleFilter filter;
+  std::unique_ptr<Filter> filter;
   std::vector<Record> records;                         // in the order of the filter's landmarks
   std::unordered_map<std::int64_t, int> landmark_of;   // id -> index
   std::optional<std::int64_t> last_stamp_ns;
@@ -40,10 +40,10 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
   FrameDiagnostics diagnostics;
   Stopwatch watch;
   if (last_stamp_ns) {
-    filter.Predict(static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9);
+    filter->Predict(static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9);
     const std::vector<Match> matches = MatchesIn(frame, diagnostics);
     diagnostics.ms_matching = watch.Lap();
-    filter.Update(matches);
+    filter->Update(matches);
     diagnostics.ms_filter = watch.Lap();
   }
   last_stamp_ns = frame.stamp_ns;
@@ -51,11 +51,11 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
   AddNew(frame);
   diagnostics.landmarks = static_cast<int>(records.size());
   for (int n = 0; n < diagnostics.landmarks; ++n) {
-    const auto belief = filter.BeliefOf(n);
+    const auto belief = filter->BeliefOf(n);
     diagnostics.permanent += belief.inverse_depth_sigma < params.landmark.permanent_ratio * belief.inverse_depth;
   }
   diagnostics.ms_features = watch.Lap();
-  return MakeEstimate(filter, frame.stamp_ns, diagnostics);
+  return MakeEstimate(*filter, frame.stamp_ns, diagnostics);
 }
 
 std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, FrameDiagnostics& diagnostics) {
@@ -74,16 +74,15 @@ std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, Frame
   }
   diagnostics.searched = static_cast<int>(matches.size());
   if (params.filter.reject_outliers) {
-    const Particle& particle = filter.Heaviest();
     const std::vector<bool> inlier =
-        FindInliers(particle.prediction, filter.HeaviestMap(), matches, params.score.gate, params.filter);
+        FindInliers(filter->ReferencePrediction(), filter->ReferenceMap(), matches, params.score.gate, params.filter);
     std::size_t to = 0;
     for (std::size_t from = 0; from < matches.size(); ++from)
       if (inlier[from]) matches[to++] = matches[from];
     matches.resize(to);
   }
   for (const Match& match : matches) {
-    const ImagePrediction prediction = filter.PredictImage(match.landmark);
+    const ImagePrediction prediction = filter->PredictImage(match.landmark);
     if (!prediction.in_front) continue;
     const Eigen::Vector2d nu = match.z - prediction.z;
     diagnostics.nis += nu.dot(Eigen::Matrix2d(prediction.covariance + match.R).inverse() * nu);
@@ -101,7 +100,7 @@ void PointOdometry::Impl::Forget() {
     if (keep.back()) kept.push_back(record);
   }
   if (kept.size() == records.size()) return;
-  filter.KeepLandmarks(keep);
+  filter->KeepLandmarks(keep);
   records = std::move(kept);
   landmark_of.clear();
   for (std::size_t n = 0; n < records.size(); ++n) landmark_of[records[n].id] = static_cast<int>(n);
@@ -116,7 +115,7 @@ void PointOdometry::Impl::AddNew(const PointFrame& frame) {
     rays.push_back(camera.Undistort(observation.pixel));
     noises.push_back(PixelNoise(camera.LensJacobian(rays.back()), params.features.sigma_px));
   }
-  filter.AddLandmarks(rays, noises);
+  filter->AddLandmarks(rays, noises);
 }
 
 PointOdometry::PointOdometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)
@@ -126,12 +125,12 @@ PointOdometry::PointOdometry(PointOdometry&&) noexcept = default;
 
 Estimate PointOdometry::Track(const PointFrame& frame) { return impl_->Process(frame); }
 
-const std::vector<BeliefComponent>& PointOdometry::Mixture() const { return impl_->filter.mixture(); }
+const std::vector<BeliefComponent>& PointOdometry::Mixture() const { return impl_->filter->mixture(); }
 
 std::vector<MapPoint> PointOdometry::Map() const {
   std::vector<MapPoint> points;
-  for (int n = 0; n < impl_->filter.landmark_count(); ++n) {
-    const auto belief = impl_->filter.BeliefOf(n);
+  for (int n = 0; n < impl_->filter->landmark_count(); ++n) {
+    const auto belief = impl_->filter->BeliefOf(n);
     points.push_back({static_cast<int>(impl_->records[static_cast<std::size_t>(n)].id), belief.X_W, belief.inverse_depth,
                       belief.inverse_depth_sigma, false});
   }

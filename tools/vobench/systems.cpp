@@ -5,7 +5,7 @@
 namespace vobench {
 
 const std::vector<std::string>& SystemNames() {
-  static const std::vector<std::string> names = {"rb2pf", "rbpf", "fastslam1"};
+  static const std::vector<std::string> names = {"rb2pf", "rbpf", "fastslam1", "ekfslam"};
   return names;
 }
 
@@ -19,6 +19,9 @@ vo::Params ForSystem(const std::string& name, vo::Params params) {
     params.filter.sampled = vo::Sampled::pose_and_velocity;
     params.filter.proposal = vo::Proposal::bootstrap;
     params.filter.weight = vo::Weight::importance;
+    params.filter.lag = 0;
+  } else if (name == "ekfslam") {
+    params.filter.sampled = vo::Sampled::nothing;
     params.filter.lag = 0;
   } else {
     throw std::logic_error("no system " + name);

@@ -8,13 +8,14 @@
 
 namespace vobench {
 
-// "rb2pf", "rbpf", "fastslam1".
+// "rb2pf", "rbpf", "fastslam1", "ekfslam".
 const std::vector<std::string>& SystemNames();
 // The same for a help text, separated by commas.
 std::string SystemList();
 
 // The parameters with what makes the system out of them. rb2pf samples the pose only; rbpf the velocity too, at once whatever
-// the lag; fastslam1 is rbpf with the motion model as its proposal and importance weights. Everything else stays.
+// the lag; fastslam1 is rbpf with the motion model as its proposal and importance weights; ekfslam
+// samples nothing. Everything else stays.
 vo::Params ForSystem(const std::string& name, vo::Params params);
 
 }  // namespace vobench

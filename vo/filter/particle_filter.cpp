@@ -247,13 +247,13 @@ const Particle& ParticleFilter::Heaviest() const {
   return particles_[std::max_element(weights_.begin(), weights_.end()) - weights_.begin()];
 }
 
-LocalMap ParticleFilter::HeaviestMap() const {
+LocalMap ParticleFilter::ReferenceMap() const {
   LocalMap map = MapOf(Heaviest());
   if (delayed()) map.landmarks = heaviest_landmarks_;
   return map;
 }
 
-ParticleFilter::LandmarkBelief ParticleFilter::BeliefOf(int landmark) const {
+Filter::LandmarkBelief ParticleFilter::BeliefOf(int landmark) const {
   double mean = 0, second = 0;
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const Landmark& l = particles_[i].landmarks[landmark];

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "vo/filter/filter.h"
 #include "vo/filter/mixture.h"
 #include "vo/filter/motion_model.h"
 #include "vo/filter/path_prior.h"
@@ -33,51 +34,40 @@ struct Particle {
   std::vector<Eigen::Vector3d> modes;
 };
 
-// Start of the filter. Covariances: (dp in W, dphi in C) and (dv in W, dw in C).
-struct FilterPrior {
-  PoseGaussian pose;
-  Vector6 velocity = Vector6::Zero();
-  Matrix6 velocity_covariance = Matrix6::Identity();
-};
-
-class ParticleFilter {
+class ParticleFilter final : public Filter {
  public:
   ParticleFilter(const MotionParams& motion, const FilterParams& filter, const LandmarkParams& landmark,
                  const FilterPrior& prior, std::uint64_t seed);
 
   // Algorithm 1, line 2. dt > 0 [s].
-  void Predict(double dt);
+  void Predict(double dt) override;
   // Algorithm 1, lines 4-11, with the matches of line 3. No matches: the filter coasts. Nothing is sampled then, and the next
   // Predict goes on from the last sampled pose over the whole time since: exact, and the covariance grows as the model says.
-  void Update(std::span<const Match> matches);
+  void Update(std::span<const Match> matches) override;
 
   // A landmark for every ray (plane z = 1), first seen at the present pose of each particle, which is sampled now if the filter
   // coasts. Indices follow those in use.
-  void AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<const Eigen::Matrix2d> R);
+  void AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<const Eigen::Matrix2d> R) override;
   // Keeps the landmarks marked true, in their order.
-  void KeepLandmarks(const std::vector<bool>& keep);
+  void KeepLandmarks(const std::vector<bool>& keep) override;
 
-  int landmark_count() const { return static_cast<int>(anchor_of_.size()); }
+  int landmark_count() const override { return static_cast<int>(anchor_of_.size()); }
   // Moments over the particles. Valid after Predict.
-  ImagePrediction PredictImage(int landmark) const;
-  // The particle that the association's outlier test works with, and its landmarks as all images until now have them.
-  const Particle& Heaviest() const;
-  LocalMap HeaviestMap() const;
+  ImagePrediction PredictImage(int landmark) const override;
+  // The heaviest particle, and its landmarks as all images until now have them.
+  const PoseGaussian& ReferencePrediction() const override { return Heaviest().prediction; }
+  LocalMap ReferenceMap() const override;
+  Eigen::Vector3d ModeOf(int landmark) const override { return Heaviest().modes[landmark]; }
+  Pose AnchorOf(int landmark) const override { return Heaviest().anchors[anchor_of_[landmark]]; }
 
-  struct LandmarkBelief {
-    Eigen::Vector3d X_W;       // of the heaviest particle
-    double inverse_depth;      // mixture mean [1/m]
-    double inverse_depth_sigma;
-  };
-  LandmarkBelief BeliefOf(int landmark) const;
+  LandmarkBelief BeliefOf(int landmark) const override;
   // The filter's answer: moments of the mixture over particles of the pose just before it is sampled, and the velocity with it.
-  const Belief& belief() const { return belief_; }
+  const Belief& belief() const override { return belief_; }
   // The mixture itself; empty before the first Update.
-  const std::vector<BeliefComponent>& mixture() const { return mixture_; }
-  double effective_particles() const { return effective_particles_; }
+  const std::vector<BeliefComponent>& mixture() const override { return mixture_; }
+  double effective_particles() const override { return effective_particles_; }
   const std::vector<Particle>& particles() const { return particles_; }
   const std::vector<double>& weights() const { return weights_; }
-  Pose AnchorOf(int landmark) const { return Heaviest().anchors[anchor_of_[landmark]]; }
   const FilterParams& params() const { return params_; }
 
  private:
@@ -87,6 +77,7 @@ class ParticleFilter {
     std::vector<Match> matches;
   };
 
+  const Particle& Heaviest() const;
   LocalMap MapOf(const Particle& particle) const { return {particle.landmarks, anchor_of_, particle.anchors}; }
   bool delayed() const { return params_.lag > 0; }
   // delayed_sampling.cpp

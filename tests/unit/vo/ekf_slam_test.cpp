@@ -1,0 +1,296 @@
+// EKF-SLAM against a dense batch solution over everything, and against its own statement of how wrong it is.
+
+#include "vo/filter/ekf_slam.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <gtest/gtest.h>
+
+#include "vo/filter/motion_model.h"
+#include "vo/geometry/so3.h"
+
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using Vector12 = Eigen::Matrix<double, 12, 1>;
+
+struct State {
+  vo::Pose pose;
+  vo::Vector6 velocity = vo::Vector6::Zero();
+};
+
+// Noise in the coordinates of the model (6)-(9): position, rotation of the step, velocities.
+State Step(const State& from, const Vector12& noise, double dt) {
+  const vo::Vector6 u = from.velocity * dt + noise.head<6>();
+  return {{from.pose.p_WC + u.head<3>(), from.pose.q_WC * vo::Exp(u.tail<3>())}, from.velocity + noise.tail<6>()};
+}
+Vector12 StepNoise(const State& from, const State& to, double dt) {
+  Vector12 noise;
+  noise << vo::Minus(to.pose, from.pose) - from.velocity * dt, to.velocity - from.velocity;
+  return noise;
+}
+
+// A world of the filter's own prior: motion, landmarks about the mean inverse depth, pixel noise.
+struct World {
+  vo::MotionParams motion{.position_noise = 0.5, .orientation_noise = 0.3};
+  vo::LandmarkParams landmark{.inverse_depth = 0.25, .inverse_depth_sigma = 0.0125};
+  vo::FilterPrior prior;
+  double sigma = 1.0 / 525;
+  std::vector<double> dt;                                        // before each frame but the first
+  std::vector<State> truth;
+  struct Point {
+    int born = 0;   // frame of the first view
+    Vector2d ray;   // as seen there
+    Vector3d theta; // true (x, y, rho)
+  };
+  std::vector<Point> points;
+  std::vector<std::vector<vo::Match>> matches;                   // per frame
+};
+
+// `born`: how many landmarks begin in each frame.
+World Draw(std::uint64_t seed, const std::vector<int>& born, double scale = 1, bool fixed = false) {
+  World world;
+  world.sigma *= scale;
+  world.motion.position_noise *= scale;
+  world.motion.orientation_noise *= scale;
+  world.landmark.inverse_depth_sigma *= scale;
+  if (fixed) world.landmark.bearing = vo::Bearing::fixed;
+  std::uint32_t d = 0;
+  const auto draw = [&] { return vo::Normal({.seed = seed, .stream = vo::Stream::first_guess}, d++); };
+  world.prior.velocity << 0.3, -0.1, 0.1, 0.05, 0.1, -0.05;
+  world.prior.velocity_covariance = 0.01 * scale * scale * vo::Matrix6::Identity();
+  world.prior.pose.covariance = 1e-4 * scale * scale * vo::Matrix6::Identity();
+  State state{world.prior.pose.Sample({.seed = seed, .stream = vo::Stream::prior_pose}), world.prior.velocity};
+  for (double& v : state.velocity) v += 0.1 * scale * draw();
+  const Matrix2d R = world.sigma * world.sigma * Matrix2d::Identity();
+  for (std::size_t k = 0; k < born.size(); ++k) {
+    if (k > 0) {
+      world.dt.push_back(k % 3 == 2 ? 0.05 : 1.0 / 30);
+      const vo::MotionModel model = vo::NearlyConstantVelocity(world.motion, world.dt.back());
+      Vector12 noise;
+      for (double& x : noise) x = draw();
+      state = Step(state, model.Q.llt().matrixL() * noise, world.dt.back());
+    }
+    world.truth.push_back(state);
+    auto& matches = world.matches.emplace_back();
+    for (std::size_t n = 0; n < world.points.size(); ++n) {
+      const World::Point& point = world.points[n];
+      const vo::Pose& anchor = world.truth[static_cast<std::size_t>(point.born)].pose;
+      const Vector3d X = state.pose.q_WC.conjugate() *
+                         (anchor.p_WC + anchor.q_WC * Vector3d(point.theta.x(), point.theta.y(), 1) / point.theta.z() - state.pose.p_WC);
+      matches.push_back({static_cast<int>(n), X.head<2>() / X.z() + world.sigma * Vector2d(draw(), draw()), R});
+    }
+    for (int i = 0; i < born[k]; ++i) {
+      const double angle = 2.4 * static_cast<double>(world.points.size());
+      World::Point point{static_cast<int>(k), Vector2d(0.5 * std::cos(angle), 0.4 * std::sin(1.3 * angle)), {}};
+      point.theta << point.ray, world.landmark.inverse_depth + world.landmark.inverse_depth_sigma * draw();
+      if (!fixed) point.theta.head<2>() -= world.sigma * Vector2d(draw(), draw());
+      world.points.push_back(point);
+    }
+  }
+  return world;
+}
+
+vo::EkfSlam RunOn(const World& world, int max_iterations, const std::function<void(std::size_t, const vo::EkfSlam&)>& look = {}) {
+  vo::EkfSlam filter(world.motion, {.max_iterations = max_iterations}, world.landmark, world.prior);
+  for (std::size_t k = 0; k < world.truth.size(); ++k) {
+    if (k > 0) {
+      filter.Predict(world.dt[k - 1]);
+      filter.Update(world.matches[k]);
+    }
+    if (look) look(k, filter);
+    std::vector<Vector2d> rays;
+    for (const World::Point& point : world.points)
+      if (point.born == static_cast<int>(k)) rays.push_back(point.ray);
+    filter.AddLandmarks(rays, std::vector<Matrix2d>(rays.size(), world.sigma * world.sigma * Matrix2d::Identity()));
+  }
+  return filter;
+}
+
+// Everything at once by dense least squares with numeric Jacobians: states of all frames, all landmarks.
+struct Batch {
+  State last;
+  vo::Matrix12 covariance;
+};
+Batch SolveBatch(const World& world) {
+  const int frames = static_cast<int>(world.truth.size()), points = static_cast<int>(world.points.size());
+  std::vector<State> states = world.truth;
+  std::vector<Vector3d> thetas;
+  for (const World::Point& point : world.points) thetas.push_back(point.theta);
+  const auto moved = [](const State& s, const Vector12& d) { return State{vo::Plus(s.pose, d.head<6>()), s.velocity + d.tail<6>()}; };
+  const auto residual = [&](const VectorXd& d) {
+    std::vector<double> r;
+    const auto add = [&](const VectorXd& v) { r.insert(r.end(), v.begin(), v.end()); };
+    std::vector<State> s;
+    for (int k = 0; k < frames; ++k) s.push_back(moved(states[k], d.segment<12>(12 * k)));
+    add(world.prior.pose.covariance.llt().matrixL().solve(vo::Minus(s[0].pose, world.prior.pose.mean)));
+    add(world.prior.velocity_covariance.llt().matrixL().solve(s[0].velocity - world.prior.velocity));
+    for (int k = 1; k < frames; ++k)
+      add(vo::NearlyConstantVelocity(world.motion, world.dt[k - 1]).Q.llt().matrixL().solve(StepNoise(s[k - 1], s[k], world.dt[k - 1])));
+    for (int n = 0; n < points; ++n) {
+      const Vector3d theta = thetas[n] + d.segment<3>(12 * frames + 3 * n);
+      add((theta.head<2>() - world.points[n].ray) / world.sigma);
+      add(VectorXd::Constant(1, (theta.z() - world.landmark.inverse_depth) / world.landmark.inverse_depth_sigma));
+      for (int k = world.points[n].born + 1; k < frames; ++k) {
+        const vo::Projection h = vo::Project({s[k].pose, s[world.points[n].born].pose}, theta);
+        add((h.z - world.matches[k][n].z) / world.sigma);
+      }
+    }
+    return VectorXd(Eigen::Map<VectorXd>(r.data(), static_cast<Eigen::Index>(r.size())));
+  };
+  const int size = 12 * frames + 3 * points;
+  MatrixXd J;
+  for (int iteration = 0; iteration < 8; ++iteration) {
+    const VectorXd r = residual(VectorXd::Zero(size));
+    J.resize(r.size(), size);
+    for (int i = 0; i < size; ++i) {
+      const double h = 1e-7;
+      J.col(i) = (residual(h * VectorXd::Unit(size, i)) - residual(-h * VectorXd::Unit(size, i))) / (2 * h);
+    }
+    const VectorXd step = -J.householderQr().solve(r);
+    for (int k = 0; k < frames; ++k) states[k] = moved(states[k], step.segment<12>(12 * k));
+    for (int n = 0; n < points; ++n) thetas[n] += step.segment<3>(12 * frames + 3 * n);
+  }
+  const MatrixXd covariance = (J.transpose() * J).inverse();
+  return {states.back(), covariance.block<12, 12>(12 * (frames - 1), 12 * (frames - 1))};
+}
+
+// Noise a hundredth of the usual: the problem is linear over its own uncertainty, and filtering is exact there.
+TEST(EkfSlam, EqualsTheDenseBatchSolutionWhereLinear) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const World world = Draw(seed, {6, 0, 3, 0, 0}, 0.01);
+    const Batch batch = SolveBatch(world);
+    const vo::EkfSlam filter = RunOn(world, 10);
+    const vo::Belief& belief = filter.belief();
+    Vector12 off;
+    off << vo::Minus(belief.pose, batch.last.pose), belief.velocity - batch.last.velocity;
+    const MatrixXd L = batch.covariance.llt().matrixL();
+    EXPECT_LT((L.inverse() * off).norm(), 0.02) << seed;  // standard deviations
+    EXPECT_LT((L.inverse() * (belief.covariance - batch.covariance) * L.inverse().transpose()).norm(), 0.02) << seed;
+  }
+}
+
+// One update of any size is a Gauss-Newton on everything: the batch over its two frames, far from linear in depth.
+TEST(EkfSlam, IteratedUpdateIsTheJointMode) {
+  World world = Draw(4, {12, 0}, 1);
+  world.landmark.inverse_depth_sigma = 0.15;
+  world.prior.velocity_covariance *= 4;
+  const Batch batch = SolveBatch(world);
+  Vector12 iterated, one_step;
+  const auto off = [&](const vo::EkfSlam& filter) {
+    Vector12 d;
+    d << vo::Minus(filter.belief().pose, batch.last.pose), filter.belief().velocity - batch.last.velocity;
+    return d.cwiseQuotient(batch.covariance.diagonal().cwiseSqrt()).norm();
+  };
+  EXPECT_LT(off(RunOn(world, 20)), 0.02);
+  EXPECT_GT(off(RunOn(world, 1)), 2 * off(RunOn(world, 20)));
+}
+
+// In a world of its own prior, joint NEES of the last frame; over runs a chi-square with 12 degrees of freedom each.
+// Wilson-Hilferty normal score: beyond 3.3 once in a thousand tests.
+double Score(int runs, double claimed) {
+  double sum = 0;
+  for (int run = 0; run < runs; ++run) {
+    const World world = Draw(100 + static_cast<std::uint64_t>(run), {15, 0, 0, 5, 0, 0, 3, 0, 0, 0}, 0.3);
+    const vo::EkfSlam filter = RunOn(world, 10);
+    const vo::Belief& belief = filter.belief();
+    Vector12 e;
+    e << vo::Minus(world.truth.back().pose, belief.pose), world.truth.back().velocity - belief.velocity;
+    sum += e.dot((claimed * belief.covariance).ldlt().solve(e));
+  }
+  const double k = 12.0 * runs;
+  return (std::cbrt(sum / k) - (1 - 2 / (9 * k))) / std::sqrt(2 / (9 * k));
+}
+
+TEST(EkfSlam, IsHonestInAWorldOfItsPriorAndHalfTheCovarianceIsRejected) {
+  EXPECT_LT(std::abs(Score(100, 1)), 3.3);
+  EXPECT_GT(Score(100, 0.5), 3.3);
+  EXPECT_LT(Score(100, 2), -3.3);
+}
+
+TEST(EkfSlam, CovarianceStaysSymmetricAndPositive) {
+  for (const bool fixed : {false, true}) {
+    const World world = Draw(9, {20, 0, 2, 0, 2, 0, 0, 0, 0, 0}, 1, fixed);
+    RunOn(world, 10, [&](std::size_t k, const vo::EkfSlam& filter) {
+      const MatrixXd& P = filter.covariance();
+      ASSERT_TRUE(P.allFinite());
+      EXPECT_EQ((P - P.transpose()).norm(), 0) << k;
+      EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatrixXd>(P).eigenvalues().minCoeff(), -1e-12 * P.norm()) << k;
+    });
+  }
+}
+
+TEST(EkfSlam, CoastsInOneStepAsInTwo) {
+  World world = Draw(3, {10, 0, 0});
+  vo::EkfSlam one = RunOn(world, 10), two = one;
+  one.Predict(0.1);
+  one.Update({});
+  two.Predict(0.04);
+  two.Update({});
+  two.Predict(0.06);
+  two.Update({});
+  EXPECT_LT(vo::Minus(one.belief().pose, two.belief().pose).norm(), 1e-12);
+  EXPECT_LT((one.belief().covariance - two.belief().covariance).norm(), 1e-3 * one.belief().covariance.norm());
+  EXPECT_GT(one.belief().covariance.trace(), RunOn(world, 10).belief().covariance.trace());
+}
+
+// Dropping a landmark is marginalising: nothing else changes, and an anchor without landmarks goes with its last one.
+TEST(EkfSlam, DroppedLandmarksLeaveTheRestAlone) {
+  const World world = Draw(7, {6, 0, 4, 0, 0});
+  vo::EkfSlam filter = RunOn(world, 10);
+  ASSERT_EQ(filter.covariance().rows(), 12 + 2 * 6 + 10 * 3);
+  const vo::Belief before = filter.belief();
+  std::vector<vo::ImagePrediction> predictions;
+  for (int n = 0; n < 10; ++n) predictions.push_back(filter.PredictImage(n));
+  const std::vector<bool> keep = {false, true, false, true, true, true, false, false, true, true};
+  filter.KeepLandmarks(keep);
+  EXPECT_EQ(filter.covariance().rows(), 12 + 2 * 6 + 6 * 3);
+  EXPECT_EQ(filter.covariance().topLeftCorner(12, 12), before.covariance);
+  for (int n = 0, kept = 0; n < 10; ++n) {
+    if (!keep[static_cast<std::size_t>(n)]) continue;
+    const vo::ImagePrediction now = filter.PredictImage(kept++);
+    EXPECT_EQ(now.z, predictions[static_cast<std::size_t>(n)].z);
+    EXPECT_EQ(now.covariance, predictions[static_cast<std::size_t>(n)].covariance);
+  }
+  filter.KeepLandmarks({false, false, false, false, true, true});
+  EXPECT_EQ(filter.covariance().rows(), 12 + 6 + 2 * 3);
+  filter.KeepLandmarks({false, false});
+  EXPECT_EQ(filter.covariance().rows(), 12);
+  filter.Predict(0.1);
+  filter.Update({});
+  filter.AddLandmarks(std::vector<Vector2d>{{0, 0}}, std::vector<Matrix2d>{Matrix2d::Identity()});
+  EXPECT_EQ(filter.covariance().rows(), 12 + 6 + 3);
+}
+
+// The innovations have the covariance that PredictImage and R say: chi-square of 2 each, over independent worlds.
+TEST(EkfSlam, PredictsImagesAsWellAsItSays) {
+  double sum = 0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    const World world = Draw(seed + 500, {6, 0, 0, 0}, 0.3);
+    vo::EkfSlam filter = RunOn({world.motion, world.landmark, world.prior, world.sigma, {world.dt[0], world.dt[1]},
+                                {world.truth[0], world.truth[1], world.truth[2]}, world.points,
+                                {world.matches[0], world.matches[1], world.matches[2]}}, 10);
+    filter.Predict(world.dt[2]);
+    const vo::Match& match = world.matches[3][seed % 6];
+    const vo::ImagePrediction prediction = filter.PredictImage(match.landmark);
+    const Vector2d nu = match.z - prediction.z;
+    sum += nu.dot(Matrix2d(prediction.covariance + match.R).inverse() * nu);
+    count += 2;
+  }
+  EXPECT_NEAR(sum / count, 1, 3.3 * std::sqrt(2.0 / count));  // false alarms 1e-3
+}
+
+}  // namespace

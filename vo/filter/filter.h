@@ -1,0 +1,61 @@
+// Purpose: what an odometry needs of its filter, whatever member of the family it is. Between Predict and Update the caller finds the
+//          landmarks in the image.
+// Frames:  poses T_WC; image points on the plane z = 1 of an undistorted camera.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "vo/filter/mixture.h"
+#include "vo/filter/path_window.h"
+#include "vo/filter/pose_gaussian.h"
+#include "vo/filter/proposal.h"
+#include "vo/map/landmark.h"
+
+namespace vo {
+
+// Start of a filter. Covariances: (dp in W, dphi in C) and (dv in W, dw in C).
+struct FilterPrior {
+  PoseGaussian pose;
+  Vector6 velocity = Vector6::Zero();
+  Matrix6 velocity_covariance = Matrix6::Identity();
+};
+
+class Filter {
+ public:
+  virtual ~Filter() = default;
+
+  // dt > 0 [s].
+  virtual void Predict(double dt) = 0;
+  // No matches: the filter coasts.
+  virtual void Update(std::span<const Match> matches) = 0;
+  // A landmark for every ray (plane z = 1), first seen at the present pose. Indices follow those in use.
+  virtual void AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<const Eigen::Matrix2d> R) = 0;
+  // Keeps the landmarks marked true, in their order.
+  virtual void KeepLandmarks(const std::vector<bool>& keep) = 0;
+  virtual int landmark_count() const = 0;
+
+  // Valid after Predict.
+  virtual ImagePrediction PredictImage(int landmark) const = 0;
+  // What the association's outlier test works with: one path that the filter holds possible and takes as known, the pose that
+  // follows it, and the landmarks as seen along it.
+  virtual const PoseGaussian& ReferencePrediction() const = 0;
+  virtual LocalMap ReferenceMap() const = 0;
+  // The landmark's (x, y, rho) in its anchor's camera, and the anchor, on that path.
+  virtual Eigen::Vector3d ModeOf(int landmark) const = 0;
+  virtual Pose AnchorOf(int landmark) const = 0;
+
+  struct LandmarkBelief {
+    Eigen::Vector3d X_W;        // on that path
+    double inverse_depth;       // mean [1/m]
+    double inverse_depth_sigma;
+  };
+  virtual LandmarkBelief BeliefOf(int landmark) const = 0;
+  // The filter's answer: moments of its mixture.
+  virtual const Belief& belief() const = 0;
+  // The mixture itself; empty before the first Update.
+  virtual const std::vector<BeliefComponent>& mixture() const = 0;
+  virtual double effective_particles() const = 0;
+};
+
+}  // namespace vo
