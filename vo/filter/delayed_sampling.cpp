@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -20,15 +21,13 @@ void ParticleFilter::PredictPath(double dt) {
     steps_.pop_back();
     for (Particle& particle : particles_) particle.path.mean.pop_back();
   }
-  // First guess: each particle's own at the start, where there can be several solutions (depth reversal); the evidence tells.
-  for (std::uint32_t i = 0; i < particles_.size(); ++i) {
-    const Particle& particle = particles_[i];
-    std::vector<Pose>& mean = particles_[i].path.mean;
+  for (Particle& particle : particles_) {  // first guess: as from the frame before to the last
+    std::vector<Pose>& mean = particle.path.mean;
     const Pose last = mean.empty() ? particle.pose : mean.back();
     const Pose before = mean.size() < 2 ? particle.pose : mean[mean.size() - 2];
-    Vector6 u = SampleNormal(particle.velocity.mean, particle.velocity.covariance, {seed_, Stream::first_guess, frame_, i}) * dt;
+    Vector6 u = particle.velocity.mean * dt;
     if (!mean.empty()) u = Minus(last, before) * (dt / steps_.back().dt);
-    mean.push_back({last.p_WC + u.head<3>(), (last.q_WC * Exp(u.tail<3>())).normalized()});
+    mean.push_back(Plus(last, u));
   }
   steps_.push_back({dt, {}});
   std::vector<MotionModel> models;
@@ -53,6 +52,7 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
     for (Particle& particle : particles_) particle.log_weight -= particle.path.log_evidence;
     BuildTracks();
     SolvePaths();
+    if (!committed_) Restart();
     for (Particle& particle : particles_) particle.log_weight += particle.path.log_evidence;
   }
   mixture_.clear();
@@ -80,21 +80,40 @@ void ParticleFilter::BuildTracks() {
 }
 
 void ParticleFilter::SolvePaths() {
+  for (Particle& particle : particles_) SolvePath(particle);
+}
+
+void ParticleFilter::SolvePath(Particle& particle) {
   const WindowOptions options{params_.proposal == Proposal::ekf ? 1 : params_.max_iterations, params_.marginal_mode};
-  std::vector<Eigen::Vector3d> modes(tracks_.size());
-  for (Particle& particle : particles_) {
-    for (std::size_t i = 0; i < tracks_.size(); ++i) modes[i] = particle.modes[tracks_[i].landmark];
-    window_.Solve(*path_prior_, {particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors}, tracks_, options,
-                  particle.path, modes);
-    for (std::size_t i = 0; i < tracks_.size(); ++i) particle.modes[tracks_[i].landmark] = modes[i];
-    for (std::size_t a = 0; a < particle.anchors.size(); ++a)
-      if (anchor_slot_[a] >= 0) particle.anchors[a] = particle.path.mean[anchor_slot_[a]];
+  modes_.resize(tracks_.size());
+  for (std::size_t i = 0; i < tracks_.size(); ++i) modes_[i] = particle.modes[tracks_[i].landmark];
+  window_.Solve(*path_prior_, {particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors}, tracks_, options,
+                particle.path, modes_);
+  for (std::size_t i = 0; i < tracks_.size(); ++i) particle.modes[tracks_[i].landmark] = modes_[i];
+  for (std::size_t a = 0; a < particle.anchors.size(); ++a)
+    if (anchor_slot_[a] >= 0) particle.anchors[a] = particle.path.mean[anchor_slot_[a]];
+}
+
+// Before anything is sampled, the depths are unknown and several motions explain the images nearly as well (depth reversal). Each
+// particle looks for a better one from a start of its own, drawn from the prior.
+void ParticleFilter::Restart() {
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+    Particle& particle = particles_[i];
+    Particle other = particle;
+    const Vector6 velocity =
+        SampleNormal(particle.velocity.mean, particle.velocity.covariance, {seed_, Stream::first_guess, frame_, i});
+    Pose pose = particle.pose;
+    for (std::size_t k = 0; k < steps_.size(); ++k) other.path.mean[k] = pose = Plus(pose, velocity * steps_[k].dt);
+    for (const Track& track : tracks_) other.modes[track.landmark] = particle.landmarks[track.landmark].mean;
+    SolvePath(other);
+    if (other.path.log_evidence > particle.path.log_evidence) particle = std::move(other);
   }
 }
 
 void ParticleFilter::CommitOldest() {
   const MotionModel model = NearlyConstantVelocity(motion_, steps_.front().dt);
   step_ = {model.F, model.Q};
+  committed_ = true;
   for (std::uint32_t i = 0; i < particles_.size(); ++i) CommitOldest(particles_[i], i);
   for (int& slot : anchor_slot_) slot = std::max(slot - 1, -1);
   steps_.erase(steps_.begin());

@@ -107,14 +107,14 @@ PoseGaussian ParticleFilter::PredictPose(const Particle& particle) const {
   return {mean, J * step_.PredictedCovariance(particle.velocity) * J.transpose()};
 }
 
-PoseProposal ParticleFilter::ProposePose(const Particle& particle, std::span<const Match> matches) const {
+PoseProposal ParticleFilter::ProposePose(const Particle& particle, std::span<const Match> matches) {
   switch (params_.proposal) {
     case Proposal::bootstrap: return {particle.prediction, 0};
     case Proposal::ukf: return ProposeUnscented(particle.prediction, MapOf(particle), matches, UnscentedOf(params_));
     case Proposal::ekf:
     case Proposal::iterated: break;
   }
-  return Propose(particle.prediction, MapOf(particle), matches, params_);
+  return proposer_.Propose(particle.prediction, MapOf(particle), matches, params_);
 }
 
 CameraVelocityFilter::Gain ParticleFilter::VelocityGiven(const Particle& particle) const {
@@ -130,17 +130,21 @@ void ParticleFilter::UpdateVelocity(Particle& particle, const Pose& pose, std::u
                          Matrix6::Zero()};
 }
 
-double ParticleFilter::UpdateLandmarks(Particle& particle, const Pose& pose, std::span<const Match> matches) const {
+double ParticleFilter::UpdateLandmarks(Particle& particle, const Pose& pose, std::span<const Match> matches) {
   const int iterations = params_.proposal == Proposal::ekf ? 1 : params_.max_iterations;
-  std::vector<AnchorView> views;
-  for (const Pose& anchor : particle.anchors) views.emplace_back(pose, anchor);
+  const bool guess = params_.proposal == Proposal::iterated;
+  const Vector6 off = guess ? Minus(pose, proposer_.last_linearised()) : Vector6::Zero();
+  views_.clear();
+  for (const Pose& anchor : particle.anchors) views_.emplace_back(pose, anchor);
   double log_likelihood = 0;
-  for (const Match& match : matches) {
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const Match& match = matches[i];
     Landmark& landmark = particle.landmarks[match.landmark];
-    const AnchorView& view = views[anchor_of_[match.landmark]];
+    const AnchorView& view = views_[anchor_of_[match.landmark]];
     const LandmarkUpdate update = params_.proposal == Proposal::ukf
                                       ? UpdateLandmarkUnscented(landmark, view, match, UnscentedOf(params_))
-                                      : UpdateLandmark(landmark, view, match, iterations);
+                                      : UpdateLandmark(landmark, guess ? proposer_.ModeGiven(i, off, landmark.mean) : landmark.mean,
+                                                       view, match, iterations);
     landmark = update.landmark;
     particle.modes[match.landmark] = landmark.mean;
     log_likelihood += update.log_likelihood;

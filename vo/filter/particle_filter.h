@@ -84,6 +84,8 @@ class ParticleFilter final : public Filter {
   void PredictPath(double dt);
   void UpdatePath(std::span<const Match> matches);
   void SolvePaths();
+  void SolvePath(Particle& particle);
+  void Restart();
   void BuildTracks();
   void CommitOldest();
   void CommitOldest(Particle& particle, std::uint32_t index) const;
@@ -94,9 +96,9 @@ class ParticleFilter final : public Filter {
   void Coast();
   void SampleStep(std::span<const Match> matches);
   PoseGaussian PredictPose(const Particle& particle) const;
-  PoseProposal ProposePose(const Particle& particle, std::span<const Match> matches) const;
+  PoseProposal ProposePose(const Particle& particle, std::span<const Match> matches);
   CameraVelocityFilter::Gain VelocityGiven(const Particle& particle) const;
-  double UpdateLandmarks(Particle& particle, const Pose& pose, std::span<const Match> matches) const;
+  double UpdateLandmarks(Particle& particle, const Pose& pose, std::span<const Match> matches);
   void UpdateVelocity(Particle& particle, const Pose& pose, std::uint32_t index) const;
   void Weigh();
   void Answer();
@@ -113,6 +115,9 @@ class ParticleFilter final : public Filter {
   std::vector<double> weights_;     // normalised
   std::vector<int> anchor_of_;      // shared: all particles associate alike
 
+  PoseProposer proposer_;
+  std::vector<AnchorView> views_;   // workspace
+
   // Delayed sampling only.
   std::vector<Step> steps_;         // the last is the present frame
   std::vector<int> anchor_slot_;    // per anchor: the step of its pose, -1: sampled
@@ -120,6 +125,8 @@ class ParticleFilter final : public Filter {
   std::vector<int> track_of_;       // per landmark: index into tracks_ or -1
   std::optional<PathPrior> path_prior_;
   PathWindow window_;
+  std::vector<Eigen::Vector3d> modes_;  // workspace
+  bool committed_ = false;              // a pose has been sampled
   std::vector<Landmark> heaviest_landmarks_;
 
   Belief belief_;

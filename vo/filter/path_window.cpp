@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kSettled = 1e-6;     // squared distance from the mode that may be left [standard deviations squared]
 
+constexpr double kOvershoot = 0.25;  // of the slope before the step
 constexpr double kTolerated = 0.1;    // rise of the objective, which the landmarks' relinearisation may cause
 constexpr double kNegligible = 1e-4;  // of the information, through the unknown depth
 
@@ -112,12 +113,13 @@ void PathWindow::AddTrack(const WindowInput& in, const Track& track, const PathG
     log_det_ += view.log_det_R + 2 * std::log(2 * std::numbers::pi);
   }
   landmark.G.compute(G);
+  landmark.U_inverse = landmark.G.matrixU().solve(Eigen::Matrix3d::Identity());
   const Eigen::Vector3d whitened = landmark.G.matrixL().solve(g);
   cost_ -= whitened.squaredNorm();
   log_det_ += 2 * std::log(landmark.G.matrixLLT().diagonal().prod());
   if (marginal && landmark.used) AddMarginal(track, landmark, theta.z());
   y_.segment<3>(rows_) = whitened;
-  landmark.G.matrixU().solveInPlace<Eigen::OnTheRight>(E);
+  E = E.lazyProduct(landmark.U_inverse).eval();
   rows_ += 3;
 }
 
@@ -153,8 +155,7 @@ void PathWindow::AddMarginal(const Track& track, const Eliminated& landmark, dou
     gradient.segment<3>(j) -= g;
   }
   if (!matters) return;
-  C *= std::sqrt(explained);
-  landmark.G.matrixU().solveInPlace<Eigen::OnTheRight>(C);
+  C = C.lazyProduct(std::sqrt(explained) * landmark.U_inverse).eval();
   columns_ += 3;
   added_ += 1;
 }
@@ -166,7 +167,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
   b_.resize(size);
   d_.resize(size);
   r_.resize(size);
-  step_.resize(size);
+  step_.setZero(size);
   J_.resize(size, 12);
   const Eigen::Index count = static_cast<Eigen::Index>(tracks.size());
   Y_.resize(size, 6 * count);
@@ -176,7 +177,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
   for (std::size_t i = 0; i < tracks.size(); ++i) eliminated_[i].L = Root(in.landmarks[tracks[i].landmark].covariance);
 
   double best = std::numeric_limits<double>::infinity();  // objective: -2 log density at its mode, up to a constant
-  double former = 0.1;  // decrement; the first must be small by itself
+  double former = 0;  // decrement of the step before; 0: its rate says nothing
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     AddPrior(prior, in, path);
     rows_ = 0;
@@ -186,13 +187,22 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
     const double objective = options.marginal ? cost_ + log_det_ : cost_;
     if (objective > best + kTolerated && iteration + 1 < options.max_iterations) {  // the step was too long: half of it
       step_ *= 0.5;
+      former *= 0.5;
       for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], -step_.segment<6>(6 * k));
+      continue;
+    }
+    b_.noalias() -= Y_.leftCols(3 * count) * y_;
+    const double slope = b_.dot(step_);
+    if (slope < -kOvershoot * former && iteration + 1 < options.max_iterations) {  // past the mode: back to where the slope vanishes
+      step_ *= -slope / (slope - former);
+      for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], step_.segment<6>(6 * k));
+      former = 0;
+      step_.setZero();
       continue;
     }
     best = objective;
     A_.selfadjointView<Eigen::Lower>().rankUpdate(Y_.leftCols(columns_), -1.0);
     if (added_ > 0) A_.selfadjointView<Eigen::Lower>().rankUpdate(Z_.leftCols(added_), 1.0);
-    b_.noalias() -= Y_.leftCols(3 * count) * y_;
     llt_.compute(A_.selfadjointView<Eigen::Lower>());
     step_ = b_;
     llt_.solveInPlace(step_);

@@ -72,6 +72,7 @@ class PathWindow {
   struct Eliminated {
     Eigen::Matrix3d L;
     Eigen::LLT<Eigen::Matrix3d> G;  // information of u given the poses
+    Eigen::Matrix3d U_inverse;      // of its upper factor
     bool used = false;
   };
   void AddPrior(const PathPrior& prior, const WindowInput& in, const PathGaussian& path);

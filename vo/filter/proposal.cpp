@@ -29,6 +29,7 @@ class LogSum {
 };
 
 constexpr double kSettled = 1e-6;    // squared distance from the mode that may be left [standard deviations squared]
+constexpr double kOvershoot = 0.25;  // of the slope before the step
 constexpr double kTolerated = 0.1;   // rise of the objective, which the landmarks' relinearisation may cause
 
 double HalfLogDeterminant(const Eigen::LLT<Matrix6>& llt) { return llt.matrixLLT().diagonal().array().log().sum(); }
@@ -56,7 +57,7 @@ PoseProposal PoseProposer::Propose(const PoseGaussian& prediction, const LocalMa
   matches_.resize(matches.size());
   rows_.resize(matches.size());
   double best = std::numeric_limits<double>::infinity();  // objective: -2 log density at its mode, up to a constant
-  double former = 0.1;                                    // decrement; the first must be small by itself
+  double former = 0;  // decrement of the step before; 0: its rate says nothing
   Vector6 step = Vector6::Zero();
   for (int iteration = 0; iteration < iterations; ++iteration) {
     views_.clear();
@@ -102,7 +103,15 @@ PoseProposal PoseProposer::Propose(const PoseGaussian& prediction, const LocalMa
     const double objective = params.marginal_mode ? cost + log_det : cost;
     if (objective > best + kTolerated && iteration + 1 < iterations) {  // the step was too long: half of it
       step *= 0.5;
+      former *= 0.5;
       s = Plus(s, -step);
+      continue;
+    }
+    const double slope = b.dot(step);
+    if (slope < -kOvershoot * former && iteration + 1 < iterations) {  // past the mode: back to where the slope vanishes
+      s = Plus(s, -slope / (slope - former) * step);
+      former = 0;
+      step.setZero();
       continue;
     }
     best = objective;

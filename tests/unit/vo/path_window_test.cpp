@@ -1,0 +1,274 @@
+// Delayed sampling's solver against oracles that share none of its algebra.
+
+#include "vo/filter/path_window.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include "vo/filter/motion_model.h"
+#include "vo/filter/proposal.h"
+#include "vo/filter/velocity_filter.h"
+#include "vo/geometry/so3.h"
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using vo::Matrix12;
+using vo::Matrix6;
+using vo::Vector6;
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : bits_(seed) {}
+  double Uniform() { return (static_cast<double>(bits_() >> 11) + 0.5) * 0x1.0p-53; }
+  double Normal() { return std::sqrt(-2 * std::log(Uniform())) * std::cos(2 * std::numbers::pi * Uniform()); }
+  Vector6 Normal6() {
+    Vector6 n;
+    for (int i = 0; i < 6; ++i) n[i] = Normal();
+    return n;
+  }
+
+ private:
+  std::mt19937_64 bits_;
+};
+
+// A window of frames at 30 Hz: landmarks anchored at the sampled start and at the window's first pose, seen from every later pose.
+struct Scene {
+  vo::Pose start;
+  Vector6 velocity = Vector6::Zero();
+  Matrix6 velocity_covariance = 0.04 * Matrix6::Identity();
+  std::vector<vo::MotionModel> steps;
+  std::vector<vo::Pose> truth;
+  std::vector<vo::Landmark> landmarks;
+  std::vector<vo::Pose> anchors;
+  std::vector<vo::Track> tracks;
+  vo::PathPrior prior() const { return {steps, velocity_covariance}; }
+  vo::WindowInput input() const { return {start, velocity, landmarks, anchors}; }
+};
+
+Scene MakeScene(unsigned seed, int frames, int count, double depth_sigma, double noise) {
+  Random random(seed);
+  Scene scene;
+  scene.start = {Vector3d(0.3, -0.1, 0.2), vo::Exp({0.1, -0.2, 0.05})};
+  scene.velocity << 0.1, -0.05, 0.08, 0.05, 0.1, -0.05;
+  vo::Pose pose = scene.start;
+  Vector6 velocity = scene.velocity + 0.2 * random.Normal6();
+  for (int k = 0; k < frames; ++k) {
+    const double dt = (k % 2 == 0 ? 1.0 : 1.5) / 30;
+    scene.steps.push_back(vo::NearlyConstantVelocity({.position_noise = 0.6, .orientation_noise = 0.4}, dt));
+    velocity += 0.05 * random.Normal6();
+    pose = {pose.p_WC + velocity.head<3>() * dt, (pose.q_WC * vo::Exp(velocity.tail<3>() * dt)).normalized()};
+    scene.truth.push_back(pose);
+  }
+  scene.anchors = {scene.start, vo::Pose{}};
+  for (int n = 0; n < count; ++n) {
+    const int anchor = frames > 1 ? n % 2 : 0;
+    const vo::Pose& first = anchor == 0 ? scene.start : scene.truth[0];
+    const Vector3d theta(1.2 * (random.Uniform() - 0.5), 0.9 * (random.Uniform() - 0.5), 0.3 + depth_sigma * random.Normal());
+    vo::Landmark landmark;
+    landmark.mean << theta.x() + noise * random.Normal(), theta.y() + noise * random.Normal(), 0.3;
+    landmark.covariance.diagonal() << noise * noise, noise * noise, depth_sigma * depth_sigma;
+    scene.landmarks.push_back(landmark);
+    vo::Track track{n, anchor, anchor == 0 ? -1 : 0, {}};
+    for (int k = anchor; k < frames; ++k) {
+      const vo::Projection h = vo::Project({scene.truth[k], first}, theta);
+      track.views.push_back({k, h.z + noise * Eigen::Vector2d(random.Normal(), random.Normal()),
+                             Eigen::Matrix2d::Identity() / (noise * noise), 4 * std::log(noise)});
+    }
+    scene.tracks.push_back(track);
+  }
+  return scene;
+}
+
+vo::PathGaussian Solve(const Scene& scene, bool marginal, std::vector<Vector3d>* modes = nullptr, int iterations = 50) {
+  vo::PathGaussian path;
+  path.mean.assign(scene.truth.size(), scene.start);
+  std::vector<Vector3d> theta;
+  for (const vo::Track& track : scene.tracks) theta.push_back(scene.landmarks[track.landmark].mean);
+  vo::PathWindow().Solve(scene.prior(), scene.input(), scene.tracks, {iterations, marginal}, path, theta);
+  if (modes) *modes = theta;
+  return path;
+}
+
+double Distance(const vo::Pose& a, const vo::Pose& b, const Matrix6& covariance) {
+  const Vector6 d = vo::Minus(a, b);
+  return std::sqrt(d.dot(covariance.llt().solve(d)));
+}
+
+TEST(PathWindow, OfOnePoseIsTheProposal) {
+  for (const bool marginal : {false, true}) {
+    const Scene scene = MakeScene(3, 1, 60, 0.01, 0.2 / 525);
+    const vo::PathGaussian path = Solve(scene, marginal);
+    const vo::VelocityFilter<6, 6> step(scene.steps[0].F, scene.steps[0].Q);
+    Vector6 start;
+    start << scene.start.p_WC, Vector3d::Zero();
+    const Vector6 s = step.PredictedMean(start, {scene.velocity, scene.velocity_covariance});
+    Matrix6 J = Matrix6::Identity();
+    J.bottomRightCorner<3, 3>() = vo::RightJacobian(s.tail<3>());
+    const vo::PoseGaussian prediction{{s.head<3>(), scene.start.q_WC * vo::Exp(s.tail<3>())},
+                                      J * step.PredictedCovariance({scene.velocity, scene.velocity_covariance}) * J.transpose()};
+    std::vector<vo::Match> matches;
+    std::vector<int> anchor_of(scene.landmarks.size(), 0);
+    for (const vo::Track& track : scene.tracks) matches.push_back({track.landmark, track.views[0].z, track.views[0].R_inverse.inverse()});
+    const vo::PoseProposal one = vo::Propose(prediction, {scene.landmarks, anchor_of, scene.anchors}, matches,
+                                             {.max_iterations = 50, .marginal_mode = marginal});
+    EXPECT_LT(Distance(path.mean[0], one.pose.mean, one.pose.covariance), 3e-3) << "standard deviations";
+    EXPECT_LT((path.covariance - one.pose.covariance).norm() / one.pose.covariance.norm(), 2e-3);
+    EXPECT_NEAR(path.log_evidence, one.log_evidence, 0.02);  // coordinates of the prior differ at second order
+  }
+}
+
+// -2 log of the joint density of poses and landmarks, up to a constant, written out with numbers only.
+VectorXd Residual(const Scene& scene, const std::vector<vo::Pose>& poses, const std::vector<Vector3d>& theta) {
+  const int m = static_cast<int>(poses.size());
+  VectorXd u(6 * m);
+  for (int k = 0; k < m; ++k) {
+    const vo::Pose& from = k == 0 ? scene.start : poses[k - 1];
+    u.segment<3>(6 * k) = poses[k].p_WC - from.p_WC;
+    u.segment<3>(6 * k + 3) = vo::Log(from.q_WC.conjugate() * poses[k].q_WC);
+  }
+  // Covariance of the steps by running unit noises through the model.
+  MatrixXd effect = MatrixXd::Zero(6 * m, 6 + 12 * m);  // of (v_0, noises)
+  MatrixXd v = MatrixXd::Zero(6, 6 + 12 * m);
+  v.leftCols<6>() = scene.velocity_covariance.llt().matrixL();
+  VectorXd mean(6 * m);
+  for (int k = 0; k < m; ++k) {
+    const Matrix12 L = scene.steps[k].Q.llt().matrixL();
+    const double dt = scene.steps[k].F(0, 6);
+    effect.middleRows(6 * k, 6) = dt * v;
+    effect.block(6 * k, 6 + 12 * k, 6, 12) += L.topRows<6>();
+    v.middleCols(6 + 12 * k, 12) += L.bottomRows<6>();
+    mean.segment<6>(6 * k) = dt * scene.velocity;
+  }
+  const MatrixXd covariance = effect * effect.transpose();
+  const VectorXd r = covariance.llt().matrixL().solve(u - mean);
+  std::vector<double> all(r.data(), r.data() + r.size());
+  for (std::size_t n = 0; n < scene.tracks.size(); ++n) {
+    const vo::Track& track = scene.tracks[n];
+    const vo::Landmark& prior = scene.landmarks[track.landmark];
+    for (int i = 0; i < 3; ++i) all.push_back((theta[n][i] - prior.mean[i]) / std::sqrt(prior.covariance(i, i)));
+    const vo::Pose& anchor = track.anchor_slot < 0 ? scene.anchors[track.anchor] : poses[track.anchor_slot];
+    for (const vo::Track::View& view : track.views) {
+      const Vector3d ray(theta[n].x(), theta[n].y(), 1);
+      const Vector3d X = poses[view.slot].q_WC.conjugate() *
+                         (anchor.q_WC * ray + theta[n].z() * (anchor.p_WC - poses[view.slot].p_WC));
+      for (int i = 0; i < 2; ++i) all.push_back((X[i] / X.z() - view.z[i]) * std::sqrt(view.R_inverse(0, 0)));
+    }
+  }
+  return Eigen::Map<VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
+}
+
+TEST(PathWindow, EliminatingLandmarksIsTheJointSolution) {
+  const Scene scene = MakeScene(5, 4, 24, 0.05, 1.0 / 525);
+  std::vector<Vector3d> theta;
+  const vo::PathGaussian path = Solve(scene, false, &theta);
+  const int m = 4, size = 6 * m + 3 * static_cast<int>(theta.size());
+  MatrixXd J(Residual(scene, path.mean, theta).size(), size);
+  constexpr double kStep = 1e-6;
+  for (int j = 0; j < size; ++j) {
+    VectorXd side[2];
+    for (const int s : {0, 1}) {
+      auto poses = path.mean;
+      auto points = theta;
+      const double h = s == 0 ? -kStep : kStep;
+      if (j < 6 * m)
+        poses[j / 6] = vo::Plus(poses[j / 6], h * Vector6::Unit(j % 6));
+      else
+        points[(j - 6 * m) / 3][(j - 6 * m) % 3] += h;
+      side[s] = Residual(scene, poses, points);
+    }
+    J.col(j) = (side[1] - side[0]) / (2 * kStep);
+  }
+  const MatrixXd covariance = (J.transpose() * J).inverse();
+  const VectorXd step = -covariance * (J.transpose() * Residual(scene, path.mean, theta));
+  for (int i = 0; i < size; ++i) EXPECT_LT(std::abs(step[i]), 5e-3 * std::sqrt(covariance(i, i))) << "at the joint mode, " << i;
+  EXPECT_LT((path.covariance - covariance.topLeftCorner(6 * m, 6 * m)).norm() / path.covariance.norm(), 5e-3);
+}
+
+// The prior of several steps says what the velocity's Kalman filter says one step after the other.
+TEST(PathPrior, LastVelocityIsTheVelocityFilters) {
+  Random random(7);
+  Scene scene = MakeScene(7, 6, 0, 0.05, 1);
+  const vo::PathPrior prior = scene.prior();
+  vo::VelocityFilter<6, 6>::State state{scene.velocity, scene.velocity_covariance};
+  VectorXd off(36);
+  double log_density = 0;
+  for (int k = 0; k < 6; ++k) {
+    const vo::VelocityFilter<6, 6> step(scene.steps[k].F, scene.steps[k].Q);
+    const Vector6 u = 0.03 * random.Normal6();
+    const Vector6 nu = u - step.PredictedMean(Vector6::Zero(), state);
+    const Matrix6 S = step.PredictedCovariance(state);
+    log_density += -0.5 * nu.dot(S.inverse() * nu) - 0.5 * std::log(S.determinant());
+    state = step.Update(Vector6::Zero(), u, state);
+    off.segment<6>(6 * k) = u - prior.MeanStep(k, scene.velocity);
+  }
+  const Vector6 last = prior.LastMean(scene.velocity) + prior.gain() * off;
+  EXPECT_LT((last - state.mean).norm() / state.mean.norm(), 1e-9);
+  EXPECT_LT((prior.last_covariance() - state.covariance).norm() / state.covariance.norm(), 1e-9);
+  EXPECT_NEAR(-0.5 * off.dot(prior.precision() * off) + 0.5 * prior.log_det_precision(), log_density, 1e-6 * std::abs(log_density));
+}
+
+// p(z_1, z_2) = p(z_1) p(z_2 | z_1): the window's evidence grows by what the next frame says, whichever way it is counted. With
+// small noise everything is linear, and Laplace's approximation exact.
+TEST(PathWindow, EvidenceOfTwoFramesIsThatOfTheFirstTimesTheSecondGivenIt) {
+  const Scene scene = MakeScene(9, 2, 30, 1e-4, 1e-5);
+  Scene first = scene;
+  for (vo::Track& track : first.tracks)
+    std::erase_if(track.views, [](const vo::Track::View& view) { return view.slot == 1; });
+  const vo::PathGaussian with = Solve(scene, false), without = Solve(first, false);
+  // p(z_2 | z_1) by drawing the first pose from p(s_1 | z_1, z_2): p(s_1|z_1) p(z_2|s_1,z_1) / p(s_1|z_1,z_2) is the same at any s_1.
+  Random random(11);
+  for (int draw = 0; draw < 3; ++draw) {
+    const Matrix6 P = with.covariance.topLeftCorner<6, 6>();
+    const vo::Pose s = vo::Plus(with.mean[0], P.llt().matrixL() * random.Normal6());
+    Scene second = scene;
+    second.start = s;
+    second.anchors[1] = s;
+    const vo::VelocityFilter<6, 6> step(scene.steps[0].F, scene.steps[0].Q);
+    Vector6 from, to;
+    from << scene.start.p_WC, Vector3d::Zero();
+    to << s.p_WC, vo::Log(scene.start.q_WC.conjugate() * s.q_WC);
+    const auto state = step.Update(from, to, {scene.velocity, scene.velocity_covariance});
+    second.velocity = state.mean;
+    second.velocity_covariance = state.covariance;
+    second.steps.erase(second.steps.begin());
+    second.truth.erase(second.truth.begin());
+    for (vo::Track& track : second.tracks) {
+      vo::Landmark& landmark = second.landmarks[track.landmark];
+      for (const vo::Track::View& view : track.views)
+        if (view.slot == 0)
+          landmark = vo::UpdateLandmark(landmark, {s, scene.anchors[track.anchor]}, {track.landmark, view.z, view.R_inverse.inverse()}, 10).landmark;
+      std::erase_if(track.views, [](const vo::Track::View& view) { return view.slot == 0; });
+      track.views[0].slot = 0;
+      track.anchor_slot = -1;
+    }
+    const double second_given_s = Solve(second, false).log_evidence;
+    const vo::PoseGaussian first_only{without.mean[0], without.covariance.topLeftCorner<6, 6>()}, both{with.mean[0], P};
+    const double increment = first_only.LogDensity(s) + second_given_s - both.LogDensity(s);
+    EXPECT_NEAR(with.log_evidence - without.log_evidence, increment, 2e-3) << "of " << increment;
+  }
+}
+
+// Many landmarks of unknown depth and a step that is short against the noise: the joint mode stretches the step, the marginal's does not.
+TEST(PathWindow, TheMarginalsModeIsNotBiasedInScale) {
+  double joint = 0, marginal = 0, length = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const Scene scene = MakeScene(100 + seed, 6, 100, 0.015, 1.0 / 525);
+    const Vector3d t = scene.truth.back().p_WC - scene.start.p_WC;
+    joint += (Solve(scene, false).mean.back().p_WC - scene.start.p_WC).dot(t) / t.norm();
+    marginal += (Solve(scene, true).mean.back().p_WC - scene.start.p_WC).dot(t) / t.norm();
+    length += t.norm();
+  }
+  EXPECT_NEAR(marginal / length, 1.0, 0.05);
+  EXPECT_GT(std::abs(joint / length - 1.0), 2 * std::abs(marginal / length - 1.0)) << joint / length << " " << marginal / length;
+}
+
+}  // namespace
