@@ -1,0 +1,24 @@
+// Linked with a filter that has one mistake: tests/consistency/CMakeLists.txt says which. The verdict that passes the
+// honest filter (honest_test.cpp: same worlds, same thresholds) must reject it, in one of two settings.
+#include <gtest/gtest.h>
+
+#include "tests/consistency/own_model.h"
+
+namespace own_model {
+namespace {
+
+TEST(Mutant, IsRejected) {
+  try {
+    const auto verdict = Judge(Play(kRuns));
+    std::cout << Failures(verdict);
+    if (!verdict.honest()) return;
+    const auto without_delay = Judge(Play(kRuns, WithoutDelay()));
+    std::cout << "without delay:\n" << Failures(without_delay);
+    EXPECT_FALSE(HonestButCoverage(without_delay));
+  } catch (const std::invalid_argument& error) {  // a belief that is not finite cannot be judged
+    std::cout << "no verdict: " << error.what() << '\n';
+  }
+}
+
+}  // namespace
+}  // namespace own_model
