@@ -24,7 +24,7 @@ struct LinearisedMatch {
   double cost() const { return W00 * e0 * e0 + 2.0 * W01 * e0 * e1 + W11 * e1 * e1; }
 };
 
-inline void LinearisedMatch::Set(const AnchorView& view, const Landmark& landmark, const Eigen::Vector3d& theta, const Match& match) {
+[[gnu::always_inline]] inline void LinearisedMatch::Set(const AnchorView& view, const Landmark& landmark, const Eigen::Vector3d& theta, const Match& match) {
   const Eigen::Matrix3d& M = view.R_CA;
   const Eigen::Vector3d& t = view.t_C;
   const Eigen::Vector3d X = M.col(0) * theta.x() + M.col(1) * theta.y() + M.col(2) + theta.z() * t;
