@@ -168,13 +168,12 @@ void ParticleFilter::Answer() {
 
 void ParticleFilter::Resample() {
   const std::vector<int> ancestors = SystematicAncestors(weights_, Uniform({seed_, Stream::resampling, frame_, 0}, 0));
-  std::vector<Particle> children;
-  children.reserve(particles_.size());
-  for (const int ancestor : ancestors) {
-    children.push_back(particles_[ancestor]);
-    children.back().log_weight = 0;
+  children_.resize(particles_.size());
+  for (std::size_t i = 0; i < ancestors.size(); ++i) {
+    children_[i] = particles_[ancestors[i]];  // into the memory of a former generation
+    children_[i].log_weight = 0;
   }
-  particles_ = std::move(children);
+  particles_.swap(children_);
   weights_.assign(weights_.size(), 1.0 / static_cast<double>(weights_.size()));
 }
 

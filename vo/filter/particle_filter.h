@@ -112,6 +112,7 @@ class ParticleFilter final : public Filter {
   double since_sampled_ = 0;        // [s]; 0 when the present pose is sampled
   CameraVelocityFilter step_;       // from the last sampled pose to the present
   std::vector<Particle> particles_;
+  std::vector<Particle> children_;  // workspace of resampling
   std::vector<double> weights_;     // normalised
   std::vector<int> anchor_of_;      // shared: all particles associate alike
 
