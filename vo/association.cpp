@@ -79,9 +79,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
     if (found[i])
       matches.push_back({candidates[i].landmark, camera.Undistort(*found[i]), PixelNoise(candidates[i].lens, params.features.sigma_px)});
   const std::vector<bool> inlier =
-      params.filter.reject_outliers
-          ? FindInliers(filter.ReferencePrediction(), filter.ReferenceMap(), matches, params.score.gate, params.filter)
-          : std::vector<bool>(matches.size(), true);
+      FindInliers(filter.ReferencePrediction(), filter.ReferenceMap(), matches, params.score.gate, params.filter);
 
   Association result;
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {

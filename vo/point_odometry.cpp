@@ -73,14 +73,12 @@ std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, Frame
     matches.push_back({known->second, z, PixelNoise(camera.LensJacobian(z), params.features.sigma_px)});
   }
   diagnostics.searched = static_cast<int>(matches.size());
-  if (params.filter.reject_outliers) {
-    const std::vector<bool> inlier =
-        FindInliers(filter->ReferencePrediction(), filter->ReferenceMap(), matches, params.score.gate, params.filter);
-    std::size_t to = 0;
-    for (std::size_t from = 0; from < matches.size(); ++from)
-      if (inlier[from]) matches[to++] = matches[from];
-    matches.resize(to);
-  }
+  const std::vector<bool> inlier =
+      FindInliers(filter->ReferencePrediction(), filter->ReferenceMap(), matches, params.score.gate, params.filter);
+  std::size_t to = 0;
+  for (std::size_t from = 0; from < matches.size(); ++from)
+    if (inlier[from]) matches[to++] = matches[from];
+  matches.resize(to);
   for (const Match& match : matches) {
     const ImagePrediction prediction = filter->PredictImage(match.landmark);
     if (!prediction.in_front) continue;

@@ -9,6 +9,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "sim/require.h"
+
 namespace sim {
 namespace {
 
@@ -63,13 +65,8 @@ std::optional<glm::dvec2> Solve(const CameraParams& c, const glm::dvec2& target,
 }  // namespace
 
 std::vector<std::string> Problems(const CameraParams& c) {
-  std::vector<std::string> problems;
-  const auto require = [&](bool ok, const char* name, double value, const char* rule) {
-    if (ok && std::isfinite(value)) return;
-    std::ostringstream text;
-    text << name << " = " << value << " " << rule;
-    problems.push_back(text.str());
-  };
+  Require require;
+  std::vector<std::string>& problems = require.problems;
   constexpr int kMaxSide = 1 << 14;
   require(c.width >= 1 && c.width <= kMaxSide, "width", c.width, "must lie in 1 ... 16384");
   require(c.height >= 1 && c.height <= kMaxSide, "height", c.height, "must lie in 1 ... 16384");

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "sim/random/random.h"
+#include "sim/require.h"
 
 namespace sim {
 namespace {
@@ -30,20 +31,14 @@ float Poisson(float mean, double u) {
 }  // namespace
 
 std::vector<std::string> Problems(const SensorParams& p) {
-  std::vector<std::string> problems;
-  const auto require = [&](bool ok, const char* name, double value, const char* rule) {
-    if (ok && std::isfinite(value)) return;
-    std::ostringstream text;
-    text << name << " = " << value << " " << rule;
-    problems.push_back(text.str());
-  };
+  Require require;
   require(p.exposure_s >= 0 && p.exposure_s <= 10, "exposure", p.exposure_s, "must lie in 0 ... 10 s");
   require(p.time_samples >= 1 && p.time_samples <= 1024, "time_samples", p.time_samples, "must lie in 1 ... 1024");
   require(p.white > 0, "white", p.white, "must be positive");
   require(p.full_well_e >= 1 && p.full_well_e <= 1e9, "full_well", p.full_well_e, "must lie in 1 ... 1e9 electrons");
   require(p.read_noise_e >= 0 && p.read_noise_e <= p.full_well_e, "read_noise", p.read_noise_e,
           "must lie between 0 and full_well");
-  return problems;
+  return require.problems;
 }
 
 Sensor::Sensor(const SensorParams& params, std::uint64_t seed)

@@ -4,16 +4,12 @@
 #include <cmath>
 #include <sstream>
 
+#include "sim/require.h"
+
 namespace sim {
 
 std::vector<std::string> Problems(const PointDescription& p, const CameraParams& camera) {
-  std::vector<std::string> problems;
-  const auto require = [&](bool ok, const char* name, double value, const char* rule) {
-    if (ok && std::isfinite(value)) return;
-    std::ostringstream text;
-    text << name << " = " << value << " " << rule;
-    problems.push_back(text.str());
-  };
+  Require require;
   constexpr int kMost = 1'000'000;
   require(p.count >= 1 && p.count <= kMost, "count", p.count, "must lie in 1 ... 1000000");
   require(p.forget_after >= 1, "forget_after", p.forget_after, "must be at least 1");
@@ -34,7 +30,7 @@ std::vector<std::string> Problems(const PointDescription& p, const CameraParams&
           "must lie in 0 ... 1");
   require(m.blur_length_px >= 0, "measurement.blur.length", m.blur_length_px, "px must be at least 0");
   require(m.blur_exposure_s >= 0, "measurement.blur.exposure", m.blur_exposure_s, "s must be at least 0");
-  return problems;
+  return require.problems;
 }
 
 }  // namespace sim

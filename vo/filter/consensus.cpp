@@ -33,6 +33,7 @@ std::vector<double> SquaredDistances(const Pose& pose, const LocalMap& map, std:
 
 std::vector<bool> FindInliers(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
                               const FilterParams& params) {
+  if (!params.reject_outliers) return std::vector<bool>(matches.size(), true);
   std::vector<Match> reweighted(matches.begin(), matches.end());
   std::vector<double> distances = SquaredDistances(prediction.mean, map, matches);
   for (int round = 0; round < kRounds; ++round) {

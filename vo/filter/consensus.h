@@ -10,7 +10,7 @@
 namespace vo {
 
 // Fits the pose of one particle robustly and marks the matches whose residual there, with the landmark's and the pixel's
-// covariance, has a squared Mahalanobis distance below `gate`.
+// covariance, has a squared Mahalanobis distance below `gate`. All of them with params.reject_outliers off.
 std::vector<bool> FindInliers(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
                               const FilterParams& params);
 

@@ -69,8 +69,7 @@ LandmarkUpdate UpdateLandmark(const Landmark& prior, const Eigen::Vector3d& gues
     if (step0 * step0 + step1 * step1 < kSettled) break;
     theta = result.landmark.mean;
   }
-  result.behind = !h.in_front;
-  if (result.behind) return {prior, 0, true};
+  if (!h.in_front) return {prior, 0};
   // At the mode this is Laplace's approximation of log p(z | pose): r'R^-1 r + (theta - prior)'P^-1(theta - prior) = e'S^-1 e.
   result.log_likelihood = -0.5 * h.cost() - 0.5 * std::log(h.det_S) - std::log(2 * std::numbers::pi);
   // P - P J' S^-1 J P. One pixel takes away at most a factor of 1e6 of a variance: rounding leaves ten digits.

@@ -55,7 +55,6 @@ Eigen::Vector3d PointInWorld(const Pose& anchor, const Eigen::Vector3d& landmark
 struct LandmarkUpdate {
   Landmark landmark;
   double log_likelihood = 0;  // log p(z | pose): (3) for the EKF, Laplace's approximation at the mode else
-  bool behind = false;        // the camera: nothing learnt
 };
 // Linearised first at `guess`, then, up to max_iterations in all, at the mode (EKF: guess = prior.mean, max_iterations = 1).
 // A landmark behind the camera stays as it is.
