@@ -29,6 +29,14 @@ const RunData* AnyJudged(const ResultData& data) {
   return found == data.runs.end() ? nullptr : &*found;
 }
 
+// The path that the drawn runs belong to: the truth, or where there is none the first run's own.
+const ev::Trajectory& Reference(const ResultData& data) {
+  const RunData& shown = data.Typical(data.Systems().front());
+  if (shown.judged) return shown.judged->truth;
+  const RunData* judged = AnyJudged(data);
+  return judged ? judged->judged->truth : data.runs.front().run.trajectory;
+}
+
 // Time zero of every diagram: the first pose of the first run.
 double Seconds(const ResultData& data, std::int64_t stamp_ns) {
   return static_cast<double>(stamp_ns - data.runs.front().run.trajectory.front().stamp_ns) * 1e-9;
@@ -95,13 +103,13 @@ void DrawPaths(const ResultData& data, const View& view, Plot& plot, std::vector
     plot.Line(x.back(), y.back(), style, label);
   };
   const std::vector<std::string> systems = data.Systems();
-  for (std::size_t s = 0; s < systems.size(); ++s) {
+  for (std::size_t s = 0; s < systems.size() && data.SharedTruth(); ++s) {
     const RunData& typical = data.Typical(systems[s]);
     for (const RunData& run : data.runs) {
       if (run.entry.system == systems[s] && &run != &typical) line(Drawn(run), StyleOf(s) + " faint", "");
     }
   }
-  if (const RunData* judged = AnyJudged(data)) line(judged->judged->truth, "truth", "truth");
+  if (AnyJudged(data)) line(Reference(data), "truth", "truth");
   for (std::size_t s = 0; s < systems.size(); ++s) {
     line(Drawn(data.Typical(systems[s])), StyleOf(s), DisplayName(systems[s]));
   }
@@ -254,7 +262,7 @@ std::string StyleOf(std::size_t system) { return "s" + std::to_string(system % 5
 
 std::string PathFigures(const ResultData& data) {
   const RunData* judged = AnyJudged(data);
-  const std::vector<View> views = Views(judged ? judged->judged->truth : data.runs.front().run.trajectory);
+  const std::vector<View> views = Views(Reference(data));
   const std::string described = judged ? "Truth and the estimates, aligned to it by rotation, translation and scale."
                                        : "The estimates, each in its own scale; there is no truth.";
   std::string html;
@@ -283,7 +291,7 @@ std::string PathFigures(const ResultData& data) {
     y.push_back(Core(up));
   }
   if (any) {
-    const auto path = Positions(judged ? judged->judged->truth : data.runs.front().run.trajectory);
+    const auto path = Positions(Reference(data));
     x.push_back(Along(path, above.right));
     y.push_back(Along(path, above.up));
     plot.Line(x.back(), y.back(), "truth", judged ? "truth" : "path");
@@ -295,9 +303,8 @@ std::string PathFigures(const ResultData& data) {
 }
 
 std::string PoseFigures(const ResultData& data) {
-  const RunData* judged = AnyJudged(data);
   const std::vector<std::string> systems = data.Systems();
-  const Eigen::Quaterniond start = (judged ? judged->judged->truth : data.runs.front().run.trajectory).front().q_WC;
+  const Eigen::Quaterniond start = Reference(data).front().q_WC;
   std::string html;
   for (const bool rotation : {false, true}) {
     const auto values = [&](const ev::Trajectory& trajectory) {
@@ -313,7 +320,7 @@ std::string PoseFigures(const ResultData& data) {
         all.push_back(Component(values(trajectory), k));
         plot.Line(Times(data, trajectory), all.back(), style, label);
       };
-      if (judged) line(judged->judged->truth, "truth", "truth");
+      if (AnyJudged(data)) line(Reference(data), "truth", "truth");
       for (std::size_t s = 0; s < systems.size(); ++s) {
         line(Drawn(data.Typical(systems[s])), StyleOf(s), DisplayName(systems[s]));
       }

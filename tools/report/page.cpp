@@ -268,10 +268,13 @@ std::string Page(const ResultData& data) {
   const bool many = data.runs.size() > data.Systems().size();
   const std::string typical =
       many ? " Bold: each system's typical run (of median ATE); faint: its other seeds." : std::string();
+  const std::string own_paths = " Every seed flies a path of its own; shown is that of seed " +
+                                std::to_string(data.Typical(data.Systems().front()).entry.seed) + ", where " +
+                                Escape(DisplayName(data.Systems().front())) + " has its median ATE.";
   html += Section(
       "Path",
       (judged.empty() ? "In the odometry's own world and scale." : "Estimates aligned to the truth by Sim(3).") +
-          typical,
+          (data.SharedTruth() ? typical : own_paths),
       Grid(PathFigures(data)));
   html += Section("Errors", "Distance from the truth, after the same alignment." + typical,
                   Grid(AlignedErrorFigures(data), "grid two"));

@@ -100,6 +100,17 @@ RunData ReadRun(const fs::path& out, const RunEntry& entry, const std::vector<Re
   return data;
 }
 
+// Equal poses at equal stamps.
+bool Agree(const ev::Trajectory& a, const ev::Trajectory& b) {
+  auto at = b.begin();
+  for (const ev::StampedPose& pose : a) {
+    while (at != b.end() && at->stamp_ns < pose.stamp_ns) ++at;
+    if (at == b.end()) break;
+    if (at->stamp_ns == pose.stamp_ns && (at->p_WC != pose.p_WC || at->q_WC.coeffs() != pose.q_WC.coeffs())) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::vector<JudgedRun> ResultData::JudgedRuns() const {
@@ -119,14 +130,33 @@ std::vector<std::string> ResultData::Systems() const {
   return systems;
 }
 
-const RunData& ResultData::Typical(const std::string& system) const {
-  std::vector<const RunData*> own;
+bool ResultData::SharedTruth() const {
+  const RunData* first = nullptr;
   for (const RunData& run : runs) {
-    if (run.entry.system == system) own.push_back(&run);
+    if (!run.judged) continue;
+    if (first == nullptr) first = &run;
+    if (!Agree(run.judged->truth, first->judged->truth)) return false;
   }
-  const auto ate = [](const RunData* run) { return run->judged ? run->judged->metrics.errors.sim3.position.rmse : 0; };
-  std::stable_sort(own.begin(), own.end(), [&](const RunData* a, const RunData* b) { return ate(a) < ate(b); });
-  return *own.at((own.size() - 1) / 2);
+  return true;
+}
+
+const RunData& ResultData::Typical(const std::string& system) const {
+  const auto median = [this](const std::string& name) -> const RunData& {
+    std::vector<const RunData*> own;
+    for (const RunData& run : runs) {
+      if (run.entry.system == name) own.push_back(&run);
+    }
+    const auto ate = [](const RunData* run) { return run->judged ? run->judged->metrics.errors.sim3.position.rmse : 0; };
+    std::stable_sort(own.begin(), own.end(), [&](const RunData* a, const RunData* b) { return ate(a) < ate(b); });
+    return *own.at((own.size() - 1) / 2);
+  };
+  const std::string reference = Systems().front();
+  if (system == reference || SharedTruth()) return median(system);
+  const std::uint64_t seed = median(reference).entry.seed;
+  const auto same = std::find_if(runs.begin(), runs.end(), [&](const RunData& run) {
+    return run.entry.system == system && run.entry.seed == seed;
+  });
+  return same == runs.end() ? median(system) : *same;
 }
 
 ResultData ReadResult(const fs::path& out) {

@@ -7,6 +7,8 @@
 #include "tests/unit/evaluation/temporary_folder.h"
 #include "tests/unit/report/fake_result.h"
 #include "tools/evaluation/text_file.h"
+#include "tools/evaluation/trajectory.h"
+#include "tools/report/result_data.h"
 #include "tools/report/text.h"
 #include "tools/report/text_summary.h"
 
@@ -131,6 +133,34 @@ TEST(WriteReport, TellsTheOverConfidentFromTheCautious) {
     WriteFakeResult(folder.path(), options);
     EXPECT_THAT(PageOf(folder), HasSubstr(word));
   }
+}
+
+// Worlds of points draw a path for every seed: an estimate is shown beside its own.
+TEST(WriteReport, ShowsAnEstimateBesideTheTruthOfItsOwnSeed) {
+  const TemporaryFolder folder;
+  const auto judged = WriteFakeResult(folder.path(), {});
+  EXPECT_THAT(PageOf(folder), Not(HasSubstr("a path of its own")));
+  for (const JudgedRun& run : judged) {
+    for (const char* name : {"truth.txt", "estimate.txt"}) {  // moved as a whole: nothing that is judged changes but the place
+      const auto file = folder.path() / run.run.path / name;
+      evaluation::Trajectory trajectory = evaluation::ReadTrajectory(file);
+      for (auto& pose : trajectory) pose.p_WC.x() += 100.0 * static_cast<double>(run.run.seed);
+      evaluation::WriteTrajectory(file, trajectory);
+    }
+  }
+  const ResultData data = ReadResult(folder.path());
+  EXPECT_FALSE(data.SharedTruth());
+  const RunData& shown = data.Typical("rb2pf");
+  EXPECT_EQ(data.Typical("rbpf").entry.seed, shown.entry.seed);
+  const std::string html = PageOf(folder);
+  EXPECT_THAT(html, HasSubstr("Every seed flies a path of its own; shown is that of seed " + std::to_string(shown.entry.seed)));
+  // From above and from the side: one run of each system, and its line in the legend.
+  const std::size_t begin = html.find("aria-label=\"From above"), end = html.find("aria-label=\"From above, with");
+  const std::string paths = html.substr(begin, end - begin);
+  EXPECT_EQ(CountOf(paths, "class=\"line s0\""), 4u);
+  EXPECT_EQ(CountOf(paths, "faint"), 0u);
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    EXPECT_EQ(CountOf(paths, ">" + std::to_string(100 * seed) + ".0<") > 0, seed == shown.entry.seed) << seed;
 }
 
 TEST(WriteReport, WithoutTruthShowsThePathAlone) {
