@@ -44,11 +44,13 @@ std::vector<std::string> Problems(const Params& params) {
   check.Require(filter.ukf_kappa >= 0, "filter.ukf_kappa", filter.ukf_kappa, "must not be negative");
   if (filter.proposal == Proposal::bootstrap && filter.weight != Weight::importance)
     check.Refuse("filter.weight must be importance where filter.proposal is bootstrap: a proposal blind to the image has no evidence");
+  if (filter.weight == Weight::equal)
+    check.Require(filter.lag > 0, "filter.lag", filter.lag, "must be above 0 for filter.weight equal: the window's images must have spoken before a draw");
   if (filter.lag > 0) {
     check.Require(filter.proposal == Proposal::ekf || filter.proposal == Proposal::iterated, "filter.lag", filter.lag,
                   "needs filter.proposal ekf or iterated: bootstrap and ukf know no window of poses");
     check.Require(filter.sampled == Sampled::pose, "filter.lag", filter.lag, "needs the velocity unsampled (rb2pf)");
-    check.Require(filter.weight == Weight::evidence, "filter.lag", filter.lag, "needs weight: evidence");
+    check.Require(filter.weight != Weight::importance, "filter.lag", filter.lag, "needs weight: evidence or equal");
   }
 
   const LandmarkParams& landmark = params.landmark;

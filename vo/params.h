@@ -34,6 +34,7 @@ enum class Bearing {
 enum class Weight {
   importance,  // (17) at the sample: the paper
   evidence,    // p(z_t | path) by Laplace's approximation: the same on a linear-Gaussian model, without the sample's noise
+  equal,       // all particles alike, but those that the window's images refute; drawn together, exact in mean and covariance. Needs lag > 0
 };
 
 struct FilterParams {

@@ -30,7 +30,7 @@ void ReadFilter(Section section, vo::FilterParams& params) {
   section.Read("particles", particles, Range{1, 100'000});
   section.Read("resample_below", resample_below, Range{0, 1});
   section.Read("max_iterations", max_iterations, Range{1, 1000});
-  section.ReadChoice("weight", weight, {{"importance", vo::Weight::importance}, {"evidence", vo::Weight::evidence}});
+  section.ReadChoice("weight", weight, {{"importance", vo::Weight::importance}, {"evidence", vo::Weight::evidence}, {"equal", vo::Weight::equal}});
   section.Read("lag", lag, Range{0, 100});
   section.Read("marginal_mode", marginal_mode);
   section.Read("reject_outliers", reject_outliers);

@@ -7,10 +7,19 @@
 
 #include <Eigen/LU>
 
+#include "vo/filter/exact_draws.h"
 #include "vo/filter/particle_filter.h"
+#include "vo/filter/resampling.h"
 #include "vo/geometry/so3.h"
 
 namespace vo {
+namespace {
+
+// Equal weights: a particle is refuted when the window's images are exp(50) times less likely by it than by the best one. Where the model
+// holds, the worst of 8 or of 64 particles was within 33 nats of the best in every frame; one in a wrong solution is hundreds away.
+constexpr double kRefuted = 50;
+
+}  // namespace
 
 void ParticleFilter::PredictPath(double dt) {
   const int present = static_cast<int>(steps_.size()) - 1;
@@ -57,10 +66,10 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
   }
   mixture_.clear();
   for (const Particle& particle : particles_) mixture_.push_back(ComponentOnPath(particle));
-  if (!matches.empty()) Weigh();
+  if (!matches.empty()) params_.weight == Weight::equal ? WeighEqually() : Weigh();
   Answer();
   while (static_cast<int>(steps_.size()) > params_.lag) CommitOldest();
-  if (effective_particles_ < params_.resample_below * params_.particles) Resample();
+  if (ToResample()) Resample();
 }
 
 void ParticleFilter::BuildTracks() {
@@ -110,19 +119,54 @@ void ParticleFilter::Restart() {
   }
 }
 
+void ParticleFilter::WeighEqually() {
+  std::vector<double> log_evidence;
+  for (const Particle& particle : particles_) log_evidence.push_back(particle.path.log_evidence);
+  weights_ = EqualUnlessRefuted(log_evidence, kRefuted);
+  effective_particles_ = EffectiveParticles(weights_);
+}
+
+// Equal weights: whenever a particle is refuted, another takes its place.
+bool ParticleFilter::ToResample() const {
+  if (params_.weight == Weight::equal) return std::find(weights_.begin(), weights_.end(), 0.0) != weights_.end();
+  return effective_particles_ < params_.resample_below * params_.particles;
+}
+
 void ParticleFilter::CommitOldest() {
   const MotionModel model = NearlyConstantVelocity(motion_, steps_.front().dt);
   step_ = {model.F, model.Q};
   committed_ = true;
-  for (std::uint32_t i = 0; i < particles_.size(); ++i) CommitOldest(particles_[i], i);
+  const std::vector<Pose> drawn = DrawOldest();
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) CommitOldest(particles_[i], i, drawn[i]);
   for (int& slot : anchor_slot_) slot = std::max(slot - 1, -1);
   steps_.erase(steps_.begin());
 }
 
-void ParticleFilter::CommitOldest(Particle& particle, std::uint32_t index) const {
+std::vector<Pose> ParticleFilter::DrawOldest() const {
+  std::vector<Pose> drawn;
+  if (params_.weight == Weight::equal && EnoughForExactDraws(params_.particles)) {
+    Eigen::Matrix<double, 6, Eigen::Dynamic> offsets(6, params_.particles), normals(6, params_.particles);
+    for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+      offsets.col(i) = Minus(particles_[i].path.mean[0], particles_[0].path.mean[0]);
+      for (std::uint32_t d = 0; d < 6; ++d) normals(d, i) = Normal({seed_, Stream::pose, frame_, i}, d);
+    }
+    const auto draws = ExactDraws(offsets, normals);
+    for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+      const PathGaussian& path = particles_[i].path;
+      drawn.push_back(Plus(path.mean[0], Matrix6(path.covariance.topLeftCorner<6, 6>().llt().matrixL()) * draws.col(i)));
+    }
+  } else {
+    for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+      const PathGaussian& path = particles_[i].path;
+      drawn.push_back(PoseGaussian{path.mean[0], path.covariance.topLeftCorner<6, 6>()}.Sample({seed_, Stream::pose, frame_, i}));
+    }
+  }
+  return drawn;
+}
+
+void ParticleFilter::CommitOldest(Particle& particle, std::uint32_t index, const Pose& s) const {
   PathGaussian& path = particle.path;
   const PoseGaussian oldest{path.mean[0], path.covariance.topLeftCorner<6, 6>()};
-  const Pose s = oldest.Sample({seed_, Stream::pose, frame_, index});
   const int rest = static_cast<int>(path.covariance.rows()) - 6;
   const Vector6 d = oldest.covariance.llt().solve(Minus(s, oldest.mean));
   for (int k = 1; k <= rest / 6; ++k)

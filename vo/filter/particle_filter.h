@@ -87,8 +87,11 @@ class ParticleFilter final : public Filter {
   void SolvePath(Particle& particle);
   void Restart();
   void BuildTracks();
+  void WeighEqually();
+  bool ToResample() const;
   void CommitOldest();
-  void CommitOldest(Particle& particle, std::uint32_t index) const;
+  std::vector<Pose> DrawOldest() const;
+  void CommitOldest(Particle& particle, std::uint32_t index, const Pose& drawn) const;
   BeliefComponent ComponentOnPath(const Particle& particle) const;
   ImagePrediction PredictImageOnPath(const Particle& particle, int landmark) const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vo {
 
@@ -36,6 +37,16 @@ std::vector<double> Normalised(const std::vector<double>& log_weights) {
   }
   for (double& w : weights) w = sum > 0 ? w / sum : 1.0 / static_cast<double>(weights.size());
   return weights;
+}
+
+std::vector<double> EqualUnlessRefuted(const std::vector<double>& log_evidence, double refuted) {
+  double best = -std::numeric_limits<double>::infinity();
+  for (const double e : log_evidence)
+    if (std::isfinite(e)) best = std::max(best, e);
+  std::vector<double> log_weights;
+  for (const double e : log_evidence)
+    log_weights.push_back(std::isfinite(e) && e >= best - refuted ? 0 : -std::numeric_limits<double>::infinity());
+  return Normalised(log_weights);
 }
 
 }  // namespace vo

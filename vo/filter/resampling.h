@@ -15,4 +15,7 @@ std::vector<int> SystematicAncestors(const std::vector<double>& weights, double 
 // exp(log_weights) scaled to sum 1. -inf is weight 0; if all are -inf or not finite, all become equal.
 std::vector<double> Normalised(const std::vector<double>& log_weights);
 
+// Equal weights with sum 1, 0 for those whose log evidence is more than `refuted` below the best, or not a number.
+std::vector<double> EqualUnlessRefuted(const std::vector<double>& log_evidence, double refuted);
+
 }  // namespace vo

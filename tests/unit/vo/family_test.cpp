@@ -126,6 +126,10 @@ TEST(Problems, RefuseWhatCannotBe) {
   params.filter.lag = 5;
   EXPECT_THAT(vo::Problems(params), ElementsAre(HasSubstr("filter.lag = 5 needs filter.proposal ekf or iterated")));
   params.filter.lag = 0;
+  params.filter.proposal = vo::Proposal::iterated;
+  params.filter.weight = vo::Weight::equal;
+  EXPECT_THAT(vo::Problems(params), ElementsAre(HasSubstr("filter.lag = 0 must be above 0 for filter.weight equal")));
+  params.filter.weight = vo::Weight::evidence;
   params.filter.proposal = vo::Proposal::bootstrap;
   EXPECT_THAT(vo::Problems(params), ElementsAre(HasSubstr("filter.weight must be importance")));
   params.filter.weight = vo::Weight::importance;

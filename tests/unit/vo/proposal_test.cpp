@@ -216,4 +216,10 @@ TEST(Resampling, WeightsSurviveExtremes) {
   EXPECT_NEAR(vo::EffectiveParticles({0.25, 0.25, 0.25, 0.25}), 4, 1e-12);
 }
 
+TEST(Resampling, EqualWeightsButForTheRefuted) {
+  EXPECT_EQ(vo::EqualUnlessRefuted({-1000, -1049.9, -1050.1, NAN, -INFINITY, -1003}, 50),
+            (std::vector<double>{1.0 / 3, 1.0 / 3, 0, 0, 0, 1.0 / 3}));
+  EXPECT_EQ(vo::EqualUnlessRefuted({NAN, -INFINITY}, 50), (std::vector<double>{0.5, 0.5}));
+}
+
 }  // namespace
