@@ -123,6 +123,8 @@ PointOdometry::PointOdometry(PointOdometry&&) noexcept = default;
 
 Estimate PointOdometry::Track(const PointFrame& frame) { return impl_->Process(frame); }
 
+const Filter& PointOdometry::filter() const { return *impl_->filter; }
+
 const std::vector<BeliefComponent>& PointOdometry::Mixture() const { return impl_->filter->mixture(); }
 
 std::vector<MapPoint> PointOdometry::Map() const {

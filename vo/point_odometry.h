@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "vo/filter/filter.h"
 #include "vo/filter/mixture.h"
 #include "vo/odometry.h"
 
@@ -37,6 +38,7 @@ class PointOdometry {
 
   // What the estimate is the moments of.
   const std::vector<BeliefComponent>& Mixture() const;
+  const Filter& filter() const;
   // Inverse depth of the landmarks in the map; MapPoint::id is the observation's.
   std::vector<MapPoint> Map() const;
 

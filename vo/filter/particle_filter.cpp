@@ -153,10 +153,8 @@ double ParticleFilter::UpdateLandmarks(Particle& particle, const Pose& pose, std
 }
 
 void ParticleFilter::Weigh() {
-  std::vector<double> log_weights;
-  for (const Particle& particle : particles_) log_weights.push_back(particle.log_weight);
-  weights_ = Normalised(log_weights);
-  const double peak = *std::max_element(log_weights.begin(), log_weights.end());
+  for (std::size_t i = 0; i < particles_.size(); ++i) weights_[i] = particles_[i].log_weight;
+  const double peak = Normalise(weights_);
   for (Particle& particle : particles_) particle.log_weight -= peak;
   effective_particles_ = EffectiveParticles(weights_);
 }
@@ -167,10 +165,10 @@ void ParticleFilter::Answer() {
 }
 
 void ParticleFilter::Resample() {
-  const std::vector<int> ancestors = SystematicAncestors(weights_, Uniform({seed_, Stream::resampling, frame_, 0}, 0));
+  SystematicAncestors(weights_, Uniform({seed_, Stream::resampling, frame_, 0}, 0), ancestors_);
   children_.resize(particles_.size());
-  for (std::size_t i = 0; i < ancestors.size(); ++i) {
-    children_[i] = particles_[ancestors[i]];  // into the memory of a former generation
+  for (std::size_t i = 0; i < ancestors_.size(); ++i) {
+    children_[i] = particles_[ancestors_[i]];  // into the memory of a former generation
     children_[i].log_weight = 0;
   }
   particles_.swap(children_);

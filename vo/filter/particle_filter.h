@@ -116,6 +116,7 @@ class ParticleFilter final : public Filter {
   CameraVelocityFilter step_;       // from the last sampled pose to the present
   std::vector<Particle> particles_;
   std::vector<Particle> children_;  // workspace of resampling
+  std::vector<int> ancestors_;      // workspace of resampling
   std::vector<double> weights_;     // normalised
   std::vector<int> anchor_of_;      // shared: all particles associate alike
 

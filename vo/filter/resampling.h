@@ -10,10 +10,11 @@ namespace vo {
 double EffectiveParticles(const std::vector<double>& weights);
 
 // Ancestor of each new particle: expected number of copies of i is N w_i, off by less than 1. u in [0, 1).
-std::vector<int> SystematicAncestors(const std::vector<double>& weights, double u);
+void SystematicAncestors(const std::vector<double>& weights, double u, std::vector<int>& ancestors);
 
-// exp(log_weights) scaled to sum 1. -inf is weight 0; if all are -inf or not finite, all become equal.
-std::vector<double> Normalised(const std::vector<double>& log_weights);
+// exp(log_weights) scaled to sum 1, in place. What is not finite is weight 0; where nothing is, all become equal.
+// Returns the largest finite one before, 0 without any.
+double Normalise(std::vector<double>& log_weights);
 
 // Equal weights with sum 1, 0 for those whose log evidence is more than `refuted` below the best, or not a number.
 std::vector<double> EqualUnlessRefuted(const std::vector<double>& log_evidence, double refuted);
