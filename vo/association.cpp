@@ -67,12 +67,12 @@ SearchRequest RequestFor(const Candidate& candidate, const Filter& filter, const
 }  // namespace
 
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
-                      BriskField& field, int border_px, const Params& params) {
+                      const BriskImage& brisk, int border_px, const Params& params) {
   const std::vector<Candidate> candidates = FindCandidates(filter, records, camera, border_px, params);
   std::vector<SearchRequest> requests;
   for (const Candidate& c : candidates)
     requests.push_back(RequestFor(c, filter, records[c.landmark], camera, params.features.sigma_px));
-  const auto found = FindFeatures(requests, grey, field, params.features);
+  const auto found = FindFeatures(requests, grey, brisk, params.features);
 
   std::vector<Match> matches;
   for (std::size_t i = 0; i < candidates.size(); ++i)

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "vo/features/brisk_field.h"
+#include "vo/features/brisk.h"
 #include "vo/filter/filter.h"
 #include "vo/geometry/camera.h"
 #include "vo/map/landmark_record.h"
@@ -28,8 +28,8 @@ struct Association {
   double nis = 0;                  // sum of the matches' mahalanobis_sq
 };
 
-// After filter.Predict. `records` are in the order of the filter's landmarks; `field` holds the image `grey` (CV_8UC1).
+// After filter.Predict. `records` are in the order of the filter's landmarks; `brisk` holds the image `grey` (CV_8UC1).
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
-                      BriskField& field, int border_px, const Params& params);
+                      const BriskImage& brisk, int border_px, const Params& params);
 
 }  // namespace vo

@@ -29,8 +29,8 @@ struct Odometry::Impl {
       : camera(camera_),
         params(Checked(params_)),
         filter(MakeFilter(params, prior, seed)),
-        brisk(params.features.brisk_size_px),
-        border_px(std::max(brisk.border_px(), Patch::kRadius + 1)) {}
+        first_sampler(FirstSampler(params.features)),
+        border_px(std::max(first_sampler.margin(), Patch::kRadius + 1)) {}
 
   Estimate Process(const Frame& frame);
   void UpdateScores(const Association& association);
@@ -41,7 +41,8 @@ struct Odometry::Impl {
   Camera camera;
   Params params;
   std::unique_ptr<Filter> filter;
-  BriskField brisk;
+  BriskSampler first_sampler;
+  BriskImage brisk;
   int border_px;
   std::vector<LandmarkRecord> records;  // in the order of the filter's landmarks
   std::vector<FeatureView> views;
@@ -61,7 +62,7 @@ Estimate Odometry::Impl::Process(const Frame& frame) {
 
   if (last_stamp_ns) {
     filter->Predict(static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9);
-    brisk.SetImage(grey);
+    brisk.Set(grey);
     Association association = Associate(*filter, records, camera, grey, brisk, border_px, params);
     diagnostics.ms_matching = watch.Lap();
     filter->Update(association.matches);
@@ -73,7 +74,7 @@ Estimate Odometry::Impl::Process(const Frame& frame) {
     views = std::move(association.views);
     diagnostics.ms_filter = watch.Lap();
   } else {
-    brisk.SetImage(grey);
+    brisk.Set(grey);
   }
   last_stamp_ns = frame.stamp_ns;
 
@@ -122,15 +123,12 @@ void Odometry::Impl::AddFeatures(const cv::Mat& grey) {
   for (const FeatureView& view : views)
     if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
   const std::vector<Eigen::Vector2i> corners = DetectCorners(grey, occupied, border_px, params.features);
-  brisk.Compute(corners);
   std::vector<Eigen::Vector2d> rays;
   std::vector<Eigen::Matrix2d> noises;
   for (const Eigen::Vector2i& corner : corners) {
-    const Descriptor* descriptor = brisk.At(corner);
-    if (!descriptor) continue;
     const Eigen::Vector2d pixel = corner.cast<double>();
     LandmarkRecord record;
-    record.appearance = {*descriptor, CutPatch(grey, corner)};
+    record.appearance = {brisk.Describe(corner, first_sampler), CutPatch(grey, corner)};
     record.id = next_id++;
     record.score = params.score.initial;
     records.push_back(record);

@@ -76,6 +76,13 @@ struct ScoreParams {
   int grace_frames = 0;            // a landmark younger than this is not deleted for its score (0: the paper)
 };
 
+// How the pattern lies when a landmark is looked for again: from the predicted pose, never estimated from the image.
+enum class BriskWarp {
+  none,        // as in the first view
+  similarity,  // turned and scaled
+  affine,      // and sheared
+};
+
 struct FeatureParams {
   double sigma_px = 0.7;           // standard deviation of a matched pixel, per axis [px] (the paper, to whole pixels: 2)
   int grid_columns = 8, grid_rows = 6;
@@ -84,7 +91,8 @@ struct FeatureParams {
   int fast_threshold_min = 7;      // ... to this at the least
   double min_distance_px = 10;     // between a new corner and any feature in the image
   double min_cornerness = 0.0;     // 0 ... 1, of a new feature: above 0 refuses straight edges, along which matches slide (0: the paper)
-  double brisk_size_px = 12;       // diameter given to BRISK: larger is more distinct, less invariant
+  double brisk_size_px = 12;       // diameter of BRISK's pattern in OpenCV's terms: larger is more distinct, less invariant
+  BriskWarp brisk_warp = BriskWarp::affine;
   double max_hamming = 0.15;       // of 512 bits
   int window_quick_px = 5;         // looked at first; believed only when the best pixel is not on its border. 1: the paper, without it
   int window_px = 9;               // side of the search window about the prediction ...

@@ -65,7 +65,7 @@ void ReadScore(Section section, vo::ScoreParams& params) {
 
 void ReadFeatures(Section section, vo::FeatureParams& params) {
   auto& [sigma_px, grid_columns, grid_rows, per_cell, fast_threshold_start, fast_threshold_min, min_distance_px,
-         min_cornerness, brisk_size_px, max_hamming, window_quick_px, window_px, window_enlarged_px, window_lost_px, subpixel,
+         min_cornerness, brisk_size_px, brisk_warp, max_hamming, window_quick_px, window_px, window_enlarged_px, window_lost_px, subpixel,
          max_view_angle_deg, max_baseline_ratio, max_searched] = params;
   section.Read("sigma", sigma_px, Unit::pixel, Range::Positive());
   section.Read("grid_columns", grid_columns, Range::AtLeast(1));
@@ -76,6 +76,7 @@ void ReadFeatures(Section section, vo::FeatureParams& params) {
   section.Read("min_distance", min_distance_px, Unit::pixel, Range::AtLeast(0));
   section.Read("min_cornerness", min_cornerness, Range{0, 1});
   section.Read("brisk_size", brisk_size_px, Unit::pixel, Range::Positive());
+  section.ReadChoice("brisk_warp", brisk_warp, {{"none", vo::BriskWarp::none}, {"similarity", vo::BriskWarp::similarity}, {"affine", vo::BriskWarp::affine}});
   section.Read("max_hamming", max_hamming, Range{0, 1});
   section.Read("window_quick", window_quick_px, Range::AtLeast(1));
   section.Read("window", window_px, Range::AtLeast(1));

@@ -3,22 +3,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
 namespace vo {
 namespace {
 
 constexpr double kMaxRefinementPx = 1.5;   // further than this the registration has left the matched corner
 constexpr double kMinCorrelation = 0.6;
+constexpr double kMaxZoom = 4;             // a predicted change of scale beyond it is not believed
 constexpr double kLostSigmas = 2.5;        // of the prediction that the largest window should cover
 
 Eigen::Vector2i Rounded(const Eigen::Vector2d& p) {
   return {static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))};
 }
 
-template <class Visit>
-void ForEachPixel(const Eigen::Vector2i& centre, int side, Visit visit) {
-  const int half = side / 2;
-  for (int y = centre.y() - half; y <= centre.y() + half; ++y)
-    for (int x = centre.x() - half; x <= centre.x() + half; ++x) visit(Eigen::Vector2i(x, y));
+// How the pattern of a landmark lies in the present image.
+Eigen::Matrix2d PatternMap(const Eigen::Matrix2d& warp, const FeatureParams& params) {
+  const double scale = params.brisk_size_px / kBriskBasicDiameter;
+  const double determinant = warp.determinant();
+  const bool usable = determinant > 1 / (kMaxZoom * kMaxZoom) && determinant < kMaxZoom * kMaxZoom;
+  if (params.brisk_warp == BriskWarp::none || !usable) return scale * Eigen::Matrix2d::Identity();
+  if (params.brisk_warp == BriskWarp::affine) return scale * warp;
+  const double angle = std::atan2(warp(1, 0) - warp(0, 1), warp(0, 0) + warp(1, 1));
+  return scale * std::sqrt(determinant) * Eigen::Rotation2Dd(angle).toRotationMatrix();
 }
 
 // The window that the prediction's own uncertainty asks for; nothing beyond the enlarged window while that is small.
@@ -28,19 +36,14 @@ int LostWindow(const Eigen::Matrix2d& S, const FeatureParams& params) {
   return std::min(side, params.window_lost_px);
 }
 
-std::optional<Eigen::Vector2i> BestPixel(const SearchRequest& request, int side, const BriskField& field, int max_distance) {
-  std::optional<Eigen::Vector2i> best;
-  int best_distance = max_distance;
-  ForEachPixel(Rounded(request.predicted), side, [&](const Eigen::Vector2i& p) {
-    const Descriptor* descriptor = field.At(p);
-    if (!descriptor) return;
-    const int distance = HammingDistance(*descriptor, request.appearance->descriptor);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = p;
-    }
-  });
-  return best;
+std::optional<Eigen::Vector2i> BestPixel(const SearchRequest& request, const BriskSampler& sampler, int side, const BriskImage& brisk,
+                                         int max_distance, std::vector<std::uint16_t>& distances) {
+  const Eigen::Vector2i centre = Rounded(request.predicted);
+  brisk.Distances(request.appearance->descriptor, sampler, centre, side, distances);
+  const auto best = std::min_element(distances.begin(), distances.end());
+  if (*best >= max_distance) return std::nullopt;
+  const int at = static_cast<int>(best - distances.begin());
+  return Eigen::Vector2i(centre.x() - side / 2 + at % side, centre.y() - side / 2 + at / side);
 }
 
 bool OnBorder(const Eigen::Vector2i& pixel, const Eigen::Vector2i& centre, int side) {
@@ -49,42 +52,29 @@ bool OnBorder(const Eigen::Vector2i& pixel, const Eigen::Vector2i& centre, int s
 
 }  // namespace
 
+BriskSampler FirstSampler(const FeatureParams& params) { return BriskSampler(PatternMap(Eigen::Matrix2d::Identity(), params)); }
+
 std::vector<std::optional<Eigen::Vector2d>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& grey,
-                                                         BriskField& field, const FeatureParams& params) {
-  const int max_distance = static_cast<int>(std::lround(params.max_hamming * 512));
+                                                         const BriskImage& brisk, const FeatureParams& params) {
+  const int max_distance = static_cast<int>(std::lround(params.max_hamming * kBriskPairs));
   std::vector<std::optional<Eigen::Vector2d>> found(requests.size());
-  std::vector<int> searched(requests.size(), 0);  // side of the window so far
-  enum Stage { quick, window, enlarged, lost, end };
-  for (int stage = quick; stage < end; ++stage) {
-    const auto side_of = [&](std::size_t i) {
-      switch (stage) {
-        case quick: return params.window_quick_px;
-        case window: return params.window_px;
-        case enlarged: return params.window_enlarged_px;
-        default: return LostWindow(requests[i].S, params);
-      }
-    };
-    std::vector<std::size_t> active;
-    std::vector<Eigen::Vector2i> pixels;
-    for (std::size_t i = 0; i < requests.size(); ++i) {
-      if (found[i] || side_of(i) <= searched[i]) continue;
-      searched[i] = side_of(i);
-      active.push_back(i);
-      ForEachPixel(Rounded(requests[i].predicted), searched[i], [&](const Eigen::Vector2i& p) { pixels.push_back(p); });
-    }
-    field.Compute(pixels);
-    for (const std::size_t i : active) {
-      const auto pixel = BestPixel(requests[i], searched[i], field, max_distance);
-      if (!pixel || (stage == quick && OnBorder(*pixel, Rounded(requests[i].predicted), searched[i]))) continue;
+  std::vector<std::uint16_t> distances;
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    const SearchRequest& request = requests[i];
+    const BriskSampler sampler(PatternMap(request.warp, params));
+    int searched = 0;
+    for (const int side : {params.window_quick_px, params.window_px, params.window_enlarged_px, LostWindow(request.S, params)}) {
+      if (side <= searched) continue;
+      const bool quick = searched == 0 && side < params.window_px;
+      searched = side;
+      const auto pixel = BestPixel(request, sampler, side, brisk, max_distance, distances);
+      if (!pixel || (quick && OnBorder(*pixel, Rounded(request.predicted), side))) continue;
       found[i] = pixel->cast<double>();
+      break;
     }
-  }
-  if (params.subpixel) {
-    for (std::size_t i = 0; i < requests.size(); ++i) {
-      if (!found[i]) continue;
-      const auto refined = Register(requests[i].appearance->patch, requests[i].warp, grey, *found[i], kMaxRefinementPx);
-      if (refined && refined->correlation > kMinCorrelation) found[i] = refined->pixel;
-    }
+    if (!found[i] || !params.subpixel) continue;
+    const auto refined = Register(request.appearance->patch, request.warp, grey, *found[i], kMaxRefinementPx);
+    if (refined && refined->correlation > kMinCorrelation) found[i] = refined->pixel;
   }
   return found;
 }

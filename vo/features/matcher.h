@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "vo/features/brisk_field.h"
+#include "vo/features/brisk.h"
 #include "vo/features/patch.h"
 #include "vo/params.h"
 
@@ -25,8 +25,11 @@ struct SearchRequest {
   Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();           // d(present pixel)/d(pixel of the first view)
 };
 
-// Where each request was found [px], in its order. `field` holds the present image; `grey` is the same image.
+// How a corner is described when it is first seen: as it lies.
+BriskSampler FirstSampler(const FeatureParams& params);
+
+// Where each request was found [px], in its order. `brisk` holds the image `grey` (CV_8UC1).
 std::vector<std::optional<Eigen::Vector2d>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& grey,
-                                                         BriskField& field, const FeatureParams& params);
+                                                         const BriskImage& brisk, const FeatureParams& params);
 
 }  // namespace vo

@@ -1,11 +1,16 @@
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <gtest/gtest.h>
+#include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "tests/unit/vo/texture.h"
+#include "vo/features/brisk.h"
 #include "vo/features/corner_detector.h"
 #include "vo/features/matcher.h"
 
@@ -45,31 +50,97 @@ TEST(CornerDetector, FindsNothingOnABlankWallAndNearlyBlankOnlyWithALowThreshold
   EXPECT_GE(vo::DetectCorners(faint, {}, 20, {}).size(), 2u);
 }
 
-TEST(BriskField, EqualsOpenCvPixelByPixelAndAsksOnce) {
-  const cv::Mat image = Texture(2).Image(200, 160, {0, 0});
-  vo::BriskField field(12);
-  field.SetImage(image);
-  const std::vector<Vector2i> pixels = {{80, 70}, {81, 70}, {80, 70}, {5, 5}, {-3, 500}, {100, 90}};
-  field.Compute(pixels);
-  field.Compute(pixels);
-  auto brisk = cv::BRISK::create();
-  for (const Vector2i& p : {Vector2i(80, 70), Vector2i(81, 70), Vector2i(100, 90)}) {
-    std::vector<cv::KeyPoint> keypoints = {cv::KeyPoint(static_cast<float>(p.x()), static_cast<float>(p.y()), 12)};
-    cv::Mat row;
-    brisk->compute(image, keypoints, row);
-    ASSERT_NE(field.At(p), nullptr);
-    EXPECT_EQ(std::memcmp(field.At(p)->data(), row.data, 64), 0);
+// OpenCV's pattern at a rotation and scale of its tables: what it estimates from the image is handed to ours.
+Matrix2d OpenCvMap(const cv::KeyPoint& keypoint) {
+  const double step = std::log2(30.0) / 64;
+  const int scale = std::max(static_cast<int>(std::log2(keypoint.size / 7.2) / step + 0.5), 0);
+  const int rotation = static_cast<int>(1024 * (keypoint.angle / 360.0) + 0.5) % 1024;
+  return std::exp2(scale * step) * Eigen::Rotation2Dd(rotation * 2 * M_PI / 1024).toRotationMatrix();
+}
+
+// The mean grey over a square, in 1024ths: every pixel under it with the share that is.
+double MeanOverSquare(const cv::Mat& image, const Vector2d& centre, double half) {
+  const auto share = [&](int pixel, double at) {
+    return std::max(0.0, std::min(pixel + 0.5, at + half) - std::max(pixel - 0.5, at - half));
+  };
+  double sum = 0;
+  for (int y = static_cast<int>(centre.y() - half); y <= centre.y() + half + 1; ++y)
+    for (int x = static_cast<int>(centre.x() - half); x <= centre.x() + half + 1; ++x)
+      sum += share(x, centre.x()) * share(y, centre.y()) * image.at<std::uint8_t>(y, x);
+  return std::floor(1024 * sum / (4 * half * half) + 0.5);
+}
+
+// Where both define the same thing: the rotation and scale that OpenCV found. What is left is that OpenCV takes the two lower corners of
+// larger squares one pixel too far right and one too high ("ptr += dy * imagecols + 1"), and weights in single precision about the
+// image's corner; ours are about the pixel.
+TEST(Brisk, IsBriskAndNearlyOpenCvs) {
+  int compared = 0, theirs_off = 0, ours_off = 0, apart = 0;
+  for (const unsigned seed : {2u, 3u}) {
+    const cv::Mat image = Texture(seed).Image(320, 240, {0, 0});
+    vo::BriskImage brisk;
+    brisk.Set(image);
+    for (const float size : {8.f, 12.f, 20.f}) {
+      std::vector<cv::KeyPoint> keypoints;
+      for (int y = 60; y < 180; y += 7)
+        for (int x = 60; x < 260; x += 5) keypoints.emplace_back(static_cast<float>(x), static_cast<float>(y), size);
+      cv::Mat rows;
+      cv::BRISK::create()->compute(image, keypoints, rows);
+      ASSERT_GT(rows.rows, 500);
+      for (int i = 0; i < rows.rows; ++i) {
+        const cv::KeyPoint& k = keypoints[static_cast<std::size_t>(i)];
+        const Vector2i pixel(static_cast<int>(k.pt.x), static_cast<int>(k.pt.y));
+        const Matrix2d map = OpenCvMap(k);
+        std::array<double, vo::kBriskPoints> means;
+        for (std::size_t n = 0; n < means.size(); ++n) {
+          const vo::BriskPoint& point = vo::BriskPattern()[n];
+          means[n] = MeanOverSquare(image, pixel.cast<double>() + map * Vector2d(point.x, point.y), std::sqrt(map.determinant()) * point.half_width);
+        }
+        vo::Descriptor written_out{}, theirs;
+        for (std::size_t n = 0; n < 512; ++n) {
+          const vo::BriskPair pair = vo::BriskComparisons()[n];
+          if (means[pair.first] > means[pair.second]) written_out[n / 64] |= std::uint64_t{1} << (n % 64);
+        }
+        std::memcpy(theirs.data(), rows.ptr(i), sizeof theirs);
+        const vo::Descriptor ours = brisk.Describe(pixel, vo::BriskSampler(map));
+        compared += 512;
+        theirs_off += vo::HammingDistance(theirs, written_out);
+        ours_off += vo::HammingDistance(ours, written_out);
+        apart += vo::HammingDistance(ours, theirs);
+      }
+    }
   }
-  EXPECT_EQ(field.At({5, 5}), nullptr);
-  EXPECT_EQ(field.At({-3, 500}), nullptr);
-  EXPECT_EQ(field.At({82, 70}), nullptr);
-  // The border it states is the border there is.
-  const int b = field.border_px();
-  field.Compute({{b, b}, {b - 1, b}, {199 - b, 159 - b}, {200 - b, 80}});
-  EXPECT_NE(field.At({b, b}), nullptr);
-  EXPECT_EQ(field.At({b - 1, b}), nullptr);
-  EXPECT_NE(field.At({199 - b, 159 - b}), nullptr);
-  EXPECT_EQ(field.At({200 - b, 80}), nullptr);
+  const auto share = [&](int different) { return different / static_cast<double>(compared); };
+  std::printf("of %d bits differ: OpenCV's from BRISK %.1e, ours %.1e, ours from OpenCV's %.1e\n", compared, share(theirs_off), share(ours_off),
+              share(apart));
+  EXPECT_LT(share(ours_off), 1e-3);
+  EXPECT_LT(share(apart), 0.01);
+}
+
+TEST(Brisk, DistancesOverAWindowAreThoseOfItsPixelsWithEveryInstructionSet) {
+  const cv::Mat image = Texture(4).Image(200, 160, {0, 0});
+  vo::BriskImage brisk;
+  brisk.Set(image);
+  Matrix2d map;
+  map << 1.9, 0.4, -0.5, 1.6;
+  for (const Matrix2d& m : {Matrix2d(1.6667 * Matrix2d::Identity()), map, Matrix2d(0.3 * map)}) {
+    const vo::BriskSampler sampler(m);
+    const vo::Descriptor wanted = brisk.Describe({100, 80}, sampler);
+    for (const int side : {1, 5, 9, 17, 49, 151}) {
+      for (const Vector2i& centre : {Vector2i(100, 80), Vector2i(25, 150), Vector2i(195, 3)}) {
+        std::vector<std::uint16_t> distances;
+        for (const vo::InstructionSet set : vo::AvailableInstructionSets()) {
+          brisk.Distances(set, wanted, sampler, centre, side, distances);
+          ASSERT_EQ(distances.size(), static_cast<std::size_t>(side * side));
+          for (int at = 0; at < side * side; ++at) {
+            const Vector2i p(centre.x() - side / 2 + at % side, centre.y() - side / 2 + at / side);
+            const int expected = brisk.Describable(p, sampler) ? vo::HammingDistance(wanted, brisk.Describe(p, sampler)) : vo::BriskImage::kNone;
+            ASSERT_EQ(distances[static_cast<std::size_t>(at)], expected) << vo::Name(set) << ' ' << side << ' ' << p.transpose();
+          }
+        }
+      }
+    }
+  }
+  EXPECT_THROW(brisk.Describe({3, 3}, vo::BriskSampler(map)), std::invalid_argument);
 }
 
 TEST(Hamming, CountsBits) {
@@ -129,18 +200,17 @@ TEST(Matcher, FindsShiftsThatFitTheWindowsAndNoOthers) {
   const cv::Mat first = texture.Image(320, 240, {0, 0});
   const auto corners = vo::DetectCorners(first, {}, 60, {.grid_columns = 4, .grid_rows = 3, .per_cell = 2});
   ASSERT_GE(corners.size(), 20u);
-  vo::BriskField field(12);
-  field.SetImage(first);
-  field.Compute(corners);
+  vo::BriskImage brisk;
+  brisk.Set(first);
   std::vector<vo::Appearance> appearances;
-  for (const Vector2i& c : corners) appearances.push_back({*field.At(c), vo::CutPatch(first, c)});
+  for (const Vector2i& c : corners) appearances.push_back({brisk.Describe(c, vo::FirstSampler({})), vo::CutPatch(first, c)});
   const auto found_share = [&](const Vector2d& shift, double sigma) {
     const cv::Mat second = texture.Image(320, 240, -shift);
-    field.SetImage(second);
+    brisk.Set(second);
     std::vector<vo::SearchRequest> requests;
     for (std::size_t i = 0; i < corners.size(); ++i)
       requests.push_back({&appearances[i], corners[i].cast<double>(), sigma * sigma * Matrix2d::Identity()});
-    const auto found = vo::FindFeatures(requests, second, field, {});
+    const auto found = vo::FindFeatures(requests, second, brisk, {});
     int right = 0;
     for (std::size_t i = 0; i < corners.size(); ++i)
       right += found[i] && (*found[i] - corners[i].cast<double>() - shift).norm() < 0.1;

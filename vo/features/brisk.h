@@ -1,0 +1,82 @@
+// Purpose: BRISK descriptors, and their distance from a given one at every pixel of a window: what Algorithm 1, line 3 asks for.
+// Source:  algorithm, section 7. The descriptor is OpenCV's bit for bit at the same rotation and scale (tested), but neither is estimated
+//          from the image: a corner is described as it lies, and looked for as the predicted pose turns and scales it.
+// Method:  in a window every pixel has the same pattern, so that a place of the pattern is one box filter with fixed weights along a row
+//          of pixels (integral image), and a comparison is one instruction for 8, 16 or 32 of them. Which instructions the machine has is found
+//          out when the program starts; the numbers are integers and the same with all of them.
+// Units:   pixels.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "vo/features/brisk_pattern.h"
+
+namespace vo {
+
+using Descriptor = std::array<std::uint64_t, 8>;
+
+inline int HammingDistance(const Descriptor& a, const Descriptor& b) {
+  int distance = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) distance += std::popcount(a[i] ^ b[i]);
+  return distance;
+}
+
+// The pattern under a linear map, prepared for sampling at whole pixels.
+class BriskSampler {
+ public:
+  // `map`: from the pattern at scale 1 to the image. Squares stay upright and grow with the root of its determinant, to half a pixel of
+  // half-width at the least.
+  explicit BriskSampler(const Eigen::Matrix2d& map);
+
+  // Pixels nearer to the edge of the image than this cannot be described.
+  int margin() const { return margin_; }
+
+  // A square with fractional borders, relative to the pixel: weights of its corners, edges and inside (fixed point).
+  struct Box {
+    int left, top, width, height;  // of the first corner; of the inside
+    int corner_00, corner_10, corner_11, corner_01;  // (left, top), (right, top), (right, bottom), (left, bottom)
+    int edge_left, edge_top, edge_right, edge_bottom;
+    int inside, total;
+  };
+  const std::array<Box, kBriskPoints>& boxes() const { return boxes_; }
+
+ private:
+  std::array<Box, kBriskPoints> boxes_;
+  int margin_ = 0;
+};
+
+enum class InstructionSet { base, avx2, avx512 };
+const char* Name(InstructionSet set);
+// What this machine has, in rising order.
+std::vector<InstructionSet> AvailableInstructionSets();
+
+// An image ready for sampling.
+class BriskImage {
+ public:
+  static constexpr std::uint16_t kNone = 0xffff;
+
+  void Set(const cv::Mat& grey);  // CV_8UC1, copied
+  bool Describable(const Eigen::Vector2i& pixel, const BriskSampler& sampler) const;
+  // Throws std::invalid_argument where the pixel is not describable.
+  Descriptor Describe(const Eigen::Vector2i& pixel, const BriskSampler& sampler) const;
+  // Hamming distance from `descriptor` of each pixel of the `side` x `side` window about `centre` (side odd), row by row; kNone where it
+  // cannot be described.
+  void Distances(const Descriptor& descriptor, const BriskSampler& sampler, const Eigen::Vector2i& centre, int side,
+                 std::vector<std::uint16_t>& distances) const;
+  // The same with the instruction set told.
+  void Distances(InstructionSet set, const Descriptor& descriptor, const BriskSampler& sampler, const Eigen::Vector2i& centre, int side,
+                 std::vector<std::uint16_t>& distances) const;
+
+ private:
+  // Rows are longer than the image's, so that whole vectors can be read at its right edge.
+  cv::Mat grey_, integral_;
+  int width_ = 0, height_ = 0;
+};
+
+}  // namespace vo
