@@ -14,15 +14,19 @@
 namespace vo {
 namespace {
 
-constexpr int kLanes = 8;    // pixels sampled at once; rows of a window are padded to a multiple of it
-constexpr int kPad = kLanes;  // columns behind the image that may be read, for nothing
+constexpr int kFraction = 14;   // bits of a weighted sum behind 1/256 of a grey level; the weights of a box sum to 256 << kFraction
+constexpr int kLanes = 8;       // pixels that are sampled at once: so many columns behind the image may be read, for nothing
 
 template <class T, int Bytes>
 struct VectorOf {
   typedef T type __attribute__((vector_size(Bytes)));
 };
-using Int8Lanes = VectorOf<std::int32_t, 4 * kLanes>::type;
-using Float8Lanes = VectorOf<float, 4 * kLanes>::type;
+template <int Lanes>
+using Ints = typename VectorOf<std::int32_t, 4 * Lanes>::type;
+template <int Lanes>
+using Floats = typename VectorOf<float, 4 * Lanes>::type;
+template <int Lanes>
+using Words = typename VectorOf<std::int16_t, 2 * Lanes>::type;
 
 template <class Vector>
 [[gnu::always_inline]] inline Vector Load(const void* from) {
@@ -31,61 +35,57 @@ template <class Vector>
   return v;
 }
 
-[[gnu::always_inline]] inline Int8Lanes Widen(const std::uint8_t* from) {
-  typedef std::uint8_t Bytes __attribute__((vector_size(kLanes)));
-  return __builtin_convertvector(Load<Bytes>(from), Int8Lanes);
-}
-
-// Mean grey over the box at eight neighbouring pixels, of which `grey` and `sum` are the first's corner (left, top) in image and
-// integral image: sums weighted in fixed point, divided with rounding. In 256ths of a grey level, below 65536.
-[[gnu::always_inline]] inline Int8Lanes Mean(const BriskSampler::Box& box, const std::uint8_t* grey, std::size_t grey_step,
-                                             const std::int32_t* sum, std::size_t sum_step) {
-  const std::uint8_t* below = grey + static_cast<std::size_t>(box.height + 1) * grey_step;
-  Int8Lanes total = box.corner_00 * Widen(grey) + box.corner_10 * Widen(grey + box.width + 1) +
-                    box.corner_11 * Widen(below + box.width + 1) + box.corner_01 * Widen(below);
-  // Rows of the integral image above and below the upper edge, and above and below the lower one; four columns likewise.
+// Mean grey over the box at neighbouring pixels, of which `sum` is the first's corner (left, top) in the integral image: sums weighted in
+// fixed point, rounded. In 256ths of a grey level, below 65536.
+template <int Lanes>
+[[gnu::always_inline]] inline Ints<Lanes> Mean(const BriskSampler::Box& box, const std::int32_t* sum, std::size_t step) {
+  using Vector = Ints<Lanes>;
+  // Three strips of rows: first, inside, last; in each of them the sums up to four columns.
   const std::int32_t* r0 = sum;
-  const std::int32_t* r1 = r0 + sum_step;
-  const std::int32_t* r2 = r1 + static_cast<std::size_t>(box.height) * sum_step;
-  const std::int32_t* r3 = r2 + sum_step;
-  const int c1 = 1, c2 = 1 + box.width, c3 = 2 + box.width;
-  const Int8Lanes i11 = Load<Int8Lanes>(r1 + c1), i12 = Load<Int8Lanes>(r1 + c2);
-  const Int8Lanes i21 = Load<Int8Lanes>(r2 + c1), i22 = Load<Int8Lanes>(r2 + c2);
-  total += box.edge_top * (i12 - i11 - Load<Int8Lanes>(r0 + c2) + Load<Int8Lanes>(r0 + c1));
-  total += box.edge_bottom * (Load<Int8Lanes>(r3 + c2) - Load<Int8Lanes>(r3 + c1) - i22 + i21);
-  total += box.edge_left * (i21 - i11 - Load<Int8Lanes>(r2) + Load<Int8Lanes>(r1));
-  total += box.edge_right * (Load<Int8Lanes>(r2 + c3) - Load<Int8Lanes>(r1 + c3) - i22 + i12);
-  total += box.inside * (i22 - i21 - i12 + i11);
-  total += box.total / 2;
-  // total / box.total, rounded down exactly: the quotient in floating point is off by one at most.
-  Int8Lanes quotient = __builtin_convertvector(__builtin_convertvector(total, Float8Lanes) * (1.0f / static_cast<float>(box.total)), Int8Lanes);
-  const Int8Lanes rest = total - quotient * box.total;
-  quotient += (rest < 0) - (rest >= box.total);
-  return quotient;
+  const std::int32_t* r1 = r0 + step;
+  const std::int32_t* r2 = r1 + static_cast<std::size_t>(box.height) * step;
+  const std::int32_t* r3 = r2 + step;
+  Vector first[4], inside[4], last[4];
+  const int columns[4] = {0, 1, 1 + box.width, 2 + box.width};
+  for (int c = 0; c < 4; ++c) {
+    const Vector i1 = Load<Vector>(r1 + columns[c]), i2 = Load<Vector>(r2 + columns[c]);
+    first[c] = i1 - Load<Vector>(r0 + columns[c]);
+    inside[c] = i2 - i1;
+    last[c] = Load<Vector>(r3 + columns[c]) - i2;
+  }
+  const Vector total = box.corner_00 * (first[1] - first[0]) + box.edge_top * (first[2] - first[1]) + box.corner_10 * (first[3] - first[2]) +
+                       box.edge_left * (inside[1] - inside[0]) + box.inside * (inside[2] - inside[1]) + box.edge_right * (inside[3] - inside[2]) +
+                       box.corner_01 * (last[1] - last[0]) + box.edge_bottom * (last[2] - last[1]) + box.corner_11 * (last[3] - last[2]);
+  return (total + (1 << (kFraction - 1))) >> kFraction;
 }
 
-struct Window {
-  const std::uint8_t* grey;     // of the window's first pixel
+// Neighbouring pixels of a row, ready to be read: where the first lies in the integral image, and where its samples go.
+struct Row {
   const std::int32_t* sum;
-  std::size_t grey_step, sum_step;
-  int width, height;
-  int stride() const { return (width + kLanes - 1) / kLanes * kLanes; }
+  int at, width;
 };
 
-// samples[point][pixel of the padded window], less 32768.
-[[gnu::always_inline]] inline void Sample(const Window& window, const BriskSampler& sampler, int pixels, std::int16_t* samples) {
-  const int stride = window.stride();
+struct Region {
+  std::span<const Row> rows;
+  std::size_t step;  // of the integral image
+  int pixels;  // room of each point's samples
+};
+
+constexpr int Padded(int width) { return (width + kLanes - 1) / kLanes * kLanes; }
+
+// samples[block of Width pixels][point][pixel], less 32768: what is compared at once lies together.
+template <int Width>
+[[gnu::always_inline]] inline void Sample(const Region& region, const BriskSampler& sampler, std::int16_t* samples) {
+  static_assert(Width % kLanes == 0);
   for (int n = 0; n < kBriskPoints; ++n) {
-    const BriskSampler::Box& box = sampler.boxes()[static_cast<std::size_t>(n)];
-    std::int16_t* out = samples + static_cast<std::ptrdiff_t>(n) * pixels;
-    for (int y = 0; y < window.height; ++y) {
-      const std::uint8_t* grey = window.grey + (y + box.top) * static_cast<std::ptrdiff_t>(window.grey_step) + box.left;
-      const std::int32_t* sum = window.sum + (y + box.top) * static_cast<std::ptrdiff_t>(window.sum_step) + box.left;
-      for (int x = 0; x < stride; x += kLanes) {
-        typedef std::int16_t Words __attribute__((vector_size(2 * kLanes)));
-        const Words mean =
-            __builtin_convertvector(Mean(box, grey + x, window.grey_step, sum + x, window.sum_step) - 32768, Words);
-        std::memcpy(out + y * stride + x, &mean, sizeof mean);
+    const BriskSampler::Box box = sampler.boxes()[static_cast<std::size_t>(n)];
+    const auto offset = box.top * static_cast<std::ptrdiff_t>(region.step) + box.left;
+    for (const Row& row : region.rows) {
+      for (int x = 0; x < row.width; x += kLanes) {
+        const Words<kLanes> mean =
+            __builtin_convertvector(Mean<kLanes>(box, row.sum + offset + x, region.step) - 32768, Words<kLanes>);
+        const int at = row.at + x;
+        std::memcpy(samples + (at / Width * kBriskPoints + n) * Width + at % Width, &mean, sizeof mean);
       }
     }
   }
@@ -94,39 +94,38 @@ struct Window {
 // Comparisons for `Width` pixels at a time: a comparison is 0 or -1 per pixel, and differs from the wanted bit (0 or -1) by -1.
 template <int Width>
 [[gnu::always_inline]] inline void Compare(const std::int16_t* samples, int pixels, const std::int16_t* wanted, std::uint16_t* distances) {
-  using Words = typename VectorOf<std::int16_t, 2 * Width>::type;
-  const auto& pairs = BriskComparisons();
-  for (int at = 0; at < pixels; at += Width) {
-    Words count = {};
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-      const Words a = Load<Words>(samples + static_cast<std::ptrdiff_t>(pairs[k].first) * pixels + at);
-      const Words b = Load<Words>(samples + static_cast<std::ptrdiff_t>(pairs[k].second) * pixels + at);
-      count -= static_cast<Words>(a > b) ^ wanted[k];
+  using Vector = Words<Width>;
+  const BriskPair* pairs = BriskComparisons().data();
+  for (int at = 0; at < pixels; at += Width, samples += kBriskPoints * Width) {
+    Vector count = {};
+    for (int k = 0; k < kBriskPairs; ++k) {
+      const Vector a = Load<Vector>(samples + pairs[k].first * Width), b = Load<Vector>(samples + pairs[k].second * Width);
+      count -= static_cast<Vector>(a > b) ^ wanted[k];
     }
     std::memcpy(distances + at, &count, sizeof count);
   }
 }
 
-using Kernel = void (*)(const Window&, const BriskSampler&, const std::int16_t* wanted, int pixels, std::int16_t* samples, std::uint16_t* distances);
+using Kernel = void (*)(const Region&, const BriskSampler&, const std::int16_t* wanted, std::int16_t* samples, std::uint16_t* distances);
 
-void BaseKernel(const Window& window, const BriskSampler& sampler, const std::int16_t* wanted, int pixels, std::int16_t* samples,
+void BaseKernel(const Region& region, const BriskSampler& sampler, const std::int16_t* wanted, std::int16_t* samples,
                 std::uint16_t* distances) {
-  Sample(window, sampler, pixels, samples);
-  Compare<8>(samples, pixels, wanted, distances);
+  Sample<8>(region, sampler, samples);
+  Compare<8>(samples, region.pixels, wanted, distances);
 }
 
 #ifdef __x86_64__
-[[gnu::target("avx2")]] void Avx2Kernel(const Window& window, const BriskSampler& sampler, const std::int16_t* wanted, int pixels,
+[[gnu::target("avx2")]] void Avx2Kernel(const Region& region, const BriskSampler& sampler, const std::int16_t* wanted,
                                         std::int16_t* samples, std::uint16_t* distances) {
-  Sample(window, sampler, pixels, samples);
-  Compare<16>(samples, pixels, wanted, distances);
+  Sample<16>(region, sampler, samples);
+  Compare<16>(samples, region.pixels, wanted, distances);
 }
 
-[[gnu::target("avx2,avx512f,avx512bw,avx512dq,avx512vl")]] void Avx512Kernel(const Window& window, const BriskSampler& sampler,
-                                                                             const std::int16_t* wanted, int pixels, std::int16_t* samples,
+[[gnu::target("avx2,avx512f,avx512bw,avx512dq,avx512vl")]] void Avx512Kernel(const Region& region, const BriskSampler& sampler,
+                                                                             const std::int16_t* wanted, std::int16_t* samples,
                                                                              std::uint16_t* distances) {
-  Sample(window, sampler, pixels, samples);
-  Compare<32>(samples, pixels, wanted, distances);
+  Sample<32>(region, sampler, samples);
+  Compare<32>(samples, region.pixels, wanted, distances);
 }
 #endif
 
@@ -149,8 +148,7 @@ BriskSampler::BriskSampler(const Eigen::Matrix2d& map) {
     const float half = std::max(0.5f, static_cast<float>(scale * pattern[n].half_width));
     const float area = 4.0f * half * half;
     Box& box = boxes_[n];
-    box.inside = static_cast<int>(4194304.0 / area);
-    box.total = 4 * static_cast<int>(static_cast<float>(box.inside) * area / 1024.0);
+    box.inside = static_cast<int>(std::lround((256 << kFraction) / area));
     // Borders, the pixels they lie in, and how much of these is inside; pixels reach half a pixel to either side.
     const auto low = static_cast<float>(place.x()) - half, high = static_cast<float>(place.x()) + half;
     const auto upper = static_cast<float>(place.y()) - half, lower = static_cast<float>(place.y()) + half;
@@ -159,7 +157,7 @@ BriskSampler::BriskSampler(const Eigen::Matrix2d& map) {
     box.width = pixel(high) - box.left - 1, box.height = pixel(lower) - box.top - 1;
     const float in_left = static_cast<float>(box.left) - low + 0.5f, in_top = static_cast<float>(box.top) - upper + 0.5f;
     const float in_right = high - static_cast<float>(pixel(high)) + 0.5f, in_bottom = lower - static_cast<float>(pixel(lower)) + 0.5f;
-    const auto fixed = [&](float share) { return static_cast<int>(share * static_cast<float>(box.inside)); };
+    const auto fixed = [&](float share) { return static_cast<int>(std::lround(share * static_cast<float>(box.inside))); };
     box.corner_00 = fixed(in_left * in_top), box.corner_10 = fixed(in_right * in_top);
     box.corner_11 = fixed(in_right * in_bottom), box.corner_01 = fixed(in_left * in_bottom);
     box.edge_left = fixed(in_left), box.edge_top = fixed(in_top), box.edge_right = fixed(in_right), box.edge_bottom = fixed(in_bottom);
@@ -188,8 +186,9 @@ std::vector<InstructionSet> AvailableInstructionSets() {
 
 void BriskImage::Set(const cv::Mat& grey) {
   width_ = grey.cols, height_ = grey.rows;
-  cv::copyMakeBorder(grey, grey_, 0, 1, 0, kPad, cv::BORDER_REPLICATE);
-  cv::integral(grey_, integral_, CV_32S);
+  cv::Mat padded;
+  cv::copyMakeBorder(grey, padded, 0, 1, 0, kLanes, cv::BORDER_REPLICATE);
+  cv::integral(padded, integral_, CV_32S);
 }
 
 bool BriskImage::Describable(const Eigen::Vector2i& pixel, const BriskSampler& sampler) const {
@@ -199,47 +198,57 @@ bool BriskImage::Describable(const Eigen::Vector2i& pixel, const BriskSampler& s
 
 Descriptor BriskImage::Describe(const Eigen::Vector2i& pixel, const BriskSampler& sampler) const {
   if (!Describable(pixel, sampler)) throw std::invalid_argument("BRISK: the pixel is too near to the edge of the image");
-  std::array<std::int16_t, kBriskPoints * kLanes> samples;
-  Sample({grey_.ptr<std::uint8_t>(pixel.y()) + pixel.x(), integral_.ptr<std::int32_t>(pixel.y()) + pixel.x(), grey_.step1(),
-          integral_.step1(), 1, 1},
-         sampler, kLanes, samples.data());
+  std::array<std::int16_t, kBriskPoints * 8> samples;
+  const Row row{integral_.ptr<std::int32_t>(pixel.y()) + pixel.x(), 0, 1};
+  Sample<8>({{&row, 1}, integral_.step1(), 8}, sampler, samples.data());
   Descriptor descriptor{};
   const auto& pairs = BriskComparisons();
   for (std::size_t k = 0; k < pairs.size(); ++k)
-    if (samples[std::size_t{pairs[k].first} * kLanes] > samples[std::size_t{pairs[k].second} * kLanes])
+    if (samples[std::size_t{pairs[k].first} * 8] > samples[std::size_t{pairs[k].second} * 8])
       descriptor[k / 64] |= std::uint64_t{1} << (k % 64);
   return descriptor;
 }
 
-void BriskImage::Distances(const Descriptor& descriptor, const BriskSampler& sampler, const Eigen::Vector2i& centre, int side,
-                           std::vector<std::uint16_t>& distances) const {
+std::optional<BriskImage::Found> BriskImage::Nearest(const Descriptor& descriptor, const BriskSampler& sampler,
+                                                     std::span<const PixelRun> region) const {
   static const InstructionSet best = AvailableInstructionSets().back();
-  Distances(best, descriptor, sampler, centre, side, distances);
+  return Nearest(best, descriptor, sampler, region);
 }
 
-void BriskImage::Distances(InstructionSet set, const Descriptor& descriptor, const BriskSampler& sampler, const Eigen::Vector2i& centre,
-                           int side, std::vector<std::uint16_t>& distances) const {
-  if (side < 1 || side % 2 == 0) throw std::invalid_argument("BRISK: the side of a window is odd");
-  distances.assign(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), kNone);
-  const int half = side / 2, margin = sampler.margin();
-  const int left = std::max(centre.x() - half, margin), right = std::min(centre.x() + half, width_ - margin - 1);
-  const int top = std::max(centre.y() - half, margin), bottom = std::min(centre.y() + half, height_ - margin - 1);
-  if (left > right || top > bottom) return;
-  const Window window{grey_.ptr<std::uint8_t>(top) + left, integral_.ptr<std::int32_t>(top) + left, grey_.step1(), integral_.step1(),
-                      right - left + 1, bottom - top + 1};
-
+std::optional<BriskImage::Found> BriskImage::Nearest(InstructionSet set, const Descriptor& descriptor, const BriskSampler& sampler,
+                                                     std::span<const PixelRun> region, std::vector<Found>* all) const {
+  thread_local std::vector<Row> rows;
+  thread_local std::vector<PixelRun> runs;  // of `rows`
+  thread_local std::vector<std::int16_t> samples;
+  thread_local std::vector<std::uint16_t> distances;
+  rows.clear();
+  runs.clear();
+  const int margin = sampler.margin();
+    int pixels = 0;
+  for (const PixelRun& run : region) {
+    const int first = std::max(run.first_x, margin), last = std::min(run.last_x, width_ - margin - 1);
+    if (run.y < margin || run.y >= height_ - margin || first > last) continue;
+    rows.push_back({integral_.ptr<std::int32_t>(run.y) + first, pixels, last - first + 1});
+    runs.push_back({run.y, first, last});
+    pixels += Padded(last - first + 1);
+  }
+  if (rows.empty()) return std::nullopt;
+  constexpr int kWidest = 32;  // of a vector, in pixels
+  pixels = (pixels + kWidest - 1) / kWidest * kWidest;
   std::array<std::int16_t, kBriskPairs> wanted;
   for (std::size_t k = 0; k < wanted.size(); ++k) wanted[k] = descriptor[k / 64] >> (k % 64) & 1 ? -1 : 0;
-  constexpr int kWidest = 32;  // of a vector, in pixels
-  const int pixels = (window.stride() * window.height + kWidest - 1) / kWidest * kWidest;
-  thread_local std::vector<std::int16_t> samples;
-  thread_local std::vector<std::uint16_t> padded;
   samples.resize(static_cast<std::size_t>(pixels) * kBriskPoints);
-  padded.resize(static_cast<std::size_t>(pixels));
-  KernelFor(set)(window, sampler, wanted.data(), pixels, samples.data(), padded.data());
-  for (int y = 0; y < window.height; ++y)
-    std::copy_n(padded.begin() + y * window.stride(), window.width,
-                distances.begin() + (top + y - (centre.y() - half)) * side + left - (centre.x() - half));
+  distances.resize(static_cast<std::size_t>(pixels));
+  KernelFor(set)({rows, integral_.step1(), pixels}, sampler, wanted.data(), samples.data(), distances.data());
+
+  Found best{{}, kBriskPairs + 1};
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (int x = 0; x < rows[r].width; ++x) {
+      const Found here{{runs[r].first_x + x, runs[r].y}, distances[static_cast<std::size_t>(rows[r].at + x)]};
+      if (here.distance < best.distance) best = here;
+      if (all != nullptr) all->push_back(here);
+    }
+  return best;
 }
 
 }  // namespace vo

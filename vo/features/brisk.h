@@ -10,6 +10,8 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -42,7 +44,7 @@ class BriskSampler {
     int left, top, width, height;  // of the first corner; of the inside
     int corner_00, corner_10, corner_11, corner_01;  // (left, top), (right, top), (right, bottom), (left, bottom)
     int edge_left, edge_top, edge_right, edge_bottom;
-    int inside, total;
+    int inside;
   };
   const std::array<Box, kBriskPoints>& boxes() const { return boxes_; }
 
@@ -56,26 +58,31 @@ const char* Name(InstructionSet set);
 // What this machine has, in rising order.
 std::vector<InstructionSet> AvailableInstructionSets();
 
+// Neighbouring pixels of a row, last included.
+struct PixelRun {
+  int y, first_x, last_x;
+};
+
 // An image ready for sampling.
 class BriskImage {
  public:
-  static constexpr std::uint16_t kNone = 0xffff;
-
   void Set(const cv::Mat& grey);  // CV_8UC1, copied
   bool Describable(const Eigen::Vector2i& pixel, const BriskSampler& sampler) const;
   // Throws std::invalid_argument where the pixel is not describable.
   Descriptor Describe(const Eigen::Vector2i& pixel, const BriskSampler& sampler) const;
-  // Hamming distance from `descriptor` of each pixel of the `side` x `side` window about `centre` (side odd), row by row; kNone where it
-  // cannot be described.
-  void Distances(const Descriptor& descriptor, const BriskSampler& sampler, const Eigen::Vector2i& centre, int side,
-                 std::vector<std::uint16_t>& distances) const;
-  // The same with the instruction set told.
-  void Distances(InstructionSet set, const Descriptor& descriptor, const BriskSampler& sampler, const Eigen::Vector2i& centre, int side,
-                 std::vector<std::uint16_t>& distances) const;
+  // The pixel of the region nearest to `descriptor` in Hamming distance, the first where several are; none where no pixel of it can be
+  // described.
+  struct Found {
+    Eigen::Vector2i pixel;
+    int distance;
+  };
+  std::optional<Found> Nearest(const Descriptor& descriptor, const BriskSampler& sampler, std::span<const PixelRun> region) const;
+  // The same with the instruction set told, and with what was found at every pixel that can be described, in order.
+  std::optional<Found> Nearest(InstructionSet set, const Descriptor& descriptor, const BriskSampler& sampler, std::span<const PixelRun> region,
+                               std::vector<Found>* all = nullptr) const;
 
  private:
-  // Rows are longer than the image's, so that whole vectors can be read at its right edge.
-  cv::Mat grey_, integral_;
+  cv::Mat integral_;  // rows are longer than the image's, so that whole vectors can be read at its right edge
   int width_ = 0, height_ = 0;
 };
 

@@ -36,14 +36,25 @@ int LostWindow(const Eigen::Matrix2d& S, const FeatureParams& params) {
   return std::min(side, params.window_lost_px);
 }
 
-std::optional<Eigen::Vector2i> BestPixel(const SearchRequest& request, const BriskSampler& sampler, int side, const BriskImage& brisk,
-                                         int max_distance, std::vector<std::uint16_t>& distances) {
+// The window, row by row; where it is larger than the enlarged one, what of it lies in the ellipse of kLostSigmas about the prediction (the
+// covariance of a lost landmark is mostly long and thin).
+void SearchRegion(const SearchRequest& request, int side, const FeatureParams& params, std::vector<PixelRun>& region) {
   const Eigen::Vector2i centre = Rounded(request.predicted);
-  brisk.Distances(request.appearance->descriptor, sampler, centre, side, distances);
-  const auto best = std::min_element(distances.begin(), distances.end());
-  if (*best >= max_distance) return std::nullopt;
-  const int at = static_cast<int>(best - distances.begin());
-  return Eigen::Vector2i(centre.x() - side / 2 + at % side, centre.y() - side / 2 + at / side);
+  const int half = side / 2;
+  const Eigen::Matrix2d information = request.S.inverse() / (kLostSigmas * kLostSigmas);
+  region.clear();
+  for (int dy = -half; dy <= half; ++dy) {
+    int first = -half, last = half;
+    if (side > params.window_enlarged_px) {  // a dx^2 + 2 b dx + c <= 0
+      const double a = information(0, 0), b = information(0, 1) * dy, c = information(1, 1) * dy * dy - 1;
+      const double discriminant = b * b - a * c;
+      if (discriminant < 0) continue;
+      first = std::max(first, static_cast<int>(std::floor((-b - std::sqrt(discriminant)) / a)));
+      last = std::min(last, static_cast<int>(std::ceil((-b + std::sqrt(discriminant)) / a)));
+      if (first > last) continue;
+    }
+    region.push_back({centre.y() + dy, centre.x() + first, centre.x() + last});
+  }
 }
 
 bool OnBorder(const Eigen::Vector2i& pixel, const Eigen::Vector2i& centre, int side) {
@@ -58,7 +69,7 @@ std::vector<std::optional<Eigen::Vector2d>> FindFeatures(const std::vector<Searc
                                                          const BriskImage& brisk, const FeatureParams& params) {
   const int max_distance = static_cast<int>(std::lround(params.max_hamming * kBriskPairs));
   std::vector<std::optional<Eigen::Vector2d>> found(requests.size());
-  std::vector<std::uint16_t> distances;
+  std::vector<PixelRun> region;
   for (std::size_t i = 0; i < requests.size(); ++i) {
     const SearchRequest& request = requests[i];
     const BriskSampler sampler(PatternMap(request.warp, params));
@@ -67,9 +78,10 @@ std::vector<std::optional<Eigen::Vector2d>> FindFeatures(const std::vector<Searc
       if (side <= searched) continue;
       const bool quick = searched == 0 && side < params.window_px;
       searched = side;
-      const auto pixel = BestPixel(request, sampler, side, brisk, max_distance, distances);
-      if (!pixel || (quick && OnBorder(*pixel, Rounded(request.predicted), side))) continue;
-      found[i] = pixel->cast<double>();
+      SearchRegion(request, side, params, region);
+      const auto best = brisk.Nearest(request.appearance->descriptor, sampler, region);
+      if (!best || best->distance >= max_distance || (quick && OnBorder(best->pixel, Rounded(request.predicted), side))) continue;
+      found[i] = best->pixel.cast<double>();
       break;
     }
     if (!found[i] || !params.subpixel) continue;

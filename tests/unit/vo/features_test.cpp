@@ -125,20 +125,30 @@ TEST(Brisk, DistancesOverAWindowAreThoseOfItsPixelsWithEveryInstructionSet) {
   for (const Matrix2d& m : {Matrix2d(1.6667 * Matrix2d::Identity()), map, Matrix2d(0.3 * map)}) {
     const vo::BriskSampler sampler(m);
     const vo::Descriptor wanted = brisk.Describe({100, 80}, sampler);
-    for (const int side : {1, 5, 9, 17, 49, 151}) {
-      for (const Vector2i& centre : {Vector2i(100, 80), Vector2i(25, 150), Vector2i(195, 3)}) {
-        std::vector<std::uint16_t> distances;
-        for (const vo::InstructionSet set : vo::AvailableInstructionSets()) {
-          brisk.Distances(set, wanted, sampler, centre, side, distances);
-          ASSERT_EQ(distances.size(), static_cast<std::size_t>(side * side));
-          for (int at = 0; at < side * side; ++at) {
-            const Vector2i p(centre.x() - side / 2 + at % side, centre.y() - side / 2 + at / side);
-            const int expected = brisk.Describable(p, sampler) ? vo::HammingDistance(wanted, brisk.Describe(p, sampler)) : vo::BriskImage::kNone;
-            ASSERT_EQ(distances[static_cast<std::size_t>(at)], expected) << vo::Name(set) << ' ' << side << ' ' << p.transpose();
-          }
-        }
+    // Rows of all lengths, some beyond the edges.
+    std::vector<vo::PixelRun> region;
+    for (int y = -3; y < 165; y += 4) region.push_back({y, 100 - y, 100 + y / 3});
+    region.push_back({80, -20, 300});
+    std::vector<vo::BriskImage::Found> expected;
+    for (const vo::PixelRun& run : region)
+      for (int x = run.first_x; x <= run.last_x; ++x)
+        if (brisk.Describable({x, run.y}, sampler))
+          expected.push_back({{x, run.y}, vo::HammingDistance(wanted, brisk.Describe({x, run.y}, sampler))});
+    ASSERT_GT(expected.size(), 500u);
+    for (const vo::InstructionSet set : vo::AvailableInstructionSets()) {
+      std::vector<vo::BriskImage::Found> all;
+      const auto best = brisk.Nearest(set, wanted, sampler, region, &all);
+      ASSERT_EQ(all.size(), expected.size()) << vo::Name(set);
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        EXPECT_EQ(all[i].pixel, expected[i].pixel);
+        ASSERT_EQ(all[i].distance, expected[i].distance) << vo::Name(set) << ' ' << all[i].pixel.transpose();
       }
+      ASSERT_TRUE(best);
+      EXPECT_EQ(best->pixel, Vector2i(100, 80));
+      EXPECT_EQ(best->distance, 0);
     }
+    const std::vector<vo::PixelRun> outside = {{80, -20, 3}, {-4, 50, 60}};
+    EXPECT_FALSE(brisk.Nearest(wanted, sampler, outside));
   }
   EXPECT_THROW(brisk.Describe({3, 3}, vo::BriskSampler(map)), std::invalid_argument);
 }
