@@ -47,6 +47,7 @@ template <int Lanes>
   const std::int32_t* r3 = r2 + step;
   Vector first[4], inside[4], last[4];
   const int columns[4] = {0, 1, 1 + box.width, 2 + box.width};
+#pragma GCC unroll 4
   for (int c = 0; c < 4; ++c) {
     const Vector i1 = Load<Vector>(r1 + columns[c]), i2 = Load<Vector>(r2 + columns[c]);
     first[c] = i1 - Load<Vector>(r0 + columns[c]);
