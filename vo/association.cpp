@@ -77,7 +77,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   std::vector<Match> matches;
   for (std::size_t i = 0; i < candidates.size(); ++i)
     if (found[i])
-      matches.push_back({candidates[i].landmark, camera.Undistort(*found[i]), PixelNoise(candidates[i].lens, params.features.sigma_px)});
+      matches.push_back({candidates[i].landmark, camera.Undistort(found[i]->pixel), PixelNoise(candidates[i].lens, found[i]->noise)});
   const std::vector<bool> inlier =
       FindInliers(filter.ReferencePrediction(), filter.ReferenceMap(), matches, params.score.gate, params.filter);
 
@@ -85,7 +85,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];
     Searched searched{c.landmark, std::nullopt};
-    FeatureView view{records[c.landmark].id, c.pixel, found[i].value_or(c.pixel), requests[i].S, FeatureView::Status::missed};
+    FeatureView view{records[c.landmark].id, c.pixel, found[i] ? found[i]->pixel : c.pixel, requests[i].S, FeatureView::Status::missed};
     if (found[i]) {
       const Match& match = matches[m];
       view.status = inlier[m] ? FeatureView::Status::matched : FeatureView::Status::rejected;

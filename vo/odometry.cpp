@@ -133,7 +133,9 @@ void Odometry::Impl::AddFeatures(const cv::Mat& grey) {
     record.score = params.score.initial;
     records.push_back(record);
     rays.push_back(camera.Undistort(pixel));
-    noises.push_back(PixelNoise(camera.LensJacobian(rays.back()), params.features.sigma_px));
+    // The patch that later views are registered to defines the landmark: its first view is as good as the registration can be.
+    noises.push_back(PixelNoise(camera.LensJacobian(rays.back()),
+                                params.features.noise == MatchNoise::registered ? params.features.sigma_floor_px : params.features.sigma_px));
     views.push_back({record.id, pixel, pixel, Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
   }
   filter->AddLandmarks(rays, noises);

@@ -76,6 +76,8 @@ std::vector<std::string> Problems(const Params& params) {
     check.Require(value >= 1 && value % 2 == 1, name, value, "must be odd and positive");
   };
   check.Positive("features.sigma_px", features.sigma_px);
+  check.Positive("features.sigma_floor_px", features.sigma_floor_px);
+  check.Require(features.noise_inflation >= 0, "features.noise_inflation", features.noise_inflation, "must not be negative");
   check.Require(features.grid_columns >= 1, "features.grid_columns", features.grid_columns, "must be at least 1");
   check.Require(features.grid_rows >= 1, "features.grid_rows", features.grid_rows, "must be at least 1");
   check.Require(features.per_cell >= 1, "features.per_cell", features.per_cell, "must be at least 1");

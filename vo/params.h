@@ -83,8 +83,17 @@ enum class BriskWarp {
   affine,      // and sheared
 };
 
+// Covariance of a match's error.
+enum class MatchNoise {
+  constant,    // sigma_px for all
+  registered,  // of a match that was registered: sigma_floor_px, and what the registration's least squares say, times noise_inflation
+};
+
 struct FeatureParams {
   double sigma_px = 0.7;           // standard deviation of a matched pixel, per axis [px] (the paper, to whole pixels: 2)
+  MatchNoise noise = MatchNoise::constant;
+  double sigma_floor_px = 0.3;     // [px]; at 0.15 the filter is so sure of itself that it may settle in a wrong solution
+  double noise_inflation = 4;      // the residuals of neighbouring pixels are not independent
   int grid_columns = 8, grid_rows = 6;
   int per_cell = 3;                // corners wanted in every cell of the grid
   int fast_threshold_start = 60;   // grey levels; lowered per cell ...

@@ -64,10 +64,13 @@ void ReadScore(Section section, vo::ScoreParams& params) {
 }
 
 void ReadFeatures(Section section, vo::FeatureParams& params) {
-  auto& [sigma_px, grid_columns, grid_rows, per_cell, fast_threshold_start, fast_threshold_min, min_distance_px,
+  auto& [sigma_px, noise, sigma_floor_px, noise_inflation, grid_columns, grid_rows, per_cell, fast_threshold_start, fast_threshold_min, min_distance_px,
          min_cornerness, brisk_size_px, brisk_warp, max_hamming, window_quick_px, window_px, window_enlarged_px, window_lost_px, subpixel,
          max_view_angle_deg, max_baseline_ratio, max_searched] = params;
   section.Read("sigma", sigma_px, Unit::pixel, Range::Positive());
+  section.ReadChoice("noise", noise, {{"constant", vo::MatchNoise::constant}, {"registered", vo::MatchNoise::registered}});
+  section.Read("sigma_floor", sigma_floor_px, Unit::pixel, Range::Positive());
+  section.Read("noise_inflation", noise_inflation, Range::AtLeast(0));
   section.Read("grid_columns", grid_columns, Range::AtLeast(1));
   section.Read("grid_rows", grid_rows, Range::AtLeast(1));
   section.Read("per_cell", per_cell, Range::AtLeast(1));

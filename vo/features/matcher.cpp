@@ -65,10 +65,12 @@ bool OnBorder(const Eigen::Vector2i& pixel, const Eigen::Vector2i& centre, int s
 
 BriskSampler FirstSampler(const FeatureParams& params) { return BriskSampler(PatternMap(Eigen::Matrix2d::Identity(), params)); }
 
-std::vector<std::optional<Eigen::Vector2d>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& grey,
-                                                         const BriskImage& brisk, const FeatureParams& params) {
+std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& grey,
+                                                      const BriskImage& brisk, const FeatureParams& params) {
   const int max_distance = static_cast<int>(std::lround(params.max_hamming * kBriskPairs));
-  std::vector<std::optional<Eigen::Vector2d>> found(requests.size());
+  const Eigen::Matrix2d constant = params.sigma_px * params.sigma_px * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d floor = params.sigma_floor_px * params.sigma_floor_px * Eigen::Matrix2d::Identity();
+  std::vector<std::optional<FoundFeature>> found(requests.size());
   std::vector<PixelRun> region;
   for (std::size_t i = 0; i < requests.size(); ++i) {
     const SearchRequest& request = requests[i];
@@ -81,12 +83,14 @@ std::vector<std::optional<Eigen::Vector2d>> FindFeatures(const std::vector<Searc
       SearchRegion(request, side, params, region);
       const auto best = brisk.Nearest(request.appearance->descriptor, sampler, region);
       if (!best || best->distance >= max_distance || (quick && OnBorder(best->pixel, Rounded(request.predicted), side))) continue;
-      found[i] = best->pixel.cast<double>();
+      found[i] = {best->pixel.cast<double>(), constant};
       break;
     }
     if (!found[i] || !params.subpixel) continue;
-    const auto refined = Register(request.appearance->patch, request.warp, grey, *found[i], kMaxRefinementPx);
-    if (refined && refined->correlation > kMinCorrelation) found[i] = refined->pixel;
+    const auto refined = Register(request.appearance->patch, request.warp, grey, found[i]->pixel, kMaxRefinementPx);
+    if (!refined || refined->correlation <= kMinCorrelation) continue;
+    found[i]->pixel = refined->pixel;
+    if (params.noise == MatchNoise::registered) found[i]->noise = floor + params.noise_inflation * refined->covariance;
   }
   return found;
 }

@@ -28,8 +28,13 @@ struct SearchRequest {
 // How a corner is described when it is first seen: as it lies.
 BriskSampler FirstSampler(const FeatureParams& params);
 
-// Where each request was found [px], in its order. `brisk` holds the image `grey` (CV_8UC1).
-std::vector<std::optional<Eigen::Vector2d>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& grey,
-                                                         const BriskImage& brisk, const FeatureParams& params);
+struct FoundFeature {
+  Eigen::Vector2d pixel;
+  Eigen::Matrix2d noise;  // covariance of its error [px^2], as features.noise has it
+};
+
+// Where each request was found, in its order. `brisk` holds the image `grey` (CV_8UC1).
+std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& grey,
+                                                      const BriskImage& brisk, const FeatureParams& params);
 
 }  // namespace vo

@@ -95,7 +95,10 @@ std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& 
     const Eigen::Vector2d step = H_inverse * (gradient.transpose() * (templ - seen));
     x += step;
     if ((x - start).norm() > max_shift_px) return std::nullopt;
-    if (step.norm() < kSettledPx) return Registration{x, templ.dot(seen) / (template_norm * template_norm)};
+    if (step.norm() < kSettledPx) {
+      const double variance = (templ - seen).squaredNorm() / (kPixels - 4);  // gain, offset and two shifts are fitted
+      return Registration{x, templ.dot(seen) / (template_norm * template_norm), variance * H_inverse};
+    }
   }
   return std::nullopt;
 }

@@ -28,6 +28,7 @@ double Cornerness(const Patch& patch);
 struct Registration {
   Eigen::Vector2d pixel;
   double correlation = 0;  // normalised, -1 ... 1
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  // of least squares: residual variance times H^-1 [px^2]; wide along edges and blur
 };
 
 // `warp` = d(present pixel)/d(pixel of the first view). None when the window leaves the image, the patch has no corner, the

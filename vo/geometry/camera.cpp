@@ -104,4 +104,9 @@ Eigen::Matrix2d PixelNoise(const Eigen::Matrix2d& lens, double sigma_px) {
   return root * root.transpose();
 }
 
+Eigen::Matrix2d PixelNoise(const Eigen::Matrix2d& lens, const Eigen::Matrix2d& covariance_px) {
+  const Eigen::Matrix2d inverse = lens.inverse();
+  return inverse * covariance_px * inverse.transpose();
+}
+
 }  // namespace vo

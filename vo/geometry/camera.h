@@ -35,5 +35,6 @@ Camera CameraFrom(const std::string& preset_or_file);
 
 // The covariance of a pixel, seen on the plane z = 1. `lens` = d pixel / d(plane z = 1), Camera::LensJacobian.
 Eigen::Matrix2d PixelNoise(const Eigen::Matrix2d& lens, double sigma_px);
+Eigen::Matrix2d PixelNoise(const Eigen::Matrix2d& lens, const Eigen::Matrix2d& covariance_px);
 
 }  // namespace vo

@@ -223,7 +223,7 @@ TEST(Matcher, FindsShiftsThatFitTheWindowsAndNoOthers) {
     const auto found = vo::FindFeatures(requests, second, brisk, {});
     int right = 0;
     for (std::size_t i = 0; i < corners.size(); ++i)
-      right += found[i] && (*found[i] - corners[i].cast<double>() - shift).norm() < 0.1;
+      right += found[i] && (found[i]->pixel - corners[i].cast<double>() - shift).norm() < 0.1;
     return right / static_cast<double>(corners.size());
   };
   EXPECT_GE(found_share({2.3, -1.6}, 1), 0.95);   // in 9 x 9
