@@ -1,11 +1,10 @@
-// Time to look for 200 landmarks at every pixel of their windows, against the window's side, for each instruction set of this machine, and for
-// OpenCV's BRISK (which estimates an orientation at each pixel as well). docs/performance.md.
+// Time to look for 200 landmarks at every pixel of their windows, against the window's side, for each instruction set
+// of this machine, and for OpenCV's BRISK (which estimates an orientation at each pixel as well). docs/performance.md.
 #include <benchmark/benchmark.h>
 
+#include <opencv2/features2d.hpp>
 #include <string>
 #include <vector>
-
-#include <opencv2/features2d.hpp>
 
 #include "tests/unit/vo/texture.h"
 #include "vo/features/brisk.h"
@@ -18,7 +17,8 @@ Eigen::Vector2i Centre(int n) { return {80 + n * 37 % 480, 80 + n * 53 % 320}; }
 
 std::vector<vo::PixelRun> Window(const Eigen::Vector2i& centre, int side) {
   std::vector<vo::PixelRun> window;
-  for (int y = -side / 2; y <= side / 2; ++y) window.push_back({centre.y() + y, centre.x() - side / 2, centre.x() + side / 2});
+  for (int y = -side / 2; y <= side / 2; ++y)
+    window.push_back({centre.y() + y, centre.x() - side / 2, centre.x() + side / 2});
   return window;
 }
 
@@ -45,7 +45,8 @@ void OpenCv(benchmark::State& state) {
     std::vector<cv::KeyPoint> keypoints;
     for (int n = 0; n < kLandmarks; ++n)
       for (const vo::PixelRun& run : Window(Centre(n), side))
-        for (int x = run.first_x; x <= run.last_x; ++x) keypoints.emplace_back(static_cast<float>(x), static_cast<float>(run.y), 12.f);
+        for (int x = run.first_x; x <= run.last_x; ++x)
+          keypoints.emplace_back(static_cast<float>(x), static_cast<float>(run.y), 12.f);
     cv::Mat descriptors;
     brisk->compute(image, keypoints, descriptors);
     benchmark::DoNotOptimize(descriptors.data);
@@ -56,7 +57,12 @@ void OpenCv(benchmark::State& state) {
 
 int main(int count, char** arguments) {
   for (const vo::InstructionSet set : vo::AvailableInstructionSets())
-    benchmark::RegisterBenchmark((std::string("Ours/") + vo::Name(set)).c_str(), Ours, set)->Arg(5)->Arg(9)->Arg(17)->Arg(49)->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark((std::string("Ours/") + vo::Name(set)).c_str(), Ours, set)
+        ->Arg(5)
+        ->Arg(9)
+        ->Arg(17)
+        ->Arg(49)
+        ->Unit(benchmark::kMillisecond);
   benchmark::RegisterBenchmark("OpenCV", OpenCv)->Arg(5)->Arg(9)->Arg(17)->Unit(benchmark::kMillisecond);
   benchmark::Initialize(&count, arguments);
   benchmark::RunSpecifiedBenchmarks();

@@ -6,9 +6,9 @@
 namespace own_model {
 namespace {
 
-// False alarms: 0.1 % per check, 1.6 % in all. 500 such runs show what is left of the filter's own mistakes: joint ANEES 1.027 (the
-// limit is 1.0269), and the coverage of the mixture's highest-density regions, which 128 narrow components in twelve dimensions do
-// not give (docs/point_world.md).
+// False alarms: 0.1 % per check, 1.6 % in all. 500 such runs show what is left of the filter's own mistakes: joint
+// ANEES 1.027 (the limit is 1.0269), and the coverage of the mixture's highest-density regions, which 128 narrow
+// components in twelve dimensions do not give (docs/point_world.md).
 TEST(OwnModelSlow, TheFilterIsConsistentOnFreshRunsAndEightTenthsOfPAreNot) {
   const Runs runs = Play(100, {{"odometry.filter.particles", "128"}}, 1001);
   const auto verdict = Judge(runs);
@@ -17,8 +17,8 @@ TEST(OwnModelSlow, TheFilterIsConsistentOnFreshRunsAndEightTenthsOfPAreNot) {
   EXPECT_FALSE(HonestButCoverage(Judge(runs, {0.8, 0})));
 }
 
-// Ten seconds, a hundred points, equal weights: ten runs do not see the 5 % by which the position is over-confident (docs/odometry.md has
-// the verdict of 100); they see what resampling does.
+// Ten seconds, a hundred points, equal weights: ten runs do not see the 5 % by which the position is over-confident
+// (docs/odometry.md has the verdict of 100); they see what resampling does.
 TEST(OwnModelSlow, EqualWeightsStayConsistentForTenSecondsAndResamplingDoesNot) {
   const vobench::Overrides ten_seconds = {{"time.duration", "10 s"},
                                           {"world.points.count", "100"},

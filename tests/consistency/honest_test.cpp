@@ -29,10 +29,13 @@ TEST(OwnModel, TheFilterIsConsistentWithoutDelay) {
   EXPECT_TRUE(HonestButCoverage(verdict)) << Failures(verdict);
 }
 
-// Two seconds of sampled poses. Weights tell the particles apart by the accidents of their draws, and each resampling costs what
-// they knew of the drift: the same filter with them is rejected, as is P x 0.5 without.
+// Two seconds of sampled poses. Weights tell the particles apart by the accidents of their draws, and each resampling
+// costs what they knew of the drift: the same filter with them is rejected, as is P x 0.5 without.
 TEST(OwnModel, EqualWeightsStayConsistentWhereResamplingDoesNot) {
-  const vobench::Overrides long_run = {{"time.duration", "2 s"}, {"world.points.count", "20"}, {"odometry.filter.particles", "16"}, {"odometry.filter.lag", "5"}};
+  const vobench::Overrides long_run = {{"time.duration", "2 s"},
+                                       {"world.points.count", "20"},
+                                       {"odometry.filter.particles", "16"},
+                                       {"odometry.filter.lag", "5"}};
   vobench::Overrides equal = long_run;
   equal.emplace_back("odometry.filter.weight", "equal");
   const Runs runs = Play(30, equal);

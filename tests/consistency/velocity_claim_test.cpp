@@ -1,12 +1,11 @@
-// The second Rao-Blackwellisation: RB2-PF keeps the velocity as a Gaussian per particle, RB-PF as samples. What eight samples say of
-// it, and what eight Gaussians do, in worlds drawn from the filter's own prior.
+// The second Rao-Blackwellisation: RB2-PF keeps the velocity as a Gaussian per particle, RB-PF as samples. What eight
+// samples say of it, and what eight Gaussians do, in worlds drawn from the filter's own prior.
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <string>
 #include <vector>
-
-#include <Eigen/Cholesky>
 
 #include "sim/world/point_world.h"
 #include "tools/evaluation/chi2.h"
@@ -26,7 +25,9 @@ struct Nees {
   std::vector<double> answer, samples;  // per run, at the last frame, of the velocity (6), per degree of freedom
 };
 
-double PerDegree(const vo::Vector6& error, const vo::Matrix6& covariance) { return error.dot(covariance.ldlt().solve(error)) / 6; }
+double PerDegree(const vo::Vector6& error, const vo::Matrix6& covariance) {
+  return error.dot(covariance.ldlt().solve(error)) / 6;
+}
 
 Nees Play(vo::Sampled sampled, const Overrides& settings) {
   Overrides all = {{"time.duration", "1.5 s"}};
@@ -55,7 +56,8 @@ Nees Play(vo::Sampled sampled, const Overrides& settings) {
     const auto& filter = dynamic_cast<const vo::ParticleFilter&>(odometry.filter());
     vo::Vector6 mean = vo::Vector6::Zero();
     vo::Matrix6 covariance = vo::Matrix6::Zero();
-    for (std::size_t i = 0; i < filter.particles().size(); ++i) mean += filter.weights()[i] * filter.particles()[i].velocity.mean;
+    for (std::size_t i = 0; i < filter.particles().size(); ++i)
+      mean += filter.weights()[i] * filter.particles()[i].velocity.mean;
     for (std::size_t i = 0; i < filter.particles().size(); ++i) {
       const vo::Vector6 d = filter.particles()[i].velocity.mean - mean;
       covariance += filter.weights()[i] * (d * d.transpose() + filter.particles()[i].velocity.covariance);
@@ -75,9 +77,10 @@ double Median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-// False alarm 1e-3: the mean over independent runs is chi-square. What RB-PF carries from frame to frame is eight draws, seldom more than four
-// of weight, in six dimensions: the median over runs was 116, of RB2-PF's particles 2.5. (RB-PF's answer, which takes the velocity before it is
-// drawn, was 2.7 in the mean.) Without a lag RB2-PF's answer is 1.7: the poses, sampled at once, are what is over-confident then.
+// False alarm 1e-3: the mean over independent runs is chi-square. What RB-PF carries from frame to frame is eight
+// draws, seldom more than four of weight, in six dimensions: the median over runs was 116, of RB2-PF's particles 2.5.
+// (RB-PF's answer, which takes the velocity before it is drawn, was 2.7 in the mean.) Without a lag RB2-PF's answer
+// is 1.7: the poses, sampled at once, are what is over-confident then.
 TEST(VelocityClaim, GaussiansOfTheVelocityAreHonestAndEightSamplesAreNot) {
   const Nees gaussians = Play(vo::Sampled::pose, {{"odometry.filter.lag", "5"}, {"odometry.filter.weight", "equal"}});
   const evaluation::Band band = evaluation::Chi2MeanBand(6, kRuns, 0.999);

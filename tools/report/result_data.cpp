@@ -106,7 +106,8 @@ bool Agree(const ev::Trajectory& a, const ev::Trajectory& b) {
   for (const ev::StampedPose& pose : a) {
     while (at != b.end() && at->stamp_ns < pose.stamp_ns) ++at;
     if (at == b.end()) break;
-    if (at->stamp_ns == pose.stamp_ns && (at->p_WC != pose.p_WC || at->q_WC.coeffs() != pose.q_WC.coeffs())) return false;
+    if (at->stamp_ns == pose.stamp_ns && (at->p_WC != pose.p_WC || at->q_WC.coeffs() != pose.q_WC.coeffs()))
+      return false;
   }
   return true;
 }
@@ -146,7 +147,9 @@ const RunData& ResultData::Typical(const std::string& system) const {
     for (const RunData& run : runs) {
       if (run.entry.system == name) own.push_back(&run);
     }
-    const auto ate = [](const RunData* run) { return run->judged ? run->judged->metrics.errors.sim3.position.rmse : 0; };
+    const auto ate = [](const RunData* run) {
+      return run->judged ? run->judged->metrics.errors.sim3.position.rmse : 0;
+    };
     std::stable_sort(own.begin(), own.end(), [&](const RunData* a, const RunData* b) { return ate(a) < ate(b); });
     return *own.at((own.size() - 1) / 2);
   };

@@ -45,8 +45,8 @@ struct ResultData {
   std::vector<std::string> Systems() const;
   // All runs fly the same path; false where each has drawn its own (worlds of points).
   bool SharedTruth() const;
-  // Of a system's runs the one whose ATE is the (lower) median, or the first where nothing is judged. Where the truth is not shared,
-  // all systems show the path that is typical of the first, so that their runs can be compared.
+  // Of a system's runs the one whose ATE is the (lower) median, or the first where nothing is judged. Where the truth
+  // is not shared, all systems show the path that is typical of the first, so that their runs can be compared.
   const RunData& Typical(const std::string& system) const;
 };
 

@@ -23,14 +23,17 @@ void ReadFilter(Section section, vo::FilterParams& params) {
   // Which velocities are sampled is what tells the systems apart: --system says it.
   [[maybe_unused]] auto& [sampled, proposal, particles, resample_below, max_iterations, weight, lag, marginal_mode,
                           reject_outliers, ukf_alpha, ukf_beta, ukf_kappa] = params;
-  section.ReadChoice("proposal", proposal, {{"bootstrap", vo::Proposal::bootstrap},
-                                             {"ekf", vo::Proposal::ekf},
-                                             {"ukf", vo::Proposal::ukf},
-                                             {"iterated", vo::Proposal::iterated}});
+  section.ReadChoice("proposal", proposal,
+                     {{"bootstrap", vo::Proposal::bootstrap},
+                      {"ekf", vo::Proposal::ekf},
+                      {"ukf", vo::Proposal::ukf},
+                      {"iterated", vo::Proposal::iterated}});
   section.Read("particles", particles, Range{1, 100'000});
   section.Read("resample_below", resample_below, Range{0, 1});
   section.Read("max_iterations", max_iterations, Range{1, 1000});
-  section.ReadChoice("weight", weight, {{"importance", vo::Weight::importance}, {"evidence", vo::Weight::evidence}, {"equal", vo::Weight::equal}});
+  section.ReadChoice(
+      "weight", weight,
+      {{"importance", vo::Weight::importance}, {"evidence", vo::Weight::evidence}, {"equal", vo::Weight::equal}});
   section.Read("lag", lag, Range{0, 100});
   section.Read("marginal_mode", marginal_mode);
   section.Read("reject_outliers", reject_outliers);
@@ -64,11 +67,13 @@ void ReadScore(Section section, vo::ScoreParams& params) {
 }
 
 void ReadFeatures(Section section, vo::FeatureParams& params) {
-  auto& [sigma_px, noise, sigma_floor_px, noise_inflation, grid_columns, grid_rows, per_cell, fast_threshold_start, fast_threshold_min, min_distance_px,
-         min_cornerness, brisk_size_px, brisk_warp, max_hamming, window_quick_px, window_px, window_enlarged_px, window_lost_px, subpixel,
-         max_view_angle_deg, max_baseline_ratio, max_searched] = params;
+  auto& [sigma_px, noise, sigma_floor_px, noise_inflation, grid_columns, grid_rows, per_cell, fast_threshold_start,
+         fast_threshold_min, min_distance_px, min_cornerness, brisk_size_px, brisk_warp, max_hamming, window_quick_px,
+         window_px, window_enlarged_px, window_lost_px, subpixel, max_view_angle_deg, max_baseline_ratio,
+         max_searched] = params;
   section.Read("sigma", sigma_px, Unit::pixel, Range::Positive());
-  section.ReadChoice("noise", noise, {{"constant", vo::MatchNoise::constant}, {"registered", vo::MatchNoise::registered}});
+  section.ReadChoice("noise", noise,
+                     {{"constant", vo::MatchNoise::constant}, {"registered", vo::MatchNoise::registered}});
   section.Read("sigma_floor", sigma_floor_px, Unit::pixel, Range::Positive());
   section.Read("noise_inflation", noise_inflation, Range::AtLeast(0));
   section.Read("grid_columns", grid_columns, Range::AtLeast(1));
@@ -79,7 +84,9 @@ void ReadFeatures(Section section, vo::FeatureParams& params) {
   section.Read("min_distance", min_distance_px, Unit::pixel, Range::AtLeast(0));
   section.Read("min_cornerness", min_cornerness, Range{0, 1});
   section.Read("brisk_size", brisk_size_px, Unit::pixel, Range::Positive());
-  section.ReadChoice("brisk_warp", brisk_warp, {{"none", vo::BriskWarp::none}, {"similarity", vo::BriskWarp::similarity}, {"affine", vo::BriskWarp::affine}});
+  section.ReadChoice(
+      "brisk_warp", brisk_warp,
+      {{"none", vo::BriskWarp::none}, {"similarity", vo::BriskWarp::similarity}, {"affine", vo::BriskWarp::affine}});
   section.Read("max_hamming", max_hamming, Range{0, 1});
   section.Read("window_quick", window_quick_px, Range::AtLeast(1));
   section.Read("window", window_px, Range::AtLeast(1));

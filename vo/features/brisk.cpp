@@ -1,12 +1,11 @@
 #include "vo/features/brisk.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <stdexcept>
-
-#include <Eigen/LU>
 #include <opencv2/imgproc.hpp>
+#include <stdexcept>
 
 // Vectors are passed to functions that are inlined without exception: no ABI is involved.
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -14,8 +13,9 @@
 namespace vo {
 namespace {
 
-constexpr int kFraction = 14;   // bits of a weighted sum behind 1/256 of a grey level; the weights of a box sum to 256 << kFraction
-constexpr int kLanes = 8;       // pixels that are sampled at once: so many columns behind the image may be read, for nothing
+constexpr int kFraction =
+    14;  // bits of a weighted sum behind 1/256 of a grey level; the weights of a box sum to 256 << kFraction
+constexpr int kLanes = 8;  // pixels that are sampled at once: so many columns behind the image may be read, for nothing
 
 template <class T, int Bytes>
 struct VectorOf {
@@ -35,10 +35,11 @@ template <class Vector>
   return v;
 }
 
-// Mean grey over the box at neighbouring pixels, of which `sum` is the first's corner (left, top) in the integral image: sums weighted in
-// fixed point, rounded. In 256ths of a grey level, below 65536.
+// Mean grey over the box at neighbouring pixels, of which `sum` is the first's corner (left, top) in the integral
+// image: sums weighted in fixed point, rounded. In 256ths of a grey level, below 65536.
 template <int Lanes>
-[[gnu::always_inline]] inline Ints<Lanes> Mean(const BriskSampler::Box& box, const std::int32_t* sum, std::size_t step) {
+[[gnu::always_inline]] inline Ints<Lanes> Mean(const BriskSampler::Box& box, const std::int32_t* sum,
+                                               std::size_t step) {
   using Vector = Ints<Lanes>;
   // Three strips of rows: first, inside, last; in each of them the sums up to four columns.
   const std::int32_t* r0 = sum;
@@ -54,9 +55,11 @@ template <int Lanes>
     inside[c] = i2 - i1;
     last[c] = Load<Vector>(r3 + columns[c]) - i2;
   }
-  const Vector total = box.corner_00 * (first[1] - first[0]) + box.edge_top * (first[2] - first[1]) + box.corner_10 * (first[3] - first[2]) +
-                       box.edge_left * (inside[1] - inside[0]) + box.inside * (inside[2] - inside[1]) + box.edge_right * (inside[3] - inside[2]) +
-                       box.corner_01 * (last[1] - last[0]) + box.edge_bottom * (last[2] - last[1]) + box.corner_11 * (last[3] - last[2]);
+  const Vector total = box.corner_00 * (first[1] - first[0]) + box.edge_top * (first[2] - first[1]) +
+                       box.corner_10 * (first[3] - first[2]) + box.edge_left * (inside[1] - inside[0]) +
+                       box.inside * (inside[2] - inside[1]) + box.edge_right * (inside[3] - inside[2]) +
+                       box.corner_01 * (last[1] - last[0]) + box.edge_bottom * (last[2] - last[1]) +
+                       box.corner_11 * (last[3] - last[2]);
   return (total + (1 << (kFraction - 1))) >> kFraction;
 }
 
@@ -69,7 +72,7 @@ struct Row {
 struct Region {
   std::span<const Row> rows;
   std::size_t step;  // of the integral image
-  int pixels;  // room of each point's samples
+  int pixels;        // room of each point's samples
 };
 
 constexpr int Padded(int width) { return (width + kLanes - 1) / kLanes * kLanes; }
@@ -92,22 +95,26 @@ template <int Width>
   }
 }
 
-// Comparisons for `Width` pixels at a time: a comparison is 0 or -1 per pixel, and differs from the wanted bit (0 or -1) by -1.
+// Comparisons for `Width` pixels at a time: a comparison is 0 or -1 per pixel, and differs from the wanted bit (0 or
+// -1) by -1.
 template <int Width>
-[[gnu::always_inline]] inline void Compare(const std::int16_t* samples, int pixels, const std::int16_t* wanted, std::uint16_t* distances) {
+[[gnu::always_inline]] inline void Compare(const std::int16_t* samples, int pixels, const std::int16_t* wanted,
+                                           std::uint16_t* distances) {
   using Vector = Words<Width>;
   const BriskPair* pairs = BriskComparisons().data();
   for (int at = 0; at < pixels; at += Width, samples += kBriskPoints * Width) {
     Vector count = {};
     for (int k = 0; k < kBriskPairs; ++k) {
-      const Vector a = Load<Vector>(samples + pairs[k].first * Width), b = Load<Vector>(samples + pairs[k].second * Width);
+      const Vector a = Load<Vector>(samples + pairs[k].first * Width),
+                   b = Load<Vector>(samples + pairs[k].second * Width);
       count -= static_cast<Vector>(a > b) ^ wanted[k];
     }
     std::memcpy(distances + at, &count, sizeof count);
   }
 }
 
-using Kernel = void (*)(const Region&, const BriskSampler&, const std::int16_t* wanted, std::int16_t* samples, std::uint16_t* distances);
+using Kernel = void (*)(const Region&, const BriskSampler&, const std::int16_t* wanted, std::int16_t* samples,
+                        std::uint16_t* distances);
 
 void BaseKernel(const Region& region, const BriskSampler& sampler, const std::int16_t* wanted, std::int16_t* samples,
                 std::uint16_t* distances) {
@@ -122,8 +129,10 @@ void BaseKernel(const Region& region, const BriskSampler& sampler, const std::in
   Compare<16>(samples, region.pixels, wanted, distances);
 }
 
-[[gnu::target("avx2,avx512f,avx512bw,avx512dq,avx512vl")]] void Avx512Kernel(const Region& region, const BriskSampler& sampler,
-                                                                             const std::int16_t* wanted, std::int16_t* samples,
+[[gnu::target("avx2,avx512f,avx512bw,avx512dq,avx512vl")]] void Avx512Kernel(const Region& region,
+                                                                             const BriskSampler& sampler,
+                                                                             const std::int16_t* wanted,
+                                                                             std::int16_t* samples,
                                                                              std::uint16_t* distances) {
   Sample<32>(region, sampler, samples);
   Compare<32>(samples, region.pixels, wanted, distances);
@@ -156,21 +165,29 @@ BriskSampler::BriskSampler(const Eigen::Matrix2d& map) {
     const auto pixel = [](float v) { return static_cast<int>(std::floor(v + 0.5f)); };
     box.left = pixel(low), box.top = pixel(upper);
     box.width = pixel(high) - box.left - 1, box.height = pixel(lower) - box.top - 1;
-    const float in_left = static_cast<float>(box.left) - low + 0.5f, in_top = static_cast<float>(box.top) - upper + 0.5f;
-    const float in_right = high - static_cast<float>(pixel(high)) + 0.5f, in_bottom = lower - static_cast<float>(pixel(lower)) + 0.5f;
-    const auto fixed = [&](float share) { return static_cast<int>(std::lround(share * static_cast<float>(box.inside))); };
+    const float in_left = static_cast<float>(box.left) - low + 0.5f,
+                in_top = static_cast<float>(box.top) - upper + 0.5f;
+    const float in_right = high - static_cast<float>(pixel(high)) + 0.5f,
+                in_bottom = lower - static_cast<float>(pixel(lower)) + 0.5f;
+    const auto fixed = [&](float share) {
+      return static_cast<int>(std::lround(share * static_cast<float>(box.inside)));
+    };
     box.corner_00 = fixed(in_left * in_top), box.corner_10 = fixed(in_right * in_top);
     box.corner_11 = fixed(in_right * in_bottom), box.corner_01 = fixed(in_left * in_bottom);
-    box.edge_left = fixed(in_left), box.edge_top = fixed(in_top), box.edge_right = fixed(in_right), box.edge_bottom = fixed(in_bottom);
+    box.edge_left = fixed(in_left), box.edge_top = fixed(in_top), box.edge_right = fixed(in_right),
+    box.edge_bottom = fixed(in_bottom);
     margin_ = std::max({margin_, -box.left, -box.top, box.left + box.width + 2, box.top + box.height + 2});
   }
 }
 
 const char* Name(InstructionSet set) {
   switch (set) {
-    case InstructionSet::avx2: return "AVX2";
-    case InstructionSet::avx512: return "AVX-512";
-    default: return "base";
+    case InstructionSet::avx2:
+      return "AVX2";
+    case InstructionSet::avx512:
+      return "AVX-512";
+    default:
+      return "base";
   }
 }
 
@@ -198,7 +215,8 @@ bool BriskImage::Describable(const Eigen::Vector2i& pixel, const BriskSampler& s
 }
 
 Descriptor BriskImage::Describe(const Eigen::Vector2i& pixel, const BriskSampler& sampler) const {
-  if (!Describable(pixel, sampler)) throw std::invalid_argument("BRISK: the pixel is too near to the edge of the image");
+  if (!Describable(pixel, sampler))
+    throw std::invalid_argument("BRISK: the pixel is too near to the edge of the image");
   std::array<std::int16_t, kBriskPoints * 8> samples;
   const Row row{integral_.ptr<std::int32_t>(pixel.y()) + pixel.x(), 0, 1};
   Sample<8>({{&row, 1}, integral_.step1(), 8}, sampler, samples.data());
@@ -216,8 +234,9 @@ std::optional<BriskImage::Found> BriskImage::Nearest(const Descriptor& descripto
   return Nearest(best, descriptor, sampler, region);
 }
 
-std::optional<BriskImage::Found> BriskImage::Nearest(InstructionSet set, const Descriptor& descriptor, const BriskSampler& sampler,
-                                                     std::span<const PixelRun> region, std::vector<Found>* all) const {
+std::optional<BriskImage::Found> BriskImage::Nearest(InstructionSet set, const Descriptor& descriptor,
+                                                     const BriskSampler& sampler, std::span<const PixelRun> region,
+                                                     std::vector<Found>* all) const {
   thread_local std::vector<Row> rows;
   thread_local std::vector<PixelRun> runs;  // of `rows`
   thread_local std::vector<std::int16_t> samples;
@@ -225,7 +244,7 @@ std::optional<BriskImage::Found> BriskImage::Nearest(InstructionSet set, const D
   rows.clear();
   runs.clear();
   const int margin = sampler.margin();
-    int pixels = 0;
+  int pixels = 0;
   for (const PixelRun& run : region) {
     const int first = std::max(run.first_x, margin), last = std::min(run.last_x, width_ - margin - 1);
     if (run.y < margin || run.y >= height_ - margin || first > last) continue;

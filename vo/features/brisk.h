@@ -1,21 +1,22 @@
-// Purpose: BRISK descriptors, and their distance from a given one at every pixel of a window: what Algorithm 1, line 3 asks for.
-// Source:  algorithm, section 7. The descriptor is OpenCV's bit for bit at the same rotation and scale (tested), but neither is estimated
-//          from the image: a corner is described as it lies, and looked for as the predicted pose turns and scales it.
-// Method:  in a window every pixel has the same pattern, so that a place of the pattern is one box filter with fixed weights along a row
-//          of pixels (integral image), and a comparison is one instruction for 8, 16 or 32 of them. Which instructions the machine has is found
-//          out when the program starts; the numbers are integers and the same with all of them.
+// Purpose: BRISK descriptors, and the pixel of a region that is nearest to a given one: Algorithm 1, line 3.
+// Source:  algorithm, section 7. At the same rotation and scale 99.5 % of the bits are OpenCV's (docs/odometry.md), but
+//          neither is estimated from the image: a corner is described as it lies, and looked for as the predicted pose
+//          turns and scales it.
+// Method:  in a window every pixel has the same pattern, so that a place of the pattern is one box filter with fixed
+//          weights along a row of pixels (integral image), and a comparison is one instruction for 8, 16 or 32 of them.
+//          Which instructions the machine has is found out when the program starts; all is done in integers and comes
+//          out the same.
 // Units:   pixels.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <span>
 #include <vector>
-
-#include <Eigen/Core>
-#include <opencv2/core.hpp>
 
 #include "vo/features/brisk_pattern.h"
 
@@ -32,8 +33,8 @@ inline int HammingDistance(const Descriptor& a, const Descriptor& b) {
 // The pattern under a linear map, prepared for sampling at whole pixels.
 class BriskSampler {
  public:
-  // `map`: from the pattern at scale 1 to the image. Squares stay upright and grow with the root of its determinant, to half a pixel of
-  // half-width at the least.
+  // `map`: from the pattern at scale 1 to the image. Squares stay upright and grow with the root of its determinant, to
+  // half a pixel of half-width at the least.
   explicit BriskSampler(const Eigen::Matrix2d& map);
 
   // Pixels nearer to the edge of the image than this cannot be described.
@@ -41,7 +42,7 @@ class BriskSampler {
 
   // A square with fractional borders, relative to the pixel: weights of its corners, edges and inside (fixed point).
   struct Box {
-    int left, top, width, height;  // of the first corner; of the inside
+    int left, top, width, height;                    // of the first corner; of the inside
     int corner_00, corner_10, corner_11, corner_01;  // (left, top), (right, top), (right, bottom), (left, bottom)
     int edge_left, edge_top, edge_right, edge_bottom;
     int inside;
@@ -70,16 +71,17 @@ class BriskImage {
   bool Describable(const Eigen::Vector2i& pixel, const BriskSampler& sampler) const;
   // Throws std::invalid_argument where the pixel is not describable.
   Descriptor Describe(const Eigen::Vector2i& pixel, const BriskSampler& sampler) const;
-  // The pixel of the region nearest to `descriptor` in Hamming distance, the first where several are; none where no pixel of it can be
-  // described.
+  // The pixel of the region nearest to `descriptor` in Hamming distance, the first where several are; none where no
+  // pixel of it can be described.
   struct Found {
     Eigen::Vector2i pixel;
     int distance;
   };
-  std::optional<Found> Nearest(const Descriptor& descriptor, const BriskSampler& sampler, std::span<const PixelRun> region) const;
+  std::optional<Found> Nearest(const Descriptor& descriptor, const BriskSampler& sampler,
+                               std::span<const PixelRun> region) const;
   // The same with the instruction set told, and with what was found at every pixel that can be described, in order.
-  std::optional<Found> Nearest(InstructionSet set, const Descriptor& descriptor, const BriskSampler& sampler, std::span<const PixelRun> region,
-                               std::vector<Found>* all = nullptr) const;
+  std::optional<Found> Nearest(InstructionSet set, const Descriptor& descriptor, const BriskSampler& sampler,
+                               std::span<const PixelRun> region, std::vector<Found>* all = nullptr) const;
 
  private:
   cv::Mat integral_;  // rows are longer than the image's, so that whole vectors can be read at its right edge

@@ -1,5 +1,6 @@
 // Purpose: where BRISK looks about a pixel, and which of these places it compares.
-// Source:  Leutenegger, Chli & Siegwart, "BRISK: Binary Robust Invariant Scalable Keypoints", ICCV 2011; numbers and order as in OpenCV.
+// Source:  Leutenegger, Chli & Siegwart, "BRISK: Binary Robust Invariant Scalable Keypoints", ICCV 2011; numbers and
+//          order as in OpenCV.
 // Units:   pixels, at scale 1 (a keypoint diameter of 7.2 px in OpenCV's terms).
 #pragma once
 

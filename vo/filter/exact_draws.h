@@ -1,7 +1,9 @@
-// Purpose: draws for all particles at once that are exact to second order: over the particles their mean is 0, their covariance is the
-//          identity and, with enough particles, they do not correlate with where the particles are. What the particles then know
-//          together, mean and covariance, is what infinitely many would know on a linear-Gaussian model; each by itself is still a draw.
-// Source:  second-order exact sampling of ensemble filters (Pham, Mon. Weather Rev. 129, 2001), with the offsets projected out besides.
+// Purpose: draws for all particles at once that are exact to second order: over the particles their mean is 0, their
+//          covariance is the identity and, with enough particles, they do not correlate with where the particles are.
+//          What the particles then know together, mean and covariance, is what infinitely many would know on a
+//          linear-Gaussian model; each by itself is still a draw.
+// Source:  second-order exact sampling of ensemble filters (Pham, Mon. Weather Rev. 129, 2001), with the offsets
+//          projected out besides.
 // Shapes:  one column per particle.
 #pragma once
 
@@ -14,7 +16,8 @@ using ParticleColumns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 // Six dimensions and a mean need seven particles.
 inline bool EnoughForExactDraws(int particles) { return particles >= 7; }
 
-// `normals`: independent standard normal numbers. `offsets`: of the particles from any common point; projected out from 14 particles on.
+// `normals`: independent standard normal numbers. `offsets`: of the particles from any common point; projected out from
+// 14 particles on.
 ParticleColumns ExactDraws(const ParticleColumns& offsets, const ParticleColumns& normals);
 
 }  // namespace vo

@@ -141,7 +141,8 @@ TEST(WriteReport, ShowsAnEstimateBesideTheTruthOfItsOwnSeed) {
   const auto judged = WriteFakeResult(folder.path(), {});
   EXPECT_THAT(PageOf(folder), Not(HasSubstr("a path of its own")));
   for (const JudgedRun& run : judged) {
-    for (const char* name : {"truth.txt", "estimate.txt"}) {  // moved as a whole: nothing that is judged changes but the place
+    for (const char* name :
+         {"truth.txt", "estimate.txt"}) {  // moved as a whole: nothing that is judged changes but the place
       const auto file = folder.path() / run.run.path / name;
       evaluation::Trajectory trajectory = evaluation::ReadTrajectory(file);
       for (auto& pose : trajectory) pose.p_WC.x() += 100.0 * static_cast<double>(run.run.seed);
@@ -153,7 +154,8 @@ TEST(WriteReport, ShowsAnEstimateBesideTheTruthOfItsOwnSeed) {
   const RunData& shown = data.Typical("rb2pf");
   EXPECT_EQ(data.Typical("rbpf").entry.seed, shown.entry.seed);
   const std::string html = PageOf(folder);
-  EXPECT_THAT(html, HasSubstr("Every seed flies a path of its own; shown is that of seed " + std::to_string(shown.entry.seed)));
+  EXPECT_THAT(
+      html, HasSubstr("Every seed flies a path of its own; shown is that of seed " + std::to_string(shown.entry.seed)));
   // From above and from the side: one run of each system, and its line in the legend.
   const std::size_t begin = html.find("aria-label=\"From above"), end = html.find("aria-label=\"From above, with");
   const std::string paths = html.substr(begin, end - begin);

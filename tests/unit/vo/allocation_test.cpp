@@ -1,11 +1,12 @@
-// The filter's loop takes no memory from the heap: every call of malloc is counted, Eigen's and the standard library's alike.
+// The filter's loop takes no memory from the heap: every call of malloc is counted, Eigen's and the standard library's
+// alike.
+
+#include <gtest/gtest.h>
 
 #include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "vo/filter/particle_filter.h"
 #include "vo/geometry/so3.h"
@@ -71,8 +72,10 @@ int AllocationsOfALoop(const vo::FilterParams& params, int frames) {
     const vo::Pose pose{Eigen::Vector3d(0.01 * k, 0.002 * k, 0), vo::Exp({0, 0.002 * k, 0})};
     for (int n = 0; n < kLandmarks; ++n) {
       const Eigen::Vector3d X =
-          pose.q_WC.conjugate() * (rays[static_cast<std::size_t>(n)].homogeneous() / (0.25 + 0.05 * std::sin(0.9 * n)) - pose.p_WC);
-      matches[static_cast<std::size_t>(n)].z = X.hnormalized() + kSigma * Eigen::Vector2d(std::sin(17.0 * n * k), std::cos(23.0 * n * k));
+          pose.q_WC.conjugate() *
+          (rays[static_cast<std::size_t>(n)].homogeneous() / (0.25 + 0.05 * std::sin(0.9 * n)) - pose.p_WC);
+      matches[static_cast<std::size_t>(n)].z =
+          X.hnormalized() + kSigma * Eigen::Vector2d(std::sin(17.0 * n * k), std::cos(23.0 * n * k));
     }
     counting = k >= 10;  // the first frames make room
     filter.Predict(kDt);

@@ -1,8 +1,8 @@
 #include "vo/filter/exact_draws.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "vo/geometry/pose.h"
 #include "vo/random.h"
@@ -46,9 +46,9 @@ TEST(ExactDraws, TakeOffsetsWithoutScatter) {
   }
 }
 
-// Each particle alone still draws from a law of mean 0 and covariance 1. Over R replicates sum z^2 of one coordinate has variance at most
-// 2 R (the draws' tails are lighter than a normal's): 4 standard deviations on 6 means and 6 variances are a false alarm in 1e-3 of
-// seeds. Draws three per cent too wide are rejected.
+// Each particle alone still draws from a law of mean 0 and covariance 1. Over R replicates sum z^2 of one coordinate
+// has variance at most 2 R (the draws' tails are lighter than a normal's): 4 standard deviations on 6 means and 6
+// variances are a false alarm in 1e-3 of seeds. Draws three per cent too wide are rejected.
 TEST(ExactDraws, OfOneParticleAreStandard) {
   constexpr int kReplicates = 40000;
   vo::Vector6 sum = vo::Vector6::Zero();
@@ -59,7 +59,9 @@ TEST(ExactDraws, OfOneParticleAreStandard) {
     sum += z;
     squares += z.cwiseAbs2();
   }
-  const auto off = [](double value, double expected, double deviation) { return std::abs(value - expected) / deviation; };
+  const auto off = [](double value, double expected, double deviation) {
+    return std::abs(value - expected) / deviation;
+  };
   for (int d = 0; d < 6; ++d) {
     EXPECT_LT(off(sum[d], 0, std::sqrt(kReplicates)), 4) << d;
     EXPECT_LT(off(squares[d], kReplicates, std::sqrt(2.0 * kReplicates)), 4) << d;
