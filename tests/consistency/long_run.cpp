@@ -1,12 +1,15 @@
 #include "tests/consistency/long_run.h"
 
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <ctime>
 #include <fstream>
+#include <iostream>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "sim/world/point_world.h"
 #include "tools/evaluation/statistics.h"
@@ -20,6 +23,14 @@ namespace {
 
 using namespace vobench;
 
+struct Frame {
+  double cpu_s = 0;  // of the thread
+  int landmarks = 0;
+  int allowed = 0;                 // different points seen in this frame and the forget_after - 1 before it
+  std::size_t resident_bytes = 0;  // every 100 frames, else 0
+  bool finite = false;
+};
+
 double CpuSeconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -32,8 +43,6 @@ std::size_t ResidentBytes() {
   file >> total >> resident;
   return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
-
-}  // namespace
 
 std::vector<Frame> Play(std::size_t count) {
   const Experiment experiment =
@@ -71,10 +80,30 @@ std::vector<Frame> Play(std::size_t count) {
   return result;
 }
 
+// Median cpu_s of [first, last).
 double MedianTime(const std::vector<Frame>& frames, std::size_t first, std::size_t last) {
   std::vector<double> times;
   for (std::size_t k = first; k < last; ++k) times.push_back(frames[k].cpu_s);
   return evaluation::Median(times);
+}
+
+}  // namespace
+
+void ExpectNothingGrows(std::size_t count, std::size_t early, std::size_t window) {
+  const auto frames = Play(count);
+  ASSERT_EQ(frames.size(), count);
+  for (std::size_t k = 0; k < count; ++k) {
+    ASSERT_TRUE(frames[k].finite) << k;
+    ASSERT_EQ(frames[k].landmarks, frames[k].allowed) << k;
+  }
+  // The first second has no landmarks out of view yet.
+  const double first = MedianTime(frames, 60, 60 + window), last = MedianTime(frames, count - window, count);
+  EXPECT_LT(last, 1.25 * first) << "[s] per frame";
+  const auto then = static_cast<double>(frames[early].resident_bytes),
+             now = static_cast<double>(frames.back().resident_bytes);
+  EXPECT_LT(now, 1.02 * then) << "resident bytes";
+  std::cout << "ms per frame: " << 1e3 * first << " at first, " << 1e3 * last << " at last; resident MB: " << then / 1e6
+            << " and " << now / 1e6 << "; landmarks at last: " << frames.back().landmarks << '\n';
 }
 
 }  // namespace long_run

@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "sim/world/point_world.h"
 #include "tools/evaluation/chi2.h"
+#include "tools/evaluation/statistics.h"
 #include "tools/vobench/bridge.h"
 #include "tools/vobench/experiment.h"
 #include "tools/vobench/prior.h"
@@ -67,15 +67,7 @@ Nees Play(vo::Sampled sampled, const Overrides& settings) {
   return nees;
 }
 
-double Mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v / static_cast<double>(values.size());
-  return sum;
-}
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
+double Mean(const std::vector<double>& values) { return evaluation::Summarise(values).mean; }
 
 // False alarm 1e-3: the mean over independent runs is chi-square. What RB-PF carries from frame to frame is eight
 // draws, seldom more than four of weight, in six dimensions: the median over runs was 116, of RB2-PF's particles 2.5.
@@ -87,8 +79,8 @@ TEST(VelocityClaim, GaussiansOfTheVelocityAreHonestAndEightSamplesAreNot) {
   EXPECT_GT(6 * Mean(gaussians.answer), band.low);
   EXPECT_LT(6 * Mean(gaussians.answer), band.high);
   const Nees at_once = Play(vo::Sampled::pose, {}), samples = Play(vo::Sampled::pose_and_velocity, {});
-  EXPECT_LT(Median(at_once.samples), 5);
-  EXPECT_GT(Median(samples.samples), 10);
+  EXPECT_LT(evaluation::Median(at_once.samples), 5);
+  EXPECT_GT(evaluation::Median(samples.samples), 10);
   EXPECT_LT(Mean(at_once.answer), Mean(samples.answer));
 }
 

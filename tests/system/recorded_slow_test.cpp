@@ -1,11 +1,11 @@
 // Recorded sequences to the last frame, ten seeds each. recorded_test.cpp is the quick twin.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <vector>
 
 #include "tests/system/recorded.h"
+#include "tools/evaluation/statistics.h"
 
 namespace vobench::system_test {
 namespace {
@@ -13,12 +13,6 @@ namespace {
 struct Limits {
   double ate_cm, rpe_cm_per_s;  // of the median over seeds
 };
-
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
 
 void ExpectWithin(const Limits& limits, const std::string& name, const std::string& camera) {
   const auto sequence = RecordedSequence(name);
@@ -37,10 +31,10 @@ void ExpectWithin(const Limits& limits, const std::string& name, const std::stri
     constant_pose = scores.constant_pose_ate_cm;
     constant_velocity = scores.constant_velocity_ate_cm;
   }
-  EXPECT_LE(Median(ate), limits.ate_cm);
-  EXPECT_LE(Median(rpe), limits.rpe_cm_per_s);
-  EXPECT_LE(3 * Median(ate), constant_pose);
-  EXPECT_LE(3 * Median(ate), constant_velocity);
+  EXPECT_LE(evaluation::Median(ate), limits.ate_cm);
+  EXPECT_LE(evaluation::Median(rpe), limits.rpe_cm_per_s);
+  EXPECT_LE(3 * evaluation::Median(ate), constant_pose);
+  EXPECT_LE(3 * evaluation::Median(ate), constant_velocity);
 }
 
 TEST(RecordedSlowTest, Freiburg1) { ExpectWithin({4, 5}, "tum_fr1_xyz", "freiburg1"); }

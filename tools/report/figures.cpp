@@ -103,7 +103,8 @@ void DrawPaths(const ResultData& data, const View& view, Plot& plot, std::vector
     plot.Line(x.back(), y.back(), style, label);
   };
   const std::vector<std::string> systems = data.Systems();
-  for (std::size_t s = 0; s < systems.size() && data.SharedTruth(); ++s) {
+  const bool together = data.SharedTruth();
+  for (std::size_t s = 0; together && s < systems.size(); ++s) {
     const RunData& typical = data.Typical(systems[s]);
     for (const RunData& run : data.runs) {
       if (run.entry.system == systems[s] && &run != &typical) line(Drawn(run), StyleOf(s) + " faint", "");

@@ -21,12 +21,9 @@ template <class T, int Bytes>
 struct VectorOf {
   typedef T type __attribute__((vector_size(Bytes)));
 };
-template <int Lanes>
-using Ints = typename VectorOf<std::int32_t, 4 * Lanes>::type;
-template <int Lanes>
-using Floats = typename VectorOf<float, 4 * Lanes>::type;
-template <int Lanes>
-using Words = typename VectorOf<std::int16_t, 2 * Lanes>::type;
+using Ints = VectorOf<std::int32_t, 4 * kLanes>::type;
+template <int Width>
+using Words = typename VectorOf<std::int16_t, 2 * Width>::type;
 
 template <class Vector>
 [[gnu::always_inline]] inline Vector Load(const void* from) {
@@ -37,29 +34,26 @@ template <class Vector>
 
 // Mean grey over the box at neighbouring pixels, of which `sum` is the first's corner (left, top) in the integral
 // image: sums weighted in fixed point, rounded. In 256ths of a grey level, below 65536.
-template <int Lanes>
-[[gnu::always_inline]] inline Ints<Lanes> Mean(const BriskSampler::Box& box, const std::int32_t* sum,
-                                               std::size_t step) {
-  using Vector = Ints<Lanes>;
+[[gnu::always_inline]] inline Ints Mean(const BriskSampler::Box& box, const std::int32_t* sum, std::size_t step) {
   // Three strips of rows: first, inside, last; in each of them the sums up to four columns.
   const std::int32_t* r0 = sum;
   const std::int32_t* r1 = r0 + step;
   const std::int32_t* r2 = r1 + static_cast<std::size_t>(box.height) * step;
   const std::int32_t* r3 = r2 + step;
-  Vector first[4], inside[4], last[4];
+  Ints first[4], inside[4], last[4];
   const int columns[4] = {0, 1, 1 + box.width, 2 + box.width};
 #pragma GCC unroll 4
   for (int c = 0; c < 4; ++c) {
-    const Vector i1 = Load<Vector>(r1 + columns[c]), i2 = Load<Vector>(r2 + columns[c]);
-    first[c] = i1 - Load<Vector>(r0 + columns[c]);
+    const Ints i1 = Load<Ints>(r1 + columns[c]), i2 = Load<Ints>(r2 + columns[c]);
+    first[c] = i1 - Load<Ints>(r0 + columns[c]);
     inside[c] = i2 - i1;
-    last[c] = Load<Vector>(r3 + columns[c]) - i2;
+    last[c] = Load<Ints>(r3 + columns[c]) - i2;
   }
-  const Vector total = box.corner_00 * (first[1] - first[0]) + box.edge_top * (first[2] - first[1]) +
-                       box.corner_10 * (first[3] - first[2]) + box.edge_left * (inside[1] - inside[0]) +
-                       box.inside * (inside[2] - inside[1]) + box.edge_right * (inside[3] - inside[2]) +
-                       box.corner_01 * (last[1] - last[0]) + box.edge_bottom * (last[2] - last[1]) +
-                       box.corner_11 * (last[3] - last[2]);
+  const Ints total = box.corner_00 * (first[1] - first[0]) + box.edge_top * (first[2] - first[1]) +
+                     box.corner_10 * (first[3] - first[2]) + box.edge_left * (inside[1] - inside[0]) +
+                     box.inside * (inside[2] - inside[1]) + box.edge_right * (inside[3] - inside[2]) +
+                     box.corner_01 * (last[1] - last[0]) + box.edge_bottom * (last[2] - last[1]) +
+                     box.corner_11 * (last[3] - last[2]);
   return (total + (1 << (kFraction - 1))) >> kFraction;
 }
 
@@ -87,7 +81,7 @@ template <int Width>
     for (const Row& row : region.rows) {
       for (int x = 0; x < row.width; x += kLanes) {
         const Words<kLanes> mean =
-            __builtin_convertvector(Mean<kLanes>(box, row.sum + offset + x, region.step) - 32768, Words<kLanes>);
+            __builtin_convertvector(Mean(box, row.sum + offset + x, region.step) - 32768, Words<kLanes>);
         const int at = row.at + x;
         std::memcpy(samples + (at / Width * kBriskPoints + n) * Width + at % Width, &mean, sizeof mean);
       }

@@ -19,6 +19,8 @@ namespace {
 // holds, the worst of 8 or of 64 particles was within 33 nats of the best in every frame; one in a wrong solution is hundreds away.
 constexpr double kRefuted = 50;
 
+PoseGaussian OldestOf(const PathGaussian& path) { return {path.mean[0], path.covariance.topLeftCorner<6, 6>()}; }
+
 }  // namespace
 
 void ParticleFilter::PredictPath(double dt) {
@@ -143,30 +145,20 @@ void ParticleFilter::CommitOldest() {
 }
 
 std::vector<Pose> ParticleFilter::DrawOldest() const {
-  std::vector<Pose> drawn;
-  if (params_.weight == Weight::equal && EnoughForExactDraws(params_.particles)) {
-    Eigen::Matrix<double, 6, Eigen::Dynamic> offsets(6, params_.particles), normals(6, params_.particles);
-    for (std::uint32_t i = 0; i < particles_.size(); ++i) {
-      offsets.col(i) = Minus(particles_[i].path.mean[0], particles_[0].path.mean[0]);
-      for (std::uint32_t d = 0; d < 6; ++d) normals(d, i) = Normal({seed_, Stream::pose, frame_, i}, d);
-    }
-    const auto draws = ExactDraws(offsets, normals);
-    for (std::uint32_t i = 0; i < particles_.size(); ++i) {
-      const PathGaussian& path = particles_[i].path;
-      drawn.push_back(Plus(path.mean[0], Matrix6(path.covariance.topLeftCorner<6, 6>().llt().matrixL()) * draws.col(i)));
-    }
-  } else {
-    for (std::uint32_t i = 0; i < particles_.size(); ++i) {
-      const PathGaussian& path = particles_[i].path;
-      drawn.push_back(PoseGaussian{path.mean[0], path.covariance.topLeftCorner<6, 6>()}.Sample({seed_, Stream::pose, frame_, i}));
-    }
+  ParticleColumns offsets(6, params_.particles), normals(6, params_.particles);
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+    offsets.col(i) = Minus(particles_[i].path.mean[0], particles_[0].path.mean[0]);
+    normals.col(i) = NormalVector<Vector6>({seed_, Stream::pose, frame_, i});
   }
+  if (params_.weight == Weight::equal && EnoughForExactDraws(params_.particles)) normals = ExactDraws(offsets, normals);
+  std::vector<Pose> drawn;
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) drawn.push_back(OldestOf(particles_[i].path).Displaced(normals.col(i)));
   return drawn;
 }
 
 void ParticleFilter::CommitOldest(Particle& particle, std::uint32_t index, const Pose& s) const {
   PathGaussian& path = particle.path;
-  const PoseGaussian oldest{path.mean[0], path.covariance.topLeftCorner<6, 6>()};
+  const PoseGaussian oldest = OldestOf(path);
   const int rest = static_cast<int>(path.covariance.rows()) - 6;
   const Vector6 d = oldest.covariance.llt().solve(Minus(s, oldest.mean));
   for (int k = 1; k <= rest / 6; ++k)

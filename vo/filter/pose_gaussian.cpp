@@ -28,9 +28,12 @@ double PoseGaussian::LogDensity(const Pose& pose) const {
 }
 
 Pose PoseGaussian::Sample(const RandomKey& key) const {
+  return Displaced(NormalVector<Vector6>(key));
+}
+
+Pose PoseGaussian::Displaced(const Vector6& normals) const {
   if (covariance.isZero(0)) return mean;
-  const Vector6 n = NormalVector<Vector6>(key);
-  return Plus(mean, covariance.llt().matrixL() * n);
+  return Plus(mean, covariance.llt().matrixL() * normals);
 }
 
 Vector6 SampleNormal(const Vector6& mean, const Matrix6& covariance, const RandomKey& key) {

@@ -19,6 +19,8 @@ struct PoseGaussian {
   double LogDensity(const Pose& pose) const;
   // A covariance of zero returns the mean.
   Pose Sample(const RandomKey& key) const;
+  // The same with the six standard normal numbers told.
+  Pose Displaced(const Vector6& normals) const;
 };
 
 // A covariance that is only semi-definite is legal.
