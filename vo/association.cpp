@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -32,7 +33,7 @@ bool WorthSearching(const Filter& filter, const LandmarkRecord& record, int land
   return rho <= 0 || (now.p_WC - first.p_WC).norm() * rho < params.features.max_baseline_ratio;
 }
 
-// Section 7: assessed in this order; then no more than max_searched, the surest first.
+// Section 7: assessed in this order.
 std::vector<Candidate> FindCandidates(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
                                       int border_px, const Params& params) {
   std::vector<Candidate> candidates;
@@ -43,12 +44,31 @@ std::vector<Candidate> FindCandidates(const Filter& filter, std::span<const Land
     if (!camera.Sees(pixel, border_px)) continue;
     candidates.push_back({n, prediction, pixel, camera.LensJacobian(prediction.z)});
   }
-  if (static_cast<int>(candidates.size()) > params.features.max_searched) {
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [&](const Candidate& a, const Candidate& b) { return records[a.landmark].score > records[b.landmark].score; });
-    candidates.resize(params.features.max_searched);
-  }
   return candidates;
+}
+
+// No more than max_searched stay, spread over the image: of every cell of the corner detector's grid the surest, then of every cell
+// the second, and so on. Returned: where the others are predicted.
+std::vector<Eigen::Vector2d> LeaveOut(std::vector<Candidate>& candidates, std::span<const LandmarkRecord> records, const Camera& camera,
+                                      const FeatureParams& params) {
+  std::vector<Eigen::Vector2d> left_out;
+  const auto most = static_cast<std::size_t>(params.max_searched);
+  if (candidates.size() <= most) return left_out;
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [&](const Candidate& a, const Candidate& b) { return records[a.landmark].score > records[b.landmark].score; });
+  std::vector<int> in_cell(static_cast<std::size_t>(params.grid_columns * params.grid_rows), 0);
+  std::vector<std::pair<int, std::size_t>> turns;  // its place within the cell, candidate
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const auto column = static_cast<int>(candidates[i].pixel.x() * params.grid_columns / camera.width);
+    const auto row = static_cast<int>(candidates[i].pixel.y() * params.grid_rows / camera.height);
+    turns.emplace_back(in_cell[row * params.grid_columns + column]++, i);
+  }
+  std::sort(turns.begin(), turns.end());
+  std::vector<Candidate> chosen;
+  for (std::size_t i = 0; i < most; ++i) chosen.push_back(candidates[turns[i].second]);
+  for (std::size_t i = most; i < turns.size(); ++i) left_out.push_back(candidates[turns[i].second].pixel);
+  candidates = std::move(chosen);
+  return left_out;
 }
 
 SearchRequest RequestFor(const Candidate& candidate, const Filter& filter, const LandmarkRecord& record, const Camera& camera,
@@ -68,7 +88,9 @@ SearchRequest RequestFor(const Candidate& candidate, const Filter& filter, const
 
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
                       const BriskImage& brisk, int border_px, const Params& params) {
-  const std::vector<Candidate> candidates = FindCandidates(filter, records, camera, border_px, params);
+  Association result;
+  std::vector<Candidate> candidates = FindCandidates(filter, records, camera, border_px, params);
+  result.left_out = LeaveOut(candidates, records, camera, params.features);
   std::vector<SearchRequest> requests;
   for (const Candidate& c : candidates)
     requests.push_back(RequestFor(c, filter, records[c.landmark], camera, params.features.sigma_px));
@@ -81,7 +103,6 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   const std::vector<bool> inlier =
       FindInliers(filter.ReferencePrediction(), filter.ReferenceMap(), matches, params.score.gate, params.filter);
 
-  Association result;
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];
     Searched searched{c.landmark, std::nullopt};

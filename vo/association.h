@@ -25,6 +25,7 @@ struct Association {
   std::vector<Searched> searched;
   std::vector<Match> matches;      // inliers
   std::vector<FeatureView> views;  // for drawing, in the order of `searched`
+  std::vector<Eigen::Vector2d> left_out;  // [px] where landmarks are predicted that max_searched left no time for
   double nis = 0;                  // sum of the matches' mahalanobis_sq
 };
 

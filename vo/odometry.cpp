@@ -11,6 +11,7 @@
 #include "vo/estimate.h"
 #include "vo/features/corner_detector.h"
 #include "vo/map/existence.h"
+#include "vo/map/forgetting.h"
 
 namespace vo {
 namespace {
@@ -46,6 +47,7 @@ struct Odometry::Impl {
   int border_px;
   std::vector<LandmarkRecord> records;  // in the order of the filter's landmarks
   std::vector<FeatureView> views;
+  std::vector<Eigen::Vector2d> left_out;  // [px] of this frame: predicted, but not looked for
   std::optional<std::int64_t> last_stamp_ns;
   int next_id = 0;
 };
@@ -59,6 +61,7 @@ Estimate Odometry::Impl::Process(const Frame& frame) {
   Stopwatch watch;
   const cv::Mat grey = Grey(frame.image);
   views.clear();
+  left_out.clear();
 
   if (last_stamp_ns) {
     filter->Predict(static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9);
@@ -72,6 +75,7 @@ Estimate Odometry::Impl::Process(const Frame& frame) {
     diagnostics.nis = association.nis;
     diagnostics.nis_dof = 2 * diagnostics.matched;
     views = std::move(association.views);
+    left_out = std::move(association.left_out);
     diagnostics.ms_filter = watch.Lap();
   } else {
     brisk.Set(grey);
@@ -100,17 +104,11 @@ void Odometry::Impl::UpdateScores(const Association& association) {
 }
 
 void Odometry::Impl::Forget() {
-  std::vector<bool> keep(records.size());
-  int kept = 0;
-  for (int n = static_cast<int>(records.size()) - 1; n >= 0; --n) {  // the newest first: they win when the map is full
-    LandmarkRecord& record = records[n];
-    const auto belief = filter->BeliefOf(n);
-    record.permanent = belief.inverse_depth_sigma < params.landmark.permanent_ratio * belief.inverse_depth;
-    const bool exists = record.score >= params.score.delete_below || record.age < params.score.grace_frames;
-    keep[n] = (record.permanent || (exists && record.frames_unsearched < params.landmark.forget_after)) &&
-              kept < params.landmark.max_landmarks;
-    kept += keep[n];
+  for (std::size_t n = 0; n < records.size(); ++n) {
+    const auto belief = filter->BeliefOf(static_cast<int>(n));
+    records[n].permanent = belief.inverse_depth_sigma < params.landmark.permanent_ratio * belief.inverse_depth;
   }
+  const std::vector<bool> keep = WorthKeeping(records, params.landmark, params.score);
   filter->KeepLandmarks(keep);
   std::size_t to = 0;
   for (std::size_t from = 0; from < records.size(); ++from)
@@ -119,7 +117,7 @@ void Odometry::Impl::Forget() {
 }
 
 void Odometry::Impl::AddFeatures(const cv::Mat& grey) {
-  std::vector<Eigen::Vector2d> occupied;
+  std::vector<Eigen::Vector2d> occupied = left_out;
   for (const FeatureView& view : views)
     if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
   const std::vector<Eigen::Vector2i> corners = DetectCorners(grey, occupied, border_px, params.features);

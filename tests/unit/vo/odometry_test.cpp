@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -106,6 +108,34 @@ TEST(Odometry, CoastsOverBlankFramesAndRecovers) {
   EXPECT_TRUE(estimates[27].diagnostics.tracked()) << "recovers within three frames";
   EXPECT_GE(outcome.tracked, 36);
   EXPECT_LT(outcome.rms, 0.3 * outcome.path_extent);
+}
+
+// Landmarks that there is no time to look for hold their place: no second one is put on the same corner.
+TEST(Odometry, LooksForLandmarksAllOverTheImageAndAddsNoneWhereOneIs) {
+  const vo_test::Texture texture(4, 40.0, 24);
+  vo::Params params = SmallImageParams();
+  params.features.max_searched = 30;  // of 48
+  vo::Prior still;
+  still.velocity_covariance = 1e-6 * vo::Matrix6::Identity();
+  vo::Odometry odometry(kCamera, params, still, 1);
+  const cv::Mat image = ViewFrom({}, texture);
+  const auto cells = [&] {
+    std::set<std::pair<int, int>> result;
+    for (const vo::FeatureView& view : odometry.Features())
+      result.emplace(view.predicted.x() * params.features.grid_columns / kCamera.width,
+                     view.predicted.y() * params.features.grid_rows / kCamera.height);
+    return result.size();
+  };
+  const int landmarks = odometry.Track({0, image}).diagnostics.landmarks;
+  EXPECT_GT(landmarks, 40);
+  const std::size_t with_landmarks = cells();
+  EXPECT_LE(with_landmarks, 30u);
+  for (int k = 1; k < 12; ++k) {
+    const vo::FrameDiagnostics d = odometry.Track({k * kFrameNs, image}).diagnostics;
+    EXPECT_LE(d.landmarks, landmarks + 2) << k;  // one near a cell's edge may cross it and make room
+    EXPECT_EQ(d.searched, 30) << k;
+    EXPECT_EQ(cells(), with_landmarks) << k;
+  }
 }
 
 TEST(Odometry, NeverStopsOnImagesThatSayNothing) {

@@ -1,0 +1,39 @@
+// Which landmarks the map keeps.
+#include "vo/map/forgetting.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+using testing::ElementsAre;
+
+vo::LandmarkRecord Record(bool permanent, double score, int age, int frames_unsearched) {
+  vo::LandmarkRecord record;
+  record.permanent = permanent;
+  record.score = score;
+  record.age = age;
+  record.frames_unsearched = frames_unsearched;
+  return record;
+}
+
+TEST(WorthKeeping, PermanentOnesStayOthersWhileTheyExistAndAreSearched) {
+  vo::LandmarkParams landmark;
+  landmark.forget_after = 90;
+  vo::ScoreParams score;
+  score.delete_below = 0.1;
+  score.grace_frames = 3;
+  const vo::LandmarkRecord records[] = {Record(true, 0.0, 500, 400), Record(false, 0.9, 50, 89), Record(false, 0.9, 100, 90),
+                                        Record(false, 0.05, 50, 0), Record(false, 0.05, 2, 0)};
+  EXPECT_THAT(vo::WorthKeeping(records, landmark, score), ElementsAre(true, true, false, false, true));
+}
+
+TEST(WorthKeeping, WhereThereIsNoRoomTheLongestUnsearchedGoOldestFirst) {
+  vo::LandmarkParams landmark;
+  landmark.max_landmarks = 3;
+  const vo::LandmarkRecord records[] = {Record(true, 1, 900, 0), Record(true, 1, 800, 7), Record(true, 1, 700, 2),
+                                        Record(false, 1, 60, 2), Record(false, 1, 0, 0)};
+  EXPECT_THAT(vo::WorthKeeping(records, landmark, {}), ElementsAre(true, false, false, true, true));
+}
+
+}  // namespace

@@ -1,0 +1,17 @@
+// Purpose: which landmarks the map keeps: those that are known well or still exist, no more than it has room for.
+// Source:  algorithm, section 7 (deletion by score); the bound is ours.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "vo/map/landmark_record.h"
+#include "vo/params.h"
+
+namespace vo {
+
+// Kept are the permanent ones, and those that exist and were searched for in the last forget_after frames. Beyond max_landmarks the longest
+// unsearched go, of these the oldest (the first in `records`).
+std::vector<bool> WorthKeeping(std::span<const LandmarkRecord> records, const LandmarkParams& landmark, const ScoreParams& score);
+
+}  // namespace vo
