@@ -174,28 +174,6 @@ BriskSampler::BriskSampler(const Eigen::Matrix2d& map) {
   }
 }
 
-const char* Name(InstructionSet set) {
-  switch (set) {
-    case InstructionSet::avx2:
-      return "AVX2";
-    case InstructionSet::avx512:
-      return "AVX-512";
-    default:
-      return "base";
-  }
-}
-
-std::vector<InstructionSet> AvailableInstructionSets() {
-  std::vector<InstructionSet> sets = {InstructionSet::base};
-#ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2")) sets.push_back(InstructionSet::avx2);
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl"))
-    sets.push_back(InstructionSet::avx512);
-#endif
-  return sets;
-}
-
 void BriskImage::Set(const cv::Mat& grey) {
   width_ = grey.cols, height_ = grey.rows;
   cv::Mat padded;
@@ -224,8 +202,7 @@ Descriptor BriskImage::Describe(const Eigen::Vector2i& pixel, const BriskSampler
 
 std::optional<BriskImage::Found> BriskImage::Nearest(const Descriptor& descriptor, const BriskSampler& sampler,
                                                      std::span<const PixelRun> region) const {
-  static const InstructionSet best = AvailableInstructionSets().back();
-  return Nearest(best, descriptor, sampler, region);
+  return Nearest(BestInstructionSet(), descriptor, sampler, region);
 }
 
 std::optional<BriskImage::Found> BriskImage::Nearest(InstructionSet set, const Descriptor& descriptor,

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "vo/features/brisk_pattern.h"
+#include "vo/instruction_set.h"
 
 namespace vo {
 
@@ -53,11 +54,6 @@ class BriskSampler {
   std::array<Box, kBriskPoints> boxes_;
   int margin_ = 0;
 };
-
-enum class InstructionSet { base, avx2, avx512 };
-const char* Name(InstructionSet set);
-// What this machine has, in rising order.
-std::vector<InstructionSet> AvailableInstructionSets();
 
 // Neighbouring pixels of a row, last included.
 struct PixelRun {

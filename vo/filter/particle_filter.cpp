@@ -77,6 +77,7 @@ void ParticleFilter::Coast() {
 
 void ParticleFilter::SampleStep(std::span<const Match> matches) {
   mixture_.clear();
+  batch_.SetMatches(matches);
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {                                          // line 1
     Particle& particle = particles_[i];
     const PoseGaussian& prediction = particle.prediction;                                          // 2, (12)(13)
@@ -108,13 +109,15 @@ PoseGaussian ParticleFilter::PredictPose(const Particle& particle) const {
 }
 
 PoseProposal ParticleFilter::ProposePose(const Particle& particle, std::span<const Match> matches) {
+  batch_.Load(MapOf(particle));
+  if (matches.empty()) return {particle.prediction, 0};
   switch (params_.proposal) {
     case Proposal::bootstrap: return {particle.prediction, 0};
     case Proposal::ukf: return ProposeUnscented(particle.prediction, MapOf(particle), matches, UnscentedOf(params_));
     case Proposal::ekf:
     case Proposal::iterated: break;
   }
-  return proposer_.Propose(particle.prediction, MapOf(particle), matches, params_);
+  return Propose(particle.prediction, batch_, params_);
 }
 
 CameraVelocityFilter::Gain ParticleFilter::VelocityGiven(const Particle& particle) const {
@@ -131,24 +134,21 @@ void ParticleFilter::UpdateVelocity(Particle& particle, const Pose& pose, std::u
 }
 
 double ParticleFilter::UpdateLandmarks(Particle& particle, const Pose& pose, std::span<const Match> matches) {
-  const int iterations = params_.proposal == Proposal::ekf ? 1 : params_.max_iterations;
-  const bool guess = params_.proposal == Proposal::iterated;
-  const Vector6 off = guess ? Minus(pose, proposer_.last_linearised()) : Vector6::Zero();
-  views_.clear();
-  for (const Pose& anchor : particle.anchors) views_.emplace_back(pose, anchor);
   double log_likelihood = 0;
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    const Match& match = matches[i];
-    Landmark& landmark = particle.landmarks[match.landmark];
-    const AnchorView& view = views_[anchor_of_[match.landmark]];
-    const LandmarkUpdate update = params_.proposal == Proposal::ukf
-                                      ? UpdateLandmarkUnscented(landmark, view, match, UnscentedOf(params_))
-                                      : UpdateLandmark(landmark, guess ? proposer_.ModeGiven(i, off, landmark.mean) : landmark.mean,
-                                                       view, match, iterations);
-    landmark = update.landmark;
-    particle.modes[match.landmark] = landmark.mean;
-    log_likelihood += update.log_likelihood;
+  if (params_.proposal == Proposal::ukf) {
+    for (const Match& match : matches) {
+      Landmark& landmark = particle.landmarks[match.landmark];
+      const AnchorView view(pose, particle.anchors[anchor_of_[match.landmark]]);
+      const LandmarkUpdate update = UpdateLandmarkUnscented(landmark, view, match, UnscentedOf(params_));
+      landmark = update.landmark;
+      log_likelihood += update.log_likelihood;
+    }
+  } else if (!matches.empty()) {
+    if (params_.proposal == Proposal::iterated) batch_.Follow(Minus(pose, batch_.linearised_at()));
+    log_likelihood = batch_.UpdateLandmarks(pose, params_.proposal == Proposal::ekf ? 1 : params_.max_iterations);
+    batch_.Store(particle.landmarks);
   }
+  for (const Match& match : matches) particle.modes[match.landmark] = particle.landmarks[match.landmark].mean;
   return log_likelihood;
 }
 

@@ -120,8 +120,7 @@ class ParticleFilter final : public Filter {
   std::vector<double> weights_;     // normalised
   std::vector<int> anchor_of_;      // shared: all particles associate alike
 
-  PoseProposer proposer_;
-  std::vector<AnchorView> views_;   // workspace
+  MatchBatch batch_;                // workspace
 
   // Delayed sampling only.
   std::vector<Step> steps_;         // the last is the present frame

@@ -5,13 +5,9 @@
 
 #include "vo/geometry/so3.h"
 #include "vo/map/linearised_match.h"
+#include "vo/map/match_lanes.h"
 
 namespace vo {
-namespace {
-
-constexpr double kSettled = 1e-10;  // squared step on the plane z = 1 (0.005 pixels); what it leaves is of second order in it
-
-}  // namespace
 
 Projection Project(const AnchorView& view, const Eigen::Vector3d& landmark) {
   const double rho = landmark.z();
@@ -66,7 +62,7 @@ LandmarkUpdate UpdateLandmark(const Landmark& prior, const Eigen::Vector3d& gues
     result.landmark.mean = prior.mean + h.gain0 * h.e0 + h.gain1 * h.e1;
     const Eigen::Vector3d d = result.landmark.mean - theta;
     const double step0 = h.J0.dot(d), step1 = h.J1.dot(d);
-    if (step0 * step0 + step1 * step1 < kSettled) break;
+    if (step0 * step0 + step1 * step1 < kLandmarkSettled) break;
     theta = result.landmark.mean;
   }
   if (!h.in_front) return {prior, 0};

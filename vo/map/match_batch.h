@@ -1,0 +1,50 @@
+// Purpose: the matches of a frame and one particle's landmarks, eight at a time for the inner loop (match_lanes.h).
+// Units:   the plane z = 1, as in landmark.h.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "vo/map/local_map.h"
+#include "vo/map/match_lanes.h"
+
+namespace vo {
+
+class MatchBatch {
+ public:
+  explicit MatchBatch(InstructionSet set = BestInstructionSet()) : kernel_(&MatchKernelOf(set)) {}
+
+  // The frame, then each particle in turn. All landmarks are to be linearised at their means.
+  void SetMatches(std::span<const Match> matches);
+  void Load(const LocalMap& map);
+
+  // The pose's information, the landmarks integrated out; those that lie behind the camera are left out. With the pose moved by d:
+  //   -2 log p(z | pose) = cost - 2 b'd + d'A d + log det, d = (dp in W, dphi in C).
+  struct Information {
+    Matrix6 A;
+    Vector6 b;
+    double cost = 0;
+    double log_det = 0;  // of 2 pi S, all matches in front
+  };
+  // `marginal`: see FilterParams::marginal_mode.
+  Information Linearise(const Pose& camera, bool marginal);
+  const Pose& linearised_at() const { return linearised_at_; }
+  // From now on each landmark is linearised at its mode for the pose at linearised_at() (+) d, to first order.
+  void Follow(const Vector6& d);
+
+  // What the matches say about the landmarks once the pose is known, as UpdateLandmark. Returns the sum of log p(z | pose).
+  double UpdateLandmarks(const Pose& camera, int max_iterations);
+  void Store(std::span<Landmark> landmarks) const;
+
+ private:
+  const double* step() const { return following_ ? step_.data() : nullptr; }
+
+  const MatchKernel* kernel_;
+  std::vector<MatchLanes> blocks_;
+  std::vector<int> landmark_;  // per match
+  Pose linearised_at_;
+  Vector6 step_ = Vector6::Zero();
+  bool following_ = false;     // by step_, which is still to be done
+};
+
+}  // namespace vo
