@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include <Eigen/LU>
@@ -37,8 +38,11 @@ bool WorthSearching(const Filter& filter, const LandmarkRecord& record, int land
 std::vector<Candidate> FindCandidates(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
                                       int border_px, const Params& params) {
   std::vector<Candidate> candidates;
-  for (int n = 0; n < filter.landmark_count(); ++n) {
-    const ImagePrediction prediction = filter.PredictImage(n);
+  std::vector<int> all(static_cast<std::size_t>(filter.landmark_count()));
+  std::iota(all.begin(), all.end(), 0);
+  const std::vector<ImagePrediction> predictions = filter.PredictImages(all);
+  for (const int n : all) {
+    const ImagePrediction& prediction = predictions[n];
     if (!prediction.in_front || !WorthSearching(filter, records[n], n, prediction, params)) continue;
     const Eigen::Vector2d pixel = camera.Project({prediction.z.x(), prediction.z.y(), 1.0});
     if (!camera.Sees(pixel, border_px)) continue;

@@ -104,10 +104,9 @@ void Odometry::Impl::UpdateScores(const Association& association) {
 }
 
 void Odometry::Impl::Forget() {
-  for (std::size_t n = 0; n < records.size(); ++n) {
-    const auto belief = filter->BeliefOf(static_cast<int>(n));
-    records[n].permanent = belief.inverse_depth_sigma < params.landmark.permanent_ratio * belief.inverse_depth;
-  }
+  const std::vector<Filter::LandmarkBelief> beliefs = filter->LandmarkBeliefs();
+  for (std::size_t n = 0; n < records.size(); ++n)
+    records[n].permanent = beliefs[n].inverse_depth_sigma < params.landmark.permanent_ratio * beliefs[n].inverse_depth;
   const std::vector<bool> keep = WorthKeeping(records, params.landmark, params.score);
   filter->KeepLandmarks(keep);
   std::size_t to = 0;
@@ -155,10 +154,10 @@ Estimate Odometry::Track(const Frame& frame) { return impl_->Process(frame); }
 
 std::vector<MapPoint> Odometry::Map() const {
   std::vector<MapPoint> points;
-  for (int n = 0; n < impl_->filter->landmark_count(); ++n) {
-    const auto belief = impl_->filter->BeliefOf(n);
-    points.push_back({impl_->records[n].id, belief.X_W, belief.inverse_depth, belief.inverse_depth_sigma, impl_->records[n].permanent});
-  }
+  const std::vector<Filter::LandmarkBelief> beliefs = impl_->filter->LandmarkBeliefs();
+  for (std::size_t n = 0; n < beliefs.size(); ++n)
+    points.push_back({impl_->records[n].id, beliefs[n].X_W, beliefs[n].inverse_depth, beliefs[n].inverse_depth_sigma,
+                      impl_->records[n].permanent});
   return points;
 }
 

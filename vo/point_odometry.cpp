@@ -50,10 +50,8 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
   Forget();
   AddNew(frame);
   diagnostics.landmarks = static_cast<int>(records.size());
-  for (int n = 0; n < diagnostics.landmarks; ++n) {
-    const auto belief = filter->BeliefOf(n);
+  for (const Filter::LandmarkBelief& belief : filter->LandmarkBeliefs())
     diagnostics.permanent += belief.inverse_depth_sigma < params.landmark.permanent_ratio * belief.inverse_depth;
-  }
   diagnostics.ms_features = watch.Lap();
   return MakeEstimate(*filter, frame.stamp_ns, diagnostics);
 }
@@ -79,11 +77,14 @@ std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, Frame
   for (std::size_t from = 0; from < matches.size(); ++from)
     if (inlier[from]) matches[to++] = matches[from];
   matches.resize(to);
-  for (const Match& match : matches) {
-    const ImagePrediction prediction = filter->PredictImage(match.landmark);
+  std::vector<int> landmarks;
+  for (const Match& match : matches) landmarks.push_back(match.landmark);
+  const std::vector<ImagePrediction> predictions = filter->PredictImages(landmarks);
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const ImagePrediction& prediction = predictions[i];
     if (!prediction.in_front) continue;
-    const Eigen::Vector2d nu = match.z - prediction.z;
-    diagnostics.nis += nu.dot(Eigen::Matrix2d(prediction.covariance + match.R).inverse() * nu);
+    const Eigen::Vector2d nu = matches[i].z - prediction.z;
+    diagnostics.nis += nu.dot(Eigen::Matrix2d(prediction.covariance + matches[i].R).inverse() * nu);
     diagnostics.nis_dof += 2;
   }
   diagnostics.matched = static_cast<int>(matches.size());
@@ -129,11 +130,10 @@ const std::vector<BeliefComponent>& PointOdometry::Mixture() const { return impl
 
 std::vector<MapPoint> PointOdometry::Map() const {
   std::vector<MapPoint> points;
-  for (int n = 0; n < impl_->filter->landmark_count(); ++n) {
-    const auto belief = impl_->filter->BeliefOf(n);
-    points.push_back({static_cast<int>(impl_->records[static_cast<std::size_t>(n)].id), belief.X_W, belief.inverse_depth,
-                      belief.inverse_depth_sigma, false});
-  }
+  const std::vector<Filter::LandmarkBelief> beliefs = impl_->filter->LandmarkBeliefs();
+  for (std::size_t n = 0; n < beliefs.size(); ++n)
+    points.push_back({static_cast<int>(impl_->records[n].id), beliefs[n].X_W, beliefs[n].inverse_depth, beliefs[n].inverse_depth_sigma,
+                      false});
   return points;
 }
 

@@ -165,7 +165,7 @@ void ParticleFilter::CommitOldest(Particle& particle, std::uint32_t index, const
     path.mean[k] = Plus(path.mean[k], path.covariance.block<6, 6>(6 * k, 0) * d);
   path.mean.erase(path.mean.begin());
 
-  UpdateVelocity(particle, s, index);                                                               // (37)-(43)
+  UpdateVelocity(particle, s, VelocityGiven(particle), index);                                      // (37)-(43)
   for (std::size_t a = 0; a < particle.anchors.size(); ++a)
     if (anchor_slot_[a] >= 0) particle.anchors[a] = anchor_slot_[a] == 0 ? s : path.mean[anchor_slot_[a] - 1];
   std::vector<AnchorView> views;
@@ -205,12 +205,25 @@ BeliefComponent ParticleFilter::ComponentOnPath(const Particle& particle) const 
   return component;
 }
 
-ImagePrediction ParticleFilter::PredictImageOnPath(const Particle& particle, int landmark) const {
-  const int anchor = anchor_of_[landmark];
-  const Track untracked{landmark, anchor, anchor_slot_[anchor], {}};
-  const Track& track = track_of_[landmark] < 0 ? untracked : tracks_[track_of_[landmark]];
-  const WindowInput in{particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors};
-  return PathWindow::PredictLast(in, track, particle.path, particle.modes[landmark]);
+std::vector<ImagePrediction> ParticleFilter::PredictImagesOnPath(std::span<const int> landmarks) const {
+  std::vector<ImagePrediction> predictions;
+  for (const int landmark : landmarks) {
+    const int anchor = anchor_of_[landmark];
+    const Track untracked{landmark, anchor, anchor_slot_[anchor], {}};
+    const Track& track = track_of_[landmark] < 0 ? untracked : tracks_[track_of_[landmark]];
+    ImageMoments moments;
+    for (std::size_t i = 0; i < particles_.size(); ++i) {
+      const Particle& particle = particles_[i];
+      const WindowInput in{particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors};
+      const ImagePrediction one = PathWindow::PredictLast(in, track, particle.path, particle.modes[landmark]);
+      if (!one.in_front) continue;
+      moments.weight += weights_[i];
+      moments.z += weights_[i] * one.z;
+      moments.second += weights_[i] * (one.z * one.z.transpose() + one.covariance);
+    }
+    predictions.push_back(moments.Prediction());
+  }
+  return predictions;
 }
 
 }  // namespace vo

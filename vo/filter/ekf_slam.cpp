@@ -234,6 +234,12 @@ void EkfSlam::KeepLandmarks(const std::vector<bool>& keep) {
   P_ = Eigen::MatrixXd(P_(index, index));
 }
 
+std::vector<ImagePrediction> EkfSlam::PredictImages(std::span<const int> landmarks) const {
+  std::vector<ImagePrediction> predictions;
+  for (const int n : landmarks) predictions.push_back(PredictImage(n));
+  return predictions;
+}
+
 ImagePrediction EkfSlam::PredictImage(int landmark) const {
   const Landmark& l = landmarks_[landmark];
   const int anchor = anchor_of_[landmark];
@@ -248,9 +254,13 @@ ImagePrediction EkfSlam::PredictImage(int landmark) const {
   return {true, h.z, H * P * H.transpose()};
 }
 
-Filter::LandmarkBelief EkfSlam::BeliefOf(int landmark) const {
-  const Landmark& l = landmarks_[landmark];
-  return {PointInWorld(AnchorOf(landmark), l.mean), l.mean.z(), std::sqrt(std::max(0.0, l.covariance(2, 2)))};
+std::vector<Filter::LandmarkBelief> EkfSlam::LandmarkBeliefs() const {
+  std::vector<LandmarkBelief> beliefs;
+  for (int n = 0; n < landmark_count(); ++n) {
+    const Landmark& l = landmarks_[n];
+    beliefs.push_back({PointInWorld(AnchorOf(n), l.mean), l.mean.z(), std::sqrt(std::max(0.0, l.covariance(2, 2)))});
+  }
+  return beliefs;
 }
 
 void EkfSlam::Answer() {

@@ -31,13 +31,13 @@ class EkfSlam final : public Filter {
   void KeepLandmarks(const std::vector<bool>& keep) override;
   int landmark_count() const override { return static_cast<int>(landmarks_.size()); }
 
-  ImagePrediction PredictImage(int landmark) const override;
+  std::vector<ImagePrediction> PredictImages(std::span<const int> landmarks) const override;
   // The past poses are taken as known, at their means: what one step adds.
   const PoseGaussian& ReferencePrediction() const override { return reference_; }
   LocalMap ReferenceMap() const override { return {landmarks_, anchor_of_, anchors_}; }
   Eigen::Vector3d ModeOf(int landmark) const override { return landmarks_[landmark].mean; }
   Pose AnchorOf(int landmark) const override { return anchors_[anchor_of_[landmark]]; }
-  LandmarkBelief BeliefOf(int landmark) const override;
+  std::vector<LandmarkBelief> LandmarkBeliefs() const override;
   const Belief& belief() const override { return belief_; }
   const std::vector<BeliefComponent>& mixture() const override { return mixture_; }
   double effective_particles() const override { return 1; }
@@ -47,6 +47,8 @@ class EkfSlam final : public Filter {
   int OffsetOf(int landmark) const { return landmark_offset_[landmark]; }
 
  private:
+  ImagePrediction PredictImage(int landmark) const;
+
   // One match at the present linearisation: its rows of H are not 0 in three places only.
   struct Row {
     Eigen::Vector2d residual;

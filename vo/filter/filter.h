@@ -36,7 +36,7 @@ class Filter {
   virtual int landmark_count() const = 0;
 
   // Valid after Predict.
-  virtual ImagePrediction PredictImage(int landmark) const = 0;
+  virtual std::vector<ImagePrediction> PredictImages(std::span<const int> landmarks) const = 0;
   // What the association's outlier test works with: one path that the filter holds possible and takes as known, the pose that
   // follows it, and the landmarks as seen along it.
   virtual const PoseGaussian& ReferencePrediction() const = 0;
@@ -50,7 +50,7 @@ class Filter {
     double inverse_depth;       // mean [1/m]
     double inverse_depth_sigma;
   };
-  virtual LandmarkBelief BeliefOf(int landmark) const = 0;
+  virtual std::vector<LandmarkBelief> LandmarkBeliefs() const = 0;
   // The filter's answer: moments of its mixture.
   virtual const Belief& belief() const = 0;
   // The mixture itself; empty before the first Update.

@@ -37,9 +37,12 @@ Belief Moments(const std::vector<BeliefComponent>& mixture) {
   for (std::size_t i = 0; i < mixture.size(); ++i) {
     Eigen::Matrix<double, 12, 1> d;
     d << Minus(mixture[i].pose, belief.pose), mixture[i].velocity - belief.velocity;
-    Matrix12 J = Matrix12::Identity();  // from the tangent space at the component to that at the mean
-    J.block<3, 3>(3, 3) = InverseRightJacobian(d.segment<3>(3));
-    belief.covariance += mixture[i].weight * (J * mixture[i].covariance * J.transpose() + d * d.transpose());
+    // The orientation's rows and columns go from the tangent space at the component to that at the mean.
+    const Eigen::Matrix3d J = InverseRightJacobian(d.segment<3>(3));
+    Matrix12 covariance = mixture[i].covariance;
+    covariance.middleRows<3>(3) = J * mixture[i].covariance.middleRows<3>(3);
+    covariance.middleCols<3>(3) = (covariance.middleCols<3>(3) * J.transpose()).eval();
+    belief.covariance += mixture[i].weight * (covariance + d * d.transpose());
   }
   return belief;
 }

@@ -56,7 +56,8 @@ void ParticleFilter::Predict(double dt) {
   if (delayed()) return PredictPath(dt);
   since_sampled_ += dt;
   step_ = StepOf(motion_, since_sampled_);
-  for (Particle& particle : particles_) particle.prediction = PredictPose(particle);
+  const Matrix6 covariance = step_.PredictedCovariance(particles_[0].velocity);                    // (13)
+  for (Particle& particle : particles_) particle.prediction = PredictPose(particle, covariance);
 }
 
 void ParticleFilter::Update(std::span<const Match> matches) {
@@ -70,14 +71,18 @@ void ParticleFilter::Update(std::span<const Match> matches) {
 
 void ParticleFilter::Coast() {
   mixture_.clear();
-  for (const Particle& particle : particles_)
-    mixture_.push_back(Component(particle.prediction, particle.pose, VelocityGiven(particle)));
+  CameraVelocityFilter::Gain gain = step_.ConditionCovariance(particles_[0].velocity.covariance);
+  for (const Particle& particle : particles_) {
+    step_.ConditionMean(PathState(particle.pose, particle.pose), particle.velocity.mean, gain);
+    mixture_.push_back(Component(particle.prediction, particle.pose, gain));
+  }
   Answer();
 }
 
 void ParticleFilter::SampleStep(std::span<const Match> matches) {
   mixture_.clear();
   batch_.SetMatches(matches);
+  CameraVelocityFilter::Gain gain = step_.ConditionCovariance(particles_[0].velocity.covariance);
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {                                          // line 1
     Particle& particle = particles_[i];
     const PoseGaussian& prediction = particle.prediction;                                          // 2, (12)(13)
@@ -85,8 +90,9 @@ void ParticleFilter::SampleStep(std::span<const Match> matches) {
     const Pose s = proposal.pose.Sample({seed_, Stream::pose, frame_, i});                         // 4
     // The motion model knows nothing of the image: what is believed then is the weighted samples themselves.
     const PoseGaussian believed = params_.proposal == Proposal::bootstrap ? PoseGaussian{s, Matrix6::Zero()} : proposal.pose;
-    mixture_.push_back(Component(believed, particle.pose, VelocityGiven(particle)));
-    UpdateVelocity(particle, s, i);                                                                // 5-7, (37)-(43)
+    step_.ConditionMean(PathState(particle.pose, particle.pose), particle.velocity.mean, gain);
+    mixture_.push_back(Component(believed, particle.pose, gain));
+    UpdateVelocity(particle, s, gain, i);                                                          // 5-7, (37)-(43)
     const double log_likelihood = UpdateLandmarks(particle, s, matches);
     particle.log_weight += params_.weight == Weight::evidence                                      // 8
                                ? proposal.log_evidence
@@ -99,13 +105,13 @@ void ParticleFilter::SampleStep(std::span<const Match> matches) {
   if (effective_particles_ < params_.resample_below * params_.particles) Resample();               // 11
 }
 
-PoseGaussian ParticleFilter::PredictPose(const Particle& particle) const {
+PoseGaussian ParticleFilter::PredictPose(const Particle& particle, const Matrix6& covariance) const {
   const Vector6 s = step_.PredictedMean(PathState(particle.pose, particle.pose), particle.velocity);  // (12)
   const Pose mean{s.head<3>(), (particle.pose.q_WC * Exp(s.tail<3>())).normalized()};
   // (13) is a covariance of delta, about delta-hat; the tangent space at the mean is turned by the right Jacobian.
   Matrix6 J = Matrix6::Identity();
   J.bottomRightCorner<3, 3>() = RightJacobian(s.tail<3>());
-  return {mean, J * step_.PredictedCovariance(particle.velocity) * J.transpose()};
+  return {mean, J * covariance * J.transpose()};
 }
 
 PoseProposal ParticleFilter::ProposePose(const Particle& particle, std::span<const Match> matches) {
@@ -124,8 +130,9 @@ CameraVelocityFilter::Gain ParticleFilter::VelocityGiven(const Particle& particl
   return step_.Condition(PathState(particle.pose, particle.pose), particle.velocity);
 }
 
-void ParticleFilter::UpdateVelocity(Particle& particle, const Pose& pose, std::uint32_t index) const {
-  particle.velocity = step_.Update(PathState(particle.pose, particle.pose), PathState(pose, particle.pose), particle.velocity);
+void ParticleFilter::UpdateVelocity(Particle& particle, const Pose& pose, const CameraVelocityFilter::Gain& gain,
+                                    std::uint32_t index) const {
+  particle.velocity = {gain.mean + gain.matrix * PathState(pose, particle.pose), gain.covariance};
   // RB-PF: the velocity is sampled as well, from its exact conditional; this leaves the weight as it is.
   if (params_.sampled == Sampled::pose_and_velocity)
     particle.velocity = {SampleNormal(particle.velocity.mean, particle.velocity.covariance,
@@ -148,7 +155,6 @@ double ParticleFilter::UpdateLandmarks(Particle& particle, const Pose& pose, std
     log_likelihood = batch_.UpdateLandmarks(pose, params_.proposal == Proposal::ekf ? 1 : params_.max_iterations);
     batch_.Store(particle.landmarks);
   }
-  for (const Match& match : matches) particle.modes[match.landmark] = particle.landmarks[match.landmark].mean;
   return log_likelihood;
 }
 
@@ -167,8 +173,17 @@ void ParticleFilter::Answer() {
 void ParticleFilter::Resample() {
   SystematicAncestors(weights_, Uniform({seed_, Stream::resampling, frame_, 0}, 0), ancestors_);
   children_.resize(particles_.size());
-  for (std::size_t i = 0; i < ancestors_.size(); ++i) {
-    children_[i] = particles_[ancestors_[i]];  // into the memory of a former generation
+  int childless = 0;
+  for (std::size_t i = 0; i < ancestors_.size(); ++i) {  // they ascend
+    Particle& parent = particles_[ancestors_[i]];
+    const bool last = i + 1 == ancestors_.size() || ancestors_[i + 1] != ancestors_[i];
+    if (last) {
+      std::swap(children_[i], parent);
+    } else {  // a copy, in the memory of one that has no child
+      while (std::binary_search(ancestors_.begin(), ancestors_.end(), childless)) ++childless;
+      std::swap(children_[i], particles_[childless++]);
+      children_[i] = parent;
+    }
     children_[i].log_weight = 0;
   }
   particles_.swap(children_);
@@ -188,7 +203,7 @@ void ParticleFilter::AddLandmarks(std::span<const Eigen::Vector2d> rays, std::sp
     particle.anchors[slot] = steps_.empty() ? particle.pose : particle.path.mean.back();
     for (std::size_t i = 0; i < rays.size(); ++i) {
       particle.landmarks.push_back(NewLandmark(rays[i], R[i], landmark_params_));
-      particle.modes.push_back(particle.landmarks.back().mean);
+      if (delayed()) particle.modes.push_back(particle.landmarks.back().mean);
     }
   }
   if (slot == slots) anchor_slot_.emplace_back();
@@ -205,7 +220,7 @@ void ParticleFilter::KeepLandmarks(const std::vector<bool>& keep) {
   };
   for (Particle& particle : particles_) {
     compact(particle.landmarks);
-    compact(particle.modes);
+    if (delayed()) compact(particle.modes);
   }
   compact(anchor_of_);
   std::vector<int> index(keep.size(), -1);
@@ -217,31 +232,17 @@ void ParticleFilter::KeepLandmarks(const std::vector<bool>& keep) {
   }
 }
 
-ImagePrediction ParticleFilter::PredictImage(int landmark) const {
-  ImagePrediction prediction;
-  double weight = 0;
-  Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+std::vector<ImagePrediction> ParticleFilter::PredictImages(std::span<const int> landmarks) const {
+  if (delayed()) return PredictImagesOnPath(landmarks);
+  MatchBatch batch;
+  batch.SetLandmarks(landmarks);
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const ImagePrediction one = PredictImage(particles_[i], landmark);
-    if (!one.in_front) continue;
-    weight += weights_[i];
-    prediction.z += weights_[i] * one.z;
-    second += weights_[i] * (one.z * one.z.transpose() + one.covariance);
+    batch.Load(MapOf(particles_[i]));
+    batch.AddPredictions(particles_[i].prediction.mean, particles_[i].prediction.covariance, weights_[i]);
   }
-  if (weight < 0.5) return prediction;
-  prediction.in_front = true;
-  prediction.z /= weight;
-  prediction.covariance = second / weight - prediction.z * prediction.z.transpose();
-  return prediction;
-}
-
-ImagePrediction ParticleFilter::PredictImage(const Particle& particle, int landmark) const {
-  if (delayed()) return PredictImageOnPath(particle, landmark);
-  const Landmark& l = particle.landmarks[landmark];
-  const Projection h = Project({particle.prediction.mean, particle.anchors[anchor_of_[landmark]]}, l.mean);
-  return {h.in_front, h.z,
-          h.J_pose * particle.prediction.covariance * h.J_pose.transpose() +
-              h.J_landmark * l.covariance * h.J_landmark.transpose()};
+  std::vector<ImagePrediction> predictions;
+  for (std::size_t i = 0; i < landmarks.size(); ++i) predictions.push_back(batch.Moments(i).Prediction());
+  return predictions;
 }
 
 const Particle& ParticleFilter::Heaviest() const {
@@ -254,17 +255,21 @@ LocalMap ParticleFilter::ReferenceMap() const {
   return map;
 }
 
-Filter::LandmarkBelief ParticleFilter::BeliefOf(int landmark) const {
-  double mean = 0, second = 0;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const Landmark& l = particles_[i].landmarks[landmark];
-    const double rho = particles_[i].modes[landmark].z();
-    mean += weights_[i] * rho;
-    second += weights_[i] * (rho * rho + l.covariance(2, 2));
-  }
+std::vector<Filter::LandmarkBelief> ParticleFilter::LandmarkBeliefs() const {
   const Particle& best = Heaviest();
-  return {PointInWorld(best.anchors[anchor_of_[landmark]], best.modes[landmark]), mean,
-          std::sqrt(std::max(0.0, second - mean * mean))};
+  std::vector<LandmarkBelief> beliefs;
+  for (int n = 0; n < landmark_count(); ++n)
+    beliefs.push_back({PointInWorld(best.anchors[anchor_of_[n]], ModeOf(best, n)), 0, 0});
+  std::vector<double> second(beliefs.size(), 0.0);
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    for (std::size_t n = 0; n < beliefs.size(); ++n) {
+      const double rho = ModeOf(particles_[i], static_cast<int>(n)).z();
+      beliefs[n].inverse_depth += weights_[i] * rho;
+      second[n] += weights_[i] * (rho * rho + particles_[i].landmarks[n].covariance(2, 2));
+    }
+  for (std::size_t n = 0; n < beliefs.size(); ++n)
+    beliefs[n].inverse_depth_sigma = std::sqrt(std::max(0.0, second[n] - beliefs[n].inverse_depth * beliefs[n].inverse_depth));
+  return beliefs;
 }
 
 }  // namespace vo

@@ -23,7 +23,7 @@ namespace vo {
 
 struct Particle {
   Pose pose;                               // sampled
-  CameraVelocityFilter::State velocity;    // Gaussian given the path: (v in W, w in C)
+  CameraVelocityFilter::State velocity;    // Gaussian given the path: (v in W, w in C); all have the same covariance
   std::vector<Landmark> landmarks;         // Gaussian given the path
   std::vector<Pose> anchors;               // of the landmarks' first views, on this particle's path
   double log_weight = 0;
@@ -53,14 +53,14 @@ class ParticleFilter final : public Filter {
 
   int landmark_count() const override { return static_cast<int>(anchor_of_.size()); }
   // Moments over the particles. Valid after Predict.
-  ImagePrediction PredictImage(int landmark) const override;
+  std::vector<ImagePrediction> PredictImages(std::span<const int> landmarks) const override;
   // The heaviest particle, and its landmarks as all images until now have them.
   const PoseGaussian& ReferencePrediction() const override { return Heaviest().prediction; }
   LocalMap ReferenceMap() const override;
-  Eigen::Vector3d ModeOf(int landmark) const override { return Heaviest().modes[landmark]; }
+  Eigen::Vector3d ModeOf(int landmark) const override { return ModeOf(Heaviest(), landmark); }
   Pose AnchorOf(int landmark) const override { return Heaviest().anchors[anchor_of_[landmark]]; }
 
-  LandmarkBelief BeliefOf(int landmark) const override;
+  std::vector<LandmarkBelief> LandmarkBeliefs() const override;
   // The filter's answer: moments of the mixture over particles of the pose just before it is sampled, and the velocity with it.
   const Belief& belief() const override { return belief_; }
   // The mixture itself; empty before the first Update.
@@ -80,6 +80,9 @@ class ParticleFilter final : public Filter {
   const Particle& Heaviest() const;
   LocalMap MapOf(const Particle& particle) const { return {particle.landmarks, anchor_of_, particle.anchors}; }
   bool delayed() const { return params_.lag > 0; }
+  const Eigen::Vector3d& ModeOf(const Particle& particle, int landmark) const {
+    return delayed() ? particle.modes[landmark] : particle.landmarks[landmark].mean;
+  }
   // delayed_sampling.cpp
   void PredictPath(double dt);
   void UpdatePath(std::span<const Match> matches);
@@ -93,16 +96,15 @@ class ParticleFilter final : public Filter {
   std::vector<Pose> DrawOldest() const;
   void CommitOldest(Particle& particle, std::uint32_t index, const Pose& drawn) const;
   BeliefComponent ComponentOnPath(const Particle& particle) const;
-  ImagePrediction PredictImageOnPath(const Particle& particle, int landmark) const;
+  std::vector<ImagePrediction> PredictImagesOnPath(std::span<const int> landmarks) const;
 
-  ImagePrediction PredictImage(const Particle& particle, int landmark) const;
   void Coast();
   void SampleStep(std::span<const Match> matches);
-  PoseGaussian PredictPose(const Particle& particle) const;
+  PoseGaussian PredictPose(const Particle& particle, const Matrix6& covariance) const;
   PoseProposal ProposePose(const Particle& particle, std::span<const Match> matches);
-  CameraVelocityFilter::Gain VelocityGiven(const Particle& particle) const;
   double UpdateLandmarks(Particle& particle, const Pose& pose, std::span<const Match> matches);
-  void UpdateVelocity(Particle& particle, const Pose& pose, std::uint32_t index) const;
+  CameraVelocityFilter::Gain VelocityGiven(const Particle& particle) const;
+  void UpdateVelocity(Particle& particle, const Pose& pose, const CameraVelocityFilter::Gain& gain, std::uint32_t index) const;
   void Weigh();
   void Answer();
   void Resample();
@@ -115,7 +117,7 @@ class ParticleFilter final : public Filter {
   double since_sampled_ = 0;        // [s]; 0 when the present pose is sampled
   CameraVelocityFilter step_;       // from the last sampled pose to the present
   std::vector<Particle> particles_;
-  std::vector<Particle> children_;  // workspace of resampling
+  std::vector<Particle> children_;  // workspace of resampling, without memory of their own
   std::vector<int> ancestors_;      // workspace of resampling
   std::vector<double> weights_;     // normalised
   std::vector<int> anchor_of_;      // shared: all particles associate alike

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "vo/filter/path_prior.h"
+#include "vo/map/image_prediction.h"
 #include "vo/map/landmark.h"
 
 namespace vo {
@@ -41,13 +42,6 @@ struct PathGaussian {
   std::vector<Pose> mean;
   Eigen::MatrixXd covariance;    // 6m x 6m
   double log_evidence = 0;       // Laplace's approximation of log p(z in the window | sampled path)
-};
-
-// Where a landmark should appear on the plane z = 1.
-struct ImagePrediction {
-  bool in_front = false;                                 // in front of every particle that matters
-  Eigen::Vector2d z = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  // pose and landmark; R not yet in it
 };
 
 struct WindowOptions {

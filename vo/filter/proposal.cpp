@@ -15,14 +15,21 @@ constexpr double kSettled = 1e-6;    // squared distance from the mode that may 
 constexpr double kOvershoot = 0.25;  // of the slope before the step
 constexpr double kTolerated = 0.1;   // rise of the objective, which the landmarks' relinearisation may cause
 
-double HalfLogDeterminant(const Eigen::LLT<Matrix6>& llt) { return llt.matrixLLT().diagonal().array().log().sum(); }
+double HalfLogDeterminant(const Eigen::LLT<Matrix6>& llt) { return std::log(llt.matrixLLT().diagonal().prod()); }
+
+// Column by column, which Eigen unrolls.
+Matrix6 Inverse(const Eigen::LLT<Matrix6>& llt) {
+  Matrix6 inverse;
+  for (int i = 0; i < 6; ++i) inverse.col(i) = llt.solve(Vector6::Unit(i));
+  return inverse;
+}
 
 }  // namespace
 
 PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const FilterParams& params) {
   const int iterations = params.proposal == Proposal::ekf ? 1 : params.max_iterations;
   const Eigen::LLT<Matrix6> prior_llt(prediction.covariance);
-  const Matrix6 prior_information = prior_llt.solve(Matrix6::Identity());
+  const Matrix6 prior_information = Inverse(prior_llt);
   const double prior_log_det = 2.0 * HalfLogDeterminant(prior_llt);
 
   PoseProposal proposal{prediction, 0.0};
@@ -30,6 +37,7 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
   double best = std::numeric_limits<double>::infinity();  // objective: -2 log density at its mode, up to a constant
   double former = 0;  // decrement of the step before; 0: its rate says nothing
   Vector6 step = Vector6::Zero();
+  Eigen::LLT<Matrix6> llt;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const MatchBatch::Information matches = batch.Linearise(s, params.marginal_mode);
     const Vector6 offset = Minus(s, prediction.mean);
@@ -56,10 +64,9 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
       continue;
     }
     best = objective;
-    const Eigen::LLT<Matrix6> llt(A);
+    llt.compute(A);
     step = llt.solve(b);
     s = Plus(s, step);
-    proposal.pose.covariance = llt.solve(Matrix6::Identity());
     // p(z) = p(s) p(z | s) / p(s | z), taken at the new mean, where the quadratic cost is less by the decrement.
     const double decrement = b.dot(step);
     proposal.log_evidence = -0.5 * (cost - decrement + log_det + 2.0 * HalfLogDeterminant(llt));
@@ -68,6 +75,7 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
     former = decrement;
     batch.Follow(step);
   }
+  proposal.pose.covariance = Inverse(llt);
   return proposal;
 }
 

@@ -57,18 +57,26 @@ class VelocityFilter {
 
   // (37)-(43) as a function of the s_pf still to be sampled.
   Gain Condition(const VectorP& s_pf_previous, const State& s_kf) const {
-    const VectorK predicted = Phi_ * s_kf.mean + F21_ * s_pf_previous;                                     // (37)
-    const MatrixKK S = Phi_ * s_kf.covariance * Phi_.transpose() + Gamma_ * Gamma_.transpose();            // (38)
+    Gain gain = ConditionCovariance(s_kf.covariance);
+    ConditionMean(s_pf_previous, s_kf.mean, gain);
+    return gain;
+  }
+  // The same in two parts. The first is alike for all particles whose covariance is, and leaves the mean to the second.
+  Gain ConditionCovariance(const MatrixKK& covariance) const {
+    const MatrixKK S = Phi_ * covariance * Phi_.transpose() + Gamma_ * Gamma_.transpose();                 // (38)
     const MatrixKP P_vm = S * H_.transpose() + Gamma_ * Lambda_.transpose();                               // (40)
     const MatrixPP cross = H_ * Gamma_ * Lambda_.transpose();
     const MatrixPP P_mm =
         H_ * S * H_.transpose() + Psi_Psi_ + Lambda_ * Lambda_.transpose() + cross + cross.transpose();    // (41)
     Gain gain;
     gain.matrix = P_mm.llt().solve(P_vm.transpose()).transpose();
-    gain.mean = predicted + gain.matrix * (m_previous_ * s_pf_previous - H_ * predicted);                  // (39)(42)
     gain.covariance = S - gain.matrix * P_vm.transpose();                                                  // (43)
     gain.covariance = 0.5 * (gain.covariance + gain.covariance.transpose()).eval();
     return gain;
+  }
+  void ConditionMean(const VectorP& s_pf_previous, const VectorK& mean, Gain& gain) const {
+    const VectorK predicted = Phi_ * mean + F21_ * s_pf_previous;                                          // (37)
+    gain.mean = predicted + gain.matrix * (m_previous_ * s_pf_previous - H_ * predicted);                  // (39)(42)
   }
 
   State Update(const VectorP& s_pf_previous, const VectorP& s_pf, const State& s_kf) const {

@@ -31,18 +31,28 @@ double LogDet(const MatchSums& sums) {
 }  // namespace
 
 void MatchBatch::SetMatches(std::span<const Match> matches) {
-  landmark_.resize(matches.size());
-  blocks_.resize((matches.size() + kLanes - 1) / kLanes);
+  landmark_.clear();
+  for (const Match& match : matches) landmark_.push_back(match.landmark);
+  SetBlocks();
   for (std::size_t i = 0; i < kLanes * blocks_.size(); ++i) {
-    const bool used = i < matches.size();
-    const Match& match = used ? matches[i] : matches.back();
-    if (used) landmark_[i] = match.landmark;
+    const Match& match = i < matches.size() ? matches[i] : matches.back();
     MatchLanes& block = blocks_[i / kLanes];
     const std::size_t lane = i % kLanes;
     for (int k = 0; k < 2; ++k) block.z[k].v[lane] = match.z[k];
     block.R[0].v[lane] = match.R(0, 0), block.R[1].v[lane] = match.R(0, 1), block.R[2].v[lane] = match.R(1, 1);
-    block.min_depth.v[lane] = used ? kMinDepth : std::numeric_limits<double>::infinity();
   }
+}
+
+void MatchBatch::SetLandmarks(std::span<const int> landmarks) {
+  landmark_.assign(landmarks.begin(), landmarks.end());
+  SetBlocks();
+  predictions_.assign(blocks_.size(), {});
+}
+
+void MatchBatch::SetBlocks() {
+  blocks_.resize((landmark_.size() + kLanes - 1) / kLanes);
+  for (std::size_t i = 0; i < kLanes * blocks_.size(); ++i)
+    blocks_[i / kLanes].min_depth.v[i % kLanes] = i < landmark_.size() ? kMinDepth : std::numeric_limits<double>::infinity();
 }
 
 void MatchBatch::Load(const LocalMap& map) {
@@ -99,6 +109,19 @@ void MatchBatch::Store(std::span<Landmark> landmarks) const {
     for (int r = 0, at = 0; r < 3; ++r)
       for (int c = r; c < 3; ++c) landmark.covariance(r, c) = landmark.covariance(c, r) = block.covariance[at++].v[lane];
   }
+}
+
+void MatchBatch::AddPredictions(const Pose& camera, const Matrix6& covariance, double weight) {
+  kernel_->add_predictions(ViewFrom(camera), covariance.data(), weight, blocks_.data(), static_cast<int>(blocks_.size()),
+                           predictions_.data());
+}
+
+ImageMoments MatchBatch::Moments(std::size_t place) const {
+  const PredictionLanes& sums = predictions_[place / kLanes];
+  const auto value = [&](const Lanes& lanes) { return lanes.v[place % kLanes]; };
+  ImageMoments moments{value(sums.weight), {value(sums.z[0]), value(sums.z[1])}, {}};
+  moments.second << value(sums.second[0]), value(sums.second[1]), value(sums.second[1]), value(sums.second[2]);
+  return moments;
 }
 
 }  // namespace vo

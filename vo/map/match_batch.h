@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "vo/map/image_prediction.h"
 #include "vo/map/local_map.h"
 #include "vo/map/match_lanes.h"
 
@@ -16,6 +17,7 @@ class MatchBatch {
 
   // The frame, then each particle in turn. All landmarks are to be linearised at their means.
   void SetMatches(std::span<const Match> matches);
+  void SetLandmarks(std::span<const int> landmarks);  // to be predicted only
   void Load(const LocalMap& map);
 
   // The pose's information, the landmarks integrated out; those that lie behind the camera are left out. With the pose moved by d:
@@ -36,11 +38,17 @@ class MatchBatch {
   double UpdateLandmarks(const Pose& camera, int max_iterations);
   void Store(std::span<Landmark> landmarks) const;
 
+  // Moments, over particles, of where the landmarks should appear from an uncertain pose. SetLandmarks forgets the former sums.
+  void AddPredictions(const Pose& camera, const Matrix6& covariance, double weight);
+  ImageMoments Moments(std::size_t place) const;
+
  private:
+  void SetBlocks();
   const double* step() const { return following_ ? step_.data() : nullptr; }
 
   const MatchKernel* kernel_;
   std::vector<MatchLanes> blocks_;
+  std::vector<PredictionLanes> predictions_;
   std::vector<int> landmark_;  // per match
   Pose linearised_at_;
   Vector6 step_ = Vector6::Zero();

@@ -40,6 +40,11 @@ struct MatchLanes {
   Lanes e[2], j[2][6], gain[2][3];    // j: by the pose (dp in W, dphi in C)
 };
 
+// Weighted sums over particles: of 1, z, and its second moments (xx xy yy).
+struct PredictionLanes {
+  Lanes weight, z[2], second[3];
+};
+
 struct CameraView {
   double R_CW[3][3];
   double p[3];  // in W
@@ -67,6 +72,9 @@ struct MatchKernel {
   // Landmark given the pose, as vo::UpdateLandmark.
   void (*update_landmarks)(const CameraView& camera, const double* step, int max_iterations, MatchLanes* blocks, int count,
                            MatchSums& sums);
+  // To each sum, where in front: where the landmark should appear, its covariance J P J' and that of the pose (6 x 6) with it.
+  void (*add_predictions)(const CameraView& camera, const double* covariance, double weight, const MatchLanes* blocks, int count,
+                          PredictionLanes* sums);
 };
 const MatchKernel& MatchKernelOf(InstructionSet set);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <array>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -253,14 +254,14 @@ TEST(EkfSlam, DroppedLandmarksLeaveTheRestAlone) {
   ASSERT_EQ(filter.covariance().rows(), 12 + 2 * 6 + 10 * 3);
   const vo::Belief before = filter.belief();
   std::vector<vo::ImagePrediction> predictions;
-  for (int n = 0; n < 10; ++n) predictions.push_back(filter.PredictImage(n));
+  for (int n = 0; n < 10; ++n) predictions.push_back(filter.PredictImages(std::array{n})[0]);
   const std::vector<bool> keep = {false, true, false, true, true, true, false, false, true, true};
   filter.KeepLandmarks(keep);
   EXPECT_EQ(filter.covariance().rows(), 12 + 2 * 6 + 6 * 3);
   EXPECT_EQ(filter.covariance().topLeftCorner(12, 12), before.covariance);
   for (int n = 0, kept = 0; n < 10; ++n) {
     if (!keep[static_cast<std::size_t>(n)]) continue;
-    const vo::ImagePrediction now = filter.PredictImage(kept++);
+    const vo::ImagePrediction now = filter.PredictImages(std::array{kept++})[0];
     EXPECT_EQ(now.z, predictions[static_cast<std::size_t>(n)].z);
     EXPECT_EQ(now.covariance, predictions[static_cast<std::size_t>(n)].covariance);
   }
@@ -285,7 +286,7 @@ TEST(EkfSlam, PredictsImagesAsWellAsItSays) {
                                 {world.matches[0], world.matches[1], world.matches[2]}}, 10);
     filter.Predict(world.dt[2]);
     const vo::Match& match = world.matches[3][seed % 6];
-    const vo::ImagePrediction prediction = filter.PredictImage(match.landmark);
+    const vo::ImagePrediction prediction = filter.PredictImages(std::array{match.landmark})[0];
     const Vector2d nu = match.z - prediction.z;
     sum += nu.dot(Matrix2d(prediction.covariance + match.R).inverse() * nu);
     count += 2;
