@@ -1,0 +1,81 @@
+// What the particle filter does to its particles, whatever the images say.
+#include "vo/filter/particle_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "vo/filter/resampling.h"
+#include "vo/geometry/so3.h"
+#include "vo/random.h"
+
+namespace {
+
+constexpr int kLandmarks = 30;
+constexpr std::uint64_t kSeed = 4;
+
+vo::ParticleFilter MakeFilter(const vo::FilterParams& params) {
+  vo::FilterPrior prior;
+  prior.velocity_covariance = 0.04 * vo::Matrix6::Identity();
+  vo::ParticleFilter filter(vo::MotionParams{}, params, vo::LandmarkParams{}, prior, kSeed);
+  std::vector<Eigen::Vector2d> rays;
+  for (int n = 0; n < kLandmarks; ++n) rays.emplace_back(0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n));
+  filter.AddLandmarks(rays, std::vector<Eigen::Matrix2d>(kLandmarks, 4e-6 * Eigen::Matrix2d::Identity()));
+  return filter;
+}
+
+void Step(vo::ParticleFilter& filter, int frame) {
+  std::vector<vo::Match> matches;
+  for (int n = 0; n < kLandmarks; ++n)
+    matches.push_back({n, Eigen::Vector2d(0.5 * std::sin(1.3 * n) - 0.002 * frame, 0.4 * std::cos(2.1 * n)) +
+                              0.002 * Eigen::Vector2d(std::sin(17.0 * n * frame), std::cos(23.0 * n * frame)),
+                       4e-6 * Eigen::Matrix2d::Identity()});
+  filter.Predict(1.0 / 30);
+  filter.Update(matches);
+}
+
+TEST(ParticleFilter, ChildrenAreTheirAncestors) {
+  for (const int particles : {1, 2, 9, 64}) {
+    vo::FilterParams params;
+    params.particles = particles;
+    params.sampled = vo::Sampled::pose_and_velocity;  // so that their weights differ from the first frame on
+    params.resample_below = 0;
+    vo::ParticleFilter parents = MakeFilter(params);
+    params.resample_below = 1.5;  // always
+    vo::ParticleFilter filter = MakeFilter(params);
+    Step(parents, 1);
+    Step(filter, 1);
+    std::vector<int> ancestors;
+    vo::SystematicAncestors(parents.weights(), vo::Uniform({kSeed, vo::Stream::resampling, 1, 0}, 0), ancestors);
+    EXPECT_TRUE(std::adjacent_find(ancestors.begin(), ancestors.end()) != ancestors.end() || particles < 9);
+    for (int i = 0; i < particles; ++i) {
+      const vo::Particle &child = filter.particles()[i], &parent = parents.particles()[ancestors[i]];
+      EXPECT_EQ(child.log_weight, 0);
+      EXPECT_EQ(child.pose.p_WC, parent.pose.p_WC);
+      EXPECT_EQ(child.velocity.mean, parent.velocity.mean);
+      ASSERT_EQ(child.landmarks.size(), parent.landmarks.size());
+      for (std::size_t n = 0; n < kLandmarks; ++n) EXPECT_EQ(child.landmarks[n].mean, parent.landmarks[n].mean);
+    }
+    for (int frame = 2; frame < 6; ++frame) Step(filter, frame);  // in the memory of others
+    for (const vo::Particle& particle : filter.particles()) EXPECT_EQ(particle.landmarks.size(), kLandmarks);
+  }
+}
+
+// What the filter computes once for all of them.
+TEST(ParticleFilter, VelocityCovarianceIsAlikeInAllParticles) {
+  for (const vo::Sampled sampled : {vo::Sampled::pose, vo::Sampled::pose_and_velocity}) {
+    for (const int lag : {0, 2}) {
+      vo::FilterParams params;
+      params.sampled = sampled;
+      params.lag = lag;
+      vo::ParticleFilter filter = MakeFilter(params);
+      for (int frame = 1; frame < 8; ++frame) Step(filter, frame);
+      for (const vo::Particle& particle : filter.particles())
+        EXPECT_EQ(particle.velocity.covariance, filter.particles()[0].velocity.covariance);
+    }
+  }
+}
+
+}  // namespace
