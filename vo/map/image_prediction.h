@@ -7,7 +7,7 @@
 namespace vo {
 
 struct ImagePrediction {
-  bool in_front = false;                                 // in front of every particle that matters
+  bool in_front = false;  // in front of every particle that matters
   Eigen::Vector2d z = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  // pose and landmark; R not yet in it
 };

@@ -1,5 +1,5 @@
-// Purpose: one match linearised for the filter's inner loop, the landmark's Gaussian integrated out. Inline and written out by rows:
-//          two thirds of the filter's time are spent here.
+// Purpose: one match linearised, the landmark's Gaussian integrated out: for landmarks that are updated one by one. The filter's inner
+//          loop has the same formulas for eight matches at a time, in match_lanes.inc.
 // Units:   the plane z = 1, as in landmark.h.
 #pragma once
 
@@ -9,7 +9,7 @@ namespace vo {
 
 // One match linearised at a landmark `theta` (not at its mean), the landmark's Gaussian integrated out: with the pose moved by d,
 //   z - h = e - J_pose d + noise of covariance S = J P J' + R, and the landmark's mode is mean + gain (e - J_pose d).
-// Written out by rows (0: x, 1: y): this is the inner loop of the filter.
+// Written out by rows (0: x, 1: y).
 struct LinearisedMatch {
   void Set(const AnchorView& view, const Landmark& landmark, const Eigen::Vector3d& theta, const Match& match);
 

@@ -9,7 +9,7 @@ namespace vo {
 
 struct LocalMap {
   std::span<const Landmark> landmarks;
-  std::span<const int> anchor_of;   // per landmark: index into anchors
+  std::span<const int> anchor_of;  // per landmark: index into anchors
   std::span<const Pose> anchors;
 };
 

@@ -25,7 +25,8 @@ double LogDet(const MatchSums& sums) {
     mantissa *= sums.det_mantissa.v[i];
     exponent += sums.det_exponent.v[i];
   }
-  return std::log(mantissa) + static_cast<double>(exponent) * std::numbers::ln2 + sums.in_front * 2 * std::log(2 * std::numbers::pi);
+  return std::log(mantissa) + static_cast<double>(exponent) * std::numbers::ln2 +
+         sums.in_front * 2 * std::log(2 * std::numbers::pi);
 }
 
 }  // namespace
@@ -52,7 +53,8 @@ void MatchBatch::SetLandmarks(std::span<const int> landmarks) {
 void MatchBatch::SetBlocks() {
   blocks_.resize((landmark_.size() + kLanes - 1) / kLanes);
   for (std::size_t i = 0; i < kLanes * blocks_.size(); ++i)
-    blocks_[i / kLanes].min_depth.v[i % kLanes] = i < landmark_.size() ? kMinDepth : std::numeric_limits<double>::infinity();
+    blocks_[i / kLanes].min_depth.v[i % kLanes] =
+        i < landmark_.size() ? kMinDepth : std::numeric_limits<double>::infinity();
 }
 
 void MatchBatch::Load(const LocalMap& map) {
@@ -95,7 +97,8 @@ void MatchBatch::Follow(const Vector6& d) {
 
 double MatchBatch::UpdateLandmarks(const Pose& camera, int max_iterations) {
   MatchSums sums;
-  kernel_->update_landmarks(ViewFrom(camera), step(), max_iterations, blocks_.data(), static_cast<int>(blocks_.size()), sums);
+  kernel_->update_landmarks(ViewFrom(camera), step(), max_iterations, blocks_.data(), static_cast<int>(blocks_.size()),
+                            sums);
   following_ = false;
   return -0.5 * (sums.cost + LogDet(sums));
 }
@@ -107,13 +110,14 @@ void MatchBatch::Store(std::span<Landmark> landmarks) const {
     Landmark& landmark = landmarks[landmark_[i]];
     for (int k = 0; k < 3; ++k) landmark.mean[k] = block.mean[k].v[lane];
     for (int r = 0, at = 0; r < 3; ++r)
-      for (int c = r; c < 3; ++c) landmark.covariance(r, c) = landmark.covariance(c, r) = block.covariance[at++].v[lane];
+      for (int c = r; c < 3; ++c)
+        landmark.covariance(r, c) = landmark.covariance(c, r) = block.covariance[at++].v[lane];
   }
 }
 
 void MatchBatch::AddPredictions(const Pose& camera, const Matrix6& covariance, double weight) {
-  kernel_->add_predictions(ViewFrom(camera), covariance.data(), weight, blocks_.data(), static_cast<int>(blocks_.size()),
-                           predictions_.data());
+  kernel_->add_predictions(ViewFrom(camera), covariance.data(), weight, blocks_.data(),
+                           static_cast<int>(blocks_.size()), predictions_.data());
 }
 
 ImageMoments MatchBatch::Moments(std::size_t place) const {

@@ -20,7 +20,8 @@ class MatchBatch {
   void SetLandmarks(std::span<const int> landmarks);  // to be predicted only
   void Load(const LocalMap& map);
 
-  // The pose's information, the landmarks integrated out; those that lie behind the camera are left out. With the pose moved by d:
+  // The pose's information, the landmarks integrated out; those that lie behind the camera are left out. With the pose
+  // moved by d:
   //   -2 log p(z | pose) = cost - 2 b'd + d'A d + log det, d = (dp in W, dphi in C).
   struct Information {
     Matrix6 A;
@@ -34,11 +35,13 @@ class MatchBatch {
   // From now on each landmark is linearised at its mode for the pose at linearised_at() (+) d, to first order.
   void Follow(const Vector6& d);
 
-  // What the matches say about the landmarks once the pose is known, as UpdateLandmark. Returns the sum of log p(z | pose).
+  // What the matches say about the landmarks once the pose is known, as UpdateLandmark. Returns the sum of log p(z |
+  // pose).
   double UpdateLandmarks(const Pose& camera, int max_iterations);
   void Store(std::span<Landmark> landmarks) const;
 
-  // Moments, over particles, of where the landmarks should appear from an uncertain pose. SetLandmarks forgets the former sums.
+  // Moments, over particles, of where the landmarks should appear from an uncertain pose. SetLandmarks forgets the
+  // former sums.
   void AddPredictions(const Pose& camera, const Matrix6& covariance, double weight);
   ImageMoments Moments(std::size_t place) const;
 
@@ -52,7 +55,7 @@ class MatchBatch {
   std::vector<int> landmark_;  // per match
   Pose linearised_at_;
   Vector6 step_ = Vector6::Zero();
-  bool following_ = false;     // by step_, which is still to be done
+  bool following_ = false;  // by step_, which is still to be done
 };
 
 }  // namespace vo

@@ -21,7 +21,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Landmarks of three anchors, matched from a camera nearby. Every third has a fixed bearing, every fifth lies behind the camera.
+// Landmarks of three anchors, matched from a camera nearby. Every third has a fixed bearing, every fifth lies behind
+// the camera.
 struct Scene {
   std::vector<vo::Landmark> landmarks;
   std::vector<int> anchor_of;
@@ -72,7 +73,8 @@ struct Terms {
   vo::Matrix26 J = vo::Matrix26::Zero();
   Eigen::Matrix<double, 3, 2> gain = Eigen::Matrix<double, 3, 2>::Zero();
 };
-vo::MatchBatch::Information Expected(const Scene& scene, const std::vector<Vector3d>& theta, bool marginal, std::vector<Terms>& terms) {
+vo::MatchBatch::Information Expected(const Scene& scene, const std::vector<Vector3d>& theta, bool marginal,
+                                     std::vector<Terms>& terms) {
   vo::MatchBatch::Information sum{vo::Matrix6::Zero(), vo::Vector6::Zero(), 0, 0};
   terms.clear();
   for (std::size_t i = 0; i < scene.matches.size(); ++i) {
@@ -93,7 +95,8 @@ vo::MatchBatch::Information Expected(const Scene& scene, const std::vector<Vecto
     const Vector2d q = h.J_landmark * landmark.covariance.col(2);
     const Vector3d gradient = h.J_shift.transpose() * W * q;
     sum.b.head<3>() += gradient;
-    sum.A.topLeftCorner<3, 3>() += q.dot(W * q) * h.J_shift.transpose() * W * h.J_shift + gradient * gradient.transpose();
+    sum.A.topLeftCorner<3, 3>() +=
+        q.dot(W * q) * h.J_shift.transpose() * W * h.J_shift + gradient * gradient.transpose();
   }
   return sum;
 }
@@ -160,7 +163,9 @@ TEST_P(EveryInstructionSet, LandmarksAreUpdatedAsOneByOne) {
       for (std::size_t n = 0; n < landmarks.size(); ++n) {
         EXPECT_LT((landmarks[n].mean - expected[n].mean).norm(), 1e-12 * expected[n].mean.norm()) << n;
         // What is left may be a hundred-thousandth of the prior.
-        EXPECT_LT((landmarks[n].covariance - expected[n].covariance).norm(), 1e-13 * scene.landmarks[n].covariance.norm()) << n;
+        EXPECT_LT((landmarks[n].covariance - expected[n].covariance).norm(),
+                  1e-13 * scene.landmarks[n].covariance.norm())
+            << n;
       }
     }
   }
@@ -257,7 +262,8 @@ std::vector<std::uint64_t> Everything(vo::InstructionSet set, const Scene& scene
   batch.AddPredictions(camera, 1e-4 * vo::Matrix6::Identity() + 1e-6 * vo::Matrix6::Ones(), 0.4);
   for (const int n : all) {
     const vo::ImageMoments moments = batch.Moments(n);
-    for (const double x : {moments.weight, moments.z.x(), moments.z.y(), moments.second(0, 0), moments.second(0, 1), moments.second(1, 1)})
+    for (const double x : {moments.weight, moments.z.x(), moments.z.y(), moments.second(0, 0), moments.second(0, 1),
+                           moments.second(1, 1)})
       add(x);
   }
   return out;

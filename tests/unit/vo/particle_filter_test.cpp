@@ -29,8 +29,9 @@ vo::ParticleFilter MakeFilter(const vo::FilterParams& params) {
 void Step(vo::ParticleFilter& filter, int frame) {
   std::vector<vo::Match> matches;
   for (int n = 0; n < kLandmarks; ++n)
-    matches.push_back({n, Eigen::Vector2d(0.5 * std::sin(1.3 * n) - 0.002 * frame, 0.4 * std::cos(2.1 * n)) +
-                              0.002 * Eigen::Vector2d(std::sin(17.0 * n * frame), std::cos(23.0 * n * frame)),
+    matches.push_back({n,
+                       Eigen::Vector2d(0.5 * std::sin(1.3 * n) - 0.002 * frame, 0.4 * std::cos(2.1 * n)) +
+                           0.002 * Eigen::Vector2d(std::sin(17.0 * n * frame), std::cos(23.0 * n * frame)),
                        4e-6 * Eigen::Matrix2d::Identity()});
   filter.Predict(1.0 / 30);
   filter.Update(matches);
