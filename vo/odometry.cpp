@@ -106,7 +106,7 @@ void Odometry::Impl::UpdateScores(const Association& association) {
 void Odometry::Impl::Forget() {
   const std::vector<Filter::LandmarkBelief> beliefs = filter->LandmarkBeliefs();
   for (std::size_t n = 0; n < records.size(); ++n)
-    records[n].permanent = beliefs[n].inverse_depth_sigma < params.landmark.permanent_ratio * beliefs[n].inverse_depth;
+    records[n].permanent = beliefs[n].relative_sigma < params.landmark.permanent_ratio;
   const std::vector<bool> keep = WorthKeeping(records, params.landmark, params.score);
   filter->KeepLandmarks(keep);
   std::size_t to = 0;

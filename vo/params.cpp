@@ -56,6 +56,9 @@ std::vector<std::string> Problems(const Params& params) {
   const LandmarkParams& landmark = params.landmark;
   check.Positive("landmark.inverse_depth", landmark.inverse_depth);
   check.Positive("landmark.inverse_depth_sigma", landmark.inverse_depth_sigma);
+  check.Require(landmark.scale_sigma >= 0 && landmark.scale_sigma <= 3, "landmark.scale_sigma", landmark.scale_sigma, "must lie in 0 ... 3");
+  if (filter.sampled == Sampled::nothing && landmark.scale_sigma > 0)
+    check.Refuse("landmark.scale_sigma must be 0 for ekfslam: its landmarks share no scale");
   check.Positive("landmark.permanent_ratio", landmark.permanent_ratio);
   check.Require(landmark.forget_after >= 1, "landmark.forget_after", landmark.forget_after, "must be at least 1");
   check.Require(landmark.max_landmarks >= 10, "landmark.max_landmarks", landmark.max_landmarks, "must be at least 10");

@@ -57,6 +57,7 @@ struct LandmarkParams {
   Bearing bearing = Bearing::estimated;
   double inverse_depth = 0.25;        // of a new landmark [1/m]
   double inverse_depth_sigma = 0.15;  // [1/m]
+  double scale_sigma = 0;             // of the log of a factor that all inverse depths share: how well the scale is known beforehand [-]
   double permanent_ratio = 0.05;      // permanent when sigma_rho < ratio * rho (our choice; the paper gives no number)
   int forget_after = 90;              // drop a non-permanent landmark that could not be searched for so many frames
   int max_landmarks = 1000;           // flat memory: beyond it the longest unseen are dropped

@@ -51,7 +51,7 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
   AddNew(frame);
   diagnostics.landmarks = static_cast<int>(records.size());
   for (const Filter::LandmarkBelief& belief : filter->LandmarkBeliefs())
-    diagnostics.permanent += belief.inverse_depth_sigma < params.landmark.permanent_ratio * belief.inverse_depth;
+    diagnostics.permanent += belief.relative_sigma < params.landmark.permanent_ratio;
   diagnostics.ms_features = watch.Lap();
   return MakeEstimate(*filter, frame.stamp_ns, diagnostics);
 }

@@ -23,7 +23,8 @@ enum class Stream : std::uint32_t {
   point_place = 17,    // landmarks without images: where they are,
   point_noise = 18,    // the noise of their views,
   point_outlier = 19,  // which are replaced, and by what,
-  point_loss = 20      // and which are missing
+  point_loss = 20,     // and which are missing,
+  point_scale = 21     // what all their inverse depths have in common
 };
 
 using Words = std::array<std::uint32_t, 4>;

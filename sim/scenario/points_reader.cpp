@@ -49,6 +49,7 @@ PointDescription ReadPoints(Section& root, Section& world, const CameraParams& c
   if (points.landmarks == Landmarks::prior) {
     section.Read("inverse_depth", points.inverse_depth);
     section.Read("inverse_depth_sigma", points.inverse_depth_sigma);
+    section.Read("scale_sigma", points.scale_sigma);
     section.Read("margin", points.margin_px, Unit::pixel);
   } else {
     section.Read("points", points.points);

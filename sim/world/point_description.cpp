@@ -14,6 +14,7 @@ std::vector<std::string> Problems(const PointDescription& p, const CameraParams&
   require(p.forget_after >= 1, "forget_after", p.forget_after, "must be at least 1");
   require(true, "inverse_depth", p.inverse_depth, "1/m must be finite");
   require(p.inverse_depth_sigma >= 0, "inverse_depth_sigma", p.inverse_depth_sigma, "1/m must be at least 0");
+  require(p.scale_sigma >= 0 && p.scale_sigma <= 3, "scale_sigma", p.scale_sigma, "must lie in 0 ... 3");
   require(p.margin_px >= 0 && 2 * p.margin_px < std::min(camera.width, camera.height), "margin", p.margin_px,
           "px must be at least 0 and leave something of the image");
   require(p.points >= 1 && p.points <= kMost, "points", p.points, "must lie in 1 ... 1000000");

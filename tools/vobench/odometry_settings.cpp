@@ -43,10 +43,11 @@ void ReadFilter(Section section, vo::FilterParams& params) {
 }
 
 void ReadLandmark(Section section, vo::LandmarkParams& params) {
-  auto& [bearing, inverse_depth, inverse_depth_sigma, permanent_ratio, forget_after, max_landmarks] = params;
+  auto& [bearing, inverse_depth, inverse_depth_sigma, scale_sigma, permanent_ratio, forget_after, max_landmarks] = params;
   section.ReadChoice("bearing", bearing, {{"fixed", vo::Bearing::fixed}, {"estimated", vo::Bearing::estimated}});
   section.Read("inverse_depth", inverse_depth, Range::Positive());
   section.Read("inverse_depth_sigma", inverse_depth_sigma, Range::Positive());
+  section.Read("scale_sigma", scale_sigma, Range{0, 3});
   section.Read("permanent_ratio", permanent_ratio, Range::Positive());
   section.Read("forget_after", forget_after, Range::AtLeast(1));
   section.Read("max_landmarks", max_landmarks, Range::AtLeast(1));

@@ -16,6 +16,7 @@ const sim::SampledMotion& MotionOf(const sim::Scenario& scenario) {
   };
   const sim::CameraParams& camera = scenario.camera;
   if (!scenario.points || scenario.points->landmarks != sim::Landmarks::prior) refuse("landmarks are not from a prior");
+  if (scenario.points->scale_sigma > 0) refuse("the landmarks' scale is unknown");
   if (!motion) refuse("the motion is not sampled");
   if (motion->position_return > 0 || motion->orientation_return > 0) refuse("the motion has a return");
   if (std::abs(camera.fx / camera.fy - 1) > 0.01) refuse("pixels are not square");

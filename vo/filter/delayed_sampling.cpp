@@ -63,15 +63,22 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
     for (Particle& particle : particles_) particle.log_weight -= particle.path.log_evidence;
     BuildTracks();
     SolvePaths();
-    if (!committed_) Restart();
+    if (!committed_) {
+      Restart();
+      if (landmark_params_.scale_sigma > 0) FollowBest();
+    }
     for (Particle& particle : particles_) particle.log_weight += particle.path.log_evidence;
   }
   mixture_.clear();
   for (const Particle& particle : particles_) mixture_.push_back(ComponentOnPath(particle));
-  if (!matches.empty()) params_.weight == Weight::equal ? WeighEqually() : Weigh();
+  if (!matches.empty()) WeighPaths();
   Answer();
-  while (static_cast<int>(steps_.size()) > params_.lag) CommitOldest();
-  if (ToResample()) Resample();
+  const bool full = static_cast<int>(steps_.size()) > params_.lag;
+  // With equal weights a refuted particle is replaced before the draw, so that it is not the draws that are alike; and not before there is
+  // one: until then all look for the best solution anyway, each in its own scale.
+  if (params_.weight == Weight::equal && full && ToResample()) Resample();
+  if (full) CommitOldest();
+  if (params_.weight != Weight::equal && ToResample()) Resample();
 }
 
 void ParticleFilter::BuildTracks() {
@@ -121,7 +128,24 @@ void ParticleFilter::Restart() {
   }
 }
 
-void ParticleFilter::WeighEqually() {
+// Every particle tries the best one's solution in its own scale: that of the images is the same for all.
+void ParticleFilter::FollowBest() {
+  const auto worse = [](const Particle& a, const Particle& b) { return a.path.log_evidence < b.path.log_evidence; };
+  const Particle best = *std::max_element(particles_.begin(), particles_.end(), worse);
+  for (Particle& particle : particles_) {
+    const double factor = particle.scale / best.scale;
+    Particle other = particle;
+    other.path = best.path;
+    for (Pose& pose : other.path.mean) pose.p_WC = best.pose.p_WC + (pose.p_WC - best.pose.p_WC) / factor;
+    other.modes = best.modes;
+    for (Eigen::Vector3d& mode : other.modes) mode.z() *= factor;
+    SolvePath(other);
+    if (other.path.log_evidence > particle.path.log_evidence) particle = std::move(other);
+  }
+}
+
+void ParticleFilter::WeighPaths() {
+  if (params_.weight != Weight::equal) return Weigh();
   std::vector<double> log_evidence;
   for (const Particle& particle : particles_) log_evidence.push_back(particle.path.log_evidence);
   weights_ = EqualUnlessRefuted(log_evidence, kRefuted);
@@ -145,12 +169,14 @@ void ParticleFilter::CommitOldest() {
 }
 
 std::vector<Pose> ParticleFilter::DrawOldest() const {
-  ParticleColumns offsets(6, params_.particles), normals(6, params_.particles);
+  const bool scales = landmark_params_.scale_sigma > 0;  // which the draws are not to correlate with either
+  ParticleColumns offsets(scales ? 7 : 6, params_.particles), normals(6, params_.particles);
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
-    offsets.col(i) = Minus(particles_[i].path.mean[0], particles_[0].path.mean[0]);
+    offsets.col(i).head<6>() = Minus(particles_[i].path.mean[0], particles_[0].path.mean[0]);
+    if (scales) offsets(6, i) = std::log(particles_[i].scale);
     normals.col(i) = NormalVector<Vector6>({seed_, Stream::pose, frame_, i});
   }
-  if (params_.weight == Weight::equal && EnoughForExactDraws(params_.particles)) normals = ExactDraws(offsets, normals);
+  if (params_.weight == Weight::equal && EnoughForExactDraws(params_.particles, 6)) normals = ExactDraws(offsets, normals);
   std::vector<Pose> drawn;
   for (std::uint32_t i = 0; i < particles_.size(); ++i) drawn.push_back(OldestOf(particles_[i].path).Displaced(normals.col(i)));
   return drawn;

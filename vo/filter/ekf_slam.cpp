@@ -258,7 +258,8 @@ std::vector<Filter::LandmarkBelief> EkfSlam::LandmarkBeliefs() const {
   std::vector<LandmarkBelief> beliefs;
   for (int n = 0; n < landmark_count(); ++n) {
     const Landmark& l = landmarks_[n];
-    beliefs.push_back({PointInWorld(AnchorOf(n), l.mean), l.mean.z(), std::sqrt(std::max(0.0, l.covariance(2, 2)))});
+    const double sigma = std::sqrt(std::max(0.0, l.covariance(2, 2)));
+    beliefs.push_back({PointInWorld(AnchorOf(n), l.mean), l.mean.z(), sigma, l.mean.z() > 0 ? sigma / l.mean.z() : INFINITY});
   }
   return beliefs;
 }

@@ -8,14 +8,14 @@ namespace vo {
 ParticleColumns ExactDraws(const ParticleColumns& offsets, const ParticleColumns& normals) {
   const Eigen::Index n = normals.cols();
   ParticleColumns draws = normals.colwise() - normals.rowwise().mean();
-  if (n >= 14) {
+  if (n >= normals.rows() + offsets.rows() + 2) {
     // Rows of the offsets that the others span already (particles that are all at one place) are left out by the rank.
     const Eigen::MatrixXd centred = (offsets.colwise() - offsets.rowwise().mean()).transpose();
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(centred);
     const Eigen::MatrixXd basis = (qr.householderQ() * Eigen::MatrixXd::Identity(n, qr.rank())).eval();
     draws -= (draws * basis) * basis.transpose();
   }
-  const Eigen::Matrix<double, 6, 6> covariance = draws * draws.transpose() / static_cast<double>(n);
+  const Eigen::MatrixXd covariance = draws * draws.transpose() / static_cast<double>(n);
   return covariance.llt().matrixL().solve(draws);
 }
 

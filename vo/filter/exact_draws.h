@@ -11,13 +11,13 @@
 
 namespace vo {
 
-using ParticleColumns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+using ParticleColumns = Eigen::MatrixXd;
 
 // Six dimensions and a mean need seven particles.
-inline bool EnoughForExactDraws(int particles) { return particles >= 7; }
+inline bool EnoughForExactDraws(int particles, int dimensions) { return particles > dimensions; }
 
-// `normals`: independent standard normal numbers. `offsets`: of the particles from any common point; projected out from
-// 14 particles on.
+// `normals`: independent standard normal numbers. `offsets`: of the particles from any common point; projected out where
+// there are two particles more than rows in both (14 for poses).
 ParticleColumns ExactDraws(const ParticleColumns& offsets, const ParticleColumns& normals);
 
 }  // namespace vo

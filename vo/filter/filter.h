@@ -49,6 +49,7 @@ class Filter {
     Eigen::Vector3d X_W;        // on that path
     double inverse_depth;       // mean [1/m]
     double inverse_depth_sigma;
+    double relative_sigma;      // inverse_depth_sigma / inverse_depth, but for what all landmarks have in common: the scale
   };
   virtual std::vector<LandmarkBelief> LandmarkBeliefs() const = 0;
   // The filter's answer: moments of its mixture.

@@ -1,8 +1,10 @@
 #include "vo/filter/particle_filter.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "vo/filter/exact_draws.h"
 #include "vo/filter/mixture.h"
 #include "vo/filter/resampling.h"
 #include "vo/filter/unscented_proposal.h"
@@ -45,10 +47,18 @@ ParticleFilter::ParticleFilter(const MotionParams& motion, const FilterParams& f
       particle.velocity = {SampleNormal(prior.velocity, prior.velocity_covariance, {seed_, Stream::prior_velocity, 0, i}),
                            Matrix6::Zero()};
   }
+  if (landmark.scale_sigma > 0) DrawScales();
   belief_.pose = prior.pose.mean;
   belief_.velocity = prior.velocity;
   belief_.covariance.topLeftCorner<6, 6>() = prior.pose.covariance;
   belief_.covariance.bottomRightCorner<6, 6>() = prior.velocity_covariance;
+}
+
+void ParticleFilter::DrawScales() {
+  ParticleColumns normals(1, params_.particles);
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) normals(0, i) = Normal({seed_, Stream::scale, 0, i}, 0);
+  if (EnoughForExactDraws(params_.particles, 1)) normals = ExactDraws(ParticleColumns::Zero(1, params_.particles), normals);
+  for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].scale = std::exp(landmark_params_.scale_sigma * normals(0, i));
 }
 
 void ParticleFilter::Predict(double dt) {
@@ -202,7 +212,7 @@ void ParticleFilter::AddLandmarks(std::span<const Eigen::Vector2d> rays, std::sp
     if (slot == slots) particle.anchors.emplace_back();
     particle.anchors[slot] = steps_.empty() ? particle.pose : particle.path.mean.back();
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      particle.landmarks.push_back(NewLandmark(rays[i], R[i], landmark_params_));
+      particle.landmarks.push_back(Scaled(NewLandmark(rays[i], R[i], landmark_params_), particle.scale));
       if (delayed()) particle.modes.push_back(particle.landmarks.back().mean);
     }
   }
@@ -259,16 +269,28 @@ std::vector<Filter::LandmarkBelief> ParticleFilter::LandmarkBeliefs() const {
   const Particle& best = Heaviest();
   std::vector<LandmarkBelief> beliefs;
   for (int n = 0; n < landmark_count(); ++n)
-    beliefs.push_back({PointInWorld(best.anchors[anchor_of_[n]], ModeOf(best, n)), 0, 0});
-  std::vector<double> second(beliefs.size(), 0.0);
-  for (std::size_t i = 0; i < particles_.size(); ++i)
+    beliefs.push_back({PointInWorld(best.anchors[anchor_of_[n]], ModeOf(best, n)), 0, 0, 0});
+  struct Sums {
+    double second = 0, relative = 0, relative_second = 0;  // relative: in each particle's own scale
+  };
+  std::vector<Sums> sums(beliefs.size());
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const double weight = weights_[i], scale = particles_[i].scale;
     for (std::size_t n = 0; n < beliefs.size(); ++n) {
       const double rho = ModeOf(particles_[i], static_cast<int>(n)).z();
-      beliefs[n].inverse_depth += weights_[i] * rho;
-      second[n] += weights_[i] * (rho * rho + particles_[i].landmarks[n].covariance(2, 2));
+      const double second = rho * rho + particles_[i].landmarks[n].covariance(2, 2);
+      beliefs[n].inverse_depth += weight * rho;
+      sums[n].second += weight * second;
+      sums[n].relative += weight * rho / scale;
+      sums[n].relative_second += weight * second / (scale * scale);
     }
-  for (std::size_t n = 0; n < beliefs.size(); ++n)
-    beliefs[n].inverse_depth_sigma = std::sqrt(std::max(0.0, second[n] - beliefs[n].inverse_depth * beliefs[n].inverse_depth));
+  }
+  const auto sigma = [](double mean, double second) { return std::sqrt(std::max(0.0, second - mean * mean)); };
+  for (std::size_t n = 0; n < beliefs.size(); ++n) {
+    const double relative = sums[n].relative;
+    beliefs[n].inverse_depth_sigma = sigma(beliefs[n].inverse_depth, sums[n].second);
+    beliefs[n].relative_sigma = relative > 0 ? sigma(relative, sums[n].relative_second) / relative : INFINITY;
+  }
   return beliefs;
 }
 

@@ -38,6 +38,14 @@ Matrix26 AnchorJacobian(const Projection& projection, const Eigen::Vector3d& lan
   return result;
 }
 
+Landmark Scaled(const Landmark& landmark, double factor) {
+  Landmark result = landmark;
+  result.mean.z() *= factor;
+  result.covariance.row(2) *= factor;
+  result.covariance.col(2) *= factor;
+  return result;
+}
+
 Landmark NewLandmark(const Eigen::Vector2d& ray, const Eigen::Matrix2d& R, const LandmarkParams& params) {
   Landmark landmark;
   landmark.mean << ray, params.inverse_depth;

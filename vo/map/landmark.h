@@ -46,6 +46,9 @@ Projection Project(const AnchorView& view, const Eigen::Vector3d& landmark);
 // dz / d(dp in W, dphi in A) of the anchor's pose, for a landmark in front.
 Matrix26 AnchorJacobian(const Projection& projection, const Eigen::Vector3d& landmark);
 
+// Its inverse depth `factor` times as large.
+Landmark Scaled(const Landmark& landmark, double factor);
+
 Landmark NewLandmark(const Eigen::Vector2d& ray, const Eigen::Matrix2d& R, const LandmarkParams& params);
 
 // In W; far away for a vanishing rho.

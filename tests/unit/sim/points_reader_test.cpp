@@ -39,7 +39,7 @@ std::string Complaint(const std::string& text) {
 TEST(PointsReader, EveryKeyIsRead) {
   const PointDescription prior =
       *Read(Text(R"({points: {landmarks: prior, count: 50, forget_after: 7, inverse_depth: 0.5,
-    inverse_depth_sigma: 0.1, margin: 3 px, measurement: {noise: 2 px, drops: 0.1, outliers: {probability: 0.2, radius: 30 px},
+    inverse_depth_sigma: 0.1, scale_sigma: 0.4, margin: 3 px, measurement: {noise: 2 px, drops: 0.1, outliers: {probability: 0.2, radius: 30 px},
     blur: {length: 9 px, exposure: 20 ms}}}})"))
            .points;
   EXPECT_EQ(prior.landmarks, Landmarks::prior);
@@ -47,6 +47,7 @@ TEST(PointsReader, EveryKeyIsRead) {
   EXPECT_EQ(prior.forget_after, 7);
   EXPECT_EQ(prior.inverse_depth, 0.5);
   EXPECT_EQ(prior.inverse_depth_sigma, 0.1);
+  EXPECT_EQ(prior.scale_sigma, 0.4);
   EXPECT_EQ(prior.margin_px, 3);
   EXPECT_EQ(prior.measurement.noise_px, 2);
   EXPECT_EQ(prior.measurement.drop_probability, 0.1);

@@ -18,12 +18,12 @@ vo::ParticleColumns Normals(int particles, std::uint32_t replicate, vo::Stream s
 
 TEST(ExactDraws, HaveMeanZeroAndTheIdentityForCovariance) {
   for (const int n : {7, 8, 13, 14, 64}) {
-    ASSERT_TRUE(vo::EnoughForExactDraws(n));
+    ASSERT_TRUE(vo::EnoughForExactDraws(n, 6));
     const vo::ParticleColumns draws = vo::ExactDraws(Normals(n, 1, vo::Stream::velocity), Normals(n, 1));
     EXPECT_LT(draws.rowwise().mean().norm(), 1e-13) << n;
     EXPECT_LT((draws * draws.transpose() / n - vo::Matrix6::Identity()).norm(), 1e-12) << n;
   }
-  EXPECT_FALSE(vo::EnoughForExactDraws(6));
+  EXPECT_FALSE(vo::EnoughForExactDraws(6, 6));
 }
 
 TEST(ExactDraws, DoNotCorrelateWithTheOffsetsFromFourteenParticlesOn) {
