@@ -9,20 +9,30 @@ const std::vector<std::string>& SystemNames() {
   return names;
 }
 
+namespace {
+
+void WithoutLag(vo::FilterParams& filter) {
+  filter.lag = 0;
+  if (filter.weight == vo::Weight::equal) filter.weight = vo::Weight::evidence;
+}
+
+}  // namespace
+
 vo::Params ForSystem(const std::string& name, vo::Params params) {
   if (name == "rb2pf") {
     params.filter.sampled = vo::Sampled::pose;
   } else if (name == "rbpf") {
     params.filter.sampled = vo::Sampled::pose_and_velocity;
-    params.filter.lag = 0;
+    WithoutLag(params.filter);
   } else if (name == "fastslam1") {
     params.filter.sampled = vo::Sampled::pose_and_velocity;
     params.filter.proposal = vo::Proposal::bootstrap;
     params.filter.weight = vo::Weight::importance;
-    params.filter.lag = 0;
+    WithoutLag(params.filter);
   } else if (name == "ekfslam") {
     params.filter.sampled = vo::Sampled::nothing;
-    params.filter.lag = 0;
+    params.landmark.scale_sigma = 0;
+    WithoutLag(params.filter);
   } else {
     throw std::logic_error("no system " + name);
   }

@@ -14,8 +14,8 @@ const std::vector<std::string>& SystemNames();
 std::string SystemList();
 
 // The parameters with what makes the system out of them. rb2pf samples the pose only; rbpf the velocity too, at once whatever
-// the lag; fastslam1 is rbpf with the motion model as its proposal and importance weights; ekfslam
-// samples nothing. Everything else stays.
+// the lag, and with weight evidence instead of equal; fastslam1 is rbpf with the motion model as its proposal and importance weights; ekfslam
+// samples nothing, not the scale either. Everything else stays.
 vo::Params ForSystem(const std::string& name, vo::Params params);
 
 }  // namespace vobench
