@@ -1,6 +1,5 @@
 // Purpose: the instruction sets that inner loops are compiled for; which of them this machine has is asked at run time.
-// All of them
-//          give the same bits.
+//          All of them give the same bits.
 #pragma once
 
 #include <vector>

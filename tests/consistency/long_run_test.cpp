@@ -3,4 +3,4 @@
 
 #include <gtest/gtest.h>
 
-TEST(LongRun, NeitherTimeNorMemoryNorMapGrows) { long_run::ExpectNothingGrows(1500, 500, 300); }
+TEST(LongRun, NeitherTimeNorMemoryNorMapGrows) { long_run::ExpectNothingGrows(1500, 500, 600); }

@@ -1,9 +1,7 @@
 // Purpose: the filter's inner loop, eight matches at a time: matches linearised with the landmark's Gaussian integrated
-// out, their sums
-//          for the pose, and the landmarks' update. Private to vo/map: MatchBatch is what others use.
+//          out, their sums for the pose, and the landmarks' update. Private to vo/map: others use MatchBatch.
 // Source:  as LinearisedMatch. With the pose moved by d: z - h = e - j d + noise of covariance S = J P J' + R, and the
-// landmark's mode is
-//          mean + gain (e - j d).
+//          landmark's mode is mean + gain (e - j d).
 // Units:   the plane z = 1, as in landmark.h.
 //
 // The loop (match_lanes.inc) is compiled once per instruction set, with its widest vectors. No lane looks at another,
@@ -26,8 +24,8 @@ struct alignas(64) LaneInts {
   std::int64_t v[kLanes];
 };
 
-constexpr double kLandmarkSettled =
-    1e-10;  // squared step on the plane z = 1 (0.005 pixels); what it leaves is of second order in it
+// Squared step on the plane z = 1 (0.005 pixels); what it leaves is of second order in it.
+constexpr double kLandmarkSettled = 1e-10;
 
 // Symmetric matrices: upper triangle, row by row.
 struct MatchLanes {
