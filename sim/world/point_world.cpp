@@ -44,6 +44,7 @@ PointWorld::PointWorld(const Scenario& scenario)
       trajectory_(MakeTrajectory(scenario.motion, key_, Seconds(sim::StampNs(frames_ - 1, scenario.time)), 0)) {
   const std::vector<std::string> problems = Problems(world_, scenario.camera);
   if (!problems.empty()) throw std::invalid_argument("point world: " + problems.front());
+  scale_ = std::exp(world_.scale_sigma * Normals(RandomWords(key_, Stream::point_scale, 0, 0, 0))[0]);
   const Truth start = TruthAt(0);
   points_ = PlacePoints(world_, {start.p_WC, start.q_WC}, key_);
   followed_.assign(points_.size(), false);
@@ -114,8 +115,7 @@ glm::dvec4 PointWorld::DrawFromPrior(const Eye& eye) const {
   const double margin = world_.margin_px;
   const glm::dvec2 pixel(margin - 0.5 + Uniform(place[0], place[1]) * (camera_.width() - 2 * margin),
                          margin - 0.5 + Uniform(place[2], place[3]) * (camera_.height() - 2 * margin));
-  const double scale = std::exp(world_.scale_sigma * Normals(RandomWords(key_, Stream::point_scale, 0, 0, 0))[0]);
-  const double rho = scale * (world_.inverse_depth + world_.inverse_depth_sigma * Normals(depth)[0]);
+  const double rho = scale_ * (world_.inverse_depth + world_.inverse_depth_sigma * Normals(depth)[0]);
   const glm::dvec3 ray = glm::transpose(eye.R_CW) * glm::dvec3(camera_.Undistort(pixel), 1.0);
   return {rho * eye.truth.p_WC + ray, rho};
 }

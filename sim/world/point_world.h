@@ -98,6 +98,7 @@ class PointWorld {
   Scenario scenario_;
   PointDescription world_;
   std::uint64_t key_;
+  double scale_ = 1;  // of all inverse depths drawn from the prior
   std::int64_t frames_;
   Camera camera_;
   std::shared_ptr<const Trajectory> trajectory_;

@@ -30,10 +30,8 @@ void TrackOneFrame(benchmark::State& state, const Setting& setting, std::int64_t
                       {"odometry.filter.particles", std::to_string(setting.particles)},
                       {"odometry.filter.lag", std::to_string(setting.lag)}});
   sim::PointWorld world(experiment.scenario);
-  Truth start;
-  Append(world.StampNs(0), world.TruthAt(0), start);
   vo::PointOdometry odometry(ToOdometry(world.camera().params()), experiment.odometry,
-                             PriorOf(experiment.prior, experiment.scenario.motion, start, 1), 1);
+                             PriorOf(experiment.prior, world, 1), 1);
   std::vector<vo::PointFrame> frames;
   while (const auto frame = world.Next()) frames.push_back(ToOdometry(*frame));
   std::size_t next = 0;

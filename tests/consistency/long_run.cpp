@@ -54,9 +54,7 @@ std::vector<Frame> Play(std::size_t count) {
   vo::Camera camera;
   {
     sim::PointWorld world(experiment.scenario);
-    Truth start;
-    Append(world.StampNs(0), world.TruthAt(0), start);
-    prior = PriorOf(experiment.prior, experiment.scenario.motion, start, 1);
+    prior = PriorOf(experiment.prior, world, 1);
     camera = ToOdometry(world.camera().params());
     while (const auto frame = world.Next()) frames.push_back(ToOdometry(*frame));
   }

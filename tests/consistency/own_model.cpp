@@ -69,9 +69,7 @@ Played PlayOne(const Experiment& experiment, std::uint64_t seed) {
   sim::Scenario scenario = experiment.scenario;
   scenario.seed = seed;
   sim::PointWorld world(scenario);
-  Truth start;
-  Append(world.StampNs(0), world.TruthAt(0), start);
-  const vo::Prior prior = PriorOf(experiment.prior, scenario.motion, start, seed);
+  const vo::Prior prior = PriorOf(experiment.prior, world, seed);
   vo::PointOdometry odometry(ToOdometry(world.camera().params()), experiment.odometry, prior, seed);
   std::vector<sim::PointFrame> frames;
   while (const auto frame = world.Next()) {

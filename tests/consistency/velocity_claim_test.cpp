@@ -38,10 +38,8 @@ Nees Play(vo::Sampled sampled, const Overrides& settings) {
   for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
     experiment.scenario.seed = seed;
     sim::PointWorld world(experiment.scenario);
-    Truth start;
-    Append(world.StampNs(0), world.TruthAt(0), start);
     vo::PointOdometry odometry(ToOdometry(world.camera().params()), experiment.odometry,
-                               PriorOf(experiment.prior, experiment.scenario.motion, start, seed), seed);
+                               PriorOf(experiment.prior, world, seed), seed);
     vo::Estimate last;
     vo::Vector6 truth;
     while (const auto frame = world.Next()) {

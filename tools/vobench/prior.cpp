@@ -58,4 +58,10 @@ vo::Prior PriorOf(const PriorSettings& settings, const sim::MotionDescription& m
   return prior;
 }
 
+vo::Prior PriorOf(const PriorSettings& settings, const sim::PointWorld& world, std::uint64_t seed) {
+  Truth start;
+  Append(world.StampNs(0), world.TruthAt(0), start);
+  return PriorOf(settings, world.scenario().motion, start, seed);
+}
+
 }  // namespace vobench

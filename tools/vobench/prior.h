@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "sim/motion/description.h"
+#include "sim/world/point_world.h"
 #include "tools/vobench/odometry_settings.h"
 #include "tools/vobench/truth.h"
 #include "vo/odometry.h"
@@ -25,5 +26,7 @@ vo::Prior PriorFromTruth(const PriorSettings& settings, const evaluation::Stampe
 // sampled motion) is not told with noise of its own: the odometry is told what it is drawn about.
 vo::Prior PriorOf(const PriorSettings& settings, const sim::MotionDescription& motion, const Truth& start,
                   std::uint64_t seed);
+// The same at the start of a world.
+vo::Prior PriorOf(const PriorSettings& settings, const sim::PointWorld& world, std::uint64_t seed);
 
 }  // namespace vobench

@@ -41,12 +41,6 @@ sim::PointWorld WorldOf(const Experiment& experiment, std::uint64_t seed) {
   return Input([&] { return sim::PointWorld(scenario); });
 }
 
-vo::Prior PriorIn(const sim::PointWorld& world, const PriorSettings& settings, std::uint64_t seed) {
-  Truth start;
-  Append(world.StampNs(0), world.TruthAt(0), start);
-  return PriorOf(settings, world.scenario().motion, start, seed);
-}
-
 evaluation::Matrix12d StartCovariance(const vo::Prior& prior) {
   evaluation::Matrix12d start = evaluation::Matrix12d::Zero();
   start.topLeftCorner<6, 6>() = prior.pose_covariance;
@@ -65,7 +59,7 @@ template <class Step>
 void Play(const RunOptions& options, const Experiment& experiment, const Folder& folder, PointRun& run,
           const Step& step) {
   sim::PointWorld world = WorldOf(experiment, run.seed);
-  const TrackerSetup setup{run.system, run.seed, experiment.odometry, PriorIn(world, experiment.prior, run.seed)};
+  const TrackerSetup setup{run.system, run.seed, experiment.odometry, PriorOf(experiment.prior, world, run.seed)};
   PointTracker tracker(setup, ToOdometry(world.camera().params()),
                        folder ? std::optional(folder->path()) : std::nullopt,
                        fmt::format("{}/seed_{}", run.system, run.seed));

@@ -142,7 +142,7 @@ CameraVelocityFilter::Gain ParticleFilter::VelocityGiven(const Particle& particl
 
 void ParticleFilter::UpdateVelocity(Particle& particle, const Pose& pose, const CameraVelocityFilter::Gain& gain,
                                     std::uint32_t index) const {
-  particle.velocity = {gain.mean + gain.matrix * PathState(pose, particle.pose), gain.covariance};
+  particle.velocity = gain.Given(PathState(pose, particle.pose));
   // RB-PF: the velocity is sampled as well, from its exact conditional; this leaves the weight as it is.
   if (params_.sampled == Sampled::pose_and_velocity)
     particle.velocity = {SampleNormal(particle.velocity.mean, particle.velocity.covariance,

@@ -53,6 +53,7 @@ class VelocityFilter {
     VectorK mean;         // s_kf = mean + matrix * s_pf, before s_pf is known
     MatrixKP matrix;      // P_vm P_mm^-1
     MatrixKK covariance;  // of s_kf, given s_pf
+    State Given(const VectorP& s_pf) const { return {mean + matrix * s_pf, covariance}; }
   };
 
   // (37)-(43) as a function of the s_pf still to be sampled.
@@ -80,8 +81,7 @@ class VelocityFilter {
   }
 
   State Update(const VectorP& s_pf_previous, const VectorP& s_pf, const State& s_kf) const {
-    const Gain gain = Condition(s_pf_previous, s_kf);
-    return {gain.mean + gain.matrix * s_pf, gain.covariance};
+    return Condition(s_pf_previous, s_kf).Given(s_pf);
   }
 
  private:

@@ -25,10 +25,8 @@ double Score(const Overrides& changes, double claimed_covariance = 1) {
   for (std::uint64_t seed = 1; seed <= kWorlds; ++seed) {
     experiment.scenario.seed = seed;
     const sim::PointWorld world(experiment.scenario);
-    Truth start;
-    Append(world.StampNs(0), world.TruthAt(0), start);
     vo::PointOdometry odometry(ToOdometry(world.camera().params()), experiment.odometry,
-                               PriorOf(experiment.prior, experiment.scenario.motion, start, seed), seed);
+                               PriorOf(experiment.prior, world, seed), seed);
     const PointResult result = Judge(world, [&](std::int64_t stamp_ns, const std::vector<sim::PointObservation>& seen) {
       const vo::Estimate e = odometry.Track(ToOdometry(sim::PointFrame{0, stamp_ns, {}, seen}));
       return PointEstimate{e.pose.p_WC, e.pose.q_WC, e.v_WC, e.w_WC_C, claimed_covariance * e.covariance};
