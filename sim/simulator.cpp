@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -11,8 +12,10 @@
 #include "sim/random/random.h"
 #include "sim/render/ray_tracer.h"
 #include "sim/scenario/stamps.h"
+#include "sim/sensor/auto_exposure.h"
 #include "sim/sensor/exposure.h"
 #include "sim/sensor/sensor.h"
+#include "sim/sensor/vignetting.h"
 #include "sim/world/scene.h"
 
 namespace sim {
@@ -29,6 +32,10 @@ const Scenario& WithImages(const Scenario& scenario) {
   throw std::invalid_argument(scenario.name + ": a world of points has no images");
 }
 
+double LongestExposure(const SensorParams& s) {
+  return s.auto_exposure.on ? std::max(s.exposure_s, s.auto_exposure.longest_s) : s.exposure_s;
+}
+
 }  // namespace
 
 struct Simulator::Parts {
@@ -36,9 +43,10 @@ struct Simulator::Parts {
       : scenario(WithImages(s)),
         frames(CountFrames(s.time)),
         camera(s.camera),
-        sensor(s.sensor, s.seed),
-        trajectory(
-            MakeTrajectory(s.motion, s.seed, Seconds(sim::StampNs(frames - 1, s.time)), 0.5 * s.sensor.exposure_s)),
+        sensor(s.sensor, s.seed, s.camera.width, s.camera.height),
+        vignetting(s.sensor.optics, camera),
+        trajectory(MakeTrajectory(s.motion, s.seed, Seconds(sim::StampNs(frames - 1, s.time)),
+                                  0.5 * (LongestExposure(s.sensor) + std::abs(s.sensor.readout_s)))),
         arena(Threads(jobs)) {
     const Scene scene = LoadScene(s.world);
     warnings = scene.warnings;
@@ -46,15 +54,50 @@ struct Simulator::Parts {
     options.rays_per_time_sample = s.render.rays_per_time_sample;
     options.jobs = Threads(jobs);
     renderer = MakeRayTracer(scene, options);
+    if (s.sensor.auto_exposure.on) Meter();
+  }
+
+  // The settings of all frames, each from a small picture of the one before: they depend on nothing else.
+  void Meter() {
+    constexpr int kSmaller = 8;
+    CameraParams small = scenario.camera;
+    small.width = std::max(1, small.width / kSmaller);
+    small.height = std::max(1, small.height / kSmaller);
+    for (double* length : {&small.fx, &small.fy}) *length /= kSmaller;
+    for (double* centre : {&small.cx, &small.cy}) *centre = (*centre + 0.5) / kSmaller - 0.5;
+    const Camera camera_small(small);
+    const Vignetting vignetting_small(scenario.sensor.optics, camera_small);
+    AutoExposure control(scenario.sensor);
+    RadianceImage picture;
+    for (std::int64_t k = 0; k < frames; ++k) {
+      settings.push_back(control.setting());
+      Exposure instant;
+      instant.middle_s = Seconds(sim::StampNs(k, scenario.time));
+      renderer->Expose(camera_small, *trajectory, instant, FrameKey(k), picture);
+      vignetting_small.Apply(picture);
+      control.Meter(picture);
+    }
+  }
+
+  ExposureSetting Setting(std::int64_t index) const {
+    const SensorParams& s = scenario.sensor;
+    return settings.empty() ? ExposureSetting{s.exposure_s, s.gain} : settings[static_cast<std::size_t>(index)];
+  }
+
+  std::uint64_t FrameKey(std::int64_t index) const {
+    const Words words = RandomWords(scenario.seed, Stream::ray_jitter, static_cast<std::uint32_t>(index), 0, 0);
+    return (std::uint64_t{words[0]} << 32) | words[1];
   }
 
   Scenario scenario;
   std::int64_t frames;
   Camera camera;
   Sensor sensor;
+  Vignetting vignetting;
   std::unique_ptr<Trajectory> trajectory;
   std::vector<std::string> warnings;
   std::unique_ptr<Renderer> renderer;
+  std::vector<ExposureSetting> settings;  // by frame; empty: always the scenario's
   mutable tbb::task_arena arena;
 };
 
@@ -76,17 +119,23 @@ Truth Simulator::TruthAt(std::int64_t index) const {
 
 Frame Simulator::Render(std::int64_t index) const {
   const Parts& parts = *parts_;
-  Frame frame{index, StampNs(index), {}, TruthAt(index)};
+  Frame frame;
+  frame.index = index;
+  frame.stamp_ns = StampNs(index);
+  frame.truth = TruthAt(index);
+  frame.setting = parts.Setting(index);
   const SensorParams& sensor = parts.scenario.sensor;
-  std::vector<Pose> poses;
-  for (const double t : ExposureTimes(Seconds(frame.stamp_ns), sensor.exposure_s, sensor.time_samples)) {
-    poses.push_back(parts.trajectory->At(t).pose);
-  }
-  const Words words = RandomWords(parts.scenario.seed, Stream::ray_jitter, static_cast<std::uint32_t>(index), 0, 0);
-  const std::uint64_t key = (std::uint64_t{words[0]} << 32) | words[1];
+  Exposure exposure;
+  exposure.middle_s = Seconds(frame.stamp_ns);
+  exposure.exposure_s = frame.setting.exposure_s;
+  exposure.row_delay_s = sensor.RowDelay(parts.camera.height());
+  exposure.time_samples = sensor.time_samples;
+  exposure.aperture_m = sensor.optics.aperture_m;
+  exposure.focus_m = sensor.optics.focus_m;
   RadianceImage radiance;
-  parts.renderer->Expose(parts.camera, poses, key, radiance);
-  parts.arena.execute([&] { frame.image = parts.sensor.Capture(radiance, index); });
+  parts.renderer->Expose(parts.camera, *parts.trajectory, exposure, parts.FrameKey(index), radiance);
+  parts.vignetting.Apply(radiance);
+  parts.arena.execute([&] { frame.image = parts.sensor.Capture(radiance, index, frame.setting); });
   return frame;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/scenario/scenario.h"
+#include "sim/sensor/auto_exposure.h"
 #include "sim/sensor/camera.h"
 #include "sim/sensor/image.h"
 #include "sim/truth.h"
@@ -17,6 +18,7 @@ namespace sim {
 struct Frame {
   std::int64_t index = 0;
   std::int64_t stamp_ns = 0;  // mid-exposure
+  ExposureSetting setting;
   Image image;
   Truth truth;
 };

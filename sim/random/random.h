@@ -19,6 +19,8 @@ enum class Stream : std::uint32_t {
   orientation_noise = 2,
   ray_jitter = 3,
   pixel_noise = 4,
+  fixed_pattern = 8,
+  depth_noise = 9,
   start_velocity = 16,
   point_place = 17,    // landmarks without images: where they are,
   point_noise = 18,    // the noise of their views,

@@ -61,19 +61,25 @@ struct LightSample {
   bool directional, one_sided;
 };
 
-// One ray of each pixel. Columns of rotation: the camera's axes in W.
+// One ray of each pixel, at a moment between the two ends of the sample's time: the camera is at (rotation, origin) at
+// its beginning and at (rotation + turn, origin + way) at its end. Columns of rotation: the camera's axes in W. In
+// between both are taken as straight, which turns a ray by (angle of the turn)^2 / 8 at most.
 struct RaySample {
-  float rotation[3][3];            // R_WC, by columns
-  float origin[3];                 // p_WC
-  std::uint32_t point_u, point_v;  // of the pixel's pattern, as 32-bit fractions
+  float rotation[3][3], turn[3][3];  // R_WC, by columns
+  float origin[3], way[3];           // p_WC
+  std::uint32_t point_u, point_v;    // of the pixel's pattern, as 32-bit fractions
+  float lens[2], inverse_focus;      // point of the lens in C [m], to be turned about the axis; 1 / Z of what is sharp
   const LightSample* lights;
   int light_count;
 };
 
-// A block of pixels: (x, y, 1) is a pixel centre's ray in C; du, dv are its derivatives by the pixel.
+// A block of pixels: (x, y, z) is a pixel centre's ray in C; du, dv are its derivatives by the pixel.
 struct PixelBlock {
-  Lanes x, y, x_du, x_dv, y_du, y_dv;
-  Lanes width;                      // of the pixel at Z = 1: sqrt of the area between its neighbours' rays
+  Lanes x, y, z, x_du, x_dv, y_du, y_dv, z_du, z_dv;
+  Lanes width;  // of the pixel: sqrt of |det(ray, ray_du, ray_dv)|, so that a surface at `ray * t` which faces it has t
+                // width
+  Lanes time;   // of the pixel's rays: 0 at the beginning of each sample's time, 1 at its end
+  Lanes lens_cos, lens_sin;         // the turn of the lens's points
   LaneInts valid;                   // -1: there is such a pixel, 0: not
   LaneInts scramble_u, scramble_v;  // random bits by pixel, exclusive-ored to the pattern
 };

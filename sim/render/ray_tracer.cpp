@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/random/random.h"
 #include "sim/render/packet.h"
 #include "sim/render/ray_scene.h"
 #include "sim/render/sample_pattern.h"
@@ -24,6 +25,12 @@ namespace {
 
 constexpr int kTileSide = 32;  // a multiple of the block's side; the tiles do not depend on the number of threads
 static_assert(kTileSide % kBlockSide == 0);
+
+std::string Join(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
+  return text;
+}
 
 void Store(float (&to)[3], const glm::dvec3& from) {
   for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(from[c]);
@@ -63,25 +70,47 @@ struct SampleLight {
   }
 };
 
-// The block of pixels whose upper left one is (x0, y0); key: null for rays through the pixels' centres.
-PixelBlock MakeBlock(const Camera& camera, int x0, int y0, const std::uint64_t* key) {
+// Where in a sample's time the rows of a block are: the sample lasts from the first moment of the block's earliest row
+// to the last of its latest.
+struct BlockTime {
+  double part_s = 0.0, row_s = 0.0;  // part_s: how long each row looks in one sample
+
+  double length_s() const { return part_s + (kBlockSide - 1) * std::abs(row_s); }
+  // From the middle of the block's middle rows at which the sample begins.
+  double begin_s() const { return -0.5 * length_s(); }
+  // `moment` in [0, 1]: of the row's own part.
+  float At(int row, double moment) const {
+    if (!(length_s() > 0)) return 0.5f;
+    const double s = row_s * (row - 0.5 * (kBlockSide - 1)) + part_s * (moment - 0.5) - begin_s();
+    return static_cast<float>(s / length_s());
+  }
+};
+
+// The block of pixels whose upper left one is (x0, y0). key: null for rays through the pixels' centres, at the middle
+// of each sample's time. time: of the block's rows.
+PixelBlock MakeBlock(const Camera& camera, int x0, int y0, const BlockTime& time, const std::uint64_t* key) {
   PixelBlock block{};
   for (int i = 0; i < kLanes; ++i) {
     const int x = x0 + i % kBlockSide, y = y0 + i / kBlockSide;
     if (x >= camera.width() || y >= camera.height()) continue;
     const auto u = static_cast<float>(x), v = static_cast<float>(y);
-    const glm::vec2 ray = camera.Ray(u, v);
-    const glm::vec2 du = camera.Ray(u + 0.5f, v) - camera.Ray(u - 0.5f, v);
-    const glm::vec2 dv = camera.Ray(u, v + 0.5f) - camera.Ray(u, v - 0.5f);
-    block.x.v[i] = ray.x, block.y.v[i] = ray.y;
-    block.x_du.v[i] = du.x, block.y_du.v[i] = du.y;
-    block.x_dv.v[i] = dv.x, block.y_dv.v[i] = dv.y;
-    block.width.v[i] = std::sqrt(std::abs(du.x * dv.y - du.y * dv.x));
+    const glm::vec3 ray = camera.Ray(u, v);
+    const glm::vec3 du = camera.Ray(u + 0.5f, v) - camera.Ray(u - 0.5f, v);
+    const glm::vec3 dv = camera.Ray(u, v + 0.5f) - camera.Ray(u, v - 0.5f);
+    block.x.v[i] = ray.x, block.y.v[i] = ray.y, block.z.v[i] = ray.z;
+    block.x_du.v[i] = du.x, block.y_du.v[i] = du.y, block.z_du.v[i] = du.z;
+    block.x_dv.v[i] = dv.x, block.y_dv.v[i] = dv.y, block.z_dv.v[i] = dv.z;
+    block.width.v[i] = std::sqrt(std::abs(glm::dot(ray, glm::cross(du, dv))));
     block.valid.v[i] = -1;
+    block.time.v[i] = time.At(i / kBlockSide, 0.5);
+    block.lens_cos.v[i] = 1.0f;
     if (key == nullptr) continue;
-    const PatternPoint bits = PixelScramble(*key, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
-    block.scramble_u.v[i] = static_cast<std::int32_t>(bits.u);
-    block.scramble_v.v[i] = static_cast<std::int32_t>(bits.v);
+    const PixelBits bits = PixelScramble(*key, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+    block.scramble_u.v[i] = static_cast<std::int32_t>(bits.point.u);
+    block.scramble_v.v[i] = static_cast<std::int32_t>(bits.point.v);
+    block.time.v[i] = time.At(i / kBlockSide, ToUnit(bits.time));
+    const auto [cosine, sine] = CosSinFast(bits.turn >> 8);
+    block.lens_cos.v[i] = cosine, block.lens_sin.v[i] = sine;
   }
   return block;
 }
@@ -95,12 +124,12 @@ class RayTracer final : public Renderer {
         kernel_(PacketKernel()),
         arena_(options.jobs > 0 ? options.jobs : tbb::task_arena::automatic) {}
 
-  void Expose(const Camera& camera, std::span<const Pose> time_samples, std::uint64_t key,
+  void Expose(const Camera& camera, const Trajectory& motion, const Exposure& exposure, std::uint64_t key,
               RadianceImage& out) const override {
-    if (time_samples.empty()) throw std::invalid_argument("Expose: no time samples");
-    std::vector<std::vector<LightSample>> lights;
-    const std::vector<RaySample> samples = MakeSamples(time_samples, lights);
-    const int count = static_cast<int>(samples.size());
+    const std::vector<std::string> problems = Problems(exposure);
+    if (!problems.empty()) throw std::invalid_argument("Expose: " + Join(problems));
+    const ExposureSamples samples = MakeSamples(camera, motion, exposure);
+    const int count = samples.per_row;
     const float share = options_.jitter ? 1.0f / std::sqrt(static_cast<float>(count)) : 1.0f;
     const float scale = 1.0f / static_cast<float>(count);
     out.width = camera.width();
@@ -109,8 +138,8 @@ class RayTracer final : public Renderer {
 
     ForEachBlock(camera, [&](int x0, int y0) {
       Lanes sum[3];
-      const PixelBlock block = MakeBlock(camera, x0, y0, options_.jitter ? &key : nullptr);
-      kernel_.expose_block(scene_.packet_scene(), samples.data(), count, options_.jitter, share, block, sum);
+      const PixelBlock block = MakeBlock(camera, x0, y0, samples.time, options_.jitter ? &key : nullptr);
+      kernel_.expose_block(scene_.packet_scene(), samples.OfRow(y0), count, options_.jitter, share, block, sum);
       for (int i = 0; i < kLanes; ++i) {
         if (block.valid.v[i] == 0) continue;
         const std::size_t x = static_cast<std::size_t>(x0 + i % kBlockSide),
@@ -125,11 +154,12 @@ class RayTracer final : public Renderer {
     const glm::dmat3 rotation = glm::mat3_cast(pose.q_WC);
     out.assign(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height()), 0.0f);
     ForEachBlock(camera, [&](int x0, int y0) {
-      const PixelBlock block = MakeBlock(camera, x0, y0, nullptr);
-      glm::dvec3 direction[kLanes];
+      const PixelBlock block = MakeBlock(camera, x0, y0, {}, nullptr);
+      glm::dvec3 ray_C[kLanes], direction[kLanes];
       RTCRayHit16 rays{};
       for (int i = 0; i < kLanes; ++i) {
-        direction[i] = rotation * ExactRay(camera, block, i, x0 + i % kBlockSide, y0 + i / kBlockSide);
+        ray_C[i] = ExactRay(camera, block, i, x0 + i % kBlockSide, y0 + i / kBlockSide);
+        direction[i] = rotation * ray_C[i];
         rays.ray.org_x[i] = static_cast<float>(pose.p_WC.x);
         rays.ray.org_y[i] = static_cast<float>(pose.p_WC.y);
         rays.ray.org_z[i] = static_cast<float>(pose.p_WC.z);
@@ -145,53 +175,88 @@ class RayTracer final : public Renderer {
         if (block.valid.v[i] == 0 || rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
         const std::size_t x = static_cast<std::size_t>(x0 + i % kBlockSide),
                           y = static_cast<std::size_t>(y0 + i / kBlockSide);
-        out[y * static_cast<std::size_t>(camera.width()) + x] =
-            PlaneDepth(rays.hit.primID[i], pose.p_WC, direction[i], rays.ray.tfar[i]);
+        out[y * static_cast<std::size_t>(camera.width()) + x] = static_cast<float>(
+            ray_C[i].z * PlaneDistance(rays.hit.primID[i], pose.p_WC, direction[i], rays.ray.tfar[i]));
       }
     });
   }
 
  private:
-  // (x, y, 1) of the pixel's centre: the camera's table, then one Newton step on Project, which takes its 0.003 px to
-  // 1e-6 px.
+  // Of the pixel's centre: the camera's table, then one Newton step on Project, which takes its 0.003 px to 1e-6 px.
   static glm::dvec3 ExactRay(const Camera& camera, const PixelBlock& block, int i, int x, int y) {
-    glm::dvec3 ray(block.x.v[i], block.y.v[i], 1.0);
+    glm::dvec3 ray(block.x.v[i], block.y.v[i], block.z.v[i]);
     if (block.valid.v[i] == 0) return ray;
     const glm::dvec2 miss = glm::dvec2(x, y) - camera.Project(ray);
-    ray.x += block.x_du.v[i] * miss.x + block.x_dv.v[i] * miss.y;
-    ray.y += block.y_du.v[i] * miss.x + block.y_dv.v[i] * miss.y;
-    return ray;
+    const glm::dvec3 du(block.x_du.v[i], block.y_du.v[i], block.z_du.v[i]),
+        dv(block.x_dv.v[i], block.y_dv.v[i], block.z_dv.v[i]);
+    return ray + miss.x * du + miss.y * dv;
   }
 
-  // Where the ray meets the triangle's plane, in double: Embree's own distance is a float's. At a grazing angle its is
-  // kept.
-  float PlaneDepth(std::uint32_t triangle, const glm::dvec3& origin, const glm::dvec3& direction, float embree) const {
+  // Where on the ray, in lengths of `direction`, it meets the triangle's plane, in double: Embree's own is a float. At
+  // a grazing angle its is kept.
+  double PlaneDistance(std::uint32_t triangle, const glm::dvec3& origin, const glm::dvec3& direction,
+                       float embree) const {
     const glm::dvec3 a(scene_.Corner(triangle, 0)), b(scene_.Corner(triangle, 1)), c(scene_.Corner(triangle, 2));
     const glm::dvec3 normal = glm::cross(b - a, c - a);
-    const double depth = glm::dot(normal, a - origin) / glm::dot(normal, direction);
-    const bool agrees = std::abs(depth - embree) <= 1e-4 * embree;
-    return agrees ? static_cast<float>(depth) : embree;
+    const double distance = glm::dot(normal, a - origin) / glm::dot(normal, direction);
+    return std::abs(distance - embree) <= 1e-4 * embree ? distance : double{embree};
   }
 
-  std::vector<RaySample> MakeSamples(std::span<const Pose> poses, std::vector<std::vector<LightSample>>& lights) const {
-    const std::size_t rays = static_cast<std::size_t>(options_.rays_per_time_sample), count = poses.size() * rays;
-    std::vector<RaySample> samples(count);
-    lights.resize(count);
-    const double centring = 0.5 / static_cast<double>(std::bit_ceil(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      const PatternPoint point = SobolPoint(static_cast<std::uint32_t>(i));
-      for (const Light& light : lights_) std::visit(SampleLight{point, centring, lights[i]}, light);
-      const Pose& pose = poses[i / rays];
-      const glm::dmat3 rotation = glm::mat3_cast(pose.q_WC);
-      RaySample& s = samples[i];
-      for (int c = 0; c < 3; ++c) Store(s.rotation[c], rotation[c]);
-      Store(s.origin, pose.p_WC);
-      s.point_u = point.u;
-      s.point_v = point.v;
-      s.lights = lights[i].data();
-      s.light_count = static_cast<int>(lights[i].size());
+  // What the rows of an exposure look at: with a rolling shutter each row of blocks has samples of its own.
+  struct ExposureSamples {
+    int per_row = 0;
+    bool rolls = false;
+    BlockTime time;
+    std::vector<RaySample> samples;
+    std::vector<std::vector<LightSample>> lights;  // of sample i of every row
+
+    const RaySample* OfRow(int y) const {
+      return samples.data() +
+             (rolls ? static_cast<std::size_t>(y / kBlockSide) * static_cast<std::size_t>(per_row) : 0);
     }
-    return samples;
+  };
+
+  ExposureSamples MakeSamples(const Camera& camera, const Trajectory& motion, const Exposure& exposure) const {
+    ExposureSamples out;
+    const int count = exposure.time_samples * options_.rays_per_time_sample;
+    out.per_row = count;
+    out.rolls = exposure.row_delay_s != 0;
+    out.time = {exposure.exposure_s / count, exposure.row_delay_s};
+    out.lights.resize(static_cast<std::size_t>(count));
+    const double centring = 0.5 / std::bit_ceil(static_cast<unsigned>(count));
+    for (int i = 0; i < count; ++i) {
+      const PatternPoint point = SobolPoint(static_cast<std::uint32_t>(i));
+      for (const Light& light : lights_) {
+        std::visit(SampleLight{point, centring, out.lights[static_cast<std::size_t>(i)]}, light);
+      }
+    }
+    const std::vector<DiscPoint> lens = DiscPoints(count);
+    const int rows = out.rolls ? (camera.height() + kBlockSide - 1) / kBlockSide : 1;
+    out.samples.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(count));
+    for (int row = 0; row < rows; ++row) {
+      const double middle_s = exposure.RowMiddle(kBlockSide * row + 0.5 * (kBlockSide - 1), camera.height());
+      for (int i = 0; i < count; ++i) {
+        const double begin_s = middle_s + out.time.part_s * (i + 0.5 - 0.5 * count) + out.time.begin_s();
+        RaySample& s = out.samples[static_cast<std::size_t>(row * count + i)];
+        StoreMotion(motion.At(begin_s).pose, motion.At(begin_s + out.time.length_s()).pose, s);
+        const PatternPoint point = SobolPoint(static_cast<std::uint32_t>(i));
+        s.point_u = point.u;
+        s.point_v = point.v;
+        s.lens[0] = static_cast<float>(0.5 * exposure.aperture_m * lens[static_cast<std::size_t>(i)].x);
+        s.lens[1] = static_cast<float>(0.5 * exposure.aperture_m * lens[static_cast<std::size_t>(i)].y);
+        s.inverse_focus = static_cast<float>(1 / exposure.focus_m);
+        s.lights = out.lights[static_cast<std::size_t>(i)].data();
+        s.light_count = static_cast<int>(out.lights[static_cast<std::size_t>(i)].size());
+      }
+    }
+    return out;
+  }
+
+  static void StoreMotion(const Pose& begin, const Pose& end, RaySample& s) {
+    const glm::dmat3 first = glm::mat3_cast(begin.q_WC), turn = glm::mat3_cast(end.q_WC) - first;
+    for (int c = 0; c < 3; ++c) Store(s.rotation[c], first[c]), Store(s.turn[c], turn[c]);
+    Store(s.origin, begin.p_WC);
+    Store(s.way, end.p_WC - begin.p_WC);
   }
 
   template <class Function>

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "sim/motion/pose.h"
+#include "sim/motion/trajectory.h"
 #include "sim/render/radiance_image.h"
 #include "sim/sensor/camera.h"
+#include "sim/sensor/exposure.h"
 
 namespace sim {
 
@@ -17,11 +18,11 @@ class Renderer {
  public:
   virtual ~Renderer() = default;
 
-  // The mean linear radiance that each pixel collects while the camera takes the poses `time_samples` (T_WC), each with
-  // the same weight. Each time sample looks through its own point of each pixel's square, keyed by (key, pixel,
-  // sample), so that the exposure also antialiases. `out` is resized. Throws std::invalid_argument when there is no
-  // time sample.
-  virtual void Expose(const Camera& camera, std::span<const Pose> time_samples, std::uint64_t key,
+  // The mean linear radiance that each pixel collects while the camera moves along `motion` and its row is exposed.
+  // Each time sample is an equal part of the exposure; in it a pixel looks at a moment and through a point of its
+  // square of its own, keyed by (key, pixel, sample), so that the exposure also antialiases. `out` is resized. Throws
+  // std::invalid_argument listing the Problems of the shutter.
+  virtual void Expose(const Camera& camera, const Trajectory& motion, const Exposure& exposure, std::uint64_t key,
                       RadianceImage& out) const = 0;
 
   // Z in the camera frame [m] of what is seen through each pixel's centre, rows from the top; 0 = nothing. `out` is

@@ -2,6 +2,10 @@
 
 #include <Random123/philox.h>
 
+#include <cmath>
+#include <numbers>
+#include <utility>
+
 namespace sim {
 
 PatternPoint SobolPoint(std::uint32_t i) {
@@ -18,14 +22,29 @@ PatternPoint SobolPoint(std::uint32_t i) {
   return point;
 }
 
-PatternPoint PixelScramble(std::uint64_t key, std::uint32_t x, std::uint32_t y) {
+std::vector<DiscPoint> DiscPoints(int n) {
+  std::vector<DiscPoint> points;
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  for (int i = 0; i < n; ++i) {
+    const double radius = std::sqrt((i + 0.5) / n);
+    points.push_back({radius * std::cos(golden * i), radius * std::sin(golden * i)});
+  }
+  // Fisher and Yates's shuffle, always the same.
+  for (int i = n - 1; i > 0; --i) {
+    const PixelBits bits = PixelScramble(0x6c656e73u, static_cast<std::uint32_t>(i), 0);  // "lens"
+    std::swap(points[static_cast<std::size_t>(i)], points[bits.point.u % (static_cast<std::uint32_t>(i) + 1u)]);
+  }
+  return points;
+}
+
+PixelBits PixelScramble(std::uint64_t key, std::uint32_t x, std::uint32_t y) {
   constexpr std::uint32_t kStream = 0x70697865u;  // "pixe": no other use of the key shares it
   const r123::Philox4x32 philox;
   const r123::Philox4x32::ctr_type counter = {{x, y, 0u, kStream}};
   const r123::Philox4x32::key_type philox_key = {
       {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)}};
   const r123::Philox4x32::ctr_type bits = philox(counter, philox_key);
-  return {bits[0], bits[1]};
+  return {{bits[0], bits[1]}, bits[2], bits[3]};
 }
 
 }  // namespace sim

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 namespace sim {
 
@@ -18,7 +19,19 @@ inline double ToUnit(std::uint32_t fraction) { return (fraction + 0.5) * 0x1p-32
 // The i-th point of the sequence.
 PatternPoint SobolPoint(std::uint32_t i);
 
-// Random bits of a pixel: a function of the arguments alone.
-PatternPoint PixelScramble(std::uint64_t key, std::uint32_t x, std::uint32_t y);
+// The i-th of n points of the unit disc, evenly spread (Vogel 1979's spiral), in an order that has nothing to do with
+// that of the other pattern.
+struct DiscPoint {
+  double x = 0.0, y = 0.0;
+};
+std::vector<DiscPoint> DiscPoints(int n);
+
+// Random bits of a pixel, a function of the arguments alone: to be exclusive-ored to its points, a fraction of the time
+// of a sample, and of a turn of the disc's points.
+struct PixelBits {
+  PatternPoint point;
+  std::uint32_t time = 0, turn = 0;
+};
+PixelBits PixelScramble(std::uint64_t key, std::uint32_t x, std::uint32_t y);
 
 }  // namespace sim

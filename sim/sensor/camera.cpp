@@ -10,11 +10,16 @@
 #include <stdexcept>
 
 #include "sim/require.h"
+#include "sim/sensor/fisheye.h"
 
 namespace sim {
 namespace {
 
-bool HasDistortion(const CameraParams& c) { return c.k1 != 0 || c.k2 != 0 || c.p1 != 0 || c.p2 != 0 || c.k3 != 0; }
+bool IsPinhole(const CameraParams& c) {
+  return c.lens == Lens::radial_tangential && c.k1 == 0 && c.k2 == 0 && c.p1 == 0 && c.p2 == 0 && c.k3 == 0;
+}
+
+Fisheye FisheyeOf(const CameraParams& c) { return {{c.k1, c.k2, c.k3, c.k4}}; }
 
 glm::dvec2 Distort(const CameraParams& c, const glm::dvec2& p) {
   const double x = p.x, y = p.y, r2 = x * x + y * y;
@@ -48,9 +53,10 @@ bool Approach(const CameraParams& c, const glm::dvec2& goal, glm::dvec2& p) {
   return false;
 }
 
-// The undistorted point, in the part of the plane around the optical axis on which the lens is one-to-one; none outside
-// of it. The target is approached in steps from the principal point, so that Newton's method does not jump over a fold.
-std::optional<glm::dvec2> Solve(const CameraParams& c, const glm::dvec2& target, int steps) {
+// The direction in the part of the plane around the optical axis on which the lens is one-to-one; none outside of it.
+// The target is approached in steps from the principal point, so that Newton's method does not jump over a fold.
+std::optional<glm::dvec3> Solve(const CameraParams& c, const glm::dvec2& target, int steps) {
+  if (c.lens == Lens::fisheye) return FisheyeOf(c).Unproject(target);
   glm::dvec2 p(0.0);
   for (int step = 1; step <= steps; ++step) {
     const glm::dvec2 last = p;
@@ -59,7 +65,7 @@ std::optional<glm::dvec2> Solve(const CameraParams& c, const glm::dvec2& target,
       if (!(glm::determinant(DistortJacobian(c, last + part * (p - last))) > 1e-6)) return std::nullopt;
     }
   }
-  return p;
+  return glm::dvec3(p, 1.0);
 }
 
 }  // namespace
@@ -72,11 +78,23 @@ std::vector<std::string> Problems(const CameraParams& c) {
   require(c.height >= 1 && c.height <= kMaxSide, "height", c.height, "must lie in 1 ... 16384");
   require(c.fx > 0, "fx", c.fx, "must be positive");
   require(c.fy > 0, "fy", c.fy, "must be positive");
-  for (const auto& [name, value] :
-       {std::pair{"cx", c.cx}, {"cy", c.cy}, {"k1", c.k1}, {"k2", c.k2}, {"p1", c.p1}, {"p2", c.p2}, {"k3", c.k3}}) {
+  for (const auto& [name, value] : {std::pair{"cx", c.cx},
+                                    {"cy", c.cy},
+                                    {"k1", c.k1},
+                                    {"k2", c.k2},
+                                    {"p1", c.p1},
+                                    {"p2", c.p2},
+                                    {"k3", c.k3},
+                                    {"k4", c.k4}}) {
     require(true, name, value, "must be finite");
   }
-  if (!problems.empty() || !HasDistortion(c)) return problems;
+  if (c.lens == Lens::fisheye) {
+    require(c.p1 == 0, "p1", c.p1, "must be 0: a fisheye lens has no such term");
+    require(c.p2 == 0, "p2", c.p2, "must be 0: a fisheye lens has no such term");
+  } else {
+    require(c.k4 == 0, "k4", c.k4, "must be 0: only a fisheye lens has such a term");
+  }
+  if (!problems.empty() || IsPinhole(c)) return problems;
   // The lines from the principal point to the border cover the image.
   const double right = c.width - 0.5, bottom = c.height - 0.5;
   const auto check = [&](double u, double v) {
@@ -103,13 +121,16 @@ Camera::Camera(const CameraParams& params)
     for (const std::string& problem : problems) text += (text.size() > 8 ? "; " : "") + problem;
     throw std::invalid_argument(text);
   }
-  if (!HasDistortion(params)) return;
-  auto table = std::make_shared<std::vector<glm::vec2>>();
+  if (IsPinhole(params)) return;
+  auto table = std::make_shared<std::vector<glm::vec3>>();
   table->reserve((static_cast<std::size_t>(params.width) + 1) * (static_cast<std::size_t>(params.height) + 1));
   for (int j = 0; j <= params.height; ++j) {
-    glm::dvec2 ray = Undistort({-0.5, j - 0.5});
+    glm::dvec3 ray = Direction({-0.5, j - 0.5});
     for (int i = 0; i <= params.width; ++i) {
-      if (!Approach(params, Normalized(params, {i - 0.5, j - 0.5}), ray)) ray = Undistort({i - 0.5, j - 0.5});
+      glm::dvec2 p(ray);
+      const bool is_near =
+          params.lens == Lens::radial_tangential && Approach(params, Normalized(params, {i - 0.5, j - 0.5}), p);
+      ray = is_near ? glm::dvec3(p, 1.0) : Direction({i - 0.5, j - 0.5});
       table->push_back(ray);
     }
   }
@@ -117,17 +138,24 @@ Camera::Camera(const CameraParams& params)
 }
 
 glm::dvec2 Camera::Project(const glm::dvec3& X_C) const {
-  const glm::dvec2 d = Distort(params_, {X_C.x / X_C.z, X_C.y / X_C.z});
+  const glm::dvec2 d = params_.lens == Lens::fisheye ? FisheyeOf(params_).Project(X_C)
+                                                     : Distort(params_, {X_C.x / X_C.z, X_C.y / X_C.z});
   return {params_.fx * d.x + params_.cx, params_.fy * d.y + params_.cy};
 }
 
-glm::dvec2 Camera::Undistort(const glm::dvec2& pixel) const {
+glm::dvec3 Camera::Direction(const glm::dvec2& pixel) const {
   const glm::dvec2 target = Normalized(params_, pixel);
-  if (!HasDistortion(params_)) return target;
-  const std::optional<glm::dvec2> solution = Solve(params_, target, 4);
+  if (IsPinhole(params_)) return {target, 1.0};
+  const std::optional<glm::dvec3> solution = Solve(params_, target, 4);
   if (!solution)
     throw std::invalid_argument("camera: pixel outside the part of the plane where the lens is one-to-one");
   return *solution;
+}
+
+glm::dvec2 Camera::Undistort(const glm::dvec2& pixel) const {
+  const glm::dvec3 direction = Direction(pixel);
+  if (!(direction.z > 0)) throw std::invalid_argument("camera: this pixel looks sideways or back");
+  return {direction.x / direction.z, direction.y / direction.z};
 }
 
 }  // namespace sim

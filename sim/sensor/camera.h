@@ -1,5 +1,5 @@
-// Purpose: pixel <-> ray of the simulated camera: pinhole with radial-tangential distortion.
-// Source:  docs/conventions.md, "Camera model" (the model of OpenCV, TUM RGB-D and Kalibr).
+// Purpose: pixel <-> ray of the simulated camera: pinhole with radial-tangential distortion, or fisheye.
+// Source:  docs/conventions.md, "Camera model" (the models of OpenCV, TUM RGB-D and Kalibr).
 // Units:   pixels, the centre of the first pixel is (0, 0); directions in C (x right, y down, z forward).
 #pragma once
 
@@ -13,10 +13,14 @@
 
 namespace sim {
 
+enum class Lens { radial_tangential, fisheye };
+
 struct CameraParams {
   int width = 640, height = 480;                            // [px]
   double fx = 525.0, fy = 525.0, cx = 319.5, cy = 239.5;    // [px]
   double k1 = 0.0, k2 = 0.0, p1 = 0.0, p2 = 0.0, k3 = 0.0;  // [-]
+  double k4 = 0.0;                                          // [-] of a fisheye lens, which has no p1, p2
+  Lens lens = Lens::radial_tangential;
 };
 
 // Everything wrong with the parameters, one sentence each; empty when all is well. The lens must be one-to-one on the
@@ -32,31 +36,32 @@ class Camera {
   int width() const { return params_.width; }
   int height() const { return params_.height; }
 
-  // Point in C with Z > 0 -> pixel, lens distortion included.
+  // Point in C -> pixel, lens distortion included. Z > 0; a fisheye lens sees every direction but that of -z.
   glm::dvec2 Project(const glm::dvec3& X_C) const;
 
-  // Pixel -> (X/Z, Y/Z) of its ray, to 1e-13 (Newton's method). Throws std::invalid_argument far outside the image,
-  // where the lens is not one-to-one.
+  // Pixel -> direction in C: (X/Z, Y/Z, 1), or a unit vector of a fisheye lens; to 1e-13 (Newton's method). Throws
+  // std::invalid_argument far outside the image, where the lens is not one-to-one.
+  glm::dvec3 Direction(const glm::dvec2& pixel) const;
+  // (X/Z, Y/Z) of it. Throws also where Z is not positive.
   glm::dvec2 Undistort(const glm::dvec2& pixel) const;
 
-  // The same for rendering: from a table made once, within 0.003 px of Undistort for lenses that are one-to-one in the
-  // image (float rounding is 0.0001 px of it; without distortion nothing else). Any pixel of the image, borders
-  // included.
-  glm::vec2 Ray(float u, float v) const {
-    if (!table_) return {(u - cx_) * inverse_fx_, (v - cy_) * inverse_fy_};
+  // Direction for rendering: from a table made once, within 0.003 px of it for lenses that are one-to-one in the image
+  // (float rounding is 0.0001 px of it; without distortion nothing else). Any pixel of the image, borders included.
+  glm::vec3 Ray(float u, float v) const {
+    if (!table_) return {(u - cx_) * inverse_fx_, (v - cy_) * inverse_fy_, 1.0f};
     const float x = u + 0.5f, y = v + 0.5f;  // the table holds the corners of the pixels
     const int i = std::min(static_cast<int>(x), params_.width - 1),
               j = std::min(static_cast<int>(y), params_.height - 1);
     const float a = x - static_cast<float>(i), b = y - static_cast<float>(j);
     const std::size_t stride = static_cast<std::size_t>(params_.width) + 1;
-    const glm::vec2* at = table_->data() + static_cast<std::size_t>(j) * stride + static_cast<std::size_t>(i);
+    const glm::vec3* at = table_->data() + static_cast<std::size_t>(j) * stride + static_cast<std::size_t>(i);
     return (1.0f - b) * ((1.0f - a) * at[0] + a * at[1]) + b * ((1.0f - a) * at[stride] + a * at[stride + 1]);
   }
 
  private:
   CameraParams params_;
   float cx_, cy_, inverse_fx_, inverse_fy_;
-  std::shared_ptr<const std::vector<glm::vec2>> table_;  // null without distortion; copies of a camera share it
+  std::shared_ptr<const std::vector<glm::vec3>> table_;  // null for a pinhole; copies of a camera share it
 };
 
 }  // namespace sim

@@ -1,17 +1,20 @@
 #include "sim/sensor/exposure.h"
 
-#include <cstddef>
-#include <stdexcept>
+#include <cmath>
 
 namespace sim {
 
-std::vector<double> ExposureTimes(double middle_s, double exposure_s, int samples) {
-  if (samples < 1 || !(exposure_s >= 0)) throw std::invalid_argument("an exposure needs samples >= 1 and a time >= 0");
-  std::vector<double> times(static_cast<std::size_t>(samples));
-  for (int i = 0; i < samples; ++i) {
-    times[static_cast<std::size_t>(i)] = middle_s + exposure_s * ((i + 0.5) / samples - 0.5);
-  }
-  return times;
+std::vector<std::string> Problems(const Exposure& exposure) {
+  std::vector<std::string> problems;
+  if (exposure.time_samples < 1) problems.push_back("an exposure needs at least one time sample");
+  if (!(exposure.exposure_s >= 0) || !std::isfinite(exposure.exposure_s))
+    problems.push_back("an exposure takes a time that is not negative");
+  if (!std::isfinite(exposure.row_delay_s) || !std::isfinite(exposure.middle_s))
+    problems.push_back("the times of an exposure are finite");
+  if (!(exposure.aperture_m >= 0) || !std::isfinite(exposure.aperture_m))
+    problems.push_back("an aperture is not negative");
+  if (!(exposure.focus_m > 0)) problems.push_back("the plane of focus lies in front of the camera");
+  return problems;
 }
 
 }  // namespace sim

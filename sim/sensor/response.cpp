@@ -4,6 +4,12 @@
 
 namespace sim {
 
+double EncodeResponse(Response response, double x) {
+  if (response == Response::linear) return x;
+  // Where the two pieces of Decode meet: the standard's own threshold, 0.0031308, is rounded.
+  return x <= 0.04045 / 12.92 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+}
+
 double ResponseCurve::Decode(Response response, double code) {
   if (response == Response::linear) return code;
   return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);

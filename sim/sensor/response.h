@@ -9,6 +9,9 @@
 
 namespace sim {
 
+// R(x) for x in [0, 1]: x itself, or the sRGB curve.
+double EncodeResponse(Response response, double x);
+
 // code = round(255 R(x)), R(x) = x or the sRGB curve; exact at every threshold R^-1((code + 1/2) / 255) as rounded to
 // float.
 class ResponseCurve {

@@ -9,6 +9,7 @@
 
 #include "sim/random/random.h"
 #include "sim/require.h"
+#include "sim/sensor/develop.h"
 
 namespace sim {
 namespace {
@@ -33,27 +34,52 @@ std::vector<std::string> Problems(const SensorParams& p) {
   Require require;
   require(p.exposure_s >= 0 && p.exposure_s <= 10, "exposure", p.exposure_s, "must lie in 0 ... 10 s");
   require(p.time_samples >= 1 && p.time_samples <= 1024, "time_samples", p.time_samples, "must lie in 1 ... 1024");
+  require(std::abs(p.readout_s) <= 10, "rolling_shutter", p.readout_s, "must lie in -10 ... 10 s");
   require(p.white > 0, "white", p.white, "must be positive");
   require(p.full_well_e >= 1 && p.full_well_e <= 1e9, "full_well", p.full_well_e, "must lie in 1 ... 1e9 electrons");
+  require(p.quantum_efficiency > 0 && p.quantum_efficiency <= 1, "quantum_efficiency", p.quantum_efficiency,
+          "must lie in 0 ... 1, above 0");
+  require(p.photo_response_sigma >= 0 && p.photo_response_sigma <= 1, "photo_response_sigma", p.photo_response_sigma,
+          "must lie in 0 ... 1");
+  require(p.dark_current_e_s >= 0, "dark_current", p.dark_current_e_s, "must not be negative");
+  require(p.dark_sigma_e_s >= 0, "dark_sigma", p.dark_sigma_e_s, "must not be negative");
+  require(p.hot_pixels >= 0 && p.hot_pixels <= 1, "hot_pixels", p.hot_pixels, "must lie in 0 ... 1");
+  require(p.hot_current_e_s >= 0, "hot_current", p.hot_current_e_s, "must not be negative");
   require(p.read_noise_e >= 0 && p.read_noise_e <= p.full_well_e, "read_noise", p.read_noise_e,
           "must lie between 0 and full_well");
+  require(p.gain >= 1 && p.gain <= 1000, "gain", p.gain, "must lie in 1 ... 1000");
+  require(p.black_level >= 0 && p.black_level < 1, "black_level", p.black_level, "must lie in 0 ... 1, below 1");
+  require(p.bit_depth >= 8 && p.bit_depth <= 16, "bit_depth", p.bit_depth, "must lie in 8 ... 16");
+  require(p.jpeg_quality >= 0 && p.jpeg_quality <= 100, "jpeg_quality", p.jpeg_quality, "must lie in 0 ... 100");
+  require(p.jpeg_quality == 0 || p.bit_depth == 8, "jpeg_quality", p.jpeg_quality, "needs a bit_depth of 8");
+  require(p.color || p.mosaic == Mosaic::none, "color", 0, "(false) does not go with a mosaic");
+  if (p.auto_exposure.on) {
+    require(p.exposure_s > 0, "exposure", p.exposure_s, "must be positive for auto_exposure to start from");
+    for (const std::string& problem : Problems(p.auto_exposure)) require.problems.push_back("auto_exposure." + problem);
+  }
+  const OpticsParams& o = p.optics;
+  require(o.aperture_m >= 0 && o.aperture_m <= 1, "optics.aperture", o.aperture_m, "must lie in 0 ... 1 m");
+  require(o.focus_m > 0, "optics.focus", o.focus_m, "must be positive");
   return require.problems;
 }
 
-Sensor::Sensor(const SensorParams& params, std::uint64_t seed)
+Sensor::Sensor(const SensorParams& params, std::uint64_t seed, int width, int height)
     : params_(params), seed_(seed), response_(params.response) {
   std::string text;
   for (const std::string& problem : Problems(params)) text += (text.empty() ? "sensor: " : "; ") + problem;
   if (!text.empty()) throw std::invalid_argument(text);
+  if (HasFixedPattern(params) && (width < 1 || height < 1))
+    throw std::invalid_argument("sensor: a fixed pattern needs the size of the pictures");
+  pattern_ = MakeFixedPattern(params, seed, width, height, static_cast<int>(channels()));
 }
 
-void Sensor::AddNoise(std::uint32_t frame, std::uint32_t first_pixel, std::uint32_t channels,
-                      std::span<float> electrons) const {
+void Sensor::AddNoise(std::uint32_t frame, std::uint32_t first_pixel, std::span<float> electrons) const {
   const std::size_t n = electrons.size();
+  const auto per_pixel = static_cast<std::uint32_t>(channels());
   // In passes, of which the compiler makes vector code.
   std::vector<std::uint32_t> a(n), b(n), few(n);
   for (std::uint32_t i = 0; i < n; ++i) {
-    const Words words = RandomWords(seed_, Stream::pixel_noise, frame, first_pixel + i / channels, i % channels);
+    const Words words = RandomWords(seed_, Stream::pixel_noise, frame, first_pixel + i / per_pixel, i % per_pixel);
     a[i] = words[0];
     b[i] = words[1];
     few[i] = words[2];
@@ -71,38 +97,75 @@ void Sensor::AddNoise(std::uint32_t frame, std::uint32_t first_pixel, std::uint3
   }
 }
 
-Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame) const {
-  const std::size_t channels = params_.color ? 3 : 1;
-  const std::size_t width = static_cast<std::size_t>(radiance.width),
-                    height = static_cast<std::size_t>(radiance.height);
-  Image image{radiance.width, radiance.height, static_cast<int>(channels), {}};
-  image.data.resize(width * height * channels);
-  const float full_well = static_cast<float>(params_.full_well_e);
-  const float to_electrons = static_cast<float>(params_.full_well_e / params_.white);
-  const bool noisy = params_.shot_noise || params_.read_noise_e > 0;
+void Sensor::ExpectLight(const RadianceImage& radiance, std::size_t y, double per_radiance,
+                         std::span<float> electrons) const {
+  const std::size_t width = static_cast<std::size_t>(radiance.width);
+  const float* rgb = &radiance.rgb[3 * y * width];
+  const float scale = static_cast<float>(per_radiance);
+  // Far beyond the full well a pixel is white whatever the noise.
+  const float most = 4.0f * static_cast<float>(params_.full_well_e);
   const auto expected = [&](float light) {
     if (!(light >= 0.0f))
       throw std::logic_error("sensor: the renderer delivered a radiance that is negative or not a number");
-    // Far beyond the full well a pixel is white whatever the noise.
-    return std::min(light * to_electrons, 4.0f * full_well);
+    return std::min(light * scale, most);
   };
+  if (channels() == 3) {
+    for (std::size_t i = 0; i < electrons.size(); ++i) electrons[i] = expected(rgb[i]);
+  } else if (params_.mosaic != Mosaic::none) {
+    for (std::size_t x = 0; x < width; ++x)
+      electrons[x] =
+          expected(rgb[3 * x + static_cast<std::size_t>(BayerChannel(static_cast<int>(x), static_cast<int>(y)))]);
+  } else {
+    for (std::size_t x = 0; x < width; ++x)
+      electrons[x] = expected(0.2126f * rgb[3 * x] + 0.7152f * rgb[3 * x + 1] + 0.0722f * rgb[3 * x + 2]);
+  }
+}
+
+Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame) const {
+  return Capture(radiance, frame, {params_.exposure_s, params_.gain});
+}
+
+Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame, const ExposureSetting& setting) const {
+  const std::size_t width = static_cast<std::size_t>(radiance.width),
+                    height = static_cast<std::size_t>(radiance.height), row_size = width * channels();
+  Image image{radiance.width, radiance.height, static_cast<int>(channels()), {}, params_.bit_depth, {}};
+  (image.bits == 8 ? static_cast<void>(image.data.resize(height * row_size)) : image.wide.resize(height * row_size));
+  const auto fits = [&](const std::vector<float>& fixed) { return fixed.empty() || fixed.size() == height * row_size; };
+  if (!fits(pattern_.sensitivity) || !fits(pattern_.dark_e_s))
+    throw std::invalid_argument("sensor: the picture has not the size of the fixed pattern");
+  // At 0 s the exposure is an idea (no blur), not a lack of light.
+  const double longer = params_.exposure_s > 0 ? setting.exposure_s / params_.exposure_s : 1.0;
+  const double per_radiance = longer * params_.full_well_e / params_.white;
+  const bool noisy = params_.shot_noise || params_.read_noise_e > 0;
+  const float full_scale = static_cast<float>(params_.full_well_e / setting.gain);
+  const float black = static_cast<float>(params_.black_level);
+  const double highest = std::pow(2.0, image.bits) - 1;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height, 16), [&](const auto& rows) {
-    std::vector<float> electrons(width * channels);
+    std::vector<float> electrons(row_size);
     for (std::size_t y = rows.begin(); y < rows.end(); ++y) {
-      const float* rgb = &radiance.rgb[3 * y * width];
-      for (std::size_t i = 0; i < electrons.size(); ++i) {
-        electrons[i] = expected(
-            channels == 3 ? rgb[i] : 0.2126f * rgb[3 * i] + 0.7152f * rgb[3 * i + 1] + 0.0722f * rgb[3 * i + 2]);
+      ExpectLight(radiance, y, per_radiance, electrons);
+      if (!pattern_.sensitivity.empty()) {
+        for (std::size_t i = 0; i < row_size; ++i) electrons[i] *= pattern_.sensitivity[y * row_size + i];
       }
-      if (noisy) {
-        AddNoise(static_cast<std::uint32_t>(frame), static_cast<std::uint32_t>(y * width),
-                 static_cast<std::uint32_t>(channels), electrons);
+      if (!pattern_.dark_e_s.empty()) {
+        const float time_s = static_cast<float>(setting.exposure_s);
+        for (std::size_t i = 0; i < row_size; ++i) electrons[i] += time_s * pattern_.dark_e_s[y * row_size + i];
       }
-      std::uint8_t* codes = &image.data[y * width * channels];
-      for (std::size_t i = 0; i < electrons.size(); ++i) codes[i] = response_.Encode(electrons[i] / full_well);
+      if (noisy) AddNoise(static_cast<std::uint32_t>(frame), static_cast<std::uint32_t>(y * width), electrons);
+      for (std::size_t i = 0; i < row_size; ++i) electrons[i] = black + electrons[i] / full_scale;
+      if (image.bits == 8) {
+        for (std::size_t i = 0; i < row_size; ++i) image.data[y * row_size + i] = response_.Encode(electrons[i]);
+      } else {
+        for (std::size_t i = 0; i < row_size; ++i) {
+          const double x = std::clamp(double{electrons[i]}, 0.0, 1.0);
+          image.wide[y * row_size + i] =
+              static_cast<std::uint16_t>(std::lround(highest * EncodeResponse(params_.response, x)));
+        }
+      }
     }
   });
-  return image;
+  if (params_.mosaic == Mosaic::demosaiced) image = Demosaic(image);
+  return params_.jpeg_quality > 0 ? ThroughJpeg(image, params_.jpeg_quality) : image;
 }
 
 }  // namespace sim

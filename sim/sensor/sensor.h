@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "sim/render/radiance_image.h"
+#include "sim/sensor/auto_exposure.h"
 #include "sim/sensor/description.h"
+#include "sim/sensor/fixed_pattern.h"
 #include "sim/sensor/image.h"
 #include "sim/sensor/response.h"
 
@@ -16,32 +18,39 @@ namespace sim {
 // Everything wrong with the settings, one sentence each, with the value; empty when all is well.
 std::vector<std::string> Problems(const SensorParams& params);
 
-// Per pixel and channel, with L the mean linear radiance of the exposure:
-//   expected electrons   N = full_well L / white
-//   shot noise           n ~ Poisson(N); above N = 16 by n = N + sqrt(N) z + (z^2 - 1) / 6, whose mean is exact and
-//   whose
-//                        variance is N + 1/18
-//   read noise           n + read_noise z', z' normal
-//   response             code = round(255 R(n / full_well)), clipped to 0 ... 255
-// Three channels have their full resolution (no colour filter mosaic); grey is the luminance 0.2126 R + 0.7152 G +
-// 0.0722 B, with one pixel's noise. Noise of different pixels, channels and frames is independent.
+// Per pixel and channel, with L the mean linear radiance of the exposure, in the order of the light's way:
+//   light                N = full_well L / white * (exposure time / exposure_s) * (1 + photo_response_sigma z_fixed)
+//   dark current         D = (dark_current + dark_sigma z'_fixed, and more where the pixel is hot) * exposure time
+//   shot noise           n ~ Poisson(N + D); from a mean of 16 on by n = mean + sqrt(mean) z + (z^2 - 1) / 6, whose mean
+//                        is exact and whose variance is mean + 1/18
+//   read noise           n + read_noise z'
+//   gain, black level    x = black_level + gain n / full_well, clipped to 0 ... 1 (saturation)
+//   response, bit depth  code = round((2^bit_depth - 1) R(x))
+//   development          colour from the mosaic; JPEG
+// Three channels have their full resolution unless there is a mosaic; grey is the luminance 0.2126 R + 0.7152 G + 0.0722
+// B, with one pixel's noise. z of different pixels, channels and (but for the fixed ones) frames are independent.
 class Sensor {
  public:
-  // Throws std::invalid_argument listing all Problems.
-  Sensor(const SensorParams& params, std::uint64_t seed);
+  // width, height: of its pictures; only a fixed pattern needs them, 0 is well without. Throws std::invalid_argument
+  // listing all Problems.
+  Sensor(const SensorParams& params, std::uint64_t seed, int width = 0, int height = 0);
 
   // Depends on its arguments, the settings and the seed alone. Works in the calling thread's TBB arena. Throws
-  // std::logic_error for a radiance that is negative or not a number: the renderer's fault.
+  // std::logic_error for a radiance that is negative or not a number: the renderer's fault; std::invalid_argument when the picture has another size than the fixed pattern.
   Image Capture(const RadianceImage& radiance, std::int64_t frame) const;
+  // With the exposure time and the gain of this frame instead of the settings' own.
+  Image Capture(const RadianceImage& radiance, std::int64_t frame, const ExposureSetting& setting) const;
 
  private:
-  // Expected electrons of pixels one after the other, `channels` numbers each -> electrons that are read out.
-  void AddNoise(std::uint32_t frame, std::uint32_t first_pixel, std::uint32_t channels,
-                std::span<float> electrons) const;
+  std::size_t channels() const { return params_.color && params_.mosaic == Mosaic::none ? 3 : 1; }
+  // Expected electrons of row y -> electrons that are read out.
+  void AddNoise(std::uint32_t frame, std::uint32_t first_pixel, std::span<float> electrons) const;
+  void ExpectLight(const RadianceImage& radiance, std::size_t y, double per_radiance, std::span<float> electrons) const;
 
   SensorParams params_;
   std::uint64_t seed_;
   ResponseCurve response_;
+  FixedPattern pattern_;
 };
 
 }  // namespace sim

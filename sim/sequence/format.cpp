@@ -13,8 +13,14 @@ namespace {
 
 // OpenCV writes blue first, and its matrices borrow what they look at.
 cv::Mat ToMat(const Image& image) {
-  const int type = image.channels == 3 ? CV_8UC3 : CV_8UC1;
-  cv::Mat view(image.height, image.width, type, const_cast<std::uint8_t*>(image.data.data()));
+  cv::Mat view;
+  if (image.bits == 8) {
+    view = cv::Mat(image.height, image.width, CV_8UC(image.channels), const_cast<std::uint8_t*>(image.data.data()));
+  } else {  // the highest bits of 16, so that white is white in every viewer
+    const cv::Mat wide(image.height, image.width, CV_16UC(image.channels),
+                       const_cast<std::uint16_t*>(image.wide.data()));
+    wide.convertTo(view, -1, 1 << (16 - image.bits));
+  }
   if (image.channels == 1) return view;
   cv::Mat bgr;
   cv::cvtColor(view, bgr, cv::COLOR_RGB2BGR);
@@ -55,12 +61,23 @@ std::string VelocityLine(std::int64_t stamp_ns, const Truth& t) {
   return Line(stamp_ns, {t.v_WC.x, t.v_WC.y, t.v_WC.z, t.w_WC_C.x, t.w_WC_C.y, t.w_WC_C.z});
 }
 
+namespace {
+
+std::string Distortion(const CameraParams& c) {
+  const auto number = settings::FormatNumber;
+  const std::string radial = "k1: " + number(c.k1) + ", k2: " + number(c.k2);
+  if (c.lens == Lens::fisheye)
+    return "{model: fisheye, " + radial + ", k3: " + number(c.k3) + ", k4: " + number(c.k4) + "}";
+  return "{" + radial + ", p1: " + number(c.p1) + ", p2: " + number(c.p2) + ", k3: " + number(c.k3) + "}";
+}
+
+}  // namespace
+
 std::string CameraYaml(const CameraParams& c) {
   const auto number = settings::FormatNumber;
   return "width: " + std::to_string(c.width) + "\nheight: " + std::to_string(c.height) + "\nfx: " + number(c.fx) +
          "\nfy: " + number(c.fy) + "\ncx: " + number(c.cx) + "\ncy: " + number(c.cy) +
-         "\ndistortion: {k1: " + number(c.k1) + ", k2: " + number(c.k2) + ", p1: " + number(c.p1) +
-         ", p2: " + number(c.p2) + ", k3: " + number(c.k3) + "}\n";
+         "\ndistortion: " + Distortion(c) + "\n";
 }
 
 std::vector<std::uint8_t> EncodePng(const Image& image) { return Encode(ToMat(image)); }

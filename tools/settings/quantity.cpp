@@ -26,6 +26,7 @@ constexpr UnitName kFrequency[] = {{"Hz"}, {"kHz", 1e3, 1}};
 constexpr UnitName kRate[] = {{"1/s"}};
 constexpr UnitName kPixel[] = {{"px"}};
 constexpr UnitName kElectrons[] = {{"e"}};
+constexpr UnitName kElectronRate[] = {{"e/s"}};
 constexpr UnitName kAccelerationDensity[] = {{"m/s^1.5"}, {"cm/s^1.5", 1, 1e2}};
 constexpr UnitName kAngularAccelerationDensity[] = {{"rad/s^1.5"}, {"deg/s^1.5", kPi, 180}};
 
@@ -56,6 +57,8 @@ Kind KindOf(Unit unit) {
       return {"a number of pixels", kPixel};
     case Unit::electrons:
       return {"a number of electrons", kElectrons};
+    case Unit::electron_rate:
+      return {"a current of electrons", kElectronRate};
     case Unit::acceleration_density:
       return {"the density of an acceleration noise", kAccelerationDensity};
     case Unit::angular_acceleration_density:

@@ -19,6 +19,7 @@ enum class Unit {
   rate,                          // 1/s
   pixel,                         // px
   electrons,                     // e
+  electron_rate,                 // e/s
   acceleration_density,          // m/s^1.5, cm/s^1.5: square root of the power spectral density of white acceleration
   angular_acceleration_density,  // rad/s^1.5, deg/s^1.5
 };

@@ -4,8 +4,12 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "tools/vobench/errors.h"
+
 namespace vobench {
 vo::Camera ToOdometry(const sim::CameraParams& camera) {
+  if (camera.lens != sim::Lens::radial_tangential)
+    throw BadInput("the odometry does not know a fisheye lens yet: render the sequence, but do not track it");
   vo::Camera out;
   out.width = camera.width;
   out.height = camera.height;
@@ -24,8 +28,12 @@ vo::Camera ToOdometry(const sim::CameraParams& camera) {
 vo::Frame ToOdometry(const sim::Frame& frame) {
   const sim::Image& image = frame.image;
   // OpenCV's header over pixels that it only reads.
-  const cv::Mat pixels(image.height, image.width, image.channels == 1 ? CV_8UC1 : CV_8UC3,
-                       const_cast<std::uint8_t*>(image.data.data()));
+  cv::Mat pixels(image.height, image.width, CV_8UC(image.channels), const_cast<std::uint8_t*>(image.data.data()));
+  if (image.bits > 8) {  // the odometry takes bytes
+    const cv::Mat wide(image.height, image.width, CV_16UC(image.channels),
+                       const_cast<std::uint16_t*>(image.wide.data()));
+    wide.convertTo(pixels, CV_8U, 255.0 / ((1 << image.bits) - 1));
+  }
   vo::Frame out;
   out.stamp_ns = frame.stamp_ns;
   if (image.channels == 1) {

@@ -74,6 +74,73 @@ TEST(Camera, ALensThatFoldsOverInsideTheImageIsRefused) {
   EXPECT_THAT(Problems(params), testing::SizeIs(1));
 }
 
+CameraParams TumVi() {  // 512 x 512, 195 degrees
+  CameraParams params{512,
+                      512,
+                      190.97847715128717,
+                      190.9733070521226,
+                      254.93170605935475,
+                      256.8974428996504,
+                      0.0034823894022493434,
+                      0.0007150348452162257,
+                      0,
+                      0,
+                      -0.0020532361418706202};
+  params.k4 = 0.00020293673591811182;
+  params.lens = Lens::fisheye;
+  return params;
+}
+
+TEST(Camera, AFisheyeLensByHand) {
+  CameraParams params{640, 480, 200, 300, 320, 240};
+  params.lens = Lens::fisheye;
+  const Camera plain(params);
+  const double quarter = std::atan(1.0);
+  EXPECT_NEAR(plain.Project({2, 0, 2}).x, 320 + 200 * quarter, 1e-12);
+  EXPECT_NEAR(plain.Project({0, -3, 0}).y, 240 - 300 * 2 * quarter, 1e-12);   // sideways
+  EXPECT_NEAR(plain.Project({-1, 0, -1}).x, 320 - 200 * 3 * quarter, 1e-12);  // behind
+  EXPECT_EQ(plain.Project({0, 0, 5}), glm::dvec2(320, 240));
+  params.k1 = 0.1, params.k2 = -0.01, params.k3 = 0.002, params.k4 = -0.0003;
+  // theta = 0.5: 0.5 (1 + 0.025 - 0.000625 + 0.00003125 - 0.000001171875)
+  const glm::dvec2 pixel = Camera(params).Project({0.6 * std::sin(0.5), 0.8 * std::sin(0.5), std::cos(0.5)});
+  EXPECT_NEAR(pixel.x, 320 + 200 * 0.6 * 0.512202539062500, 1e-10);
+  EXPECT_NEAR(pixel.y, 240 + 300 * 0.8 * 0.512202539062500, 1e-10);
+}
+
+TEST(Camera, AFisheyeLensIsUndone) {
+  const Camera camera(TumVi());
+  double worst_px = 0, widest = 0;
+  for (double v = -0.5; v <= 511.5; v += 7.3) {
+    for (double u = -0.5; u <= 511.5; u += 7.3) {
+      const glm::dvec3 direction = camera.Direction({u, v});
+      EXPECT_NEAR(glm::length(direction), 1, 1e-14);
+      EXPECT_LT(glm::distance(camera.Project(direction), glm::dvec2(u, v)), 1e-10) << u << " " << v;
+      const glm::dvec3 ray(camera.Ray(static_cast<float>(u), static_cast<float>(v)));
+      worst_px = std::max(worst_px, glm::distance(camera.Project(ray), glm::dvec2(u, v)));
+      widest = std::max(widest, std::acos(direction.z));
+    }
+  }
+  EXPECT_LT(worst_px, 0.003);
+  EXPECT_GT(widest, 1.6);  // the corners look back
+  EXPECT_THROW(camera.Undistort({-0.5, -0.5}), std::invalid_argument);
+  EXPECT_NEAR(camera.Undistort(camera.Project({0.3, -0.2, 1})).x, 0.3, 1e-12);
+}
+
+TEST(Camera, AFisheyeLensHasItsOwnFaults) {
+  CameraParams params = TumVi();
+  params.p1 = 0.1;
+  EXPECT_THAT(Problems(params), testing::ElementsAre("p1 = 0.1 must be 0: a fisheye lens has no such term"));
+  params = TumVi();
+  params.k1 = -0.3;  // r(theta) is largest at 1.05
+  EXPECT_THAT(Problems(params), testing::ElementsAre(HasSubstr("folds over inside the image")));
+  params = TumVi();
+  params.fx = params.fy = 70;  // the corners would lie beyond straight back
+  EXPECT_THAT(Problems(params), testing::SizeIs(1));
+  params = WorkedByHand();
+  params.k4 = 0.1;
+  EXPECT_THAT(Problems(params), testing::ElementsAre(HasSubstr("k4 = 0.1 must be 0")));
+}
+
 TEST(Camera, BadParametersAreAllNamed) {
   CameraParams params;
   params.width = 0;

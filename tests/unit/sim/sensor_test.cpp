@@ -41,13 +41,14 @@ Statistics Measure(const Image& image) {
   return s;
 }
 
-TEST(Exposure, MiddlesOfEqualParts) {
-  EXPECT_THAT(ExposureTimes(1, 0.4, 4), testing::ElementsAre(testing::DoubleEq(0.85), testing::DoubleEq(0.95),
-                                                             testing::DoubleEq(1.05), testing::DoubleEq(1.15)));
-  EXPECT_THAT(ExposureTimes(2, 0.5, 1), testing::ElementsAre(2.0));
-  EXPECT_THAT(ExposureTimes(2, 0, 3), testing::ElementsAre(2.0, 2.0, 2.0));
-  EXPECT_THROW(ExposureTimes(0, 1, 0), std::invalid_argument);
-  EXPECT_THROW(ExposureTimes(0, -1, 1), std::invalid_argument);
+TEST(Exposure, TheStampIsTheMiddleOfTheMiddleRow) {
+  const Exposure rolling{2.0, 0.01, 1e-4, 1};
+  EXPECT_DOUBLE_EQ(rolling.RowMiddle(239.5, 480), 2.0);
+  EXPECT_DOUBLE_EQ(rolling.RowMiddle(0, 480), 2.0 - 239.5e-4);
+  EXPECT_DOUBLE_EQ(rolling.RowMiddle(479, 480), 2.0 + 239.5e-4);
+  EXPECT_EQ((Exposure{2.0, 0.01, 0.0, 1}.RowMiddle(17, 480)), 2.0);
+  EXPECT_THAT(Problems(rolling), testing::IsEmpty());
+  EXPECT_THAT(Problems(Exposure{0, -1, NAN, 0}), testing::SizeIs(3));
 }
 
 // The sRGB curve, written out a second time from IEC 61966-2-1 in the other direction.

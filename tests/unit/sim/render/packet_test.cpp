@@ -29,7 +29,8 @@ TEST(Packet, InstructionSetsAgree) {
   for (float& p : lamp.power) p = 9;
   RaySample samples[4]{};
   for (std::uint32_t i = 0; i < 4; ++i) {
-    for (int c = 0; c < 3; ++c) samples[i].rotation[c][c] = 1;
+    for (int c = 0; c < 3; ++c) samples[i].rotation[c][c] = 1, samples[i].way[c] = 0.02f;
+    samples[i].turn[0][1] = 0.03f, samples[i].turn[1][0] = -0.03f;
     samples[i].point_u = SobolPoint(i).u;
     samples[i].point_v = SobolPoint(i).v;
     samples[i].lights = &lamp;
@@ -38,9 +39,10 @@ TEST(Packet, InstructionSetsAgree) {
   PixelBlock block{};
   for (int i = 0; i < kLanes; ++i) {
     block.x.v[i] = 0.05f * static_cast<float>(i % 4), block.y.v[i] = 0.08f * static_cast<float>(i / 4);
+    block.z.v[i] = 1, block.time.v[i] = 0.06f * static_cast<float>(i);
     block.x_du.v[i] = block.y_dv.v[i] = block.width.v[i] = 0.01f;
     block.valid.v[i] = i == 5 ? 0 : -1;
-    block.scramble_u.v[i] = static_cast<std::int32_t>(PixelScramble(1, static_cast<std::uint32_t>(i), 0).u);
+    block.scramble_u.v[i] = static_cast<std::int32_t>(PixelScramble(1, static_cast<std::uint32_t>(i), 0).point.u);
   }
   Lanes base[3];
   packet_base::ExposeBlock(rays.packet_scene(), samples, 4, true, 0.5f, block, base);

@@ -10,7 +10,7 @@ namespace {
 
 // In each aligned run of 2^k points, scrambled or not, every elementary interval of area 2^-k holds exactly one.
 TEST(Pattern, IsANetInEveryAlignedRun) {
-  for (const PatternPoint scramble : {PatternPoint{}, PixelScramble(42, 17, 3)}) {
+  for (const PatternPoint scramble : {PatternPoint{}, PixelScramble(42, 17, 3).point}) {
     for (const std::uint32_t k : {1u, 4u, 6u, 8u}) {
       const std::uint32_t n = 1u << k;
       for (const std::uint32_t first : {0u, n, 5 * n}) {
@@ -30,15 +30,15 @@ TEST(Pattern, IsANetInEveryAlignedRun) {
 }
 
 TEST(Pattern, PixelBitsAreAFunctionOfTheKeyAndThePixel) {
-  const PatternPoint a = PixelScramble(1, 2, 3), again = PixelScramble(1, 2, 3);
+  const PatternPoint a = PixelScramble(1, 2, 3).point, again = PixelScramble(1, 2, 3).point;
   EXPECT_EQ(a.u, again.u);
   EXPECT_EQ(a.v, again.v);
   std::set<std::uint32_t> seen;
   for (const std::uint64_t key : {std::uint64_t{1}, std::uint64_t{2}, std::uint64_t{1} << 32}) {
     for (std::uint32_t x = 0; x < 10; ++x) {
       for (std::uint32_t y = 0; y < 10; ++y) {
-        seen.insert(PixelScramble(key, x, y).u);
-        seen.insert(PixelScramble(key, x, y).v);
+        seen.insert(PixelScramble(key, x, y).point.u);
+        seen.insert(PixelScramble(key, x, y).point.v);
       }
     }
   }

@@ -23,18 +23,16 @@ Scene BusyWorld() {
   return scene;
 }
 
-std::vector<Pose> MovingPoses(int count) {
-  std::vector<Pose> poses;
-  for (int i = 0; i < count; ++i) {
-    poses.push_back({{0.02 * i, 0.01 * i, 0.0}, glm::angleAxis(0.004 * i, glm::normalize(glm::dvec3(1, 2, 3)))});
-  }
-  return poses;
+SteadyMotion Moving() { return SteadyMotion(Pose{}, {0.8, 0.4, 0.1}, {0.05, -0.1, 0.15}); }
+
+Exposure Open(int time_samples, double exposure_s = 0.1, double row_delay_s = 0.0, double middle_s = 0.0) {
+  return {middle_s, exposure_s, row_delay_s, time_samples};
 }
 
-RadianceImage Expose(const Renderer& renderer, const std::vector<Pose>& poses, std::uint64_t key,
+RadianceImage Expose(const Renderer& renderer, const Trajectory& motion, const Exposure& exposure, std::uint64_t key,
                      const Camera& camera) {
   RadianceImage image;
-  renderer.Expose(camera, poses, key, image);
+  renderer.Expose(camera, motion, exposure, key, image);
   return image;
 }
 
@@ -46,31 +44,115 @@ TEST(Exposure, SameBytesWithOneAndTwoThreads) {
   two.jobs = 2;
   all.jobs = 0;
   const auto a = MakeRayTracer(scene, one), b = MakeRayTracer(scene, two), c = MakeRayTracer(scene, all);
-  const std::vector<Pose> poses = MovingPoses(4);
-  const RadianceImage image = Expose(*a, poses, 7, camera);
-  Expose(*b, poses, 8, camera);  // an earlier call leaves nothing behind
-  EXPECT_EQ(image.rgb, Expose(*b, poses, 7, camera).rgb);
-  EXPECT_EQ(image.rgb, Expose(*c, poses, 7, camera).rgb);
-  EXPECT_NE(image.rgb, Expose(*a, poses, 8, camera).rgb);  // the key matters
+  const SteadyMotion motion = Moving();
+  for (const Exposure& exposure : {Open(4), Open(4, 0.01, 1e-4)}) {
+    const RadianceImage image = Expose(*a, motion, exposure, 7, camera);
+    Expose(*b, motion, exposure, 8, camera);  // an earlier call leaves nothing behind
+    EXPECT_EQ(image.rgb, Expose(*b, motion, exposure, 7, camera).rgb);
+    EXPECT_EQ(image.rgb, Expose(*c, motion, exposure, 7, camera).rgb);
+    EXPECT_NE(image.rgb, Expose(*a, motion, exposure, 8, camera).rgb);  // the key matters
+  }
   std::vector<float> depth_one, depth_two;
-  a->Depth(camera, poses[0], depth_one);
-  b->Depth(camera, poses[0], depth_two);
+  a->Depth(camera, TiltedPose(), depth_one);
+  b->Depth(camera, TiltedPose(), depth_two);
   EXPECT_EQ(depth_one, depth_two);
 }
 
+double WorstDifference(const RadianceImage& a, const RadianceImage& b, const std::vector<int>& rows) {
+  double worst = 0;
+  for (const int y : rows) {
+    for (int x = 0; x < a.width; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        worst = std::max(worst, std::abs(double{a.pixel(x, y)[c]} - b.pixel(x, y)[c]) / (1.0 + b.pixel(x, y)[c]));
+      }
+    }
+  }
+  return worst;
+}
+
+// A smooth world, so that the last bit of a ray does not decide which side of an edge it meets.
+Scene SmoothWorld() {
+  Scene scene;
+  scene.textures.emplace_back("ramp", 2, 2,
+                              std::vector<std::uint8_t>{10, 200, 90, 250, 30, 160, 90, 120, 20, 180, 240, 60});
+  AddMaterial(scene, {0.9f, 0.8f, 0.7f}, glm::vec3(0.0f), 0);
+  AddQuad(scene, {-9, -9, 4}, {18, 0, 1}, {0, 18, 1}, 0, 3.0f);
+  scene.lights = {AmbientLight{{0.5, 0.5, 0.5}}, PointLight{{1, -1, 0}, {9, 8, 7}}};
+  return scene;
+}
+
 TEST(Exposure, IsTheMeanOfItsTimeSamples) {
-  Scene scene = BusyWorld();
-  scene.lights.pop_back();  // the rectangular light's point depends on the sample's number
   const Camera camera(SmallCamera());
-  const auto renderer = MakeRayTracer(scene, Centred());
-  const std::vector<Pose> poses = MovingPoses(5);
-  const RadianceImage blurred = Expose(*renderer, poses, 1, camera);
+  const auto renderer = MakeRayTracer(SmoothWorld(), Centred());
+  const SteadyMotion motion = Moving();
+  const RadianceImage blurred = Expose(*renderer, motion, Open(5), 1, camera);
   std::vector<double> mean(blurred.rgb.size());
-  for (const Pose& pose : poses) {
-    const RadianceImage sharp = Expose(*renderer, {pose}, 1, camera);
+  for (int k = 0; k < 5; ++k) {
+    const RadianceImage sharp = Expose(*renderer, motion, Open(1, 0.0, 0.0, 0.02 * (k - 2)), 1, camera);
     for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += sharp.rgb[i] / 5.0;
   }
-  for (std::size_t i = 0; i < mean.size(); ++i) ASSERT_NEAR(blurred.rgb[i], mean[i], 1e-6 * (1 + mean[i])) << i;
+  for (std::size_t i = 0; i < mean.size(); ++i) ASSERT_NEAR(blurred.rgb[i], mean[i], 2e-5 * (1 + mean[i])) << i;
+}
+
+// Row y of a rolling shutter is row y of the picture that a global shutter takes at the row's own moment.
+TEST(Exposure, EachRowOfARollingShutterHasItsOwnMoment) {
+  const Camera camera(SmallCamera(83, 62));
+  const auto renderer = MakeRayTracer(SmoothWorld(), Centred());
+  const SteadyMotion motion(TiltedPose(), {0.8, 0.4, 0.1}, {0.5, -1.0, 0.7});
+  for (const double delay_s : {5e-4, -5e-4}) {
+    const RadianceImage rolling = Expose(*renderer, motion, Open(3, 0.006, delay_s, 0.1), 1, camera);
+    for (const int y : {0, 1, 2, 3, 17, 30, 31, 59, 60, 61}) {
+      const double middle_s = 0.1 + delay_s * (y - 30.5);
+      EXPECT_LT(WorstDifference(rolling, Expose(*renderer, motion, Open(3, 0.006, 0.0, middle_s), 1, camera), {y}),
+                2e-5)
+          << y;
+      // The control: one row's time off.
+      EXPECT_GT(
+          WorstDifference(rolling, Expose(*renderer, motion, Open(3, 0.006, 0.0, middle_s + delay_s), 1, camera), {y}),
+          1e-4)
+          << y;
+    }
+  }
+}
+
+// The straight line at u0 seen by a camera that turns at rate w about its vertical axis leans in closed form: in row y
+// it is at cx + fx tan(atan((u0 - cx) / fx) - w t(y)).
+TEST(Exposure, AVerticalEdgeLeansUnderARollingShutter) {
+  Scene scene;
+  AddMaterial(scene, glm::vec3(0.0f), glm::vec3(1.0f));
+  AddQuad(scene, {0.1f, -9, 1}, {9, 0, 0}, {0, 18, 0}, 0);
+  CameraParams params = SmallCamera(80, 60);
+  const Camera camera(params);
+  RayTracerOptions options;
+  options.rays_per_time_sample = 256;
+  constexpr double w = 2.0, delay_s = 5e-4;
+  const RadianceImage image =
+      Expose(*MakeRayTracer(scene, options), SteadyMotion(Pose{}, {}, {0, w, 0}), Open(1, 0.0, delay_s), 3, camera);
+  for (int y = 0; y < 60; ++y) {
+    double bright = 0;
+    for (int x = 0; x < 80; ++x) bright += image.pixel(x, y)[0];
+    // Where the edge crosses the row's middle: it is a line in the picture too, so the row's mean is there.
+    const double edge = params.cx + params.fx * std::tan(std::atan(0.1) - w * delay_s * (y - 29.5));
+    EXPECT_NEAR(79.5 - bright, edge, 0.03) << y;
+  }
+}
+
+// What a time sample sees is spread over its part of the exposure: long blur is grain, not copies.
+TEST(Exposure, FewTimeSamplesMakeGrainAroundTheRightMean) {
+  Scene scene;
+  AddMaterial(scene, glm::vec3(0.0f), glm::vec3(1.0f));
+  AddQuad(scene, {0, -9, 1}, {9, 0, 0}, {0, 18, 0}, 0);
+  const Camera camera(SmallCamera(80, 60));
+  // The edge sweeps from u = 39.5 + 17.5 to 39.5 - 17.5.
+  const RadianceImage image =
+      Expose(*MakeRayTracer(scene), SteadyMotion(Pose{{-0.25, 0, 0}}, {5, 0, 0}), Open(2, 0.1, 0, 0.05), 3, camera);
+  for (const int x : {25, 30, 36, 43, 50, 54}) {
+    double mean = 0;
+    for (int y = 0; y < 60; ++y) mean += image.pixel(x, y)[0] / 60.0;
+    const double expected = (x - 22.0) / 35.0;
+    // Each pixel is 0, 1/2 or 1 with the right mean; standard deviation of 60 of them at most 1/4 / sqrt(60) = 0.033.
+    EXPECT_NEAR(mean, expected, 4 * 0.033) << x;
+  }
 }
 
 // The edge of a bright half plane crosses each pixel of a row at a known place: what the pixel collects is the bright
@@ -95,6 +177,35 @@ TEST(Exposure, PixelsAreAveragesOverTheirArea) {
   }
 }
 
+// A thin lens of diameter A focused at F smears an edge at depth Z over a disc of radius f A |1/Z - 1/F| / 2: what is
+// bright of the disc is 1/2 + (x sqrt(1 - x^2) + asin x) / pi at x radii from the edge.
+TEST(Exposure, ALensBlursWhatIsOutOfFocusIntoDiscs) {
+  Scene scene;
+  AddMaterial(scene, glm::vec3(0.0f), glm::vec3(1.0f));
+  constexpr double z = 4.0, aperture = 0.4;
+  AddQuad(scene, {0.0f, -90, z}, {90, 0, 0}, {0, 180, 0}, 0);
+  const Camera camera(SmallCamera(83, 40));  // the edge is at u = 41
+  for (const double focus : {1.0, 2.0, 4.0, 1e6}) {
+    Exposure exposure = Open(2048, 0.0);
+    exposure.aperture_m = aperture;
+    exposure.focus_m = focus;
+    const RadianceImage image = Expose(*MakeRayTracer(scene), SteadyMotion(Pose{}), exposure, 3, camera);
+    const double radius = 70 * aperture * std::abs(1 / z - 1 / focus) / 2;
+    double worst = 0;
+    for (int u = 0; u < 83; ++u) {
+      double expected = 0;  // the mean over the pixel's width
+      for (int i = 0; i < 200; ++i) {
+        const double off = u - 41 + (i + 0.5) / 200 - 0.5, x = std::clamp(off / std::max(radius, 1e-9), -1.0, 1.0);
+        expected += (0.5 + (x * std::sqrt(1 - x * x) + std::asin(x)) / std::numbers::pi) / 200;
+      }
+      for (int v = 0; v < 40; ++v) worst = std::max(worst, std::abs(image.pixel(u, v)[0] - expected));
+    }
+    // The worst of 3000 pixels stays below two standard deviations of independent points, 0.5 / sqrt(2048). A radius
+    // that is off by a tenth is off by 0.05.
+    EXPECT_LT(worst, 0.022) << "focus " << focus << ", radius " << radius << " px";
+  }
+}
+
 TEST(Exposure, BackgroundWhereNothingIs) {
   Scene scene;
   scene.background = {0.25f, 0.5f, 1.5f};
@@ -107,7 +218,10 @@ TEST(Exposure, BackgroundWhereNothingIs) {
 
 TEST(Exposure, BadArguments) {
   RadianceImage image;
-  EXPECT_THROW(MakeRayTracer(Scene{})->Expose(Camera(SmallCamera()), {}, 1, image), std::invalid_argument);
+  EXPECT_THROW(MakeRayTracer(Scene{})->Expose(Camera(SmallCamera()), SteadyMotion(Pose{}), Open(0), 1, image),
+               std::invalid_argument);
+  EXPECT_THROW(MakeRayTracer(Scene{})->Expose(Camera(SmallCamera()), SteadyMotion(Pose{}), Open(1, -1.0), 1, image),
+               std::invalid_argument);
   RayTracerOptions options;
   options.rays_per_time_sample = 0;
   EXPECT_THROW(MakeRayTracer(Scene{}, options), std::invalid_argument);

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "sim/motion/pose.h"
+#include "sim/motion/so3.h"
+#include "sim/motion/trajectory.h"
 #include "sim/render/ray_tracer.h"
 #include "sim/sensor/camera.h"
 #include "sim/world/scene.h"
@@ -102,10 +104,23 @@ inline RayTracerOptions Centred(int jobs = 1) {
   return options;
 }
 
+// At `start` at time 0, with constant velocities.
+class SteadyMotion : public Trajectory {
+ public:
+  explicit SteadyMotion(const Pose& start, const glm::dvec3& v_WC = {}, const glm::dvec3& w_WC_C = {})
+      : start_(start), v_(v_WC), w_(w_WC_C) {}
+  Motion At(double t_s) const override { return {{start_.p_WC + t_s * v_, start_.q_WC * Exp(t_s * w_)}, v_, w_}; }
+  double end_s() const override { return 1e9; }
+
+ private:
+  Pose start_;
+  glm::dvec3 v_, w_;
+};
+
 inline RadianceImage Render(const Scene& scene, const Camera& camera, const Pose& pose,
                             const RayTracerOptions& options = Centred()) {
   RadianceImage image;
-  MakeRayTracer(scene, options)->Expose(camera, std::span(&pose, 1), 1, image);
+  MakeRayTracer(scene, options)->Expose(camera, SteadyMotion(pose), Exposure{}, 1, image);
   return image;
 }
 

@@ -1,0 +1,51 @@
+#include "sim/sensor/auto_exposure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "sim/require.h"
+#include "sim/sensor/response.h"
+
+namespace sim {
+
+std::vector<std::string> Problems(const AutoExposureParams& p) {
+  Require require;
+  require(p.target > 0 && p.target < 1, "target", p.target, "must lie between 0 and 1");
+  require(p.speed > 0 && p.speed <= 1, "speed", p.speed, "must lie in 0 ... 1, above 0");
+  require(p.shortest_s > 0, "shortest", p.shortest_s, "must be positive");
+  require(p.longest_s >= p.shortest_s, "longest", p.longest_s, "must not be below shortest");
+  require(p.highest_gain >= 1, "highest_gain", p.highest_gain, "must be at least 1");
+  return require.problems;
+}
+
+AutoExposure::AutoExposure(const SensorParams& sensor) : sensor_(sensor), setting_{sensor.exposure_s, sensor.gain} {
+  std::string text;
+  for (const std::string& problem : Problems(sensor.auto_exposure))
+    text += (text.empty() ? "auto exposure: " : "; ") + problem;
+  if (!text.empty()) throw std::invalid_argument(text);
+}
+
+double AutoExposure::Brightness(const RadianceImage& frame, double signal) const {
+  const double scale = signal / (sensor_.white * sensor_.exposure_s);
+  double sum = 0;
+  for (const float light : frame.rgb) sum += EncodeResponse(sensor_.response, std::min(1.0, scale * light));
+  return sum / static_cast<double>(frame.rgb.size());
+}
+
+void AutoExposure::Meter(const RadianceImage& frame) {
+  const AutoExposureParams& p = sensor_.auto_exposure;
+  const double lowest = p.shortest_s, highest = p.longest_s * p.highest_gain;
+  // The wanted signal by halving: brightness grows with it.
+  double low = std::log(lowest), high = std::log(highest);
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (Brightness(frame, std::exp(middle)) < p.target ? low : high) = middle;
+  }
+  const double now = std::log(setting_.exposure_s * setting_.gain);
+  const double next = std::clamp(std::exp(now + p.speed * (0.5 * (low + high) - now)), lowest, highest);
+  setting_.exposure_s = std::clamp(next, p.shortest_s, p.longest_s);
+  setting_.gain = std::max(1.0, next / setting_.exposure_s);
+}
+
+}  // namespace sim

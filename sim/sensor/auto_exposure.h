@@ -1,0 +1,41 @@
+// Purpose: exposure time and gain that follow the brightness of the picture, as cameras do.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/render/radiance_image.h"
+#include "sim/sensor/description.h"
+
+namespace sim {
+
+// What the sensor is set to for one frame.
+struct ExposureSetting {
+  double exposure_s = 0.0;
+  double gain = 1.0;
+};
+
+// Everything wrong with the settings, one sentence each, with the value.
+std::vector<std::string> Problems(const AutoExposureParams& params);
+
+// The signal of frame k is proportional to s = exposure_s * gain. With m(s) the mean over pixels and channels of what
+// the response makes of it, the next frame gets
+//   log s' = log s + speed (log s* - log s),   m(s*) = target,
+// within the limits; the exposure time grows before the gain does. The first frame has the sensor's own settings.
+class AutoExposure {
+ public:
+  // Throws std::invalid_argument listing all Problems.
+  explicit AutoExposure(const SensorParams& sensor);
+
+  const ExposureSetting& setting() const { return setting_; }
+  // What the frame looked like: mean radiances on the sensor (a small picture will do), before noise.
+  void Meter(const RadianceImage& frame);
+
+ private:
+  double Brightness(const RadianceImage& frame, double signal) const;
+
+  SensorParams sensor_;
+  ExposureSetting setting_;
+};
+
+}  // namespace sim

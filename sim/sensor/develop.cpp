@@ -1,0 +1,49 @@
+#include "sim/sensor/develop.h"
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+namespace sim {
+namespace {
+
+// A header over pixels that OpenCV only reads.
+cv::Mat View(const Image& image) {
+  if (image.bits == 8) {
+    return {image.height, image.width, CV_8UC(image.channels), const_cast<std::uint8_t*>(image.data.data())};
+  }
+  return {image.height, image.width, CV_16UC(image.channels), const_cast<std::uint16_t*>(image.wide.data())};
+}
+
+Image ToImage(const cv::Mat& mat, int bits) {
+  Image image{mat.cols, mat.rows, mat.channels(), {}, bits, {}};
+  const std::size_t n = mat.total() * static_cast<std::size_t>(mat.channels());
+  if (bits == 8) {
+    image.data.assign(mat.ptr<std::uint8_t>(), mat.ptr<std::uint8_t>() + n);
+  } else {
+    image.wide.assign(mat.ptr<std::uint16_t>(), mat.ptr<std::uint16_t>() + n);
+  }
+  return image;
+}
+
+}  // namespace
+
+Image Demosaic(const Image& mosaic) {
+  cv::Mat rgb;
+  // OpenCV names a pattern after its second row's second and third pixels: what it calls BG has red at (0, 0).
+  cv::cvtColor(View(mosaic), rgb, mosaic.bits == 8 ? cv::COLOR_BayerBG2RGB_EA : cv::COLOR_BayerBG2RGB);
+  return ToImage(rgb, mosaic.bits);
+}
+
+Image ThroughJpeg(const Image& image, int quality) {
+  cv::Mat bgr = View(image);
+  if (image.channels == 3) cv::cvtColor(View(image), bgr, cv::COLOR_RGB2BGR);
+  std::vector<std::uint8_t> file;
+  if (!cv::imencode(".jpg", bgr, file, {cv::IMWRITE_JPEG_QUALITY, quality}))
+    throw std::runtime_error("OpenCV cannot encode a JPEG picture");
+  cv::Mat back = cv::imdecode(file, image.channels == 3 ? cv::IMREAD_COLOR : cv::IMREAD_GRAYSCALE);
+  if (image.channels == 3) cv::cvtColor(back, back, cv::COLOR_BGR2RGB);
+  return ToImage(back, 8);
+}
+
+}  // namespace sim

@@ -1,0 +1,68 @@
+#include "sim/sensor/auto_exposure.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace sim {
+namespace {
+
+RadianceImage Flat(float radiance) { return {4, 4, std::vector<float>(48, radiance)}; }
+
+SensorParams Linear() {
+  SensorParams sensor;
+  sensor.response = Response::linear;
+  sensor.exposure_s = 0.004;
+  sensor.auto_exposure = {true, 0.4, 0.25, 0.001, 0.010, 4.0};
+  return sensor;
+}
+
+// In a flat linear picture the wanted signal is target * white / radiance: the error's logarithm shrinks by 1 - speed.
+TEST(AutoExposure, MendsItsShareOfTheErrorEachFrame) {
+  AutoExposure control(Linear());
+  const double wanted = 0.004 * 0.4 / 0.2;
+  double error = std::log(0.004 / wanted);
+  EXPECT_EQ(control.setting().exposure_s, 0.004);
+  for (int k = 0; k < 20; ++k) {
+    control.Meter(Flat(0.2f));
+    error *= 0.75;
+    EXPECT_NEAR(std::log(control.setting().exposure_s / wanted), error, 1e-6) << k;
+    EXPECT_EQ(control.setting().gain, 1);
+  }
+}
+
+TEST(AutoExposure, TheResponseIsPartOfWhatIsSeen) {
+  SensorParams sensor = Linear();
+  sensor.response = Response::srgb;
+  sensor.auto_exposure.speed = 1;
+  AutoExposure control(sensor);
+  control.Meter(Flat(0.2f));
+  const double linear = std::pow((0.4 + 0.055) / 1.055, 2.4);
+  EXPECT_NEAR(control.setting().exposure_s, 0.004 * linear / 0.2, 1e-8);
+}
+
+TEST(AutoExposure, LengthensTheExposureBeforeItAmplifies) {
+  SensorParams sensor = Linear();
+  sensor.auto_exposure.speed = 1;
+  AutoExposure control(sensor);
+  control.Meter(Flat(0.4f * 0.004f / 0.030f));
+  EXPECT_NEAR(control.setting().exposure_s, 0.010, 1e-9);
+  EXPECT_NEAR(control.setting().gain, 3, 1e-4);
+  control.Meter(Flat(0.0f));  // nothing to be seen: all there is
+  EXPECT_NEAR(control.setting().exposure_s, 0.010, 1e-9);
+  EXPECT_NEAR(control.setting().gain, 4, 1e-4);
+  control.Meter(Flat(1e6f));
+  EXPECT_NEAR(control.setting().exposure_s, 0.001, 1e-9);
+  EXPECT_EQ(control.setting().gain, 1);
+}
+
+TEST(AutoExposure, BadSettingsAreAllNamed) {
+  SensorParams sensor = Linear();
+  sensor.auto_exposure = {true, 1.5, 0, -1, -2, 0.5};
+  EXPECT_THAT(Problems(sensor.auto_exposure), testing::SizeIs(5));
+  EXPECT_THROW(AutoExposure{sensor}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace sim
