@@ -124,6 +124,7 @@ void Odometry::Impl::AddFeatures(const cv::Mat& grey) {
   std::vector<Eigen::Matrix2d> noises;
   for (const Eigen::Vector2i& corner : corners) {
     const Eigen::Vector2d pixel = corner.cast<double>();
+    if (!camera.Sees(pixel)) continue;  // at the edge of a fisheye lens
     LandmarkRecord record;
     record.appearance = {brisk.Describe(corner, first_sampler), CutPatch(grey, corner)};
     record.id = next_id++;

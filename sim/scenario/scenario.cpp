@@ -90,10 +90,14 @@ void ReadCamera(Section section, CameraParams& camera) {
   lens.ReadChoice("model", camera.lens, {{"radial_tangential", Lens::radial_tangential}, {"fisheye", Lens::fisheye}});
   lens.Read("k1", camera.k1);
   lens.Read("k2", camera.k2);
-  lens.Read("p1", camera.p1);
-  lens.Read("p2", camera.p2);
-  lens.Read("k3", camera.k3);
-  if (camera.lens == Lens::fisheye) lens.Read("k4", camera.k4);
+  if (camera.lens == Lens::fisheye) {
+    lens.Read("k3", camera.k3);
+    lens.Read("k4", camera.k4);
+  } else {
+    lens.Read("p1", camera.p1);
+    lens.Read("p2", camera.p2);
+    lens.Read("k3", camera.k3);
+  }
   for (const std::string& problem : Problems(camera)) {
     section.Reject(problem.substr(0, problem.find_first_of(" :")), "camera: " + problem);
   }

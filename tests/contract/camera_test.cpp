@@ -117,4 +117,68 @@ TEST(CameraContract, PresetsAreTheDataSets) {
   EXPECT_EQ(preset.k3, written.k3);
 }
 
+// fx 200, fy 300, cx 320, cy 240, k 0.1, -0.01, 0.002, -0.0003 of the worked fisheye example.
+vo::Camera FisheyeByHand() {
+  vo::Camera camera = Odometry(640, 480, 200, 300, 320, 240, 0.1, -0.01, 0, 0, 0.002);
+  camera.k4 = -0.0003;
+  camera.lens = vo::Lens::fisheye;
+  return camera;
+}
+// 512 x 512, 195 degrees from corner to corner.
+vo::Camera Wide() {
+  vo::Camera camera = Odometry(512, 512, 190.97847715128717, 190.9733070521226, 254.93170605935475, 256.8974428996504,
+                               0.0034823894022493434, 0.0007150348452162257, 0, 0, -0.0020532361418706202);
+  camera.k4 = 0.00020293673591811182;
+  camera.lens = vo::Lens::fisheye;
+  return camera;
+}
+sim::Camera Fisheye(const vo::Camera& c) {
+  sim::CameraParams params = Simulator(c);
+  params.k4 = c.k4;
+  params.lens = sim::Lens::fisheye;
+  return sim::Camera(params);
+}
+
+TEST(CameraContract, FisheyeAsWorkedByHand) {
+  const Eigen::Vector3d ray(0.6 * std::sin(0.5), 0.8 * std::sin(0.5), std::cos(0.5));
+  EXPECT_NEAR(FisheyeByHand().Project(ray).x(), 381.4643046875, 1e-10);
+  EXPECT_NEAR(FisheyeByHand().Project(ray).y(), 362.928609375, 1e-10);
+  const glm::dvec2 pixel = Fisheye(FisheyeByHand()).Project({ray.x(), ray.y(), ray.z()});
+  EXPECT_NEAR(pixel.x, 381.4643046875, 1e-10);
+  EXPECT_NEAR(pixel.y, 362.928609375, 1e-10);
+}
+
+TEST(CameraContract, BothUndoTheFisheyeWhereTheOdometryUsesIt) {
+  const vo::Camera odometry = Wide();
+  const sim::Camera simulator = Fisheye(odometry);
+  int used = 0, beyond = 0;
+  for (double v = 0; v <= 511; v += 8.9) {
+    for (double u = 0; u <= 511; u += 8.9) {
+      if (!odometry.Sees({u, v})) {
+        EXPECT_LT(simulator.Direction({u, v}).z, std::cos(vo::kWidestAngle) + 1e-9) << u << " " << v;
+        ++beyond;
+        continue;
+      }
+      const Eigen::Vector2d ray = odometry.Undistort({u, v});
+      const glm::dvec2 same = simulator.Undistort({u, v});
+      EXPECT_LT(std::hypot(ray.x() - same.x, ray.y() - same.y), 1e-11 * (1 + ray.squaredNorm())) << u << " " << v;
+      const Eigen::Vector2d back = odometry.Project({ray.x(), ray.y(), 1});
+      EXPECT_LT((back - Eigen::Vector2d(u, v)).norm(), 1e-9);
+      // The lens's Jacobian against differences of the simulator's projection.
+      const double h = 1e-6 * (1 + ray.squaredNorm());
+      const Eigen::Matrix2d J = odometry.LensJacobian(ray);
+      for (int k = 0; k < 2; ++k) {
+        const Eigen::Vector2d d = h * Eigen::Vector2d::Unit(k);
+        const glm::dvec2 difference = simulator.Project({ray.x() + d.x(), ray.y() + d.y(), 1}) -
+                                      simulator.Project({ray.x() - d.x(), ray.y() - d.y(), 1});
+        EXPECT_NEAR(difference.x / (2 * h), J(0, k), 1e-6 * (1 + std::abs(J(0, k))));
+        EXPECT_NEAR(difference.y / (2 * h), J(1, k), 1e-6 * (1 + std::abs(J(1, k))));
+      }
+      ++used;
+    }
+  }
+  EXPECT_GT(used, 2000);
+  EXPECT_GT(beyond, 300);
+}
+
 }  // namespace

@@ -4,12 +4,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "tools/vobench/errors.h"
-
 namespace vobench {
 vo::Camera ToOdometry(const sim::CameraParams& camera) {
-  if (camera.lens != sim::Lens::radial_tangential)
-    throw BadInput("the odometry does not know a fisheye lens yet: render the sequence, but do not track it");
   vo::Camera out;
   out.width = camera.width;
   out.height = camera.height;
@@ -22,6 +18,8 @@ vo::Camera ToOdometry(const sim::CameraParams& camera) {
   out.p1 = camera.p1;
   out.p2 = camera.p2;
   out.k3 = camera.k3;
+  out.k4 = camera.k4;
+  out.lens = camera.lens == sim::Lens::fisheye ? vo::Lens::fisheye : vo::Lens::radial_tangential;
   return out;
 }
 

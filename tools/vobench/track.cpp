@@ -58,7 +58,14 @@ std::string Record(const vo::Camera& c, const std::string& resolved) {
                    {"fy", c.fy},
                    {"cx", c.cx},
                    {"cy", c.cy},
-                   {"distortion", {{"k1", c.k1}, {"k2", c.k2}, {"p1", c.p1}, {"p2", c.p2}, {"k3", c.k3}}}};
+                   {"distortion",
+                    {{"model", c.lens == vo::Lens::fisheye ? "fisheye" : "radial_tangential"},
+                     {"k1", c.k1},
+                     {"k2", c.k2},
+                     {"p1", c.p1},
+                     {"p2", c.p2},
+                     {"k3", c.k3},
+                     {"k4", c.k4}}}};
   all.update(nlohmann::ordered_json::parse(resolved));
   return all.dump(2);
 }

@@ -1,5 +1,7 @@
 #include "vo/geometry/camera.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include <Eigen/LU>
@@ -9,13 +11,54 @@
 namespace vo {
 namespace {
 
+// Distance from the principal point, in focal lengths, of a ray at the angle theta from the axis; and its derivative.
+struct FisheyeRadius {
+  double value, by_theta;
+};
+FisheyeRadius RadiusAt(const Camera& c, double theta) {
+  const double t2 = theta * theta;
+  return {theta * (1 + t2 * (c.k1 + t2 * (c.k2 + t2 * (c.k3 + t2 * c.k4)))),
+          1 + t2 * (3 * c.k1 + t2 * (5 * c.k2 + t2 * (7 * c.k3 + t2 * 9 * c.k4)))};
+}
+
+// A point at distance r on the plane z = 1 is drawn to `scale` times itself; slope = (d scale / dr) / r.
+struct FisheyeScale {
+  double scale, slope;
+};
+FisheyeScale ScaleAt(const Camera& c, double r2) {
+  if (r2 < 1e-8) return {1 + (c.k1 - 1.0 / 3) * r2, 2 * (c.k1 - 1.0 / 3)};  // atan r = r - r^3 / 3 + ...
+  const double r = std::sqrt(r2);
+  const FisheyeRadius radius = RadiusAt(c, std::atan(r));
+  const double scale = radius.value / r;
+  return {scale, (radius.by_theta / (1 + r2) - scale) / r2};
+}
+
+// The angle that is drawn at a distance from the principal point: Newton's method, kept between 0 and the widest.
+double AngleAt(const Camera& c, double radius) {
+  double below = 0, above = kWidestAngle, theta = std::min(radius, kWidestAngle);
+  for (int i = 0; i < 60; ++i) {
+    const FisheyeRadius now = RadiusAt(c, theta);
+    (now.value > radius ? above : below) = theta;
+    const double newton = theta - (now.value - radius) / now.by_theta;
+    const double next = newton >= below && newton <= above ? newton : 0.5 * (below + above);
+    if (std::abs(next - theta) < 1e-15) break;
+    theta = next;
+  }
+  return theta;
+}
+
 Eigen::Vector2d Distort(const Camera& c, const Eigen::Vector2d& xy) {
+  if (c.lens == Lens::fisheye) return ScaleAt(c, xy.squaredNorm()).scale * xy;
   const double x = xy.x(), y = xy.y(), r2 = x * x + y * y;
   const double d = 1 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
   return {x * d + 2 * c.p1 * x * y + c.p2 * (r2 + 2 * x * x), y * d + c.p1 * (r2 + 2 * y * y) + 2 * c.p2 * x * y};
 }
 
 Eigen::Matrix2d DistortJacobian(const Camera& c, const Eigen::Vector2d& xy) {
+  if (c.lens == Lens::fisheye) {
+    const FisheyeScale at = ScaleAt(c, xy.squaredNorm());
+    return at.scale * Eigen::Matrix2d::Identity() + at.slope * xy * xy.transpose();
+  }
   const double x = xy.x(), y = xy.y(), r2 = x * x + y * y;
   const double d = 1 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
   const double d_r2 = c.k1 + r2 * (2 * c.k2 + r2 * 3 * c.k3);  // dd / d(r2)
@@ -36,6 +79,10 @@ Eigen::Vector2d Camera::Project(const Eigen::Vector3d& X_C) const {
 
 Eigen::Vector2d Camera::Undistort(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2d target((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
+  if (lens == Lens::fisheye) {
+    const double radius = target.norm();
+    return radius < 1e-12 ? target : Eigen::Vector2d(std::tan(AngleAt(*this, radius)) / radius * target);
+  }
   Eigen::Vector2d xy = target;
   for (int i = 0; i < 30; ++i) {
     const Eigen::Vector2d step = DistortJacobian(*this, xy).inverse() * (target - Distort(*this, xy));
@@ -51,7 +98,9 @@ Eigen::Matrix2d Camera::LensJacobian(const Eigen::Vector2d& xy) const {
 
 bool Camera::Sees(const Eigen::Vector2d& pixel, double border_px) const {
   return pixel.x() >= border_px - 0.5 && pixel.y() >= border_px - 0.5 && pixel.x() <= width - 0.5 - border_px &&
-         pixel.y() <= height - 0.5 - border_px;
+         pixel.y() <= height - 0.5 - border_px &&
+         (lens != Lens::fisheye ||
+          std::hypot((pixel.x() - cx) / fx, (pixel.y() - cy) / fy) <= RadiusAt(*this, kWidestAngle).value);
 }
 
 Camera CameraPreset(const std::string& name) {
@@ -81,11 +130,17 @@ Camera ReadCamera(const std::filesystem::path& file) {
   root.Require("cx", camera.cx, settings::Unit::pixel);
   root.Require("cy", camera.cy, settings::Unit::pixel);
   settings::Section lens = root.Child("distortion");
+  lens.ReadChoice("model", camera.lens, {{"radial_tangential", Lens::radial_tangential}, {"fisheye", Lens::fisheye}});
   lens.Read("k1", camera.k1);
   lens.Read("k2", camera.k2);
-  lens.Read("p1", camera.p1);
-  lens.Read("p2", camera.p2);
-  lens.Read("k3", camera.k3);
+  if (camera.lens == Lens::fisheye) {
+    lens.Read("k3", camera.k3);
+    lens.Read("k4", camera.k4);
+  } else {
+    lens.Read("p1", camera.p1);
+    lens.Read("p2", camera.p2);
+    lens.Read("k3", camera.k3);
+  }
   document.ThrowIfBad();
   return camera;
 }

@@ -1,5 +1,5 @@
-// Purpose: the camera as the odometry knows it: pinhole with radial-tangential distortion, presets and files.
-// Source:  docs/conventions.md, "Camera model" (the model of OpenCV, TUM RGB-D and Kalibr).
+// Purpose: the camera as the odometry knows it: pinhole with radial-tangential distortion, or fisheye; presets and files.
+// Source:  docs/conventions.md, "Camera model" (the models of OpenCV, TUM RGB-D and Kalibr).
 // Units:   pixels; the centre of the first pixel is (0, 0). Rays are in C, on the plane z = 1.
 #pragma once
 
@@ -10,10 +10,17 @@
 
 namespace vo {
 
+enum class Lens { radial_tangential, fisheye };
+
+// Of a fisheye lens only what lies within kWidestAngle of the optical axis is used: rays are points of the plane z = 1.
+constexpr double kWidestAngle = 1.4;  // [rad], 80 degrees
+
 struct Camera {
   int width = 640, height = 480;                             // [px]
   double fx = 525, fy = 525, cx = 319.5, cy = 239.5;         // [px]
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;             // [-]
+  double k4 = 0;                                             // [-] of a fisheye lens, which has no p1, p2
+  Lens lens = Lens::radial_tangential;
 
   // Point in C with z > 0 -> pixel, lens distortion included.
   Eigen::Vector2d Project(const Eigen::Vector3d& X_C) const;
@@ -21,6 +28,7 @@ struct Camera {
   Eigen::Vector2d Undistort(const Eigen::Vector2d& pixel) const;
   // Where a camera of the same fx, fy, cx, cy without distortion would see that ray [px].
   Eigen::Vector2d Ideal(const Eigen::Vector2d& pixel) const;
+  // Whether a pixel lies in the image, `border_px` from its edge, and where the lens can be used.
   bool Sees(const Eigen::Vector2d& pixel, double border_px = 0) const;
   // d(pixel)/d(x, y) of the lens at the undistorted ray (x, y).
   Eigen::Matrix2d LensJacobian(const Eigen::Vector2d& xy) const;
