@@ -2,9 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <vector>
+
+#include "tools/evaluation/text_file.h"
+#include "tools/settings/settings.h"
 
 namespace vobench {
 namespace fs = std::filesystem;
@@ -17,6 +24,61 @@ std::optional<fs::path> IclNuimTruth(const fs::path& sequence) {
   }
   std::sort(files.begin(), files.end());
   return files.empty() ? std::nullopt : std::optional(files.front());
+}
+
+// Nanoseconds as decimal digits.
+std::optional<std::int64_t> ParseNanoseconds(const std::string& text) {
+  std::int64_t stamp_ns = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), stamp_ns);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(stamp_ns) : std::nullopt;
+}
+
+// T_BS of a sensor: from the sensor's frame to the body's.
+Eigen::Isometry3d ReadExtrinsic(const fs::path& file) {
+  std::array<double, 16> data{};
+  settings::Document document = settings::Document::FromFile(file);
+  settings::Section root = document.root(), T_BS = root.Child("T_BS");
+  T_BS.Require("data", data);
+  T_BS.IgnoreRest();
+  root.IgnoreRest();
+  document.ThrowIfBad();
+  Eigen::Isometry3d T;
+  T.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(data.data());
+  return T;
+}
+
+// timestamp, p_RS_R, q_RS (w first), velocity, biases: of the body. The camera's pose is T_RB T_BC.
+evaluation::Trajectory ReadEurocTruth(const fs::path& file, const fs::path& camera) {
+  const Eigen::Isometry3d T_BC = ReadExtrinsic(camera);
+  evaluation::Trajectory poses;
+  evaluation::Problems problems;
+  for (const evaluation::Line& line : evaluation::ReadLines(file, ',')) {
+    if (line.tokens.size() < 8) {
+      problems.Add(file, line.number, 1, "expected timestamp, position, quaternion (w x y z), ...");
+      continue;
+    }
+    const auto stamp_ns = ParseNanoseconds(line.tokens[0].text);
+    if (!stamp_ns) problems.Add(file, line.number, 1, "'" + line.tokens[0].text + "' is not a time in nanoseconds");
+    if (stamp_ns && !poses.empty() && *stamp_ns <= poses.back().stamp_ns) {
+      problems.Add(file, line.number, 1, "time does not increase");
+    }
+    double v[7] = {};
+    for (std::size_t i = 0; i < 7; ++i) {
+      const auto number = evaluation::ParseNumber(line.tokens[i + 1].text);
+      if (!number) {
+        problems.Add(file, line.number, line.tokens[i + 1].column, "'" + line.tokens[i + 1].text + "' is not a number");
+      }
+      v[i] = number.value_or(0.0);
+    }
+    const Eigen::Quaterniond q_RB(v[3], v[4], v[5], v[6]);
+    if (std::abs(q_RB.norm() - 1) > 1e-3) problems.Add(file, line.number, 1, "the quaternion's norm is not 1");
+    const Eigen::Isometry3d T_RB = Eigen::Translation3d(v[0], v[1], v[2]) * q_RB.normalized();
+    const Eigen::Isometry3d T_RC = T_RB * T_BC;
+    poses.push_back({stamp_ns.value_or(0), T_RC.translation(), Eigen::Quaterniond(T_RC.linear())});
+  }
+  if (poses.empty()) problems.Add(file, "has no poses");
+  problems.ThrowIfAny();
+  return poses;
 }
 
 }  // namespace
@@ -38,6 +100,10 @@ std::optional<Truth> ReadSequenceTruth(const fs::path& sequence) {
     return truth;
   }
   if (!fs::is_directory(sequence)) return std::nullopt;
+  if (const fs::path euroc = sequence / "mav0/state_groundtruth_estimate0/data.csv"; fs::exists(euroc)) {
+    truth.poses = ReadEurocTruth(euroc, sequence / "mav0/cam0/sensor.yaml");
+    return truth;
+  }
   const std::optional<fs::path> icl_nuim = IclNuimTruth(sequence);
   if (!icl_nuim) return std::nullopt;
   truth.poses = MirroredInY(evaluation::ReadTrajectory(*icl_nuim));

@@ -10,7 +10,8 @@ namespace vobench {
 
 // groundtruth.txt (and velocity.txt) of docs/sequence_format.md; or the *.gt.freiburg of an original ICL-NUIM folder,
 // whose poses belong to a camera with fy < 0: they are mirrored in y (S T S with S = diag(1, -1, 1)), their time is
-// index / 30 s, and a line on stderr says so. None when there is neither. Throws evaluation::InputError.
+// index / 30 s, and a line on stderr says so; or the truth of a EuRoC folder, of cam0 (its body's pose times T_BS of
+// cam0). None when there is none of them. Throws evaluation::InputError or settings::Error.
 std::optional<Truth> ReadSequenceTruth(const std::filesystem::path& sequence);
 
 // S T S: the same trajectory as seen by a camera whose image is the right way up.

@@ -44,6 +44,8 @@ TrackSettings ReadSettings(const TrackOptions& options) {
 vo::Camera ReadCamera(const TrackOptions& options) {
   if (options.camera) return vo::CameraFrom(*options.camera);
   const fs::path file = options.sequence / "camera.yaml";
+  const fs::path euroc = options.sequence / "mav0/cam0/sensor.yaml";
+  if (!fs::exists(file) && fs::exists(euroc)) return vo::ReadCamera(euroc);
   if (!fs::exists(file)) {
     throw BadInput(fmt::format("{}: is not there; say which camera with --camera PRESET|FILE", file.string()));
   }

@@ -1,6 +1,7 @@
 #include "vo/geometry/camera.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -119,10 +120,52 @@ Camera CameraPreset(const std::string& name) {
   return camera;
 }
 
+namespace {
+
+// sensor.yaml of EuRoC.
+void ReadEurocCamera(settings::Section& root, Camera& camera) {
+  enum class Model { pinhole } model = Model::pinhole;
+  std::array<double, 2> size{};
+  std::array<double, 4> intrinsics{};
+  std::vector<double> distortion;
+  root.RequireChoice("camera_model", model, {{"pinhole", Model::pinhole}});
+  root.RequireChoice("distortion_model", camera.lens, {{"radial-tangential", Lens::radial_tangential}, {"equidistant", Lens::fisheye}});
+  if (root.Require("resolution", size, settings::Unit::none, settings::Range::Positive())) {
+    camera.width = static_cast<int>(size[0]);
+    camera.height = static_cast<int>(size[1]);
+  }
+  if (root.Require("intrinsics", intrinsics)) {
+    camera.fx = intrinsics[0];
+    camera.fy = intrinsics[1];
+    camera.cx = intrinsics[2];
+    camera.cy = intrinsics[3];
+    if (!(camera.fx > 0 && camera.fy > 0)) root.Reject("intrinsics", "'intrinsics': fu and fv must be positive");
+  }
+  if (root.Require("distortion_coefficients", distortion)) {
+    const bool fisheye = camera.lens == Lens::fisheye;
+    if (distortion.size() == 4) {
+      camera.k1 = distortion[0];
+      camera.k2 = distortion[1];
+      (fisheye ? camera.k3 : camera.p1) = distortion[2];
+      (fisheye ? camera.k4 : camera.p2) = distortion[3];
+    } else {
+      root.Reject("distortion_coefficients", "'distortion_coefficients' must be 4 numbers: k1, k2, p1, p2, or k1 ... k4 of an equidistant lens");
+    }
+  }
+  root.IgnoreRest();
+}
+
+}  // namespace
+
 Camera ReadCamera(const std::filesystem::path& file) {
   Camera camera;
   settings::Document document = settings::Document::FromFile(file);
   settings::Section root = document.root();
+  if (root.Has("intrinsics")) {
+    ReadEurocCamera(root, camera);
+    document.ThrowIfBad();
+    return camera;
+  }
   root.Require("width", camera.width, settings::Range::Positive());
   root.Require("height", camera.height, settings::Range::Positive());
   root.Require("fx", camera.fx, settings::Unit::pixel, settings::Range::Positive());

@@ -36,7 +36,7 @@ struct Camera {
 
 // "freiburg1|freiburg2|freiburg3" (TUM RGB-D), "icl" (ICL-NUIM). Throws std::invalid_argument naming the presets.
 Camera CameraPreset(const std::string& name);
-// camera.yaml of docs/sequence_format.md. Throws settings::Error with file:line:column of every problem.
+// camera.yaml of docs/sequence_format.md, or sensor.yaml of a camera of EuRoC. Throws settings::Error with file:line:column of every problem.
 Camera ReadCamera(const std::filesystem::path& file);
 // A preset's name or a file.
 Camera CameraFrom(const std::string& preset_or_file);

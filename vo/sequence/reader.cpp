@@ -32,7 +32,35 @@ std::optional<std::int64_t> StampOfIndex(const std::string& text) {
   return (std::stoll(text) * 1'000'000'000 + 15) / 30;
 }
 
-std::vector<std::string> Words(const std::string& line) {
+// EuRoC counts nanoseconds.
+std::optional<std::int64_t> StampInNanoseconds(const std::string& text) {
+  if (text.empty() || text.size() > 19 || !std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }))
+    return std::nullopt;
+  if (text.size() == 19 && text > "9223372036854775807") return std::nullopt;
+  return std::stoll(text);
+}
+
+// A list of frames: a line for each, whose first word is its time and whose last one its image.
+struct ListFormat {
+  fs::path list, images;  // file names are relative to the latter
+  std::size_t words;
+  std::optional<std::int64_t> (*stamp)(const std::string&);
+  std::string not_a_stamp, expected;
+};
+
+ListFormat FormatOf(const fs::path& folder) {
+  if (!fs::exists(folder / "rgb.txt")) {
+    if (fs::exists(folder / "associations.txt"))
+      return {folder / "associations.txt", folder, 4, StampOfIndex, "the number of a frame", "index depth-file index image-file"};
+    if (fs::exists(folder / "mav0"))
+      return {folder / "mav0/cam0/data.csv", folder / "mav0/cam0/data", 2, StampInNanoseconds, "a time stamp in nanoseconds", "timestamp,filename"};
+  }
+  return {folder / "rgb.txt", folder, 2, ParseStamp, "a time stamp in seconds", "timestamp filename"};
+}
+
+// Separated by blanks or commas.
+std::vector<std::string> Words(std::string line) {
+  std::replace(line.begin(), line.end(), ',', ' ');
   std::istringstream in(line);
   return {std::istream_iterator<std::string>(in), std::istream_iterator<std::string>()};
 }
@@ -67,8 +95,8 @@ cv::Mat ReadImage(const fs::path& file) {
 
 SequenceReader::SequenceReader(const fs::path& folder) {
   if (!fs::is_directory(folder)) throw std::runtime_error(folder.string() + ": no such folder");
-  const bool icl_nuim = !fs::exists(folder / "rgb.txt") && fs::exists(folder / "associations.txt");
-  const fs::path list = folder / (icl_nuim ? "associations.txt" : "rgb.txt");
+  const ListFormat format = FormatOf(folder);
+  const fs::path& list = format.list;
   std::ifstream in(list);
   if (!in) throw std::runtime_error(list.string() + ": cannot be read (a sequence folder has one, see docs/sequence_format.md)");
   std::ostringstream problems;
@@ -79,18 +107,18 @@ SequenceReader::SequenceReader(const fs::path& folder) {
     const auto complain = [&](const std::string& text) { problems << list.string() << ":" << number << ": " << text << "\n"; };
     const std::vector<std::string> words = Words(line);
     if (words.empty() || words[0][0] == '#') continue;
-    const auto stamp_ns = icl_nuim ? StampOfIndex(words[0]) : ParseStamp(words[0]);
+    const auto stamp_ns = format.stamp(words[0]);
     if (!stamp_ns) {
-      complain("'" + words[0] + (icl_nuim ? "' is not the number of a frame" : "' is not a time stamp in seconds"));
+      complain("'" + words[0] + "' is not " + format.not_a_stamp);
       continue;
     }
-    if (words.size() != (icl_nuim ? 4 : 2)) {
-      complain(icl_nuim ? "expected 'index depth-file index image-file'" : "expected 'timestamp filename'");
+    if (words.size() != format.words) {
+      complain("expected '" + format.expected + "'");
       continue;
     }
     if (!entries_.empty() && *stamp_ns <= entries_.back().stamp_ns)
       complain("time stamp " + words[0] + " does not increase over line " + std::to_string(last_number));
-    const fs::path image = folder / words.back();
+    const fs::path image = format.images / words.back();
     if (!fs::is_regular_file(image)) complain("image " + image.string() + " is not there");
     entries_.push_back({*stamp_ns, image});
     last_number = number;

@@ -1,5 +1,6 @@
 // Purpose: frames from a folder in TUM RGB-D layout (docs/sequence_format.md), or in that of the original ICL-NUIM files, which have
-//          associations.txt (`index depth-file index image-file`) instead of rgb.txt: their time is index / 30 s.
+//          associations.txt (`index depth-file index image-file`) instead of rgb.txt: their time is index / 30 s; or in that of EuRoC
+//          (mav0/cam0/data.csv, `timestamp in ns,filename`).
 //          Truth is not read here: what the odometry is fed has no field for it.
 #pragma once
 

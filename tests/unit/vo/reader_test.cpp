@@ -54,6 +54,26 @@ TEST_F(Reader, ReadsTheOriginalIclNuimLayout) {
   EXPECT_EQ(reader.Next()->stamp_ns, 66666667);
 }
 
+TEST_F(Reader, ReadsTheLayoutOfEuroc) {
+  fs::create_directories(folder_ / "mav0/cam0/data");
+  fs::rename(folder_ / "rgb/a.png", folder_ / "mav0/cam0/data/1403636579763555584.png");
+  fs::rename(folder_ / "rgb/b.png", folder_ / "mav0/cam0/data/1403636579813555456.png");
+  const fs::path list = folder_ / "mav0/cam0/data.csv";
+  std::ofstream(list) << "#timestamp [ns],filename\r\n1403636579763555584,1403636579763555584.png\r\n"
+                         "1403636579813555456,1403636579813555456.png\r\n";
+  vo::SequenceReader reader(folder_);
+  ASSERT_EQ(reader.size(), 2u);
+  EXPECT_EQ(reader.Next()->stamp_ns, 1403636579763555584);
+  const auto second = reader.Next();
+  EXPECT_EQ(second->stamp_ns, 1403636579813555456);
+  EXPECT_EQ(second->image.type(), CV_8UC1);
+  std::ofstream(list) << "1.5,a.png\n9223372036854775808,a.png\n7\n";
+  const std::string error = ErrorOfOpening();
+  EXPECT_NE(error.find(list.string() + ":1: '1.5' is not a time stamp in nanoseconds"), std::string::npos) << error;
+  EXPECT_NE(error.find(list.string() + ":2: '9223372036854775808' is not"), std::string::npos) << error;
+  EXPECT_NE(error.find(list.string() + ":3: expected 'timestamp,filename'"), std::string::npos) << error;
+}
+
 TEST_F(Reader, NamesEveryProblemWithItsLine) {
   List("1.0 rgb/a.png\nnan rgb/b.png\n0.5 rgb/b.png\n2.0 rgb/none.png\n3.0\n");
   const std::string error = ErrorOfOpening();
