@@ -1,46 +1,17 @@
 #include "sim/sequence/format.h"
 
-#include <cmath>
+#include <algorithm>
 #include <cstdio>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
-#include <stdexcept>
 
+#include "sim/sequence/png.h"
 #include "tools/settings/quantity.h"
 
 namespace sim {
 namespace {
 
-// OpenCV writes blue first, and its matrices borrow what they look at.
-cv::Mat ToMat(const Image& image) {
-  cv::Mat view;
-  if (image.bits == 8) {
-    view = cv::Mat(image.height, image.width, CV_8UC(image.channels), const_cast<std::uint8_t*>(image.data.data()));
-  } else {  // the highest bits of 16, so that white is white in every viewer
-    const cv::Mat wide(image.height, image.width, CV_16UC(image.channels),
-                       const_cast<std::uint16_t*>(image.wide.data()));
-    wide.convertTo(view, -1, 1 << (16 - image.bits));
-  }
-  if (image.channels == 1) return view;
-  cv::Mat bgr;
-  cv::cvtColor(view, bgr, cv::COLOR_RGB2BGR);
-  return bgr;
-}
-
-std::vector<std::uint8_t> Encode(const cv::Mat& mat) {
-  std::vector<std::uint8_t> bytes;
-  if (!cv::imencode(".png", mat, bytes)) throw std::runtime_error("OpenCV cannot encode a PNG picture");
-  return bytes;
-}
-
-// Numbers separated by blanks; a negative zero loses its sign.
 std::string Line(std::int64_t stamp_ns, std::initializer_list<double> numbers) {
   std::string line = FormatStamp(stamp_ns);
-  for (const double number : numbers) {
-    char text[64];
-    std::snprintf(text, sizeof text, " %.12f", number);
-    line += std::string(text) == " -0.000000000000" ? " 0.000000000000" : text;
-  }
+  for (const double number : numbers) line += " " + FormatDecimal(number);
   return line + "\n";
 }
 
@@ -51,6 +22,12 @@ std::string FormatStamp(std::int64_t stamp_ns) {
   std::snprintf(text, sizeof text, "%lld.%09lld", static_cast<long long>(stamp_ns / 1000000000),
                 static_cast<long long>(stamp_ns % 1000000000));
   return text;
+}
+
+std::string FormatDecimal(double number) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.12f", number);
+  return std::string(text) == "-0.000000000000" ? "0.000000000000" : text;
 }
 
 std::string TruthLine(std::int64_t stamp_ns, const Truth& t) {
@@ -80,20 +57,25 @@ std::string CameraYaml(const CameraParams& c) {
          "\ndistortion: " + Distortion(c) + "\n";
 }
 
-std::vector<std::uint8_t> EncodePng(const Image& image) { return Encode(ToMat(image)); }
+std::vector<std::uint8_t> EncodePng(const Image& image) {
+  if (image.bits == 8) return EncodePng(image.width, image.height, image.channels, image.data);
+  std::vector<std::uint16_t> highest_bits(image.wide.size());  // of 16, so that white is white in every viewer
+  for (std::size_t i = 0; i < image.wide.size(); ++i) {
+    highest_bits[i] = static_cast<std::uint16_t>(image.wide[i] << (16 - image.bits));
+  }
+  return EncodePng(image.width, image.height, image.channels, highest_bits);
+}
 
 std::vector<std::uint8_t> EncodeDepthPng(std::span<const float> depth_m, int width, int height) {
-  cv::Mat fifths_of_millimetres(height, width, CV_16UC1);
-  for (int y = 0; y < height; ++y) {
-    std::uint16_t* row = fifths_of_millimetres.ptr<std::uint16_t>(y);
-    for (int x = 0; x < width; ++x) {
-      const std::size_t at =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-      const float value = std::round(5000.0f * depth_m[at]);
-      row[x] = value > 0.0f && value <= 65535.0f ? static_cast<std::uint16_t>(value) : std::uint16_t{0};
-    }
+  std::vector<std::uint16_t> fifths_of_millimetres(depth_m.size());
+  for (std::size_t i = 0; i < depth_m.size(); ++i) {
+    const float value = 5000.0f * depth_m[i];
+    const float kept = value < 65535.5f ? value : 0.0f;  // not a number: 0, too
+    const int below = static_cast<int>(std::max(kept, 0.0f));
+    const int rounded = below + static_cast<int>(kept - static_cast<float>(below) >= 0.5f);
+    fifths_of_millimetres[i] = static_cast<std::uint16_t>(rounded);
   }
-  return Encode(fifths_of_millimetres);
+  return EncodePng(width, height, 1, fifths_of_millimetres);
 }
 
 }  // namespace sim

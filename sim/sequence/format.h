@@ -14,14 +14,14 @@ namespace sim {
 
 // Seconds with nine decimals: exact.
 std::string FormatStamp(std::int64_t stamp_ns);
-// "stamp tx ty tz qx qy qz qw" and "stamp vx vy vz wx wy wz", with the newline. Twelve decimals: beyond any use, so
-// that rounding is never a question.
+// Twelve decimals: beyond any use, so that rounding is never a question; a negative zero loses its sign.
+std::string FormatDecimal(double number);
+// "stamp tx ty tz qx qy qz qw" and "stamp vx vy vz wx wy wz", with the newline.
 std::string TruthLine(std::int64_t stamp_ns, const Truth& truth);
 std::string VelocityLine(std::int64_t stamp_ns, const Truth& truth);
 std::string CameraYaml(const CameraParams& camera);
 
-// PNG files. Depth: 16 bits, round(5000 Z), 0 for what is 0 or does not fit. Throw std::runtime_error when OpenCV
-// cannot encode.
+// PNG files. Depth: 16 bits, round(5000 Z), 0 for what is 0 or does not fit. Throw as in png.h.
 std::vector<std::uint8_t> EncodePng(const Image& image);
 std::vector<std::uint8_t> EncodeDepthPng(std::span<const float> depth_m, int width, int height);
 

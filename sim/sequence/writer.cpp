@@ -1,156 +1,218 @@
 #include "sim/sequence/writer.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <exception>
-#include <nlohmann/json.hpp>
+#include <fstream>
+#include <iterator>
+#include <set>
 #include <stdexcept>
 #include <system_error>
-#include <thread>
-#include <utility>
 
 #include "sim/sequence/file_writer.h"
-#include "sim/sequence/format.h"
+#include "sim/sequence/manifest.h"
 
 namespace sim {
-namespace {
-
 namespace fs = std::filesystem;
-
-void WriteFrame(const Simulator& simulator, const fs::path& folder, std::int64_t index) {
-  const Frame frame = simulator.Render(index);
-  const std::string name = FormatStamp(frame.stamp_ns) + ".png";
-  WriteNewFile(folder / "rgb" / name, EncodePng(frame.image));
-  WriteNewFile(folder / "depth" / name, EncodeDepthPng(simulator.Depth(index), frame.image.width, frame.image.height));
-}
+namespace {
 
 [[noreturn]] void Fail(const fs::path& path, const std::string& what, const std::error_code& error) {
   throw std::runtime_error(path.string() + ": " + what + ": " + error.message());
 }
 
+// Nothing is there, or nothing but a manifest that a kill left unfinished.
+bool IsEmpty(const fs::path& folder) {
+  if (!fs::exists(fs::symlink_status(folder))) return true;
+  if (!fs::is_directory(folder)) return false;
+  return std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const fs::directory_entry& entry) {
+    return entry.path().filename() == UnfinishedName(kManifestName);
+  });
+}
+
+std::span<const std::uint8_t> Bytes(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+std::string ReadText(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 }  // namespace
 
-SequenceWriter::SequenceWriter(const Simulator& simulator, const fs::path& folder, std::int64_t first,
-                               std::int64_t last, int jobs, const std::string& program_version)
-    : simulator_(simulator),
-      folder_(fs::absolute(folder).lexically_normal()),
-      first_(first),
-      last_(last),
-      next_(first),
-      jobs_(jobs),
-      version_(program_version) {
-  if (first < 0 || last <= first || last > simulator.frame_count()) {
-    throw std::invalid_argument("frames " + std::to_string(first) + ":" + std::to_string(last) +
-                                " are not a range within 0:" + std::to_string(simulator.frame_count()));
-  }
+SequenceWriter::SequenceWriter(const Simulator& simulator, const fs::path& folder, const SequenceContent& content,
+                               int jobs, Start start)
+    : simulator_(simulator), folder_(fs::absolute(folder).lexically_normal()), content_(content) {
+  Validate(content_, simulator_);
   if (jobs < 1) throw std::invalid_argument("jobs must be at least 1, not " + std::to_string(jobs));
   if (!folder_.has_filename()) folder_ = folder_.parent_path();
-  if (fs::exists(fs::symlink_status(folder_)) && !(fs::is_directory(folder_) && fs::is_empty(folder_))) {
+  try {
+    Prepare(start);
+  } catch (...) {
+    Stop();
+    throw;
+  }
+  for (std::int64_t index = content_.first; index < content_.last; ++index) {
+    if (!whole_.contains(index)) left_.push_back(index);
+  }
+  found_ = told_ = static_cast<std::int64_t>(whole_.size());
+  const std::size_t count = std::min(static_cast<std::size_t>(jobs), left_.size());
+  for (std::size_t i = 0; i < count; ++i) threads_.emplace_back([this] { Work(); });
+}
+
+SequenceWriter::~SequenceWriter() { Stop(); }
+
+void SequenceWriter::Prepare(Start start) {
+  const bool empty = IsEmpty(folder_);
+  if (start == Start::fresh && !empty) {
     throw std::runtime_error(folder_.string() + ": is there already and not an empty folder");
   }
-  for (fs::path parent = folder_.parent_path(); !fs::exists(parent); parent = parent.parent_path()) {
-    made_parents_.push_back(parent);
-  }
+  for (fs::path path = folder_; !fs::exists(path); path = path.parent_path()) made_.push_back(path);
   std::error_code error;
-  fs::create_directories(folder_.parent_path(), error);
-  // Another name for each process, and none that is there: what a killed one left behind is not taken over.
-  for (int n = 0; !error; ++n) {
-    std::string name = ".";
-    name.append(folder_.filename().string()).append(".partial-").append(std::to_string(getpid())).append("-");
-    temporary_ = folder_.parent_path() / name.append(std::to_string(n));
-    if (fs::create_directory(temporary_, error)) break;
+  fs::create_directories(folder_, error);
+  if (error) Fail(folder_, "cannot make this folder", error);
+  lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    throw std::runtime_error(folder_.string() + ": another process is writing it");
   }
-  for (const char* name : {"rgb", "depth"}) {
-    if (!error) fs::create_directory(temporary_ / name, error);
+  if (!empty) {
+    whole_ = ReadJournal(folder_);
+    std::erase_if(whole_,
+                  [&](const auto& frame) { return frame.first < content_.first || frame.first >= content_.last; });
+    RequireSame(whole_);
   }
-  if (error) {
-    Discard();
-    Fail(folder_, "cannot make this folder", error);
+  ours_ = true;
+  // The manifest comes first: it says what a folder is that a kill leaves behind.
+  const std::vector<StreamFile> lists = WholeFiles(simulator_, content_, content_.last - content_.first);
+  for (const StreamFile& file : lists) {
+    if (file.path == kManifestName) WriteFile(folder_ / file.path, file.bytes);
+  }
+  std::string journal;
+  for (const auto& [index, files] : whole_) journal += JournalLine(index, files);
+  WriteFile(folder_ / kJournalName, Bytes(journal));
+  for (const StreamFile& file : lists) WriteFile(folder_ / file.path, file.bytes);
+  RemoveStrays(lists);
+}
+
+// The last frame is rendered once more: the manifest knows the names of meshes, textures and recorded motion only.
+void SequenceWriter::RequireSame(const Journal& whole) const {
+  const fs::path file = folder_ / kManifestName;
+  if (!fs::exists(file))
+    throw std::invalid_argument(file.string() + ": is not there, so this is no sequence to resume");
+  std::vector<std::string> differences;
+  try {
+    differences = ManifestDifferences(ReadText(file), Manifest(simulator_, content_, 0));
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(file.string() + ": " + error.what() + "; remove the folder to start anew");
+  }
+  if (!differences.empty()) {
+    std::string text = folder_.string() + ": holds another sequence, which cannot be resumed as this one:";
+    for (const std::string& difference : differences) text += "\n  " + difference;
+    throw std::invalid_argument(text);
+  }
+  if (whole.empty()) return;
+  const auto& [index, files] = *whole.rbegin();
+  const std::vector<JournalFile> again = Summed(FrameFiles(simulator_, content_, index));
+  for (std::size_t i = 0; i < std::max(files.size(), again.size()); ++i) {
+    if (i < files.size() && i < again.size() && files[i] == again[i]) continue;
+    throw std::invalid_argument((folder_ / (i < files.size() ? files[i] : again[i]).path).string() +
+                                ": does not come out the same again: a file that the scenario names (mesh, texture, "
+                                "trajectory) has changed, or the program; remove the folder to start anew");
   }
 }
 
-SequenceWriter::~SequenceWriter() { Discard(); }
-
-void SequenceWriter::Discard() {
+// Everything goes but the lists, the journal and the frames that are whole. All that is there is ours: the manifest is,
+// and the caller asked for this folder.
+void SequenceWriter::RemoveStrays(const std::vector<StreamFile>& lists) const {
+  std::set<fs::path> kept = {folder_ / kJournalName};
+  for (const StreamFile& file : lists) kept.insert(folder_ / file.path);
+  for (const auto& [index, files] : whole_) {
+    for (const JournalFile& file : files) kept.insert(folder_ / file.path);
+  }
+  std::vector<fs::path> strays;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_)) {
+    if (!entry.is_directory() && !kept.contains(entry.path())) strays.push_back(entry.path());
+  }
   std::error_code ignored;
-  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
-  for (const fs::path& parent : made_parents_) fs::remove(parent, ignored);
-  temporary_.clear();
-  made_parents_.clear();
+  for (const fs::path& stray : strays) fs::remove(stray, ignored);
 }
 
-std::int64_t SequenceWriter::WriteBatch() {
-  const std::size_t count = static_cast<std::size_t>(std::min<std::int64_t>(jobs_, last_ - next_));
-  std::vector<std::exception_ptr> errors(count);
-  const auto write = [&](std::size_t i) {
-    try {
-      WriteFrame(simulator_, temporary_, next_ + static_cast<std::int64_t>(i));
-    } catch (...) {
-      errors[i] = std::current_exception();
+void SequenceWriter::Work() {
+  for (;;) {
+    std::int64_t index = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      if (stop_ || left_.empty()) return;
+      index = left_.front();
+      left_.pop_front();
     }
-  };
+    try {
+      const std::vector<StreamFile> files = FrameFiles(simulator_, content_, index);
+      for (const StreamFile& file : files) WriteFile(folder_ / file.path, file.bytes);
+      const std::vector<JournalFile> summed = Summed(files);
+      const std::lock_guard lock(mutex_);
+      AppendToFile(folder_ / kJournalName, Bytes(JournalLine(index, summed)));
+      whole_[index] = summed;
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!error_) error_ = std::current_exception();
+      stop_ = true;
+    }
+    changed_.notify_one();
+  }
+}
+
+std::int64_t SequenceWriter::Wait() {
+  std::unique_lock lock(mutex_);
+  const auto whole = [&] { return static_cast<std::int64_t>(whole_.size()); };
+  changed_.wait(lock, [&] { return error_ || whole() > told_ || whole() == content_.last - content_.first; });
+  if (error_) std::rethrow_exception(error_);
+  const std::int64_t more = whole() - told_;
+  told_ = whole();
+  return more;
+}
+
+std::int64_t SequenceWriter::Stop() noexcept {
   {
-    std::vector<std::jthread> threads;  // each is joined at the end of the block
-    for (std::size_t i = 1; i < count; ++i) threads.emplace_back(write, i);
-    if (count > 0) write(0);
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
   }
-  for (const std::exception_ptr& error : errors) {
-    if (!error) continue;
-    Discard();
-    std::rethrow_exception(error);
+  threads_.clear();  // joins
+  std::int64_t whole = 0;
+  while (whole_.contains(content_.first + whole)) ++whole;
+  if (over_) return whole;
+  over_ = true;
+  try {
+    KeepOnly(whole);
+  } catch (...) {
+    // What is left is what a kill would have left: resuming mends it.
   }
-  next_ += static_cast<std::int64_t>(count);
-  return static_cast<std::int64_t>(count);
+  if (lock_ >= 0) close(lock_);
+  return whole;
+}
+
+void SequenceWriter::KeepOnly(std::int64_t whole) {
+  if (whole == content_.last - content_.first) return;
+  if (whole == 0) {
+    if (ours_) fs::remove_all(folder_);
+    std::error_code not_empty;
+    for (const fs::path& path : made_) fs::remove(path, not_empty);
+    return;
+  }
+  if (!ours_) return;
+  whole_.erase(whole_.lower_bound(content_.first + whole), whole_.end());
+  const std::vector<StreamFile> lists = WholeFiles(simulator_, content_, whole);
+  RemoveStrays(lists);
+  for (const StreamFile& file : lists) ShortenFile(folder_ / file.path, file.bytes);
 }
 
 void SequenceWriter::Finish() {
-  if (next_ != last_) throw std::logic_error("SequenceWriter::Finish: frames are left to be written");
-  std::string rgb = "# timestamp filename\n", depth = rgb, truth = "# timestamp tx ty tz qx qy qz qw\n",
-              velocity = "# timestamp vx vy vz wx wy wz\n";
-  for (std::int64_t index = first_; index < last_; ++index) {
-    const std::int64_t stamp_ns = simulator_.StampNs(index);
-    const Truth at_stamp = simulator_.TruthAt(index);
-    const std::string stamp = FormatStamp(stamp_ns);
-    rgb.append(stamp).append(" rgb/").append(stamp).append(".png\n");
-    depth.append(stamp).append(" depth/").append(stamp).append(".png\n");
-    truth += TruthLine(stamp_ns, at_stamp);
-    velocity += VelocityLine(stamp_ns, at_stamp);
+  if (static_cast<std::int64_t>(whole_.size()) != content_.last - content_.first) {
+    throw std::logic_error("SequenceWriter::Finish: frames are left to be written");
   }
-  const Scenario& scenario = simulator_.scenario();
-  const CameraParams& camera = simulator_.camera().params();
-  const nlohmann::ordered_json manifest = {
-      {"program", version_},
-      {"seed", scenario.seed},
-      {"frame_range", {first_, last_}},
-      {"frames", last_ - first_},
-      {"camera",
-       {{"width", camera.width},
-        {"height", camera.height},
-        {"fx", camera.fx},
-        {"fy", camera.fy},
-        {"cx", camera.cx},
-        {"cy", camera.cy},
-        {"distortion",
-         {{"k1", camera.k1}, {"k2", camera.k2}, {"p1", camera.p1}, {"p2", camera.p2}, {"k3", camera.k3}}}}},
-      {"scenario",
-       scenario.resolved.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json::parse(scenario.resolved)}};
-  try {
-    WriteNewFile(temporary_ / "rgb.txt", rgb);
-    WriteNewFile(temporary_ / "depth.txt", depth);
-    WriteNewFile(temporary_ / "groundtruth.txt", truth);
-    WriteNewFile(temporary_ / "velocity.txt", velocity);
-    WriteNewFile(temporary_ / "camera.yaml", CameraYaml(camera));
-    WriteNewFile(temporary_ / "manifest.json", manifest.dump(2) + "\n");
-    std::error_code error;
-    fs::rename(temporary_, folder_, error);  // onto an empty folder, too
-    if (error) Fail(folder_, "cannot give the sequence this name", error);
-  } catch (...) {
-    Discard();
-    throw;
-  }
-  temporary_.clear();
-  made_parents_.clear();
+  Stop();
 }
 
 }  // namespace sim

@@ -1,48 +1,85 @@
-// Purpose: a simulated sequence on disk, in the layout of docs/sequence_format.md.
+// Purpose: a simulated sequence on disk, frame by frame, so that whatever stops the work leaves frames that can be used
+//          and gone on from.
 #pragma once
 
+#include <condition_variable>
 #include <cstdint>
+#include <deque>
+#include <exception>
 #include <filesystem>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "sim/sequence/content.h"
+#include "sim/sequence/journal.h"
 #include "sim/simulator.h"
 
 namespace sim {
 
-// Usage:  SequenceWriter writer(simulator, folder, first, last, jobs, version);
-//         while (writer.WriteBatch() > 0) {}      // progress in between
+// Usage:  SequenceWriter writer(simulator, folder, content, jobs, SequenceWriter::Start::fresh);
+//         while (writer.Wait() > 0) {}      // progress in between
 //         writer.Finish();
-// The folder appears under its name when it is whole; until then everything is under a hidden name beside it, and is
-// removed when something goes wrong or the writer is destroyed before Finish. Bytes do not depend on `jobs`, and those
-// of a frame not on the range.
+// First come the lists, the truth and the manifest of all frames, then the frames, `jobs` of them at the same time:
+// one is encoded while another is rendered. Every file appears whole under its name, and the journal tells which frames
+// are whole. The bytes do not depend on `jobs`, on the order of the frames or on how often the work was stopped, and
+// those of a frame not on the range.
 class SequenceWriter {
  public:
-  // Frames [first, last) of the simulator, which must outlive the writer. `folder` must not exist or be empty. Throws
-  // std::invalid_argument for a bad range or jobs < 1, std::runtime_error naming the folder when it cannot be made.
-  SequenceWriter(const Simulator& simulator, const std::filesystem::path& folder, std::int64_t first, std::int64_t last,
-                 int jobs, const std::string& program_version);
-  ~SequenceWriter();
+  enum class Start { fresh, resume };
+
+  // `simulator` must outlive the writer. The folder is made; fresh, it must not be there or be empty. To resume, it
+  // must be of the same content: what is whole is kept, the rest is made again; nothing there is the same as fresh.
+  // Throws std::invalid_argument for a bad content or jobs < 1, and where the folder is not of this content, naming
+  // every setting that differs, or the frame that does not come out as it is there (a mesh or texture has changed).
+  // std::runtime_error when the folder cannot be made or written, or another process is writing it.
+  SequenceWriter(const Simulator& simulator, const std::filesystem::path& folder, const SequenceContent& content,
+                 int jobs, Start start);
+  ~SequenceWriter();  // Stop, unless finished
   SequenceWriter(const SequenceWriter&) = delete;
   SequenceWriter& operator=(const SequenceWriter&) = delete;
 
-  // Renders and writes the next frames, `jobs` of them at the same time, and returns how many; 0 when none is left.
-  // Memory is that of `jobs` frames. Throws std::runtime_error naming the file that could not be written, and why.
-  std::int64_t WriteBatch();
+  // How many frames were whole at the start: 0 if fresh.
+  std::int64_t found() const { return found_; }
 
-  // Writes the lists, the truth, the camera and the manifest, and gives the folder its name. Throws like WriteBatch;
-  // std::logic_error while frames are left.
+  // Waits until frames are whole that were neither at the start nor when it was last asked, and returns how many. 0:
+  // all are. Throws std::runtime_error naming a file that could not be written, and why.
+  std::int64_t Wait();
+
+  // Ends the work. The folder then holds the first frames up to the first that is not whole, and its lists name exactly
+  // these; a folder without a frame goes, with the parents that were made for it. Returns the number of frames. It
+  // needs no room on the disk and does not throw.
+  std::int64_t Stop() noexcept;
+
+  // When all frames are whole: the sequence is complete but for the journal, which is to go (kJournalName) when the
+  // folder has its last name. Throws std::logic_error while frames are left.
   void Finish();
 
  private:
-  void Discard();
+  void Prepare(Start start);
+  void RequireSame(const Journal& whole) const;
+  void KeepOnly(std::int64_t whole);
+  void RemoveStrays(const std::vector<StreamFile>& lists) const;
+  void Work();
 
   const Simulator& simulator_;
-  std::filesystem::path folder_, temporary_;
-  std::vector<std::filesystem::path> made_parents_;  // innermost first
-  std::int64_t first_, last_, next_;
-  int jobs_;
-  std::string version_;
+  std::filesystem::path folder_;
+  SequenceContent content_;
+  std::vector<std::filesystem::path> made_;  // the folder and its parents, where they were not there; innermost first
+  int lock_ = -1;                            // the folder, open
+  std::int64_t found_ = 0;
+  bool ours_ = false;  // what is in the folder
+  bool over_ = false;
+
+  std::mutex mutex_;  // of what follows
+  std::condition_variable changed_;
+  std::deque<std::int64_t> left_;
+  Journal whole_;
+  std::int64_t told_ = 0;
+  bool stop_ = false;
+  std::exception_ptr error_;
+  std::vector<std::jthread> threads_;
 };
 
 }  // namespace sim

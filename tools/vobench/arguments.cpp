@@ -96,19 +96,25 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
 
   RenderOptions render;
   CLI::App& render_command =
-      AddCommand(app, "render", "Render a scenario into a sequence: images with exact truth, in TUM RGB-D layout",
+      AddCommand(app, "render", "Render a scenario into a sequence: images with exact truth",
                  "vobench render scenes/room.yaml -o room --frames 0:30 --set sensor.exposure='5 ms'");
   render_command.add_option("SCENARIO", render.scenario, "Scenario file (scenes/*.yaml)")->required();
   render_command.add_option("-o,--output", render.output, "Sequence folder to make")->required()->type_name("SEQ");
   render_command.add_option("--frames", raw.frames, "Only the frames A to B-1; each is the same as in the whole")
       ->type_name("A:B");
+  render_command.add_option("--format", render.format, "Layout: tum (TUM RGB-D), euroc (EuRoC, ASL) or icl (ICL-NUIM)")
+      ->check(CLI::IsMember({"tum", "euroc", "icl"}))
+      ->capture_default_str();
+  render_command.add_flag("--resume", render.resume,
+                          "Go on with SEQ.partial, which an interrupted run left; the bytes are those of one run");
+  render_command.add_flag("--preview", render.preview, "Also preview.mp4 and contact.jpg, for the eye");
   const CLI::Option* render_seed = AddSeed(render_command, raw, "Seed instead of the scenario's");
   AddJobs(render_command, raw);
   AddSet(render_command, raw, "camera.width=320");
 
   TrackOptions track;
   CLI::App& track_command =
-      AddCommand(app, "track", "Run an odometry on a sequence (TUM RGB-D layout) from disk",
+      AddCommand(app, "track", "Run an odometry on a sequence (TUM RGB-D, EuRoC or ICL-NUIM layout) from disk",
                  "vobench track rgbd_dataset_freiburg1_xyz -o out/xyz --camera freiburg1 --seed 3");
   track_command.add_option("SEQ", track.sequence, "Sequence folder")->required();
   track_command.add_option("-o,--output", track.output, "Result folder to make")->required()->type_name("OUT");

@@ -22,6 +22,9 @@ struct RenderOptions {
   std::filesystem::path output;
   std::optional<std::pair<std::int64_t, std::int64_t>> frames;  // [first, last)
   std::optional<std::uint64_t> seed;                            // instead of the scenario's
+  std::string format = "tum";                                   // or euroc, icl
+  bool resume = false;                                          // go on with what an earlier run left
+  bool preview = false;                                         // a video and a contact sheet, too
   int jobs = 1;
   Overrides overrides;
 };

@@ -18,7 +18,7 @@ struct NotConsistent : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The work was stopped by a signal (exit 1); what was half done has been removed.
+// The work was stopped by a signal (exit 1); the message says what was kept.
 struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

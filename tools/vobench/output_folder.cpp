@@ -12,18 +12,17 @@ namespace vobench {
 namespace fs = std::filesystem;
 namespace {
 
-// "out/demo/" and "out/./demo" name the same folder: out/demo.
-fs::path Clean(const fs::path& path) {
-  fs::path clean = fs::absolute(path).lexically_normal();
-  return clean.has_filename() ? clean : clean.parent_path();
-}
-
 // Hidden, beside its final name (the same file system, so that renaming is atomic), and another for each process.
 fs::path Beside(const fs::path& path, const std::string& what) {
   return path.parent_path() / fmt::format(".{}.{}-{}", path.filename().string(), what, getpid());
 }
 
 }  // namespace
+
+fs::path CleanPath(const fs::path& path) {
+  fs::path clean = fs::absolute(path).lexically_normal();
+  return clean.has_filename() ? clean : clean.parent_path();
+}
 
 void RequireReplaceable(const fs::path& folder, const std::string& marker, const std::set<std::string>& ours) {
   if (!fs::exists(fs::symlink_status(folder))) return;
@@ -43,7 +42,7 @@ void RequireReplaceable(const fs::path& folder, const std::string& marker, const
 }
 
 OutputFolder::OutputFolder(const fs::path& final_path, const std::string& marker, const std::set<std::string>& ours)
-    : final_(Clean(final_path)) {
+    : final_(CleanPath(final_path)) {
   RequireReplaceable(final_, marker, ours);
   for (fs::path parent = final_.parent_path(); !fs::exists(parent); parent = parent.parent_path()) {
     made_parents_.insert(made_parents_.begin(), parent);
@@ -72,19 +71,21 @@ void OutputFolder::Discard() {
 }
 
 void OutputFolder::Commit() {
-  const fs::path old = Beside(final_, "old");
-  const bool replaces = fs::exists(fs::symlink_status(final_));
-  std::error_code error;
-  if (replaces) fs::rename(final_, old, error);
+  ReplaceFolder(temporary_, final_);
+  committed_ = true;
+}
+
+void ReplaceFolder(const fs::path& from, const fs::path& to) {
+  const fs::path old = Beside(to, "old");
+  const bool replaces = fs::exists(fs::symlink_status(to));
+  std::error_code error, ignored;
+  if (replaces) fs::rename(to, old, error);
   if (!error) {
-    fs::rename(temporary_, final_, error);
-    std::error_code ignored;
-    if (error && replaces) fs::rename(old, final_, ignored);
+    fs::rename(from, to, error);
+    if (error && replaces) fs::rename(old, to, ignored);
   }
   if (error)
-    throw std::runtime_error(fmt::format("{}: cannot give the result this name: {}", final_.string(), error.message()));
-  committed_ = true;
-  std::error_code ignored;
+    throw std::runtime_error(fmt::format("{}: cannot give the result this name: {}", to.string(), error.message()));
   if (replaces) fs::remove_all(old, ignored);
 }
 

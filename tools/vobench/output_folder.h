@@ -37,6 +37,13 @@ class OutputFolder {
   bool committed_ = false;
 };
 
+// Gives the folder `from` the name `to`, beside it; one that was there goes. Throws std::runtime_error, leaving the old
+// one in place.
+void ReplaceFolder(const std::filesystem::path& from, const std::filesystem::path& to);
+
+// "out/demo/" and "out/./demo" name the same folder: .../out/demo.
+std::filesystem::path CleanPath(const std::filesystem::path& path);
+
 // Throws BadInput unless `folder` is absent, empty or one of ours, as above. For checking before long work.
 void RequireReplaceable(const std::filesystem::path& folder, const std::string& marker,
                         const std::set<std::string>& ours);

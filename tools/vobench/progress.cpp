@@ -19,17 +19,22 @@ double Seconds(std::chrono::steady_clock::duration duration) { return std::chron
 
 }  // namespace
 
-Progress::Progress(std::string what, std::int64_t total)
+Progress::Progress(std::string what, std::int64_t total, std::int64_t done)
     : what_(std::move(what)),
       total_(total),
+      before_(done),
+      done_(done),
       terminal_(isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()),
       drawn_(start_) {
-  if (!terminal_) fmt::print(stderr, "{}: {} frames\n", what_, total_);
+  if (terminal_) return;
+  fmt::print(stderr, "{}: {} frames", what_, total_);
+  if (before_ > 0) fmt::print(stderr, ", {} of them are there", before_);
+  fmt::print(stderr, "\n");
 }
 
 Progress::~Progress() {
-  if (terminal_ && done_ > 0) std::fputc('\n', stderr);
+  if (terminal_ && done_ > before_) std::fputc('\n', stderr);
 }
 
 void Progress::Step(std::int64_t count) {
@@ -51,7 +56,7 @@ void Progress::Draw() const {
   }
   constexpr int kWidth = 30;
   const int filled = total_ > 0 ? static_cast<int>(kWidth * done_ / total_) : kWidth;
-  const double left = elapsed / static_cast<double>(done_) * static_cast<double>(total_ - done_);
+  const double left = elapsed / static_cast<double>(done_ - before_) * static_cast<double>(total_ - done_);
   const std::string time = done_ == total_ ? "took " + Duration(elapsed) : Duration(left) + " left";
   fmt::print(stderr, "\r{} [{}{}] {}/{}, {}    ", what_, std::string(static_cast<std::size_t>(filled), '#'),
              std::string(static_cast<std::size_t>(kWidth - filled), '.'), done_, total_, time);

@@ -9,7 +9,8 @@ namespace vobench {
 
 class Progress {
  public:
-  Progress(std::string what, std::int64_t total);
+  // `done` of the total were done before.
+  Progress(std::string what, std::int64_t total, std::int64_t done = 0);
   ~Progress();  // ends the bar's line
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -22,7 +23,8 @@ class Progress {
 
   std::string what_;
   std::int64_t total_;
-  std::int64_t done_ = 0;
+  std::int64_t before_;
+  std::int64_t done_;
   bool terminal_;
   std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point drawn_;

@@ -6,12 +6,15 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "sim/sequence/file_writer.h"
 #include "sim/sequence/format.h"
+#include "sim/sequence/manifest.h"
 #include "tests/unit/sim/small_world.h"
 
 namespace sim {
@@ -19,13 +22,34 @@ namespace {
 
 using testing::HasSubstr;
 
-void Write(const Simulator& simulator, const std::filesystem::path& folder, std::int64_t first, std::int64_t last,
-           int jobs) {
-  SequenceWriter writer(simulator, folder, first, last, jobs, "test 1");
-  std::int64_t written = 0;
-  while (const std::int64_t batch = writer.WriteBatch()) written += batch;
-  EXPECT_EQ(written, last - first);
+using Start = SequenceWriter::Start;
+namespace fs = std::filesystem;
+
+SequenceContent Frames(std::int64_t first, std::int64_t last, Layout layout = Layout::tum) {
+  return {layout, first, last, "test 1"};
+}
+
+void Write(const Simulator& simulator, const fs::path& folder, const SequenceContent& content, int jobs,
+           Start start = Start::fresh) {
+  SequenceWriter writer(simulator, folder, content, jobs, start);
+  std::int64_t written = writer.found();
+  while (const std::int64_t more = writer.Wait()) written += more;
+  EXPECT_EQ(written, content.last - content.first);
   writer.Finish();
+  fs::remove(folder / kJournalName);
+}
+
+void Write(const Simulator& simulator, const fs::path& folder, std::int64_t first, std::int64_t last, int jobs) {
+  Write(simulator, folder, Frames(first, last), jobs);
+}
+
+std::string Refusal(const Simulator& simulator, const fs::path& folder, const SequenceContent& content) {
+  try {
+    SequenceWriter(simulator, folder, content, 1, Start::resume);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
 }
 
 TEST(Format, TextsByHand) {
@@ -53,6 +77,20 @@ TEST(Format, DepthIsInFifthsOfAMillimetre) {
   EXPECT_EQ(decoded.at<std::uint16_t>(1, 0), 65535);
   EXPECT_EQ(decoded.at<std::uint16_t>(1, 1), 0) << "beyond 13.1 m";
   EXPECT_EQ(decoded.at<std::uint16_t>(1, 2), 0);
+}
+
+// 12 bits are the highest of 16.
+TEST(Format, WideImagesKeepTheirWhite) {
+  Image image;
+  image.width = 2;
+  image.height = 1;
+  image.channels = 1;
+  image.bits = 12;
+  image.wide = {1, 4095};
+  const cv::Mat decoded = cv::imdecode(EncodePng(image), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(decoded.type(), CV_16UC1);
+  EXPECT_EQ(decoded.at<std::uint16_t>(0, 0), 16);
+  EXPECT_EQ(decoded.at<std::uint16_t>(0, 1), 65520);
 }
 
 TEST(SequenceWriter, WritesTheFormat) {
@@ -125,24 +163,191 @@ TEST(SequenceWriter, TheSameBytesWithAnyJobsAndAnyRange) {
   EXPECT_THAT(one.at("groundtruth.txt"), HasSubstr(truth.substr(truth.find('\n') + 1)));
 }
 
-TEST(SequenceWriter, AnUnfinishedSequenceLeavesNothing) {
+TEST(SequenceWriter, AFrameIsAFunctionOfItsIndex) {
+  const SmallWorld world;
+  const Scenario scenario = LoadScenario(world.scenario());
+  const Simulator forward(scenario, 1), backward(scenario, 2);
+  std::map<std::int64_t, std::vector<JournalFile>> sums;
+  for (std::int64_t k = 0; k < 9; ++k) sums[k] = Summed(FrameFiles(forward, Frames(0, 9), k));
+  for (std::int64_t k = 8; k >= 0; --k) EXPECT_TRUE(Summed(FrameFiles(backward, Frames(3, 9), k)) == sums[k]) << k;
+}
+
+// Writing fails in the middle: a limit on the size of files, between that of the lists and that of the images, stands
+// for a full disk. One message that names a file; without a frame there is nothing worth keeping.
+TEST(SequenceWriter, WithoutAFrameNothingIsLeft) {
   const SmallWorld world;
   const Simulator simulator(LoadScenario(world.scenario()), 1);
-  const auto before = Tree(world.folder.path());
-  {
-    SequenceWriter writer(simulator, world.folder.path() / "a" / "b" / "sequence", 0, 9, 1, "test");
-    writer.WriteBatch();
-    EXPECT_THROW(writer.Finish(), std::logic_error);
-    EXPECT_FALSE(std::filesystem::exists(world.folder.path() / "a" / "b" / "sequence"));
+  Write(simulator, world.folder.path() / "whole", 0, 9, 1);
+  std::size_t list = 0, image = 1u << 20;
+  for (const auto& [name, bytes] : Tree(world.folder.path() / "whole")) {
+    if (name.starts_with("rgb/")) image = std::min(image, bytes.size());
+    if (!name.ends_with(".png")) list = std::max(list, bytes.size());
   }
+  ASSERT_LT(list, image);
+  const auto before = Tree(world.folder.path());
+  rlimit old{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{list, old.rlim_max};
+  std::string message;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  try {
+    Write(simulator, world.folder.path() / "a" / "b" / "sequence", 0, 9, 2);
+  } catch (const std::runtime_error& error) {
+    message = error.what();
+  }
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &old), 0);
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_THAT(message, HasSubstr(".png: cannot be written: File too large"));
   EXPECT_TRUE(before == Tree(world.folder.path()));
+}
+
+TEST(SequenceWriter, IsNotFinishedWhileFramesAreLeft) {
+  const SmallWorld world;
+  const Simulator simulator(LoadScenario(world.scenario()), 1);
+  SequenceWriter writer(simulator, world.folder.path() / "sequence", Frames(0, 9), 1, Start::fresh);
+  if (writer.Stop() == 9) GTEST_SKIP() << "it was faster";
+  EXPECT_THROW(writer.Finish(), std::logic_error);
+}
+
+// A folder that is stopped names exactly its frames, can be read, and grows to the same bytes.
+TEST(SequenceWriter, AStoppedSequenceIsAPrefixAndResumesToTheSameBytes) {
+  const SmallWorld world;
+  const Simulator simulator(LoadScenario(world.scenario()), 2);
+  for (const Layout layout : {Layout::tum, Layout::euroc, Layout::icl}) {
+    const fs::path whole = world.folder.path() / ("whole_" + ToString(layout));
+    const fs::path folder = world.folder.path() / ("stopped_" + ToString(layout));
+    Write(simulator, whole, Frames(0, 9, layout), 2);
+    std::int64_t frames = 0;
+    {
+      SequenceWriter writer(simulator, folder, Frames(0, 9, layout), 2, Start::fresh);
+      while (frames < 3) frames += writer.Wait();
+      frames = writer.Stop();
+    }
+    ASSERT_GE(frames, 2);
+    auto left = Tree(folder);
+    left.erase(kJournalName);
+    if (frames < 9) {
+      const fs::path prefix = world.folder.path() / ("prefix_" + ToString(layout));
+      Write(simulator, prefix, Frames(0, frames, layout), 1);
+      auto expected = Tree(prefix);
+      EXPECT_EQ(nlohmann::json::parse(left.at("manifest.json"))["frames"], frames);
+      EXPECT_EQ(nlohmann::json::parse(left.at("manifest.json"))["frame_range"], (nlohmann::json{0, 9}));
+      left.erase("manifest.json");
+      expected.erase("manifest.json");
+      EXPECT_TRUE(left == expected) << ToString(layout);
+    }
+    Write(simulator, folder, Frames(0, 9, layout), 2, Start::resume);
+    EXPECT_TRUE(Tree(folder) == Tree(whole)) << ToString(layout);
+  }
+}
+
+// What a kill or a loss of power can leave: a truncated frame, one with wrong bytes, a missing one, strays, a journal
+// whose last line breaks off, lists that name too much or nothing.
+TEST(SequenceWriter, ResumesFromDamage) {
+  const SmallWorld world;
+  const Simulator simulator(LoadScenario(world.scenario()), 2);
+  const fs::path whole = world.folder.path() / "whole";
+  Write(simulator, whole, 0, 9, 2);
+  const auto expected = Tree(whole);
+  const auto frame = [&](std::int64_t k) { return FormatStamp(simulator.StampNs(k)) + ".png"; };
+  const std::vector<std::pair<std::string, std::function<void(const fs::path&)>>> damages = {
+      {"truncated", [&](const fs::path& f) { fs::resize_file(f / "rgb" / frame(8), 100); }},
+      {"empty", [&](const fs::path& f) { fs::resize_file(f / "depth" / frame(7), 0); }},
+      {"other bytes",
+       [&](const fs::path& f) {
+         std::fstream file(f / "rgb" / frame(3), std::ios::in | std::ios::out | std::ios::binary);
+         file.seekp(60);
+         file << "xxxx";
+       }},
+      {"missing", [&](const fs::path& f) { fs::remove(f / "depth" / frame(0)); }},
+      {"strays",
+       [&](const fs::path& f) {
+         std::ofstream(f / "rgb" / UnfinishedName(frame(8))) << "half";
+         std::ofstream(f / UnfinishedName("rgb.txt")) << "half";
+       }},
+      {"torn journal",
+       [&](const fs::path& f) { fs::resize_file(f / kJournalName, fs::file_size(f / kJournalName) - 20); }},
+      {"no journal", [&](const fs::path& f) { fs::remove(f / kJournalName); }},
+      {"torn lists", [&](const fs::path& f) { fs::resize_file(f / "rgb.txt", 70); }},
+      {"no lists", [&](const fs::path& f) { fs::remove(f / "groundtruth.txt"); }},
+      {"nothing but a torn manifest",
+       [&](const fs::path& f) {
+         fs::remove_all(f);
+         fs::create_directory(f);
+         std::ofstream(f / UnfinishedName("manifest.json")) << "{";
+       }},
+      {"nothing", [&](const fs::path& f) { fs::remove_all(f); }},
+  };
+  for (const auto& [name, damage] : damages) {
+    const fs::path folder = world.folder.path() / "damaged";
+    fs::remove_all(folder);
+    {
+      SequenceWriter writer(simulator, folder, Frames(0, 9), 2, Start::fresh);
+      while (writer.Wait() > 0) {
+      }
+      writer.Finish();
+    }
+    const auto before = Tree(folder);
+    damage(folder);
+    ASSERT_FALSE(fs::exists(folder) && Tree(folder) == before) << name;
+    Write(simulator, folder, Frames(0, 9), 2, Start::resume);
+    EXPECT_TRUE(Tree(folder) == expected) << name;
+  }
+}
+
+TEST(SequenceWriter, ResumesOnlyTheSame) {
+  const SmallWorld world;
+  const Scenario scenario = LoadScenario(world.scenario());
+  const Simulator simulator(scenario, 1);
+  const fs::path folder = world.folder.path() / "sequence";
+  {
+    SequenceWriter writer(simulator, folder, Frames(0, 9), 1, Start::fresh);
+    writer.Wait();
+  }
+  const auto before = Tree(folder);
+  const Simulator other(LoadScenario(world.scenario(), {{"sensor.exposure", "2 ms"}, {"seed", "7"}}), 1);
+  const std::string refusal = Refusal(other, folder, Frames(0, 9));
+  EXPECT_THAT(refusal, HasSubstr("scenario.sensor.exposure is 0.01 there, not 0.002"));
+  EXPECT_THAT(refusal, HasSubstr("seed is 5 there, not 7"));
+  EXPECT_THAT(Refusal(simulator, folder, Frames(0, 8)), HasSubstr("frame_range.1 is 9 there, not 8"));
+  EXPECT_THAT(Refusal(simulator, folder, {Layout::tum, 0, 9, "test 2"}),
+              HasSubstr("program is \"test 1\" there, not \"test 2\""));
+  EXPECT_THAT(Refusal(simulator, folder, Frames(0, 9, Layout::icl)), HasSubstr("layout is \"tum\" there"));
+  EXPECT_TRUE(Tree(folder) == before) << "a refusal touches nothing";
+  // The wall gets other colours: its name in the scenario is the same.
+  std::string ply = WallPly();
+  ply.replace(ply.rfind(" -2 ") + 4, 2, "77");
+  for (std::size_t at = 0; (at = ply.find(" -2 1", at)) != std::string::npos; at += 5) ply[at + 4] = '2';
+  world.folder.Write("wall.ply", ply);
+  const Simulator repainted(scenario, 1);
+  EXPECT_THAT(Refusal(repainted, folder, Frames(0, 9)), HasSubstr("does not come out the same again"));
+  EXPECT_TRUE(Tree(folder) == before);
+  EXPECT_EQ(Refusal(simulator, folder, Frames(0, 9)), "accepted");
+  fs::remove(folder / "manifest.json");
+  EXPECT_THAT(Refusal(simulator, folder, Frames(0, 9)), HasSubstr("manifest.json: is not there"));
+  std::ofstream(folder / "manifest.json") << "{\"seed\": ";
+  EXPECT_THAT(Refusal(simulator, folder, Frames(0, 9)), HasSubstr("manifest.json: is not a JSON object"));
+}
+
+TEST(SequenceWriter, OneProcessAtATime) {
+  const SmallWorld world;
+  const Simulator simulator(LoadScenario(world.scenario()), 1);
+  const fs::path folder = world.folder.path() / "sequence";
+  const SequenceWriter writer(simulator, folder, Frames(0, 9), 1, Start::fresh);
+  try {
+    SequenceWriter(simulator, folder, Frames(0, 9), 1, Start::resume);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("another process is writing it"));
+  }
 }
 
 TEST(SequenceWriter, RefusesWhatIsThereAndBadRanges) {
   const SmallWorld world;
   const Simulator simulator(LoadScenario(world.scenario()), 1);
-  const auto make = [&](const std::filesystem::path& folder, std::int64_t first, std::int64_t last, int jobs) {
-    SequenceWriter(simulator, folder, first, last, jobs, "test");
+  const auto make = [&](const fs::path& folder, std::int64_t first, std::int64_t last, int jobs) {
+    SequenceWriter(simulator, folder, Frames(first, last), jobs, Start::fresh);
   };
   EXPECT_THROW(make(world.folder.path(), 0, 1, 1), std::runtime_error) << "not empty";
   EXPECT_THROW(make(world.scenario(), 0, 1, 1), std::runtime_error) << "a file";
@@ -157,51 +362,46 @@ TEST(SequenceWriter, RefusesWhatIsThereAndBadRanges) {
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("wall.yaml/below/a file: cannot make this folder: Not a directory"));
   }
-  EXPECT_FALSE(std::filesystem::exists(folder));
-  std::filesystem::create_directory(folder);
+  EXPECT_FALSE(fs::exists(folder));
+  fs::create_directory(folder);
   Write(simulator, folder, 0, 1, 1);
-  EXPECT_TRUE(std::filesystem::exists(folder / "rgb.txt")) << "an empty folder is filled";
+  EXPECT_TRUE(fs::exists(folder / "rgb.txt")) << "an empty folder is filled";
 }
 
-// Writing fails in the middle: a limit on the size of files stands for a full disk. One message that names a file,
-// nothing left.
-TEST(SequenceWriter, AFullDiskLeavesNothing) {
+TEST(SequenceWriter, RefusesWhatALayoutCannotSay) {
   const SmallWorld world;
-  const Simulator simulator(LoadScenario(world.scenario()), 1);
-  const auto before = Tree(world.folder.path());
-  rlimit old{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
-  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit small{700, old.rlim_max};
-  std::string message;
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-  try {
-    Write(simulator, world.folder.path() / "out" / "sequence", 0, 9, 2);
-  } catch (const std::runtime_error& error) {
-    message = error.what();
-  }
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &old), 0);
-  std::signal(SIGXFSZ, old_handler);
-  EXPECT_THAT(message, HasSubstr(".png: cannot be written: File too large"));
-  EXPECT_TRUE(before == Tree(world.folder.path()));
+  const Simulator fast(LoadScenario(world.scenario(), {{"time.rate", "60 Hz"}, {"sensor.exposure", "5 ms"}}), 1);
+  EXPECT_THAT(Refusal(fast, world.folder.path() / "a", Frames(0, 9, Layout::icl)), HasSubstr("time.rate = 60 Hz"));
+  const Simulator lens(LoadScenario(world.scenario(), {{"camera.distortion.k3", "0.01"}}), 1);
+  EXPECT_THAT(Refusal(lens, world.folder.path() / "a", Frames(0, 9, Layout::euroc)), HasSubstr("k3 = 0.01"));
 }
 
 TEST(FileWriter, SaysWhyItCannotWrite) {
   const TemporaryFolder folder;
-  const auto message = [](const std::filesystem::path& path, const std::string& text) {
+  const auto message = [](const fs::path& path, const std::string& text) {
     try {
-      WriteNewFile(path, text);
+      WriteFile(path, TextFile("", text).bytes);
     } catch (const std::runtime_error& error) {
       return std::string(error.what());
     }
     return std::string("no error");
   };
-  const auto file = folder.path() / "a.txt";
+  const auto file = folder.path() / "new" / "a.txt";
   EXPECT_EQ(message(file, "abc"), "no error");
   EXPECT_EQ(ReadWhole(file), "abc");
-  EXPECT_EQ(message(file, "x"), file.string() + ": cannot be written: File exists");
-  EXPECT_EQ(message(folder.path() / "none" / "a", "x"),
-            (folder.path() / "none" / "a").string() + ": cannot be written: No such file or directory");
+  EXPECT_EQ(message(file, "x"), "no error");
+  EXPECT_EQ(ReadWhole(file), "x") << "replaced";
+  EXPECT_EQ(message(file / "b", "x"), (file / "b").string() + ": cannot be written: Not a directory");
+  EXPECT_EQ(Tree(folder.path()).size(), 2u) << "no unfinished file is left";
+}
+
+// Where nothing new can be written, a file can be shortened all the same.
+TEST(FileWriter, ShortensWithoutRoom) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.Write("list.txt", "one\ntwo\nthree\n");
+  fs::create_directory(folder.path() / UnfinishedName("list.txt"));  // in the way of a new file
+  ShortenFile(file, TextFile("", "one\n").bytes);
+  EXPECT_EQ(ReadWhole(file), "one\n");
 }
 
 }  // namespace

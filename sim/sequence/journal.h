@@ -1,0 +1,38 @@
+// Purpose: which frames of an unfinished sequence are whole: a text file with a line for each, written after the files
+//          of the frame. What has no line, or is not as its line says, is rendered again.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/sequence/stream_file.h"
+
+namespace sim {
+
+inline constexpr char kJournalName[] = "frames.journal";
+
+struct JournalFile {
+  std::string path;
+  std::uint64_t size = 0;
+  std::uint32_t crc32 = 0;  // as in zlib, PNG, zip
+
+  friend bool operator==(const JournalFile&, const JournalFile&) = default;
+};
+
+// By the frame's index.
+using Journal = std::map<std::int64_t, std::vector<JournalFile>>;
+
+std::vector<JournalFile> Summed(std::span<const StreamFile> files);
+
+// "index path size crc32 path size crc32 ...", with the newline.
+std::string JournalLine(std::int64_t index, std::span<const JournalFile> files);
+
+// The frames of which every file in `folder` has the size and the sum that the journal there tells; each is read whole.
+// A line that breaks off or makes no sense counts for nothing. No journal: no frames.
+Journal ReadJournal(const std::filesystem::path& folder);
+
+}  // namespace sim

@@ -1,0 +1,160 @@
+#include "sim/sequence/layout.h"
+
+#include <stdexcept>
+
+#include "sim/sequence/format.h"
+#include "tools/settings/quantity.h"
+
+namespace sim {
+namespace {
+
+using Frames = std::span<const StampedTruth>;
+
+// ---- TUM RGB-D
+
+std::vector<StreamFile> TumLists(Frames frames) {
+  std::string rgb = "# timestamp filename\n", depth = rgb, truth = "# timestamp tx ty tz qx qy qz qw\n",
+              velocity = "# timestamp vx vy vz wx wy wz\n";
+  for (const StampedTruth& frame : frames) {
+    const std::string stamp = FormatStamp(frame.stamp_ns);
+    const FrameNames names = NamesOf(Layout::tum, frame.index, frame.stamp_ns);
+    rgb.append(stamp).append(" ").append(names.image).append("\n");
+    depth.append(stamp).append(" ").append(names.depth).append("\n");
+    truth += TruthLine(frame.stamp_ns, frame.truth);
+    velocity += VelocityLine(frame.stamp_ns, frame.truth);
+  }
+  return {TextFile("rgb.txt", rgb), TextFile("depth.txt", depth), TextFile("groundtruth.txt", truth),
+          TextFile("velocity.txt", velocity)};
+}
+
+// ---- EuRoC: the body B is the camera, so T_BS is one, and the truth is of the camera.
+
+constexpr char kOne[] =
+    "T_BS:\n  cols: 4\n  rows: 4\n  data: [1.0, 0.0, 0.0, 0.0,\n         0.0, 1.0, 0.0, 0.0,\n"
+    "         0.0, 0.0, 1.0, 0.0,\n         0.0, 0.0, 0.0, 1.0]\n";
+
+// Kalibr's names.
+std::string EurocLens(const CameraParams& c) {
+  const auto number = settings::FormatNumber;
+  const bool fisheye = c.lens == Lens::fisheye;
+  return std::string("distortion_model: ") + (fisheye ? "equidistant" : "radial-tangential") +
+         "\ndistortion_coefficients: [" + number(c.k1) + ", " + number(c.k2) + ", " + number(fisheye ? c.k3 : c.p1) +
+         ", " + number(fisheye ? c.k4 : c.p2) + "]\n";
+}
+
+std::string EurocCamera(const std::string& comment, const Scenario& scenario) {
+  const auto number = settings::FormatNumber;
+  const CameraParams& c = scenario.camera;
+  return "sensor_type: camera\ncomment: " + comment + "\n" + kOne + "rate_hz: " + number(scenario.time.rate_hz) +
+         "\nresolution: [" + std::to_string(c.width) + ", " + std::to_string(c.height) +
+         "]\ncamera_model: pinhole\nintrinsics: [" + number(c.fx) + ", " + number(c.fy) + ", " + number(c.cx) + ", " +
+         number(c.cy) + "]  # fu, fv, cu, cv\n" + EurocLens(c);
+}
+
+std::string EurocTruthLine(const StampedTruth& frame) {
+  const Truth& t = frame.truth;
+  std::string line = std::to_string(frame.stamp_ns);
+  for (const double number : {t.p_WC.x, t.p_WC.y, t.p_WC.z, t.q_WC.w, t.q_WC.x, t.q_WC.y, t.q_WC.z, t.v_WC.x, t.v_WC.y,
+                              t.v_WC.z, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}) {
+    line += "," + FormatDecimal(number);
+  }
+  return line + "\n";
+}
+
+std::vector<StreamFile> EurocLists(const Scenario& scenario, Frames frames) {
+  std::string images = "#timestamp [ns],filename\n";
+  std::string truth =
+      "#timestamp,p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z [],v_RS_R_x [m s^-1],"
+      "v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],b_w_RS_S_x [rad s^-1],b_w_RS_S_y [rad s^-1],b_w_RS_S_z [rad s^-1],"
+      "b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],b_a_RS_S_z [m s^-2]\n";
+  for (const StampedTruth& frame : frames) {
+    const std::string stamp = std::to_string(frame.stamp_ns);
+    images.append(stamp).append(",").append(stamp).append(".png\n");
+    truth += EurocTruthLine(frame);
+  }
+  return {
+      TextFile("mav0/body.yaml", "comment: The body frame is that of cam0.\n"),
+      TextFile("mav0/cam0/data.csv", images),
+      TextFile("mav0/cam0/sensor.yaml", EurocCamera("simulated camera", scenario)),
+      TextFile("mav0/depth0/data.csv", images),
+      TextFile(
+          "mav0/depth0/sensor.yaml",
+          EurocCamera("depth of cam0's pixels along its optical axis, 16 bits, metres x 5000, 0 = none", scenario)),
+      TextFile("mav0/state_groundtruth_estimate0/data.csv", truth),
+      TextFile("mav0/state_groundtruth_estimate0/sensor.yaml",
+               std::string("sensor_type: visual-inertial\ncomment: exact; its world has gravity along -y\n") + kOne)};
+}
+
+// ---- ICL-NUIM: the truth belongs to a camera with fy < 0, whose y points up: mirrored in y, S T S with
+// S = diag(1, -1, 1).
+
+Truth MirroredInY(Truth truth) {
+  truth.p_WC.y = -truth.p_WC.y;
+  truth.q_WC.x = -truth.q_WC.x;  // a rotation's axis is a pseudo-vector
+  truth.q_WC.z = -truth.q_WC.z;
+  return truth;
+}
+
+std::vector<StreamFile> IclLists(Frames frames) {
+  std::string associations, truth;
+  for (const StampedTruth& frame : frames) {
+    const std::string index = std::to_string(frame.index);
+    const FrameNames names = NamesOf(Layout::icl, frame.index, frame.stamp_ns);
+    associations += index + " " + names.depth + " " + index + " " + names.image + "\n";
+    const std::string line = TruthLine(0, MirroredInY(frame.truth));
+    truth += index + line.substr(line.find(' '));
+  }
+  return {TextFile("associations.txt", associations), TextFile("traj.gt.freiburg", truth)};
+}
+
+}  // namespace
+
+std::string ToString(Layout layout) {
+  switch (layout) {
+    case Layout::tum:
+      return "tum";
+    case Layout::euroc:
+      return "euroc";
+    case Layout::icl:
+      return "icl";
+  }
+  throw std::logic_error("no such layout");
+}
+
+std::vector<std::string> Problems(Layout layout, const Scenario& scenario) {
+  if (layout == Layout::euroc && scenario.camera.lens == Lens::radial_tangential && scenario.camera.k3 != 0) {
+    return {"the euroc layout has no place for the camera's k3 = " + settings::FormatNumber(scenario.camera.k3)};
+  }
+  if (layout == Layout::icl && scenario.time.rate_hz != 30) {
+    return {"the icl layout has no time stamps, its frames are 1/30 s apart: time.rate = " +
+            settings::FormatNumber(scenario.time.rate_hz) + " Hz must be 30 Hz"};
+  }
+  return {};
+}
+
+FrameNames NamesOf(Layout layout, std::int64_t index, std::int64_t stamp_ns) {
+  switch (layout) {
+    case Layout::tum:
+      return {"rgb/" + FormatStamp(stamp_ns) + ".png", "depth/" + FormatStamp(stamp_ns) + ".png"};
+    case Layout::euroc:
+      return {"mav0/cam0/data/" + std::to_string(stamp_ns) + ".png",
+              "mav0/depth0/data/" + std::to_string(stamp_ns) + ".png"};
+    case Layout::icl:
+      return {"rgb/" + std::to_string(index) + ".png", "depth/" + std::to_string(index) + ".png"};
+  }
+  throw std::logic_error("no such layout");
+}
+
+std::vector<StreamFile> Lists(Layout layout, const Scenario& scenario, Frames frames) {
+  switch (layout) {
+    case Layout::tum:
+      return TumLists(frames);
+    case Layout::euroc:
+      return EurocLists(scenario, frames);
+    case Layout::icl:
+      return IclLists(frames);
+  }
+  throw std::logic_error("no such layout");
+}
+
+}  // namespace sim

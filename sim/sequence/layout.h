@@ -1,0 +1,40 @@
+// Purpose: where the parts of a sequence lie, and how its lists are written: docs/sequence_format.md has the layouts.
+// Source:  TUM RGB-D benchmark (Sturm et al. 2012); EuRoC MAV dataset in ASL's format (Burri et al. 2016); ICL-NUIM
+//          (Handa et al. 2014).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/scenario/scenario.h"
+#include "sim/sequence/stream_file.h"
+#include "sim/truth.h"
+
+namespace sim {
+
+enum class Layout { tum, euroc, icl };
+
+std::string ToString(Layout layout);
+
+// What the scenario has and the layout has no place for, one sentence each: EuRoC's camera has no k3, ICL-NUIM's time
+// is index / 30 s.
+std::vector<std::string> Problems(Layout layout, const Scenario& scenario);
+
+// Of a frame's pictures, relative to the sequence's folder.
+struct FrameNames {
+  std::string image, depth;
+};
+FrameNames NamesOf(Layout layout, std::int64_t index, std::int64_t stamp_ns);
+
+struct StampedTruth {
+  std::int64_t index = 0;
+  std::int64_t stamp_ns = 0;
+  Truth truth;
+};
+// Lists of frames and truth, with a line for each of `frames`, which are in order of time; and what the layout says of
+// its sensors.
+std::vector<StreamFile> Lists(Layout layout, const Scenario& scenario, std::span<const StampedTruth> frames);
+
+}  // namespace sim

@@ -1,0 +1,132 @@
+// PNG files hold what was put in: OpenCV (libpng) reads the same samples, pngcheck finds no fault.
+#include "sim/sequence/png.h"
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <numeric>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <tuple>
+
+#include "sim/random/random.h"
+#include "sim/sequence/png_filter.h"
+#include "tests/unit/sim/temporary_folder.h"
+
+namespace sim {
+namespace {
+
+enum class Picture { zeros, ramp, noise };
+
+// Sample i of a picture, from 0 to `largest`.
+std::uint32_t Sample(Picture picture, std::uint32_t i, std::uint32_t largest) {
+  if (picture == Picture::zeros) return 0;
+  if (picture == Picture::ramp) return i * 3 % (largest + 1);
+  return RandomWords(1, Stream::ray_jitter, i, 0, 0)[0] % (largest + 1);
+}
+
+template <class T>
+std::vector<T> Samples(Picture picture, int count) {
+  std::vector<T> samples;
+  for (int i = 0; i < count; ++i) {
+    samples.push_back(static_cast<T>(Sample(picture, static_cast<std::uint32_t>(i), std::numeric_limits<T>::max())));
+  }
+  return samples;
+}
+
+// As OpenCV reads it: red first, samples in order.
+template <class T>
+std::vector<T> Decoded(const std::vector<std::uint8_t>& png, int width, int height, int channels) {
+  cv::Mat image = cv::imdecode(png, cv::IMREAD_UNCHANGED);
+  EXPECT_EQ(image.cols, width);
+  EXPECT_EQ(image.rows, height);
+  EXPECT_EQ(image.type(), CV_MAKETYPE(cv::DataType<T>::depth, channels));
+  if (image.empty()) return {};
+  if (channels == 3) cv::cvtColor(image, image, cv::COLOR_BGR2RGB);
+  return {image.ptr<T>(), image.ptr<T>() + image.total() * static_cast<std::size_t>(channels)};
+}
+
+template <class T>
+void ExpectTheSameBack(int width, int height, int channels, Picture picture) {
+  const std::vector<T> samples = Samples<T>(picture, width * height * channels);
+  const auto png = EncodePng(width, height, channels, std::span<const T>(samples));
+  EXPECT_TRUE(Decoded<T>(png, width, height, channels) == samples)
+      << width << " x " << height << ", " << channels << " channels of " << sizeof(T) << " bytes";
+}
+
+TEST(Png, GivesBackEverySample) {
+  for (const auto& [width, height] :
+       {std::pair{1, 1}, {1, 7}, {7, 1}, {2, 2}, {3, 5}, {31, 33}, {640, 3}, {333, 250}}) {
+    for (const int channels : {1, 3}) {
+      for (const Picture picture : {Picture::zeros, Picture::ramp, Picture::noise}) {
+        ExpectTheSameBack<std::uint8_t>(width, height, channels, picture);
+        ExpectTheSameBack<std::uint16_t>(width, height, channels, picture);
+      }
+    }
+  }
+}
+
+TEST(Png, OtherReadersFindNoFault) {
+  if (std::system("pngcheck -h > /dev/null 2>&1") != 0) GTEST_SKIP() << "pngcheck is not installed";
+  const TemporaryFolder folder;
+  const auto write = [&](const std::string& name, const std::vector<std::uint8_t>& png) {
+    return folder.Write(name, std::string(png.begin(), png.end())).string();
+  };
+  const auto faults = [](const std::string& file) {
+    return std::system(("pngcheck -q '" + file + "' > /dev/null").c_str());
+  };
+  for (const int channels : {1, 3}) {
+    const auto eight = EncodePng(31, 33, channels, Samples<std::uint8_t>(Picture::noise, 31 * 33 * channels));
+    const auto sixteen = EncodePng(1, 9, channels, Samples<std::uint16_t>(Picture::ramp, 9 * channels));
+    EXPECT_EQ(faults(write("eight.png", eight)), 0);
+    EXPECT_EQ(faults(write("sixteen.png", sixteen)), 0);
+    auto spoiled = eight;
+    spoiled[spoiled.size() / 2] ^= 1;
+    EXPECT_NE(faults(write("spoiled.png", spoiled)), 0) << "the check can fail";
+  }
+}
+
+// By the words of the standard, with ints: a second, slow way to the same.
+TEST(Png, PaethFilterIsThatOfTheStandard) {
+  constexpr std::size_t kSize = 1000;
+  const std::vector<std::uint8_t> row = Samples<std::uint8_t>(Picture::noise, kSize), above(row.rbegin(), row.rend());
+  for (const std::size_t pixel : {1u, 2u, 3u, 6u}) {
+    std::vector<std::uint8_t> filtered(kSize);
+    PaethFilter(row.data(), above.data(), kSize, pixel, filtered.data());
+    for (std::size_t i = 0; i < kSize; ++i) {
+      const int a = i >= pixel ? row[i - pixel] : 0, b = above[i], c = i >= pixel ? above[i - pixel] : 0;
+      const int p = a + b - c;
+      const int pa = std::abs(p - a), pb = std::abs(p - b), pc = std::abs(p - c);
+      const int predicted = pa <= pb && pa <= pc ? a : pb <= pc ? b : c;
+      ASSERT_EQ(filtered[i], static_cast<std::uint8_t>(row[i] - predicted)) << i << ", pixel " << pixel;
+    }
+  }
+}
+
+// The same bytes on every machine with SSE4.2: these sums came from AVX-512, AVX2, AVX and SSE4.2 alike.
+TEST(Png, BytesAreKnown) {
+  const auto sum = [](const std::vector<std::uint8_t>& bytes) {  // FNV-1a
+    return std::accumulate(bytes.begin(), bytes.end(), std::uint64_t{14695981039346656037u},
+                           [](std::uint64_t h, std::uint8_t byte) { return (h ^ byte) * 1099511628211u; });
+  };
+#if defined(__x86_64__)
+  if (!__builtin_cpu_supports("sse4.2")) GTEST_SKIP() << "this processor has no SSE4.2: other bytes, the same pixels";
+  EXPECT_EQ(sum(EncodePng(333, 250, 3, Samples<std::uint8_t>(Picture::ramp, 333 * 250 * 3))), 5388120096553819688u);
+  EXPECT_EQ(sum(EncodePng(333, 250, 3, Samples<std::uint8_t>(Picture::noise, 333 * 250 * 3))), 5674564659292357986u);
+  EXPECT_EQ(sum(EncodePng(640, 480, 1, Samples<std::uint16_t>(Picture::ramp, 640 * 480))), 2433663373468705531u);
+#else
+  GTEST_SKIP() << "known for x86-64 only";
+#endif
+}
+
+TEST(Png, RefusesWhatIsNoPicture) {
+  const std::vector<std::uint8_t> six(6);
+  EXPECT_THROW(EncodePng(0, 6, 1, six), std::invalid_argument);
+  EXPECT_THROW(EncodePng(6, -1, 1, six), std::invalid_argument);
+  EXPECT_THROW(EncodePng(3, 1, 2, six), std::invalid_argument);
+  EXPECT_THROW(EncodePng(2, 2, 1, six), std::invalid_argument);
+  EXPECT_NO_THROW(EncodePng(2, 1, 3, six));
+}
+
+}  // namespace
+}  // namespace sim
