@@ -11,6 +11,7 @@
 #include "sim/motion/make.h"
 #include "sim/random/random.h"
 #include "sim/render/ray_tracer.h"
+#include "sim/render/surface_tracer.h"
 #include "sim/scenario/stamps.h"
 #include "sim/sensor/auto_exposure.h"
 #include "sim/sensor/exposure.h"
@@ -54,6 +55,8 @@ struct Simulator::Parts {
     options.rays_per_time_sample = s.render.rays_per_time_sample;
     options.jobs = Threads(jobs);
     renderer = MakeRayTracer(scene, options);
+    if (renderer->surfaces() == nullptr) exact = MakeRayTracer(scene, options);
+    for (const Mesh& mesh : scene.meshes) mesh_names.push_back(mesh.name);
     if (s.sensor.auto_exposure.on) Meter();
   }
 
@@ -98,6 +101,8 @@ struct Simulator::Parts {
   std::vector<std::string> warnings;
   std::unique_ptr<Renderer> renderer;
   std::vector<ExposureSetting> settings;  // by frame; empty: always the scenario's
+  std::unique_ptr<Renderer> exact;  // where the renderer cannot be asked what a pixel sees
+  std::vector<std::string> mesh_names;
   mutable tbb::task_arena arena;
 };
 
@@ -110,6 +115,11 @@ std::int64_t Simulator::frame_count() const { return parts_->frames; }
 const Camera& Simulator::camera() const { return parts_->camera; }
 const Scenario& Simulator::scenario() const { return parts_->scenario; }
 const std::vector<std::string>& Simulator::warnings() const { return parts_->warnings; }
+const Trajectory& Simulator::trajectory() const { return *parts_->trajectory; }
+const SurfaceTracer& Simulator::surfaces() const {
+  return *(parts_->exact ? parts_->exact : parts_->renderer)->surfaces();
+}
+const std::vector<std::string>& Simulator::mesh_names() const { return parts_->mesh_names; }
 
 std::int64_t Simulator::StampNs(std::int64_t index) const { return sim::StampNs(index, parts_->scenario.time); }
 

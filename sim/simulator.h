@@ -15,6 +15,8 @@
 
 namespace sim {
 
+class SurfaceTracer;
+
 struct Frame {
   std::int64_t index = 0;
   std::int64_t stamp_ns = 0;  // mid-exposure
@@ -46,6 +48,13 @@ class Simulator {
   Truth TruthAt(std::int64_t index) const;
   // Z in the camera frame [m] at each pixel's centre at the stamp, rows from the top; 0: nothing there.
   std::vector<float> Depth(std::int64_t index) const;
+
+  // For the truth streams (sim/truth): how the camera moves, and what each pixel sees. Both live as long as the
+  // simulator.
+  const Trajectory& trajectory() const;
+  const SurfaceTracer& surfaces() const;
+  // Of the world's meshes, as SurfaceTracer::MeshOf counts them.
+  const std::vector<std::string>& mesh_names() const;
 
   // Frames 0, 1, ... one after the other; none after the last.
   std::optional<Frame> Next();

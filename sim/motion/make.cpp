@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "sim/motion/path.h"
 #include "sim/motion/recorded.h"
 #include "sim/motion/sampled.h"
 #include "sim/motion/spline.h"
@@ -14,6 +15,7 @@ std::unique_ptr<Trajectory> MakeTrajectory(const MotionDescription& motion, std:
   if (const auto* sampled = std::get_if<SampledMotion>(&motion)) {
     return std::make_unique<SampledTrajectory>(*sampled, seed, last_stamp_s + margin_s);
   }
+  if (const auto* path = std::get_if<PathMotion>(&motion)) return std::make_unique<PathTrajectory>(*path);
   if (const auto* recorded = std::get_if<RecordedMotion>(&motion))
     return MakeRecordedTrajectory(*recorded, last_stamp_s);
   auto trajectory = std::make_unique<SplineTrajectory>(std::get<ScriptedMotion>(motion).keys);

@@ -37,6 +37,19 @@ glm::dvec3 Drawn(const glm::dvec3& mean, double sigma, std::uint64_t seed, std::
   return drawn;
 }
 
+// Of the walls: within the margin, critically damped towards its inner edge while the camera is beyond or goes
+// outwards.
+glm::dvec3 Push(const SoftWalls& walls, const glm::dvec3& p, const glm::dvec3& v) {
+  glm::dvec3 a(0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double over = std::max(p[axis] - (walls.high[axis] - walls.margin), 0.0) +
+                        std::min(p[axis] - (walls.low[axis] + walls.margin), 0.0);
+    if (over == 0) continue;
+    a[axis] = -walls.rate * walls.rate * over - (over * v[axis] > 0 ? 2 * walls.rate * v[axis] : 0.0);
+  }
+  return a;
+}
+
 void Check(const SampledMotion& m, double end_s) {
   std::ostringstream problems;
   const auto require = [&](bool ok, const char* name, double value, const char* rule) {
@@ -51,6 +64,18 @@ void Check(const SampledMotion& m, double end_s) {
           "must lie between 0 and 0.2 / knot_step");
   require(m.orientation_return >= 0 && m.orientation_return * m.knot_step_s <= 0.2, "orientation_return",
           m.orientation_return, "must lie between 0 and 0.2 / knot_step");
+  if (m.walls) {
+    const SoftWalls& w = *m.walls;
+    require(w.margin > 0, "walls.margin", w.margin, "must be positive");
+    require(w.rate > 0 && w.rate * m.knot_step_s <= 0.2, "walls.rate", w.rate,
+            "must lie between 0 and 0.2 / knot_step");
+    for (int axis = 0; axis < 3; ++axis) {
+      require(w.high[axis] - w.low[axis] >= 2 * w.margin, "walls.high", w.high[axis],
+              "must lie at least two margins above walls.low");
+      require(m.start.p_WC[axis] >= w.low[axis] && m.start.p_WC[axis] <= w.high[axis], "start position",
+              m.start.p_WC[axis], "must lie within the walls");
+    }
+  }
   require(end_s >= 0 && end_s / m.knot_step_s < (1 << 25), "duration", end_s,
           "must be at least 0 and less than 2^25 knots");
   require(glm::length(m.start.q_WC) > 0, "orientation of length", glm::length(m.start.q_WC), "must not be 0");
@@ -61,7 +86,7 @@ void Check(const SampledMotion& m, double end_s) {
 }
 
 Motion GoOn(const Motion& from, double dt) {
-  Motion to = from;
+  Motion to{from.pose, from.v_WC, from.w_WC_C};  // without acceleration
   to.pose.p_WC += dt * from.v_WC;
   to.pose.q_WC = glm::normalize(from.pose.q_WC * Exp(dt * from.w_WC_C));
   return to;
@@ -83,7 +108,8 @@ SampledTrajectory::SampledTrajectory(const SampledMotion& m, std::uint64_t seed,
     const Noise moved = Draw(seed, Stream::position_noise, k, m.position_noise, h);
     const Noise turned = Draw(seed, Stream::orientation_noise, k, m.orientation_noise, h);
     const double r = m.position_return, s = m.orientation_return;
-    const glm::dvec3 a = -r * r * (x.pose.p_WC - start.p_WC) - 2 * r * x.v_WC;
+    glm::dvec3 a = -r * r * (x.pose.p_WC - start.p_WC) - 2 * r * x.v_WC;
+    if (m.walls) a += Push(*m.walls, x.pose.p_WC, x.v_WC);
     const glm::dvec3 b = -s * s * Log(glm::conjugate(start.q_WC) * x.pose.q_WC) - 2 * s * x.w_WC_C;
     x.pose.p_WC += h * x.v_WC + h * h / 2 * a + moved.n1;
     x.v_WC += h * a + moved.n2;
@@ -94,7 +120,7 @@ SampledTrajectory::SampledTrajectory(const SampledMotion& m, std::uint64_t seed,
 }
 
 Motion SampledTrajectory::At(double t_s) const {
-  if (t_s <= 0) return GoOn(knots_.front(), t_s);
+  if (t_s < 0) return GoOn(knots_.front(), t_s);
   const double last = step_s_ * static_cast<double>(knots_.size() - 1);
   if (t_s >= last) return GoOn(knots_.back(), t_s - last);
   const std::size_t k = std::min(static_cast<std::size_t>(t_s / step_s_), knots_.size() - 2);
@@ -105,11 +131,13 @@ Motion SampledTrajectory::At(double t_s) const {
   // has 1 - h01.
   const double h01 = u * u * (3 - 2 * u), h10 = u * (1 - u) * (1 - u), h11 = u * u * (u - 1);
   const double d01 = 6 * u * (1 - u), d10 = (1 - u) * (1 - 3 * u), d11 = u * (3 * u - 2);
+  const double e01 = 6 - 12 * u, e10 = 6 * u - 4, e11 = 6 * u - 2;  // second derivatives
 
   Motion motion;
   const glm::dvec3 moved = to.pose.p_WC - from.pose.p_WC;
   motion.pose.p_WC = from.pose.p_WC + h01 * moved + h * (h10 * from.v_WC + h11 * to.v_WC);
   motion.v_WC = d01 / h * moved + d10 * from.v_WC + d11 * to.v_WC;
+  motion.a_WC = e01 / (h * h) * moved + (e10 * from.v_WC + e11 * to.v_WC) / h;
 
   // The same for the rotation vector from the earlier knot, whose slope at the later one is J_r^-1 w.
   const glm::dvec3 turned = Log(glm::conjugate(from.pose.q_WC) * to.pose.q_WC);
@@ -118,6 +146,8 @@ Motion SampledTrajectory::At(double t_s) const {
   const glm::dvec3 rate = d01 / h * turned + d10 * from.w_WC_C + d11 * slope;
   motion.pose.q_WC = glm::normalize(from.pose.q_WC * Exp(phi));
   motion.w_WC_C = RightJacobianTimes(phi, rate);
+  const glm::dvec3 bend = e01 / (h * h) * turned + (e10 * from.w_WC_C + e11 * slope) / h;
+  motion.alpha_WC_C = RightJacobianTimes(phi, bend) + RightJacobianRateTimes(phi, rate, rate);
   return motion;
 }
 

@@ -30,9 +30,14 @@ namespace sim {
 // long run the standard deviations are sigma / (2 r^1.5) of a position and sigma / (2 r^0.5) of a velocity per axis,
 // and for small angles of the orientation.
 //
+// Soft walls change the model within their margin only: beyond its inner edge by s, -rate^2 s is added to an axis's
+// acceleration, and -2 rate v while it moves outwards. One who comes at speed v gets v / (e rate) far, so that margins
+// of rate times the usual speed keep the camera in; a wall is soft, and noise large enough pushes through.
+//
 // Between knots the path is the cubic with the knots' values and derivatives: for the position that is its expectation
 // given the knots. What it lacks of the model there is at most sigma^2 h^3/192 of a position's and sigma^2 h/16 of a
-// velocity's variance. Velocities are the exact derivatives of this path everywhere. Frames whose rate divides 1/h lie
+// velocity's variance. Velocities and accelerations are the exact derivatives of this path everywhere; accelerations
+// jump at knots, by some 3 sigma / sqrt(h), as the model's own has no limit there. Frames whose rate divides 1/h lie
 // on knots.
 class SampledTrajectory : public Trajectory {
  public:

@@ -34,6 +34,28 @@ inline glm::dvec3 RightJacobianTimes(const glm::dvec3& phi, const glm::dvec3& d)
   return d - b * cross + c * glm::cross(phi, cross);
 }
 
+// The derivative of J_r(phi(t)) d by t while d stands still, for phi' = rate. With J_r d = d - b phi x d + c phi x (phi
+// x d) and b' = (phi . rate) times what is called db here.
+inline glm::dvec3 RightJacobianRateTimes(const glm::dvec3& phi, const glm::dvec3& rate, const glm::dvec3& d) {
+  const double a2 = glm::dot(phi, phi), a = std::sqrt(a2);
+  double b = 0.5, c = 1.0 / 6, db = 0, dc = 0;
+  if (a < 0.1) {  // the next terms are below 1e-16
+    c = 1.0 / 6 + a2 * (-1.0 / 120 + a2 * (1.0 / 5040 - a2 / 362880));
+    b = 1.0 / 2 + a2 * (-1.0 / 24 + a2 * (1.0 / 720 - a2 / 40320));
+    db = -1.0 / 12 + a2 * (1.0 / 180 + a2 * (-1.0 / 6720 + a2 / 453600));
+    dc = -1.0 / 60 + a2 * (1.0 / 1260 + a2 * (-1.0 / 60480 + a2 / 4989600));
+  } else {
+    b = (1 - std::cos(a)) / a2;
+    c = (a - std::sin(a)) / (a2 * a);
+    db = (std::sin(a) / a - 2 * b) / a2;
+    dc = (b - 3 * c) / a2;
+  }
+  const double slope = glm::dot(phi, rate);
+  const glm::dvec3 phi_d = glm::cross(phi, d);
+  return -db * slope * phi_d - b * glm::cross(rate, d) + dc * slope * glm::cross(phi, phi_d) +
+         c * (glm::cross(rate, phi_d) + glm::cross(phi, glm::cross(rate, d)));
+}
+
 // Its inverse times d, for angles below pi.
 inline glm::dvec3 InverseRightJacobianTimes(const glm::dvec3& phi, const glm::dvec3& d) {
   const double a2 = glm::dot(phi, phi), a = std::sqrt(a2);

@@ -59,20 +59,25 @@ Motion SplineTrajectory::At(double t_s) const {
   const std::size_t k = static_cast<std::size_t>(next - times_.begin()) - 1;
   const double h = times_[k + 1] - times_[k];
   const double b = (t - times_[k]) / h, a = 1 - b;
-  Numbers value, slope;
+  Numbers value, slope, bend;
   for (std::size_t i = 0; i < 7; ++i) {
     const double y0 = values_[k][i], y1 = values_[k + 1][i];
     const double m0 = second_derivatives_[k][i], m1 = second_derivatives_[k + 1][i];
     slope[i] = (y1 - y0) / h + h / 6 * ((3 * b * b - 1) * m1 - (3 * a * a - 1) * m0);
+    bend[i] = t == t_s ? a * m0 + b * m1 : 0.0;
     value[i] = a * y0 + b * y1 + h * h / 6 * ((a * a * a - a) * m0 + (b * b * b - b) * m1) + slope[i] * (t_s - t);
   }
-  const glm::dquat s(value[6], value[3], value[4], value[5]), ds(slope[6], slope[3], slope[4], slope[5]);
-  const glm::dquat rate = glm::conjugate(s) * ds;
+  const glm::dquat s(value[6], value[3], value[4], value[5]), ds(slope[6], slope[3], slope[4], slope[5]),
+      dds(bend[6], bend[3], bend[4], bend[5]);
+  const glm::dquat rate = glm::conjugate(s) * ds, rate2 = glm::conjugate(s) * dds;
   Motion motion;
   motion.pose.p_WC = {value[0], value[1], value[2]};
   motion.pose.q_WC = glm::normalize(s);
   motion.v_WC = {slope[0], slope[1], slope[2]};
   motion.w_WC_C = 2.0 / glm::dot(s, s) * glm::dvec3(rate.x, rate.y, rate.z);
+  motion.a_WC = {bend[0], bend[1], bend[2]};
+  // conj(ds/dt) ds/dt has no vector part; d|s|^2/dt = 2 rate.w.
+  motion.alpha_WC_C = 2.0 / glm::dot(s, s) * (glm::dvec3(rate2.x, rate2.y, rate2.z) - rate.w * motion.w_WC_C);
   return motion;
 }
 

@@ -1,4 +1,4 @@
-// Purpose: how the camera moves: pose and velocity at any time, in closed form.
+// Purpose: how the camera moves: pose, velocity and acceleration at any time, in closed form.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -12,10 +12,13 @@ struct Motion {
   glm::dvec3 v_WC{0.0};  // of the camera centre, in W [m/s]: the exact derivative of pose.p_WC
   glm::dvec3 w_WC_C{
       0.0};  // of C against W, in C [rad/s]: q(t + dt) = q(t) * Exp(w dt) to first order, exactly so as dt -> 0
+  glm::dvec3 a_WC{0.0};        // in W [m/s^2]: the exact derivative of v_WC
+  glm::dvec3 alpha_WC_C{0.0};  // in C [rad/s^2]: the exact derivative of w_WC_C's three numbers
 };
 
 // Time is in seconds; 0 is the stamp of the first frame. A trajectory goes on smoothly for a while before 0 and after
-// end_s() (half an exposure is all that is needed), at constant velocity.
+// end_s() (half an exposure is all that is needed), at constant velocity. Where an acceleration jumps (a sampled motion
+// at its knots), it is the one that follows.
 class Trajectory {
  public:
   virtual ~Trajectory() = default;

@@ -26,7 +26,10 @@ enum class Stream : std::uint32_t {
   point_noise = 18,    // the noise of their views,
   point_outlier = 19,  // which are replaced, and by what,
   point_loss = 20,     // and which are missing,
-  point_scale = 21     // what all their inverse depths have in common
+  point_scale = 21,    // what all their inverse depths have in common
+  imu_noise = 40,
+  imu_walk = 41,
+  landmark_place = 42  // through which pixels the tracked surface points are seen first
 };
 
 using Words = std::array<std::uint32_t, 4>;

@@ -104,6 +104,7 @@ void RayScene::AppendTextures(const Scene& scene) {
 
 void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, bool any_colors) {
   const auto first = static_cast<std::uint32_t>(positions_.size());
+  first_triangle_.push_back(static_cast<std::uint32_t>(triangles_.size()));
   positions_.insert(positions_.end(), mesh.positions.begin(), mesh.positions.end());
   const int texture = scene.materials[static_cast<std::size_t>(mesh.material)].texture;
   for (const glm::uvec3& t : mesh.triangles) {
@@ -142,6 +143,11 @@ void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, bool any_colors)
       colors_.push_back(c);
     }
   }
+}
+
+std::uint32_t RayScene::MeshOf(std::uint32_t triangle) const {
+  const auto next = std::upper_bound(first_triangle_.begin(), first_triangle_.end(), triangle);
+  return static_cast<std::uint32_t>(next - first_triangle_.begin()) - 1;
 }
 
 void RayScene::Build() {

@@ -33,6 +33,8 @@ class RayScene {
 
   // Corner 0 ... 2 of a triangle, in W.
   const glm::vec3& Corner(std::uint32_t triangle, int corner) const { return positions_[triangles_[triangle][corner]]; }
+  // Index in Scene::meshes of the mesh that a triangle is of.
+  std::uint32_t MeshOf(std::uint32_t triangle) const;
 
  private:
   void AppendTextures(const Scene& scene);
@@ -41,6 +43,7 @@ class RayScene {
 
   std::vector<glm::vec3> positions_;
   std::vector<glm::uvec3> triangles_;
+  std::vector<std::uint32_t> first_triangle_;  // of each mesh
   std::vector<TriangleShading> shading_;
   std::vector<TriangleColor> colors_;
   std::vector<MaterialShading> materials_;

@@ -10,7 +10,6 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -19,6 +18,7 @@
 #include "sim/render/packet.h"
 #include "sim/render/ray_scene.h"
 #include "sim/render/sample_pattern.h"
+#include "sim/render/surface_tracer.h"
 
 namespace sim {
 namespace {
@@ -121,6 +121,7 @@ class RayTracer final : public Renderer {
       : options_(options),
         lights_(scene.lights),
         scene_(scene),
+        surfaces_(scene_, options.jobs),
         kernel_(PacketKernel()),
         arena_(options.jobs > 0 ? options.jobs : tbb::task_arena::automatic) {}
 
@@ -151,57 +152,16 @@ class RayTracer final : public Renderer {
   }
 
   void Depth(const Camera& camera, const Pose& pose, std::vector<float>& out) const override {
-    const glm::dmat3 rotation = glm::mat3_cast(pose.q_WC);
-    out.assign(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height()), 0.0f);
-    ForEachBlock(camera, [&](int x0, int y0) {
-      const PixelBlock block = MakeBlock(camera, x0, y0, {}, nullptr);
-      glm::dvec3 ray_C[kLanes], direction[kLanes];
-      RTCRayHit16 rays{};
-      for (int i = 0; i < kLanes; ++i) {
-        ray_C[i] = ExactRay(camera, block, i, x0 + i % kBlockSide, y0 + i / kBlockSide);
-        direction[i] = rotation * ray_C[i];
-        rays.ray.org_x[i] = static_cast<float>(pose.p_WC.x);
-        rays.ray.org_y[i] = static_cast<float>(pose.p_WC.y);
-        rays.ray.org_z[i] = static_cast<float>(pose.p_WC.z);
-        rays.ray.dir_x[i] = static_cast<float>(direction[i].x);
-        rays.ray.dir_y[i] = static_cast<float>(direction[i].y);
-        rays.ray.dir_z[i] = static_cast<float>(direction[i].z);
-        rays.ray.tfar[i] = std::numeric_limits<float>::infinity();
-        rays.ray.mask[i] = 0xffffffffu;
-        rays.hit.geomID[i] = rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-      }
-      IntersectCoherent16(block.valid.v, scene_.embree(), &rays);
-      for (int i = 0; i < kLanes; ++i) {
-        if (block.valid.v[i] == 0 || rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-        const std::size_t x = static_cast<std::size_t>(x0 + i % kBlockSide),
-                          y = static_cast<std::size_t>(y0 + i / kBlockSide);
-        out[y * static_cast<std::size_t>(camera.width()) + x] = static_cast<float>(
-            ray_C[i].z * PlaneDistance(rays.hit.primID[i], pose.p_WC, direction[i], rays.ray.tfar[i]));
-      }
-    });
+    std::vector<SurfacePoint> points;
+    surfaces_.Trace(camera, pose, points);
+    out.resize(points.size());
+    std::transform(points.begin(), points.end(), out.begin(),
+                   [](const SurfacePoint& point) { return static_cast<float>(point.depth); });
   }
+
+  const SurfaceTracer* surfaces() const override { return &surfaces_; }
 
  private:
-  // Of the pixel's centre: the camera's table, then one Newton step on Project, which takes its 0.003 px to 1e-6 px.
-  static glm::dvec3 ExactRay(const Camera& camera, const PixelBlock& block, int i, int x, int y) {
-    glm::dvec3 ray(block.x.v[i], block.y.v[i], block.z.v[i]);
-    if (block.valid.v[i] == 0) return ray;
-    const glm::dvec2 miss = glm::dvec2(x, y) - camera.Project(ray);
-    const glm::dvec3 du(block.x_du.v[i], block.y_du.v[i], block.z_du.v[i]),
-        dv(block.x_dv.v[i], block.y_dv.v[i], block.z_dv.v[i]);
-    return ray + miss.x * du + miss.y * dv;
-  }
-
-  // Where on the ray, in lengths of `direction`, it meets the triangle's plane, in double: Embree's own is a float. At
-  // a grazing angle its is kept.
-  double PlaneDistance(std::uint32_t triangle, const glm::dvec3& origin, const glm::dvec3& direction,
-                       float embree) const {
-    const glm::dvec3 a(scene_.Corner(triangle, 0)), b(scene_.Corner(triangle, 1)), c(scene_.Corner(triangle, 2));
-    const glm::dvec3 normal = glm::cross(b - a, c - a);
-    const double distance = glm::dot(normal, a - origin) / glm::dot(normal, direction);
-    return std::abs(distance - embree) <= 1e-4 * embree ? distance : double{embree};
-  }
-
   // What the rows of an exposure look at: with a rolling shutter each row of blocks has samples of its own.
   struct ExposureSamples {
     int per_row = 0;
@@ -282,6 +242,7 @@ class RayTracer final : public Renderer {
   RayTracerOptions options_;
   std::vector<Light> lights_;
   RayScene scene_;
+  SurfaceTracer surfaces_;
   KernelChoice kernel_;
   mutable tbb::task_arena arena_;
 };

@@ -12,6 +12,8 @@
 
 namespace sim {
 
+class SurfaceTracer;
+
 // Results are functions of the arguments alone: not of the number of threads, of earlier calls, or of calls at the same
 // time from other threads, all of which are allowed.
 class Renderer {
@@ -28,6 +30,10 @@ class Renderer {
   // Z in the camera frame [m] of what is seen through each pixel's centre, rows from the top; 0 = nothing. `out` is
   // resized.
   virtual void Depth(const Camera& camera, const Pose& pose, std::vector<float>& out) const = 0;
+
+  // Exact queries of the geometry, as long as the renderer lives; null: this renderer has none, and a ray tracer of the
+  // same scene is to be asked.
+  virtual const SurfaceTracer* surfaces() const { return nullptr; }
 };
 
 }  // namespace sim

@@ -5,7 +5,8 @@ target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/packet_kernel.cpp
   ${CMAKE_CURRENT_LIST_DIR}/ray_scene.cpp
   ${CMAKE_CURRENT_LIST_DIR}/ray_tracer.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/sample_pattern.cpp)
+  ${CMAKE_CURRENT_LIST_DIR}/sample_pattern.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/surface_tracer.cpp)
 # The inner loop, once per instruction set; PacketKernel() picks at run time. The two maths flags change no result that we
 # use: they say that nobody reads errno or the floating-point exception flags, without which sqrt cannot be vector code.
 set(packet_flags -O3 -fno-math-errno -fno-trapping-math)

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "sim/motion/spline.h"
+#include "sim/scenario/path_reader.h"
 #include "sim/scenario/points_reader.h"
 #include "sim/scenario/pose_reader.h"
 #include "sim/sensor/sensor.h"
@@ -172,6 +173,23 @@ SampledMotion ReadSampled(Section& section) {
   const Range range{0, 0.2 / motion.knot_step_s};
   section.Read("position_return", motion.position_return, Unit::rate, range);
   section.Read("orientation_return", motion.orientation_return, Unit::rate, range);
+  section.Allow("walls");
+  if (section.Has("walls")) {
+    Section walls = section.Child("walls");
+    SoftWalls& box = motion.walls.emplace();
+    walls.RequirePresent("low");
+    walls.RequirePresent("high");
+    ReadVector(walls, "low", box.low, Unit::length);
+    ReadVector(walls, "high", box.high, Unit::length);
+    walls.Read("margin", box.margin, Unit::length, Range::Positive());
+    walls.Read("rate", box.rate, Unit::rate, range);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(box.high[axis] - box.low[axis] >= 2 * box.margin)) {
+        walls.Reject("high", "'walls': between low and high there must be two margins, along each axis");
+        break;
+      }
+    }
+  }
   return motion;
 }
 
@@ -199,6 +217,8 @@ ScriptedMotion ReadScripted(Section& section) {
   if (!good) return motion;
   try {
     SplineTrajectory{motion.keys};
+    const double pace = ReadPace(section, motion);
+    for (KeyPose& key : motion.keys) key.t_s /= pace;
   } catch (const std::invalid_argument& error) {
     section.Reject("keys", std::string("'trajectory.keys': ") + error.what());
   }
@@ -220,17 +240,28 @@ RecordedMotion ReadRecorded(Section& section, const std::filesystem::path& folde
 
 void ReadMotionAndTime(Section root, const std::filesystem::path& folder, Scenario& scenario) {
   Section section = root.Child("trajectory");
-  enum class Kind { sampled, scripted, recorded } kind = Kind::sampled;
-  const bool known = section.RequireChoice(
-      "type", kind, {{"sampled", Kind::sampled}, {"scripted", Kind::scripted}, {"recorded", Kind::recorded}});
+  enum class Kind { sampled, scripted, recorded, orbit, half_sphere, rpy, dolly } kind = Kind::sampled;
+  const bool known = section.RequireChoice("type", kind,
+                                           {{"sampled", Kind::sampled},
+                                            {"scripted", Kind::scripted},
+                                            {"recorded", Kind::recorded},
+                                            {"orbit", Kind::orbit},
+                                            {"half_sphere", Kind::half_sphere},
+                                            {"rpy", Kind::rpy},
+                                            {"dolly", Kind::dolly}});
   if (!known) {
     section.IgnoreRest();
   } else if (kind == Kind::sampled) {
     scenario.motion = ReadSampled(section);
   } else if (kind == Kind::scripted) {
     scenario.motion = ReadScripted(section);
-  } else {
+  } else if (kind == Kind::recorded) {
     scenario.motion = ReadRecorded(section, folder);
+  } else {
+    scenario.motion = ReadPath(section, kind == Kind::orbit         ? PathKind::orbit
+                                        : kind == Kind::half_sphere ? PathKind::half_sphere
+                                        : kind == Kind::rpy         ? PathKind::rpy
+                                                                    : PathKind::dolly);
   }
 
   Section time = root.Child("time");
@@ -244,6 +275,31 @@ void ReadMotionAndTime(Section root, const std::filesystem::path& folder, Scenar
   if ((has_duration || script) && std::round(frames) < 1)
     time.Reject("duration", "'time.duration': there is not one frame in it");
   if (frames > 1e7) time.Reject("duration", "'time.duration': more than ten million frames");
+}
+
+void ReadTruth(Section root, TruthParams& truth) {
+  std::vector<std::string> names;
+  for (const TruthStream stream : truth.streams) names.push_back(Name(stream));
+  if (root.Read("truth", names)) {
+    truth.streams.clear();
+    for (const std::string& name : names) {
+      const std::optional<TruthStream> stream = TruthStreamOf(name);
+      if (!stream) root.Reject("truth", "'truth': there is no '" + name + "'; there are " + TruthStreamList());
+      if (stream) truth.streams.insert(*stream);
+    }
+  }
+  root.Child("landmarks").Read("count", truth.landmarks, Range{1, 100000});
+
+  Section imu = root.Child("imu");
+  imu.Read("rate", truth.imu.rate_hz, Unit::frequency, Range{1, 100000});
+  ReadVector(imu, "position", truth.imu.T_CI.p_WC, Unit::length);
+  ReadOrientation(imu, "orientation", truth.imu.T_CI.q_WC);
+  ReadVector(imu, "gravity", truth.imu.gravity_W);
+  imu.ReadChoice("reading", truth.imu.reading, {{"instant", ImuReading::instant}, {"mean", ImuReading::mean}});
+  imu.Read("gyroscope_noise", truth.imu.gyroscope_noise, kNotNegative);
+  imu.Read("accelerometer_noise", truth.imu.accelerometer_noise, kNotNegative);
+  imu.Read("gyroscope_walk", truth.imu.gyroscope_walk, kNotNegative);
+  imu.Read("accelerometer_walk", truth.imu.accelerometer_walk, kNotNegative);
 }
 
 }  // namespace
@@ -268,6 +324,7 @@ Scenario LoadScenario(const std::filesystem::path& path,
     ReadWorld(world, folder, scenario.world);
     ReadSensor(root.Child("sensor"), scenario.time.rate_hz, scenario.sensor);
     root.Child("render").Read("rays_per_time_sample", scenario.render.rays_per_time_sample, Range{1, 256});
+    ReadTruth(root, scenario.truth);
   }
   root.Ignore("odometry");
   root.Ignore("prior");

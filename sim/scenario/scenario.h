@@ -11,6 +11,7 @@
 #include "sim/motion/description.h"
 #include "sim/sensor/camera.h"
 #include "sim/sensor/description.h"
+#include "sim/truth/description.h"
 #include "sim/world/description.h"
 #include "sim/world/point_description.h"
 
@@ -35,6 +36,7 @@ struct Scenario {
   RenderParams render;
   TimeParams time;
   MotionDescription motion;
+  TruthParams truth;
   std::string resolved;  // all settings of the above with defaults filled in, as JSON; LoadScenario reads it again
 };
 

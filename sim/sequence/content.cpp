@@ -4,6 +4,7 @@
 
 #include "sim/sequence/format.h"
 #include "sim/sequence/manifest.h"
+#include "sim/sequence/streams.h"
 
 namespace sim {
 
@@ -23,7 +24,13 @@ std::vector<StreamFile> FrameFiles(const Simulator& simulator, const SequenceCon
   const FrameNames names = NamesOf(content.layout, index, frame.stamp_ns);
   std::vector<StreamFile> files;
   files.push_back({names.image, EncodePng(frame.image)});
-  files.push_back({names.depth, EncodeDepthPng(simulator.Depth(index), frame.image.width, frame.image.height)});
+  if (content.layout == Layout::tum) {
+    for (StreamFile& file : FrameStreams(simulator, index, simulator.scenario().truth.streams)) {
+      files.push_back(std::move(file));
+    }
+  } else {
+    files.push_back({names.depth, EncodeDepthPng(simulator.Depth(index), frame.image.width, frame.image.height)});
+  }
   return files;
 }
 
@@ -33,6 +40,13 @@ std::vector<StreamFile> WholeFiles(const Simulator& simulator, const SequenceCon
     frames.push_back({index, simulator.StampNs(index), simulator.TruthAt(index)});
   }
   std::vector<StreamFile> files = Lists(content.layout, simulator.scenario(), frames);
+  if (content.layout == Layout::tum) {
+    std::erase_if(files, [](const StreamFile& file) { return file.path == "depth.txt"; });  // it is one of these:
+    for (StreamFile& file : SequenceStreams(simulator, content.first, content.first + whole,
+                                            simulator.scenario().truth.streams)) {
+      files.push_back(std::move(file));
+    }
+  }
   files.push_back(TextFile("camera.yaml", CameraYaml(simulator.camera().params())));
   files.push_back(TextFile(kManifestName, Manifest(simulator, content, whole)));
   return files;

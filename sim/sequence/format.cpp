@@ -38,6 +38,10 @@ std::string VelocityLine(std::int64_t stamp_ns, const Truth& t) {
   return Line(stamp_ns, {t.v_WC.x, t.v_WC.y, t.v_WC.z, t.w_WC_C.x, t.w_WC_C.y, t.w_WC_C.z});
 }
 
+std::string AccelerationLine(std::int64_t stamp_ns, const Truth& t) {
+  return Line(stamp_ns, {t.a_WC.x, t.a_WC.y, t.a_WC.z, t.alpha_WC_C.x, t.alpha_WC_C.y, t.alpha_WC_C.z});
+}
+
 namespace {
 
 std::string Distortion(const CameraParams& c) {

@@ -122,6 +122,11 @@ std::string ToString(Layout layout) {
 }
 
 std::vector<std::string> Problems(Layout layout, const Scenario& scenario) {
+  for (const TruthStream stream : scenario.truth.streams) {
+    if (layout == Layout::tum || stream == TruthStream::depth) continue;
+    return {"the " + ToString(layout) + " layout has no place for the truth stream " + Name(stream) +
+            "; only tum has (docs/truth.md)"};
+  }
   if (layout == Layout::euroc && scenario.camera.lens == Lens::radial_tangential && scenario.camera.k3 != 0) {
     return {"the euroc layout has no place for the camera's k3 = " + settings::FormatNumber(scenario.camera.k3)};
   }

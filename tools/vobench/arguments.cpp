@@ -90,7 +90,7 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
   app.set_version_flag("--version", "vobench " VOBENCH_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "`vobench COMMAND --help` tells more. Exit status: 0 done, 1 the work failed, 2 bad usage or input, 3 not "
+      "`vobench COMMAND --help` tells more. Exit status: 0 done, 1 the work failed or `verify` found a disagreement, 2 bad usage or input, 3 not "
       "consistent\nthough `run --require-consistent` asked for it.");
   Raw raw;
 
@@ -108,6 +108,11 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
   render_command.add_flag("--resume", render.resume,
                           "Go on with SEQ.partial, which an interrupted run left; the bytes are those of one run");
   render_command.add_flag("--preview", render.preview, "Also preview.mp4 and contact.jpg, for the eye");
+  render_command
+      .add_option("--truth", render.truth,
+                  "Truth beside poses and velocities, separated by commas: depth, depth_exr, distance, normals, flow, "
+                  "flow_backward, occlusion, surface_id, landmarks, acceleration, imu (docs/truth.md)")
+      ->type_name("NAME,...");
   const CLI::Option* render_seed = AddSeed(render_command, raw, "Seed instead of the scenario's");
   AddJobs(render_command, raw);
   AddSet(render_command, raw, "camera.width=320");
@@ -177,6 +182,12 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
   check_command.add_option("SCENARIO", check.scenario, "Scenario file (scenes/*.yaml)")->required();
   AddSet(check_command, raw, "camera.width=320");
 
+  VerifyOptions verify;
+  CLI::App& verify_command =
+      AddCommand(app, "verify", "Hold the streams of a sequence against each other: poses, depth, flow, IMU, pictures",
+                 "vobench verify room");
+  verify_command.add_option("SEQ", verify.sequence, "Sequence folder")->required();
+
   ReportOptions report;
   CLI::App& report_command =
       AddCommand(app, "report", "Make report.html anew from a result folder", "vobench report out/room");
@@ -214,6 +225,7 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
       check.overrides = raw.overrides();
       return check;
     }
+    if (asked(verify_command)) return verify;
     return report;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;

@@ -25,6 +25,7 @@ struct RenderOptions {
   std::string format = "tum";                                   // or euroc, icl
   bool resume = false;                                          // go on with what an earlier run left
   bool preview = false;                                         // a video and a contact sheet, too
+  std::optional<std::string> truth;                             // streams, separated by commas, instead of its own
   int jobs = 1;
   Overrides overrides;
 };
@@ -80,6 +81,12 @@ struct ReportOptions {
 };
 void Report(const ReportOptions& options);
 
-using Command = std::variant<RenderOptions, TrackOptions, EvaluateOptions, RunOptions, CheckOptions, ReportOptions>;
+// The streams of a sequence are held against each other. Throws Inconsistent after printing when they disagree.
+struct VerifyOptions {
+  std::filesystem::path sequence;
+};
+void Verify(const VerifyOptions& options);
+
+using Command = std::variant<RenderOptions, TrackOptions, EvaluateOptions, RunOptions, CheckOptions, ReportOptions, VerifyOptions>;
 
 }  // namespace vobench

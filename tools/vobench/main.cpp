@@ -17,6 +17,7 @@ void Execute(const EvaluateOptions& options) { Evaluate(options); }
 void Execute(const RunOptions& options) { Run(options); }
 void Execute(const CheckOptions& options) { Check(options); }
 void Execute(const ReportOptions& options) { Report(options); }
+void Execute(const VerifyOptions& options) { Verify(options); }
 
 int Main(int argc, char** argv) {
   HoldInterrupts();

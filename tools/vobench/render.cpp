@@ -6,6 +6,7 @@
 #include <set>
 
 #include "sim/sequence/manifest.h"
+#include "sim/sequence/streams.h"
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"
 #include "tools/vobench/bridge.h"
@@ -22,7 +23,8 @@ namespace {
 
 // What a sequence of any layout may have at its top level.
 std::set<std::string> SequenceNames() {
-  std::set<std::string> names = {"camera.yaml", sim::kManifestName, sim::kJournalName};
+  std::set<std::string> names = sim::StreamNames();
+  names.insert({"camera.yaml", sim::kManifestName, sim::kJournalName});
   names.insert({"rgb", "rgb.txt", "depth", "depth.txt", "groundtruth.txt", "velocity.txt"});  // TUM RGB-D
   names.insert({"mav0"});                                                                     // EuRoC
   names.insert({"associations.txt", "traj.gt.freiburg"});                                     // ICL-NUIM
@@ -30,8 +32,9 @@ std::set<std::string> SequenceNames() {
   return names;
 }
 
-Overrides WithSeed(Overrides overrides, const std::optional<std::uint64_t>& seed) {
-  if (seed) overrides.emplace_back("seed", std::to_string(*seed));
+Overrides With(Overrides overrides, const RenderOptions& options) {
+  if (options.seed) overrides.emplace_back("seed", std::to_string(*options.seed));
+  if (options.truth) overrides.emplace_back("truth", "[" + *options.truth + "]");
   return overrides;
 }
 
@@ -92,7 +95,7 @@ std::string Kept(std::int64_t whole, const fs::path& partial) {
 }  // namespace
 
 void Render(const RenderOptions& options) {
-  const Experiment experiment = ReadExperiment(options.scenario, WithSeed(options.overrides, options.seed));
+  const Experiment experiment = ReadExperiment(options.scenario, With(options.overrides, options));
   const fs::path folder = CleanPath(options.output), partial = folder.string() + ".partial";
   RequireRoom(options, folder, partial);
   const sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, options.jobs); });

@@ -131,6 +131,8 @@ TEST(Sampled, VelocitiesAreTheDerivativesOfThePoseBetweenKnots) {
       const RateErrors errors = RateErrorsAt(trajectory, (k + u) * h, 0.05 * h);
       EXPECT_LT(errors.v, 1e-10) << k << " " << u;
       EXPECT_LT(errors.w, 1e-8) << k << " " << u;
+      EXPECT_LT(errors.a, 1e-8) << k << " " << u;  // of up to 100 m/s^2
+      EXPECT_LT(errors.alpha, 1e-6) << k << " " << u;
     }
   }
 }
@@ -264,6 +266,37 @@ TEST(Sampled, BadSettingsAreAllNamed) {
         "sampled motion: position_noise = -1 must be at least 0; orientation_noise = nan must be at least 0; "
         "position_return = 1000 must lie between 0 and 0.2 / knot_step; orientation of length = 0 must not be 0");
   }
+}
+
+// A minute of motion that would leave the box by metres stays within it, and free of the walls it is what it was.
+TEST(Sampled, SoftWallsKeepItInABox) {
+  SampledMotion motion;
+  motion.position_noise = 0.3;
+  motion.walls = SoftWalls{{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}, 0.75, 4};
+  double farthest = 0, free = 0, inside = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const SampledTrajectory kept(motion, seed, 60);
+    SampledMotion without = motion;
+    without.walls.reset();
+    const SampledTrajectory loose(without, seed, 60);
+    bool touched = false;
+    for (std::size_t k = 0; k < kept.knots().size(); ++k) {
+      const glm::dvec3 &p = kept.knots()[k].pose.p_WC, &q = loose.knots()[k].pose.p_WC;
+      const double size = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+      farthest = std::max(farthest, size);
+      free = std::max(free, glm::length(q));
+      if (!touched) {
+        ASSERT_EQ(p, q);
+      }
+      touched = touched || size > 0.75;
+      inside += size < 1;
+    }
+  }
+  EXPECT_LT(farthest, 1.5);
+  EXPECT_GT(free, 20);
+  EXPECT_GT(inside, 1000) << "it moves about, not along the walls only";
+  motion.walls->margin = 2;
+  EXPECT_THROW(SampledTrajectory(motion, 1, 1), std::invalid_argument);
 }
 
 }  // namespace

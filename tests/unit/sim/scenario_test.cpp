@@ -42,6 +42,9 @@ camera: {width: 320, height: 240, fx: 260 px, fy: 261, cx: 159.5, cy: 119.5, dis
 sensor: {exposure: 8 ms, time_samples: 7, white: 2, full_well: 5000 e, shot_noise: false, read_noise: 3 e, response: linear, color: false}
 render: {rays_per_time_sample: 3}
 time: {rate: 20 Hz, duration: 1.5 s}
+truth: [flow, imu, surface_id]
+landmarks: {count: 7}
+imu: {rate: 400 Hz, position: [1 cm, 0, 2], orientation: [0, 0.6, 0, 0.8], gravity: [0, 0, -9.8], reading: mean, gyroscope_noise: 1e-3, accelerometer_noise: 0.02, gyroscope_walk: 1e-5, accelerometer_walk: 3e-3}
 trajectory:
   type: sampled
   start: {position: [0, 1, 0], look_at: [0, 1, -5], velocity: [1 cm/s, 2, 3], angular_rate: [90 deg/s, 0, 0], velocity_sigma: 5 cm/s, angular_rate_sigma: 0.2}
@@ -89,6 +92,18 @@ prior: 3
   EXPECT_EQ(motion.position_return, 1.5);
   EXPECT_EQ(motion.orientation_return, 2.5);
   EXPECT_EQ(motion.knot_step_s, 0.005);
+  EXPECT_EQ(s.truth.streams, (std::set<TruthStream>{TruthStream::flow, TruthStream::surface_id, TruthStream::imu}));
+  EXPECT_EQ(s.truth.landmarks, 7);
+  const ImuParams& imu = s.truth.imu;
+  EXPECT_EQ(imu.rate_hz, 400);
+  EXPECT_EQ(imu.T_CI.p_WC, glm::dvec3(0.01, 0, 2));
+  EXPECT_DOUBLE_EQ(imu.T_CI.q_WC.y, 0.6);
+  EXPECT_EQ(imu.gravity_W, glm::dvec3(0, 0, -9.8));
+  EXPECT_EQ(imu.reading, ImuReading::mean);
+  EXPECT_EQ(imu.gyroscope_noise, 1e-3);
+  EXPECT_EQ(imu.accelerometer_noise, 0.02);
+  EXPECT_EQ(imu.gyroscope_walk, 1e-5);
+  EXPECT_EQ(imu.accelerometer_walk, 3e-3);
 
   // What it resolves to, read again, is the same scenario.
   const Scenario again = LoadScenario(folder.Write("again.yaml", s.resolved));
@@ -172,6 +187,20 @@ trajectory:
     - {time: 1 s, position: [0, 1, 0], look_at: [0, 1, 2]}
 )");
   EXPECT_THAT(Message(file), HasSubstr("'trajectory.keys': the camera turns by more than 120 deg between 0 s and 1 s"));
+}
+
+TEST(Scenario, TruthIsDepthUnlessTold) {
+  const SmallWorld world;
+  EXPECT_EQ(LoadScenario(world.scenario()).truth.streams, std::set<TruthStream>{TruthStream::depth});
+  EXPECT_TRUE(LoadScenario(world.scenario(), {{"truth", "[]"}}).truth.streams.empty());
+  try {
+    LoadScenario(world.scenario(), {{"truth", "[depth, flows]"}, {"imu.rate", "0 Hz"}, {"landmarks.count", "0"}});
+    FAIL();
+  } catch (const settings::Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("'truth': there is no 'flows'; there are depth, depth_exr, "));
+    EXPECT_THAT(error.what(), HasSubstr("rate"));
+    EXPECT_THAT(error.what(), HasSubstr("count"));
+  }
 }
 
 TEST(Scenario, OverridesAreChecked) {

@@ -42,6 +42,14 @@ TEST(Spline, VelocitiesAreTheDerivativesOfThePose) {
     const RateErrors errors = RateErrorsAt(spline, t, 1e-3);
     EXPECT_LT(errors.v, 1e-11) << t;
     EXPECT_LT(errors.w, 1e-9) << t;
+    EXPECT_LT(errors.a, 1e-9) << t;
+    EXPECT_LT(errors.alpha, 1e-8) << t;
+  }
+  // Beyond the ends, where the numbers go on along straight lines, the normalised quaternion's rate still changes.
+  for (const double t : {-0.05, 3.05}) {
+    const RateErrors errors = RateErrorsAt(spline, t, 1e-3);
+    EXPECT_LT(errors.a, 1e-9) << t;
+    EXPECT_LT(errors.alpha, 1e-8) << t;
   }
 }
 

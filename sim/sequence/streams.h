@@ -1,0 +1,27 @@
+// Purpose: the truth streams of a sequence as files: what there is for each frame, and for the whole.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "sim/sequence/stream_file.h"
+#include "sim/simulator.h"
+#include "sim/truth/description.h"
+
+namespace sim {
+
+// The files of one frame: a pure function of its arguments, not of the range that is written. A flow is there when the
+// simulator has the frame that it goes to. May be called from several threads.
+std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t index,
+                                     const std::set<TruthStream>& streams);
+
+// The files of frames [first, last) together: lists of those above, acceleration, IMU, landmarks.
+std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t first, std::int64_t last,
+                                        const std::set<TruthStream>& streams);
+
+// All names at a sequence's top level that either may make.
+std::set<std::string> StreamNames();
+
+}  // namespace sim

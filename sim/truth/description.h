@@ -1,0 +1,38 @@
+// Purpose: which truth a sequence is given beside poses and velocities, which it always has.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "sim/motion/imu.h"
+
+namespace sim {
+
+// docs/truth.md says what each is and how exact.
+enum class TruthStream {
+  depth,      // 16-bit PNG
+  depth_exr,  // the same in float
+  distance,
+  normals,
+  flow,           // to the next frame
+  flow_backward,  // to the one before
+  occlusion,      // what of each flow cannot be seen in the other frame
+  surface_id,
+  landmarks,
+  acceleration,
+  imu
+};
+
+std::string Name(TruthStream stream);
+std::optional<TruthStream> TruthStreamOf(std::string_view name);
+std::string TruthStreamList();  // "depth, depth_exr, ...": for messages
+
+struct TruthParams {
+  std::set<TruthStream> streams{TruthStream::depth};
+  int landmarks = 500;  // how many surface points are tracked
+  ImuParams imu;
+};
+
+}  // namespace sim

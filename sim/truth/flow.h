@@ -1,0 +1,39 @@
+// Purpose: optical flow and occlusion in closed form, from what each pixel sees.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/motion/pose.h"
+#include "sim/render/surface_tracer.h"
+#include "sim/sensor/camera.h"
+
+namespace sim {
+
+// What the Middlebury format calls unknown: above 1e9.
+constexpr float kUnknownFlow = 1e10f;
+
+struct FlowImage {
+  std::vector<float> uv;               // two numbers a pixel [px], rows from the top; kUnknownFlow: nothing is seen,
+                                       // or what is seen lies behind the other camera
+  std::vector<std::uint8_t> occluded;  // 1: the other camera does not see the point: another surface is before it, it
+                                       // is outside of the image or behind the camera, or there is no point
+};
+
+// From the frame whose pixels see `points` to another one: the point of the surface that is seen through a pixel's
+// centre at the stamp here, projected at the stamp there, minus the pixel. In double; the file has floats.
+//
+// A point is X_W = T_WO(t) X_O, a place on an object times the object's pose at the stamp. Objects stand still today:
+// T_WO is the identity at both stamps, and PointThere is the one line that will read their poses.
+FlowImage FlowBetween(const SurfaceTracer& surfaces, const Camera& camera, std::span<const SurfacePoint> points,
+                      const Pose& here, const Pose& there);
+
+// Whether the lens projects the point anywhere: Z > 0; a fisheye, whatever is not straight behind it.
+bool HasPixel(const Camera& camera, const glm::dvec3& X_C);
+
+// Whether the camera's image has the point X_C, and there only once: `pixel` is its projection. Outside of the
+// image a lens may fold what it cannot see back into it.
+bool InImage(const Camera& camera, const glm::dvec3& X_C, const glm::dvec2& pixel);
+
+}  // namespace sim
