@@ -19,6 +19,7 @@ enum class Stream : std::uint32_t {
   orientation_noise = 2,
   ray_jitter = 3,
   pixel_noise = 4,
+  light_path = 5,
   fixed_pattern = 8,
   depth_noise = 9,
   start_velocity = 16,

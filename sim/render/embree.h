@@ -1,4 +1,4 @@
-// Purpose: Embree 3 (Debian 12) or 4 behind the few calls that we use. Private to sim/render.
+// Purpose: Embree 3 (Debian 12) or 4 behind the few calls that we use. Private to sim/render and sim/light.
 #pragma once
 
 #if __has_include(<embree4/rtcore.h>)
@@ -22,7 +22,19 @@ static inline void OccludedCoherent16(const int* valid, RTCScene scene, RTCRay16
   arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
   rtcOccluded16(valid, scene, rays, &arguments);
 }
+static inline void Intersect1(RTCScene scene, RTCRayHit* ray) { rtcIntersect1(scene, ray, nullptr); }
+static inline void Occluded1(RTCScene scene, RTCRay* ray) { rtcOccluded1(scene, ray, nullptr); }
 #else
+static inline void Intersect1(RTCScene scene, RTCRayHit* ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, ray);
+}
+static inline void Occluded1(RTCScene scene, RTCRay* ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, ray);
+}
 static inline void IntersectCoherent16(const int* valid, RTCScene scene, RTCRayHit16* rays) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);

@@ -21,35 +21,66 @@ struct alignas(64) LaneInts {
   std::int32_t v[kLanes];
 };
 
-// What is looked up at a hit: the value at corner 0 and the differences of corners 1 and 2 to it, since
-// value(u, v) = value_0 + u (value_1 - value_0) + v (value_2 - value_0).
-struct TriangleShading {
-  float normal[3], normal_du[3], normal_dv[3];
+// What is looked up at a hit, in half a cache line: texture coordinates at corner 0 and the differences of corners 1 and 2
+// to them, since value(u, v) = value_0 + u (value_1 - value_0) + v (value_2 - value_0).
+struct alignas(32) TriangleShading {
   float uv[2], uv_du[2], uv_dv[2];
-  float texels_per_metre;  // of texture level 0, sqrt of (area in texels / area in W)
-  std::int32_t material;
+  std::uint32_t material;    // low 24 bits: the material; then 4 bits each: log2 of the baked light's resolution on the front and
+                             // on the back (sim/light/lattice.h)
+  std::int32_t first_light;  // in a layer of PacketScene::light: the front's samples, then the back's
+};
+constexpr std::uint32_t kMaterialBits = 24;
+// The same for the shading normal; only where lights are looked at from each hit.
+struct TriangleNormals {
+  float normal[3], normal_du[3], normal_dv[3];
 };
 struct TriangleColor {
   float color[3], color_du[3], color_dv[3];
 };
+// Unit vectors in the triangle's plane, to the right and up in its picture; 0 where it has none.
+struct TriangleTangents {
+  float right[3], up[3];
+};
+// A picture: its finest level, in PacketScene::levels, and how many there are.
+struct PictureShading {
+  std::int32_t first_level, level_count;
+};
 struct MaterialShading {
   float base_color[3], emission[3];
-  std::int32_t first_level;  // in PacketScene::levels
-  std::int32_t level_count;
+  PictureShading color, emission_picture, normal_map;  // where there is none: a white texel, a flat normal
+  float normal_scale;
 };
 struct LevelShading {
-  std::int32_t width, height, first_texel;  // in PacketScene::texels
+  std::uint32_t size;        // width | height << 16
+  std::int32_t first_texel;  // in PacketScene::texels; rows are width + 1 long: the first texel again at the end
+};
+
+// What a ray meets that meets nothing. With a picture: of all directions, sim/world/sky.h.
+struct SkyShading {
+  float zenith[3], horizon[3], ground[3];  // blended by the direction's y
+  const float* picture;                    // null, or rgb; rows are width + 1 long, the first pixel again at the end
+  std::int32_t width, height;
+  float turn;  // added to the horizontal coordinate, in turns
 };
 
 struct PacketScene {
   RTCScene embree;
-  const TriangleShading* triangles;  // by primitive
-  const TriangleColor* colors;       // by primitive; null: no vertex colours anywhere
+  std::int32_t filtered_first;        // the triangle with number 0 in Embree's second geometry, that with filters
+  const TriangleShading* triangles;   // by triangle
+  const TriangleNormals* normals;     // by triangle; null: all flat
+  const TriangleColor* colors;        // by triangle; null: no vertex colours anywhere
+  const TriangleTangents* tangents;   // by triangle; null: no normal maps anywhere
   const MaterialShading* materials;
   const LevelShading* levels;
   const std::uint32_t* texels;  // sim/world/texture.h's coding
-  float ambient[3], background[3];
+  const std::uint32_t* light;   // baked, as sim/light/shared_exponent.h packs it, layer after layer; null: ambient light
+  std::int32_t light_layers, light_stride;
+  bool any_emission, any_emission_picture;
+  float ambient[3];
+  SkyShading sky;
 };
+
+constexpr int kMaxLightLayers = 8;
 
 // One light as one time sample sees it. Irradiance at distance vector l, of length r, on a surface with normal n:
 //   directional:         power * max(0, n . (x, y, z))
@@ -59,6 +90,7 @@ struct LightSample {
   float power[3];
   float normal[3];
   bool directional, one_sided;
+  std::int32_t layer;  // of RaySample::layer_factors
 };
 
 // One ray of each pixel, at a moment between the two ends of the sample's time: the camera is at (rotation, origin) at
@@ -71,6 +103,7 @@ struct RaySample {
   float lens[2], inverse_focus;      // point of the lens in C [m], to be turned about the axis; 1 / Z of what is sharp
   const LightSample* lights;
   int light_count;
+  float layer_factors[kMaxLightLayers][kBlockSide];  // of lamps' light and of baked light, by layer and by row of the block
 };
 
 // A block of pixels: (x, y, z) is a pixel centre's ray in C; du, dv are its derivatives by the pixel.

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/light/cache.h"
 #include "sim/random/random.h"
 #include "sim/render/packet.h"
 #include "sim/render/ray_scene.h"
@@ -117,13 +118,25 @@ PixelBlock MakeBlock(const Camera& camera, int x0, int y0, const BlockTime& time
 
 class RayTracer final : public Renderer {
  public:
-  RayTracer(const Scene& scene, const RayTracerOptions& options)
+  RayTracer(const Scene& scene, const RayTracerOptions& options, std::vector<std::string>& warnings)
       : options_(options),
-        lights_(scene.lights),
+        lights_(options.light == LightMode::baked ? std::vector<Light>() : scene.lights),
         scene_(scene),
         surfaces_(scene_, options.jobs),
         kernel_(PacketKernel()),
-        arena_(options.jobs > 0 ? options.jobs : tbb::task_arena::automatic) {}
+        arena_(options.jobs > 0 ? options.jobs : tbb::task_arena::automatic) {
+    layers_ = Flickers(scene.lights);
+    if (options.light == LightMode::direct) return;
+    const BakedLight light = arena_.execute(
+        [&] { return CachedLight(scene, scene_, options.light, options.bake, options.light_folders, warnings); });
+    scene_.SetLight(light);
+    for (const Light& l : scene.lights) {
+      if (std::holds_alternative<AmbientLight>(l)) {
+        warnings.push_back("ambient light is left out: it stands for what baked light computes");
+        break;
+      }
+    }
+  }
 
   void Expose(const Camera& camera, const Trajectory& motion, const Exposure& exposure, std::uint64_t key,
               RadianceImage& out) const override {
@@ -187,7 +200,10 @@ class RayTracer final : public Renderer {
     for (int i = 0; i < count; ++i) {
       const PatternPoint point = SobolPoint(static_cast<std::uint32_t>(i));
       for (const Light& light : lights_) {
-        std::visit(SampleLight{point, centring, out.lights[static_cast<std::size_t>(i)]}, light);
+        std::vector<LightSample>& lights = out.lights[static_cast<std::size_t>(i)];
+        const std::size_t before = lights.size();
+        std::visit(SampleLight{point, centring, lights}, light);
+        if (lights.size() > before) lights.back().layer = LayerOf(light, layers_);
       }
     }
     const std::vector<DiscPoint> lens = DiscPoints(count);
@@ -207,9 +223,20 @@ class RayTracer final : public Renderer {
         s.inverse_focus = static_cast<float>(1 / exposure.focus_m);
         s.lights = out.lights[static_cast<std::size_t>(i)].data();
         s.light_count = static_cast<int>(out.lights[static_cast<std::size_t>(i)].size());
+        StoreFlicker(middle_s + out.time.part_s * (i + 0.5 - 0.5 * count), out.time, s);
       }
     }
     return out;
+  }
+
+  // The factors in the mean over the part of the exposure that this sample is of each row.
+  void StoreFlicker(double middle_s, const BlockTime& time, RaySample& s) const {
+    for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
+      for (int row = 0; row < kBlockSide; ++row) {
+        const double t_s = middle_s + time.row_s * (row - 0.5 * (kBlockSide - 1));
+        s.layer_factors[layer][row] = static_cast<float>(FlickerFactor(layers_[layer], t_s, time.part_s));
+      }
+    }
   }
 
   static void StoreMotion(const Pose& begin, const Pose& end, RaySample& s) {
@@ -240,7 +267,8 @@ class RayTracer final : public Renderer {
   }
 
   RayTracerOptions options_;
-  std::vector<Light> lights_;
+  std::vector<Light> lights_;     // that shadow rays are sent to
+  std::vector<Flicker> layers_;   // of lamps and of baked light; the first is steady
   RayScene scene_;
   SurfaceTracer surfaces_;
   KernelChoice kernel_;
@@ -249,14 +277,16 @@ class RayTracer final : public Renderer {
 
 }  // namespace
 
-std::unique_ptr<Renderer> MakeRayTracer(const Scene& scene, const RayTracerOptions& options) {
+std::unique_ptr<Renderer> MakeRayTracer(const Scene& scene, const RayTracerOptions& options,
+                                        std::vector<std::string>* warnings) {
   if (options.rays_per_time_sample < 1 || options.rays_per_time_sample > 4096) {
     throw std::invalid_argument("ray tracer: rays_per_time_sample = " + std::to_string(options.rays_per_time_sample) +
                                 " must lie in 1 ... 4096");
   }
   if (options.jobs < 0)
     throw std::invalid_argument("ray tracer: jobs = " + std::to_string(options.jobs) + " must not be negative");
-  return std::make_unique<RayTracer>(scene, options);
+  std::vector<std::string> ignored;
+  return std::make_unique<RayTracer>(scene, options, warnings != nullptr ? *warnings : ignored);
 }
 
 }  // namespace sim

@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "sim/world/light.h"
+#include "sim/world/sky.h"
 
 namespace sim {
 
@@ -21,7 +23,8 @@ struct MeshDescription {
 struct WorldDescription {
   std::vector<MeshDescription> meshes;
   std::vector<Light> lights;
-  glm::dvec3 background{0.0};  // linear radiance of a ray that meets nothing
+  glm::dvec3 background{0.0};  // linear radiance of a ray that meets nothing; not used where there is a sky
+  std::optional<SkyDescription> sky;
 };
 
 }  // namespace sim

@@ -1,5 +1,4 @@
-// Purpose: what lights a world. Radiance, irradiance and intensity are linear RGB in one arbitrary but common unit: a
-// white
+// Purpose: what lights a world. Radiance, irradiance and intensity are linear RGB in one arbitrary but common unit: a white
 //          Lambert surface (albedo 1) under irradiance pi has radiance 1, and radiance 1 is what the sensor calls white
 //          at unit exposure. Directions and positions are in W.
 #pragma once
@@ -10,8 +9,18 @@
 
 namespace sim {
 
+// A lamp on alternating current: its power is multiplied by 1 + depth * sin(2 pi (frequency t + phase)), of mean 1.
+struct Flicker {
+  double frequency_hz = 0.0;  // of the light: twice that of the current
+  double depth = 0.0;         // 0: steady, 1: goes dark
+  double phase = 0.0;         // in turns, at t = 0
+  bool operator==(const Flicker&) const = default;
+};
+// The factor in the mean over what is between t - width / 2 and t + width / 2; at one instant where width is 0.
+double FlickerFactor(const Flicker& flicker, double t_s, double width_s = 0.0);
+
 // The same radiance from everywhere, never occluded: adds albedo * radiance to every surface. It stands for the light
-// that bounces about; there is no global illumination.
+// that bounces about where that is not computed, and is left out where it is (baked light).
 struct AmbientLight {
   glm::dvec3 radiance{1.0};
 };
@@ -26,19 +35,30 @@ struct SunLight {
 struct PointLight {
   glm::dvec3 position{0.0};
   glm::dvec3 intensity{1.0};
+  Flicker flicker{};
 };
 
 // A parallelogram with corner `corner` and sides `side_u`, `side_v` that shines on the side of cross(side_u, side_v),
 // with the same radiance in all directions: soft shadows. Sample i of n of an exposure uses the i-th point of a fixed
-// n-point pattern on the light, the same for all pixels and frames: no noise, but at n = 1 a hard shadow. It is not
-// itself seen.
+// n-point pattern on the light, the same for all pixels and frames: no noise, but at n = 1 a hard shadow. Where it is `visible`,
+// it is seen from the side on which it shines, as a surface of that radiance; it never casts a shadow.
 struct RectLight {
   glm::dvec3 corner{0.0};
   glm::dvec3 side_u{1.0, 0.0, 0.0};
   glm::dvec3 side_v{0.0, 0.0, 1.0};
   glm::dvec3 radiance{1.0};
+  Flicker flicker{};
+  bool visible = false;
 };
 
 using Light = std::variant<AmbientLight, SunLight, PointLight, RectLight>;
+
+// That of a lamp; steady for the others, and for lamps of no depth.
+Flicker FlickerOf(const Light& light);
+// All different ones of some lights: steady first, then in the order of the lights. Throws std::invalid_argument for more than 8:
+// a renderer keeps the light of each apart.
+constexpr std::size_t kMaxFlickers = 8;
+std::vector<Flicker> Flickers(const std::vector<Light>& lights);
+int LayerOf(const Light& light, const std::vector<Flicker>& flickers);
 
 }  // namespace sim

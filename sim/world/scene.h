@@ -3,22 +3,30 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "sim/world/description.h"
 #include "sim/world/light.h"
+#include "sim/world/sky.h"
 #include "sim/world/texture.h"
 
 namespace sim {
 
-// Lambert. Albedo = base_color * vertex colour * texture, each where present; radiance = emission + reflected light.
+// Lambert. Albedo = base_color * vertex colour * texture; radiance = emission * emission texture + reflected light; each where
+// present.
 struct Material {
   std::string name;
   glm::vec3 base_color{1.0f};  // linear
   glm::vec3 emission{0.0f};    // linear radiance
   int texture = -1;            // index in Scene::textures; -1: none
+  int emission_texture = -1;
+  int normal_map = -1;  // its content is Texture::Content::normals
+  float normal_scale = 1.0f;
+  // The surface is there only where alpha * the texture's alpha reaches the cutoff; 0: everywhere.
+  float alpha = 1.0f, alpha_cutoff = 0.0f;
 };
 
 // Per-vertex arrays are empty or as long as positions. Surfaces are two-sided: what is seen faces the viewer.
@@ -37,7 +45,8 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Light> lights;
-  glm::vec3 background{0.0f};
+  glm::vec3 background{0.0f};  // where there is no sky
+  std::optional<Sky> sky;
   std::vector<std::string> warnings;  // what was readable but is probably not meant
 };
 

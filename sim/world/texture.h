@@ -21,15 +21,26 @@ struct TextureLevel {
 // Texture coordinates: (0, 0) is the upper left corner of the picture, (1, 1) the lower right; the centre of texel (i,
 // j) is at
 // ((i + 0.5) / width, (j + 0.5) / height). The picture repeats outside.
+//
+// A normal map's texels are not roots but the bytes' own values in 10 bits, and its levels are means of those.
 class Texture {
  public:
-  // rgb: width * height * 3 bytes, sRGB-coded, rows from the top. Each level is the area-weighted mean of the one below
-  // it, in linear light. Throws std::invalid_argument when the size is wrong.
-  Texture(std::string name, int width, int height, std::span<const std::uint8_t> rgb);
+  enum class Content { color, normals };
+
+  // rgb: width * height * 3 bytes, rows from the top, sRGB-coded where they are a colour. Each level is the area-weighted mean of
+  // the one below it, in linear light. alpha: none, or width * height bytes. Throws std::invalid_argument when a size is wrong.
+  Texture(std::string name, int width, int height, std::span<const std::uint8_t> rgb, std::span<const std::uint8_t> alpha = {},
+          Content content = Content::color);
 
   // Linear light at uv, averaged over about `footprint` level-0 texels: blends the two nearest levels by
   // log2(footprint).
   glm::vec3 Sample(glm::vec2 uv, float footprint) const;
+
+  // Bilinear at level 0, in [0, 1]; 1 where there is no alpha.
+  float Alpha(glm::vec2 uv) const;
+  bool has_alpha() const { return !alpha_.empty(); }
+  const std::vector<std::uint8_t>& alpha() const { return alpha_; }
+  Content content() const { return content_; }
 
   // The stored value of a texel, linear.
   glm::vec3 Texel(int level, int x, int y) const;
@@ -44,6 +55,8 @@ class Texture {
   std::string name_;
   std::vector<TextureLevel> levels_;
   std::vector<std::uint32_t> texels_;
+  std::vector<std::uint8_t> alpha_;
+  Content content_;
 };
 
 }  // namespace sim

@@ -1,0 +1,227 @@
+#include "sim/light/cache.h"
+
+#define XXH_INLINE_ALL
+#include <unistd.h>
+#include <xxhash.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <type_traits>
+
+namespace sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kVersion = 1;  // of the file and of the computation: another number, another name
+constexpr std::array<char, 20> kMagic{"vobench baked light"};
+
+class Hasher {
+ public:
+  Hasher() : state_(XXH3_createState()) { XXH3_128bits_reset(state_.get()); }
+  void Bytes(const void* data, std::size_t size) { XXH3_128bits_update(state_.get(), data, size); }
+  template <class T>
+  void Value(const T& value) {
+    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, glm::vec3> || std::is_same_v<T, glm::dvec3>);
+    Bytes(&value, sizeof value);
+  }
+  template <class T>
+  void Array(const std::vector<T>& values) {
+    static_assert(std::has_unique_object_representations_v<T> || std::is_same_v<T, glm::vec3> || std::is_same_v<T, glm::vec2> || std::is_same_v<T, glm::uvec3>);
+    Value(values.size());
+    Bytes(values.data(), values.size() * sizeof(T));
+  }
+  LightHash Result() const {
+    const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
+    return {hash.high64, hash.low64};
+  }
+
+ private:
+  struct Free {
+    void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
+  };
+  std::unique_ptr<XXH3_state_t, Free> state_;
+};
+
+struct HashLight {
+  Hasher& hasher;
+  void operator()(const AmbientLight&) const {}  // is left out of baked light
+  void operator()(const SunLight& l) const { hasher.Value(l.direction), hasher.Value(l.irradiance); }
+  void operator()(const PointLight& l) const { hasher.Value(l.position), hasher.Value(l.intensity), Lamp(l.flicker); }
+  void operator()(const RectLight& l) const {
+    for (const glm::dvec3& v : {l.corner, l.side_u, l.side_v, l.radiance}) hasher.Value(v);
+    hasher.Value(l.visible);
+    Lamp(l.flicker);
+  }
+  void Lamp(const Flicker& f) const { hasher.Value(f.frequency_hz), hasher.Value(f.depth), hasher.Value(f.phase); }
+};
+
+// The head of a file, all of 8 bytes.
+struct Head {
+  char magic[kMagic.size() + 4];
+  std::uint64_t version, hash[2], triangles, layers, samples;
+};
+static_assert(sizeof(Head) == 24 + 6 * 8);
+static_assert(sizeof(TriangleResolution) == 2 && sizeof(Flicker) == 24);
+
+LightHash Checksum(const Head& head, const BakedLight& light) {
+  Hasher hasher;
+  hasher.Bytes(&head, sizeof head);
+  hasher.Bytes(light.resolutions.data(), light.resolutions.size() * sizeof(TriangleResolution));
+  hasher.Bytes(light.layers.data(), light.layers.size() * sizeof(Flicker));
+  hasher.Bytes(light.samples.data(), light.samples.size() * sizeof(std::uint32_t));
+  return hasher.Result();
+}
+
+Head MakeHead(const LightHash& hash, const BakedLight& light) {
+  Head head{};
+  std::memcpy(head.magic, kMagic.data(), kMagic.size());
+  head.version = kVersion;
+  head.hash[0] = hash[0], head.hash[1] = hash[1];
+  head.triangles = light.resolutions.size(), head.layers = light.layers.size(), head.samples = light.samples.size();
+  return head;
+}
+
+}  // namespace
+
+LightHash HashOfLight(const Scene& scene, LightMode mode, const BakeParams& params) {
+  Hasher hasher;
+  hasher.Value(kVersion);
+  hasher.Value(mode);
+  hasher.Value(params.spacing_m), hasher.Value(params.finest_m), hasher.Value(params.paths), hasher.Value(params.lamp_rays);
+  for (const Mesh& mesh : scene.meshes) {
+    hasher.Array(mesh.positions), hasher.Array(mesh.normals), hasher.Array(mesh.uvs), hasher.Array(mesh.colors), hasher.Array(mesh.triangles);
+    hasher.Value(mesh.material);
+  }
+  for (const Material& m : scene.materials) {
+    hasher.Value(m.base_color), hasher.Value(m.emission), hasher.Value(m.texture), hasher.Value(m.emission_texture);
+    hasher.Value(m.alpha), hasher.Value(m.alpha_cutoff);
+  }
+  for (const Texture& t : scene.textures) {
+    hasher.Value(t.width()), hasher.Value(t.height()), hasher.Value(t.content());
+    hasher.Array(t.texels()), hasher.Array(t.alpha());
+  }
+  for (const Light& light : scene.lights) {
+    hasher.Value(light.index());
+    std::visit(HashLight{hasher}, light);
+  }
+  hasher.Value(scene.background);
+  hasher.Value(scene.sky.has_value());
+  if (scene.sky) {
+    hasher.Value(scene.sky->zenith), hasher.Value(scene.sky->horizon), hasher.Value(scene.sky->ground);
+    hasher.Value(scene.sky->width), hasher.Value(scene.sky->height), hasher.Value(scene.sky->turn);
+    hasher.Array(scene.sky->picture);
+  }
+  return hasher.Result();
+}
+
+fs::path LightFile(const fs::path& folder, const LightHash& hash) {
+  char name[40];
+  std::snprintf(name, sizeof name, "%016llx%016llx", static_cast<unsigned long long>(hash[0]), static_cast<unsigned long long>(hash[1]));
+  return folder / (std::string(name) + ".light");
+}
+
+void WriteLight(const fs::path& file, const LightHash& hash, const BakedLight& light) {
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  const fs::path temporary = file.string() + "." + std::to_string(getpid()) + ".part";
+  {
+    std::ofstream out(temporary, std::ios::binary);
+    const auto write = [&](const void* data, std::size_t size) { out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size)); };
+    const Head head = MakeHead(hash, light);
+    const LightHash checksum = Checksum(head, light);
+    write(&head, sizeof head);
+    write(light.resolutions.data(), light.resolutions.size() * sizeof(TriangleResolution));
+    write(light.layers.data(), light.layers.size() * sizeof(Flicker));
+    write(light.samples.data(), light.samples.size() * sizeof(std::uint32_t));
+    write(checksum.data(), sizeof checksum);
+    out.close();
+    if (!out) {
+      fs::remove(temporary, error);
+      throw std::runtime_error(file.string() + ": cannot be written");
+    }
+  }
+  fs::rename(temporary, file, error);
+  if (error) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw std::runtime_error(file.string() + ": cannot be written: " + error.message());
+  }
+}
+
+BakedLight ReadLight(const fs::path& file, const LightHash& hash) {
+  const auto bad = [&](const char* why) { return std::runtime_error(file.string() + ": " + why); };
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw bad("cannot be opened");
+  const auto read = [&](void* data, std::size_t size) {
+    in.read(static_cast<char*>(data), static_cast<std::streamsize>(size));
+    if (!in) throw bad("is cut off");
+  };
+  const std::uint64_t size = fs::file_size(file);
+  Head head{};
+  read(&head, sizeof head);
+  if (std::memcmp(head.magic, kMagic.data(), kMagic.size()) != 0 || head.version != kVersion) throw bad("is not a file of baked light");
+  if (head.hash[0] != hash[0] || head.hash[1] != hash[1]) throw bad("is the light of another world");
+  const std::uint64_t rest = size - sizeof head - sizeof(LightHash);
+  if (size < sizeof head + sizeof(LightHash) || head.triangles > rest || head.layers > rest || head.samples > rest ||
+      2 * head.triangles + 24 * head.layers + 4 * head.samples != rest) {
+    throw bad("does not have the size that it says");
+  }
+  BakedLight light;
+  light.resolutions.resize(head.triangles);
+  light.layers.resize(head.layers);
+  light.samples.resize(head.samples);
+  read(light.resolutions.data(), light.resolutions.size() * sizeof(TriangleResolution));
+  read(light.layers.data(), light.layers.size() * sizeof(Flicker));
+  read(light.samples.data(), light.samples.size() * sizeof(std::uint32_t));
+  LightHash checksum{};
+  read(checksum.data(), sizeof checksum);
+  if (checksum != Checksum(head, light)) throw bad("is damaged: wrong checksum");
+  return light;
+}
+
+BakedLight CachedLight(const Scene& scene, const RayScene& rays, LightMode mode, const BakeParams& params,
+                       const std::vector<fs::path>& folders, std::vector<std::string>& warnings) {
+  if (folders.empty()) return BakeLight(scene, rays, mode, params);
+  const LightHash hash = HashOfLight(scene, mode, params);
+  for (const fs::path& folder : folders) {
+    const fs::path file = LightFile(folder, hash);
+    std::error_code error;
+    if (!fs::exists(file, error)) continue;
+    try {
+      return ReadLight(file, hash);
+    } catch (const std::runtime_error& problem) {
+      warnings.push_back(std::string(problem.what()) + "; the light is computed anew");
+    }
+  }
+  BakedLight light = BakeLight(scene, rays, mode, params);
+  std::string failures;
+  for (const fs::path& folder : folders) {
+    try {
+      WriteLight(LightFile(folder, hash), hash, light);
+      return light;
+    } catch (const std::runtime_error& problem) {
+      failures += std::string(failures.empty() ? "" : "; ") + problem.what();
+    }
+  }
+  warnings.push_back("the baked light is not kept: " + failures);
+  return light;
+}
+
+std::vector<fs::path> LightFolders(const fs::path& scenario_folder) {
+  std::vector<fs::path> folders{scenario_folder / ".vobench-cache"};
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  const char* home = std::getenv("HOME");
+  if (cache != nullptr && fs::path(cache).is_absolute()) {
+    folders.push_back(fs::path(cache) / "vobench");
+  } else if (home != nullptr && *home != 0) {
+    folders.push_back(fs::path(home) / ".cache" / "vobench");
+  }
+  return folders;
+}
+
+}  // namespace sim

@@ -1,0 +1,38 @@
+// Purpose: baked light kept in a file, so that only the first run computes it.
+//
+// A file's name is the hash of all that its content depends on: geometry, materials, pictures, lights, sky, settings and the
+// version of the computation. Inside: the word "vobench baked light", that hash, sizes, data, and a checksum of all that. It is
+// written under a temporary name and renamed: there are no half files, also when several programs write the same.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/light/bake.h"
+
+namespace sim {
+
+using LightHash = std::array<std::uint64_t, 2>;
+
+// XXH3 with 128 bits (Collet): not against malice.
+LightHash HashOfLight(const Scene& scene, LightMode mode, const BakeParams& params);
+
+std::filesystem::path LightFile(const std::filesystem::path& folder, const LightHash& hash);
+
+// Throws std::runtime_error that names the file: when it cannot be written; when it is not what it should be.
+void WriteLight(const std::filesystem::path& file, const LightHash& hash, const BakedLight& light);
+BakedLight ReadLight(const std::filesystem::path& file, const LightHash& hash);
+
+// From the first of the folders that has it; otherwise computed, and written to the first that can be written to. A damaged file
+// is a warning, and is computed and written anew. No folder: always computed.
+BakedLight CachedLight(const Scene& scene, const RayScene& rays, LightMode mode, const BakeParams& params,
+                       const std::vector<std::filesystem::path>& folders, std::vector<std::string>& warnings);
+
+// Where a scenario's light is kept: in `.vobench-cache` beside it, or in vobench/ of the user's cache folder
+// ($XDG_CACHE_HOME, or ~/.cache).
+std::vector<std::filesystem::path> LightFolders(const std::filesystem::path& scenario_folder);
+
+}  // namespace sim

@@ -1,0 +1,88 @@
+#include "sim/world/sky.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "sim/world/srgb.h"
+
+namespace sim {
+namespace {
+
+cv::Mat ReadPicture(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw std::runtime_error(file.string() + ": cannot be opened");
+  const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
+  cv::Mat picture;
+  try {
+    if (!bytes.empty()) picture = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data())), cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception& error) {
+    throw std::runtime_error(file.string() + ": cannot be decoded: " + error.err);
+  }
+  if (picture.empty()) {
+    const bool exr = file.extension() == ".exr" || file.extension() == ".EXR";
+    throw std::runtime_error(file.string() + ": not a picture that can be decoded" +
+                             (exr ? "; OpenCV reads OpenEXR only where the environment has OPENCV_IO_ENABLE_OPENEXR=1" : ""));
+  }
+  return picture;
+}
+
+}  // namespace
+
+glm::dvec3 Sky::Radiance(const glm::dvec3& d) const {
+  if (picture.empty()) {
+    return glm::dvec3(horizon) + std::max(0.0, d.y) * glm::dvec3(zenith - horizon) +
+           std::max(0.0, -d.y) * glm::dvec3(ground - horizon);
+  }
+  const double s = 0.5 + turn + std::atan2(d.x, -d.z) / (2 * std::numbers::pi);
+  const double x = (s - std::floor(s)) * width - 0.5;
+  const double y = std::acos(std::clamp(d.y, -1.0, 1.0)) / std::numbers::pi * height - 0.5;
+  const double x0 = std::floor(x), y0 = std::floor(y), fx = x - x0, fy = y - y0;
+  const auto at = [&](double column, double row) {
+    const int i = (static_cast<int>(column) + width) % width, j = std::clamp(static_cast<int>(row), 0, height - 1);
+    return glm::dvec3(picture[static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)]);
+  };
+  return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x0 + 1, y0)) + fy * ((1 - fx) * at(x0, y0 + 1) + fx * at(x0 + 1, y0 + 1));
+}
+
+Sky LoadSky(const SkyDescription& description) {
+  Sky sky;
+  sky.zenith = description.zenith;
+  sky.horizon = description.horizon;
+  sky.ground = description.ground;
+  sky.turn = description.turn;
+  if (description.file.empty()) return sky;
+  const cv::Mat read = ReadPicture(description.file);
+  if (read.channels() != 1 && read.channels() != 3 && read.channels() != 4) {
+    throw std::runtime_error(description.file.string() + ": " + std::to_string(read.channels()) + " channels; 1, 3 or 4 are read");
+  }
+  const bool linear = read.depth() == CV_32F;
+  const double full = read.depth() == CV_16U ? 65535.0 : read.depth() == CV_8U ? 255.0 : 1.0;
+  cv::Mat numbers;
+  read.convertTo(numbers, CV_32F, 1.0 / full);
+  sky.width = read.cols;
+  sky.height = read.rows;
+  const int channels = read.channels();
+  for (int y = 0; y < read.rows; ++y) {
+    const float* row = numbers.ptr<float>(y);
+    for (int x = 0; x < read.cols; ++x, row += channels) {
+      glm::dvec3 rgb = channels == 1 ? glm::dvec3(row[0]) : glm::dvec3(row[2], row[1], row[0]);
+      for (int c = 0; c < 3; ++c) {
+        if (!std::isfinite(rgb[c]) || rgb[c] < 0) {
+          throw std::runtime_error(description.file.string() + ": pixel (" + std::to_string(x) + ", " + std::to_string(y) +
+                                   ") is negative or not finite: " + std::to_string(rgb[c]));
+        }
+        if (!linear) rgb[c] = SrgbToLinear(rgb[c]);
+      }
+      sky.picture.emplace_back(description.strength * rgb);
+    }
+  }
+  return sky;
+}
+
+}  // namespace sim

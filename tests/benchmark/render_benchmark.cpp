@@ -1,0 +1,273 @@
+// What a finished sample costs beside a bare ray of Embree, on the same rays, for each instruction set that this machine has:
+//
+//   render_benchmark --benchmark_repetitions=5
+//
+// The scene is a hall of columns made here: 300 000 triangles, 27 MB of pictures with their mip chains. One core but for the
+// last ones. ns: per ray.
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+
+#include "sim/light/bake.h"
+#include "sim/render/embree.h"
+#include "sim/render/packet.h"
+#include "sim/render/ray_scene.h"
+#include "sim/render/ray_tracer.h"
+
+namespace sim {
+namespace {
+
+constexpr int kWidth = 640, kHeight = 480;
+
+CameraParams HallCamera() {
+  CameraParams camera;
+  camera.width = kWidth, camera.height = kHeight;
+  camera.fx = camera.fy = 525;
+  camera.cx = 319.5, camera.cy = 239.5;
+  return camera;
+}
+
+Texture Picture(int number, int side) {
+  std::vector<std::uint8_t> rgb;
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const double waves = std::sin(0.05 * x + number) * std::sin(0.07 * y + 2 * number) + 0.3 * std::sin(0.9 * x + 0.4 * y);
+      const unsigned grain = static_cast<unsigned>(y * side + x) * 2654435761u >> 27;
+      for (int c = 0; c < 3; ++c) rgb.push_back(static_cast<std::uint8_t>(110 + 50 * waves + grain + 10 * ((number + c) % 3)));
+    }
+  }
+  return Texture("picture " + std::to_string(number), side, side, rgb);
+}
+
+// A surface X(s, t) over the unit square, s and t in n_s and n_t steps.
+template <class Function>
+void AddSheet(Scene& scene, int n_s, int n_t, int material, glm::vec2 repeats, const Function& place) {
+  Mesh mesh;
+  mesh.name = "sheet";
+  mesh.material = material;
+  for (int j = 0; j <= n_t; ++j) {
+    for (int i = 0; i <= n_s; ++i) {
+      const double s = static_cast<double>(i) / n_s, t = static_cast<double>(j) / n_t, d = 1e-4;
+      const glm::dvec3 x = place(s, t);
+      mesh.positions.emplace_back(x);
+      mesh.normals.emplace_back(glm::normalize(glm::cross(place(s + d, t) - place(s - d, t), place(s, t + d) - place(s, t - d))));
+      mesh.uvs.emplace_back(s * repeats.x, t * repeats.y);
+    }
+  }
+  const auto row = static_cast<std::uint32_t>(n_s + 1);
+  for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(n_t); ++j) {
+    for (std::uint32_t i = 0; i + 1 < row; ++i) {
+      const std::uint32_t a = j * row + i;
+      mesh.triangles.emplace_back(a, a + 1, a + row);
+      mesh.triangles.emplace_back(a + 1, a + row + 1, a + row);
+    }
+  }
+  scene.meshes.push_back(std::move(mesh));
+}
+
+// 20 m x 8 m x 6 m, two rows of fluted columns, arches above them, an uneven floor.
+Scene Hall() {
+  Scene scene;
+  for (int i = 0; i < 6; ++i) {
+    scene.textures.push_back(Picture(i, 1024 - 64 * i % 128));
+    Material material;
+    material.name = "stone " + std::to_string(i);
+    material.base_color = glm::vec3(0.9f);
+    material.texture = i;
+    scene.materials.push_back(material);
+  }
+  const auto wavy = [](double s, double t) { return 0.01 * std::sin(61 * s) * std::sin(47 * t); };
+  AddSheet(scene, 200, 80, 0, {10, 4}, [&](double s, double t) { return glm::dvec3(20 * s, wavy(s, t), 8 * t); });
+  AddSheet(scene, 200, 80, 1, {10, 4}, [&](double s, double t) { return glm::dvec3(20 * s, 6 + wavy(s, t), 8 * t); });
+  AddSheet(scene, 200, 60, 2, {10, 3}, [&](double s, double t) { return glm::dvec3(20 * s, 6 * t, wavy(s, t)); });
+  AddSheet(scene, 200, 60, 2, {10, 3}, [&](double s, double t) { return glm::dvec3(20 * s, 6 * t, 8 + wavy(s, t)); });
+  AddSheet(scene, 80, 60, 3, {4, 3}, [&](double s, double t) { return glm::dvec3(wavy(s, t), 6 * t, 8 * s); });
+  AddSheet(scene, 80, 60, 3, {4, 3}, [&](double s, double t) { return glm::dvec3(20 + wavy(s, t), 6 * t, 8 * s); });
+  for (int side = 0; side < 2; ++side) {
+    for (int k = 0; k < 9; ++k) {
+      const double x0 = 2 + 2 * k, z0 = side == 0 ? 2 : 6;
+      AddSheet(scene, 72, 60, 4, {3, 4}, [&](double s, double t) {
+        const double angle = 2 * std::numbers::pi * s;
+        const double radius = (0.22 + 0.012 * std::cos(16 * angle)) * (1 + 0.5 * std::exp(-40 * t) + 0.6 * std::exp(-40 * (1 - t)));
+        return glm::dvec3(x0 + radius * std::cos(angle), 4 * t, z0 + radius * std::sin(angle));
+      });
+      if (k == 8) continue;
+      AddSheet(scene, 48, 24, 5, {3, 1}, [&](double s, double t) {
+        const double angle = std::numbers::pi * s, turn = 2 * std::numbers::pi * t, radius = 1 + 0.15 * std::cos(turn);
+        return glm::dvec3(x0 + 1 - radius * std::cos(angle), 4 + radius * std::sin(angle), z0 + 0.15 * std::sin(turn));
+      });
+    }
+  }
+  scene.lights = {PointLight{{10, 5, 4}, {20, 20, 18}, {}}, SunLight{{0.3, -1, 0.2}, {1, 1, 1}}};
+  scene.background = glm::vec3(0.5f);
+  return scene;
+}
+
+std::size_t CountTriangles(const Scene& scene) {
+  std::size_t count = 0;
+  for (const Mesh& mesh : scene.meshes) count += mesh.triangles.size();
+  return count;
+}
+
+Pose HallPose() {
+  return {{1.2, 1.7, 3.6}, glm::normalize(glm::dquat(glm::dmat3(glm::dvec3(0.1, 0, 0.995), glm::dvec3(0, -1, 0), glm::dvec3(0.995, 0, -0.1))))};
+}
+
+// Light that looks as if baked: what it says does not matter to its cost.
+BakedLight SomeLight(const RayScene& rays) {
+  BakedLight light;
+  light.layers.push_back({});
+  for (std::uint32_t t = 0; t < rays.triangle_count(); ++t) {
+    light.resolutions.push_back({1, 0});
+    for (int k = 0; k < 9; ++k) light.samples.push_back((16u << 27) | (300u + t % 100u) | ((250u + t % 50u) << 9) | (200u << 18));
+  }
+  return light;
+}
+
+// The rays of one picture, as blocks, with their sample.
+struct Frame {
+  std::vector<PixelBlock> blocks;
+  RaySample sample{};
+};
+
+Frame MakeFrame() {
+  Frame frame;
+  const CameraParams camera = HallCamera();
+  for (int y0 = 0; y0 < kHeight; y0 += kBlockSide) {
+    for (int x0 = 0; x0 < kWidth; x0 += kBlockSide) {
+      PixelBlock block{};
+      for (int i = 0; i < kLanes; ++i) {
+        block.x.v[i] = static_cast<float>((x0 + i % kBlockSide - camera.cx) / camera.fx);
+        block.y.v[i] = static_cast<float>((y0 + i / kBlockSide - camera.cy) / camera.fy);
+        block.x_du.v[i] = block.y_dv.v[i] = block.width.v[i] = static_cast<float>(1 / camera.fx);
+        block.valid.v[i] = -1;
+      }
+      frame.blocks.push_back(block);
+    }
+  }
+  const Pose pose = HallPose();
+  const glm::dmat3 rotation = glm::mat3_cast(pose.q_WC);
+  for (int c = 0; c < 3; ++c) {
+    frame.sample.origin[c] = static_cast<float>(pose.p_WC[c]);
+    for (int r = 0; r < 3; ++r) frame.sample.rotation[c][r] = static_cast<float>(rotation[c][r]);
+  }
+  for (float& factor : frame.sample.layer_factors) factor = 1;
+  return frame;
+}
+
+struct World {
+  Scene scene = Hall();
+  RayScene rays{scene};
+  Frame frame = MakeFrame();
+};
+World& TheWorld() {
+  static World world;
+  return world;
+}
+
+void Rate(benchmark::State& state) {
+  state.counters["ns"] = benchmark::Counter(static_cast<double>(state.iterations()) * kWidth * kHeight * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+// The rays alone: made, cast, and the distance looked at.
+void Bare(benchmark::State& state) {
+  const World& world = TheWorld();
+  const RaySample& sample = world.frame.sample;
+  for (auto _ : state) {
+    float sum = 0;
+    for (const PixelBlock& block : world.frame.blocks) {
+      RTCRayHit16 rays;
+      for (int i = 0; i < kLanes; ++i) {
+        rays.ray.dir_x[i] = sample.rotation[0][0] * block.x.v[i] + sample.rotation[1][0] * block.y.v[i] + sample.rotation[2][0];
+        rays.ray.dir_y[i] = sample.rotation[0][1] * block.x.v[i] + sample.rotation[1][1] * block.y.v[i] + sample.rotation[2][1];
+        rays.ray.dir_z[i] = sample.rotation[0][2] * block.x.v[i] + sample.rotation[1][2] * block.y.v[i] + sample.rotation[2][2];
+        rays.ray.org_x[i] = sample.origin[0], rays.ray.org_y[i] = sample.origin[1], rays.ray.org_z[i] = sample.origin[2];
+        rays.ray.tnear[i] = 0;
+        rays.ray.tfar[i] = __builtin_inff();
+        rays.ray.time[i] = 0;
+        rays.ray.mask[i] = 0xffffffffu;
+        rays.ray.id[i] = rays.ray.flags[i] = 0;
+        rays.hit.geomID[i] = rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+      }
+      IntersectCoherent16(block.valid.v, world.rays.embree(), &rays);
+      sum += rays.ray.tfar[5];
+    }
+    benchmark::DoNotOptimize(sum);
+  }
+  Rate(state);
+}
+
+void Shaded(benchmark::State& state, ExposeBlockFunction expose, int lights, bool baked) {
+  World& world = TheWorld();
+  static const BakedLight light = SomeLight(world.rays);
+  if (baked && world.rays.packet_scene().light == nullptr) world.rays.SetLight(light);
+  PacketScene scene = world.rays.packet_scene();
+  if (!baked) scene.light = nullptr;
+  LightSample lamp{};
+  lamp.x = 10, lamp.y = 5, lamp.z = 4;
+  for (float& p : lamp.power) p = 20;
+  RaySample sample = world.frame.sample;
+  sample.lights = &lamp;
+  sample.light_count = lights;
+  for (auto _ : state) {
+    for (const PixelBlock& block : world.frame.blocks) {
+      Lanes sum[3];
+      expose(scene, &sample, 1, false, 1.0f, block, sum);
+      benchmark::DoNotOptimize(sum);
+    }
+  }
+  Rate(state);
+}
+
+// Whole pictures by the renderer, with its threads.
+void WholeFrame(benchmark::State& state, LightMode mode, int time_samples) {
+  RayTracerOptions options;
+  options.jobs = static_cast<int>(state.range(0));
+  options.light = mode;
+  options.bake = {1.0, 1.0, 2, 1};  // coarse and quick: its cost in a frame is the same
+  const auto renderer = MakeRayTracer(TheWorld().scene, options);
+  const Camera camera(HallCamera());
+  const std::vector<Pose> poses(static_cast<std::size_t>(time_samples), HallPose());
+  RadianceImage image;
+  for (auto _ : state) renderer->Expose(camera, poses, 1, image);
+  state.counters["frames/s"] = benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+
+}  // namespace
+}  // namespace sim
+
+int main(int argc, char** argv) {
+  using namespace sim;
+  benchmark::Initialize(&argc, argv);
+  {
+    const auto begin = std::chrono::steady_clock::now();
+    const Scene& scene = TheWorld().scene;
+    std::size_t bytes = 0;
+    for (const Texture& t : scene.textures) bytes += t.texels().size() * 4;
+    std::printf("%zu triangles, %.1f MB of pictures, made in %.2f s; best instruction set: %s\n", CountTriangles(scene), static_cast<double>(bytes) * 1e-6,
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), PacketKernel().name);
+  }
+  const std::string best = PacketKernel().name;
+  std::vector<KernelChoice> kernels{{packet_base::ExposeBlock, "base"}};
+  if (best != "base") kernels.push_back({packet_avx2::ExposeBlock, "avx2"});
+  if (best == "avx512") kernels.push_back({packet_avx512::ExposeBlock, "avx512"});
+  benchmark::RegisterBenchmark("bare/rtcIntersect16", Bare)->Unit(benchmark::kMillisecond);
+  for (const KernelChoice& kernel : kernels) {
+    const std::string name = kernel.name;
+    benchmark::RegisterBenchmark(("sample/baked/" + name).c_str(), Shaded, kernel.expose_block, 0, true)->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(("sample/ambient/" + name).c_str(), Shaded, kernel.expose_block, 0, false)->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(("sample/one_lamp/" + name).c_str(), Shaded, kernel.expose_block, 1, false)->Unit(benchmark::kMillisecond);
+  }
+  for (const int samples : {1, 16}) {
+    benchmark::RegisterBenchmark(("frame/baked/" + std::to_string(samples)).c_str(), WholeFrame, LightMode::baked, samples)
+        ->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+  }
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}

@@ -1,0 +1,103 @@
+// Samples of light on triangles: how many, where, the same for neighbours and for any number of threads.
+#include "sim/light/bake.h"
+
+#include <gmock/gmock.h>
+#include <tbb/task_arena.h>
+
+#include "sim/light/shared_exponent.h"
+#include "tests/unit/sim/render/worlds.h"
+
+namespace sim::test {
+namespace {
+
+BakeParams Quick() {
+  BakeParams params;
+  params.spacing_m = 0.5;
+  params.finest_m = 0.02;
+  params.paths = 16;
+  params.lamp_rays = 16;
+  return params;
+}
+
+// A room of 4 m x 3 m x 4 m with a lamp under its ceiling and a table.
+Scene Room() {
+  Scene scene;
+  AddMaterial(scene, {0.8f, 0.7f, 0.6f});
+  AddBox(scene, {0, 0, 0}, {4, 3, 4}, 0);
+  AddBox(scene, {1, 0.7f, 1}, {2, 0.8f, 2}, 0);
+  scene.lights = {PointLight{{2.5, 2.5, 2.0}, {5, 5, 5}, {}}};
+  return scene;
+}
+
+TEST(Bake, SpacingSetsTheResolution) {
+  Scene scene;
+  AddMaterial(scene, glm::vec3(0.5f));
+  AddQuad(scene, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 0);  // longest side 5.66 m
+  scene.sky = Sky{{1, 2, 3}, {2, 1, 1}, {1, 1, 1}, 0, 0, {}, 0.0};
+  const RayScene rays(scene);
+  const BakedLight light = BakeLight(scene, rays, LightMode::baked_indirect, Quick());
+  ASSERT_EQ(light.resolutions.size(), 2u);
+  for (const TriangleResolution& r : light.resolutions) {
+    EXPECT_EQ(r.log2_front, 4);  // 16 steps of 0.35 m
+    EXPECT_EQ(r.log2_back, 4);
+  }
+  EXPECT_EQ(light.samples.size(), 4 * LatticeSize(16));
+}
+
+TEST(Bake, NeighboursShareTheirSamples) {
+  Scene scene = Room();
+  scene.meshes.resize(1);  // one wall: two triangles that meet in a diagonal
+  scene.sky = Sky{{1, 2, 3}, {2, 1, 1}, {1, 1, 1}, 0, 0, {}, 0.0};
+  const RayScene rays(scene);
+  const BakedLight light = BakeLight(scene, rays, LightMode::baked_indirect, Quick());
+  const std::size_t log2 = light.resolutions[0].log2_front, r = std::size_t{1} << log2, n = LatticeSize(r);
+  // Triangles (0, 1, 2) and (0, 2, 3): the diagonal is u = 0 in the first and v = 0 in the second. Front and back of each.
+  const std::uint32_t* first = light.samples.data();
+  const std::uint32_t* second = first + 2 * n;
+  std::set<std::uint32_t> different;
+  for (std::size_t k = 0; k <= r; ++k) {
+    EXPECT_EQ(first[LatticeIndex(r, 0, k)], second[LatticeIndex(r, k, 0)]) << k;
+    different.insert(first[LatticeIndex(r, 0, k)]);
+  }
+  EXPECT_GT(different.size(), 2u);  // of 16 paths each: not just equal everywhere
+}
+
+TEST(Bake, ThreadsDoNotMatter) {
+  const Scene scene = Room();
+  const RayScene rays(scene);
+  BakedLight one, two;
+  tbb::task_arena(1).execute([&] { one = BakeLight(scene, rays, LightMode::baked, Quick()); });
+  tbb::task_arena(2).execute([&] { two = BakeLight(scene, rays, LightMode::baked, Quick()); });
+  EXPECT_EQ(one.samples, two.samples);
+  EXPECT_GT(one.samples.size(), 1000u);
+}
+
+// The outside of the room is dark: corners suffice. The floor has the edge of the table's shadow: finest.
+TEST(Bake, FineWhereAnEdgeIs) {
+  const Scene scene = Room();
+  const RayScene rays(scene);
+  const BakedLight light = BakeLight(scene, rays, LightMode::baked, Quick());
+  bool any_fine = false;
+  for (std::size_t t = 0; t < 12; ++t) {  // the room's walls
+    const TriangleResolution r = light.resolutions[t];
+    EXPECT_EQ(std::min(r.log2_front, r.log2_back), 0) << t;
+    any_fine = any_fine || std::max(r.log2_front, r.log2_back) == 9;  // 5.66 m in 512 steps of 0.011 m
+    EXPECT_GE(std::max(r.log2_front, r.log2_back), 4) << t;
+  }
+  EXPECT_TRUE(any_fine);
+}
+
+TEST(Bake, BadParametersAreRefused) {
+  const Scene scene = Room();
+  const RayScene rays(scene);
+  BakeParams params;
+  params.paths = 100;
+  EXPECT_THROW(BakeLight(scene, rays, LightMode::baked, params), std::invalid_argument);
+  params = {};
+  params.finest_m = 1;
+  EXPECT_THROW(BakeLight(scene, rays, LightMode::baked, params), std::invalid_argument);
+  EXPECT_THROW(BakeLight(scene, rays, LightMode::direct, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace sim::test
