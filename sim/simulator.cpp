@@ -54,9 +54,17 @@ struct Simulator::Parts {
     RayTracerOptions options;
     options.rays_per_time_sample = s.render.rays_per_time_sample;
     options.jobs = Threads(jobs);
-    renderer = MakeRayTracer(scene, options);
-    if (renderer->surfaces() == nullptr) exact = MakeRayTracer(scene, options);
+    const RayTracerOptions plain = options;
+    options.light = s.render.light;
+    options.bake = s.render.bake;
+    options.light_folders = s.render.light_folders;
+    renderer = MakeRayTracer(scene, options, &warnings);
+    if (renderer->surfaces() == nullptr) exact = MakeRayTracer(scene, plain);
     for (const Mesh& mesh : scene.meshes) mesh_names.push_back(mesh.name);
+    for (const Light& light : scene.lights) {
+      const auto* rect = std::get_if<RectLight>(&light);
+      if (rect != nullptr && rect->visible) mesh_names.push_back("lamp");
+    }
     if (s.sensor.auto_exposure.on) Meter();
   }
 

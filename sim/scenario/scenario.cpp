@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <stdexcept>
 
+#include "sim/light/cache.h"
 #include "sim/motion/spline.h"
 #include "sim/scenario/path_reader.h"
 #include "sim/scenario/points_reader.h"
@@ -33,11 +35,50 @@ void ReadColor(Section& section, const std::string& key, glm::dvec3& color) {
   }
 }
 
-Light ReadLight(Section& section) {
-  enum class Kind { ambient, sun, point, rectangle } kind = Kind::ambient;
-  section.RequireChoice(
-      "type", kind,
-      {{"ambient", Kind::ambient}, {"sun", Kind::sun}, {"point", Kind::point}, {"rectangle", Kind::rectangle}});
+enum class LightKind { ambient, sun, point, rectangle, sky };
+
+void ReadFlicker(Section section, Flicker& flicker) {
+  section.Read("frequency", flicker.frequency_hz, Unit::frequency, kNotNegative);
+  section.Read("depth", flicker.depth, Range{0, 1});
+  double phase_rad = 2 * std::numbers::pi * flicker.phase;
+  section.Read("phase", phase_rad, Unit::angle);
+  flicker.phase = phase_rad / (2 * std::numbers::pi);
+  if (flicker.depth > 0 && flicker.frequency_hz == 0) section.Reject("frequency", "a lamp that flickers needs a frequency above 0");
+}
+
+// Three ways to say what the sky is: one radiance, three that are blended, or a picture.
+SkyDescription ReadSky(Section& section, const std::filesystem::path& folder) {
+  SkyDescription sky;
+  for (const char* key : {"radiance", "zenith", "horizon", "ground", "file", "strength", "turn"}) section.Allow(key);
+  const bool blended = section.Has("zenith") || section.Has("horizon") || section.Has("ground");
+  if (section.Has("file") + section.Has("radiance") + blended != 1) {
+    section.Reject("type", "a sky has either 'radiance', or 'zenith', 'horizon' and 'ground', or a 'file'");
+  }
+  if (section.Has("file")) {
+    sky.file = ReadFile(section, "file", folder);
+    section.Read("strength", sky.strength, kNotNegative);
+    double turn_rad = 0;
+    section.Read("turn", turn_rad, Unit::angle);
+    sky.turn = turn_rad / (2 * std::numbers::pi);
+    return sky;
+  }
+  for (const char* key : {"strength", "turn"}) {
+    if (section.Has(key)) section.Reject(key, std::string("'") + key + "': only a sky from a file has it");
+  }
+  if (section.Has("radiance")) {
+    ReadColor(section, "radiance", sky.zenith);
+    sky.horizon = sky.ground = sky.zenith;
+    return sky;
+  }
+  ReadColor(section, "zenith", sky.zenith);
+  ReadColor(section, "horizon", sky.horizon);
+  sky.ground = sky.horizon;
+  ReadColor(section, "ground", sky.ground);
+  return sky;
+}
+
+Light ReadLight(Section& section, LightKind kind) {
+  using Kind = LightKind;
   if (kind == Kind::sun) {
     SunLight light;
     if (ReadVector(section, "direction", light.direction) && glm::length(light.direction) == 0) {
@@ -50,6 +91,7 @@ Light ReadLight(Section& section) {
     PointLight light;
     ReadVector(section, "position", light.position, Unit::length);
     ReadColor(section, "intensity", light.intensity);
+    ReadFlicker(section.Child("flicker"), light.flicker);
     return light;
   }
   if (kind == Kind::rectangle) {
@@ -59,6 +101,8 @@ Light ReadLight(Section& section) {
     ReadVector(section, "side_v", light.side_v, Unit::length);
     if (glm::length(glm::cross(light.side_u, light.side_v)) == 0) section.Reject("side_u", "the rectangle has no area");
     ReadColor(section, "radiance", light.radiance);
+    ReadFlicker(section.Child("flicker"), light.flicker);
+    section.Read("visible", light.visible);
     return light;
   }
   AmbientLight light;
@@ -76,8 +120,31 @@ void ReadWorld(Section section, const std::filesystem::path& folder, WorldDescri
     world.meshes.push_back(description);
   }
   if (world.meshes.empty()) section.Reject("meshes", "'world.meshes': the world is empty");
-  for (Section& light : section.List("lights")) world.lights.push_back(ReadLight(light));
+  for (Section& light : section.List("lights")) {
+    LightKind kind = LightKind::ambient;
+    light.RequireChoice("type", kind, {{"ambient", LightKind::ambient}, {"sun", LightKind::sun}, {"point", LightKind::point}, {"rectangle", LightKind::rectangle}, {"sky", LightKind::sky}});
+    if (kind != LightKind::sky) {
+      world.lights.push_back(ReadLight(light, kind));
+      continue;
+    }
+    if (world.sky) light.Reject("type", "there is a sky already: a world has one at most");
+    world.sky = ReadSky(light, folder);
+  }
   ReadColor(section, "background", world.background);
+}
+
+void ReadRender(Section section, const std::filesystem::path& folder, RenderParams& render) {
+  section.Read("rays_per_time_sample", render.rays_per_time_sample, Range{1, 256});
+  section.ReadChoice("light", render.light, {{"direct", LightMode::direct}, {"baked_indirect", LightMode::baked_indirect}, {"baked", LightMode::baked}});
+  Section bake = section.Child("bake");
+  bake.Read("spacing", render.bake.spacing_m, Unit::length);
+  bake.Read("finest", render.bake.finest_m, Unit::length);
+  bake.Read("paths", render.bake.paths);
+  bake.Read("lamp_rays", render.bake.lamp_rays);
+  for (const std::string& problem : Problems(render.bake)) {
+    bake.Reject(problem.substr(0, problem.find(' ')), "render.bake: " + problem);
+  }
+  render.light_folders = LightFolders(folder);
 }
 
 void ReadCamera(Section section, CameraParams& camera) {
@@ -323,7 +390,7 @@ Scenario LoadScenario(const std::filesystem::path& path,
   } else {
     ReadWorld(world, folder, scenario.world);
     ReadSensor(root.Child("sensor"), scenario.time.rate_hz, scenario.sensor);
-    root.Child("render").Read("rays_per_time_sample", scenario.render.rays_per_time_sample, Range{1, 256});
+    ReadRender(root.Child("render"), folder, scenario.render);
     ReadTruth(root, scenario.truth);
   }
   root.Ignore("odometry");

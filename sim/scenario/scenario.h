@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/light/params.h"
 #include "sim/motion/description.h"
 #include "sim/sensor/camera.h"
 #include "sim/sensor/description.h"
@@ -24,6 +25,9 @@ struct TimeParams {
 
 struct RenderParams {
   int rays_per_time_sample = 1;  // more: smoother edges at few time samples
+  LightMode light = LightMode::direct;
+  BakeParams bake;
+  std::vector<std::filesystem::path> light_folders;  // where baked light is kept
 };
 
 struct Scenario {

@@ -56,6 +56,14 @@ Scene LoadScene(const WorldDescription& description) {
   }
   if (!IsLight(description.background)) problems.push_back("world.background: negative or not finite");
 
+  if (description.sky) {
+    try {
+      scene.sky = LoadSky(*description.sky);
+    } catch (const std::runtime_error& problem) {
+      problems.push_back(std::string(problem.what()) + " (the sky)");
+    }
+  }
+
   TextureCache textures;
   for (const MeshDescription& mesh : description.meshes) {
     const glm::dquat& q = mesh.orientation;

@@ -1,0 +1,23 @@
+// Purpose: how the light of a world is computed: settings of a scenario.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace sim {
+
+enum class LightMode {
+  direct,          // lamps with shadow rays in each frame, and ambient light; nothing is baked
+  baked_indirect,  // lamps with shadow rays in each frame; the sky and all that bounces is baked
+  baked            // all is baked: frames cost only their primary rays
+};
+
+struct BakeParams {
+  double spacing_m = 0.1;  // at most, between samples of a triangle's light
+  double finest_m = 0.01;  // at an edge of a lamp's light, where that is baked too
+  int paths = 256;         // of each sample: a power of two
+  int lamp_rays = 64;      // of each sample to each area lamp, where lamps are baked: a power of two
+};
+std::vector<std::string> Problems(const BakeParams& params);
+
+}  // namespace sim
