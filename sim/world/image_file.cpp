@@ -70,23 +70,30 @@ void CheckJpeg(Bytes bytes) {
 
 }  // namespace
 
-DecodedImage DecodeImage(Bytes bytes) {
+DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
   if (bytes.empty()) throw std::runtime_error("the file is empty");
   if (bytes.size() >= kPngSignature.size() && std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin())) {
     CheckPng(bytes);
   } else if (bytes.size() >= 2 && bytes[0] == 0xff && bytes[1] == 0xd8) {
     CheckJpeg(bytes);
   }
-  cv::Mat bgr;
+  cv::Mat bgr, all;
   try {
     const cv::Mat data(1, static_cast<int>(bytes.size()), CV_8U, const_cast<std::uint8_t*>(bytes.data()));
+    if (with_alpha) all = cv::imdecode(data, cv::IMREAD_UNCHANGED);
     bgr = cv::imdecode(data, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception& error) {
     throw std::runtime_error("cannot be decoded: " + error.err);
   }
   if (bgr.empty()) throw std::runtime_error("not a picture that can be decoded");
 
-  DecodedImage image{bgr.cols, bgr.rows, std::vector<std::uint8_t>(bgr.total() * 3)};
+  DecodedImage image{bgr.cols, bgr.rows, std::vector<std::uint8_t>(bgr.total() * 3), {}};
+  if (all.channels() == 4 && all.size() == bgr.size() && (all.depth() == CV_8U || all.depth() == CV_16U)) {
+    cv::Mat alpha;
+    cv::extractChannel(all, alpha, 3);
+    alpha.convertTo(alpha, CV_8U, all.depth() == CV_16U ? 1.0 / 257.0 : 1.0);
+    image.alpha.assign(alpha.begin<std::uint8_t>(), alpha.end<std::uint8_t>());
+  }
   std::uint8_t* to = image.rgb.data();
   for (int y = 0; y < bgr.rows; ++y) {
     const std::uint8_t* row = bgr.ptr<std::uint8_t>(y);

@@ -9,12 +9,13 @@ namespace sim {
 
 struct DecodedImage {
   int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;  // width * height * 3, rows from the top; transparency is dropped
+  std::vector<std::uint8_t> rgb;    // width * height * 3, rows from the top
+  std::vector<std::uint8_t> alpha;  // width * height where it was asked for and the picture has it, or nothing
 };
 
 // Decodes what OpenCV decodes (PNG, JPEG, BMP, TIFF, WebP, ...) to 8 bits a channel. EXIF orientation is not applied.
 // PNG chunks (lengths, checksums, the end chunk) and JPEG segments (the end marker) are checked first, since decoders
 // accept some truncated files. Throws std::runtime_error saying what is wrong, without a file name.
-DecodedImage DecodeImage(std::span<const std::uint8_t> bytes);
+DecodedImage DecodeImage(std::span<const std::uint8_t> bytes, bool with_alpha = false);
 
 }  // namespace sim

@@ -1,7 +1,6 @@
 #include "sim/world/mesh_file.h"
 
 #include <assimp/DefaultIOSystem.h>
-#include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -10,7 +9,6 @@
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -22,7 +20,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/world/image_file.h"
+#include "sim/world/gltf_features.h"
+#include "sim/world/mesh_material.h"
 #include "sim/world/srgb.h"
 
 namespace sim {
@@ -80,6 +79,13 @@ glm::dmat4 ToGlm(const aiMatrix4x4& m) {  // assimp is row-major, GLM column-maj
   return {m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4};
 }
 
+// Whether three corners lie on a line, as exactly as floats can say it.
+bool IsDegenerate(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+  const glm::dvec3 ab = glm::dvec3(b) - glm::dvec3(a), ac = glm::dvec3(c) - glm::dvec3(a), bc = glm::dvec3(c) - glm::dvec3(b);
+  const double longest2 = std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(bc, bc)});
+  return !(glm::length(glm::cross(ab, ac)) > 1e-10 * longest2);
+}
+
 bool IsFinite(const aiVector3D& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 std::string ToText(const aiVector3D& v) {
@@ -103,6 +109,15 @@ class FileReader {
     if (!fs::exists(file_, error)) return Problem("no such file");
     if (!fs::is_regular_file(file_, error)) return Problem("not a file");
 
+    GltfFeatures features;
+    const std::string extension = LowerExtension(file_);
+    if (extension == ".gltf" || extension == ".glb") {
+      features = ReadGltfFeatures(file_);
+      for (const std::string& what : features.impossible) Problem(what);
+      if (!features.impossible.empty()) return;
+      for (const std::string& what : features.not_rendered) Warn(what);
+    }
+
     Assimp::Importer importer;
     auto* files = new NotingFiles;  // the importer owns it
     importer.SetIOHandler(files);
@@ -119,13 +134,15 @@ class FileReader {
       scene_.warnings.push_back(file_.string() + ": names " + missing + ", which cannot be opened");
     }
 
-    material_of_.assign(ai_->mNumMaterials, -1);
+    materials_ = std::make_unique<MeshMaterialReader>(file_, *ai_, scene_, textures_, problems_);
+    materials_->SetEmissionStrengths(features.emission_strengths);
     const std::size_t problems_before = problems_.size(), meshes_before = scene_.meshes.size();
     if (ai_->mRootNode != nullptr) AppendNode(*ai_->mRootNode, world_from_file_);
     if (problems_.size() == problems_before && scene_.meshes.size() == meshes_before) Problem("has no triangles");
   }
 
  private:
+  void Warn(const std::string& what) { scene_.warnings.push_back(file_.string() + ": " + what); }
   void Problem(const std::string& what) { problems_.push_back(file_.string() + ": " + what); }
 
   void AppendNode(const aiNode& node, const glm::dmat4& world_from_parent) {
@@ -158,14 +175,19 @@ class FileReader {
       const std::string extension = LowerExtension(file_);
       const bool coded = extension != ".gltf" && extension != ".glb";
       const auto linear_of = [&](float c) { return coded ? static_cast<float>(SrgbToLinear(c)) : c; };
+      bool any_alpha = false;
       for (unsigned i = 0; i < in.mNumVertices; ++i) {
         const aiColor4D& c = in.mColors[0][i];
         out.colors.emplace_back(linear_of(c.r), linear_of(c.g), linear_of(c.b));
         if (!(std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b))) {
           return Problem(label + "the colour of vertex " + std::to_string(i) + " is not finite");
         }
+        any_alpha = any_alpha || c.a != in.mColors[0][0].a;  // where a file has none, assimp makes up one
       }
+      if (any_alpha) Warn(label + "the alpha of its vertex colours is not used");
     }
+    std::size_t degenerate = 0;
+    out.triangles.reserve(in.mNumFaces);
     for (unsigned i = 0; i < in.mNumFaces; ++i) {
       const aiFace& face = in.mFaces[i];
       if (face.mNumIndices != 3) continue;
@@ -173,12 +195,44 @@ class FileReader {
       if (std::max({t.x, t.y, t.z}) >= in.mNumVertices) {
         return Problem(label + "triangle " + std::to_string(i) + " names a vertex that does not exist");
       }
+      if (IsDegenerate(out.positions[t.x], out.positions[t.y], out.positions[t.z])) {
+        ++degenerate;
+        continue;
+      }
       out.triangles.push_back(t);
     }
+    if (degenerate > 0) {
+      Warn(label + std::to_string(degenerate) + " of " + std::to_string(in.mNumFaces) + " triangles without area are left out");
+    }
     if (out.triangles.empty()) return;
-    const int uv_channel = AppendMaterial(in.mMaterialIndex, out);
-    AppendUvs(in, uv_channel, label, out);
+    if (!CheckRounding(label, out.positions)) return;
+    const MeshMaterial& material = materials_->Material(in.mMaterialIndex);
+    out.material = material.index;
+    AppendUvs(in, material.uv, label, out);
     scene_.meshes.push_back(std::move(out));
+  }
+
+  // Coordinates are floats: far from the origin they are coarse. Says so when the rounding is 1e-5 of the mesh's size, and refuses it
+  // at 1e-3.
+  bool CheckRounding(const std::string& label, const std::vector<glm::vec3>& positions) {
+    glm::vec3 low = positions[0], high = low;
+    for (const glm::vec3& x : positions) {
+      low = glm::min(low, x);
+      high = glm::max(high, x);
+    }
+    const glm::vec3 far = glm::max(glm::abs(low), glm::abs(high));
+    const double rounding = 0x1p-24 * std::max({far.x, far.y, far.z}), size = glm::length(glm::dvec3(high) - glm::dvec3(low));
+    if (rounding <= 1e-5 * size) return true;
+    const glm::dvec3 middle = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
+    std::ostringstream text;
+    text << label << "it lies near (" << middle.x << ", " << middle.y << ", " << middle.z << ") m, where numbers are " << rounding
+         << " m coarse, but is only " << size << " m large: move it near the origin with 'position'";
+    if (rounding > 1e-3 * size) {
+      Problem(text.str());
+      return false;
+    }
+    Warn(text.str());
+    return true;
   }
 
   void AppendNormals(const aiMesh& in, const glm::dmat3& transform, const std::string& label, Mesh& out) {
@@ -197,123 +251,32 @@ class FileReader {
     }
   }
 
-  void AppendUvs(const aiMesh& in, int channel, const std::string& label, Mesh& out) {
-    Material& material = scene_.materials[static_cast<std::size_t>(out.material)];
-    if (material.texture < 0) return;
-    if (!in.HasTextureCoords(static_cast<unsigned>(channel))) {
-      const std::string& texture = scene_.textures[static_cast<std::size_t>(material.texture)].name();
-      scene_.warnings.push_back(file_.string() + ": " + label + "no texture coordinates for texture " + texture +
-                                "; the base colour is used");
+  void AppendUvs(const aiMesh& in, const UvChoice& choice, const std::string& label, Mesh& out) {
+    const Material& material = scene_.materials[static_cast<std::size_t>(out.material)];
+    const int texture = std::max({material.texture, material.emission_texture, material.normal_map});
+    if (texture < 0) return;
+    if (!in.HasTextureCoords(choice.channel)) {
+      const std::string& name = scene_.textures[static_cast<std::size_t>(texture)].name();
+      Warn(label + "no texture coordinates for texture " + name + "; the base colour is used");
       Material plain = material;
-      plain.texture = -1;
+      plain.texture = plain.emission_texture = plain.normal_map = -1;
       out.material = static_cast<int>(scene_.materials.size());
       scene_.materials.push_back(std::move(plain));
       return;
     }
     for (unsigned i = 0; i < in.mNumVertices; ++i) {
-      const aiVector3D& uv = in.mTextureCoords[channel][i];
+      const aiVector3D& uv = in.mTextureCoords[choice.channel][i];
       if (!IsFinite(uv)) {
-        return Problem(label + "the texture coordinate of vertex " + std::to_string(i) +
-                       " is not finite: " + ToText(uv));
+        return Problem(label + "the texture coordinate of vertex " + std::to_string(i) + " is not finite: " + ToText(uv));
       }
-      out.uvs.emplace_back(uv.x, 1.0f - uv.y);  // assimp has v up in all formats
+      out.uvs.emplace_back(choice.transform * glm::dvec3(uv.x, 1.0 - static_cast<double>(uv.y), 1.0));  // assimp has v up in all formats
     }
-  }
-
-  // Sets out.material; returns the channel of texture coordinates that its texture wants.
-  int AppendMaterial(unsigned index, Mesh& out) {
-    const aiMaterial& in = *ai_->mMaterials[index];
-    const aiTextureType type =
-        in.GetTextureCount(aiTextureType_BASE_COLOR) > 0 ? aiTextureType_BASE_COLOR : aiTextureType_DIFFUSE;
-    int channel = 0;
-    in.Get(AI_MATKEY_UVWSRC(type, 0), channel);
-
-    int& known = material_of_[index];
-    if (known < 0) {
-      Material material;
-      material.name = in.GetName().C_Str();
-      aiColor3D color(1, 1, 1);
-      if (in.Get(AI_MATKEY_BASE_COLOR, color) != AI_SUCCESS) in.Get(AI_MATKEY_COLOR_DIFFUSE, color);
-      aiColor3D emission(0, 0, 0);
-      in.Get(AI_MATKEY_COLOR_EMISSIVE, emission);
-      for (const float c : {color.r, color.g, color.b, emission.r, emission.g, emission.b}) {
-        if (!std::isfinite(c) || c < 0) {
-          Problem("material '" + material.name + "': a colour is negative or not finite: " + std::to_string(c));
-          break;
-        }
-      }
-      material.base_color = {color.r, color.g, color.b};
-      material.emission = {emission.r, emission.g, emission.b};
-      aiString path;
-      if (in.Get(AI_MATKEY_TEXTURE(type, 0), path) == AI_SUCCESS && path.length > 0) {
-        material.texture = TextureIndex(path.C_Str(), material.name);
-        aiUVTransform transform;
-        if (in.Get(AI_MATKEY_UVTRANSFORM(type, 0), transform) == AI_SUCCESS) {
-          scene_.warnings.push_back(file_.string() + ": material '" + material.name + "': the transform of texture " +
-                                    path.C_Str() + " is not applied");
-        }
-      }
-      known = static_cast<int>(scene_.materials.size());
-      scene_.materials.push_back(std::move(material));
-    }
-    out.material = known;
-    return channel;
-  }
-
-  int TextureIndex(const std::string& name, const std::string& material) {
-    std::string text = name;
-    std::replace(text.begin(), text.end(), '\\', '/');
-    const fs::path path = fs::path(text).lexically_normal();
-    const aiTexture* embedded = ai_->GetEmbeddedTexture(name.c_str());
-    const fs::path file = embedded != nullptr ? file_ / name : (file_.parent_path() / path).lexically_normal();
-    const auto [entry, is_new] = textures_.try_emplace(file.string(), -1);
-    if (!is_new) return entry->second;  // a bad one has been reported
-    const auto bad = [&](const std::string& what) {
-      problems_.push_back(file.string() + ": texture of material '" + material + "' in " + file_.string() + ": " +
-                          what);
-      return -1;
-    };
-    try {
-      DecodedImage image;
-      if (embedded != nullptr) {
-        image = DecodeEmbedded(*embedded);
-      } else {
-        const bool has_drive = text.size() > 1 && text[1] == ':';
-        if (path.is_absolute() || has_drive || (!path.empty() && *path.begin() == "..")) {
-          entry->second = -1;
-          problems_.push_back(file_.string() + ": material '" + material + "': the texture path '" + name +
-                              "' must be relative and stay inside the mesh file's folder");
-          return -1;
-        }
-        if (!fs::exists(file)) return bad("no such file");
-        std::ifstream stream(file, std::ios::binary);
-        const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
-        if (!stream.is_open() || stream.bad()) return bad("cannot be opened");
-        image = DecodeImage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
-      }
-      scene_.textures.emplace_back(file.string(), image.width, image.height, image.rgb);
-    } catch (const std::exception& error) {
-      return bad(error.what());
-    }
-    return entry->second = static_cast<int>(scene_.textures.size()) - 1;
-  }
-
-  static DecodedImage DecodeEmbedded(const aiTexture& texture) {
-    if (texture.mHeight == 0) {  // a file of mWidth bytes
-      return DecodeImage({reinterpret_cast<const std::uint8_t*>(texture.pcData), texture.mWidth});
-    }
-    DecodedImage image{static_cast<int>(texture.mWidth), static_cast<int>(texture.mHeight), {}};
-    for (std::size_t i = 0; i < std::size_t{texture.mWidth} * texture.mHeight; ++i) {
-      const aiTexel& texel = texture.pcData[i];
-      image.rgb.insert(image.rgb.end(), {texel.r, texel.g, texel.b});
-    }
-    return image;
   }
 
   fs::path file_;
   glm::dmat4 world_from_file_{1.0};
   const aiScene* ai_ = nullptr;
-  std::vector<int> material_of_;  // scene's index of each of the file's materials; -1: not used yet
+  std::unique_ptr<MeshMaterialReader> materials_;
   Scene& scene_;
   TextureCache& textures_;
   std::vector<std::string>& problems_;

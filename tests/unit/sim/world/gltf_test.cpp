@@ -1,0 +1,198 @@
+// What glTF says about surfaces: cut-outs, texture transforms, emission, normal maps; and what is said about the rest. Files are
+// written here by hand.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <opencv2/imgcodecs.hpp>
+
+#include "sim/world/gltf_features.h"
+#include "sim/world/scene.h"
+#include "tests/unit/sim/world/files.h"
+
+namespace sim::test {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+// One triangle; `more` goes to the top level, `material` into its material, `node` into its node.
+struct Parts {
+  std::string material = R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0}})";
+  std::string more, node, attributes;
+  std::vector<float> positions{0, 0, 0, 1, 0, 0, 0, 1, 0};
+};
+
+std::string Gltf(const Parts& parts) {
+  const std::size_t n = parts.positions.size() / 3;
+  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0)" + parts.node + R"(}],
+    "meshes": [{"name": "flag", "primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1)" + parts.attributes + R"(}, "material": 0}]}],
+    "materials": [{"name": "cloth", )" + parts.material + R"(}],
+    "textures": [{"source": 0}, {"source": 1}], "images": [{"uri": "a%20picture.png"}, {"uri": "other.png"}],
+    "buffers": [{"uri": "data.bin", "byteLength": )" + std::to_string(20 * n) + R"(}],
+    "bufferViews": [{"buffer": 0, "byteLength": )" + std::to_string(12 * n) + R"(}, {"buffer": 0, "byteOffset": )" + std::to_string(12 * n) +
+         R"(, "byteLength": )" + std::to_string(8 * n) + R"(}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": )" + std::to_string(n) + R"(, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
+      {"bufferView": 1, "componentType": 5126, "count": )" + std::to_string(n) + R"(, "type": "VEC2"}])" + parts.more + "}";
+}
+
+Scene Load(const Folder& folder, const Parts& parts) {
+  cv::Mat picture(2, 2, CV_8UC4, cv::Scalar(10, 20, 30, 255));
+  picture.at<cv::Vec4b>(0, 1)[3] = 51;  // alpha of the texel at the upper right
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", picture, bytes);
+  folder.Write("a picture.png", {bytes.begin(), bytes.end()});
+  folder.Write("other.png", EncodeColor(".png", 128, 128, 255));
+  std::vector<float> data = parts.positions;
+  for (std::size_t i = 0; i < parts.positions.size() / 3; ++i) {
+    const float uv[3][2] = {{0.25f, 0.5f}, {0.75f, 0.5f}, {0.25f, 0.125f}};
+    data.insert(data.end(), {uv[i % 3][0], uv[i % 3][1]});
+  }
+  folder.Write("data.bin", {reinterpret_cast<const char*>(data.data()), data.size() * sizeof(float)});
+  WorldDescription world;
+  world.meshes.push_back({folder.Write("flag.gltf", Gltf(parts)), {}, {1, 0, 0, 0}, 1.0});
+  return LoadScene(world);
+}
+
+std::string Problems(const Folder& folder, const Parts& parts) {
+  try {
+    Load(folder, parts);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Gltf, PlainOneHasNoWarnings) {
+  const Folder folder;
+  const Scene scene = Load(folder, {});
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  ASSERT_THAT(scene.textures, SizeIs(1));
+  EXPECT_FALSE(scene.textures[0].has_alpha()) << "opaque materials have no alpha";
+  EXPECT_EQ(scene.materials.at(0).alpha_cutoff, 0.0f);
+  EXPECT_THAT(scene.meshes.at(0).normals, IsEmpty()) << "flat where the file has none";
+}
+
+TEST(Gltf, MaskIsACutOut) {
+  const Folder folder;
+  Parts parts;
+  parts.material += R"(, "alphaMode": "MASK", "alphaCutoff": 0.25)";
+  const Scene scene = Load(folder, parts);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_FLOAT_EQ(scene.materials.at(0).alpha_cutoff, 0.25f);
+  ASSERT_TRUE(scene.textures.at(0).has_alpha());
+  EXPECT_NEAR(scene.textures[0].Alpha({0.75f, 0.25f}), 0.2, 1e-6);
+  EXPECT_NEAR(scene.textures[0].Alpha({0.25f, 0.25f}), 1.0, 1e-6);
+  EXPECT_NEAR(scene.textures[0].Alpha({0.5f, 0.25f}), 0.6, 1e-6);
+}
+
+TEST(Gltf, BlendIsACutOutWithAWarning) {
+  const Folder folder;
+  Parts parts;
+  parts.material += R"(, "alphaMode": "BLEND")";
+  const Scene scene = Load(folder, parts);
+  EXPECT_THAT(scene.warnings, ElementsAre(testing::AllOf(HasSubstr("flag.gltf"), HasSubstr("'cloth'"), HasSubstr("BLEND"))));
+  EXPECT_FLOAT_EQ(scene.materials.at(0).alpha_cutoff, 0.5f);
+}
+
+// uv' = offset + rotation(scale uv), with the rotation counter-clockwise where v is down: the extension's own matrices.
+TEST(Gltf, TextureTransform) {
+  const Folder folder;
+  const double r = 0.7, sx = 2.0, sy = 3.0, ox = 0.1, oy = -0.2;
+  Parts parts;
+  parts.material = R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform":
+    {"offset": [0.1, -0.2], "rotation": 0.7, "scale": [2, 3]}}}})";
+  parts.more = R"(, "extensionsUsed": ["KHR_texture_transform"])";
+  const Scene scene = Load(folder, parts);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  const Mesh& mesh = scene.meshes.at(0);
+  ASSERT_THAT(mesh.uvs, SizeIs(3));
+  for (std::size_t i = 0; i < 3; ++i) {
+    // The corner tells which vertex it is.
+    const double u = mesh.positions[i].x > 0.5f ? 0.75 : 0.25, v = mesh.positions[i].y > 0.5f ? 0.125 : 0.5;
+    EXPECT_NEAR(mesh.uvs[i].x, ox + std::cos(r) * sx * u + std::sin(r) * sy * v, 1e-5) << i;
+    EXPECT_NEAR(mesh.uvs[i].y, oy - std::sin(r) * sx * u + std::cos(r) * sy * v, 1e-5) << i;
+  }
+}
+
+TEST(Gltf, EmissionAndNormalMap) {
+  const Folder folder;
+  Parts parts;
+  parts.material += R"(, "emissiveFactor": [1, 0.5, 0.25], "emissiveTexture": {"index": 0}, "normalTexture": {"index": 1, "scale": 0.5},
+    "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}})";
+  parts.more = R"(, "extensionsUsed": ["KHR_materials_emissive_strength"])";
+  const Scene scene = Load(folder, parts);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  const Material& m = scene.materials.at(0);
+  EXPECT_EQ(m.texture, m.emission_texture) << "one picture, read once";
+  ASSERT_GE(m.normal_map, 0);
+  const Texture& map = scene.textures.at(static_cast<std::size_t>(m.normal_map));
+  EXPECT_EQ(map.content(), Texture::Content::normals);
+  EXPECT_NEAR(map.Texel(0, 0, 0).x, 128 / 255.0, 1e-3);
+  EXPECT_NEAR(map.Texel(0, 0, 0).z, 1.0, 1e-3);
+  EXPECT_FLOAT_EQ(m.normal_scale, 0.5f);
+  EXPECT_FLOAT_EQ(m.emission.y, 2.0f);
+}
+
+TEST(Gltf, PicturesWithOtherCoordinatesAreLeftOut) {
+  const Folder folder;
+  Parts parts;
+  parts.material += R"(, "normalTexture": {"index": 1, "texCoord": 1})";
+  const Scene scene = Load(folder, parts);
+  EXPECT_THAT(scene.warnings, ElementsAre(testing::AllOf(HasSubstr("'cloth'"), HasSubstr("other.png"), HasSubstr("left out"))));
+  EXPECT_EQ(scene.materials.at(0).normal_map, -1);
+}
+
+TEST(Gltf, TrianglesWithoutAreaAreCounted) {
+  const Folder folder;
+  Parts parts;
+  parts.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, /* on a line */ 0, 0, 0, 0.5f, 0.5f, 0.5f, 1, 1, 1, /* one point */ 1, 0, 0, 1, 0, 0, 1, 0, 0};
+  const Scene scene = Load(folder, parts);
+  EXPECT_THAT(scene.meshes.at(0).triangles, SizeIs(1));
+  EXPECT_THAT(scene.warnings, ElementsAre(testing::AllOf(HasSubstr("flag"), HasSubstr("2 of 3 triangles"))));
+}
+
+TEST(Gltf, HugeCoordinates) {
+  const Folder folder;
+  Parts parts;
+  parts.node = R"(, "translation": [0, 0, 4194304])";  // 2^22: floats are half a metre apart
+  EXPECT_THAT(Problems(folder, parts), testing::AllOf(HasSubstr("flag.gltf"), HasSubstr("4.19"), HasSubstr("position")));
+  parts.node = R"(, "translation": [0, 0, 1024])";
+  EXPECT_THAT(Load(folder, parts).warnings, ElementsAre(HasSubstr("coarse")));
+  // Moved back near the origin, in double, all is well.
+  parts.node = R"(, "translation": [0, 0, 4194304])";
+  WorldDescription world;
+  world.meshes.push_back({folder.Write("far.gltf", Gltf(parts)), {0, 0, -4194304.0}, {1, 0, 0, 0}, 1.0});
+  const Scene scene = LoadScene(world);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  for (const glm::vec3& x : scene.meshes.at(0).positions) EXPECT_NEAR(x.z, 0.0, 1e-6);
+}
+
+TEST(Gltf, WhatIsNotRenderedIsNamed) {
+  const Folder folder;
+  Parts parts;
+  parts.material += R"(, "extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 1}})";
+  parts.more = R"(, "extensionsUsed": ["KHR_materials_clearcoat", "MAKER_something"])";
+  const std::vector<std::string> warnings = Load(folder, parts).warnings;
+  EXPECT_THAT(warnings, SizeIs(2));
+  EXPECT_THAT(warnings, Contains(HasSubstr("KHR_materials_clearcoat: clear coats")));
+  EXPECT_THAT(warnings, Contains(HasSubstr("MAKER_something")));
+  parts.more = R"(, "animations": [{}], "skins": [{}])";
+  EXPECT_THAT(ReadGltfFeatures(folder.Write("moves.gltf", Gltf(parts))).not_rendered, ElementsAre(HasSubstr("animations"), HasSubstr("skins")));
+}
+
+TEST(Gltf, WhatCannotBeReadIsAnError) {
+  const Folder folder;
+  for (const std::string name : {"KHR_draco_mesh_compression", "KHR_texture_basisu"}) {
+    Parts parts;
+    parts.more = R"(, "extensionsUsed": [")" + name + R"("], "extensionsRequired": [")" + name + R"("])";
+    EXPECT_THAT(Problems(folder, parts), testing::AllOf(HasSubstr("flag.gltf"), HasSubstr(name)));
+  }
+}
+
+}  // namespace
+}  // namespace sim::test

@@ -1,0 +1,103 @@
+// The sky's closed forms and pictures, and what a lamp's flicker is.
+#include "sim/world/sky.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <opencv2/imgcodecs.hpp>
+
+#include "sim/world/light.h"
+#include "tests/unit/sim/world/files.h"
+
+namespace sim::test {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Sky, Gradient) {
+  const Sky sky{{3, 3, 3}, {1, 2, 3}, {0, 0, 0}, 0, 0, {}, 0.0};
+  EXPECT_EQ(sky.Radiance({0, 1, 0}), glm::dvec3(3));
+  EXPECT_EQ(sky.Radiance({0, -1, 0}), glm::dvec3(0));
+  EXPECT_EQ(sky.Radiance({0.6, 0, 0.8}), glm::dvec3(1, 2, 3));
+  EXPECT_EQ(sky.Radiance({0.6, 0.5, 0.6}), glm::dvec3(2, 2.5, 3));
+}
+
+// 8 x 4 pixels of known places: the middle of the picture is -z, to its right +x, its top the zenith.
+TEST(Sky, PictureIsTheRightWayRound) {
+  const Folder folder;
+  cv::Mat picture(4, 8, CV_32FC3);
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 8; ++x) picture.at<cv::Vec3f>(y, x) = {0.0f, static_cast<float>(y), static_cast<float>(x)};  // blue, green, red
+  }
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".hdr", picture, bytes);
+  SkyDescription description;
+  description.file = folder.Write("sky.hdr", {bytes.begin(), bytes.end()});
+  description.strength = 2;
+  Sky sky = LoadSky(description);
+  const auto towards = [](double turns, double polar_turns) {
+    const double a = 2 * std::numbers::pi * turns, p = 2 * std::numbers::pi * polar_turns;
+    return glm::dvec3(std::sin(p) * std::sin(a), std::cos(p), -std::sin(p) * std::cos(a));
+  };
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      const glm::dvec3 seen = sky.Radiance(towards((x + 0.5) / 8 - 0.5, (y + 0.5) / 8));
+      EXPECT_NEAR(seen.x, 2 * x, 0.05) << x << ", " << y;  // Radiance HDR has 8 bits
+      EXPECT_NEAR(seen.y, 2 * y, 0.05) << x << ", " << y;
+    }
+  }
+  EXPECT_NEAR(sky.Radiance(towards(0.5, 0.25)).x, 2 * 3.5, 0.05) << "the seam, behind: between 7 and 0";
+  sky.turn = 0.25;
+  EXPECT_NEAR(sky.Radiance(towards(0.0625, 0.25)).x, 2 * 6, 0.05);
+}
+
+TEST(Sky, FilesThatAreNone) {
+  const Folder folder;
+  const auto what = [&](const std::filesystem::path& file) -> std::string {
+    SkyDescription description;
+    description.file = file;
+    try {
+      LoadSky(description);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(what(folder.path() / "none.hdr"), HasSubstr("none.hdr: cannot be opened"));
+  EXPECT_THAT(what(folder.Write("text.hdr", "not a picture")), HasSubstr("text.hdr"));
+  EXPECT_THAT(what(folder.Write("empty.png", "")), HasSubstr("empty.png"));
+}
+
+TEST(Flicker, MeanIsOne) {
+  const Flicker flicker{100, 0.3, 0.1};
+  double mean = 0, low = 9, high = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const double factor = FlickerFactor(flicker, 0.01 * i / 1000);
+    mean += factor / 1000;
+    low = std::min(low, factor);
+    high = std::max(high, factor);
+  }
+  EXPECT_NEAR(mean, 1, 1e-12);
+  EXPECT_NEAR(low, 0.7, 1e-4);
+  EXPECT_NEAR(high, 1.3, 1e-4);
+  EXPECT_NEAR(FlickerFactor(flicker, 0.123), 1 + 0.3 * std::sin(2 * std::numbers::pi * (12.3 + 0.1)), 1e-12);
+  EXPECT_EQ(FlickerFactor({}, 5), 1);
+}
+
+// The mean over an interval against Simpson's rule on the instants.
+TEST(Flicker, MeanOverAnInterval) {
+  const Flicker flicker{100, 0.4, 0.3};
+  for (const double width : {1e-4, 0.003, 0.01, 0.0123}) {
+    double sum = 0;
+    const int n = 2000;
+    for (int i = 0; i <= n; ++i) sum += (i == 0 || i == n ? 1 : i % 2 == 1 ? 4 : 2) * FlickerFactor(flicker, 0.5 + width * (static_cast<double>(i) / n - 0.5));
+    EXPECT_NEAR(FlickerFactor(flicker, 0.5, width), sum / (3 * n), 1e-9) << width;
+  }
+  EXPECT_NEAR(FlickerFactor(flicker, 0.5, 0.01), 1, 1e-12) << "a whole period";
+}
+
+}  // namespace
+}  // namespace sim::test
