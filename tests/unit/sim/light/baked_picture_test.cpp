@@ -52,11 +52,11 @@ TEST(BakedPicture, LatticeIsInterpolatedLinearly) {
           RaySample sample{};
           for (int c = 0; c < 3; ++c) sample.rotation[c][c] = 1;
           if (!back) sample.rotation[2][2] = -1, sample.rotation[0][0] = -1, sample.origin[2] = 4;
-          sample.layer_factors[0] = 0.5f;
+          for (float& factor : sample.layer_factors[0]) factor = 0.5f;
           PixelBlock block{};
           for (int i = 0; i < kLanes; ++i) {
             block.x.v[i] = -1.45f + 0.19f * static_cast<float>(i), block.y.v[i] = y0 + 0.01f * static_cast<float>(i);
-            block.width.v[i] = 0.01f;
+            block.z.v[i] = 1.0f, block.width.v[i] = 0.01f;
             block.valid.v[i] = -1;
           }
           Lanes sum[3];

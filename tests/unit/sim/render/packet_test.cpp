@@ -33,6 +33,7 @@ TEST(Packet, InstructionSetsAgree) {
     samples[i].turn[0][1] = 0.03f, samples[i].turn[1][0] = -0.03f;
     samples[i].point_u = SobolPoint(i).u;
     samples[i].point_v = SobolPoint(i).v;
+    for (float& factor : samples[i].layer_factors[0]) factor = 1;
     samples[i].lights = &lamp;
     samples[i].light_count = 1;
   }
