@@ -6,12 +6,19 @@
 // last ones. ns: per ray.
 #include <benchmark/benchmark.h>
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
 
 #include "sim/light/bake.h"
 #include "sim/render/embree.h"
@@ -231,6 +238,82 @@ void Shaded(benchmark::State& state, ExposeBlockFunction expose, int lights, boo
   Rate(state);
 }
 
+// The hall as a glTF file with its pictures beside it, as somebody would have it.
+void WriteGltf(const Scene& scene, const std::filesystem::path& folder) {
+  std::string data, views, accessors, meshes, nodes, materials, textures, images, roots;
+  const auto add = [&](const void* from, std::size_t size, std::size_t count, const char* type, int component, const std::string& more) {
+    views += (views.empty() ? "" : ",") + ("{\"buffer\":0,\"byteOffset\":" + std::to_string(data.size())) + ",\"byteLength\":" + std::to_string(size) + "}";
+    const std::string number = std::to_string(std::count(accessors.begin(), accessors.end(), '}'));
+    accessors += (accessors.empty() ? "" : ",") + ("{\"bufferView\":" + number) + ",\"componentType\":" + std::to_string(component) +
+                 ",\"count\":" + std::to_string(count) + ",\"type\":\"" + type + "\"" + more + "}";
+    data.append(static_cast<const char*>(from), size);
+    return number;
+  };
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const Mesh& mesh = scene.meshes[m];
+    const std::size_t n = mesh.positions.size(), t = mesh.triangles.size();
+    const std::string p = add(mesh.positions.data(), 12 * n, n, "VEC3", 5126, ",\"min\":[-1,-1,-1],\"max\":[21,9,9]");
+    const std::string normal = add(mesh.normals.data(), 12 * n, n, "VEC3", 5126, ""), uv = add(mesh.uvs.data(), 8 * n, n, "VEC2", 5126, "");
+    const std::string index = add(mesh.triangles.data(), 12 * t, 3 * t, "SCALAR", 5125, "");
+    const std::string comma = m == 0 ? "" : ",";
+    meshes += comma + "{\"primitives\":[{\"attributes\":{\"POSITION\":" + p + ",\"NORMAL\":" + normal + ",\"TEXCOORD_0\":" + uv + "},\"indices\":" + index +
+              ",\"material\":" + std::to_string(mesh.material) + "}]}";
+    nodes += comma + "{\"mesh\":" + std::to_string(m) + "}";
+    roots += comma + std::to_string(m);
+  }
+  for (std::size_t k = 0; k < scene.textures.size(); ++k) {
+    const Texture& texture = scene.textures[k];
+    cv::Mat picture(texture.height(), texture.width(), CV_8UC3);
+    for (int y = 0; y < picture.rows; ++y) {
+      for (int x = 0; x < picture.cols; ++x) {
+        const glm::vec3 c = glm::sqrt(texture.Texel(0, x, y)) * 255.0f;
+        picture.at<cv::Vec3b>(y, x) = {static_cast<std::uint8_t>(c.z), static_cast<std::uint8_t>(c.y), static_cast<std::uint8_t>(c.x)};
+      }
+    }
+    const std::string name = "picture" + std::to_string(k) + ".jpg", comma = k == 0 ? "" : ",", number = std::to_string(k);
+    cv::imwrite((folder / name).string(), picture);
+    images += comma + "{\"uri\":\"" + name + "\"}";
+    textures += comma + "{\"source\":" + number + "}";
+    materials += comma + "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":" + number + "}}}";
+  }
+  std::ofstream(folder / "hall.bin", std::ios::binary) << data;
+  std::ofstream(folder / "hall.gltf") << "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[" << roots << "]}],\"nodes\":[" << nodes << "],\"meshes\":[" << meshes
+                                     << "],\"materials\":[" << materials << "],\"textures\":[" << textures << "],\"images\":[" << images
+                                     << "],\"buffers\":[{\"uri\":\"hall.bin\",\"byteLength\":" << data.size() << "}],\"bufferViews\":[" << views << "],\"accessors\":[" << accessors << "]}";
+}
+
+// From a file to the first picture: reading, tables and tree, one frame; with baked light from its warm cache, too.
+void FirstFrame(benchmark::State& state, LightMode mode) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("vobench_hall_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  WriteGltf(TheWorld().scene, folder);
+  WorldDescription world;
+  world.meshes.push_back({folder / "hall.gltf"});
+  world.lights = TheWorld().scene.lights;
+  RayTracerOptions options;
+  options.light = mode;
+  options.bake = {1.0, 1.0, 2, 1};
+  options.light_folders = {folder};
+  const Camera camera(HallCamera());
+  if (mode != LightMode::direct) MakeRayTracer(LoadScene(world), options);
+  double load_s = 0, build_s = 0;
+  const auto now = [] { return std::chrono::steady_clock::now(); };
+  for (auto _ : state) {
+    const auto begin = now();
+    const Scene scene = LoadScene(world);
+    const auto loaded = now();
+    const auto renderer = MakeRayTracer(scene, options);
+    const auto built = now();
+    RadianceImage image;
+    renderer->Expose(camera, Still(), Exposure{}, 1, image);
+    load_s += std::chrono::duration<double>(loaded - begin).count();
+    build_s += std::chrono::duration<double>(built - loaded).count();
+  }
+  state.counters["load_s"] = load_s / static_cast<double>(state.iterations());
+  state.counters["build_s"] = build_s / static_cast<double>(state.iterations());
+  std::filesystem::remove_all(folder);
+}
+
 // Whole pictures by the renderer, with its threads.
 void WholeFrame(benchmark::State& state, LightMode mode, int time_samples) {
   RayTracerOptions options;
@@ -276,6 +359,8 @@ int main(int argc, char** argv) {
     benchmark::RegisterBenchmark(("frame/baked/" + std::to_string(samples)).c_str(), WholeFrame, LightMode::baked, samples)
         ->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
   }
+  benchmark::RegisterBenchmark("first_frame/direct", FirstFrame, LightMode::direct)->Unit(benchmark::kMillisecond)->UseRealTime();
+  benchmark::RegisterBenchmark("first_frame/baked_warm", FirstFrame, LightMode::baked)->Unit(benchmark::kMillisecond)->UseRealTime();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

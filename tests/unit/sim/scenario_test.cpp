@@ -111,6 +111,66 @@ prior: 3
   EXPECT_THAT(s.resolved, testing::Not(HasSubstr("odometry")));
 }
 
+// A whole scenario with one section of the world's lights and one of the renderer.
+std::string WithLight(const std::string& lights, const std::string& render = "{}") {
+  return R"(
+world: {meshes: [{file: a.obj}], lights: [)" +
+         lights + R"(]}
+camera: {width: 320, height: 240, fx: 260, fy: 261, cx: 159.5, cy: 119.5}
+time: {rate: 20 Hz, duration: 1 s}
+trajectory: {type: sampled, start: {position: [0, 1, 0], look_at: [0, 1, -5]}, position_noise: 0.3, orientation_noise: 0.4}
+render: )" + render;
+}
+
+TEST(Scenario, KeysOfLight) {
+  const TemporaryFolder folder;
+  Scenario s = LoadScenario(folder.Write("plain.yaml", WithLight("")));
+  EXPECT_EQ(s.render.light, LightMode::direct);
+  EXPECT_FALSE(s.world.sky.has_value());
+  s = LoadScenario(folder.Write("light.yaml", WithLight(R"(
+    {type: point, position: [1, 2, 3], intensity: [4, 5, 6], flicker: {frequency: 100 Hz, depth: 0.3, phase: 90 deg}},
+    {type: rectangle, corner: [1, 2, 3], side_u: [1, 0, 0], side_v: [0, 0, 2], radiance: [7, 8, 9], visible: true, flicker: {frequency: 0.12 kHz, depth: 1}},
+    {type: sky, file: sky.hdr, strength: 3, turn: 45 deg})",
+                                                        "{light: baked, bake: {spacing: 20 cm, finest: 5 mm, paths: 64, lamp_rays: 32}}")));
+  EXPECT_EQ(s.render.light, LightMode::baked);
+  EXPECT_EQ(s.render.bake.spacing_m, 0.2);
+  EXPECT_EQ(s.render.bake.finest_m, 0.005);
+  EXPECT_EQ(s.render.bake.paths, 64);
+  EXPECT_EQ(s.render.bake.lamp_rays, 32);
+  EXPECT_EQ(s.render.light_folders.at(0), folder.path() / ".vobench-cache");
+  const auto& point = std::get<PointLight>(s.world.lights.at(0));
+  EXPECT_EQ(point.flicker.frequency_hz, 100);
+  EXPECT_EQ(point.flicker.depth, 0.3);
+  EXPECT_NEAR(point.flicker.phase, 0.25, 1e-15);
+  const auto& rect = std::get<RectLight>(s.world.lights.at(1));
+  EXPECT_TRUE(rect.visible);
+  EXPECT_EQ(rect.flicker.frequency_hz, 120);
+  ASSERT_EQ(s.world.lights.size(), 2u);
+  ASSERT_TRUE(s.world.sky.has_value());
+  EXPECT_EQ(s.world.sky->file, folder.path() / "sky.hdr");
+  EXPECT_EQ(s.world.sky->strength, 3);
+  EXPECT_NEAR(s.world.sky->turn, 0.125, 1e-15);
+  s = LoadScenario(folder.Write("blue.yaml", WithLight("{type: sky, zenith: [0, 0, 1], horizon: [1, 1, 1]}")));
+  EXPECT_EQ(s.world.sky->zenith, glm::dvec3(0, 0, 1));
+  EXPECT_EQ(s.world.sky->ground, glm::dvec3(1)) << "as the horizon where it is not given";
+  s = LoadScenario(folder.Write("even.yaml", WithLight("{type: sky, radiance: [1, 2, 3]}")));
+  EXPECT_EQ(s.world.sky->ground, glm::dvec3(1, 2, 3));
+}
+
+TEST(Scenario, LightThatMakesNoSense) {
+  const TemporaryFolder folder;
+  const std::string message = Message(folder.Write("bad.yaml", WithLight(R"(
+    {type: point, position: [1, 2, 3], intensity: [4, 5, 6], flicker: {depth: 0.3}},
+    {type: point, position: [1, 2, 3], intensity: [4, 5, 6], flicker: {frequency: 100, depth: 1.5}},
+    {type: sun, direction: [0, -1, 0], irradiance: [1, 2, 3], flicker: {depth: 0.3}},
+    {type: sky, radiance: [1, 1, 1], file: sky.hdr},
+    {type: sky, radiance: [1, 1, 1], turn: 3 deg})",
+                                                                        "{light: fast, bake: {spacing: 1 cm, finest: 2 cm, paths: 100}}")));
+  for (const char* part : {"needs a frequency", "'world.lights.1.flicker.depth'", "'flicker'", "either 'radiance'", "a sky already", "only a sky from a file", "'fast'", "finest", "paths = 100"}) {
+    EXPECT_THAT(message, HasSubstr(part));
+  }
+}
+
 TEST(Scenario, ScriptedAndRecordedMotion) {
   const SmallWorld world;
   const std::string base = WallScenario().substr(0, WallScenario().find("time:"));

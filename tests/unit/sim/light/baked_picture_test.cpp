@@ -126,8 +126,10 @@ TEST(BakedPicture, NothingLeaksThroughAWall) {
   const glm::dquat back(0, 0, 1, 0);  // half a turn about y: looks along -z
   const Camera camera(SmallCamera());
   for (const LightMode mode : {LightMode::baked, LightMode::baked_indirect}) {
-    EXPECT_THAT(Render(scene, camera, {from_dark.p_WC, back}, Baked(mode)).rgb, testing::Each(0.0f));
-    EXPECT_THAT(Render(scene, camera, {{1, 1, 1.7}, back}, Baked(mode)).rgb, testing::Each(testing::Gt(0.05f)));
+    RayTracerOptions options = Baked(mode, 0.25, 0.1);
+    options.bake.paths = 64;
+    EXPECT_THAT(Render(scene, camera, {from_dark.p_WC, back}, options).rgb, testing::Each(0.0f));
+    EXPECT_THAT(Render(scene, camera, {{1, 1, 1.7}, back}, options).rgb, testing::Each(testing::Gt(0.05f)));
   }
 }
 
