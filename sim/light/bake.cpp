@@ -45,7 +45,7 @@ struct HashKey {
 };
 
 struct Sample {
-  SurfacePoint point;
+  LightPoint point;
   SampleKey key;
 };
 

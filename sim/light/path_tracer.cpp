@@ -16,7 +16,7 @@ namespace {
 constexpr double kOffset = 1e-5;  // of the size of the numbers, as in packet.inc
 constexpr double kInvPi = std::numbers::inv_pi;
 
-glm::dvec3 Origin(const SurfacePoint& point) {
+glm::dvec3 Origin(const LightPoint& point) {
   const glm::dvec3 a = glm::abs(point.position);
   return point.position + kOffset * (a.x + a.y + a.z + 1.0) * point.geometric;
 }
@@ -38,7 +38,7 @@ struct PathTracer::Met {
   std::uint32_t triangle;
   float u, v;
   double distance;
-  SurfacePoint point;  // on the side from which the ray came
+  LightPoint point;  // on the side from which the ray came
 };
 
 // The way from a point to a lamp: `light` is irradiance / pi were nothing in between.
@@ -54,7 +54,7 @@ PathTracer::PathTracer(const Scene& scene, const RayScene& rays) : scene_(scene)
   }
 }
 
-PathTracer::Reach PathTracer::Towards(const Lamp& lamp, const SurfacePoint& point, double u, double v) const {
+PathTracer::Reach PathTracer::Towards(const Lamp& lamp, const LightPoint& point, double u, double v) const {
   Reach reach;
   if (const auto* sun = std::get_if<SunLight>(lamp.light)) {
     reach.directional = true;
@@ -91,17 +91,17 @@ bool PathTracer::IsFree(const glm::dvec3& origin, const glm::dvec3& direction, f
   return ray.tfar >= 0;
 }
 
-bool PathTracer::IsSeen(const SurfacePoint& point, const Reach& reach) const {
+bool PathTracer::IsSeen(const LightPoint& point, const Reach& reach) const {
   const glm::dvec3 origin = Origin(point);
   return reach.directional ? IsFree(origin, reach.to, std::numeric_limits<float>::infinity()) : IsFree(origin, reach.to - origin, 1.0f);
 }
 
-bool PathTracer::SeeEachOther(const SurfacePoint& a, const SurfacePoint& b) const {
+bool PathTracer::SeeEachOther(const LightPoint& a, const LightPoint& b) const {
   const glm::dvec3 from = Origin(a), way = Origin(b) - from;
   return way == glm::dvec3(0.0) || IsFree(from, way, 1.0f);
 }
 
-bool PathTracer::Trace(const SurfacePoint& from, const glm::dvec3& direction, Met& met) const {
+bool PathTracer::Trace(const LightPoint& from, const glm::dvec3& direction, Met& met) const {
   const glm::dvec3 origin = Origin(from);
   RTCRayHit ray{};
   ray.ray.org_x = static_cast<float>(origin.x), ray.ray.org_y = static_cast<float>(origin.y), ray.ray.org_z = static_cast<float>(origin.z);
@@ -165,7 +165,7 @@ glm::dvec3 PathTracer::Sky(const glm::dvec3& direction) const {
   return scene_.sky ? scene_.sky->Radiance(direction) : glm::dvec3(scene_.background);
 }
 
-void PathTracer::AddDirect(const SurfacePoint& point, std::uint64_t key, int samples, std::span<glm::dvec3> sums) const {
+void PathTracer::AddDirect(const LightPoint& point, std::uint64_t key, int samples, std::span<glm::dvec3> sums) const {
   for (std::size_t k = 0; k < lamps_.size(); ++k) {
     const bool is_area = std::holds_alternative<RectLight>(*lamps_[k].light);
     const int count = is_area ? samples : 1;
@@ -180,7 +180,7 @@ void PathTracer::AddDirect(const SurfacePoint& point, std::uint64_t key, int sam
   }
 }
 
-void PathTracer::AddIndirect(const SurfacePoint& point, std::uint64_t key, int paths, std::span<glm::dvec3> sums) const {
+void PathTracer::AddIndirect(const LightPoint& point, std::uint64_t key, int paths, std::span<glm::dvec3> sums) const {
   const Words shift = RandomWords(key, Stream::light_path, 0, 0xfffffffeu, 0);
   const double share = 1.0 / paths, angle = std::sqrt(2.0 * std::numbers::pi * share);
   std::vector<double> strengths(lamps_.size());
@@ -188,7 +188,7 @@ void PathTracer::AddIndirect(const SurfacePoint& point, std::uint64_t key, int p
   for (int path = 0; path < paths; ++path) {
     const auto number = static_cast<std::uint32_t>(path);
     const PatternPoint first = SobolPoint(number);
-    SurfacePoint at = point;
+    LightPoint at = point;
     glm::dvec3 direction = CosineDirection(at.normal, ToUnit(first.u ^ shift[0]), ToUnit(first.v ^ shift[1]));
     glm::dvec3 factor(share);
     double length = 0;

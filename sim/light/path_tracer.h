@@ -14,7 +14,7 @@
 namespace sim {
 
 // One side of a surface, in W.
-struct SurfacePoint {
+struct LightPoint {
   glm::dvec3 position;
   glm::dvec3 normal;     // unit: that of shading,
   glm::dvec3 geometric;  // and that of the triangle, on the same side
@@ -33,13 +33,13 @@ class PathTracer {
 
   // Adds what comes from the sky, from surfaces that emit, and from all surfaces that are lit: everything but lamps.
   // Over `paths` paths, a power of two. sums: by layer.
-  void AddIndirect(const SurfacePoint& point, std::uint64_t key, int paths, std::span<glm::dvec3> sums) const;
+  void AddIndirect(const LightPoint& point, std::uint64_t key, int paths, std::span<glm::dvec3> sums) const;
 
   // Adds what comes from lamps, straight; a rectangle at `samples` points, a power of two.
-  void AddDirect(const SurfacePoint& point, std::uint64_t key, int samples, std::span<glm::dvec3> sums) const;
+  void AddDirect(const LightPoint& point, std::uint64_t key, int samples, std::span<glm::dvec3> sums) const;
 
   // Whether no surface is between two points (a little above their surfaces).
-  bool SeeEachOther(const SurfacePoint& a, const SurfacePoint& b) const;
+  bool SeeEachOther(const LightPoint& a, const LightPoint& b) const;
 
  private:
   struct Lamp {
@@ -49,10 +49,10 @@ class PathTracer {
   struct Met;
   struct Reach;
 
-  Reach Towards(const Lamp& lamp, const SurfacePoint& point, double u, double v) const;
-  bool IsSeen(const SurfacePoint& point, const Reach& reach) const;
+  Reach Towards(const Lamp& lamp, const LightPoint& point, double u, double v) const;
+  bool IsSeen(const LightPoint& point, const Reach& reach) const;
   bool IsFree(const glm::dvec3& origin, const glm::dvec3& direction, float reach) const;
-  bool Trace(const SurfacePoint& from, const glm::dvec3& direction, Met& met) const;
+  bool Trace(const LightPoint& from, const glm::dvec3& direction, Met& met) const;
   glm::dvec3 Albedo(const Met& met, double width) const;
   glm::dvec3 Emission(const Met& met, double width) const;
   glm::dvec3 Sky(const glm::dvec3& direction) const;

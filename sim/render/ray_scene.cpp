@@ -92,9 +92,10 @@ RayScene::RayScene(const Scene& scene) {
   alpha_textures_.reserve(scene.meshes.size());  // filters point at them
   for (const bool cut_out : {false, true}) {
     filtered_first_ = static_cast<std::uint32_t>(triangles_.size());
-    for (const Mesh& mesh : scene.meshes) {
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+      const Mesh& mesh = scene.meshes[i];
       const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-      if (IsCutOut(scene, material) == cut_out) AppendMesh(scene, mesh, material, mesh.material, false);
+      if (IsCutOut(scene, material) == cut_out) AppendMesh(scene, mesh, material, mesh.material, i, false);
     }
   }
   AppendLamps(scene);
@@ -243,9 +244,10 @@ void RayScene::AppendTextures(const Scene& scene) {
   }
 }
 
-void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& material, std::int32_t material_index, bool lamp) {
+void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& material, std::int32_t material_index, std::size_t mesh_index, bool lamp) {
   const auto first = static_cast<std::uint32_t>(positions_.size());
   first_triangle_.push_back(static_cast<std::uint32_t>(triangles_.size()));
+  mesh_index_.push_back(static_cast<std::uint32_t>(mesh_index));
   positions_.insert(positions_.end(), mesh.positions.begin(), mesh.positions.end());
   const bool cut_out = !lamp && IsCutOut(scene, material);
   const Texture* alpha = nullptr;
@@ -313,6 +315,7 @@ void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& 
 
 // Visible lamps are black surfaces that emit, seen from one side, and never in a shadow ray's way.
 void RayScene::AppendLamps(const Scene& scene) {
+  std::size_t mesh_index = scene.meshes.size();
   for (const Light& light : scene.lights) {
     const auto* rect = std::get_if<RectLight>(&light);
     if (rect == nullptr || !rect->visible) continue;
@@ -331,13 +334,13 @@ void RayScene::AppendLamps(const Scene& scene) {
       mesh.positions.emplace_back(corner);
     }
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    AppendMesh(scene, mesh, material, index, true);
+    AppendMesh(scene, mesh, material, index, mesh_index++, true);
   }
 }
 
 std::uint32_t RayScene::MeshOf(std::uint32_t triangle) const {
   const auto next = std::upper_bound(first_triangle_.begin(), first_triangle_.end(), triangle);
-  return static_cast<std::uint32_t>(next - first_triangle_.begin()) - 1;
+  return mesh_index_[static_cast<std::size_t>(next - first_triangle_.begin()) - 1];
 }
 
 void RayScene::Build() {

@@ -43,7 +43,7 @@ class RayScene {
   std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles_.size()); }
   // Corner 0 ... 2 of a triangle, in W.
   const glm::vec3& Corner(std::uint32_t triangle, int corner) const { return positions_[triangles_[triangle][corner]]; }
-  // Index in Scene::meshes of the mesh that a triangle is of.
+  // Index in Scene::meshes of the mesh that a triangle is of; visible lamps count on behind the meshes.
   std::uint32_t MeshOf(std::uint32_t triangle) const;
   // What a triangle's shading tables say, interpolated at (u, v); the normal is neither unit nor turned towards anybody.
   glm::vec3 ShadingNormal(std::uint32_t triangle, float u, float v) const;
@@ -63,13 +63,14 @@ class RayScene {
 
  private:
   void AppendTextures(const Scene& scene);
-  void AppendMesh(const Scene& scene, const Mesh& mesh, const Material& material, std::int32_t material_index, bool lamp);
+  void AppendMesh(const Scene& scene, const Mesh& mesh, const Material& material, std::int32_t material_index, std::size_t mesh_index, bool lamp);
   void AppendLamps(const Scene& scene);
   void Build();
 
   std::vector<glm::vec3> positions_;
   std::vector<glm::uvec3> triangles_;
-  std::vector<std::uint32_t> first_triangle_;  // of each mesh
+  std::vector<std::uint32_t> first_triangle_;  // of each mesh that has been appended,
+  std::vector<std::uint32_t> mesh_index_;      // and its index
   std::uint32_t filtered_first_ = 0;
   std::vector<Filter> filters_;
   std::vector<Texture> alpha_textures_;  // copies of those that filters look at

@@ -94,7 +94,7 @@ void SurfaceTracer::Trace(const Camera& camera, const Pose& pose, std::vector<Su
       if (!packet.Met(i)) continue;
       const auto x = static_cast<std::size_t>(x0 + i % kBlockSide), y = static_cast<std::size_t>(y0 + i / kBlockSide);
       SurfacePoint& point = out[y * static_cast<std::size_t>(width) + x];
-      point.triangle = packet.rays.hit.primID[i];
+      point.triangle = scene_.Triangle(packet.rays.hit.geomID[i], packet.rays.hit.primID[i]);
       point.u = packet.rays.hit.u[i];
       point.v = packet.rays.hit.v[i];
       point.X_C = PlaneDistance(scene_, point.triangle, pose.p_WC, direction[i], packet.rays.ray.tfar[i]) * ray[i];
@@ -117,7 +117,7 @@ void SurfaceTracer::Visible(const glm::dvec3& eye_W, std::span<const glm::dvec3>
       if (!packet.Met(i)) continue;  // the ray slipped by at an edge: nothing is before the point
       const std::size_t at = first + static_cast<std::size_t>(i);
       const double distance =
-          PlaneDistance(scene_, packet.rays.hit.primID[i], eye_W, points_W[at] - eye_W, packet.rays.ray.tfar[i]);
+          PlaneDistance(scene_, scene_.Triangle(packet.rays.hit.geomID[i], packet.rays.hit.primID[i]), eye_W, points_W[at] - eye_W, packet.rays.ray.tfar[i]);
       out[at] = distance >= 1 - kOwnSurface;
     }
   });

@@ -45,7 +45,8 @@ struct Buffer {
 Buffer Compress(std::span<const std::uint8_t> bytes) {
   const Buffer work(ISAL_DEF_LVL1_DEFAULT);
   Buffer compressed(bytes.size() + bytes.size() / 8 + 1024);  // more than it takes if nothing can be compressed
-  isal_zstream stream;
+  std::fill_n(work.data.get(), work.size, std::uint8_t{0});  // ISA-L looks at what was there before: other bytes, another file
+  isal_zstream stream{};
   isal_deflate_stateless_init(&stream);
   stream.level = 1;
   stream.level_buf = work.data.get();

@@ -19,7 +19,7 @@ struct Estimate {
 };
 
 // The mean over `runs` independent estimates of `paths` paths each.
-Estimate Indirect(const Scene& scene, const SurfacePoint& point, int paths, int runs) {
+Estimate Indirect(const Scene& scene, const LightPoint& point, int paths, int runs) {
   const RayScene rays(scene);
   const PathTracer tracer(scene, rays);
   glm::dvec3 sum(0.0), squares(0.0);
@@ -35,7 +35,7 @@ Estimate Indirect(const Scene& scene, const SurfacePoint& point, int paths, int 
   return e;
 }
 
-glm::dvec3 Direct(const Scene& scene, const SurfacePoint& point, int samples = 1024) {
+glm::dvec3 Direct(const Scene& scene, const LightPoint& point, int samples = 1024) {
   const RayScene rays(scene);
   const PathTracer tracer(scene, rays);
   glm::dvec3 light(0.0);
@@ -43,7 +43,7 @@ glm::dvec3 Direct(const Scene& scene, const SurfacePoint& point, int samples = 1
   return light;
 }
 
-SurfacePoint Floor(glm::dvec3 at = {0.1, 0.0, -0.2}) { return {at, {0, 1, 0}, {0, 1, 0}}; }
+LightPoint Floor(glm::dvec3 at = {0.1, 0.0, -0.2}) { return {at, {0, 1, 0}, {0, 1, 0}}; }
 
 // A floor at y = 0, seen from above.
 Scene FloorWorld(glm::vec3 albedo) {
@@ -103,7 +103,7 @@ TEST(PathTracer, GradientSky) {
 }
 
 TEST(PathTracer, LampsOnAFloor) {
-  const SurfacePoint at = Floor();
+  const LightPoint at = Floor();
   Scene scene = FloorWorld(glm::vec3(0.5f));
   scene.lights = {SunLight{{1, -2, 0.5}, {3, 2, 1}}};
   const double cosine = 2 / std::sqrt(1 + 4 + 0.25);
@@ -144,7 +144,7 @@ TEST(PathTracer, BouncesInASphere) {
   AddSphere(scene, {0, 2, 0}, 2.0, 64, 0);
   scene.lights = {PointLight{{0, 2, 0}, {8, 8, 8}, {}}};
   const double radius = 2.0 * 0.999;
-  const SurfacePoint bottom{{0.03, 2.0 - radius, 0.03}, {0, 1, 0}, {0, 1, 0}};
+  const LightPoint bottom{{0.03, 2.0 - radius, 0.03}, {0, 1, 0}, {0, 1, 0}};
   const Estimate e = Indirect(scene, bottom, 256, 64);
   for (int c = 0; c < 3; ++c) {
     const double expected = albedo[c] / (1 - albedo[c]) * 8 / (kPi * radius * radius);
