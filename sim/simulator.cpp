@@ -10,6 +10,7 @@
 
 #include "sim/motion/make.h"
 #include "sim/random/random.h"
+#include "sim/render/rasteriser.h"
 #include "sim/render/ray_tracer.h"
 #include "sim/render/surface_tracer.h"
 #include "sim/scenario/stamps.h"
@@ -37,6 +38,23 @@ double LongestExposure(const SensorParams& s) {
   return s.auto_exposure.on ? std::max(s.exposure_s, s.auto_exposure.longest_s) : s.exposure_s;
 }
 
+std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& params, int jobs,
+                                       std::vector<std::string>& warnings) {
+  if (params.engine == Engine::rasteriser) {
+    RasteriserOptions options;
+    options.rays_per_time_sample = params.rays_per_time_sample;
+    options.light = params.light;
+    return MakeRasteriser(scene, options, &warnings);
+  }
+  RayTracerOptions options;
+  options.rays_per_time_sample = params.rays_per_time_sample;
+  options.jobs = jobs;
+  options.light = params.light;
+  options.bake = params.bake;
+  options.light_folders = params.light_folders;
+  return MakeRayTracer(scene, options, &warnings);
+}
+
 }  // namespace
 
 struct Simulator::Parts {
@@ -51,15 +69,12 @@ struct Simulator::Parts {
         arena(Threads(jobs)) {
     const Scene scene = LoadScene(s.world);
     warnings = scene.warnings;
-    RayTracerOptions options;
-    options.rays_per_time_sample = s.render.rays_per_time_sample;
-    options.jobs = Threads(jobs);
-    const RayTracerOptions plain = options;
-    options.light = s.render.light;
-    options.bake = s.render.bake;
-    options.light_folders = s.render.light_folders;
-    renderer = MakeRayTracer(scene, options, &warnings);
-    if (renderer->surfaces() == nullptr) exact = MakeRayTracer(scene, plain);
+    renderer = MakeRenderer(scene, s.render, Threads(jobs), warnings);
+    if (renderer->surfaces() == nullptr) {
+      RayTracerOptions plain;
+      plain.jobs = Threads(jobs);
+      exact = MakeRayTracer(scene, plain);
+    }
     for (const Mesh& mesh : scene.meshes) mesh_names.push_back(mesh.name);
     for (const Light& light : scene.lights) {
       const auto* rect = std::get_if<RectLight>(&light);

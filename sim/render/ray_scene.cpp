@@ -81,6 +81,8 @@ void Check(const Scene& scene) {
 
 }  // namespace
 
+void CheckScene(const Scene& scene) { Check(scene); }
+
 RayScene::RayScene(const Scene& scene) {
   Check(scene);
   AppendTextures(scene);

@@ -14,6 +14,9 @@
 
 namespace sim {
 
+// Throws std::invalid_argument for a scene with an index out of range.
+void CheckScene(const Scene& scene);
+
 struct EmbreeRelease {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }

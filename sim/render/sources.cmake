@@ -1,8 +1,15 @@
 target_sources(vobench_sim PRIVATE
+  ${CMAKE_CURRENT_LIST_DIR}/gl_context.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/gl_objects.cpp
   ${CMAKE_CURRENT_LIST_DIR}/packet_avx2.cpp
   ${CMAKE_CURRENT_LIST_DIR}/packet_avx512.cpp
   ${CMAKE_CURRENT_LIST_DIR}/packet_base.cpp
   ${CMAKE_CURRENT_LIST_DIR}/packet_kernel.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/raster_draw.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/raster_light.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/raster_scene.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/raster_view.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/rasteriser.cpp
   ${CMAKE_CURRENT_LIST_DIR}/ray_scene.cpp
   ${CMAKE_CURRENT_LIST_DIR}/ray_tracer.cpp
   ${CMAKE_CURRENT_LIST_DIR}/sample_pattern.cpp
@@ -17,3 +24,5 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/packet_avx512.cpp PROPERTIES
     COMPILE_OPTIONS "${packet_flags};-mavx2;-mfma;-mavx512f;-mavx512dq;-mavx512bw;-mavx512vl;-mprefer-vector-width=512")
 endif()
+# The rasteriser opens libEGL and libOSMesa when it is made: only their headers are needed here.
+target_link_libraries(vobench_sim PRIVATE ${CMAKE_DL_LIBS})

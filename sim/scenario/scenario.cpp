@@ -134,6 +134,8 @@ void ReadWorld(Section section, const std::filesystem::path& folder, WorldDescri
 }
 
 void ReadRender(Section section, const std::filesystem::path& folder, RenderParams& render) {
+  section.ReadChoice("engine", render.engine,
+                     {{"ray_tracer", Engine::ray_tracer}, {"rasteriser", Engine::rasteriser}});
   section.Read("rays_per_time_sample", render.rays_per_time_sample, Range{1, 256});
   section.ReadChoice("light", render.light, {{"direct", LightMode::direct}, {"baked_indirect", LightMode::baked_indirect}, {"baked", LightMode::baked}});
   Section bake = section.Child("bake");

@@ -23,7 +23,10 @@ struct TimeParams {
   double duration_s = 0.0;  // frames are at k / rate, k = 0 ... round(duration * rate) - 1
 };
 
+enum class Engine { ray_tracer, rasteriser };  // docs/renderers.md
+
 struct RenderParams {
+  Engine engine = Engine::ray_tracer;
   int rays_per_time_sample = 1;  // more: smoother edges at few time samples
   LightMode light = LightMode::direct;
   BakeParams bake;

@@ -53,9 +53,11 @@ struct Raw {
   std::string frames;
   std::uint64_t seed = 1;
   int jobs = DefaultJobs();
+  std::string engine;
 
   Overrides overrides() const {
     Overrides all;
+    if (!engine.empty()) all.emplace_back("render.engine", engine);
     for (const std::string& text : set) all.push_back(ParseOverride(text));
     return all;
   }
@@ -71,6 +73,12 @@ void AddJobs(CLI::App& command, Raw& raw) {
   command.add_option("--jobs,-j", raw.jobs, "Threads; the results do not depend on it")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
+}
+
+void AddEngine(CLI::App& command, Raw& raw) {
+  command.add_option("--engine", raw.engine, "What renders (render.engine; docs/renderers.md)")
+      ->check(CLI::IsMember({"ray_tracer", "rasteriser"}))
+      ->type_name("NAME");
 }
 
 CLI::Option* AddSeed(CLI::App& command, Raw& raw, const std::string& help) {
@@ -114,6 +122,7 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
                   "flow_backward, occlusion, surface_id, landmarks, acceleration, imu (docs/truth.md)")
       ->type_name("NAME,...");
   const CLI::Option* render_seed = AddSeed(render_command, raw, "Seed instead of the scenario's");
+  AddEngine(render_command, raw);
   AddJobs(render_command, raw);
   AddSet(render_command, raw, "camera.width=320");
 
@@ -173,6 +182,7 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
                        "from a prior; 10 runs or more");
   run_command.add_flag("--require-consistent", run.require_consistent,
                        "As --verdict, and exit status 3 where a system is not");
+  AddEngine(run_command, raw);
   AddJobs(run_command, raw);
   AddSet(run_command, raw, "odometry.filter.particles=16 or time.duration='2 s'");
 

@@ -1,0 +1,91 @@
+// Purpose: what lives in an OpenGL context, each freed with its owner. Private to sim/render. Everything here wants the
+//          context to be current, the ends of lives included; all but Program throws nothing by itself: OpenGL's
+//          errors are asked for by CheckGl.
+#pragma once
+
+#include <cstddef>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "sim/render/gl_api.h"
+
+namespace sim {
+
+// Throws std::runtime_error naming `what` when OpenGL has met an error since it was last asked.
+void CheckGl(const GlApi& gl, const std::string& what);
+
+class GlObject {
+ public:
+  using Delete = void (*)(const GlApi&, GLuint);
+  GlObject() = default;
+  GlObject(const GlApi& gl, GLuint id, Delete destroy) : gl_(&gl), id_(id), delete_(destroy) {}
+  ~GlObject() { Free(); }
+  GlObject(GlObject&& other) noexcept { *this = std::move(other); }
+  GlObject& operator=(GlObject&& other) noexcept {
+    if (this == &other) return *this;
+    Free();
+    gl_ = other.gl_, delete_ = other.delete_, id_ = std::exchange(other.id_, 0);
+    return *this;
+  }
+  GLuint id() const { return id_; }
+  explicit operator bool() const { return id_ != 0; }
+
+ private:
+  void Free() {
+    if (id_ != 0) delete_(*gl_, id_);
+    id_ = 0;
+  }
+  const GlApi* gl_ = nullptr;
+  GLuint id_ = 0;
+  Delete delete_ = nullptr;
+};
+
+GlObject MakeBuffer(const GlApi& gl, std::size_t bytes, const void* data);
+template <class T>
+GlObject MakeBuffer(const GlApi& gl, const std::span<T>& data) {
+  return MakeBuffer(gl, data.size_bytes(), data.data());
+}
+
+// One level, nearest texel, nothing beyond its border.
+GlObject MakeTexture(const GlApi& gl, GLenum format, int width, int height);
+
+// A long row of texels that a shader reads by number.
+struct BufferTexture {
+  GlObject buffer, texture;
+  BufferTexture() = default;
+  // `texels`: how many; of more than the context can read std::invalid_argument names `what`.
+  BufferTexture(const GlApi& gl, GLenum format, std::size_t texels, std::size_t bytes, const void* data,
+                const std::string& what);
+};
+
+GlObject MakeVertexArray(const GlApi& gl);
+GlObject MakeFramebuffer(const GlApi& gl);
+
+// A vertex and a fragment shader. Set() does so for the program in use, which Use() makes it.
+class Program {
+ public:
+  Program() = default;
+  // Throws std::runtime_error with the compiler's words.
+  Program(const GlApi& gl, const std::string& name, const std::string& vertex, const std::string& fragment);
+
+  void Use() const;
+  void Set(const char* name, int value) const;
+  void Set(const char* name, float value) const;
+  void Set(const char* name, const glm::vec2& value) const;
+  void Set(const char* name, const glm::ivec2& value) const;
+  void Set(const char* name, const glm::vec3& value) const;
+  void Set(const char* name, const glm::mat3& value) const;
+  void Set(const char* name, const glm::mat4& value) const;
+
+ private:
+  GLint Find(const char* name) const;
+  const GlApi* gl_ = nullptr;
+  GlObject program_;
+};
+
+}  // namespace sim

@@ -1,0 +1,50 @@
+// Purpose: lights and their shadow maps as the rasteriser's shaders read them. Private to sim/render.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "sim/render/gl_objects.h"
+#include "sim/render/raster_scene.h"
+#include "sim/world/light.h"
+
+namespace sim {
+
+// Six texels of the shader's table.
+struct RasterLight {
+  glm::vec4 place;   // towards the sun (unit), or where the light is, in W; w: 0 sun, 1 point, 2 point of a rectangle
+  glm::vec4 power;   // as in LightSample; w: its first layer in the shadow maps
+  glm::vec4 normal;  // of a rectangle
+  glm::vec4 map[3];  // of a sun: (map . (X_W, 1)) is the place in its shadow map, and how near it is; all in 0 ... 1
+};
+
+// All but the ambient ones, as sample i of n of an exposure sees them: the same points on rectangles as the ray
+// tracer's.
+std::vector<RasterLight> LightsOfSample(const std::vector<Light>& lights, int i, int count, const RasterScene& scene);
+
+// What is lit, by distance: for a point the six faces of a cube, for a sun one picture of the whole scene. Those of
+// suns and points are drawn once, those of rectangles once for each number of samples, since worlds stand still.
+class ShadowMaps {
+ public:
+  // side: [texel] of each map; halved as often as it takes for all rectangles' to fit into one GiB.
+  ShadowMaps(const GlApi& gl, int side) : gl_(gl), side_(side) {}
+
+  // Draws what is not there. lights: of sample 0 ... n - 1.
+  void Draw(const RasterScene& scene, const Program& triangles, const std::vector<std::vector<RasterLight>>& lights);
+
+  GLuint lasting() const { return lasting_.id(); }  // of suns and points
+  GLuint of_sample(std::size_t i) const { return samples_.empty() ? lasting_.id() : samples_[i].id(); }  // rectangles
+
+ private:
+  GlObject MakeMaps(int layers, int side) const;
+  void DrawLight(const RasterScene& scene, const Program& triangles, const RasterLight& light, const GlObject& maps,
+                 int side) const;
+
+  const GlApi& gl_;
+  int side_;
+  GlObject lasting_;
+  std::vector<GlObject> samples_;
+};
+
+}  // namespace sim

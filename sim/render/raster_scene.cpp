@@ -1,0 +1,141 @@
+#include "sim/render/raster_scene.h"
+
+#include <bit>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+#include <limits>
+#include <stdexcept>
+
+#include "sim/render/ray_scene.h"
+
+namespace sim {
+namespace {
+
+float Bits(int number) { return std::bit_cast<float>(number); }
+
+bool HasColors(const Scene& scene) {
+  for (const Mesh& mesh : scene.meshes) {
+    if (!mesh.colors.empty()) return true;
+  }
+  return false;
+}
+
+// A value at corner 0 and its differences to corners 1 and 2.
+template <class T>
+struct OverTriangle {
+  T first, du, dv;
+  OverTriangle(const std::vector<T>& values, const glm::uvec3& t)
+      : first(values[t.x]), du(values[t.y] - first), dv(values[t.z] - first) {}
+};
+
+}  // namespace
+
+RasterScene::RasterScene(const GlApi& gl, const Scene& scene) : gl_(gl) {
+  CheckScene(scene);
+  AppendTextures(scene);
+  AppendMeshes(scene);
+  position_buffer_ = MakeBuffer(gl, std::span(positions_));
+  corner_buffer_ = MakeBuffer(gl, std::span(corners_));
+  vertex_array_ = MakeVertexArray(gl);
+  const GLuint array = vertex_array_.id();
+  gl.VertexArrayVertexBuffer(array, 0, position_buffer_.id(), 0, sizeof(glm::vec3));
+  gl.VertexArrayElementBuffer(array, corner_buffer_.id());
+  gl.EnableVertexArrayAttrib(array, 0);
+  gl.VertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, 0);
+  gl.VertexArrayAttribBinding(array, 0, 0);
+  CheckGl(gl, "loading the scene");
+}
+
+void RasterScene::Draw() const {
+  gl_.BindVertexArray(vertex_array_.id());
+  gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * corners_.size()), GL_UNSIGNED_INT, nullptr);
+}
+
+void RasterScene::AppendTextures(const Scene& scene) {
+  std::vector<glm::ivec4> levels;
+  std::vector<std::uint32_t> texels;
+  std::vector<int> first_level;
+  for (const Texture& texture : scene.textures) {
+    first_level.push_back(static_cast<int>(levels.size()));
+    for (const TextureLevel& level : texture.levels()) {
+      levels.emplace_back(level.width, level.height, static_cast<int>(texels.size() + level.first), 0);
+    }
+    texels.insert(texels.end(), texture.texels().begin(), texture.texels().end());
+  }
+  std::vector<glm::vec4> materials;
+  for (const Material& m : scene.materials) {
+    const auto texture = static_cast<std::size_t>(m.texture);
+    const bool has_texture = m.texture >= 0;
+    materials.emplace_back(m.base_color, Bits(has_texture ? first_level[texture] : 0));
+    // Of a picture that shines the mean, which is the last level.
+    glm::vec3 emission = m.emission;
+    if (m.emission_texture >= 0) {
+      const Texture& picture = scene.textures[static_cast<std::size_t>(m.emission_texture)];
+      emission *= picture.Texel(static_cast<int>(picture.levels().size()) - 1, 0, 0);
+    }
+    materials.emplace_back(emission, Bits(has_texture ? static_cast<int>(scene.textures[texture].levels().size()) : 0));
+  }
+  texels_ =
+      BufferTexture(gl_, GL_R32UI, texels.size(), texels.size() * sizeof(std::uint32_t), texels.data(), "the textures");
+  levels_ = BufferTexture(gl_, GL_RGBA32I, levels.size(), levels.size() * sizeof(glm::ivec4), levels.data(),
+                          "the textures' levels");
+  materials_ = BufferTexture(gl_, GL_RGBA32F, materials.size(), materials.size() * sizeof(glm::vec4), materials.data(),
+                             "the materials");
+}
+
+void RasterScene::AppendMeshes(const Scene& scene) {
+  const bool has_colors = HasColors(scene);
+  texels_per_triangle_ = has_colors ? 10 : 7;
+  std::vector<glm::vec4> table;
+  low_ = glm::vec3(std::numeric_limits<float>::infinity());
+  high_ = -low_;
+  for (const Mesh& mesh : scene.meshes) {
+    const auto first = static_cast<std::uint32_t>(positions_.size());
+    positions_.insert(positions_.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const glm::vec3& p : mesh.positions) low_ = glm::min(low_, p), high_ = glm::max(high_, p);
+    const int texture = scene.materials[static_cast<std::size_t>(mesh.material)].texture;
+    for (const glm::uvec3& t : mesh.triangles) {
+      corners_.push_back(first + t);
+      const OverTriangle<glm::vec3> p(mesh.positions, t);
+      const glm::dvec3 cross = glm::cross(glm::dvec3(p.du), glm::dvec3(p.dv));
+      const double area = glm::length(cross);
+      glm::vec3 normal = area > 0 ? glm::vec3(cross / area) : glm::vec3(0, 0, 1), normal_du(0.0f), normal_dv(0.0f);
+      if (!mesh.normals.empty()) {
+        const OverTriangle<glm::vec3> n(mesh.normals, t);
+        normal = n.first, normal_du = n.du, normal_dv = n.dv;
+      }
+      glm::vec2 uv(0.0f), uv_du(0.0f), uv_dv(0.0f);
+      double texels_per_metre = 0.0;
+      if (texture >= 0) {
+        const Texture& picture = scene.textures[static_cast<std::size_t>(texture)];
+        const OverTriangle<glm::vec2> place(mesh.uvs, t);
+        uv = place.first - glm::floor(place.first);  // pictures repeat: near 0 floats are finest
+        uv_du = place.du, uv_dv = place.dv;
+        const double texels =
+            std::abs(double{uv_du.x} * uv_dv.y - double{uv_du.y} * uv_dv.x) * picture.width() * picture.height();
+        texels_per_metre = area > 0 ? std::sqrt(texels / area) : 0.0;
+      }
+      table.emplace_back(p.first, Bits(mesh.material));
+      table.emplace_back(p.du, static_cast<float>(texels_per_metre));
+      table.emplace_back(p.dv, 0.0f);
+      table.emplace_back(normal, uv.x);
+      table.emplace_back(normal_du, uv.y);
+      table.emplace_back(normal_dv, 0.0f);
+      table.emplace_back(uv_du, uv_dv);
+      if (!has_colors) continue;
+      const std::vector<glm::vec3> white(3, glm::vec3(1.0f));
+      const OverTriangle<glm::vec3> color =
+          mesh.colors.empty() ? OverTriangle<glm::vec3>(white, {0, 1, 2}) : OverTriangle<glm::vec3>(mesh.colors, t);
+      table.emplace_back(color.first, 0.0f);
+      table.emplace_back(color.du, 0.0f);
+      table.emplace_back(color.dv, 0.0f);
+    }
+  }
+  if (positions_.empty()) low_ = high_ = glm::vec3(0.0f);
+  triangles_ =
+      BufferTexture(gl_, GL_RGBA32F, table.size(), table.size() * sizeof(glm::vec4), table.data(), "the triangles");
+}
+
+}  // namespace sim

@@ -1,0 +1,54 @@
+// Purpose: a scene in the form in which the rasteriser's shaders read it. Private to sim/render.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "sim/render/gl_objects.h"
+#include "sim/world/scene.h"
+
+namespace sim {
+
+// Tables of texels, by number:
+//   triangles  7, or 10 where a mesh has colours: (corner 0, material), (corner 1 - corner 0, texels per metre),
+//              (corner 2 - corner 0, -), (normal of corner 0, u), (difference to corner 1, v), (to corner 2, -),
+//              (differences of u, v to corner 1 and to corner 2), colour of corner 0, differences to corners 1 and 2.
+//   materials  2: (base colour, first level), (emission, number of levels, 0 without a texture). Whole numbers are
+//              stored by their bits.
+//   levels     1: width, height, first texel; of all textures' mip chains
+//   texels     as in sim/world/texture.h
+class RasterScene {
+ public:
+  // Throws std::invalid_argument for a scene with an index out of range and for one that is larger than the context's
+  // tables, std::runtime_error when it runs out of memory.
+  RasterScene(const GlApi& gl, const Scene& scene);
+
+  void Draw() const;  // all triangles, with what is set
+
+  GLuint triangles() const { return triangles_.texture.id(); }
+  GLuint materials() const { return materials_.texture.id(); }
+  GLuint levels() const { return levels_.texture.id(); }
+  GLuint texels() const { return texels_.texture.id(); }
+  int texels_per_triangle() const { return texels_per_triangle_; }
+
+  // A box around it, in W; a point where there is nothing.
+  const glm::vec3& low() const { return low_; }
+  const glm::vec3& high() const { return high_; }
+  // Corner 0 ... 2 of a triangle, in W.
+  const glm::vec3& Corner(std::uint32_t triangle, int corner) const { return positions_[corners_[triangle][corner]]; }
+
+ private:
+  void AppendTextures(const Scene& scene);
+  void AppendMeshes(const Scene& scene);
+
+  const GlApi& gl_;
+  std::vector<glm::vec3> positions_;
+  std::vector<glm::uvec3> corners_;
+  glm::vec3 low_{0.0f}, high_{0.0f};
+  int texels_per_triangle_ = 7;
+  GlObject position_buffer_, corner_buffer_, vertex_array_;
+  BufferTexture triangles_, materials_, levels_, texels_;
+};
+
+}  // namespace sim

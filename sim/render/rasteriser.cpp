@@ -1,0 +1,405 @@
+#include "sim/render/rasteriser.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <optional>
+#include <stdexcept>
+#include <tuple>
+
+#include "sim/render/gl_context.h"
+#include "sim/render/gl_objects.h"
+#include "sim/render/raster_draw.h"
+#include "sim/render/raster_light.h"
+#include "sim/render/raster_scene.h"
+#include "sim/render/raster_shaders.h"
+#include "sim/render/raster_view.h"
+#include "sim/render/sample_pattern.h"
+
+namespace sim {
+namespace {
+
+std::string Join(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
+  return text;
+}
+
+void Check(const RasteriserOptions& o) {
+  std::vector<std::string> problems;
+  const auto within = [&](int value, int low, int high, const char* name) {
+    if (value >= low && value <= high) return;
+    problems.push_back(std::string(name) + " = " + std::to_string(value) + " must lie in " + std::to_string(low) +
+                       " ... " + std::to_string(high));
+  };
+  within(o.rays_per_time_sample, 1, 4096, "rays_per_time_sample");
+  within(o.shadow_map_side, 16, 8192, "shadow_map_side");
+  within(o.strip_rows, 1, 1 << 14, "strip_rows");
+  if (!problems.empty()) throw std::invalid_argument("rasteriser: " + Join(problems));
+}
+
+// What of the scene is not rendered, a sentence for each kind.
+std::vector<std::string> Lacks(const Scene& scene, LightMode light) {
+  std::vector<std::string> lacks;
+  const auto names = [&](const auto& lacks_it) {
+    std::string text;
+    for (const Material& m : scene.materials) {
+      if (lacks_it(m)) text += (text.empty() ? "" : ", ") + m.name;
+    }
+    return text;
+  };
+  const auto materials = [&](const std::string& found, const std::string& sentence) {
+    if (!found.empty()) lacks.push_back(sentence + ": " + found);
+  };
+  materials(names([](const Material& m) { return m.normal_map >= 0; }), "normal maps are not rendered; materials");
+  materials(names([](const Material& m) { return m.emission_texture >= 0; }),
+            "of pictures that shine only the mean is rendered; materials");
+  materials(names([](const Material& m) { return m.alpha_cutoff > 0; }), "nothing is cut out of surfaces; materials");
+  bool has_flicker = false, has_visible = false;
+  for (const Light& lamp : scene.lights) {
+    const auto* rect = std::get_if<RectLight>(&lamp);
+    has_visible = has_visible || (rect != nullptr && rect->visible);
+    has_flicker = has_flicker || FlickerOf(lamp).depth > 0;
+  }
+  if (has_flicker) lacks.emplace_back("lamps do not flicker");
+  if (has_visible) lacks.emplace_back("visible lamps are not seen");
+  if (scene.sky) lacks.emplace_back("the sky is not seen; world.background is");
+  if (light != LightMode::direct) {
+    lacks.emplace_back("there is no baked light: render.light is taken as direct, with ambient light for what bounces");
+  }
+  return lacks;
+}
+
+// Where in the pixel sample i of n goes, from its middle [px]: the ray tracer's pattern, moved so that its mean is the
+// middle and the picture stays where it is.
+std::vector<glm::vec2> Jitter(int count, bool jitter) {
+  std::vector<glm::dvec2> points;
+  glm::dvec2 mean(0.0);
+  for (int i = 0; i < count; ++i) {
+    const PatternPoint point = SobolPoint(static_cast<std::uint32_t>(i));
+    points.emplace_back(ToUnit(point.u), ToUnit(point.v));
+    mean += points.back() / static_cast<double>(count);
+  }
+  std::vector<glm::vec2> out;
+  for (const glm::dvec2& point : points) out.emplace_back(jitter ? point - mean : glm::dvec2(0.0));
+  return out;
+}
+
+// Of a pixel's centre in C, to 1e-6 px: the camera's table, then one Newton step on Project.
+glm::dvec3 ExactRay(const Camera& camera, int x, int y) {
+  const auto u = static_cast<float>(x), v = static_cast<float>(y);
+  const glm::dvec3 ray(camera.Ray(u, v));
+  const glm::dvec3 du(camera.Ray(u + 0.5f, v) - camera.Ray(u - 0.5f, v)),
+      dv(camera.Ray(u, v + 0.5f) - camera.Ray(u, v - 0.5f));
+  const glm::dvec2 miss = glm::dvec2(x, y) - camera.Project(ray);
+  return ray + miss.x * du + miss.y * dv;
+}
+
+// How far along the ray, in lengths of it, the triangle is: on its plane, or where it is nearest to that when the view
+// and the ray differ by a part of a pixel (Moeller and Trumbore 1997, as in the shader).
+double DistanceTo(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& origin,
+                  const glm::dvec3& direction) {
+  const glm::dvec3 du = b - a, dv = c - a, from = origin - a;
+  const glm::dvec3 p = glm::cross(direction, dv), q = glm::cross(from, du);
+  const double determinant = glm::dot(du, p);
+  if (determinant == 0) return glm::dot(a - origin, direction) / glm::dot(direction, direction);
+  double u = std::max(0.0, glm::dot(from, p) / determinant), v = std::max(0.0, glm::dot(direction, q) / determinant);
+  if (u + v > 1) std::tie(u, v) = std::tuple(u / (u + v), v / (u + v));
+  return glm::dot(u * du + v * dv - from, direction) / glm::dot(direction, direction);
+}
+
+// Everything that lives in the context, and all that is done with it: only while it is current.
+class Drawing {
+ public:
+  Drawing(const GlApi& gl, const Scene& scene, const RasteriserOptions& options)
+      : gl_(gl),
+        options_(options),
+        lights_(scene.lights),
+        background_(scene.background),
+        triangles_(gl, "triangles", kTriangleVertex, kNumberFragment),
+        depth_(gl, "depth", kTriangleVertex, kNothingFragment),
+        seen_(gl, "seen", kScreenVertex, kSeenFragment),
+        shade_(gl, "shade", kScreenVertex, ShadeFragment()),
+        scene_(gl, scene),
+        shadows_(gl, options.shadow_map_side),
+        screen_array_(MakeVertexArray(gl)) {
+    gl_.GetIntegerv(GL_MAX_TEXTURE_SIZE, &longest_side_);
+    for (const Light& light : lights_) {
+      if (const auto* ambient = std::get_if<AmbientLight>(&light)) ambient_ += glm::vec3(ambient->radiance);
+    }
+  }
+
+  void Expose(const Camera& camera, const Trajectory& motion, const Exposure& exposure, RadianceImage& out) {
+    const int count = exposure.time_samples * options_.rays_per_time_sample;
+    Prepare(camera, exposure.row_delay_s != 0 ? options_.strip_rows : camera.height(),
+            exposure.aperture_m / exposure.focus_m);
+    SetUp();
+    const std::vector<glm::vec2> jitter = Jitter(count, options_.jitter);
+    const std::vector<DiscPoint> lens = DiscPoints(count);
+    std::vector<std::vector<RasterLight>> lights;
+    std::vector<RasterLight> table;
+    for (int i = 0; i < count; ++i) {
+      lights.push_back(LightsOfSample(lights_, i, count, scene_));
+      table.insert(table.end(), lights.back().begin(), lights.back().end());
+    }
+    if (options_.shadows) shadows_.Draw(scene_, depth_, lights);
+    const BufferTexture light_table(gl_, GL_RGBA32F, 6 * table.size(), table.size() * sizeof(RasterLight), table.data(),
+                                    "the lights");
+    const GlObject target = MakeFramebuffer(gl_), sum = MakeTexture(gl_, GL_RGBA32F, camera.width(), camera.height());
+    Attach(target, sum);
+    gl_.Scissor(0, 0, camera.width(), camera.height());
+    const glm::vec4 nothing(0.0f);
+    gl_.ClearNamedFramebufferfv(target.id(), GL_COLOR, 0, &nothing[0]);
+
+    shade_.Use();
+    shade_.Set("triangles", Bind(2, scene_.triangles()));
+    shade_.Set("materials", Bind(3, scene_.materials()));
+    shade_.Set("levels", Bind(4, scene_.levels()));
+    shade_.Set("texels", Bind(5, scene_.texels()));
+    shade_.Set("lights", Bind(6, light_table.texture.id()));
+    shade_.Set("texels_per_triangle", scene_.texels_per_triangle());
+    shade_.Set("light_count", static_cast<int>(lights[0].size()));
+    shade_.Set("ambient", ambient_);
+    shade_.Set("background", background_);
+    shade_.Set("shadows", options_.shadows ? 1 : 0);
+    shade_.Set("share", options_.jitter ? 1.0f / std::sqrt(static_cast<float>(count)) : 1.0f);
+    shade_.Set("inverse_focus", static_cast<float>(1 / exposure.focus_m));
+    for (int i = 0; i < count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const glm::vec2 lens_C(0.5 * exposure.aperture_m * lens[k].x, 0.5 * exposure.aperture_m * lens[k].y);
+      for (const RasterStrip& strip : views_.strips) {
+        const double part_s = exposure.exposure_s / count;
+        const double middle_s = exposure.RowMiddle(0.5 * (strip.begin + strip.end - 1), camera.height());
+        const Pose pose = motion.At(middle_s + part_s * (i + 0.5 - 0.5 * count)).pose;
+        const glm::dmat3 rotation = glm::mat3_cast(pose.q_WC);
+        const glm::vec3 origin(pose.p_WC + rotation * glm::dvec3(lens_C, 0.0));
+        for (const RasterView& still : strip.views) {
+          const RasterView view = Moved(still, jitter[k], -lens_C / static_cast<float>(exposure.focus_m));
+          DrawView(view, glm::mat3(rotation), origin);
+          shade_.Use();
+          SetLookUp(shade_, view, jitter[k], lens_C);
+          shade_.Set("rotation", glm::mat3(rotation));
+          shade_.Set("origin", origin);
+          shade_.Set("first_light", 6 * i * static_cast<int>(lights[0].size()));
+          shade_.Set("lasting_shadows", Bind(7, shadows_.lasting()));
+          shade_.Set("sample_shadows", Bind(8, shadows_.of_sample(k)));
+          gl_.Enable(GL_BLEND);
+          gl_.BlendFunc(GL_ONE, GL_ONE);
+          DrawRows(target, camera, strip);
+          gl_.Disable(GL_BLEND);
+        }
+      }
+    }
+    Read(camera, 1.0f / static_cast<float>(count), out);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, 0);
+  }
+
+  // 1 + the number of the triangle that each pixel's centre sees, 0: none.
+  std::vector<GLint> Seen(const Camera& camera, const Pose& pose) {
+    Prepare(camera, camera.height(), 0.0);
+    SetUp();
+    const GlObject target = MakeFramebuffer(gl_), numbers = MakeTexture(gl_, GL_R32I, camera.width(), camera.height());
+    Attach(target, numbers);
+    gl_.Scissor(0, 0, camera.width(), camera.height());
+    const GLint none[4] = {};
+    gl_.ClearNamedFramebufferiv(target.id(), GL_COLOR, 0, none);
+    const RasterStrip& all = views_.strips[0];
+    for (const RasterView& view : all.views) {
+      DrawView(view, glm::mat3(glm::mat3_cast(pose.q_WC)), glm::vec3(pose.p_WC));
+      seen_.Use();
+      SetLookUp(seen_, view, glm::vec2(0.0f), glm::vec2(0.0f));
+      DrawRows(target, camera, all);
+    }
+    std::vector<GLint> out(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height()));
+    gl_.PixelStorei(GL_PACK_ALIGNMENT, 4);
+    gl_.ReadPixels(0, 0, camera.width(), camera.height(), GL_RED_INTEGER, GL_INT, out.data());
+    CheckGl(gl_, "reading depth");
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, 0);
+    return out;
+  }
+
+  const RasterScene& scene() const { return scene_; }
+
+ private:
+  static std::string ShadeFragment() {
+    std::string text = kShadeFragment;
+    const std::size_t at = text.find("NEAR");
+    return text.replace(at, 4, std::to_string(kNear));
+  }
+
+  // Views and their target of a camera, kept for the next frame of the same.
+  void Prepare(const Camera& camera, int strip_rows, double margin) {
+    const CameraParams& p = camera.params();
+    const auto key = std::tuple(p.width, p.height, p.fx, p.fy, p.cx, p.cy, p.k1, p.k2, p.p1, p.p2, p.k3, p.k4, p.lens,
+                                strip_rows, margin);
+    if (key_ && *key_ == key) return;
+    key_.reset();
+    views_ = MakeRasterViews(camera, strip_rows, margin, longest_side_);
+    rays_ = MakeTexture(gl_, GL_RGBA32F, p.width + 1, p.height + 1);
+    gl_.TextureSubImage2D(rays_.id(), 0, 0, 0, p.width + 1, p.height + 1, GL_RGBA, GL_FLOAT, views_.corners.data());
+    view_numbers_ = MakeTexture(gl_, GL_R32I, views_.width, views_.height);
+    view_depth_ = MakeTexture(gl_, GL_DEPTH_COMPONENT32F, views_.width, views_.height);
+    view_target_ = MakeFramebuffer(gl_);
+    gl_.NamedFramebufferTexture(view_target_.id(), GL_DEPTH_ATTACHMENT, view_depth_.id(), 0);
+    Attach(view_target_, view_numbers_);
+    CheckGl(gl_, "targets of the camera");
+    key_ = key;
+  }
+
+  void SetUp() const {
+    gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    gl_.DepthFunc(GL_GREATER);
+    gl_.Enable(GL_SCISSOR_TEST);
+  }
+
+  void Attach(const GlObject& target, const GlObject& texture) const {
+    gl_.NamedFramebufferTexture(target.id(), GL_COLOR_ATTACHMENT0, texture.id(), 0);
+    gl_.NamedFramebufferDrawBuffer(target.id(), GL_COLOR_ATTACHMENT0);
+    gl_.NamedFramebufferReadBuffer(target.id(), GL_COLOR_ATTACHMENT0);
+    const GLenum status = gl_.CheckNamedFramebufferStatus(target.id(), GL_FRAMEBUFFER);
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+      throw std::runtime_error("rasteriser: this OpenGL cannot draw into such a target, status " +
+                               std::to_string(status));
+  }
+
+  GLint Bind(int unit, GLuint texture) const {
+    gl_.BindTextureUnit(static_cast<GLuint>(unit), texture);
+    return unit;
+  }
+
+  // A sample's view: its texels' centres are the rays of a pinhole.
+  RasterView Moved(RasterView view, const glm::vec2& jitter, const glm::vec2& by_lens) const {
+    view.low += jitter * view.texel + (views_.one_face ? by_lens : glm::vec2(0.0f));
+    return view;
+  }
+
+  void DrawView(const RasterView& view, const glm::mat3& rotation, const glm::vec3& origin) const {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, view_target_.id());
+    gl_.Viewport(0, 0, view.width, view.height);
+    gl_.Scissor(0, 0, view.width, view.height);
+    gl_.Enable(GL_DEPTH_TEST);
+    const GLint none[4] = {};
+    const float far = 0.0f;
+    gl_.ClearNamedFramebufferiv(view_target_.id(), GL_COLOR, 0, none);
+    gl_.ClearNamedFramebufferfv(view_target_.id(), GL_DEPTH, 0, &far);
+    triangles_.Use();
+    triangles_.Set("origin", origin);
+    const glm::vec2 high = view.low + view.texel * glm::vec2(view.width, view.height);
+    triangles_.Set("clip_from_world",
+                   ClipFromView(view.low, high) * glm::mat4(FaceFromCamera(view.face) * glm::transpose(rotation)));
+    scene_.Draw();
+  }
+
+  void SetLookUp(const Program& program, const RasterView& view, const glm::vec2& jitter, const glm::vec2& lens) const {
+    program.Set("rays", Bind(0, rays_.id()));
+    program.Set("numbers", Bind(1, view_numbers_.id()));
+    program.Set("view_face", view.face);
+    program.Set("only_own_face", views_.one_face ? 0 : 1);
+    program.Set("view_low", view.low);
+    program.Set("view_texel", view.texel);
+    program.Set("view_size", glm::ivec2(view.width, view.height));
+    program.Set("jitter", jitter);
+    program.Set("lens", lens);
+  }
+
+  void DrawRows(const GlObject& target, const Camera& camera, const RasterStrip& strip) const {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target.id());
+    gl_.Viewport(0, 0, camera.width(), camera.height());
+    gl_.Scissor(0, strip.begin, camera.width(), strip.end - strip.begin);
+    gl_.Disable(GL_DEPTH_TEST);
+    gl_.BindVertexArray(screen_array_.id());
+    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+  }
+
+  void Read(const Camera& camera, float scale, RadianceImage& out) const {
+    out.width = camera.width();
+    out.height = camera.height();
+    const std::size_t pixels = static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height);
+    out.rgb.resize(3 * pixels);
+    gl_.PixelStorei(GL_PACK_ALIGNMENT, 4);
+    gl_.ReadPixels(0, 0, out.width, out.height, GL_RGB, GL_FLOAT, out.rgb.data());
+    CheckGl(gl_, "reading the picture");
+    for (float& value : out.rgb) value *= scale;
+  }
+
+  const GlApi& gl_;
+  RasteriserOptions options_;
+  std::vector<Light> lights_;
+  glm::vec3 ambient_{0.0f}, background_;
+  Program triangles_, depth_, seen_, shade_;
+  RasterScene scene_;
+  ShadowMaps shadows_;
+  GlObject screen_array_;
+  GLint longest_side_ = 0;
+
+  std::optional<std::tuple<int, int, double, double, double, double, double, double, double, double, double, double,
+                           Lens, int, double>>
+      key_;
+  RasterViews views_;
+  GlObject rays_, view_numbers_, view_depth_, view_target_;
+};
+
+class Rasteriser final : public Renderer {
+ public:
+  Rasteriser(const Scene& scene, const RasteriserOptions& options) : context_(MakeGlContext(options.platform)) {
+    const GlContext::Current current(*context_);
+    drawing_ = std::make_unique<Drawing>(context_->gl(), scene, options);
+  }
+  ~Rasteriser() override {
+    try {
+      const GlContext::Current current(*context_);
+      drawing_.reset();
+    } catch (...) {  // the context's end frees what is in it
+      static_cast<void>(drawing_.release());
+    }
+  }
+
+  void Expose(const Camera& camera, const Trajectory& motion, const Exposure& exposure, std::uint64_t /*key*/,
+              RadianceImage& out) const override {
+    const std::vector<std::string> problems = Problems(exposure);
+    if (!problems.empty()) throw std::invalid_argument("Expose: " + Join(problems));
+    const GlContext::Current current(*context_);
+    drawing_->Expose(camera, motion, exposure, out);
+  }
+
+  void Depth(const Camera& camera, const Pose& pose, std::vector<float>& out) const override {
+    const std::vector<GLint> seen = [&] {
+      const GlContext::Current current(*context_);
+      return drawing_->Seen(camera, pose);
+    }();
+    const RasterScene& scene = drawing_->scene();
+    const glm::dmat3 rotation = glm::mat3_cast(pose.q_WC);
+    out.assign(seen.size(), 0.0f);
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (seen[i] == 0) continue;
+      const auto triangle = static_cast<std::uint32_t>(seen[i] - 1);
+      const int width = camera.width(), x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
+      const glm::dvec3 ray = ExactRay(camera, x, y);
+      out[i] = static_cast<float>(ray.z * DistanceTo(scene.Corner(triangle, 0), scene.Corner(triangle, 1),
+                                                     scene.Corner(triangle, 2), pose.p_WC, rotation * ray));
+    }
+  }
+
+ private:
+  std::unique_ptr<GlContext> context_;
+  std::unique_ptr<Drawing> drawing_;
+};
+
+}  // namespace
+
+std::unique_ptr<Renderer> MakeRasteriser(const Scene& scene, const RasteriserOptions& options,
+                                         std::vector<std::string>* warnings) {
+  Check(options);
+  auto rasteriser = std::make_unique<Rasteriser>(scene, options);
+  if (warnings != nullptr) {
+    for (const std::string& lack : Lacks(scene, options.light)) warnings->push_back("rasteriser: " + lack);
+  }
+  return rasteriser;
+}
+
+std::string DescribeGl(GlPlatform platform) { return MakeGlContext(platform)->name(); }
+
+}  // namespace sim

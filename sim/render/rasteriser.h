@@ -1,0 +1,49 @@
+// Purpose: the renderer on OpenGL: the ray tracer's model of light on triangles that a GPU, or Mesa, has drawn.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/light/params.h"
+#include "sim/render/gl_platform.h"
+#include "sim/render/renderer.h"
+#include "sim/world/scene.h"
+
+namespace sim {
+
+struct RasteriserOptions {
+  GlPlatform platform = GlPlatform::automatic;
+  // Pictures that are averaged for each time sample, each through its own point of the pixels.
+  int rays_per_time_sample = 1;
+  bool jitter = true;  // false: every ray goes through the pixel's centre (for comparisons with closed forms)
+  bool shadows = true;
+  int shadow_map_side = 1024;           // [texel] 16 ... 8192: a shadow's edge is off by a few times what one covers
+  LightMode light = LightMode::direct;  // of which only `direct` is rendered: others are a warning
+  int strip_rows = 8;                   // of a rolling shutter: rows that share the moment of their middle
+};
+
+// Copies what it needs of the scene. As the ray tracer (sim/render/ray_tracer.h) with these differences:
+// - All pixels of a sample share its moment and its point of the pixel and of the lens; the points' mean is the middle.
+//   `key` changes nothing. Long blur at few time samples is made of copies, not of grain.
+// - An edge is off by up to 1/256 pixel, and by up to 1/4 pixel through a lens that is no pinhole; what lies between
+//   edges is where the ray tracer has it.
+// - Shadows are looked up in maps: their edges are soft and off by about two texels of a map, 4 / shadow_map_side of
+//   the distance from a lamp, 2 / shadow_map_side of the scene's size for a sun. What is nearer than 1 cm to a lamp
+//   casts none.
+// - What is nearer than 1 cm (Z; with a lens wider than 50 degrees aside: along the largest component) is not seen.
+// - Depth is computed in double precision on the triangle that is seen.
+// A lens that would need too large a picture is refused by Expose and Depth with std::invalid_argument.
+// The bytes are the same on one machine with one OpenGL; another one's differ, in edges and by rounding. One call works
+// at a time, others wait. What of the scene is not rendered is named in sentences appended to `warnings`, where there
+// are any.
+// Throws std::invalid_argument for options out of range and a scene whose indices are, or that is too large;
+// std::runtime_error when there is no OpenGL 4.5 without a display, saying why.
+std::unique_ptr<Renderer> MakeRasteriser(const Scene& scene, const RasteriserOptions& options = {},
+                                         std::vector<std::string>* warnings = nullptr);
+
+// The OpenGL that `platform` stands for here, such as "EGL, llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 (Core Profile)
+// Mesa 22.3.6". Throws std::runtime_error as MakeRasteriser does.
+std::string DescribeGl(GlPlatform platform);
+
+}  // namespace sim

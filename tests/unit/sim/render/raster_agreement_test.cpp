@@ -1,0 +1,251 @@
+// The rasteriser against the ray tracer: depth, pixel by pixel away from edges, and pictures.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "sim/scenario/scenario.h"
+#include "tests/unit/sim/render/engines.h"
+
+namespace sim::test {
+namespace {
+
+// The demo's room, of which every part has its texture.
+const Scenario& Room() {
+  static const Scenario room = LoadScenario(std::filesystem::path(VOBENCH_SOURCE_DIR) / "scenes/room.yaml");
+  return room;
+}
+const Scene& RoomScene() {
+  static const Scene scene = LoadScene(Room().world);
+  return scene;
+}
+
+Scene Moved(Scene scene, const glm::vec3& by) {
+  for (Mesh& mesh : scene.meshes) {
+    for (glm::vec3& p : mesh.positions) p += by;
+  }
+  return scene;
+}
+
+// Two places in the room, so that near and far, flat and round, are seen.
+const std::array<Pose, 2> kPoses = {Pose{{2.0, 1.4, 2.6}, glm::normalize(glm::dquat(0.02, 1.0, 0.03, -0.12))},
+                                    Pose{{3.4, 1.5, 2.9}, glm::normalize(glm::dquat(-0.1, 1.0, -0.35, -0.2))}};
+
+CameraParams Pinhole() {
+  CameraParams params;
+  params.width = 320, params.height = 240;
+  params.fx = params.fy = 262.5;
+  params.cx = 159.5, params.cy = 119.5;
+  return params;
+}
+CameraParams Distorted() {
+  CameraParams params = Pinhole();
+  params.k1 = -0.28, params.k2 = 0.09, params.p1 = 0.001, params.p2 = -0.0007;
+  return params;
+}
+// 92 degrees aside in its corners: beyond what one pinhole picture can hold.
+CameraParams FisheyeParams() {
+  CameraParams params = Pinhole();
+  params.lens = Lens::fisheye;
+  params.fx = params.fy = 120;
+  params.k1 = 0.01, params.k2 = -0.002;
+  return params;
+}
+
+using Values = std::vector<float>;
+
+// Where a picture of an affine function of the pixel would have second difference 0 along each of four lines through
+// the pixel, 1 / Z of a plane is one: more than a thousandth is an edge or a crease there, or the end of a thing.
+// `reach`: that far away an edge counts as well [px].
+std::vector<bool> IsEdge(const Values& depth, int width, int height, int reach) {
+  const auto at = [&](int x, int y) { return depth[static_cast<std::size_t>(y * width + x)]; };
+  std::vector<bool> bends(depth.size()), edge(depth.size());
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      bool bent = x == 0 || y == 0 || x + 1 == width || y + 1 == height;
+      for (const auto& [dx, dy] : {std::pair(1, 0), {0, 1}, {1, 1}, {1, -1}}) {
+        if (bent) break;
+        const double a = at(x - dx, y - dy), b = at(x, y), c = at(x + dx, y + dy);
+        bent = a == 0 || b == 0 || c == 0 || !(std::abs(b / a + b / c - 2) < 1e-3);
+      }
+      bends[static_cast<std::size_t>(y * width + x)] = bent;
+    }
+  }
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int v = std::max(0, y - reach); v <= std::min(height - 1, y + reach); ++v) {
+        for (int u = std::max(0, x - reach); u <= std::min(width - 1, x + reach); ++u) {
+          if (bends[static_cast<std::size_t>(v * width + u)]) edge[static_cast<std::size_t>(y * width + x)] = true;
+        }
+      }
+    }
+  }
+  return edge;
+}
+
+// Where a failed test leaves its pictures: white is `white`.
+void Write(const std::string& name, int width, int height, int channels, const Values& values, double white) {
+  cv::Mat picture(height, width, channels == 3 ? CV_8UC3 : CV_8UC1);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t to = channels == 3 ? i - i % 3 + 2 - i % 3 : i;
+    picture.data[to] = static_cast<unsigned char>(255.0 * std::clamp(values[i] / white, 0.0, 1.0) + 0.5);
+  }
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "raster_agreement";
+  std::filesystem::create_directories(folder);
+  cv::imwrite((folder / (name + ".png")).string(), picture);
+  ADD_FAILURE() << "see " << folder / (name + ".png");
+}
+
+struct DepthComparison {
+  double worst = 0.0;     // relative difference away from edges
+  double left_out = 0.0;  // share of the pixels
+  double beyond = 0.0;    // share of all pixels, edges included, that differ by more than 1e-3
+  Values difference;      // relative
+};
+
+DepthComparison Compare(const Values& a, const Values& b, int width, int height, int reach) {
+  DepthComparison out;
+  const std::vector<bool> edge = IsEdge(a, width, height, reach);
+  const double each = 1.0 / static_cast<double>(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double relative = a[i] == b[i] ? 0.0 : a[i] == 0 ? 1.0 : std::abs(double{b[i]} / a[i] - 1.0);
+    out.difference.push_back(static_cast<float>(relative));
+    if (relative > 1e-3) out.beyond += each;
+    if (edge[i]) {
+      out.left_out += each;
+    } else {
+      out.worst = std::max(out.worst, relative);
+    }
+  }
+  return out;
+}
+
+Values DepthOf(const Renderer& renderer, const Camera& camera, const Pose& pose) {
+  Values depth;
+  renderer.Depth(camera, pose, depth);
+  return depth;
+}
+
+// As a file would have it: sRGB.
+Values Coded(const RadianceImage& image) {
+  Values out;
+  for (const float value : image.rgb) {
+    const double x = std::clamp(double{value}, 0.0, 1.0);
+    out.push_back(static_cast<float>(x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055));
+  }
+  return out;
+}
+
+double Psnr(const Values& a, const Values& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (double{a[i]} - b[i]) * (double{a[i]} - b[i]);
+  return -10 * std::log10(sum / static_cast<double>(a.size()));
+}
+
+class RasterAgreement : public EngineTest {
+ protected:
+  void ExpectDepth(const CameraParams& params, int reach, double tolerance, double most_left_out, double most_beyond) {
+    const Camera camera(params);
+    const auto traced = MakeRayTracer(RoomScene()), drawn = MakeEngine(GetParam(), RoomScene());
+    const auto shifted = MakeEngine(GetParam(), Moved(RoomScene(), {0, 0, 0.002f}));
+    for (std::size_t k = 0; k < kPoses.size(); ++k) {
+      const Values a = DepthOf(*traced, camera, kPoses[k]), b = DepthOf(*drawn, camera, kPoses[k]);
+      const DepthComparison both = Compare(a, b, params.width, params.height, reach);
+      EXPECT_LT(both.worst, tolerance);
+      EXPECT_LT(both.left_out, most_left_out);
+      EXPECT_LT(both.beyond, most_beyond);
+      RecordProperty("worst_" + std::to_string(k), std::to_string(both.worst));
+      RecordProperty("left_out_" + std::to_string(k), std::to_string(both.left_out));
+      RecordProperty("beyond_" + std::to_string(k), std::to_string(both.beyond));
+      if (HasFailure()) {
+        const std::string name = std::string(GetParam().name) + "_depth_" + std::to_string(k);
+        Write(name + "_ray_tracer", params.width, params.height, 1, a, 5.0);
+        Write(name + "_rasteriser", params.width, params.height, 1, b, 5.0);
+        Write(name + "_difference", params.width, params.height, 1, both.difference, 2 * tolerance);
+        return;
+      }
+      // The control: everything 2 mm further back.
+      EXPECT_GT(Compare(a, DepthOf(*shifted, camera, kPoses[k]), params.width, params.height, reach).worst, tolerance);
+    }
+  }
+
+  // The picture of `exposure` along `motion`, both ways, and how far apart they are [dB].
+  double PictureDistance(const Scene& scene, const Camera& camera, const Trajectory& motion, const Exposure& exposure,
+                         const RayTracerOptions& options, const std::string& name, double least) {
+    RadianceImage a, b;
+    MakeRayTracer(RoomScene(), options)->Expose(camera, motion, exposure, 1, a);
+    MakeEngine(GetParam(), scene, options)->Expose(camera, motion, exposure, 1, b);
+    const Values x = Coded(a), y = Coded(b);
+    const double psnr = Psnr(x, y);
+    if (psnr < least) {
+      Values difference;
+      for (std::size_t i = 0; i < x.size(); ++i) difference.push_back(std::abs(x[i] - y[i]));
+      const std::string file = std::string(GetParam().name) + "_" + name;
+      Write(file + "_ray_tracer", a.width, a.height, 3, x, 1.0);
+      Write(file + "_rasteriser", a.width, a.height, 3, y, 1.0);
+      Write(file + "_difference", a.width, a.height, 3, difference, 0.2);
+    }
+    return psnr;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Engine, RasterAgreement, testing::Values(kEgl, kOsmesa), EngineName);
+
+TEST_P(RasterAgreement, DepthOfAPinhole) { ExpectDepth(Pinhole(), 0, 1e-5, 0.12, 0.002); }
+
+// Edges are off by a quarter of a pixel at most, so that a pixel beside one may see the other thing.
+TEST_P(RasterAgreement, DepthThroughADistortedLens) { ExpectDepth(Distorted(), 1, 1e-5, 0.3, 0.02); }
+TEST_P(RasterAgreement, DepthThroughAFisheye) { ExpectDepth(FisheyeParams(), 1, 1e-5, 0.4, 0.03); }
+
+// One ray through the middle of each pixel: nothing but shadows and what lies on an edge may differ.
+TEST_P(RasterAgreement, SharpPicture) {
+  for (const CameraParams& params : {Pinhole(), Distorted(), FisheyeParams()}) {
+    const Camera camera(params);
+    const SteadyMotion still(kPoses[0]);
+    const double psnr = PictureDistance(RoomScene(), camera, still, Exposure{}, Centred(), "sharp", 42);
+    EXPECT_GT(psnr, 42);
+    RecordProperty("psnr", std::to_string(psnr));
+    // Controls: 2 mm aside; pictures upside down.
+    EXPECT_LT(PictureDistance(Moved(RoomScene(), {0.002f, 0, 0}), camera, still, Exposure{}, Centred(), "", 0), 40);
+    Scene flipped = RoomScene();
+    for (Mesh& mesh : flipped.meshes) {
+      for (glm::vec2& uv : mesh.uvs) uv.y = -uv.y;
+    }
+    EXPECT_LT(PictureDistance(flipped, camera, still, Exposure{}, Centred(), "", 0), 30);
+  }
+}
+
+// Blur by motion, defocus and a rolling shutter, with samples enough that the ray tracer's grain does not count.
+TEST_P(RasterAgreement, BlurredPicture) {
+  CameraParams params = Pinhole();
+  params.width = 160, params.height = 120;
+  params.fx = params.fy = 131.25;
+  params.cx = 79.5, params.cy = 59.5;
+  const Camera camera(params);
+  const SteadyMotion motion(kPoses[0], {0.5, -0.2, 0.3}, {0.4, 0.6, -0.5});
+  Exposure blur;
+  blur.exposure_s = 0.03;
+  blur.time_samples = 128;
+  Exposure lens = blur;
+  lens.aperture_m = 0.04, lens.focus_m = 1.5;
+  Exposure rolling = blur;
+  rolling.row_delay_s = 0.02 / 119;
+  for (const auto& [exposure, name] : {std::pair(blur, "blur"), {lens, "lens"}, {rolling, "rolling"}}) {
+    const double psnr = PictureDistance(RoomScene(), camera, motion, exposure, {}, name, 42);
+    EXPECT_GT(psnr, 42) << name;
+    RecordProperty(name, std::to_string(psnr));
+  }
+  // The control: the exposure a tenth of its length late.
+  Exposure late = blur;
+  late.middle_s = 0.003;
+  RadianceImage in_time, too_late;
+  MakeRayTracer(RoomScene(), {})->Expose(camera, motion, blur, 1, in_time);
+  MakeEngine(GetParam(), RoomScene(), {})->Expose(camera, motion, late, 1, too_late);
+  EXPECT_LT(Psnr(Coded(in_time), Coded(too_late)), 40);
+}
+
+}  // namespace
+}  // namespace sim::test

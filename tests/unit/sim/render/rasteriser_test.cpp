@@ -1,0 +1,226 @@
+// What is the rasteriser's own: threads, strips, lenses, what it refuses.
+#include <gmock/gmock.h>
+
+#include <thread>
+
+#include "sim/render/raster_view.h"
+#include "tests/unit/sim/render/engines.h"
+
+namespace sim::test {
+namespace {
+
+Scene SmallWorld() {
+  Scene scene;
+  std::vector<std::uint8_t> rgb;
+  for (int i = 0; i < 50 * 70 * 3; ++i) rgb.push_back(static_cast<std::uint8_t>((i * 2654435761u) >> 24));
+  scene.textures.emplace_back("noise", 50, 70, rgb);
+  AddMaterial(scene, {0.9f, 0.8f, 0.7f}, glm::vec3(0.0f), 0);
+  AddMaterial(scene, {0.3f, 0.8f, 0.4f});
+  AddQuad(scene, {-6, -6, 4}, {12, 0, 1}, {0, 12, 1}, 0, 3.0f);
+  AddSphere(scene, {0.3, 0.1, 2.2}, 0.5, 20, 1);
+  scene.lights = {AmbientLight{{0.1, 0.1, 0.1}}, PointLight{{1, -1, 0}, {9, 8, 7}}, SunLight{{1, 1, 2}, {1, 1, 1}},
+                  RectLight{{-1, -1, 0}, {0.5, 0, 0}, {0, 0.5, 0}, {8, 8, 8}}};
+  return scene;
+}
+
+RasteriserOptions On(const EngineUnderTest& engine) {
+  RasteriserOptions options;
+  options.platform = engine.platform;
+  return options;
+}
+
+RadianceImage Expose(const Renderer& renderer, const Camera& camera, const Trajectory& motion,
+                     const Exposure& exposure) {
+  RadianceImage image;
+  renderer.Expose(camera, motion, exposure, 1, image);
+  return image;
+}
+
+class RasteriserTest : public EngineTest {};
+INSTANTIATE_TEST_SUITE_P(Engine, RasteriserTest, testing::Values(kEgl, kOsmesa), EngineName);
+
+TEST_P(RasteriserTest, SaysWhichOpenGlItIs) {
+  EXPECT_THAT(DescribeGl(GetParam().platform),
+              testing::StartsWith(GetParam().platform == GlPlatform::egl ? "EGL, " : "OSMesa, "));
+}
+
+// Calls from several threads wait for each other; earlier calls with other cameras and exposures leave nothing behind;
+// nor does another rasteriser in the same process, on any platform.
+TEST_P(RasteriserTest, ResultsDependOnTheArgumentsAlone) {
+  const SteadyMotion motion(Pose{}, {0.8, 0.4, 0.1}, {0.05, -0.1, 0.15});
+  const Camera small(SmallCamera()), distorted(DistortedCamera());
+  const Exposure blur{0.0, 0.1, 0.0, 4}, rolling{0.1, 0.02, 1e-4, 3};
+  const auto renderer = MakeRasteriser(SmallWorld(), On(GetParam())),
+             again = MakeRasteriser(SmallWorld(), On(GetParam()));
+  const auto other = MakeRasteriser(SmallWorld());
+  const RadianceImage a = Expose(*renderer, small, motion, blur), b = Expose(*again, distorted, motion, rolling);
+  RadianceImage c, d;
+  std::thread one([&] {
+    for (int i = 0; i < 5; ++i) c = Expose(*renderer, small, motion, blur);
+  });
+  std::thread two([&] {
+    for (int i = 0; i < 5; ++i) d = Expose(*renderer, distorted, motion, rolling);
+  });
+  std::thread three([&] {
+    for (int i = 0; i < 5; ++i) Expose(*other, small, motion, rolling);
+  });
+  one.join(), two.join(), three.join();
+  EXPECT_EQ(a.rgb, c.rgb);
+  EXPECT_EQ(b.rgb, d.rgb);
+  EXPECT_NE(a.rgb, Expose(*renderer, small, motion, rolling).rgb);
+}
+
+TEST_P(RasteriserTest, NothingIsBackground) {
+  Scene scene;
+  scene.background = {0.25f, 0.5f, 1.5f};
+  scene.lights = SmallWorld().lights;
+  const auto renderer = MakeRasteriser(scene, On(GetParam()));
+  const RadianceImage image = Expose(*renderer, Camera(SmallCamera(9, 5)), SteadyMotion(Pose{}), Exposure{});
+  ASSERT_EQ(image.rgb.size(), 9u * 5u * 3u);
+  EXPECT_EQ(image.pixel(8, 4)[0], 0.25f);
+  EXPECT_EQ(image.pixel(8, 4)[1], 0.5f);
+  EXPECT_EQ(image.pixel(8, 4)[2], 1.5f);
+  std::vector<float> depth(7, 5.0f);
+  renderer->Depth(Camera(SmallCamera(5, 3)), Pose{}, depth);
+  EXPECT_EQ(depth, std::vector<float>(15, 0.0f));
+}
+
+// The mean of a picture's samples does not move it, whatever their number: an edge at 41.0 covers half of pixel 41.
+TEST_P(RasteriserTest, SamplesDoNotShiftThePicture) {
+  Scene scene;
+  AddMaterial(scene, glm::vec3(0.0f), glm::vec3(1.0f));
+  AddQuad(scene, {0.0f, -9, 1}, {9, 0, 0}, {0, 18, 0}, 0);
+  for (const int count : {2, 3, 7, 16, 64}) {
+    const auto renderer = MakeRasteriser(scene, On(GetParam()));
+    const RadianceImage image =
+        Expose(*renderer, Camera(SmallCamera(83, 4)), SteadyMotion(Pose{}), Exposure{0.0, 0.0, 0.0, count});
+    double bright = 0;
+    for (int x = 0; x < 83; ++x) bright += image.pixel(x, 1)[0];
+    EXPECT_NEAR(82.5 - bright, 41.0, 0.5 / count + 1.0 / 256) << count;  // a step of one sample
+  }
+}
+
+// The line of sampling_test.cpp that leans under a rolling shutter: each strip has the moment of its middle row, so
+// that with strips of one row all rows are right, and with strips of eight they are off by three and a half rows' turn.
+TEST_P(RasteriserTest, AStripOfARollingShutterHasTheMomentOfItsMiddle) {
+  Scene scene;
+  AddMaterial(scene, glm::vec3(0.0f), glm::vec3(1.0f));
+  AddQuad(scene, {0.1f, -9, 1}, {9, 0, 0}, {0, 18, 0}, 0);
+  CameraParams params = SmallCamera(80, 60);
+  constexpr double w = 2.0, delay_s = 5e-4;
+  for (const int strip : {1, 8}) {
+    RasteriserOptions options = On(GetParam());
+    options.rays_per_time_sample = 128;
+    options.strip_rows = strip;
+    const RadianceImage image = Expose(*MakeRasteriser(scene, options), Camera(params),
+                                       SteadyMotion(Pose{}, {}, {0, w, 0}), Exposure{0.0, 0.0, delay_s, 1});
+    for (int y = 0; y < 60; ++y) {
+      double bright = 0;
+      for (int x = 0; x < 80; ++x) bright += image.pixel(x, y)[0];
+      const int begin = y / strip * strip, end = std::min(60, begin + strip);
+      const double middle = 0.5 * (begin + end - 1);
+      const double edge = params.cx + params.fx * std::tan(std::atan(0.1) - w * delay_s * (middle - 29.5));
+      EXPECT_NEAR(79.5 - bright, edge, 1.0 / 128 + 1.0 / 256) << strip << ": " << y;
+    }
+  }
+}
+
+TEST_P(RasteriserTest, RefusesWhatItCannotDo) {
+  RasteriserOptions options = On(GetParam());
+  options.rays_per_time_sample = 0, options.strip_rows = 0, options.shadow_map_side = 1;
+  try {
+    MakeRasteriser(SmallWorld(), options);
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "rasteriser: rays_per_time_sample = 0 must lie in 1 ... 4096; shadow_map_side = 1 must lie in 16 ... "
+                 "8192; strip_rows = 0 must lie in 1 ... 16384");
+  }
+  Scene scene = SmallWorld();
+  scene.meshes[0].material = 2;
+  EXPECT_THROW(MakeRasteriser(scene, On(GetParam())), std::invalid_argument);
+
+  const auto renderer = MakeRasteriser(SmallWorld(), On(GetParam()));
+  EXPECT_THROW(Expose(*renderer, Camera(SmallCamera()), SteadyMotion(Pose{}), Exposure{0, 0, 0, 0}),
+               std::invalid_argument);
+  // A lens whose pixels are 800 times narrower in the middle than they are wide at the border.
+  CameraParams params = SmallCamera(640, 480);
+  params.lens = Lens::fisheye;
+  params.fx = params.fy = 20000;
+  params.k1 = -0.0, params.k2 = 0;
+  params.width = 16384, params.height = 16;
+  params.cx = 8191.5, params.cy = 7.5;
+  EXPECT_THROW(Expose(*renderer, Camera(params), SteadyMotion(Pose{}), Exposure{}), std::invalid_argument);
+  // And works on after that.
+  EXPECT_NO_THROW(Expose(*renderer, Camera(SmallCamera()), SteadyMotion(Pose{}), Exposure{}));
+}
+
+TEST_P(RasteriserTest, NamesWhatItDoesNotRender) {
+  std::vector<std::string> warnings;
+  MakeRasteriser(SmallWorld(), On(GetParam()), &warnings);
+  EXPECT_THAT(warnings, testing::IsEmpty());
+
+  Scene scene = SmallWorld();
+  scene.materials[0].name = "wall", scene.materials[1].name = "ball";
+  scene.materials[0].normal_map = scene.materials[1].normal_map = scene.materials[0].emission_texture = 0;
+  scene.materials[0].emission = glm::vec3(1.0f);
+  scene.materials[0].alpha_cutoff = 0.5f;
+  for (Mesh& mesh : scene.meshes) mesh.uvs.resize(mesh.positions.size());
+  std::get<RectLight>(scene.lights[3]).visible = true;
+  std::get<PointLight>(scene.lights[1]).flicker = {100, 0.5, 0};
+  scene.sky.emplace();
+  RasteriserOptions options = On(GetParam());
+  options.light = LightMode::baked;
+  MakeRasteriser(scene, options, &warnings);
+  EXPECT_THAT(warnings,
+              testing::ElementsAre("rasteriser: normal maps are not rendered; materials: wall, ball",
+                                   "rasteriser: of pictures that shine only the mean is rendered; materials: wall",
+                                   "rasteriser: nothing is cut out of surfaces; materials: wall",
+                                   "rasteriser: lamps do not flicker", "rasteriser: visible lamps are not seen",
+                                   "rasteriser: the sky is not seen; world.background is",
+                                   "rasteriser: there is no baked light: render.light is taken as direct, with ambient "
+                                   "light for what bounces"));
+}
+
+// Every ray of a lens, at the rims of its pixels too, falls into the view of its face.
+TEST(RasterViews, HoldEveryRay) {
+  CameraParams fisheye = SmallCamera(97, 61);
+  fisheye.lens = Lens::fisheye;
+  fisheye.fx = fisheye.fy = 25;  // 131 degrees aside in the corners
+  CameraParams wide = SmallCamera(97, 61);
+  wide.fx = wide.fy = 24;
+  wide.k1 = 0.01;
+  for (const CameraParams& params : {fisheye, wide, DistortedCamera(), SmallCamera()}) {
+    const Camera camera(params);
+    for (const int rows : {params.height, 8, 1}) {
+      const RasterViews views = MakeRasterViews(camera, rows, 0.0, 4096);
+      EXPECT_EQ(views.one_face, params.fx > 30);
+      int checked = 0;
+      for (const RasterStrip& strip : views.strips) {
+        for (int y = strip.begin; y < strip.end; ++y) {
+          for (int k = 0; k < 5 * params.width; ++k) {
+            const float u = static_cast<float>(k) / 5 - 0.4f,
+                        v = static_cast<float>(y) - 0.4f + 0.2f * static_cast<float>(k % 5);
+            const glm::vec3 ray = camera.Ray(u, v);
+            const int face = views.one_face ? 0 : FaceOf(ray);
+            const glm::vec3 d = FaceFromCamera(face) * ray;
+            ASSERT_GT(d.z, 0);
+            const auto view = std::find_if(strip.views.begin(), strip.views.end(),
+                                           [&](const RasterView& w) { return w.face == face; });
+            ASSERT_NE(view, strip.views.end()) << u << ", " << v << ": face " << face;
+            const glm::vec2 at = (glm::vec2(d.x / d.z, d.y / d.z) - view->low) / view->texel;
+            ASSERT_TRUE(at.x >= 0 && at.y >= 0 && at.x <= static_cast<float>(view->width) &&
+                        at.y <= static_cast<float>(view->height))
+                << u << ", " << v << ": face " << face << " at " << at.x << ", " << at.y << " of " << view->width
+                << " x " << view->height;
+            ++checked;
+          }
+        }
+      }
+      EXPECT_EQ(checked, 5 * params.width * params.height);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sim::test
