@@ -137,7 +137,8 @@ void ShadowMaps::DrawLight(const RasterScene& scene, const Program& triangles, c
     DrawDepth(gl_, scene, triangles, glm::vec3(0.0f), glm::transpose(clip), maps, first, side);
     return;
   }
-  const float border = 1.0f + 4.0f / static_cast<float>(side);  // as the shader has it: no comparison lacks a neighbour
+  const float border =
+      1.0f + 16.0f / static_cast<float>(side);  // as the shader has it: no comparison lacks a neighbour
   for (int face = 0; face < kFaceCount; ++face) {
     const glm::mat4 clip = ClipFromView(glm::vec2(-border), glm::vec2(border)) * glm::mat4(FaceFromCamera(face));
     DrawDepth(gl_, scene, triangles, glm::vec3(light.place), clip, maps, first + face, side);

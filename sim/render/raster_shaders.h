@@ -50,11 +50,16 @@ uniform sampler2D rays;        // in C, of the corners of the pixels
 uniform isampler2D numbers;    // the view
 uniform int view_face;
 uniform bool only_own_face;    // other rays belong to other views
+uniform bool exact;            // every ray goes through the middle of a texel
 uniform vec2 view_low, view_texel;  // tangents: of its corner, and what a texel is wide
 uniform ivec2 view_size;
 uniform vec2 jitter;           // of the ray, in pixels, from the middle
 uniform vec2 lens;             // the point of the lens, in C
 uniform float inverse_focus;
+uniform mat3 rotation;         // R_WC
+uniform vec3 origin;           // of the rays, in W
+uniform samplerBuffer triangles;
+uniform int texels_per_triangle;
 
 struct PixelRay {
   vec3 ray, du, dv;  // in C; its derivatives by the pixel
@@ -73,29 +78,63 @@ PixelRay RayOfPixel(ivec2 pixel) {
 
 vec3 ThroughLens(vec3 ray) { return vec3(ray.xy - lens * (ray.z * inverse_focus), ray.z); }
 
-// The number of the triangle; -1: none.
-int TriangleOn(vec3 ray) {
+// Where a ray from `origin` meets a triangle's plane: u, v of Embree, and how far along d (Moeller and Trumbore 1997).
+vec3 Meet(int triangle, vec3 d) {
+  int first = triangle * texels_per_triangle;
+  vec3 du = texelFetch(triangles, first + 1).xyz, dv = texelFetch(triangles, first + 2).xyz;
+  vec3 from = origin - texelFetch(triangles, first).xyz, p = cross(d, dv), q = cross(from, du);
+  float determinant = dot(du, p);
+  return determinant == 0.0 ? vec3(0.0, 0.0, -1.0) : vec3(dot(from, p), dot(d, q), dot(dv, q)) / determinant;
+}
+
+int NumberAt(ivec2 at) { return texelFetch(numbers, clamp(at, ivec2(0), view_size - 1), 0).x - 1; }
+
+// The number of the triangle that a ray meets, d in W; -1: none. A pinhole's rays go through the middles of the texels;
+// any other ray meets the nearest of the triangles in the four texels around it.
+int TriangleOn(vec3 ray, vec3 d) {
   if (only_own_face && FaceOf(ray) != view_face) discard;
   vec3 v = InFace(ray, view_face);
-  ivec2 at = ivec2(floor((v.xy / v.z - view_low) / view_texel));
-  return texelFetch(numbers, clamp(at, ivec2(0), view_size - 1), 0).x - 1;
+  vec2 at = (v.xy / v.z - view_low) / view_texel;
+  int nearest = NumberAt(ivec2(floor(at)));
+  if (exact) return nearest;
+  ivec2 corner = ivec2(floor(at - 0.5));
+  int around[4] = int[4](NumberAt(corner), NumberAt(corner + ivec2(1, 0)), NumberAt(corner + ivec2(0, 1)),
+                         NumberAt(corner + ivec2(1, 1)));
+  if (around[0] == nearest && around[1] == nearest && around[2] == nearest && around[3] == nearest) return nearest;
+  int found = -1;
+  bool is_border = false;  // of all that is
+  float distance = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    if (around[i] < 0) {
+      is_border = true;
+      continue;
+    }
+    vec3 meet = Meet(around[i], d);
+    bool inside = meet.z > 0.0 && min(meet.x, meet.y) >= -1e-5 && meet.x + meet.y <= 1.0 + 1e-5;
+    if (inside && (found < 0 || meet.z < distance)) {
+      found = around[i];
+      distance = meet.z;
+    }
+  }
+  return found >= 0 ? found : (is_border ? -1 : nearest);
 }
 )";
 
 inline const std::string kSeenFragment = kGlslVersion + kLookUp + R"(
 layout(location = 0) out int seen;
-void main() { seen = TriangleOn(RayOfPixel(ivec2(gl_FragCoord.xy)).ray) + 1; }
+void main() {
+  vec3 ray = RayOfPixel(ivec2(gl_FragCoord.xy)).ray;
+  seen = TriangleOn(ray, rotation * ray) + 1;
+}
 )";
 
 // Light: sim/render/ray_tracer.h has the model, raster_scene.h and raster_light.h the tables.
 inline const std::string kShadeFragment = kGlslVersion + kLookUp + R"(
-uniform mat3 rotation;  // R_WC
-uniform vec3 origin;    // of the ray, in W
-uniform float share;    // side of the ray's part of the pixel
-uniform samplerBuffer triangles, materials, lights;
+uniform float share;  // side of the ray's part of the pixel
+uniform samplerBuffer materials, lights;
 uniform isamplerBuffer levels;
 uniform usamplerBuffer texels;
-uniform int texels_per_triangle, first_light, light_count;
+uniform int first_light, light_count;
 uniform vec3 ambient, background;
 uniform bool shadows;
 uniform sampler2DArrayShadow lasting_shadows, sample_shadows;
@@ -133,12 +172,11 @@ float Seen(int light, int layer, int kind, vec3 at, vec3 normal, vec3 towards, f
     return texture(lasting_shadows, vec4(dot(r0, p), dot(r1, p), float(layer), dot(r2, p) + 1e-5));
   }
   float pixels = kind == 1 ? float(textureSize(lasting_shadows, 0).x) : float(textureSize(sample_shadows, 0).x);
-  vec3 s = abs(towards);
+  int face = FaceOf(-towards);
+  vec3 n = abs(InFace(normal, face)), s = abs(towards);
   float side = 2.0 * max(s.x, max(s.y, s.z)) / pixels;
-  vec3 d = normal * (side * (0.2 + 2.2 * sine)) - towards;
-  int face = FaceOf(d);
-  vec3 v = InFace(d, face);
-  vec4 look = vec4(0.5 + 0.5 * v.xy / (v.z * (1.0 + 4.0 / pixels)), float(layer + face), (1.0 + 1e-4) * NEAR / v.z);
+  vec3 v = InFace(normal * (side * (0.2 + 1.5 * (n.x + n.y))) - towards, face);
+  vec4 look = vec4(0.5 + 0.5 * v.xy / (v.z * (1.0 + 16.0 / pixels)), float(layer + face), (1.0 + 1e-4) * NEAR / v.z);
   return kind == 1 ? texture(lasting_shadows, look) : texture(sample_shadows, look);
 }
 
@@ -164,7 +202,8 @@ vec3 Light(vec3 at, vec3 geometric, vec3 normal) {
 void main() {
   PixelRay pixel = RayOfPixel(ivec2(gl_FragCoord.xy));
   vec3 ray = ThroughLens(pixel.ray);
-  int number = TriangleOn(ray);
+  vec3 d = rotation * ray;
+  int number = TriangleOn(ray, d);
   if (number < 0) {
     radiance = vec4(background, 1.0);
     return;
@@ -174,15 +213,11 @@ void main() {
   vec4 t3 = texelFetch(triangles, first + 3), t4 = texelFetch(triangles, first + 4), t5 = texelFetch(triangles, first + 5);
   vec4 t6 = texelFetch(triangles, first + 6);
 
-  // The triangle's plane on the ray (Moeller and Trumbore 1997), or the nearest place of the triangle where the view
-  // and the ray differ by a part of a texel.
-  vec3 d = rotation * ray, from = origin - t0.xyz;
-  vec3 p = cross(d, t2.xyz), q = cross(from, t1.xyz);
-  float determinant = dot(t1.xyz, p);
-  vec2 uv = determinant == 0.0 ? vec2(0.0) : max(vec2(dot(from, p), dot(d, q)) / determinant, 0.0);
+  // Or the nearest place of the triangle, where the view and the ray differ by a part of a texel.
+  vec2 uv = max(Meet(number, d).xy, 0.0);
   uv /= max(1.0, uv.x + uv.y);
   vec3 offset = uv.x * t1.xyz + uv.y * t2.xyz;
-  float distance = dot(offset - from, d) / dot(d, d);
+  float distance = dot(t0.xyz + offset - origin, d) / dot(d, d);
 
   vec3 g = cross(t1.xyz, t2.xyz);
   float g_length = length(g), along = dot(g, d);

@@ -27,7 +27,11 @@ glm::vec2 Tangents(const glm::vec3& ray, int face) {
 // What of a face some rays see.
 struct Box {
   glm::vec2 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
-  void Add(const glm::vec2& p) { low = glm::min(low, p), high = glm::max(high, p); }
+  glm::ivec2 first{1 << 30}, last{-1};  // corners of pixels
+  void Add(const glm::vec2& p, const glm::ivec2& corner) {
+    low = glm::min(low, p), high = glm::max(high, p);
+    first = glm::min(first, corner), last = glm::max(last, corner);
+  }
   bool empty() const { return !(low.x <= high.x); }
 };
 
@@ -67,7 +71,7 @@ class Corners {
         for (int face = 0; face < (views_.one_face ? 1 : kFaceCount); ++face) {
           const glm::vec3 v = FaceFromCamera(face) * At(i, j);
           const bool is_near = v.z > 0 && std::max(std::abs(v.x), std::abs(v.y)) <= (1 + reach) * v.z;
-          if (views_.one_face || is_near) boxes[static_cast<std::size_t>(face)].Add({v.x / v.z, v.y / v.z});
+          if (views_.one_face || is_near) boxes[static_cast<std::size_t>(face)].Add({v.x / v.z, v.y / v.z}, {i, j});
         }
       }
     }
@@ -121,8 +125,8 @@ RasterViews MakeRasterViews(const Camera& camera, int strip_rows, double margin,
     strip.end = std::min(begin + strip_rows, height);
     if (out.exact) {
       const CameraParams& p = camera.params();
-      strip.views.push_back(
-          {0, {(-0.5 - p.cx) / p.fx, (begin - 0.5 - p.cy) / p.fy}, {1 / p.fx, 1 / p.fy}, width, strip.end - begin});
+      const glm::vec2 low((-0.5 - p.cx) / p.fx, (begin - 0.5 - p.cy) / p.fy), texel_side(1 / p.fx, 1 / p.fy);
+      strip.views.push_back({0, low, texel_side, width, strip.end - begin, 0, width, begin, strip.end});
     } else {
       const std::array<Box, kFaceCount> boxes = corners.Boxes(strip.begin, strip.end, reach);
       for (int face = 0; face < kFaceCount; ++face) {
@@ -137,7 +141,9 @@ RasterViews MakeRasterViews(const Camera& camera, int strip_rows, double margin,
               " texels, half as wide as its narrowest pixel; at most " + std::to_string(longest_side) +
               " a side and 2^26 in all are possible. The ray tracer has no such limit");
         }
-        strip.views.push_back({face, low, glm::vec2(texel), static_cast<int>(size.x), static_cast<int>(size.y)});
+        strip.views.push_back({face, low, glm::vec2(texel), static_cast<int>(size.x), static_cast<int>(size.y),
+                               std::max(0, box.first.x - 1), std::min(width, box.last.x + 1),
+                               std::max(begin, box.first.y - 1), std::min(strip.end, box.last.y + 1)});
       }
     }
     for (const RasterView& view : strip.views) {

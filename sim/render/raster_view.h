@@ -23,6 +23,7 @@ struct RasterView {
   int face = 0;
   glm::vec2 low{0.0f}, texel{1.0f};  // tangents: of the outer corner of the first texel, and the side of one
   int width = 0, height = 0;         // [texel]
+  int x_begin = 0, x_end = 0, y_begin = 0, y_end = 0;  // the camera's pixels that may look into it
 };
 
 // The views of some rows of a picture.

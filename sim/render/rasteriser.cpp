@@ -155,12 +155,10 @@ class Drawing {
     gl_.ClearNamedFramebufferfv(target.id(), GL_COLOR, 0, &nothing[0]);
 
     shade_.Use();
-    shade_.Set("triangles", Bind(2, scene_.triangles()));
     shade_.Set("materials", Bind(3, scene_.materials()));
     shade_.Set("levels", Bind(4, scene_.levels()));
     shade_.Set("texels", Bind(5, scene_.texels()));
     shade_.Set("lights", Bind(6, light_table.texture.id()));
-    shade_.Set("texels_per_triangle", scene_.texels_per_triangle());
     shade_.Set("light_count", static_cast<int>(lights[0].size()));
     shade_.Set("ambient", ambient_);
     shade_.Set("background", background_);
@@ -180,15 +178,13 @@ class Drawing {
           const RasterView view = Moved(still, jitter[k], -lens_C / static_cast<float>(exposure.focus_m));
           DrawView(view, glm::mat3(rotation), origin);
           shade_.Use();
-          SetLookUp(shade_, view, jitter[k], lens_C);
-          shade_.Set("rotation", glm::mat3(rotation));
-          shade_.Set("origin", origin);
+          SetLookUp(shade_, view, glm::mat3(rotation), origin, jitter[k], lens_C);
           shade_.Set("first_light", 6 * i * static_cast<int>(lights[0].size()));
           shade_.Set("lasting_shadows", Bind(7, shadows_.lasting()));
           shade_.Set("sample_shadows", Bind(8, shadows_.of_sample(k)));
           gl_.Enable(GL_BLEND);
           gl_.BlendFunc(GL_ONE, GL_ONE);
-          DrawRows(target, camera, strip);
+          DrawPixels(target, camera, view);
           gl_.Disable(GL_BLEND);
         }
       }
@@ -206,12 +202,12 @@ class Drawing {
     gl_.Scissor(0, 0, camera.width(), camera.height());
     const GLint none[4] = {};
     gl_.ClearNamedFramebufferiv(target.id(), GL_COLOR, 0, none);
-    const RasterStrip& all = views_.strips[0];
-    for (const RasterView& view : all.views) {
-      DrawView(view, glm::mat3(glm::mat3_cast(pose.q_WC)), glm::vec3(pose.p_WC));
+    for (const RasterView& view : views_.strips[0].views) {
+      const glm::mat3 rotation(glm::mat3_cast(pose.q_WC));
+      DrawView(view, rotation, glm::vec3(pose.p_WC));
       seen_.Use();
-      SetLookUp(seen_, view, glm::vec2(0.0f), glm::vec2(0.0f));
-      DrawRows(target, camera, all);
+      SetLookUp(seen_, view, rotation, glm::vec3(pose.p_WC), glm::vec2(0.0f), glm::vec2(0.0f));
+      DrawPixels(target, camera, view);
     }
     std::vector<GLint> out(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height()));
     gl_.PixelStorei(GL_PACK_ALIGNMENT, 4);
@@ -293,11 +289,17 @@ class Drawing {
     scene_.Draw();
   }
 
-  void SetLookUp(const Program& program, const RasterView& view, const glm::vec2& jitter, const glm::vec2& lens) const {
+  void SetLookUp(const Program& program, const RasterView& view, const glm::mat3& rotation, const glm::vec3& origin,
+                 const glm::vec2& jitter, const glm::vec2& lens) const {
     program.Set("rays", Bind(0, rays_.id()));
     program.Set("numbers", Bind(1, view_numbers_.id()));
     program.Set("view_face", view.face);
     program.Set("only_own_face", views_.one_face ? 0 : 1);
+    program.Set("exact", views_.exact ? 1 : 0);
+    program.Set("triangles", Bind(2, scene_.triangles()));
+    program.Set("texels_per_triangle", scene_.texels_per_triangle());
+    program.Set("rotation", rotation);
+    program.Set("origin", origin);
     program.Set("view_low", view.low);
     program.Set("view_texel", view.texel);
     program.Set("view_size", glm::ivec2(view.width, view.height));
@@ -305,10 +307,10 @@ class Drawing {
     program.Set("lens", lens);
   }
 
-  void DrawRows(const GlObject& target, const Camera& camera, const RasterStrip& strip) const {
+  void DrawPixels(const GlObject& target, const Camera& camera, const RasterView& view) const {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, target.id());
     gl_.Viewport(0, 0, camera.width(), camera.height());
-    gl_.Scissor(0, strip.begin, camera.width(), strip.end - strip.begin);
+    gl_.Scissor(view.x_begin, view.y_begin, view.x_end - view.x_begin, view.y_end - view.y_begin);
     gl_.Disable(GL_DEPTH_TEST);
     gl_.BindVertexArray(screen_array_.id());
     gl_.DrawArrays(GL_TRIANGLES, 0, 3);

@@ -57,33 +57,17 @@ CameraParams FisheyeParams() {
 
 using Values = std::vector<float>;
 
-// Where a picture of an affine function of the pixel would have second difference 0 along each of four lines through
-// the pixel, 1 / Z of a plane is one: more than a thousandth is an edge or a crease there, or the end of a thing.
-// `reach`: that far away an edge counts as well [px].
-std::vector<bool> IsEdge(const Values& depth, int width, int height, int reach) {
-  const auto at = [&](int x, int y) { return depth[static_cast<std::size_t>(y * width + x)]; };
-  std::vector<bool> bends(depth.size()), edge(depth.size());
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      bool bent = x == 0 || y == 0 || x + 1 == width || y + 1 == height;
-      for (const auto& [dx, dy] : {std::pair(1, 0), {0, 1}, {1, 1}, {1, -1}}) {
-        if (bent) break;
-        const double a = at(x - dx, y - dy), b = at(x, y), c = at(x + dx, y + dy);
-        bent = a == 0 || b == 0 || c == 0 || !(std::abs(b / a + b / c - 2) < 1e-3);
-      }
-      bends[static_cast<std::size_t>(y * width + x)] = bent;
-    }
+// 1 / Z of a plane is an affine function of the pinhole's pixel: its second difference is 0 along each of the four
+// lines through a pixel. Where it is more than a thousandth of it, or something is not seen, there is an edge, a crease
+// or a bend, or the lens bends the line.
+bool IsEdge(const Values& depth, int width, int height, int x, int y) {
+  const auto at = [&](int u, int v) { return double{depth[static_cast<std::size_t>(v * width + u)]}; };
+  if (x == 0 || y == 0 || x + 1 == width || y + 1 == height) return true;
+  for (const auto& [dx, dy] : {std::pair(1, 0), {0, 1}, {1, 1}, {1, -1}}) {
+    const double a = at(x - dx, y - dy), b = at(x, y), c = at(x + dx, y + dy);
+    if (a == 0 || b == 0 || c == 0 || !(std::abs(b / a + b / c - 2) < 1e-3)) return true;
   }
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      for (int v = std::max(0, y - reach); v <= std::min(height - 1, y + reach); ++v) {
-        for (int u = std::max(0, x - reach); u <= std::min(width - 1, x + reach); ++u) {
-          if (bends[static_cast<std::size_t>(v * width + u)]) edge[static_cast<std::size_t>(y * width + x)] = true;
-        }
-      }
-    }
-  }
-  return edge;
+  return false;
 }
 
 // Where a failed test leaves its pictures: white is `white`.
@@ -106,15 +90,16 @@ struct DepthComparison {
   Values difference;      // relative
 };
 
-DepthComparison Compare(const Values& a, const Values& b, int width, int height, int reach) {
+// Away from the edges of both.
+DepthComparison Compare(const Values& a, const Values& b, int width, int height) {
   DepthComparison out;
-  const std::vector<bool> edge = IsEdge(a, width, height, reach);
   const double each = 1.0 / static_cast<double>(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double relative = a[i] == b[i] ? 0.0 : a[i] == 0 ? 1.0 : std::abs(double{b[i]} / a[i] - 1.0);
     out.difference.push_back(static_cast<float>(relative));
     if (relative > 1e-3) out.beyond += each;
-    if (edge[i]) {
+    const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
+    if (IsEdge(a, width, height, x, y) || IsEdge(b, width, height, x, y)) {
       out.left_out += each;
     } else {
       out.worst = std::max(out.worst, relative);
@@ -147,13 +132,13 @@ double Psnr(const Values& a, const Values& b) {
 
 class RasterAgreement : public EngineTest {
  protected:
-  void ExpectDepth(const CameraParams& params, int reach, double tolerance, double most_left_out, double most_beyond) {
+  void ExpectDepth(const CameraParams& params, double tolerance, double most_left_out, double most_beyond) {
     const Camera camera(params);
     const auto traced = MakeRayTracer(RoomScene()), drawn = MakeEngine(GetParam(), RoomScene());
     const auto shifted = MakeEngine(GetParam(), Moved(RoomScene(), {0, 0, 0.002f}));
     for (std::size_t k = 0; k < kPoses.size(); ++k) {
       const Values a = DepthOf(*traced, camera, kPoses[k]), b = DepthOf(*drawn, camera, kPoses[k]);
-      const DepthComparison both = Compare(a, b, params.width, params.height, reach);
+      const DepthComparison both = Compare(a, b, params.width, params.height);
       EXPECT_LT(both.worst, tolerance);
       EXPECT_LT(both.left_out, most_left_out);
       EXPECT_LT(both.beyond, most_beyond);
@@ -168,8 +153,26 @@ class RasterAgreement : public EngineTest {
         return;
       }
       // The control: everything 2 mm further back.
-      EXPECT_GT(Compare(a, DepthOf(*shifted, camera, kPoses[k]), params.width, params.height, reach).worst, tolerance);
+      EXPECT_GT(Compare(a, DepthOf(*shifted, camera, kPoses[k]), params.width, params.height).worst, tolerance);
     }
+  }
+
+  void ExpectPicture(const CameraParams& params, double least) {
+    const Camera camera(params);
+    const SteadyMotion still(kPoses[0]);
+    const double psnr = PictureDistance(RoomScene(), camera, still, Exposure{}, Centred(), "sharp", least);
+    EXPECT_GT(psnr, least);
+    RecordProperty("psnr", std::to_string(psnr));
+    // Controls: everything 2 mm aside; the pictures upside down.
+    const double aside =
+        PictureDistance(Moved(RoomScene(), {0.002f, 0, 0}), camera, still, Exposure{}, Centred(), "", 0);
+    EXPECT_LT(aside, least - 3);
+    RecordProperty("aside", std::to_string(aside));
+    Scene flipped = RoomScene();
+    for (Mesh& mesh : flipped.meshes) {
+      for (glm::vec2& uv : mesh.uvs) uv.y = -uv.y;
+    }
+    EXPECT_LT(PictureDistance(flipped, camera, still, Exposure{}, Centred(), "", 0), 30);
   }
 
   // The picture of `exposure` along `motion`, both ways, and how far apart they are [dB].
@@ -194,29 +197,15 @@ class RasterAgreement : public EngineTest {
 
 INSTANTIATE_TEST_SUITE_P(Engine, RasterAgreement, testing::Values(kEgl, kOsmesa), EngineName);
 
-TEST_P(RasterAgreement, DepthOfAPinhole) { ExpectDepth(Pinhole(), 0, 1e-5, 0.12, 0.002); }
-
-// Edges are off by a quarter of a pixel at most, so that a pixel beside one may see the other thing.
-TEST_P(RasterAgreement, DepthThroughADistortedLens) { ExpectDepth(Distorted(), 1, 1e-5, 0.3, 0.02); }
-TEST_P(RasterAgreement, DepthThroughAFisheye) { ExpectDepth(FisheyeParams(), 1, 1e-5, 0.4, 0.03); }
+// The last number is the share of all pixels, those on edges with them, that may differ by more than a thousandth.
+TEST_P(RasterAgreement, DepthOfAPinhole) { ExpectDepth(Pinhole(), 1e-5, 0.45, 1e-4); }
+TEST_P(RasterAgreement, DepthThroughADistortedLens) { ExpectDepth(Distorted(), 1e-3, 0.45, 5e-3); }
+TEST_P(RasterAgreement, DepthThroughAFisheye) { ExpectDepth(FisheyeParams(), 1e-3, 0.65, 5e-3); }
 
 // One ray through the middle of each pixel: nothing but shadows and what lies on an edge may differ.
-TEST_P(RasterAgreement, SharpPicture) {
-  for (const CameraParams& params : {Pinhole(), Distorted(), FisheyeParams()}) {
-    const Camera camera(params);
-    const SteadyMotion still(kPoses[0]);
-    const double psnr = PictureDistance(RoomScene(), camera, still, Exposure{}, Centred(), "sharp", 42);
-    EXPECT_GT(psnr, 42);
-    RecordProperty("psnr", std::to_string(psnr));
-    // Controls: 2 mm aside; pictures upside down.
-    EXPECT_LT(PictureDistance(Moved(RoomScene(), {0.002f, 0, 0}), camera, still, Exposure{}, Centred(), "", 0), 40);
-    Scene flipped = RoomScene();
-    for (Mesh& mesh : flipped.meshes) {
-      for (glm::vec2& uv : mesh.uvs) uv.y = -uv.y;
-    }
-    EXPECT_LT(PictureDistance(flipped, camera, still, Exposure{}, Centred(), "", 0), 30);
-  }
-}
+TEST_P(RasterAgreement, SharpPicture) { ExpectPicture(Pinhole(), 42); }
+TEST_P(RasterAgreement, SharpPictureThroughADistortedLens) { ExpectPicture(Distorted(), 35); }
+TEST_P(RasterAgreement, SharpPictureThroughAFisheye) { ExpectPicture(FisheyeParams(), 35); }
 
 // Blur by motion, defocus and a rolling shutter, with samples enough that the ray tracer's grain does not count.
 TEST_P(RasterAgreement, BlurredPicture) {
@@ -233,9 +222,10 @@ TEST_P(RasterAgreement, BlurredPicture) {
   lens.aperture_m = 0.04, lens.focus_m = 1.5;
   Exposure rolling = blur;
   rolling.row_delay_s = 0.02 / 119;
-  for (const auto& [exposure, name] : {std::pair(blur, "blur"), {lens, "lens"}, {rolling, "rolling"}}) {
-    const double psnr = PictureDistance(RoomScene(), camera, motion, exposure, {}, name, 42);
-    EXPECT_GT(psnr, 42) << name;
+  for (const auto& [exposure, name, least] :
+       {std::tuple(blur, "blur", 42.0), {lens, "lens", 38.0}, {rolling, "rolling", 42.0}}) {
+    const double psnr = PictureDistance(RoomScene(), camera, motion, exposure, {}, name, least);
+    EXPECT_GT(psnr, least) << name;
     RecordProperty(name, std::to_string(psnr));
   }
   // The control: the exposure a tenth of its length late.
@@ -244,7 +234,9 @@ TEST_P(RasterAgreement, BlurredPicture) {
   RadianceImage in_time, too_late;
   MakeRayTracer(RoomScene(), {})->Expose(camera, motion, blur, 1, in_time);
   MakeEngine(GetParam(), RoomScene(), {})->Expose(camera, motion, late, 1, too_late);
-  EXPECT_LT(Psnr(Coded(in_time), Coded(too_late)), 40);
+  const double control = Psnr(Coded(in_time), Coded(too_late));
+  EXPECT_LT(control, 40);
+  RecordProperty("control", std::to_string(control));
 }
 
 }  // namespace
