@@ -20,8 +20,8 @@ constexpr int kMaxLog2Coarse = 8;
 constexpr std::size_t kMaxSamples = std::size_t{1} << 28;
 constexpr double kAgree = 0.02;  // relative difference of lamps' light that is interpolated over
 
-// The place and normal of a sample, rounded: what has the same key has the same random numbers, and is the same sample unless
-// something is in between (the edge of a floor that goes on behind a wall): then they differ in `other`.
+// The place and normal of a sample, rounded: what has the same key has the same random numbers, and is the same sample
+// unless something is in between (the edge of a floor that goes on behind a wall): then they differ in `other`.
 struct SampleKey {
   std::int64_t x, y, z;
   std::int32_t nx, ny, nz;
@@ -39,7 +39,9 @@ std::uint64_t Mix(std::uint64_t h, std::uint64_t word) {  // SplitMix64's finali
 struct HashKey {
   std::uint64_t operator()(const SampleKey& k) const {
     std::uint64_t h = 0;
-    for (const std::int64_t w : {k.x, k.y, k.z, std::int64_t{k.nx}, std::int64_t{k.ny}, std::int64_t{k.nz}, std::int64_t{k.other}}) h = Mix(h, static_cast<std::uint64_t>(w));
+    for (const std::int64_t w :
+         {k.x, k.y, k.z, std::int64_t{k.nx}, std::int64_t{k.ny}, std::int64_t{k.nz}, std::int64_t{k.other}})
+      h = Mix(h, static_cast<std::uint64_t>(w));
     return h;
   }
 };
@@ -58,7 +60,11 @@ struct SideLight {
 class Baker {
  public:
   Baker(const Scene& scene, const RayScene& rays, LightMode mode, const BakeParams& params)
-      : rays_(rays), tracer_(scene, rays), params_(params), with_lamps_(mode == LightMode::baked), layers_(tracer_.layers().size()) {
+      : rays_(rays),
+        tracer_(scene, rays),
+        params_(params),
+        with_lamps_(mode == LightMode::baked),
+        layers_(tracer_.layers().size()) {
     double size = 0;
     for (std::uint32_t t = 0; t < rays.triangle_count(); ++t) {
       for (int c = 0; c < 3; ++c) {
@@ -78,7 +84,8 @@ class Baker {
       coarse_log2_[t] = Log2Resolution(t, params_.spacing_m, kMaxLog2Coarse);
       first_[t] = count;
       count += 2 * LatticeSize(std::size_t{1} << coarse_log2_[t]);
-      if (count > kMaxSamples) throw std::invalid_argument("baked light: more than 2^28 samples are needed; make render.bake.spacing larger");
+      if (count > kMaxSamples)
+        throw std::invalid_argument("baked light: more than 2^28 samples are needed; make render.bake.spacing larger");
     }
     FindSamples(count);
     Compute();
@@ -87,13 +94,15 @@ class Baker {
     baked.layers = tracer_.layers();
     baked.resolutions.resize(triangles);
     std::vector<SideLight> sides(2 * std::size_t{triangles});
-    tbb::parallel_for(std::size_t{0}, sides.size(), [&](std::size_t i) { sides[i] = MakeSide(static_cast<std::uint32_t>(i / 2), i % 2 == 1); });
+    tbb::parallel_for(std::size_t{0}, sides.size(),
+                      [&](std::size_t i) { sides[i] = MakeSide(static_cast<std::uint32_t>(i / 2), i % 2 == 1); });
     count = 0;
     for (std::size_t i = 0; i < sides.size(); ++i) {
       TriangleResolution& r = baked.resolutions[i / 2];
       (i % 2 == 0 ? r.log2_front : r.log2_back) = static_cast<std::uint8_t>(sides[i].log2);
       count += sides[i].values.size() / layers_;
-      if (count > kMaxSamples) throw std::invalid_argument("baked light: more than 2^28 samples are needed; make render.bake.finest larger");
+      if (count > kMaxSamples)
+        throw std::invalid_argument("baked light: more than 2^28 samples are needed; make render.bake.finest larger");
     }
     baked.samples.reserve(count * layers_);
     for (std::size_t layer = 0; layer < layers_; ++layer) {
@@ -108,7 +117,9 @@ class Baker {
  private:
   int Log2Resolution(std::uint32_t t, double spacing_m, int most) const {
     double longest = 0;
-    for (int c = 0; c < 3; ++c) longest = std::max(longest, glm::distance(glm::dvec3(rays_.Corner(t, c)), glm::dvec3(rays_.Corner(t, (c + 1) % 3))));
+    for (int c = 0; c < 3; ++c)
+      longest =
+          std::max(longest, glm::distance(glm::dvec3(rays_.Corner(t, c)), glm::dvec3(rays_.Corner(t, (c + 1) % 3))));
     int log2 = 0;
     while (log2 < most && longest / static_cast<double>(1 << log2) > spacing_m * (1 + 1e-6)) ++log2;
     return log2;
@@ -125,7 +136,8 @@ class Baker {
   }
 
   Sample At(std::uint32_t t, bool back, int log2, std::size_t i, std::size_t j) const {
-    const double r = static_cast<double>(std::size_t{1} << log2), u = static_cast<double>(i) / r, v = static_cast<double>(j) / r;
+    const double r = static_cast<double>(std::size_t{1} << log2), u = static_cast<double>(i) / r,
+                 v = static_cast<double>(j) / r;
     const glm::dvec3 a(rays_.Corner(t, 0)), b(rays_.Corner(t, 1)), c(rays_.Corner(t, 2));
     const glm::dvec3 place = (1 - u - v) * a + u * b + v * c, cross = glm::cross(b - a, c - a);
     const double area = glm::length(cross);
@@ -140,8 +152,13 @@ class Baker {
     sample.point.position = place + (0.02 / r) * ((a + b + c) / 3.0 - place);
     const auto whole = [](double x) { return static_cast<std::int64_t>(std::floor(x + 0.5)); };
     const glm::dvec3& n = sample.point.normal;
-    sample.key = {whole(place.x / step_), whole(place.y / step_), whole(place.z / step_), static_cast<std::int32_t>(whole(n.x * 512)),
-                  static_cast<std::int32_t>(whole(n.y * 512)), static_cast<std::int32_t>(whole(n.z * 512)), 0};
+    sample.key = {whole(place.x / step_),
+                  whole(place.y / step_),
+                  whole(place.z / step_),
+                  static_cast<std::int32_t>(whole(n.x * 512)),
+                  static_cast<std::int32_t>(whole(n.y * 512)),
+                  static_cast<std::int32_t>(whole(n.z * 512)),
+                  0};
     return sample;
   }
 
@@ -183,7 +200,8 @@ class Baker {
     SideLight indirect = Coarse(indirect_, t, back);
     if (with_lamps_) {
       SideLight lamps = Refine(Coarse(lamps_, t, back), t, back);
-      while (indirect.log2 < lamps.log2) indirect = Finer(indirect, [](std::size_t, std::size_t, const auto&, glm::vec3*) { return false; });
+      while (indirect.log2 < lamps.log2)
+        indirect = Finer(indirect, [](std::size_t, std::size_t, const auto&, glm::vec3*) { return false; });
       for (std::size_t k = 0; k < indirect.values.size(); ++k) indirect.values[k] += lamps.values[k];
     }
     return Coarsest(indirect);
@@ -193,23 +211,26 @@ class Baker {
     const std::size_t n = LatticeSize(std::size_t{1} << coarse_log2_[t]);
     SideLight side{coarse_log2_[t], std::vector<glm::vec3>(n * layers_)};
     for (std::size_t layer = 0; layer < layers_; ++layer) {
-      for (std::size_t k = 0; k < n; ++k) side.values[layer * n + k] = from[std::size_t{index_[first_[t] + (back ? n : 0) + k]} * layers_ + layer];
+      for (std::size_t k = 0; k < n; ++k)
+        side.values[layer * n + k] = from[std::size_t{index_[first_[t] + (back ? n : 0) + k]} * layers_ + layer];
     }
     return side;
   }
 
   SideLight Refine(SideLight side, std::uint32_t t, bool back) const {
-    const int all = Log2Resolution(t, params_.spacing_m / 4, kMaxLog2Resolution), most = Log2Resolution(t, params_.finest_m, kMaxLog2Resolution);
+    const int all = Log2Resolution(t, params_.spacing_m / 4, kMaxLog2Resolution),
+              most = Log2Resolution(t, params_.finest_m, kMaxLog2Resolution);
     while (side.log2 < most) {
       const bool everywhere = side.log2 < all;
       bool any = false;
       const int log2 = side.log2 + 1;
-      side = Finer(side, [&](std::size_t i, std::size_t j, const std::vector<const glm::vec3*>& neighbours, glm::vec3* light) {
-        if (!everywhere && Agree(neighbours, side.values.size() / layers_)) return false;
-        any = true;
-        Lamps(At(t, back, log2, i, j), light);
-        return true;
-      });
+      side = Finer(
+          side, [&](std::size_t i, std::size_t j, const std::vector<const glm::vec3*>& neighbours, glm::vec3* light) {
+            if (!everywhere && Agree(neighbours, side.values.size() / layers_)) return false;
+            any = true;
+            Lamps(At(t, back, log2, i, j), light);
+            return true;
+          });
       if (!any) break;
     }
     return side;
@@ -229,8 +250,9 @@ class Baker {
     return true;
   }
 
-  // The lattice of twice the resolution. A new sample lies in the middle of a side of the old cells: `compute` (i, j, the two ends
-  // and the corners opposite to them, out: by layer) says true when it has computed it; else it is the mean of the ends.
+  // The lattice of twice the resolution. A new sample lies in the middle of a side of the old cells: `compute` (i, j,
+  // the two ends and the corners opposite to them, out: by layer) says true when it has computed it; else it is the
+  // mean of the ends.
   template <class Function>
   SideLight Finer(const SideLight& old, const Function& compute) const {
     const std::size_t r = std::size_t{1} << old.log2, n = LatticeSize(r), fine_n = LatticeSize(2 * r);
@@ -243,7 +265,8 @@ class Baker {
         neighbours.clear();
         const auto add = [&](std::ptrdiff_t a, std::ptrdiff_t b) {
           if (a >= 0 && b >= 0 && a + b <= static_cast<std::ptrdiff_t>(r)) {
-            neighbours.push_back(&old.values[LatticeIndex(r, static_cast<std::size_t>(a), static_cast<std::size_t>(b))]);
+            neighbours.push_back(
+                &old.values[LatticeIndex(r, static_cast<std::size_t>(a), static_cast<std::size_t>(b))]);
           }
         };
         const auto a = static_cast<std::ptrdiff_t>(i / 2), b = static_cast<std::ptrdiff_t>(j / 2);
@@ -259,7 +282,9 @@ class Baker {
         const bool is_new = neighbours.size() > 1 && compute(i, j, neighbours, computed.data());
         for (std::size_t layer = 0; layer < layers_; ++layer) {
           const glm::vec3 first = neighbours[0][layer * n];
-          fine.values[layer * fine_n + k] = is_new ? computed[layer] : neighbours.size() > 1 ? 0.5f * (first + neighbours[1][layer * n]) : first;
+          fine.values[layer * fine_n + k] = is_new                  ? computed[layer]
+                                            : neighbours.size() > 1 ? 0.5f * (first + neighbours[1][layer * n])
+                                                                    : first;
         }
       }
     }
@@ -273,7 +298,8 @@ class Baker {
       if (side.values[k] != side.values[k / n * n]) return side;
     }
     SideLight small{0, {}};
-    for (std::size_t layer = 0; layer < layers_; ++layer) small.values.insert(small.values.end(), 3, side.values[layer * n]);
+    for (std::size_t layer = 0; layer < layers_; ++layer)
+      small.values.insert(small.values.end(), 3, side.values[layer * n]);
     return small;
   }
 
@@ -300,8 +326,10 @@ std::vector<std::string> Problems(const BakeParams& p) {
   const auto is_power = [](int n) { return n > 0 && std::has_single_bit(static_cast<unsigned>(n)); };
   require(p.spacing_m > 0 && std::isfinite(p.spacing_m), "spacing must be above 0");
   require(p.finest_m > 0 && p.finest_m <= p.spacing_m, "finest must be above 0 and not above spacing");
-  require(is_power(p.paths) && p.paths <= 1 << 20, "paths = " + std::to_string(p.paths) + " must be a power of two, at most 2^20");
-  require(is_power(p.lamp_rays) && p.lamp_rays <= 1 << 20, "lamp_rays = " + std::to_string(p.lamp_rays) + " must be a power of two, at most 2^20");
+  require(is_power(p.paths) && p.paths <= 1 << 20,
+          "paths = " + std::to_string(p.paths) + " must be a power of two, at most 2^20");
+  require(is_power(p.lamp_rays) && p.lamp_rays <= 1 << 20,
+          "lamp_rays = " + std::to_string(p.lamp_rays) + " must be a power of two, at most 2^20");
   return problems;
 }
 

@@ -26,12 +26,14 @@ class Hasher {
   void Bytes(const void* data, std::size_t size) { XXH3_128bits_update(state_.get(), data, size); }
   template <class T>
   void Value(const T& value) {
-    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, glm::vec3> || std::is_same_v<T, glm::dvec3>);
+    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, glm::vec3> ||
+                  std::is_same_v<T, glm::dvec3>);
     Bytes(&value, sizeof value);
   }
   template <class T>
   void Array(const std::vector<T>& values) {
-    static_assert(std::has_unique_object_representations_v<T> || std::is_same_v<T, glm::vec3> || std::is_same_v<T, glm::vec2> || std::is_same_v<T, glm::uvec3>);
+    static_assert(std::has_unique_object_representations_v<T> || std::is_same_v<T, glm::vec3> ||
+                  std::is_same_v<T, glm::vec2> || std::is_same_v<T, glm::uvec3>);
     Value(values.size());
     Bytes(values.data(), values.size() * sizeof(T));
   }
@@ -92,9 +94,11 @@ LightHash HashOfLight(const Scene& scene, LightMode mode, const BakeParams& para
   Hasher hasher;
   hasher.Value(kVersion);
   hasher.Value(mode);
-  hasher.Value(params.spacing_m), hasher.Value(params.finest_m), hasher.Value(params.paths), hasher.Value(params.lamp_rays);
+  hasher.Value(params.spacing_m), hasher.Value(params.finest_m), hasher.Value(params.paths),
+      hasher.Value(params.lamp_rays);
   for (const Mesh& mesh : scene.meshes) {
-    hasher.Array(mesh.positions), hasher.Array(mesh.normals), hasher.Array(mesh.uvs), hasher.Array(mesh.colors), hasher.Array(mesh.triangles);
+    hasher.Array(mesh.positions), hasher.Array(mesh.normals), hasher.Array(mesh.uvs), hasher.Array(mesh.colors),
+        hasher.Array(mesh.triangles);
     hasher.Value(mesh.material);
   }
   for (const Material& m : scene.materials) {
@@ -121,7 +125,8 @@ LightHash HashOfLight(const Scene& scene, LightMode mode, const BakeParams& para
 
 fs::path LightFile(const fs::path& folder, const LightHash& hash) {
   char name[40];
-  std::snprintf(name, sizeof name, "%016llx%016llx", static_cast<unsigned long long>(hash[0]), static_cast<unsigned long long>(hash[1]));
+  std::snprintf(name, sizeof name, "%016llx%016llx", static_cast<unsigned long long>(hash[0]),
+                static_cast<unsigned long long>(hash[1]));
   return folder / (std::string(name) + ".light");
 }
 
@@ -131,7 +136,9 @@ void WriteLight(const fs::path& file, const LightHash& hash, const BakedLight& l
   const fs::path temporary = file.string() + "." + std::to_string(getpid()) + ".part";
   {
     std::ofstream out(temporary, std::ios::binary);
-    const auto write = [&](const void* data, std::size_t size) { out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size)); };
+    const auto write = [&](const void* data, std::size_t size) {
+      out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+    };
     const Head head = MakeHead(hash, light);
     const LightHash checksum = Checksum(head, light);
     write(&head, sizeof head);
@@ -164,7 +171,8 @@ BakedLight ReadLight(const fs::path& file, const LightHash& hash) {
   const std::uint64_t size = fs::file_size(file);
   Head head{};
   read(&head, sizeof head);
-  if (std::memcmp(head.magic, kMagic.data(), kMagic.size()) != 0 || head.version != kVersion) throw bad("is not a file of baked light");
+  if (std::memcmp(head.magic, kMagic.data(), kMagic.size()) != 0 || head.version != kVersion)
+    throw bad("is not a file of baked light");
   if (head.hash[0] != hash[0] || head.hash[1] != hash[1]) throw bad("is the light of another world");
   const std::uint64_t rest = size - sizeof head - sizeof(LightHash);
   if (size < sizeof head + sizeof(LightHash) || head.triangles > rest || head.layers > rest || head.samples > rest ||

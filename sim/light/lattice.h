@@ -16,7 +16,8 @@ constexpr std::size_t LatticeIndex(std::size_t resolution, std::size_t i, std::s
   return j * (2 * resolution + 3 - j) / 2 + i;
 }
 
-// How finely each side of a triangle is sampled: log2 of the resolution. The front is where cross(X_1 - X_0, X_2 - X_0) points.
+// How finely each side of a triangle is sampled: log2 of the resolution. The front is where cross(X_1 - X_0, X_2 - X_0)
+// points.
 struct TriangleResolution {
   std::uint8_t log2_front = 0, log2_back = 0;
 };

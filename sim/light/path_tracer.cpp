@@ -48,9 +48,11 @@ struct PathTracer::Reach {
   bool directional = false;
 };
 
-PathTracer::PathTracer(const Scene& scene, const RayScene& rays) : scene_(scene), rays_(rays), layers_(Flickers(scene.lights)) {
+PathTracer::PathTracer(const Scene& scene, const RayScene& rays)
+    : scene_(scene), rays_(rays), layers_(Flickers(scene.lights)) {
   for (const Light& light : scene.lights) {
-    if (!std::holds_alternative<AmbientLight>(light)) lamps_.push_back({&light, static_cast<std::size_t>(LayerOf(light, layers_))});
+    if (!std::holds_alternative<AmbientLight>(light))
+      lamps_.push_back({&light, static_cast<std::size_t>(LayerOf(light, layers_))});
   }
 }
 
@@ -77,14 +79,17 @@ PathTracer::Reach PathTracer::Towards(const Lamp& lamp, const LightPoint& point,
   }
   const glm::dvec3 l = reach.to - point.position;
   const double r2 = glm::dot(l, l), cosine = glm::dot(point.normal, l) / std::sqrt(r2);
-  if (cosine > 0 && emitted > 0 && r2 > 0 && glm::dot(point.geometric, l) > 0) reach.light = intensity * (emitted * cosine / r2 * kInvPi);
+  if (cosine > 0 && emitted > 0 && r2 > 0 && glm::dot(point.geometric, l) > 0)
+    reach.light = intensity * (emitted * cosine / r2 * kInvPi);
   return reach;
 }
 
 bool PathTracer::IsFree(const glm::dvec3& origin, const glm::dvec3& direction, float reach) const {
   RTCRay ray{};
-  ray.org_x = static_cast<float>(origin.x), ray.org_y = static_cast<float>(origin.y), ray.org_z = static_cast<float>(origin.z);
-  ray.dir_x = static_cast<float>(direction.x), ray.dir_y = static_cast<float>(direction.y), ray.dir_z = static_cast<float>(direction.z);
+  ray.org_x = static_cast<float>(origin.x), ray.org_y = static_cast<float>(origin.y),
+  ray.org_z = static_cast<float>(origin.z);
+  ray.dir_x = static_cast<float>(direction.x), ray.dir_y = static_cast<float>(direction.y),
+  ray.dir_z = static_cast<float>(direction.z);
   ray.tfar = reach;
   ray.mask = 0xffffffffu;
   Occluded1(rays_.embree(), &ray);
@@ -93,7 +98,8 @@ bool PathTracer::IsFree(const glm::dvec3& origin, const glm::dvec3& direction, f
 
 bool PathTracer::IsSeen(const LightPoint& point, const Reach& reach) const {
   const glm::dvec3 origin = Origin(point);
-  return reach.directional ? IsFree(origin, reach.to, std::numeric_limits<float>::infinity()) : IsFree(origin, reach.to - origin, 1.0f);
+  return reach.directional ? IsFree(origin, reach.to, std::numeric_limits<float>::infinity())
+                           : IsFree(origin, reach.to - origin, 1.0f);
 }
 
 bool PathTracer::SeeEachOther(const LightPoint& a, const LightPoint& b) const {
@@ -104,8 +110,10 @@ bool PathTracer::SeeEachOther(const LightPoint& a, const LightPoint& b) const {
 bool PathTracer::Trace(const LightPoint& from, const glm::dvec3& direction, Met& met) const {
   const glm::dvec3 origin = Origin(from);
   RTCRayHit ray{};
-  ray.ray.org_x = static_cast<float>(origin.x), ray.ray.org_y = static_cast<float>(origin.y), ray.ray.org_z = static_cast<float>(origin.z);
-  ray.ray.dir_x = static_cast<float>(direction.x), ray.ray.dir_y = static_cast<float>(direction.y), ray.ray.dir_z = static_cast<float>(direction.z);
+  ray.ray.org_x = static_cast<float>(origin.x), ray.ray.org_y = static_cast<float>(origin.y),
+  ray.ray.org_z = static_cast<float>(origin.z);
+  ray.ray.dir_x = static_cast<float>(direction.x), ray.ray.dir_y = static_cast<float>(direction.y),
+  ray.ray.dir_z = static_cast<float>(direction.z);
   ray.ray.tfar = std::numeric_limits<float>::infinity();
   ray.ray.mask = 0xffffffffu;
   ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -144,7 +152,9 @@ glm::dvec3 PathTracer::Albedo(const Met& met, double width) const {
   glm::dvec3 albedo = glm::dvec3(material.base_color) * glm::dvec3(rays_.VertexColor(met.triangle, met.u, met.v));
   if (material.texture >= 0) {
     const Texture& texture = scene_.textures[static_cast<std::size_t>(material.texture)];
-    albedo *= LookUp(texture, rays_.TextureCoordinates(met.triangle, met.u, met.v), width * rays_.UvPerMetre(met.triangle) * std::sqrt(static_cast<double>(texture.width()) * texture.height()));
+    albedo *= LookUp(
+        texture, rays_.TextureCoordinates(met.triangle, met.u, met.v),
+        width * rays_.UvPerMetre(met.triangle) * std::sqrt(static_cast<double>(texture.width()) * texture.height()));
   }
   return albedo;
 }
@@ -156,7 +166,9 @@ glm::dvec3 PathTracer::Emission(const Met& met, double width) const {
   glm::dvec3 emission(material.emission);
   if (material.emission_texture >= 0 && Strength(emission) > 0) {
     const Texture& texture = scene_.textures[static_cast<std::size_t>(material.emission_texture)];
-    emission *= LookUp(texture, rays_.TextureCoordinates(met.triangle, met.u, met.v), width * rays_.UvPerMetre(met.triangle) * std::sqrt(static_cast<double>(texture.width()) * texture.height()));
+    emission *= LookUp(
+        texture, rays_.TextureCoordinates(met.triangle, met.u, met.v),
+        width * rays_.UvPerMetre(met.triangle) * std::sqrt(static_cast<double>(texture.width()) * texture.height()));
   }
   return emission;
 }
@@ -213,8 +225,10 @@ void PathTracer::AddIndirect(const LightPoint& point, std::uint64_t key, int pat
       }
       if (total > 0) {  // one lamp, with a probability as its share were nothing in between
         std::size_t k = 0;
-        for (double left = Uniform(lamp_words[2]) * total; k + 1 < lamps_.size() && left >= strengths[k]; ++k) left -= strengths[k];
-        if (strengths[k] > 0 && IsSeen(at, reaches[k])) sums[lamps_[k].layer] += factor * reaches[k].light * (total / strengths[k]);
+        for (double left = Uniform(lamp_words[2]) * total; k + 1 < lamps_.size() && left >= strengths[k]; ++k)
+          left -= strengths[k];
+        if (strengths[k] > 0 && IsSeen(at, reaches[k]))
+          sums[lamps_[k].layer] += factor * reaches[k].light * (total / strengths[k]);
       }
 
       if (Uniform(lamp_words[3]) >= survival) break;

@@ -26,10 +26,12 @@ bool IsTextured(const Material& m) { return m.texture >= 0 || m.emission_texture
 // Whether Embree has to ask about each hit.
 bool IsCutOut(const Scene& scene, const Material& m) {
   if (!(m.alpha_cutoff > 0)) return false;
-  return m.alpha < m.alpha_cutoff || (m.texture >= 0 && scene.textures[static_cast<std::size_t>(m.texture)].has_alpha());
+  return m.alpha < m.alpha_cutoff ||
+         (m.texture >= 0 && scene.textures[static_cast<std::size_t>(m.texture)].has_alpha());
 }
 
-// Asked for each hit of the second geometry by a ray: leaves valid[i] as it is where there is a surface, else sets it to 0.
+// Asked for each hit of the second geometry by a ray: leaves valid[i] as it is where there is a surface, else sets it
+// to 0.
 void FilterHits(const RTCFilterFunctionNArguments* arguments, bool shadow) {
   const auto* filters = static_cast<const RayScene::Filter*>(arguments->geometryUserPtr);
   const unsigned n = arguments->N;
@@ -45,7 +47,8 @@ void FilterHits(const RTCFilterFunctionNArguments* arguments, bool shadow) {
     }
     const float u = RTCHitN_u(arguments->hit, n, i), v = RTCHitN_v(arguments->hit, n, i);
     const float alpha =
-        filter.factor * (filter.alpha != nullptr ? filter.alpha->Alpha(filter.uv + u * filter.uv_du + v * filter.uv_dv) : 1.0f);
+        filter.factor *
+        (filter.alpha != nullptr ? filter.alpha->Alpha(filter.uv + u * filter.uv_du + v * filter.uv_dv) : 1.0f);
     if (alpha < filter.cutoff) arguments->valid[i] = 0;
   }
 }
@@ -58,9 +61,11 @@ void Check(const Scene& scene) {
   };
   for (const Material& m : scene.materials) {
     for (const int texture : {m.texture, m.emission_texture, m.normal_map}) {
-      require(texture >= -1 && texture < static_cast<int>(scene.textures.size()), "material " + m.name + ": no such texture");
+      require(texture >= -1 && texture < static_cast<int>(scene.textures.size()),
+              "material " + m.name + ": no such texture");
     }
-    require(m.normal_map < 0 || scene.textures[static_cast<std::size_t>(m.normal_map)].content() == Texture::Content::normals,
+    require(m.normal_map < 0 ||
+                scene.textures[static_cast<std::size_t>(m.normal_map)].content() == Texture::Content::normals,
             "material " + m.name + ": its normal map is not one");
   }
   require(scene.materials.size() < (1u << kMaterialBits), "too many materials");
@@ -156,7 +161,8 @@ void RayScene::SetLight(const BakedLight& light) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     const TriangleResolution r = light.resolutions[i];
-    if (r.log2_front > kMaxLog2Resolution || r.log2_back > kMaxLog2Resolution) throw std::invalid_argument("baked light: too fine");
+    if (r.log2_front > kMaxLog2Resolution || r.log2_back > kMaxLog2Resolution)
+      throw std::invalid_argument("baked light: too fine");
     shading_[i].material = MaterialIndex(static_cast<std::uint32_t>(i)) |
                            (std::uint32_t{r.log2_front} | (std::uint32_t{r.log2_back} << 4)) << kMaterialBits;
     shading_[i].first_light = static_cast<std::int32_t>(count);
@@ -201,12 +207,13 @@ double RayScene::UvPerMetre(std::uint32_t triangle) const {
   const TriangleShading& t = shading_[triangle];
   const glm::dvec3 a(Corner(triangle, 0)), b(Corner(triangle, 1)), c(Corner(triangle, 2));
   const double area = glm::length(glm::cross(b - a, c - a));
-  const double uv_area = std::abs(static_cast<double>(t.uv_du[0]) * t.uv_dv[1] - static_cast<double>(t.uv_du[1]) * t.uv_dv[0]);
+  const double uv_area =
+      std::abs(static_cast<double>(t.uv_du[0]) * t.uv_dv[1] - static_cast<double>(t.uv_du[1]) * t.uv_dv[0]);
   return area > 0 ? std::sqrt(uv_area / area) : 0.0;
 }
 
-// Level 0 is a white texel and level 1 a flat normal: what a material without texture looks up, so that the inner loop need not
-// ask.
+// Level 0 is a white texel and level 1 a flat normal: what a material without texture looks up, so that the inner loop
+// need not ask.
 void RayScene::AppendTextures(const Scene& scene) {
   const auto append = [&](int width, int height, const std::uint32_t* from) {
     levels_.push_back({static_cast<std::uint32_t>(width) | (static_cast<std::uint32_t>(height) << 16),
@@ -218,7 +225,8 @@ void RayScene::AppendTextures(const Scene& scene) {
   };
   std::size_t count = 4;
   for (const Texture& texture : scene.textures) {
-    for (const TextureLevel& level : texture.levels()) count += static_cast<std::size_t>(level.width + 1) * static_cast<std::size_t>(level.height);
+    for (const TextureLevel& level : texture.levels())
+      count += static_cast<std::size_t>(level.width + 1) * static_cast<std::size_t>(level.height);
   }
   if (count > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
     throw std::invalid_argument("scene: more than 2^31 texels in all textures");
@@ -229,7 +237,8 @@ void RayScene::AppendTextures(const Scene& scene) {
   std::vector<PictureShading> pictures;
   for (const Texture& texture : scene.textures) {
     pictures.push_back({static_cast<std::int32_t>(levels_.size()), static_cast<std::int32_t>(texture.levels().size())});
-    for (const TextureLevel& level : texture.levels()) append(level.width, level.height, texture.texels().data() + level.first);
+    for (const TextureLevel& level : texture.levels())
+      append(level.width, level.height, texture.texels().data() + level.first);
   }
   const auto picture = [&](int texture, std::int32_t otherwise) {
     return texture < 0 ? PictureShading{otherwise, 1} : pictures[static_cast<std::size_t>(texture)];
@@ -246,7 +255,8 @@ void RayScene::AppendTextures(const Scene& scene) {
   }
 }
 
-void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& material, std::int32_t material_index, std::size_t mesh_index, bool lamp) {
+void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& material, std::int32_t material_index,
+                          std::size_t mesh_index, bool lamp) {
   const auto first = static_cast<std::uint32_t>(positions_.size());
   first_triangle_.push_back(static_cast<std::uint32_t>(triangles_.size()));
   mesh_index_.push_back(static_cast<std::uint32_t>(mesh_index));
@@ -255,7 +265,8 @@ void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& 
   const Texture* alpha = nullptr;
   if (cut_out && material.texture >= 0 && scene.textures[static_cast<std::size_t>(material.texture)].has_alpha()) {
     const Texture& texture = scene.textures[static_cast<std::size_t>(material.texture)];
-    const auto known = std::find_if(alpha_textures_.begin(), alpha_textures_.end(), [&](const Texture& t) { return t.name() == texture.name(); });
+    const auto known = std::find_if(alpha_textures_.begin(), alpha_textures_.end(),
+                                    [&](const Texture& t) { return t.name() == texture.name(); });
     alpha = known != alpha_textures_.end() ? &*known : &alpha_textures_.emplace_back(texture);
   }
   const bool textured = IsTextured(material);
@@ -263,7 +274,8 @@ void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& 
     triangles_.emplace_back(first + t);
     TriangleShading s{};
     s.material = static_cast<std::uint32_t>(material_index);
-    const glm::dvec3 p0(mesh.positions[t.x]), side_u = glm::dvec3(mesh.positions[t.y]) - p0, side_v = glm::dvec3(mesh.positions[t.z]) - p0;
+    const glm::dvec3 p0(mesh.positions[t.x]), side_u = glm::dvec3(mesh.positions[t.y]) - p0,
+                                              side_v = glm::dvec3(mesh.positions[t.z]) - p0;
     glm::dvec2 uv(0.0), du(0.0), dv(0.0);
     if (textured) {
       uv = mesh.uvs[t.x];
@@ -311,7 +323,9 @@ void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& 
       }
       colors_.push_back(c);
     }
-    if (cut_out || lamp) filters_.push_back({glm::vec2(uv), glm::vec2(du), glm::vec2(dv), alpha, material.alpha, material.alpha_cutoff, lamp});
+    if (cut_out || lamp)
+      filters_.push_back(
+          {glm::vec2(uv), glm::vec2(du), glm::vec2(dv), alpha, material.alpha, material.alpha_cutoff, lamp});
   }
 }
 
@@ -332,7 +346,8 @@ void RayScene::AppendLamps(const Scene& scene) {
     materials_.push_back(m);
     Mesh mesh;
     mesh.name = "lamp";
-    for (const glm::dvec3& corner : {rect->corner, rect->corner + rect->side_u, rect->corner + rect->side_u + rect->side_v, rect->corner + rect->side_v}) {
+    for (const glm::dvec3& corner : {rect->corner, rect->corner + rect->side_u,
+                                     rect->corner + rect->side_u + rect->side_v, rect->corner + rect->side_v}) {
       mesh.positions.emplace_back(corner);
     }
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -354,11 +369,12 @@ void RayScene::Build() {
     RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
                                              std::max<std::size_t>(positions_.size(), 1));
-    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), end - begin);
+    void* indices =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), end - begin);
     if (vertices != nullptr && (indices != nullptr || begin == end)) {
       std::copy(positions_.begin(), positions_.end(), static_cast<glm::vec3*>(vertices));
-      std::copy(triangles_.begin() + static_cast<std::ptrdiff_t>(begin), triangles_.begin() + static_cast<std::ptrdiff_t>(end),
-                static_cast<glm::uvec3*>(indices));
+      std::copy(triangles_.begin() + static_cast<std::ptrdiff_t>(begin),
+                triangles_.begin() + static_cast<std::ptrdiff_t>(end), static_cast<glm::uvec3*>(indices));
       if (filtered) {
         rtcSetGeometryUserData(geometry, filters_.data());
         rtcSetGeometryIntersectFilterFunction(geometry, FilterIntersect);

@@ -43,7 +43,8 @@ void ReadFlicker(Section section, Flicker& flicker) {
   double phase_rad = 2 * std::numbers::pi * flicker.phase;
   section.Read("phase", phase_rad, Unit::angle);
   flicker.phase = phase_rad / (2 * std::numbers::pi);
-  if (flicker.depth > 0 && flicker.frequency_hz == 0) section.Reject("frequency", "a lamp that flickers needs a frequency above 0");
+  if (flicker.depth > 0 && flicker.frequency_hz == 0)
+    section.Reject("frequency", "a lamp that flickers needs a frequency above 0");
 }
 
 // Three ways to say what the sky is: one radiance, three that are blended, or a picture.
@@ -122,7 +123,12 @@ void ReadWorld(Section section, const std::filesystem::path& folder, WorldDescri
   if (world.meshes.empty()) section.Reject("meshes", "'world.meshes': the world is empty");
   for (Section& light : section.List("lights")) {
     LightKind kind = LightKind::ambient;
-    light.RequireChoice("type", kind, {{"ambient", LightKind::ambient}, {"sun", LightKind::sun}, {"point", LightKind::point}, {"rectangle", LightKind::rectangle}, {"sky", LightKind::sky}});
+    light.RequireChoice("type", kind,
+                        {{"ambient", LightKind::ambient},
+                         {"sun", LightKind::sun},
+                         {"point", LightKind::point},
+                         {"rectangle", LightKind::rectangle},
+                         {"sky", LightKind::sky}});
     if (kind != LightKind::sky) {
       world.lights.push_back(ReadLight(light, kind));
       continue;
@@ -137,7 +143,9 @@ void ReadRender(Section section, const std::filesystem::path& folder, RenderPara
   section.ReadChoice("engine", render.engine,
                      {{"ray_tracer", Engine::ray_tracer}, {"rasteriser", Engine::rasteriser}});
   section.Read("rays_per_time_sample", render.rays_per_time_sample, Range{1, 256});
-  section.ReadChoice("light", render.light, {{"direct", LightMode::direct}, {"baked_indirect", LightMode::baked_indirect}, {"baked", LightMode::baked}});
+  section.ReadChoice(
+      "light", render.light,
+      {{"direct", LightMode::direct}, {"baked_indirect", LightMode::baked_indirect}, {"baked", LightMode::baked}});
   Section bake = section.Child("bake");
   bake.Read("spacing", render.bake.spacing_m, Unit::length);
   bake.Read("finest", render.bake.finest_m, Unit::length);

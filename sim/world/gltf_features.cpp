@@ -13,7 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-// The JSON text of a file: all of it, or of a binary glTF its first chunk (after a header of 12 bytes and the chunk's of 8).
+// The JSON text of a file: all of it, or of a binary glTF its first chunk (after a header of 12 bytes and the chunk's
+// of 8).
 std::string JsonText(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string bytes;
@@ -57,8 +58,8 @@ const std::map<std::string, std::string>& LeftOut() {
 }
 
 const std::set<std::string>& Applied() {
-  static const std::set<std::string> names{"KHR_texture_transform", "KHR_materials_emissive_strength", "KHR_mesh_quantization",
-                                           "KHR_materials_pbrSpecularGlossiness"};
+  static const std::set<std::string> names{"KHR_texture_transform", "KHR_materials_emissive_strength",
+                                           "KHR_mesh_quantization", "KHR_materials_pbrSpecularGlossiness"};
   return names;
 }
 
@@ -77,28 +78,35 @@ GltfFeatures ReadGltfFeatures(const std::filesystem::path& file) {
     }
     return result;
   };
-  static const std::set<std::string> kUnreadable{"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu", "EXT_mesh_gpu_instancing"};
+  static const std::set<std::string> kUnreadable{"KHR_draco_mesh_compression", "EXT_meshopt_compression",
+                                                 "KHR_texture_basisu", "EXT_mesh_gpu_instancing"};
   const std::set<std::string> required = names("extensionsRequired");
   for (const std::string& name : required) {
-    if (kUnreadable.contains(name)) features.impossible.push_back("requires " + name + ", which is not supported: convert the file without it");
+    if (kUnreadable.contains(name))
+      features.impossible.push_back("requires " + name + ", which is not supported: convert the file without it");
   }
   for (const std::string& name : names("extensionsUsed")) {
     if (Applied().contains(name) || (required.contains(name) && kUnreadable.contains(name))) continue;
     const auto known = LeftOut().find(name);
-    features.not_rendered.push_back("uses " + name + ": " + (known != LeftOut().end() ? known->second : "it is left out"));
+    features.not_rendered.push_back("uses " + name + ": " +
+                                    (known != LeftOut().end() ? known->second : "it is left out"));
   }
   for (std::size_t i = 0; i < Count(document, "materials"); ++i) {
-    const json::json_pointer place("/materials/" + std::to_string(i) + "/extensions/KHR_materials_emissive_strength/emissiveStrength");
+    const json::json_pointer place("/materials/" + std::to_string(i) +
+                                   "/extensions/KHR_materials_emissive_strength/emissiveStrength");
     const bool has = document.contains(place) && document[place].is_number();
     features.emission_strengths.push_back(has ? document[place].get<float>() : 1.0f);
   }
-  if (Count(document, "animations") > 0) features.not_rendered.push_back("has animations: the scene is rendered as it stands without them");
-  if (Count(document, "skins") > 0) features.not_rendered.push_back("has skins: their meshes are rendered as modelled, not as posed");
+  if (Count(document, "animations") > 0)
+    features.not_rendered.push_back("has animations: the scene is rendered as it stands without them");
+  if (Count(document, "skins") > 0)
+    features.not_rendered.push_back("has skins: their meshes are rendered as modelled, not as posed");
   if (const auto meshes = document.find("meshes"); meshes != document.end() && meshes->is_array()) {
     bool any_targets = false;
     for (const json& mesh : *meshes) {
       if (!mesh.is_object() || !mesh.contains("primitives") || !mesh["primitives"].is_array()) continue;
-      for (const json& primitive : mesh["primitives"]) any_targets = any_targets || (primitive.is_object() && primitive.contains("targets"));
+      for (const json& primitive : mesh["primitives"])
+        any_targets = any_targets || (primitive.is_object() && primitive.contains("targets"));
     }
     if (any_targets) features.not_rendered.push_back("has morph targets: the meshes are rendered without them");
   }

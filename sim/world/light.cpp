@@ -29,8 +29,9 @@ std::vector<Flicker> Flickers(const std::vector<Light>& lights) {
     if (std::find(flickers.begin(), flickers.end(), flicker) == flickers.end()) flickers.push_back(flicker);
   }
   if (flickers.size() > kMaxFlickers) {
-    throw std::invalid_argument("world.lights: lamps with " + std::to_string(flickers.size() - 1) + " different flickers; at most " +
-                                std::to_string(kMaxFlickers - 1) + " can be kept apart");
+    throw std::invalid_argument("world.lights: lamps with " + std::to_string(flickers.size() - 1) +
+                                " different flickers; at most " + std::to_string(kMaxFlickers - 1) +
+                                " can be kept apart");
   }
   return flickers;
 }

@@ -81,7 +81,8 @@ glm::dmat4 ToGlm(const aiMatrix4x4& m) {  // assimp is row-major, GLM column-maj
 
 // Whether three corners lie on a line, as exactly as floats can say it.
 bool IsDegenerate(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-  const glm::dvec3 ab = glm::dvec3(b) - glm::dvec3(a), ac = glm::dvec3(c) - glm::dvec3(a), bc = glm::dvec3(c) - glm::dvec3(b);
+  const glm::dvec3 ab = glm::dvec3(b) - glm::dvec3(a), ac = glm::dvec3(c) - glm::dvec3(a),
+                   bc = glm::dvec3(c) - glm::dvec3(b);
   const double longest2 = std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(bc, bc)});
   return !(glm::length(glm::cross(ab, ac)) > 1e-10 * longest2);
 }
@@ -202,7 +203,8 @@ class FileReader {
       out.triangles.push_back(t);
     }
     if (degenerate > 0) {
-      Warn(label + std::to_string(degenerate) + " of " + std::to_string(in.mNumFaces) + " triangles without area are left out");
+      Warn(label + std::to_string(degenerate) + " of " + std::to_string(in.mNumFaces) +
+           " triangles without area are left out");
     }
     if (out.triangles.empty()) return;
     if (!CheckRounding(label, out.positions)) return;
@@ -212,8 +214,8 @@ class FileReader {
     scene_.meshes.push_back(std::move(out));
   }
 
-  // Coordinates are floats: far from the origin they are coarse. Says so when the rounding is 1e-5 of the mesh's size, and refuses it
-  // at 1e-3.
+  // Coordinates are floats: far from the origin they are coarse. Says so when the rounding is 1e-5 of the mesh's size,
+  // and refuses it at 1e-3.
   bool CheckRounding(const std::string& label, const std::vector<glm::vec3>& positions) {
     glm::vec3 low = positions[0], high = low;
     for (const glm::vec3& x : positions) {
@@ -221,12 +223,13 @@ class FileReader {
       high = glm::max(high, x);
     }
     const glm::vec3 far = glm::max(glm::abs(low), glm::abs(high));
-    const double rounding = 0x1p-24 * std::max({far.x, far.y, far.z}), size = glm::length(glm::dvec3(high) - glm::dvec3(low));
+    const double rounding = 0x1p-24 * std::max({far.x, far.y, far.z}),
+                 size = glm::length(glm::dvec3(high) - glm::dvec3(low));
     if (rounding <= 1e-5 * size) return true;
     const glm::dvec3 middle = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
     std::ostringstream text;
-    text << label << "it lies near (" << middle.x << ", " << middle.y << ", " << middle.z << ") m, where numbers are " << rounding
-         << " m coarse, but is only " << size << " m large: move it near the origin with 'position'";
+    text << label << "it lies near (" << middle.x << ", " << middle.y << ", " << middle.z << ") m, where numbers are "
+         << rounding << " m coarse, but is only " << size << " m large: move it near the origin with 'position'";
     if (rounding > 1e-3 * size) {
       Problem(text.str());
       return false;
@@ -267,9 +270,11 @@ class FileReader {
     for (unsigned i = 0; i < in.mNumVertices; ++i) {
       const aiVector3D& uv = in.mTextureCoords[choice.channel][i];
       if (!IsFinite(uv)) {
-        return Problem(label + "the texture coordinate of vertex " + std::to_string(i) + " is not finite: " + ToText(uv));
+        return Problem(label + "the texture coordinate of vertex " + std::to_string(i) +
+                       " is not finite: " + ToText(uv));
       }
-      out.uvs.emplace_back(choice.transform * glm::dvec3(uv.x, 1.0 - static_cast<double>(uv.y), 1.0));  // assimp has v up in all formats
+      out.uvs.emplace_back(choice.transform *
+                           glm::dvec3(uv.x, 1.0 - static_cast<double>(uv.y), 1.0));  // assimp has v up in all formats
     }
   }
 

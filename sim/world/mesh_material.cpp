@@ -34,7 +34,9 @@ DecodedImage DecodeEmbedded(const aiTexture& texture, bool with_alpha) {
 std::string DecodePercent(const std::string& text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto digit = [&](std::size_t at) { return at < text.size() && std::isxdigit(static_cast<unsigned char>(text[at])); };
+    const auto digit = [&](std::size_t at) {
+      return at < text.size() && std::isxdigit(static_cast<unsigned char>(text[at]));
+    };
     if (text[i] == '%' && digit(i + 1) && digit(i + 2)) {
       out += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
       i += 2;
@@ -51,7 +53,8 @@ MeshMaterialReader::MeshMaterialReader(const fs::path& file, const aiScene& from
                                        std::vector<std::string>& problems)
     : file_(file), ai_(from), materials_(from.mNumMaterials), scene_(scene), textures_(textures), problems_(problems) {
   std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   is_gltf_ = extension == ".gltf" || extension == ".glb";
 }
 
@@ -75,7 +78,8 @@ MeshMaterial MeshMaterialReader::Read(const aiMaterial& in, float emission_stren
   emission = emission * emission_strength;
   for (const float c : {color.r, color.g, color.b, emission.r, emission.g, emission.b}) {
     if (!std::isfinite(c) || c < 0) {
-      problems_.push_back(file_.string() + ": material '" + material.name + "': a colour is negative or not finite: " + std::to_string(c));
+      problems_.push_back(file_.string() + ": material '" + material.name +
+                          "': a colour is negative or not finite: " + std::to_string(c));
       break;
     }
   }
@@ -85,13 +89,16 @@ MeshMaterial MeshMaterialReader::Read(const aiMaterial& in, float emission_stren
   ReadAlpha(in, material);
 
   std::vector<UvChoice> uvs;
-  const aiTextureType base = in.GetTextureCount(aiTextureType_BASE_COLOR) > 0 ? aiTextureType_BASE_COLOR : aiTextureType_DIFFUSE;
+  const aiTextureType base =
+      in.GetTextureCount(aiTextureType_BASE_COLOR) > 0 ? aiTextureType_BASE_COLOR : aiTextureType_DIFFUSE;
   material.texture = ReadTexture(in, base, "", Texture::Content::color, material.alpha_cutoff > 0, material.name, uvs);
-  const aiTextureType glow = in.GetTextureCount(aiTextureType_EMISSION_COLOR) > 0 ? aiTextureType_EMISSION_COLOR : aiTextureType_EMISSIVE;
+  const aiTextureType glow =
+      in.GetTextureCount(aiTextureType_EMISSION_COLOR) > 0 ? aiTextureType_EMISSION_COLOR : aiTextureType_EMISSIVE;
   if (emission.r > 0 || emission.g > 0 || emission.b > 0) {
     material.emission_texture = ReadTexture(in, glow, "emission ", Texture::Content::color, false, material.name, uvs);
   }
-  material.normal_map = ReadTexture(in, aiTextureType_NORMALS, "normal ", Texture::Content::normals, false, material.name, uvs);
+  material.normal_map =
+      ReadTexture(in, aiTextureType_NORMALS, "normal ", Texture::Content::normals, false, material.name, uvs);
   in.Get(AI_MATKEY_GLTF_TEXTURE_SCALE(aiTextureType_NORMALS, 0), material.normal_scale);
   if (in.GetTextureCount(aiTextureType_OPACITY) > 0) {
     Warn("material '" + material.name + "': its opacity texture is not used; it is opaque");
@@ -123,9 +130,11 @@ void MeshMaterialReader::ReadAlpha(const aiMaterial& in, sim::Material& material
   }
 }
 
-// The picture of one use, or -1. Pictures of a material share one set of texture coordinates: one that wants another is left out.
-int MeshMaterialReader::ReadTexture(const aiMaterial& in, aiTextureType type, const char* what, Texture::Content content, bool with_alpha,
-                                    const std::string& name, std::vector<UvChoice>& uvs) {
+// The picture of one use, or -1. Pictures of a material share one set of texture coordinates: one that wants another is
+// left out.
+int MeshMaterialReader::ReadTexture(const aiMaterial& in, aiTextureType type, const char* what,
+                                    Texture::Content content, bool with_alpha, const std::string& name,
+                                    std::vector<UvChoice>& uvs) {
   aiString path;
   if (in.Get(AI_MATKEY_TEXTURE(type, 0), path) != AI_SUCCESS || path.length == 0) return -1;
   const std::string label = "material '" + name + "': the " + what + "texture " + path.C_Str();
@@ -149,16 +158,18 @@ UvChoice MeshMaterialReader::ReadUvChoice(const aiMaterial& in, aiTextureType ty
     Warn(label + ": its transform is not applied");
     return choice;
   }
-  // KHR_texture_transform: uv' = offset + rotation * scale * uv. assimp keeps the rotation's negative, and an offset for coordinates
-  // with v up that turn about the picture's middle (its glTF2 importer says how): undone here.
+  // KHR_texture_transform: uv' = offset + rotation * scale * uv. assimp keeps the rotation's negative, and an offset
+  // for coordinates with v up that turn about the picture's middle (its glTF2 importer says how): undone here.
   const double angle = -t.mRotation, c = std::cos(angle), s = std::sin(angle);
   const glm::dvec2 scale(t.mScaling.x, t.mScaling.y);
-  const glm::dvec2 offset(t.mTranslation.x - 0.5 * scale.x * (-c + s + 1.0), -(t.mTranslation.y - 0.5 * scale.y * (s + c - 1.0) - 1.0 + scale.y));
+  const glm::dvec2 offset(t.mTranslation.x - 0.5 * scale.x * (-c + s + 1.0),
+                          -(t.mTranslation.y - 0.5 * scale.y * (s + c - 1.0) - 1.0 + scale.y));
   choice.transform = glm::dmat3x2(c * scale.x, -s * scale.x, s * scale.y, c * scale.y, offset.x, offset.y);
   return choice;
 }
 
-int MeshMaterialReader::TextureIndex(const std::string& name, const std::string& material, Texture::Content content, bool with_alpha) {
+int MeshMaterialReader::TextureIndex(const std::string& name, const std::string& material, Texture::Content content,
+                                     bool with_alpha) {
   std::string text = name;
   std::replace(text.begin(), text.end(), '\\', '/');
   fs::path path = fs::path(text).lexically_normal();

@@ -20,14 +20,17 @@ cv::Mat ReadPicture(const std::filesystem::path& file) {
   const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
   cv::Mat picture;
   try {
-    if (!bytes.empty()) picture = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data())), cv::IMREAD_UNCHANGED);
+    if (!bytes.empty())
+      picture = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data())),
+                             cv::IMREAD_UNCHANGED);
   } catch (const cv::Exception& error) {
     throw std::runtime_error(file.string() + ": cannot be decoded: " + error.err);
   }
   if (picture.empty()) {
     const bool exr = file.extension() == ".exr" || file.extension() == ".EXR";
-    throw std::runtime_error(file.string() + ": not a picture that can be decoded" +
-                             (exr ? "; OpenCV reads OpenEXR only where the environment has OPENCV_IO_ENABLE_OPENEXR=1" : ""));
+    throw std::runtime_error(
+        file.string() + ": not a picture that can be decoded" +
+        (exr ? "; OpenCV reads OpenEXR only where the environment has OPENCV_IO_ENABLE_OPENEXR=1" : ""));
   }
   return picture;
 }
@@ -45,9 +48,11 @@ glm::dvec3 Sky::Radiance(const glm::dvec3& d) const {
   const double x0 = std::floor(x), y0 = std::floor(y), fx = x - x0, fy = y - y0;
   const auto at = [&](double column, double row) {
     const int i = (static_cast<int>(column) + width) % width, j = std::clamp(static_cast<int>(row), 0, height - 1);
-    return glm::dvec3(picture[static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)]);
+    return glm::dvec3(
+        picture[static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)]);
   };
-  return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x0 + 1, y0)) + fy * ((1 - fx) * at(x0, y0 + 1) + fx * at(x0 + 1, y0 + 1));
+  return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x0 + 1, y0)) +
+         fy * ((1 - fx) * at(x0, y0 + 1) + fx * at(x0 + 1, y0 + 1));
 }
 
 Sky LoadSky(const SkyDescription& description) {
@@ -59,7 +64,8 @@ Sky LoadSky(const SkyDescription& description) {
   if (description.file.empty()) return sky;
   const cv::Mat read = ReadPicture(description.file);
   if (read.channels() != 1 && read.channels() != 3 && read.channels() != 4) {
-    throw std::runtime_error(description.file.string() + ": " + std::to_string(read.channels()) + " channels; 1, 3 or 4 are read");
+    throw std::runtime_error(description.file.string() + ": " + std::to_string(read.channels()) +
+                             " channels; 1, 3 or 4 are read");
   }
   const bool linear = read.depth() == CV_32F;
   const double full = read.depth() == CV_16U ? 65535.0 : read.depth() == CV_8U ? 255.0 : 1.0;
@@ -74,8 +80,8 @@ Sky LoadSky(const SkyDescription& description) {
       glm::dvec3 rgb = channels == 1 ? glm::dvec3(row[0]) : glm::dvec3(row[2], row[1], row[0]);
       for (int c = 0; c < 3; ++c) {
         if (!std::isfinite(rgb[c]) || rgb[c] < 0) {
-          throw std::runtime_error(description.file.string() + ": pixel (" + std::to_string(x) + ", " + std::to_string(y) +
-                                   ") is negative or not finite: " + std::to_string(rgb[c]));
+          throw std::runtime_error(description.file.string() + ": pixel (" + std::to_string(x) + ", " +
+                                   std::to_string(y) + ") is negative or not finite: " + std::to_string(rgb[c]));
         }
         if (!linear) rgb[c] = SrgbToLinear(rgb[c]);
       }

@@ -129,10 +129,13 @@ float Texture::Alpha(glm::vec2 uv) const {
   const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
   const float fx = x - static_cast<float>(i), fy = y - static_cast<float>(j);
   const auto at = [&](int column, int row) {
-    return static_cast<float>(alpha_[static_cast<std::size_t>(Wrap(row, size.height)) * static_cast<std::size_t>(size.width) +
-                                     static_cast<std::size_t>(Wrap(column, size.width))]);
+    return static_cast<float>(
+        alpha_[static_cast<std::size_t>(Wrap(row, size.height)) * static_cast<std::size_t>(size.width) +
+               static_cast<std::size_t>(Wrap(column, size.width))]);
   };
-  return ((1 - fy) * ((1 - fx) * at(i, j) + fx * at(i + 1, j)) + fy * ((1 - fx) * at(i, j + 1) + fx * at(i + 1, j + 1))) / 255;
+  return ((1 - fy) * ((1 - fx) * at(i, j) + fx * at(i + 1, j)) +
+          fy * ((1 - fx) * at(i, j + 1) + fx * at(i + 1, j + 1))) /
+         255;
 }
 
 glm::vec3 Texture::Sample(glm::vec2 uv, float footprint) const {

@@ -1,11 +1,11 @@
-// What a finished sample costs beside a bare ray of Embree, on the same rays, for each instruction set that this machine has:
+// What a finished sample costs beside a bare ray of Embree, on the same rays, for each instruction set that this
+// machine has:
 //
 //   render_benchmark --benchmark_repetitions=5
 //
-// The scene is a hall of columns made here: 300 000 triangles, 27 MB of pictures with their mip chains. One core but for the
-// last ones. ns: per ray.
+// The scene is a hall of columns made here: 300 000 triangles, 27 MB of pictures with their mip chains. One core but
+// for the last ones. ns: per ray.
 #include <benchmark/benchmark.h>
-
 #include <unistd.h>
 
 #include <algorithm>
@@ -43,9 +43,11 @@ Texture Picture(int number, int side) {
   std::vector<std::uint8_t> rgb;
   for (int y = 0; y < side; ++y) {
     for (int x = 0; x < side; ++x) {
-      const double waves = std::sin(0.05 * x + number) * std::sin(0.07 * y + 2 * number) + 0.3 * std::sin(0.9 * x + 0.4 * y);
+      const double waves =
+          std::sin(0.05 * x + number) * std::sin(0.07 * y + 2 * number) + 0.3 * std::sin(0.9 * x + 0.4 * y);
       const unsigned grain = static_cast<unsigned>(y * side + x) * 2654435761u >> 27;
-      for (int c = 0; c < 3; ++c) rgb.push_back(static_cast<std::uint8_t>(110 + 50 * waves + grain + 10 * ((number + c) % 3)));
+      for (int c = 0; c < 3; ++c)
+        rgb.push_back(static_cast<std::uint8_t>(110 + 50 * waves + grain + 10 * ((number + c) % 3)));
     }
   }
   return Texture("picture " + std::to_string(number), side, side, rgb);
@@ -62,7 +64,8 @@ void AddSheet(Scene& scene, int n_s, int n_t, int material, glm::vec2 repeats, c
       const double s = static_cast<double>(i) / n_s, t = static_cast<double>(j) / n_t, d = 1e-4;
       const glm::dvec3 x = place(s, t);
       mesh.positions.emplace_back(x);
-      mesh.normals.emplace_back(glm::normalize(glm::cross(place(s + d, t) - place(s - d, t), place(s, t + d) - place(s, t - d))));
+      mesh.normals.emplace_back(
+          glm::normalize(glm::cross(place(s + d, t) - place(s - d, t), place(s, t + d) - place(s, t - d))));
       mesh.uvs.emplace_back(s * repeats.x, t * repeats.y);
     }
   }
@@ -100,7 +103,8 @@ Scene Hall() {
       const double x0 = 2 + 2 * k, z0 = side == 0 ? 2 : 6;
       AddSheet(scene, 72, 60, 4, {3, 4}, [&](double s, double t) {
         const double angle = 2 * std::numbers::pi * s;
-        const double radius = (0.22 + 0.012 * std::cos(16 * angle)) * (1 + 0.5 * std::exp(-40 * t) + 0.6 * std::exp(-40 * (1 - t)));
+        const double radius =
+            (0.22 + 0.012 * std::cos(16 * angle)) * (1 + 0.5 * std::exp(-40 * t) + 0.6 * std::exp(-40 * (1 - t)));
         return glm::dvec3(x0 + radius * std::cos(angle), 4 * t, z0 + radius * std::sin(angle));
       });
       if (k == 8) continue;
@@ -122,7 +126,9 @@ std::size_t CountTriangles(const Scene& scene) {
 }
 
 Pose HallPose() {
-  return {{1.2, 1.7, 3.6}, glm::normalize(glm::dquat(glm::dmat3(glm::dvec3(0.1, 0, 0.995), glm::dvec3(0, -1, 0), glm::dvec3(0.995, 0, -0.1))))};
+  return {{1.2, 1.7, 3.6},
+          glm::normalize(
+              glm::dquat(glm::dmat3(glm::dvec3(0.1, 0, 0.995), glm::dvec3(0, -1, 0), glm::dvec3(0.995, 0, -0.1))))};
 }
 
 class Still : public Trajectory {
@@ -137,7 +143,8 @@ BakedLight SomeLight(const RayScene& rays) {
   light.layers.push_back({});
   for (std::uint32_t t = 0; t < rays.triangle_count(); ++t) {
     light.resolutions.push_back({1, 0});
-    for (int k = 0; k < 9; ++k) light.samples.push_back((16u << 27) | (300u + t % 100u) | ((250u + t % 50u) << 9) | (200u << 18));
+    for (int k = 0; k < 9; ++k)
+      light.samples.push_back((16u << 27) | (300u + t % 100u) | ((250u + t % 50u) << 9) | (200u << 18));
   }
   return light;
 }
@@ -185,7 +192,8 @@ World& TheWorld() {
 }
 
 void Rate(benchmark::State& state) {
-  state.counters["ns"] = benchmark::Counter(static_cast<double>(state.iterations()) * kWidth * kHeight * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["ns"] = benchmark::Counter(static_cast<double>(state.iterations()) * kWidth * kHeight * 1e-9,
+                                            benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 // The rays alone: made, cast, and the distance looked at.
@@ -197,10 +205,14 @@ void Bare(benchmark::State& state) {
     for (const PixelBlock& block : world.frame.blocks) {
       RTCRayHit16 rays;
       for (int i = 0; i < kLanes; ++i) {
-        rays.ray.dir_x[i] = sample.rotation[0][0] * block.x.v[i] + sample.rotation[1][0] * block.y.v[i] + sample.rotation[2][0];
-        rays.ray.dir_y[i] = sample.rotation[0][1] * block.x.v[i] + sample.rotation[1][1] * block.y.v[i] + sample.rotation[2][1];
-        rays.ray.dir_z[i] = sample.rotation[0][2] * block.x.v[i] + sample.rotation[1][2] * block.y.v[i] + sample.rotation[2][2];
-        rays.ray.org_x[i] = sample.origin[0], rays.ray.org_y[i] = sample.origin[1], rays.ray.org_z[i] = sample.origin[2];
+        rays.ray.dir_x[i] =
+            sample.rotation[0][0] * block.x.v[i] + sample.rotation[1][0] * block.y.v[i] + sample.rotation[2][0];
+        rays.ray.dir_y[i] =
+            sample.rotation[0][1] * block.x.v[i] + sample.rotation[1][1] * block.y.v[i] + sample.rotation[2][1];
+        rays.ray.dir_z[i] =
+            sample.rotation[0][2] * block.x.v[i] + sample.rotation[1][2] * block.y.v[i] + sample.rotation[2][2];
+        rays.ray.org_x[i] = sample.origin[0], rays.ray.org_y[i] = sample.origin[1],
+        rays.ray.org_z[i] = sample.origin[2];
         rays.ray.tnear[i] = 0;
         rays.ray.tfar[i] = __builtin_inff();
         rays.ray.time[i] = 0;
@@ -241,11 +253,14 @@ void Shaded(benchmark::State& state, ExposeBlockFunction expose, int lights, boo
 // The hall as a glTF file with its pictures beside it, as somebody would have it.
 void WriteGltf(const Scene& scene, const std::filesystem::path& folder) {
   std::string data, views, accessors, meshes, nodes, materials, textures, images, roots;
-  const auto add = [&](const void* from, std::size_t size, std::size_t count, const char* type, int component, const std::string& more) {
-    views += (views.empty() ? "" : ",") + ("{\"buffer\":0,\"byteOffset\":" + std::to_string(data.size())) + ",\"byteLength\":" + std::to_string(size) + "}";
+  const auto add = [&](const void* from, std::size_t size, std::size_t count, const char* type, int component,
+                       const std::string& more) {
+    views += (views.empty() ? "" : ",") + ("{\"buffer\":0,\"byteOffset\":" + std::to_string(data.size())) +
+             ",\"byteLength\":" + std::to_string(size) + "}";
     const std::string number = std::to_string(std::count(accessors.begin(), accessors.end(), '}'));
-    accessors += (accessors.empty() ? "" : ",") + ("{\"bufferView\":" + number) + ",\"componentType\":" + std::to_string(component) +
-                 ",\"count\":" + std::to_string(count) + ",\"type\":\"" + type + "\"" + more + "}";
+    accessors += (accessors.empty() ? "" : ",") + ("{\"bufferView\":" + number) +
+                 ",\"componentType\":" + std::to_string(component) + ",\"count\":" + std::to_string(count) +
+                 ",\"type\":\"" + type + "\"" + more + "}";
     data.append(static_cast<const char*>(from), size);
     return number;
   };
@@ -253,11 +268,13 @@ void WriteGltf(const Scene& scene, const std::filesystem::path& folder) {
     const Mesh& mesh = scene.meshes[m];
     const std::size_t n = mesh.positions.size(), t = mesh.triangles.size();
     const std::string p = add(mesh.positions.data(), 12 * n, n, "VEC3", 5126, ",\"min\":[-1,-1,-1],\"max\":[21,9,9]");
-    const std::string normal = add(mesh.normals.data(), 12 * n, n, "VEC3", 5126, ""), uv = add(mesh.uvs.data(), 8 * n, n, "VEC2", 5126, "");
+    const std::string normal = add(mesh.normals.data(), 12 * n, n, "VEC3", 5126, ""),
+                      uv = add(mesh.uvs.data(), 8 * n, n, "VEC2", 5126, "");
     const std::string index = add(mesh.triangles.data(), 12 * t, 3 * t, "SCALAR", 5125, "");
     const std::string comma = m == 0 ? "" : ",";
-    meshes += comma + "{\"primitives\":[{\"attributes\":{\"POSITION\":" + p + ",\"NORMAL\":" + normal + ",\"TEXCOORD_0\":" + uv + "},\"indices\":" + index +
-              ",\"material\":" + std::to_string(mesh.material) + "}]}";
+    meshes += comma + "{\"primitives\":[{\"attributes\":{\"POSITION\":" + p + ",\"NORMAL\":" + normal +
+              ",\"TEXCOORD_0\":" + uv + "},\"indices\":" + index + ",\"material\":" + std::to_string(mesh.material) +
+              "}]}";
     nodes += comma + "{\"mesh\":" + std::to_string(m) + "}";
     roots += comma + std::to_string(m);
   }
@@ -267,24 +284,30 @@ void WriteGltf(const Scene& scene, const std::filesystem::path& folder) {
     for (int y = 0; y < picture.rows; ++y) {
       for (int x = 0; x < picture.cols; ++x) {
         const glm::vec3 c = glm::sqrt(texture.Texel(0, x, y)) * 255.0f;
-        picture.at<cv::Vec3b>(y, x) = {static_cast<std::uint8_t>(c.z), static_cast<std::uint8_t>(c.y), static_cast<std::uint8_t>(c.x)};
+        picture.at<cv::Vec3b>(y, x) = {static_cast<std::uint8_t>(c.z), static_cast<std::uint8_t>(c.y),
+                                       static_cast<std::uint8_t>(c.x)};
       }
     }
-    const std::string name = "picture" + std::to_string(k) + ".jpg", comma = k == 0 ? "" : ",", number = std::to_string(k);
+    const std::string name = "picture" + std::to_string(k) + ".jpg", comma = k == 0 ? "" : ",",
+                      number = std::to_string(k);
     cv::imwrite((folder / name).string(), picture);
     images += comma + "{\"uri\":\"" + name + "\"}";
     textures += comma + "{\"source\":" + number + "}";
     materials += comma + "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":" + number + "}}}";
   }
   std::ofstream(folder / "hall.bin", std::ios::binary) << data;
-  std::ofstream(folder / "hall.gltf") << "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[" << roots << "]}],\"nodes\":[" << nodes << "],\"meshes\":[" << meshes
-                                     << "],\"materials\":[" << materials << "],\"textures\":[" << textures << "],\"images\":[" << images
-                                     << "],\"buffers\":[{\"uri\":\"hall.bin\",\"byteLength\":" << data.size() << "}],\"bufferViews\":[" << views << "],\"accessors\":[" << accessors << "]}";
+  std::ofstream(folder / "hall.gltf") << "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":["
+                                      << roots << "]}],\"nodes\":[" << nodes << "],\"meshes\":[" << meshes
+                                      << "],\"materials\":[" << materials << "],\"textures\":[" << textures
+                                      << "],\"images\":[" << images
+                                      << "],\"buffers\":[{\"uri\":\"hall.bin\",\"byteLength\":" << data.size()
+                                      << "}],\"bufferViews\":[" << views << "],\"accessors\":[" << accessors << "]}";
 }
 
 // From a file to the first picture: reading, tables and tree, one frame; with baked light from its warm cache, too.
 void FirstFrame(benchmark::State& state, LightMode mode) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("vobench_hall_" + std::to_string(getpid()));
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("vobench_hall_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   WriteGltf(TheWorld().scene, folder);
   WorldDescription world;
@@ -341,7 +364,8 @@ int main(int argc, char** argv) {
     const Scene& scene = TheWorld().scene;
     std::size_t bytes = 0;
     for (const Texture& t : scene.textures) bytes += t.texels().size() * 4;
-    std::printf("%zu triangles, %.1f MB of pictures, made in %.2f s; best instruction set: %s\n", CountTriangles(scene), static_cast<double>(bytes) * 1e-6,
+    std::printf("%zu triangles, %.1f MB of pictures, made in %.2f s; best instruction set: %s\n", CountTriangles(scene),
+                static_cast<double>(bytes) * 1e-6,
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), PacketKernel().name);
   }
   const std::string best = PacketKernel().name;
@@ -351,16 +375,27 @@ int main(int argc, char** argv) {
   benchmark::RegisterBenchmark("bare/rtcIntersect16", Bare)->Unit(benchmark::kMillisecond);
   for (const KernelChoice& kernel : kernels) {
     const std::string name = kernel.name;
-    benchmark::RegisterBenchmark(("sample/baked/" + name).c_str(), Shaded, kernel.expose_block, 0, true)->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark(("sample/ambient/" + name).c_str(), Shaded, kernel.expose_block, 0, false)->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark(("sample/one_lamp/" + name).c_str(), Shaded, kernel.expose_block, 1, false)->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(("sample/baked/" + name).c_str(), Shaded, kernel.expose_block, 0, true)
+        ->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(("sample/ambient/" + name).c_str(), Shaded, kernel.expose_block, 0, false)
+        ->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(("sample/one_lamp/" + name).c_str(), Shaded, kernel.expose_block, 1, false)
+        ->Unit(benchmark::kMillisecond);
   }
   for (const int samples : {1, 16}) {
-    benchmark::RegisterBenchmark(("frame/baked/" + std::to_string(samples)).c_str(), WholeFrame, LightMode::baked, samples)
-        ->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+    benchmark::RegisterBenchmark(("frame/baked/" + std::to_string(samples)).c_str(), WholeFrame, LightMode::baked,
+                                 samples)
+        ->Arg(1)
+        ->Arg(2)
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime();
   }
-  benchmark::RegisterBenchmark("first_frame/direct", FirstFrame, LightMode::direct)->Unit(benchmark::kMillisecond)->UseRealTime();
-  benchmark::RegisterBenchmark("first_frame/baked_warm", FirstFrame, LightMode::baked)->Unit(benchmark::kMillisecond)->UseRealTime();
+  benchmark::RegisterBenchmark("first_frame/direct", FirstFrame, LightMode::direct)
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime();
+  benchmark::RegisterBenchmark("first_frame/baked_warm", FirstFrame, LightMode::baked)
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -51,7 +51,8 @@ TEST(Bake, NeighboursShareTheirSamples) {
   const RayScene rays(scene);
   const BakedLight light = BakeLight(scene, rays, LightMode::baked_indirect, Quick());
   const std::size_t log2 = light.resolutions[0].log2_front, r = std::size_t{1} << log2, n = LatticeSize(r);
-  // Triangles (0, 1, 2) and (0, 2, 3): the diagonal is u = 0 in the first and v = 0 in the second. Front and back of each.
+  // Triangles (0, 1, 2) and (0, 2, 3): the diagonal is u = 0 in the first and v = 0 in the second. Front and back of
+  // each.
   const std::uint32_t* first = light.samples.data();
   const std::uint32_t* second = first + 2 * n;
   std::set<std::uint32_t> different;

@@ -34,12 +34,14 @@ TEST(BakedPicture, LatticeIsInterpolatedLinearly) {
       light.layers.push_back({});
       const std::size_t r = std::size_t{1} << log2;
       for (std::uint32_t t = 0; t < 2; ++t) {
-        light.resolutions.push_back({static_cast<std::uint8_t>(back ? 0 : log2), static_cast<std::uint8_t>(back ? log2 : 0)});
+        light.resolutions.push_back(
+            {static_cast<std::uint8_t>(back ? 0 : log2), static_cast<std::uint8_t>(back ? log2 : 0)});
         const std::vector<std::uint32_t> other(3, PackShared({7, 7, 7}));
         if (back) light.samples.insert(light.samples.end(), other.begin(), other.end());
         for (std::size_t j = 0; j <= r; ++j) {
           for (std::size_t i = 0; i + j <= r; ++i) {
-            const float u = static_cast<float>(i) / static_cast<float>(r), v = static_cast<float>(j) / static_cast<float>(r);
+            const float u = static_cast<float>(i) / static_cast<float>(r),
+                        v = static_cast<float>(j) / static_cast<float>(r);
             const glm::vec3 x = (1 - u - v) * rays.Corner(t, 0) + u * rays.Corner(t, 1) + v * rays.Corner(t, 2);
             light.samples.push_back(PackShared({1 + (x.x + 3) / 6, 1 + (x.y + 3) / 6, 1}));
           }
@@ -63,8 +65,10 @@ TEST(BakedPicture, LatticeIsInterpolatedLinearly) {
           expose(rays.packet_scene(), &sample, 1, false, 1.0f, block, sum);
           for (int i = 0; i < kLanes; ++i) {
             const float x = 2 * block.x.v[i] * (back ? 1.0f : -1.0f), y = 2 * block.y.v[i];
-            EXPECT_NEAR(sum[0].v[i], 0.5f * (1 + (x + 3) / 6), 0.002f) << log2 << ", " << back << ": " << x << ", " << y;
-            EXPECT_NEAR(sum[1].v[i], 0.5f * (1 + (y + 3) / 6), 0.002f) << log2 << ", " << back << ": " << x << ", " << y;
+            EXPECT_NEAR(sum[0].v[i], 0.5f * (1 + (x + 3) / 6), 0.002f)
+                << log2 << ", " << back << ": " << x << ", " << y;
+            EXPECT_NEAR(sum[1].v[i], 0.5f * (1 + (y + 3) / 6), 0.002f)
+                << log2 << ", " << back << ": " << x << ", " << y;
           }
         }
       }
@@ -83,8 +87,8 @@ TEST(BakedPicture, WhiteFurnace) {
   for (int i = 0; i < n; ++i) {
     for (int c = 0; c < 3; ++c) mean[c] += static_cast<double>(image.rgb[static_cast<std::size_t>(3 * i + c)]) / n;
   }
-  // One path's number of hits has the variance a / (1 - a)^2 with a = 0.8 at the worst: 256 paths at each of about 30 samples in
-  // sight: 0.05 of e = 0.2 in the green, in a sum of 1.
+  // One path's number of hits has the variance a / (1 - a)^2 with a = 0.8 at the worst: 256 paths at each of about 30
+  // samples in sight: 0.05 of e = 0.2 in the green, in a sum of 1.
   EXPECT_NEAR(mean.x / 2.0, 1, 0.02);
   EXPECT_NEAR(mean.y / 1.0, 1, 0.04);
   EXPECT_NEAR(mean.z / 4.0, 1, 0.02);
@@ -151,8 +155,10 @@ TEST(BakedPicture, SkyThroughAnOpening) {
   RayTracerOptions options = Baked(LightMode::baked, 0.5);
   options.bake.paths = 4096;
   const RadianceImage image = Render(scene, Camera(narrow), above, options);
-  // The middle of one unit square seen from another two above, four quarters: F = 2/pi (A atan(B) / .. ) with X = Y = 1/2.
-  const double x = 0.5, a = x / std::sqrt(1 + x * x), factor = 4 / (2 * std::numbers::pi) * 2 * a * std::atan(x / std::sqrt(1 + x * x));
+  // The middle of one unit square seen from another two above, four quarters: F = 2/pi (A atan(B) / .. ) with X = Y =
+  // 1/2.
+  const double x = 0.5, a = x / std::sqrt(1 + x * x),
+               factor = 4 / (2 * std::numbers::pi) * 2 * a * std::atan(x / std::sqrt(1 + x * x));
   EXPECT_NEAR(image.pixel(2, 2)[0] / (2 * factor), 1.0, 0.02);  // 4096 stratified paths: 1 %
 }
 

@@ -66,7 +66,12 @@ TEST(LightCache, DamageIsSeenAndMended) {
   const BakedLight light = Light(scene, {folder.path()}, warnings);
   const fs::path file = LightFile(folder.path(), HashOfLight(scene, LightMode::baked, Quick()));
   const std::string good = Bytes(file);
-  std::vector<std::string> bad{"", good.substr(0, 10), good.substr(0, 72), good.substr(0, good.size() - 1), good + "x", std::string(good.size(), '\0')};
+  std::vector<std::string> bad{"",
+                               good.substr(0, 10),
+                               good.substr(0, 72),
+                               good.substr(0, good.size() - 1),
+                               good + "x",
+                               std::string(good.size(), '\0')};
   for (std::size_t at = 0; at < good.size(); at += 41) {
     std::string changed = good;
     changed[at] = static_cast<char>(changed[at] ^ 4);
@@ -96,8 +101,12 @@ TEST(LightCache, AnythingThatMattersIsAnotherWorld) {
       [](Scene& s) { s.materials[0].emission.y = 0.1f; },
       [](Scene& s) { s.materials[0].texture = -1; },
       [](Scene& s) { s.textures[0] = Texture("noise", 8, 8, std::vector<std::uint8_t>(192, 7)); },
-      [](Scene& s) { s.lights[0] = PointLight{{2.5, 2.5, 2.0}, {5, 5, 5.001}, {}}; },
-      [](Scene& s) { s.lights[0] = PointLight{{2.5, 2.5, 2.0}, {5, 5, 5}, {100, 0.1, 0}}; },
+      [](Scene& s) {
+        s.lights[0] = PointLight{{2.5, 2.5, 2.0}, {5, 5, 5.001}, {}};
+      },
+      [](Scene& s) {
+        s.lights[0] = PointLight{{2.5, 2.5, 2.0}, {5, 5, 5}, {100, 0.1, 0}};
+      },
       [](Scene& s) { s.lights.push_back(SunLight{}); },
       [](Scene& s) { s.background.x = 1; },
       [](Scene& s) { s.sky = Sky{}; },
@@ -107,7 +116,8 @@ TEST(LightCache, AnythingThatMattersIsAnotherWorld) {
     changes[i](scene);
     EXPECT_NE(base, HashOfLight(scene, LightMode::baked, Quick())) << i;
   }
-  for (const BakeParams& params : {BakeParams{0.9, 0.5, 4, 4}, BakeParams{1.0, 0.4, 4, 4}, BakeParams{1.0, 0.5, 8, 4}, BakeParams{1.0, 0.5, 4, 8}}) {
+  for (const BakeParams& params : {BakeParams{0.9, 0.5, 4, 4}, BakeParams{1.0, 0.4, 4, 4}, BakeParams{1.0, 0.5, 8, 4},
+                                   BakeParams{1.0, 0.5, 4, 8}}) {
     EXPECT_NE(base, HashOfLight(SmallRoom(), LightMode::baked, params));
   }
   Scene scene = SmallRoom();

@@ -1,5 +1,5 @@
-// The path tracer against closed forms. Each comparison states the standard deviation of its estimate and allows four of them
-// (one false alarm in 16 000); the controls show that a cosine or an albedo left out is told apart.
+// The path tracer against closed forms. Each comparison states the standard deviation of its estimate and allows four
+// of them (one false alarm in 16 000); the controls show that a cosine or an albedo left out is told apart.
 #include "sim/light/path_tracer.h"
 
 #include <gtest/gtest.h>
@@ -76,7 +76,8 @@ TEST(PathTracer, WhiteFurnace) {
   for (int c = 0; c < 3; ++c) {
     EXPECT_LT(e.sigma[c], 0.02 * expected[c]);
     EXPECT_NEAR(e.mean[c], expected[c], 4 * e.sigma[c]) << c;
-    EXPECT_GT(std::abs(e.mean[c] - emission[c] / (1 - albedo[c] * albedo[c])), 4 * e.sigma[c]) << "an albedo too many must show";
+    EXPECT_GT(std::abs(e.mean[c] - emission[c] / (1 - albedo[c] * albedo[c])), 4 * e.sigma[c])
+        << "an albedo too many must show";
     EXPECT_GT(std::abs(e.mean[c] - emission[c]), 4 * e.sigma[c]) << "an albedo forgotten must show";
   }
 }
@@ -88,8 +89,8 @@ TEST(PathTracer, UniformSkyIsExact) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(e.mean[c], 2.0 + c, 1e-12);
 }
 
-// E / pi = integral of (h + (z - h) cos) cos / pi over the hemisphere = h + 2/3 (z - h). Without the cosine (directions uniform over
-// the hemisphere) it would be h + (z - h) / 2.
+// E / pi = integral of (h + (z - h) cos) cos / pi over the hemisphere = h + 2/3 (z - h). Without the cosine (directions
+// uniform over the hemisphere) it would be h + (z - h) / 2.
 TEST(PathTracer, GradientSky) {
   Scene scene = FloorWorld(glm::vec3(0.5f));
   scene.sky = Sky{{4, 1, 0}, {1, 2, 1}, {9, 9, 9}, 0, 0, {}, 0.0};
@@ -115,7 +116,8 @@ TEST(PathTracer, LampsOnAFloor) {
   EXPECT_NEAR(Direct(scene, at).y, 4 * l.y / std::pow(glm::length(l), 3) / kPi, 1e-12);
   const RectLight rect{{-0.5, 2.0, -0.4}, {1.2, 0, 0}, {0, 0, 0.7}, {3, 2, 1}, {}};  // shines down
   scene.lights = {rect};
-  const std::vector<glm::dvec3> corners{rect.corner, rect.corner + rect.side_u, rect.corner + rect.side_u + rect.side_v, rect.corner + rect.side_v};
+  const std::vector<glm::dvec3> corners{rect.corner, rect.corner + rect.side_u, rect.corner + rect.side_u + rect.side_v,
+                                        rect.corner + rect.side_v};
   const double expected = 3 * PolygonIrradiance(corners, at.position, at.normal) / kPi;
   EXPECT_NEAR(Direct(scene, at).x / expected, 1.0, 1e-3);  // 1024 points in a (0, 2)-sequence on a smooth integrand
   scene.lights = {RectLight{rect.corner, rect.side_v, rect.side_u, rect.radiance, {}}};
@@ -128,15 +130,17 @@ TEST(PathTracer, FacingPlates) {
   AddMaterial(scene, glm::vec3(0.0f), {3, 2, 1});
   AddQuad(scene, {-0.5, 1.0, -0.4}, {1.2, 0, 0}, {0, 0, 0.7}, 1);
   const Estimate e = Indirect(scene, Floor(), 1024, 32);
-  const double factor = PolygonIrradiance({{-0.5, 1, -0.4}, {0.7, 1, -0.4}, {0.7, 1, 0.3}, {-0.5, 1, 0.3}}, Floor().position, {0, 1, 0}) / kPi;
+  const double factor =
+      PolygonIrradiance({{-0.5, 1, -0.4}, {0.7, 1, -0.4}, {0.7, 1, 0.3}, {-0.5, 1, 0.3}}, Floor().position, {0, 1, 0}) /
+      kPi;
   for (int c = 0; c < 3; ++c) {
     EXPECT_LT(e.sigma[c], 0.01 * (3 - c) * factor);
     EXPECT_NEAR(e.mean[c], (3 - c) * factor, 4 * e.sigma[c]);
   }
 }
 
-// Inside a sphere of radius r and albedo a with a bulb of intensity I in its middle: I / (pi r^2) straight, and a / (1 - a) of that by
-// bounces. The facets of a sphere of 64 rings lie up to 0.12 % inside: 0.25 % in the light.
+// Inside a sphere of radius r and albedo a with a bulb of intensity I in its middle: I / (pi r^2) straight, and a / (1
+// - a) of that by bounces. The facets of a sphere of 64 rings lie up to 0.12 % inside: 0.25 % in the light.
 TEST(PathTracer, BouncesInASphere) {
   Scene scene;
   const glm::dvec3 albedo(0.6, 0.3, 0.9);
@@ -175,7 +179,8 @@ TEST(PathTracer, LampsAddUp) {
 TEST(PathTracer, FlickersAreLayers) {
   Scene scene = FloorWorld(glm::vec3(0.8f));
   const Flicker mains{100, 0.3, 0.0};
-  scene.lights = {PointLight{{1, 2, 1}, {5, 5, 5}, {}}, PointLight{{-1, 2, 1}, {1, 1, 1}, mains}, RectLight{{-0.5, 2.0, -0.4}, {1.2, 0, 0}, {0, 0, 0.7}, {3, 2, 1}, mains}};
+  scene.lights = {PointLight{{1, 2, 1}, {5, 5, 5}, {}}, PointLight{{-1, 2, 1}, {1, 1, 1}, mains},
+                  RectLight{{-0.5, 2.0, -0.4}, {1.2, 0, 0}, {0, 0, 0.7}, {3, 2, 1}, mains}};
   const RayScene rays(scene);
   const PathTracer tracer(scene, rays);
   ASSERT_EQ(tracer.layers().size(), 2u);
@@ -188,7 +193,8 @@ TEST(PathTracer, FlickersAreLayers) {
   EXPECT_NEAR(layers[0].x + layers[1].x, Direct(scene, Floor(), 64).x, 1e-12);
   scene.lights.resize(1);
   EXPECT_NEAR(layers[0].x, Direct(scene, Floor(), 64).x, 1e-12);
-  for (int i = 0; i < kMaxLightLayers; ++i) scene.lights.push_back(PointLight{{1, 2, 1}, {1, 1, 1}, {100.0 + i, 0.5, 0}});
+  for (int i = 0; i < kMaxLightLayers; ++i)
+    scene.lights.push_back(PointLight{{1, 2, 1}, {1, 1, 1}, {100.0 + i, 0.5, 0}});
   EXPECT_THROW(PathTracer(scene, rays), std::invalid_argument);
 }
 

@@ -14,13 +14,15 @@ namespace {
 TEST(SharedExponent, HalfAStep) {
   for (float scale = 1e-5f; scale < 6e4f; scale *= 1.37f) {
     const glm::vec3 color(scale, 0.37f * scale, 0.011f * scale), back = UnpackShared(PackShared(color));
-    for (int c = 0; c < 3; ++c) EXPECT_LE(std::abs(back[c] - color[c]), std::max(scale / 512, 0x1p-25f) * 1.001f) << scale << ", " << c;
+    for (int c = 0; c < 3; ++c)
+      EXPECT_LE(std::abs(back[c] - color[c]), std::max(scale / 512, 0x1p-25f) * 1.001f) << scale << ", " << c;
   }
 }
 
 TEST(SharedExponent, ExactValuesAndTheEnds) {
   EXPECT_EQ(PackShared({0, 0, 0}), 0u);
-  for (const float exact : {1.0f, 0.5f, 3.0f, 1.0f / 512, 65408.0f}) EXPECT_EQ(UnpackShared(PackShared(glm::vec3(exact))), glm::vec3(exact));
+  for (const float exact : {1.0f, 0.5f, 3.0f, 1.0f / 512, 65408.0f})
+    EXPECT_EQ(UnpackShared(PackShared(glm::vec3(exact))), glm::vec3(exact));
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   EXPECT_EQ(UnpackShared(PackShared({nan, -1.0f, infinity})), glm::vec3(0, 0, 65408.0f));
   EXPECT_EQ(UnpackShared(PackShared(glm::vec3(0.99999f))), glm::vec3(1.0f));  // rounding carries into the exponent

@@ -14,18 +14,23 @@ constexpr double kPi = std::numbers::pi;
 TEST(Surface, SkyIsSeenAsItIsDescribed) {
   const Camera camera(SmallCamera(160, 120));
   Sky picture{{}, {}, {}, 12, 6, {}, 0.3};
-  for (int i = 0; i < 72; ++i) picture.picture.emplace_back(0.1f * static_cast<float>(i % 12), 0.2f * static_cast<float>(i / 12), static_cast<float>(i % 5));
+  for (int i = 0; i < 72; ++i)
+    picture.picture.emplace_back(0.1f * static_cast<float>(i % 12), 0.2f * static_cast<float>(i / 12),
+                                 static_cast<float>(i % 5));
   const Sky gradient{{1, 2, 3}, {0.5f, 0.25f, 4}, {0, 1, 0}, 0, 0, {}, 0.0};
   for (const Sky& sky : {gradient, picture}) {
     Scene scene;
     scene.sky = sky;
-    for (const glm::dquat& q : {glm::dquat(1, 0, 0, 0), glm::normalize(glm::dquat(0.2, 0.8, -0.3, 0.5)), glm::normalize(glm::dquat(0.1, -0.9, 0.2, 0.9)), glm::normalize(glm::dquat(-0.1, 0.1, 0.9, 0.2))}) {
+    for (const glm::dquat& q :
+         {glm::dquat(1, 0, 0, 0), glm::normalize(glm::dquat(0.2, 0.8, -0.3, 0.5)),
+          glm::normalize(glm::dquat(0.1, -0.9, 0.2, 0.9)), glm::normalize(glm::dquat(-0.1, 0.1, 0.9, 0.2))}) {
       const Pose pose{{1, 2, 3}, q};
       const RadianceImage image = Render(scene, camera, pose);
       for (int v = 0; v < 120; ++v) {
         for (int u = 0; u < 160; ++u) {
           const glm::dvec3 expected = sky.Radiance(glm::normalize(RayInWorld(camera, pose, u, v)));
-          for (int c = 0; c < 3; ++c) ASSERT_NEAR(image.pixel(u, v)[c], expected[c], 2e-4) << u << ", " << v << ", " << c;
+          for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(image.pixel(u, v)[c], expected[c], 2e-4) << u << ", " << v << ", " << c;
         }
       }
     }
@@ -48,10 +53,14 @@ TEST(Surface, CutOutsInPrimaryAndShadowRays) {
   AddQuad(scene, {-20, -20, 4}, {0, 40, 0}, {40, 0, 0}, 1);
   scene.lights = {SunLight{{0.5, 0.25, 1.0}, {kPi, kPi, kPi}}};
   const double cosine = 1 / std::sqrt(1 + 0.25 + 0.0625);
-  // The texture is bilinear and repeats: alpha = 1/2 + (tent(s) tent(t)) / 2, above 1/2 where both tents have the same sign.
+  // The texture is bilinear and repeats: alpha = 1/2 + (tent(s) tent(t)) / 2, above 1/2 where both tents have the same
+  // sign.
   const auto is_there = [](double x, double y) {
     if (std::abs(x) > 1 || std::abs(y) > 1) return false;
-    const auto tent = [](double s) { return std::abs(s - std::floor(s) - 0.75) < 0.25 || std::abs(s - std::floor(s) + 0.25) < 0.25 || s - std::floor(s) > 0.5; };
+    const auto tent = [](double s) {
+      return std::abs(s - std::floor(s) - 0.75) < 0.25 || std::abs(s - std::floor(s) + 0.25) < 0.25 ||
+             s - std::floor(s) > 0.5;
+    };
     return tent((x + 1) / 2) == tent((y + 1) / 2);
   };
   const Camera camera(SmallCamera(121, 91));
@@ -84,7 +93,8 @@ TEST(Surface, CutOutsInPrimaryAndShadowRays) {
   EXPECT_GT(lit, 1000);
   std::vector<float> depth;
   MakeRayTracer(scene)->Depth(camera, {}, depth);
-  EXPECT_NEAR(depth[40 * 121 + 55], is_there(2 * RayInWorld(camera, {}, 55, 40).x, 2 * RayInWorld(camera, {}, 55, 40).y) ? 2 : 4, 1e-6);
+  EXPECT_NEAR(depth[40 * 121 + 55],
+              is_there(2 * RayInWorld(camera, {}, 55, 40).x, 2 * RayInWorld(camera, {}, 55, 40).y) ? 2 : 4, 1e-6);
 }
 
 TEST(Surface, FactorBelowTheCutoffIsNowhere) {
@@ -109,7 +119,9 @@ TEST(Surface, EmissionTimesItsPicture) {
   AddQuad(scene, {-1, 0, 1}, {2, 0, 0}, {0, 1, 0}, 1);
   const Camera camera(SmallCamera(81, 61));
   const RadianceImage image = Render(scene, camera, {});
-  const auto at = [&](double x, double y) { return image.pixel(static_cast<int>(40 + 70 * x), static_cast<int>(30 + 70 * y)); };
+  const auto at = [&](double x, double y) {
+    return image.pixel(static_cast<int>(40 + 70 * x), static_cast<int>(30 + 70 * y));
+  };
   EXPECT_NEAR(at(-0.5, -0.3)[0], 2, 0.02);  // texel centres are at x = -0.5 and 0.5
   EXPECT_NEAR(at(-0.5, -0.3)[1], 0, 0.03);
   EXPECT_NEAR(at(0.5, -0.3)[1], 3, 0.03);
@@ -117,8 +129,8 @@ TEST(Surface, EmissionTimesItsPicture) {
   EXPECT_EQ(at(0.2, 0.3)[0], 5.0f);
 }
 
-// A normal map that tilts everything by the same angle, under a sun: the cosine with the tilted normal. With the green channel's sign
-// or the picture's handedness wrong, another cosine comes out.
+// A normal map that tilts everything by the same angle, under a sun: the cosine with the tilted normal. With the green
+// channel's sign or the picture's handedness wrong, another cosine comes out.
 TEST(Surface, NormalMapTurnsTheNormal) {
   const glm::dvec3 tilted = glm::normalize(glm::dvec3(0.4, 0.3, 1.0));  // right, up, out
   const auto code = [](double n) { return static_cast<std::uint8_t>(std::lround((n + 1) / 2 * 255)); };
@@ -142,7 +154,8 @@ TEST(Surface, NormalMapTurnsTheNormal) {
       const RadianceImage image = Render(scene, Camera(SmallCamera()), {});
       EXPECT_NEAR(image.pixel(20, 30)[0], glm::dot(n, towards), 0.01);  // eight bits of the map
       const glm::dvec3 wrong = glm::normalize(scale * tilted.x * right - scale * tilted.y * up + tilted.z * out);
-      EXPECT_GT(std::abs(image.pixel(20, 30)[0] - glm::dot(wrong, towards)), 0.05) << "the green channel upside down must show";
+      EXPECT_GT(std::abs(image.pixel(20, 30)[0] - glm::dot(wrong, towards)), 0.05)
+          << "the green channel upside down must show";
     }
   }
 }
@@ -165,7 +178,8 @@ TEST(Surface, VisibleLampIsSeenFromItsSideAndCastsNoShadow) {
   EXPECT_EQ(Render(scene, camera, back).pixel(40, 30)[0], 0.0f);
 }
 
-// A lamp's flicker over an exposure and a rolling shutter: the mean of its sine over what each row sees, in each mode of light.
+// A lamp's flicker over an exposure and a rolling shutter: the mean of its sine over what each row sees, in each mode
+// of light.
 TEST(Surface, FlickerInEachRow) {
   const Flicker mains{100, 0.4, 0.2};
   Scene steady, flickers;
@@ -191,7 +205,8 @@ TEST(Surface, FlickerInEachRow) {
         MakeRayTracer(flickers, options)->Expose(camera, SteadyMotion({}), exposure, 1, b);
         for (int v = 0; v < camera.height(); ++v) {
           const double expected = FlickerFactor(mains, exposure.RowMiddle(v, camera.height()), exposure.exposure_s);
-          for (const int u : {0, 7, 16}) ASSERT_NEAR(b.pixel(u, v)[1] / a.pixel(u, v)[1], expected, 2e-3) << v;  // baked light is packed
+          for (const int u : {0, 7, 16})
+            ASSERT_NEAR(b.pixel(u, v)[1] / a.pixel(u, v)[1], expected, 2e-3) << v;  // baked light is packed
         }
       }
     }

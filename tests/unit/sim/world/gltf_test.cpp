@@ -1,5 +1,5 @@
-// What glTF says about surfaces: cut-outs, texture transforms, emission, normal maps; and what is said about the rest. Files are
-// written here by hand.
+// What glTF says about surfaces: cut-outs, texture transforms, emission, normal maps; and what is said about the rest.
+// Files are written here by hand.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -29,15 +29,22 @@ struct Parts {
 
 std::string Gltf(const Parts& parts) {
   const std::size_t n = parts.positions.size() / 3;
-  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0)" + parts.node + R"(}],
-    "meshes": [{"name": "flag", "primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1)" + parts.attributes + R"(}, "material": 0}]}],
-    "materials": [{"name": "cloth", )" + parts.material + R"(}],
+  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0)" + parts.node +
+         R"(}],
+    "meshes": [{"name": "flag", "primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1)" +
+         parts.attributes + R"(}, "material": 0}]}],
+    "materials": [{"name": "cloth", )" +
+         parts.material + R"(}],
     "textures": [{"source": 0}, {"source": 1}], "images": [{"uri": "a%20picture.png"}, {"uri": "other.png"}],
-    "buffers": [{"uri": "data.bin", "byteLength": )" + std::to_string(20 * n) + R"(}],
-    "bufferViews": [{"buffer": 0, "byteLength": )" + std::to_string(12 * n) + R"(}, {"buffer": 0, "byteOffset": )" + std::to_string(12 * n) +
+    "buffers": [{"uri": "data.bin", "byteLength": )" +
+         std::to_string(20 * n) + R"(}],
+    "bufferViews": [{"buffer": 0, "byteLength": )" +
+         std::to_string(12 * n) + R"(}, {"buffer": 0, "byteOffset": )" + std::to_string(12 * n) +
          R"(, "byteLength": )" + std::to_string(8 * n) + R"(}],
-    "accessors": [{"bufferView": 0, "componentType": 5126, "count": )" + std::to_string(n) + R"(, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
-      {"bufferView": 1, "componentType": 5126, "count": )" + std::to_string(n) + R"(, "type": "VEC2"}])" + parts.more + "}";
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": )" +
+         std::to_string(n) + R"(, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
+      {"bufferView": 1, "componentType": 5126, "count": )" +
+         std::to_string(n) + R"(, "type": "VEC2"}])" + parts.more + "}";
 }
 
 Scene Load(const Folder& folder, const Parts& parts) {
@@ -95,7 +102,8 @@ TEST(Gltf, BlendIsACutOutWithAWarning) {
   Parts parts;
   parts.material += R"(, "alphaMode": "BLEND")";
   const Scene scene = Load(folder, parts);
-  EXPECT_THAT(scene.warnings, ElementsAre(testing::AllOf(HasSubstr("flag.gltf"), HasSubstr("'cloth'"), HasSubstr("BLEND"))));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre(testing::AllOf(HasSubstr("flag.gltf"), HasSubstr("'cloth'"), HasSubstr("BLEND"))));
   EXPECT_FLOAT_EQ(scene.materials.at(0).alpha_cutoff, 0.5f);
 }
 
@@ -122,7 +130,8 @@ TEST(Gltf, TextureTransform) {
 TEST(Gltf, EmissionAndNormalMap) {
   const Folder folder;
   Parts parts;
-  parts.material += R"(, "emissiveFactor": [1, 0.5, 0.25], "emissiveTexture": {"index": 0}, "normalTexture": {"index": 1, "scale": 0.5},
+  parts.material +=
+      R"(, "emissiveFactor": [1, 0.5, 0.25], "emissiveTexture": {"index": 0}, "normalTexture": {"index": 1, "scale": 0.5},
     "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}})";
   parts.more = R"(, "extensionsUsed": ["KHR_materials_emissive_strength"])";
   const Scene scene = Load(folder, parts);
@@ -143,14 +152,16 @@ TEST(Gltf, PicturesWithOtherCoordinatesAreLeftOut) {
   Parts parts;
   parts.material += R"(, "normalTexture": {"index": 1, "texCoord": 1})";
   const Scene scene = Load(folder, parts);
-  EXPECT_THAT(scene.warnings, ElementsAre(testing::AllOf(HasSubstr("'cloth'"), HasSubstr("other.png"), HasSubstr("left out"))));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre(testing::AllOf(HasSubstr("'cloth'"), HasSubstr("other.png"), HasSubstr("left out"))));
   EXPECT_EQ(scene.materials.at(0).normal_map, -1);
 }
 
 TEST(Gltf, TrianglesWithoutAreaAreCounted) {
   const Folder folder;
   Parts parts;
-  parts.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, /* on a line */ 0, 0, 0, 0.5f, 0.5f, 0.5f, 1, 1, 1, /* one point */ 1, 0, 0, 1, 0, 0, 1, 0, 0};
+  parts.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, /* on a line */ 0, 0, 0, 0.5f, 0.5f, 0.5f, 1, 1, 1, /* one point */ 1,
+                     0, 0, 1, 0, 0, 1, 0, 0};
   const Scene scene = Load(folder, parts);
   EXPECT_THAT(scene.meshes.at(0).triangles, SizeIs(1));
   EXPECT_THAT(scene.warnings, ElementsAre(testing::AllOf(HasSubstr("flag"), HasSubstr("2 of 3 triangles"))));
@@ -160,7 +171,8 @@ TEST(Gltf, HugeCoordinates) {
   const Folder folder;
   Parts parts;
   parts.node = R"(, "translation": [0, 0, 4194304])";  // 2^22: floats are half a metre apart
-  EXPECT_THAT(Problems(folder, parts), testing::AllOf(HasSubstr("flag.gltf"), HasSubstr("4.19"), HasSubstr("position")));
+  EXPECT_THAT(Problems(folder, parts),
+              testing::AllOf(HasSubstr("flag.gltf"), HasSubstr("4.19"), HasSubstr("position")));
   parts.node = R"(, "translation": [0, 0, 1024])";
   EXPECT_THAT(Load(folder, parts).warnings, ElementsAre(HasSubstr("coarse")));
   // Moved back near the origin, in double, all is well.
@@ -182,7 +194,8 @@ TEST(Gltf, WhatIsNotRenderedIsNamed) {
   EXPECT_THAT(warnings, Contains(HasSubstr("KHR_materials_clearcoat: clear coats")));
   EXPECT_THAT(warnings, Contains(HasSubstr("MAKER_something")));
   parts.more = R"(, "animations": [{}], "skins": [{}])";
-  EXPECT_THAT(ReadGltfFeatures(folder.Write("moves.gltf", Gltf(parts))).not_rendered, ElementsAre(HasSubstr("animations"), HasSubstr("skins")));
+  EXPECT_THAT(ReadGltfFeatures(folder.Write("moves.gltf", Gltf(parts))).not_rendered,
+              ElementsAre(HasSubstr("animations"), HasSubstr("skins")));
 }
 
 TEST(Gltf, WhatCannotBeReadIsAnError) {

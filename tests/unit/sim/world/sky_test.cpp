@@ -30,7 +30,8 @@ TEST(Sky, PictureIsTheRightWayRound) {
   const Folder folder;
   cv::Mat picture(4, 8, CV_32FC3);
   for (int y = 0; y < 4; ++y) {
-    for (int x = 0; x < 8; ++x) picture.at<cv::Vec3f>(y, x) = {0.0f, static_cast<float>(y), static_cast<float>(x)};  // blue, green, red
+    for (int x = 0; x < 8; ++x)
+      picture.at<cv::Vec3f>(y, x) = {0.0f, static_cast<float>(y), static_cast<float>(x)};  // blue, green, red
   }
   std::vector<std::uint8_t> bytes;
   cv::imencode(".hdr", picture, bytes);
@@ -93,7 +94,11 @@ TEST(Flicker, MeanOverAnInterval) {
   for (const double width : {1e-4, 0.003, 0.01, 0.0123}) {
     double sum = 0;
     const int n = 2000;
-    for (int i = 0; i <= n; ++i) sum += (i == 0 || i == n ? 1 : i % 2 == 1 ? 4 : 2) * FlickerFactor(flicker, 0.5 + width * (static_cast<double>(i) / n - 0.5));
+    for (int i = 0; i <= n; ++i)
+      sum += (i == 0 || i == n ? 1
+              : i % 2 == 1     ? 4
+                               : 2) *
+             FlickerFactor(flicker, 0.5 + width * (static_cast<double>(i) / n - 0.5));
     EXPECT_NEAR(FlickerFactor(flicker, 0.5, width), sum / (3 * n), 1e-9) << width;
   }
   EXPECT_NEAR(FlickerFactor(flicker, 0.5, 0.01), 1, 1e-12) << "a whole period";
