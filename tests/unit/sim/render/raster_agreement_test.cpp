@@ -166,7 +166,7 @@ class RasterAgreement : public EngineTest {
     // Controls: everything 2 mm aside; the pictures upside down.
     const double aside =
         PictureDistance(Moved(RoomScene(), {0.002f, 0, 0}), camera, still, Exposure{}, Centred(), "", 0);
-    EXPECT_LT(aside, least - 3);
+    EXPECT_LT(aside, least - 2);
     RecordProperty("aside", std::to_string(aside));
     Scene flipped = RoomScene();
     for (Mesh& mesh : flipped.meshes) {

@@ -162,7 +162,10 @@ TEST_P(RasteriserTest, NamesWhatItDoesNotRender) {
 
   Scene scene = SmallWorld();
   scene.materials[0].name = "wall", scene.materials[1].name = "ball";
-  scene.materials[0].normal_map = scene.materials[1].normal_map = scene.materials[0].emission_texture = 0;
+  scene.textures.emplace_back("bumps", 1, 1, std::vector<std::uint8_t>{128, 128, 255}, std::span<const std::uint8_t>(),
+                              Texture::Content::normals);
+  scene.materials[0].normal_map = scene.materials[1].normal_map = 1;
+  scene.materials[0].emission_texture = 0;
   scene.materials[0].emission = glm::vec3(1.0f);
   scene.materials[0].alpha_cutoff = 0.5f;
   for (Mesh& mesh : scene.meshes) mesh.uvs.resize(mesh.positions.size());
