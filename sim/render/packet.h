@@ -101,6 +101,7 @@ struct RaySample {
   float origin[3], way[3];           // p_WC
   std::uint32_t point_u, point_v;    // of the pixel's pattern, as 32-bit fractions
   float lens[2], inverse_focus;      // point of the lens in C [m], to be turned about the axis; 1 / Z of what is sharp
+  float moment;                      // in [0, 1): see PixelBlock
   const LightSample* lights;
   int light_count;
   float layer_factors[kMaxLightLayers][kBlockSide];  // of lamps' light and of baked light, by layer and by row of the block
@@ -111,7 +112,10 @@ struct PixelBlock {
   Lanes x, y, z, x_du, x_dv, y_du, y_dv, z_du, z_dv;
   Lanes width;  // of the pixel: sqrt of |det(ray, ray_du, ray_dv)|, so that a surface at `ray * t` which faces it has t
                 // width
-  Lanes time;   // of the pixel's rays: 0 at the beginning of each sample's time, 1 at its end
+  // A sample's time runs from 0 to 1. Of it the pixel's row looks at row_begin ... row_begin + row_part, and the pixel's
+  // ray at the fraction `moment` + RaySample::moment of that, less 1 where it is not below.
+  Lanes row_begin, moment;
+  float row_part;
   Lanes lens_cos, lens_sin;         // the turn of the lens's points
   LaneInts valid;                   // -1: there is such a pixel, 0: not
   LaneInts scramble_u, scramble_v;  // random bits by pixel, exclusive-ored to the pattern

@@ -79,18 +79,20 @@ struct BlockTime {
   double length_s() const { return part_s + (kBlockSide - 1) * std::abs(row_s); }
   // From the middle of the block's middle rows at which the sample begins.
   double begin_s() const { return -0.5 * length_s(); }
-  // `moment` in [0, 1]: of the row's own part.
-  float At(int row, double moment) const {
+  // Of the sample's time, from 0 to 1: where the row's own part begins, and how much of it that is.
+  float RowBegin(int row) const {
     if (!(length_s() > 0)) return 0.5f;
-    const double s = row_s * (row - 0.5 * (kBlockSide - 1)) + part_s * (moment - 0.5) - begin_s();
+    const double s = row_s * (row - 0.5 * (kBlockSide - 1)) - 0.5 * part_s - begin_s();
     return static_cast<float>(s / length_s());
   }
+  float RowPart() const { return length_s() > 0 ? static_cast<float>(part_s / length_s()) : 0.0f; }
 };
 
 // The block of pixels whose upper left one is (x0, y0). key: null for rays through the pixels' centres, at the middle
 // of each sample's time. time: of the block's rows.
 PixelBlock MakeBlock(const Camera& camera, int x0, int y0, const BlockTime& time, const std::uint64_t* key) {
   PixelBlock block{};
+  block.row_part = time.RowPart();
   for (int i = 0; i < kLanes; ++i) {
     const int x = x0 + i % kBlockSide, y = y0 + i / kBlockSide;
     if (x >= camera.width() || y >= camera.height()) continue;
@@ -103,13 +105,14 @@ PixelBlock MakeBlock(const Camera& camera, int x0, int y0, const BlockTime& time
     block.x_dv.v[i] = dv.x, block.y_dv.v[i] = dv.y, block.z_dv.v[i] = dv.z;
     block.width.v[i] = std::sqrt(std::abs(glm::dot(ray, glm::cross(du, dv))));
     block.valid.v[i] = -1;
-    block.time.v[i] = time.At(i / kBlockSide, 0.5);
+    block.row_begin.v[i] = time.RowBegin(i / kBlockSide);
+    block.moment.v[i] = 0.5f;
     block.lens_cos.v[i] = 1.0f;
     if (key == nullptr) continue;
     const PixelBits bits = PixelScramble(*key, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
     block.scramble_u.v[i] = static_cast<std::int32_t>(bits.point.u);
     block.scramble_v.v[i] = static_cast<std::int32_t>(bits.point.v);
-    block.time.v[i] = time.At(i / kBlockSide, ToUnit(bits.time));
+    block.moment.v[i] = static_cast<float>(bits.time >> 8) * 0x1p-24f;
     const auto [cosine, sine] = CosSinFast(bits.turn >> 8);
     block.lens_cos.v[i] = cosine, block.lens_sin.v[i] = sine;
   }
@@ -218,6 +221,7 @@ class RayTracer final : public Renderer {
         const PatternPoint point = SobolPoint(static_cast<std::uint32_t>(i));
         s.point_u = point.u;
         s.point_v = point.v;
+        s.moment = options_.jitter ? Moment(i) : 0.0f;
         s.lens[0] = static_cast<float>(0.5 * exposure.aperture_m * lens[static_cast<std::size_t>(i)].x);
         s.lens[1] = static_cast<float>(0.5 * exposure.aperture_m * lens[static_cast<std::size_t>(i)].y);
         s.inverse_focus = static_cast<float>(1 / exposure.focus_m);
@@ -237,6 +241,13 @@ class RayTracer final : public Renderer {
         s.layer_factors[layer][row] = static_cast<float>(FlickerFactor(layers_[layer], t_s, time.part_s));
       }
     }
+  }
+
+  // By the golden ratio on from sample to sample: a pixel's moments in its parts of the exposure are spread evenly, so
+  // that together they are neither early nor late, and independent from pixel to pixel all the same.
+  static float Moment(int sample) {
+    const double turns = sample * 0.6180339887498949;
+    return std::min(static_cast<float>(turns - std::floor(turns)), 0x1.fffffep-1f);
   }
 
   static void StoreMotion(const Pose& begin, const Pose& end, RaySample& s) {

@@ -30,6 +30,7 @@ TEST(Packet, InstructionSetsAgree) {
   RaySample samples[4]{};
   for (std::uint32_t i = 0; i < 4; ++i) {
     for (int c = 0; c < 3; ++c) samples[i].rotation[c][c] = 1, samples[i].way[c] = 0.02f;
+    samples[i].moment = 0.3f * static_cast<float>(i);
     samples[i].turn[0][1] = 0.03f, samples[i].turn[1][0] = -0.03f;
     samples[i].point_u = SobolPoint(i).u;
     samples[i].point_v = SobolPoint(i).v;
@@ -40,7 +41,8 @@ TEST(Packet, InstructionSetsAgree) {
   PixelBlock block{};
   for (int i = 0; i < kLanes; ++i) {
     block.x.v[i] = 0.05f * static_cast<float>(i % 4), block.y.v[i] = 0.08f * static_cast<float>(i / 4);
-    block.z.v[i] = 1, block.time.v[i] = 0.06f * static_cast<float>(i);
+    block.z.v[i] = 1, block.row_begin.v[i] = 0.02f * static_cast<float>(i / 4);
+    block.moment.v[i] = 0.06f * static_cast<float>(i), block.row_part = 0.9f;
     block.x_du.v[i] = block.y_dv.v[i] = block.width.v[i] = 0.01f;
     block.valid.v[i] = i == 5 ? 0 : -1;
     block.scramble_u.v[i] = static_cast<std::int32_t>(PixelScramble(1, static_cast<std::uint32_t>(i), 0).point.u);
