@@ -150,6 +150,11 @@ Truth Simulator::TruthAt(std::int64_t index) const {
   return sim::TruthAt(*parts_->trajectory, Seconds(StampNs(index)));
 }
 
+ExposureSetting Simulator::SettingOf(std::int64_t index) const {
+  StampNs(index);  // throws where there is no such frame
+  return parts_->Setting(index);
+}
+
 Frame Simulator::Render(std::int64_t index) const {
   const Parts& parts = *parts_;
   Frame frame;

@@ -46,6 +46,7 @@ class Simulator {
   Frame Render(std::int64_t index) const;
   std::int64_t StampNs(std::int64_t index) const;
   Truth TruthAt(std::int64_t index) const;
+  ExposureSetting SettingOf(std::int64_t index) const;
   // Z in the camera frame [m] at each pixel's centre at the stamp, rows from the top; 0: nothing there.
   std::vector<float> Depth(std::int64_t index) const;
 

@@ -47,6 +47,11 @@ std::vector<StreamFile> WholeFiles(const Simulator& simulator, const SequenceCon
       files.push_back(std::move(file));
     }
   }
+  if (content.layout == Layout::tum && simulator.scenario().sensor.auto_exposure.on) {
+    std::string lines = "# timestamp exposure gain\n";
+    for (const StampedTruth& frame : frames) lines += ExposureLine(frame.stamp_ns, simulator.SettingOf(frame.index));
+    files.push_back(TextFile("exposure.txt", lines));
+  }
   files.push_back(TextFile("camera.yaml", CameraYaml(simulator.camera().params())));
   files.push_back(TextFile(kManifestName, Manifest(simulator, content, whole)));
   return files;

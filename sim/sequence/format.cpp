@@ -34,6 +34,10 @@ std::string TruthLine(std::int64_t stamp_ns, const Truth& t) {
   return Line(stamp_ns, {t.p_WC.x, t.p_WC.y, t.p_WC.z, t.q_WC.x, t.q_WC.y, t.q_WC.z, t.q_WC.w});
 }
 
+std::string ExposureLine(std::int64_t stamp_ns, const ExposureSetting& setting) {
+  return Line(stamp_ns, {setting.exposure_s, setting.gain});
+}
+
 std::string VelocityLine(std::int64_t stamp_ns, const Truth& t) {
   return Line(stamp_ns, {t.v_WC.x, t.v_WC.y, t.v_WC.z, t.w_WC_C.x, t.w_WC_C.y, t.w_WC_C.z});
 }

@@ -21,6 +21,8 @@ std::string TruthLine(std::int64_t stamp_ns, const Truth& truth);
 std::string VelocityLine(std::int64_t stamp_ns, const Truth& truth);
 // "stamp ax ay az alphax alphay alphaz", the same.
 std::string AccelerationLine(std::int64_t stamp_ns, const Truth& truth);
+// "stamp exposure gain", the time in seconds.
+std::string ExposureLine(std::int64_t stamp_ns, const ExposureSetting& setting);
 std::string CameraYaml(const CameraParams& camera);
 
 // PNG files. Depth: 16 bits, round(5000 Z), 0 for what is 0 or does not fit. Throw as in png.h.

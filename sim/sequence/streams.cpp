@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "sim/render/surface_tracer.h"
+#include "sim/sensor/depth_noise.h"
 #include "sim/sequence/format.h"
 #include "sim/truth/encode.h"
 #include "sim/truth/flow.h"
@@ -27,6 +28,7 @@ struct ImageStream {
 const std::vector<ImageStream>& ImageStreams() {
   static const std::vector<ImageStream> streams = {{TruthStream::depth, "depth", ".png", 0},
                                                    {TruthStream::depth_exr, "depth_exr", ".exr", 0},
+                                                   {TruthStream::depth_kinect, "depth_kinect", ".png", 0},
                                                    {TruthStream::distance, "distance", ".exr", 0},
                                                    {TruthStream::normals, "normals", ".exr", 0},
                                                    {TruthStream::surface_id, "surface_id", ".png", 0},
@@ -165,6 +167,10 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
         break;
       case TruthStream::depth_exr:
         file.bytes = EncodeExr(Floats(points, depth), width, height, 1, false);
+        break;
+      case TruthStream::depth_kinect:
+        file.bytes = EncodeDepthPng(
+            WithKinectNoise(Floats(points, depth), width, height, simulator.scenario().seed, index), width, height);
         break;
       case TruthStream::distance:
         file.bytes = EncodeExr(Floats(points, distance), width, height, 1, false);

@@ -98,7 +98,8 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
   app.set_version_flag("--version", "vobench " VOBENCH_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "`vobench COMMAND --help` tells more. Exit status: 0 done, 1 the work failed or `verify` found a disagreement, 2 bad usage or input, 3 not "
+      "`vobench COMMAND --help` tells more. Exit status: 0 done, 1 the work failed or `verify` found a disagreement, 2 "
+      "bad usage or input, 3 not "
       "consistent\nthough `run --require-consistent` asked for it.");
   Raw raw;
 
@@ -118,7 +119,8 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
   render_command.add_flag("--preview", render.preview, "Also preview.mp4 and contact.jpg, for the eye");
   render_command
       .add_option("--truth", render.truth,
-                  "Truth beside poses and velocities, separated by commas: depth, depth_exr, distance, normals, flow, "
+                  "Truth beside poses and velocities, separated by commas: depth, depth_exr, depth_kinect, distance, "
+                  "normals, flow, "
                   "flow_backward, occlusion, surface_id, landmarks, acceleration, imu (docs/truth.md)")
       ->type_name("NAME,...");
   const CLI::Option* render_seed = AddSeed(render_command, raw, "Seed instead of the scenario's");

@@ -140,6 +140,31 @@ trajectory:
   EXPECT_LT(worst, 0.02);
 }
 
+TEST(Simulator, AutomaticExposureBringsADarkWallToItsTarget) {
+  const SmallWorld world;
+  const std::vector<std::pair<std::string, std::string>> dark = {
+      {"world.lights.0.radiance", "[0.15, 0.15, 0.15]"},
+      {"sensor.shot_noise", "false"},
+      {"sensor.read_noise", "0"},
+      {"sensor.auto_exposure", "{on: true, target: 0.4, speed: 0.6, longest: 20 ms, highest_gain: 16}"}};
+  const Simulator simulator(LoadScenario(world.scenario(), dark), 1), again(LoadScenario(world.scenario(), dark), 2);
+  const auto mean = [](const Image& image) {
+    double sum = 0;
+    for (const std::uint8_t code : image.data) sum += code / (255.0 * static_cast<double>(image.data.size()));
+    return sum;
+  };
+  const Frame first = simulator.Render(0), last = simulator.Render(8);
+  EXPECT_EQ(first.setting.exposure_s, 0.010);
+  EXPECT_EQ(first.setting.gain, 1);
+  EXPECT_LT(mean(first.image), 0.33);
+  EXPECT_EQ(last.setting.exposure_s, 0.020);
+  EXPECT_GT(last.setting.gain, 1);
+  EXPECT_NEAR(mean(last.image), 0.4, 0.02);  // what is metered is an eighth as wide
+  EXPECT_EQ(simulator.SettingOf(8).gain, last.setting.gain);
+  EXPECT_EQ(again.Render(8).image.data, last.image.data);
+  EXPECT_THROW(simulator.SettingOf(9), std::out_of_range);
+}
+
 TEST(Simulator, FaultsOfTheInputAreNamed) {
   const SmallWorld world;
   std::filesystem::remove(world.folder.path() / "wall.ply");

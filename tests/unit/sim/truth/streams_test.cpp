@@ -5,11 +5,13 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 
 #include "sim/render/surface_tracer.h"
+#include "sim/sensor/depth_noise.h"
 #include "sim/truth/encode.h"
 #include "sim/truth/flow.h"
 #include "tests/unit/sim/small_world.h"
@@ -52,7 +54,7 @@ std::vector<float> ReadExr(const std::filesystem::path& path, const std::vector<
 TEST(TruthStreams, NamesAndBack) {
   for (const TruthStream stream : All()) EXPECT_EQ(TruthStreamOf(Name(stream)), stream);
   EXPECT_EQ(TruthStreamOf("depths"), std::nullopt);
-  EXPECT_THAT(TruthStreamList(), StartsWith("depth, depth_exr, distance, "));
+  EXPECT_THAT(TruthStreamList(), StartsWith("depth, depth_exr, depth_kinect, distance, "));
 }
 
 TEST(TruthStreams, FilesOfAFrame) {
@@ -60,10 +62,10 @@ TEST(TruthStreams, FilesOfAFrame) {
   const Simulator simulator(LoadScenario(world.scenario()), 1), parallel(LoadScenario(world.scenario()), 3);
   const auto first = ByName(FrameStreams(simulator, 0, All())), middle = ByName(FrameStreams(simulator, 4, All())),
              last = ByName(FrameStreams(simulator, 8, All()));
-  EXPECT_EQ(middle.size(), 9u);
-  EXPECT_EQ(first.size(), 7u);
+  EXPECT_EQ(middle.size(), 10u);
+  EXPECT_EQ(first.size(), 8u);
   EXPECT_FALSE(first.contains("flow_backward/0.000000000.flo"));
-  EXPECT_EQ(last.size(), 7u);
+  EXPECT_EQ(last.size(), 8u);
   EXPECT_FALSE(last.contains("flow/0.266666667.flo"));
   EXPECT_TRUE(middle == ByName(FrameStreams(parallel, 4, All())));
   EXPECT_EQ(FrameStreams(simulator, 4, {TruthStream::normals, TruthStream::imu}).size(), 1u);
@@ -88,6 +90,15 @@ TEST(TruthStreams, WhatIsInTheFiles) {
   const auto depth = exr("depth_exr", {"Y"}), distance = exr("distance", {"Y"}),
              normals = exr("normals", {"R", "G", "B"});
   EXPECT_EQ(depth, simulator.Depth(4));
+  const cv::Mat kinect = cv::imdecode(files.at("depth_kinect" + stamp + ".png"), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(kinect.type(), CV_16UC1);
+  const std::vector<float> noisy = WithKinectNoise(depth, 64, 48, simulator.scenario().seed, 4);
+  int changed = 0;
+  for (std::size_t i = 0; i < noisy.size(); ++i) {
+    ASSERT_EQ(kinect.at<std::uint16_t>(static_cast<int>(i)), std::lround(5000 * noisy[i]));
+    changed += noisy[i] != depth[i];
+  }
+  EXPECT_GT(changed, 2000);
   const cv::Mat ids = cv::imdecode(files.at("surface_id" + stamp + ".png"), cv::IMREAD_UNCHANGED);
   ASSERT_EQ(ids.type(), CV_16UC1);
   const auto& flo = files.at("flow" + stamp + ".flo");
