@@ -124,7 +124,7 @@ struct Simulator::Parts {
   std::vector<std::string> warnings;
   std::unique_ptr<Renderer> renderer;
   std::vector<ExposureSetting> settings;  // by frame; empty: always the scenario's
-  std::unique_ptr<Renderer> exact;  // where the renderer cannot be asked what a pixel sees
+  std::unique_ptr<Renderer> exact;        // where the renderer cannot be asked what a pixel sees
   std::vector<std::string> mesh_names;
   mutable tbb::task_arena arena;
 };

@@ -1,3 +1,4 @@
+#include "sim/render/pixel_ray.h"
 #include "sim/render/rasteriser.h"
 
 #include <algorithm>
@@ -86,16 +87,6 @@ std::vector<glm::vec2> Jitter(int count, bool jitter) {
   std::vector<glm::vec2> out;
   for (const glm::dvec2& point : points) out.emplace_back(jitter ? point - mean : glm::dvec2(0.0));
   return out;
-}
-
-// Of a pixel's centre in C, to 1e-6 px: the camera's table, then one Newton step on Project.
-glm::dvec3 ExactRay(const Camera& camera, int x, int y) {
-  const auto u = static_cast<float>(x), v = static_cast<float>(y);
-  const glm::dvec3 ray(camera.Ray(u, v));
-  const glm::dvec3 du(camera.Ray(u + 0.5f, v) - camera.Ray(u - 0.5f, v)),
-      dv(camera.Ray(u, v + 0.5f) - camera.Ray(u, v - 0.5f));
-  const glm::dvec2 miss = glm::dvec2(x, y) - camera.Project(ray);
-  return ray + miss.x * du + miss.y * dv;
 }
 
 // How far along the ray, in lengths of it, the triangle is: on its plane, or where it is nearest to that when the view

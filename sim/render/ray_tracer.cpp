@@ -278,8 +278,8 @@ class RayTracer final : public Renderer {
   }
 
   RayTracerOptions options_;
-  std::vector<Light> lights_;     // that shadow rays are sent to
-  std::vector<Flicker> layers_;   // of lamps and of baked light; the first is steady
+  std::vector<Light> lights_;    // that shadow rays are sent to
+  std::vector<Flicker> layers_;  // of lamps and of baked light; the first is steady
   RayScene scene_;
   SurfaceTracer surfaces_;
   KernelChoice kernel_;

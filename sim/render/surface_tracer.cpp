@@ -11,21 +11,11 @@
 #include <glm/mat3x3.hpp>
 #include <limits>
 
+#include "sim/render/pixel_ray.h"
 #include "sim/render/ray_scene.h"
 
 namespace sim {
 namespace {
-
-// Of the pixel's centre, in C: the camera's table, then one Newton step on Project, which takes its 0.003 px to 1e-6
-// px.
-glm::dvec3 ExactRay(const Camera& camera, int x, int y) {
-  const auto u = static_cast<float>(x), v = static_cast<float>(y);
-  const glm::dvec3 ray(camera.Ray(u, v));
-  const glm::dvec3 du(camera.Ray(u + 0.5f, v) - camera.Ray(u - 0.5f, v)),
-      dv(camera.Ray(u, v + 0.5f) - camera.Ray(u, v - 0.5f));
-  const glm::dvec2 miss = glm::dvec2(x, y) - camera.Project(ray);
-  return ray + miss.x * du + miss.y * dv;
-}
 
 // Up to sixteen rays from one eye.
 struct Packet {

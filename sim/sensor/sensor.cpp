@@ -129,7 +129,11 @@ Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame, const E
   const std::size_t width = static_cast<std::size_t>(radiance.width),
                     height = static_cast<std::size_t>(radiance.height), row_size = width * channels();
   Image image{radiance.width, radiance.height, static_cast<int>(channels()), {}, params_.bit_depth, {}};
-  (image.bits == 8 ? static_cast<void>(image.data.resize(height * row_size)) : image.wide.resize(height * row_size));
+  if (image.bits == 8) {
+    image.data.resize(height * row_size);
+  } else {
+    image.wide.resize(height * row_size);
+  }
   const auto fits = [&](const std::vector<float>& fixed) { return fixed.empty() || fixed.size() == height * row_size; };
   if (!fits(pattern_.sensitivity) || !fits(pattern_.dark_e_s))
     throw std::invalid_argument("sensor: the picture has not the size of the fixed pattern");

@@ -26,7 +26,8 @@ Vignetting::Vignetting(const OpticsParams& optics, const Camera& camera) : optic
 double Vignetting::Factor(double u, double v) const {
   const CameraParams& c = camera_.params();
   const double dx = u - c.cx, dy = v - c.cy;
-  const double r2 = 4 * (dx * dx + dy * dy) / (double{1} * c.width * c.width + double{1} * c.height * c.height);
+  const double width = c.width, height = c.height;
+  const double r2 = 4 * (dx * dx + dy * dy) / (width * width + height * height);
   double factor = 1 + r2 * (optics_.vignetting_2 + r2 * (optics_.vignetting_4 + r2 * optics_.vignetting_6));
   if (optics_.natural_vignetting) {
     const glm::dvec3 ray = glm::normalize(camera_.Direction({u, v}));

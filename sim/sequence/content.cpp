@@ -41,7 +41,6 @@ std::vector<StreamFile> WholeFiles(const Simulator& simulator, const SequenceCon
   }
   std::vector<StreamFile> files = Lists(content.layout, simulator.scenario(), frames);
   if (content.layout == Layout::tum) {
-    std::erase_if(files, [](const StreamFile& file) { return file.path == "depth.txt"; });  // it is one of these:
     for (StreamFile& file : SequenceStreams(simulator, content.first, content.first + whole,
                                             simulator.scenario().truth.streams)) {
       files.push_back(std::move(file));

@@ -10,21 +10,19 @@ namespace {
 
 using Frames = std::span<const StampedTruth>;
 
-// ---- TUM RGB-D
+// ---- TUM RGB-D; the lists of depth and other truth are with their streams (sim/sequence/streams.h)
 
 std::vector<StreamFile> TumLists(Frames frames) {
-  std::string rgb = "# timestamp filename\n", depth = rgb, truth = "# timestamp tx ty tz qx qy qz qw\n",
+  std::string rgb = "# timestamp filename\n", truth = "# timestamp tx ty tz qx qy qz qw\n",
               velocity = "# timestamp vx vy vz wx wy wz\n";
   for (const StampedTruth& frame : frames) {
     const std::string stamp = FormatStamp(frame.stamp_ns);
     const FrameNames names = NamesOf(Layout::tum, frame.index, frame.stamp_ns);
     rgb.append(stamp).append(" ").append(names.image).append("\n");
-    depth.append(stamp).append(" ").append(names.depth).append("\n");
     truth += TruthLine(frame.stamp_ns, frame.truth);
     velocity += VelocityLine(frame.stamp_ns, frame.truth);
   }
-  return {TextFile("rgb.txt", rgb), TextFile("depth.txt", depth), TextFile("groundtruth.txt", truth),
-          TextFile("velocity.txt", velocity)};
+  return {TextFile("rgb.txt", rgb), TextFile("groundtruth.txt", truth), TextFile("velocity.txt", velocity)};
 }
 
 // ---- EuRoC: the body B is the camera, so T_BS is one, and the truth is of the camera.

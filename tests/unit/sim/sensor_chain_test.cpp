@@ -10,18 +10,11 @@
 #include "sim/sensor/develop.h"
 #include "sim/sensor/emva.h"
 #include "sim/sensor/sensor.h"
+#include "tests/unit/sim/flat_picture.h"
 #include "tests/unit/sim/render/worlds.h"
 
 namespace sim {
 namespace {
-
-constexpr double kZ = 4.8916;  // |z| beyond it: 1e-6, two-sided
-
-RadianceImage Flat(int width, int height, glm::vec3 rgb) {
-  RadianceImage image{width, height, {}};
-  for (int i = 0; i < width * height; ++i) image.rgb.insert(image.rgb.end(), {rgb.x, rgb.y, rgb.z});
-  return image;
-}
 
 SensorParams Silent() {
   SensorParams params;

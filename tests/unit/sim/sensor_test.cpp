@@ -8,17 +8,10 @@
 #include <stdexcept>
 
 #include "sim/sensor/exposure.h"
+#include "tests/unit/sim/flat_picture.h"
 
 namespace sim {
 namespace {
-
-constexpr double kZ = 4.8916;  // |z| beyond it: 1e-6, two-sided
-
-RadianceImage Flat(int width, int height, glm::vec3 rgb) {
-  RadianceImage image{width, height, {}};
-  for (int i = 0; i < width * height; ++i) image.rgb.insert(image.rgb.end(), {rgb.x, rgb.y, rgb.z});
-  return image;
-}
 
 SensorParams Linear(double full_well_e, double read_noise_e, bool shot_noise = true) {
   SensorParams params;

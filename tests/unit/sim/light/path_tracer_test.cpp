@@ -53,16 +53,6 @@ Scene FloorWorld(glm::vec3 albedo) {
   return scene;
 }
 
-// Irradiance of a polygon of radiance 1 (Lambert 1760).
-double PolygonIrradiance(const std::vector<glm::dvec3>& corners, glm::dvec3 x, glm::dvec3 n) {
-  double sum = 0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const glm::dvec3 a = glm::normalize(corners[i] - x), b = glm::normalize(corners[(i + 1) % corners.size()] - x);
-    sum += std::acos(glm::dot(a, b)) * glm::dot(glm::normalize(glm::cross(a, b)), n);
-  }
-  return std::abs(sum) / 2;
-}
-
 // In a closed box whose walls emit e and reflect a, radiance is e + a e + a^2 e + ... = e / (1 - a) everywhere.
 TEST(PathTracer, WhiteFurnace) {
   Scene scene;

@@ -105,17 +105,6 @@ TEST_P(Light, NoneFromBehindTheSurface) {
   }
 }
 
-// Irradiance of a polygon of radiance 1 seen from x (Lambert 1760): sum over its edges of angle * (normal of the edge's
-// fan . n) / 2.
-double PolygonIrradiance(const std::vector<glm::dvec3>& corners, glm::dvec3 x, glm::dvec3 n) {
-  double sum = 0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const glm::dvec3 a = glm::normalize(corners[i] - x), b = glm::normalize(corners[(i + 1) % corners.size()] - x);
-    sum += std::acos(glm::dot(a, b)) * glm::dot(glm::normalize(glm::cross(a, b)), n);
-  }
-  return std::abs(sum) / 2;
-}
-
 TEST_P(Light, RectLightOnPlaneAgainstLambertsFormula) {
   const glm::dvec3 at(0, 0, 3), n(0, 0, -1);
   Scene scene = PlaneWorld(at, n);

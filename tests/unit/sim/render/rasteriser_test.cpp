@@ -9,20 +9,6 @@
 namespace sim::test {
 namespace {
 
-Scene SmallWorld() {
-  Scene scene;
-  std::vector<std::uint8_t> rgb;
-  for (int i = 0; i < 50 * 70 * 3; ++i) rgb.push_back(static_cast<std::uint8_t>((i * 2654435761u) >> 24));
-  scene.textures.emplace_back("noise", 50, 70, rgb);
-  AddMaterial(scene, {0.9f, 0.8f, 0.7f}, glm::vec3(0.0f), 0);
-  AddMaterial(scene, {0.3f, 0.8f, 0.4f});
-  AddQuad(scene, {-6, -6, 4}, {12, 0, 1}, {0, 12, 1}, 0, 3.0f);
-  AddSphere(scene, {0.3, 0.1, 2.2}, 0.5, 20, 1);
-  scene.lights = {AmbientLight{{0.1, 0.1, 0.1}}, PointLight{{1, -1, 0}, {9, 8, 7}}, SunLight{{1, 1, 2}, {1, 1, 1}},
-                  RectLight{{-1, -1, 0}, {0.5, 0, 0}, {0, 0.5, 0}, {8, 8, 8}}};
-  return scene;
-}
-
 RasteriserOptions On(const EngineUnderTest& engine) {
   RasteriserOptions options;
   options.platform = engine.platform;
@@ -50,9 +36,9 @@ TEST_P(RasteriserTest, ResultsDependOnTheArgumentsAlone) {
   const SteadyMotion motion(Pose{}, {0.8, 0.4, 0.1}, {0.05, -0.1, 0.15});
   const Camera small(SmallCamera()), distorted(DistortedCamera());
   const Exposure blur{0.0, 0.1, 0.0, 4}, rolling{0.1, 0.02, 1e-4, 3};
-  const auto renderer = MakeRasteriser(SmallWorld(), On(GetParam())),
-             again = MakeRasteriser(SmallWorld(), On(GetParam()));
-  const auto other = MakeRasteriser(SmallWorld());
+  const auto renderer = MakeRasteriser(BusyWorld(), On(GetParam())),
+             again = MakeRasteriser(BusyWorld(), On(GetParam()));
+  const auto other = MakeRasteriser(BusyWorld());
   const RadianceImage a = Expose(*renderer, small, motion, blur), b = Expose(*again, distorted, motion, rolling);
   RadianceImage c, d;
   std::thread one([&] {
@@ -73,7 +59,7 @@ TEST_P(RasteriserTest, ResultsDependOnTheArgumentsAlone) {
 TEST_P(RasteriserTest, NothingIsBackground) {
   Scene scene;
   scene.background = {0.25f, 0.5f, 1.5f};
-  scene.lights = SmallWorld().lights;
+  scene.lights = BusyWorld().lights;
   const auto renderer = MakeRasteriser(scene, On(GetParam()));
   const RadianceImage image = Expose(*renderer, Camera(SmallCamera(9, 5)), SteadyMotion(Pose{}), Exposure{});
   ASSERT_EQ(image.rgb.size(), 9u * 5u * 3u);
@@ -129,18 +115,18 @@ TEST_P(RasteriserTest, RefusesWhatItCannotDo) {
   RasteriserOptions options = On(GetParam());
   options.rays_per_time_sample = 0, options.strip_rows = 0, options.shadow_map_side = 1;
   try {
-    MakeRasteriser(SmallWorld(), options);
+    MakeRasteriser(BusyWorld(), options);
     ADD_FAILURE();
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),
                  "rasteriser: rays_per_time_sample = 0 must lie in 1 ... 4096; shadow_map_side = 1 must lie in 16 ... "
                  "8192; strip_rows = 0 must lie in 1 ... 16384");
   }
-  Scene scene = SmallWorld();
+  Scene scene = BusyWorld();
   scene.meshes[0].material = 2;
   EXPECT_THROW(MakeRasteriser(scene, On(GetParam())), std::invalid_argument);
 
-  const auto renderer = MakeRasteriser(SmallWorld(), On(GetParam()));
+  const auto renderer = MakeRasteriser(BusyWorld(), On(GetParam()));
   EXPECT_THROW(Expose(*renderer, Camera(SmallCamera()), SteadyMotion(Pose{}), Exposure{0, 0, 0, 0}),
                std::invalid_argument);
   // A lens whose pixels are 800 times narrower in the middle than they are wide at the border.
@@ -157,10 +143,10 @@ TEST_P(RasteriserTest, RefusesWhatItCannotDo) {
 
 TEST_P(RasteriserTest, NamesWhatItDoesNotRender) {
   std::vector<std::string> warnings;
-  MakeRasteriser(SmallWorld(), On(GetParam()), &warnings);
+  MakeRasteriser(BusyWorld(), On(GetParam()), &warnings);
   EXPECT_THAT(warnings, testing::IsEmpty());
 
-  Scene scene = SmallWorld();
+  Scene scene = BusyWorld();
   scene.materials[0].name = "wall", scene.materials[1].name = "ball";
   scene.textures.emplace_back("bumps", 1, 1, std::vector<std::uint8_t>{128, 128, 255}, std::span<const std::uint8_t>(),
                               Texture::Content::normals);

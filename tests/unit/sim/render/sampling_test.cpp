@@ -8,21 +8,6 @@
 namespace sim::test {
 namespace {
 
-// Something with texture, light and shadow in every part of the picture.
-Scene BusyWorld() {
-  Scene scene;
-  std::vector<std::uint8_t> rgb;
-  for (int i = 0; i < 50 * 70 * 3; ++i) rgb.push_back(static_cast<std::uint8_t>((i * 2654435761u) >> 24));
-  scene.textures.emplace_back("noise", 50, 70, rgb);
-  AddMaterial(scene, {0.9f, 0.8f, 0.7f}, glm::vec3(0.0f), 0);
-  AddMaterial(scene, {0.3f, 0.8f, 0.4f});
-  AddQuad(scene, {-6, -6, 4}, {12, 0, 1}, {0, 12, 1}, 0, 3.0f);
-  AddSphere(scene, {0.3, 0.1, 2.2}, 0.5, 20, 1);
-  scene.lights = {AmbientLight{{0.1, 0.1, 0.1}}, PointLight{{1, -1, 0}, {9, 8, 7}}, SunLight{{1, 1, 2}, {1, 1, 1}},
-                  RectLight{{-1, -1, 0}, {0.5, 0, 0}, {0, 0.5, 0}, {8, 8, 8}}};
-  return scene;
-}
-
 SteadyMotion Moving() { return SteadyMotion(Pose{}, {0.8, 0.4, 0.1}, {0.05, -0.1, 0.15}); }
 
 Exposure Open(int time_samples, double exposure_s = 0.1, double row_delay_s = 0.0, double middle_s = 0.0) {

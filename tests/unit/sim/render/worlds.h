@@ -89,6 +89,32 @@ inline void AddSphere(Scene& scene, glm::dvec3 center, double radius, int rings,
   scene.meshes.push_back(mesh);
 }
 
+// Something with texture, light and shadow in every part of the picture.
+inline Scene BusyWorld() {
+  Scene scene;
+  std::vector<std::uint8_t> rgb;
+  for (int i = 0; i < 50 * 70 * 3; ++i) rgb.push_back(static_cast<std::uint8_t>((i * 2654435761u) >> 24));
+  scene.textures.emplace_back("noise", 50, 70, rgb);
+  AddMaterial(scene, {0.9f, 0.8f, 0.7f}, glm::vec3(0.0f), 0);
+  AddMaterial(scene, {0.3f, 0.8f, 0.4f});
+  AddQuad(scene, {-6, -6, 4}, {12, 0, 1}, {0, 12, 1}, 0, 3.0f);
+  AddSphere(scene, {0.3, 0.1, 2.2}, 0.5, 20, 1);
+  scene.lights = {AmbientLight{{0.1, 0.1, 0.1}}, PointLight{{1, -1, 0}, {9, 8, 7}}, SunLight{{1, 1, 2}, {1, 1, 1}},
+                  RectLight{{-1, -1, 0}, {0.5, 0, 0}, {0, 0.5, 0}, {8, 8, 8}}};
+  return scene;
+}
+
+// Irradiance of a polygon of radiance 1 seen from x (Lambert 1760): sum over its edges of angle * (normal of the edge's
+// fan . n) / 2.
+inline double PolygonIrradiance(const std::vector<glm::dvec3>& corners, glm::dvec3 x, glm::dvec3 n) {
+  double sum = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec3 a = glm::normalize(corners[i] - x), b = glm::normalize(corners[(i + 1) % corners.size()] - x);
+    sum += std::acos(glm::dot(a, b)) * glm::dot(glm::normalize(glm::cross(a, b)), n);
+  }
+  return std::abs(sum) / 2;
+}
+
 // Some pose that is not aligned with anything.
 inline Pose TiltedPose() { return {{0.2, -0.1, -0.3}, glm::normalize(glm::dquat(0.97, 0.08, -0.12, 0.06))}; }
 
