@@ -38,6 +38,12 @@ double LongestExposure(const SensorParams& s) {
   return s.auto_exposure.on ? std::max(s.exposure_s, s.auto_exposure.longest_s) : s.exposure_s;
 }
 
+// What an object is sampled with, where its motion is sampled: no other object's noise, nor the camera's.
+std::uint64_t ObjectSeed(std::uint64_t seed, std::size_t object) {
+  const Words words = RandomWords(seed, Stream::object_motion, static_cast<std::uint32_t>(object), 0, 0);
+  return (std::uint64_t{words[0]} << 32) | words[1];
+}
+
 std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& params, int jobs,
                                        std::vector<std::string>& warnings) {
   if (params.engine == Engine::rasteriser) {
@@ -64,10 +70,14 @@ struct Simulator::Parts {
         camera(s.camera),
         sensor(s.sensor, s.seed, s.camera.width, s.camera.height),
         vignetting(s.sensor.optics, camera),
-        trajectory(MakeTrajectory(s.motion, s.seed, Seconds(sim::StampNs(frames - 1, s.time)),
-                                  0.5 * (LongestExposure(s.sensor) + std::abs(s.sensor.readout_s)))),
+        trajectory(MakeMotion(s.motion, s.seed)),
         arena(Threads(jobs)) {
-    const Scene scene = LoadScene(s.world);
+    Scene scene = LoadScene(s.world);
+    for (std::size_t k = 0; k < scene.objects.size(); ++k) {
+      scene.objects[k].motion = MakeObjectMotion(s.world.objects[k], ObjectSeed(s.seed, k));
+      object_motions.push_back(scene.objects[k].motion);
+      object_names.push_back(scene.objects[k].name);
+    }
     warnings = scene.warnings;
     renderer = MakeRenderer(scene, s.render, Threads(jobs), warnings);
     if (renderer->surfaces() == nullptr) {
@@ -80,7 +90,24 @@ struct Simulator::Parts {
       const auto* rect = std::get_if<RectLight>(&light);
       if (rect != nullptr && rect->visible) mesh_names.push_back("lamp");
     }
+    for (const MovingObject& object : scene.objects) {
+      for (const Mesh& mesh : object.meshes) mesh_names.push_back(object.name + "/" + mesh.name);
+    }
     if (s.sensor.auto_exposure.on) Meter();
+  }
+
+  // Long enough for all frames.
+  std::unique_ptr<Trajectory> MakeMotion(const MotionDescription& motion, std::uint64_t seed) const {
+    const SensorParams& s = scenario.sensor;
+    return MakeTrajectory(motion, seed, Seconds(sim::StampNs(frames - 1, scenario.time)),
+                          0.5 * (LongestExposure(s) + std::abs(s.readout_s)));
+  }
+  std::unique_ptr<Trajectory> MakeObjectMotion(const ObjectDescription& object, std::uint64_t seed) const {
+    try {
+      return MakeMotion(object.motion, seed);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument("object " + object.name + ": " + error.what());
+    }
   }
 
   // The settings of all frames, each from a small picture of the one before: they depend on nothing else.
@@ -125,7 +152,8 @@ struct Simulator::Parts {
   std::unique_ptr<Renderer> renderer;
   std::vector<ExposureSetting> settings;  // by frame; empty: always the scenario's
   std::unique_ptr<Renderer> exact;        // where the renderer cannot be asked what a pixel sees
-  std::vector<std::string> mesh_names;
+  std::vector<std::string> mesh_names, object_names;
+  std::vector<std::shared_ptr<const Trajectory>> object_motions;
   mutable tbb::task_arena arena;
 };
 
@@ -148,6 +176,17 @@ std::int64_t Simulator::StampNs(std::int64_t index) const { return sim::StampNs(
 
 Truth Simulator::TruthAt(std::int64_t index) const {
   return sim::TruthAt(*parts_->trajectory, Seconds(StampNs(index)));
+}
+
+View Simulator::ViewAt(std::int64_t index) const {
+  const double t_s = Seconds(StampNs(index));
+  return {parts_->trajectory->At(t_s).pose, t_s};
+}
+
+const std::vector<std::string>& Simulator::object_names() const { return parts_->object_names; }
+
+Truth Simulator::ObjectTruthAt(std::size_t object, std::int64_t index) const {
+  return sim::TruthAt(*parts_->object_motions.at(object), Seconds(StampNs(index)));
 }
 
 ExposureSetting Simulator::SettingOf(std::int64_t index) const {
@@ -179,7 +218,7 @@ Frame Simulator::Render(std::int64_t index) const {
 
 std::vector<float> Simulator::Depth(std::int64_t index) const {
   std::vector<float> depth;
-  parts_->renderer->Depth(parts_->camera, parts_->trajectory->At(Seconds(StampNs(index))).pose, depth);
+  parts_->renderer->Depth(parts_->camera, ViewAt(index), depth);
   return depth;
 }
 

@@ -46,6 +46,7 @@ class Simulator {
   Frame Render(std::int64_t index) const;
   std::int64_t StampNs(std::int64_t index) const;
   Truth TruthAt(std::int64_t index) const;
+  View ViewAt(std::int64_t index) const;  // the camera's at the stamp
   ExposureSetting SettingOf(std::int64_t index) const;
   // Z in the camera frame [m] at each pixel's centre at the stamp, rows from the top; 0: nothing there.
   std::vector<float> Depth(std::int64_t index) const;
@@ -54,8 +55,11 @@ class Simulator {
   // simulator.
   const Trajectory& trajectory() const;
   const SurfaceTracer& surfaces() const;
-  // Of the world's meshes, as SurfaceTracer::MeshOf counts them.
+  // Of the world's meshes, as SurfaceTracer::MeshOf counts them; of an object's "OBJECT/MESH".
   const std::vector<std::string>& mesh_names() const;
+  // What moves in the world, and how at a frame's stamp: O in the place of C.
+  const std::vector<std::string>& object_names() const;
+  Truth ObjectTruthAt(std::size_t object, std::int64_t index) const;
 
   // Frames 0, 1, ... one after the other; none after the last.
   std::optional<Frame> Next();

@@ -554,6 +554,23 @@ def textures():
     return books
 
 
+def cell(k):
+    """The k-th picture of parcels.jpg, as a part of it."""
+    return (k % 4) / 4 + 0.002, (k // 4) / 2 + 0.004, (k % 4 + 1) / 4 - 0.002, (k // 4 + 1) / 2 - 0.004
+
+
+def things():
+    """What moving.yaml moves, each about its own middle."""
+    o = Obj()
+    o.material("parcels", "parcels.jpg")
+    o.box("parcel", "parcels", (-0.16, -0.11, -0.13), (0.16, 0.11, 0.13), cells=[cell(k) for k in (0, 1, 2, 6, 5, 3)])
+    o.write("parcel")
+    o = Obj()
+    o.material("globe", "globe.jpg")
+    o.lathe("ball", "globe", (0, 0, 0), sphere_profile(0.13, 16), 32)
+    o.write("ball")
+
+
 def furnish(spine_columns):
     rng = rng_of("furniture")
     o = Obj()
@@ -649,7 +666,6 @@ def furnish(spine_columns):
     x = 2.25
     for _ in range(9):
         x += book(x, top, 0.34, rng.uniform(0.2, 0.28), 0.17) + 0.001
-    cell = lambda k: ((k % 4) / 4 + 0.002, (k // 4) / 2 + 0.004, (k % 4 + 1) / 4 - 0.002, (k // 4 + 1) / 2 - 0.004)
     o.box("tin", "parcels", (2.75, top, 0.14), (2.93, top + 0.2, 0.32), cells=[cell(3), cell(7), cell(4), cell(5), cell(3), cell(3)], turn=0.35)
     o.lathe("vase", "clay", (3.16, top, 0.25), [(0.045, 0.30), (0.04, 0.27), (0.05, 0.22), (0.085, 0.14), (0.09, 0.09), (0.06, 0.01), (0.055, 0.0)], 36)
 
@@ -693,4 +709,5 @@ def furnish(spine_columns):
 
 
 if __name__ == "__main__":
+    things()
     furnish(textures())

@@ -1,4 +1,4 @@
-// Purpose: where the camera is: T_WC of docs/conventions.md.
+// Purpose: where the camera is: T_WC of docs/conventions.md; and T_WO of an object that moves, by the same names.
 #pragma once
 
 #include <glm/gtc/quaternion.hpp>
@@ -10,6 +10,13 @@ namespace sim {
 struct Pose {
   glm::dvec3 p_WC{0.0};                 // [m]
   glm::dquat q_WC{1.0, 0.0, 0.0, 0.0};  // unit
+};
+
+// From where and when a world is looked at. The time matters where objects move; a world without any needs none.
+struct View {
+  View(const Pose& from = {}, double at_s = 0.0) : pose(from), t_s(at_s) {}
+  Pose pose;
+  double t_s;  // [s]
 };
 
 }  // namespace sim

@@ -30,7 +30,8 @@ enum class Stream : std::uint32_t {
   point_scale = 21,    // what all their inverse depths have in common
   imu_noise = 40,
   imu_walk = 41,
-  landmark_place = 42  // through which pixels the tracked surface points are seen first
+  landmark_place = 42,  // through which pixels the tracked surface points are seen first
+  object_motion = 43    // the seed of each moving object's own motion
 };
 
 using Words = std::array<std::uint32_t, 4>;

@@ -80,6 +80,15 @@ struct PacketScene {
   SkyShading sky;
 };
 
+// Objects that move, as all rays of an exposure see them. Embree's time runs from 0 to 1 over the exposure of all rows.
+struct PacketObjects {
+  RTCScene embree;                      // an instance for each object, numbered as Scene::objects
+  const std::int32_t* first_triangles;  // by 2 * object + Embree's geometry in it
+  const float* turns;                   // R_WO by columns, at `steps` times of each object; straight in between
+  std::int32_t steps;
+  bool own_lamps;  // lamps shine on objects alone: all else has their light baked
+};
+
 constexpr int kMaxLightLayers = 8;
 
 // One light as one time sample sees it. Irradiance at distance vector l, of length r, on a surface with normal n:
@@ -105,6 +114,8 @@ struct RaySample {
   const LightSample* lights;
   int light_count;
   float layer_factors[kMaxLightLayers][kBlockSide];  // of lamps' light and of baked light, by layer and by row of the block
+  const PacketObjects* objects;                      // null: nothing moves
+  float objects_begin, objects_length;               // Embree's time at the sample's beginning, and how much of it the sample is
 };
 
 // A block of pixels: (x, y, z) is a pixel centre's ray in C; du, dv are its derivatives by the pixel.

@@ -125,6 +125,14 @@ void ShadowMaps::Draw(const RasterScene& scene, const Program& triangles,
   }
 }
 
+void ShadowMaps::DrawSample(const RasterScene& scene, const Program& triangles, const std::vector<RasterLight>& lights) {
+  if (!lasting_) lasting_ = MakeMaps(Layers(lights, false), side_);
+  if (samples_.empty()) samples_.push_back(MakeMaps(Layers(lights, true), side_));
+  for (const RasterLight& light : lights) {
+    DrawLight(scene, triangles, light, KindOf(light) == kRectangle ? samples_[0] : lasting_, side_);
+  }
+}
+
 void ShadowMaps::DrawLight(const RasterScene& scene, const Program& triangles, const RasterLight& light,
                            const GlObject& maps, int side) const {
   const int first = static_cast<int>(light.power.w);

@@ -30,8 +30,10 @@ class ShadowMaps {
   // side: [texel] of each map; halved as often as it takes for all rectangles' to fit into one GiB.
   ShadowMaps(const GlApi& gl, int side) : gl_(gl), side_(side) {}
 
-  // Draws what is not there. lights: of sample 0 ... n - 1.
+  // Draws what is not there. lights: of sample 0 ... n - 1. For worlds that stand still.
   void Draw(const RasterScene& scene, const Program& triangles, const std::vector<std::vector<RasterLight>>& lights);
+  // Draws all of one sample, of a world as it is at the moment; what was there goes, and its rectangles' are of_sample(0).
+  void DrawSample(const RasterScene& scene, const Program& triangles, const std::vector<RasterLight>& lights);
 
   GLuint lasting() const { return lasting_.id(); }  // of suns and points
   GLuint of_sample(std::size_t i) const { return samples_.empty() ? lasting_.id() : samples_[i].id(); }  // rectangles

@@ -1,9 +1,11 @@
 #include "sim/render/raster_scene.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
 #include <stdexcept>
@@ -16,10 +18,11 @@ namespace {
 float Bits(int number) { return std::bit_cast<float>(number); }
 
 bool HasColors(const Scene& scene) {
-  for (const Mesh& mesh : scene.meshes) {
-    if (!mesh.colors.empty()) return true;
-  }
-  return false;
+  const auto any = [](const std::vector<Mesh>& meshes) {
+    return std::any_of(meshes.begin(), meshes.end(), [](const Mesh& mesh) { return !mesh.colors.empty(); });
+  };
+  return any(scene.meshes) || std::any_of(scene.objects.begin(), scene.objects.end(),
+                                          [&](const MovingObject& object) { return any(object.meshes); });
 }
 
 // A value at corner 0 and its differences to corners 1 and 2.
@@ -85,57 +88,110 @@ void RasterScene::AppendTextures(const Scene& scene) {
                              "the materials");
 }
 
+void RasterScene::Move(double t_s) {
+  if (!moves() || moved_to_s_ == t_s) return;
+  low_ = still_low_, high_ = still_high_;
+  for (const Part& part : objects_) {
+    const Pose pose = part.motion->At(t_s).pose;
+    std::vector<glm::vec3> positions;
+    for (std::size_t i = part.first_position; i < part.end_position; ++i) {
+      const glm::vec3 p(pose.q_WC * glm::dvec3(positions_[i]) + pose.p_WC);
+      low_ = glm::min(low_, p), high_ = glm::max(high_, p);
+      positions.push_back(p);
+    }
+    std::vector<glm::vec4> table = part.table;
+    const auto row = static_cast<std::size_t>(texels_per_triangle_);
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      const std::size_t which = i % row;  // the place of corner 0, then vectors; texture coordinates and colours stay
+      if (which > 5) continue;
+      const glm::dvec3 turned = pose.q_WC * glm::dvec3(table[i]) + (which == 0 ? pose.p_WC : glm::dvec3(0.0));
+      table[i] = glm::vec4(glm::vec3(turned), table[i].w);
+    }
+    const auto at = [](std::size_t bytes) { return static_cast<GLsizeiptr>(bytes); };
+    gl_.NamedBufferSubData(position_buffer_.id(), at(part.first_position * sizeof(glm::vec3)),
+                           at(positions.size() * sizeof(glm::vec3)), positions.data());
+    gl_.NamedBufferSubData(triangles_.buffer.id(), at(part.first_triangle * row * sizeof(glm::vec4)),
+                           at(table.size() * sizeof(glm::vec4)), table.data());
+  }
+  moved_to_s_ = t_s;
+}
+
+int RasterScene::ObjectOf(std::uint32_t triangle) const {
+  const auto next = std::upper_bound(objects_.begin(), objects_.end(), triangle,
+                                     [](std::uint32_t t, const Part& part) { return t < part.first_triangle; });
+  return static_cast<int>(next - objects_.begin()) - 1;
+}
+
+std::vector<Pose> RasterScene::ObjectPoses(double t_s) const {
+  std::vector<Pose> poses;
+  for (const Part& part : objects_) poses.push_back(part.motion->At(t_s).pose);
+  return poses;
+}
+
 void RasterScene::AppendMeshes(const Scene& scene) {
-  const bool has_colors = HasColors(scene);
-  texels_per_triangle_ = has_colors ? 10 : 7;
+  texels_per_triangle_ = HasColors(scene) ? 10 : 7;
   std::vector<glm::vec4> table;
+  for (const Mesh& mesh : scene.meshes) AppendMesh(scene, mesh, table);
   low_ = glm::vec3(std::numeric_limits<float>::infinity());
   high_ = -low_;
-  for (const Mesh& mesh : scene.meshes) {
-    const auto first = static_cast<std::uint32_t>(positions_.size());
-    positions_.insert(positions_.end(), mesh.positions.begin(), mesh.positions.end());
-    for (const glm::vec3& p : mesh.positions) low_ = glm::min(low_, p), high_ = glm::max(high_, p);
-    const int texture = scene.materials[static_cast<std::size_t>(mesh.material)].texture;
-    for (const glm::uvec3& t : mesh.triangles) {
-      corners_.push_back(first + t);
-      const OverTriangle<glm::vec3> p(mesh.positions, t);
-      const glm::dvec3 cross = glm::cross(glm::dvec3(p.du), glm::dvec3(p.dv));
-      const double area = glm::length(cross);
-      glm::vec3 normal = area > 0 ? glm::vec3(cross / area) : glm::vec3(0, 0, 1), normal_du(0.0f), normal_dv(0.0f);
-      if (!mesh.normals.empty()) {
-        const OverTriangle<glm::vec3> n(mesh.normals, t);
-        normal = n.first, normal_du = n.du, normal_dv = n.dv;
-      }
-      glm::vec2 uv(0.0f), uv_du(0.0f), uv_dv(0.0f);
-      double texels_per_metre = 0.0;
-      if (texture >= 0) {
-        const Texture& picture = scene.textures[static_cast<std::size_t>(texture)];
-        const OverTriangle<glm::vec2> place(mesh.uvs, t);
-        uv = place.first - glm::floor(place.first);  // pictures repeat: near 0 floats are finest
-        uv_du = place.du, uv_dv = place.dv;
-        const double texels =
-            std::abs(double{uv_du.x} * uv_dv.y - double{uv_du.y} * uv_dv.x) * picture.width() * picture.height();
-        texels_per_metre = area > 0 ? std::sqrt(texels / area) : 0.0;
-      }
-      table.emplace_back(p.first, Bits(mesh.material));
-      table.emplace_back(p.du, static_cast<float>(texels_per_metre));
-      table.emplace_back(p.dv, 0.0f);
-      table.emplace_back(normal, uv.x);
-      table.emplace_back(normal_du, uv.y);
-      table.emplace_back(normal_dv, 0.0f);
-      table.emplace_back(uv_du, uv_dv);
-      if (!has_colors) continue;
-      const std::vector<glm::vec3> white(3, glm::vec3(1.0f));
-      const OverTriangle<glm::vec3> color =
-          mesh.colors.empty() ? OverTriangle<glm::vec3>(white, {0, 1, 2}) : OverTriangle<glm::vec3>(mesh.colors, t);
-      table.emplace_back(color.first, 0.0f);
-      table.emplace_back(color.du, 0.0f);
-      table.emplace_back(color.dv, 0.0f);
-    }
-  }
+  for (const glm::vec3& p : positions_) low_ = glm::min(low_, p), high_ = glm::max(high_, p);
   if (positions_.empty()) low_ = high_ = glm::vec3(0.0f);
+  still_low_ = low_, still_high_ = high_;
+  for (const MovingObject& object : scene.objects) {
+    Part part;
+    part.motion = object.motion;
+    part.first_position = positions_.size();
+    part.first_triangle = corners_.size();
+    for (const Mesh& mesh : object.meshes) AppendMesh(scene, mesh, part.table);
+    part.end_position = positions_.size();
+    table.insert(table.end(), part.table.begin(), part.table.end());
+    objects_.push_back(std::move(part));
+  }
   triangles_ =
       BufferTexture(gl_, GL_RGBA32F, table.size(), table.size() * sizeof(glm::vec4), table.data(), "the triangles");
+}
+
+void RasterScene::AppendMesh(const Scene& scene, const Mesh& mesh, std::vector<glm::vec4>& table) {
+  const bool has_colors = texels_per_triangle_ > 7;
+  const auto first = static_cast<std::uint32_t>(positions_.size());
+  positions_.insert(positions_.end(), mesh.positions.begin(), mesh.positions.end());
+  const int texture = scene.materials[static_cast<std::size_t>(mesh.material)].texture;
+  for (const glm::uvec3& t : mesh.triangles) {
+    corners_.push_back(first + t);
+    const OverTriangle<glm::vec3> p(mesh.positions, t);
+    const glm::dvec3 cross = glm::cross(glm::dvec3(p.du), glm::dvec3(p.dv));
+    const double area = glm::length(cross);
+    glm::vec3 normal = area > 0 ? glm::vec3(cross / area) : glm::vec3(0, 0, 1), normal_du(0.0f), normal_dv(0.0f);
+    if (!mesh.normals.empty()) {
+      const OverTriangle<glm::vec3> n(mesh.normals, t);
+      normal = n.first, normal_du = n.du, normal_dv = n.dv;
+    }
+    glm::vec2 uv(0.0f), uv_du(0.0f), uv_dv(0.0f);
+    double texels_per_metre = 0.0;
+    if (texture >= 0) {
+      const Texture& picture = scene.textures[static_cast<std::size_t>(texture)];
+      const OverTriangle<glm::vec2> place(mesh.uvs, t);
+      uv = place.first - glm::floor(place.first);  // pictures repeat: near 0 floats are finest
+      uv_du = place.du, uv_dv = place.dv;
+      const double texels =
+          std::abs(double{uv_du.x} * uv_dv.y - double{uv_du.y} * uv_dv.x) * picture.width() * picture.height();
+      texels_per_metre = area > 0 ? std::sqrt(texels / area) : 0.0;
+    }
+    table.emplace_back(p.first, Bits(mesh.material));
+    table.emplace_back(p.du, static_cast<float>(texels_per_metre));
+    table.emplace_back(p.dv, 0.0f);
+    table.emplace_back(normal, uv.x);
+    table.emplace_back(normal_du, uv.y);
+    table.emplace_back(normal_dv, 0.0f);
+    table.emplace_back(uv_du, uv_dv);
+    if (!has_colors) continue;
+    const std::vector<glm::vec3> white(3, glm::vec3(1.0f));
+    const OverTriangle<glm::vec3> color =
+        mesh.colors.empty() ? OverTriangle<glm::vec3>(white, {0, 1, 2}) : OverTriangle<glm::vec3>(mesh.colors, t);
+    table.emplace_back(color.first, 0.0f);
+    table.emplace_back(color.du, 0.0f);
+    table.emplace_back(color.dv, 0.0f);
+  }
 }
 
 }  // namespace sim

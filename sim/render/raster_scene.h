@@ -3,8 +3,12 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <memory>
+#include <optional>
 #include <vector>
 
+#include "sim/motion/pose.h"
 #include "sim/render/gl_objects.h"
 #include "sim/world/scene.h"
 
@@ -26,26 +30,43 @@ class RasterScene {
 
   void Draw() const;  // all triangles, with what is set
 
+  bool moves() const { return !objects_.empty(); }
+  // Puts the objects where they are at a time; before that they are nowhere.
+  void Move(double t_s);
+  // Which of Scene::objects a triangle is of; -1: it stands still.
+  int ObjectOf(std::uint32_t triangle) const;
+  std::vector<Pose> ObjectPoses(double t_s) const;
+
   GLuint triangles() const { return triangles_.texture.id(); }
   GLuint materials() const { return materials_.texture.id(); }
   GLuint levels() const { return levels_.texture.id(); }
   GLuint texels() const { return texels_.texture.id(); }
   int texels_per_triangle() const { return texels_per_triangle_; }
 
-  // A box around it, in W; a point where there is nothing.
+  // A box around it, in W, with the objects where they are; a point where there is nothing.
   const glm::vec3& low() const { return low_; }
   const glm::vec3& high() const { return high_; }
-  // Corner 0 ... 2 of a triangle, in W.
+  // Corner 0 ... 2 of a triangle, in W, of an object's in O.
   const glm::vec3& Corner(std::uint32_t triangle, int corner) const { return positions_[corners_[triangle][corner]]; }
 
  private:
+  // What of the buffers is an object's, and its part of the table with all vectors in O.
+  struct Part {
+    std::shared_ptr<const Trajectory> motion;
+    std::size_t first_position = 0, end_position = 0, first_triangle = 0;
+    std::vector<glm::vec4> table;
+  };
+
   void AppendTextures(const Scene& scene);
   void AppendMeshes(const Scene& scene);
+  void AppendMesh(const Scene& scene, const Mesh& mesh, std::vector<glm::vec4>& table);
 
   const GlApi& gl_;
   std::vector<glm::vec3> positions_;
   std::vector<glm::uvec3> corners_;
-  glm::vec3 low_{0.0f}, high_{0.0f};
+  glm::vec3 low_{0.0f}, high_{0.0f}, still_low_{0.0f}, still_high_{0.0f};
+  std::vector<Part> objects_;
+  std::optional<double> moved_to_s_;
   int texels_per_triangle_ = 7;
   GlObject position_buffer_, corner_buffer_, vertex_array_;
   BufferTexture triangles_, materials_, levels_, texels_;

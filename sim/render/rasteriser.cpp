@@ -132,11 +132,14 @@ class Drawing {
     const std::vector<DiscPoint> lens = DiscPoints(count);
     std::vector<std::vector<RasterLight>> lights;
     std::vector<RasterLight> table;
+    const double part_s = exposure.exposure_s / count;
+    const auto moment = [&](double middle_s, int i) { return middle_s + part_s * (i + 0.5 - 0.5 * count); };
     for (int i = 0; i < count; ++i) {
+      scene_.Move(moment(exposure.middle_s, i));
       lights.push_back(LightsOfSample(lights_, i, count, scene_));
       table.insert(table.end(), lights.back().begin(), lights.back().end());
     }
-    if (options_.shadows) shadows_.Draw(scene_, depth_, lights);
+    if (options_.shadows && !scene_.moves()) shadows_.Draw(scene_, depth_, lights);
     const BufferTexture light_table(gl_, GL_RGBA32F, 6 * table.size(), table.size() * sizeof(RasterLight), table.data(),
                                     "the lights");
     const GlObject target = MakeFramebuffer(gl_), sum = MakeTexture(gl_, GL_RGBA32F, camera.width(), camera.height());
@@ -158,11 +161,15 @@ class Drawing {
     shade_.Set("inverse_focus", static_cast<float>(1 / exposure.focus_m));
     for (int i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
+      if (options_.shadows && scene_.moves()) {
+        scene_.Move(moment(exposure.middle_s, i));
+        shadows_.DrawSample(scene_, depth_, lights[k]);
+      }
       const glm::vec2 lens_C(0.5 * exposure.aperture_m * lens[k].x, 0.5 * exposure.aperture_m * lens[k].y);
       for (const RasterStrip& strip : views_.strips) {
-        const double part_s = exposure.exposure_s / count;
-        const double middle_s = exposure.RowMiddle(0.5 * (strip.begin + strip.end - 1), camera.height());
-        const Pose pose = motion.At(middle_s + part_s * (i + 0.5 - 0.5 * count)).pose;
+        const double t_s = moment(exposure.RowMiddle(0.5 * (strip.begin + strip.end - 1), camera.height()), i);
+        const Pose pose = motion.At(t_s).pose;
+        scene_.Move(t_s);
         const glm::dmat3 rotation = glm::mat3_cast(pose.q_WC);
         const glm::vec3 origin(pose.p_WC + rotation * glm::dvec3(lens_C, 0.0));
         for (const RasterView& still : strip.views) {
@@ -172,7 +179,7 @@ class Drawing {
           SetLookUp(shade_, view, glm::mat3(rotation), origin, jitter[k], lens_C);
           shade_.Set("first_light", 6 * i * static_cast<int>(lights[0].size()));
           shade_.Set("lasting_shadows", Bind(7, shadows_.lasting()));
-          shade_.Set("sample_shadows", Bind(8, shadows_.of_sample(k)));
+          shade_.Set("sample_shadows", Bind(8, shadows_.of_sample(scene_.moves() ? 0 : k)));
           gl_.Enable(GL_BLEND);
           gl_.BlendFunc(GL_ONE, GL_ONE);
           DrawPixels(target, camera, view);
@@ -185,7 +192,9 @@ class Drawing {
   }
 
   // 1 + the number of the triangle that each pixel's centre sees, 0: none.
-  std::vector<GLint> Seen(const Camera& camera, const Pose& pose) {
+  std::vector<GLint> Seen(const Camera& camera, const View& from) {
+    const Pose& pose = from.pose;
+    scene_.Move(from.t_s);
     Prepare(camera, camera.height(), 0.0);
     SetUp();
     const GlObject target = MakeFramebuffer(gl_), numbers = MakeTexture(gl_, GL_R32I, camera.width(), camera.height());
@@ -358,21 +367,27 @@ class Rasteriser final : public Renderer {
     drawing_->Expose(camera, motion, exposure, out);
   }
 
-  void Depth(const Camera& camera, const Pose& pose, std::vector<float>& out) const override {
+  void Depth(const Camera& camera, const View& view, std::vector<float>& out) const override {
     const std::vector<GLint> seen = [&] {
       const GlContext::Current current(*context_);
-      return drawing_->Seen(camera, pose);
+      return drawing_->Seen(camera, view);
     }();
     const RasterScene& scene = drawing_->scene();
-    const glm::dmat3 rotation = glm::mat3_cast(pose.q_WC);
+    const std::vector<Pose> objects = scene.ObjectPoses(view.t_s);
     out.assign(seen.size(), 0.0f);
     for (std::size_t i = 0; i < seen.size(); ++i) {
       if (seen[i] == 0) continue;
       const auto triangle = static_cast<std::uint32_t>(seen[i] - 1);
       const int width = camera.width(), x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
       const glm::dvec3 ray = ExactRay(camera, x, y);
+      glm::dvec3 origin = view.pose.p_WC, direction = view.pose.q_WC * ray;
+      if (const int object = scene.ObjectOf(triangle); object >= 0) {
+        const Pose& T_WO = objects[static_cast<std::size_t>(object)];
+        const glm::dquat q_OW = glm::conjugate(T_WO.q_WC);
+        origin = q_OW * (origin - T_WO.p_WC), direction = q_OW * direction;
+      }
       out[i] = static_cast<float>(ray.z * DistanceTo(scene.Corner(triangle, 0), scene.Corner(triangle, 1),
-                                                     scene.Corner(triangle, 2), pose.p_WC, rotation * ray));
+                                                     scene.Corner(triangle, 2), origin, direction));
     }
   }
 

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -69,7 +71,7 @@ void Check(const Scene& scene) {
             "material " + m.name + ": its normal map is not one");
   }
   require(scene.materials.size() < (1u << kMaterialBits), "too many materials");
-  for (const Mesh& mesh : scene.meshes) {
+  const auto check = [&](const Mesh& mesh) {
     const std::size_t n = mesh.positions.size();
     require(mesh.material >= 0 && mesh.material < static_cast<int>(scene.materials.size()),
             "mesh " + mesh.name + ": no such material");
@@ -81,6 +83,11 @@ void Check(const Scene& scene) {
     for (const glm::uvec3& t : mesh.triangles) {
       require(t.x < n && t.y < n && t.z < n, "mesh " + mesh.name + ": a triangle names a vertex that does not exist");
     }
+  };
+  for (const Mesh& mesh : scene.meshes) check(mesh);
+  for (const MovingObject& object : scene.objects) {
+    require(object.motion != nullptr, "object " + object.name + ": has no motion");
+    for (const Mesh& mesh : object.meshes) check(mesh);
   }
 }
 
@@ -91,12 +98,18 @@ void CheckScene(const Scene& scene) { Check(scene); }
 RayScene::RayScene(const Scene& scene) {
   Check(scene);
   AppendTextures(scene);
-  for (const Mesh& mesh : scene.meshes) {
-    any_normals_ = any_normals_ || !mesh.normals.empty();
-    any_colors_ = any_colors_ || !mesh.colors.empty();
-    any_tangents_ = any_tangents_ || scene.materials[static_cast<std::size_t>(mesh.material)].normal_map >= 0;
-  }
-  alpha_textures_.reserve(scene.meshes.size());  // filters point at them
+  std::size_t mesh_count = 0;
+  const auto take_in = [&](const std::vector<Mesh>& meshes) {
+    mesh_count += meshes.size();
+    for (const Mesh& mesh : meshes) {
+      any_normals_ = any_normals_ || !mesh.normals.empty();
+      any_colors_ = any_colors_ || !mesh.colors.empty();
+      any_tangents_ = any_tangents_ || scene.materials[static_cast<std::size_t>(mesh.material)].normal_map >= 0;
+    }
+  };
+  take_in(scene.meshes);
+  for (const MovingObject& object : scene.objects) take_in(object.meshes);
+  alpha_textures_.reserve(mesh_count);  // filters point at them
   for (const bool cut_out : {false, true}) {
     filtered_first_ = static_cast<std::uint32_t>(triangles_.size());
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
@@ -106,6 +119,8 @@ RayScene::RayScene(const Scene& scene) {
     }
   }
   AppendLamps(scene);
+  still_triangles_ = static_cast<std::uint32_t>(triangles_.size());
+  AppendObjects(scene);
   if (triangles_.empty()) {  // rays still look up triangle 0 in lanes that met nothing
     shading_.emplace_back();
     if (any_normals_) normals_.emplace_back();
@@ -154,12 +169,12 @@ RayScene::RayScene(const Scene& scene) {
 }
 
 void RayScene::SetLight(const BakedLight& light) {
-  if (light.resolutions.size() != triangles_.size() || light.layers.empty() ||
+  if (light.resolutions.size() != still_triangles_ || light.layers.empty() ||
       light.layers.size() > static_cast<std::size_t>(kMaxLightLayers)) {
     throw std::invalid_argument("baked light: of another scene");
   }
   std::size_t count = 0;
-  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+  for (std::size_t i = 0; i < still_triangles_; ++i) {
     const TriangleResolution r = light.resolutions[i];
     if (r.log2_front > kMaxLog2Resolution || r.log2_back > kMaxLog2Resolution)
       throw std::invalid_argument("baked light: too fine");
@@ -360,35 +375,78 @@ std::uint32_t RayScene::MeshOf(std::uint32_t triangle) const {
   return mesh_index_[static_cast<std::size_t>(next - first_triangle_.begin()) - 1];
 }
 
+// Each object's triangles as those of the world: first what is there everywhere, then cut-outs.
+void RayScene::AppendObjects(const Scene& scene) {
+  std::size_t mesh_index = first_triangle_.size();  // meshes and lamps are before
+  for (const MovingObject& moving : scene.objects) {
+    RayObject& object = objects_.emplace_back();
+    object.motion = moving.motion;
+    object.low = glm::vec3(std::numeric_limits<float>::infinity());
+    object.high = -object.low;
+    for (const bool cut_out : {false, true}) {
+      first_triangles_.push_back(static_cast<std::int32_t>(triangles_.size()));
+      for (std::size_t i = 0; i < moving.meshes.size(); ++i) {
+        const Mesh& mesh = moving.meshes[i];
+        const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+        if (IsCutOut(scene, material) != cut_out) continue;
+        AppendMesh(scene, mesh, material, mesh.material, mesh_index + i, false);
+        for (const glm::vec3& p : mesh.positions) object.low = glm::min(object.low, p), object.high = glm::max(object.high, p);
+      }
+    }
+    mesh_index += moving.meshes.size();
+  }
+}
+
+void RayScene::Attach(RTCScene to, std::size_t begin, std::size_t end, bool filtered, std::size_t first_filter) const {
+  RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  const std::span<const glm::uvec3> triangles(triangles_.data() + begin, end - begin);
+  std::uint32_t low = ~0u, high = 0;  // of the vertices
+  for (const glm::uvec3& t : triangles) low = std::min({low, t.x, t.y, t.z}), high = std::max({high, t.x, t.y, t.z});
+  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
+                                           std::size_t{high} - low + 1);
+  void* indices =
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), triangles.size());
+  if (vertices != nullptr && indices != nullptr) {
+    std::copy(positions_.begin() + low, positions_.begin() + high + 1, static_cast<glm::vec3*>(vertices));
+    std::transform(triangles.begin(), triangles.end(), static_cast<glm::uvec3*>(indices),
+                   [low](const glm::uvec3& t) { return t - low; });
+    if (filtered) {
+      rtcSetGeometryUserData(geometry, const_cast<Filter*>(filters_.data() + first_filter));  // Embree only hands it on
+      rtcSetGeometryIntersectFilterFunction(geometry, FilterIntersect);
+      rtcSetGeometryOccludedFilterFunction(geometry, FilterOccluded);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(to, geometry, filtered ? 1 : 0);
+  }
+  rtcReleaseGeometry(geometry);
+}
+
+EmbreeScene RayScene::NewTree() const {
+  EmbreeScene tree(rtcNewScene(device_.get()));
+  rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips through between two triangles
+  return tree;
+}
+
 void RayScene::Build() {
   device_.reset(rtcNewDevice(nullptr));
   if (!device_) throw std::runtime_error("Embree: no device, error " + std::to_string(rtcGetDeviceError(nullptr)));
-  scene_.reset(rtcNewScene(device_.get()));
-  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips through between two triangles
-  const auto attach = [&](std::size_t begin, std::size_t end, bool filtered) {
-    RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
-                                             std::max<std::size_t>(positions_.size(), 1));
-    void* indices =
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), end - begin);
-    if (vertices != nullptr && (indices != nullptr || begin == end)) {
-      std::copy(positions_.begin(), positions_.end(), static_cast<glm::vec3*>(vertices));
-      std::copy(triangles_.begin() + static_cast<std::ptrdiff_t>(begin),
-                triangles_.begin() + static_cast<std::ptrdiff_t>(end), static_cast<glm::uvec3*>(indices));
-      if (filtered) {
-        rtcSetGeometryUserData(geometry, filters_.data());
-        rtcSetGeometryIntersectFilterFunction(geometry, FilterIntersect);
-        rtcSetGeometryOccludedFilterFunction(geometry, FilterOccluded);
-      }
-      rtcCommitGeometry(geometry);
-      rtcAttachGeometryByID(scene_.get(), geometry, filtered ? 1 : 0);
-    }
-    rtcReleaseGeometry(geometry);
-  };
-  if (filtered_first_ > 0) attach(0, filtered_first_, false);
-  if (filtered_first_ < triangles_.size()) attach(filtered_first_, triangles_.size(), true);
   // In one thread: where triangles touch, which one a ray meets may depend on the tree, and the tree on the threads.
-  tbb::task_arena(1).execute([this] { rtcCommitScene(scene_.get()); });
+  const auto commit = [](RTCScene tree) { tbb::task_arena(1).execute([tree] { rtcCommitScene(tree); }); };
+  scene_ = NewTree();
+  if (filtered_first_ > 0) Attach(scene_.get(), 0, filtered_first_, false, 0);
+  if (filtered_first_ < still_triangles_) Attach(scene_.get(), filtered_first_, still_triangles_, true, 0);
+  commit(scene_.get());
+  std::size_t first_filter = still_triangles_ - filtered_first_;
+  for (std::size_t k = 0; k < objects_.size(); ++k) {
+    const auto begin = static_cast<std::size_t>(first_triangles_[2 * k]),
+               filtered = static_cast<std::size_t>(first_triangles_[2 * k + 1]),
+               end = k + 1 < objects_.size() ? static_cast<std::size_t>(first_triangles_[2 * k + 2]) : triangles_.size();
+    objects_[k].tree = NewTree();
+    if (begin < filtered) Attach(objects_[k].tree.get(), begin, filtered, false, 0);
+    if (filtered < end) Attach(objects_[k].tree.get(), filtered, end, true, first_filter);
+    first_filter += end - filtered;
+    commit(objects_[k].tree.get());
+  }
   const RTCError error = rtcGetDeviceError(device_.get());
   if (error != RTC_ERROR_NONE)
     throw std::runtime_error("Embree: building the scene failed, error " + std::to_string(error));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/light/baked_light.h"
+#include "sim/motion/trajectory.h"
 #include "sim/render/packet.h"
 #include "sim/world/scene.h"
 
@@ -24,8 +25,18 @@ struct EmbreeRelease {
 using EmbreeDevice = std::unique_ptr<std::remove_pointer_t<RTCDevice>, EmbreeRelease>;
 using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, EmbreeRelease>;
 
+// One object that moves, as an Embree scene in its own frame O.
+struct RayObject {
+  std::shared_ptr<const Trajectory> motion;
+  EmbreeScene tree;
+  glm::vec3 low{0.0f}, high{0.0f};  // a box around it
+
+  Pose PoseAt(double t_s) const { return motion->At(t_s).pose; }
+};
+
 // Triangles are numbered through all meshes, in two Embree geometries: first those that are there everywhere, then those that
-// Embree has to ask about at each hit (cut-outs, visible lamps). Triangle() turns a hit into the index into every table.
+// Embree has to ask about at each hit (cut-outs, visible lamps). Triangle() turns a hit into the index into every table. Those of
+// objects, two geometries in each one's own tree, come after all that stands still; baked light is not theirs.
 class RayScene {
  public:
   // Throws std::invalid_argument for a scene with an index out of range, std::runtime_error when Embree fails.
@@ -38,15 +49,22 @@ class RayScene {
   void SetLight(const BakedLight& light);
 
   const PacketScene& packet_scene() const { return packet_scene_; }
-  RTCScene embree() const { return scene_.get(); }
+  RTCScene embree() const { return scene_.get(); }  // of what stands still
+  RTCDevice device() const { return device_.get(); }
+  const std::vector<RayObject>& objects() const { return objects_; }
+  const std::int32_t* first_triangles() const { return first_triangles_.data(); }  // PacketObjects has what they are
 
   std::uint32_t Triangle(std::uint32_t geometry, std::uint32_t primitive) const {
     return primitive + (geometry == 1 ? filtered_first_ : 0u);
   }
-  std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles_.size()); }
-  // Corner 0 ... 2 of a triangle, in W.
+  std::uint32_t ObjectTriangle(std::uint32_t object, std::uint32_t geometry, std::uint32_t primitive) const {
+    return primitive + static_cast<std::uint32_t>(first_triangles_[2 * object + geometry]);
+  }
+  std::uint32_t triangle_count() const { return still_triangles_; }  // of what stands still
+  // Corner 0 ... 2 of a triangle, in W, of an object's in O.
   const glm::vec3& Corner(std::uint32_t triangle, int corner) const { return positions_[triangles_[triangle][corner]]; }
-  // Index in Scene::meshes of the mesh that a triangle is of; visible lamps count on behind the meshes.
+  // Index in Scene::meshes of the mesh that a triangle is of; visible lamps count on behind the meshes, objects' meshes behind
+  // those.
   std::uint32_t MeshOf(std::uint32_t triangle) const;
   // What a triangle's shading tables say, interpolated at (u, v); the normal is neither unit nor turned towards anybody.
   glm::vec3 ShadingNormal(std::uint32_t triangle, float u, float v) const;
@@ -54,7 +72,7 @@ class RayScene {
   glm::vec2 TextureCoordinates(std::uint32_t triangle, float u, float v) const;
   double UvPerMetre(std::uint32_t triangle) const;  // square root of the ratio of the areas in texture coordinates and in W
   std::uint32_t MaterialIndex(std::uint32_t triangle) const { return shading_[triangle].material & ((1u << kMaterialBits) - 1); }
-  bool IsLamp(std::uint32_t triangle) const { return triangle >= filtered_first_ && filters_[triangle - filtered_first_].lamp; }
+  bool IsLamp(std::uint32_t triangle) const { return triangle >= filtered_first_ && triangle < still_triangles_ && filters_[triangle - filtered_first_].lamp; }
 
   // What Embree's filter needs of a triangle of the second geometry.
   struct Filter {
@@ -68,13 +86,18 @@ class RayScene {
   void AppendTextures(const Scene& scene);
   void AppendMesh(const Scene& scene, const Mesh& mesh, const Material& material, std::int32_t material_index, std::size_t mesh_index, bool lamp);
   void AppendLamps(const Scene& scene);
+  void AppendObjects(const Scene& scene);
+  // Triangles [begin, end) as a geometry of `to`, with the filters from first_filter on where there are any.
+  void Attach(RTCScene to, std::size_t begin, std::size_t end, bool filtered, std::size_t first_filter) const;
+  EmbreeScene NewTree() const;
   void Build();
 
   std::vector<glm::vec3> positions_;
   std::vector<glm::uvec3> triangles_;
   std::vector<std::uint32_t> first_triangle_;  // of each mesh that has been appended,
   std::vector<std::uint32_t> mesh_index_;      // and its index
-  std::uint32_t filtered_first_ = 0;
+  std::uint32_t filtered_first_ = 0, still_triangles_ = 0;
+  std::vector<std::int32_t> first_triangles_;  // of each object: of its two geometries
   std::vector<Filter> filters_;
   std::vector<Texture> alpha_textures_;  // copies of those that filters look at
   std::vector<TriangleShading> shading_;
@@ -88,6 +111,7 @@ class RayScene {
   std::vector<float> sky_picture_;
   EmbreeDevice device_;
   EmbreeScene scene_;
+  std::vector<RayObject> objects_;
   PacketScene packet_scene_{};
 };
 

@@ -17,6 +17,7 @@
 #include "sim/light/cache.h"
 #include "sim/random/random.h"
 #include "sim/render/packet.h"
+#include "sim/render/placed_objects.h"
 #include "sim/render/ray_scene.h"
 #include "sim/render/sample_pattern.h"
 #include "sim/render/surface_tracer.h"
@@ -123,7 +124,7 @@ class RayTracer final : public Renderer {
  public:
   RayTracer(const Scene& scene, const RayTracerOptions& options, std::vector<std::string>& warnings)
       : options_(options),
-        lights_(options.light == LightMode::baked ? std::vector<Light>() : scene.lights),
+        lights_(options.light == LightMode::baked && scene.objects.empty() ? std::vector<Light>() : scene.lights),
         scene_(scene),
         surfaces_(scene_, options.jobs),
         kernel_(PacketKernel()),
@@ -133,19 +134,25 @@ class RayTracer final : public Renderer {
     const BakedLight light = arena_.execute(
         [&] { return CachedLight(scene, scene_, options.light, options.bake, options.light_folders, warnings); });
     scene_.SetLight(light);
-    for (const Light& l : scene.lights) {
-      if (std::holds_alternative<AmbientLight>(l)) {
-        warnings.push_back("ambient light is left out: it stands for what baked light computes");
-        break;
-      }
+    const bool has_ambient = std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) {
+      return std::holds_alternative<AmbientLight>(l);
+    });
+    if (scene.objects.empty()) {
+      if (has_ambient) warnings.push_back("ambient light is left out: it stands for what baked light computes");
+      return;
     }
+    warnings.push_back(std::string("moving objects are not in baked light: lamps shine on them in each frame, ") +
+                       (has_ambient ? "and ambient light, which is for them alone"
+                                    : "but nothing stands for what bounces: add ambient light") +
+                       (options.light == LightMode::baked ? "; they cast no shadows on what is baked" : ""));
   }
 
   void Expose(const Camera& camera, const Trajectory& motion, const Exposure& exposure, std::uint64_t key,
               RadianceImage& out) const override {
     const std::vector<std::string> problems = Problems(exposure);
     if (!problems.empty()) throw std::invalid_argument("Expose: " + Join(problems));
-    const ExposureSamples samples = MakeSamples(camera, motion, exposure);
+    ExposureSamples samples = MakeSamples(camera, motion, exposure);
+    if (!scene_.objects().empty()) samples.Place(scene_, options_.light == LightMode::baked);
     const int count = samples.per_row;
     const float share = options_.jitter ? 1.0f / std::sqrt(static_cast<float>(count)) : 1.0f;
     const float scale = 1.0f / static_cast<float>(count);
@@ -167,9 +174,9 @@ class RayTracer final : public Renderer {
     });
   }
 
-  void Depth(const Camera& camera, const Pose& pose, std::vector<float>& out) const override {
+  void Depth(const Camera& camera, const View& view, std::vector<float>& out) const override {
     std::vector<SurfacePoint> points;
-    surfaces_.Trace(camera, pose, points);
+    surfaces_.Trace(camera, view, points);
     out.resize(points.size());
     std::transform(points.begin(), points.end(), out.begin(),
                    [](const SurfacePoint& point) { return static_cast<float>(point.depth); });
@@ -185,6 +192,23 @@ class RayTracer final : public Renderer {
     BlockTime time;
     std::vector<RaySample> samples;
     std::vector<std::vector<LightSample>> lights;  // of sample i of every row
+    std::vector<double> begins_s;                  // of each of `samples`
+    std::unique_ptr<const PlacedObjects> objects;  // null: nothing moves
+    PacketObjects packet_objects{};
+
+    // Objects through the whole of the exposure.
+    void Place(const RayScene& scene, bool own_lamps) {
+      const auto [first, last] = std::minmax_element(begins_s.begin(), begins_s.end());
+      objects = std::make_unique<const PlacedObjects>(scene, *first, *last + time.length_s());
+      packet_objects = objects->packet();
+      packet_objects.own_lamps = own_lamps;
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        const double begin = objects->TimeOf(begins_s[i]), end = objects->TimeOf(begins_s[i] + time.length_s());
+        samples[i].objects = &packet_objects;
+        samples[i].objects_begin = static_cast<float>(begin);
+        samples[i].objects_length = static_cast<float>(end - begin);
+      }
+    }
 
     const RaySample* OfRow(int y) const {
       return samples.data() +
@@ -212,11 +236,13 @@ class RayTracer final : public Renderer {
     const std::vector<DiscPoint> lens = DiscPoints(count);
     const int rows = out.rolls ? (camera.height() + kBlockSide - 1) / kBlockSide : 1;
     out.samples.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(count));
+    out.begins_s.resize(out.samples.size());
     for (int row = 0; row < rows; ++row) {
       const double middle_s = exposure.RowMiddle(kBlockSide * row + 0.5 * (kBlockSide - 1), camera.height());
       for (int i = 0; i < count; ++i) {
         const double begin_s = middle_s + out.time.part_s * (i + 0.5 - 0.5 * count) + out.time.begin_s();
         RaySample& s = out.samples[static_cast<std::size_t>(row * count + i)];
+        out.begins_s[static_cast<std::size_t>(row * count + i)] = begin_s;
         StoreMotion(motion.At(begin_s).pose, motion.At(begin_s + out.time.length_s()).pose, s);
         const PatternPoint point = SobolPoint(static_cast<std::uint32_t>(i));
         s.point_u = point.u;

@@ -26,7 +26,8 @@ struct RayTracerOptions {
 // Copies what it needs of the scene. The radiance of a surface with albedo a is
 //   L = emission + a * (sum of ambient radiances + 1/pi * sum over the other lights of V * E),
 // with E the irradiance of sim/world/light.h and V = 0 where a shadow ray meets a surface; with baked light, that takes the place
-// of ambient light, and of the other lights too where they are baked. Textures are filtered over
+// of ambient light, and of the other lights too where they are baked; objects that move keep both, and cast shadows on what is
+// not baked. Textures are filtered over
 // each ray's share of the pixel, 1/sqrt(number of rays) of its side. The bytes are the same on machines with the same
 // vector instructions; between others (base, AVX2, AVX-512) they differ by rounding. Throws std::invalid_argument for
 // options out of range and for a scene whose indices are; std::runtime_error when Embree fails. What was readable but is probably

@@ -20,7 +20,8 @@ class Renderer {
  public:
   virtual ~Renderer() = default;
 
-  // The mean linear radiance that each pixel collects while the camera moves along `motion` and its row is exposed.
+  // The mean linear radiance that each pixel collects while the camera moves along `motion`, objects move along theirs,
+  // and its row is exposed.
   // Each time sample is an equal part of the exposure; in it a pixel looks at a moment and through a point of its
   // square of its own, keyed by (key, pixel, sample), so that the exposure also antialiases. `out` is resized. Throws
   // std::invalid_argument listing the Problems of the shutter.
@@ -29,7 +30,7 @@ class Renderer {
 
   // Z in the camera frame [m] of what is seen through each pixel's centre, rows from the top; 0 = nothing. `out` is
   // resized.
-  virtual void Depth(const Camera& camera, const Pose& pose, std::vector<float>& out) const = 0;
+  virtual void Depth(const Camera& camera, const View& view, std::vector<float>& out) const = 0;
 
   // Exact queries of the geometry, as long as the renderer lives; null: this renderer has none, and a ray tracer of the
   // same scene is to be asked.

@@ -5,6 +5,7 @@ target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/packet_avx512.cpp
   ${CMAKE_CURRENT_LIST_DIR}/packet_base.cpp
   ${CMAKE_CURRENT_LIST_DIR}/packet_kernel.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/placed_objects.cpp
   ${CMAKE_CURRENT_LIST_DIR}/raster_draw.cpp
   ${CMAKE_CURRENT_LIST_DIR}/raster_light.cpp
   ${CMAKE_CURRENT_LIST_DIR}/raster_scene.cpp

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "sim/render/pixel_ray.h"
+#include "sim/render/placed_objects.h"
 #include "sim/render/ray_scene.h"
 
 namespace sim {
@@ -37,15 +38,47 @@ struct Packet {
   bool Met(int i) const { return valid[i] != 0 && rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID; }
 };
 
-// Where the ray meets the triangle's plane, in double: Embree's own distance is a float's. At a grazing angle its is
-// kept.
-double PlaneDistance(const RayScene& scene, std::uint32_t triangle, const glm::dvec3& origin,
-                     const glm::dvec3& direction, float embree) {
-  const glm::dvec3 a(scene.Corner(triangle, 0)), b(scene.Corner(triangle, 1)), c(scene.Corner(triangle, 2));
-  const glm::dvec3 normal = glm::cross(b - a, c - a);
-  const double distance = glm::dot(normal, a - origin) / glm::dot(normal, direction);
-  return std::abs(distance - embree) <= 1e-4 * embree ? distance : embree;
-}
+// A world at a moment: what stands still and, where there are any, its objects.
+struct Snapshot {
+  Snapshot(const RayScene& rays, const View& view, const std::vector<Pose>& poses)
+      : scene(rays), objects(rays, view.t_s, view.t_s), T_WO(poses) {}
+
+  void Meet(Packet& packet) const {
+    IntersectCoherent16(packet.valid, scene.embree(), &packet.rays);
+    if (objects.embree() != nullptr) IntersectCoherent16(packet.valid, objects.embree(), &packet.rays);
+  }
+  std::int32_t Object(const Packet& packet, int i) const {
+    const std::uint32_t instance = packet.rays.hit.instID[0][i];
+    return instance == RTC_INVALID_GEOMETRY_ID ? kWorld : static_cast<std::int32_t>(instance);
+  }
+  std::uint32_t Triangle(const Packet& packet, int i) const {
+    const std::uint32_t geometry = packet.rays.hit.geomID[i], primitive = packet.rays.hit.primID[i];
+    const std::int32_t object = Object(packet, i);
+    return object == kWorld ? scene.Triangle(geometry, primitive)
+                            : scene.ObjectTriangle(static_cast<std::uint32_t>(object), geometry, primitive);
+  }
+
+  // Where ray i meets its triangle's plane, in double: Embree's own distance is a float's. At a grazing angle its is kept.
+  double PlaneDistance(const Packet& packet, int i, glm::dvec3 origin, glm::dvec3 direction) const {
+    const std::uint32_t triangle = Triangle(packet, i);
+    const std::int32_t object = Object(packet, i);
+    if (object != kWorld) {
+      const Pose& pose = T_WO[static_cast<std::size_t>(object)];
+      const glm::dquat q_OW = glm::conjugate(pose.q_WC);
+      origin = q_OW * (origin - pose.p_WC);
+      direction = q_OW * direction;
+    }
+    const double embree = packet.rays.ray.tfar[i];
+    const glm::dvec3 a(scene.Corner(triangle, 0)), b(scene.Corner(triangle, 1)), c(scene.Corner(triangle, 2));
+    const glm::dvec3 normal = glm::cross(b - a, c - a);
+    const double distance = glm::dot(normal, a - origin) / glm::dot(normal, direction);
+    return std::abs(distance - embree) <= 1e-4 * embree ? distance : embree;
+  }
+
+  const RayScene& scene;
+  const PlacedObjects objects;
+  const std::vector<Pose> T_WO;
+};
 
 template <class Function>
 void ForEachPacket(int jobs, std::size_t count, const Function& function) {
@@ -61,7 +94,9 @@ void ForEachPacket(int jobs, std::size_t count, const Function& function) {
 
 }  // namespace
 
-void SurfaceTracer::Trace(const Camera& camera, const Pose& pose, std::vector<SurfacePoint>& out) const {
+void SurfaceTracer::Trace(const Camera& camera, const View& view, std::vector<SurfacePoint>& out) const {
+  const Pose& pose = view.pose;
+  const Snapshot snapshot(scene_, view, ObjectPoses(view.t_s));
   const int width = camera.width(), blocks_x = (width + kBlockSide - 1) / kBlockSide,
             blocks_y = (camera.height() + kBlockSide - 1) / kBlockSide;
   const glm::dmat3 rotation = glm::mat3_cast(pose.q_WC);
@@ -79,38 +114,45 @@ void SurfaceTracer::Trace(const Camera& camera, const Pose& pose, std::vector<Su
       direction[i] = rotation * ray[i];
       packet.Set(i, pose.p_WC, direction[i]);
     }
-    IntersectCoherent16(packet.valid, scene_.embree(), &packet.rays);
+    snapshot.Meet(packet);
     for (int i = 0; i < kLanes; ++i) {
       if (!packet.Met(i)) continue;
       const auto x = static_cast<std::size_t>(x0 + i % kBlockSide), y = static_cast<std::size_t>(y0 + i / kBlockSide);
       SurfacePoint& point = out[y * static_cast<std::size_t>(width) + x];
-      point.triangle = scene_.Triangle(packet.rays.hit.geomID[i], packet.rays.hit.primID[i]);
+      point.triangle = snapshot.Triangle(packet, i);
+      point.object = snapshot.Object(packet, i);
       point.u = packet.rays.hit.u[i];
       point.v = packet.rays.hit.v[i];
-      point.X_C = PlaneDistance(scene_, point.triangle, pose.p_WC, direction[i], packet.rays.ray.tfar[i]) * ray[i];
+      point.X_C = snapshot.PlaneDistance(packet, i, pose.p_WC, direction[i]) * ray[i];
       point.depth = point.X_C.z;
     }
   });
 }
 
-void SurfaceTracer::Visible(const glm::dvec3& eye_W, std::span<const glm::dvec3> points_W,
+void SurfaceTracer::Visible(const View& view, std::span<const glm::dvec3> points_W,
                             std::vector<std::uint8_t>& out) const {
   constexpr double kOwnSurface = 1e-5;
+  const glm::dvec3& eye_W = view.pose.p_WC;
+  const Snapshot snapshot(scene_, view, ObjectPoses(view.t_s));
   out.assign(points_W.size(), 1);
   ForEachPacket(jobs_, points_W.size(), [&](std::size_t packet_index) {
     const std::size_t first = packet_index * kLanes;
     const int count = static_cast<int>(std::min<std::size_t>(kLanes, points_W.size() - first));
     Packet packet;
     for (int i = 0; i < count; ++i) packet.Set(i, eye_W, points_W[first + static_cast<std::size_t>(i)] - eye_W);
-    IntersectCoherent16(packet.valid, scene_.embree(), &packet.rays);
+    snapshot.Meet(packet);
     for (int i = 0; i < count; ++i) {
       if (!packet.Met(i)) continue;  // the ray slipped by at an edge: nothing is before the point
       const std::size_t at = first + static_cast<std::size_t>(i);
-      const double distance =
-          PlaneDistance(scene_, scene_.Triangle(packet.rays.hit.geomID[i], packet.rays.hit.primID[i]), eye_W, points_W[at] - eye_W, packet.rays.ray.tfar[i]);
-      out[at] = distance >= 1 - kOwnSurface;
+      out[at] = snapshot.PlaneDistance(packet, i, eye_W, points_W[at] - eye_W) >= 1 - kOwnSurface;
     }
   });
+}
+
+std::vector<Pose> SurfaceTracer::ObjectPoses(double t_s) const {
+  std::vector<Pose> poses;
+  for (const RayObject& object : scene_.objects()) poses.push_back(object.PoseAt(t_s));
+  return poses;
 }
 
 glm::dvec3 SurfaceTracer::Normal(std::uint32_t triangle) const {

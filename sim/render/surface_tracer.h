@@ -14,12 +14,14 @@ namespace sim {
 class RayScene;
 
 constexpr std::uint32_t kNoTriangle = 0xffffffffu;
+constexpr std::int32_t kWorld = -1;  // no object that moves
 
 // Where the ray through a pixel's centre meets the world. A surface point is named by its triangle and its place in it,
 // which stay what they are when the object that it is part of moves.
 struct SurfacePoint {
   std::uint32_t triangle = kNoTriangle;  // of all meshes, one after the other; kNoTriangle: nothing is seen
   float u = 0, v = 0;                    // corner 0 + u (corner 1 - corner 0) + v (corner 2 - corner 0)
+  std::int32_t object = kWorld;          // in Scene::objects, which the triangle is of
   double depth = 0;                      // Z in C [m]; what a fisheye lens sees beside or behind it has none above 0
   glm::dvec3 X_C{0.0};                   // in C [m], on the ray to 1e-6 px and on the triangle's plane, in double
 };
@@ -31,15 +33,17 @@ class SurfaceTracer {
   SurfaceTracer(const RayScene& scene, int jobs) : scene_(scene), jobs_(jobs) {}
 
   // Through each pixel's centre, rows from the top. `out` is resized.
-  void Trace(const Camera& camera, const Pose& pose, std::vector<SurfacePoint>& out) const;
+  void Trace(const Camera& camera, const View& view, std::vector<SurfacePoint>& out) const;
 
-  // For each point X (W, on a surface), whether no other surface lies between it and the eye: 1 or 0. What lies less
-  // than 1e-5 of the distance before the point is taken for the point's own surface.
-  void Visible(const glm::dvec3& eye_W, std::span<const glm::dvec3> points_W, std::vector<std::uint8_t>& out) const;
+  // For each point X (W, on a surface), whether no other surface lies between it and the view's eye: 1 or 0. What lies
+  // less than 1e-5 of the distance before the point is taken for the point's own surface.
+  void Visible(const View& view, std::span<const glm::dvec3> points_W, std::vector<std::uint8_t>& out) const;
 
-  // Of the triangle, in W, not normalised: (corner 1 - corner 0) x (corner 2 - corner 0).
+  // T_WO of each of Scene::objects.
+  std::vector<Pose> ObjectPoses(double t_s) const;
+  // Of the triangle, in W, an object's in O, not normalised: (corner 1 - corner 0) x (corner 2 - corner 0).
   glm::dvec3 Normal(std::uint32_t triangle) const;
-  // Index of the triangle's mesh in Scene::meshes.
+  // Index of the triangle's mesh in Scene::meshes; lamps and then objects' meshes count on behind them.
   std::uint32_t MeshOf(std::uint32_t triangle) const;
 
  private:

@@ -31,7 +31,7 @@ void ReadMeasurement(Section section, PointMeasurement& measurement) {
 }  // namespace
 
 PointDescription ReadPoints(Section& root, Section& world, const CameraParams& camera) {
-  for (const char* key : {"meshes", "lights", "background"}) Refuse(world, "world.", key);
+  for (const char* key : {"meshes", "objects", "lights", "background"}) Refuse(world, "world.", key);
   for (const char* key : {"sensor", "render"}) Refuse(root, "", key);
   Section section = world.Child("points");
   PointDescription points;

@@ -6,8 +6,7 @@
 #include <stdexcept>
 
 #include "sim/light/cache.h"
-#include "sim/motion/spline.h"
-#include "sim/scenario/path_reader.h"
+#include "sim/scenario/motion_reader.h"
 #include "sim/scenario/points_reader.h"
 #include "sim/scenario/pose_reader.h"
 #include "sim/sensor/sensor.h"
@@ -21,12 +20,6 @@ using settings::Section;
 using settings::Unit;
 
 const Range kNotNegative = Range::AtLeast(0);
-
-// A file beside the scenario. Whether it is there is said when it is opened.
-std::filesystem::path ReadFile(Section& section, const std::string& key, const std::filesystem::path& folder) {
-  std::string name;
-  return section.Require(key, name) ? folder / name : std::filesystem::path();
-}
 
 // Of a light: none of the three may be negative.
 void ReadColor(Section& section, const std::string& key, glm::dvec3& color) {
@@ -111,16 +104,52 @@ Light ReadLight(Section& section, LightKind kind) {
   return light;
 }
 
-void ReadWorld(Section section, const std::filesystem::path& folder, WorldDescription& world) {
-  for (Section& mesh : section.List("meshes")) {
-    MeshDescription description;
-    description.file = ReadFile(mesh, "file", folder);
-    ReadVector(mesh, "position", description.position, Unit::length);
-    ReadOrientation(mesh, "orientation", description.orientation);
-    mesh.Read("scale", description.scale, Range{1e-9, 1e9});
-    world.meshes.push_back(description);
+MeshDescription ReadMesh(Section& section, const std::filesystem::path& folder) {
+  MeshDescription mesh;
+  mesh.file = ReadFile(section, "file", folder);
+  ReadVector(section, "position", mesh.position, Unit::length);
+  ReadOrientation(section, "orientation", mesh.orientation);
+  section.Read("scale", mesh.scale, Range{1e-9, 1e9});
+  return mesh;
+}
+
+// duration_s: of the scenario; an object's script must not end before.
+ObjectDescription ReadObject(Section& section, const std::filesystem::path& folder, double duration_s,
+                             const std::vector<ObjectDescription>& others) {
+  ObjectDescription object;
+  object.mesh = ReadMesh(section, folder);
+  object.name = object.mesh.file.stem().string();
+  const bool named = section.Read("name", object.name);
+  const char* at = named ? "name" : "file";
+  constexpr const char* kGood = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  if (object.name.find_first_not_of(kGood) != std::string::npos) {
+    section.Reject(at, "'name': an object's name is a file's too: letters, digits, '_' and '-', not '" + object.name + "'");
   }
+  for (const ObjectDescription& other : others) {
+    if (other.name != object.name || object.name.empty()) continue;
+    section.Reject(at, "'name': another object is called '" + object.name + "' already");
+  }
+  section.RequirePresent("trajectory");
+  Section trajectory = section.Child("trajectory");
+  object.motion = ReadMotion(trajectory, folder);
+  const auto* script = std::get_if<ScriptedMotion>(&object.motion);
+  if (script != nullptr && !script->keys.empty() && script->keys.back().t_s < duration_s) {
+    trajectory.Reject("keys", "'trajectory.keys': the last key pose is at " +
+                                  settings::FormatNumber(script->keys.back().t_s) + " s, but the scenario lasts " +
+                                  settings::FormatNumber(duration_s) + " s");
+  }
+  return object;
+}
+
+void ReadWorld(Section section, const std::filesystem::path& folder, double duration_s, WorldDescription& world) {
+  for (Section& mesh : section.List("meshes")) world.meshes.push_back(ReadMesh(mesh, folder));
   if (world.meshes.empty()) section.Reject("meshes", "'world.meshes': the world is empty");
+  section.Allow("objects");
+  if (section.Has("objects")) {  // a manifest of a world without any says nothing of them
+    for (Section& object : section.List("objects")) {
+      world.objects.push_back(ReadObject(object, folder, duration_s, world.objects));
+    }
+  }
   for (Section& light : section.List("lights")) {
     LightKind kind = LightKind::ambient;
     light.RequireChoice("type", kind,
@@ -236,110 +265,9 @@ void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
   if (sensor.auto_exposure.on) within_frame("auto_exposure", "auto_exposure.longest", sensor.auto_exposure.longest_s);
 }
 
-SampledMotion ReadSampled(Section& section) {
-  SampledMotion motion;
-  Section start = section.Child("start");
-  ReadPose(start, motion.start);
-  ReadVector(start, "velocity", motion.velocity, Unit::speed);
-  ReadVector(start, "angular_rate", motion.angular_rate, Unit::angular_rate);
-  start.Read("velocity_sigma", motion.velocity_sigma, Unit::speed, kNotNegative);
-  start.Read("angular_rate_sigma", motion.angular_rate_sigma, Unit::angular_rate, kNotNegative);
-  section.Require("position_noise", motion.position_noise, Unit::acceleration_density, kNotNegative);
-  section.Require("orientation_noise", motion.orientation_noise, Unit::angular_acceleration_density, kNotNegative);
-  section.Read("knot_step", motion.knot_step_s, Unit::time, Range{1e-5, 0.1});
-  const Range range{0, 0.2 / motion.knot_step_s};
-  section.Read("position_return", motion.position_return, Unit::rate, range);
-  section.Read("orientation_return", motion.orientation_return, Unit::rate, range);
-  section.Allow("walls");
-  if (section.Has("walls")) {
-    Section walls = section.Child("walls");
-    SoftWalls& box = motion.walls.emplace();
-    walls.RequirePresent("low");
-    walls.RequirePresent("high");
-    ReadVector(walls, "low", box.low, Unit::length);
-    ReadVector(walls, "high", box.high, Unit::length);
-    walls.Read("margin", box.margin, Unit::length, Range::Positive());
-    walls.Read("rate", box.rate, Unit::rate, range);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!(box.high[axis] - box.low[axis] >= 2 * box.margin)) {
-        walls.Reject("high", "'walls': between low and high there must be two margins, along each axis");
-        break;
-      }
-    }
-  }
-  return motion;
-}
-
-ScriptedMotion ReadScripted(Section& section) {
-  ScriptedMotion motion;
-  bool good = true;
-  const auto reject = [&](Section& where, const std::string& key, const std::string& message) {
-    where.Reject(key, message);
-    good = false;
-  };
-  for (Section& item : section.List("keys")) {
-    KeyPose key;
-    const bool has_time = item.Require("time", key.t_s, Unit::time, kNotNegative);
-    if (has_time && motion.keys.empty() && key.t_s != 0)
-      reject(item, "time", "'time': the first key pose must be at 0 s");
-    if (has_time && !motion.keys.empty() && key.t_s <= motion.keys.back().t_s) {
-      reject(item, "time",
-             "'time': the times of key poses must increase, but " + settings::FormatNumber(key.t_s) +
-                 " s comes after " + settings::FormatNumber(motion.keys.back().t_s) + " s");
-    }
-    good = ReadPose(item, key.pose) && has_time && good;
-    motion.keys.push_back(key);
-  }
-  if (motion.keys.size() < 2) reject(section, "keys", "'trajectory.keys': two key poses are needed at least");
-  if (!good) return motion;
-  try {
-    SplineTrajectory{motion.keys};
-    const double pace = ReadPace(section, motion);
-    for (KeyPose& key : motion.keys) key.t_s /= pace;
-  } catch (const std::invalid_argument& error) {
-    section.Reject("keys", std::string("'trajectory.keys': ") + error.what());
-  }
-  return motion;
-}
-
-RecordedMotion ReadRecorded(Section& section, const std::filesystem::path& folder) {
-  RecordedMotion motion;
-  motion.file = ReadFile(section, "file", folder);
-  section.Read("start", motion.start_s, Unit::time, kNotNegative);
-  section.Read("average", motion.average_s, Unit::time, Range{0, 0.5});
-  section.Allow("place");
-  if (section.Has("place")) {
-    Section place = section.Child("place");
-    ReadPose(place, motion.place.emplace());
-  }
-  return motion;
-}
-
 void ReadMotionAndTime(Section root, const std::filesystem::path& folder, Scenario& scenario) {
   Section section = root.Child("trajectory");
-  enum class Kind { sampled, scripted, recorded, orbit, half_sphere, rpy, dolly } kind = Kind::sampled;
-  const bool known = section.RequireChoice("type", kind,
-                                           {{"sampled", Kind::sampled},
-                                            {"scripted", Kind::scripted},
-                                            {"recorded", Kind::recorded},
-                                            {"orbit", Kind::orbit},
-                                            {"half_sphere", Kind::half_sphere},
-                                            {"rpy", Kind::rpy},
-                                            {"dolly", Kind::dolly}});
-  if (!known) {
-    section.IgnoreRest();
-  } else if (kind == Kind::sampled) {
-    scenario.motion = ReadSampled(section);
-  } else if (kind == Kind::scripted) {
-    scenario.motion = ReadScripted(section);
-  } else if (kind == Kind::recorded) {
-    scenario.motion = ReadRecorded(section, folder);
-  } else {
-    scenario.motion = ReadPath(section, kind == Kind::orbit         ? PathKind::orbit
-                                        : kind == Kind::half_sphere ? PathKind::half_sphere
-                                        : kind == Kind::rpy         ? PathKind::rpy
-                                                                    : PathKind::dolly);
-  }
+  scenario.motion = ReadMotion(section, folder);
 
   Section time = root.Child("time");
   time.Read("rate", scenario.time.rate_hz, Unit::frequency, Range{0.01, 10000});
@@ -398,7 +326,7 @@ Scenario LoadScenario(const std::filesystem::path& path,
   if (world.Has("points")) {
     scenario.points = ReadPoints(root, world, scenario.camera);
   } else {
-    ReadWorld(world, folder, scenario.world);
+    ReadWorld(world, folder, scenario.time.duration_s, scenario.world);
     ReadSensor(root.Child("sensor"), scenario.time.rate_hz, scenario.sensor);
     ReadRender(root.Child("render"), folder, scenario.render);
     ReadTruth(root, scenario.truth);

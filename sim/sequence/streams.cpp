@@ -19,6 +19,8 @@ namespace {
 
 using Streams = std::set<TruthStream>;
 
+constexpr char kObjectFolder[] = "objects";
+
 // A stream with one file per frame. frame_step: of the other frame that it needs.
 struct ImageStream {
   TruthStream stream;
@@ -32,6 +34,7 @@ const std::vector<ImageStream>& ImageStreams() {
                                                    {TruthStream::distance, "distance", ".exr", 0},
                                                    {TruthStream::normals, "normals", ".exr", 0},
                                                    {TruthStream::surface_id, "surface_id", ".png", 0},
+                                                   {TruthStream::moving, "moving", ".png", 0},
                                                    {TruthStream::flow, "flow", ".flo", 1},
                                                    {TruthStream::flow_backward, "flow_backward", ".flo", -1},
                                                    {TruthStream::occlusion, "occlusion", ".png", 1},
@@ -41,11 +44,6 @@ const std::vector<ImageStream>& ImageStreams() {
 
 bool HasFrame(const Simulator& simulator, std::int64_t index) { return index >= 0 && index < simulator.frame_count(); }
 
-Pose PoseAt(const Simulator& simulator, std::int64_t index) {
-  const Truth truth = simulator.TruthAt(index);
-  return {truth.p_WC, truth.q_WC};
-}
-
 template <class Function>
 std::vector<float> Floats(const std::vector<SurfacePoint>& points, const Function& value) {
   std::vector<float> values(points.size());
@@ -54,11 +52,14 @@ std::vector<float> Floats(const std::vector<SurfacePoint>& points, const Functio
 }
 
 // Unit, in C, of the triangle's plane, towards the camera; zero where nothing is seen.
-std::vector<float> Normals(const SurfaceTracer& surfaces, const Pose& pose, const std::vector<SurfacePoint>& points) {
+std::vector<float> Normals(const SurfaceTracer& surfaces, const View& view, const std::vector<SurfacePoint>& points) {
   std::vector<float> normals(3 * points.size(), 0.0f);
+  const std::vector<Pose> objects = surfaces.ObjectPoses(view.t_s);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i].triangle == kNoTriangle) continue;
-    glm::dvec3 n = glm::conjugate(pose.q_WC) * glm::normalize(surfaces.Normal(points[i].triangle));
+    glm::dvec3 n = glm::normalize(surfaces.Normal(points[i].triangle));
+    if (points[i].object != kWorld) n = objects[static_cast<std::size_t>(points[i].object)].q_WC * n;
+    n = glm::conjugate(view.pose.q_WC) * n;
     if (glm::dot(n, points[i].X_C) > 0) n = -n;
     for (int c = 0; c < 3; ++c) normals[3 * i + static_cast<std::size_t>(c)] = static_cast<float>(n[c]);
   }
@@ -74,6 +75,14 @@ std::vector<std::uint16_t> SurfaceIds(const SurfaceTracer& surfaces, const std::
     ids[i] = static_cast<std::uint16_t>(id);
   }
   return ids;
+}
+
+// 255: true.
+template <class Function>
+std::vector<std::uint8_t> Mask(std::size_t count, const Function& is) {
+  std::vector<std::uint8_t> mask(count);
+  for (std::size_t i = 0; i < count; ++i) mask[i] = is(i) ? 255 : 0;
+  return mask;
 }
 
 std::string Numbers(const char* format, const glm::dvec3& v) {
@@ -146,16 +155,16 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
   const SurfaceTracer& surfaces = simulator.surfaces();
   const Camera& camera = simulator.camera();
   const int width = camera.width(), height = camera.height();
-  const Pose pose = PoseAt(simulator, index);
+  const View view = simulator.ViewAt(index);
   std::vector<SurfacePoint> points;
   FlowImage flow[2];  // to the next frame, to the one before
   std::vector<StreamFile> files;
   for (const auto& [stream, folder, extension, frame_step] : ImageStreams()) {
     if (!streams.contains(stream) || !HasFrame(simulator, index + frame_step)) continue;
-    if (points.empty()) surfaces.Trace(camera, pose, points);
+    if (points.empty()) surfaces.Trace(camera, view, points);
     FlowImage& to = flow[frame_step < 0];
     if (frame_step != 0 && to.uv.empty()) {
-      to = FlowBetween(surfaces, camera, points, pose, PoseAt(simulator, index + frame_step));
+      to = FlowBetween(surfaces, camera, points, view, simulator.ViewAt(index + frame_step));
     }
     StreamFile& file = files.emplace_back();
     file.path = folder + "/" + FormatStamp(simulator.StampNs(index)) + extension;
@@ -176,7 +185,7 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
         file.bytes = EncodeExr(Floats(points, distance), width, height, 1, false);
         break;
       case TruthStream::normals:
-        file.bytes = EncodeExr(Normals(surfaces, pose, points), width, height, 3, true);
+        file.bytes = EncodeExr(Normals(surfaces, view, points), width, height, 3, true);
         break;
       case TruthStream::surface_id:
         file.bytes = EncodeGrey16(SurfaceIds(surfaces, points), width, height);
@@ -185,12 +194,14 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
       case TruthStream::flow_backward:
         file.bytes = EncodeFlo(to.uv, width, height);
         break;
-      case TruthStream::occlusion: {
-        std::vector<std::uint8_t> mask(to.occluded);
-        for (std::uint8_t& pixel : mask) pixel = pixel ? 255 : 0;
-        file.bytes = EncodeGrey8(mask, width, height);
+      case TruthStream::moving:
+        file.bytes = EncodeGrey8(
+            Mask(points.size(), [&](std::size_t i) { return points[i].object != kWorld; }), width, height);
         break;
-      }
+      case TruthStream::occlusion:
+        file.bytes = EncodeGrey8(Mask(to.occluded.size(), [&](std::size_t i) { return to.occluded[i] != 0; }), width,
+                                 height);
+        break;
       case TruthStream::landmarks:
       case TruthStream::acceleration:
       case TruthStream::imu:
@@ -213,6 +224,13 @@ std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t
     }
     files.push_back(TextFile(folder + ".txt", list));
   }
+  for (std::size_t k = 0; k < simulator.object_names().size(); ++k) {
+    std::string poses = "# timestamp tx ty tz qx qy qz qw\n";
+    for (std::int64_t index = first; index < last; ++index) {
+      poses += TruthLine(simulator.StampNs(index), simulator.ObjectTruthAt(k, index));
+    }
+    files.push_back(TextFile(kObjectFolder + ("/" + simulator.object_names()[k]) + ".txt", poses));
+  }
   if (streams.contains(TruthStream::surface_id)) {
     std::string legend = "# id mesh; 0: nothing\n";
     for (std::size_t i = 0; i < simulator.mesh_names().size(); ++i) {
@@ -233,7 +251,7 @@ std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t
 }
 
 std::set<std::string> StreamNames() {
-  std::set<std::string> names = {"surfaces.txt", "acceleration.txt", "landmarks.txt", "landmark_tracks.txt", "imu0"};
+  std::set<std::string> names = {"surfaces.txt", "acceleration.txt", "landmarks.txt", "landmark_tracks.txt", "imu0", kObjectFolder};
   for (const ImageStream& stream : ImageStreams()) {
     names.insert(stream.folder);
     names.insert(stream.folder + ".txt");

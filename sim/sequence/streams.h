@@ -17,7 +17,8 @@ namespace sim {
 std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t index,
                                      const std::set<TruthStream>& streams);
 
-// The files of frames [first, last) together: lists of those above, acceleration, IMU, landmarks.
+// The files of frames [first, last) together: lists of those above, acceleration, IMU, landmarks; and, whatever the
+// streams are, where each object is.
 std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t first, std::int64_t last,
                                         const std::set<TruthStream>& streams);
 

@@ -5,9 +5,9 @@
 namespace sim {
 namespace {
 
-constexpr std::array<std::string_view, 12> kNames = {
-    "depth",         "depth_exr", "depth_kinect", "distance",  "normals",      "flow",
-    "flow_backward", "occlusion", "surface_id",   "landmarks", "acceleration", "imu"};
+constexpr std::array<std::string_view, 13> kNames = {
+    "depth",     "depth_exr",  "depth_kinect", "distance",  "normals",      "flow", "flow_backward",
+    "occlusion", "surface_id", "moving",       "landmarks", "acceleration", "imu"};
 static_assert(kNames.size() == static_cast<std::size_t>(TruthStream::imu) + 1);
 
 }  // namespace

@@ -21,6 +21,7 @@ enum class TruthStream {
   flow_backward,  // to the one before
   occlusion,      // what of each flow cannot be seen in the other frame
   surface_id,
+  moving,  // which pixels see an object that moves
   landmarks,
   acceleration,
   imu

@@ -24,10 +24,10 @@ struct FlowImage {
 // From the frame whose pixels see `points` to another one: the point of the surface that is seen through a pixel's
 // centre at the stamp here, projected at the stamp there, minus the pixel. In double; the file has floats.
 //
-// A point is X_W = T_WO(t) X_O, a place on an object times the object's pose at the stamp. Objects stand still today:
-// T_WO is the identity at both stamps, and PointThere is the one line that will read their poses.
+// A point is X_W = T_WO(t) X_O, a place on an object times the object's pose at the stamp; of what stands still T_WO is
+// the identity.
 FlowImage FlowBetween(const SurfaceTracer& surfaces, const Camera& camera, std::span<const SurfacePoint> points,
-                      const Pose& here, const Pose& there);
+                      const View& here, const View& there);
 
 // Whether the lens projects the point anywhere: Z > 0; a fisheye, whatever is not straight behind it.
 bool HasPixel(const Camera& camera, const glm::dvec3& X_C);

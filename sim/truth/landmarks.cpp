@@ -19,13 +19,13 @@ std::vector<SurfaceLandmark> Candidates(const Simulator& simulator, std::size_t 
   for (std::int64_t f = 0; f < frames; ++f) {
     const std::int64_t index = frames == 1 ? 0 : f * (simulator.frame_count() - 1) / (frames - 1);
     const Truth truth = simulator.TruthAt(index);
-    simulator.surfaces().Trace(simulator.camera(), {truth.p_WC, truth.q_WC}, points);
+    simulator.surfaces().Trace(simulator.camera(), simulator.ViewAt(index), points);
     const std::size_t end = count * static_cast<std::size_t>(f + 1) / static_cast<std::size_t>(frames);
     for (std::size_t i = count * static_cast<std::size_t>(f) / static_cast<std::size_t>(frames); i < end; ++i) {
       const Words words =
           RandomWords(simulator.scenario().seed, Stream::landmark_place, 0, static_cast<std::uint32_t>(i), 0);
       const auto pixel = static_cast<std::size_t>(Uniform(words[0], words[1]) * static_cast<double>(points.size()));
-      if (points[pixel].triangle == kNoTriangle) continue;
+      if (points[pixel].triangle == kNoTriangle || points[pixel].object != kWorld) continue;
       candidates.push_back(
           {truth.p_WC + truth.q_WC * points[pixel].X_C, simulator.surfaces().MeshOf(points[pixel].triangle)});
     }
@@ -66,7 +66,7 @@ std::vector<LandmarkView> ViewsOf(const Simulator& simulator, const std::vector<
     points.push_back(landmarks[id].X_W);
   }
   std::vector<std::uint8_t> visible;
-  simulator.surfaces().Visible(truth.p_WC, points, visible);
+  simulator.surfaces().Visible(simulator.ViewAt(frame), points, visible);
   for (std::size_t i = 0; i < views.size(); ++i) views[i].visible = visible[i] != 0;
   return views;
 }

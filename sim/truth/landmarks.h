@@ -13,7 +13,7 @@ struct SurfaceLandmark {
   std::uint32_t mesh = 0;  // index in Scene::meshes
 };
 
-// `count` points (fewer where the camera sees next to nothing), spread over the surfaces: candidates lie under random
+// `count` points (fewer where the camera sees next to nothing), spread over the surfaces that stand still: candidates lie under random
 // pixels (keyed by seed) of up to 64 frames spread over the whole scenario; of 8 `count` candidates each next one taken
 // is the farthest from those taken before (farthest-point sampling). A function of the scenario alone.
 std::vector<SurfaceLandmark> SpreadLandmarks(const Simulator& simulator, int count);

@@ -5,8 +5,10 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "sim/motion/description.h"
 #include "sim/world/light.h"
 #include "sim/world/sky.h"
 
@@ -20,8 +22,16 @@ struct MeshDescription {
   double scale = 1.0;  // metres per unit of the file, > 0
 };
 
+// A mesh file that moves as a rigid body. It is set into the object's own frame O as a mesh is set into the world.
+struct ObjectDescription {
+  std::string name;  // of its file of poses; no other object has it
+  MeshDescription mesh;
+  MotionDescription motion;  // T_WO
+};
+
 struct WorldDescription {
   std::vector<MeshDescription> meshes;
+  std::vector<ObjectDescription> objects;
   std::vector<Light> lights;
   glm::dvec3 background{0.0};  // linear radiance of a ray that meets nothing; not used where there is a sky
   std::optional<SkyDescription> sky;

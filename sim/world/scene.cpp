@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <initializer_list>
+#include <iterator>
 #include <utility>
 
 #include "sim/world/mesh_file.h"
@@ -65,15 +66,23 @@ Scene LoadScene(const WorldDescription& description) {
   }
 
   TextureCache textures;
-  for (const MeshDescription& mesh : description.meshes) {
+  const auto append = [&](const MeshDescription& mesh) {
     const glm::dquat& q = mesh.orientation;
     if (!IsFinite(mesh.position) || !(mesh.scale > 0) || !std::isfinite(mesh.scale) ||
         !(std::abs(glm::dot(q, q) - 1.0) < 1e-6)) {
       problems.push_back(mesh.file.string() +
                          ": its position, orientation (unit) or scale (> 0) in the world is unusable");
-      continue;
+      return;
     }
     AppendMeshFile(mesh, scene, textures, problems);
+  };
+  for (const MeshDescription& mesh : description.meshes) append(mesh);
+  for (const ObjectDescription& object : description.objects) {
+    const auto first = static_cast<std::ptrdiff_t>(scene.meshes.size());
+    append(object.mesh);
+    const auto begin = scene.meshes.begin() + first;
+    scene.objects.push_back({object.name, {std::move_iterator(begin), std::move_iterator(scene.meshes.end())}, nullptr});
+    scene.meshes.erase(begin, scene.meshes.end());
   }
   if (!problems.empty()) throw SceneError(std::move(problems));
   scene.lights = description.lights;

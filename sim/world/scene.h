@@ -1,13 +1,16 @@
-// Purpose: a world in memory, ready to be rendered: triangles in W, materials, textures in linear light, lights.
+// Purpose: a world in memory, ready to be rendered: triangles in W, objects that move, materials, textures in linear light,
+//          lights.
 #pragma once
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "sim/motion/trajectory.h"
 #include "sim/world/description.h"
 #include "sim/world/light.h"
 #include "sim/world/sky.h"
@@ -32,16 +35,24 @@ struct Material {
 // Per-vertex arrays are empty or as long as positions. Surfaces are two-sided: what is seen faces the viewer.
 struct Mesh {
   std::string name;
-  std::vector<glm::vec3> positions;  // in W [m]
-  std::vector<glm::vec3> normals;    // in W, unit; empty: flat
+  std::vector<glm::vec3> positions;  // in W [m], or in O
+  std::vector<glm::vec3> normals;    // the same, unit; empty: flat
   std::vector<glm::vec2> uvs;     // (0, 0) = upper left corner of the texture's image, v down; repeats outside [0, 1)
   std::vector<glm::vec3> colors;  // linear
   std::vector<glm::uvec3> triangles;
   int material = 0;  // index in Scene::materials
 };
 
+// A rigid body on its path: X_W = T_WO(t) X_O, T_WO(t) = motion->At(t).pose.
+struct MovingObject {
+  std::string name;
+  std::vector<Mesh> meshes;  // in O
+  std::shared_ptr<const Trajectory> motion;
+};
+
 struct Scene {
-  std::vector<Mesh> meshes;
+  std::vector<Mesh> meshes;  // that stand still
+  std::vector<MovingObject> objects;
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Light> lights;
@@ -65,7 +76,8 @@ class SceneError : public std::runtime_error {
 // SceneError with all problems of the world at once: a mesh that is missing, corrupt, without triangles, or with a
 // coordinate that is not finite; a texture that is missing, truncated, not an image, or named by an absolute path or
 // one that leaves the mesh file's folder; a light that is not finite or has no direction. A textured material on a mesh
-// without texture coordinates is a warning; its base colour is used.
+// without texture coordinates is a warning; its base colour is used. Objects are without motion: whoever knows the
+// time that they are needed for makes it (sim/motion/make.h).
 Scene LoadScene(const WorldDescription& description);
 
 }  // namespace sim

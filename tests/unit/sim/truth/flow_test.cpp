@@ -80,7 +80,7 @@ TEST(Flow, UnknownWhereNothingIsOrWhatIsBehind) {
   const Pose here{};
   const Traced traced(scene, SmallCamera(), here);
   for (const double z : {1.0, 3.0}) {
-    const FlowImage flow = FlowBetween(traced.surfaces, traced.camera, traced.points, here, {{0, 0, z}, here.q_WC});
+    const FlowImage flow = FlowBetween(traced.surfaces, traced.camera, traced.points, here, Pose{{0, 0, z}, here.q_WC});
     const std::size_t middle = 30 * 83 + 41;
     EXPECT_EQ(flow.uv[0], kUnknownFlow);
     EXPECT_EQ(flow.occluded[0], 1);
@@ -130,9 +130,9 @@ TEST(SurfaceTracer, PointsOfACorner) {
   }
   // All of it is seen from anywhere inside.
   std::vector<std::uint8_t> visible;
-  traced.surfaces.Visible({1.2, 2.1, -2.3}, points_W, visible);
+  traced.surfaces.Visible(Pose{{1.2, 2.1, -2.3}}, points_W, visible);
   for (std::size_t i = 0; i < visible.size(); ++i) ASSERT_EQ(visible[i], 1) << i;
-  traced.surfaces.Visible({1.2, 2.1, -3.5}, points_W, visible);  // and nothing from outside, but what is on that side
+  traced.surfaces.Visible(Pose{{1.2, 2.1, -3.5}}, points_W, visible);  // and nothing from outside, but what is on that side
   for (std::size_t i = 0; i < visible.size(); ++i) ASSERT_EQ(visible[i], points_W[i].z < -2.999999 ? 1 : 0) << i;
 }
 

@@ -1,0 +1,17 @@
+// Purpose: a motion of any kind, the camera's or an object's, as scenarios write it: docs/scenario.md has the keys.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "sim/motion/description.h"
+#include "tools/settings/settings.h"
+
+namespace sim {
+
+// A file named in a scenario, which lies in `folder`. Whether it is there is said when it is opened.
+std::filesystem::path ReadFile(settings::Section& section, const std::string& key, const std::filesystem::path& folder);
+
+MotionDescription ReadMotion(settings::Section& section, const std::filesystem::path& folder);
+
+}  // namespace sim
