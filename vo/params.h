@@ -43,6 +43,7 @@ struct FilterParams {
   int particles = 8;
   double resample_below = 0.5;  // resample when N_eff < this fraction of the particles
   int max_iterations = 10;      // of the iterated proposal, and of a landmark given its pose
+  int joint_iterations = 1;     // of ekfslam's update. 1: the textbook EKF; more: Gauss-Newton to the joint mode, which is biased in scale
   Weight weight = Weight::evidence;
   int lag = 0;                  // poses kept un-sampled, so that later images speak before the map is committed to them (0: the paper)
   bool marginal_mode = false;   // propose at the mode of the poses' marginal, not of poses and landmarks jointly: unbiased in scale, but it

@@ -1,5 +1,7 @@
 #include "sim/sequence/content.h"
 
+#include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "sim/sequence/format.h"
@@ -7,6 +9,44 @@
 #include "sim/sequence/streams.h"
 
 namespace sim {
+namespace {
+
+// Which streams the scenario asks for; other layouts than TUM's have depth anyway.
+std::set<TruthStream> StreamsOf(const SequenceContent& content, const Simulator& simulator) {
+  std::set<TruthStream> streams = simulator.scenario().truth.streams;
+  if (content.layout != Layout::tum) streams.erase(TruthStream::depth);
+  return streams;
+}
+
+// To where the layout has a stream's files: those that EuRoC and ICL-NUIM have no place for are in truth/.
+void Place(Layout layout, std::vector<StreamFile>&& streams, std::vector<StreamFile>& files) {
+  for (StreamFile& file : streams) {
+    const bool imu = file.path.starts_with("imu0/");
+    if (layout == Layout::euroc && file.path == kImuYaml) continue;  // has its own, of the layout
+    if (layout == Layout::euroc && imu) file.path = "mav0/" + file.path;
+    if (layout == Layout::icl || (layout == Layout::euroc && !imu)) file.path = "truth/" + file.path;
+    files.push_back(std::move(file));
+  }
+}
+
+// The biases of the last reading that is not later.
+void AddBiases(const Simulator& simulator, std::vector<StampedTruth>& frames) {
+  if (frames.empty()) return;
+  const ImuParams& imu = simulator.scenario().truth.imu;
+  const auto period_ns = static_cast<std::int64_t>(1e9 / imu.rate_hz) + 1;
+  const std::vector<ImuSample> readings =
+      ImuReadings(simulator.trajectory(), imu, simulator.scenario().seed,
+                  std::max<std::int64_t>(0, frames.front().stamp_ns - period_ns), frames.back().stamp_ns);
+  std::size_t next = 0;
+  for (StampedTruth& frame : frames) {
+    while (next < readings.size() && readings[next].stamp_ns <= frame.stamp_ns) ++next;
+    if (next == 0) continue;
+    frame.gyroscope_bias = readings[next - 1].gyroscope_bias;
+    frame.accelerometer_bias = readings[next - 1].accelerometer_bias;
+  }
+}
+
+}  // namespace
 
 void Validate(const SequenceContent& content, const Simulator& simulator) {
   if (content.first < 0 || content.last <= content.first || content.last > simulator.frame_count()) {
@@ -24,13 +64,11 @@ std::vector<StreamFile> FrameFiles(const Simulator& simulator, const SequenceCon
   const FrameNames names = NamesOf(content.layout, index, frame.stamp_ns);
   std::vector<StreamFile> files;
   files.push_back({names.image, EncodePng(frame.image)});
-  if (content.layout == Layout::tum) {
-    for (StreamFile& file : FrameStreams(simulator, index, simulator.scenario().truth.streams)) {
-      files.push_back(std::move(file));
-    }
-  } else {
+  if (content.layout != Layout::tum) {
     files.push_back({names.depth, EncodeDepthPng(simulator.Depth(index), frame.image.width, frame.image.height)});
   }
+  const std::set<TruthStream> streams = StreamsOf(content, simulator);
+  if (!streams.empty()) Place(content.layout, FrameStreams(simulator, index, streams), files);
   return files;
 }
 
@@ -39,13 +77,10 @@ std::vector<StreamFile> WholeFiles(const Simulator& simulator, const SequenceCon
   for (std::int64_t index = content.first; index < content.first + whole; ++index) {
     frames.push_back({index, simulator.StampNs(index), simulator.TruthAt(index)});
   }
+  const std::set<TruthStream> streams = StreamsOf(content, simulator);
+  if (streams.contains(TruthStream::imu)) AddBiases(simulator, frames);
   std::vector<StreamFile> files = Lists(content.layout, simulator.scenario(), frames);
-  if (content.layout == Layout::tum) {
-    for (StreamFile& file : SequenceStreams(simulator, content.first, content.first + whole,
-                                            simulator.scenario().truth.streams)) {
-      files.push_back(std::move(file));
-    }
-  }
+  Place(content.layout, SequenceStreams(simulator, content.first, content.first + whole, streams), files);
   if (content.layout == Layout::tum && simulator.scenario().sensor.auto_exposure.on) {
     std::string lines = "# timestamp exposure gain\n";
     for (const StampedTruth& frame : frames) lines += ExposureLine(frame.stamp_ns, simulator.SettingOf(frame.index));

@@ -27,9 +27,15 @@ std::vector<StreamFile> TumLists(Frames frames) {
 
 // ---- EuRoC: the body B is the camera, so T_BS is one, and the truth is of the camera.
 
-constexpr char kOne[] =
-    "T_BS:\n  cols: 4\n  rows: 4\n  data: [1.0, 0.0, 0.0, 0.0,\n         0.0, 1.0, 0.0, 0.0,\n"
-    "         0.0, 0.0, 1.0, 0.0,\n         0.0, 0.0, 0.0, 1.0]\n";
+std::string EurocPlace(const Pose& T_BS) {
+  const glm::dmat3 R = glm::mat3_cast(T_BS.q_WC);
+  std::string text = "T_BS:\n  cols: 4\n  rows: 4\n  data: [";
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) text += FormatDecimal(R[column][row]) + ", ";
+    text += FormatDecimal(T_BS.p_WC[row]) + ",\n         ";
+  }
+  return text + "0.0, 0.0, 0.0, 1.0]\n";
+}
 
 // Kalibr's names.
 std::string EurocLens(const CameraParams& c) {
@@ -43,17 +49,27 @@ std::string EurocLens(const CameraParams& c) {
 std::string EurocCamera(const std::string& comment, const Scenario& scenario) {
   const auto number = settings::FormatNumber;
   const CameraParams& c = scenario.camera;
-  return "sensor_type: camera\ncomment: " + comment + "\n" + kOne + "rate_hz: " + number(scenario.time.rate_hz) +
-         "\nresolution: [" + std::to_string(c.width) + ", " + std::to_string(c.height) +
-         "]\ncamera_model: pinhole\nintrinsics: [" + number(c.fx) + ", " + number(c.fy) + ", " + number(c.cx) + ", " +
-         number(c.cy) + "]  # fu, fv, cu, cv\n" + EurocLens(c);
+  return "sensor_type: camera\ncomment: " + comment + "\n" + EurocPlace({}) +
+         "rate_hz: " + number(scenario.time.rate_hz) + "\nresolution: [" + std::to_string(c.width) + ", " +
+         std::to_string(c.height) + "]\ncamera_model: pinhole\nintrinsics: [" + number(c.fx) + ", " + number(c.fy) +
+         ", " + number(c.cx) + ", " + number(c.cy) + "]  # fu, fv, cu, cv\n" + EurocLens(c);
+}
+
+std::string EurocImu(const ImuParams& imu) {
+  const auto number = settings::FormatNumber;
+  return "sensor_type: imu\ncomment: simulated\n" + EurocPlace(imu.T_CI) + "rate_hz: " + number(imu.rate_hz) +
+         "\ngyroscope_noise_density: " + number(imu.gyroscope_noise) +
+         "  # rad/s/sqrt(Hz)\ngyroscope_random_walk: " + number(imu.gyroscope_walk) +
+         "  # rad/s^2/sqrt(Hz)\naccelerometer_noise_density: " + number(imu.accelerometer_noise) +
+         "  # m/s^2/sqrt(Hz)\naccelerometer_random_walk: " + number(imu.accelerometer_walk) + "  # m/s^3/sqrt(Hz)\n";
 }
 
 std::string EurocTruthLine(const StampedTruth& frame) {
   const Truth& t = frame.truth;
+  const glm::dvec3 &w = frame.gyroscope_bias, &a = frame.accelerometer_bias;
   std::string line = std::to_string(frame.stamp_ns);
   for (const double number : {t.p_WC.x, t.p_WC.y, t.p_WC.z, t.q_WC.w, t.q_WC.x, t.q_WC.y, t.q_WC.z, t.v_WC.x, t.v_WC.y,
-                              t.v_WC.z, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}) {
+                              t.v_WC.z, w.x, w.y, w.z, a.x, a.y, a.z}) {
     line += "," + FormatDecimal(number);
   }
   return line + "\n";
@@ -70,7 +86,7 @@ std::vector<StreamFile> EurocLists(const Scenario& scenario, Frames frames) {
     images.append(stamp).append(",").append(stamp).append(".png\n");
     truth += EurocTruthLine(frame);
   }
-  return {
+  std::vector<StreamFile> files = {
       TextFile("mav0/body.yaml", "comment: The body frame is that of cam0.\n"),
       TextFile("mav0/cam0/data.csv", images),
       TextFile("mav0/cam0/sensor.yaml", EurocCamera("simulated camera", scenario)),
@@ -80,7 +96,12 @@ std::vector<StreamFile> EurocLists(const Scenario& scenario, Frames frames) {
           EurocCamera("depth of cam0's pixels along its optical axis, 16 bits, metres x 5000, 0 = none", scenario)),
       TextFile("mav0/state_groundtruth_estimate0/data.csv", truth),
       TextFile("mav0/state_groundtruth_estimate0/sensor.yaml",
-               std::string("sensor_type: visual-inertial\ncomment: exact; its world has gravity along -y\n") + kOne)};
+               std::string("sensor_type: visual-inertial\ncomment: exact; its world has gravity along -y\n") +
+                   EurocPlace({}))};
+  if (scenario.truth.streams.contains(TruthStream::imu)) {
+    files.push_back(TextFile("mav0/imu0/sensor.yaml", EurocImu(scenario.truth.imu)));
+  }
+  return files;
 }
 
 // ---- ICL-NUIM: the truth belongs to a camera with fy < 0, whose y points up: mirrored in y, S T S with
@@ -120,11 +141,6 @@ std::string ToString(Layout layout) {
 }
 
 std::vector<std::string> Problems(Layout layout, const Scenario& scenario) {
-  for (const TruthStream stream : scenario.truth.streams) {
-    if (layout == Layout::tum || stream == TruthStream::depth) continue;
-    return {"the " + ToString(layout) + " layout has no place for the truth stream " + Name(stream) +
-            "; only tum has (docs/truth.md)"};
-  }
   if (layout == Layout::euroc && scenario.camera.lens == Lens::radial_tangential && scenario.camera.k3 != 0) {
     return {"the euroc layout has no place for the camera's k3 = " + settings::FormatNumber(scenario.camera.k3)};
   }

@@ -32,6 +32,7 @@ struct StampedTruth {
   std::int64_t index = 0;
   std::int64_t stamp_ns = 0;
   Truth truth;
+  glm::dvec3 gyroscope_bias{0.0}, accelerometer_bias{0.0};  // of the IMU, in I
 };
 // Lists of frames and truth, with a line for each of `frames`, which are in order of time; and what the layout says of
 // its sensors.

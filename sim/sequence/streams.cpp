@@ -126,7 +126,7 @@ void AppendImu(const Simulator& simulator, std::int64_t first, std::int64_t last
   }
   files.push_back(TextFile("imu0/data.csv", data));
   files.push_back(TextFile("imu0/bias.csv", bias));
-  files.push_back(TextFile("imu0/sensor.yaml", ImuYaml(imu)));
+  files.push_back(TextFile(kImuYaml, ImuYaml(imu)));
 }
 
 void AppendLandmarks(const Simulator& simulator, std::int64_t first, std::int64_t last,

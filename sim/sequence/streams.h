@@ -22,6 +22,9 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
 std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t first, std::int64_t last,
                                         const std::set<TruthStream>& streams);
 
+// What is known of the IMU, beside its readings and its biases.
+inline constexpr const char* kImuYaml = "imu0/sensor.yaml";
+
 // All names at a sequence's top level that either may make.
 std::set<std::string> StreamNames();
 

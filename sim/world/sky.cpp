@@ -1,7 +1,13 @@
 #include "sim/world/sky.h"
 
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <numbers>
@@ -14,9 +20,43 @@
 namespace sim {
 namespace {
 
+// Not by OpenCV, which reads OpenEXR only where the environment asks for it. In OpenCV's order of colours.
+cv::Mat ReadExr(const std::filesystem::path& path) {
+  try {
+    Imf::InputFile file(path.c_str());
+    const Imath::Box2i window = file.header().dataWindow();
+    const Imf::ChannelList& channels = file.header().channels();
+    const bool grey = channels.findChannel("Y") != nullptr && channels.findChannel("R") == nullptr;
+    const std::vector<const char*> names = grey ? std::vector{"Y"} : std::vector{"B", "G", "R"};
+    cv::Mat picture(window.max.y - window.min.y + 1, window.max.x - window.min.x + 1, grey ? CV_32FC1 : CV_32FC3);
+    Imf::FrameBuffer buffer;
+    const auto step = static_cast<std::ptrdiff_t>(picture.elemSize()),
+               row = static_cast<std::ptrdiff_t>(picture.step[0]);
+    char* base = reinterpret_cast<char*>(picture.data) - row * window.min.y - step * window.min.x;
+    for (const char* name : names) {
+      const Imf::Channel* channel = channels.findChannel(name);
+      if (channel == nullptr) throw std::runtime_error(std::string("there is no channel ") + name);
+      if (channel->xSampling != 1 || channel->ySampling != 1)
+        throw std::runtime_error(std::string("channel ") + name + " is subsampled");
+      buffer.insert(name, Imf::Slice(Imf::FLOAT, base, static_cast<std::size_t>(step), static_cast<std::size_t>(row)));
+      base += sizeof(float);
+    }
+    file.setFrameBuffer(buffer);
+    file.readPixels(window.min.y, window.max.y);
+    return picture;
+  } catch (const std::exception& error) {
+    throw std::runtime_error(path.string() + ": cannot be read: " + error.what());
+  }
+}
+
 cv::Mat ReadPicture(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw std::runtime_error(file.string() + ": cannot be opened");
+  char magic[4] = {};
+  stream.read(magic, sizeof magic);
+  if (std::memcmp(magic, "\x76\x2f\x31\x01", sizeof magic) == 0) return ReadExr(file);
+  stream.clear();
+  stream.seekg(0);
   const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
   cv::Mat picture;
   try {
@@ -26,12 +66,7 @@ cv::Mat ReadPicture(const std::filesystem::path& file) {
   } catch (const cv::Exception& error) {
     throw std::runtime_error(file.string() + ": cannot be decoded: " + error.err);
   }
-  if (picture.empty()) {
-    const bool exr = file.extension() == ".exr" || file.extension() == ".EXR";
-    throw std::runtime_error(
-        file.string() + ": not a picture that can be decoded" +
-        (exr ? "; OpenCV reads OpenEXR only where the environment has OPENCV_IO_ENABLE_OPENEXR=1" : ""));
-  }
+  if (picture.empty()) throw std::runtime_error(file.string() + ": not a picture that can be decoded");
   return picture;
 }
 

@@ -31,13 +31,6 @@ Overrides Setting(const Overrides& more) {
   return all;
 }
 
-evaluation::Matrix12d StartCovariance(const vo::Prior& prior) {
-  evaluation::Matrix12d start = evaluation::Matrix12d::Zero();
-  start.topLeftCorner<6, 6>() = prior.pose_covariance;
-  start.bottomRightCorner<6, 6>() = prior.velocity_covariance;
-  return start;
-}
-
 // A belief narrower or wider about the same mean.
 void Scale(double factor, vo::Estimate& estimate, std::vector<vo::BeliefComponent>& mixture) {
   if (factor == 1) return;

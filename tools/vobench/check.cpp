@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "sim/sensor/emva.h"
 #include "sim/simulator.h"
 #include "tools/evaluation/trajectory.h"
 #include "tools/vobench/bridge.h"
@@ -34,6 +37,17 @@ void CheckPoints(const CheckOptions& options, const sim::Scenario& scenario) {
              static_cast<double>(views) / static_cast<double>(truth.poses.size()), scenario.seed);
 }
 
+// In the terms of camera data sheets (docs/sensor.md).
+void PrintSensor(const sim::SensorParams& sensor) {
+  const sim::EmvaFigures emva = sim::Emva(sensor);
+  fmt::print(
+      "  sensor (EMVA 1288): gain {:.4g} DN/e, dark noise {:.3g} e, saturation {:.0f} e = {:.0f} photons,\n"
+      "    threshold {:.3g} photons, SNR at most {:.3g} ({:.1f} dB), dynamic range {:.1f} dB, PRNU {:.2g} %, DSNU "
+      "{:.2g} e\n",
+      emva.system_gain, emva.dark_noise_e, emva.saturation_e, emva.saturation_p, emva.sensitivity_p, emva.snr_max,
+      20 * std::log10(emva.snr_max), 20 * std::log10(emva.dynamic_range), emva.prnu_percent, emva.dsnu_e);
+}
+
 }  // namespace
 
 void Check(const CheckOptions& options) {
@@ -47,6 +61,7 @@ void Check(const CheckOptions& options) {
   PrintFrames(options, scenario, truth);
   fmt::print("  {:.2f} m of path, {} meshes, {} lights, seed {}\n", evaluation::PathLength(truth.poses),
              scenario.world.meshes.size(), scenario.world.lights.size(), scenario.seed);
+  PrintSensor(scenario.sensor);
 }
 
 }  // namespace vobench

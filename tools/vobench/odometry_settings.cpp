@@ -21,8 +21,8 @@ void ReadMotion(Section section, vo::MotionParams& params) {
 
 void ReadFilter(Section section, vo::FilterParams& params) {
   // Which velocities are sampled is what tells the systems apart: --system says it.
-  [[maybe_unused]] auto& [sampled, proposal, particles, resample_below, max_iterations, weight, lag, marginal_mode,
-                          reject_outliers, ukf_alpha, ukf_beta, ukf_kappa] = params;
+  [[maybe_unused]] auto& [sampled, proposal, particles, resample_below, max_iterations, joint_iterations, weight, lag,
+                          marginal_mode, reject_outliers, ukf_alpha, ukf_beta, ukf_kappa] = params;
   section.ReadChoice("proposal", proposal,
                      {{"bootstrap", vo::Proposal::bootstrap},
                       {"ekf", vo::Proposal::ekf},
@@ -31,6 +31,7 @@ void ReadFilter(Section section, vo::FilterParams& params) {
   section.Read("particles", particles, Range{1, 100'000});
   section.Read("resample_below", resample_below, Range{0, 1});
   section.Read("max_iterations", max_iterations, Range{1, 1000});
+  section.Read("joint_iterations", joint_iterations, Range{1, 1000});
   section.ReadChoice(
       "weight", weight,
       {{"importance", vo::Weight::importance}, {"evidence", vo::Weight::evidence}, {"equal", vo::Weight::equal}});

@@ -58,6 +58,13 @@ vo::Prior PriorOf(const PriorSettings& settings, const sim::MotionDescription& m
   return prior;
 }
 
+evaluation::Matrix12d StartCovariance(const vo::Prior& prior) {
+  evaluation::Matrix12d start = evaluation::Matrix12d::Zero();
+  start.topLeftCorner<6, 6>() = prior.pose_covariance;
+  start.bottomRightCorner<6, 6>() = prior.velocity_covariance;
+  return start;
+}
+
 vo::Prior PriorOf(const PriorSettings& settings, const sim::PointWorld& world, std::uint64_t seed) {
   Truth start;
   Append(world.StampNs(0), world.TruthAt(0), start);

@@ -5,6 +5,7 @@
 
 #include "sim/motion/description.h"
 #include "sim/world/point_world.h"
+#include "tools/evaluation/estimate_run.h"
 #include "tools/vobench/odometry_settings.h"
 #include "tools/vobench/truth.h"
 #include "vo/odometry.h"
@@ -28,5 +29,8 @@ vo::Prior PriorOf(const PriorSettings& settings, const sim::MotionDescription& m
                   std::uint64_t seed);
 // The same at the start of a world.
 vo::Prior PriorOf(const PriorSettings& settings, const sim::PointWorld& world, std::uint64_t seed);
+
+// Of pose and velocity together, as the bound takes it.
+evaluation::Matrix12d StartCovariance(const vo::Prior& prior);
 
 }  // namespace vobench

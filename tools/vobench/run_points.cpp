@@ -41,13 +41,6 @@ sim::PointWorld WorldOf(const Experiment& experiment, std::uint64_t seed) {
   return Input([&] { return sim::PointWorld(scenario); });
 }
 
-evaluation::Matrix12d StartCovariance(const vo::Prior& prior) {
-  evaluation::Matrix12d start = evaluation::Matrix12d::Zero();
-  start.topLeftCorner<6, 6>() = prior.pose_covariance;
-  start.bottomRightCorner<6, 6>() = prior.velocity_covariance;
-  return start;
-}
-
 constexpr int kExactRuns = 10;  // of each world, against which the verdict is held
 
 std::vector<std::size_t> RanksAmong(const sim::PointWorld& world) {

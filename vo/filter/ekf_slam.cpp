@@ -115,7 +115,7 @@ void EkfSlam::Update(std::span<const Match> matches) {
   Eigen::MatrixXd HP, PHt, S;
   Eigen::LLT<Eigen::MatrixXd> S_root;
   double cost = Linearise(matches, d);
-  for (int iteration = 0; iteration < params_.max_iterations && !rows_.empty(); ++iteration) {
+  for (int iteration = 0; iteration < params_.joint_iterations && !rows_.empty(); ++iteration) {
     HP = RowsTimes(P_);
     PHt = HP.transpose();
     S = RowsTimes(PHt);
@@ -134,7 +134,7 @@ void EkfSlam::Update(std::span<const Match> matches) {
       step_x.segment<3>(row.landmark_offset) += row.H_landmark.transpose() * y.segment<2>(2 * i);
     }
     Eigen::VectorXd step_d = PHt * y - d;
-    if (params_.max_iterations == 1 || step_x.dot(step_d) < kSettled) {
+    if (params_.joint_iterations == 1 || step_x.dot(step_d) < kSettled) {
       d += step_d;
       break;
     }

@@ -21,11 +21,13 @@ namespace vo {
 
 class EkfSlam final : public Filter {
  public:
-  // Of the filter's parameters only max_iterations is used.
+  // Of the filter's parameters only joint_iterations is used.
   EkfSlam(const MotionParams& motion, const FilterParams& filter, const LandmarkParams& landmark, const FilterPrior& prior);
 
   void Predict(double dt) override;
-  // Gauss-Newton to the joint mode, at most max_iterations steps (1: the textbook EKF); covariance by Joseph's form.
+  // One linearisation at the prediction: the textbook EKF. With joint_iterations above 1 at most so many steps of Gauss-Newton to the
+  // joint mode of poses and landmarks instead: nearer to that, but the landmarks are then linearised where this frame's noise has
+  // moved them, so that motion is seen in noise (docs/odometry.md). Covariance by Joseph's form.
   void Update(std::span<const Match> matches) override;
   void AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<const Eigen::Matrix2d> R) override;
   void KeepLandmarks(const std::vector<bool>& keep) override;

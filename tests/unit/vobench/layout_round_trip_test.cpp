@@ -1,8 +1,13 @@
 // A sequence in each layout, written by the simulator, is what the odometry's reader, the camera's reader and the
 // judge's truth read: stamps, pixels, poses.
 #include <gmock/gmock.h>
+#include <yaml-cpp/yaml.h>
 
+#include <algorithm>
+#include <fstream>
+#include <map>
 #include <opencv2/imgproc.hpp>
+#include <sstream>
 
 #include "sim/sequence/writer.h"
 #include "tests/unit/sim/small_world.h"
@@ -127,6 +132,60 @@ TEST(EurocLayout, TruthByHand) {
                 "0.000000000000,0.000000000000,0.000000000000,0.000000000000\n");
     }
   }
+}
+
+// An IMU 0.1 m to the right of the camera and turned by 90 degrees about its x; streams that EuRoC has no place for.
+TEST(EurocLayout, HasTheImuWithItsPlaceAndItsBiases) {
+  const sim::SmallWorld world;
+  sim::Scenario scenario = sim::LoadScenario(
+      world.scenario(),
+      {{"truth", "[depth, imu, flow]"},
+       {"imu",
+        "{rate: 200 Hz, position: [0.1, 0, 0], orientation: [0.7071067811865476, 0, 0, 0.7071067811865476], "
+        "gyroscope_walk: 0.01, accelerometer_walk: 0.1, gyroscope_noise: 0.001}"}});
+  const sim::Simulator simulator(scenario, 1);
+  const fs::path folder = Written(world, simulator, sim::Layout::euroc);
+  EXPECT_FALSE(fs::exists(folder / "imu0"));
+  EXPECT_FALSE(fs::exists(folder / "truth/depth"));
+  EXPECT_TRUE(fs::exists(folder / "truth/flow.txt"));
+  const auto text = [&](const char* name) {
+    std::ifstream stream(folder / name);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  const YAML::Node imu = YAML::Load(text("mav0/imu0/sensor.yaml"));
+  const double T_BS[16] = {1, 0, 0, 0.1, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
+  for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(imu["T_BS"]["data"][i].as<double>(), T_BS[i], 1e-12) << i;
+  EXPECT_EQ(imu["gyroscope_noise_density"].as<double>(), 0.001);
+  EXPECT_EQ(imu["accelerometer_random_walk"].as<double>(), 0.1);
+  EXPECT_EQ(imu["rate_hz"].as<double>(), 200);
+  // The biases beside a frame are those of the last reading before it, which have walked away from 0.
+  const auto rows = [&](const char* name) {
+    std::map<std::int64_t, std::vector<double>> table;
+    std::istringstream lines(text(name));
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with('#')) continue;
+      std::replace(line.begin(), line.end(), ',', ' ');
+      std::istringstream words(line);
+      std::int64_t stamp = 0;
+      words >> stamp;
+      std::vector<double>& numbers = table[stamp];
+      for (double number = 0; words >> number;) numbers.push_back(number);
+    }
+    return table;
+  };
+  const auto truth = rows("mav0/state_groundtruth_estimate0/data.csv"), bias = rows("mav0/imu0/bias.csv");
+  ASSERT_GT(truth.size(), 2u);
+  for (const auto& [stamp, numbers] : truth) {
+    ASSERT_EQ(numbers.size(), 16u);
+    const auto after = bias.upper_bound(stamp);
+    if (after == bias.begin()) {  // the reading before the first frame is not in the file
+      EXPECT_EQ(stamp, truth.begin()->first);
+      continue;
+    }
+    for (std::size_t c = 0; c < 6; ++c) EXPECT_EQ(numbers[10 + c], std::prev(after)->second[c]) << stamp;
+  }
+  EXPECT_NE(truth.rbegin()->second[10], 0);
+  EXPECT_NE(truth.rbegin()->second[15], 0);
 }
 
 // A body that is not the camera, as in EuRoC's own sequences: T_RC = T_RB T_BC, by hand. The camera is 1 m along the

@@ -1,6 +1,10 @@
 // The sky's closed forms and pictures, and what a lamp's flicker is.
 #include "sim/world/sky.h"
 
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -16,6 +20,23 @@ namespace sim::test {
 namespace {
 
 using testing::HasSubstr;
+
+// Float channels, the data window away from (0, 0).
+void WriteExr(const std::filesystem::path& path, const cv::Mat& picture) {
+  const Imath::Box2i window({3, 5}, {3 + picture.cols - 1, 5 + picture.rows - 1});
+  Imf::Header header(window, window);
+  Imf::FrameBuffer buffer;
+  const std::size_t step = picture.elemSize(), row = picture.step[0];
+  char* base = reinterpret_cast<char*>(picture.data) - 3 * step - 5 * row;
+  for (const char* name : {"B", "G", "R"}) {
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    buffer.insert(name, Imf::Slice(Imf::FLOAT, base, step, row));
+    base += sizeof(float);
+  }
+  Imf::OutputFile file(path.c_str(), header);
+  file.setFrameBuffer(buffer);
+  file.writePixels(picture.rows);
+}
 
 TEST(Sky, Gradient) {
   const Sky sky{{3, 3, 3}, {1, 2, 3}, {0, 0, 0}, 0, 0, {}, 0.0};
@@ -35,24 +56,29 @@ TEST(Sky, PictureIsTheRightWayRound) {
   }
   std::vector<std::uint8_t> bytes;
   cv::imencode(".hdr", picture, bytes);
-  SkyDescription description;
-  description.file = folder.Write("sky.hdr", {bytes.begin(), bytes.end()});
-  description.strength = 2;
-  Sky sky = LoadSky(description);
-  const auto towards = [](double turns, double polar_turns) {
-    const double a = 2 * std::numbers::pi * turns, p = 2 * std::numbers::pi * polar_turns;
-    return glm::dvec3(std::sin(p) * std::sin(a), std::cos(p), -std::sin(p) * std::cos(a));
-  };
-  for (int y = 0; y < 4; ++y) {
-    for (int x = 0; x < 8; ++x) {
-      const glm::dvec3 seen = sky.Radiance(towards((x + 0.5) / 8 - 0.5, (y + 0.5) / 8));
-      EXPECT_NEAR(seen.x, 2 * x, 0.05) << x << ", " << y;  // Radiance HDR has 8 bits
-      EXPECT_NEAR(seen.y, 2 * y, 0.05) << x << ", " << y;
+  folder.Write("sky.hdr", {bytes.begin(), bytes.end()});
+  WriteExr(folder.path() / "sky.exr", picture);
+  for (const char* name : {"sky.hdr", "sky.exr"}) {
+    SCOPED_TRACE(name);
+    SkyDescription description;
+    description.file = folder.path() / name;
+    description.strength = 2;
+    Sky sky = LoadSky(description);
+    const auto towards = [](double turns, double polar_turns) {
+      const double a = 2 * std::numbers::pi * turns, p = 2 * std::numbers::pi * polar_turns;
+      return glm::dvec3(std::sin(p) * std::sin(a), std::cos(p), -std::sin(p) * std::cos(a));
+    };
+    for (int y = 0; y < 4; ++y) {
+      for (int x = 0; x < 8; ++x) {
+        const glm::dvec3 seen = sky.Radiance(towards((x + 0.5) / 8 - 0.5, (y + 0.5) / 8));
+        EXPECT_NEAR(seen.x, 2 * x, 0.05) << x << ", " << y;  // Radiance HDR has 8 bits
+        EXPECT_NEAR(seen.y, 2 * y, 0.05) << x << ", " << y;
+      }
     }
+    EXPECT_NEAR(sky.Radiance(towards(0.5, 0.25)).x, 2 * 3.5, 0.05) << "the seam, behind: between 7 and 0";
+    sky.turn = 0.25;
+    EXPECT_NEAR(sky.Radiance(towards(0.0625, 0.25)).x, 2 * 6, 0.05);
   }
-  EXPECT_NEAR(sky.Radiance(towards(0.5, 0.25)).x, 2 * 3.5, 0.05) << "the seam, behind: between 7 and 0";
-  sky.turn = 0.25;
-  EXPECT_NEAR(sky.Radiance(towards(0.0625, 0.25)).x, 2 * 6, 0.05);
 }
 
 TEST(Sky, FilesThatAreNone) {
@@ -70,6 +96,11 @@ TEST(Sky, FilesThatAreNone) {
   EXPECT_THAT(what(folder.path() / "none.hdr"), HasSubstr("none.hdr: cannot be opened"));
   EXPECT_THAT(what(folder.Write("text.hdr", "not a picture")), HasSubstr("text.hdr"));
   EXPECT_THAT(what(folder.Write("empty.png", "")), HasSubstr("empty.png"));
+  WriteExr(folder.path() / "cut.exr", cv::Mat(64, 64, CV_32FC3, cv::Scalar(1, 1, 1)));
+  std::filesystem::resize_file(folder.path() / "cut.exr", std::filesystem::file_size(folder.path() / "cut.exr") / 2);
+  EXPECT_THAT(what(folder.path() / "cut.exr"), HasSubstr("cut.exr: cannot be read: "));
+  WriteExr(folder.path() / "dark.exr", cv::Mat(1, 2, CV_32FC3, cv::Scalar(0, 0, -1)));
+  EXPECT_THAT(what(folder.path() / "dark.exr"), HasSubstr("dark.exr: pixel (0, 0) is negative"));
 }
 
 TEST(Flicker, MeanIsOne) {
