@@ -9,6 +9,8 @@
 
 namespace sim {
 
+// Intersect: the nearest hit; Occluded: any. Scenes of objects (instances) are asked without the coherent flag: with it,
+// rtcOccluded16 of Embree 3.13.5 does not return where no instance has motion blur.
 #if RTC_VERSION_MAJOR >= 4
 static inline void IntersectCoherent16(const int* valid, RTCScene scene, RTCRayHit16* rays) {
   RTCIntersectArguments arguments;
@@ -22,6 +24,12 @@ static inline void OccludedCoherent16(const int* valid, RTCScene scene, RTCRay16
   arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
   rtcOccluded16(valid, scene, rays, &arguments);
 }
+static inline void IntersectObjects16(const int* valid, RTCScene scene, RTCRayHit16* rays) {
+  rtcIntersect16(valid, scene, rays, nullptr);
+}
+static inline void OccludedObjects16(const int* valid, RTCScene scene, RTCRay16* rays) {
+  rtcOccluded16(valid, scene, rays, nullptr);
+}
 static inline void Intersect1(RTCScene scene, RTCRayHit* ray) { rtcIntersect1(scene, ray, nullptr); }
 static inline void Occluded1(RTCScene scene, RTCRay* ray) { rtcOccluded1(scene, ray, nullptr); }
 #else
@@ -34,6 +42,16 @@ static inline void Occluded1(RTCScene scene, RTCRay* ray) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(scene, &context, ray);
+}
+static inline void IntersectObjects16(const int* valid, RTCScene scene, RTCRayHit16* rays) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect16(valid, scene, &context, rays);
+}
+static inline void OccludedObjects16(const int* valid, RTCScene scene, RTCRay16* rays) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded16(valid, scene, &context, rays);
 }
 static inline void IntersectCoherent16(const int* valid, RTCScene scene, RTCRayHit16* rays) {
   RTCIntersectContext context;

@@ -129,7 +129,7 @@ struct RaySample {
   const LightSample* lights;
   int light_count;
   float layer_factors[kMaxLightLayers][kBlockSide];  // of lamps' light and of baked light, by layer and by row of the block
-  const PacketObjects* objects;                      // null: nothing moves
+  const PacketObjects* objects;                      // null: nothing moves; the same in all samples of a call
   float objects_begin, objects_length;               // Embree's time at the sample's beginning, and how much of it the sample is
 };
 

@@ -45,7 +45,7 @@ struct Snapshot {
 
   void Meet(Packet& packet) const {
     IntersectCoherent16(packet.valid, scene.embree(), &packet.rays);
-    if (objects.embree() != nullptr) IntersectCoherent16(packet.valid, objects.embree(), &packet.rays);
+    if (objects.embree() != nullptr) IntersectObjects16(packet.valid, objects.embree(), &packet.rays);
   }
   std::int32_t Object(const Packet& packet, int i) const {
     const std::uint32_t instance = packet.rays.hit.instID[0][i];

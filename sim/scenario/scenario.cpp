@@ -129,7 +129,6 @@ ObjectDescription ReadObject(Section& section, const std::filesystem::path& fold
     if (other.name != object.name || object.name.empty()) continue;
     section.Reject(at, "'name': another object is called '" + object.name + "' already");
   }
-  section.RequirePresent("trajectory");
   Section trajectory = section.Child("trajectory");
   object.motion = ReadMotion(trajectory, folder);
   const auto* script = std::get_if<ScriptedMotion>(&object.motion);

@@ -101,20 +101,33 @@ void CompareStamps(Sequence& s, Check& stamps) {
   }
 }
 
-void ReadPoses(Sequence& s, Check& files) {
-  s.poses.resize(s.stamps.size());
-  s.has_pose.assign(s.stamps.size(), false);
-  for (const Entry& entry : s.texts["groundtruth"]) {
+// From the table `name` to poses of the frames.
+void PlacePoses(Sequence& s, const std::string& name, std::vector<vo::Pose>& poses, std::vector<bool>& has_pose,
+                Check& files) {
+  poses.resize(s.stamps.size());
+  has_pose.assign(s.stamps.size(), false);
+  for (const Entry& entry : s.texts[name]) {
     const auto at = std::lower_bound(s.stamps.begin(), s.stamps.end(), entry.stamp_ns);
     const std::vector<double>& n = entry.numbers;
     const Eigen::Quaterniond q(n[6], n[3], n[4], n[5]);
     files.Add(std::abs(q.norm() - 1), 1e-3,
-              "groundtruth.txt " + evaluation::FormatSeconds(entry.stamp_ns) + ": length of the quaternion");
+              name + ".txt " + evaluation::FormatSeconds(entry.stamp_ns) + ": length of the quaternion");
     if (at == s.stamps.end() || *at != entry.stamp_ns) continue;
     const auto frame = static_cast<std::size_t>(at - s.stamps.begin());
-    s.poses[frame] = {{n[0], n[1], n[2]}, q.normalized()};
-    s.has_pose[frame] = true;
+    poses[frame] = {{n[0], n[1], n[2]}, q.normalized()};
+    has_pose[frame] = true;
   }
+}
+
+// The names of the objects that have poses, in alphabetical order.
+std::vector<std::string> ObjectNames(const fs::path& folder) {
+  std::vector<std::string> names;
+  if (!fs::is_directory(folder)) return names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".txt") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 void ReadManifest(const fs::path& file, Sequence& s) {
@@ -205,7 +218,7 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
   }
   s.camera = vo::ReadCamera(folder / "camera.yaml");
   for (const char* name : {"rgb", "depth", "depth_exr", "distance", "normals", "surface_id", "flow", "flow_backward",
-                           "occlusion", "occlusion_backward"}) {
+                           "occlusion", "occlusion_backward", "moving"}) {
     const fs::path list = folder / (std::string(name) + ".txt");
     if (fs::exists(list)) s.images[name] = ReadTable(list, 0, true, true, ' ', files);
   }
@@ -213,8 +226,13 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
     const fs::path table = folder / (std::string(name) + ".txt");
     if (fs::exists(table)) s.texts[name] = ReadTable(table, static_cast<std::size_t>(numbers), true, true, ' ', files);
   }
+  for (const std::string& name : ObjectNames(folder / "objects")) {
+    s.objects.push_back({name, {}, {}});
+    s.texts["objects/" + name] = ReadTable(folder / "objects" / (name + ".txt"), 7, true, true, ' ', files);
+  }
   CompareStamps(s, stamps);
-  ReadPoses(s, files);
+  PlacePoses(s, "groundtruth", s.poses, s.has_pose, files);
+  for (Object& object : s.objects) PlacePoses(s, "objects/" + object.name, object.poses, object.has_pose, files);
   if (fs::exists(folder / "manifest.json")) ReadManifest(folder / "manifest.json", s);
   if (fs::exists(folder / "surfaces.txt")) s.surfaces = evaluation::ReadLines(folder / "surfaces.txt").size();
   if (fs::exists(folder / "landmarks.txt"))

@@ -29,6 +29,13 @@ struct Roughness {
   double knot_step_s = 0;
 };
 
+// Something that moves, by objects/NAME.txt: T_WO at the frames' stamps.
+struct Object {
+  std::string name;
+  std::vector<vo::Pose> poses;  // the identity where there is none
+  std::vector<bool> has_pose;
+};
+
 struct Imu {
   double rate_hz = 200;
   vo::Pose T_CI;
@@ -42,10 +49,11 @@ struct Sequence {
   std::filesystem::path folder;
   vo::Camera camera;
   std::map<std::string, std::vector<Entry>> images;  // by list, without ".txt": rgb, depth, flow, ...
-  std::map<std::string, std::vector<Entry>> texts;   // groundtruth, velocity, acceleration
+  std::map<std::string, std::vector<Entry>> texts;   // groundtruth, velocity, acceleration, objects/NAME
   std::vector<std::int64_t> stamps;                  // of the frames: those on which most lists agree
   std::vector<vo::Pose> poses;                       // of the frames; the identity where there is none
   std::vector<bool> has_pose;
+  std::vector<Object> objects;
   Roughness roughness;
   bool rolling_shutter = false;  // says the manifest: each row has a time of its own
   std::size_t surfaces = 0;      // how many the legend has, whose ids are 1, 2, ...

@@ -18,7 +18,8 @@ const std::map<std::string, std::vector<int>>& Types() {
                                                                 {"flow", {CV_32FC2}},
                                                                 {"flow_backward", {CV_32FC2}},
                                                                 {"occlusion", {CV_8UC1}},
-                                                                {"occlusion_backward", {CV_8UC1}}};
+                                                                {"occlusion_backward", {CV_8UC1}},
+                                                                {"moving", {CV_8UC1}}};
   return types;
 }
 
@@ -83,6 +84,34 @@ std::optional<Relative> Between(const Sequence& s, std::size_t from, std::size_t
   if (!s.has_pose[from] || !s.has_pose[to]) return std::nullopt;
   const vo::Pose &a = s.poses[from], &b = s.poses[to];
   return Relative{(b.q_WC.conjugate() * a.q_WC).toRotationMatrix(), b.q_WC.conjugate() * (a.p_WC - b.p_WC)};
+}
+
+PixelMotions::PixelMotions(Frames& frames, std::size_t from, std::size_t to) : mask_(frames.Picture("moving", from)) {
+  const Sequence& s = frames.sequence();
+  const std::optional<Relative> world = Between(s, from, to);
+  if (!world) return;
+  motions_.push_back(*world);
+  for (const Object& object : s.objects) {
+    if (!object.has_pose[from] || !object.has_pose[to]) continue;
+    // C of `from` to O, which stays; O to C of `to`.
+    const vo::Pose &camera = s.poses[from], &other = s.poses[to], &now = object.poses[from], &then = object.poses[to];
+    const Eigen::Quaterniond q_OC = now.q_WC.conjugate() * camera.q_WC, q_CO = other.q_WC.conjugate() * then.q_WC;
+    const Eigen::Vector3d p_OC = now.q_WC.conjugate() * (camera.p_WC - now.p_WC),
+                          p_CO = other.q_WC.conjugate() * (then.p_WC - other.p_WC);
+    motions_.push_back({(q_CO * q_OC).toRotationMatrix(), q_CO * p_OC + p_CO});
+  }
+}
+
+std::span<const Relative> PixelMotions::Of(std::size_t pixel) const {
+  const std::span<const Relative> all(motions_);
+  if (mask_.empty() || all.empty()) return all;
+  return IsMoving(pixel) ? all.subspan(1) : all.first(1);
+}
+
+std::span<const Relative> PixelMotions::Others(std::size_t pixel) const {
+  const std::span<const Relative> all(motions_);
+  if (mask_.empty() || all.empty()) return {};
+  return IsMoving(pixel) ? all.first(1) : all.subspan(1);
 }
 
 std::optional<Corners> CornersAt(const cv::Mat& picture, double x, double y) {

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,23 @@ struct Relative {
   Eigen::Vector3d t;
 };
 std::optional<Relative> Between(const Sequence& sequence, std::size_t from, std::size_t to);
+
+// From C of one frame to C of another, for each pixel of the one: with the world that stands still or, where the mask
+// `moving` says so, with one of the objects; it does not say with which. Without a mask a pixel may see any of them.
+class PixelMotions {
+ public:
+  PixelMotions(Frames& frames, std::size_t from, std::size_t to);
+
+  bool known() const { return !motions_.empty(); }  // false: a frame has no pose
+  bool IsMoving(std::size_t pixel) const { return !mask_.empty() && mask_.data[pixel] != 0; }
+  std::span<const Relative> Of(std::size_t pixel) const;
+  // What the mask says that it is not.
+  std::span<const Relative> Others(std::size_t pixel) const;
+
+ private:
+  cv::Mat mask_;
+  std::vector<Relative> motions_;  // the world's, then the objects'
+};
 
 // Bilinear, where all four pixels around (x, y) are in the picture.
 struct Corners {

@@ -43,6 +43,13 @@ Pair Match(Frames& frames, std::size_t frame, std::size_t partner) {
                 there = frames.Smooth(partner);
   const auto move = Between(frames.sequence(), frame, partner);
   if (depth.empty() || other_depth.empty() || here.empty() || there.empty() || !move) return pair;
+  // Of what moves by itself, poses do not tell where it is; without a mask, nothing tells what moves.
+  const cv::Mat moving = frames.Picture("moving", frame), moving_there = frames.Picture("moving", partner);
+  const bool has_masks = !moving.empty() && !moving_there.empty();
+  if (!frames.sequence().objects.empty() && !has_masks) return pair;
+  const auto stands_still = [&](const cv::Mat& mask, int x, int y) {
+    return cv::countNonZero(mask(cv::Rect(x - 4, y - 4, 9, 9))) == 0;
+  };
   const std::size_t step = partner > frame ? partner - frame : frame - partner;
   std::optional<Relative> back;  // as far in the other direction
   if (partner > frame && frame >= step) back = Between(frames.sequence(), frame, frame - step);
@@ -70,6 +77,7 @@ Pair Match(Frames& frames, std::size_t frame, std::size_t partner) {
         }
       }
       if (!smooth) continue;
+      if (has_masks && !(stands_still(moving, x, y) && stands_still(moving_there, c->x, c->y))) continue;
       if (back && (x + y) % 16 == 0) {
         const Vector3d X_back = back->R * point + back->t;
         if (X_back.z() > 0) bends.push_back((pixel + camera.Project(X_back) - 2 * Vector2d(x, y)).norm());

@@ -31,7 +31,9 @@ enum Row {
   kOcclusion,
   kOcclusionBackward,
   kLandmarks,
-  kTracks
+  kTracks,
+  kObjects,  // those two only where there are objects
+  kMask
 };
 
 // The worst of many pixels, strictly: value / bound.
@@ -126,7 +128,11 @@ SurfaceChecks::SurfaceChecks(Frames& frames)
               {"occlusion against depth: share beyond", ""},
               {"occlusion_backward against depth: share", ""},
               {"landmark_tracks against landmarks, poses", "px"},
-              {"landmark_tracks visible: share beyond", ""}} {}
+              {"landmark_tracks visible: share beyond", ""}} {
+  if (frames.sequence().objects.empty()) return;
+  checks_.emplace_back("flow on objects against their poses", "px");
+  checks_.emplace_back("moving: pixels that move as the others", "");
+}
 
 void SurfaceChecks::Frame(std::size_t frame) {
   DepthPictures(frame);
@@ -229,59 +235,97 @@ void SurfaceChecks::SurfaceIds(std::size_t frame) {
 void SurfaceChecks::DepthInNeighbours(std::size_t frame) {
   const cv::Mat here = frames_.Depth(frame);
   if (here.empty() || !frames_.sequence().has_pose[frame]) return;
-  double best = kNone;
+  double best[2] = {kNone, kNone};  // of the world, of objects
   for (const std::size_t partner : Partners(frame, frames_.count())) {
     const cv::Mat there = frames_.Depth(partner);
-    const auto move = Between(frames_.sequence(), frame, partner);
-    if (there.empty() || !move) continue;
-    std::vector<double> ratios;
+    const PixelMotions motions(frames_, frame, partner);
+    if (there.empty() || !motions.known()) continue;
+    std::vector<double> ratios[2];
     for (int y = 1; y < here.rows; y += 3) {
       for (int x = 1; x < here.cols; x += 3) {
         const std::size_t i =
             static_cast<std::size_t>(y) * static_cast<std::size_t>(here.cols) + static_cast<std::size_t>(x);
         const double Z = At(here, i);
         if (Z == 0) continue;
-        const Vector3d ray = move->R * frames_.rays()[i], X = Z * ray + move->t;
-        if (X.z() <= 0) continue;
-        const Vector2d pixel = frames_.sequence().camera.Project(X);
-        const auto c = CornersAt(there, pixel.x(), pixel.y());
-        if (!c) continue;
-        if (const auto match = MatchAt(frames_, there, *c, Z, ray, X))
-          ratios.push_back(match->difference / (match->bound + match->bend / 4));
+        double ratio = kNone;
+        for (const Relative& move : motions.Of(i)) {
+          const Vector3d ray = move.R * frames_.rays()[i], X = Z * ray + move.t;
+          if (X.z() <= 0) continue;
+          const Vector2d pixel = frames_.sequence().camera.Project(X);
+          const auto c = CornersAt(there, pixel.x(), pixel.y());
+          if (!c) continue;
+          if (const auto match = MatchAt(frames_, there, *c, Z, ray, X))
+            ratio = std::min(ratio, match->difference / (match->bound + match->bend / 4));
+        }
+        if (ratio < kNone) ratios[motions.IsMoving(i)].push_back(ratio);
       }
     }
-    if (ratios.size() < 100) continue;
-    std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
-    best = std::min(best, ratios[ratios.size() / 2]);
+    for (std::size_t kind = 0; kind < 2; ++kind) {
+      // An object is small: more of it than half may be hidden in a neighbour, but not three quarters in both.
+      const std::size_t middle = ratios[kind].size() / (kind == 0 ? 2 : 4);
+      if (ratios[kind].size() < 100) continue;
+      std::nth_element(ratios[kind].begin(), ratios[kind].begin() + static_cast<std::ptrdiff_t>(middle), ratios[kind].end());
+      best[kind] = std::min(best[kind], ratios[kind][middle]);
+    }
   }
-  if (best < kNone) checks_[kNeighbours].Add(best, 1, "depth " + frames_.Stamp(frame));
+  if (best[0] < kNone) checks_[kNeighbours].Add(best[0], 1, "depth " + frames_.Stamp(frame));
+  if (best[1] < kNone) checks_[kNeighbours].Add(best[1], 1, "depth " + frames_.Stamp(frame) + ", objects");
 }
 
+// A pixel fits where one of the motions that it may have explains its flow. One that fits those of the others alone tells
+// that the mask is wrong.
 void SurfaceChecks::Flow(std::size_t frame, const std::string& stream, std::size_t to, Check& check) {
   const cv::Mat flow = frames_.Picture(stream, frame), depth = frames_.Depth(frame);
-  const auto move = Between(frames_.sequence(), frame, to);
-  if (flow.empty() || depth.empty() || !move) return;
+  const PixelMotions motions(frames_, frame, to);
+  if (flow.empty() || depth.empty() || !motions.known()) return;
   const vo::Camera& camera = frames_.sequence().camera;
   const auto width = static_cast<std::size_t>(depth.cols);
-  Worst worst;
+  Worst worst[2];
+  std::size_t masked_wrong = 0, masked = 0;
   for (std::size_t i = 0; i < depth.total(); ++i) {
-    const double Z = At(depth, i);
+    const double Z = At(depth, i), error = frames_.DepthError(Z);
     if (Z == 0) continue;
-    const Vector3d ray = move->R * frames_.rays()[i], X = Z * ray + move->t;
     const float* uv = reinterpret_cast<const float*>(flow.data) + 2 * i;
-    const double error = frames_.DepthError(Z);
-    if (std::abs(X.z()) <= 2 * error) continue;  // on the other camera's edge
+    const Vector2d at(static_cast<double>(i % width), static_cast<double>(i / width));
     const bool known = uv[0] < kUnknown && uv[1] < kUnknown;
-    if (!known || X.z() < 0) {
-      worst.Add(known == (X.z() > 0) ? 0 : kNone, 1);
-      continue;
+    const auto best_of = [&](std::span<const Relative> moves) {
+      Worst best;
+      best.ratio = kNone, best.value = kNone;
+      for (const Relative& move : moves) {
+        const Vector3d ray = move.R * frames_.rays()[i], X = Z * ray + move.t;
+        Worst here;
+        if (std::abs(X.z()) <= 2 * error) return Worst{};  // on the other camera's edge
+        if (!known || X.z() < 0) {
+          here.Add(known == (X.z() > 0) ? 0 : kNone, 1);
+        } else {
+          const Vector2d pixel = camera.Project(X);
+          const Vector2d moved = camera.Project(X + error * ray) - pixel, expected = pixel - at;
+          const double miss = (Vector2d(static_cast<double>(uv[0]), static_cast<double>(uv[1])) - expected).norm();
+          here.Add(miss, 1.1 * moved.norm() + kRayError * std::max(1.0, Z / X.z()) + 1e-6 * expected.norm());
+        }
+        if (here.ratio < best.ratio) best = here;
+      }
+      return best;
+    };
+    const Worst best = best_of(motions.Of(i));
+    if (best.ratio < 0) continue;
+    ++masked;
+    if (best.ratio > 1 && best_of(motions.Others(i)).ratio <= 1) {
+      ++masked_wrong;
+    } else {
+      worst[motions.IsMoving(i)].Add(best.value, best.bound);
     }
-    const Vector2d pixel = camera.Project(X), at(static_cast<double>(i % width), static_cast<double>(i / width));
-    const Vector2d moved = camera.Project(X + error * ray) - pixel, expected = pixel - at;
-    const double miss = (Vector2d(static_cast<double>(uv[0]), static_cast<double>(uv[1])) - expected).norm();
-    worst.Add(miss, 1.1 * moved.norm() + kRayError * std::max(1.0, Z / X.z()) + 1e-6 * expected.norm());
   }
-  worst.Into(check, stream + " " + frames_.Stamp(frame));
+  const std::string where = stream + " " + frames_.Stamp(frame);
+  worst[0].Into(check, where);
+  if (frames_.sequence().objects.empty()) {
+    worst[1].Into(check, where + ": pixels of objects, of which there are none");
+    return;
+  }
+  worst[1].Into(checks_[kObjects], where);
+  if (masked > 0 && !frames_.Picture("moving", frame).empty()) {
+    checks_[kMask].Add(static_cast<double>(masked_wrong), 0.5, "moving " + frames_.Stamp(frame) + " (" + stream + ")");
+  }
 }
 
 // What moves by f to the next frame comes back by the flow there, bilinear between four pixels; that misses no more
@@ -323,28 +367,32 @@ void SurfaceChecks::FlowThereAndBack(std::size_t frame) {
 
 void SurfaceChecks::Occlusion(std::size_t frame, const std::string& stream, std::size_t to, Check& check) {
   const cv::Mat hidden = frames_.Picture(stream, frame), here = frames_.Depth(frame), there = frames_.Depth(to);
-  const auto move = Between(frames_.sequence(), frame, to);
-  if (hidden.empty() || here.empty() || there.empty() || !move) return;
+  const PixelMotions motions(frames_, frame, to);
+  if (hidden.empty() || here.empty() || there.empty() || !motions.known()) return;
   Share share;
   for (std::size_t i = 0; i < here.total(); ++i) {
     const double Z = At(here, i);
     const bool is_hidden = hidden.at<std::uint8_t>(static_cast<int>(i)) != 0;
     if (Z == 0) continue;
-    const Vector3d ray = move->R * frames_.rays()[i], X = Z * ray + move->t;
-    const Vector2d pixel = X.z() > 0 ? frames_.sequence().camera.Project(X) : Vector2d(-9, -9);
-    if (!frames_.sequence().camera.Sees(pixel, -0.001)) {
-      share.Add(is_hidden);
-    } else if (frames_.sequence().camera.Sees(pixel, 0.001)) {
+    // Whether the mask of what is hidden is right, if the pixel moves so; none: at the picture's border.
+    const auto is_right = [&](const Relative& move) -> std::optional<bool> {
+      const Vector3d ray = move.R * frames_.rays()[i], X = Z * ray + move.t;
+      const Vector2d pixel = X.z() > 0 ? frames_.sequence().camera.Project(X) : Vector2d(-9, -9);
+      if (!frames_.sequence().camera.Sees(pixel, -0.001)) return is_hidden;
+      if (!frames_.sequence().camera.Sees(pixel, 0.001)) return std::nullopt;
       const double error = 2 * frames_.DepthError(X.z()) + 1e-5 * X.z();
-      if (!is_hidden) {
-        share.Add(IsSeen(RangeAround(there, pixel.x(), pixel.y(), 1), X.z(), error));
-        continue;
-      }
+      if (!is_hidden) return IsSeen(RangeAround(there, pixel.x(), pixel.y(), 1), X.z(), error);
       // It is not hidden where just this point is seen, on an even surface.
       const auto c = CornersAt(there, pixel.x(), pixel.y());
       const auto match = c ? MatchAt(frames_, there, *c, Z, ray, X) : std::nullopt;
-      share.Add(!match || match->bend > 2 * match->bound || match->difference > match->bound);
+      return !match || match->bend > 2 * match->bound || match->difference > match->bound;
+    };
+    std::optional<bool> right;
+    for (const Relative& move : motions.Of(i)) {
+      const std::optional<bool> answer = is_right(move);
+      if (answer) right = right.value_or(false) || *answer;
     }
+    if (right) share.Add(*right);
   }
   share.Into(check, stream + " " + frames_.Stamp(frame));
 }

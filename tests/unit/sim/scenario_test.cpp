@@ -249,6 +249,50 @@ trajectory:
   EXPECT_THAT(Message(file), HasSubstr("'trajectory.keys': the camera turns by more than 120 deg between 0 s and 1 s"));
 }
 
+TEST(Scenario, ObjectsAreMeshesOnPaths) {
+  const SmallWorld world;
+  const Scenario scenario = LoadScenario(world.scenario(), {{"world.objects", R"([
+    {name: box, file: a/thing.obj, position: [1 cm, 0, 0], orientation: [0, 0.6, 0, 0.8], scale: 2,
+     trajectory: {type: scripted, keys: [{time: 0 s, position: [0, 1, 0]}, {time: 0.3 s, position: [1, 1, 0], orientation: [0, 0.6, 0, 0.8]}]}},
+    {file: thing.obj, trajectory: {type: rpy, start: {position: [0, 0, 0]}, angles: [0, 1, 0], periods: [1, 1, 1]}}])"}});
+  ASSERT_EQ(scenario.world.objects.size(), 2u);
+  const ObjectDescription& box = scenario.world.objects[0];
+  EXPECT_EQ(box.name, "box");
+  EXPECT_EQ(box.mesh.file, world.folder.path() / "a/thing.obj");
+  EXPECT_EQ(box.mesh.position, glm::dvec3(0.01, 0, 0));
+  EXPECT_EQ(box.mesh.scale, 2);
+  EXPECT_EQ(std::get<ScriptedMotion>(box.motion).keys[1].pose.p_WC, glm::dvec3(1, 1, 0));
+  EXPECT_NEAR(std::get<ScriptedMotion>(box.motion).keys[1].pose.q_WC.y, 0.6, 1e-15);
+  EXPECT_EQ(scenario.world.objects[1].name, "thing");
+  EXPECT_TRUE(std::holds_alternative<PathMotion>(scenario.world.objects[1].motion));
+  EXPECT_THAT(scenario.resolved, HasSubstr("\"objects\""));
+  EXPECT_THAT(LoadScenario(world.scenario()).resolved, testing::Not(HasSubstr("objects")));
+}
+
+TEST(Scenario, WhatIsWrongWithObjects) {
+  const SmallWorld world;
+  std::string text = WallScenario();
+  text.replace(text.find("  lights:"), 0, R"(  objects:
+    - {name: a/b, file: x.obj, trajectory: {type: dolly, start: {position: [0, 0, 0]}, move: [1, 0, 0], period: 1 s}}
+    - {file: y.obj, scale: 0, speed: 1, trajectory: {type: scripted, keys: [{time: 0 s, position: [0, 0, 0]}, {time: 0.2 s, position: [1, 0, 0]}]}}
+    - {file: z/y.obj}
+    - {name: c, trajectory: {type: rolls}}
+)");
+  const std::string message = Message(world.folder.Write("s.yaml", text));
+  for (const char* problem : {
+           ":6:14: 'name': an object's name is a file's too: letters, digits, '_' and '-', not 'a/b'",
+           ":7:28: 'world.objects.1.scale': '0' must",
+           ":7:31: unknown key 'speed'",
+           ":7:76: 'trajectory.keys': the last key pose is at 0.2 s, but the scenario lasts 0.3 s",
+           ":8:14: 'name': another object is called 'y' already",
+           ": missing key 'world.objects.2.trajectory.type'",
+           ": missing key 'world.objects.3.file'",
+           ":9:36: 'world.objects.3.trajectory.type': 'rolls' is not known",
+       }) {
+    EXPECT_THAT(message, HasSubstr(problem));
+  }
+}
+
 TEST(Scenario, TruthIsDepthUnlessTold) {
   const SmallWorld world;
   EXPECT_EQ(LoadScenario(world.scenario()).truth.streams, std::set<TruthStream>{TruthStream::depth});

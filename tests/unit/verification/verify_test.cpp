@@ -24,8 +24,9 @@ using testing::IsEmpty;
 constexpr const char* kAll =
     "[depth, depth_exr, distance, normals, flow, flow_backward, occlusion, surface_id, landmarks, acceleration, imu]";
 
-void Render(const fs::path& folder, std::vector<std::pair<std::string, std::string>> settings, std::int64_t frames) {
-  const sim::Simulator simulator(sim::LoadScenario(fs::path(VOBENCH_SOURCE_DIR) / "scenes" / "tiny.yaml", settings), 2);
+void Render(const fs::path& folder, std::vector<std::pair<std::string, std::string>> settings, std::int64_t frames,
+            const std::string& scenario = "tiny.yaml") {
+  const sim::Simulator simulator(sim::LoadScenario(fs::path(VOBENCH_SOURCE_DIR) / "scenes" / scenario, settings), 2);
   const sim::SequenceContent content{sim::Layout::tum, 0, frames, "test"};
   sim::SequenceWriter writer(simulator, folder, content, 2, sim::SequenceWriter::Start::fresh);
   while (writer.Wait() > 0) {
@@ -270,6 +271,72 @@ TEST_F(VerifyTest, VelocityAccelerationAndImu) {
   yaml.replace(yaml.find("-9.81"), 5, "-9.71");
   Write(other / "imu0" / "sensor.yaml", yaml);
   EXPECT_THAT(Failures(other), Contains(HasSubstr("IMU against poses: velocity")));
+}
+
+// The scene whose objects move, at 160 x 120.
+void RenderMoving(const fs::path& folder, const std::string& truth) {
+  Render(folder,
+         {{"truth", truth},
+          {"landmarks.count", "200"},
+          {"camera", "{width: 160, height: 120, fx: 131.25, fy: 131.25, cx: 79.5, cy: 59.5}"},
+          {"sensor.time_samples", "4"}},
+         8, "moving.yaml");
+}
+std::string AllAndMoving() { return std::string(kAll).replace(0, 1, "[moving, "); }
+
+TEST_F(VerifyTest, MovingObjectsPass) {
+  RenderMoving(here_.path() / "moving", AllAndMoving());
+  for (const Check& check : Verify(here_.path() / "moving")) {
+    EXPECT_GT(check.count(), 0u) << check.name();
+    EXPECT_THAT(check.failures(), IsEmpty()) << check.name() << ": " << check.value() << " > " << check.bound();
+  }
+  // Without the mask any pixel may be an object's.
+  fs::remove(here_.path() / "moving" / "moving.txt");
+  EXPECT_THAT(Failures(here_.path() / "moving"), IsEmpty());
+}
+
+TEST_F(VerifyTest, MovingObjectsAndMasksThatAreWrong) {
+  const fs::path whole = here_.path() / "whole";
+  RenderMoving(whole, AllAndMoving());
+  const auto spoilt = [&](const char* name) {
+    fs::copy(whole, here_.path() / name, fs::copy_options::recursive);
+    return here_.path() / name;
+  };
+  for (std::size_t axis = 1; axis <= 3; ++axis) {  // 1 mm
+    const fs::path folder = spoilt("shifted");
+    Alter(folder / "objects" / "parcel.txt", 5, axis, 1e-3);
+    const auto failures = Failures(folder);
+    EXPECT_THAT(failures, Contains(HasSubstr("flow on objects against their poses: flow " + Stamp(4)))) << axis;
+    EXPECT_THAT(failures, testing::Not(Contains(HasSubstr("flow against depth")))) << "the world is right";
+    fs::remove_all(folder);
+  }
+  fs::path folder = spoilt("swapped");
+  Swap(folder, "moving", ".png", 1, 6);
+  EXPECT_THAT(Failures(folder), Contains(HasSubstr("moving: pixels that move as the others: moving " + Stamp(1))));
+
+  // One pixel, either way.
+  for (const int value : {0, 255}) {
+    folder = spoilt(value == 0 ? "less" : "more");
+    const fs::path file = folder / "moving" / (Stamp(3) + ".png");
+    cv::Mat mask = ReadPicture(file);
+    int flipped = -1;
+    for (int i = 160 * 30; i < static_cast<int>(mask.total()) && flipped < 0; ++i) {
+      if (mask.data[i] != value) flipped = i;
+    }
+    mask.data[flipped] = static_cast<std::uint8_t>(value);
+    WriteBytes(file, sim::EncodeGrey8({mask.data, mask.total()}, mask.cols, mask.rows));
+    EXPECT_THAT(Failures(folder), Contains(HasSubstr("moving: pixels that move as the others: moving " + Stamp(3)))) << value;
+  }
+
+  folder = spoilt("short");
+  std::vector<std::string> lines = Lines(folder / "objects" / "globe.txt");
+  lines.pop_back();
+  WriteLines(folder / "objects" / "globe.txt", lines);
+  EXPECT_THAT(Failures(folder), Contains(HasSubstr("stamps: increasing, the same in all lists: objects/globe.txt: ends early")));
+
+  folder = spoilt("none");
+  fs::remove_all(folder / "objects");
+  EXPECT_THAT(Failures(folder), Contains(HasSubstr("pixels of objects, of which there are none")));
 }
 
 TEST_F(VerifyTest, FilesThatAreNotAsTheyShould) {

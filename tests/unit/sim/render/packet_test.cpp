@@ -5,14 +5,16 @@
 
 #include <string>
 
+#include "sim/render/placed_objects.h"
 #include "sim/render/ray_scene.h"
 #include "sim/render/sample_pattern.h"
-#include "tests/unit/sim/render/worlds.h"
+#include "tests/unit/sim/render/moving_worlds.h"
 
 namespace sim::test {
 namespace {
 
-TEST(Packet, InstructionSetsAgree) {
+// moving: the sphere is an object.
+void ExpectInstructionSetsToAgree(bool moving) {
   Scene scene;
   std::vector<std::uint8_t> rgb;
   for (unsigned i = 0; i < 30 * 20 * 3; ++i) rgb.push_back(static_cast<std::uint8_t>((i * 2654435761u) >> 24));
@@ -22,7 +24,9 @@ TEST(Packet, InstructionSetsAgree) {
   AddQuad(scene, {-6, -6, 4}, {12, 0, 1}, {0, 12, 1}, 0, 3.0f);
   AddSphere(scene, {0.0, 0.0, 2.2}, 0.5, 20, 1);
   scene.lights = {AmbientLight{{0.1, 0.1, 0.1}}};
+  if (moving) MakeObject(scene, 1, Carried());
   const RayScene rays(scene);
+  const PlacedObjects placed(rays, 0.0, 0.1);
 
   LightSample lamp{};
   lamp.x = 1, lamp.y = -1, lamp.z = 0;
@@ -37,6 +41,8 @@ TEST(Packet, InstructionSetsAgree) {
     for (float& factor : samples[i].layer_factors[0]) factor = 1;
     samples[i].lights = &lamp;
     samples[i].light_count = 1;
+    if (moving) samples[i].objects = &placed.packet();
+    samples[i].objects_begin = 0.2f * static_cast<float>(i), samples[i].objects_length = 0.2f;
   }
   PixelBlock block{};
   for (int i = 0; i < kLanes; ++i) {
@@ -65,6 +71,9 @@ TEST(Packet, InstructionSetsAgree) {
     }
   }
 }
+
+TEST(Packet, InstructionSetsAgree) { ExpectInstructionSetsToAgree(false); }
+TEST(Packet, InstructionSetsAgreeOnObjects) { ExpectInstructionSetsToAgree(true); }
 
 }  // namespace
 }  // namespace sim::test
