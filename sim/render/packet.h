@@ -152,20 +152,30 @@ struct PixelBlock {
 using ExposeBlockFunction = void (*)(const PacketScene& scene, const RaySample* samples, int count, bool jitter,
                                      float share, const PixelBlock& block, Lanes sum[3]);
 
+// PixelScramble (sim/render/sample_pattern.h) of the pixels of a block: its point's u and v, its time, its turn.
+struct BlockBits {
+  LaneInts word[4];
+};
+using ScrambleBlockFunction = void (*)(std::uint64_t key, std::uint32_t x0, std::uint32_t y0, BlockBits& bits);
+
 struct KernelChoice {
   ExposeBlockFunction expose_block;
+  ScrambleBlockFunction scramble_block;
   const char* name;
 };
 KernelChoice PacketKernel();
 
 namespace packet_base {
 void ExposeBlock(const PacketScene&, const RaySample*, int, bool, float, const PixelBlock&, Lanes[3]);
+void ScrambleBlock(std::uint64_t, std::uint32_t, std::uint32_t, BlockBits&);
 }
 namespace packet_avx2 {
 void ExposeBlock(const PacketScene&, const RaySample*, int, bool, float, const PixelBlock&, Lanes[3]);
+void ScrambleBlock(std::uint64_t, std::uint32_t, std::uint32_t, BlockBits&);
 }
 namespace packet_avx512 {
 void ExposeBlock(const PacketScene&, const RaySample*, int, bool, float, const PixelBlock&, Lanes[3]);
+void ScrambleBlock(std::uint64_t, std::uint32_t, std::uint32_t, BlockBits&);
 }
 
 }  // namespace sim

@@ -89,15 +89,26 @@ struct BlockTime {
   float RowPart() const { return length_s() > 0 ? static_cast<float>(part_s / length_s()) : 0.0f; }
 };
 
-// The block of pixels whose upper left one is (x0, y0). key: null for rays through the pixels' centres, at the middle
-// of each sample's time. time: of the block's rows.
-PixelBlock MakeBlock(const Camera& camera, int x0, int y0, const BlockTime& time, const std::uint64_t* key) {
-  PixelBlock block{};
-  block.row_part = time.RowPart();
+// The rays of the block's pixels, those beyond the picture too.
+void StoreRays(const Camera& camera, int x0, int y0, PixelBlock& block) {
+  if (camera.straight()) {
+    const CameraParams& p = camera.params();
+    const auto du = static_cast<float>(1 / p.fx), dv = static_cast<float>(1 / p.fy);
+    const auto width = static_cast<float>(std::sqrt(1 / (p.fx * p.fy)));
+    const auto cx = static_cast<float>(p.cx), cy = static_cast<float>(p.cy);
+    for (int i = 0; i < kLanes; ++i) {
+      block.x.v[i] = (static_cast<float>(x0 + i % kBlockSide) - cx) * du;
+      block.y.v[i] = (static_cast<float>(y0 + i / kBlockSide) - cy) * dv;
+      block.z.v[i] = 1.0f;
+      block.x_du.v[i] = du, block.y_du.v[i] = 0.0f, block.z_du.v[i] = 0.0f;
+      block.x_dv.v[i] = 0.0f, block.y_dv.v[i] = dv, block.z_dv.v[i] = 0.0f;
+      block.width.v[i] = width;
+    }
+    return;
+  }
   for (int i = 0; i < kLanes; ++i) {
-    const int x = x0 + i % kBlockSide, y = y0 + i / kBlockSide;
-    if (x >= camera.width() || y >= camera.height()) continue;
-    const auto u = static_cast<float>(x), v = static_cast<float>(y);
+    const auto u = static_cast<float>(std::min(x0 + i % kBlockSide, camera.width() - 1)),
+               v = static_cast<float>(std::min(y0 + i / kBlockSide, camera.height() - 1));
     const glm::vec3 ray = camera.Ray(u, v);
     const glm::vec3 du = camera.Ray(u + 0.5f, v) - camera.Ray(u - 0.5f, v);
     const glm::vec3 dv = camera.Ray(u, v + 0.5f) - camera.Ray(u, v - 0.5f);
@@ -105,16 +116,32 @@ PixelBlock MakeBlock(const Camera& camera, int x0, int y0, const BlockTime& time
     block.x_du.v[i] = du.x, block.y_du.v[i] = du.y, block.z_du.v[i] = du.z;
     block.x_dv.v[i] = dv.x, block.y_dv.v[i] = dv.y, block.z_dv.v[i] = dv.z;
     block.width.v[i] = std::sqrt(std::abs(glm::dot(ray, glm::cross(du, dv))));
-    block.valid.v[i] = -1;
-    block.row_begin.v[i] = time.RowBegin(i / kBlockSide);
-    block.moment.v[i] = 0.5f;
-    block.lens_cos.v[i] = 1.0f;
-    if (key == nullptr) continue;
-    const PixelBits bits = PixelScramble(*key, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
-    block.scramble_u.v[i] = static_cast<std::int32_t>(bits.point.u);
-    block.scramble_v.v[i] = static_cast<std::int32_t>(bits.point.v);
-    block.moment.v[i] = static_cast<float>(bits.time >> 8) * 0x1p-24f;
-    const auto [cosine, sine] = CosSinFast(bits.turn >> 8);
+  }
+}
+
+// The block of pixels whose upper left one is (x0, y0). key: null for rays through the pixels' centres, at the middle
+// of each sample's time. time: of the block's rows. lens: whether rays begin at points of it.
+PixelBlock MakeBlock(const Camera& camera, int x0, int y0, const BlockTime& time, const std::uint64_t* key, bool lens,
+                     ScrambleBlockFunction scramble) {
+  PixelBlock block;
+  block.row_part = time.RowPart();
+  StoreRays(camera, x0, y0, block);
+  BlockBits bits{};
+  if (key != nullptr) scramble(*key, static_cast<std::uint32_t>(x0), static_cast<std::uint32_t>(y0), bits);
+  block.scramble_u = bits.word[0];
+  block.scramble_v = bits.word[1];
+  for (int row = 0; row < kBlockSide; ++row) {
+    const float begin = time.RowBegin(row);
+    for (int i = row * kBlockSide; i < (row + 1) * kBlockSide; ++i) block.row_begin.v[i] = begin;
+  }
+  for (int i = 0; i < kLanes; ++i) {
+    block.valid.v[i] = x0 + i % kBlockSide < camera.width() && y0 + i / kBlockSide < camera.height() ? -1 : 0;
+    block.moment.v[i] =
+        key != nullptr ? static_cast<float>(static_cast<std::uint32_t>(bits.word[2].v[i]) >> 8) * 0x1p-24f : 0.5f;
+    block.lens_cos.v[i] = 1.0f, block.lens_sin.v[i] = 0.0f;
+  }
+  for (int i = 0; key != nullptr && lens && i < kLanes; ++i) {
+    const auto [cosine, sine] = CosSinFast(static_cast<std::uint32_t>(bits.word[3].v[i]) >> 8);
     block.lens_cos.v[i] = cosine, block.lens_sin.v[i] = sine;
   }
   return block;
@@ -135,9 +162,8 @@ class RayTracer final : public Renderer {
     const BakedLight light = arena_.execute(
         [&] { return CachedLight(scene, scene_, options.light, options.bake, options.light_folders, warnings); });
     scene_.SetLight(light);
-    const bool has_ambient = std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) {
-      return std::holds_alternative<AmbientLight>(l);
-    });
+    const bool has_ambient = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                         [](const Light& l) { return std::holds_alternative<AmbientLight>(l); });
     if (scene.objects.empty()) {
       if (has_ambient) warnings.push_back("ambient light is left out: it stands for what baked light computes");
       return;
@@ -163,7 +189,8 @@ class RayTracer final : public Renderer {
 
     ForEachBlock(camera, [&](int x0, int y0) {
       Lanes sum[3];
-      const PixelBlock block = MakeBlock(camera, x0, y0, samples.time, options_.jitter ? &key : nullptr);
+      const PixelBlock block = MakeBlock(camera, x0, y0, samples.time, options_.jitter ? &key : nullptr,
+                                         exposure.aperture_m > 0, kernel_.scramble_block);
       kernel_.expose_block(scene_.packet_scene(), samples.OfRow(y0), count, options_.jitter, share, block, sum);
       for (int i = 0; i < kLanes; ++i) {
         if (block.valid.v[i] == 0) continue;

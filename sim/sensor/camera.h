@@ -45,6 +45,8 @@ class Camera {
   // (X/Z, Y/Z) of it. Throws also where Z is not positive.
   glm::dvec2 Undistort(const glm::dvec2& pixel) const;
 
+  // A pinhole: Ray is linear in the pixel.
+  bool straight() const { return table_ == nullptr; }
   // Direction for rendering: from a table made once, within 0.003 px of it for lenses that are one-to-one in the image
   // (float rounding is 0.0001 px of it; without distortion nothing else). Any pixel of the image, borders included.
   glm::vec3 Ray(float u, float v) const {

@@ -80,9 +80,11 @@ void AddSheet(Scene& scene, int n_s, int n_t, int material, glm::vec2 repeats, c
   scene.meshes.push_back(std::move(mesh));
 }
 
+// detail: more triangles by its square.
 // 20 m x 8 m x 6 m, two rows of fluted columns, arches above them, an uneven floor.
-Scene Hall() {
+Scene Hall(double detail = 1) {
   Scene scene;
+  const auto steps = [&](int n) { return std::max(2, static_cast<int>(std::lround(n * detail))); };
   for (int i = 0; i < 6; ++i) {
     scene.textures.push_back(Picture(i, 1024 - 64 * i % 128));
     Material material;
@@ -92,23 +94,29 @@ Scene Hall() {
     scene.materials.push_back(material);
   }
   const auto wavy = [](double s, double t) { return 0.01 * std::sin(61 * s) * std::sin(47 * t); };
-  AddSheet(scene, 200, 80, 0, {10, 4}, [&](double s, double t) { return glm::dvec3(20 * s, wavy(s, t), 8 * t); });
-  AddSheet(scene, 200, 80, 1, {10, 4}, [&](double s, double t) { return glm::dvec3(20 * s, 6 + wavy(s, t), 8 * t); });
-  AddSheet(scene, 200, 60, 2, {10, 3}, [&](double s, double t) { return glm::dvec3(20 * s, 6 * t, wavy(s, t)); });
-  AddSheet(scene, 200, 60, 2, {10, 3}, [&](double s, double t) { return glm::dvec3(20 * s, 6 * t, 8 + wavy(s, t)); });
-  AddSheet(scene, 80, 60, 3, {4, 3}, [&](double s, double t) { return glm::dvec3(wavy(s, t), 6 * t, 8 * s); });
-  AddSheet(scene, 80, 60, 3, {4, 3}, [&](double s, double t) { return glm::dvec3(20 + wavy(s, t), 6 * t, 8 * s); });
+  AddSheet(scene, steps(200), steps(80), 0, {10, 4},
+           [&](double s, double t) { return glm::dvec3(20 * s, wavy(s, t), 8 * t); });
+  AddSheet(scene, steps(200), steps(80), 1, {10, 4},
+           [&](double s, double t) { return glm::dvec3(20 * s, 6 + wavy(s, t), 8 * t); });
+  AddSheet(scene, steps(200), steps(60), 2, {10, 3},
+           [&](double s, double t) { return glm::dvec3(20 * s, 6 * t, wavy(s, t)); });
+  AddSheet(scene, steps(200), steps(60), 2, {10, 3},
+           [&](double s, double t) { return glm::dvec3(20 * s, 6 * t, 8 + wavy(s, t)); });
+  AddSheet(scene, steps(80), steps(60), 3, {4, 3},
+           [&](double s, double t) { return glm::dvec3(wavy(s, t), 6 * t, 8 * s); });
+  AddSheet(scene, steps(80), steps(60), 3, {4, 3},
+           [&](double s, double t) { return glm::dvec3(20 + wavy(s, t), 6 * t, 8 * s); });
   for (int side = 0; side < 2; ++side) {
     for (int k = 0; k < 9; ++k) {
       const double x0 = 2 + 2 * k, z0 = side == 0 ? 2 : 6;
-      AddSheet(scene, 72, 60, 4, {3, 4}, [&](double s, double t) {
+      AddSheet(scene, steps(72), steps(60), 4, {3, 4}, [&](double s, double t) {
         const double angle = 2 * std::numbers::pi * s;
         const double radius =
             (0.22 + 0.012 * std::cos(16 * angle)) * (1 + 0.5 * std::exp(-40 * t) + 0.6 * std::exp(-40 * (1 - t)));
         return glm::dvec3(x0 + radius * std::cos(angle), 4 * t, z0 + radius * std::sin(angle));
       });
       if (k == 8) continue;
-      AddSheet(scene, 48, 24, 5, {3, 1}, [&](double s, double t) {
+      AddSheet(scene, steps(48), steps(24), 5, {3, 1}, [&](double s, double t) {
         const double angle = std::numbers::pi * s, turn = 2 * std::numbers::pi * t, radius = 1 + 0.15 * std::cos(turn);
         return glm::dvec3(x0 + 1 - radius * std::cos(angle), 4 + radius * std::sin(angle), z0 + 0.15 * std::sin(turn));
       });
@@ -337,20 +345,55 @@ void FirstFrame(benchmark::State& state, LightMode mode) {
   std::filesystem::remove_all(folder);
 }
 
+struct FrameSettings {
+  int width = kWidth, height = kHeight;
+  LightMode light = LightMode::baked;
+  int time_samples = 1;
+  double row_delay_s = 0;
+  double detail = 1;
+};
+
+// A walk along the hall, so that a rolling shutter has something to do.
+class Walk : public Trajectory {
+ public:
+  Motion At(double t_s) const override {
+    Motion motion{HallPose()};
+    motion.v_WC = {1.2, 0, 0.3};
+    motion.pose.p_WC += t_s * motion.v_WC;
+    return motion;
+  }
+  double end_s() const override { return 1; }
+};
+
 // Whole pictures by the renderer, with its threads.
-void WholeFrame(benchmark::State& state, LightMode mode, int time_samples) {
+void WholeFrame(benchmark::State& state, const FrameSettings& settings) {
   RayTracerOptions options;
   options.jobs = static_cast<int>(state.range(0));
-  options.light = mode;
+  options.light = settings.light;
   options.bake = {1.0, 1.0, 2, 1};  // coarse and quick: its cost in a frame is the same
-  const auto renderer = MakeRayTracer(TheWorld().scene, options);
-  const Camera camera(HallCamera());
+  const bool other = settings.detail != 1;
+  const Scene detailed = other ? Hall(settings.detail) : Scene();
+  const Scene& scene = other ? detailed : TheWorld().scene;
+  const auto renderer = MakeRayTracer(scene, options);
+  CameraParams params = HallCamera();
+  params.fx = params.fy *= static_cast<double>(settings.width) / kWidth;
+  params.width = settings.width, params.height = settings.height;
+  params.cx = 0.5 * (settings.width - 1), params.cy = 0.5 * (settings.height - 1);
+  const Camera camera(params);
   Exposure exposure;
-  exposure.time_samples = time_samples;
-  exposure.exposure_s = time_samples > 1 ? 0.01 : 0.0;
+  exposure.time_samples = settings.time_samples;
+  exposure.exposure_s = settings.time_samples > 1 ? 0.01 : 0.0;
+  exposure.row_delay_s = settings.row_delay_s;
   RadianceImage image;
-  for (auto _ : state) renderer->Expose(camera, Still(), exposure, 1, image);
+  for (auto _ : state) renderer->Expose(camera, Walk(), exposure, 1, image);
   state.counters["frames/s"] = benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+  state.counters["triangles"] = static_cast<double>(CountTriangles(scene));
+}
+
+void RegisterFrame(const std::string& name, const FrameSettings& settings, const std::vector<int>& jobs) {
+  auto* benchmark =
+      benchmark::RegisterBenchmark(name.c_str(), WholeFrame, settings)->Unit(benchmark::kMillisecond)->UseRealTime();
+  for (const int n : jobs) benchmark->Arg(n);
 }
 
 }  // namespace
@@ -369,9 +412,9 @@ int main(int argc, char** argv) {
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), PacketKernel().name);
   }
   const std::string best = PacketKernel().name;
-  std::vector<KernelChoice> kernels{{packet_base::ExposeBlock, "base"}};
-  if (best != "base") kernels.push_back({packet_avx2::ExposeBlock, "avx2"});
-  if (best == "avx512") kernels.push_back({packet_avx512::ExposeBlock, "avx512"});
+  std::vector<KernelChoice> kernels{{packet_base::ExposeBlock, packet_base::ScrambleBlock, "base"}};
+  if (best != "base") kernels.push_back({packet_avx2::ExposeBlock, packet_avx2::ScrambleBlock, "avx2"});
+  if (best == "avx512") kernels.push_back({packet_avx512::ExposeBlock, packet_avx512::ScrambleBlock, "avx512"});
   benchmark::RegisterBenchmark("bare/rtcIntersect16", Bare)->Unit(benchmark::kMillisecond);
   for (const KernelChoice& kernel : kernels) {
     const std::string name = kernel.name;
@@ -382,13 +425,20 @@ int main(int argc, char** argv) {
     benchmark::RegisterBenchmark(("sample/one_lamp/" + name).c_str(), Shaded, kernel.expose_block, 1, false)
         ->Unit(benchmark::kMillisecond);
   }
-  for (const int samples : {1, 16}) {
-    benchmark::RegisterBenchmark(("frame/baked/" + std::to_string(samples)).c_str(), WholeFrame, LightMode::baked,
-                                 samples)
-        ->Arg(1)
-        ->Arg(2)
-        ->Unit(benchmark::kMillisecond)
-        ->UseRealTime();
+  for (const int samples : {1, 16})
+    RegisterFrame("frame/baked/" + std::to_string(samples), {.time_samples = samples}, {1, 2});
+  RegisterFrame("frame/rolling/1", {.row_delay_s = 0.03 / kHeight}, {1, 2});
+  RegisterFrame("frame/rolling/16", {.time_samples = 16, .row_delay_s = 0.03 / kHeight}, {1, 2});
+  // How the time grows, with one core. Half a hundred thousand to five million triangles: without baked light, which
+  // would take its time.
+  for (const int samples : {2, 4, 8, 32})
+    RegisterFrame("samples/" + std::to_string(samples), {.time_samples = samples}, {1});
+  for (const int width : {320, 640, 1280, 2560}) {
+    RegisterFrame("pixels/" + std::to_string(width * width * 3 / 4), {.width = width, .height = width * 3 / 4}, {1});
+  }
+  for (const double detail : {0.176, 0.32, 0.556, 1.0, 1.76, 3.93}) {
+    RegisterFrame("triangles/" + std::to_string(static_cast<int>(323584 * detail * detail / 1000)) + "k",
+                  {.light = LightMode::direct, .detail = detail}, {1});
   }
   benchmark::RegisterBenchmark("first_frame/direct", FirstFrame, LightMode::direct)
       ->Unit(benchmark::kMillisecond)

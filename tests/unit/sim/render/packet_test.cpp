@@ -75,5 +75,26 @@ void ExpectInstructionSetsToAgree(bool moving) {
 TEST(Packet, InstructionSetsAgree) { ExpectInstructionSetsToAgree(false); }
 TEST(Packet, InstructionSetsAgreeOnObjects) { ExpectInstructionSetsToAgree(true); }
 
+TEST(Packet, BitsOfABlockArePixelScrambleWithEveryInstructionSet) {
+  std::vector<ScrambleBlockFunction> kernels{packet_base::ScrambleBlock};
+  const std::string best = PacketKernel().name;
+  if (best != "base") kernels.push_back(packet_avx2::ScrambleBlock);
+  if (best == "avx512") kernels.push_back(packet_avx512::ScrambleBlock);
+  for (const ScrambleBlockFunction scramble : kernels) {
+    for (const std::uint64_t key : {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{0xfedcba9876543210}}) {
+      BlockBits bits;
+      scramble(key, 636, 1000, bits);
+      for (int i = 0; i < kLanes; ++i) {
+        const PixelBits expected =
+            PixelScramble(key, 636u + static_cast<std::uint32_t>(i % 4), 1000u + static_cast<std::uint32_t>(i / 4));
+        EXPECT_EQ(static_cast<std::uint32_t>(bits.word[0].v[i]), expected.point.u);
+        EXPECT_EQ(static_cast<std::uint32_t>(bits.word[1].v[i]), expected.point.v);
+        EXPECT_EQ(static_cast<std::uint32_t>(bits.word[2].v[i]), expected.time);
+        EXPECT_EQ(static_cast<std::uint32_t>(bits.word[3].v[i]), expected.turn);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sim::test
