@@ -44,8 +44,21 @@ std::uint64_t ObjectSeed(std::uint64_t seed, std::size_t object) {
   return (std::uint64_t{words[0]} << 32) | words[1];
 }
 
+// What shines by mirroring and is shown as if it did not.
+void WarnOfGloss(const Scene& scene, const RenderParams& params, std::vector<std::string>& warnings) {
+  if (params.reflections && params.engine == Engine::ray_tracer) return;
+  std::string names;
+  for (const Material& m : scene.materials) {
+    if (m.metallic >= 0.5f || m.roughness <= 0.5f) names += (names.empty() ? "" : ", ") + m.name;
+  }
+  if (names.empty()) return;
+  warnings.push_back((params.reflections ? "the rasteriser does not render reflections" : "render.reflections is false") +
+                     std::string(": metal and gloss are Lambert surfaces of their base colour: ") + names);
+}
+
 std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& params, int jobs,
                                        std::vector<std::string>& warnings) {
+  WarnOfGloss(scene, params, warnings);
   if (params.engine == Engine::rasteriser) {
     RasteriserOptions options;
     options.rays_per_time_sample = params.rays_per_time_sample;
@@ -55,6 +68,7 @@ std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& p
   RayTracerOptions options;
   options.rays_per_time_sample = params.rays_per_time_sample;
   options.jobs = jobs;
+  options.reflections = params.reflections;
   options.light = params.light;
   options.bake = params.bake;
   options.light_folders = params.light_folders;

@@ -50,6 +50,18 @@ struct MaterialShading {
   PictureShading color, emission_picture, normal_map;  // where there is none: a white texel, a flat normal
   float normal_scale;
 };
+// How a material mirrors, by glTF's model: a metal's base colour is that of its reflection, other surfaces reflect 4 %.
+struct GlossShading {
+  float metallic, roughness;  // times the picture's blue and green
+  PictureShading picture;
+  std::int32_t mirrors;  // -1, or 0: Lambert alone
+};
+// A rectangle that shines towards its normal, as it is seen in what mirrors. A point of its plane is corner + a u + b v with a = dual_u . (point -
+// corner), b likewise.
+struct LampShading {
+  float corner[3], normal[3], dual_u[3], dual_v[3], radiance[3];
+  std::int32_t layer;  // of RaySample::layer_factors
+};
 struct LevelShading {
   std::uint32_t size;        // width | height << 16
   std::int32_t first_texel;  // in PacketScene::texels; rows are width + 1 long: the first texel again at the end
@@ -76,6 +88,9 @@ struct PacketScene {
   const std::uint32_t* light;   // baked, as sim/light/shared_exponent.h packs it, layer after layer; null: ambient light
   std::int32_t light_layers, light_stride;
   bool any_emission, any_emission_picture;
+  const GlossShading* gloss;  // by material; null: nothing mirrors
+  const LampShading* lamps;   // only where something does
+  std::int32_t lamp_count;
   float ambient[3];
   SkyShading sky;
 };

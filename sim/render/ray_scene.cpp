@@ -23,7 +23,9 @@ void Store(float (&to)[2], const glm::vec2& from) {
   for (int c = 0; c < 2; ++c) to[c] = from[c];
 }
 
-bool IsTextured(const Material& m) { return m.texture >= 0 || m.emission_texture >= 0 || m.normal_map >= 0; }
+bool IsTextured(const Material& m) {
+  return m.texture >= 0 || m.emission_texture >= 0 || m.normal_map >= 0 || m.gloss_texture >= 0;
+}
 
 // Whether Embree has to ask about each hit.
 bool IsCutOut(const Scene& scene, const Material& m) {
@@ -62,13 +64,16 @@ void Check(const Scene& scene) {
     if (!ok) throw std::invalid_argument("scene: " + what);
   };
   for (const Material& m : scene.materials) {
-    for (const int texture : {m.texture, m.emission_texture, m.normal_map}) {
+    for (const int texture : {m.texture, m.emission_texture, m.normal_map, m.gloss_texture}) {
       require(texture >= -1 && texture < static_cast<int>(scene.textures.size()),
               "material " + m.name + ": no such texture");
     }
     require(m.normal_map < 0 ||
-                scene.textures[static_cast<std::size_t>(m.normal_map)].content() == Texture::Content::normals,
+                scene.textures[static_cast<std::size_t>(m.normal_map)].content() == Texture::Content::numbers,
             "material " + m.name + ": its normal map is not one");
+    require(m.gloss_texture < 0 ||
+                scene.textures[static_cast<std::size_t>(m.gloss_texture)].content() == Texture::Content::numbers,
+            "material " + m.name + ": its metallic-roughness picture is one of colours");
   }
   require(scene.materials.size() < (1u << kMaterialBits), "too many materials");
   const auto check = [&](const Mesh& mesh) {
@@ -193,6 +198,34 @@ void RayScene::SetLight(const BakedLight& light) {
   packet_scene_.light_stride = static_cast<std::int32_t>(count);
 }
 
+void RayScene::AddReflections(const Scene& scene) {
+  for (const Material& m : scene.materials) {
+    GlossShading gloss{m.metallic, m.roughness, {0, 1}, m.Mirrors() ? -1 : 0};
+    if (m.gloss_texture >= 0) gloss.picture = pictures_[static_cast<std::size_t>(m.gloss_texture)];
+    gloss_.push_back(gloss);
+  }
+  gloss_.resize(materials_.size(), {0.0f, 1.0f, {0, 1}, 0});  // of lamps
+  if (std::none_of(gloss_.begin(), gloss_.end(), [](const GlossShading& g) { return g.mirrors != 0; })) return;
+  const std::vector<Flicker> layers = Flickers(scene.lights);
+  for (const Light& light : scene.lights) {
+    const auto* rect = std::get_if<RectLight>(&light);
+    if (rect == nullptr) continue;
+    const glm::dvec3 normal = glm::normalize(glm::cross(rect->side_u, rect->side_v));
+    const glm::dvec3 across_u = glm::cross(rect->side_v, normal), across_v = glm::cross(normal, rect->side_u);
+    LampShading lamp{};
+    Store(lamp.corner, glm::vec3(rect->corner));
+    Store(lamp.normal, glm::vec3(normal));
+    Store(lamp.dual_u, glm::vec3(across_u / glm::dot(across_u, rect->side_u)));
+    Store(lamp.dual_v, glm::vec3(across_v / glm::dot(across_v, rect->side_v)));
+    Store(lamp.radiance, glm::vec3(rect->radiance));
+    lamp.layer = LayerOf(light, layers);
+    lamps_.push_back(lamp);
+  }
+  packet_scene_.gloss = gloss_.data();
+  packet_scene_.lamps = lamps_.data();
+  packet_scene_.lamp_count = static_cast<std::int32_t>(lamps_.size());
+}
+
 glm::vec3 RayScene::ShadingNormal(std::uint32_t triangle, float u, float v) const {
   if (!any_normals_) {
     const glm::dvec3 a(Corner(triangle, 0)), b(Corner(triangle, 1)), c(Corner(triangle, 2));
@@ -249,14 +282,13 @@ void RayScene::AppendTextures(const Scene& scene) {
   texels_.reserve(count);
   append(1, 1, &kWhiteTexel);
   append(1, 1, &kFlatNormalTexel);
-  std::vector<PictureShading> pictures;
   for (const Texture& texture : scene.textures) {
-    pictures.push_back({static_cast<std::int32_t>(levels_.size()), static_cast<std::int32_t>(texture.levels().size())});
+    pictures_.push_back({static_cast<std::int32_t>(levels_.size()), static_cast<std::int32_t>(texture.levels().size())});
     for (const TextureLevel& level : texture.levels())
       append(level.width, level.height, texture.texels().data() + level.first);
   }
   const auto picture = [&](int texture, std::int32_t otherwise) {
-    return texture < 0 ? PictureShading{otherwise, 1} : pictures[static_cast<std::size_t>(texture)];
+    return texture < 0 ? PictureShading{otherwise, 1} : pictures_[static_cast<std::size_t>(texture)];
   };
   for (const Material& material : scene.materials) {
     MaterialShading m{};

@@ -47,6 +47,8 @@ class RayScene {
 
   // From now on hits have this light instead of ambient light. Throws std::invalid_argument when it is not this scene's.
   void SetLight(const BakedLight& light);
+  // From now on metal and gloss mirror (Material::Mirrors).
+  void AddReflections(const Scene& scene);
 
   const PacketScene& packet_scene() const { return packet_scene_; }
   RTCScene embree() const { return scene_.get(); }  // of what stands still
@@ -106,6 +108,9 @@ class RayScene {
   std::vector<TriangleTangents> tangents_;  // or none
   bool any_normals_ = false, any_colors_ = false, any_tangents_ = false;
   std::vector<MaterialShading> materials_;
+  std::vector<GlossShading> gloss_;
+  std::vector<LampShading> lamps_;
+  std::vector<PictureShading> pictures_;  // by texture
   std::vector<LevelShading> levels_;
   std::vector<std::uint32_t> texels_, light_;
   std::vector<float> sky_picture_;

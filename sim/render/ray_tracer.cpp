@@ -130,6 +130,7 @@ class RayTracer final : public Renderer {
         kernel_(PacketKernel()),
         arena_(options.jobs > 0 ? options.jobs : tbb::task_arena::automatic) {
     layers_ = Flickers(scene.lights);
+    if (options.reflections) scene_.AddReflections(scene);
     if (options.light == LightMode::direct) return;
     const BakedLight light = arena_.execute(
         [&] { return CachedLight(scene, scene_, options.light, options.bake, options.light_folders, warnings); });

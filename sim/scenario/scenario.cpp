@@ -171,6 +171,7 @@ void ReadRender(Section section, const std::filesystem::path& folder, RenderPara
   section.ReadChoice("engine", render.engine,
                      {{"ray_tracer", Engine::ray_tracer}, {"rasteriser", Engine::rasteriser}});
   section.Read("rays_per_time_sample", render.rays_per_time_sample, Range{1, 256});
+  section.Read("reflections", render.reflections);
   section.ReadChoice(
       "light", render.light,
       {{"direct", LightMode::direct}, {"baked_indirect", LightMode::baked_indirect}, {"baked", LightMode::baked}});

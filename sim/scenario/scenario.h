@@ -28,6 +28,7 @@ enum class Engine { ray_tracer, rasteriser };  // docs/renderers.md
 struct RenderParams {
   Engine engine = Engine::ray_tracer;
   int rays_per_time_sample = 1;  // more: smoother edges at few time samples
+  bool reflections = false;      // of metal and gloss
   LightMode light = LightMode::direct;
   BakeParams bake;
   std::vector<std::filesystem::path> light_folders;  // where baked light is kept

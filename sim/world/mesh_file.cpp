@@ -256,13 +256,13 @@ class FileReader {
 
   void AppendUvs(const aiMesh& in, const UvChoice& choice, const std::string& label, Mesh& out) {
     const Material& material = scene_.materials[static_cast<std::size_t>(out.material)];
-    const int texture = std::max({material.texture, material.emission_texture, material.normal_map});
+    const int texture = std::max({material.texture, material.emission_texture, material.normal_map, material.gloss_texture});
     if (texture < 0) return;
     if (!in.HasTextureCoords(choice.channel)) {
       const std::string& name = scene_.textures[static_cast<std::size_t>(texture)].name();
       Warn(label + "no texture coordinates for texture " + name + "; the base colour is used");
       Material plain = material;
-      plain.texture = plain.emission_texture = plain.normal_map = -1;
+      plain.texture = plain.emission_texture = plain.normal_map = plain.gloss_texture = -1;
       out.material = static_cast<int>(scene_.materials.size());
       scene_.materials.push_back(std::move(plain));
       return;

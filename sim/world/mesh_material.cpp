@@ -98,8 +98,16 @@ MeshMaterial MeshMaterialReader::Read(const aiMaterial& in, float emission_stren
     material.emission_texture = ReadTexture(in, glow, "emission ", Texture::Content::color, false, material.name, uvs);
   }
   material.normal_map =
-      ReadTexture(in, aiTextureType_NORMALS, "normal ", Texture::Content::normals, false, material.name, uvs);
+      ReadTexture(in, aiTextureType_NORMALS, "normal ", Texture::Content::numbers, false, material.name, uvs);
   in.Get(AI_MATKEY_GLTF_TEXTURE_SCALE(aiTextureType_NORMALS, 0), material.normal_scale);
+  in.Get(AI_MATKEY_METALLIC_FACTOR, material.metallic);
+  in.Get(AI_MATKEY_ROUGHNESS_FACTOR, material.roughness);
+  material.metallic = std::clamp(material.metallic, 0.0f, 1.0f);
+  material.roughness = std::clamp(material.roughness, 0.0f, 1.0f);
+  if (is_gltf_) {
+    material.gloss_texture = ReadTexture(in, aiTextureType_UNKNOWN, "metallic-roughness ", Texture::Content::numbers, false,
+                                         material.name, uvs);
+  }
   if (in.GetTextureCount(aiTextureType_OPACITY) > 0) {
     Warn("material '" + material.name + "': its opacity texture is not used; it is opaque");
   }
@@ -180,7 +188,7 @@ int MeshMaterialReader::TextureIndex(const std::string& name, const std::string&
     path = fs::path(text).lexically_normal();
   }
   const fs::path file = embedded != nullptr ? file_ / name : (file_.parent_path() / path).lexically_normal();
-  const std::string kind = content == Texture::Content::normals ? " (normals)" : with_alpha ? " (with alpha)" : "";
+  const std::string kind = content == Texture::Content::numbers ? " (numbers)" : with_alpha ? " (with alpha)" : "";
   const auto [entry, is_new] = textures_.try_emplace(file.string() + kind, -1);
   if (!is_new) return entry->second;  // a bad one has been reported
   const auto bad = [&](const std::string& what) {

@@ -18,16 +18,19 @@
 
 namespace sim {
 
-// Lambert. Albedo = base_color * vertex colour * texture; radiance = emission * emission texture + reflected light; each where
-// present.
+// Albedo = base_color * vertex colour * texture; radiance = emission * emission texture + reflected light; each where present.
+// Lambert, or, to a renderer that is asked for reflections, glTF's metallic-roughness model.
 struct Material {
   std::string name;
   glm::vec3 base_color{1.0f};  // linear
   glm::vec3 emission{0.0f};    // linear radiance
   int texture = -1;            // index in Scene::textures; -1: none
   int emission_texture = -1;
-  int normal_map = -1;  // its content is Texture::Content::normals
+  int normal_map = -1;  // its content is Texture::Content::numbers
   float normal_scale = 1.0f;
+  float metallic = 0.0f, roughness = 1.0f;
+  int gloss_texture = -1;  // roughness times its green, metallic times its blue; its content is numbers
+  bool Mirrors() const { return metallic > 0 || roughness < 1; }
   // The surface is there only where alpha * the texture's alpha reaches the cutoff; 0: everywhere.
   float alpha = 1.0f, alpha_cutoff = 0.0f;
 };

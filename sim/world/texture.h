@@ -22,10 +22,11 @@ struct TextureLevel {
 // j) is at
 // ((i + 0.5) / width, (j + 0.5) / height). The picture repeats outside.
 //
-// A normal map's texels are not roots but the bytes' own values in 10 bits, and its levels are means of those.
+// Texels of pictures that are no colours (normal maps, roughness) are not roots but the bytes' own values in 10 bits, and the levels are
+// means of those.
 class Texture {
  public:
-  enum class Content { color, normals };
+  enum class Content { color, numbers };
 
   // rgb: width * height * 3 bytes, rows from the top, sRGB-coded where they are a colour. Each level is the area-weighted mean of
   // the one below it, in linear light. alpha: none, or width * height bytes. Throws std::invalid_argument when a size is wrong.

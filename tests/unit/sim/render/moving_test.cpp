@@ -123,7 +123,7 @@ TEST_P(Moving, IsLitAsIfItStoodThere) {
 TEST(MovingRays, ARowSeesTheWorldAtItsMoment) {
   Scene scene = CarriedThings();
   Texture bumps("bumps", 2, 2, std::vector<std::uint8_t>{128, 128, 255, 200, 128, 220, 128, 200, 220, 60, 100, 220}, {},
-                Texture::Content::normals);
+                Texture::Content::numbers);
   scene.textures.push_back(bumps);
   scene.materials[1].normal_map = 1;
   const Camera camera(SmallCamera());

@@ -149,7 +149,7 @@ TEST_P(RasteriserTest, NamesWhatItDoesNotRender) {
   Scene scene = BusyWorld();
   scene.materials[0].name = "wall", scene.materials[1].name = "ball";
   scene.textures.emplace_back("bumps", 1, 1, std::vector<std::uint8_t>{128, 128, 255}, std::span<const std::uint8_t>(),
-                              Texture::Content::normals);
+                              Texture::Content::numbers);
   scene.materials[0].normal_map = scene.materials[1].normal_map = 1;
   scene.materials[0].emission_texture = 0;
   scene.materials[0].emission = glm::vec3(1.0f);

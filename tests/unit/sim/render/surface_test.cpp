@@ -140,7 +140,7 @@ TEST(Surface, NormalMapTurnsTheNormal) {
   for (const bool mirrored : {false, true}) {
     for (const double scale : {1.0, 0.5}) {
       Scene scene;
-      scene.textures.emplace_back("tilt", 1, 1, rgb, std::vector<std::uint8_t>(), Texture::Content::normals);
+      scene.textures.emplace_back("tilt", 1, 1, rgb, std::vector<std::uint8_t>(), Texture::Content::numbers);
       AddMaterial(scene, glm::vec3(1.0f));
       scene.materials[0].normal_map = 0;
       scene.materials[0].normal_scale = static_cast<float>(scale);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 
+#include "sim/simulator.h"
 #include "sim/world/gltf_features.h"
 #include "sim/world/scene.h"
 #include "tests/unit/sim/world/files.h"
@@ -140,11 +141,45 @@ TEST(Gltf, EmissionAndNormalMap) {
   EXPECT_EQ(m.texture, m.emission_texture) << "one picture, read once";
   ASSERT_GE(m.normal_map, 0);
   const Texture& map = scene.textures.at(static_cast<std::size_t>(m.normal_map));
-  EXPECT_EQ(map.content(), Texture::Content::normals);
+  EXPECT_EQ(map.content(), Texture::Content::numbers);
   EXPECT_NEAR(map.Texel(0, 0, 0).x, 128 / 255.0, 1e-3);
   EXPECT_NEAR(map.Texel(0, 0, 0).z, 1.0, 1e-3);
   EXPECT_FLOAT_EQ(m.normal_scale, 0.5f);
   EXPECT_FLOAT_EQ(m.emission.y, 2.0f);
+}
+
+TEST(Gltf, MetalAndRoughness) {
+  const Folder folder;
+  Parts parts;
+  parts.material = R"("name": "cloth", "pbrMetallicRoughness": {"metallicFactor": 0.75, "roughnessFactor": 0.5,
+    "baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 1}})";
+  const Scene scene = Load(folder, parts);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  const Material& m = scene.materials.at(0);
+  EXPECT_FLOAT_EQ(m.metallic, 0.75f);
+  EXPECT_FLOAT_EQ(m.roughness, 0.5f);
+  ASSERT_GE(m.gloss_texture, 0);
+  EXPECT_NE(m.gloss_texture, m.texture);
+  const Texture& picture = scene.textures.at(static_cast<std::size_t>(m.gloss_texture));
+  EXPECT_EQ(picture.content(), Texture::Content::numbers);
+  EXPECT_NEAR(picture.Texel(0, 0, 0).x, 128 / 255.0, 1e-3) << "the bytes themselves, not their light";
+}
+
+TEST(Gltf, MetalWithoutReflectionsIsAWarning) {
+  const Folder folder;
+  Parts parts;
+  parts.material = R"("pbrMetallicRoughness": {"metallicFactor": 1, "baseColorTexture": {"index": 0}})";
+  Load(folder, parts);
+  const auto file = folder.Write("tin.yaml", R"(
+world: {meshes: [{file: flag.gltf}], lights: [{type: ambient, radiance: [1, 1, 1]}]}
+camera: {width: 8, height: 6, fx: 8, fy: 8, cx: 3.5, cy: 2.5}
+time: {rate: 30 Hz, duration: 100 ms}
+trajectory: {type: rpy, start: {position: [0, 0, 3], look_at: [0, 0, 0]}, angles: [1 deg, 0 deg, 0 deg], periods: [1 s, 1 s, 1 s]}
+)");
+  EXPECT_THAT(Simulator(LoadScenario(file), 1).warnings(),
+              testing::Contains(testing::AllOf(HasSubstr("render.reflections is false"), HasSubstr("base colour: cloth"))));
+  EXPECT_THAT(Simulator(LoadScenario(file, {{"render.reflections", "true"}}), 1).warnings(),
+              testing::Not(testing::Contains(HasSubstr("reflections"))));
 }
 
 TEST(Gltf, PicturesWithOtherCoordinatesAreLeftOut) {
