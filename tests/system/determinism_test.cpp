@@ -40,6 +40,20 @@ TEST_F(DeterminismTest, RenderedBytesDoNotDependOnThreads) {
   EXPECT_FALSE(Tree(here_ / "one" / "rgb") == Tree(here_ / "other" / "rgb"));
 }
 
+// Objects that move: each frame places them anew, in whichever thread.
+TEST_F(DeterminismTest, MovingObjectsDoNotDependOnThreads) {
+  const std::string scenario = (TinyScenario().parent_path() / "moving.yaml").string();
+  const auto render = [&](const std::string& folder, const std::string& jobs) {
+    Vobench({"render", scenario, "-o", folder, "--frames", "20:24", "--jobs", jobs, "--set", "sensor.rolling_shutter=10 ms"});
+  };
+  render("one", "1");
+  render("two", "2");
+  const auto one = Tree(here_ / "one");
+  EXPECT_TRUE(one.contains("objects/parcel.txt"));
+  EXPECT_TRUE(one == Tree(here_ / "two"));
+  Vobench({"verify", "one"});
+}
+
 TEST_F(DeterminismTest, ARangeHasTheFramesOfTheWhole) {
   Succeeds({"render", "-o", "whole", "--frames", "0:8"});
   Succeeds({"render", "-o", "part", "--frames", "3:6"});

@@ -93,7 +93,7 @@ TEST_F(ErrorsTest, MissingCamera) {
 
 TEST_F(ErrorsTest, CorruptMesh) {
   const fs::path scenes = CopyScenes();
-  const fs::path mesh = FirstFile(scenes, {".obj", ".glb", ".gltf", ".ply", ".fbx"});
+  const fs::path mesh = scenes / "room" / "room.obj";
   WriteFile(mesh, "v 1 2\nf one two three\n");
   Fails({"render", "scenes/tiny.yaml", "-o", "out"}, 2, mesh.filename().string());
   Fails({"run", "scenes/tiny.yaml", "-o", "out"}, 2, mesh.filename().string());

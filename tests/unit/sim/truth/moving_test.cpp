@@ -87,6 +87,7 @@ TEST(MovingTruth, ObjectAndCameraChangePlaces) {
       ++edges;
       continue;
     }
+    if (points[i].triangle == kNoTriangle) continue;
     ASSERT_NEAR(points[i].depth, same[i].depth, 1e-9);
     for (std::size_t c = 0; c < 2; ++c) ASSERT_NEAR(flow.uv[2 * i + c], other.uv[2 * i + c], 2e-6 + 1e-6 * std::abs(other.uv[2 * i + c]));
     edges += flow.occluded[i] != other.occluded[i];
@@ -112,7 +113,8 @@ TEST(MovingTruth, StreamsOfABoard) {
   const SmallWorld world;
   const Simulator simulator(WithBoard(world, kDolly), 1), parallel(WithBoard(world, kDolly), 2);
   ASSERT_EQ(simulator.object_names(), std::vector<std::string>{"board"});
-  EXPECT_EQ(simulator.mesh_names().back(), "board/" + simulator.mesh_names().front());
+  ASSERT_EQ(simulator.mesh_names().size(), 2u);
+  EXPECT_THAT(simulator.mesh_names()[1], testing::StartsWith("board/"));
   std::map<std::string, std::vector<std::uint8_t>> files;
   for (const StreamFile& file : FrameStreams(simulator, 4, {TruthStream::moving, TruthStream::surface_id})) files[file.path] = file.bytes;
   for (const StreamFile& file : SequenceStreams(simulator, 0, 9, {TruthStream::moving})) files[file.path] = file.bytes;
