@@ -7,11 +7,13 @@ import numpy as np
 
 
 class Obj:
-    """share: equal entries are written once (the room's file has one for each corner)."""
+    """share: equal entries are written once, and all of a material is one object; the room's file has one entry for each corner, in
+    the order in which things were made."""
 
     def __init__(self, share=True):
         self.lines, self.materials, self.current = [], {}, None
         self.count, self.seen, self.share = {"v": 0, "vt": 0, "vn": 0}, {}, share
+        self.faces = {}  # of each material, where entries are shared
         self.origin, self.rotation, self.triangles = None, None, 0
 
     def material(self, name, texture=None, color=(1, 1, 1), emission=(0, 0, 0)):
@@ -20,9 +22,9 @@ class Obj:
     def use(self, group, material):
         if material not in self.materials:
             raise KeyError(f"no material '{material}' ({group})")
-        if (group, material) != self.current:
+        if not self.share and (group, material) != self.current:
             self.lines += [f"o {group}", f"usemtl {material}"]
-            self.current = (group, material)
+        self.current = (group, material)
 
     @contextlib.contextmanager
     def at(self, position, turn=0.0, tilt=0.0):
@@ -56,7 +58,13 @@ class Obj:
                              self.entry("vn", direction % tuple(n)))
 
     def face(self, corners):
-        self.lines.append("f " + " ".join(corners))
+        if self.share:  # at a pole some corners are one
+            places = [corner.split("/")[0] for corner in corners]
+            corners = [c for k, c in enumerate(corners) if places[k] != places[k - 1]]
+            if len(corners) < 3:
+                return
+        lines = self.faces.setdefault(self.current[1], []) if self.share else self.lines
+        lines.append("f " + " ".join(corners))
         self.triangles += len(corners) - 2
 
     def quad(self, group, material, upper_left, right, down, uv=(0, 0, 1, 1)):
@@ -138,25 +146,18 @@ class Obj:
         names = [[self.corner(points[i, k], uv[i][k], normal[i, k]) for k in range(points.shape[1])] for i in range(points.shape[0])]
         for i in range(points.shape[0] - 1):
             for k in range(points.shape[1] - 1):
-                ring = (names[i][k], names[i + 1][k], names[i + 1][k + 1], names[i][k + 1])
-                places = [corner.split("/")[0] for corner in ring]
-                ring = [c for j, c in enumerate(ring) if places[j] != places[j - 1]]
-                if len(ring) >= 3:
-                    self.face(ring)
+                self.face([names[i][k], names[i + 1][k], names[i + 1][k + 1], names[i][k + 1]])
 
     def cushion(self, group, material, center, half, metres, round_=0.35, steps=(8, 16), turn=0.0, tilt=0.0):
         """A box with round edges (superellipsoid): round_ 1 is an ellipsoid, small is a box."""
         bend = lambda c: np.sign(c) * np.abs(c) ** round_
         rows, columns = np.linspace(math.pi / 2, -math.pi / 2, steps[0] + 1), np.linspace(0, 2 * math.pi, steps[1] + 1)
-        if round_ < 0.9:  # as many rows near the edges as on the faces
-            rows = np.sign(rows) * (np.abs(rows) * 2 / math.pi) ** 1.0 * math.pi / 2
         e, a = np.meshgrid(rows, -columns, indexing="ij")
         points = np.stack((half[0] * bend(np.cos(e)) * bend(np.cos(a)), half[1] * bend(np.sin(e)), half[2] * bend(np.cos(e)) * bend(np.sin(a))), -1)
         points[0, :] = (0, half[1], 0)
         points[-1, :] = (0, -half[1], 0)
-        around = 2 * (half[0] + half[2]) * 2
-        uv = [[(k / steps[1] * around / metres, i / steps[0] * (2 * half[1] + min(half[0], half[2])) / metres)
-               for k in range(steps[1] + 1)] for i in range(steps[0] + 1)]
+        # A slanting projection: no seam and no pole, and no side that is stretched to more than 1.7 times.
+        uv = np.stack((points[..., 0] + 0.6 * points[..., 2], 0.6 * points[..., 2] - points[..., 1]), -1) / metres
         with self.at(center, turn, tilt):
             self.surface(group, material, points, uv, closed=True)
 
@@ -197,15 +198,15 @@ class Obj:
     def write(self, file, title, maker):
         file = Path(file)
         header = [f"# {title}, made by {maker}. CC0 1.0: no rights reserved.", f"mtllib {file.stem}.mtl"]
-        file.with_suffix(".obj").write_text("\n".join(header + self.lines) + "\n")
+        objects = [line for material, faces in self.faces.items() for line in [f"o {material.replace(' ', '_')}", f"usemtl {material}"] + faces]
+        file.with_suffix(".obj").write_text("\n".join(header + self.lines + objects) + "\n")
         text = [f"# Made by {maker}. CC0 1.0."]
-        used = {line[7:] for line in self.lines if line.startswith("usemtl ")}
         for material, (texture, color, emission) in self.materials.items():
-            if self.share and material not in used:
+            if self.share and material not in self.faces:
                 continue
             text += [f"newmtl {material}", "Kd %g %g %g" % color, "Ke %g %g %g" % emission]
             if texture:
-                text.append(f"map_Kd {texture}")
+                text.append(f"map_{'Ke' if any(emission) else 'Kd'} {texture}")
         file.with_suffix(".mtl").write_text("\n".join(text) + "\n")
 
 

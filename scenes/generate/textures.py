@@ -6,7 +6,7 @@ from facades import shops, windows
 from noise import save
 from stationery import collage, keyboard, notices, pages, picture_of, screens, signs
 from surfaces import bricks, fabric, planks
-from tiles import asphalt, ceiling_tiles, concrete, denim, foliage, hair, knitted, leaves, mottled, paving, roller_plaster, tartan, tufted
+from tiles import asphalt, ceiling_tiles, concrete, creased, denim, foliage, hair, knitted, leaves, mottled, paving, roller_plaster, tartan, tufted
 
 FOLDER = Path(__file__).resolve().parent.parent / "textures"
 
@@ -20,12 +20,12 @@ def main():
     keep("plaster", roller_plaster("plaster", 1024, (222, 219, 212)), 75)
     keep("concrete", concrete("concrete", 1024), 70)
     keep("carpet_tile", tufted("tufted", 1024, (74, 80, 96)), 60)
-    keep("oak_floor", planks("oak floor", (2.0, 2.0), (168, 122, 80), 0.00125, 0.125, 0.5, (0.6, 1.2)), 70)
+    keep("oak_floor", planks("oak floor", (2.0, 2.0), (168, 122, 80), 0.00125, 0.125, 0.5, (0.6, 1.2)), 60)
     keep("ceiling_tiles", ceiling_tiles("mineral fibre", 1024, 4), 70)
     keep("asphalt", asphalt("asphalt", 1024), 60)
     keep("paving", paving("paving", 1024, 8, 4, (148, 144, 136)), 70)
     keep("brick", bricks("street brick", (2.028, 2.028), 0.002, shade=False), 70)
-    keep("foil", mottled("foil", 512, (226, 226, 224), 3.0, 1.2, 0.6), 80)
+    keep("foil", creased("foil", 1024, (222, 222, 220)), 80)
     keep("leaf", leaves("leaf", 256))
     keep("foliage", foliage("foliage", 512), 65)
     keep("cloth_grey", mottled("office cloth", 512, (72, 76, 84), 4, 8, 1.5), 70)
@@ -36,7 +36,7 @@ def main():
     keep("denim", denim("denim", 512), 60)
     keep("hair", hair("hair", 256, (70, 50, 36)), 70)
     keep("skin", mottled("skin", 256, (198, 150, 124), 5, 3, 2.0), 80)
-    keep("print", pages("pages", 504, 713, 4, 2), 55)
+    keep("print", pages("pages", 504, 713, 4, 2), 45)
     keep("notices", notices("notices", 1200, 4, 2), 65)
     keep("signs", signs("signs", 180, 120, 4, 4), 75)
     keep("screens", screens("screens", 520, 310), 70)

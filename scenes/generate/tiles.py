@@ -20,6 +20,14 @@ def roller_plaster(name, size, color):
     return mottled(name + " ground", size, color, 3.5, 2.0, 1.0) + np.clip(relief, -14, 14)[:, :, None]
 
 
+def creased(name, size, color, depth=10.0):
+    """Foil stretched over a board: mottled, with faint creases of which one side is light and the other dark."""
+    rng = rng_of(name)
+    relief = sum(np.exp(-np.abs(noise(rng, size, size, beta)) / wide) for beta, wide in ((1.9, 0.02), (1.6, 0.03)))
+    slope = np.roll(relief, 2, 0) - np.roll(relief, -2, 0) + np.roll(relief, 2, 1) - np.roll(relief, -2, 1)
+    return mottled(name + " ground", size, color, 3.0, 1.2, 0.6) + np.clip(depth * slope, -16, 16)[:, :, None]
+
+
 def concrete(name, size):
     rng = rng_of(name)
     picture = mottled(name + " ground", size, (150, 148, 143), 11, 6, 1.5)
