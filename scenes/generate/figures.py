@@ -33,7 +33,7 @@ def seated(o, cloth, trousers, desk=0.74, lean=0.12, look=0.0, nod=0.1, reach=(0
     shoulder = np.array((0, 1.04, -0.02 + lean))
     o.tube("torso", cloth, [(0, 0.52, -0.02), (0, 0.66, 0.0), (0, 0.84, 0.02 + 0.5 * lean), (0, 0.98, lean), (0, 1.06, lean - 0.02)],
            (0.165, 0.155, 0.17, 0.175, 0.11), 0.5, 24, 4, 0.66)
-    o.tube("neck", skin, [(0, 1.05, lean - 0.02), (0, 1.17, lean + 0.0)], (0.058, 0.052), 0.4, 16, 2)
+    o.tube("neck", skin, [(0, 1.05, lean - 0.02), (0, 1.17, lean + 0.0)], (0.058, 0.052), 0.4, 20, 10)
     o.tube("collar", cloth, [(0, 1.075, lean - 0.022), (0, 1.10, lean - 0.016)], (0.08, 0.07), 0.5, 18, 2)
     head(o, (0, 1.27, lean + 0.02), look, nod, skin, hair)
     for side, far, up in ((-1, reach[0], lift[0]), (1, reach[1], lift[1])):

@@ -51,7 +51,7 @@ class Obj:
     def corner(self, p, uv, n):
         if self.origin is not None:
             p, n = self.origin + self.rotation @ np.array(p, float), self.rotation @ np.array(n, float)
-        place, direction = ("%.5f %.5f %.5f", "%.5f %.5f %.5f") if not self.share else ("%.4f %.4f %.4f", "%.3f %.3f %.3f")
+        place, direction = ("%.5f %.5f %.5f", "%.5f %.5f %.5f") if not self.share else ("%.4f %.4f %.4f", "%.2f %.2f %.2f")
         texture = "%.6f %.6f" if not self.share else "%.4f %.4f"
         return "%d/%d/%d" % (self.entry("v", place % tuple(p)),
                              self.entry("vt", texture % (uv[0], 1 - uv[1])),  # our v runs down, OBJ's up

@@ -37,15 +37,15 @@ def main():
     keep("hair", hair("hair", 256, (70, 50, 36)), 70)
     keep("skin", mottled("skin", 256, (198, 150, 124), 5, 3, 2.0), 80)
     keep("print", pages("pages", 504, 713, 4, 2), 45)
-    keep("notices", notices("notices", 1200, 4, 2), 65)
+    keep("notices", notices("notices", 1200, 4, 2), 58)
     keep("signs", signs("signs", 180, 120, 4, 4), 75)
     keep("screens", screens("screens", 520, 310), 70)
     keep("keyboard", keyboard("keys", 900, 300), 70)
     keep("windows", windows("windows", 240, 360, 6, 3), 65)
     keep("shops", shops("shops", 640, 480, 3, 2), 65)
     for k in range(6):  # 0.9 m x 1.5 m each
-        keep(f"panel_{k}", collage(f"panel {k}", 900, 1500, 2, 3), 68)
-    keep("target", collage("target", 1900, 1344, 4, 3), 70)
+        keep(f"panel_{k}", collage(f"panel {k}", 900, 1500, 2, 3), 60)
+    keep("target", collage("target", 1900, 1344, 4, 3), 64)
     for k, (w, h, kind) in enumerate(((900, 640, 0), (640, 900, 1), (1000, 680, 3))):
         keep(f"painting_{k}", picture_of(f"painting {k}", w, h, kind), 72)
 
