@@ -1,8 +1,7 @@
 """What faces a street: windows with what is seen in them, shop fronts, doors."""
-import numpy as np
 from PIL import Image, ImageDraw
 
-from noise import font, noise, rng_of, word
+from noise import font, noise, rng_of, sheet, word
 
 
 def window(rng, w, h):
@@ -36,10 +35,7 @@ def window(rng, w, h):
 
 def windows(name, w, h, columns, rows):
     rng = rng_of(name)
-    sheet = Image.new("RGB", (w * columns, h * rows))
-    for k in range(columns * rows):
-        sheet.paste(window(rng, w, h), ((k % columns) * w, (k // columns) * h))
-    return np.asarray(sheet, float) + 3 * noise(rng, h * rows, w * columns, 0.8)[:, :, None]
+    return sheet(lambda k: window(rng, w, h), w, h, columns, rows) + 3 * noise(rng, h * rows, w * columns, 0.8)[:, :, None]
 
 
 def shop(rng, w, h):
@@ -63,7 +59,4 @@ def shop(rng, w, h):
 
 def shops(name, w, h, columns, rows):
     rng = rng_of(name)
-    sheet = Image.new("RGB", (w * columns, h * rows))
-    for k in range(columns * rows):
-        sheet.paste(shop(rng, w, h), ((k % columns) * w, (k // columns) * h))
-    return np.asarray(sheet, float) * (1 + 0.03 * noise(rng, h * rows, w * columns, 1.0))[:, :, None]
+    return sheet(lambda k: shop(rng, w, h), w, h, columns, rows) * (1 + 0.03 * noise(rng, h * rows, w * columns, 1.0))[:, :, None]

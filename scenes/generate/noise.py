@@ -31,6 +31,14 @@ def save(file, picture, quality=80):
     Image.fromarray(np.clip(picture + 0.5, 0, 255).astype(np.uint8)).save(file, quality=quality, optimize=True)
 
 
+def sheet(cell, width, height, columns, rows):
+    """Pictures side by side: cell(k) is the k-th, of width x height."""
+    image = Image.new("RGB", (width * columns, height * rows))
+    for k in range(columns * rows):
+        image.paste(cell(k), ((k % columns) * width, (k // columns) * height))
+    return np.asarray(image, float)
+
+
 def font(size, style="Sans-Bold"):
     return ImageFont.truetype(str(FONTS / f"DejaVu{style}.ttf"), size)
 

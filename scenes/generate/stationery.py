@@ -2,7 +2,7 @@
 import numpy as np
 from PIL import Image, ImageDraw
 
-from noise import font, noise, rng_of, word
+from noise import font, noise, rng_of, sheet, word
 from prints import city_map, dead_leaves, landscape, type_poster
 
 
@@ -60,10 +60,7 @@ def page(rng, width, height):
 
 def pages(name, width, height, columns, rows):
     rng = rng_of(name)
-    sheet = Image.new("RGB", (width * columns, height * rows))
-    for k in range(columns * rows):
-        sheet.paste(page(rng, width, height), ((k % columns) * width, (k // columns) * height))
-    return np.asarray(sheet, float) + 2 * noise(rng, height * rows, width * columns, 0.8)[:, :, None]
+    return sheet(lambda k: page(rng, width, height), width, height, columns, rows) + 2 * noise(rng, height * rows, width * columns, 0.8)[:, :, None]
 
 
 def picture_of(name, width, height, kind):
@@ -95,20 +92,17 @@ def collage(name, width, height, columns, rows):
 def notices(name, size, columns, rows):
     rng = rng_of(name)
     w, h = size // columns, size // rows
-    sheet = Image.new("RGB", (size, size))
-    for k in range(columns * rows):
-        if k % 2:
-            cell = page(rng, w, h)
-        else:
-            cell = Image.fromarray(np.clip(picture_of(f"{name} {k}", w, h, k // 2 % 4), 0, 255).astype(np.uint8))
-        sheet.paste(cell, ((k % columns) * w, (k // columns) * h))
-    return np.asarray(sheet, float)
+
+    def cell(k):
+        return page(rng, w, h) if k % 2 else Image.fromarray(np.clip(picture_of(f"{name} {k}", w, h, k // 2 % 4), 0, 255).astype(np.uint8))
+
+    return sheet(cell, w, h, columns, rows)
 
 
 def signs(name, width, height, columns, rows):
     """Door signs with numbers and names."""
     rng = rng_of(name)
-    sheet = Image.new("RGB", (width * columns, height * rows))
+    whole = Image.new("RGB", (width * columns, height * rows))
     for k in range(columns * rows):
         image = Image.new("RGB", (width, height), (232, 232, 228))
         draw = ImageDraw.Draw(image)
@@ -116,14 +110,14 @@ def signs(name, width, height, columns, rows):
         draw.text((width * 0.06, height * 0.02), "%d.%02d" % (rng.integers(1, 4), k + 1), font=font(int(height * 0.24)), fill=(240, 240, 240))
         for j in range(3):
             draw.text((width * 0.06, height * (0.36 + 0.2 * j)), f"{word(rng)} {word(rng)}", font=font(int(height * 0.13), "Sans"), fill=(30, 30, 30))
-        sheet.paste(image, ((k % columns) * width, (k // columns) * height))
-    return np.asarray(sheet, float)
+        whole.paste(image, ((k % columns) * width, (k // columns) * height))
+    return np.asarray(whole, float)
 
 
 def screens(name, width, height):
     """Four screens: an editor, a document, a drawing, a table."""
     rng = rng_of(name)
-    sheet = Image.new("RGB", (width * 2, height * 2))
+    whole = Image.new("RGB", (width * 2, height * 2))
     for k in range(4):
         dark = k % 2 == 0
         image = Image.new("RGB", (width, height), (30, 32, 40) if dark else (236, 236, 238))
@@ -150,8 +144,8 @@ def screens(name, width, height):
                 for column in range(8):
                     draw.rectangle((width * column / 8, height * (0.08 + 0.046 * row), width * (column + 1) / 8, height * (0.126 + 0.046 * row)), outline=(170, 170, 176))
                     draw.text((width * column / 8 + 4, height * (0.084 + 0.046 * row)), str(int(rng.integers(1, 99999))), font=font(int(height * 0.03), "Sans"), fill=(40, 40, 40))
-        sheet.paste(image, ((k % 2) * width, (k // 2) * height))
-    return np.asarray(sheet, float)
+        whole.paste(image, ((k % 2) * width, (k // 2) * height))
+    return np.asarray(whole, float)
 
 
 def keyboard(name, width, height):
