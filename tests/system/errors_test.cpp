@@ -40,9 +40,11 @@ class ErrorsTest : public testing::Test {
         RunVobench({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:5"}, here_.path());
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   }
-  // The project's scenes, to be spoiled, in here_/scenes.
+  // The small scenario and its room, to be spoiled, in here_/scenes.
   fs::path CopyScenes() {
-    fs::copy(TinyScenario().parent_path(), here_ / "scenes", fs::copy_options::recursive);
+    fs::create_directory(here_ / "scenes");
+    fs::copy(TinyScenario(), here_ / "scenes");
+    fs::copy(TinyScenario().parent_path() / "room", here_ / "scenes" / "room", fs::copy_options::recursive);
     return here_ / "scenes";
   }
   // The first file below a folder whose name ends so.
