@@ -57,6 +57,11 @@ std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& p
 
 }  // namespace
 
+std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& s) {
+  return MakeTrajectory(s.motion, s.seed, Seconds(StampNs(CountFrames(s.time) - 1, s.time)),
+                        0.5 * (LongestExposure(s.sensor) + std::abs(s.sensor.readout_s)));
+}
+
 struct Simulator::Parts {
   Parts(const Scenario& s, int jobs)
       : scenario(WithImages(s)),
@@ -64,8 +69,7 @@ struct Simulator::Parts {
         camera(s.camera),
         sensor(s.sensor, s.seed, s.camera.width, s.camera.height),
         vignetting(s.sensor.optics, camera),
-        trajectory(MakeTrajectory(s.motion, s.seed, Seconds(sim::StampNs(frames - 1, s.time)),
-                                  0.5 * (LongestExposure(s.sensor) + std::abs(s.sensor.readout_s)))),
+        trajectory(TrajectoryOf(s)),
         arena(Threads(jobs)) {
     const Scene scene = LoadScene(s.world);
     warnings = scene.warnings;

@@ -1,9 +1,11 @@
 // Purpose: a world in memory, ready to be rendered: triangles in W, materials, textures in linear light, lights.
 #pragma once
 
+#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -48,6 +50,7 @@ struct Scene {
   glm::vec3 background{0.0f};  // where there is no sky
   std::optional<Sky> sky;
   std::vector<std::string> warnings;  // what was readable but is probably not meant
+  std::set<std::filesystem::path> files;  // all that were looked for: meshes, materials, pictures
 };
 
 // what(): every problem that was found, one per line, each naming its file.
