@@ -252,7 +252,7 @@ void CampaignFile::Reject(const TaskChoice& choice, const std::string& key, cons
   };
   const SystemEntry& system = campaign_.systems[choice.system];
   const ScenarioEntry& scenario = campaign_.scenarios[choice.scenario];
-  const std::string text = key.empty() ? message : "'" + key + "': " + message;
+  const std::string text = key.empty() || message.starts_with("'" + key) ? message : "'" + key + "': " + message;
   const auto tell = [&](Section& section, const std::string& where, const std::string& place) {
     if (told_.emplace(place, text).second) section.Reject(where, text);
   };
