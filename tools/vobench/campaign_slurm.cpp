@@ -72,14 +72,13 @@ class SlurmRun {
     campaign::Submit(script, folder_);
   }
 
-  // Until no job is left. Where Slurm does not say, until the last result is there.
+  // Until the last result is there, or no job is left.
   void WaitForJobs() {
     using std::chrono::milliseconds;
     for (milliseconds pause(200);; pause = std::min(pause * 5 / 4, milliseconds(10'000))) {
       const campaign::SlurmState state = campaign::StateOf(name_, folder_);
       Collect();
-      if (left_.empty() && state != campaign::SlurmState::queued) return;
-      if (state == campaign::SlurmState::gone) return;
+      if (left_.empty() || state == campaign::SlurmState::gone) return;
       for (milliseconds slept(0); slept < pause; slept += milliseconds(100)) {
         if (InterruptPending()) throw Interrupted(name_);
         std::this_thread::sleep_for(milliseconds(100));
@@ -104,6 +103,7 @@ class SlurmRun {
 }  // namespace
 
 void RunOnSlurm(const CampaignWork& work, const CampaignOptions& options, std::vector<std::int64_t> tasks) {
+  if (tasks.empty()) return;
   campaign::RemoveTasks(options.output, tasks);  // failed ones: what is there from now on is new
   SlurmRun(work, options, std::move(tasks)).Run();
 }
