@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <fstream>
 #include <stdexcept>
 #include <system_error>
 
@@ -23,6 +24,14 @@ sigset_t ChildEnds() {
   sigemptyset(&set);
   sigaddset(&set, SIGCHLD);
   return set;
+}
+
+// What counts for RLIMIT_DATA and is there already: the program's and its libraries' own. [bytes]
+std::uint64_t DataNow() {
+  std::ifstream stream("/proc/self/statm");
+  std::uint64_t pages[6] = {};  // the last: data and stack
+  for (std::uint64_t& value : pages) stream >> value;
+  return pages[5] * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
 std::string Gigabytes(std::uint64_t bytes) { return fmt::format("{:.3g} GB", static_cast<double>(bytes) * 1e-9); }
@@ -87,7 +96,8 @@ bool ProcessPool::Fork(std::int64_t id, const ProcessLimits& limits) {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   if (limits.memory_bytes > 0) {
-    const rlimit memory{limits.memory_bytes, limits.memory_bytes};
+    const rlim_t most = DataNow() + limits.memory_bytes;
+    const rlimit memory{most, most};
     setrlimit(RLIMIT_DATA, &memory);
   }
   return false;

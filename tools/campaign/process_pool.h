@@ -12,7 +12,7 @@
 namespace campaign {
 
 struct ProcessLimits {
-  std::uint64_t memory_bytes = 0;  // of its own data (RLIMIT_DATA), program and libraries not counted; 0: no limit
+  std::uint64_t memory_bytes = 0;  // that it may take (RLIMIT_DATA) beside what it starts with; 0: no limit
   double timeout_s = 0;            // wall time, then it is killed; 0: none
 };
 

@@ -50,7 +50,7 @@ class LocalRun {
       }
       const std::optional<campaign::ProcessEnd> end = pool_.Wait(std::chrono::milliseconds(200));
       if (end) Finish(*end);
-      if (InterruptPending()) throw Interrupted("");
+      if (InterruptPending()) throw Interrupted("interrupted");
     }
   }
 
@@ -124,8 +124,11 @@ class LocalRun {
 void RunLocally(const CampaignWork& work, const std::filesystem::path& out, const std::vector<std::int64_t>& tasks,
                 const LocalOptions& options) {
   if (tasks.empty()) return;
-  LocalRun run(work, out, tasks, options);
-  run.Run();
+  try {
+    LocalRun(work, out, tasks, options).Run();
+  } catch (const Interrupted&) {  // here or by the progress
+    throw Interrupted("the campaign was interrupted; what was done by then stays");
+  }
 }
 
 }  // namespace vobench
