@@ -60,7 +60,7 @@ std::string NameOf(int process) {
 
 std::string SlurmCluster::WhyNot() {
   if (geteuid() != 0) return "Slurm's daemons want root";
-  for (const char* program : {"munged", "slurmctld", "slurmd", "sbatch", "squeue", "sinfo", "scancel"}) {
+  for (const char* program : {"munged", "slurmctld", "slurmd", "sbatch", "squeue", "sinfo", "scancel", "scontrol"}) {
     if (std::system(("command -v " + std::string(program) + " > /dev/null").c_str()) != 0) {
       return std::string(program) + " is not installed";
     }
@@ -168,18 +168,16 @@ void SlurmCluster::KillNode() {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
+  // What the controller finds out by itself after SlurmdTimeout, five minutes: its jobs go back into the queue.
+  std::system("scontrol update NodeName=node State=DOWN Reason=lost");
 }
 
-void SlurmCluster::StartNode(bool rebooted) {
-  std::vector<std::string> words = {"slurmd", "-D", "-N", "node"};
-  if (rebooted) {
-    words.push_back("-b");
-    // What has been on the node for less than BatchStartTimeout and MessageTimeout is taken to be on its way still.
-    std::this_thread::sleep_for(std::chrono::seconds(8));
-  }
-  node_ = Start(words);
+void SlurmCluster::StartNode() {
+  node_ = Start({"slurmd", "-D", "-N", "node"});
   for (int tries = 0; tries < 300; ++tries) {
-    if (Waits("idle") || Waits("alloc") || Waits("mix")) return;
+    for (const char* state : {"idle", "alloc", "mix", "comp"}) {
+      if (Waits(state)) return;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   throw std::runtime_error("Slurm does not start:\n" + Log());

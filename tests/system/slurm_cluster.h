@@ -23,12 +23,12 @@ class SlurmCluster {
   SlurmCluster(const SlurmCluster&) = delete;
   SlurmCluster& operator=(const SlurmCluster&) = delete;
 
-  // As if the node lost power: its daemon and all that runs there, with SIGKILL.
+  // As if the node lost power: its daemon and all that runs there, with SIGKILL; and the controller notices.
   void KillNode();
   // The daemon alone: what runs there goes on.
   void KillNodeDaemon();
-  // After either; `rebooted`: after the former.
-  void StartNode(bool rebooted = false);
+  // After either.
+  void StartNode();
 
   std::string Log() const;
 

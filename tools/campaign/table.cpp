@@ -31,12 +31,20 @@ std::vector<std::string> LevelsOf(const Campaign& campaign, const std::vector<st
   return levels;
 }
 
-std::size_t IndexOf(std::vector<std::vector<std::string>>& all, const std::vector<std::string>& one) {
-  const auto at = std::find(all.begin(), all.end(), one);
-  if (at != all.end()) return static_cast<std::size_t>(at - all.begin());
-  all.push_back(one);
-  return all.size() - 1;
-}
+// Numbers each in the order in which they are first asked for.
+class Numbered {
+ public:
+  explicit Numbered(std::vector<std::vector<std::string>>& all) : all_(all) {}
+  std::size_t operator()(const std::vector<std::string>& one) {
+    const auto [at, is_new] = numbers_.try_emplace(one, all_.size());
+    if (is_new) all_.push_back(one);
+    return at->second;
+  }
+
+ private:
+  std::vector<std::vector<std::string>>& all_;
+  std::map<std::vector<std::string>, std::size_t> numbers_;
+};
 
 // Between the two nearest of the sorted values, linearly.
 double Quantile(const std::vector<double>& sorted, double share) {
@@ -100,10 +108,10 @@ Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vect
   table.spec = spec;
   std::map<std::pair<std::size_t, std::size_t>, std::vector<double>> values;
   std::map<std::pair<std::size_t, std::size_t>, Cell> cells;
+  Numbered row(table.rows), column(table.columns);
   for (const TaskRecord& record : records) {
     const TaskChoice choice = ChoiceOf(campaign, record.task);
-    const std::pair at(IndexOf(table.rows, LevelsOf(campaign, spec.rows, choice)),
-                       IndexOf(table.columns, LevelsOf(campaign, spec.columns, choice)));
+    const std::pair at(row(LevelsOf(campaign, spec.rows, choice)), column(LevelsOf(campaign, spec.columns, choice)));
     Cell& cell = cells[at];
     if (record.status == Status::failed) {
       ++cell.failed;
