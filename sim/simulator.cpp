@@ -77,6 +77,11 @@ std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& p
 
 }  // namespace
 
+std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& s) {
+  return MakeTrajectory(s.motion, s.seed, Seconds(StampNs(CountFrames(s.time) - 1, s.time)),
+                        0.5 * (LongestExposure(s.sensor) + std::abs(s.sensor.readout_s)));
+}
+
 struct Simulator::Parts {
   Parts(const Scenario& s, int jobs)
       : scenario(WithImages(s)),
@@ -84,7 +89,7 @@ struct Simulator::Parts {
         camera(s.camera),
         sensor(s.sensor, s.seed, s.camera.width, s.camera.height),
         vignetting(s.sensor.optics, camera),
-        trajectory(MakeMotion(s.motion, s.seed)),
+        trajectory(TrajectoryOf(s)),
         arena(Threads(jobs)) {
     Scene scene = LoadScene(s.world);
     for (std::size_t k = 0; k < scene.objects.size(); ++k) {

@@ -16,6 +16,7 @@
 namespace sim {
 
 class SurfaceTracer;
+class Trajectory;
 
 struct Frame {
   std::int64_t index = 0;
@@ -24,6 +25,10 @@ struct Frame {
   Image image;
   Truth truth;
 };
+
+// How the camera moves in the simulator of this scenario, which need not be made for that: no mesh is read. Throws as
+// MakeTrajectory does.
+std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& scenario);
 
 class Simulator {
  public:

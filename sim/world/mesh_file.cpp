@@ -51,10 +51,13 @@ class BoundedStream : public Assimp::IOStream {
   int empty_reads_ = 0;
 };
 
-// Importers quietly do without a side file (an OBJ's materials, say) that cannot be opened: this remembers which.
+// Importers quietly do without a side file (an OBJ's materials, say) that cannot be opened: this remembers which, and
+// what they looked for at all.
 class NotingFiles : public Assimp::DefaultIOSystem {
  public:
+  explicit NotingFiles(std::set<fs::path>& all) : all_(all) {}
   Assimp::IOStream* Open(const char* file, const char* mode) override {
+    all_.insert(file);
     std::unique_ptr<Assimp::IOStream> stream(DefaultIOSystem::Open(file, mode));
     if (stream == nullptr) {
       missing_.insert(fs::path(file).filename().string());
@@ -65,6 +68,7 @@ class NotingFiles : public Assimp::DefaultIOSystem {
   const std::set<std::string>& missing() const { return missing_; }
 
  private:
+  std::set<fs::path>& all_;
   std::set<std::string> missing_;
 };
 
@@ -120,7 +124,7 @@ class FileReader {
     }
 
     Assimp::Importer importer;
-    auto* files = new NotingFiles;  // the importer owns it
+    auto* files = new NotingFiles(scene_.files);  // the importer owns it
     importer.SetIOHandler(files);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     const unsigned steps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |

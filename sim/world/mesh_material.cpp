@@ -207,6 +207,7 @@ int MeshMaterialReader::TextureIndex(const std::string& name, const std::string&
                             "' must be relative and stay inside the mesh file's folder");
         return -1;
       }
+      scene_.files.insert(file);
       if (!fs::exists(file)) return bad("no such file");
       std::ifstream stream(file, std::ios::binary);
       const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};

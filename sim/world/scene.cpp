@@ -58,6 +58,7 @@ Scene LoadScene(const WorldDescription& description) {
   if (!IsLight(description.background)) problems.push_back("world.background: negative or not finite");
 
   if (description.sky) {
+    if (!description.sky->file.empty()) scene.files.insert(description.sky->file);
     try {
       scene.sky = LoadSky(*description.sky);
     } catch (const std::runtime_error& problem) {

@@ -2,10 +2,12 @@
 //          lights.
 #pragma once
 
+#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -62,6 +64,7 @@ struct Scene {
   glm::vec3 background{0.0f};  // where there is no sky
   std::optional<Sky> sky;
   std::vector<std::string> warnings;  // what was readable but is probably not meant
+  std::set<std::filesystem::path> files;  // all that were looked for: meshes, materials, pictures
 };
 
 // what(): every problem that was found, one per line, each naming its file.

@@ -16,14 +16,14 @@ allow() { report "$3" < <(includes "$1" | grep -vE "^[^:]+:[0-9]+:($2)\$" || tru
 # No target of the others is linked either.
 unlinked() { report "$3" < <(find "$1" -name CMakeLists.txt -o -name '*.cmake' | sort | xargs -r grep -HnoE "vobench(::|_)($2)\>" || true); }
 
-for folder in sim vo tools/evaluation tools/settings tools/verification; do
+for folder in sim vo tools/evaluation tools/settings tools/verification tools/campaign; do
   [[ -n $(sources "$folder" 2>/dev/null) ]] || { echo "no C++ sources in $1/$folder" >&2; exit 2; }
   allow "$folder" '[A-Za-z0-9_].*' "an include that is not a plain path from the project root"
   forbid "$folder" '.*\.\./' "a relative include"
 done
-forbid sim 'vo/|tools/(evaluation|report|verification|vobench)/' "sim sees neither vo nor the judge"
+forbid sim 'vo/|tools/(campaign|evaluation|report|verification|vobench)/' "sim sees neither vo nor the judge"
 unlinked sim 'vo|evaluation|report|verification' "sim sees neither vo nor the judge"
-forbid vo 'sim/|tools/(evaluation|report|verification|vobench)/' "vo sees neither sim nor the judge"
+forbid vo 'sim/|tools/(campaign|evaluation|report|verification|vobench)/' "vo sees neither sim nor the judge"
 unlinked vo 'sim|evaluation|report|verification' "vo sees neither sim nor the judge"
 forbid vo 'glm/|embree[0-9]*/|assimp/|GL/' "vo builds without GLM, Embree, assimp and OSMesa"
 forbid sim 'Eigen/' "sim's mathematics is GLM, so that it shares none with vo"
@@ -31,6 +31,8 @@ allow tools/evaluation 'Eigen/[A-Za-z]+|tools/evaluation/[a-z0-9_]+\.h|[a-z0-9_]
 unlinked tools/evaluation 'sim|vo|settings|report' "the judge needs Eigen only"
 forbid tools/verification 'sim/|glm/|tools/vobench/' "what checks the simulator's sequences shares nothing with it"
 unlinked tools/verification 'sim|points|commands' "what checks the simulator's sequences shares nothing with it"
+forbid tools/campaign '(sim|vo)/|tools/(report|vobench)/' "the campaign runs whatever odometry there is: it knows none"
+unlinked tools/campaign 'sim|vo|points|commands|report' "the campaign runs whatever odometry there is: it knows none"
 forbid tools/settings '(sim|vo)/|tools/(evaluation|report|vobench)/' "settings sees no other part"
 
 ((violations == 0)) || { echo "$violations violations of the include rules"; exit 1; }

@@ -8,7 +8,7 @@ bash "$check" "$root"
 
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
-(cd -- "$root" && tar cf - sim vo tools/evaluation tools/settings tools/verification) | tar xf - -C "$copy"
+(cd -- "$root" && tar cf - sim vo tools/evaluation tools/settings tools/verification tools/campaign) | tar xf - -C "$copy"
 bash "$check" "$copy"
 
 failures=0
@@ -37,6 +37,8 @@ plant vo/planted.h '#include <embree3/rtcore.h>'
 plant vo/planted.h '#include <assimp/scene.h>'
 plant vo/planted.cpp '#include SOME_MACRO'
 plant vo/CMakeLists.txt 'target_link_libraries(vobench_vo PUBLIC vobench_evaluation)'
+plant tools/campaign/planted.cpp '#include "vo/odometry.h"'
+plant tools/campaign/CMakeLists.txt 'target_link_libraries(vobench_campaign PUBLIC vobench::sim)'
 plant tools/evaluation/planted.h '#include <opencv2/core.hpp>'
 plant tools/evaluation/planted.h '#include "tools/settings/settings.h"'
 plant tools/evaluation/planted.cpp '#include "vo/geometry/pose.h"'

@@ -1,12 +1,16 @@
 #include "tests/system/program.h"
 
+#include <signal.h>
 #include <stdlib.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 namespace vobench::system_test {
 namespace fs = std::filesystem;
@@ -33,6 +37,40 @@ Outcome RunVobench(const std::vector<std::string>& arguments, const fs::path& wh
   outcome.out = ReadFile(output / "out");
   outcome.err = ReadFile(output / "err");
   return outcome;
+}
+
+int StartVobench(const std::vector<std::string>& arguments, const fs::path& where) {
+  std::vector<std::string> words = {Program()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  const pid_t child = fork();
+  if (child == 0) {
+    if (chdir(where.c_str()) != 0 || freopen("/dev/null", "w", stderr) == nullptr ||
+        freopen("/dev/null", "w", stdout) == nullptr) {
+      _exit(9);
+    }
+    execv(pointers[0], pointers.data());
+    _exit(9);
+  }
+  return child;
+}
+
+bool KillVobench(const std::vector<std::string>& arguments, const fs::path& where, const std::function<bool()>& now) {
+  const pid_t child = StartVobench(arguments, where);
+  int status = 0;
+  while (!now()) {
+    if (waitpid(child, &status, WNOHANG) == child) {
+      if (status != 0) throw std::runtime_error("the program failed by itself");
+      return false;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  kill(child, SIGKILL);
+  waitpid(child, &status, 0);
+  if (WIFEXITED(status) && WEXITSTATUS(status) != 0) throw std::runtime_error("the program failed by itself");
+  return WIFSIGNALED(status);
 }
 
 TemporaryFolder::TemporaryFolder() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,6 +22,14 @@ struct Outcome {
 // behind.
 Outcome RunVobench(const std::vector<std::string>& arguments, const std::filesystem::path& where,
                    const std::string& shell = "", const std::string& after = "");
+
+// Starts the same without waiting, its output thrown away. Returns the process's number.
+int StartVobench(const std::vector<std::string>& arguments, const std::filesystem::path& where);
+
+// The same, ended by SIGKILL as soon as `now` says so. Whether it was at work until then; throws std::runtime_error
+// where it failed by itself.
+bool KillVobench(const std::vector<std::string>& arguments, const std::filesystem::path& where,
+                 const std::function<bool()>& now);
 
 // A new empty folder, removed at the end of its life.
 class TemporaryFolder {

@@ -1,9 +1,6 @@
 // A run that is killed, interrupted or out of room leaves frames that can be used and gone on from; gone on from, it
 // ends with the same bytes as one that was never stopped.
 #include <gmock/gmock.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -33,32 +30,8 @@ class ResumeTest : public testing::Test {
     return RunVobench(Render(output, more), here_.path());
   }
 
-  // The real process, ended by SIGKILL as soon as `now` says so. Whether it was at work until then.
   bool Killed(const std::vector<std::string>& arguments, const std::function<bool()>& now) {
-    std::vector<std::string> words = {Program()};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    std::vector<char*> pointers;
-    for (std::string& word : words) pointers.push_back(word.data());
-    pointers.push_back(nullptr);
-    const std::string where = here_.path().string();
-    const pid_t child = fork();
-    if (child == 0) {
-      if (chdir(where.c_str()) != 0 || freopen("/dev/null", "w", stderr) == nullptr ||
-          freopen("/dev/null", "w", stdout) == nullptr) {
-        _exit(9);
-      }
-      execv(pointers[0], pointers.data());
-      _exit(9);
-    }
-    int status = 0;
-    while (!now()) {
-      if (waitpid(child, &status, WNOHANG) == child) return false;
-      std::this_thread::sleep_for(milliseconds(1));
-    }
-    kill(child, SIGKILL);
-    waitpid(child, &status, 0);
-    EXPECT_FALSE(WIFEXITED(status) && WEXITSTATUS(status) != 0) << "it failed by itself";
-    return WIFSIGNALED(status);
+    return KillVobench(arguments, here_.path(), now);
   }
 
   // That a folder has, at any depth, whole or not.

@@ -9,19 +9,9 @@
 
 #include "tools/settings/element.h"
 #include "tools/settings/request.h"
+#include "tools/settings/state.h"
 
 namespace settings {
-
-struct State {
-  Element root;
-  Request requests;
-  bool reading = false;
-  std::vector<Problem> problems;
-
-  void Complain(const Place& place, std::string message) {
-    problems.push_back({place.file, place.line, place.column, std::move(message)});
-  }
-};
 
 namespace {
 
@@ -228,7 +218,7 @@ Section Section::Child(const std::string& key) {
   return Section(state_, &request);
 }
 
-std::vector<Section> Section::List(const std::string& key) {
+std::vector<Section> Section::List(const std::string& key, const std::string& shorthand) {
   Request& request = Ask(key);
   if (request.kind == Request::Kind::absent) {
     request.kind = Request::Kind::list;
@@ -241,7 +231,10 @@ std::vector<Section> Section::List(const std::string& key) {
         child->element = &item;
         child->place = item.place;
         child->path = request.path + "." + std::to_string(request.children.size());
-        if (item.kind != Element::Kind::map) {
+        if (item.kind == Element::Kind::scalar && !shorthand.empty()) {
+          child->element = &state_->made.emplace_back(
+              Element{Element::Kind::map, item.place, "", {}, {{shorthand, item.place, item}}});
+        } else if (item.kind != Element::Kind::map) {
           state_->Complain(item.place, "'" + request.path + "': expected a list of sections, not of " + Describe(item));
         }
         request.children.emplace_back("", std::move(child));

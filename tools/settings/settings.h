@@ -27,6 +27,12 @@
 
 namespace settings {
 
+// A value for another reader.
+struct PassedOn {
+  std::string text;  // as written, of a number or a word; else as below
+  std::string yaml;  // on one line, for Document::Override
+};
+
 struct Element;  // of the file
 struct Request;  // what was asked for
 struct State;    // of a document
@@ -86,8 +92,14 @@ class Section {
   void Allow(const std::string& key) { Ask(key); }
 
   Section Child(const std::string& key);
-  // The sections of a list; none when it is absent.
-  std::vector<Section> List(const std::string& key);
+  // The sections of a list; none when it is absent. With a shorthand, an item that is a single word stands for
+  // {shorthand: word}.
+  std::vector<Section> List(const std::string& key, const std::string& shorthand = "");
+
+  // What is not for this reader, whatever it is. A list, or a single value as a list of one; and keys with values, in
+  // the order of the file.
+  bool ReadPassedOn(const std::string& key, std::vector<PassedOn>& values);
+  bool ReadPassedOn(const std::string& key, std::vector<std::pair<std::string, std::string>>& entries);
 
   // Adds a problem at the place of `key` (dotted for one further down), or of this section where that is not there. For
   // rules between several values.

@@ -91,6 +91,44 @@ CLI::App& AddCommand(CLI::App& app, const std::string& name, const std::string& 
   return command;
 }
 
+void AddCampaign(CLI::App& command, Raw& raw, CampaignOptions& campaign) {
+  command.add_option("FILE", campaign.file, "Campaign file (docs/campaign.md)")->required();
+  command.add_option("-o,--output", campaign.output, "Folder of its results; what is done there is not done again")
+      ->required()
+      ->type_name("OUT");
+  command.add_flag("--dry-run", campaign.dry_run, "Check everything and list the tasks, no more");
+  CLI::Option* engine = command.add_option("--engine", campaign.engine, "Where tasks run: local or slurm")
+                            ->check(CLI::IsMember({"local", "slurm"}))
+                            ->capture_default_str();
+  command.add_option("--jobs,-j", raw.jobs, "Processes at a time, with --engine local")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command.add_option("--memory", campaign.memory_bytes,
+                     "Of each process, such as 2GB; no more run than fit (default: an equal part of what is left)")
+      ->transform(CLI::AsSizeValue(false))
+      ->type_name("SIZE");
+  command.add_option("--timeout", campaign.timeout_s, "Seconds that a task may take (default: as long as it likes)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
+  command.add_option("--cache", campaign.cache, "Where rendered sequences are kept (default: OUT/cache)")->type_name("DIR");
+  command.add_flag("--update", campaign.update,
+                   "Results that the file as it is now would not give may go; without it they are an error");
+  CLI::Option* task = command.add_option("--task", campaign.task, "Run this one task again, and say whether it comes out the same")
+                          ->check(CLI::NonNegativeNumber)
+                          ->type_name("K")
+                          ->excludes(engine);
+  CLI::Option* list = command.add_option("--list", campaign.list, "Run the tasks in line --part of this file, as job arrays do")
+                          ->type_name("FILE")
+                          ->excludes(task)
+                          ->excludes(engine);
+  command.add_option("--part", campaign.part, "A line of --list; the first is 0")->check(CLI::NonNegativeNumber)->needs(list);
+  command.add_option("--partition", campaign.partition, "Of Slurm")->type_name("NAME");
+  command.add_option("--time", campaign.time, "Of one job of Slurm, such as 2:00:00")->type_name("TIME");
+  command.add_option("--tasks-per-job", campaign.tasks_per_job, "Of Slurm: tasks that one element of the array does")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+}
+
 }  // namespace
 
 std::variant<Command, int> ParseArguments(int argc, char** argv) {
@@ -200,6 +238,12 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
                  "vobench verify room");
   verify_command.add_option("SEQ", verify.sequence, "Sequence folder")->required();
 
+  CampaignOptions campaign;
+  CLI::App& campaign_command =
+      AddCommand(app, "campaign", "Scenarios x varied settings x systems x seeds, on this machine or a cluster",
+                 "vobench campaign scenes/campaign_points.yaml -o out/points --jobs 2");
+  AddCampaign(campaign_command, raw, campaign);
+
   ReportOptions report;
   CLI::App& report_command =
       AddCommand(app, "report", "Make report.html anew from a result folder", "vobench report out/room");
@@ -238,6 +282,10 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
       return check;
     }
     if (asked(verify_command)) return verify;
+    if (asked(campaign_command)) {
+      campaign.jobs = raw.jobs;
+      return campaign;
+    }
     return report;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;

@@ -23,6 +23,11 @@ struct Inconsistent : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// A campaign is done but for tasks that failed (exit 1); the message names the first.
+struct TasksFailed : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 // The work was stopped by a signal (exit 1); the message says what was kept.
 struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;

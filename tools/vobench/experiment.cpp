@@ -44,18 +44,20 @@ void ReadOthers(const std::filesystem::path& file, const Overrides& overrides, E
 
 }  // namespace
 
+Experiment LoadExperiment(const std::filesystem::path& scenario, const Overrides& overrides) {
+  Experiment experiment;
+  Collector collector;
+  collector.Read([&] { experiment.scenario = sim::LoadScenario(scenario, overrides); });
+  collector.Read([&] { ReadOthers(scenario, overrides, experiment); });
+  collector.ThrowIfBad();
+  nlohmann::ordered_json all = nlohmann::ordered_json::parse(experiment.scenario.resolved);
+  all.update(nlohmann::ordered_json::parse(experiment.resolved));
+  experiment.resolved = all.dump(2);
+  return experiment;
+}
+
 Experiment ReadExperiment(const std::filesystem::path& scenario, const Overrides& overrides) {
-  return Input([&] {
-    Experiment experiment;
-    Collector collector;
-    collector.Read([&] { experiment.scenario = sim::LoadScenario(scenario, overrides); });
-    collector.Read([&] { ReadOthers(scenario, overrides, experiment); });
-    collector.ThrowIfBad();
-    nlohmann::ordered_json all = nlohmann::ordered_json::parse(experiment.scenario.resolved);
-    all.update(nlohmann::ordered_json::parse(experiment.resolved));
-    experiment.resolved = all.dump(2);
-    return experiment;
-  });
+  return Input([&] { return LoadExperiment(scenario, overrides); });
 }
 
 }  // namespace vobench

@@ -19,5 +19,7 @@ struct Experiment {
 
 // Throws BadInput with every problem of all three parts.
 Experiment ReadExperiment(const std::filesystem::path& scenario, const Overrides& overrides);
+// The same as settings::Error, for those who know better where a problem comes from.
+Experiment LoadExperiment(const std::filesystem::path& scenario, const Overrides& overrides);
 
 }  // namespace vobench

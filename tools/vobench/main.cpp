@@ -18,6 +18,7 @@ void Execute(const RunOptions& options) { Run(options); }
 void Execute(const CheckOptions& options) { Check(options); }
 void Execute(const ReportOptions& options) { Report(options); }
 void Execute(const VerifyOptions& options) { Verify(options); }
+void Execute(const CampaignOptions& options) { RunCampaign(options); }
 
 int Main(int argc, char** argv) {
   HoldInterrupts();

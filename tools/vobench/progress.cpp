@@ -19,8 +19,9 @@ double Seconds(std::chrono::steady_clock::duration duration) { return std::chron
 
 }  // namespace
 
-Progress::Progress(std::string what, std::int64_t total, std::int64_t done)
+Progress::Progress(std::string what, std::int64_t total, std::int64_t done, std::string unit)
     : what_(std::move(what)),
+      unit_(std::move(unit)),
       total_(total),
       before_(done),
       done_(done),
@@ -28,7 +29,7 @@ Progress::Progress(std::string what, std::int64_t total, std::int64_t done)
       start_(std::chrono::steady_clock::now()),
       drawn_(start_) {
   if (terminal_) return;
-  fmt::print(stderr, "{}: {} frames", what_, total_);
+  fmt::print(stderr, "{}: {} {}", what_, total_, unit_);
   if (before_ > 0) fmt::print(stderr, ", {} of them are there", before_);
   fmt::print(stderr, "\n");
 }
@@ -51,7 +52,7 @@ void Progress::Step(std::int64_t count) {
 void Progress::Draw() const {
   const double elapsed = Seconds(drawn_ - start_);
   if (!terminal_) {
-    fmt::print(stderr, "{}: {}/{} frames, {}\n", what_, done_, total_, Duration(elapsed));
+    fmt::print(stderr, "{}: {}/{} {}, {}\n", what_, done_, total_, unit_, Duration(elapsed));
     return;
   }
   constexpr int kWidth = 30;

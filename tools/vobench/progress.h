@@ -10,7 +10,7 @@ namespace vobench {
 class Progress {
  public:
   // `done` of the total were done before.
-  Progress(std::string what, std::int64_t total, std::int64_t done = 0);
+  Progress(std::string what, std::int64_t total, std::int64_t done = 0, std::string unit = "frames");
   ~Progress();  // ends the bar's line
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -21,7 +21,7 @@ class Progress {
  private:
   void Draw() const;
 
-  std::string what_;
+  std::string what_, unit_;
   std::int64_t total_;
   std::int64_t before_;
   std::int64_t done_;

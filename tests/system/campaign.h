@@ -1,0 +1,36 @@
+// Purpose: a small campaign in a folder of its own, for tests of what a user would do with it.
+#pragma once
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/system/program.h"
+
+namespace vobench::system_test {
+
+class CampaignTest : public testing::Test {
+ protected:
+  // 3 x 2 x 5 tasks on points, each some tens of milliseconds.
+  static std::string Points(const std::string& seeds = "1..5");
+  // 2 exposures x 2 systems x 2 seeds on the first 12 frames of scenes/tiny.yaml.
+  static std::string Images(const std::filesystem::path& scenario = TinyScenario());
+
+  // `vobench campaign c.yaml -o OUT ...`, after c.yaml was given this text.
+  Outcome Run(const std::string& text, const std::string& out, const std::vector<std::string>& more = {});
+  std::vector<std::string> Words(const std::string& out, const std::vector<std::string>& more = {}) const;
+  // Must be done.
+  void MustRun(const std::string& text, const std::string& out, const std::vector<std::string>& more = {});
+
+  std::string Results(const std::string& out) const { return ReadFile(here_ / out / "results.csv"); }
+  // All files of all tasks and the tables, but for times and logs.
+  std::map<std::string, std::string> Lasting(const std::string& out) const;
+  std::size_t Done(const std::string& out) const;  // tasks that have a folder
+
+  TemporaryFolder here_;
+};
+
+}  // namespace vobench::system_test

@@ -1,0 +1,164 @@
+// Other people's systems in a campaign: one that works, and ones that crash, hang, lose frames or say nothing.
+#include <chrono>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "tests/system/campaign.h"
+
+namespace vobench::system_test {
+namespace {
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using Json = nlohmann::json;
+
+// `vobench track` as somebody else's program, and what can go wrong with one.
+std::string Systems() {
+  const std::string track = Program() + " track {sequence} -o run --seed {seed} > said.txt 2>&1 && ";
+  return "systems:\n"
+         "  - {name: ours, command: \"" +
+         track +
+         "cp run/estimate.txt {trajectory}\"}\n"
+         "  - {name: euroc, layout: euroc, command: \"" +
+         track +
+         "cp run/estimate.txt {trajectory}\"}\n"
+         "  - {name: images, layout: images, calibration: dso, trajectory: result.txt, command: \"test -s "
+         "{sequence}/images/000011.png && cat {sequence}/times.txt {calibration} && awk '{print $2, 0, 0, 0, 0, 0, 0, "
+         "1}' "
+         "{sequence}/times.txt > {trajectory}\"}\n"
+         "  - {name: frames_lost, command: \"" +
+         track +
+         "head -5 run/estimate.txt > {trajectory}\"}\n"
+         "  - {name: crashes, command: \"kill -SEGV $$\"}\n"
+         "  - {name: gives_up, command: \"echo no calibration; exit 3\"}\n"
+         "  - {name: hangs, timeout: 1 s, command: \"sleep 100\"}\n"
+         "  - {name: silent, command: \"true\"}\n"
+         "  - {name: nonsense, command: \"echo 1 2 x > {trajectory}\"}\n"
+         "  - {name: elsewhere, command: \"echo 1e6 0 0 0 0 0 0 1 > {trajectory}\"}\n";
+}
+
+std::string CampaignOf(const std::string& systems, const std::string& exposures = "[10 ms]") {
+  return "scenarios: [{file: " + TinyScenario().string() + ", set: {time.duration: 0.4 s}}]\n" +
+         "vary: [{name: exposure, key: sensor.exposure, values: " + exposures +
+         "}]\nexternal: systems.yaml\nsystems: " + systems + "\n";
+}
+
+using Row = std::map<std::string, std::string>;
+
+std::map<std::string, Row> BySystem(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::vector<std::string> header;
+  std::map<std::string, Row> rows;
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> fields(1);
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"') quoted = !quoted;
+      if (c == ',' && !quoted) fields.emplace_back();
+      if (c != '"' && (c != ',' || quoted)) fields.back() += c;
+    }
+    if (header.empty()) {
+      header = fields;
+      continue;
+    }
+    Row row;
+    for (std::size_t i = 0; i < header.size() && i < fields.size(); ++i) row[header[i]] = fields[i];
+    rows[row.at("system")] = row;
+  }
+  return rows;
+}
+
+TEST_F(CampaignTest, WhateverAnotherProgramDoesIsAResult) {
+  WriteFile(here_ / "systems.yaml", Systems());
+  const std::string text =
+      CampaignOf("[rb2pf, ours, euroc, images, frames_lost, crashes, gives_up, hangs, silent, nonsense, elsewhere]");
+  const Outcome outcome = Run(text, "out");
+  ASSERT_EQ(outcome.status, 0) << "nothing of that is an error\n" << outcome.err;
+  auto rows = BySystem(Results("out"));
+  ASSERT_EQ(rows.size(), 11u);
+  EXPECT_EQ(rows["ours"]["status"], "ok");
+  EXPECT_EQ(rows["ours"]["pose_coverage"], "1");
+  EXPECT_EQ(rows["ours"]["nees_pose_per_dof"], "") << "it has no covariance";
+  EXPECT_EQ(rows["euroc"]["ate_m"], rows["ours"]["ate_m"]) << "the same pictures in another layout";
+  EXPECT_EQ(rows["images"]["status"], "ok");
+  EXPECT_EQ(rows["images"]["pose_coverage"], "1");
+  EXPECT_EQ(rows["frames_lost"]["status"], "lost");
+  EXPECT_EQ(rows["frames_lost"]["pose_coverage"], "0.3333333333333333")
+      << "a line of comment and four poses, of twelve frames";
+  EXPECT_EQ(rows["crashes"]["status"], "crashed");
+  EXPECT_THAT(rows["crashes"]["reason"], HasSubstr("signal 11"));
+  EXPECT_EQ(rows["gives_up"]["status"], "crashed");
+  EXPECT_EQ(rows["gives_up"]["reason"], "ended with status 3");
+  EXPECT_EQ(rows["hangs"]["status"], "timed_out");
+  EXPECT_EQ(rows["hangs"]["reason"], "took longer than 1 s");
+  for (const char* name : {"silent", "nonsense", "elsewhere"}) EXPECT_EQ(rows[name]["status"], "no_answer") << name;
+  EXPECT_THAT(rows["silent"]["reason"], HasSubstr("trajectory.txt: cannot be"));
+  EXPECT_THAT(rows["nonsense"]["reason"], HasSubstr("trajectory.txt:1:"));
+  EXPECT_THAT(ReadFile(here_ / "out/tables.md"), HasSubstr("| X |"));
+  // What it said, and the calibration that it was given, are kept.
+  EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000006/log.txt"), "no calibration\n");
+  EXPECT_THAT(ReadFile(here_ / "out/tasks/00/000003/log.txt"), HasSubstr("000001 0.033333333 10\n"));
+  EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000003/calibration.txt"),
+            "Pinhole 0.8203125 1.09375 0.5 0.5 0\n160 120\nnone\n160 120\n");
+  EXPECT_FALSE(fs::exists(here_ / "out/tasks/00/000001/work"));
+  // The same again, and by itself.
+  const auto all = Lasting("out");
+  EXPECT_THAT(Run(text, "out", {"--task", "1"}).out, HasSubstr("the same as before, byte for byte"));
+  MustRun(text, "again", {"--jobs", "1", "--cache", "out/cache"});
+  EXPECT_TRUE(Lasting("again") == all);
+}
+
+TEST_F(CampaignTest, AnotherProgramIsJudgedAsOursIs) {
+  WriteFile(here_ / "systems.yaml", Systems());
+  MustRun(CampaignOf("[ours]", "[2 ms]"), "out");
+  ASSERT_EQ(RunVobench({"render", TinyScenario().string(), "-o", "seq", "--set", "time.duration=0.4 s", "--set",
+                        "sensor.exposure=2 ms"},
+                       here_.path())
+                .status,
+            0);
+  ASSERT_EQ(RunVobench({"track", "seq", "-o", "tracked"}, here_.path()).status, 0);
+  const Json track = Json::parse(ReadFile(here_ / "tracked/metrics.json")).at("runs").at(0);
+  const Json task = Json::parse(ReadFile(here_ / "out/tasks/00/000000/metrics.json")).at("runs").at(0);
+  for (const char* alignment : {"none", "se3", "sim3", "first"}) {
+    // Truth and estimates have gone through text with twelve digits.
+    const double a = track.at("errors").at("ate").at(alignment).at("position").at("rmse");
+    const double b = task.at("errors").at("ate").at(alignment).at("position").at("rmse");
+    EXPECT_NEAR(a, b, 1e-10) << alignment;
+  }
+  EXPECT_EQ(task.at("coverage").at("pose_coverage"), track.at("coverage").at("pose_coverage"));
+}
+
+TEST_F(CampaignTest, AKilledCampaignTakesAnotherProgramAlong) {
+  WriteFile(here_ / "systems.yaml", "systems:\n  - {name: slow, command: \"touch " + (here_ / "began").string() +
+                                        "; sleep 5; touch " + (here_ / "late").string() + "\"}\n");
+  WriteFile(here_ / "c.yaml", CampaignOf("[slow]"));
+  EXPECT_TRUE(KillVobench(Words("out"), here_.path(), [&] { return fs::exists(here_ / "began"); }));
+  std::this_thread::sleep_for(std::chrono::seconds(6));
+  EXPECT_FALSE(fs::exists(here_ / "late"));
+}
+
+TEST_F(CampaignTest, EntriesAreCheckedBeforeAnythingRuns) {
+  WriteFile(here_ / "systems.yaml", "systems:\n  - {name: a, command: \"x {vocabulary}\"}\n");
+  const Outcome bad = Run(CampaignOf("[a, b]"), "out");
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_THAT(bad.err, HasSubstr("systems.yaml:2:24: 'command': {vocabulary} stands for nothing"));
+  EXPECT_THAT(bad.err, HasSubstr("there is no system 'b'"));
+  EXPECT_FALSE(fs::exists(here_ / "out"));
+  // A lens that the calibration cannot say: the task fails, with the reason.
+  WriteFile(here_ / "systems.yaml", "systems:\n  - {name: a, calibration: svo, command: \"x {calibration}\"}\n");
+  std::string text = CampaignOf("[a]");
+  text.replace(text.find("time.duration"), 0, "camera.distortion.k3: 0.01, ");
+  const Outcome lens = Run(text, "out");
+  EXPECT_EQ(lens.status, 1);
+  EXPECT_THAT(lens.err, HasSubstr("failed, a calibration for svo has no place for k3"));
+  // Points have no pictures.
+  WriteFile(here_ / "systems.yaml", "systems:\n  - {name: a, command: \"x\"}\n");
+  std::string points = Points();
+  points.replace(points.find("[rb2pf, "), 8, "[a, ");
+  EXPECT_THAT(Run("external: systems.yaml\n" + points, "points").err,
+              HasSubstr("a world of points has no pictures for 'a'"));
+}
+
+}  // namespace
+}  // namespace vobench::system_test

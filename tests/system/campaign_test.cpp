@@ -1,0 +1,178 @@
+// A campaign gives what `run` gives, one by one or all together, and says what is wrong before it begins.
+#include "tests/system/campaign.h"
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace vobench::system_test {
+namespace {
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using Json = nlohmann::json;
+
+Json OnlyRun(const fs::path& metrics) {
+  Json run = Json::parse(ReadFile(metrics)).at("runs").at(0);
+  run.erase("path");
+  run.erase("time_per_frame");
+  return run;
+}
+
+TEST_F(CampaignTest, OneProcessAndTwoGiveTheSameBytes) {
+  for (const std::string& text : {Points(), Images()}) {
+    MustRun(text, "one", {"--jobs", "1"});
+    MustRun(text, "two", {"--jobs", "2"});
+    EXPECT_TRUE(Lasting("one") == Lasting("two"));
+    EXPECT_EQ(ReadFile(here_ / "one/campaign.json"), ReadFile(here_ / "two/campaign.json"));
+    fs::remove_all(here_ / "one");
+    fs::remove_all(here_ / "two");
+  }
+}
+
+TEST_F(CampaignTest, NumbersAreThoseOfRun) {
+  MustRun(Points("2"), "points");
+  ASSERT_EQ(RunVobench({"run", (TinyScenario().parent_path() / "points.yaml").string(), "-o", "run", "--seed", "2",
+                        "--system", "rbpf", "--set", "time.duration=2 s", "--set",
+                        "world.points.measurement.noise=2 px", "--set", "odometry.filter.particles=16"},
+                       here_.path())
+                .status,
+            0);
+  Json task = OnlyRun(here_ / "points/tasks/00/000005/metrics.json"), run = OnlyRun(here_ / "run/metrics.json");
+  EXPECT_EQ(task.at("system"), "rbpf_16");
+  task["system"] = "rbpf";
+  EXPECT_EQ(task, run);
+
+  MustRun(Images(), "images");
+  ASSERT_EQ(RunVobench({"run", TinyScenario().string(), "-o", "run2", "--seed", "2", "--set", "time.duration=0.4 s"},
+                       here_.path())
+                .status,
+            0);
+  EXPECT_EQ(OnlyRun(here_ / "images/tasks/00/000006/metrics.json"), OnlyRun(here_ / "run2/metrics.json"))
+      << "10 ms is the scenario's own exposure; the pictures have gone through files";
+}
+
+TEST_F(CampaignTest, OneTaskAgainIsTheSameAndInAnyOrderTheTableIs) {
+  MustRun(Images(), "out");
+  const auto all = Lasting("out");
+  const Outcome again = Run(Images(), "out", {"--task", "5"});
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_THAT(again.out, HasSubstr("task 5 (tiny, exposure 2 ms, rbpf, seed 2): ok"));
+  EXPECT_THAT(again.out, HasSubstr("the same as before, byte for byte"));
+  // It would say otherwise.
+  WriteFile(here_ / "out/tasks/00/000005/estimate.txt", "something else");
+  EXPECT_THAT(Run(Images(), "out", {"--task", "5"}).err, HasSubstr("came out different from before"));
+  EXPECT_TRUE(Lasting("out") == all) << "and what it has found out now is there";
+  // As GNU parallel does: each alone, in an order of its own, into an empty folder.
+  for (const char* task : {"3", "7", "0", "1", "6", "5", "4", "2"}) {
+    EXPECT_EQ(Run(Images(), "alone", {"--task", task, "--cache", "out/cache"}).status, 0);
+  }
+  MustRun(Images(), "alone", {"--cache", "out/cache"});
+  EXPECT_TRUE(Lasting("alone") == all);
+  EXPECT_THAT(Run(Images(), "out", {"--task", "8"}).err, HasSubstr("there is no task 8: there are 0 to 7"));
+}
+
+TEST_F(CampaignTest, WhatIsDoneIsNotDoneAgain) {
+  MustRun(Points(), "out");
+  const fs::path first = here_ / "out/tasks/00/000000/times.json";
+  const auto before = fs::last_write_time(first);
+  const Outcome again = Run(Points(), "out");
+  EXPECT_THAT(again.err, HasSubstr("30 of 30 tasks are done"));
+  EXPECT_EQ(fs::last_write_time(first), before);
+  MustRun(Points("1..6"), "out");
+  EXPECT_EQ(fs::last_write_time(first), before) << "a seed more leaves the others as they are";
+  EXPECT_EQ(Done("out"), 36u);
+}
+
+TEST_F(CampaignTest, AChangedFileIsRefusedAndUpdatedWhenAsked) {
+  MustRun(Points(), "out");
+  const auto before = Lasting("out");
+  std::string changed = Points("1..4");
+  changed.replace(changed.find("2 px"), 4, "3 px");
+  const Outcome refused = Run(changed, "out");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("out: 14 results there are not what c.yaml would give now"))
+      << "8 of another noise, 6 beyond the last task";
+  EXPECT_THAT(refused.err, HasSubstr("--update"));
+  EXPECT_TRUE(Lasting("out") == before);
+  const auto kept = fs::last_write_time(here_ / "out/tasks/00/000000/times.json");
+  MustRun(changed, "out", {"--update"});
+  EXPECT_EQ(fs::last_write_time(here_ / "out/tasks/00/000000/times.json"), kept);
+  MustRun(changed, "fresh");
+  EXPECT_TRUE(Lasting("out") == Lasting("fresh"));
+  // Names, tables and what counts as lost are no reason to do anything again.
+  MustRun(changed + "judge: {lost: {error: 1 mm}}\ntables: [rpe_m]\n", "out");
+  EXPECT_EQ(fs::last_write_time(here_ / "out/tasks/00/000000/times.json"), kept);
+  EXPECT_THAT(Results("out"), HasSubstr(",lost,"));
+}
+
+TEST_F(CampaignTest, SequencesAreSharedAndKnowTheirFiles) {
+  fs::create_directories(here_ / "scenes");
+  fs::copy_file(TinyScenario(), here_ / "scenes/tiny.yaml");
+  fs::copy(TinyScenario().parent_path() / "room", here_ / "scenes/room", fs::copy_options::recursive);
+  const std::string text = Images(here_ / "scenes/tiny.yaml");
+  const auto sequences = [&](const std::string& cache) {
+    std::size_t count = 0;
+    for (const auto& [name, content] : Tree(here_ / cache)) count += name.ends_with("rgb.txt");
+    return count;
+  };
+  // Two campaigns at the same time: each sequence is made once.
+  WriteFile(here_ / "c.yaml", text);
+  const int other = StartVobench(Words("a", {"--cache", "cache"}), here_.path());
+  const Outcome outcome = RunVobench(Words("b", {"--cache", "cache"}), here_.path());
+  int status = -1;
+  waitpid(other, &status, 0);
+  EXPECT_EQ(status, 0);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("MB of sequences in "));
+  EXPECT_TRUE(Lasting("a") == Lasting("b"));
+  EXPECT_EQ(sequences("cache"), 2u);
+  for (const auto& [name, content] : Tree(here_ / "cache")) EXPECT_THAT(name, testing::Not(HasSubstr("partial")));
+  // Another setting, or another content of a file that the mesh names, is another sequence.
+  std::string darker = text;
+  darker.replace(darker.find("10 ms"), 5, "5 ms");
+  MustRun(darker, "c", {"--cache", "cache"});
+  EXPECT_EQ(sequences("cache"), 3u);
+  std::ofstream(here_ / "scenes/room/room.mtl", std::ios::app) << "# changed\n";
+  EXPECT_EQ(Run(text, "a", {"--cache", "cache"}).status, 2) << "results of other pictures";
+  MustRun(text, "d", {"--cache", "cache"});
+  EXPECT_EQ(sequences("cache"), 5u);
+}
+
+TEST_F(CampaignTest, EverythingIsCheckedBeforeAnythingRuns) {
+  std::string text = Points();
+  text.replace(text.find("2 px"), 4, "2 kg");
+  text += "tabels: 1\n";
+  Outcome outcome = Run(text, "out");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("c.yaml:2:67: 'world.points.measurement.noise': '2 kg' is not a number of pixels"));
+  EXPECT_THAT(outcome.err, HasSubstr("unknown key 'tabels'"));
+  outcome = Run("scenarios: [no.yaml]\nsystems: [rbpf]\n", "out");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("c.yaml:1:13: "));
+  EXPECT_THAT(outcome.err, HasSubstr("no.yaml: cannot be read"));
+  EXPECT_FALSE(fs::exists(here_ / "out"));
+  // A mesh is opened when the campaign starts; no task is recorded for it.
+  const std::string mesh =
+      "scenarios: [{file: " + TinyScenario().string() + ", set: {world.meshes: [{file: no.obj}]}}]\nsystems: [rbpf]\n";
+  outcome = Run(mesh, "out");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("no.obj: no such file"));
+  EXPECT_FALSE(fs::exists(here_ / "out/tasks"));
+  WriteFile(here_ / "mine/letter.txt", "x");
+  EXPECT_THAT(Run(Points(), "mine").err, HasSubstr("mine: is no campaign's folder"));
+  EXPECT_EQ(Tree(here_ / "mine").size(), 1u);
+}
+
+TEST_F(CampaignTest, DryRunListsTheTasks) {
+  const Outcome outcome = Run(Points(), "out", {"--dry-run"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("c: 1 scenarios x 3 noise x 2 systems x 5 seeds = 30 tasks\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("\n    29  points, noise 2 px, rbpf_16, seed 5\n"));
+  EXPECT_FALSE(fs::exists(here_ / "out"));
+}
+
+}  // namespace
+}  // namespace vobench::system_test

@@ -1,0 +1,113 @@
+// Records, results.csv and tables.
+#include "tools/campaign/results.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tools/campaign/table.h"
+
+namespace campaign {
+namespace {
+
+using testing::HasSubstr;
+
+TaskRecord Sample(std::int64_t task, Status status, double ate) {
+  TaskRecord record;
+  record.key = "k";
+  record.task = task;
+  record.scenario = "a, \"b\"";
+  record.levels = {{"blur", "0.004"}};
+  record.system = "rbpf";
+  record.seed = 18446744073709551615u;
+  record.status = status;
+  record.metrics.assign(MetricNames().size(), std::nullopt);
+  record.metrics[0] = ate;
+  return record;
+}
+
+Campaign Small() {  // 3 seeds x 2 blurs x 1 system
+  Campaign c;
+  c.scenarios.push_back({"s", "s.yaml", {}, {}});
+  c.factors.push_back({"blur", "k", {{"0 ms", {}}, {"4_ms", {}}}});
+  c.systems.push_back({"rbpf", "rbpf", {}, {}});
+  c.seeds = {1, 2, 3};
+  return c;
+}
+
+TEST(Results, ARecordIsReadAsItWasWritten) {
+  TaskRecord record = Sample(7, Status::crashed, 0.1 + 0.2);
+  record.reason = "ended by signal 11";
+  const TaskRecord again = RecordFromJson(ToJson(record));
+  EXPECT_EQ(ToJson(again), ToJson(record));
+  EXPECT_EQ(again.metrics, record.metrics) << "to the last bit";
+  EXPECT_EQ(again.seed, record.seed);
+  EXPECT_THROW(RecordFromJson(""), std::invalid_argument);
+  EXPECT_THROW(RecordFromJson(ToJson(record).substr(0, 100)), std::invalid_argument);
+  EXPECT_THROW(RecordFromJson("{\"format\": \"other\"}"), std::invalid_argument);
+}
+
+TEST(Results, CsvIsTidyAndQuoted) {
+  const std::string csv = ResultsCsv(Small(), {Sample(0, Status::ok, 0.25)});
+  EXPECT_THAT(csv, testing::StartsWith("task,scenario,blur,system,seed,status,ate_m,"));
+  EXPECT_THAT(csv, HasSubstr("\n0,\"a, \"\"b\"\"\",0.004,rbpf,18446744073709551615,ok,0.25,"));
+  const std::size_t header = csv.find('\n');
+  EXPECT_EQ(std::count(csv.begin(), csv.begin() + static_cast<std::ptrdiff_t>(header), ','),
+            static_cast<std::ptrdiff_t>(6 + MetricNames().size()));
+}
+
+TEST(Results, LostIsByTheRule) {
+  TaskRecord record = Sample(0, Status::ok, 0.2);
+  EXPECT_FALSE(IsLost(record, {}));
+  EXPECT_TRUE(IsLost(record, {0.5, 0.5, 0.1}));
+  EXPECT_FALSE(IsLost(record, {0.5, 0.5, 0.2})) << "not larger";
+  const auto set = [&](const std::string& name, double value) {
+    record.metrics[static_cast<std::size_t>(std::find(MetricNames().begin(), MetricNames().end(), name) -
+                                            MetricNames().begin())] = value;
+  };
+  set("tracked_coverage", 0.49);
+  EXPECT_TRUE(IsLost(record, {}));
+  EXPECT_FALSE(IsLost(record, {0.5, 0.4, 0}));
+  set("pose_coverage", 0.3);
+  EXPECT_TRUE(IsLost(record, {0.5, 0.4, 0}));
+}
+
+TEST(Table, QuartilesCountLostRunsAsWorseThanAnyNumber) {
+  const Campaign c = Small();
+  // blur 0 ms: 1, 2, 4; blur 4_ms: 3, lost, crashed
+  const std::vector<TaskRecord> records = {Sample(0, Status::ok, 4), Sample(1, Status::lost, 0.1),
+                                           Sample(2, Status::ok, 1), Sample(3, Status::ok, 3),
+                                           Sample(4, Status::ok, 2), Sample(5, Status::crashed, 0)};
+  const Table table = MakeTable(c, {"ate_m", "ATE", {"blur"}, {"system"}}, records);
+  ASSERT_EQ(table.cells.size(), 2u);
+  EXPECT_EQ(table.cells[0][0].median, 2);
+  EXPECT_EQ(table.cells[0][0].low, 1.5);
+  EXPECT_EQ(table.cells[0][0].high, 3);
+  EXPECT_EQ(table.cells[1][0].lost, 2u);
+  EXPECT_TRUE(std::isinf(table.cells[1][0].median));
+  EXPECT_TRUE(std::isinf(table.cells[1][0].low)) << "between 3 and a lost run lies no number";
+  const std::string text = Markdown({table});
+  EXPECT_THAT(text, HasSubstr("| blur | rbpf |\n|---|---:|\n| 0 ms | 2 [1.5, 3] |\n| 4_ms | X [X, X] |\n"));
+  EXPECT_THAT(Latex({table}), HasSubstr("4\\_ms & $\\times$ [$\\times$, $\\times$] \\\\\n"));
+}
+
+TEST(Table, FailedTasksAreNoRunsAndAreCounted) {
+  const Campaign c = Small();
+  const std::vector<TaskRecord> records = {Sample(0, Status::ok, 4),     Sample(1, Status::failed, 0),
+                                           Sample(2, Status::failed, 1), Sample(3, Status::failed, 3),
+                                           Sample(4, Status::ok, 2),     Sample(5, Status::failed, 0)};
+  const std::string text = Markdown({MakeTable(c, {"ate_m", "ATE", {"blur"}, {"system"}}, records)});
+  EXPECT_THAT(text, HasSubstr("| 0 ms | 3 [2.5, 3.5] (1 failed) |\n| 4_ms | - (3 failed) |\n"));
+}
+
+TEST(Table, WhatIsInNeitherRowsNorColumnsIsPooled) {
+  std::vector<TaskRecord> records;
+  for (int k = 0; k < 6; ++k) records.push_back(Sample(k, Status::ok, k));
+  const Table table = MakeTable(Small(), {"ate_m", "ATE", {"scenario"}, {"system"}}, records);
+  ASSERT_EQ(table.cells.size(), 1u);
+  EXPECT_EQ(table.cells[0][0].runs, 6u);
+  EXPECT_EQ(table.cells[0][0].median, 2.5);
+}
+
+}  // namespace
+}  // namespace campaign

@@ -1,0 +1,25 @@
+// Purpose: a command of somebody else's, run by sh in a process group of its own, with a time-out; what it prints goes
+//          to a file.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace campaign {
+
+struct CommandEnd {
+  bool timed_out = false;
+  int signal = 0;  // that ended it
+  int status = 0;  // its exit status otherwise
+  double seconds = 0;
+};
+
+// Starts `command` in `folder`. When it ends, or its time is over, all of its group is killed. It dies with this
+// process. Throws std::runtime_error when it cannot be started at all.
+CommandEnd RunCommand(const std::string& command, const std::filesystem::path& folder, const std::filesystem::path& log,
+                      double timeout_s);
+
+// One word for sh.
+std::string QuotedForShell(const std::string& text);
+
+}  // namespace campaign

@@ -1,0 +1,31 @@
+// Purpose: a lock that dies with its process: flock(2) on a file or a folder.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+namespace campaign {
+
+class FileLock {
+ public:
+  enum class Kind { shared, exclusive };
+
+  // None when another process holds it. The file is made where it is not there; a folder must be there. Programs that
+  // are started do not inherit it; forked processes do. Throws std::runtime_error where there can be no lock.
+  static std::optional<FileLock> Try(const std::filesystem::path& path, Kind kind);
+  // Waits for it.
+  static FileLock Wait(const std::filesystem::path& path, Kind kind);
+
+  ~FileLock();
+  FileLock(FileLock&& other) noexcept;
+  FileLock& operator=(FileLock&& other) noexcept;
+
+  // Whether the path still names what is locked.
+  bool Holds(const std::filesystem::path& path) const;
+
+ private:
+  explicit FileLock(int file) : file_(file) {}
+  int file_ = -1;
+};
+
+}  // namespace campaign

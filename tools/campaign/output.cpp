@@ -1,0 +1,121 @@
+#include "tools/campaign/output.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <thread>
+
+#include "tools/campaign/table.h"
+#include "tools/campaign/task_folder.h"
+#include "tools/evaluation/text_file.h"
+
+namespace campaign {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kTimes[] = {
+    "wall_s", "cpu_s", "tracking_s", "peak_memory_mb", "frame_features_ms", "frame_matching_ms", "frame_filter_ms"};
+
+// Of a failed task there are none.
+std::string TimesLine(const fs::path& out, std::int64_t task) {
+  std::ifstream stream(TaskPath(out, task) / "times.json", std::ios::binary);
+  const auto json = nlohmann::json::parse(stream, nullptr, false);
+  std::string line = std::to_string(task);
+  for (const char* name : kTimes) {
+    line += ",";
+    if (json.is_object() && json.contains(name) && json[name].is_number()) {
+      line += fmt::format("{:.6g}", json[name].get<double>());
+    }
+  }
+  return line + "\n";
+}
+
+}  // namespace
+
+void PrepareOutput(const fs::path& out, const std::string& text) {
+  static const std::set<std::string> kOurs = {".lock", "tasks", "cache", "slurm"};
+  fs::create_directories(out);
+  if (!fs::exists(out / "campaign.json")) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(out)) {
+      const std::string name = entry.path().filename().string();
+      if (kOurs.contains(name) || name.starts_with(".campaign.json.")) continue;
+      throw std::invalid_argument(
+          fmt::format("{}: is no campaign's folder (it has no campaign.json) and not empty", out.string()));
+    }
+  }
+  if (!fs::exists(out / "campaign.json")) WriteAtOnce(out / "campaign.json", text);
+}
+
+FileLock LockOutput(const fs::path& out, FileLock::Kind kind) {
+  for (int tries = 0; tries < 50; ++tries) {
+    if (std::optional<FileLock> lock = FileLock::Try(out / ".lock", kind)) return std::move(*lock);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  throw std::runtime_error(out.string() + ": another process is at work on this campaign");
+}
+
+OutputState Inspect(const fs::path& out, const std::vector<std::string>& keys) {
+  OutputState state;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const auto task = static_cast<std::int64_t>(k);
+    const std::optional<TaskRecord> record = ReadRecord(out, task);
+    if (record && record->key != keys[k]) {
+      state.stale.push_back(task);
+    } else if (!record || record->status == Status::failed) {
+      state.missing.push_back(task);
+      state.failed += record.has_value();
+    }
+  }
+  if (!fs::exists(out / "tasks")) return state;
+  for (const fs::directory_entry& shard : fs::directory_iterator(out / "tasks")) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(shard)) {
+      const std::string name = entry.path().filename().string();
+      if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+      if (std::stoll(name) >= static_cast<std::int64_t>(keys.size())) state.stale.push_back(std::stoll(name));
+    }
+  }
+  return state;
+}
+
+void RemoveTasks(const fs::path& out, const std::vector<std::int64_t>& tasks) {
+  for (const std::int64_t task : tasks) fs::remove_all(TaskPath(out, task));
+}
+
+std::vector<TaskRecord> Merge(const Campaign& campaign, const fs::path& out) {
+  std::vector<TaskRecord> records;
+  std::string times = "task";
+  for (const char* name : kTimes) times += std::string(",") + name;
+  times += "\n";
+  for (std::int64_t task = 0; task < Tasks(campaign); ++task) {
+    std::optional<TaskRecord> record = ReadRecord(out, task);
+    if (!record) throw std::runtime_error(fmt::format("{}: task {} is not there", out.string(), task));
+    if (record->status == Status::ok && IsLost(*record, campaign.lost)) record->status = Status::lost;
+    // Names may have changed since: nothing is done again for that.
+    const TaskChoice choice = ChoiceOf(campaign, task);
+    record->scenario = campaign.scenarios[choice.scenario].name;
+    record->system = campaign.systems[choice.system].name;
+    times += TimesLine(out, task);
+    records.push_back(std::move(*record));
+  }
+  std::vector<Table> tables;
+  for (const TableSpec& spec : campaign.tables) tables.push_back(MakeTable(campaign, spec, records));
+  WriteAtOnce(out / "results.csv", ResultsCsv(campaign, records));
+  WriteAtOnce(out / "times.csv", times);
+  WriteAtOnce(out / "tables.md", Markdown(tables));
+  WriteAtOnce(out / "tables.tex", Latex(tables));
+  return records;
+}
+
+void WriteAtOnce(const fs::path& file, const std::string& text) {
+  const fs::path own = file.parent_path() / fmt::format(".{}.{}", file.filename().string(), getpid());
+  evaluation::WriteWhole(own, text);
+  fs::rename(own, file);
+}
+
+}  // namespace campaign

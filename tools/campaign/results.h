@@ -1,0 +1,54 @@
+// Purpose: what one task found, as a line of results.csv: docs/campaign.md has the columns.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/campaign/plan.h"
+#include "tools/evaluation/summary.h"
+
+namespace campaign {
+
+enum class Status {
+  ok,
+  lost,       // by the campaign's rule
+  crashed,    // somebody else's program: ended by a signal or with a status that is not 0
+  timed_out,  // the same, longer than its entry allows
+  no_answer,  // the same, without a trajectory that can be judged
+  failed,     // nothing was found out: the task is tried again by the next start
+};
+
+std::string Name(Status status);
+
+struct TaskRecord {
+  std::string key;  // of all that the result depends on: docs/campaign.md, "When the file changes"
+  std::int64_t task = 0;
+  std::string scenario, system;
+  std::vector<std::pair<std::string, std::string>> levels;  // by factor: a number in SI where it is one
+  std::uint64_t seed = 0;
+  Status status = Status::failed;
+  std::string reason;                          // of what is neither ok nor lost; one line
+  std::vector<std::optional<double>> metrics;  // in the order of MetricNames; none at all where nothing was judged
+};
+
+// Columns with their units: "ate_m", "rpe_orientation_rad", ...
+const std::vector<std::string>& MetricNames();
+std::vector<std::optional<double>> MetricValues(const evaluation::Metrics& metrics, evaluation::Alignment align);
+
+// Whether a task that was judged counts as lost.
+bool IsLost(const TaskRecord& record, const LostRule& rule);
+
+// task.json. Reading throws std::invalid_argument where the text is not one.
+std::string ToJson(const TaskRecord& record);
+TaskRecord RecordFromJson(const std::string& text);
+
+// results.csv: a header, and a line for each record in their order.
+std::string ResultsCsv(const Campaign& campaign, const std::vector<TaskRecord>& records);
+
+// One field of a CSV line, quoted where it must be.
+std::string CsvField(const std::string& text);
+
+}  // namespace campaign

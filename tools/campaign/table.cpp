@@ -1,0 +1,177 @@
+#include "tools/campaign/table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace campaign {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Of shares of what was answered; of everything else a smaller value is better.
+bool LargerIsBetter(const std::string& metric) {
+  return metric == "pose_coverage" || metric == "tracked_coverage" || metric == "rpe_pairs_share";
+}
+
+// What a task has of each name, as the campaign writes it.
+std::vector<std::string> LevelsOf(const Campaign& campaign, const std::vector<std::string>& names,
+                                  const TaskChoice& choice) {
+  std::vector<std::string> levels;
+  for (const std::string& name : names) {
+    if (name == "scenario") levels.push_back(campaign.scenarios[choice.scenario].name);
+    if (name == "system") levels.push_back(campaign.systems[choice.system].name);
+    for (std::size_t i = 0; i < campaign.factors.size(); ++i) {
+      if (campaign.factors[i].name == name) levels.push_back(campaign.factors[i].levels[choice.levels[i]].name);
+    }
+  }
+  return levels;
+}
+
+// Numbers each in the order in which they are first asked for.
+class Numbered {
+ public:
+  explicit Numbered(std::vector<std::vector<std::string>>& all) : all_(all) {}
+  std::size_t operator()(const std::vector<std::string>& one) {
+    const auto [at, is_new] = numbers_.try_emplace(one, all_.size());
+    if (is_new) all_.push_back(one);
+    return at->second;
+  }
+
+ private:
+  std::vector<std::vector<std::string>>& all_;
+  std::map<std::vector<std::string>, std::size_t> numbers_;
+};
+
+// Between the two nearest of the sorted values, linearly.
+double Quantile(const std::vector<double>& sorted, double share) {
+  if (sorted.empty()) return std::nan("");
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const double rest = at - static_cast<double>(below);
+  if (rest == 0) return sorted[below];
+  if (std::isinf(sorted[below]) || std::isinf(sorted[below + 1]))
+    return std::isinf(sorted[below]) ? sorted[below] : sorted[below + 1];
+  return sorted[below] + rest * (sorted[below + 1] - sorted[below]);
+}
+
+std::string Number(double value, const std::string& lost) {
+  if (std::isnan(value)) return "-";
+  return std::isinf(value) ? lost : fmt::format("{:.3g}", value);
+}
+
+std::string Text(const Cell& cell, const std::string& lost) {
+  if (cell.runs == 0) return cell.failed == 0 ? "-" : fmt::format("- ({} failed)", cell.failed);
+  std::string text = Number(cell.median, lost);
+  if (cell.runs > 1 && !std::isnan(cell.median)) {
+    text += fmt::format(" [{}, {}]", Number(cell.low, lost), Number(cell.high, lost));
+  }
+  if (cell.failed > 0) text += fmt::format(" ({} failed)", cell.failed);
+  return text;
+}
+
+std::string Caption(const Table& table) {
+  std::size_t least = std::numeric_limits<std::size_t>::max(), most = 0;
+  for (const auto& row : table.cells) {
+    for (const Cell& cell : row) least = std::min(least, cell.runs), most = std::max(most, cell.runs);
+  }
+  const std::string runs = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
+  return fmt::format("Median [quartiles] over {} runs a cell; X: lost, which counts as worse than any number.", runs);
+}
+
+std::string EscapeLatex(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\\') {
+      out += "\\textbackslash{}";
+    } else {
+      if (std::string("_%&#${}").find(c) != std::string::npos) out += '\\';
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string Join(const std::vector<std::string>& parts, const std::string& between) {
+  return fmt::format("{}", fmt::join(parts, between));
+}
+
+}  // namespace
+
+Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vector<TaskRecord>& records) {
+  const auto metric = static_cast<std::size_t>(std::find(MetricNames().begin(), MetricNames().end(), spec.metric) -
+                                               MetricNames().begin());
+  Table table;
+  table.spec = spec;
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<double>> values;
+  std::map<std::pair<std::size_t, std::size_t>, Cell> cells;
+  Numbered row(table.rows), column(table.columns);
+  for (const TaskRecord& record : records) {
+    const TaskChoice choice = ChoiceOf(campaign, record.task);
+    const std::pair at(row(LevelsOf(campaign, spec.rows, choice)), column(LevelsOf(campaign, spec.columns, choice)));
+    Cell& cell = cells[at];
+    if (record.status == Status::failed) {
+      ++cell.failed;
+      continue;
+    }
+    ++cell.runs;
+    if (record.status != Status::ok) {
+      ++cell.lost;
+      values[at].push_back(LargerIsBetter(spec.metric) ? -kInfinity : kInfinity);
+    } else if (metric < record.metrics.size() && record.metrics[metric]) {
+      values[at].push_back(*record.metrics[metric]);
+    }
+  }
+  table.cells.assign(table.rows.size(), std::vector<Cell>(table.columns.size()));
+  for (auto& [at, cell] : cells) {
+    std::vector<double>& sorted = values[at];
+    std::sort(sorted.begin(), sorted.end());
+    cell.low = Quantile(sorted, 0.25), cell.median = Quantile(sorted, 0.5), cell.high = Quantile(sorted, 0.75);
+    table.cells[at.first][at.second] = cell;
+  }
+  return table;
+}
+
+std::string Markdown(const std::vector<Table>& tables) {
+  std::string text;
+  for (const Table& table : tables) {
+    text += fmt::format("{}### {}\n\n{}\n\n|", text.empty() ? "" : "\n", table.spec.title, Caption(table));
+    for (const std::string& name : table.spec.rows) text += " " + name + " |";
+    for (const auto& column : table.columns) text += " " + Join(column, ", ") + " |";
+    text += "\n|";
+    for (std::size_t i = 0; i < table.spec.rows.size(); ++i) text += "---|";
+    for (std::size_t i = 0; i < table.columns.size(); ++i) text += "---:|";
+    for (std::size_t r = 0; r < table.rows.size(); ++r) {
+      text += "\n|";
+      for (const std::string& level : table.rows[r]) text += " " + level + " |";
+      for (const Cell& cell : table.cells[r]) text += " " + Text(cell, "X") + " |";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string Latex(const std::vector<Table>& tables) {
+  std::string text;
+  for (const Table& table : tables) {
+    text += fmt::format("% {}: {}\n\\begin{{tabular}}{{{}{}}}\n\\hline\n", table.spec.title, Caption(table),
+                        std::string(table.spec.rows.size(), 'l'), std::string(table.columns.size(), 'r'));
+    std::vector<std::string> line;
+    for (const std::string& name : table.spec.rows) line.push_back(EscapeLatex(name));
+    for (const auto& column : table.columns) line.push_back(EscapeLatex(Join(column, ", ")));
+    text += Join(line, " & ") + " \\\\\n\\hline\n";
+    for (std::size_t r = 0; r < table.rows.size(); ++r) {
+      line.clear();
+      for (const std::string& level : table.rows[r]) line.push_back(EscapeLatex(level));
+      for (const Cell& cell : table.cells[r]) line.push_back(Text(cell, "$\\times$"));
+      text += Join(line, " & ") + " \\\\\n";
+    }
+    text += "\\hline\n\\end{tabular}\n";
+  }
+  return text;
+}
+
+}  // namespace campaign

@@ -1,0 +1,111 @@
+#include "tools/vobench/campaign_slurm.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include "tools/campaign/command.h"
+#include "tools/campaign/output.h"
+#include "tools/campaign/slurm.h"
+#include "tools/campaign/task_folder.h"
+#include "tools/vobench/campaign_task.h"
+#include "tools/vobench/errors.h"
+#include "tools/vobench/interrupt.h"
+#include "tools/vobench/progress.h"
+
+namespace vobench {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kRounds = 3;  // that may pass without a single new result
+
+class SlurmRun {
+ public:
+  SlurmRun(const CampaignWork& work, const CampaignOptions& options, std::vector<std::int64_t> tasks)
+      : work_(work),
+        options_(options),
+        out_(fs::absolute(options.output)),
+        folder_(out_ / "slurm"),
+        name_(campaign::SlurmJobName(out_)),
+        left_(std::move(tasks)),
+        progress_("tasks", static_cast<std::int64_t>(left_.size()), 0, "tasks") {}
+
+  void Run() {
+    fs::create_directories(folder_);
+    const campaign::FileLock alone = campaign::LockOutput(folder_, campaign::FileLock::Kind::exclusive);
+    if (campaign::StateOf(name_, folder_) == campaign::SlurmState::queued) {
+      fmt::print(stderr, "jobs of an earlier start ({}) are in the queue: waiting for them\n", name_);
+      WaitForJobs();
+    }
+    for (int fruitless = 0; !left_.empty() && fruitless < kRounds;) {
+      const std::size_t before = left_.size();
+      SubmitRest();
+      WaitForJobs();
+      if (left_.size() == before) ++fruitless;
+    }
+    for (const std::int64_t task : left_) {
+      RecordFailure(work_, out_, task,
+                    fmt::format("no result from Slurm in {} rounds; its logs are in OUT/slurm", kRounds));
+      progress_.Step();
+    }
+  }
+
+ private:
+  void SubmitRest() {
+    const std::vector<std::string> lines = campaign::ArrayLines(left_, options_.tasks_per_job);
+    std::string text;
+    for (const std::string& line : lines) text += line + "\n";
+    const fs::path list = folder_ / "tasks.txt", script = folder_ / "job.sh";
+    campaign::WriteAtOnce(list, text);
+    const auto word = [](const fs::path& path) { return campaign::QuotedForShell(fs::absolute(path).string()); };
+    std::string command = fmt::format("{} campaign {} -o {} --cache {}", word(fs::read_symlink("/proc/self/exe")),
+                                      word(options_.file), word(out_), word(work_.cache().folder()));
+    if (options_.memory_bytes > 0) command += fmt::format(" --memory {}", options_.memory_bytes);
+    if (options_.timeout_s > 0) command += fmt::format(" --timeout {}", options_.timeout_s);
+    command += fmt::format(" --jobs 1 --list {} --part", word(list));
+    const campaign::SlurmOptions slurm{options_.partition, options_.time, options_.memory_bytes,
+                                       options_.tasks_per_job};
+    campaign::WriteAtOnce(script, campaign::BatchScript(slurm, name_, lines.size(), folder_, command));
+    campaign::Submit(script, folder_);
+  }
+
+  // Until the last result is there, or no job is left.
+  void WaitForJobs() {
+    using std::chrono::milliseconds;
+    for (milliseconds pause(200);; pause = std::min(pause * 5 / 4, milliseconds(10'000))) {
+      const campaign::SlurmState state = campaign::StateOf(name_, folder_);
+      Collect();
+      if (left_.empty() || state == campaign::SlurmState::gone) return;
+      for (milliseconds slept(0); slept < pause; slept += milliseconds(100)) {
+        if (InterruptPending()) throw Interrupted(name_);
+        std::this_thread::sleep_for(milliseconds(100));
+      }
+    }
+  }
+
+  void Collect() {
+    const auto done = [this](std::int64_t task) { return fs::exists(campaign::TaskPath(out_, task)); };
+    const auto count = static_cast<std::int64_t>(std::erase_if(left_, done));
+    if (count > 0) progress_.Step(count);
+  }
+
+  const CampaignWork& work_;
+  const CampaignOptions& options_;
+  fs::path out_, folder_;
+  std::string name_;
+  std::vector<std::int64_t> left_;
+  Progress progress_;
+};
+
+}  // namespace
+
+void RunOnSlurm(const CampaignWork& work, const CampaignOptions& options, std::vector<std::int64_t> tasks) {
+  if (tasks.empty()) return;
+  campaign::RemoveTasks(options.output, tasks);  // failed ones: what is there from now on is new
+  SlurmRun(work, options, std::move(tasks)).Run();
+}
+
+}  // namespace vobench
