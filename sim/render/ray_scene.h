@@ -18,6 +18,14 @@ namespace sim {
 // Throws std::invalid_argument for a scene with an index out of range.
 void CheckScene(const Scene& scene);
 
+// Into the plain arrays of sim/render/packet.h.
+inline void Store(float (&to)[3], const glm::vec3& from) {
+  for (int c = 0; c < 3; ++c) to[c] = from[c];
+}
+inline void Store(float (&to)[2], const glm::vec2& from) {
+  for (int c = 0; c < 2; ++c) to[c] = from[c];
+}
+
 struct EmbreeRelease {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }

@@ -82,13 +82,20 @@ Scene LoadScene(const WorldDescription& description) {
     const auto first = static_cast<std::ptrdiff_t>(scene.meshes.size());
     append(object.mesh);
     const auto begin = scene.meshes.begin() + first;
-    scene.objects.push_back({object.name, {std::move_iterator(begin), std::move_iterator(scene.meshes.end())}, nullptr});
+    scene.objects.push_back(
+        {object.name, {std::move_iterator(begin), std::move_iterator(scene.meshes.end())}, nullptr});
     scene.meshes.erase(begin, scene.meshes.end());
   }
   if (!problems.empty()) throw SceneError(std::move(problems));
   scene.lights = description.lights;
   scene.background = description.background;
   return scene;
+}
+
+bool IsCutOut(const Scene& scene, const Material& m) {
+  if (!(m.alpha_cutoff > 0)) return false;
+  return m.alpha < m.alpha_cutoff ||
+         (m.texture >= 0 && scene.textures[static_cast<std::size_t>(m.texture)].has_alpha());
 }
 
 }  // namespace sim

@@ -33,6 +33,7 @@ struct Material {
   float metallic = 0.0f, roughness = 1.0f;
   int gloss_texture = -1;  // roughness times its green, metallic times its blue; its content is numbers
   bool Mirrors() const { return metallic > 0 || roughness < 1; }
+  bool HasPicture() const { return texture >= 0 || emission_texture >= 0 || normal_map >= 0 || gloss_texture >= 0; }
   // The surface is there only where alpha * the texture's alpha reaches the cutoff; 0: everywhere.
   float alpha = 1.0f, alpha_cutoff = 0.0f;
 };
@@ -66,6 +67,9 @@ struct Scene {
   std::vector<std::string> warnings;  // what was readable but is probably not meant
   std::set<std::filesystem::path> files;  // all that were looked for: meshes, materials, pictures
 };
+
+// Whether parts of the material's surfaces are not there.
+bool IsCutOut(const Scene& scene, const Material& material);
 
 // what(): every problem that was found, one per line, each naming its file.
 class SceneError : public std::runtime_error {
