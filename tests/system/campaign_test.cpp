@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace vobench::system_test {
 namespace {
@@ -28,6 +29,46 @@ TEST_F(CampaignTest, OneProcessAndTwoGiveTheSameBytes) {
     EXPECT_EQ(ReadFile(here_ / "one/campaign.json"), ReadFile(here_ / "two/campaign.json"));
     fs::remove_all(here_ / "one");
     fs::remove_all(here_ / "two");
+  }
+}
+
+TEST_F(CampaignTest, ASweepWritesItsCurves) {
+  const std::string text = Points() + "curves: [{along: noise, of: [ate_m, nees_pose_per_dof], break_at: {error: 2 cm}}]\n";
+  MustRun(text, "one", {"--jobs", "1"});
+  MustRun(text, "two", {"--jobs", "2"});
+  for (const char* name : {"curves.csv", "curves.svg", "tables.md"}) {
+    EXPECT_EQ(ReadFile(here_ / "one" / name), ReadFile(here_ / "two" / name)) << name;
+  }
+  const std::string csv = ReadFile(here_ / "one/curves.csv");
+  EXPECT_THAT(csv, testing::StartsWith("curve,along,group,system,dose,level,quantity,runs,lost,value,low,high,state\n"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (3 * 3 + 1)) << "2 systems, 3 doses, 3 numbers";
+  EXPECT_THAT(csv, HasSubstr("\n1,noise,points,rbpf_16,0.5,0.5 px,ate_m,5,0,"));
+  EXPECT_THAT(ReadFile(here_ / "one/tables.md"), HasSubstr("\nHalf of the runs have broken at rb2pf: "));
+  // Another threshold is no reason to run anything again; without curves there are none.
+  std::string other = text;
+  other.replace(other.find("2 cm"), 4, "1 cm");
+  const auto before = fs::last_write_time(here_ / "one/tasks/00/000000/times.json");
+  MustRun(other, "one");
+  MustRun(Points(), "two");
+  EXPECT_EQ(fs::last_write_time(here_ / "one/tasks/00/000000/times.json"), before);
+  EXPECT_FALSE(fs::exists(here_ / "two/curves.csv"));
+  EXPECT_FALSE(fs::exists(here_ / "two/curves.svg"));
+}
+
+// Each shipped sweep is read with all its scenarios, and every stress that the documentation names is there.
+TEST_F(CampaignTest, ShippedSweepsAreGood) {
+  const fs::path sweeps = TinyScenario().parent_path() / "sweeps";
+  std::set<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(sweeps)) {
+    names.insert(entry.path().stem().string());
+    const Outcome outcome = RunVobench({"campaign", entry.path().string(), "-o", "out", "--dry-run"}, here_.path());
+    EXPECT_EQ(outcome.status, 0) << entry.path() << outcome.err;
+    EXPECT_THAT(ReadFile(entry.path()), HasSubstr("curves: [{along: "));
+  }
+  for (const char* name : {"blur", "read_noise", "contrast", "angular_rate", "frame_rate", "rolling_shutter",
+                           "feature_count", "particle_count", "lag", "moving_objects", "process_noise_too_small",
+                           "process_noise_too_large", "intrinsics"}) {
+    EXPECT_TRUE(names.contains(name)) << name;
   }
 }
 

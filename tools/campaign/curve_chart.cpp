@@ -100,7 +100,7 @@ std::string MetricDiagram(const Curve& curve, std::size_t metric) {
   const double strip = any_lost ? 12.0 * static_cast<double>(curve.lines.size()) / (kHeight - 60) : 0;
   y_range.high = At(y_range, logarithmic, 1 / (1 - std::min(0.6, strip)));
 
-  Plot plot(name, "Medians with intervals along " + curve.spec.along, x_axis, {"median over runs", logarithmic});
+  Plot plot(name, "Medians with intervals along " + curve.spec.along, x_axis, {"", logarithmic});
   plot.SetXRange(x_range);
   plot.SetYRange(y_range);
   if (ComparedWithOne(name)) plot.Line({x_range.low, x_range.high}, {1, 1}, "limit");
@@ -203,7 +203,7 @@ std::string CurvesSvg(const std::vector<Curve>& curves) {
     y += kHead + kHeight;
   }
   svg += fmt::format(
-      "<text x=\"12\" y=\"{}\">Bands: 95 % bootstrap intervals. Small dots: runs; ×2: two lost. Large dot "
+      "<text x=\"12\" y=\"{}\">Lines: medians over runs. Bands: 95 % bootstrap intervals. Small dots: runs; ×2: two lost. Large dot "
       "on the right: half of the runs have broken, with its interval.</text>",
       y + 14);
   return svg + "</svg>\n";
