@@ -94,6 +94,28 @@ TEST_F(CampaignTest, NumbersAreThoseOfRun) {
       << "10 ms is the scenario's own exposure; the pictures have gone through files";
 }
 
+// prior.focal_error reaches the odometry alone, in both commands and both kinds of worlds: the truth stays.
+TEST_F(CampaignTest, AWrongFocalLengthIsToldToTheOdometryAlone) {
+  const auto text = [](const fs::path& scenario) {
+    return "scenarios: [{file: " + scenario.string() + ", set: {time.duration: 0.4 s}}]\n" +
+           "vary: [{name: told, key: prior.focal_error, values: [0, 0.3]}]\nsystems: [rb2pf]\n";
+  };
+  for (const fs::path& scenario : {TinyScenario(), TinyScenario().parent_path() / "points_room.yaml"}) {
+    const std::string name = scenario.stem().string();
+    MustRun(text(scenario), name);
+    ASSERT_EQ(RunVobench({"run", scenario.string(), "-o", name + "_run", "--system", "rb2pf", "--set",
+                          "time.duration=0.4 s", "--set", "prior.focal_error=0.3"},
+                         here_.path())
+                  .status,
+              0);
+    const Json right = OnlyRun(here_ / name / "tasks/00/000000/metrics.json"),
+               wrong = OnlyRun(here_ / name / "tasks/00/000001/metrics.json");
+    EXPECT_EQ(wrong, OnlyRun(here_ / (name + "_run") / "metrics.json"));
+    EXPECT_NE(wrong, right);
+    EXPECT_EQ(wrong.at("path_length"), right.at("path_length"));
+  }
+}
+
 TEST_F(CampaignTest, OneTaskAgainIsTheSameAndInAnyOrderTheTableIs) {
   MustRun(Images(), "out");
   const auto all = Lasting("out");

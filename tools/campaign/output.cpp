@@ -11,7 +11,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "tools/campaign/curve_chart.h"
 #include "tools/campaign/curves.h"
 #include "tools/campaign/table.h"
 #include "tools/campaign/task_folder.h"
@@ -112,12 +111,10 @@ std::vector<TaskRecord> Merge(const Campaign& campaign, const fs::path& out) {
   WriteAtOnce(out / "times.csv", times);
   WriteAtOnce(out / "tables.md", Markdown(tables) + CurvesMarkdown(curves));
   WriteAtOnce(out / "tables.tex", Latex(tables));
-  for (const char* name : {"curves.csv", "curves.svg"}) {
-    if (curves.empty()) fs::remove(out / name);  // of a file that asked for some
-  }
-  if (!curves.empty()) {
+  if (curves.empty()) {
+    fs::remove(out / "curves.csv");  // of a file that asked for some
+  } else {
     WriteAtOnce(out / "curves.csv", CurvesCsv(curves));
-    WriteAtOnce(out / "curves.svg", CurvesSvg(curves));
   }
   return records;
 }

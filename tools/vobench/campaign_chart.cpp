@@ -1,4 +1,4 @@
-#include "tools/campaign/curve_chart.h"
+#include "tools/vobench/campaign_chart.h"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,13 @@
 #include "tools/report/plot.h"
 #include "tools/report/text.h"
 
-namespace campaign {
+namespace vobench {
 namespace {
 
-using evaluation::BreakingPoint;
+using campaign::BrokenMeans;
+using campaign::Curve;
+using campaign::CurveLine;
+using campaign::CurveSpec;
 using evaluation::Crossing;
 using evaluation::DoseEstimate;
 using evaluation::DoseRun;
@@ -203,10 +206,11 @@ std::string CurvesSvg(const std::vector<Curve>& curves) {
     y += kHead + kHeight;
   }
   svg += fmt::format(
-      "<text x=\"12\" y=\"{}\">Lines: medians over runs. Bands: 95 % bootstrap intervals. Small dots: runs; ×2: two lost. Large dot "
+      "<text x=\"12\" y=\"{}\">Lines: medians over runs. Bands: 95 % bootstrap intervals. Small dots: runs; ×2: two "
+      "lost. Large dot "
       "on the right: half of the runs have broken, with its interval.</text>",
       y + 14);
   return svg + "</svg>\n";
 }
 
-}  // namespace campaign
+}  // namespace vobench
