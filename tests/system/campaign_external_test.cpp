@@ -158,6 +158,10 @@ TEST_F(CampaignTest, EntriesAreCheckedBeforeAnythingRuns) {
   points.replace(points.find("[rb2pf, "), 8, "[a, ");
   EXPECT_THAT(Run("external: systems.yaml\n" + points, "points").err,
               HasSubstr("a world of points has no pictures for 'a'"));
+  // What would not reach it is refused.
+  text = CampaignOf("[a]");
+  text.replace(text.find("time.duration"), 0, "prior.focal_error: 0.02, ");
+  EXPECT_THAT(Run(text, "told").err, HasSubstr("'prior.focal_error': 'a' is not ours: it is told the camera as it is"));
 }
 
 }  // namespace

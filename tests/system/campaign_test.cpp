@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace vobench::system_test {
 namespace {
@@ -31,6 +32,46 @@ TEST_F(CampaignTest, OneProcessAndTwoGiveTheSameBytes) {
   }
 }
 
+TEST_F(CampaignTest, ASweepWritesItsCurves) {
+  const std::string text = Points() + "curves: [{along: noise, of: [ate_m, nees_pose_per_dof], break_at: {error: 2 cm}}]\n";
+  MustRun(text, "one", {"--jobs", "1"});
+  MustRun(text, "two", {"--jobs", "2"});
+  for (const char* name : {"curves.csv", "curves.svg", "tables.md"}) {
+    EXPECT_EQ(ReadFile(here_ / "one" / name), ReadFile(here_ / "two" / name)) << name;
+  }
+  const std::string csv = ReadFile(here_ / "one/curves.csv");
+  EXPECT_THAT(csv, testing::StartsWith("curve,along,group,system,dose,level,quantity,runs,lost,value,low,high,state\n"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (3 * 3 + 1)) << "2 systems, 3 doses, 3 numbers";
+  EXPECT_THAT(csv, HasSubstr("\n1,noise,points,rbpf_16,0.5,0.5 px,ate_m,5,0,"));
+  EXPECT_THAT(ReadFile(here_ / "one/tables.md"), HasSubstr("\nHalf of the runs have broken at rb2pf: "));
+  // Another threshold is no reason to run anything again; without curves there are none.
+  std::string other = text;
+  other.replace(other.find("2 cm"), 4, "1 cm");
+  const auto before = fs::last_write_time(here_ / "one/tasks/00/000000/times.json");
+  MustRun(other, "one");
+  MustRun(Points(), "two");
+  EXPECT_EQ(fs::last_write_time(here_ / "one/tasks/00/000000/times.json"), before);
+  EXPECT_FALSE(fs::exists(here_ / "two/curves.csv"));
+  EXPECT_FALSE(fs::exists(here_ / "two/curves.svg"));
+}
+
+// Each shipped sweep is read with all its scenarios, and every stress that the documentation names is there.
+TEST_F(CampaignTest, ShippedSweepsAreGood) {
+  const fs::path sweeps = TinyScenario().parent_path() / "sweeps";
+  std::set<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(sweeps)) {
+    names.insert(entry.path().stem().string());
+    const Outcome outcome = RunVobench({"campaign", entry.path().string(), "-o", "out", "--dry-run"}, here_.path());
+    EXPECT_EQ(outcome.status, 0) << entry.path() << outcome.err;
+    EXPECT_THAT(ReadFile(entry.path()), HasSubstr("curves: [{along: "));
+  }
+  for (const char* name : {"blur", "read_noise", "contrast", "angular_rate", "frame_rate", "rolling_shutter",
+                           "feature_count", "particle_count", "lag", "moving_objects", "process_noise_too_small",
+                           "process_noise_too_large", "intrinsics"}) {
+    EXPECT_TRUE(names.contains(name)) << name;
+  }
+}
+
 TEST_F(CampaignTest, NumbersAreThoseOfRun) {
   MustRun(Points("2"), "points");
   ASSERT_EQ(RunVobench({"run", (TinyScenario().parent_path() / "points.yaml").string(), "-o", "run", "--seed", "2",
@@ -51,6 +92,28 @@ TEST_F(CampaignTest, NumbersAreThoseOfRun) {
             0);
   EXPECT_EQ(OnlyRun(here_ / "images/tasks/00/000006/metrics.json"), OnlyRun(here_ / "run2/metrics.json"))
       << "10 ms is the scenario's own exposure; the pictures have gone through files";
+}
+
+// prior.focal_error reaches the odometry alone, in both commands and both kinds of worlds: the truth stays.
+TEST_F(CampaignTest, AWrongFocalLengthIsToldToTheOdometryAlone) {
+  const auto text = [](const fs::path& scenario) {
+    return "scenarios: [{file: " + scenario.string() + ", set: {time.duration: 0.4 s}}]\n" +
+           "vary: [{name: told, key: prior.focal_error, values: [0, 0.3]}]\nsystems: [rb2pf]\n";
+  };
+  for (const fs::path& scenario : {TinyScenario(), TinyScenario().parent_path() / "points_room.yaml"}) {
+    const std::string name = scenario.stem().string();
+    MustRun(text(scenario), name);
+    ASSERT_EQ(RunVobench({"run", scenario.string(), "-o", name + "_run", "--system", "rb2pf", "--set",
+                          "time.duration=0.4 s", "--set", "prior.focal_error=0.3"},
+                         here_.path())
+                  .status,
+              0);
+    const Json right = OnlyRun(here_ / name / "tasks/00/000000/metrics.json"),
+               wrong = OnlyRun(here_ / name / "tasks/00/000001/metrics.json");
+    EXPECT_EQ(wrong, OnlyRun(here_ / (name + "_run") / "metrics.json"));
+    EXPECT_NE(wrong, right);
+    EXPECT_EQ(wrong.at("path_length"), right.at("path_length"));
+  }
 }
 
 TEST_F(CampaignTest, OneTaskAgainIsTheSameAndInAnyOrderTheTableIs) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "tools/campaign/curve_spec.h"
 #include "tools/campaign/results.h"
 
 namespace campaign {
@@ -62,6 +63,7 @@ CampaignFile::CampaignFile(const std::filesystem::path& file, const Vocabulary& 
   ReadSeeds();
   ReadJudge();
   ReadTables();
+  campaign_.curves = ReadCurves(document_.root(), campaign_, vocabulary_.metrics);
   RejectDoubles();
   campaign_.resolved = document_.Resolved();
 }

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tools/campaign/curves.h"
 #include "tools/campaign/table.h"
 #include "tools/campaign/task_folder.h"
 #include "tools/evaluation/text_file.h"
@@ -105,10 +106,16 @@ std::vector<TaskRecord> Merge(const Campaign& campaign, const fs::path& out) {
   }
   std::vector<Table> tables;
   for (const TableSpec& spec : campaign.tables) tables.push_back(MakeTable(campaign, spec, records));
+  const std::vector<Curve> curves = MakeCurves(campaign, records);
   WriteAtOnce(out / "results.csv", ResultsCsv(campaign, records));
   WriteAtOnce(out / "times.csv", times);
-  WriteAtOnce(out / "tables.md", Markdown(tables));
+  WriteAtOnce(out / "tables.md", Markdown(tables) + CurvesMarkdown(curves));
   WriteAtOnce(out / "tables.tex", Latex(tables));
+  if (curves.empty()) {
+    fs::remove(out / "curves.csv");  // of a file that asked for some
+  } else {
+    WriteAtOnce(out / "curves.csv", CurvesCsv(curves));
+  }
   return records;
 }
 

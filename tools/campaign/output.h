@@ -31,8 +31,8 @@ OutputState Inspect(const std::filesystem::path& out, const std::vector<std::str
 
 void RemoveTasks(const std::filesystem::path& out, const std::vector<std::int64_t>& tasks);
 
-// results.csv, times.csv, tables.md, tables.tex from the tasks' folders alone, in order; the records, lost ones by the
-// campaign's rule. All tasks must be there (std::runtime_error).
+// results.csv, times.csv, tables.md, tables.tex, and curves.csv where the campaign asks for curves, from
+// the tasks' folders alone, in order; the records, lost ones by the campaign's rule. All tasks must be there (std::runtime_error).
 std::vector<TaskRecord> Merge(const Campaign& campaign, const std::filesystem::path& out);
 
 // Under a name of its own first: several processes may do so.

@@ -48,6 +48,19 @@ Changes ChangesAt(const Campaign& campaign, const TaskChoice& choice) {
   return all;
 }
 
+std::vector<std::string> LevelsOf(const Campaign& campaign, const std::vector<std::string>& names,
+                                  const TaskChoice& choice) {
+  std::vector<std::string> levels;
+  for (const std::string& name : names) {
+    if (name == "scenario") levels.push_back(campaign.scenarios[choice.scenario].name);
+    if (name == "system") levels.push_back(campaign.systems[choice.system].name);
+    for (std::size_t i = 0; i < campaign.factors.size(); ++i) {
+      if (campaign.factors[i].name == name) levels.push_back(campaign.factors[i].levels[choice.levels[i]].name);
+    }
+  }
+  return levels;
+}
+
 std::string Describe(const Campaign& campaign, const TaskChoice& choice) {
   std::string text = campaign.scenarios[choice.scenario].name;
   for (std::size_t i = 0; i < campaign.factors.size(); ++i) {

@@ -58,6 +58,17 @@ struct TableSpec {
   std::vector<std::string> rows, columns;  // "scenario", "system" or the name of a factor
 };
 
+// How results change along one setting that is varied: docs/campaign.md, "Curves".
+struct CurveSpec {
+  std::string along;                 // the name of a factor
+  std::vector<double> doses;         // its levels in SI; the file's order is that of stress, so they rise or fall
+  std::string unit;                  // as the file writes them: "ms"; empty where it writes none
+  double unit_in_si = 1;             // one of it
+  std::vector<std::string> metrics;  // columns of results.csv
+  std::vector<std::string> by;       // a curve for each level of these: "scenario", or the names of factors
+  double break_error_m = 0;          // a run with a larger ate_m has broken, as a lost one has; 0: lost ones only
+};
+
 struct Campaign {
   std::string name;
   std::vector<ScenarioEntry> scenarios;
@@ -67,6 +78,7 @@ struct Campaign {
   evaluation::Alignment align = evaluation::Alignment::sim3;
   LostRule lost;
   std::vector<TableSpec> tables;
+  std::vector<CurveSpec> curves;
   bool keep_all = false;  // covariance.txt and frames.csv of each task, too
   std::string resolved;   // all of it, defaults included, as JSON
 };
@@ -90,6 +102,10 @@ TaskChoice ChoiceOf(const Campaign& campaign, std::int64_t task);
 
 // Settings of the scenario at a point, in the order in which they apply; and those of odometry and prior of a system.
 Changes ChangesAt(const Campaign& campaign, const TaskChoice& choice);
+
+// What a task has of each name ("scenario", "system" or that of a factor), as the file writes it.
+std::vector<std::string> LevelsOf(const Campaign& campaign, const std::vector<std::string>& names,
+                                  const TaskChoice& choice);
 
 // "tiny, blur 4 ms, rb2pf, seed 3"
 std::string Describe(const Campaign& campaign, const TaskChoice& choice);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -109,6 +110,23 @@ std::vector<Value> MetricValues(const Metrics& metrics, evaluation::Alignment al
     values.push_back(value && std::isfinite(*value) ? value : std::nullopt);
   }
   return values;
+}
+
+bool LargerIsBetter(const std::string& metric) {
+  return metric == "pose_coverage" || metric == "tracked_coverage" || metric == "rpe_pairs_share";
+}
+
+double ValueOf(const TaskRecord& record, std::size_t metric) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (record.status == Status::failed) return kNone;
+  if (record.status != Status::ok) return LargerIsBetter(MetricNames().at(metric)) ? -kInfinity : kInfinity;
+  return metric < record.metrics.size() ? record.metrics[metric].value_or(kNone) : kNone;
+}
+
+std::size_t MetricIndex(const std::string& metric) {
+  const std::vector<std::string>& names = MetricNames();
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), metric) - names.begin());
 }
 
 bool IsLost(const TaskRecord& record, const LostRule& rule) {

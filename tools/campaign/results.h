@@ -1,6 +1,7 @@
 // Purpose: what one task found, as a line of results.csv: docs/campaign.md has the columns.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -37,6 +38,15 @@ struct TaskRecord {
 // Columns with their units: "ate_m", "rpe_orientation_rad", ...
 const std::vector<std::string>& MetricNames();
 std::vector<std::optional<double>> MetricValues(const evaluation::Metrics& metrics, evaluation::Alignment align);
+
+// Of shares of what was answered; of everything else a smaller value is better.
+bool LargerIsBetter(const std::string& metric);
+
+// A run's value of a metric, by its place among MetricNames: worse than any number (infinite) where it is lost or has no
+// answer, NaN where there is none, or the task failed.
+double ValueOf(const TaskRecord& record, std::size_t metric);
+// The place; their number where there is no such metric.
+std::size_t MetricIndex(const std::string& metric);
 
 // Whether a task that was judged counts as lost.
 bool IsLost(const TaskRecord& record, const LostRule& rule);

@@ -10,27 +10,6 @@
 namespace campaign {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// Of shares of what was answered; of everything else a smaller value is better.
-bool LargerIsBetter(const std::string& metric) {
-  return metric == "pose_coverage" || metric == "tracked_coverage" || metric == "rpe_pairs_share";
-}
-
-// What a task has of each name, as the campaign writes it.
-std::vector<std::string> LevelsOf(const Campaign& campaign, const std::vector<std::string>& names,
-                                  const TaskChoice& choice) {
-  std::vector<std::string> levels;
-  for (const std::string& name : names) {
-    if (name == "scenario") levels.push_back(campaign.scenarios[choice.scenario].name);
-    if (name == "system") levels.push_back(campaign.systems[choice.system].name);
-    for (std::size_t i = 0; i < campaign.factors.size(); ++i) {
-      if (campaign.factors[i].name == name) levels.push_back(campaign.factors[i].levels[choice.levels[i]].name);
-    }
-  }
-  return levels;
-}
-
 // Numbers each in the order in which they are first asked for.
 class Numbered {
  public:
@@ -102,8 +81,7 @@ std::string Join(const std::vector<std::string>& parts, const std::string& betwe
 }  // namespace
 
 Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vector<TaskRecord>& records) {
-  const auto metric = static_cast<std::size_t>(std::find(MetricNames().begin(), MetricNames().end(), spec.metric) -
-                                               MetricNames().begin());
+  const std::size_t metric = MetricIndex(spec.metric);
   Table table;
   table.spec = spec;
   std::map<std::pair<std::size_t, std::size_t>, std::vector<double>> values;
@@ -118,12 +96,8 @@ Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vect
       continue;
     }
     ++cell.runs;
-    if (record.status != Status::ok) {
-      ++cell.lost;
-      values[at].push_back(LargerIsBetter(spec.metric) ? -kInfinity : kInfinity);
-    } else if (metric < record.metrics.size() && record.metrics[metric]) {
-      values[at].push_back(*record.metrics[metric]);
-    }
+    cell.lost += record.status != Status::ok;
+    if (const double value = ValueOf(record, metric); !std::isnan(value)) values[at].push_back(value);
   }
   table.cells.assign(table.rows.size(), std::vector<Cell>(table.columns.size()));
   for (auto& [at, cell] : cells) {

@@ -60,6 +60,25 @@ std::vector<std::size_t> ThinPath(const std::vector<double>& px, const std::vect
   return kept;
 }
 
+// Of 11 units' height, about.
+double TextWidth(const std::string& text) {
+  return 5.6 * static_cast<double>(std::count_if(text.begin(), text.end(), [](char letter) {
+           return (static_cast<unsigned char>(letter) & 0xC0) != 0x80;
+         }));
+}
+
+// By height, a line of text from each other, the lowest not below `bottom` (as long as there is room).
+template <class Texts>
+Texts Apart(Texts labels, double bottom) {
+  constexpr double kLine = 12;
+  std::stable_sort(labels.begin(), labels.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
+  for (std::size_t i = 1; i < labels.size(); ++i) labels[i].y = std::max(labels[i].y, labels[i - 1].y + kLine);
+  for (std::size_t i = labels.size(); i-- > 0;) {
+    labels[i].y = std::min(labels[i].y, bottom - kLine * static_cast<double>(labels.size() - 1 - i));
+  }
+  return labels;
+}
+
 std::string PathData(const std::vector<double>& px, const std::vector<double>& py, bool series) {
   const std::vector<std::size_t> kept = series ? ThinSeries(px, py) : ThinPath(px, py);
   std::string data;
@@ -94,9 +113,19 @@ void Plot::Dots(const std::vector<double>& x, const std::vector<double>& y, doub
   items_.push_back({Kind::dots, x, y, {}, radius, style, label});
 }
 
+void Plot::Word(double x, double y, const std::string& style, const std::string& text) {
+  words_.push_back({x, y, style, text});
+}
+
+void Plot::EndLabel(double y, const std::string& style, const std::string& text) {
+  end_labels_.push_back({0, y, style, text});
+}
+
 std::string Plot::Svg(double width, double height) const {
   const bool legend = std::any_of(items_.begin(), items_.end(), [](const Item& item) { return !item.label.empty(); });
-  const double left = kLeft, right = width - kRight;
+  double label_width = 0;
+  for (const Text& label : end_labels_) label_width = std::max(label_width, 4 + 1.25 * TextWidth(label.text));  // bold
+  const double left = kLeft, right = width - kRight - label_width;
   const double top = kTop + (legend ? kLegend : 0), bottom = height - kAxis;
   Range x_range = x_range_, y_range = y_range_;
   if (equal_scale_) {
@@ -121,6 +150,7 @@ std::string Plot::Svg(double width, double height) const {
   };
   const auto marks = [&](const Axis& axis, Range range, double room) {
     const int wanted = std::max(2, static_cast<int>(room));
+    if (!axis.marks.empty()) return axis.marks;
     return axis.logarithmic ? LogTicks(range.low, range.high, wanted) : LinearTicks(range.low, range.high, wanted);
   };
   svg += "<g class=\"grid\">";
@@ -180,6 +210,11 @@ std::string Plot::Svg(double width, double height) const {
   }
   svg += "</svg><path class=\"frame\" d=\"M" + c(left) + " " + c(top) + "V" + c(bottom) + "H" + c(right) + "\"/>";
 
+  for (const Text& word : words_) text(("mid " + word.style).c_str(), x(word.x), y(word.y) - 2, word.text);
+  std::vector<Text> labels = end_labels_;
+  for (Text& label : labels) label.y = std::clamp(y(label.y), top, bottom);
+  for (const Text& label : Apart(labels, bottom)) text(label.style.c_str(), right + 5, label.y + 3.5, label.text);
+
   double at = left;
   for (const Item& item : items_) {
     if (item.label.empty()) continue;
@@ -193,9 +228,7 @@ std::string Plot::Svg(double width, double height) const {
              "\" d=\"M" + c(at + 9) + " " + c(row) + "h0\"/>";
     }
     text("legend", at + 22, row + 3.5, item.label);
-    const auto letters = std::count_if(item.label.begin(), item.label.end(),
-                                       [](char letter) { return (static_cast<unsigned char>(letter) & 0xC0) != 0x80; });
-    at += 38 + 5.6 * static_cast<double>(letters);
+    at += 38 + TextWidth(item.label);
   }
   return svg + "</svg>";
 }

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/report/ticks.h"
+
 namespace report {
 
 struct Range {
@@ -17,6 +19,7 @@ struct Axis {
   bool logarithmic = false;
   // Marks count downwards: the value at the bottom (or left) is Range::high.
   bool reversed = false;
+  std::vector<Tick> marks = {};  // none: round values
 };
 
 class Plot {
@@ -36,6 +39,11 @@ class Plot {
   void Dots(const std::vector<double>& x, const std::vector<double>& y, double radius, const std::string& style,
             const std::string& label = "");
 
+  // A word in the middle above a point.
+  void Word(double x, double y, const std::string& style, const std::string& text);
+  // The name of a line right of the frame, at this height; names that would overlap are moved apart.
+  void EndLabel(double y, const std::string& style, const std::string& text);
+
   void SetXRange(Range range) { x_range_ = range; }
   void SetYRange(Range range) { y_range_ = range; }
 
@@ -51,11 +59,17 @@ class Plot {
     std::string style, label;
   };
 
+  struct Text {
+    double x, y;
+    std::string style, text;
+  };
+
   std::string title_, description_;
   Axis x_axis_, y_axis_;
   bool equal_scale_;
   Range x_range_, y_range_;
   std::vector<Item> items_;
+  std::vector<Text> words_, end_labels_;
 };
 
 // Smallest range that holds all finite values, widened by `margin` of its size; {0, 1} when there are none. `positive`

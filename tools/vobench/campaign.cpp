@@ -11,11 +11,13 @@
 #include <string>
 #include <vector>
 
+#include "tools/campaign/curves.h"
 #include "tools/campaign/digest.h"
 #include "tools/campaign/memory.h"
 #include "tools/campaign/output.h"
 #include "tools/campaign/slurm.h"
 #include "tools/campaign/task_folder.h"
+#include "tools/vobench/campaign_chart.h"
 #include "tools/vobench/campaign_local.h"
 #include "tools/vobench/campaign_slurm.h"
 #include "tools/vobench/campaign_work.h"
@@ -136,6 +138,12 @@ void RefuseStale(const CampaignOptions& options, const campaign::OutputState& st
 
 void Conclude(const CampaignWork& work, const CampaignOptions& options) {
   const std::vector<campaign::TaskRecord> records = campaign::Merge(work.campaign(), options.output);
+  const std::vector<campaign::Curve> curves = campaign::MakeCurves(work.campaign(), records);
+  if (curves.empty()) {
+    fs::remove(options.output / "curves.svg");
+  } else {
+    campaign::WriteAtOnce(options.output / "curves.svg", CurvesSvg(curves));
+  }
   std::ifstream tables(options.output / "tables.md");
   fmt::print("{}\n", std::string(std::istreambuf_iterator<char>(tables), {}));
   if (const std::uint64_t bytes = work.cache().Bytes(); bytes > 0) {

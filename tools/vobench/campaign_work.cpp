@@ -60,6 +60,13 @@ void RefuseSeed(campaign::CampaignFile& file, const campaign::TaskChoice& choice
   }
 }
 
+// What would not reach it must not look as if it did.
+void RefuseForExternal(campaign::CampaignFile& file, const campaign::TaskChoice& choice, const Experiment& experiment) {
+  const campaign::SystemEntry& system = file.campaign().systems[choice.system];
+  if (!system.system.empty() || experiment.prior.focal_error == 0) return;
+  file.Reject(choice, "prior.focal_error", "'" + system.name + "' is not ours: it is told the camera as it is");
+}
+
 }  // namespace
 
 campaign::TaskChoice AtPoint(const campaign::Campaign& campaign, std::size_t point, std::size_t system) {
@@ -82,6 +89,7 @@ void CampaignWork::Resolve(const fs::path& path) {
       try {
         const Experiment experiment = Load(campaign_, choice);
         RefuseSeed(file, choice, experiment);
+        RefuseForExternal(file, choice, experiment);
         point.settings.push_back(DigestOfSettings(experiment));
         if (s > 0) continue;
         point.images = !experiment.scenario.points;

@@ -44,6 +44,13 @@ void ReadOthers(const std::filesystem::path& file, const Overrides& overrides, E
 
 }  // namespace
 
+sim::CameraParams ToldCamera(const Experiment& experiment) {
+  sim::CameraParams camera = experiment.scenario.camera;
+  camera.fx *= 1 + experiment.prior.focal_error;
+  camera.fy *= 1 + experiment.prior.focal_error;
+  return camera;
+}
+
 Experiment LoadExperiment(const std::filesystem::path& scenario, const Overrides& overrides) {
   Experiment experiment;
   Collector collector;

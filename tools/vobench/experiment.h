@@ -17,6 +17,9 @@ struct Experiment {
   std::string resolved;  // all of it, defaults included: JSON, which is a scenario again
 };
 
+// The camera as the odometry is told it: the scenario's, but for prior.focal_error.
+sim::CameraParams ToldCamera(const Experiment& experiment);
+
 // Throws BadInput with every problem of all three parts.
 Experiment ReadExperiment(const std::filesystem::path& scenario, const Overrides& overrides);
 // The same as settings::Error, for those who know better where a problem comes from.

@@ -118,11 +118,12 @@ void ReadOdometry(Section section, vo::Params& params) {
 }
 
 void ReadPrior(Section section, PriorSettings& prior) {
-  auto& [start, velocity_sigma, angular_rate_sigma] = prior;
+  auto& [start, velocity_sigma, angular_rate_sigma, focal_error] = prior;
   section.ReadChoice("start", start,
                      {{"truth", PriorSettings::Start::truth}, {"origin", PriorSettings::Start::origin}});
   section.Read("velocity_sigma", velocity_sigma, Unit::speed, Range::Positive());
   section.Read("angular_rate_sigma", angular_rate_sigma, Unit::angular_rate, Range::Positive());
+  section.Read("focal_error", focal_error, Range{-0.9, 9});
 }
 
 }  // namespace vobench

@@ -18,6 +18,7 @@ struct PriorSettings {
   Start start = Start::truth;
   double velocity_sigma = 0.1;      // per axis [m/s]
   double angular_rate_sigma = 0.1;  // per axis [rad/s]
+  double focal_error = 0;           // of the camera it is told: fx and fy are too large by this share
 };
 
 // As ReadOdometry; `prior` holds the defaults at first.

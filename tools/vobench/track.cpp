@@ -84,8 +84,10 @@ evaluation::JudgeOptions StartedAtTheOrigin() {
 void Track(const TrackOptions& options) {
   const Clock clock;
   vo::SequenceReader sequence = Input([&] { return vo::SequenceReader(options.sequence); });
-  const vo::Camera camera = Input([&] { return ReadCamera(options); });
+  vo::Camera camera = Input([&] { return ReadCamera(options); });
   const TrackSettings settings = Input([&] { return ReadSettings(options); });
+  camera.fx *= 1 + settings.prior.focal_error;
+  camera.fy *= 1 + settings.prior.focal_error;
   const std::optional<Truth> truth = Input([&] { return ReadSequenceTruth(options.sequence); });
   const auto frames = static_cast<std::int64_t>(sequence.size());
   OutputFolder out(options.output, kResultMarker, ResultNames());

@@ -75,13 +75,14 @@ TEST(OdometrySettingsTest, ResolvedSettingsReadAgainAreTheSame) {
 
 TEST(OdometrySettingsTest, PriorHasUnits) {
   settings::Document document = settings::Document::FromText(
-      "{start: origin, velocity_sigma: 50 cm/s, angular_rate_sigma: 18 deg/s}", "test.yaml");
+      "{start: origin, velocity_sigma: 50 cm/s, angular_rate_sigma: 18 deg/s, focal_error: 0.02}", "test.yaml");
   PriorSettings prior;
   ReadPrior(document.root(), prior);
   document.ThrowIfBad();
   EXPECT_EQ(prior.start, PriorSettings::Start::origin);
   EXPECT_EQ(prior.velocity_sigma, 0.5);
   EXPECT_NEAR(prior.angular_rate_sigma, std::numbers::pi / 10, 1e-15);
+  EXPECT_EQ(prior.focal_error, 0.02);
 }
 
 }  // namespace
