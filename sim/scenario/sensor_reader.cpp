@@ -32,6 +32,25 @@ void ReadAutoExposure(Section section, AutoExposureParams& automatic) {
   section.Read("highest_gain", automatic.highest_gain);
 }
 
+enum class Preset { none, kinect, icl_nuim };
+
+// What the other keys begin with: docs/sensor.md says where the numbers come from.
+void Apply(Preset preset, SensorParams& sensor) {
+  if (preset == Preset::kinect) {
+    sensor.exposure_s = 0.020;
+    sensor.readout_s = 0.026;
+    sensor.mosaic = Mosaic::demosaiced;
+    sensor.full_well_e = 6000;
+    sensor.read_noise_e = 12;
+  }
+  if (preset == Preset::icl_nuim) {
+    sensor.exposure_s = 0;
+    sensor.time_samples = 1;
+    sensor.full_well_e = 4000;
+    sensor.read_noise_e = 10;
+  }
+}
+
 }  // namespace
 
 void ReadCamera(Section section, CameraParams& camera) {
@@ -59,6 +78,13 @@ void ReadCamera(Section section, CameraParams& camera) {
 }
 
 void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
+  section.Allow("preset");
+  if (section.Has("preset")) {  // a manifest without one says nothing of it
+    Preset preset = Preset::none;
+    section.ReadChoice("preset", preset,
+                       {{"none", Preset::none}, {"kinect", Preset::kinect}, {"icl_nuim", Preset::icl_nuim}});
+    Apply(preset, sensor);
+  }
   section.Read("exposure", sensor.exposure_s, Unit::time, kNotNegative);
   section.Read("time_samples", sensor.time_samples);
   section.Read("rolling_shutter", sensor.readout_s, Unit::time);

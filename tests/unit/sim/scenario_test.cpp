@@ -157,6 +157,21 @@ TEST(Scenario, KeysOfLight) {
   EXPECT_EQ(s.world.sky->ground, glm::dvec3(1, 2, 3));
 }
 
+TEST(Scenario, APresetIsWhatTheOtherKeysBeginWith) {
+  const SmallWorld world;
+  const Scenario kinect = LoadScenario(world.scenario(), {{"sensor", "{preset: kinect, read_noise: 3 e}"}});
+  EXPECT_EQ(kinect.sensor.readout_s, 0.026);
+  EXPECT_EQ(kinect.sensor.exposure_s, 0.020);
+  EXPECT_EQ(kinect.sensor.mosaic, Mosaic::demosaiced);
+  EXPECT_EQ(kinect.sensor.read_noise_e, 3) << "set beside it";
+  const Scenario icl = LoadScenario(world.scenario(), {{"sensor", "{preset: icl_nuim}"}});
+  EXPECT_EQ(icl.sensor.exposure_s, 0);
+  EXPECT_EQ(icl.sensor.full_well_e, 4000);
+  EXPECT_THAT(icl.resolved, HasSubstr("icl_nuim"));
+  EXPECT_THAT(LoadScenario(world.scenario()).resolved, testing::Not(HasSubstr("preset")));
+  EXPECT_THAT(Message(world.scenario(), {{"sensor", "{preset: leica}"}}), HasSubstr("leica"));
+}
+
 TEST(Scenario, LightThatMakesNoSense) {
   const TemporaryFolder folder;
   const std::string message = Message(folder.Write("bad.yaml", WithLight(R"(
