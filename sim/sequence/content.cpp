@@ -78,7 +78,7 @@ std::vector<StreamFile> WholeFiles(const Simulator& simulator, const SequenceCon
     frames.push_back({index, simulator.StampNs(index), simulator.TruthAt(index)});
   }
   const std::set<TruthStream> streams = StreamsOf(content, simulator);
-  if (streams.contains(TruthStream::imu)) AddBiases(simulator, frames);
+  if (content.layout == Layout::euroc && streams.contains(TruthStream::imu)) AddBiases(simulator, frames);
   std::vector<StreamFile> files = Lists(content.layout, simulator.scenario(), frames);
   Place(content.layout, SequenceStreams(simulator, content.first, content.first + whole, streams), files);
   if (content.layout == Layout::tum && simulator.scenario().sensor.auto_exposure.on) {

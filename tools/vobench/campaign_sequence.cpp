@@ -25,14 +25,26 @@ namespace {
 
 constexpr const char* kVersion = "vobench " VOBENCH_VERSION ", sequence 1";  // another word, another name
 
-// Which files there are to be read depends on these alone.
+// The files that a scenario names. Which others there are to be read depends on these alone.
+std::vector<fs::path> NamedFiles(const sim::Scenario& scenario) {
+  std::vector<fs::path> files;
+  const auto add_motion = [&](const sim::MotionDescription& motion) {
+    if (const auto* recorded = std::get_if<sim::RecordedMotion>(&motion)) files.push_back(recorded->file);
+  };
+  for (const sim::MeshDescription& mesh : scenario.world.meshes) files.push_back(mesh.file);
+  for (const sim::ObjectDescription& object : scenario.world.objects) {
+    files.push_back(object.mesh.file);
+    add_motion(object.motion);
+  }
+  if (scenario.world.sky && !scenario.world.sky->file.empty()) files.push_back(scenario.world.sky->file);
+  add_motion(scenario.motion);
+  for (fs::path& file : files) file = fs::absolute(file);
+  return files;
+}
+
 std::string NameOfWorld(const sim::Scenario& scenario) {
   std::string name;
-  for (const sim::MeshDescription& mesh : scenario.world.meshes) name += fs::absolute(mesh.file).string() + "\n";
-  if (scenario.world.sky) name += fs::absolute(scenario.world.sky->file).string() + "\n";
-  if (const auto* recorded = std::get_if<sim::RecordedMotion>(&scenario.motion)) {
-    name += fs::absolute(recorded->file).string() + "\n";
-  }
+  for (const fs::path& file : NamedFiles(scenario)) name += file.string() + "\n";
   return name;
 }
 
@@ -47,12 +59,10 @@ bool WorldIsKnown(const sim::Scenario& scenario, campaign::SequenceCache& cache)
 }
 
 void FindWorld(const sim::Scenario& scenario, campaign::SequenceCache& cache) {
-  std::set<fs::path> files;
+  const std::vector<fs::path> named = NamedFiles(scenario);
+  std::set<fs::path> files(named.begin(), named.end());
   for (const fs::path& file : Input([&] { return sim::LoadScene(scenario.world).files; })) {
     files.insert(fs::absolute(file));
-  }
-  if (const auto* recorded = std::get_if<sim::RecordedMotion>(&scenario.motion)) {
-    files.insert(fs::absolute(recorded->file));
   }
   cache.Remember(NameOfWorld(scenario), files);
 }
