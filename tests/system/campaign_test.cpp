@@ -33,14 +33,16 @@ TEST_F(CampaignTest, OneProcessAndTwoGiveTheSameBytes) {
 }
 
 TEST_F(CampaignTest, ASweepWritesItsCurves) {
-  const std::string text = Points() + "curves: [{along: noise, of: [ate_m, nees_pose_per_dof], break_at: {error: 2 cm}}]\n";
+  const std::string text =
+      Points() + "curves: [{along: noise, of: [ate_m, nees_pose_per_dof], break_at: {error: 2 cm}}]\n";
   MustRun(text, "one", {"--jobs", "1"});
   MustRun(text, "two", {"--jobs", "2"});
   for (const char* name : {"curves.csv", "curves.svg", "tables.md"}) {
     EXPECT_EQ(ReadFile(here_ / "one" / name), ReadFile(here_ / "two" / name)) << name;
   }
   const std::string csv = ReadFile(here_ / "one/curves.csv");
-  EXPECT_THAT(csv, testing::StartsWith("curve,along,group,system,dose,level,quantity,runs,lost,value,low,high,state\n"));
+  EXPECT_THAT(csv,
+              testing::StartsWith("curve,along,group,system,dose,level,quantity,runs,lost,value,low,high,state\n"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (3 * 3 + 1)) << "2 systems, 3 doses, 3 numbers";
   EXPECT_THAT(csv, HasSubstr("\n1,noise,points,rbpf_16,0.5,0.5 px,ate_m,5,0,"));
   EXPECT_THAT(ReadFile(here_ / "one/tables.md"), HasSubstr("\nHalf of the runs have broken at rb2pf: "));
@@ -201,6 +203,23 @@ TEST_F(CampaignTest, SequencesAreSharedAndKnowTheirFiles) {
   EXPECT_EQ(Run(text, "a", {"--cache", "cache"}).status, 2) << "results of other pictures";
   MustRun(text, "d", {"--cache", "cache"});
   EXPECT_EQ(sequences("cache"), 5u);
+  // Of an object, too: its mesh, and the file that it moves by.
+  const fs::path path = here_ / "scenes/path.txt";
+  WriteFile(path, "0 2 1 2 0 0 0 1\n1 2.5 1 2 0 0 0 1\n2 2 1 2 0 0 0 1\n");
+  std::string scenario = ReadFile(here_ / "scenes/tiny.yaml");
+  const std::string mesh = "- {file: room/room.obj}\n";
+  ASSERT_NE(scenario.find(mesh), std::string::npos);
+  scenario.insert(scenario.find(mesh) + mesh.size(),
+                  "  objects: [{file: room/ball.obj, trajectory: {type: recorded, file: path.txt}}]\n");
+  WriteFile(here_ / "scenes/tiny.yaml", scenario);
+  MustRun(text, "e", {"--cache", "cache"});
+  EXPECT_EQ(sequences("cache"), 7u);
+  WriteFile(path, "0 2 1 2 0 0 0 1\n1 2.2 1 2 0 0 0 1\n2 2 1 2 0 0 0 1\n");
+  MustRun(text, "f", {"--cache", "cache"});
+  EXPECT_EQ(sequences("cache"), 9u);
+  std::ofstream(here_ / "scenes/room/ball.mtl", std::ios::app) << "# changed\n";
+  MustRun(text, "g", {"--cache", "cache"});
+  EXPECT_EQ(sequences("cache"), 11u);
 }
 
 TEST_F(CampaignTest, EverythingIsCheckedBeforeAnythingRuns) {
