@@ -31,7 +31,7 @@ int Threads(int jobs) {
 
 const Scenario& WithImages(const Scenario& scenario) {
   if (!scenario.points) return scenario;
-  throw std::invalid_argument(scenario.name + ": a world of points has no images");
+  throw std::invalid_argument(scenario.name + ": a world of points has no images; `vobench run` plays it");
 }
 
 double LongestExposure(const SensorParams& s) {

@@ -156,9 +156,10 @@ Estimate Odometry::Track(const Frame& frame) { return impl_->Process(frame); }
 std::vector<MapPoint> Odometry::Map() const {
   std::vector<MapPoint> points;
   const std::vector<Filter::LandmarkBelief> beliefs = impl_->filter->LandmarkBeliefs();
+  const std::vector<std::optional<PointMoments>> moments = impl_->filter->LandmarkPoints();
   for (std::size_t n = 0; n < beliefs.size(); ++n)
     points.push_back({impl_->records[n].id, beliefs[n].X_W, beliefs[n].inverse_depth, beliefs[n].inverse_depth_sigma,
-                      impl_->records[n].permanent});
+                      impl_->records[n].permanent, beliefs[n].relative_sigma, moments[n]});
   return points;
 }
 

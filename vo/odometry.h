@@ -5,12 +5,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "vo/geometry/camera.h"
 #include "vo/geometry/pose.h"
+#include "vo/map/point_moments.h"
 #include "vo/params.h"
 #include "vo/sequence/reader.h"
 
@@ -49,9 +51,13 @@ struct Estimate {
 
 struct MapPoint {
   int id = 0;
-  Eigen::Vector3d X_W = Eigen::Vector3d::Zero();  // [m]
+  Eigen::Vector3d X_W = Eigen::Vector3d::Zero();  // [m], on the likeliest path
   double inverse_depth = 0, inverse_depth_sigma = 0;  // [1/m] from the anchor
   bool permanent = false;
+  double relative_sigma = 0;  // of the inverse depth but for the scale that all landmarks share, over the inverse depth
+  // Mean [m] and covariance [m^2] in W over all that the filter holds possible: over particles (weighted means plus the spread of the
+  // means), or of the joint Gaussian. None where the inverse depth is not positive in all of that.
+  std::optional<PointMoments> moments;
 };
 
 // A feature as seen in the last frame, for drawing.

@@ -131,9 +131,10 @@ const std::vector<BeliefComponent>& PointOdometry::Mixture() const { return impl
 std::vector<MapPoint> PointOdometry::Map() const {
   std::vector<MapPoint> points;
   const std::vector<Filter::LandmarkBelief> beliefs = impl_->filter->LandmarkBeliefs();
+  const std::vector<std::optional<PointMoments>> moments = impl_->filter->LandmarkPoints();
   for (std::size_t n = 0; n < beliefs.size(); ++n)
     points.push_back({static_cast<int>(impl_->records[n].id), beliefs[n].X_W, beliefs[n].inverse_depth, beliefs[n].inverse_depth_sigma,
-                      false});
+                      false, beliefs[n].relative_sigma, moments[n]});
   return points;
 }
 

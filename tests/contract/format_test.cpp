@@ -13,6 +13,7 @@
 #include "tools/evaluation/text_file.h"
 #include "tools/evaluation/trajectory.h"
 #include "vo/geometry/camera.h"
+#include "vo/geometry/camera_file.h"
 #include "vo/sequence/reader.h"
 
 namespace {

@@ -38,7 +38,7 @@ TEST_F(CampaignKillTest, TheCampaignKilledAgainAndAgain) {
     std::string moments;
     for (int n = 0; n < 6; ++n) {
       const auto start = std::chrono::steady_clock::now();
-      const auto after = milliseconds(Draw(static_cast<int>(all.count()) / 3));
+      const auto after = milliseconds(Draw(static_cast<int>(all.count()) / 12));  // the machine may be less busy by now
       const std::size_t tasks = Done("out") + 1;
       moments += n % 2 != 0 ? std::to_string(after.count()) + " ms, " : std::to_string(tasks) + " tasks, ";
       kills += KillVobench(Words("out"), here_.path(), [&] {

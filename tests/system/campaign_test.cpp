@@ -37,7 +37,7 @@ TEST_F(CampaignTest, ASweepWritesItsCurves) {
       Points() + "curves: [{along: noise, of: [ate_m, nees_pose_per_dof], break_at: {error: 2 cm}}]\n";
   MustRun(text, "one", {"--jobs", "1"});
   MustRun(text, "two", {"--jobs", "2"});
-  for (const char* name : {"curves.csv", "curves.svg", "tables.md"}) {
+  for (const char* name : {"curves.csv", "report.html", "tables.md"}) {
     EXPECT_EQ(ReadFile(here_ / "one" / name), ReadFile(here_ / "two" / name)) << name;
   }
   const std::string csv = ReadFile(here_ / "one/curves.csv");
@@ -54,7 +54,8 @@ TEST_F(CampaignTest, ASweepWritesItsCurves) {
   MustRun(Points(), "two");
   EXPECT_EQ(fs::last_write_time(here_ / "one/tasks/00/000000/times.json"), before);
   EXPECT_FALSE(fs::exists(here_ / "two/curves.csv"));
-  EXPECT_FALSE(fs::exists(here_ / "two/curves.svg"));
+  EXPECT_THAT(ReadFile(here_ / "one/report.html"), HasSubstr("Along noise"));
+  EXPECT_THAT(ReadFile(here_ / "two/report.html"), testing::Not(HasSubstr("Along noise")));
 }
 
 // Each shipped sweep is read with all its scenarios, and every stress that the documentation names is there.
@@ -94,6 +95,30 @@ TEST_F(CampaignTest, NumbersAreThoseOfRun) {
             0);
   EXPECT_EQ(OnlyRun(here_ / "images/tasks/00/000006/metrics.json"), OnlyRun(here_ / "run2/metrics.json"))
       << "10 ms is the scenario's own exposure; the pictures have gone through files";
+}
+
+// Pictures of more than 8 bits are rounded alike on both ways.
+TEST_F(CampaignTest, NumbersAreThoseOfRunWithTwelveBits) {
+  MustRun("scenarios: [{file: " + TinyScenario().string() +
+              ", set: {time.duration: 0.4 s, sensor.bit_depth: 12}}]\nsystems: [rb2pf]\n",
+          "images");
+  ASSERT_EQ(RunVobench({"run", TinyScenario().string(), "-o", "run", "--seed", "1", "--set", "time.duration=0.4 s",
+                        "--set", "sensor.bit_depth=12"},
+                       here_.path())
+                .status,
+            0);
+  EXPECT_EQ(OnlyRun(here_ / "images/tasks/00/000000/metrics.json"), OnlyRun(here_ / "run/metrics.json"));
+}
+
+TEST_F(CampaignTest, NumbersAloneAreTheSameNumbers) {
+  MustRun(Points(), "estimate");
+  MustRun(Points() + "keep: numbers\n", "numbers");
+  EXPECT_EQ(Results("estimate"), Results("numbers"));
+  std::vector<std::string> left;
+  for (const auto& entry : fs::directory_iterator(here_ / "numbers/tasks/00/000000")) {
+    left.push_back(entry.path().filename().string());
+  }
+  EXPECT_THAT(left, testing::UnorderedElementsAre("task.json", "times.json"));
 }
 
 // prior.focal_error reaches the odometry alone, in both commands and both kinds of worlds: the truth stays.

@@ -182,10 +182,10 @@ TEST_F(ErrorsTest, BadUsage) {
 
 TEST_F(ErrorsTest, HelpAndVersionSucceed) {
   EXPECT_EQ(RunVobench({"--version"}, here_.path()).status, 0);
-  for (const std::string command : {"render", "track", "evaluate", "run", "check", "report"}) {
+  for (const std::string command : {"render", "track", "evaluate", "run", "check", "verify", "campaign", "report"}) {
     const Outcome outcome = RunVobench({command, "--help"}, here_.path());
     EXPECT_EQ(outcome.status, 0);
-    EXPECT_THAT(outcome.out, HasSubstr("Example:\n  vobench " + command));
+    EXPECT_THAT(outcome.out, HasSubstr("\nExample: vobench " + command));
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "tools/campaign/curve_spec.h"
 #include "tools/campaign/results.h"
+#include "tools/campaign/table_spec.h"
 
 namespace campaign {
 namespace {
@@ -62,7 +63,7 @@ CampaignFile::CampaignFile(const std::filesystem::path& file, const Vocabulary& 
   ReadSystems(folder);
   ReadSeeds();
   ReadJudge();
-  ReadTables();
+  campaign_.tables = ReadTables(document_.root(), campaign_, vocabulary_.metrics);
   campaign_.curves = ReadCurves(document_.root(), campaign_, vocabulary_.metrics);
   RejectDoubles();
   campaign_.resolved = document_.Resolved();
@@ -197,37 +198,8 @@ void CampaignFile::ReadJudge() {
   lost.Read("pose_coverage", campaign_.lost.pose_coverage, Range{0, 1});
   lost.Read("tracked_coverage", campaign_.lost.tracked_coverage, Range{0, 1});
   lost.Read("error", campaign_.lost.error_m, settings::Unit::length, Range::AtLeast(0));
-  root.ReadChoice("keep", campaign_.keep_all, {{"estimate", false}, {"all", true}});
-}
-
-void CampaignFile::ReadTables() {
-  std::vector<std::string> factors = {"scenario"};
-  for (const Factor& factor : campaign_.factors) factors.push_back(factor.name);
-  std::vector<Section> sections = document_.root().List("tables", "metric");
-  for (Section& section : sections) {
-    TableSpec table{"ate_m", "", factors, {"system"}};
-    section.Require("metric", table.metric);
-    section.Read("rows", table.rows);
-    section.Read("columns", table.columns);
-    if (!Contains(vocabulary_.metrics, table.metric)) {
-      section.Reject("metric", fmt::format("there is no metric '{}'; there are {}", table.metric,
-                                           fmt::join(vocabulary_.metrics, ", ")));
-    }
-    std::set<std::string> used;
-    for (const char* side : {"rows", "columns"}) {
-      for (const std::string& name : side == std::string("rows") ? table.rows : table.columns) {
-        if (name != "system" && !Contains(factors, name)) {
-          section.Reject(
-              side, fmt::format("'{}': there is no '{}'; there are system, {}", side, name, fmt::join(factors, ", ")));
-        }
-        if (!used.insert(name).second) section.Reject(side, fmt::format("'{}': '{}' is there twice", side, name));
-      }
-    }
-    table.title = table.metric;
-    section.Read("title", table.title);
-    campaign_.tables.push_back(table);
-  }
-  if (sections.empty()) campaign_.tables.push_back({"ate_m", "ate_m", factors, {"system"}});
+  root.ReadChoice("keep", campaign_.keep,
+                  {{"numbers", Keep::numbers}, {"estimate", Keep::estimate}, {"all", Keep::all}});
 }
 
 void CampaignFile::RejectDoubles() {

@@ -42,7 +42,6 @@ class CampaignFile {
   void ReadSystems(const std::filesystem::path& folder);
   void ReadSeeds();
   void ReadJudge();
-  void ReadTables();
   void RejectDoubles();
 
   settings::Document document_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -11,8 +12,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "tools/campaign/curves.h"
-#include "tools/campaign/table.h"
 #include "tools/campaign/task_folder.h"
 #include "tools/evaluation/text_file.h"
 
@@ -61,11 +60,28 @@ FileLock LockOutput(const fs::path& out, FileLock::Kind kind) {
   throw std::runtime_error(out.string() + ": another process is at work on this campaign");
 }
 
+std::vector<std::int64_t> PresentTasks(const fs::path& out) {
+  std::vector<std::int64_t> present;
+  if (!fs::exists(out / "tasks")) return present;
+  for (const fs::directory_entry& shard : fs::directory_iterator(out / "tasks")) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(shard)) {
+      const std::string name = entry.path().filename().string();
+      if (name.find_first_not_of("0123456789") == std::string::npos) present.push_back(std::stoll(name));
+    }
+  }
+  std::sort(present.begin(), present.end());
+  return present;
+}
+
 OutputState Inspect(const fs::path& out, const std::vector<std::string>& keys) {
   OutputState state;
+  const std::vector<std::int64_t> present = PresentTasks(out);
+  auto next = present.begin();
   for (std::size_t k = 0; k < keys.size(); ++k) {
     const auto task = static_cast<std::int64_t>(k);
-    const std::optional<TaskRecord> record = ReadRecord(out, task);
+    const bool is_present = next != present.end() && *next == task;
+    if (is_present) ++next;
+    const std::optional<TaskRecord> record = is_present ? ReadRecord(out, task) : std::nullopt;
     if (record && record->key != keys[k]) {
       state.stale.push_back(task);
     } else if (!record || record->status == Status::failed) {
@@ -73,14 +89,7 @@ OutputState Inspect(const fs::path& out, const std::vector<std::string>& keys) {
       state.failed += record.has_value();
     }
   }
-  if (!fs::exists(out / "tasks")) return state;
-  for (const fs::directory_entry& shard : fs::directory_iterator(out / "tasks")) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(shard)) {
-      const std::string name = entry.path().filename().string();
-      if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-      if (std::stoll(name) >= static_cast<std::int64_t>(keys.size())) state.stale.push_back(std::stoll(name));
-    }
-  }
+  state.stale.insert(state.stale.end(), next, present.end());  // of a longer campaign
   return state;
 }
 
@@ -88,8 +97,8 @@ void RemoveTasks(const fs::path& out, const std::vector<std::int64_t>& tasks) {
   for (const std::int64_t task : tasks) fs::remove_all(TaskPath(out, task));
 }
 
-std::vector<TaskRecord> Merge(const Campaign& campaign, const fs::path& out) {
-  std::vector<TaskRecord> records;
+Merged Merge(const Campaign& campaign, const fs::path& out) {
+  Merged merged;
   std::string times = "task";
   for (const char* name : kTimes) times += std::string(",") + name;
   times += "\n";
@@ -102,21 +111,20 @@ std::vector<TaskRecord> Merge(const Campaign& campaign, const fs::path& out) {
     record->scenario = campaign.scenarios[choice.scenario].name;
     record->system = campaign.systems[choice.system].name;
     times += TimesLine(out, task);
-    records.push_back(std::move(*record));
+    merged.records.push_back(std::move(*record));
   }
-  std::vector<Table> tables;
-  for (const TableSpec& spec : campaign.tables) tables.push_back(MakeTable(campaign, spec, records));
-  const std::vector<Curve> curves = MakeCurves(campaign, records);
-  WriteAtOnce(out / "results.csv", ResultsCsv(campaign, records));
+  for (const TableSpec& spec : campaign.tables) merged.tables.push_back(MakeTable(campaign, spec, merged.records));
+  merged.curves = MakeCurves(campaign, merged.records);
+  WriteAtOnce(out / "results.csv", ResultsCsv(campaign, merged.records));
   WriteAtOnce(out / "times.csv", times);
-  WriteAtOnce(out / "tables.md", Markdown(tables) + CurvesMarkdown(curves));
-  WriteAtOnce(out / "tables.tex", Latex(tables));
-  if (curves.empty()) {
+  WriteAtOnce(out / "tables.md", Markdown(merged.tables) + CurvesMarkdown(merged.curves));
+  WriteAtOnce(out / "tables.tex", Latex(merged.tables));
+  if (merged.curves.empty()) {
     fs::remove(out / "curves.csv");  // of a file that asked for some
   } else {
-    WriteAtOnce(out / "curves.csv", CurvesCsv(curves));
+    WriteAtOnce(out / "curves.csv", CurvesCsv(merged.curves));
   }
-  return records;
+  return merged;
 }
 
 void WriteAtOnce(const fs::path& file, const std::string& text) {

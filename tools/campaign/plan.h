@@ -51,11 +51,19 @@ struct LostRule {
   double error_m = 0;  // ATE after the alignment of the campaign; 0: however large
 };
 
+// Somebody else's numbers, as they are printed elsewhere.
+struct Beside {
+  std::string name;
+  std::map<std::string, std::string> values;  // by the level of the table's only row name; "-" where there is none
+};
+
 // Medians over seeds, and over whatever is neither in rows nor in columns.
 struct TableSpec {
   std::string metric;  // a column of results.csv
   std::string title;
   std::vector<std::string> rows, columns;  // "scenario", "system" or the name of a factor
+  double unit_in_si = 1;                   // of the numbers that are printed
+  std::vector<Beside> beside = {};         // more columns, behind ours
 };
 
 // How results change along one setting that is varied: docs/campaign.md, "Curves".
@@ -69,6 +77,10 @@ struct CurveSpec {
   double break_error_m = 0;          // a run with a larger ate_m has broken, as a lost one has; 0: lost ones only
 };
 
+// What a task leaves beside task.json and times.json: nothing; metrics.json and estimate.txt; covariance.txt, frames.csv
+// and the truth, too.
+enum class Keep { numbers, estimate, all };
+
 struct Campaign {
   std::string name;
   std::vector<ScenarioEntry> scenarios;
@@ -79,7 +91,7 @@ struct Campaign {
   LostRule lost;
   std::vector<TableSpec> tables;
   std::vector<CurveSpec> curves;
-  bool keep_all = false;  // covariance.txt and frames.csv of each task, too
+  Keep keep = Keep::estimate;
   std::string resolved;   // all of it, defaults included, as JSON
 };
 

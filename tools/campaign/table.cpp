@@ -37,28 +37,25 @@ double Quantile(const std::vector<double>& sorted, double share) {
   return sorted[below] + rest * (sorted[below + 1] - sorted[below]);
 }
 
-std::string Number(double value, const std::string& lost) {
+std::string Number(double value, double unit, const std::string& lost) {
   if (std::isnan(value)) return "-";
-  return std::isinf(value) ? lost : fmt::format("{:.3g}", value);
+  return std::isinf(value) ? lost : fmt::format("{:.3g}", value / unit);
 }
 
-std::string Text(const Cell& cell, const std::string& lost) {
+std::string Text(const Cell& cell, double unit, const std::string& lost) {
   if (cell.runs == 0) return cell.failed == 0 ? "-" : fmt::format("- ({} failed)", cell.failed);
-  std::string text = Number(cell.median, lost);
+  std::string text = Number(cell.median, unit, lost);
   if (cell.runs > 1 && !std::isnan(cell.median)) {
-    text += fmt::format(" [{}, {}]", Number(cell.low, lost), Number(cell.high, lost));
+    text += fmt::format(" [{}, {}]", Number(cell.low, unit, lost), Number(cell.high, unit, lost));
   }
   if (cell.failed > 0) text += fmt::format(" ({} failed)", cell.failed);
   return text;
 }
 
-std::string Caption(const Table& table) {
-  std::size_t least = std::numeric_limits<std::size_t>::max(), most = 0;
-  for (const auto& row : table.cells) {
-    for (const Cell& cell : row) least = std::min(least, cell.runs), most = std::max(most, cell.runs);
-  }
-  const std::string runs = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
-  return fmt::format("Median [quartiles] over {} runs a cell; X: lost, which counts as worse than any number.", runs);
+std::string ValueOf(const Beside& beside, const std::vector<std::string>& row, const std::string& lost) {
+  const auto at = beside.values.find(row.front());
+  if (at == beside.values.end()) return "-";
+  return at->second == "X" ? lost : at->second;
 }
 
 std::string EscapeLatex(const std::string& text) {
@@ -109,19 +106,42 @@ Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vect
   return table;
 }
 
+std::vector<std::string> ColumnNames(const Table& table) {
+  std::vector<std::string> names;
+  for (const auto& column : table.columns) names.push_back(Join(column, ", "));
+  for (const Beside& beside : table.spec.beside) names.push_back(beside.name);
+  return names;
+}
+
+std::vector<std::string> RowTexts(const Table& table, std::size_t row, const std::string& lost) {
+  std::vector<std::string> texts;
+  for (const Cell& cell : table.cells[row]) texts.push_back(Text(cell, table.spec.unit_in_si, lost));
+  for (const Beside& beside : table.spec.beside) texts.push_back(ValueOf(beside, table.rows[row], lost));
+  return texts;
+}
+
+std::string Caption(const Table& table) {
+  std::size_t least = std::numeric_limits<std::size_t>::max(), most = 0;
+  for (const auto& row : table.cells) {
+    for (const Cell& cell : row) least = std::min(least, cell.runs), most = std::max(most, cell.runs);
+  }
+  const std::string runs = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
+  return fmt::format("Median [quartiles] over {} runs a cell; X: lost, which counts as worse than any number.", runs);
+}
+
 std::string Markdown(const std::vector<Table>& tables) {
   std::string text;
   for (const Table& table : tables) {
     text += fmt::format("{}### {}\n\n{}\n\n|", text.empty() ? "" : "\n", table.spec.title, Caption(table));
     for (const std::string& name : table.spec.rows) text += " " + name + " |";
-    for (const auto& column : table.columns) text += " " + Join(column, ", ") + " |";
+    for (const std::string& name : ColumnNames(table)) text += " " + name + " |";
     text += "\n|";
     for (std::size_t i = 0; i < table.spec.rows.size(); ++i) text += "---|";
-    for (std::size_t i = 0; i < table.columns.size(); ++i) text += "---:|";
+    for (std::size_t i = 0; i < table.columns.size() + table.spec.beside.size(); ++i) text += "---:|";
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
       text += "\n|";
       for (const std::string& level : table.rows[r]) text += " " + level + " |";
-      for (const Cell& cell : table.cells[r]) text += " " + Text(cell, "X") + " |";
+      for (const std::string& cell : RowTexts(table, r, "X")) text += " " + cell + " |";
     }
     text += "\n";
   }
@@ -132,15 +152,15 @@ std::string Latex(const std::vector<Table>& tables) {
   std::string text;
   for (const Table& table : tables) {
     text += fmt::format("% {}: {}\n\\begin{{tabular}}{{{}{}}}\n\\hline\n", table.spec.title, Caption(table),
-                        std::string(table.spec.rows.size(), 'l'), std::string(table.columns.size(), 'r'));
+                        std::string(table.spec.rows.size(), 'l'), std::string(table.columns.size() + table.spec.beside.size(), 'r'));
     std::vector<std::string> line;
     for (const std::string& name : table.spec.rows) line.push_back(EscapeLatex(name));
-    for (const auto& column : table.columns) line.push_back(EscapeLatex(Join(column, ", ")));
+    for (const std::string& name : ColumnNames(table)) line.push_back(EscapeLatex(name));
     text += Join(line, " & ") + " \\\\\n\\hline\n";
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
       line.clear();
       for (const std::string& level : table.rows[r]) line.push_back(EscapeLatex(level));
-      for (const Cell& cell : table.cells[r]) line.push_back(Text(cell, "$\\times$"));
+      for (const std::string& cell : RowTexts(table, r, "$\\times$")) line.push_back(cell);
       text += Join(line, " & ") + " \\\\\n";
     }
     text += "\\hline\n\\end{tabular}\n";

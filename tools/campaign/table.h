@@ -24,6 +24,13 @@ struct Table {
 
 Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vector<TaskRecord>& records);
 
+// Behind those of the rows: ours, and those of others beside them.
+std::vector<std::string> ColumnNames(const Table& table);
+// What a row has in these: "0.0123 [0.0101, 0.0150]", `lost` for what falls on a lost run, "-" without runs.
+std::vector<std::string> RowTexts(const Table& table, std::size_t row, const std::string& lost);
+// What a cell is, and over how many runs.
+std::string Caption(const Table& table);
+
 // All tables of the campaign: "0.0123 [0.0101, 0.0150]", X for lost.
 std::string Markdown(const std::vector<Table>& tables);
 std::string Latex(const std::vector<Table>& tables);

@@ -11,6 +11,7 @@ namespace {
 
 // shares: of the range that each bin takes.
 void Finish(RankHistogram& histogram, const std::vector<double>& shares) {
+  histogram.shares = shares;
   for (const int count : histogram.counts) histogram.runs += count;
   if (histogram.runs == 0) return;
   for (std::size_t b = 0; b < shares.size(); ++b) {

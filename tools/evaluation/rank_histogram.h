@@ -8,7 +8,8 @@
 namespace evaluation {
 
 struct RankHistogram {
-  std::vector<int> counts;  // per bin
+  std::vector<int> counts;     // per bin
+  std::vector<double> shares;  // of all ranks, that each bin takes
   int runs = 0;
   double chi2 = 0;     // sum (count - expected)^2 / expected
   double p_value = 1;  // of uniformity: chi-square with bins - 1 degrees of freedom

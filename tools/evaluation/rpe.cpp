@@ -62,12 +62,10 @@ std::vector<IndexPair> PairsByFrames(std::size_t poses, std::size_t delta, PairS
   return pairs;
 }
 
-std::vector<IndexPair> PairsByPath(const Trajectory& trajectory, double delta_m, PairSelection selection) {
+std::vector<IndexPair> PairsByPath(const Trajectory& trajectory, double delta_m, PairSelection selection,
+                                   double tolerance) {
   if (!(delta_m > 0)) throw std::invalid_argument("PairsByPath: delta must be more than zero metres");
-  std::vector<double> way;  // travelled until each pose
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    way.push_back(i == 0 ? 0 : way.back() + (trajectory[i].p_WC - trajectory[i - 1].p_WC).norm());
-  }
+  const std::vector<double> way = WayAlong(trajectory);
   std::vector<IndexPair> pairs;
   if (selection == PairSelection::all) {
     for (std::size_t i = 0; i + 1 < way.size(); ++i) {
@@ -76,7 +74,7 @@ std::vector<IndexPair> PairsByPath(const Trajectory& trajectory, double delta_m,
       for (std::size_t k = i + 2; k < way.size() && way[k - 1] - way[i] < delta_m; ++k) {
         if (miss(k) < miss(best)) best = k;
       }
-      if (miss(best) <= 0.1 * delta_m) pairs.emplace_back(i, best);
+      if (miss(best) <= tolerance * delta_m) pairs.emplace_back(i, best);
     }
     return pairs;
   }

@@ -1,7 +1,7 @@
 // Purpose: relative pose error: how wrong the motion between two times is. Drift, which no alignment can hide.
 // Source:  Sturm et al., IROS 2012, equation (2): E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), P estimate, Q truth. Note that
 // TUM's own script
-//          composes A B^-1 instead; see rpe_tum.h.
+//          composes A B^-1 instead; see compat/tum_rpe.h.
 #pragma once
 
 #include <cstddef>
@@ -40,8 +40,9 @@ std::vector<IndexPair> PairsByFrames(std::size_t poses, std::size_t delta, PairS
 
 // evo's `m`: delta metres along the trajectory given (evo by default gives the estimate; ours would be the truth).
 // Consecutive: a pose is emitted whenever the way since the last emitted one reaches delta, counting from pose 0, which
-// itself is never one. All: from every pose the one whose distance along the way is nearest to delta, if within 0.1
-// delta.
-std::vector<IndexPair> PairsByPath(const Trajectory& trajectory, double delta_m, PairSelection selection);
+// itself is never one. All: from every pose the one whose distance along the way is nearest to delta, if within the
+// tolerance, a part of delta.
+std::vector<IndexPair> PairsByPath(const Trajectory& trajectory, double delta_m, PairSelection selection,
+                                   double tolerance = 0.1);
 
 }  // namespace evaluation

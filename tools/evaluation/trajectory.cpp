@@ -56,7 +56,7 @@ void RequireWritable(const std::filesystem::path& file, std::size_t index, bool 
 
 }  // namespace
 
-Trajectory ReadTrajectory(const std::filesystem::path& file) {
+Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading) {
   Problems problems;
   Trajectory trajectory;
   for (const Line& line : ReadLines(file)) {
@@ -71,7 +71,7 @@ Trajectory ReadTrajectory(const std::filesystem::path& file) {
                        FormatNumber(kNormTolerance, 1));
       continue;
     }
-    pose.q_WC.normalize();
+    if (reading == Reading::strict) pose.q_WC.normalize();
     if (!trajectory.empty() && stamp < trajectory.back().stamp_ns) {
       problems.Add(file, line.number, line.tokens[0].column,
                    "time " + line.tokens[0].text + " lies before " + FormatSeconds(trajectory.back().stamp_ns) +
@@ -84,7 +84,7 @@ Trajectory ReadTrajectory(const std::filesystem::path& file) {
         problems.Add(file, line.number, line.tokens[0].column,
                      "time " + line.tokens[0].text + " has a second pose that differs from the first");
       }
-      continue;
+      if (reading == Reading::strict) continue;
     }
     trajectory.push_back(pose);
   }
@@ -150,10 +150,14 @@ std::optional<StampedVelocity> VelocityAt(const Velocities& velocities, std::int
   return *found;
 }
 
-double PathLength(const Trajectory& trajectory) {
-  double length = 0;
-  for (std::size_t i = 1; i < trajectory.size(); ++i) length += (trajectory[i].p_WC - trajectory[i - 1].p_WC).norm();
-  return length;
+std::vector<double> WayAlong(const Trajectory& trajectory) {
+  std::vector<double> way;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    way.push_back(i == 0 ? 0 : way.back() + (trajectory[i].p_WC - trajectory[i - 1].p_WC).norm());
+  }
+  return way;
 }
+
+double PathLength(const Trajectory& trajectory) { return trajectory.empty() ? 0 : WayAlong(trajectory).back(); }
 
 }  // namespace evaluation

@@ -29,12 +29,15 @@ struct StampedVelocity {
 
 using Velocities = std::vector<StampedVelocity>;
 
+// as_written: quaternions keep their norm and of equal stamps all lines are kept, for tools that read so.
+enum class Reading { strict, as_written };
+
 // Reads `timestamp tx ty tz qx qy qz qw`. Quaternions are normalised; a norm that differs from 1 by more than 1e-3 is
 // an error (recorded truth is rounded to four digits, which leaves up to 1e-4). Time must not go back. Of lines with
 // equal stamps the first is kept: motion-capture truth rounded to 0.1 ms has such lines; a second one that differs by
 // more than 1 cm or 1 degree from the first is an error. Throws InputError with every problem as file:line:column, and
 // when no pose is left.
-Trajectory ReadTrajectory(const std::filesystem::path& file);
+Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading = Reading::strict);
 
 // Writes the same: stamps with nine decimals, twelve significant digits, qw >= 0. Throws std::invalid_argument naming
 // the pose when a number is not finite or time does not increase, std::runtime_error when the file cannot be written
@@ -48,7 +51,10 @@ void WriteVelocities(const std::filesystem::path& file, const Velocities& veloci
 // The velocity at exactly this time, if there is one (stamps of one frame are identical in all files of a sequence).
 std::optional<StampedVelocity> VelocityAt(const Velocities& velocities, std::int64_t stamp_ns);
 
-// Length of the way through the positions [m].
+// Length of the way through the positions up to each pose [m]; the first is 0.
+std::vector<double> WayAlong(const Trajectory& trajectory);
+
+// Length of the way through all positions [m].
 double PathLength(const Trajectory& trajectory);
 
 }  // namespace evaluation

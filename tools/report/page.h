@@ -1,13 +1,17 @@
-// Purpose: report.html as text: words, tables, diagrams and pictures in one self-contained page.
+// Purpose: the report of a run as a page.
 #pragma once
 
-#include <string>
+#include <filesystem>
 
+#include "tools/report/html.h"
 #include "tools/report/result_data.h"
 
 namespace report {
 
-// No scripts, nothing loaded from elsewhere. Pictures are embedded until they fill 1.4 MB, evenly over the sequence.
-std::string Page(const ResultData& data);
+// `out` is the result folder, for its pictures. Throws evaluation::InputError where one cannot be read.
+Page RunPage(const std::filesystem::path& out, const ResultData& data);
+
+// Of runs that are not done yet: words and figures.
+Page LivePage(const ResultData& data);
 
 }  // namespace report

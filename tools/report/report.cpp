@@ -7,7 +7,7 @@
 namespace report {
 
 void WriteReport(const std::filesystem::path& out) {
-  evaluation::WriteWhole(out / "report.html", Page(ReadResult(out)));
+  evaluation::WriteWhole(out / "report.html", Html(RunPage(out, ReadResult(out))));
 }
 
 }  // namespace report

@@ -43,33 +43,6 @@ std::vector<Landmark> ReadLandmarks(const fs::path& file) {
   return landmarks;
 }
 
-std::vector<fs::path> Pictures(const fs::path& folder) {
-  std::vector<std::pair<std::int64_t, fs::path>> found;
-  if (fs::is_directory(folder)) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-      const auto stamp = ev::ParseSeconds(entry.path().stem().string());
-      if (entry.path().extension() == ".jpg" && stamp) found.emplace_back(*stamp, entry.path());
-    }
-  }
-  std::sort(found.begin(), found.end());
-  std::vector<fs::path> paths;
-  for (auto& [stamp, path] : found) paths.push_back(path);
-  return paths;
-}
-
-JudgedSeries JudgeSeries(const ev::EstimateRun& run, const ev::Trajectory& truth,
-                         const std::optional<ev::Velocities>& velocities, const ev::JudgeOptions& options) {
-  JudgedSeries series;
-  series.metrics = ev::Judge(run, truth, velocities, options);
-  ev::MatchedTrajectories matched = ev::MatchTrajectories(run.trajectory, truth, options.association);
-  series.aligned = ev::Apply(series.metrics.errors.sim3.similarity, matched.estimate);
-  series.truth = std::move(matched.truth);
-  if (!run.beliefs.empty()) {
-    series.consistency = ev::ComputeConsistency(run, truth, velocities, options.association.gap_ns, options.gauge);
-  }
-  return series;
-}
-
 RunData ReadRun(const fs::path& out, const RunEntry& entry, const std::vector<RecordedMetrics>& recorded,
                 std::vector<std::string>& warnings) {
   const fs::path folder = out / entry.path;
@@ -77,7 +50,7 @@ RunData ReadRun(const fs::path& out, const RunEntry& entry, const std::vector<Re
   data.entry = entry;
   data.run = ev::ReadEstimateRun(folder);
   if (fs::exists(folder / "landmarks.csv")) data.landmarks = ReadLandmarks(folder / "landmarks.csv");
-  data.pictures = Pictures(folder / "frames");
+  data.pictures = ReadPictures(folder);
   if (!fs::exists(folder / "truth.txt")) return data;
 
   std::optional<ev::Velocities> velocities;
@@ -113,6 +86,19 @@ bool Agree(const ev::Trajectory& a, const ev::Trajectory& b) {
 }
 
 }  // namespace
+
+JudgedSeries JudgeSeries(const ev::EstimateRun& run, const ev::Trajectory& truth,
+                         const std::optional<ev::Velocities>& velocities, const ev::JudgeOptions& options) {
+  JudgedSeries series;
+  series.metrics = ev::Judge(run, truth, velocities, options);
+  ev::MatchedTrajectories matched = ev::MatchTrajectories(run.trajectory, truth, options.association);
+  series.aligned = ev::Apply(series.metrics.errors.sim3.similarity, matched.estimate);
+  series.truth = std::move(matched.truth);
+  if (!run.beliefs.empty()) {
+    series.consistency = ev::ComputeConsistency(run, truth, velocities, options.association.gap_ns, options.gauge);
+  }
+  return series;
+}
 
 std::vector<JudgedRun> ResultData::JudgedRuns() const {
   std::vector<JudgedRun> judged;
@@ -168,13 +154,18 @@ ResultData ReadResult(const fs::path& out) {
   std::vector<RecordedMetrics> recorded;
   if (fs::exists(out / "metrics.json")) recorded = ReadMetricsJson(out);
   std::vector<std::string> problems;
-  for (const RunEntry& entry : data.description.runs) {
+  const auto note = [&](const auto& read) {
     try {
-      data.runs.push_back(ReadRun(out, entry, recorded, data.warnings));
+      read();
     } catch (const ev::InputError& error) {
       problems.push_back(error.what());
     }
+  };
+  for (const RunEntry& entry : data.description.runs) {
+    note([&] { data.runs.push_back(ReadRun(out, entry, recorded, data.warnings)); });
   }
+  note([&] { data.ranks = ReadRanks(out); });
+  note([&] { data.verdict = ReadVerdict(out); });
   if (!problems.empty()) throw ev::InputError(problems);
   return data;
 }

@@ -10,7 +10,10 @@
 #include "tools/evaluation/consistency.h"
 #include "tools/evaluation/summary.h"
 #include "tools/report/metrics_json.h"
+#include "tools/report/pictures.h"
+#include "tools/report/rank_table.h"
 #include "tools/report/run_json.h"
+#include "tools/report/verdict_table.h"
 
 namespace report {
 
@@ -30,13 +33,15 @@ struct RunData {
   RunEntry entry;
   evaluation::EstimateRun run;
   std::vector<Landmark> landmarks;
-  std::vector<std::filesystem::path> pictures;  // in order of time
+  KeptPictures pictures;
   std::optional<JudgedSeries> judged;           // where the run has a truth
 };
 
 struct ResultData {
   RunDescription description;
   std::vector<RunData> runs;
+  std::vector<RankTable> ranks;       // where a verdict was asked for
+  std::vector<VerdictRow> verdict;    // as well
   std::vector<std::string> warnings;  // metrics.json and the files disagree
 
   // Positions in `runs` of the judged ones and their metrics, as the summaries take them.
@@ -49,6 +54,11 @@ struct ResultData {
   // is not shared, all systems show the path that is typical of the first, so that their runs can be compared.
   const RunData& Typical(const std::string& system) const;
 };
+
+// Throws evaluation::InputError when estimate and truth do not overlap in time.
+JudgedSeries JudgeSeries(const evaluation::EstimateRun& run, const evaluation::Trajectory& truth,
+                         const std::optional<evaluation::Velocities>& velocities,
+                         const evaluation::JudgeOptions& options);
 
 // Throws evaluation::InputError with every problem of every file.
 ResultData ReadResult(const std::filesystem::path& out);

@@ -69,6 +69,7 @@ void WriteRunJson(const fs::path& out, const RunDescription& description) {
                {"seconds", description.seconds},
                {"versions", description.versions},
                {"notes", description.notes},
+               {"verdicts", description.verdicts},
                {"runs", Json::array()},
                {"settings", description.settings}};
   for (const RunEntry& run : description.runs) {
@@ -100,6 +101,7 @@ RunDescription ReadRunJson(const fs::path& out) {
   top.Take("seconds", description.seconds);
   top.Take("versions", description.versions);
   top.Take("notes", description.notes);
+  if (json.contains("verdicts")) top.Take("verdicts", description.verdicts);  // older ones have none
   top.Take("settings", description.settings);
   top.Take("runs", runs);
   if (!format.empty() && format != kFormat)

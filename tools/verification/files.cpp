@@ -14,6 +14,7 @@
 
 #include "tools/evaluation/text_file.h"
 #include "tools/settings/settings.h"
+#include "vo/geometry/camera_file.h"
 
 namespace verification {
 namespace {

@@ -25,12 +25,14 @@ vo::Camera ToOdometry(const sim::CameraParams& camera) {
 
 vo::Frame ToOdometry(const sim::Frame& frame) {
   const sim::Image& image = frame.image;
-  // OpenCV's header over pixels that it only reads.
-  cv::Mat pixels(image.height, image.width, CV_8UC(image.channels), const_cast<std::uint8_t*>(image.data.data()));
-  if (image.bits > 8) {  // the odometry takes bytes
+  // OpenCV's headers over pixels that it only reads.
+  cv::Mat pixels;
+  if (image.bits == 8) {
+    pixels = {image.height, image.width, CV_8UC(image.channels), const_cast<std::uint8_t*>(image.data.data())};
+  } else {  // the odometry takes bytes
     const cv::Mat wide(image.height, image.width, CV_16UC(image.channels),
                        const_cast<std::uint16_t*>(image.wide.data()));
-    wide.convertTo(pixels, CV_8U, 255.0 / ((1 << image.bits) - 1));
+    wide.convertTo(pixels, CV_8U, 255.0 / 65535 * (1 << (16 - image.bits)));  // as the file's 16 bits are read
   }
   vo::Frame out;
   out.stamp_ns = frame.stamp_ns;

@@ -11,14 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "tools/campaign/curves.h"
 #include "tools/campaign/digest.h"
 #include "tools/campaign/memory.h"
 #include "tools/campaign/output.h"
 #include "tools/campaign/slurm.h"
 #include "tools/campaign/task_folder.h"
-#include "tools/vobench/campaign_chart.h"
 #include "tools/vobench/campaign_local.h"
+#include "tools/vobench/campaign_page.h"
 #include "tools/vobench/campaign_slurm.h"
 #include "tools/vobench/campaign_work.h"
 #include "tools/vobench/commands.h"
@@ -137,28 +136,24 @@ void RefuseStale(const CampaignOptions& options, const campaign::OutputState& st
 }
 
 void Conclude(const CampaignWork& work, const CampaignOptions& options) {
-  const std::vector<campaign::TaskRecord> records = campaign::Merge(work.campaign(), options.output);
-  const std::vector<campaign::Curve> curves = campaign::MakeCurves(work.campaign(), records);
-  if (curves.empty()) {
-    fs::remove(options.output / "curves.svg");
-  } else {
-    campaign::WriteAtOnce(options.output / "curves.svg", CurvesSvg(curves));
-  }
+  const campaign::Merged merged = campaign::Merge(work.campaign(), options.output);
+  campaign::WriteAtOnce(options.output / "report.html", CampaignPage(work.campaign(), merged));
   std::ifstream tables(options.output / "tables.md");
   fmt::print("{}\n", std::string(std::istreambuf_iterator<char>(tables), {}));
   if (const std::uint64_t bytes = work.cache().Bytes(); bytes > 0) {
     fmt::print("{:.1f} MB of sequences in {}\n", static_cast<double>(bytes) * 1e-6, work.cache().folder().string());
   }
-  fmt::print("{} tasks in {}\n", records.size(), (options.output / "results.csv").string());
+  fmt::print("{} tasks in {}\nThe report is in {}\n", merged.records.size(), (options.output / "results.csv").string(),
+             (options.output / "report.html").string());
   std::size_t failed = 0;
   std::string first;
-  for (const campaign::TaskRecord& record : records) {
+  for (const campaign::TaskRecord& record : merged.records) {
     if (record.status != campaign::Status::failed) continue;
     if (failed++ == 0) first = ShortResult(work.campaign(), record);
   }
   if (failed > 0) {
     throw TasksFailed(fmt::format("{} of {} tasks failed; the same command tries them again. The first: {}", failed,
-                                  records.size(), first));
+                                  merged.records.size(), first));
   }
 }
 

@@ -1,5 +1,7 @@
 #include "tools/vobench/campaign_local.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <deque>
 #include <map>
@@ -29,7 +31,7 @@ class LocalRun {
       : work_(work),
         out_(out),
         options_(options),
-        progress_("tasks", static_cast<std::int64_t>(tasks.size()), 0, "tasks") {
+        tasks_(static_cast<std::int64_t>(tasks.size())) {
     std::map<std::string, std::size_t> known;
     for (const std::int64_t task : tasks) {
       const std::size_t p = campaign::ChoiceOf(work.campaign(), task).point;
@@ -45,6 +47,9 @@ class LocalRun {
   }
 
   void Run() {
+    const auto sequences = static_cast<std::int64_t>(renderings_.size());
+    if (sequences > 0) fmt::print(stderr, "{} sequences to render, then {} tasks\n", sequences, tasks_);
+    progress_.emplace("campaign", sequences + tasks_, 0, sequences > 0 ? "steps" : "tasks");
     while (next_rendering_ < renderings_.size() || !ready_.empty() || pool_.running() > 0) {
       while (StartOne()) {
       }
@@ -93,16 +98,17 @@ class LocalRun {
     slots_.erase(end.id);
     if (end.id >= 0) {
       if (!end.problem.empty()) RecordFailure(work_, out_, end.id, end.problem);
-      progress_.Step();
+      progress_->Step();
       return;
     }
+    progress_->Step();
     const Rendering& rendering = renderings_[static_cast<std::size_t>(-1 - end.id)];
     for (const std::int64_t task : rendering.tasks) {
       if (end.problem.empty()) {
         ready_.push_back(task);
       } else {
         RecordFailure(work_, out_, task, "its sequence could not be rendered: " + end.problem);
-        progress_.Step();
+        progress_->Step();
       }
     }
   }
@@ -110,7 +116,8 @@ class LocalRun {
   const CampaignWork& work_;
   const std::filesystem::path& out_;
   const LocalOptions& options_;
-  Progress progress_;
+  std::int64_t tasks_;
+  std::optional<Progress> progress_;  // of sequences and tasks
   std::vector<Rendering> renderings_;
   std::size_t next_rendering_ = 0;
   std::deque<std::int64_t> ready_;

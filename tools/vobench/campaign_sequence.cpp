@@ -16,6 +16,7 @@
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"
 #include "sim/world/scene.h"
+#include "simulator_digest.h"
 #include "tools/campaign/digest.h"
 #include "tools/vobench/errors.h"
 
@@ -23,7 +24,8 @@ namespace vobench {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kVersion = "vobench " VOBENCH_VERSION ", sequence 1";  // another word, another name
+// Another word, another name: what is written, and who renders it.
+constexpr const char* kVersion = "sequence 1, simulator " VOBENCH_SIMULATOR_DIGEST;
 
 // The files that a scenario names. Which others there are to be read depends on these alone.
 std::vector<fs::path> NamedFiles(const sim::Scenario& scenario) {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "tools/campaign/command.h"
 #include "tools/campaign/output.h"
@@ -55,7 +56,7 @@ class SlurmRun {
 
  private:
   void SubmitRest() {
-    const std::vector<std::string> lines = campaign::ArrayLines(left_, options_.tasks_per_job);
+    const std::vector<std::string> lines = campaign::ArrayLines(BySequence(), options_.tasks_per_job);
     std::string text;
     for (const std::string& line : lines) text += line + "\n";
     const fs::path list = folder_ / "tasks.txt", script = folder_ / "job.sh";
@@ -70,6 +71,16 @@ class SlurmRun {
                                        options_.tasks_per_job};
     campaign::WriteAtOnce(script, campaign::BatchScript(slurm, name_, lines.size(), folder_, command));
     campaign::Submit(script, folder_);
+  }
+
+  // An element of the array does tasks on the same pictures, so that its node reads them from the disk once.
+  std::vector<std::int64_t> BySequence() const {
+    std::vector<std::pair<std::size_t, std::int64_t>> tasks;
+    for (const std::int64_t task : left_) tasks.emplace_back(campaign::ChoiceOf(work_.campaign(), task).point, task);
+    std::sort(tasks.begin(), tasks.end());
+    std::vector<std::int64_t> sorted;
+    for (const auto& [point, task] : tasks) sorted.push_back(task);
+    return sorted;
   }
 
   // Until the last result is there, or no job is left.
@@ -87,7 +98,8 @@ class SlurmRun {
   }
 
   void Collect() {
-    const auto done = [this](std::int64_t task) { return fs::exists(campaign::TaskPath(out_, task)); };
+    const std::vector<std::int64_t> present = campaign::PresentTasks(out_);
+    const auto done = [&](std::int64_t task) { return std::binary_search(present.begin(), present.end(), task); };
     const auto count = static_cast<std::int64_t>(std::erase_if(left_, done));
     if (count > 0) progress_.Step(count);
   }

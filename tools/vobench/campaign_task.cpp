@@ -112,8 +112,9 @@ void WriteJudged(const fs::path& folder, const CampaignWork& work, Played& playe
   evaluation::Metrics metrics = evaluation::Judge(played.run, played.truth.poses, played.truth.velocities, played.how);
   metrics.timing.reset();
   record.metrics = campaign::MetricValues(metrics, work.campaign().align);
+  if (work.campaign().keep == campaign::Keep::numbers) return;
   report::WriteMetricsJson(folder, {{{record.system, record.seed, ".", 0}, metrics}});
-  if (work.campaign().keep_all) {
+  if (work.campaign().keep == campaign::Keep::all) {
     evaluation::WriteEstimateRun(folder, played.run);
     WriteTruth(folder, played.truth);
   } else {

@@ -149,7 +149,7 @@ std::string CampaignWork::KeyOf(const campaign::TaskChoice& choice) const {
   return campaign::Digest(
       fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", program_, point.settings[choice.system], point.sequence,
                   system.system, system.system.empty() ? campaign::Description(system.external) : "",
-                  campaign_.seeds[choice.seed], evaluation::Name(campaign_.align), campaign_.keep_all));
+                  campaign_.seeds[choice.seed], evaluation::Name(campaign_.align), static_cast<int>(campaign_.keep)));
 }
 
 campaign::TaskRecord CampaignWork::BlankRecord(std::int64_t task) const {

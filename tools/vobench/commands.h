@@ -39,6 +39,8 @@ struct TrackOptions {
   std::optional<std::string> camera;  // a preset or a file; the sequence's camera.yaml unless told
   std::optional<std::filesystem::path> settings;
   std::uint64_t seed = 1;
+  bool view = false;  // the report in a browser, while it runs
+  std::optional<std::filesystem::path> map;  // a PLY file of the landmarks, too
   Overrides overrides;
   std::string command_line;  // for the record
 };
@@ -49,6 +51,7 @@ struct EvaluateOptions {
   std::filesystem::path estimate;  // TUM file or a run folder
   std::filesystem::path truth;     // TUM file or a sequence
   std::string align = "sim3";
+  std::optional<std::string> compat;  // what another tool prints instead: its name and options (docs/metrics.md)
 };
 void Evaluate(const EvaluateOptions& options);
 
@@ -56,11 +59,13 @@ void Evaluate(const EvaluateOptions& options);
 struct RunOptions {
   std::filesystem::path scenario;
   std::optional<std::filesystem::path> output;
+  std::optional<std::filesystem::path> map;  // a PLY file of each run's landmarks, too
   std::vector<std::string> systems = {"rb2pf"};
   int runs = 1;
   std::uint64_t seed = 1;           // of the first run; the others count up from it
   bool bound = false;               // the Cramer-Rao bound too, of worlds of points
   bool verdict = false;             // and whether the systems are consistent, as pass or fail
+  bool view = false;                // the report in a browser, while it runs; not of worlds of points
   bool require_consistent = false;  // NotConsistent is thrown where one is not, after all is printed and written
   int jobs = 1;
   Overrides overrides;
@@ -87,6 +92,13 @@ struct VerifyOptions {
 };
 void Verify(const VerifyOptions& options);
 
+// A sequence is written in another form.
+struct ExportOptions {
+  std::filesystem::path sequence;
+  std::filesystem::path bag;  // a ROS 1 bag
+};
+void Export(const ExportOptions& options);
+
 // Scenarios x variants x systems x seeds (docs/campaign.md). Throws TasksFailed after all else is done and written when
 // tasks failed.
 struct CampaignOptions {
@@ -108,6 +120,6 @@ struct CampaignOptions {
 void RunCampaign(const CampaignOptions& options);
 
 using Command = std::variant<RenderOptions, TrackOptions, EvaluateOptions, RunOptions, CheckOptions, ReportOptions,
-                             VerifyOptions, CampaignOptions>;
+                             VerifyOptions, CampaignOptions, ExportOptions>;
 
 }  // namespace vobench

@@ -6,6 +6,7 @@
 
 #include "tools/evaluation/summary.h"
 #include "tools/vobench/commands.h"
+#include "tools/vobench/compat.h"
 #include "tools/vobench/errors.h"
 #include "tools/vobench/sequence_truth.h"
 
@@ -36,6 +37,13 @@ evaluation::Trajectory ReadTruth(const fs::path& path) {
   const std::optional<Truth> truth = ReadSequenceTruth(path);
   if (!truth) throw BadInput(fmt::format("{}: no groundtruth.txt in it", path.string()));
   return truth->poses;
+}
+
+// The trajectory of a file, a run folder or a sequence.
+evaluation::Trajectory ReadFor(const fs::path& path, evaluation::Reading reading) {
+  if (!fs::is_directory(path)) return evaluation::ReadTrajectory(path, reading);
+  return fs::exists(path / "estimate.txt") ? evaluation::ReadTrajectory(path / "estimate.txt", reading)
+                                           : ReadTruth(path);
 }
 
 void PrintStatistics(std::string_view what, const Statistics& s, double factor, std::string_view unit) {
@@ -73,6 +81,13 @@ void Print(const evaluation::Metrics& metrics, evaluation::Alignment alignment) 
 }  // namespace
 
 void Evaluate(const EvaluateOptions& options) {
+  if (options.compat) {
+    const Reproduction tool = ParseCompat(*options.compat);
+    fmt::print("{}", Input([&] {
+                 return tool.Run(ReadFor(options.estimate, tool.reading), ReadFor(options.truth, tool.reading));
+               }));
+    return;
+  }
   const evaluation::EstimateRun estimate = Input([&] { return ReadEstimate(options.estimate); });
   const evaluation::Trajectory truth = Input([&] { return ReadTruth(options.truth); });
   Print(Input([&] { return evaluation::Judge(estimate, truth, std::nullopt); }), AlignmentOf(options.align));

@@ -19,6 +19,7 @@ void Execute(const CheckOptions& options) { Check(options); }
 void Execute(const ReportOptions& options) { Report(options); }
 void Execute(const VerifyOptions& options) { Verify(options); }
 void Execute(const CampaignOptions& options) { RunCampaign(options); }
+void Execute(const ExportOptions& options) { Export(options); }
 
 int Main(int argc, char** argv) {
   HoldInterrupts();

@@ -1,73 +1,63 @@
 #include "tools/vobench/picture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <vector>
 
 #include "tools/evaluation/text_file.h"
 
 namespace vobench {
 namespace {
 
-// Blue, green, red. The hues of Okabe and Ito, which colour-blind readers can tell apart.
-const cv::Scalar kMatched(115, 158, 0), kMissed(0, 159, 230), kRejected(0, 94, 213), kFresh(233, 180, 86);
-constexpr int kShift = 4;  // coordinates in sixteenths of a pixel
-
-// None where the prediction lies so far outside (or is so undefined) that it cannot be drawn.
-bool Drawable(const Eigen::Vector2d& pixel) { return pixel.allFinite() && pixel.cwiseAbs().maxCoeff() < 1e5; }
-
-cv::Point Fixed(const Eigen::Vector2d& pixel) {
-  return {static_cast<int>(std::lround(pixel.x() * (1 << kShift))),
-          static_cast<int>(std::lround(pixel.y() * (1 << kShift)))};
-}
-
-void Ring(cv::Mat& picture, const Eigen::Vector2d& pixel, double radius_px, const cv::Scalar& colour) {
-  cv::circle(picture, Fixed(pixel), static_cast<int>(radius_px * (1 << kShift)), colour, 1, cv::LINE_AA, kShift);
-}
-
-void Line(cv::Mat& picture, const Eigen::Vector2d& a, const Eigen::Vector2d& b, const cv::Scalar& colour) {
-  cv::line(picture, Fixed(a), Fixed(b), colour, 1, cv::LINE_AA, kShift);
-}
-
-void Draw(cv::Mat& picture, const vo::FeatureView& feature) {
-  const Eigen::Vector2d& p = feature.pixel;
-  if (!Drawable(p)) return;
-  switch (feature.status) {
-    case vo::FeatureView::Status::matched:
-      if (Drawable(feature.predicted)) Line(picture, feature.predicted, p, kMatched);
-      Ring(picture, p, 4, kMatched);
-      break;
-    case vo::FeatureView::Status::missed:
-      Line(picture, p + Eigen::Vector2d(-3, -3), p + Eigen::Vector2d(3, 3), kMissed);
-      Line(picture, p + Eigen::Vector2d(-3, 3), p + Eigen::Vector2d(3, -3), kMissed);
-      break;
-    case vo::FeatureView::Status::rejected:
-      Ring(picture, p, 4, kRejected);
-      break;
-    case vo::FeatureView::Status::fresh:
-      cv::rectangle(picture, Fixed(p + Eigen::Vector2d(-2, -2)), Fixed(p + Eigen::Vector2d(2, 2)), kFresh, 1,
-                    cv::LINE_AA, kShift);
-      break;
-  }
-}
+constexpr int kWidest = 480;
+constexpr int kQuality = 80;
 
 }  // namespace
 
-void WritePicture(const std::filesystem::path& file, const cv::Mat& image,
-                  const std::vector<vo::FeatureView>& features) {
-  cv::Mat picture;
-  if (image.channels() == 1) {
-    cv::cvtColor(image, picture, cv::COLOR_GRAY2BGR);
-  } else {
-    picture = image.clone();
+void WritePicture(const std::filesystem::path& file, const cv::Mat& image) {
+  cv::Mat small = image;
+  if (image.cols > kWidest) {
+    const int height =
+        std::max(1, static_cast<int>(std::lround(image.rows * static_cast<double>(kWidest) / image.cols)));
+    cv::resize(image, small, {kWidest, height}, 0, 0, cv::INTER_AREA);
   }
-  for (const vo::FeatureView& feature : features) Draw(picture, feature);
   std::vector<unsigned char> jpeg;
-  if (!cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, 85})) {
+  if (!cv::imencode(".jpg", small, jpeg, {cv::IMWRITE_JPEG_QUALITY, kQuality})) {
     throw std::runtime_error(file.string() + ": cannot encode this picture");
   }
   evaluation::WriteWhole(file, std::string(jpeg.begin(), jpeg.end()));
+}
+
+cv::Mat DepthColours(const cv::Mat& depth, double nearest, double farthest) {
+  cv::Mat levels(depth.size(), CV_8UC1), colours;
+  const double span = std::max(1e-12, 1 / nearest - 1 / farthest);
+  depth.forEach<float>([&](float z, const int* at) {
+    const double share = z > 0 ? (1 / z - 1 / farthest) / span : 0;
+    levels.at<unsigned char>(at[0], at[1]) = static_cast<unsigned char>(std::lround(255 * std::clamp(share, 0.0, 1.0)));
+  });
+  cv::applyColorMap(levels, colours, cv::COLORMAP_VIRIDIS);
+  colours.setTo(cv::Scalar(0, 0, 0), depth <= 0);
+  return colours;
+}
+
+cv::Mat FlowColours(const cv::Mat& flow, double largest) {
+  cv::Mat hsv(flow.size(), CV_8UC3), colours;
+  flow.forEach<cv::Vec2f>([&](const cv::Vec2f& uv, const int* at) {
+    cv::Vec3b& to = hsv.at<cv::Vec3b>(at[0], at[1]);
+    if (!std::isfinite(uv[0]) || !std::isfinite(uv[1])) {
+      to = {0, 0, 0};
+      return;
+    }
+    const double turn = std::atan2(uv[1], uv[0]) / (2 * M_PI);  // image y is down: clockwise on the screen
+    const double share = std::clamp(std::hypot(uv[0], uv[1]) / largest, 0.0, 1.0);
+    to = {static_cast<unsigned char>(std::lround(180 * (turn < 0 ? turn + 1 : turn)) % 180),
+          static_cast<unsigned char>(std::lround(255 * share)), 255};
+  });
+  cv::cvtColor(hsv, colours, cv::COLOR_HSV2BGR);
+  return colours;
 }
 
 }  // namespace vobench

@@ -19,14 +19,24 @@ void Record(std::int64_t stamp_ns, const PointEstimate& e, evaluation::EstimateR
 
 }  // namespace
 
-PointResult Judge(sim::PointWorld world, const PointFilter& filter, const evaluation::JudgeOptions& options) {
-  evaluation::EstimateRun run;
-  Truth truth;
-  while (const std::optional<sim::PointFrame> frame = world.Next()) {
-    Append(frame->stamp_ns, frame->truth, truth);
-    Record(frame->stamp_ns, filter(frame->stamp_ns, frame->observations), run);
+PointPlay Play(sim::PointWorld& world, const PointFilter& filter) {
+  PointPlay play;
+  while (std::optional<sim::PointFrame> frame = world.Next()) {
+    Append(frame->stamp_ns, frame->truth, play.truth);
+    Record(frame->stamp_ns, filter(frame->stamp_ns, frame->observations), play.estimates);
+    play.frames.push_back(*std::move(frame));
   }
+  return play;
+}
+
+PointResult Judge(sim::PointWorld world, const PointFilter& filter, const evaluation::JudgeOptions& options) {
+  const auto [frames, truth, run] = Play(world, filter);
   return {evaluation::Judge(run, truth.poses, truth.velocities, options), NeesByBlock(run, truth, options.gauge)};
+}
+
+std::vector<evaluation::FrameConsistency> ConsistencyOf(const PointPlay& play) {
+  return evaluation::ComputeConsistency(play.estimates, play.truth.poses, play.truth.velocities,
+                                        evaluation::AssociationOptions().gap_ns);
 }
 
 std::vector<BlockNees> NeesByBlock(const evaluation::EstimateRun& run, const Truth& truth, evaluation::Gauge gauge) {

@@ -42,6 +42,17 @@ struct PointResult {
 // estimate that is not finite.
 PointResult Judge(sim::PointWorld world, const PointFilter& filter, const evaluation::JudgeOptions& options = {});
 
+// The same, not judged yet.
+struct PointPlay {
+  std::vector<sim::PointFrame> frames;
+  Truth truth;
+  evaluation::EstimateRun estimates;  // a pose and a belief for each frame
+};
+PointPlay Play(sim::PointWorld& world, const PointFilter& filter);
+
+// Errors, sigmas and NEES of each frame; nothing is aligned.
+std::vector<evaluation::FrameConsistency> ConsistencyOf(const PointPlay& play);
+
 // For runs that were played elsewhere: one entry per pose with a belief.
 std::vector<BlockNees> NeesByBlock(const evaluation::EstimateRun& run, const Truth& truth,
                                    evaluation::Gauge gauge = evaluation::Gauge::as_is);

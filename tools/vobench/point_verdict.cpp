@@ -13,7 +13,8 @@
 namespace vobench {
 namespace {
 
-constexpr int kDraws = 99;  // ranks 0 ... 99
+constexpr int kDraws = 99;       // ranks 0 ... 99
+constexpr double kTail = 0.025;  // of an honest bar, on either side of its band
 
 std::string Threshold(const evaluation::Check& check) {
   return fmt::format("{} {}", check.at_least ? ">=" : "<=", report::Readable(check.threshold));
@@ -152,6 +153,30 @@ std::string VerdictTable(const std::string& system, const std::string& setting, 
   text += fmt::format("An honest filter fails one of these checks in at most {:.0f} % of such tables.\n",
                       100 * verdict.false_alarm());
   return text + VerdictSentence(system, setting, verdict) + "\n";
+}
+
+std::vector<report::RankTable> RankTables(const std::string& system, const std::vector<std::size_t>& rank_frames,
+                                          const evaluation::ConsistencyVerdict& verdict) {
+  constexpr std::size_t kDimensions = 12;
+  std::vector<report::RankTable> tables;
+  for (std::size_t i = 0; i < verdict.rank_histograms.size(); ++i) {
+    const evaluation::RankHistogram& histogram = verdict.rank_histograms[i];
+    if (histogram.runs == 0) continue;
+    const std::size_t dimension = i % kDimensions;
+    report::RankTable& table = tables.emplace_back();
+    table.system = system;
+    table.frame = rank_frames.at(i / kDimensions) + 1;
+    table.dimension = fmt::format("{} {}", evaluation::kStateBlocks[dimension / 3].name, "xyz"[dimension % 3]);
+    table.p_value = histogram.p_value;
+    for (std::size_t bar = 0; bar < histogram.counts.size(); ++bar) {
+      const double share = histogram.shares[bar];
+      const auto runs = static_cast<std::size_t>(histogram.runs);
+      table.counts.push_back(histogram.counts[bar]);
+      table.low.push_back(static_cast<double>(runs - evaluation::BinomialLimit(runs, 1 - share, kTail)));
+      table.high.push_back(static_cast<double>(evaluation::BinomialLimit(runs, share, kTail)));
+    }
+  }
+  return tables;
 }
 
 std::string VerdictCsv(const std::string& system, const evaluation::ConsistencyVerdict& verdict) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tools/evaluation/consistency_verdict.h"
+#include "tools/report/rank_table.h"
 #include "tools/vobench/point_bench.h"
 #include "vo/point_odometry.h"
 
@@ -58,6 +59,9 @@ std::string VerdictTable(const std::string& system, const std::string& setting, 
 // The sentence alone: consistent, over-confident, timid, or neither.
 std::string VerdictSentence(const std::string& system, const std::string& setting,
                             const evaluation::ConsistencyVerdict& verdict);
+// The rank histograms behind the check of ranks, for ranks.csv; `rank_frames` as they were given to the verdict.
+std::vector<report::RankTable> RankTables(const std::string& system, const std::vector<std::size_t>& rank_frames,
+                                          const evaluation::ConsistencyVerdict& verdict);
 // The table for programs, without its header line: system,check,value,relation,threshold,pass,false_alarm.
 std::string VerdictCsv(const std::string& system, const evaluation::ConsistencyVerdict& verdict);
 

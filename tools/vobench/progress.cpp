@@ -29,6 +29,7 @@ Progress::Progress(std::string what, std::int64_t total, std::int64_t done, std:
       start_(std::chrono::steady_clock::now()),
       drawn_(start_) {
   if (terminal_) return;
+  if (total_ == 0) return;
   fmt::print(stderr, "{}: {} {}", what_, total_, unit_);
   if (before_ > 0) fmt::print(stderr, ", {} of them are there", before_);
   fmt::print(stderr, "\n");
@@ -51,12 +52,16 @@ void Progress::Step(std::int64_t count) {
 
 void Progress::Draw() const {
   const double elapsed = Seconds(drawn_ - start_);
+  if (total_ == 0) {
+    fmt::print(stderr, "{}{}: {} {}, {}{}", terminal_ ? "\r" : "", what_, done_, unit_, Duration(elapsed), terminal_ ? "    " : "\n");
+    return;
+  }
   if (!terminal_) {
     fmt::print(stderr, "{}: {}/{} {}, {}\n", what_, done_, total_, unit_, Duration(elapsed));
     return;
   }
   constexpr int kWidth = 30;
-  const int filled = total_ > 0 ? static_cast<int>(kWidth * done_ / total_) : kWidth;
+  const int filled = static_cast<int>(kWidth * done_ / total_);
   const double left = elapsed / static_cast<double>(done_ - before_) * static_cast<double>(total_ - done_);
   const std::string time = done_ == total_ ? "took " + Duration(elapsed) : Duration(left) + " left";
   fmt::print(stderr, "\r{} [{}{}] {}/{}, {}    ", what_, std::string(static_cast<std::size_t>(filled), '#'),

@@ -9,7 +9,7 @@ namespace vobench {
 
 class Progress {
  public:
-  // `done` of the total were done before.
+  // `done` of the total were done before; a total of 0 is not known.
   Progress(std::string what, std::int64_t total, std::int64_t done = 0, std::string unit = "frames");
   ~Progress();  // ends the bar's line
   Progress(const Progress&) = delete;

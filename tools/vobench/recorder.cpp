@@ -11,7 +11,7 @@ namespace vobench {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::int64_t kPictures = 10;
+constexpr std::int64_t kPictures = 24;
 
 evaluation::StampedPose PoseOf(const vo::Estimate& estimate) {
   return {estimate.stamp_ns, estimate.pose.p_WC, estimate.pose.q_WC};
@@ -39,6 +39,21 @@ evaluation::FrameRecord RecordOf(const vo::Estimate& estimate) {
   return record;
 }
 
+report::FeatureMark MarkOf(const vo::FeatureView& feature) {
+  using Status = report::FeatureMark::Status;
+  switch (feature.status) {
+    case vo::FeatureView::Status::matched:
+      return {Status::matched, feature.predicted, feature.pixel, feature.S};
+    case vo::FeatureView::Status::missed:
+      return {Status::missed, feature.predicted, feature.pixel, feature.S};
+    case vo::FeatureView::Status::rejected:
+      return {Status::rejected, feature.predicted, feature.pixel, feature.S};
+    case vo::FeatureView::Status::fresh:
+      return {Status::fresh, feature.pixel, feature.pixel, Eigen::Matrix2d::Zero()};
+  }
+  return {};
+}
+
 std::string LandmarkTable(const std::vector<vo::MapPoint>& map) {
   std::string table = "id,x,y,z,inverse_depth,inverse_depth_sigma,permanent\n";
   for (const vo::MapPoint& point : map) {
@@ -50,8 +65,13 @@ std::string LandmarkTable(const std::vector<vo::MapPoint>& map) {
 
 }  // namespace
 
-Recorder::Recorder(std::int64_t frames, std::optional<fs::path> folder)
-    : folder_(std::move(folder)), picture_every_(std::max<std::int64_t>(1, (frames + kPictures - 1) / kPictures)) {
+// The middle frame of each stretch: the very first has nothing tracked to show.
+bool IsKept(std::int64_t index, std::int64_t frames) {
+  const std::int64_t every = std::max<std::int64_t>(1, (frames + kPictures - 1) / kPictures);
+  return index % every == every / 2;
+}
+
+Recorder::Recorder(std::int64_t frames, std::optional<fs::path> folder) : folder_(std::move(folder)), frames_(frames) {
   if (folder_) fs::create_directories(*folder_ / "frames");
 }
 
@@ -66,17 +86,21 @@ void Recorder::Add(const vo::Estimate& estimate) {
 }
 
 void Recorder::Add(const vo::Frame& frame, const vo::Estimate& estimate, const std::vector<vo::FeatureView>& features) {
+  const auto index = static_cast<std::int64_t>(run_.frames.size());
   Add(estimate);
-  // The middle frame of each tenth: the very first has nothing tracked to show.
-  if (folder_ && added_ % picture_every_ == picture_every_ / 2) {
-    WritePicture(*folder_ / "frames" / (evaluation::FormatSeconds(frame.stamp_ns) + ".jpg"), frame.image, features);
-  }
-  ++added_;
+  if (!folder_ || !IsKept(index, frames_)) return;
+  WritePicture(*folder_ / report::PicturePath(frame.stamp_ns), frame.image);
+  pictures_.width = frame.image.cols;
+  pictures_.height = frame.image.rows;
+  report::KeptPicture& kept = pictures_.pictures.emplace_back();
+  kept.stamp_ns = frame.stamp_ns;
+  for (const vo::FeatureView& feature : features) kept.features.push_back(MarkOf(feature));
 }
 
 void Recorder::Write(const std::vector<vo::MapPoint>& map) const {
   evaluation::WriteEstimateRun(*folder_, run_);
   evaluation::WriteWhole(*folder_ / "landmarks.csv", LandmarkTable(map));
+  if (!pictures_.pictures.empty()) report::WritePictures(*folder_, pictures_);
 }
 
 }  // namespace vobench

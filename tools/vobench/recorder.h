@@ -9,13 +9,18 @@
 #include <vector>
 
 #include "tools/evaluation/estimate_run.h"
+#include "tools/report/pictures.h"
 #include "vo/odometry.h"
 
 namespace vobench {
 
+// Whether frame `index` of so many is kept as a picture: some two dozen, evenly spread.
+bool IsKept(std::int64_t index, std::int64_t frames);
+
 class Recorder {
  public:
-  // With a folder, about ten of `frames` frames are kept there as pictures; the folder is made. Without one, none.
+  // With a folder, those of `frames` frames that IsKept are kept there as pictures; the folder is made. Without one,
+  // none.
   Recorder(std::int64_t frames, std::optional<std::filesystem::path> folder);
   // For frames without images.
   explicit Recorder(std::optional<std::filesystem::path> folder);
@@ -26,14 +31,14 @@ class Recorder {
 
   const evaluation::EstimateRun& run() const { return run_; }
 
-  // estimate.txt, covariance.txt, frames.csv and landmarks.csv, in the folder given at first. Throws
-  // std::runtime_error.
+  // estimate.txt, covariance.txt, frames.csv, landmarks.csv and (of frames with images) pictures.json, in the folder
+  // given at first. Throws std::runtime_error.
   void Write(const std::vector<vo::MapPoint>& map) const;
 
  private:
   std::optional<std::filesystem::path> folder_;
-  std::int64_t picture_every_ = 1;
-  std::int64_t added_ = 0;
+  std::int64_t frames_ = 0;
+  report::KeptPictures pictures_;
   evaluation::EstimateRun run_;
 };
 

@@ -12,12 +12,15 @@
 #include "tools/vobench/commands.h"
 #include "tools/vobench/errors.h"
 #include "tools/vobench/experiment.h"
+#include "tools/vobench/live_view.h"
+#include "tools/vobench/map_file.h"
 #include "tools/vobench/parallel.h"
 #include "tools/vobench/prior.h"
 #include "tools/vobench/progress.h"
 #include "tools/vobench/result.h"
 #include "tools/vobench/run_common.h"
 #include "tools/vobench/tracker.h"
+#include "tools/vobench/truth_pictures.h"
 
 namespace vobench {
 namespace {
@@ -41,22 +44,22 @@ std::vector<Tracker> MakeTrackers(const RunOptions& options, const Experiment& e
 }
 
 std::vector<report::JudgedRun> Judge(const std::vector<Tracker>& trackers, const Truth& truth,
-                                     const PriorSettings& prior) {
+                                     const evaluation::JudgeOptions& how) {
   std::vector<report::JudgedRun> judged;
   for (const Tracker& tracker : trackers) {
-    judged.push_back({tracker.entry(),
-                      evaluation::Judge(tracker.estimates(), truth.poses, truth.velocities, JudgeOptionsOf(prior))});
+    judged.push_back({tracker.entry(), evaluation::Judge(tracker.estimates(), truth.poses, truth.velocities, how)});
   }
   return judged;
 }
 
 void Write(OutputFolder& folder, const std::vector<Tracker>& trackers, const Truth& truth,
-           const std::vector<report::JudgedRun>& judged, report::RunDescription description) {
+           const TruthPictures& truth_pictures, const std::vector<report::JudgedRun>& judged, report::RunDescription description) {
   for (const Tracker& tracker : trackers) {
     tracker.Write();
     WriteTruth(folder.path() / tracker.entry().path, truth);
     description.runs.push_back(tracker.entry());
   }
+  truth_pictures.Write(folder.path());
   WriteResult(folder.path(), description, judged);
   folder.Commit();
 }
@@ -65,6 +68,7 @@ void Write(OutputFolder& folder, const std::vector<Tracker>& trackers, const Tru
 
 void Run(const RunOptions& options) {
   const Clock clock;
+  if (options.map) RequireMapPath(*options.map);
   const Experiment experiment = ReadExperiment(options.scenario, options.overrides);
   if (experiment.scenario.points) return RunOnPoints(options, experiment, clock);
   if (options.bound) throw BadInput("--bound is for worlds of points: " + options.scenario.string() + " has images");
@@ -74,18 +78,31 @@ void Run(const RunOptions& options) {
   sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, options.jobs); });
   PrintWarnings(simulator.warnings());
   std::vector<Tracker> odometries = MakeTrackers(options, experiment, simulator, folder);
+  std::optional<LiveView> view;
+  if (options.view) view.emplace(Describe(options, experiment, simulator.warnings(), clock));
+  const evaluation::JudgeOptions how = JudgeOptionsOf(experiment.prior);
   Truth truth;
+  TruthPictures truth_pictures;
   {
     Progress progress("running", simulator.frame_count());
     while (const std::optional<sim::Frame> rendered = simulator.Next()) {
       const vo::Frame frame = ToOdometry(*rendered);
       Append(rendered->stamp_ns, rendered->truth, truth);
+      if (folder && IsKept(rendered->index, simulator.frame_count())) truth_pictures.Add(simulator, rendered->index);
       ForEach(odometries, options.jobs, [&](Tracker& odometry) { odometry.Track(frame); });
+      if (view) view->Update(odometries, truth, how);
       progress.Step();
     }
   }
-  const std::vector<report::JudgedRun> judged = Judge(odometries, truth, experiment.prior);
-  if (folder) Write(*folder, odometries, truth, judged, Describe(options, experiment, simulator.warnings(), clock));
+  if (view) view->Show(odometries, truth, how);
+  const std::vector<report::JudgedRun> judged = Judge(odometries, truth, how);
+  for (const Tracker& tracker : odometries) {
+    if (options.map) WriteMap(MapPathOf(*options.map, tracker.entry(), odometries.size() > 1), tracker.map());
+  }
+  if (folder) {
+    Write(*folder, odometries, truth, truth_pictures, judged,
+          Describe(options, experiment, simulator.warnings(), clock));
+  }
   fmt::print("{}", report::TextSummary(judged));
   if (folder) fmt::print("The report is in {}\n", (*options.output / "report.html").string());
 }

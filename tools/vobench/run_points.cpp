@@ -12,6 +12,7 @@
 #include "tools/vobench/anees_table.h"
 #include "tools/vobench/bridge.h"
 #include "tools/vobench/errors.h"
+#include "tools/vobench/map_file.h"
 #include "tools/vobench/parallel.h"
 #include "tools/vobench/point_bound.h"
 #include "tools/vobench/point_tracker.h"
@@ -82,6 +83,10 @@ void Play(const RunOptions& options, const Experiment& experiment, const Folder&
                                          options.verdict ? kExactRuns : 0, run.seed);
     }
     if (options.verdict) run.judged_frames = recorder.Finish(run.errors, run.nees, run.seed);
+  }
+  if (options.map) {
+    const bool several = options.systems.size() > 1 || options.runs > 1;
+    WriteMap(MapPathOf(*options.map, tracker.entry(), several), tracker.map());
   }
   if (!folder) return;
   tracker.Write();
@@ -165,6 +170,7 @@ void RunOnPoints(const RunOptions& options, const Experiment& experiment, const 
   for (const auto& [key, value] : options.overrides) {
     if (key == "seed") throw BadInput("--set seed=" + value + ": each run has a world of its own; say --seed " + value);
   }
+  if (options.view) throw BadInput("--view is for runs on images: worlds of points are done in seconds");
   if (options.verdict && options.runs < 10) {
     throw BadInput(fmt::format("--verdict needs 10 runs or more, not {}: say --runs 100", options.runs));
   }
@@ -203,8 +209,15 @@ void RunOnPoints(const RunOptions& options, const Experiment& experiment, const 
     evaluation::WriteWhole(folder->path() / "anees.csv", AneesCsv(systems));
     if (options.verdict) {
       std::string table = "system,check,value,relation,threshold,pass,false_alarm\n";
-      for (const SystemVerdict& v : verdicts) table += VerdictCsv(v.system, v.verdict);
+      std::vector<report::RankTable> ranks;
+      for (const SystemVerdict& v : verdicts) {
+        table += VerdictCsv(v.system, v.verdict);
+        const auto own = RankTables(v.system, rank_frames, v.verdict);
+        ranks.insert(ranks.end(), own.begin(), own.end());
+        description.verdicts.push_back(VerdictSentence(v.system, setting, v.verdict));
+      }
       evaluation::WriteWhole(folder->path() / "verdict.csv", table);
+      evaluation::WriteWhole(folder->path() / "ranks.csv", report::RanksCsv(ranks));
     }
     WriteResult(folder->path(), description, judged);
     folder->Commit();

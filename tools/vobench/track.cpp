@@ -6,6 +6,9 @@
 #include "tools/report/text_summary.h"
 #include "tools/vobench/commands.h"
 #include "tools/vobench/errors.h"
+#include "tools/vobench/interrupt.h"
+#include "tools/vobench/live_view.h"
+#include "tools/vobench/map_file.h"
 #include "tools/vobench/odometry_settings.h"
 #include "tools/vobench/output_folder.h"
 #include "tools/vobench/prior.h"
@@ -13,11 +16,14 @@
 #include "tools/vobench/result.h"
 #include "tools/vobench/sequence_truth.h"
 #include "tools/vobench/tracker.h"
-#include "vo/sequence/reader.h"
+#include "vo/geometry/camera_file.h"
+#include "vo/sequence/source.h"
 
 namespace vobench {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr std::int64_t kFramesOfACamera = 3000;  // nobody knows: pictures are kept at every 300th frame
 
 struct TrackSettings {
   vo::Params params;
@@ -43,6 +49,10 @@ TrackSettings ReadSettings(const TrackOptions& options) {
 
 vo::Camera ReadCamera(const TrackOptions& options) {
   if (options.camera) return vo::CameraFrom(*options.camera);
+  if (!fs::is_directory(options.sequence)) {
+    throw BadInput(fmt::format("{}: a video says nothing of its camera; say which one with --camera PRESET|FILE",
+                               options.sequence.string()));
+  }
   const fs::path file = options.sequence / "camera.yaml";
   const fs::path euroc = options.sequence / "mav0/cam0/sensor.yaml";
   if (!fs::exists(file) && fs::exists(euroc)) return vo::ReadCamera(euroc);
@@ -83,27 +93,40 @@ evaluation::JudgeOptions StartedAtTheOrigin() {
 
 void Track(const TrackOptions& options) {
   const Clock clock;
-  vo::SequenceReader sequence = Input([&] { return vo::SequenceReader(options.sequence); });
+  if (options.map) RequireMapPath(*options.map);
+  const std::unique_ptr<vo::FrameSource> source = Input([&] { return vo::OpenFrames(options.sequence.string()); });
   vo::Camera camera = Input([&] { return ReadCamera(options); });
   const TrackSettings settings = Input([&] { return ReadSettings(options); });
   camera.fx *= 1 + settings.prior.focal_error;
   camera.fy *= 1 + settings.prior.focal_error;
   const std::optional<Truth> truth = Input([&] { return ReadSequenceTruth(options.sequence); });
-  const auto frames = static_cast<std::int64_t>(sequence.size());
+  const std::optional<std::int64_t> frames = source->Count();
   OutputFolder out(options.output, kResultMarker, ResultNames());
 
-  Tracker tracker({options.system, options.seed, settings.params, PriorAtOrigin(settings.prior)}, camera, frames,
+  Tracker tracker({options.system, options.seed, settings.params, PriorAtOrigin(settings.prior)}, camera, frames.value_or(kFramesOfACamera),
                   out.path(), ".");
+  report::RunDescription description;
+  description.title = fs::weakly_canonical(options.sequence).filename().string();
+  description.input = options.sequence.string();
+  description.command = options.command_line;
+  description.started_utc = clock.started_utc();
+  std::optional<LiveView> view;
+  if (options.view) view.emplace(description);
+  const Truth shown = view && truth ? *truth : Truth{};
   {
-    Progress progress("tracking", frames);
-    while (const std::optional<vo::Frame> frame = Input([&] { return sequence.Next(); })) {
+    Progress progress("tracking", frames.value_or(0));
+    if (!frames) fmt::print(stderr, "Ctrl-C ends it, and the result is written.\n");
+    while (const std::optional<vo::Frame> frame = Input([&] { return source->Next(); })) {
+      if (!frames && InterruptPending()) break;
       tracker.Track(*frame);
+      if (view) view->Update({&tracker, 1}, shown, StartedAtTheOrigin());
       progress.Step();
     }
   }
+  if (view) view->Show({&tracker, 1}, shown, StartedAtTheOrigin());
   tracker.Write();
+  if (!frames) fmt::print(stderr, "{} frames came too fast and were let go\n", source->Dropped());
 
-  report::RunDescription description;
   std::vector<report::JudgedRun> judged;
   if (truth) {
     try {
@@ -115,15 +138,12 @@ void Track(const TrackOptions& options) {
       fmt::print(stderr, "vobench: not judged: {}\n", error.what());
     }
   }
-  description.title = fs::weakly_canonical(options.sequence).filename().string();
-  description.input = options.sequence.string();
-  description.command = options.command_line;
-  description.started_utc = clock.started_utc();
   description.seconds = clock.seconds();
   description.settings = Record(camera, settings.resolved);
   description.versions = Versions();
   description.runs = {tracker.entry()};
   WriteResult(out.path(), description, judged);
+  if (options.map) WriteMap(*options.map, tracker.map());
   out.Commit();
 
   fmt::print("{}The report is in {}\n", report::TextSummary(judged), (options.output / "report.html").string());

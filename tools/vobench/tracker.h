@@ -33,6 +33,7 @@ class Tracker {
   // The files of the run folder, but for the truth. Throws std::runtime_error.
   void Write() const { recorder_.Write(odometry_.Map()); }
 
+  std::vector<vo::MapPoint> map() const { return odometry_.Map(); }
   const report::RunEntry& entry() const { return entry_; }
   const evaluation::EstimateRun& estimates() const { return recorder_.run(); }
 

@@ -3,9 +3,9 @@
 //          neither is estimated from the image: a corner is described as it lies, and looked for as the predicted pose
 //          turns and scales it.
 // Method:  in a window every pixel has the same pattern, so that a place of the pattern is one box filter with fixed
-//          weights along a row of pixels (integral image), and a comparison is one instruction for 8, 16 or 32 of them.
-//          Which instructions the machine has is found out when the program starts; all is done in integers and comes
-//          out the same.
+//          weights along a row of pixels: from the integral image, first down every column, then across. A comparison is
+//          one instruction for 8, 16 or 32 pixels. Which instructions the machine has is found out when the program
+//          starts; all of them give the same bits.
 // Units:   pixels.
 #pragma once
 
@@ -41,12 +41,12 @@ class BriskSampler {
   // Pixels nearer to the edge of the image than this cannot be described.
   int margin() const { return margin_; }
 
-  // A square with fractional borders, relative to the pixel: weights of its corners, edges and inside (fixed point).
+  // A square with fractional borders, relative to the pixel.
   struct Box {
-    int left, top, width, height;                    // of the first corner; of the inside
-    int corner_00, corner_10, corner_11, corner_01;  // (left, top), (right, top), (right, bottom), (left, bottom)
-    int edge_left, edge_top, edge_right, edge_bottom;
-    int inside;
+    int left, top, width, height;  // of the first corner; of the inside
+    int in_top, in_bottom;         // how much of the first and last row is in the square, in 256ths
+    float in_left, in_right;       // of the first and last column
+    float per_area;                // 1 / area of it all
   };
   const std::array<Box, kBriskPoints>& boxes() const { return boxes_; }
 

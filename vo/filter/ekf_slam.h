@@ -40,6 +40,7 @@ class EkfSlam final : public Filter {
   Eigen::Vector3d ModeOf(int landmark) const override { return landmarks_[landmark].mean; }
   Pose AnchorOf(int landmark) const override { return anchors_[anchor_of_[landmark]]; }
   std::vector<LandmarkBelief> LandmarkBeliefs() const override;
+  std::vector<std::optional<PointMoments>> LandmarkPoints() const override;
   const Belief& belief() const override { return belief_; }
   const std::vector<BeliefComponent>& mixture() const override { return mixture_; }
   double effective_particles() const override { return 1; }

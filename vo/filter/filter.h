@@ -3,6 +3,7 @@
 // Frames:  poses T_WC; image points on the plane z = 1 of an undistorted camera.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "vo/filter/pose_gaussian.h"
 #include "vo/filter/proposal.h"
 #include "vo/map/landmark.h"
+#include "vo/map/point_moments.h"
 
 namespace vo {
 
@@ -52,6 +54,9 @@ class Filter {
     double relative_sigma;      // inverse_depth_sigma / inverse_depth, but for what all landmarks have in common: the scale
   };
   virtual std::vector<LandmarkBelief> LandmarkBeliefs() const = 0;
+  // Where the landmarks are in the world: mean and covariance over all that the filter holds possible, each landmark linearised at
+  // its mean. What is not yet known to lie in front (inverse depth not positive) in all of that has no moments.
+  virtual std::vector<std::optional<PointMoments>> LandmarkPoints() const = 0;
   // The filter's answer: moments of its mixture.
   virtual const Belief& belief() const = 0;
   // The mixture itself; empty before the first Update.

@@ -62,6 +62,7 @@ class ParticleFilter final : public Filter {
   Pose AnchorOf(int landmark) const override { return Heaviest().anchors[anchor_of_[landmark]]; }
 
   std::vector<LandmarkBelief> LandmarkBeliefs() const override;
+  std::vector<std::optional<PointMoments>> LandmarkPoints() const override;
   // The filter's answer: moments of the mixture over particles of the pose just before it is sampled, and the velocity with it.
   const Belief& belief() const override { return belief_; }
   // The mixture itself; empty before the first Update.

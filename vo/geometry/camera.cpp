@@ -1,13 +1,10 @@
 #include "vo/geometry/camera.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 
 #include <Eigen/LU>
-
-#include "tools/settings/settings.h"
 
 namespace vo {
 namespace {
@@ -118,83 +115,6 @@ Camera CameraPreset(const std::string& name) {
     throw std::invalid_argument("unknown camera preset '" + name + "': expected freiburg1, freiburg2, freiburg3 or icl");
   }
   return camera;
-}
-
-namespace {
-
-// sensor.yaml of EuRoC.
-void ReadEurocCamera(settings::Section& root, Camera& camera) {
-  enum class Model { pinhole } model = Model::pinhole;
-  std::array<double, 2> size{};
-  std::array<double, 4> intrinsics{};
-  std::vector<double> distortion;
-  root.RequireChoice("camera_model", model, {{"pinhole", Model::pinhole}});
-  root.RequireChoice("distortion_model", camera.lens, {{"radial-tangential", Lens::radial_tangential}, {"equidistant", Lens::fisheye}});
-  if (root.Require("resolution", size, settings::Unit::none, settings::Range::Positive())) {
-    camera.width = static_cast<int>(size[0]);
-    camera.height = static_cast<int>(size[1]);
-  }
-  if (root.Require("intrinsics", intrinsics)) {
-    camera.fx = intrinsics[0];
-    camera.fy = intrinsics[1];
-    camera.cx = intrinsics[2];
-    camera.cy = intrinsics[3];
-    if (!(camera.fx > 0 && camera.fy > 0)) root.Reject("intrinsics", "'intrinsics': fu and fv must be positive");
-  }
-  if (root.Require("distortion_coefficients", distortion)) {
-    const bool fisheye = camera.lens == Lens::fisheye;
-    if (distortion.size() == 4) {
-      camera.k1 = distortion[0];
-      camera.k2 = distortion[1];
-      (fisheye ? camera.k3 : camera.p1) = distortion[2];
-      (fisheye ? camera.k4 : camera.p2) = distortion[3];
-    } else {
-      root.Reject("distortion_coefficients", "'distortion_coefficients' must be 4 numbers: k1, k2, p1, p2, or k1 ... k4 of an equidistant lens");
-    }
-  }
-  root.IgnoreRest();
-}
-
-}  // namespace
-
-Camera ReadCamera(const std::filesystem::path& file) {
-  Camera camera;
-  settings::Document document = settings::Document::FromFile(file);
-  settings::Section root = document.root();
-  if (root.Has("intrinsics")) {
-    ReadEurocCamera(root, camera);
-    document.ThrowIfBad();
-    return camera;
-  }
-  root.Require("width", camera.width, settings::Range::Positive());
-  root.Require("height", camera.height, settings::Range::Positive());
-  root.Require("fx", camera.fx, settings::Unit::pixel, settings::Range::Positive());
-  root.Require("fy", camera.fy, settings::Unit::pixel, settings::Range::Positive());
-  root.Require("cx", camera.cx, settings::Unit::pixel);
-  root.Require("cy", camera.cy, settings::Unit::pixel);
-  settings::Section lens = root.Child("distortion");
-  lens.ReadChoice("model", camera.lens, {{"radial_tangential", Lens::radial_tangential}, {"fisheye", Lens::fisheye}});
-  lens.Read("k1", camera.k1);
-  lens.Read("k2", camera.k2);
-  if (camera.lens == Lens::fisheye) {
-    lens.Read("k3", camera.k3);
-    lens.Read("k4", camera.k4);
-  } else {
-    lens.Read("p1", camera.p1);
-    lens.Read("p2", camera.p2);
-    lens.Read("k3", camera.k3);
-  }
-  document.ThrowIfBad();
-  return camera;
-}
-
-Camera CameraFrom(const std::string& preset_or_file) {
-  if (std::filesystem::exists(preset_or_file)) return ReadCamera(preset_or_file);
-  try {
-    return CameraPreset(preset_or_file);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(std::string(error.what()) + ", or a camera file that exists");
-  }
 }
 
 Eigen::Matrix2d PixelNoise(const Eigen::Matrix2d& lens, double sigma_px) {

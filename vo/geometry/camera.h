@@ -1,9 +1,8 @@
-// Purpose: the camera as the odometry knows it: pinhole with radial-tangential distortion, or fisheye; presets and files.
+// Purpose: the camera as the odometry knows it: pinhole with radial-tangential distortion, or fisheye; presets.
 // Source:  docs/conventions.md, "Camera model" (the models of OpenCV, TUM RGB-D and Kalibr).
 // Units:   pixels; the centre of the first pixel is (0, 0). Rays are in C, on the plane z = 1.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include <Eigen/Core>
@@ -36,10 +35,6 @@ struct Camera {
 
 // "freiburg1|freiburg2|freiburg3" (TUM RGB-D), "icl" (ICL-NUIM). Throws std::invalid_argument naming the presets.
 Camera CameraPreset(const std::string& name);
-// camera.yaml of docs/sequence_format.md, or sensor.yaml of a camera of EuRoC. Throws settings::Error with file:line:column of every problem.
-Camera ReadCamera(const std::filesystem::path& file);
-// A preset's name or a file.
-Camera CameraFrom(const std::string& preset_or_file);
 
 // The covariance of a pixel, seen on the plane z = 1. `lens` = d pixel / d(plane z = 1), Camera::LensJacobian.
 Eigen::Matrix2d PixelNoise(const Eigen::Matrix2d& lens, double sigma_px);

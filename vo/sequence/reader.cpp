@@ -86,9 +86,12 @@ cv::Mat ReadImage(const fs::path& file) {
   if (!EndsAsItShould(bytes)) throw std::runtime_error(file.string() + ": image breaks off before its end");
   const cv::Mat image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
   if (image.empty()) throw std::runtime_error(file.string() + ": not an image that can be decoded");
-  if (image.depth() != CV_8U || (image.channels() != 1 && image.channels() != 3))
-    throw std::runtime_error(file.string() + ": expected an 8-bit grey or colour image");
-  return image;
+  if ((image.depth() != CV_8U && image.depth() != CV_16U) || (image.channels() != 1 && image.channels() != 3))
+    throw std::runtime_error(file.string() + ": expected a grey or colour image of 8 or 16 bits");
+  if (image.depth() == CV_8U) return image;
+  cv::Mat bytes_of_it;
+  image.convertTo(bytes_of_it, CV_8U, 255.0 / 65535);
+  return bytes_of_it;
 }
 
 }  // namespace

@@ -58,6 +58,18 @@ TEST_F(CampaignFileTest, ReadsAllOfIt) {
   EXPECT_THAT(c.tables[0].rows, ElementsAre("scenario", "exposure", "light"));
 }
 
+TEST_F(CampaignFileTest, NumbersOfOthersAreTakenAsTheyAreWritten) {
+  const Campaign c = Read(std::string(kFull) +
+                          "tables: [{metric: ate_m, unit: cm, rows: [scenario], beside: [{name: the paper, values: "
+                          "{a: 5.50, bee: \"0.25 (lost)\"}}]}]\n");
+  ASSERT_EQ(c.tables.size(), 1u);
+  EXPECT_EQ(c.tables[0].unit_in_si, 0.01);
+  ASSERT_EQ(c.tables[0].beside.size(), 1u);
+  EXPECT_EQ(c.tables[0].beside[0].name, "the paper");
+  EXPECT_EQ(c.tables[0].beside[0].values.at("a"), "5.50");
+  EXPECT_EQ(c.tables[0].beside[0].values.at("bee"), "0.25 (lost)");
+}
+
 TEST_F(CampaignFileTest, TaskNumbersAreMixedRadixWithTheSeedSlowest) {
   const Campaign c = Read(kFull);
   std::int64_t k = 0;
@@ -107,7 +119,8 @@ vary:
 systems: [rb2fp, {name: rbpf, set: {sensor.exposure: 1 ms}}]
 seeds: [5..3, x, 7, 7]
 judge: {align: sim4, lost: {pose_coverage: 2}}
-tables: [{metric: ate, rows: [exposure], columns: [system, system]}]
+tables: [{metric: ate, rows: [exposure], columns: [system, system]}, {metric: ate_m, rows: [scenario], unit: ms, beside: [{name: p, values: {b: 3}}]},
+  {metric: ate_m, rows: [scenario, x], beside: [{name: p, values: {a: 3}}]}]
 tabels: []
 )");
   for (const char* expected :
@@ -117,6 +130,7 @@ tabels: []
         "c.yaml:6:36: 'sensor.exposure': a system changes settings under 'odometry' and 'prior' only",
         "'5..3' is no range", "'x'", "'seeds': one is there twice", "c.yaml:8:16: 'judge.align': 'sim4' is not known",
         "'judge.lost.pose_coverage': ", "there is no metric 'ate'", "there is no 'exposure'", "'system' is there twice",
+        "'tables.1.unit': 'ms' is not known", "there is no scenario 'b'; there are a, a", "'beside' needs exactly one name in 'rows'",
         "unknown key 'tabels'; did you mean 'tables'?"}) {
     EXPECT_THAT(said, HasSubstr(expected));
   }

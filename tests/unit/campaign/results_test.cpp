@@ -91,6 +91,17 @@ TEST(Table, QuartilesCountLostRunsAsWorseThanAnyNumber) {
   EXPECT_THAT(Latex({table}), HasSubstr("4\\_ms & $\\times$ [$\\times$, $\\times$] \\\\\n"));
 }
 
+TEST(Table, HasItsUnitAndTheNumbersOfOthers) {
+  const std::vector<TaskRecord> records = {Sample(0, Status::ok, 0.04), Sample(1, Status::lost, 0.1)};
+  TableSpec spec{"ate_m", "ATE [cm]", {"blur"}, {"system"}};
+  spec.unit_in_si = 0.01;
+  spec.beside = {{"paper", {{"0 ms", "5.59"}, {"4_ms", "X"}}}, {"other", {{"4_ms", "7"}}}};
+  const Table table = MakeTable(Small(), spec, records);
+  EXPECT_THAT(Markdown({table}), HasSubstr("| blur | rbpf | paper | other |\n|---|---:|---:|---:|\n"
+                                           "| 0 ms | 4 | 5.59 | - |\n| 4_ms | X | X | 7 |\n"));
+  EXPECT_THAT(Latex({table}), HasSubstr("4\\_ms & $\\times$ & $\\times$ & 7 \\\\\n"));
+}
+
 TEST(Table, FailedTasksAreNoRunsAndAreCounted) {
   const Campaign c = Small();
   const std::vector<TaskRecord> records = {Sample(0, Status::ok, 4),     Sample(1, Status::failed, 0),

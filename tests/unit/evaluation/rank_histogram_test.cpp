@@ -24,6 +24,7 @@ TEST(RankHistogram, UnevenBinsExpectWhatTheyAreWide) {
   // Ranks 0 ... 4 in two bins: three and two of the five.
   const RankHistogram histogram = HistogramOfRanks({0, 1, 2, 3, 4}, 4, 2);
   EXPECT_EQ(histogram.counts, (std::vector<int>{3, 2}));
+  EXPECT_NEAR(histogram.shares[0], 0.6, 1e-12);
   EXPECT_NEAR(histogram.chi2, 0, 1e-12);
 }
 

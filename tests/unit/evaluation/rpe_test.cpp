@@ -4,7 +4,7 @@
 
 #include "tests/unit/evaluation/random.h"
 #include "tools/evaluation/alignment.h"
-#include "tools/evaluation/rpe_tum.h"
+#include "tools/evaluation/compat/tum_rpe.h"
 
 namespace evaluation {
 namespace {
@@ -84,7 +84,8 @@ TEST(ComputeRpe, OrderMatters) {
   matched.estimate = matched.truth;
   matched.estimate[1].q_WC = Exp(Eigen::Vector3d(0, 0, 0.1));
   EXPECT_NEAR(ComputeRpe(matched, {{0, 1}}).position[0], 0, 1e-15);
-  const Rpe tum = ComputeTumRpeByFrames(matched.estimate, matched.truth, 1);
+  const Rpe tum = compat::ComputeTumRpe(matched.estimate, matched.truth,
+                                        {.fixed_delta = true, .unit = compat::TumDeltaUnit::frames});
   ASSERT_EQ(tum.pairs.size(), 1u);  // the pair that ends at the last pose is dropped
   EXPECT_NEAR(tum.position[0], 2 * std::sin(0.05), 1e-12);
   EXPECT_NEAR(tum.orientation[0], 0.1, 1e-12);

@@ -5,6 +5,7 @@
 
 #include "tests/unit/evaluation/random.h"
 #include "tools/evaluation/text_file.h"
+#include "tools/report/pictures.h"
 
 namespace report {
 namespace {
@@ -85,6 +86,15 @@ std::string Landmarks(TestRandom& random) {
   return text;
 }
 
+FeatureMark FakeFeature(int i, TestRandom& random) {
+  FeatureMark mark;
+  mark.status = static_cast<FeatureMark::Status>(i % 4);
+  mark.predicted = {640 * random.Uniform(), 480 * random.Uniform()};
+  mark.pixel = mark.predicted + Eigen::Vector2d(random.Normals(2));
+  mark.covariance << 9, 2, 2, 4;
+  return mark;
+}
+
 // The smallest JPEG there is: one grey pixel.
 const unsigned char kJpeg[] = {
     0xFF, 0xD8, 0xFF, 0xDB, 0x00, 0x43, 0x00, 0x03, 0x02, 0x02, 0x02, 0x02, 0x02, 0x03, 0x02, 0x02, 0x02, 0x03,
@@ -117,11 +127,15 @@ std::vector<JudgedRun> WriteFakeResult(const std::filesystem::path& out, const F
       ev::WriteEstimateRun(folder, run);
       ev::WriteWhole(folder / "landmarks.csv", Landmarks(random));
       if (options.pictures) {
-        for (int k = 9; k < options.frames; k += options.frames / 10 + 1) {
-          ev::WriteWhole(
-              folder / "frames" / (ev::FormatSeconds(run.trajectory[static_cast<std::size_t>(k)].stamp_ns) + ".jpg"),
-              std::string(reinterpret_cast<const char*>(kJpeg), sizeof kJpeg));
+        KeptPictures kept{640, 480, {}};
+        for (int k = 4; k < options.frames; k += options.frames / 12 + 1) {
+          KeptPicture& picture = kept.pictures.emplace_back();
+          picture.stamp_ns = run.trajectory[static_cast<std::size_t>(k)].stamp_ns;
+          for (int i = 0; i < 40; ++i) picture.features.push_back(FakeFeature(i, random));
+          ev::WriteWhole(folder / PicturePath(picture.stamp_ns),
+                         std::string(reinterpret_cast<const char*>(kJpeg), sizeof kJpeg));
         }
+        WritePictures(folder, kept);
       }
       if (options.truth) {
         ev::Trajectory truth;

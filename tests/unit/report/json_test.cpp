@@ -25,6 +25,7 @@ RunDescription Sample() {
   d.settings = "a: 1\nb: é\n";
   d.versions = {{"vobench", "0.1.0"}};
   d.notes = {"a gap of 1.2 s was coasted"};
+  d.verdicts = {"it is consistent"};
   d.runs = {{"rb2pf", 18446744073709551615u, "rb2pf/seed_18446744073709551615", 3.25}, {"rbpf", 0, ".", 0}};
   return d;
 }
@@ -46,8 +47,8 @@ TEST(RunJson, ReadsBackTheSame) {
   WriteRunJson(folder.path(), d);
   const RunDescription back = ReadRunJson(folder.path());
   EXPECT_EQ(std::tie(back.title, back.input, back.command, back.started_utc, back.seconds, back.settings, back.versions,
-                     back.notes),
-            std::tie(d.title, d.input, d.command, d.started_utc, d.seconds, d.settings, d.versions, d.notes));
+                     back.notes, back.verdicts),
+            std::tie(d.title, d.input, d.command, d.started_utc, d.seconds, d.settings, d.versions, d.notes, d.verdicts));
   ASSERT_EQ(back.runs.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(std::tie(back.runs[i].system, back.runs[i].seed, back.runs[i].path, back.runs[i].seconds),

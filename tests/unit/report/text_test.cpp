@@ -7,7 +7,6 @@
 #include "tests/unit/evaluation/temporary_folder.h"
 #include "tests/unit/report/fake_result.h"
 #include "tools/report/text_summary.h"
-#include "tools/report/ticks.h"
 
 namespace report {
 namespace {
@@ -39,32 +38,6 @@ TEST(Text, Base64) {
                               {"foobar", "Zm9vYmFy"}};
   for (const auto& [plain, coded] : vectors) EXPECT_EQ(Base64(plain), coded);
   EXPECT_EQ(Base64("\xff\xfe\xfd"), "//79");
-}
-
-std::vector<std::string> Texts(const std::vector<Tick>& ticks) {
-  std::vector<std::string> texts;
-  for (const Tick& tick : ticks) texts.push_back(tick.text);
-  return texts;
-}
-
-TEST(Ticks, AreRoundAndInside) {
-  EXPECT_THAT(Texts(LinearTicks(0, 6, 6)), testing::ElementsAre("0", "2", "4", "6"));
-  EXPECT_THAT(Texts(LinearTicks(-0.031, 0.029, 3)), testing::ElementsAre("−0.02", "0.00", "0.02"));
-  EXPECT_THAT(Texts(LogTicks(0.05, 2000, 5)), testing::ElementsAre("0.1", "1", "10", "100", "1000"));
-  EXPECT_THAT(Texts(LogTicks(0.3, 7, 5)), testing::ElementsAre("0.5", "1", "2", "5"));
-  EXPECT_TRUE(LinearTicks(1, 1, 5).empty());
-  EXPECT_TRUE(LogTicks(0, 1, 5).empty());
-  for (double low = -3; low < 3; low += 0.37) {
-    for (double size = 1e-6; size < 1e6; size *= 3.3) {
-      const auto ticks = LinearTicks(low, low + size, 5);
-      EXPECT_GE(ticks.size(), 3u) << low << " " << size;
-      EXPECT_LE(ticks.size(), 9u) << low << " " << size;
-      for (const Tick& tick : ticks) {
-        EXPECT_GE(tick.value, low - 1e-6 * size);
-        EXPECT_LE(tick.value, low + size * (1 + 1e-6));
-      }
-    }
-  }
 }
 
 TEST(TextSummary, ShowsMediansOfEachSystemAndTheBaselines) {

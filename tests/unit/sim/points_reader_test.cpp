@@ -104,7 +104,7 @@ TEST(PointsReader, APointWorldIsNotRendered) {
     Simulator simulator(scenario, 1);
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "p: a world of points has no images");
+    EXPECT_STREQ(error.what(), "p: a world of points has no images; `vobench run` plays it");
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "vo/geometry/camera.h"
+#include "vo/geometry/camera_file.h"
 #include "vo/geometry/so3.h"
 
 namespace {

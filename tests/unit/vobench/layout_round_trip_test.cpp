@@ -11,8 +11,10 @@
 
 #include "sim/sequence/writer.h"
 #include "tests/unit/sim/small_world.h"
+#include "tools/vobench/bridge.h"
 #include "tools/vobench/sequence_truth.h"
 #include "vo/geometry/camera.h"
+#include "vo/geometry/camera_file.h"
 #include "vo/sequence/reader.h"
 
 namespace vobench {
@@ -60,6 +62,24 @@ TEST_P(LayoutRoundTrip, StampsImagesAndPosesAreThoseOfTheSimulator) {
 
 INSTANTIATE_TEST_SUITE_P(All, LayoutRoundTrip, testing::Values(sim::Layout::tum, sim::Layout::euroc, sim::Layout::icl),
                          [](const auto& instance) { return sim::ToString(instance.param); });
+
+// The odometry sees the same bytes whether frames come by memory or by file, with every depth of the converter.
+TEST(DeepSequences, AreReadAsTheyAreHandedOver) {
+  for (const int bits : {8, 9, 12, 16}) {
+    const sim::SmallWorld world;
+    const sim::Simulator simulator(
+        sim::LoadScenario(world.scenario(), {{"sensor.bit_depth", std::to_string(bits)}}), 2);
+    vo::SequenceReader reader(Written(world, simulator, sim::Layout::tum));
+    for (std::int64_t k = 2; k < 9; ++k) {
+      const vo::Frame handed = ToOdometry(simulator.Render(k));
+      const std::optional<vo::Frame> read = reader.Next();
+      ASSERT_TRUE(read);
+      ASSERT_EQ(read->image.type(), CV_8UC3);
+      EXPECT_EQ(cv::norm(read->image, handed.image, cv::NORM_INF), 0) << bits << " bits, frame " << k;
+      EXPECT_GT(cv::norm(read->image, cv::NORM_INF), 100) << "it is not dark";
+    }
+  }
+}
 
 TEST(EurocLayout, HasTheCameraWithItsLens) {
   const sim::SmallWorld world;

@@ -1,11 +1,5 @@
 // The example of docs/point_world.md, as it stands there: a test reads the page.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
+#include "tests/unit/vobench/example_in_docs.h"
 
 // [example]
 #include "tools/vobench/point_bench.h"
@@ -27,24 +21,13 @@ TEST(MyFilter, KeepsToTwoMetresInARoomOfPoints) {
 }
 // [example]
 
+namespace vobench {
 namespace {
 
-namespace fs = std::filesystem;
-
-std::string Read(const fs::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 TEST(PointExample, StandsInTheDocsAsItIsCompiled) {
-  const fs::path root = VOBENCH_SOURCE_DIR;
-  const std::string source = Read(root / "tests/unit/vobench/point_example_test.cpp"), mark = "// [example]\n";
-  const std::size_t from = source.find(mark) + mark.size();
-  const std::string example = source.substr(from, source.find(mark, from) - from);
-  ASSERT_GT(example.size(), 500u);
-  EXPECT_NE(Read(root / "docs/point_world.md").find("```cpp\n" + example + "```\n"), std::string::npos)
-      << "docs/point_world.md must have, between ```cpp and ```:\n"
-      << example;
+  ExpectInDocs("tests/unit/vobench/point_example_test.cpp", "docs/point_world.md");
+  ExpectInDocs("tests/system/outside/own_filter_test.cpp", "docs/point_world.md");
 }
 
 }  // namespace
+}  // namespace vobench

@@ -97,5 +97,25 @@ TEST(VerdictSentence, SaysWhatIsWrong) {
   EXPECT_FALSE(Verdict(2).honest());
 }
 
+// Of Binomial(100, 1/10) P(<= 4) = 0.0237, P(<= 5) = 0.0576, P(<= 15) = 0.9601, P(<= 16) = 0.9794: 5 to 16.
+TEST(RankTables, HaveTheBandOfAnHonestBar) {
+  evaluation::ConsistencyVerdict verdict;
+  verdict.rank_histograms.resize(24);  // two frames of twelve dimensions
+  evaluation::RankHistogram& histogram = verdict.rank_histograms[12 + 7];
+  histogram.counts = {10, 12, 8, 10, 10, 10, 10, 10, 10, 10};
+  histogram.shares.assign(10, 0.1);
+  histogram.runs = 100;
+  histogram.p_value = 0.75;
+  const std::vector<report::RankTable> tables = RankTables("rb2pf", {29, 59}, verdict);
+  ASSERT_EQ(tables.size(), 1u);
+  EXPECT_EQ(tables[0].frame, 60u);
+  EXPECT_EQ(tables[0].dimension, "linear velocity y");
+  EXPECT_EQ(tables[0].counts[1], 12);
+  for (std::size_t bar = 0; bar < 10; ++bar) {
+    EXPECT_EQ(tables[0].low[bar], 5);
+    EXPECT_EQ(tables[0].high[bar], 16);
+  }
+}
+
 }  // namespace
 }  // namespace vobench

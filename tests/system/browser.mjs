@@ -1,0 +1,35 @@
+// What tests in a headless Chromium have in common: the program, the browser, an empty folder.
+// Arguments: VOBENCH MODULES [SHOTS]     MODULES has node_modules; SHOTS is a folder for pictures
+// Exit:  77 where there is no Chromium.
+import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { delimiter, join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+
+export const [program, modules, shots] = process.argv.slice(2).map((path) => resolve(path));
+const load = createRequire(resolve(modules, "package.json"));
+const { chromium } = load("playwright-core");
+export const axe = load.resolve("axe-core/axe.min.js");
+export const scenes = fileURLToPath(new URL("../../scenes", import.meta.url));
+export const here = mkdtempSync(join(tmpdir(), "vobench-report-page-"));
+process.on("exit", () => rmSync(here, { recursive: true, force: true }));
+
+const flags = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+
+// `check` with a browser that has nothing of its own.
+export async function withBrowser(check) {
+  const executablePath = ["chromium", "chromium-browser", "google-chrome"]
+    .flatMap((name) => process.env.PATH.split(delimiter).map((folder) => join(folder, name)))
+    .find((path) => existsSync(path));
+  if (!executablePath) {
+    console.log("skipped: there is no Chromium on PATH (Debian's package is chromium)");
+    process.exit(77);
+  }
+  const browser = await chromium.launch({ executablePath, args: flags });
+  try {
+    await check(browser);
+  } finally {
+    await browser.close();
+  }
+}

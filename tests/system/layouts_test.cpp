@@ -1,0 +1,98 @@
+// What the program writes is what others read: trajectories by TUM's rules, sequences that are the same in each layout.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include "tests/system/program.h"
+
+namespace vobench::system_test {
+namespace {
+namespace fs = std::filesystem;
+
+// TUM's rules: comments begin with '#'; every other line is `timestamp tx ty tz qx qy qz qw`, eight numbers separated
+// by single spaces; time increases; quaternions are unit. evo, TUM's scripts and most others read such a file without
+// options. What is wrong, or nothing.
+std::string AgainstTumsRules(const std::string& text) {
+  std::istringstream lines(text);
+  double last = -INFINITY;
+  int number = 0, poses = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string where = "line " + std::to_string(++number) + ": ";
+    if (line.starts_with('#')) continue;
+    std::istringstream words(line);
+    double values[8];
+    int count = 0;
+    for (std::string word; std::getline(words, word, ' '); ++count) {
+      char* end = nullptr;
+      const double value = std::strtod(word.c_str(), &end);
+      if (word.empty() || *end != '\0' || !std::isfinite(value)) return where + "'" + word + "' is not a number";
+      if (count < 8) values[count] = value;
+    }
+    if (count != 8) return where + std::to_string(count) + " columns";
+    if (!(values[0] > last)) return where + "time does not increase";
+    last = values[0];
+    const double norm = std::hypot(std::hypot(values[4], values[5]), std::hypot(values[6], values[7]));
+    if (std::abs(norm - 1) > 1e-9) return where + "the quaternion is not unit";
+    ++poses;
+  }
+  return poses > 0 ? "" : "no pose";
+}
+
+TEST(TumRules, TheCheckItselfRejects) {
+  const std::string good = "# t x y z\n1.0 0 0 0 0 0 0 1\n1.5 0 0 0 0 0.6 0 0.8\n";
+  EXPECT_EQ(AgainstTumsRules(good), "");
+  EXPECT_NE(AgainstTumsRules("# nothing\n"), "");
+  EXPECT_NE(AgainstTumsRules(good + "1.5 0 0 0 0 0 0 1\n"), "");
+  EXPECT_NE(AgainstTumsRules(good + "2 0 0 0 0 0 1\n"), "");
+  EXPECT_NE(AgainstTumsRules(good + "2 0 0 0 0 0 0 1 1\n"), "");
+  EXPECT_NE(AgainstTumsRules(good + "2 0 0 0 0 0 0 1.001\n"), "");
+  EXPECT_NE(AgainstTumsRules(good + "2,0,0,0,0,0,0,1\n"), "");
+  EXPECT_NE(AgainstTumsRules(good + "2 0 nan 0 0 0 0 1\n"), "");
+  EXPECT_NE(AgainstTumsRules(good + "timestamp tx ty tz qx qy qz qw\n"), "");
+}
+
+class LayoutsTest : public testing::Test {
+ protected:
+  Outcome Run(const std::vector<std::string>& arguments) {
+    const Outcome outcome = RunVobench(arguments, here_.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome;
+  }
+  void ExpectTum(const std::string& file) { EXPECT_EQ(AgainstTumsRules(ReadFile(here_ / file)), "") << file; }
+  TemporaryFolder here_;
+};
+
+TEST_F(LayoutsTest, OneSequenceInEachLayoutGivesOneEstimate) {
+  for (const std::string layout : {"tum", "euroc", "icl"}) {
+    Run({"render", TinyScenario().string(), "-o", layout, "--format", layout, "--frames", "0:8"});
+    Run({"track", layout, "-o", "out_" + layout, "--map", layout + ".ply"});
+  }
+  ExpectTum("tum/groundtruth.txt");
+  for (const std::string name : {"estimate.txt", "covariance.txt", "truth.txt"}) {
+    const std::string of_tum = ReadFile(here_ / "out_tum" / name);
+    EXPECT_EQ(of_tum, ReadFile(here_ / "out_euroc" / name)) << name;
+    if (name != "covariance.txt") ExpectTum("out_tum/" + name);
+    if (name != "covariance.txt") ExpectTum("out_icl/" + name);
+  }
+  EXPECT_EQ(ReadFile(here_ / "tum.ply"), ReadFile(here_ / "euroc.ply"));
+  EXPECT_THAT(ReadFile(here_ / "tum.ply"), testing::StartsWith("ply\nformat ascii 1.0\n"));
+}
+
+TEST_F(LayoutsTest, EveryRunOfSeveralLeavesTrajectoriesByTheRulesAndAMap) {
+  const std::string points = (TinyScenario().parent_path() / "points.yaml").string();
+  Run({"run", points, "-o", "out", "--runs", "2", "--map", "map.ply", "--set", "time.duration=0.3 s"});
+  for (const std::string seed : {"1", "2"}) {
+    ExpectTum("out/rb2pf/seed_" + seed + "/estimate.txt");
+    ExpectTum("out/rb2pf/seed_" + seed + "/truth.txt");
+    EXPECT_TRUE(fs::exists(here_ / ("map_rb2pf_seed_" + seed + ".ply")));
+  }
+  EXPECT_FALSE(fs::exists(here_ / "map.ply"));
+  const Outcome evo =
+      Run({"evaluate", "out/rb2pf/seed_1", "--truth", "out/rb2pf/seed_1/truth.txt", "--compat", "evo ape -a"});
+  EXPECT_THAT(evo.out, testing::StartsWith("APE w.r.t. translation part (m)\n(with SE(3) Umeyama alignment)\n\n"));
+}
+
+}  // namespace
+}  // namespace vobench::system_test

@@ -1,0 +1,292 @@
+// What a user can do wrong, and what is then said: what, where and what to do. The table below triggers a message of
+// every source file that can speak to a user without a broken machine; message_sites.txt says why the others cannot,
+// and a file that begins to throw and is in neither fails the test.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "tests/system/program.h"
+
+namespace vobench::system_test {
+namespace {
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+fs::path Root() { return VOBENCH_SOURCE_DIR; }
+
+struct Message {
+  std::string source;  // that says it
+  Words arguments;     // TINY and POINTS stand for the two small scenarios
+  Words says;          // all of these: what is wrong, where it stands, what would be right
+};
+
+// In a folder with the files of SpoiltFiles().
+const std::vector<Message>& Messages() {
+  static const std::vector<Message> all = {
+      // Settings: file, line and column, or the --set that is at fault; nearest key, range or choice.
+      {"tools/settings/settings.cpp", {"check", "broken.yaml"}, {"broken.yaml:2:1", "not valid YAML"}},
+      {"tools/settings/settings.cpp", {"check", "nowhere.yaml"}, {"nowhere.yaml", "cannot be read", "No such file"}},
+      {"tools/settings/settings.cpp",
+       {"check", "TINY", "--set", "camera.width=3 s"},
+       {"--set camera.width", "'3 s'", "whole number"}},
+      {"tools/settings/settings.cpp",
+       {"check", "TINY", "--set", "camera.widht=3"},
+       {"--set camera.widht", "did you mean 'width'"}},
+      {"tools/settings/settings.cpp",
+       {"check", "TINY", "--set", "prior.start=here"},
+       {"--set prior.start", "'here'", "known: truth, origin"}},
+      {"tools/settings/settings.cpp",
+       {"track", "pictures", "-o", "o", "--camera", "half.yaml"},
+       {"half.yaml", "missing key 'height'", "missing key 'cy'"}},
+      // Scenario, motion, world, sensor.
+      {"sim/motion/make.cpp",
+       {"check", "TINY", "--set",
+        "world.objects=[{file: room/parcel.obj, trajectory: {type: scripted, keys: [{time: 0 s, position: [0, 0, 0], "
+        "orientation: [0, 0, 0, 1]}, {time: 0.1 s, position: [0, 0, 1], orientation: [0, 0, 0, 1]}]}}]"},
+       {"world.objects", "0.1"}},
+      {"sim/motion/path.cpp",
+       {"check", "TINY", "--set",
+        "trajectory={type: half_sphere, start: {position: [2, 1.4, 2], look_at: [2, 1, 1]}, center: [2, 1, 2], sweep: "
+        "90 deg, period: 5 s, rise: 60 deg, rise_period: 8 s}"},
+       {"--set trajectory", "pivot is straight above or below"}},
+      {"sim/motion/recorded.cpp",
+       {"check", "TINY", "--set", "trajectory={type: recorded, file: FOLDER/nan.txt}"},
+       {"nan.txt:2", "nan"}},
+      {"sim/motion/sampled.cpp",
+       {"check", "TINY", "--set",
+        "trajectory={type: sampled, start: {position: [2, 1.4, 3], look_at: [2, 1, 1]}, position_noise: 0.5, "
+        "orientation_noise: 0.1, walls: {low: [0, 0, 0], high: [1, 3, 4]}}"},
+       {"start position = 2", "within the walls"}},
+      {"sim/sensor/camera.cpp",
+       {"check", "TINY", "--set", "camera.distortion.k1=-3"},
+       {"--set camera.distortion.k1", "folds over inside the image"}},
+      {"sim/sensor/sensor.cpp",
+       {"render", "TINY", "-o", "o", "--set", "sensor.jpeg_quality=300"},
+       {"--set sensor.jpeg_quality", "= 300", "0 ... 100"}},
+      {"sim/sensor/auto_exposure.cpp",
+       {"check", "TINY", "--set", "sensor.auto_exposure={on: true, shortest: 30 ms, longest: 1 ms}"},
+       {"auto_exposure.longest = 0.001", "not be below shortest"}},
+      {"sim/sensor/vignetting.cpp",
+       {"check", "TINY", "--set", "sensor.optics.vignetting_2=-3"},
+       {"vignetting", "pixel (0, 0)", "below 0", "nearer to 0"}},
+      {"sim/simulator.cpp", {"render", "POINTS", "-o", "o"}, {"a world of points has no images", "vobench run"}},
+      {"sim/world/scene.cpp",
+       {"check", "TINY", "--set", "world.meshes=[{file: nothere.obj}]"},
+       {"nothere.obj", "no such file"}},
+      {"sim/world/mesh_file.cpp",
+       {"check", "TINY", "--set", "world.meshes=[{file: FOLDER/broken.obj}]"},
+       {"broken.obj", "vertex index out of range"}},
+      {"sim/world/image_file.cpp",
+       {"check", "TINY", "--set", "world.meshes=[{file: FOLDER/textured.obj}]"},
+       {"cut.png"}},
+      {"sim/world/sky.cpp",
+       {"check", "TINY", "--set", "world.lights=[{type: sky, file: none.hdr}]"},
+       {"none.hdr", "cannot be opened"}},
+      {"sim/world/light.cpp",
+       {"render", "TINY", "-o", "o", "--set", "render.light=baked", "--set", "world.lights=FLICKERS"},
+       {"world.lights"}},
+      {"sim/world/point_world.cpp",
+       {"run", "POINTS", "--set", "world.points.count=0"},
+       {"--set world.points.count", "count = 0", "1 ... 1000000"}},
+      {"sim/light/bake.cpp",
+       {"check", "TINY", "--set", "render.light=baked", "--set", "render.bake.spacing=0.01 mm"},
+       {"--set render.bake.spacing", "not above spacing"}},
+      {"sim/render/ray_tracer.cpp",
+       {"check", "TINY", "--set", "render.rays_per_time_sample=0"},
+       {"rays_per_time_sample", "0"}},
+      {"sim/sequence/content.cpp",
+       {"render", "TINY", "-o", "o", "--format", "icl", "--set", "time.rate=24"},
+       {"time.rate = 24 Hz", "must be 30 Hz"}},
+      {"sim/sequence/writer.cpp", {"render", "TINY", "-o", "taken", "--frames", "0:2"}, {"taken", "is there"}},
+      // Sequences, cameras.
+      {"vo/sequence/reader.cpp", {"track", "nowhere", "-o", "o"}, {"nowhere", "no such folder"}},
+      {"vo/sequence/reader.cpp", {"track", "empty", "-o", "o"}, {"empty/rgb.txt", "docs/sequence_format.md"}},
+      {"vo/sequence/reader.cpp",
+       {"track", "lists", "-o", "o", "--camera", "icl"},
+       {"lists/rgb.txt:2", "does not increase over line 1", "rgb.txt:3: expected 'timestamp filename'"}},
+      {"vo/sequence/reader.cpp",
+       {"track", "pictures", "-o", "o", "--camera", "icl"},
+       {"pictures/a.png", "breaks off before its end"}},
+      {"vo/geometry/camera.cpp",
+       {"track", "pictures", "-o", "o", "--camera", "freiburg9"},
+       {"'freiburg9'", "freiburg1, freiburg2, freiburg3 or icl"}},
+      {"vo/estimate.cpp",
+       {"run", "POINTS", "--set", "odometry.motion.position_noise=-1"},
+       {"odometry.motion.position_noise", "-1"}},
+      {"tools/vobench/track.cpp", {"track", "pictures", "-o", "o"}, {"camera.yaml", "--camera PRESET|FILE"}},
+      // Trajectories.
+      {"tools/evaluation/text_file.cpp",
+       {"evaluate", "nowhere.txt", "--truth", "one.txt"},
+       {"nowhere.txt", "cannot be opened"}},
+      {"tools/evaluation/trajectory.cpp",
+       {"evaluate", "nan.txt", "--truth", "one.txt"},
+       {"nan.txt:2:5", "'nan' is not a finite number"}},
+      {"tools/evaluation/trajectory.cpp",
+       {"evaluate", "comments.txt", "--truth", "one.txt"},
+       {"comments.txt", "holds no pose"}},
+      {"tools/evaluation/association.cpp",
+       {"evaluate", "one.txt", "--truth", "nine.txt"},
+       {"the estimate covers 1.0", "the truth 9.0", "gap allowed"}},
+      {"tools/evaluation/compat/evo.cpp",
+       {"evaluate", "line.txt", "--truth", "line.txt", "--compat", "evo ape -a"},
+       {"on one line", "leave out -a"}},
+      {"tools/evaluation/compat/openvins.cpp",
+       {"evaluate", "one.txt", "--truth", "nine.txt", "--compat", "ov se3"},
+       {"less than two poses in common"}},
+      {"tools/evaluation/compat/tum_rpe.cpp",
+       {"evaluate", "one.txt", "--truth", "nine.txt", "--compat", "tum rpe"},
+       {"no pair of poses is left"}},
+      {"tools/vobench/compat.cpp",
+       {"evaluate", "one.txt", "--truth", "one.txt", "--compat", "kitti"},
+       {"'kitti'", "tum [ate|rpe], evo ape|rpe, rpg, ov MODE"}},
+      {"tools/vobench/evaluate.cpp", {"evaluate", "one.txt", "--truth", "empty"}, {"empty", "groundtruth.txt"}},
+      // Outputs.
+      {"tools/vobench/output_folder.cpp",
+       {"run", "TINY", "-o", "taken"},
+       {"taken", "not made by this command", "choose another name"}},
+      {"tools/vobench/output_folder.cpp", {"run", "TINY", "-o", "one.txt"}, {"one.txt", "no folder"}},
+      {"tools/vobench/map_file.cpp", {"run", "POINTS", "--map", "map.txt"}, {"--map map.txt", "must end in .ply"}},
+      {"tools/vobench/map_file.cpp",
+       {"run", "POINTS", "--map", "no/map.ply"},
+       {"--map no/map.ply", "no folder no", "make it first"}},
+      {"tools/vobench/render.cpp",
+       {"render", "TINY", "-o", "o", "--frames", "100:200"},
+       {"--frames 100:200", "0 to 29"}},
+      {"tools/vobench/arguments.cpp",
+       {"render", "TINY", "-o", "o", "--frames", "5"},
+       {"--frames", "'5'", "A:B with 0 <= A < B"}},
+      {"tools/vobench/arguments.cpp",
+       {"check", "TINY", "--set", "camera.width"},
+       {"--set", "'camera.width' is not key=value"}},
+      {"tools/vobench/run.cpp", {"run", "TINY", "--bound"}, {"--bound is for worlds of points", "tiny.yaml"}},
+      {"tools/vobench/run_points.cpp",
+       {"run", "POINTS", "--verdict", "--runs", "3"},
+       {"10 runs or more, not 3", "--runs 100"}},
+      {"tools/vobench/point_bound.cpp",
+       {"run", "POINTS", "--bound", "--set", "time.duration=0.1 s", "--set", "world.points.measurement.noise=0"},
+       {"no Cramer-Rao bound", "no noise"}},
+      {"tools/vobench/experiment.cpp",
+       {"check", "TINY", "--set", "odometry.filter.particles=-2"},
+       {"--set odometry.filter.particles", "'-2'", "1 ... "}},
+      {"tools/vobench/report.cpp", {"report", "nowhere"}, {"nowhere/run.json", "cannot be opened"}},
+      {"tools/verification/files.cpp", {"verify", "nowhere"}, {"nowhere/rgb.txt", "is not there, and is needed"}},
+#ifdef VOBENCH_ROSBAG
+      {"tools/vobench/export.cpp", {"export", "nowhere", "--bag", "one.txt"}, {"--bag one.txt", "choose another name"}},
+#else
+      {"tools/vobench/export.cpp",
+       {"export", "nowhere", "--bag", "b.bag"},
+       {"without rosbag", "librosbag-storage-dev"}},
+#endif
+      // Campaigns.
+      {"tools/campaign/plan.cpp",
+       {"campaign", "campaign.yaml", "-o", "o"},
+       {"campaign.yaml:2:", "no system 'nosuch'", "there are rb2pf", "'3..1' is no range"}},
+  };
+  return all;
+}
+
+class MessagesTest : public testing::Test {
+ protected:
+  void SpoiltFiles() {
+    const std::string pose = " 0 0 0 0 0 0 1\n";
+    WriteFile(here_ / "one.txt", "1" + pose);
+    WriteFile(here_ / "nine.txt", "9" + pose);
+    WriteFile(here_ / "nan.txt", "1.0" + pose + "1.1 nan 0 0 0 0 0 1\n1.2" + pose);
+    WriteFile(here_ / "comments.txt", "# nothing\n");
+    WriteFile(here_ / "line.txt", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n3 2 0 0 0 0 0 1\n");
+    WriteFile(here_ / "broken.yaml", "a: [1, 2\n");
+    WriteFile(here_ / "half.yaml", "{width: 3, fx: 1}\n");
+    WriteFile(here_ / "broken.obj", "v 0 0 0\nf 1 2 9\n");
+    WriteFile(here_ / "textured.obj", "mtllib t.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+    WriteFile(here_ / "t.mtl", "newmtl m\nmap_Kd cut.png\n");
+    WriteFile(here_ / "cut.png", "\x89PNG\r\n\x1a\n");
+    WriteFile(here_ / "taken" / "thesis.tex", "years of work");
+    fs::create_directory(here_ / "empty");
+    WriteFile(here_ / "lists" / "rgb.txt", "0.1 a.png\n0.1 b.png\n0.2\n");
+    WriteFile(here_ / "pictures" / "rgb.txt", "0.1 a.png\n");
+    WriteFile(here_ / "pictures" / "a.png", "x");
+    WriteFile(here_ / "campaign.yaml",
+              "scenarios: [{file: " + TinyScenario().string() + "}]\nsystems: [nosuch]\nseeds: 3..1\n");
+  }
+  std::string Filled(std::string word) const {
+    std::string lamps;  // each flickers in its own way: more than can be baked
+    for (int i = 0; i < 40; ++i) {
+      lamps +=
+          "{type: point, position: [0, 2.5, 0], intensity: [1, 1, 1], flicker: {frequency: " + std::to_string(50 + i) +
+          " Hz, depth: 0.3, phase: 0 deg}}, ";
+    }
+    const std::pair<std::string, std::string> stands_for[] = {
+        {"TINY", TinyScenario().string()},
+        {"POINTS", (TinyScenario().parent_path() / "points.yaml").string()},
+        {"FOLDER", here_.path().string()},
+        {"FLICKERS", "[" + lamps + "]"}};
+    for (const auto& [name, value] : stands_for) {
+      if (const std::size_t at = word.find(name); at != std::string::npos) word.replace(at, name.size(), value);
+    }
+    return word;
+  }
+  TemporaryFolder here_;
+};
+
+TEST_F(MessagesTest, EachSaysWhatAndWhereAndWhatToDoAndLeavesNothing) {
+  SpoiltFiles();
+  const auto before = Tree(here_.path());
+  for (const Message& message : Messages()) {
+    Words arguments;
+    for (const std::string& word : message.arguments) arguments.push_back(Filled(word));
+    const Outcome outcome = RunVobench(arguments, here_.path());
+    const std::string what = message.source + ": " + testing::PrintToString(message.arguments);
+    EXPECT_EQ(outcome.status, 2) << what << outcome.err;
+    for (const std::string& words : message.says) EXPECT_THAT(outcome.err, testing::HasSubstr(words)) << what;
+    EXPECT_TRUE(Tree(here_.path()) == before) << what << " left something behind";
+  }
+}
+
+// "FILE: why no row above triggers it".
+std::map<std::string, std::string> Excused() {
+  std::map<std::string, std::string> excused;
+  std::istringstream lines(ReadFile(Root() / "tests/system/message_sites.txt"));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line.starts_with('#')) continue;
+    const std::size_t colon = line.find(": ");
+    EXPECT_NE(colon, std::string::npos) << line;
+    excused[line.substr(0, colon)] = line.substr(colon + 2);
+  }
+  return excused;
+}
+
+TEST(MessageSites, EveryFileThatThrowsIsTriggeredOrSaysWhyNot) {
+  std::set<std::string> triggered;
+  for (const Message& message : Messages()) triggered.insert(message.source);
+  std::map<std::string, std::string> excused = Excused();
+  const std::regex throws("\\n[^\\n/]*\\bthrow (?!std::logic_error)[A-Za-z]");
+  std::set<std::string> throwing;
+  for (const char* folder : {"sim", "vo", "tools"}) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(Root() / folder)) {
+      const std::string extension = entry.path().extension();
+      if (extension != ".cpp" && extension != ".h" && extension != ".inc") continue;
+      if (std::regex_search(ReadFile(entry.path()), throws)) {
+        throwing.insert(fs::relative(entry.path(), Root()).string());
+      }
+    }
+  }
+  ASSERT_GT(throwing.size(), 50u);
+  for (const std::string& file : throwing) {
+    bool known = triggered.contains(file);
+    for (const auto& [name, why] : excused)
+      known = known || file == name || (name.ends_with('/') && file.starts_with(name));
+    EXPECT_TRUE(known)
+        << file << " throws: add what triggers it to messages_test.cpp, or why nothing does to message_sites.txt";
+  }
+  for (const auto& [name, why] : excused) {
+    EXPECT_TRUE(fs::exists(Root() / name)) << name;
+    EXPECT_GT(why.size(), 10u) << name;
+  }
+}
+
+}  // namespace
+}  // namespace vobench::system_test

@@ -1,0 +1,63 @@
+// A report while its run runs (--view): the page grows, says when the program has ended, and what the program leaves is the same
+// without it. tests/unit/vobench/live_server_test.cpp has who is answered and who is not.
+// Usage: node report_live.mjs VOBENCH MODULES
+// Exit:  0 all good, 1 something is not, 77 no Chromium here.
+import assert from "node:assert/strict";
+import { execFileSync, spawn } from "node:child_process";
+import { once } from "node:events";
+import { readdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+
+import { here, program, scenes, withBrowser } from "./browser.mjs";
+
+await withBrowser(async (browser) => {
+  const words = ["run", join(scenes, "tiny.yaml"), "--system", "rb2pf,rbpf", "--set", "time.rate=480 Hz", "--set", "sensor.exposure=1 ms"];
+  const running = spawn(program, [...words, "-o", "viewed", "--view"], { cwd: here, stdio: ["ignore", "ignore", "pipe"] });
+  const ended = once(running, "exit");
+  let said = "";
+  running.stderr.setEncoding("utf8");
+  running.stderr.on("data", (text) => (said += text));
+  while (!/View: \S+\/\n/.test(said)) {
+    assert.equal(running.exitCode, null, said);
+    await new Promise((done) => setTimeout(done, 20));
+  }
+  const address = said.match(/View: (\S+)/)[1];
+  assert.equal((await fetch(address.replace(/.{3}\/$/, "000/"))).status, 404);
+  assert.equal((await fetch(address, { method: "POST", body: "x" })).status, 405);
+
+  const context = await browser.newContext({ viewport: { width: 1280, height: 900 } });
+  const page = await context.newPage();
+  const complaints = [];
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  await page.goto(address);
+  const points = () =>
+    page.evaluate(() => {
+      const chart = [...(window.vobench?.charts.values() ?? [])].find((c) => c.figure.title === "Position error");
+      return chart ? chart.drawing.getOption().series[0].data.length : 0;
+    }).catch(() => 0); // while it loads anew
+  const counts = new Set();
+  while (running.exitCode === null) {
+    counts.add(await points());
+    await new Promise((done) => setTimeout(done, 200));
+  }
+  const [status] = await ended;
+  assert.equal(status, 0, said);
+  counts.delete(0);
+  assert.ok(counts.size >= 2, `the page had ${[...counts]} points`);
+  await page.locator("#live", { hasText: "The program has ended" }).waitFor({ timeout: 20_000 });
+  assert.deepEqual(complaints, []);
+  await context.close();
+
+  execFileSync(program, [...words, "-o", "unviewed"], { cwd: here, stdio: "ignore" });
+  let compared = 0;
+  for (const entry of readdirSync(join(here, "viewed"), { recursive: true, withFileTypes: true })) {
+    // What has the command line or the time that it took in it.
+    if (!entry.isFile() || ["run.json", "metrics.json", "report.html", "frames.csv"].includes(entry.name)) continue;
+    const file = join(entry.parentPath ?? entry.path, entry.name);
+    assert.ok(readFileSync(file).equals(readFileSync(file.replace("/viewed/", "/unviewed/"))), `${file} depends on --view`);
+    ++compared;
+  }
+  assert.ok(compared > 50, `${compared} files compared`);
+  console.log(`saw ${counts.size} states`);
+});
+

@@ -1,0 +1,302 @@
+// The report in a real browser: every figure has its data, reading, zooming, hiding, sorting and copying work, nothing is
+// loaded, nobody is left out (axe), at 1280 and 400 pixels, in light and dark, on paper and without scripts.
+// Usage: node report_page.mjs VOBENCH MODULES [SHOTS]     MODULES has node_modules; SHOTS is a folder for pictures
+// Exit:  0 all good, 1 something is not, 77 no Chromium here.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { statSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+
+import { axe, here, program, scenes, shots, withBrowser } from "./browser.mjs";
+
+function makePages() {
+  const run = (...words) => execFileSync(program, words, { cwd: here, stdio: ["ignore", "ignore", "inherit"] });
+  run("run", join(scenes, "tiny.yaml"), "-o", "images", "--runs", "2", "--system", "rb2pf,rbpf");
+  run("run", join(scenes, "points.yaml"), "-o", "points", "--runs", "10", "--verdict", "--set", "time.duration=1 s");
+  writeFileSync(
+    join(here, "noise.yaml"),
+    `scenarios: [{file: ${join(scenes, "points.yaml")}, set: {time.duration: 1 s}}]
+vary: [{name: noise, key: world.points.measurement.noise, values: [0.5 px, 2 px, 8 px]}]
+systems: [rb2pf, rbpf]
+seeds: 1..3
+curves: [{along: noise, of: [ate_m, nees_pose_per_dof], break_at: {error: 2 cm}}]
+`,
+  );
+  run("campaign", "noise.yaml", "-o", "campaign");
+  return ["images", "points", "campaign"].map((name) => ({ name, file: join(here, name, "report.html") }));
+}
+
+// A page with all its figures drawn; anything that it complains of or asks for fails.
+async function open(browser, file, options) {
+  const context = await browser.newContext({ viewport: { width: options.width, height: 900 }, colorScheme: options.scheme ?? "light", javaScriptEnabled: options.scripts ?? true });
+  const page = await context.newPage();
+  const complaints = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  page.on("request", (request) => /^(file|data|blob):/.test(request.url()) || complaints.push(`asks for ${request.url()}`));
+  await page.goto(pathToFileURL(file).href);
+  if (options.scripts ?? true) {
+    await page.evaluate(() => {
+      for (const details of document.querySelectorAll("details.figures")) details.open = true;
+      window.vobench.drawAll();
+    });
+    await page.waitForTimeout(300);
+  }
+  return { context, page, complaints };
+}
+
+// Every figure's numbers are in its drawing, and the drawing has marks and ink.
+async function checkFigures(page, name) {
+  const figures = await page.evaluate(() =>
+    window.vobench.figures.map((figure) => {
+      const chart = window.vobench.charts.get(figure.id);
+      if (!chart) return { title: figure.title, drawn: false };
+      const option = chart.drawing.getOption();
+      const wanted = chart.shown();
+      const drawable = (y) => !Number.isNaN(y) && !(figure.y.logarithmic && y <= 0);
+      const finite = (series) => series.x.filter((x, i) => Number.isFinite(x) && drawable(series.y[i])).length;
+      const given = option.series.map((series) => series.data.filter((point) => point.every((v) => v !== null)).length);
+      const svg = chart.element.querySelector("svg");
+      return {
+        title: figure.title,
+        drawn: true,
+        space: figure.kind === "space",
+        series: wanted.map((series, i) => ({ draw: series.draw, finite: finite(series), given: given[i] })),
+        ink: svg.querySelectorAll("path, circle, rect, polygon").length,
+        marks: [...svg.querySelectorAll("text")].map((text) => text.textContent).filter((text) => /\d/.test(text)).length,
+        label: chart.frame.getAttribute("aria-label"),
+        wide: svg.getBoundingClientRect().width,
+      };
+    }),
+  );
+  assert.ok(figures.length >= 3, `${name}: only ${figures.length} figures`);
+  for (const figure of figures) {
+    assert.ok(figure.drawn, `${name}: ${figure.title} is not drawn`);
+    assert.ok(figure.series.length > 0, `${name}: ${figure.title} has no series`);
+    for (const series of figure.series) {
+      assert.ok(series.finite > 0, `${name}: ${figure.title} has an empty series`);
+      if (series.draw === "line" || series.draw === "dots") assert.equal(series.given, series.finite, `${name}: ${figure.title}`);
+    }
+    assert.ok(figure.ink >= figure.series.length, `${name}: ${figure.title} has ${figure.ink} shapes`);
+    if (!figure.space) assert.ok(figure.marks >= 3, `${name}: ${figure.title} has ${figure.marks} marks`);
+    assert.ok(figure.label.includes(figure.title), `${name}: ${figure.title} has no name`);
+    assert.ok(figure.wide > 200, `${name}: ${figure.title} is ${figure.wide} px wide`);
+  }
+  return figures.length;
+}
+
+const fits = (page) => page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth);
+const rangesOf = (page, title) =>
+  page.evaluate((t) => [...window.vobench.charts.values()].find((chart) => chart.figure.title === t).ranges(), title);
+const idOf = (page, title) => page.evaluate((t) => window.vobench.figures.find((figure) => figure.title === t).id, title);
+
+async function checkReadingAndZoom(page) {
+  const frame = page.locator(`#${await idOf(page, "Position error")} .frame`);
+  await frame.scrollIntoViewIfNeeded();
+  const box = await frame.boundingBox();
+  // The last point, read at the right end of the frame.
+  await page.mouse.move(box.x + box.width - 18, box.y + 60);
+  const said = await frame.locator(".readout").innerText();
+  const last = await page.evaluate(() => {
+    const figure = window.vobench.figures.find((f) => f.title === "Position error");
+    const line = figure.series.find((series) => !series.faint);
+    return String(Number(line.y[line.y.length - 1].toPrecision(6)));
+  });
+  assert.ok(said.includes(last), `read '${said}', expected ${last}`);
+
+  const before = await rangesOf(page, "Position error");
+  const other = await rangesOf(page, "NIS of RB-PF");
+  await page.mouse.move(box.x + 120, box.y + 50);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 200, box.y + 150, { steps: 4 });
+  await page.mouse.up();
+  const zoomed = await rangesOf(page, "Position error");
+  assert.ok(zoomed.x.low > before.x.low && zoomed.x.high < before.x.high && zoomed.y.high < before.y.high, "dragging does not zoom");
+  const followed = await rangesOf(page, "NIS of RB-PF");
+  assert.deepEqual(followed.x, zoomed.x, "time is not zoomed together");
+  assert.deepEqual(followed.y, other.y);
+  await page.mouse.dblclick(box.x + 150, box.y + 100);
+  assert.deepEqual(await rangesOf(page, "Position error"), before, "a double click does not show all");
+  assert.deepEqual(await rangesOf(page, "NIS of RB-PF"), other);
+
+  await frame.focus();
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("ArrowRight");
+  assert.match(await page.locator("#status").innerText(), /^time .* s, .*RB²-PF/);
+  await page.keyboard.press("+");
+  const closer = await rangesOf(page, "Position error");
+  assert.ok(closer.x.high - closer.x.low < before.x.high - before.x.low, "the keyboard does not zoom");
+  await page.keyboard.press("0");
+  assert.deepEqual(await rangesOf(page, "Position error"), before);
+}
+
+async function checkTurning(page) {
+  const title = "In space";
+  const place = () =>
+    page.evaluate((t) => {
+      const chart = [...window.vobench.charts.values()].find((c) => c.figure.title === t);
+      const line = chart.figure.series[chart.figure.series.length - 1];
+      return chart.at(line, line.x.length - 1);
+    }, title);
+  const frame = page.locator(`#${await idOf(page, title)} .frame`);
+  await frame.scrollIntoViewIfNeeded();
+  const box = await frame.boundingBox();
+  const before = await place();
+  await page.mouse.move(box.x + 100, box.y + 100);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 180, box.y + 130, { steps: 3 });
+  await page.mouse.up();
+  const turned = await place();
+  assert.ok(Math.hypot(turned[0] - before[0], turned[1] - before[1]) > 1e-3, "dragging does not turn");
+  await page.mouse.dblclick(box.x + 100, box.y + 100);
+  assert.deepEqual(await place(), before);
+}
+
+async function checkHiding(page) {
+  const count = () => page.evaluate(() => [...window.vobench.charts.values()].map((chart) => chart.drawing.getOption().series.length));
+  const before = await count();
+  const button = page.locator(`#${await idOf(page, "Position error")} .legend button`, { hasText: "RB-PF" });
+  await button.click();
+  assert.equal(await button.getAttribute("aria-pressed"), "false");
+  const hidden = await count();
+  assert.ok(hidden.filter((n, i) => n < before[i]).length > 5, "a system is not hidden on the whole page");
+  await button.click();
+  assert.deepEqual(await count(), before);
+}
+
+async function checkTable(page) {
+  const table = page.locator(".table", { has: page.locator("th", { hasText: "ATE [cm]" }) }).first();
+  const column = async () => (await table.locator("tbody td:nth-child(3)").allInnerTexts()).map(Number);
+  const head = table.locator("thead th", { hasText: /^ATE \[cm\]/ }).locator("button");
+  await head.click();
+  const rising = await column();
+  assert.deepEqual(rising, [...rising].sort((a, b) => a - b));
+  await head.click();
+  assert.deepEqual(await column(), [...rising].reverse());
+  const first = (await table.locator("tbody tr").first().locator("th, td").allInnerTexts()).map((text) => text.trim());
+  for (const [format, expected] of [
+    ["CSV", first.join(",")],
+    ["Markdown", `| ${first.join(" | ")} |`],
+    ["LaTeX", first.map((text) => text.replace("²", "\\textsuperscript{2}").replace("–", "--")).join(" & ")],
+  ]) {
+    await table.getByRole("button", { name: format, exact: true }).click();
+    const copied = await page.evaluate(() => navigator.clipboard.readText());
+    assert.ok(copied.includes(expected), `${format}: '${copied.slice(0, 300)}' does not have '${expected}'`);
+  }
+}
+
+async function checkFrames(page) {
+  const holder = page.locator("#frames");
+  const slider = holder.locator("input[type=range]");
+  await slider.focus();
+  const source = () => holder.locator("img").getAttribute("src");
+  const before = await source();
+  await page.keyboard.press("End");
+  assert.notEqual(await source(), before, "the slider shows no other frame");
+  const shapes = () => holder.locator("svg .matched").count();
+  assert.ok((await shapes()) > 3, "no matched feature is drawn");
+  assert.ok((await holder.locator("svg .matched ellipse").count()) > 3, "no innovation ellipse is drawn");
+  await holder.getByRole("button", { name: "matched", exact: true }).click();
+  assert.equal(await shapes(), 0);
+  await holder.getByRole("button", { name: "matched", exact: true }).click();
+  const picture = await source();
+  await holder.getByRole("button", { name: "true depth" }).click();
+  assert.notEqual(await source(), picture, "depth is not shown");
+  assert.match(await holder.locator("figcaption").innerText(), /Depth from [\d.]+ m/);
+  await page.keyboard.press("Home");
+  await slider.focus();
+  await page.keyboard.press("Home");
+  await holder.getByRole("button", { name: "true flow" }).click();
+  assert.match(await holder.locator("figcaption").innerText(), /full colour is [\d.]+ px/);
+  await holder.getByRole("button", { name: "picture", exact: true }).click();
+  const whole = await page.evaluate(() => [...document.querySelectorAll("#frames img")].every((image) => image.complete && image.naturalWidth > 0));
+  assert.ok(whole, "a picture cannot be shown");
+}
+
+async function checkAccessible(page, name) {
+  await page.evaluate(() => window.scrollTo(0, 0));
+  await page.addScriptTag({ path: axe });
+  const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+  assert.deepEqual(violations.map((v) => `${v.id}: ${v.nodes[0].html.slice(0, 200)} (${v.nodes[0].failureSummary})`), [], name);
+}
+
+async function checkPrint(page, name) {
+  const pdf = await page.pdf({ format: "A4", path: join(here, `${name}.pdf`) });
+  assert.ok(pdf.length > 30_000, `${name}: a PDF of ${pdf.length} bytes`);
+}
+
+async function shoot(page, name) {
+  if (!shots) return;
+  await page.evaluate(() => window.scrollTo(0, 0));
+  await page.waitForTimeout(200);
+  await page.screenshot({ path: join(shots, `${name}.png`), fullPage: true });
+}
+
+async function checkPage(browser, { name, file }) {
+  assert.ok(statSync(file).size < 3_000_000, `${name} has ${statSync(file).size} bytes`);
+  for (const options of [{ width: 1280 }, { width: 400 }, { width: 1280, scheme: "dark" }]) {
+    const label = `${name}, ${options.width} px, ${options.scheme ?? "light"}`;
+    const { context, page, complaints } = await open(browser, file, options);
+    const figures = await checkFigures(page, label);
+    assert.ok(await fits(page), `${label}: it must be scrolled sideways`);
+    await shoot(page, `${name}_${options.width}_${options.scheme ?? "light"}`);
+    if (options.width === 1280 && !options.scheme && name === "images") {
+      await context.grantPermissions(["clipboard-read", "clipboard-write"]);
+      await checkReadingAndZoom(page);
+      await checkTurning(page);
+      await checkHiding(page);
+      await checkTable(page);
+      await checkFrames(page);
+    }
+    if (options.scheme === "dark") {
+      const dark = await page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).every((c) => Number(c) < 50));
+      assert.ok(dark, `${label}: it is not dark`);
+    }
+    if (options.width === 1280 && !options.scheme) await checkPrint(page, name);
+    assert.deepEqual(complaints, [], label);
+    await context.close();
+    console.log(`${label}: ${figures} figures`);
+  }
+  // The page's own policy forbids what a test would add to it.
+  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, bypassCSP: true });
+  const page = await context.newPage();
+  await page.goto(pathToFileURL(file).href);
+  await page.evaluate(() => window.vobench.drawAll());
+  for (const scheme of ["light", "dark"]) {
+    await page.emulateMedia({ colorScheme: scheme });
+    await checkAccessible(page, `${name}, ${scheme}`);
+  }
+  await context.close();
+}
+
+async function checkPolicy(browser, { file }) {
+  const { context, page } = await open(browser, file, { width: 1280 });
+  const refused = await page.evaluate(
+    () =>
+      new Promise((resolve) => {
+        document.addEventListener("securitypolicyviolation", (event) => resolve(event.violatedDirective));
+        fetch("http://127.0.0.1:9/").catch(() => {});
+        setTimeout(() => resolve("nothing"), 3000);
+      }),
+  );
+  assert.match(refused, /connect-src|default-src/);
+  await context.close();
+}
+
+async function checkWithoutScripts(browser, { file }) {
+  const { context, page } = await open(browser, file, { width: 1280, scripts: false });
+  assert.ok(await page.locator("table").first().isVisible());
+  assert.ok(await page.locator(".tile").first().isVisible());
+  assert.ok(await page.getByText("Diagrams need scripts").isVisible());
+  assert.equal(await page.locator(".figure:visible").count(), 0);
+  await context.close();
+}
+
+await withBrowser(async (browser) => {
+  const pages = makePages();
+  for (const page of pages) await checkPage(browser, page);
+  await checkPolicy(browser, pages[0]);
+  await checkWithoutScripts(browser, pages[0]);
+});
+console.log("the report is as it should be");

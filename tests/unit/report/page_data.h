@@ -1,0 +1,19 @@
+// Purpose: the data that a page carries, read back as a browser would.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace report {
+
+// What stands in the element "data"; fails the test where the page has none.
+nlohmann::json DataOf(const std::string& html);
+
+// The figure of this title; null where there is none.
+nlohmann::json FigureOf(const nlohmann::json& data, const std::string& title);
+
+// A column's numbers.
+std::vector<float> Column(const nlohmann::json& data, const nlohmann::json& index);
+
+}  // namespace report

@@ -1,0 +1,23 @@
+# vobench_public_library(vobench_NAME [HEADERS file...]): a library that others may link as vobench::NAME, from this build or installed.
+# Its folder's headers, or those named, go to include/vobench under their usual path, so that #include "vo/odometry.h" is right in both.
+# Compiled for any address: the Python module is made of it.
+function(vobench_public_library target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS")
+  string(REPLACE "vobench_" "" name ${target})
+  add_library(vobench::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/vobench>)
+
+  # An export of its own for each: whoever wants the judge needs no Embree.
+  install(TARGETS ${target} EXPORT vobench-${name} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+  install(EXPORT vobench-${name} NAMESPACE vobench:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vobench COMPONENT development)
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  set(destination ${CMAKE_INSTALL_INCLUDEDIR}/vobench/${folder})
+  if(arg_HEADERS)
+    install(FILES ${arg_HEADERS} DESTINATION ${destination} COMPONENT development)
+  else()
+    install(DIRECTORY ./ DESTINATION ${destination} COMPONENT development FILES_MATCHING PATTERN "*.h")
+  endif()
+endfunction()

@@ -1,0 +1,70 @@
+// Purpose: the parts of the Python module, and the types that they share. docs/python.md.
+#pragma once
+
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/simulator.h"
+#include "sim/world/point_world.h"
+#include "tools/evaluation/trajectory.h"
+#include "tools/python/docs.h"
+#include "tools/vobench/experiment.h"
+#include "vo/odometry.h"
+
+namespace vobench::python {
+
+namespace py = pybind11;
+
+// Work during which Python may do something else.
+using Unlocked = py::call_guard<py::gil_scoped_release>;
+
+// A scenario with its odometry: and prior: sections; what is made of it keeps it.
+using Scenario = std::shared_ptr<Experiment>;
+
+// What the judge knows of a frame.
+struct StampedTruth {
+  std::int64_t stamp_ns = 0;
+  sim::Truth truth;
+};
+
+struct Simulator {
+  Scenario scenario;
+  sim::Simulator simulator;
+};
+
+struct PointWorld {
+  Scenario scenario;
+  sim::PointWorld world;
+};
+
+// A class of its own: std::vector would be copied to a list.
+struct Trajectory {
+  evaluation::Trajectory poses;
+};
+
+// (x, y, z, w), as in docs/conventions.md.
+inline Eigen::Vector4d Coefficients(const Eigen::Quaterniond& q) { return q.coeffs(); }
+// Throws std::invalid_argument where it is no rotation.
+Eigen::Quaterniond Rotation(const Eigen::Vector4d& xyzw);
+
+// {"filter.particles": 16} as overrides, with a prefix before each key.
+Overrides OverridesOf(const py::dict& settings, const std::string& prefix = "");
+
+// Each adds classes and functions; in this order, so that signatures name Python's types.
+void AddErrors(py::module_& m);
+void AddScenario(py::module_& m);       // Scenario, Camera, Truth
+void AddWorlds(py::module_& m);         // Simulator, Frame, PointWorld, PointFrame
+void AddSequence(py::module_& m);       // Sequence, ImageFrame
+void AddOdometry(py::module_& m);       // Prior, Estimate, Odometry, PointOdometry
+void AddErrorMeasures(py::module_& m);  // Trajectory, ate, rpe
+void AddConsistency(py::module_& m);    // nees, anees_test, judge, play, test_consistency
+
+}  // namespace vobench::python

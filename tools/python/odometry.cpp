@@ -1,0 +1,211 @@
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "tools/python/module.h"
+#include "tools/vobench/bridge.h"
+#include "tools/vobench/prior.h"
+#include "tools/vobench/systems.h"
+#include "vo/point_odometry.h"
+
+namespace vobench::python {
+namespace {
+
+using Bytes = py::array_t<std::uint8_t, py::array::c_style>;
+using Ids = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+using Pixels = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+vo::Params ParamsOf(const std::string& system, vo::Params params) {
+  const std::vector<std::string>& names = SystemNames();
+  if (std::find(names.begin(), names.end(), system) == names.end()) {
+    throw std::invalid_argument("system = " + system + " is none of " + SystemList());
+  }
+  return ForSystem(system, std::move(params));
+}
+
+// Of the keys of a scenario's section odometry: "filter.particles".
+vo::Params ParamsOf(const std::string& system, const py::dict& settings) {
+  settings::Document document = settings::Document::FromText("{}", "settings");
+  for (const auto& [key, value] : OverridesOf(settings, "odometry.")) document.Override(key, value);
+  vo::Params params;
+  ReadOdometry(document.root().Child("odometry"), params);
+  document.ThrowIfBad();
+  return ParamsOf(system, params);
+}
+
+// As `vobench run` starts it: what it is told of the start is a function of the seed.
+vo::Odometry OdometryOf(const Simulator& simulator, const std::string& system, std::uint64_t seed) {
+  const Experiment& experiment = *simulator.scenario;
+  const vo::Prior prior = PriorOf(experiment.prior, experiment.scenario.motion, TruthOf(simulator.simulator, 0), seed);
+  return {ToOdometry(ToldCamera(experiment)), ParamsOf(system, experiment.odometry), prior, seed};
+}
+
+vo::PointOdometry OdometryOf(const PointWorld& world, const std::string& system, std::optional<std::uint64_t> seed) {
+  const Experiment& experiment = *world.scenario;
+  const std::uint64_t number = seed.value_or(world.world.scenario().seed);
+  return {ToOdometry(ToldCamera(experiment)), ParamsOf(system, experiment.odometry),
+          PriorOf(experiment.prior, world.world, number), number};
+}
+
+vo::Frame FrameOf(std::int64_t stamp_ns, const Bytes& image) {
+  const bool colour = image.ndim() == 3 && image.shape(2) == 3;
+  if (image.ndim() != 2 && !colour)
+    throw std::invalid_argument("an image is an array of (height, width) or (height, width, 3)");
+  const cv::Mat pixels(static_cast<int>(image.shape(0)), static_cast<int>(image.shape(1)), colour ? CV_8UC3 : CV_8UC1,
+                       const_cast<std::uint8_t*>(image.data()));  // only read
+  vo::Frame frame{stamp_ns, {}};
+  if (colour) {
+    cv::cvtColor(pixels, frame.image, cv::COLOR_RGB2BGR);
+  } else {
+    frame.image = pixels.clone();
+  }
+  return frame;
+}
+
+vo::PointFrame FrameOf(std::int64_t stamp_ns, const Ids& ids, const Pixels& pixels) {
+  if (ids.ndim() != 1 || ids.shape(0) != pixels.rows()) {
+    throw std::invalid_argument(std::to_string(ids.size()) + " ids, but " + std::to_string(pixels.rows()) + " pixels");
+  }
+  vo::PointFrame frame{stamp_ns, {}};
+  for (Eigen::Index i = 0; i < pixels.rows(); ++i) frame.observations.push_back({ids.at(i), pixels.row(i)});
+  return frame;
+}
+
+vo::Estimate MakeEstimate(const vo::Matrix12& covariance, const Eigen::Vector3d& p_WC, const Eigen::Vector4d& q_WC,
+                          const Eigen::Vector3d& v_WC, const Eigen::Vector3d& w_WC_C, std::int64_t stamp_ns) {
+  return {stamp_ns, {p_WC, Rotation(q_WC)}, v_WC, w_WC_C, covariance, {}};
+}
+
+py::tuple Particles(const vo::PointOdometry& self) {
+  const std::vector<vo::BeliefComponent>& mixture = self.Mixture();
+  const auto n = static_cast<py::ssize_t>(mixture.size());
+  py::array_t<double> weight(n), p({n, py::ssize_t(3)}), q({n, py::ssize_t(4)}), velocity({n, py::ssize_t(6)}),
+      covariance({n, py::ssize_t(12), py::ssize_t(12)});
+  for (py::ssize_t i = 0; i < n; ++i) {
+    const vo::BeliefComponent& c = mixture[i];
+    weight.mutable_at(i) = c.weight;
+    std::copy_n(c.pose.p_WC.data(), 3, p.mutable_data(i));
+    std::copy_n(c.pose.q_WC.coeffs().data(), 4, q.mutable_data(i));
+    std::copy_n(c.velocity.data(), 6, velocity.mutable_data(i));
+    std::copy_n(c.covariance.data(), 144, covariance.mutable_data(i));  // symmetric
+  }
+  return py::make_tuple(weight, p, q, velocity, covariance);
+}
+
+template <class Self>
+py::tuple Map(const Self& self) {
+  const std::vector<vo::MapPoint> points = self.Map();
+  py::array_t<std::int64_t> ids(static_cast<py::ssize_t>(points.size()));
+  Rows X_W(points.size(), 3);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ids.mutable_at(i) = points[i].id;
+    X_W.row(i) = points[i].X_W;
+  }
+  return py::make_tuple(ids, X_W);
+}
+
+void AddEstimate(py::module_& m) {
+  const auto zero = [] { return Eigen::Vector3d(0, 0, 0); };
+  const Eigen::Vector4d identity(0, 0, 0, 1);
+  py::class_<vo::Prior>(m, "Prior", Doc("vo/odometry.h:Prior"))
+      .def(py::init([](const Eigen::Vector3d& p_WC, const Eigen::Vector4d& q_WC, const Eigen::Vector3d& v_WC,
+                       const Eigen::Vector3d& w_WC_C, const std::optional<vo::Matrix6>& pose_covariance,
+                       const std::optional<vo::Matrix6>& velocity_covariance) {
+             vo::Prior prior{{p_WC, Rotation(q_WC)}, v_WC, w_WC_C};
+             if (pose_covariance) prior.pose_covariance = *pose_covariance;
+             if (velocity_covariance) prior.velocity_covariance = *velocity_covariance;
+             return prior;
+           }),
+           py::kw_only(), py::arg("p_WC") = zero(), py::arg("q_WC") = identity, py::arg("v_WC") = zero(),
+           py::arg("w_WC_C") = zero(), py::arg("pose_covariance") = py::none(),
+           py::arg("velocity_covariance") = py::none())
+      .def_property_readonly(
+          "p_WC", [](const vo::Prior& p) { return p.pose.p_WC; }, "[m]")
+      .def_property_readonly(
+          "q_WC", [](const vo::Prior& p) { return Coefficients(p.pose.q_WC); }, "(x, y, z, w)")
+      .def_readwrite("v_WC", &vo::Prior::v_WC, Doc("vo/odometry.h:Prior::v_WC"))
+      .def_readwrite("w_WC_C", &vo::Prior::w_WC_C, Doc("vo/odometry.h:Prior::w_WC_C"))
+      .def_readwrite("pose_covariance", &vo::Prior::pose_covariance)
+      .def_readwrite("velocity_covariance", &vo::Prior::velocity_covariance);
+  py::class_<vo::FrameDiagnostics>(m, "Diagnostics", "What an odometry did in a frame.")
+      .def_readonly("searched", &vo::FrameDiagnostics::searched, Doc("vo/odometry.h:FrameDiagnostics::searched"))
+      .def_readonly("matched", &vo::FrameDiagnostics::matched, Doc("vo/odometry.h:FrameDiagnostics::matched"))
+      .def_readonly("landmarks", &vo::FrameDiagnostics::landmarks, Doc("vo/odometry.h:FrameDiagnostics::landmarks"))
+      .def_readonly("nis", &vo::FrameDiagnostics::nis, Doc("vo/odometry.h:FrameDiagnostics::nis"))
+      .def_readonly("nis_dof", &vo::FrameDiagnostics::nis_dof)
+      .def_readonly("effective_particles", &vo::FrameDiagnostics::effective_particles,
+                    Doc("vo/odometry.h:FrameDiagnostics::effective_particles"));
+  py::class_<vo::Estimate>(m, "Estimate", "What a filter says after a frame: conventions as in docs/conventions.md.")
+      .def(py::init(&MakeEstimate), py::kw_only(), py::arg("covariance"), py::arg("p_WC") = zero(),
+           py::arg("q_WC") = identity, py::arg("v_WC") = zero(), py::arg("w_WC_C") = zero(), py::arg("stamp_ns") = 0)
+      .def_readwrite("stamp_ns", &vo::Estimate::stamp_ns)
+      .def_property_readonly(
+          "p_WC", [](const vo::Estimate& e) { return e.pose.p_WC; }, "[m]")
+      .def_property_readonly(
+          "q_WC", [](const vo::Estimate& e) { return Coefficients(e.pose.q_WC); }, "(x, y, z, w)")
+      .def_readwrite("v_WC", &vo::Estimate::v_WC, Doc("vo/odometry.h:Estimate::v_WC"))
+      .def_readwrite("w_WC_C", &vo::Estimate::w_WC_C, Doc("vo/odometry.h:Estimate::w_WC_C"))
+      .def_readwrite("covariance", &vo::Estimate::covariance, Doc("vo/odometry.h:Estimate::covariance"))
+      .def_readonly("diagnostics", &vo::Estimate::diagnostics);
+}
+
+}  // namespace
+
+void AddOdometry(py::module_& m) {
+  m.attr("SYSTEMS") = py::tuple(py::cast(SystemNames()));
+  AddEstimate(m);
+  py::class_<vo::Odometry>(m, "Odometry", Doc("vo/odometry.h:"))
+      .def(py::init([](const vo::Camera& camera, const std::string& system, const py::dict& settings,
+                       const vo::Prior& prior,
+                       std::uint64_t seed) { return vo::Odometry(camera, ParamsOf(system, settings), prior, seed); }),
+           py::arg("camera"), py::arg("system") = "rb2pf", py::arg("settings") = py::dict(),
+           py::arg_v("prior", vo::Prior(), "Prior()"), py::arg("seed") = 1, Doc("vo/odometry.h:Odometry::Odometry"))
+      .def_static("of", py::overload_cast<const Simulator&, const std::string&, std::uint64_t>(&OdometryOf),
+                  py::arg("simulator"), py::arg("system") = "rb2pf", py::arg("seed") = 1,
+                  "With the scenario's settings and prior, as `vobench run` has it.")
+      .def(
+          "track", [](vo::Odometry& self, const sim::Frame& frame) { return self.Track(ToOdometry(frame)); },
+          py::arg("frame"), Unlocked(), Doc("vo/odometry.h:Odometry::Track"))
+      .def("track", &vo::Odometry::Track, py::arg("frame"), Unlocked())
+      .def(
+          "track",
+          [](vo::Odometry& self, std::int64_t stamp_ns, const Bytes& image) {
+            const vo::Frame frame = FrameOf(stamp_ns, image);
+            const py::gil_scoped_release unlocked;
+            return self.Track(frame);
+          },
+          py::arg("stamp_ns"), py::arg("image"))
+      .def("map", &Map<vo::Odometry>, "(ids, X_W (n, 3)) of the landmarks in the map [m]");
+  py::class_<vo::PointOdometry>(m, "PointOdometry", Doc("vo/point_odometry.h:"))
+      .def(py::init(
+               [](const vo::Camera& camera, const std::string& system, const py::dict& settings, const vo::Prior& prior,
+                  std::uint64_t seed) { return vo::PointOdometry(camera, ParamsOf(system, settings), prior, seed); }),
+           py::arg("camera"), py::arg("system") = "rb2pf", py::arg("settings") = py::dict(),
+           py::arg_v("prior", vo::Prior(), "Prior()"), py::arg("seed") = 1,
+           Doc("vo/point_odometry.h:PointOdometry::PointOdometry"))
+      .def_static("of",
+                  py::overload_cast<const PointWorld&, const std::string&, std::optional<std::uint64_t>>(&OdometryOf),
+                  py::arg("world"), py::arg("system") = "rb2pf", py::arg("seed") = py::none(),
+                  "With the scenario's settings and prior, as `vobench run` has it; with the world's seed unless told.")
+      .def(
+          "track", [](vo::PointOdometry& self, const sim::PointFrame& frame) { return self.Track(ToOdometry(frame)); },
+          py::arg("frame"), Unlocked(), Doc("vo/point_odometry.h:PointOdometry::Track"))
+      .def(
+          "track",
+          [](vo::PointOdometry& self, std::int64_t stamp_ns, const Ids& ids, const Pixels& pixels) {
+            const vo::PointFrame frame = FrameOf(stamp_ns, ids, pixels);
+            const py::gil_scoped_release unlocked;
+            return self.Track(frame);
+          },
+          py::arg("stamp_ns"), py::arg("ids"), py::arg("pixels"))
+      .def("particles", &Particles,
+           "What the last estimate is the moments of: (weight (n,), p_WC (n, 3), q_WC (n, 4), velocity (n, 6): v in W, "
+           "w in C, "
+           "covariance (n, 12, 12)); empty before the first update.")
+      .def("map", &Map<vo::PointOdometry>, "(ids, X_W (n, 3)) of the landmarks in the map [m]");
+}
+
+}  // namespace vobench::python

@@ -1,0 +1,32 @@
+// Purpose: the pictures of the report, with features and truth: which are shown, and as JSON.
+// Source:  docs/report_data.md.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/report/pictures.h"
+#include "tools/report/result_data.h"
+
+namespace report {
+
+struct ViewedFrame {
+  double t_s = 0;                                  // as in the figures
+  std::string picture, depth, flow;                // JPEG; the latter two empty without truth
+  std::vector<std::vector<FeatureMark>> features;  // [system]
+};
+
+struct FrameViewer {
+  int width = 0, height = 0;  // of the camera's image [px]
+  TruthPictures scale;
+  std::vector<ViewedFrame> frames;
+};
+
+// Of each system's typical run; systems see the same pictures, so one of each stamp is kept. Evenly fewer where all
+// would take more than `bytes`. Throws evaluation::InputError where a picture cannot be read.
+FrameViewer MakeFrameViewer(const std::filesystem::path& out, const ResultData& data, std::size_t bytes);
+
+nlohmann::ordered_json ToJson(const FrameViewer& viewer);
+
+}  // namespace report

@@ -1,0 +1,31 @@
+// Purpose: the report of a run that is not done yet, in a browser on this machine (--view).
+// Source:  docs/report.md, "While it runs".
+#pragma once
+
+#include <span>
+
+#include "tools/evaluation/summary.h"
+#include "tools/report/run_json.h"
+#include "tools/vobench/live_server.h"
+#include "tools/vobench/tracker.h"
+#include "tools/vobench/truth.h"
+
+namespace vobench {
+
+class LiveView {
+ public:
+  // Says on stderr where it is. `description` as in run.json, as far as it is known. Throws std::runtime_error.
+  explicit LiveView(report::RunDescription description);
+
+  // Between two frames: judges what there is and shows it, where somebody has asked since the last time. Nothing of the
+  // run depends on it.
+  void Update(std::span<const Tracker> trackers, const Truth& truth, const evaluation::JudgeOptions& how);
+  // The same whether somebody has asked or not: when all frames are done.
+  void Show(std::span<const Tracker> trackers, const Truth& truth, const evaluation::JudgeOptions& how);
+
+ private:
+  report::RunDescription description_;
+  LiveServer server_;
+};
+
+}  // namespace vobench

@@ -1,0 +1,21 @@
+// Purpose: writes the man page or a shell's completion to stdout: vobench_manual man|bash|zsh|fish. Part of the build.
+#include <cstdio>
+#include <string>
+
+#include "tools/vobench/manual.h"
+#include "tools/vobench/option_table.h"
+
+int main(int argc, char** argv) {
+  const vobench::OptionTable table;
+  const std::string kind = argc == 2 ? argv[1] : "";
+  std::string text;
+  if (kind == "man") text = vobench::ManPage(table.app, VOBENCH_VERSION);
+  if (kind == "bash") text = vobench::BashCompletion(table.app);
+  if (kind == "zsh") text = vobench::ZshCompletion(table.app);
+  if (kind == "fish") text = vobench::FishCompletion(table.app);
+  if (text.empty()) {
+    std::fputs("usage: vobench_manual man|bash|zsh|fish\n", stderr);
+    return 2;
+  }
+  return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0 ? 0 : 1;
+}

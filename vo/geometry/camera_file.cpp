@@ -1,0 +1,228 @@
+#include "vo/geometry/camera_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <opencv2/core.hpp>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "tools/settings/settings.h"
+
+namespace vo {
+namespace {
+
+// In OpenCV's order: k1 k2 p1 p2 [k3] or, of a fisheye lens, k1 k2 k3 k4; what follows must be zero. Else what is wrong.
+std::string SetLens(const std::vector<double>& coefficients, Camera& camera) {
+  const std::size_t most = camera.lens == Lens::fisheye ? 4 : 5;
+  if (coefficients.size() < 4)
+    return "must be k1, k2, p1, p2 and perhaps k3, or k1 ... k4 of an equidistant lens; there are " +
+           std::to_string(coefficients.size()) + " numbers";
+  for (std::size_t i = most; i < coefficients.size(); ++i) {
+    if (coefficients[i] != 0) return "has more than " + std::to_string(most) + " coefficients that are not zero: that lens is not known here";
+  }
+  camera.k1 = coefficients[0];
+  camera.k2 = coefficients[1];
+  const bool fisheye = camera.lens == Lens::fisheye;
+  (fisheye ? camera.k3 : camera.p1) = coefficients[2];
+  (fisheye ? camera.k4 : camera.p2) = coefficients[3];
+  if (!fisheye && coefficients.size() > 4) camera.k3 = coefficients[4];
+  return "";
+}
+
+// 3 x 3, row by row. What is wrong with it.
+std::vector<std::string> SetMatrix(std::span<const double, 9> matrix, Camera& camera) {
+  std::vector<std::string> problems;
+  camera.fx = matrix[0];
+  camera.cx = matrix[2];
+  camera.fy = matrix[4];
+  camera.cy = matrix[5];
+  if (!(camera.fx > 0 && camera.fy > 0)) problems.emplace_back("'camera_matrix': fx and fy must be positive");
+  if (matrix[1] != 0) problems.emplace_back("'camera_matrix': skew is not known here");
+  return problems;
+}
+
+void RequireLens(settings::Section& section, const std::string& key, const std::string& name, Camera& camera) {
+  std::vector<double> coefficients;
+  if (!section.Require(key, coefficients)) return;
+  const std::string problem = SetLens(coefficients, camera);
+  if (!problem.empty()) section.Reject(key, "'" + name + "' " + problem);
+}
+
+// sensor.yaml of EuRoC, and a camera of Kalibr's camchain.yaml: the same keys but for the last.
+void ReadEuroc(settings::Section section, const std::string& coefficients, Camera& camera) {
+  enum class Model { pinhole } model = Model::pinhole;
+  std::array<double, 2> size{};
+  std::array<double, 4> intrinsics{};
+  section.RequireChoice("camera_model", model, {{"pinhole", Model::pinhole}});
+  section.RequireChoice("distortion_model", camera.lens,
+                        {{"radial-tangential", Lens::radial_tangential},
+                         {"radtan", Lens::radial_tangential},
+                         {"none", Lens::radial_tangential},
+                         {"equidistant", Lens::fisheye}});
+  if (section.Require("resolution", size, settings::Unit::none, settings::Range::Positive())) {
+    camera.width = static_cast<int>(size[0]);
+    camera.height = static_cast<int>(size[1]);
+  }
+  if (section.Require("intrinsics", intrinsics)) {
+    camera.fx = intrinsics[0];
+    camera.fy = intrinsics[1];
+    camera.cx = intrinsics[2];
+    camera.cy = intrinsics[3];
+    if (!(camera.fx > 0 && camera.fy > 0)) section.Reject("intrinsics", "'intrinsics': fu and fv must be positive");
+  }
+  RequireLens(section, coefficients, coefficients, camera);
+  section.IgnoreRest();
+}
+
+void ReadRos(settings::Section root, Camera& camera) {
+  std::array<double, 9> matrix{};
+  root.Require("image_width", camera.width, settings::Range::Positive());
+  root.Require("image_height", camera.height, settings::Range::Positive());
+  root.RequireChoice("distortion_model", camera.lens,
+                     {{"plumb_bob", Lens::radial_tangential},
+                      {"rational_polynomial", Lens::radial_tangential},
+                      {"equidistant", Lens::fisheye}});
+  settings::Section of_matrix = root.Child("camera_matrix"), of_lens = root.Child("distortion_coefficients");
+  if (of_matrix.Require("data", matrix)) {
+    for (const std::string& problem : SetMatrix(matrix, camera)) of_matrix.Reject("data", problem);
+  }
+  RequireLens(of_lens, "data", "distortion_coefficients", camera);
+  of_matrix.IgnoreRest();
+  of_lens.IgnoreRest();
+  root.IgnoreRest();
+}
+
+void ReadOwn(settings::Section root, Camera& camera) {
+  root.Require("width", camera.width, settings::Range::Positive());
+  root.Require("height", camera.height, settings::Range::Positive());
+  root.Require("fx", camera.fx, settings::Unit::pixel, settings::Range::Positive());
+  root.Require("fy", camera.fy, settings::Unit::pixel, settings::Range::Positive());
+  root.Require("cx", camera.cx, settings::Unit::pixel);
+  root.Require("cy", camera.cy, settings::Unit::pixel);
+  settings::Section lens = root.Child("distortion");
+  lens.ReadChoice("model", camera.lens, {{"radial_tangential", Lens::radial_tangential}, {"fisheye", Lens::fisheye}});
+  lens.Read("k1", camera.k1);
+  lens.Read("k2", camera.k2);
+  if (camera.lens == Lens::fisheye) {
+    lens.Read("k3", camera.k3);
+    lens.Read("k4", camera.k4);
+  } else {
+    lens.Read("p1", camera.p1);
+    lens.Read("p2", camera.p2);
+    lens.Read("k3", camera.k3);
+  }
+}
+
+bool IsOfOpenCv(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line.starts_with("%YAML:") || line.starts_with("<?xml");
+}
+
+// cv::FileStorage has no lines to name.
+class OpenCvFile {
+ public:
+  explicit OpenCvFile(const std::filesystem::path& file) : file_(file.string()) {
+    try {
+      storage_.open(file_, cv::FileStorage::READ);
+    } catch (const cv::Exception& error) {
+      throw settings::Error({{file_, 0, 0, "OpenCV cannot read it: " + error.err}});
+    }
+    if (!storage_.isOpened()) throw settings::Error({{file_, 0, 0, "OpenCV cannot read it"}});
+  }
+
+  Camera Read() {
+    Camera camera;
+    camera.width = Size("image_width", "image_Width");
+    camera.height = Size("image_height", "image_Height");
+    const std::vector<double> matrix = Matrix("camera_matrix", "Camera_Matrix");
+    if (matrix.size() == 9) {
+      for (const std::string& problem : SetMatrix(std::span<const double, 9>(matrix), camera)) Complain(problem);
+    } else if (!matrix.empty()) {
+      Complain("'camera_matrix' must have 3 x 3 numbers");
+    }
+    const cv::FileNode fisheye = storage_["fisheye_model"];
+    if (fisheye.isInt() && static_cast<int>(fisheye) != 0) camera.lens = Lens::fisheye;
+    const std::vector<double> coefficients = Matrix("distortion_coefficients", "Distortion_Coefficients");
+    if (!coefficients.empty()) {
+      if (const std::string problem = SetLens(coefficients, camera); !problem.empty())
+        Complain("'distortion_coefficients' " + problem);
+    }
+    if (!problems_.empty()) throw settings::Error(problems_);
+    return camera;
+  }
+
+ private:
+  void Complain(const std::string& message) { problems_.push_back({file_, 0, 0, message}); }
+
+  cv::FileNode Find(const char* name, const char* other) const {
+    const cv::FileNode node = storage_[name];
+    return node.empty() ? storage_[other] : node;
+  }
+
+  int Size(const char* name, const char* other) {
+    const cv::FileNode node = Find(name, other);
+    const int value = node.isInt() ? static_cast<int>(node) : 0;
+    if (value <= 0) Complain(std::string("'") + name + "' must be there, a positive whole number");
+    return value;
+  }
+
+  // Row by row; empty, and a problem known, where it is not there.
+  std::vector<double> Matrix(const char* name, const char* other) {
+    std::vector<double> values;
+    try {
+      cv::Mat matrix;
+      Find(name, other) >> matrix;
+      if (matrix.channels() == 1) cv::Mat(matrix.reshape(1, 1)).convertTo(values, CV_64F);
+    } catch (const cv::Exception&) {
+      values.clear();
+    }
+    if (values.empty()) Complain(std::string("'") + name + "' must be there, a matrix of numbers");
+    for (const double value : values) {
+      if (std::isfinite(value)) continue;
+      Complain(std::string("'") + name + "' has a number that is none");
+      return {};
+    }
+    return values;
+  }
+
+  std::string file_;
+  cv::FileStorage storage_;
+  std::vector<settings::Problem> problems_;
+};
+
+}  // namespace
+
+Camera ReadCamera(const std::filesystem::path& file) {
+  if (IsOfOpenCv(file)) return OpenCvFile(file).Read();
+  Camera camera;
+  settings::Document document = settings::Document::FromFile(file);
+  settings::Section root = document.root();
+  if (root.Has("intrinsics")) {
+    ReadEuroc(root, "distortion_coefficients", camera);
+  } else if (root.Has("cam0")) {
+    ReadEuroc(root.Child("cam0"), "distortion_coeffs", camera);
+    root.IgnoreRest();  // other cameras
+  } else if (root.Has("camera_matrix")) {
+    ReadRos(root, camera);
+  } else {
+    ReadOwn(root, camera);
+  }
+  document.ThrowIfBad();
+  return camera;
+}
+
+Camera CameraFrom(const std::string& preset_or_file) {
+  if (std::filesystem::exists(preset_or_file)) return ReadCamera(preset_or_file);
+  try {
+    return CameraPreset(preset_or_file);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string(error.what()) + ", or a camera file that exists");
+  }
+}
+
+}  // namespace vo
