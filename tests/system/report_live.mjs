@@ -32,17 +32,24 @@ await withBrowser(async (browser) => {
   await page.goto(address);
   const points = () =>
     page.evaluate(() => {
+      window.vobench?.drawAll(); // those below the screen, too
       const chart = [...(window.vobench?.charts.values() ?? [])].find((c) => c.figure.title === "Position error");
       return chart ? chart.drawing.getOption().series[0].data.length : 0;
     }).catch(() => 0); // while it loads anew
-  const counts = new Set();
+  const newest = () => page.locator("#frames img").getAttribute("alt", { timeout: 100 }).catch(() => "");
+  const counts = new Set(), pictures = new Set();
   while (running.exitCode === null) {
     counts.add(await points());
+    pictures.add(await newest());
     await new Promise((done) => setTimeout(done, 200));
   }
   const [status] = await ended;
   assert.equal(status, 0, said);
   counts.delete(0);
+  pictures.delete("");
+  assert.ok(pictures.size >= 2, `the page had the pictures ${[...pictures]}`);
+  assert.match([...pictures].at(-1), /Frame at [\d.]+ s, picture, with features of RB.-PF: [1-9]\d* matched/);
+  assert.equal(await page.locator("#frames input[type=range]").isVisible(), false); // of one frame
   assert.ok(counts.size >= 2, `the page had ${[...counts]} points`);
   await page.locator("#live", { hasText: "The program has ended" }).waitFor({ timeout: 20_000 });
   assert.deepEqual(complaints, []);

@@ -85,7 +85,7 @@ std::string Html(const Page& page) {
   }
   std::size_t number = 0;
   for (std::size_t i = 0; i < page.sections.size(); ++i) {
-    if (i + 1 == page.sections.size() && page.frames) html += FramesSection(*page.frames);
+    if (page.frames && i == (page.live ? 0 : page.sections.size() - 1)) html += FramesSection(*page.frames);
     html += Of(page.sections[i], number);
   }
   html += "</main>";

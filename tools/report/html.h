@@ -24,7 +24,7 @@ struct Page {
   std::string summary;                     // HTML, above all sections
   std::vector<std::string> systems;        // as written in legends
   std::vector<Section> sections;           // those without figures, frames and body are left out
-  std::optional<FrameViewer> frames = {};  // in a section of its own before the last one
+  std::optional<FrameViewer> frames = {};  // before the last section, of a live page before the first
   bool live = false;                       // it asks for "data" beside it every second: DataJson, made anew
 };
 

@@ -111,8 +111,9 @@ Page RunPage(const std::filesystem::path& out, const ResultData& data) {
   return page;
 }
 
-Page LivePage(const ResultData& data) {
+Page LivePage(const ResultData& data, FrameViewer newest) {
   Page page = PageOf(data);
+  page.frames = std::move(newest);
   page.live = true;
   for (Section& section : page.sections) section.body.clear();
   return page;

@@ -11,7 +11,7 @@ namespace report {
 // `out` is the result folder, for its pictures. Throws evaluation::InputError where one cannot be read.
 Page RunPage(const std::filesystem::path& out, const ResultData& data);
 
-// Of runs that are not done yet: words and figures.
-Page LivePage(const ResultData& data);
+// Of runs that are not done yet: words, figures and their newest frame.
+Page LivePage(const ResultData& data, FrameViewer newest);
 
 }  // namespace report

@@ -20,12 +20,6 @@ constexpr const char* kStatus[] = {"matched", "missed", "rejected", "new"};
 // Hundredths of a pixel are enough to draw.
 double Rounded(double pixel) { return std::round(100 * pixel) / 100; }
 
-bool Drawable(const FeatureMark& mark) {
-  return mark.pixel.allFinite() && mark.pixel.cwiseAbs().maxCoeff() < 1e5 && mark.predicted.allFinite() &&
-         mark.predicted.cwiseAbs().maxCoeff() < 1e5 && mark.covariance.allFinite() &&
-         mark.covariance.cwiseAbs().maxCoeff() < 1e8;
-}
-
 Json Of(const FeatureMark& m) {
   Json numbers = {Rounded(m.predicted.x()), Rounded(m.predicted.y()), Rounded(m.pixel.x()), Rounded(m.pixel.y())};
   for (const double s : {m.covariance(0, 0), m.covariance(0, 1), m.covariance(1, 1)}) numbers.push_back(Rounded(s));
@@ -63,6 +57,12 @@ auto Parsed(const fs::path& file, const char* format, const Read& read) {
 
 }  // namespace
 
+bool IsDrawable(const FeatureMark& mark) {
+  return mark.pixel.allFinite() && mark.pixel.cwiseAbs().maxCoeff() < 1e5 && mark.predicted.allFinite() &&
+         mark.predicted.cwiseAbs().maxCoeff() < 1e5 && mark.covariance.allFinite() &&
+         mark.covariance.cwiseAbs().maxCoeff() < 1e8;
+}
+
 fs::path PicturePath(std::int64_t stamp_ns) { return fs::path("frames") / (ev::FormatSeconds(stamp_ns) + ".jpg"); }
 
 void WritePictures(const fs::path& run_folder, const KeptPictures& pictures) {
@@ -71,7 +71,7 @@ void WritePictures(const fs::path& run_folder, const KeptPictures& pictures) {
   for (const KeptPicture& picture : pictures.pictures) {
     Json features = Json::array();
     for (const FeatureMark& mark : picture.features) {
-      if (Drawable(mark)) features.push_back(Of(mark));
+      if (IsDrawable(mark)) features.push_back(Of(mark));
     }
     json["pictures"].push_back({{"timestamp", ev::FormatSeconds(picture.stamp_ns)}, {"features", features}});
   }

@@ -34,7 +34,7 @@ struct RunData {
   evaluation::EstimateRun run;
   std::vector<Landmark> landmarks;
   KeptPictures pictures;
-  std::optional<JudgedSeries> judged;           // where the run has a truth
+  std::optional<JudgedSeries> judged;  // where the run has a truth
 };
 
 struct ResultData {

@@ -8,6 +8,7 @@
 #include "tools/report/html.h"
 #include "tools/report/page.h"
 #include "tools/report/result_data.h"
+#include "tools/vobench/picture.h"
 
 namespace vobench {
 namespace {
@@ -20,16 +21,20 @@ LiveView::LiveView(report::RunDescription description) : description_(std::move(
   fmt::print(stderr, "View: {}\n", server_.address());
 }
 
-void LiveView::Update(std::span<const Tracker> trackers, const Truth& truth, const evaluation::JudgeOptions& how) {
+void LiveView::Update(const vo::Frame& frame, std::span<const Tracker> trackers, const Truth& truth,
+                      const evaluation::JudgeOptions& how) {
+  newest_ = {frame.stamp_ns, frame.image.clone()};
   if (server_.Asked()) Show(trackers, truth, how);
 }
 
 void LiveView::Show(std::span<const Tracker> trackers, const Truth& truth, const evaluation::JudgeOptions& how) {
   report::ResultData data;
   data.description = description_;
+  std::vector<std::vector<report::FeatureMark>> marks;
   for (const Tracker& tracker : trackers) {
     if (tracker.estimates().trajectory.size() < kLeastFrames) return;
     report::RunData& run = data.runs.emplace_back();
+    marks.push_back(tracker.marks());
     run.entry = tracker.entry();
     run.run = tracker.estimates();
     data.description.seconds = std::max(data.description.seconds, run.entry.seconds);
@@ -39,7 +44,9 @@ void LiveView::Show(std::span<const Tracker> trackers, const Truth& truth, const
     } catch (const evaluation::InputError&) {  // the truth is of another time: not judged at the end, either
     }
   }
-  const report::Page page = report::LivePage(data);
+  const cv::Mat& image = newest_.image;
+  const report::Page page =
+      report::LivePage(data, report::NewestFrame(data, newest_.stamp_ns, {image.cols, image.rows}, Jpeg(image), marks));
   server_.Publish(report::Html(page), report::DataJson(page));
 }
 

@@ -17,14 +17,16 @@ class LiveView {
   // Says on stderr where it is. `description` as in run.json, as far as it is known. Throws std::runtime_error.
   explicit LiveView(report::RunDescription description);
 
-  // Between two frames: judges what there is and shows it, where somebody has asked since the last time. Nothing of the
+  // After a frame: judges what there is and shows it, where somebody has asked since the last time. Nothing of the
   // run depends on it.
-  void Update(std::span<const Tracker> trackers, const Truth& truth, const evaluation::JudgeOptions& how);
+  void Update(const vo::Frame& frame, std::span<const Tracker> trackers, const Truth& truth,
+              const evaluation::JudgeOptions& how);
   // The same whether somebody has asked or not: when all frames are done.
   void Show(std::span<const Tracker> trackers, const Truth& truth, const evaluation::JudgeOptions& how);
 
  private:
   report::RunDescription description_;
+  vo::Frame newest_;
   LiveServer server_;
 };
 

@@ -17,7 +17,7 @@ constexpr int kQuality = 80;
 
 }  // namespace
 
-void WritePicture(const std::filesystem::path& file, const cv::Mat& image) {
+std::string Jpeg(const cv::Mat& image) {
   cv::Mat small = image;
   if (image.cols > kWidest) {
     const int height =
@@ -26,9 +26,13 @@ void WritePicture(const std::filesystem::path& file, const cv::Mat& image) {
   }
   std::vector<unsigned char> jpeg;
   if (!cv::imencode(".jpg", small, jpeg, {cv::IMWRITE_JPEG_QUALITY, kQuality})) {
-    throw std::runtime_error(file.string() + ": cannot encode this picture");
+    throw std::runtime_error("a picture cannot be encoded as JPEG");
   }
-  evaluation::WriteWhole(file, std::string(jpeg.begin(), jpeg.end()));
+  return {jpeg.begin(), jpeg.end()};
+}
+
+void WritePicture(const std::filesystem::path& file, const cv::Mat& image) {
+  evaluation::WriteWhole(file, Jpeg(image));
 }
 
 cv::Mat DepthColours(const cv::Mat& depth, double nearest, double farthest) {

@@ -65,6 +65,12 @@ std::string LandmarkTable(const std::vector<vo::MapPoint>& map) {
 
 }  // namespace
 
+std::vector<report::FeatureMark> MarksOf(const std::vector<vo::FeatureView>& features) {
+  std::vector<report::FeatureMark> marks;
+  for (const vo::FeatureView& feature : features) marks.push_back(MarkOf(feature));
+  return marks;
+}
+
 // The middle frame of each stretch: the very first has nothing tracked to show.
 bool IsKept(std::int64_t index, std::int64_t frames) {
   const std::int64_t every = std::max<std::int64_t>(1, (frames + kPictures - 1) / kPictures);
@@ -92,9 +98,7 @@ void Recorder::Add(const vo::Frame& frame, const vo::Estimate& estimate, const s
   WritePicture(*folder_ / report::PicturePath(frame.stamp_ns), frame.image);
   pictures_.width = frame.image.cols;
   pictures_.height = frame.image.rows;
-  report::KeptPicture& kept = pictures_.pictures.emplace_back();
-  kept.stamp_ns = frame.stamp_ns;
-  for (const vo::FeatureView& feature : features) kept.features.push_back(MarkOf(feature));
+  pictures_.pictures.push_back({frame.stamp_ns, MarksOf(features)});
 }
 
 void Recorder::Write(const std::vector<vo::MapPoint>& map) const {

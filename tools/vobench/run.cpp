@@ -90,7 +90,7 @@ void Run(const RunOptions& options) {
       Append(rendered->stamp_ns, rendered->truth, truth);
       if (folder && IsKept(rendered->index, simulator.frame_count())) truth_pictures.Add(simulator, rendered->index);
       ForEach(odometries, options.jobs, [&](Tracker& odometry) { odometry.Track(frame); });
-      if (view) view->Update(odometries, truth, how);
+      if (view) view->Update(frame, odometries, truth, how);
       progress.Step();
     }
   }

@@ -119,7 +119,7 @@ void Track(const TrackOptions& options) {
     while (const std::optional<vo::Frame> frame = Input([&] { return source->Next(); })) {
       if (!frames && InterruptPending()) break;
       tracker.Track(*frame);
-      if (view) view->Update({&tracker, 1}, shown, StartedAtTheOrigin());
+      if (view) view->Update(*frame, {&tracker, 1}, shown, StartedAtTheOrigin());
       progress.Step();
     }
   }

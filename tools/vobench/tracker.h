@@ -34,6 +34,7 @@ class Tracker {
   void Write() const { recorder_.Write(odometry_.Map()); }
 
   std::vector<vo::MapPoint> map() const { return odometry_.Map(); }
+  std::vector<report::FeatureMark> marks() const { return MarksOf(odometry_.Features()); }  // of the last frame
   const report::RunEntry& entry() const { return entry_; }
   const evaluation::EstimateRun& estimates() const { return recorder_.run(); }
 

@@ -26,7 +26,7 @@ namespace {
 
 TEST(PointExample, StandsInTheDocsAsItIsCompiled) {
   ExpectInDocs("tests/unit/vobench/point_example_test.cpp", "docs/point_world.md");
-  ExpectInDocs("tests/system/outside/own_filter_test.cpp", "docs/point_world.md");
+  ExpectInDocs("tests/system/outside/own_filter_test.cpp", "docs/consistency.md");
 }
 
 }  // namespace

@@ -42,9 +42,9 @@ function draw(features: Feature[], overlay: SVGElement, hidden: Set<string>): vo
   }
 }
 
-export function showFrames(holder: HTMLElement, data: Frames, systems: string[]): void {
-  const count = data.frames.length;
-  let index = Math.floor(count / 2);
+// Returns what shows other frames in their place, as they come while the program runs.
+export function showFrames(holder: HTMLElement, data: Frames, systems: string[]): (next: Frames) => void {
+  let index = Math.floor(data.frames.length / 2);
   let layer: Layer = "picture";
   const seen = systems.map((_, s) => s).filter((s) => data.frames.some((frame) => (frame.features[s]?.length ?? 0) > 0));
   let system = seen[0] ?? 0;
@@ -52,7 +52,7 @@ export function showFrames(holder: HTMLElement, data: Frames, systems: string[])
 
   const picture = make("img", { width: String(data.width), height: String(data.height) });
   const overlay = makeSvg("svg", { viewBox: `-0.5 -0.5 ${data.width} ${data.height}`, "aria-hidden": "true" });
-  const slider = make("input", { type: "range", min: "0", max: String(count - 1), step: "1", "aria-label": "Frame" });
+  const slider = make("input", { type: "range", min: "0", step: "1", "aria-label": "Frame" });
   const caption = make("figcaption");
 
   function update(): void {
@@ -64,6 +64,8 @@ export function showFrames(holder: HTMLElement, data: Frames, systems: string[])
     picture.src = `data:image/jpeg;base64,${frame[layer] ?? frame.picture}`;
     picture.alt = `Frame at ${time}, ${layer}, with features of ${systems[system] ?? ""}: ${numbers}`;
     caption.textContent = `${time}: ${numbers}${scaleText()}`;
+    slider.max = String(data.frames.length - 1);
+    slider.hidden = data.frames.length < 2;
     slider.value = String(index);
     slider.setAttribute("aria-valuetext", time);
     overlay.replaceChildren();
@@ -116,4 +118,9 @@ export function showFrames(holder: HTMLElement, data: Frames, systems: string[])
   controls.append(toggles);
   holder.replaceChildren(controls, make("figure", { class: "viewer" }, make("div", { class: "stack" }, picture, overlay), slider, caption));
   update();
+  return (next) => {
+    data = next;
+    index = Math.min(index, next.frames.length - 1);
+    update();
+  };
 }

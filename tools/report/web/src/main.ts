@@ -1,6 +1,6 @@
 // The page: figures are drawn when they come near the screen, all of them before the page is printed.
 import { Chart } from "./chart";
-import { figuresOf, type Figure, type PageData } from "./data";
+import { figuresOf, type Figure, type Frames, type PageData } from "./data";
 import { make, save } from "./dom";
 import { showFrames } from "./frames";
 import { interact, TimeZoom } from "./interact";
@@ -38,6 +38,7 @@ class PageView {
   figures: Figure[];
   private readonly visible: Visible;
   private readonly zoom = new TimeZoom();
+  private showNext?: (frames: Frames) => void;
 
   constructor(private readonly data: PageData) {
     this.figures = figuresOf(data);
@@ -63,6 +64,7 @@ class PageView {
     this.figures = figures;
     const summary = document.getElementById("summary");
     if (summary && data.summary !== undefined) summary.innerHTML = data.summary;
+    if (data.frames) this.showNext?.(data.frames);
     for (const figure of figures) this.charts.get(figure.id)?.update(figure);
   }
 
@@ -84,7 +86,7 @@ class PageView {
     }
     for (const table of document.querySelectorAll<HTMLElement>(".table")) enhance(table);
     const frames = document.getElementById("frames");
-    if (frames && this.data.frames) showFrames(frames, this.data.frames, this.data.systems);
+    if (frames && this.data.frames) this.showNext = showFrames(frames, this.data.frames, this.data.systems);
     window.addEventListener("beforeprint", () => {
       for (const details of document.querySelectorAll<HTMLDetailsElement>("details.figures")) details.open = true;
       this.drawAll();
