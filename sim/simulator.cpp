@@ -52,8 +52,9 @@ void WarnOfGloss(const Scene& scene, const RenderParams& params, std::vector<std
     if (m.metallic >= 0.5f || m.roughness <= 0.5f) names += (names.empty() ? "" : ", ") + m.name;
   }
   if (names.empty()) return;
-  warnings.push_back((params.reflections ? "the rasteriser does not render reflections" : "render.reflections is false") +
-                     std::string(": metal and gloss are Lambert surfaces of their base colour: ") + names);
+  warnings.push_back(
+      (params.reflections ? "the rasteriser does not render reflections" : "render.reflections is false") +
+      std::string(": metal and gloss are Lambert surfaces of their base colour: ") + names);
 }
 
 std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& params, int jobs,
@@ -145,8 +146,7 @@ struct Simulator::Parts {
       settings.push_back(control.setting());
       Exposure instant;
       instant.middle_s = Seconds(sim::StampNs(k, scenario.time));
-      renderer->Expose(camera_small, *trajectory, instant, FrameKey(k), picture);
-      vignetting_small.Apply(picture);
+      Expose(camera_small, vignetting_small, instant, k, picture);
       control.Meter(picture);
     }
   }
@@ -154,6 +154,18 @@ struct Simulator::Parts {
   ExposureSetting Setting(std::int64_t index) const {
     const SensorParams& s = scenario.sensor;
     return settings.empty() ? ExposureSetting{s.exposure_s, s.gain} : settings[static_cast<std::size_t>(index)];
+  }
+
+  // The light that an exposure collects on the sensor.
+  void Expose(const Camera& to, const Vignetting& shade, const Exposure& exposure, std::int64_t index,
+              RadianceImage& radiance) const {
+    if (scenario.sensor.IsCovered(exposure.middle_s)) {
+      const auto pixels = static_cast<std::size_t>(to.width()) * static_cast<std::size_t>(to.height());
+      radiance = {to.width(), to.height(), std::vector<float>(3 * pixels, 0.0F)};
+      return;
+    }
+    renderer->Expose(to, *trajectory, exposure, FrameKey(index), radiance);
+    shade.Apply(radiance);
   }
 
   std::uint64_t FrameKey(std::int64_t index) const {
@@ -229,8 +241,7 @@ Frame Simulator::Render(std::int64_t index) const {
   exposure.aperture_m = sensor.optics.aperture_m;
   exposure.focus_m = sensor.optics.focus_m;
   RadianceImage radiance;
-  parts.renderer->Expose(parts.camera, *parts.trajectory, exposure, parts.FrameKey(index), radiance);
-  parts.vignetting.Apply(radiance);
+  parts.Expose(parts.camera, parts.vignetting, exposure, index, radiance);
   parts.arena.execute([&] { frame.image = parts.sensor.Capture(radiance, index, frame.setting); });
   return frame;
 }

@@ -89,6 +89,14 @@ void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
   section.Read("time_samples", sensor.time_samples);
   section.Read("rolling_shutter", sensor.readout_s, Unit::time);
   ReadAutoExposure(section.Child("auto_exposure"), sensor.auto_exposure);
+  section.Allow("covered");
+  if (section.Has("covered")) {  // a manifest of a sequence without says nothing of it
+    for (Section& item : section.List("covered")) {
+      Covered& covered = sensor.covered.emplace_back();
+      item.Require("from", covered.from_s, Unit::time);
+      item.Require("until", covered.until_s, Unit::time);
+    }
+  }
   ReadOptics(section.Child("optics"), sensor.optics);
   section.Read("white", sensor.white);
   section.Read("full_well", sensor.full_well_e, Unit::electrons);
@@ -109,7 +117,7 @@ void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
                      {{"none", Mosaic::none}, {"raw", Mosaic::raw}, {"demosaiced", Mosaic::demosaiced}});
   section.Read("jpeg_quality", sensor.jpeg_quality);
   for (const std::string& problem : Problems(sensor)) {
-    section.Reject(problem.substr(0, problem.find_first_of(" .")), "sensor: " + problem);
+    section.Reject(problem.substr(0, problem.find_first_of(" .:")), "sensor: " + problem);
   }
   const auto within_frame = [&](const char* key, const char* name, double value_s) {
     if (std::abs(value_s) * rate_hz <= 1) return;

@@ -1,6 +1,8 @@
 // Purpose: the settings of optics and sensor, in the order in which the light meets them.
 #pragma once
 
+#include <vector>
+
 namespace sim {
 
 enum class Response { linear, srgb };  // srgb: IEC 61966-2-1
@@ -26,12 +28,18 @@ struct AutoExposureParams {
   double highest_gain = 8.0;    // the gain is
 };
 
+// A hand before the lens: frames whose exposure has its middle in [from_s, until_s) see no light.
+struct Covered {
+  double from_s = 0.0, until_s = 0.0;
+};
+
 // How light becomes numbers: sim/sensor/sensor.h has the model.
 struct SensorParams {
   double exposure_s = 0.010;  // longer: more motion blur. Brightness does not depend on it (`white` fixes that)
   int time_samples = 16;      // instants averaged over the exposure; fewer: long blur gets grainy
   double readout_s = 0.0;     // from the first row's exposure to the last's: rolling shutter. 0: all at once; < 0: upwards
   AutoExposureParams auto_exposure;
+  std::vector<Covered> covered;
   OpticsParams optics;
 
   double white = 1.0;               // linear radiance that fills the scale at gain 1; smaller: brighter pictures
@@ -52,6 +60,7 @@ struct SensorParams {
   Mosaic mosaic = Mosaic::none;  // raw: one channel behind a Bayer filter, RGGB; demosaiced: and colour again of it
   int jpeg_quality = 0;          // 1 ... 100: the picture has been a JPEG file; 0: not
 
+  bool IsCovered(double t_s) const;  // at the middle of an exposure
   double RowDelay(int height) const { return height > 1 ? readout_s / (height - 1) : 0.0; }
 };
 

@@ -57,10 +57,18 @@ std::vector<std::string> Problems(const SensorParams& p) {
     require(p.exposure_s > 0, "exposure", p.exposure_s, "must be positive for auto_exposure to start from");
     for (const std::string& problem : Problems(p.auto_exposure)) require.problems.push_back("auto_exposure." + problem);
   }
+  for (const Covered& c : p.covered) {
+    require(c.from_s >= 0, "covered: from", c.from_s, "must not be negative");
+    require(c.until_s > c.from_s, "covered: until", c.until_s, "must be above from");
+  }
   const OpticsParams& o = p.optics;
   require(o.aperture_m >= 0 && o.aperture_m <= 1, "optics.aperture", o.aperture_m, "must lie in 0 ... 1 m");
   require(o.focus_m > 0, "optics.focus", o.focus_m, "must be positive");
   return require.problems;
+}
+
+bool SensorParams::IsCovered(double t_s) const {
+  return std::ranges::any_of(covered, [&](const Covered& c) { return t_s >= c.from_s && t_s < c.until_s; });
 }
 
 Sensor::Sensor(const SensorParams& params, std::uint64_t seed, int width, int height)

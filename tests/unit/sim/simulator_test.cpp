@@ -165,6 +165,34 @@ TEST(Simulator, AutomaticExposureBringsADarkWallToItsTarget) {
   EXPECT_THROW(simulator.SettingOf(9), std::out_of_range);
 }
 
+TEST(Simulator, AHandBeforeTheLensLeavesTheNoiseAndTheTruth) {
+  const SmallWorld world;
+  const auto with = [&](const std::string& covered) {
+    return Simulator(LoadScenario(world.scenario(),
+                                  {{"time.rate", "30 Hz"}, {"sensor.read_noise", "80 e"}, {"sensor.covered", covered}}),
+                     1);
+  };
+  const Simulator open = with("[]"),
+                  covered = with("[{from: 60 ms, until: 0.1 s}]");  // frames 2 (at 66.7 ms) and none else
+  for (std::int64_t k = 0; k < 5; ++k) {
+    const Frame a = open.Render(k), b = covered.Render(k);
+    EXPECT_EQ(a.image.data == b.image.data, k != 2) << k;
+    EXPECT_EQ(open.Depth(k), covered.Depth(k));
+  }
+  const Image dark = covered.Render(2).image;
+  // Half of the noise is below 0 and black; the rest is read noise: 0.008 of the scale, 20 of 255 after the sRGB curve.
+  const auto black = std::ranges::count(dark.data, 0);
+  EXPECT_NEAR(static_cast<double>(black) / static_cast<double>(dark.data.size()), 0.5, 0.05);
+  EXPECT_GT(*std::ranges::max_element(dark.data), 20);
+  EXPECT_LT(*std::ranges::max_element(dark.data), 70);
+  try {
+    with("[{from: 1 s, until: 0.5 s}]");
+    FAIL();
+  } catch (const std::exception& error) {
+    EXPECT_THAT(error.what(), HasSubstr("covered: until = 0.5 must be above from"));
+  }
+}
+
 TEST(Simulator, FaultsOfTheInputAreNamed) {
   const SmallWorld world;
   std::filesystem::remove(world.folder.path() / "wall.ply");
