@@ -96,6 +96,7 @@ TEST_F(ResumeTest, AWholeSequenceIsLeftAlone) {
   EXPECT_EQ(fs::last_write_time(here_ / "seq" / "rgb.txt"), time);
   const Outcome other = Run("seq", {"--frames", "0:4", "--resume", "--set", "sensor.exposure=2 ms"});
   EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("is another sequence, there is nothing to resume"));
   EXPECT_THAT(other.err, HasSubstr("scenario.sensor.exposure is 0.01 there, not 0.002"));
   EXPECT_TRUE(Tree(here_.path()) == before);
 }

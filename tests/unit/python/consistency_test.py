@@ -113,6 +113,8 @@ class AneesTest(unittest.TestCase):
             vobench.nees(np.zeros((4, 3)), np.zeros((4, 3, 2)))
         with self.assertRaisesRegex(ValueError, r"nees must be \(runs, frames\)"):
             vobench.anees_test(np.ones(5))
+        with self.assertRaisesRegex(ValueError, "nees and honest must have equally many frames"):
+            vobench.anees_test_against(np.ones((5, 5)), 3, np.ones((50, 4)))
         with self.assertRaisesRegex(ValueError, "false_alarm must be above 0"):
             vobench.anees_test(np.ones((5, 5)), false_alarm=0)
 

@@ -117,6 +117,12 @@ class OdometryOnImages(unittest.TestCase):
             vobench.Odometry(vobench.Camera(), settings={"filter.particels": 3})
         with self.assertRaises(TypeError):
             odometry.track(0, np.zeros((480, 640), np.float32) + 0.5)
+        with self.assertRaisesRegex(ValueError, r"an image is an array of \(height, width\) or \(height, width, 3\)"):
+            odometry.track(0, np.zeros((480, 640, 2), np.uint8))
+        with self.assertRaisesRegex(ValueError, "0 estimates, but 1 truths"):
+            vobench.judge([], [self.simulator.render(0).truth])
+        with self.assertRaisesRegex(ValueError, r"estimates\[0\] is of another time than truths\[0\]"):
+            vobench.judge([vobench.Estimate(stamp_ns=5, covariance=np.eye(12))], [self.simulator.render(1).truth])
 
 
 class SequenceOnDisk(unittest.TestCase):

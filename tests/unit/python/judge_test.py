@@ -42,7 +42,7 @@ class Trajectories(unittest.TestCase):
         stamps, positions, orientations = spiral()
         with self.assertRaisesRegex(ValueError, r"stamps_ns\[1\] is not after"):
             vobench.Trajectory(0 * stamps, positions, orientations)
-        with self.assertRaisesRegex(ValueError, "60 stamps, 59 positions"):
+        with self.assertRaisesRegex(ValueError, "a trajectory of 60 stamps, 59 positions"):
             vobench.Trajectory(stamps, positions[1:], orientations)
 
 

@@ -44,6 +44,15 @@ class Points(unittest.TestCase):
         spread = covariance[:, 6:, 6:] + np.einsum("ni,nj->nij", *2 * [velocity - weight @ velocity])
         np.testing.assert_allclose(np.einsum("n,nij->ij", weight, spread), estimate.covariance[6:, 6:], rtol=1e-6, atol=1e-12)
 
+    def test_a_point_is_seen_once_in_a_frame(self):
+        world = vobench.PointWorld(self.scenario, seed=2)
+        odometry = vobench.PointOdometry.of(world, "rb2pf")
+        frame = next(world)
+        odometry.track(frame.stamp_ns, frame.ids, frame.pixels)
+        twice = np.repeat(frame.ids[:1], 2), np.repeat(frame.pixels[:1], 2, axis=0)
+        with self.assertRaisesRegex(ValueError, r"point \d+ comes twice in the frame at \d+ ns"):
+            odometry.track(frame.stamp_ns + 33_333_333, *twice)
+
     def test_plays_to_any_filter(self):
         seen = []
 
