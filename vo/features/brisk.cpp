@@ -13,7 +13,7 @@
 namespace vo {
 namespace {
 
-constexpr int kLanes = 8;     // rows of a window are padded to so many pixels
+constexpr int kLanes = 8;       // pixels of a row that are sampled at once, at the least
 constexpr int kMostLanes = 16;  // columns that are read at once: so many behind the image may be read, for nothing
 
 template <class T, int Bytes>
@@ -42,23 +42,25 @@ struct Row {
   int at, width;
 };
 
+// Rows are taken so many pixels at a time that their samples stay in the first cache; those of a point lie together.
+constexpr int kChunk = 160;
+constexpr int kStride = kChunk + kMostLanes;  // the last row's samples may be followed by some that nobody reads
+
 struct Region {
-  std::span<const Row> rows;
-  std::size_t step;        // of the integral image
-  int pixels;              // room of each point's samples
+  std::span<const Row> rows;  // one after the other: each is written over what the one before wrote behind itself
+  std::size_t step;           // of the integral image
+  int pixels;
   std::uint32_t* columns;  // room for the columns of all rows, one box's at a time
 };
 
 constexpr int Padded(int width, int lanes = kLanes) { return (width + lanes - 1) / lanes * lanes; }
 
 // Columns that the boxes of a row reach into.
-int ColumnsOf(const Row& row, const BriskSampler::Box& box) {
-  return Padded(Padded(row.width) + box.width + 3, kMostLanes);
-}
+int ColumnsOf(const Row& row, const BriskSampler::Box& box) { return row.width + box.width + 2; }
 
 // Room for that of every box, and what is read behind it.
 std::size_t RoomFor(const Row& row, const BriskSampler& sampler) {
-  return static_cast<std::size_t>(Padded(Padded(row.width) + 2 * sampler.margin() + 3, kMostLanes) + 2 * kMostLanes);
+  return static_cast<std::size_t>(row.width + 2 * sampler.margin() + 2 + 3 * kMostLanes);
 }
 
 // The integral image's columns, down the box: 256 times the sum of all that is left of a column, modulo 2^32.
@@ -96,20 +98,9 @@ template <int Lanes>
   return __builtin_convertvector(mean - 32768, Words<Lanes>);
 }
 
-// To where pixel `at` of a point has its place, in blocks of `Width` pixels of all points.
-template <int Width, int Lanes>
-[[gnu::always_inline]] inline void Store(Words<Lanes> mean, int at, std::int16_t* of_point) {
-  for (unsigned part = 0; part < Lanes; part += kLanes) {
-    const unsigned here = static_cast<unsigned>(at) + part;
-    std::memcpy(of_point + here / Width * (kBriskPoints * Width) + here % Width,
-                reinterpret_cast<const std::int16_t*>(&mean) + part, kLanes * sizeof(std::int16_t));
-  }
-}
-
-// samples[block of Width pixels][point][pixel]: what is compared at once lies together.
-template <int Width, int Lanes>
+// samples[point][pixel]
+template <int Lanes>
 [[gnu::always_inline]] inline void Sample(const Region& region, const BriskSampler& sampler, std::int16_t* samples) {
-  static_assert(Width % kLanes == 0);
   for (int n = 0; n < kBriskPoints; ++n) {
     const BriskSampler::Box box = sampler.boxes()[static_cast<std::size_t>(n)];
     const auto offset = box.top * static_cast<std::ptrdiff_t>(region.step) + box.left;
@@ -117,63 +108,75 @@ template <int Width, int Lanes>
     for (const Row& row : region.rows) {
       const int count = ColumnsOf(row, box);
       SumColumns<Lanes>(box, row.sum + offset, region.step, count, columns);
-      columns += count;
+      columns += Padded(count);
     }
     columns = region.columns;
-    std::int16_t* const of_point = samples + n * Width;
+    std::int16_t* const of_point = samples + n * kStride;
     for (const Row& row : region.rows) {
       int x = 0;
-      for (; row.width - x > kLanes; x += Lanes) Store<Width, Lanes>(Mean<Lanes>(box, columns + x), row.at + x, of_point);
-      if (x < row.width) Store<Width, kLanes>(Mean<kLanes>(box, columns + x), row.at + x, of_point);
-      columns += ColumnsOf(row, box);
+      for (; row.width - x > kLanes; x += Lanes) {
+        const Words<Lanes> mean = Mean<Lanes>(box, columns + x);
+        std::memcpy(of_point + row.at + x, &mean, sizeof mean);
+      }
+      if (x < row.width) {
+        const Words<kLanes> mean = Mean<kLanes>(box, columns + x);
+        std::memcpy(of_point + row.at + x, &mean, sizeof mean);
+      }
+      columns += Padded(ColumnsOf(row, box));
     }
   }
 }
 
-// Comparisons by the bit that is wanted of them, as places of the points' numbers.
+// Comparisons by the bit that is wanted of them, as places of the points' samples.
+struct Places {
+  std::uint16_t first, second;
+};
 struct Wanted {
-  std::array<std::uint32_t, 2 * kBriskPairs> pairs;  // first and second, and again; those of 0 before those of 1
-  int zeros;
+  std::array<Places, kBriskPairs + 1> zeros, ones;
+  int zero_count, one_count;
 };
 
 Wanted SortPairs(const Descriptor& descriptor) {
+  static const auto places = [] {
+    std::array<Places, kBriskPairs> all;
+    for (std::size_t k = 0; k < all.size(); ++k)
+      all[k] = {static_cast<std::uint16_t>(BriskComparisons()[k].first * kStride),
+                static_cast<std::uint16_t>(BriskComparisons()[k].second * kStride)};
+    return all;
+  }();
   Wanted wanted;
-  wanted.zeros = kBriskPairs;
-  for (const std::uint64_t word : descriptor) wanted.zeros -= std::popcount(word);
-  std::size_t next[2] = {0, 2 * static_cast<std::size_t>(wanted.zeros)};
-  const auto& pairs = BriskComparisons();
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    std::size_t& at = next[descriptor[k / 64] >> (k % 64) & 1];
-    wanted.pairs[at] = pairs[k].first;
-    wanted.pairs[at + 1] = pairs[k].second;
-    at += 2;
+  Places* zero = wanted.zeros.data();
+  Places* one = wanted.ones.data();
+  for (std::size_t k = 0; k < places.size(); ++k) {  // no branch: written to both, and kept in one
+    const auto bit = static_cast<std::ptrdiff_t>((descriptor[k / 64] >> (k % 64)) & 1);
+    *zero = *one = places[k];
+    one += bit;
+    zero += 1 - bit;
   }
+  wanted.zero_count = static_cast<int>(zero - wanted.zeros.data());
+  wanted.one_count = static_cast<int>(one - wanted.ones.data());
   return wanted;
 }
 
 // How many of the pairs first > second, for `Width` pixels at a time.
 template <int Width>
-[[gnu::always_inline]] inline Words<Width> CountGreater(const std::int16_t* samples, const std::uint32_t* pair,
-                                                        const std::uint32_t* end) {
-  Words<Width> count = {};
-  for (; pair < end; pair += 2) {
-    count -= static_cast<Words<Width>>(Load<Words<Width>>(samples + pair[0] * Width) >
-                                       Load<Words<Width>>(samples + pair[1] * Width));
+[[gnu::always_inline]] inline Words<Width> CountGreater(const std::int16_t* samples, const Places* pairs, int count) {
+  Words<Width> greater = {};
+  for (const Places* pair = pairs; pair < pairs + count; ++pair) {
+    greater -= static_cast<Words<Width>>(Load<Words<Width>>(samples + pair->first) >
+                                         Load<Words<Width>>(samples + pair->second));
   }
-  return count;
+  return greater;
 }
 
 // Where 0 is wanted, a pair that is greater differs; where 1 is, one that is not.
 template <int Width>
 [[gnu::always_inline]] inline void Compare(const std::int16_t* samples, int pixels, const Wanted& wanted,
                                            std::uint16_t* distances) {
-  const std::uint32_t* pairs = wanted.pairs.data();
-  const std::uint32_t* ones = pairs + 2 * wanted.zeros;
-  const std::uint32_t* end = pairs + wanted.pairs.size();
-  const auto all_ones = static_cast<std::int16_t>(kBriskPairs - wanted.zeros);
-  for (int at = 0; at < pixels; at += Width, samples += kBriskPoints * Width) {
-    const Words<Width> count =
-        CountGreater<Width>(samples, pairs, ones) - CountGreater<Width>(samples, ones, end) + all_ones;
+  const auto all_ones = static_cast<std::int16_t>(wanted.one_count);
+  for (int at = 0; at < pixels; at += Width, samples += Width) {
+    const Words<Width> count = CountGreater<Width>(samples, wanted.zeros.data(), wanted.zero_count) -
+                               CountGreater<Width>(samples, wanted.ones.data(), wanted.one_count) + all_ones;
     std::memcpy(distances + at, &count, sizeof count);
   }
 }
@@ -183,21 +186,23 @@ using Kernel = void (*)(const Region&, const BriskSampler&, const Wanted& wanted
 
 void BaseKernel(const Region& region, const BriskSampler& sampler, const Wanted& wanted, std::int16_t* samples,
                 std::uint16_t* distances) {
-  Sample<8, 8>(region, sampler, samples);
+  Sample<8>(region, sampler, samples);
   Compare<8>(samples, region.pixels, wanted, distances);
 }
 
 #ifdef __x86_64__
-[[gnu::target("avx2")]] void Avx2Kernel(const Region& region, const BriskSampler& sampler, const Wanted& wanted, std::int16_t* samples, std::uint16_t* distances) {
-  Sample<16, 8>(region, sampler, samples);
+[[gnu::target("avx2")]] void Avx2Kernel(const Region& region, const BriskSampler& sampler, const Wanted& wanted,
+                                        std::int16_t* samples, std::uint16_t* distances) {
+  Sample<8>(region, sampler, samples);
   Compare<16>(samples, region.pixels, wanted, distances);
 }
 
 [[gnu::target("avx2,avx512f,avx512bw,avx512dq,avx512vl")]] void Avx512Kernel(const Region& region,
                                                                              const BriskSampler& sampler,
-                                                                             const Wanted& wanted, std::int16_t* samples,
+                                                                             const Wanted& wanted,
+                                                                             std::int16_t* samples,
                                                                              std::uint16_t* distances) {
-  Sample<32, 16>(region, sampler, samples);
+  Sample<16>(region, sampler, samples);
   Compare<32>(samples, region.pixels, wanted, distances);
 }
 #endif
@@ -226,13 +231,17 @@ BriskSampler::BriskSampler(const Eigen::Matrix2d& map) {
     // Borders, the pixels they lie in, and how much of these is inside; pixels reach half a pixel to either side.
     const auto low = static_cast<float>(place.x()) - half, high = static_cast<float>(place.x()) + half;
     const auto upper = static_cast<float>(place.y()) - half, lower = static_cast<float>(place.y()) + half;
-    const auto pixel = [](float v) { return static_cast<int>(std::floor(v + 0.5f)); };
+    const auto pixel = [](float v) {  // floor(v + 0.5)
+      const int whole = static_cast<int>(v + 0.5f);
+      return whole - (static_cast<float>(whole) > v + 0.5f);
+    };
+    const auto in_256ths = [](float inside) { return static_cast<int>(256 * inside + 0.5f); };
     box.left = pixel(low), box.top = pixel(upper);
     box.width = pixel(high) - box.left - 1, box.height = pixel(lower) - box.top - 1;
     box.in_left = static_cast<float>(box.left) - low + 0.5f;
     box.in_right = high - static_cast<float>(pixel(high)) + 0.5f;
-    box.in_top = static_cast<int>(std::lround(256 * (static_cast<float>(box.top) - upper + 0.5f)));
-    box.in_bottom = static_cast<int>(std::lround(256 * (lower - static_cast<float>(pixel(lower)) + 0.5f)));
+    box.in_top = in_256ths(static_cast<float>(box.top) - upper + 0.5f);
+    box.in_bottom = in_256ths(lower - static_cast<float>(pixel(lower)) + 0.5f);
     margin_ = std::max({margin_, -box.left, -box.top, box.left + box.width + 2, box.top + box.height + 2});
   }
 }
@@ -252,14 +261,14 @@ bool BriskImage::Describable(const Eigen::Vector2i& pixel, const BriskSampler& s
 Descriptor BriskImage::Describe(const Eigen::Vector2i& pixel, const BriskSampler& sampler) const {
   if (!Describable(pixel, sampler))
     throw std::invalid_argument("BRISK: the pixel is too near to the edge of the image");
-  std::array<std::int16_t, kBriskPoints * 8> samples;
+  std::array<std::int16_t, kBriskPoints * kStride> samples;
   const Row row{SumsAt(integral_, pixel.x(), pixel.y()), 0, 1};
   std::vector<std::uint32_t> columns(RoomFor(row, sampler));
-  Sample<8, 8>({{&row, 1}, integral_.step1(), 8, columns.data()}, sampler, samples.data());
+  Sample<8>({{&row, 1}, integral_.step1(), 1, columns.data()}, sampler, samples.data());
   Descriptor descriptor{};
   const auto& pairs = BriskComparisons();
   for (std::size_t k = 0; k < pairs.size(); ++k)
-    if (samples[std::size_t{pairs[k].first} * 8] > samples[std::size_t{pairs[k].second} * 8])
+    if (samples[std::size_t{pairs[k].first} * kStride] > samples[std::size_t{pairs[k].second} * kStride])
       descriptor[k / 64] |= std::uint64_t{1} << (k % 64);
   return descriptor;
 }
@@ -272,40 +281,50 @@ std::optional<BriskImage::Found> BriskImage::Nearest(const Descriptor& descripto
 std::optional<BriskImage::Found> BriskImage::Nearest(InstructionSet set, const Descriptor& descriptor,
                                                      const BriskSampler& sampler, std::span<const PixelRun> region,
                                                      std::vector<Found>* all) const {
+  constexpr int kWidest = 32;  // of a vector, in pixels
   thread_local std::vector<Row> rows;
   thread_local std::vector<PixelRun> runs;  // of `rows`
   thread_local std::vector<std::uint32_t> columns;
-  thread_local std::vector<std::int16_t> samples;
-  thread_local std::vector<std::uint16_t> distances;
+  alignas(64) std::array<std::int16_t, kBriskPoints * kStride> samples;
+  alignas(64) std::array<std::uint16_t, kChunk> distances;
+  const Wanted wanted = SortPairs(descriptor);
+  const Kernel kernel = KernelFor(set);
+  Found best{{}, kBriskPairs + 1};
+  int pixels = 0;
+  std::size_t room = 0;
+  const auto take = [&] {
+    columns.resize(std::max(columns.size(), room));
+    kernel({rows, integral_.step1(), pixels, columns.data()}, sampler, wanted, samples.data(), distances.data());
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      for (int x = 0; x < rows[r].width; ++x) {
+        const int distance = distances[static_cast<std::size_t>(rows[r].at + x)];
+        if (distance < best.distance) best = {{runs[r].first_x + x, runs[r].y}, distance};
+        if (all != nullptr) all->push_back({{runs[r].first_x + x, runs[r].y}, distance});
+      }
+    rows.clear();
+    runs.clear();
+    pixels = 0;
+    room = 0;
+  };
   rows.clear();
   runs.clear();
   const int margin = sampler.margin();
-  int pixels = 0;
-  std::size_t room = 0;
   for (const PixelRun& run : region) {
-    const int first = std::max(run.first_x, margin), last = std::min(run.last_x, width_ - margin - 1);
-    if (run.y < margin || run.y >= height_ - margin || first > last) continue;
-    rows.push_back({SumsAt(integral_, first, run.y), pixels, last - first + 1});
-    room += RoomFor(rows.back(), sampler);
-    runs.push_back({run.y, first, last});
-    pixels += Padded(last - first + 1);
-  }
-  if (rows.empty()) return std::nullopt;
-  constexpr int kWidest = 32;  // of a vector, in pixels
-  pixels = (pixels + kWidest - 1) / kWidest * kWidest;
-  samples.resize(static_cast<std::size_t>(pixels) * kBriskPoints);
-  distances.resize(static_cast<std::size_t>(pixels));
-  columns.resize(std::max(columns.size(), room));
-  KernelFor(set)({rows, integral_.step1(), pixels, columns.data()}, sampler, SortPairs(descriptor), samples.data(), distances.data());
-
-  Found best{{}, kBriskPairs + 1};
-  for (std::size_t r = 0; r < rows.size(); ++r)
-    for (int x = 0; x < rows[r].width; ++x) {
-      const Found here{{runs[r].first_x + x, runs[r].y}, distances[static_cast<std::size_t>(rows[r].at + x)]};
-      if (here.distance < best.distance) best = here;
-      if (all != nullptr) all->push_back(here);
+    const int last = std::min(run.last_x, width_ - margin - 1);
+    if (run.y < margin || run.y >= height_ - margin) continue;
+    for (int first = std::max(run.first_x, margin); first <= last;) {
+      const int width = std::min(last - first + 1, kChunk);
+      if (pixels + width > kChunk) take();
+      rows.push_back({SumsAt(integral_, first, run.y), pixels, width});
+      runs.push_back({run.y, first, first + width - 1});
+      room += RoomFor(rows.back(), sampler);
+      pixels += width;
+      first += width;
     }
-  return best;
+  }
+  if (!rows.empty()) take();
+  static_assert(kChunk % kWidest == 0);
+  return best.distance <= kBriskPairs ? std::optional(best) : std::nullopt;
 }
 
 }  // namespace vo
