@@ -10,6 +10,8 @@
 
 #include "vo/features/matcher.h"
 #include "vo/filter/consensus.h"
+#include "vo/pilots.h"
+#include "vo/spread.h"
 
 namespace vo {
 namespace {
@@ -60,17 +62,12 @@ std::vector<Eigen::Vector2d> LeaveOut(std::vector<Candidate>& candidates, std::s
   if (candidates.size() <= most) return left_out;
   std::stable_sort(candidates.begin(), candidates.end(),
                    [&](const Candidate& a, const Candidate& b) { return records[a.landmark].score > records[b.landmark].score; });
-  std::vector<int> in_cell(static_cast<std::size_t>(params.grid_columns * params.grid_rows), 0);
-  std::vector<std::pair<int, std::size_t>> turns;  // its place within the cell, candidate
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const auto column = static_cast<int>(candidates[i].pixel.x() * params.grid_columns / camera.width);
-    const auto row = static_cast<int>(candidates[i].pixel.y() * params.grid_rows / camera.height);
-    turns.emplace_back(in_cell[row * params.grid_columns + column]++, i);
-  }
-  std::sort(turns.begin(), turns.end());
+  std::vector<Eigen::Vector2d> pixels;
+  for (const Candidate& c : candidates) pixels.push_back(c.pixel);
+  const std::vector<std::size_t> order = SpreadOver(pixels, params.grid_columns, params.grid_rows, camera.width, camera.height);
   std::vector<Candidate> chosen;
-  for (std::size_t i = 0; i < most; ++i) chosen.push_back(candidates[turns[i].second]);
-  for (std::size_t i = most; i < turns.size(); ++i) left_out.push_back(candidates[turns[i].second].pixel);
+  for (std::size_t i = 0; i < most; ++i) chosen.push_back(candidates[order[i]]);
+  for (std::size_t i = most; i < order.size(); ++i) left_out.push_back(pixels[order[i]]);
   candidates = std::move(chosen);
   return left_out;
 }
@@ -88,6 +85,53 @@ SearchRequest RequestFor(const Candidate& candidate, const Filter& filter, const
   return request;
 }
 
+using Found = std::vector<std::optional<FoundFeature>>;
+
+Match MatchOf(const Candidate& candidate, const FoundFeature& found, const Camera& camera) {
+  return {candidate.landmark, camera.Undistort(found.pixel), PixelNoise(candidate.lens, found.noise)};
+}
+
+// The pilots first, each request as it is; the others where the camera then turns out to be.
+Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchRequest>& requests, const Filter& filter,
+           std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey, const BriskImage& brisk,
+           const Params& params) {
+  std::vector<PilotCandidate> possible;
+  for (const Candidate& c : candidates) possible.push_back({c.pixel, &records[c.landmark]});
+  const std::vector<std::size_t> pilots = ChoosePilots(possible, camera, params.features);
+  if (pilots.empty()) return FindFeatures(requests, grey, brisk, params.features);
+
+  Found found(candidates.size());
+  std::vector<bool> is_pilot(candidates.size(), false);
+  std::vector<SearchRequest> first;
+  for (const std::size_t i : pilots) {
+    is_pilot[i] = true;
+    first.push_back(requests[i]);
+  }
+  const Found leading = FindFeatures(first, grey, brisk, params.features);
+  std::vector<Match> matches;
+  for (std::size_t k = 0; k < pilots.size(); ++k) {
+    found[pilots[k]] = leading[k];
+    if (leading[k]) matches.push_back(MatchOf(candidates[pilots[k]], *leading[k], camera));
+  }
+
+  const LocalMap map = filter.ReferenceMap();
+  const std::optional<PilotedPose> pose = PilotedPose::From(filter.ReferencePrediction(), map, matches, params);
+  std::vector<SearchRequest> rest;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (is_pilot[i]) continue;
+    rest.push_back(requests[i]);
+    const auto where = pose ? pose->Predict(map, candidates[i].landmark, camera, params.features.sigma_px) : std::nullopt;
+    if (!where) continue;
+    rest.back().predicted = where->pixel;
+    rest.back().S = where->covariance;
+    rest.back().widest_px = std::max(params.features.window_px, WindowOf(where->covariance));
+  }
+  const Found following = FindFeatures(rest, grey, brisk, params.features);
+  for (std::size_t i = 0, k = 0; i < candidates.size(); ++i)
+    if (!is_pilot[i]) found[i] = following[k++];
+  return found;
+}
+
 }  // namespace
 
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
@@ -98,12 +142,11 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   std::vector<SearchRequest> requests;
   for (const Candidate& c : candidates)
     requests.push_back(RequestFor(c, filter, records[c.landmark], camera, params.features.sigma_px));
-  const auto found = FindFeatures(requests, grey, brisk, params.features);
+  const Found found = Find(candidates, requests, filter, records, camera, grey, brisk, params);
 
   std::vector<Match> matches;
   for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (found[i])
-      matches.push_back({candidates[i].landmark, camera.Undistort(found[i]->pixel), PixelNoise(candidates[i].lens, found[i]->noise)});
+    if (found[i]) matches.push_back(MatchOf(candidates[i], *found[i], camera));
   const std::vector<bool> inlier =
       FindInliers(filter.ReferencePrediction(), filter.ReferenceMap(), matches, params.score.gate, params.filter);
 

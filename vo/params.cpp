@@ -76,6 +76,7 @@ std::vector<std::string> Problems(const Params& params) {
   check.Require(score.grace_frames >= 0, "score.grace_frames", score.grace_frames, "must not be negative");
 
   const FeatureParams& features = params.features;
+  check.Require(features.pilots >= 0, "features.pilots", features.pilots, "must not be negative");
   const auto odd = [&](const char* name, int value) {
     check.Require(value >= 1 && value % 2 == 1, name, value, "must be odd and positive");
   };

@@ -113,6 +113,7 @@ struct FeatureParams {
   double max_view_angle_deg = 45;  // between the present and the first viewing ray
   double max_baseline_ratio = 0.3; // camera's distance from the first view / depth there
   int max_searched = 200;          // landmarks searched per frame
+  int pilots = 16;                 // so many are looked for first; where the others then are, small windows find them (0: the paper)
 };
 
 struct Params {

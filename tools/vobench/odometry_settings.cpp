@@ -72,7 +72,7 @@ void ReadFeatures(Section section, vo::FeatureParams& params) {
   auto& [sigma_px, noise, sigma_floor_px, noise_inflation, grid_columns, grid_rows, per_cell, fast_threshold_start,
          fast_threshold_min, min_distance_px, min_cornerness, brisk_size_px, brisk_warp, max_hamming, window_quick_px,
          window_px, window_enlarged_px, window_lost_px, subpixel, max_view_angle_deg, max_baseline_ratio,
-         max_searched] = params;
+         max_searched, pilots] = params;
   section.Read("sigma", sigma_px, Unit::pixel, Range::Positive());
   section.ReadChoice("noise", noise,
                      {{"constant", vo::MatchNoise::constant}, {"registered", vo::MatchNoise::registered}});
@@ -102,6 +102,7 @@ void ReadFeatures(Section section, vo::FeatureParams& params) {
   }
   section.Read("max_baseline_ratio", max_baseline_ratio, Range::Positive());
   section.Read("max_searched", max_searched, Range::AtLeast(1));
+  section.Read("pilots", pilots, Range::AtLeast(0));
 }
 
 }  // namespace

@@ -30,11 +30,7 @@ Eigen::Matrix2d PatternMap(const Eigen::Matrix2d& warp, const FeatureParams& par
 }
 
 // The window that the prediction's own uncertainty asks for; nothing beyond the enlarged window while that is small.
-int LostWindow(const Eigen::Matrix2d& S, const FeatureParams& params) {
-  const double sigma = std::sqrt(std::max(S(0, 0), S(1, 1)));
-  const int side = 2 * static_cast<int>(std::ceil(kLostSigmas * sigma)) + 1;
-  return std::min(side, params.window_lost_px);
-}
+int LostWindow(const Eigen::Matrix2d& S, const FeatureParams& params) { return std::min(WindowOf(S), params.window_lost_px); }
 
 // The window, row by row; where it is larger than the enlarged one, what of it lies in the ellipse of kLostSigmas about the prediction (the
 // covariance of a lost landmark is mostly long and thin).
@@ -63,6 +59,10 @@ bool OnBorder(const Eigen::Vector2i& pixel, const Eigen::Vector2i& centre, int s
 
 }  // namespace
 
+int WindowOf(const Eigen::Matrix2d& S) {
+  return 2 * static_cast<int>(std::ceil(kLostSigmas * std::sqrt(std::max(S(0, 0), S(1, 1))))) + 1;
+}
+
 BriskSampler FirstSampler(const FeatureParams& params) { return BriskSampler(PatternMap(Eigen::Matrix2d::Identity(), params)); }
 
 std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& grey,
@@ -76,7 +76,8 @@ std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRe
     const SearchRequest& request = requests[i];
     const BriskSampler sampler(PatternMap(request.warp, params));
     int searched = 0;
-    for (const int side : {params.window_quick_px, params.window_px, params.window_enlarged_px, LostWindow(request.S, params)}) {
+    for (const int wanted : {params.window_quick_px, params.window_px, params.window_enlarged_px, LostWindow(request.S, params)}) {
+      const int side = request.widest_px ? std::min(wanted, *request.widest_px) : wanted;
       if (side <= searched) continue;
       const bool quick = searched == 0 && side < params.window_px;
       searched = side;

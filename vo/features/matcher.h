@@ -23,7 +23,11 @@ struct SearchRequest {
   Eigen::Vector2d predicted = Eigen::Vector2d::Zero();          // [px]
   Eigen::Matrix2d S = Eigen::Matrix2d::Zero();                  // its covariance, pixel noise included [px^2]
   Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();           // d(present pixel)/d(pixel of the first view)
+  std::optional<int> widest_px = std::nullopt;                          // no window is wider than this; none: as the settings have it
 };
+
+// Side of the window that covers a prediction of this covariance [px^2].
+int WindowOf(const Eigen::Matrix2d& S);
 
 // How a corner is described when it is first seen: as it lies.
 BriskSampler FirstSampler(const FeatureParams& params);

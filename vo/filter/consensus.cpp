@@ -31,19 +31,25 @@ std::vector<double> SquaredDistances(const Pose& pose, const LocalMap& map, std:
 
 }  // namespace
 
-std::vector<bool> FindInliers(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
-                              const FilterParams& params) {
-  if (!params.reject_outliers) return std::vector<bool>(matches.size(), true);
+Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
+                        const FilterParams& params) {
+  Consensus found{prediction, {}};
   std::vector<Match> reweighted(matches.begin(), matches.end());
   std::vector<double> distances = SquaredDistances(prediction.mean, map, matches);
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t i = 0; i < matches.size(); ++i)
       reweighted[i].R = matches[i].R * (1.0 + std::min(distances[i], kFar) / kCauchySq);
-    distances = SquaredDistances(Propose(prediction, map, reweighted, params).pose.mean, map, matches);
+    found.pose = Propose(prediction, map, reweighted, params).pose;
+    distances = SquaredDistances(found.pose.mean, map, matches);
   }
-  std::vector<bool> inlier;
-  for (const double d : distances) inlier.push_back(d < gate);
-  return inlier;
+  for (const double d : distances) found.inlier.push_back(d < gate);
+  return found;
+}
+
+std::vector<bool> FindInliers(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
+                              const FilterParams& params) {
+  if (!params.reject_outliers) return std::vector<bool>(matches.size(), true);
+  return FindConsensus(prediction, map, matches, gate, params).inlier;
 }
 
 }  // namespace vo

@@ -9,8 +9,17 @@
 
 namespace vo {
 
+struct Consensus {
+  PoseGaussian pose;         // fitted; its covariance is of the matches as re-weighted
+  std::vector<bool> inlier;  // of each match
+};
+
 // Fits the pose of one particle robustly and marks the matches whose residual there, with the landmark's and the pixel's
-// covariance, has a squared Mahalanobis distance below `gate`. All of them with params.reject_outliers off.
+// covariance, has a squared Mahalanobis distance below `gate`.
+Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
+                        const FilterParams& params);
+
+// The marks alone. All of them with params.reject_outliers off.
 std::vector<bool> FindInliers(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
                               const FilterParams& params);
 
