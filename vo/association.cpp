@@ -106,6 +106,7 @@ Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchReq
   for (const std::size_t i : pilots) {
     is_pilot[i] = true;
     first.push_back(requests[i]);
+    first.back().widest_px = params.features.window_recovery_px;
   }
   const Found leading = FindFeatures(first, grey, brisk, params.features);
   std::vector<Match> matches;

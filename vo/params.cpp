@@ -101,10 +101,13 @@ std::vector<std::string> Problems(const Params& params) {
   odd("features.window_px", features.window_px);
   odd("features.window_enlarged_px", features.window_enlarged_px);
   odd("features.window_lost_px", features.window_lost_px);
+  odd("features.window_recovery_px", features.window_recovery_px);
   check.Require(features.window_enlarged_px >= features.window_px, "features.window_enlarged_px",
                 features.window_enlarged_px, "must not be below features.window_px");
   check.Require(features.window_lost_px >= features.window_enlarged_px, "features.window_lost_px",
                 features.window_lost_px, "must not be below features.window_enlarged_px");
+  check.Require(features.window_recovery_px >= features.window_lost_px, "features.window_recovery_px",
+                features.window_recovery_px, "must not be below features.window_lost_px");
   check.Require(features.max_view_angle_deg > 0 && features.max_view_angle_deg < 90, "features.max_view_angle_deg",
                 features.max_view_angle_deg, "must lie between 0 and 90");
   check.Positive("features.max_baseline_ratio", features.max_baseline_ratio);

@@ -109,6 +109,7 @@ struct FeatureParams {
   int window_px = 9;               // side of the search window about the prediction ...
   int window_enlarged_px = 17;     // ... and when nothing fits there
   int window_lost_px = 49;         // at most, when the prediction itself is uncertain (recovery)
+  int window_recovery_px = 241;    // of pilots: after a gap they find back what was there before
   bool subpixel = true;            // refine the match by registering the patch of the first view (our addition)
   double max_view_angle_deg = 45;  // between the present and the first viewing ray
   double max_baseline_ratio = 0.3; // camera's distance from the first view / depth there

@@ -71,7 +71,7 @@ void ReadScore(Section section, vo::ScoreParams& params) {
 void ReadFeatures(Section section, vo::FeatureParams& params) {
   auto& [sigma_px, noise, sigma_floor_px, noise_inflation, grid_columns, grid_rows, per_cell, fast_threshold_start,
          fast_threshold_min, min_distance_px, min_cornerness, brisk_size_px, brisk_warp, max_hamming, window_quick_px,
-         window_px, window_enlarged_px, window_lost_px, subpixel, max_view_angle_deg, max_baseline_ratio,
+         window_px, window_enlarged_px, window_lost_px, window_recovery_px, subpixel, max_view_angle_deg, max_baseline_ratio,
          max_searched, pilots] = params;
   section.Read("sigma", sigma_px, Unit::pixel, Range::Positive());
   section.ReadChoice("noise", noise,
@@ -94,6 +94,7 @@ void ReadFeatures(Section section, vo::FeatureParams& params) {
   section.Read("window", window_px, Range::AtLeast(1));
   section.Read("window_enlarged", window_enlarged_px, Range::AtLeast(1));
   section.Read("window_lost", window_lost_px, Range::AtLeast(1));
+  section.Read("window_recovery", window_recovery_px, Range::AtLeast(1));
   section.Read("subpixel", subpixel);
   constexpr double kRadPerDeg = std::numbers::pi / 180;
   double max_view_angle = max_view_angle_deg * kRadPerDeg;

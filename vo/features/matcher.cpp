@@ -30,7 +30,9 @@ Eigen::Matrix2d PatternMap(const Eigen::Matrix2d& warp, const FeatureParams& par
 }
 
 // The window that the prediction's own uncertainty asks for; nothing beyond the enlarged window while that is small.
-int LostWindow(const Eigen::Matrix2d& S, const FeatureParams& params) { return std::min(WindowOf(S), params.window_lost_px); }
+int LostWindow(const SearchRequest& request, const FeatureParams& params) {
+  return std::min(WindowOf(request.S), request.widest_px.value_or(params.window_lost_px));
+}
 
 // The window, row by row; where it is larger than the enlarged one, what of it lies in the ellipse of kLostSigmas about the prediction (the
 // covariance of a lost landmark is mostly long and thin).
@@ -76,7 +78,7 @@ std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRe
     const SearchRequest& request = requests[i];
     const BriskSampler sampler(PatternMap(request.warp, params));
     int searched = 0;
-    for (const int wanted : {params.window_quick_px, params.window_px, params.window_enlarged_px, LostWindow(request.S, params)}) {
+    for (const int wanted : {params.window_quick_px, params.window_px, params.window_enlarged_px, LostWindow(request, params)}) {
       const int side = request.widest_px ? std::min(wanted, *request.widest_px) : wanted;
       if (side <= searched) continue;
       const bool quick = searched == 0 && side < params.window_px;

@@ -7,7 +7,9 @@
 namespace vo {
 namespace {
 
-constexpr int kRounds = 4;
+constexpr int kRounds = 4;       // at least, ...
+constexpr int kMostRounds = 12;  // ... and as long as the pose moves: after a dark time it begins far off
+constexpr double kStill = 0.1;   // of its standard deviation
 constexpr double kCauchySq = 5.7;  // 2.385^2: 95 % efficient on Gaussian residuals
 constexpr double kFar = 1e6;
 
@@ -29,6 +31,10 @@ std::vector<double> SquaredDistances(const Pose& pose, const LocalMap& map, std:
   return distances;
 }
 
+bool Moved(const PoseGaussian& pose, const Pose& before) {
+  return (Minus(pose.mean, before).array().abs() > kStill * pose.covariance.diagonal().array().sqrt()).any();
+}
+
 }  // namespace
 
 Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
@@ -36,7 +42,9 @@ Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std
   Consensus found{prediction, {}};
   std::vector<Match> reweighted(matches.begin(), matches.end());
   std::vector<double> distances = SquaredDistances(prediction.mean, map, matches);
-  for (int round = 0; round < kRounds; ++round) {
+  Pose before = prediction.mean;
+  for (int round = 0; round < kMostRounds && (round < kRounds || Moved(found.pose, before)); ++round) {
+    before = found.pose.mean;
     for (std::size_t i = 0; i < matches.size(); ++i)
       reweighted[i].R = matches[i].R * (1.0 + std::min(distances[i], kFar) / kCauchySq);
     found.pose = Propose(prediction, map, reweighted, params).pose;
