@@ -47,6 +47,12 @@ int MostOnOneLine(std::string_view text) {
 
 std::string OpenCvStorageProblem(std::string_view text) {
   if (text.size() > kMostStorageBytes) return "larger than " + std::to_string(kMostStorageBytes) + " bytes";
+  if (text.find('\0') != std::string_view::npos)
+    return "no text: it has a byte of zero";  // a null pointer in OpenCV's reader of XML
+  if (text.starts_with("<?xml")) {            // the same, where it breaks off
+    const std::string_view whole = text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
+    if (!whole.ends_with("</opencv_storage>")) return "cut off: it does not end with </opencv_storage>";
+  }
   const bool deep = text.starts_with("<?xml") ? DeepestElement(text) > kDeepestStorage
                                               : std::max(DeepestBracket(text), MostOnOneLine(text)) > kDeepestStorage;
   return deep ? "nested more than " + std::to_string(kDeepestStorage) + " deep" : "";

@@ -134,7 +134,7 @@ class OpenCvFile {
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(stream.gcount()));
     if (const std::string problem = limits::OpenCvStorageProblem(text); !problem.empty())
-      throw settings::Error({{file_, 0, 0, "OpenCV is not given it: it is " + problem}});
+      throw settings::Error({{file_, 0, 0, "OpenCV cannot read it: it is " + problem}});
     storage_.open(file_, cv::FileStorage::READ);
     if (!storage_.isOpened()) throw settings::Error({{file_, 0, 0, "OpenCV cannot read it"}});
   }

@@ -18,8 +18,10 @@ TEST(OpenCvStorage, EachWayToGoDeepIsBounded) {
     EXPECT_EQ(OpenCvStorageProblem(kYaml + Times(kDeepestStorage / 2, level)), "") << level;
     EXPECT_EQ(OpenCvStorageProblem(kYaml + Times(kDeepestStorage + 1, level)), "nested more than 100 deep") << level;
   }
-  EXPECT_EQ(OpenCvStorageProblem(kXml + Times(kDeepestStorage - 1, "<a>")), "");
-  EXPECT_NE(OpenCvStorageProblem(kXml + Times(kDeepestStorage, "<a>")), "");
+  EXPECT_EQ(OpenCvStorageProblem(kXml + Times(kDeepestStorage - 1, "<a>") + "</opencv_storage>"), "");
+  EXPECT_NE(OpenCvStorageProblem(kXml + Times(kDeepestStorage, "<a>") + "</opencv_storage>"), "") << "too deep";
+  EXPECT_EQ(OpenCvStorageProblem(kXml + "<a type_id="), "cut off: it does not end with </opencv_storage>");
+  EXPECT_EQ(OpenCvStorageProblem(kXml + std::string(1, '\0')), "no text: it has a byte of zero");
   EXPECT_EQ(OpenCvStorageProblem(std::string(kMostStorageBytes + 1, ' ')), "larger than 1048576 bytes");
 }
 
