@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -45,6 +46,8 @@ bool ParseStamp(std::string_view text, std::int64_t& stamp_ns) {
   std::int64_t seconds = 0, nanoseconds = 0;
   std::from_chars(whole.data(), whole.data() + whole.size(), seconds);
   std::from_chars(fraction.data(), fraction.data() + fraction.size(), nanoseconds);
+  constexpr std::int64_t kLast_s = std::numeric_limits<std::int64_t>::max() / 1000000000 - 1;  // in the year 2262
+  if (seconds > kLast_s) return false;
   stamp_ns = seconds * 1000000000 + nanoseconds;
   return true;
 }

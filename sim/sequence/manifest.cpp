@@ -5,6 +5,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "tools/limits/json.h"
+
 namespace sim {
 namespace {
 
@@ -45,6 +47,7 @@ std::string Manifest(const Simulator& simulator, const SequenceContent& content,
 }
 
 std::vector<std::string> ManifestDifferences(const std::string& there, const std::string& wanted) {
+  if (const std::string problem = limits::JsonProblem(there); !problem.empty()) throw std::invalid_argument("is " + problem);
   const Json parsed = Json::parse(there, nullptr, false);
   if (!parsed.is_object()) throw std::invalid_argument("is not a JSON object");
   Json a = parsed.flatten(), b = Json::parse(wanted).flatten();

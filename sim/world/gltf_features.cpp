@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "tools/limits/json.h"
+
 namespace sim {
 namespace {
 
@@ -23,8 +25,8 @@ std::string JsonText(const std::filesystem::path& file) {
   if (stream && std::memcmp(head, "glTF", 4) == 0) {
     std::uint32_t length = 0;
     std::memcpy(&length, head + 12, sizeof length);
-    constexpr std::uint32_t kMost = 1u << 28;
-    if (length > kMost) return {};
+    std::error_code error;
+    if (const std::uintmax_t size = std::filesystem::file_size(file, error); error || length > size) return {};
     bytes.resize(length);
     stream.read(bytes.data(), static_cast<std::streamsize>(length));
     return bytes;
@@ -67,7 +69,12 @@ const std::set<std::string>& Applied() {
 
 GltfFeatures ReadGltfFeatures(const std::filesystem::path& file) {
   GltfFeatures features;
-  const json document = json::parse(JsonText(file), nullptr, false);
+  const std::string text = JsonText(file);
+  if (const std::string problem = limits::JsonProblem(text); !problem.empty()) {
+    features.impossible.push_back("is " + problem);
+    return features;
+  }
+  const json document = json::parse(text, nullptr, false);
   if (!document.is_object()) return features;
   const auto names = [&](const char* key) {
     std::set<std::string> result;

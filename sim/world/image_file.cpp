@@ -5,6 +5,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
+#include "tools/limits/picture.h"
+
 namespace sim {
 namespace {
 
@@ -72,6 +74,7 @@ void CheckJpeg(Bytes bytes) {
 
 DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
   if (bytes.empty()) throw std::runtime_error("the file is empty");
+  if (const std::string problem = limits::PictureProblem(bytes); !problem.empty()) throw std::runtime_error(problem);
   if (bytes.size() >= kPngSignature.size() && std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin())) {
     CheckPng(bytes);
   } else if (bytes.size() >= 2 && bytes[0] == 0xff && bytes[1] == 0xd8) {

@@ -1,12 +1,8 @@
 #include "sim/world/mesh_file.h"
 
-#include <assimp/DefaultIOSystem.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
-#include <assimp/IOStream.hpp>
-#include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
@@ -15,12 +11,11 @@
 #include <glm/vec4.hpp>
 #include <iterator>
 #include <memory>
-#include <set>
 #include <sstream>
-#include <stdexcept>
 #include <utility>
 
 #include "sim/world/gltf_features.h"
+#include "sim/world/mesh_import.h"
 #include "sim/world/mesh_material.h"
 #include "sim/world/srgb.h"
 
@@ -28,49 +23,6 @@ namespace sim {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A file that cannot be read past its end for ever: assimp's PLY importer (5.2) does so when a header is cut off.
-class BoundedStream : public Assimp::IOStream {
- public:
-  explicit BoundedStream(std::unique_ptr<Assimp::IOStream> stream) : stream_(std::move(stream)) {}
-
-  std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
-    const std::size_t read = stream_->Read(buffer, size, count);
-    constexpr int kPatience = 1000;
-    if (read == 0 && ++empty_reads_ > kPatience) throw std::runtime_error("the file ends too early");
-    return read;
-  }
-  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
-  aiReturn Seek(std::size_t offset, aiOrigin origin) override { return stream_->Seek(offset, origin); }
-  std::size_t Tell() const override { return stream_->Tell(); }
-  std::size_t FileSize() const override { return stream_->FileSize(); }
-  void Flush() override {}
-
- private:
-  std::unique_ptr<Assimp::IOStream> stream_;
-  int empty_reads_ = 0;
-};
-
-// Importers quietly do without a side file (an OBJ's materials, say) that cannot be opened: this remembers which, and
-// what they looked for at all.
-class NotingFiles : public Assimp::DefaultIOSystem {
- public:
-  explicit NotingFiles(std::set<fs::path>& all) : all_(all) {}
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
-    all_.insert(file);
-    std::unique_ptr<Assimp::IOStream> stream(DefaultIOSystem::Open(file, mode));
-    if (stream == nullptr) {
-      missing_.insert(fs::path(file).filename().string());
-      return nullptr;
-    }
-    return new BoundedStream(std::move(stream));  // Close() deletes it
-  }
-  const std::set<std::string>& missing() const { return missing_; }
-
- private:
-  std::set<fs::path>& all_;
-  std::set<std::string> missing_;
-};
 
 std::string LowerExtension(const fs::path& file) {
   std::string text = file.extension().string();
@@ -123,19 +75,11 @@ class FileReader {
       for (const std::string& what : features.not_rendered) Warn(what);
     }
 
-    Assimp::Importer importer;
-    auto* files = new NotingFiles(scene_.files);  // the importer owns it
-    importer.SetIOHandler(files);
-    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const unsigned steps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
-                           aiProcess_ValidateDataStructure;
-    ai_ = importer.ReadFile(file_.string(), steps);
-    if (ai_ == nullptr) {
-      const std::string reason = importer.GetErrorString();
-      const bool only_lines = reason.find("No meshes remaining") != std::string::npos;  // the importer's words for it
-      return Problem(only_lines ? "has no triangles" : "cannot be read: " + reason);
-    }
-    for (const std::string& missing : files->missing()) {
+    MeshImport import = ImportMesh(file_);
+    scene_.files.insert(import.files.begin(), import.files.end());
+    if (import.scene == nullptr) return Problem(import.problem);
+    ai_ = import.scene.get();
+    for (const std::string& missing : import.missing) {
       scene_.warnings.push_back(file_.string() + ": names " + missing + ", which cannot be opened");
     }
 

@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "sim/world/image_file.h"
+#include "sim/world/mesh_files.h"
+#include "tools/limits/picture.h"
 
 namespace sim {
 namespace {
@@ -21,8 +23,11 @@ DecodedImage DecodeEmbedded(const aiTexture& texture, bool with_alpha) {
   if (texture.mHeight == 0) {  // a file of mWidth bytes
     return DecodeImage({reinterpret_cast<const std::uint8_t*>(texture.pcData), texture.mWidth}, with_alpha);
   }
+  const std::size_t texels = std::size_t{texture.mWidth} * texture.mHeight;
+  const std::string problem = limits::PictureSizeProblem(texture.mWidth, texture.mHeight, texels * sizeof(aiTexel));
+  if (!problem.empty()) throw std::runtime_error(problem);
   DecodedImage image{static_cast<int>(texture.mWidth), static_cast<int>(texture.mHeight), {}, {}};
-  for (std::size_t i = 0; i < std::size_t{texture.mWidth} * texture.mHeight; ++i) {
+  for (std::size_t i = 0; i < texels; ++i) {
     const aiTexel& texel = texture.pcData[i];
     image.rgb.insert(image.rgb.end(), {texel.r, texel.g, texel.b});
     if (with_alpha) image.alpha.push_back(texel.a);
@@ -201,7 +206,7 @@ int MeshMaterialReader::TextureIndex(const std::string& name, const std::string&
       image = DecodeEmbedded(*embedded, with_alpha);
     } else {
       const bool has_drive = text.size() > 1 && text[1] == ':';
-      if (path.is_absolute() || has_drive || (!path.empty() && *path.begin() == "..")) {
+      if (path.is_absolute() || has_drive || (!path.empty() && *path.begin() == "..") || !LiesBeside(file_, file)) {
         entry->second = -1;
         problems_.push_back(file_.string() + ": material '" + material + "': the texture path '" + name +
                             "' must be relative and stay inside the mesh file's folder");
@@ -209,6 +214,7 @@ int MeshMaterialReader::TextureIndex(const std::string& name, const std::string&
       }
       scene_.files.insert(file);
       if (!fs::exists(file)) return bad("no such file");
+      if (!fs::is_regular_file(file)) return bad("not a file");
       std::ifstream stream(file, std::ios::binary);
       const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
       if (!stream.is_open() || stream.bad()) return bad("cannot be opened");

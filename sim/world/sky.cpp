@@ -12,10 +12,13 @@
 #include <iterator>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
+#include <span>
 #include <stdexcept>
 #include <string>
 
 #include "sim/world/srgb.h"
+#include "tools/limits/exr.h"
+#include "tools/limits/picture.h"
 
 namespace sim {
 namespace {
@@ -52,12 +55,12 @@ cv::Mat ReadExr(const std::filesystem::path& path) {
 cv::Mat ReadPicture(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw std::runtime_error(file.string() + ": cannot be opened");
-  char magic[4] = {};
-  stream.read(magic, sizeof magic);
-  if (std::memcmp(magic, "\x76\x2f\x31\x01", sizeof magic) == 0) return ReadExr(file);
-  stream.clear();
-  stream.seekg(0);
   const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
+  const std::span<const std::uint8_t> whole(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  const bool is_exr = bytes.size() >= 4 && std::memcmp(bytes.data(), "\x76\x2f\x31\x01", 4) == 0;
+  const std::string problem = is_exr ? limits::ExrProblem(whole) : limits::PictureProblem(whole);
+  if (!problem.empty()) throw std::runtime_error(file.string() + (is_exr ? ": cannot be read: " : ": ") + problem);
+  if (is_exr) return ReadExr(file);
   cv::Mat picture;
   try {
     if (!bytes.empty())

@@ -91,7 +91,7 @@ const std::vector<Message>& Messages() {
        {"none.hdr", "cannot be opened"}},
       {"sim/world/sky.cpp",
        {"check", "TINY", "--set", "world.lights=[{type: sky, file: FOLDER/one.txt}]"},
-       {"one.txt", "not a picture that can be decoded"}},
+       {"one.txt", "not a picture that is read here"}},
       {"sim/scenario/world_reader.cpp",
        {"check", "TINY", "--set", "world.lights=[{type: sky, file: a.hdr, radiance: [1, 1, 1]}]"},
        {"a sky has either 'radiance', or 'zenith', 'horizon' and 'ground', or a 'file'"}},

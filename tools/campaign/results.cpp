@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "tools/limits/json.h"
+
 namespace campaign {
 namespace {
 
@@ -153,6 +155,7 @@ std::string ToJson(const TaskRecord& record) {
 }
 
 TaskRecord RecordFromJson(const std::string& text) {
+  if (const std::string problem = limits::JsonProblem(text); !problem.empty()) throw std::invalid_argument(problem);
   try {
     const Json json = Json::parse(text);
     if (json.at("format") != kFormat) throw std::invalid_argument("not the format '" + std::string(kFormat) + "'");

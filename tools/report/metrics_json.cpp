@@ -1,10 +1,10 @@
 #include "tools/report/metrics_json.h"
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tools/evaluation/text_file.h"
+#include "tools/report/json_text.h"
 #include "tools/report/text.h"
 #include "tools/report/text_summary.h"
 
@@ -190,11 +190,10 @@ void WriteMetricsJson(const std::filesystem::path& out, const std::vector<Judged
 
 std::vector<RecordedMetrics> ReadMetricsJson(const std::filesystem::path& out) {
   const std::filesystem::path file = out / "metrics.json";
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw ev::InputError({file.string() + ": cannot be opened"});
+  const std::string text = ReadJsonText(file);
   std::vector<RecordedMetrics> recorded;
   try {
-    const Json json = Json::parse(stream);
+    const Json json = Json::parse(text);
     if (json.at("format") != kFormat) throw ev::InputError({file.string() + ": the format is not '" + kFormat + "'"});
     const auto nanoseconds = [](const Json& value) { return std::llround(value.get<double>() * 1e9); };
     for (const Json& run : json.at("runs")) {

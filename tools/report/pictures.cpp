@@ -1,10 +1,10 @@
 #include "tools/report/pictures.h"
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tools/evaluation/text_file.h"
+#include "tools/report/json_text.h"
 
 namespace report {
 namespace {
@@ -42,10 +42,9 @@ FeatureMark MarkFrom(const Json& json) {
 // What is wrong is told with the file's name.
 template <class Read>
 auto Parsed(const fs::path& file, const char* format, const Read& read) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw ev::InputError({file.string() + ": cannot be opened"});
+  const std::string text = ReadJsonText(file);
   try {
-    const Json json = Json::parse(stream);
+    const Json json = Json::parse(text);
     if (json.at("format") != format) throw ev::InputError({"the format is not '" + std::string(format) + "'"});
     return read(json);
   } catch (const Json::exception& error) {

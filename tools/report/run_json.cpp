@@ -1,11 +1,11 @@
 #include "tools/report/run_json.h"
 
 #include <exception>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "tools/evaluation/text_file.h"
+#include "tools/report/json_text.h"
 
 namespace report {
 namespace {
@@ -80,11 +80,10 @@ void WriteRunJson(const fs::path& out, const RunDescription& description) {
 
 RunDescription ReadRunJson(const fs::path& out) {
   const fs::path file = out / "run.json";
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw evaluation::InputError({file.string() + ": cannot be opened"});
+  const std::string text = ReadJsonText(file);
   Json json;
   try {
-    json = Json::parse(stream);
+    json = Json::parse(text);
   } catch (const Json::exception& error) {
     throw evaluation::InputError({file.string() + ": " + error.what()});
   }

@@ -8,11 +8,15 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
 #include "tools/evaluation/text_file.h"
+#include "tools/limits/exr.h"
+#include "tools/limits/json.h"
+#include "tools/limits/picture.h"
 #include "tools/settings/settings.h"
 #include "vo/geometry/camera_file.h"
 
@@ -85,10 +89,10 @@ void CompareStamps(Sequence& s, Check& stamps) {
     for (const auto& [name, entries] : *map) lists.emplace_back(name, Stamps(entries));
   }
   std::ptrdiff_t most = 0;
-  for (const auto& [name, candidate] : lists) {
+  for (const auto& candidate : lists) {
     const auto agree =
-        std::count_if(lists.begin(), lists.end(), [&](const auto& list) { return list.second == candidate; });
-    if (agree > most || (agree == most && name == "rgb")) most = agree, s.stamps = candidate;
+        std::count_if(lists.begin(), lists.end(), [&](const auto& list) { return list.second == candidate.second; });
+    if (agree > most || (agree == most && candidate.first == "rgb")) most = agree, s.stamps = candidate.second;
   }
   for (const auto& [name, list] : lists) {
     if (Agrees(name, list, s.stamps)) {
@@ -131,16 +135,28 @@ std::vector<std::string> ObjectNames(const fs::path& folder) {
   return names;
 }
 
-void ReadManifest(const fs::path& file, Sequence& s) {
-  std::ifstream stream(file);
-  const nlohmann::json manifest = nlohmann::json::parse(stream, nullptr, false);
-  if (!manifest.is_object() || !manifest.contains("scenario") || !manifest["scenario"].is_object()) return;
-  const nlohmann::json sensor = manifest["scenario"].value("sensor", nlohmann::json::object());
+// Of the scenario in a manifest.
+void ReadScenario(const nlohmann::json& scenario, Sequence& s) {
+  const nlohmann::json sensor = scenario.value("sensor", nlohmann::json::object());
   s.rolling_shutter = sensor.is_object() && sensor.value("rolling_shutter", 0.0) != 0;
-  const nlohmann::json trajectory = manifest["scenario"].value("trajectory", nlohmann::json::object());
+  const nlohmann::json trajectory = scenario.value("trajectory", nlohmann::json::object());
   if (!trajectory.is_object() || trajectory.value("type", "") != "sampled") return;
   s.roughness = {true, trajectory.value("position_noise", 0.0), trajectory.value("orientation_noise", 0.0),
                  trajectory.value("knot_step", 1.0 / 240)};
+}
+
+// A manifest that says something else than the simulator's is a failure of `files`.
+void ReadManifest(const fs::path& file, Sequence& s, Check& files) {
+  std::ifstream stream(file);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (const std::string problem = limits::JsonProblem(text); !problem.empty()) return files.Fail("manifest.json: " + problem);
+  const nlohmann::json manifest = nlohmann::json::parse(text, nullptr, false);
+  if (!manifest.is_object() || !manifest.contains("scenario") || !manifest["scenario"].is_object()) return;
+  try {
+    ReadScenario(manifest["scenario"], s);
+  } catch (const nlohmann::json::exception& error) {
+    files.Fail(std::string("manifest.json: ") + error.what());
+  }
 }
 
 void ReadImu(const fs::path& folder, Sequence& s, Check& files) {
@@ -193,6 +209,8 @@ cv::Mat ReadFlo(const fs::path& path) {
       size[1] > 1 << 15) {
     throw std::runtime_error("is no .flo file");
   }
+  const std::uintmax_t length = 12 + std::uintmax_t{8} * static_cast<std::uintmax_t>(size[0]) * static_cast<std::uintmax_t>(size[1]);
+  if (fs::file_size(path) != length) throw std::runtime_error("is not as long as its size says");
   cv::Mat flow(size[1], size[0], CV_32FC2);
   stream.read(reinterpret_cast<char*>(flow.data), static_cast<std::streamsize>(flow.total() * flow.elemSize()));
   if (!stream || stream.peek() != std::ifstream::traits_type::eof())
@@ -234,7 +252,7 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
   CompareStamps(s, stamps);
   PlacePoses(s, "groundtruth", s.poses, s.has_pose, files);
   for (Object& object : s.objects) PlacePoses(s, "objects/" + object.name, object.poses, object.has_pose, files);
-  if (fs::exists(folder / "manifest.json")) ReadManifest(folder / "manifest.json", s);
+  if (fs::exists(folder / "manifest.json")) ReadManifest(folder / "manifest.json", s, files);
   if (fs::exists(folder / "surfaces.txt")) s.surfaces = evaluation::ReadLines(folder / "surfaces.txt").size();
   if (fs::exists(folder / "landmarks.txt"))
     s.landmarks = ReadTable(folder / "landmarks.txt", 5, false, false, ' ', files);
@@ -248,9 +266,14 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
 cv::Mat ReadPicture(const fs::path& file) {
   try {
     if (!fs::is_regular_file(file)) throw std::runtime_error("is not there");
-    if (file.extension() == ".exr") return ReadExr(file);
     if (file.extension() == ".flo") return ReadFlo(file);
-    const cv::Mat image = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+    const bool is_exr = file.extension() == ".exr";
+    std::ifstream stream(file, std::ios::binary);
+    const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
+    const std::string problem = is_exr ? limits::ExrProblem(bytes) : limits::PictureProblem(bytes);
+    if (!problem.empty()) throw std::runtime_error(problem);
+    if (is_exr) return ReadExr(file);
+    const cv::Mat image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
     if (image.empty()) throw std::runtime_error("cannot be decoded");
     return image;
   } catch (const std::exception& error) {

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <opencv2/core.hpp>
 #include <span>
 #include <stdexcept>
 #include <vector>
 
+#include "tools/limits/opencv_storage.h"
 #include "tools/settings/settings.h"
 
 namespace vo {
@@ -127,11 +129,13 @@ bool IsOfOpenCv(const std::filesystem::path& file) {
 class OpenCvFile {
  public:
   explicit OpenCvFile(const std::filesystem::path& file) : file_(file.string()) {
-    try {
-      storage_.open(file_, cv::FileStorage::READ);
-    } catch (const cv::Exception& error) {
-      throw settings::Error({{file_, 0, 0, "OpenCV cannot read it: " + error.err}});
-    }
+    std::ifstream stream(file, std::ios::binary);
+    std::string text(limits::kMostStorageBytes + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (const std::string problem = limits::OpenCvStorageProblem(text); !problem.empty())
+      throw settings::Error({{file_, 0, 0, "OpenCV cannot read it: it is " + problem}});
+    storage_.open(file_, cv::FileStorage::READ);
     if (!storage_.isOpened()) throw settings::Error({{file_, 0, 0, "OpenCV cannot read it"}});
   }
 
@@ -173,19 +177,27 @@ class OpenCvFile {
 
   // Row by row; empty, and a problem known, where it is not there.
   std::vector<double> Matrix(const char* name, const char* other) {
-    std::vector<double> values;
-    try {
-      cv::Mat matrix;
-      Find(name, other) >> matrix;
-      if (matrix.channels() == 1) cv::Mat(matrix.reshape(1, 1)).convertTo(values, CV_64F);
-    } catch (const cv::Exception&) {
-      values.clear();
-    }
+    const std::vector<double> values = Numbers(Find(name, other));
     if (values.empty()) Complain(std::string("'") + name + "' must be there, a matrix of numbers");
     for (const double value : values) {
       if (std::isfinite(value)) continue;
       Complain(std::string("'") + name + "' has a number that is none");
       return {};
+    }
+    return values;
+  }
+
+  // Not by cv::Mat's reader, which makes room for as many rows and columns as the file says.
+  static std::vector<double> Numbers(const cv::FileNode& matrix) {
+    if (!matrix.isMap()) return {};
+    const cv::FileNode rows = matrix["rows"], columns = matrix["cols"], data = matrix["data"];
+    if (!rows.isInt() || !columns.isInt() || !data.isSeq()) return {};
+    const std::int64_t count = static_cast<std::int64_t>(static_cast<int>(rows)) * static_cast<int>(columns);
+    if (count < 1 || static_cast<std::size_t>(count) != data.size()) return {};
+    std::vector<double> values;
+    for (const cv::FileNode& value : data) {
+      if (!value.isInt() && !value.isReal()) return {};
+      values.push_back(static_cast<double>(value));
     }
     return values;
   }
@@ -198,7 +210,13 @@ class OpenCvFile {
 }  // namespace
 
 Camera ReadCamera(const std::filesystem::path& file) {
-  if (IsOfOpenCv(file)) return OpenCvFile(file).Read();
+  if (IsOfOpenCv(file)) {
+    try {
+      return OpenCvFile(file).Read();
+    } catch (const cv::Exception& error) {
+      throw settings::Error({{file.string(), 0, 0, "OpenCV cannot read it: " + error.err}});
+    }
+  }
   Camera camera;
   settings::Document document = settings::Document::FromFile(file);
   settings::Section root = document.root();

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
 #include <opencv2/imgcodecs.hpp>
+
+#include "tools/limits/picture.h"
 
 namespace vo {
 namespace {
@@ -22,7 +25,10 @@ std::optional<std::int64_t> ParseStamp(const std::string& text) {
   const auto digits = [](const std::string& s) { return std::all_of(s.begin(), s.end(), [](char c) { return c >= '0' && c <= '9'; }); };
   if (whole.empty() || whole.size() > 10 || !digits(whole) || !digits(fraction)) return std::nullopt;
   fraction.resize(9, '0');
-  return std::stoll(whole) * 1'000'000'000 + std::stoll(fraction);
+  constexpr std::int64_t kLast_s = std::numeric_limits<std::int64_t>::max() / 1'000'000'000 - 1;  // in the year 2262
+  const std::int64_t seconds = std::stoll(whole);
+  if (seconds > kLast_s) return std::nullopt;
+  return seconds * 1'000'000'000 + std::stoll(fraction);
 }
 
 // ICL-NUIM numbers its frames at 30 Hz.
@@ -77,6 +83,14 @@ bool EndsAsItShould(const std::vector<std::uint8_t>& bytes) {
   return true;
 }
 
+cv::Mat Decode(const std::vector<std::uint8_t>& bytes, const fs::path& file) {
+  try {
+    return cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception& error) {
+    throw std::runtime_error(file.string() + ": cannot be decoded: " + error.err);
+  }
+}
+
 cv::Mat ReadImage(const fs::path& file) {
   std::ifstream in(file, std::ios::binary | std::ios::ate);
   std::vector<std::uint8_t> bytes(in ? static_cast<std::size_t>(in.tellg()) : 0);
@@ -84,7 +98,8 @@ cv::Mat ReadImage(const fs::path& file) {
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!in || bytes.empty()) throw std::runtime_error(file.string() + ": cannot be read, or is empty");
   if (!EndsAsItShould(bytes)) throw std::runtime_error(file.string() + ": image breaks off before its end");
-  const cv::Mat image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+  if (const std::string problem = limits::PictureProblem(bytes); !problem.empty()) throw std::runtime_error(file.string() + ": " + problem);
+  const cv::Mat image = Decode(bytes, file);
   if (image.empty()) throw std::runtime_error(file.string() + ": not an image that can be decoded");
   if ((image.depth() != CV_8U && image.depth() != CV_16U) || (image.channels() != 1 && image.channels() != 3))
     throw std::runtime_error(file.string() + ": expected a grey or colour image of 8 or 16 bits");

@@ -31,6 +31,10 @@ TEST(ImageFile, ColoursAndOrder) {
   EXPECT_THAT(image.rgb, testing::ElementsAre(10, 20, 30, 1, 2, 3, 10, 20, 30, 10, 20, 30, 10, 20, 30, 10, 20, 30));
 }
 
+TEST(ImageFile, WhatTheDecoderRefusesAfterAGoodHeader) {
+  EXPECT_EQ(Complaint("P6\n4 4\n255\nshort"), "not a picture that can be decoded");
+}
+
 // Wherever a file is cut off, it is refused: also where the decoder by itself would fill the rest up.
 TEST(ImageFile, EveryTruncationIsRefused) {
   for (const char* extension : {".png", ".jpg"}) {

@@ -1,0 +1,28 @@
+// Purpose: one mesh file through assimp, which is kept at a distance: in a process of its own, with limits on time,
+// memory and counts, and
+//          without files outside the mesh's folder. Private to sim/world.
+// Source:  docs/reliability.md, "Hostile input".
+#pragma once
+
+#include <assimp/scene.h>
+
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+
+namespace sim {
+
+struct MeshImport {
+  std::unique_ptr<aiScene> scene;         // triangles only; null: see problem
+  std::string problem;                    // why there is none
+  std::set<std::filesystem::path> files;  // that the importer looked for
+  std::set<std::string> missing;          // those that could not be opened, without their folder
+};
+
+// Time is the processor's: five seconds, and ten more for each MB of the files that are opened. Memory: 512 MiB, and 64
+// bytes for each of theirs. An importer that crashes or runs into a limit is a problem with the file like any other.
+// Throws std::runtime_error where no process can be started.
+MeshImport ImportMesh(const std::filesystem::path& file);
+
+}  // namespace sim

@@ -1,0 +1,14 @@
+// campaign.yaml, and systems.yaml of other people's systems.
+#include "tests/fuzz/hold.h"
+#include "tools/campaign/campaign_file.h"
+#include "tools/campaign/external_system.h"
+#include "tools/campaign/results.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static fuzz::InputFile file("campaign.yaml");
+  static const campaign::Vocabulary vocabulary{{"rb2pf", "rbpf", "fastslam1", "ekfslam"}, campaign::MetricNames()};
+  file.Write({data, size});
+  fuzz::Hold(file.path().string(), [] { campaign::CampaignFile(file.path(), vocabulary).ThrowIfBad(); });
+  fuzz::Hold(file.path().string(), [] { campaign::ReadExternalSystems(file.path()); });
+  return 0;
+}

@@ -1,0 +1,28 @@
+// Pictures: textures (with alpha and without), frames of a sequence, streams of truth. Chunks of a PNG get the checksum
+// that belongs to them in half of the runs, or nothing would come past it.
+#include "sim/world/image_file.h"
+#include "sim/world/texture.h"
+#include "tests/fuzz/hold.h"
+#include "tests/fuzz/png_sums.h"
+#include "tools/verification/files.h"
+#include "vo/sequence/reader.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static fuzz::InputFile frame("frame.png");
+  static const bool once = [] { return fuzz::WriteBeside("rgb.txt", "1.0 frame.png\n"), true; }();
+  static_cast<void>(once);
+  std::vector<std::uint8_t> bytes(data, data + size);
+  if (size % 2 == 0) fuzz::MendPngSums(bytes);
+  frame.Write(bytes);
+  for (const bool with_alpha : {false, true}) {
+    fuzz::HoldText<std::runtime_error>([&] {
+      const sim::DecodedImage image = sim::DecodeImage(bytes, with_alpha);
+      constexpr std::int64_t kSmall = 1 << 20;  // a texture of more is the same work, and no decoder's
+      if (std::int64_t{image.width} * image.height > kSmall) return;
+      sim::Texture("picture", image.width, image.height, image.rgb, image.alpha).Sample({0.5f, 0.5f}, 2);
+    });
+  }
+  fuzz::Hold(frame.path().string(), [] { vo::SequenceReader(fuzz::Folder()).Next(); });
+  fuzz::Hold(frame.path().string(), [] { verification::ReadPicture(frame.path()); });
+  return 0;
+}

@@ -1,0 +1,25 @@
+// Purpose: whether a picture file may be given to a decoder: its kind, and the size that its header tells, before
+// anything is
+//          allocated for it.
+// Source:  ISO 15948 (PNG), ITU T.81 (JPEG), TIFF 6.0, RFC 9649 (WebP); docs/reliability.md, "Hostile input".
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace limits {
+
+constexpr std::int64_t kLongestSide = 1 << 15;      // [px]
+constexpr std::int64_t kMostPixels = 1 << 27;       // of any picture
+constexpr std::int64_t kPixelsOfAnyFile = 1 << 24;  // a small file may unpack to so many,
+constexpr std::int64_t kPixelsPerByte = 128;        // and to so many more for each of its bytes
+
+// What is wrong with a size for a file of so many bytes; empty: nothing.
+std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::size_t bytes);
+
+// The same of a whole file. PNG, JPEG, BMP, TIFF, WebP, PNM and Radiance HDR pass; other kinds are not read, so that a
+// decoder that nobody needs meets nobody's file.
+std::string PictureProblem(std::span<const std::uint8_t> file);
+
+}  // namespace limits
