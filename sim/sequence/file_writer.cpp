@@ -17,12 +17,21 @@ namespace {
   throw std::runtime_error(path.string() + ": cannot be written: " + std::generic_category().message(error));
 }
 
+// Tried again as long as a signal interrupts it.
+template <class Call>
+auto Uninterrupted(Call&& call) {
+  for (;;) {
+    const auto result = call();
+    if (result >= 0 || errno != EINTR) return result;
+  }
+}
+
 // A file that is open for writing; closed at the end, come what may.
 class OpenFile {
  public:
   // `shown` is named in errors.
   OpenFile(const fs::path& path, int flags, const fs::path& shown)
-      : file_(open(path.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666)), shown_(shown) {
+      : file_(Uninterrupted([&] { return open(path.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666); })), shown_(shown) {
     if (file_ < 0) Fail(shown_, errno);
   }
   ~OpenFile() {
@@ -33,18 +42,17 @@ class OpenFile {
 
   void Write(std::span<const std::uint8_t> bytes) {
     while (!bytes.empty()) {
-      const ssize_t written = write(file_, bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
+      const ssize_t written = Uninterrupted([&] { return write(file_, bytes.data(), bytes.size()); });
       if (written <= 0) Fail(shown_, written < 0 ? errno : EIO);
       bytes = bytes.subspan(static_cast<std::size_t>(written));
     }
   }
   void Cut(std::size_t size) {
-    if (ftruncate(file_, static_cast<off_t>(size)) != 0) Fail(shown_, errno);
+    if (Uninterrupted([&] { return ftruncate(file_, static_cast<off_t>(size)); }) != 0) Fail(shown_, errno);
   }
   void Close() {
     const int file = std::exchange(file_, -1);
-    if (close(file) != 0) Fail(shown_, errno);
+    if (close(file) != 0 && errno != EINTR) Fail(shown_, errno);  // interrupted, it is closed all the same
   }
 
  private:

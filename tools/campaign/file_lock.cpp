@@ -15,7 +15,10 @@ namespace {
 
 int Open(const std::filesystem::path& path) {
   const int flags = std::filesystem::is_directory(path) ? O_RDONLY | O_DIRECTORY : O_RDWR | O_CREAT;
-  const int file = open(path.c_str(), flags | O_CLOEXEC, 0666);
+  int file = -1;
+  do {
+    file = open(path.c_str(), flags | O_CLOEXEC, 0666);
+  } while (file < 0 && errno == EINTR);
   if (file < 0)
     throw std::runtime_error(path.string() + ": cannot be opened: " + std::generic_category().message(errno));
   return file;

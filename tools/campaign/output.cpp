@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 
 #include "tools/campaign/task_folder.h"
@@ -130,7 +131,11 @@ Merged Merge(const Campaign& campaign, const fs::path& out) {
 void WriteAtOnce(const fs::path& file, const std::string& text) {
   const fs::path own = file.parent_path() / fmt::format(".{}.{}", file.filename().string(), getpid());
   evaluation::WriteWhole(own, text);
-  fs::rename(own, file);
+  std::error_code error, ignored;
+  fs::rename(own, file, error);
+  if (!error) return;
+  fs::remove(own, ignored);
+  throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
 }
 
 }  // namespace campaign

@@ -103,12 +103,12 @@ bool ProcessPool::Fork(std::int64_t id, const ProcessLimits& limits) {
   return false;
 }
 
-void ProcessPool::Leave(const std::string& problem) {
+void ProcessPool::Leave(const std::string& problem, int status) {
   constexpr std::size_t kFitsIntoAPipe = 4000;
   const std::string words = problem.substr(0, kFitsIntoAPipe);
   if (!words.empty() && write(own_words_, words.data(), words.size()) < 0) _exit(2);
   std::fflush(nullptr);
-  _exit(problem.empty() ? 0 : 1);
+  _exit(problem.empty() ? 0 : status);
 }
 
 std::string ProcessPool::OutOfMemory(const ProcessLimits& limits) {
@@ -135,7 +135,8 @@ std::optional<ProcessEnd> ProcessPool::Wait(std::chrono::milliseconds patience) 
       running_.erase(process);
       const std::string words = ReadAll(ended.words);
       close(ended.words);
-      return ProcessEnd{ended.id, ProblemOf(ended, status, words)};
+      return ProcessEnd{ended.id, ProblemOf(ended, status, words),
+                        WIFEXITED(status) && WEXITSTATUS(status) == kWorkFailed};
     }
     const Clock::time_point now = Clock::now();
     Clock::time_point next = until;

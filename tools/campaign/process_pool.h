@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,8 @@ struct ProcessLimits {
 
 struct ProcessEnd {
   std::int64_t id = 0;
-  std::string problem;  // empty: its work was done
+  std::string problem;       // empty: its work was done
+  bool work_failed = false;  // it threw, and nothing that says that its input is wrong (std::invalid_argument)
 };
 
 class ProcessPool {
@@ -38,8 +40,10 @@ class ProcessPool {
       Leave("");
     } catch (const std::bad_alloc&) {
       Leave(OutOfMemory(limits));
-    } catch (const std::exception& error) {
+    } catch (const std::invalid_argument& error) {
       Leave(error.what());
+    } catch (const std::exception& error) {
+      Leave(error.what(), kWorkFailed);
     }
   }
 
@@ -50,6 +54,7 @@ class ProcessPool {
 
  private:
   using Clock = std::chrono::steady_clock;
+  static constexpr int kWorkFailed = 3;  // exit status
   struct Running {
     std::int64_t id;
     int pid;
@@ -61,7 +66,7 @@ class ProcessPool {
 
   // False in the new process.
   bool Fork(std::int64_t id, const ProcessLimits& limits);
-  [[noreturn]] void Leave(const std::string& problem);
+  [[noreturn]] void Leave(const std::string& problem, int status = 1);
   static std::string OutOfMemory(const ProcessLimits& limits);
   static std::string ProblemOf(const Running& process, int status, const std::string& words);
 

@@ -1,11 +1,15 @@
 #include "tools/evaluation/text_file.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <limits>
+#include <string_view>
 #include <system_error>
 
 namespace evaluation {
@@ -40,6 +44,25 @@ std::vector<Token> Split(const std::string& line, char separator) {
     if (end == line.size()) return tokens;
     begin = end + 1;
   }
+}
+
+// Not with stdio, which gives a signal during a write out as an error. Returns errno, or 0 where all of it is there.
+int WriteBytes(const std::filesystem::path& file, std::string_view bytes) {
+  int descriptor = -1;
+  do {
+    descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  } while (descriptor < 0 && errno == EINTR);
+  if (descriptor < 0) return errno;
+  int problem = 0;
+  while (!bytes.empty() && problem == 0) {
+    const ssize_t written = write(descriptor, bytes.data(), bytes.size());
+    if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
+    if (written == 0) problem = EIO;
+    if (written < 0 && errno != EINTR) problem = errno;
+  }
+  // Interrupted, it is closed all the same.
+  if (close(descriptor) != 0 && errno != EINTR && problem == 0) problem = errno;
+  return problem;
 }
 
 }  // namespace
@@ -147,20 +170,14 @@ void WriteWhole(const std::filesystem::path& file, const std::string& content) {
   std::filesystem::path temporary = file;
   temporary += ".part";
   std::error_code error;
-  const auto fail = [&](const std::string& why) {
+  const auto fail = [&](const std::error_code& why) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
-    throw std::runtime_error(file.string() + ": cannot be written: " + why);
+    throw std::runtime_error(file.string() + ": cannot be written: " + why.message());
   };
-  std::FILE* stream = std::fopen(temporary.string().c_str(), "wb");
-  if (stream == nullptr) fail(std::generic_category().message(errno));
-  errno = 0;
-  const bool written = std::fwrite(content.data(), 1, content.size(), stream) == content.size();
-  const int write_error = errno;
-  const bool closed = std::fclose(stream) == 0;
-  if (!written || !closed) fail(std::generic_category().message(written ? errno : write_error));
+  if (const int why = WriteBytes(temporary, content); why != 0) fail({why, std::generic_category()});
   std::filesystem::rename(temporary, file, error);
-  if (error) fail(error.message());
+  if (error) fail(error);
 }
 
 }  // namespace evaluation

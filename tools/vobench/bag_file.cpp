@@ -7,9 +7,12 @@
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/Imu.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <stdexcept>
+#include <system_error>
 
 namespace vobench {
 namespace {
@@ -26,35 +29,58 @@ Message Stamped(std::int64_t stamp_ns, const char* frame) {
   return message;
 }
 
+// Rosbag says that a write failed, not why: the system does.
+template <class Work>
+void Written(const std::string& file, Work&& work) {
+  errno = 0;
+  try {
+    work();
+  } catch (const std::exception& error) {
+    const int why = errno;
+    throw std::runtime_error(file + ": cannot be written: " + error.what() +
+                             (why != 0 ? ": " + std::generic_category().message(why) : ""));
+  }
+}
+
 }  // namespace
 
 struct BagFile::Impl {
   std::string file, part;
-  rosbag::Bag bag;
+  std::unique_ptr<rosbag::Bag> bag = std::make_unique<rosbag::Bag>();
   bool committed = false;
+
+  // A bag whose close failed is given up, not destroyed: it would close its file once more, and throw.
+  void Close() {
+    try {
+      if (bag) bag->close();
+    } catch (const std::exception&) {
+      static_cast<void>(bag.release());
+      throw;
+    }
+  }
 
   template <class Message>
   void Write(const std::string& topic, std::int64_t stamp_ns, const Message& message) {
-    try {
-      bag.write(topic, TimeOf(stamp_ns), message);
-    } catch (const std::exception& error) {
-      throw std::runtime_error(file + ": cannot be written: " + error.what());
-    }
+    Written(file, [&] { bag->write(topic, TimeOf(stamp_ns), message); });
   }
 };
 
-BagFile::BagFile(const std::string& file) : impl_(new Impl{file, file + ".part", {}}) {
+BagFile::BagFile(const std::string& file) : impl_(new Impl{file, file + ".part"}) {
   try {
-    impl_->bag.open(impl_->part, rosbag::bagmode::Write);
-  } catch (const std::exception& error) {
-    throw std::runtime_error(file + ": cannot be written: " + error.what());
+    Written(file, [&] { impl_->bag->open(impl_->part, rosbag::bagmode::Write); });
+  } catch (...) {
+    Discard();  // without this object's end
+    throw;
   }
 }
 
 BagFile::~BagFile() {
-  if (impl_->committed) return;
+  if (!impl_->committed) Discard();
+}
+
+void BagFile::Discard() {
   try {
-    impl_->bag.close();
+    impl_->Close();
   } catch (const std::exception&) {
   }
   std::error_code ignored;
@@ -110,12 +136,10 @@ void BagFile::Pose(const std::string& topic, std::int64_t stamp_ns, const std::a
 }
 
 void BagFile::Commit() {
-  try {
-    impl_->bag.close();
-    std::filesystem::rename(impl_->part, impl_->file);
-  } catch (const std::exception& error) {
-    throw std::runtime_error(impl_->file + ": cannot be written: " + error.what());
-  }
+  Written(impl_->file, [&] { impl_->Close(); });
+  std::error_code error;
+  std::filesystem::rename(impl_->part, impl_->file, error);
+  if (error) throw std::runtime_error(impl_->file + ": cannot be written: " + error.message());
   impl_->committed = true;
 }
 

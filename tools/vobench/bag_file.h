@@ -43,6 +43,8 @@ class BagFile {
   static std::vector<std::string> Topics(const std::string& file);
 
  private:
+  void Discard();
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -200,7 +201,14 @@ void RunCampaign(const CampaignOptions& asked) {
   options.cache = CleanPath(asked.cache.value_or(options.output / "cache"));
   CampaignWork work(options.file, *options.cache);
   if (options.dry_run) return List(work);
-  Input([&] { campaign::PrepareOutput(options.output, Record(work.campaign())); });
+  if (fs::exists(options.output) && !fs::is_directory(options.output)) {
+    throw BadInput(options.output.string() + ": is there and is no folder");
+  }
+  try {
+    campaign::PrepareOutput(options.output, Record(work.campaign()));
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(error.what());
+  }
   if (options.task) return RunAgain(work, options);
   if (options.list) return RunPart(work, options);
   RunAll(work, options);

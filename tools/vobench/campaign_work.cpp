@@ -6,6 +6,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 
 #include "tools/campaign/campaign_file.h"
 #include "tools/campaign/digest.h"
@@ -127,11 +128,18 @@ void CampaignWork::NameSequences(const std::vector<std::size_t>& points, const c
     const sim::Scenario scenario = ExperimentOf(AtPoint(campaign_, p, 0)).scenario;
     if (!WorldIsKnown(scenario, cache_)) {
       campaign::ProcessPool pool;
-      pool.Start(0, limits, [&] { FindWorld(scenario, cache_); });
+      pool.Start(0, limits, [&] {
+        try {
+          FindWorld(scenario, cache_);
+        } catch (const BadInput& error) {
+          throw std::invalid_argument(error.what());
+        }
+      });
       std::optional<campaign::ProcessEnd> end;
       while (!(end = pool.Wait(std::chrono::milliseconds(100)))) {
         if (InterruptPending()) throw Interrupted("the campaign was interrupted before it began");
       }
+      if (end->work_failed) throw std::runtime_error(end->problem);
       if (!end->problem.empty()) {
         if (problems.find(end->problem) == std::string::npos) problems += (problems.empty() ? "" : "\n") + end->problem;
         continue;

@@ -1,8 +1,12 @@
 // Purpose: the program. Exit status: 0 done, 1 the work failed, 2 bad usage or bad input, 3 not consistent
 //          though that was required.
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <stdexcept>
+#include <string>
+#include <system_error>
 
 #include "tools/vobench/arguments.h"
 #include "tools/vobench/errors.h"
@@ -27,7 +31,9 @@ int Main(int argc, char** argv) {
   if (const int* status = std::get_if<int>(&asked)) return *status;
   try {
     std::visit([](const auto& options) { Execute(options); }, std::get<Command>(asked));
-    if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to standard output");
+    if (std::fflush(stdout) != 0) {
+      throw std::runtime_error("cannot write to standard output: " + std::generic_category().message(errno));
+    }
     return 0;
   } catch (const BadInput& error) {
     std::fprintf(stderr, "vobench: %s\n", error.what());
@@ -38,6 +44,11 @@ int Main(int argc, char** argv) {
     return 3;
   } catch (const std::bad_alloc&) {
     std::fputs("vobench: out of memory\n", stderr);
+    return 1;
+  } catch (const std::system_error& error) {
+    // fmt calls standard output a file.
+    const std::string unwritten = "cannot write to standard output: " + error.code().message();
+    std::fprintf(stderr, "vobench: %s\n", std::ferror(stdout) != 0 ? unwritten.c_str() : error.what());
     return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "vobench: %s\n", error.what());

@@ -105,6 +105,20 @@ TEST(Align, SaysWhatIsNotDetermined) {
 }
 
 // The aligned error does not depend on the world the estimate was given in.
+// Rounding grows with the distance from the origin: a hundred kilometres away, 1e-11 m is none that was gone.
+TEST(Align, RoundingFarFromTheOriginIsNoMotion) {
+  TestRandom random(9);
+  const Trajectory truth = random.Walk(50);
+  for (const double away_m : {0.0, 1e5}) {
+    Trajectory estimate = ConstantPose(StampsOf(truth), truth[10]);
+    for (std::size_t i = 0; i < estimate.size(); ++i) {
+      estimate[i].p_WC = Eigen::Vector3d::Constant(away_m) + (i % 2 == 0 ? 1 : -1) * Eigen::Vector3d::Constant(3e-11);
+    }
+    const Similarity found = Align({estimate, truth}, Alignment::sim3);
+    EXPECT_EQ(found.scale_determined, away_m == 0) << "there it is motion, however small";
+  }
+}
+
 TEST(Ate, IsInvariantUnderSimilaritiesOfTheEstimate) {
   TestRandom random(9);
   for (int trial = 0; trial < 30; ++trial) {

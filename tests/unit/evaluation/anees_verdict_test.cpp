@@ -181,6 +181,7 @@ TEST(TestAnees, RefusesTooFewTrials) {
   LinearFilter nothing;
   nothing.psd = 0;
   EXPECT_THROW(ExactAneesOf(nothing, 1, 1), std::invalid_argument);
+  EXPECT_THROW(SimulateNees(LinearFilter(), 1, 0, 1, 1), std::invalid_argument);
 }
 
 }  // namespace

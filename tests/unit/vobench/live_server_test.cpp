@@ -1,15 +1,25 @@
-// The live view answers this machine, by its own address, questions only, and as long as it lives.
+// The live view answers this machine, by its own address, questions only, and as long as it lives; and whoever else
+// connects, however much and however slowly he talks, takes nothing from the run but a file and a few kilobytes.
 #include "tools/vobench/live_server.h"
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <httplib.h>
 #include <ifaddrs.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <chrono>
+#include <filesystem>
 #include <fstream>
+#include <functional>
+#include <memory>
 #include <regex>
 #include <set>
 #include <sstream>
+#include <thread>
+#include <vector>
 
 namespace vobench {
 namespace {
@@ -124,6 +134,154 @@ TEST(LiveServer, EndsWithItsLife) {
   server.reset();
   httplib::Client late(at.host, at.port);
   EXPECT_FALSE(late.Get(at.path));
+}
+
+// A program that talks as no browser would.
+class Peer {
+ public:
+  explicit Peer(const Address& at) : file_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(at.port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const timeval patience{20, 0};
+    setsockopt(file_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    setsockopt(file_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+    EXPECT_EQ(connect(file_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  }
+  ~Peer() { close(file_); }
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+
+  // Whether all of it went.
+  bool Say(const std::string& text) const {
+    return send(file_, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
+  }
+  // All that comes until the other side closes.
+  std::string Hear() const {
+    std::string all;
+    char block[4096];
+    for (ssize_t got = 0; (got = recv(file_, block, sizeof block, 0)) > 0;)
+      all.append(block, static_cast<std::size_t>(got));
+    return all;
+  }
+
+ private:
+  int file_;
+};
+
+double SecondsOf(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Connections that this process has at the server's side.
+std::size_t Served(int port) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    const int file = std::stoi(entry.path().filename().string());
+    sockaddr_in here{}, there{};
+    socklen_t size = sizeof here;
+    if (getsockname(file, reinterpret_cast<sockaddr*>(&here), &size) != 0 || here.sin_family != AF_INET) continue;
+    size = sizeof there;
+    count += ntohs(here.sin_port) == port && getpeername(file, reinterpret_cast<sockaddr*>(&there), &size) == 0;
+  }
+  return count;
+}
+
+double ResidentMegabytes() {
+  std::ifstream stream("/proc/self/statm");
+  double all = 0, resident = 0;
+  stream >> all >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) * 1e-6;
+}
+
+constexpr double kSoon_s = 1;  // a third of what a silent client is granted
+
+TEST(LiveServer, StrangersMakeNoWork) {
+  LiveServer server;
+  const Address at = AddressOf(server);
+  server.Publish("page", "data");
+  httplib::Client client(at.host, at.port);
+  EXPECT_EQ(client.Get("/")->status, 404);
+  EXPECT_EQ(client.Get(at.path, {{"Host", "evil.example"}})->status, 404);
+  EXPECT_EQ(client.Post(at.path)->status, 405);
+  EXPECT_FALSE(server.Asked()) << "else the run would make a page for them";
+}
+
+TEST(LiveServer, ARequestThatNeverEndsIsCutOff) {
+  LiveServer server;
+  const Address at = AddressOf(server);
+  const std::string megabyte(1 << 20, 'a');
+  for (const std::string& begin : {"GET " + at.path + " HTTP/1.1\r\nX: ", std::string(), std::string("GET /")}) {
+    const double before = ResidentMegabytes();
+    const Peer peer(at);
+    EXPECT_TRUE(peer.Say(begin));
+    int taken = 0;
+    while (taken < 64 && peer.Say(megabyte)) ++taken;
+    EXPECT_LT(taken, 64) << "the connection is closed, and the rest has nowhere to go";
+    EXPECT_LT(ResidentMegabytes() - before, 8);
+  }
+  // Many short headers, too.
+  const Peer peer(at);
+  peer.Say("GET " + at.path + " HTTP/1.1\r\n");
+  std::string headers;
+  while (headers.size() < 9000) headers += "X: y\r\n";
+  peer.Say(headers);
+  EXPECT_THAT(peer.Hear(), testing::StartsWith("HTTP/1.1 431 "));
+  httplib::Client client(at.host, at.port);
+  EXPECT_EQ(client.Get(at.path)->status, 200) << "others are served as before";
+}
+
+TEST(LiveServer, ClientsThatSayNothingHoldUpNobody) {
+  auto server = std::make_unique<LiveServer>();
+  const Address at = AddressOf(*server);
+  std::vector<std::unique_ptr<Peer>> slow;
+  for (std::size_t n = 0; n + 1 < LiveServer::kMostConnections; ++n) {
+    slow.push_back(std::make_unique<Peer>(at));
+    slow.back()->Say("G");
+  }
+  httplib::Client client(at.host, at.port);
+  EXPECT_LT(SecondsOf([&] { EXPECT_EQ(client.Get(at.path)->status, 200); }), kSoon_s);
+  EXPECT_LT(SecondsOf([&] { server->Publish("page", "data"); }), kSoon_s);
+  // A byte now and then buys no more time.
+  const double lived_s = SecondsOf([&] {
+    while (slow[0]->Say("E") && Served(at.port) > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  });
+  EXPECT_LT(lived_s, LiveServer::kRequestSeconds + kSoon_s);
+  slow.push_back(std::make_unique<Peer>(at));
+  slow.back()->Say("G");
+  EXPECT_LT(SecondsOf([&] { server.reset(); }), kSoon_s) << "the end waits for no client";
+}
+
+TEST(LiveServer, AClientThatDoesNotListenHoldsUpNobody) {
+  auto server = std::make_unique<LiveServer>();
+  const Address at = AddressOf(*server);
+  server->Publish(std::string(32 << 20, 'p'), "data");  // more than the kernel keeps for a socket
+  const Peer deaf(at);
+  EXPECT_TRUE(deaf.Say("GET " + at.path + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(at.port) + "\r\n\r\n"));
+  httplib::Client client(at.host, at.port);
+  EXPECT_LT(SecondsOf([&] { EXPECT_EQ(client.Get(at.path + "data")->body, "data"); }), kSoon_s);
+  EXPECT_EQ(client.Get(at.path)->body.size(), std::size_t{32} << 20);
+  EXPECT_LT(SecondsOf([&] { server->Publish("page", "data"); }), kSoon_s);
+  EXPECT_LT(SecondsOf([&] { server.reset(); }), kSoon_s);
+}
+
+TEST(LiveServer, ManyConnectionsTakeAFixedNumberOfFiles) {
+  auto server = std::make_unique<LiveServer>();
+  const Address at = AddressOf(*server);
+  std::vector<std::unique_ptr<Peer>> crowd;
+  for (std::size_t n = 0; n < LiveServer::kMostConnections; ++n) crowd.push_back(std::make_unique<Peer>(at));
+  while (Served(at.port) < LiveServer::kMostConnections) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  for (std::size_t n = 0; n < LiveServer::kMostConnections; ++n) crowd.push_back(std::make_unique<Peer>(at));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(Served(at.port), LiveServer::kMostConnections) << "the others wait in the kernel's queue";
+  EXPECT_LT(SecondsOf([&] { server->Publish("page", "data"); }), kSoon_s);
+  crowd.clear();
+  httplib::Client client(at.host, at.port);
+  EXPECT_LT(SecondsOf([&] { EXPECT_EQ(client.Get(at.path)->body, "page"); }), kSoon_s);
+  EXPECT_LT(SecondsOf([&] { server.reset(); }), kSoon_s);
 }
 
 }  // namespace
