@@ -66,7 +66,7 @@ const std::vector<Message>& Messages() {
        {"auto_exposure.longest = 0.001", "not be below shortest"}},
       {"sim/sensor/vignetting.cpp",
        {"check", "TINY", "--set", "sensor.optics.vignetting_2=-3"},
-       {"vignetting", "pixel (0, 0)", "below 0", "nearer to 0"}},
+       {"vignetting: the factor of pixel (0, 0)", "below 0", "nearer to 0"}},
       {"sim/simulator.cpp", {"render", "POINTS", "-o", "o"}, {"a world of points has no images", "vobench run"}},
       {"sim/world/scene.cpp",
        {"check", "TINY", "--set", "world.meshes=[{file: nothere.obj}]"},
@@ -100,6 +100,12 @@ const std::vector<Message>& Messages() {
         "world.lights=[{type: rectangle, corner: [0, 2, 0], side_u: [1, 0, 0], side_v: [2, 0, 0], radiance: [1, 1, "
         "1]}]"},
        {"the rectangle has no area"}},
+      {"sim/scenario/world_reader.cpp",
+       {"check", "TINY", "--set", "world.lights=[{type: sky, radiance: [1, 1, 1], strength: 2}]"},
+       {"only a sky from a file has it"}},
+      {"sim/scenario/world_reader.cpp",
+       {"check", "TINY", "--set", "world.lights=[{type: sky, radiance: [1, 1, 1]}, {type: sky, radiance: [1, 1, 1]}]"},
+       {"there is a sky already: a world has one at most"}},
       {"sim/scenario/motion_reader.cpp",
        {"check", "TINY", "--set",
         "trajectory={type: sampled, start: {position: [2, 1.4, 3], look_at: [2, 1, 1]}, position_noise: 0.5, "
@@ -190,7 +196,9 @@ const std::vector<Message>& Messages() {
        {"run", "TINY", "-o", "taken"},
        {"taken", "not made by this command", "choose another name"}},
       {"tools/vobench/output_folder.cpp", {"run", "TINY", "-o", "one.txt"}, {"one.txt", "no folder"}},
-      {"tools/vobench/map_file.cpp", {"run", "POINTS", "--map", "map.txt"}, {"--map map.txt", "must end in .ply"}},
+      {"tools/vobench/map_file.cpp",
+       {"run", "POINTS", "--map", "map.txt"},
+       {"--map map.txt", "the name must end in .ply"}},
       {"tools/vobench/map_file.cpp",
        {"run", "POINTS", "--map", "no/map.ply"},
        {"--map no/map.ply", "no folder no", "make it first"}},
@@ -229,6 +237,9 @@ const std::vector<Message>& Messages() {
       {"tools/campaign/plan.cpp",
        {"campaign", "campaign.yaml", "-o", "o"},
        {"campaign.yaml:2:", "no system 'nosuch'", "there are rb2pf", "'3..1' is no range"}},
+      {"tools/campaign/campaign_file.cpp",
+       {"campaign", "theirs.yaml", "-o", "o"},
+       {"theirs.yaml:3:", "'set': what is not ours is set in its command"}},
   };
   return all;
 }
@@ -272,6 +283,10 @@ class MessagesTest : public testing::Test {
     WriteFile(here_ / "nothing" / "a.png", "");
     WriteFile(here_ / "floats" / "rgb.txt", "0.1 a.png\n");
     WriteFile(here_ / "floats" / "a.png", "Pf\n1 1\n-1.0\nabcd");
+    WriteFile(here_ / "systems.yaml", "systems: [{name: theirs, command: 'true', layout: tum}]\n");
+    WriteFile(here_ / "theirs.yaml", "scenarios: [{file: " + TinyScenario().string() +
+                                         "}]\nexternal: systems.yaml\nsystems: [{name: theirs, set: "
+                                         "{odometry.filter.particles: 3}}]\nseeds: 1..3\n");
     WriteFile(here_ / "campaign.yaml",
               "scenarios: [{file: " + TinyScenario().string() + "}]\nsystems: [nosuch]\nseeds: 3..1\n");
   }

@@ -79,7 +79,7 @@ class Images(unittest.TestCase):
             self.simulator.render(9)
         with self.assertRaisesRegex(ValueError, "missing.yaml"):
             vobench.Scenario("missing.yaml")
-        with self.assertRaisesRegex(ValueError, "jobs"):
+        with self.assertRaisesRegex(ValueError, "simulator: jobs must be at least 1, not -1"):
             vobench.Simulator(tiny(), jobs=-1)
 
 

@@ -72,7 +72,7 @@ class Points(unittest.TestCase):
         odometry = vobench.PointOdometry(vobench.Camera())
         with self.assertRaisesRegex(ValueError, "2 ids, but 3 pixels"):
             odometry.track(0, [1, 2], np.zeros((3, 2)))
-        with self.assertRaisesRegex(ValueError, "not a unit one"):
+        with self.assertRaisesRegex(ValueError, "is not a unit one: its norm is"):
             vobench.Estimate(covariance=np.eye(12), q_WC=[0, 0, 0, 2])
         with self.assertRaisesRegex(ValueError, "meshes, not points"):
             vobench.PointWorld(vobench.Scenario(SOURCE / "scenes/tiny.yaml"))

@@ -53,7 +53,7 @@ TEST(Pictures, NameTheFileThatIsWrong) {
       const auto& [text, said] :
       {std::pair{"{", "parse error"},
        {R"({"format":"other"})", "the format is not"},
-       {R"({"format":"vobench pictures 1","width":0,"height":1,"pictures":[]})", "must be 1 or more"},
+       {R"({"format":"vobench pictures 1","width":0,"height":1,"pictures":[]})", "width and height must be 1 or more"},
        {R"({"format":"vobench pictures 1","width":1,"height":1,"pictures":[{"timestamp":"x","features":[]}]})",
         "is no time"},
        {R"({"format":"vobench pictures 1","width":1,"height":1,"pictures":[{"timestamp":"1","features":[{"status":"odd","at":[0,0,0,0,0,0,0]}]}]})",
