@@ -68,6 +68,10 @@ TEST_F(CampaignTest, ShippedSweepsAreGood) {
     EXPECT_EQ(outcome.status, 0) << entry.path() << outcome.err;
     EXPECT_THAT(ReadFile(entry.path()), HasSubstr("curves: [{along: "));
   }
+  const Outcome survival = RunVobench(
+      {"campaign", (sweeps.parent_path() / "survival.yaml").string(), "-o", "out", "--dry-run"}, here_.path());
+  EXPECT_EQ(survival.status, 0) << survival.err;
+  EXPECT_THAT(survival.out, HasSubstr("case 20 blank frames, filter with a lag, rb2pf, seed 5"));
   for (const char* name : {"blur", "read_noise", "contrast", "angular_rate", "frame_rate", "rolling_shutter",
                            "feature_count", "particle_count", "lag", "moving_objects", "process_noise_too_small",
                            "process_noise_too_large", "intrinsics"}) {

@@ -256,11 +256,13 @@ class MessagesTest : public testing::Test {
     WriteFile(here_ / "broken.yaml", "a: [1, 2\n");
     WriteFile(here_ / "half.yaml", "{width: 3, fx: 1}\n");
     WriteFile(here_ / "broken.obj", "v 0 0 0\nf 1 2 9\n");
-    const std::string png = "\x89PNG\r\n\x1a\n", no_sum = png + std::string("\0\0\0\0IENDxxxx", 12);
+    const std::string size("\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x8\2\0\0\0", 21), sum = "\x90\x77\x53\xDE";
+    const std::string png = "\x89PNG\r\n\x1a\n" + size + sum, no_sum = "\x89PNG\r\n\x1a\n" + size + "xxxx";
+    const std::string jpeg("\xff\xd8\xff\xc0\0\x0b\x8\0\1\0\1\1\1\x11\0xxx", 18);
     for (const auto& [name, content] : {std::pair{"cut.png", png},
                                         {"sum.png", no_sum},
                                         {"chunk.png", png + std::string("\0\0\1\0IHDRxxxx", 12)},
-                                        {"mark.jpg", std::string("\xff\xd8\0\0\0", 5)}}) {
+                                        {"mark.jpg", jpeg}}) {
       const std::string picture = name;
       WriteFile(here_ / (picture + ".obj"),
                 "mtllib " + picture + ".mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
@@ -282,7 +284,7 @@ class MessagesTest : public testing::Test {
     WriteFile(here_ / "nothing" / "rgb.txt", "0.1 a.png\n");
     WriteFile(here_ / "nothing" / "a.png", "");
     WriteFile(here_ / "floats" / "rgb.txt", "0.1 a.png\n");
-    WriteFile(here_ / "floats" / "a.png", "Pf\n1 1\n-1.0\nabcd");
+    WriteFile(here_ / "floats" / "a.png", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\nabcd");
     WriteFile(here_ / "systems.yaml", "systems: [{name: theirs, command: 'true', layout: tum}]\n");
     WriteFile(here_ / "theirs.yaml", "scenarios: [{file: " + TinyScenario().string() +
                                          "}]\nexternal: systems.yaml\nsystems: [{name: theirs, set: "
