@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "sim/sequence/file_writer.h"
 #include "sim/sequence/manifest.h"
 #include "sim/sequence/streams.h"
 #include "sim/sequence/writer.h"
@@ -29,6 +30,13 @@ std::set<std::string> SequenceNames() {
   names.insert({"mav0", "truth"});                                                              // EuRoC
   names.insert({"associations.txt", "traj.gt.freiburg"});                                     // ICL-NUIM
   names.insert({"preview.mp4", "unfinished-preview.mp4", "contact.jpg"});
+  return names;
+}
+
+// And while it is written: a killed run leaves what it had just begun.
+std::set<std::string> UnfinishedSequenceNames() {
+  std::set<std::string> names = SequenceNames();
+  for (const std::string& name : SequenceNames()) names.insert(sim::UnfinishedName(name));
   return names;
 }
 
@@ -61,7 +69,7 @@ void RequireRoom(const RenderOptions& options, const fs::path& folder, const fs:
                     "it, or remove it",
                     partial.string()));
   }
-  if (fs::exists(partial / sim::kManifestName)) RequireReplaceable(partial, sim::kManifestName, SequenceNames());
+  if (fs::exists(partial / sim::kManifestName)) RequireReplaceable(partial, sim::kManifestName, UnfinishedSequenceNames());
 }
 
 // The sequence of this content is there under its last name. Throws BadInput if another one is.
