@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <ranges>
 #include <system_error>
 
 #include "tools/vobench/errors.h"
@@ -67,7 +66,7 @@ OutputFolder::~OutputFolder() {
 void OutputFolder::Discard() {
   std::error_code ignored;
   if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
-  for (const fs::path& parent : made_parents_ | std::views::reverse) fs::remove(parent, ignored);
+  for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) fs::remove(*parent, ignored);
 }
 
 void OutputFolder::Commit() {
