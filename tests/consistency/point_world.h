@@ -3,12 +3,12 @@
 #pragma once
 
 #include <cmath>
-#include <random>
 #include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "tests/unit/vo/draws.h"
 #include "vo/filter/particle_filter.h"
 #include "vo/geometry/so3.h"
 
@@ -27,21 +27,19 @@ struct World {
 inline World MakeRoom(unsigned seed, int frames, double noise_px, double side = 5) {
   World world;
   world.noise_px = noise_px;
-  std::mt19937_64 bits(seed);
-  const auto uniform = [&] { return (static_cast<double>(bits() >> 11) + 0.5) * 0x1.0p-53; };
-  const auto normal = [&] { return std::sqrt(-2 * std::log(uniform())) * std::cos(2 * M_PI * uniform()); };
+  vo_test::Draws draws(seed);
   for (int i = 0; i < 3000; ++i) {
-    Eigen::Vector3d X(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5);
-    const int axis = static_cast<int>(3 * uniform());
+    Eigen::Vector3d X = 0.5 * draws.Symmetrics<3>();
+    const int axis = static_cast<int>(3 * draws.Uniform());
     X[axis] = X[axis] < 0 ? -0.5 : 0.5;
     world.points.push_back(side * X);
   }
   Eigen::Matrix<double, 6, 3> amplitude, phase, frequency;  // sums of slow sines
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 3; ++j) {
-      amplitude(i, j) = (i < 3 ? 0.25 : 0.12) * normal() / (1 + j);
-      frequency(i, j) = 2 * M_PI * (0.15 + 0.2 * j) * (0.7 + 0.6 * uniform());
-      phase(i, j) = 2 * M_PI * uniform();
+      amplitude(i, j) = (i < 3 ? 0.25 : 0.12) * draws.Normal() / (1 + j);
+      frequency(i, j) = 2 * M_PI * (0.15 + 0.2 * j) * (0.7 + 0.6 * draws.Uniform());
+      phase(i, j) = 2 * M_PI * draws.Uniform();
     }
   const auto at = [&](int i, double t) {
     double sum = 0;
@@ -63,7 +61,7 @@ inline World MakeRoom(unsigned seed, int frames, double noise_px, double side = 
       const Eigen::Vector2d z = X.head<2>() / X.z();
       if (std::abs(z.x()) > 0.5 * world.width_px / world.focal_px || std::abs(z.y()) > 0.5 * world.height_px / world.focal_px)
         continue;
-      views.emplace_back(n, z + noise_px / world.focal_px * Eigen::Vector2d(normal(), normal()));
+      views.emplace_back(n, z + noise_px / world.focal_px * draws.Normals<2>());
     }
   }
   return world;

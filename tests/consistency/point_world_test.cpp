@@ -99,8 +99,8 @@ Nees FirstStepNees(int runs, double covariance_factor) {
       const Eigen::Vector2d ray(0.4 * std::sin(1.3 * n), 0.3 * std::cos(2.1 * n));
       const double rho = landmark.inverse_depth + landmark.inverse_depth_sigma * draw();
       const Eigen::Vector3d X = truth.q_WC.conjugate() * (Eigen::Vector3d(ray.x(), ray.y(), 1) / rho - truth.p_WC);
-      rays.push_back(ray + sigma * Eigen::Vector2d(draw(), draw()));
-      matches.push_back({n, X.head<2>() / X.z() + sigma * Eigen::Vector2d(draw(), draw()), R});
+      rays.push_back(ray + sigma * Eigen::Vector2d{draw(), draw()});
+      matches.push_back({n, X.head<2>() / X.z() + sigma * Eigen::Vector2d{draw(), draw()}, R});
     }
     filter.AddLandmarks(rays, std::vector<Eigen::Matrix2d>(rays.size(), R));
     filter.Predict(dt);

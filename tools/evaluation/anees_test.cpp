@@ -65,9 +65,9 @@ void SimulateRun(const LinearFilter& filter, const SteadyState& state, int frame
   const Matrix2d start = state.P.llt().matrixL();
   const Matrix2d inverse = state.P.inverse();
   for (int axis = 0; axis < filter.axes; ++axis) {
-    Vector2d e = start * Vector2d(random.Normal(), random.Normal());
+    Vector2d e = start * Vector2d{random.Normal(), random.Normal()};
     for (int k = 0; k < frames; ++k) {
-      if (k > 0) e = state.A * e + state.N * Vector2d(random.Normal(), random.Normal());
+      if (k > 0) e = state.A * e + state.N * Vector2d{random.Normal(), random.Normal()};
       double nees = 0;
       switch (filter.judged) {
         case LinearFilter::Judged::position:

@@ -7,16 +7,13 @@
 
 #include <Eigen/LU>
 
+#include "vo/filter/descent.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/geometry/so3.h"
 
 namespace vo {
 namespace {
 
-constexpr double kSettled = 1e-6;     // squared distance from the mode that may be left [standard deviations squared]
-
-constexpr double kOvershoot = 0.25;  // of the slope before the step
-constexpr double kTolerated = 0.1;    // rise of the objective, which the landmarks' relinearisation may cause
 constexpr double kNegligible = 1e-4;  // of the information, through the unknown depth
 
 using Matrix62 = Eigen::Matrix<double, 6, 2>;
@@ -216,7 +213,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
       theta[i] = in.landmarks[tracks[i].landmark].mean + eliminated_[i].L * u;
     }
     path.log_evidence = -0.5 * (cost_ - decrement + log_det_) - llt_.matrixLLT().diagonal().array().log().sum();
-    if (decrement * std::min(1.0, decrement / former) < kSettled) break;  // what the next step would be, at the rate until now
+    if (Settled(decrement, former)) break;
     former = decrement;
   }
   path.covariance.setIdentity(size, size);

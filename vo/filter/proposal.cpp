@@ -6,14 +6,11 @@
 
 #include <Eigen/Cholesky>
 
+#include "vo/filter/descent.h"
 #include "vo/geometry/so3.h"
 
 namespace vo {
 namespace {
-
-constexpr double kSettled = 1e-6;    // squared distance from the mode that may be left [standard deviations squared]
-constexpr double kOvershoot = 0.25;  // of the slope before the step
-constexpr double kTolerated = 0.1;   // rise of the objective, which the landmarks' relinearisation may cause
 
 double HalfLogDeterminant(const Eigen::LLT<Matrix6>& llt) { return std::log(llt.matrixLLT().diagonal().prod()); }
 
@@ -71,7 +68,7 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
     const double decrement = b.dot(step);
     proposal.log_evidence = -0.5 * (cost - decrement + log_det + 2.0 * HalfLogDeterminant(llt));
     if (iteration + 1 == iterations) break;
-    if (decrement * std::min(1.0, decrement / former) < kSettled) break;  // what the next step would be, at the rate until now
+    if (Settled(decrement, former)) break;
     former = decrement;
     batch.Follow(step);
   }

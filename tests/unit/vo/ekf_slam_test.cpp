@@ -91,13 +91,13 @@ World Draw(std::uint64_t seed, const std::vector<int>& born, double scale = 1, b
       const vo::Pose& anchor = world.truth[static_cast<std::size_t>(point.born)].pose;
       const Vector3d X = state.pose.q_WC.conjugate() *
                          (anchor.p_WC + anchor.q_WC * Vector3d(point.theta.x(), point.theta.y(), 1) / point.theta.z() - state.pose.p_WC);
-      matches.push_back({static_cast<int>(n), X.head<2>() / X.z() + world.sigma * Vector2d(draw(), draw()), R});
+      matches.push_back({static_cast<int>(n), X.head<2>() / X.z() + world.sigma * Vector2d{draw(), draw()}, R});
     }
     for (int i = 0; i < born[k]; ++i) {
       const double angle = 2.4 * static_cast<double>(world.points.size());
       World::Point point{static_cast<int>(k), Vector2d(0.5 * std::cos(angle), 0.4 * std::sin(1.3 * angle)), {}};
       point.theta << point.ray, world.landmark.inverse_depth + world.landmark.inverse_depth_sigma * draw();
-      if (!fixed) point.theta.head<2>() -= world.sigma * Vector2d(draw(), draw());
+      if (!fixed) point.theta.head<2>() -= world.sigma * Vector2d{draw(), draw()};
       world.points.push_back(point);
     }
   }
@@ -153,7 +153,7 @@ Batch SolveBatch(const World& world) {
   };
   const int size = 12 * frames + 3 * points;
   MatrixXd J;
-  for (int iteration = 0; iteration < 8; ++iteration) {
+  for (int iteration = 0; iteration < 60; ++iteration) {
     const VectorXd r = residual(VectorXd::Zero(size));
     J.resize(r.size(), size);
     for (int i = 0; i < size; ++i) {
@@ -185,18 +185,20 @@ TEST(EkfSlam, EqualsTheDenseBatchSolutionWhereLinear) {
 
 // One update of any size is a Gauss-Newton on everything: the batch over its two frames, far from linear in depth.
 TEST(EkfSlam, IteratedUpdateIsTheJointMode) {
-  World world = Draw(4, {12, 0}, 1);
-  world.landmark.inverse_depth_sigma = 0.15;
-  world.prior.velocity_covariance *= 4;
-  const Batch batch = SolveBatch(world);
-  Vector12 iterated, one_step;
-  const auto off = [&](const vo::EkfSlam& filter) {
-    Vector12 d;
-    d << vo::Minus(filter.belief().pose, batch.last.pose), filter.belief().velocity - batch.last.velocity;
-    return d.cwiseQuotient(batch.covariance.diagonal().cwiseSqrt()).norm();
-  };
-  EXPECT_LT(off(RunOn(world, 20)), 0.02);
-  EXPECT_GT(off(RunOn(world, 1)), 2 * off(RunOn(world, 20)));
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    World world = Draw(seed, {12, 0}, 1);
+    world.landmark.inverse_depth_sigma = 0.15;
+    world.prior.velocity_covariance *= 4;
+    const Batch batch = SolveBatch(world);
+    const auto off = [&](int iterations) {
+      const vo::Belief belief = RunOn(world, iterations).belief();
+      Vector12 d;
+      d << vo::Minus(belief.pose, batch.last.pose), belief.velocity - batch.last.velocity;
+      return d.cwiseQuotient(batch.covariance.diagonal().cwiseSqrt()).norm();
+    };
+    EXPECT_LT(off(200), 0.02) << "standard deviations, seed " << seed;
+    EXPECT_GT(off(1), 0.2) << "seed " << seed;
+  }
 }
 
 // In a world of its own prior, joint NEES of the last frame; over runs a chi-square with 12 degrees of freedom each.

@@ -187,7 +187,7 @@ TEST(Register, KnowsItsErrorToWithinItsInflation) {
   double sum = 0;
   int count = 0;
   for (int draw = 0; draw < 400; ++draw) {
-    const Vector2d shift(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
+    const Vector2d shift{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)};
     cv::Mat views[2] = {texture.Image(120, 100, {0, 0}), texture.Image(120, 100, shift)};
     for (cv::Mat& view : views) {
       cv::Mat noise(view.size(), CV_16S);

@@ -1,7 +1,6 @@
-#include <random>
-
 #include <gtest/gtest.h>
 
+#include "tests/unit/vo/draws.h"
 #include "vo/geometry/camera.h"
 #include "vo/geometry/camera_file.h"
 #include "vo/geometry/so3.h"
@@ -25,10 +24,9 @@ Matrix3d MatrixExponential(const Matrix3d& A) {
 // Three regimes: nothing, tiny, and anything below pi.
 std::vector<Vector3d> RotationVectors() {
   std::vector<Vector3d> vectors = {Vector3d::Zero()};
-  std::mt19937_64 bits(1);
-  const auto uniform = [&] { return (static_cast<double>(bits() >> 11) + 0.5) * 0x1.0p-52 - 1; };
+  vo_test::Draws draws(1);
   for (const double size : {1e-8, 1e-5, 0.9e-4, 1.1e-4, 0.9e-3, 1.1e-3, 0.1, 1.0, 2.5, 3.1})
-    for (int i = 0; i < 20; ++i) vectors.push_back(size * Vector3d(uniform(), uniform(), uniform()).normalized());
+    for (int i = 0; i < 20; ++i) vectors.push_back(size * draws.Symmetrics<3>().normalized());
   return vectors;
 }
 

@@ -2,11 +2,11 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "tests/unit/vo/draws.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/geometry/so3.h"
 #include "vo/map/existence.h"
@@ -16,27 +16,15 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using vo_test::Draws;
 
-class Draw {
- public:
-  explicit Draw(unsigned seed) : bits_(seed) {}
-  double operator()() { return (static_cast<double>(bits_() >> 11) + 0.5) * 0x1.0p-52 - 1; }
-  Vector3d Vector(double size) { return size * Vector3d((*this)(), (*this)(), (*this)()); }
-  vo::Pose Pose(double size) {
-    vo::Vector6 d;
-    d << Vector(size), Vector(size);
-    return vo::Plus({}, d);
-  }
-
- private:
-  std::mt19937_64 bits_;
-};
+vo::Pose DrawPose(Draws& draws, double size) { return vo::Plus({}, size * draws.Symmetrics<6>()); }
 
 TEST(Landmark, ProjectsLikeThePointItStandsFor) {
-  Draw draw(1);
+  Draws draws(1);
   for (int i = 0; i < 200; ++i) {
-    const vo::Pose anchor = draw.Pose(0.3), camera = draw.Pose(0.3);
-    const Vector3d theta(0.4 * draw(), 0.4 * draw(), 0.3 + 0.25 * draw());
+    const vo::Pose anchor = DrawPose(draws, 0.3), camera = DrawPose(draws, 0.3);
+    const Vector3d theta = Vector3d(0, 0, 0.3) + Vector3d(0.4, 0.4, 0.25).cwiseProduct(draws.Symmetrics<3>());
     const Vector3d X_W = anchor.p_WC + anchor.q_WC.toRotationMatrix() * Vector3d(theta.x(), theta.y(), 1) / theta.z();
     const Vector3d X_C = camera.q_WC.toRotationMatrix().transpose() * (X_W - camera.p_WC);
     if (X_C.z() < 0.2) continue;
@@ -48,11 +36,11 @@ TEST(Landmark, ProjectsLikeThePointItStandsFor) {
 }
 
 TEST(Landmark, JacobiansAreTheDerivatives) {
-  Draw draw(2);
+  Draws draws(2);
   const double h = 1e-6;
   for (int i = 0; i < 100; ++i) {
-    const vo::Pose anchor = draw.Pose(0.3), camera = draw.Pose(0.3);
-    const Vector3d theta(0.4 * draw(), 0.4 * draw(), 0.4 * draw());  // rho <= 0 too
+    const vo::Pose anchor = DrawPose(draws, 0.3), camera = DrawPose(draws, 0.3);
+    const Vector3d theta = 0.4 * draws.Symmetrics<3>();  // rho <= 0 too
     const vo::Projection p = vo::Project({camera, anchor}, theta);
     if (!p.in_front || p.z.norm() > 2) continue;
     for (int k = 0; k < 6; ++k) {
@@ -98,17 +86,18 @@ double Quadrature(const vo::Landmark& prior, const vo::AnchorView& view, const v
 // Laplace's weight against the integral, for a depth two to four standard deviations from its prior mean; the linearisation at the
 // prior (3) is off by far more: section 8's lesson.
 TEST(Landmark, LaplaceWeightIsTheIntegralWhereThePriorLinearisationIsNot) {
-  Draw draw(3);
+  Draws draws(3);
   double worst_iterated = 0, worst_prior = 0;
   for (int i = 0; i < 100; ++i) {
-    const vo::Pose anchor, camera{Vector3d(0.10 * draw(), 0.1 * draw(), 0.25), vo::Exp(draw.Vector(0.02))};
+    const vo::Pose anchor, camera{Vector3d{0.1 * draws.Symmetric(), 0.1 * draws.Symmetric(), 0.25}, vo::Exp(0.02 * draws.Symmetrics<3>())};
     vo::Landmark prior;
-    prior.mean = {0.3 * draw(), 0.3 * draw(), 0.25};
+    prior.mean << 0.3 * draws.Symmetrics<2>(), 0.25;
     prior.covariance(2, 2) = 0.15 * 0.15;
     const vo::AnchorView view(camera, anchor);
     vo::Match match;
     match.R = Matrix2d::Identity() / (500.0 * 500.0);
-    match.z = vo::Project(view, {prior.mean.x(), prior.mean.y(), 0.55 + 0.2 * std::abs(draw())}).z + Vector2d(draw(), draw()) / 500;
+    const double inverse_depth = 0.55 + 0.2 * draws.Uniform();
+    match.z = vo::Project(view, {prior.mean.x(), prior.mean.y(), inverse_depth}).z + draws.Symmetrics<2>() / 500;
     const double truth = Quadrature(prior, view, match);
     worst_iterated = std::max(worst_iterated, std::abs(vo::UpdateLandmark(prior, view, match, 10).log_likelihood - truth));
     worst_prior = std::max(worst_prior, std::abs(vo::UpdateLandmark(prior, view, match, 1).log_likelihood - truth));

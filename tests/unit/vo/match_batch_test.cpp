@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
-#include <random>
 #include <vector>
 
+#include "tests/unit/vo/draws.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/geometry/so3.h"
 
@@ -33,21 +33,19 @@ struct Scene {
 };
 
 Scene MakeScene(unsigned seed, int matches, bool some_behind = true) {
-  std::mt19937_64 bits(seed);
-  const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1.0p-52 - 1.0; };  // -1 ... 1
-  const auto vector = [&] { return Vector3d(uniform(), uniform(), uniform()); };
+  vo_test::Draws draws(seed);
   Scene scene;
-  for (int a = 0; a < 3; ++a) scene.anchors.push_back({0.1 * vector(), vo::Exp(0.05 * vector())});
-  scene.camera = {0.2 * vector(), vo::Exp(0.1 * vector())};
+  for (int a = 0; a < 3; ++a) scene.anchors.push_back({0.1 * draws.Symmetrics<3>(), vo::Exp(0.05 * draws.Symmetrics<3>())});
+  scene.camera = {0.2 * draws.Symmetrics<3>(), vo::Exp(0.1 * draws.Symmetrics<3>())};
   const int count = 2 * matches + 1;
   for (int n = 0; n < count; ++n) {
     vo::Landmark landmark;
-    landmark.mean = {0.5 * uniform(), 0.4 * uniform(), 0.25 + 0.2 * uniform()};
+    landmark.mean = {0.5 * draws.Symmetric(), 0.4 * draws.Symmetric(), 0.25 + 0.2 * draws.Symmetric()};
     if (n % 3 == 0) {
       landmark.covariance(2, 2) = 0.02;
     } else {
       Matrix3d root;
-      for (int k = 0; k < 9; ++k) root(k / 3, k % 3) = (k >= 6 ? 0.1 : 0.002) * uniform();
+      for (int k = 0; k < 9; ++k) root(k / 3, k % 3) = (k >= 6 ? 0.1 : 0.002) * draws.Symmetric();
       landmark.covariance = root * root.transpose();
     }
     if (some_behind && n % 5 == 0) landmark.mean.z() = -40;  // behind a camera that moved forward
@@ -61,7 +59,7 @@ Scene MakeScene(unsigned seed, int matches, bool some_behind = true) {
     Matrix2d R;
     R << 1.2, 0.3, 0.3, 0.8;
     const vo::Projection h = vo::Project({scene.camera, scene.anchors[scene.anchor_of[n]]}, scene.landmarks[n].mean);
-    scene.matches.push_back({n, h.z + 5 * sigma * Vector2d(uniform(), uniform()), sigma * sigma * R});
+    scene.matches.push_back({n, h.z + 5 * sigma * draws.Symmetrics<2>(), sigma * sigma * R});
   }
   return scene;
 }

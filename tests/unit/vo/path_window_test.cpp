@@ -4,13 +4,14 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "tests/unit/vo/draws.h"
+#include "vo/filter/descent.h"
 #include "vo/filter/motion_model.h"
 #include "vo/filter/proposal.h"
 #include "vo/filter/velocity_filter.h"
@@ -24,21 +25,7 @@ using Eigen::VectorXd;
 using vo::Matrix12;
 using vo::Matrix6;
 using vo::Vector6;
-
-class Random {
- public:
-  explicit Random(unsigned seed) : bits_(seed) {}
-  double Uniform() { return (static_cast<double>(bits_() >> 11) + 0.5) * 0x1.0p-53; }
-  double Normal() { return std::sqrt(-2 * std::log(Uniform())) * std::cos(2 * std::numbers::pi * Uniform()); }
-  Vector6 Normal6() {
-    Vector6 n;
-    for (int i = 0; i < 6; ++i) n[i] = Normal();
-    return n;
-  }
-
- private:
-  std::mt19937_64 bits_;
-};
+using vo_test::Draws;
 
 // A window of frames at 30 Hz: landmarks anchored at the sampled start and at the window's first pose, seen from every later pose.
 struct Scene {
@@ -55,16 +42,16 @@ struct Scene {
 };
 
 Scene MakeScene(unsigned seed, int frames, int count, double depth_sigma, double noise) {
-  Random random(seed);
+  Draws draws(seed);
   Scene scene;
   scene.start = {Vector3d(0.3, -0.1, 0.2), vo::Exp({0.1, -0.2, 0.05})};
   scene.velocity << 0.1, -0.05, 0.08, 0.05, 0.1, -0.05;
   vo::Pose pose = scene.start;
-  Vector6 velocity = scene.velocity + 0.2 * random.Normal6();
+  Vector6 velocity = scene.velocity + 0.2 * draws.Normals<6>();
   for (int k = 0; k < frames; ++k) {
     const double dt = (k % 2 == 0 ? 1.0 : 1.5) / 30;
     scene.steps.push_back(vo::NearlyConstantVelocity({.position_noise = 0.6, .orientation_noise = 0.4}, dt));
-    velocity += 0.05 * random.Normal6();
+    velocity += 0.05 * draws.Normals<6>();
     pose = {pose.p_WC + velocity.head<3>() * dt, (pose.q_WC * vo::Exp(velocity.tail<3>() * dt)).normalized()};
     scene.truth.push_back(pose);
   }
@@ -72,15 +59,15 @@ Scene MakeScene(unsigned seed, int frames, int count, double depth_sigma, double
   for (int n = 0; n < count; ++n) {
     const int anchor = frames > 1 ? n % 2 : 0;
     const vo::Pose& first = anchor == 0 ? scene.start : scene.truth[0];
-    const Vector3d theta(1.2 * (random.Uniform() - 0.5), 0.9 * (random.Uniform() - 0.5), 0.3 + depth_sigma * random.Normal());
+    const Vector3d theta{1.2 * (draws.Uniform() - 0.5), 0.9 * (draws.Uniform() - 0.5), 0.3 + depth_sigma * draws.Normal()};
     vo::Landmark landmark;
-    landmark.mean << theta.x() + noise * random.Normal(), theta.y() + noise * random.Normal(), 0.3;
+    landmark.mean << theta.head<2>() + noise * draws.Normals<2>(), 0.3;
     landmark.covariance.diagonal() << noise * noise, noise * noise, depth_sigma * depth_sigma;
     scene.landmarks.push_back(landmark);
     vo::Track track{n, anchor, anchor == 0 ? -1 : 0, {}};
     for (int k = anchor; k < frames; ++k) {
       const vo::Projection h = vo::Project({scene.truth[k], first}, theta);
-      track.views.push_back({k, h.z + noise * Eigen::Vector2d(random.Normal(), random.Normal()),
+      track.views.push_back({k, h.z + noise * draws.Normals<2>(),
                              Eigen::Matrix2d::Identity() / (noise * noise), 4 * std::log(noise)});
     }
     scene.tracks.push_back(track);
@@ -103,9 +90,12 @@ double Distance(const vo::Pose& a, const vo::Pose& b, const Matrix6& covariance)
   return std::sqrt(d.dot(covariance.llt().solve(d)));
 }
 
+// Two ways to one mode, each of which may leave kLeft of the way. Their marginal modes weigh curvature at points that differ in second
+// order, which the covariance shows.
 TEST(PathWindow, OfOnePoseIsTheProposal) {
-  for (const bool marginal : {false, true}) {
-    const Scene scene = MakeScene(3, 1, 60, 0.01, 0.2 / 525);
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    const bool marginal = seed % 2 == 0;
+    const Scene scene = MakeScene(seed, 1, 60, 0.01, 0.2 / 525);
     const vo::PathGaussian path = Solve(scene, marginal);
     const vo::VelocityFilter<6, 6> step(scene.steps[0].F, scene.steps[0].Q);
     Vector6 start;
@@ -120,9 +110,9 @@ TEST(PathWindow, OfOnePoseIsTheProposal) {
     for (const vo::Track& track : scene.tracks) matches.push_back({track.landmark, track.views[0].z, track.views[0].R_inverse.inverse()});
     const vo::PoseProposal one = vo::Propose(prediction, {scene.landmarks, anchor_of, scene.anchors}, matches,
                                              {.max_iterations = 50, .marginal_mode = marginal});
-    EXPECT_LT(Distance(path.mean[0], one.pose.mean, one.pose.covariance), 3e-3) << "standard deviations";
-    EXPECT_LT((path.covariance - one.pose.covariance).norm() / one.pose.covariance.norm(), 2e-3);
-    EXPECT_NEAR(path.log_evidence, one.log_evidence, 0.02);  // coordinates of the prior differ at second order
+    EXPECT_LT(Distance(path.mean[0], one.pose.mean, one.pose.covariance), 2 * vo::kLeft) << "standard deviations, seed " << seed;
+    EXPECT_LT((path.covariance - one.pose.covariance).norm() / one.pose.covariance.norm(), marginal ? 2e-2 : 1e-3) << "seed " << seed;
+    EXPECT_NEAR(path.log_evidence, one.log_evidence, 0.02) << "seed " << seed;  // coordinates of the prior differ at second order
   }
 }
 
@@ -195,7 +185,7 @@ TEST(PathWindow, EliminatingLandmarksIsTheJointSolution) {
 
 // The prior of several steps says what the velocity's Kalman filter says one step after the other.
 TEST(PathPrior, LastVelocityIsTheVelocityFilters) {
-  Random random(7);
+  Draws draws(7);
   Scene scene = MakeScene(7, 6, 0, 0.05, 1);
   const vo::PathPrior prior = scene.prior();
   vo::VelocityFilter<6, 6>::State state{scene.velocity, scene.velocity_covariance};
@@ -203,7 +193,7 @@ TEST(PathPrior, LastVelocityIsTheVelocityFilters) {
   double log_density = 0;
   for (int k = 0; k < 6; ++k) {
     const vo::VelocityFilter<6, 6> step(scene.steps[k].F, scene.steps[k].Q);
-    const Vector6 u = 0.03 * random.Normal6();
+    const Vector6 u = 0.03 * draws.Normals<6>();
     const Vector6 nu = u - step.PredictedMean(Vector6::Zero(), state);
     const Matrix6 S = step.PredictedCovariance(state);
     log_density += -0.5 * nu.dot(S.inverse() * nu) - 0.5 * std::log(S.determinant());
@@ -225,10 +215,10 @@ TEST(PathWindow, EvidenceOfTwoFramesIsThatOfTheFirstTimesTheSecondGivenIt) {
     std::erase_if(track.views, [](const vo::Track::View& view) { return view.slot == 1; });
   const vo::PathGaussian with = Solve(scene, false), without = Solve(first, false);
   // p(z_2 | z_1) by drawing the first pose from p(s_1 | z_1, z_2): p(s_1|z_1) p(z_2|s_1,z_1) / p(s_1|z_1,z_2) is the same at any s_1.
-  Random random(11);
+  Draws draws(11);
   for (int draw = 0; draw < 3; ++draw) {
     const Matrix6 P = with.covariance.topLeftCorner<6, 6>();
-    const vo::Pose s = vo::Plus(with.mean[0], P.llt().matrixL() * random.Normal6());
+    const vo::Pose s = vo::Plus(with.mean[0], P.llt().matrixL() * draws.Normals<6>());
     Scene second = scene;
     second.start = s;
     second.anchors[1] = s;

@@ -1,7 +1,6 @@
 #include "vo/filter/proposal.h"
 
 #include <numbers>
-#include <random>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -9,7 +8,9 @@
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
+#include "tests/unit/vo/draws.h"
 #include "vo/filter/consensus.h"
+#include "vo/filter/descent.h"
 #include "vo/filter/resampling.h"
 #include "vo/geometry/so3.h"
 
@@ -19,11 +20,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-double Uniform(std::mt19937_64& bits) { return (static_cast<double>(bits() >> 11) + 0.5) * 0x1.0p-53; }
-double Normal(std::mt19937_64& bits) {
-  return std::sqrt(-2 * std::log(Uniform(bits))) * std::cos(2 * std::numbers::pi * Uniform(bits));
-}
+using vo_test::Draws;
 
 // Landmarks anchored at two poses, seen from a third with pixel noise.
 struct Scene {
@@ -36,23 +33,22 @@ struct Scene {
 };
 
 Scene MakeScene(unsigned seed, int count, double depth_sigma, double noise = 1.0 / 500) {
-  std::mt19937_64 bits(seed);
+  Draws draws(seed);
   Scene scene;
   scene.anchors = {vo::Pose{}, vo::Pose{Vector3d(0.05, 0.02, -0.03), vo::Exp({0.01, -0.02, 0.01})}};
   scene.prediction.mean = {Vector3d(0.15, -0.05, 0.1), vo::Exp({0.02, 0.03, -0.02})};
   scene.prediction.covariance.diagonal() << 1e-4, 1e-4, 1e-4, 2e-5, 2e-5, 2e-5;
-  vo::Vector6 off;
-  for (int i = 0; i < 6; ++i) off[i] = std::sqrt(scene.prediction.covariance(i, i)) * Normal(bits);
+  const vo::Vector6 off = scene.prediction.covariance.diagonal().cwiseSqrt().cwiseProduct(draws.Normals<6>());
   const vo::Pose truth = vo::Plus(scene.prediction.mean, off);
   for (int n = 0; n < count; ++n) {
     vo::Landmark landmark;
-    const Vector3d theta(Uniform(bits) - 0.5, 0.7 * (Uniform(bits) - 0.5), 0.2 + 0.5 * Uniform(bits));
-    landmark.mean = theta + Vector3d(noise * Normal(bits), noise * Normal(bits), depth_sigma * Normal(bits));
+    const Vector3d theta{draws.Uniform() - 0.5, 0.7 * (draws.Uniform() - 0.5), 0.2 + 0.5 * draws.Uniform()};
+    landmark.mean = theta + Vector3d(noise, noise, depth_sigma).cwiseProduct(draws.Normals<3>());
     landmark.covariance.diagonal() << noise * noise, noise * noise, depth_sigma * depth_sigma;
     scene.landmarks.push_back(landmark);
     scene.anchor_of.push_back(n % 2);
     const vo::Projection h = vo::Project({truth, scene.anchors[n % 2]}, theta);
-    scene.matches.push_back({n, h.z + noise * Vector2d(Normal(bits), Normal(bits)), noise * noise * Eigen::Matrix2d::Identity()});
+    scene.matches.push_back({n, h.z + noise * draws.Normals<2>(), noise * noise * Eigen::Matrix2d::Identity()});
   }
   return scene;
 }
@@ -99,13 +95,18 @@ Joint SolveJointly(const Scene& scene) {
   return {pose, covariance.topLeftCorner<6, 6>()};
 }
 
+// As near as Settled promises; one step alone is hundreds of times farther away.
 TEST(Proposal, SchurEliminationIsTheJointSolution) {
-  for (unsigned seed = 1; seed <= 5; ++seed) {
+  for (unsigned seed = 1; seed <= 50; ++seed) {
     const Scene scene = MakeScene(seed, 12, 0.15);
     const Joint joint = SolveJointly(scene);
     const vo::PoseProposal proposal = vo::Propose(scene.prediction, scene.map(), scene.matches, {.max_iterations = 50});
-    const vo::Vector6 d = vo::Minus(proposal.pose.mean, joint.pose);
-    EXPECT_LT(std::sqrt(d.dot(joint.covariance.llt().solve(d))), 1e-3) << "standard deviations, seed " << seed;
+    const auto distance = [&](const vo::PoseProposal& from) {  // [standard deviations]
+      const vo::Vector6 d = vo::Minus(from.pose.mean, joint.pose);
+      return std::sqrt(d.dot(joint.covariance.llt().solve(d)));
+    };
+    EXPECT_LT(distance(proposal), vo::kLeft) << "seed " << seed;
+    EXPECT_GT(distance(vo::Propose(scene.prediction, scene.map(), scene.matches, {.max_iterations = 1})), 10 * vo::kLeft) << "seed " << seed;
     EXPECT_LT((proposal.pose.covariance - joint.covariance).norm() / joint.covariance.norm(), 1e-3) << "seed " << seed;
   }
 }
@@ -131,11 +132,11 @@ TEST(Proposal, EvidenceEqualsTheImportanceWeightWhenLinear) {
   const double tiny = 1e-7;
   Scene scene = MakeScene(4, 10, 1e-6, tiny);
   scene.prediction.covariance *= 1e-10;
-  std::mt19937_64 bits(9);
+  Draws draws(9);
   for (vo::Match& match : scene.matches) {  // measurements consistent with the small prior
     const vo::Projection h = vo::Project({scene.prediction.mean, scene.anchors[scene.anchor_of[match.landmark]]},
                                          scene.landmarks[match.landmark].mean);
-    match.z = h.z + tiny * Vector2d(Normal(bits), Normal(bits));
+    match.z = h.z + tiny * draws.Normals<2>();
   }
   const vo::PoseProposal proposal = vo::Propose(scene.prediction, scene.map(), scene.matches, {});
   for (std::uint32_t i = 0; i < 20; ++i) {
@@ -153,11 +154,11 @@ TEST(Consensus, ThrowsOutGrossErrorsAndKeepsTheRest) {
   int refused_inliers = 0, kept_outliers = 0, inliers = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Scene scene = MakeScene(seed, 60, 0.01);
-    std::mt19937_64 bits(seed + 100);
+    Draws draws(seed + 100);
     std::vector<bool> corrupted(60, false);
     for (int n = 0; n < 60; n += 5) {
       corrupted[n] = true;
-      const double angle = 2 * std::numbers::pi * Uniform(bits), length = (12 + 28 * Uniform(bits)) / 500;
+      const double angle = 2 * std::numbers::pi * draws.Uniform(), length = (12 + 28 * draws.Uniform()) / 500;
       scene.matches[n].z += length * Vector2d(std::cos(angle), std::sin(angle));
     }
     const std::vector<bool> inlier = vo::FindInliers(scene.prediction, scene.map(), scene.matches, 9.21, {});

@@ -4,11 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <random>
 #include <vector>
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
+
+#include "tests/unit/vo/draws.h"
 
 namespace vo_test {
 
@@ -16,10 +17,9 @@ class Texture {
  public:
   // Wave numbers up to `max_frequency` [rad per unit].
   explicit Texture(unsigned seed, double max_frequency = 0.45, int waves = 60) {
-    std::mt19937_64 bits(seed);
-    const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1.0p-53; };
+    Draws draws(seed);
     for (int i = 0; i < waves; ++i)
-      waves_.push_back({2 * max_frequency * (uniform() - 0.5), 2 * max_frequency * (uniform() - 0.5), 6.2832 * uniform()});
+      waves_.push_back({max_frequency * draws.Symmetric(), max_frequency * draws.Symmetric(), 6.2832 * draws.Uniform()});
   }
   double At(const Eigen::Vector2d& p) const {
     double sum = 0;

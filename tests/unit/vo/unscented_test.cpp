@@ -101,14 +101,14 @@ Scene MakeScene(std::uint64_t seed, int count, double pose_scale, double depth_s
     vo::Landmark landmark;
     const Vector3d theta(0.5 * std::sin(1.3 * i), 0.4 * std::cos(2.1 * i), 0.35 + 0.15 * std::sin(0.7 * i));
     landmark.mean = theta;
-    if (!fixed) landmark.mean.head<2>() += noise * Vector2d(draw(), draw());
+    if (!fixed) landmark.mean.head<2>() += noise * Vector2d{draw(), draw()};
     landmark.mean.z() += depth_sigma * draw();
     landmark.covariance(2, 2) = depth_sigma * depth_sigma;
     if (!fixed) landmark.covariance.topLeftCorner<2, 2>() = noise * noise * Matrix2d::Identity();
     scene.landmarks.push_back(landmark);
     scene.anchor_of.push_back(i % 2);
     const vo::Projection h = vo::Project({truth, scene.anchors[static_cast<std::size_t>(i % 2)]}, theta);
-    scene.matches.push_back({i, h.z + noise * Vector2d(draw(), draw()), noise * noise * Matrix2d::Identity()});
+    scene.matches.push_back({i, h.z + noise * Vector2d{draw(), draw()}, noise * noise * Matrix2d::Identity()});
   }
   return scene;
 }

@@ -3,21 +3,20 @@
 
 #include "vo/filter/velocity_filter.h"
 
-#include <random>
-
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include "tests/unit/vo/draws.h"
 #include "vo/filter/motion_model.h"
 
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using vo_test::Draws;
 
-double Random(std::mt19937_64& bits) { return (static_cast<double>(bits() >> 11) + 0.5) * 0x1.0p-53 * 2 - 1; }
-MatrixXd RandomMatrix(int rows, int cols, std::mt19937_64& bits) {
-  return MatrixXd::NullaryExpr(rows, cols, [&] { return Random(bits); });
+MatrixXd RandomMatrix(int rows, int cols, Draws& draws) {
+  return MatrixXd::NullaryExpr(rows, cols, [&] { return draws.Symmetric(); });
 }
 
 struct Step {
@@ -26,11 +25,11 @@ struct Step {
 
 // General: F21 != 0, F22 invertible, every block of Q full; a matrix that depends on a varying time step.
 template <int P, int K>
-Step RandomStep(std::mt19937_64& bits) {
-  const double dt = 0.02 + 0.08 * std::abs(Random(bits));
-  MatrixXd F = MatrixXd::Identity(P + K, P + K) + 4 * dt * RandomMatrix(P + K, P + K, bits);
+Step RandomStep(Draws& draws) {
+  const double dt = 0.02 + 0.08 * std::abs(draws.Symmetric());
+  MatrixXd F = MatrixXd::Identity(P + K, P + K) + 4 * dt * RandomMatrix(P + K, P + K, draws);
   F /= std::max(1.0, F.eigenvalues().cwiseAbs().maxCoeff());  // 200 steps stay bounded
-  const MatrixXd root = RandomMatrix(P + K, P + K, bits);
+  const MatrixXd root = RandomMatrix(P + K, P + K, draws);
   return {F, dt * (root * root.transpose() + 0.1 * MatrixXd::Identity(P + K, P + K))};
 }
 
@@ -94,15 +93,15 @@ void PlainUpdate(const Step& step, const VectorXd& s_previous, const VectorXd& s
 // Largest relative difference of mean and covariance from the joint filter over 200 steps.
 template <int P, int K, class Update>
 double WorstDifference(unsigned seed, Update update) {
-  std::mt19937_64 bits(seed);
-  VectorXd s = RandomMatrix(P, 1, bits), mean = RandomMatrix(K, 1, bits);
-  const MatrixXd root = RandomMatrix(K, K, bits);
+  Draws draws(seed);
+  VectorXd s = RandomMatrix(P, 1, draws), mean = RandomMatrix(K, 1, draws);
+  const MatrixXd root = RandomMatrix(K, K, draws);
   MatrixXd S = root * root.transpose() + 0.1 * MatrixXd::Identity(K, K);
   JointFilter joint(s, mean, S);
   double worst = 0;
   for (int t = 0; t < 200; ++t) {
-    const Step step = RandomStep<P, K>(bits);
-    const VectorXd s_next = step.F.topLeftCorner(P, P) * s + step.F.topRightCorner(P, K) * mean + 0.5 * RandomMatrix(P, 1, bits);
+    const Step step = RandomStep<P, K>(draws);
+    const VectorXd s_next = step.F.topLeftCorner(P, P) * s + step.F.topRightCorner(P, K) * mean + 0.5 * RandomMatrix(P, 1, draws);
     update(step, s, s_next, mean, S);
     joint.Advance(step, s_next);
     s = s_next;
