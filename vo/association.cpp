@@ -11,10 +11,13 @@
 #include "vo/features/matcher.h"
 #include "vo/filter/consensus.h"
 #include "vo/pilots.h"
+#include "vo/rolling_shutter.h"
 #include "vo/spread.h"
 
 namespace vo {
 namespace {
+
+constexpr int kShutterRounds = 3;  // velocity, then where the rows' points were at the stamp, then the velocity by these
 
 struct Candidate {
   int landmark = 0;
@@ -38,7 +41,7 @@ bool WorthSearching(const Filter& filter, const LandmarkRecord& record, int land
 
 // Section 7: assessed in this order.
 std::vector<Candidate> FindCandidates(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
-                                      int border_px, const Params& params) {
+                                      const ImageMotion& motion, int border_px, const Params& params) {
   std::vector<Candidate> candidates;
   std::vector<int> all(static_cast<std::size_t>(filter.landmark_count()));
   std::iota(all.begin(), all.end(), 0);
@@ -46,7 +49,7 @@ std::vector<Candidate> FindCandidates(const Filter& filter, std::span<const Land
   for (const int n : all) {
     const ImagePrediction& prediction = predictions[n];
     if (!prediction.in_front || !WorthSearching(filter, records[n], n, prediction, params)) continue;
-    const Eigen::Vector2d pixel = camera.Project({prediction.z.x(), prediction.z.y(), 1.0});
+    const Eigen::Vector2d pixel = motion.InImage(n, prediction.z);
     if (!camera.Sees(pixel, border_px)) continue;
     candidates.push_back({n, prediction, pixel, camera.LensJacobian(prediction.z)});
   }
@@ -87,14 +90,19 @@ SearchRequest RequestFor(const Candidate& candidate, const Filter& filter, const
 
 using Found = std::vector<std::optional<FoundFeature>>;
 
-Match MatchOf(const Candidate& candidate, const FoundFeature& found, const Camera& camera) {
-  return {candidate.landmark, camera.Undistort(found.pixel), PixelNoise(candidate.lens, found.noise)};
+Match MatchOf(const Candidate& candidate, const FoundFeature& found, const ImageMotion& motion) {
+  return {candidate.landmark, motion.AtStamp(candidate.landmark, found.pixel), PixelNoise(candidate.lens, found.noise)};
+}
+
+// How fast the camera is if it is at `pose` and not where it was predicted to be: it has made the difference since the last frame.
+Vector6 VelocityAt(const Filter& filter, const Pose& pose, double dt) {
+  return filter.belief().velocity + Minus(pose, filter.ReferencePrediction().mean) / dt;
 }
 
 // The pilots first, each request as it is; the others where the camera then turns out to be.
 Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchRequest>& requests, const Filter& filter,
-           std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey, const BriskImage& brisk,
-           const Params& params) {
+           std::span<const LandmarkRecord> records, const Camera& camera, const RollingShutter& shutter, const ImageMotion& predicted,
+           const LocalMap& map, const cv::Mat& grey, const BriskImage& brisk, double dt, const Params& params) {
   std::vector<PilotCandidate> possible;
   for (const Candidate& c : candidates) possible.push_back({c.pixel, &records[c.landmark]});
   const std::vector<std::size_t> pilots = ChoosePilots(possible, camera, params.features);
@@ -112,18 +120,19 @@ Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchReq
   std::vector<Match> matches;
   for (std::size_t k = 0; k < pilots.size(); ++k) {
     found[pilots[k]] = leading[k];
-    if (leading[k]) matches.push_back(MatchOf(candidates[pilots[k]], *leading[k], camera));
+    if (leading[k]) matches.push_back(MatchOf(candidates[pilots[k]], *leading[k], predicted));
   }
 
-  const LocalMap map = filter.ReferenceMap();
   const std::optional<PilotedPose> pose = PilotedPose::From(filter.ReferencePrediction(), map, matches, params);
+  const Pose& at = pose ? pose->pose().mean : filter.ReferencePrediction().mean;
+  const ImageMotion motion(shutter, map, at, VelocityAt(filter, at, dt));
   std::vector<SearchRequest> rest;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (is_pilot[i]) continue;
     rest.push_back(requests[i]);
     const auto where = pose ? pose->Predict(map, candidates[i].landmark, camera, params.features.sigma_px) : std::nullopt;
     if (!where) continue;
-    rest.back().predicted = where->pixel;
+    rest.back().predicted = shutter.on() ? motion.InImage(candidates[i].landmark, camera.Undistort(where->pixel)) : where->pixel;
     rest.back().S = where->covariance;
     rest.back().widest_px = std::max(params.features.window_px, WindowOf(where->covariance));
   }
@@ -136,20 +145,33 @@ Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchReq
 }  // namespace
 
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
-                      const BriskImage& brisk, int border_px, const Params& params) {
+                      const BriskImage& brisk, int border_px, double dt, const Params& params) {
   Association result;
-  std::vector<Candidate> candidates = FindCandidates(filter, records, camera, border_px, params);
+  const LocalMap map = filter.ReferenceMap();
+  const PoseGaussian& prediction = filter.ReferencePrediction();
+  const RollingShutter shutter(camera, params.features.readout_s);
+  const ImageMotion predicted(shutter, map, prediction.mean, filter.belief().velocity);
+  std::vector<Candidate> candidates = FindCandidates(filter, records, camera, predicted, border_px, params);
   result.left_out = LeaveOut(candidates, records, camera, params.features);
   std::vector<SearchRequest> requests;
   for (const Candidate& c : candidates)
     requests.push_back(RequestFor(c, filter, records[c.landmark], camera, params.features.sigma_px));
-  const Found found = Find(candidates, requests, filter, records, camera, grey, brisk, params);
+  const Found found = Find(candidates, requests, filter, records, camera, shutter, predicted, map, grey, brisk, dt, params);
 
-  std::vector<Match> matches;
-  for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (found[i]) matches.push_back(MatchOf(candidates[i], *found[i], camera));
-  const std::vector<bool> inlier =
-      FindInliers(filter.ReferencePrediction(), filter.ReferenceMap(), matches, params.score.gate, params.filter);
+  const auto matches_at = [&](const ImageMotion& motion) {
+    std::vector<Match> matches;
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+      if (found[i]) matches.push_back(MatchOf(candidates[i], *found[i], motion));
+    return matches;
+  };
+  std::vector<Match> matches = matches_at(predicted);
+  if (shutter.on()) {
+    for (int round = 0; round < kShutterRounds; ++round) {
+      const Pose at = FindConsensus(prediction, map, matches, params.score.gate, params.filter).pose.mean;
+      matches = matches_at(ImageMotion(shutter, map, at, VelocityAt(filter, at, dt)));
+    }
+  }
+  const std::vector<bool> inlier = FindInliers(prediction, map, matches, params.score.gate, params.filter);
 
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];

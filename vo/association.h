@@ -29,8 +29,8 @@ struct Association {
   double nis = 0;                  // sum of the matches' mahalanobis_sq
 };
 
-// After filter.Predict. `records` are in the order of the filter's landmarks; `brisk` holds the image `grey` (CV_8UC1).
+// After filter.Predict(dt). `records` are in the order of the filter's landmarks; `brisk` holds the image `grey` (CV_8UC1).
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
-                      const BriskImage& brisk, int border_px, const Params& params);
+                      const BriskImage& brisk, int border_px, double dt, const Params& params);
 
 }  // namespace vo

@@ -12,6 +12,7 @@
 #include "vo/features/corner_detector.h"
 #include "vo/map/existence.h"
 #include "vo/map/forgetting.h"
+#include "vo/rolling_shutter.h"
 
 namespace vo {
 namespace {
@@ -64,9 +65,10 @@ Estimate Odometry::Impl::Process(const Frame& frame) {
   left_out.clear();
 
   if (last_stamp_ns) {
-    filter->Predict(static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9);
+    const double dt = static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9;
+    filter->Predict(dt);
     brisk.Set(grey);
-    Association association = Associate(*filter, records, camera, grey, brisk, border_px, params);
+    Association association = Associate(*filter, records, camera, grey, brisk, border_px, dt, params);
     diagnostics.ms_matching = watch.Lap();
     filter->Update(association.matches);
     UpdateScores(association);
@@ -120,8 +122,9 @@ void Odometry::Impl::AddFeatures(const cv::Mat& grey) {
   for (const FeatureView& view : views)
     if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
   const std::vector<Eigen::Vector2i> corners = DetectCorners(grey, occupied, border_px, params.features);
-  std::vector<Eigen::Vector2d> rays;
-  std::vector<Eigen::Matrix2d> noises;
+  const Belief& belief = filter->belief();
+  const RollingShutter shutter(camera, params.features.readout_s);
+  std::vector<FirstView> first;
   for (const Eigen::Vector2i& corner : corners) {
     const Eigen::Vector2d pixel = corner.cast<double>();
     if (!camera.Sees(pixel)) continue;  // at the edge of a fisheye lens
@@ -130,13 +133,13 @@ void Odometry::Impl::AddFeatures(const cv::Mat& grey) {
     record.id = next_id++;
     record.score = params.score.initial;
     records.push_back(record);
-    rays.push_back(camera.Undistort(pixel));
+    first.push_back(shutter.FirstSeen(pixel, belief.pose, belief.velocity));
     // The patch that later views are registered to defines the landmark: its first view is as good as the registration can be.
-    noises.push_back(PixelNoise(camera.LensJacobian(rays.back()),
-                                params.features.noise == MatchNoise::registered ? params.features.sigma_floor_px : params.features.sigma_px));
+    first.back().R = PixelNoise(camera.LensJacobian(first.back().ray), params.features.noise == MatchNoise::registered ? params.features.sigma_floor_px
+                                                                                                                       : params.features.sigma_px);
     views.push_back({record.id, pixel, pixel, Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
   }
-  filter->AddLandmarks(rays, noises);
+  filter->AddLandmarks(first);
 }
 
 Estimate Odometry::Impl::Answer(std::int64_t stamp_ns, FrameDiagnostics diagnostics) const {

@@ -114,6 +114,7 @@ struct FeatureParams {
   double max_view_angle_deg = 45;  // between the present and the first viewing ray
   double max_baseline_ratio = 0.3; // camera's distance from the first view / depth there
   int max_searched = 200;          // landmarks searched per frame
+  double readout_s = 0;            // rolling shutter: from the first row's exposure to the last's [s]; 0: all at once, < 0: upwards
   int pilots = 16;                 // so many are looked for first; where the others then are, small windows find them (0: the paper)
 };
 

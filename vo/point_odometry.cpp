@@ -106,15 +106,14 @@ void PointOdometry::Impl::Forget() {
 }
 
 void PointOdometry::Impl::AddNew(const PointFrame& frame) {
-  std::vector<Eigen::Vector2d> rays;
-  std::vector<Eigen::Matrix2d> noises;
+  std::vector<FirstView> views;
   for (const PointObservation& observation : frame.observations) {
     if (!landmark_of.try_emplace(observation.id, static_cast<int>(records.size())).second) continue;
     records.push_back({observation.id, 0});
-    rays.push_back(camera.Undistort(observation.pixel));
-    noises.push_back(PixelNoise(camera.LensJacobian(rays.back()), params.features.sigma_px));
+    const Eigen::Vector2d ray = camera.Undistort(observation.pixel);
+    views.push_back({ray, PixelNoise(camera.LensJacobian(ray), params.features.sigma_px)});
   }
-  filter->AddLandmarks(rays, noises);
+  filter->AddLandmarks(views);
 }
 
 PointOdometry::PointOdometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)

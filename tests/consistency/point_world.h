@@ -117,14 +117,14 @@ inline Result Run(const World& world, const vo::Params& params, int features, un
     filter.KeepLandmarks(keep);
     point_of = kept;
     last_seen = kept_seen;
-    std::vector<Eigen::Vector2d> rays;
+    std::vector<vo::FirstView> first;
     for (const auto& [point, z] : unknown) {
       if (followed++ >= features) break;
       point_of.push_back(point);
       last_seen.push_back(k);
-      rays.push_back(z);
+      first.push_back({z, R});
     }
-    filter.AddLandmarks(rays, std::vector<Eigen::Matrix2d>(rays.size(), R));
+    filter.AddLandmarks(first);
   }
   return result;
 }

@@ -93,16 +93,16 @@ Nees FirstStepNees(int runs, double covariance_factor) {
     landmark.inverse_depth_sigma = 0.005;
     vo::ParticleFilter filter(params.motion, params.filter, landmark, prior, static_cast<std::uint64_t>(run));
     const Eigen::Matrix2d R = sigma * sigma * Eigen::Matrix2d::Identity();
-    std::vector<Eigen::Vector2d> rays;
+    std::vector<vo::FirstView> first;
     std::vector<vo::Match> matches;
     for (int n = 0; n < 30; ++n) {
       const Eigen::Vector2d ray(0.4 * std::sin(1.3 * n), 0.3 * std::cos(2.1 * n));
       const double rho = landmark.inverse_depth + landmark.inverse_depth_sigma * draw();
       const Eigen::Vector3d X = truth.q_WC.conjugate() * (Eigen::Vector3d(ray.x(), ray.y(), 1) / rho - truth.p_WC);
-      rays.push_back(ray + sigma * Eigen::Vector2d{draw(), draw()});
+      first.push_back({ray + sigma * Eigen::Vector2d{draw(), draw()}, R});
       matches.push_back({n, X.head<2>() / X.z() + sigma * Eigen::Vector2d{draw(), draw()}, R});
     }
-    filter.AddLandmarks(rays, std::vector<Eigen::Matrix2d>(rays.size(), R));
+    filter.AddLandmarks(first);
     filter.Predict(dt);
     filter.Update(matches);
     const vo::Belief& belief = filter.belief();

@@ -31,10 +31,12 @@ void SomeFrames(const fs::path& sequence, int first, int last, const fs::path& f
   fs::create_directory_symlink(fs::canonical(sequence / "rgb"), folder / "rgb");
 }
 
-Scores TrackRecorded(const fs::path& sequence, const std::string& camera, std::uint64_t seed) {
+Scores TrackRecorded(const fs::path& sequence, const std::string& camera, std::uint64_t seed,
+                     const std::vector<std::string>& settings) {
   const TemporaryFolder here;
-  const Outcome outcome = RunVobench(
-      {"track", sequence.string(), "-o", "out", "--camera", camera, "--seed", std::to_string(seed)}, here.path());
+  std::vector<std::string> arguments{"track", sequence.string(), "-o", "out", "--camera", camera, "--seed", std::to_string(seed)};
+  for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--set", setting});
+  const Outcome outcome = RunVobench(arguments, here.path());
   if (outcome.status != 0) throw std::runtime_error(outcome.err);
   const nlohmann::json metrics = nlohmann::json::parse(ReadFile(here / "out/metrics.json"));
   const auto value = [](const nlohmann::json& system, const char* key) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace vobench::system_test {
 
@@ -24,6 +25,7 @@ struct Scores {
 };
 
 // Throws std::runtime_error with the program's message when it fails.
-Scores TrackRecorded(const std::filesystem::path& sequence, const std::string& camera, std::uint64_t seed);
+Scores TrackRecorded(const std::filesystem::path& sequence, const std::string& camera, std::uint64_t seed,
+                     const std::vector<std::string>& settings = {});  // KEY=VALUE
 
 }  // namespace vobench::system_test

@@ -72,7 +72,7 @@ void ReadFeatures(Section section, vo::FeatureParams& params) {
   auto& [sigma_px, noise, sigma_floor_px, noise_inflation, grid_columns, grid_rows, per_cell, fast_threshold_start,
          fast_threshold_min, min_distance_px, min_cornerness, brisk_size_px, brisk_warp, max_hamming, window_quick_px,
          window_px, window_enlarged_px, window_lost_px, window_recovery_px, subpixel, max_view_angle_deg, max_baseline_ratio,
-         max_searched, pilots] = params;
+         max_searched, readout_s, pilots] = params;
   section.Read("sigma", sigma_px, Unit::pixel, Range::Positive());
   section.ReadChoice("noise", noise,
                      {{"constant", vo::MatchNoise::constant}, {"registered", vo::MatchNoise::registered}});
@@ -103,6 +103,7 @@ void ReadFeatures(Section section, vo::FeatureParams& params) {
   }
   section.Read("max_baseline_ratio", max_baseline_ratio, Range::Positive());
   section.Read("max_searched", max_searched, Range::AtLeast(1));
+  section.Read("rolling_shutter", readout_s, Unit::time, Range{-1, 1});
   section.Read("pilots", pilots, Range::AtLeast(0));
 }
 

@@ -175,9 +175,9 @@ void EkfSlam::Update(std::span<const Match> matches) {
   Answer();
 }
 
-void EkfSlam::AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<const Eigen::Matrix2d> R) {
-  if (rays.empty()) return;
-  const int before = static_cast<int>(P_.rows()), after = before + 6 + 3 * static_cast<int>(rays.size());
+void EkfSlam::AddLandmarks(std::span<const FirstView> views) {
+  if (views.empty()) return;
+  const int before = static_cast<int>(P_.rows()), after = before + 6 + 3 * static_cast<int>(views.size());
   const Eigen::MatrixXd old = P_;
   P_.setZero(after, after);
   P_.topLeftCorner(before, before) = old;
@@ -186,8 +186,8 @@ void EkfSlam::AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<cons
   P_.block<6, 6>(before, before) = old.topLeftCorner<6, 6>();
   anchors_.push_back(pose_);
   anchor_offset_.push_back(before);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Landmark landmark = NewLandmark(rays[i], R[i], landmark_params_);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Landmark landmark = NewLandmark(views[i], landmark_params_);
     const int offset = before + 6 + 3 * static_cast<int>(i);
     P_.block<3, 3>(offset, offset) = landmark.covariance;
     landmarks_.push_back(landmark);

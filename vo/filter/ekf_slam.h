@@ -29,7 +29,7 @@ class EkfSlam final : public Filter {
   // joint mode of poses and landmarks instead: nearer to that, but the landmarks are then linearised where this frame's noise has
   // moved them, so that motion is seen in noise (docs/odometry.md). Covariance by Joseph's form.
   void Update(std::span<const Match> matches) override;
-  void AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<const Eigen::Matrix2d> R) override;
+  void AddLandmarks(std::span<const FirstView> views) override;
   void KeepLandmarks(const std::vector<bool>& keep) override;
   int landmark_count() const override { return static_cast<int>(landmarks_.size()); }
 

@@ -31,8 +31,8 @@ class Filter {
   virtual void Predict(double dt) = 0;
   // No matches: the filter coasts.
   virtual void Update(std::span<const Match> matches) = 0;
-  // A landmark for every ray (plane z = 1), first seen at the present pose. Indices follow those in use.
-  virtual void AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<const Eigen::Matrix2d> R) = 0;
+  // A landmark for every first view, at the present pose. Indices follow those in use.
+  virtual void AddLandmarks(std::span<const FirstView> views) = 0;
   // Keeps the landmarks marked true, in their order.
   virtual void KeepLandmarks(const std::vector<bool>& keep) = 0;
   virtual int landmark_count() const = 0;

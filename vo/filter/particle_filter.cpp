@@ -200,8 +200,8 @@ void ParticleFilter::Resample() {
   weights_.assign(weights_.size(), 1.0 / static_cast<double>(weights_.size()));
 }
 
-void ParticleFilter::AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<const Eigen::Matrix2d> R) {
-  if (rays.empty()) return;
+void ParticleFilter::AddLandmarks(std::span<const FirstView> views) {
+  if (views.empty()) return;
   if (!delayed() && since_sampled_ > 0) SampleStep({});
   // The slot of an anchor that no landmark uses any more is used again, so that long runs stay small.
   const int slots = static_cast<int>(particles_[0].anchors.size());
@@ -211,14 +211,14 @@ void ParticleFilter::AddLandmarks(std::span<const Eigen::Vector2d> rays, std::sp
   for (Particle& particle : particles_) {
     if (slot == slots) particle.anchors.emplace_back();
     particle.anchors[slot] = steps_.empty() ? particle.pose : particle.path.mean.back();
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      particle.landmarks.push_back(Scaled(NewLandmark(rays[i], R[i], landmark_params_), particle.scale));
+    for (const FirstView& view : views) {
+      particle.landmarks.push_back(NewLandmark(view, landmark_params_, particle.scale));
       if (delayed()) particle.modes.push_back(particle.landmarks.back().mean);
     }
   }
   if (slot == slots) anchor_slot_.emplace_back();
   anchor_slot_[slot] = static_cast<int>(steps_.size()) - 1;
-  anchor_of_.insert(anchor_of_.end(), rays.size(), slot);
+  anchor_of_.insert(anchor_of_.end(), views.size(), slot);
 }
 
 void ParticleFilter::KeepLandmarks(const std::vector<bool>& keep) {

@@ -48,7 +48,7 @@ class ParticleFilter final : public Filter {
 
   // A landmark for every ray (plane z = 1), first seen at the present pose of each particle, which is sampled now if the filter
   // coasts. Indices follow those in use.
-  void AddLandmarks(std::span<const Eigen::Vector2d> rays, std::span<const Eigen::Matrix2d> R) override;
+  void AddLandmarks(std::span<const FirstView> views) override;
   // Keeps the landmarks marked true, in their order.
   void KeepLandmarks(const std::vector<bool>& keep) override;
 

@@ -38,19 +38,16 @@ Matrix26 AnchorJacobian(const Projection& projection, const Eigen::Vector3d& lan
   return result;
 }
 
-Landmark Scaled(const Landmark& landmark, double factor) {
-  Landmark result = landmark;
-  result.mean.z() *= factor;
-  result.covariance.row(2) *= factor;
-  result.covariance.col(2) *= factor;
-  return result;
-}
-
-Landmark NewLandmark(const Eigen::Vector2d& ray, const Eigen::Matrix2d& R, const LandmarkParams& params) {
+Landmark NewLandmark(const FirstView& view, const LandmarkParams& params, double scale) {
+  const double rho = params.inverse_depth * scale, sigma = params.inverse_depth_sigma * scale;
   Landmark landmark;
-  landmark.mean << ray, params.inverse_depth;
-  if (params.bearing == Bearing::estimated) landmark.covariance.topLeftCorner<2, 2>() = R;
-  landmark.covariance(2, 2) = params.inverse_depth_sigma * params.inverse_depth_sigma;
+  landmark.mean << view.ray + rho * view.by_inverse_depth, rho;
+  landmark.covariance(2, 2) = sigma * sigma;
+  if (params.bearing == Bearing::fixed) return landmark;
+  const Eigen::Vector2d coupling = sigma * sigma * view.by_inverse_depth;
+  landmark.covariance.topLeftCorner<2, 2>() = view.R + coupling * view.by_inverse_depth.transpose();
+  landmark.covariance.topRightCorner<2, 1>() = coupling;
+  landmark.covariance.bottomLeftCorner<1, 2>() = coupling.transpose();
   return landmark;
 }
 

@@ -46,10 +46,15 @@ Projection Project(const AnchorView& view, const Eigen::Vector3d& landmark);
 // dz / d(dp in W, dphi in A) of the anchor's pose, for a landmark in front.
 Matrix26 AnchorJacobian(const Projection& projection, const Eigen::Vector3d& landmark);
 
-// Its inverse depth `factor` times as large.
-Landmark Scaled(const Landmark& landmark, double factor);
+// Where a landmark is seen for the first time, on the plane z = 1: at ray + by_inverse_depth rho, with covariance R.
+struct FirstView {
+  Eigen::Vector2d ray;
+  Eigen::Matrix2d R;
+  Eigen::Vector2d by_inverse_depth = Eigen::Vector2d::Zero();  // not zero: the camera moved between the row's time and the stamp
+};
 
-Landmark NewLandmark(const Eigen::Vector2d& ray, const Eigen::Matrix2d& R, const LandmarkParams& params);
+// `scale`: of the inverse depth that is believed beforehand.
+Landmark NewLandmark(const FirstView& view, const LandmarkParams& params, double scale = 1);
 
 // In W; far away for a vanishing rho.
 Eigen::Vector3d PointInWorld(const Pose& anchor, const Eigen::Vector3d& landmark);

@@ -60,20 +60,20 @@ int AllocationsOfALoop(const vo::FilterParams& params, int frames) {
   prior.velocity_covariance = 0.04 * vo::Matrix6::Identity();
   vo::ParticleFilter filter(vo::MotionParams{}, params, vo::LandmarkParams{}, prior, 1);
   const Eigen::Matrix2d R = kSigma * kSigma * Eigen::Matrix2d::Identity();
-  std::vector<Eigen::Vector2d> rays;
+  std::vector<vo::FirstView> views;
   std::vector<vo::Match> matches;
   for (int n = 0; n < kLandmarks; ++n) {
-    rays.emplace_back(0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n));
-    matches.push_back({n, rays.back(), R});
+    views.push_back({{0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n)}, R});
+    matches.push_back({n, views.back().ray, R});
   }
-  filter.AddLandmarks(rays, std::vector<Eigen::Matrix2d>(kLandmarks, R));
+  filter.AddLandmarks(views);
   allocations = 0;
   for (int k = 0; k < frames; ++k) {
     const vo::Pose pose{Eigen::Vector3d(0.01 * k, 0.002 * k, 0), vo::Exp({0, 0.002 * k, 0})};
     for (int n = 0; n < kLandmarks; ++n) {
       const Eigen::Vector3d X =
           pose.q_WC.conjugate() *
-          (rays[static_cast<std::size_t>(n)].homogeneous() / (0.25 + 0.05 * std::sin(0.9 * n)) - pose.p_WC);
+          (views[static_cast<std::size_t>(n)].ray.homogeneous() / (0.25 + 0.05 * std::sin(0.9 * n)) - pose.p_WC);
       matches[static_cast<std::size_t>(n)].z =
           X.hnormalized() + kSigma * Eigen::Vector2d(std::sin(17.0 * n * k), std::cos(23.0 * n * k));
     }

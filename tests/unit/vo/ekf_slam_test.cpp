@@ -112,10 +112,10 @@ vo::EkfSlam RunOn(const World& world, int iterations, const std::function<void(s
       filter.Update(world.matches[k]);
     }
     if (look) look(k, filter);
-    std::vector<Vector2d> rays;
+    std::vector<vo::FirstView> views;
     for (const World::Point& point : world.points)
-      if (point.born == static_cast<int>(k)) rays.push_back(point.ray);
-    filter.AddLandmarks(rays, std::vector<Matrix2d>(rays.size(), world.sigma * world.sigma * Matrix2d::Identity()));
+      if (point.born == static_cast<int>(k)) views.push_back({point.ray, world.sigma * world.sigma * Matrix2d::Identity()});
+    filter.AddLandmarks(views);
   }
   return filter;
 }
@@ -274,7 +274,7 @@ TEST(EkfSlam, DroppedLandmarksLeaveTheRestAlone) {
   EXPECT_EQ(filter.covariance().rows(), 12);
   filter.Predict(0.1);
   filter.Update({});
-  filter.AddLandmarks(std::vector<Vector2d>{{0, 0}}, std::vector<Matrix2d>{Matrix2d::Identity()});
+  filter.AddLandmarks(std::vector<vo::FirstView>{{{0, 0}, Matrix2d::Identity()}});
   EXPECT_EQ(filter.covariance().rows(), 12 + 6 + 3);
 }
 

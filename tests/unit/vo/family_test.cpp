@@ -20,9 +20,8 @@ constexpr double kSigma = 1.0 / 525;
 
 // Landmarks of a first view and their places in the second, from a camera that moved as told.
 struct TwoViews {
-  std::vector<Vector2d> rays;
+  std::vector<vo::FirstView> first;
   std::vector<vo::Match> matches;
-  std::vector<Matrix2d> R;
 };
 
 TwoViews Look(const vo::Pose& second, int count, double sigma = kSigma) {
@@ -31,10 +30,9 @@ TwoViews Look(const vo::Pose& second, int count, double sigma = kSigma) {
     const Vector2d ray(0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n));
     const double rho = 0.25 + 0.05 * std::sin(0.9 * n);
     const Vector3d X = second.q_WC.conjugate() * (Vector3d(ray.x(), ray.y(), 1) / rho - second.p_WC);
-    views.rays.push_back(ray);
+    views.first.push_back({ray, sigma * sigma * Matrix2d::Identity()});
     views.matches.push_back({n, X.head<2>() / X.z(), sigma * sigma * Matrix2d::Identity()});
   }
-  views.R.assign(views.rays.size(), sigma * sigma * Matrix2d::Identity());
   return views;
 }
 
@@ -54,7 +52,7 @@ TEST(Bootstrap, WeightIsTheLikelihoodAtTheSample) {
   params.resample_below = 0;
   vo::ParticleFilter filter = Start(params, 5);
   const TwoViews views = Look({Vector3d(0.01, 0, 0), vo::Exp({0, 0.005, 0})}, 3, 20 * kSigma);
-  filter.AddLandmarks(views.rays, views.R);
+  filter.AddLandmarks(views.first);
   filter.Predict(1.0 / 30);
   const std::vector<vo::Particle> before = filter.particles();
   filter.Update(views.matches);
@@ -81,7 +79,7 @@ TEST(Bootstrap, AgreesWithTheOptimalProposalInTheLimit) {
     params.weight = weight;
     params.particles = 4000;
     vo::ParticleFilter filter = Start(params, 11);
-    filter.AddLandmarks(views.rays, views.R);
+    filter.AddLandmarks(views.first);
     filter.Predict(1.0 / 30);
     filter.Update(views.matches);
     return filter.belief();
@@ -107,7 +105,7 @@ TEST(Unscented, ProposalTracksAStepAndStaysSymmetric) {
     params.weight = vo::Weight::importance;
     params.sampled = sampled;
     vo::ParticleFilter filter = Start(params, 3);
-    filter.AddLandmarks(views.rays, views.R);
+    filter.AddLandmarks(views.first);
     filter.Predict(1.0 / 30);
     filter.Update(views.matches);
     const vo::Belief& belief = filter.belief();

@@ -20,9 +20,10 @@ vo::ParticleFilter MakeFilter(const vo::FilterParams& params) {
   vo::FilterPrior prior;
   prior.velocity_covariance = 0.04 * vo::Matrix6::Identity();
   vo::ParticleFilter filter(vo::MotionParams{}, params, vo::LandmarkParams{}, prior, kSeed);
-  std::vector<Eigen::Vector2d> rays;
-  for (int n = 0; n < kLandmarks; ++n) rays.emplace_back(0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n));
-  filter.AddLandmarks(rays, std::vector<Eigen::Matrix2d>(kLandmarks, 4e-6 * Eigen::Matrix2d::Identity()));
+  std::vector<vo::FirstView> views;
+  for (int n = 0; n < kLandmarks; ++n)
+    views.push_back({{0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n)}, 4e-6 * Eigen::Matrix2d::Identity()});
+  filter.AddLandmarks(views);
   return filter;
 }
 

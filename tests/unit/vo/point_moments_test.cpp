@@ -49,20 +49,19 @@ TEST(PointMoments, FiltersAgreeOnANewLandmark) {
   FilterPrior prior;
   prior.pose.mean = kAnchor;
   LandmarkParams landmark;
-  const Eigen::Vector2d ray(0.1, -0.2);
-  const Eigen::Matrix2d R = 1e-6 * Eigen::Matrix2d::Identity();
+  const FirstView view{{0.1, -0.2}, 1e-6 * Eigen::Matrix2d::Identity(), {0.02, -0.01}};
   FilterParams params;
   params.particles = 4;
   ParticleFilter particles({}, params, landmark, prior, 1);
   EkfSlam ekf({}, params, landmark, prior);
-  particles.AddLandmarks({&ray, 1}, {&R, 1});
-  ekf.AddLandmarks({&ray, 1}, {&R, 1});
+  particles.AddLandmarks({&view, 1});
+  ekf.AddLandmarks({&view, 1});
   const auto a = particles.LandmarkPoints(), b = ekf.LandmarkPoints();
   ASSERT_EQ(a.size(), 1u);
   ASSERT_TRUE(a[0] && b[0]);
   EXPECT_LT((a[0]->mean - b[0]->mean).norm(), 1e-9);
   EXPECT_LT((a[0]->covariance - b[0]->covariance).norm(), 1e-9 * b[0]->covariance.norm());
-  const Landmark known = NewLandmark(ray, R, landmark);
+  const Landmark known = NewLandmark(view, landmark);
   const Eigen::Matrix3d J = PointJacobian(kAnchor, known.mean);
   EXPECT_LT((a[0]->covariance - J * known.covariance * J.transpose()).norm(), 1e-9 * a[0]->covariance.norm());
 }

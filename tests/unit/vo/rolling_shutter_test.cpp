@@ -1,0 +1,124 @@
+// The time of a row taken out of an image, against exact views of a camera that moves while it reads its rows.
+#include "vo/rolling_shutter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/unit/vo/draws.h"
+#include "vo/filter/pose_gaussian.h"
+#include "vo/geometry/so3.h"
+
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+vo::Camera SomeCamera() {
+  vo::Camera camera;
+  camera.k1 = 0.1;
+  camera.p1 = 0.001;
+  return camera;
+}
+
+const vo::Pose kPose{Vector3d(0.3, -0.2, 0.1), vo::Exp({0.1, -0.2, 0.05})};
+const vo::Vector6 kVelocity = (vo::Vector6() << 0.3, -0.2, 0.25, 0.4, -0.3, 0.5).finished();
+
+vo::Pose PoseAt(double t) { return {kPose.p_WC + t * kVelocity.head<3>(), kPose.q_WC * vo::Exp(t * kVelocity.tail<3>())}; }
+Vector3d InCamera(const vo::Pose& pose, const Vector3d& X_W) { return pose.q_WC.conjugate() * (X_W - pose.p_WC); }
+
+// The pixel of a point, in the row that is exposed just when the point is there.
+Vector2d Seen(const vo::Camera& camera, const vo::RollingShutter& shutter, const Vector3d& X_W) {
+  Vector2d pixel(0, 0.5 * camera.height);
+  for (int i = 0; i < 50; ++i) pixel = camera.Project(InCamera(PoseAt(shutter.TimeOf(pixel.y())), X_W));
+  return pixel;
+}
+
+// Points of the view at the stamp: (x, y, inverse depth) in C.
+std::vector<Vector3d> Points() {
+  vo_test::Draws draws(1);
+  std::vector<Vector3d> points;
+  for (int n = 0; n < 100; ++n) points.push_back(Vector3d(0, 0, 0.6) + Vector3d(0.5, 0.4, 0.4).cwiseProduct(draws.Symmetrics<3>()));
+  return points;
+}
+Vector3d InWorld(const Vector3d& theta) { return kPose.p_WC + kPose.q_WC * Vector3d(theta.x(), theta.y(), 1) / theta.z(); }
+
+TEST(RollingShutter, RowsHaveTheirTimes) {
+  const vo::RollingShutter shutter(SomeCamera(), 0.026);
+  EXPECT_DOUBLE_EQ(shutter.TimeOf(0), -0.013);
+  EXPECT_DOUBLE_EQ(shutter.TimeOf(239.5), 0);
+  EXPECT_DOUBLE_EQ(shutter.TimeOf(479), 0.013);
+  EXPECT_FALSE(vo::RollingShutter(SomeCamera(), 0).on());
+}
+
+// A landmark known exactly, anchored at the pose itself. What is left is of second order: a quarter with half the readout. Not
+// straightened it is of first order.
+TEST(RollingShutter, StraightensKnownLandmarksToSecondOrder) {
+  const vo::Camera camera = SomeCamera();
+  double left[2] = {}, uncorrected[2] = {};
+  for (const int half : {0, 1}) {
+    const vo::RollingShutter shutter(camera, half ? 0.013 : 0.026);
+    std::vector<vo::Landmark> landmarks(1);
+    const std::vector<int> anchor_of{0};
+    const std::vector<vo::Pose> anchors{kPose};
+    const vo::LocalMap map{landmarks, anchor_of, anchors};
+    const vo::ImageMotion motion(shutter, map, kPose, kVelocity);
+    for (const Vector3d& theta : Points()) {
+      landmarks[0].mean = theta;
+      const Vector2d pixel = Seen(camera, shutter, InWorld(theta));
+      left[half] = std::max(left[half], (motion.AtStamp(0, pixel) - theta.head<2>()).norm());
+      uncorrected[half] = std::max(uncorrected[half], (camera.Undistort(pixel) - theta.head<2>()).norm());
+      EXPECT_LT((motion.InImage(0, theta.head<2>()) - pixel).norm(), 0.06) << "pixels";
+    }
+  }
+  EXPECT_GT(uncorrected[0], 0.005) << "three pixels";
+  EXPECT_LT(left[0], 0.02 * uncorrected[0]);
+  EXPECT_NEAR(left[0] / left[1], 4, 0.3);
+  EXPECT_NEAR(uncorrected[0] / uncorrected[1], 2, 0.1);
+}
+
+TEST(RollingShutter, InImageUndoesAtStamp) {
+  const vo::RollingShutter shutter(SomeCamera(), -0.03);
+  vo_test::Draws draws(2);
+  for (int i = 0; i < 100; ++i) {
+    const Vector2d pixel(320 + 300 * draws.Symmetric(), 240 + 220 * draws.Symmetric()), rate = draws.Symmetrics<2>();
+    // 15 px at most; which row it is is known thirty times better after each of three rounds.
+    EXPECT_LT((shutter.InImage(shutter.AtStamp(pixel, rate), rate) - pixel).norm(), 15 * std::pow(1.0 / 30, 3));
+  }
+}
+
+// Seen for the first time: with the depth, once it is known, the ray is right to second order, whatever the depth. Taken with another
+// depth it is not: that is what by_inverse_depth is for.
+TEST(RollingShutter, FirstViewsAreRightAtEveryDepth) {
+  const vo::Camera camera = SomeCamera();
+  double left[2] = {}, other_depth = 0;
+  for (const int half : {0, 1}) {
+    const vo::RollingShutter shutter(camera, half ? 0.013 : 0.026);
+    for (const Vector3d& theta : Points()) {
+      const vo::FirstView view = shutter.FirstSeen(Seen(camera, shutter, InWorld(theta)), kPose, kVelocity);
+      left[half] = std::max(left[half], (view.ray + theta.z() * view.by_inverse_depth - theta.head<2>()).norm());
+      if (!half) other_depth = std::max(other_depth, (view.ray + 0.25 * view.by_inverse_depth - theta.head<2>()).norm());
+    }
+  }
+  EXPECT_NEAR(left[0] / left[1], 4, 0.3);
+  EXPECT_GT(other_depth, 5 * left[0]);
+}
+
+// (ray + noise + by_inverse_depth rho, rho) of independent noise and rho, with both written out.
+TEST(NewLandmark, KnowsHowItsRayHangsOnItsDepth) {
+  vo::LandmarkParams params;
+  const vo::FirstView view{{0.2, -0.1}, 1e-6 * Eigen::Matrix2d::Identity(), {0.03, -0.02}};
+  for (const double scale : {1.0, 1.7}) {
+    const vo::Landmark landmark = vo::NewLandmark(view, params, scale);
+    const double rho = scale * params.inverse_depth, variance = std::pow(scale * params.inverse_depth_sigma, 2);
+    EXPECT_LT((landmark.mean - Vector3d(0.2 + 0.03 * rho, -0.1 - 0.02 * rho, rho)).norm(), 1e-15);
+    Eigen::Matrix3d T = Eigen::Matrix3d::Identity(), independent = Vector3d(1e-6, 1e-6, variance).asDiagonal();
+    T.topRightCorner<2, 1>() = view.by_inverse_depth;
+    EXPECT_LT((landmark.covariance - T * independent * T.transpose()).norm(), 1e-15);
+  }
+  params.bearing = vo::Bearing::fixed;  // one dimension: the ray of the depth that is believed
+  EXPECT_EQ(vo::NewLandmark(view, params).covariance.topRows<2>().norm(), 0);
+}
+
+}  // namespace

@@ -1,0 +1,35 @@
+#include "vo/rolling_shutter.h"
+
+namespace vo {
+
+Eigen::Vector2d RollingShutter::AtStamp(const Eigen::Vector2d& pixel, const Eigen::Vector2d& rate) const {
+  return camera_.Undistort(pixel) - TimeOf(pixel.y()) * rate;
+}
+
+Eigen::Vector2d RollingShutter::InImage(const Eigen::Vector2d& z, const Eigen::Vector2d& rate) const {
+  Eigen::Vector2d pixel = camera_.Project({z.x(), z.y(), 1.0});
+  if (!on()) return pixel;
+  for (int i = 0; i < 3; ++i) {  // which row it is depends on how far it has moved, by a hundredth
+    const Eigen::Vector2d moved = z + TimeOf(pixel.y()) * rate;
+    pixel = camera_.Project({moved.x(), moved.y(), 1.0});
+  }
+  return pixel;
+}
+
+FirstView RollingShutter::FirstSeen(const Eigen::Vector2d& pixel, const Pose& pose, const Vector6& velocity) const {
+  FirstView view{camera_.Undistort(pixel), Eigen::Matrix2d::Zero()};
+  if (!on()) return view;
+  const Projection at = Project({pose, pose}, {view.ray.x(), view.ray.y(), 1.0});  // at rho = 1, to which the camera's way counts in proportion
+  const double time = TimeOf(pixel.y());
+  view.ray -= time * at.J_pose.rightCols<3>() * velocity.tail<3>();
+  view.by_inverse_depth = -time * at.J_pose.leftCols<3>() * velocity.head<3>();
+  return view;
+}
+
+Eigen::Vector2d ImageMotion::Rate(int landmark) const {
+  if (!shutter_.on()) return Eigen::Vector2d::Zero();
+  const Projection view = Project({pose_, map_.anchors[map_.anchor_of[landmark]]}, map_.landmarks[landmark].mean);
+  return view.in_front ? Eigen::Vector2d(view.J_pose * velocity_) : Eigen::Vector2d::Zero();
+}
+
+}  // namespace vo

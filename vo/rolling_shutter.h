@@ -1,0 +1,57 @@
+// Purpose: an image whose rows were taken one after the other, as if they had been taken at once. Row y of h belongs to the time stamp +
+//          readout (y / (h - 1) - 1/2); until the stamp image points move as the camera does, by the filter's own velocity and depths:
+//          z(stamp) = z(row) - dz/dt (t(row) - stamp). What is left is of second order in the motion within half a readout.
+// Source:  docs/conventions.md (stamp); Hedborg, Forssén, Felsberg, Ringaby 2012, "Rolling shutter bundle adjustment" (a pose per row,
+//          between those of the frames).
+// Units:   image points on the plane z = 1, pixels where said; seconds; velocity (v in W, w in C).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "vo/geometry/camera.h"
+#include "vo/map/landmark.h"
+#include "vo/map/local_map.h"
+
+namespace vo {
+
+class RollingShutter {
+ public:
+  // readout_s: from the first row's exposure to the last's; 0: all at once, < 0: upwards.
+  RollingShutter(const Camera& camera, double readout_s) : camera_(camera), readout_s_(readout_s) {}
+
+  bool on() const { return readout_s_ != 0; }
+  // When row y [px] is exposed, after the stamp.
+  double TimeOf(double y) const { return camera_.height > 1 ? readout_s_ * (y / (camera_.height - 1) - 0.5) : 0.0; }
+
+  // Where what moves at `rate` [1/s] and is seen at a pixel would have been at the stamp.
+  Eigen::Vector2d AtStamp(const Eigen::Vector2d& pixel, const Eigen::Vector2d& rate) const;
+  // The pixel at which it is seen if it was at z at the stamp.
+  Eigen::Vector2d InImage(const Eigen::Vector2d& z, const Eigen::Vector2d& rate) const;
+  // The same for what is seen for the first time: its depth is not known, but how it matters is. R is left to the caller.
+  FirstView FirstSeen(const Eigen::Vector2d& pixel, const Pose& pose, const Vector6& velocity) const;
+
+ private:
+  Camera camera_;
+  double readout_s_;
+};
+
+// The landmarks of a map, seen through a rolling shutter by a camera of this pose and velocity.
+class ImageMotion {
+ public:
+  ImageMotion(const RollingShutter& shutter, const LocalMap& map, const Pose& pose, const Vector6& velocity)
+      : shutter_(shutter), map_(map), pose_(pose), velocity_(velocity) {}
+
+  Eigen::Vector2d AtStamp(int landmark, const Eigen::Vector2d& pixel) const { return shutter_.AtStamp(pixel, Rate(landmark)); }
+  Eigen::Vector2d InImage(int landmark, const Eigen::Vector2d& z) const { return shutter_.InImage(z, Rate(landmark)); }
+
+ private:
+  // dz/dt; zero where it does not matter, and behind the camera.
+  Eigen::Vector2d Rate(int landmark) const;
+
+  const RollingShutter& shutter_;
+  const LocalMap& map_;
+  Pose pose_;
+  Vector6 velocity_;
+};
+
+}  // namespace vo
