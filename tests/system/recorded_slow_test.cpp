@@ -51,5 +51,9 @@ TEST(RecordedSlowTest, Freiburg1WithItsRollingShutter) {
                {"odometry.features.rolling_shutter=26ms", "odometry.filter.marginal_mode=true"});
 }
 
+TEST(RecordedSlowTest, IclOfficeWithTheNoiseOfItsMatches) {
+  ExpectWithin({0.3, 5, 0.6}, "icl_office_kt0", "icl", {"odometry.features.noise=registered", "odometry.filter.marginal_mode=true"});
+}
+
 }  // namespace
 }  // namespace vobench::system_test
