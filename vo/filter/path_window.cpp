@@ -1,6 +1,5 @@
 #include "vo/filter/path_window.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>

@@ -1,6 +1,5 @@
 #include "vo/filter/proposal.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -77,7 +77,7 @@ std::string Landmarks(TestRandom& random) {
   std::string text = "id,x,y,z,inverse_depth,inverse_depth_sigma,permanent\n";
   for (int i = 0; i < 400; ++i) {  // on the walls of a room of 5 m
     Eigen::Vector3d p =
-        5 * Eigen::Vector3d(random.Uniform(), 0.6 * random.Uniform(), random.Uniform()) - Eigen::Vector3d(2.5, 0, 3);
+        5 * Eigen::Vector3d{random.Uniform(), 0.6 * random.Uniform(), random.Uniform()} - Eigen::Vector3d(2.5, 0, 3);
     p[i % 2 == 0 ? 0 : 2] = i % 4 < 2 ? -2.6 : 2.2;
     text += std::to_string(i);
     for (int k = 0; k < 3; ++k) text += "," + ev::FormatNumber(p[k], 9);

@@ -82,7 +82,7 @@ TEST(RollingShutter, InImageUndoesAtStamp) {
   const vo::RollingShutter shutter(SomeCamera(), -0.03);
   vo_test::Draws draws(2);
   for (int i = 0; i < 100; ++i) {
-    const Vector2d pixel(320 + 300 * draws.Symmetric(), 240 + 220 * draws.Symmetric()), rate = draws.Symmetrics<2>();
+    const Vector2d pixel = Vector2d(320, 240) + Vector2d(300, 220).cwiseProduct(draws.Symmetrics<2>()), rate = draws.Symmetrics<2>();
     // 15 px at most; which row it is is known thirty times better after each of three rounds.
     EXPECT_LT((shutter.InImage(shutter.AtStamp(pixel, rate), rate) - pixel).norm(), 15 * std::pow(1.0 / 30, 3));
   }
