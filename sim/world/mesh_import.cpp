@@ -33,9 +33,10 @@ std::vector<std::uint8_t> Answer(const std::string& problem, const MeshFiles& fi
   const auto append = [&](const void* data, std::size_t size) {
     const auto* bytes = static_cast<const std::uint8_t*>(data);
     const std::uint64_t length = size;
-    const auto* prefix = reinterpret_cast<const std::uint8_t*>(&length);
-    answer.insert(answer.end(), prefix, prefix + sizeof length);
-    answer.insert(answer.end(), bytes, bytes + size);
+    const std::size_t at = answer.size();
+    answer.resize(at + sizeof length + size);
+    std::copy_n(reinterpret_cast<const std::uint8_t*>(&length), sizeof length, &answer[at]);
+    std::copy_n(bytes, size, answer.begin() + static_cast<std::ptrdiff_t>(at + sizeof length));
   };
   append(problem.data(), problem.size());
   std::string names, missing;
