@@ -181,7 +181,13 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
     added_ = 0;
     for (std::size_t i = 0; i < tracks.size(); ++i) AddTrack(in, tracks[i], path, theta[i], options.marginal);
     const double objective = options.marginal ? cost_ + log_det_ : cost_;
-    if (objective > best + kTolerated && iteration + 1 < options.max_iterations) {  // the step was too long: half of it
+    const bool last = iteration + 1 == options.max_iterations;
+    if (objective > best + kTolerated) {  // the step was too long: half of it, or none
+      if (last) {
+        path.mean = linearised_at_;
+        theta = linearised_theta_;
+        break;
+      }
       step_ *= 0.5;
       former *= 0.5;
       for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], -step_.segment<6>(6 * k));
@@ -189,7 +195,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
     }
     b_.noalias() -= Y_.leftCols(3 * count) * y_;
     const double slope = b_.dot(step_);
-    if (slope < -kOvershoot * former && iteration + 1 < options.max_iterations) {  // past the mode: back to where the slope vanishes
+    if (slope < -kOvershoot * former && !last) {  // past the mode: back to where the slope vanishes
       step_ *= -slope / (slope - former);
       for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], step_.segment<6>(6 * k));
       former = 0;
@@ -197,12 +203,18 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
       continue;
     }
     best = objective;
+    linearised_at_ = path.mean;
+    linearised_theta_.assign(theta.begin(), theta.end());
     A_.selfadjointView<Eigen::Lower>().rankUpdate(Y_.leftCols(columns_), -1.0);
     if (added_ > 0) A_.selfadjointView<Eigen::Lower>().rankUpdate(Z_.leftCols(added_), 1.0);
     llt_.compute(A_.selfadjointView<Eigen::Lower>());
     step_ = b_;
     llt_.solveInPlace(step_);
     const double decrement = b_.dot(step_);
+    const bool settled = Settled(decrement, former);
+    const bool taken = settled || !last || options.max_iterations == 1;  // nobody would look at it afterwards: it may lead anywhere
+    path.log_evidence = -0.5 * (cost_ - (taken ? decrement : 0.0) + log_det_) - llt_.matrixLLT().diagonal().array().log().sum();
+    if (!taken) break;
 
     for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], step_.segment<6>(6 * k));
     y_.noalias() -= Y_.leftCols(3 * count).transpose() * step_;
@@ -211,8 +223,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
       const Eigen::Vector3d u = eliminated_[i].G.matrixU().solve(Eigen::Vector3d(y_.segment<3>(3 * static_cast<Eigen::Index>(i))));
       theta[i] = in.landmarks[tracks[i].landmark].mean + eliminated_[i].L * u;
     }
-    path.log_evidence = -0.5 * (cost_ - decrement + log_det_) - llt_.matrixLLT().diagonal().array().log().sum();
-    if (Settled(decrement, former)) break;
+    if (settled) break;
     former = decrement;
   }
   path.covariance.setIdentity(size, size);

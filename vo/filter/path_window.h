@@ -87,6 +87,8 @@ class PathWindow {
     Eigen::Matrix2d R_inverse;
   };
   std::vector<Seen> seen_;        // of the present track
+  std::vector<Pose> linearised_at_;  // where the cost was least
+  std::vector<Eigen::Vector3d> linearised_theta_;
   int rows_ = 0, columns_ = 0, added_ = 0;
   double cost_ = 0;               // -2 log of the evidence's exponent, constant part
   double log_det_ = 0;

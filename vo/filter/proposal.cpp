@@ -33,6 +33,7 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
   double best = std::numeric_limits<double>::infinity();  // objective: -2 log density at its mode, up to a constant
   double former = 0;  // decrement of the step before; 0: its rate says nothing
   Vector6 step = Vector6::Zero();
+  Pose linearised_at = s;  // where the objective is `best`, and the covariance and the evidence are from
   Eigen::LLT<Matrix6> llt;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const MatchBatch::Information matches = batch.Linearise(s, params.marginal_mode);
@@ -46,28 +47,36 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
     const double log_det = prior_log_det + matches.log_det;
 
     const double objective = params.marginal_mode ? cost + log_det : cost;
-    if (objective > best + kTolerated && iteration + 1 < iterations) {  // the step was too long: half of it
+    const bool last = iteration + 1 == iterations;
+    if (objective > best + kTolerated) {  // the step was too long: half of it, or none
+      if (last) {
+        s = linearised_at;
+        break;
+      }
       step *= 0.5;
       former *= 0.5;
       s = Plus(s, -step);
       continue;
     }
     const double slope = b.dot(step);
-    if (slope < -kOvershoot * former && iteration + 1 < iterations) {  // past the mode: back to where the slope vanishes
+    if (slope < -kOvershoot * former && !last) {  // past the mode: back to where the slope vanishes
       s = Plus(s, -slope / (slope - former) * step);
       former = 0;
       step.setZero();
       continue;
     }
     best = objective;
+    linearised_at = s;
     llt.compute(A);
     step = llt.solve(b);
-    s = Plus(s, step);
-    // p(z) = p(s) p(z | s) / p(s | z), taken at the new mean, where the quadratic cost is less by the decrement.
     const double decrement = b.dot(step);
-    proposal.log_evidence = -0.5 * (cost - decrement + log_det + 2.0 * HalfLogDeterminant(llt));
-    if (iteration + 1 == iterations) break;
-    if (Settled(decrement, former)) break;
+    const bool settled = Settled(decrement, former);
+    // p(z) = p(s) p(z | s) / p(s | z), taken at the new mean, where the quadratic cost is less by the decrement: believed when the step is looked at
+    // afterwards, or too small to matter.
+    const bool credited = settled || !last || iterations == 1;
+    proposal.log_evidence = -0.5 * (cost - (credited ? decrement : 0.0) + log_det + 2.0 * HalfLogDeterminant(llt));
+    s = Plus(s, step);
+    if (settled || last) break;
     former = decrement;
     batch.Follow(step);
   }
