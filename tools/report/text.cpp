@@ -17,7 +17,7 @@ std::string Fixed(double value, int decimals) {
 std::string Readable(double value) {
   if (!std::isfinite(value)) return "–";
   const double size = std::abs(value);
-  if (size != 0 && (size >= 1e5 || size < 1e-4)) {
+  if (size != 0 && (size >= 1e5 || size < 1e-3)) {
     char text[40];
     std::snprintf(text, sizeof text, "%.1e", value);
     return text;

@@ -112,20 +112,43 @@ void ParticleFilter::SolvePath(Particle& particle) {
     if (anchor_slot_[a] >= 0) particle.anchors[a] = particle.path.mean[anchor_slot_[a]];
 }
 
-// Before anything is sampled, the depths are unknown and several motions explain the images nearly as well (depth reversal). Each
-// particle looks for a better one from a start of its own, drawn from the prior.
+// Before anything is sampled, the depths are unknown and several motions explain the images nearly as well. Each particle looks for a better one
+// than its own: every other one from a velocity drawn from the prior, the others from its own solution mirrored (depth reversal).
 void ParticleFilter::Restart() {
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
     Particle& particle = particles_[i];
-    Particle other = particle;
-    const Vector6 velocity =
-        SampleNormal(particle.velocity.mean, particle.velocity.covariance, {seed_, Stream::first_guess, frame_, i});
-    Pose pose = particle.pose;
-    for (std::size_t k = 0; k < steps_.size(); ++k) other.path.mean[k] = pose = Plus(pose, velocity * steps_[k].dt);
-    for (const Track& track : tracks_) other.modes[track.landmark] = particle.landmarks[track.landmark].mean;
+    Particle other = (i + frame_) % 2 == 0 ? Redrawn(particle, i) : Mirrored(particle);
     SolvePath(other);
     if (other.path.log_evidence > particle.path.log_evidence) particle = std::move(other);
   }
+}
+
+Particle ParticleFilter::Redrawn(const Particle& particle, std::uint32_t index) const {
+  Particle other = particle;
+  const Vector6 velocity =
+      SampleNormal(particle.velocity.mean, particle.velocity.covariance, {seed_, Stream::first_guess, frame_, index});
+  Pose pose = particle.pose;
+  for (std::size_t k = 0; k < steps_.size(); ++k) other.path.mean[k] = pose = Plus(pose, velocity * steps_[k].dt);
+  for (const Track& track : tracks_) other.modes[track.landmark] = particle.landmarks[track.landmark].mean;
+  return other;
+}
+
+// What was nearer than the mean is as much farther, the camera moves the other way, and turns so that what is at the mean stays where it is seen.
+// Under weak perspective that looks the same.
+Particle ParticleFilter::Mirrored(const Particle& particle) const {
+  double mean = 0;
+  for (const Track& track : tracks_) mean += particle.modes[track.landmark].z() / static_cast<double>(tracks_.size());
+  Particle other = particle;
+  for (Pose& pose : other.path.mean) {
+    const Eigen::Vector3d p = pose.q_WC.conjugate() * (pose.p_WC - particle.pose.p_WC);
+    pose.p_WC = particle.pose.p_WC - (pose.p_WC - particle.pose.p_WC);
+    pose.q_WC = (pose.q_WC * Exp({-2 * mean * p.y(), 2 * mean * p.x(), 0})).normalized();
+  }
+  for (const Track& track : tracks_) {
+    double& rho = other.modes[track.landmark].z();
+    rho = std::max(2 * mean - rho, 0.1 * mean);
+  }
+  return other;
 }
 
 // Every particle tries the best one's solution in its own scale: that of the images is the same for all.

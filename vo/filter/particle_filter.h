@@ -91,6 +91,8 @@ class ParticleFilter final : public Filter {
   void SolvePaths();
   void SolvePath(Particle& particle);
   void Restart();
+  Particle Redrawn(const Particle& particle, std::uint32_t index) const;
+  Particle Mirrored(const Particle& particle) const;
   void BuildTracks();
   void WeighPaths();
   void FollowBest();

@@ -20,6 +20,7 @@ TEST(Text, Numbers) {
   EXPECT_EQ(Readable(12.34), "12.3");
   EXPECT_EQ(Readable(1.234), "1.23");
   EXPECT_EQ(Readable(0.1234), "0.123");
+  EXPECT_EQ(Readable(0.00031), "3.1e-04");
   EXPECT_EQ(Readable(0), "0.000");
   EXPECT_EQ(Readable(1234567), "1.2e+06");
   EXPECT_EQ(Percent(0.9876), "98.8 %");
