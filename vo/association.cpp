@@ -149,6 +149,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   Association result;
   const LocalMap map = filter.ReferenceMap();
   const PoseGaussian& prediction = filter.ReferencePrediction();
+  const double gate = OutlierGate(filter, params.score);
   const RollingShutter shutter(camera, params.features.readout_s);
   const ImageMotion predicted(shutter, map, prediction.mean, filter.belief().velocity);
   std::vector<Candidate> candidates = FindCandidates(filter, records, camera, predicted, border_px, params);
@@ -167,11 +168,11 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   std::vector<Match> matches = matches_at(predicted);
   if (shutter.on()) {
     for (int round = 0; round < kShutterRounds; ++round) {
-      const Pose at = FindConsensus(prediction, map, matches, params.score.gate, params.filter).pose.mean;
+      const Pose at = FindConsensus(prediction, map, matches, gate, params.filter).pose.mean;
       matches = matches_at(ImageMotion(shutter, map, at, VelocityAt(filter, at, dt)));
     }
   }
-  const std::vector<bool> inlier = FindInliers(prediction, map, matches, params.score.gate, params.filter);
+  const std::vector<bool> inlier = FindInliers(prediction, map, matches, gate, params.filter);
 
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];

@@ -39,6 +39,7 @@ std::vector<std::string> Problems(const Params& params) {
   check.Require(filter.max_iterations >= 1, "filter.max_iterations", filter.max_iterations, "must be at least 1");
   check.Require(filter.joint_iterations >= 1, "filter.joint_iterations", filter.joint_iterations, "must be at least 1");
   check.Require(filter.lag >= 0, "filter.lag", filter.lag, "must not be negative");
+  check.Require(filter.start_window >= 0, "filter.start_window", filter.start_window, "must not be negative");
   check.Require(filter.ukf_alpha > 0 && filter.ukf_alpha <= 1, "filter.ukf_alpha", filter.ukf_alpha, "must be above 0 and at most 1");
   check.Require(filter.ukf_beta >= filter.ukf_alpha * filter.ukf_alpha, "filter.ukf_beta", filter.ukf_beta,
                 "must be at least filter.ukf_alpha squared, or covariances lose their sign");

@@ -46,6 +46,8 @@ struct FilterParams {
   int joint_iterations = 1;     // of ekfslam's update. 1: the textbook EKF; more: Gauss-Newton to the joint mode, which is biased in scale
   Weight weight = Weight::evidence;
   int lag = 0;                  // poses kept un-sampled, so that later images speak before the map is committed to them (0: the paper)
+  int start_window = 30;        // so many poses at the start are one window, found anew in every frame, before any of them is sampled (0: the
+                                // paper). For pose-sampling filters with proposal ekf or iterated and weight evidence or equal; others have none
   bool marginal_mode = false;   // propose at the mode of the poses' marginal, not of poses and landmarks jointly: unbiased in scale, but it
                                 // believes features.sigma_px, which must then be right
   bool reject_outliers = true;  // matches that contradict the others are set aside before the update
@@ -93,8 +95,8 @@ enum class MatchNoise {
 
 struct FeatureParams {
   double sigma_px = 0.7;           // standard deviation of a matched pixel, per axis [px] (the paper, to whole pixels: 2)
-  MatchNoise noise = MatchNoise::constant;
-  double sigma_floor_px = 0.3;     // [px]; at 0.15 the filter is so sure of itself that it may settle in a wrong solution
+  MatchNoise noise = MatchNoise::registered;
+  double sigma_floor_px = 0.2;     // [px]
   double noise_inflation = 4;      // the residuals of neighbouring pixels are not independent
   int grid_columns = 8, grid_rows = 6;
   int per_cell = 3;                // corners wanted in every cell of the grid

@@ -72,7 +72,7 @@ std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, Frame
   }
   diagnostics.searched = static_cast<int>(matches.size());
   const std::vector<bool> inlier =
-      FindInliers(filter->ReferencePrediction(), filter->ReferenceMap(), matches, params.score.gate, params.filter);
+      FindInliers(filter->ReferencePrediction(), filter->ReferenceMap(), matches, OutlierGate(*filter, params.score), params.filter);
   std::size_t to = 0;
   for (std::size_t from = 0; from < matches.size(); ++from)
     if (inlier[from]) matches[to++] = matches[from];

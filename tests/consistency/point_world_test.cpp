@@ -18,6 +18,7 @@ constexpr int kRuns = 5;
 vo::Params OnePixel() {
   vo::Params params;
   params.features.sigma_px = 1;
+  params.filter.start_window = 0;  // the filter itself
   return params;
 }
 

@@ -21,7 +21,7 @@ void ReadMotion(Section section, vo::MotionParams& params) {
 
 void ReadFilter(Section section, vo::FilterParams& params) {
   // Which velocities are sampled is what tells the systems apart: --system says it.
-  [[maybe_unused]] auto& [sampled, proposal, particles, resample_below, max_iterations, joint_iterations, weight, lag,
+  [[maybe_unused]] auto& [sampled, proposal, particles, resample_below, max_iterations, joint_iterations, weight, lag, start_window,
                           marginal_mode, reject_outliers, ukf_alpha, ukf_beta, ukf_kappa] = params;
   section.ReadChoice("proposal", proposal,
                      {{"bootstrap", vo::Proposal::bootstrap},
@@ -36,6 +36,7 @@ void ReadFilter(Section section, vo::FilterParams& params) {
       "weight", weight,
       {{"importance", vo::Weight::importance}, {"evidence", vo::Weight::evidence}, {"equal", vo::Weight::equal}});
   section.Read("lag", lag, Range{0, 100});
+  section.Read("start_window", start_window, Range{0, 100});
   section.Read("marginal_mode", marginal_mode);
   section.Read("reject_outliers", reject_outliers);
   section.Read("ukf_alpha", ukf_alpha, Range{0, 1});

@@ -7,6 +7,7 @@
 namespace vo {
 namespace {
 
+constexpr double kUndecided = 4;  // times as far, squared
 constexpr int kRounds = 4;       // at least, ...
 constexpr int kMostRounds = 12;  // ... and as long as the pose moves: after a dark time it begins far off
 constexpr double kStill = 0.1;   // of its standard deviation
@@ -36,6 +37,8 @@ bool Moved(const PoseGaussian& pose, const Pose& before) {
 }
 
 }  // namespace
+
+double OutlierGate(const Filter& filter, const ScoreParams& score) { return filter.undecided() ? kUndecided * score.gate : score.gate; }
 
 Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
                         const FilterParams& params) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "vo/filter/filter.h"
 #include "vo/filter/proposal.h"
 
 namespace vo {
@@ -13,6 +14,10 @@ struct Consensus {
   PoseGaussian pose;         // fitted; its covariance is of the matches as re-weighted
   std::vector<bool> inlier;  // of each match
 };
+
+// Squared distance [in standard deviations] from which on a match is an outlier. While the filter is undecided its map may be a wrong solution,
+// and the matches that contradict it are those that say so: then farther.
+double OutlierGate(const Filter& filter, const ScoreParams& score);
 
 // Fits the pose of one particle robustly and marks the matches whose residual there, with the landmark's and the pixel's
 // covariance, has a squared Mahalanobis distance below `gate`.

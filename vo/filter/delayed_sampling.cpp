@@ -1,5 +1,5 @@
 // ParticleFilter with lag > 0: algorithm, section 9. Poses stay Gaussian for a while; the oldest of them is sampled once the images
-// after it have spoken, and only then are the velocity and the landmarks updated with its frame.
+// after it have spoken, and only then are the velocity and the landmarks updated with its frame. The start is such a window as well.
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +18,9 @@ namespace {
 // Equal weights: a particle is refuted when the window's images are exp(50) times less likely by it than by the best one. Where the model
 // holds, the worst of 8 or of 64 particles was within 33 nats of the best in every frame; one in a wrong solution is hundreds away.
 constexpr double kRefuted = 50;
+
+// The start's window has to get anywhere from a first guess that may be far off; later ones begin at the solution of the frame before.
+constexpr int kStartIterations = 50;
 
 PoseGaussian OldestOf(const PathGaussian& path) { return {path.mean[0], path.covariance.topLeftCorner<6, 6>()}; }
 
@@ -40,7 +43,7 @@ void ParticleFilter::PredictPath(double dt) {
     if (!mean.empty()) u = Minus(last, before) * (dt / steps_.back().dt);
     mean.push_back(Plus(last, u));
   }
-  steps_.push_back({dt, {}});
+  steps_.push_back({dt, frame_, {}});
   std::vector<MotionModel> models;
   for (const Step& step : steps_) models.push_back(NearlyConstantVelocity(motion_, step.dt));
   path_prior_.emplace(models, particles_[0].velocity.covariance);
@@ -63,8 +66,8 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
     for (Particle& particle : particles_) particle.log_weight -= particle.path.log_evidence;
     BuildTracks();
     SolvePaths();
-    if (!committed_) {
-      Restart();
+    if (undecided_) {
+      LookForBetter();
       if (landmark_params_.scale_sigma > 0) FollowBest();
     }
     for (Particle& particle : particles_) particle.log_weight += particle.path.log_evidence;
@@ -73,11 +76,14 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
   for (const Particle& particle : particles_) mixture_.push_back(ComponentOnPath(particle));
   if (!matches.empty()) WeighPaths();
   Answer();
-  const bool full = static_cast<int>(steps_.size()) > params_.lag;
+  const bool full = static_cast<int>(steps_.size()) > window_size();
+  if (full && undecided_) Decide();
   // With equal weights a refuted particle is replaced before the draw, so that it is not the draws that are alike; and not before there is
   // one: until then all look for the best solution anyway, each in its own scale.
   if (params_.weight == Weight::equal && full && ToResample()) Resample();
-  if (full) CommitOldest();
+  while (static_cast<int>(steps_.size()) > window_size()) CommitOldest();
+  if (!delayed())
+    for (Particle& particle : particles_) particle.modes.clear();
   if (params_.weight != Weight::equal && ToResample()) Resample();
 }
 
@@ -98,57 +104,24 @@ void ParticleFilter::BuildTracks() {
 }
 
 void ParticleFilter::SolvePaths() {
-  for (Particle& particle : particles_) SolvePath(particle);
+  for (Particle& particle : Leaders()) SolvePath(particle);
+  if (together()) FollowFirst();
 }
 
 void ParticleFilter::SolvePath(Particle& particle) {
-  const WindowOptions options{params_.proposal == Proposal::ekf ? 1 : params_.max_iterations, params_.marginal_mode};
+  const int iterations = undecided_ ? std::max(params_.max_iterations, kStartIterations) : params_.max_iterations;
+  const WindowOptions options{params_.proposal == Proposal::ekf ? 1 : iterations, params_.marginal_mode};
   modes_.resize(tracks_.size());
   for (std::size_t i = 0; i < tracks_.size(); ++i) modes_[i] = particle.modes[tracks_[i].landmark];
   window_.Solve(*path_prior_, {particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors}, tracks_, options,
                 particle.path, modes_);
   for (std::size_t i = 0; i < tracks_.size(); ++i) particle.modes[tracks_[i].landmark] = modes_[i];
+  PlaceAnchors(particle);
+}
+
+void ParticleFilter::PlaceAnchors(Particle& particle) const {
   for (std::size_t a = 0; a < particle.anchors.size(); ++a)
     if (anchor_slot_[a] >= 0) particle.anchors[a] = particle.path.mean[anchor_slot_[a]];
-}
-
-// Before anything is sampled, the depths are unknown and several motions explain the images nearly as well. Each particle looks for a better one
-// than its own: every other one from a velocity drawn from the prior, the others from its own solution mirrored (depth reversal).
-void ParticleFilter::Restart() {
-  for (std::uint32_t i = 0; i < particles_.size(); ++i) {
-    Particle& particle = particles_[i];
-    Particle other = (i + frame_) % 2 == 0 ? Redrawn(particle, i) : Mirrored(particle);
-    SolvePath(other);
-    if (other.path.log_evidence > particle.path.log_evidence) particle = std::move(other);
-  }
-}
-
-Particle ParticleFilter::Redrawn(const Particle& particle, std::uint32_t index) const {
-  Particle other = particle;
-  const Vector6 velocity =
-      SampleNormal(particle.velocity.mean, particle.velocity.covariance, {seed_, Stream::first_guess, frame_, index});
-  Pose pose = particle.pose;
-  for (std::size_t k = 0; k < steps_.size(); ++k) other.path.mean[k] = pose = Plus(pose, velocity * steps_[k].dt);
-  for (const Track& track : tracks_) other.modes[track.landmark] = particle.landmarks[track.landmark].mean;
-  return other;
-}
-
-// What was nearer than the mean is as much farther, the camera moves the other way, and turns so that what is at the mean stays where it is seen.
-// Under weak perspective that looks the same.
-Particle ParticleFilter::Mirrored(const Particle& particle) const {
-  double mean = 0;
-  for (const Track& track : tracks_) mean += particle.modes[track.landmark].z() / static_cast<double>(tracks_.size());
-  Particle other = particle;
-  for (Pose& pose : other.path.mean) {
-    const Eigen::Vector3d p = pose.q_WC.conjugate() * (pose.p_WC - particle.pose.p_WC);
-    pose.p_WC = particle.pose.p_WC - (pose.p_WC - particle.pose.p_WC);
-    pose.q_WC = (pose.q_WC * Exp({-2 * mean * p.y(), 2 * mean * p.x(), 0})).normalized();
-  }
-  for (const Track& track : tracks_) {
-    double& rho = other.modes[track.landmark].z();
-    rho = std::max(2 * mean - rho, 0.1 * mean);
-  }
-  return other;
 }
 
 // Every particle tries the best one's solution in its own scale: that of the images is the same for all.
@@ -184,7 +157,6 @@ bool ParticleFilter::ToResample() const {
 void ParticleFilter::CommitOldest() {
   const MotionModel model = NearlyConstantVelocity(motion_, steps_.front().dt);
   step_ = {model.F, model.Q};
-  committed_ = true;
   const std::vector<Pose> drawn = DrawOldest();
   for (std::uint32_t i = 0; i < particles_.size(); ++i) CommitOldest(particles_[i], i, drawn[i]);
   for (int& slot : anchor_slot_) slot = std::max(slot - 1, -1);
@@ -197,7 +169,7 @@ std::vector<Pose> ParticleFilter::DrawOldest() const {
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
     offsets.col(i).head<6>() = Minus(particles_[i].path.mean[0], particles_[0].path.mean[0]);
     if (scales) offsets(6, i) = std::log(particles_[i].scale);
-    normals.col(i) = NormalVector<Vector6>({seed_, Stream::pose, frame_, i});
+    normals.col(i) = NormalVector<Vector6>({seed_, Stream::pose, steps_.front().frame, i});
   }
   if (params_.weight == Weight::equal && EnoughForExactDraws(params_.particles, 6)) normals = ExactDraws(offsets, normals);
   std::vector<Pose> drawn;
@@ -213,6 +185,8 @@ void ParticleFilter::CommitOldest(Particle& particle, std::uint32_t index, const
   for (int k = 1; k <= rest / 6; ++k)
     path.mean[k] = Plus(path.mean[k], path.covariance.block<6, 6>(6 * k, 0) * d);
   path.mean.erase(path.mean.begin());
+  const Eigen::MatrixXd cross = path.covariance.bottomLeftCorner(rest, 6);
+  path.covariance = (path.covariance.bottomRightCorner(rest, rest) - cross * oldest.covariance.llt().solve(cross.transpose())).eval();
 
   UpdateVelocity(particle, s, VelocityGiven(particle), index);                                      // (37)-(43)
   for (std::size_t a = 0; a < particle.anchors.size(); ++a)
@@ -255,20 +229,22 @@ BeliefComponent ParticleFilter::ComponentOnPath(const Particle& particle) const 
 }
 
 std::vector<ImagePrediction> ParticleFilter::PredictImagesOnPath(std::span<const int> landmarks) const {
+  const std::size_t leaders = together() ? 1 : particles_.size();
   std::vector<ImagePrediction> predictions;
   for (const int landmark : landmarks) {
     const int anchor = anchor_of_[landmark];
     const Track untracked{landmark, anchor, anchor_slot_[anchor], {}};
     const Track& track = track_of_[landmark] < 0 ? untracked : tracks_[track_of_[landmark]];
     ImageMoments moments;
-    for (std::size_t i = 0; i < particles_.size(); ++i) {
+    for (std::size_t i = 0; i < leaders; ++i) {
       const Particle& particle = particles_[i];
       const WindowInput in{particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors};
       const ImagePrediction one = PathWindow::PredictLast(in, track, particle.path, particle.modes[landmark]);
       if (!one.in_front) continue;
-      moments.weight += weights_[i];
-      moments.z += weights_[i] * one.z;
-      moments.second += weights_[i] * (one.z * one.z.transpose() + one.covariance);
+      const double weight = together() ? 1 : weights_[i];
+      moments.weight += weight;
+      moments.z += weight * one.z;
+      moments.second += weight * (one.z * one.z.transpose() + one.covariance);
     }
     predictions.push_back(moments.Prediction());
   }

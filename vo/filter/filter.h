@@ -62,6 +62,8 @@ class Filter {
   // The mixture itself; empty before the first Update.
   virtual const std::vector<BeliefComponent>& mixture() const = 0;
   virtual double effective_particles() const = 0;
+  // Nothing is sampled yet: the map may still turn out to be a wrong solution altogether.
+  virtual bool undecided() const { return false; }
 };
 
 }  // namespace vo

@@ -25,6 +25,11 @@ Vector6 PathState(const Pose& pose, const Pose& previous) {
   return s;
 }
 
+bool KnowsWindows(const FilterParams& params) {
+  return params.sampled == Sampled::pose && (params.proposal == Proposal::ekf || params.proposal == Proposal::iterated) &&
+         params.weight != Weight::importance;
+}
+
 UnscentedParams UnscentedOf(const FilterParams& params) { return {params.ukf_alpha, params.ukf_beta, params.ukf_kappa}; }
 
 }  // namespace
@@ -38,6 +43,8 @@ ParticleFilter::ParticleFilter(const MotionParams& motion, const FilterParams& f
       step_(StepOf(motion, 1.0)),
       particles_(filter.particles),
       weights_(filter.particles, 1.0 / filter.particles),
+      start_window_(KnowsWindows(filter) ? filter.start_window : 0),
+      undecided_(std::max(filter.lag, start_window_) > 0),
       effective_particles_(filter.particles) {
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
     Particle& particle = particles_[i];

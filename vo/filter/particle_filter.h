@@ -4,6 +4,7 @@
 // Frames:  poses T_WC; image points on the plane z = 1 of an undistorted camera.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -68,6 +69,7 @@ class ParticleFilter final : public Filter {
   // The mixture itself; empty before the first Update.
   const std::vector<BeliefComponent>& mixture() const override { return mixture_; }
   double effective_particles() const override { return effective_particles_; }
+  bool undecided() const override { return undecided_; }
   const std::vector<Particle>& particles() const { return particles_; }
   const std::vector<double>& weights() const { return weights_; }
   const FilterParams& params() const { return params_; }
@@ -76,12 +78,15 @@ class ParticleFilter final : public Filter {
   // A frame whose pose is not sampled yet.
   struct Step {
     double dt = 0;  // [s] since the one before
+    std::uint32_t frame = 0;
     std::vector<Match> matches;
   };
 
   const Particle& Heaviest() const;
   LocalMap MapOf(const Particle& particle) const { return {particle.landmarks, anchor_of_, particle.anchors}; }
-  bool delayed() const { return params_.lag > 0; }
+  // Poses that are kept un-sampled after an update.
+  int window_size() const { return undecided_ ? std::max(params_.lag, start_window_) : params_.lag; }
+  bool delayed() const { return window_size() > 0; }
   const Eigen::Vector3d& ModeOf(const Particle& particle, int landmark) const {
     return delayed() ? particle.modes[landmark] : particle.landmarks[landmark].mean;
   }
@@ -90,9 +95,16 @@ class ParticleFilter final : public Filter {
   void UpdatePath(std::span<const Match> matches);
   void SolvePaths();
   void SolvePath(Particle& particle);
-  void Restart();
-  Particle Redrawn(const Particle& particle, std::uint32_t index) const;
-  Particle Mirrored(const Particle& particle) const;
+  void PlaceAnchors(Particle& particle) const;
+  // While nothing is sampled the particles differ by where they start at most: what the first one finds, the others follow. Not where each
+  // has a scale of its own.
+  std::span<Particle> Leaders() { return {particles_.data(), together() ? 1 : particles_.size()}; }
+  bool together() const { return undecided_ && landmark_params_.scale_sigma == 0 && start_window_ > params_.lag; }
+  void FollowFirst();
+  void LookForBetter();
+  Particle Sideways(const Particle& particle, std::uint32_t guess) const;
+  void Triangulate(Particle& particle) const;
+  void Decide();
   void BuildTracks();
   void WeighPaths();
   void FollowBest();
@@ -138,7 +150,8 @@ class ParticleFilter final : public Filter {
   std::optional<PathPrior> path_prior_;
   PathWindow window_;
   std::vector<Eigen::Vector3d> modes_;  // workspace
-  bool committed_ = false;              // a pose has been sampled
+  int start_window_ = 0;                // 0 where the settings know no window
+  bool undecided_ = false;              // no pose has been sampled yet
   std::vector<Landmark> heaviest_landmarks_;
 
   Belief belief_;

@@ -205,7 +205,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
     best = objective;
     linearised_at_ = path.mean;
     linearised_theta_.assign(theta.begin(), theta.end());
-    A_.selfadjointView<Eigen::Lower>().rankUpdate(Y_.leftCols(columns_), -1.0);
+    if (columns_ > 0) A_.selfadjointView<Eigen::Lower>().rankUpdate(Y_.leftCols(columns_), -1.0);  // Eigen divides by it
     if (added_ > 0) A_.selfadjointView<Eigen::Lower>().rankUpdate(Z_.leftCols(added_), 1.0);
     llt_.compute(A_.selfadjointView<Eigen::Lower>());
     step_ = b_;
@@ -213,6 +213,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
     const double decrement = b_.dot(step_);
     const bool settled = Settled(decrement, former);
     const bool taken = settled || !last || options.max_iterations == 1;  // nobody would look at it afterwards: it may lead anywhere
+    path.objective = objective - (taken ? decrement : 0.0);
     path.log_evidence = -0.5 * (cost_ - (taken ? decrement : 0.0) + log_det_) - llt_.matrixLLT().diagonal().array().log().sum();
     if (!taken) break;
 

@@ -41,6 +41,7 @@ struct WindowInput {
 struct PathGaussian {
   std::vector<Pose> mean;
   Eigen::MatrixXd covariance;    // 6m x 6m
+  double objective = 0;          // -2 log density at its mode, up to a constant that is the same for all guesses
   double log_evidence = 0;       // Laplace's approximation of log p(z in the window | sampled path)
 };
 

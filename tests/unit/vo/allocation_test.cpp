@@ -93,6 +93,7 @@ TEST(Allocation, TheLoopHasNone) {
     vo::FilterParams params;
     params.sampled = sampled;
     params.resample_below = 1;
+    params.start_window = 0;
     EXPECT_EQ(AllocationsOfALoop(params, 40), 0);
   }
 #else

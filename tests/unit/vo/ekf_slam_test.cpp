@@ -69,7 +69,7 @@ World Draw(std::uint64_t seed, const std::vector<int>& born, double scale = 1, b
   world.landmark.inverse_depth_sigma *= scale;
   if (fixed) world.landmark.bearing = vo::Bearing::fixed;
   std::uint32_t d = 0;
-  const auto draw = [&] { return vo::Normal({.seed = seed, .stream = vo::Stream::first_guess}, d++); };
+  const auto draw = [&] { return vo::Normal({.seed = seed, .stream = static_cast<vo::Stream>(6)}, d++); };
   world.prior.velocity << 0.3, -0.1, 0.1, 0.05, 0.1, -0.05;
   world.prior.velocity_covariance = 0.01 * scale * scale * vo::Matrix6::Identity();
   world.prior.pose.covariance = 1e-4 * scale * scale * vo::Matrix6::Identity();

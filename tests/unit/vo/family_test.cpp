@@ -78,6 +78,7 @@ TEST(Bootstrap, AgreesWithTheOptimalProposalInTheLimit) {
     params.proposal = proposal;
     params.weight = weight;
     params.particles = 4000;
+    params.start_window = 0;
     vo::ParticleFilter filter = Start(params, 11);
     filter.AddLandmarks(views.first);
     filter.Predict(1.0 / 30);

@@ -1,0 +1,88 @@
+// ParticleFilter until its first pose is sampled. The depths are not known yet, and a sideways motion looks nearly like a turn: several motions
+// explain the images nearly as well (depth reversal is the best known of them), and no later image undoes a wrong choice. So the poses
+// stay one window, and in every frame the solution is challenged by another.
+
+#include <algorithm>
+#include <utility>
+
+#include "vo/filter/particle_filter.h"
+#include "vo/geometry/so3.h"
+
+namespace vo {
+namespace {
+
+constexpr std::uint32_t kGuesses = 6;
+
+}  // namespace
+
+// By the density at the mode, not by evidence: that pays for depths that stay unknown, as if each had a prior of its own. Those of a wall
+// are alike, and a wall seen face on lost to a deep scene with little parallax.
+void ParticleFilter::LookForBetter() {
+  if (tracks_.empty()) return;
+  for (std::uint32_t i = 0; i < Leaders().size(); ++i) {
+    Particle& particle = particles_[i];
+    Particle other = Sideways(particle, (i + frame_) % kGuesses);
+    SolvePath(other);
+    if (other.path.objective < particle.path.objective) particle = std::move(other);
+  }
+  if (together()) FollowFirst();
+}
+
+// The particle's solution with another sideways motion: none, the opposite, or along an axis of the first camera; turned so that what lies at the
+// mean depth stays where it is seen, and with the depths that landmarks have along this path.
+Particle ParticleFilter::Sideways(const Particle& particle, std::uint32_t guess) const {
+  Particle other = particle;
+  double rho = 0;
+  for (const Track& track : tracks_) rho += particle.modes[track.landmark].z() / static_cast<double>(tracks_.size());
+  const Eigen::Vector3d way = particle.pose.q_WC.conjugate() * (particle.path.mean.back().p_WC - particle.pose.p_WC);
+  const double length = way.norm();
+  const Eigen::Vector2d targets[kGuesses] = {{0, 0}, -way.head<2>(), {length, 0}, {0, length}, {-length, 0}, {0, -length}};
+  const Eigen::Vector2d change = targets[guess] - way.head<2>();
+  double duration = 0, time = 0;
+  for (const Step& step : steps_) duration += step.dt;
+  for (std::size_t k = 0; k < steps_.size(); ++k) {
+    time += steps_[k].dt;
+    const Eigen::Vector2d c = time / duration * change;
+    Pose& pose = other.path.mean[k];
+    pose.p_WC += particle.pose.q_WC * Eigen::Vector3d(c.x(), c.y(), 0);
+    pose.q_WC = (pose.q_WC * Exp({rho * c.y(), -rho * c.x(), 0})).normalized();
+  }
+  Triangulate(other);
+  return other;
+}
+
+// Each landmark's mode given the path.
+void ParticleFilter::Triangulate(Particle& particle) const {
+  PlaceAnchors(particle);
+  std::vector<Landmark> landmarks = particle.landmarks;
+  for (std::size_t k = 0; k < steps_.size(); ++k) {
+    for (const Match& match : steps_[k].matches) {
+      Landmark& landmark = landmarks[match.landmark];
+      const AnchorView view(particle.path.mean[k], particle.anchors[anchor_of_[match.landmark]]);
+      landmark = UpdateLandmark(landmark, view, match, params_.max_iterations).landmark;
+    }
+  }
+  for (const Track& track : tracks_) particle.modes[track.landmark] = landmarks[track.landmark].mean;
+}
+
+// The first particle's solution from where the others start.
+void ParticleFilter::FollowFirst() {
+  const Particle& first = particles_[0];
+  for (std::size_t i = 1; i < particles_.size(); ++i) {
+    Particle& particle = particles_[i];
+    const Eigen::Quaterniond turn = particle.pose.q_WC * first.pose.q_WC.conjugate();
+    particle.path = first.path;
+    for (Pose& pose : particle.path.mean)
+      pose = {particle.pose.p_WC + turn * (pose.p_WC - first.pose.p_WC), (turn * pose.q_WC).normalized()};
+    particle.modes = first.modes;
+    PlaceAnchors(particle);
+  }
+}
+
+// The start is over: each particle has its own solution, to be drawn from.
+void ParticleFilter::Decide() {
+  undecided_ = false;
+  if (start_window_ > params_.lag && landmark_params_.scale_sigma == 0) SolvePaths();
+}
+
+}  // namespace vo
