@@ -150,7 +150,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   const LocalMap map = filter.ReferenceMap();
   const PoseGaussian& prediction = filter.ReferencePrediction();
   const double gate = OutlierGate(filter, params.score);
-  const RollingShutter shutter(camera, params.features.readout_s);
+  const RollingShutter shutter(camera, params.features);
   const ImageMotion predicted(shutter, map, prediction.mean, filter.belief().velocity);
   std::vector<Candidate> candidates = FindCandidates(filter, records, camera, predicted, border_px, params);
   result.left_out = LeaveOut(candidates, records, camera, params.features);

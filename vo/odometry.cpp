@@ -123,7 +123,7 @@ void Odometry::Impl::AddFeatures(const cv::Mat& grey) {
     if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
   const std::vector<Eigen::Vector2i> corners = DetectCorners(grey, occupied, border_px, params.features);
   const Belief& belief = filter->belief();
-  const RollingShutter shutter(camera, params.features.readout_s);
+  const RollingShutter shutter(camera, params.features);
   std::vector<FirstView> first;
   for (const Eigen::Vector2i& corner : corners) {
     const Eigen::Vector2d pixel = corner.cast<double>();

@@ -112,7 +112,7 @@ std::vector<std::string> Problems(const Params& params) {
   check.Require(features.max_view_angle_deg > 0 && features.max_view_angle_deg < 90, "features.max_view_angle_deg",
                 features.max_view_angle_deg, "must lie between 0 and 90");
   check.Positive("features.max_baseline_ratio", features.max_baseline_ratio);
-  check.Require(std::abs(features.readout_s) <= 1, "features.readout_s", features.readout_s, "must lie in -1 ... 1 s");
+  check.Require(std::abs(features.readout_s.value_or(0)) <= 1, "features.readout_s", features.readout_s.value_or(0), "must lie in -1 ... 1 s");
   check.Require(features.max_searched >= 1, "features.max_searched", features.max_searched, "must be at least 1");
   return check.Take();
 }

@@ -2,6 +2,7 @@
 //          wrong at once. Defaults are the paper's (Section V-A) unless the comment says otherwise.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -116,7 +117,7 @@ struct FeatureParams {
   double max_view_angle_deg = 45;  // between the present and the first viewing ray
   double max_baseline_ratio = 0.3; // camera's distance from the first view / depth there
   int max_searched = 200;          // landmarks searched per frame
-  double readout_s = 0;            // rolling shutter: from the first row's exposure to the last's [s]; 0: all at once, < 0: upwards
+  std::optional<double> readout_s = std::nullopt;  // rolling shutter, instead of what the camera's file says [s]
   int pilots = 16;                 // so many are looked for first; where the others then are, small windows find them (0: the paper)
 };
 

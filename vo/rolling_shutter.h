@@ -11,13 +11,14 @@
 #include "vo/geometry/camera.h"
 #include "vo/map/landmark.h"
 #include "vo/map/local_map.h"
+#include "vo/params.h"
 
 namespace vo {
 
 class RollingShutter {
  public:
-  // readout_s: from the first row's exposure to the last's; 0: all at once, < 0: upwards.
   RollingShutter(const Camera& camera, double readout_s) : camera_(camera), readout_s_(readout_s) {}
+  RollingShutter(const Camera& camera, const FeatureParams& params) : RollingShutter(camera, params.readout_s.value_or(camera.readout_s)) {}
 
   bool on() const { return readout_s_ != 0; }
   // When row y [px] is exposed, after the stamp.

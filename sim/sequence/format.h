@@ -23,7 +23,8 @@ std::string VelocityLine(std::int64_t stamp_ns, const Truth& truth);
 std::string AccelerationLine(std::int64_t stamp_ns, const Truth& truth);
 // "stamp exposure gain", the time in seconds.
 std::string ExposureLine(std::int64_t stamp_ns, const ExposureSetting& setting);
-std::string CameraYaml(const CameraParams& camera);
+// readout_s: of the rolling shutter, 0: none.
+std::string CameraYaml(const CameraParams& camera, double readout_s);
 
 // PNG files. Depth: 16 bits, round(5000 Z), 0 for what is 0 or does not fit. Throw as in png.h.
 std::vector<std::uint8_t> EncodePng(const Image& image);

@@ -92,8 +92,9 @@ TEST_F(FormatContract, TheCameraIsReadAsWritten) {
   written.p1 = -0.005358;
   written.p2 = 0.002628;
   written.k3 = 0.001163314;
-  Write("camera.yaml", sim::CameraYaml(written));
+  Write("camera.yaml", sim::CameraYaml(written, 0.026));
   const vo::Camera read = vo::ReadCamera(here_ / "camera.yaml");
+  EXPECT_EQ(read.readout_s, 0.026);
   EXPECT_EQ(read.width, written.width);
   EXPECT_EQ(read.height, written.height);
   EXPECT_EQ(read.fx, written.fx);

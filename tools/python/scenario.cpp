@@ -96,7 +96,7 @@ void AddScenario(py::module_& m) {
       .def_property_readonly(
           "has_points", [](const Experiment& e) { return e.scenario.points.has_value(); },
           "Landmarks without images: for PointWorld, not for Simulator.")
-      .def_property_readonly("camera", [](const Experiment& e) { return ToOdometry(e.scenario.camera); })
+      .def_property_readonly("camera", [](const Experiment& e) { return CameraOf(e.scenario); })
       .def_property_readonly(
           "resolved", [](const Experiment& e) { return e.resolved; },
           Doc("tools/vobench/experiment.h:Experiment::resolved"));

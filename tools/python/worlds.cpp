@@ -112,7 +112,7 @@ void AddSimulator(py::module_& m) {
            }),
            py::arg("scenario"), py::arg("jobs") = 0, Doc("sim/simulator.h:Simulator::Simulator"))
       .def_readonly("scenario", &Simulator::scenario)
-      .def_property_readonly("camera", [](const Simulator& s) { return ToOdometry(s.simulator.camera().params()); })
+      .def_property_readonly("camera", [](const Simulator& s) { return CameraOf(s.simulator.scenario()); })
       .def_property_readonly(
           "warnings", [](const Simulator& s) { return s.simulator.warnings(); },
           Doc("sim/simulator.h:Simulator::warnings"))

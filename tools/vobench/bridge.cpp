@@ -23,6 +23,12 @@ vo::Camera ToOdometry(const sim::CameraParams& camera) {
   return out;
 }
 
+vo::Camera CameraOf(const sim::Scenario& scenario) {
+  vo::Camera camera = ToOdometry(scenario.camera);
+  camera.readout_s = scenario.sensor.readout_s;
+  return camera;
+}
+
 vo::Frame ToOdometry(const sim::Frame& frame) {
   const sim::Image& image = frame.image;
   // OpenCV's headers over pixels that it only reads.

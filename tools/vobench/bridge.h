@@ -16,6 +16,8 @@
 namespace vobench {
 
 vo::Camera ToOdometry(const sim::CameraParams& camera);
+// The same with the rolling shutter of its sensor.
+vo::Camera CameraOf(const sim::Scenario& scenario);
 // A copy of the pixels, in OpenCV's order of colours.
 vo::Frame ToOdometry(const sim::Frame& frame);
 vo::PointFrame ToOdometry(const sim::PointFrame& frame);

@@ -128,7 +128,7 @@ fs::path InLayout(const campaign::SequenceCache& cache, const std::string& key, 
   } else {
     sim::WriteFile(partial / "times.txt", Bytes(times));
   }
-  sim::WriteFile(partial / "camera.yaml", Bytes(sim::CameraYaml(scenario.camera)));
+  sim::WriteFile(partial / "camera.yaml", Bytes(sim::CameraYaml(scenario.camera, scenario.sensor.readout_s)));
   fs::rename(partial, folder);
   return folder;
 }

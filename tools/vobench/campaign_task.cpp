@@ -41,7 +41,7 @@ Played PlayPoints(const Experiment& experiment, const std::string& system, std::
   scenario.seed = seed;
   sim::PointWorld world = Input([&] { return sim::PointWorld(scenario); });
   PointTracker tracker({system, seed, experiment.odometry, PriorOf(experiment.prior, world, seed)},
-                       ToOdometry(ToldCamera(experiment)), std::nullopt, "");
+                       ToldCamera(experiment), std::nullopt, "");
   Played played;
   while (const std::optional<sim::PointFrame> frame = world.Next()) {
     Append(frame->stamp_ns, frame->truth, played.truth);
@@ -69,7 +69,7 @@ Played PlayImages(const Experiment& experiment, const fs::path& sequence, const 
   played.truth = TruthOfAllFrames(experiment.scenario);
   Tracker tracker(
       {system, seed, experiment.odometry, PriorOf(experiment.prior, experiment.scenario.motion, played.truth, seed)},
-      ToOdometry(ToldCamera(experiment)), static_cast<std::int64_t>(reader.size()), std::nullopt, "");
+      ToldCamera(experiment), static_cast<std::int64_t>(reader.size()), std::nullopt, "");
   while (const std::optional<vo::Frame> frame = Input([&] { return reader.Next(); })) tracker.Track(*frame);
   played.run = tracker.estimates();
   played.seconds = tracker.entry().seconds;

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "tools/settings/settings.h"
+#include "tools/vobench/bridge.h"
 #include "tools/vobench/errors.h"
 
 namespace vobench {
@@ -44,8 +45,8 @@ void ReadOthers(const std::filesystem::path& file, const Overrides& overrides, E
 
 }  // namespace
 
-sim::CameraParams ToldCamera(const Experiment& experiment) {
-  sim::CameraParams camera = experiment.scenario.camera;
+vo::Camera ToldCamera(const Experiment& experiment) {
+  vo::Camera camera = CameraOf(experiment.scenario);
   camera.fx *= 1 + experiment.prior.focal_error;
   camera.fy *= 1 + experiment.prior.focal_error;
   return camera;

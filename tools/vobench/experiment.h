@@ -7,6 +7,7 @@
 #include "sim/scenario/scenario.h"
 #include "tools/vobench/commands.h"
 #include "tools/vobench/odometry_settings.h"
+#include "vo/geometry/camera.h"
 
 namespace vobench {
 
@@ -17,8 +18,8 @@ struct Experiment {
   std::string resolved;  // all of it, defaults included: JSON, which is a scenario again
 };
 
-// The camera as the odometry is told it: the scenario's, but for prior.focal_error.
-sim::CameraParams ToldCamera(const Experiment& experiment);
+// The camera as the odometry is told it: the scenario's with its rolling shutter, but for prior.focal_error.
+vo::Camera ToldCamera(const Experiment& experiment);
 
 // Throws BadInput with every problem of all three parts.
 Experiment ReadExperiment(const std::filesystem::path& scenario, const Overrides& overrides);

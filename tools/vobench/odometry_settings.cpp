@@ -104,7 +104,10 @@ void ReadFeatures(Section section, vo::FeatureParams& params) {
   }
   section.Read("max_baseline_ratio", max_baseline_ratio, Range::Positive());
   section.Read("max_searched", max_searched, Range::AtLeast(1));
-  section.Read("rolling_shutter", readout_s, Unit::time, Range{-1, 1});
+  if (double told = 0; section.Has("rolling_shutter")) {
+    section.Read("rolling_shutter", told, Unit::time, Range{-1, 1});
+    readout_s = told;
+  }
   section.Read("pilots", pilots, Range::AtLeast(0));
 }
 

@@ -28,7 +28,7 @@ namespace {
 // Each system with each seed. Of the truth they are told the start alone.
 std::vector<Tracker> MakeTrackers(const RunOptions& options, const Experiment& experiment,
                                   const sim::Simulator& simulator, const Folder& folder) {
-  const vo::Camera camera = ToOdometry(ToldCamera(experiment));
+  const vo::Camera camera = ToldCamera(experiment);
   const Truth start = TruthOf(simulator, 0);
   const std::optional<std::filesystem::path> out = folder ? std::optional(folder->path()) : std::nullopt;
   std::vector<Tracker> trackers;

@@ -77,7 +77,8 @@ std::string Record(const vo::Camera& c, const std::string& resolved) {
                      {"p1", c.p1},
                      {"p2", c.p2},
                      {"k3", c.k3},
-                     {"k4", c.k4}}}};
+                     {"k4", c.k4}}},
+                   {"rolling_shutter_s", c.readout_s}};
   all.update(nlohmann::ordered_json::parse(resolved));
   return all.dump(2);
 }

@@ -114,6 +114,7 @@ Camera CameraPreset(const std::string& name) {
   } else {
     throw std::invalid_argument("unknown camera preset '" + name + "': expected freiburg1, freiburg2, freiburg3 or icl");
   }
+  if (name != "icl") camera.readout_s = 0.026;
   return camera;
 }
 

@@ -20,6 +20,7 @@ struct Camera {
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;             // [-]
   double k4 = 0;                                             // [-] of a fisheye lens, which has no p1, p2
   Lens lens = Lens::radial_tangential;
+  double readout_s = 0;                                      // rolling shutter: from the first row's exposure to the last's [s]; 0: all at once, < 0: upwards
 
   // Point in C with z > 0 -> pixel, lens distortion included.
   Eigen::Vector2d Project(const Eigen::Vector3d& X_C) const;
@@ -33,7 +34,7 @@ struct Camera {
   Eigen::Matrix2d LensJacobian(const Eigen::Vector2d& xy) const;
 };
 
-// "freiburg1|freiburg2|freiburg3" (TUM RGB-D), "icl" (ICL-NUIM). Throws std::invalid_argument naming the presets.
+// "freiburg1|freiburg2|freiburg3" (TUM RGB-D; that its Kinects read their rows in 26 ms is our estimate), "icl" (ICL-NUIM). Throws std::invalid_argument naming the presets.
 Camera CameraPreset(const std::string& name);
 
 // The covariance of a pixel, seen on the plane z = 1. `lens` = d pixel / d(plane z = 1), Camera::LensJacobian.

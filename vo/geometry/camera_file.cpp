@@ -104,6 +104,7 @@ void ReadOwn(settings::Section root, Camera& camera) {
   root.Require("fy", camera.fy, settings::Unit::pixel, settings::Range::Positive());
   root.Require("cx", camera.cx, settings::Unit::pixel);
   root.Require("cy", camera.cy, settings::Unit::pixel);
+  root.Read("rolling_shutter", camera.readout_s, settings::Unit::time, settings::Range{-1, 1});
   settings::Section lens = root.Child("distortion");
   lens.ReadChoice("model", camera.lens, {{"radial_tangential", Lens::radial_tangential}, {"fisheye", Lens::fisheye}});
   lens.Read("k1", camera.k1);
