@@ -68,7 +68,7 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
     SolvePaths();
     if (undecided_) {
       LookForBetter();
-      if (landmark_params_.scale_sigma > 0) FollowBest();
+      if (landmark_params_.scale_sigma > 0 && !together()) FollowBest();
     }
     for (Particle& particle : particles_) particle.log_weight += particle.path.log_evidence;
   }

@@ -96,10 +96,9 @@ class ParticleFilter final : public Filter {
   void SolvePaths();
   void SolvePath(Particle& particle);
   void PlaceAnchors(Particle& particle) const;
-  // While nothing is sampled the particles differ by where they start at most: what the first one finds, the others follow. Not where each
-  // has a scale of its own.
+  // In the start's window the particles differ by where they start and by their scale: what the first one finds, the others follow.
   std::span<Particle> Leaders() { return {particles_.data(), together() ? 1 : particles_.size()}; }
-  bool together() const { return undecided_ && landmark_params_.scale_sigma == 0 && start_window_ > params_.lag; }
+  bool together() const { return undecided_ && start_window_ > params_.lag; }
   void FollowFirst();
   void LookForBetter();
   Particle Sideways(const Particle& particle, std::uint32_t guess) const;

@@ -65,24 +65,37 @@ void ParticleFilter::Triangulate(Particle& particle) const {
   for (const Track& track : tracks_) particle.modes[track.landmark] = landmarks[track.landmark].mean;
 }
 
-// The first particle's solution from where the others start.
+// The first particle's solution from where the others start, in their scale: the images say the same of it.
 void ParticleFilter::FollowFirst() {
   const Particle& first = particles_[0];
   for (std::size_t i = 1; i < particles_.size(); ++i) {
     Particle& particle = particles_[i];
     const Eigen::Quaterniond turn = particle.pose.q_WC * first.pose.q_WC.conjugate();
+    const double length = first.scale / particle.scale;  // of ours per one of theirs
     particle.path = first.path;
     for (Pose& pose : particle.path.mean)
-      pose = {particle.pose.p_WC + turn * (pose.p_WC - first.pose.p_WC), (turn * pose.q_WC).normalized()};
+      pose = {particle.pose.p_WC + length * (turn * (pose.p_WC - first.pose.p_WC)), (turn * pose.q_WC).normalized()};
+    for (Eigen::Index k = 0; k < particle.path.covariance.rows(); k += 6) {
+      particle.path.covariance.middleRows<3>(k) *= length;
+      particle.path.covariance.middleCols<3>(k) *= length;
+    }
     particle.modes = first.modes;
+    for (Eigen::Vector3d& mode : particle.modes) mode.z() /= length;
     PlaceAnchors(particle);
   }
 }
 
-// The start is over: each particle has its own solution, to be drawn from.
+// The start is over: each particle has a solution of its own, to be drawn from, and a weight.
 void ParticleFilter::Decide() {
+  const bool alike = together();
   undecided_ = false;
-  if (start_window_ > params_.lag && landmark_params_.scale_sigma == 0) SolvePaths();
+  if (!alike) return;
+  for (Particle& particle : particles_) {
+    particle.log_weight -= particle.path.log_evidence;
+    SolvePath(particle);
+    particle.log_weight += particle.path.log_evidence;
+  }
+  WeighPaths();
 }
 
 }  // namespace vo
