@@ -83,43 +83,53 @@ TEST(ParticleFilter, VelocityCovarianceIsAlikeInAllParticles) {
   }
 }
 
-constexpr int kWorlds = 200, kMirrorFrames = 10;
+constexpr int kWorlds = 200, kStartFrames = 10;
 
-// In the first frames, seen from afar, a scene and its mirror image (near and far exchanged, the camera going the other way) look alike. The camera
-// circles what it looks at; its velocity is hardly known. Counted are the worlds in which it is believed to have gone the other way.
+// A camera of hardly known velocity that circles what it looks at, for kStartFrames: where it is believed to have gone, and where it went.
+struct Start {
+  Eigen::Vector3d believed, truth;
+};
+
+Start PlayStart(unsigned world, const vo::FilterParams& params, double noise_px, double depth_spread) {
+  const double noise = noise_px / 525;
+  vo_test::Draws draws(world);
+  vo::FilterPrior prior;
+  prior.velocity_covariance = 0.04 * vo::Matrix6::Identity();
+  vo::ParticleFilter filter({.position_noise = 0.6, .orientation_noise = 0.4}, params, vo::LandmarkParams{}, prior, world);
+  std::vector<vo::FirstView> views;
+  std::vector<Eigen::Vector3d> points;
+  for (int n = 0; n < 40; ++n) {
+    const double x = 0.5 * (draws.Uniform() - 0.5);  // one after the other: the order of arguments is open
+    const double y = 0.4 * (draws.Uniform() - 0.5);
+    const Eigen::Vector3d ray(x, y, 1);
+    points.push_back(ray / (0.25 + depth_spread * (draws.Uniform() - 0.5)));
+    views.push_back({ray.head<2>() + noise * draws.Normals<2>(), noise * noise * Eigen::Matrix2d::Identity()});
+  }
+  filter.AddLandmarks(views);
+  const double angle = 6.283 * draws.Uniform();
+  const Eigen::Vector3d velocity(0.3 * std::cos(angle), 0.3 * std::sin(angle), 0);
+  vo::Pose camera;
+  for (int frame = 1; frame <= kStartFrames; ++frame) {
+    const double t = frame / 30.0;
+    camera = {velocity * t, vo::Exp(Eigen::Vector3d(0.25 * velocity.y(), -0.25 * velocity.x(), 0) * t)};
+    std::vector<vo::Match> matches;
+    for (int n = 0; n < 40; ++n) {
+      const Eigen::Vector3d seen = camera.q_WC.conjugate() * (points[n] - camera.p_WC);
+      matches.push_back({n, seen.hnormalized() + noise * draws.Normals<2>(), noise * noise * Eigen::Matrix2d::Identity()});
+    }
+    filter.Predict(1.0 / 30);
+    filter.Update(matches);
+  }
+  return {filter.belief().pose.p_WC, camera.p_WC};
+}
+
+// In the first frames, seen from afar, a scene and its mirror image (near and far exchanged, the camera going the other way) look alike. Counted
+// are the worlds in which it is believed to have gone the other way.
 int StartsMirrored(const vo::FilterParams& params) {
-  const double noise = 0.2 / 525;
   int mirrored = 0;
   for (unsigned world = 1; world <= kWorlds; ++world) {
-    vo_test::Draws draws(world);
-    vo::FilterPrior prior;
-    prior.velocity_covariance = 0.04 * vo::Matrix6::Identity();
-    vo::ParticleFilter filter({.position_noise = 0.6, .orientation_noise = 0.4}, params, vo::LandmarkParams{}, prior, world);
-    std::vector<vo::FirstView> views;
-    std::vector<Eigen::Vector3d> points;
-    for (int n = 0; n < 40; ++n) {
-      const double x = 0.5 * (draws.Uniform() - 0.5);  // one after the other: the order of arguments is open
-      const double y = 0.4 * (draws.Uniform() - 0.5);
-      const Eigen::Vector3d ray(x, y, 1);
-      points.push_back(ray / (0.25 + 0.2 * (draws.Uniform() - 0.5)));
-      views.push_back({ray.head<2>() + noise * draws.Normals<2>(), noise * noise * Eigen::Matrix2d::Identity()});
-    }
-    filter.AddLandmarks(views);
-    const double angle = 6.283 * draws.Uniform();
-    const Eigen::Vector3d velocity(0.3 * std::cos(angle), 0.3 * std::sin(angle), 0);
-    vo::Pose camera;
-    for (int frame = 1; frame <= kMirrorFrames; ++frame) {
-      const double t = frame / 30.0;
-      camera = {velocity * t, vo::Exp(Eigen::Vector3d(0.25 * velocity.y(), -0.25 * velocity.x(), 0) * t)};
-      std::vector<vo::Match> matches;
-      for (int n = 0; n < 40; ++n) {
-        const Eigen::Vector3d seen = camera.q_WC.conjugate() * (points[n] - camera.p_WC);
-        matches.push_back({n, seen.hnormalized() + noise * draws.Normals<2>(), noise * noise * Eigen::Matrix2d::Identity()});
-      }
-      filter.Predict(1.0 / 30);
-      filter.Update(matches);
-    }
-    mirrored += filter.belief().pose.p_WC.dot(camera.p_WC) < 0;
+    const Start start = PlayStart(world, params, 0.2, 0.2);
+    mirrored += start.believed.dot(start.truth) < 0;
   }
   return mirrored;
 }
@@ -128,16 +138,31 @@ int StartsMirrored(const vo::FilterParams& params) {
 TEST(ParticleFilter, DoesNotStartMirrored) {
   vo::FilterParams params;
   params.particles = 1;
-  params.start_window = kMirrorFrames;
+  params.start_window = kStartFrames;
   const int window = StartsMirrored(params);
   params.start_window = 0;
   const int at_once = StartsMirrored(params);
-  params.lag = kMirrorFrames;
+  params.lag = kStartFrames;
   const int lag = StartsMirrored(params);
   std::printf("mirrored, of %d: start window %d, lag %d, neither %d\n", kWorlds, window, lag, at_once);
   EXPECT_LE(window, 10);
   EXPECT_EQ(window, lag);
   EXPECT_GT(at_once, 2 * window);
+}
+
+// A wall seen face on: what explains it nearly as well is a deep scene with little parallax, whose depths stay unknown, and evidence pays for
+// that (with it 129 of these 200 went wrong; with 0.3 px of noise, and depths within 3 % of each other, 186, and 6 as it is).
+TEST(ParticleFilter, TakesAWallForAWall) {
+  vo::FilterParams params;
+  params.particles = 1;
+  params.start_window = kStartFrames;
+  int wrong = 0;
+  for (unsigned world = 1; world <= kWorlds; ++world) {
+    const Start start = PlayStart(world, params, 0.1, 0);
+    wrong += start.believed.normalized().dot(start.truth.normalized()) < 0.7;
+  }
+  std::printf("more than 45 degrees off: %d of %d\n", wrong, kWorlds);
+  EXPECT_LE(wrong, 10);
 }
 
 }  // namespace
