@@ -48,7 +48,7 @@ struct FilterParams {
   Weight weight = Weight::evidence;
   int lag = 0;                  // poses kept un-sampled, so that later images speak before the map is committed to them (0: the paper)
   int start_window = 30;        // so many poses at the start are one window, found anew in every frame, before any of them is sampled (0: the
-                                // paper). For pose-sampling filters with proposal ekf or iterated and weight evidence or equal; others have none
+                                // paper). For pose-sampling filters with proposal ekf or iterated, weight evidence or equal, and scale_sigma 0; others have none
   bool marginal_mode = false;   // propose at the mode of the poses' marginal, not of poses and landmarks jointly: unbiased in scale, but it
                                 // believes features.sigma_px, which must then be right
   bool reject_outliers = true;  // matches that contradict the others are set aside before the update

@@ -22,8 +22,6 @@ constexpr double kRefuted = 50;
 // The start's window has to get anywhere from a first guess that may be far off; later ones begin at the solution of the frame before.
 constexpr int kStartIterations = 50;
 
-PoseGaussian OldestOf(const PathGaussian& path) { return {path.mean[0], path.covariance.topLeftCorner<6, 6>()}; }
-
 }  // namespace
 
 void ParticleFilter::PredictPath(double dt) {
@@ -68,7 +66,7 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
     SolvePaths();
     if (undecided_) {
       LookForBetter();
-      if (landmark_params_.scale_sigma > 0 && !together()) FollowBest();
+      if (landmark_params_.scale_sigma > 0) FollowBest();
     }
     for (Particle& particle : particles_) particle.log_weight += particle.path.log_evidence;
   }
@@ -81,7 +79,7 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
   // With equal weights a refuted particle is replaced before the draw, so that it is not the draws that are alike; and not before there is
   // one: until then all look for the best solution anyway, each in its own scale.
   if (params_.weight == Weight::equal && full && ToResample()) Resample();
-  while (static_cast<int>(steps_.size()) > window_size()) CommitOldest();
+  if (full) CommitOldest(static_cast<int>(steps_.size()) - window_size());
   if (!delayed())
     for (Particle& particle : particles_) particle.modes.clear();
   if (params_.weight != Weight::equal && ToResample()) Resample();
@@ -154,46 +152,61 @@ bool ParticleFilter::ToResample() const {
   return effective_particles_ < params_.resample_below * params_.particles;
 }
 
-void ParticleFilter::CommitOldest() {
-  const MotionModel model = NearlyConstantVelocity(motion_, steps_.front().dt);
-  step_ = {model.F, model.Q};
-  const std::vector<Pose> drawn = DrawOldest();
-  for (std::uint32_t i = 0; i < particles_.size(); ++i) CommitOldest(particles_[i], i, drawn[i]);
-  for (int& slot : anchor_slot_) slot = std::max(slot - 1, -1);
-  steps_.erase(steps_.begin());
+void ParticleFilter::CommitOldest(int count) {
+  for (int k = 0; k < count; ++k) {
+    const std::vector<Pose> drawn = Draw(k);
+    for (std::size_t i = 0; i < particles_.size(); ++i) Fix(particles_[i], k, drawn[i]);
+  }
+  for (Particle& particle : particles_) {
+    PlaceAnchors(particle);
+    if (count > 1) Retriangulate(particle);  // the draws of many poses together go far
+  }
+  for (int k = 0; k < count; ++k) {
+    const MotionModel model = NearlyConstantVelocity(motion_, steps_[k].dt);
+    step_ = {model.F, model.Q};
+    for (std::uint32_t i = 0; i < particles_.size(); ++i) UpdateGiven(particles_[i], k, i);
+  }
+  for (Particle& particle : particles_) particle.path.mean.erase(particle.path.mean.begin(), particle.path.mean.begin() + count);
+  for (int& slot : anchor_slot_) slot = std::max(slot - count, -1);
+  steps_.erase(steps_.begin(), steps_.begin() + count);
 }
 
-std::vector<Pose> ParticleFilter::DrawOldest() const {
+// The poses before are drawn: the path's covariance is that of the rest.
+std::vector<Pose> ParticleFilter::Draw(int slot) const {
   const bool scales = landmark_params_.scale_sigma > 0;  // which the draws are not to correlate with either
   ParticleColumns offsets(scales ? 7 : 6, params_.particles), normals(6, params_.particles);
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
-    offsets.col(i).head<6>() = Minus(particles_[i].path.mean[0], particles_[0].path.mean[0]);
+    offsets.col(i).head<6>() = Minus(particles_[i].path.mean[slot], particles_[0].path.mean[slot]);
     if (scales) offsets(6, i) = std::log(particles_[i].scale);
-    normals.col(i) = NormalVector<Vector6>({seed_, Stream::pose, steps_.front().frame, i});
+    normals.col(i) = NormalVector<Vector6>({seed_, Stream::pose, steps_[slot].frame, i});
   }
   if (params_.weight == Weight::equal && EnoughForExactDraws(params_.particles, 6)) normals = ExactDraws(offsets, normals);
   std::vector<Pose> drawn;
-  for (std::uint32_t i = 0; i < particles_.size(); ++i) drawn.push_back(OldestOf(particles_[i].path).Displaced(normals.col(i)));
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+    const PathGaussian& path = particles_[i].path;
+    drawn.push_back(PoseGaussian{path.mean[slot], path.covariance.topLeftCorner<6, 6>()}.Displaced(normals.col(i)));
+  }
   return drawn;
 }
 
-void ParticleFilter::CommitOldest(Particle& particle, std::uint32_t index, const Pose& s) const {
+// The rest of the path, given the pose.
+void ParticleFilter::Fix(Particle& particle, int slot, const Pose& s) {
   PathGaussian& path = particle.path;
-  const PoseGaussian oldest = OldestOf(path);
   const int rest = static_cast<int>(path.covariance.rows()) - 6;
-  const Vector6 d = oldest.covariance.llt().solve(Minus(s, oldest.mean));
-  for (int k = 1; k <= rest / 6; ++k)
-    path.mean[k] = Plus(path.mean[k], path.covariance.block<6, 6>(6 * k, 0) * d);
-  path.mean.erase(path.mean.begin());
+  const Eigen::LLT<Matrix6> llt(path.covariance.topLeftCorner<6, 6>());
+  const Vector6 d = llt.solve(Minus(s, path.mean[slot]));
   const Eigen::MatrixXd cross = path.covariance.bottomLeftCorner(rest, 6);
-  path.covariance = (path.covariance.bottomRightCorner(rest, rest) - cross * oldest.covariance.llt().solve(cross.transpose())).eval();
+  for (int k = 0; k < rest / 6; ++k) path.mean[slot + 1 + k] = Plus(path.mean[slot + 1 + k], cross.middleRows<6>(6 * k) * d);
+  path.mean[slot] = s;
+  path.covariance = (path.covariance.bottomRightCorner(rest, rest) - cross * llt.solve(cross.transpose())).eval();
+}
 
+void ParticleFilter::UpdateGiven(Particle& particle, int slot, std::uint32_t index) const {
+  const Pose& s = particle.path.mean[slot];
   UpdateVelocity(particle, s, VelocityGiven(particle), index);                                      // (37)-(43)
-  for (std::size_t a = 0; a < particle.anchors.size(); ++a)
-    if (anchor_slot_[a] >= 0) particle.anchors[a] = anchor_slot_[a] == 0 ? s : path.mean[anchor_slot_[a] - 1];
   std::vector<AnchorView> views;
   for (const Pose& anchor : particle.anchors) views.emplace_back(s, anchor);
-  for (const Match& match : steps_.front().matches) {
+  for (const Match& match : steps_[slot].matches) {
     Landmark& landmark = particle.landmarks[match.landmark];
     landmark = UpdateLandmark(landmark, particle.modes[match.landmark], views[anchor_of_[match.landmark]], match, 1).landmark;
   }

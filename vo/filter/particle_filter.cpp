@@ -43,7 +43,7 @@ ParticleFilter::ParticleFilter(const MotionParams& motion, const FilterParams& f
       step_(StepOf(motion, 1.0)),
       particles_(filter.particles),
       weights_(filter.particles, 1.0 / filter.particles),
-      start_window_(KnowsWindows(filter) ? filter.start_window : 0),
+      start_window_(KnowsWindows(filter) && landmark.scale_sigma == 0 ? filter.start_window : 0),
       undecided_(std::max(filter.lag, start_window_) > 0),
       effective_particles_(filter.particles) {
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {

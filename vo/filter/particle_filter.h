@@ -96,21 +96,23 @@ class ParticleFilter final : public Filter {
   void SolvePaths();
   void SolvePath(Particle& particle);
   void PlaceAnchors(Particle& particle) const;
-  // In the start's window the particles differ by where they start and by their scale: what the first one finds, the others follow.
+  // In the start's window the particles differ by where they start at most: what the first one finds, the others follow.
   std::span<Particle> Leaders() { return {particles_.data(), together() ? 1 : particles_.size()}; }
   bool together() const { return undecided_ && start_window_ > params_.lag; }
   void FollowFirst();
   void LookForBetter();
   Particle Sideways(const Particle& particle, std::uint32_t guess) const;
   void Triangulate(Particle& particle) const;
+  void Retriangulate(Particle& particle) const;
   void Decide();
   void BuildTracks();
   void WeighPaths();
   void FollowBest();
   bool ToResample() const;
-  void CommitOldest();
-  std::vector<Pose> DrawOldest() const;
-  void CommitOldest(Particle& particle, std::uint32_t index, const Pose& drawn) const;
+  void CommitOldest(int count);
+  std::vector<Pose> Draw(int slot) const;
+  static void Fix(Particle& particle, int slot, const Pose& drawn);
+  void UpdateGiven(Particle& particle, int slot, std::uint32_t index) const;
   BeliefComponent ComponentOnPath(const Particle& particle) const;
   std::vector<ImagePrediction> PredictImagesOnPath(std::span<const int> landmarks) const;
 

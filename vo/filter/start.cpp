@@ -12,6 +12,7 @@ namespace vo {
 namespace {
 
 constexpr std::uint32_t kGuesses = 6;
+constexpr int kRounds = 3;  // of Gauss-Newton
 
 }  // namespace
 
@@ -65,22 +66,34 @@ void ParticleFilter::Triangulate(Particle& particle) const {
   for (const Track& track : tracks_) particle.modes[track.landmark] = landmarks[track.landmark].mean;
 }
 
-// The first particle's solution from where the others start, in their scale: the images say the same of it.
+// The same, from modes that are nearly right: all views linearised together, as one after the other does not, for which a first view is too little.
+void ParticleFilter::Retriangulate(Particle& particle) const {
+  std::vector<AnchorView> views;
+  std::vector<Landmark> landmarks;
+  for (int round = 0; round < kRounds; ++round) {
+    landmarks = particle.landmarks;
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+      views.clear();
+      for (const Pose& anchor : particle.anchors) views.emplace_back(particle.path.mean[k], anchor);
+      for (const Match& match : steps_[k].matches) {
+        Landmark& landmark = landmarks[match.landmark];
+        landmark = UpdateLandmark(landmark, particle.modes[match.landmark], views[anchor_of_[match.landmark]], match, 1).landmark;
+      }
+    }
+    for (const Track& track : tracks_) particle.modes[track.landmark] = landmarks[track.landmark].mean;
+  }
+}
+
+// The first particle's solution from where the others start.
 void ParticleFilter::FollowFirst() {
   const Particle& first = particles_[0];
   for (std::size_t i = 1; i < particles_.size(); ++i) {
     Particle& particle = particles_[i];
     const Eigen::Quaterniond turn = particle.pose.q_WC * first.pose.q_WC.conjugate();
-    const double length = first.scale / particle.scale;  // of ours per one of theirs
     particle.path = first.path;
     for (Pose& pose : particle.path.mean)
-      pose = {particle.pose.p_WC + length * (turn * (pose.p_WC - first.pose.p_WC)), (turn * pose.q_WC).normalized()};
-    for (Eigen::Index k = 0; k < particle.path.covariance.rows(); k += 6) {
-      particle.path.covariance.middleRows<3>(k) *= length;
-      particle.path.covariance.middleCols<3>(k) *= length;
-    }
+      pose = {particle.pose.p_WC + turn * (pose.p_WC - first.pose.p_WC), (turn * pose.q_WC).normalized()};
     particle.modes = first.modes;
-    for (Eigen::Vector3d& mode : particle.modes) mode.z() /= length;
     PlaceAnchors(particle);
   }
 }
