@@ -159,7 +159,7 @@ void ParticleFilter::CommitOldest(int count) {
   }
   for (Particle& particle : particles_) {
     PlaceAnchors(particle);
-    if (count > 1) Retriangulate(particle);  // the draws of many poses together go far
+    if (count > 1) Triangulate(particle);  // the draws of many poses together go far
   }
   for (int k = 0; k < count; ++k) {
     const MotionModel model = NearlyConstantVelocity(motion_, steps_[k].dt);

@@ -103,7 +103,6 @@ class ParticleFilter final : public Filter {
   void LookForBetter();
   Particle Sideways(const Particle& particle, std::uint32_t guess) const;
   void Triangulate(Particle& particle) const;
-  void Retriangulate(Particle& particle) const;
   void Decide();
   void BuildTracks();
   void WeighPaths();

@@ -48,26 +48,14 @@ Particle ParticleFilter::Sideways(const Particle& particle, std::uint32_t guess)
     pose.p_WC += particle.pose.q_WC * Eigen::Vector3d(c.x(), c.y(), 0);
     pose.q_WC = (pose.q_WC * Exp({rho * c.y(), -rho * c.x(), 0})).normalized();
   }
+  for (const Track& track : tracks_) other.modes[track.landmark] = particle.landmarks[track.landmark].mean;
   Triangulate(other);
   return other;
 }
 
-// Each landmark's mode given the path.
+// Each landmark's mode given the path, by Gauss-Newton from the present one: all its views linearised together.
 void ParticleFilter::Triangulate(Particle& particle) const {
   PlaceAnchors(particle);
-  std::vector<Landmark> landmarks = particle.landmarks;
-  for (std::size_t k = 0; k < steps_.size(); ++k) {
-    for (const Match& match : steps_[k].matches) {
-      Landmark& landmark = landmarks[match.landmark];
-      const AnchorView view(particle.path.mean[k], particle.anchors[anchor_of_[match.landmark]]);
-      landmark = UpdateLandmark(landmark, view, match, params_.max_iterations).landmark;
-    }
-  }
-  for (const Track& track : tracks_) particle.modes[track.landmark] = landmarks[track.landmark].mean;
-}
-
-// The same, from modes that are nearly right: all views linearised together, as one after the other does not, for which a first view is too little.
-void ParticleFilter::Retriangulate(Particle& particle) const {
   std::vector<AnchorView> views;
   std::vector<Landmark> landmarks;
   for (int round = 0; round < kRounds; ++round) {
