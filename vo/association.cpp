@@ -177,7 +177,8 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];
     Searched searched{c.landmark, std::nullopt};
-    FeatureView view{records[c.landmark].id, c.pixel, found[i] ? found[i]->pixel : c.pixel, requests[i].S, FeatureView::Status::missed};
+    FeatureView view{records[c.landmark].id, c.pixel, found[i] ? found[i]->pixel : c.pixel, requests[i].S,
+                     found[i] ? found[i]->noise : Eigen::Matrix2d::Zero().eval(), FeatureView::Status::missed};
     if (found[i]) {
       const Match& match = matches[m];
       view.status = inlier[m] ? FeatureView::Status::matched : FeatureView::Status::rejected;

@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include <opencv2/imgproc.hpp>
-
 #include "vo/association.h"
 #include "vo/estimate.h"
 #include "vo/features/corner_detector.h"
@@ -15,17 +13,6 @@
 #include "vo/rolling_shutter.h"
 
 namespace vo {
-namespace {
-
-cv::Mat Grey(const cv::Mat& image) {
-  if (image.channels() == 1) return image;
-  cv::Mat grey;
-  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-  return grey;
-}
-
-}  // namespace
-
 struct Odometry::Impl {
   Impl(const Camera& camera_, const Params& params_, const Prior& prior, std::uint64_t seed)
       : camera(camera_),
@@ -34,17 +21,17 @@ struct Odometry::Impl {
         first_sampler(FirstSampler(params.features)),
         border_px(std::max(first_sampler.margin(), Patch::kRadius + 1)) {}
 
-  Estimate Process(const Frame& frame);
+  void Require(const Frame& frame) const;
+  Estimate Process(const PreparedFrame& prepared);
   void UpdateScores(const Association& association);
   void Forget();
-  void AddFeatures(const cv::Mat& grey);
+  void AddFeatures(const cv::Mat& grey, const BriskImage& brisk);
   Estimate Answer(std::int64_t stamp_ns, FrameDiagnostics diagnostics) const;
 
   Camera camera;
   Params params;
   std::unique_ptr<Filter> filter;
   BriskSampler first_sampler;
-  BriskImage brisk;
   int border_px;
   std::vector<LandmarkRecord> records;  // in the order of the filter's landmarks
   std::vector<FeatureView> views;
@@ -53,22 +40,24 @@ struct Odometry::Impl {
   int next_id = 0;
 };
 
-Estimate Odometry::Impl::Process(const Frame& frame) {
+void Odometry::Impl::Require(const Frame& frame) const {
   if (frame.image.cols != camera.width || frame.image.rows != camera.height)
     throw std::invalid_argument("image is " + std::to_string(frame.image.cols) + " x " + std::to_string(frame.image.rows) +
                                 ", the camera " + std::to_string(camera.width) + " x " + std::to_string(camera.height));
   if (last_stamp_ns) RequireIncreasing(frame.stamp_ns, *last_stamp_ns);
+}
+
+Estimate Odometry::Impl::Process(const PreparedFrame& prepared) {
+  const Frame& frame = prepared.frame;
   FrameDiagnostics diagnostics;
   Stopwatch watch;
-  const cv::Mat grey = Grey(frame.image);
   views.clear();
   left_out.clear();
 
   if (last_stamp_ns) {
     const double dt = static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9;
     filter->Predict(dt);
-    brisk.Set(grey);
-    Association association = Associate(*filter, records, camera, grey, brisk, border_px, dt, params);
+    Association association = Associate(*filter, records, camera, prepared.grey, prepared.brisk, border_px, dt, params);
     diagnostics.ms_matching = watch.Lap();
     filter->Update(association.matches);
     UpdateScores(association);
@@ -79,14 +68,12 @@ Estimate Odometry::Impl::Process(const Frame& frame) {
     views = std::move(association.views);
     left_out = std::move(association.left_out);
     diagnostics.ms_filter = watch.Lap();
-  } else {
-    brisk.Set(grey);
   }
   last_stamp_ns = frame.stamp_ns;
 
   Forget();
-  AddFeatures(grey);
-  diagnostics.ms_features = watch.Lap();
+  AddFeatures(prepared.grey, prepared.brisk);
+  diagnostics.ms_features = prepared.ms + watch.Lap();
   return Answer(frame.stamp_ns, diagnostics);
 }
 
@@ -117,7 +104,7 @@ void Odometry::Impl::Forget() {
   records.resize(to);
 }
 
-void Odometry::Impl::AddFeatures(const cv::Mat& grey) {
+void Odometry::Impl::AddFeatures(const cv::Mat& grey, const BriskImage& brisk) {
   std::vector<Eigen::Vector2d> occupied = left_out;
   for (const FeatureView& view : views)
     if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
@@ -137,7 +124,7 @@ void Odometry::Impl::AddFeatures(const cv::Mat& grey) {
     // The patch that later views are registered to defines the landmark: its first view is as good as the registration can be.
     first.back().R = PixelNoise(camera.LensJacobian(first.back().ray), params.features.noise == MatchNoise::registered ? params.features.sigma_floor_px
                                                                                                                        : params.features.sigma_px);
-    views.push_back({record.id, pixel, pixel, Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
+    views.push_back({record.id, pixel, pixel, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
   }
   filter->AddLandmarks(first);
 }
@@ -154,7 +141,15 @@ Odometry::Odometry(const Camera& camera, const Params& params, const Prior& prio
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;
 
-Estimate Odometry::Track(const Frame& frame) { return impl_->Process(frame); }
+Estimate Odometry::Track(const Frame& frame) {
+  impl_->Require(frame);
+  return impl_->Process(PreparedFrame(frame));
+}
+
+Estimate Odometry::Track(const PreparedFrame& frame) {
+  impl_->Require(frame.frame);
+  return impl_->Process(frame);
+}
 
 std::vector<MapPoint> Odometry::Map() const {
   std::vector<MapPoint> points;

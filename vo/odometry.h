@@ -14,7 +14,7 @@
 #include "vo/geometry/pose.h"
 #include "vo/map/point_moments.h"
 #include "vo/params.h"
-#include "vo/sequence/reader.h"
+#include "vo/prepared_frame.h"
 
 namespace vo {
 
@@ -36,7 +36,7 @@ struct FrameDiagnostics {
   double nis = 0;               // sum of nu' S^-1 nu over matched features (mixture mean), nis_dof = 2 per feature
   int nis_dof = 0;
   double effective_particles = 0;  // before resampling
-  double ms_features = 0, ms_matching = 0, ms_filter = 0;
+  double ms_features = 0, ms_matching = 0, ms_filter = 0;  // preparing the frame and new corners; looking for landmarks; the rest
   bool tracked() const { return matched >= 10; }
 };
 
@@ -60,13 +60,14 @@ struct MapPoint {
   std::optional<PointMoments> moments;
 };
 
-// A feature as seen in the last frame, for drawing.
+// A feature as seen in the last frame, for drawing and for measuring.
 struct FeatureView {
   enum class Status { matched, missed, rejected, fresh };
   int id = 0;
   Eigen::Vector2d predicted = Eigen::Vector2d::Zero();  // [px]
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();      // [px], of the match (or the prediction when missed)
   Eigen::Matrix2d S = Eigen::Matrix2d::Zero();          // innovation covariance [px^2]
+  Eigen::Matrix2d R = Eigen::Matrix2d::Zero();          // of the match's error, as the filter takes it [px^2]; zero where nothing was found
   Status status = Status::missed;
 };
 
@@ -80,6 +81,8 @@ class Odometry {
   // Frames in order of time. Throws std::invalid_argument when the stamp does not increase, or the image has another size
   // than the camera.
   Estimate Track(const Frame& frame);
+  // The same for a frame that went through the first stage elsewhere.
+  Estimate Track(const PreparedFrame& frame);
 
   std::vector<MapPoint> Map() const;
   const std::vector<FeatureView>& Features() const;

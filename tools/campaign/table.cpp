@@ -7,6 +7,8 @@
 #include <limits>
 #include <map>
 
+#include "tools/evaluation/statistics.h"
+
 namespace campaign {
 namespace {
 
@@ -24,18 +26,6 @@ class Numbered {
   std::vector<std::vector<std::string>>& all_;
   std::map<std::vector<std::string>, std::size_t> numbers_;
 };
-
-// Between the two nearest of the sorted values, linearly.
-double Quantile(const std::vector<double>& sorted, double share) {
-  if (sorted.empty()) return std::nan("");
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const double rest = at - static_cast<double>(below);
-  if (rest == 0) return sorted[below];
-  if (std::isinf(sorted[below]) || std::isinf(sorted[below + 1]))
-    return std::isinf(sorted[below]) ? sorted[below] : sorted[below + 1];
-  return sorted[below] + rest * (sorted[below + 1] - sorted[below]);
-}
 
 std::string Number(double value, double unit, const std::string& lost) {
   if (std::isnan(value)) return "-";
@@ -100,7 +90,7 @@ Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vect
   for (auto& [at, cell] : cells) {
     std::vector<double>& sorted = values[at];
     std::sort(sorted.begin(), sorted.end());
-    cell.low = Quantile(sorted, 0.25), cell.median = Quantile(sorted, 0.5), cell.high = Quantile(sorted, 0.75);
+    cell.low = evaluation::Quantile(sorted, 0.25), cell.median = evaluation::Quantile(sorted, 0.5), cell.high = evaluation::Quantile(sorted, 0.75);
     table.cells[at.first][at.second] = cell;
   }
   return table;

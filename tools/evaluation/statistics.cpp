@@ -13,6 +13,17 @@ double Median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
+double Quantile(const std::vector<double>& sorted, double share) {
+  if (sorted.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const double rest = at - static_cast<double>(below);
+  if (rest == 0) return sorted[below];
+  if (std::isinf(sorted[below]) || std::isinf(sorted[below + 1]))
+    return std::isinf(sorted[below]) ? sorted[below] : sorted[below + 1];
+  return sorted[below] + rest * (sorted[below + 1] - sorted[below]);
+}
+
 Statistics Summarise(const std::vector<double>& values) {
   Statistics s;
   if (values.empty()) return s;

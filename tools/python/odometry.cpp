@@ -107,6 +107,24 @@ py::tuple Map(const Self& self) {
   return py::make_tuple(ids, X_W);
 }
 
+py::tuple Features(const vo::Odometry& self) {
+  const std::vector<vo::FeatureView>& views = self.Features();
+  const auto n = static_cast<py::ssize_t>(views.size());
+  py::array_t<std::int64_t> ids(n), status(n);
+  Rows predicted(n, 2), pixel(n, 2);
+  py::array_t<double> S({n, py::ssize_t(2), py::ssize_t(2)}), R({n, py::ssize_t(2), py::ssize_t(2)});
+  for (py::ssize_t i = 0; i < n; ++i) {
+    const vo::FeatureView& view = views[i];
+    ids.mutable_at(i) = view.id;
+    status.mutable_at(i) = static_cast<std::int64_t>(view.status);
+    predicted.row(i) = view.predicted;
+    pixel.row(i) = view.pixel;
+    std::copy_n(view.S.data(), 4, S.mutable_data(i));  // symmetric
+    std::copy_n(view.R.data(), 4, R.mutable_data(i));
+  }
+  return py::make_tuple(ids, status, predicted, pixel, S, R);
+}
+
 void AddEstimate(py::module_& m) {
   const auto zero = [] { return Eigen::Vector3d(0, 0, 0); };
   const Eigen::Vector4d identity(0, 0, 0, 1);
@@ -169,7 +187,7 @@ void AddOdometry(py::module_& m) {
       .def(
           "track", [](vo::Odometry& self, const sim::Frame& frame) { return self.Track(ToOdometry(frame)); },
           py::arg("frame"), Unlocked(), Doc("vo/odometry.h:Odometry::Track"))
-      .def("track", &vo::Odometry::Track, py::arg("frame"), Unlocked())
+      .def("track", py::overload_cast<const vo::Frame&>(&vo::Odometry::Track), py::arg("frame"), Unlocked())
       .def(
           "track",
           [](vo::Odometry& self, std::int64_t stamp_ns, const Bytes& image) {
@@ -178,6 +196,9 @@ void AddOdometry(py::module_& m) {
             return self.Track(frame);
           },
           py::arg("stamp_ns"), py::arg("image"))
+      .def("features", &Features,
+           "What was seen of each landmark in the last frame: (ids (n,), status (n,): 0 matched, 1 missed, 2 rejected as an outlier, 3 new; "
+           "predicted (n, 2), pixel (n, 2) [px], S (n, 2, 2): covariance of the prediction, R (n, 2, 2): of the match's error [px^2]).")
       .def("map", &Map<vo::Odometry>, "(ids, X_W (n, 3)) of the landmarks in the map [m]");
   py::class_<vo::PointOdometry>(m, "PointOdometry", Doc("vo/point_odometry.h:"))
       .def(py::init(

@@ -1,11 +1,21 @@
 #include "tools/report/text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <map>
 
 namespace report {
+namespace {
+
+// Characters as a terminal shows them: bytes that continue a UTF-8 character take no room.
+std::size_t Width(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+}  // namespace
 
 std::string Fixed(double value, int decimals) {
   if (!std::isfinite(value)) return "–";
@@ -63,6 +73,22 @@ std::string Escape(const std::string& text) {
     }
   }
   return escaped;
+}
+
+std::string AlignedTable(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths(rows.front().size());
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], Width(row[i]));
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string room(widths[i] - Width(row[i]), ' ');
+      text += i == 0 ? row[i] + room : "  " + room + row[i];
+    }
+    text += '\n';
+  }
+  return text;
 }
 
 std::string Base64(const std::string& bytes) {

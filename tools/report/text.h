@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace report {
 
@@ -19,6 +20,9 @@ std::string DisplayName(const std::string& system);
 
 // As text inside HTML or an attribute.
 std::string Escape(const std::string& text);
+
+// Rows of as many cells each, for a terminal: the first column to the left, the others to the right. Each row ends with a line break.
+std::string AlignedTable(const std::vector<std::vector<std::string>>& rows);
 
 std::string Base64(const std::string& bytes);
 

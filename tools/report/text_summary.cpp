@@ -46,28 +46,6 @@ SystemSummary ErrorsOver(const std::string& name, const std::vector<const Judged
   return s;
 }
 
-// Characters as a terminal shows them: bytes that continue a UTF-8 character take no room.
-std::size_t Width(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
-std::string Table(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths(rows.front().size());
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], Width(row[i]));
-  }
-  std::string text;
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string room(widths[i] - Width(row[i]), ' ');
-      text += i == 0 ? row[i] + room : "  " + room + row[i];
-    }
-    text += '\n';
-  }
-  return text;
-}
-
 }  // namespace
 
 std::vector<SystemSummary> SummariseSystems(const std::vector<JudgedRun>& runs) {
@@ -143,7 +121,7 @@ std::string TextSummary(const std::vector<JudgedRun>& runs) {
   };
   for (const SystemSummary& s : SummariseSystems(runs)) add(DisplayName(s.system), s, false);
   for (const SystemSummary& s : SummariseBaselines(runs)) add(s.system, s, true);
-  std::string text = Table(rows);
+  std::string text = AlignedTable(rows);
   const std::vector<SystemSummary> systems = SummariseSystems(runs);
   for (std::size_t i = 1; i < systems.size(); ++i) {
     const Duel duel = Compare(runs, systems[0].system, systems[i].system);

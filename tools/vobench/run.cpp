@@ -86,11 +86,11 @@ void Run(const RunOptions& options) {
   {
     Progress progress("running", simulator.frame_count());
     while (const std::optional<sim::Frame> rendered = simulator.Next()) {
-      const vo::Frame frame = ToOdometry(*rendered);
+      const vo::PreparedFrame frame(ToOdometry(*rendered));
       Append(rendered->stamp_ns, rendered->truth, truth);
       if (folder && IsKept(rendered->index, simulator.frame_count())) truth_pictures.Add(simulator, rendered->index);
       ForEach(odometries, options.jobs, [&](Tracker& odometry) { odometry.Track(frame); });
-      if (view) view->Update(frame, odometries, truth, how);
+      if (view) view->Update(frame.frame, odometries, truth, how);
       progress.Step();
     }
   }

@@ -1,9 +1,13 @@
 #include <fmt/format.h>
 
+#include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "tools/evaluation/text_file.h"
 #include "tools/report/text_summary.h"
+#include "tools/report/time_table.h"
 #include "tools/vobench/commands.h"
 #include "tools/vobench/errors.h"
 #include "tools/vobench/interrupt.h"
@@ -17,7 +21,7 @@
 #include "tools/vobench/sequence_truth.h"
 #include "tools/vobench/tracker.h"
 #include "vo/geometry/camera_file.h"
-#include "vo/sequence/source.h"
+#include "vo/sequence/read_ahead.h"
 
 namespace vobench {
 namespace fs = std::filesystem;
@@ -83,6 +87,19 @@ std::string Record(const vo::Camera& c, const std::string& resolved) {
   return all.dump(2);
 }
 
+// What is recorded is read, decoded and prepared while the frame before is tracked. A camera's newest frame is the one that is wanted: it is
+// not asked for before the last is done with.
+std::function<std::optional<vo::PreparedFrame>()> Frames(vo::FrameSource& source) {
+  if (source.Count()) {
+    return [ahead = std::make_shared<vo::ReadAhead>(source)] { return Input([&] { return ahead->Next(); }); };
+  }
+  return [&source]() -> std::optional<vo::PreparedFrame> {
+    std::optional<vo::Frame> frame = Input([&] { return source.Next(); });
+    if (!frame) return std::nullopt;
+    return vo::PreparedFrame(std::move(*frame));
+  };
+}
+
 // A trajectory that starts at the origin is judged in its own world.
 evaluation::JudgeOptions StartedAtTheOrigin() {
   evaluation::JudgeOptions options;
@@ -114,16 +131,19 @@ void Track(const TrackOptions& options) {
   std::optional<LiveView> view;
   if (options.view) view.emplace(description);
   const Truth shown = view && truth ? *truth : Truth{};
+  const Clock tracking;
   {
     Progress progress("tracking", frames.value_or(0));
     if (!frames) fmt::print(stderr, "Ctrl-C ends it, and the result is written.\n");
-    while (const std::optional<vo::Frame> frame = Input([&] { return source->Next(); })) {
+    const auto next = Frames(*source);
+    while (const std::optional<vo::PreparedFrame> frame = next()) {
       if (!frames && InterruptPending()) break;
       tracker.Track(*frame);
-      if (view) view->Update(*frame, {&tracker, 1}, shown, StartedAtTheOrigin());
+      if (view) view->Update(frame->frame, {&tracker, 1}, shown, StartedAtTheOrigin());
       progress.Step();
     }
   }
+  const double elapsed_s = tracking.seconds();
   if (view) view->Show({&tracker, 1}, shown, StartedAtTheOrigin());
   tracker.Write();
   if (!frames) fmt::print(stderr, "{} frames came too fast and were let go\n", source->Dropped());
@@ -147,7 +167,8 @@ void Track(const TrackOptions& options) {
   if (options.map) WriteMap(*options.map, tracker.map());
   out.Commit();
 
-  fmt::print("{}The report is in {}\n", report::TextSummary(judged), (options.output / "report.html").string());
+  fmt::print("{}{}The report is in {}\n", report::TextSummary(judged), report::TimeTable(tracker.estimates().frames, elapsed_s),
+             (options.output / "report.html").string());
 }
 
 }  // namespace vobench

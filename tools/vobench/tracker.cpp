@@ -24,17 +24,17 @@ Tracker::Tracker(const TrackerSetup& setup, const vo::Camera& camera, std::int64
           Input([&] { return vo::Odometry(camera, ForSystem(setup.system, setup.params), setup.prior, setup.seed); })),
       recorder_(frames, Within(out, folder)) {}
 
-void Tracker::Track(const vo::Frame& frame) {
+void Tracker::Track(const vo::PreparedFrame& prepared) {
   const Clock clock;
   const vo::Estimate estimate = [&] {
     try {
-      return odometry_.Track(frame);
+      return odometry_.Track(prepared);
     } catch (const std::invalid_argument& error) {  // anything else is our bug
       throw BadInput(error.what());
     }
   }();
-  entry_.seconds += clock.seconds();
-  recorder_.Add(frame, estimate, odometry_.Features());
+  entry_.seconds += 1e-3 * prepared.ms + clock.seconds();
+  recorder_.Add(prepared.frame, estimate, odometry_.Features());
 }
 
 }  // namespace vobench

@@ -28,7 +28,8 @@ class Tracker {
           const std::optional<std::filesystem::path>& out, const std::string& folder);
 
   // Throws BadInput when the frame does not fit the camera, or time goes back.
-  void Track(const vo::Frame& frame);
+  void Track(const vo::Frame& frame) { Track(vo::PreparedFrame(frame)); }
+  void Track(const vo::PreparedFrame& prepared);
 
   // The files of the run folder, but for the truth. Throws std::runtime_error.
   void Write() const { recorder_.Write(odometry_.Map()); }

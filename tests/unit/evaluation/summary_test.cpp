@@ -120,6 +120,15 @@ TEST(Baseline, ConstantVelocityIsExactOnAScrew) {
   EXPECT_GT(metrics.constant_pose.none.position.max, 0.1);
 }
 
+TEST(Quantile, WorkedByHand) {
+  EXPECT_DOUBLE_EQ(Quantile({1, 2, 3, 6}, 0), 1);
+  EXPECT_DOUBLE_EQ(Quantile({1, 2, 3, 6}, 0.5), 2.5);
+  EXPECT_DOUBLE_EQ(Quantile({1, 2, 3, 6}, 0.9), 5.1);
+  EXPECT_DOUBLE_EQ(Quantile({1, 2, 3, 6}, 1), 6);
+  EXPECT_TRUE(std::isinf(Quantile({1, INFINITY}, 0.5)));
+  EXPECT_TRUE(std::isnan(Quantile({}, 0.5)));
+}
+
 TEST(Statistics, WorkedByHand) {
   const Statistics s = Summarise({1, 2, 3, 6});
   EXPECT_EQ(s.count, 4u);

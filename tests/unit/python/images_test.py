@@ -1,6 +1,7 @@
 """Rendered images, sequences on disk and the odometry on them."""
 import os
 import pathlib
+import sys
 import tempfile
 import threading
 import time
@@ -123,6 +124,24 @@ class OdometryOnImages(unittest.TestCase):
             vobench.judge([], [self.simulator.render(0).truth])
         with self.assertRaisesRegex(ValueError, r"estimates\[0\] is of another time than truths\[0\]"):
             vobench.judge([vobench.Estimate(stamp_ns=5, covariance=np.eye(12))], [self.simulator.render(1).truth])
+
+
+class Features(unittest.TestCase):
+    def test_are_where_the_truth_has_them(self):
+        sys.path.insert(0, str(SOURCE / "tools/python/examples"))
+        import match_errors
+
+        landmarks, camera = match_errors.landmarks_of(vobench.Scenario(SOURCE / "scenes/tiny.yaml"))
+        surfaces = [m for m in landmarks if not m.at_an_edge()]
+        self.assertGreater(len(surfaces), 30)
+
+        def sigma():
+            return match_errors.robust_sigma(np.concatenate([m.errors(camera)[np.array(m.used)] for m in surfaces]))
+
+        self.assertLess(sigma(), 0.15)  # 0.09 px; the filter takes it for 0.3
+        for m in surfaces:
+            m.depth *= 1.1
+        self.assertGreater(sigma(), 0.25)  # a truth that is not: 0.34
 
 
 class SequenceOnDisk(unittest.TestCase):

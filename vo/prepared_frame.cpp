@@ -1,0 +1,21 @@
+#include "vo/prepared_frame.h"
+
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+#include "vo/estimate.h"
+
+namespace vo {
+
+PreparedFrame::PreparedFrame(Frame frame_) : frame(std::move(frame_)) {
+  Stopwatch watch;
+  if (frame.image.channels() == 1)
+    grey = frame.image;
+  else
+    cv::cvtColor(frame.image, grey, cv::COLOR_BGR2GRAY);
+  brisk.Set(grey);
+  ms = watch.Lap();
+}
+
+}  // namespace vo
