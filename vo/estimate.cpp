@@ -25,10 +25,24 @@ std::unique_ptr<Filter> MakeFilter(const Params& params, const Prior& prior, std
   return std::make_unique<ParticleFilter>(params.motion, params.filter, params.landmark, out, seed);
 }
 
-Estimate MakeEstimate(const Filter& filter, std::int64_t stamp_ns, FrameDiagnostics diagnostics) {
+Estimate MakeEstimate(const Filter& filter, const UnknownScale& scale, std::int64_t stamp_ns, FrameDiagnostics diagnostics) {
   diagnostics.effective_particles = filter.effective_particles();
   const Belief& belief = filter.belief();
-  return {stamp_ns, belief.pose, belief.velocity.head<3>(), belief.velocity.tail<3>(), belief.covariance, diagnostics};
+  return {stamp_ns, belief.pose, belief.velocity.head<3>(), belief.velocity.tail<3>(),
+          scale.Covariance(belief.pose, belief.velocity, belief.covariance), diagnostics};
+}
+
+std::vector<MapPoint> MakeMap(const Filter& filter, const UnknownScale& scale) {
+  std::vector<MapPoint> points;
+  const std::vector<Filter::LandmarkBelief> beliefs = filter.LandmarkBeliefs();
+  std::vector<std::optional<PointMoments>> moments = filter.LandmarkPoints();
+  for (std::size_t n = 0; n < beliefs.size(); ++n) {
+    const Filter::LandmarkBelief& belief = beliefs[n];
+    if (moments[n]) moments[n] = scale.Moments(*moments[n]);
+    points.push_back({0, belief.X_W, belief.inverse_depth, scale.InverseDepthSigma(belief.inverse_depth, belief.inverse_depth_sigma), false,
+                      belief.relative_sigma, moments[n]});
+  }
+  return points;
 }
 
 void RequireIncreasing(std::int64_t stamp_ns, std::int64_t last_ns) {

@@ -11,6 +11,7 @@
 #include "vo/map/existence.h"
 #include "vo/map/forgetting.h"
 #include "vo/rolling_shutter.h"
+#include "vo/target.h"
 
 namespace vo {
 struct Odometry::Impl {
@@ -18,19 +19,25 @@ struct Odometry::Impl {
       : camera(camera_),
         params(Checked(params_)),
         filter(MakeFilter(params, prior, seed)),
+        scale(params.landmark.scale_sigma, prior.pose.p_WC),
         first_sampler(FirstSampler(params.features)),
-        border_px(std::max(first_sampler.margin(), Patch::kRadius + 1)) {}
+        border_px(std::max(first_sampler.margin(), Patch::kRadius + 1)),
+        target_frames(params.target.columns > 0 ? params.target.frames : 0) {}
 
   void Require(const Frame& frame) const;
   Estimate Process(const PreparedFrame& prepared);
   void UpdateScores(const Association& association);
   void Forget();
   void AddFeatures(const cv::Mat& grey, const BriskImage& brisk);
+  void AddTarget(const cv::Mat& grey, const BriskImage& brisk, std::vector<FirstView>& first);
+  void Add(const Eigen::Vector2i& corner, const std::optional<KnownDepth>& depth, const cv::Mat& grey, const BriskImage& brisk,
+           std::vector<FirstView>& first);
   Estimate Answer(std::int64_t stamp_ns, FrameDiagnostics diagnostics) const;
 
   Camera camera;
   Params params;
   std::unique_ptr<Filter> filter;
+  UnknownScale scale;
   BriskSampler first_sampler;
   int border_px;
   std::vector<LandmarkRecord> records;  // in the order of the filter's landmarks
@@ -38,6 +45,7 @@ struct Odometry::Impl {
   std::vector<Eigen::Vector2d> left_out;  // [px] of this frame: predicted, but not looked for
   std::optional<std::int64_t> last_stamp_ns;
   int next_id = 0;
+  int target_frames = 0;  // in which the target may still be looked for
 };
 
 void Odometry::Impl::Require(const Frame& frame) const {
@@ -104,28 +112,42 @@ void Odometry::Impl::Forget() {
   records.resize(to);
 }
 
+// A new landmark; its first view is what the filter is to be told.
+void Odometry::Impl::Add(const Eigen::Vector2i& corner, const std::optional<KnownDepth>& depth, const cv::Mat& grey, const BriskImage& brisk,
+                         std::vector<FirstView>& first) {
+  const Eigen::Vector2d pixel = corner.cast<double>();
+  LandmarkRecord record;
+  record.appearance = {brisk.Describe(corner, first_sampler), CutPatch(grey, corner)};
+  record.id = next_id++;
+  record.score = params.score.initial;
+  records.push_back(record);
+  const Belief& belief = filter->belief();
+  first.push_back(RollingShutter(camera, params.features).FirstSeen(pixel, belief.pose, belief.velocity));
+  // The patch that later views are registered to defines the landmark: its first view is as good as the registration can be.
+  first.back().R = PixelNoise(camera.LensJacobian(first.back().ray), params.features.noise == MatchNoise::registered ? params.features.sigma_floor_px
+                                                                                                                     : params.features.sigma_px);
+  first.back().depth = depth;
+  views.push_back({record.id, pixel, pixel, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
+}
+
+void Odometry::Impl::AddTarget(const cv::Mat& grey, const BriskImage& brisk, std::vector<FirstView>& first) {
+  if (target_frames == 0) return;
+  --target_frames;
+  const std::vector<TargetCorner> corners = FindTarget(grey, camera, params.target, params.features.sigma_floor_px);
+  if (corners.empty()) return;
+  target_frames = 0;
+  for (const TargetCorner& corner : corners)
+    if (camera.Sees(corner.pixel.cast<double>(), border_px)) Add(corner.pixel, corner.depth, grey, brisk, first);
+}
+
 void Odometry::Impl::AddFeatures(const cv::Mat& grey, const BriskImage& brisk) {
+  std::vector<FirstView> first;
+  AddTarget(grey, brisk, first);
   std::vector<Eigen::Vector2d> occupied = left_out;
   for (const FeatureView& view : views)
-    if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
-  const std::vector<Eigen::Vector2i> corners = DetectCorners(grey, occupied, border_px, params.features);
-  const Belief& belief = filter->belief();
-  const RollingShutter shutter(camera, params.features);
-  std::vector<FirstView> first;
-  for (const Eigen::Vector2i& corner : corners) {
-    const Eigen::Vector2d pixel = corner.cast<double>();
-    if (!camera.Sees(pixel)) continue;  // at the edge of a fisheye lens
-    LandmarkRecord record;
-    record.appearance = {brisk.Describe(corner, first_sampler), CutPatch(grey, corner)};
-    record.id = next_id++;
-    record.score = params.score.initial;
-    records.push_back(record);
-    first.push_back(shutter.FirstSeen(pixel, belief.pose, belief.velocity));
-    // The patch that later views are registered to defines the landmark: its first view is as good as the registration can be.
-    first.back().R = PixelNoise(camera.LensJacobian(first.back().ray), params.features.noise == MatchNoise::registered ? params.features.sigma_floor_px
-                                                                                                                       : params.features.sigma_px);
-    views.push_back({record.id, pixel, pixel, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
-  }
+    if (view.status == FeatureView::Status::matched || view.status == FeatureView::Status::fresh) occupied.push_back(view.pixel);
+  for (const Eigen::Vector2i& corner : DetectCorners(grey, occupied, border_px, params.features))
+    if (camera.Sees(corner.cast<double>())) Add(corner, std::nullopt, grey, brisk, first);  // not at the edge of a fisheye lens
   filter->AddLandmarks(first);
 }
 
@@ -133,7 +155,7 @@ Estimate Odometry::Impl::Answer(std::int64_t stamp_ns, FrameDiagnostics diagnost
   diagnostics.landmarks = static_cast<int>(records.size());
   diagnostics.permanent =
       static_cast<int>(std::count_if(records.begin(), records.end(), [](const LandmarkRecord& r) { return r.permanent; }));
-  return MakeEstimate(*filter, stamp_ns, diagnostics);
+  return MakeEstimate(*filter, scale, stamp_ns, diagnostics);
 }
 
 Odometry::Odometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)
@@ -152,12 +174,11 @@ Estimate Odometry::Track(const PreparedFrame& frame) {
 }
 
 std::vector<MapPoint> Odometry::Map() const {
-  std::vector<MapPoint> points;
-  const std::vector<Filter::LandmarkBelief> beliefs = impl_->filter->LandmarkBeliefs();
-  const std::vector<std::optional<PointMoments>> moments = impl_->filter->LandmarkPoints();
-  for (std::size_t n = 0; n < beliefs.size(); ++n)
-    points.push_back({impl_->records[n].id, beliefs[n].X_W, beliefs[n].inverse_depth, beliefs[n].inverse_depth_sigma,
-                      impl_->records[n].permanent, beliefs[n].relative_sigma, moments[n]});
+  std::vector<MapPoint> points = MakeMap(*impl_->filter, impl_->scale);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    points[n].id = impl_->records[n].id;
+    points[n].permanent = impl_->records[n].permanent;
+  }
   return points;
 }
 

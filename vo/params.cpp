@@ -59,8 +59,6 @@ std::vector<std::string> Problems(const Params& params) {
   check.Positive("landmark.inverse_depth", landmark.inverse_depth);
   check.Positive("landmark.inverse_depth_sigma", landmark.inverse_depth_sigma);
   check.Require(landmark.scale_sigma >= 0 && landmark.scale_sigma <= 3, "landmark.scale_sigma", landmark.scale_sigma, "must lie in 0 ... 3");
-  if (filter.sampled == Sampled::nothing && landmark.scale_sigma > 0)
-    check.Refuse("landmark.scale_sigma must be 0 for ekfslam: its landmarks share no scale");
   check.Positive("landmark.permanent_ratio", landmark.permanent_ratio);
   check.Require(landmark.forget_after >= 1, "landmark.forget_after", landmark.forget_after, "must be at least 1");
   check.Require(landmark.max_landmarks >= 10, "landmark.max_landmarks", landmark.max_landmarks, "must be at least 10");
@@ -114,6 +112,14 @@ std::vector<std::string> Problems(const Params& params) {
   check.Positive("features.max_baseline_ratio", features.max_baseline_ratio);
   check.Require(std::abs(features.readout_s.value_or(0)) <= 1, "features.readout_s", features.readout_s.value_or(0), "must lie in -1 ... 1 s");
   check.Require(features.max_searched >= 1, "features.max_searched", features.max_searched, "must be at least 1");
+  const TargetParams& target = params.target;
+  if (target.columns != 0 || target.rows != 0) {  // findChessboardCornersSB asks for three
+    check.Require(target.columns >= 3, "target.columns", target.columns, "must be 3 or more, or 0 with target.rows 0");
+    check.Require(target.rows >= 3, "target.rows", target.rows, "must be 3 or more, or 0 with target.columns 0");
+    check.Positive("target.square", target.square_m);
+    check.Require(landmark.scale_sigma == 0, "landmark.scale_sigma", landmark.scale_sigma, "must be 0 where a target tells the scale");
+    check.Require(target.frames >= 1, "target.frames", target.frames, "must be at least 1");
+  }
   return check.Take();
 }
 

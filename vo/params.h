@@ -48,7 +48,7 @@ struct FilterParams {
   Weight weight = Weight::evidence;
   int lag = 0;                  // poses kept un-sampled, so that later images speak before the map is committed to them (0: the paper)
   int start_window = 30;        // so many poses at the start are one window, found anew in every frame, before any of them is sampled (0: the
-                                // paper). For pose-sampling filters with proposal ekf or iterated, weight evidence or equal, and scale_sigma 0; others have none
+                                // paper). For pose-sampling filters with proposal ekf or iterated, and weight evidence or equal; others have none
   bool marginal_mode = false;   // propose at the mode of the poses' marginal, not of poses and landmarks jointly: unbiased in scale, but it
                                 // believes features.sigma_px, which must then be right
   bool reject_outliers = true;  // matches that contradict the others are set aside before the update
@@ -61,7 +61,7 @@ struct LandmarkParams {
   Bearing bearing = Bearing::estimated;
   double inverse_depth = 0.25;        // of a new landmark [1/m]
   double inverse_depth_sigma = 0.15;  // [1/m]
-  double scale_sigma = 0;             // of the log of a factor that all inverse depths share: how well the scale is known beforehand [-]
+  double scale_sigma = 0;             // of the log of a factor that all lengths share: how well the scale is known beforehand. Part of the answer's covariance [-]
   double permanent_ratio = 0.05;      // permanent when sigma_rho < ratio * rho (our choice; the paper gives no number)
   int forget_after = 90;              // drop a non-permanent landmark that could not be searched for so many frames
   int max_landmarks = 1000;           // flat memory: beyond it the longest unseen are dropped
@@ -121,12 +121,20 @@ struct FeatureParams {
   int pilots = 16;                 // so many are looked for first; where the others then are, small windows find them (0: the paper)
 };
 
+// A chessboard before the camera at the start tells the scale.
+struct TargetParams {
+  int columns = 0, rows = 0;  // inner corners, where four squares meet; 0: there is none
+  double square_m = 0;        // side of a square
+  int frames = 30;            // it is looked for until it is found, in no more than so many frames
+};
+
 struct Params {
   MotionParams motion;
   FilterParams filter;
   LandmarkParams landmark;
   ScoreParams score;
   FeatureParams features;
+  TargetParams target;
 };
 
 // Everything wrong with the parameters, one sentence each, with the value; empty when all is well.

@@ -15,7 +15,7 @@ namespace vo {
 
 struct PointOdometry::Impl {
   Impl(const Camera& camera_, const Params& params_, const Prior& prior, std::uint64_t seed)
-      : camera(camera_), params(Checked(params_)), filter(MakeFilter(params, prior, seed)) {}
+      : camera(camera_), params(Checked(params_)), filter(MakeFilter(params, prior, seed)), scale(params.landmark.scale_sigma, prior.pose.p_WC) {}
 
   Estimate Process(const PointFrame& frame);
   std::vector<Match> MatchesIn(const PointFrame& frame, FrameDiagnostics& diagnostics);
@@ -30,6 +30,8 @@ struct PointOdometry::Impl {
   Camera camera;
   Params params;
   std::unique_ptr<Filter> filter;
+  UnknownScale scale;
+  std::vector<BeliefComponent> mixture;  // the filter's, the scale unknown
   std::vector<Record> records;                         // in the order of the filter's landmarks
   std::unordered_map<std::int64_t, int> landmark_of;   // id -> index
   std::optional<std::int64_t> last_stamp_ns;
@@ -53,7 +55,11 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
   for (const Filter::LandmarkBelief& belief : filter->LandmarkBeliefs())
     diagnostics.permanent += belief.relative_sigma < params.landmark.permanent_ratio;
   diagnostics.ms_features = watch.Lap();
-  return MakeEstimate(*filter, frame.stamp_ns, diagnostics);
+  if (!scale.known()) {
+    mixture = filter->mixture();
+    for (BeliefComponent& component : mixture) component.covariance = scale.Covariance(component.pose, component.velocity, component.covariance);
+  }
+  return MakeEstimate(*filter, scale, frame.stamp_ns, diagnostics);
 }
 
 std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, FrameDiagnostics& diagnostics) {
@@ -125,15 +131,13 @@ Estimate PointOdometry::Track(const PointFrame& frame) { return impl_->Process(f
 
 const Filter& PointOdometry::filter() const { return *impl_->filter; }
 
-const std::vector<BeliefComponent>& PointOdometry::Mixture() const { return impl_->filter->mixture(); }
+const std::vector<BeliefComponent>& PointOdometry::Mixture() const {
+  return impl_->scale.known() ? impl_->filter->mixture() : impl_->mixture;
+}
 
 std::vector<MapPoint> PointOdometry::Map() const {
-  std::vector<MapPoint> points;
-  const std::vector<Filter::LandmarkBelief> beliefs = impl_->filter->LandmarkBeliefs();
-  const std::vector<std::optional<PointMoments>> moments = impl_->filter->LandmarkPoints();
-  for (std::size_t n = 0; n < beliefs.size(); ++n)
-    points.push_back({static_cast<int>(impl_->records[n].id), beliefs[n].X_W, beliefs[n].inverse_depth, beliefs[n].inverse_depth_sigma,
-                      false, beliefs[n].relative_sigma, moments[n]});
+  std::vector<MapPoint> points = MakeMap(*impl_->filter, impl_->scale);
+  for (std::size_t n = 0; n < points.size(); ++n) points[n].id = static_cast<int>(impl_->records[n].id);
   return points;
 }
 

@@ -6,7 +6,7 @@
 
 namespace vo {
 
-enum class Stream : std::uint32_t { prior_pose = 1, prior_velocity, pose, velocity, resampling, scale = 7 };
+enum class Stream : std::uint32_t { prior_pose = 1, prior_velocity, pose, velocity, resampling };
 
 struct RandomKey {
   std::uint64_t seed = 0;

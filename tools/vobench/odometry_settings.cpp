@@ -111,15 +111,24 @@ void ReadFeatures(Section section, vo::FeatureParams& params) {
   section.Read("pilots", pilots, Range::AtLeast(0));
 }
 
+void ReadTarget(Section section, vo::TargetParams& params) {
+  auto& [columns, rows, square_m, frames] = params;
+  section.Read("columns", columns, Range{0, 100});
+  section.Read("rows", rows, Range{0, 100});
+  section.Read("square", square_m, Unit::length, Range::AtLeast(0));
+  section.Read("frames", frames, Range::AtLeast(1));
+}
+
 }  // namespace
 
 void ReadOdometry(Section section, vo::Params& params) {
-  auto& [motion, filter, landmark, score, features] = params;
+  auto& [motion, filter, landmark, score, features, target] = params;
   ReadMotion(section.Child("motion"), motion);
   ReadFilter(section.Child("filter"), filter);
   ReadLandmark(section.Child("landmark"), landmark);
   ReadScore(section.Child("score"), score);
   ReadFeatures(section.Child("features"), features);
+  ReadTarget(section.Child("target"), target);
   // Rules between several values; each text begins with the key.
   for (const std::string& problem : vo::Problems(params)) section.Reject(problem.substr(0, problem.find(' ')), problem);
 }

@@ -31,7 +31,6 @@ vo::Params ForSystem(const std::string& name, vo::Params params) {
     WithoutLag(params.filter);
   } else if (name == "ekfslam") {
     params.filter.sampled = vo::Sampled::nothing;
-    params.landmark.scale_sigma = 0;
     WithoutLag(params.filter);
   } else {
     throw std::logic_error("no system " + name);

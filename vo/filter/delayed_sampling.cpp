@@ -64,10 +64,7 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
     for (Particle& particle : particles_) particle.log_weight -= particle.path.log_evidence;
     BuildTracks();
     SolvePaths();
-    if (undecided_) {
-      LookForBetter();
-      if (landmark_params_.scale_sigma > 0) FollowBest();
-    }
+    if (undecided_) LookForBetter();
     for (Particle& particle : particles_) particle.log_weight += particle.path.log_evidence;
   }
   mixture_.clear();
@@ -77,7 +74,7 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
   const bool full = static_cast<int>(steps_.size()) > window_size();
   if (full && undecided_) Decide();
   // With equal weights a refuted particle is replaced before the draw, so that it is not the draws that are alike; and not before there is
-  // one: until then all look for the best solution anyway, each in its own scale.
+  // one: until then all look for the best solution anyway.
   if (params_.weight == Weight::equal && full && ToResample()) Resample();
   if (full) CommitOldest(static_cast<int>(steps_.size()) - window_size());
   if (!delayed())
@@ -122,22 +119,6 @@ void ParticleFilter::PlaceAnchors(Particle& particle) const {
     if (anchor_slot_[a] >= 0) particle.anchors[a] = particle.path.mean[anchor_slot_[a]];
 }
 
-// Every particle tries the best one's solution in its own scale: that of the images is the same for all.
-void ParticleFilter::FollowBest() {
-  const auto worse = [](const Particle& a, const Particle& b) { return a.path.log_evidence < b.path.log_evidence; };
-  const Particle best = *std::max_element(particles_.begin(), particles_.end(), worse);
-  for (Particle& particle : particles_) {
-    const double factor = particle.scale / best.scale;
-    Particle other = particle;
-    other.path = best.path;
-    for (Pose& pose : other.path.mean) pose.p_WC = best.pose.p_WC + (pose.p_WC - best.pose.p_WC) / factor;
-    other.modes = best.modes;
-    for (Eigen::Vector3d& mode : other.modes) mode.z() *= factor;
-    SolvePath(other);
-    if (other.path.log_evidence > particle.path.log_evidence) particle = std::move(other);
-  }
-}
-
 void ParticleFilter::WeighPaths() {
   if (params_.weight != Weight::equal) return Weigh();
   std::vector<double> log_evidence;
@@ -173,11 +154,9 @@ void ParticleFilter::CommitOldest(int count) {
 
 // The poses before are drawn: the path's covariance is that of the rest.
 std::vector<Pose> ParticleFilter::Draw(int slot) const {
-  const bool scales = landmark_params_.scale_sigma > 0;  // which the draws are not to correlate with either
-  ParticleColumns offsets(scales ? 7 : 6, params_.particles), normals(6, params_.particles);
+  ParticleColumns offsets(6, params_.particles), normals(6, params_.particles);
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
-    offsets.col(i).head<6>() = Minus(particles_[i].path.mean[slot], particles_[0].path.mean[slot]);
-    if (scales) offsets(6, i) = std::log(particles_[i].scale);
+    offsets.col(i) = Minus(particles_[i].path.mean[slot], particles_[0].path.mean[slot]);
     normals.col(i) = NormalVector<Vector6>({seed_, Stream::pose, steps_[slot].frame, i});
   }
   if (params_.weight == Weight::equal && EnoughForExactDraws(params_.particles, 6)) normals = ExactDraws(offsets, normals);

@@ -51,7 +51,7 @@ class Filter {
     Eigen::Vector3d X_W;        // on that path
     double inverse_depth;       // mean [1/m]
     double inverse_depth_sigma;
-    double relative_sigma;      // inverse_depth_sigma / inverse_depth, but for what all landmarks have in common: the scale
+    double relative_sigma;      // inverse_depth_sigma / inverse_depth
   };
   virtual std::vector<LandmarkBelief> LandmarkBeliefs() const = 0;
   // Where the landmarks are in the world: mean and covariance over all that the filter holds possible, each landmark linearised at

@@ -43,7 +43,7 @@ ParticleFilter::ParticleFilter(const MotionParams& motion, const FilterParams& f
       step_(StepOf(motion, 1.0)),
       particles_(filter.particles),
       weights_(filter.particles, 1.0 / filter.particles),
-      start_window_(KnowsWindows(filter) && landmark.scale_sigma == 0 ? filter.start_window : 0),
+      start_window_(KnowsWindows(filter) ? filter.start_window : 0),
       undecided_(std::max(filter.lag, start_window_) > 0),
       effective_particles_(filter.particles) {
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
@@ -54,18 +54,10 @@ ParticleFilter::ParticleFilter(const MotionParams& motion, const FilterParams& f
       particle.velocity = {SampleNormal(prior.velocity, prior.velocity_covariance, {seed_, Stream::prior_velocity, 0, i}),
                            Matrix6::Zero()};
   }
-  if (landmark.scale_sigma > 0) DrawScales();
   belief_.pose = prior.pose.mean;
   belief_.velocity = prior.velocity;
   belief_.covariance.topLeftCorner<6, 6>() = prior.pose.covariance;
   belief_.covariance.bottomRightCorner<6, 6>() = prior.velocity_covariance;
-}
-
-void ParticleFilter::DrawScales() {
-  ParticleColumns normals(1, params_.particles);
-  for (std::uint32_t i = 0; i < particles_.size(); ++i) normals(0, i) = Normal({seed_, Stream::scale, 0, i}, 0);
-  if (EnoughForExactDraws(params_.particles, 1)) normals = ExactDraws(ParticleColumns::Zero(1, params_.particles), normals);
-  for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].scale = std::exp(landmark_params_.scale_sigma * normals(0, i));
 }
 
 void ParticleFilter::Predict(double dt) {
@@ -219,7 +211,7 @@ void ParticleFilter::AddLandmarks(std::span<const FirstView> views) {
     if (slot == slots) particle.anchors.emplace_back();
     particle.anchors[slot] = steps_.empty() ? particle.pose : particle.path.mean.back();
     for (const FirstView& view : views) {
-      particle.landmarks.push_back(NewLandmark(view, landmark_params_, particle.scale));
+      particle.landmarks.push_back(NewLandmark(view, landmark_params_));
       if (delayed()) particle.modes.push_back(particle.landmarks.back().mean);
     }
   }
@@ -277,26 +269,18 @@ std::vector<Filter::LandmarkBelief> ParticleFilter::LandmarkBeliefs() const {
   std::vector<LandmarkBelief> beliefs;
   for (int n = 0; n < landmark_count(); ++n)
     beliefs.push_back({PointInWorld(best.anchors[anchor_of_[n]], ModeOf(best, n)), 0, 0, 0});
-  struct Sums {
-    double second = 0, relative = 0, relative_second = 0;  // relative: in each particle's own scale
-  };
-  std::vector<Sums> sums(beliefs.size());
+  std::vector<double> second(beliefs.size());
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const double weight = weights_[i], scale = particles_[i].scale;
     for (std::size_t n = 0; n < beliefs.size(); ++n) {
       const double rho = ModeOf(particles_[i], static_cast<int>(n)).z();
-      const double second = rho * rho + particles_[i].landmarks[n].covariance(2, 2);
-      beliefs[n].inverse_depth += weight * rho;
-      sums[n].second += weight * second;
-      sums[n].relative += weight * rho / scale;
-      sums[n].relative_second += weight * second / (scale * scale);
+      beliefs[n].inverse_depth += weights_[i] * rho;
+      second[n] += weights_[i] * (rho * rho + particles_[i].landmarks[n].covariance(2, 2));
     }
   }
-  const auto sigma = [](double mean, double second) { return std::sqrt(std::max(0.0, second - mean * mean)); };
   for (std::size_t n = 0; n < beliefs.size(); ++n) {
-    const double relative = sums[n].relative;
-    beliefs[n].inverse_depth_sigma = sigma(beliefs[n].inverse_depth, sums[n].second);
-    beliefs[n].relative_sigma = relative > 0 ? sigma(relative, sums[n].relative_second) / relative : INFINITY;
+    LandmarkBelief& belief = beliefs[n];
+    belief.inverse_depth_sigma = std::sqrt(std::max(0.0, second[n] - belief.inverse_depth * belief.inverse_depth));
+    belief.relative_sigma = belief.inverse_depth > 0 ? belief.inverse_depth_sigma / belief.inverse_depth : INFINITY;
   }
   return beliefs;
 }

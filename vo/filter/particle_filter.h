@@ -27,7 +27,6 @@ struct Particle {
   CameraVelocityFilter::State velocity;    // Gaussian given the path: (v in W, w in C); all have the same covariance
   std::vector<Landmark> landmarks;         // Gaussian given the path
   std::vector<Pose> anchors;               // of the landmarks' first views, on this particle's path
-  double scale = 1;                        // sampled, once: of all inverse depths, in units of the prior's
   double log_weight = 0;
   PoseGaussian prediction;                 // (12)(13), valid between Predict and Update
 
@@ -106,7 +105,6 @@ class ParticleFilter final : public Filter {
   void Decide();
   void BuildTracks();
   void WeighPaths();
-  void FollowBest();
   bool ToResample() const;
   void CommitOldest(int count);
   std::vector<Pose> Draw(int slot) const;
@@ -115,7 +113,6 @@ class ParticleFilter final : public Filter {
   BeliefComponent ComponentOnPath(const Particle& particle) const;
   std::vector<ImagePrediction> PredictImagesOnPath(std::span<const int> landmarks) const;
 
-  void DrawScales();
   void Coast();
   void SampleStep(std::span<const Match> matches);
   PoseGaussian PredictPose(const Particle& particle, const Matrix6& covariance) const;

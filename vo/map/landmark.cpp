@@ -38,8 +38,9 @@ Matrix26 AnchorJacobian(const Projection& projection, const Eigen::Vector3d& lan
   return result;
 }
 
-Landmark NewLandmark(const FirstView& view, const LandmarkParams& params, double scale) {
-  const double rho = params.inverse_depth * scale, sigma = params.inverse_depth_sigma * scale;
+Landmark NewLandmark(const FirstView& view, const LandmarkParams& params) {
+  const double rho = view.depth ? view.depth->inverse_depth : params.inverse_depth;
+  const double sigma = view.depth ? view.depth->sigma : params.inverse_depth_sigma;
   Landmark landmark;
   landmark.mean << view.ray + rho * view.by_inverse_depth, rho;
   landmark.covariance(2, 2) = sigma * sigma;

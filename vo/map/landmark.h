@@ -3,6 +3,8 @@
 // Units:   image points here are on the plane z = 1 of an undistorted camera [-]; rho is 1 / depth along z of the anchor [1/m].
 #pragma once
 
+#include <optional>
+
 #include "vo/geometry/pose.h"
 #include "vo/params.h"
 
@@ -46,15 +48,21 @@ Projection Project(const AnchorView& view, const Eigen::Vector3d& landmark);
 // dz / d(dp in W, dphi in A) of the anchor's pose, for a landmark in front.
 Matrix26 AnchorJacobian(const Projection& projection, const Eigen::Vector3d& landmark);
 
+// A depth that is known better than LandmarkParams has it.
+struct KnownDepth {
+  double inverse_depth;  // [1/m]
+  double sigma;          // [1/m]
+};
+
 // Where a landmark is seen for the first time, on the plane z = 1: at ray + by_inverse_depth rho, with covariance R.
 struct FirstView {
   Eigen::Vector2d ray;
   Eigen::Matrix2d R;
   Eigen::Vector2d by_inverse_depth = Eigen::Vector2d::Zero();  // not zero: the camera moved between the row's time and the stamp
+  std::optional<KnownDepth> depth = std::nullopt;
 };
 
-// `scale`: of the inverse depth that is believed beforehand.
-Landmark NewLandmark(const FirstView& view, const LandmarkParams& params, double scale = 1);
+Landmark NewLandmark(const FirstView& view, const LandmarkParams& params);
 
 // In W; far away for a vanishing rho.
 Eigen::Vector3d PointInWorld(const Pose& anchor, const Eigen::Vector3d& landmark);

@@ -107,18 +107,20 @@ TEST(RollingShutter, FirstViewsAreRightAtEveryDepth) {
 
 // (ray + noise + by_inverse_depth rho, rho) of independent noise and rho, with both written out.
 TEST(NewLandmark, KnowsHowItsRayHangsOnItsDepth) {
-  vo::LandmarkParams params;
+  vo::LandmarkParams usual;
   const vo::FirstView view{{0.2, -0.1}, 1e-6 * Eigen::Matrix2d::Identity(), {0.03, -0.02}};
   for (const double scale : {1.0, 1.7}) {
-    const vo::Landmark landmark = vo::NewLandmark(view, params, scale);
-    const double rho = scale * params.inverse_depth, variance = std::pow(scale * params.inverse_depth_sigma, 2);
+    vo::LandmarkParams params;
+    params.inverse_depth = scale * usual.inverse_depth, params.inverse_depth_sigma = scale * usual.inverse_depth_sigma;
+    const vo::Landmark landmark = vo::NewLandmark(view, params);
+    const double rho = params.inverse_depth, variance = std::pow(params.inverse_depth_sigma, 2);
     EXPECT_LT((landmark.mean - Vector3d(0.2 + 0.03 * rho, -0.1 - 0.02 * rho, rho)).norm(), 1e-15);
     Eigen::Matrix3d T = Eigen::Matrix3d::Identity(), independent = Vector3d(1e-6, 1e-6, variance).asDiagonal();
     T.topRightCorner<2, 1>() = view.by_inverse_depth;
     EXPECT_LT((landmark.covariance - T * independent * T.transpose()).norm(), 1e-15);
   }
-  params.bearing = vo::Bearing::fixed;  // one dimension: the ray of the depth that is believed
-  EXPECT_EQ(vo::NewLandmark(view, params).covariance.topRows<2>().norm(), 0);
+  usual.bearing = vo::Bearing::fixed;  // one dimension: the ray of the depth that is believed
+  EXPECT_EQ(vo::NewLandmark(view, usual).covariance.topRows<2>().norm(), 0);
 }
 
 }  // namespace

@@ -1,0 +1,57 @@
+// Closed form against draws: a Gaussian whose lengths are multiplied by a log-normal factor.
+#include "vo/unknown_scale.h"
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <gtest/gtest.h>
+
+#include "tests/unit/vo/draws.h"
+
+namespace {
+
+using vo::Matrix12;
+using Vector12 = Eigen::Matrix<double, 12, 1>;
+
+TEST(UnknownScale, IsTheSecondMomentOfWhatItMayBe) {
+  vo_test::Draws draws(1);
+  Matrix12 A;
+  for (double& a : A.reshaped()) a = 0.1 * draws.Normal();
+  const Matrix12 P = A * A.transpose();
+  const Eigen::Vector3d start(1, 2, 3);
+  vo::Pose pose;
+  pose.p_WC = start + Eigen::Vector3d(0.5, -0.2, 1);
+  vo::Vector6 velocity;
+  velocity << 0.3, 0.1, -0.2, 1, 2, 3;
+  const double sigma = 0.3;
+  const Matrix12 wide = vo::UnknownScale(sigma, start).Covariance(pose, velocity, P);
+
+  const Matrix12 L = P.llt().matrixL();
+  Vector12 at = Vector12::Zero();  // of lengths, seen from the start; angles are about their means
+  at.segment<3>(0) = pose.p_WC - start;
+  at.segment<3>(6) = velocity.head<3>();
+  Matrix12 sum = Matrix12::Zero();
+  constexpr int kDraws = 400'000;
+  for (int i = 0; i < kDraws; ++i) {
+    Vector12 x = at + L * draws.Normals<12>();
+    const double factor = std::exp(-sigma * draws.Normal());
+    x.segment<3>(0) *= factor;
+    x.segment<3>(6) *= factor;
+    sum += (x - at) * (x - at).transpose() / kDraws;
+  }
+  for (int i = 0; i < 12; ++i) {
+    for (int j = 0; j < 12; ++j) EXPECT_NEAR(wide(i, j), sum(i, j), 0.02 * std::sqrt(sum(i, i) * sum(j, j))) << i << " " << j;  // 5 sigma and more
+  }
+  EXPECT_GT(Eigen::LLT<Matrix12>(wide).matrixL().determinant(), 0);
+}
+
+TEST(UnknownScale, KnownChangesNoBit) {
+  const vo::UnknownScale known(0, {1, 2, 3});
+  const Matrix12 P = Matrix12::Random();
+  EXPECT_EQ(known.Covariance({}, vo::Vector6::Ones(), P), P);
+  const vo::PointMoments point{{1, 2, 4}, Eigen::Matrix3d::Identity() * 0.1};
+  EXPECT_EQ(known.Moments(point).covariance, point.covariance);
+  EXPECT_EQ(known.InverseDepthSigma(0.3, 0.125), 0.125);
+}
+
+}  // namespace
