@@ -40,7 +40,7 @@ std::vector<MapPoint> MakeMap(const Filter& filter, const UnknownScale& scale) {
     const Filter::LandmarkBelief& belief = beliefs[n];
     if (moments[n]) moments[n] = scale.Moments(*moments[n]);
     points.push_back({0, belief.X_W, belief.inverse_depth, scale.InverseDepthSigma(belief.inverse_depth, belief.inverse_depth_sigma), false,
-                      belief.relative_sigma, moments[n]});
+                      belief.relative_sigma(), moments[n]});
   }
   return points;
 }

@@ -20,6 +20,7 @@ struct Odometry::Impl {
         params(Checked(params_)),
         filter(MakeFilter(params, prior, seed)),
         scale(params.landmark.scale_sigma, prior.pose.p_WC),
+        shutter(camera, params.features),
         first_sampler(FirstSampler(params.features)),
         border_px(std::max(first_sampler.margin(), Patch::kRadius + 1)),
         target_frames(params.target.columns > 0 ? params.target.frames : 0) {}
@@ -38,6 +39,7 @@ struct Odometry::Impl {
   Params params;
   std::unique_ptr<Filter> filter;
   UnknownScale scale;
+  RollingShutter shutter;
   BriskSampler first_sampler;
   int border_px;
   std::vector<LandmarkRecord> records;  // in the order of the filter's landmarks
@@ -103,7 +105,7 @@ void Odometry::Impl::UpdateScores(const Association& association) {
 void Odometry::Impl::Forget() {
   const std::vector<Filter::LandmarkBelief> beliefs = filter->LandmarkBeliefs();
   for (std::size_t n = 0; n < records.size(); ++n)
-    records[n].permanent = beliefs[n].relative_sigma < params.landmark.permanent_ratio;
+    records[n].permanent = beliefs[n].relative_sigma() < params.landmark.permanent_ratio;
   const std::vector<bool> keep = WorthKeeping(records, params.landmark, params.score);
   filter->KeepLandmarks(keep);
   std::size_t to = 0;
@@ -122,7 +124,7 @@ void Odometry::Impl::Add(const Eigen::Vector2i& corner, const std::optional<Know
   record.score = params.score.initial;
   records.push_back(record);
   const Belief& belief = filter->belief();
-  first.push_back(RollingShutter(camera, params.features).FirstSeen(pixel, belief.pose, belief.velocity));
+  first.push_back(shutter.FirstSeen(pixel, belief.pose, belief.velocity));
   // The patch that later views are registered to defines the landmark: its first view is as good as the registration can be.
   first.back().R = PixelNoise(camera.LensJacobian(first.back().ray), params.features.noise == MatchNoise::registered ? params.features.sigma_floor_px
                                                                                                                      : params.features.sigma_px);

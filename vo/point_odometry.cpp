@@ -53,7 +53,7 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
   AddNew(frame);
   diagnostics.landmarks = static_cast<int>(records.size());
   for (const Filter::LandmarkBelief& belief : filter->LandmarkBeliefs())
-    diagnostics.permanent += belief.relative_sigma < params.landmark.permanent_ratio;
+    diagnostics.permanent += belief.relative_sigma() < params.landmark.permanent_ratio;
   diagnostics.ms_features = watch.Lap();
   if (!scale.known()) {
     mixture = filter->mixture();

@@ -1,8 +1,7 @@
 #include <fmt/format.h>
 
-#include <functional>
-#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "tools/evaluation/text_file.h"
@@ -87,19 +86,6 @@ std::string Record(const vo::Camera& c, const std::string& resolved) {
   return all.dump(2);
 }
 
-// What is recorded is read, decoded and prepared while the frame before is tracked. A camera's newest frame is the one that is wanted: it is
-// not asked for before the last is done with.
-std::function<std::optional<vo::PreparedFrame>()> Frames(vo::FrameSource& source) {
-  if (source.Count()) {
-    return [ahead = std::make_shared<vo::ReadAhead>(source)] { return Input([&] { return ahead->Next(); }); };
-  }
-  return [&source]() -> std::optional<vo::PreparedFrame> {
-    std::optional<vo::Frame> frame = Input([&] { return source.Next(); });
-    if (!frame) return std::nullopt;
-    return vo::PreparedFrame(std::move(*frame));
-  };
-}
-
 // A trajectory that starts at the origin is judged in its own world.
 evaluation::JudgeOptions StartedAtTheOrigin() {
   evaluation::JudgeOptions options;
@@ -135,8 +121,17 @@ void Track(const TrackOptions& options) {
   {
     Progress progress("tracking", frames.value_or(0));
     if (!frames) fmt::print(stderr, "Ctrl-C ends it, and the result is written.\n");
-    const auto next = Frames(*source);
-    while (const std::optional<vo::PreparedFrame> frame = next()) {
+    // What is recorded is read, decoded and prepared while the frame before is tracked. A camera's newest frame is the one that is wanted:
+    // it is not asked for before the last is done with.
+    std::optional<vo::ReadAhead> ahead;
+    if (frames) ahead.emplace(*source);
+    const auto next = [&]() -> std::optional<vo::PreparedFrame> {
+      if (ahead) return ahead->Next();
+      std::optional<vo::Frame> frame = source->Next();
+      if (!frame) return std::nullopt;
+      return vo::PreparedFrame(std::move(*frame));
+    };
+    while (const std::optional<vo::PreparedFrame> frame = Input(next)) {
       if (!frames && InterruptPending()) break;
       tracker.Track(*frame);
       if (view) view->Update(frame->frame, {&tracker, 1}, shown, StartedAtTheOrigin());

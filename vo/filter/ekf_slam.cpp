@@ -259,7 +259,7 @@ std::vector<Filter::LandmarkBelief> EkfSlam::LandmarkBeliefs() const {
   for (int n = 0; n < landmark_count(); ++n) {
     const Landmark& l = landmarks_[n];
     const double sigma = std::sqrt(std::max(0.0, l.covariance(2, 2)));
-    beliefs.push_back({PointInWorld(AnchorOf(n), l.mean), l.mean.z(), sigma, l.mean.z() > 0 ? sigma / l.mean.z() : INFINITY});
+    beliefs.push_back({PointInWorld(AnchorOf(n), l.mean), l.mean.z(), sigma});
   }
   return beliefs;
 }

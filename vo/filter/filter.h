@@ -3,6 +3,7 @@
 // Frames:  poses T_WC; image points on the plane z = 1 of an undistorted camera.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -51,7 +52,7 @@ class Filter {
     Eigen::Vector3d X_W;        // on that path
     double inverse_depth;       // mean [1/m]
     double inverse_depth_sigma;
-    double relative_sigma;      // inverse_depth_sigma / inverse_depth
+    double relative_sigma() const { return inverse_depth > 0 ? inverse_depth_sigma / inverse_depth : INFINITY; }
   };
   virtual std::vector<LandmarkBelief> LandmarkBeliefs() const = 0;
   // Where the landmarks are in the world: mean and covariance over all that the filter holds possible, each landmark linearised at

@@ -268,7 +268,7 @@ std::vector<Filter::LandmarkBelief> ParticleFilter::LandmarkBeliefs() const {
   const Particle& best = Heaviest();
   std::vector<LandmarkBelief> beliefs;
   for (int n = 0; n < landmark_count(); ++n)
-    beliefs.push_back({PointInWorld(best.anchors[anchor_of_[n]], ModeOf(best, n)), 0, 0, 0});
+    beliefs.push_back({PointInWorld(best.anchors[anchor_of_[n]], ModeOf(best, n)), 0, 0});
   std::vector<double> second(beliefs.size());
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     for (std::size_t n = 0; n < beliefs.size(); ++n) {
@@ -280,7 +280,6 @@ std::vector<Filter::LandmarkBelief> ParticleFilter::LandmarkBeliefs() const {
   for (std::size_t n = 0; n < beliefs.size(); ++n) {
     LandmarkBelief& belief = beliefs[n];
     belief.inverse_depth_sigma = std::sqrt(std::max(0.0, second[n] - belief.inverse_depth * belief.inverse_depth));
-    belief.relative_sigma = belief.inverse_depth > 0 ? belief.inverse_depth_sigma / belief.inverse_depth : INFINITY;
   }
   return beliefs;
 }
