@@ -1,7 +1,10 @@
 #include "vo/estimate.h"
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
+
+#include <Eigen/Eigenvalues>
 
 #include "vo/filter/ekf_slam.h"
 #include "vo/filter/particle_filter.h"
@@ -16,7 +19,30 @@ Params Checked(const Params& params) {
   throw std::invalid_argument(text);
 }
 
+namespace {
+
+bool IsCovariance(const Matrix6& P) {
+  constexpr double kRounding = 1e-9;  // of its largest entry
+  return P.allFinite() && (P - P.transpose()).cwiseAbs().maxCoeff() <= kRounding * P.cwiseAbs().maxCoeff() &&
+         Eigen::SelfAdjointEigenSolver<Matrix6>(P, Eigen::EigenvaluesOnly).eigenvalues().minCoeff() >= -kRounding * P.cwiseAbs().maxCoeff();
+}
+
+void RequireFinite(const Prior& prior) {
+  std::string text;
+  const auto require = [&](bool ok, const char* what) {
+    if (!ok) text += std::string(text.empty() ? "" : "\n") + "prior: " + what;
+  };
+  require(prior.pose.p_WC.allFinite() && std::abs(prior.pose.q_WC.norm() - 1) < 1e-6, "the pose is not one");
+  require(prior.v_WC.allFinite() && prior.w_WC_C.allFinite(), "the velocity is not a number");
+  require(IsCovariance(prior.pose_covariance), "the covariance of the pose is not one");
+  require(IsCovariance(prior.velocity_covariance), "the covariance of the velocity is not one");
+  if (!text.empty()) throw std::invalid_argument(text);
+}
+
+}  // namespace
+
 std::unique_ptr<Filter> MakeFilter(const Params& params, const Prior& prior, std::uint64_t seed) {
+  RequireFinite(prior);
   FilterPrior out;
   out.pose = {prior.pose, prior.pose_covariance};
   out.velocity << prior.v_WC, prior.w_WC_C;
@@ -27,6 +53,7 @@ std::unique_ptr<Filter> MakeFilter(const Params& params, const Prior& prior, std
 
 Estimate MakeEstimate(const Filter& filter, const UnknownScale& scale, std::int64_t stamp_ns, FrameDiagnostics diagnostics) {
   diagnostics.effective_particles = filter.effective_particles();
+  diagnostics.guards = filter.guards();
   const Belief& belief = filter.belief();
   return {stamp_ns, belief.pose, belief.velocity.head<3>(), belief.velocity.tail<3>(),
           scale.Covariance(belief.pose, belief.velocity, belief.covariance), diagnostics};

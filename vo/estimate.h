@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "vo/filter/filter.h"
+#include "vo/filter/watched_filter.h"
 #include "vo/odometry.h"
 #include "vo/params.h"
 #include "vo/unknown_scale.h"

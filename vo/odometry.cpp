@@ -37,7 +37,7 @@ struct Odometry::Impl {
 
   Camera camera;
   Params params;
-  std::unique_ptr<Filter> filter;
+  WatchedFilter filter;
   UnknownScale scale;
   RollingShutter shutter;
   BriskSampler first_sampler;
@@ -66,10 +66,10 @@ Estimate Odometry::Impl::Process(const PreparedFrame& prepared) {
 
   if (last_stamp_ns) {
     const double dt = static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9;
-    filter->Predict(dt);
-    Association association = Associate(*filter, records, camera, prepared.grey, prepared.brisk, border_px, dt, params);
+    filter.Predict(dt);
+    Association association = Associate(filter, records, camera, prepared.grey, prepared.brisk, border_px, dt, params);
     diagnostics.ms_matching = watch.Lap();
-    filter->Update(association.matches);
+    filter.Update(association.matches);
     UpdateScores(association);
     diagnostics.searched = static_cast<int>(association.searched.size());
     diagnostics.matched = static_cast<int>(association.matches.size());
@@ -103,11 +103,11 @@ void Odometry::Impl::UpdateScores(const Association& association) {
 }
 
 void Odometry::Impl::Forget() {
-  const std::vector<Filter::LandmarkBelief> beliefs = filter->LandmarkBeliefs();
+  const std::vector<Filter::LandmarkBelief> beliefs = filter.LandmarkBeliefs();
   for (std::size_t n = 0; n < records.size(); ++n)
     records[n].permanent = beliefs[n].relative_sigma() < params.landmark.permanent_ratio;
   const std::vector<bool> keep = WorthKeeping(records, params.landmark, params.score);
-  filter->KeepLandmarks(keep);
+  filter.KeepLandmarks(keep);
   std::size_t to = 0;
   for (std::size_t from = 0; from < records.size(); ++from)
     if (keep[from]) std::swap(records[to++], records[from]);
@@ -123,7 +123,7 @@ void Odometry::Impl::Add(const Eigen::Vector2i& corner, const std::optional<Know
   record.id = next_id++;
   record.score = params.score.initial;
   records.push_back(record);
-  const Belief& belief = filter->belief();
+  const Belief& belief = filter.belief();
   first.push_back(shutter.FirstSeen(pixel, belief.pose, belief.velocity));
   // The patch that later views are registered to defines the landmark: its first view is as good as the registration can be.
   first.back().R = PixelNoise(camera.LensJacobian(first.back().ray), params.features.noise == MatchNoise::registered ? params.features.sigma_floor_px
@@ -150,14 +150,14 @@ void Odometry::Impl::AddFeatures(const cv::Mat& grey, const BriskImage& brisk) {
     if (view.status == FeatureView::Status::matched || view.status == FeatureView::Status::fresh) occupied.push_back(view.pixel);
   for (const Eigen::Vector2i& corner : DetectCorners(grey, occupied, border_px, params.features))
     if (camera.Sees(corner.cast<double>())) Add(corner, std::nullopt, grey, brisk, first);  // not at the edge of a fisheye lens
-  filter->AddLandmarks(first);
+  filter.AddLandmarks(first);
 }
 
 Estimate Odometry::Impl::Answer(std::int64_t stamp_ns, FrameDiagnostics diagnostics) const {
   diagnostics.landmarks = static_cast<int>(records.size());
   diagnostics.permanent =
       static_cast<int>(std::count_if(records.begin(), records.end(), [](const LandmarkRecord& r) { return r.permanent; }));
-  return MakeEstimate(*filter, scale, stamp_ns, diagnostics);
+  return MakeEstimate(filter, scale, stamp_ns, diagnostics);
 }
 
 Odometry::Odometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)
@@ -176,7 +176,7 @@ Estimate Odometry::Track(const PreparedFrame& frame) {
 }
 
 std::vector<MapPoint> Odometry::Map() const {
-  std::vector<MapPoint> points = MakeMap(*impl_->filter, impl_->scale);
+  std::vector<MapPoint> points = MakeMap(impl_->filter, impl_->scale);
   for (std::size_t n = 0; n < points.size(); ++n) {
     points[n].id = impl_->records[n].id;
     points[n].permanent = impl_->records[n].permanent;

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "vo/filter/guards.h"
 #include "vo/geometry/camera.h"
 #include "vo/geometry/pose.h"
 #include "vo/map/point_moments.h"
@@ -37,6 +38,7 @@ struct FrameDiagnostics {
   int nis_dof = 0;
   double effective_particles = 0;  // before resampling
   double ms_features = 0, ms_matching = 0, ms_filter = 0;  // preparing the frame and new corners; looking for landmarks; the rest
+  Guards guards;                   // what the filter's equations do not say, and happened
   bool tracked() const { return matched >= 10; }
 };
 
@@ -73,13 +75,13 @@ struct FeatureView {
 
 class Odometry {
  public:
-  // Throws std::invalid_argument listing every bad parameter.
+  // Throws std::invalid_argument listing every bad parameter, and what of the prior is no number.
   Odometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed);
   ~Odometry();
   Odometry(Odometry&&) noexcept;
 
   // Frames in order of time. Throws std::invalid_argument when the stamp does not increase, or the image has another size
-  // than the camera.
+  // than the camera. FilterFault (vo/filter/watched_filter.h) would be a mistake of ours: a state that none can be in, with the frame.
   Estimate Track(const Frame& frame);
   // The same for a frame that went through the first stage elsewhere.
   Estimate Track(const PreparedFrame& frame);

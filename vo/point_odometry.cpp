@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include <Eigen/LU>
@@ -17,6 +18,7 @@ struct PointOdometry::Impl {
   Impl(const Camera& camera_, const Params& params_, const Prior& prior, std::uint64_t seed)
       : camera(camera_), params(Checked(params_)), filter(MakeFilter(params, prior, seed)), scale(params.landmark.scale_sigma, prior.pose.p_WC) {}
 
+  void Require(const PointFrame& frame) const;
   Estimate Process(const PointFrame& frame);
   std::vector<Match> MatchesIn(const PointFrame& frame, FrameDiagnostics& diagnostics);
   void Forget();
@@ -29,7 +31,7 @@ struct PointOdometry::Impl {
 
   Camera camera;
   Params params;
-  std::unique_ptr<Filter> filter;
+  WatchedFilter filter;
   UnknownScale scale;
   std::vector<BeliefComponent> mixture;  // the filter's, the scale unknown
   std::vector<Record> records;                         // in the order of the filter's landmarks
@@ -37,29 +39,41 @@ struct PointOdometry::Impl {
   std::optional<std::int64_t> last_stamp_ns;
 };
 
-Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
+void PointOdometry::Impl::Require(const PointFrame& frame) const {
   if (last_stamp_ns) RequireIncreasing(frame.stamp_ns, *last_stamp_ns);
+  const auto refuse = [&](const PointObservation& observation, const std::string& what) {
+    throw std::invalid_argument("point " + std::to_string(observation.id) + what + " in the frame at " + std::to_string(frame.stamp_ns) + " ns");
+  };
+  std::unordered_set<std::int64_t> ids;
+  for (const PointObservation& observation : frame.observations) {
+    if (!ids.insert(observation.id).second) refuse(observation, " comes twice");
+    if (!observation.pixel.allFinite() || !camera.Undistort(observation.pixel).allFinite()) refuse(observation, " is nowhere");
+  }
+}
+
+Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
+  Require(frame);
   FrameDiagnostics diagnostics;
   Stopwatch watch;
   if (last_stamp_ns) {
-    filter->Predict(static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9);
+    filter.Predict(static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9);
     const std::vector<Match> matches = MatchesIn(frame, diagnostics);
     diagnostics.ms_matching = watch.Lap();
-    filter->Update(matches);
+    filter.Update(matches);
     diagnostics.ms_filter = watch.Lap();
   }
   last_stamp_ns = frame.stamp_ns;
   Forget();
   AddNew(frame);
   diagnostics.landmarks = static_cast<int>(records.size());
-  for (const Filter::LandmarkBelief& belief : filter->LandmarkBeliefs())
+  for (const Filter::LandmarkBelief& belief : filter.LandmarkBeliefs())
     diagnostics.permanent += belief.relative_sigma() < params.landmark.permanent_ratio;
   diagnostics.ms_features = watch.Lap();
   if (!scale.known()) {
-    mixture = filter->mixture();
+    mixture = filter.mixture();
     for (BeliefComponent& component : mixture) component.covariance = scale.Covariance(component.pose, component.velocity, component.covariance);
   }
-  return MakeEstimate(*filter, scale, frame.stamp_ns, diagnostics);
+  return MakeEstimate(filter, scale, frame.stamp_ns, diagnostics);
 }
 
 std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, FrameDiagnostics& diagnostics) {
@@ -69,23 +83,20 @@ std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, Frame
     const auto known = landmark_of.find(observation.id);
     if (known == landmark_of.end()) continue;
     Record& record = records[static_cast<std::size_t>(known->second)];
-    if (record.frames_unseen == 0)
-      throw std::invalid_argument("point " + std::to_string(observation.id) + " comes twice in the frame at " +
-                                  std::to_string(frame.stamp_ns) + " ns");
     record.frames_unseen = 0;
     const Eigen::Vector2d z = camera.Undistort(observation.pixel);
     matches.push_back({known->second, z, PixelNoise(camera.LensJacobian(z), params.features.sigma_px)});
   }
   diagnostics.searched = static_cast<int>(matches.size());
   const std::vector<bool> inlier =
-      FindInliers(filter->ReferencePrediction(), filter->ReferenceMap(), matches, OutlierGate(*filter, params.score), params.filter);
+      FindInliers(filter.ReferencePrediction(), filter.ReferenceMap(), matches, OutlierGate(filter, params.score), params.filter);
   std::size_t to = 0;
   for (std::size_t from = 0; from < matches.size(); ++from)
     if (inlier[from]) matches[to++] = matches[from];
   matches.resize(to);
   std::vector<int> landmarks;
   for (const Match& match : matches) landmarks.push_back(match.landmark);
-  const std::vector<ImagePrediction> predictions = filter->PredictImages(landmarks);
+  const std::vector<ImagePrediction> predictions = filter.PredictImages(landmarks);
   for (std::size_t i = 0; i < matches.size(); ++i) {
     const ImagePrediction& prediction = predictions[i];
     if (!prediction.in_front) continue;
@@ -105,7 +116,7 @@ void PointOdometry::Impl::Forget() {
     if (keep.back()) kept.push_back(record);
   }
   if (kept.size() == records.size()) return;
-  filter->KeepLandmarks(keep);
+  filter.KeepLandmarks(keep);
   records = std::move(kept);
   landmark_of.clear();
   for (std::size_t n = 0; n < records.size(); ++n) landmark_of[records[n].id] = static_cast<int>(n);
@@ -119,7 +130,7 @@ void PointOdometry::Impl::AddNew(const PointFrame& frame) {
     const Eigen::Vector2d ray = camera.Undistort(observation.pixel);
     views.push_back({ray, PixelNoise(camera.LensJacobian(ray), params.features.sigma_px)});
   }
-  filter->AddLandmarks(views);
+  filter.AddLandmarks(views);
 }
 
 PointOdometry::PointOdometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)
@@ -129,14 +140,14 @@ PointOdometry::PointOdometry(PointOdometry&&) noexcept = default;
 
 Estimate PointOdometry::Track(const PointFrame& frame) { return impl_->Process(frame); }
 
-const Filter& PointOdometry::filter() const { return *impl_->filter; }
+const Filter& PointOdometry::filter() const { return impl_->filter.watched(); }
 
 const std::vector<BeliefComponent>& PointOdometry::Mixture() const {
-  return impl_->scale.known() ? impl_->filter->mixture() : impl_->mixture;
+  return impl_->scale.known() ? impl_->filter.mixture() : impl_->mixture;
 }
 
 std::vector<MapPoint> PointOdometry::Map() const {
-  std::vector<MapPoint> points = MakeMap(*impl_->filter, impl_->scale);
+  std::vector<MapPoint> points = MakeMap(impl_->filter, impl_->scale);
   for (std::size_t n = 0; n < points.size(); ++n) points[n].id = static_cast<int>(impl_->records[n].id);
   return points;
 }

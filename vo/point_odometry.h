@@ -26,14 +26,14 @@ struct PointFrame {
 
 class PointOdometry {
  public:
-  // Throws std::invalid_argument listing every bad parameter.
+  // Throws std::invalid_argument listing every bad parameter, and what of the prior is no number.
   PointOdometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed);
   ~PointOdometry();
   PointOdometry(PointOdometry&&) noexcept;
 
   // A new id becomes a landmark; one unseen for params.landmark.forget_after frames is dropped. Observations that contradict the
-  // others are set aside where params.filter.reject_outliers says so. Throws std::invalid_argument when the stamp does not increase
-  // or an id comes twice.
+  // others are set aside where params.filter.reject_outliers says so. Throws std::invalid_argument, and changes nothing, when
+  // the stamp does not increase, an id comes twice or a pixel is no number; FilterFault (vo/filter/watched_filter.h) would be ours.
   Estimate Track(const PointFrame& frame);
 
   // What the estimate is the moments of.

@@ -10,12 +10,13 @@
 #include <memory>
 #include <stdexcept>
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define VOBENCH_ADDRESS_SANITIZER
+// The address and the thread sanitizer reserve terabytes.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define VOBENCH_NO_MEMORY_LIMIT
+#elif defined(__has_feature)  // clang's way to ask
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define VOBENCH_NO_MEMORY_LIMIT
 #endif
-#elif defined(__SANITIZE_ADDRESS__)
-#define VOBENCH_ADDRESS_SANITIZER
 #endif
 
 namespace sim {
@@ -24,6 +25,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr rlim_t kSeconds = 5, kSecondsPerMegabyte = 10;
+#if defined(VOBENCH_NO_MEMORY_LIMIT)
+constexpr bool kLimitMemory = false;
+#else
+constexpr bool kLimitMemory = true;
+#endif
 constexpr rlim_t kMemory = rlim_t{512} << 20, kMemoryPerByte = 64;
 
 // A soft limit, no higher than what the system allows.
@@ -42,11 +48,9 @@ rlim_t AddressSpace() {
   return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
 }
 
-void LimitProcess(std::uint64_t bytes, [[maybe_unused]] rlim_t taken) {
+void LimitProcess(std::uint64_t bytes, rlim_t taken) {
   Limit(RLIMIT_CPU, kSeconds + kSecondsPerMegabyte * (bytes / 1'000'000));
-#if !defined(VOBENCH_ADDRESS_SANITIZER)  // which reserves terabytes
-  Limit(RLIMIT_AS, taken + kMemory + kMemoryPerByte * bytes);
-#endif
+  if (kLimitMemory) Limit(RLIMIT_AS, taken + kMemory + kMemoryPerByte * bytes);
 }
 
 // A file that cannot be read past its end for ever: assimp's PLY importer (5.2) does so when a header is cut off.

@@ -1,5 +1,6 @@
 #include "tools/evaluation/estimate_run.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -12,9 +13,11 @@ namespace evaluation {
 namespace {
 
 constexpr std::size_t kUpperTriangle = 78;
-const std::array<const char*, 12> kColumns = {"timestamp",   "searched",    "matched",   "landmarks",
-                                              "permanent",   "nis",         "nis_dof",   "effective_particles",
-                                              "ms_features", "ms_matching", "ms_filter", "status"};
+constexpr std::size_t kWithoutGuards = 12;  // columns
+const std::array<const char*, 16> kColumns = {"timestamp",   "searched",    "matched",    "landmarks",
+                                              "permanent",   "nis",         "nis_dof",    "effective_particles",
+                                              "ms_features", "ms_matching", "ms_filter",  "status",
+                                              "unsettled",   "behind",      "indefinite", "impossible"};
 
 std::vector<StampedBelief> ReadBeliefs(const std::filesystem::path& file, Problems& problems) {
   std::vector<StampedBelief> beliefs;
@@ -74,16 +77,17 @@ std::optional<int> ParseCount(const std::string& text) {
 std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems& problems) {
   std::vector<FrameRecord> frames;
   bool header = true;
+  std::size_t columns = kColumns.size();
   for (const Line& line : ReadLines(file, ',')) {
-    if (line.tokens.size() != kColumns.size()) {
-      problems.Add(
-          file, line.number, 1,
-          std::to_string(line.tokens.size()) + " columns where " + std::to_string(kColumns.size()) + " are expected");
+    if (header && line.tokens.size() == kWithoutGuards) columns = kWithoutGuards;
+    if (line.tokens.size() != columns) {
+      problems.Add(file, line.number, 1,
+                   std::to_string(line.tokens.size()) + " columns where " + std::to_string(columns) + " are expected");
       header = false;
       continue;
     }
     if (header) {
-      for (std::size_t i = 0; i < kColumns.size(); ++i) {
+      for (std::size_t i = 0; i < columns; ++i) {
         if (line.tokens[i].text != kColumns[i]) {
           problems.Add(file, line.number, line.tokens[i].column,
                        "column '" + line.tokens[i].text + "' where '" + kColumns[i] + "' is expected");
@@ -128,6 +132,13 @@ std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems&
     number(10, record.ms_filter);
     record.tracked = line.tokens[11].text == "tracked";
     if (!record.tracked && line.tokens[11].text != "coasted") bad(11, "'tracked' or 'coasted'");
+    if (columns > kWithoutGuards) {
+      GuardCounts& guards = record.guards.emplace();
+      count(12, guards.unsettled);
+      count(13, guards.behind);
+      count(14, guards.indefinite);
+      count(15, guards.impossible);
+    }
     frames.push_back(record);
   }
   return frames;
@@ -153,11 +164,9 @@ std::string FormatBeliefs(const std::vector<StampedBelief>& beliefs) {
 }
 
 std::string FormatFrames(const std::vector<FrameRecord>& frames) {
+  const bool guarded = std::all_of(frames.begin(), frames.end(), [](const FrameRecord& f) { return f.guards.has_value(); });
   std::string text;
-  for (const char* column : kColumns) {
-    if (!text.empty()) text += ',';
-    text += column;
-  }
+  for (std::size_t i = 0; i < (guarded ? kColumns.size() : kWithoutGuards); ++i) text += (i == 0 ? "" : ",") + std::string(kColumns[i]);
   text += '\n';
   for (const FrameRecord& f : frames) {
     text += FormatSeconds(f.stamp_ns);
@@ -173,7 +182,11 @@ std::string FormatFrames(const std::vector<FrameRecord>& frames) {
     for (const double value : {f.effective_particles, f.ms_features, f.ms_matching, f.ms_filter}) {
       text += ',' + FormatNumber(value, 6);
     }
-    text += f.tracked ? ",tracked\n" : ",coasted\n";
+    text += f.tracked ? ",tracked" : ",coasted";
+    if (guarded) {
+      for (const int value : {f.guards->unsettled, f.guards->behind, f.guards->indefinite, f.guards->impossible}) text += ',' + std::to_string(value);
+    }
+    text += '\n';
   }
   return text;
 }

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,11 @@ struct StampedBelief {
   Matrix12d covariance = Matrix12d::Zero();
 };
 
+// How often a filter did in a frame what its equations do not say (vo/filter/guards.h).
+struct GuardCounts {
+  int unsettled = 0, behind = 0, indefinite = 0, impossible = 0;
+};
+
 // One line of frames.csv.
 struct FrameRecord {
   std::int64_t stamp_ns = 0;
@@ -31,6 +37,7 @@ struct FrameRecord {
   double effective_particles = 0;
   double ms_features = 0, ms_matching = 0, ms_filter = 0;
   bool tracked = false;  // at least 10 matched features; else the filter coasted
+  std::optional<GuardCounts> guards;  // none: not known, as of other people's systems and of results before these were counted
 };
 
 struct EstimateRun {

@@ -85,6 +85,23 @@ std::optional<Timing> TimingOf(const std::vector<FrameRecord>& frames) {
   return Timing{Median(features), Median(matching), Median(filter)};
 }
 
+std::optional<GuardSummary> GuardsOf(const std::vector<FrameRecord>& frames) {
+  if (frames.empty()) return std::nullopt;
+  GuardSummary summary;
+  const auto add = [](int times, GuardSummary::Firings& firings) {
+    firings.times += times;
+    firings.frames += times > 0;
+  };
+  for (const FrameRecord& frame : frames) {
+    if (!frame.guards) return std::nullopt;
+    add(frame.guards->unsettled, summary.unsettled);
+    add(frame.guards->behind, summary.behind);
+    add(frame.guards->indefinite, summary.indefinite);
+    add(frame.guards->impossible, summary.impossible);
+  }
+  return summary;
+}
+
 }  // namespace
 
 const Ate& TrajectoryErrors::Aligned(Alignment alignment) const {
@@ -135,6 +152,7 @@ Metrics Judge(const EstimateRun& run, const Trajectory& truth, const std::option
   metrics.consistency = ConsistencyOf(run, truth, truth_velocities, options);
   if (!run.frames.empty()) metrics.nis = SummariseNis(run.frames);
   metrics.timing = TimingOf(run.frames);
+  metrics.guards = GuardsOf(run.frames);
   return metrics;
 }
 

@@ -52,6 +52,15 @@ struct Timing {
   double ms_features = 0, ms_matching = 0, ms_filter = 0;  // medians over frames
 };
 
+// Over the frames of a run.
+struct GuardSummary {
+  struct Firings {
+    std::int64_t times = 0;
+    std::size_t frames = 0;  // in which it fired
+  };
+  Firings unsettled, behind, indefinite, impossible;
+};
+
 struct Metrics {
   JudgeOptions options;
   double path_length_m = 0;  // of the truth at the frames of the sequence
@@ -62,6 +71,7 @@ struct Metrics {
   std::optional<ConsistencySummary> consistency;
   std::optional<NisSummary> nis;
   std::optional<Timing> timing;
+  std::optional<GuardSummary> guards;  // where all frames have them
 };
 
 // Throws InputError when estimate and truth do not overlap in time.

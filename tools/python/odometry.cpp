@@ -148,6 +148,11 @@ void AddEstimate(py::module_& m) {
       .def_readwrite("w_WC_C", &vo::Prior::w_WC_C, Doc("vo/odometry.h:Prior::w_WC_C"))
       .def_readwrite("pose_covariance", &vo::Prior::pose_covariance)
       .def_readwrite("velocity_covariance", &vo::Prior::velocity_covariance);
+  py::class_<vo::Guards>(m, "Guards", Doc("vo/filter/guards.h:Guards"))
+      .def_readonly("unsettled", &vo::Guards::unsettled, Doc("vo/filter/guards.h:Guards::unsettled"))
+      .def_readonly("behind", &vo::Guards::behind, Doc("vo/filter/guards.h:Guards::behind"))
+      .def_readonly("indefinite", &vo::Guards::indefinite, Doc("vo/filter/guards.h:Guards::indefinite"))
+      .def_readonly("impossible", &vo::Guards::impossible, Doc("vo/filter/guards.h:Guards::impossible"));
   py::class_<vo::FrameDiagnostics>(m, "Diagnostics", "What an odometry did in a frame.")
       .def_readonly("searched", &vo::FrameDiagnostics::searched, Doc("vo/odometry.h:FrameDiagnostics::searched"))
       .def_readonly("matched", &vo::FrameDiagnostics::matched, Doc("vo/odometry.h:FrameDiagnostics::matched"))
@@ -155,7 +160,8 @@ void AddEstimate(py::module_& m) {
       .def_readonly("nis", &vo::FrameDiagnostics::nis, Doc("vo/odometry.h:FrameDiagnostics::nis"))
       .def_readonly("nis_dof", &vo::FrameDiagnostics::nis_dof)
       .def_readonly("effective_particles", &vo::FrameDiagnostics::effective_particles,
-                    Doc("vo/odometry.h:FrameDiagnostics::effective_particles"));
+                    Doc("vo/odometry.h:FrameDiagnostics::effective_particles"))
+      .def_readonly("guards", &vo::FrameDiagnostics::guards, Doc("vo/odometry.h:FrameDiagnostics::guards"));
   py::class_<vo::Estimate>(m, "Estimate", "What a filter says after a frame: conventions as in docs/conventions.md.")
       .def(py::init(&MakeEstimate), py::kw_only(), py::arg("covariance"), py::arg("p_WC") = zero(),
            py::arg("q_WC") = identity, py::arg("v_WC") = zero(), py::arg("w_WC_C") = zero(), py::arg("stamp_ns") = 0)

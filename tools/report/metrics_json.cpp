@@ -145,6 +145,14 @@ Json Of(const ev::Metrics& metrics) {
                               {"matching", metrics.timing->ms_matching},
                               {"filter", metrics.timing->ms_filter}};
   }
+  if (metrics.guards) {
+    const auto firings = [](const ev::GuardSummary::Firings& f) { return Json{{"times", f.times}, {"frames", f.frames}}; };
+    json["guards"] = {{"how", "what the filter's equations do not say, and happened: docs/odometry.md"},
+                      {"unsettled", firings(metrics.guards->unsettled)},
+                      {"behind", firings(metrics.guards->behind)},
+                      {"indefinite", firings(metrics.guards->indefinite)},
+                      {"impossible", firings(metrics.guards->impossible)}};
+  }
   json["baselines"]["constant_pose"] = Of(metrics.constant_pose, options);
   json["baselines"]["constant_velocity"] = Of(metrics.constant_velocity, options);
   return json;

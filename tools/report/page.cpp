@@ -4,6 +4,7 @@
 
 #include "tools/report/drawn_runs.h"
 #include "tools/report/figures.h"
+#include "tools/report/guard_table.h"
 #include "tools/report/html.h"
 #include "tools/report/run_summary.h"
 #include "tools/report/text.h"
@@ -97,7 +98,7 @@ Page PageOf(const ResultData& data) {
       {"Velocity and what it should be", "The same of linear and angular velocity.", VelocityErrorFigures(data), "",
        "Velocity"},
       {"Pose in time", judged.empty() ? "" : "Aligned by Sim(3).", PoseFigures(data)},
-      {"Features and time", "", FrameFigures(data)},
+      {"Features and time", "", FrameFigures(data), GuardTable(judged)},
       {"How this was made", "", {}, Record(data.description)},
   };
   return page;

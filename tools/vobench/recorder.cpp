@@ -36,6 +36,7 @@ evaluation::FrameRecord RecordOf(const vo::Estimate& estimate) {
   record.ms_matching = d.ms_matching;
   record.ms_filter = d.ms_filter;
   record.tracked = d.tracked();
+  record.guards = {d.guards.unsettled, d.guards.behind, d.guards.indefinite, d.guards.impossible};
   return record;
 }
 

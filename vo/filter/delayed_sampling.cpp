@@ -66,6 +66,7 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
     SolvePaths();
     if (undecided_) LookForBetter();
     for (Particle& particle : particles_) particle.log_weight += particle.path.log_evidence;
+    for (const Particle& particle : Leaders()) guards_ += particle.path.guards;
   }
   mixture_.clear();
   for (const Particle& particle : particles_) mixture_.push_back(ComponentOnPath(particle));
@@ -124,6 +125,7 @@ void ParticleFilter::WeighPaths() {
   std::vector<double> log_evidence;
   for (const Particle& particle : particles_) log_evidence.push_back(particle.path.log_evidence);
   weights_ = EqualUnlessRefuted(log_evidence, kRefuted);
+  ReplaceImpossible();
   effective_particles_ = EffectiveParticles(weights_);
 }
 

@@ -35,6 +35,7 @@ EkfSlam::EkfSlam(const MotionParams& motion, const FilterParams& filter, const L
 }
 
 void EkfSlam::Predict(double dt) {
+  guards_ = {};
   const MotionModel model = NearlyConstantVelocity(motion_, dt);
   const Vector6 u = model.F.topRightCorner<6, 6>() * velocity_;
   pose_.p_WC += u.head<3>();
@@ -115,6 +116,7 @@ void EkfSlam::Update(std::span<const Match> matches) {
   Eigen::MatrixXd HP, PHt, S;
   Eigen::LLT<Eigen::MatrixXd> S_root;
   double cost = Linearise(matches, d);
+  bool settled = params_.joint_iterations == 1;  // nobody asked for more
   for (int iteration = 0; iteration < params_.joint_iterations && !rows_.empty(); ++iteration) {
     HP = RowsTimes(P_);
     PHt = HP.transpose();
@@ -134,7 +136,8 @@ void EkfSlam::Update(std::span<const Match> matches) {
       step_x.segment<3>(row.landmark_offset) += row.H_landmark.transpose() * y.segment<2>(2 * i);
     }
     Eigen::VectorXd step_d = PHt * y - d;
-    if (params_.joint_iterations == 1 || step_x.dot(step_d) < kSettled) {
+    settled = settled || step_x.dot(step_d) < kSettled;
+    if (settled) {
       d += step_d;
       break;
     }
@@ -157,7 +160,10 @@ void EkfSlam::Update(std::span<const Match> matches) {
     if (!better) break;
   }
   MoveTo(d);
+  guards_.behind = static_cast<int>(matches.size()) - static_cast<int>(HP.rows() / 2);
   if (HP.size() > 0) {
+    guards_.unsettled = !settled;
+    guards_.indefinite = S_root.info() != Eigen::Success;
     // Joseph: (I - K H) P (I - K H)' + K R K' = P - K T' - T K' with T = P H' - K S / 2.
     const Eigen::MatrixXd K = S_root.solve(HP).transpose();
     const Eigen::MatrixXd T = PHt - 0.5 * K * S;
@@ -258,8 +264,7 @@ std::vector<Filter::LandmarkBelief> EkfSlam::LandmarkBeliefs() const {
   std::vector<LandmarkBelief> beliefs;
   for (int n = 0; n < landmark_count(); ++n) {
     const Landmark& l = landmarks_[n];
-    const double sigma = std::sqrt(std::max(0.0, l.covariance(2, 2)));
-    beliefs.push_back({PointInWorld(AnchorOf(n), l.mean), l.mean.z(), sigma});
+    beliefs.push_back({PointInWorld(AnchorOf(n), l.mean), l.mean.z(), std::sqrt(l.covariance(2, 2))});
   }
   return beliefs;
 }

@@ -44,6 +44,7 @@ class EkfSlam final : public Filter {
   const Belief& belief() const override { return belief_; }
   const std::vector<BeliefComponent>& mixture() const override { return mixture_; }
   double effective_particles() const override { return 1; }
+  const Guards& guards() const override { return guards_; }
 
   // Covariance of the whole state; a landmark's three entries begin at OffsetOf.
   const Eigen::MatrixXd& covariance() const { return P_; }
@@ -87,6 +88,7 @@ class EkfSlam final : public Filter {
   std::vector<Row> rows_;
 
   Belief belief_;
+  Guards guards_;
   std::vector<BeliefComponent> mixture_;
 };
 

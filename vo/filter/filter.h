@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "vo/filter/guards.h"
 #include "vo/filter/mixture.h"
 #include "vo/filter/path_window.h"
 #include "vo/filter/pose_gaussian.h"
@@ -63,6 +64,8 @@ class Filter {
   // The mixture itself; empty before the first Update.
   virtual const std::vector<BeliefComponent>& mixture() const = 0;
   virtual double effective_particles() const = 0;
+  // What fired since the last Predict began.
+  virtual const Guards& guards() const = 0;
   // Nothing is sampled yet: the map may still turn out to be a wrong solution altogether.
   virtual bool undecided() const { return false; }
 };

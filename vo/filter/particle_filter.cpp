@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "vo/filter/exact_draws.h"
@@ -62,6 +63,7 @@ ParticleFilter::ParticleFilter(const MotionParams& motion, const FilterParams& f
 
 void ParticleFilter::Predict(double dt) {
   ++frame_;
+  guards_ = {};
   if (delayed()) return PredictPath(dt);
   since_sampled_ += dt;
   step_ = StepOf(motion_, since_sampled_);
@@ -96,6 +98,7 @@ void ParticleFilter::SampleStep(std::span<const Match> matches) {
     Particle& particle = particles_[i];
     const PoseGaussian& prediction = particle.prediction;                                          // 2, (12)(13)
     const PoseProposal proposal = ProposePose(particle, matches);                                  // (15)(16)
+    guards_ += proposal.guards;
     const Pose s = proposal.pose.Sample({seed_, Stream::pose, frame_, i});                         // 4
     // The motion model knows nothing of the image: what is believed then is the weighted samples themselves.
     const PoseGaussian believed = params_.proposal == Proposal::bootstrap ? PoseGaussian{s, Matrix6::Zero()} : proposal.pose;
@@ -125,9 +128,9 @@ PoseGaussian ParticleFilter::PredictPose(const Particle& particle, const Matrix6
 
 PoseProposal ParticleFilter::ProposePose(const Particle& particle, std::span<const Match> matches) {
   batch_.Load(MapOf(particle));
-  if (matches.empty()) return {particle.prediction, 0};
+  if (matches.empty()) return {particle.prediction, 0, {}};
   switch (params_.proposal) {
-    case Proposal::bootstrap: return {particle.prediction, 0};
+    case Proposal::bootstrap: return {particle.prediction, 0, {}};
     case Proposal::ukf: return ProposeUnscented(particle.prediction, MapOf(particle), matches, UnscentedOf(params_));
     case Proposal::ekf:
     case Proposal::iterated: break;
@@ -171,7 +174,24 @@ void ParticleFilter::Weigh() {
   for (std::size_t i = 0; i < particles_.size(); ++i) weights_[i] = particles_[i].log_weight;
   const double peak = Normalise(weights_);
   for (Particle& particle : particles_) particle.log_weight -= peak;
+  ReplaceImpossible();
   effective_particles_ = EffectiveParticles(weights_);
+}
+
+// A particle whose evidence is not a number stands for nothing: it has no weight by now, and gives its place to the heaviest. Where there is
+// no other, there is no answer, and WatchedFilter says so.
+void ParticleFilter::ReplaceImpossible() {
+  const std::size_t heaviest = static_cast<std::size_t>(&Heaviest() - particles_.data());
+  const bool any_possible = std::isfinite(particles_[heaviest].log_weight);
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    if (std::isfinite(particles_[i].log_weight)) continue;
+    ++guards_.impossible;
+    if (!any_possible) continue;
+    particles_[heaviest].log_weight -= std::numbers::ln2;
+    weights_[i] = weights_[heaviest] *= 0.5;
+    particles_[i] = particles_[heaviest];
+    mixture_[i] = mixture_[heaviest];
+  }
 }
 
 void ParticleFilter::Answer() {
@@ -267,19 +287,14 @@ LocalMap ParticleFilter::ReferenceMap() const {
 std::vector<Filter::LandmarkBelief> ParticleFilter::LandmarkBeliefs() const {
   const Particle& best = Heaviest();
   std::vector<LandmarkBelief> beliefs;
-  for (int n = 0; n < landmark_count(); ++n)
-    beliefs.push_back({PointInWorld(best.anchors[anchor_of_[n]], ModeOf(best, n)), 0, 0});
-  std::vector<double> second(beliefs.size());
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    for (std::size_t n = 0; n < beliefs.size(); ++n) {
-      const double rho = ModeOf(particles_[i], static_cast<int>(n)).z();
-      beliefs[n].inverse_depth += weights_[i] * rho;
-      second[n] += weights_[i] * (rho * rho + particles_[i].landmarks[n].covariance(2, 2));
+  for (int n = 0; n < landmark_count(); ++n) {
+    double mean = 0, variance = 0;
+    for (std::size_t i = 0; i < particles_.size(); ++i) mean += weights_[i] * ModeOf(particles_[i], n).z();
+    for (std::size_t i = 0; i < particles_.size(); ++i) {
+      const double off = ModeOf(particles_[i], n).z() - mean;
+      variance += weights_[i] * (particles_[i].landmarks[n].covariance(2, 2) + off * off);
     }
-  }
-  for (std::size_t n = 0; n < beliefs.size(); ++n) {
-    LandmarkBelief& belief = beliefs[n];
-    belief.inverse_depth_sigma = std::sqrt(std::max(0.0, second[n] - belief.inverse_depth * belief.inverse_depth));
+    beliefs.push_back({PointInWorld(best.anchors[anchor_of_[n]], ModeOf(best, n)), mean, std::sqrt(variance)});
   }
   return beliefs;
 }

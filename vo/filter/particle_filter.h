@@ -68,12 +68,15 @@ class ParticleFilter final : public Filter {
   // The mixture itself; empty before the first Update.
   const std::vector<BeliefComponent>& mixture() const override { return mixture_; }
   double effective_particles() const override { return effective_particles_; }
+  const Guards& guards() const override { return guards_; }
   bool undecided() const override { return undecided_; }
   const std::vector<Particle>& particles() const { return particles_; }
   const std::vector<double>& weights() const { return weights_; }
   const FilterParams& params() const { return params_; }
 
  private:
+  friend struct ParticleFilterPeer;  // a test's: puts into the state what no image can
+
   // A frame whose pose is not sampled yet.
   struct Step {
     double dt = 0;  // [s] since the one before
@@ -121,6 +124,7 @@ class ParticleFilter final : public Filter {
   CameraVelocityFilter::Gain VelocityGiven(const Particle& particle) const;
   void UpdateVelocity(Particle& particle, const Pose& pose, const CameraVelocityFilter::Gain& gain, std::uint32_t index) const;
   void Weigh();
+  void ReplaceImpossible();
   void Answer();
   void Resample();
 
@@ -154,6 +158,7 @@ class ParticleFilter final : public Filter {
   Belief belief_;
   std::vector<BeliefComponent> mixture_;
   double effective_particles_ = 0;
+  Guards guards_;
 };
 
 }  // namespace vo

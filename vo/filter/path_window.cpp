@@ -81,7 +81,10 @@ void PathWindow::AddTrack(const WindowInput& in, const Track& track, const PathG
   for (const Track::View& view : track.views) {
     const AnchorView geometry(path.mean[view.slot], anchor);
     const Projection h = Project(geometry, theta);
-    if (!h.in_front) continue;
+    if (!h.in_front) {
+      ++behind_;
+      continue;
+    }
     landmark.used = true;
     const Eigen::Vector2d e = view.z - h.z - h.J_landmark * off;
     const Eigen::Vector2d We = view.R_inverse * e;
@@ -174,9 +177,12 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
 
   double best = std::numeric_limits<double>::infinity();  // objective: -2 log density at its mode, up to a constant
   double former = 0;  // decrement of the step before; 0: its rate says nothing
+  bool settled = options.max_iterations == 1;  // nobody asked for more
+  path.guards = {};
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     AddPrior(prior, in, path);
     rows_ = 0;
+    behind_ = 0;
     columns_ = static_cast<int>(3 * count);
     added_ = 0;
     for (std::size_t i = 0; i < tracks.size(); ++i) AddTrack(in, tracks[i], path, theta[i], options.marginal);
@@ -204,6 +210,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
     }
     best = objective;
     linearised_at_ = path.mean;
+    path.guards.behind = behind_;
     linearised_theta_.assign(theta.begin(), theta.end());
     if (columns_ > 0) A_.selfadjointView<Eigen::Lower>().rankUpdate(Y_.leftCols(columns_), -1.0);  // Eigen divides by it
     if (added_ > 0) A_.selfadjointView<Eigen::Lower>().rankUpdate(Z_.leftCols(added_), 1.0);
@@ -211,8 +218,8 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
     step_ = b_;
     llt_.solveInPlace(step_);
     const double decrement = b_.dot(step_);
-    const bool settled = Settled(decrement, former);
-    const bool taken = settled || !last || options.max_iterations == 1;  // nobody would look at it afterwards: it may lead anywhere
+    settled = settled || Settled(decrement, former);
+    const bool taken = settled || !last;  // nobody would look at it afterwards: it may lead anywhere
     path.objective = objective - (taken ? decrement : 0.0);
     path.log_evidence = -0.5 * (cost_ - (taken ? decrement : 0.0) + log_det_) - llt_.matrixLLT().diagonal().array().log().sum();
     if (!taken) break;
@@ -229,6 +236,11 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
   }
   path.covariance.setIdentity(size, size);
   llt_.solveInPlace(path.covariance);
+  path.guards.unsettled = !settled;
+  if (llt_.info() != Eigen::Success) {
+    path.guards.indefinite = 1;
+    path.log_evidence = path.objective = std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 namespace {

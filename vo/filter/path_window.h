@@ -10,6 +10,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "vo/filter/guards.h"
 #include "vo/filter/path_prior.h"
 #include "vo/map/image_prediction.h"
 #include "vo/map/landmark.h"
@@ -43,6 +44,7 @@ struct PathGaussian {
   Eigen::MatrixXd covariance;    // 6m x 6m
   double objective = 0;          // -2 log density at its mode, up to a constant that is the same for all guesses
   double log_evidence = 0;       // Laplace's approximation of log p(z in the window | sampled path)
+  Guards guards;                 // of the solution; where something was not positive definite, the evidence is not a number
 };
 
 struct WindowOptions {
@@ -93,6 +95,7 @@ class PathWindow {
   int rows_ = 0, columns_ = 0, added_ = 0;
   double cost_ = 0;               // -2 log of the evidence's exponent, constant part
   double log_det_ = 0;
+  int behind_ = 0;
   std::vector<Eliminated> eliminated_;
   Eigen::LLT<Eigen::MatrixXd> llt_;
 };

@@ -28,13 +28,14 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
   const Matrix6 prior_information = Inverse(prior_llt);
   const double prior_log_det = 2.0 * HalfLogDeterminant(prior_llt);
 
-  PoseProposal proposal{prediction, 0.0};
+  PoseProposal proposal{prediction, 0.0, {}};
   Pose& s = proposal.pose.mean;
   double best = std::numeric_limits<double>::infinity();  // objective: -2 log density at its mode, up to a constant
   double former = 0;  // decrement of the step before; 0: its rate says nothing
   Vector6 step = Vector6::Zero();
   Pose linearised_at = s;  // where the objective is `best`, and the covariance and the evidence are from
   Eigen::LLT<Matrix6> llt;
+  bool settled = iterations == 1;  // nobody asked for more
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const MatchBatch::Information matches = batch.Linearise(s, params.marginal_mode);
     const Vector6 offset = Minus(s, prediction.mean);
@@ -67,13 +68,14 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
     }
     best = objective;
     linearised_at = s;
+    proposal.guards.behind = matches.behind;
     llt.compute(A);
     step = llt.solve(b);
     const double decrement = b.dot(step);
-    const bool settled = Settled(decrement, former);
+    settled = settled || Settled(decrement, former);
     // p(z) = p(s) p(z | s) / p(s | z), taken at the new mean, where the quadratic cost is less by the decrement: believed when the step is looked at
     // afterwards, or too small to matter.
-    const bool credited = settled || !last || iterations == 1;
+    const bool credited = settled || !last;
     proposal.log_evidence = -0.5 * (cost - (credited ? decrement : 0.0) + log_det + 2.0 * HalfLogDeterminant(llt));
     s = Plus(s, step);
     if (settled || last) break;
@@ -81,11 +83,16 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
     batch.Follow(step);
   }
   proposal.pose.covariance = Inverse(llt);
+  proposal.guards.unsettled = !settled;
+  if (prior_llt.info() != Eigen::Success || llt.info() != Eigen::Success) {
+    proposal.guards.indefinite = 1;
+    proposal.log_evidence = std::numeric_limits<double>::quiet_NaN();
+  }
   return proposal;
 }
 
 PoseProposal Propose(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, const FilterParams& params) {
-  if (matches.empty()) return {prediction, 0.0};
+  if (matches.empty()) return {prediction, 0.0, {}};
   MatchBatch batch;
   batch.SetMatches(matches);
   batch.Load(map);

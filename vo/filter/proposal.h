@@ -5,6 +5,7 @@
 
 #include <span>
 
+#include "vo/filter/guards.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/map/match_batch.h"
 #include "vo/params.h"
@@ -14,6 +15,7 @@ namespace vo {
 struct PoseProposal {
   PoseGaussian pose;
   double log_evidence = 0;  // log p(z_t | path of the particle): exact when linear and Gaussian, else Laplace's approximation
+  Guards guards;            // where something was not positive definite, the evidence is not a number
 };
 
 // `batch`: the matches, at least one, and the particle's landmarks, as loaded; at the end it is linearised as the proposal is.

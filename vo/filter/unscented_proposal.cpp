@@ -1,6 +1,7 @@
 #include "vo/filter/unscented_proposal.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -49,7 +50,7 @@ LandmarkUpdate UpdateFree(const Landmark& prior, const AnchorView& view, const M
 
 PoseProposal ProposeUnscented(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,
                               const UnscentedParams& params) {
-  if (matches.empty()) return {prediction, 0.0};
+  if (matches.empty()) return {prediction, 0.0, {}};
   const PosePoints points(prediction.covariance, params);
   std::vector<AnchorView> views;  // point by point, anchor by anchor
   for (int i = 0; i < PosePoints::kCount; ++i) {
@@ -62,6 +63,7 @@ PoseProposal ProposeUnscented(const PoseGaussian& prediction, const LocalMap& ma
   Matrix6 A = prior_information;
   Vector6 b = Vector6::Zero();
   double log_evidence = 0;
+  int behind = 0;
   std::array<Eigen::Vector2d, PosePoints::kCount> y;
   for (const Match& match : matches) {
     const Landmark& landmark = map.landmarks[match.landmark];
@@ -74,7 +76,10 @@ PoseProposal ProposeUnscented(const PoseGaussian& prediction, const LocalMap& ma
       y[i] = h.z;
       if (i == 0) J = h.J_landmark;
     }
-    if (!in_front) continue;
+    if (!in_front) {
+      ++behind;
+      continue;
+    }
     const UnscentedMoments<6, 2> z = points.Moments<2>(y);
     const Matrix26 C = z.cross.transpose() * prior_information;
     const Eigen::Matrix2d V = (z.covariance - C * z.cross)                              // what the straight line leaves
@@ -94,6 +99,11 @@ PoseProposal ProposeUnscented(const PoseGaussian& prediction, const LocalMap& ma
   PoseProposal proposal;
   proposal.pose = {Plus(prediction.mean, d), turn * llt.solve(Matrix6::Identity()) * turn.transpose()};
   proposal.log_evidence = log_evidence + 0.5 * b.dot(d) - half_log_det(prior) - half_log_det(llt);
+  proposal.guards.behind = behind;
+  if (prior.info() != Eigen::Success || llt.info() != Eigen::Success) {
+    proposal.guards.indefinite = 1;
+    proposal.log_evidence = std::numeric_limits<double>::quiet_NaN();
+  }
   return proposal;
 }
 

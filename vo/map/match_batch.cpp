@@ -87,6 +87,7 @@ MatchBatch::Information MatchBatch::Linearise(const Pose& camera, bool marginal)
   }
   information.cost = sums.matches.cost;
   information.log_det = LogDet(sums.matches);
+  information.behind = static_cast<int>(landmark_.size()) - static_cast<int>(sums.matches.in_front);
   return information;
 }
 

@@ -28,6 +28,7 @@ class MatchBatch {
     Vector6 b;
     double cost = 0;
     double log_det = 0;  // of 2 pi S, all matches in front
+    int behind = 0;      // matches left out
   };
   // `marginal`: see FilterParams::marginal_mode.
   Information Linearise(const Pose& camera, bool marginal);

@@ -1,0 +1,383 @@
+// What is no number, or no covariance, put into every part of a filter's state, and into all that a filter is told or says: it never passes
+// for an answer.
+#include "vo/filter/watched_filter.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vo/filter/ekf_slam.h"
+#include "vo/filter/particle_filter.h"
+#include "vo/geometry/so3.h"
+#include "vo/point_odometry.h"
+
+namespace vo {
+
+struct ParticleFilterPeer {
+  static std::vector<Particle>& Particles(ParticleFilter& filter) { return filter.particles_; }
+};
+
+}  // namespace vo
+
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr int kLandmarks = 30, kPoisoned = 6, kFrames = 10;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
+
+std::vector<vo::FirstView> FirstViews() {
+  std::vector<vo::FirstView> views;
+  for (int n = 0; n < kLandmarks; ++n)
+    views.push_back({{0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n)}, 4e-6 * Eigen::Matrix2d::Identity()});
+  return views;
+}
+
+// Of a camera that flies sideways past a wall in four metres.
+std::vector<vo::Match> Matches(int frame) {
+  std::vector<vo::Match> matches;
+  for (int n = 0; n < kLandmarks; ++n)
+    matches.push_back({n,
+                       Eigen::Vector2d(0.5 * std::sin(1.3 * n) - 0.002 * frame, 0.4 * std::cos(2.1 * n)) +
+                           0.002 * Eigen::Vector2d(std::sin(17.0 * n * frame), std::cos(23.0 * n * frame)),
+                       4e-6 * Eigen::Matrix2d::Identity()});
+  return matches;
+}
+
+vo::FilterPrior Prior() {
+  vo::FilterPrior prior;
+  prior.velocity_covariance = 0.04 * vo::Matrix6::Identity();
+  return prior;
+}
+
+vo::FilterParams Plain() {
+  vo::FilterParams params;
+  params.particles = 8;
+  params.lag = 0;
+  params.start_window = 0;
+  params.weight = vo::Weight::evidence;
+  return params;
+}
+
+std::unique_ptr<vo::ParticleFilter> MakeParticles(const vo::FilterParams& params) {
+  return std::make_unique<vo::ParticleFilter>(vo::MotionParams{}, params, vo::LandmarkParams{}, Prior(), 4);
+}
+
+struct Seen {
+  std::vector<vo::Belief> beliefs;  // after each frame
+  vo::Guards guards;                // of all frames
+  std::optional<vo::FilterFault> fault;
+};
+
+// All that an odometry asks of its filter, frame by frame; `before` is called ahead of each, `between` after the prediction.
+Seen Play(std::unique_ptr<vo::Filter> filter, const std::function<void(int)>& before, const std::function<void(int)>& between = {}) {
+  Seen seen;
+  vo::WatchedFilter watched(std::move(filter));
+  std::vector<int> all;
+  for (int n = 0; n < kLandmarks; ++n) all.push_back(n);
+  try {
+    watched.AddLandmarks(FirstViews());
+    for (int frame = 1; frame <= kFrames; ++frame) {
+      if (before) before(frame);
+      watched.Predict(1.0 / 30);
+      if (between) between(frame);
+      watched.PredictImages(all);
+      watched.Update(Matches(frame));
+      watched.LandmarkBeliefs();
+      watched.LandmarkPoints();
+      seen.guards += watched.guards();
+      seen.beliefs.push_back(watched.belief());
+    }
+  } catch (const vo::FilterFault& fault) {
+    seen.fault = fault;
+  }
+  return seen;
+}
+
+bool Same(const Seen& a, const Seen& b) {
+  if (a.beliefs.size() != b.beliefs.size()) return false;
+  for (std::size_t k = 0; k < a.beliefs.size(); ++k) {
+    if (a.beliefs[k].pose.p_WC != b.beliefs[k].pose.p_WC || a.beliefs[k].covariance != b.beliefs[k].covariance) return false;
+  }
+  return true;
+}
+
+struct Poison {
+  const char* name;
+  std::function<void(vo::Particle&, double)> put;
+};
+
+const Poison kState[] = {
+    {"position", [](vo::Particle& p, double v) { p.pose.p_WC.y() = v; }},
+    {"orientation", [](vo::Particle& p, double v) { p.pose.q_WC.x() = v; }},
+    {"velocity", [](vo::Particle& p, double v) { p.velocity.mean[4] = v; }},
+    {"velocity's covariance", [](vo::Particle& p, double v) { p.velocity.covariance(2, 2) = v; }},
+    {"landmark", [](vo::Particle& p, double v) { p.landmarks[7].mean.z() = v; }},
+    {"landmark's covariance", [](vo::Particle& p, double v) { p.landmarks[7].covariance(2, 2) = v; }},
+    {"all landmarks' covariances", [](vo::Particle& p, double v) { for (vo::Landmark& l : p.landmarks) l.covariance(2, 2) = v; }},
+    {"anchor", [](vo::Particle& p, double v) { p.anchors[0].p_WC.x() = v; }},
+    {"weight", [](vo::Particle& p, double v) { p.log_weight = v; }},
+    {"path", [](vo::Particle& p, double v) { if (!p.path.mean.empty()) p.path.mean.back().p_WC.z() = v; }},
+    {"path's covariance", [](vo::Particle& p, double v) { if (p.path.covariance.size() > 0) p.path.covariance(1, 1) = v; }},
+    {"mode", [](vo::Particle& p, double v) { if (!p.modes.empty()) p.modes[7].x() = v; }},
+    {"prediction", [](vo::Particle& p, double v) { p.prediction.mean.p_WC.x() = v; }},
+    {"prediction's covariance", [](vo::Particle& p, double v) { p.prediction.covariance(3, 3) = v; }},
+};
+
+struct Member {
+  const char* name;
+  vo::FilterParams params;
+};
+
+std::vector<Member> Members() {
+  std::vector<Member> members = {{"evidence", Plain()}, {"importance", Plain()}, {"lag", Plain()}, {"start_window", Plain()},
+                                 {"velocity_sampled", Plain()}, {"bootstrap", Plain()}, {"ukf", Plain()}};
+  members[1].params.weight = vo::Weight::importance;
+  members[2].params.lag = 3;
+  members[2].params.weight = vo::Weight::equal;
+  members[3].params.start_window = 4;
+  members[4].params.sampled = vo::Sampled::pose_and_velocity;
+  members[5].params.proposal = vo::Proposal::bootstrap;
+  members[5].params.weight = vo::Weight::importance;
+  members[6].params.proposal = vo::Proposal::ukf;
+  return members;
+}
+
+class WatchedMember : public testing::TestWithParam<Member> {};
+
+// Into one particle or all, between frames or after the prediction. Then a fault names this frame or one soon after, or a guard counts
+// more than without, or the place was not used any more and every answer is the same: a number that is none changes no answer unseen.
+TEST_P(WatchedMember, NothingThatIsNoNumberPassesUnseen) {
+  const Seen healthy = Play(MakeParticles(GetParam().params), {});
+  ASSERT_FALSE(healthy.fault) << healthy.fault->what();
+  int faults = 0, guarded = 0;
+  for (const Poison& poison : kState) {
+    for (const double value : {kNan, kInf, -kInf}) {
+      for (const bool all : {false, true}) {
+        for (const bool between : {false, true}) {
+          std::unique_ptr<vo::ParticleFilter> filter = MakeParticles(GetParam().params);
+          std::vector<vo::Particle>& particles = vo::ParticleFilterPeer::Particles(*filter);
+          const auto put = [&](int frame) {
+            if (frame != kPoisoned) return;
+            for (std::size_t i = 0; i < particles.size(); ++i)
+              if (all || i == 3) poison.put(particles[i], value);
+          };
+          const Seen seen = between ? Play(std::move(filter), {}, put) : Play(std::move(filter), put);
+          SCOPED_TRACE(std::string(poison.name) + (all ? " of all" : " of one") + (between ? ", after the prediction: " : ": ") +
+                       std::to_string(value) + (seen.fault ? std::string(", ") + seen.fault->what() : ""));
+          for (const vo::Belief& belief : seen.beliefs) {
+            EXPECT_TRUE(belief.pose.p_WC.allFinite() && belief.velocity.allFinite() && belief.covariance.allFinite());
+          }
+          if (seen.fault) {
+            EXPECT_GE(seen.fault->frame(), kPoisoned);
+            EXPECT_LE(seen.fault->frame(), kPoisoned + 4);
+            EXPECT_THAT(seen.fault->what(), StartsWith("frame " + std::to_string(seen.fault->frame()) + ", "));
+            ++faults;
+          } else if (!(seen.guards == healthy.guards)) {
+            ++guarded;
+          } else {
+            EXPECT_TRUE(Same(seen, healthy)) << "other answers, and nobody says why";
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(faults, 0);
+  EXPECT_GT(guarded, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Family, WatchedMember, testing::ValuesIn(Members()), [](const auto& member) { return std::string(member.param.name); });
+
+// One particle of eight that is impossible: it is replaced, the others go on, and one of them has its weight.
+TEST(WatchedFilter, AnImpossibleParticleIsReplacedAndCounted) {
+  std::unique_ptr<vo::ParticleFilter> filter = MakeParticles(Plain());
+  vo::ParticleFilter& particles = *filter;
+  const Seen seen = Play(std::move(filter), {}, [&](int frame) {
+    if (frame == kPoisoned) vo::ParticleFilterPeer::Particles(particles)[3].log_weight = kNan;
+  });
+  ASSERT_FALSE(seen.fault) << seen.fault->what();
+  EXPECT_EQ(seen.guards.impossible, 1);
+  const Seen healthy = Play(MakeParticles(Plain()), {});
+  EXPECT_LT((seen.beliefs.back().pose.p_WC - healthy.beliefs.back().pose.p_WC).norm(), 0.05);
+}
+
+// What the filter is told.
+TEST(WatchedFilter, RefusesWhatIsNoMeasurement) {
+  using Tell = std::function<void(vo::Filter&)>;
+  const auto with_match = [](const std::function<void(vo::Match&)>& spoil) {
+    return [spoil](vo::Filter& filter) {
+      filter.Predict(0.1);
+      std::vector<vo::Match> matches = Matches(1);
+      spoil(matches[11]);
+      filter.Update(matches);
+    };
+  };
+  const auto with_view = [](const std::function<void(vo::FirstView&)>& spoil) {
+    return [spoil](vo::Filter& filter) {
+      std::vector<vo::FirstView> views = FirstViews();
+      spoil(views[11]);
+      filter.AddLandmarks(views);
+    };
+  };
+  const std::pair<Tell, const char*> cases[] = {
+      {[](vo::Filter& f) { f.Predict(kNan); }, "frame 1, prediction: the time since the last frame is not positive"},
+      {[](vo::Filter& f) { f.Predict(0); }, "frame 1, prediction: the time since the last frame is not positive"},
+      {with_match([](vo::Match& m) { m.z.x() = kNan; }), "frame 1, update: a match is at no point of the image"},
+      {with_match([](vo::Match& m) { m.R.setZero(); }), "frame 1, update: the noise of a match is not positive definite"},
+      {with_match([](vo::Match& m) { m.R(1, 1) = kInf; }), "frame 1, update: the noise of a match is not positive definite"},
+      {with_match([](vo::Match& m) { m.landmark = kLandmarks; }), "frame 1, update: a match is of a landmark that is not in the map"},
+      {with_view([](vo::FirstView& v) { v.ray.y() = kInf; }), "frame 0, new landmarks: a first view is at no point of the image"},
+      {with_view([](vo::FirstView& v) { v.R.setZero(); }), "frame 0, new landmarks: the noise of a first view is not positive definite"},
+      {with_view([](vo::FirstView& v) { v.depth = vo::KnownDepth{0.5, 0}; }), "frame 0, new landmarks: a known depth is not positive"},
+      {[](vo::Filter& f) { f.KeepLandmarks({true}); }, "frame 0, forgetting: another number of landmarks is told than there are"},
+  };
+  for (const auto& told : cases) {
+    vo::WatchedFilter filter(MakeParticles(Plain()));
+    filter.AddLandmarks(FirstViews());
+    EXPECT_THAT([&] { told.first(filter); }, (testing::ThrowsMessage<vo::FilterFault>(testing::StrEq(told.second))));
+  }
+}
+
+// An empty map is a state like others: the filter coasts, by whatever member, and takes up new landmarks.
+TEST(WatchedFilter, GoesOnWithAnEmptyMap) {
+  for (const Member& member : Members()) {
+    vo::WatchedFilter filter(MakeParticles(member.params));
+    filter.AddLandmarks(FirstViews());
+    for (int frame = 1; frame <= 20; ++frame) {
+      if (frame == kPoisoned) filter.KeepLandmarks(std::vector<bool>(kLandmarks, false));
+      if (frame == 12) filter.AddLandmarks(FirstViews());
+      filter.Predict(1.0 / 30);
+      const bool empty = frame >= kPoisoned && frame < 12;
+      filter.Update(empty ? std::vector<vo::Match>() : Matches(frame < 12 ? frame : frame - 11));
+      EXPECT_EQ(filter.LandmarkBeliefs().size(), empty ? 0u : static_cast<std::size_t>(kLandmarks)) << member.name;
+    }
+  }
+}
+
+// A filter whose answers are spoilt one at a time.
+class Broken final : public vo::Filter {
+ public:
+  vo::EkfSlam good{vo::MotionParams{}, vo::FilterParams{}, vo::LandmarkParams{}, Prior()};
+  std::function<void(vo::PoseGaussian&)> spoil_prediction = [](auto&) {};
+  std::function<void(vo::ImagePrediction&)> spoil_image = [](auto&) {};
+  std::function<void(vo::Belief&)> spoil_belief = [](auto&) {};
+  std::function<void(vo::BeliefComponent&)> spoil_component = [](auto&) {};
+  std::function<void(LandmarkBelief&)> spoil_landmark = [](auto&) {};
+  std::function<void(vo::PointMoments&)> spoil_point = [](auto&) {};
+  double effective = 1;
+  int lost_landmarks = 0;
+
+  void Predict(double dt) override {
+    good.Predict(dt);
+    prediction_ = good.ReferencePrediction();
+    spoil_prediction(prediction_);
+  }
+  void Update(std::span<const vo::Match> matches) override {
+    good.Update(matches);
+    belief_ = good.belief();
+    mixture_ = good.mixture();
+    spoil_belief(belief_);
+    spoil_component(mixture_[0]);
+  }
+  void AddLandmarks(std::span<const vo::FirstView> views) override { good.AddLandmarks(views); }
+  void KeepLandmarks(const std::vector<bool>& keep) override { good.KeepLandmarks(keep); }
+  int landmark_count() const override { return good.landmark_count(); }
+  std::vector<vo::ImagePrediction> PredictImages(std::span<const int> landmarks) const override {
+    auto predictions = good.PredictImages(landmarks);
+    spoil_image(predictions[2]);
+    return predictions;
+  }
+  const vo::PoseGaussian& ReferencePrediction() const override { return prediction_; }
+  vo::LocalMap ReferenceMap() const override { return good.ReferenceMap(); }
+  Eigen::Vector3d ModeOf(int landmark) const override { return good.ModeOf(landmark); }
+  vo::Pose AnchorOf(int landmark) const override { return good.AnchorOf(landmark); }
+  std::vector<LandmarkBelief> LandmarkBeliefs() const override {
+    auto beliefs = good.LandmarkBeliefs();
+    spoil_landmark(beliefs[2]);
+    return beliefs;
+  }
+  std::vector<std::optional<vo::PointMoments>> LandmarkPoints() const override {
+    auto points = good.LandmarkPoints();
+    if (points[2]) spoil_point(*points[2]);
+    return points;
+  }
+  const vo::Belief& belief() const override { return belief_; }
+  const std::vector<vo::BeliefComponent>& mixture() const override { return mixture_; }
+  double effective_particles() const override { return effective; }
+  const vo::Guards& guards() const override { return good.guards(); }
+
+ private:
+  vo::PoseGaussian prediction_;
+  vo::Belief belief_;
+  std::vector<vo::BeliefComponent> mixture_;
+};
+
+// What the filter says, stage by stage.
+TEST(WatchedFilter, RefusesWhatIsNoAnswer) {
+  const std::pair<std::function<void(Broken&)>, const char*> cases[] = {
+      {[](Broken& f) { f.spoil_prediction = [](auto& p) { p.mean.p_WC.x() = kNan; }; }, "frame 1, prediction: the pose is not one"},
+      {[](Broken& f) { f.spoil_prediction = [](auto& p) { p.covariance.setZero(); }; }, "frame 1, prediction: the covariance of the pose has a variance of 0"},
+      {[](Broken& f) { f.spoil_prediction = [](auto& p) { p.covariance(1, 4) = kInf; }; }, "frame 1, prediction: the covariance of the pose is not a number"},
+      {[](Broken& f) { f.spoil_image = [](auto& p) { p.z.x() = kNan; }; }, "frame 1, predicted images: a landmark is at no point"},
+      {[](Broken& f) { f.spoil_image = [](auto& p) { p.covariance(0, 0) = -1; }; }, "frame 1, predicted images: the covariance of a landmark's image has a variance of -1"},
+      {[](Broken& f) { f.spoil_belief = [](auto& b) { b.pose.q_WC.coeffs() *= 2; }; }, "frame 1, update: the pose is not one"},
+      {[](Broken& f) { f.spoil_belief = [](auto& b) { b.velocity[5] = kInf; }; }, "frame 1, update: the velocity is not a number"},
+      {[](Broken& f) { f.spoil_belief = [](auto& b) { b.covariance(11, 0) = kNan; }; }, "frame 1, update: the covariance of pose and velocity is not"},
+      {[](Broken& f) { f.spoil_belief = [](auto& b) { b.covariance(3, 3) = -1e-9; }; }, "frame 1, update: the covariance of pose and velocity has"},
+      {[](Broken& f) { f.spoil_belief = [](auto& b) { b.covariance(7, 2) += 1e-3; }; }, "frame 1, update: the covariance of pose and velocity is not symmetric"},
+#if !defined(NDEBUG)
+      {[](Broken& f) { f.spoil_belief = [](auto& b) { b.covariance(7, 2) = b.covariance(2, 7) = 2 * std::sqrt(b.covariance(2, 2) * b.covariance(7, 7)); }; },
+       "frame 1, update: the covariance of pose and velocity has a negative eigenvalue"},
+#endif
+      {[](Broken& f) { f.spoil_component = [](auto& c) { c.weight = kNan; }; }, "frame 1, update: a weight is negative or not a number"},
+      {[](Broken& f) { f.spoil_component = [](auto& c) { c.weight = 0.5; }; }, "frame 1, update: the weights do not sum to 1"},
+      {[](Broken& f) { f.effective = kNan; }, "frame 1, update: the effective number of particles is not one"},
+      {[](Broken& f) { f.spoil_landmark = [](auto& l) { l.X_W.z() = kInf; }; }, "frame 1, landmarks: a landmark is nowhere"},
+      {[](Broken& f) { f.spoil_landmark = [](auto& l) { l.inverse_depth_sigma = kNan; }; }, "frame 1, landmarks: the variance of an inverse depth"},
+      {[](Broken& f) { f.spoil_point = [](auto& p) { p.mean.x() = kNan; }; }, "frame 1, landmarks: a landmark is nowhere"},
+      {[](Broken& f) { f.spoil_point = [](auto& p) { p.covariance(2, 2) = -1; }; }, "frame 1, landmarks: the covariance of a landmark has a variance"},
+  };
+  for (const auto& [spoil, message] : cases) {
+    auto broken = std::make_unique<Broken>();
+    spoil(*broken);
+    const Seen seen = Play(std::move(broken), {});
+    ASSERT_TRUE(seen.fault) << message;
+    EXPECT_THAT(seen.fault->what(), StartsWith(message));
+  }
+  EXPECT_FALSE(Play(std::make_unique<Broken>(), {}).fault) << "unspoilt";
+}
+
+// Bad input is refused before anything has changed.
+TEST(PointOdometry, RefusesWhatIsNoPointAndNoPrior) {
+  const vo::Camera camera{640, 480, 525, 525, 319.5, 239.5};
+  vo::Prior prior;
+  prior.pose.p_WC.x() = kNan;
+  prior.velocity_covariance(0, 5) = 1;
+  EXPECT_THAT([&] { vo::PointOdometry(camera, vo::Params(), prior, 1); },
+              (testing::ThrowsMessage<std::invalid_argument>("prior: the pose is not one\nprior: the covariance of the velocity is not one")));
+  vo::PointOdometry spoilt(camera, vo::Params(), vo::Prior(), 1), other(camera, vo::Params(), vo::Prior(), 1);
+  const auto frame = [](std::int64_t k) {
+    vo::PointFrame result{k * 33'000'000, {}};
+    for (int n = 0; n < 20; ++n) result.observations.push_back({n, {30.0 * n + static_cast<double>(k), 200 + 7.0 * n}});
+    return result;
+  };
+  for (std::int64_t k = 0; k < 4; ++k) {
+    vo::PointFrame bad = frame(k);
+    bad.observations[5].pixel.y() = kNan;
+    const std::string where = " in the frame at " + std::to_string(bad.stamp_ns) + " ns";
+    EXPECT_THAT([&] { spoilt.Track(bad); }, (testing::ThrowsMessage<std::invalid_argument>("point 5 is nowhere" + where)));
+    bad = frame(k);
+    bad.observations.push_back(bad.observations[3]);
+    EXPECT_THAT([&] { spoilt.Track(bad); }, (testing::ThrowsMessage<std::invalid_argument>("point 3 comes twice" + where)));
+    EXPECT_EQ(spoilt.Track(frame(k)).pose.p_WC, other.Track(frame(k)).pose.p_WC);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,129 @@
+#include "vo/filter/watched_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+namespace vo {
+namespace {
+
+constexpr double kUnit = 1e-6;  // how far the weights' sum, or a quaternion's length, may be from 1
+constexpr double kRounding = 1e-9;
+
+bool Finite(const Pose& pose) {
+  return pose.p_WC.allFinite() && std::abs(pose.q_WC.coeffs().norm() - 1) < kUnit;  // false for what is not a number
+}
+
+bool Symmetric(const Eigen::Ref<const Eigen::MatrixXd>& P) {
+  return (P - P.transpose()).cwiseAbs().maxCoeff() <= kRounding * P.diagonal().cwiseAbs().maxCoeff();
+}
+
+// Whatever the units: as correlations, of what varies at all. Costs too much to be looked at everywhere.
+[[maybe_unused]] bool NoNegativeEigenvalue(const Matrix12& P) {
+  const Eigen::Array<double, 12, 1> scale = (P.diagonal().array() > 0).select(P.diagonal().array().rsqrt(), 0);
+  const Matrix12 correlation = scale.matrix().asDiagonal() * P * scale.matrix().asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<Matrix12>(correlation, Eigen::EigenvaluesOnly).eigenvalues().minCoeff() > -kRounding;
+}
+
+bool PositiveDefinite(const Eigen::Matrix2d& R) { return R.allFinite() && R(0, 0) > 0 && R.determinant() > 0; }
+
+}  // namespace
+
+// Entries are numbers, the same on both sides, and no variance is negative; `above_zero`: nor zero.
+void WatchedFilter::RequireVariances(const Eigen::Ref<const Eigen::MatrixXd>& covariance, const char* stage, const char* whose,
+                                     bool above_zero) const {
+  if (!covariance.allFinite()) throw FilterFault(frame_, stage, std::string("the covariance of ") + whose + " is not a number");
+  const double least = covariance.diagonal().minCoeff();
+  if (above_zero ? !(least > 0) : !(least >= 0))
+    throw FilterFault(frame_, stage, std::string("the covariance of ") + whose + " has a variance of " + std::to_string(least));
+  if (!Symmetric(covariance)) throw FilterFault(frame_, stage, std::string("the covariance of ") + whose + " is not symmetric");
+}
+
+void WatchedFilter::RequireAnswer(const char* stage) const {
+  const Belief& belief = filter_->belief();
+  Require(Finite(belief.pose), stage, "the pose is not one");
+  Require(belief.velocity.allFinite(), stage, "the velocity is not a number");
+  RequireVariances(belief.covariance, stage, "pose and velocity", false);
+#if !defined(NDEBUG)
+  Require(NoNegativeEigenvalue(belief.covariance), stage, "the covariance of pose and velocity has a negative eigenvalue");
+#endif
+  double sum = 0;
+  for (const BeliefComponent& component : filter_->mixture()) {
+    Require(component.weight >= 0, stage, "a weight is negative or not a number");
+    sum += component.weight;
+  }
+  Require(std::abs(sum - 1) < kUnit, stage, "the weights do not sum to 1");
+  const double effective = filter_->effective_particles();
+  Require(effective > 0 && std::isfinite(effective), stage, "the effective number of particles is not one");
+}
+
+void WatchedFilter::Predict(double dt) {
+  ++frame_;
+  Require(dt > 0 && std::isfinite(dt), "prediction", "the time since the last frame is not positive");
+  filter_->Predict(dt);
+  const PoseGaussian& prediction = filter_->ReferencePrediction();
+  Require(Finite(prediction.mean), "prediction", "the pose is not one");
+  RequireVariances(prediction.covariance, "prediction", "the pose", true);  // the camera may have done something meanwhile
+}
+
+void WatchedFilter::Update(std::span<const Match> matches) {
+  for (const Match& match : matches) {
+    Require(match.landmark >= 0 && match.landmark < landmark_count(), "update", "a match is of a landmark that is not in the map");
+    Require(match.z.allFinite(), "update", "a match is at no point of the image");
+    Require(PositiveDefinite(match.R), "update", "the noise of a match is not positive definite");
+  }
+  filter_->Update(matches);
+  RequireAnswer("update");
+}
+
+void WatchedFilter::AddLandmarks(std::span<const FirstView> views) {
+  for (const FirstView& view : views) {
+    Require(view.ray.allFinite() && view.by_inverse_depth.allFinite(), "new landmarks", "a first view is at no point of the image");
+    Require(PositiveDefinite(view.R), "new landmarks", "the noise of a first view is not positive definite");
+    Require(!view.depth || (view.depth->inverse_depth > 0 && view.depth->sigma > 0 && std::isfinite(view.depth->inverse_depth) &&
+                            std::isfinite(view.depth->sigma)),
+            "new landmarks", "a known depth is not positive");
+  }
+  const int before = landmark_count();
+  filter_->AddLandmarks(views);
+  Require(landmark_count() == before + static_cast<int>(views.size()), "new landmarks", "the map has another number of landmarks");
+}
+
+void WatchedFilter::KeepLandmarks(const std::vector<bool>& keep) {
+  Require(static_cast<int>(keep.size()) == landmark_count(), "forgetting", "another number of landmarks is told than there are");
+  filter_->KeepLandmarks(keep);
+  Require(landmark_count() == std::count(keep.begin(), keep.end(), true), "forgetting", "the map has another number of landmarks");
+}
+
+std::vector<ImagePrediction> WatchedFilter::PredictImages(std::span<const int> landmarks) const {
+  std::vector<ImagePrediction> predictions = filter_->PredictImages(landmarks);
+  for (const ImagePrediction& prediction : predictions) {
+    if (!prediction.in_front) continue;
+    Require(prediction.z.allFinite(), "predicted images", "a landmark is at no point of the image");
+    RequireVariances(prediction.covariance, "predicted images", "a landmark's image", false);
+  }
+  return predictions;
+}
+
+std::vector<Filter::LandmarkBelief> WatchedFilter::LandmarkBeliefs() const {
+  std::vector<LandmarkBelief> beliefs = filter_->LandmarkBeliefs();
+  for (const LandmarkBelief& belief : beliefs) {
+    Require(belief.X_W.allFinite() && std::isfinite(belief.inverse_depth), "landmarks", "a landmark is nowhere");
+    Require(belief.inverse_depth_sigma >= 0 && std::isfinite(belief.inverse_depth_sigma), "landmarks",
+            "the variance of an inverse depth is negative or not a number");
+  }
+  return beliefs;
+}
+
+std::vector<std::optional<PointMoments>> WatchedFilter::LandmarkPoints() const {
+  std::vector<std::optional<PointMoments>> points = filter_->LandmarkPoints();
+  for (const std::optional<PointMoments>& point : points) {
+    if (!point) continue;
+    Require(point->mean.allFinite(), "landmarks", "a landmark is nowhere");
+    RequireVariances(point->covariance, "landmarks", "a landmark", false);
+  }
+  return points;
+}
+
+}  // namespace vo
