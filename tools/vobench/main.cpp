@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <opencv2/core/utility.hpp>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -27,6 +28,7 @@ void Execute(const ExportOptions& options) { Export(options); }
 
 int Main(int argc, char** argv) {
   HoldInterrupts();
+  cv::setNumThreads(1);  // how many threads there are says --jobs, of which OpenCV knows nothing
   const std::variant<Command, int> asked = ParseArguments(argc, argv);
   if (const int* status = std::get_if<int>(&asked)) return *status;
   try {
