@@ -287,15 +287,16 @@ LocalMap ParticleFilter::ReferenceMap() const {
 std::vector<Filter::LandmarkBelief> ParticleFilter::LandmarkBeliefs() const {
   const Particle& best = Heaviest();
   std::vector<LandmarkBelief> beliefs;
-  for (int n = 0; n < landmark_count(); ++n) {
-    double mean = 0, variance = 0;
-    for (std::size_t i = 0; i < particles_.size(); ++i) mean += weights_[i] * ModeOf(particles_[i], n).z();
-    for (std::size_t i = 0; i < particles_.size(); ++i) {
-      const double off = ModeOf(particles_[i], n).z() - mean;
-      variance += weights_[i] * (particles_[i].landmarks[n].covariance(2, 2) + off * off);
+  for (int n = 0; n < landmark_count(); ++n) beliefs.push_back({PointInWorld(best.anchors[anchor_of_[n]], ModeOf(best, n)), 0, 0});
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    for (std::size_t n = 0; n < beliefs.size(); ++n) beliefs[n].inverse_depth += weights_[i] * ModeOf(particles_[i], static_cast<int>(n)).z();
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    for (std::size_t n = 0; n < beliefs.size(); ++n) {
+      const double off = ModeOf(particles_[i], static_cast<int>(n)).z() - beliefs[n].inverse_depth;
+      beliefs[n].inverse_depth_sigma += weights_[i] * (particles_[i].landmarks[n].covariance(2, 2) + off * off);  // the variance, so far
     }
-    beliefs.push_back({PointInWorld(best.anchors[anchor_of_[n]], ModeOf(best, n)), mean, std::sqrt(variance)});
   }
+  for (LandmarkBelief& belief : beliefs) belief.inverse_depth_sigma = std::sqrt(belief.inverse_depth_sigma);
   return beliefs;
 }
 
