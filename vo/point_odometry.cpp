@@ -1,6 +1,7 @@
 #include "vo/point_odometry.h"
 
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -18,11 +19,11 @@ struct PointOdometry::Impl {
   Impl(const Camera& camera_, const Params& params_, const Prior& prior, std::uint64_t seed)
       : camera(camera_), params(Checked(params_)), filter(MakeFilter(params, prior, seed)), scale(params.landmark.scale_sigma, prior.pose.p_WC) {}
 
-  void Require(const PointFrame& frame) const;
+  std::vector<Eigen::Vector2d> RaysOf(const PointFrame& frame) const;
   Estimate Process(const PointFrame& frame);
-  std::vector<Match> MatchesIn(const PointFrame& frame, FrameDiagnostics& diagnostics);
+  std::vector<Match> MatchesIn(const PointFrame& frame, std::span<const Eigen::Vector2d> rays, FrameDiagnostics& diagnostics);
   void Forget();
-  void AddNew(const PointFrame& frame);
+  void AddNew(const PointFrame& frame, std::span<const Eigen::Vector2d> rays);
 
   struct Record {
     std::int64_t id = 0;
@@ -39,32 +40,37 @@ struct PointOdometry::Impl {
   std::optional<std::int64_t> last_stamp_ns;
 };
 
-void PointOdometry::Impl::Require(const PointFrame& frame) const {
+// Of each observation; refuses what a frame cannot be.
+std::vector<Eigen::Vector2d> PointOdometry::Impl::RaysOf(const PointFrame& frame) const {
   if (last_stamp_ns) RequireIncreasing(frame.stamp_ns, *last_stamp_ns);
   const auto refuse = [&](const PointObservation& observation, const std::string& what) {
     throw std::invalid_argument("point " + std::to_string(observation.id) + what + " in the frame at " + std::to_string(frame.stamp_ns) + " ns");
   };
   std::unordered_set<std::int64_t> ids;
+  std::vector<Eigen::Vector2d> rays;
   for (const PointObservation& observation : frame.observations) {
     if (!ids.insert(observation.id).second) refuse(observation, " comes twice");
-    if (!observation.pixel.allFinite() || !camera.Undistort(observation.pixel).allFinite()) refuse(observation, " is nowhere");
+    if (!observation.pixel.allFinite()) refuse(observation, " is nowhere");
+    rays.push_back(camera.Undistort(observation.pixel));
+    if (!rays.back().allFinite()) refuse(observation, " is nowhere");
   }
+  return rays;
 }
 
 Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
-  Require(frame);
+  const std::vector<Eigen::Vector2d> rays = RaysOf(frame);
   FrameDiagnostics diagnostics;
   Stopwatch watch;
   if (last_stamp_ns) {
     filter.Predict(static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9);
-    const std::vector<Match> matches = MatchesIn(frame, diagnostics);
+    const std::vector<Match> matches = MatchesIn(frame, rays, diagnostics);
     diagnostics.ms_matching = watch.Lap();
     filter.Update(matches);
     diagnostics.ms_filter = watch.Lap();
   }
   last_stamp_ns = frame.stamp_ns;
   Forget();
-  AddNew(frame);
+  AddNew(frame, rays);
   diagnostics.landmarks = static_cast<int>(records.size());
   for (const Filter::LandmarkBelief& belief : filter.LandmarkBeliefs())
     diagnostics.permanent += belief.relative_sigma() < params.landmark.permanent_ratio;
@@ -76,16 +82,15 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
   return MakeEstimate(filter, scale, frame.stamp_ns, diagnostics);
 }
 
-std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, FrameDiagnostics& diagnostics) {
+std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, std::span<const Eigen::Vector2d> rays, FrameDiagnostics& diagnostics) {
   for (Record& record : records) ++record.frames_unseen;
   std::vector<Match> matches;
-  for (const PointObservation& observation : frame.observations) {
-    const auto known = landmark_of.find(observation.id);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto known = landmark_of.find(frame.observations[i].id);
     if (known == landmark_of.end()) continue;
     Record& record = records[static_cast<std::size_t>(known->second)];
     record.frames_unseen = 0;
-    const Eigen::Vector2d z = camera.Undistort(observation.pixel);
-    matches.push_back({known->second, z, PixelNoise(camera.LensJacobian(z), params.features.sigma_px)});
+    matches.push_back({known->second, rays[i], PixelNoise(camera.LensJacobian(rays[i]), params.features.sigma_px)});
   }
   diagnostics.searched = static_cast<int>(matches.size());
   const std::vector<bool> inlier =
@@ -122,13 +127,13 @@ void PointOdometry::Impl::Forget() {
   for (std::size_t n = 0; n < records.size(); ++n) landmark_of[records[n].id] = static_cast<int>(n);
 }
 
-void PointOdometry::Impl::AddNew(const PointFrame& frame) {
+void PointOdometry::Impl::AddNew(const PointFrame& frame, std::span<const Eigen::Vector2d> rays) {
   std::vector<FirstView> views;
-  for (const PointObservation& observation : frame.observations) {
-    if (!landmark_of.try_emplace(observation.id, static_cast<int>(records.size())).second) continue;
-    records.push_back({observation.id, 0});
-    const Eigen::Vector2d ray = camera.Undistort(observation.pixel);
-    views.push_back({ray, PixelNoise(camera.LensJacobian(ray), params.features.sigma_px)});
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::int64_t id = frame.observations[i].id;
+    if (!landmark_of.try_emplace(id, static_cast<int>(records.size())).second) continue;
+    records.push_back({id, 0});
+    views.push_back({rays[i], PixelNoise(camera.LensJacobian(rays[i]), params.features.sigma_px)});
   }
   filter.AddLandmarks(views);
 }

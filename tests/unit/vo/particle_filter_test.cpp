@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/unit/vo/draws.h"
+#include "tests/unit/vo/wall.h"
 #include "vo/filter/resampling.h"
 #include "vo/geometry/so3.h"
 #include "vo/random.h"
@@ -22,22 +23,13 @@ vo::ParticleFilter MakeFilter(const vo::FilterParams& params) {
   vo::FilterPrior prior;
   prior.velocity_covariance = 0.04 * vo::Matrix6::Identity();
   vo::ParticleFilter filter(vo::MotionParams{}, params, vo::LandmarkParams{}, prior, kSeed);
-  std::vector<vo::FirstView> views;
-  for (int n = 0; n < kLandmarks; ++n)
-    views.push_back({{0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n)}, 4e-6 * Eigen::Matrix2d::Identity()});
-  filter.AddLandmarks(views);
+  filter.AddLandmarks(vo_test::WallFirstViews(kLandmarks));
   return filter;
 }
 
 void Step(vo::ParticleFilter& filter, int frame) {
-  std::vector<vo::Match> matches;
-  for (int n = 0; n < kLandmarks; ++n)
-    matches.push_back({n,
-                       Eigen::Vector2d(0.5 * std::sin(1.3 * n) - 0.002 * frame, 0.4 * std::cos(2.1 * n)) +
-                           0.002 * Eigen::Vector2d(std::sin(17.0 * n * frame), std::cos(23.0 * n * frame)),
-                       4e-6 * Eigen::Matrix2d::Identity()});
   filter.Predict(1.0 / 30);
-  filter.Update(matches);
+  filter.Update(vo_test::WallMatches(kLandmarks, frame));
 }
 
 TEST(ParticleFilter, ChildrenAreTheirAncestors) {

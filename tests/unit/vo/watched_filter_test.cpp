@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/unit/vo/wall.h"
 #include "vo/filter/ekf_slam.h"
 #include "vo/filter/particle_filter.h"
 #include "vo/geometry/so3.h"
@@ -33,23 +34,8 @@ using testing::StartsWith;
 constexpr int kLandmarks = 30, kPoisoned = 6, kFrames = 10;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
 
-std::vector<vo::FirstView> FirstViews() {
-  std::vector<vo::FirstView> views;
-  for (int n = 0; n < kLandmarks; ++n)
-    views.push_back({{0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n)}, 4e-6 * Eigen::Matrix2d::Identity()});
-  return views;
-}
-
-// Of a camera that flies sideways past a wall in four metres.
-std::vector<vo::Match> Matches(int frame) {
-  std::vector<vo::Match> matches;
-  for (int n = 0; n < kLandmarks; ++n)
-    matches.push_back({n,
-                       Eigen::Vector2d(0.5 * std::sin(1.3 * n) - 0.002 * frame, 0.4 * std::cos(2.1 * n)) +
-                           0.002 * Eigen::Vector2d(std::sin(17.0 * n * frame), std::cos(23.0 * n * frame)),
-                       4e-6 * Eigen::Matrix2d::Identity()});
-  return matches;
-}
+std::vector<vo::FirstView> FirstViews() { return vo_test::WallFirstViews(kLandmarks); }
+std::vector<vo::Match> Matches(int frame) { return vo_test::WallMatches(kLandmarks, frame); }
 
 vo::FilterPrior Prior() {
   vo::FilterPrior prior;
