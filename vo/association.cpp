@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include <Eigen/LU>
@@ -18,6 +17,7 @@ namespace vo {
 namespace {
 
 constexpr int kShutterRounds = 3;  // velocity, then where the rows' points were at the stamp, then the velocity by these
+constexpr double kFarOut = 0.5;    // of the image's size: so far outside of it no particle has a landmark that others have inside
 
 struct Candidate {
   int landmark = 0;
@@ -26,9 +26,7 @@ struct Candidate {
   Eigen::Matrix2d lens;        // d pixel / d(plane z = 1)
 };
 
-bool WorthSearching(const Filter& filter, const LandmarkRecord& record, int landmark, const ImagePrediction& prediction,
-                    const Params& params) {
-  if (record.score < params.score.delete_below) return false;
+bool WorthSearching(const Filter& filter, int landmark, const ImagePrediction& prediction, const Params& params) {
   const Pose& now = filter.ReferencePrediction().mean;
   const Pose first = filter.AnchorOf(landmark);
   const Eigen::Vector3d estimate = filter.ModeOf(landmark);
@@ -39,16 +37,34 @@ bool WorthSearching(const Filter& filter, const LandmarkRecord& record, int land
   return rho <= 0 || (now.p_WC - first.p_WC).norm() * rho < params.features.max_baseline_ratio;
 }
 
+// A prediction costs all particles' covariances: of what lies behind the camera or far outside the image on the reference's path, none is made.
+std::vector<int> Predictable(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const LocalMap& map,
+                             const Params& params) {
+  std::vector<AnchorView> views;
+  for (const Pose& anchor : map.anchors) views.emplace_back(filter.ReferencePrediction().mean, anchor);
+  std::vector<int> predictable;
+  for (int n = 0; n < filter.landmark_count(); ++n) {
+    if (records[n].score < params.score.delete_below) continue;
+    const Projection view = Project(views[map.anchor_of[n]], map.landmarks[n].mean);
+    if (!view.in_front) continue;
+    const Eigen::Vector2d pixel = camera.Project({view.z.x(), view.z.y(), 1.0});
+    const bool near = pixel.x() > -kFarOut * camera.width && pixel.x() < (1 + kFarOut) * camera.width &&
+                      pixel.y() > -kFarOut * camera.height && pixel.y() < (1 + kFarOut) * camera.height;
+    if (near) predictable.push_back(n);
+  }
+  return predictable;
+}
+
 // Section 7: assessed in this order.
 std::vector<Candidate> FindCandidates(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
-                                      const ImageMotion& motion, int border_px, const Params& params) {
+                                      const LocalMap& map, const ImageMotion& motion, int border_px, const Params& params) {
   std::vector<Candidate> candidates;
-  std::vector<int> all(static_cast<std::size_t>(filter.landmark_count()));
-  std::iota(all.begin(), all.end(), 0);
-  const std::vector<ImagePrediction> predictions = filter.PredictImages(all);
-  for (const int n : all) {
-    const ImagePrediction& prediction = predictions[n];
-    if (!prediction.in_front || !WorthSearching(filter, records[n], n, prediction, params)) continue;
+  const std::vector<int> predictable = Predictable(filter, records, camera, map, params);
+  const std::vector<ImagePrediction> predictions = filter.PredictImages(predictable);
+  for (std::size_t i = 0; i < predictable.size(); ++i) {
+    const int n = predictable[i];
+    const ImagePrediction& prediction = predictions[i];
+    if (!prediction.in_front || !WorthSearching(filter, n, prediction, params)) continue;
     const Eigen::Vector2d pixel = motion.InImage(n, prediction.z);
     if (!camera.Sees(pixel, border_px)) continue;
     candidates.push_back({n, prediction, pixel, camera.LensJacobian(prediction.z)});
@@ -152,7 +168,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   const double gate = OutlierGate(filter, params.score);
   const RollingShutter shutter(camera, params.features);
   const ImageMotion predicted(shutter, map, prediction.mean, filter.belief().velocity);
-  std::vector<Candidate> candidates = FindCandidates(filter, records, camera, predicted, border_px, params);
+  std::vector<Candidate> candidates = FindCandidates(filter, records, camera, map, predicted, border_px, params);
   result.left_out = LeaveOut(candidates, records, camera, params.features);
   std::vector<SearchRequest> requests;
   for (const Candidate& c : candidates)

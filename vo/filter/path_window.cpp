@@ -266,7 +266,7 @@ Conditional Condition(const WindowInput& in, const Track& track, const PathGauss
     if (track.anchor_slot >= 0) E.middleCols<6>(6 * track.anchor_slot).noalias() += MtW * AnchorJacobian(h, theta);
   }
   const Eigen::Matrix3d LG = L * G.inverse();
-  return {LG * L.transpose(), LG * E};
+  return {LG * L.transpose(), LG.lazyProduct(E)};
 }
 
 }  // namespace
@@ -280,11 +280,17 @@ ImagePrediction PathWindow::PredictLast(const WindowInput& in, const Track& trac
   const Pose& anchor = track.anchor_slot < 0 ? in.anchors[track.anchor] : path.mean[track.anchor_slot];
   const Projection h = Project({path.mean.back(), anchor}, theta);
   if (!h.in_front) return {};
+  if (track.views.empty() && track.anchor_slot < 0) {  // the window knows nothing of it
+    const auto last = path.covariance.bottomRightCorner<6, 6>();
+    const Eigen::Matrix3d& P = in.landmarks[track.landmark].covariance;
+    return {true, h.z, h.J_pose * last * h.J_pose.transpose() + h.J_landmark * P * h.J_landmark.transpose()};
+  }
   const Conditional landmark = Condition(in, track, path, theta);
-  Eigen::Matrix<double, 2, Eigen::Dynamic> J = -h.J_landmark * landmark.by_pose;
+  Eigen::Matrix<double, 2, Eigen::Dynamic> J = -h.J_landmark.lazyProduct(landmark.by_pose);
   J.rightCols<6>() += h.J_pose;
   if (track.anchor_slot >= 0) J.middleCols<6>(6 * track.anchor_slot) += AnchorJacobian(h, theta);
-  return {true, h.z, J * path.covariance * J.transpose() + h.J_landmark * landmark.covariance * h.J_landmark.transpose()};
+  const Eigen::Matrix<double, Eigen::Dynamic, 2> PJt = path.covariance.lazyProduct(J.transpose());  // thin: a blocked product is slower
+  return {true, h.z, J.lazyProduct(PJt) + h.J_landmark * landmark.covariance * h.J_landmark.transpose()};
 }
 
 }  // namespace vo
