@@ -8,16 +8,25 @@
 #include "vo/association.h"
 #include "vo/estimate.h"
 #include "vo/features/corner_detector.h"
+#include "vo/filter/pose_gaussian.h"
 #include "vo/map/existence.h"
 #include "vo/map/forgetting.h"
 #include "vo/rolling_shutter.h"
 #include "vo/target.h"
 
 namespace vo {
+namespace {
+
+constexpr int kStartRounds = 3;  // of the second frame, through a rolling shutter
+
+}  // namespace
+
 struct Odometry::Impl {
-  Impl(const Camera& camera_, const Params& params_, const Prior& prior, std::uint64_t seed)
+  Impl(const Camera& camera_, const Params& params_, const Prior& prior_, std::uint64_t seed_)
       : camera(camera_),
         params(Checked(params_)),
+        prior(prior_),
+        seed(seed_),
         filter(MakeFilter(params, prior, seed)),
         scale(params.landmark.scale_sigma, prior.pose.p_WC),
         shutter(camera, params.features),
@@ -27,16 +36,21 @@ struct Odometry::Impl {
 
   void Require(const Frame& frame) const;
   Estimate Process(const PreparedFrame& prepared);
+  void Begin(const PreparedFrame& prepared, const Vector6& velocity);
+  void Follow(const PreparedFrame& prepared, FrameDiagnostics& diagnostics);
+  void BeginAgain(const PreparedFrame& second, FrameDiagnostics& diagnostics);
   void UpdateScores(const Association& association);
   void Forget();
-  void AddFeatures(const cv::Mat& grey, const BriskImage& brisk);
-  void AddTarget(const cv::Mat& grey, const BriskImage& brisk, std::vector<FirstView>& first);
-  void Add(const Eigen::Vector2i& corner, const std::optional<KnownDepth>& depth, const cv::Mat& grey, const BriskImage& brisk,
+  void AddFeatures(const PreparedFrame& prepared, const Vector6& velocity);
+  void AddTarget(const PreparedFrame& prepared, const Vector6& velocity, std::vector<FirstView>& first);
+  void Add(const Eigen::Vector2i& corner, const std::optional<KnownDepth>& depth, const PreparedFrame& prepared, const Vector6& velocity,
            std::vector<FirstView>& first);
   Estimate Answer(std::int64_t stamp_ns, FrameDiagnostics diagnostics) const;
 
   Camera camera;
   Params params;
+  Prior prior;
+  std::uint64_t seed;
   WatchedFilter filter;
   UnknownScale scale;
   RollingShutter shutter;
@@ -48,6 +62,7 @@ struct Odometry::Impl {
   std::optional<std::int64_t> last_stamp_ns;
   int next_id = 0;
   int target_frames = 0;  // in which the target may still be looked for
+  std::optional<PreparedFrame> first_frame;  // kept until the second tells how fast its rows were passed over
 };
 
 void Odometry::Impl::Require(const Frame& frame) const {
@@ -58,33 +73,69 @@ void Odometry::Impl::Require(const Frame& frame) const {
 }
 
 Estimate Odometry::Impl::Process(const PreparedFrame& prepared) {
-  const Frame& frame = prepared.frame;
   FrameDiagnostics diagnostics;
-  Stopwatch watch;
   views.clear();
   left_out.clear();
-
   if (last_stamp_ns) {
-    const double dt = static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9;
-    filter.Predict(dt);
-    Association association = Associate(filter, records, camera, prepared.grey, prepared.brisk, border_px, dt, params);
-    diagnostics.ms_matching = watch.Lap();
-    filter.Update(association.matches);
-    UpdateScores(association);
-    diagnostics.searched = static_cast<int>(association.searched.size());
-    diagnostics.matched = static_cast<int>(association.matches.size());
-    diagnostics.nis = association.nis;
-    diagnostics.nis_dof = 2 * diagnostics.matched;
-    views = std::move(association.views);
-    left_out = std::move(association.left_out);
-    diagnostics.ms_filter = watch.Lap();
+    Follow(prepared, diagnostics);
+    if (first_frame) BeginAgain(prepared, diagnostics);
+  } else {
+    Stopwatch watch;
+    if (shutter.on()) {
+      first_frame = prepared;
+      first_frame->grey = prepared.grey.clone();  // the caller's memory
+    }
+    Begin(prepared, filter.belief().velocity);
+    diagnostics.ms_features += watch.Lap();
   }
-  last_stamp_ns = frame.stamp_ns;
+  diagnostics.ms_features += prepared.ms;
+  return Answer(prepared.frame.stamp_ns, diagnostics);
+}
+
+void Odometry::Impl::Begin(const PreparedFrame& prepared, const Vector6& velocity) {
+  last_stamp_ns = prepared.frame.stamp_ns;
+  AddFeatures(prepared, velocity);
+}
+
+void Odometry::Impl::Follow(const PreparedFrame& prepared, FrameDiagnostics& diagnostics) {
+  const std::int64_t stamp_ns = prepared.frame.stamp_ns;
+  const double dt = static_cast<double>(stamp_ns - *last_stamp_ns) * 1e-9;
+  Stopwatch watch;
+  filter.Predict(dt);
+  Association association = Associate(filter, records, camera, prepared.grey, prepared.brisk, border_px, dt, params);
+  diagnostics.ms_matching += watch.Lap();
+  filter.Update(association.matches);
+  UpdateScores(association);
+  diagnostics.searched = static_cast<int>(association.searched.size());
+  diagnostics.matched = static_cast<int>(association.matches.size());
+  diagnostics.nis = association.nis;
+  diagnostics.nis_dof = 2 * diagnostics.matched;
+  views = std::move(association.views);
+  left_out = std::move(association.left_out);
+  diagnostics.ms_filter += watch.Lap();
+  last_stamp_ns = stamp_ns;
 
   Forget();
-  AddFeatures(prepared.grey, prepared.brisk);
-  diagnostics.ms_features = prepared.ms + watch.Lap();
-  return Answer(frame.stamp_ns, diagnostics);
+  AddFeatures(prepared, filter.belief().velocity);
+  diagnostics.ms_features += watch.Lap();
+}
+
+// How fast the camera was in its first frame only the prior says, and the rows of that frame are as wrong as that: a turn that it does not know
+// of shears the whole map, for good. The second frame tells, so both are done again with what it says.
+void Odometry::Impl::BeginAgain(const PreparedFrame& second, FrameDiagnostics& diagnostics) {
+  const PreparedFrame first = *std::exchange(first_frame, std::nullopt);
+  const double dt = static_cast<double>(second.frame.stamp_ns - first.frame.stamp_ns) * 1e-9;
+  for (int round = 1; round < kStartRounds && diagnostics.tracked(); ++round) {
+    const Vector6 velocity = Minus(filter.belief().pose, prior.pose) / dt;
+    filter = WatchedFilter(MakeFilter(params, prior, seed));
+    records.clear();
+    views.clear();
+    left_out.clear();
+    next_id = 0;
+    target_frames = params.target.columns > 0 ? params.target.frames : 0;
+    Begin(first, velocity);
+    Follow(second, diagnostics);
+  }
 }
 
 void Odometry::Impl::UpdateScores(const Association& association) {
@@ -115,16 +166,15 @@ void Odometry::Impl::Forget() {
 }
 
 // A new landmark; its first view is what the filter is to be told.
-void Odometry::Impl::Add(const Eigen::Vector2i& corner, const std::optional<KnownDepth>& depth, const cv::Mat& grey, const BriskImage& brisk,
-                         std::vector<FirstView>& first) {
+void Odometry::Impl::Add(const Eigen::Vector2i& corner, const std::optional<KnownDepth>& depth, const PreparedFrame& prepared,
+                         const Vector6& velocity, std::vector<FirstView>& first) {
   const Eigen::Vector2d pixel = corner.cast<double>();
   LandmarkRecord record;
-  record.appearance = {brisk.Describe(corner, first_sampler), CutPatch(grey, corner)};
+  record.appearance = {prepared.brisk.Describe(corner, first_sampler), CutPatch(prepared.grey, corner)};
   record.id = next_id++;
   record.score = params.score.initial;
   records.push_back(record);
-  const Belief& belief = filter.belief();
-  first.push_back(shutter.FirstSeen(pixel, belief.pose, belief.velocity));
+  first.push_back(shutter.FirstSeen(pixel, filter.belief().pose, velocity));
   // The patch that later views are registered to defines the landmark: its first view is as good as the registration can be.
   first.back().R = PixelNoise(camera.LensJacobian(first.back().ray), params.features.noise == MatchNoise::registered ? params.features.sigma_floor_px
                                                                                                                      : params.features.sigma_px);
@@ -132,24 +182,24 @@ void Odometry::Impl::Add(const Eigen::Vector2i& corner, const std::optional<Know
   views.push_back({record.id, pixel, pixel, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
 }
 
-void Odometry::Impl::AddTarget(const cv::Mat& grey, const BriskImage& brisk, std::vector<FirstView>& first) {
+void Odometry::Impl::AddTarget(const PreparedFrame& prepared, const Vector6& velocity, std::vector<FirstView>& first) {
   if (target_frames == 0) return;
   --target_frames;
-  const std::vector<TargetCorner> corners = FindTarget(grey, camera, params.target, params.features.sigma_floor_px);
+  const std::vector<TargetCorner> corners = FindTarget(prepared.grey, camera, params.target, params.features.sigma_floor_px);
   if (corners.empty()) return;
   target_frames = 0;
   for (const TargetCorner& corner : corners)
-    if (camera.Sees(corner.pixel.cast<double>(), border_px)) Add(corner.pixel, corner.depth, grey, brisk, first);
+    if (camera.Sees(corner.pixel.cast<double>(), border_px)) Add(corner.pixel, corner.depth, prepared, velocity, first);
 }
 
-void Odometry::Impl::AddFeatures(const cv::Mat& grey, const BriskImage& brisk) {
+void Odometry::Impl::AddFeatures(const PreparedFrame& prepared, const Vector6& velocity) {
   std::vector<FirstView> first;
-  AddTarget(grey, brisk, first);
+  AddTarget(prepared, velocity, first);
   std::vector<Eigen::Vector2d> occupied = left_out;
   for (const FeatureView& view : views)
     if (view.status == FeatureView::Status::matched || view.status == FeatureView::Status::fresh) occupied.push_back(view.pixel);
-  for (const Eigen::Vector2i& corner : DetectCorners(grey, occupied, border_px, params.features))
-    if (camera.Sees(corner.cast<double>())) Add(corner, std::nullopt, grey, brisk, first);  // not at the edge of a fisheye lens
+  for (const Eigen::Vector2i& corner : DetectCorners(prepared.grey, occupied, border_px, params.features))
+    if (camera.Sees(corner.cast<double>())) Add(corner, std::nullopt, prepared, velocity, first);  // not at the edge of a fisheye lens
   filter.AddLandmarks(first);
 }
 

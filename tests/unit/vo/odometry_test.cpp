@@ -153,6 +153,34 @@ TEST(Odometry, StraightensARollingShutter) {
   EXPECT_GT(upwards, 1.5 * not_told);
 }
 
+// What the first frame's rows were passed over at only the second frame tells. A prior that knows nothing of the turn must not shear the map:
+// where the turn is about the vertical, that would be a roll for good.
+TEST(Odometry, FindsOutHowFastItsFirstFrameWas) {
+  const auto turned = [](double k) { return vo::Pose{Vector3d::Zero(), vo::Exp({0, 0.5 * k / 30, 0})}; };
+  const double readout = 0.026;
+  const auto off = [&](const Vector3d& w_WC_C) {  // [mrad] after ten frames, mean over textures
+    double sum = 0;
+    constexpr int kTextures = 3, kFrames = 10;
+    for (unsigned seed = 1; seed <= kTextures; ++seed) {
+      const vo_test::Texture texture(seed, 40.0, 24);
+      vo::Params params = SmallImageParams();
+      params.features.readout_s = readout;
+      vo::Prior prior;
+      prior.w_WC_C = w_WC_C;
+      vo::Odometry odometry(kCamera, params, prior, 1);
+      vo::Estimate estimate;
+      for (int k = 0; k < kFrames; ++k)
+        estimate = odometry.Track({k * kFrameNs, ViewByRows([&](int y) { return turned(k + 30 * readout * (y / (kCamera.height - 1.0) - 0.5)); }, texture)});
+      sum += 1e3 * vo::Log(turned(kFrames - 1).q_WC.conjugate() * estimate.pose.q_WC).norm();
+    }
+    return sum / kTextures;
+  };
+  const double known = off({0, 0.5, 0}), unknown = off(Vector3d::Zero()), wrong = off({0, -0.5, 0});
+  std::printf("turned wrongly by [mrad]: the first turn known %.2f, unknown %.2f, wrong %.2f\n", known, unknown, wrong);
+  EXPECT_LT(unknown, 1.5 * known + 0.5);
+  EXPECT_LT(wrong, 1.5 * known + 0.5);
+}
+
 // Landmarks that there is no time to look for hold their place: no second one is put on the same corner.
 TEST(Odometry, LooksForLandmarksAllOverTheImageAndAddsNoneWhereOneIs) {
   const vo_test::Texture texture(4, 40.0, 24);
