@@ -24,6 +24,7 @@ struct Candidate {
   ImagePrediction prediction;  // on the plane z = 1
   Eigen::Vector2d pixel;       // the same in the image
   Eigen::Matrix2d lens;        // d pixel / d(plane z = 1)
+  double inflation = 1;        // of a match's covariance, by the landmark's residuals until now
 };
 
 bool WorthSearching(const Filter& filter, int landmark, const ImagePrediction& prediction, const Params& params) {
@@ -67,7 +68,8 @@ std::vector<Candidate> FindCandidates(const Filter& filter, std::span<const Land
     if (!prediction.in_front || !WorthSearching(filter, n, prediction, params)) continue;
     const Eigen::Vector2d pixel = motion.InImage(n, prediction.z);
     if (!camera.Sees(pixel, border_px)) continue;
-    candidates.push_back({n, prediction, pixel, camera.LensJacobian(prediction.z)});
+    candidates.push_back({n, prediction, pixel, camera.LensJacobian(prediction.z),
+                          params.features.noise == MatchNoise::adaptive ? records[n].residuals.Inflation() : 1.0});
   }
   return candidates;
 }
@@ -107,7 +109,17 @@ SearchRequest RequestFor(const Candidate& candidate, const Filter& filter, const
 using Found = std::vector<std::optional<FoundFeature>>;
 
 Match MatchOf(const Candidate& candidate, const FoundFeature& found, const ImageMotion& motion) {
-  return {candidate.landmark, motion.AtStamp(candidate.landmark, found.pixel), PixelNoise(candidate.lens, found.noise)};
+  return {candidate.landmark, motion.AtStamp(candidate.landmark, found.pixel), PixelNoise(candidate.lens, candidate.inflation * found.noise)};
+}
+
+// What an inlier's residual says, the camera being where the frame's matches agree.
+Residual ResidualOf(const Candidate& candidate, const Match& match, const Pose& camera, const LocalMap& map) {
+  const Landmark& landmark = map.landmarks[match.landmark];
+  const Projection h = Project({camera, map.anchors[map.anchor_of[match.landmark]]}, landmark.mean);
+  if (!h.in_front) return {};
+  Residual residual = Residual::Of(match.z - h.z, h.J_landmark * landmark.covariance * h.J_landmark.transpose(), match.R);
+  residual.ratio *= candidate.inflation;
+  return residual;
 }
 
 // How fast the camera is if it is at `pose` and not where it was predicted to be: it has made the difference since the last frame.
@@ -188,19 +200,21 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
       matches = matches_at(ImageMotion(shutter, map, at, VelocityAt(filter, at, dt)));
     }
   }
-  const std::vector<bool> inlier = FindInliers(prediction, map, matches, gate, params.filter);
+  Consensus consensus = FindConsensus(prediction, map, matches, gate, params.filter);
+  if (!params.filter.reject_outliers) consensus.inlier.assign(matches.size(), true);
 
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];
-    Searched searched{c.landmark, std::nullopt};
+    Searched searched{c.landmark, std::nullopt, {}};
     FeatureView view{records[c.landmark].id, c.pixel, found[i] ? found[i]->pixel : c.pixel, requests[i].S,
-                     found[i] ? found[i]->noise : Eigen::Matrix2d::Zero().eval(), FeatureView::Status::missed};
+                     found[i] ? Eigen::Matrix2d(c.inflation * found[i]->noise) : Eigen::Matrix2d::Zero(), FeatureView::Status::missed};
     if (found[i]) {
       const Match& match = matches[m];
-      view.status = inlier[m] ? FeatureView::Status::matched : FeatureView::Status::rejected;
-      if (inlier[m]) {
+      view.status = consensus.inlier[m] ? FeatureView::Status::matched : FeatureView::Status::rejected;
+      if (consensus.inlier[m]) {
         const Eigen::Vector2d nu = match.z - c.prediction.z;
         searched.mahalanobis_sq = nu.dot(Eigen::Matrix2d(c.prediction.covariance + match.R).inverse() * nu);
+        searched.residual = ResidualOf(c, match, consensus.pose.mean, map);
         result.nis += *searched.mahalanobis_sq;
         result.matches.push_back(match);
       }

@@ -10,6 +10,7 @@
 #include "vo/filter/filter.h"
 #include "vo/geometry/camera.h"
 #include "vo/map/landmark_record.h"
+#include "vo/map/residual_history.h"
 #include "vo/odometry.h"
 #include "vo/params.h"
 
@@ -19,6 +20,7 @@ namespace vo {
 struct Searched {
   int landmark = 0;
   std::optional<double> mahalanobis_sq;  // of its match under the prediction, before sampling; none: not found, or an outlier
+  Residual residual;                     // of such a match, with the camera where the matches agree; beside R as the image alone tells it
 };
 
 struct Association {

@@ -149,6 +149,7 @@ void Odometry::Impl::UpdateScores(const Association& association) {
   for (const Searched& searched : association.searched) {
     LandmarkRecord& record = records[searched.landmark];
     record.score = UpdateScore(record.score, searched.mahalanobis_sq, params.score);
+    if (searched.mahalanobis_sq) record.residuals.Add(searched.residual);
     record.frames_unsearched = 0;
   }
 }
@@ -176,7 +177,7 @@ void Odometry::Impl::Add(const Eigen::Vector2i& corner, const std::optional<Know
   records.push_back(record);
   first.push_back(shutter.FirstSeen(pixel, filter.belief().pose, velocity));
   // The patch that later views are registered to defines the landmark: its first view is as good as the registration can be.
-  first.back().R = PixelNoise(camera.LensJacobian(first.back().ray), params.features.noise == MatchNoise::registered ? params.features.sigma_floor_px
+  first.back().R = PixelNoise(camera.LensJacobian(first.back().ray), params.features.noise != MatchNoise::constant ? params.features.sigma_floor_px
                                                                                                                      : params.features.sigma_px);
   first.back().depth = depth;
   views.push_back({record.id, pixel, pixel, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});

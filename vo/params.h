@@ -92,11 +92,12 @@ enum class BriskWarp {
 enum class MatchNoise {
   constant,    // sigma_px for all
   registered,  // of a match that was registered: sigma_floor_px, and what the registration's least squares say, times noise_inflation
+  adaptive,    // the same times a factor that each landmark's own residuals tell
 };
 
 struct FeatureParams {
   double sigma_px = 0.7;           // standard deviation of a matched pixel, per axis [px] (the paper, to whole pixels: 2)
-  MatchNoise noise = MatchNoise::registered;
+  MatchNoise noise = MatchNoise::adaptive;
   double sigma_floor_px = 0.2;     // [px]
   double noise_inflation = 4;      // the residuals of neighbouring pixels are not independent
   int grid_columns = 8, grid_rows = 6;

@@ -76,7 +76,9 @@ void ReadFeatures(Section section, vo::FeatureParams& params) {
          max_searched, readout_s, pilots] = params;
   section.Read("sigma", sigma_px, Unit::pixel, Range::Positive());
   section.ReadChoice("noise", noise,
-                     {{"constant", vo::MatchNoise::constant}, {"registered", vo::MatchNoise::registered}});
+                     {{"constant", vo::MatchNoise::constant},
+                      {"registered", vo::MatchNoise::registered},
+                      {"adaptive", vo::MatchNoise::adaptive}});
   section.Read("sigma_floor", sigma_floor_px, Unit::pixel, Range::Positive());
   section.Read("noise_inflation", noise_inflation, Range::AtLeast(0));
   section.Read("grid_columns", grid_columns, Range::AtLeast(1));

@@ -93,7 +93,7 @@ std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRe
     const auto refined = Register(request.appearance->patch, request.warp, grey, found[i]->pixel, kMaxRefinementPx);
     if (!refined || refined->correlation <= kMinCorrelation) continue;
     found[i]->pixel = refined->pixel;
-    if (params.noise == MatchNoise::registered) found[i]->noise = floor + params.noise_inflation * refined->covariance;
+    if (params.noise != MatchNoise::constant) found[i]->noise = floor + params.noise_inflation * refined->covariance;
   }
   return found;
 }

@@ -34,7 +34,7 @@ BriskSampler FirstSampler(const FeatureParams& params);
 
 struct FoundFeature {
   Eigen::Vector2d pixel;
-  Eigen::Matrix2d noise;  // covariance of its error [px^2], as features.noise has it
+  Eigen::Matrix2d noise;  // covariance of its error [px^2], as this image alone tells it
 };
 
 // Where each request was found, in its order. `brisk` holds the image `grey` (CV_8UC1).

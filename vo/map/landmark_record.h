@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vo/features/matcher.h"
+#include "vo/map/residual_history.h"
 
 namespace vo {
 
@@ -12,6 +13,7 @@ struct LandmarkRecord {
   int age = 0;                // frames since it was first seen
   int frames_unsearched = 0;  // in a row
   bool permanent = false;
+  ResidualHistory residuals;  // of its matches; used with MatchNoise::adaptive
 };
 
 }  // namespace vo

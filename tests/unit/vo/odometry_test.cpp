@@ -148,7 +148,7 @@ TEST(Odometry, StraightensARollingShutter) {
   const double global = moved(0, 0), told = moved(readout, readout), not_told = moved(readout, 0), upwards = moved(readout, -readout);
   std::printf("moved by [mm]: global shutter %.2f; rolling, told %.2f, not told %.2f, told the opposite %.2f\n", 1e3 * global, 1e3 * told,
               1e3 * not_told, 1e3 * upwards);
-  EXPECT_LT(told, 4 * global);  // what the straightening leaves: registered matches are exact enough to see it
+  EXPECT_LT(told, 6 * global);  // what the straightening leaves: registered matches are exact enough to see it
   EXPECT_GT(not_told, 5 * told);
   EXPECT_GT(upwards, 1.5 * not_told);
 }
@@ -179,6 +179,47 @@ TEST(Odometry, FindsOutHowFastItsFirstFrameWas) {
   std::printf("turned wrongly by [mrad]: the first turn known %.2f, unknown %.2f, wrong %.2f\n", known, unknown, wrong);
   EXPECT_LT(unknown, 1.5 * known + 0.5);
   EXPECT_LT(wrong, 1.5 * known + 0.5);
+}
+
+// What trembles is believed less than what stands still, each by its own residuals; with `registered` both are believed alike.
+TEST(Odometry, BelievesTremblingLandmarksLess) {
+  const vo_test::Texture texture(5, 40.0, 24);
+  constexpr int kTrembling = 100;  // columns, in bands of 40 rows that go to and fro by 0.6 px, neighbours the opposite way
+  const auto image = [&](int k) {
+    const cv::Mat still = ViewFrom(TruthAt(k), texture);
+    cv::Mat seen = ViewByRows(
+        [&](int y) {
+          const double shift = ((y / 40 + k) % 2 == 0 ? 1 : -1) * 0.6 * 2 / kCamera.fx;
+          return vo::Pose{TruthAt(k).p_WC + Vector3d(shift, 0, 0), TruthAt(k).q_WC};
+        },
+        texture);
+    still.colRange(kTrembling, kCamera.width).copyTo(seen.colRange(kTrembling, kCamera.width));
+    return seen;
+  };
+  const auto believed = [&](vo::MatchNoise noise) {  // mean standard deviation [px] where it trembles over that elsewhere
+    vo::Params params = SmallImageParams();
+    params.features.noise = noise;
+    vo::Odometry odometry(kCamera, params, KnownStart(), 1);
+    double sum[2] = {};
+    int count[2] = {};
+    for (int k = 0; k < 40; ++k) {
+      odometry.Track({k * kFrameNs, image(k)});
+      if (k < 30) continue;
+      for (const vo::FeatureView& view : odometry.Features()) {
+        if (view.status != vo::FeatureView::Status::matched || std::abs(view.pixel.x() - kTrembling) < 20) continue;
+        const int side = view.pixel.x() < kTrembling ? 0 : 1;
+        sum[side] += std::sqrt(view.R.trace() / 2);
+        ++count[side];
+      }
+    }
+    EXPECT_GT(count[0], 50);
+    EXPECT_GT(count[1], 50);
+    return sum[0] / count[0] / (sum[1] / count[1]);
+  };
+  const double adaptive = believed(vo::MatchNoise::adaptive), registered = believed(vo::MatchNoise::registered);
+  std::printf("standard deviation of what trembles over that of what does not: adaptive %.2f, registered %.2f\n", adaptive, registered);
+  EXPECT_GT(adaptive, 1.3 * registered);
+  EXPECT_LT(registered, 1.2);
 }
 
 // Landmarks that there is no time to look for hold their place: no second one is put on the same corner.

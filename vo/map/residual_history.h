@@ -1,0 +1,33 @@
+// Purpose: how large the errors of a landmark's matches are, beside what they are said to be. At an edge of depth, on gloss or on texture
+//          that repeats no single patch tells; the residuals of some frames do.
+// Source:  the conjugate estimate of a variance (inverse gamma), with forgetting. Our addition.
+// Units:   variances relative to the covariance R that a match comes with [-].
+#pragma once
+
+#include <Eigen/Core>
+
+namespace vo {
+
+// What one match says.
+struct Residual {
+  double ratio = 1;   // its squared error over what R says, on the average of honest matches 1
+  double weight = 0;  // 0 ... 1: little where the landmark itself is known less well than it is seen
+
+  // r: match less prediction; of the landmark: its own covariance in the image.
+  static Residual Of(const Eigen::Vector2d& r, const Eigen::Matrix2d& of_landmark, const Eigen::Matrix2d& R);
+};
+
+class ResidualHistory {
+ public:
+  void Add(const Residual& residual);
+  // By what to multiply R from now on: twice the mean of the ratios, since errors of neighbouring frames are alike; no less than 1, for the same
+  // reason, and no more than kMost. 2 for a landmark that has not been seen again.
+  double Inflation() const;
+
+  static constexpr double kMost = 16;
+
+ private:
+  double weight_ = 0, sum_ = 0;
+};
+
+}  // namespace vo
