@@ -31,8 +31,7 @@ struct Odometry::Impl {
         scale(params.landmark.scale_sigma, prior.pose.p_WC),
         shutter(camera, params.features),
         first_sampler(FirstSampler(params.features)),
-        border_px(std::max(first_sampler.margin(), Patch::kRadius + 1)),
-        target_frames(params.target.columns > 0 ? params.target.frames : 0) {}
+        border_px(std::max(first_sampler.margin(), Patch::kRadius + 1)) {}
 
   void Require(const Frame& frame) const;
   Estimate Process(const PreparedFrame& prepared);
@@ -74,8 +73,6 @@ void Odometry::Impl::Require(const Frame& frame) const {
 
 Estimate Odometry::Impl::Process(const PreparedFrame& prepared) {
   FrameDiagnostics diagnostics;
-  views.clear();
-  left_out.clear();
   if (last_stamp_ns) {
     Follow(prepared, diagnostics);
     if (first_frame) BeginAgain(prepared, diagnostics);
@@ -92,7 +89,13 @@ Estimate Odometry::Impl::Process(const PreparedFrame& prepared) {
   return Answer(prepared.frame.stamp_ns, diagnostics);
 }
 
+// With a filter that has seen nothing yet.
 void Odometry::Impl::Begin(const PreparedFrame& prepared, const Vector6& velocity) {
+  records.clear();
+  views.clear();
+  left_out.clear();
+  next_id = 0;
+  target_frames = params.target.columns > 0 ? params.target.frames : 0;
   last_stamp_ns = prepared.frame.stamp_ns;
   AddFeatures(prepared, velocity);
 }
@@ -128,11 +131,6 @@ void Odometry::Impl::BeginAgain(const PreparedFrame& second, FrameDiagnostics& d
   for (int round = 1; round < kStartRounds && diagnostics.tracked(); ++round) {
     const Vector6 velocity = Minus(filter.belief().pose, prior.pose) / dt;
     filter = WatchedFilter(MakeFilter(params, prior, seed));
-    records.clear();
-    views.clear();
-    left_out.clear();
-    next_id = 0;
-    target_frames = params.target.columns > 0 ? params.target.frames : 0;
     Begin(first, velocity);
     Follow(second, diagnostics);
   }
