@@ -41,12 +41,11 @@ bool WorthSearching(const Filter& filter, int landmark, const ImagePrediction& p
 // A prediction costs all particles' covariances: of what lies behind the camera or far outside the image on the reference's path, none is made.
 std::vector<int> Predictable(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const LocalMap& map,
                              const Params& params) {
-  std::vector<AnchorView> views;
-  for (const Pose& anchor : map.anchors) views.emplace_back(filter.ReferencePrediction().mean, anchor);
+  const MapView seen(map, filter.ReferencePrediction().mean);
   std::vector<int> predictable;
   for (int n = 0; n < filter.landmark_count(); ++n) {
     if (records[n].score < params.score.delete_below) continue;
-    const Projection view = Project(views[map.anchor_of[n]], map.landmarks[n].mean);
+    const Projection view = seen(n);
     if (!view.in_front) continue;
     const Eigen::Vector2d pixel = camera.Project({view.z.x(), view.z.y(), 1.0});
     const bool near = pixel.x() > -kFarOut * camera.width && pixel.x() < (1 + kFarOut) * camera.width &&
@@ -113,11 +112,10 @@ Match MatchOf(const Candidate& candidate, const FoundFeature& found, const Image
 }
 
 // What an inlier's residual says, the camera being where the frame's matches agree.
-Residual ResidualOf(const Candidate& candidate, const Match& match, const Pose& camera, const LocalMap& map) {
-  const Landmark& landmark = map.landmarks[match.landmark];
-  const Projection h = Project({camera, map.anchors[map.anchor_of[match.landmark]]}, landmark.mean);
+Residual ResidualOf(const Candidate& candidate, const Match& match, const MapView& map) {
+  const Projection h = map(match.landmark);
   if (!h.in_front) return {};
-  Residual residual = Residual::Of(match.z - h.z, h.J_landmark * landmark.covariance * h.J_landmark.transpose(), match.R);
+  Residual residual = Residual::Of(match.z - h.z, h.J_landmark * map.landmark(match.landmark).covariance * h.J_landmark.transpose(), match.R);
   residual.ratio *= candidate.inflation;
   return residual;
 }
@@ -158,7 +156,7 @@ Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchReq
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (is_pilot[i]) continue;
     rest.push_back(requests[i]);
-    const auto where = pose ? pose->Predict(map, candidates[i].landmark, camera, params.features.sigma_px) : std::nullopt;
+    const auto where = pose ? pose->Predict(candidates[i].landmark, camera, params.features.sigma_px) : std::nullopt;
     if (!where) continue;
     rest.back().predicted = shutter.on() ? motion.InImage(candidates[i].landmark, camera.Undistort(where->pixel)) : where->pixel;
     rest.back().S = where->covariance;
@@ -194,14 +192,16 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
     return matches;
   };
   std::vector<Match> matches = matches_at(predicted);
+  std::optional<Pose> at;
   if (shutter.on()) {
     for (int round = 0; round < kShutterRounds; ++round) {
-      const Pose at = FindConsensus(prediction, map, matches, gate, params.filter).pose.mean;
-      matches = matches_at(ImageMotion(shutter, map, at, VelocityAt(filter, at, dt)));
+      at = FindConsensus(prediction, map, matches, gate, params.filter, at).pose.mean;
+      matches = matches_at(ImageMotion(shutter, map, *at, VelocityAt(filter, *at, dt)));
     }
   }
-  Consensus consensus = FindConsensus(prediction, map, matches, gate, params.filter);
+  Consensus consensus = FindConsensus(prediction, map, matches, gate, params.filter, at);
   if (!params.filter.reject_outliers) consensus.inlier.assign(matches.size(), true);
+  const MapView agreed(map, consensus.pose.mean);
 
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];
@@ -214,7 +214,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
       if (consensus.inlier[m]) {
         const Eigen::Vector2d nu = match.z - c.prediction.z;
         searched.mahalanobis_sq = nu.dot(Eigen::Matrix2d(c.prediction.covariance + match.R).inverse() * nu);
-        searched.residual = ResidualOf(c, match, consensus.pose.mean, map);
+        searched.residual = ResidualOf(c, match, agreed);
         result.nis += *searched.mahalanobis_sq;
         result.matches.push_back(match);
       }

@@ -45,13 +45,12 @@ std::optional<PilotedPose> PilotedPose::From(const PoseGaussian& prediction, con
   const auto agreeing = static_cast<std::size_t>(std::count(found.inlier.begin(), found.inlier.end(), true));
   if (agreeing < kFewest || static_cast<double>(agreeing) < kAgreeing * static_cast<double>(pilots.size()))
     return std::nullopt;
-  return PilotedPose(found.pose);
+  return PilotedPose(found.pose, map);
 }
 
-std::optional<PilotedPose::Prediction> PilotedPose::Predict(const LocalMap& map, int landmark, const Camera& camera,
-                                                            double sigma_px) const {
-  const Landmark& believed = map.landmarks[landmark];
-  const Projection view = Project({pose_.mean, map.anchors[map.anchor_of[landmark]]}, believed.mean);
+std::optional<PilotedPose::Prediction> PilotedPose::Predict(int landmark, const Camera& camera, double sigma_px) const {
+  const Landmark& believed = map_.landmark(landmark);
+  const Projection view = map_(landmark);
   if (!view.in_front) return std::nullopt;
   const Eigen::Matrix2d lens = camera.LensJacobian(view.z);
   const Matrix26 J_pose = lens * view.J_pose;

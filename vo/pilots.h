@@ -13,7 +13,7 @@
 #include "vo/filter/pose_gaussian.h"
 #include "vo/geometry/camera.h"
 #include "vo/map/landmark_record.h"
-#include "vo/map/local_map.h"
+#include "vo/map/map_view.h"
 #include "vo/params.h"
 
 namespace vo {
@@ -42,11 +42,12 @@ class PilotedPose {
 
   const PoseGaussian& pose() const { return pose_; }
   // None: behind the camera.
-  std::optional<Prediction> Predict(const LocalMap& map, int landmark, const Camera& camera, double sigma_px) const;
+  std::optional<Prediction> Predict(int landmark, const Camera& camera, double sigma_px) const;
 
  private:
-  explicit PilotedPose(const PoseGaussian& pose) : pose_(pose) {}
+  PilotedPose(const PoseGaussian& pose, const LocalMap& map) : pose_(pose), map_(map, pose.mean) {}
   PoseGaussian pose_;
+  MapView map_;  // from there
 };
 
 }  // namespace vo

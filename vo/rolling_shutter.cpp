@@ -28,7 +28,7 @@ FirstView RollingShutter::FirstSeen(const Eigen::Vector2d& pixel, const Pose& po
 
 Eigen::Vector2d ImageMotion::Rate(int landmark) const {
   if (!shutter_.on()) return Eigen::Vector2d::Zero();
-  const Projection view = Project({pose_, map_.anchors[map_.anchor_of[landmark]]}, map_.landmarks[landmark].mean);
+  const Projection view = map_(landmark);
   return view.in_front ? Eigen::Vector2d(view.J_pose * velocity_) : Eigen::Vector2d::Zero();
 }
 

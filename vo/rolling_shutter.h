@@ -10,7 +10,7 @@
 
 #include "vo/geometry/camera.h"
 #include "vo/map/landmark.h"
-#include "vo/map/local_map.h"
+#include "vo/map/map_view.h"
 #include "vo/params.h"
 
 namespace vo {
@@ -40,7 +40,7 @@ class RollingShutter {
 class ImageMotion {
  public:
   ImageMotion(const RollingShutter& shutter, const LocalMap& map, const Pose& pose, const Vector6& velocity)
-      : shutter_(shutter), map_(map), pose_(pose), velocity_(velocity) {}
+      : shutter_(shutter), map_(map, pose), velocity_(velocity) {}
 
   Eigen::Vector2d AtStamp(int landmark, const Eigen::Vector2d& pixel) const { return shutter_.AtStamp(pixel, Rate(landmark)); }
   Eigen::Vector2d InImage(int landmark, const Eigen::Vector2d& z) const { return shutter_.InImage(z, Rate(landmark)); }
@@ -50,8 +50,7 @@ class ImageMotion {
   Eigen::Vector2d Rate(int landmark) const;
 
   const RollingShutter& shutter_;
-  const LocalMap& map_;
-  Pose pose_;
+  MapView map_;
   Vector6 velocity_;
 };
 

@@ -2,6 +2,7 @@
 // Source:  M-estimation by iteratively re-weighted covariances (Cauchy), then the chi-square gate on each residual.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,9 +21,9 @@ struct Consensus {
 double OutlierGate(const Filter& filter, const ScoreParams& score);
 
 // Fits the pose of one particle robustly and marks the matches whose residual there, with the landmark's and the pixel's
-// covariance, has a squared Mahalanobis distance below `gate`.
+// covariance, has a squared Mahalanobis distance below `gate`. `start`: near the pose that is looked for, by an earlier fit.
 Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
-                        const FilterParams& params);
+                        const FilterParams& params, const std::optional<Pose>& start = std::nullopt);
 
 // The marks alone. All of them with params.reject_outliers off.
 std::vector<bool> FindInliers(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,

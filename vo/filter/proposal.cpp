@@ -22,13 +22,13 @@ Matrix6 Inverse(const Eigen::LLT<Matrix6>& llt) {
 
 }  // namespace
 
-PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const FilterParams& params) {
+PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const FilterParams& params, const Pose& start) {
   const int iterations = params.proposal == Proposal::ekf ? 1 : params.max_iterations;
   const Eigen::LLT<Matrix6> prior_llt(prediction.covariance);
   const Matrix6 prior_information = Inverse(prior_llt);
   const double prior_log_det = 2.0 * HalfLogDeterminant(prior_llt);
 
-  PoseProposal proposal{prediction, 0.0, {}};
+  PoseProposal proposal{{start, prediction.covariance}, 0.0, {}};
   Pose& s = proposal.pose.mean;
   double best = std::numeric_limits<double>::infinity();  // objective: -2 log density at its mode, up to a constant
   double former = 0;  // decrement of the step before; 0: its rate says nothing

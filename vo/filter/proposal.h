@@ -21,7 +21,11 @@ struct PoseProposal {
 // `batch`: the matches, at least one, and the particle's landmarks, as loaded; at the end it is linearised as the proposal is.
 // Proposal::ekf: one linearisation at the prediction. Proposal::iterated: until within 1e-3 standard deviations of the mode or
 // max_iterations. Landmarks that come to lie behind the camera are left out of that iteration.
-PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const FilterParams& params);
+// `start`: where the search for the mode begins, with the landmarks where the batch has them.
+PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const FilterParams& params, const Pose& start);
+inline PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const FilterParams& params) {
+  return Propose(prediction, batch, params, prediction.mean);
+}
 
 // The same with a batch of its own. No matches: the prediction itself.
 PoseProposal Propose(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, const FilterParams& params);

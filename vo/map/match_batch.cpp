@@ -1,5 +1,6 @@
 #include "vo/map/match_batch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -40,7 +41,16 @@ void MatchBatch::SetMatches(std::span<const Match> matches) {
     MatchLanes& block = blocks_[i / kLanes];
     const std::size_t lane = i % kLanes;
     for (int k = 0; k < 2; ++k) block.z[k].v[lane] = match.z[k];
-    block.R[0].v[lane] = match.R(0, 0), block.R[1].v[lane] = match.R(0, 1), block.R[2].v[lane] = match.R(1, 1);
+    block.R_given[0].v[lane] = match.R(0, 0), block.R_given[1].v[lane] = match.R(0, 1), block.R_given[2].v[lane] = match.R(1, 1);
+  }
+  for (MatchLanes& block : blocks_) std::copy_n(block.R_given, 3, block.R);
+}
+
+void MatchBatch::Inflate(std::span<const double> factors) {
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    MatchLanes& block = blocks_[i / kLanes];
+    const std::size_t lane = i % kLanes;
+    for (int k = 0; k < 3; ++k) block.R[k].v[lane] = factors[i] * block.R_given[k].v[lane];
   }
 }
 
@@ -89,6 +99,13 @@ MatchBatch::Information MatchBatch::Linearise(const Pose& camera, bool marginal)
   information.log_det = LogDet(sums.matches);
   information.behind = static_cast<int>(landmark_.size()) - static_cast<int>(sums.matches.in_front);
   return information;
+}
+
+void MatchBatch::SquaredDistances(const Pose& camera, std::vector<double>& distances) {
+  distances_.resize(blocks_.size());
+  kernel_->squared_distances(ViewFrom(camera), blocks_.data(), static_cast<int>(blocks_.size()), distances_.data());
+  distances.resize(landmark_.size());
+  for (std::size_t i = 0; i < distances.size(); ++i) distances[i] = distances_[i / kLanes].v[i % kLanes];
 }
 
 void MatchBatch::Follow(const Vector6& d) {

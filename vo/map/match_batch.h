@@ -33,6 +33,10 @@ class MatchBatch {
   // `marginal`: see FilterParams::marginal_mode.
   Information Linearise(const Pose& camera, bool marginal);
   const Pose& linearised_at() const { return linearised_at_; }
+  // Of each match: its residual with landmarks at their means, squared, in standard deviations; infinite behind the camera. Inflate does not matter.
+  void SquaredDistances(const Pose& camera, std::vector<double>& distances);
+  // From now on the matches' covariances are `factors` times those given.
+  void Inflate(std::span<const double> factors);
   // From now on each landmark is linearised at its mode for the pose at linearised_at() (+) d, to first order.
   void Follow(const Vector6& d);
 
@@ -53,6 +57,7 @@ class MatchBatch {
   const MatchKernel* kernel_;
   std::vector<MatchLanes> blocks_;
   std::vector<PredictionLanes> predictions_;
+  std::vector<Lanes> distances_;
   std::vector<int> landmark_;  // per match
   Pose linearised_at_;
   Vector6 step_ = Vector6::Zero();

@@ -32,7 +32,8 @@ struct MatchLanes {
   // Given. The first two are replaced by UpdateLandmarks.
   Lanes mean[3], covariance[6];
   Lanes anchor_p[3], anchor_q[4];  // p_WA, q_WA (x y z w)
-  Lanes z[2], R[3];
+  Lanes z[2], R_given[3];
+  Lanes R[3];       // believed: as given, or more
   Lanes min_depth;  // of X_C: what is nearer or behind is not in front; infinite where there is no match
 
   Lanes R_WA[3][3];  // Prepare
@@ -71,6 +72,8 @@ struct MatchKernel {
   // [1]: with gradient and Fisher information of -1/2 log|S| through dz/drho = J_shift (p_A - p): the mode of the
   // pose's marginal, not of pose and landmarks jointly.
   void (*linearise[2])(const CameraView& camera, const double* step, MatchLanes* blocks, int count, PoseSums& sums);
+  // Of the residuals with R_given, landmarks linearised at their means; infinite where one is not in front.
+  void (*squared_distances)(const CameraView& camera, const MatchLanes* blocks, int count, Lanes* distances);
   // Landmark given the pose, as vo::UpdateLandmark.
   void (*update_landmarks)(const CameraView& camera, const double* step, int max_iterations, MatchLanes* blocks,
                            int count, MatchSums& sums);

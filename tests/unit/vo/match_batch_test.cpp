@@ -139,6 +139,49 @@ TEST_P(EveryInstructionSet, SumsAreThoseOfTheFormulas) {
   }
 }
 
+// Wherever the landmarks are linearised by then, and whatever the covariances have become.
+TEST_P(EveryInstructionSet, DistancesAreThoseOfTheResidualsAsGiven) {
+  for (const int count : {1, 8, 13, 40}) {
+    SCOPED_TRACE(testing::Message() << count << " matches");
+    const Scene scene = MakeScene(static_cast<unsigned>(200 + count), count);
+    vo::MatchBatch batch(GetParam());
+    batch.SetMatches(scene.matches);
+    batch.Load(scene.map());
+    batch.Inflate(std::vector<double>(static_cast<std::size_t>(count), 7.0));
+    batch.Linearise(scene.camera, false);
+    batch.Follow(vo::Vector6::Constant(0.01));
+    std::vector<double> distances;
+    batch.SquaredDistances(scene.camera, distances);
+    ASSERT_EQ(distances.size(), scene.matches.size());
+    for (std::size_t i = 0; i < distances.size(); ++i) {
+      const vo::Match& match = scene.matches[i];
+      const vo::Landmark& landmark = scene.landmarks[match.landmark];
+      const vo::Projection h = vo::Project({scene.camera, scene.anchors[scene.anchor_of[match.landmark]]}, landmark.mean);
+      if (!h.in_front) {
+        EXPECT_EQ(distances[i], INFINITY) << i;
+        continue;
+      }
+      const Vector2d e = match.z - h.z;
+      const Matrix2d S = h.J_landmark * landmark.covariance * h.J_landmark.transpose() + match.R;
+      EXPECT_NEAR(distances[i], e.dot(S.inverse() * e), 1e-10 * distances[i]) << i;
+    }
+  }
+}
+
+TEST_P(EveryInstructionSet, InflatedIsAsIfGivenSo) {
+  Scene scene = MakeScene(6, 13);
+  vo::MatchBatch batch(GetParam()), expected(GetParam());
+  batch.SetMatches(scene.matches);
+  batch.Load(scene.map());
+  std::vector<double> factors;
+  for (vo::Match& match : scene.matches) match.R *= factors.emplace_back(1.0 + 0.5 * static_cast<double>(factors.size()));
+  expected.SetMatches(scene.matches);
+  expected.Load(scene.map());
+  batch.Inflate(std::vector<double>(factors.size(), 3.0));  // not on top of one another
+  batch.Inflate(factors);
+  ExpectNear(batch.Linearise(scene.camera, false), expected.Linearise(scene.camera, false));
+}
+
 TEST_P(EveryInstructionSet, LandmarksAreUpdatedAsOneByOne) {
   for (const int count : {1, 8, 13, 40}) {
     for (const int iterations : {1, 2, 10}) {

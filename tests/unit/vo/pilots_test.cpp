@@ -60,7 +60,7 @@ Scene MakeScene() {
 double Worst(const Scene& scene, const vo::PilotedPose& pose, int pilots) {
   double worst = 0;
   for (int n = pilots; n < static_cast<int>(scene.landmarks.size()); ++n) {
-    const auto where = pose.Predict(scene.map(), n, kCamera, 0.7);
+    const auto where = pose.Predict(n, kCamera, 0.7);
     if (!where) return std::numeric_limits<double>::infinity();
     const Vector2d z = scene.SeenAt(n);
     worst = std::max(worst, (where->pixel - kCamera.Project({z.x(), z.y(), 1})).norm());
@@ -96,7 +96,7 @@ TEST(Pilots, KnowHowSureTheyAre) {
   const auto pose = vo::PilotedPose::From(scene.prediction, scene.map(), scene.Matches(16), {});
   ASSERT_TRUE(pose);
   const auto sigma = [&](int n) {
-    return std::sqrt(pose->Predict(scene.map(), n, kCamera, 0.7)->covariance.trace() / 2);
+    return std::sqrt(pose->Predict(n, kCamera, 0.7)->covariance.trace() / 2);
   };
   EXPECT_LT(sigma(41), 1.2);
   EXPECT_GT(sigma(40), 2 * sigma(41));

@@ -173,6 +173,19 @@ TEST(Consensus, ThrowsOutGrossErrorsAndKeepsTheRest) {
   EXPECT_EQ(kept_outliers, 0);
 }
 
+TEST(Consensus, IsTheSameFromNearby) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Scene scene = MakeScene(seed, 60, 0.01);
+    for (std::size_t n = 0; n < 60; n += 5) scene.matches[n].z.x() += 0.05;
+    const vo::Consensus cold = vo::FindConsensus(scene.prediction, scene.map(), scene.matches, 9.21, {});
+    const vo::Vector6 away = 5 * cold.pose.covariance.diagonal().cwiseSqrt();
+    const vo::Consensus warm = vo::FindConsensus(scene.prediction, scene.map(), scene.matches, 9.21, {}, vo::Plus(cold.pose.mean, away));
+    EXPECT_EQ(warm.inlier, cold.inlier) << "seed " << seed;
+    const vo::Vector6 d = vo::Minus(warm.pose.mean, cold.pose.mean);
+    EXPECT_LT(std::sqrt(d.dot(cold.pose.covariance.llt().solve(d))), 0.1) << "seed " << seed;  // where a round is called still
+  }
+}
+
 TEST(PoseGaussian, DensityIntegratesAndSamplesHaveItsCovariance) {
   vo::PoseGaussian g;
   g.mean = {Vector3d(1, 2, 3), vo::Exp({0.3, -0.2, 0.5})};

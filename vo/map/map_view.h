@@ -1,0 +1,30 @@
+// Purpose: a map as one camera sees it. Many landmarks share an anchor: its view is made once, when first asked for.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "vo/map/local_map.h"
+
+namespace vo {
+
+class MapView {
+ public:
+  // The map's landmarks and anchors must outlive the view. Not to be shared between threads.
+  MapView(const LocalMap& map, const Pose& camera) : map_(map), camera_(camera), views_(map.anchors.size()) {}
+
+  const Landmark& landmark(int n) const { return map_.landmarks[n]; }
+  Projection operator()(int n) const {
+    const int anchor = map_.anchor_of[n];
+    std::optional<AnchorView>& view = views_[anchor];
+    if (!view) view.emplace(camera_, map_.anchors[anchor]);
+    return Project(*view, map_.landmarks[n].mean);
+  }
+
+ private:
+  LocalMap map_;
+  Pose camera_;
+  mutable std::vector<std::optional<AnchorView>> views_;
+};
+
+}  // namespace vo
