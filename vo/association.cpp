@@ -107,13 +107,21 @@ SearchRequest RequestFor(const Candidate& candidate, const Filter& filter, const
 
 using Found = std::vector<std::optional<FoundFeature>>;
 
-Match MatchOf(const Candidate& candidate, const FoundFeature& found, const ImageMotion& motion) {
-  return {candidate.landmark, motion.AtStamp(candidate.landmark, found.pixel), PixelNoise(candidate.lens, candidate.inflation * found.noise)};
+Match MatchOf(const Candidate& candidate, const FoundFeature& found, const RollingShutter& shutter, const Vector6& velocity) {
+  const auto [z, moved] = shutter.AsTurned(found.pixel, velocity);
+  return {candidate.landmark, z, PixelNoise(candidate.lens, candidate.inflation * found.noise), moved};
+}
+
+// Where it would be seen from the camera's place at the stamp, as far as its depth is known.
+Eigen::Vector2d AtStamp(const Match& match, const MapView& map) {
+  if (match.moved.isZero(0)) return match.z;
+  const Projection there = map(match), here = map(match.landmark);
+  return there.in_front && here.in_front ? Eigen::Vector2d(match.z - there.z + here.z) : match.z;
 }
 
 // What an inlier's residual says, the camera being where the frame's matches agree.
 Residual ResidualOf(const Candidate& candidate, const Match& match, const MapView& map) {
-  const Projection h = map(match.landmark);
+  const Projection h = map(match);
   if (!h.in_front) return {};
   Residual residual = Residual::Of(match.z - h.z, h.J_landmark * map.landmark(match.landmark).covariance * h.J_landmark.transpose(), match.R);
   residual.ratio *= candidate.inflation;
@@ -127,7 +135,7 @@ Vector6 VelocityAt(const Filter& filter, const Pose& pose, double dt) {
 
 // The pilots first, each request as it is; the others where the camera then turns out to be.
 Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchRequest>& requests, const Filter& filter,
-           std::span<const LandmarkRecord> records, const Camera& camera, const RollingShutter& shutter, const ImageMotion& predicted,
+           std::span<const LandmarkRecord> records, const Camera& camera, const RollingShutter& shutter,
            const LocalMap& map, const cv::Mat& grey, const BriskImage& brisk, double dt, const Params& params) {
   std::vector<PilotCandidate> possible;
   for (const Candidate& c : candidates) possible.push_back({c.pixel, &records[c.landmark]});
@@ -146,7 +154,7 @@ Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchReq
   std::vector<Match> matches;
   for (std::size_t k = 0; k < pilots.size(); ++k) {
     found[pilots[k]] = leading[k];
-    if (leading[k]) matches.push_back(MatchOf(candidates[pilots[k]], *leading[k], predicted));
+    if (leading[k]) matches.push_back(MatchOf(candidates[pilots[k]], *leading[k], shutter, filter.belief().velocity));
   }
 
   const std::optional<PilotedPose> pose = PilotedPose::From(filter.ReferencePrediction(), map, matches, params);
@@ -183,20 +191,20 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   std::vector<SearchRequest> requests;
   for (const Candidate& c : candidates)
     requests.push_back(RequestFor(c, filter, records[c.landmark], camera, params.features.sigma_px));
-  const Found found = Find(candidates, requests, filter, records, camera, shutter, predicted, map, grey, brisk, dt, params);
+  const Found found = Find(candidates, requests, filter, records, camera, shutter, map, grey, brisk, dt, params);
 
-  const auto matches_at = [&](const ImageMotion& motion) {
+  const auto matches_at = [&](const Vector6& velocity) {
     std::vector<Match> matches;
     for (std::size_t i = 0; i < candidates.size(); ++i)
-      if (found[i]) matches.push_back(MatchOf(candidates[i], *found[i], motion));
+      if (found[i]) matches.push_back(MatchOf(candidates[i], *found[i], shutter, velocity));
     return matches;
   };
-  std::vector<Match> matches = matches_at(predicted);
+  std::vector<Match> matches = matches_at(filter.belief().velocity);
   std::optional<Pose> at;
   if (shutter.on()) {
     for (int round = 0; round < kShutterRounds; ++round) {
       at = FindConsensus(prediction, map, matches, gate, params.filter, at).pose.mean;
-      matches = matches_at(ImageMotion(shutter, map, *at, VelocityAt(filter, *at, dt)));
+      matches = matches_at(VelocityAt(filter, *at, dt));
     }
   }
   Consensus consensus = FindConsensus(prediction, map, matches, gate, params.filter, at);
@@ -212,7 +220,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
       const Match& match = matches[m];
       view.status = consensus.inlier[m] ? FeatureView::Status::matched : FeatureView::Status::rejected;
       if (consensus.inlier[m]) {
-        const Eigen::Vector2d nu = match.z - c.prediction.z;
+        const Eigen::Vector2d nu = AtStamp(match, agreed) - c.prediction.z;
         searched.mahalanobis_sq = nu.dot(Eigen::Matrix2d(c.prediction.covariance + match.R).inverse() * nu);
         searched.residual = ResidualOf(c, match, agreed);
         result.nis += *searched.mahalanobis_sq;

@@ -1,9 +1,16 @@
 #include "vo/rolling_shutter.h"
 
+#include <Eigen/Geometry>
+
+#include "vo/geometry/so3.h"
+
 namespace vo {
 
-Eigen::Vector2d RollingShutter::AtStamp(const Eigen::Vector2d& pixel, const Eigen::Vector2d& rate) const {
-  return camera_.Undistort(pixel) - TimeOf(pixel.y()) * rate;
+RollingShutter::Seen RollingShutter::AsTurned(const Eigen::Vector2d& pixel, const Vector6& velocity) const {
+  const Eigen::Vector2d z = camera_.Undistort(pixel);
+  if (!on()) return {z, Eigen::Vector3d::Zero()};
+  const double time = TimeOf(pixel.y());
+  return {(Exp(time * velocity.tail<3>()) * z.homogeneous()).hnormalized(), time * velocity.head<3>()};
 }
 
 Eigen::Vector2d RollingShutter::InImage(const Eigen::Vector2d& z, const Eigen::Vector2d& rate) const {

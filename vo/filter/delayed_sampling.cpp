@@ -94,7 +94,7 @@ void ParticleFilter::BuildTracks() {
         const int anchor = anchor_of_[match.landmark];
         tracks_.push_back({match.landmark, anchor, anchor_slot_[anchor], {}});
       }
-      tracks_[index].views.push_back({slot, match.z, match.R.inverse(), std::log(match.R.determinant())});
+      tracks_[index].views.push_back({slot, match.z, match.R.inverse(), std::log(match.R.determinant()), match.moved});
     }
   }
 }
@@ -189,7 +189,7 @@ void ParticleFilter::UpdateGiven(Particle& particle, int slot, std::uint32_t ind
   for (const Pose& anchor : particle.anchors) views.emplace_back(s, anchor);
   for (const Match& match : steps_[slot].matches) {
     Landmark& landmark = particle.landmarks[match.landmark];
-    landmark = UpdateLandmark(landmark, particle.modes[match.landmark], views[anchor_of_[match.landmark]], match, 1).landmark;
+    landmark = UpdateLandmark(landmark, particle.modes[match.landmark], views[anchor_of_[match.landmark]].From(match.moved), match, 1).landmark;
   }
   particle.pose = s;
 }

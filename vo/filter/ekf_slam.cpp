@@ -74,7 +74,7 @@ double EkfSlam::Linearise(std::span<const Match> matches, const Eigen::VectorXd&
   for (std::size_t i = 0; i < matches.size(); ++i) {
     const Match& match = matches[i];
     const int anchor = anchor_of_[match.landmark];
-    const Projection h = Project(views[anchor], landmarks_[match.landmark].mean);
+    const Projection h = Project(views[anchor].From(match.moved), landmarks_[match.landmark].mean);
     if (!h.in_front) continue;
     Row row;
     row.match = static_cast<int>(i);

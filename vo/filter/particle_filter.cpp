@@ -158,7 +158,7 @@ double ParticleFilter::UpdateLandmarks(Particle& particle, const Pose& pose, std
     for (const Match& match : matches) {
       Landmark& landmark = particle.landmarks[match.landmark];
       const AnchorView view(pose, particle.anchors[anchor_of_[match.landmark]]);
-      const LandmarkUpdate update = UpdateLandmarkUnscented(landmark, view, match, UnscentedOf(params_));
+      const LandmarkUpdate update = UpdateLandmarkUnscented(landmark, view.From(match.moved), match, UnscentedOf(params_));
       landmark = update.landmark;
       log_likelihood += update.log_likelihood;
     }

@@ -79,8 +79,7 @@ void PathWindow::AddTrack(const WindowInput& in, const Track& track, const PathG
   Eigen::Vector3d g = Eigen::Vector3d::Zero();
   landmark.used = false;
   for (const Track::View& view : track.views) {
-    const AnchorView geometry(path.mean[view.slot], anchor);
-    const Projection h = Project(geometry, theta);
+    const Projection h = Project(AnchorView(path.mean[view.slot], anchor).From(view.moved), theta);
     if (!h.in_front) {
       ++behind_;
       continue;
@@ -257,7 +256,7 @@ Conditional Condition(const WindowInput& in, const Track& track, const PathGauss
   Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
   Eigen::Matrix<double, 3, Eigen::Dynamic> E = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, path.covariance.cols());
   for (const Track::View& view : track.views) {
-    const Projection h = Project({path.mean[view.slot], anchor}, theta);
+    const Projection h = Project(AnchorView(path.mean[view.slot], anchor).From(view.moved), theta);
     if (!h.in_front) continue;
     const Matrix23 M = h.J_landmark * L;
     const Eigen::Matrix<double, 3, 2> MtW = M.transpose() * view.R_inverse;

@@ -24,6 +24,7 @@ struct Track {
     Eigen::Vector2d z = Eigen::Vector2d::Zero();
     Eigen::Matrix2d R_inverse = Eigen::Matrix2d::Identity();
     double log_det_R = 0;
+    Eigen::Vector3d moved = Eigen::Vector3d::Zero();  // as in Match
   };
   int landmark = 0;
   int anchor = 0;         // index of the anchor pose

@@ -65,7 +65,7 @@ void ParticleFilter::Triangulate(Particle& particle) const {
       for (const Pose& anchor : particle.anchors) views.emplace_back(particle.path.mean[k], anchor);
       for (const Match& match : steps_[k].matches) {
         Landmark& landmark = landmarks[match.landmark];
-        landmark = UpdateLandmark(landmark, particle.modes[match.landmark], views[anchor_of_[match.landmark]], match, 1).landmark;
+        landmark = UpdateLandmark(landmark, particle.modes[match.landmark], views[anchor_of_[match.landmark]].From(match.moved), match, 1).landmark;
       }
     }
     for (const Track& track : tracks_) particle.modes[track.landmark] = landmarks[track.landmark].mean;

@@ -71,7 +71,7 @@ PoseProposal ProposeUnscented(const PoseGaussian& prediction, const LocalMap& ma
     bool in_front = true;
     Matrix23 J;
     for (int i = 0; i < PosePoints::kCount && in_front; ++i) {
-      const Projection h = Project(views[static_cast<std::size_t>(i) * map.anchors.size() + anchor], landmark.mean);
+      const Projection h = Project(views[static_cast<std::size_t>(i) * map.anchors.size() + anchor].From(match.moved), landmark.mean);
       in_front = h.in_front;
       y[i] = h.z;
       if (i == 0) J = h.J_landmark;

@@ -70,7 +70,7 @@ void WatchedFilter::Predict(double dt) {
 void WatchedFilter::Update(std::span<const Match> matches) {
   for (const Match& match : matches) {
     Require(match.landmark >= 0 && match.landmark < landmark_count(), "update", "a match is of a landmark that is not in the map");
-    Require(match.z.allFinite(), "update", "a match is at no point of the image");
+    Require(match.z.allFinite() && match.moved.allFinite(), "update", "a match is at no point of the image");
     Require(PositiveDefinite(match.R), "update", "the noise of a match is not positive definite");
   }
   filter_->Update(matches);

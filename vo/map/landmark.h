@@ -15,11 +15,13 @@ struct Landmark {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // with a fixed bearing only the last entry is not 0
 };
 
-// A feature found in the present image: which landmark, where on the plane z = 1, and the covariance of that.
+// A feature found in the present image: which landmark, where on the plane z = 1, and the covariance of that. `moved`: a rolling shutter has seen
+// it not from the camera's position at the stamp, but from so far beside it, by the way that the camera has made in between.
 struct Match {
   int landmark = 0;
   Eigen::Vector2d z = Eigen::Vector2d::Zero();
   Eigen::Matrix2d R = Eigen::Matrix2d::Zero();
+  Eigen::Vector3d moved = Eigen::Vector3d::Zero();  // [m] in W
 };
 
 // The anchor's camera A seen from the present camera C.
@@ -28,6 +30,12 @@ struct AnchorView {
       : R_CW(camera.q_WC.conjugate().toRotationMatrix()),
         R_CA(R_CW * anchor.q_WC.toRotationMatrix()),
         t_C(R_CW * (anchor.p_WC - camera.p_WC)) {}
+  // From a camera so far beside [m], in W.
+  AnchorView From(const Eigen::Vector3d& moved) const {
+    AnchorView view = *this;
+    view.t_C -= R_CW * moved;
+    return view;
+  }
   Eigen::Matrix3d R_CW;
   Eigen::Matrix3d R_CA;
   Eigen::Vector3d t_C;  // [m]

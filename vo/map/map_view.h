@@ -14,14 +14,18 @@ class MapView {
   MapView(const LocalMap& map, const Pose& camera) : map_(map), camera_(camera), views_(map.anchors.size()) {}
 
   const Landmark& landmark(int n) const { return map_.landmarks[n]; }
-  Projection operator()(int n) const {
+  Projection operator()(int n) const { return Project(ViewOf(n), map_.landmarks[n].mean); }
+  // From where the match was seen.
+  Projection operator()(const Match& match) const { return Project(ViewOf(match.landmark).From(match.moved), map_.landmarks[match.landmark].mean); }
+
+ private:
+  const AnchorView& ViewOf(int n) const {
     const int anchor = map_.anchor_of[n];
     std::optional<AnchorView>& view = views_[anchor];
     if (!view) view.emplace(camera_, map_.anchors[anchor]);
-    return Project(*view, map_.landmarks[n].mean);
+    return *view;
   }
 
- private:
   LocalMap map_;
   Pose camera_;
   mutable std::vector<std::optional<AnchorView>> views_;

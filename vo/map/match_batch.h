@@ -59,6 +59,7 @@ class MatchBatch {
   std::vector<PredictionLanes> predictions_;
   std::vector<Lanes> distances_;
   std::vector<int> landmark_;  // per match
+  std::vector<Eigen::Vector3d> moved_;
   Pose linearised_at_;
   Vector6 step_ = Vector6::Zero();
   bool following_ = false;  // by step_, which is still to be done

@@ -31,7 +31,7 @@ constexpr double kLandmarkSettled = 1e-10;
 struct MatchLanes {
   // Given. The first two are replaced by UpdateLandmarks.
   Lanes mean[3], covariance[6];
-  Lanes anchor_p[3], anchor_q[4];  // p_WA, q_WA (x y z w)
+  Lanes anchor_p[3], anchor_q[4];  // p_WA (less what the match has moved), q_WA (x y z w)
   Lanes z[2], R_given[3];
   Lanes R[3];       // believed: as given, or more
   Lanes min_depth;  // of X_C: what is nearer or behind is not in front; infinite where there is no match

@@ -58,8 +58,9 @@ Scene MakeScene(unsigned seed, int matches, bool some_behind = true) {
     const double sigma = 1.0 / 500;
     Matrix2d R;
     R << 1.2, 0.3, 0.3, 0.8;
-    const vo::Projection h = vo::Project({scene.camera, scene.anchors[scene.anchor_of[n]]}, scene.landmarks[n].mean);
-    scene.matches.push_back({n, h.z + 5 * sigma * draws.Symmetrics<2>(), sigma * sigma * R});
+    const Vector3d moved = 0.03 * draws.Symmetrics<3>();
+    const vo::Projection h = vo::Project(vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[n]]).From(moved), scene.landmarks[n].mean);
+    scene.matches.push_back({n, h.z + 5 * sigma * draws.Symmetrics<2>(), sigma * sigma * R, moved});
   }
   return scene;
 }
@@ -78,7 +79,7 @@ vo::MatchBatch::Information Expected(const Scene& scene, const std::vector<Vecto
   for (std::size_t i = 0; i < scene.matches.size(); ++i) {
     const vo::Match& match = scene.matches[i];
     const vo::Landmark& landmark = scene.landmarks[match.landmark];
-    const vo::Projection h = vo::Project({scene.camera, scene.anchors[scene.anchor_of[match.landmark]]}, theta[i]);
+    const vo::Projection h = vo::Project(vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]).From(match.moved), theta[i]);
     terms.emplace_back();
     if (!h.in_front) continue;
     const Vector2d e = match.z - h.z - h.J_landmark * (landmark.mean - theta[i]);
@@ -156,7 +157,7 @@ TEST_P(EveryInstructionSet, DistancesAreThoseOfTheResidualsAsGiven) {
     for (std::size_t i = 0; i < distances.size(); ++i) {
       const vo::Match& match = scene.matches[i];
       const vo::Landmark& landmark = scene.landmarks[match.landmark];
-      const vo::Projection h = vo::Project({scene.camera, scene.anchors[scene.anchor_of[match.landmark]]}, landmark.mean);
+      const vo::Projection h = vo::Project(vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]).From(match.moved), landmark.mean);
       if (!h.in_front) {
         EXPECT_EQ(distances[i], INFINITY) << i;
         continue;
@@ -195,7 +196,7 @@ TEST_P(EveryInstructionSet, LandmarksAreUpdatedAsOneByOne) {
       batch.Store(landmarks);
       double sum = 0;
       for (const vo::Match& match : scene.matches) {
-        const vo::AnchorView view(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]);
+        const vo::AnchorView view = vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]).From(match.moved);
         const vo::LandmarkUpdate update = vo::UpdateLandmark(scene.landmarks[match.landmark], view, match, iterations);
         expected[match.landmark] = update.landmark;
         sum += update.log_likelihood;
