@@ -24,12 +24,9 @@ Eigen::Vector2d RollingShutter::InImage(const Eigen::Vector2d& z, const Eigen::V
 }
 
 FirstView RollingShutter::FirstSeen(const Eigen::Vector2d& pixel, const Pose& pose, const Vector6& velocity) const {
-  FirstView view{camera_.Undistort(pixel), Eigen::Matrix2d::Zero()};
-  if (!on()) return view;
-  const Projection at = Project({pose, pose}, {view.ray.x(), view.ray.y(), 1.0});  // at rho = 1, to which the camera's way counts in proportion
-  const double time = TimeOf(pixel.y());
-  view.ray -= time * at.J_pose.rightCols<3>() * velocity.tail<3>();
-  view.by_inverse_depth = -time * at.J_pose.leftCols<3>() * velocity.head<3>();
+  const auto [ray, moved] = AsTurned(pixel, velocity);
+  FirstView view{ray, Eigen::Matrix2d::Zero()};
+  if (on()) view.by_inverse_depth = Project({pose, pose}, {ray.x(), ray.y(), 1.0}).J_shift * moved;
   return view;
 }
 

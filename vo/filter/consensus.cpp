@@ -30,9 +30,8 @@ Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std
   batch.Load(map);
   std::vector<double> distances, factors(matches.size());
   batch.SquaredDistances(found.pose.mean, distances);
-  const int fewest = start ? 1 : kRounds;
   bool moves = true;
-  for (int round = 0; round < kMostRounds && (round < fewest || moves); ++round) {
+  for (int round = 0; round < kMostRounds && (round < kRounds || moves); ++round) {
     const Pose before = found.pose.mean;
     std::transform(distances.begin(), distances.end(), factors.begin(), [](double d) { return 1.0 + std::min(d, kFar) / kCauchySq; });
     batch.Inflate(factors);

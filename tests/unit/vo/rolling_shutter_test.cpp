@@ -104,21 +104,18 @@ TEST(RollingShutter, InImageIsWhereTheRowsTimeTakesIt) {
   }
 }
 
-// Seen for the first time: with the depth, once it is known, the ray is right to second order, whatever the depth. Taken with another
-// depth it is not: that is what by_inverse_depth is for.
+// Seen for the first time: with the depth, once it is known, the ray is right, whatever the depth, and exactly. Taken with another depth it is not:
+// that is what by_inverse_depth is for.
 TEST(RollingShutter, FirstViewsAreRightAtEveryDepth) {
   const vo::Camera camera = SomeCamera();
-  double left[2] = {}, other_depth = 0;
-  for (const int half : {0, 1}) {
-    const vo::RollingShutter shutter(camera, half ? 0.013 : 0.026);
-    for (const Vector3d& theta : Points()) {
-      const vo::FirstView view = shutter.FirstSeen(Seen(camera, shutter, InWorld(theta)), kPose, kVelocity);
-      left[half] = std::max(left[half], (view.ray + theta.z() * view.by_inverse_depth - theta.head<2>()).norm());
-      if (!half) other_depth = std::max(other_depth, (view.ray + 0.25 * view.by_inverse_depth - theta.head<2>()).norm());
-    }
+  const vo::RollingShutter shutter(camera, 0.026);
+  double other_depth = 0;
+  for (const Vector3d& theta : Points()) {
+    const vo::FirstView view = shutter.FirstSeen(Seen(camera, shutter, InWorld(theta)), kPose, kVelocity);
+    EXPECT_LT((view.ray + theta.z() * view.by_inverse_depth - theta.head<2>()).norm(), 1e-9);
+    other_depth = std::max(other_depth, (view.ray + 0.25 * view.by_inverse_depth - theta.head<2>()).norm());
   }
-  EXPECT_NEAR(left[0] / left[1], 4, 0.3);
-  EXPECT_GT(other_depth, 5 * left[0]);
+  EXPECT_GT(other_depth, 0.001) << "half a pixel";
 }
 
 // (ray + noise + by_inverse_depth rho, rho) of independent noise and rho, with both written out.
