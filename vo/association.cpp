@@ -5,10 +5,12 @@
 #include <numbers>
 #include <utility>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "vo/features/matcher.h"
 #include "vo/filter/consensus.h"
+#include "vo/filter/motion_model.h"
 #include "vo/pilots.h"
 #include "vo/rolling_shutter.h"
 #include "vo/spread.h"
@@ -128,19 +130,24 @@ Residual ResidualOf(const Candidate& candidate, const Match& match, const MapVie
   return residual;
 }
 
-// How fast the camera is if it is at `pose` and not where it was predicted to be: it has made the difference since the last frame.
-Vector6 VelocityAt(const Filter& filter, const Pose& pose, double dt) {
-  return filter.belief().velocity + Minus(pose, filter.ReferencePrediction().mean) / dt;
+// How fast the camera is if it is at `pose` and not where it was predicted to be: at the end of the step, by which nearly constant velocity has
+// changed by more than the step's mean has.
+Vector6 VelocityAt(const Filter& filter, const Pose& pose, const MotionModel& model) {
+  const Matrix6 V = filter.belief().covariance.bottomRightCorner<6, 6>();
+  const Matrix6 step = model.F.topRightCorner<6, 6>();
+  const Matrix6 predicted = step * V * step.transpose() + model.Q.topLeftCorner<6, 6>();
+  const Matrix6 shared = V * step.transpose() + model.Q.bottomLeftCorner<6, 6>();
+  return filter.belief().velocity + shared * predicted.llt().solve(Minus(pose, filter.ReferencePrediction().mean));
 }
 
 // The pilots first, each request as it is; the others where the camera then turns out to be.
 Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchRequest>& requests, const Filter& filter,
            std::span<const LandmarkRecord> records, const Camera& camera, const RollingShutter& shutter,
-           const LocalMap& map, const cv::Mat& grey, const BriskImage& brisk, double dt, const Params& params) {
+           const LocalMap& map, const cv::Mat& smooth, const BriskImage& brisk, const MotionModel& model, const Params& params) {
   std::vector<PilotCandidate> possible;
   for (const Candidate& c : candidates) possible.push_back({c.pixel, &records[c.landmark]});
   const std::vector<std::size_t> pilots = ChoosePilots(possible, camera, params.features);
-  if (pilots.empty()) return FindFeatures(requests, grey, brisk, params.features);
+  if (pilots.empty()) return FindFeatures(requests, smooth, brisk, params.features);
 
   Found found(candidates.size());
   std::vector<bool> is_pilot(candidates.size(), false);
@@ -150,7 +157,7 @@ Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchReq
     first.push_back(requests[i]);
     first.back().widest_px = params.features.window_recovery_px;
   }
-  const Found leading = FindFeatures(first, grey, brisk, params.features);
+  const Found leading = FindFeatures(first, smooth, brisk, params.features);
   std::vector<Match> matches;
   for (std::size_t k = 0; k < pilots.size(); ++k) {
     found[pilots[k]] = leading[k];
@@ -159,7 +166,7 @@ Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchReq
 
   const std::optional<PilotedPose> pose = PilotedPose::From(filter.ReferencePrediction(), map, matches, params);
   const Pose& at = pose ? pose->pose().mean : filter.ReferencePrediction().mean;
-  const ImageMotion motion(shutter, map, at, VelocityAt(filter, at, dt));
+  const ImageMotion motion(shutter, map, at, VelocityAt(filter, at, model));
   std::vector<SearchRequest> rest;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (is_pilot[i]) continue;
@@ -170,7 +177,7 @@ Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchReq
     rest.back().S = where->covariance;
     rest.back().widest_px = std::max(params.features.window_px, WindowOf(where->covariance));
   }
-  const Found following = FindFeatures(rest, grey, brisk, params.features);
+  const Found following = FindFeatures(rest, smooth, brisk, params.features);
   for (std::size_t i = 0, k = 0; i < candidates.size(); ++i)
     if (!is_pilot[i]) found[i] = following[k++];
   return found;
@@ -178,12 +185,13 @@ Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchReq
 
 }  // namespace
 
-Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
+Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& smooth,
                       const BriskImage& brisk, int border_px, double dt, const Params& params) {
   Association result;
   const LocalMap map = filter.ReferenceMap();
   const PoseGaussian& prediction = filter.ReferencePrediction();
   const double gate = OutlierGate(filter, params.score);
+  const MotionModel model = NearlyConstantVelocity(params.motion, dt);
   const RollingShutter shutter(camera, params.features);
   const ImageMotion predicted(shutter, map, prediction.mean, filter.belief().velocity);
   std::vector<Candidate> candidates = FindCandidates(filter, records, camera, map, predicted, border_px, params);
@@ -191,7 +199,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   std::vector<SearchRequest> requests;
   for (const Candidate& c : candidates)
     requests.push_back(RequestFor(c, filter, records[c.landmark], camera, params.features.sigma_px));
-  const Found found = Find(candidates, requests, filter, records, camera, shutter, map, grey, brisk, dt, params);
+  const Found found = Find(candidates, requests, filter, records, camera, shutter, map, smooth, brisk, model, params);
 
   const auto matches_at = [&](const Vector6& velocity) {
     std::vector<Match> matches;
@@ -204,7 +212,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   if (shutter.on()) {
     for (int round = 0; round < kShutterRounds; ++round) {
       at = FindConsensus(prediction, map, matches, gate, params.filter, at).pose.mean;
-      matches = matches_at(VelocityAt(filter, *at, dt));
+      matches = matches_at(VelocityAt(filter, *at, model));
     }
   }
   Consensus consensus = FindConsensus(prediction, map, matches, gate, params.filter, at);

@@ -31,8 +31,8 @@ struct Association {
   double nis = 0;                  // sum of the matches' mahalanobis_sq
 };
 
-// After filter.Predict(dt). `records` are in the order of the filter's landmarks; `brisk` holds the image `grey` (CV_8UC1).
-Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& grey,
+// After filter.Predict(dt). `records` are in the order of the filter's landmarks; `brisk` holds the image, `smooth` is it smoothed.
+Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& smooth,
                       const BriskImage& brisk, int border_px, double dt, const Params& params);
 
 }  // namespace vo

@@ -17,7 +17,7 @@
 namespace vo {
 namespace {
 
-constexpr int kStartRounds = 3;  // of the second frame, through a rolling shutter
+constexpr int kStartRounds = 6;  // of the second frame, through a rolling shutter
 
 }  // namespace
 
@@ -105,7 +105,7 @@ void Odometry::Impl::Follow(const PreparedFrame& prepared, FrameDiagnostics& dia
   const double dt = static_cast<double>(stamp_ns - *last_stamp_ns) * 1e-9;
   Stopwatch watch;
   filter.Predict(dt);
-  Association association = Associate(filter, records, camera, prepared.grey, prepared.brisk, border_px, dt, params);
+  Association association = Associate(filter, records, camera, prepared.smooth, prepared.brisk, border_px, dt, params);
   diagnostics.ms_matching += watch.Lap();
   filter.Update(association.matches);
   UpdateScores(association);
@@ -169,7 +169,7 @@ void Odometry::Impl::Add(const Eigen::Vector2i& corner, const std::optional<Know
                          const Vector6& velocity, std::vector<FirstView>& first) {
   const Eigen::Vector2d pixel = corner.cast<double>();
   LandmarkRecord record;
-  record.appearance = {prepared.brisk.Describe(corner, first_sampler), CutPatch(prepared.grey, corner)};
+  record.appearance = {prepared.brisk.Describe(corner, first_sampler), CutPatch(prepared.smooth, corner)};
   record.id = next_id++;
   record.score = params.score.initial;
   records.push_back(record);

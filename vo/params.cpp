@@ -91,8 +91,6 @@ std::vector<std::string> Problems(const Params& params) {
                 "features.fast_threshold_start", features.fast_threshold_start,
                 "must lie between fast_threshold_min and 255");
   check.Positive("features.min_distance_px", features.min_distance_px);
-  check.Require(features.min_cornerness >= 0 && features.min_cornerness < 1, "features.min_cornerness", features.min_cornerness,
-                "must lie in 0 ... 1");
   check.Positive("features.brisk_size_px", features.brisk_size_px);
   check.Require(features.max_hamming > 0 && features.max_hamming <= 1, "features.max_hamming", features.max_hamming,
                 "must lie in 0 ... 1");

@@ -98,14 +98,13 @@ enum class MatchNoise {
 struct FeatureParams {
   double sigma_px = 0.7;           // standard deviation of a matched pixel, per axis [px] (the paper, to whole pixels: 2)
   MatchNoise noise = MatchNoise::adaptive;
-  double sigma_floor_px = 0.2;     // [px]
+  double sigma_floor_px = 0.2;     // of a match and of a first view [px]
   double noise_inflation = 4;      // the residuals of neighbouring pixels are not independent
   int grid_columns = 8, grid_rows = 6;
   int per_cell = 3;                // corners wanted in every cell of the grid
   int fast_threshold_start = 60;   // grey levels; lowered per cell ...
   int fast_threshold_min = 7;      // ... to this at the least
   double min_distance_px = 10;     // between a new corner and any feature in the image
-  double min_cornerness = 0.0;     // 0 ... 1, of a new feature: above 0 refuses straight edges, along which matches slide (0: the paper)
   double brisk_size_px = 12;       // diameter of BRISK's pattern in OpenCV's terms: larger is more distinct, less invariant
   BriskWarp brisk_warp = BriskWarp::affine;
   double max_hamming = 0.15;       // of 512 bits

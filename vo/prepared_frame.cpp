@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "vo/estimate.h"
+#include "vo/features/patch.h"
 
 namespace vo {
 
@@ -14,6 +15,7 @@ PreparedFrame::PreparedFrame(Frame frame_) : frame(std::move(frame_)) {
     grey = frame.image;
   else
     cv::cvtColor(frame.image, grey, cv::COLOR_BGR2GRAY);
+  smooth = Smooth(grey);
   brisk.Set(grey);
   ms = watch.Lap();
 }

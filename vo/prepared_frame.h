@@ -14,7 +14,8 @@ struct PreparedFrame {
 
   Frame frame;
   cv::Mat grey;      // CV_8UC1
-  BriskImage brisk;  // of it
+  cv::Mat smooth;    // of it, for patches
+  BriskImage brisk;  // of grey
   double ms = 0;     // that preparing took
 };
 

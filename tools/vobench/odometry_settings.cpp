@@ -71,7 +71,7 @@ void ReadScore(Section section, vo::ScoreParams& params) {
 
 void ReadFeatures(Section section, vo::FeatureParams& params) {
   auto& [sigma_px, noise, sigma_floor_px, noise_inflation, grid_columns, grid_rows, per_cell, fast_threshold_start,
-         fast_threshold_min, min_distance_px, min_cornerness, brisk_size_px, brisk_warp, max_hamming, window_quick_px,
+         fast_threshold_min, min_distance_px, brisk_size_px, brisk_warp, max_hamming, window_quick_px,
          window_px, window_enlarged_px, window_lost_px, window_recovery_px, subpixel, max_view_angle_deg, max_baseline_ratio,
          max_searched, readout_s, pilots] = params;
   section.Read("sigma", sigma_px, Unit::pixel, Range::Positive());
@@ -87,7 +87,6 @@ void ReadFeatures(Section section, vo::FeatureParams& params) {
   section.Read("fast_threshold_start", fast_threshold_start, Range{1, 255});
   section.Read("fast_threshold_min", fast_threshold_min, Range{1, 255});
   section.Read("min_distance", min_distance_px, Unit::pixel, Range::AtLeast(0));
-  section.Read("min_cornerness", min_cornerness, Range{0, 1});
   section.Read("brisk_size", brisk_size_px, Unit::pixel, Range::Positive());
   section.ReadChoice(
       "brisk_warp", brisk_warp,

@@ -4,8 +4,6 @@
 
 #include <opencv2/features2d.hpp>
 
-#include "vo/features/patch.h"
-
 namespace vo {
 namespace {
 
@@ -54,8 +52,7 @@ std::vector<Eigen::Vector2i> DetectCorners(const cv::Mat& grey, const std::vecto
           if (static_cast<int>(best.size()) == wanted) break;
           const Eigen::Vector2d p(corner.pt.x + static_cast<float>(cell.x), corner.pt.y + static_cast<float>(cell.y));
           if (!usable.contains(cv::Point(static_cast<int>(p.x()), static_cast<int>(p.y())))) continue;
-          if (!FarFrom(taken, p, params.min_distance_px) || !FarFrom(best, p, params.min_distance_px)) continue;
-          if (Cornerness(CutPatch(grey, p.cast<int>())) >= params.min_cornerness) best.push_back(p);
+          if (FarFrom(taken, p, params.min_distance_px) && FarFrom(best, p, params.min_distance_px)) best.push_back(p);
         }
         if (static_cast<int>(best.size()) == wanted || threshold == params.fast_threshold_min) break;
       }

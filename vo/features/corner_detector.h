@@ -12,8 +12,7 @@
 namespace vo {
 
 // New corners (whole pixels), strongest first within a cell, at least min_distance_px from `occupied` and from each other and
-// `border_px` (more than Patch::kRadius) from the edge, none of them on a straight edge. A cell that already holds k of `occupied`
-// gets at most per_cell - k. `grey` is CV_8UC1.
+// `border_px` from the edge. A cell that already holds k of `occupied` gets at most per_cell - k. `grey` is CV_8UC1.
 std::vector<Eigen::Vector2i> DetectCorners(const cv::Mat& grey, const std::vector<Eigen::Vector2d>& occupied, int border_px,
                                            const FeatureParams& params);
 

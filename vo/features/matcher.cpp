@@ -67,7 +67,7 @@ int WindowOf(const Eigen::Matrix2d& S) {
 
 BriskSampler FirstSampler(const FeatureParams& params) { return BriskSampler(PatternMap(Eigen::Matrix2d::Identity(), params)); }
 
-std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& grey,
+std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& smooth,
                                                       const BriskImage& brisk, const FeatureParams& params) {
   const int max_distance = static_cast<int>(std::lround(params.max_hamming * kBriskPairs));
   const Eigen::Matrix2d constant = params.sigma_px * params.sigma_px * Eigen::Matrix2d::Identity();
@@ -90,7 +90,7 @@ std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRe
       break;
     }
     if (!found[i] || !params.subpixel) continue;
-    const auto refined = Register(request.appearance->patch, request.warp, grey, found[i]->pixel, kMaxRefinementPx);
+    const auto refined = Register(request.appearance->patch, request.warp, smooth, found[i]->pixel, kMaxRefinementPx);
     if (!refined || refined->correlation <= kMinCorrelation) continue;
     found[i]->pixel = refined->pixel;
     if (params.noise != MatchNoise::constant) found[i]->noise = floor + params.noise_inflation * refined->covariance;

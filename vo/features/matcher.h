@@ -37,8 +37,8 @@ struct FoundFeature {
   Eigen::Matrix2d noise;  // covariance of its error [px^2], as this image alone tells it
 };
 
-// Where each request was found, in its order. `brisk` holds the image `grey` (CV_8UC1).
-std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& grey,
+// Where each request was found, in its order. `brisk` holds the image, `smooth` is it smoothed.
+std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& smooth,
                                                       const BriskImage& brisk, const FeatureParams& params);
 
 }  // namespace vo

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <opencv2/imgproc.hpp>
 
 namespace vo {
 namespace {
@@ -15,6 +17,7 @@ constexpr int kIterations = 10;
 constexpr double kSettledPx = 0.01;
 
 using Window = Eigen::Matrix<double, kPixels, 1>;
+using WideWindow = Eigen::Matrix<double, kWindow + 2, kWindow + 2>;
 
 inline double Bilinear(const std::uint8_t* data, std::size_t stride, double x, double y) {
   const int ix = static_cast<int>(x), iy = static_cast<int>(y);
@@ -40,7 +43,7 @@ Window Between(const std::uint8_t* data, std::size_t stride, const Eigen::Vector
 }
 
 // The patch as the present view should show it; one pixel wider than the window for its gradient. False: leaves the patch.
-bool WarpPatch(const Patch& patch, const Eigen::Matrix2d& warp, Eigen::Matrix<double, kWindow + 2, kWindow + 2>& out) {
+bool WarpPatch(const Patch& patch, const Eigen::Matrix2d& warp, WideWindow& out) {
   constexpr int kReach = kWindowRadius + 1;
   const Eigen::Matrix2d to_first = warp.inverse();
   const Eigen::Vector2d farthest = kReach * to_first.cwiseAbs().rowwise().sum();  // at two of the four corners
@@ -54,34 +57,93 @@ bool WarpPatch(const Patch& patch, const Eigen::Matrix2d& warp, Eigen::Matrix<do
   return true;
 }
 
+// What a patch's gradients tell of a shift, along the two axes of their second moments H: beyond what noise and the grid of pixels alone would
+// seem to tell. The first axis is the one along an edge.
+class Axes {
+ public:
+  // `ripple`: mean square of the patch's second differences along both axes, which noise has more of than anything smooth.
+  Axes(const Eigen::Matrix2d& H, double ripple) : ripple_(ripple) { solver_.computeDirect(H); }
+
+  // From now on the first axis tells nothing: along it the search has got lost.
+  void Slide() { slides_ = true; }
+
+  // The part of the sum of squares that least squares take away; `slope` is the derivative of half of it.
+  double Explained(const Eigen::Vector2d& slope) const {
+    const Eigen::Array2d along = solver_.eigenvectors().transpose() * slope;
+    return (along.square() / solver_.eigenvalues().array().max(kStaircase * solver_.eigenvalues()[1])).sum();
+  }
+
+  // Of least squares. Zero along an axis of which nothing is told.
+  Eigen::Matrix2d Inverse(double residual_variance) const {
+    Eigen::Vector2d inverse;
+    for (int i = 0; i < 2; ++i) inverse[i] = Told(i, residual_variance) > 0 ? 1 / solver_.eigenvalues()[i] : 0;
+    return Matrix(inverse);
+  }
+
+  // Nothing is known worse than to half the window's width.
+  Eigen::Matrix2d Covariance(double residual_variance) const {
+    constexpr double kWidest = kWindowRadius * kWindowRadius;
+    Eigen::Vector2d variances;
+    for (int i = 0; i < 2; ++i) {
+      const double told = Told(i, residual_variance);
+      variances[i] = kWidest * told > kCorrelated * residual_variance ? kCorrelated * residual_variance / told : kWidest;
+    }
+    return Matrix(variances);
+  }
+
+ private:
+  // A straight edge in a smooth image has second moments along itself, too, for its pixels are steps.
+  static constexpr double kStaircase = 0.02;
+  // Noise has gradients as well: of white noise in both images, smoothed, a pixel's have 0.27 of the residuals' variance and 0.17 of the ripple. Twice
+  // that, since one patch has more of it than another; the smaller, since what does not fit is not noise, nor is all that ripples.
+  static constexpr double kOfResidual = 0.5, kOfRipple = 0.34;
+  // Neighbouring pixels of a smooth image share their noise: there is more of it in slow gradients than in a pixel.
+  static constexpr double kCorrelated = 2.5;
+
+  double Told(int axis, double residual_variance) const {
+    if (slides_ && axis == 0) return 0;
+    const double noise = kPixels * std::min(kOfResidual * residual_variance, kOfRipple * ripple_);
+    return solver_.eigenvalues()[axis] - kStaircase * solver_.eigenvalues()[1] - noise;
+  }
+  Eigen::Matrix2d Matrix(const Eigen::Vector2d& along) const {
+    return solver_.eigenvectors() * along.asDiagonal() * solver_.eigenvectors().transpose();
+  }
+
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver_;
+  double ripple_;
+  bool slides_ = false;
+};
+
+double Ripple(const WideWindow& wide) {
+  double sum = 0;
+  for (int v = 1; v <= kWindow; ++v)
+    for (int u = 1; u <= kWindow; ++u) {
+      const auto bend = [&](int row) { return wide(row, u - 1) - 2 * wide(row, u) + wide(row, u + 1); };
+      const double cross = bend(v - 1) - 2 * bend(v) + bend(v + 1);
+      sum += cross * cross;
+    }
+  return sum / kPixels;
+}
+
 }  // namespace
 
-Patch CutPatch(const cv::Mat& grey, const Eigen::Vector2i& centre) {
+cv::Mat Smooth(const cv::Mat& grey) {
+  cv::Mat smooth;
+  cv::GaussianBlur(grey, smooth, {3, 3}, 0.7, 0.7, cv::BORDER_REPLICATE);
+  return smooth;
+}
+
+Patch CutPatch(const cv::Mat& smooth, const Eigen::Vector2i& centre) {
   Patch patch;
   for (int row = 0; row < Patch::kSide; ++row)
-    std::copy_n(grey.ptr(centre.y() - Patch::kRadius + row) + centre.x() - Patch::kRadius, Patch::kSide,
+    std::copy_n(smooth.ptr(centre.y() - Patch::kRadius + row) + centre.x() - Patch::kRadius, Patch::kSide,
                 patch.grey.begin() + row * Patch::kSide);
   return patch;
 }
 
-double Cornerness(const Patch& patch) {
-  Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
-  const auto grey = [&](int x, int y) {
-    return static_cast<double>(patch.grey[static_cast<std::size_t>((y + Patch::kRadius) * Patch::kSide + x + Patch::kRadius)]);
-  };
-  for (int y = -kWindowRadius; y <= kWindowRadius; ++y)
-    for (int x = -kWindowRadius; x <= kWindowRadius; ++x) {
-      const Eigen::Vector2d g(grey(x + 1, y) - grey(x - 1, y), grey(x, y + 1) - grey(x, y - 1));
-      moments += g * g.transpose();
-    }
-  const double half_trace = 0.5 * moments.trace();
-  const double root = std::sqrt(std::max(0.0, half_trace * half_trace - moments.determinant()));
-  return half_trace > 0 ? (half_trace - root) / (half_trace + root) : 0.0;
-}
-
-std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& warp, const cv::Mat& grey,
+std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& warp, const cv::Mat& smooth,
                                      const Eigen::Vector2d& start, double max_shift_px) {
-  Eigen::Matrix<double, kWindow + 2, kWindow + 2> wide;
+  WideWindow wide;
   if (!(std::abs(warp.determinant()) > 0.1) || !WarpPatch(patch, warp, wide)) return std::nullopt;
 
   Window templ, gradient_x, gradient_y;
@@ -97,29 +159,37 @@ std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& 
   H(0, 0) = gradient_x.squaredNorm();
   H(0, 1) = H(1, 0) = gradient_x.dot(gradient_y);
   H(1, 1) = gradient_y.squaredNorm();
-  if (!(template_norm > 1) || !(H.determinant() > 1e-3 * H.trace() * H.trace())) return std::nullopt;
-  const Eigen::Matrix2d H_inverse = H.inverse();
+  if (!(template_norm > 1)) return std::nullopt;
+  Axes axes(H, Ripple(wide));
 
-  Eigen::Vector2d x = start;
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    if (!(x.x() >= kWindowRadius && x.y() >= kWindowRadius && x.x() < grey.cols - kWindowRadius - 1 &&
-          x.y() < grey.rows - kWindowRadius - 1))
-      return std::nullopt;
-    Window seen = Between(grey.data, grey.step[0], x);
-    seen.array() -= seen.mean();
-    const double seen_norm = seen.norm();
-    if (!(seen_norm > 1)) return std::nullopt;
-    seen *= template_norm / seen_norm;  // gain
-    const Window off = templ - seen;
-    const Eigen::Vector2d step = H_inverse * Eigen::Vector2d(gradient_x.dot(off), gradient_y.dot(off));
-    x += step;
-    if ((x - start).norm() > max_shift_px) return std::nullopt;
-    if (step.norm() < kSettledPx) {
-      const double variance = off.squaredNorm() / (kPixels - 4);  // gain, offset and two shifts are fitted
-      return Registration{x, templ.dot(seen) / (template_norm * template_norm), variance * H_inverse};
+  const auto settle = [&]() -> std::optional<Registration> {
+    Eigen::Vector2d x = start;
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
+      if (!(x.x() >= kWindowRadius && x.y() >= kWindowRadius && x.x() < smooth.cols - kWindowRadius - 1 &&
+            x.y() < smooth.rows - kWindowRadius - 1))
+        return std::nullopt;
+      Window seen = Between(smooth.data, smooth.step[0], x);
+      seen.array() -= seen.mean();
+      const double seen_norm = seen.norm();
+      if (!(seen_norm > 1)) return std::nullopt;
+      seen *= template_norm / seen_norm;  // gain
+      const Window off = templ - seen;
+      const Eigen::Vector2d slope(gradient_x.dot(off), gradient_y.dot(off));
+      // What no shift explains; gain, offset and two shifts are fitted.
+      const double variance = std::max(0.0, off.squaredNorm() - axes.Explained(slope)) / (kPixels - 4);
+      const Eigen::Matrix2d inverse = axes.Inverse(variance);
+      if (inverse.isZero(0)) return std::nullopt;
+      const Eigen::Vector2d step = inverse * slope;
+      x += step;
+      if ((x - start).norm() > max_shift_px) return std::nullopt;
+      if (step.norm() < kSettledPx)
+        return Registration{x, templ.dot(seen) / (template_norm * template_norm), axes.Covariance(variance)};
     }
-  }
-  return std::nullopt;
+    return std::nullopt;
+  };
+  if (const auto found = settle()) return found;
+  axes.Slide();
+  return settle();
 }
 
 }  // namespace vo

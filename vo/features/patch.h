@@ -11,6 +11,10 @@
 
 namespace vo {
 
+// What patches are cut from and registered to: the CV_8UC1 image smoothed by 3 x 3 (sigma 0.7 px), so that noise and the staircase that the grid
+// of pixels makes of an edge, which stays where the grid is, weigh less.
+cv::Mat Smooth(const cv::Mat& grey);
+
 // The surroundings of a corner in its first view, in grey levels, row by row.
 struct Patch {
   static constexpr int kRadius = 10;
@@ -18,22 +22,19 @@ struct Patch {
   std::array<std::uint8_t, kSide * kSide> grey{};
 };
 
-// `centre` at least kRadius from the edge of the CV_8UC1 image.
-Patch CutPatch(const cv::Mat& grey, const Eigen::Vector2i& centre);
-
-// Ratio of the smaller to the larger eigenvalue of the gradients' second moments about the centre, 0 ... 1: near 0 on a straight edge,
-// along which a match slides.
-double Cornerness(const Patch& patch);
+// `centre` at least kRadius from the edge of the smooth image.
+Patch CutPatch(const cv::Mat& smooth, const Eigen::Vector2i& centre);
 
 struct Registration {
   Eigen::Vector2d pixel;
   double correlation = 0;  // normalised, -1 ... 1
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  // of least squares: residual variance times H^-1 [px^2]; wide along edges and blur
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  // of least squares [px^2], as if noise and staircase told nothing; along an edge
+                                                         // as wide as the window
 };
 
-// `warp` = d(present pixel)/d(pixel of the first view). None when the window leaves the image, the patch has no corner, the
-// search does not settle or wanders more than `max_shift_px` from `start`.
-std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& warp, const cv::Mat& grey,
+// `warp` = d(present pixel)/d(pixel of the first view). Along a straight edge the pixel is left where `start` is. None when the window leaves the
+// image, the patch is blank, the search does not settle or wanders more than `max_shift_px` from `start`.
+std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& warp, const cv::Mat& smooth,
                                      const Eigen::Vector2d& start, double max_shift_px);
 
 }  // namespace vo

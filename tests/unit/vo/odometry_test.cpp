@@ -2,6 +2,7 @@
 
 #include "vo/odometry.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -153,8 +154,7 @@ TEST(Odometry, StraightensARollingShutter) {
   const double global = moved(0, 0), told = moved(readout, readout), not_told = moved(readout, 0), upwards = moved(readout, -readout);
   std::printf("moved by [mm]: global shutter %.2f; rolling, told %.2f, not told %.2f, told the opposite %.2f\n", 1e3 * global, 1e3 * told,
               1e3 * not_told, 1e3 * upwards);
-  EXPECT_LT(told, 4 * global);  // what the straightening leaves: registered matches are exact enough to see it
-  EXPECT_GT(not_told, 5 * told);
+  EXPECT_GT(not_told, 9 * told);  // what is left: the velocity changes within a step
   EXPECT_GT(upwards, 1.5 * not_told);
 }
 
@@ -201,25 +201,24 @@ TEST(Odometry, BelievesTremblingLandmarksLess) {
     still.colRange(kTrembling, kCamera.width).copyTo(seen.colRange(kTrembling, kCamera.width));
     return seen;
   };
-  const auto believed = [&](vo::MatchNoise noise) {  // mean standard deviation [px] where it trembles over that elsewhere
+  const auto believed = [&](vo::MatchNoise noise) {  // median standard deviation [px] where it trembles over that elsewhere
     vo::Params params = SmallImageParams();
     params.features.noise = noise;
     vo::Odometry odometry(kCamera, params, KnownStart(), 1);
-    double sum[2] = {};
-    int count[2] = {};
+    std::vector<double> sigmas[2];
     for (int k = 0; k < 40; ++k) {
       odometry.Track({k * kFrameNs, image(k)});
       if (k < 30) continue;
       for (const vo::FeatureView& view : odometry.Features()) {
         if (view.status != vo::FeatureView::Status::matched || std::abs(view.pixel.x() - kTrembling) < 20) continue;
-        const int side = view.pixel.x() < kTrembling ? 0 : 1;
-        sum[side] += std::sqrt(view.R.trace() / 2);
-        ++count[side];
+        sigmas[view.pixel.x() < kTrembling ? 0 : 1].push_back(std::sqrt(view.R.trace() / 2));
       }
     }
-    EXPECT_GT(count[0], 50);
-    EXPECT_GT(count[1], 50);
-    return sum[0] / count[0] / (sum[1] / count[1]);
+    for (std::vector<double>& of : sigmas) {
+      EXPECT_GT(of.size(), 50u);
+      std::nth_element(of.begin(), of.begin() + of.size() / 2, of.end());
+    }
+    return sigmas[0][sigmas[0].size() / 2] / sigmas[1][sigmas[1].size() / 2];
   };
   const double adaptive = believed(vo::MatchNoise::adaptive), registered = believed(vo::MatchNoise::registered);
   std::printf("standard deviation of what trembles over that of what does not: adaptive %.2f, registered %.2f\n", adaptive, registered);
