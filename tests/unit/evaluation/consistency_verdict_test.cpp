@@ -142,5 +142,28 @@ TEST_F(Verdict, WithoutInnovationsBoundOrPoolThereIsAneesAndRanks) {
   EXPECT_THROW(JudgeConsistency({JudgedRun(1)}, options), std::invalid_argument);
 }
 
+// A belief that nobody drew from has no ranks; that is not a rank of zero among none.
+TEST_F(Verdict, WithoutDrawsThereAreNoRanks) {
+  VerdictOptions options;
+  options.trials = 200;
+  const auto judged = [&](int draws) {
+    auto runs = Runs(1);
+    runs.resize(30);
+    for (JudgedRun& run : runs) {
+      run.resize(20);
+      for (JudgedFrame& frame : run) frame.scores.draws = draws;
+    }
+    return JudgeConsistency(runs, options);
+  };
+  const auto ranked = [](const ConsistencyVerdict& verdict) {
+    return std::ranges::count_if(verdict.checks, [](const Check& c) { return c.name.starts_with("ranks") || c.name.starts_with("coverage"); });
+  };
+  const ConsistencyVerdict with = judged(49), without = judged(0);
+  EXPECT_EQ(with.rank_histograms.size(), 48u);
+  EXPECT_EQ(ranked(with), 2);
+  EXPECT_TRUE(without.rank_histograms.empty());
+  EXPECT_EQ(ranked(without), 0);
+}
+
 }  // namespace
 }  // namespace evaluation
