@@ -1,14 +1,13 @@
 #include "sim/sequence/png.h"
 
 #include <isa-l/crc.h>
-#include <isa-l/igzip_lib.h>
 
 #include <algorithm>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "sim/sequence/compress.h"
 #include "sim/sequence/png_filter.h"
 
 namespace sim {
@@ -30,38 +29,6 @@ void AppendChunk(Bytes& file, std::string_view name, std::span<const std::uint8_
   const std::uint32_t crc = crc32_gzip_refl(0, &file[start + 4], 4 + content.size());
   file.resize(file.size() + 4);
   PutBigEndian(crc, &file[file.size() - 4]);
-}
-
-// Memory that is about to be written: not zeroed first, as that costs a tenth of all.
-struct Buffer {
-  explicit Buffer(std::size_t bytes) : data(std::make_unique_for_overwrite<std::uint8_t[]>(bytes)), size(bytes) {}
-  std::span<const std::uint8_t> bytes() const { return {data.get(), size}; }
-
-  std::unique_ptr<std::uint8_t[]> data;
-  std::size_t size;
-};
-
-// Above 1 it is slower and no smaller; level 3 gives other bytes on other processors.
-Buffer Compress(std::span<const std::uint8_t> bytes) {
-  const Buffer work(ISAL_DEF_LVL1_DEFAULT);
-  Buffer compressed(bytes.size() + bytes.size() / 8 + 1024);  // more than it takes if nothing can be compressed
-  std::fill_n(work.data.get(), work.size, std::uint8_t{0});  // ISA-L looks at what was there before: other bytes, another file
-  isal_zstream stream{};
-  isal_deflate_stateless_init(&stream);
-  stream.level = 1;
-  stream.level_buf = work.data.get();
-  stream.level_buf_size = static_cast<std::uint32_t>(work.size);
-  stream.gzip_flag = IGZIP_ZLIB;
-  stream.end_of_stream = 1;
-  stream.next_in = const_cast<std::uint8_t*>(bytes.data());
-  stream.avail_in = static_cast<std::uint32_t>(bytes.size());
-  stream.next_out = compressed.data.get();
-  stream.avail_out = static_cast<std::uint32_t>(compressed.size);
-  if (const int status = isal_deflate_stateless(&stream); status != COMP_OK) {
-    throw std::logic_error("PNG: ISA-L cannot compress, status " + std::to_string(status));
-  }
-  compressed.size = stream.total_out;
-  return compressed;
 }
 
 // `row_bytes(y, out)` gives row y as PNG has it: most significant byte first.
