@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace vo {
 
@@ -21,5 +23,44 @@ inline bool Settled(double decrement, double former) {
   const double step = std::sqrt(std::max({decrement, former / 64, 0.0}));
   return step * rate < kLeft * (1 - rate);
 }
+
+// One search for a mode, whose variables and steps are its caller's. In each iteration, with everything linearised where the last step led:
+// TooLong, then Overshot, then Take. `objective` is -2 log density at its mode, up to a constant.
+class Descent {
+ public:
+  explicit Descent(int iterations) : left_(iterations), settled_(iterations == 1) {}  // who asks for one step asks for no more
+
+  bool Next() { return left_-- > 0; }
+  bool last() const { return left_ == 0; }
+  bool settled() const { return settled_; }
+
+  // The objective rose: half of the step is to be taken back.
+  bool TooLong(double objective) {
+    const bool rose = objective > best_ + kTolerated;
+    if (rose) former_ *= 0.5;
+    return rose;
+  }
+  // `slope`: b' step. Past the mode: the part of the step, negative, that leads back to where the slope vanishes.
+  std::optional<double> Overshot(double slope) {
+    if (last() || !(slope < -kOvershoot * former_)) return std::nullopt;
+    const double back = -slope / (slope - former_);
+    former_ = 0;
+    return back;
+  }
+  // The best so far, and the decrement of the step from here.
+  void Take(double objective, double decrement) {
+    best_ = objective;
+    settled_ = settled_ || Settled(decrement, former_);
+    former_ = decrement;
+  }
+  // Whether the step from here will be looked at, or is too small to matter: if not it may lead anywhere.
+  bool believed() const { return settled_ || !last(); }
+
+ private:
+  int left_;
+  bool settled_;
+  double best_ = std::numeric_limits<double>::infinity();
+  double former_ = 0;  // decrement of the step before; 0: its rate says nothing
+};
 
 }  // namespace vo

@@ -174,11 +174,9 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
   eliminated_.resize(tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i) eliminated_[i].L = Root(in.landmarks[tracks[i].landmark].covariance);
 
-  double best = std::numeric_limits<double>::infinity();  // objective: -2 log density at its mode, up to a constant
-  double former = 0;  // decrement of the step before; 0: its rate says nothing
-  bool settled = options.max_iterations == 1;  // nobody asked for more
+  Descent descent(options.max_iterations);
   path.guards = {};
-  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+  while (descent.Next()) {
     AddPrior(prior, in, path);
     rows_ = 0;
     behind_ = 0;
@@ -186,28 +184,23 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
     added_ = 0;
     for (std::size_t i = 0; i < tracks.size(); ++i) AddTrack(in, tracks[i], path, theta[i], options.marginal);
     const double objective = options.marginal ? cost_ + log_det_ : cost_;
-    const bool last = iteration + 1 == options.max_iterations;
-    if (objective > best + kTolerated) {  // the step was too long: half of it, or none
-      if (last) {
+    if (descent.TooLong(objective)) {
+      if (descent.last()) {
         path.mean = linearised_at_;
         theta = linearised_theta_;
         break;
       }
       step_ *= 0.5;
-      former *= 0.5;
       for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], -step_.segment<6>(6 * k));
       continue;
     }
     b_.noalias() -= Y_.leftCols(3 * count) * y_;
-    const double slope = b_.dot(step_);
-    if (slope < -kOvershoot * former && !last) {  // past the mode: back to where the slope vanishes
-      step_ *= -slope / (slope - former);
+    if (const auto back = descent.Overshot(b_.dot(step_))) {
+      step_ *= *back;
       for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], step_.segment<6>(6 * k));
-      former = 0;
       step_.setZero();
       continue;
     }
-    best = objective;
     linearised_at_ = path.mean;
     path.guards.behind = behind_;
     linearised_theta_.assign(theta.begin(), theta.end());
@@ -217,8 +210,8 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
     step_ = b_;
     llt_.solveInPlace(step_);
     const double decrement = b_.dot(step_);
-    settled = settled || Settled(decrement, former);
-    const bool taken = settled || !last;  // nobody would look at it afterwards: it may lead anywhere
+    descent.Take(objective, decrement);
+    const bool taken = descent.believed();
     path.objective = objective - (taken ? decrement : 0.0);
     path.log_evidence = -0.5 * (cost_ - (taken ? decrement : 0.0) + log_det_) - llt_.matrixLLT().diagonal().array().log().sum();
     if (!taken) break;
@@ -230,12 +223,11 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
       const Eigen::Vector3d u = eliminated_[i].G.matrixU().solve(Eigen::Vector3d(y_.segment<3>(3 * static_cast<Eigen::Index>(i))));
       theta[i] = in.landmarks[tracks[i].landmark].mean + eliminated_[i].L * u;
     }
-    if (settled) break;
-    former = decrement;
+    if (descent.settled()) break;
   }
   path.covariance.setIdentity(size, size);
   llt_.solveInPlace(path.covariance);
-  path.guards.unsettled = !settled;
+  path.guards.unsettled = !descent.settled();
   if (llt_.info() != Eigen::Success) {
     path.guards.indefinite = 1;
     path.log_evidence = path.objective = std::numeric_limits<double>::quiet_NaN();

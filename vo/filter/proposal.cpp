@@ -23,20 +23,17 @@ Matrix6 Inverse(const Eigen::LLT<Matrix6>& llt) {
 }  // namespace
 
 PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const FilterParams& params, const Pose& start) {
-  const int iterations = params.proposal == Proposal::ekf ? 1 : params.max_iterations;
+  Descent descent(params.proposal == Proposal::ekf ? 1 : params.max_iterations);
   const Eigen::LLT<Matrix6> prior_llt(prediction.covariance);
   const Matrix6 prior_information = Inverse(prior_llt);
   const double prior_log_det = 2.0 * HalfLogDeterminant(prior_llt);
 
   PoseProposal proposal{{start, prediction.covariance}, 0.0, {}};
   Pose& s = proposal.pose.mean;
-  double best = std::numeric_limits<double>::infinity();  // objective: -2 log density at its mode, up to a constant
-  double former = 0;  // decrement of the step before; 0: its rate says nothing
   Vector6 step = Vector6::Zero();
-  Pose linearised_at = s;  // where the objective is `best`, and the covariance and the evidence are from
+  Pose linearised_at = s;  // where the objective was best, and the covariance and the evidence are from
   Eigen::LLT<Matrix6> llt;
-  bool settled = iterations == 1;  // nobody asked for more
-  for (int iteration = 0; iteration < iterations; ++iteration) {
+  while (descent.Next()) {
     const MatchBatch::Information matches = batch.Linearise(s, params.marginal_mode);
     const Vector6 offset = Minus(s, prediction.mean);
     Matrix6 J_prior = Matrix6::Identity();  // d(offset) / dd
@@ -48,42 +45,34 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
     const double log_det = prior_log_det + matches.log_det;
 
     const double objective = params.marginal_mode ? cost + log_det : cost;
-    const bool last = iteration + 1 == iterations;
-    if (objective > best + kTolerated) {  // the step was too long: half of it, or none
-      if (last) {
+    if (descent.TooLong(objective)) {
+      if (descent.last()) {
         s = linearised_at;
         break;
       }
       step *= 0.5;
-      former *= 0.5;
       s = Plus(s, -step);
       continue;
     }
-    const double slope = b.dot(step);
-    if (slope < -kOvershoot * former && !last) {  // past the mode: back to where the slope vanishes
-      s = Plus(s, -slope / (slope - former) * step);
-      former = 0;
+    if (const auto back = descent.Overshot(b.dot(step))) {
+      s = Plus(s, *back * step);
       step.setZero();
       continue;
     }
-    best = objective;
     linearised_at = s;
     proposal.guards.behind = matches.behind;
     llt.compute(A);
     step = llt.solve(b);
     const double decrement = b.dot(step);
-    settled = settled || Settled(decrement, former);
-    // p(z) = p(s) p(z | s) / p(s | z), taken at the new mean, where the quadratic cost is less by the decrement: believed when the step is looked at
-    // afterwards, or too small to matter.
-    const bool credited = settled || !last;
-    proposal.log_evidence = -0.5 * (cost - (credited ? decrement : 0.0) + log_det + 2.0 * HalfLogDeterminant(llt));
+    descent.Take(objective, decrement);
+    // p(z) = p(s) p(z | s) / p(s | z), taken at the new mean, where the quadratic cost is less by the decrement.
+    proposal.log_evidence = -0.5 * (cost - (descent.believed() ? decrement : 0.0) + log_det + 2.0 * HalfLogDeterminant(llt));
     s = Plus(s, step);
-    if (settled || last) break;
-    former = decrement;
+    if (descent.settled() || descent.last()) break;
     batch.Follow(step);
   }
   proposal.pose.covariance = Inverse(llt);
-  proposal.guards.unsettled = !settled;
+  proposal.guards.unsettled = !descent.settled();
   if (prior_llt.info() != Eigen::Success || llt.info() != Eigen::Success) {
     proposal.guards.indefinite = 1;
     proposal.log_evidence = std::numeric_limits<double>::quiet_NaN();
