@@ -21,6 +21,24 @@ namespace {
 constexpr int kShutterRounds = 3;  // velocity, then where the rows' points were at the stamp, then the velocity by these
 constexpr double kFarOut = 0.5;    // of the image's size: so far outside of it no particle has a landmark that others have inside
 
+// A frame, and what is known before it is looked at.
+struct Sight {
+  const Filter& filter;
+  std::span<const LandmarkRecord> records;
+  const Camera& camera;
+  const PreparedFrame& frame;
+  const Params& params;
+  MotionModel model;  // of the step to this frame
+  RollingShutter shutter;
+  LocalMap map;       // of the reference
+
+  const PoseGaussian& prediction() const { return filter.ReferencePrediction(); }
+  const Vector6& velocity() const { return filter.belief().velocity; }
+  std::vector<std::optional<FoundFeature>> Find(const std::vector<SearchRequest>& requests) const {
+    return FindFeatures(requests, frame.smooth, frame.brisk, params.features);
+  }
+};
+
 struct Candidate {
   int landmark = 0;
   ImagePrediction prediction;  // on the plane z = 1
@@ -29,24 +47,24 @@ struct Candidate {
   double inflation = 1;        // of a match's covariance, by the landmark's residuals until now
 };
 
-bool WorthSearching(const Filter& filter, int landmark, const ImagePrediction& prediction, const Params& params) {
-  const Pose& now = filter.ReferencePrediction().mean;
-  const Pose first = filter.AnchorOf(landmark);
-  const Eigen::Vector3d estimate = filter.ModeOf(landmark);
+bool WorthSearching(const Sight& in, int landmark, const ImagePrediction& prediction) {
+  const Pose& now = in.prediction().mean;
+  const Pose first = in.filter.AnchorOf(landmark);
+  const Eigen::Vector3d estimate = in.filter.ModeOf(landmark);
   const Eigen::Vector3d first_ray = first.q_WC * Eigen::Vector3d(estimate.x(), estimate.y(), 1.0).normalized();
   const Eigen::Vector3d present_ray = now.q_WC * Eigen::Vector3d(prediction.z.x(), prediction.z.y(), 1.0).normalized();
-  if (first_ray.dot(present_ray) < std::cos(params.features.max_view_angle_deg * std::numbers::pi / 180)) return false;
+  if (first_ray.dot(present_ray) < std::cos(in.params.features.max_view_angle_deg * std::numbers::pi / 180)) return false;
   const double rho = estimate.z();
-  return rho <= 0 || (now.p_WC - first.p_WC).norm() * rho < params.features.max_baseline_ratio;
+  return rho <= 0 || (now.p_WC - first.p_WC).norm() * rho < in.params.features.max_baseline_ratio;
 }
 
 // A prediction costs all particles' covariances: of what lies behind the camera or far outside the image on the reference's path, none is made.
-std::vector<int> Predictable(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const LocalMap& map,
-                             const Params& params) {
-  const MapView seen(map, filter.ReferencePrediction().mean);
+std::vector<int> Predictable(const Sight& in) {
+  const Camera& camera = in.camera;
+  const MapView seen(in.map, in.prediction().mean);
   std::vector<int> predictable;
-  for (int n = 0; n < filter.landmark_count(); ++n) {
-    if (records[n].score < params.score.delete_below) continue;
+  for (int n = 0; n < in.filter.landmark_count(); ++n) {
+    if (in.records[n].score < in.params.score.delete_below) continue;
     const Projection view = seen(n);
     if (!view.in_front) continue;
     const Eigen::Vector2d pixel = camera.Project({view.z.x(), view.z.y(), 1.0});
@@ -58,35 +76,35 @@ std::vector<int> Predictable(const Filter& filter, std::span<const LandmarkRecor
 }
 
 // Section 7: assessed in this order.
-std::vector<Candidate> FindCandidates(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
-                                      const LocalMap& map, const ImageMotion& motion, int border_px, const Params& params) {
+std::vector<Candidate> FindCandidates(const Sight& in, int border_px) {
   std::vector<Candidate> candidates;
-  const std::vector<int> predictable = Predictable(filter, records, camera, map, params);
-  const std::vector<ImagePrediction> predictions = filter.PredictImages(predictable);
+  const ImageMotion motion(in.shutter, in.map, in.prediction().mean, in.velocity());
+  const std::vector<int> predictable = Predictable(in);
+  const std::vector<ImagePrediction> predictions = in.filter.PredictImages(predictable);
   for (std::size_t i = 0; i < predictable.size(); ++i) {
     const int n = predictable[i];
     const ImagePrediction& prediction = predictions[i];
-    if (!prediction.in_front || !WorthSearching(filter, n, prediction, params)) continue;
+    if (!prediction.in_front || !WorthSearching(in, n, prediction)) continue;
     const Eigen::Vector2d pixel = motion.InImage(n, prediction.z);
-    if (!camera.Sees(pixel, border_px)) continue;
-    candidates.push_back({n, prediction, pixel, camera.LensJacobian(prediction.z),
-                          params.features.noise == MatchNoise::adaptive ? records[n].residuals.Inflation() : 1.0});
+    if (!in.camera.Sees(pixel, border_px)) continue;
+    candidates.push_back({n, prediction, pixel, in.camera.LensJacobian(prediction.z),
+                          in.params.features.noise == MatchNoise::adaptive ? in.records[n].residuals.Inflation() : 1.0});
   }
   return candidates;
 }
 
 // No more than max_searched stay, spread over the image: of every cell of the corner detector's grid the surest, then of every cell
 // the second, and so on. Returned: where the others are predicted.
-std::vector<Eigen::Vector2d> LeaveOut(std::vector<Candidate>& candidates, std::span<const LandmarkRecord> records, const Camera& camera,
-                                      const FeatureParams& params) {
+std::vector<Eigen::Vector2d> LeaveOut(std::vector<Candidate>& candidates, const Sight& in) {
   std::vector<Eigen::Vector2d> left_out;
+  const FeatureParams& params = in.params.features;
   const auto most = static_cast<std::size_t>(params.max_searched);
   if (candidates.size() <= most) return left_out;
   std::stable_sort(candidates.begin(), candidates.end(),
-                   [&](const Candidate& a, const Candidate& b) { return records[a.landmark].score > records[b.landmark].score; });
+                   [&](const Candidate& a, const Candidate& b) { return in.records[a.landmark].score > in.records[b.landmark].score; });
   std::vector<Eigen::Vector2d> pixels;
   for (const Candidate& c : candidates) pixels.push_back(c.pixel);
-  const std::vector<std::size_t> order = SpreadOver(pixels, params.grid_columns, params.grid_rows, camera.width, camera.height);
+  const std::vector<std::size_t> order = SpreadOver(pixels, params.grid_columns, params.grid_rows, in.camera.width, in.camera.height);
   std::vector<Candidate> chosen;
   for (std::size_t i = 0; i < most; ++i) chosen.push_back(candidates[order[i]]);
   for (std::size_t i = most; i < order.size(); ++i) left_out.push_back(pixels[order[i]]);
@@ -94,23 +112,23 @@ std::vector<Eigen::Vector2d> LeaveOut(std::vector<Candidate>& candidates, std::s
   return left_out;
 }
 
-SearchRequest RequestFor(const Candidate& candidate, const Filter& filter, const LandmarkRecord& record, const Camera& camera,
-                         double sigma_px) {
-  const Eigen::Vector3d estimate = filter.ModeOf(candidate.landmark);
-  const Projection view = Project({filter.ReferencePrediction().mean, filter.AnchorOf(candidate.landmark)}, estimate);
-  SearchRequest request{&record.appearance, candidate.pixel,
+SearchRequest RequestFor(const Sight& in, const Candidate& candidate) {
+  const Eigen::Vector3d estimate = in.filter.ModeOf(candidate.landmark);
+  const Projection view = Project({in.prediction().mean, in.filter.AnchorOf(candidate.landmark)}, estimate);
+  const double sigma_px = in.params.features.sigma_px;
+  SearchRequest request{&in.records[candidate.landmark].appearance, candidate.pixel,
                         candidate.lens * candidate.prediction.covariance * candidate.lens.transpose() +
                             sigma_px * sigma_px * Eigen::Matrix2d::Identity(),
                         Eigen::Matrix2d::Identity()};
   if (view.in_front)
-    request.warp = candidate.lens * view.J_landmark.leftCols<2>() * camera.LensJacobian(estimate.head<2>()).inverse();
+    request.warp = candidate.lens * view.J_landmark.leftCols<2>() * in.camera.LensJacobian(estimate.head<2>()).inverse();
   return request;
 }
 
 using Found = std::vector<std::optional<FoundFeature>>;
 
-Match MatchOf(const Candidate& candidate, const FoundFeature& found, const RollingShutter& shutter, const Vector6& velocity) {
-  const auto [z, moved] = shutter.AsTurned(found.pixel, velocity);
+Match MatchOf(const Sight& in, const Candidate& candidate, const FoundFeature& found, const Vector6& velocity) {
+  const auto [z, moved] = in.shutter.AsTurned(found.pixel, velocity);
   return {candidate.landmark, z, PixelNoise(candidate.lens, candidate.inflation * found.noise), moved};
 }
 
@@ -132,22 +150,20 @@ Residual ResidualOf(const Candidate& candidate, const Match& match, const MapVie
 
 // How fast the camera is if it is at `pose` and not where it was predicted to be: at the end of the step, by which nearly constant velocity has
 // changed by more than the step's mean has.
-Vector6 VelocityAt(const Filter& filter, const Pose& pose, const MotionModel& model) {
-  const Matrix6 V = filter.belief().covariance.bottomRightCorner<6, 6>();
-  const Matrix6 step = model.F.topRightCorner<6, 6>();
-  const Matrix6 predicted = step * V * step.transpose() + model.Q.topLeftCorner<6, 6>();
-  const Matrix6 shared = V * step.transpose() + model.Q.bottomLeftCorner<6, 6>();
-  return filter.belief().velocity + shared * predicted.llt().solve(Minus(pose, filter.ReferencePrediction().mean));
+Vector6 VelocityAt(const Sight& in, const Pose& pose) {
+  const Matrix6 V = in.filter.belief().covariance.bottomRightCorner<6, 6>();
+  const Matrix6 step = in.model.F.topRightCorner<6, 6>();
+  const Matrix6 predicted = step * V * step.transpose() + in.model.Q.topLeftCorner<6, 6>();
+  const Matrix6 shared = V * step.transpose() + in.model.Q.bottomLeftCorner<6, 6>();
+  return in.velocity() + shared * predicted.llt().solve(Minus(pose, in.prediction().mean));
 }
 
 // The pilots first, each request as it is; the others where the camera then turns out to be.
-Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchRequest>& requests, const Filter& filter,
-           std::span<const LandmarkRecord> records, const Camera& camera, const RollingShutter& shutter,
-           const LocalMap& map, const cv::Mat& smooth, const BriskImage& brisk, const MotionModel& model, const Params& params) {
+Found Find(const Sight& in, const std::vector<Candidate>& candidates, const std::vector<SearchRequest>& requests) {
   std::vector<PilotCandidate> possible;
-  for (const Candidate& c : candidates) possible.push_back({c.pixel, &records[c.landmark]});
-  const std::vector<std::size_t> pilots = ChoosePilots(possible, camera, params.features);
-  if (pilots.empty()) return FindFeatures(requests, smooth, brisk, params.features);
+  for (const Candidate& c : candidates) possible.push_back({c.pixel, &in.records[c.landmark]});
+  const std::vector<std::size_t> pilots = ChoosePilots(possible, in.camera, in.params.features);
+  if (pilots.empty()) return in.Find(requests);
 
   Found found(candidates.size());
   std::vector<bool> is_pilot(candidates.size(), false);
@@ -155,69 +171,70 @@ Found Find(const std::vector<Candidate>& candidates, const std::vector<SearchReq
   for (const std::size_t i : pilots) {
     is_pilot[i] = true;
     first.push_back(requests[i]);
-    first.back().widest_px = params.features.window_recovery_px;
+    first.back().widest_px = in.params.features.window_recovery_px;
   }
-  const Found leading = FindFeatures(first, smooth, brisk, params.features);
+  const Found leading = in.Find(first);
   std::vector<Match> matches;
   for (std::size_t k = 0; k < pilots.size(); ++k) {
     found[pilots[k]] = leading[k];
-    if (leading[k]) matches.push_back(MatchOf(candidates[pilots[k]], *leading[k], shutter, filter.belief().velocity));
+    if (leading[k]) matches.push_back(MatchOf(in, candidates[pilots[k]], *leading[k], in.velocity()));
   }
 
-  const std::optional<PilotedPose> pose = PilotedPose::From(filter.ReferencePrediction(), map, matches, params);
-  const Pose& at = pose ? pose->pose().mean : filter.ReferencePrediction().mean;
-  const ImageMotion motion(shutter, map, at, VelocityAt(filter, at, model));
+  const std::optional<PilotedPose> pose = PilotedPose::From(in.prediction(), in.map, matches, in.params);
+  const Pose& at = pose ? pose->pose().mean : in.prediction().mean;
+  const ImageMotion motion(in.shutter, in.map, at, VelocityAt(in, at));
   std::vector<SearchRequest> rest;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (is_pilot[i]) continue;
     rest.push_back(requests[i]);
-    const auto where = pose ? pose->Predict(candidates[i].landmark, camera, params.features.sigma_px) : std::nullopt;
+    const auto where = pose ? pose->Predict(candidates[i].landmark, in.camera, in.params.features.sigma_px) : std::nullopt;
     if (!where) continue;
-    rest.back().predicted = shutter.on() ? motion.InImage(candidates[i].landmark, camera.Undistort(where->pixel)) : where->pixel;
+    rest.back().predicted = in.shutter.on() ? motion.InImage(candidates[i].landmark, in.camera.Undistort(where->pixel)) : where->pixel;
     rest.back().S = where->covariance;
-    rest.back().widest_px = std::max(params.features.window_px, WindowOf(where->covariance));
+    rest.back().widest_px = std::max(in.params.features.window_px, WindowOf(where->covariance));
   }
-  const Found following = FindFeatures(rest, smooth, brisk, params.features);
+  const Found following = in.Find(rest);
   for (std::size_t i = 0, k = 0; i < candidates.size(); ++i)
     if (!is_pilot[i]) found[i] = following[k++];
   return found;
 }
 
+std::vector<Match> MatchesOf(const Sight& in, std::span<const Candidate> candidates, const Found& found, const Vector6& velocity) {
+  std::vector<Match> matches;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (found[i]) matches.push_back(MatchOf(in, candidates[i], *found[i], velocity));
+  return matches;
+}
+
+// Where the camera is by those that agree. Through a rolling shutter `matches` are then as the velocity that follows from it makes them.
+Consensus Agree(const Sight& in, std::span<const Candidate> candidates, const Found& found, std::vector<Match>& matches) {
+  const double gate = OutlierGate(in.filter, in.params.score);
+  matches = MatchesOf(in, candidates, found, in.velocity());
+  std::optional<Pose> at;
+  for (int round = 0; in.shutter.on() && round < kShutterRounds; ++round) {
+    at = FindConsensus(in.prediction(), in.map, matches, gate, in.params.filter, at).pose.mean;
+    matches = MatchesOf(in, candidates, found, VelocityAt(in, *at));
+  }
+  Consensus consensus = FindConsensus(in.prediction(), in.map, matches, gate, in.params.filter, at);
+  if (!in.params.filter.reject_outliers) consensus.inlier.assign(matches.size(), true);
+  return consensus;
+}
+
 }  // namespace
 
-Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& smooth,
-                      const BriskImage& brisk, int border_px, double dt, const Params& params) {
+Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const PreparedFrame& frame,
+                      int border_px, double dt, const Params& params) {
+  const Sight in{filter, records, camera, frame, params, NearlyConstantVelocity(params.motion, dt),
+                 RollingShutter(camera, params.features), filter.ReferenceMap()};
   Association result;
-  const LocalMap map = filter.ReferenceMap();
-  const PoseGaussian& prediction = filter.ReferencePrediction();
-  const double gate = OutlierGate(filter, params.score);
-  const MotionModel model = NearlyConstantVelocity(params.motion, dt);
-  const RollingShutter shutter(camera, params.features);
-  const ImageMotion predicted(shutter, map, prediction.mean, filter.belief().velocity);
-  std::vector<Candidate> candidates = FindCandidates(filter, records, camera, map, predicted, border_px, params);
-  result.left_out = LeaveOut(candidates, records, camera, params.features);
+  std::vector<Candidate> candidates = FindCandidates(in, border_px);
+  result.left_out = LeaveOut(candidates, in);
   std::vector<SearchRequest> requests;
-  for (const Candidate& c : candidates)
-    requests.push_back(RequestFor(c, filter, records[c.landmark], camera, params.features.sigma_px));
-  const Found found = Find(candidates, requests, filter, records, camera, shutter, map, smooth, brisk, model, params);
-
-  const auto matches_at = [&](const Vector6& velocity) {
-    std::vector<Match> matches;
-    for (std::size_t i = 0; i < candidates.size(); ++i)
-      if (found[i]) matches.push_back(MatchOf(candidates[i], *found[i], shutter, velocity));
-    return matches;
-  };
-  std::vector<Match> matches = matches_at(filter.belief().velocity);
-  std::optional<Pose> at;
-  if (shutter.on()) {
-    for (int round = 0; round < kShutterRounds; ++round) {
-      at = FindConsensus(prediction, map, matches, gate, params.filter, at).pose.mean;
-      matches = matches_at(VelocityAt(filter, *at, model));
-    }
-  }
-  Consensus consensus = FindConsensus(prediction, map, matches, gate, params.filter, at);
-  if (!params.filter.reject_outliers) consensus.inlier.assign(matches.size(), true);
-  const MapView agreed(map, consensus.pose.mean);
+  for (const Candidate& c : candidates) requests.push_back(RequestFor(in, c));
+  const Found found = Find(in, candidates, requests);
+  std::vector<Match> matches;
+  const Consensus consensus = Agree(in, candidates, found, matches);
+  const MapView agreed(in.map, consensus.pose.mean);
 
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];

@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "vo/features/brisk.h"
 #include "vo/filter/filter.h"
 #include "vo/geometry/camera.h"
 #include "vo/map/landmark_record.h"
 #include "vo/map/residual_history.h"
 #include "vo/odometry.h"
 #include "vo/params.h"
+#include "vo/prepared_frame.h"
 
 namespace vo {
 
@@ -31,8 +31,8 @@ struct Association {
   double nis = 0;                  // sum of the matches' mahalanobis_sq
 };
 
-// After filter.Predict(dt). `records` are in the order of the filter's landmarks; `brisk` holds the image, `smooth` is it smoothed.
-Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const cv::Mat& smooth,
-                      const BriskImage& brisk, int border_px, double dt, const Params& params);
+// After filter.Predict(dt). `records` are in the order of the filter's landmarks.
+Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const PreparedFrame& frame,
+                      int border_px, double dt, const Params& params);
 
 }  // namespace vo

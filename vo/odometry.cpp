@@ -105,7 +105,7 @@ void Odometry::Impl::Follow(const PreparedFrame& prepared, FrameDiagnostics& dia
   const double dt = static_cast<double>(stamp_ns - *last_stamp_ns) * 1e-9;
   Stopwatch watch;
   filter.Predict(dt);
-  Association association = Associate(filter, records, camera, prepared.smooth, prepared.brisk, border_px, dt, params);
+  Association association = Associate(filter, records, camera, prepared, border_px, dt, params);
   diagnostics.ms_matching += watch.Lap();
   filter.Update(association.matches);
   UpdateScores(association);
