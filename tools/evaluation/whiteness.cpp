@@ -124,7 +124,8 @@ NisVerdict TestNis(const std::vector<std::vector<double>>& nis, const std::vecto
 
 double StudentQuantile(double p, double dof) {
   if (!(p > 0 && p < 1) || !(dof >= 5)) throw std::invalid_argument("StudentQuantile: p or dof out of range");
-  const double z = (p < 0.5 ? -1 : 1) * std::sqrt(Chi2Quantile(p < 0.5 ? 1 - 2 * p : 2 * p - 1, 1));
+  const double inside = std::abs(2 * p - 1);  // P(|z| less)
+  const double z = inside > 0 ? std::copysign(std::sqrt(Chi2Quantile(inside, 1)), p - 0.5) : 0.0;
   const double z2 = z * z;
   return z * (1 + (z2 + 1) / (4 * dof) + ((5 * z2 + 16) * z2 + 3) / (96 * dof * dof) +
               (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * dof * dof * dof));

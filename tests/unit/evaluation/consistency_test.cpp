@@ -184,6 +184,18 @@ TEST(Nees, HasNoAnswerWithoutAPositiveDefiniteCovariance) {
   EXPECT_NEAR(Nees(1e-9 * Eigen::VectorXd::Ones(6), 1e-18 * Eigen::MatrixXd::Identity(6, 6)), 6, 1e-9);
 }
 
+// Six degrees: the band is 1.237 to 14.449.
+TEST(SummariseNees, Figures) {
+  const NeesSummary summary = SummariseNees({4, 1, 20, 6, 3}, 6);
+  EXPECT_EQ(summary.dof, 6);
+  EXPECT_EQ(summary.frames, 5u);
+  EXPECT_EQ(summary.unusable, 0u);
+  EXPECT_NEAR(summary.mean, 6.8, 1e-14);
+  EXPECT_EQ(summary.median, 4);
+  EXPECT_EQ(summary.last, 3);
+  EXPECT_EQ(summary.share_inside, 0.6);
+}
+
 TEST(SummariseNees, CountsWhatHasNoAnswer) {
   const NeesSummary summary = SummariseNees({std::nan(""), 6, 12}, 6);
   EXPECT_EQ(summary.frames, 2u);

@@ -48,5 +48,34 @@ TEST(SummariseNis, SaysNothingOfNothing) {
   EXPECT_TRUE(summary.autocorrelation.empty());
 }
 
+// Eight frames and one that was coasted; the figures are SciPy's.
+TEST(SummariseNis, Figures) {
+  const double nis[] = {2.5, 0.9, 7.1, 0.02, 11.3, 4.0, 6.6, 3.3, 0.4};
+  const int dof[] = {2, 4, 6, 2, 4, 0, 6, 2, 4};
+  std::vector<FrameRecord> frames(9);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i].nis = nis[i];
+    frames[i].nis_dof = dof[i];
+  }
+  const NisSummary summary = SummariseNis(frames);
+  EXPECT_EQ(summary.frames, 8u);
+  EXPECT_NEAR(summary.mean_per_dof, 32.12 / 30, 1e-14);
+  EXPECT_EQ(summary.share_inside, 5.0 / 8);
+  EXPECT_NEAR(summary.whiteness_bound, 0.6929646455628166, 1e-15);
+  const double rho[] = {-0.3526644221533532, 0.28087498896947266, -0.6426371351141558, 0.17208842593372453,
+                        -0.08890358807019479};
+  ASSERT_EQ(summary.autocorrelation.size(), 5u);
+  for (std::size_t l = 0; l < 5; ++l) EXPECT_NEAR(summary.autocorrelation[l], rho[l], 1e-14) << l;
+
+  frames.resize(4);  // no more lags than there are pairs
+  const double of_four[] = {-0.7781933502551058, 0.49553192222523484, -0.21733857197012899};
+  const NisSummary four = SummariseNis(frames);
+  ASSERT_EQ(four.autocorrelation.size(), 3u);
+  for (std::size_t l = 0; l < 3; ++l) EXPECT_NEAR(four.autocorrelation[l], of_four[l], 1e-14) << l;
+  frames.resize(2);
+  frames[1] = frames[0];
+  EXPECT_TRUE(SummariseNis(frames).autocorrelation.empty()) << "no spread";
+}
+
 }  // namespace
 }  // namespace evaluation

@@ -32,6 +32,9 @@ TEST(RankHistogram, RefusesWhatIsNoRank) {
   EXPECT_THROW(HistogramOfRanks({100}, 99, 10), std::invalid_argument);
   EXPECT_THROW(HistogramOfRanks({-1}, 99, 10), std::invalid_argument);
   EXPECT_THROW(HistogramOfRanks({1}, 3, 5), std::invalid_argument);
+  EXPECT_THROW(HistogramOfRanks({1}, 3, 1), std::invalid_argument);
+  EXPECT_EQ(HistogramOfRanks({0, 3, 3}, 3, 4).counts, (std::vector<int>{1, 0, 0, 2})) << "a bin for each rank";
+  EXPECT_EQ(HistogramOfRanks({0, 3}, 3, 2).counts, (std::vector<int>{1, 1}));
   EXPECT_THROW(HistogramOfValues({1.01}, 5), std::invalid_argument);
   EXPECT_THROW(HistogramOfValues({0.5}, 1), std::invalid_argument);
 }

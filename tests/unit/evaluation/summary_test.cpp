@@ -120,13 +120,65 @@ TEST(Baseline, ConstantVelocityIsExactOnAScrew) {
   EXPECT_GT(metrics.constant_pose.none.position.max, 0.1);
 }
 
+// A tenth of a second is waited for, and what is measured by then is the start's velocity.
+TEST(Baseline, TheStartIsATenthOfASecond) {
+  Trajectory path;
+  for (const std::int64_t ms : {0, 40, 100, 140})
+    path.push_back({5'000'000'000 + ms * 1'000'000, Eigen::Vector3d(static_cast<double>(ms * ms), 0, 1), Eigen::Quaterniond::Identity()});
+  const StampedVelocity velocity = StartVelocity(path);
+  EXPECT_EQ(velocity.stamp_ns, 5'000'000'000);
+  EXPECT_NEAR(velocity.v_WC.x(), 100 * 100 / 0.1, 1e-6);
+  EXPECT_EQ(velocity.v_WC.z(), 0);
+  path.resize(2);
+  EXPECT_NEAR(StartVelocity(path).v_WC.x(), 40 * 40 / 0.04, 1e-6) << "all there is";
+  EXPECT_EQ(StartVelocity({}).v_WC.norm(), 0);
+  const Trajectory still = ConstantPose({1, 2}, path[1]);
+  EXPECT_EQ(still[1].stamp_ns, 2);
+  EXPECT_EQ(still[1].p_WC, path[1].p_WC);
+}
+
+TEST(Judge, SumsUpTimesAndGuards) {
+  TestRandom random(57);
+  const Trajectory truth = random.Walk(4);
+  EstimateRun run = RunOf(truth, StampsOf(truth), 4);
+  EXPECT_FALSE(Judge(run, truth, std::nullopt).guards) << "no frame tells of them";
+  const int unsettled[] = {0, 3, 0, 1};
+  for (std::size_t i = 0; i < 4; ++i) {
+    run.frames[i].ms_features = 10 + static_cast<double>(i * i);
+    run.frames[i].ms_matching = 5 - static_cast<double>(i);
+    run.frames[i].guards = {.unsettled = unsettled[i], .behind = 2, .indefinite = i == 2, .impossible = 0};
+  }
+  const Metrics metrics = Judge(run, truth, std::nullopt);
+  EXPECT_EQ(metrics.timing->ms_features, 12.5);
+  EXPECT_EQ(metrics.timing->ms_matching, 3.5);
+  EXPECT_EQ(metrics.timing->ms_filter, 1.5);
+  ASSERT_TRUE(metrics.guards);
+  EXPECT_EQ(metrics.guards->unsettled.times, 4);
+  EXPECT_EQ(metrics.guards->unsettled.frames, 2);
+  EXPECT_EQ(metrics.guards->behind.times, 8);
+  EXPECT_EQ(metrics.guards->behind.frames, 4);
+  EXPECT_EQ(metrics.guards->indefinite.times, 1);
+  EXPECT_EQ(metrics.guards->impossible.frames, 0);
+  run.frames[3].guards.reset();
+  EXPECT_FALSE(Judge(run, truth, std::nullopt).guards);
+}
+
 TEST(Quantile, WorkedByHand) {
   EXPECT_DOUBLE_EQ(Quantile({1, 2, 3, 6}, 0), 1);
   EXPECT_DOUBLE_EQ(Quantile({1, 2, 3, 6}, 0.5), 2.5);
   EXPECT_DOUBLE_EQ(Quantile({1, 2, 3, 6}, 0.9), 5.1);
   EXPECT_DOUBLE_EQ(Quantile({1, 2, 3, 6}, 1), 6);
   EXPECT_TRUE(std::isinf(Quantile({1, INFINITY}, 0.5)));
+  EXPECT_EQ(Quantile({-INFINITY, 1}, 0.5), -INFINITY);
+  EXPECT_EQ(Quantile({-INFINITY, 1, 2}, 0.75), 1.5);
   EXPECT_TRUE(std::isnan(Quantile({}, 0.5)));
+}
+
+TEST(Median, OfOddAndEven) {
+  EXPECT_EQ(Median({3, 1, 2}), 2);
+  EXPECT_EQ(Median({4, 1, 3, 2}), 2.5);
+  EXPECT_EQ(Median({7}), 7);
+  EXPECT_TRUE(std::isnan(Median({})));
 }
 
 TEST(Statistics, WorkedByHand) {
@@ -138,6 +190,12 @@ TEST(Statistics, WorkedByHand) {
   EXPECT_NEAR(s.std, std::sqrt(3.5), 1e-12);
   EXPECT_EQ(s.min, 1);
   EXPECT_EQ(s.max, 6);
+  const Statistics t = Summarise({1.5, -2, 4, 0.5});
+  EXPECT_NEAR(t.rmse, 2.3717082451262845, 1e-14);
+  EXPECT_NEAR(t.std, 2.1505813167606567, 1e-14);
+  EXPECT_EQ(t.mean, 1);
+  EXPECT_EQ(t.median, 1);
+  EXPECT_EQ(t.min, -2);
   EXPECT_EQ(Summarise({}).count, 0u);
 }
 

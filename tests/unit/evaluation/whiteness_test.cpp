@@ -37,12 +37,48 @@ TEST(TestWhiteness, PublishedSeries) {
   for (std::size_t l = 0; l < 4; ++l) EXPECT_NEAR(result.autocorrelation[l], printed[l], 6e-4);
 }
 
+// The figures are SciPy's.
+TEST(TestWhiteness, Figures) {
+  const Whiteness result = TestWhiteness({1.2, -0.4, 0.7, 0.1, -1.5, 0.3, 2.0, -0.6, -0.2, 0.9, -1.1, 0.5}, 4);
+  const double rho[] = {-0.3281229923161925, -0.3690668928121707, 0.3921632873332819, -0.2444170328681931};
+  ASSERT_EQ(result.autocorrelation.size(), 4u);
+  for (std::size_t l = 0; l < 4; ++l) EXPECT_NEAR(result.autocorrelation[l], rho[l], 1e-14) << l;
+  EXPECT_NEAR(result.ljung_box, 8.057986034935418, 1e-12);
+  EXPECT_NEAR(result.p_value, 0.0894770376908635, 1e-12);
+  EXPECT_EQ(result.count, 12u);
+  EXPECT_NEAR(result.bound, 0.5658032638058332, 1e-15);
+}
+
+TEST(TestWhiteness, OfRunsIsOfThoseThatHaveOne) {
+  // Rising, falling (both: rho = 0.4, -0.1), shorter (rho = 0), and two that have no correlation.
+  const WhitenessVerdict verdict =
+      TestWhiteness({{1, 2, 3, 4, 5}, {5, 4, 3, 2, 1}, {1, 2, 3}, {7}, {4, 4, 4, 4}}, 2, 0.01);
+  EXPECT_EQ(verdict.runs, 3u);
+  EXPECT_EQ(verdict.rejected, 0u);
+  EXPECT_EQ(verdict.false_alarm, 0.01);
+  EXPECT_EQ(verdict.most_allowed, BinomialLimit(3, 0.05, 0.01));
+  ASSERT_EQ(verdict.mean_autocorrelation.size(), 2u);
+  EXPECT_NEAR(verdict.mean_autocorrelation[0], (0.4 + 0.4 + 0) / 3, 1e-15);
+  EXPECT_NEAR(verdict.mean_autocorrelation[1], (-0.1 - 0.1 - 0.5) / 3, 1e-15);
+  EXPECT_TRUE(verdict.pass);
+  // A run that is anything but white: one rejection may be chance, three of three are not.
+  std::vector<double> ramp(40);
+  for (std::size_t i = 0; i < ramp.size(); ++i) ramp[i] = static_cast<double>(i);
+  EXPECT_TRUE(TestWhiteness({ramp, {1, 2, 3}, {1, 2, 3}}, 2, 0.01).pass);
+  const WhitenessVerdict bad = TestWhiteness({ramp, ramp, ramp}, 2, 0.01);
+  EXPECT_EQ(bad.rejected, 3u);
+  EXPECT_FALSE(bad.pass);
+}
+
 TEST(BinomialLimit, AgreesWithTheSums) {
   // n = 3, p = 0.5: P(> 2) = 1/8, P(> 1) = 1/2.
   EXPECT_EQ(BinomialLimit(3, 0.5, 0.6), 1u);
   EXPECT_EQ(BinomialLimit(3, 0.5, 0.2), 2u);
   EXPECT_EQ(BinomialLimit(3, 0.5, 0.1), 3u);
   EXPECT_EQ(BinomialLimit(100, 0.05, 0.01), 11u);  // P(> 10) = 0.0115, P(> 11) = 0.0043
+  EXPECT_EQ(BinomialLimit(20, 0.05, 0.01), 4u);  // this and the next: SciPy's binom.sf
+  EXPECT_EQ(BinomialLimit(7, 0.3, 0.05), 4u);
+  EXPECT_EQ(BinomialLimit(50, 0.5, 0.001), 36u);
   EXPECT_EQ(BinomialLimit(0, 0.05, 0.01), 0u);
 }
 
@@ -160,6 +196,12 @@ TEST(StudentQuantile, IsTheTables) {
   EXPECT_NEAR(StudentQuantile(0.995, 9), 3.2498, 0.015);
   EXPECT_NEAR(StudentQuantile(0.975, 19), 2.0930, 0.001);
   EXPECT_NEAR(StudentQuantile(0.025, 19), -2.0930, 0.001);
+  // The expansion in 1 / dof to its third power, by SciPy's normal quantile.
+  EXPECT_NEAR(StudentQuantile(0.975, 5), 2.5677649726654126, 1e-9);
+  EXPECT_NEAR(StudentQuantile(0.995, 6), 3.696887552467193, 1e-9);
+  EXPECT_NEAR(StudentQuantile(0.3, 12), -0.5386179344825254, 1e-9);
+  EXPECT_NEAR(StudentQuantile(0.999, 20), 3.5514893343734957, 1e-9);
+  EXPECT_EQ(StudentQuantile(0.5, 10), 0);
   EXPECT_THROW(StudentQuantile(0.5, 4), std::invalid_argument);
   EXPECT_THROW(StudentQuantile(1, 10), std::invalid_argument);
 }
@@ -187,6 +229,68 @@ TEST(Innovations, TheMeanOfDependentTermsIsTestedByTheSpreadOfRuns) {
   EXPECT_GT(of_sum, 300);
   EXPECT_LE(of_mean, 13);
   EXPECT_GT(of_wrong, 300);
+}
+
+// Three runs of unlike length, with frames without innovation; the bands are SciPy's.
+TEST(Nis, FiguresOfRunsAndOfFrames) {
+  const std::vector<std::vector<double>> nis{{3, 5, 1}, {9, 2, 2, 4}, {6, 7}};
+  const std::vector<std::vector<int>> dof{{4, 0, 2}, {4, 4, 0, 2}, {2, 4}};
+  const std::vector<NisBand> frames = NisOverRuns(nis, dof);
+  ASSERT_EQ(frames.size(), 4u);
+  const double sums[] = {18, 9, 1, 4}, degrees[] = {10, 8, 2, 2};
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(frames[k].nis, sums[k]);
+    EXPECT_EQ(frames[k].dof, degrees[k]);
+    EXPECT_EQ(frames[k].per_dof, sums[k] / degrees[k]);
+    EXPECT_TRUE(frames[k].inside);
+  }
+  EXPECT_NEAR(frames[0].band.low, 0.32469727802368414, 1e-12);
+  EXPECT_NEAR(frames[0].band.high, 2.048317735080739, 1e-12);
+  EXPECT_NEAR(frames[2].band.low, 0.025317807984289876, 1e-12);
+  EXPECT_FALSE(NisOfRun({15}, {6}).inside);
+  EXPECT_FALSE(NisOfRun({1}, {6}).inside);
+
+  const NisVerdict verdict = TestNis(nis, dof, 0.01);
+  EXPECT_EQ(verdict.runs, 3u);
+  EXPECT_EQ(verdict.outside, 0u);
+  EXPECT_EQ(verdict.per_dof, 32.0 / 22);
+  EXPECT_EQ(verdict.false_alarm, 0.01);
+  EXPECT_EQ(verdict.most_allowed, BinomialLimit(3, 0.05, 0.01));
+  EXPECT_TRUE(verdict.pass);
+  EXPECT_EQ(TestNis({{3}, {}, {5}}, {{3}, {}, {0}}, 0.01).runs, 1u);
+  const NisVerdict bad = TestNis({{15}, {15}, {15}}, {{6}, {6}, {6}}, 0.01);
+  EXPECT_EQ(bad.outside, 3u);
+  EXPECT_FALSE(bad.pass);
+  EXPECT_THROW(TestNis({{1}}, {}, 0.01), std::logic_error);
+  EXPECT_THROW(TestNisMean({{1}}, {}, 0, 0.01), std::logic_error);
+  EXPECT_THROW(NisOverRuns({{1}}, {{1, 2}}), std::logic_error);
+}
+
+TEST(TestNisMean, Figures) {
+  const double means[] = {0.8, 1.3, 1.0, 1.6, 0.9, 1.1, 0.7};
+  std::vector<std::vector<double>> nis;
+  std::vector<std::vector<int>> dof;
+  for (const double mean : means) {
+    nis.push_back({10 * mean});
+    dof.push_back({10});
+  }
+  const NisMeanVerdict verdict = TestNisMean(nis, dof, 0.05, 0.01);
+  EXPECT_EQ(verdict.runs, 7u);
+  EXPECT_NEAR(verdict.per_dof, 7.4 / 7, 1e-14);
+  EXPECT_NEAR(verdict.standard_error, 0.11722412976277306, 1e-14);
+  EXPECT_NEAR(verdict.low, 1 - 0.48336442616879477, 1e-9);
+  EXPECT_NEAR(verdict.high, 1 + 0.48336442616879477, 1e-9);
+  EXPECT_EQ(verdict.false_alarm, 0.01);
+  EXPECT_TRUE(verdict.pass);
+  nis.pop_back();
+  dof.pop_back();
+  EXPECT_EQ(TestNisMean(nis, dof, 0.05, 0.01).runs, 6u);
+  nis.pop_back();
+  dof.pop_back();
+  const NisMeanVerdict few = TestNisMean(nis, dof, 0.05, 0.01);
+  EXPECT_EQ(few.runs, 0u) << "no spread to speak of";
+  EXPECT_FALSE(TestNisMean(std::vector<std::vector<double>>(8, {20}), std::vector<std::vector<int>>(8, {10}), 0.05, 0.01).pass);
+  EXPECT_FALSE(TestNisMean(std::vector<std::vector<double>>(8, {5}), std::vector<std::vector<int>>(8, {10}), 0.05, 0.01).pass);
 }
 
 TEST(NisOfRun, LeavesOutFramesWithoutInnovation) {
