@@ -1,12 +1,11 @@
 #include "vo/association.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
-
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 #include "vo/features/matcher.h"
 #include "vo/filter/consensus.h"
@@ -18,8 +17,10 @@
 namespace vo {
 namespace {
 
-constexpr int kShutterRounds = 3;  // velocity, then where the rows' points were at the stamp, then the velocity by these
-constexpr double kFarOut = 0.5;    // of the image's size: so far outside of it no particle has a landmark that others have inside
+// Velocity, then where the rows' points were at the stamp, then the velocity by these
+constexpr int kShutterRounds = 3;
+// Of the image's size: so far outside of it no particle has a landmark that others have inside.
+constexpr double kFarOut = 0.5;
 
 // A frame, and what is known before it is looked at.
 struct Sight {
@@ -30,7 +31,7 @@ struct Sight {
   const Params& params;
   MotionModel model;  // of the step to this frame
   RollingShutter shutter;
-  LocalMap map;       // of the reference
+  LocalMap map;  // of the reference
 
   const PoseGaussian& prediction() const { return filter.ReferencePrediction(); }
   const Vector6& velocity() const { return filter.belief().velocity; }
@@ -53,7 +54,8 @@ bool WorthSearching(const Sight& in, int landmark, const ImagePrediction& predic
   const Eigen::Vector3d estimate = in.filter.ModeOf(landmark);
   const Eigen::Vector3d first_ray = first.q_WC * Eigen::Vector3d(estimate.x(), estimate.y(), 1.0).normalized();
   const Eigen::Vector3d present_ray = now.q_WC * Eigen::Vector3d(prediction.z.x(), prediction.z.y(), 1.0).normalized();
-  if (first_ray.dot(present_ray) < std::cos(in.params.features.max_view_angle_deg * std::numbers::pi / 180)) return false;
+  if (first_ray.dot(present_ray) < std::cos(in.params.features.max_view_angle_deg * std::numbers::pi / 180))
+    return false;
   const double rho = estimate.z();
   return rho <= 0 || (now.p_WC - first.p_WC).norm() * rho < in.params.features.max_baseline_ratio;
 }
@@ -87,8 +89,9 @@ std::vector<Candidate> FindCandidates(const Sight& in, int border_px) {
     if (!prediction.in_front || !WorthSearching(in, n, prediction)) continue;
     const Eigen::Vector2d pixel = motion.InImage(n, prediction.z);
     if (!in.camera.Sees(pixel, border_px)) continue;
-    candidates.push_back({n, prediction, pixel, in.camera.LensJacobian(prediction.z),
-                          in.params.features.noise == MatchNoise::adaptive ? in.records[n].residuals.Inflation() : 1.0});
+    candidates.push_back(
+        {n, prediction, pixel, in.camera.LensJacobian(prediction.z),
+         in.params.features.noise == MatchNoise::adaptive ? in.records[n].residuals.Inflation() : 1.0});
   }
   return candidates;
 }
@@ -100,11 +103,13 @@ std::vector<Eigen::Vector2d> LeaveOut(std::vector<Candidate>& candidates, const 
   const FeatureParams& params = in.params.features;
   const auto most = static_cast<std::size_t>(params.max_searched);
   if (candidates.size() <= most) return left_out;
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [&](const Candidate& a, const Candidate& b) { return in.records[a.landmark].score > in.records[b.landmark].score; });
+  std::stable_sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
+    return in.records[a.landmark].score > in.records[b.landmark].score;
+  });
   std::vector<Eigen::Vector2d> pixels;
   for (const Candidate& c : candidates) pixels.push_back(c.pixel);
-  const std::vector<std::size_t> order = SpreadOver(pixels, params.grid_columns, params.grid_rows, in.camera.width, in.camera.height);
+  const std::vector<std::size_t> order =
+      SpreadOver(pixels, params.grid_columns, params.grid_rows, in.camera.width, in.camera.height);
   std::vector<Candidate> chosen;
   for (std::size_t i = 0; i < most; ++i) chosen.push_back(candidates[order[i]]);
   for (std::size_t i = most; i < order.size(); ++i) left_out.push_back(pixels[order[i]]);
@@ -121,7 +126,8 @@ SearchRequest RequestFor(const Sight& in, const Candidate& candidate) {
                             sigma_px * sigma_px * Eigen::Matrix2d::Identity(),
                         Eigen::Matrix2d::Identity()};
   if (view.in_front)
-    request.warp = candidate.lens * view.J_landmark.leftCols<2>() * in.camera.LensJacobian(estimate.head<2>()).inverse();
+    request.warp =
+        candidate.lens * view.J_landmark.leftCols<2>() * in.camera.LensJacobian(estimate.head<2>()).inverse();
   return request;
 }
 
@@ -143,7 +149,8 @@ Eigen::Vector2d AtStamp(const Match& match, const MapView& map) {
 Residual ResidualOf(const Candidate& candidate, const Match& match, const MapView& map) {
   const Projection h = map(match);
   if (!h.in_front) return {};
-  Residual residual = Residual::Of(match.z - h.z, h.J_landmark * map.landmark(match.landmark).covariance * h.J_landmark.transpose(), match.R);
+  Residual residual = Residual::Of(
+      match.z - h.z, h.J_landmark * map.landmark(match.landmark).covariance * h.J_landmark.transpose(), match.R);
   residual.ratio *= candidate.inflation;
   return residual;
 }
@@ -187,9 +194,11 @@ Found Find(const Sight& in, const std::vector<Candidate>& candidates, const std:
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (is_pilot[i]) continue;
     rest.push_back(requests[i]);
-    const auto where = pose ? pose->Predict(candidates[i].landmark, in.camera, in.params.features.sigma_px) : std::nullopt;
+    const auto where =
+        pose ? pose->Predict(candidates[i].landmark, in.camera, in.params.features.sigma_px) : std::nullopt;
     if (!where) continue;
-    rest.back().predicted = in.shutter.on() ? motion.InImage(candidates[i].landmark, in.camera.Undistort(where->pixel)) : where->pixel;
+    rest.back().predicted =
+        in.shutter.on() ? motion.InImage(candidates[i].landmark, in.camera.Undistort(where->pixel)) : where->pixel;
     rest.back().S = where->covariance;
     rest.back().widest_px = std::max(in.params.features.window_px, WindowOf(where->covariance));
   }
@@ -199,7 +208,8 @@ Found Find(const Sight& in, const std::vector<Candidate>& candidates, const std:
   return found;
 }
 
-std::vector<Match> MatchesOf(const Sight& in, std::span<const Candidate> candidates, const Found& found, const Vector6& velocity) {
+std::vector<Match> MatchesOf(const Sight& in, std::span<const Candidate> candidates, const Found& found,
+                             const Vector6& velocity) {
   std::vector<Match> matches;
   for (std::size_t i = 0; i < candidates.size(); ++i)
     if (found[i]) matches.push_back(MatchOf(in, candidates[i], *found[i], velocity));
@@ -207,7 +217,8 @@ std::vector<Match> MatchesOf(const Sight& in, std::span<const Candidate> candida
 }
 
 // Where the camera is by those that agree. Through a rolling shutter `matches` are then as the velocity that follows from it makes them.
-Consensus Agree(const Sight& in, std::span<const Candidate> candidates, const Found& found, std::vector<Match>& matches) {
+Consensus Agree(const Sight& in, std::span<const Candidate> candidates, const Found& found,
+                std::vector<Match>& matches) {
   const double gate = OutlierGate(in.filter, in.params.score);
   matches = MatchesOf(in, candidates, found, in.velocity());
   std::optional<Pose> at;
@@ -222,10 +233,16 @@ Consensus Agree(const Sight& in, std::span<const Candidate> candidates, const Fo
 
 }  // namespace
 
-Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const PreparedFrame& frame,
-                      int border_px, double dt, const Params& params) {
-  const Sight in{filter, records, camera, frame, params, NearlyConstantVelocity(params.motion, dt),
-                 RollingShutter(camera, params.features), filter.ReferenceMap()};
+Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
+                      const PreparedFrame& frame, int border_px, double dt, const Params& params) {
+  const Sight in{filter,
+                 records,
+                 camera,
+                 frame,
+                 params,
+                 NearlyConstantVelocity(params.motion, dt),
+                 RollingShutter(camera, params.features),
+                 filter.ReferenceMap()};
   Association result;
   std::vector<Candidate> candidates = FindCandidates(in, border_px);
   result.left_out = LeaveOut(candidates, in);
@@ -239,8 +256,12 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];
     Searched searched{c.landmark, std::nullopt, {}};
-    FeatureView view{records[c.landmark].id, c.pixel, found[i] ? found[i]->pixel : c.pixel, requests[i].S,
-                     found[i] ? Eigen::Matrix2d(c.inflation * found[i]->noise) : Eigen::Matrix2d::Zero(), FeatureView::Status::missed};
+    FeatureView view{records[c.landmark].id,
+                     c.pixel,
+                     found[i] ? found[i]->pixel : c.pixel,
+                     requests[i].S,
+                     found[i] ? Eigen::Matrix2d(c.inflation * found[i]->noise) : Eigen::Matrix2d::Zero(),
+                     FeatureView::Status::missed};
     if (found[i]) {
       const Match& match = matches[m];
       view.status = consensus.inlier[m] ? FeatureView::Status::matched : FeatureView::Status::rejected;

@@ -19,20 +19,21 @@ namespace vo {
 // A landmark that was looked for.
 struct Searched {
   int landmark = 0;
-  std::optional<double> mahalanobis_sq;  // of its match under the prediction, before sampling; none: not found, or an outlier
-  Residual residual;                     // of such a match, with the camera where the matches agree; beside R as the image alone tells it
+  // Of its match under the prediction, before sampling; none: not found, or an outlier
+  std::optional<double> mahalanobis_sq;
+  Residual residual;  // of such a match, with the camera where the matches agree; beside R as the image alone tells it
 };
 
 struct Association {
   std::vector<Searched> searched;
-  std::vector<Match> matches;      // inliers
-  std::vector<FeatureView> views;  // for drawing, in the order of `searched`
+  std::vector<Match> matches;             // inliers
+  std::vector<FeatureView> views;         // for drawing, in the order of `searched`
   std::vector<Eigen::Vector2d> left_out;  // [px] where landmarks are predicted that max_searched left no time for
-  double nis = 0;                  // sum of the matches' mahalanobis_sq
+  double nis = 0;                         // sum of the matches' mahalanobis_sq
 };
 
 // After filter.Predict(dt). `records` are in the order of the filter's landmarks.
-Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera, const PreparedFrame& frame,
-                      int border_px, double dt, const Params& params);
+Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
+                      const PreparedFrame& frame, int border_px, double dt, const Params& params);
 
 }  // namespace vo

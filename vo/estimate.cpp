@@ -1,10 +1,9 @@
 #include "vo/estimate.h"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <stdexcept>
 #include <string>
-
-#include <Eigen/Eigenvalues>
 
 #include "vo/filter/ekf_slam.h"
 #include "vo/filter/particle_filter.h"
@@ -24,7 +23,8 @@ namespace {
 bool IsCovariance(const Matrix6& P) {
   constexpr double kRounding = 1e-9;  // of its largest entry
   return P.allFinite() && (P - P.transpose()).cwiseAbs().maxCoeff() <= kRounding * P.cwiseAbs().maxCoeff() &&
-         Eigen::SelfAdjointEigenSolver<Matrix6>(P, Eigen::EigenvaluesOnly).eigenvalues().minCoeff() >= -kRounding * P.cwiseAbs().maxCoeff();
+         Eigen::SelfAdjointEigenSolver<Matrix6>(P, Eigen::EigenvaluesOnly).eigenvalues().minCoeff() >=
+             -kRounding * P.cwiseAbs().maxCoeff();
 }
 
 void RequireFinite(const Prior& prior) {
@@ -47,16 +47,22 @@ std::unique_ptr<Filter> MakeFilter(const Params& params, const Prior& prior, std
   out.pose = {prior.pose, prior.pose_covariance};
   out.velocity << prior.v_WC, prior.w_WC_C;
   out.velocity_covariance = prior.velocity_covariance;
-  if (params.filter.sampled == Sampled::nothing) return std::make_unique<EkfSlam>(params.motion, params.filter, params.landmark, out);
+  if (params.filter.sampled == Sampled::nothing)
+    return std::make_unique<EkfSlam>(params.motion, params.filter, params.landmark, out);
   return std::make_unique<ParticleFilter>(params.motion, params.filter, params.landmark, out, seed);
 }
 
-Estimate MakeEstimate(const Filter& filter, const UnknownScale& scale, std::int64_t stamp_ns, FrameDiagnostics diagnostics) {
+Estimate MakeEstimate(const Filter& filter, const UnknownScale& scale, std::int64_t stamp_ns,
+                      FrameDiagnostics diagnostics) {
   diagnostics.effective_particles = filter.effective_particles();
   diagnostics.guards = filter.guards();
   const Belief& belief = filter.belief();
-  return {stamp_ns, belief.pose, belief.velocity.head<3>(), belief.velocity.tail<3>(),
-          scale.Covariance(belief.pose, belief.velocity, belief.covariance), diagnostics};
+  return {stamp_ns,
+          belief.pose,
+          belief.velocity.head<3>(),
+          belief.velocity.tail<3>(),
+          scale.Covariance(belief.pose, belief.velocity, belief.covariance),
+          diagnostics};
 }
 
 std::vector<MapPoint> MakeMap(const Filter& filter, const UnknownScale& scale) {
@@ -66,7 +72,8 @@ std::vector<MapPoint> MakeMap(const Filter& filter, const UnknownScale& scale) {
   for (std::size_t n = 0; n < beliefs.size(); ++n) {
     const Filter::LandmarkBelief& belief = beliefs[n];
     if (moments[n]) moments[n] = scale.Moments(*moments[n]);
-    points.push_back({0, belief.X_W, belief.inverse_depth, scale.InverseDepthSigma(belief.inverse_depth, belief.inverse_depth_sigma), false,
+    points.push_back({0, belief.X_W, belief.inverse_depth,
+                      scale.InverseDepthSigma(belief.inverse_depth, belief.inverse_depth_sigma), false,
                       belief.relative_sigma(), moments[n]});
   }
   return points;
@@ -74,8 +81,8 @@ std::vector<MapPoint> MakeMap(const Filter& filter, const UnknownScale& scale) {
 
 void RequireIncreasing(std::int64_t stamp_ns, std::int64_t last_ns) {
   if (stamp_ns <= last_ns)
-    throw std::invalid_argument("time stamp " + std::to_string(stamp_ns) + " ns does not increase over " + std::to_string(last_ns) +
-                                " ns");
+    throw std::invalid_argument("time stamp " + std::to_string(stamp_ns) + " ns does not increase over " +
+                                std::to_string(last_ns) + " ns");
 }
 
 }  // namespace vo

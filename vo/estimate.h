@@ -18,7 +18,8 @@ Params Checked(const Params& params);
 // The member of the family that params.filter.sampled names.
 std::unique_ptr<Filter> MakeFilter(const Params& params, const Prior& prior, std::uint64_t seed);
 
-Estimate MakeEstimate(const Filter& filter, const UnknownScale& scale, std::int64_t stamp_ns, FrameDiagnostics diagnostics);
+Estimate MakeEstimate(const Filter& filter, const UnknownScale& scale, std::int64_t stamp_ns,
+                      FrameDiagnostics diagnostics);
 
 // The filter's landmarks in its order, without their ids.
 std::vector<MapPoint> MakeMap(const Filter& filter, const UnknownScale& scale);

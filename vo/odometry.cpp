@@ -42,8 +42,8 @@ struct Odometry::Impl {
   void Forget();
   void AddFeatures(const PreparedFrame& prepared, const Vector6& velocity);
   void AddTarget(const PreparedFrame& prepared, const Vector6& velocity, std::vector<FirstView>& first);
-  void Add(const Eigen::Vector2i& corner, const std::optional<KnownDepth>& depth, const PreparedFrame& prepared, const Vector6& velocity,
-           std::vector<FirstView>& first);
+  void Add(const Eigen::Vector2i& corner, const std::optional<KnownDepth>& depth, const PreparedFrame& prepared,
+           const Vector6& velocity, std::vector<FirstView>& first);
   Estimate Answer(std::int64_t stamp_ns, FrameDiagnostics diagnostics) const;
 
   Camera camera;
@@ -60,14 +60,15 @@ struct Odometry::Impl {
   std::vector<Eigen::Vector2d> left_out;  // [px] of this frame: predicted, but not looked for
   std::optional<std::int64_t> last_stamp_ns;
   int next_id = 0;
-  int target_frames = 0;  // in which the target may still be looked for
+  int target_frames = 0;                     // in which the target may still be looked for
   std::optional<PreparedFrame> first_frame;  // kept until the second tells how fast its rows were passed over
 };
 
 void Odometry::Impl::Require(const Frame& frame) const {
   if (frame.image.cols != camera.width || frame.image.rows != camera.height)
-    throw std::invalid_argument("image is " + std::to_string(frame.image.cols) + " x " + std::to_string(frame.image.rows) +
-                                ", the camera " + std::to_string(camera.width) + " x " + std::to_string(camera.height));
+    throw std::invalid_argument("image is " + std::to_string(frame.image.cols) + " x " +
+                                std::to_string(frame.image.rows) + ", the camera " + std::to_string(camera.width) +
+                                " x " + std::to_string(camera.height));
   if (last_stamp_ns) RequireIncreasing(frame.stamp_ns, *last_stamp_ns);
 }
 
@@ -165,8 +166,8 @@ void Odometry::Impl::Forget() {
 }
 
 // A new landmark; its first view is what the filter is to be told.
-void Odometry::Impl::Add(const Eigen::Vector2i& corner, const std::optional<KnownDepth>& depth, const PreparedFrame& prepared,
-                         const Vector6& velocity, std::vector<FirstView>& first) {
+void Odometry::Impl::Add(const Eigen::Vector2i& corner, const std::optional<KnownDepth>& depth,
+                         const PreparedFrame& prepared, const Vector6& velocity, std::vector<FirstView>& first) {
   const Eigen::Vector2d pixel = corner.cast<double>();
   LandmarkRecord record;
   record.appearance = {prepared.brisk.Describe(corner, first_sampler), CutPatch(prepared.smooth, corner)};
@@ -175,16 +176,19 @@ void Odometry::Impl::Add(const Eigen::Vector2i& corner, const std::optional<Know
   records.push_back(record);
   first.push_back(shutter.FirstSeen(pixel, filter.belief().pose, velocity));
   // The patch that later views are registered to defines the landmark: its first view is as good as the registration can be.
-  first.back().R = PixelNoise(camera.LensJacobian(first.back().ray), params.features.noise != MatchNoise::constant ? params.features.sigma_floor_px
-                                                                                                                     : params.features.sigma_px);
+  first.back().R = PixelNoise(camera.LensJacobian(first.back().ray), params.features.noise != MatchNoise::constant
+                                                                         ? params.features.sigma_floor_px
+                                                                         : params.features.sigma_px);
   first.back().depth = depth;
-  views.push_back({record.id, pixel, pixel, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
+  views.push_back(
+      {record.id, pixel, pixel, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
 }
 
 void Odometry::Impl::AddTarget(const PreparedFrame& prepared, const Vector6& velocity, std::vector<FirstView>& first) {
   if (target_frames == 0) return;
   --target_frames;
-  const std::vector<TargetCorner> corners = FindTarget(prepared.grey, camera, params.target, params.features.sigma_floor_px);
+  const std::vector<TargetCorner> corners =
+      FindTarget(prepared.grey, camera, params.target, params.features.sigma_floor_px);
   if (corners.empty()) return;
   target_frames = 0;
   for (const TargetCorner& corner : corners)
@@ -196,16 +200,18 @@ void Odometry::Impl::AddFeatures(const PreparedFrame& prepared, const Vector6& v
   AddTarget(prepared, velocity, first);
   std::vector<Eigen::Vector2d> occupied = left_out;
   for (const FeatureView& view : views)
-    if (view.status == FeatureView::Status::matched || view.status == FeatureView::Status::fresh) occupied.push_back(view.pixel);
+    if (view.status == FeatureView::Status::matched || view.status == FeatureView::Status::fresh)
+      occupied.push_back(view.pixel);
   for (const Eigen::Vector2i& corner : DetectCorners(prepared.grey, occupied, border_px, params.features))
-    if (camera.Sees(corner.cast<double>())) Add(corner, std::nullopt, prepared, velocity, first);  // not at the edge of a fisheye lens
+    if (camera.Sees(corner.cast<double>()))
+      Add(corner, std::nullopt, prepared, velocity, first);  // not at the edge of a fisheye lens
   filter.AddLandmarks(first);
 }
 
 Estimate Odometry::Impl::Answer(std::int64_t stamp_ns, FrameDiagnostics diagnostics) const {
   diagnostics.landmarks = static_cast<int>(records.size());
-  diagnostics.permanent =
-      static_cast<int>(std::count_if(records.begin(), records.end(), [](const LandmarkRecord& r) { return r.permanent; }));
+  diagnostics.permanent = static_cast<int>(
+      std::count_if(records.begin(), records.end(), [](const LandmarkRecord& r) { return r.permanent; }));
   return MakeEstimate(filter, scale, stamp_ns, diagnostics);
 }
 

@@ -3,12 +3,11 @@
 // Source:  Zhou & Maskell, "RB2-PF: A Novel Filter-based Monocular Visual Odometry Algorithm", Algorithm 1.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "vo/filter/guards.h"
 #include "vo/geometry/camera.h"
@@ -30,15 +29,16 @@ struct Prior {
 };
 
 struct FrameDiagnostics {
-  int searched = 0;             // landmarks looked for
-  int matched = 0;              // found, and inliers
-  int landmarks = 0;            // in the map after this frame
+  int searched = 0;   // landmarks looked for
+  int matched = 0;    // found, and inliers
+  int landmarks = 0;  // in the map after this frame
   int permanent = 0;
-  double nis = 0;               // sum of nu' S^-1 nu over matched features (mixture mean), nis_dof = 2 per feature
+  double nis = 0;  // sum of nu' S^-1 nu over matched features (mixture mean), nis_dof = 2 per feature
   int nis_dof = 0;
   double effective_particles = 0;  // before resampling
-  double ms_features = 0, ms_matching = 0, ms_filter = 0;  // preparing the frame and new corners; looking for landmarks; the rest
-  Guards guards;                   // what the filter's equations do not say, and happened
+  double ms_features = 0, ms_matching = 0,
+         ms_filter = 0;  // preparing the frame and new corners; looking for landmarks; the rest
+  Guards guards;         // what the filter's equations do not say, and happened
   bool tracked() const { return matched >= 10; }
 };
 
@@ -53,7 +53,7 @@ struct Estimate {
 
 struct MapPoint {
   int id = 0;
-  Eigen::Vector3d X_W = Eigen::Vector3d::Zero();  // [m], on the likeliest path
+  Eigen::Vector3d X_W = Eigen::Vector3d::Zero();      // [m], on the likeliest path
   double inverse_depth = 0, inverse_depth_sigma = 0;  // [1/m] from the anchor
   bool permanent = false;
   double relative_sigma = 0;  // of the inverse depth but for the scale that all landmarks share, over the inverse depth
@@ -69,7 +69,8 @@ struct FeatureView {
   Eigen::Vector2d predicted = Eigen::Vector2d::Zero();  // [px]
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();      // [px], of the match (or the prediction when missed)
   Eigen::Matrix2d S = Eigen::Matrix2d::Zero();          // innovation covariance [px^2]
-  Eigen::Matrix2d R = Eigen::Matrix2d::Zero();          // of the match's error, as the filter takes it [px^2]; zero where nothing was found
+  // Of the match's error, as the filter takes it [px^2]; zero where nothing was found
+  Eigen::Matrix2d R = Eigen::Matrix2d::Zero();
   Status status = Status::missed;
 };
 

@@ -1,5 +1,6 @@
 #include "vo/point_odometry.h"
 
+#include <Eigen/LU>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -8,8 +9,6 @@
 #include <unordered_set>
 #include <utility>
 
-#include <Eigen/LU>
-
 #include "vo/estimate.h"
 #include "vo/filter/consensus.h"
 
@@ -17,11 +16,15 @@ namespace vo {
 
 struct PointOdometry::Impl {
   Impl(const Camera& camera_, const Params& params_, const Prior& prior, std::uint64_t seed)
-      : camera(camera_), params(Checked(params_)), filter(MakeFilter(params, prior, seed)), scale(params.landmark.scale_sigma, prior.pose.p_WC) {}
+      : camera(camera_),
+        params(Checked(params_)),
+        filter(MakeFilter(params, prior, seed)),
+        scale(params.landmark.scale_sigma, prior.pose.p_WC) {}
 
   std::vector<Eigen::Vector2d> RaysOf(const PointFrame& frame) const;
   Estimate Process(const PointFrame& frame);
-  std::vector<Match> MatchesIn(const PointFrame& frame, std::span<const Eigen::Vector2d> rays, FrameDiagnostics& diagnostics);
+  std::vector<Match> MatchesIn(const PointFrame& frame, std::span<const Eigen::Vector2d> rays,
+                               FrameDiagnostics& diagnostics);
   void Forget();
   void AddNew(const PointFrame& frame, std::span<const Eigen::Vector2d> rays);
 
@@ -34,9 +37,9 @@ struct PointOdometry::Impl {
   Params params;
   WatchedFilter filter;
   UnknownScale scale;
-  std::vector<BeliefComponent> mixture;  // the filter's, the scale unknown
-  std::vector<Record> records;                         // in the order of the filter's landmarks
-  std::unordered_map<std::int64_t, int> landmark_of;   // id -> index
+  std::vector<BeliefComponent> mixture;               // the filter's, the scale unknown
+  std::vector<Record> records;                        // in the order of the filter's landmarks
+  std::unordered_map<std::int64_t, int> landmark_of;  // id -> index
   std::optional<std::int64_t> last_stamp_ns;
 };
 
@@ -44,7 +47,8 @@ struct PointOdometry::Impl {
 std::vector<Eigen::Vector2d> PointOdometry::Impl::RaysOf(const PointFrame& frame) const {
   if (last_stamp_ns) RequireIncreasing(frame.stamp_ns, *last_stamp_ns);
   const auto refuse = [&](const PointObservation& observation, const std::string& what) {
-    throw std::invalid_argument("point " + std::to_string(observation.id) + what + " in the frame at " + std::to_string(frame.stamp_ns) + " ns");
+    throw std::invalid_argument("point " + std::to_string(observation.id) + what + " in the frame at " +
+                                std::to_string(frame.stamp_ns) + " ns");
   };
   std::unordered_set<std::int64_t> ids;
   std::vector<Eigen::Vector2d> rays;
@@ -77,12 +81,14 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
   diagnostics.ms_features = watch.Lap();
   if (!scale.known()) {
     mixture = filter.mixture();
-    for (BeliefComponent& component : mixture) component.covariance = scale.Covariance(component.pose, component.velocity, component.covariance);
+    for (BeliefComponent& component : mixture)
+      component.covariance = scale.Covariance(component.pose, component.velocity, component.covariance);
   }
   return MakeEstimate(filter, scale, frame.stamp_ns, diagnostics);
 }
 
-std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, std::span<const Eigen::Vector2d> rays, FrameDiagnostics& diagnostics) {
+std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, std::span<const Eigen::Vector2d> rays,
+                                                  FrameDiagnostics& diagnostics) {
   for (Record& record : records) ++record.frames_unseen;
   std::vector<Match> matches;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -93,8 +99,8 @@ std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, std::
     matches.push_back({known->second, rays[i], PixelNoise(camera.LensJacobian(rays[i]), params.features.sigma_px)});
   }
   diagnostics.searched = static_cast<int>(matches.size());
-  const std::vector<bool> inlier =
-      FindInliers(filter.ReferencePrediction(), filter.ReferenceMap(), matches, OutlierGate(filter, params.score), params.filter);
+  const std::vector<bool> inlier = FindInliers(filter.ReferencePrediction(), filter.ReferenceMap(), matches,
+                                               OutlierGate(filter, params.score), params.filter);
   std::size_t to = 0;
   for (std::size_t from = 0; from < matches.size(); ++from)
     if (inlier[from]) matches[to++] = matches[from];

@@ -2,11 +2,10 @@
 //          existence score are left out, so that what is measured is the filter alone.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <memory>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "vo/filter/filter.h"
 #include "vo/filter/mixture.h"
@@ -15,7 +14,7 @@
 namespace vo {
 
 struct PointObservation {
-  std::int64_t id = 0;                            // the same for the same landmark in every frame
+  std::int64_t id = 0;                              // the same for the same landmark in every frame
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // [px]
 };
 

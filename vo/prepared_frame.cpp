@@ -1,8 +1,7 @@
 #include "vo/prepared_frame.h"
 
-#include <utility>
-
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "vo/estimate.h"
 #include "vo/features/patch.h"

@@ -18,7 +18,8 @@ namespace vo {
 class RollingShutter {
  public:
   RollingShutter(const Camera& camera, double readout_s) : camera_(camera), readout_s_(readout_s) {}
-  RollingShutter(const Camera& camera, const FeatureParams& params) : RollingShutter(camera, params.readout_s.value_or(camera.readout_s)) {}
+  RollingShutter(const Camera& camera, const FeatureParams& params)
+      : RollingShutter(camera, params.readout_s.value_or(camera.readout_s)) {}
 
   bool on() const { return readout_s_ != 0; }
   // When row y [px] is exposed, after the stamp.

@@ -1,8 +1,7 @@
 #include "vo/target.h"
 
-#include <cmath>
-
 #include <Eigen/LU>
+#include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 
@@ -31,7 +30,8 @@ Vector6d Gradient(const Vector6d& pose, const Eigen::Vector2d& ray) {
 
 }  // namespace
 
-std::vector<TargetCorner> FindTarget(const cv::Mat& grey, const Camera& camera, const TargetParams& target, double sigma_px) {
+std::vector<TargetCorner> FindTarget(const cv::Mat& grey, const Camera& camera, const TargetParams& target,
+                                     double sigma_px) {
   std::vector<cv::Point2f> corners;
   if (!cv::findChessboardCornersSB(grey, {target.columns, target.rows}, corners, cv::CALIB_CB_ACCURACY)) return {};
   std::vector<cv::Point3d> board;
@@ -51,7 +51,8 @@ std::vector<TargetCorner> FindTarget(const cv::Mat& grey, const Camera& camera, 
   Eigen::MatrixXd J;
   cv::cv2eigen(jacobian.colRange(0, 6), J);
   const double focal = std::sqrt(camera.fx * camera.fy);
-  const Eigen::Matrix<double, 6, 6> covariance = (J.transpose() * J).inverse() * (sigma_px * sigma_px / (focal * focal));
+  const Eigen::Matrix<double, 6, 6> covariance =
+      (J.transpose() * J).inverse() * (sigma_px * sigma_px / (focal * focal));
   Vector6d pose;
   pose << rotation[0], rotation[1], rotation[2], translation[0], translation[1], translation[2];
 

@@ -5,10 +5,9 @@
 // Units:   metres, pixels.
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "vo/geometry/camera.h"
 #include "vo/map/landmark.h"
@@ -23,6 +22,7 @@ struct TargetCorner {
 
 // The inner corners of the board, row by row; empty where it is not all in sight. Corners count as seen to within `sigma_px`. The board's
 // distance is one error that all corners share, but a filter takes theirs for independent: each is as uncertain as makes their mean right.
-std::vector<TargetCorner> FindTarget(const cv::Mat& grey, const Camera& camera, const TargetParams& target, double sigma_px);
+std::vector<TargetCorner> FindTarget(const cv::Mat& grey, const Camera& camera, const TargetParams& target,
+                                     double sigma_px);
 
 }  // namespace vo

@@ -5,7 +5,10 @@
 namespace vo {
 
 UnknownScale::UnknownScale(double sigma, const Eigen::Vector3d& start)
-    : start_(start), factor_(std::exp(sigma * sigma / 2)), square_(std::exp(2 * sigma * sigma)), off_(square_ - 2 * factor_ + 1) {}
+    : start_(start),
+      factor_(std::exp(sigma * sigma / 2)),
+      square_(std::exp(2 * sigma * sigma)),
+      off_(square_ - 2 * factor_ + 1) {}
 
 Matrix12 UnknownScale::Covariance(const Pose& pose, const Vector6& velocity, const Matrix12& covariance) const {
   if (known()) return covariance;
@@ -16,7 +19,10 @@ Matrix12 UnknownScale::Covariance(const Pose& pose, const Vector6& velocity, con
   for (int row = 0; row < 12; row += 3) {
     for (int column = 0; column < 12; column += 3) {
       const int lengths = (row % 6 == 0) + (column % 6 == 0);
-      wide.block<3, 3>(row, column) += (lengths == 0 ? 1 : lengths == 1 ? factor_ : square_) * covariance.block<3, 3>(row, column);
+      wide.block<3, 3>(row, column) += (lengths == 0   ? 1
+                                        : lengths == 1 ? factor_
+                                                       : square_) *
+                                       covariance.block<3, 3>(row, column);
     }
   }
   return wide;
@@ -27,6 +33,8 @@ PointMoments UnknownScale::Moments(const PointMoments& point) const {
   return {point.mean, square_ * point.covariance + off_ * length * length.transpose()};
 }
 
-double UnknownScale::InverseDepthSigma(double mean, double sigma) const { return std::sqrt(square_ * sigma * sigma + off_ * mean * mean); }
+double UnknownScale::InverseDepthSigma(double mean, double sigma) const {
+  return std::sqrt(square_ * sigma * sigma + off_ * mean * mean);
+}
 
 }  // namespace vo

@@ -25,8 +25,9 @@ struct alignas(64) LaneInts {
 // to them, since value(u, v) = value_0 + u (value_1 - value_0) + v (value_2 - value_0).
 struct alignas(32) TriangleShading {
   float uv[2], uv_du[2], uv_dv[2];
-  std::uint32_t material;    // low 24 bits: the material; then 4 bits each: log2 of the baked light's resolution on the front and
-                             // on the back (sim/light/lattice.h)
+  // Low 24 bits: the material; then 4 bits each: log2 of the baked light's resolution on the front and on the back
+  // (sim/light/lattice.h)
+  std::uint32_t material;
   std::int32_t first_light;  // in a layer of PacketScene::light: the front's samples, then the back's
 };
 constexpr std::uint32_t kMaterialBits = 24;
@@ -77,15 +78,15 @@ struct SkyShading {
 
 struct PacketScene {
   RTCScene embree;
-  std::int32_t filtered_first;        // the triangle with number 0 in Embree's second geometry, that with filters
-  const TriangleShading* triangles;   // by triangle
-  const TriangleNormals* normals;     // by triangle; null: all flat
-  const TriangleColor* colors;        // by triangle; null: no vertex colours anywhere
-  const TriangleTangents* tangents;   // by triangle; null: no normal maps anywhere
+  std::int32_t filtered_first;       // the triangle with number 0 in Embree's second geometry, that with filters
+  const TriangleShading* triangles;  // by triangle
+  const TriangleNormals* normals;    // by triangle; null: all flat
+  const TriangleColor* colors;       // by triangle; null: no vertex colours anywhere
+  const TriangleTangents* tangents;  // by triangle; null: no normal maps anywhere
   const MaterialShading* materials;
   const LevelShading* levels;
   const std::uint32_t* texels;  // sim/world/texture.h's coding
-  const std::uint32_t* light;   // baked, as sim/light/shared_exponent.h packs it, layer after layer; null: ambient light
+  const std::uint32_t* light;  // baked, as sim/light/shared_exponent.h packs it, layer after layer; null: ambient light
   std::int32_t light_layers, light_stride;
   bool any_emission, any_emission_picture;
   const GlossShading* gloss;  // by material; null: nothing mirrors
@@ -128,9 +129,10 @@ struct RaySample {
   float moment;                      // in [0, 1): see PixelBlock
   const LightSample* lights;
   int light_count;
-  float layer_factors[kMaxLightLayers][kBlockSide];  // of lamps' light and of baked light, by layer and by row of the block
-  const PacketObjects* objects;                      // null: nothing moves; the same in all samples of a call
-  float objects_begin, objects_length;               // Embree's time at the sample's beginning, and how much of it the sample is
+  float layer_factors[kMaxLightLayers]
+                     [kBlockSide];      // of lamps' light and of baked light, by layer and by row of the block
+  const PacketObjects* objects;         // null: nothing moves; the same in all samples of a call
+  float objects_begin, objects_length;  // Embree's time at the sample's beginning, and how much of it the sample is
 };
 
 // A block of pixels: (x, y, z) is a pixel centre's ray in C; du, dv are its derivatives by the pixel.
@@ -168,14 +170,14 @@ KernelChoice PacketKernel();
 namespace packet_base {
 void ExposeBlock(const PacketScene&, const RaySample*, int, bool, float, const PixelBlock&, Lanes[3]);
 void ScrambleBlock(std::uint64_t, std::uint32_t, std::uint32_t, BlockBits&);
-}
+}  // namespace packet_base
 namespace packet_avx2 {
 void ExposeBlock(const PacketScene&, const RaySample*, int, bool, float, const PixelBlock&, Lanes[3]);
 void ScrambleBlock(std::uint64_t, std::uint32_t, std::uint32_t, BlockBits&);
-}
+}  // namespace packet_avx2
 namespace packet_avx512 {
 void ExposeBlock(const PacketScene&, const RaySample*, int, bool, float, const PixelBlock&, Lanes[3]);
 void ScrambleBlock(std::uint64_t, std::uint32_t, std::uint32_t, BlockBits&);
-}
+}  // namespace packet_avx512
 
 }  // namespace sim

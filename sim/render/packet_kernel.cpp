@@ -9,7 +9,8 @@ KernelChoice PacketKernel() {
       __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("fma")) {
     return {packet_avx512::ExposeBlock, packet_avx512::ScrambleBlock, "avx512"};
   }
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return {packet_avx2::ExposeBlock, packet_avx2::ScrambleBlock, "avx2"};
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    return {packet_avx2::ExposeBlock, packet_avx2::ScrambleBlock, "avx2"};
 #endif
   return {packet_base::ExposeBlock, packet_base::ScrambleBlock, "base"};
 }

@@ -125,7 +125,8 @@ void ShadowMaps::Draw(const RasterScene& scene, const Program& triangles,
   }
 }
 
-void ShadowMaps::DrawSample(const RasterScene& scene, const Program& triangles, const std::vector<RasterLight>& lights) {
+void ShadowMaps::DrawSample(const RasterScene& scene, const Program& triangles,
+                            const std::vector<RasterLight>& lights) {
   if (!lasting_) lasting_ = MakeMaps(Layers(lights, false), side_);
   if (samples_.empty()) samples_.push_back(MakeMaps(Layers(lights, true), side_));
   for (const RasterLight& light : lights) {
@@ -145,8 +146,8 @@ void ShadowMaps::DrawLight(const RasterScene& scene, const Program& triangles, c
     DrawDepth(gl_, scene, triangles, glm::vec3(0.0f), glm::transpose(clip), maps, first, side);
     return;
   }
-  const float border =
-      1.0f + 16.0f / static_cast<float>(side);  // as the shader has it: no comparison lacks a neighbour
+  // As the shader has it: no comparison lacks a neighbour.
+  const float border = 1.0f + 16.0f / static_cast<float>(side);
   for (int face = 0; face < kFaceCount; ++face) {
     const glm::mat4 clip = ClipFromView(glm::vec2(-border), glm::vec2(border)) * glm::mat4(FaceFromCamera(face));
     DrawDepth(gl_, scene, triangles, glm::vec3(light.place), clip, maps, first + face, side);

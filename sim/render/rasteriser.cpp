@@ -1,4 +1,3 @@
-#include "sim/render/pixel_ray.h"
 #include "sim/render/rasteriser.h"
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 
 #include "sim/render/gl_context.h"
 #include "sim/render/gl_objects.h"
+#include "sim/render/pixel_ray.h"
 #include "sim/render/raster_draw.h"
 #include "sim/render/raster_light.h"
 #include "sim/render/raster_scene.h"

@@ -80,9 +80,14 @@ class RayScene {
   glm::vec3 ShadingNormal(std::uint32_t triangle, float u, float v) const;
   glm::vec3 VertexColor(std::uint32_t triangle, float u, float v) const;
   glm::vec2 TextureCoordinates(std::uint32_t triangle, float u, float v) const;
-  double UvPerMetre(std::uint32_t triangle) const;  // square root of the ratio of the areas in texture coordinates and in W
-  std::uint32_t MaterialIndex(std::uint32_t triangle) const { return shading_[triangle].material & ((1u << kMaterialBits) - 1); }
-  bool IsLamp(std::uint32_t triangle) const { return triangle >= filtered_first_ && triangle < still_triangles_ && filters_[triangle - filtered_first_].lamp; }
+  double UvPerMetre(
+      std::uint32_t triangle) const;  // square root of the ratio of the areas in texture coordinates and in W
+  std::uint32_t MaterialIndex(std::uint32_t triangle) const {
+    return shading_[triangle].material & ((1u << kMaterialBits) - 1);
+  }
+  bool IsLamp(std::uint32_t triangle) const {
+    return triangle >= filtered_first_ && triangle < still_triangles_ && filters_[triangle - filtered_first_].lamp;
+  }
 
   // What Embree's filter needs of a triangle of the second geometry.
   struct Filter {
@@ -94,7 +99,8 @@ class RayScene {
 
  private:
   void AppendTextures(const Scene& scene);
-  void AppendMesh(const Scene& scene, const Mesh& mesh, const Material& material, std::int32_t material_index, std::size_t mesh_index, bool lamp);
+  void AppendMesh(const Scene& scene, const Mesh& mesh, const Material& material, std::int32_t material_index,
+                  std::size_t mesh_index, bool lamp);
   void AppendLamps(const Scene& scene);
   void AppendObjects(const Scene& scene);
   // Triangles [begin, end) as a geometry of `to`, with the filters from first_filter on where there are any.

@@ -20,8 +20,7 @@ using settings::Unit;
 const Range kNotNegative = Range::AtLeast(0);
 
 void ReadRender(Section section, const std::filesystem::path& folder, RenderParams& render) {
-  section.ReadChoice("engine", render.engine,
-                     {{"ray_tracer", Engine::ray_tracer}, {"rasteriser", Engine::rasteriser}});
+  section.ReadChoice("engine", render.engine, {{"ray_tracer", Engine::ray_tracer}, {"rasteriser", Engine::rasteriser}});
   section.Read("rays_per_time_sample", render.rays_per_time_sample, Range{1, 256});
   section.Read("reflections", render.reflections);
   section.ReadChoice(

@@ -37,7 +37,7 @@ struct Covered {
 struct SensorParams {
   double exposure_s = 0.010;  // longer: more motion blur. Brightness does not depend on it (`white` fixes that)
   int time_samples = 16;      // instants averaged over the exposure; fewer: long blur gets grainy
-  double readout_s = 0.0;     // from the first row's exposure to the last's: rolling shutter. 0: all at once; < 0: upwards
+  double readout_s = 0.0;  // from the first row's exposure to the last's: rolling shutter. 0: all at once; < 0: upwards
   AutoExposureParams auto_exposure;
   std::vector<Covered> covered;
   OpticsParams optics;

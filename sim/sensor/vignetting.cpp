@@ -16,7 +16,8 @@ Vignetting::Vignetting(const OpticsParams& optics, const Camera& camera) : optic
       const double factor = Factor(u, v);
       if (!(factor >= 0)) {
         throw std::invalid_argument("vignetting: the factor of pixel (" + std::to_string(u) + ", " + std::to_string(v) +
-                                    ") is " + std::to_string(factor) + ", below 0: choose vignetting_2, _4 and _6 nearer to 0");
+                                    ") is " + std::to_string(factor) +
+                                    ", below 0: choose vignetting_2, _4 and _6 nearer to 0");
       }
       factors_.push_back(static_cast<float>(factor));
     }

@@ -61,7 +61,7 @@ class StreamPlace {
 Buffer Compress(std::span<const std::uint8_t> content) {
   const Buffer work(ISAL_DEF_LVL1_DEFAULT);
   Buffer compressed(content.size() + content.size() / 8 + 1024);  // more than it takes if nothing can be compressed
-  std::fill_n(work.data.get(), work.size, std::uint8_t{0});  // ISA-L looks at what was there before
+  std::fill_n(work.data.get(), work.size, std::uint8_t{0});       // ISA-L looks at what was there before
   StreamPlace place(content);
   isal_zstream& stream = place.stream();
   isal_deflate_stateless_init(&stream);

@@ -86,7 +86,8 @@ std::vector<StreamFile> WholeFiles(const Simulator& simulator, const SequenceCon
     for (const StampedTruth& frame : frames) lines += ExposureLine(frame.stamp_ns, simulator.SettingOf(frame.index));
     files.push_back(TextFile("exposure.txt", lines));
   }
-  files.push_back(TextFile("camera.yaml", CameraYaml(simulator.camera().params(), simulator.scenario().sensor.readout_s)));
+  files.push_back(
+      TextFile("camera.yaml", CameraYaml(simulator.camera().params(), simulator.scenario().sensor.readout_s)));
   files.push_back(TextFile(kManifestName, Manifest(simulator, content, whole)));
   return files;
 }

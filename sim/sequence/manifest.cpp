@@ -47,7 +47,8 @@ std::string Manifest(const Simulator& simulator, const SequenceContent& content,
 }
 
 std::vector<std::string> ManifestDifferences(const std::string& there, const std::string& wanted) {
-  if (const std::string problem = limits::JsonProblem(there); !problem.empty()) throw std::invalid_argument("is " + problem);
+  if (const std::string problem = limits::JsonProblem(there); !problem.empty())
+    throw std::invalid_argument("is " + problem);
   const Json parsed = Json::parse(there, nullptr, false);
   if (!parsed.is_object()) throw std::invalid_argument("is not a JSON object");
   Json a = parsed.flatten(), b = Json::parse(wanted).flatten();

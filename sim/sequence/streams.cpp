@@ -195,12 +195,12 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
         file.bytes = EncodeFlo(to.uv, width, height);
         break;
       case TruthStream::moving:
-        file.bytes = EncodeGrey8(
-            Mask(points.size(), [&](std::size_t i) { return points[i].object != kWorld; }), width, height);
+        file.bytes =
+            EncodeGrey8(Mask(points.size(), [&](std::size_t i) { return points[i].object != kWorld; }), width, height);
         break;
       case TruthStream::occlusion:
-        file.bytes = EncodeGrey8(Mask(to.occluded.size(), [&](std::size_t i) { return to.occluded[i] != 0; }), width,
-                                 height);
+        file.bytes =
+            EncodeGrey8(Mask(to.occluded.size(), [&](std::size_t i) { return to.occluded[i] != 0; }), width, height);
         break;
       case TruthStream::landmarks:
       case TruthStream::acceleration:
@@ -251,7 +251,8 @@ std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t
 }
 
 std::set<std::string> StreamNames() {
-  std::set<std::string> names = {"surfaces.txt", "acceleration.txt", "landmarks.txt", "landmark_tracks.txt", "imu0", kObjectFolder};
+  std::set<std::string> names = {"surfaces.txt", "acceleration.txt", "landmarks.txt", "landmark_tracks.txt",
+                                 "imu0",         kObjectFolder};
   for (const ImageStream& stream : ImageStreams()) {
     names.insert(stream.folder);
     names.insert(stream.folder + ".txt");

@@ -12,7 +12,7 @@ namespace sim {
 
 // docs/truth.md says what each is and how exact.
 enum class TruthStream {
-  depth,      // 16-bit PNG
+  depth,         // 16-bit PNG
   depth_exr,     // the same in float
   depth_kinect,  // 16-bit PNG, with a structured-light camera's noise: sim/sensor/depth_noise.h
   distance,

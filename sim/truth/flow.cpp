@@ -10,7 +10,9 @@ namespace {
 class PointsThere {
  public:
   PointsThere(const SurfaceTracer& surfaces, const View& here, const View& there)
-      : here_(here.pose), objects_here_(surfaces.ObjectPoses(here.t_s)), objects_there_(surfaces.ObjectPoses(there.t_s)) {}
+      : here_(here.pose),
+        objects_here_(surfaces.ObjectPoses(here.t_s)),
+        objects_there_(surfaces.ObjectPoses(there.t_s)) {}
 
   glm::dvec3 operator()(const SurfacePoint& point) const {
     const glm::dvec3 X_W = here_.p_WC + here_.q_WC * point.X_C;

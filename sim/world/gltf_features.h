@@ -8,8 +8,10 @@
 namespace sim {
 
 struct GltfFeatures {
-  std::vector<float> emission_strengths;  // by material (KHR_materials_emissive_strength, which assimp 5.2 does not know)
-  std::vector<std::string> impossible;   // the file requires it: without it the picture would be wrong, or there would be none
+  // By material (KHR_materials_emissive_strength, which assimp 5.2 does not know)
+  std::vector<float> emission_strengths;
+  // The file requires it: without it the picture would be wrong, or there would be none
+  std::vector<std::string> impossible;
   std::vector<std::string> not_rendered;  // is left out; what is seen instead is said
 };
 

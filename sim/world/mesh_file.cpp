@@ -204,7 +204,8 @@ class FileReader {
 
   void AppendUvs(const aiMesh& in, const UvChoice& choice, const std::string& label, Mesh& out) {
     const Material& material = scene_.materials[static_cast<std::size_t>(out.material)];
-    const int texture = std::max({material.texture, material.emission_texture, material.normal_map, material.gloss_texture});
+    const int texture =
+        std::max({material.texture, material.emission_texture, material.normal_map, material.gloss_texture});
     if (texture < 0) return;
     if (!in.HasTextureCoords(choice.channel)) {
       const std::string& name = scene_.textures[static_cast<std::size_t>(texture)].name();

@@ -110,8 +110,8 @@ MeshMaterial MeshMaterialReader::Read(const aiMaterial& in, float emission_stren
   material.metallic = std::clamp(material.metallic, 0.0f, 1.0f);
   material.roughness = std::clamp(material.roughness, 0.0f, 1.0f);
   if (is_gltf_) {
-    material.gloss_texture = ReadTexture(in, aiTextureType_UNKNOWN, "metallic-roughness ", Texture::Content::numbers, false,
-                                         material.name, uvs);
+    material.gloss_texture = ReadTexture(in, aiTextureType_UNKNOWN, "metallic-roughness ", Texture::Content::numbers,
+                                         false, material.name, uvs);
   }
   if (in.GetTextureCount(aiTextureType_OPACITY) > 0) {
     Warn("material '" + material.name + "': its opacity texture is not used; it is opaque");

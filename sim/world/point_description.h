@@ -37,7 +37,7 @@ struct PointDescription {
   // Landmarks::prior
   double inverse_depth = 0.25;        // mean of 1 / Z in the camera of the first view [1/m]
   double inverse_depth_sigma = 0.15;  // its standard deviation; what falls below 0 stays so [1/m]
-  double scale_sigma = 0;  // of the log of a factor, drawn once, of all inverse depths: 0: there is none
+  double scale_sigma = 0;             // of the log of a factor, drawn once, of all inverse depths: 0: there is none
   double margin_px = 5.0;             // of the image, within which no landmark is first seen
   // The others
   int points = 3000;                 // in the whole world

@@ -64,7 +64,7 @@ struct Scene {
   std::vector<Light> lights;
   glm::vec3 background{0.0f};  // where there is no sky
   std::optional<Sky> sky;
-  std::vector<std::string> warnings;  // what was readable but is probably not meant
+  std::vector<std::string> warnings;      // what was readable but is probably not meant
   std::set<std::filesystem::path> files;  // all that were looked for: meshes, materials, pictures
 };
 

@@ -30,8 +30,8 @@ class Texture {
 
   // rgb: width * height * 3 bytes, rows from the top, sRGB-coded where they are a colour. Each level is the area-weighted mean of
   // the one below it, in linear light. alpha: none, or width * height bytes. Throws std::invalid_argument when a size is wrong.
-  Texture(std::string name, int width, int height, std::span<const std::uint8_t> rgb, std::span<const std::uint8_t> alpha = {},
-          Content content = Content::color);
+  Texture(std::string name, int width, int height, std::span<const std::uint8_t> rgb,
+          std::span<const std::uint8_t> alpha = {}, Content content = Content::color);
 
   // Linear light at uv, averaged over about `footprint` level-0 texels: blends the two nearest levels by
   // log2(footprint).

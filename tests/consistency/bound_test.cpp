@@ -34,8 +34,9 @@ Vector12d ErrorOf(const vo::Estimate& estimate, const sim::Truth& truth) {
 }
 
 // The squared error of the pose at the last frame per run, as the bound measures it and as the filter itself does.
+// Summed over the runs: chi-square with 6 degrees of freedom each for an efficient and honest filter.
 struct Nees {
-  double by_bound = 0, by_filter = 0;  // summed over the runs: chi-square with 6 degrees of freedom each for an efficient and honest filter
+  double by_bound = 0, by_filter = 0;
 };
 
 Nees Play(const Overrides& settings) {
@@ -50,7 +51,8 @@ Nees Play(const Overrides& settings) {
     experiment.scenario.seed = seed;
     sim::PointWorld world(experiment.scenario);
     const vo::Prior prior = PriorOf(experiment.prior, world, seed);
-    vo::PointOdometry odometry(ToOdometry(world.camera().params()), ForSystem("ekfslam", experiment.odometry), prior, seed);
+    vo::PointOdometry odometry(ToOdometry(world.camera().params()), ForSystem("ekfslam", experiment.odometry), prior,
+                               seed);
     std::vector<sim::PointFrame> frames;
     vo::Estimate last;
     while (const auto frame = world.Next()) {
@@ -58,7 +60,8 @@ Nees Play(const Overrides& settings) {
       frames.push_back(*frame);
     }
     const Eigen::Matrix<double, 6, 1> error = ErrorOf(last, frames.back().truth).head<6>();
-    const evaluation::Matrix12d bound = evaluation::FilteringBound(ProblemOf(world, frames, StartCovariance(prior))).back();
+    const evaluation::Matrix12d bound =
+        evaluation::FilteringBound(ProblemOf(world, frames, StartCovariance(prior))).back();
     nees.by_bound += error.dot(bound.topLeftCorner<6, 6>().ldlt().solve(error));
     nees.by_filter += error.dot(last.covariance.topLeftCorner<6, 6>().ldlt().solve(error));
   }
@@ -77,8 +80,9 @@ TEST(Bound, EkfSlamReachesItAndIsHonestAndTheJointModeIsNeither) {
   const Nees joint_mode = Play({{"odometry.filter.joint_iterations", "10"}});
   EXPECT_GT(joint_mode.by_bound / kRuns, 2 * band.high);
   EXPECT_GT(joint_mode.by_filter / kRuns, 2 * band.high);
-  std::cout << "NEES / 6 by the bound, by the filter: " << textbook.by_bound / kRuns / 6 << ", " << textbook.by_filter / kRuns / 6 << "; joint mode "
-            << joint_mode.by_bound / kRuns / 6 << ", " << joint_mode.by_filter / kRuns / 6 << "; band " << band.low / 6 << " ... " << band.high / 6 << "\n";
+  std::cout << "NEES / 6 by the bound, by the filter: " << textbook.by_bound / kRuns / 6 << ", "
+            << textbook.by_filter / kRuns / 6 << "; joint mode " << joint_mode.by_bound / kRuns / 6 << ", "
+            << joint_mode.by_filter / kRuns / 6 << "; band " << band.low / 6 << " ... " << band.high / 6 << "\n";
 }
 
 }  // namespace

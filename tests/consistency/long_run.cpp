@@ -97,9 +97,7 @@ struct Memory {
 // Frame by frame: how long, and how large.
 class Watch {
  public:
-  explicit Watch(const Length& length) : length_(length), last_(length.window) {
-    first_.reserve(length.window);
-  }
+  explicit Watch(const Length& length) : length_(length), last_(length.window) { first_.reserve(length.window); }
   void Add(double cpu_s) {
     if (frames_ >= length_.early && first_.size() < length_.window) first_.push_back(cpu_s);
     last_[frames_ % length_.window] = cpu_s;
@@ -115,11 +113,13 @@ class Watch {
     EXPECT_LT(last, 1.25 * first) << "[s] per frame";
     ExpectFlat(memory_);
     std::cout << frames_ << " frames. ms per frame: " << 1e3 * first << " at first, " << 1e3 * last
-              << " at last; resident MB: " << 1e-6 * static_cast<double>(memory_.early) << " at frame " << length_.early << ", then at most "
-              << 1e-6 * static_cast<double>(memory_.most) << '\n';
+              << " at last; resident MB: " << 1e-6 * static_cast<double>(memory_.early) << " at frame " << length_.early
+              << ", then at most " << 1e-6 * static_cast<double>(memory_.most) << '\n';
   }
   void ExpectFlat(const Memory& memory) const {
-    EXPECT_LT(static_cast<double>(memory.most), (length_.frames > 10'000 ? 1.01 : 1.02) * static_cast<double>(memory.early)) << "resident bytes";
+    EXPECT_LT(static_cast<double>(memory.most),
+              (length_.frames > 10'000 ? 1.01 : 1.02) * static_cast<double>(memory.early))
+        << "resident bytes";
   }
 
  private:
@@ -141,9 +141,10 @@ std::string Duration(const Length& length) { return std::to_string(static_cast<d
 }  // namespace
 
 void ExpectNothingGrowsOnPoints(const Length& length) {
-  const Experiment experiment = ReadExperiment(VOBENCH_SOURCE_DIR "/scenes/points.yaml", {{"time.duration", Duration(length)},
-                                                                                          {"trajectory.position_return", "1"},
-                                                                                          {"trajectory.orientation_return", "1"}});
+  const Experiment experiment =
+      ReadExperiment(VOBENCH_SOURCE_DIR "/scenes/points.yaml", {{"time.duration", Duration(length)},
+                                                                {"trajectory.position_return", "1"},
+                                                                {"trajectory.orientation_return", "1"}});
   const sim::PointWorld start(experiment.scenario);
   Stream world([&](Stream& out) {
     sim::PointWorld frames(experiment.scenario);
@@ -154,7 +155,8 @@ void ExpectNothingGrowsOnPoints(const Length& length) {
       out.Put(frame.observations.data(), frame.observations.size());
     }
   });
-  vo::PointOdometry odometry(ToOdometry(start.camera().params()), experiment.odometry, PriorOf(experiment.prior, start, 1), 1);
+  vo::PointOdometry odometry(ToOdometry(start.camera().params()), experiment.odometry,
+                             PriorOf(experiment.prior, start, 1), 1);
   const auto memory = static_cast<std::size_t>(experiment.odometry.landmark.forget_after);
   std::unordered_map<std::int64_t, std::size_t> last_seen;
   Watch watch(length);
@@ -205,8 +207,8 @@ void ExpectNothingGrowsOnImages(const Length& length) {
   }
   watch.Expect();
   watch.ExpectFlat(simulator);
-  std::cout << "the simulator's: " << 1e-6 * static_cast<double>(simulator.early) << " and " << 1e-6 * static_cast<double>(simulator.most)
-            << "; frames tracked: " << tracked << '\n';
+  std::cout << "the simulator's: " << 1e-6 * static_cast<double>(simulator.early) << " and "
+            << 1e-6 * static_cast<double>(simulator.most) << "; frames tracked: " << tracked << '\n';
   EXPECT_GT(static_cast<double>(tracked), 0.9 * static_cast<double>(length.frames));
 }
 

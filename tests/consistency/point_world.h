@@ -2,11 +2,10 @@
 //          known association and Gaussian pixel noise. Truth and filter share no code: projection is written out here.
 #pragma once
 
-#include <cmath>
-#include <vector>
-
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cmath>
+#include <vector>
 
 #include "tests/unit/vo/draws.h"
 #include "vo/filter/particle_filter.h"
@@ -18,9 +17,10 @@ struct World {
   double focal_px = 525, width_px = 640, height_px = 480;
   double noise_px = 1;
   double rate_hz = 30;
-  std::vector<Eigen::Vector3d> points;                        // W [m]
-  std::vector<vo::Pose> truth;                                // per frame
-  std::vector<std::vector<std::pair<int, Eigen::Vector2d>>> views;  // per frame: (point, noisy point on the plane z = 1)
+  std::vector<Eigen::Vector3d> points;  // W [m]
+  std::vector<vo::Pose> truth;          // per frame
+  std::vector<std::vector<std::pair<int, Eigen::Vector2d>>>
+      views;  // per frame: (point, noisy point on the plane z = 1)
 };
 
 // Points on the walls of a room of `side` metres; the camera starts at the identity and looks along +z.
@@ -43,7 +43,8 @@ inline World MakeRoom(unsigned seed, int frames, double noise_px, double side = 
     }
   const auto at = [&](int i, double t) {
     double sum = 0;
-    for (int j = 0; j < 3; ++j) sum += amplitude(i, j) * (std::sin(frequency(i, j) * t + phase(i, j)) - std::sin(phase(i, j)));
+    for (int j = 0; j < 3; ++j)
+      sum += amplitude(i, j) * (std::sin(frequency(i, j) * t + phase(i, j)) - std::sin(phase(i, j)));
     return sum;
   };
   for (int k = 0; k < frames; ++k) {
@@ -59,7 +60,8 @@ inline World MakeRoom(unsigned seed, int frames, double noise_px, double side = 
       const Eigen::Vector3d X = pose.q_WC.conjugate() * (world.points[n] - pose.p_WC);
       if (X.z() < 0.2) continue;
       const Eigen::Vector2d z = X.head<2>() / X.z();
-      if (std::abs(z.x()) > 0.5 * world.width_px / world.focal_px || std::abs(z.y()) > 0.5 * world.height_px / world.focal_px)
+      if (std::abs(z.x()) > 0.5 * world.width_px / world.focal_px ||
+          std::abs(z.y()) > 0.5 * world.height_px / world.focal_px)
         continue;
       views.emplace_back(n, z + noise_px / world.focal_px * draws.Normals<2>());
     }
@@ -82,7 +84,7 @@ inline Result Run(const World& world, const vo::Params& params, int features, un
   vo::ParticleFilter filter(params.motion, params.filter, params.landmark, prior, seed);
   const double sigma = params.features.sigma_px / world.focal_px;
   const Eigen::Matrix2d R = Eigen::Matrix2d::Identity() * sigma * sigma;
-  std::vector<int> point_of;    // per landmark of the filter
+  std::vector<int> point_of;  // per landmark of the filter
   std::vector<std::size_t> last_seen;
   Result result;
   for (std::size_t k = 0; k < world.truth.size(); ++k) {

@@ -2,10 +2,10 @@
 
 #include "tests/consistency/point_world.h"
 
-#include <algorithm>
+#include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <gtest/gtest.h>
+#include <algorithm>
 
 namespace {
 
@@ -55,7 +55,8 @@ TEST(PointWorld, IteratedProposalTracksWithinTwoCentimetresAndTheOneShotDoesNot)
 
 TEST(PointWorld, EqualSeedsGiveEqualBeliefsAndOthersDoNot) {
   const World world = MakeRoom(1, 20, 1.0);
-  const auto a = point_world::Run(world, OnePixel(), 60, 7), b = point_world::Run(world, OnePixel(), 60, 7), c = point_world::Run(world, OnePixel(), 60, 8);
+  const auto a = point_world::Run(world, OnePixel(), 60, 7), b = point_world::Run(world, OnePixel(), 60, 7),
+             c = point_world::Run(world, OnePixel(), 60, 8);
   EXPECT_EQ(a.beliefs.back().pose.p_WC, b.beliefs.back().pose.p_WC);
   EXPECT_EQ(a.beliefs.back().covariance, b.beliefs.back().covariance);
   EXPECT_NE(a.beliefs.back().pose.p_WC, c.beliefs.back().pose.p_WC);
@@ -75,7 +76,8 @@ Nees FirstStepNees(int runs, double covariance_factor) {
   for (int run = 0; run < runs; ++run) {
     const double dt = 1.0 / 30, focal = 525, sigma = 1 / focal;
     const auto normal = [&, d = 0u]() mutable {
-      return vo::Normal({.seed = 4711, .stream = vo::Stream::prior_velocity, .frame = static_cast<std::uint32_t>(run)}, d++);
+      return vo::Normal({.seed = 4711, .stream = vo::Stream::prior_velocity, .frame = static_cast<std::uint32_t>(run)},
+                        d++);
     };
     auto draw = normal;
     // Truth: velocity, motion and landmarks from the prior (landmarks well known, so that linear-Gaussian theory holds).
@@ -153,7 +155,8 @@ TEST(PointWorld, KalmanFilteredVelocityIsBetterThanSampledVelocity) {
       const auto result = point_world::Run(world, params, 100, run);
       for (std::size_t k = 31; k + 1 < world.truth.size(); ++k, ++count)
         sum += (result.beliefs[k].velocity.tail<3>() -
-                vo::Log(world.truth[k - 1].q_WC.conjugate() * world.truth[k + 1].q_WC) * (world.rate_hz / 2)).squaredNorm();
+                vo::Log(world.truth[k - 1].q_WC.conjugate() * world.truth[k + 1].q_WC) * (world.rate_hz / 2))
+                   .squaredNorm();
     }
     return std::sqrt(sum / count);
   };

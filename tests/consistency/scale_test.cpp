@@ -21,14 +21,15 @@ constexpr std::size_t kPosition = 0;  // of evaluation::kStateBlocks
 
 // Mean over runs, at the last frame, of the position's NEES per degree of freedom. The factor's log has a spread of 0.3 in the world.
 double Anees(const char* told) {
-  Experiment experiment = ReadExperiment(VOBENCH_SOURCE_DIR "/scenes/points.yaml", {{"time.duration", "0.6 s"},
-                                                                                    {"world.points.count", "20"},
-                                                                                    {"world.points.scale_sigma", "0.3"},
-                                                                                    {"odometry.landmark.scale_sigma", told},
-                                                                                    {"odometry.filter.lag", "5"},
-                                                                                    {"odometry.filter.weight", "equal"},
-                                                                                    {"odometry.filter.particles", "16"},
-                                                                                    {"odometry.filter.marginal_mode", "true"}});
+  Experiment experiment =
+      ReadExperiment(VOBENCH_SOURCE_DIR "/scenes/points.yaml", {{"time.duration", "0.6 s"},
+                                                                {"world.points.count", "20"},
+                                                                {"world.points.scale_sigma", "0.3"},
+                                                                {"odometry.landmark.scale_sigma", told},
+                                                                {"odometry.filter.lag", "5"},
+                                                                {"odometry.filter.weight", "equal"},
+                                                                {"odometry.filter.particles", "16"},
+                                                                {"odometry.filter.marginal_mode", "true"}});
   std::vector<double> nees;
   for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
     experiment.scenario.seed = seed;

@@ -46,7 +46,8 @@ TEST_F(DeterminismTest, RenderedBytesDoNotDependOnThreads) {
 TEST_F(DeterminismTest, MovingObjectsDoNotDependOnThreads) {
   const std::string scenario = (TinyScenario().parent_path() / "moving.yaml").string();
   const auto render = [&](const std::string& folder, const std::string& jobs) {
-    Vobench({"render", scenario, "-o", folder, "--frames", "20:24", "--jobs", jobs, "--set", "sensor.rolling_shutter=10 ms"});
+    Vobench({"render", scenario, "-o", folder, "--frames", "20:24", "--jobs", jobs, "--set",
+             "sensor.rolling_shutter=10 ms"});
   };
   render("one", "1");
   const auto one = Tree(here_ / "one");
@@ -90,7 +91,8 @@ TEST_F(DeterminismTest, RunsDoNotDependOnThreads) {
     for (const std::string seed : {"1", "2"}) {
       for (const std::string file : {"estimate.txt", "covariance.txt", "landmarks.csv", "truth.txt"}) {
         const std::string name = "/" + system + "/seed_" + seed + "/" + file;
-        for (const std::string& jobs : kThreads) EXPECT_TRUE(Read("jobs1" + name) == Read("jobs" + jobs + name)) << name << ' ' << jobs;
+        for (const std::string& jobs : kThreads)
+          EXPECT_TRUE(Read("jobs1" + name) == Read("jobs" + jobs + name)) << name << ' ' << jobs;
       }
     }
   }
@@ -108,7 +110,8 @@ TEST_F(DeterminismTest, RunsOnPointsDoNotDependOnThreads) {
     for (const std::string seed : {"1", "2", "3"}) {
       for (const std::string file : {"estimate.txt", "covariance.txt", "landmarks.csv", "truth.txt"}) {
         const std::string name = "/" + system + "/seed_" + seed + "/" + file;
-        for (const std::string& jobs : kThreads) EXPECT_TRUE(Read("jobs1" + name) == Read("jobs" + jobs + name)) << name << ' ' << jobs;
+        for (const std::string& jobs : kThreads)
+          EXPECT_TRUE(Read("jobs1" + name) == Read("jobs" + jobs + name)) << name << ' ' << jobs;
       }
     }
   }

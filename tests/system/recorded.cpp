@@ -34,7 +34,8 @@ void SomeFrames(const fs::path& sequence, int first, int last, const fs::path& f
 Scores TrackRecorded(const fs::path& sequence, const std::string& camera, std::uint64_t seed,
                      const std::vector<std::string>& settings) {
   const TemporaryFolder here;
-  std::vector<std::string> arguments{"track", sequence.string(), "-o", "out", "--camera", camera, "--seed", std::to_string(seed)};
+  std::vector<std::string> arguments{"track",  sequence.string(),   "-o", "out", "--camera", camera,
+                                     "--seed", std::to_string(seed)};
   for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--set", setting});
   const Outcome outcome = RunVobench(arguments, here.path());
   if (outcome.status != 0) throw std::runtime_error(outcome.err);

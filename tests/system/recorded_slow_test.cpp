@@ -47,8 +47,12 @@ TEST(RecordedSlowTest, Freiburg1) { ExpectWithin({0.9, 2, 2}, "tum_fr1_xyz", "fr
 TEST(RecordedSlowTest, IclOffice) { ExpectWithin({0.6, 1, 0.9}, "icl_office_kt0", "icl"); }
 
 // Without the joint mode's bias: docs/odometry.md.
-TEST(RecordedSlowTest, Freiburg1Marginal) { ExpectWithin({0.9, 2, 2}, "tum_fr1_xyz", "freiburg1", {"odometry.filter.marginal_mode=true"}); }
-TEST(RecordedSlowTest, IclOfficeMarginal) { ExpectWithin({0.6, 1, 0.9}, "icl_office_kt0", "icl", {"odometry.filter.marginal_mode=true"}); }
+TEST(RecordedSlowTest, Freiburg1Marginal) {
+  ExpectWithin({0.9, 2, 2}, "tum_fr1_xyz", "freiburg1", {"odometry.filter.marginal_mode=true"});
+}
+TEST(RecordedSlowTest, IclOfficeMarginal) {
+  ExpectWithin({0.6, 1, 0.9}, "icl_office_kt0", "icl", {"odometry.filter.marginal_mode=true"});
+}
 
 }  // namespace
 }  // namespace vobench::system_test

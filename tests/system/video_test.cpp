@@ -12,7 +12,9 @@ namespace {
 
 TEST(Video, IsTrackedFrameByFrame) {
   const TemporaryFolder here;
-  ASSERT_EQ(RunVobench({"render", TinyScenario().string(), "-o", "s", "--frames", "0:12", "--preview"}, here.path()).status, 0);
+  ASSERT_EQ(
+      RunVobench({"render", TinyScenario().string(), "-o", "s", "--frames", "0:12", "--preview"}, here.path()).status,
+      0);
   const Outcome outcome = RunVobench({"track", "s/preview.mp4", "-o", "out", "--camera", "s/camera.yaml"}, here.path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const std::string estimate = ReadFile(here / "out/estimate.txt");
@@ -20,7 +22,8 @@ TEST(Video, IsTrackedFrameByFrame) {
   EXPECT_THAT(estimate, testing::HasSubstr("\n0.033333333 "));
   const Outcome without = RunVobench({"track", "s/preview.mp4", "-o", "other"}, here.path());
   EXPECT_EQ(without.status, 2);
-  EXPECT_THAT(without.err, testing::HasSubstr("preview.mp4: a video says nothing of its camera; say which one with --camera"));
+  EXPECT_THAT(without.err,
+              testing::HasSubstr("preview.mp4: a video says nothing of its camera; say which one with --camera"));
   EXPECT_FALSE(std::filesystem::exists(here / "other"));
 }
 

@@ -92,7 +92,7 @@ struct Campaign {
   std::vector<TableSpec> tables;
   std::vector<CurveSpec> curves;
   Keep keep = Keep::estimate;
-  std::string resolved;   // all of it, defaults included, as JSON
+  std::string resolved;  // all of it, defaults included, as JSON
 };
 
 // What task k does.

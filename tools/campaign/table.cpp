@@ -90,7 +90,8 @@ Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vect
   for (auto& [at, cell] : cells) {
     std::vector<double>& sorted = values[at];
     std::sort(sorted.begin(), sorted.end());
-    cell.low = evaluation::Quantile(sorted, 0.25), cell.median = evaluation::Quantile(sorted, 0.5), cell.high = evaluation::Quantile(sorted, 0.75);
+    cell.low = evaluation::Quantile(sorted, 0.25), cell.median = evaluation::Quantile(sorted, 0.5),
+    cell.high = evaluation::Quantile(sorted, 0.75);
     table.cells[at.first][at.second] = cell;
   }
   return table;
@@ -142,7 +143,8 @@ std::string Latex(const std::vector<Table>& tables) {
   std::string text;
   for (const Table& table : tables) {
     text += fmt::format("% {}: {}\n\\begin{{tabular}}{{{}{}}}\n\\hline\n", table.spec.title, Caption(table),
-                        std::string(table.spec.rows.size(), 'l'), std::string(table.columns.size() + table.spec.beside.size(), 'r'));
+                        std::string(table.spec.rows.size(), 'l'),
+                        std::string(table.columns.size() + table.spec.beside.size(), 'r'));
     std::vector<std::string> line;
     for (const std::string& name : table.spec.rows) line.push_back(EscapeLatex(name));
     for (const std::string& name : ColumnNames(table)) line.push_back(EscapeLatex(name));

@@ -14,8 +14,8 @@ struct Ate {
   Alignment alignment = Alignment::none;
   Similarity similarity;                // that was applied to the estimate
   std::vector<double> position_errors;  // |p_aligned - p_truth| per pair [m]
-  std::vector<double>
-      orientation_errors;  // angle of R_truth' R_aligned per pair [rad]; empty if the rotation is undetermined
+  // Angle of R_truth' R_aligned per pair [rad]; empty if the rotation is undetermined
+  std::vector<double> orientation_errors;
   Statistics position;     // [m]
   Statistics orientation;  // [rad]
 };

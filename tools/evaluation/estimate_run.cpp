@@ -14,10 +14,9 @@ namespace {
 
 constexpr std::size_t kUpperTriangle = 78;
 constexpr std::size_t kWithoutGuards = 12;  // columns
-const std::array<const char*, 16> kColumns = {"timestamp",   "searched",    "matched",    "landmarks",
-                                              "permanent",   "nis",         "nis_dof",    "effective_particles",
-                                              "ms_features", "ms_matching", "ms_filter",  "status",
-                                              "unsettled",   "behind",      "indefinite", "impossible"};
+const std::array<const char*, 16> kColumns = {
+    "timestamp",   "searched",    "matched",   "landmarks", "permanent", "nis",    "nis_dof",    "effective_particles",
+    "ms_features", "ms_matching", "ms_filter", "status",    "unsettled", "behind", "indefinite", "impossible"};
 
 std::vector<StampedBelief> ReadBeliefs(const std::filesystem::path& file, Problems& problems) {
   std::vector<StampedBelief> beliefs;
@@ -164,9 +163,11 @@ std::string FormatBeliefs(const std::vector<StampedBelief>& beliefs) {
 }
 
 std::string FormatFrames(const std::vector<FrameRecord>& frames) {
-  const bool guarded = std::all_of(frames.begin(), frames.end(), [](const FrameRecord& f) { return f.guards.has_value(); });
+  const bool guarded =
+      std::all_of(frames.begin(), frames.end(), [](const FrameRecord& f) { return f.guards.has_value(); });
   std::string text;
-  for (std::size_t i = 0; i < (guarded ? kColumns.size() : kWithoutGuards); ++i) text += (i == 0 ? "" : ",") + std::string(kColumns[i]);
+  for (std::size_t i = 0; i < (guarded ? kColumns.size() : kWithoutGuards); ++i)
+    text += (i == 0 ? "" : ",") + std::string(kColumns[i]);
   text += '\n';
   for (const FrameRecord& f : frames) {
     text += FormatSeconds(f.stamp_ns);
@@ -184,7 +185,8 @@ std::string FormatFrames(const std::vector<FrameRecord>& frames) {
     }
     text += f.tracked ? ",tracked" : ",coasted";
     if (guarded) {
-      for (const int value : {f.guards->unsettled, f.guards->behind, f.guards->indefinite, f.guards->impossible}) text += ',' + std::to_string(value);
+      for (const int value : {f.guards->unsettled, f.guards->behind, f.guards->indefinite, f.guards->impossible})
+        text += ',' + std::to_string(value);
     }
     text += '\n';
   }

@@ -37,7 +37,8 @@ struct FrameRecord {
   double effective_particles = 0;
   double ms_features = 0, ms_matching = 0, ms_filter = 0;
   bool tracked = false;  // at least 10 matched features; else the filter coasted
-  std::optional<GuardCounts> guards;  // none: not known, as of other people's systems and of results before these were counted
+  // None: not known, as of other people's systems and of results before these were counted
+  std::optional<GuardCounts> guards;
 };
 
 struct EstimateRun {

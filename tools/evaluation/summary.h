@@ -30,8 +30,8 @@ struct TrajectoryErrors {
   Ate none, se3, sim3, first;  // by alignment
   Rpe rpe;                     // estimate's translations times sim3's scale
   Rpe rpe_unscaled;            // as they are
-  std::size_t rpe_pairs_offered =
-      0;  // how many pairs the truth offers on the frames of the sequence; rpe.pairs has those answered
+  // How many pairs the truth offers on the frames of the sequence; rpe.pairs has those answered
+  std::size_t rpe_pairs_offered = 0;
   const Ate& Aligned(Alignment alignment) const;
 };
 

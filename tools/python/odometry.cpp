@@ -46,8 +46,8 @@ vo::Odometry OdometryOf(const Simulator& simulator, const std::string& system, s
 vo::PointOdometry OdometryOf(const PointWorld& world, const std::string& system, std::optional<std::uint64_t> seed) {
   const Experiment& experiment = *world.scenario;
   const std::uint64_t number = seed.value_or(world.world.scenario().seed);
-  return {ToldCamera(experiment), ParamsOf(system, experiment.odometry),
-          PriorOf(experiment.prior, world.world, number), number};
+  return {ToldCamera(experiment), ParamsOf(system, experiment.odometry), PriorOf(experiment.prior, world.world, number),
+          number};
 }
 
 vo::Frame FrameOf(std::int64_t stamp_ns, const Bytes& image) {
@@ -203,8 +203,10 @@ void AddOdometry(py::module_& m) {
           },
           py::arg("stamp_ns"), py::arg("image"))
       .def("features", &Features,
-           "What was seen of each landmark in the last frame: (ids (n,), status (n,): 0 matched, 1 missed, 2 rejected as an outlier, 3 new; "
-           "predicted (n, 2), pixel (n, 2) [px], S (n, 2, 2): covariance of the prediction, R (n, 2, 2): of the match's error [px^2]).")
+           "What was seen of each landmark in the last frame: (ids (n,), status (n,): 0 matched, 1 missed, 2 rejected "
+           "as an outlier, 3 new; "
+           "predicted (n, 2), pixel (n, 2) [px], S (n, 2, 2): covariance of the prediction, R (n, 2, 2): of the "
+           "match's error [px^2]).")
       .def("map", &Map<vo::Odometry>, "(ids, X_W (n, 3)) of the landmarks in the map [m]");
   py::class_<vo::PointOdometry>(m, "PointOdometry", Doc("vo/point_odometry.h:"))
       .def(py::init(

@@ -9,7 +9,8 @@ namespace report {
 namespace {
 
 using Guards = evaluation::GuardSummary;
-constexpr Guards::Firings Guards::*kGuards[] = {&Guards::unsettled, &Guards::behind, &Guards::indefinite, &Guards::impossible};
+constexpr Guards::Firings Guards::*kGuards[] = {&Guards::unsettled, &Guards::behind, &Guards::indefinite,
+                                                &Guards::impossible};
 
 }  // namespace
 
@@ -35,8 +36,10 @@ std::string GuardTable(const std::vector<JudgedRun>& judged) {
       rows.back().push_back(std::to_string(firings.times) + " (" + std::to_string(firings.frames) + ")");
     }
   }
-  return Table("What the filters' equations do not say, and happened: summed over particles, frames and runs. The first two are "
-               "rare and harmless; the last two should be 0.", rows);
+  return Table(
+      "What the filters' equations do not say, and happened: summed over particles, frames and runs. The first two are "
+      "rare and harmless; the last two should be 0.",
+      rows);
 }
 
 }  // namespace report

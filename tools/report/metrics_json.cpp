@@ -146,7 +146,9 @@ Json Of(const ev::Metrics& metrics) {
                               {"filter", metrics.timing->ms_filter}};
   }
   if (metrics.guards) {
-    const auto firings = [](const ev::GuardSummary::Firings& f) { return Json{{"times", f.times}, {"frames", f.frames}}; };
+    const auto firings = [](const ev::GuardSummary::Firings& f) {
+      return Json{{"times", f.times}, {"frames", f.frames}};
+    };
     json["guards"] = {{"how", "what the filter's equations do not say, and happened: docs/odometry.md"},
                       {"unsettled", firings(metrics.guards->unsettled)},
                       {"behind", firings(metrics.guards->behind)},

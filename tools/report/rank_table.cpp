@@ -46,7 +46,8 @@ std::vector<RankTable> ReadRanks(const std::filesystem::path& out) {
     if (!(frame >= 1 && frame < 1e9)) problems.Add(file, line.number, line.tokens[1].column, "no frame's number");
     const std::string &system = line.tokens[0].text, &dimension = line.tokens[2].text;
     if (number(3) == 1)
-      tables.push_back({system, static_cast<std::size_t>(std::clamp(frame, 0.0, 1e9)), dimension, number(7), {}, {}, {}});
+      tables.push_back(
+          {system, static_cast<std::size_t>(std::clamp(frame, 0.0, 1e9)), dimension, number(7), {}, {}, {}});
     if (tables.empty() || tables.back().system != system || tables.back().dimension != dimension) {
       problems.Add(file, line.number, 1, "bars of a histogram must follow each other, from 1");
       continue;

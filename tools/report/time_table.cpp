@@ -14,7 +14,8 @@ std::string TimeTable(const std::vector<evaluation::FrameRecord>& frames, double
     std::vector<double> times;
     for (const evaluation::FrameRecord& frame : frames) times.push_back(time_of(frame));
     std::sort(times.begin(), times.end());
-    rows.push_back({name, Fixed(evaluation::Quantile(times, 0.5), 2), Fixed(evaluation::Quantile(times, 0.95), 2), Fixed(times.back(), 2)});
+    rows.push_back({name, Fixed(evaluation::Quantile(times, 0.5), 2), Fixed(evaluation::Quantile(times, 0.95), 2),
+                    Fixed(times.back(), 2)});
   };
   using Record = evaluation::FrameRecord;
   add("features", [](const Record& f) { return f.ms_features; });
@@ -22,8 +23,9 @@ std::string TimeTable(const std::vector<evaluation::FrameRecord>& frames, double
   add("filter", [](const Record& f) { return f.ms_filter; });
   add("all", [](const Record& f) { return f.ms_features + f.ms_matching + f.ms_filter; });
   const double n = static_cast<double>(frames.size());
-  return AlignedTable(rows) + std::to_string(frames.size()) + " frames in " + Fixed(elapsed_s, 2) + " s, read and tracked: " +
-         Fixed(1e3 * elapsed_s / n, 2) + " ms each, " + Fixed(n / elapsed_s, 1) + " a second.\n";
+  return AlignedTable(rows) + std::to_string(frames.size()) + " frames in " + Fixed(elapsed_s, 2) +
+         " s, read and tracked: " + Fixed(1e3 * elapsed_s / n, 2) + " ms each, " + Fixed(n / elapsed_s, 1) +
+         " a second.\n";
 }
 
 }  // namespace report

@@ -149,7 +149,8 @@ void ReadScenario(const nlohmann::json& scenario, Sequence& s) {
 void ReadManifest(const fs::path& file, Sequence& s, Check& files) {
   std::ifstream stream(file);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (const std::string problem = limits::JsonProblem(text); !problem.empty()) return files.Fail("manifest.json: " + problem);
+  if (const std::string problem = limits::JsonProblem(text); !problem.empty())
+    return files.Fail("manifest.json: " + problem);
   const nlohmann::json manifest = nlohmann::json::parse(text, nullptr, false);
   if (!manifest.is_object() || !manifest.contains("scenario") || !manifest["scenario"].is_object()) return;
   try {
@@ -209,7 +210,8 @@ cv::Mat ReadFlo(const fs::path& path) {
       size[1] > 1 << 15) {
     throw std::runtime_error("is no .flo file");
   }
-  const std::uintmax_t length = 12 + std::uintmax_t{8} * static_cast<std::uintmax_t>(size[0]) * static_cast<std::uintmax_t>(size[1]);
+  const std::uintmax_t length =
+      12 + std::uintmax_t{8} * static_cast<std::uintmax_t>(size[0]) * static_cast<std::uintmax_t>(size[1]);
   if (fs::file_size(path) != length) throw std::runtime_error("is not as long as its size says");
   cv::Mat flow(size[1], size[0], CV_32FC2);
   stream.read(reinterpret_cast<char*>(flow.data), static_cast<std::streamsize>(flow.total() * flow.elemSize()));

@@ -15,8 +15,8 @@ using Eigen::Vector4d;
 
 constexpr double kSigmas = 6;
 constexpr double kBlur = 1.5;  // of Frames::Smooth [px]
-constexpr double kInterpolation =
-    0.03;  // [px] what bilinear interpolation and pixels' squares displace at most; measured
+// [px] what bilinear interpolation and pixels' squares displace at most; measured
+constexpr double kInterpolation = 0.03;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 // A pixel of this frame, where its surface point is in the partner's picture, and what is there.

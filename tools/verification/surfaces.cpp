@@ -264,7 +264,8 @@ void SurfaceChecks::DepthInNeighbours(std::size_t frame) {
       // An object is small: more of it than half may be hidden in a neighbour, but not three quarters in both.
       const std::size_t middle = ratios[kind].size() / (kind == 0 ? 2 : 4);
       if (ratios[kind].size() < 100) continue;
-      std::nth_element(ratios[kind].begin(), ratios[kind].begin() + static_cast<std::ptrdiff_t>(middle), ratios[kind].end());
+      std::nth_element(ratios[kind].begin(), ratios[kind].begin() + static_cast<std::ptrdiff_t>(middle),
+                       ratios[kind].end());
       best[kind] = std::min(best[kind], ratios[kind][middle]);
     }
   }

@@ -28,10 +28,7 @@ class LocalRun {
  public:
   LocalRun(const CampaignWork& work, const std::filesystem::path& out, const std::vector<std::int64_t>& tasks,
            const LocalOptions& options)
-      : work_(work),
-        out_(out),
-        options_(options),
-        tasks_(static_cast<std::int64_t>(tasks.size())) {
+      : work_(work), out_(out), options_(options), tasks_(static_cast<std::int64_t>(tasks.size())) {
     std::map<std::string, std::size_t> known;
     for (const std::int64_t task : tasks) {
       const std::size_t p = campaign::ChoiceOf(work.campaign(), task).point;

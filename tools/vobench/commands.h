@@ -39,7 +39,7 @@ struct TrackOptions {
   std::optional<std::string> camera;  // a preset or a file; the sequence's camera.yaml unless told
   std::optional<std::filesystem::path> settings;
   std::uint64_t seed = 1;
-  bool view = false;  // the report in a browser, while it runs
+  bool view = false;                         // the report in a browser, while it runs
   std::optional<std::filesystem::path> map;  // a PLY file of the landmarks, too
   Overrides overrides;
   std::string command_line;  // for the record

@@ -21,8 +21,8 @@ void ReadMotion(Section section, vo::MotionParams& params) {
 
 void ReadFilter(Section section, vo::FilterParams& params) {
   // Which velocities are sampled is what tells the systems apart: --system says it.
-  [[maybe_unused]] auto& [sampled, proposal, particles, resample_below, max_iterations, joint_iterations, weight, lag, start_window,
-                          marginal_mode, reject_outliers, ukf_alpha, ukf_beta, ukf_kappa] = params;
+  [[maybe_unused]] auto& [sampled, proposal, particles, resample_below, max_iterations, joint_iterations, weight, lag,
+                          start_window, marginal_mode, reject_outliers, ukf_alpha, ukf_beta, ukf_kappa] = params;
   section.ReadChoice("proposal", proposal,
                      {{"bootstrap", vo::Proposal::bootstrap},
                       {"ekf", vo::Proposal::ekf},
@@ -45,7 +45,8 @@ void ReadFilter(Section section, vo::FilterParams& params) {
 }
 
 void ReadLandmark(Section section, vo::LandmarkParams& params) {
-  auto& [bearing, inverse_depth, inverse_depth_sigma, scale_sigma, permanent_ratio, forget_after, max_landmarks] = params;
+  auto& [bearing, inverse_depth, inverse_depth_sigma, scale_sigma, permanent_ratio, forget_after, max_landmarks] =
+      params;
   section.ReadChoice("bearing", bearing, {{"fixed", vo::Bearing::fixed}, {"estimated", vo::Bearing::estimated}});
   section.Read("inverse_depth", inverse_depth, Range::Positive());
   section.Read("inverse_depth_sigma", inverse_depth_sigma, Range::Positive());
@@ -71,8 +72,8 @@ void ReadScore(Section section, vo::ScoreParams& params) {
 
 void ReadFeatures(Section section, vo::FeatureParams& params) {
   auto& [sigma_px, noise, sigma_floor_px, noise_inflation, grid_columns, grid_rows, per_cell, fast_threshold_start,
-         fast_threshold_min, min_distance_px, brisk_size_px, brisk_warp, max_hamming, window_quick_px,
-         window_px, window_enlarged_px, window_lost_px, window_recovery_px, subpixel, max_view_angle_deg, max_baseline_ratio,
+         fast_threshold_min, min_distance_px, brisk_size_px, brisk_warp, max_hamming, window_quick_px, window_px,
+         window_enlarged_px, window_lost_px, window_recovery_px, subpixel, max_view_angle_deg, max_baseline_ratio,
          max_searched, readout_s, pilots] = params;
   section.Read("sigma", sigma_px, Unit::pixel, Range::Positive());
   section.ReadChoice("noise", noise,

@@ -101,7 +101,8 @@ void OptionTable::AddTrack() {
   CLI::App& command =
       AddCommand(app, "track", "Run an odometry on a sequence (TUM RGB-D, EuRoC or ICL-NUIM layout) from disk",
                  "vobench track rgbd_dataset_freiburg1_xyz -o out/xyz --camera freiburg1 --seed 3");
-  command.add_option("SEQ", track.sequence, "Sequence folder, video file, camera:0, or the address of a stream")->required();
+  command.add_option("SEQ", track.sequence, "Sequence folder, video file, camera:0, or the address of a stream")
+      ->required();
   command.add_option("-o,--output", track.output, "Result folder to make")->required()->type_name("OUT");
   command.add_option("--system", track.system, "One of " + SystemList())
       ->check(CLI::IsMember(SystemNames()))
@@ -128,10 +129,11 @@ void OptionTable::AddEvaluate() {
       ->required()
       ->type_name("SEQ|FILE");
   CLI::Option* align =
-      command.add_option("--align", evaluate.align, "What the estimate may be moved by before: none, se3, sim3 or first")
-      ->check(CLI::IsMember({"none", "se3", "sim3", "first"}))
-      ->type_name("NAME")
-      ->capture_default_str();
+      command
+          .add_option("--align", evaluate.align, "What the estimate may be moved by before: none, se3, sim3 or first")
+          ->check(CLI::IsMember({"none", "se3", "sim3", "first"}))
+          ->type_name("NAME")
+          ->capture_default_str();
   command
       .add_option("--compat", evaluate.compat,
                   "Print what another tool prints: tum, evo, rpg or ov, and its own options in the same quotes, such "

@@ -53,7 +53,8 @@ void Progress::Step(std::int64_t count) {
 void Progress::Draw() const {
   const double elapsed = Seconds(drawn_ - start_);
   if (total_ == 0) {
-    fmt::print(stderr, "{}{}: {} {}, {}{}", terminal_ ? "\r" : "", what_, done_, unit_, Duration(elapsed), terminal_ ? "    " : "\n");
+    fmt::print(stderr, "{}{}: {} {}, {}{}", terminal_ ? "\r" : "", what_, done_, unit_, Duration(elapsed),
+               terminal_ ? "    " : "\n");
     return;
   }
   if (!terminal_) {

@@ -26,9 +26,10 @@ namespace {
 std::set<std::string> SequenceNames() {
   std::set<std::string> names = sim::StreamNames();
   names.insert({"camera.yaml", sim::kManifestName, sim::kJournalName});
-  names.insert({"rgb", "rgb.txt", "depth", "depth.txt", "groundtruth.txt", "velocity.txt", "exposure.txt"});  // TUM RGB-D
-  names.insert({"mav0", "truth"});                                                              // EuRoC
-  names.insert({"associations.txt", "traj.gt.freiburg"});                                     // ICL-NUIM
+  names.insert(
+      {"rgb", "rgb.txt", "depth", "depth.txt", "groundtruth.txt", "velocity.txt", "exposure.txt"});  // TUM RGB-D
+  names.insert({"mav0", "truth"});                                                                   // EuRoC
+  names.insert({"associations.txt", "traj.gt.freiburg"});                                            // ICL-NUIM
   names.insert({"preview.mp4", "unfinished-preview.mp4", "contact.jpg"});
   return names;
 }
@@ -69,7 +70,8 @@ void RequireRoom(const RenderOptions& options, const fs::path& folder, const fs:
                     "it, or remove it",
                     partial.string()));
   }
-  if (fs::exists(partial / sim::kManifestName)) RequireReplaceable(partial, sim::kManifestName, UnfinishedSequenceNames());
+  if (fs::exists(partial / sim::kManifestName))
+    RequireReplaceable(partial, sim::kManifestName, UnfinishedSequenceNames());
 }
 
 // The sequence of this content is there under its last name. Throws BadInput if another one is.

@@ -14,10 +14,9 @@ namespace vobench {
 
 const std::set<std::string>& ResultNames() {
   static const std::set<std::string> names = [] {
-    std::set<std::string> all = {"run.json",    "metrics.json",  "anees.csv",      "verdict.csv",
-                                 "report.html", "estimate.txt",  "covariance.txt", "frames.csv",
-                                 "frames",      "landmarks.csv", "truth.txt",      "truth_velocity.txt",
-                                 "ranks.csv",   "pictures.json", "truth"};
+    std::set<std::string> all = {"run.json",     "metrics.json",       "anees.csv",  "verdict.csv",   "report.html",
+                                 "estimate.txt", "covariance.txt",     "frames.csv", "frames",        "landmarks.csv",
+                                 "truth.txt",    "truth_velocity.txt", "ranks.csv",  "pictures.json", "truth"};
     for (const std::string& system : SystemNames()) all.insert(system);
     return all;
   }();

@@ -53,7 +53,8 @@ std::vector<report::JudgedRun> Judge(const std::vector<Tracker>& trackers, const
 }
 
 void Write(OutputFolder& folder, const std::vector<Tracker>& trackers, const Truth& truth,
-           const TruthPictures& truth_pictures, const std::vector<report::JudgedRun>& judged, report::RunDescription description) {
+           const TruthPictures& truth_pictures, const std::vector<report::JudgedRun>& judged,
+           report::RunDescription description) {
   for (const Tracker& tracker : trackers) {
     tracker.Write();
     WriteTruth(folder.path() / tracker.entry().path, truth);

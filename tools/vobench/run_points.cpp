@@ -54,8 +54,7 @@ void Play(const RunOptions& options, const Experiment& experiment, const Folder&
           const Step& step) {
   sim::PointWorld world = WorldOf(experiment, run.seed);
   const TrackerSetup setup{run.system, run.seed, experiment.odometry, PriorOf(experiment.prior, world, run.seed)};
-  PointTracker tracker(setup, ToldCamera(experiment),
-                       folder ? std::optional(folder->path()) : std::nullopt,
+  PointTracker tracker(setup, ToldCamera(experiment), folder ? std::optional(folder->path()) : std::nullopt,
                        fmt::format("{}/seed_{}", run.system, run.seed));
   Truth truth;
   const bool bound = options.bound || options.verdict;

@@ -107,8 +107,8 @@ void Track(const TrackOptions& options) {
   const std::optional<std::int64_t> frames = source->Count();
   OutputFolder out(options.output, kResultMarker, ResultNames());
 
-  Tracker tracker({options.system, options.seed, settings.params, PriorAtOrigin(settings.prior)}, camera, frames.value_or(kFramesOfACamera),
-                  out.path(), ".");
+  Tracker tracker({options.system, options.seed, settings.params, PriorAtOrigin(settings.prior)}, camera,
+                  frames.value_or(kFramesOfACamera), out.path(), ".");
   report::RunDescription description;
   description.title = fs::weakly_canonical(options.sequence).filename().string();
   description.input = options.sequence.string();
@@ -162,8 +162,8 @@ void Track(const TrackOptions& options) {
   if (options.map) WriteMap(*options.map, tracker.map());
   out.Commit();
 
-  fmt::print("{}{}The report is in {}\n", report::TextSummary(judged), report::TimeTable(tracker.estimates().frames, elapsed_s),
-             (options.output / "report.html").string());
+  fmt::print("{}{}The report is in {}\n", report::TextSummary(judged),
+             report::TimeTable(tracker.estimates().frames, elapsed_s), (options.output / "report.html").string());
 }
 
 }  // namespace vobench

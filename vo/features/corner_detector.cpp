@@ -1,7 +1,6 @@
 #include "vo/features/corner_detector.h"
 
 #include <algorithm>
-
 #include <opencv2/features2d.hpp>
 
 namespace vo {
@@ -22,8 +21,8 @@ bool FarFrom(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& 
 
 }  // namespace
 
-std::vector<Eigen::Vector2i> DetectCorners(const cv::Mat& grey, const std::vector<Eigen::Vector2d>& occupied, int border_px,
-                                           const FeatureParams& params) {
+std::vector<Eigen::Vector2i> DetectCorners(const cv::Mat& grey, const std::vector<Eigen::Vector2d>& occupied,
+                                           int border_px, const FeatureParams& params) {
   constexpr int kFastMargin = 3;  // FAST's circle; it finds nothing closer to the edge of what it is given
   const cv::Rect usable(border_px, border_px, grey.cols - 2 * border_px, grey.rows - 2 * border_px);
   std::vector<Eigen::Vector2i> found;
@@ -41,10 +40,12 @@ std::vector<Eigen::Vector2i> DetectCorners(const cv::Mat& grey, const std::vecto
         if (p.x() >= x0 && p.x() < x1 && p.y() >= y0 && p.y() < y1) --wanted;
       if (wanted <= 0) continue;
 
-      const cv::Rect cell = cv::Rect(x0 - kFastMargin, y0 - kFastMargin, x1 - x0 + 2 * kFastMargin, y1 - y0 + 2 * kFastMargin) &
-                            cv::Rect(0, 0, grey.cols, grey.rows);
+      const cv::Rect cell =
+          cv::Rect(x0 - kFastMargin, y0 - kFastMargin, x1 - x0 + 2 * kFastMargin, y1 - y0 + 2 * kFastMargin) &
+          cv::Rect(0, 0, grey.cols, grey.rows);
       std::vector<Eigen::Vector2d> best;
-      for (int threshold = params.fast_threshold_start;; threshold = std::max(threshold * 2 / 3, params.fast_threshold_min)) {
+      for (int threshold = params.fast_threshold_start;;
+           threshold = std::max(threshold * 2 / 3, params.fast_threshold_min)) {
         cv::FAST(grey(cell), corners, threshold, true);
         SortByResponse(corners);
         best.clear();

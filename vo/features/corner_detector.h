@@ -2,10 +2,9 @@
 // Source:  algorithm, section 7; FAST-9 of OpenCV (Rosten & Drummond).
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "vo/params.h"
 
@@ -13,7 +12,7 @@ namespace vo {
 
 // New corners (whole pixels), strongest first within a cell, at least min_distance_px from `occupied` and from each other and
 // `border_px` from the edge. A cell that already holds k of `occupied` gets at most per_cell - k. `grey` is CV_8UC1.
-std::vector<Eigen::Vector2i> DetectCorners(const cv::Mat& grey, const std::vector<Eigen::Vector2d>& occupied, int border_px,
-                                           const FeatureParams& params);
+std::vector<Eigen::Vector2i> DetectCorners(const cv::Mat& grey, const std::vector<Eigen::Vector2d>& occupied,
+                                           int border_px, const FeatureParams& params);
 
 }  // namespace vo

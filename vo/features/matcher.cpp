@@ -1,18 +1,17 @@
 #include "vo/features/matcher.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
 namespace vo {
 namespace {
 
-constexpr double kMaxRefinementPx = 1.5;   // further than this the registration has left the matched corner
+constexpr double kMaxRefinementPx = 1.5;  // further than this the registration has left the matched corner
 constexpr double kMinCorrelation = 0.6;
-constexpr double kMaxZoom = 4;             // a predicted change of scale beyond it is not believed
-constexpr double kLostSigmas = 2.5;        // of the prediction that the largest window should cover
+constexpr double kMaxZoom = 4;       // a predicted change of scale beyond it is not believed
+constexpr double kLostSigmas = 2.5;  // of the prediction that the largest window should cover
 
 Eigen::Vector2i Rounded(const Eigen::Vector2d& p) {
   return {static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))};
@@ -65,7 +64,9 @@ int WindowOf(const Eigen::Matrix2d& S) {
   return 2 * static_cast<int>(std::ceil(kLostSigmas * std::sqrt(std::max(S(0, 0), S(1, 1))))) + 1;
 }
 
-BriskSampler FirstSampler(const FeatureParams& params) { return BriskSampler(PatternMap(Eigen::Matrix2d::Identity(), params)); }
+BriskSampler FirstSampler(const FeatureParams& params) {
+  return BriskSampler(PatternMap(Eigen::Matrix2d::Identity(), params));
+}
 
 std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& smooth,
                                                       const BriskImage& brisk, const FeatureParams& params) {
@@ -78,14 +79,16 @@ std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRe
     const SearchRequest& request = requests[i];
     const BriskSampler sampler(PatternMap(request.warp, params));
     int searched = 0;
-    for (const int wanted : {params.window_quick_px, params.window_px, params.window_enlarged_px, LostWindow(request, params)}) {
+    for (const int wanted :
+         {params.window_quick_px, params.window_px, params.window_enlarged_px, LostWindow(request, params)}) {
       const int side = request.widest_px ? std::min(wanted, *request.widest_px) : wanted;
       if (side <= searched) continue;
       const bool quick = searched == 0 && side < params.window_px;
       searched = side;
       SearchRegion(request, side, params, region);
       const auto best = brisk.Nearest(request.appearance->descriptor, sampler, region);
-      if (!best || best->distance >= max_distance || (quick && OnBorder(best->pixel, Rounded(request.predicted), side))) continue;
+      if (!best || best->distance >= max_distance || (quick && OnBorder(best->pixel, Rounded(request.predicted), side)))
+        continue;
       found[i] = {best->pixel.cast<double>(), constant};
       break;
     }

@@ -20,10 +20,10 @@ struct Appearance {
 
 struct SearchRequest {
   const Appearance* appearance = nullptr;
-  Eigen::Vector2d predicted = Eigen::Vector2d::Zero();          // [px]
-  Eigen::Matrix2d S = Eigen::Matrix2d::Zero();                  // its covariance, pixel noise included [px^2]
-  Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();           // d(present pixel)/d(pixel of the first view)
-  std::optional<int> widest_px = std::nullopt;                          // no window is wider than this; none: as the settings have it
+  Eigen::Vector2d predicted = Eigen::Vector2d::Zero();  // [px]
+  Eigen::Matrix2d S = Eigen::Matrix2d::Zero();          // its covariance, pixel noise included [px^2]
+  Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();   // d(present pixel)/d(pixel of the first view)
+  std::optional<int> widest_px = std::nullopt;          // no window is wider than this; none: as the settings have it
 };
 
 // Side of the window that covers a prediction of this covariance [px^2].

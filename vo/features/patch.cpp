@@ -1,10 +1,9 @@
 #include "vo/features/patch.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 namespace vo {
@@ -47,7 +46,8 @@ bool WarpPatch(const Patch& patch, const Eigen::Matrix2d& warp, WideWindow& out)
   constexpr int kReach = kWindowRadius + 1;
   const Eigen::Matrix2d to_first = warp.inverse();
   const Eigen::Vector2d farthest = kReach * to_first.cwiseAbs().rowwise().sum();  // at two of the four corners
-  if (!(Patch::kRadius - farthest.maxCoeff() >= 0 && Patch::kRadius + farthest.maxCoeff() < Patch::kSide - 1)) return false;
+  if (!(Patch::kRadius - farthest.maxCoeff() >= 0 && Patch::kRadius + farthest.maxCoeff() < Patch::kSide - 1))
+    return false;
   for (int v = -kReach; v <= kReach; ++v) {
     const Eigen::Vector2d row = v * to_first.col(1) + Eigen::Vector2d::Constant(Patch::kRadius);
     for (int u = -kReach; u <= kReach; ++u)
@@ -86,7 +86,8 @@ class Axes {
     Eigen::Vector2d variances;
     for (int i = 0; i < 2; ++i) {
       const double told = Told(i, residual_variance);
-      variances[i] = kWidest * told > kCorrelated * residual_variance ? kCorrelated * residual_variance / told : kWidest;
+      variances[i] =
+          kWidest * told > kCorrelated * residual_variance ? kCorrelated * residual_variance / told : kWidest;
     }
     return Matrix(variances);
   }

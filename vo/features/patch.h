@@ -3,11 +3,10 @@
 //          the patch is first warped by the predicted change of view. Our addition to the paper: see docs/odometry.md.
 #pragma once
 
-#include <array>
-#include <optional>
-
 #include <Eigen/Core>
+#include <array>
 #include <opencv2/core.hpp>
+#include <optional>
 
 namespace vo {
 
@@ -28,8 +27,8 @@ Patch CutPatch(const cv::Mat& smooth, const Eigen::Vector2i& centre);
 struct Registration {
   Eigen::Vector2d pixel;
   double correlation = 0;  // normalised, -1 ... 1
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  // of least squares [px^2], as if noise and staircase told nothing; along an edge
-                                                         // as wide as the window
+  // Of least squares [px^2], as if noise and staircase told nothing; along an edge as wide as the window
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
 };
 
 // `warp` = d(present pixel)/d(pixel of the first view). Along a straight edge the pixel is left where `start` is. None when the window leaves the

@@ -6,10 +6,10 @@
 namespace vo {
 namespace {
 
-constexpr double kUndecided = 4;  // times as far, squared
-constexpr int kRounds = 4;       // at least, ...
-constexpr int kMostRounds = 12;  // ... and as long as the pose moves: after a dark time it begins far off
-constexpr double kStill = 0.1;   // of its standard deviation
+constexpr double kUndecided = 4;   // times as far, squared
+constexpr int kRounds = 4;         // at least, ...
+constexpr int kMostRounds = 12;    // ... and as long as the pose moves: after a dark time it begins far off
+constexpr double kStill = 0.1;     // of its standard deviation
 constexpr double kCauchySq = 5.7;  // 2.385^2: 95 % efficient on Gaussian residuals
 constexpr double kFar = 1e6;
 
@@ -19,10 +19,12 @@ bool Moved(const PoseGaussian& pose, const Pose& before) {
 
 }  // namespace
 
-double OutlierGate(const Filter& filter, const ScoreParams& score) { return filter.undecided() ? kUndecided * score.gate : score.gate; }
+double OutlierGate(const Filter& filter, const ScoreParams& score) {
+  return filter.undecided() ? kUndecided * score.gate : score.gate;
+}
 
-Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
-                        const FilterParams& params, const std::optional<Pose>& start) {
+Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,
+                        double gate, const FilterParams& params, const std::optional<Pose>& start) {
   Consensus found{{start.value_or(prediction.mean), prediction.covariance}, {}};
   if (matches.empty()) return {prediction, {}};
   MatchBatch batch;
@@ -33,7 +35,8 @@ Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std
   bool moves = true;
   for (int round = 0; round < kMostRounds && (round < kRounds || moves); ++round) {
     const Pose before = found.pose.mean;
-    std::transform(distances.begin(), distances.end(), factors.begin(), [](double d) { return 1.0 + std::min(d, kFar) / kCauchySq; });
+    std::transform(distances.begin(), distances.end(), factors.begin(),
+                   [](double d) { return 1.0 + std::min(d, kFar) / kCauchySq; });
     batch.Inflate(factors);
     found.pose = Propose(prediction, batch, params, before).pose;
     moves = Moved(found.pose, before);
@@ -43,8 +46,8 @@ Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std
   return found;
 }
 
-std::vector<bool> FindInliers(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
-                              const FilterParams& params) {
+std::vector<bool> FindInliers(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,
+                              double gate, const FilterParams& params) {
   if (!params.reject_outliers) return std::vector<bool>(matches.size(), true);
   return FindConsensus(prediction, map, matches, gate, params).inlier;
 }

@@ -22,11 +22,11 @@ double OutlierGate(const Filter& filter, const ScoreParams& score);
 
 // Fits the pose of one particle robustly and marks the matches whose residual there, with the landmark's and the pixel's
 // covariance, has a squared Mahalanobis distance below `gate`. `start`: near the pose that is looked for, by an earlier fit.
-Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
-                        const FilterParams& params, const std::optional<Pose>& start = std::nullopt);
+Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,
+                        double gate, const FilterParams& params, const std::optional<Pose>& start = std::nullopt);
 
 // The marks alone. All of them with params.reject_outliers off.
-std::vector<bool> FindInliers(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, double gate,
-                              const FilterParams& params);
+std::vector<bool> FindInliers(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,
+                              double gate, const FilterParams& params);
 
 }  // namespace vo

@@ -1,11 +1,10 @@
 // ParticleFilter with lag > 0: algorithm, section 9. Poses stay Gaussian for a while; the oldest of them is sampled once the images
 // after it have spoken, and only then are the velocity and the landmarks updated with its frame. The start is such a window as well.
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include <Eigen/LU>
 
 #include "vo/filter/exact_draws.h"
 #include "vo/filter/particle_filter.h"
@@ -55,7 +54,8 @@ void ParticleFilter::PredictPath(double dt) {
   heaviest_landmarks_ = heaviest.landmarks;
   const WindowInput in{heaviest.pose, heaviest.velocity.mean, heaviest.landmarks, heaviest.anchors};
   for (const Track& track : tracks_)
-    heaviest_landmarks_[track.landmark] = PathWindow::Smoothed(in, track, heaviest.path, heaviest.modes[track.landmark]);
+    heaviest_landmarks_[track.landmark] =
+        PathWindow::Smoothed(in, track, heaviest.path, heaviest.modes[track.landmark]);
 }
 
 void ParticleFilter::UpdatePath(std::span<const Match> matches) {
@@ -109,8 +109,8 @@ void ParticleFilter::SolvePath(Particle& particle) {
   const WindowOptions options{params_.proposal == Proposal::ekf ? 1 : iterations, params_.marginal_mode};
   modes_.resize(tracks_.size());
   for (std::size_t i = 0; i < tracks_.size(); ++i) modes_[i] = particle.modes[tracks_[i].landmark];
-  window_.Solve(*path_prior_, {particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors}, tracks_, options,
-                particle.path, modes_);
+  window_.Solve(*path_prior_, {particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors}, tracks_,
+                options, particle.path, modes_);
   for (std::size_t i = 0; i < tracks_.size(); ++i) particle.modes[tracks_[i].landmark] = modes_[i];
   PlaceAnchors(particle);
 }
@@ -149,7 +149,8 @@ void ParticleFilter::CommitOldest(int count) {
     step_ = {model.F, model.Q};
     for (std::uint32_t i = 0; i < particles_.size(); ++i) UpdateGiven(particles_[i], k, i);
   }
-  for (Particle& particle : particles_) particle.path.mean.erase(particle.path.mean.begin(), particle.path.mean.begin() + count);
+  for (Particle& particle : particles_)
+    particle.path.mean.erase(particle.path.mean.begin(), particle.path.mean.begin() + count);
   for (int& slot : anchor_slot_) slot = std::max(slot - count, -1);
   steps_.erase(steps_.begin(), steps_.begin() + count);
 }
@@ -161,7 +162,8 @@ std::vector<Pose> ParticleFilter::Draw(int slot) const {
     offsets.col(i) = Minus(particles_[i].path.mean[slot], particles_[0].path.mean[slot]);
     normals.col(i) = NormalVector<Vector6>({seed_, Stream::pose, steps_[slot].frame, i});
   }
-  if (params_.weight == Weight::equal && EnoughForExactDraws(params_.particles, 6)) normals = ExactDraws(offsets, normals);
+  if (params_.weight == Weight::equal && EnoughForExactDraws(params_.particles, 6))
+    normals = ExactDraws(offsets, normals);
   std::vector<Pose> drawn;
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
     const PathGaussian& path = particles_[i].path;
@@ -177,19 +179,22 @@ void ParticleFilter::Fix(Particle& particle, int slot, const Pose& s) {
   const Eigen::LLT<Matrix6> llt(path.covariance.topLeftCorner<6, 6>());
   const Vector6 d = llt.solve(Minus(s, path.mean[slot]));
   const Eigen::MatrixXd cross = path.covariance.bottomLeftCorner(rest, 6);
-  for (int k = 0; k < rest / 6; ++k) path.mean[slot + 1 + k] = Plus(path.mean[slot + 1 + k], cross.middleRows<6>(6 * k) * d);
+  for (int k = 0; k < rest / 6; ++k)
+    path.mean[slot + 1 + k] = Plus(path.mean[slot + 1 + k], cross.middleRows<6>(6 * k) * d);
   path.mean[slot] = s;
   path.covariance = (path.covariance.bottomRightCorner(rest, rest) - cross * llt.solve(cross.transpose())).eval();
 }
 
 void ParticleFilter::UpdateGiven(Particle& particle, int slot, std::uint32_t index) const {
   const Pose& s = particle.path.mean[slot];
-  UpdateVelocity(particle, s, VelocityGiven(particle), index);                                      // (37)-(43)
+  UpdateVelocity(particle, s, VelocityGiven(particle), index);  // (37)-(43)
   std::vector<AnchorView> views;
   for (const Pose& anchor : particle.anchors) views.emplace_back(s, anchor);
   for (const Match& match : steps_[slot].matches) {
     Landmark& landmark = particle.landmarks[match.landmark];
-    landmark = UpdateLandmark(landmark, particle.modes[match.landmark], views[anchor_of_[match.landmark]].From(match.moved), match, 1).landmark;
+    landmark = UpdateLandmark(landmark, particle.modes[match.landmark],
+                              views[anchor_of_[match.landmark]].From(match.moved), match, 1)
+                   .landmark;
   }
   particle.pose = s;
 }

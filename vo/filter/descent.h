@@ -28,7 +28,8 @@ inline bool Settled(double decrement, double former) {
 // TooLong, then Overshot, then Take. `objective` is -2 log density at its mode, up to a constant.
 class Descent {
  public:
-  explicit Descent(int iterations) : left_(iterations), settled_(iterations == 1) {}  // who asks for one step asks for no more
+  explicit Descent(int iterations)
+      : left_(iterations), settled_(iterations == 1) {}  // who asks for one step asks for no more
 
   bool Next() { return left_-- > 0; }
   bool last() const { return left_ == 0; }

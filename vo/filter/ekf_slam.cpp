@@ -9,11 +9,13 @@
 namespace vo {
 namespace {
 
-constexpr int kCamera = 12;          // pose and velocity
-constexpr double kSettled = 1e-6;    // squared step: a thousandth of a standard deviation
+constexpr int kCamera = 12;        // pose and velocity
+constexpr double kSettled = 1e-6;  // squared step: a thousandth of a standard deviation
 constexpr int kMaxHalvings = 8;
 
-void Symmetrise(Eigen::MatrixXd& P) { P.triangularView<Eigen::StrictlyUpper>() = P.transpose(); }  // from the lower half
+void Symmetrise(Eigen::MatrixXd& P) {
+  P.triangularView<Eigen::StrictlyUpper>() = P.transpose();
+}  // from the lower half
 
 // T P T', T = identity but for the rotation at `offset`.
 void Turn(Eigen::MatrixXd& P, int offset, const Eigen::Matrix3d& J) {
@@ -23,7 +25,8 @@ void Turn(Eigen::MatrixXd& P, int offset, const Eigen::Matrix3d& J) {
 
 }  // namespace
 
-EkfSlam::EkfSlam(const MotionParams& motion, const FilterParams& filter, const LandmarkParams& landmark, const FilterPrior& prior)
+EkfSlam::EkfSlam(const MotionParams& motion, const FilterParams& filter, const LandmarkParams& landmark,
+                 const FilterPrior& prior)
     : motion_(motion), params_(filter), landmark_params_(landmark), pose_(prior.pose.mean), velocity_(prior.velocity) {
   P_.setZero(kCamera, kCamera);
   P_.topLeftCorner<6, 6>() = prior.pose.covariance;
@@ -58,8 +61,10 @@ void EkfSlam::Predict(double dt) {
 void EkfSlam::MoveTo(const Eigen::VectorXd& d) {
   pose_ = Plus(pose_before_, d.head<6>());
   velocity_ = velocity_before_ + d.segment<6>(6);
-  for (std::size_t a = 0; a < anchors_.size(); ++a) anchors_[a] = Plus(anchors_before_[a], d.segment<6>(anchor_offset_[a]));
-  for (std::size_t n = 0; n < landmarks_.size(); ++n) landmarks_[n].mean = means_before_[n] + d.segment<3>(landmark_offset_[n]);
+  for (std::size_t a = 0; a < anchors_.size(); ++a)
+    anchors_[a] = Plus(anchors_before_[a], d.segment<6>(anchor_offset_[a]));
+  for (std::size_t n = 0; n < landmarks_.size(); ++n)
+    landmarks_[n].mean = means_before_[n] + d.segment<3>(landmark_offset_[n]);
 }
 
 // Rows at the present estimate, as derivatives by d, the offset from the prior. Returns the sum of r' R^-1 r.
@@ -97,7 +102,8 @@ Eigen::MatrixXd EkfSlam::RowsTimes(const Matrix& M) const {
   Eigen::MatrixXd result(2 * rows_.size(), M.cols());
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Row& row = rows_[i];
-    result.middleRows<2>(2 * i).noalias() = row.H_pose * M.template topRows<6>() + row.H_anchor * M.template middleRows<6>(row.anchor_offset) +
+    result.middleRows<2>(2 * i).noalias() = row.H_pose * M.template topRows<6>() +
+                                            row.H_anchor * M.template middleRows<6>(row.anchor_offset) +
                                             row.H_landmark * M.template middleRows<3>(row.landmark_offset);
   }
   return result;
@@ -256,7 +262,8 @@ ImagePrediction EkfSlam::PredictImage(int landmark) const {
   const int at[] = {0, anchor_offset_[anchor], landmark_offset_[landmark]}, local[] = {0, 6, 12}, size[] = {6, 6, 3};
   Eigen::Matrix<double, 15, 15> P;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) P.block(local[i], local[j], size[i], size[j]) = P_.block(at[i], at[j], size[i], size[j]);
+    for (int j = 0; j < 3; ++j)
+      P.block(local[i], local[j], size[i], size[j]) = P_.block(at[i], at[j], size[i], size[j]);
   return {true, h.z, H * P * H.transpose()};
 }
 

@@ -9,10 +9,9 @@
 // Cost:    n^2 m for n states and m matches: this is what the particle filters avoid.
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <vector>
 
 #include "vo/filter/filter.h"
 #include "vo/params.h"
@@ -22,7 +21,8 @@ namespace vo {
 class EkfSlam final : public Filter {
  public:
   // Of the filter's parameters only joint_iterations is used.
-  EkfSlam(const MotionParams& motion, const FilterParams& filter, const LandmarkParams& landmark, const FilterPrior& prior);
+  EkfSlam(const MotionParams& motion, const FilterParams& filter, const LandmarkParams& landmark,
+          const FilterPrior& prior);
 
   void Predict(double dt) override;
   // One linearisation at the prediction: the textbook EKF. With joint_iterations above 1 at most so many steps of Gauss-Newton to the
@@ -73,8 +73,8 @@ class EkfSlam final : public Filter {
   Pose pose_;
   Vector6 velocity_;
   std::vector<Pose> anchors_;
-  std::vector<int> anchor_offset_;      // in the state
-  std::vector<Landmark> landmarks_;     // with their marginal covariance
+  std::vector<int> anchor_offset_;   // in the state
+  std::vector<Landmark> landmarks_;  // with their marginal covariance
   std::vector<int> anchor_of_, landmark_offset_;
   Eigen::MatrixXd P_;
   Matrix12 since_known_ = Matrix12::Zero();  // covariance of the camera, had its pose been known at the last update

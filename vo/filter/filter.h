@@ -50,8 +50,8 @@ class Filter {
   virtual Pose AnchorOf(int landmark) const = 0;
 
   struct LandmarkBelief {
-    Eigen::Vector3d X_W;        // on that path
-    double inverse_depth;       // mean [1/m]
+    Eigen::Vector3d X_W;   // on that path
+    double inverse_depth;  // mean [1/m]
     double inverse_depth_sigma;
     double relative_sigma() const { return inverse_depth > 0 ? inverse_depth_sigma / inverse_depth : INFINITY; }
   };

@@ -28,7 +28,8 @@ Belief Moments(const std::vector<BeliefComponent>& mixture) {
   belief.pose = mixture[heaviest].pose;
   for (int iteration = 0; iteration < 10; ++iteration) {  // mean on SO(3); two or three rounds suffice
     Vector6 mean_offset = Vector6::Zero();
-    for (std::size_t i = 0; i < mixture.size(); ++i) mean_offset += mixture[i].weight * Minus(mixture[i].pose, belief.pose);
+    for (std::size_t i = 0; i < mixture.size(); ++i)
+      mean_offset += mixture[i].weight * Minus(mixture[i].pose, belief.pose);
     belief.pose = Plus(belief.pose, mean_offset);
     if (mean_offset.squaredNorm() < 1e-24) break;
   }

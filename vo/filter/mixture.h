@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "vo/filter/pose_gaussian.h"
 #include "vo/filter/velocity_filter.h"
 #include "vo/geometry/pose.h"
-#include "vo/filter/pose_gaussian.h"
 
 namespace vo {
 

@@ -27,11 +27,14 @@ Vector6 PathState(const Pose& pose, const Pose& previous) {
 }
 
 bool KnowsWindows(const FilterParams& params) {
-  return params.sampled == Sampled::pose && (params.proposal == Proposal::ekf || params.proposal == Proposal::iterated) &&
+  return params.sampled == Sampled::pose &&
+         (params.proposal == Proposal::ekf || params.proposal == Proposal::iterated) &&
          params.weight != Weight::importance;
 }
 
-UnscentedParams UnscentedOf(const FilterParams& params) { return {params.ukf_alpha, params.ukf_beta, params.ukf_kappa}; }
+UnscentedParams UnscentedOf(const FilterParams& params) {
+  return {params.ukf_alpha, params.ukf_beta, params.ukf_kappa};
+}
 
 }  // namespace
 
@@ -52,8 +55,9 @@ ParticleFilter::ParticleFilter(const MotionParams& motion, const FilterParams& f
     particle.pose = prior.pose.Sample({seed_, Stream::prior_pose, 0, i});
     particle.velocity = {prior.velocity, prior.velocity_covariance};
     if (params_.sampled == Sampled::pose_and_velocity)
-      particle.velocity = {SampleNormal(prior.velocity, prior.velocity_covariance, {seed_, Stream::prior_velocity, 0, i}),
-                           Matrix6::Zero()};
+      particle.velocity = {
+          SampleNormal(prior.velocity, prior.velocity_covariance, {seed_, Stream::prior_velocity, 0, i}),
+          Matrix6::Zero()};
   }
   belief_.pose = prior.pose.mean;
   belief_.velocity = prior.velocity;
@@ -67,7 +71,7 @@ void ParticleFilter::Predict(double dt) {
   if (delayed()) return PredictPath(dt);
   since_sampled_ += dt;
   step_ = StepOf(motion_, since_sampled_);
-  const Matrix6 covariance = step_.PredictedCovariance(particles_[0].velocity);                    // (13)
+  const Matrix6 covariance = step_.PredictedCovariance(particles_[0].velocity);  // (13)
   for (Particle& particle : particles_) particle.prediction = PredictPose(particle, covariance);
 }
 
@@ -94,19 +98,20 @@ void ParticleFilter::SampleStep(std::span<const Match> matches) {
   mixture_.clear();
   batch_.SetMatches(matches);
   CameraVelocityFilter::Gain gain = step_.ConditionCovariance(particles_[0].velocity.covariance);
-  for (std::uint32_t i = 0; i < particles_.size(); ++i) {                                          // line 1
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) {  // line 1
     Particle& particle = particles_[i];
-    const PoseGaussian& prediction = particle.prediction;                                          // 2, (12)(13)
-    const PoseProposal proposal = ProposePose(particle, matches);                                  // (15)(16)
+    const PoseGaussian& prediction = particle.prediction;          // 2, (12)(13)
+    const PoseProposal proposal = ProposePose(particle, matches);  // (15)(16)
     guards_ += proposal.guards;
-    const Pose s = proposal.pose.Sample({seed_, Stream::pose, frame_, i});                         // 4
+    const Pose s = proposal.pose.Sample({seed_, Stream::pose, frame_, i});  // 4
     // The motion model knows nothing of the image: what is believed then is the weighted samples themselves.
-    const PoseGaussian believed = params_.proposal == Proposal::bootstrap ? PoseGaussian{s, Matrix6::Zero()} : proposal.pose;
+    const PoseGaussian believed =
+        params_.proposal == Proposal::bootstrap ? PoseGaussian{s, Matrix6::Zero()} : proposal.pose;
     step_.ConditionMean(PathState(particle.pose, particle.pose), particle.velocity.mean, gain);
     mixture_.push_back(Component(believed, particle.pose, gain));
-    UpdateVelocity(particle, s, gain, i);                                                          // 5-7, (37)-(43)
+    UpdateVelocity(particle, s, gain, i);  // 5-7, (37)-(43)
     const double log_likelihood = UpdateLandmarks(particle, s, matches);
-    particle.log_weight += params_.weight == Weight::evidence                                      // 8
+    particle.log_weight += params_.weight == Weight::evidence  // 8
                                ? proposal.log_evidence
                                : prediction.LogDensity(s) + log_likelihood - proposal.pose.LogDensity(s);  // (17)
     particle.pose = s;
@@ -114,7 +119,7 @@ void ParticleFilter::SampleStep(std::span<const Match> matches) {
   since_sampled_ = 0;
   Weigh();
   Answer();
-  if (effective_particles_ < params_.resample_below * params_.particles) Resample();               // 11
+  if (effective_particles_ < params_.resample_below * params_.particles) Resample();  // 11
 }
 
 PoseGaussian ParticleFilter::PredictPose(const Particle& particle, const Matrix6& covariance) const {
@@ -130,10 +135,13 @@ PoseProposal ParticleFilter::ProposePose(const Particle& particle, std::span<con
   batch_.Load(MapOf(particle));
   if (matches.empty()) return {particle.prediction, 0, {}};
   switch (params_.proposal) {
-    case Proposal::bootstrap: return {particle.prediction, 0, {}};
-    case Proposal::ukf: return ProposeUnscented(particle.prediction, MapOf(particle), matches, UnscentedOf(params_));
+    case Proposal::bootstrap:
+      return {particle.prediction, 0, {}};
+    case Proposal::ukf:
+      return ProposeUnscented(particle.prediction, MapOf(particle), matches, UnscentedOf(params_));
     case Proposal::ekf:
-    case Proposal::iterated: break;
+    case Proposal::iterated:
+      break;
   }
   return Propose(particle.prediction, batch_, params_);
 }
@@ -147,9 +155,9 @@ void ParticleFilter::UpdateVelocity(Particle& particle, const Pose& pose, const 
   particle.velocity = gain.Given(PathState(pose, particle.pose));
   // RB-PF: the velocity is sampled as well, from its exact conditional; this leaves the weight as it is.
   if (params_.sampled == Sampled::pose_and_velocity)
-    particle.velocity = {SampleNormal(particle.velocity.mean, particle.velocity.covariance,
-                                      {seed_, Stream::velocity, frame_, index}),
-                         Matrix6::Zero()};
+    particle.velocity = {
+        SampleNormal(particle.velocity.mean, particle.velocity.covariance, {seed_, Stream::velocity, frame_, index}),
+        Matrix6::Zero()};
 }
 
 double ParticleFilter::UpdateLandmarks(Particle& particle, const Pose& pose, std::span<const Match> matches) {
@@ -158,7 +166,8 @@ double ParticleFilter::UpdateLandmarks(Particle& particle, const Pose& pose, std
     for (const Match& match : matches) {
       Landmark& landmark = particle.landmarks[match.landmark];
       const AnchorView view(pose, particle.anchors[anchor_of_[match.landmark]]);
-      const LandmarkUpdate update = UpdateLandmarkUnscented(landmark, view.From(match.moved), match, UnscentedOf(params_));
+      const LandmarkUpdate update =
+          UpdateLandmarkUnscented(landmark, view.From(match.moved), match, UnscentedOf(params_));
       landmark = update.landmark;
       log_likelihood += update.log_likelihood;
     }
@@ -287,13 +296,16 @@ LocalMap ParticleFilter::ReferenceMap() const {
 std::vector<Filter::LandmarkBelief> ParticleFilter::LandmarkBeliefs() const {
   const Particle& best = Heaviest();
   std::vector<LandmarkBelief> beliefs;
-  for (int n = 0; n < landmark_count(); ++n) beliefs.push_back({PointInWorld(best.anchors[anchor_of_[n]], ModeOf(best, n)), 0, 0});
+  for (int n = 0; n < landmark_count(); ++n)
+    beliefs.push_back({PointInWorld(best.anchors[anchor_of_[n]], ModeOf(best, n)), 0, 0});
   for (std::size_t i = 0; i < particles_.size(); ++i)
-    for (std::size_t n = 0; n < beliefs.size(); ++n) beliefs[n].inverse_depth += weights_[i] * ModeOf(particles_[i], static_cast<int>(n)).z();
+    for (std::size_t n = 0; n < beliefs.size(); ++n)
+      beliefs[n].inverse_depth += weights_[i] * ModeOf(particles_[i], static_cast<int>(n)).z();
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     for (std::size_t n = 0; n < beliefs.size(); ++n) {
       const double off = ModeOf(particles_[i], static_cast<int>(n)).z() - beliefs[n].inverse_depth;
-      beliefs[n].inverse_depth_sigma += weights_[i] * (particles_[i].landmarks[n].covariance(2, 2) + off * off);  // the variance, so far
+      beliefs[n].inverse_depth_sigma +=
+          weights_[i] * (particles_[i].landmarks[n].covariance(2, 2) + off * off);  // the variance, so far
     }
   }
   for (LandmarkBelief& belief : beliefs) belief.inverse_depth_sigma = std::sqrt(belief.inverse_depth_sigma);

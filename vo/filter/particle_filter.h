@@ -23,12 +23,12 @@
 namespace vo {
 
 struct Particle {
-  Pose pose;                               // sampled
-  CameraVelocityFilter::State velocity;    // Gaussian given the path: (v in W, w in C); all have the same covariance
-  std::vector<Landmark> landmarks;         // Gaussian given the path
-  std::vector<Pose> anchors;               // of the landmarks' first views, on this particle's path
+  Pose pose;                             // sampled
+  CameraVelocityFilter::State velocity;  // Gaussian given the path: (v in W, w in C); all have the same covariance
+  std::vector<Landmark> landmarks;       // Gaussian given the path
+  std::vector<Pose> anchors;             // of the landmarks' first views, on this particle's path
   double log_weight = 0;
-  PoseGaussian prediction;                 // (12)(13), valid between Predict and Update
+  PoseGaussian prediction;  // (12)(13), valid between Predict and Update
 
   // Delayed sampling only: the poses after `pose`, and each landmark where all images put it.
   PathGaussian path;
@@ -122,7 +122,8 @@ class ParticleFilter final : public Filter {
   PoseProposal ProposePose(const Particle& particle, std::span<const Match> matches);
   double UpdateLandmarks(Particle& particle, const Pose& pose, std::span<const Match> matches);
   CameraVelocityFilter::Gain VelocityGiven(const Particle& particle) const;
-  void UpdateVelocity(Particle& particle, const Pose& pose, const CameraVelocityFilter::Gain& gain, std::uint32_t index) const;
+  void UpdateVelocity(Particle& particle, const Pose& pose, const CameraVelocityFilter::Gain& gain,
+                      std::uint32_t index) const;
   void Weigh();
   void ReplaceImpossible();
   void Answer();
@@ -133,21 +134,21 @@ class ParticleFilter final : public Filter {
   LandmarkParams landmark_params_;
   std::uint64_t seed_;
   std::uint32_t frame_ = 0;
-  double since_sampled_ = 0;        // [s]; 0 when the present pose is sampled
-  CameraVelocityFilter step_;       // from the last sampled pose to the present
+  double since_sampled_ = 0;   // [s]; 0 when the present pose is sampled
+  CameraVelocityFilter step_;  // from the last sampled pose to the present
   std::vector<Particle> particles_;
   std::vector<Particle> children_;  // workspace of resampling, without memory of their own
   std::vector<int> ancestors_;      // workspace of resampling
   std::vector<double> weights_;     // normalised
   std::vector<int> anchor_of_;      // shared: all particles associate alike
 
-  MatchBatch batch_;                // workspace
+  MatchBatch batch_;  // workspace
 
   // Delayed sampling only.
-  std::vector<Step> steps_;         // the last is the present frame
-  std::vector<int> anchor_slot_;    // per anchor: the step of its pose, -1: sampled
-  std::vector<Track> tracks_;       // of the landmarks seen from these steps
-  std::vector<int> track_of_;       // per landmark: index into tracks_ or -1
+  std::vector<Step> steps_;       // the last is the present frame
+  std::vector<int> anchor_slot_;  // per anchor: the step of its pose, -1: sampled
+  std::vector<Track> tracks_;     // of the landmarks seen from these steps
+  std::vector<int> track_of_;     // per landmark: index into tracks_ or -1
   std::optional<PathPrior> path_prior_;
   PathWindow window_;
   std::vector<Eigen::Vector3d> modes_;  // workspace

@@ -6,8 +6,8 @@ namespace vo {
 
 PathPrior::PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance) {
   const int m = static_cast<int>(steps.size());
-  Eigen::MatrixXd covariance(6 * m, 6 * m);                             // of u
-  Eigen::Matrix<double, 6, Eigen::Dynamic> with_velocity(6, 6 * m);     // Cov(v_k, u_1..k)
+  Eigen::MatrixXd covariance(6 * m, 6 * m);                          // of u
+  Eigen::Matrix<double, 6, Eigen::Dynamic> with_velocity(6, 6 * m);  // Cov(v_k, u_1..k)
   Matrix6 V = velocity_covariance;
   last_of_first_ = Matrix6::Identity();
   for (int k = 0; k < m; ++k) {

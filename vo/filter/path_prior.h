@@ -4,9 +4,8 @@
 // The covariances do not depend on the path: all particles share them.
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
+#include <vector>
 
 #include "vo/filter/motion_model.h"
 
@@ -18,7 +17,7 @@ class PathPrior {
   PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance);
 
   int size() const { return static_cast<int>(mean_of_step_.size()); }
-  const Eigen::MatrixXd& precision() const { return precision_; }           // of u, 6m x 6m
+  const Eigen::MatrixXd& precision() const { return precision_; }  // of u, 6m x 6m
   double log_det_precision() const { return log_det_precision_; }
   Vector6 MeanStep(int k, const Vector6& velocity) const { return mean_of_step_[k] * velocity; }
 

@@ -1,10 +1,9 @@
 #include "vo/filter/path_window.h"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <numbers>
-
-#include <Eigen/LU>
 
 #include "vo/filter/descent.h"
 #include "vo/filter/pose_gaussian.h"
@@ -66,8 +65,8 @@ void PathWindow::AddPrior(const PathPrior& prior, const WindowInput& in, const P
   }
 }
 
-void PathWindow::AddTrack(const WindowInput& in, const Track& track, const PathGaussian& path, const Eigen::Vector3d& theta,
-                          bool marginal) {
+void PathWindow::AddTrack(const WindowInput& in, const Track& track, const PathGaussian& path,
+                          const Eigen::Vector3d& theta, bool marginal) {
   Eliminated& landmark = eliminated_[static_cast<std::size_t>(rows_) / 3];
   const Eigen::Matrix3d& L = landmark.L;
   const Pose& anchor = track.anchor_slot < 0 ? in.anchors[track.anchor] : path.mean[track.anchor_slot];
@@ -158,8 +157,8 @@ void PathWindow::AddMarginal(const Track& track, const Eliminated& landmark, dou
   added_ += 1;
 }
 
-void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks, const WindowOptions& options,
-                       PathGaussian& path, std::vector<Eigen::Vector3d>& theta) {
+void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks,
+                       const WindowOptions& options, PathGaussian& path, std::vector<Eigen::Vector3d>& theta) {
   const int size = 6 * prior.size();
   A_.resize(size, size);
   b_.resize(size);
@@ -204,7 +203,8 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
     linearised_at_ = path.mean;
     path.guards.behind = behind_;
     linearised_theta_.assign(theta.begin(), theta.end());
-    if (columns_ > 0) A_.selfadjointView<Eigen::Lower>().rankUpdate(Y_.leftCols(columns_), -1.0);  // Eigen divides by it
+    if (columns_ > 0)
+      A_.selfadjointView<Eigen::Lower>().rankUpdate(Y_.leftCols(columns_), -1.0);  // Eigen divides by it
     if (added_ > 0) A_.selfadjointView<Eigen::Lower>().rankUpdate(Z_.leftCols(added_), 1.0);
     llt_.compute(A_.selfadjointView<Eigen::Lower>());
     step_ = b_;
@@ -213,14 +213,16 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
     descent.Take(objective, decrement);
     const bool taken = descent.believed();
     path.objective = objective - (taken ? decrement : 0.0);
-    path.log_evidence = -0.5 * (cost_ - (taken ? decrement : 0.0) + log_det_) - llt_.matrixLLT().diagonal().array().log().sum();
+    path.log_evidence =
+        -0.5 * (cost_ - (taken ? decrement : 0.0) + log_det_) - llt_.matrixLLT().diagonal().array().log().sum();
     if (!taken) break;
 
     for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], step_.segment<6>(6 * k));
     y_.noalias() -= Y_.leftCols(3 * count).transpose() * step_;
     for (std::size_t i = 0; i < tracks.size(); ++i) {
       if (!eliminated_[i].used) continue;
-      const Eigen::Vector3d u = eliminated_[i].G.matrixU().solve(Eigen::Vector3d(y_.segment<3>(3 * static_cast<Eigen::Index>(i))));
+      const Eigen::Vector3d u =
+          eliminated_[i].G.matrixU().solve(Eigen::Vector3d(y_.segment<3>(3 * static_cast<Eigen::Index>(i))));
       theta[i] = in.landmarks[tracks[i].landmark].mean + eliminated_[i].L * u;
     }
     if (descent.settled()) break;
@@ -242,11 +244,13 @@ struct Conditional {
   Eigen::Matrix<double, 3, Eigen::Dynamic> by_pose;
 };
 
-Conditional Condition(const WindowInput& in, const Track& track, const PathGaussian& path, const Eigen::Vector3d& theta) {
+Conditional Condition(const WindowInput& in, const Track& track, const PathGaussian& path,
+                      const Eigen::Vector3d& theta) {
   const Eigen::Matrix3d L = Root(in.landmarks[track.landmark].covariance);
   const Pose& anchor = track.anchor_slot < 0 ? in.anchors[track.anchor] : path.mean[track.anchor_slot];
   Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
-  Eigen::Matrix<double, 3, Eigen::Dynamic> E = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, path.covariance.cols());
+  Eigen::Matrix<double, 3, Eigen::Dynamic> E =
+      Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, path.covariance.cols());
   for (const Track::View& view : track.views) {
     const Projection h = Project(AnchorView(path.mean[view.slot], anchor).From(view.moved), theta);
     if (!h.in_front) continue;
@@ -262,7 +266,8 @@ Conditional Condition(const WindowInput& in, const Track& track, const PathGauss
 
 }  // namespace
 
-Landmark PathWindow::Smoothed(const WindowInput& in, const Track& track, const PathGaussian& path, const Eigen::Vector3d& theta) {
+Landmark PathWindow::Smoothed(const WindowInput& in, const Track& track, const PathGaussian& path,
+                              const Eigen::Vector3d& theta) {
   return {theta, Condition(in, track, path, theta).covariance};
 }
 
@@ -280,7 +285,8 @@ ImagePrediction PathWindow::PredictLast(const WindowInput& in, const Track& trac
   Eigen::Matrix<double, 2, Eigen::Dynamic> J = -h.J_landmark.lazyProduct(landmark.by_pose);
   J.rightCols<6>() += h.J_pose;
   if (track.anchor_slot >= 0) J.middleCols<6>(6 * track.anchor_slot) += AnchorJacobian(h, theta);
-  const Eigen::Matrix<double, Eigen::Dynamic, 2> PJt = path.covariance.lazyProduct(J.transpose());  // thin: a blocked product is slower
+  // Thin: a blocked product is slower
+  const Eigen::Matrix<double, Eigen::Dynamic, 2> PJt = path.covariance.lazyProduct(J.transpose());
   return {true, h.z, J.lazyProduct(PJt) + h.J_landmark * landmark.covariance * h.J_landmark.transpose()};
 }
 

@@ -4,11 +4,10 @@
 // Tangent: per pose (dp in W, dphi in C); slot 0 is the oldest pose that is not sampled.
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <span>
+#include <vector>
 
 #include "vo/filter/guards.h"
 #include "vo/filter/path_prior.h"
@@ -27,30 +26,30 @@ struct Track {
     Eigen::Vector3d moved = Eigen::Vector3d::Zero();  // as in Match
   };
   int landmark = 0;
-  int anchor = 0;         // index of the anchor pose
-  int anchor_slot = -1;   // its slot, or -1: it has been sampled
+  int anchor = 0;        // index of the anchor pose
+  int anchor_slot = -1;  // its slot, or -1: it has been sampled
   std::vector<View> views;
 };
 
 // What one particle brings in, and its first guess.
 struct WindowInput {
-  const Pose& start;             // the last sampled pose
-  const Vector6& velocity;       // mean at the start
+  const Pose& start;        // the last sampled pose
+  const Vector6& velocity;  // mean at the start
   std::span<const Landmark> landmarks;
-  std::span<const Pose> anchors; // those of the window are not read
+  std::span<const Pose> anchors;  // those of the window are not read
 };
 
 struct PathGaussian {
   std::vector<Pose> mean;
-  Eigen::MatrixXd covariance;    // 6m x 6m
-  double objective = 0;          // -2 log density at its mode, up to a constant that is the same for all guesses
-  double log_evidence = 0;       // Laplace's approximation of log p(z in the window | sampled path)
-  Guards guards;                 // of the solution; where something was not positive definite, the evidence is not a number
+  Eigen::MatrixXd covariance;  // 6m x 6m
+  double objective = 0;        // -2 log density at its mode, up to a constant that is the same for all guesses
+  double log_evidence = 0;     // Laplace's approximation of log p(z in the window | sampled path)
+  Guards guards;  // of the solution; where something was not positive definite, the evidence is not a number
 };
 
 struct WindowOptions {
   int max_iterations = 10;
-  bool marginal = false;         // the mode of the poses' marginal, not of poses and landmarks jointly
+  bool marginal = false;  // the mode of the poses' marginal, not of poses and landmarks jointly
 };
 
 class PathWindow {
@@ -61,7 +60,8 @@ class PathWindow {
              PathGaussian& path, std::vector<Eigen::Vector3d>& theta);
 
   // Of a solved window: the landmark given its poses, and where it should appear from the last of them (all of them uncertain).
-  static Landmark Smoothed(const WindowInput& in, const Track& track, const PathGaussian& path, const Eigen::Vector3d& theta);
+  static Landmark Smoothed(const WindowInput& in, const Track& track, const PathGaussian& path,
+                           const Eigen::Vector3d& theta);
   static ImagePrediction PredictLast(const WindowInput& in, const Track& track, const PathGaussian& path,
                                      const Eigen::Vector3d& theta);
 
@@ -74,27 +74,28 @@ class PathWindow {
     bool used = false;
   };
   void AddPrior(const PathPrior& prior, const WindowInput& in, const PathGaussian& path);
-  void AddTrack(const WindowInput& in, const Track& track, const PathGaussian& path, const Eigen::Vector3d& theta, bool marginal);
+  void AddTrack(const WindowInput& in, const Track& track, const PathGaussian& path, const Eigen::Vector3d& theta,
+                bool marginal);
 
   void AddMarginal(const Track& track, const Eliminated& landmark, double rho);
 
   // Workspace, so that repeated calls allocate nothing.
-  Eigen::MatrixXd A_;             // information of the poses
+  Eigen::MatrixXd A_;  // information of the poses
   Eigen::VectorXd b_, d_, r_, step_;
-  Eigen::MatrixXd J_;             // of the steps u: du_k / d(pose k-1), du_k / d(pose k), per step 6 x 12
-  Eigen::MatrixXd Y_;             // columns: the landmarks' whitened couplings; A -= Y Y'
-  Eigen::VectorXd y_;             // b -= Y y
-  Eigen::MatrixXd Z_;             // A += Z Z'
+  Eigen::MatrixXd J_;  // of the steps u: du_k / d(pose k-1), du_k / d(pose k), per step 6 x 12
+  Eigen::MatrixXd Y_;  // columns: the landmarks' whitened couplings; A -= Y Y'
+  Eigen::VectorXd y_;  // b -= Y y
+  Eigen::MatrixXd Z_;  // A += Z Z'
   struct Seen {
     int slot = 0;
     Matrix23 J_shift, WM;
     Eigen::Matrix2d R_inverse;
   };
-  std::vector<Seen> seen_;        // of the present track
+  std::vector<Seen> seen_;           // of the present track
   std::vector<Pose> linearised_at_;  // where the cost was least
   std::vector<Eigen::Vector3d> linearised_theta_;
   int rows_ = 0, columns_ = 0, added_ = 0;
-  double cost_ = 0;               // -2 log of the evidence's exponent, constant part
+  double cost_ = 0;  // -2 log of the evidence's exponent, constant part
   double log_det_ = 0;
   int behind_ = 0;
   std::vector<Eliminated> eliminated_;

@@ -1,10 +1,9 @@
 #include "vo/filter/pose_gaussian.h"
 
-#include <cmath>
-#include <numbers>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numbers>
 
 #include "vo/geometry/so3.h"
 
@@ -27,9 +26,7 @@ double PoseGaussian::LogDensity(const Pose& pose) const {
   return -0.5 * d.dot(llt.solve(d)) - 0.5 * log_det - 3.0 * std::log(2.0 * std::numbers::pi) - LogVolume(d.tail<3>());
 }
 
-Pose PoseGaussian::Sample(const RandomKey& key) const {
-  return Displaced(NormalVector<Vector6>(key));
-}
+Pose PoseGaussian::Sample(const RandomKey& key) const { return Displaced(NormalVector<Vector6>(key)); }
 
 Pose PoseGaussian::Displaced(const Vector6& normals) const {
   if (covariance.isZero(0)) return mean;
@@ -38,8 +35,8 @@ Pose PoseGaussian::Displaced(const Vector6& normals) const {
 
 Vector6 SampleNormal(const Vector6& mean, const Matrix6& covariance, const RandomKey& key) {
   const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(covariance);
-  return mean + eigen.eigenvectors() *
-                    eigen.eigenvalues().cwiseMax(0).cwiseSqrt().cwiseProduct(NormalVector<Vector6>(key));
+  return mean +
+         eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().cwiseProduct(NormalVector<Vector6>(key));
 }
 
 }  // namespace vo

@@ -1,9 +1,8 @@
 #include "vo/filter/proposal.h"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
-
-#include <Eigen/Cholesky>
 
 #include "vo/filter/descent.h"
 #include "vo/geometry/so3.h"
@@ -66,7 +65,8 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
     const double decrement = b.dot(step);
     descent.Take(objective, decrement);
     // p(z) = p(s) p(z | s) / p(s | z), taken at the new mean, where the quadratic cost is less by the decrement.
-    proposal.log_evidence = -0.5 * (cost - (descent.believed() ? decrement : 0.0) + log_det + 2.0 * HalfLogDeterminant(llt));
+    proposal.log_evidence =
+        -0.5 * (cost - (descent.believed() ? decrement : 0.0) + log_det + 2.0 * HalfLogDeterminant(llt));
     s = Plus(s, step);
     if (descent.settled() || descent.last()) break;
     batch.Follow(step);
@@ -80,7 +80,8 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
   return proposal;
 }
 
-PoseProposal Propose(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, const FilterParams& params) {
+PoseProposal Propose(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,
+                     const FilterParams& params) {
   if (matches.empty()) return {prediction, 0.0, {}};
   MatchBatch batch;
   batch.SetMatches(matches);

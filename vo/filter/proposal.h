@@ -14,8 +14,9 @@ namespace vo {
 
 struct PoseProposal {
   PoseGaussian pose;
-  double log_evidence = 0;  // log p(z_t | path of the particle): exact when linear and Gaussian, else Laplace's approximation
-  Guards guards;            // where something was not positive definite, the evidence is not a number
+  // log p(z_t | path of the particle): exact when linear and Gaussian, else Laplace's approximation
+  double log_evidence = 0;
+  Guards guards;  // where something was not positive definite, the evidence is not a number
 };
 
 // `batch`: the matches, at least one, and the particle's landmarks, as loaded; at the end it is linearised as the proposal is.
@@ -28,6 +29,7 @@ inline PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, c
 }
 
 // The same with a batch of its own. No matches: the prediction itself.
-PoseProposal Propose(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches, const FilterParams& params);
+PoseProposal Propose(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,
+                     const FilterParams& params);
 
 }  // namespace vo

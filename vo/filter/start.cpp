@@ -37,7 +37,8 @@ Particle ParticleFilter::Sideways(const Particle& particle, std::uint32_t guess)
   for (const Track& track : tracks_) rho += particle.modes[track.landmark].z() / static_cast<double>(tracks_.size());
   const Eigen::Vector3d way = particle.pose.q_WC.conjugate() * (particle.path.mean.back().p_WC - particle.pose.p_WC);
   const double length = way.norm();
-  const Eigen::Vector2d targets[kGuesses] = {{0, 0}, -way.head<2>(), {length, 0}, {0, length}, {-length, 0}, {0, -length}};
+  const Eigen::Vector2d targets[kGuesses] = {{0, 0},      -way.head<2>(), {length, 0},
+                                             {0, length}, {-length, 0},   {0, -length}};
   const Eigen::Vector2d change = targets[guess] - way.head<2>();
   double duration = 0, time = 0;
   for (const Step& step : steps_) duration += step.dt;
@@ -65,7 +66,9 @@ void ParticleFilter::Triangulate(Particle& particle) const {
       for (const Pose& anchor : particle.anchors) views.emplace_back(particle.path.mean[k], anchor);
       for (const Match& match : steps_[k].matches) {
         Landmark& landmark = landmarks[match.landmark];
-        landmark = UpdateLandmark(landmark, particle.modes[match.landmark], views[anchor_of_[match.landmark]].From(match.moved), match, 1).landmark;
+        landmark = UpdateLandmark(landmark, particle.modes[match.landmark],
+                                  views[anchor_of_[match.landmark]].From(match.moved), match, 1)
+                       .landmark;
       }
     }
     for (const Track& track : tracks_) particle.modes[track.landmark] = landmarks[track.landmark].mean;

@@ -7,10 +7,9 @@
 // Shapes:  x is an offset of dimension N from its mean, so that x may live in the tangent space of a pose.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
-
-#include <Eigen/Core>
 
 namespace vo {
 
@@ -81,7 +80,8 @@ class SigmaPoints {
 
 // h takes an offset and returns a vector of dimension M.
 template <int M, int N, class Function>
-UnscentedMoments<N, M> UnscentedTransform(const Eigen::Matrix<double, N, N>& covariance, const UnscentedParams& params, const Function& h) {
+UnscentedMoments<N, M> UnscentedTransform(const Eigen::Matrix<double, N, N>& covariance, const UnscentedParams& params,
+                                          const Function& h) {
   const SigmaPoints<N> points(covariance, params);
   std::array<Eigen::Matrix<double, M, 1>, SigmaPoints<N>::kCount> y;
   for (int i = 0; i < SigmaPoints<N>::kCount; ++i) y[i] = h(points.offset(i));

@@ -1,13 +1,12 @@
 #include "vo/filter/unscented_proposal.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <vector>
-
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 #include "vo/geometry/so3.h"
 
@@ -24,7 +23,8 @@ double LogNormal(const Eigen::Vector2d& e, const Eigen::Matrix2d& S) {
 
 // Dimensions of the landmark that are uncertain: ray and inverse depth, or the inverse depth alone.
 template <int N>
-LandmarkUpdate UpdateFree(const Landmark& prior, const AnchorView& view, const Match& match, const UnscentedParams& params) {
+LandmarkUpdate UpdateFree(const Landmark& prior, const AnchorView& view, const Match& match,
+                          const UnscentedParams& params) {
   LandmarkUpdate result{prior, 0};
   bool in_front = true;
   const Eigen::Matrix<double, N, N> P = prior.covariance.bottomRightCorner<N, N>();
@@ -36,7 +36,7 @@ LandmarkUpdate UpdateFree(const Landmark& prior, const AnchorView& view, const M
     return h.z;
   });
   if (!in_front) return result;
-  const Eigen::Matrix2d S = z.covariance + match.R;                                     // (3)
+  const Eigen::Matrix2d S = z.covariance + match.R;  // (3)
   const Eigen::Vector2d e = match.z - z.mean;
   const Eigen::Matrix<double, N, 2> gain = z.cross * S.inverse();
   result.log_likelihood = LogNormal(e, S);
@@ -71,7 +71,8 @@ PoseProposal ProposeUnscented(const PoseGaussian& prediction, const LocalMap& ma
     bool in_front = true;
     Matrix23 J;
     for (int i = 0; i < PosePoints::kCount && in_front; ++i) {
-      const Projection h = Project(views[static_cast<std::size_t>(i) * map.anchors.size() + anchor].From(match.moved), landmark.mean);
+      const Projection h =
+          Project(views[static_cast<std::size_t>(i) * map.anchors.size() + anchor].From(match.moved), landmark.mean);
       in_front = h.in_front;
       y[i] = h.z;
       if (i == 0) J = h.J_landmark;
@@ -82,8 +83,8 @@ PoseProposal ProposeUnscented(const PoseGaussian& prediction, const LocalMap& ma
     }
     const UnscentedMoments<6, 2> z = points.Moments<2>(y);
     const Matrix26 C = z.cross.transpose() * prior_information;
-    const Eigen::Matrix2d V = (z.covariance - C * z.cross)                              // what the straight line leaves
-                              + J * landmark.covariance * J.transpose() + match.R;      // (3), at the predicted pose
+    const Eigen::Matrix2d V = (z.covariance - C * z.cross)                          // what the straight line leaves
+                              + J * landmark.covariance * J.transpose() + match.R;  // (3), at the predicted pose
     const Eigen::Matrix<double, 6, 2> CtW = C.transpose() * V.inverse();
     const Eigen::Vector2d e = match.z - z.mean;
     A.noalias() += CtW * C;
@@ -93,7 +94,9 @@ PoseProposal ProposeUnscented(const PoseGaussian& prediction, const LocalMap& ma
 
   const Eigen::LLT<Matrix6> llt(A);
   const Vector6 d = llt.solve(b);
-  const auto half_log_det = [](const Eigen::LLT<Matrix6>& root) { return root.matrixLLT().diagonal().array().log().sum(); };
+  const auto half_log_det = [](const Eigen::LLT<Matrix6>& root) {
+    return root.matrixLLT().diagonal().array().log().sum();
+  };
   Matrix6 turn = Matrix6::Identity();  // from the tangent space at the prediction to that at the new mean
   turn.bottomRightCorner<3, 3>() = RightJacobian(d.tail<3>());
   PoseProposal proposal;
@@ -107,7 +110,8 @@ PoseProposal ProposeUnscented(const PoseGaussian& prediction, const LocalMap& ma
   return proposal;
 }
 
-LandmarkUpdate UpdateLandmarkUnscented(const Landmark& prior, const AnchorView& view, const Match& match, const UnscentedParams& params) {
+LandmarkUpdate UpdateLandmarkUnscented(const Landmark& prior, const AnchorView& view, const Match& match,
+                                       const UnscentedParams& params) {
   return prior.covariance.topLeftCorner<2, 2>().isZero(0) ? UpdateFree<1>(prior, view, match, params)
                                                           : UpdateFree<3>(prior, view, match, params);
 }

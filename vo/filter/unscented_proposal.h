@@ -19,6 +19,7 @@ PoseProposal ProposeUnscented(const PoseGaussian& prediction, const LocalMap& ma
                               const UnscentedParams& params);
 
 // Its log_likelihood is log N(z; z_hat, S), with the mean and covariance (3) of the sigma points.
-LandmarkUpdate UpdateLandmarkUnscented(const Landmark& prior, const AnchorView& view, const Match& match, const UnscentedParams& params);
+LandmarkUpdate UpdateLandmarkUnscented(const Landmark& prior, const AnchorView& view, const Match& match,
+                                       const UnscentedParams& params);
 
 }  // namespace vo

@@ -39,10 +39,10 @@ class VelocityFilter {
     const MatrixKK Q22 = Q.template bottomRightCorner<K, K>();
     const MatrixKK F22_inverse = Phi_.inverse();
     Gamma_ = Q22.llt().matrixL();
-    H_ = F12_ * F22_inverse;                                                                // (22)
-    Lambda_ = Q12 * MatrixKK(Gamma_.inverse()).transpose() - H_ * Gamma_;                   // (22)
-    Psi_Psi_ = Q11_ - Q12 * Q22.llt().solve(Q12.transpose());                               // (19), as its square
-    m_previous_ = H_ * F21_ - F11_;                                                         // (26)
+    H_ = F12_ * F22_inverse;                                               // (22)
+    Lambda_ = Q12 * MatrixKK(Gamma_.inverse()).transpose() - H_ * Gamma_;  // (22)
+    Psi_Psi_ = Q11_ - Q12 * Q22.llt().solve(Q12.transpose());              // (19), as its square
+    m_previous_ = H_ * F21_ - F11_;                                        // (26)
   }
 
   // (12)(13): the next s_pf before it is sampled.
@@ -64,20 +64,20 @@ class VelocityFilter {
   }
   // The same in two parts. The first is alike for all particles whose covariance is, and leaves the mean to the second.
   Gain ConditionCovariance(const MatrixKK& covariance) const {
-    const MatrixKK S = Phi_ * covariance * Phi_.transpose() + Gamma_ * Gamma_.transpose();                 // (38)
-    const MatrixKP P_vm = S * H_.transpose() + Gamma_ * Lambda_.transpose();                               // (40)
+    const MatrixKK S = Phi_ * covariance * Phi_.transpose() + Gamma_ * Gamma_.transpose();  // (38)
+    const MatrixKP P_vm = S * H_.transpose() + Gamma_ * Lambda_.transpose();                // (40)
     const MatrixPP cross = H_ * Gamma_ * Lambda_.transpose();
     const MatrixPP P_mm =
-        H_ * S * H_.transpose() + Psi_Psi_ + Lambda_ * Lambda_.transpose() + cross + cross.transpose();    // (41)
+        H_ * S * H_.transpose() + Psi_Psi_ + Lambda_ * Lambda_.transpose() + cross + cross.transpose();  // (41)
     Gain gain;
     gain.matrix = P_mm.llt().solve(P_vm.transpose()).transpose();
-    gain.covariance = S - gain.matrix * P_vm.transpose();                                                  // (43)
+    gain.covariance = S - gain.matrix * P_vm.transpose();  // (43)
     gain.covariance = 0.5 * (gain.covariance + gain.covariance.transpose()).eval();
     return gain;
   }
   void ConditionMean(const VectorP& s_pf_previous, const VectorK& mean, Gain& gain) const {
-    const VectorK predicted = Phi_ * mean + F21_ * s_pf_previous;                                          // (37)
-    gain.mean = predicted + gain.matrix * (m_previous_ * s_pf_previous - H_ * predicted);                  // (39)(42)
+    const VectorK predicted = Phi_ * mean + F21_ * s_pf_previous;                          // (37)
+    gain.mean = predicted + gain.matrix * (m_previous_ * s_pf_previous - H_ * predicted);  // (39)(42)
   }
 
   State Update(const VectorP& s_pf_previous, const VectorP& s_pf, const State& s_kf) const {

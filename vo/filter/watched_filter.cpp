@@ -1,9 +1,8 @@
 #include "vo/filter/watched_filter.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-
-#include <Eigen/Eigenvalues>
 
 namespace vo {
 namespace {
@@ -23,7 +22,8 @@ bool Symmetric(const Eigen::Ref<const Eigen::MatrixXd>& P) {
 [[maybe_unused]] bool NoNegativeEigenvalue(const Matrix12& P) {
   const Eigen::Array<double, 12, 1> scale = (P.diagonal().array() > 0).select(P.diagonal().array().rsqrt(), 0);
   const Matrix12 correlation = scale.matrix().asDiagonal() * P * scale.matrix().asDiagonal();
-  return Eigen::SelfAdjointEigenSolver<Matrix12>(correlation, Eigen::EigenvaluesOnly).eigenvalues().minCoeff() > -kRounding;
+  return Eigen::SelfAdjointEigenSolver<Matrix12>(correlation, Eigen::EigenvaluesOnly).eigenvalues().minCoeff() >
+         -kRounding;
 }
 
 bool PositiveDefinite(const Eigen::Matrix2d& R) { return R.allFinite() && R(0, 0) > 0 && R.determinant() > 0; }
@@ -31,13 +31,16 @@ bool PositiveDefinite(const Eigen::Matrix2d& R) { return R.allFinite() && R(0, 0
 }  // namespace
 
 // Entries are numbers, the same on both sides, and no variance is negative; `above_zero`: nor zero.
-void WatchedFilter::RequireVariances(const Eigen::Ref<const Eigen::MatrixXd>& covariance, const char* stage, const char* whose,
-                                     bool above_zero) const {
-  if (!covariance.allFinite()) throw FilterFault(frame_, stage, std::string("the covariance of ") + whose + " is not a number");
+void WatchedFilter::RequireVariances(const Eigen::Ref<const Eigen::MatrixXd>& covariance, const char* stage,
+                                     const char* whose, bool above_zero) const {
+  if (!covariance.allFinite())
+    throw FilterFault(frame_, stage, std::string("the covariance of ") + whose + " is not a number");
   const double least = covariance.diagonal().minCoeff();
   if (above_zero ? !(least > 0) : !(least >= 0))
-    throw FilterFault(frame_, stage, std::string("the covariance of ") + whose + " has a variance of " + std::to_string(least));
-  if (!Symmetric(covariance)) throw FilterFault(frame_, stage, std::string("the covariance of ") + whose + " is not symmetric");
+    throw FilterFault(frame_, stage,
+                      std::string("the covariance of ") + whose + " has a variance of " + std::to_string(least));
+  if (!Symmetric(covariance))
+    throw FilterFault(frame_, stage, std::string("the covariance of ") + whose + " is not symmetric");
 }
 
 void WatchedFilter::RequireAnswer(const char* stage) const {
@@ -46,7 +49,8 @@ void WatchedFilter::RequireAnswer(const char* stage) const {
   Require(belief.velocity.allFinite(), stage, "the velocity is not a number");
   RequireVariances(belief.covariance, stage, "pose and velocity", false);
 #if !defined(NDEBUG)
-  Require(NoNegativeEigenvalue(belief.covariance), stage, "the covariance of pose and velocity has a negative eigenvalue");
+  Require(NoNegativeEigenvalue(belief.covariance), stage,
+          "the covariance of pose and velocity has a negative eigenvalue");
 #endif
   double sum = 0;
   for (const BeliefComponent& component : filter_->mixture()) {
@@ -64,12 +68,14 @@ void WatchedFilter::Predict(double dt) {
   filter_->Predict(dt);
   const PoseGaussian& prediction = filter_->ReferencePrediction();
   Require(Finite(prediction.mean), "prediction", "the pose is not one");
-  RequireVariances(prediction.covariance, "prediction", "the pose", true);  // the camera may have done something meanwhile
+  RequireVariances(prediction.covariance, "prediction", "the pose",
+                   true);  // the camera may have done something meanwhile
 }
 
 void WatchedFilter::Update(std::span<const Match> matches) {
   for (const Match& match : matches) {
-    Require(match.landmark >= 0 && match.landmark < landmark_count(), "update", "a match is of a landmark that is not in the map");
+    Require(match.landmark >= 0 && match.landmark < landmark_count(), "update",
+            "a match is of a landmark that is not in the map");
     Require(match.z.allFinite() && match.moved.allFinite(), "update", "a match is at no point of the image");
     Require(PositiveDefinite(match.R), "update", "the noise of a match is not positive definite");
   }
@@ -79,21 +85,25 @@ void WatchedFilter::Update(std::span<const Match> matches) {
 
 void WatchedFilter::AddLandmarks(std::span<const FirstView> views) {
   for (const FirstView& view : views) {
-    Require(view.ray.allFinite() && view.by_inverse_depth.allFinite(), "new landmarks", "a first view is at no point of the image");
+    Require(view.ray.allFinite() && view.by_inverse_depth.allFinite(), "new landmarks",
+            "a first view is at no point of the image");
     Require(PositiveDefinite(view.R), "new landmarks", "the noise of a first view is not positive definite");
-    Require(!view.depth || (view.depth->inverse_depth > 0 && view.depth->sigma > 0 && std::isfinite(view.depth->inverse_depth) &&
-                            std::isfinite(view.depth->sigma)),
+    Require(!view.depth || (view.depth->inverse_depth > 0 && view.depth->sigma > 0 &&
+                            std::isfinite(view.depth->inverse_depth) && std::isfinite(view.depth->sigma)),
             "new landmarks", "a known depth is not positive");
   }
   const int before = landmark_count();
   filter_->AddLandmarks(views);
-  Require(landmark_count() == before + static_cast<int>(views.size()), "new landmarks", "the map has another number of landmarks");
+  Require(landmark_count() == before + static_cast<int>(views.size()), "new landmarks",
+          "the map has another number of landmarks");
 }
 
 void WatchedFilter::KeepLandmarks(const std::vector<bool>& keep) {
-  Require(static_cast<int>(keep.size()) == landmark_count(), "forgetting", "another number of landmarks is told than there are");
+  Require(static_cast<int>(keep.size()) == landmark_count(), "forgetting",
+          "another number of landmarks is told than there are");
   filter_->KeepLandmarks(keep);
-  Require(landmark_count() == std::count(keep.begin(), keep.end(), true), "forgetting", "the map has another number of landmarks");
+  Require(landmark_count() == std::count(keep.begin(), keep.end(), true), "forgetting",
+          "the map has another number of landmarks");
 }
 
 std::vector<ImagePrediction> WatchedFilter::PredictImages(std::span<const int> landmarks) const {

@@ -52,7 +52,8 @@ class WatchedFilter final : public Filter {
   void Require(bool ok, const char* stage, const char* what) const {
     if (!ok) throw FilterFault(frame_, stage, what);
   }
-  void RequireVariances(const Eigen::Ref<const Eigen::MatrixXd>& covariance, const char* stage, const char* whose, bool above_zero) const;
+  void RequireVariances(const Eigen::Ref<const Eigen::MatrixXd>& covariance, const char* stage, const char* whose,
+                        bool above_zero) const;
   void RequireAnswer(const char* stage) const;
 
   std::unique_ptr<Filter> filter_;

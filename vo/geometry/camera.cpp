@@ -1,10 +1,9 @@
 #include "vo/geometry/camera.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-
-#include <Eigen/LU>
 
 namespace vo {
 namespace {
@@ -104,15 +103,18 @@ bool Camera::Sees(const Eigen::Vector2d& pixel, double border_px) const {
 Camera CameraPreset(const std::string& name) {
   Camera camera;
   if (name == "freiburg1") {
-    camera = {640, 480, 517.306408, 516.469215, 318.643040, 255.313989, 0.262383, -0.953104, -0.005358, 0.002628, 1.163314};
+    camera = {640,      480,       517.306408, 516.469215, 318.643040, 255.313989,
+              0.262383, -0.953104, -0.005358,  0.002628,   1.163314};
   } else if (name == "freiburg2") {
-    camera = {640, 480, 520.908620, 521.007327, 325.141442, 249.701764, 0.231222, -0.784899, -0.003257, -0.000105, 0.917205};
+    camera = {640,      480,       520.908620, 521.007327, 325.141442, 249.701764,
+              0.231222, -0.784899, -0.003257,  -0.000105,  0.917205};
   } else if (name == "freiburg3") {
     camera = {640, 480, 535.4, 539.2, 320.1, 247.6};
   } else if (name == "icl") {
     camera = {640, 480, 481.2, 480.0, 319.5, 239.5};
   } else {
-    throw std::invalid_argument("unknown camera preset '" + name + "': expected freiburg1, freiburg2, freiburg3 or icl");
+    throw std::invalid_argument("unknown camera preset '" + name +
+                                "': expected freiburg1, freiburg2, freiburg3 or icl");
   }
   if (name != "icl") camera.readout_s = 0.026;
   return camera;

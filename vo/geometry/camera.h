@@ -3,9 +3,8 @@
 // Units:   pixels; the centre of the first pixel is (0, 0). Rays are in C, on the plane z = 1.
 #pragma once
 
-#include <string>
-
 #include <Eigen/Core>
+#include <string>
 
 namespace vo {
 
@@ -15,12 +14,13 @@ enum class Lens { radial_tangential, fisheye };
 constexpr double kWidestAngle = 1.4;  // [rad], 80 degrees
 
 struct Camera {
-  int width = 640, height = 480;                             // [px]
-  double fx = 525, fy = 525, cx = 319.5, cy = 239.5;         // [px]
-  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;             // [-]
-  double k4 = 0;                                             // [-] of a fisheye lens, which has no p1, p2
+  int width = 640, height = 480;                      // [px]
+  double fx = 525, fy = 525, cx = 319.5, cy = 239.5;  // [px]
+  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;      // [-]
+  double k4 = 0;                                      // [-] of a fisheye lens, which has no p1, p2
   Lens lens = Lens::radial_tangential;
-  double readout_s = 0;                                      // rolling shutter: from the first row's exposure to the last's [s]; 0: all at once, < 0: upwards
+  // Rolling shutter: from the first row's exposure to the last's [s]; 0: all at once, < 0: upwards.
+  double readout_s = 0;
 
   // Point in C with z > 0 -> pixel, lens distortion included.
   Eigen::Vector2d Project(const Eigen::Vector3d& X_C) const;

@@ -23,7 +23,8 @@ std::string SetLens(const std::vector<double>& coefficients, Camera& camera) {
     return "must be k1, k2, p1, p2 and perhaps k3, or k1 ... k4 of an equidistant lens; there are " +
            std::to_string(coefficients.size()) + " numbers";
   for (std::size_t i = most; i < coefficients.size(); ++i) {
-    if (coefficients[i] != 0) return "has more than " + std::to_string(most) + " coefficients that are not zero: that lens is not known here";
+    if (coefficients[i] != 0)
+      return "has more than " + std::to_string(most) + " coefficients that are not zero: that lens is not known here";
   }
   camera.k1 = coefficients[0];
   camera.k2 = coefficients[1];

@@ -14,8 +14,8 @@ using Matrix23 = Eigen::Matrix<double, 2, 3>;
 using Matrix26 = Eigen::Matrix<double, 2, 6>;
 
 struct Pose {
-  Eigen::Vector3d p_WC = Eigen::Vector3d::Zero();                // [m]
-  Eigen::Quaterniond q_WC = Eigen::Quaterniond::Identity();      // unit, maps C to W
+  Eigen::Vector3d p_WC = Eigen::Vector3d::Zero();            // [m]
+  Eigen::Quaterniond q_WC = Eigen::Quaterniond::Identity();  // unit, maps C to W
 };
 
 }  // namespace vo

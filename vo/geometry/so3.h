@@ -3,10 +3,9 @@
 // Convention: right perturbation, q = q_hat (x) Exp(phi), phi in radians in the body (camera) frame.
 #pragma once
 
-#include <cmath>
-
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cmath>
 
 namespace vo {
 

@@ -5,7 +5,8 @@
 
 namespace vo {
 
-std::vector<bool> WorthKeeping(std::span<const LandmarkRecord> records, const LandmarkParams& landmark, const ScoreParams& score) {
+std::vector<bool> WorthKeeping(std::span<const LandmarkRecord> records, const LandmarkParams& landmark,
+                               const ScoreParams& score) {
   std::vector<bool> keep(records.size());
   std::vector<std::size_t> kept;
   for (std::size_t n = 0; n < records.size(); ++n) {
@@ -16,8 +17,9 @@ std::vector<bool> WorthKeeping(std::span<const LandmarkRecord> records, const La
   }
   const auto room = static_cast<std::size_t>(landmark.max_landmarks);
   if (kept.size() <= room) return keep;
-  std::stable_sort(kept.begin(), kept.end(),
-                   [&](std::size_t a, std::size_t b) { return records[a].frames_unsearched > records[b].frames_unsearched; });
+  std::stable_sort(kept.begin(), kept.end(), [&](std::size_t a, std::size_t b) {
+    return records[a].frames_unsearched > records[b].frames_unsearched;
+  });
   for (std::size_t i = 0; i < kept.size() - room; ++i) keep[kept[i]] = false;
   return keep;
 }

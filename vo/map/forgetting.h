@@ -12,6 +12,7 @@ namespace vo {
 
 // Kept are the permanent ones, and those that exist and were searched for in the last forget_after frames. Beyond max_landmarks the longest
 // unsearched go, of these the oldest (the first in `records`).
-std::vector<bool> WorthKeeping(std::span<const LandmarkRecord> records, const LandmarkParams& landmark, const ScoreParams& score);
+std::vector<bool> WorthKeeping(std::span<const LandmarkRecord> records, const LandmarkParams& landmark,
+                               const ScoreParams& score);
 
 }  // namespace vo

@@ -57,8 +57,8 @@ Eigen::Vector3d PointInWorld(const Pose& anchor, const Eigen::Vector3d& landmark
   return anchor.p_WC + anchor.q_WC * Eigen::Vector3d(landmark.x(), landmark.y(), 1.0) / rho;
 }
 
-LandmarkUpdate UpdateLandmark(const Landmark& prior, const Eigen::Vector3d& guess, const AnchorView& view, const Match& match,
-                              int max_iterations) {
+LandmarkUpdate UpdateLandmark(const Landmark& prior, const Eigen::Vector3d& guess, const AnchorView& view,
+                              const Match& match, int max_iterations) {
   LandmarkUpdate result{prior, 0};
   LinearisedMatch h;
   Eigen::Vector3d theta = guess;

@@ -44,11 +44,12 @@ struct AnchorView {
 constexpr double kMinDepth = 1e-6;  // of X_C ~ rho-scaled points: what is nearer or behind is not in front
 
 struct Projection {
-  bool in_front = false;                          // X_C,z > 0; the rest is valid only then
-  Eigen::Vector2d z = Eigen::Vector2d::Zero();    // on the plane z = 1
-  Matrix26 J_pose = Matrix26::Zero();             // dz / d(dp in W, dphi in C)
-  Matrix23 J_shift = Matrix23::Zero();            // dz / d(rho (p_A - p)) in W: J_pose is -rho times it; d2z / drho dp to first order
-  Matrix23 J_landmark = Matrix23::Zero();         // dz / d(x, y, rho)
+  bool in_front = false;                        // X_C,z > 0; the rest is valid only then
+  Eigen::Vector2d z = Eigen::Vector2d::Zero();  // on the plane z = 1
+  Matrix26 J_pose = Matrix26::Zero();           // dz / d(dp in W, dphi in C)
+  // dz / d(rho (p_A - p)) in W: J_pose is -rho times it; d2z / drho dp to first order.
+  Matrix23 J_shift = Matrix23::Zero();
+  Matrix23 J_landmark = Matrix23::Zero();  // dz / d(x, y, rho)
 };
 
 Projection Project(const AnchorView& view, const Eigen::Vector3d& landmark);
@@ -66,7 +67,8 @@ struct KnownDepth {
 struct FirstView {
   Eigen::Vector2d ray;
   Eigen::Matrix2d R;
-  Eigen::Vector2d by_inverse_depth = Eigen::Vector2d::Zero();  // not zero: the camera moved between the row's time and the stamp
+  // Not zero: the camera moved between the row's time and the stamp.
+  Eigen::Vector2d by_inverse_depth = Eigen::Vector2d::Zero();
   std::optional<KnownDepth> depth = std::nullopt;
 };
 
@@ -82,9 +84,10 @@ struct LandmarkUpdate {
 };
 // Linearised first at `guess`, then, up to max_iterations in all, at the mode (EKF: guess = prior.mean, max_iterations = 1).
 // A landmark behind the camera stays as it is.
-LandmarkUpdate UpdateLandmark(const Landmark& prior, const Eigen::Vector3d& guess, const AnchorView& view, const Match& match,
-                              int max_iterations);
-inline LandmarkUpdate UpdateLandmark(const Landmark& prior, const AnchorView& view, const Match& match, int max_iterations) {
+LandmarkUpdate UpdateLandmark(const Landmark& prior, const Eigen::Vector3d& guess, const AnchorView& view,
+                              const Match& match, int max_iterations);
+inline LandmarkUpdate UpdateLandmark(const Landmark& prior, const AnchorView& view, const Match& match,
+                                     int max_iterations) {
   return UpdateLandmark(prior, prior.mean, view, match, max_iterations);
 }
 

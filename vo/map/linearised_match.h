@@ -13,18 +13,19 @@ namespace vo {
 struct LinearisedMatch {
   void Set(const AnchorView& view, const Landmark& landmark, const Eigen::Vector3d& theta, const Match& match);
 
-  bool in_front = false;                 // the rest is valid only then
-  double u = 0, v = 0, inverse_z = 0;    // projection, 1 / X_C,z
+  bool in_front = false;               // the rest is valid only then
+  double u = 0, v = 0, inverse_z = 0;  // projection, 1 / X_C,z
   double e0 = 0, e1 = 0;
-  Eigen::Vector3d J0, J1;                // of the landmark
-  Eigen::Vector3d P0, P1;                // columns of P J'
-  double W00 = 0, W01 = 0, W11 = 0;      // S^-1
+  Eigen::Vector3d J0, J1;            // of the landmark
+  Eigen::Vector3d P0, P1;            // columns of P J'
+  double W00 = 0, W01 = 0, W11 = 0;  // S^-1
   double det_S = 1;
-  Eigen::Vector3d gain0, gain1;          // columns of P J' S^-1
+  Eigen::Vector3d gain0, gain1;  // columns of P J' S^-1
   double cost() const { return W00 * e0 * e0 + 2.0 * W01 * e0 * e1 + W11 * e1 * e1; }
 };
 
-[[gnu::always_inline]] inline void LinearisedMatch::Set(const AnchorView& view, const Landmark& landmark, const Eigen::Vector3d& theta, const Match& match) {
+[[gnu::always_inline]] inline void LinearisedMatch::Set(const AnchorView& view, const Landmark& landmark,
+                                                        const Eigen::Vector3d& theta, const Match& match) {
   const Eigen::Matrix3d& M = view.R_CA;
   const Eigen::Vector3d& t = view.t_C;
   const Eigen::Vector3d X = M.col(0) * theta.x() + M.col(1) * theta.y() + M.col(2) + theta.z() * t;
@@ -41,7 +42,8 @@ struct LinearisedMatch {
   e1 = match.z.y() - v - J1.dot(off);
   P0 = landmark.covariance * J0;
   P1 = landmark.covariance * J1;
-  const double S00 = J0.dot(P0) + match.R(0, 0), S01 = J0.dot(P1) + match.R(0, 1), S11 = J1.dot(P1) + match.R(1, 1);  // (3)
+  const double S00 = J0.dot(P0) + match.R(0, 0), S01 = J0.dot(P1) + match.R(0, 1),
+               S11 = J1.dot(P1) + match.R(1, 1);  // (3)
   det_S = S00 * S11 - S01 * S01;
   const double scale = 1.0 / det_S;
   W00 = scale * S11;

@@ -16,7 +16,9 @@ class MapView {
   const Landmark& landmark(int n) const { return map_.landmarks[n]; }
   Projection operator()(int n) const { return Project(ViewOf(n), map_.landmarks[n].mean); }
   // From where the match was seen.
-  Projection operator()(const Match& match) const { return Project(ViewOf(match.landmark).From(match.moved), map_.landmarks[match.landmark].mean); }
+  Projection operator()(const Match& match) const {
+    return Project(ViewOf(match.landmark).From(match.moved), map_.landmarks[match.landmark].mean);
+  }
 
  private:
   const AnchorView& ViewOf(int n) const {

@@ -45,7 +45,8 @@ void MatchBatch::SetMatches(std::span<const Match> matches) {
     MatchLanes& block = blocks_[i / kLanes];
     const std::size_t lane = i % kLanes;
     for (int k = 0; k < 2; ++k) block.z[k].v[lane] = match.z[k];
-    block.R_given[0].v[lane] = match.R(0, 0), block.R_given[1].v[lane] = match.R(0, 1), block.R_given[2].v[lane] = match.R(1, 1);
+    block.R_given[0].v[lane] = match.R(0, 0), block.R_given[1].v[lane] = match.R(0, 1),
+    block.R_given[2].v[lane] = match.R(1, 1);
   }
   for (MatchLanes& block : blocks_) std::copy_n(block.R_given, 3, block.R);
 }

@@ -28,7 +28,8 @@ class PointMixture {
 
  private:
   double weight_ = 0;
-  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // the first mean: sums are taken about it, so that nothing cancels
+  // The first mean: sums are taken about it, so that nothing cancels.
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d second_ = Eigen::Matrix3d::Zero();
 };

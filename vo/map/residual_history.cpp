@@ -1,8 +1,7 @@
 #include "vo/map/residual_history.h"
 
-#include <algorithm>
-
 #include <Eigen/LU>
+#include <algorithm>
 
 namespace vo {
 namespace {

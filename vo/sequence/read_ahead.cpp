@@ -4,7 +4,8 @@
 
 namespace vo {
 
-ReadAhead::ReadAhead(FrameSource& source, std::size_t most) : source_(source), most_(most), reader_([this] { Read(); }) {}
+ReadAhead::ReadAhead(FrameSource& source, std::size_t most)
+    : source_(source), most_(most), reader_([this] { Read(); }) {}
 
 ReadAhead::~ReadAhead() {
   {

@@ -5,11 +5,10 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
-
-#include <opencv2/imgcodecs.hpp>
 
 #include "tools/limits/picture.h"
 
@@ -23,7 +22,9 @@ std::optional<std::int64_t> ParseStamp(const std::string& text) {
   const std::size_t dot = text.find('.');
   const std::string whole = text.substr(0, dot);
   std::string fraction = dot == std::string::npos ? "" : text.substr(dot + 1);
-  const auto digits = [](const std::string& s) { return std::all_of(s.begin(), s.end(), [](char c) { return c >= '0' && c <= '9'; }); };
+  const auto digits = [](const std::string& s) {
+    return std::all_of(s.begin(), s.end(), [](char c) { return c >= '0' && c <= '9'; });
+  };
   if (whole.empty() || whole.size() > 10 || !digits(whole) || !digits(fraction)) return std::nullopt;
   fraction.resize(9, '0');
   constexpr std::int64_t kLast_s = std::numeric_limits<std::int64_t>::max() / 1'000'000'000 - 1;  // in the year 2262
@@ -34,14 +35,16 @@ std::optional<std::int64_t> ParseStamp(const std::string& text) {
 
 // ICL-NUIM numbers its frames at 30 Hz.
 std::optional<std::int64_t> StampOfIndex(const std::string& text) {
-  if (text.empty() || text.size() > 9 || !std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }))
+  if (text.empty() || text.size() > 9 ||
+      !std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }))
     return std::nullopt;
   return (std::stoll(text) * 1'000'000'000 + 15) / 30;
 }
 
 // EuRoC counts nanoseconds.
 std::optional<std::int64_t> StampInNanoseconds(const std::string& text) {
-  if (text.empty() || text.size() > 19 || !std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }))
+  if (text.empty() || text.size() > 19 ||
+      !std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }))
     return std::nullopt;
   if (text.size() == 19 && text > "9223372036854775807") return std::nullopt;
   return std::stoll(text);
@@ -58,9 +61,11 @@ struct ListFormat {
 ListFormat FormatOf(const fs::path& folder) {
   if (!fs::exists(folder / "rgb.txt")) {
     if (fs::exists(folder / "associations.txt"))
-      return {folder / "associations.txt", folder, 4, StampOfIndex, "the number of a frame", "index depth-file index image-file"};
+      return {folder / "associations.txt",        folder, 4, StampOfIndex, "the number of a frame",
+              "index depth-file index image-file"};
     if (fs::exists(folder / "mav0"))
-      return {folder / "mav0/cam0/data.csv", folder / "mav0/cam0/data", 2, StampInNanoseconds, "a time stamp in nanoseconds", "timestamp,filename"};
+      return {folder / "mav0/cam0/data.csv", folder / "mav0/cam0/data", 2, StampInNanoseconds,
+              "a time stamp in nanoseconds", "timestamp,filename"};
   }
   return {folder / "rgb.txt", folder, 2, ParseStamp, "a time stamp in seconds", "timestamp filename"};
 }
@@ -79,8 +84,7 @@ bool EndsAsItShould(const std::vector<std::uint8_t>& bytes) {
   if (bytes.size() < 12) return false;
   if (std::equal(std::begin(png), std::end(png), bytes.begin()))
     return std::search(bytes.end() - 12, bytes.end(), std::begin(iend), std::end(iend)) != bytes.end();
-  if (bytes[0] == 0xFF && bytes[1] == 0xD8)
-    return bytes[bytes.size() - 2] == 0xFF && bytes[bytes.size() - 1] == 0xD9;
+  if (bytes[0] == 0xFF && bytes[1] == 0xD8) return bytes[bytes.size() - 2] == 0xFF && bytes[bytes.size() - 1] == 0xD9;
   return true;
 }
 
@@ -99,7 +103,8 @@ cv::Mat ReadImage(const fs::path& file) {
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!in || bytes.empty()) throw std::runtime_error(file.string() + ": cannot be read, or is empty");
   if (!EndsAsItShould(bytes)) throw std::runtime_error(file.string() + ": image breaks off before its end");
-  if (const std::string problem = limits::PictureProblem(bytes); !problem.empty()) throw std::runtime_error(file.string() + ": " + problem);
+  if (const std::string problem = limits::PictureProblem(bytes); !problem.empty())
+    throw std::runtime_error(file.string() + ": " + problem);
   const cv::Mat image = Decode(bytes, file);
   if (image.empty()) throw std::runtime_error(file.string() + ": not an image that can be decoded");
   if ((image.depth() != CV_8U && image.depth() != CV_16U) || (image.channels() != 1 && image.channels() != 3))
@@ -117,13 +122,17 @@ SequenceReader::SequenceReader(const fs::path& folder) {
   const ListFormat format = FormatOf(folder);
   const fs::path& list = format.list;
   std::ifstream in(list);
-  if (!in) throw std::runtime_error(list.string() + ": cannot be read (a sequence folder has one, see docs/sequence_format.md)");
+  if (!in)
+    throw std::runtime_error(list.string() +
+                             ": cannot be read (a sequence folder has one, see docs/sequence_format.md)");
   std::ostringstream problems;
   std::string line;
   int number = 0, last_number = 0;
   while (std::getline(in, line)) {
     ++number;
-    const auto complain = [&](const std::string& text) { problems << list.string() << ":" << number << ": " << text << "\n"; };
+    const auto complain = [&](const std::string& text) {
+      problems << list.string() << ":" << number << ": " << text << "\n";
+    };
     const std::vector<std::string> words = Words(line);
     if (words.empty() || words[0][0] == '#') continue;
     const auto stamp_ns = format.stamp(words[0]);

@@ -27,7 +27,9 @@ cv::VideoCapture OpenLive(const std::string& name) {
       throw std::runtime_error(name + ": a camera is 'camera:' and its number, as in camera:0");
     capture.open(std::stoi(digits), cv::CAP_V4L2);
   }
-  if (!capture.isOpened()) throw std::runtime_error(name + ": no pictures come from there (no such camera, it is in use, or OpenCV cannot read it)");
+  if (!capture.isOpened())
+    throw std::runtime_error(name +
+                             ": no pictures come from there (no such camera, it is in use, or OpenCV cannot read it)");
   return capture;
 }
 
@@ -38,7 +40,8 @@ bool IsUsable(const cv::Mat& image) { return image.type() == CV_8UC3 || image.ty
 
 VideoFile::VideoFile(const std::string& file) : file_(file) {
   if (!std::filesystem::exists(file)) throw std::runtime_error(file + ": no such folder or file");
-  if (!capture_.open(file, cv::CAP_FFMPEG)) throw std::runtime_error(file + ": is neither a sequence's folder nor a video that OpenCV can read");
+  if (!capture_.open(file, cv::CAP_FFMPEG))
+    throw std::runtime_error(file + ": is neither a sequence's folder nor a video that OpenCV can read");
   const double rate = capture_.get(cv::CAP_PROP_FPS), count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
   step_ns_ = rate > 0 && rate < 1e6 ? std::llround(1e9 / rate) : 33'333'333;
   if (count >= 1 && count < 1e12) count_ = std::llround(count);  // as the file says: not always right

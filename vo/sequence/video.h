@@ -5,10 +5,9 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <opencv2/videoio.hpp>
 #include <string>
 #include <thread>
-
-#include <opencv2/videoio.hpp>
 
 #include "vo/sequence/source.h"
 

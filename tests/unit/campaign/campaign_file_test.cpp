@@ -124,13 +124,25 @@ tables: [{metric: ate, rows: [exposure], columns: [system, system]}, {metric: at
 tabels: []
 )");
   for (const char* expected :
-       {"c.yaml:1:21: the name 'a' is there twice", "c.yaml:3:12: 'seed': the results have such a column",
-        "c.yaml:3:34: '1' is there twice", "c.yaml:4:12: either 'key' with 'values', or 'variants'",
-        "c.yaml:5:12: 'ate_m': the results have", "'variants': at least one", "there is no system 'rb2fp'",
+       {"c.yaml:1:21: the name 'a' is there twice",
+        "c.yaml:3:12: 'seed': the results have such a column",
+        "c.yaml:3:34: '1' is there twice",
+        "c.yaml:4:12: either 'key' with 'values', or 'variants'",
+        "c.yaml:5:12: 'ate_m': the results have",
+        "'variants': at least one",
+        "there is no system 'rb2fp'",
         "c.yaml:6:36: 'sensor.exposure': a system changes settings under 'odometry' and 'prior' only",
-        "'5..3' is no range", "'x'", "'seeds': one is there twice", "c.yaml:8:16: 'judge.align': 'sim4' is not known",
-        "'judge.lost.pose_coverage': ", "there is no metric 'ate'", "there is no 'exposure'", "'system' is there twice",
-        "'tables.1.unit': 'ms' is not known", "there is no scenario 'b'; there are a, a", "'beside' needs exactly one name in 'rows'",
+        "'5..3' is no range",
+        "'x'",
+        "'seeds': one is there twice",
+        "c.yaml:8:16: 'judge.align': 'sim4' is not known",
+        "'judge.lost.pose_coverage': ",
+        "there is no metric 'ate'",
+        "there is no 'exposure'",
+        "'system' is there twice",
+        "'tables.1.unit': 'ms' is not known",
+        "there is no scenario 'b'; there are a, a",
+        "'beside' needs exactly one name in 'rows'",
         "unknown key 'tabels'; did you mean 'tables'?"}) {
     EXPECT_THAT(said, HasSubstr(expected));
   }

@@ -95,9 +95,9 @@ TEST(TestAnees, KeepsItsFalseAlarmRateAndRejectsWrongCovariances) {
     const AneesVerdict verdict = TestAnees(SimulateNees(filter, kRuns, kFrames, 2, 0), d, exact);
     RecordProperty("dof_" + std::to_string(d), "threshold " + std::to_string(verdict.threshold) + ", rejected of " +
                                                    std::to_string(sets) + ": honest " + std::to_string(by_share) +
-                                                   " by share, " + std::to_string(by_mean) + " by mean" +
-                                                   ", P x 0.5 " + std::to_string(halved) + ", P x 2 " +
-                                                   std::to_string(doubled) + ", P x 0.9 " + std::to_string(tenth));
+                                                   " by share, " + std::to_string(by_mean) + " by mean" + ", P x 0.5 " +
+                                                   std::to_string(halved) + ", P x 2 " + std::to_string(doubled) +
+                                                   ", P x 0.9 " + std::to_string(tenth));
     EXPECT_LE(by_share, 5);
     EXPECT_LE(by_mean, 5);
     EXPECT_LT(ShareInBand(Times(SimulateNees(filter, kRuns, kFrames, 2, 0), 2), d).share, 0.01);
@@ -170,6 +170,27 @@ TEST(ExactAneesOfPool, AgreeWithFreshRuns) {
   EXPECT_THROW(ExactAneesOfPool({{1, NAN}}, 3, 1), std::invalid_argument);
   EXPECT_THROW(ExactAneesOfPool({{1, 2}, {1}}, 3, 1), std::invalid_argument);
   EXPECT_THROW(ExactAneesOfPool({{1, 2}}, 3, 2), std::invalid_argument);
+}
+
+// 399 trials: four are beyond 1 % on one side, two on each of two sides.
+TEST(TestAnees, Figures) {
+  ExactAnees exact;
+  for (int i = 0; i < 399; ++i) {
+    exact.shares.push_back(0.5 + 0.001 * i);
+    exact.means.push_back(0.8 + 0.001 * i);
+  }
+  const AneesVerdict verdict = TestAnees({{3}}, 3, exact, 0.01);
+  EXPECT_EQ(verdict.threshold, exact.shares[3]);
+  EXPECT_EQ(verdict.expected, exact.shares[199]);
+  EXPECT_EQ(verdict.mean_low, exact.means[1]);
+  EXPECT_EQ(verdict.mean_high, exact.means[397]);
+  EXPECT_EQ(verdict.false_alarm, 0.01);
+  EXPECT_EQ(verdict.measured.share, 1);
+  EXPECT_EQ(verdict.measured.mean, 1);
+  EXPECT_TRUE(verdict.pass());
+  EXPECT_FALSE(TestAnees({{3}, {6.5}}, 3, exact, 0.01).mean_pass);
+  EXPECT_FALSE(TestAnees({{2.1}, {2.1}}, 3, exact, 0.01).mean_pass);
+  EXPECT_FALSE(TestAnees({{30, 0.01, 3}}, 3, exact, 0.01).share_pass);
 }
 
 TEST(TestAnees, RefusesTooFewTrials) {

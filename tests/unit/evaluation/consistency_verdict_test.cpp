@@ -156,7 +156,8 @@ TEST_F(Verdict, WithoutDrawsThereAreNoRanks) {
     return JudgeConsistency(runs, options);
   };
   const auto ranked = [](const ConsistencyVerdict& verdict) {
-    return std::ranges::count_if(verdict.checks, [](const Check& c) { return c.name.starts_with("ranks") || c.name.starts_with("coverage"); });
+    return std::ranges::count_if(
+        verdict.checks, [](const Check& c) { return c.name.starts_with("ranks") || c.name.starts_with("coverage"); });
   };
   const ConsistencyVerdict with = judged(49), without = judged(0);
   EXPECT_EQ(with.rank_histograms.size(), 48u);

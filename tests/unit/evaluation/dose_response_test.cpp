@@ -119,6 +119,7 @@ TEST(BreakingPoint, SaysWhatWasNotSeen) {
   EXPECT_DOUBLE_EQ(FindBreakingPoint(doses, gap)->at.dose, 2);
   EXPECT_THROW(FindBreakingPoint({1, 3, 2}, {}), std::invalid_argument);
   EXPECT_THROW(FindBreakingPoint({1, 1}, {}), std::invalid_argument);
+  EXPECT_NO_THROW(FindBreakingPoint({1, 2}, Failures({0, 1}, 8)));
   EXPECT_THROW(FindBreakingPoint({1}, {{1, 0, 0}}), std::invalid_argument);
 }
 

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <functional>
+
 #include "tests/unit/evaluation/random.h"
 #include "tests/unit/evaluation/temporary_folder.h"
 #include "tools/evaluation/text_file.h"
@@ -65,14 +67,18 @@ TEST(EstimateRun, FramesMayComeWithoutGuards) {
   EstimateRun run = Sample();
   run.frames[2].guards.reset();
   WriteEstimateRun(folder.path(), run);
-  const std::string header = "timestamp,searched,matched,landmarks,permanent,nis,nis_dof,effective_particles,ms_features,ms_matching,ms_filter,status";
+  const std::string header =
+      "timestamp,searched,matched,landmarks,permanent,nis,nis_dof,effective_particles,ms_features,ms_matching,ms_"
+      "filter,status";
   EXPECT_THAT(TemporaryFolder::Read(folder.path() / "frames.csv"), testing::StartsWith(header + "\n"));
   for (const FrameRecord& frame : ReadEstimateRun(folder.path()).frames) EXPECT_FALSE(frame.guards);
-  folder.Write("frames.csv", header + ",unsettled,behind,indefinite,impossible\n1,0,0,0,0,0,0,8,0,0,0,coasted,0,0,0,-1\n"
-                                      "2,0,0,0,0,0,0,8,0,0,0,coasted\n");
+  folder.Write("frames.csv", header +
+                                 ",unsettled,behind,indefinite,impossible\n1,0,0,0,0,0,0,8,0,0,0,coasted,0,0,0,-1\n"
+                                 "2,0,0,0,0,0,0,8,0,0,0,coasted\n");
   EXPECT_THAT([&] { ReadEstimateRun(folder.path()); },
-              testing::ThrowsMessage<InputError>(testing::AllOf(HasSubstr("frames.csv:2:37: '-1' is not a count"),
-                                                                HasSubstr("frames.csv:3:1: 12 columns where 16 are expected"))));
+              testing::ThrowsMessage<InputError>(
+                  testing::AllOf(HasSubstr("frames.csv:2:37: '-1' is not a count"),
+                                 HasSubstr("frames.csv:3:1: 12 columns where 16 are expected"))));
 }
 
 TEST(EstimateRun, PartsMayBeMissingAndOldOnesDoNotLinger) {
@@ -86,6 +92,19 @@ TEST(EstimateRun, PartsMayBeMissingAndOldOnesDoNotLinger) {
   EXPECT_TRUE(back.beliefs.empty());
   EXPECT_TRUE(back.frames.empty());
   EXPECT_EQ(back.trajectory.size(), 4u);
+}
+
+TEST(EstimateRun, ABeliefThatIsNoNumberIsNotWritten) {
+  const double nan = std::nan("");
+  const std::function<void(StampedBelief&)> spoils[] = {[&](StampedBelief& belief) { belief.velocity.v_WC[0] = nan; },
+                                                        [&](StampedBelief& belief) { belief.velocity.w_WC_C[2] = nan; },
+                                                        [&](StampedBelief& belief) { belief.covariance(7, 3) = nan; }};
+  for (const auto& spoil : spoils) {
+    const TemporaryFolder folder;
+    EstimateRun run = Sample();
+    spoil(run.beliefs.back());
+    EXPECT_THROW(WriteEstimateRun(folder.path(), run), std::invalid_argument);
+  }
 }
 
 TEST(EstimateRun, ListsTheProblemsOfAllFilesAtOnce) {

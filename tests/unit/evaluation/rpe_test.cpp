@@ -75,6 +75,7 @@ TEST(ComputeRpe, IsTheErrorWorkedByHand) {
   EXPECT_NEAR(rpe.orientation[0], M_PI / 180, 1e-12);
   EXPECT_NEAR(ComputeRpe(matched, {{0, 1}}, 1 / 1.1).position[0], 0, 1e-12);
   EXPECT_THROW(ComputeRpe(matched, {{0, 2}}), std::logic_error);
+  EXPECT_THROW(ComputeRpe(matched, {{2, 0}}), std::logic_error);
 }
 
 // In TUM's order the same error is seen from the other end: |t_A - A B^-1 t_B| differs once orientations do.

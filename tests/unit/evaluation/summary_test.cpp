@@ -124,7 +124,8 @@ TEST(Baseline, ConstantVelocityIsExactOnAScrew) {
 TEST(Baseline, TheStartIsATenthOfASecond) {
   Trajectory path;
   for (const std::int64_t ms : {0, 40, 100, 140})
-    path.push_back({5'000'000'000 + ms * 1'000'000, Eigen::Vector3d(static_cast<double>(ms * ms), 0, 1), Eigen::Quaterniond::Identity()});
+    path.push_back({5'000'000'000 + ms * 1'000'000, Eigen::Vector3d(static_cast<double>(ms * ms), 0, 1),
+                    Eigen::Quaterniond::Identity()});
   const StampedVelocity velocity = StartVelocity(path);
   EXPECT_EQ(velocity.stamp_ns, 5'000'000'000);
   EXPECT_NEAR(velocity.v_WC.x(), 100 * 100 / 0.1, 1e-6);

@@ -18,6 +18,10 @@ TEST(ParseSeconds, IsExactWhereADoubleIsNot) {
   EXPECT_EQ(ParseSeconds("1.305031102160407066e+09"), 1305031102'160407066);
   EXPECT_EQ(ParseSeconds("5e-10"), 1);  // rounded
   EXPECT_EQ(ParseSeconds("4e-10"), 0);
+  EXPECT_EQ(ParseSeconds("1e-100"), 0);
+  EXPECT_FALSE(ParseSeconds("1e-101"));
+  EXPECT_EQ(ParseSeconds("0e100"), 0);
+  EXPECT_FALSE(ParseSeconds("0e101"));
   EXPECT_EQ(ParseSeconds("-1.5"), -1'500'000'000);
   EXPECT_EQ(ParseSeconds("7"), 7'000'000'000);
   EXPECT_EQ(ParseSeconds("000000000000000000001.5"), 1'500'000'000);

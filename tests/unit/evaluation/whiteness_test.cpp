@@ -76,7 +76,7 @@ TEST(BinomialLimit, AgreesWithTheSums) {
   EXPECT_EQ(BinomialLimit(3, 0.5, 0.2), 2u);
   EXPECT_EQ(BinomialLimit(3, 0.5, 0.1), 3u);
   EXPECT_EQ(BinomialLimit(100, 0.05, 0.01), 11u);  // P(> 10) = 0.0115, P(> 11) = 0.0043
-  EXPECT_EQ(BinomialLimit(20, 0.05, 0.01), 4u);  // this and the next: SciPy's binom.sf
+  EXPECT_EQ(BinomialLimit(20, 0.05, 0.01), 4u);    // this and the next: SciPy's binom.sf
   EXPECT_EQ(BinomialLimit(7, 0.3, 0.05), 4u);
   EXPECT_EQ(BinomialLimit(50, 0.5, 0.001), 36u);
   EXPECT_EQ(BinomialLimit(0, 0.05, 0.01), 0u);
@@ -289,8 +289,10 @@ TEST(TestNisMean, Figures) {
   dof.pop_back();
   const NisMeanVerdict few = TestNisMean(nis, dof, 0.05, 0.01);
   EXPECT_EQ(few.runs, 0u) << "no spread to speak of";
-  EXPECT_FALSE(TestNisMean(std::vector<std::vector<double>>(8, {20}), std::vector<std::vector<int>>(8, {10}), 0.05, 0.01).pass);
-  EXPECT_FALSE(TestNisMean(std::vector<std::vector<double>>(8, {5}), std::vector<std::vector<int>>(8, {10}), 0.05, 0.01).pass);
+  EXPECT_FALSE(
+      TestNisMean(std::vector<std::vector<double>>(8, {20}), std::vector<std::vector<int>>(8, {10}), 0.05, 0.01).pass);
+  EXPECT_FALSE(
+      TestNisMean(std::vector<std::vector<double>>(8, {5}), std::vector<std::vector<int>>(8, {10}), 0.05, 0.01).pass);
 }
 
 TEST(NisOfRun, LeavesOutFramesWithoutInnovation) {

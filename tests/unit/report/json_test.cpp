@@ -46,9 +46,10 @@ TEST(RunJson, ReadsBackTheSame) {
   const RunDescription d = Sample();
   WriteRunJson(folder.path(), d);
   const RunDescription back = ReadRunJson(folder.path());
-  EXPECT_EQ(std::tie(back.title, back.input, back.command, back.started_utc, back.seconds, back.settings, back.versions,
-                     back.notes, back.verdicts),
-            std::tie(d.title, d.input, d.command, d.started_utc, d.seconds, d.settings, d.versions, d.notes, d.verdicts));
+  EXPECT_EQ(
+      std::tie(back.title, back.input, back.command, back.started_utc, back.seconds, back.settings, back.versions,
+               back.notes, back.verdicts),
+      std::tie(d.title, d.input, d.command, d.started_utc, d.seconds, d.settings, d.versions, d.notes, d.verdicts));
   ASSERT_EQ(back.runs.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(std::tie(back.runs[i].system, back.runs[i].seed, back.runs[i].path, back.runs[i].seconds),

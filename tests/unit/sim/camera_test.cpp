@@ -68,8 +68,8 @@ TEST(Camera, ALensThatFoldsOverInsideTheImageIsRefused) {
   params.k1 = -0.15;  // largest at r = 1.49, where it is 0.99
   EXPECT_THAT(Problems(params), IsEmpty());
   params.k1 = 0;
-  params.k2 =
-      -8;  // folds at r = 0.41, where r d(r) is 0.34, and grows again from r = 0.73: not one-to-one all the same
+  // Folds at r = 0.41, where r d(r) is 0.34, and grows again from r = 0.73: not one-to-one all the same.
+  params.k2 = -8;
   params.k3 = 10;
   EXPECT_THAT(Problems(params), testing::SizeIs(1));
 }

@@ -119,7 +119,8 @@ world: {meshes: [{file: a.obj}], lights: [)" +
 camera: {width: 320, height: 240, fx: 260, fy: 261, cx: 159.5, cy: 119.5}
 time: {rate: 20 Hz, duration: 1 s}
 trajectory: {type: sampled, start: {position: [0, 1, 0], look_at: [0, 1, -5]}, position_noise: 0.3, orientation_noise: 0.4}
-render: )" + render;
+render: )" +
+         render;
 }
 
 TEST(Scenario, KeysOfLight) {
@@ -127,11 +128,12 @@ TEST(Scenario, KeysOfLight) {
   Scenario s = LoadScenario(folder.Write("plain.yaml", WithLight("")));
   EXPECT_EQ(s.render.light, LightMode::direct);
   EXPECT_FALSE(s.world.sky.has_value());
-  s = LoadScenario(folder.Write("light.yaml", WithLight(R"(
+  s = LoadScenario(folder.Write(
+      "light.yaml", WithLight(R"(
     {type: point, position: [1, 2, 3], intensity: [4, 5, 6], flicker: {frequency: 100 Hz, depth: 0.3, phase: 90 deg}},
     {type: rectangle, corner: [1, 2, 3], side_u: [1, 0, 0], side_v: [0, 0, 2], radiance: [7, 8, 9], visible: true, flicker: {frequency: 0.12 kHz, depth: 1}},
     {type: sky, file: sky.hdr, strength: 3, turn: 45 deg})",
-                                                        "{light: baked, bake: {spacing: 20 cm, finest: 5 mm, paths: 64, lamp_rays: 32}}")));
+                              "{light: baked, bake: {spacing: 20 cm, finest: 5 mm, paths: 64, lamp_rays: 32}}")));
   EXPECT_EQ(s.render.light, LightMode::baked);
   EXPECT_EQ(s.render.bake.spacing_m, 0.2);
   EXPECT_EQ(s.render.bake.finest_m, 0.005);
@@ -174,14 +176,16 @@ TEST(Scenario, APresetIsWhatTheOtherKeysBeginWith) {
 
 TEST(Scenario, LightThatMakesNoSense) {
   const TemporaryFolder folder;
-  const std::string message = Message(folder.Write("bad.yaml", WithLight(R"(
+  const std::string message =
+      Message(folder.Write("bad.yaml", WithLight(R"(
     {type: point, position: [1, 2, 3], intensity: [4, 5, 6], flicker: {depth: 0.3}},
     {type: point, position: [1, 2, 3], intensity: [4, 5, 6], flicker: {frequency: 100, depth: 1.5}},
     {type: sun, direction: [0, -1, 0], irradiance: [1, 2, 3], flicker: {depth: 0.3}},
     {type: sky, radiance: [1, 1, 1], file: sky.hdr},
     {type: sky, radiance: [1, 1, 1], turn: 3 deg})",
-                                                                        "{light: fast, bake: {spacing: 1 cm, finest: 2 cm, paths: 100}}")));
-  for (const char* part : {"needs a frequency", "'world.lights.1.flicker.depth'", "'flicker'", "either 'radiance'", "a sky already", "only a sky from a file", "'fast'", "finest", "paths = 100"}) {
+                                                 "{light: fast, bake: {spacing: 1 cm, finest: 2 cm, paths: 100}}")));
+  for (const char* part : {"needs a frequency", "'world.lights.1.flicker.depth'", "'flicker'", "either 'radiance'",
+                           "a sky already", "only a sky from a file", "'fast'", "finest", "paths = 100"}) {
     EXPECT_THAT(message, HasSubstr(part));
   }
 }

@@ -325,14 +325,16 @@ TEST_F(VerifyTest, MovingObjectsAndMasksThatAreWrong) {
     }
     mask.data[flipped] = static_cast<std::uint8_t>(value);
     WriteBytes(file, sim::EncodeGrey8({mask.data, mask.total()}, mask.cols, mask.rows));
-    EXPECT_THAT(Failures(folder), Contains(HasSubstr("moving: pixels that move as the others: moving " + Stamp(3)))) << value;
+    EXPECT_THAT(Failures(folder), Contains(HasSubstr("moving: pixels that move as the others: moving " + Stamp(3))))
+        << value;
   }
 
   folder = spoilt("short");
   std::vector<std::string> lines = Lines(folder / "objects" / "globe.txt");
   lines.pop_back();
   WriteLines(folder / "objects" / "globe.txt", lines);
-  EXPECT_THAT(Failures(folder), Contains(HasSubstr("stamps: increasing, the same in all lists: objects/globe.txt: ends early")));
+  EXPECT_THAT(Failures(folder),
+              Contains(HasSubstr("stamps: increasing, the same in all lists: objects/globe.txt: ends early")));
 
   folder = spoilt("none");
   fs::remove_all(folder / "objects");

@@ -1,10 +1,10 @@
 // Calibration files of other tools: the numbers that they mean, and what is said of those that are not understood.
 #include "vo/geometry/camera_file.h"
 
+#include <gmock/gmock.h>
+
 #include <filesystem>
 #include <fstream>
-
-#include <gmock/gmock.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
@@ -18,7 +18,8 @@ using testing::HasSubstr;
 class CameraFile : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / ("camera_file_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    folder_ = fs::path(testing::TempDir()) /
+              ("camera_file_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }
@@ -29,11 +30,13 @@ class CameraFile : public testing::Test {
     return folder_ / name;
   }
   // As the calibration sample of OpenCV writes it.
-  fs::path WriteByOpenCv(const std::string& name, const cv::Mat& matrix, const cv::Mat& lens, bool fisheye = false) const {
+  fs::path WriteByOpenCv(const std::string& name, const cv::Mat& matrix, const cv::Mat& lens,
+                         bool fisheye = false) const {
     const fs::path file = folder_ / name;
     cv::FileStorage storage(file.string(), cv::FileStorage::WRITE);
     storage << "calibration_time"
-            << "Sun 22 Nov" << "image_width" << 752 << "image_height" << 480;
+            << "Sun 22 Nov"
+            << "image_width" << 752 << "image_height" << 480;
     if (fisheye) storage << "fisheye_model" << 1;
     storage << "camera_matrix" << matrix << "distortion_coefficients" << lens << "avg_reprojection_error" << 0.2;
     return file;
@@ -66,7 +69,8 @@ class CameraFile : public testing::Test {
   }
   void ExpectFisheye(const vo::Camera& camera) const {
     std::vector<cv::Point2d> pixels;
-    cv::fisheye::projectPoints(std::vector<cv::Point3d>{{0.3, -0.2, 1.1}}, pixels, cv::Vec3d(), cv::Vec3d(), matrix_, fisheye_);
+    cv::fisheye::projectPoints(std::vector<cv::Point3d>{{0.3, -0.2, 1.1}}, pixels, cv::Vec3d(), cv::Vec3d(), matrix_,
+                               fisheye_);
     ExpectSees(camera, {0.3, -0.2, 1.1}, pixels[0]);
   }
 
@@ -86,37 +90,48 @@ TEST_F(CameraFile, OfOpenCvThatIsNotUnderstood) {
   const fs::path file = WriteByOpenCv("c.yaml", cv::Mat(matrix_).rowRange(0, 2), cv::Mat(rational));
   EXPECT_THAT(ErrorOf(file), HasSubstr(file.string() + ": 'camera_matrix' must have 3 x 3 numbers"));
   EXPECT_THAT(ErrorOf(file), HasSubstr("'distortion_coefficients' has more than 5 coefficients that are not zero"));
-  EXPECT_THAT(ErrorOf(Write("c.xml", "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>-3</image_width>")), HasSubstr("OpenCV cannot read it"));
+  EXPECT_THAT(ErrorOf(Write("c.xml", "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>-3</image_width>")),
+              HasSubstr("OpenCV cannot read it"));
   const std::string nothing = ErrorOf(Write("d.yaml", "%YAML:1.0\n---\nimage_width: -3\n"));
-  for (const char* key : {"image_width", "image_height", "camera_matrix", "distortion_coefficients"}) EXPECT_THAT(nothing, HasSubstr(key));
+  for (const char* key : {"image_width", "image_height", "camera_matrix", "distortion_coefficients"})
+    EXPECT_THAT(nothing, HasSubstr(key));
 }
 
 TEST_F(CameraFile, OfRos) {
   const std::string text =
       "image_width: 752\nimage_height: 480\ncamera_name: left\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
       "  data: [458.5, 0, 367.25, 0, 457.25, 248.375, 0, 0, 1]\n";
-  ExpectPlumbBob(vo::ReadCamera(Write("ros.yaml", text + "distortion_model: plumb_bob\ndistortion_coefficients:\n  rows: 1\n  cols: 5\n"
-                                                         "  data: [-0.2834, 0.0739, 0.00019, 1.76e-05, 0.004]\n"
-                                                         "rectification_matrix: {rows: 3, cols: 3, data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}\n")));
-  ExpectFisheye(vo::ReadCamera(
-      Write("ros.yaml", text + "distortion_model: equidistant\ndistortion_coefficients: {rows: 1, cols: 4, data: [-0.0127, 0.0114, -0.0071, 0.0023]}\n")));
-  const fs::path bad = Write("ros.yaml", text + "distortion_model: thin_prism\ndistortion_coefficients: {data: [1, 2]}\n");
+  ExpectPlumbBob(vo::ReadCamera(
+      Write("ros.yaml", text + "distortion_model: plumb_bob\ndistortion_coefficients:\n  rows: 1\n  cols: 5\n"
+                               "  data: [-0.2834, 0.0739, 0.00019, 1.76e-05, 0.004]\n"
+                               "rectification_matrix: {rows: 3, cols: 3, data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}\n")));
+  ExpectFisheye(
+      vo::ReadCamera(Write("ros.yaml", text + "distortion_model: equidistant\ndistortion_coefficients: {rows: 1, cols: "
+                                              "4, data: [-0.0127, 0.0114, -0.0071, 0.0023]}\n")));
+  const fs::path bad =
+      Write("ros.yaml", text + "distortion_model: thin_prism\ndistortion_coefficients: {data: [1, 2]}\n");
   EXPECT_THAT(ErrorOf(bad), HasSubstr(bad.string() + ":8:"));
   EXPECT_THAT(ErrorOf(bad), HasSubstr("there are 2 numbers"));
 }
 
 TEST_F(CameraFile, OfKalibr) {
-  const std::string first = "cam0:\n  camera_model: pinhole\n  intrinsics: [458.5, 457.25, 367.25, 248.375]\n  resolution: [752, 480]\n  rostopic: /cam0/image_raw\n";
+  const std::string first =
+      "cam0:\n  camera_model: pinhole\n  intrinsics: [458.5, 457.25, 367.25, 248.375]\n  resolution: [752, 480]\n  "
+      "rostopic: /cam0/image_raw\n";
   const std::string second = "cam1:\n  camera_model: omni\n  T_cn_cnm1:\n  - [1, 0, 0, 0]\n";
-  std::string radtan = first + "  distortion_model: radtan\n  distortion_coeffs: [-0.2834, 0.0739, 0.00019, 1.76e-05]\n";
+  std::string radtan =
+      first + "  distortion_model: radtan\n  distortion_coeffs: [-0.2834, 0.0739, 0.00019, 1.76e-05]\n";
   const vo::Camera camera = vo::ReadCamera(Write("camchain.yaml", radtan + second));
   EXPECT_EQ(camera.k1, -0.2834);
   EXPECT_EQ(camera.p2, 1.76e-05);
   EXPECT_EQ(camera.k3, 0);
   EXPECT_EQ(camera.fx, 458.5);
   EXPECT_EQ(camera.cy, 248.375);
-  ExpectFisheye(vo::ReadCamera(Write("camchain.yaml", first + "  distortion_model: equidistant\n  distortion_coeffs: [-0.0127, 0.0114, -0.0071, 0.0023]\n")));
-  EXPECT_THAT(ErrorOf(Write("camchain.yaml", first + "  distortion_model: fov\n  distortion_coeffs: [0.9]\n")), HasSubstr("camchain.yaml:6:"));
+  ExpectFisheye(vo::ReadCamera(
+      Write("camchain.yaml",
+            first + "  distortion_model: equidistant\n  distortion_coeffs: [-0.0127, 0.0114, -0.0071, 0.0023]\n")));
+  EXPECT_THAT(ErrorOf(Write("camchain.yaml", first + "  distortion_model: fov\n  distortion_coeffs: [0.9]\n")),
+              HasSubstr("camchain.yaml:6:"));
 }
 
 }  // namespace

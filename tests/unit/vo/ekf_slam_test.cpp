@@ -2,18 +2,18 @@
 
 #include "vo/filter/ekf_slam.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <array>
-#include <vector>
+#include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <gtest/gtest.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <vector>
 
 #include "vo/filter/motion_model.h"
 #include "vo/geometry/so3.h"
@@ -49,15 +49,15 @@ struct World {
   vo::LandmarkParams landmark{.inverse_depth = 0.25, .inverse_depth_sigma = 0.0125};
   vo::FilterPrior prior;
   double sigma = 1.0 / 525;
-  std::vector<double> dt;                                        // before each frame but the first
+  std::vector<double> dt;  // before each frame but the first
   std::vector<State> truth;
   struct Point {
-    int born = 0;   // frame of the first view
-    Vector2d ray;   // as seen there
-    Vector3d theta; // true (x, y, rho)
+    int born = 0;    // frame of the first view
+    Vector2d ray;    // as seen there
+    Vector3d theta;  // true (x, y, rho)
   };
   std::vector<Point> points;
-  std::vector<std::vector<vo::Match>> matches;                   // per frame
+  std::vector<std::vector<vo::Match>> matches;  // per frame
 };
 
 // `born`: how many landmarks begin in each frame.
@@ -90,7 +90,8 @@ World Draw(std::uint64_t seed, const std::vector<int>& born, double scale = 1, b
       const World::Point& point = world.points[n];
       const vo::Pose& anchor = world.truth[static_cast<std::size_t>(point.born)].pose;
       const Vector3d X = state.pose.q_WC.conjugate() *
-                         (anchor.p_WC + anchor.q_WC * Vector3d(point.theta.x(), point.theta.y(), 1) / point.theta.z() - state.pose.p_WC);
+                         (anchor.p_WC + anchor.q_WC * Vector3d(point.theta.x(), point.theta.y(), 1) / point.theta.z() -
+                          state.pose.p_WC);
       matches.push_back({static_cast<int>(n), X.head<2>() / X.z() + world.sigma * Vector2d{draw(), draw()}, R});
     }
     for (int i = 0; i < born[k]; ++i) {
@@ -104,7 +105,8 @@ World Draw(std::uint64_t seed, const std::vector<int>& born, double scale = 1, b
   return world;
 }
 
-vo::EkfSlam RunOn(const World& world, int iterations, const std::function<void(std::size_t, const vo::EkfSlam&)>& look = {}) {
+vo::EkfSlam RunOn(const World& world, int iterations,
+                  const std::function<void(std::size_t, const vo::EkfSlam&)>& look = {}) {
   vo::EkfSlam filter(world.motion, {.joint_iterations = iterations}, world.landmark, world.prior);
   for (std::size_t k = 0; k < world.truth.size(); ++k) {
     if (k > 0) {
@@ -114,7 +116,8 @@ vo::EkfSlam RunOn(const World& world, int iterations, const std::function<void(s
     if (look) look(k, filter);
     std::vector<vo::FirstView> views;
     for (const World::Point& point : world.points)
-      if (point.born == static_cast<int>(k)) views.push_back({point.ray, world.sigma * world.sigma * Matrix2d::Identity()});
+      if (point.born == static_cast<int>(k))
+        views.push_back({point.ray, world.sigma * world.sigma * Matrix2d::Identity()});
     filter.AddLandmarks(views);
   }
   return filter;
@@ -130,7 +133,9 @@ Batch SolveBatch(const World& world) {
   std::vector<State> states = world.truth;
   std::vector<Vector3d> thetas;
   for (const World::Point& point : world.points) thetas.push_back(point.theta);
-  const auto moved = [](const State& s, const Vector12& d) { return State{vo::Plus(s.pose, d.head<6>()), s.velocity + d.tail<6>()}; };
+  const auto moved = [](const State& s, const Vector12& d) {
+    return State{vo::Plus(s.pose, d.head<6>()), s.velocity + d.tail<6>()};
+  };
   const auto residual = [&](const VectorXd& d) {
     std::vector<double> r;
     const auto add = [&](const VectorXd& v) { r.insert(r.end(), v.begin(), v.end()); };
@@ -139,7 +144,10 @@ Batch SolveBatch(const World& world) {
     add(world.prior.pose.covariance.llt().matrixL().solve(vo::Minus(s[0].pose, world.prior.pose.mean)));
     add(world.prior.velocity_covariance.llt().matrixL().solve(s[0].velocity - world.prior.velocity));
     for (int k = 1; k < frames; ++k)
-      add(vo::NearlyConstantVelocity(world.motion, world.dt[k - 1]).Q.llt().matrixL().solve(StepNoise(s[k - 1], s[k], world.dt[k - 1])));
+      add(vo::NearlyConstantVelocity(world.motion, world.dt[k - 1])
+              .Q.llt()
+              .matrixL()
+              .solve(StepNoise(s[k - 1], s[k], world.dt[k - 1])));
     for (int n = 0; n < points; ++n) {
       const Vector3d theta = thetas[n] + d.segment<3>(12 * frames + 3 * n);
       add((theta.head<2>() - world.points[n].ray) / world.sigma);
@@ -284,9 +292,15 @@ TEST(EkfSlam, PredictsImagesAsWellAsItSays) {
   int count = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     const World world = Draw(seed + 500, {6, 0, 0, 0});
-    vo::EkfSlam filter = RunOn({world.motion, world.landmark, world.prior, world.sigma, {world.dt[0], world.dt[1]},
-                                {world.truth[0], world.truth[1], world.truth[2]}, world.points,
-                                {world.matches[0], world.matches[1], world.matches[2]}}, 1);
+    vo::EkfSlam filter = RunOn({world.motion,
+                                world.landmark,
+                                world.prior,
+                                world.sigma,
+                                {world.dt[0], world.dt[1]},
+                                {world.truth[0], world.truth[1], world.truth[2]},
+                                world.points,
+                                {world.matches[0], world.matches[1], world.matches[2]}},
+                               1);
     filter.Predict(world.dt[2]);
     const vo::Match& match = world.matches[3][seed % 6];
     const vo::ImagePrediction prediction = filter.PredictImages(std::array{match.landmark})[0];

@@ -1,14 +1,14 @@
 // The members of the filter family that differ from RB2-PF in one step: bootstrap and unscented proposals.
 
+#include <gmock/gmock.h>
+
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
-
-#include <Eigen/Cholesky>
-#include <gmock/gmock.h>
 
 #include "vo/filter/ekf_slam.h"
 #include "vo/filter/particle_filter.h"
@@ -56,7 +56,8 @@ TEST(Family, KnowsFromWhereARowWasSeen) {
     const Vector3d theta(0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n), 0.5 + 0.3 * std::sin(0.9 * n));
     const Vector3d moved(0.01 + 0.005 * std::sin(n), -0.005 * std::cos(n), 0.004 * std::sin(2.0 * n));
     const vo::Projection h = vo::Project(vo::AnchorView(truth, {}).From(moved), theta);
-    first.push_back({theta.head<2>(), kFine * kFine * Matrix2d::Identity(), Vector2d::Zero(), vo::KnownDepth{theta.z(), 1e-4}});
+    first.push_back(
+        {theta.head<2>(), kFine * kFine * Matrix2d::Identity(), Vector2d::Zero(), vo::KnownDepth{theta.z(), 1e-4}});
     told.push_back({n, h.z, kFine * kFine * Matrix2d::Identity(), moved});
     not_told.push_back({n, h.z, kFine * kFine * Matrix2d::Identity()});
   }
@@ -65,7 +66,9 @@ TEST(Family, KnowsFromWhereARowWasSeen) {
   const vo::FilterParams plain{.particles = 8, .weight = vo::Weight::evidence, .lag = 0, .start_window = 0};
   std::map<std::string, std::function<std::unique_ptr<vo::Filter>()>> members;
   const auto particles = [&](const vo::FilterParams& params) {
-    return [&prior, params] { return std::make_unique<vo::ParticleFilter>(vo::MotionParams{}, params, vo::LandmarkParams{}, prior, 3); };
+    return [&prior, params] {
+      return std::make_unique<vo::ParticleFilter>(vo::MotionParams{}, params, vo::LandmarkParams{}, prior, 3);
+    };
   };
   vo::FilterParams params = plain;
   members["iterated"] = particles(params);
@@ -82,7 +85,9 @@ TEST(Family, KnowsFromWhereARowWasSeen) {
   params = plain;
   params.start_window = 5;
   members["start window"] = particles(params);
-  members["ekfslam"] = [&] { return std::make_unique<vo::EkfSlam>(vo::MotionParams{}, vo::FilterParams{}, vo::LandmarkParams{}, prior); };
+  members["ekfslam"] = [&] {
+    return std::make_unique<vo::EkfSlam>(vo::MotionParams{}, vo::FilterParams{}, vo::LandmarkParams{}, prior);
+  };
   for (const auto& [name, make] : members) {
     const auto off = [&, &make = make](const std::vector<vo::Match>& matches) {
       const std::unique_ptr<vo::Filter> filter = make();
@@ -115,12 +120,15 @@ TEST(Bootstrap, WeightIsTheLikelihoodAtTheSample) {
   for (std::size_t i = 0; i < before.size(); ++i) {
     double log_likelihood = 0;
     for (const vo::Match& match : views.matches)
-      log_likelihood += vo::UpdateLandmark(before[i].landmarks[static_cast<std::size_t>(match.landmark)],
-                                           {filter.particles()[i].pose, before[i].anchors[0]}, match, params.max_iterations).log_likelihood;
+      log_likelihood +=
+          vo::UpdateLandmark(before[i].landmarks[static_cast<std::size_t>(match.landmark)],
+                             {filter.particles()[i].pose, before[i].anchors[0]}, match, params.max_iterations)
+              .log_likelihood;
     expected.push_back(log_likelihood);
     peak = std::max(peak, log_likelihood);
   }
-  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(filter.particles()[i].log_weight, expected[i] - peak, 1e-9);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    EXPECT_NEAR(filter.particles()[i].log_weight, expected[i] - peak, 1e-9);
 }
 
 // With many particles and features that say little, the bootstrap filter's answer is that of the optimal proposal: two roads to the
@@ -147,7 +155,8 @@ TEST(Bootstrap, AgreesWithTheOptimalProposalInTheLimit) {
     Eigen::Matrix<double, 12, 1> d;
     d << vo::Minus(belief.pose, optimal.pose), belief.velocity - optimal.velocity;
     EXPECT_LT(d.cwiseQuotient(optimal.covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff(), 0.15);
-    EXPECT_LT((belief.covariance.diagonal().cwiseQuotient(optimal.covariance.diagonal()).array() - 1).abs().maxCoeff(), 0.15);
+    EXPECT_LT((belief.covariance.diagonal().cwiseQuotient(optimal.covariance.diagonal()).array() - 1).abs().maxCoeff(),
+              0.15);
   }
 }
 

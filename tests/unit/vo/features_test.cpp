@@ -1,11 +1,10 @@
-#include <cmath>
-#include <cstdio>
-#include <cstring>
+#include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-
-#include <gtest/gtest.h>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -93,7 +92,8 @@ TEST(Brisk, IsBriskAndNearlyOpenCvs) {
         std::array<double, vo::kBriskPoints> means;
         for (std::size_t n = 0; n < means.size(); ++n) {
           const vo::BriskPoint& point = vo::BriskPattern()[n];
-          means[n] = MeanOverSquare(image, pixel.cast<double>() + map * Vector2d(point.x, point.y), std::sqrt(map.determinant()) * point.half_width);
+          means[n] = MeanOverSquare(image, pixel.cast<double>() + map * Vector2d(point.x, point.y),
+                                    std::sqrt(map.determinant()) * point.half_width);
         }
         vo::Descriptor written_out{}, theirs;
         for (std::size_t n = 0; n < 512; ++n) {
@@ -110,8 +110,8 @@ TEST(Brisk, IsBriskAndNearlyOpenCvs) {
     }
   }
   const auto share = [&](int different) { return different / static_cast<double>(compared); };
-  std::printf("of %d bits differ: OpenCV's from BRISK %.1e, ours %.1e, ours from OpenCV's %.1e\n", compared, share(theirs_off), share(ours_off),
-              share(apart));
+  std::printf("of %d bits differ: OpenCV's from BRISK %.1e, ours %.1e, ours from OpenCV's %.1e\n", compared,
+              share(theirs_off), share(ours_off), share(apart));
   EXPECT_LT(share(ours_off), 1e-3);
   EXPECT_LT(share(apart), 0.01);
 }
@@ -169,7 +169,8 @@ TEST(Register, FindsAFractionOfAPixelDespiteGainAndOffset) {
   for (const Vector2d& shift : {Vector2d(0, 0), Vector2d(0.37, -0.61), Vector2d(-0.5, 0.25), Vector2d(0.9, 0.8)}) {
     cv::Mat second = texture.Image(120, 100, shift);
     second.convertTo(second, CV_8U, 0.7, 20);
-    const auto found = vo::Register(vo::CutPatch(first, centre), Matrix2d::Identity(), second, centre.cast<double>(), 2.0);
+    const auto found =
+        vo::Register(vo::CutPatch(first, centre), Matrix2d::Identity(), second, centre.cast<double>(), 2.0);
     ASSERT_TRUE(found);
     worst = std::max(worst, (found->pixel - (centre.cast<double>() - shift)).norm());
     EXPECT_GT(found->correlation, 0.99);
@@ -195,7 +196,8 @@ TEST(Register, KnowsItsErrorToWithinItsInflation) {
       cv::add(view, noise, view, cv::noArray(), CV_8U);
       view = vo::Smooth(view);
     }
-    const auto found = vo::Register(vo::CutPatch(views[0], centre), Matrix2d::Identity(), views[1], centre.cast<double>(), 2.0);
+    const auto found =
+        vo::Register(vo::CutPatch(views[0], centre), Matrix2d::Identity(), views[1], centre.cast<double>(), 2.0);
     if (!found) continue;
     const Vector2d error = found->pixel - (centre.cast<double>() - shift);
     sum += error.dot(found->covariance.inverse() * error);
@@ -266,7 +268,8 @@ TEST(Register, AlongAnEdgeItKnowsNothing) {
         const Vector2d through = centre.cast<double>() + offset * across;
         const cv::Mat first = Edge(angle, through, contrast, corner, random.next());
         const cv::Mat second = Edge(angle, through + moved * across + slid * along, contrast, corner, random.next());
-        const auto found = vo::Register(vo::CutPatch(first, centre), Matrix2d::Identity(), second, centre.cast<double>(), 2.0);
+        const auto found =
+            vo::Register(vo::CutPatch(first, centre), Matrix2d::Identity(), second, centre.cast<double>(), 2.0);
         ASSERT_TRUE(found) << degrees << ' ' << contrast;
         const auto sigma = [&](const Vector2d& axis) { return std::sqrt(axis.dot(found->covariance * axis)); };
         if (corner) {
@@ -275,9 +278,11 @@ TEST(Register, AlongAnEdgeItKnowsNothing) {
         }
         least_along = std::min(least_along, sigma(along));
         if (contrast >= 60) most_across = std::max(most_across, sigma(across));
-        EXPECT_LT(std::abs(across.dot(found->pixel - centre.cast<double>()) - moved), 4 * sigma(across) + 0.03) << degrees << ' ' << contrast;
+        EXPECT_LT(std::abs(across.dot(found->pixel - centre.cast<double>()) - moved), 4 * sigma(across) + 0.03)
+            << degrees << ' ' << contrast;
       }
-  std::printf("along edges at least %.2f px, across at most %.3f; corners at most %.3f\n", least_along, most_across, most_of_a_corner);
+  std::printf("along edges at least %.2f px, across at most %.3f; corners at most %.3f\n", least_along, most_across,
+              most_of_a_corner);
   EXPECT_GT(least_along, 3.5);  // the window's half width is 4
   EXPECT_LT(most_across, 0.3);  // a sharp edge's gradients are up to four degrees off
   EXPECT_LT(most_of_a_corner, 0.1);
@@ -291,7 +296,8 @@ TEST(Matcher, FindsShiftsThatFitTheWindowsAndNoOthers) {
   vo::BriskImage brisk;
   brisk.Set(first);
   std::vector<vo::Appearance> appearances;
-  for (const Vector2i& c : corners) appearances.push_back({brisk.Describe(c, vo::FirstSampler({})), vo::CutPatch(first, c)});
+  for (const Vector2i& c : corners)
+    appearances.push_back({brisk.Describe(c, vo::FirstSampler({})), vo::CutPatch(first, c)});
   const auto found_share = [&](const Vector2d& shift, double sigma) {
     const cv::Mat second = texture.Image(320, 240, -shift);
     brisk.Set(second);
@@ -304,10 +310,10 @@ TEST(Matcher, FindsShiftsThatFitTheWindowsAndNoOthers) {
       right += found[i] && (found[i]->pixel - corners[i].cast<double>() - shift).norm() < 0.1;
     return right / static_cast<double>(corners.size());
   };
-  EXPECT_GE(found_share({2.3, -1.6}, 1), 0.95);   // in 9 x 9
-  EXPECT_GE(found_share({-7.4, 6.5}, 1), 0.80);   // in 17 x 17; half-pixel shifts cost BRISK some bits
-  EXPECT_EQ(found_share({15.0, -14.0}, 1), 0.0);  // outside both, and the prediction was sure
-  EXPECT_GE(found_share({15.0, -14.0}, 8), 0.90); // unsure: the window grows
+  EXPECT_GE(found_share({2.3, -1.6}, 1), 0.95);    // in 9 x 9
+  EXPECT_GE(found_share({-7.4, 6.5}, 1), 0.80);    // in 17 x 17; half-pixel shifts cost BRISK some bits
+  EXPECT_EQ(found_share({15.0, -14.0}, 1), 0.0);   // outside both, and the prediction was sure
+  EXPECT_GE(found_share({15.0, -14.0}, 8), 0.90);  // unsure: the window grows
 }
 
 }  // namespace

@@ -23,8 +23,9 @@ TEST(WorthKeeping, PermanentOnesStayOthersWhileTheyExistAndAreSearched) {
   vo::ScoreParams score;
   score.delete_below = 0.1;
   score.grace_frames = 3;
-  const vo::LandmarkRecord records[] = {Record(true, 0.0, 500, 400), Record(false, 0.9, 50, 89), Record(false, 0.9, 100, 90),
-                                        Record(false, 0.05, 50, 0), Record(false, 0.05, 2, 0)};
+  const vo::LandmarkRecord records[] = {Record(true, 0.0, 500, 400), Record(false, 0.9, 50, 89),
+                                        Record(false, 0.9, 100, 90), Record(false, 0.05, 50, 0),
+                                        Record(false, 0.05, 2, 0)};
   EXPECT_THAT(vo::WorthKeeping(records, landmark, score), ElementsAre(true, true, false, false, true));
 }
 

@@ -39,7 +39,8 @@ TEST(So3, ExpIsTheMatrixExponential) {
 
 TEST(So3, LogUndoesExp) {
   for (const Vector3d& phi : RotationVectors()) {
-    EXPECT_LT((vo::Log(vo::Exp(phi)) - phi).norm(), 1e-14 * (1 + phi.norm()) + (phi.norm() > 3 ? 1e-13 : 0)) << phi.transpose();
+    EXPECT_LT((vo::Log(vo::Exp(phi)) - phi).norm(), 1e-14 * (1 + phi.norm()) + (phi.norm() > 3 ? 1e-13 : 0))
+        << phi.transpose();
     const Eigen::Quaterniond q = vo::Exp(phi);
     EXPECT_LT((vo::Log(Eigen::Quaterniond(-q.coeffs())) - phi).norm(), 1e-13) << "the other sign of the same rotation";
   }
@@ -51,11 +52,14 @@ TEST(So3, RightJacobianIsTheDerivative) {
     const double h = 1e-6;
     for (int i = 0; i < 3; ++i) {
       const Vector3d d = h * Vector3d::Unit(i);
-      numeric.col(i) = (vo::Log(vo::Exp(phi).conjugate() * vo::Exp(phi + d)) - vo::Log(vo::Exp(phi).conjugate() * vo::Exp(phi - d))) / (2 * h);
+      numeric.col(i) = (vo::Log(vo::Exp(phi).conjugate() * vo::Exp(phi + d)) -
+                        vo::Log(vo::Exp(phi).conjugate() * vo::Exp(phi - d))) /
+                       (2 * h);
     }
     EXPECT_LT((vo::RightJacobian(phi) - numeric).norm(), 1e-9) << phi.transpose();
     EXPECT_GT((vo::RightJacobian(-phi) - numeric).norm() + (phi.norm() < 1e-4), 1e-5) << "the wrong sign must show";
-    EXPECT_LT((vo::RightJacobian(phi) * vo::InverseRightJacobian(phi) - Matrix3d::Identity()).norm(), 1e-12) << phi.transpose();
+    EXPECT_LT((vo::RightJacobian(phi) * vo::InverseRightJacobian(phi) - Matrix3d::Identity()).norm(), 1e-12)
+        << phi.transpose();
     EXPECT_NEAR(vo::LogVolume(phi), std::log(vo::RightJacobian(phi).determinant()), 1e-9) << phi.transpose();
   }
 }
@@ -69,7 +73,8 @@ TEST(Camera, ProjectsAsWorkedByHand) {  // docs/conventions.md
 }
 
 TEST(Camera, UndistortUndoesProject) {
-  for (const vo::Camera& camera : {vo::CameraPreset("freiburg1"), vo::CameraPreset("freiburg2"), vo::CameraPreset("icl"), HandWorkedCamera()})
+  for (const vo::Camera& camera :
+       {vo::CameraPreset("freiburg1"), vo::CameraPreset("freiburg2"), vo::CameraPreset("icl"), HandWorkedCamera()})
     for (double u = 0; u < 640; u += 71)
       for (double v = 0; v < 480; v += 53) {
         const Vector2d xy = camera.Undistort({u, v});

@@ -1,10 +1,10 @@
 #include "vo/map/landmark.h"
 
-#include <cmath>
-#include <numbers>
+#include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <gtest/gtest.h>
+#include <cmath>
+#include <numbers>
 
 #include "tests/unit/vo/draws.h"
 #include "vo/filter/pose_gaussian.h"
@@ -45,12 +45,15 @@ TEST(Landmark, JacobiansAreTheDerivatives) {
     if (!p.in_front || p.z.norm() > 2) continue;
     for (int k = 0; k < 6; ++k) {
       const vo::Vector6 d = h * vo::Vector6::Unit(k);
-      const Vector2d numeric = (vo::Project({vo::Plus(camera, d), anchor}, theta).z - vo::Project({vo::Plus(camera, -d), anchor}, theta).z) / (2 * h);
+      const Vector2d numeric =
+          (vo::Project({vo::Plus(camera, d), anchor}, theta).z - vo::Project({vo::Plus(camera, -d), anchor}, theta).z) /
+          (2 * h);
       EXPECT_LT((p.J_pose.col(k) - numeric).norm(), 1e-8) << "pose " << k;
     }
     for (int k = 0; k < 3; ++k) {
       const Vector3d d = h * Vector3d::Unit(k);
-      const Vector2d numeric = (vo::Project({camera, anchor}, theta + d).z - vo::Project({camera, anchor}, theta - d).z) / (2 * h);
+      const Vector2d numeric =
+          (vo::Project({camera, anchor}, theta + d).z - vo::Project({camera, anchor}, theta - d).z) / (2 * h);
       EXPECT_LT((p.J_landmark.col(k) - numeric).norm(), 1e-8) << "landmark " << k;
     }
   }
@@ -89,7 +92,8 @@ TEST(Landmark, LaplaceWeightIsTheIntegralWhereThePriorLinearisationIsNot) {
   Draws draws(3);
   double worst_iterated = 0, worst_prior = 0;
   for (int i = 0; i < 100; ++i) {
-    const vo::Pose anchor, camera{Vector3d{0.1 * draws.Symmetric(), 0.1 * draws.Symmetric(), 0.25}, vo::Exp(0.02 * draws.Symmetrics<3>())};
+    const vo::Pose anchor,
+        camera{Vector3d{0.1 * draws.Symmetric(), 0.1 * draws.Symmetric(), 0.25}, vo::Exp(0.02 * draws.Symmetrics<3>())};
     vo::Landmark prior;
     prior.mean << 0.3 * draws.Symmetrics<2>(), 0.25;
     prior.covariance(2, 2) = 0.15 * 0.15;
@@ -99,7 +103,8 @@ TEST(Landmark, LaplaceWeightIsTheIntegralWhereThePriorLinearisationIsNot) {
     const double inverse_depth = 0.55 + 0.2 * draws.Uniform();
     match.z = vo::Project(view, {prior.mean.x(), prior.mean.y(), inverse_depth}).z + draws.Symmetrics<2>() / 500;
     const double truth = Quadrature(prior, view, match);
-    worst_iterated = std::max(worst_iterated, std::abs(vo::UpdateLandmark(prior, view, match, 10).log_likelihood - truth));
+    worst_iterated =
+        std::max(worst_iterated, std::abs(vo::UpdateLandmark(prior, view, match, 10).log_likelihood - truth));
     worst_prior = std::max(worst_prior, std::abs(vo::UpdateLandmark(prior, view, match, 1).log_likelihood - truth));
   }
   EXPECT_LT(worst_iterated, 0.05);
@@ -133,7 +138,7 @@ TEST(Existence, FollowsThePrintedFormulas) {
   EXPECT_NEAR(vo::PredictScore(0.5, p), 0.5, 1e-15);                      // its fixed point
   const double PDPG = 0.75 * 0.995;
   EXPECT_NEAR(vo::UpdateScore(0.5, std::nullopt, p), (1 - PDPG) / (1 - PDPG * 0.5) * 0.5, 1e-15);
-  EXPECT_NEAR(vo::UpdateScore(0.5, std::nullopt, p), 0.20239, 1e-5);      // one miss deletes a new feature
+  EXPECT_NEAR(vo::UpdateScore(0.5, std::nullopt, p), 0.20239, 1e-5);  // one miss deletes a new feature
   // (45)-(48) with |S| written out, for two very different S: the score does not depend on it.
   for (const double s : {0.01, 1.0, 400.0}) {
     const Matrix2d S = s * (Matrix2d() << 2.0, 0.3, 0.3, 1.0).finished();

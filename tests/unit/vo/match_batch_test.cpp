@@ -35,7 +35,8 @@ struct Scene {
 Scene MakeScene(unsigned seed, int matches, bool some_behind = true) {
   vo_test::Draws draws(seed);
   Scene scene;
-  for (int a = 0; a < 3; ++a) scene.anchors.push_back({0.1 * draws.Symmetrics<3>(), vo::Exp(0.05 * draws.Symmetrics<3>())});
+  for (int a = 0; a < 3; ++a)
+    scene.anchors.push_back({0.1 * draws.Symmetrics<3>(), vo::Exp(0.05 * draws.Symmetrics<3>())});
   scene.camera = {0.2 * draws.Symmetrics<3>(), vo::Exp(0.1 * draws.Symmetrics<3>())};
   const int count = 2 * matches + 1;
   for (int n = 0; n < count; ++n) {
@@ -59,7 +60,8 @@ Scene MakeScene(unsigned seed, int matches, bool some_behind = true) {
     Matrix2d R;
     R << 1.2, 0.3, 0.3, 0.8;
     const Vector3d moved = 0.03 * draws.Symmetrics<3>();
-    const vo::Projection h = vo::Project(vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[n]]).From(moved), scene.landmarks[n].mean);
+    const vo::Projection h = vo::Project(vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[n]]).From(moved),
+                                         scene.landmarks[n].mean);
     scene.matches.push_back({n, h.z + 5 * sigma * draws.Symmetrics<2>(), sigma * sigma * R, moved});
   }
   return scene;
@@ -79,7 +81,8 @@ vo::MatchBatch::Information Expected(const Scene& scene, const std::vector<Vecto
   for (std::size_t i = 0; i < scene.matches.size(); ++i) {
     const vo::Match& match = scene.matches[i];
     const vo::Landmark& landmark = scene.landmarks[match.landmark];
-    const vo::Projection h = vo::Project(vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]).From(match.moved), theta[i]);
+    const vo::Projection h = vo::Project(
+        vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]).From(match.moved), theta[i]);
     terms.emplace_back();
     if (!h.in_front) continue;
     const Vector2d e = match.z - h.z - h.J_landmark * (landmark.mean - theta[i]);
@@ -157,7 +160,9 @@ TEST_P(EveryInstructionSet, DistancesAreThoseOfTheResidualsAsGiven) {
     for (std::size_t i = 0; i < distances.size(); ++i) {
       const vo::Match& match = scene.matches[i];
       const vo::Landmark& landmark = scene.landmarks[match.landmark];
-      const vo::Projection h = vo::Project(vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]).From(match.moved), landmark.mean);
+      const vo::Projection h =
+          vo::Project(vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]).From(match.moved),
+                      landmark.mean);
       if (!h.in_front) {
         EXPECT_EQ(distances[i], INFINITY) << i;
         continue;
@@ -175,7 +180,8 @@ TEST_P(EveryInstructionSet, InflatedIsAsIfGivenSo) {
   batch.SetMatches(scene.matches);
   batch.Load(scene.map());
   std::vector<double> factors;
-  for (vo::Match& match : scene.matches) match.R *= factors.emplace_back(1.0 + 0.5 * static_cast<double>(factors.size()));
+  for (vo::Match& match : scene.matches)
+    match.R *= factors.emplace_back(1.0 + 0.5 * static_cast<double>(factors.size()));
   expected.SetMatches(scene.matches);
   expected.Load(scene.map());
   batch.Inflate(std::vector<double>(factors.size(), 3.0));  // not on top of one another
@@ -196,7 +202,8 @@ TEST_P(EveryInstructionSet, LandmarksAreUpdatedAsOneByOne) {
       batch.Store(landmarks);
       double sum = 0;
       for (const vo::Match& match : scene.matches) {
-        const vo::AnchorView view = vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]).From(match.moved);
+        const vo::AnchorView view =
+            vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]).From(match.moved);
         const vo::LandmarkUpdate update = vo::UpdateLandmark(scene.landmarks[match.landmark], view, match, iterations);
         expected[match.landmark] = update.landmark;
         sum += update.log_likelihood;

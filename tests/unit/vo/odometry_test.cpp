@@ -2,13 +2,13 @@
 
 #include "vo/odometry.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
-
-#include <gtest/gtest.h>
 
 #include "tests/unit/vo/texture.h"
 #include "vo/geometry/so3.h"
@@ -90,7 +90,8 @@ Outcome Fly(vo::Odometry& odometry, int frames, std::vector<vo::Estimate>& estim
     y.col(k) = TruthAt(k).p_WC;
   }
   const Eigen::Matrix4d T = Eigen::umeyama(x, y, true);
-  outcome.rms = std::sqrt((((T.topLeftCorner<3, 3>() * x).colwise() + Vector3d(T.topRightCorner<3, 1>())) - y).squaredNorm() / frames);
+  outcome.rms = std::sqrt(
+      (((T.topLeftCorner<3, 3>() * x).colwise() + Vector3d(T.topRightCorner<3, 1>())) - y).squaredNorm() / frames);
   outcome.path_extent = std::sqrt((y.colwise() - y.rowwise().mean().eval()).squaredNorm() / frames);
   return outcome;
 }
@@ -112,7 +113,8 @@ TEST(Odometry, CoastsOverBlankFramesAndRecovers) {
   vo::Odometry odometry(kCamera, SmallImageParams(), KnownStart(), 1);
   std::vector<vo::Estimate> estimates;
   const Outcome outcome = Fly(odometry, 45, estimates, [&](int k) {
-    return k >= 20 && k < 25 ? cv::Mat(kCamera.height, kCamera.width, CV_8UC1, cv::Scalar(90)) : ViewFrom(TruthAt(k), texture);
+    return k >= 20 && k < 25 ? cv::Mat(kCamera.height, kCamera.width, CV_8UC1, cv::Scalar(90))
+                             : ViewFrom(TruthAt(k), texture);
   });
   const auto spread = [&](std::size_t k) { return estimates[k].covariance.topLeftCorner<6, 6>().trace(); };
   for (std::size_t k = 20; k < 25; ++k) {
@@ -129,7 +131,8 @@ TEST(Odometry, CoastsOverBlankFramesAndRecovers) {
 TEST(Odometry, StraightensARollingShutter) {
   const auto turned = [](double k) {
     const double t = k / 30.0;
-    return vo::Pose{Vector3d::Zero(), vo::Exp({0.15 * std::sin(4.5 * t), 0.15 * std::sin(3.7 * t), 0.1 * std::sin(5.1 * t)})};
+    return vo::Pose{Vector3d::Zero(),
+                    vo::Exp({0.15 * std::sin(4.5 * t), 0.15 * std::sin(3.7 * t), 0.1 * std::sin(5.1 * t)})};
   };
   const double readout = 0.026;
   const auto moved = [&](double taken, double told) {  // rms over time, mean over textures [m]
@@ -139,7 +142,8 @@ TEST(Odometry, StraightensARollingShutter) {
       const vo_test::Texture texture(seed, 40.0, 24);
       vo::Params params = SmallImageParams();
       params.features.readout_s = told;
-      params.features.noise = vo::MatchNoise::registered;  // it is the rows that are compared, not how far each match is believed
+      // It is the rows that are compared, not how far each match is believed
+      params.features.noise = vo::MatchNoise::registered;
       vo::Prior prior;
       prior.w_WC_C = vo::Log(turned(1).q_WC) * 30;
       prior.velocity_covariance = 1e-3 * vo::Matrix6::Identity();
@@ -151,9 +155,10 @@ TEST(Odometry, StraightensARollingShutter) {
     }
     return sum / kTextures;
   };
-  const double global = moved(0, 0), told = moved(readout, readout), not_told = moved(readout, 0), upwards = moved(readout, -readout);
-  std::printf("moved by [mm]: global shutter %.2f; rolling, told %.2f, not told %.2f, told the opposite %.2f\n", 1e3 * global, 1e3 * told,
-              1e3 * not_told, 1e3 * upwards);
+  const double global = moved(0, 0), told = moved(readout, readout), not_told = moved(readout, 0),
+               upwards = moved(readout, -readout);
+  std::printf("moved by [mm]: global shutter %.2f; rolling, told %.2f, not told %.2f, told the opposite %.2f\n",
+              1e3 * global, 1e3 * told, 1e3 * not_told, 1e3 * upwards);
   EXPECT_GT(not_told, 9 * told);  // what is left: the velocity changes within a step
   EXPECT_GT(upwards, 1.5 * not_told);
 }
@@ -189,7 +194,8 @@ TEST(Odometry, FindsOutHowFastItsFirstFrameWas) {
 // What trembles is believed less than what stands still, each by its own residuals; with `registered` both are believed alike.
 TEST(Odometry, BelievesTremblingLandmarksLess) {
   const vo_test::Texture texture(5, 40.0, 24);
-  constexpr int kTrembling = 100;  // columns, in bands of 40 rows that go to and fro by 0.6 px, neighbours the opposite way
+  // Columns, in bands of 40 rows that go to and fro by 0.6 px, neighbours the opposite way
+  constexpr int kTrembling = 100;
   const auto image = [&](int k) {
     const cv::Mat still = ViewFrom(TruthAt(k), texture);
     cv::Mat seen = ViewByRows(
@@ -201,27 +207,29 @@ TEST(Odometry, BelievesTremblingLandmarksLess) {
     still.colRange(kTrembling, kCamera.width).copyTo(seen.colRange(kTrembling, kCamera.width));
     return seen;
   };
-  const auto believed = [&](vo::MatchNoise noise) {  // median standard deviation [px] where it trembles over that elsewhere
-    vo::Params params = SmallImageParams();
-    params.features.noise = noise;
-    vo::Odometry odometry(kCamera, params, KnownStart(), 1);
-    std::vector<double> sigmas[2];
-    for (int k = 0; k < 40; ++k) {
-      odometry.Track({k * kFrameNs, image(k)});
-      if (k < 30) continue;
-      for (const vo::FeatureView& view : odometry.Features()) {
-        if (view.status != vo::FeatureView::Status::matched || std::abs(view.pixel.x() - kTrembling) < 20) continue;
-        sigmas[view.pixel.x() < kTrembling ? 0 : 1].push_back(std::sqrt(view.R.trace() / 2));
-      }
-    }
-    for (std::vector<double>& of : sigmas) {
-      EXPECT_GT(of.size(), 50u);
-      std::nth_element(of.begin(), of.begin() + of.size() / 2, of.end());
-    }
-    return sigmas[0][sigmas[0].size() / 2] / sigmas[1][sigmas[1].size() / 2];
-  };
+  const auto believed =
+      [&](vo::MatchNoise noise) {  // median standard deviation [px] where it trembles over that elsewhere
+        vo::Params params = SmallImageParams();
+        params.features.noise = noise;
+        vo::Odometry odometry(kCamera, params, KnownStart(), 1);
+        std::vector<double> sigmas[2];
+        for (int k = 0; k < 40; ++k) {
+          odometry.Track({k * kFrameNs, image(k)});
+          if (k < 30) continue;
+          for (const vo::FeatureView& view : odometry.Features()) {
+            if (view.status != vo::FeatureView::Status::matched || std::abs(view.pixel.x() - kTrembling) < 20) continue;
+            sigmas[view.pixel.x() < kTrembling ? 0 : 1].push_back(std::sqrt(view.R.trace() / 2));
+          }
+        }
+        for (std::vector<double>& of : sigmas) {
+          EXPECT_GT(of.size(), 50u);
+          std::nth_element(of.begin(), of.begin() + of.size() / 2, of.end());
+        }
+        return sigmas[0][sigmas[0].size() / 2] / sigmas[1][sigmas[1].size() / 2];
+      };
   const double adaptive = believed(vo::MatchNoise::adaptive), registered = believed(vo::MatchNoise::registered);
-  std::printf("standard deviation of what trembles over that of what does not: adaptive %.2f, registered %.2f\n", adaptive, registered);
+  std::printf("standard deviation of what trembles over that of what does not: adaptive %.2f, registered %.2f\n",
+              adaptive, registered);
   EXPECT_GT(adaptive, 1.3 * registered);
   EXPECT_LT(registered, 1.2);
 }

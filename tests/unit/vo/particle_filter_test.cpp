@@ -87,7 +87,8 @@ Start PlayStart(unsigned world, const vo::FilterParams& params, double noise_px,
   vo_test::Draws draws(world);
   vo::FilterPrior prior;
   prior.velocity_covariance = 0.04 * vo::Matrix6::Identity();
-  vo::ParticleFilter filter({.position_noise = 0.6, .orientation_noise = 0.4}, params, vo::LandmarkParams{}, prior, world);
+  vo::ParticleFilter filter({.position_noise = 0.6, .orientation_noise = 0.4}, params, vo::LandmarkParams{}, prior,
+                            world);
   std::vector<vo::FirstView> views;
   std::vector<Eigen::Vector3d> points;
   for (int n = 0; n < 40; ++n) {
@@ -107,7 +108,8 @@ Start PlayStart(unsigned world, const vo::FilterParams& params, double noise_px,
     std::vector<vo::Match> matches;
     for (int n = 0; n < 40; ++n) {
       const Eigen::Vector3d seen = camera.q_WC.conjugate() * (points[n] - camera.p_WC);
-      matches.push_back({n, seen.hnormalized() + noise * draws.Normals<2>(), noise * noise * Eigen::Matrix2d::Identity()});
+      matches.push_back(
+          {n, seen.hnormalized() + noise * draws.Normals<2>(), noise * noise * Eigen::Matrix2d::Identity()});
     }
     filter.Predict(1.0 / 30);
     filter.Update(matches);

@@ -2,13 +2,13 @@
 
 #include "vo/filter/path_window.h"
 
-#include <cmath>
-#include <numbers>
-#include <vector>
+#include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <gtest/gtest.h>
+#include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "tests/unit/vo/draws.h"
 #include "vo/filter/descent.h"
@@ -60,17 +60,19 @@ Scene MakeScene(unsigned seed, int frames, int count, double depth_sigma, double
   for (int n = 0; n < count; ++n) {
     const int anchor = frames > 1 ? n % 2 : 0;
     const vo::Pose& first = anchor == 0 ? scene.start : scene.truth[0];
-    const Vector3d theta{1.2 * (draws.Uniform() - 0.5), 0.9 * (draws.Uniform() - 0.5), 0.3 + depth_sigma * draws.Normal()};
+    const Vector3d theta{1.2 * (draws.Uniform() - 0.5), 0.9 * (draws.Uniform() - 0.5),
+                         0.3 + depth_sigma * draws.Normal()};
     vo::Landmark landmark;
     landmark.mean << theta.head<2>() + noise * draws.Normals<2>(), 0.3;
     landmark.covariance.diagonal() << noise * noise, noise * noise, depth_sigma * depth_sigma;
     scene.landmarks.push_back(landmark);
     vo::Track track{n, anchor, anchor == 0 ? -1 : 0, {}};
     for (int k = anchor; k < frames; ++k) {
-      const Vector3d moved = way * Vector3d(0.005 * std::sin(n), 0.004 * std::cos(2 * n + k), 0.003 * std::sin(3 * n - k));
+      const Vector3d moved =
+          way * Vector3d(0.005 * std::sin(n), 0.004 * std::cos(2 * n + k), 0.003 * std::sin(3 * n - k));
       const vo::Projection h = vo::Project(vo::AnchorView(scene.truth[k], first).From(moved), theta);
-      track.views.push_back({k, h.z + noise * draws.Normals<2>(),
-                             Eigen::Matrix2d::Identity() / (noise * noise), 4 * std::log(noise), moved});
+      track.views.push_back({k, h.z + noise * draws.Normals<2>(), Eigen::Matrix2d::Identity() / (noise * noise),
+                             4 * std::log(noise), moved});
     }
     scene.tracks.push_back(track);
   }
@@ -105,16 +107,21 @@ TEST(PathWindow, OfOnePoseIsTheProposal) {
     const Vector6 s = step.PredictedMean(start, {scene.velocity, scene.velocity_covariance});
     Matrix6 J = Matrix6::Identity();
     J.bottomRightCorner<3, 3>() = vo::RightJacobian(s.tail<3>());
-    const vo::PoseGaussian prediction{{s.head<3>(), scene.start.q_WC * vo::Exp(s.tail<3>())},
-                                      J * step.PredictedCovariance({scene.velocity, scene.velocity_covariance}) * J.transpose()};
+    const vo::PoseGaussian prediction{
+        {s.head<3>(), scene.start.q_WC * vo::Exp(s.tail<3>())},
+        J * step.PredictedCovariance({scene.velocity, scene.velocity_covariance}) * J.transpose()};
     std::vector<vo::Match> matches;
     std::vector<int> anchor_of(scene.landmarks.size(), 0);
-    for (const vo::Track& track : scene.tracks) matches.push_back({track.landmark, track.views[0].z, track.views[0].R_inverse.inverse(), track.views[0].moved});
+    for (const vo::Track& track : scene.tracks)
+      matches.push_back({track.landmark, track.views[0].z, track.views[0].R_inverse.inverse(), track.views[0].moved});
     const vo::PoseProposal one = vo::Propose(prediction, {scene.landmarks, anchor_of, scene.anchors}, matches,
                                              {.max_iterations = 50, .marginal_mode = marginal});
-    EXPECT_LT(Distance(path.mean[0], one.pose.mean, one.pose.covariance), 2 * vo::kLeft) << "standard deviations, seed " << seed;
-    EXPECT_LT((path.covariance - one.pose.covariance).norm() / one.pose.covariance.norm(), marginal ? 2e-2 : 1e-3) << "seed " << seed;
-    EXPECT_NEAR(path.log_evidence, one.log_evidence, 0.02) << "seed " << seed;  // coordinates of the prior differ at second order
+    EXPECT_LT(Distance(path.mean[0], one.pose.mean, one.pose.covariance), 2 * vo::kLeft)
+        << "standard deviations, seed " << seed;
+    EXPECT_LT((path.covariance - one.pose.covariance).norm() / one.pose.covariance.norm(), marginal ? 2e-2 : 1e-3)
+        << "seed " << seed;
+    EXPECT_NEAR(path.log_evidence, one.log_evidence, 0.02)
+        << "seed " << seed;  // coordinates of the prior differ at second order
   }
 }
 
@@ -129,7 +136,8 @@ TEST(PathWindow, EvidenceDoesNotBelieveAStepThatNobodyLookedAt) {
     vo::PathGaussian path;
     std::vector<Vector3d> theta;
     for (const vo::Track& track : scene.tracks) theta.push_back(scene.landmarks[track.landmark].mean);
-    for (std::size_t k = 0; k < scene.truth.size(); ++k) path.mean.push_back(vo::Plus(scene.start, 0.1 * draws.Normals<6>()));
+    for (std::size_t k = 0; k < scene.truth.size(); ++k)
+      path.mean.push_back(vo::Plus(scene.start, 0.1 * draws.Normals<6>()));
     for (const bool marginal : {false, true}) {
       vo::PathGaussian brief = path;
       std::vector<Vector3d> brief_theta = theta;
@@ -207,7 +215,8 @@ void ExpectTheJointSolution(const Scene& scene, double left) {
   }
   const MatrixXd covariance = (J.transpose() * J).inverse();
   const VectorXd step = -covariance * (J.transpose() * Residual(scene, path.mean, theta));
-  for (int i = 0; i < size; ++i) EXPECT_LT(std::abs(step[i]), left * std::sqrt(covariance(i, i))) << "at the joint mode, " << i;
+  for (int i = 0; i < size; ++i)
+    EXPECT_LT(std::abs(step[i]), left * std::sqrt(covariance(i, i))) << "at the joint mode, " << i;
   EXPECT_LT((path.covariance - covariance.topLeftCorner(6 * m, 6 * m)).norm() / path.covariance.norm(), 5e-3);
 }
 
@@ -237,7 +246,8 @@ TEST(PathPrior, LastVelocityIsTheVelocityFilters) {
   const Vector6 last = prior.LastMean(scene.velocity) + prior.gain() * off;
   EXPECT_LT((last - state.mean).norm() / state.mean.norm(), 1e-9);
   EXPECT_LT((prior.last_covariance() - state.covariance).norm() / state.covariance.norm(), 1e-9);
-  EXPECT_NEAR(-0.5 * off.dot(prior.precision() * off) + 0.5 * prior.log_det_precision(), log_density, 1e-6 * std::abs(log_density));
+  EXPECT_NEAR(-0.5 * off.dot(prior.precision() * off) + 0.5 * prior.log_det_precision(), log_density,
+              1e-6 * std::abs(log_density));
 }
 
 // p(z_1, z_2) = p(z_1) p(z_2 | z_1): the window's evidence grows by what the next frame says, whichever way it is counted. With
@@ -270,7 +280,8 @@ TEST(PathWindow, EvidenceOfTwoFramesIsThatOfTheFirstTimesTheSecondGivenIt) {
       for (const vo::Track::View& view : track.views)
         if (view.slot == 0)
           landmark = vo::UpdateLandmark(landmark, vo::AnchorView(s, scene.anchors[track.anchor]).From(view.moved),
-                                        {track.landmark, view.z, view.R_inverse.inverse()}, 10).landmark;
+                                        {track.landmark, view.z, view.R_inverse.inverse()}, 10)
+                         .landmark;
       std::erase_if(track.views, [](const vo::Track::View& view) { return view.slot == 0; });
       track.views[0].slot = 0;
       track.anchor_slot = -1;
@@ -293,7 +304,8 @@ TEST(PathWindow, TheMarginalsModeIsNotBiasedInScale) {
     length += t.norm();
   }
   EXPECT_NEAR(marginal / length, 1.0, 0.05);
-  EXPECT_GT(std::abs(joint / length - 1.0), 2 * std::abs(marginal / length - 1.0)) << joint / length << " " << marginal / length;
+  EXPECT_GT(std::abs(joint / length - 1.0), 2 * std::abs(marginal / length - 1.0))
+      << joint / length << " " << marginal / length;
 }
 
 }  // namespace

@@ -95,9 +95,7 @@ TEST(Pilots, KnowHowSureTheyAre) {
   scene.landmarks[40].covariance(2, 2) = 0.04;  // a depth hardly known
   const auto pose = vo::PilotedPose::From(scene.prediction, scene.map(), scene.Matches(16), {});
   ASSERT_TRUE(pose);
-  const auto sigma = [&](int n) {
-    return std::sqrt(pose->Predict(n, kCamera, 0.7)->covariance.trace() / 2);
-  };
+  const auto sigma = [&](int n) { return std::sqrt(pose->Predict(n, kCamera, 0.7)->covariance.trace() / 2); };
   EXPECT_LT(sigma(41), 1.2);
   EXPECT_GT(sigma(40), 2 * sigma(41));
 }

@@ -1,12 +1,12 @@
 #include "vo/filter/proposal.h"
 
-#include <numbers>
-#include <vector>
+#include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <gtest/gtest.h>
+#include <numbers>
+#include <vector>
 
 #include "tests/unit/vo/draws.h"
 #include "vo/filter/consensus.h"
@@ -60,7 +60,8 @@ VectorXd StackedResidual(const Scene& scene, const vo::Pose& pose, const VectorX
   r.head<6>() = scene.prediction.covariance.llt().matrixL().solve(vo::Minus(pose, scene.prediction.mean));
   for (int i = 0; i < n; ++i) {
     const Vector3d theta = landmarks.segment<3>(3 * i);
-    r.segment<3>(6 + 5 * i) = (theta - scene.landmarks[i].mean).cwiseQuotient(scene.landmarks[i].covariance.diagonal().cwiseSqrt());
+    r.segment<3>(6 + 5 * i) =
+        (theta - scene.landmarks[i].mean).cwiseQuotient(scene.landmarks[i].covariance.diagonal().cwiseSqrt());
     const vo::Projection h = vo::Project({pose, scene.anchors[scene.anchor_of[i]]}, theta);
     r.segment<2>(9 + 5 * i) = (h.z - scene.matches[i].z) / std::sqrt(scene.matches[i].R(0, 0));
   }
@@ -84,7 +85,8 @@ Joint SolveJointly(const Scene& scene) {
       VectorXd d = VectorXd::Zero(6 + 3 * n);
       d[k] = h;
       J.col(k) = (StackedResidual(scene, vo::Plus(pose, d.head<6>()), landmarks + d.tail(3 * n)) -
-                  StackedResidual(scene, vo::Plus(pose, -d.head<6>()), landmarks - d.tail(3 * n))) / (2 * h);
+                  StackedResidual(scene, vo::Plus(pose, -d.head<6>()), landmarks - d.tail(3 * n))) /
+                 (2 * h);
     }
     const VectorXd step = -J.householderQr().solve(StackedResidual(scene, pose, landmarks));
     pose = vo::Plus(pose, step.head<6>());
@@ -106,17 +108,21 @@ TEST(Proposal, SchurEliminationIsTheJointSolution) {
       return std::sqrt(d.dot(joint.covariance.llt().solve(d)));
     };
     EXPECT_LT(distance(proposal), vo::kLeft) << "seed " << seed;
-    EXPECT_GT(distance(vo::Propose(scene.prediction, scene.map(), scene.matches, {.max_iterations = 1})), 10 * vo::kLeft) << "seed " << seed;
+    EXPECT_GT(distance(vo::Propose(scene.prediction, scene.map(), scene.matches, {.max_iterations = 1})),
+              10 * vo::kLeft)
+        << "seed " << seed;
     EXPECT_LT((proposal.pose.covariance - joint.covariance).norm() / joint.covariance.norm(), 1e-3) << "seed " << seed;
   }
 }
 
 TEST(Proposal, EkfIsOneStepOfIt) {
   const Scene scene = MakeScene(3, 12, 0.15);
-  const vo::PoseProposal ekf = vo::Propose(scene.prediction, scene.map(), scene.matches, {.proposal = vo::Proposal::ekf});
+  const vo::PoseProposal ekf =
+      vo::Propose(scene.prediction, scene.map(), scene.matches, {.proposal = vo::Proposal::ekf});
   const vo::PoseProposal one = vo::Propose(scene.prediction, scene.map(), scene.matches, {.max_iterations = 1});
   EXPECT_EQ(vo::Minus(ekf.pose.mean, one.pose.mean).norm(), 0);
-  EXPECT_GT(vo::Minus(ekf.pose.mean, SolveJointly(scene).pose).norm(), 1e-4) << "where depths are unknown it is not the mode";
+  EXPECT_GT(vo::Minus(ekf.pose.mean, SolveJointly(scene).pose).norm(), 1e-4)
+      << "where depths are unknown it is not the mode";
 }
 
 TEST(Proposal, NoMatchesIsThePrediction) {
@@ -143,7 +149,9 @@ TEST(Proposal, EvidenceEqualsTheImportanceWeightWhenLinear) {
     const vo::Pose s = proposal.pose.Sample({.seed = 5, .particle = i});
     double log_weight = scene.prediction.LogDensity(s) - proposal.pose.LogDensity(s);
     for (const vo::Match& match : scene.matches)
-      log_weight += vo::UpdateLandmark(scene.landmarks[match.landmark], {s, scene.anchors[scene.anchor_of[match.landmark]]}, match, 10).log_likelihood;
+      log_weight += vo::UpdateLandmark(scene.landmarks[match.landmark],
+                                       {s, scene.anchors[scene.anchor_of[match.landmark]]}, match, 10)
+                        .log_likelihood;
     EXPECT_NEAR(log_weight, proposal.log_evidence, 1e-4 * std::abs(proposal.log_evidence) * 1e-2) << i;
   }
 }
@@ -179,10 +187,12 @@ TEST(Consensus, IsTheSameFromNearby) {
     for (std::size_t n = 0; n < 60; n += 5) scene.matches[n].z.x() += 0.05;
     const vo::Consensus cold = vo::FindConsensus(scene.prediction, scene.map(), scene.matches, 9.21, {});
     const vo::Vector6 away = 5 * cold.pose.covariance.diagonal().cwiseSqrt();
-    const vo::Consensus warm = vo::FindConsensus(scene.prediction, scene.map(), scene.matches, 9.21, {}, vo::Plus(cold.pose.mean, away));
+    const vo::Consensus warm =
+        vo::FindConsensus(scene.prediction, scene.map(), scene.matches, 9.21, {}, vo::Plus(cold.pose.mean, away));
     EXPECT_EQ(warm.inlier, cold.inlier) << "seed " << seed;
     const vo::Vector6 d = vo::Minus(warm.pose.mean, cold.pose.mean);
-    EXPECT_LT(std::sqrt(d.dot(cold.pose.covariance.llt().solve(d))), 0.1) << "seed " << seed;  // where a round is called still
+    EXPECT_LT(std::sqrt(d.dot(cold.pose.covariance.llt().solve(d))), 0.1)
+        << "seed " << seed;  // where a round is called still
   }
 }
 
@@ -203,7 +213,8 @@ TEST(PoseGaussian, DensityIntegratesAndSamplesHaveItsCovariance) {
   const vo::Matrix6 white = L.inverse() * second * L.inverse().transpose();
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j <= i; ++j) EXPECT_NEAR(white(i, j), i == j, 5 * std::sqrt((i == j ? 2.0 : 1.0) / n)) << i << j;
-  EXPECT_NEAR(g.LogDensity(g.mean), -0.5 * std::log(g.covariance.determinant()) - 3 * std::log(2 * std::numbers::pi), 1e-9);
+  EXPECT_NEAR(g.LogDensity(g.mean), -0.5 * std::log(g.covariance.determinant()) - 3 * std::log(2 * std::numbers::pi),
+              1e-9);
 }
 
 TEST(Resampling, CopiesAreWithinOneOfExpected) {

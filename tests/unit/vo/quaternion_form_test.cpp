@@ -1,13 +1,13 @@
 // The paper filters orientation as (quaternion, Euler rates), 7 x 7 (27)-(33); the filter here in the tangent space, 6 x 6 (algorithm,
 // section 4). Pushing the second through dq/dphi gives the first, to first order in the time step.
 
-#include <array>
-#include <cmath>
-#include <vector>
+#include <gtest/gtest.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <gtest/gtest.h>
+#include <array>
+#include <cmath>
+#include <vector>
 
 #include "vo/geometry/so3.h"
 #include "vo/random.h"

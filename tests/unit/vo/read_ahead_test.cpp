@@ -1,14 +1,14 @@
 // Frames that are read ahead are the source's, in its order, and never more of them than was said.
 #include "vo/sequence/read_ahead.h"
 
+#include <gtest/gtest.h>
+
 #include <atomic>
 #include <chrono>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <string>
 #include <thread>
-
-#include <gtest/gtest.h>
-#include <opencv2/imgproc.hpp>
 
 namespace {
 

@@ -1,9 +1,9 @@
 #include "vo/sequence/reader.h"
 
+#include <gtest/gtest.h>
+
 #include <filesystem>
 #include <fstream>
-
-#include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
 namespace {
@@ -13,7 +13,8 @@ namespace fs = std::filesystem;
 class Reader : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / ("reader_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    folder_ = fs::path(testing::TempDir()) /
+              ("reader_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(folder_);
     fs::create_directories(folder_ / "rgb");
     cv::imwrite((folder_ / "rgb/a.png").string(), cv::Mat(4, 6, CV_8UC3, cv::Scalar(10, 20, 30)));

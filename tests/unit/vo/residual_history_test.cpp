@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <vector>
-
-#include <Eigen/Cholesky>
 
 #include "tests/unit/vo/draws.h"
 

@@ -25,7 +25,9 @@ vo::Camera SomeCamera() {
 const vo::Pose kPose{Vector3d(0.3, -0.2, 0.1), vo::Exp({0.1, -0.2, 0.05})};
 const vo::Vector6 kVelocity = (vo::Vector6() << 0.3, -0.2, 0.25, 0.4, -0.3, 0.5).finished();
 
-vo::Pose PoseAt(double t) { return {kPose.p_WC + t * kVelocity.head<3>(), kPose.q_WC * vo::Exp(t * kVelocity.tail<3>())}; }
+vo::Pose PoseAt(double t) {
+  return {kPose.p_WC + t * kVelocity.head<3>(), kPose.q_WC * vo::Exp(t * kVelocity.tail<3>())};
+}
 Vector3d InCamera(const vo::Pose& pose, const Vector3d& X_W) { return pose.q_WC.conjugate() * (X_W - pose.p_WC); }
 
 // The pixel of a point, in the row that is exposed just when the point is there.
@@ -39,10 +41,13 @@ Vector2d Seen(const vo::Camera& camera, const vo::RollingShutter& shutter, const
 std::vector<Vector3d> Points() {
   vo_test::Draws draws(1);
   std::vector<Vector3d> points;
-  for (int n = 0; n < 100; ++n) points.push_back(Vector3d(0, 0, 0.6) + Vector3d(0.5, 0.4, 0.4).cwiseProduct(draws.Symmetrics<3>()));
+  for (int n = 0; n < 100; ++n)
+    points.push_back(Vector3d(0, 0, 0.6) + Vector3d(0.5, 0.4, 0.4).cwiseProduct(draws.Symmetrics<3>()));
   return points;
 }
-Vector3d InWorld(const Vector3d& theta) { return kPose.p_WC + kPose.q_WC * Vector3d(theta.x(), theta.y(), 1) / theta.z(); }
+Vector3d InWorld(const Vector3d& theta) {
+  return kPose.p_WC + kPose.q_WC * Vector3d(theta.x(), theta.y(), 1) / theta.z();
+}
 
 TEST(RollingShutter, RowsHaveTheirTimes) {
   const vo::RollingShutter shutter(SomeCamera(), 0.026);
@@ -97,7 +102,8 @@ TEST(RollingShutter, InImageIsWhereTheRowsTimeTakesIt) {
   const vo::RollingShutter shutter(camera, -0.03);
   vo_test::Draws draws(2);
   for (int i = 0; i < 100; ++i) {
-    const Vector2d pixel = Vector2d(320, 240) + Vector2d(300, 220).cwiseProduct(draws.Symmetrics<2>()), rate = draws.Symmetrics<2>();
+    const Vector2d pixel = Vector2d(320, 240) + Vector2d(300, 220).cwiseProduct(draws.Symmetrics<2>()),
+                   rate = draws.Symmetrics<2>();
     const Vector2d at_stamp = camera.Undistort(pixel) - shutter.TimeOf(pixel.y()) * rate;
     // 15 px at most; which row it is is known thirty times better after each of three rounds.
     EXPECT_LT((shutter.InImage(at_stamp, rate) - pixel).norm(), 15 * std::pow(1.0 / 30, 3));

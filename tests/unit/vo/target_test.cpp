@@ -1,10 +1,10 @@
 // A chessboard that is drawn where a plane of known pose has it: the corners' depths come out as that plane has them, and as sure as they are.
 #include "vo/target.h"
 
-#include <cmath>
+#include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <gtest/gtest.h>
+#include <cmath>
 #include <opencv2/core.hpp>
 
 #include "tests/unit/vo/draws.h"
@@ -21,11 +21,14 @@ struct BoardPose {
   Vector3d corner;
   Eigen::Matrix3d axes;
   // On a ray (x, y, 1).
-  double InverseDepth(const Vector2d& ray) const { return axes.col(2).dot(ray.homogeneous()) / axes.col(2).dot(corner); }
+  double InverseDepth(const Vector2d& ray) const {
+    return axes.col(2).dot(ray.homogeneous()) / axes.col(2).dot(corner);
+  }
 };
 
 BoardPose Facing(double distance, double tilt, double roll) {
-  const Eigen::Matrix3d axes = (Eigen::AngleAxisd(tilt, Vector3d::UnitY()) * Eigen::AngleAxisd(roll, Vector3d::UnitZ())).toRotationMatrix();
+  const Eigen::Matrix3d axes =
+      (Eigen::AngleAxisd(tilt, Vector3d::UnitY()) * Eigen::AngleAxisd(roll, Vector3d::UnitZ())).toRotationMatrix();
   return {Vector3d(0, 0, distance) - axes * Vector3d(4 * 0.05, 2.5 * 0.05, 0), axes};
 }
 
@@ -38,7 +41,8 @@ cv::Mat Picture(const BoardPose& board, const vo::Camera& camera, double noise, 
       double sum = 0;
       for (int k = 0; k < 25; ++k) {
         const Vector2d ray = camera.Undistort({u + (k % 5 - 2) / 5.0, v + (k / 5 - 2) / 5.0});
-        const Vector3d at = board.axes.transpose() * (ray.homogeneous() / board.InverseDepth(ray) - board.corner) / 0.05;
+        const Vector3d at =
+            board.axes.transpose() * (ray.homogeneous() / board.InverseDepth(ray) - board.corner) / 0.05;
         const bool on = at.x() > -1 && at.x() < 9 && at.y() > -1 && at.y() < 6;
         const bool black = (static_cast<int>(std::floor(at.x())) + static_cast<int>(std::floor(at.y()))) % 2 != 0;
         sum += on && black ? 40 : 210;
@@ -52,7 +56,8 @@ cv::Mat Picture(const BoardPose& board, const vo::Camera& camera, double noise, 
 TEST(Target, DepthsAreThoseOfTheBoard) {
   vo::Camera camera;
   camera.k1 = -0.1;
-  for (const auto& [distance, tilt, roll] : {std::array{0.8, 0.0, 0.0}, std::array{1.2, 0.6, 0.2}, std::array{0.7, -0.4, 1.2}}) {
+  for (const auto& [distance, tilt, roll] :
+       {std::array{0.8, 0.0, 0.0}, std::array{1.2, 0.6, 0.2}, std::array{0.7, -0.4, 1.2}}) {
     const BoardPose board = Facing(distance, tilt, roll);
     const auto corners = vo::FindTarget(Picture(board, camera, 3, 1), camera, kBoard, 0.2);
     ASSERT_EQ(corners.size(), 54u) << distance;

@@ -1,13 +1,12 @@
 // Purpose: a smooth random texture with a known value everywhere, for tests that need images with exact geometry.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <vector>
-
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "tests/unit/vo/draws.h"
 
@@ -19,7 +18,8 @@ class Texture {
   explicit Texture(unsigned seed, double max_frequency = 0.45, int waves = 60) {
     Draws draws(seed);
     for (int i = 0; i < waves; ++i)
-      waves_.push_back({max_frequency * draws.Symmetric(), max_frequency * draws.Symmetric(), 6.2832 * draws.Uniform()});
+      waves_.push_back(
+          {max_frequency * draws.Symmetric(), max_frequency * draws.Symmetric(), 6.2832 * draws.Uniform()});
   }
   double At(const Eigen::Vector2d& p) const {
     double sum = 0;

@@ -1,10 +1,10 @@
 // Closed form against draws: a Gaussian whose lengths are multiplied by a log-normal factor.
 #include "vo/unknown_scale.h"
 
-#include <cmath>
+#include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-#include <gtest/gtest.h>
+#include <cmath>
 
 #include "tests/unit/vo/draws.h"
 
@@ -40,7 +40,8 @@ TEST(UnknownScale, IsTheSecondMomentOfWhatItMayBe) {
     sum += (x - at) * (x - at).transpose() / kDraws;
   }
   for (int i = 0; i < 12; ++i) {
-    for (int j = 0; j < 12; ++j) EXPECT_NEAR(wide(i, j), sum(i, j), 0.02 * std::sqrt(sum(i, i) * sum(j, j))) << i << " " << j;  // 5 sigma and more
+    for (int j = 0; j < 12; ++j)
+      EXPECT_NEAR(wide(i, j), sum(i, j), 0.02 * std::sqrt(sum(i, i) * sum(j, j))) << i << " " << j;  // 5 sigma and more
   }
   EXPECT_GT(Eigen::LLT<Matrix12>(wide).matrixL().determinant(), 0);
 }

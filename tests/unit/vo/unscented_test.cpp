@@ -1,12 +1,12 @@
 #include "vo/filter/unscented.h"
 
-#include <cmath>
-#include <cstdint>
-#include <vector>
+#include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <gtest/gtest.h>
+#include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "vo/filter/unscented_proposal.h"
 #include "vo/geometry/so3.h"
@@ -32,7 +32,8 @@ TEST(Unscented, IsExactForALinearFunction) {
   for (int i = 0; i < 15; ++i) A(i / 5, i % 5) = std::cos(2.3 * i);
   const Vector3d b(1, -2, 3);
   for (const vo::UnscentedParams& params : kSpreads) {
-    const auto y = vo::UnscentedTransform<3, 5>(P, params, [&](const Eigen::Matrix<double, 5, 1>& x) -> Vector3d { return A * x + b; });
+    const auto y = vo::UnscentedTransform<3, 5>(
+        P, params, [&](const Eigen::Matrix<double, 5, 1>& x) -> Vector3d { return A * x + b; });
     EXPECT_LT((y.mean - b).norm(), 1e-11) << params.alpha;
     EXPECT_LT((y.covariance - A * P * A.transpose()).norm(), 1e-9 * P.norm()) << params.alpha;
     EXPECT_LT((y.cross - P * A.transpose()).norm(), 1e-9 * P.norm()) << params.alpha;
@@ -44,18 +45,20 @@ TEST(Unscented, IsExactForALinearFunction) {
 TEST(Unscented, QuadraticHasTheKnownResult) {
   const double m = 1.3, s = 0.7;
   for (const vo::UnscentedParams& params : kSpreads) {
-    const auto y = vo::UnscentedTransform<1, 1>(Eigen::Matrix<double, 1, 1>(s * s), params, [&](const Eigen::Matrix<double, 1, 1>& x) {
-      return Eigen::Matrix<double, 1, 1>((m + x[0]) * (m + x[0]));
-    });
+    const auto y = vo::UnscentedTransform<1, 1>(
+        Eigen::Matrix<double, 1, 1>(s * s), params,
+        [&](const Eigen::Matrix<double, 1, 1>& x) { return Eigen::Matrix<double, 1, 1>((m + x[0]) * (m + x[0])); });
     EXPECT_NEAR(y.mean[0], m * m + s * s, 1e-11);
     EXPECT_NEAR(y.cross(0, 0), 2 * m * s * s, 1e-11);
     const double a2 = params.alpha * params.alpha;
-    EXPECT_NEAR(y.covariance(0, 0), 4 * m * m * s * s + (a2 * (1 + params.kappa) + params.beta - a2) * s * s * s * s, 1e-9);
+    EXPECT_NEAR(y.covariance(0, 0), 4 * m * m * s * s + (a2 * (1 + params.kappa) + params.beta - a2) * s * s * s * s,
+                1e-9);
   }
-  const auto y = vo::UnscentedTransform<1, 1>(Eigen::Matrix<double, 1, 1>(s * s), {}, [&](const Eigen::Matrix<double, 1, 1>& x) {
-    return Eigen::Matrix<double, 1, 1>((m + x[0]) * (m + x[0]));
-  });
-  EXPECT_NEAR(y.covariance(0, 0), 4 * m * m * s * s + 2 * s * s * s * s, 1e-12) << "defaults, n = 1: exact for a Gaussian";
+  const auto y = vo::UnscentedTransform<1, 1>(
+      Eigen::Matrix<double, 1, 1>(s * s), {},
+      [&](const Eigen::Matrix<double, 1, 1>& x) { return Eigen::Matrix<double, 1, 1>((m + x[0]) * (m + x[0])); });
+  EXPECT_NEAR(y.covariance(0, 0), 4 * m * m * s * s + 2 * s * s * s * s, 1e-12)
+      << "defaults, n = 1: exact for a Gaussian";
 }
 
 // In several dimensions, h = x' B x: mean trace(B P) exactly.
@@ -118,13 +121,15 @@ TEST(UnscentedProposal, IsTheEkfWhereTheModelIsLinear) {
   for (const bool fixed : {false, true}) {
     const Scene scene = MakeScene(3, 12, 1e-6, 1e-6, 1e-6, fixed);
     const vo::PoseProposal ukf = vo::ProposeUnscented(scene.prediction, scene.map(), scene.matches, {});
-    const vo::PoseProposal ekf = vo::Propose(scene.prediction, scene.map(), scene.matches, {.proposal = vo::Proposal::ekf});
+    const vo::PoseProposal ekf =
+        vo::Propose(scene.prediction, scene.map(), scene.matches, {.proposal = vo::Proposal::ekf});
     const vo::Matrix6 L = ekf.pose.covariance.llt().matrixL();
     EXPECT_LT((L.inverse() * vo::Minus(ukf.pose.mean, ekf.pose.mean)).norm(), 1e-3);
     EXPECT_LT((ukf.pose.covariance - ekf.pose.covariance).norm(), 1e-4 * ekf.pose.covariance.norm());
     EXPECT_NEAR(ukf.log_evidence, ekf.log_evidence, 1e-4 * std::abs(ekf.log_evidence));
     for (const vo::Match& match : scene.matches) {
-      const vo::AnchorView view(scene.prediction.mean, scene.anchors[static_cast<std::size_t>(scene.anchor_of[match.landmark])]);
+      const vo::AnchorView view(scene.prediction.mean,
+                                scene.anchors[static_cast<std::size_t>(scene.anchor_of[match.landmark])]);
       const vo::Landmark& prior = scene.landmarks[static_cast<std::size_t>(match.landmark)];
       const auto a = vo::UpdateLandmarkUnscented(prior, view, match, {}), b = vo::UpdateLandmark(prior, view, match, 1);
       EXPECT_LT((a.landmark.mean - b.landmark.mean).norm(), 1e-9);
@@ -152,7 +157,8 @@ TEST(UnscentedProposal, OneFeatureIsTheTextbookUpdate) {
   const vo::PoseProposal ukf = vo::ProposeUnscented(scene.prediction, scene.map(), scene.matches, {});
   EXPECT_LT(vo::Minus(ukf.pose.mean, vo::Plus(scene.prediction.mean, d)).norm(), 1e-10);
   EXPECT_LT((ukf.pose.covariance - turn * (P - K * S * K.transpose()) * turn.transpose()).norm(), 1e-9 * P.norm());
-  EXPECT_NEAR(ukf.log_evidence, -0.5 * e.dot(S.inverse() * e) - 0.5 * std::log(S.determinant()) - std::log(2 * M_PI), 1e-8);
+  EXPECT_NEAR(ukf.log_evidence, -0.5 * e.dot(S.inverse() * e) - 0.5 * std::log(S.determinant()) - std::log(2 * M_PI),
+              1e-8);
 }
 
 // Far from linear the mean of the transform is closer to the truth (10^5 samples) than the projection of the mean is.
@@ -164,7 +170,8 @@ TEST(UnscentedProposal, MeanOfAnUncertainLandmarkBeatsTheLinearisation) {
   const auto h = [&](double rho) { return vo::Project(view, {0.2, -0.1, rho}).z; };
   Vector2d sampled = Vector2d::Zero();
   constexpr int kDraws = 100000;
-  for (std::uint32_t i = 0; i < kDraws; ++i) sampled += h(0.25 + 0.15 * vo::Normal({.seed = 8, .particle = i}, 0)) / kDraws;
+  for (std::uint32_t i = 0; i < kDraws; ++i)
+    sampled += h(0.25 + 0.15 * vo::Normal({.seed = 8, .particle = i}, 0)) / kDraws;
   const auto z = vo::UnscentedTransform<2, 1>(Eigen::Matrix<double, 1, 1>(0.15 * 0.15), {},
                                               [&](const Eigen::Matrix<double, 1, 1>& d) { return h(0.25 + d[0]); });
   EXPECT_LT((z.mean - sampled).norm(), 0.35 * (h(0.25) - sampled).norm());

@@ -3,8 +3,9 @@
 
 #include "vo/filter/velocity_filter.h"
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
 
 #include "tests/unit/vo/draws.h"
 #include "vo/filter/motion_model.h"
@@ -69,10 +70,12 @@ struct Print {
 };
 
 template <int P, int K>
-void PlainUpdate(const Step& step, const VectorXd& s_previous, const VectorXd& s, const Print& print, VectorXd& mean, MatrixXd& S) {
-  const MatrixXd F11 = step.F.topLeftCorner(P, P), F12 = step.F.topRightCorner(P, K), F21 = step.F.bottomLeftCorner(K, P),
-                 F22 = step.F.bottomRightCorner(K, K);
-  const MatrixXd Q11 = step.Q.topLeftCorner(P, P), Q12 = step.Q.topRightCorner(P, K), Q22 = step.Q.bottomRightCorner(K, K);
+void PlainUpdate(const Step& step, const VectorXd& s_previous, const VectorXd& s, const Print& print, VectorXd& mean,
+                 MatrixXd& S) {
+  const MatrixXd F11 = step.F.topLeftCorner(P, P), F12 = step.F.topRightCorner(P, K),
+                 F21 = step.F.bottomLeftCorner(K, P), F22 = step.F.bottomRightCorner(K, K);
+  const MatrixXd Q11 = step.Q.topLeftCorner(P, P), Q12 = step.Q.topRightCorner(P, K),
+                 Q22 = step.Q.bottomRightCorner(K, K);
   const MatrixXd Gamma = Q22.llt().matrixL();
   const MatrixXd H = F12 * F22.inverse();
   const MatrixXd Lambda = Q12 * Gamma.inverse().transpose() - H * Gamma;
@@ -101,7 +104,8 @@ double WorstDifference(unsigned seed, Update update) {
   double worst = 0;
   for (int t = 0; t < 200; ++t) {
     const Step step = RandomStep<P, K>(draws);
-    const VectorXd s_next = step.F.topLeftCorner(P, P) * s + step.F.topRightCorner(P, K) * mean + 0.5 * RandomMatrix(P, 1, draws);
+    const VectorXd s_next =
+        step.F.topLeftCorner(P, P) * s + step.F.topRightCorner(P, K) * mean + 0.5 * RandomMatrix(P, 1, draws);
     update(step, s, s_next, mean, S);
     joint.Advance(step, s_next);
     s = s_next;

@@ -2,6 +2,7 @@
 #include "vo/sequence/video.h"
 
 #include <arpa/inet.h>
+#include <gmock/gmock.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -9,10 +10,8 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
-#include <thread>
-
-#include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
+#include <thread>
 
 namespace {
 
@@ -67,7 +66,8 @@ class MotionJpegCamera {
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socklen_t size = sizeof address;
-    if (bind(socket_, reinterpret_cast<sockaddr*>(&address), size) != 0 || listen(socket_, 1) != 0) throw std::runtime_error("no socket");
+    if (bind(socket_, reinterpret_cast<sockaddr*>(&address), size) != 0 || listen(socket_, 1) != 0)
+      throw std::runtime_error("no socket");
     getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size);
     address_ = "http://127.0.0.1:" + std::to_string(ntohs(address.sin_port)) + "/video.mjpg";
     sender_ = std::thread([this] { Send(); });
@@ -86,13 +86,16 @@ class MotionJpegCamera {
     if (client < 0) return;
     char request[4096];
     if (read(client, request, sizeof request) <= 0) return;
-    const auto write = [&](const void* data, std::size_t n) { return send(client, data, n, MSG_NOSIGNAL) == static_cast<ssize_t>(n); };
+    const auto write = [&](const void* data, std::size_t n) {
+      return send(client, data, n, MSG_NOSIGNAL) == static_cast<ssize_t>(n);
+    };
     const std::string head = "HTTP/1.0 200 OK\r\nContent-Type: multipart/x-mixed-replace;boundary=next\r\n\r\n";
     bool good = write(head.data(), head.size());
     for (int k = 0; good && k < pictures_; ++k) {
       std::vector<std::uint8_t> jpeg;
       cv::imencode(".jpg", Picture(k), jpeg);
-      const std::string part = "--next\r\nContent-Type: image/jpeg\r\nContent-Length: " + std::to_string(jpeg.size()) + "\r\n\r\n";
+      const std::string part =
+          "--next\r\nContent-Type: image/jpeg\r\nContent-Length: " + std::to_string(jpeg.size()) + "\r\n\r\n";
       good = write(part.data(), part.size()) && write(jpeg.data(), jpeg.size()) && write("\r\n", 2);
       ++sent_;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));

@@ -63,7 +63,8 @@ struct Seen {
 };
 
 // All that an odometry asks of its filter, frame by frame; `before` is called ahead of each, `between` after the prediction.
-Seen Play(std::unique_ptr<vo::Filter> filter, const std::function<void(int)>& before, const std::function<void(int)>& between = {}) {
+Seen Play(std::unique_ptr<vo::Filter> filter, const std::function<void(int)>& before,
+          const std::function<void(int)>& between = {}) {
   Seen seen;
   vo::WatchedFilter watched(std::move(filter));
   std::vector<int> all;
@@ -90,7 +91,8 @@ Seen Play(std::unique_ptr<vo::Filter> filter, const std::function<void(int)>& be
 bool Same(const Seen& a, const Seen& b) {
   if (a.beliefs.size() != b.beliefs.size()) return false;
   for (std::size_t k = 0; k < a.beliefs.size(); ++k) {
-    if (a.beliefs[k].pose.p_WC != b.beliefs[k].pose.p_WC || a.beliefs[k].covariance != b.beliefs[k].covariance) return false;
+    if (a.beliefs[k].pose.p_WC != b.beliefs[k].pose.p_WC || a.beliefs[k].covariance != b.beliefs[k].covariance)
+      return false;
   }
   return true;
 }
@@ -107,12 +109,24 @@ const Poison kState[] = {
     {"velocity's covariance", [](vo::Particle& p, double v) { p.velocity.covariance(2, 2) = v; }},
     {"landmark", [](vo::Particle& p, double v) { p.landmarks[7].mean.z() = v; }},
     {"landmark's covariance", [](vo::Particle& p, double v) { p.landmarks[7].covariance(2, 2) = v; }},
-    {"all landmarks' covariances", [](vo::Particle& p, double v) { for (vo::Landmark& l : p.landmarks) l.covariance(2, 2) = v; }},
+    {"all landmarks' covariances",
+     [](vo::Particle& p, double v) {
+       for (vo::Landmark& l : p.landmarks) l.covariance(2, 2) = v;
+     }},
     {"anchor", [](vo::Particle& p, double v) { p.anchors[0].p_WC.x() = v; }},
     {"weight", [](vo::Particle& p, double v) { p.log_weight = v; }},
-    {"path", [](vo::Particle& p, double v) { if (!p.path.mean.empty()) p.path.mean.back().p_WC.z() = v; }},
-    {"path's covariance", [](vo::Particle& p, double v) { if (p.path.covariance.size() > 0) p.path.covariance(1, 1) = v; }},
-    {"mode", [](vo::Particle& p, double v) { if (!p.modes.empty()) p.modes[7].x() = v; }},
+    {"path",
+     [](vo::Particle& p, double v) {
+       if (!p.path.mean.empty()) p.path.mean.back().p_WC.z() = v;
+     }},
+    {"path's covariance",
+     [](vo::Particle& p, double v) {
+       if (p.path.covariance.size() > 0) p.path.covariance(1, 1) = v;
+     }},
+    {"mode",
+     [](vo::Particle& p, double v) {
+       if (!p.modes.empty()) p.modes[7].x() = v;
+     }},
     {"prediction", [](vo::Particle& p, double v) { p.prediction.mean.p_WC.x() = v; }},
     {"prediction's covariance", [](vo::Particle& p, double v) { p.prediction.covariance(3, 3) = v; }},
 };
@@ -123,8 +137,9 @@ struct Member {
 };
 
 std::vector<Member> Members() {
-  std::vector<Member> members = {{"evidence", Plain()}, {"importance", Plain()}, {"lag", Plain()}, {"start_window", Plain()},
-                                 {"velocity_sampled", Plain()}, {"bootstrap", Plain()}, {"ukf", Plain()}};
+  std::vector<Member> members = {{"evidence", Plain()},     {"importance", Plain()},       {"lag", Plain()},
+                                 {"start_window", Plain()}, {"velocity_sampled", Plain()}, {"bootstrap", Plain()},
+                                 {"ukf", Plain()}};
   members[1].params.weight = vo::Weight::importance;
   members[2].params.lag = 3;
   members[2].params.weight = vo::Weight::equal;
@@ -156,8 +171,9 @@ TEST_P(WatchedMember, NothingThatIsNoNumberPassesUnseen) {
               if (all || i == 3) poison.put(particles[i], value);
           };
           const Seen seen = between ? Play(std::move(filter), {}, put) : Play(std::move(filter), put);
-          SCOPED_TRACE(std::string(poison.name) + (all ? " of all" : " of one") + (between ? ", after the prediction: " : ": ") +
-                       std::to_string(value) + (seen.fault ? std::string(", ") + seen.fault->what() : ""));
+          SCOPED_TRACE(std::string(poison.name) + (all ? " of all" : " of one") +
+                       (between ? ", after the prediction: " : ": ") + std::to_string(value) +
+                       (seen.fault ? std::string(", ") + seen.fault->what() : ""));
           for (const vo::Belief& belief : seen.beliefs) {
             EXPECT_TRUE(belief.pose.p_WC.allFinite() && belief.velocity.allFinite() && belief.covariance.allFinite());
           }
@@ -179,7 +195,8 @@ TEST_P(WatchedMember, NothingThatIsNoNumberPassesUnseen) {
   EXPECT_GT(guarded, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Family, WatchedMember, testing::ValuesIn(Members()), [](const auto& member) { return std::string(member.param.name); });
+INSTANTIATE_TEST_SUITE_P(Family, WatchedMember, testing::ValuesIn(Members()),
+                         [](const auto& member) { return std::string(member.param.name); });
 
 // One particle of eight that is impossible: it is replaced, the others go on, and one of them has its weight.
 TEST(WatchedFilter, AnImpossibleParticleIsReplacedAndCounted) {
@@ -216,13 +233,22 @@ TEST(WatchedFilter, RefusesWhatIsNoMeasurement) {
       {[](vo::Filter& f) { f.Predict(kNan); }, "frame 1, prediction: the time since the last frame is not positive"},
       {[](vo::Filter& f) { f.Predict(0); }, "frame 1, prediction: the time since the last frame is not positive"},
       {with_match([](vo::Match& m) { m.z.x() = kNan; }), "frame 1, update: a match is at no point of the image"},
-      {with_match([](vo::Match& m) { m.R.setZero(); }), "frame 1, update: the noise of a match is not positive definite"},
-      {with_match([](vo::Match& m) { m.R(1, 1) = kInf; }), "frame 1, update: the noise of a match is not positive definite"},
-      {with_match([](vo::Match& m) { m.landmark = kLandmarks; }), "frame 1, update: a match is of a landmark that is not in the map"},
-      {with_view([](vo::FirstView& v) { v.ray.y() = kInf; }), "frame 0, new landmarks: a first view is at no point of the image"},
-      {with_view([](vo::FirstView& v) { v.R.setZero(); }), "frame 0, new landmarks: the noise of a first view is not positive definite"},
-      {with_view([](vo::FirstView& v) { v.depth = vo::KnownDepth{0.5, 0}; }), "frame 0, new landmarks: a known depth is not positive"},
-      {[](vo::Filter& f) { f.KeepLandmarks({true}); }, "frame 0, forgetting: another number of landmarks is told than there are"},
+      {with_match([](vo::Match& m) { m.R.setZero(); }),
+       "frame 1, update: the noise of a match is not positive definite"},
+      {with_match([](vo::Match& m) { m.R(1, 1) = kInf; }),
+       "frame 1, update: the noise of a match is not positive definite"},
+      {with_match([](vo::Match& m) { m.landmark = kLandmarks; }),
+       "frame 1, update: a match is of a landmark that is not in the map"},
+      {with_view([](vo::FirstView& v) { v.ray.y() = kInf; }),
+       "frame 0, new landmarks: a first view is at no point of the image"},
+      {with_view([](vo::FirstView& v) { v.R.setZero(); }),
+       "frame 0, new landmarks: the noise of a first view is not positive definite"},
+      {with_view([](vo::FirstView& v) {
+         v.depth = vo::KnownDepth{0.5, 0};
+       }),
+       "frame 0, new landmarks: a known depth is not positive"},
+      {[](vo::Filter& f) { f.KeepLandmarks({true}); },
+       "frame 0, forgetting: another number of landmarks is told than there are"},
   };
   for (const auto& told : cases) {
     vo::WatchedFilter filter(MakeParticles(Plain()));
@@ -308,27 +334,47 @@ class Broken final : public vo::Filter {
 // What the filter says, stage by stage.
 TEST(WatchedFilter, RefusesWhatIsNoAnswer) {
   const std::pair<std::function<void(Broken&)>, const char*> cases[] = {
-      {[](Broken& f) { f.spoil_prediction = [](auto& p) { p.mean.p_WC.x() = kNan; }; }, "frame 1, prediction: the pose is not one"},
-      {[](Broken& f) { f.spoil_prediction = [](auto& p) { p.covariance.setZero(); }; }, "frame 1, prediction: the covariance of the pose has a variance of 0"},
-      {[](Broken& f) { f.spoil_prediction = [](auto& p) { p.covariance(1, 4) = kInf; }; }, "frame 1, prediction: the covariance of the pose is not a number"},
-      {[](Broken& f) { f.spoil_image = [](auto& p) { p.z.x() = kNan; }; }, "frame 1, predicted images: a landmark is at no point"},
-      {[](Broken& f) { f.spoil_image = [](auto& p) { p.covariance(0, 0) = -1; }; }, "frame 1, predicted images: the covariance of a landmark's image has a variance of -1"},
-      {[](Broken& f) { f.spoil_belief = [](auto& b) { b.pose.q_WC.coeffs() *= 2; }; }, "frame 1, update: the pose is not one"},
-      {[](Broken& f) { f.spoil_belief = [](auto& b) { b.velocity[5] = kInf; }; }, "frame 1, update: the velocity is not a number"},
-      {[](Broken& f) { f.spoil_belief = [](auto& b) { b.covariance(11, 0) = kNan; }; }, "frame 1, update: the covariance of pose and velocity is not"},
-      {[](Broken& f) { f.spoil_belief = [](auto& b) { b.covariance(3, 3) = -1e-9; }; }, "frame 1, update: the covariance of pose and velocity has"},
-      {[](Broken& f) { f.spoil_belief = [](auto& b) { b.covariance(7, 2) += 1e-3; }; }, "frame 1, update: the covariance of pose and velocity is not symmetric"},
+    {[](Broken& f) { f.spoil_prediction = [](auto& p) { p.mean.p_WC.x() = kNan; }; },
+     "frame 1, prediction: the pose is not one"},
+    {[](Broken& f) { f.spoil_prediction = [](auto& p) { p.covariance.setZero(); }; },
+     "frame 1, prediction: the covariance of the pose has a variance of 0"},
+    {[](Broken& f) { f.spoil_prediction = [](auto& p) { p.covariance(1, 4) = kInf; }; },
+     "frame 1, prediction: the covariance of the pose is not a number"},
+    {[](Broken& f) { f.spoil_image = [](auto& p) { p.z.x() = kNan; }; },
+     "frame 1, predicted images: a landmark is at no point"},
+    {[](Broken& f) { f.spoil_image = [](auto& p) { p.covariance(0, 0) = -1; }; },
+     "frame 1, predicted images: the covariance of a landmark's image has a variance of -1"},
+    {[](Broken& f) { f.spoil_belief = [](auto& b) { b.pose.q_WC.coeffs() *= 2; }; },
+     "frame 1, update: the pose is not one"},
+    {[](Broken& f) { f.spoil_belief = [](auto& b) { b.velocity[5] = kInf; }; },
+     "frame 1, update: the velocity is not a number"},
+    {[](Broken& f) { f.spoil_belief = [](auto& b) { b.covariance(11, 0) = kNan; }; },
+     "frame 1, update: the covariance of pose and velocity is not"},
+    {[](Broken& f) { f.spoil_belief = [](auto& b) { b.covariance(3, 3) = -1e-9; }; },
+     "frame 1, update: the covariance of pose and velocity has"},
+    {[](Broken& f) { f.spoil_belief = [](auto& b) { b.covariance(7, 2) += 1e-3; }; },
+     "frame 1, update: the covariance of pose and velocity is not symmetric"},
 #if !defined(NDEBUG)
-      {[](Broken& f) { f.spoil_belief = [](auto& b) { b.covariance(7, 2) = b.covariance(2, 7) = 2 * std::sqrt(b.covariance(2, 2) * b.covariance(7, 7)); }; },
-       "frame 1, update: the covariance of pose and velocity has a negative eigenvalue"},
+    {[](Broken& f) {
+       f.spoil_belief = [](auto& b) {
+         b.covariance(7, 2) = b.covariance(2, 7) = 2 * std::sqrt(b.covariance(2, 2) * b.covariance(7, 7));
+       };
+     },
+     "frame 1, update: the covariance of pose and velocity has a negative eigenvalue"},
 #endif
-      {[](Broken& f) { f.spoil_component = [](auto& c) { c.weight = kNan; }; }, "frame 1, update: a weight is negative or not a number"},
-      {[](Broken& f) { f.spoil_component = [](auto& c) { c.weight = 0.5; }; }, "frame 1, update: the weights do not sum to 1"},
-      {[](Broken& f) { f.effective = kNan; }, "frame 1, update: the effective number of particles is not one"},
-      {[](Broken& f) { f.spoil_landmark = [](auto& l) { l.X_W.z() = kInf; }; }, "frame 1, landmarks: a landmark is nowhere"},
-      {[](Broken& f) { f.spoil_landmark = [](auto& l) { l.inverse_depth_sigma = kNan; }; }, "frame 1, landmarks: the variance of an inverse depth"},
-      {[](Broken& f) { f.spoil_point = [](auto& p) { p.mean.x() = kNan; }; }, "frame 1, landmarks: a landmark is nowhere"},
-      {[](Broken& f) { f.spoil_point = [](auto& p) { p.covariance(2, 2) = -1; }; }, "frame 1, landmarks: the covariance of a landmark has a variance"},
+    {[](Broken& f) { f.spoil_component = [](auto& c) { c.weight = kNan; }; },
+     "frame 1, update: a weight is negative or not a number"},
+    {[](Broken& f) { f.spoil_component = [](auto& c) { c.weight = 0.5; }; },
+     "frame 1, update: the weights do not sum to 1"},
+    {[](Broken& f) { f.effective = kNan; }, "frame 1, update: the effective number of particles is not one"},
+    {[](Broken& f) { f.spoil_landmark = [](auto& l) { l.X_W.z() = kInf; }; },
+     "frame 1, landmarks: a landmark is nowhere"},
+    {[](Broken& f) { f.spoil_landmark = [](auto& l) { l.inverse_depth_sigma = kNan; }; },
+     "frame 1, landmarks: the variance of an inverse depth"},
+    {[](Broken& f) { f.spoil_point = [](auto& p) { p.mean.x() = kNan; }; },
+     "frame 1, landmarks: a landmark is nowhere"},
+    {[](Broken& f) { f.spoil_point = [](auto& p) { p.covariance(2, 2) = -1; }; },
+     "frame 1, landmarks: the covariance of a landmark has a variance"},
   };
   for (const auto& [spoil, message] : cases) {
     auto broken = std::make_unique<Broken>();
@@ -347,7 +393,8 @@ TEST(PointOdometry, RefusesWhatIsNoPointAndNoPrior) {
   prior.pose.p_WC.x() = kNan;
   prior.velocity_covariance(0, 5) = 1;
   EXPECT_THAT([&] { vo::PointOdometry(camera, vo::Params(), prior, 1); },
-              (testing::ThrowsMessage<std::invalid_argument>("prior: the pose is not one\nprior: the covariance of the velocity is not one")));
+              (testing::ThrowsMessage<std::invalid_argument>(
+                  "prior: the pose is not one\nprior: the covariance of the velocity is not one")));
   vo::PointOdometry spoilt(camera, vo::Params(), vo::Prior(), 1), other(camera, vo::Params(), vo::Prior(), 1);
   const auto frame = [](std::int64_t k) {
     vo::PointFrame result{k * 33'000'000, {}};
@@ -358,10 +405,12 @@ TEST(PointOdometry, RefusesWhatIsNoPointAndNoPrior) {
     vo::PointFrame bad = frame(k);
     bad.observations[5].pixel.y() = kNan;
     const std::string where = " in the frame at " + std::to_string(bad.stamp_ns) + " ns";
-    EXPECT_THAT([&] { spoilt.Track(bad); }, (testing::ThrowsMessage<std::invalid_argument>("point 5 is nowhere" + where)));
+    EXPECT_THAT([&] { spoilt.Track(bad); },
+                (testing::ThrowsMessage<std::invalid_argument>("point 5 is nowhere" + where)));
     bad = frame(k);
     bad.observations.push_back(bad.observations[3]);
-    EXPECT_THAT([&] { spoilt.Track(bad); }, (testing::ThrowsMessage<std::invalid_argument>("point 3 comes twice" + where)));
+    EXPECT_THAT([&] { spoilt.Track(bad); },
+                (testing::ThrowsMessage<std::invalid_argument>("point 3 comes twice" + where)));
     EXPECT_EQ(spoilt.Track(frame(k)).pose.p_WC, other.Track(frame(k)).pose.p_WC);
   }
 }

@@ -28,7 +28,8 @@ std::vector<Member> Members() {
   plain.particles = 8;
   plain.lag = plain.start_window = 0;
   plain.weight = vo::Weight::evidence;
-  std::vector<Member> members = {{"evidence", plain}, {"lag", plain}, {"start_window", plain}, {"ukf", plain}, {"ekfslam", plain}};
+  std::vector<Member> members = {
+      {"evidence", plain}, {"lag", plain}, {"start_window", plain}, {"ukf", plain}, {"ekfslam", plain}};
   members[1].params.lag = 5;
   members[1].params.weight = vo::Weight::equal;
   members[2].params.start_window = 10;
@@ -56,17 +57,25 @@ std::vector<vo::Belief> Fly(const vo::FilterParams& params, double size) {
   vo::WatchedFilter watched(std::move(filter));
 
   std::vector<vo::FirstView> views;
-  for (int n = 0; n < kLandmarks; ++n) views.push_back({{0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n)}, kSigma * kSigma * Eigen::Matrix2d::Identity()});
+  for (int n = 0; n < kLandmarks; ++n)
+    views.push_back(
+        {{0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n)}, kSigma * kSigma * Eigen::Matrix2d::Identity()});
   watched.AddLandmarks(views);
   std::vector<vo::Belief> beliefs;
   for (int frame = 1; frame <= kFrames; ++frame) {
-    const vo::Pose pose{{0.01 * frame, 0.003 * frame, 0.002 * std::sin(0.2 * frame)}, vo::Exp({0, 0.002 * frame, 0.001})};
+    const vo::Pose pose{{0.01 * frame, 0.003 * frame, 0.002 * std::sin(0.2 * frame)},
+                        vo::Exp({0, 0.002 * frame, 0.001})};
     std::vector<vo::Match> matches;
     for (int n = 0; n < kLandmarks; ++n) {
       const double rho = 0.25 + 0.1 * views[static_cast<std::size_t>(n)].ray.x();
-      const Eigen::Vector3d X = pose.q_WC.conjugate() * (Eigen::Vector3d(views[static_cast<std::size_t>(n)].ray.x(), views[static_cast<std::size_t>(n)].ray.y(), 1) / rho - pose.p_WC);
-      matches.push_back({n, X.head<2>() / X.z() + kSigma * Eigen::Vector2d(std::sin(17.0 * n * frame), std::cos(23.0 * n * frame)),
-                         kSigma * kSigma * Eigen::Matrix2d::Identity()});
+      const Eigen::Vector3d X =
+          pose.q_WC.conjugate() *
+          (Eigen::Vector3d(views[static_cast<std::size_t>(n)].ray.x(), views[static_cast<std::size_t>(n)].ray.y(), 1) /
+               rho -
+           pose.p_WC);
+      matches.push_back(
+          {n, X.head<2>() / X.z() + kSigma * Eigen::Vector2d(std::sin(17.0 * n * frame), std::cos(23.0 * n * frame)),
+           kSigma * kSigma * Eigen::Matrix2d::Identity()});
     }
     watched.Predict(1.0 / 30);
     watched.Update(matches);
@@ -92,12 +101,15 @@ TEST_P(WorldSize, ChangesNothingButTheSize) {
       EXPECT_LT((other[k].pose.p_WC - metres[k].pose.p_WC).norm(), 1e-9) << k;  // of a path of 0.26
       EXPECT_LT(other[k].pose.q_WC.angularDistance(metres[k].pose.q_WC), 1e-9) << k;
       EXPECT_LT((other[k].velocity - metres[k].velocity).norm(), 1e-8) << k;
-      EXPECT_LT((other[k].covariance - metres[k].covariance).cwiseAbs().maxCoeff(), 1e-7 * metres[k].covariance.diagonal().maxCoeff()) << k;
+      EXPECT_LT((other[k].covariance - metres[k].covariance).cwiseAbs().maxCoeff(),
+                1e-7 * metres[k].covariance.diagonal().maxCoeff())
+          << k;
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Family, WorldSize, testing::ValuesIn(Members()), [](const auto& member) { return std::string(member.param.name); });
+INSTANTIATE_TEST_SUITE_P(Family, WorldSize, testing::ValuesIn(Members()),
+                         [](const auto& member) { return std::string(member.param.name); });
 
 // Variances below the smallest normal number: a start that is as good as known, and no number that is none.
 TEST(WorldSize, DenormalVariancesAreVariances) {
@@ -118,7 +130,8 @@ TEST(WorldSize, DenormalVariancesAreVariances) {
       watched.Predict(1.0 / 30);
       watched.Update({&match, 1});
       EXPECT_EQ(watched.guards().indefinite + watched.guards().impossible, 0) << member.name << ' ' << frame;
-      EXPECT_TRUE(watched.belief().pose.p_WC.allFinite() && watched.belief().covariance.allFinite()) << member.name << ' ' << frame;
+      EXPECT_TRUE(watched.belief().pose.p_WC.allFinite() && watched.belief().covariance.allFinite())
+          << member.name << ' ' << frame;
     }
   }
 }

@@ -67,8 +67,8 @@ INSTANTIATE_TEST_SUITE_P(All, LayoutRoundTrip, testing::Values(sim::Layout::tum,
 TEST(DeepSequences, AreReadAsTheyAreHandedOver) {
   for (const int bits : {8, 9, 12, 16}) {
     const sim::SmallWorld world;
-    const sim::Simulator simulator(
-        sim::LoadScenario(world.scenario(), {{"sensor.bit_depth", std::to_string(bits)}}), 2);
+    const sim::Simulator simulator(sim::LoadScenario(world.scenario(), {{"sensor.bit_depth", std::to_string(bits)}}),
+                                   2);
     vo::SequenceReader reader(Written(world, simulator, sim::Layout::tum));
     for (std::int64_t k = 2; k < 9; ++k) {
       const vo::Frame handed = ToOdometry(simulator.Render(k));

@@ -15,8 +15,8 @@ namespace evaluation::compat {
 enum class RpgAlignment { sim3, se3, posyaw, none };  // align_type, over all frames
 
 struct RpgRelativeErrors {
-  double length_m = 0;  // of the sub-trajectories
-  Statistics trans;     // [m]
+  double length_m = 0;                                      // of the sub-trajectories
+  Statistics trans;                                         // [m]
   Statistics trans_perc, rot, rot_deg_per_m, yaw, gravity;  // [%], [deg], [deg/m], [deg], [deg]
 };
 

@@ -14,8 +14,9 @@ namespace evaluation::compat {
 enum class TumDeltaUnit { seconds, frames, metres, radians, degrees };
 
 struct TumRpeOptions {
-  bool fixed_delta = false;  // else pairs are drawn, or all taken where the estimate has fewer than sqrt(max_pairs) poses
-  double delta = 1;          // between the poses of a pair, with fixed_delta
+  // Else pairs are drawn, or all taken where the estimate has fewer than sqrt(max_pairs) poses
+  bool fixed_delta = false;
+  double delta = 1;  // between the poses of a pair, with fixed_delta
   TumDeltaUnit unit = TumDeltaUnit::seconds;
   std::size_t max_pairs = 10000;  // 0: all
   std::int64_t offset_ns = 0;     // added to the estimate's stamps

@@ -25,7 +25,8 @@ double Rms(const RadianceImage& a, const RadianceImage& b, int first_row = 0, in
   return std::sqrt(sum / count);
 }
 
-RadianceImage Expose(const Renderer& renderer, const Camera& camera, const Trajectory& motion, const Exposure& exposure) {
+RadianceImage Expose(const Renderer& renderer, const Camera& camera, const Trajectory& motion,
+                     const Exposure& exposure) {
   RadianceImage image;
   renderer.Expose(camera, motion, exposure, 1, image);
   return image;
@@ -68,7 +69,8 @@ TEST_P(Moving, BlurOfABarIsItsWay) {
     }
     EXPECT_NEAR(length, 0.2 * 35, 0.1) << "its light is what it is";
     // From the first pixel that it touches to the last.
-    const double left = params.cx + 35 * (speed * (0.02 - 0.05) - 0.1), right = params.cx + 35 * (speed * (0.02 + 0.05) + 0.1);
+    const double left = params.cx + 35 * (speed * (0.02 - 0.05) - 0.1),
+                 right = params.cx + 35 * (speed * (0.02 + 0.05) + 0.1);
     EXPECT_NEAR(last - first, std::floor(right + 0.5) - std::floor(left + 0.5), 1.0) << "the bar and its way";
     return most;
   };
@@ -96,8 +98,10 @@ TEST_P(Moving, ObjectAndCameraChangePlaces) {
     for (std::size_t i = 0; i < depth_a.size(); ++i) differ += std::abs(depth_a[i] - depth_b[i]) > 1e-6f * depth_a[i];
     EXPECT_LE(differ, 4) << "of " << depth_a.size() << ": edges";
   }
-  for (const Exposure exposure : {Exposure{0.1, 0.0, 0.0, 1}, Exposure{0.1, 0.03, 0.0, 8}, Exposure{0.1, 0.01, 2e-4, 8}}) {
-    const RadianceImage image = Expose(*a, camera, SteadyMotion(camera_pose), exposure), same = Expose(*b, camera, relative, exposure);
+  for (const Exposure exposure :
+       {Exposure{0.1, 0.0, 0.0, 1}, Exposure{0.1, 0.03, 0.0, 8}, Exposure{0.1, 0.01, 2e-4, 8}}) {
+    const RadianceImage image = Expose(*a, camera, SteadyMotion(camera_pose), exposure),
+                        same = Expose(*b, camera, relative, exposure);
     EXPECT_LT(Rms(image, same), 2e-3);
     Exposure late = exposure;
     late.middle_s += 0.003;
@@ -133,8 +137,11 @@ TEST(MovingRays, ARowSeesTheWorldAtItsMoment) {
   for (const int y : {24, 30, 38}) {
     const double t_s = rolling.RowMiddle(y, camera.height());
     const Exposure instant{t_s, 0.0, 0.0, 1};
-    EXPECT_LT(Rms(image, Expose(*MakeRayTracer(StoppedAt(scene, t_s), Centred()), camera, motion, instant), y, y), 3e-3);
-    EXPECT_GT(Rms(image, Expose(*MakeRayTracer(StoppedAt(scene, t_s + 0.01), Centred()), camera, motion, instant), y, y), 1e-2);
+    EXPECT_LT(Rms(image, Expose(*MakeRayTracer(StoppedAt(scene, t_s), Centred()), camera, motion, instant), y, y),
+              3e-3);
+    EXPECT_GT(
+        Rms(image, Expose(*MakeRayTracer(StoppedAt(scene, t_s + 0.01), Centred()), camera, motion, instant), y, y),
+        1e-2);
   }
 }
 
@@ -160,8 +167,8 @@ TEST(MovingRays, PathsAreFollowedClosely) {
     worst = std::max(worst, glm::length(X_W - exact(t_s)));
     straight = std::max(straight, glm::length(glm::mix(exact(1.0), exact(1.035), i / 1000.0) - exact(t_s)));
   }
-  EXPECT_LT(worst, 2e-6);      // 1e-6 and the rounding of floats at 4 m; asked: 1e-5
-  EXPECT_GT(straight, 1e-4);   // the control: one straight piece
+  EXPECT_LT(worst, 2e-6);     // 1e-6 and the rounding of floats at 4 m; asked: 1e-5
+  EXPECT_GT(straight, 1e-4);  // the control: one straight piece
   RecordProperty("worst", std::to_string(worst));
   RecordProperty("steps", placed.packet().steps);
   EXPECT_EQ(PlacedObjects(rays, 1.0, 1.0).packet().steps, 1);
@@ -211,7 +218,8 @@ TEST(MovingRays, AreLitByLampsAndAmbientLightWhereLightIsBaked) {
     std::vector<std::string> warnings;
     RadianceImage image;
     MakeRayTracer(scene, options, &warnings)->Expose(camera, SteadyMotion(Pose{}), Exposure{}, 1, image);
-    EXPECT_THAT(warnings, testing::Contains(testing::StartsWith("moving objects are not in baked light: lamps shine on them")));
+    EXPECT_THAT(warnings,
+                testing::Contains(testing::StartsWith("moving objects are not in baked light: lamps shine on them")));
     int on_object = 0;
     double floor = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -10,7 +10,8 @@ namespace sim::test {
 // The meshes from `first` on become an object, with O where W was.
 inline void MakeObject(Scene& scene, std::size_t first, std::shared_ptr<const Trajectory> motion) {
   const auto begin = scene.meshes.begin() + static_cast<std::ptrdiff_t>(first);
-  scene.objects.push_back({"object" + std::to_string(scene.objects.size()), {begin, scene.meshes.end()}, std::move(motion)});
+  scene.objects.push_back(
+      {"object" + std::to_string(scene.objects.size()), {begin, scene.meshes.end()}, std::move(motion)});
   scene.meshes.erase(begin, scene.meshes.end());
 }
 
@@ -31,7 +32,8 @@ inline Scene StoppedAt(Scene scene, double t_s) {
 // T_OC: how a camera moves as an object sees it. Poses alone.
 class SeenFrom : public Trajectory {
  public:
-  SeenFrom(std::shared_ptr<const Trajectory> object, const Pose& camera) : object_(std::move(object)), camera_(camera) {}
+  SeenFrom(std::shared_ptr<const Trajectory> object, const Pose& camera)
+      : object_(std::move(object)), camera_(camera) {}
   Motion At(double t_s) const override {
     const Pose object = object_->At(t_s).pose;
     const glm::dquat q_OW = glm::conjugate(object.q_WC);

@@ -111,7 +111,10 @@ void ExpectNothingNegative(const RadianceImage& image) {
 // Where weights vanish they are rounded to either side of nothing, and beside what is black a negative one would be negative light.
 TEST(TextureLookup, NothingIsNegativeOnABlackEdge) {
   Scene scene = Picture(1, 1, 1.0f);
-  scene.meshes[0].colors = {{0, 0, 0}, {0.3f, 0.7f, 0.9f}, {0, 0, 0}, {0.9f, 0.3f, 0.7f}};  // black along the diagonal, where the triangles meet
+  scene.meshes[0].colors = {{0, 0, 0},
+                            {0.3f, 0.7f, 0.9f},
+                            {0, 0, 0},
+                            {0.9f, 0.3f, 0.7f}};  // black along the diagonal, where the triangles meet
   for (int i = 0; i < 100; ++i) {
     const double by = 0.003 * i;
     ExpectNothingNegative(Render(scene, Camera(SmallCamera(63, 63)), Pose{{by, by, -0.01 * i}, {1, 0, 0, 0}}));
@@ -126,7 +129,8 @@ TEST(TextureLookup, NothingIsNegativeAtABlackTexel) {
   scene.textures[0] = Texture("stripes", size, size, stripes);
   CameraParams params = SmallCamera(size, size);
   params.fx = params.fy = size / 2.0;  // one texel per pixel, centre on centre
-  for (int i = 0; i < 20; ++i) ExpectNothingNegative(Render(scene, Camera(params), Pose{{0, 1e-3 * i, 0}, {1, 0, 0, 0}}));
+  for (int i = 0; i < 20; ++i)
+    ExpectNothingNegative(Render(scene, Camera(params), Pose{{0, 1e-3 * i, 0}, {1, 0, 0, 0}}));
 }
 
 }  // namespace

@@ -132,7 +132,8 @@ TEST(SurfaceTracer, PointsOfACorner) {
   std::vector<std::uint8_t> visible;
   traced.surfaces.Visible(Pose{{1.2, 2.1, -2.3}}, points_W, visible);
   for (std::size_t i = 0; i < visible.size(); ++i) ASSERT_EQ(visible[i], 1) << i;
-  traced.surfaces.Visible(Pose{{1.2, 2.1, -3.5}}, points_W, visible);  // and nothing from outside, but what is on that side
+  traced.surfaces.Visible(Pose{{1.2, 2.1, -3.5}}, points_W,
+                          visible);  // and nothing from outside, but what is on that side
   for (std::size_t i = 0; i < visible.size(); ++i) ASSERT_EQ(visible[i], points_W[i].z < -2.999999 ? 1 : 0) << i;
 }
 

@@ -39,7 +39,7 @@ TEST(MovingTruth, FlowOfASquareIsItsVelocity) {
       for (int x = 0; x < camera.width(); ++x) {
         const auto i = static_cast<std::size_t>(y * camera.width() + x);
         const glm::dvec2 ray((x - 41.0) / 70, (y - 30.0) / 70), now = 2.0 * ray - t_s * glm::dvec2(v),
-                         then = 2.0 * ray - (t_s + step) * glm::dvec2(v);
+                                                                then = 2.0 * ray - (t_s + step) * glm::dvec2(v);
         const auto inside = [](const glm::dvec2& p) { return std::max(std::abs(p.x), std::abs(p.y)) - 0.5; };
         if (std::abs(inside(now)) < 1e-6 || std::abs(inside(then)) < 1e-6) continue;
         const bool square = inside(now) < 0;
@@ -79,8 +79,7 @@ TEST(MovingTruth, ObjectAndCameraChangePlaces) {
   a->surfaces()->Trace(camera, View(camera_pose, t_s), points);
   b->surfaces()->Trace(camera, relative.At(t_s).pose, same);
   const FlowImage flow = FlowBetween(*a->surfaces(), camera, points, View(camera_pose, t_s), View(camera_pose, next_s));
-  const FlowImage other =
-      FlowBetween(*b->surfaces(), camera, same, relative.At(t_s).pose, relative.At(next_s).pose);
+  const FlowImage other = FlowBetween(*b->surfaces(), camera, same, relative.At(t_s).pose, relative.At(next_s).pose);
   int edges = 0, hidden = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i].triangle != same[i].triangle) {
@@ -89,13 +88,15 @@ TEST(MovingTruth, ObjectAndCameraChangePlaces) {
     }
     if (points[i].triangle == kNoTriangle) continue;
     ASSERT_NEAR(points[i].depth, same[i].depth, 1e-9);
-    for (std::size_t c = 0; c < 2; ++c) ASSERT_NEAR(flow.uv[2 * i + c], other.uv[2 * i + c], 2e-6 + 1e-6 * std::abs(other.uv[2 * i + c]));
+    for (std::size_t c = 0; c < 2; ++c)
+      ASSERT_NEAR(flow.uv[2 * i + c], other.uv[2 * i + c], 2e-6 + 1e-6 * std::abs(other.uv[2 * i + c]));
     edges += flow.occluded[i] != other.occluded[i];
     hidden += flow.occluded[i];
     const glm::dvec3 n = a->surfaces()->ObjectPoses(t_s)[0].q_WC * a->surfaces()->Normal(points[i].triangle);
-    ASSERT_NEAR(glm::dot(glm::normalize(glm::conjugate(camera_pose.q_WC) * n),
-                         glm::normalize(glm::conjugate(relative.At(t_s).pose.q_WC) * b->surfaces()->Normal(same[i].triangle))),
-                1, 1e-12);
+    ASSERT_NEAR(
+        glm::dot(glm::normalize(glm::conjugate(camera_pose.q_WC) * n),
+                 glm::normalize(glm::conjugate(relative.At(t_s).pose.q_WC) * b->surfaces()->Normal(same[i].triangle))),
+        1, 1e-12);
   }
   EXPECT_LE(edges, 4);
   EXPECT_GT(hidden, 100);
@@ -103,9 +104,12 @@ TEST(MovingTruth, ObjectAndCameraChangePlaces) {
 
 // A board of 1 m x 0.75 m at z = -1, before SmallWorld's wall, goes to the right and comes back.
 Scenario WithBoard(const SmallWorld& world, const std::string& trajectory) {
-  return LoadScenario(world.scenario(),
-                      {{"world.objects", "[{name: board, file: wall.ply, scale: 0.25, position: [0, 0, -0.5], trajectory: " + trajectory + "}]"},
-                       {"trajectory", "{type: dolly, start: {position: [0, 0, 0], look_at: [0, 0, -2]}, move: [0, 0, 1 mm], period: 9 s}"}});
+  return LoadScenario(
+      world.scenario(),
+      {{"world.objects",
+        "[{name: board, file: wall.ply, scale: 0.25, position: [0, 0, -0.5], trajectory: " + trajectory + "}]"},
+       {"trajectory",
+        "{type: dolly, start: {position: [0, 0, 0], look_at: [0, 0, -2]}, move: [0, 0, 1 mm], period: 9 s}"}});
 }
 constexpr char kDolly[] = "{type: dolly, start: {position: [-0.2, 0.1, 0]}, move: [0.6, 0, 0], period: 0.6 s}";
 
@@ -116,13 +120,17 @@ TEST(MovingTruth, StreamsOfABoard) {
   ASSERT_EQ(simulator.mesh_names().size(), 2u);
   EXPECT_THAT(simulator.mesh_names()[1], testing::StartsWith("board/"));
   std::map<std::string, std::vector<std::uint8_t>> files;
-  for (const StreamFile& file : FrameStreams(simulator, 4, {TruthStream::moving, TruthStream::surface_id})) files[file.path] = file.bytes;
+  for (const StreamFile& file : FrameStreams(simulator, 4, {TruthStream::moving, TruthStream::surface_id}))
+    files[file.path] = file.bytes;
   for (const StreamFile& file : SequenceStreams(simulator, 0, 9, {TruthStream::moving})) files[file.path] = file.bytes;
   const cv::Mat mask = cv::imdecode(files.at("moving/0.133333333.png"), cv::IMREAD_UNCHANGED),
                 ids = cv::imdecode(files.at("surface_id/0.133333333.png"), cv::IMREAD_UNCHANGED);
   ASSERT_EQ(mask.type(), CV_8UC1);
   const Truth truth = simulator.TruthAt(4), board = simulator.ObjectTruthAt(0, 4);
-  EXPECT_NEAR(board.p_WC.x, -0.2 + 0.3 * (1 - std::cos(2 * 3.14159265358979 * static_cast<double>(simulator.StampNs(4)) * 1e-9 / 0.6)), 1e-12);
+  EXPECT_NEAR(
+      board.p_WC.x,
+      -0.2 + 0.3 * (1 - std::cos(2 * 3.14159265358979 * static_cast<double>(simulator.StampNs(4)) * 1e-9 / 0.6)),
+      1e-12);
   int seen = 0;
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 64; ++x) {
@@ -170,12 +178,15 @@ TEST(MovingTruth, LandmarksStandStill) {
 // Each sampled object has a motion of its own, which is not the camera's.
 TEST(MovingTruth, SampledObjectsDiffer) {
   const SmallWorld world;
-  constexpr char kSampled[] = "{type: sampled, start: {position: [0, 0, 0]}, position_noise: 0.5, orientation_noise: 0.5}";
+  constexpr char kSampled[] =
+      "{type: sampled, start: {position: [0, 0, 0]}, position_noise: 0.5, orientation_noise: 0.5}";
   const std::string one = std::string("name: a, file: wall.ply, trajectory: ") + kSampled,
                     two = std::string("name: b, file: wall.ply, trajectory: ") + kSampled;
   const Simulator simulator(
-      LoadScenario(world.scenario(), {{"world.objects", "[{" + one + "}, {" + two + "}]"}, {"trajectory", kSampled}}), 1);
-  const glm::dvec3 a = simulator.ObjectTruthAt(0, 8).p_WC, b = simulator.ObjectTruthAt(1, 8).p_WC, c = simulator.TruthAt(8).p_WC;
+      LoadScenario(world.scenario(), {{"world.objects", "[{" + one + "}, {" + two + "}]"}, {"trajectory", kSampled}}),
+      1);
+  const glm::dvec3 a = simulator.ObjectTruthAt(0, 8).p_WC, b = simulator.ObjectTruthAt(1, 8).p_WC,
+                   c = simulator.TruthAt(8).p_WC;
   EXPECT_GT(glm::length(a - b), 1e-3);
   EXPECT_GT(glm::length(a - c), 1e-3);
   EXPECT_GT(glm::length(b - c), 1e-3);

@@ -176,8 +176,9 @@ camera: {width: 8, height: 6, fx: 8, fy: 8, cx: 3.5, cy: 2.5}
 time: {rate: 30 Hz, duration: 100 ms}
 trajectory: {type: rpy, start: {position: [0, 0, 3], look_at: [0, 0, 0]}, angles: [1 deg, 0 deg, 0 deg], periods: [1 s, 1 s, 1 s]}
 )");
-  EXPECT_THAT(Simulator(LoadScenario(file), 1).warnings(),
-              testing::Contains(testing::AllOf(HasSubstr("render.reflections is false"), HasSubstr("base colour: cloth"))));
+  EXPECT_THAT(
+      Simulator(LoadScenario(file), 1).warnings(),
+      testing::Contains(testing::AllOf(HasSubstr("render.reflections is false"), HasSubstr("base colour: cloth"))));
   EXPECT_THAT(Simulator(LoadScenario(file, {{"render.reflections", "true"}}), 1).warnings(),
               testing::Not(testing::Contains(HasSubstr("reflections"))));
 }
