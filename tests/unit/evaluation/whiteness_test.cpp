@@ -24,6 +24,7 @@ TEST(TestWhiteness, ByHand) {
   EXPECT_NEAR(result.bound, 1.96 / std::sqrt(5), 1e-15);
   EXPECT_EQ(TestWhiteness({1, 2, 3}, 10).autocorrelation.size(), 2u);
   EXPECT_TRUE(TestWhiteness({4, 4, 4, 4}, 2).autocorrelation.empty()) << "a constant has no correlation";
+  EXPECT_TRUE(TestWhiteness({1, 2, 3}, 0).autocorrelation.empty());
   EXPECT_EQ(TestWhiteness(std::vector<double>{}, 2).p_value, 1);
 }
 
