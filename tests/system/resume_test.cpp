@@ -63,7 +63,7 @@ TEST_F(ResumeTest, KilledAgainAndAgainItEndsWithTheSameBytes) {
     int kills = 0;
     for (int n = 0; n < 6 && !fs::exists(here_ / seq); ++n) {
       const auto begin = std::chrono::steady_clock::now();
-      const auto after = milliseconds(draw(static_cast<int>(all_ms / 3)));
+      const auto after = milliseconds(draw(static_cast<int>(all_ms / 10)));
       const auto pictures = Pictures(partial) + static_cast<std::size_t>(1 + draw(4));
       moments += n % 2 != 0 ? std::to_string(after.count()) + " ms, " : std::to_string(pictures) + " pictures, ";
       kills += Killed(Render(seq, {"--format", format, "--resume"}), [&] {
