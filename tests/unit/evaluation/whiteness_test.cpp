@@ -25,6 +25,7 @@ TEST(TestWhiteness, ByHand) {
   EXPECT_EQ(TestWhiteness({1, 2, 3}, 10).autocorrelation.size(), 2u);
   EXPECT_TRUE(TestWhiteness({4, 4, 4, 4}, 2).autocorrelation.empty()) << "a constant has no correlation";
   EXPECT_TRUE(TestWhiteness({1, 2, 3}, 0).autocorrelation.empty());
+  ASSERT_EQ(TestWhiteness({0.01, 0.02, 0.03, 0.04, 0.05}, 2).autocorrelation.size(), 2u) << "of whatever size";
   EXPECT_EQ(TestWhiteness(std::vector<double>{}, 2).p_value, 1);
 }
 
