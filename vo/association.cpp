@@ -22,6 +22,8 @@ constexpr int kShutterRounds = 3;
 // Of the image's size: so far outside of it no particle has a landmark that others have inside.
 constexpr double kFarOut = 0.5;
 
+using Found = std::vector<std::optional<FoundFeature>>;  // by request
+
 // A frame, and what is known before it is looked at.
 struct Sight {
   const Filter& filter;
@@ -35,7 +37,7 @@ struct Sight {
 
   const PoseGaussian& prediction() const { return filter.ReferencePrediction(); }
   const Vector6& velocity() const { return filter.belief().velocity; }
-  std::vector<std::optional<FoundFeature>> Find(const std::vector<SearchRequest>& requests) const {
+  Found Find(const std::vector<SearchRequest>& requests) const {
     return FindFeatures(requests, frame.smooth, frame.brisk, params.features);
   }
 };
@@ -130,8 +132,6 @@ SearchRequest RequestFor(const Sight& in, const Candidate& candidate) {
         candidate.lens * view.J_landmark.leftCols<2>() * in.camera.LensJacobian(estimate.head<2>()).inverse();
   return request;
 }
-
-using Found = std::vector<std::optional<FoundFeature>>;
 
 Match MatchOf(const Sight& in, const Candidate& candidate, const FoundFeature& found, const Vector6& velocity) {
   const auto [z, moved] = in.shutter.AsTurned(found.pixel, velocity);
