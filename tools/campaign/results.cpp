@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "tools/limits/json.h"
+#include "tools/limits/whole_number.h"
 
 namespace campaign {
 namespace {
@@ -90,6 +91,13 @@ constexpr Metric kMetrics[] = {
     {"constant_velocity_rpe_m", [](const Metrics& m, A) { return Rmse(m.constant_velocity.rpe.position_statistics); }},
 };
 
+template <class Number>
+Number Whole(const Json& json, const char* name) {
+  const auto number = limits::WholeNumber<Number>(json.at(name));
+  if (!number) throw std::invalid_argument("'" + std::string(name) + "' is no whole number: " + json.at(name).dump());
+  return *number;
+}
+
 }  // namespace
 
 std::string Name(Status status) {
@@ -161,10 +169,10 @@ TaskRecord RecordFromJson(const std::string& text) {
     if (json.at("format") != kFormat) throw std::invalid_argument("not the format '" + std::string(kFormat) + "'");
     TaskRecord record;
     record.key = json.at("key");
-    record.task = json.at("task");
+    record.task = Whole<std::int64_t>(json, "task");
     record.scenario = json.at("scenario");
     record.system = json.at("system");
-    record.seed = json.at("seed");
+    record.seed = Whole<std::uint64_t>(json, "seed");
     record.reason = json.at("reason");
     record.levels = json.at("levels").get<std::vector<std::pair<std::string, std::string>>>();
     const std::string status = json.at("status");

@@ -205,7 +205,11 @@ std::vector<RecordedMetrics> ReadMetricsJson(const std::filesystem::path& out) {
   try {
     const Json json = Json::parse(text);
     if (json.at("format") != kFormat) throw ev::InputError({file.string() + ": the format is not '" + kFormat + "'"});
-    const auto nanoseconds = [](const Json& value) { return std::llround(value.get<double>() * 1e9); };
+    const auto nanoseconds = [&](const Json& value) {
+      const double ns = value.get<double>() * 1e9;
+      if (!(std::abs(ns) < 0x1p63)) throw ev::InputError({file.string() + ": " + value.dump() + " s is no time"});
+      return std::llround(ns);
+    };
     for (const Json& run : json.at("runs")) {
       RecordedMetrics metrics;
       metrics.path = run.at("path").get<std::string>();

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/evaluation/text_file.h"
+#include "tools/limits/whole_number.h"
 #include "tools/report/json_text.h"
 
 namespace report {
@@ -82,9 +83,11 @@ KeptPictures ReadPictures(const fs::path& run_folder) {
   if (!fs::exists(file)) return {};
   return Parsed(file, kFormat, [](const Json& json) {
     KeptPictures kept;
-    json.at("width").get_to(kept.width);
-    json.at("height").get_to(kept.height);
-    if (kept.width < 1 || kept.height < 1) throw ev::InputError({"width and height must be 1 or more"});
+    kept.width = limits::WholeNumber<int>(json.at("width")).value_or(0);
+    kept.height = limits::WholeNumber<int>(json.at("height")).value_or(0);
+    if (kept.width < 1 || kept.height < 1)
+      throw ev::InputError({"width and height must be whole numbers of 1 or more, not " + json.at("width").dump() +
+                            " and " + json.at("height").dump()});
     for (const Json& entry : json.at("pictures")) {
       KeptPicture& picture = kept.pictures.emplace_back();
       const auto stamp = ev::ParseSeconds(entry.at("timestamp").get<std::string>());

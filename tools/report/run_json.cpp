@@ -5,6 +5,7 @@
 #include <set>
 
 #include "tools/evaluation/text_file.h"
+#include "tools/limits/whole_number.h"
 #include "tools/report/json_text.h"
 
 namespace report {
@@ -32,10 +33,11 @@ class Fields {
       return;
     }
     try {
-      if constexpr (std::is_unsigned_v<Value>) {
-        if (!found->is_number_unsigned()) throw std::invalid_argument("");
+      if constexpr (std::is_integral_v<Value>) {
+        into = limits::WholeNumber<Value>(*found).value();
+      } else {
+        into = found->template get<Value>();
       }
-      into = found->template get<Value>();
     } catch (const std::exception&) {
       problems_.Add(file_, where_ + "'" + name + "' has the wrong type: " + found->dump());
     }

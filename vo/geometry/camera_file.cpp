@@ -215,8 +215,12 @@ Camera ReadCamera(const std::filesystem::path& file) {
   if (IsOfOpenCv(file)) {
     try {
       return OpenCvFile(file).Read();
+    } catch (const settings::Error&) {
+      throw;
     } catch (const cv::Exception& error) {
       throw settings::Error({{file.string(), 0, 0, "OpenCV cannot read it: " + error.err}});
+    } catch (const std::exception& error) {  // its parser lets the standard library's pass
+      throw settings::Error({{file.string(), 0, 0, std::string("OpenCV cannot read it: ") + error.what()}});
     }
   }
   Camera camera;

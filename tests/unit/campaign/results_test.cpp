@@ -45,6 +45,12 @@ TEST(Results, ARecordIsReadAsItWasWritten) {
   EXPECT_THROW(RecordFromJson(""), std::invalid_argument);
   EXPECT_THROW(RecordFromJson(ToJson(record).substr(0, 100)), std::invalid_argument);
   EXPECT_THROW(RecordFromJson("{\"format\": \"other\"}"), std::invalid_argument);
+  const std::string whole = ToJson(Sample(7, Status::ok, 1));
+  for (const std::string seed : {"-1", "1.5", "1e300", "18446744073709551616"}) {
+    std::string text = whole;
+    text.replace(text.find("18446744073709551615"), 20, seed);
+    EXPECT_THROW(RecordFromJson(text), std::invalid_argument) << seed;
+  }
 }
 
 TEST(Results, CsvIsTidyAndQuoted) {

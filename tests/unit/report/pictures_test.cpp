@@ -53,7 +53,10 @@ TEST(Pictures, NameTheFileThatIsWrong) {
       const auto& [text, said] :
       {std::pair{"{", "parse error"},
        {R"({"format":"other"})", "the format is not"},
-       {R"({"format":"vobench pictures 1","width":0,"height":1,"pictures":[]})", "width and height must be 1 or more"},
+       {R"({"format":"vobench pictures 1","width":0,"height":1,"pictures":[]})",
+        "width and height must be whole numbers of 1 or more, not 0 and 1"},
+       {R"({"format":"vobench pictures 1","width":1,"height":4e97,"pictures":[]})", "not 1 and 4e+97"},
+       {R"({"format":"vobench pictures 1","width":4294967297,"height":1,"pictures":[]})", "not 4294967297 and 1"},
        {R"({"format":"vobench pictures 1","width":1,"height":1,"pictures":[{"timestamp":"x","features":[]}]})",
         "is no time"},
        {R"({"format":"vobench pictures 1","width":1,"height":1,"pictures":[{"timestamp":"1","features":[{"status":"odd","at":[0,0,0,0,0,0,0]}]}]})",
