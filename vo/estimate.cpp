@@ -58,8 +58,8 @@ Estimate MakeEstimate(const Filter& filter, const UnknownScale& scale, std::int6
   diagnostics.guards = filter.guards();
   const Belief& belief = filter.belief();
   return {stamp_ns,
-          belief.pose,
-          belief.velocity.head<3>(),
+          scale.Answered(belief.pose),
+          scale.Answered(belief.velocity).head<3>(),
           belief.velocity.tail<3>(),
           scale.Covariance(belief.pose, belief.velocity, belief.covariance),
           diagnostics};
@@ -72,7 +72,7 @@ std::vector<MapPoint> MakeMap(const Filter& filter, const UnknownScale& scale) {
   for (std::size_t n = 0; n < beliefs.size(); ++n) {
     const Filter::LandmarkBelief& belief = beliefs[n];
     if (moments[n]) moments[n] = scale.Moments(*moments[n]);
-    points.push_back({0, belief.X_W, belief.inverse_depth,
+    points.push_back({0, scale.Answered(belief.X_W), scale.AnsweredInverse(belief.inverse_depth),
                       scale.InverseDepthSigma(belief.inverse_depth, belief.inverse_depth_sigma), false,
                       belief.relative_sigma(), moments[n]});
   }

@@ -109,6 +109,7 @@ void Odometry::Impl::Follow(const PreparedFrame& prepared, FrameDiagnostics& dia
   Association association = Associate(filter, records, camera, prepared, border_px, dt, params);
   diagnostics.ms_matching += watch.Lap();
   filter.Update(association.matches);
+  scale.Lengthened(filter.lengthened());
   UpdateScores(association);
   diagnostics.searched = static_cast<int>(association.searched.size());
   diagnostics.matched = static_cast<int>(association.matches.size());
@@ -132,6 +133,7 @@ void Odometry::Impl::BeginAgain(const PreparedFrame& second, FrameDiagnostics& d
   for (int round = 1; round < kStartRounds && diagnostics.tracked(); ++round) {
     const Vector6 velocity = Minus(filter.belief().pose, prior.pose) / dt;
     filter = WatchedFilter(MakeFilter(params, prior, seed));
+    scale = UnknownScale(params.landmark.scale_sigma, prior.pose.p_WC);
     Begin(first, velocity);
     Follow(second, diagnostics);
   }

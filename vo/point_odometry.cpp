@@ -70,6 +70,7 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
     const std::vector<Match> matches = MatchesIn(frame, rays, diagnostics);
     diagnostics.ms_matching = watch.Lap();
     filter.Update(matches);
+    scale.Lengthened(filter.lengthened());
     diagnostics.ms_filter = watch.Lap();
   }
   last_stamp_ns = frame.stamp_ns;
@@ -81,8 +82,11 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
   diagnostics.ms_features = watch.Lap();
   if (!scale.known()) {
     mixture = filter.mixture();
-    for (BeliefComponent& component : mixture)
+    for (BeliefComponent& component : mixture) {
       component.covariance = scale.Covariance(component.pose, component.velocity, component.covariance);
+      component.pose = scale.Answered(component.pose);
+      component.velocity = scale.Answered(component.velocity);
+    }
   }
   return MakeEstimate(filter, scale, frame.stamp_ns, diagnostics);
 }

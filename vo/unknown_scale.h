@@ -20,6 +20,13 @@ class UnknownScale {
   UnknownScale(double sigma, const Eigen::Vector3d& start);
 
   bool known() const { return square_ == 1; }
+  // The filter has found its path anew, with all lengths times `factor`: where the scale is not known that tells nothing of it, and what is
+  // answered keeps the scale of what was answered before.
+  void Lengthened(double factor);
+  Pose Answered(const Pose& pose) const;
+  Vector6 Answered(const Vector6& velocity) const;
+  Eigen::Vector3d Answered(const Eigen::Vector3d& point) const;
+  double AnsweredInverse(double inverse_length) const { return inverse_length / kept_; }
   // The covariance of a pose and velocity.
   Matrix12 Covariance(const Pose& pose, const Vector6& velocity, const Matrix12& covariance) const;
   PointMoments Moments(const PointMoments& point) const;
@@ -30,6 +37,7 @@ class UnknownScale {
   Eigen::Vector3d start_;
   double factor_, square_;  // expected exp(-eta), and its square's
   double off_;              // expected (exp(-eta) - 1)^2
+  double kept_ = 1;         // of a length of the filter's, to one that is answered
 };
 
 }  // namespace vo

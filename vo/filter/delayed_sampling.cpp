@@ -31,6 +31,7 @@ void ParticleFilter::PredictPath(double dt) {
     dt += steps_.back().dt;
     steps_.pop_back();
     for (Particle& particle : particles_) particle.path.mean.pop_back();
+    if (!answered_.empty()) answered_.pop_back();
   }
   for (Particle& particle : particles_) {  // first guess: as from the frame before to the last
     std::vector<Pose>& mean = particle.path.mean;
@@ -72,6 +73,8 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
   for (const Particle& particle : particles_) mixture_.push_back(ComponentOnPath(particle));
   if (!matches.empty()) WeighPaths();
   Answer();
+  lengthened_ = together() ? Lengthened() : 1;
+  answered_ = together() ? particles_[0].path.mean : std::vector<Pose>();
   const bool full = static_cast<int>(steps_.size()) > window_size();
   if (full && undecided_) Decide();
   // With equal weights a refuted particle is replaced before the draw, so that it is not the draws that are alike; and not before there is

@@ -68,6 +68,8 @@ class Filter {
   virtual const Guards& guards() const = 0;
   // Nothing is sampled yet: the map may still turn out to be a wrong solution altogether.
   virtual bool undecided() const { return false; }
+  // The last Update found the path anew that had been answered before: its lengths are so many times what they were.
+  virtual double lengthened() const { return 1; }
 };
 
 }  // namespace vo

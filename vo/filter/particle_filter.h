@@ -70,6 +70,7 @@ class ParticleFilter final : public Filter {
   double effective_particles() const override { return effective_particles_; }
   const Guards& guards() const override { return guards_; }
   bool undecided() const override { return undecided_; }
+  double lengthened() const override { return lengthened_; }
   const std::vector<Particle>& particles() const { return particles_; }
   const std::vector<double>& weights() const { return weights_; }
   const FilterParams& params() const { return params_; }
@@ -101,6 +102,7 @@ class ParticleFilter final : public Filter {
   // In the start's window the particles differ by where they start at most: what the first one finds, the others follow.
   std::span<Particle> Leaders() { return {particles_.data(), together() ? 1 : particles_.size()}; }
   bool together() const { return undecided_ && start_window_ > params_.lag; }
+  double Lengthened() const;
   void FollowFirst();
   void LookForBetter();
   Particle Sideways(const Particle& particle, std::uint32_t guess) const;
@@ -154,6 +156,8 @@ class ParticleFilter final : public Filter {
   std::vector<Eigen::Vector3d> modes_;  // workspace
   int start_window_ = 0;                // 0 where the settings know no window
   bool undecided_ = false;              // no pose has been sampled yet
+  std::vector<Pose> answered_;          // the start's path at the last answer
+  double lengthened_ = 1;
   std::vector<Landmark> heaviest_landmarks_;
 
   Belief belief_;

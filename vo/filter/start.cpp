@@ -2,7 +2,9 @@
 // explain the images nearly as well (depth reversal is the best known of them), and no later image undoes a wrong choice. So the poses
 // stay one window, and in every frame the solution is challenged by another.
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "vo/filter/particle_filter.h"
@@ -73,6 +75,27 @@ void ParticleFilter::Triangulate(Particle& particle) const {
     }
     for (const Track& track : tracks_) particle.modes[track.landmark] = landmarks[track.landmark].mean;
   }
+}
+
+// How many times as long as it was answered the path is now that it is found anew, as far as that is a matter of its scale. By least squares
+// over the poses that have been answered, ln = d'd* / d'd; and to the power of how nearly as certain as a length of the path can be at all
+// (variance 1 / d'P^-1 d) this one is (d'Pd / (d'd)^2): 1 where nothing but the scale is uncertain, nearly 0 where all poses are, and one that
+// was answered wrong must not change the scale of those to come.
+double ParticleFilter::Lengthened() const {
+  const Particle& first = particles_[0];
+  const auto count = static_cast<Eigen::Index>(answered_.size());
+  Eigen::VectorXd was = Eigen::VectorXd::Zero(6 * count), is = was;  // positions, seen from the start
+  for (Eigen::Index k = 0; k < count; ++k) {
+    was.segment<3>(6 * k) = answered_[static_cast<std::size_t>(k)].p_WC - first.pose.p_WC;
+    is.segment<3>(6 * k) = first.path.mean[static_cast<std::size_t>(k)].p_WC - first.pose.p_WC;
+  }
+  const double square = was.squaredNorm(), product = was.dot(is);
+  if (!(product > 0)) return 1;  // nothing answered yet, or it leads elsewhere
+  const Eigen::MatrixXd P = first.path.covariance.topLeftCorner(6 * count, 6 * count);
+  const Eigen::LLT<Eigen::MatrixXd> llt(P);
+  if (llt.info() != Eigen::Success) return 1;  // the guard of indefinite covariances has counted it
+  const double certainty = square * square / (was.dot(llt.solve(was)) * was.dot(P * was));
+  return std::pow(product / square, certainty);
 }
 
 // The first particle's solution from where the others start.

@@ -47,6 +47,7 @@ class WatchedFilter final : public Filter {
   double effective_particles() const override { return filter_->effective_particles(); }
   const Guards& guards() const override { return filter_->guards(); }
   bool undecided() const override { return filter_->undecided(); }
+  double lengthened() const override { return filter_->lengthened(); }
 
  private:
   void Require(bool ok, const char* stage, const char* what) const {

@@ -46,6 +46,43 @@ TEST(UnknownScale, IsTheSecondMomentOfWhatItMayBe) {
   EXPECT_GT(Eigen::LLT<Matrix12>(wide).matrixL().determinant(), 0);
 }
 
+// A filter whose lengths became twice as long answers what it answered before; where the scale is known they are what they are.
+TEST(UnknownScale, AnswersKeepTheirScale) {
+  vo_test::Draws draws(2);
+  Matrix12 A;
+  for (double& a : A.reshaped()) a = 0.1 * draws.Normal();
+  const Matrix12 P = A * A.transpose();
+  const Eigen::Vector3d start(1, 2, 3), way(0.5, -0.2, 1);
+  vo::Pose pose, longer;
+  pose.p_WC = start + way;
+  longer.p_WC = start + 2 * way;
+  vo::Vector6 velocity, faster;
+  velocity << 0.3, 0.1, -0.2, 1, 2, 3;
+  faster << 0.6, 0.2, -0.4, 1, 2, 3;
+  Vector12 twice = Vector12::Ones();
+  twice.segment<3>(0) *= 2;
+  twice.segment<3>(6) *= 2;
+  const Matrix12 P_longer = twice.asDiagonal() * P * twice.asDiagonal();
+
+  const vo::UnknownScale before(0.3, start);
+  vo::UnknownScale after = before;
+  after.Lengthened(4);
+  after.Lengthened(0.5);
+  EXPECT_LT((after.Answered(longer).p_WC - pose.p_WC).norm(), 1e-15);
+  EXPECT_LT((after.Answered(faster) - velocity).norm(), 1e-15);
+  EXPECT_LT((after.Covariance(longer, faster, P_longer) - before.Covariance(pose, velocity, P)).norm(), 1e-14);
+  const vo::PointMoments point{start + way, P.topLeftCorner<3, 3>()}, far{start + 2 * way, 4 * P.topLeftCorner<3, 3>()};
+  EXPECT_LT((after.Moments(far).mean - point.mean).norm(), 1e-15);
+  EXPECT_LT((after.Moments(far).covariance - before.Moments(point).covariance).norm(), 1e-14);
+  EXPECT_EQ(after.AnsweredInverse(0.25), 0.5);
+  EXPECT_NEAR(after.InverseDepthSigma(0.25, 0.1), before.InverseDepthSigma(0.5, 0.2), 1e-15);
+
+  vo::UnknownScale known(0, start);
+  known.Lengthened(2);
+  EXPECT_EQ(known.Answered(longer).p_WC, longer.p_WC);
+  EXPECT_EQ(known.Covariance(longer, faster, P_longer), P_longer);
+}
+
 TEST(UnknownScale, KnownChangesNoBit) {
   const vo::UnknownScale known(0, {1, 2, 3});
   const Matrix12 P = Matrix12::Random();

@@ -1,0 +1,103 @@
+// The start's window finds its path anew in every frame, and with it its scale, which nothing but the priors of the depths tells. What the
+// filter says of that (Filter::lengthened) lets answers keep one scale.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "tests/unit/vo/draws.h"
+#include "vo/filter/particle_filter.h"
+#include "vo/geometry/so3.h"
+
+namespace {
+
+constexpr int kFrames = 30, kWorlds = 10;
+constexpr double kSigma = 0.25 / 525;
+
+// From a frame of the start to its last: by how much (of its logarithm) the scale of the filter's path changed, and that of answers which keep theirs.
+struct Change {
+  double filter = 0, answers = 0;
+};
+
+// A camera at `speed` past landmarks with inverse depths about 0.25 1/m, evenly spread over twice `spread`.
+Change Fly(unsigned world, double speed, double spread, int from) {
+  vo_test::Draws draws(world);
+  vo::FilterParams params;
+  params.particles = 1;
+  vo::FilterPrior prior;
+  prior.velocity_covariance = 0.01 * vo::Matrix6::Identity();
+  vo::ParticleFilter filter({.position_noise = 2.5, .orientation_noise = 1}, params, vo::LandmarkParams{}, prior,
+                            world);
+  std::vector<vo::FirstView> views;
+  std::vector<Eigen::Vector3d> points;
+  for (int n = 0; n < 60; ++n) {
+    const double x = 0.8 * (draws.Uniform() - 0.5);  // one after the other: the order of arguments is open
+    const double y = 0.6 * (draws.Uniform() - 0.5);
+    const Eigen::Vector3d ray(x, y, 1);
+    points.push_back(ray / (0.25 + 2 * spread * (draws.Uniform() - 0.5)));
+    views.push_back({ray.head<2>() + kSigma * draws.Normals<2>(), kSigma * kSigma * Eigen::Matrix2d::Identity()});
+  }
+  filter.AddLandmarks(views);
+  Change change;
+  for (int frame = 1; frame <= kFrames; ++frame) {
+    const double t = frame / 30.0;
+    const vo::Pose camera{{speed * t, 0.1 * speed * std::sin(2 * t), 0},
+                          vo::Exp({0, -0.05 * t, 0.05 * std::sin(3 * t)})};
+    std::vector<vo::Match> matches;
+    for (int n = 0; n < 60; ++n) {
+      const Eigen::Vector3d seen = camera.q_WC.conjugate() * (points[static_cast<std::size_t>(n)] - camera.p_WC);
+      matches.push_back(
+          {n, seen.hnormalized() + kSigma * draws.Normals<2>(), kSigma * kSigma * Eigen::Matrix2d::Identity()});
+    }
+    filter.Predict(1.0 / 30);
+    filter.Update(matches);
+    const double ratio = std::log(filter.belief().pose.p_WC.norm() / camera.p_WC.norm());
+    if (frame == from) change = {-ratio, -ratio};
+    if (frame > from) change.answers -= std::log(filter.lengthened());
+    if (frame == kFrames) {
+      change.filter += ratio;
+      change.answers += ratio;
+    }
+  }
+  return change;
+}
+
+double Median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+// Median over the worlds, of the absolute value.
+Change Fly(double speed, double spread, int from) {
+  std::vector<double> filter, answers;
+  for (unsigned world = 1; world <= kWorlds; ++world) {
+    const Change change = Fly(world, speed, spread, from);
+    filter.push_back(std::abs(change.filter));
+    answers.push_back(std::abs(change.answers));
+  }
+  std::printf(
+      "%.1f m/s past depths spread by %.1f, from frame %d on: the filter's scale changes by %.3f, the answers' by "
+      "%.3f\n",
+      speed, spread, from, Median(filter), Median(answers));
+  return {Median(filter), Median(answers)};
+}
+
+// Once depths are known apart, the near ones weigh more in what the scale is than they did before: measured 0.027 and 0.180.
+TEST(StartScale, AnswersKeepTheirsWhereDepthsAreSpread) {
+  for (const double speed : {1.0, 0.3}) {
+    const Change change = Fly(speed, 0.2, 6);
+    EXPECT_GT(change.filter, 0.02);
+    EXPECT_LT(change.answers, 0.4 * change.filter);
+  }
+}
+
+// Lengths that noise has told are not kept: past a wall it is the filter's next answers that are right.
+TEST(StartScale, AnswersFollowTheFilterWhereLittleWasKnown) {
+  const Change change = Fly(0.3, 0, 3);
+  EXPECT_GT(change.filter, 0.2);
+  EXPECT_NEAR(change.answers, change.filter, 0.1 * change.filter);
+}
+
+}  // namespace
