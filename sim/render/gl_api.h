@@ -86,9 +86,9 @@ struct GlApi {
   template <class Find>
   std::vector<std::string> Load(const Find& find) {
     std::vector<std::string> missing;
-#define VOBENCH_GL_LOAD(name, type)                             \
-  name = reinterpret_cast<PFNGL##type##PROC>(find("gl" #name)); \
-  if (name == nullptr) missing.emplace_back("gl" #name);
+#define VOBENCH_GL_LOAD(name, type)                               \
+  (name) = reinterpret_cast<PFNGL##type##PROC>(find("gl" #name)); \
+  if ((name) == nullptr) missing.emplace_back("gl" #name);
     VOBENCH_GL_FUNCTIONS(VOBENCH_GL_LOAD)
 #undef VOBENCH_GL_LOAD
     return missing;

@@ -97,8 +97,9 @@ void StoreRays(const Camera& camera, int x0, int y0, PixelBlock& block) {
     const auto width = static_cast<float>(std::sqrt(1 / (p.fx * p.fy)));
     const auto cx = static_cast<float>(p.cx), cy = static_cast<float>(p.cy);
     for (int i = 0; i < kLanes; ++i) {
-      block.x.v[i] = (static_cast<float>(x0 + i % kBlockSide) - cx) * du;
-      block.y.v[i] = (static_cast<float>(y0 + i / kBlockSide) - cy) * dv;
+      const int x = x0 + i % kBlockSide, y = y0 + i / kBlockSide;
+      block.x.v[i] = (static_cast<float>(x) - cx) * du;
+      block.y.v[i] = (static_cast<float>(y) - cy) * dv;
       block.z.v[i] = 1.0f;
       block.x_du.v[i] = du, block.y_du.v[i] = 0.0f, block.z_du.v[i] = 0.0f;
       block.x_dv.v[i] = 0.0f, block.y_dv.v[i] = dv, block.z_dv.v[i] = 0.0f;

@@ -72,7 +72,7 @@ ScriptedMotion ReadScripted(Section& section) {
   if (motion.keys.size() < 2) reject(section, "keys", "'trajectory.keys': two key poses are needed at least");
   if (!good) return motion;
   try {
-    SplineTrajectory{motion.keys};
+    static_cast<void>(SplineTrajectory{motion.keys});  // for what it throws
     const double pace = ReadPace(section, motion);
     for (KeyPose& key : motion.keys) key.t_s /= pace;
   } catch (const std::invalid_argument& error) {

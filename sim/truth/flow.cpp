@@ -57,8 +57,9 @@ FlowImage FlowBetween(const SurfaceTracer& surfaces, const Camera& camera, std::
     const glm::dvec3 X_W = point_there(points[i]), X_C = q_CW * (X_W - there.pose.p_WC);
     if (!HasPixel(camera, X_C)) continue;
     const glm::dvec2 pixel = camera.Project(X_C);
-    flow.uv[2 * i] = static_cast<float>(pixel.x - static_cast<double>(i % width));
-    flow.uv[2 * i + 1] = static_cast<float>(pixel.y - static_cast<double>(i / width));
+    const std::size_t x = i % width, y = i / width;
+    flow.uv[2 * i] = static_cast<float>(pixel.x - static_cast<double>(x));
+    flow.uv[2 * i + 1] = static_cast<float>(pixel.y - static_cast<double>(y));
     if (!InImage(camera, X_C, pixel)) continue;
     in_image.push_back(X_W);
     pixel_of.push_back(i);

@@ -17,7 +17,7 @@ std::uint32_t Encode(const float* linear, bool roots) {
   std::uint32_t bits = 0;
   for (int c = 0; c < 3; ++c) {
     const float clipped = std::clamp(linear[c], 0.0f, 1.0f);
-    bits |= static_cast<std::uint32_t>((roots ? std::sqrt(clipped) : clipped) * kTexelMax + 0.5f) << (10 * c);
+    bits |= static_cast<std::uint32_t>(std::lround((roots ? std::sqrt(clipped) : clipped) * kTexelMax)) << (10 * c);
   }
   return bits;
 }

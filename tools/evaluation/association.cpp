@@ -13,14 +13,8 @@ namespace {
 
 using Stamps = std::vector<std::int64_t>;
 
-// Seconds apart, as the reference tools have it: stamps as doubles. At 1.3e9 s a double resolves 0.24 us, which decides
-// between two stamps that are equally near; ours is to decide as they do.
-double Apart(std::int64_t a_ns, std::int64_t b_ns) {
-  const auto seconds = [](std::int64_t t) {
-    return static_cast<double>(t / 1'000'000'000) + static_cast<double>(t % 1'000'000'000) * 1e-9;
-  };
-  return std::abs(seconds(a_ns) - seconds(b_ns));
-}
+// Seconds apart, as the reference tools have it.
+double Apart(std::int64_t a_ns, std::int64_t b_ns) { return std::abs(SecondsAsRead(a_ns) - SecondsAsRead(b_ns)); }
 
 std::vector<Match> OneToOne(const Stamps& estimate, const Stamps& truth, std::int64_t gap) {
   std::vector<std::tuple<double, std::size_t, std::size_t>> candidates;

@@ -160,6 +160,11 @@ std::string FormatSeconds(std::int64_t stamp_ns) {
   return text;
 }
 
+double SecondsAsRead(std::int64_t stamp_ns) {
+  const std::int64_t whole = stamp_ns / 1'000'000'000;
+  return static_cast<double>(whole) + static_cast<double>(stamp_ns % 1'000'000'000) * 1e-9;
+}
+
 std::string FormatNumber(double value, int digits) {
   char text[40];
   std::snprintf(text, sizeof text, "%.*g", digits, value);

@@ -53,6 +53,10 @@ std::optional<std::int64_t> ParseSeconds(const std::string& text);
 // Nanoseconds as seconds with nine decimals.
 std::string FormatSeconds(std::int64_t stamp_ns);
 
+// The double that the reference tools read a stamp as. At 1.3e9 s a double resolves 0.24 us, which decides between two stamps that are
+// equally near; ours are to decide as theirs.
+double SecondsAsRead(std::int64_t stamp_ns);
+
 // A number with so many significant digits, shortest form ("%.*g").
 std::string FormatNumber(double value, int digits);
 

@@ -118,7 +118,7 @@ std::string ExrProblem(std::span<const std::uint8_t> file) {
     if (!IsAsLongAsItsType(*type, at, *size))
       return "its attribute '" + name->substr(0, 40) + "' is not as long as its type";
     if (*name == "dataWindow" || *name == "displayWindow") {
-      if (const std::string problem = WindowProblem(at, file.size()); !problem.empty()) return problem;
+      if (std::string problem = WindowProblem(at, file.size()); !problem.empty()) return problem;
     }
     if (*name == "tiles") {
       Cursor tile = at;

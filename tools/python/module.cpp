@@ -40,13 +40,12 @@ Overrides OverridesOf(const py::dict& settings, const std::string& prefix) {
 }  // namespace vobench::python
 
 PYBIND11_MODULE(_core, m) {
-  using namespace vobench::python;
   m.attr("__version__") = VOBENCH_VERSION;
-  AddErrors(m);
-  AddScenario(m);
-  AddWorlds(m);
-  AddSequence(m);
-  AddOdometry(m);
-  AddErrorMeasures(m);
-  AddConsistency(m);
+  vobench::python::AddErrors(m);
+  vobench::python::AddScenario(m);
+  vobench::python::AddWorlds(m);
+  vobench::python::AddSequence(m);
+  vobench::python::AddOdometry(m);
+  vobench::python::AddErrorMeasures(m);
+  vobench::python::AddConsistency(m);
 }

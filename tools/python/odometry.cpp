@@ -2,7 +2,6 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <stdexcept>
-#include <utility>
 
 #include "tools/python/module.h"
 #include "tools/vobench/bridge.h"
@@ -18,12 +17,12 @@ using Ids = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>
 using Pixels = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-vo::Params ParamsOf(const std::string& system, vo::Params params) {
+vo::Params ParamsOf(const std::string& system, const vo::Params& params) {
   const std::vector<std::string>& names = SystemNames();
   if (std::find(names.begin(), names.end(), system) == names.end()) {
     throw std::invalid_argument("system = " + system + " is none of " + SystemList());
   }
-  return ForSystem(system, std::move(params));
+  return ForSystem(system, params);
 }
 
 // Of the keys of a scenario's section odometry: "filter.particles".

@@ -8,7 +8,7 @@ namespace vobench::python {
 namespace {
 
 // Red, green, blue: a view of OpenCV's blue, green, red, backwards.
-py::array Pixels(py::object self) {
+py::array Pixels(const py::object& self) {
   const cv::Mat& image = self.cast<const vo::Frame&>().image;
   const auto row = static_cast<py::ssize_t>(image.step[0]);
   if (image.channels() == 1)

@@ -25,11 +25,11 @@ py::array ViewOf(const T* first, std::vector<py::ssize_t> shape, std::vector<py:
   return py::array(py::dtype::of<T>(), std::move(shape), std::move(strides), first, owner);
 }
 
-py::array Pixels(py::object self) {
+py::array Pixels(const py::object& self) {
   const sim::Image& image = self.cast<const sim::Frame&>().image;
   std::vector<py::ssize_t> shape{image.height, image.width};
   const py::ssize_t size = image.bits > 8 ? 2 : 1;
-  std::vector<py::ssize_t> strides{image.width * image.channels * size, image.channels * size};
+  std::vector<py::ssize_t> strides{size * image.width * image.channels, image.channels * size};
   if (image.channels > 1) {
     shape.push_back(image.channels);
     strides.push_back(size);
@@ -50,13 +50,13 @@ py::array Depth(const Simulator& self, std::int64_t index) {
   return ViewOf(numbers.data(), {height, width}, {4 * width, 4}, owner);
 }
 
-py::array Ids(py::object self) {
+py::array Ids(const py::object& self) {
   const auto& seen = self.cast<const sim::PointFrame&>().observations;
   return ViewOf(seen.empty() ? nullptr : &seen.front().id, {py::ssize_t(seen.size())}, {sizeof(sim::PointObservation)},
                 self);
 }
 
-py::array Places(py::object self) {
+py::array Places(const py::object& self) {
   const auto& seen = self.cast<const sim::PointFrame&>().observations;
   return ViewOf(seen.empty() ? nullptr : &seen.front().x_px, {py::ssize_t(seen.size()), 2},
                 {sizeof(sim::PointObservation), sizeof(double)}, self);
@@ -101,7 +101,7 @@ void AddSimulator(py::module_& m) {
       });
 
   py::class_<FrameIterator>(m, "_FrameIterator")
-      .def("__iter__", [](py::object self) { return self; })
+      .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &NextFrame);
 
   using Class = py::class_<Simulator, std::shared_ptr<Simulator>>;
@@ -169,7 +169,7 @@ void AddPoints(py::module_& m) {
           "warnings", [](const PointWorld& w) { return w.world.Warnings(); },
           Doc("sim/world/point_world.h:PointWorld::Warnings"))
       .def("__len__", [](const PointWorld& w) { return w.world.frame_count(); })
-      .def("__iter__", [](py::object self) { return self; })
+      .def("__iter__", [](const py::object& self) { return self; })
       .def(
           "__next__",
           [](PointWorld& w) {

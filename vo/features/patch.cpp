@@ -138,7 +138,7 @@ Patch CutPatch(const cv::Mat& smooth, const Eigen::Vector2i& centre) {
   Patch patch;
   for (int row = 0; row < Patch::kSide; ++row)
     std::copy_n(smooth.ptr(centre.y() - Patch::kRadius + row) + centre.x() - Patch::kRadius, Patch::kSide,
-                patch.grey.begin() + row * Patch::kSide);
+                patch.grey.begin() + std::ptrdiff_t{row} * Patch::kSide);
   return patch;
 }
 
@@ -188,7 +188,7 @@ std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& 
     }
     return std::nullopt;
   };
-  if (const auto found = settle()) return found;
+  if (auto found = settle()) return found;
   axes.Slide();
   return settle();
 }

@@ -18,7 +18,7 @@ cv::Mat Smooth(const cv::Mat& grey);
 struct Patch {
   static constexpr int kRadius = 10;
   static constexpr int kSide = 2 * kRadius + 1;
-  std::array<std::uint8_t, kSide * kSide> grey{};
+  std::array<std::uint8_t, std::size_t{kSide} * kSide> grey{};
 };
 
 // `centre` at least kRadius from the edge of the smooth image.

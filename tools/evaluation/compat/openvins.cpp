@@ -6,6 +6,7 @@
 
 #include "tools/evaluation/compat/format.h"
 #include "tools/evaluation/compat/subtrajectory.h"
+#include "tools/evaluation/text_file.h"
 
 namespace evaluation::compat {
 namespace {
@@ -35,11 +36,7 @@ struct Pose {
 
 // Forward through both lists: each pose of the estimate takes the nearest true pose that no earlier one went past.
 MatchedTrajectories Associate(const Trajectory& estimate, const Trajectory& truth) {
-  // As doubles, whose last digits decide between stamps that are equally near.
-  const auto seconds = [](const StampedPose& pose) {
-    return static_cast<double>(pose.stamp_ns / 1'000'000'000) +
-           static_cast<double>(pose.stamp_ns % 1'000'000'000) * 1e-9;
-  };
+  const auto seconds = [](const StampedPose& pose) { return SecondsAsRead(pose.stamp_ns); };
   MatchedTrajectories matched;
   std::size_t next = 0;
   for (const StampedPose& pose : estimate) {
