@@ -275,7 +275,7 @@ cv::Mat ReadPicture(const fs::path& file) {
     const std::string problem = is_exr ? limits::ExrProblem(bytes) : limits::PictureProblem(bytes);
     if (!problem.empty()) throw std::runtime_error(problem);
     if (is_exr) return ReadExr(file);
-    const cv::Mat image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+    cv::Mat image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
     if (image.empty()) throw std::runtime_error("cannot be decoded");
     return image;
   } catch (const std::exception& error) {

@@ -206,7 +206,7 @@ void SurfaceChecks::Normals(std::size_t frame) {
     for (int k = 0; k < 4; ++k)
       error = std::max(error, std::abs(fit.dot(rays[cross[k]])) * frames_.DepthError(X[k].z()));
     bool plane = true;
-    for (int k = 0; k < 4; ++k) plane = plane && std::abs(fit.dot(X[k] - Z * rays[i])) <= 2 * error;
+    for (const Vector3d& there : X) plane = plane && std::abs(fit.dot(there - Z * rays[i])) <= 2 * error;
     if (!plane) continue;
     const double sine = across.normalized().cross(down.normalized()).norm();
     const double bound = 4 * error * (1 / across.norm() + 1 / down.norm()) / sine + 1e-6;
@@ -287,7 +287,8 @@ void SurfaceChecks::Flow(std::size_t frame, const std::string& stream, std::size
     const double Z = At(depth, i), error = frames_.DepthError(Z);
     if (Z == 0) continue;
     const float* uv = reinterpret_cast<const float*>(flow.data) + 2 * i;
-    const Vector2d at(static_cast<double>(i % width), static_cast<double>(i / width));
+    const std::size_t x = i % width, y = i / width;
+    const Vector2d at(static_cast<double>(x), static_cast<double>(y));
     const bool known = uv[0] < kUnknown && uv[1] < kUnknown;
     const auto best_of = [&](std::span<const Relative> moves) {
       Worst best;
@@ -339,7 +340,7 @@ void SurfaceChecks::FlowThereAndBack(std::size_t frame) {
   for (int y = 0; y < forward.rows; ++y) {
     for (int x = 0; x < forward.cols; ++x) {
       if (hidden.at<std::uint8_t>(y, x) != 0) continue;
-      const cv::Vec2f f = forward.at<cv::Vec2f>(y, x);
+      const cv::Vec2f& f = forward.at<cv::Vec2f>(y, x);
       const double px = x + static_cast<double>(f[0]), py = y + static_cast<double>(f[1]);
       const auto c = CornersAt(backward, px, py);
       if (!c || c->x < 1 || c->y < 1 || c->x + 2 >= backward.cols || c->y + 2 >= backward.rows) continue;
