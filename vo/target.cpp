@@ -37,9 +37,9 @@ std::vector<TargetCorner> FindTarget(const cv::Mat& grey, const Camera& camera, 
   std::vector<cv::Point3d> board;
   std::vector<cv::Point2d> seen;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const auto column = static_cast<double>(i % static_cast<std::size_t>(target.columns));
-    const auto row = static_cast<double>(i / static_cast<std::size_t>(target.columns));
-    board.emplace_back(column * target.square_m, row * target.square_m, 0);
+    const auto columns = static_cast<std::size_t>(target.columns);
+    const std::size_t column = i % columns, row = i / columns;
+    board.emplace_back(static_cast<double>(column) * target.square_m, static_cast<double>(row) * target.square_m, 0);
     const Eigen::Vector2d ray = camera.Undistort({corners[i].x, corners[i].y});
     seen.emplace_back(ray.x(), ray.y());
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <ranges>
 #include <system_error>
 
 #include "tools/vobench/errors.h"
@@ -66,7 +67,7 @@ OutputFolder::~OutputFolder() {
 void OutputFolder::Discard() {
   std::error_code ignored;
   if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
-  for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) fs::remove(*parent, ignored);
+  for (const fs::path& parent : std::views::reverse(made_parents_)) fs::remove(parent, ignored);
 }
 
 void OutputFolder::Commit() {

@@ -111,7 +111,7 @@ template <int Lanes>
       columns += Padded(count);
     }
     columns = region.columns;
-    std::int16_t* const of_point = samples + n * kStride;
+    std::int16_t* const of_point = samples + std::ptrdiff_t{n} * kStride;
     for (const Row& row : region.rows) {
       int x = 0;
       for (; row.width - x > kLanes; x += Lanes) {
@@ -231,10 +231,11 @@ BriskSampler::BriskSampler(const Eigen::Matrix2d& map) {
     // Borders, the pixels they lie in, and how much of these is inside; pixels reach half a pixel to either side.
     const auto low = static_cast<float>(place.x()) - half, high = static_cast<float>(place.x()) + half;
     const auto upper = static_cast<float>(place.y()) - half, lower = static_cast<float>(place.y()) + half;
-    const auto pixel = [](float v) {  // floor(v + 0.5)
-      const int whole = static_cast<int>(v + 0.5f);
+    const auto pixel = [](float v) {                 // floor(v + 0.5)
+      const int whole = static_cast<int>(v + 0.5f);  // NOLINT(bugprone-incorrect-roundings): put right below
       return whole - (static_cast<float>(whole) > v + 0.5f);
     };
+    // Of 0 to 1. NOLINTNEXTLINE(bugprone-incorrect-roundings): no number between differs, and lround is slow
     const auto in_256ths = [](float inside) { return static_cast<int>(256 * inside + 0.5f); };
     box.left = pixel(low), box.top = pixel(upper);
     box.width = pixel(high) - box.left - 1, box.height = pixel(lower) - box.top - 1;
@@ -261,7 +262,7 @@ bool BriskImage::Describable(const Eigen::Vector2i& pixel, const BriskSampler& s
 Descriptor BriskImage::Describe(const Eigen::Vector2i& pixel, const BriskSampler& sampler) const {
   if (!Describable(pixel, sampler))
     throw std::invalid_argument("BRISK: the pixel is too near to the edge of the image");
-  std::array<std::int16_t, kBriskPoints * kStride> samples;
+  std::array<std::int16_t, std::size_t{kBriskPoints} * kStride> samples;
   const Row row{SumsAt(integral_, pixel.x(), pixel.y()), 0, 1};
   std::vector<std::uint32_t> columns(RoomFor(row, sampler));
   Sample<8>({{&row, 1}, integral_.step1(), 1, columns.data()}, sampler, samples.data());
@@ -285,7 +286,7 @@ std::optional<BriskImage::Found> BriskImage::Nearest(InstructionSet set, const D
   thread_local std::vector<Row> rows;
   thread_local std::vector<PixelRun> runs;  // of `rows`
   thread_local std::vector<std::uint32_t> columns;
-  alignas(64) std::array<std::int16_t, kBriskPoints * kStride> samples;
+  alignas(64) std::array<std::int16_t, std::size_t{kBriskPoints} * kStride> samples;
   alignas(64) std::array<std::uint16_t, kChunk> distances;
   const Wanted wanted = SortPairs(descriptor);
   const Kernel kernel = KernelFor(set);

@@ -183,7 +183,7 @@ void ParticleFilter::Fix(Particle& particle, int slot, const Pose& s) {
   const Vector6 d = llt.solve(Minus(s, path.mean[slot]));
   const Eigen::MatrixXd cross = path.covariance.bottomLeftCorner(rest, 6);
   for (int k = 0; k < rest / 6; ++k)
-    path.mean[slot + 1 + k] = Plus(path.mean[slot + 1 + k], cross.middleRows<6>(6 * k) * d);
+    path.mean[slot + 1 + k] = Plus(path.mean[slot + 1 + k], cross.middleRows<6>(kPoseSize * k) * d);
   path.mean[slot] = s;
   path.covariance = (path.covariance.bottomRightCorner(rest, rest) - cross * llt.solve(cross.transpose())).eval();
 }
@@ -206,18 +206,18 @@ void ParticleFilter::UpdateGiven(Particle& particle, int slot, std::uint32_t ind
 BeliefComponent ParticleFilter::ComponentOnPath(const Particle& particle) const {
   const PathGaussian& path = particle.path;
   const int m = path_prior_->size();
-  Eigen::VectorXd off(6 * m);
-  Eigen::Matrix<double, 6, Eigen::Dynamic> by_pose = Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, 6 * m);
+  Eigen::VectorXd off(kPoseSize * m);
+  Eigen::Matrix<double, 6, Eigen::Dynamic> by_pose = Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, kPoseSize * m);
   for (int k = 0; k < m; ++k) {
     const Vector6 u = Minus(path.mean[k], k == 0 ? particle.pose : path.mean[k - 1]);
-    off.segment<6>(6 * k) = u - path_prior_->MeanStep(k, particle.velocity.mean);
+    off.segment<6>(kPoseSize * k) = u - path_prior_->MeanStep(k, particle.velocity.mean);
     Matrix6 J = Matrix6::Identity();
     J.bottomRightCorner<3, 3>() = InverseRightJacobian(u.tail<3>());
-    const auto gain = path_prior_->gain().middleCols<6>(6 * k);
-    by_pose.middleCols<6>(6 * k) += gain * J;
+    const auto gain = path_prior_->gain().middleCols<6>(kPoseSize * k);
+    by_pose.middleCols<6>(kPoseSize * k) += gain * J;
     if (k == 0) continue;
     J.bottomRightCorner<3, 3>() = InverseRightJacobian(-u.tail<3>());
-    by_pose.middleCols<6>(6 * (k - 1)) -= gain * J;
+    by_pose.middleCols<6>(kPoseSize * (k - 1)) -= gain * J;
   }
   BeliefComponent component;
   component.pose = path.mean.back();

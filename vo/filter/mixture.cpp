@@ -28,22 +28,22 @@ Belief Moments(const std::vector<BeliefComponent>& mixture) {
   belief.pose = mixture[heaviest].pose;
   for (int iteration = 0; iteration < 10; ++iteration) {  // mean on SO(3); two or three rounds suffice
     Vector6 mean_offset = Vector6::Zero();
-    for (std::size_t i = 0; i < mixture.size(); ++i)
-      mean_offset += mixture[i].weight * Minus(mixture[i].pose, belief.pose);
+    for (const BeliefComponent& component : mixture)
+      mean_offset += component.weight * Minus(component.pose, belief.pose);
     belief.pose = Plus(belief.pose, mean_offset);
     if (mean_offset.squaredNorm() < 1e-24) break;
   }
-  for (std::size_t i = 0; i < mixture.size(); ++i) belief.velocity += mixture[i].weight * mixture[i].velocity;
+  for (const BeliefComponent& component : mixture) belief.velocity += component.weight * component.velocity;
 
-  for (std::size_t i = 0; i < mixture.size(); ++i) {
+  for (const BeliefComponent& component : mixture) {
     Eigen::Matrix<double, 12, 1> d;
-    d << Minus(mixture[i].pose, belief.pose), mixture[i].velocity - belief.velocity;
+    d << Minus(component.pose, belief.pose), component.velocity - belief.velocity;
     // The orientation's rows and columns go from the tangent space at the component to that at the mean.
     const Eigen::Matrix3d J = InverseRightJacobian(d.segment<3>(3));
-    Matrix12 covariance = mixture[i].covariance;
-    covariance.middleRows<3>(3) = J * mixture[i].covariance.middleRows<3>(3);
+    Matrix12 covariance = component.covariance;
+    covariance.middleRows<3>(3) = J * component.covariance.middleRows<3>(3);
     covariance.middleCols<3>(3) = (covariance.middleCols<3>(3) * J.transpose()).eval();
-    belief.covariance += mixture[i].weight * (covariance + d * d.transpose());
+    belief.covariance += component.weight * (covariance + d * d.transpose());
   }
   return belief;
 }

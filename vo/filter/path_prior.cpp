@@ -6,8 +6,8 @@ namespace vo {
 
 PathPrior::PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance) {
   const int m = static_cast<int>(steps.size());
-  Eigen::MatrixXd covariance(6 * m, 6 * m);                          // of u
-  Eigen::Matrix<double, 6, Eigen::Dynamic> with_velocity(6, 6 * m);  // Cov(v_k, u_1..k)
+  Eigen::MatrixXd covariance(kPoseSize * m, kPoseSize * m);                  // of u
+  Eigen::Matrix<double, 6, Eigen::Dynamic> with_velocity(6, kPoseSize * m);  // Cov(v_k, u_1..k)
   Matrix6 V = velocity_covariance;
   last_of_first_ = Matrix6::Identity();
   for (int k = 0; k < m; ++k) {
@@ -16,15 +16,16 @@ PathPrior::PathPrior(const std::vector<MotionModel>& steps, const Matrix6& veloc
                   Q22 = steps[k].Q.bottomRightCorner<6, 6>();
     mean_of_step_.push_back(F12 * last_of_first_);
     last_of_first_ = F22 * last_of_first_;
-    covariance.block(6 * k, 0, 6, 6 * k) = F12 * with_velocity.leftCols(6 * k);
-    covariance.block(0, 6 * k, 6 * k, 6) = covariance.block(6 * k, 0, 6, 6 * k).transpose();
-    covariance.block<6, 6>(6 * k, 6 * k) = F12 * V * F12.transpose() + Q11;
-    with_velocity.leftCols(6 * k) = (F22 * with_velocity.leftCols(6 * k)).eval();
-    with_velocity.middleCols<6>(6 * k) = F22 * V * F12.transpose() + Q21;
+    covariance.block(kPoseSize * k, 0, 6, kPoseSize * k) = F12 * with_velocity.leftCols(kPoseSize * k);
+    covariance.block(0, kPoseSize * k, kPoseSize * k, 6) =
+        covariance.block(kPoseSize * k, 0, 6, kPoseSize * k).transpose();
+    covariance.block<6, 6>(kPoseSize * k, kPoseSize * k) = F12 * V * F12.transpose() + Q11;
+    with_velocity.leftCols(kPoseSize * k) = (F22 * with_velocity.leftCols(kPoseSize * k)).eval();
+    with_velocity.middleCols<6>(kPoseSize * k) = F22 * V * F12.transpose() + Q21;
     V = (F22 * V * F22.transpose()).eval() + Q22;
   }
   const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
-  precision_ = llt.solve(Eigen::MatrixXd::Identity(6 * m, 6 * m));
+  precision_ = llt.solve(Eigen::MatrixXd::Identity(kPoseSize * m, kPoseSize * m));
   precision_ = 0.5 * (precision_ + precision_.transpose()).eval();
   log_det_precision_ = -2.0 * llt.matrixLLT().diagonal().array().log().sum();
   gain_ = llt.solve(with_velocity.transpose()).transpose();

@@ -11,6 +11,8 @@
 
 namespace vo {
 
+constexpr Eigen::Index kPoseSize = 6;  // rows of a pose, or a step, in a vector of several
+
 class PathPrior {
  public:
   // Steps in order of time; covariance of the velocity at the start of the first.

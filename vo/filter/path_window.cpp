@@ -14,8 +14,6 @@ namespace {
 
 constexpr double kNegligible = 1e-4;  // of the information, through the unknown depth
 
-constexpr Eigen::Index kPose = 6;  // coordinates of a pose
-
 using Matrix62 = Eigen::Matrix<double, 6, 2>;
 
 // L with L L' = P, lower triangular; P may be singular (a fixed bearing).
@@ -38,8 +36,8 @@ void PathWindow::AddPrior(const PathPrior& prior, const WindowInput& in, const P
   for (int k = 0; k < m; ++k) {
     const Pose& from = k == 0 ? in.start : path.mean[k - 1];
     const Vector6 u = Minus(path.mean[k], from);
-    r_.segment<6>(kPose * k) = u - prior.MeanStep(k, in.velocity);
-    auto J = J_.middleRows<6>(kPose * k);
+    r_.segment<6>(kPoseSize * k) = u - prior.MeanStep(k, in.velocity);
+    auto J = J_.middleRows<6>(kPoseSize * k);
     J.setZero();
     J.topLeftCorner<3, 3>() = -Eigen::Matrix3d::Identity();
     J.block<3, 3>(3, 3) = -InverseRightJacobian(-u.tail<3>());
@@ -53,15 +51,16 @@ void PathWindow::AddPrior(const PathPrior& prior, const WindowInput& in, const P
   b_.setZero();
   A_.setZero();
   for (int k = 0; k < m; ++k) {
-    const auto J_k = J_.middleRows<6>(kPose * k);
+    const auto J_k = J_.middleRows<6>(kPoseSize * k);
     for (int a = k == 0 ? 1 : 0; a < 2; ++a) {  // pose k - 1 (not for the sampled start), pose k
       const int i = k - 1 + a;
-      const auto J_a = J_k.middleCols<6>(kPose * a);
-      b_.segment<6>(kPose * i).noalias() -= J_a.transpose() * d_.segment<6>(kPose * k);
+      const auto J_a = J_k.middleCols<6>(kPoseSize * a);
+      b_.segment<6>(kPoseSize * i).noalias() -= J_a.transpose() * d_.segment<6>(kPoseSize * k);
       for (int l = 0; l < m; ++l) {
-        const Matrix6 JW = J_a.transpose() * W.block<6, 6>(kPose * k, kPose * l);
-        if (l > 0) A_.block<6, 6>(kPose * i, kPose * (l - 1)).noalias() += JW * J_.block<6, 6>(kPose * l, 0);
-        A_.block<6, 6>(kPose * i, kPose * l).noalias() += JW * J_.block<6, 6>(kPose * l, 6);
+        const Matrix6 JW = J_a.transpose() * W.block<6, 6>(kPoseSize * k, kPoseSize * l);
+        if (l > 0)
+          A_.block<6, 6>(kPoseSize * i, kPoseSize * (l - 1)).noalias() += JW * J_.block<6, 6>(kPoseSize * l, 0);
+        A_.block<6, 6>(kPoseSize * i, kPoseSize * l).noalias() += JW * J_.block<6, 6>(kPoseSize * l, 6);
       }
     }
   }
@@ -91,14 +90,14 @@ void PathWindow::AddTrack(const WindowInput& in, const Track& track, const PathG
     const Matrix23 M = h.J_landmark * L;
     const Matrix23 WM = view.R_inverse * M;
     const Matrix62 JtW = h.J_pose.transpose() * view.R_inverse;
-    const Eigen::Index i = kPose * view.slot;
+    const Eigen::Index i = kPoseSize * view.slot;
     A_.block<6, 6>(i, i).noalias() += JtW * h.J_pose;
     b_.segment<6>(i).noalias() += JtW * e;
     E.middleRows<6>(i).noalias() += JtW * M;
     if (track.anchor_slot >= 0) {
       const Matrix26 J_anchor = AnchorJacobian(h, theta);
       const Matrix62 AtW = J_anchor.transpose() * view.R_inverse;
-      const Eigen::Index j = kPose * track.anchor_slot;
+      const Eigen::Index j = kPoseSize * track.anchor_slot;
       A_.block<6, 6>(j, j).noalias() += AtW * J_anchor;
       A_.block<6, 6>(i, j).noalias() += JtW * J_anchor;
       A_.block<6, 6>(j, i).noalias() += AtW * h.J_pose;
@@ -138,7 +137,7 @@ void PathWindow::AddMarginal(const Track& track, const Eliminated& landmark, dou
   for (const Seen& view : seen_) {
     const Eigen::Matrix3d c = view.J_shift.transpose() * view.WM;
     const Eigen::Vector3d g = c * alpha;
-    const Eigen::Index i = kPose * view.slot, j = kPose * track.anchor_slot;
+    const Eigen::Index i = kPoseSize * view.slot, j = kPoseSize * track.anchor_slot;
     b_.segment<3>(i) += g;
     if (j >= 0) b_.segment<3>(j) -= g;
     if (!matters) continue;
@@ -161,7 +160,7 @@ void PathWindow::AddMarginal(const Track& track, const Eliminated& landmark, dou
 
 void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks,
                        const WindowOptions& options, PathGaussian& path, std::vector<Eigen::Vector3d>& theta) {
-  const Eigen::Index size = kPose * prior.size();
+  const Eigen::Index size = kPoseSize * prior.size();
   A_.resize(size, size);
   b_.resize(size);
   d_.resize(size);
@@ -192,13 +191,13 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
         break;
       }
       step_ *= 0.5;
-      for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], -step_.segment<6>(kPose * k));
+      for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], -step_.segment<6>(kPoseSize * k));
       continue;
     }
     b_.noalias() -= Y_.leftCols(3 * count) * y_;
     if (const auto back = descent.Overshot(b_.dot(step_))) {
       step_ *= *back;
-      for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], step_.segment<6>(kPose * k));
+      for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], step_.segment<6>(kPoseSize * k));
       step_.setZero();
       continue;
     }
@@ -219,7 +218,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
         -0.5 * (cost_ - (taken ? decrement : 0.0) + log_det_) - llt_.matrixLLT().diagonal().array().log().sum();
     if (!taken) break;
 
-    for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], step_.segment<6>(kPose * k));
+    for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], step_.segment<6>(kPoseSize * k));
     y_.noalias() -= Y_.leftCols(3 * count).transpose() * step_;
     for (std::size_t i = 0; i < tracks.size(); ++i) {
       if (!eliminated_[i].used) continue;
@@ -259,8 +258,9 @@ Conditional Condition(const WindowInput& in, const Track& track, const PathGauss
     const Matrix23 M = h.J_landmark * L;
     const Eigen::Matrix<double, 3, 2> MtW = M.transpose() * view.R_inverse;
     G.noalias() += MtW * M;
-    E.middleCols<6>(kPose * view.slot).noalias() += MtW * h.J_pose;
-    if (track.anchor_slot >= 0) E.middleCols<6>(kPose * track.anchor_slot).noalias() += MtW * AnchorJacobian(h, theta);
+    E.middleCols<6>(kPoseSize * view.slot).noalias() += MtW * h.J_pose;
+    if (track.anchor_slot >= 0)
+      E.middleCols<6>(kPoseSize * track.anchor_slot).noalias() += MtW * AnchorJacobian(h, theta);
   }
   const Eigen::Matrix3d LG = L * G.inverse();
   return {LG * L.transpose(), LG.lazyProduct(E)};
@@ -286,7 +286,7 @@ ImagePrediction PathWindow::PredictLast(const WindowInput& in, const Track& trac
   const Conditional landmark = Condition(in, track, path, theta);
   Eigen::Matrix<double, 2, Eigen::Dynamic> J = -h.J_landmark.lazyProduct(landmark.by_pose);
   J.rightCols<6>() += h.J_pose;
-  if (track.anchor_slot >= 0) J.middleCols<6>(kPose * track.anchor_slot) += AnchorJacobian(h, theta);
+  if (track.anchor_slot >= 0) J.middleCols<6>(kPoseSize * track.anchor_slot) += AnchorJacobian(h, theta);
   // Thin: a blocked product is slower
   const Eigen::Matrix<double, Eigen::Dynamic, 2> PJt = path.covariance.lazyProduct(J.transpose());
   return {true, h.z, J.lazyProduct(PJt) + h.J_landmark * landmark.covariance * h.J_landmark.transpose()};
