@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <ranges>
+#include <algorithm>
 #include <system_error>
 
 #include "tools/vobench/errors.h"
@@ -67,7 +67,8 @@ OutputFolder::~OutputFolder() {
 void OutputFolder::Discard() {
   std::error_code ignored;
   if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
-  for (const fs::path& parent : std::views::reverse(made_parents_)) fs::remove(parent, ignored);
+  std::for_each(made_parents_.rbegin(), made_parents_.rend(),
+                [&](const fs::path& parent) { fs::remove(parent, ignored); });
 }
 
 void OutputFolder::Commit() {
