@@ -77,10 +77,10 @@ void ParticleFilter::Triangulate(Particle& particle) const {
   }
 }
 
-// How many times as long as it was answered the path is now that it is found anew, as far as that is a matter of its scale. By least squares
-// over the poses that have been answered, ln = d'd* / d'd; and to the power of how nearly as certain as a length of the path can be at all
-// (variance 1 / d'P^-1 d) this one is (d'Pd / (d'd)^2): 1 where nothing but the scale is uncertain, nearly 0 where all poses are, and one that
-// was answered wrong must not change the scale of those to come.
+// How many times as long as it was answered the path is now that it is found anew, as far as that is a matter of its scale. With d* and d, its
+// places now and as answered, seen from the start: the factor of least squares, d'd* / d'd, to the power of the least variance that a length
+// of the path could have, 1 / d'P^-1 d, over that of this one, d'Pd / (d'd)^2. The power is 1 where nothing but the scale is uncertain, and
+// nearly 0 where every pose is: then a length that was answered wrong must not set the scale of all to come.
 double ParticleFilter::Lengthened() const {
   const Particle& first = particles_[0];
   const auto count = static_cast<Eigen::Index>(answered_.size());
