@@ -84,14 +84,14 @@ void ParticleFilter::Triangulate(Particle& particle) const {
 double ParticleFilter::Lengthened() const {
   const Particle& first = particles_[0];
   const auto count = static_cast<Eigen::Index>(answered_.size());
-  Eigen::VectorXd was = Eigen::VectorXd::Zero(6 * count), is = was;  // positions, seen from the start
+  Eigen::VectorXd was = Eigen::VectorXd::Zero(kPoseSize * count), is = was;  // positions, seen from the start
   for (Eigen::Index k = 0; k < count; ++k) {
-    was.segment<3>(6 * k) = answered_[static_cast<std::size_t>(k)].p_WC - first.pose.p_WC;
-    is.segment<3>(6 * k) = first.path.mean[static_cast<std::size_t>(k)].p_WC - first.pose.p_WC;
+    was.segment<3>(kPoseSize * k) = answered_[static_cast<std::size_t>(k)].p_WC - first.pose.p_WC;
+    is.segment<3>(kPoseSize * k) = first.path.mean[static_cast<std::size_t>(k)].p_WC - first.pose.p_WC;
   }
   const double square = was.squaredNorm(), product = was.dot(is);
   if (!(product > 0)) return 1;  // nothing answered yet, or it leads elsewhere
-  const Eigen::MatrixXd P = first.path.covariance.topLeftCorner(6 * count, 6 * count);
+  const Eigen::MatrixXd P = first.path.covariance.topLeftCorner(kPoseSize * count, kPoseSize * count);
   const Eigen::LLT<Eigen::MatrixXd> llt(P);
   if (llt.info() != Eigen::Success) return 1;  // the guard of indefinite covariances has counted it
   const double certainty = square * square / (was.dot(llt.solve(was)) * was.dot(P * was));

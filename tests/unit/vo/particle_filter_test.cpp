@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/unit/vo/draws.h"
+#include "tests/unit/vo/landmark_field.h"
 #include "tests/unit/vo/wall.h"
 #include "vo/filter/resampling.h"
 #include "vo/geometry/so3.h"
@@ -89,30 +90,16 @@ Start PlayStart(unsigned world, const vo::FilterParams& params, double noise_px,
   prior.velocity_covariance = 0.04 * vo::Matrix6::Identity();
   vo::ParticleFilter filter({.position_noise = 0.6, .orientation_noise = 0.4}, params, vo::LandmarkParams{}, prior,
                             world);
-  std::vector<vo::FirstView> views;
-  std::vector<Eigen::Vector3d> points;
-  for (int n = 0; n < 40; ++n) {
-    const double x = 0.5 * (draws.Uniform() - 0.5);  // one after the other: the order of arguments is open
-    const double y = 0.4 * (draws.Uniform() - 0.5);
-    const Eigen::Vector3d ray(x, y, 1);
-    points.push_back(ray / (0.25 + depth_spread * (draws.Uniform() - 0.5)));
-    views.push_back({ray.head<2>() + noise * draws.Normals<2>(), noise * noise * Eigen::Matrix2d::Identity()});
-  }
-  filter.AddLandmarks(views);
+  const vo_test::LandmarkField field({40, 0.5, 0.4, depth_spread, noise}, draws);
+  filter.AddLandmarks(field.first_views);
   const double angle = 6.283 * draws.Uniform();
   const Eigen::Vector3d velocity(0.3 * std::cos(angle), 0.3 * std::sin(angle), 0);
   vo::Pose camera;
   for (int frame = 1; frame <= kStartFrames; ++frame) {
     const double t = frame / 30.0;
     camera = {velocity * t, vo::Exp(Eigen::Vector3d(0.25 * velocity.y(), -0.25 * velocity.x(), 0) * t)};
-    std::vector<vo::Match> matches;
-    for (int n = 0; n < 40; ++n) {
-      const Eigen::Vector3d seen = camera.q_WC.conjugate() * (points[n] - camera.p_WC);
-      matches.push_back(
-          {n, seen.hnormalized() + noise * draws.Normals<2>(), noise * noise * Eigen::Matrix2d::Identity()});
-    }
     filter.Predict(1.0 / 30);
-    filter.Update(matches);
+    filter.Update(field.SeenFrom(camera));
   }
   return {filter.belief().pose.p_WC, camera.p_WC};
 }
