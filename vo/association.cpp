@@ -134,8 +134,9 @@ SearchRequest RequestFor(const Sight& in, const Candidate& candidate) {
 }
 
 Match MatchOf(const Sight& in, const Candidate& candidate, const FoundFeature& found, const Vector6& velocity) {
-  const auto [z, moved] = in.shutter.AsTurned(found.pixel, velocity);
-  return {candidate.landmark, z, PixelNoise(candidate.lens, candidate.inflation * found.noise), moved};
+  const RowView row = in.shutter.Row(found.pixel);
+  const auto [z, moved] = row.AsTurned(velocity);
+  return {candidate.landmark, z, PixelNoise(candidate.lens, candidate.inflation * found.noise), moved, row};
 }
 
 // Where it would be seen from the camera's place at the stamp, as far as its depth is known.

@@ -176,7 +176,7 @@ void Odometry::Impl::Add(const Eigen::Vector2i& corner, const std::optional<Know
   record.id = next_id++;
   record.score = params.score.initial;
   records.push_back(record);
-  first.push_back(shutter.FirstSeen(pixel, filter.belief().pose, velocity));
+  first.push_back(FirstSeen(shutter.Row(pixel), filter.belief().pose, velocity));
   // The patch that later views are registered to defines the landmark: its first view is as good as the registration can be.
   first.back().R = PixelNoise(camera.LensJacobian(first.back().ray), params.features.noise != MatchNoise::constant
                                                                          ? params.features.sigma_floor_px

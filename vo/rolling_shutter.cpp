@@ -1,17 +1,6 @@
 #include "vo/rolling_shutter.h"
 
-#include <Eigen/Geometry>
-
-#include "vo/geometry/so3.h"
-
 namespace vo {
-
-RollingShutter::Seen RollingShutter::AsTurned(const Eigen::Vector2d& pixel, const Vector6& velocity) const {
-  const Eigen::Vector2d z = camera_.Undistort(pixel);
-  if (!on()) return {z, Eigen::Vector3d::Zero()};
-  const double time = TimeOf(pixel.y());
-  return {(Exp(time * velocity.tail<3>()) * z.homogeneous()).hnormalized(), time * velocity.head<3>()};
-}
 
 Eigen::Vector2d RollingShutter::InImage(const Eigen::Vector2d& z, const Eigen::Vector2d& rate) const {
   Eigen::Vector2d pixel = camera_.Project({z.x(), z.y(), 1.0});
@@ -21,13 +10,6 @@ Eigen::Vector2d RollingShutter::InImage(const Eigen::Vector2d& z, const Eigen::V
     pixel = camera_.Project({moved.x(), moved.y(), 1.0});
   }
   return pixel;
-}
-
-FirstView RollingShutter::FirstSeen(const Eigen::Vector2d& pixel, const Pose& pose, const Vector6& velocity) const {
-  const auto [ray, moved] = AsTurned(pixel, velocity);
-  FirstView view{ray, Eigen::Matrix2d::Zero()};
-  if (on()) view.by_inverse_depth = Project({pose, pose}, {ray.x(), ray.y(), 1.0}).J_shift * moved;
-  return view;
 }
 
 Eigen::Vector2d ImageMotion::Rate(int landmark) const {

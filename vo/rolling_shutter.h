@@ -1,6 +1,6 @@
 // Purpose: an image whose rows were taken one after the other. Row y of h belongs to the time stamp + readout (y / (h - 1) - 1/2), and the camera has
-//          moved between the two, by the filter's own velocity. The turn is taken out of the point, exactly, since it needs no depth; the way
-//          is told to the filter, to which it is a camera that stood somewhere else: so depths that are not known yet do no harm.
+//          moved between the two, by the filter's own velocity (vo/map/row_view.h). To the filter what a row has seen is seen by a camera that
+//          stood somewhere else: so depths that are not known yet do no harm.
 // Source:  docs/conventions.md (stamp); Hedborg, Forssén, Felsberg, Ringaby 2012, "Rolling shutter bundle adjustment" (a pose per row,
 //          between those of the frames).
 // Units:   image points on the plane z = 1, pixels where said; seconds; velocity (v in W, w in C).
@@ -11,6 +11,7 @@
 #include "vo/geometry/camera.h"
 #include "vo/map/landmark.h"
 #include "vo/map/map_view.h"
+#include "vo/map/row_view.h"
 #include "vo/params.h"
 
 namespace vo {
@@ -25,16 +26,9 @@ class RollingShutter {
   // When row y [px] is exposed, after the stamp.
   double TimeOf(double y) const { return camera_.height > 1 ? readout_s_ * (y / (camera_.height - 1) - 0.5) : 0.0; }
 
-  // What is seen at a pixel as a camera would have seen it that had turned by then as it has at the stamp.
-  struct Seen {
-    Eigen::Vector2d z;
-    Eigen::Vector3d moved;  // of Match
-  };
-  Seen AsTurned(const Eigen::Vector2d& pixel, const Vector6& velocity) const;
+  RowView Row(const Eigen::Vector2d& pixel) const { return {camera_.Undistort(pixel), TimeOf(pixel.y())}; }
   // The pixel at which it is seen if it was at z at the stamp.
   Eigen::Vector2d InImage(const Eigen::Vector2d& z, const Eigen::Vector2d& rate) const;
-  // The same for what is seen for the first time: its depth is not known, but how it matters is. R is left to the caller.
-  FirstView FirstSeen(const Eigen::Vector2d& pixel, const Pose& pose, const Vector6& velocity) const;
 
  private:
   Camera camera_;

@@ -28,6 +28,8 @@ namespace {
 
 constexpr std::int64_t kFramesOfACamera = 3000;  // nobody knows: pictures are kept at every 300th frame
 
+constexpr double kUnknownScale = 0.5;  // of a recording: nobody knows how large its scene is
+
 struct TrackSettings {
   vo::Params params;
   PriorSettings prior{PriorSettings::Start::origin, 0.5, 0.5};
@@ -39,7 +41,9 @@ TrackSettings ReadSettings(const TrackOptions& options) {
       options.settings ? settings::Document::FromFile(*options.settings) : settings::Document::FromText("", "--set");
   for (const auto& [key, value] : options.overrides) document.Override(key, value);
   TrackSettings out;
-  ReadOdometry(document.root().Child("odometry"), out.params);
+  settings::Section odometry = document.root().Child("odometry");
+  if (!odometry.Has("target")) out.params.landmark.scale_sigma = kUnknownScale;  // which would tell
+  ReadOdometry(odometry, out.params);
   settings::Section prior = document.root().Child("prior");
   ReadPrior(prior, out.prior);
   if (out.prior.start == PriorSettings::Start::truth) {

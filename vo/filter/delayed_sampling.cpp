@@ -65,6 +65,7 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
     for (Particle& particle : particles_) particle.log_weight -= particle.path.log_evidence;
     BuildTracks();
     SolvePaths();
+    if (tells_rows()) SettleRows();
     if (undecided_) LookForBetter();
     for (Particle& particle : particles_) particle.log_weight += particle.path.log_evidence;
     for (const Particle& particle : Leaders()) guards_ += particle.path.guards;
@@ -73,7 +74,7 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
   for (const Particle& particle : particles_) mixture_.push_back(ComponentOnPath(particle));
   if (!matches.empty()) WeighPaths();
   Answer();
-  lengthened_ = together() ? Lengthened() : 1;
+  if (together()) lengthened_ = Lengthened();
   answered_ = together() ? particles_[0].path.mean : std::vector<Pose>();
   const bool full = static_cast<int>(steps_.size()) > window_size();
   if (full && undecided_) Decide();

@@ -68,6 +68,7 @@ ParticleFilter::ParticleFilter(const MotionParams& motion, const FilterParams& f
 void ParticleFilter::Predict(double dt) {
   ++frame_;
   guards_ = {};
+  lengthened_ = 1;
   if (delayed()) return PredictPath(dt);
   since_sampled_ += dt;
   step_ = StepOf(motion_, since_sampled_);
@@ -244,6 +245,10 @@ void ParticleFilter::AddLandmarks(std::span<const FirstView> views) {
       if (delayed()) particle.modes.push_back(particle.landmarks.back().mean);
     }
   }
+  if (together()) {
+    rolling_ = rolling_ || std::any_of(views.begin(), views.end(), [](const FirstView& v) { return v.row.time != 0; });
+    first_views_.insert(first_views_.end(), views.begin(), views.end());
+  }
   if (slot == slots) anchor_slot_.emplace_back();
   anchor_slot_[slot] = static_cast<int>(steps_.size()) - 1;
   anchor_of_.insert(anchor_of_.end(), views.size(), slot);
@@ -261,6 +266,7 @@ void ParticleFilter::KeepLandmarks(const std::vector<bool>& keep) {
     if (delayed()) compact(particle.modes);
   }
   compact(anchor_of_);
+  if (together()) compact(first_views_);
   std::vector<int> index(keep.size(), -1);
   for (int from = 0, to = 0; from < static_cast<int>(keep.size()); ++from)
     if (keep[from]) index[from] = to++;

@@ -102,6 +102,12 @@ class ParticleFilter final : public Filter {
   // In the start's window the particles differ by where they start at most: what the first one finds, the others follow.
   std::span<Particle> Leaders() { return {particles_.data(), together() ? 1 : particles_.size()}; }
   bool together() const { return undecided_ && start_window_ > params_.lag; }
+  // What a row has seen is seen from so far beside the camera's place at the stamp, or, with the depths that a solution has, from there.
+  enum class Rows { from_beside, from_stamp };
+  bool tells_rows() const { return rolling_ && together(); }
+  std::vector<Vector6> VelocitiesAlong(const Particle& particle) const;
+  void TellRows(Particle& particle, Rows rows);
+  void SettleRows();
   double Lengthened() const;
   void FollowFirst();
   void LookForBetter();
@@ -156,6 +162,8 @@ class ParticleFilter final : public Filter {
   std::vector<Eigen::Vector3d> modes_;  // workspace
   int start_window_ = 0;                // 0 where the settings know no window
   bool undecided_ = false;              // no pose has been sampled yet
+  bool rolling_ = false;                // rows have times of their own
+  std::vector<FirstView> first_views_;  // the start's: of the landmarks, which no update has changed yet
   std::vector<Pose> answered_;          // the start's path at the last answer
   double lengthened_ = 1;
   std::vector<Landmark> heaviest_landmarks_;

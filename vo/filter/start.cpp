@@ -2,7 +2,6 @@
 // explain the images nearly as well (depth reversal is the best known of them), and no later image undoes a wrong choice. So the poses
 // stay one window, and in every frame the solution is challenged by another.
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -14,7 +13,8 @@ namespace vo {
 namespace {
 
 constexpr std::uint32_t kGuesses = 6;
-constexpr int kRounds = 3;  // of Gauss-Newton
+constexpr int kRounds = 3;      // of Gauss-Newton
+constexpr double kSettled = 1;  // change of -2 log p
 
 }  // namespace
 
@@ -25,8 +25,10 @@ void ParticleFilter::LookForBetter() {
   for (std::uint32_t i = 0; i < Leaders().size(); ++i) {
     Particle& particle = particles_[i];
     Particle other = Sideways(particle, (i + frame_) % kGuesses);
+    if (tells_rows()) TellRows(other, Rows::from_stamp);
     SolvePath(other);
     if (other.path.objective < particle.path.objective) particle = std::move(other);
+    if (tells_rows()) TellRows(particle, Rows::from_stamp);
   }
   if (together()) FollowFirst();
 }
@@ -77,25 +79,90 @@ void ParticleFilter::Triangulate(Particle& particle) const {
   }
 }
 
+// At the particle's pose and at each of the path, by the parabola through three of them. Not given the prior, which would be believed too much
+// in the first frame: a turn that it does not know of would shear the map for good.
+std::vector<Vector6> ParticleFilter::VelocitiesAlong(const Particle& particle) const {
+  std::vector<Vector6> steps;  // mean velocities
+  for (std::size_t k = 0; k < steps_.size(); ++k)
+    steps.push_back(Minus(particle.path.mean[k], k == 0 ? particle.pose : particle.path.mean[k - 1]) / steps_[k].dt);
+  if (steps.size() == 1) return {steps[0], steps[0]};
+  std::vector<Vector6> velocities(steps.size() + 1);
+  for (std::size_t k = 1; k < steps.size(); ++k) {
+    const double before = steps_[k - 1].dt, after = steps_[k].dt;
+    velocities[k] = (after * steps[k - 1] + before * steps[k]) / (before + after);
+  }
+  velocities.front() = 2 * steps.front() - velocities[1];
+  velocities.back() = 2 * steps.back() - velocities[steps.size() - 1];
+  return velocities;
+}
+
+// What the rows of a rolling shutter have seen, and the landmarks' first views, as the velocities along this solution have it: in the first
+// frames a turn is taken for a sideways motion, and what is told by that shears the map, and turns it. From the stamp as long as the window is
+// open: a way is so many metres, which would hold the scale that the first frames guessed, and say that it is known.
+void ParticleFilter::TellRows(Particle& particle, Rows rows) {
+  const std::vector<Vector6> velocities = VelocitiesAlong(particle);
+  for (std::size_t k = 0; k < steps_.size(); ++k) {
+    for (Match& match : steps_[k].matches) {
+      if (match.row.time == 0) continue;
+      const auto [z, moved] = match.row.AsTurned(velocities[k + 1]);
+      match.z = z;
+      match.moved = moved;
+      if (rows == Rows::from_beside) continue;
+      const AnchorView view(particle.path.mean[k], particle.anchors[anchor_of_[match.landmark]]);
+      const Eigen::Vector3d& theta = particle.modes[match.landmark];
+      const Projection there = Project(view.From(moved), theta), here = Project(view, theta);
+      if (!there.in_front || !here.in_front) continue;
+      match.z += here.z - there.z;
+      match.moved.setZero();
+    }
+  }
+  for (std::size_t n = 0; n < first_views_.size(); ++n) {
+    FirstView& view = first_views_[n];
+    if (view.row.time == 0) continue;
+    const int anchor = anchor_of_[n];
+    const FirstView anew = FirstSeen(view.row, particle.anchors[anchor], velocities[anchor_slot_[anchor] + 1]);
+    view.ray = anew.ray;
+    view.by_inverse_depth = anew.by_inverse_depth;
+    if (rows == Rows::from_stamp) {
+      view.ray += particle.modes[n].z() * anew.by_inverse_depth;
+      view.by_inverse_depth.setZero();
+    }
+    particle.landmarks[n] = NewLandmark(view, landmark_params_);
+  }
+  BuildTracks();
+}
+
+// The path tells the rows, and these the path, until both agree: told once a frame they were still off by up to fifteen standard deviations after
+// thirty frames, told three times by what the noise explains.
+void ParticleFilter::SettleRows() {
+  for (int round = 0; round < kRounds; ++round) {
+    const double before = particles_[0].path.objective;
+    TellRows(particles_[0], Rows::from_stamp);
+    SolvePaths();
+    if (std::abs(particles_[0].path.objective - before) < kSettled) break;
+  }
+}
+
 // How many times as long as it was answered the path is now that it is found anew, as far as that is a matter of its scale. With d* and d, its
-// places now and as answered, seen from the start: the factor of least squares, d'd* / d'd, to the power of the least variance that a length
-// of the path could have, 1 / d'P^-1 d, over that of this one, d'Pd / (d'd)^2. The power is 1 where nothing but the scale is uncertain, and
-// nearly 0 where every pose is: then a length that was answered wrong must not set the scale of all to come.
+// places now and as answered, seen from the start: the factor of least squares, d'd* / d'd, to the power of the share of the path's variance
+// that lies along d, (d'Pd / d'd) / tr P. It is 1 where nothing but the scale is uncertain, and nearly 0 where every pose is: then a length
+// that was answered wrong must not set the scale of all to come.
 double ParticleFilter::Lengthened() const {
   const Particle& first = particles_[0];
   const auto count = static_cast<Eigen::Index>(answered_.size());
   Eigen::VectorXd was = Eigen::VectorXd::Zero(kPoseSize * count), is = was;  // positions, seen from the start
+  double variance = 0;
   for (Eigen::Index k = 0; k < count; ++k) {
     was.segment<3>(kPoseSize * k) = answered_[static_cast<std::size_t>(k)].p_WC - first.pose.p_WC;
     is.segment<3>(kPoseSize * k) = first.path.mean[static_cast<std::size_t>(k)].p_WC - first.pose.p_WC;
+    variance += first.path.covariance.block<3, 3>(kPoseSize * k, kPoseSize * k).trace();
   }
   const double square = was.squaredNorm(), product = was.dot(is);
   if (!(product > 0)) return 1;  // nothing answered yet, or it leads elsewhere
-  const Eigen::MatrixXd P = first.path.covariance.topLeftCorner(kPoseSize * count, kPoseSize * count);
-  const Eigen::LLT<Eigen::MatrixXd> llt(P);
-  if (llt.info() != Eigen::Success) return 1;  // the guard of indefinite covariances has counted it
-  const double certainty = square * square / (was.dot(llt.solve(was)) * was.dot(P * was));
-  return std::pow(product / square, certainty);
+  const auto P = first.path.covariance.topLeftCorner(kPoseSize * count, kPoseSize * count);
+  const double share = was.dot(P * was) / (square * variance);
+  if (!(share >= 0 && share <= 1)) return 1;  // the guard of indefinite covariances has counted it
+  return std::pow(product / square, share);
 }
 
 // The first particle's solution from where the others start.
@@ -105,6 +172,7 @@ void ParticleFilter::FollowFirst() {
     Particle& particle = particles_[i];
     const Eigen::Quaterniond turn = particle.pose.q_WC * first.pose.q_WC.conjugate();
     particle.path = first.path;
+    particle.landmarks = first.landmarks;
     for (Pose& pose : particle.path.mean)
       pose = {particle.pose.p_WC + turn * (pose.p_WC - first.pose.p_WC), (turn * pose.q_WC).normalized()};
     particle.modes = first.modes;
@@ -115,6 +183,11 @@ void ParticleFilter::FollowFirst() {
 // The start is over: each particle has a solution of its own, to be drawn from, and a weight.
 void ParticleFilter::Decide() {
   const bool alike = together();
+  if (tells_rows()) {
+    TellRows(particles_[0], Rows::from_beside);
+    FollowFirst();
+  }
+  first_views_.clear();
   undecided_ = false;
   if (!alike) return;
   for (Particle& particle : particles_) {

@@ -38,6 +38,14 @@ Matrix26 AnchorJacobian(const Projection& projection, const Eigen::Vector3d& lan
   return result;
 }
 
+FirstView FirstSeen(const RowView& row, const Pose& pose, const Vector6& velocity) {
+  const auto [ray, moved] = row.AsTurned(velocity);
+  FirstView view{ray, Eigen::Matrix2d::Zero()};
+  view.by_inverse_depth = Project({pose, pose}, {ray.x(), ray.y(), 1.0}).J_shift * moved;
+  view.row = row;
+  return view;
+}
+
 Landmark NewLandmark(const FirstView& view, const LandmarkParams& params) {
   const double rho = view.depth ? view.depth->inverse_depth : params.inverse_depth;
   const double sigma = view.depth ? view.depth->sigma : params.inverse_depth_sigma;

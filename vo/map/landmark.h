@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "vo/geometry/pose.h"
+#include "vo/map/row_view.h"
 #include "vo/params.h"
 
 namespace vo {
@@ -16,12 +17,14 @@ struct Landmark {
 };
 
 // A feature found in the present image: which landmark, where on the plane z = 1, and the covariance of that. `moved`: a rolling shutter has seen
-// it not from the camera's position at the stamp, but from so far beside it, by the way that the camera has made in between.
+// it not from the camera's position at the stamp, but from so far beside it, by the way that the camera has made in between. z and that are what
+// a velocity makes of `row`.
 struct Match {
   int landmark = 0;
   Eigen::Vector2d z = Eigen::Vector2d::Zero();
   Eigen::Matrix2d R = Eigen::Matrix2d::Zero();
   Eigen::Vector3d moved = Eigen::Vector3d::Zero();  // [m] in W
+  RowView row = {};
 };
 
 // The anchor's camera A seen from the present camera C.
@@ -70,7 +73,10 @@ struct FirstView {
   // Not zero: the camera moved between the row's time and the stamp.
   Eigen::Vector2d by_inverse_depth = Eigen::Vector2d::Zero();
   std::optional<KnownDepth> depth = std::nullopt;
+  RowView row = {};  // ray and by_inverse_depth are what a velocity makes of it
 };
+// By a camera of this pose and velocity. R and the depth are left to the caller.
+FirstView FirstSeen(const RowView& row, const Pose& pose, const Vector6& velocity);
 
 Landmark NewLandmark(const FirstView& view, const LandmarkParams& params);
 

@@ -65,7 +65,7 @@ TEST(RollingShutter, ARowIsSeenByACameraThatStoodElsewhere) {
   double uncorrected = 0, turned = 0;
   for (const Vector3d& theta : Points()) {
     const Vector2d pixel = Seen(camera, shutter, InWorld(theta));
-    const vo::RollingShutter::Seen seen = shutter.AsTurned(pixel, kVelocity);
+    const vo::RowView::Turned seen = shutter.Row(pixel).AsTurned(kVelocity);
     const vo::Projection h = vo::Project(vo::AnchorView(kPose, kPose).From(seen.moved), theta);
     ASSERT_TRUE(h.in_front);
     EXPECT_LT((seen.z - h.z).norm(), 1e-9);
@@ -78,7 +78,7 @@ TEST(RollingShutter, ARowIsSeenByACameraThatStoodElsewhere) {
 
 TEST(RollingShutter, ImagesAtOnceStayAsTheyAre) {
   const vo::Camera camera = SomeCamera();
-  const vo::RollingShutter::Seen seen = vo::RollingShutter(camera, 0).AsTurned({100, 50}, kVelocity);
+  const vo::RowView::Turned seen = vo::RollingShutter(camera, 0).Row({100, 50}).AsTurned(kVelocity);
   EXPECT_EQ(seen.z, camera.Undistort({100, 50}));
   EXPECT_EQ(seen.moved, Vector3d::Zero());
 }
@@ -117,7 +117,7 @@ TEST(RollingShutter, FirstViewsAreRightAtEveryDepth) {
   const vo::RollingShutter shutter(camera, 0.026);
   double other_depth = 0;
   for (const Vector3d& theta : Points()) {
-    const vo::FirstView view = shutter.FirstSeen(Seen(camera, shutter, InWorld(theta)), kPose, kVelocity);
+    const vo::FirstView view = vo::FirstSeen(shutter.Row(Seen(camera, shutter, InWorld(theta))), kPose, kVelocity);
     EXPECT_LT((view.ray + theta.z() * view.by_inverse_depth - theta.head<2>()).norm(), 1e-9);
     other_depth = std::max(other_depth, (view.ray + 0.25 * view.by_inverse_depth - theta.head<2>()).norm());
   }
