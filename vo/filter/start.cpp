@@ -138,7 +138,7 @@ void ParticleFilter::SettleRows() {
   for (int round = 0; round < kRounds; ++round) {
     const double before = particles_[0].path.objective;
     TellRows(particles_[0], Rows::from_stamp);
-    SolvePaths();
+    SolvePath(particles_[0]);  // LookForBetter lets the others follow
     if (std::abs(particles_[0].path.objective - before) < kSettled) break;
   }
 }

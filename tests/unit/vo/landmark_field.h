@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tests/unit/vo/draws.h"
-#include "vo/filter/filter.h"
+#include "vo/filter/particle_filter.h"
 #include "vo/geometry/pose.h"
 
 namespace vo_test {
@@ -44,5 +44,14 @@ struct LandmarkField {
   std::vector<Eigen::Vector3d> points;
   std::vector<vo::FirstView> first_views;
 };
+
+// One particle with the default motion noise, at rest up to 0.1 m/s and rad/s.
+inline vo::ParticleFilter StartingFilter(unsigned seed) {
+  vo::FilterParams params;
+  params.particles = 1;
+  vo::FilterPrior prior;
+  prior.velocity_covariance = 0.01 * vo::Matrix6::Identity();
+  return {{.position_noise = 2.5, .orientation_noise = 1}, params, vo::LandmarkParams{}, prior, seed};
+}
 
 }  // namespace vo_test

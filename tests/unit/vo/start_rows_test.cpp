@@ -13,7 +13,6 @@
 
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kFrames = 30, kWorlds = 20;
@@ -38,12 +37,7 @@ vo::RowView Seen(const Vector3d& point, double stamp) {
 // stood still while it read its rows; `rows`: with what makes it possible to tell it anew.
 double Error(unsigned world, bool rows) {
   vo_test::Draws draws(world);
-  vo::FilterParams params;
-  params.particles = 1;
-  vo::FilterPrior prior;
-  prior.velocity_covariance = 0.01 * vo::Matrix6::Identity();
-  vo::ParticleFilter filter({.position_noise = 2.5, .orientation_noise = 1}, params, vo::LandmarkParams{}, prior,
-                            world);
+  vo::ParticleFilter filter = vo_test::StartingFilter(world);
   const vo_test::LandmarkField field({60, 0.8, kHeight, 0.4, kSigma}, draws);
   const auto noisy = [&](vo::RowView row) {
     row.z += kSigma * draws.Normals<2>();

@@ -25,12 +25,7 @@ struct Change {
 // A camera at `speed` past landmarks with inverse depths about 0.25 1/m, evenly spread over twice `spread`.
 Change Fly(unsigned world, double speed, double spread, int from) {
   vo_test::Draws draws(world);
-  vo::FilterParams params;
-  params.particles = 1;
-  vo::FilterPrior prior;
-  prior.velocity_covariance = 0.01 * vo::Matrix6::Identity();
-  vo::ParticleFilter filter({.position_noise = 2.5, .orientation_noise = 1}, params, vo::LandmarkParams{}, prior,
-                            world);
+  vo::ParticleFilter filter = vo_test::StartingFilter(world);
   const vo_test::LandmarkField field({60, 0.8, 0.6, 2 * spread, kSigma}, draws);
   filter.AddLandmarks(field.first_views);
   Change change;
