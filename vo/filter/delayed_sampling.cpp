@@ -8,6 +8,7 @@
 
 #include "vo/filter/exact_draws.h"
 #include "vo/filter/particle_filter.h"
+#include "vo/filter/path_end.h"
 #include "vo/filter/resampling.h"
 #include "vo/geometry/so3.h"
 
@@ -20,6 +21,7 @@ constexpr double kRefuted = 50;
 
 // The start's window has to get anywhere from a first guess that may be far off; later ones begin at the solution of the frame before.
 constexpr int kStartIterations = 50;
+constexpr double kStartLeft = 0.3;  // [standard deviations]: as long as the next frame solves it all again
 
 }  // namespace
 
@@ -30,23 +32,26 @@ void ParticleFilter::PredictPath(double dt) {
   if (coasted) {  // a pose that nothing refers to: integrated out exactly
     dt += steps_.back().dt;
     steps_.pop_back();
-    for (Particle& particle : particles_) particle.path.mean.pop_back();
+    for (Particle& particle : particles_) {
+      const auto left = static_cast<Eigen::Index>(kPoseSize * steps_.size());
+      particle.path.mean.pop_back();
+      particle.path.covariance.conservativeResize(left, left);
+    }
     if (!answered_.empty()) answered_.pop_back();
   }
-  for (Particle& particle : particles_) {  // first guess: as from the frame before to the last
-    std::vector<Pose>& mean = particle.path.mean;
-    const Pose last = mean.empty() ? particle.pose : mean.back();
-    const Pose before = mean.size() < 2 ? particle.pose : mean[mean.size() - 2];
-    Vector6 u = particle.velocity.mean * dt;
-    if (!mean.empty()) u = Minus(last, before) * (dt / steps_.back().dt);
-    mean.push_back(Plus(last, u));
-  }
+  const auto prior = [this] {
+    std::vector<MotionModel> models;
+    for (const Step& step : steps_) models.push_back(NearlyConstantVelocity(motion_, step.dt));
+    return PathPrior(models, particles_[0].velocity.covariance);
+  };
+  if (!path_prior_ || path_prior_->size() != static_cast<int>(steps_.size())) path_prior_.emplace(prior());
+  const MotionModel step = NearlyConstantVelocity(motion_, dt);
+  for (Particle& particle : particles_)
+    Extend(*path_prior_, step, particle.pose, particle.velocity.mean, particle.path);
   steps_.push_back({dt, frame_, {}});
-  std::vector<MotionModel> models;
-  for (const Step& step : steps_) models.push_back(NearlyConstantVelocity(motion_, step.dt));
-  path_prior_.emplace(models, particles_[0].velocity.covariance);
+  path_prior_.emplace(prior());
   BuildTracks();
-  SolvePaths();
+  if (!undecided_) SolvePaths();  // what was drawn since has changed the rest
   for (Particle& particle : particles_)
     particle.prediction = {particle.path.mean.back(), particle.path.covariance.bottomRightCorner<6, 6>()};
 
@@ -63,9 +68,12 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
   if (!matches.empty()) {
     steps_.back().matches.assign(matches.begin(), matches.end());
     for (Particle& particle : particles_) particle.log_weight -= particle.path.log_evidence;
-    BuildTracks();
-    SolvePaths();
-    if (tells_rows()) SettleRows();
+    if (tells_rows()) {
+      SettleRows();
+    } else {
+      BuildTracks();
+      SolvePaths();
+    }
     if (undecided_) LookForBetter();
     for (Particle& particle : particles_) particle.log_weight += particle.path.log_evidence;
     for (const Particle& particle : Leaders()) guards_ += particle.path.guards;
@@ -108,9 +116,10 @@ void ParticleFilter::SolvePaths() {
   if (together()) FollowFirst();
 }
 
-void ParticleFilter::SolvePath(Particle& particle) {
+void ParticleFilter::SolvePath(Particle& particle, double beaten_by) {
   const int iterations = undecided_ ? std::max(params_.max_iterations, kStartIterations) : params_.max_iterations;
-  const WindowOptions options{params_.proposal == Proposal::ekf ? 1 : iterations, params_.marginal_mode};
+  const WindowOptions options{params_.proposal == Proposal::ekf ? 1 : iterations, params_.marginal_mode,
+                              undecided_ ? kStartLeft : kLeft, beaten_by};
   modes_.resize(tracks_.size());
   for (std::size_t i = 0; i < tracks_.size(); ++i) modes_[i] = particle.modes[tracks_[i].landmark];
   window_.Solve(*path_prior_, {particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors}, tracks_,
@@ -203,31 +212,17 @@ void ParticleFilter::UpdateGiven(Particle& particle, int slot, std::uint32_t ind
   particle.pose = s;
 }
 
-// The velocity is linear in the steps u, and these in the poses.
 BeliefComponent ParticleFilter::ComponentOnPath(const Particle& particle) const {
   const PathGaussian& path = particle.path;
-  const int m = path_prior_->size();
-  Eigen::VectorXd off(kPoseSize * m);
-  Eigen::Matrix<double, 6, Eigen::Dynamic> by_pose = Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, kPoseSize * m);
-  for (int k = 0; k < m; ++k) {
-    const Vector6 u = Minus(path.mean[k], k == 0 ? particle.pose : path.mean[k - 1]);
-    off.segment<6>(kPoseSize * k) = u - path_prior_->MeanStep(k, particle.velocity.mean);
-    Matrix6 J = Matrix6::Identity();
-    J.bottomRightCorner<3, 3>() = InverseRightJacobian(u.tail<3>());
-    const auto gain = path_prior_->gain().middleCols<6>(kPoseSize * k);
-    by_pose.middleCols<6>(kPoseSize * k) += gain * J;
-    if (k == 0) continue;
-    J.bottomRightCorner<3, 3>() = InverseRightJacobian(-u.tail<3>());
-    by_pose.middleCols<6>(kPoseSize * (k - 1)) -= gain * J;
-  }
+  const LastVelocity last = VelocityAtTheEnd(*path_prior_, particle.pose, particle.velocity.mean, path);
   BeliefComponent component;
   component.pose = path.mean.back();
-  component.velocity = path_prior_->LastMean(particle.velocity.mean) + path_prior_->gain() * off;
-  const Eigen::Matrix<double, 6, Eigen::Dynamic> cross = by_pose * path.covariance;
+  component.velocity = last.mean;
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> cross = last.by_pose * path.covariance;
   component.covariance.topLeftCorner<6, 6>() = path.covariance.bottomRightCorner<6, 6>();
   component.covariance.bottomLeftCorner<6, 6>() = cross.rightCols<6>();
   component.covariance.topRightCorner<6, 6>() = cross.rightCols<6>().transpose();
-  component.covariance.bottomRightCorner<6, 6>() = path_prior_->last_covariance() + cross * by_pose.transpose();
+  component.covariance.bottomRightCorner<6, 6>() = path_prior_->last_covariance() + cross * last.by_pose.transpose();
   return component;
 }
 

@@ -18,21 +18,22 @@ constexpr double kTolerated = 0.1;   // rise of the objective, which the landmar
 // converges faster than it does in the end, so the rate counts as no less than a half; and landmarks follow the pose one step
 // behind, so a tiny step after a long one says little: the next has been up to a tenth of the long one. (Without the two, up to
 // half a standard deviation was left.)
-inline bool Settled(double decrement, double former) {
+inline bool Settled(double decrement, double former, double left = kLeft) {
   const double rate = former > 0 ? std::clamp(std::sqrt(decrement / former), 0.5, 1.0) : 0.5;
   const double step = std::sqrt(std::max({decrement, former / 64, 0.0}));
-  return step * rate < kLeft * (1 - rate);
+  return step * rate < left * (1 - rate);
 }
 
 // One search for a mode, whose variables and steps are its caller's. In each iteration, with everything linearised where the last step led:
 // TooLong, then Overshot, then Take. `objective` is -2 log density at its mode, up to a constant.
 class Descent {
  public:
-  explicit Descent(int iterations)
-      : left_(iterations), settled_(iterations == 1) {}  // who asks for one step asks for no more
+  // `left`: distance from the mode that may be left [standard deviations].
+  explicit Descent(int iterations, double left = kLeft)
+      : left_(left), iterations_(iterations), settled_(iterations == 1) {}  // who asks for one step asks for no more
 
-  bool Next() { return left_-- > 0; }
-  bool last() const { return left_ == 0; }
+  bool Next() { return iterations_-- > 0; }
+  bool last() const { return iterations_ == 0; }
   bool settled() const { return settled_; }
 
   // The objective rose: half of the step is to be taken back.
@@ -41,27 +42,31 @@ class Descent {
     if (rose) former_ *= 0.5;
     return rose;
   }
-  // `slope`: b' step. Past the mode: the part of the step, negative, that leads back to where the slope vanishes.
+  // `slope`: b' step. Past the mode: the part of the step, negative, that leads back to where the slope vanishes; asked once for each step.
   std::optional<double> Overshot(double slope) {
-    if (last() || !(slope < -kOvershoot * former_)) return std::nullopt;
+    if (last() || went_back_ || !(slope < -kOvershoot * former_)) return std::nullopt;
     const double back = -slope / (slope - former_);
-    former_ = 0;
+    former_ *= (1 + back) * (1 + back);
+    went_back_ = true;
     return back;
   }
   // The best so far, and the decrement of the step from here.
   void Take(double objective, double decrement) {
     best_ = objective;
-    settled_ = settled_ || Settled(decrement, former_);
+    settled_ = settled_ || Settled(decrement, former_, left_);
     former_ = decrement;
+    went_back_ = false;
   }
   // Whether the step from here will be looked at, or is too small to matter: if not it may lead anywhere.
   bool believed() const { return settled_ || !last(); }
 
  private:
-  int left_;
+  double left_;
+  int iterations_;
   bool settled_;
   double best_ = std::numeric_limits<double>::infinity();
-  double former_ = 0;  // decrement of the step before; 0: its rate says nothing
+  double former_ = 0;  // decrement of the step before, as far as it was gone
+  bool went_back_ = false;
 };
 
 }  // namespace vo

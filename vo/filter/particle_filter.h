@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -97,7 +98,7 @@ class ParticleFilter final : public Filter {
   void PredictPath(double dt);
   void UpdatePath(std::span<const Match> matches);
   void SolvePaths();
-  void SolvePath(Particle& particle);
+  void SolvePath(Particle& particle, double beaten_by = std::numeric_limits<double>::infinity());
   void PlaceAnchors(Particle& particle) const;
   // In the start's window the particles differ by where they start at most: what the first one finds, the others follow.
   std::span<Particle> Leaders() { return {particles_.data(), together() ? 1 : particles_.size()}; }

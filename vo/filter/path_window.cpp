@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "vo/filter/descent.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/geometry/so3.h"
 
@@ -13,6 +12,8 @@ namespace vo {
 namespace {
 
 constexpr double kNegligible = 1e-4;  // of the information, through the unknown depth
+constexpr double kHope =
+    10;  // how many times its decrement a search may still go down: seen were two to three times, of all steps from one on
 
 using Matrix62 = Eigen::Matrix<double, 6, 2>;
 
@@ -174,7 +175,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
   eliminated_.resize(tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i) eliminated_[i].L = Root(in.landmarks[tracks[i].landmark].covariance);
 
-  Descent descent(options.max_iterations);
+  Descent descent(options.max_iterations, options.left);
   path.guards = {};
   while (descent.Next()) {
     AddPrior(prior, in, path);
@@ -192,13 +193,13 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
       }
       step_ *= 0.5;
       for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], -step_.segment<6>(kPoseSize * k));
+      for (std::size_t i = 0; i < theta.size(); ++i) theta[i] -= 0.5 * (theta[i] - linearised_theta_[i]);
       continue;
     }
     b_.noalias() -= Y_.leftCols(3 * count) * y_;
     if (const auto back = descent.Overshot(b_.dot(step_))) {
-      step_ *= *back;
-      for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], step_.segment<6>(kPoseSize * k));
-      step_.setZero();
+      for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], *back * step_.segment<6>(kPoseSize * k));
+      step_ *= 1 + *back;
       continue;
     }
     linearised_at_ = path.mean;
@@ -226,7 +227,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
           eliminated_[i].G.matrixU().solve(Eigen::Vector3d(y_.segment<3>(3 * static_cast<Eigen::Index>(i))));
       theta[i] = in.landmarks[tracks[i].landmark].mean + eliminated_[i].L * u;
     }
-    if (descent.settled()) break;
+    if (descent.settled() || objective - kHope * decrement > options.beaten_by) break;
   }
   path.covariance.setIdentity(size, size);
   llt_.solveInPlace(path.covariance);

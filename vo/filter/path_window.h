@@ -6,9 +6,11 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "vo/filter/descent.h"
 #include "vo/filter/guards.h"
 #include "vo/filter/path_prior.h"
 #include "vo/map/image_prediction.h"
@@ -50,6 +52,8 @@ struct PathGaussian {
 struct WindowOptions {
   int max_iterations = 10;
   bool marginal = false;  // the mode of the poses' marginal, not of poses and landmarks jointly
+  double left = kLeft;    // distance from the mode that may be left [standard deviations]
+  double beaten_by = std::numeric_limits<double>::infinity();  // an objective: who will not get below it may stop
 };
 
 class PathWindow {

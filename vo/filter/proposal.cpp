@@ -55,7 +55,7 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
     }
     if (const auto back = descent.Overshot(b.dot(step))) {
       s = Plus(s, *back * step);
-      step.setZero();
+      step *= 1 + *back;
       continue;
     }
     linearised_at = s;

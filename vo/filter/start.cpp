@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "vo/filter/particle_filter.h"
@@ -13,8 +14,8 @@ namespace vo {
 namespace {
 
 constexpr std::uint32_t kGuesses = 6;
-constexpr int kRounds = 3;      // of Gauss-Newton
-constexpr double kSettled = 1;  // change of -2 log p
+constexpr int kRounds = 3;        // of Gauss-Newton
+constexpr double kSettled = 0.1;  // change of -2 log p
 
 }  // namespace
 
@@ -26,7 +27,7 @@ void ParticleFilter::LookForBetter() {
     Particle& particle = particles_[i];
     Particle other = Sideways(particle, (i + frame_) % kGuesses);
     if (tells_rows()) TellRows(other, Rows::from_stamp);
-    SolvePath(other);
+    SolvePath(other, particle.path.objective);
     if (other.path.objective < particle.path.objective) particle = std::move(other);
     if (tells_rows()) TellRows(particle, Rows::from_stamp);
   }
@@ -135,11 +136,12 @@ void ParticleFilter::TellRows(Particle& particle, Rows rows) {
 // The path tells the rows, and these the path, until both agree: told once a frame they were still off by up to fifteen standard deviations after
 // thirty frames, told three times by what the noise explains.
 void ParticleFilter::SettleRows() {
-  for (int round = 0; round < kRounds; ++round) {
-    const double before = particles_[0].path.objective;
+  double before = std::numeric_limits<double>::infinity();
+  for (int round = 0; round <= kRounds; ++round) {
     TellRows(particles_[0], Rows::from_stamp);
     SolvePath(particles_[0]);  // LookForBetter lets the others follow
     if (std::abs(particles_[0].path.objective - before) < kSettled) break;
+    before = particles_[0].path.objective;
   }
 }
 
@@ -183,15 +185,17 @@ void ParticleFilter::FollowFirst() {
 // The start is over: each particle has a solution of its own, to be drawn from, and a weight.
 void ParticleFilter::Decide() {
   const bool alike = together();
+  const double log_evidence = particles_[0].path.log_evidence;
   if (tells_rows()) {
     TellRows(particles_[0], Rows::from_beside);
+    SolvePath(particles_[0]);
     FollowFirst();
   }
   first_views_.clear();
   undecided_ = false;
   if (!alike) return;
   for (Particle& particle : particles_) {
-    particle.log_weight -= particle.path.log_evidence;
+    particle.log_weight -= log_evidence;
     SolvePath(particle);
     particle.log_weight += particle.path.log_evidence;
   }

@@ -13,6 +13,7 @@
 #include "tests/unit/vo/draws.h"
 #include "vo/filter/descent.h"
 #include "vo/filter/motion_model.h"
+#include "vo/filter/path_end.h"
 #include "vo/filter/proposal.h"
 #include "vo/filter/velocity_filter.h"
 #include "vo/geometry/so3.h"
@@ -122,6 +123,30 @@ TEST(PathWindow, OfOnePoseIsTheProposal) {
         << "seed " << seed;
     EXPECT_NEAR(path.log_evidence, one.log_evidence, 0.02)
         << "seed " << seed;  // coordinates of the prior differ at second order
+  }
+}
+
+// A pose that no image has seen yet changes no other: what follows from the path before is what solving the longer one says.
+TEST(PathEnd, AStepMoreIsAsIfSolvedAgain) {
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    const int frames = static_cast<int>(seed % 6);
+    Scene scene = MakeScene(seed, frames + 1, 40, 0.05, 0.2 / 525);
+    for (vo::Track& track : scene.tracks)
+      std::erase_if(track.views, [&](const vo::Track::View& view) { return view.slot == frames; });
+    if (frames == 0) scene.tracks.clear();
+    const vo::PathGaussian again = Solve(scene, false);
+    const vo::MotionModel step = scene.steps.back();
+    scene.steps.pop_back();
+    scene.truth.pop_back();
+    vo::PathGaussian path;
+    if (frames > 0) path = Solve(scene, false);
+    vo::Extend(scene.prior(), step, scene.start, scene.velocity, path);
+    ASSERT_EQ(path.mean.size(), again.mean.size());
+    VectorXd off(again.covariance.rows());
+    for (std::size_t k = 0; k < path.mean.size(); ++k)
+      off.segment<6>(6 * static_cast<Eigen::Index>(k)) = vo::Minus(path.mean[k], again.mean[k]);
+    EXPECT_LT(std::sqrt(off.dot(again.covariance.llt().solve(off))), 2 * vo::kLeft) << "seed " << seed;
+    EXPECT_LT((path.covariance - again.covariance).norm(), 1e-3 * again.covariance.norm()) << "seed " << seed;
   }
 }
 
