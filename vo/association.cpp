@@ -139,13 +139,6 @@ Match MatchOf(const Sight& in, const Candidate& candidate, const FoundFeature& f
   return {candidate.landmark, z, PixelNoise(candidate.lens, candidate.inflation * found.noise), moved, row};
 }
 
-// Where it would be seen from the camera's place at the stamp, as far as its depth is known.
-Eigen::Vector2d AtStamp(const Match& match, const MapView& map) {
-  if (match.moved.isZero(0)) return match.z;
-  const Projection there = map(match), here = map(match.landmark);
-  return there.in_front && here.in_front ? Eigen::Vector2d(match.z - there.z + here.z) : match.z;
-}
-
 // What an inlier's residual says, the camera being where the frame's matches agree.
 Residual ResidualOf(const Candidate& candidate, const Match& match, const MapView& map) {
   const Projection h = map(match);
@@ -267,7 +260,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
       const Match& match = matches[m];
       view.status = consensus.inlier[m] ? FeatureView::Status::matched : FeatureView::Status::rejected;
       if (consensus.inlier[m]) {
-        const Eigen::Vector2d nu = AtStamp(match, agreed) - c.prediction.z;
+        const Eigen::Vector2d nu = agreed.AtStamp(match).z - c.prediction.z;
         searched.mahalanobis_sq = nu.dot(Eigen::Matrix2d(c.prediction.covariance + match.R).inverse() * nu);
         searched.residual = ResidualOf(c, match, agreed);
         result.nis += *searched.mahalanobis_sq;

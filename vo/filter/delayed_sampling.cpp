@@ -21,7 +21,8 @@ constexpr double kRefuted = 50;
 
 // The start's window has to get anywhere from a first guess that may be far off; later ones begin at the solution of the frame before.
 constexpr int kStartIterations = 50;
-constexpr double kStartLeft = 0.3;  // [standard deviations]: as long as the next frame solves it all again
+constexpr double kStartLeft =
+    0.1;  // [standard deviations]: as long as nothing is sampled, and the next frame solves it all again
 
 }  // namespace
 
@@ -119,7 +120,7 @@ void ParticleFilter::SolvePaths() {
 void ParticleFilter::SolvePath(Particle& particle, double beaten_by) {
   const int iterations = undecided_ ? std::max(params_.max_iterations, kStartIterations) : params_.max_iterations;
   const WindowOptions options{params_.proposal == Proposal::ekf ? 1 : iterations, params_.marginal_mode,
-                              undecided_ ? kStartLeft : kLeft, beaten_by};
+                              together() ? kStartLeft : kLeft, beaten_by};
   modes_.resize(tracks_.size());
   for (std::size_t i = 0; i < tracks_.size(); ++i) modes_[i] = particle.modes[tracks_[i].landmark];
   window_.Solve(*path_prior_, {particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors}, tracks_,

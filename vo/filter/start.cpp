@@ -110,11 +110,7 @@ void ParticleFilter::TellRows(Particle& particle, Rows rows) {
       match.moved = moved;
       if (rows == Rows::from_beside) continue;
       const AnchorView view(particle.path.mean[k], particle.anchors[anchor_of_[match.landmark]]);
-      const Eigen::Vector3d& theta = particle.modes[match.landmark];
-      const Projection there = Project(view.From(moved), theta), here = Project(view, theta);
-      if (!there.in_front || !here.in_front) continue;
-      match.z += here.z - there.z;
-      match.moved.setZero();
+      match = AtStamp(match, view, particle.modes[match.landmark]);
     }
   }
   for (std::size_t n = 0; n < first_views_.size(); ++n) {

@@ -27,6 +27,16 @@ Projection Project(const AnchorView& view, const Eigen::Vector3d& landmark) {
   return p;
 }
 
+Match AtStamp(const Match& match, const AnchorView& view, const Eigen::Vector3d& theta) {
+  if (match.moved.isZero(0)) return match;
+  const Projection there = Project(view.From(match.moved), theta), here = Project(view, theta);
+  if (!there.in_front || !here.in_front) return match;
+  Match at_stamp = match;
+  at_stamp.z += here.z - there.z;
+  at_stamp.moved.setZero();
+  return at_stamp;
+}
+
 Matrix26 AnchorJacobian(const Projection& projection, const Eigen::Vector3d& landmark) {
   const Matrix23& J = projection.J_landmark;
   Matrix23 J_ray;  // dz / d(ray in A). J_X X = 0, so its product with the ray (x, y, 1) is -rho dz/drho.

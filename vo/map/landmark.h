@@ -57,6 +57,9 @@ struct Projection {
 
 Projection Project(const AnchorView& view, const Eigen::Vector3d& landmark);
 
+// As it would have been seen from the camera's place at the stamp, where a landmark at `theta` is; unchanged where that is behind one of the two.
+Match AtStamp(const Match& match, const AnchorView& view, const Eigen::Vector3d& theta);
+
 // dz / d(dp in W, dphi in A) of the anchor's pose, for a landmark in front.
 Matrix26 AnchorJacobian(const Projection& projection, const Eigen::Vector3d& landmark);
 

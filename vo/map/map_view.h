@@ -19,6 +19,9 @@ class MapView {
   Projection operator()(const Match& match) const {
     return Project(ViewOf(match.landmark).From(match.moved), map_.landmarks[match.landmark].mean);
   }
+  Match AtStamp(const Match& match) const {
+    return vo::AtStamp(match, ViewOf(match.landmark), map_.landmarks[match.landmark].mean);
+  }
 
  private:
   const AnchorView& ViewOf(int n) const {
