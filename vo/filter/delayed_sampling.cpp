@@ -10,7 +10,6 @@
 #include "vo/filter/particle_filter.h"
 #include "vo/filter/path_end.h"
 #include "vo/filter/resampling.h"
-#include "vo/geometry/so3.h"
 
 namespace vo {
 namespace {
@@ -30,7 +29,8 @@ void ParticleFilter::PredictPath(double dt) {
   const int present = static_cast<int>(steps_.size()) - 1;
   const bool coasted = present >= 0 && steps_.back().matches.empty() &&
                        std::find(anchor_slot_.begin(), anchor_slot_.end(), present) == anchor_slot_.end();
-  if (coasted) {  // a pose that nothing refers to: integrated out exactly
+  if (coasted) {  // a pose that nothing refers to: integrated out
+    path_prior_.reset();
     dt += steps_.back().dt;
     steps_.pop_back();
     for (Particle& particle : particles_) {
@@ -45,7 +45,7 @@ void ParticleFilter::PredictPath(double dt) {
     for (const Step& step : steps_) models.push_back(NearlyConstantVelocity(motion_, step.dt));
     return PathPrior(models, particles_[0].velocity.covariance);
   };
-  if (!path_prior_ || path_prior_->size() != static_cast<int>(steps_.size())) path_prior_.emplace(prior());
+  if (!path_prior_) path_prior_.emplace(prior());
   const MotionModel step = NearlyConstantVelocity(motion_, dt);
   for (Particle& particle : particles_)
     Extend(*path_prior_, step, particle.pose, particle.velocity.mean, particle.path);
@@ -114,7 +114,6 @@ void ParticleFilter::BuildTracks() {
 
 void ParticleFilter::SolvePaths() {
   for (Particle& particle : Leaders()) SolvePath(particle);
-  if (together()) FollowFirst();
 }
 
 void ParticleFilter::SolvePath(Particle& particle, double beaten_by) {
@@ -155,8 +154,10 @@ void ParticleFilter::CommitOldest(int count) {
     for (std::size_t i = 0; i < particles_.size(); ++i) Fix(particles_[i], k, drawn[i]);
   }
   for (Particle& particle : particles_) {
-    PlaceAnchors(particle);
-    if (count > 1) Triangulate(particle);  // the draws of many poses together go far
+    if (count > 1)
+      Triangulate(particle);  // the draws of many poses together go far
+    else
+      PlaceAnchors(particle);
   }
   for (int k = 0; k < count; ++k) {
     const MotionModel model = NearlyConstantVelocity(motion_, steps_[k].dt);
@@ -167,6 +168,7 @@ void ParticleFilter::CommitOldest(int count) {
     particle.path.mean.erase(particle.path.mean.begin(), particle.path.mean.begin() + count);
   for (int& slot : anchor_slot_) slot = std::max(slot - count, -1);
   steps_.erase(steps_.begin(), steps_.begin() + count);
+  path_prior_.reset();
 }
 
 // The poses before are drawn: the path's covariance is that of the rest.

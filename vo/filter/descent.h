@@ -39,22 +39,24 @@ class Descent {
   // The objective rose: half of the step is to be taken back.
   bool TooLong(double objective) {
     const bool rose = objective > best_ + kTolerated;
-    if (rose) former_ *= 0.5;
+    if (rose) gone_ *= 0.5;
     return rose;
   }
   // `slope`: b' step. Past the mode: the part of the step, negative, that leads back to where the slope vanishes; asked once for each step.
   std::optional<double> Overshot(double slope) {
-    if (last() || went_back_ || !(slope < -kOvershoot * former_)) return std::nullopt;
-    const double back = -slope / (slope - former_);
-    former_ *= (1 + back) * (1 + back);
+    const double slope_before = gone_ * former_;
+    if (last() || went_back_ || !(slope < -kOvershoot * slope_before)) return std::nullopt;
+    const double back = -slope / (slope - slope_before);
+    gone_ *= 1 + back;
     went_back_ = true;
     return back;
   }
   // The best so far, and the decrement of the step from here.
   void Take(double objective, double decrement) {
     best_ = objective;
-    settled_ = settled_ || Settled(decrement, former_, left_);
+    settled_ = settled_ || Settled(decrement, gone_ * gone_ * former_, left_);
     former_ = decrement;
+    gone_ = 1;
     went_back_ = false;
   }
   // Whether the step from here will be looked at, or is too small to matter: if not it may lead anywhere.
@@ -65,7 +67,8 @@ class Descent {
   int iterations_;
   bool settled_;
   double best_ = std::numeric_limits<double>::infinity();
-  double former_ = 0;  // decrement of the step before, as far as it was gone
+  double former_ = 0;  // decrement of the step before
+  double gone_ = 1;    // how much of that step was gone
   bool went_back_ = false;
 };
 

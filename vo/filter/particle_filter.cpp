@@ -189,14 +189,17 @@ void ParticleFilter::Weigh() {
 }
 
 // A particle whose evidence is not a number stands for nothing: it has no weight by now, and gives its place to the heaviest. Where there is
-// no other, there is no answer, and WatchedFilter says so.
+// no other, all begin to be weighed again; WatchedFilter says whether there is an answer.
 void ParticleFilter::ReplaceImpossible() {
   const std::size_t heaviest = static_cast<std::size_t>(&Heaviest() - particles_.data());
   const bool any_possible = std::isfinite(particles_[heaviest].log_weight);
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     if (std::isfinite(particles_[i].log_weight)) continue;
     ++guards_.impossible;
-    if (!any_possible) continue;
+    if (!any_possible) {
+      particles_[i].log_weight = particles_[i].path.log_evidence = 0;
+      continue;
+    }
     particles_[heaviest].log_weight -= std::numbers::ln2;
     weights_[i] = weights_[heaviest] *= 0.5;
     particles_[i] = particles_[heaviest];

@@ -54,7 +54,7 @@ class ParticleFilter final : public Filter {
   void KeepLandmarks(const std::vector<bool>& keep) override;
 
   int landmark_count() const override { return static_cast<int>(anchor_of_.size()); }
-  // Moments over the particles. Valid after Predict.
+  // Moments over the particles; in the start's window, which they share, the first one's. Valid after Predict.
   std::vector<ImagePrediction> PredictImages(std::span<const int> landmarks) const override;
   // The heaviest particle, and its landmarks as all images until now have them.
   const PoseGaussian& ReferencePrediction() const override { return Heaviest().prediction; }

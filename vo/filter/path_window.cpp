@@ -177,6 +177,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
 
   Descent descent(options.max_iterations, options.left);
   path.guards = {};
+  double promised = 0;  // what the step from where it was linearised is to bring
   while (descent.Next()) {
     AddPrior(prior, in, path);
     rows_ = 0;
@@ -187,8 +188,10 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
     const double objective = options.marginal ? cost_ + log_det_ : cost_;
     if (descent.TooLong(objective)) {
       if (descent.last()) {
-        path.mean = linearised_at_;
+        path.mean = linearised_at_;  // nothing was gained by it
         theta = linearised_theta_;
+        path.objective += promised;
+        path.log_evidence -= 0.5 * promised;
         break;
       }
       step_ *= 0.5;
@@ -213,11 +216,10 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
     llt_.solveInPlace(step_);
     const double decrement = b_.dot(step_);
     descent.Take(objective, decrement);
-    const bool taken = descent.believed();
-    path.objective = objective - (taken ? decrement : 0.0);
-    path.log_evidence =
-        -0.5 * (cost_ - (taken ? decrement : 0.0) + log_det_) - llt_.matrixLLT().diagonal().array().log().sum();
-    if (!taken) break;
+    promised = descent.believed() ? decrement : 0.0;
+    path.objective = objective - promised;
+    path.log_evidence = -0.5 * (cost_ - promised + log_det_) - llt_.matrixLLT().diagonal().array().log().sum();
+    if (!descent.believed()) break;
 
     for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], step_.segment<6>(kPoseSize * k));
     y_.noalias() -= Y_.leftCols(3 * count).transpose() * step_;

@@ -32,6 +32,7 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
   Vector6 step = Vector6::Zero();
   Pose linearised_at = s;  // where the objective was best, and the covariance and the evidence are from
   Eigen::LLT<Matrix6> llt;
+  double promised = 0;  // what the step from there is to bring
   while (descent.Next()) {
     const MatchBatch::Information matches = batch.Linearise(s, params.marginal_mode);
     const Vector6 offset = Minus(s, prediction.mean);
@@ -45,16 +46,19 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
 
     const double objective = params.marginal_mode ? cost + log_det : cost;
     if (descent.TooLong(objective)) {
-      if (descent.last()) {
+      if (descent.last()) {  // nothing was gained by it
         s = linearised_at;
+        proposal.log_evidence -= 0.5 * promised;
         break;
       }
       step *= 0.5;
       s = Plus(s, -step);
+      batch.Follow(-step);
       continue;
     }
     if (const auto back = descent.Overshot(b.dot(step))) {
       s = Plus(s, *back * step);
+      batch.Follow(*back * step);
       step *= 1 + *back;
       continue;
     }
@@ -65,10 +69,11 @@ PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const Fi
     const double decrement = b.dot(step);
     descent.Take(objective, decrement);
     // p(z) = p(s) p(z | s) / p(s | z), taken at the new mean, where the quadratic cost is less by the decrement.
-    proposal.log_evidence =
-        -0.5 * (cost - (descent.believed() ? decrement : 0.0) + log_det + 2.0 * HalfLogDeterminant(llt));
+    promised = descent.believed() ? decrement : 0.0;
+    proposal.log_evidence = -0.5 * (cost - promised + log_det + 2.0 * HalfLogDeterminant(llt));
+    if (!descent.believed()) break;
     s = Plus(s, step);
-    if (descent.settled() || descent.last()) break;
+    if (descent.settled()) break;
     batch.Follow(step);
   }
   proposal.pose.covariance = Inverse(llt);

@@ -19,8 +19,8 @@ struct PoseProposal {
   Guards guards;  // where something was not positive definite, the evidence is not a number
 };
 
-// `batch`: the matches, at least one, and the particle's landmarks, as loaded; at the end it is linearised as the proposal is.
-// Proposal::ekf: one linearisation at the prediction. Proposal::iterated: until within 1e-3 standard deviations of the mode or
+// `batch`: the matches, at least one, and the particle's landmarks, as loaded; at the end batch.linearised_at() says where it is linearised.
+// Proposal::ekf: one linearisation at the prediction. Proposal::iterated: until within kLeft (descent.h) of the mode or
 // max_iterations. Landmarks that come to lie behind the camera are left out of that iteration.
 // `start`: where the search for the mode begins, with the landmarks where the batch has them.
 PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const FilterParams& params, const Pose& start);

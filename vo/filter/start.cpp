@@ -14,7 +14,8 @@ namespace vo {
 namespace {
 
 constexpr std::uint32_t kGuesses = 6;
-constexpr int kRounds = 3;        // of Gauss-Newton
+constexpr int kTriangulations = 3;
+constexpr int kRounds = 4;        // of telling the rows
 constexpr double kSettled = 0.1;  // change of -2 log p
 
 }  // namespace
@@ -22,13 +23,13 @@ constexpr double kSettled = 0.1;  // change of -2 log p
 // By the density at the mode, not by evidence: that pays for depths that stay unknown, as if each had a prior of its own. Those of a wall
 // are alike, and a wall seen face on lost to a deep scene with little parallax.
 void ParticleFilter::LookForBetter() {
-  if (tracks_.empty()) return;
   for (std::uint32_t i = 0; i < Leaders().size(); ++i) {
     Particle& particle = particles_[i];
     Particle other = Sideways(particle, (i + frame_) % kGuesses);
     if (tells_rows()) TellRows(other, Rows::from_stamp);
     SolvePath(other, particle.path.objective);
-    if (other.path.objective < particle.path.objective) particle = std::move(other);
+    const bool better = other.path.objective < particle.path.objective;
+    if (better || std::isnan(particle.path.objective)) particle = std::move(other);
     if (tells_rows()) TellRows(particle, Rows::from_stamp);
   }
   if (together()) FollowFirst();
@@ -64,7 +65,7 @@ void ParticleFilter::Triangulate(Particle& particle) const {
   PlaceAnchors(particle);
   std::vector<AnchorView> views;
   std::vector<Landmark> landmarks;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kTriangulations; ++round) {
     landmarks = particle.landmarks;
     for (std::size_t k = 0; k < steps_.size(); ++k) {
       views.clear();
@@ -102,15 +103,17 @@ std::vector<Vector6> ParticleFilter::VelocitiesAlong(const Particle& particle) c
 // open: a way is so many metres, which would hold the scale that the first frames guessed, and say that it is known.
 void ParticleFilter::TellRows(Particle& particle, Rows rows) {
   const std::vector<Vector6> velocities = VelocitiesAlong(particle);
+  std::vector<AnchorView> views;
   for (std::size_t k = 0; k < steps_.size(); ++k) {
+    views.clear();
+    for (const Pose& anchor : particle.anchors) views.emplace_back(particle.path.mean[k], anchor);
     for (Match& match : steps_[k].matches) {
       if (match.row.time == 0) continue;
       const auto [z, moved] = match.row.AsTurned(velocities[k + 1]);
       match.z = z;
       match.moved = moved;
       if (rows == Rows::from_beside) continue;
-      const AnchorView view(particle.path.mean[k], particle.anchors[anchor_of_[match.landmark]]);
-      match = AtStamp(match, view, particle.modes[match.landmark]);
+      match = AtStamp(match, views[anchor_of_[match.landmark]], particle.modes[match.landmark]);
     }
   }
   for (std::size_t n = 0; n < first_views_.size(); ++n) {
@@ -133,7 +136,7 @@ void ParticleFilter::TellRows(Particle& particle, Rows rows) {
 // thirty frames, told three times by what the noise explains.
 void ParticleFilter::SettleRows() {
   double before = std::numeric_limits<double>::infinity();
-  for (int round = 0; round <= kRounds; ++round) {
+  for (int round = 0; round < kRounds; ++round) {
     TellRows(particles_[0], Rows::from_stamp);
     SolvePath(particles_[0]);  // LookForBetter lets the others follow
     if (std::abs(particles_[0].path.objective - before) < kSettled) break;
@@ -193,6 +196,7 @@ void ParticleFilter::Decide() {
   for (Particle& particle : particles_) {
     particle.log_weight -= log_evidence;
     SolvePath(particle);
+    guards_ += particle.path.guards;
     particle.log_weight += particle.path.log_evidence;
   }
   WeighPaths();

@@ -211,6 +211,25 @@ TEST(WatchedFilter, AnImpossibleParticleIsReplacedAndCounted) {
   EXPECT_LT((seen.beliefs.back().pose.p_WC - healthy.beliefs.back().pose.p_WC).norm(), 0.05);
 }
 
+// All eight at once: they are counted once, and weighed again from then on.
+TEST(WatchedFilter, WhereAllAreImpossibleTheWeightsBeginAgain) {
+  for (const int window : {0, 3, 6}) {
+    vo::FilterParams params = Plain();
+    params.lag = window == 3 ? 3 : 0;
+    params.start_window = window == 6 ? 6 : 0;
+    std::unique_ptr<vo::ParticleFilter> filter = MakeParticles(params);
+    vo::ParticleFilter& particles = *filter;
+    const Seen seen = Play(std::move(filter), {}, [&](int frame) {
+      for (vo::Particle& particle : vo::ParticleFilterPeer::Particles(particles)) {
+        if (frame == kPoisoned) particle.log_weight = kNan;
+        EXPECT_EQ(std::isfinite(particle.log_weight), frame != kPoisoned) << window;
+      }
+    });
+    ASSERT_FALSE(seen.fault) << seen.fault->what();
+    EXPECT_EQ(seen.guards.impossible, params.particles) << window;
+  }
+}
+
 // What the filter is told.
 TEST(WatchedFilter, RefusesWhatIsNoMeasurement) {
   using Tell = std::function<void(vo::Filter&)>;
