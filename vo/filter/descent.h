@@ -13,14 +13,14 @@ constexpr double kLeft = 1e-2;       // distance from the mode that may be left 
 constexpr double kOvershoot = 0.25;  // of the slope before the step: a step past the mode by more is taken back
 constexpr double kTolerated = 0.1;   // rise of the objective, which the landmarks' relinearisation may cause
 
-// Whether the mode is near enough after a step of this decrement; `former` is that of the step before it, 0 where there was none. The
-// steps to come are taken as a geometric series. Two things that the last two steps alone would hide: far away Gauss-Newton
+// Whether the mode is near enough after a step of this decrement; `former` is that of the step before it, 0 where there was none, of which
+// `gone` was gone. The distances to come are taken as a geometric series. Two things that the last two alone would hide: far away Gauss-Newton
 // converges faster than it does in the end, so the rate counts as no less than a half; and landmarks follow the pose one step
 // behind, so a tiny step after a long one says little: the next has been up to a tenth of the long one. (Without the two, up to
 // half a standard deviation was left.)
-inline bool Settled(double decrement, double former, double left = kLeft) {
+inline bool Settled(double decrement, double former, double gone, double left) {
   const double rate = former > 0 ? std::clamp(std::sqrt(decrement / former), 0.5, 1.0) : 0.5;
-  const double step = std::sqrt(std::max({decrement, former / 64, 0.0}));
+  const double step = std::sqrt(std::max({decrement, gone * gone * former / 64, 0.0}));
   return step * rate < left * (1 - rate);
 }
 
@@ -54,7 +54,7 @@ class Descent {
   // The best so far, and the decrement of the step from here.
   void Take(double objective, double decrement) {
     best_ = objective;
-    settled_ = settled_ || Settled(decrement, gone_ * gone_ * former_, left_);
+    settled_ = settled_ || Settled(decrement, former_, gone_, left_);
     former_ = decrement;
     gone_ = 1;
     went_back_ = false;
