@@ -20,8 +20,8 @@ constexpr double kRefuted = 50;
 
 // The start's window has to get anywhere from a first guess that may be far off; later ones begin at the solution of the frame before.
 constexpr int kStartIterations = 50;
-constexpr double kStartLeft =
-    0.1;  // [standard deviations]: as long as nothing is sampled, and the next frame solves it all again
+// And as long as nothing is sampled the next frame solves it all again: so far from the mode it may end [standard deviations].
+constexpr double kStartLeft = 0.1;
 
 }  // namespace
 

@@ -12,8 +12,8 @@ namespace vo {
 namespace {
 
 constexpr double kNegligible = 1e-4;  // of the information, through the unknown depth
-constexpr double kHope =
-    10;  // how many times its decrement a search may still go down: seen were two to three times, of all steps from one on
+// How many times its decrement a search may still go down; seen were two to three times.
+constexpr double kHope = 10;
 
 using Matrix62 = Eigen::Matrix<double, 6, 2>;
 

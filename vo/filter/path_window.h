@@ -63,7 +63,8 @@ class PathWindow {
   void Solve(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks, const WindowOptions& options,
              PathGaussian& path, std::vector<Eigen::Vector3d>& theta);
 
-  // Of a solved window, or one that was extended since (path_end.h): the landmark given its poses, and where it should appear from the last of them (all of them uncertain).
+  // Of a solved window, or one that was extended since (path_end.h): the landmark given its poses, and where it should appear from the last
+  // of them (all of them uncertain).
   static Landmark Smoothed(const WindowInput& in, const Track& track, const PathGaussian& path,
                            const Eigen::Vector3d& theta);
   static ImagePrediction PredictLast(const WindowInput& in, const Track& track, const PathGaussian& path,

@@ -133,7 +133,7 @@ void ParticleFilter::TellRows(Particle& particle, Rows rows) {
 }
 
 // The path tells the rows, and these the path, until both agree: told once a frame they were still off by up to fifteen standard deviations after
-// thirty frames, told three times by what the noise explains.
+// thirty frames, told until both agree by what the noise explains.
 void ParticleFilter::SettleRows() {
   double before = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kRounds; ++round) {
