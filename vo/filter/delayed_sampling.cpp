@@ -204,15 +204,18 @@ void ParticleFilter::Fix(Particle& particle, int slot, const Pose& s) {
 void ParticleFilter::UpdateGiven(Particle& particle, int slot, std::uint32_t index) const {
   const Pose& s = particle.path.mean[slot];
   UpdateVelocity(particle, s, VelocityGiven(particle), index);  // (37)-(43)
-  std::vector<AnchorView> views;
-  for (const Pose& anchor : particle.anchors) views.emplace_back(s, anchor);
-  for (const Match& match : steps_[slot].matches) {
-    Landmark& landmark = particle.landmarks[match.landmark];
-    landmark = UpdateLandmark(landmark, particle.modes[match.landmark],
-                              views[anchor_of_[match.landmark]].From(match.moved), match, 1)
-                   .landmark;
-  }
+  UpdateLandmarksAt(slot, particle, particle.landmarks);
   particle.pose = s;
+}
+
+// The landmarks given one pose of the particle's path and what was seen from it.
+void ParticleFilter::UpdateLandmarksAt(int slot, const Particle& particle, std::vector<Landmark>& landmarks) const {
+  const std::vector<AnchorView> views = ViewsOf(particle.anchors, particle.path.mean[slot]);
+  for (const Match& match : steps_[slot].matches) {
+    const AnchorView view = views[anchor_of_[match.landmark]].From(match.moved);
+    Landmark& landmark = landmarks[match.landmark];
+    landmark = UpdateLandmark(landmark, particle.modes[match.landmark], view, match, 1).landmark;
+  }
 }
 
 BeliefComponent ParticleFilter::ComponentOnPath(const Particle& particle) const {

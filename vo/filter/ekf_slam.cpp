@@ -69,8 +69,7 @@ void EkfSlam::MoveTo(const Eigen::VectorXd& d) {
 
 // Rows at the present estimate, as derivatives by d, the offset from the prior. Returns the sum of r' R^-1 r.
 double EkfSlam::Linearise(std::span<const Match> matches, const Eigen::VectorXd& d) {
-  std::vector<AnchorView> views;
-  for (const Pose& anchor : anchors_) views.emplace_back(pose_, anchor);
+  const std::vector<AnchorView> views = ViewsOf(anchors_, pose_);
   const Eigen::Matrix3d J_r = RightJacobian(d.segment<3>(3));
   std::vector<Eigen::Matrix3d> J_r_anchor;
   for (const int offset : anchor_offset_) J_r_anchor.push_back(RightJacobian(d.segment<3>(offset + 3)));

@@ -122,6 +122,7 @@ class ParticleFilter final : public Filter {
   std::vector<Pose> Draw(int slot) const;
   static void Fix(Particle& particle, int slot, const Pose& drawn);
   void UpdateGiven(Particle& particle, int slot, std::uint32_t index) const;
+  void UpdateLandmarksAt(int slot, const Particle& particle, std::vector<Landmark>& landmarks) const;
   BeliefComponent ComponentOnPath(const Particle& particle) const;
   std::vector<ImagePrediction> PredictImagesOnPath(std::span<const int> landmarks) const;
 

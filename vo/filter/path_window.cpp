@@ -175,6 +175,9 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
   eliminated_.resize(tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i) eliminated_[i].L = Root(in.landmarks[tracks[i].landmark].covariance);
 
+  const auto move_poses = [&](double share) {  // of the step
+    for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], share * step_.segment<6>(kPoseSize * k));
+  };
   Descent descent(options.max_iterations, options.left);
   path.guards = {};
   double promised = 0;  // what the step from where it was linearised is to bring
@@ -195,13 +198,13 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
         break;
       }
       step_ *= 0.5;
-      for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], -step_.segment<6>(kPoseSize * k));
+      move_poses(-1);
       for (std::size_t i = 0; i < theta.size(); ++i) theta[i] -= 0.5 * (theta[i] - linearised_theta_[i]);
       continue;
     }
     b_.noalias() -= Y_.leftCols(3 * count) * y_;
     if (const auto back = descent.Overshot(b_.dot(step_))) {
-      for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], *back * step_.segment<6>(kPoseSize * k));
+      move_poses(*back);
       step_ *= 1 + *back;
       continue;
     }
@@ -221,7 +224,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
     path.log_evidence = -0.5 * (cost_ - promised + log_det_) - llt_.matrixLLT().diagonal().array().log().sum();
     if (!descent.believed()) break;
 
-    for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], step_.segment<6>(kPoseSize * k));
+    move_poses(1);
     y_.noalias() -= Y_.leftCols(3 * count).transpose() * step_;
     for (std::size_t i = 0; i < tracks.size(); ++i) {
       if (!eliminated_[i].used) continue;

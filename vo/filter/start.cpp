@@ -63,20 +63,9 @@ Particle ParticleFilter::Sideways(const Particle& particle, std::uint32_t guess)
 // Each landmark's mode given the path, by Gauss-Newton from the present one: all its views linearised together.
 void ParticleFilter::Triangulate(Particle& particle) const {
   PlaceAnchors(particle);
-  std::vector<AnchorView> views;
-  std::vector<Landmark> landmarks;
   for (int round = 0; round < kTriangulations; ++round) {
-    landmarks = particle.landmarks;
-    for (std::size_t k = 0; k < steps_.size(); ++k) {
-      views.clear();
-      for (const Pose& anchor : particle.anchors) views.emplace_back(particle.path.mean[k], anchor);
-      for (const Match& match : steps_[k].matches) {
-        Landmark& landmark = landmarks[match.landmark];
-        landmark = UpdateLandmark(landmark, particle.modes[match.landmark],
-                                  views[anchor_of_[match.landmark]].From(match.moved), match, 1)
-                       .landmark;
-      }
-    }
+    std::vector<Landmark> landmarks = particle.landmarks;
+    for (std::size_t k = 0; k < steps_.size(); ++k) UpdateLandmarksAt(static_cast<int>(k), particle, landmarks);
     for (const Track& track : tracks_) particle.modes[track.landmark] = landmarks[track.landmark].mean;
   }
 }
@@ -103,10 +92,8 @@ std::vector<Vector6> ParticleFilter::VelocitiesAlong(const Particle& particle) c
 // open: a way is so many metres, which would hold the scale that the first frames guessed, and say that it is known.
 void ParticleFilter::TellRows(Particle& particle, Rows rows) {
   const std::vector<Vector6> velocities = VelocitiesAlong(particle);
-  std::vector<AnchorView> views;
   for (std::size_t k = 0; k < steps_.size(); ++k) {
-    views.clear();
-    for (const Pose& anchor : particle.anchors) views.emplace_back(particle.path.mean[k], anchor);
+    const std::vector<AnchorView> views = ViewsOf(particle.anchors, particle.path.mean[k]);
     for (Match& match : steps_[k].matches) {
       if (match.row.time == 0) continue;
       const auto [z, moved] = match.row.AsTurned(velocities[k + 1]);

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "vo/geometry/pose.h"
 #include "vo/map/row_view.h"
@@ -43,6 +45,13 @@ struct AnchorView {
   Eigen::Matrix3d R_CA;
   Eigen::Vector3d t_C;  // [m]
 };
+
+inline std::vector<AnchorView> ViewsOf(std::span<const Pose> anchors, const Pose& camera) {
+  std::vector<AnchorView> views;
+  views.reserve(anchors.size());
+  for (const Pose& anchor : anchors) views.emplace_back(camera, anchor);
+  return views;
+}
 
 constexpr double kMinDepth = 1e-6;  // of X_C ~ rho-scaled points: what is nearer or behind is not in front
 
