@@ -22,7 +22,7 @@ constexpr int kShutterRounds = 3;
 // Of the image's size: so far outside of it no particle has a landmark that others have inside.
 constexpr double kFarOut = 0.5;
 
-using Found = std::vector<std::optional<FoundFeature>>;  // by request
+using Results = std::vector<SearchResult>;  // by request
 
 // A frame, and what is known before it is looked at.
 struct Sight {
@@ -37,8 +37,11 @@ struct Sight {
 
   const PoseGaussian& prediction() const { return filter.ReferencePrediction(); }
   const Vector6& velocity() const { return filter.belief().velocity; }
-  Found Find(const std::vector<SearchRequest>& requests) const {
-    return FindFeatures(requests, frame.smooth, frame.brisk, params.features);
+  Results Find(const std::vector<SearchRequest>& requests) const {
+    Results results = FindFeatures(requests, frame.smooth, frame.brisk, params.features);
+    for (SearchResult& result : results)
+      if (result.found && !camera.HasRay(result.found->pixel)) result = {false, std::nullopt};
+    return results;
   }
 };
 
@@ -70,7 +73,7 @@ std::vector<int> Predictable(const Sight& in) {
   for (int n = 0; n < in.filter.landmark_count(); ++n) {
     if (in.records[n].score < in.params.score.delete_below) continue;
     const Projection view = seen(n);
-    if (!view.in_front) continue;
+    if (!view.in_front || !camera.Draws(view.z)) continue;
     const Eigen::Vector2d pixel = camera.Project({view.z.x(), view.z.y(), 1.0});
     const bool near = pixel.x() > -kFarOut * camera.width && pixel.x() < (1 + kFarOut) * camera.width &&
                       pixel.y() > -kFarOut * camera.height && pixel.y() < (1 + kFarOut) * camera.height;
@@ -88,7 +91,7 @@ std::vector<Candidate> FindCandidates(const Sight& in, int border_px) {
   for (std::size_t i = 0; i < predictable.size(); ++i) {
     const int n = predictable[i];
     const ImagePrediction& prediction = predictions[i];
-    if (!prediction.in_front || !WorthSearching(in, n, prediction)) continue;
+    if (!prediction.in_front || !in.camera.Draws(prediction.z) || !WorthSearching(in, n, prediction)) continue;
     const Eigen::Vector2d pixel = motion.InImage(n, prediction.z);
     if (!in.camera.Sees(pixel, border_px)) continue;
     candidates.push_back(
@@ -160,13 +163,13 @@ Vector6 VelocityAt(const Sight& in, const Pose& pose) {
 }
 
 // The pilots first, each request as it is; the others where the camera then turns out to be.
-Found Find(const Sight& in, const std::vector<Candidate>& candidates, const std::vector<SearchRequest>& requests) {
+Results Find(const Sight& in, const std::vector<Candidate>& candidates, const std::vector<SearchRequest>& requests) {
   std::vector<PilotCandidate> possible;
   for (const Candidate& c : candidates) possible.push_back({c.pixel, &in.records[c.landmark]});
   const std::vector<std::size_t> pilots = ChoosePilots(possible, in.camera, in.params.features);
   if (pilots.empty()) return in.Find(requests);
 
-  Found found(candidates.size());
+  Results results(candidates.size());
   std::vector<bool> is_pilot(candidates.size(), false);
   std::vector<SearchRequest> first;
   for (const std::size_t i : pilots) {
@@ -174,11 +177,11 @@ Found Find(const Sight& in, const std::vector<Candidate>& candidates, const std:
     first.push_back(requests[i]);
     first.back().widest_px = in.params.features.window_recovery_px;
   }
-  const Found leading = in.Find(first);
+  const Results leading = in.Find(first);
   std::vector<Match> matches;
   for (std::size_t k = 0; k < pilots.size(); ++k) {
-    found[pilots[k]] = leading[k];
-    if (leading[k]) matches.push_back(MatchOf(in, candidates[pilots[k]], *leading[k], in.velocity()));
+    results[pilots[k]] = leading[k];
+    if (leading[k].found) matches.push_back(MatchOf(in, candidates[pilots[k]], *leading[k].found, in.velocity()));
   }
 
   const std::optional<PilotedPose> pose = PilotedPose::From(in.prediction(), in.map, matches, in.params);
@@ -196,29 +199,29 @@ Found Find(const Sight& in, const std::vector<Candidate>& candidates, const std:
     rest.back().S = where->covariance;
     rest.back().widest_px = std::max(in.params.features.window_px, WindowOf(where->covariance));
   }
-  const Found following = in.Find(rest);
+  const Results following = in.Find(rest);
   for (std::size_t i = 0, k = 0; i < candidates.size(); ++i)
-    if (!is_pilot[i]) found[i] = following[k++];
-  return found;
+    if (!is_pilot[i]) results[i] = following[k++];
+  return results;
 }
 
-std::vector<Match> MatchesOf(const Sight& in, std::span<const Candidate> candidates, const Found& found,
+std::vector<Match> MatchesOf(const Sight& in, std::span<const Candidate> candidates, const Results& results,
                              const Vector6& velocity) {
   std::vector<Match> matches;
   for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (found[i]) matches.push_back(MatchOf(in, candidates[i], *found[i], velocity));
+    if (results[i].found) matches.push_back(MatchOf(in, candidates[i], *results[i].found, velocity));
   return matches;
 }
 
 // Where the camera is by those that agree. Through a rolling shutter `matches` are then as the velocity that follows from it makes them.
-Consensus Agree(const Sight& in, std::span<const Candidate> candidates, const Found& found,
+Consensus Agree(const Sight& in, std::span<const Candidate> candidates, const Results& results,
                 std::vector<Match>& matches) {
   const double gate = OutlierGate(in.filter, in.params.score);
-  matches = MatchesOf(in, candidates, found, in.velocity());
+  matches = MatchesOf(in, candidates, results, in.velocity());
   std::optional<Pose> at;
   for (int round = 0; in.shutter.on() && round < kShutterRounds; ++round) {
     at = FindConsensus(in.prediction(), in.map, matches, gate, in.params.filter, at).pose.mean;
-    matches = MatchesOf(in, candidates, found, VelocityAt(in, *at));
+    matches = MatchesOf(in, candidates, results, VelocityAt(in, *at));
   }
   Consensus consensus = FindConsensus(in.prediction(), in.map, matches, gate, in.params.filter, at);
   if (!in.params.filter.reject_outliers) consensus.inlier.assign(matches.size(), true);
@@ -242,21 +245,23 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   result.left_out = LeaveOut(candidates, in);
   std::vector<SearchRequest> requests;
   for (const Candidate& c : candidates) requests.push_back(RequestFor(in, c));
-  const Found found = Find(in, candidates, requests);
+  const Results results = Find(in, candidates, requests);
   std::vector<Match> matches;
-  const Consensus consensus = Agree(in, candidates, found, matches);
+  const Consensus consensus = Agree(in, candidates, results, matches);
   const MapView agreed(in.map, consensus.pose.mean);
 
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
+    if (!results[i].in_sight) continue;
     const Candidate& c = candidates[i];
+    const std::optional<FoundFeature>& found = results[i].found;
     Searched searched{c.landmark, std::nullopt, {}};
     FeatureView view{records[c.landmark].id,
                      c.pixel,
-                     found[i] ? found[i]->pixel : c.pixel,
+                     found ? found->pixel : c.pixel,
                      requests[i].S,
-                     found[i] ? Eigen::Matrix2d(c.inflation * found[i]->noise) : Eigen::Matrix2d::Zero(),
+                     found ? Eigen::Matrix2d(c.inflation * found->noise) : Eigen::Matrix2d::Zero(),
                      FeatureView::Status::missed};
-    if (found[i]) {
+    if (found) {
       const Match& match = matches[m];
       view.status = consensus.inlier[m] ? FeatureView::Status::matched : FeatureView::Status::rejected;
       if (consensus.inlier[m]) {

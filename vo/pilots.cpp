@@ -51,7 +51,7 @@ std::optional<PilotedPose> PilotedPose::From(const PoseGaussian& prediction, con
 std::optional<PilotedPose::Prediction> PilotedPose::Predict(int landmark, const Camera& camera, double sigma_px) const {
   const Landmark& believed = map_.landmark(landmark);
   const Projection view = map_(landmark);
-  if (!view.in_front) return std::nullopt;
+  if (!view.in_front || !camera.Draws(view.z)) return std::nullopt;
   const Eigen::Matrix2d lens = camera.LensJacobian(view.z);
   const Matrix26 J_pose = lens * view.J_pose;
   const Matrix23 J_landmark = lens * view.J_landmark;

@@ -21,12 +21,16 @@ struct PointOdometry::Impl {
         filter(MakeFilter(params, prior, seed)),
         scale(params.landmark.scale_sigma, prior.pose.p_WC) {}
 
-  std::vector<Eigen::Vector2d> RaysOf(const PointFrame& frame) const;
+  // An observation on the plane z = 1.
+  struct Ray {
+    std::int64_t id;
+    Eigen::Vector2d z;
+  };
+  std::vector<Ray> RaysOf(const PointFrame& frame) const;
   Estimate Process(const PointFrame& frame);
-  std::vector<Match> MatchesIn(const PointFrame& frame, std::span<const Eigen::Vector2d> rays,
-                               FrameDiagnostics& diagnostics);
+  std::vector<Match> MatchesIn(std::span<const Ray> rays, FrameDiagnostics& diagnostics);
   void Forget();
-  void AddNew(const PointFrame& frame, std::span<const Eigen::Vector2d> rays);
+  void AddNew(std::span<const Ray> rays);
 
   struct Record {
     std::int64_t id = 0;
@@ -43,31 +47,32 @@ struct PointOdometry::Impl {
   std::optional<std::int64_t> last_stamp_ns;
 };
 
-// Of each observation; refuses what a frame cannot be.
-std::vector<Eigen::Vector2d> PointOdometry::Impl::RaysOf(const PointFrame& frame) const {
+// Of each observation that has one; refuses what a frame cannot be.
+std::vector<PointOdometry::Impl::Ray> PointOdometry::Impl::RaysOf(const PointFrame& frame) const {
   if (last_stamp_ns) RequireIncreasing(frame.stamp_ns, *last_stamp_ns);
   const auto refuse = [&](const PointObservation& observation, const std::string& what) {
     throw std::invalid_argument("point " + std::to_string(observation.id) + what + " in the frame at " +
                                 std::to_string(frame.stamp_ns) + " ns");
   };
   std::unordered_set<std::int64_t> ids;
-  std::vector<Eigen::Vector2d> rays;
+  std::vector<Ray> rays;
   for (const PointObservation& observation : frame.observations) {
     if (!ids.insert(observation.id).second) refuse(observation, " comes twice");
     if (!observation.pixel.allFinite()) refuse(observation, " is nowhere");
-    rays.push_back(camera.Undistort(observation.pixel));
-    if (!rays.back().allFinite()) refuse(observation, " is nowhere");
+    if (!camera.HasRay(observation.pixel)) continue;
+    rays.push_back({observation.id, camera.Undistort(observation.pixel)});
+    if (!rays.back().z.allFinite()) refuse(observation, " is nowhere");
   }
   return rays;
 }
 
 Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
-  const std::vector<Eigen::Vector2d> rays = RaysOf(frame);
+  const std::vector<Ray> rays = RaysOf(frame);
   FrameDiagnostics diagnostics;
   Stopwatch watch;
   if (last_stamp_ns) {
     filter.Predict(static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9);
-    const std::vector<Match> matches = MatchesIn(frame, rays, diagnostics);
+    const std::vector<Match> matches = MatchesIn(rays, diagnostics);
     diagnostics.ms_matching = watch.Lap();
     filter.Update(matches);
     scale.Lengthened(filter.lengthened());
@@ -75,7 +80,7 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
   }
   last_stamp_ns = frame.stamp_ns;
   Forget();
-  AddNew(frame, rays);
+  AddNew(rays);
   diagnostics.landmarks = static_cast<int>(records.size());
   for (const Filter::LandmarkBelief& belief : filter.LandmarkBeliefs())
     diagnostics.permanent += belief.relative_sigma() < params.landmark.permanent_ratio;
@@ -91,16 +96,15 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
   return MakeEstimate(filter, scale, frame.stamp_ns, diagnostics);
 }
 
-std::vector<Match> PointOdometry::Impl::MatchesIn(const PointFrame& frame, std::span<const Eigen::Vector2d> rays,
-                                                  FrameDiagnostics& diagnostics) {
+std::vector<Match> PointOdometry::Impl::MatchesIn(std::span<const Ray> rays, FrameDiagnostics& diagnostics) {
   for (Record& record : records) ++record.frames_unseen;
   std::vector<Match> matches;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const auto known = landmark_of.find(frame.observations[i].id);
+  for (const Ray& ray : rays) {
+    const auto known = landmark_of.find(ray.id);
     if (known == landmark_of.end()) continue;
     Record& record = records[static_cast<std::size_t>(known->second)];
     record.frames_unseen = 0;
-    matches.push_back({known->second, rays[i], PixelNoise(camera.LensJacobian(rays[i]), params.features.sigma_px)});
+    matches.push_back({known->second, ray.z, PixelNoise(camera.LensJacobian(ray.z), params.features.sigma_px)});
   }
   diagnostics.searched = static_cast<int>(matches.size());
   const std::vector<bool> inlier = FindInliers(filter.ReferencePrediction(), filter.ReferenceMap(), matches,
@@ -137,13 +141,12 @@ void PointOdometry::Impl::Forget() {
   for (std::size_t n = 0; n < records.size(); ++n) landmark_of[records[n].id] = static_cast<int>(n);
 }
 
-void PointOdometry::Impl::AddNew(const PointFrame& frame, std::span<const Eigen::Vector2d> rays) {
+void PointOdometry::Impl::AddNew(std::span<const Ray> rays) {
   std::vector<FirstView> views;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const std::int64_t id = frame.observations[i].id;
-    if (!landmark_of.try_emplace(id, static_cast<int>(records.size())).second) continue;
-    records.push_back({id, 0});
-    views.push_back({rays[i], PixelNoise(camera.LensJacobian(rays[i]), params.features.sigma_px)});
+  for (const Ray& ray : rays) {
+    if (!landmark_of.try_emplace(ray.id, static_cast<int>(records.size())).second) continue;
+    records.push_back({ray.id, 0});
+    views.push_back({ray.z, PixelNoise(camera.LensJacobian(ray.z), params.features.sigma_px)});
   }
   filter.AddLandmarks(views);
 }

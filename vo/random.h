@@ -6,7 +6,8 @@
 
 namespace vo {
 
-enum class Stream : std::uint32_t { prior_pose = 1, prior_velocity, pose, velocity, resampling };
+// Not the numbers of the simulator's streams, which are small: with the same seed the filter's draws would be the noise of its own images.
+enum class Stream : std::uint32_t { prior_pose = 0x10001, prior_velocity, pose, velocity, resampling };
 
 struct RandomKey {
   std::uint64_t seed = 0;

@@ -68,16 +68,19 @@ BriskSampler FirstSampler(const FeatureParams& params) {
   return BriskSampler(PatternMap(Eigen::Matrix2d::Identity(), params));
 }
 
-std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& smooth,
-                                                      const BriskImage& brisk, const FeatureParams& params) {
+std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& smooth,
+                                       const BriskImage& brisk, const FeatureParams& params) {
   const int max_distance = static_cast<int>(std::lround(params.max_hamming * kBriskPairs));
   const Eigen::Matrix2d constant = params.sigma_px * params.sigma_px * Eigen::Matrix2d::Identity();
   const Eigen::Matrix2d floor = params.sigma_floor_px * params.sigma_floor_px * Eigen::Matrix2d::Identity();
-  std::vector<std::optional<FoundFeature>> found(requests.size());
+  std::vector<SearchResult> results(requests.size());
   std::vector<PixelRun> region;
   for (std::size_t i = 0; i < requests.size(); ++i) {
     const SearchRequest& request = requests[i];
+    std::optional<FoundFeature>& found = results[i].found;
     const BriskSampler sampler(PatternMap(request.warp, params));
+    results[i].in_sight = brisk.Describable(Rounded(request.predicted), sampler);
+    if (!results[i].in_sight) continue;
     int searched = 0;
     for (const int wanted :
          {params.window_quick_px, params.window_px, params.window_enlarged_px, LostWindow(request, params)}) {
@@ -89,16 +92,16 @@ std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRe
       const auto best = brisk.Nearest(request.appearance->descriptor, sampler, region);
       if (!best || best->distance >= max_distance || (quick && OnBorder(best->pixel, Rounded(request.predicted), side)))
         continue;
-      found[i] = {best->pixel.cast<double>(), constant};
+      found = {best->pixel.cast<double>(), constant};
       break;
     }
-    if (!found[i] || !params.subpixel) continue;
-    const auto refined = Register(request.appearance->patch, request.warp, smooth, found[i]->pixel, kMaxRefinementPx);
+    if (!found || !params.subpixel) continue;
+    const auto refined = Register(request.appearance->patch, request.warp, smooth, found->pixel, kMaxRefinementPx);
     if (!refined || refined->correlation <= kMinCorrelation) continue;
-    found[i]->pixel = refined->pixel;
-    if (params.noise != MatchNoise::constant) found[i]->noise = floor + params.noise_inflation * refined->covariance;
+    found->pixel = refined->pixel;
+    if (params.noise != MatchNoise::constant) found->noise = floor + params.noise_inflation * refined->covariance;
   }
-  return found;
+  return results;
 }
 
 }  // namespace vo

@@ -37,8 +37,14 @@ struct FoundFeature {
   Eigen::Matrix2d noise;  // covariance of its error [px^2], as this image alone tells it
 };
 
-// Where each request was found, in its order. `brisk` holds the image, `smooth` is it smoothed.
-std::vector<std::optional<FoundFeature>> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& smooth,
-                                                      const BriskImage& brisk, const FeatureParams& params);
+struct SearchResult {
+  bool in_sight =
+      true;  // false: where it is predicted, its pattern reaches out of the image, and it was not looked for
+  std::optional<FoundFeature> found;
+};
+
+// Of each request, in its order. `brisk` holds the image, `smooth` is it smoothed.
+std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& smooth,
+                                       const BriskImage& brisk, const FeatureParams& params);
 
 }  // namespace vo

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "vo/filter/unscented.h"
 #include "vo/geometry/so3.h"
 
 namespace vo {
@@ -29,8 +30,7 @@ double PoseGaussian::LogDensity(const Pose& pose) const {
 Pose PoseGaussian::Sample(const RandomKey& key) const { return Displaced(NormalVector<Vector6>(key)); }
 
 Pose PoseGaussian::Displaced(const Vector6& normals) const {
-  if (covariance.isZero(0)) return mean;
-  return Plus(mean, covariance.llt().matrixL() * normals);
+  return Plus(mean, SemidefiniteRoot<6>(covariance) * normals);
 }
 
 Vector6 SampleNormal(const Vector6& mean, const Matrix6& covariance, const RandomKey& key) {

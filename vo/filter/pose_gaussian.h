@@ -17,7 +17,7 @@ struct PoseGaussian {
 
   // Density with respect to volume on R^3 x SO(3), normalised in the tangent space.
   double LogDensity(const Pose& pose) const;
-  // A covariance of zero returns the mean.
+  // The covariance need only be semi-definite: what is known stays as it is in the mean.
   Pose Sample(const RandomKey& key) const;
   // The same with the six standard normal numbers told.
   Pose Displaced(const Vector6& normals) const;

@@ -74,6 +74,25 @@ Eigen::Vector2d Camera::Project(const Eigen::Vector3d& X_C) const {
   return {fx * d.x() + cx, fy * d.y() + cy};
 }
 
+bool Camera::Draws(const Eigen::Vector2d& xy) const {
+  const double r2 = xy.squaredNorm();
+  if (lens == Lens::fisheye) return r2 <= std::tan(kWidestAngle) * std::tan(kWidestAngle);
+  // The radius r (1 + k1 r^2 + k2 r^4 + k3 r^6) grows as far as its slope, a cubic in s = r^2, has been positive: at the end and at its least.
+  const double a = 3 * k1, b = 5 * k2, c = 7 * k3;
+  const auto grows = [&](double s) { return 1 + s * (a + s * (b + s * c)) > 0; };
+  if (!grows(r2)) return false;
+  const double discriminant = b * b - 3 * a * c;
+  if (discriminant <= 0) return true;
+  const double q = -b - std::copysign(std::sqrt(discriminant), b);  // the cubic's two extrema are q / 3c and a / q
+  const auto grows_there = [&](double s) { return !(s > 0 && s < r2) || grows(s); };
+  return grows_there(a / q) && (c == 0 || grows_there(q / (3 * c)));
+}
+
+bool Camera::HasRay(const Eigen::Vector2d& pixel) const {
+  return lens != Lens::fisheye ||
+         std::hypot((pixel.x() - cx) / fx, (pixel.y() - cy) / fy) <= RadiusAt(*this, kWidestAngle).value;
+}
+
 Eigen::Vector2d Camera::Undistort(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2d target((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
   if (lens == Lens::fisheye) {
@@ -95,9 +114,7 @@ Eigen::Matrix2d Camera::LensJacobian(const Eigen::Vector2d& xy) const {
 
 bool Camera::Sees(const Eigen::Vector2d& pixel, double border_px) const {
   return pixel.x() >= border_px - 0.5 && pixel.y() >= border_px - 0.5 && pixel.x() <= width - 0.5 - border_px &&
-         pixel.y() <= height - 0.5 - border_px &&
-         (lens != Lens::fisheye ||
-          std::hypot((pixel.x() - cx) / fx, (pixel.y() - cy) / fy) <= RadiusAt(*this, kWidestAngle).value);
+         pixel.y() <= height - 0.5 - border_px && HasRay(pixel);
 }
 
 Camera CameraPreset(const std::string& name) {

@@ -24,11 +24,16 @@ struct Camera {
 
   // Point in C with z > 0 -> pixel, lens distortion included.
   Eigen::Vector2d Project(const Eigen::Vector3d& X_C) const;
-  // Pixel -> undistorted ray (x, y) on the plane z = 1, to 1e-12 by Newton's method.
+  // Whether the pixel of a ray (x, y) on the plane z = 1 is that ray's own. Past the angle where the lens's radius ceases to grow (or past
+  // kWidestAngle) Project() answers with a pixel of another ray. p1 and p2 move that angle by too little to be asked.
+  bool Draws(const Eigen::Vector2d& xy) const;
+  // Whether a pixel, wherever it lies, is near enough to the axis of a fisheye lens to have a ray that can be used.
+  bool HasRay(const Eigen::Vector2d& pixel) const;
+  // Pixel -> undistorted ray (x, y) on the plane z = 1, to 1e-12 by Newton's method; of a pixel without one, a ray at kWidestAngle.
   Eigen::Vector2d Undistort(const Eigen::Vector2d& pixel) const;
   // Where a camera of the same fx, fy, cx, cy without distortion would see that ray [px].
   Eigen::Vector2d Ideal(const Eigen::Vector2d& pixel) const;
-  // Whether a pixel lies in the image, `border_px` from its edge, and where the lens can be used.
+  // Whether a pixel lies in the image, `border_px` from its edge, and has a ray.
   bool Sees(const Eigen::Vector2d& pixel, double border_px = 0) const;
   // d(pixel)/d(x, y) of the lens at the undistorted ray (x, y).
   Eigen::Matrix2d LensJacobian(const Eigen::Vector2d& xy) const;

@@ -168,14 +168,20 @@ TEST(Unscented, ProposalTracksAStepAndStaysSymmetric) {
     params.proposal = vo::Proposal::ukf;
     params.weight = vo::Weight::importance;
     params.sampled = sampled;
-    vo::ParticleFilter filter = Start(params, 3);
-    filter.AddLandmarks(views.first);
-    filter.Predict(1.0 / 30);
-    filter.Update(views.matches);
-    const vo::Belief& belief = filter.belief();
-    EXPECT_LT(vo::Minus(belief.pose, truth).tail<3>().norm(), 0.002);
-    EXPECT_LT((belief.covariance - belief.covariance.transpose()).norm(), 1e-12);
-    EXPECT_EQ(belief.covariance.llt().info(), Eigen::Success);
+    // Of 100 seeds' answers, each off by up to 0.0045 by its eight draws, the mean is off by 0.001; the prediction by 0.0078.
+    constexpr int kSeeds = 100;
+    Vector3d mean = Vector3d::Zero();
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      vo::ParticleFilter filter = Start(params, static_cast<std::uint64_t>(seed));
+      filter.AddLandmarks(views.first);
+      filter.Predict(1.0 / 30);
+      filter.Update(views.matches);
+      const vo::Belief& belief = filter.belief();
+      mean += vo::Minus(belief.pose, truth).tail<3>() / kSeeds;
+      EXPECT_LT((belief.covariance - belief.covariance.transpose()).norm(), 1e-12);
+      EXPECT_EQ(belief.covariance.llt().info(), Eigen::Success);
+    }
+    EXPECT_LT(mean.norm(), 0.002);
   }
 }
 

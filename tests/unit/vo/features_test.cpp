@@ -307,13 +307,30 @@ TEST(Matcher, FindsShiftsThatFitTheWindowsAndNoOthers) {
     const auto found = vo::FindFeatures(requests, second, brisk, {});
     int right = 0;
     for (std::size_t i = 0; i < corners.size(); ++i)
-      right += found[i] && (found[i]->pixel - corners[i].cast<double>() - shift).norm() < 0.1;
+      right += found[i].found && (found[i].found->pixel - corners[i].cast<double>() - shift).norm() < 0.1;
     return right / static_cast<double>(corners.size());
   };
   EXPECT_GE(found_share({2.3, -1.6}, 1), 0.95);    // in 9 x 9
   EXPECT_GE(found_share({-7.4, 6.5}, 1), 0.80);    // in 17 x 17; half-pixel shifts cost BRISK some bits
   EXPECT_EQ(found_share({15.0, -14.0}, 1), 0.0);   // outside both, and the prediction was sure
   EXPECT_GE(found_share({15.0, -14.0}, 8), 0.90);  // unsure: the window grows
+}
+
+TEST(Matcher, WhatReachesOutOfTheImageIsOutOfSightAndNotMissed) {
+  const cv::Mat image = Texture(6).Image(320, 240, {0, 0});
+  vo::BriskImage brisk;
+  brisk.Set(image);
+  const vo::BriskSampler sampler = vo::FirstSampler({});
+  const Vector2i corner(sampler.margin(), 120);
+  const vo::Appearance appearance{brisk.Describe(corner, sampler), vo::CutPatch(image, corner)};
+  vo::SearchRequest as_it_was{&appearance, corner.cast<double>(), Matrix2d::Identity()}, nearer = as_it_was;
+  nearer.warp = 2 * Matrix2d::Identity();
+  const auto results = vo::FindFeatures({as_it_was, nearer}, image, brisk, {});
+  EXPECT_TRUE(results[0].in_sight && results[0].found);
+  EXPECT_FALSE(results[1].in_sight || results[1].found);
+  nearer.predicted = {160, 120};  // in sight, and it is not there
+  const auto elsewhere = vo::FindFeatures({nearer}, image, brisk, {});
+  EXPECT_TRUE(elsewhere[0].in_sight);
 }
 
 }  // namespace

@@ -83,6 +83,44 @@ TEST(Camera, UndistortUndoesProject) {
       }
 }
 
+// Walking out along a ray's direction, the pixel goes back from some angle on: from there on it is another ray's.
+TEST(Camera, DrawsARayAsLongAsThePixelIsItsOwn) {
+  vo::Camera barrel{640, 480, 300, 300, 320, 240, -0.3, 0.02}, wave = barrel, cubic = barrel, plain = barrel;
+  wave.k1 = 0.9, wave.k2 = -0.9, wave.k3 = 0.2;  // goes back and then out again
+  cubic.k1 = cubic.k2 = 0, cubic.k3 = -0.1;
+  plain.k1 = plain.k2 = 0;
+  for (const vo::Camera& camera : {barrel, wave, cubic, plain, vo::CameraPreset("freiburg1")}) {
+    bool one_to_one = true;
+    double radius = 0, last = 0;
+    for (double r = 0.01; r < 4; r += 0.01) {
+      const Vector2d xy(0.6 * r, 0.8 * r);
+      vo::Camera radial = camera;
+      radial.p1 = radial.p2 = 0;
+      radius = (radial.Project({xy.x(), xy.y(), 1}) - Vector2d(camera.cx, camera.cy)).dot(Vector2d(0.6, 0.8));
+      one_to_one &= radius > last;
+      last = std::max(last, radius);
+      const vo::Camera& c = camera;
+      const bool at_the_turn = c.Draws(1.01 * xy) != c.Draws(0.99 * xy);
+      EXPECT_TRUE(at_the_turn || c.Draws(xy) == one_to_one) << "k1 " << c.k1 << ", r " << r;
+    }
+    EXPECT_EQ(one_to_one, camera.k1 == 0 ? camera.k3 == 0 : camera.k3 > 1) << "k1 " << camera.k1;
+  }
+}
+
+TEST(Camera, APixelBeyondAFisheyesUsableAngleHasNoRay) {
+  const vo::Camera camera{.width = 640, .height = 480, .fx = 200, .fy = 200, .k1 = 0.02, .lens = vo::Lens::fisheye};
+  for (const double theta : {0.0, 1.0, 1.399, 1.401, 1.5}) {
+    const double radius = theta * (1 + 0.02 * theta * theta);
+    const Vector2d pixel(camera.cx + 200 * 0.6 * radius, camera.cy - 200 * 0.8 * radius);
+    const bool usable = theta < vo::kWidestAngle;
+    EXPECT_EQ(camera.HasRay(pixel), usable) << theta;
+    EXPECT_EQ(camera.Draws(std::tan(theta) * Vector2d(0.6, -0.8)), usable) << theta;
+    if (usable) {
+      EXPECT_NEAR(camera.Undistort(pixel).norm(), std::tan(theta), 1e-9) << theta;
+    }
+  }
+}
+
 TEST(Camera, LensJacobianIsTheDerivative) {
   const vo::Camera camera = HandWorkedCamera();
   for (const Vector2d& xy : {Vector2d(0, 0), Vector2d(0.3, -0.2), Vector2d(-0.5, 0.4)}) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "tests/unit/vo/texture.h"
+#include "vo/features/brisk.h"
 #include "vo/geometry/so3.h"
 #include "vo/params.h"
 
@@ -260,6 +261,37 @@ TEST(Odometry, LooksForLandmarksAllOverTheImageAndAddsNoneWhereOneIs) {
     EXPECT_EQ(d.searched, 30) << k;
     EXPECT_EQ(cells(), with_landmarks) << k;
   }
+}
+
+// Before a wall that comes nearer all patterns grow, and those of landmarks near the edge reach out of the image: they are out of sight, long
+// before their corners are, and no landmark is judged by it.
+TEST(Odometry, JudgesNoLandmarkThatReachesOutOfTheImage) {
+  const vo_test::Texture texture(5, 40.0, 24);
+  vo::Prior prior;
+  prior.v_WC = Vector3d(0, 0, 1);
+  prior.velocity_covariance = 1e-6 * vo::Matrix6::Identity();
+  vo::Odometry odometry(kCamera, SmallImageParams(), prior, 1);
+  const auto view = [&](int k) {
+    return ViewFrom({Vector3d(0, 0, k / 30.0), Eigen::Quaterniond::Identity()}, texture);
+  };
+  const int first_ones = odometry.Track({0, view(0)}).diagnostics.landmarks;
+  int near_the_edge = 0;
+  for (int k = 1; k <= 24; ++k) {
+    odometry.Track({k * kFrameNs, view(k)});
+    const double zoom =
+        2 / (2 - k / 30.0);  // of what is left of the middle; to the right of it the wall is farther away
+    const int margin = vo::BriskSampler(zoom * SmallImageParams().features.brisk_size_px / vo::kBriskBasicDiameter *
+                                        Eigen::Matrix2d::Identity())
+                           .margin();
+    for (const vo::FeatureView& seen : odometry.Features()) {
+      if (seen.id >= first_ones || seen.predicted.x() > 0.45 * kCamera.width) continue;
+      const double to_edge =
+          std::min({seen.predicted.x(), seen.predicted.y(), kCamera.height - 1 - seen.predicted.y()});
+      near_the_edge += to_edge < margin + 20;
+      EXPECT_GT(to_edge, margin - 2) << "frame " << k << ", landmark " << seen.id;
+    }
+  }
+  EXPECT_GT(near_the_edge, 10);
 }
 
 TEST(Odometry, NeverStopsOnImagesThatSayNothing) {

@@ -217,6 +217,22 @@ TEST(PoseGaussian, DensityIntegratesAndSamplesHaveItsCovariance) {
               1e-9);
 }
 
+// What is known (here one axis of the place, and a turn about an axis that is none of the coordinates') has no spread, the rest all of its own.
+TEST(PoseGaussian, SamplesOfASemidefiniteCovarianceHaveIt) {
+  vo::PoseGaussian g;
+  g.mean = {Vector3d(1, 2, 3), vo::Exp({0.3, -0.2, 0.5})};
+  Eigen::Matrix<double, 6, 4> root = Eigen::Matrix<double, 6, 4>::Zero();
+  for (const int row : {1, 2, 3, 4, 5})
+    for (int k = 0; k < 4; ++k) root(row, k) = 0.03 * std::sin(1.7 * (4 * row + k + 1));
+  g.covariance = root * root.transpose();
+  vo::Matrix6 spread = vo::Matrix6::Zero();  // of the samples: they are linear in the six normal numbers
+  for (int i = 0; i < 6; ++i) {
+    const vo::Vector6 d = vo::Minus(g.Displaced(vo::Vector6::Unit(i)), g.mean);
+    spread += d * d.transpose();
+  }
+  EXPECT_LT((spread - g.covariance).norm(), 1e-9 * g.covariance.norm());
+}
+
 TEST(Resampling, CopiesAreWithinOneOfExpected) {
   const std::vector<double> w = {0.05, 0.45, 0.0, 0.3, 0.2};
   std::vector<int> ancestors;

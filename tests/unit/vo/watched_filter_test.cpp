@@ -406,6 +406,17 @@ TEST(WatchedFilter, RefusesWhatIsNoAnswer) {
 }
 
 // Bad input is refused before anything has changed.
+// A fisheye lens draws what lies farther than 80 degrees from its axis; on the plane z = 1 it has no place.
+TEST(PointOdometry, LeavesOutWhatAFisheyeSeesBesideIt) {
+  const vo::Camera camera{.width = 640, .height = 480, .fx = 100, .fy = 100, .lens = vo::Lens::fisheye};
+  vo::PointOdometry odometry(camera, vo::Params(), vo::Prior(), 1);
+  const double inside = 319.5 + 100 * 1.39, beside = 319.5 + 100 * 1.41;
+  EXPECT_EQ(odometry.Track({0, {{7, {inside, 239.5}}, {8, {beside, 239.5}}}}).diagnostics.landmarks, 1);
+  const vo::Estimate next = odometry.Track({33'000'000, {{7, {beside, 239.5}}, {8, {inside, 239.5}}}});
+  EXPECT_EQ(next.diagnostics.searched, 0);
+  EXPECT_EQ(next.diagnostics.landmarks, 2);
+}
+
 TEST(PointOdometry, RefusesWhatIsNoPointAndNoPrior) {
   const vo::Camera camera{640, 480, 525, 525, 319.5, 239.5};
   vo::Prior prior;
