@@ -201,6 +201,28 @@ TEST_F(CampaignTest, AChangedFileIsRefusedAndUpdatedWhenAsked) {
   EXPECT_THAT(Results("out"), HasSubstr(",lost,"));
 }
 
+// What is varied may get another name, order or a companion of one value, where no setting changes: results.csv has the
+// columns of the file as it is now.
+TEST_F(CampaignTest, ResultsHaveTheColumnsOfTheFileAsItIsNow) {
+  const auto text = [](const std::string& vary) {
+    return "scenarios: [{file: " + (TinyScenario().parent_path() / "points.yaml").string() +
+           ", set: {time.duration: 1 s}}]\nvary: [" + vary + "]\nsystems: [rbpf]\n";
+  };
+  const std::string noise = "{name: noise, key: world.points.measurement.noise, values: [0.5 px, 2 px]}",
+                    count = "{name: count, key: world.points.count, values: [200]}",
+                    named = "{name: place, variants: [{name: here, set: {}}]}";
+  MustRun(text(noise + ", " + count), "out");
+  const auto done = fs::last_write_time(here_ / "out/tasks/00/000000/times.json");
+  for (const std::string& vary :
+       {noise + ", " + named + ", " + count, count + ", " + noise, count + ", " + named + ", " + noise}) {
+    MustRun(text(vary), "out");
+    MustRun(text(vary), "fresh");
+    EXPECT_EQ(Results("out"), Results("fresh"));
+    EXPECT_EQ(fs::last_write_time(here_ / "out/tasks/00/000000/times.json"), done);
+    fs::remove_all(here_ / "fresh");
+  }
+}
+
 TEST_F(CampaignTest, SequencesAreSharedAndKnowTheirFiles) {
   fs::create_directories(here_ / "scenes");
   fs::copy_file(TinyScenario(), here_ / "scenes/tiny.yaml");

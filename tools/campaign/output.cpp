@@ -98,7 +98,7 @@ void RemoveTasks(const fs::path& out, const std::vector<std::int64_t>& tasks) {
   for (const std::int64_t task : tasks) fs::remove_all(TaskPath(out, task));
 }
 
-Merged Merge(const Campaign& campaign, const fs::path& out) {
+Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, const fs::path& out) {
   Merged merged;
   std::string times = "task";
   for (const char* name : kTimes) times += std::string(",") + name;
@@ -107,9 +107,10 @@ Merged Merge(const Campaign& campaign, const fs::path& out) {
     std::optional<TaskRecord> record = ReadRecord(out, task);
     if (!record) throw std::runtime_error(fmt::format("{}: task {} is not there", out.string(), task));
     if (record->status == Status::ok && IsLost(*record, campaign.lost)) record->status = Status::lost;
-    // Names may have changed since: nothing is done again for that.
+    // Names, and what is told apart as a factor, may have changed since: nothing is done again for that.
     const TaskChoice choice = ChoiceOf(campaign, task);
     record->scenario = campaign.scenarios[choice.scenario].name;
+    record->levels = levels.at(choice.point);
     record->system = campaign.systems[choice.system].name;
     times += TimesLine(out, task);
     merged.records.push_back(std::move(*record));

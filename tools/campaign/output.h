@@ -45,8 +45,9 @@ struct Merged {
 };
 
 // Writes results.csv, times.csv, tables.md, tables.tex, and curves.csv where the campaign asks for curves, from the
-// tasks' folders alone. All tasks must be there (std::runtime_error).
-Merged Merge(const Campaign& campaign, const std::filesystem::path& out);
+// tasks' folders alone; names and levels are the campaign's, whatever they were when a task ran. levels[p]: of point p.
+// All tasks must be there (std::runtime_error).
+Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, const std::filesystem::path& out);
 
 // Under a name of its own first: several processes may do so.
 void WriteAtOnce(const std::filesystem::path& file, const std::string& text);

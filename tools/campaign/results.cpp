@@ -174,7 +174,7 @@ TaskRecord RecordFromJson(const std::string& text) {
     record.system = json.at("system");
     record.seed = Whole<std::uint64_t>(json, "seed");
     record.reason = json.at("reason");
-    record.levels = json.at("levels").get<std::vector<std::pair<std::string, std::string>>>();
+    record.levels = json.at("levels").get<LevelValues>();
     const std::string status = json.at("status");
     const auto found =
         std::find_if(kStatuses.begin(), kStatuses.end(), [&](const auto& s) { return s.second == status; });

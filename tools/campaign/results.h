@@ -24,11 +24,14 @@ enum class Status {
 
 std::string Name(Status status);
 
+// By factor: a number in SI where it is one.
+using LevelValues = std::vector<std::pair<std::string, std::string>>;
+
 struct TaskRecord {
   std::string key;  // of all that the result depends on: docs/campaign.md, "When the file changes"
   std::int64_t task = 0;
   std::string scenario, system;
-  std::vector<std::pair<std::string, std::string>> levels;  // by factor: a number in SI where it is one
+  LevelValues levels;
   std::uint64_t seed = 0;
   Status status = Status::failed;
   std::string reason;                          // of what is neither ok nor lost; one line

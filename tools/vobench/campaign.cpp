@@ -137,7 +137,9 @@ void RefuseStale(const CampaignOptions& options, const campaign::OutputState& st
 }
 
 void Conclude(const CampaignWork& work, const CampaignOptions& options) {
-  const campaign::Merged merged = campaign::Merge(work.campaign(), options.output);
+  std::vector<campaign::LevelValues> levels;
+  for (const CampaignPoint& point : work.points()) levels.push_back(point.levels);
+  const campaign::Merged merged = campaign::Merge(work.campaign(), levels, options.output);
   campaign::WriteAtOnce(options.output / "report.html", CampaignPage(work.campaign(), merged));
   std::ifstream tables(options.output / "tables.md");
   fmt::print("{}\n", std::string(std::istreambuf_iterator<char>(tables), {}));

@@ -20,9 +20,9 @@ namespace vobench {
 // A scenario with one value of everything that is varied.
 struct CampaignPoint {
   bool images = false;
-  std::string sequence;                                     // of images: its name in the cache
-  std::vector<std::pair<std::string, std::string>> levels;  // for results.csv
-  std::vector<std::string> settings;                        // digest of all settings, by system
+  std::string sequence;               // of images: its name in the cache
+  campaign::LevelValues levels;       // for results.csv
+  std::vector<std::string> settings;  // digest of all settings, by system
 };
 
 class CampaignWork {
