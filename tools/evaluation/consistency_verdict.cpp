@@ -50,31 +50,31 @@ std::vector<std::size_t> RankFrames(const VerdictOptions& options, std::size_t f
 
 void JudgeRanks(const std::vector<JudgedRun>& runs, const VerdictOptions& options, std::size_t frames,
                 ConsistencyVerdict& verdict) {
-  const int bins = BinsFor(static_cast<int>(runs.size()));
   std::vector<RankHistogram> coverage;
   for (const std::size_t k : RankFrames(options, frames)) {
-    int draws = 0;
-    for (const JudgedRun& run : runs) {
-      if (k >= run.size()) continue;
-      if (draws != 0 && run[k].scores.draws != draws)
-        throw std::invalid_argument("JudgeConsistency: ranks among different numbers of draws");
-      draws = run[k].scores.draws;
+    std::vector<const MixtureScores*> ranked;  // none of a run that is lost by then, or has no belief there
+    for (const JudgedRun& run : runs)
+      if (k < run.size() && run[k].scores.draws > 0) ranked.push_back(&run[k].scores);
+    if (ranked.empty()) {
+      verdict.rank_histograms.resize(verdict.rank_histograms.size() + 12);
+      continue;
     }
-    if (draws == 0) continue;
+    const int draws = ranked.front()->draws, bins = BinsFor(static_cast<int>(ranked.size()));
+    if (std::ranges::any_of(ranked, [&](const MixtureScores* scores) { return scores->draws != draws; }))
+      throw std::invalid_argument("JudgeConsistency: ranks among different numbers of draws");
     for (std::size_t d = 0; d < 12; ++d) {
       std::vector<int> ranks;
-      for (const JudgedRun& run : runs)
-        if (k < run.size()) ranks.push_back(run[k].scores.rank[d]);
+      for (const MixtureScores* scores : ranked) ranks.push_back(scores->rank[d]);
       verdict.rank_histograms.push_back(HistogramOfRanks(ranks, draws, std::min(bins, draws + 1)));
     }
     for (std::size_t b = 4; b < kStateBlocks.size(); ++b) {  // pose, velocity, joint
       std::vector<double> masses;
-      for (const JudgedRun& run : runs)
-        if (k < run.size()) masses.push_back(run[k].scores.hpd_mass[b]);
+      for (const MixtureScores* scores : ranked) masses.push_back(scores->hpd_mass[b]);
       coverage.push_back(HistogramOfValues(masses, bins));
     }
   }
   verdict.ranks = TestUniformity(verdict.rank_histograms, options.false_alarm);
+  if (verdict.ranks.tests == 0) verdict.rank_histograms.clear();
   verdict.coverage = TestUniformity(coverage, options.false_alarm);
   const auto add = [&](const char* name, const UniformityVerdict& test) {
     if (test.tests > 0)

@@ -61,7 +61,8 @@ struct ConsistencyVerdict {
   // Behind them, by kStateBlocks.
   std::vector<AneesVerdict> anees;
   UniformityVerdict ranks, coverage;
-  std::vector<RankHistogram> rank_histograms;  // [frame of rank_frames][dimension], frame by frame
+  // [frame of rank_frames][dimension], frame by frame; of no runs where nobody has a belief, and empty without any rank.
+  std::vector<RankHistogram> rank_histograms;
   std::optional<NisVerdict> nis;
   std::optional<NisMeanVerdict> nis_mean;  // nis_by_feature
   std::optional<WhitenessVerdict> whiteness;

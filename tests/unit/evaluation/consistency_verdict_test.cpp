@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "tests/unit/evaluation/point_world.h"
 
@@ -120,6 +121,42 @@ TEST_F(Verdict, MissingFramesAreRejected) {
   const ConsistencyVerdict verdict = JudgeConsistency(runs, Options());
   EXPECT_EQ(Named(verdict, "frames without").value, 11);
   EXPECT_FALSE(verdict.pass());
+}
+
+// Where ranks are asked for, too: a run that has none there takes no part in them.
+TEST_F(Verdict, AFrameWithoutABeliefHasNoRank) {
+  const auto last_gone = [](std::size_t first_gone) {
+    auto runs = Runs(1);
+    for (std::size_t m = first_gone; m < first_gone + 40; ++m) {
+      runs[m].back().scores = {};
+      runs[m].back().scores.nees.fill(NAN);
+      runs[m].back().scores.hpd_mass.fill(NAN);
+    }
+    return JudgeConsistency(runs, Options(0.002));
+  };
+  for (const std::size_t first_gone : {0, 30}) {  // before and behind those that have a rank
+    const ConsistencyVerdict verdict = last_gone(first_gone);
+    EXPECT_EQ(Named(verdict, "frames without").value, 40);
+    EXPECT_EQ(verdict.rank_histograms.size(), 48u);
+    EXPECT_EQ(
+        std::accumulate(verdict.rank_histograms.back().counts.begin(), verdict.rank_histograms.back().counts.end(), 0),
+        60);
+    EXPECT_TRUE(Named(verdict, "ranks").pass);
+    EXPECT_TRUE(Named(verdict, "coverage").pass);
+  }
+}
+
+// The histograms of a frame stay where they belong.
+TEST_F(Verdict, AFrameWithoutAnyBeliefHasEmptyHistograms) {
+  auto runs = Runs(1);
+  for (JudgedRun& run : runs) run[10].scores.draws = 0;
+  VerdictOptions options = Options();
+  options.rank_frames = {10, 20};
+  const ConsistencyVerdict verdict = JudgeConsistency(runs, options);
+  ASSERT_EQ(verdict.rank_histograms.size(), 24u);
+  EXPECT_EQ(verdict.rank_histograms[11].runs, 0);
+  EXPECT_EQ(verdict.rank_histograms[12].runs, kRuns);
+  EXPECT_EQ(verdict.ranks.tests, 12u);
 }
 
 TEST_F(Verdict, WithoutInnovationsBoundOrPoolThereIsAneesAndRanks) {
