@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
+#include <map>
 #include <stdexcept>
 #include <tuple>
 
@@ -16,7 +18,13 @@ using Stamps = std::vector<std::int64_t>;
 // Seconds apart, as the reference tools have it.
 double Apart(std::int64_t a_ns, std::int64_t b_ns) { return std::abs(SecondsAsRead(a_ns) - SecondsAsRead(b_ns)); }
 
-std::vector<Match> OneToOne(const Stamps& estimate, const Stamps& truth, std::int64_t gap) {
+// Whether a pair has its neighbours on the same side in both. truth_of: by estimate, those that are taken.
+bool GoesForward(const std::map<std::size_t, std::size_t>& truth_of, std::size_t i, std::size_t j) {
+  const auto after = truth_of.lower_bound(i);
+  return (after == truth_of.end() || after->second > j) && (after == truth_of.begin() || std::prev(after)->second < j);
+}
+
+std::vector<Match> OneToOne(const Stamps& estimate, const Stamps& truth, std::int64_t gap, bool may_cross) {
   std::vector<std::tuple<double, std::size_t, std::size_t>> candidates;
   std::size_t first = 0;
   for (std::size_t i = 0; i < estimate.size(); ++i) {
@@ -26,14 +34,15 @@ std::vector<Match> OneToOne(const Stamps& estimate, const Stamps& truth, std::in
     }
   }
   std::sort(candidates.begin(), candidates.end());
-  std::vector<bool> estimate_used(estimate.size()), truth_used(truth.size());
-  std::vector<Match> matches;
+  std::map<std::size_t, std::size_t> truth_of;
+  std::vector<bool> truth_used(truth.size());
   for (const auto& [apart, i, j] : candidates) {
-    if (estimate_used[i] || truth_used[j]) continue;
-    estimate_used[i] = truth_used[j] = true;
-    matches.push_back({i, j});
+    if (truth_of.contains(i) || truth_used[j] || !(may_cross || GoesForward(truth_of, i, j))) continue;
+    truth_of[i] = j;
+    truth_used[j] = true;
   }
-  std::sort(matches.begin(), matches.end(), [](const Match& a, const Match& b) { return a.estimate < b.estimate; });
+  std::vector<Match> matches;
+  for (const auto& [i, j] : truth_of) matches.push_back({i, j});
   return matches;
 }
 
@@ -79,10 +88,12 @@ std::vector<Match> Associate(const Stamps& estimate_ns, const Stamps& truth_ns, 
   switch (options.rule) {
     case AssociationRule::nearest:
       return NearestOfLonger(estimate_ns, truth_ns, options.gap_ns);
+    case AssociationRule::tum:
+      return OneToOne(estimate_ns, truth_ns, options.gap_ns, true);
     case AssociationRule::one_to_one:
       break;
   }
-  return OneToOne(estimate_ns, truth_ns, options.gap_ns);
+  return OneToOne(estimate_ns, truth_ns, options.gap_ns, false);
 }
 
 MatchedTrajectories MatchTrajectories(const Trajectory& estimate, const Trajectory& truth,

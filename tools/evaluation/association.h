@@ -1,5 +1,5 @@
 // Purpose: which estimated pose belongs to which true pose, by time.
-// Source:  TUM RGB-D associate (one to one), evo (nearest); see docs/metrics.md.
+// Source:  TUM RGB-D associate (tum), evo (nearest); see docs/metrics.md.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,9 @@
 namespace evaluation {
 
 enum class AssociationRule {
-  one_to_one,  // ours and TUM's: all pairs closer than the gap, closest first, each pose used once
+  one_to_one,  // ours: all pairs closer than the gap, closest first, each pose used once, and never back in time: a pair
+               // that would cross a closer one is left out
+  tum,         // TUM's: the same, but pairs may cross
   nearest,     // evo's: each pose of the shorter trajectory takes the nearest of the longer, at most the gap away; one
                // pose of the longer may be used twice
 };

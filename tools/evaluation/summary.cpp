@@ -41,11 +41,9 @@ std::optional<Coverage> CoverageOf(const EstimateRun& run, const JudgeOptions& o
   if (run.frames.empty() && !options.frame_stamps_ns) return std::nullopt;
   Coverage coverage;
   coverage.frames = frames.size();
-  std::size_t next = 0;
-  for (const std::int64_t stamp : frames) {
-    while (next < run.trajectory.size() && run.trajectory[next].stamp_ns < stamp) ++next;
-    coverage.with_pose += next < run.trajectory.size() && run.trajectory[next].stamp_ns == stamp;
-  }
+  // Each frame once, whatever rule the poses are judged by.
+  coverage.with_pose =
+      Associate(StampsOf(run.trajectory), frames, {AssociationRule::one_to_one, options.association.gap_ns}).size();
   if (!run.frames.empty()) {
     coverage.tracked = 0;
     for (const FrameRecord& frame : run.frames) *coverage.tracked += frame.tracked;

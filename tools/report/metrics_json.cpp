@@ -29,7 +29,22 @@ Json Of(const ev::Statistics& s, const char* unit, const std::string& how) {
 }
 
 std::string RuleName(ev::AssociationRule rule) {
-  return rule == ev::AssociationRule::nearest ? "nearest" : "one_to_one";
+  switch (rule) {
+    case ev::AssociationRule::tum:
+      return "tum";
+    case ev::AssociationRule::nearest:
+      return "nearest";
+    case ev::AssociationRule::one_to_one:
+      break;
+  }
+  return "one_to_one";
+}
+
+ev::AssociationRule RuleOf(const Json& name) {
+  for (const ev::AssociationRule rule : {ev::AssociationRule::tum, ev::AssociationRule::nearest}) {
+    if (name == RuleName(rule)) return rule;
+  }
+  return ev::AssociationRule::one_to_one;
 }
 
 std::string HowAssociated(const ev::JudgeOptions& options) {
@@ -214,8 +229,7 @@ std::vector<RecordedMetrics> ReadMetricsJson(const std::filesystem::path& out) {
       RecordedMetrics metrics;
       metrics.path = run.at("path").get<std::string>();
       const Json& options = run.at("options");
-      metrics.options.association.rule =
-          options.at("association") == "nearest" ? ev::AssociationRule::nearest : ev::AssociationRule::one_to_one;
+      metrics.options.association.rule = RuleOf(options.at("association"));
       metrics.options.association.gap_ns = nanoseconds(options.at("gap_s"));
       metrics.options.rpe_delta_ns = nanoseconds(options.at("rpe_delta_s"));
       metrics.options.rpe_tolerance_ns = nanoseconds(options.at("rpe_tolerance_s"));

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <set>
 
 #include "tests/unit/evaluation/random.h"
 #include "tools/evaluation/text_file.h"
@@ -13,6 +12,7 @@ namespace {
 
 using Stamps = std::vector<std::int64_t>;
 constexpr AssociationOptions kOneToOne{AssociationRule::one_to_one, 20'000'000};
+constexpr AssociationOptions kTum{AssociationRule::tum, 20'000'000};
 constexpr AssociationOptions kNearest{AssociationRule::nearest, 20'000'000};
 
 std::vector<std::pair<std::size_t, std::size_t>> Pairs(const std::vector<Match>& matches) {
@@ -40,9 +40,19 @@ TEST(Associate, TheGapIsOpenForOneRuleAndClosedForTheOther) {
   EXPECT_THROW(Associate({2, 1}, {1}, kOneToOne), std::logic_error);
 }
 
-// Against the definition, by brute force on random stamps: greedy over all pairs, and nearest.
+// Above a hundred poses a second two may each be within the gap of the other's truth.
+TEST(Associate, GoesForwardInBothButForTumsRule) {
+  const Stamps estimate = {0, 4'000'000, 20'000'000}, truth = {3'000'000, 6'000'000, 21'000'000};
+  EXPECT_EQ(Pairs(Associate(estimate, truth, kOneToOne)), (P{{1, 0}, {2, 2}}));
+  EXPECT_EQ(Pairs(Associate(truth, estimate, kOneToOne)), (P{{0, 1}, {2, 2}}));
+  EXPECT_EQ(Pairs(Associate(estimate, truth, kTum)), (P{{0, 1}, {1, 0}, {2, 2}}));
+}
+
+// Against the definition, by brute force on random stamps: greedy over all pairs, with and without those that cross a
+// closer one, and nearest.
 TEST(Associate, EqualsTheDefinitionByBruteForce) {
   TestRandom random(3);
+  int differ = 0;
   for (int trial = 0; trial < 200; ++trial) {
     Stamps estimate, truth;
     const int n = 1 + static_cast<int>(30 * random.Uniform());
@@ -51,24 +61,32 @@ TEST(Associate, EqualsTheDefinitionByBruteForce) {
     std::sort(estimate.begin(), estimate.end());
     std::sort(truth.begin(), truth.end());
 
-    P expected;
-    std::set<std::size_t> used_estimate, used_truth;
-    while (true) {
-      std::int64_t best = kOneToOne.gap_ns;
-      std::pair<std::size_t, std::size_t> pair;
-      for (std::size_t i = 0; i < estimate.size(); ++i) {
-        for (std::size_t j = 0; j < truth.size(); ++j) {
-          const std::int64_t apart = std::abs(estimate[i] - truth[j]);
-          if (apart < best && !used_estimate.contains(i) && !used_truth.contains(j)) best = apart, pair = {i, j};
+    const auto greedy = [&](bool may_cross) {
+      P pairs;
+      const auto fits = [&](std::size_t i, std::size_t j) {
+        return std::ranges::none_of(pairs, [&](const auto& pair) {
+          return pair.first == i || pair.second == j || (!may_cross && (pair.first < i) != (pair.second < j));
+        });
+      };
+      while (true) {
+        std::int64_t best = kOneToOne.gap_ns;
+        std::pair<std::size_t, std::size_t> pair;
+        for (std::size_t i = 0; i < estimate.size(); ++i) {
+          for (std::size_t j = 0; j < truth.size(); ++j) {
+            const std::int64_t apart = std::abs(estimate[i] - truth[j]);
+            if (apart < best && fits(i, j)) best = apart, pair = {i, j};
+          }
         }
+        if (best == kOneToOne.gap_ns) break;
+        pairs.push_back(pair);
       }
-      if (best == kOneToOne.gap_ns) break;
-      used_estimate.insert(pair.first);
-      used_truth.insert(pair.second);
-      expected.push_back(pair);
-    }
-    std::sort(expected.begin(), expected.end());
-    ASSERT_EQ(Pairs(Associate(estimate, truth, kOneToOne)), expected) << "trial " << trial;
+      std::sort(pairs.begin(), pairs.end());
+      return pairs;
+    };
+    const P ordered = greedy(false), crossed = greedy(true);
+    ASSERT_EQ(Pairs(Associate(estimate, truth, kOneToOne)), ordered) << "trial " << trial;
+    ASSERT_EQ(Pairs(Associate(estimate, truth, kTum)), crossed) << "trial " << trial;
+    differ += ordered != crossed;
 
     P nearest;
     for (std::size_t i = 0; i < estimate.size(); ++i) {
@@ -80,6 +98,7 @@ TEST(Associate, EqualsTheDefinitionByBruteForce) {
     }
     ASSERT_EQ(Pairs(Associate(estimate, truth, kNearest)), nearest) << "trial " << trial;
   }
+  EXPECT_GT(differ, 20);
 }
 
 TEST(MatchTrajectories, SaysWhatTimesWereCoveredWhenNothingFits) {

@@ -84,6 +84,23 @@ TEST(Judge, WithoutFrameListCoverageIsUnknown) {
   EXPECT_FALSE(metrics.coverage->tracked_coverage());
 }
 
+// Six decimals, as many systems write their stamps.
+TEST(Judge, PoseCoverageBearsRoundedStamps) {
+  TestRandom random(58);
+  const Trajectory truth = random.Walk(60);
+  EstimateRun run;
+  run.trajectory = {truth.begin(), truth.begin() + 45};
+  for (StampedPose& pose : run.trajectory) pose.stamp_ns = (pose.stamp_ns + 500) / 1000 * 1000;
+  JudgeOptions options;
+  options.frame_stamps_ns = StampsOf(truth);
+  EXPECT_EQ(Judge(run, truth, std::nullopt, options).coverage->pose_coverage(), 0.75);
+  // A second pose beside that of a frame is not a frame more.
+  StampedPose beside = run.trajectory.front();
+  beside.stamp_ns += 1'000'000;
+  run.trajectory.insert(run.trajectory.begin() + 1, beside);
+  EXPECT_EQ(Judge(run, truth, std::nullopt, options).coverage->pose_coverage(), 0.75);
+}
+
 TEST(Judge, RpeScalesTheEstimateWhereItSaysSo) {
   TestRandom random(54);
   const Trajectory truth = random.Walk(90);

@@ -74,7 +74,7 @@ std::string Lines(const std::string& label, const Statistics& s) {
 
 RpgResult ComputeRpg(const Trajectory& estimate, const Trajectory& truth, RpgAlignment alignment,
                      std::vector<double> lengths_m) {
-  const MatchedTrajectories matched = MatchTrajectories(estimate, truth, {});
+  const MatchedTrajectories matched = MatchTrajectories(estimate, truth, {.rule = AssociationRule::tum});
   RpgResult result;
   result.similarity = AlignmentOf(matched, alignment);
   std::vector<double> trans, rot;

@@ -27,7 +27,7 @@ std::string Compared(std::size_t pairs) { return "compared_pose_pairs " + std::t
 
 Ate ComputeTumAte(const Trajectory& estimate, const Trajectory& truth, const TumAteOptions& options) {
   const Trajectory moved = Shifted(estimate, options.offset_ns, options.scale);
-  const AssociationOptions association{AssociationRule::one_to_one, options.max_difference_ns};
+  const AssociationOptions association{AssociationRule::tum, options.max_difference_ns};
   return ComputeAte(MatchTrajectories(moved, truth, association), Alignment::se3);
 }
 
