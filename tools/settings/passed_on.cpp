@@ -9,7 +9,7 @@ std::string Flow(const Element& element) {
   std::string text;
   switch (element.kind) {
     case Element::Kind::null:
-      return "~";
+      return "null";
     case Element::Kind::scalar:
       return QuoteJson(element.text);
     case Element::Kind::list:

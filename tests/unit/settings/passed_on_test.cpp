@@ -22,7 +22,7 @@ TEST(PassedOn, GivesTheSameValuesToAnotherReader) {
   ASSERT_EQ(values.size(), 5u);
   EXPECT_EQ(values[0].text, "8 ms");
   EXPECT_EQ(values[3].text, "[\"1\", \"2\"]");
-  EXPECT_EQ(values[4].yaml, "{\"x\": \"1\", \"y\": [~]}");
+  EXPECT_EQ(values[4].yaml, "{\"x\": \"1\", \"y\": [null]}");
   ASSERT_EQ(one.size(), 1u);
   EXPECT_EQ(one[0].text, "4 px");
   EXPECT_THAT(set, ElementsAre(Pair("a.b", "\"3\""), Pair("c", "[\"1\"]")));
@@ -37,6 +37,24 @@ TEST(PassedOn, GivesTheSameValuesToAnotherReader) {
   other.ThrowIfBad();
   EXPECT_EQ(t, 0.008);
   EXPECT_THAT(n, ElementsAre(1, 2));
+}
+
+// What is recorded of it is JSON, and both readers know it for nothing.
+TEST(PassedOn, NothingIsNullOfJson) {
+  Document document = Document::FromText("values: [~, 3]\nset: {a: ~, b: }\n", "f");
+  std::vector<PassedOn> values;
+  std::vector<std::pair<std::string, std::string>> set;
+  Section root = document.root();
+  root.ReadPassedOn("values", values);
+  root.ReadPassedOn("set", set);
+  document.ThrowIfBad();
+  EXPECT_THAT(document.Resolved(), testing::HasSubstr("[null, \"3\"]"));
+  EXPECT_THAT(document.Resolved(), testing::HasSubstr("{\"a\": null, \"b\": null}"));
+  Document other = Document::FromText("", "g");
+  other.Override("t", values[0].yaml);
+  double t = 7;
+  other.root().Read("t", t);
+  EXPECT_THROW(other.ThrowIfBad(), Error);
 }
 
 TEST(PassedOn, AWordStandsForASection) {
