@@ -121,6 +121,22 @@ TEST(Verdict, IsReadAndShown) {
     EXPECT_THAT(error.what(), HasSubstr("verdict.csv:2:11: 'x' is not a finite number"));
     EXPECT_THAT(error.what(), HasSubstr("verdict.csv:3:1: not system"));
   }
+  const std::string good = "a,\"b\",1,>=,2,pass,0.01";
+  for (const std::string& bad : {std::string(), good + ",", good + ",3", "x," + good, "\"" + good, std::string("a,\"b"),
+                                 std::string("a,\"b\",1"), std::string("a,\"b\"c,1,>=,2,pass,0.01"),
+                                 std::string("a,\"b\",1,>,2,pass,0.01"), std::string("a,\"b\",,>=,2,pass,0.01")}) {
+    folder.Write("verdict.csv", header + bad + "\n");
+    EXPECT_THROW(ReadVerdict(folder.path()), InputError) << bad;
+  }
+}
+
+TEST(Verdict, ALineMayBeLong) {
+  const TemporaryFolder folder;
+  const std::string header = "system,check,value,relation,threshold,pass,false_alarm\n", name(1'000'000, 'x');
+  folder.Write("verdict.csv", header + "rb2pf,\"" + name + "\",1,>=,0.9,pass,0.01\n");
+  EXPECT_EQ(ReadVerdict(folder.path()).at(0).check, name);
+  folder.Write("verdict.csv", header + name + "\n");
+  EXPECT_THROW(ReadVerdict(folder.path()), InputError);
 }
 
 }  // namespace
