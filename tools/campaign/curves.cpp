@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "tools/campaign/table.h"
+
 namespace campaign {
 namespace {
 
@@ -142,12 +144,13 @@ std::string CurvesMarkdown(const std::vector<Curve>& curves) {
   std::string text;
   for (const Curve& curve : curves) {
     const auto table = [&](const std::string& title, const std::string& caption, const auto& estimates) {
-      text += fmt::format("\n### {}\n\n{}\n\n| {} |", TitleOf(curve, title), caption, curve.spec.along);
-      for (const CurveLine& line : curve.lines) text += " " + line.system + " |";
+      text += fmt::format("\n### {}\n\n{}\n\n| {} |", OneLine(TitleOf(curve, title)), caption,
+                          EscapeMarkdown(curve.spec.along));
+      for (const CurveLine& line : curve.lines) text += " " + EscapeMarkdown(line.system) + " |";
       text += "\n|---|";
       for (std::size_t i = 0; i < curve.lines.size(); ++i) text += "---:|";
       for (std::size_t d = 0; d < curve.levels.size(); ++d) {
-        text += "\n| " + curve.levels[d] + " |";
+        text += "\n| " + EscapeMarkdown(curve.levels[d]) + " |";
         for (const CurveLine& line : curve.lines) text += " " + CellText(estimates(line)[d]) + " |";
       }
       text += "\n";
@@ -165,7 +168,7 @@ std::string CurvesMarkdown(const std::vector<Curve>& curves) {
     text += "\nHalf of the runs have broken at";
     const char* between = " ";
     for (const CurveLine& line : curve.lines) {
-      text += between + line.system + ": ";
+      text += between + OneLine(line.system) + ": ";
       between = "; ";
       text += line.breaks ? fmt::format("{} [{}, {}]", DoseText(curve, line.breaks->at),
                                         DoseText(curve, line.breaks->low), DoseText(curve, line.breaks->high))

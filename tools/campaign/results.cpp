@@ -151,10 +151,16 @@ bool IsLost(const TaskRecord& record, const LostRule& rule) {
 }
 
 std::string ToJson(const TaskRecord& record) {
-  Json json = {
-      {"format", kFormat},       {"key", record.key},        {"task", record.task}, {"scenario", record.scenario},
-      {"levels", Json::array()}, {"system", record.system},  {"seed", record.seed}, {"status", Name(record.status)},
-      {"reason", record.reason}, {"metrics", Json::object()}};
+  Json json = {{"format", kFormat},
+               {"key", record.key},
+               {"task", record.task},
+               {"scenario", record.scenario},
+               {"levels", Json::array()},
+               {"system", record.system},
+               {"seed", record.seed},
+               {"status", Name(record.status)},
+               {"reason", OneLine(record.reason)},
+               {"metrics", Json::object()}};
   for (const auto& [name, value] : record.levels) json["levels"].push_back({name, value});
   for (std::size_t i = 0; i < record.metrics.size(); ++i) {
     json["metrics"][MetricNames()[i]] = record.metrics[i] ? Json(*record.metrics[i]) : Json();
@@ -190,6 +196,12 @@ TaskRecord RecordFromJson(const std::string& text) {
   } catch (const Json::exception& error) {
     throw std::invalid_argument(error.what());
   }
+}
+
+std::string OneLine(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return text;
 }
 
 std::string CsvField(const std::string& text) {

@@ -34,7 +34,7 @@ struct TaskRecord {
   LevelValues levels;
   std::uint64_t seed = 0;
   Status status = Status::failed;
-  std::string reason;                          // of what is neither ok nor lost; one line
+  std::string reason;                          // of what is neither ok nor lost; ToJson makes it one line
   std::vector<std::optional<double>> metrics;  // in the order of MetricNames; none at all where nothing was judged
 };
 
@@ -60,6 +60,9 @@ TaskRecord RecordFromJson(const std::string& text);
 
 // results.csv: a header, and a line for each record in their order.
 std::string ResultsCsv(const Campaign& campaign, const std::vector<TaskRecord>& records);
+
+// With a space for each line break.
+std::string OneLine(std::string text);
 
 // One field of a CSV line, quoted where it must be.
 std::string CsvField(const std::string& text);

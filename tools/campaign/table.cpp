@@ -50,9 +50,13 @@ std::string ValueOf(const Beside& beside, const std::vector<std::string>& row, c
 
 std::string EscapeLatex(const std::string& text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : OneLine(text)) {
     if (c == '\\') {
       out += "\\textbackslash{}";
+    } else if (c == '^') {
+      out += "\\textasciicircum{}";
+    } else if (c == '~') {
+      out += "\\textasciitilde{}";
     } else {
       if (std::string("_%&#${}").find(c) != std::string::npos) out += '\\';
       out += c;
@@ -120,19 +124,28 @@ std::string Caption(const Table& table) {
   return fmt::format("Median [quartiles] over {} runs a cell; X: lost, which counts as worse than any number.", runs);
 }
 
+std::string EscapeMarkdown(const std::string& text) {
+  std::string out;
+  for (const char c : OneLine(text)) {
+    if (c == '|') out += '\\';
+    out += c;
+  }
+  return out;
+}
+
 std::string Markdown(const std::vector<Table>& tables) {
   std::string text;
   for (const Table& table : tables) {
-    text += fmt::format("{}### {}\n\n{}\n\n|", text.empty() ? "" : "\n", table.spec.title, Caption(table));
-    for (const std::string& name : table.spec.rows) text += " " + name + " |";
-    for (const std::string& name : ColumnNames(table)) text += " " + name + " |";
+    text += fmt::format("{}### {}\n\n{}\n\n|", text.empty() ? "" : "\n", OneLine(table.spec.title), Caption(table));
+    for (const std::string& name : table.spec.rows) text += " " + EscapeMarkdown(name) + " |";
+    for (const std::string& name : ColumnNames(table)) text += " " + EscapeMarkdown(name) + " |";
     text += "\n|";
     for (std::size_t i = 0; i < table.spec.rows.size(); ++i) text += "---|";
     for (std::size_t i = 0; i < table.columns.size() + table.spec.beside.size(); ++i) text += "---:|";
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
       text += "\n|";
-      for (const std::string& level : table.rows[r]) text += " " + level + " |";
-      for (const std::string& cell : RowTexts(table, r, "X")) text += " " + cell + " |";
+      for (const std::string& level : table.rows[r]) text += " " + EscapeMarkdown(level) + " |";
+      for (const std::string& cell : RowTexts(table, r, "X")) text += " " + EscapeMarkdown(cell) + " |";
     }
     text += "\n";
   }
@@ -142,7 +155,7 @@ std::string Markdown(const std::vector<Table>& tables) {
 std::string Latex(const std::vector<Table>& tables) {
   std::string text;
   for (const Table& table : tables) {
-    text += fmt::format("% {}: {}\n\\begin{{tabular}}{{{}{}}}\n\\hline\n", table.spec.title, Caption(table),
+    text += fmt::format("% {}: {}\n\\begin{{tabular}}{{{}{}}}\n\\hline\n", OneLine(table.spec.title), Caption(table),
                         std::string(table.spec.rows.size(), 'l'),
                         std::string(table.columns.size() + table.spec.beside.size(), 'r'));
     std::vector<std::string> line;
@@ -152,7 +165,12 @@ std::string Latex(const std::vector<Table>& tables) {
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
       line.clear();
       for (const std::string& level : table.rows[r]) line.push_back(EscapeLatex(level));
-      for (const std::string& cell : RowTexts(table, r, "$\\times$")) line.push_back(cell);
+      const std::string lost = "$\\times$";
+      const std::vector<std::string> texts = RowTexts(table, r, lost);
+      for (std::size_t c = 0; c < texts.size(); ++c) {
+        const bool ours = c < table.columns.size();  // those of others may have anything in them
+        line.push_back(ours || texts[c] == lost ? texts[c] : EscapeLatex(texts[c]));
+      }
       text += Join(line, " & ") + " \\\\\n";
     }
     text += "\\hline\n\\end{tabular}\n";

@@ -31,6 +31,9 @@ std::vector<std::string> RowTexts(const Table& table, std::size_t row, const std
 // What a cell is, and over how many runs.
 std::string Caption(const Table& table);
 
+// As it may stand in a cell of Markdown's.
+std::string EscapeMarkdown(const std::string& text);
+
 // All tables of the campaign: "0.0123 [0.0101, 0.0150]", X for lost.
 std::string Markdown(const std::vector<Table>& tables);
 std::string Latex(const std::vector<Table>& tables);

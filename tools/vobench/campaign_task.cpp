@@ -170,7 +170,6 @@ void RecordFailure(const CampaignWork& work, const fs::path& out, std::int64_t t
   campaign::TaskRecord record = work.BlankRecord(task);
   record.status = campaign::Status::failed;
   record.reason = reason;
-  std::replace(record.reason.begin(), record.reason.end(), '\n', ' ');
   folder.Commit(record);
 }
 

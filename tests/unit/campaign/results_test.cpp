@@ -58,6 +58,15 @@ TEST(Results, ARecordIsReadAsItWasWritten) {
   }
 }
 
+// A line of results.csv is a task, for whoever counts or sorts lines.
+TEST(Results, AReasonIsOneLine) {
+  TaskRecord record = Sample(0, Status::no_answer, 0);
+  record.reason = "t.txt:1:5: 'x' is not a finite number\r\nt.txt:2:1: 3 columns\n";
+  const std::string csv = ResultsCsv(Small(), {RecordFromJson(ToJson(record))});
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 2);
+  EXPECT_THAT(csv, HasSubstr(",t.txt:1:5: 'x' is not a finite number  t.txt:2:1: 3 columns \n"));
+}
+
 TEST(Results, CsvIsTidyAndQuoted) {
   const std::string csv = ResultsCsv(Small(), {Sample(0, Status::ok, 0.25)});
   EXPECT_THAT(csv, testing::StartsWith("task,scenario,blur,system,seed,status,ate_m,"));
@@ -111,6 +120,23 @@ TEST(Table, HasItsUnitAndTheNumbersOfOthers) {
   EXPECT_THAT(Markdown({table}), HasSubstr("| blur | rbpf | paper | other |\n|---|---:|---:|---:|\n"
                                            "| 0 ms | 4 | 5.59 | - |\n| 4_ms | X | X | 7 |\n"));
   EXPECT_THAT(Latex({table}), HasSubstr("4\\_ms & $\\times$ & $\\times$ & 7 \\\\\n"));
+}
+
+// Whatever its texts are, a table has as many columns and lines as before.
+TEST(Table, TextsAreEscaped) {
+  Campaign c = Small();
+  c.factors[0].levels[0].name = "a|b\n^~";
+  c.systems[0].name = "x\ny|z";
+  TableSpec spec{"ate_m", "ATE\nof | all", {"blur"}, {"system"}};
+  spec.beside = {{"pa|per", {{"a|b\n^~", "5 % & |x|_1"}, {"4_ms", "X"}}}};
+  const Table table = MakeTable(c, spec, {Sample(0, Status::ok, 4), Sample(1, Status::ok, 3)});
+  EXPECT_THAT(Markdown({table}), testing::StartsWith("### ATE of | all\n\nMedian"));
+  EXPECT_THAT(Markdown({table}), HasSubstr("\n\n| blur | x y\\|z | pa\\|per |\n|---|---:|---:|\n"
+                                           "| a\\|b ^~ | 4 | 5 % & \\|x\\|_1 |\n| 4_ms | 3 | X |\n"));
+  EXPECT_THAT(Latex({table}), testing::StartsWith("% ATE of | all: Median"));
+  EXPECT_THAT(Latex({table}), HasSubstr("\nblur & x y|z & pa|per \\\\\n\\hline\n"
+                                        "a|b \\textasciicircum{}\\textasciitilde{} & 4 & 5 \\% \\& |x|\\_1 \\\\\n"
+                                        "4\\_ms & 3 & $\\times$ \\\\\n"));
 }
 
 TEST(Table, FailedTasksAreNoRunsAndAreCounted) {
