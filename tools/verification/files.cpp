@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
+#include <system_error>
 
 #include "tools/evaluation/text_file.h"
 #include "tools/limits/exr.h"
@@ -220,6 +221,15 @@ cv::Mat ReadFlo(const fs::path& path) {
   return flow;
 }
 
+// There is a ray for each of the camera's pixels; a picture of its size, of so many bytes, must be one that is read.
+void RequirePossibleSize(const Sequence& s) {
+  const std::vector<Entry>& pictures = s.images.at("rgb");
+  std::error_code error;
+  const std::uintmax_t bytes = pictures.empty() ? 0 : fs::file_size(s.folder / pictures.front().file, error);
+  const std::string problem = limits::PictureSizeProblem(s.camera.width, s.camera.height, error ? 0 : bytes);
+  if (!problem.empty()) throw std::runtime_error((s.folder / "camera.yaml").string() + ": " + problem);
+}
+
 }  // namespace
 
 std::string Sequence::FileAt(const std::string& stream, std::size_t frame) const {
@@ -243,6 +253,7 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
     const fs::path list = folder / (std::string(name) + ".txt");
     if (fs::exists(list)) s.images[name] = ReadTable(list, 0, true, true, ' ', files);
   }
+  RequirePossibleSize(s);
   for (const auto& [name, numbers] : {std::pair{"groundtruth", 7}, {"velocity", 6}, {"acceleration", 6}}) {
     const fs::path table = folder / (std::string(name) + ".txt");
     if (fs::exists(table)) s.texts[name] = ReadTable(table, static_cast<std::size_t>(numbers), true, true, ' ', files);

@@ -68,7 +68,7 @@ struct Sequence {
 
 // Reads all that is text. What is malformed is a failure of `files`, lists that disagree in their stamps one of
 // `stamps`, both with file and line. Throws std::runtime_error where there is no sequence at all: no folder, no
-// rgb.txt, no groundtruth.txt, no camera.yaml.
+// rgb.txt, no groundtruth.txt, no camera.yaml, or a camera of more pixels than a picture may have.
 Sequence ReadSequence(const std::filesystem::path& folder, Check& files, Check& stamps);
 
 // One picture: 8-bit (grey or colour) and 16-bit PNG as they are, EXR as CV_32FC1 or CV_32FC3 (R, G, B), .flo as

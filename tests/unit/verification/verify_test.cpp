@@ -361,5 +361,26 @@ TEST_F(VerifyTest, FilesThatAreNotAsTheyShould) {
   EXPECT_THROW(Verify(folder / "rgb"), std::runtime_error);
 }
 
+// Nothing is made for pixels that no picture of the sequence can have.
+TEST_F(VerifyTest, ACameraOfAnySizeIsRefused) {
+  const fs::path folder = Copy("plain");
+  const std::string camera = Read(folder / "camera.yaml");
+  for (const auto& [size, said] :
+       {std::pair{"width: 40000\nheight: 1\n", "camera.yaml: 40000 x 1 pixels: a side may have 32768"},
+        {"width: 32000\nheight: 1000\n", "camera.yaml: 32000 x 1000 pixels in "}}) {
+    const std::string before = "width: 160\nheight: 120\n";
+    std::string changed = camera;
+    ASSERT_TRUE(changed.starts_with(before)) << camera;
+    changed.replace(0, before.size(), size);
+    Write(folder / "camera.yaml", changed);
+    try {
+      Verify(folder);
+      ADD_FAILURE() << size;
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), HasSubstr(said));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace verification
