@@ -98,6 +98,18 @@ TEST_F(ExportTest, NothingIsLeftOfAFailure) {
   EXPECT_THAT(outcome.err, HasSubstr("gone.png"));
   EXPECT_TRUE(Tree(here_.path()) == spoiled) << "no half of a bag";
 }
+
+// A header that tells 30000 x 30000 pixels of 16 bits is not believed.
+TEST_F(ExportTest, DepthOfAnySizeIsRefused) {
+  ASSERT_EQ(Run({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:1"}).status, 0);
+  const std::filesystem::path depth = here_ / "seq/depth/0.000000000.png";
+  std::string bytes = ReadFile(depth);
+  bytes.replace(16, 8, std::string("\0\0\x75\x30\0\0\x75\x30", 8));
+  WriteFile(depth, bytes);
+  const Outcome outcome = Run({"export", "seq", "--bag", "x.bag"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("0.000000000.png: 30000 x 30000 pixels: a picture may have"));
+}
 #else
 TEST_F(ExportTest, SaysWhatIsMissing) {
   const Outcome outcome = Run({"export", "seq", "--bag", "x.bag"});

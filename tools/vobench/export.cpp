@@ -5,10 +5,10 @@
 #include <array>
 #include <initializer_list>
 #include <limits>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 
 #include "tools/evaluation/text_file.h"
+#include "tools/verification/files.h"
 #include "tools/vobench/commands.h"
 #include "tools/vobench/errors.h"
 #include "tools/vobench/progress.h"
@@ -119,8 +119,8 @@ BagFile::Picture PictureOf(const cv::Mat& image, const char* encoding) {
 }
 
 cv::Mat ReadDepth(const fs::path& file) {
-  const cv::Mat stored = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
-  if (stored.empty() || stored.type() != CV_16UC1) {
+  const cv::Mat stored = Input([&] { return verification::ReadPicture(file); });
+  if (stored.type() != CV_16UC1) {
     throw BadInput(fmt::format("{}: is not a 16-bit PNG of depth in metres x 5000", file.string()));
   }
   cv::Mat metres;
