@@ -94,5 +94,31 @@ TEST_F(LayoutsTest, EveryRunOfSeveralLeavesTrajectoriesByTheRulesAndAMap) {
   EXPECT_THAT(evo.out, testing::StartsWith("APE w.r.t. translation part (m)\n(with SE(3) Umeyama alignment)\n\n"));
 }
 
+// The NEES of metrics.json, whether a run began in its own world (`track`) or in the truth's.
+TEST_F(LayoutsTest, EvaluateJudgesARunAsItWasJudged) {
+  Run({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:8"});
+  Run({"track", "seq", "-o", "tracked"});
+  Run({"run", (TinyScenario().parent_path() / "points.yaml").string(), "-o", "out", "--runs", "2", "--set",
+       "time.duration=0.3 s"});
+  const std::string kNees = "NEES of the pose, per dof    ";
+  const auto printed = [&](const std::string& run, const std::string& truth) {
+    const std::string out = Run({"evaluate", run, "--truth", truth}).out;
+    const std::size_t at = out.find(kNees);
+    return at == std::string::npos ? out : out.substr(at + kNees.size());
+  };
+  const auto recorded = [&](const std::string& result) {
+    const std::string text = ReadFile(here_ / result / "metrics.json"), name = "\"mean_per_dof\": ";
+    return std::stod(text.substr(text.find(name, text.find("\"nees\"", text.find("\"runs\""))) + name.size()));
+  };
+  const std::string tracked = printed("tracked", "seq");
+  EXPECT_NEAR(std::stod(tracked), recorded("tracked"), 1e-3);
+  EXPECT_THAT(tracked, testing::HasSubstr("the first poses made equal"));
+  const std::string run = printed("out/rb2pf/seed_1", "out/rb2pf/seed_1/truth.txt");
+  EXPECT_NEAR(std::stod(run), recorded("out"), 1e-3);
+  EXPECT_THAT(run, testing::Not(testing::HasSubstr("made equal")));
+  fs::remove(here_ / "tracked/metrics.json");
+  EXPECT_THAT(printed("tracked", "seq"), testing::StartsWith("none: "));
+}
+
 }  // namespace
 }  // namespace vobench::system_test

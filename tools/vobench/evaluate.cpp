@@ -5,9 +5,11 @@
 #include <string_view>
 
 #include "tools/evaluation/summary.h"
+#include "tools/report/metrics_json.h"
 #include "tools/vobench/commands.h"
 #include "tools/vobench/compat.h"
 #include "tools/vobench/errors.h"
+#include "tools/vobench/result.h"
 #include "tools/vobench/sequence_truth.h"
 
 namespace vobench {
@@ -30,6 +32,19 @@ evaluation::EstimateRun ReadEstimate(const fs::path& path) {
   evaluation::EstimateRun run;
   run.trajectory = evaluation::ReadTrajectory(path);
   return run;
+}
+
+// How a run was judged, which alone says in whose world it began: by the metrics.json of its own folder or, as `run`
+// leaves it, of one further up. Nothing where none names it.
+std::optional<evaluation::JudgeOptions> RecordedOptions(const fs::path& run) {
+  const fs::path folder = fs::canonical(run);
+  for (fs::path result = folder; result.has_relative_path(); result = result.parent_path()) {
+    if (!fs::exists(result / "metrics.json") || (result != folder && !fs::exists(result / kResultMarker))) continue;
+    for (const report::RecordedMetrics& recorded : report::ReadMetricsJson(result)) {
+      if (fs::weakly_canonical(result / recorded.path) == folder) return recorded.options;
+    }
+  }
+  return std::nullopt;
 }
 
 evaluation::Trajectory ReadTruth(const fs::path& path) {
@@ -73,7 +88,8 @@ void Print(const evaluation::Metrics& metrics, evaluation::Alignment alignment) 
   }
   if (metrics.consistency) {
     const evaluation::NeesSummary& nees = metrics.consistency->pose;
-    fmt::print("{:<28} {:.3f}  (ideal 1; no alignment)\n", "NEES of the pose, per dof", nees.mean / nees.dof);
+    fmt::print("{:<28} {:.3f}  (ideal 1; {})\n", "NEES of the pose, per dof", nees.mean / nees.dof,
+               metrics.options.gauge == evaluation::Gauge::as_is ? "no alignment" : "the first poses made equal");
   }
   if (metrics.nis) fmt::print("{:<28} {:.3f}  (ideal 1)\n", "NIS, per dof", metrics.nis->mean_per_dof);
 }
@@ -88,9 +104,18 @@ void Evaluate(const EvaluateOptions& options) {
                }));
     return;
   }
-  const evaluation::EstimateRun estimate = Input([&] { return ReadEstimate(options.estimate); });
+  evaluation::EstimateRun estimate = Input([&] { return ReadEstimate(options.estimate); });
   const evaluation::Trajectory truth = Input([&] { return ReadTruth(options.truth); });
-  Print(Input([&] { return evaluation::Judge(estimate, truth, std::nullopt); }), AlignmentOf(options.align));
+  const auto recorded =
+      estimate.beliefs.empty() ? std::nullopt : Input([&] { return RecordedOptions(options.estimate); });
+  const bool world_is_known = estimate.beliefs.empty() || recorded;
+  if (!world_is_known) estimate.beliefs.clear();
+  const auto how = recorded.value_or(evaluation::JudgeOptions{});
+  Print(Input([&] { return evaluation::Judge(estimate, truth, std::nullopt, how); }), AlignmentOf(options.align));
+  if (!world_is_known) {
+    fmt::print("{:<28} none: without the metrics.json of this run nothing says whether it began in the truth's world\n",
+               "NEES of the pose, per dof");
+  }
 }
 
 }  // namespace vobench
