@@ -40,7 +40,8 @@ std::vector<StampedBelief> ReadBeliefs(const std::filesystem::path& file, Proble
     }
     const auto stamp = ParseSeconds(line.tokens[0].text);
     if (!stamp) {
-      problems.Add(file, line.number, line.tokens[0].column, "'" + line.tokens[0].text + "' is not a time in seconds");
+      problems.Add(file, line.number, line.tokens[0].column,
+                   "'" + line.tokens[0].text + "' is not a time in seconds, 4e9 at most");
       good = false;
     } else if (!beliefs.empty() && *stamp <= beliefs.back().velocity.stamp_ns) {
       problems.Add(file, line.number, line.tokens[0].column,

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <limits>
 #include <string_view>
 #include <system_error>
 
@@ -146,8 +145,13 @@ std::optional<std::int64_t> ParseSeconds(const std::string& text) {
     value = value * 10 + static_cast<std::uint64_t>(at < digits.size() ? digits[at] - '0' : 0);
   }
   if (whole < static_cast<int>(digits.size()) && digits[static_cast<std::size_t>(whole)] >= '5') ++value;
-  if (value > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) return std::nullopt;
+  if (value > static_cast<std::uint64_t>(kLatest_ns)) return std::nullopt;
   return negative ? -static_cast<std::int64_t>(value) : static_cast<std::int64_t>(value);
+}
+
+std::optional<std::int64_t> Nanoseconds(double seconds) {
+  if (!(std::abs(seconds) <= kLongest_s)) return std::nullopt;
+  return std::llround(seconds * 1e9);
 }
 
 std::string FormatSeconds(std::int64_t stamp_ns) {

@@ -47,8 +47,17 @@ std::vector<Line> ReadLines(const std::filesystem::path& file, char separator = 
 // The whole text as a finite number; nothing when it is anything else ("nan", "1.2x", "").
 std::optional<double> ParseNumber(const std::string& text);
 
+// How far a stamp may be from zero, and how long what is added to one (a gap, an offset, a delta): their sums and
+// differences fit into 64 bits.
+constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;
+constexpr double kLongest_s = 1e9;
+
 // Decimal seconds to nanoseconds, exactly (no double between; a tenth decimal is rounded). Exponents are understood.
+// Nothing beyond kLatest_ns.
 std::optional<std::int64_t> ParseSeconds(const std::string& text);
+
+// Of what is added to a stamp. Nothing beyond kLongest_s, and for what is no number.
+std::optional<std::int64_t> Nanoseconds(double seconds);
 
 // Nanoseconds as seconds with nine decimals.
 std::string FormatSeconds(std::int64_t stamp_ns);

@@ -30,7 +30,8 @@ std::optional<std::pair<std::int64_t, std::array<double, N>>> ParseLine(const st
   bool good = true;
   const auto stamp = ParseSeconds(line.tokens[0].text);
   if (!stamp) {
-    problems.Add(file, line.number, line.tokens[0].column, "'" + line.tokens[0].text + "' is not a time in seconds");
+    problems.Add(file, line.number, line.tokens[0].column,
+                 "'" + line.tokens[0].text + "' is not a time in seconds, 4e9 at most");
     good = false;
   }
   std::array<double, N> numbers{};

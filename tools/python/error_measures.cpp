@@ -3,6 +3,7 @@
 
 #include "tools/evaluation/ate.h"
 #include "tools/evaluation/rpe.h"
+#include "tools/evaluation/text_file.h"
 #include "tools/python/module.h"
 
 namespace vobench::python {
@@ -24,6 +25,9 @@ Trajectory MakeTrajectory(const Stamps& stamps_ns, const Points& positions, cons
   for (Eigen::Index i = 0; i < n; ++i) {
     if (i > 0 && stamps_ns.at(i) <= stamps_ns.at(i - 1)) {
       throw std::invalid_argument("stamps_ns[" + std::to_string(i) + "] is not after the one before");
+    }
+    if (stamps_ns.at(i) < -evaluation::kLatest_ns || stamps_ns.at(i) > evaluation::kLatest_ns) {
+      throw std::invalid_argument("stamps_ns[" + std::to_string(i) + "] is beyond 4e18");
     }
     if (!positions.row(i).allFinite())
       throw std::invalid_argument("positions[" + std::to_string(i) + "] is not finite");
@@ -52,11 +56,15 @@ evaluation::Alignment AlignmentOf(const std::string& name) {
   throw std::invalid_argument("align = " + name + " is none of none, se3, sim3, first");
 }
 
-std::int64_t Nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
+std::int64_t Nanoseconds(const std::string& name, double seconds) {
+  const auto ns = evaluation::Nanoseconds(seconds);
+  if (!ns) throw std::invalid_argument(name + " = " + std::to_string(seconds) + " is not a time of 1e9 s at most");
+  return *ns;
+}
 
 evaluation::MatchedTrajectories Match(const Trajectory& estimate, const Trajectory& truth, double gap_s) {
   evaluation::AssociationOptions options;
-  options.gap_ns = Nanoseconds(gap_s);
+  options.gap_ns = Nanoseconds("gap_s", gap_s);
   return evaluation::MatchTrajectories(estimate.poses, truth.poses, options);
 }
 
@@ -66,7 +74,8 @@ evaluation::Ate AteOf(const Trajectory& estimate, const Trajectory& truth, const
 
 evaluation::Rpe RpeOf(const Trajectory& estimate, const Trajectory& truth, double delta_s, double scale, double gap_s) {
   const evaluation::MatchedTrajectories matched = Match(estimate, truth, gap_s);
-  return evaluation::ComputeRpe(matched, evaluation::PairsByTime(matched.truth, Nanoseconds(delta_s)), scale);
+  return evaluation::ComputeRpe(matched, evaluation::PairsByTime(matched.truth, Nanoseconds("delta_s", delta_s)),
+                                scale);
 }
 
 py::array_t<double> Copy(const std::vector<double>& values) {

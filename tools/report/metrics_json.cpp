@@ -221,9 +221,9 @@ std::vector<RecordedMetrics> ReadMetricsJson(const std::filesystem::path& out) {
     const Json json = Json::parse(text);
     if (json.at("format") != kFormat) throw ev::InputError({file.string() + ": the format is not '" + kFormat + "'"});
     const auto nanoseconds = [&](const Json& value) {
-      const double ns = value.get<double>() * 1e9;
-      if (!(std::abs(ns) < 0x1p63)) throw ev::InputError({file.string() + ": " + value.dump() + " s is no time"});
-      return std::llround(ns);
+      const auto ns = ev::Nanoseconds(value.get<double>());
+      if (!ns) throw ev::InputError({file.string() + ": " + value.dump() + " s is no time of 1e9 s at most"});
+      return *ns;
     };
     for (const Json& run : json.at("runs")) {
       RecordedMetrics metrics;

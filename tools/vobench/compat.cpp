@@ -13,6 +13,7 @@
 #include "tools/evaluation/compat/openvins.h"
 #include "tools/evaluation/compat/rpg.h"
 #include "tools/evaluation/compat/tum.h"
+#include "tools/evaluation/text_file.h"
 #include "tools/vobench/errors.h"
 
 namespace vobench {
@@ -24,7 +25,13 @@ using evaluation::Trajectory;
 constexpr const char* kTools =
     "--compat is one of: tum [ate|rpe], evo ape|rpe, rpg, ov MODE, and that tool's own options (docs/metrics.md)";
 
-std::int64_t Nanoseconds(double seconds) { return static_cast<std::int64_t>(std::llround(seconds * 1e9)); }
+std::int64_t Nanoseconds(const char* option, double seconds) {
+  const auto ns = evaluation::Nanoseconds(seconds);
+  if (!ns)
+    throw BadInput(
+        fmt::format("--compat '... {} {}': not a time of {} s at most", option, seconds, evaluation::kLongest_s));
+  return *ns;
+}
 
 // The options of one program, parsed from the words after its name.
 class Words {
@@ -56,8 +63,8 @@ Reproduction TumAte(const std::vector<std::string>& arguments, bool verbose) {
   words.app().add_option("--max_difference", gap)->check(CLI::PositiveNumber);
   words.app().add_flag("--verbose", options.verbose);
   words.Parse(arguments);
-  options.max_difference_ns = Nanoseconds(gap);
-  options.offset_ns = Nanoseconds(offset);
+  options.max_difference_ns = Nanoseconds("--max_difference", gap);
+  options.offset_ns = Nanoseconds("--offset", offset);
   return {evaluation::Reading::strict, [options](const Trajectory& estimate, const Trajectory& truth) {
             return Print(ComputeTumAte(estimate, truth, options), options);
           }};
@@ -82,7 +89,8 @@ Reproduction TumRpe(const std::vector<std::string>& arguments, bool verbose) {
   words.app().add_option("--seed", options.seed);
   words.app().add_flag("--verbose", options.verbose);
   words.Parse(arguments);
-  options.offset_ns = Nanoseconds(offset);
+  options.offset_ns = Nanoseconds("--offset", offset);
+  if (options.unit == TumDeltaUnit::seconds) Nanoseconds("--delta", options.delta);
   return {evaluation::Reading::strict, [options](const Trajectory& estimate, const Trajectory& truth) {
             return Print(ComputeTumRpe(estimate, truth, options), options);
           }};
@@ -127,8 +135,8 @@ Reproduction Evo(const std::string& program, const std::vector<std::string>& arg
   if (options.unit == EvoDeltaUnit::frames && options.delta != std::floor(options.delta)) {
     throw BadInput(fmt::format("--compat 'evo rpe --delta {}': frames are counted whole", options.delta));
   }
-  common.t_max_diff_ns = Nanoseconds(gap);
-  common.t_offset_ns = Nanoseconds(offset);
+  common.t_max_diff_ns = Nanoseconds("--t_max_diff", gap);
+  common.t_offset_ns = Nanoseconds("--t_offset", offset);
   common.n_to_align = n_to_align < 0 ? 0 : static_cast<std::size_t>(n_to_align);
   const bool absolute = program == "ape";
   return {evaluation::Reading::strict, [options, absolute](const Trajectory& estimate, const Trajectory& truth) {

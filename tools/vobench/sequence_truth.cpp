@@ -30,7 +30,9 @@ std::optional<fs::path> IclNuimTruth(const fs::path& sequence) {
 std::optional<std::int64_t> ParseNanoseconds(const std::string& text) {
   std::int64_t stamp_ns = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), stamp_ns);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(stamp_ns) : std::nullopt;
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  const bool near = stamp_ns >= -evaluation::kLatest_ns && stamp_ns <= evaluation::kLatest_ns;
+  return whole && near ? std::optional(stamp_ns) : std::nullopt;
 }
 
 // T_BS of a sensor: from the sensor's frame to the body's.
@@ -58,7 +60,8 @@ evaluation::Trajectory ReadEurocTruth(const fs::path& file, const fs::path& came
       continue;
     }
     const auto stamp_ns = ParseNanoseconds(line.tokens[0].text);
-    if (!stamp_ns) problems.Add(file, line.number, 1, "'" + line.tokens[0].text + "' is not a time in nanoseconds");
+    if (!stamp_ns)
+      problems.Add(file, line.number, 1, "'" + line.tokens[0].text + "' is not a time in nanoseconds, 4e18 at most");
     if (stamp_ns && !poses.empty() && *stamp_ns <= poses.back().stamp_ns) {
       problems.Add(file, line.number, 1, "time does not increase");
     }

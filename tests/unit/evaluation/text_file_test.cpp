@@ -25,7 +25,22 @@ TEST(ParseSeconds, IsExactWhereADoubleIsNot) {
   EXPECT_EQ(ParseSeconds("-1.5"), -1'500'000'000);
   EXPECT_EQ(ParseSeconds("7"), 7'000'000'000);
   EXPECT_EQ(ParseSeconds("000000000000000000001.5"), 1'500'000'000);
-  EXPECT_EQ(ParseSeconds("9223372036.854775807"), 9223372036'854775807);
+  EXPECT_EQ(ParseSeconds("-3999999999.999999999"), -3999999999'999999999);
+}
+
+// Sums and differences of two stamps, and of a stamp and a gap, must fit.
+TEST(ParseSeconds, KnowsNoTimeBeyondFourBillionSeconds) {
+  EXPECT_EQ(ParseSeconds("4e9"), kLatest_ns);
+  EXPECT_EQ(ParseSeconds("-4e9"), -kLatest_ns);
+  for (const char* text : {"4000000000.000000001", "-4000000000.000000001", "9223372036.854775807"})
+    EXPECT_EQ(ParseSeconds(text), std::nullopt) << text;
+}
+
+TEST(Nanoseconds, AreThoseOfATimeThatMayBeAdded) {
+  EXPECT_EQ(Nanoseconds(0.02), 20'000'000);
+  EXPECT_EQ(Nanoseconds(-1e9), -1'000'000'000'000'000'000);
+  for (const double seconds : {1.1e9, -1e300, double(INFINITY), double(NAN)})
+    EXPECT_EQ(Nanoseconds(seconds), std::nullopt) << seconds;
 }
 
 TEST(ParseSeconds, RejectsWhatIsNoTime) {

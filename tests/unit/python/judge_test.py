@@ -44,6 +44,13 @@ class Trajectories(unittest.TestCase):
             vobench.Trajectory(0 * stamps, positions, orientations)
         with self.assertRaisesRegex(ValueError, "a trajectory of 60 stamps, 59 positions"):
             vobench.Trajectory(stamps, positions[1:], orientations)
+        with self.assertRaisesRegex(ValueError, r"stamps_ns\[59\] is beyond 4e18"):
+            vobench.Trajectory(np.append(stamps[:-1], 2 ** 62), positions, orientations)
+        trajectory = vobench.Trajectory(stamps, positions, orientations)
+        with self.assertRaisesRegex(ValueError, "gap_s = inf is not a time of 1e9 s at most"):
+            vobench.ate(trajectory, trajectory, gap_s=float("inf"))
+        with self.assertRaisesRegex(ValueError, "delta_s = 2000000000.0* is not a time"):
+            vobench.rpe(trajectory, trajectory, delta_s=2e9)
 
 
 class Errors(unittest.TestCase):

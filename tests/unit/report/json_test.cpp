@@ -130,13 +130,16 @@ TEST(MetricsJson, GivesTheOptionsBack) {
   EXPECT_EQ(recorded[1].options.association.rule, evaluation::AssociationRule::nearest);
   EXPECT_EQ(recorded[1].options.association.gap_ns, 10'000'000);
   EXPECT_EQ(recorded[1].options.rpe_delta_ns, 500'000'000);
-  folder.Write("metrics.json", R"({"format":"vobench metrics 1","runs":[{"path":"a","options":
-                 {"association":"nearest","gap_s":1e300,"rpe_delta_s":1,"rpe_tolerance_s":1}}]})");
-  try {
-    ReadMetricsJson(folder.path());
-    ADD_FAILURE();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("metrics.json: 1e+300 s is no time"));
+  for (const std::string gap : {"1e+300", "2000000000.0"}) {
+    folder.Write("metrics.json", R"({"format":"vobench metrics 1","runs":[{"path":"a","options":
+                 {"association":"nearest","rpe_delta_s":1,"rpe_tolerance_s":1,"gap_s":)" +
+                                     gap + "}}]}");
+    try {
+      ReadMetricsJson(folder.path());
+      ADD_FAILURE() << gap;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("metrics.json: " + gap + " s is no time of 1e9 s at most"));
+    }
   }
   folder.Write("metrics.json", R"({"format":"vobench metrics 1","runs":[{"path":"a"}]})");
   EXPECT_THROW(ReadMetricsJson(folder.path()), InputError);

@@ -101,6 +101,23 @@ TEST(Compat, UnknownToolsAndOptionsAreNamed) {
   }
 }
 
+TEST(Compat, TimesAndFramesBeyondReasonAreRefused) {
+  for (const std::string request :
+       {"tum ate --offset 1e300", "tum ate --max_difference 2e9", "tum rpe --offset -2e9",
+        "tum rpe --fixed_delta --delta 1e10", "evo ape --t_offset 9.3e9", "evo rpe --t_max_diff 1e300"}) {
+    try {
+      ParseCompat(request);
+      ADD_FAILURE() << request;
+    } catch (const BadInput& error) {
+      EXPECT_THAT(error.what(), HasSubstr("s at most")) << request;
+    }
+  }
+  for (const std::string request : {"evo rpe -d 1e300", "evo rpe -d 1e19 --all_pairs"}) {
+    EXPECT_THROW(Printed(request), evaluation::InputError) << request;
+  }
+  EXPECT_NO_THROW(ParseCompat("tum rpe --fixed_delta --delta 1e10 --delta_unit m"));
+}
+
 TEST(Compat, WhatDoesNotOverlapIsSaid) {
   Trajectory late = Estimate();
   for (auto& pose : late) pose.stamp_ns += 1'000'000'000'000;

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tools/evaluation/text_file.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -27,6 +29,23 @@ TEST(SequenceTruth, MirrorsOriginalIclNuimPoses) {
       Eigen::Quaterniond(0.7302967433, 0.1825741858, 0.3651483717, 0.5477225575).toRotationMatrix();
   EXPECT_LT((truth->poses[1].q_WC.toRotationMatrix() - S * R * S).norm(), 1e-9);
   EXPECT_LT((truth->poses[1].p_WC - Eigen::Vector3d(0.1, -0.2, 0.3)).norm(), 1e-12);
+  fs::remove_all(folder);
+}
+
+TEST(SequenceTruth, RefusesEurocTimesThatDoNotAddUp) {
+  const fs::path folder = fs::path(testing::TempDir()) / "euroc_truth",
+                 poses = folder / "mav0/state_groundtruth_estimate0";
+  fs::remove_all(folder);
+  fs::create_directories(poses);
+  fs::create_directories(folder / "mav0/cam0");
+  std::ofstream(folder / "mav0/cam0/sensor.yaml") << "T_BS: {data: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}\n";
+  const auto read = [&](const std::string& stamp) {
+    std::ofstream(poses / "data.csv") << stamp << ",0,0,0,1,0,0,0\n";
+    return vobench::ReadSequenceTruth(folder)->poses.at(0).stamp_ns;
+  };
+  EXPECT_EQ(read("4000000000000000000"), 4'000'000'000'000'000'000);
+  EXPECT_THROW(read("4000000000000000001"), evaluation::InputError);
+  EXPECT_THROW(read("-4000000000000000001"), evaluation::InputError);
   fs::remove_all(folder);
 }
 

@@ -1,5 +1,6 @@
 #include "tools/evaluation/compat/evo.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tools/evaluation/compat/format.h"
@@ -110,8 +111,10 @@ EvoResult ComputeEvoRpe(const Trajectory& estimate, const Trajectory& truth, con
   result.similarity = AlignmentOf(matched, options.common);
   matched.estimate = Apply(result.similarity, matched.estimate);
   const PairSelection selection = options.all_pairs ? PairSelection::all : PairSelection::consecutive;
+  const std::size_t poses = matched.truth.size();
   const std::vector<IndexPair> pairs =
-      frames ? PairsByFrames(matched.truth.size(), static_cast<std::size_t>(options.delta), selection)
+      frames ? PairsByFrames(poses, static_cast<std::size_t>(std::min(options.delta, static_cast<double>(poses))),
+                             selection)
              : PairsByPath(options.pairs_from_reference ? matched.truth : matched.estimate, options.delta, selection,
                            options.delta_tolerance);
   if (pairs.empty()) {
