@@ -27,5 +27,24 @@ TEST(Video, IsTrackedFrameByFrame) {
   EXPECT_FALSE(std::filesystem::exists(here / "other"));
 }
 
+// A stream that nobody knows the end of; whenever it is stopped, what has been tracked by then is the result.
+TEST(Video, CtrlCEndsALiveOneAndTheResultIsWritten) {
+  const TemporaryFolder here;
+  ASSERT_EQ(RunVobench({"render", TinyScenario().string(), "-o", "s", "--frames", "0:12"}, here.path()).status, 0);
+  for (const char* moment : {"0", "0.1", "0.2", "0.3", "0.4"}) {
+    const std::string filmed_until_stopped =
+        "rm -rf stream out\nmkfifo stream\n(while cat s/rgb/*.png; do :; done > stream) 2> /dev/null &\n"
+        "(until ls .out.partial*/frames/* > /dev/null 2>&1; do sleep 0.01; kill -0 $$ || exit; done; sleep " +
+        std::string(moment) + "; kill -INT $$) &\nexec \\";
+    const Outcome outcome =
+        RunVobench({"track", "file://" + (here / "stream").string(), "-o", "out", "--camera", "s/camera.yaml"},
+                   here.path(), filmed_until_stopped);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, testing::HasSubstr("Ctrl-C ends it, and the result is written."));
+    const std::string estimate = ReadFile(here / "out/estimate.txt");
+    EXPECT_GT(std::count(estimate.begin(), estimate.end(), '\n'), 1);
+  }
+}
+
 }  // namespace
 }  // namespace vobench::system_test

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -42,12 +43,13 @@ Progress::~Progress() {
 void Progress::Step(std::int64_t count) {
   done_ += count;
   const auto now = std::chrono::steady_clock::now();
-  if (done_ == total_ || now - drawn_ >= (terminal_ ? std::chrono::duration_cast<decltype(now - drawn_)>(kRedraw)
-                                                    : std::chrono::duration_cast<decltype(now - drawn_)>(kPlainLine))) {
+  const bool is_time = terminal_ ? now - drawn_ >= kRedraw : now - drawn_ >= kPlainLine;
+  const bool is_beyond = terminal_ && total_ > 0 && done_ > total_;  // no step is known to be the last
+  if (done_ == total_ || is_beyond || is_time) {
     drawn_ = now;
     Draw();
   }
-  if (InterruptPending()) throw Interrupted(what_ + " was interrupted; nothing was kept");
+  if (total_ > 0 && InterruptPending()) throw Interrupted(what_ + " was interrupted; nothing was kept");
 }
 
 void Progress::Draw() const {
@@ -62,9 +64,9 @@ void Progress::Draw() const {
     return;
   }
   constexpr int kWidth = 30;
-  const int filled = static_cast<int>(kWidth * done_ / total_);
+  const int filled = static_cast<int>(kWidth * std::min(done_, total_) / total_);
   const double left = elapsed / static_cast<double>(done_ - before_) * static_cast<double>(total_ - done_);
-  const std::string time = done_ == total_ ? "took " + Duration(elapsed) : Duration(left) + " left";
+  const std::string time = done_ >= total_ ? "took " + Duration(elapsed) : Duration(left) + " left";
   fmt::print(stderr, "\r{} [{}{}] {}/{}, {}    ", what_, std::string(static_cast<std::size_t>(filled), '#'),
              std::string(static_cast<std::size_t>(kWidth - filled), '.'), done_, total_, time);
 }

@@ -9,13 +9,14 @@ namespace vobench {
 
 class Progress {
  public:
-  // `done` of the total were done before; a total of 0 is not known.
+  // `done` of the total were done before; a total of 0 is not known, and one that a video file says may be too small.
   Progress(std::string what, std::int64_t total, std::int64_t done = 0, std::string unit = "frames");
   ~Progress();  // ends the bar's line
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // So many more of the total are done. Throws Interrupted when Ctrl-C or a request to end has arrived.
+  // So many more of the total are done, at least one. Throws Interrupted when Ctrl-C or a request to end has arrived, but
+  // not where the total is unknown: there that is how the work ends, and the caller asks for it (interrupt.h).
   void Step(std::int64_t count = 1);
 
  private:

@@ -136,10 +136,10 @@ void Track(const TrackOptions& options) {
       return vo::PreparedFrame(std::move(*frame));
     };
     while (const std::optional<vo::PreparedFrame> frame = Input(next)) {
-      if (!frames && InterruptPending()) break;
       tracker.Track(*frame);
       if (view) view->Update(frame->frame, {&tracker, 1}, shown, StartedAtTheOrigin());
       progress.Step();
+      if (!frames && InterruptPending()) break;
     }
   }
   const double elapsed_s = tracking.seconds();
