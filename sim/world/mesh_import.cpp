@@ -3,6 +3,7 @@
 #include <assimp/postprocess.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -151,7 +152,7 @@ MeshImport ImportMesh(const fs::path& file) {
   int ends[2] = {-1, -1};
   if (pipe2(ends, O_CLOEXEC) != 0)
     throw std::runtime_error(file.string() + ": no pipe to an importer: " + std::strerror(errno));
-  const pid_t child = fork();
+  const pid_t parent = getpid(), child = fork();
   if (child < 0) {
     const std::string why = std::strerror(errno);
     close(ends[0]);
@@ -159,6 +160,8 @@ MeshImport ImportMesh(const fs::path& file) {
     throw std::runtime_error(file.string() + ": no process for an importer: " + why);
   }
   if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(1);
     bool good = false;
     try {
       close(ends[0]);

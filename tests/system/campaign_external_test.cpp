@@ -1,5 +1,9 @@
 // Other people's systems in a campaign: one that works, and ones that crash, hang, lose frames or say nothing.
+#include <signal.h>
+#include <sys/wait.h>
+
 #include <chrono>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -129,13 +133,33 @@ TEST_F(CampaignTest, AnotherProgramIsJudgedAsOursIs) {
   EXPECT_EQ(task.at("coverage").at("pose_coverage"), track.at("coverage").at("pose_coverage"));
 }
 
-TEST_F(CampaignTest, AKilledCampaignTakesAnotherProgramAlong) {
-  WriteFile(here_ / "systems.yaml", "systems:\n  - {name: slow, command: \"touch " + (here_ / "began").string() +
-                                        "; sleep 5; touch " + (here_ / "late").string() + "\"}\n");
+TEST_F(CampaignTest, AStoppedCampaignTakesAnotherProgramAlongWithAllThatItStarted) {
+  WriteFile(here_ / "systems.yaml",
+            "systems:\n  - {name: slow, command: \"sleep 300 & echo -n $! > number; mv number " +
+                (here_ / "began").string() + "; wait\"}\n");
   WriteFile(here_ / "c.yaml", CampaignOf("[slow]"));
-  EXPECT_TRUE(KillVobench(Words("out"), here_.path(), [&] { return fs::exists(here_ / "began"); }));
-  std::this_thread::sleep_for(std::chrono::seconds(6));
-  EXPECT_FALSE(fs::exists(here_ / "late"));
+  for (const int signal : {SIGINT, SIGKILL}) {
+    const int campaign = StartVobench(Words("out"), here_.path());
+    int status = 0;
+    while (!fs::exists(here_ / "began")) {
+      ASSERT_EQ(waitpid(campaign, &status, WNOHANG), 0) << "it failed by itself";
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    const std::string grandchild = ReadFile(here_ / "began");
+    fs::remove(here_ / "began");
+    const auto runs = [&] {
+      std::ifstream stream("/proc/" + grandchild + "/stat");
+      std::string number, name, state;
+      return stream >> number >> name >> state && state != "Z";
+    };
+    EXPECT_TRUE(runs());
+    kill(campaign, signal);
+    ASSERT_EQ(waitpid(campaign, &status, 0), campaign);
+    // SIGKILL leaves nobody who could wait for it.
+    for (int tries = 0; signal == SIGKILL && runs() && tries < 5000; ++tries)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    EXPECT_FALSE(runs()) << "signal " << signal;
+  }
 }
 
 TEST_F(CampaignTest, EntriesAreCheckedBeforeAnythingRuns) {

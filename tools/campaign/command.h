@@ -14,8 +14,9 @@ struct CommandEnd {
   double seconds = 0;
 };
 
-// Starts `command` in `folder`. When it ends, or its time is over, all of its group is killed. It dies with this
-// process. Throws std::runtime_error when it cannot be started at all.
+// Starts `command` in `folder`. When it ends, what it leaves behind in its group is killed. When its time is over, or
+// this process dies (of SIGKILL, too), the group is sent SIGTERM, and three seconds later killed. Throws
+// std::runtime_error when it cannot be started at all.
 CommandEnd RunCommand(const std::string& command, const std::filesystem::path& folder, const std::filesystem::path& log,
                       double timeout_s);
 

@@ -61,6 +61,7 @@ ProcessPool::~ProcessPool() {
   for (const Running& process : running_) kill(process.pid, SIGKILL);
   for (const Running& process : running_) {
     waitpid(process.pid, nullptr, 0);
+    ReadAll(process.words);  // ends when all that it has started (RunCommand) is gone
     close(process.words);
   }
   const sigset_t set = ChildEnds();

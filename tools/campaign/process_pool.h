@@ -26,7 +26,7 @@ struct ProcessEnd {
 class ProcessPool {
  public:
   ProcessPool();
-  // Kills what still runs, and waits for it.
+  // Kills what still runs, and waits for it and for the commands that it runs.
   ~ProcessPool();
   ProcessPool(const ProcessPool&) = delete;
   ProcessPool& operator=(const ProcessPool&) = delete;

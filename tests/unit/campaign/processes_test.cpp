@@ -119,6 +119,56 @@ TEST_F(CommandTest, WhatItLeavesBehindGoesToo) {
   EXPECT_FALSE(std::filesystem::exists(here_ / "late"));
 }
 
+TEST_F(CommandTest, ItsTimeOverItIsAskedToEndBeforeItIsKilled) {
+  EXPECT_TRUE(Run("trap 'touch tidied; exit' TERM; sleep 60 & wait", 0.5).timed_out);
+  EXPECT_TRUE(std::filesystem::exists(here_ / "tidied"));
+  const auto began = steady_clock::now();
+  EXPECT_TRUE(Run("trap '' TERM; sleep 60; sleep 60", 0.3).timed_out);
+  EXPECT_LT(steady_clock::now() - began, std::chrono::seconds(30));
+}
+
+TEST_F(CommandTest, ASignalToItsOwnGroupIsItsOwnMatter) {
+  EXPECT_EQ(Run("trap '' TERM; kill 0; exit 4").status, 4);
+  EXPECT_EQ(Run("kill 0; exit 4").signal, SIGTERM);
+}
+
+bool Runs(const std::string& process) {
+  std::ifstream stream("/proc/" + process + "/stat");
+  std::string number, name, state;
+  return stream >> number >> name >> state && state != "Z";
+}
+
+// A process that runs a command, ended in the three ways that a campaign knows.
+TEST_F(CommandTest, EndsWithAllThatItStartedWhenTheProcessThatWaitsForItIsKilled) {
+  const auto work = [this] {
+    here_.Write("caller", std::to_string(getpid()));
+    Run("sh -c 'sleep 60 & echo -n $! > number; mv number grandchild; wait'; exit 0", 60);
+  };
+  const auto take_grandchild = [this] {
+    while (!std::filesystem::exists(here_ / "grandchild")) std::this_thread::sleep_for(milliseconds(1));
+    const std::string grandchild = here_.Read("grandchild");
+    EXPECT_TRUE(Runs(grandchild));
+    std::filesystem::remove(here_ / "grandchild");
+    return grandchild;
+  };
+  std::string grandchild;
+  {
+    ProcessPool pool;
+    pool.Start(1, {0, 2}, work);
+    grandchild = take_grandchild();
+    EXPECT_EQ(WaitForAll(pool).at(1), "took longer than the 2 s of --timeout");
+    EXPECT_FALSE(Runs(grandchild)) << "after --timeout";
+    pool.Start(2, {}, work);
+    grandchild = take_grandchild();
+    kill(std::stoi(here_.Read("caller")), SIGKILL);
+    EXPECT_THAT(WaitForAll(pool).at(2), HasSubstr("ended by signal 9"));
+    EXPECT_FALSE(Runs(grandchild)) << "after a kill";
+    pool.Start(3, {}, work);
+    grandchild = take_grandchild();
+  }
+  EXPECT_FALSE(Runs(grandchild)) << "after the pool";
+}
+
 TEST(FileLock, DiesWithItsProcess) {
   const Folder here;
   const auto path = here / "lock";
