@@ -81,7 +81,32 @@ TEST(Memory, NoMoreProcessesThanFit) {
   EXPECT_EQ(ShareOut(10, 2, 3).processes, 2);
   EXPECT_EQ(ShareOut(10, 2, 30).processes, 1) << "one at least";
   EXPECT_EQ(ShareOut(10, 2, 0).bytes, 5u);
+  EXPECT_EQ(ShareOut(1, 2, 0).bytes, 1u) << "0 would be no limit";
+  EXPECT_EQ(ShareOut(0, 2, 0).bytes, 1u);
   EXPECT_GT(AvailableMemory(), 1'000'000u);
+}
+
+TEST(Memory, IsThatOfTheTightestControlGroupLessTheCacheThatIsGivenBack) {
+  const Folder root;
+  root.Write("proc/meminfo", "MemTotal: 9000 kB\nMemAvailable: 8000 kB\n");
+  EXPECT_EQ(AvailableMemory(root.path()), 8'192'000u) << "no control groups";
+  root.Write("sys/fs/cgroup/memory.max", "7000000\n");
+  root.Write("sys/fs/cgroup/memory.current", "6000000\n");
+  EXPECT_EQ(AvailableMemory(root.path()), 1'000'000u) << "a container sees its own group as the root";
+  root.Write("sys/fs/cgroup/memory.stat", "anon 5000\ninactive_file 4000000\nactive_file 1\n");
+  EXPECT_EQ(AvailableMemory(root.path()), 5'000'000u) << "6 MB, of which 4 are cache";
+  root.Write("proc/self/cgroup", "0::/user/job\n");
+  root.Write("sys/fs/cgroup/user/memory.max", "3000000\n");
+  root.Write("sys/fs/cgroup/user/memory.current", "1000000\n");
+  root.Write("sys/fs/cgroup/user/job/memory.max", "max\n");
+  root.Write("sys/fs/cgroup/user/job/memory.current", "900000\n");
+  EXPECT_EQ(AvailableMemory(root.path()), 2'000'000u) << "its parent's";
+  root.Write("sys/fs/cgroup/user/job/memory.max", "950000\n");
+  EXPECT_EQ(AvailableMemory(root.path()), 50'000u) << "its own";
+  root.Write("sys/fs/cgroup/user/job/memory.current", "960000\n");
+  EXPECT_EQ(AvailableMemory(root.path()), 0u);
+  root.Write("proc/self/cgroup", "0::/../elsewhere\n");
+  EXPECT_EQ(AvailableMemory(root.path()), 5'000'000u) << "not below here: what is seen of it";
 }
 
 class CommandTest : public testing::Test {
