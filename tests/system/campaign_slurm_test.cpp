@@ -62,5 +62,29 @@ TEST_F(CampaignSlurmTest, TheCampaignTheDaemonAndTheNodeAreKilled) {
   EXPECT_TRUE(Lasting("slurm") == Lasting("local"));
 }
 
+// A controller that is away for a while: its jobs may well be in the queue.
+TEST_F(CampaignTest, NothingIsSubmittedWhileNobodyKnowsWhatIsInTheQueue) {
+  const auto command = [&](const std::string& name, const std::string& script) {
+    WriteFile(here_ / ("bin/" + name), "#!/bin/sh\n" + script);
+    fs::permissions(here_ / ("bin/" + name), fs::perms::owner_all);
+  };
+  const std::string asked = (here_ / "asked").string();
+  command("squeue", "test -e " + asked + " && exit 0; touch " + asked +
+                        ";  echo 'slurm_load_jobs error: Unable to contact slurm controller' >&2; exit 1\n");
+  command("sbatch", "touch " + (here_ / "submitted").string() + "\n");
+  WriteFile(here_ / "c.yaml", Points());
+  const auto run = [&] {
+    return RunVobench(Words("out", {"--engine", "slurm"}), here_.path(),
+                      "PATH=" + Quoted((here_ / "bin").string()) + ":$PATH; export PATH");
+  };
+  const Outcome outcome = run();
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("squeue does not say whether jobs of an earlier start (vobench-"));
+  EXPECT_THAT(outcome.err, HasSubstr("are in the queue, so nothing was submitted: slurm_load_jobs error: Unable to"));
+  EXPECT_FALSE(fs::exists(here_ / "submitted"));
+  EXPECT_THAT(run().err, HasSubstr("no result from Slurm in 3 rounds")) << "of a queue that is known to be empty";
+  EXPECT_TRUE(fs::exists(here_ / "submitted"));
+}
+
 }  // namespace
 }  // namespace vobench::system_test

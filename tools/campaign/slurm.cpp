@@ -80,10 +80,11 @@ void Submit(const fs::path& script, const fs::path& where) {
   if (!answer.good) throw std::runtime_error("sbatch: " + answer.text);
 }
 
-SlurmState StateOf(const std::string& name, const fs::path& where) {
+SlurmAnswer AskForJobs(const std::string& name, const fs::path& where) {
   const Answer answer = Ask("squeue --noheader --format=%A --name=" + name, where);
-  if (!answer.good) return SlurmState::unknown;
-  return answer.text.find_first_of("0123456789") == std::string::npos ? SlurmState::gone : SlurmState::queued;
+  if (!answer.good) return {SlurmState::unknown, answer.text};
+  const bool is_none = answer.text.find_first_of("0123456789") == std::string::npos;
+  return {is_none ? SlurmState::gone : SlurmState::queued, answer.text};
 }
 
 }  // namespace campaign

@@ -36,6 +36,10 @@ enum class SlurmState {
   gone,     // no job of this name is left
   unknown,  // the controller does not answer, or there is no squeue here
 };
-SlurmState StateOf(const std::string& name, const std::filesystem::path& where);
+struct SlurmAnswer {
+  SlurmState state = SlurmState::unknown;
+  std::string words;  // squeue's own
+};
+SlurmAnswer AskForJobs(const std::string& name, const std::filesystem::path& where);
 
 }  // namespace campaign

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -37,7 +38,13 @@ class SlurmRun {
   void Run() {
     fs::create_directories(folder_);
     const campaign::FileLock alone = campaign::LockOutput(folder_, campaign::FileLock::Kind::exclusive);
-    if (campaign::StateOf(name_, folder_) == campaign::SlurmState::queued) {
+    const campaign::SlurmAnswer earlier = campaign::AskForJobs(name_, folder_);
+    if (earlier.state == campaign::SlurmState::unknown) {
+      throw std::runtime_error(fmt::format(
+          "squeue does not say whether jobs of an earlier start ({}) are in the queue, so nothing was submitted: {}",
+          name_, earlier.words.empty() ? "it does not answer" : earlier.words));
+    }
+    if (earlier.state == campaign::SlurmState::queued) {
       fmt::print(stderr, "jobs of an earlier start ({}) are in the queue: waiting for them\n", name_);
       WaitForJobs();
     }
@@ -87,7 +94,7 @@ class SlurmRun {
   void WaitForJobs() {
     using std::chrono::milliseconds;
     for (milliseconds pause(200);; pause = std::min(pause * 5 / 4, milliseconds(10'000))) {
-      const campaign::SlurmState state = campaign::StateOf(name_, folder_);
+      const campaign::SlurmState state = campaign::AskForJobs(name_, folder_).state;
       Collect();
       if (left_.empty() || state == campaign::SlurmState::gone) return;
       for (milliseconds slept(0); slept < pause; slept += milliseconds(100)) {
