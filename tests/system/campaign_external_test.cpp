@@ -142,7 +142,7 @@ TEST_F(CampaignTest, AStoppedCampaignTakesAnotherProgramAlongWithAllThatItStarte
     const int campaign = StartVobench(Words("out"), here_.path());
     int status = 0;
     while (!fs::exists(here_ / "began")) {
-      ASSERT_EQ(waitpid(campaign, &status, WNOHANG), 0) << "it failed by itself";
+      ASSERT_EQ(waitpid(campaign, &status, WNOHANG), 0) << "the program failed by itself";
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     const std::string grandchild = ReadFile(here_ / "began");

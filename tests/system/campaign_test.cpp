@@ -296,6 +296,12 @@ TEST_F(CampaignTest, EverythingIsCheckedBeforeAnythingRuns) {
   EXPECT_FALSE(fs::exists(here_ / "out/tasks"));
   WriteFile(here_ / "mine/letter.txt", "x");
   EXPECT_THAT(Run(Points(), "mine").err, HasSubstr("mine: is no campaign's folder"));
+  fs::create_symlink("unmounted/cache", here_ / "cache");
+  for (const Outcome& linked : {Run(Images(), "linked", {"--cache", "cache"}), Run(Images(), "cache")}) {
+    EXPECT_EQ(linked.status, 2);
+    EXPECT_THAT(linked.err, HasSubstr("cache: is a link to unmounted/cache, which is not there"));
+  }
+  EXPECT_FALSE(fs::exists(here_ / "linked"));
   EXPECT_EQ(Tree(here_ / "mine").size(), 1u);
 }
 

@@ -203,9 +203,8 @@ void RunCampaign(const CampaignOptions& asked) {
   options.cache = CleanPath(asked.cache.value_or(options.output / "cache"));
   CampaignWork work(options.file, *options.cache);
   if (options.dry_run) return List(work);
-  if (fs::exists(options.output) && !fs::is_directory(options.output)) {
-    throw BadInput(options.output.string() + ": is there and is no folder");
-  }
+  RequireFolderIfThere(options.output);
+  RequireFolderIfThere(*options.cache);
   try {
     campaign::PrepareOutput(options.output, Record(work.campaign()));
   } catch (const std::invalid_argument& error) {

@@ -24,10 +24,19 @@ fs::path CleanPath(const fs::path& path) {
   return clean.has_filename() ? clean : clean.parent_path();
 }
 
+void RequireFolderIfThere(const fs::path& path) {
+  const fs::file_status own = fs::symlink_status(path);
+  if (!fs::exists(own) || fs::is_directory(path)) return;
+  if (fs::is_symlink(own) && !fs::exists(path)) {
+    throw BadInput(
+        fmt::format("{}: is a link to {}, which is not there", path.string(), fs::read_symlink(path).string()));
+  }
+  throw BadInput(fmt::format("{}: is there and is no folder", path.string()));
+}
+
 void RequireReplaceable(const fs::path& folder, const std::string& marker, const std::set<std::string>& ours) {
-  if (!fs::exists(fs::symlink_status(folder))) return;
-  if (!fs::is_directory(folder)) throw BadInput(fmt::format("{}: is there and is no folder", folder.string()));
-  if (fs::is_empty(folder)) return;
+  RequireFolderIfThere(folder);
+  if (!fs::exists(folder) || fs::is_empty(folder)) return;
   if (!fs::exists(folder / marker)) {
     throw BadInput(fmt::format("{}: is there already and not made by this command (it has no {}); choose another name",
                                folder.string(), marker));

@@ -44,6 +44,9 @@ void ReplaceFolder(const std::filesystem::path& from, const std::filesystem::pat
 // "out/demo/" and "out/./demo" name the same folder: .../out/demo.
 std::filesystem::path CleanPath(const std::filesystem::path& path);
 
+// Throws BadInput where there is something else than a folder, a link to nothing too.
+void RequireFolderIfThere(const std::filesystem::path& path);
+
 // Throws BadInput unless `folder` is absent, empty or one of ours, as above. For checking before long work.
 void RequireReplaceable(const std::filesystem::path& folder, const std::string& marker,
                         const std::set<std::string>& ours);

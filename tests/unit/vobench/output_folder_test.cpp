@@ -91,9 +91,11 @@ TEST_F(OutputFolderTest, RefusesWhatIsNotOurs) {
   Write(here_ / "file", "text");
   EXPECT_THAT(Refusal(here_ / "photos"), HasSubstr("photos: is there already"));
   EXPECT_THAT(Refusal(here_ / "mixed"), HasSubstr("thesis.tex"));
+  fs::create_symlink("nowhere/out", here_ / "link");
   EXPECT_THAT(Refusal(here_ / "file"), HasSubstr("is no folder"));
+  EXPECT_THAT(Refusal(here_ / "link"), HasSubstr("link: is a link to nowhere/out, which is not there"));
   EXPECT_EQ(Read(here_ / "mixed" / "thesis.tex"), "years of work");
-  EXPECT_EQ(EntriesHere(), 3U);
+  EXPECT_EQ(EntriesHere(), 4U);
 }
 
 TEST_F(OutputFolderTest, AnEmptyFolderMayBeReplaced) {
