@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include "sim/render/raster_draw.h"
 #include "sim/render/raster_view.h"
-#include "sim/render/sample_pattern.h"
 
 namespace sim {
 namespace {
@@ -38,7 +36,7 @@ glm::vec4 OverBox(const glm::dvec3& axis, const RasterScene& scene) {
 }
 
 struct AddLight {
-  int i, count;
+  const glm::dvec2& point;
   const RasterScene& scene;
   std::vector<RasterLight>& out;
   int& lasting_layers;
@@ -54,10 +52,7 @@ struct AddLight {
   void operator()(const PointLight& light) const { Add(light.position, light.intensity, kPoint); }
   void operator()(const RectLight& light) const {
     const glm::dvec3 cross = glm::cross(light.side_u, light.side_v);
-    const PatternPoint point = SobolPoint(static_cast<std::uint32_t>(i));
-    const double centring = 0.5 / std::bit_ceil(static_cast<unsigned>(count));  // as in the ray tracer
-    const glm::dvec3 at =
-        light.corner + (ToUnit(point.u) + centring) * light.side_u + (ToUnit(point.v) + centring) * light.side_v;
+    const glm::dvec3 at = light.corner + point.x * light.side_u + point.y * light.side_v;
     Add(at, light.radiance * glm::length(cross), kRectangle).normal = glm::vec4(glm::dvec4(glm::normalize(cross), 0.0));
   }
   RasterLight& Add(const glm::dvec3& place, const glm::dvec3& power, Kind kind) const {
@@ -82,10 +77,11 @@ int Layers(const std::vector<RasterLight>& lights, bool of_rectangles) {
 
 }  // namespace
 
-std::vector<RasterLight> LightsOfSample(const std::vector<Light>& lights, int i, int count, const RasterScene& scene) {
+std::vector<RasterLight> LightsOfSample(const std::vector<Light>& lights, const glm::dvec2& point,
+                                        const RasterScene& scene) {
   std::vector<RasterLight> out;
   int lasting_layers = 0, sample_layers = 0;
-  for (const Light& light : lights) std::visit(AddLight{i, count, scene, out, lasting_layers, sample_layers}, light);
+  for (const Light& light : lights) std::visit(AddLight{point, scene, out, lasting_layers, sample_layers}, light);
   return out;
 }
 

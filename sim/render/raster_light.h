@@ -1,6 +1,7 @@
 // Purpose: lights and their shadow maps as the rasteriser's shaders read them. Private to sim/render.
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <vector>
@@ -19,9 +20,9 @@ struct RasterLight {
   glm::vec4 map[3];  // of a sun: (map . (X_W, 1)) is the place in its shadow map, and how near it is; all in 0 ... 1
 };
 
-// All but the ambient ones, as sample i of n of an exposure sees them: the same points on rectangles as the ray
-// tracer's.
-std::vector<RasterLight> LightsOfSample(const std::vector<Light>& lights, int i, int count, const RasterScene& scene);
+// All but the ambient ones, as a sample of an exposure sees them. point: of rectangles, in parts of their sides.
+std::vector<RasterLight> LightsOfSample(const std::vector<Light>& lights, const glm::dvec2& point,
+                                        const RasterScene& scene);
 
 // What is lit, by distance: for a point the six faces of a cube, for a sun one picture of the whole scene. Those of
 // suns and points are drawn once, those of rectangles once for each number of samples, since worlds stand still.

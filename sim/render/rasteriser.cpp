@@ -130,13 +130,14 @@ class Drawing {
     SetUp();
     const std::vector<glm::vec2> jitter = Jitter(count, options_.jitter);
     const std::vector<DiscPoint> lens = DiscPoints(count);
+    const std::vector<glm::dvec2> on_light = PointsOnLight(count);
     std::vector<std::vector<RasterLight>> lights;
     std::vector<RasterLight> table;
     const double part_s = exposure.exposure_s / count;
     const auto moment = [&](double middle_s, int i) { return middle_s + part_s * (i + 0.5 - 0.5 * count); };
     for (int i = 0; i < count; ++i) {
       scene_.Move(moment(exposure.middle_s, i));
-      lights.push_back(LightsOfSample(lights_, i, count, scene_));
+      lights.push_back(LightsOfSample(lights_, on_light[static_cast<std::size_t>(i)], scene_));
       table.insert(table.end(), lights.back().begin(), lights.back().end());
     }
     if (options_.shadows && !scene_.moves()) shadows_.Draw(scene_, depth_, lights);

@@ -5,7 +5,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -38,11 +37,9 @@ void Store(float (&to)[3], const glm::dvec3& from) {
   for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(from[c]);
 }
 
-// A light as ray i of n sees it; only a rectangular one differs between rays. The n points of the pattern lie on
-// multiples of 1 / n (n a power of two): half of that more centres them on the light.
+// A light as one ray of a pixel sees it; only a rectangular one differs between rays.
 struct SampleLight {
-  PatternPoint point;
-  double centring;
+  glm::dvec2 point;  // in parts of a rectangle's sides
   std::vector<LightSample>& out;
 
   void operator()(const AmbientLight&) const {}
@@ -57,8 +54,7 @@ struct SampleLight {
   void operator()(const PointLight& light) const { At(light.position, light.intensity, nullptr); }
   void operator()(const RectLight& light) const {
     const glm::dvec3 cross = glm::cross(light.side_u, light.side_v);
-    const glm::dvec3 at =
-        light.corner + (ToUnit(point.u) + centring) * light.side_u + (ToUnit(point.v) + centring) * light.side_v;
+    const glm::dvec3 at = light.corner + point.x * light.side_u + point.y * light.side_v;
     const glm::dvec3 normal = glm::normalize(cross);
     At(at, light.radiance * glm::length(cross), &normal);
   }
@@ -252,13 +248,12 @@ class RayTracer final : public Renderer {
     out.rolls = exposure.row_delay_s != 0;
     out.time = {exposure.exposure_s / count, exposure.row_delay_s};
     out.lights.resize(static_cast<std::size_t>(count));
-    const double centring = 0.5 / std::bit_ceil(static_cast<unsigned>(count));
+    const std::vector<glm::dvec2> on_light = PointsOnLight(count);
     for (int i = 0; i < count; ++i) {
-      const PatternPoint point = SobolPoint(static_cast<std::uint32_t>(i));
       for (const Light& light : lights_) {
         std::vector<LightSample>& lights = out.lights[static_cast<std::size_t>(i)];
         const std::size_t before = lights.size();
-        std::visit(SampleLight{point, centring, lights}, light);
+        std::visit(SampleLight{on_light[static_cast<std::size_t>(i)], lights}, light);
         if (lights.size() > before) lights.back().layer = LayerOf(light, layers_);
       }
     }

@@ -2,7 +2,9 @@
 
 #include <Random123/philox.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <numbers>
 #include <utility>
 
@@ -20,6 +22,19 @@ PatternPoint SobolPoint(std::uint32_t i) {
     v_direction ^= v_direction >> 1;
   }
   return point;
+}
+
+std::vector<glm::dvec2> PointsOnLight(int n) {
+  std::vector<glm::dvec2> points;
+  std::uint64_t u_sum = 0, v_sum = 0;  // whole numbers: exact
+  for (int i = 0; i < n; ++i) {
+    const PatternPoint point = SobolPoint(static_cast<std::uint32_t>(i));
+    points.emplace_back(ToUnit(point.u), ToUnit(point.v));
+    u_sum += point.u, v_sum += point.v;
+  }
+  const glm::dvec2 mean = glm::dvec2(u_sum, v_sum) / static_cast<double>(n) * 0x1p-32;
+  for (glm::dvec2& point : points) point = glm::clamp(point + (0.5 - mean), 0.0, 1.0);
+  return points;
 }
 
 std::vector<DiscPoint> DiscPoints(int n) {

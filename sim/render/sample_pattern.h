@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <vector>
 
 namespace sim {
@@ -18,6 +19,10 @@ inline double ToUnit(std::uint32_t fraction) { return (fraction + 0.5) * 0x1p-32
 
 // The i-th point of the sequence.
 PatternPoint SobolPoint(std::uint32_t i);
+
+// Where the first n points are on an area light, in parts of its sides: moved together so that their mean is its middle;
+// what that would put beyond its edge is on it.
+std::vector<glm::dvec2> PointsOnLight(int n);
 
 // The i-th of n points of the unit disc, evenly spread (Vogel 1979's spiral), in an order that has nothing to do with
 // that of the other pattern.

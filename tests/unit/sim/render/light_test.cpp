@@ -127,6 +127,24 @@ TEST_P(Light, RectLightOnPlaneAgainstLambertsFormula) {
   }
 }
 
+// The light of a lamp that stands upright beside the wall grows with the height of its points: their mean must be the
+// lamp's middle whatever their number.
+TEST_P(Light, RectLightIsCentredWithAnyNumberOfRays) {
+  const glm::dvec3 n(0, 0, -1);
+  Scene scene = PlaneWorld({0, 0, 3}, n);
+  const RectLight light{{-10, -0.5, 2.5}, {0, 0, -1}, {0, 1, 0}, {300, 300, 300}};  // shines towards +x
+  scene.lights.push_back(light);
+  const std::vector<glm::dvec3> corners = {light.corner, light.corner + light.side_u,
+                                           light.corner + light.side_u + light.side_v, light.corner + light.side_v};
+  const Camera camera(SmallCamera(1, 1));  // its only pixel looks along z
+  const double expected = 0.8 / std::numbers::pi * 300 * PolygonIrradiance(corners, {0, 0, 3}, n);
+  for (const int rays : {2, 3, 5, 8, 12, 24}) {
+    RayTracerOptions options = Centred();
+    options.rays_per_time_sample = rays;
+    EXPECT_NEAR(Render(scene, camera, Pose{}, options).pixel(0, 0)[0] / expected, 1.0, 4e-3) << rays;
+  }
+}
+
 TEST_P(Light, RectLightIsDarkBehind) {
   Scene scene = PlaneWorld({0, 0, 3}, {0, 0, -1});
   scene.lights.push_back(RectLight{{-0.5, -0.4, 1.0}, {0, 0.7, 0}, {1.2, 0, 0}, {3, 2, 1}});  // shines towards -z

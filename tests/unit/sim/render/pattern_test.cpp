@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <glm/vec2.hpp>
 #include <set>
 #include <vector>
 
@@ -26,6 +27,22 @@ TEST(Pattern, IsANetInEveryAlignedRun) {
         }
       }
     }
+  }
+}
+
+// However many, they are neither to one side of the light nor beyond its edge, at which some of 35 and more stay.
+TEST(Pattern, PointsOnALightHaveItsMiddleAsTheirMean) {
+  for (int n = 1; n <= 256; ++n) {
+    glm::dvec2 mean(0.0);
+    for (const glm::dvec2& point : PointsOnLight(n)) {
+      for (int c = 0; c < 2; ++c) {
+        EXPECT_GE(point[c], 0.0) << n;
+        EXPECT_LE(point[c], 1.0) << n;
+      }
+      mean += point / static_cast<double>(n);
+    }
+    EXPECT_NEAR(mean.x, 0.5, n < 35 ? 1e-9 : 2e-4) << n;
+    EXPECT_NEAR(mean.y, 0.5, n < 35 ? 1e-9 : 2e-4) << n;
   }
 }
 
