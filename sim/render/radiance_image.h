@@ -6,6 +6,9 @@
 
 namespace sim {
 
+// Of linear RGB with sRGB's primaries.
+inline float Luminance(const float* rgb) { return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]; }
+
 struct RadianceImage {
   int width = 0, height = 0;
   std::vector<float> rgb;  // width * height * 3, rows from the top, red first

@@ -27,10 +27,21 @@ AutoExposure::AutoExposure(const SensorParams& sensor) : sensor_(sensor), settin
 }
 
 double AutoExposure::Brightness(const RadianceImage& frame, double signal) const {
+  const double dark = sensor_.black_level + signal * sensor_.dark_current_e_s / sensor_.full_well_e;
   const double scale = signal / (sensor_.white * sensor_.exposure_s);
+  const auto shown = [&](float light) { return EncodeResponse(sensor_.response, std::min(1.0, dark + scale * light)); };
   double sum = 0;
-  for (const float light : frame.rgb) sum += EncodeResponse(sensor_.response, std::min(1.0, scale * light));
-  return sum / static_cast<double>(frame.rgb.size());
+  for (std::size_t i = 0; i < frame.rgb.size(); i += 3) {
+    const float* rgb = &frame.rgb[i];
+    if (!sensor_.color) {
+      sum += shown(Luminance(rgb));
+    } else if (sensor_.mosaic == Mosaic::raw) {
+      sum += (shown(rgb[0]) + 2 * shown(rgb[1]) + shown(rgb[2])) / 4;
+    } else {
+      sum += (shown(rgb[0]) + shown(rgb[1]) + shown(rgb[2])) / 3;
+    }
+  }
+  return 3 * sum / static_cast<double>(frame.rgb.size());
 }
 
 void AutoExposure::Meter(const RadianceImage& frame) {

@@ -18,8 +18,8 @@ struct ExposureSetting {
 // Everything wrong with the settings, one sentence each, with the value.
 std::vector<std::string> Problems(const AutoExposureParams& params);
 
-// The signal of frame k is proportional to s = exposure_s * gain. With m(s) the mean over pixels and channels of what
-// the response makes of it, the next frame gets
+// The signal of frame k is proportional to s = exposure_s * gain. With m(s) the mean of the picture that it makes, over
+// its pixels and channels, with dark current and black level, after the response, the next frame gets
 //   log s' = log s + speed (log s* - log s),   m(s*) = target,
 // within the limits; the exposure time grows before the gain does. The first frame has the sensor's own settings.
 class AutoExposure {

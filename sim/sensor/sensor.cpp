@@ -124,8 +124,7 @@ void Sensor::ExpectLight(const RadianceImage& radiance, std::size_t y, double pe
       electrons[x] =
           expected(rgb[3 * x + static_cast<std::size_t>(BayerChannel(static_cast<int>(x), static_cast<int>(y)))]);
   } else {
-    for (std::size_t x = 0; x < width; ++x)
-      electrons[x] = expected(0.2126f * rgb[3 * x] + 0.7152f * rgb[3 * x + 1] + 0.0722f * rgb[3 * x + 2]);
+    for (std::size_t x = 0; x < width; ++x) electrons[x] = expected(Luminance(rgb + 3 * x));
   }
 }
 

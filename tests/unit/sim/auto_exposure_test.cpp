@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim/sensor/sensor.h"
+
 namespace sim {
 namespace {
 
@@ -55,6 +57,38 @@ TEST(AutoExposure, LengthensTheExposureBeforeItAmplifies) {
   control.Meter(Flat(1e6f));
   EXPECT_NEAR(control.setting().exposure_s, 0.001, 1e-9);
   EXPECT_EQ(control.setting().gain, 1);
+}
+
+// Stripes of colours, some of which saturate: what counts is the picture that the sensor makes of them.
+TEST(AutoExposure, TheSettledPictureHasTheTargetAsItsMean) {
+  RadianceImage frame{30, 20, {}};
+  for (int i = 0; i < 30 * 20; ++i) {
+    const float stripe = static_cast<float>(i % 30 / 6);
+    frame.rgb.insert(frame.rgb.end(), {0.02f + 0.4f * stripe, 0.05f * stripe, 0.9f - 0.2f * stripe});
+  }
+  SensorParams colour = Linear();
+  colour.response = Response::srgb;
+  colour.auto_exposure = {true, 0.4, 1.0, 0.00001, 0.1, 1.0};
+  colour.shot_noise = false;
+  colour.read_noise_e = 0;
+  colour.bit_depth = 16;
+  SensorParams black = colour, grey = colour, raw = colour, demosaiced = colour, dark = colour;
+  black.black_level = 0.06;
+  grey.color = false;
+  raw.mosaic = Mosaic::raw;
+  demosaiced.mosaic = Mosaic::demosaiced;
+  dark.dark_current_e_s = 5e5;
+  for (const SensorParams& sensor : {colour, black, grey, raw, demosaiced, dark}) {
+    AutoExposure control(sensor);
+    control.Meter(frame);
+    const Image picture = Sensor(sensor, 1, frame.width, frame.height).Capture(frame, 0, control.setting());
+    double sum = 0;
+    for (const std::uint16_t code : picture.wide) sum += code / 65535.0;
+    // Between two stripes a mosaic's colours are interpolated before the curve's mean is taken.
+    EXPECT_NEAR(sum / static_cast<double>(picture.wide.size()), 0.4, sensor.mosaic == Mosaic::demosaiced ? 0.01 : 1e-4)
+        << "black level " << sensor.black_level << ", colour " << sensor.color << ", mosaic "
+        << static_cast<int>(sensor.mosaic) << ", dark current " << sensor.dark_current_e_s;
+  }
 }
 
 TEST(AutoExposure, BadSettingsAreAllNamed) {
