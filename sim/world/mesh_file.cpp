@@ -110,6 +110,8 @@ class FileReader {
     if (!(std::abs(glm::determinant(linear)) > 0))
       return Problem(label + "its node's transform is singular or not finite");
 
+    const bool mirrored = glm::determinant(linear) < 0;  // the front stays in front
+
     out.positions.reserve(in.mNumVertices);
     for (unsigned i = 0; i < in.mNumVertices; ++i) {
       const aiVector3D& v = in.mVertices[i];
@@ -140,7 +142,7 @@ class FileReader {
     for (unsigned i = 0; i < in.mNumFaces; ++i) {
       const aiFace& face = in.mFaces[i];
       if (face.mNumIndices != 3) continue;
-      const glm::uvec3 t(face.mIndices[0], face.mIndices[1], face.mIndices[2]);
+      glm::uvec3 t(face.mIndices[0], face.mIndices[1], face.mIndices[2]);
       if (std::max({t.x, t.y, t.z}) >= in.mNumVertices) {
         return Problem(label + "triangle " + std::to_string(i) + " names a vertex that does not exist");
       }
@@ -148,6 +150,7 @@ class FileReader {
         ++degenerate;
         continue;
       }
+      if (mirrored) std::swap(t.y, t.z);
       out.triangles.push_back(t);
     }
     if (degenerate > 0) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <glm/geometric.hpp>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 
@@ -125,6 +126,19 @@ TEST(Gltf, TextureTransform) {
     const double u = mesh.positions[i].x > 0.5f ? 0.75 : 0.25, v = mesh.positions[i].y > 0.5f ? 0.125 : 0.5;
     EXPECT_NEAR(mesh.uvs[i].x, ox + std::cos(r) * sx * u + std::sin(r) * sy * v, 1e-5) << i;
     EXPECT_NEAR(mesh.uvs[i].y, oy - std::sin(r) * sx * u + std::cos(r) * sy * v, 1e-5) << i;
+  }
+}
+
+// A node that mirrors leaves the front of a triangle in front (glTF 2.0, 3.7.4).
+TEST(Gltf, AMirroredTriangleKeepsItsFront) {
+  const Folder folder;
+  for (const char* scale : {"[1, 1, 1]", "[-1, 1, 1]", "[1, -2, 3]"}) {
+    Parts parts;
+    parts.node = std::string(R"(, "scale": )") + scale;
+    const Mesh mesh = Load(folder, parts).meshes.at(0);
+    const glm::uvec3 t = mesh.triangles.at(0);
+    const glm::vec3 corner = mesh.positions[t.x];
+    EXPECT_GT(glm::cross(mesh.positions[t.y] - corner, mesh.positions[t.z] - corner).z, 0) << scale;
   }
 }
 
