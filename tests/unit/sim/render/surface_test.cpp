@@ -129,8 +129,8 @@ TEST(Surface, EmissionTimesItsPicture) {
   EXPECT_EQ(at(0.2, 0.3)[0], 5.0f);
 }
 
-// A normal map that tilts everything by the same angle, under a sun: the cosine with the tilted normal. With the green
-// channel's sign or the picture's handedness wrong, another cosine comes out.
+// A normal map that tilts everything by the same angle, under a sun: the cosine with the tilted normal; from behind, with
+// its opposite. With the green channel's sign or the picture's handedness wrong, another cosine comes out.
 TEST(Surface, NormalMapTurnsTheNormal) {
   const glm::dvec3 tilted = glm::normalize(glm::dvec3(0.4, 0.3, 1.0));  // right, up, out
   const auto code = [](double n) { return static_cast<std::uint8_t>(std::lround((n + 1) / 2 * 255)); };
@@ -144,18 +144,23 @@ TEST(Surface, NormalMapTurnsTheNormal) {
       AddMaterial(scene, glm::vec3(1.0f));
       scene.materials[0].normal_map = 0;
       scene.materials[0].normal_scale = static_cast<float>(scale);
-      AddQuad(scene, {-9, -9, 2}, {18, 0, 0}, {0, 18, 0}, 0);  // u to the right (+x), v down (+y)
-      if (mirrored) {
-        for (glm::vec2& uv : scene.meshes[0].uvs) uv.x = -uv.x;
-      }
-      scene.lights = {sun};
+      AddQuad(scene, {-9, -9, 2}, {0, 18, 0}, {18, 0, 0}, 0);  // its front is at -z
+      for (glm::vec2& uv : scene.meshes[0].uvs)
+        uv = {mirrored ? -uv.y : uv.y, uv.x};  // u to the right (+x), v down (+y)
       const glm::dvec3 right(mirrored ? -1 : 1, 0, 0), up(0, -1, 0), out(0, 0, -1);
       const glm::dvec3 n = glm::normalize(scale * tilted.x * right + scale * tilted.y * up + tilted.z * out);
-      const RadianceImage image = Render(scene, Camera(SmallCamera()), {});
-      EXPECT_NEAR(image.pixel(20, 30)[0], glm::dot(n, towards), 0.01);  // eight bits of the map
       const glm::dvec3 wrong = glm::normalize(scale * tilted.x * right - scale * tilted.y * up + tilted.z * out);
-      EXPECT_GT(std::abs(image.pixel(20, 30)[0] - glm::dot(wrong, towards)), 0.05)
-          << "the green channel upside down must show";
+      for (const bool with_normals : {false, true}) {
+        if (with_normals) scene.meshes[0].normals.assign(4, glm::vec3(out));
+        scene.lights = {sun};
+        const RadianceImage image = Render(scene, Camera(SmallCamera()), {});
+        EXPECT_NEAR(image.pixel(20, 30)[0], glm::dot(n, towards), 0.01);  // eight bits of the map
+        EXPECT_GT(std::abs(image.pixel(20, 30)[0] - glm::dot(wrong, towards)), 0.05)
+            << "the green channel upside down must show";
+        scene.lights = {SunLight{-sun.direction, sun.irradiance}};
+        const Pose behind{{0, 0, 4}, {0, 0, 1, 0}};
+        EXPECT_NEAR(Render(scene, Camera(SmallCamera()), behind).pixel(20, 30)[0], glm::dot(-n, -towards), 0.01);
+      }
     }
   }
 }
