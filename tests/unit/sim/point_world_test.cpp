@@ -175,6 +175,18 @@ TEST(PointWorld, LandmarksAreDrawnFromThePrior) {
   EXPECT_LT(chi2, 105);
 }
 
+// As far aside as there is a depth: a corner of the margin is 89 degrees from the axis.
+TEST(PointWorld, LandmarksOfAWideFisheyeAreInView) {
+  Scenario scenario = PointScenario();
+  scenario.camera = {640, 480, 200, 200, 319.5, 239.5};
+  scenario.camera.lens = Lens::fisheye;
+  scenario.points->margin_px = 64;
+  scenario.points->count = 5000;
+  PointWorld world(scenario);
+  world.Next();
+  for (const PointLandmark& landmark : world.landmarks()) EXPECT_TRUE(world.Project(landmark, 0));
+}
+
 // A landmark that is first seen later has its inverse depth in the camera of that frame.
 TEST(PointWorld, AnInverseDepthIsThatOfTheFirstView) {
   Scenario scenario = MovingPointScenario();
@@ -261,6 +273,12 @@ TEST(PointWorld, RefusesWhatItCannotPlay) {
   Scenario scenario = PointScenario();
   scenario.points->count = 0;
   EXPECT_EQ(complaint(scenario), "point world: count = 0 must lie in 1 ... 1000000");
+  scenario = PointScenario();
+  scenario.camera = {640, 480, 200, 200, 319.5, 239.5};  // 112 degrees from the axis in the corners of the margin
+  scenario.camera.lens = Lens::fisheye;
+  EXPECT_THAT(complaint(scenario), HasSubstr("margin = 5 px must leave out what the fisheye lens sees 90 degrees"));
+  scenario.points->landmarks = Landmarks::room;
+  EXPECT_EQ(complaint(scenario), "accepted") << "what is beside or behind the camera is not in view";
   scenario.points.reset();
   EXPECT_THAT(complaint(scenario), HasSubstr("the world has meshes, not points"));
   PointWorld world(PointScenario());
