@@ -144,9 +144,11 @@ struct Simulator::Parts {
     RadianceImage picture;
     for (std::int64_t k = 0; k < frames; ++k) {
       settings.push_back(control.setting());
-      Exposure instant;
-      instant.middle_s = Seconds(sim::StampNs(k, scenario.time));
-      Expose(camera_small, vignetting_small, instant, k, picture);
+      Exposure exposure;
+      exposure.middle_s = Seconds(sim::StampNs(k, scenario.time));
+      exposure.exposure_s = control.setting().exposure_s;
+      exposure.row_delay_s = scenario.sensor.RowDelay(small.height);
+      Expose(camera_small, vignetting_small, exposure, k, picture);
       control.Meter(picture);
     }
   }

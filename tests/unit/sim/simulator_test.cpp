@@ -140,6 +140,12 @@ trajectory:
   EXPECT_LT(worst, 0.02);
 }
 
+double Mean(const Image& image) {
+  double sum = 0;
+  for (const std::uint8_t code : image.data) sum += code / (255.0 * static_cast<double>(image.data.size()));
+  return sum;
+}
+
 TEST(Simulator, AutomaticExposureBringsADarkWallToItsTarget) {
   const SmallWorld world;
   const std::vector<std::pair<std::string, std::string>> dark = {
@@ -148,21 +154,36 @@ TEST(Simulator, AutomaticExposureBringsADarkWallToItsTarget) {
       {"sensor.read_noise", "0"},
       {"sensor.auto_exposure", "{on: true, target: 0.4, speed: 0.6, longest: 20 ms, highest_gain: 16}"}};
   const Simulator simulator(LoadScenario(world.scenario(), dark), 1), again(LoadScenario(world.scenario(), dark), 2);
-  const auto mean = [](const Image& image) {
-    double sum = 0;
-    for (const std::uint8_t code : image.data) sum += code / (255.0 * static_cast<double>(image.data.size()));
-    return sum;
-  };
   const Frame first = simulator.Render(0), last = simulator.Render(8);
   EXPECT_EQ(first.setting.exposure_s, 0.010);
   EXPECT_EQ(first.setting.gain, 1);
-  EXPECT_LT(mean(first.image), 0.33);
+  EXPECT_LT(Mean(first.image), 0.33);
   EXPECT_EQ(last.setting.exposure_s, 0.020);
   EXPECT_GT(last.setting.gain, 1);
-  EXPECT_NEAR(mean(last.image), 0.4, 0.02);  // what is metered is an eighth as wide
+  EXPECT_NEAR(Mean(last.image), 0.4, 0.02);  // what is metered is an eighth as wide
   EXPECT_EQ(simulator.SettingOf(8).gain, last.setting.gain);
   EXPECT_EQ(again.Render(8).image.data, last.image.data);
   EXPECT_THROW(simulator.SettingOf(9), std::out_of_range);
+}
+
+// Under a lamp that flickers frames are as bright as is asked where each sees whole periods: in its exposure, or from its
+// first row to its last. What a lamp shines at the stamp itself says nothing of this.
+TEST(Simulator, AutomaticExposureMetersTheWholeOfAnExposure) {
+  const SmallWorld world;
+  for (const auto& [exposure, readout] : {std::pair<std::string, std::string>{"10 ms", "0 ms"}, {"1 ms", "20 ms"}}) {
+    const Simulator simulator(
+        LoadScenario(world.scenario(),
+                     {{"world.lights",
+                       "[{type: point, position: [0, 0, 0], intensity: [2, 2, 2], "
+                       "flicker: {frequency: 100 Hz, depth: 0.9}}]"},
+                      {"sensor.rolling_shutter", readout},
+                      {"sensor.exposure", exposure},
+                      {"sensor.auto_exposure", "{on: true, speed: 1, shortest: " + exposure + ", longest: " + exposure +
+                                                   ", highest_gain: 100, target: 0.45}"}}),
+        1);
+    for (std::int64_t k = 1; k < simulator.frame_count(); ++k)
+      EXPECT_NEAR(Mean(simulator.Render(k).image), 0.45, 0.05) << exposure << ", frame " << k;
+  }
 }
 
 TEST(Simulator, AHandBeforeTheLensLeavesTheNoiseAndTheTruth) {
