@@ -89,6 +89,19 @@ std::vector<glm::vec2> Jitter(int count, bool jitter) {
   return out;
 }
 
+// Where on the lens, in its radii, sample i of n goes through: the ray tracer's points, which it turns from pixel to
+// pixel, moved so that their mean is the middle and what is out of focus stays where it is.
+std::vector<glm::dvec2> LensPoints(int count) {
+  std::vector<glm::dvec2> points;
+  glm::dvec2 mean(0.0);
+  for (const DiscPoint& point : DiscPoints(count)) {
+    points.emplace_back(point.x, point.y);
+    mean += points.back() / static_cast<double>(count);
+  }
+  for (glm::dvec2& point : points) point -= mean;
+  return points;
+}
+
 // How far along the ray, in lengths of it, the triangle is: on its plane, or where it is nearest to that when the view
 // and the ray differ by a part of a pixel (Moeller and Trumbore 1997, as in the shader).
 double DistanceTo(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& origin,
@@ -129,7 +142,7 @@ class Drawing {
             exposure.aperture_m / exposure.focus_m);
     SetUp();
     const std::vector<glm::vec2> jitter = Jitter(count, options_.jitter);
-    const std::vector<DiscPoint> lens = DiscPoints(count);
+    const std::vector<glm::dvec2> lens = LensPoints(count);
     const std::vector<glm::dvec2> on_light = PointsOnLight(count);
     std::vector<std::vector<RasterLight>> lights;
     std::vector<RasterLight> table;
@@ -166,7 +179,7 @@ class Drawing {
         scene_.Move(moment(exposure.middle_s, i));
         shadows_.DrawSample(scene_, depth_, lights[k]);
       }
-      const glm::vec2 lens_C(0.5 * exposure.aperture_m * lens[k].x, 0.5 * exposure.aperture_m * lens[k].y);
+      const glm::vec2 lens_C(0.5 * exposure.aperture_m * lens[k]);
       for (const RasterStrip& strip : views_.strips) {
         const double t_s = moment(exposure.RowMiddle(0.5 * (strip.begin + strip.end - 1), camera.height()), i);
         const Pose pose = motion.At(t_s).pose;

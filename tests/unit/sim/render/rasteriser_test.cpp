@@ -86,6 +86,29 @@ TEST_P(RasteriserTest, SamplesDoNotShiftThePicture) {
   }
 }
 
+// Nor does a lens move what is out of focus: here a square in the middle of the picture, over a disc 28 px in radius.
+TEST_P(RasteriserTest, ALensDoesNotShiftWhatItBlurs) {
+  Scene scene;
+  AddMaterial(scene, glm::vec3(0.0f), glm::vec3(1.0f));
+  AddQuad(scene, {-0.2f, -0.2f, 2}, {0.4f, 0, 0}, {0, 0.4f, 0}, 0);
+  const auto renderer = MakeRasteriser(scene, On(GetParam()));
+  CameraParams params = SmallCamera(161, 161);
+  params.fx = params.fy = 280;
+  for (const int count : {1, 2, 3, 4, 7}) {
+    const RadianceImage image =
+        Expose(*renderer, Camera(params), SteadyMotion(Pose{}), Exposure{0.0, 0.0, 0.0, count, 0.4, 1.0});
+    double sum = 0, x_sum = 0, y_sum = 0;
+    for (int y = 0; y < 161; ++y) {
+      for (int x = 0; x < 161; ++x) {
+        const double light = image.pixel(x, y)[0];
+        sum += light, x_sum += x * light, y_sum += y * light;
+      }
+    }
+    EXPECT_NEAR(x_sum / sum, 80, 0.5) << count;  // a sample's edges are at whole pixels
+    EXPECT_NEAR(y_sum / sum, 80, 0.5) << count;
+  }
+}
+
 // The line of sampling_test.cpp that leans under a rolling shutter: each strip has the moment of its middle row, so
 // that with strips of one row all rows are right, and with strips of eight they are off by three and a half rows' turn.
 TEST_P(RasteriserTest, AStripOfARollingShutterHasTheMomentOfItsMiddle) {
