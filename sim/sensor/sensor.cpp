@@ -55,6 +55,8 @@ std::vector<std::string> Problems(const SensorParams& p) {
   require(p.color || p.mosaic == Mosaic::none, "color", 0, "(false) does not go with a mosaic");
   if (p.auto_exposure.on) {
     require(p.exposure_s > 0, "exposure", p.exposure_s, "must be positive for auto_exposure to start from");
+    require(p.auto_exposure.target > EncodeResponse(p.response, p.black_level), "auto_exposure.target",
+            p.auto_exposure.target, "must be above what black_level shows without any light");
     for (const std::string& problem : Problems(p.auto_exposure)) require.problems.push_back("auto_exposure." + problem);
   }
   for (const Covered& c : p.covered) {
