@@ -53,7 +53,7 @@ void RayScene::AppendTextures(const Scene& scene) {
     m.color = picture(material.texture, 0);
     m.emission_picture = picture(material.emission_texture, 0);
     m.normal_map = picture(material.normal_map, 1);
-    m.normal_scale = material.normal_scale;
+    m.normal_scale = material.normal_map < 0 ? 0.0f : material.normal_scale;  // no texel is flat to the last bit
     materials_.push_back(m);
   }
 }

@@ -165,6 +165,21 @@ TEST(Surface, NormalMapTurnsTheNormal) {
   }
 }
 
+TEST(Surface, ANormalMapTurnsNoOtherMaterial) {
+  Scene scene;
+  const std::vector<std::uint8_t> grey{128, 128, 128};
+  scene.textures.emplace_back("grey", 1, 1, grey);
+  scene.textures.emplace_back("tilt", 1, 1, grey, std::vector<std::uint8_t>(), Texture::Content::numbers);
+  AddMaterial(scene, glm::vec3(1.0f), glm::vec3(0.0f), 0);
+  AddMaterial(scene, glm::vec3(1.0f));
+  AddQuad(scene, {-9, -9, 2}, {18, 0, 0}, {0, 18, 0}, 0);
+  AddQuad(scene, {-9, -9, 3}, {18, 0, 0}, {0, 18, 0}, 1);  // behind the other
+  scene.lights = {SunLight{{1, 0, 1}, {kPi, kPi, kPi}}};
+  const float plain = Render(scene, Camera(SmallCamera()), {}).pixel(20, 30)[0];
+  scene.materials[1].normal_map = 1;
+  EXPECT_NEAR(Render(scene, Camera(SmallCamera()), {}).pixel(20, 30)[0] / plain, 1.0, 1e-6);
+}
+
 TEST(Surface, VisibleLampIsSeenFromItsSideAndCastsNoShadow) {
   Scene scene;
   AddMaterial(scene, glm::vec3(1.0f));
