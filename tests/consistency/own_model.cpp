@@ -24,7 +24,7 @@ Overrides Setting(const Overrides& more) {
                    {"trajectory.orientation_noise", "0.4"},
                    {"odometry.motion.position_noise", "0.6"},
                    {"odometry.motion.orientation_noise", "0.4"},
-                   {"odometry.filter.particles", "32"},
+                   {"odometry.filter.particles", "128"},
                    {"odometry.filter.lag", "3"},
                    {"odometry.filter.marginal_mode", "true"}};
   all.insert(all.end(), more.begin(), more.end());
