@@ -251,9 +251,9 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   const MapView agreed(in.map, consensus.pose.mean);
 
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
-    if (!results[i].in_sight) continue;
     const Candidate& c = candidates[i];
     const std::optional<FoundFeature>& found = results[i].found;
+    if (!found && !results[i].in_sight) continue;
     Searched searched{c.landmark, std::nullopt, {}};
     FeatureView view{records[c.landmark].id,
                      c.pixel,

@@ -16,7 +16,7 @@
 
 namespace vo {
 
-// A landmark that was looked for and, by the prediction, could be seen.
+// A landmark that was found, or was looked for where, by the prediction, it could be seen.
 struct Searched {
   int landmark = 0;
   // Of its match under the prediction, before sampling; none: not found, or an outlier

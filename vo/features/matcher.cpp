@@ -80,7 +80,6 @@ std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& request
     std::optional<FoundFeature>& found = results[i].found;
     const BriskSampler sampler(PatternMap(request.warp, params));
     results[i].in_sight = brisk.Describable(Rounded(request.predicted), sampler);
-    if (!results[i].in_sight) continue;
     int searched = 0;
     for (const int wanted :
          {params.window_quick_px, params.window_px, params.window_enlarged_px, LostWindow(request, params)}) {
