@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include "tests/system/program.h"
@@ -118,6 +119,26 @@ TEST_F(LayoutsTest, EvaluateJudgesARunAsItWasJudged) {
   EXPECT_THAT(run, testing::Not(testing::HasSubstr("made equal")));
   fs::remove(here_ / "tracked/metrics.json");
   EXPECT_THAT(printed("tracked", "seq"), testing::StartsWith("none: "));
+}
+
+// A tracker that answers in one frame of three has small errors, and is seen to.
+TEST_F(LayoutsTest, EvaluateCountsTheFramesWithoutAPose) {
+  Run({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:9"});
+  std::istringstream truth(ReadFile(here_ / "seq/groundtruth.txt"));
+  std::ofstream third(here_ / "third.txt"), all(here_ / "all.txt");
+  int frame = 0;
+  for (std::string line; std::getline(truth, line);) {
+    if (line.starts_with('#')) continue;
+    all << line << "\n";
+    if (frame++ % 3 == 0) third << line << "\n";
+  }
+  third.close(), all.close();
+  EXPECT_THAT(Run({"evaluate", "third.txt", "--truth", "seq"}).out,
+              testing::HasSubstr("pose coverage                0.3333  (of 9 frames)"));
+  EXPECT_THAT(Run({"evaluate", "all.txt", "--truth", "seq"}).out,
+              testing::HasSubstr("pose coverage                1.0000  (of 9 frames)"));
+  EXPECT_THAT(Run({"evaluate", "third.txt", "--truth", "all.txt"}).out,
+              testing::Not(testing::HasSubstr("pose coverage")));
 }
 
 }  // namespace

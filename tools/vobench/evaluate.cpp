@@ -82,7 +82,8 @@ void Print(const evaluation::Metrics& metrics, evaluation::Alignment alignment) 
   }
   PrintStatistics("ATE of a constant pose", metrics.constant_pose.Aligned(alignment).position, 100, "cm");
   if (metrics.coverage) {
-    fmt::print("{:<28} {:.4f}\n", "pose coverage", metrics.coverage->pose_coverage());
+    fmt::print("{:<28} {:.4f}  (of {} frames)\n", "pose coverage", metrics.coverage->pose_coverage(),
+               metrics.coverage->frames);
     if (const auto tracked = metrics.coverage->tracked_coverage())
       fmt::print("{:<28} {:.4f}\n", "tracked coverage", *tracked);
   }
@@ -110,7 +111,8 @@ void Evaluate(const EvaluateOptions& options) {
       estimate.beliefs.empty() ? std::nullopt : Input([&] { return RecordedOptions(options.estimate); });
   const bool world_is_known = estimate.beliefs.empty() || recorded;
   if (!world_is_known) estimate.beliefs.clear();
-  const auto how = recorded.value_or(evaluation::JudgeOptions{});
+  auto how = recorded.value_or(evaluation::JudgeOptions{});
+  if (fs::is_directory(options.truth)) how.frame_stamps_ns = Input([&] { return ReadFrameStamps(options.truth); });
   Print(Input([&] { return evaluation::Judge(estimate, truth, std::nullopt, how); }), AlignmentOf(options.align));
   if (!world_is_known) {
     fmt::print("{:<28} none: without the metrics.json of this run nothing says whether it began in the truth's world\n",

@@ -116,4 +116,22 @@ std::optional<Truth> ReadSequenceTruth(const fs::path& sequence) {
   return truth;
 }
 
+std::optional<std::vector<std::int64_t>> ReadFrameStamps(const fs::path& sequence) {
+  const fs::path list = sequence / "rgb.txt";
+  if (!fs::exists(list)) return std::nullopt;
+  std::vector<std::int64_t> stamps;
+  evaluation::Problems problems;
+  for (const evaluation::Line& line : evaluation::ReadLines(list)) {
+    const std::string& text = line.tokens[0].text;
+    const auto stamp_ns = evaluation::ParseSeconds(text);
+    if (!stamp_ns)
+      problems.Add(list, line.number, line.tokens[0].column, "'" + text + "' is not a time in seconds, 4e9 at most");
+    if (stamp_ns && !stamps.empty() && *stamp_ns <= stamps.back())
+      problems.Add(list, line.number, line.tokens[0].column, "time does not increase");
+    stamps.push_back(stamp_ns.value_or(0));
+  }
+  problems.ThrowIfAny();
+  return stamps;
+}
+
 }  // namespace vobench

@@ -1,8 +1,10 @@
 // Purpose: the truth that lies beside a sequence on disk, for the judge alone.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "tools/vobench/result.h"
 
@@ -13,6 +15,10 @@ namespace vobench {
 // index / 30 s, and a line on stderr says so; or the truth of a EuRoC folder, of cam0 (its body's pose times T_BS of
 // cam0). None when there is none of them. Throws evaluation::InputError or settings::Error.
 std::optional<Truth> ReadSequenceTruth(const std::filesystem::path& sequence);
+
+// When the pictures were taken that the sequence's rgb.txt lists. None where there is none (other layouts than TUM's).
+// Throws evaluation::InputError.
+std::optional<std::vector<std::int64_t>> ReadFrameStamps(const std::filesystem::path& sequence);
 
 // S T S: the same trajectory as seen by a camera whose image is the right way up.
 evaluation::Trajectory MirroredInY(evaluation::Trajectory trajectory);
