@@ -20,6 +20,7 @@ const fs::path& Folder() {
       std::string name = ((there ? in_memory : fs::temp_directory_path()) / "vobench_fuzz_XXXXXX").string();
       if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
       path = name;
+      fs::current_path(path);
     }
     ~Own() {
       std::error_code ignored;
@@ -31,8 +32,8 @@ const fs::path& Folder() {
   return own.path;
 }
 
-InputFile::InputFile(const std::string& name) : path_(Folder() / name) {
-  fs::create_directories(path_.parent_path());
+InputFile::InputFile(const std::string& name) : path_(name) {
+  fs::create_directories((Folder() / name).parent_path());
   file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   if (file_ < 0) throw std::runtime_error("cannot open " + path_.string());
 }

@@ -16,7 +16,8 @@ namespace fuzz {
 
 using Bytes = std::span<const std::uint8_t>;
 
-// A folder of its own for each process, in memory where the system has such a place; it goes away with the process.
+// A folder of its own for each process, in memory where the system has such a place; it goes away with the process, which works in it from
+// the first call on.
 const std::filesystem::path& Folder();
 
 // A file whose content changes from run to run, always under the same name. Kept open: a run costs one write.
@@ -28,6 +29,7 @@ class InputFile {
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 
+  // Relative to Folder(): short, so that a reader's many copies of it take no memory.
   const std::filesystem::path& path() const { return path_; }
   void Write(Bytes bytes);
 

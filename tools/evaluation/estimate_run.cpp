@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 
@@ -144,54 +145,68 @@ std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems&
   return frames;
 }
 
-std::string FormatBeliefs(const std::vector<StampedBelief>& beliefs) {
-  std::string text = "# timestamp vx vy vz wx wy wz, then the upper triangle of the 12 x 12 covariance, row by row\n";
+// Before anything is written, so that a bad number leaves nothing behind.
+void RequireFinite(const std::vector<StampedBelief>& beliefs) {
   for (const StampedBelief& belief : beliefs) {
-    if (!belief.covariance.allFinite() || !belief.velocity.v_WC.allFinite() || !belief.velocity.w_WC_C.allFinite()) {
-      throw std::invalid_argument("covariance.txt: the belief at " + FormatSeconds(belief.velocity.stamp_ns) +
-                                  " holds a number that is not finite; nothing was written");
-    }
-    text += FormatSeconds(belief.velocity.stamp_ns);
-    for (int k = 0; k < 3; ++k) text += ' ' + FormatNumber(belief.velocity.v_WC[k], 12);
-    for (int k = 0; k < 3; ++k) text += ' ' + FormatNumber(belief.velocity.w_WC_C[k], 12);
-    // Fifteen digits: a covariance rounded more coarsely may no longer be positive definite.
-    for (int row = 0; row < 12; ++row) {
-      for (int column = row; column < 12; ++column) text += ' ' + FormatNumber(belief.covariance(row, column), 15);
-    }
-    text += '\n';
+    if (belief.covariance.allFinite() && belief.velocity.v_WC.allFinite() && belief.velocity.w_WC_C.allFinite())
+      continue;
+    throw std::invalid_argument("covariance.txt: the belief at " + FormatSeconds(belief.velocity.stamp_ns) +
+                                " holds a number that is not finite; nothing was written");
   }
-  return text;
 }
 
-std::string FormatFrames(const std::vector<FrameRecord>& frames) {
+void RequireFinite(const std::vector<FrameRecord>& frames) {
+  for (const FrameRecord& f : frames) {
+    const double numbers[] = {f.nis, f.effective_particles, f.ms_features, f.ms_matching, f.ms_filter};
+    if (std::all_of(std::begin(numbers), std::end(numbers), [](double value) { return std::isfinite(value); }))
+      continue;
+    throw std::invalid_argument("frames.csv: the frame at " + FormatSeconds(f.stamp_ns) +
+                                " holds a number that is not finite; nothing was written");
+  }
+}
+
+std::string LineOf(const StampedBelief& belief) {
+  std::string text = FormatSeconds(belief.velocity.stamp_ns);
+  for (int k = 0; k < 3; ++k) text += ' ' + FormatNumber(belief.velocity.v_WC[k], 12);
+  for (int k = 0; k < 3; ++k) text += ' ' + FormatNumber(belief.velocity.w_WC_C[k], 12);
+  // Fifteen digits: a covariance rounded more coarsely may no longer be positive definite.
+  for (int row = 0; row < 12; ++row) {
+    for (int column = row; column < 12; ++column) text += ' ' + FormatNumber(belief.covariance(row, column), 15);
+  }
+  return text + '\n';
+}
+
+std::string LineOf(const FrameRecord& f, bool guarded) {
+  std::string text = FormatSeconds(f.stamp_ns);
+  for (const int value : {f.searched, f.matched, f.landmarks, f.permanent}) text += ',' + std::to_string(value);
+  text += ',' + FormatNumber(f.nis, 9) + ',' + std::to_string(f.nis_dof);
+  for (const double value : {f.effective_particles, f.ms_features, f.ms_matching, f.ms_filter}) {
+    text += ',' + FormatNumber(value, 6);
+  }
+  text += f.tracked ? ",tracked" : ",coasted";
+  if (guarded) {
+    for (const int value : {f.guards->unsettled, f.guards->behind, f.guards->indefinite, f.guards->impossible})
+      text += ',' + std::to_string(value);
+  }
+  return text + '\n';
+}
+
+void WriteBeliefs(const std::filesystem::path& file, const std::vector<StampedBelief>& beliefs) {
+  WholeFile out(file);
+  out.Append("# timestamp vx vy vz wx wy wz, then the upper triangle of the 12 x 12 covariance, row by row\n");
+  for (const StampedBelief& belief : beliefs) out.Append(LineOf(belief));
+  out.Commit();
+}
+
+void WriteFrames(const std::filesystem::path& file, const std::vector<FrameRecord>& frames) {
   const bool guarded =
       std::all_of(frames.begin(), frames.end(), [](const FrameRecord& f) { return f.guards.has_value(); });
-  std::string text;
+  WholeFile out(file);
   for (std::size_t i = 0; i < (guarded ? kColumns.size() : kWithoutGuards); ++i)
-    text += (i == 0 ? "" : ",") + std::string(kColumns[i]);
-  text += '\n';
-  for (const FrameRecord& f : frames) {
-    text += FormatSeconds(f.stamp_ns);
-    for (const int value : {f.searched, f.matched, f.landmarks, f.permanent}) text += ',' + std::to_string(value);
-    const double numbers[] = {f.nis, f.effective_particles, f.ms_features, f.ms_matching, f.ms_filter};
-    for (const double value : numbers) {
-      if (!std::isfinite(value)) {
-        throw std::invalid_argument("frames.csv: the frame at " + FormatSeconds(f.stamp_ns) +
-                                    " holds a number that is not finite; nothing was written");
-      }
-    }
-    text += ',' + FormatNumber(f.nis, 9) + ',' + std::to_string(f.nis_dof);
-    for (const double value : {f.effective_particles, f.ms_features, f.ms_matching, f.ms_filter}) {
-      text += ',' + FormatNumber(value, 6);
-    }
-    text += f.tracked ? ",tracked" : ",coasted";
-    if (guarded) {
-      for (const int value : {f.guards->unsettled, f.guards->behind, f.guards->indefinite, f.guards->impossible})
-        text += ',' + std::to_string(value);
-    }
-    text += '\n';
-  }
-  return text;
+    out.Append((i == 0 ? "" : ",") + std::string(kColumns[i]));
+  out.Append("\n");
+  for (const FrameRecord& frame : frames) out.Append(LineOf(frame, guarded));
+  out.Commit();
 }
 
 }  // namespace
@@ -221,19 +236,18 @@ EstimateRun ReadEstimateRun(const std::filesystem::path& folder) {
 }
 
 void WriteEstimateRun(const std::filesystem::path& folder, const EstimateRun& run) {
-  // Formatted before anything is written, so that a bad number leaves nothing behind.
-  const std::string beliefs = FormatBeliefs(run.beliefs);
-  const std::string frames = FormatFrames(run.frames);
+  RequireFinite(run.beliefs);
+  RequireFinite(run.frames);
   WriteTrajectory(folder / "estimate.txt", run.trajectory);
-  const auto write = [&](const char* name, bool any, const std::string& text) {
-    if (any) {
-      WriteWhole(folder / name, text);
-    } else {
+  const auto write = [&](const char* name, const auto& rows, const auto& write_rows) {
+    if (rows.empty()) {
       std::filesystem::remove(folder / name);
+    } else {
+      write_rows(folder / name, rows);
     }
   };
-  write("covariance.txt", !run.beliefs.empty(), beliefs);
-  write("frames.csv", !run.frames.empty(), frames);
+  write("covariance.txt", run.beliefs, WriteBeliefs);
+  write("frames.csv", run.frames, WriteFrames);
 }
 
 }  // namespace evaluation

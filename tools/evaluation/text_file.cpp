@@ -7,9 +7,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <string_view>
-#include <system_error>
+#include <utility>
 
 namespace evaluation {
 namespace {
@@ -28,41 +27,26 @@ std::string Join(const std::vector<std::string>& problems) {
   return text;
 }
 
-std::vector<Token> Split(const std::string& line, char separator) {
-  std::vector<Token> tokens;
-  std::size_t begin = 0;
+// Into tokens that are there already, so that their memory serves the next line.
+void Split(const std::string& line, char separator, std::vector<Token>& tokens) {
   const bool blanks = separator == ' ';
-  while (true) {
-    if (blanks) {
-      begin = line.find_first_not_of(" \t", begin);
-      if (begin == std::string::npos) return tokens;
-    }
+  std::size_t count = 0;
+  for (std::size_t begin = 0;;) {
+    if (blanks) begin = line.find_first_not_of(" \t", begin);
+    if (begin == std::string::npos) break;
     std::size_t end = blanks ? line.find_first_of(" \t", begin) : line.find(separator, begin);
     if (end == std::string::npos) end = line.size();
-    tokens.push_back({line.substr(begin, end - begin), static_cast<int>(begin) + 1});
-    if (end == line.size()) return tokens;
+    if (count == tokens.size()) tokens.emplace_back();
+    tokens[count].text.assign(line, begin, end - begin);
+    tokens[count].column = static_cast<int>(begin) + 1;
+    ++count;
+    if (end == line.size()) break;
     begin = end + 1;
   }
+  tokens.resize(count);
 }
 
-// Not with stdio, which gives a signal during a write out as an error. Returns errno, or 0 where all of it is there.
-int WriteBytes(const std::filesystem::path& file, std::string_view bytes) {
-  int descriptor = -1;
-  do {
-    descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  } while (descriptor < 0 && errno == EINTR);
-  if (descriptor < 0) return errno;
-  int problem = 0;
-  while (!bytes.empty() && problem == 0) {
-    const ssize_t written = write(descriptor, bytes.data(), bytes.size());
-    if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
-    if (written == 0) problem = EIO;
-    if (written < 0 && errno != EINTR) problem = errno;
-  }
-  // Interrupted, it is closed all the same.
-  if (close(descriptor) != 0 && errno != EINTR && problem == 0) problem = errno;
-  return problem;
-}
+constexpr std::size_t kBufferBytes = 1 << 20;
 
 }  // namespace
 
@@ -80,22 +64,27 @@ void Problems::ThrowIfAny() const {
   if (!problems_.empty()) throw InputError(problems_);
 }
 
-std::vector<Line> ReadLines(const std::filesystem::path& file, char separator) {
+Lines::Lines(const std::filesystem::path& file, char separator) : file_(file), separator_(separator) {
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) throw InputError({file.string() + ": is a folder, not a file"});
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError({file.string() + ": cannot be opened"});
-  std::vector<Line> lines;
-  std::string text;
-  for (int number = 1; std::getline(stream, text); ++number) {
-    if (!text.empty() && text.back() == '\r') text.pop_back();
-    const std::size_t first = text.find_first_not_of(" \t");
-    if (first == std::string::npos || text[first] == '#') continue;
-    lines.push_back({number, Split(text, separator)});
-  }
-  if (stream.bad()) throw InputError({file.string() + ": cannot be read"});
-  return lines;
+  stream_.open(file, std::ios::binary);
+  if (!stream_) throw InputError({file.string() + ": cannot be opened"});
 }
+
+void Lines::Advance() {
+  while (std::getline(stream_, text_)) {
+    ++line_.number;
+    if (!text_.empty() && text_.back() == '\r') text_.pop_back();
+    const std::size_t first = text_.find_first_not_of(" \t");
+    if (first == std::string::npos || text_[first] == '#') continue;
+    Split(text_, separator_, line_.tokens);
+    return;
+  }
+  if (stream_.bad()) throw InputError({file_.string() + ": cannot be read"});
+  at_end_ = true;
+}
+
+Lines ReadLines(const std::filesystem::path& file, char separator) { return Lines(file, separator); }
 
 std::optional<double> ParseNumber(const std::string& text) {
   double value = 0;
@@ -175,18 +164,55 @@ std::string FormatNumber(double value, int digits) {
   return text;
 }
 
-void WriteWhole(const std::filesystem::path& file, const std::string& content) {
-  std::filesystem::path temporary = file;
-  temporary += ".part";
+// Not with stdio, which gives a signal during a write out as an error.
+WholeFile::WholeFile(std::filesystem::path file) : file_(std::move(file)), temporary_(file_) {
+  temporary_ += ".part";
+  do {
+    descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  } while (descriptor_ < 0 && errno == EINTR);
+  if (descriptor_ < 0) Fail({errno, std::generic_category()});
+}
+
+WholeFile::~WholeFile() {
+  if (temporary_.empty()) return;
+  if (descriptor_ >= 0) close(descriptor_);
+  std::error_code ignored;
+  std::filesystem::remove(temporary_, ignored);
+}
+
+void WholeFile::Fail(const std::error_code& why) const {
+  throw std::runtime_error(file_.string() + ": cannot be written: " + why.message());
+}
+
+void WholeFile::Append(std::string_view text) {
+  buffer_ += text;
+  if (buffer_.size() >= kBufferBytes) Flush();
+}
+
+void WholeFile::Flush() {
+  for (std::string_view bytes = buffer_; !bytes.empty();) {
+    const ssize_t written = write(descriptor_, bytes.data(), bytes.size());
+    if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
+    if (written == 0) Fail({EIO, std::generic_category()});
+    if (written < 0 && errno != EINTR) Fail({errno, std::generic_category()});
+  }
+  buffer_.clear();
+}
+
+void WholeFile::Commit() {
+  Flush();
+  // Interrupted, it is closed all the same.
+  if (close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) Fail({errno, std::generic_category()});
   std::error_code error;
-  const auto fail = [&](const std::error_code& why) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw std::runtime_error(file.string() + ": cannot be written: " + why.message());
-  };
-  if (const int why = WriteBytes(temporary, content); why != 0) fail({why, std::generic_category()});
-  std::filesystem::rename(temporary, file, error);
-  if (error) fail(error);
+  std::filesystem::rename(temporary_, file_, error);
+  if (error) Fail(error);
+  temporary_.clear();
+}
+
+void WriteWhole(const std::filesystem::path& file, const std::string& content) {
+  WholeFile whole(file);
+  whole.Append(content);
+  whole.Commit();
 }
 
 }  // namespace evaluation

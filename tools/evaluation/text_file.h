@@ -6,9 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace evaluation {
@@ -40,9 +44,48 @@ struct Line {
   std::vector<Token> tokens;
 };
 
-// The lines that carry data: no empty ones, none that starts with '#'. separator ' ' stands for any run of spaces and
-// tabs; with any other, fields may be empty. Throws InputError when the file cannot be read.
-std::vector<Line> ReadLines(const std::filesystem::path& file, char separator = ' ');
+// The lines of a file that carry data: no empty ones, none that starts with '#'. Read one at a time as they are asked for, once:
+//   for (const Line& line : ReadLines(file)) ...
+// A line is good until the next one is asked for.
+class Lines {
+ public:
+  class Iterator {
+   public:
+    explicit Iterator(Lines* lines) : lines_(lines) {}
+    const Line& operator*() const { return lines_->line_; }
+    Iterator& operator++() {
+      lines_->Advance();
+      return *this;
+    }
+    bool operator==(std::default_sentinel_t) const { return lines_->at_end_; }
+
+   private:
+    Lines* lines_;
+  };
+
+  Lines(const std::filesystem::path& file, char separator);
+
+  // Throws InputError when the file cannot be read on, as ++ does.
+  Iterator begin() {
+    Advance();
+    return Iterator(this);
+  }
+  static std::default_sentinel_t end() { return std::default_sentinel; }
+
+ private:
+  void Advance();
+
+  std::filesystem::path file_;
+  char separator_;
+  std::ifstream stream_;
+  std::string text_;
+  Line line_{0, {}};
+  bool at_end_ = false;
+};
+
+// separator ' ' stands for any run of spaces and tabs; with any other, fields may be empty. Throws InputError when the
+// file cannot be read.
+Lines ReadLines(const std::filesystem::path& file, char separator = ' ');
 
 // The whole text as a finite number; nothing when it is anything else ("nan", "1.2x", "").
 std::optional<double> ParseNumber(const std::string& text);
@@ -69,9 +112,29 @@ double SecondsAsRead(std::int64_t stamp_ns);
 // A number with so many significant digits, shortest form ("%.*g").
 std::string FormatNumber(double value, int digits);
 
-// Writes under a temporary name beside the file and renames when all of it is on disk. Throws std::runtime_error naming
-// the file and the reason (disk full, no such folder); then the old file, if any, is untouched and no temporary one
-// remains.
+// A file that is there whole or not at all: written under a temporary name beside it, as it comes, and renamed when all
+// of it is on disk. What throws is std::runtime_error, naming the file and the reason (disk full, no such folder); then,
+// and where nothing is committed, the old file, if any, is untouched and no temporary one remains.
+class WholeFile {
+ public:
+  explicit WholeFile(std::filesystem::path file);
+  ~WholeFile();
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+
+  void Append(std::string_view text);
+  void Commit();
+
+ private:
+  void Flush();
+  [[noreturn]] void Fail(const std::error_code& why) const;
+
+  std::filesystem::path file_, temporary_;
+  int descriptor_ = -1;
+  std::string buffer_;
+};
+
+// The same at once.
 void WriteWhole(const std::filesystem::path& file, const std::string& content);
 
 }  // namespace evaluation

@@ -17,8 +17,8 @@ namespace {
 // exponential space.
 class Builder : public YAML::EventHandler {
  public:
-  Builder(std::string name, bool with_lines, std::vector<Problem>& problems)
-      : name_(std::move(name)), with_lines_(with_lines), problems_(problems) {}
+  Builder(std::string name, bool with_lines, Dialect dialect, std::vector<Problem>& problems)
+      : name_(std::move(name)), with_lines_(with_lines), dialect_(dialect), problems_(problems) {}
 
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
@@ -70,7 +70,8 @@ class Builder : public YAML::EventHandler {
   }
   void Complain(const YAML::Mark& mark, std::string message) { Complain(PlaceOf(mark), std::move(message)); }
   void CheckTag(const YAML::Mark& mark, const std::string& tag) {
-    if (tag != "?" && tag != "!" && !tag.empty()) Complain(mark, "tags (" + tag + ") are not supported");
+    if (dialect_ == Dialect::opencv || tag == "?" || tag == "!" || tag.empty()) return;
+    Complain(mark, "tags (" + tag + ") are not supported");
   }
   void Close() {
     Element element = std::move(open_.back().element);
@@ -106,6 +107,7 @@ class Builder : public YAML::EventHandler {
 
   std::string name_;
   bool with_lines_;
+  Dialect dialect_;
   std::vector<Problem>& problems_;
   std::vector<Open> open_;
   Element root_;
@@ -132,12 +134,13 @@ std::string Describe(const Element& element) {
   return "nothing";
 }
 
-Element ParseYaml(const std::string& text, const std::string& name, bool with_lines, std::vector<Problem>& problems) {
-  Builder builder(name, with_lines, problems);
+Element ParseYaml(const std::string& text, const std::string& name, bool with_lines, std::vector<Problem>& problems,
+                  Dialect dialect) {
+  Builder builder(name, with_lines, dialect, problems);
   try {
-    std::istringstream stream(text);
+    std::istringstream stream(dialect == Dialect::opencv && text.starts_with('%') ? "#" + text.substr(1) : text);
     YAML::Parser parser(stream);
-    Builder rest(name, with_lines, problems);
+    Builder rest(name, with_lines, dialect, problems);
     if (parser.HandleNextDocument(builder) && parser.HandleNextDocument(rest)) {
       problems.push_back({name, 0, 0, "holds more than one YAML document"});
     }

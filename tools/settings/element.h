@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/settings/dialect.h"
 #include "tools/settings/problem.h"
 
 namespace settings {
@@ -35,9 +36,10 @@ struct Entry {
 // "a list", "a section", ...: for messages.
 std::string Describe(const Element& element);
 
-// Reads one YAML document; an empty text is a null element. Appends a problem for each duplicate key, alias, tag and
-// key that is not a scalar, and goes on; a syntax error ends it with one problem. Without `with_lines` every place is
+// Reads one YAML document; an empty text is a null element. Appends a problem for each duplicate key, alias, tag (of our
+// dialect) and key that is not a scalar, and goes on; a syntax error ends it with one problem. Without `with_lines` every place is
 // just the name.
-Element ParseYaml(const std::string& text, const std::string& name, bool with_lines, std::vector<Problem>& problems);
+Element ParseYaml(const std::string& text, const std::string& name, bool with_lines, std::vector<Problem>& problems,
+                  Dialect dialect = Dialect::ours);
 
 }  // namespace settings

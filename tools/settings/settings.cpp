@@ -268,7 +268,7 @@ void Section::Ignore(const std::string& key) { Ask(key).kind = Request::Kind::ig
 
 void Section::IgnoreRest() { request_->ignores_rest = true; }
 
-Document Document::FromFile(const std::filesystem::path& path) {
+Document Document::FromFile(const std::filesystem::path& path, Dialect dialect) {
   const auto fail = [&](const std::string& why) { throw Error({{path.string(), 0, 0, why}}); };
   if (std::filesystem::is_directory(path)) fail("is a folder, not a file");
   errno = 0;
@@ -277,13 +277,13 @@ Document Document::FromFile(const std::filesystem::path& path) {
   std::ostringstream text;
   text << file.rdbuf();
   if (file.bad()) fail("cannot be read to its end");
-  return FromText(text.str(), path.string());
+  return FromText(text.str(), path.string(), dialect);
 }
 
-Document Document::FromText(const std::string& text, const std::string& name) {
+Document Document::FromText(const std::string& text, const std::string& name, Dialect dialect) {
   auto state = std::make_shared<State>();
   std::vector<Problem> problems;
-  state->root = ParseYaml(text, name, true, problems);
+  state->root = ParseYaml(text, name, true, problems, dialect);
   const bool invalid = std::any_of(problems.begin(), problems.end(), [](const Problem& problem) {
     return problem.message.starts_with("not valid YAML");
   });

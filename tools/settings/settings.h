@@ -22,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/settings/dialect.h"
 #include "tools/settings/problem.h"
 #include "tools/settings/quantity.h"
 
@@ -129,8 +130,8 @@ class Section {
 class Document {
  public:
   // Throws Error when the file cannot be read or is not valid YAML. Duplicate keys and the like wait for ThrowIfBad.
-  static Document FromFile(const std::filesystem::path& path);
-  static Document FromText(const std::string& text, const std::string& name);
+  static Document FromFile(const std::filesystem::path& path, Dialect dialect = Dialect::ours);
+  static Document FromText(const std::string& text, const std::string& name, Dialect dialect = Dialect::ours);
 
   // Sets one value (YAML: "3", "8 ms", "[1, 2]", "{a: 1}") by its dotted key; numbers are indices of lists
   // ("keys.0.time"). Problems with it name "--set a.b.c". Before the first root(); throws std::logic_error afterwards.

@@ -266,7 +266,9 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
   PlacePoses(s, "groundtruth", s.poses, s.has_pose, files);
   for (Object& object : s.objects) PlacePoses(s, "objects/" + object.name, object.poses, object.has_pose, files);
   if (fs::exists(folder / "manifest.json")) ReadManifest(folder / "manifest.json", s, files);
-  if (fs::exists(folder / "surfaces.txt")) s.surfaces = evaluation::ReadLines(folder / "surfaces.txt").size();
+  if (fs::exists(folder / "surfaces.txt")) {
+    for ([[maybe_unused]] const evaluation::Line& line : evaluation::ReadLines(folder / "surfaces.txt")) ++s.surfaces;
+  }
   if (fs::exists(folder / "landmarks.txt"))
     s.landmarks = ReadTable(folder / "landmarks.txt", 5, false, false, ' ', files);
   if (fs::exists(folder / "landmark_tracks.txt")) {

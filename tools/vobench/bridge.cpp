@@ -63,6 +63,12 @@ Truth TruthOf(const sim::Simulator& simulator, std::int64_t frame) {
   return truth;
 }
 
+Truth TruthOfFirst(const sim::Simulator& simulator, std::int64_t frames) {
+  Truth truth;
+  for (std::int64_t k = 0; k < frames; ++k) Append(simulator.StampNs(k), simulator.TruthAt(k), truth);
+  return truth;
+}
+
 void PrintWarnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) fmt::print(stderr, "vobench: warning: {}\n", warning);
 }

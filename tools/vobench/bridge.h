@@ -22,8 +22,9 @@ vo::Camera CameraOf(const sim::Scenario& scenario);
 vo::Frame ToOdometry(const sim::Frame& frame);
 vo::PointFrame ToOdometry(const sim::PointFrame& frame);
 
-// The truth of one frame alone.
+// The truth of one frame alone, and of so many, from the first on.
 Truth TruthOf(const sim::Simulator& simulator, std::int64_t frame);
+Truth TruthOfFirst(const sim::Simulator& simulator, std::int64_t frames);
 
 // To stderr, one line each.
 void PrintWarnings(const std::vector<std::string>& warnings);

@@ -47,7 +47,7 @@ Played PlayPoints(const Experiment& experiment, const std::string& system, std::
     Append(frame->stamp_ns, frame->truth, played.truth);
     tracker.Track(ToOdometry(*frame));
   }
-  played.run = tracker.estimates();
+  played.run = tracker.Estimates();
   played.seconds = tracker.entry().seconds;
   return played;
 }
@@ -71,7 +71,7 @@ Played PlayImages(const Experiment& experiment, const fs::path& sequence, const 
       {system, seed, experiment.odometry, PriorOf(experiment.prior, experiment.scenario.motion, played.truth, seed)},
       ToldCamera(experiment), static_cast<std::int64_t>(reader.size()), std::nullopt, "");
   while (const std::optional<vo::Frame> frame = Input([&] { return reader.Next(); })) tracker.Track(*frame);
-  played.run = tracker.estimates();
+  played.run = tracker.Estimates();
   played.seconds = tracker.entry().seconds;
   return played;
 }

@@ -21,10 +21,9 @@ LiveView::LiveView(report::RunDescription description) : description_(std::move(
   fmt::print(stderr, "View: {}\n", server_.address());
 }
 
-void LiveView::Update(const vo::Frame& frame, std::span<const Tracker> trackers, const Truth& truth,
-                      const evaluation::JudgeOptions& how) {
-  newest_ = {frame.stamp_ns, frame.image.clone()};
-  if (server_.Asked()) Show(trackers, truth, how);
+bool LiveView::Asked(const vo::Frame& newest) {
+  newest_ = {newest.stamp_ns, newest.image.clone()};
+  return server_.Asked();
 }
 
 void LiveView::Show(std::span<const Tracker> trackers, const Truth& truth, const evaluation::JudgeOptions& how) {
@@ -32,11 +31,11 @@ void LiveView::Show(std::span<const Tracker> trackers, const Truth& truth, const
   data.description = description_;
   std::vector<std::vector<report::FeatureMark>> marks;
   for (const Tracker& tracker : trackers) {
-    if (tracker.estimates().trajectory.size() < kLeastFrames) return;
+    if (tracker.frames() < kLeastFrames) return;
     report::RunData& run = data.runs.emplace_back();
     marks.push_back(tracker.marks());
     run.entry = tracker.entry();
-    run.run = tracker.estimates();
+    run.run = tracker.Estimates();
     data.description.seconds = std::max(data.description.seconds, run.entry.seconds);
     if (truth.poses.size() < kLeastFrames) continue;
     try {

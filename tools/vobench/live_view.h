@@ -17,11 +17,9 @@ class LiveView {
   // Says on stderr where it is. `description` as in run.json, as far as it is known. Throws std::runtime_error.
   explicit LiveView(report::RunDescription description);
 
-  // After a frame: judges what there is and shows it, where somebody has asked since the last time. Nothing of the
-  // run depends on it.
-  void Update(const vo::Frame& frame, std::span<const Tracker> trackers, const Truth& truth,
-              const evaluation::JudgeOptions& how);
-  // The same whether somebody has asked or not: when all frames are done.
+  // After a frame, which is kept: whether somebody has asked since the last time.
+  bool Asked(const vo::Frame& newest);
+  // Judges what there is and shows it. Nothing of the run depends on it.
   void Show(std::span<const Tracker> trackers, const Truth& truth, const evaluation::JudgeOptions& how);
 
  private:

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <system_error>
 
 #include "tools/evaluation/text_file.h"
 #include "tools/vobench/picture.h"
@@ -13,12 +15,11 @@ namespace {
 
 constexpr std::int64_t kPictures = 24;
 
-evaluation::StampedPose PoseOf(const vo::Estimate& estimate) {
-  return {estimate.stamp_ns, estimate.pose.p_WC, estimate.pose.q_WC};
-}
-
-evaluation::StampedBelief BeliefOf(const vo::Estimate& estimate) {
-  return {{estimate.stamp_ns, estimate.v_WC, estimate.w_WC_C}, estimate.covariance};
+fs::path SpoolFolder(const std::optional<fs::path>& folder) {
+  if (folder) return *folder;
+  std::error_code error;
+  const fs::path temporary = fs::temp_directory_path(error);
+  return error ? fs::path("/tmp") : temporary;
 }
 
 evaluation::FrameRecord RecordOf(const vo::Estimate& estimate) {
@@ -78,24 +79,49 @@ bool IsKept(std::int64_t index, std::int64_t frames) {
   return index % every == every / 2;
 }
 
-Recorder::Recorder(std::int64_t frames, std::optional<fs::path> folder) : folder_(std::move(folder)), frames_(frames) {
+Recorder::Recorder(std::int64_t frames, std::optional<fs::path> folder)
+    : folder_(std::move(folder)), expected_frames_(frames), answers_(SpoolFolder(folder_)) {
   if (folder_) fs::create_directories(*folder_ / "frames");
 }
 
-Recorder::Recorder(std::optional<fs::path> folder) : folder_(std::move(folder)) {
+Recorder::Recorder(std::optional<fs::path> folder) : folder_(std::move(folder)), answers_(SpoolFolder(folder_)) {
   if (folder_) fs::create_directories(*folder_);
 }
 
-void Recorder::Add(const vo::Estimate& estimate) {
-  run_.trajectory.push_back(PoseOf(estimate));
-  run_.beliefs.push_back(BeliefOf(estimate));
-  run_.frames.push_back(RecordOf(estimate));
+Recorder::Answer Recorder::AnswerOf(const vo::Estimate& estimate) {
+  Answer answer{};
+  answer.stamp_ns = estimate.stamp_ns;
+  Eigen::Vector3d::Map(answer.p_WC.data()) = estimate.pose.p_WC;
+  Eigen::Vector4d::Map(answer.q_WC.data()) = estimate.pose.q_WC.coeffs();
+  Eigen::Vector3d::Map(answer.v_WC.data()) = estimate.v_WC;
+  Eigen::Vector3d::Map(answer.w_WC_C.data()) = estimate.w_WC_C;
+  evaluation::Matrix12d::Map(answer.covariance.data()) = estimate.covariance;
+  answer.frame = RecordOf(estimate);
+  return answer;
+}
+
+void Recorder::Add(const vo::Estimate& estimate) { answers_.Add(AnswerOf(estimate)); }
+
+evaluation::EstimateRun Recorder::Run() const {
+  evaluation::EstimateRun run;
+  run.trajectory.reserve(frames());
+  run.beliefs.reserve(frames());
+  run.frames.reserve(frames());
+  answers_.ForEach([&](const Answer& answer) {
+    const Eigen::Quaterniond q_WC(Eigen::Vector4d::Map(answer.q_WC.data()));
+    run.trajectory.push_back({answer.stamp_ns, Eigen::Vector3d::Map(answer.p_WC.data()), q_WC});
+    run.beliefs.push_back(
+        {{answer.stamp_ns, Eigen::Vector3d::Map(answer.v_WC.data()), Eigen::Vector3d::Map(answer.w_WC_C.data())},
+         evaluation::Matrix12d::Map(answer.covariance.data())});
+    run.frames.push_back(answer.frame);
+  });
+  return run;
 }
 
 void Recorder::Add(const vo::Frame& frame, const vo::Estimate& estimate, const std::vector<vo::FeatureView>& features) {
-  const auto index = static_cast<std::int64_t>(run_.frames.size());
+  const auto index = static_cast<std::int64_t>(frames());
   Add(estimate);
-  if (!folder_ || !IsKept(index, frames_)) return;
+  if (!folder_ || !IsKept(index, expected_frames_)) return;
   WritePicture(*folder_ / report::PicturePath(frame.stamp_ns), frame.image);
   pictures_.width = frame.image.cols;
   pictures_.height = frame.image.rows;
@@ -103,7 +129,7 @@ void Recorder::Add(const vo::Frame& frame, const vo::Estimate& estimate, const s
 }
 
 void Recorder::Write(const std::vector<vo::MapPoint>& map) const {
-  evaluation::WriteEstimateRun(*folder_, run_);
+  evaluation::WriteEstimateRun(*folder_, Run());
   evaluation::WriteWhole(*folder_ / "landmarks.csv", LandmarkTable(map));
   if (!pictures_.pictures.empty()) report::WritePictures(*folder_, pictures_);
 }

@@ -1,8 +1,8 @@
-// Purpose: what one run of an odometry leaves behind (docs/result_folder.md): kept as it runs, written at the end.
-// Memory is
-//          one estimate per frame; pictures go to disk at once.
+// Purpose: what one run of an odometry leaves behind (docs/result_folder.md): kept as it runs, written at the end. Memory is the same
+//          however long it runs: answers are spooled, pictures go to disk at once.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -10,6 +10,7 @@
 
 #include "tools/evaluation/estimate_run.h"
 #include "tools/report/pictures.h"
+#include "tools/vobench/spool.h"
 #include "vo/odometry.h"
 
 namespace vobench {
@@ -22,26 +23,39 @@ std::vector<report::FeatureMark> MarksOf(const std::vector<vo::FeatureView>& fea
 class Recorder {
  public:
   // With a folder, those of `frames` frames that IsKept are kept there as pictures; the folder is made. Without one,
-  // none.
+  // none. Answers are spooled there too, or in the system's folder for temporary files ($TMPDIR).
   Recorder(std::int64_t frames, std::optional<std::filesystem::path> folder);
   // For frames without images.
   explicit Recorder(std::optional<std::filesystem::path> folder);
 
-  // Throws std::runtime_error naming a picture that cannot be written.
+  // Throws std::runtime_error naming a picture, or the folder of the spool, that cannot be written.
   void Add(const vo::Frame& frame, const vo::Estimate& estimate, const std::vector<vo::FeatureView>& features);
   void Add(const vo::Estimate& estimate);
 
-  const evaluation::EstimateRun& run() const { return run_; }
+  std::size_t frames() const { return answers_.size(); }
+  // All answers so far. Throws std::runtime_error.
+  evaluation::EstimateRun Run() const;
 
   // estimate.txt, covariance.txt, frames.csv, landmarks.csv and (of frames with images) pictures.json, in the folder
   // given at first. Throws std::runtime_error.
   void Write(const std::vector<vo::MapPoint>& map) const;
 
  private:
+  // One frame's, in the order of the file formats.
+  struct Answer {
+    std::int64_t stamp_ns;
+    std::array<double, 3> p_WC;
+    std::array<double, 4> q_WC;  // x y z w
+    std::array<double, 3> v_WC, w_WC_C;
+    std::array<double, 144> covariance;
+    evaluation::FrameRecord frame;
+  };
+  static Answer AnswerOf(const vo::Estimate& estimate);
+
   std::optional<std::filesystem::path> folder_;
-  std::int64_t frames_ = 0;
+  std::int64_t expected_frames_ = 0;
   report::KeptPictures pictures_;
-  evaluation::EstimateRun run_;
+  Spool<Answer> answers_;
 };
 
 }  // namespace vobench

@@ -47,7 +47,7 @@ std::vector<report::JudgedRun> Judge(const std::vector<Tracker>& trackers, const
                                      const evaluation::JudgeOptions& how) {
   std::vector<report::JudgedRun> judged;
   for (const Tracker& tracker : trackers) {
-    judged.push_back({tracker.entry(), evaluation::Judge(tracker.estimates(), truth.poses, truth.velocities, how)});
+    judged.push_back({tracker.entry(), evaluation::Judge(tracker.Estimates(), truth.poses, truth.velocities, how)});
   }
   return judged;
 }
@@ -82,19 +82,18 @@ void Run(const RunOptions& options) {
   std::optional<LiveView> view;
   if (options.view) view.emplace(Describe(options, experiment, simulator.warnings(), clock));
   const evaluation::JudgeOptions how = JudgeOptionsOf(experiment.prior);
-  Truth truth;
   TruthPictures truth_pictures;
   {
     Progress progress("running", simulator.frame_count());
     while (const std::optional<sim::Frame> rendered = simulator.Next()) {
       const vo::PreparedFrame frame(ToOdometry(*rendered));
-      Append(rendered->stamp_ns, rendered->truth, truth);
       if (folder && IsKept(rendered->index, simulator.frame_count())) truth_pictures.Add(simulator, rendered->index);
       ForEach(odometries, options.jobs, [&](Tracker& odometry) { odometry.Track(frame); });
-      if (view) view->Update(frame.frame, odometries, truth, how);
+      if (view && view->Asked(frame.frame)) view->Show(odometries, TruthOfFirst(simulator, rendered->index + 1), how);
       progress.Step();
     }
   }
+  const Truth truth = TruthOfFirst(simulator, simulator.frame_count());
   if (view) view->Show(odometries, truth, how);
   const std::vector<report::JudgedRun> judged = Judge(odometries, truth, how);
   for (const Tracker& tracker : odometries) {

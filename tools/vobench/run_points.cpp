@@ -68,12 +68,13 @@ void Play(const RunOptions& options, const Experiment& experiment, const Folder&
     step();
   }
   const evaluation::JudgeOptions how = JudgeOptionsOf(experiment.prior);
-  run.judged = {tracker.entry(), evaluation::Judge(tracker.estimates(), truth.poses, truth.velocities, how)};
-  run.nees = NeesByBlock(tracker.estimates(), truth, how.gauge);
+  const evaluation::EstimateRun estimates = tracker.Estimates();
+  run.judged = {tracker.entry(), evaluation::Judge(estimates, truth.poses, truth.velocities, how)};
+  run.nees = NeesByBlock(estimates, truth, how.gauge);
   run.warnings = world.Warnings();
   if (bound) {
-    for (const evaluation::FrameConsistency& frame : evaluation::ComputeConsistency(
-             tracker.estimates(), truth.poses, truth.velocities, how.association.gap_ns, how.gauge)) {
+    for (const evaluation::FrameConsistency& frame :
+         evaluation::ComputeConsistency(estimates, truth.poses, truth.velocities, how.association.gap_ns, how.gauge)) {
       run.errors.push_back(frame.error);
     }
     if (run.system == options.systems.front()) {

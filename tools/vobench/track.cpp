@@ -137,7 +137,7 @@ void Track(const TrackOptions& options) {
     };
     while (const std::optional<vo::PreparedFrame> frame = Input(next)) {
       tracker.Track(*frame);
-      if (view) view->Update(frame->frame, {&tracker, 1}, shown, StartedAtTheOrigin());
+      if (view && view->Asked(frame->frame)) view->Show({&tracker, 1}, shown, StartedAtTheOrigin());
       progress.Step();
       if (!frames && InterruptPending()) break;
     }
@@ -145,13 +145,14 @@ void Track(const TrackOptions& options) {
   const double elapsed_s = tracking.seconds();
   if (view) view->Show({&tracker, 1}, shown, StartedAtTheOrigin());
   tracker.Write();
+  const evaluation::EstimateRun estimates = tracker.Estimates();
   if (!frames) fmt::print(stderr, "{} frames came too fast and were let go\n", source->Dropped());
 
   std::vector<report::JudgedRun> judged;
   if (truth) {
     try {
-      judged.push_back({tracker.entry(),
-                        evaluation::Judge(tracker.estimates(), truth->poses, truth->velocities, StartedAtTheOrigin())});
+      judged.push_back(
+          {tracker.entry(), evaluation::Judge(estimates, truth->poses, truth->velocities, StartedAtTheOrigin())});
       WriteTruth(out.path(), *truth);
     } catch (const evaluation::InputError& error) {  // of another time: the estimate is worth keeping all the same
       description.notes.push_back(fmt::format("Not judged: {}", error.what()));
@@ -166,8 +167,8 @@ void Track(const TrackOptions& options) {
   if (options.map) WriteMap(*options.map, tracker.map());
   out.Commit();
 
-  fmt::print("{}{}The report is in {}\n", report::TextSummary(judged),
-             report::TimeTable(tracker.estimates().frames, elapsed_s), (options.output / "report.html").string());
+  fmt::print("{}{}The report is in {}\n", report::TextSummary(judged), report::TimeTable(estimates.frames, elapsed_s),
+             (options.output / "report.html").string());
 }
 
 }  // namespace vobench

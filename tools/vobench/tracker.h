@@ -37,7 +37,8 @@ class Tracker {
   std::vector<vo::MapPoint> map() const { return odometry_.Map(); }
   std::vector<report::FeatureMark> marks() const { return MarksOf(odometry_.Features()); }  // of the last frame
   const report::RunEntry& entry() const { return entry_; }
-  const evaluation::EstimateRun& estimates() const { return recorder_.run(); }
+  std::size_t frames() const { return recorder_.frames(); }
+  evaluation::EstimateRun Estimates() const { return recorder_.Run(); }  // read from the spool: once, at the end
 
  private:
   report::RunEntry entry_;

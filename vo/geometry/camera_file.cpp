@@ -120,21 +120,68 @@ void ReadOwn(settings::Section root, Camera& camera) {
   }
 }
 
-bool IsOfOpenCv(const std::filesystem::path& file) {
+// A matrix of OpenCV's. What is wrong with it.
+std::vector<std::string> SetMatrix(const std::vector<double>& matrix, Camera& camera) {
+  if (matrix.size() != 9) return {"'camera_matrix' must have 3 x 3 numbers"};
+  return SetMatrix(std::span<const double, 9>(matrix), camera);
+}
+
+// Row by row; empty, and a problem known, where it is none.
+std::vector<double> OpenCvMatrix(settings::Section section, const std::string& name) {
+  int rows = 0, columns = 0;
+  std::vector<double> values;
+  const bool has_rows = section.Require("rows", rows, settings::Range::Positive());
+  const bool has_columns = section.Require("cols", columns, settings::Range::Positive());
+  const bool has_data = section.Require("data", values);
+  section.IgnoreRest();
+  if (!has_rows || !has_columns || !has_data) return {};
+  const std::int64_t count = static_cast<std::int64_t>(rows) * columns;
+  if (count == static_cast<std::int64_t>(values.size())) return values;
+  section.Reject("data", "'" + name + ".data': expected " + std::to_string(count) + " numbers, " +
+                             std::to_string(rows) + " x " + std::to_string(columns) + ", not " +
+                             std::to_string(values.size()));
+  return {};
+}
+
+// Not by cv::FileStorage, whose reader of YAML crashes, or never ends, on files that are nearly right (4.6).
+void ReadOpenCvYaml(settings::Section root, Camera& camera) {
+  // The name that is there, of the two that OpenCV's own programs have given it.
+  const auto either = [&](const char* name, const char* other) {
+    return std::string(root.Has(name) || !root.Has(other) ? name : other);
+  };
+  root.Require(either("image_width", "image_Width"), camera.width, settings::Range::Positive());
+  root.Require(either("image_height", "image_Height"), camera.height, settings::Range::Positive());
+  int fisheye = 0;
+  if (root.Read("fisheye_model", fisheye) && fisheye != 0) camera.lens = Lens::fisheye;
+  const std::string matrix_key = either("camera_matrix", "Camera_Matrix");
+  if (const std::vector<double> matrix = OpenCvMatrix(root.Child(matrix_key), matrix_key); !matrix.empty()) {
+    for (const std::string& problem : SetMatrix(matrix, camera)) root.Reject(matrix_key, problem);
+  }
+  const std::string lens_key = either("distortion_coefficients", "Distortion_Coefficients");
+  if (const std::vector<double> coefficients = OpenCvMatrix(root.Child(lens_key), lens_key); !coefficients.empty()) {
+    if (const std::string problem = SetLens(coefficients, camera); !problem.empty())
+      root.Reject(lens_key, "'distortion_coefficients' " + problem);
+  }
+  root.IgnoreRest();
+}
+
+std::string FirstLine(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);
-  return line.starts_with("%YAML:") || line.starts_with("<?xml");
+  return line;
 }
 
 // cv::FileStorage has no lines to name.
-class OpenCvFile {
+class OpenCvXml {
  public:
-  explicit OpenCvFile(const std::filesystem::path& file) : file_(file.string()) {
+  explicit OpenCvXml(const std::filesystem::path& file) : file_(file.string()) {
     std::ifstream stream(file, std::ios::binary);
-    std::string text(limits::kMostStorageBytes + 1, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
+    std::string text;
+    for (std::array<char, 4096> block; stream && text.size() <= limits::kMostStorageBytes;) {
+      stream.read(block.data(), block.size());
+      text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+    }
     if (const std::string problem = limits::OpenCvStorageProblem(text); !problem.empty())
       throw settings::Error({{file_, 0, 0, "OpenCV cannot read it: it is " + problem}});
     storage_.open(file_, cv::FileStorage::READ);
@@ -146,10 +193,8 @@ class OpenCvFile {
     camera.width = Size("image_width", "image_Width");
     camera.height = Size("image_height", "image_Height");
     const std::vector<double> matrix = Matrix("camera_matrix", "Camera_Matrix");
-    if (matrix.size() == 9) {
-      for (const std::string& problem : SetMatrix(std::span<const double, 9>(matrix), camera)) Complain(problem);
-    } else if (!matrix.empty()) {
-      Complain("'camera_matrix' must have 3 x 3 numbers");
+    if (!matrix.empty()) {
+      for (const std::string& problem : SetMatrix(matrix, camera)) Complain(problem);
     }
     const cv::FileNode fisheye = storage_["fisheye_model"];
     if (fisheye.isInt() && static_cast<int>(fisheye) != 0) camera.lens = Lens::fisheye;
@@ -212,9 +257,10 @@ class OpenCvFile {
 }  // namespace
 
 Camera ReadCamera(const std::filesystem::path& file) {
-  if (IsOfOpenCv(file)) {
+  const std::string first_line = FirstLine(file);
+  if (first_line.starts_with("<?xml")) {
     try {
-      return OpenCvFile(file).Read();
+      return OpenCvXml(file).Read();
     } catch (const settings::Error&) {
       throw;
     } catch (const cv::Exception& error) {
@@ -224,9 +270,13 @@ Camera ReadCamera(const std::filesystem::path& file) {
     }
   }
   Camera camera;
-  settings::Document document = settings::Document::FromFile(file);
+  const bool of_opencv = first_line.starts_with("%YAML:");
+  settings::Document document =
+      settings::Document::FromFile(file, of_opencv ? settings::Dialect::opencv : settings::Dialect::ours);
   settings::Section root = document.root();
-  if (root.Has("intrinsics")) {
+  if (of_opencv) {
+    ReadOpenCvYaml(root, camera);
+  } else if (root.Has("intrinsics")) {
     ReadEuroc(root, "distortion_coefficients", camera);
   } else if (root.Has("cam0")) {
     ReadEuroc(root.Child("cam0"), "distortion_coeffs", camera);

@@ -174,6 +174,10 @@ std::vector<FaultCommand> FaultCommands() {
                  .words = {"run", (TinyScenario().parent_path() / "points.yaml").string(), "-o", "out", "--runs", "2",
                            "--set", "time.duration=1 s"},
                  .volatile_files = times});
+  all.push_back({.name = "run_long",  // more frames than are kept in memory
+                 .words = {"run", (TinyScenario().parent_path() / "points.yaml").string(), "-o", "out", "--system",
+                           "rb2pf", "--set", "time.duration=40 s"},
+                 .volatile_files = times});
   all.push_back({.name = "track", .words = with(track, {"--map", "map.ply"}), .volatile_files = times});
   all.push_back({.name = "campaign",
                  .words = {"campaign", "../inputs/c.yaml", "-o", "out", "--jobs", "1"},

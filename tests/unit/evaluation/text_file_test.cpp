@@ -64,18 +64,37 @@ TEST(ParseNumber, TakesFiniteNumbersOnly) {
     EXPECT_EQ(ParseNumber(text), std::nullopt) << text;
 }
 
+std::vector<Line> AllLines(const std::filesystem::path& file, char separator = ' ') {
+  std::vector<Line> all;
+  for (const Line& line : ReadLines(file, separator)) all.push_back(line);
+  return all;
+}
+
 TEST(ReadLines, SplitsAndCountsColumns) {
   const TemporaryFolder folder;
-  const auto lines = ReadLines(folder.Write("a.txt", "# comment\n\n  1 \t two\r\n   # indented comment\n3\n"));
+  const auto lines = AllLines(folder.Write("a.txt", "# comment\n\n  1 \t two\r\n   # indented comment\n3\n"));
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0].number, 3);
   ASSERT_EQ(lines[0].tokens.size(), 2u);
   EXPECT_EQ(lines[0].tokens[1].text, "two");
   EXPECT_EQ(lines[0].tokens[1].column, 7);
-  const auto csv = ReadLines(folder.Write("a.csv", "a,,b,\n"), ',');
+  const auto csv = AllLines(folder.Write("a.csv", "a,,b,\n"), ',');
   ASSERT_EQ(csv[0].tokens.size(), 4u);
   EXPECT_EQ(csv[0].tokens[1].text, "");
   EXPECT_EQ(csv[0].tokens[2].column, 4);
+}
+
+// A line's memory serves the next one: nothing of a longer one may be left.
+TEST(ReadLines, KeepsNothingOfTheLineBefore) {
+  const TemporaryFolder folder;
+  const auto lines = AllLines(folder.Write("a.txt", "one two three\nfour\n\nfive six\n"));
+  ASSERT_EQ(lines.size(), 3u);
+  ASSERT_EQ(lines[1].tokens.size(), 1u);
+  EXPECT_EQ(lines[1].tokens[0].text, "four");
+  ASSERT_EQ(lines[2].tokens.size(), 2u);
+  EXPECT_EQ(lines[2].tokens[1].text, "six");
+  EXPECT_EQ(lines[2].number, 4);
+  EXPECT_TRUE(AllLines(folder.Write("nothing.txt", "# no line\n")).empty());
 }
 
 TEST(ReadLines, NamesWhatCannotBeRead) {

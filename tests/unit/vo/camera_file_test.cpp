@@ -88,10 +88,19 @@ TEST_F(CameraFile, OfOpenCvInYamlAndXml) {
 TEST_F(CameraFile, OfOpenCvThatIsNotUnderstood) {
   const std::vector<double> rational{0.1, 0, 0, 0, 0, 0.2, 0, 0};
   const fs::path file = WriteByOpenCv("c.yaml", cv::Mat(matrix_).rowRange(0, 2), cv::Mat(rational));
-  EXPECT_THAT(ErrorOf(file), HasSubstr(file.string() + ": 'camera_matrix' must have 3 x 3 numbers"));
+  EXPECT_THAT(ErrorOf(file), HasSubstr(file.string() + ":6:16: 'camera_matrix' must have 3 x 3 numbers"));
   EXPECT_THAT(ErrorOf(file), HasSubstr("'distortion_coefficients' has more than 5 coefficients that are not zero"));
   EXPECT_THAT(ErrorOf(Write("c.xml", "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>-3</image_width>")),
               HasSubstr("OpenCV cannot read it"));
+  EXPECT_THAT(ErrorOf(WriteByOpenCv("c.xml", cv::Mat(matrix_).rowRange(0, 2), cv::Mat(rational))),
+              HasSubstr("c.xml: 'camera_matrix' must have 3 x 3 numbers"));
+  // As many numbers as it says, whatever it says; 4.6's own reader never ends on the second.
+  const std::string short_matrix =
+      "%YAML:1.0\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   data: [1, 2]\n";
+  EXPECT_THAT(ErrorOf(Write("e.yaml", short_matrix)),
+              HasSubstr("e.yaml:5:10: 'camera_matrix.data': expected 9 numbers, 3 x 3, not 2"));
+  EXPECT_THAT(ErrorOf(Write("f.yaml", "%YAML:1.0\n a: 0\n- 3\n")),
+              HasSubstr("f.yaml: holds more than one YAML document"));
   const std::string nothing = ErrorOf(Write("d.yaml", "%YAML:1.0\n---\nimage_width: -3\n"));
   for (const char* key : {"image_width", "image_height", "camera_matrix", "distortion_coefficients"})
     EXPECT_THAT(nothing, HasSubstr(key));

@@ -1,0 +1,71 @@
+// Purpose: a series that grows by a record a frame and is read as a whole when it has ended. The newest records are in memory, older ones in a
+//          file without a name, so that memory is the same after a minute and after a day.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <type_traits>
+#include <vector>
+
+namespace vobench {
+
+// A file that nobody else sees and that is gone with this object, however the program ends. It is made when something is first written.
+// Throws std::runtime_error naming the folder and the reason (disk full, nobody may write there).
+class SpoolFile {
+ public:
+  explicit SpoolFile(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  ~SpoolFile();
+  SpoolFile(SpoolFile&& other) noexcept;
+  SpoolFile& operator=(SpoolFile&&) = delete;
+
+  void Append(const void* bytes, std::size_t count);
+  void Read(std::uint64_t offset, void* bytes, std::size_t count) const;
+
+ private:
+  void Open();
+  [[noreturn]] void Fail(const char* what, int why) const;
+
+  std::filesystem::path folder_;
+  std::uint64_t size_ = 0;
+  int descriptor_ = -1;
+};
+
+template <class Record>
+class Spool {
+  static_assert(std::is_trivially_copyable_v<Record>);
+
+ public:
+  // Memory has room for so many records; a series that is no longer touches no disk.
+  explicit Spool(std::filesystem::path folder, std::size_t in_memory = 1024)
+      : file_(std::move(folder)), in_memory_(in_memory) {}
+
+  void Add(const Record& record) {
+    if (newest_.size() == in_memory_) {
+      file_.Append(newest_.data(), newest_.size() * sizeof(Record));
+      written_ += newest_.size();
+      newest_.clear();
+    }
+    newest_.push_back(record);
+  }
+
+  std::size_t size() const { return written_ + newest_.size(); }
+
+  // In the order in which they came.
+  template <class Visit>
+  void ForEach(const Visit& visit) const {
+    std::vector<Record> block(written_ > 0 ? in_memory_ : 0);  // what is written is whole blocks
+    for (std::size_t k = 0; k < written_; k += in_memory_) {
+      file_.Read(k * sizeof(Record), block.data(), in_memory_ * sizeof(Record));
+      for (const Record& record : block) visit(record);
+    }
+    for (const Record& record : newest_) visit(record);
+  }
+
+ private:
+  SpoolFile file_;
+  std::size_t in_memory_ = 0, written_ = 0;
+  std::vector<Record> newest_;
+};
+
+}  // namespace vobench
