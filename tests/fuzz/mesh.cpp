@@ -35,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!file) file = std::make_unique<fuzz::InputFile>("mesh." + extension);
   file->Write({data, size});
   sim::WorldDescription world;
-  world.meshes.emplace_back().file = extension == "mtl" ? fuzz::Folder() / "with_materials.obj" : file->path();
+  world.meshes.emplace_back().file = fuzz::Folder() / (extension == "mtl" ? "with_materials.obj" : "mesh." + extension);
   fuzz::Hold(fuzz::Folder().string(), [&] { sim::LoadScene(world); });
   return 0;
 }

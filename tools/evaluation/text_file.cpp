@@ -185,18 +185,23 @@ void WholeFile::Fail(const std::error_code& why) const {
 }
 
 void WholeFile::Append(std::string_view text) {
+  if (buffer_.size() + text.size() > kBufferBytes) Flush();
+  if (text.size() > kBufferBytes) return Write(text);
   buffer_ += text;
-  if (buffer_.size() >= kBufferBytes) Flush();
 }
 
 void WholeFile::Flush() {
-  for (std::string_view bytes = buffer_; !bytes.empty();) {
+  Write(buffer_);
+  buffer_.clear();
+}
+
+void WholeFile::Write(std::string_view bytes) {
+  while (!bytes.empty()) {
     const ssize_t written = write(descriptor_, bytes.data(), bytes.size());
     if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
     if (written == 0) Fail({EIO, std::generic_category()});
     if (written < 0 && errno != EINTR) Fail({errno, std::generic_category()});
   }
-  buffer_.clear();
 }
 
 void WholeFile::Commit() {

@@ -127,6 +127,7 @@ class WholeFile {
 
  private:
   void Flush();
+  void Write(std::string_view bytes);
   [[noreturn]] void Fail(const std::error_code& why) const;
 
   std::filesystem::path file_, temporary_;

@@ -95,19 +95,20 @@ Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading) {
 }
 
 void WriteTrajectory(const std::filesystem::path& file, const Trajectory& trajectory) {
-  std::string text = "# timestamp tx ty tz qx qy qz qw\n";
+  WholeFile out(file);
+  out.Append("# timestamp tx ty tz qx qy qz qw\n");
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const StampedPose& pose = trajectory[i];
     RequireWritable(file, i, pose.p_WC.allFinite() && pose.q_WC.coeffs().allFinite(),
                     i == 0 || pose.stamp_ns > trajectory[i - 1].stamp_ns);
     const Eigen::Vector4d q = pose.q_WC.w() < 0 ? Eigen::Vector4d(-pose.q_WC.coeffs()) : pose.q_WC.coeffs();
-    text += FormatSeconds(pose.stamp_ns);
+    std::string text = FormatSeconds(pose.stamp_ns);
     for (const double value : {pose.p_WC.x(), pose.p_WC.y(), pose.p_WC.z(), q.x(), q.y(), q.z(), q.w()}) {
       text += ' ' + FormatNumber(value, 12);
     }
-    text += '\n';
+    out.Append(text + '\n');
   }
-  WriteWhole(file, text);
+  out.Commit();
 }
 
 Velocities ReadVelocities(const std::filesystem::path& file) {
@@ -131,17 +132,18 @@ Velocities ReadVelocities(const std::filesystem::path& file) {
 }
 
 void WriteVelocities(const std::filesystem::path& file, const Velocities& velocities) {
-  std::string text = "# timestamp vx vy vz wx wy wz\n";
+  WholeFile out(file);
+  out.Append("# timestamp vx vy vz wx wy wz\n");
   for (std::size_t i = 0; i < velocities.size(); ++i) {
     const StampedVelocity& entry = velocities[i];
     RequireWritable(file, i, entry.v_WC.allFinite() && entry.w_WC_C.allFinite(),
                     i == 0 || entry.stamp_ns > velocities[i - 1].stamp_ns);
-    text += FormatSeconds(entry.stamp_ns);
+    std::string text = FormatSeconds(entry.stamp_ns);
     for (int k = 0; k < 3; ++k) text += ' ' + FormatNumber(entry.v_WC[k], 12);
     for (int k = 0; k < 3; ++k) text += ' ' + FormatNumber(entry.w_WC_C[k], 12);
-    text += '\n';
+    out.Append(text + '\n');
   }
-  WriteWhole(file, text);
+  out.Commit();
 }
 
 std::optional<StampedVelocity> VelocityAt(const Velocities& velocities, std::int64_t stamp_ns) {

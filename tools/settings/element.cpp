@@ -49,6 +49,15 @@ class Builder : public YAML::EventHandler {
 
   Element TakeRoot() { return std::move(root_); }
 
+  // What cv::FileStorage has appended to a file is one document more: its keys, where both are maps.
+  bool Join(Builder& next) {
+    if (root_.kind != Element::Kind::map || next.root_.kind != Element::Kind::map) return false;
+    for (Entry& entry : next.root_.entries) {
+      if (!root_.Find(entry.key)) root_.entries.push_back(std::move(entry));
+    }
+    return true;
+  }
+
  private:
   struct Open {
     Element element;
@@ -125,7 +134,7 @@ std::string Describe(const Element& element) {
     case Element::Kind::null:
       return "nothing";
     case Element::Kind::scalar:
-      return "'" + element.text + "'";
+      return "'" + (element.text.size() > 80 ? element.text.substr(0, 77) + "..." : element.text) + "'";
     case Element::Kind::list:
       return "a list";
     case Element::Kind::map:
@@ -140,9 +149,13 @@ Element ParseYaml(const std::string& text, const std::string& name, bool with_li
   try {
     std::istringstream stream(dialect == Dialect::opencv && text.starts_with('%') ? "#" + text.substr(1) : text);
     YAML::Parser parser(stream);
-    Builder rest(name, with_lines, dialect, problems);
-    if (parser.HandleNextDocument(builder) && parser.HandleNextDocument(rest)) {
+    bool more = parser.HandleNextDocument(builder);
+    while (more) {
+      Builder rest(name, with_lines, dialect, problems);
+      more = parser.HandleNextDocument(rest);
+      if (!more || (dialect == Dialect::opencv && builder.Join(rest))) continue;
       problems.push_back({name, 0, 0, "holds more than one YAML document"});
+      break;
     }
   } catch (const YAML::DeepRecursion&) {
     problems.push_back({name, 0, 0, "not valid YAML: nested too deeply"});

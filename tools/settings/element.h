@@ -36,7 +36,7 @@ struct Entry {
 // "a list", "a section", ...: for messages.
 std::string Describe(const Element& element);
 
-// Reads one YAML document; an empty text is a null element. Appends a problem for each duplicate key, alias, tag (of our
+// Reads one YAML document (of OpenCV's dialect several, where all are maps); an empty text is a null element. Appends a problem for each duplicate key, alias, tag (of our
 // dialect) and key that is not a scalar, and goes on; a syntax error ends it with one problem. Without `with_lines` every place is
 // just the name.
 Element ParseYaml(const std::string& text, const std::string& name, bool with_lines, std::vector<Problem>& problems,

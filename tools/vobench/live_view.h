@@ -19,7 +19,7 @@ class LiveView {
 
   // After a frame, which is kept: whether somebody has asked since the last time.
   bool Asked(const vo::Frame& newest);
-  // Judges what there is and shows it. Nothing of the run depends on it.
+  // Judges what there is, all of it, and shows it. No result depends on it. Throws std::runtime_error where what was answered cannot be read.
   void Show(std::span<const Tracker> trackers, const Truth& truth, const evaluation::JudgeOptions& how);
 
  private:

@@ -29,7 +29,7 @@ class PointTracker {
 
   std::vector<vo::MapPoint> map() const { return odometry_.Map(); }
   const report::RunEntry& entry() const { return entry_; }
-  evaluation::EstimateRun Estimates() const { return recorder_.Run(); }  // read from the spool: once, at the end
+  evaluation::EstimateRun Estimates() const { return recorder_.Run(); }  // all of them, read from the spool
 
  private:
   report::RunEntry entry_;

@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <system_error>
 
 #include "tools/evaluation/text_file.h"
 #include "tools/vobench/picture.h"
@@ -14,13 +13,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::int64_t kPictures = 24;
-
-fs::path SpoolFolder(const std::optional<fs::path>& folder) {
-  if (folder) return *folder;
-  std::error_code error;
-  const fs::path temporary = fs::temp_directory_path(error);
-  return error ? fs::path("/tmp") : temporary;
-}
 
 evaluation::FrameRecord RecordOf(const vo::Estimate& estimate) {
   const vo::FrameDiagnostics& d = estimate.diagnostics;
@@ -80,11 +72,11 @@ bool IsKept(std::int64_t index, std::int64_t frames) {
 }
 
 Recorder::Recorder(std::int64_t frames, std::optional<fs::path> folder)
-    : folder_(std::move(folder)), expected_frames_(frames), answers_(SpoolFolder(folder_)) {
+    : folder_(std::move(folder)), expected_frames_(frames), answers_(folder_) {
   if (folder_) fs::create_directories(*folder_ / "frames");
 }
 
-Recorder::Recorder(std::optional<fs::path> folder) : folder_(std::move(folder)), answers_(SpoolFolder(folder_)) {
+Recorder::Recorder(std::optional<fs::path> folder) : folder_(std::move(folder)), answers_(folder_) {
   if (folder_) fs::create_directories(*folder_);
 }
 

@@ -1,5 +1,5 @@
-// Purpose: what one run of an odometry leaves behind (docs/result_folder.md): kept as it runs, written at the end. Memory is the same
-//          however long it runs: answers are spooled, pictures go to disk at once.
+// Purpose: what one run of an odometry leaves behind (docs/result_folder.md): kept as it runs, written at the end. In a folder, memory
+//          is the same however long it runs: answers are spooled there, pictures go there at once.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ std::vector<report::FeatureMark> MarksOf(const std::vector<vo::FeatureView>& fea
 class Recorder {
  public:
   // With a folder, those of `frames` frames that IsKept are kept there as pictures; the folder is made. Without one,
-  // none. Answers are spooled there too, or in the system's folder for temporary files ($TMPDIR).
+  // none, and all answers are in memory (1.4 kB each).
   Recorder(std::int64_t frames, std::optional<std::filesystem::path> folder);
   // For frames without images.
   explicit Recorder(std::optional<std::filesystem::path> folder);
@@ -41,7 +41,7 @@ class Recorder {
   void Write(const std::vector<vo::MapPoint>& map) const;
 
  private:
-  // One frame's, in the order of the file formats.
+  // One frame's: what estimate.txt, covariance.txt and frames.csv say of it.
   struct Answer {
     std::int64_t stamp_ns;
     std::array<double, 3> p_WC;

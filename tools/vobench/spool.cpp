@@ -30,22 +30,23 @@ void SpoolFile::Open() {
     descriptor_ = open(folder_.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   } while (descriptor_ < 0 && errno == EINTR);
   if (descriptor_ >= 0) return;
-  if (errno != EOPNOTSUPP && errno != EISDIR) Fail("cannot keep", errno);
+  if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) Fail("cannot keep", errno);
   std::string name = (folder_ / ".spool-XXXXXX").string();  // a file system without files that have no name
   descriptor_ = mkostemp(name.data(), O_CLOEXEC);
-  if (descriptor_ < 0) Fail("cannot keep", errno);
-  unlink(name.c_str());
+  if (descriptor_ < 0 || unlink(name.c_str()) != 0) Fail("cannot keep", errno);
 }
 
 void SpoolFile::Append(const void* bytes, std::size_t count) {
   if (descriptor_ < 0) Open();
   const char* next = static_cast<const char*>(bytes);
+  std::uint64_t offset = size_;
+  size_ += count;
   while (count > 0) {
-    const ssize_t written = pwrite(descriptor_, next, count, static_cast<off_t>(size_));
+    const ssize_t written = pwrite(descriptor_, next, count, static_cast<off_t>(offset));
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) Fail("cannot keep", written < 0 ? errno : EIO);
     next += written;
-    size_ += static_cast<std::uint64_t>(written);
+    offset += static_cast<std::uint64_t>(written);
     count -= static_cast<std::size_t>(written);
   }
 }

@@ -5,7 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <optional>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace vobench {
@@ -36,9 +39,9 @@ class Spool {
   static_assert(std::is_trivially_copyable_v<Record>);
 
  public:
-  // Memory has room for so many records; a series that is no longer touches no disk.
-  explicit Spool(std::filesystem::path folder, std::size_t in_memory = 1024)
-      : file_(std::move(folder)), in_memory_(in_memory) {}
+  // Memory has room for so many records; a series that is no longer touches no disk. Without a folder, all are in memory.
+  explicit Spool(std::optional<std::filesystem::path> folder, std::size_t in_memory = 1024)
+      : file_(folder.value_or("")), in_memory_(folder ? in_memory : std::numeric_limits<std::size_t>::max()) {}
 
   void Add(const Record& record) {
     if (newest_.size() == in_memory_) {
@@ -54,8 +57,8 @@ class Spool {
   // In the order in which they came.
   template <class Visit>
   void ForEach(const Visit& visit) const {
-    std::vector<Record> block(written_ > 0 ? in_memory_ : 0);  // what is written is whole blocks
-    for (std::size_t k = 0; k < written_; k += in_memory_) {
+    std::vector<Record> block(written_ > 0 ? in_memory_ : 0);
+    for (std::size_t k = 0; k < written_; k += in_memory_) {  // what is written is whole blocks
       file_.Read(k * sizeof(Record), block.data(), in_memory_ * sizeof(Record));
       for (const Record& record : block) visit(record);
     }

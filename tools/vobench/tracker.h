@@ -38,7 +38,7 @@ class Tracker {
   std::vector<report::FeatureMark> marks() const { return MarksOf(odometry_.Features()); }  // of the last frame
   const report::RunEntry& entry() const { return entry_; }
   std::size_t frames() const { return recorder_.frames(); }
-  evaluation::EstimateRun Estimates() const { return recorder_.Run(); }  // read from the spool: once, at the end
+  evaluation::EstimateRun Estimates() const { return recorder_.Run(); }  // all of them, read from the spool
 
  private:
   report::RunEntry entry_;

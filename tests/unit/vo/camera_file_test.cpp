@@ -106,6 +106,20 @@ TEST_F(CameraFile, OfOpenCvThatIsNotUnderstood) {
     EXPECT_THAT(nothing, HasSubstr(key));
 }
 
+// What older samples called them, and what an APPEND makes of a file: a document more.
+TEST_F(CameraFile, OfOpenCvWithOlderNamesAndAppended) {
+  const fs::path file = folder_ / "old.yaml";
+  {
+    cv::FileStorage storage(file.string(), cv::FileStorage::WRITE);
+    storage << "image_Width" << 752 << "image_Height" << 480;
+  }
+  {
+    cv::FileStorage storage(file.string(), cv::FileStorage::APPEND);
+    storage << "Camera_Matrix" << cv::Mat(matrix_) << "Distortion_Coefficients" << cv::Mat(radtan_);
+  }
+  ExpectPlumbBob(vo::ReadCamera(file));
+}
+
 TEST_F(CameraFile, OfRos) {
   const std::string text =
       "image_width: 752\nimage_height: 480\ncamera_name: left\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
