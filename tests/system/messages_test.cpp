@@ -146,12 +146,19 @@ const std::vector<Message>& Messages() {
        {"track", "pictures", "-o", "o", "--camera", "freiburg9"},
        {"'freiburg9'", "freiburg1, freiburg2, freiburg3 or icl, or a camera file that exists"}},
       {"vo/geometry/camera_file.cpp",
-       {"track", "pictures", "-o", "o", "--camera", "opencv.yaml"},
-       {"opencv.yaml", "'image_width' must be there, a positive whole number",
+       {"track", "pictures", "-o", "o", "--camera", "opencv.xml"},
+       {"opencv.xml", "'image_width' must be there, a positive whole number",
         "'camera_matrix' must be there, a matrix of numbers"}},
       {"vo/geometry/camera_file.cpp",
+       {"track", "pictures", "-o", "o", "--camera", "none.xml"},
+       {"none.xml", "'camera_matrix' has a number that is none"}},
+      {"vo/geometry/camera_file.cpp",
+       {"track", "pictures", "-o", "o", "--camera", "opencv.yaml"},
+       {"opencv.yaml:3:14", "'image_width': '0' must be positive", "'camera_matrix': expected a section, not '5'",
+        "missing key 'distortion_coefficients.data'"}},
+      {"vo/geometry/camera_file.cpp",
        {"track", "pictures", "-o", "o", "--camera", "none.yaml"},
-       {"none.yaml", "'camera_matrix' has a number that is none"}},
+       {"none.yaml:9:12", "'camera_matrix.data': '.Nan' is not a finite number"}},
       {"vo/estimate.cpp",
        {"run", "POINTS", "--set", "odometry.motion.position_noise=-1"},
        {"odometry.motion.position_noise", "-1"}},
@@ -269,6 +276,14 @@ class MessagesTest : public testing::Test {
       WriteFile(here_ / (picture + ".mtl"), "newmtl m\nmap_Kd " + picture + "\n");
       WriteFile(here_ / picture, content);
     }
+    const std::string xml = "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_height>480</image_height>\n";
+    WriteFile(here_ / "opencv.xml",
+              xml + "<image_width>0</image_width>\n<camera_matrix>5</camera_matrix>\n</opencv_storage>\n");
+    WriteFile(
+        here_ / "none.xml",
+        xml +
+            "<image_width>640</image_width>\n<camera_matrix type_id=\"opencv-matrix\"><rows>3</rows><cols>3</cols>"
+            "<dt>d</dt><data>.Nan 0. 1. 0. 1. 1. 0. 0. 1.</data></camera_matrix>\n</opencv_storage>\n");
     WriteFile(here_ / "opencv.yaml", "%YAML:1.0\n---\nimage_width: 0\nimage_height: 480\ncamera_matrix: 5\n");
     WriteFile(
         here_ / "none.yaml",

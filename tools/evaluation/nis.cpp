@@ -30,7 +30,10 @@ NisSummary SummariseNis(const std::vector<FrameRecord>& frames) {
   summary.whiteness_bound = 1.96 / std::sqrt(n);
   double mean = 0, variance = 0;
   for (const double value : z) mean += value / n;
-  for (const double value : z) variance += (value - mean) * (value - mean);
+  for (const double value : z) {
+    const double off = value - mean;
+    variance += off * off;
+  }
   for (std::size_t lag = 1; lag <= 5 && lag < z.size() && variance > 0; ++lag) {
     double sum = 0;
     for (std::size_t k = lag; k < z.size(); ++k) sum += (z[k] - mean) * (z[k - lag] - mean);

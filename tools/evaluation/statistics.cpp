@@ -19,8 +19,7 @@ double Quantile(const std::vector<double>& sorted, double share) {
   const auto below = static_cast<std::size_t>(at);
   const double rest = at - static_cast<double>(below);
   if (rest == 0) return sorted[below];
-  if (std::isinf(sorted[below]) || std::isinf(sorted[below + 1]))
-    return std::isinf(sorted[below]) ? sorted[below] : sorted[below + 1];
+  if (std::isinf(sorted[below])) return sorted[below];  // inf - inf is no number
   return sorted[below] + rest * (sorted[below + 1] - sorted[below]);
 }
 
@@ -35,7 +34,10 @@ Statistics Summarise(const std::vector<double>& values) {
     squares += value * value / n;
   }
   double about_mean = 0;
-  for (const double value : values) about_mean += (value - s.mean) * (value - s.mean) / n;
+  for (const double value : values) {
+    const double off = value - s.mean;
+    about_mean += off * off / n;
+  }
   s.rmse = std::sqrt(squares);
   s.std = std::sqrt(about_mean);
   s.median = Median(values);

@@ -32,7 +32,10 @@ Whiteness TestWhiteness(const std::vector<double>& sequence, int lags) {
   result.bound = 1.96 / std::sqrt(n);
   double mean = 0, squares = 0;
   for (const double value : sequence) mean += value / n;
-  for (const double value : sequence) squares += (value - mean) * (value - mean);
+  for (const double value : sequence) {
+    const double off = value - mean;
+    squares += off * off;
+  }
   const auto most = std::min(static_cast<std::size_t>(std::max(lags, 0)), sequence.size() - 1);
   if (!(squares > 0) || most == 0) return result;
   for (std::size_t lag = 1; lag <= most; ++lag) {

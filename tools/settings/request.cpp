@@ -27,21 +27,19 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
 
 std::string Suggest(const std::string& given, const std::vector<std::string>& known) {
   if (known.empty()) return "; none is known here";
-  const auto most = [](const std::string& candidate) { return std::max<std::size_t>(2, candidate.size() / 3); };
+  constexpr std::size_t kLongestKey = 64;  // a hostile key is not measured
   std::vector<std::pair<std::size_t, std::string>> nearest;
   for (const std::string& candidate : known) {
     const bool begins = !given.empty() && (candidate.starts_with(given) || given.starts_with(candidate));
-    // What is much longer or shorter is not measured: it is at least as far as that.
-    const std::size_t longer = std::max(given.size(), candidate.size()) - std::min(given.size(), candidate.size());
-    constexpr std::size_t kFar = 1000;
-    nearest.emplace_back(begins                     ? 1
-                         : longer > most(candidate) ? kFar + longer
-                                                    : EditDistance(given, candidate),
+    nearest.emplace_back(begins                       ? 1
+                         : given.size() > kLongestKey ? kLongestKey
+                                                      : EditDistance(given, candidate),
                          candidate);
   }
   std::stable_sort(nearest.begin(), nearest.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
   const auto& [distance, best] = nearest.front();
-  if (distance <= most(best) && distance < best.size()) return "; did you mean '" + best + "'?";
+  if (distance <= std::max<std::size_t>(2, best.size() / 3) && distance < best.size())
+    return "; did you mean '" + best + "'?";
   std::string text = "; known: ";
   for (const auto& [d, candidate] : nearest) text += (&candidate != &nearest.front().second ? ", " : "") + candidate;
   return text;

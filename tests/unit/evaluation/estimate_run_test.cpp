@@ -62,6 +62,15 @@ TEST(EstimateRun, ReadsBackTheSame) {
   }
 }
 
+// A start that is known exactly.
+TEST(EstimateRun, AVarianceMayBeZero) {
+  const TemporaryFolder folder;
+  EstimateRun run = Sample();
+  run.beliefs[0].covariance.setZero();
+  WriteEstimateRun(folder.path(), run);
+  EXPECT_EQ(ReadEstimateRun(folder.path()).beliefs[0].covariance, Matrix12d::Zero());
+}
+
 TEST(EstimateRun, FramesMayComeWithoutGuards) {
   const TemporaryFolder folder;
   EstimateRun run = Sample();
