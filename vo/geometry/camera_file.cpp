@@ -1,51 +1,18 @@
 #include "vo/geometry/camera_file.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <fstream>
-#include <opencv2/core.hpp>
-#include <span>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
-#include "tools/limits/opencv_storage.h"
 #include "tools/settings/settings.h"
+#include "vo/geometry/calibration_numbers.h"
+#include "vo/geometry/opencv_xml.h"
 
 namespace vo {
 namespace {
-
-// In OpenCV's order: k1 k2 p1 p2 [k3] or, of a fisheye lens, k1 k2 k3 k4; what follows must be zero. Else what is wrong.
-std::string SetLens(const std::vector<double>& coefficients, Camera& camera) {
-  const std::size_t most = camera.lens == Lens::fisheye ? 4 : 5;
-  if (coefficients.size() < 4)
-    return "must be k1, k2, p1, p2 and perhaps k3, or k1 ... k4 of an equidistant lens; there are " +
-           std::to_string(coefficients.size()) + " numbers";
-  for (std::size_t i = most; i < coefficients.size(); ++i) {
-    if (coefficients[i] != 0)
-      return "has more than " + std::to_string(most) + " coefficients that are not zero: that lens is not known here";
-  }
-  camera.k1 = coefficients[0];
-  camera.k2 = coefficients[1];
-  const bool fisheye = camera.lens == Lens::fisheye;
-  (fisheye ? camera.k3 : camera.p1) = coefficients[2];
-  (fisheye ? camera.k4 : camera.p2) = coefficients[3];
-  if (!fisheye && coefficients.size() > 4) camera.k3 = coefficients[4];
-  return "";
-}
-
-// 3 x 3, row by row. What is wrong with it.
-std::vector<std::string> SetMatrix(std::span<const double, 9> matrix, Camera& camera) {
-  std::vector<std::string> problems;
-  camera.fx = matrix[0];
-  camera.cx = matrix[2];
-  camera.fy = matrix[4];
-  camera.cy = matrix[5];
-  if (!(camera.fx > 0 && camera.fy > 0)) problems.emplace_back("'camera_matrix': fx and fy must be positive");
-  if (matrix[1] != 0) problems.emplace_back("'camera_matrix': skew is not known here");
-  return problems;
-}
 
 void RequireLens(settings::Section& section, const std::string& key, const std::string& name, Camera& camera) {
   std::vector<double> coefficients;
@@ -65,9 +32,12 @@ void ReadEuroc(settings::Section section, const std::string& coefficients, Camer
                          {"radtan", Lens::radial_tangential},
                          {"none", Lens::radial_tangential},
                          {"equidistant", Lens::fisheye}});
-  if (section.Require("resolution", size, settings::Unit::none, settings::Range::Positive())) {
+  constexpr settings::Range kPixels{1, std::numeric_limits<int>::max()};
+  if (section.Require("resolution", size, settings::Unit::none, kPixels)) {
     camera.width = static_cast<int>(size[0]);
     camera.height = static_cast<int>(size[1]);
+    if (camera.width != size[0] || camera.height != size[1])
+      section.Reject("resolution", "'resolution': width and height must be whole numbers");
   }
   if (section.Require("intrinsics", intrinsics)) {
     camera.fx = intrinsics[0];
@@ -120,12 +90,6 @@ void ReadOwn(settings::Section root, Camera& camera) {
   }
 }
 
-// A matrix of OpenCV's. What is wrong with it.
-std::vector<std::string> SetMatrix(const std::vector<double>& matrix, Camera& camera) {
-  if (matrix.size() != 9) return {"'camera_matrix' must have 3 x 3 numbers"};
-  return SetMatrix(std::span<const double, 9>(matrix), camera);
-}
-
 // Row by row; empty, and a problem known, where it is none.
 std::vector<double> OpenCvMatrix(settings::Section section, const std::string& name) {
   int rows = 0, columns = 0;
@@ -172,103 +136,11 @@ std::string FirstLine(const std::filesystem::path& file) {
   return line;
 }
 
-// cv::FileStorage has no lines to name.
-class OpenCvXml {
- public:
-  explicit OpenCvXml(const std::filesystem::path& file) : file_(file.string()) {
-    std::ifstream stream(file, std::ios::binary);
-    std::string text;
-    for (std::array<char, 4096> block; stream && text.size() <= limits::kMostStorageBytes;) {
-      stream.read(block.data(), block.size());
-      text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
-    }
-    if (const std::string problem = limits::OpenCvStorageProblem(text); !problem.empty())
-      throw settings::Error({{file_, 0, 0, "OpenCV cannot read it: it is " + problem}});
-    storage_.open(file_, cv::FileStorage::READ);
-    if (!storage_.isOpened()) throw settings::Error({{file_, 0, 0, "OpenCV cannot read it"}});
-  }
-
-  Camera Read() {
-    Camera camera;
-    camera.width = Size("image_width", "image_Width");
-    camera.height = Size("image_height", "image_Height");
-    const std::vector<double> matrix = Matrix("camera_matrix", "Camera_Matrix");
-    if (!matrix.empty()) {
-      for (const std::string& problem : SetMatrix(matrix, camera)) Complain(problem);
-    }
-    const cv::FileNode fisheye = storage_["fisheye_model"];
-    if (fisheye.isInt() && static_cast<int>(fisheye) != 0) camera.lens = Lens::fisheye;
-    const std::vector<double> coefficients = Matrix("distortion_coefficients", "Distortion_Coefficients");
-    if (!coefficients.empty()) {
-      if (const std::string problem = SetLens(coefficients, camera); !problem.empty())
-        Complain("'distortion_coefficients' " + problem);
-    }
-    if (!problems_.empty()) throw settings::Error(problems_);
-    return camera;
-  }
-
- private:
-  void Complain(const std::string& message) { problems_.push_back({file_, 0, 0, message}); }
-
-  cv::FileNode Find(const char* name, const char* other) const {
-    const cv::FileNode node = storage_[name];
-    return node.empty() ? storage_[other] : node;
-  }
-
-  int Size(const char* name, const char* other) {
-    const cv::FileNode node = Find(name, other);
-    const int value = node.isInt() ? static_cast<int>(node) : 0;
-    if (value <= 0) Complain(std::string("'") + name + "' must be there, a positive whole number");
-    return value;
-  }
-
-  // Row by row; empty, and a problem known, where it is not there.
-  std::vector<double> Matrix(const char* name, const char* other) {
-    const std::vector<double> values = Numbers(Find(name, other));
-    if (values.empty()) Complain(std::string("'") + name + "' must be there, a matrix of numbers");
-    for (const double value : values) {
-      if (std::isfinite(value)) continue;
-      Complain(std::string("'") + name + "' has a number that is none");
-      return {};
-    }
-    return values;
-  }
-
-  // Not by cv::Mat's reader, which makes room for as many rows and columns as the file says.
-  static std::vector<double> Numbers(const cv::FileNode& matrix) {
-    if (!matrix.isMap()) return {};
-    const cv::FileNode rows = matrix["rows"], columns = matrix["cols"], data = matrix["data"];
-    if (!rows.isInt() || !columns.isInt() || !data.isSeq()) return {};
-    const std::int64_t count = static_cast<std::int64_t>(static_cast<int>(rows)) * static_cast<int>(columns);
-    if (count < 1 || static_cast<std::size_t>(count) != data.size()) return {};
-    std::vector<double> values;
-    for (const cv::FileNode& value : data) {
-      if (!value.isInt() && !value.isReal()) return {};
-      values.push_back(static_cast<double>(value));
-    }
-    return values;
-  }
-
-  std::string file_;
-  cv::FileStorage storage_;
-  std::vector<settings::Problem> problems_;
-};
-
 }  // namespace
 
 Camera ReadCamera(const std::filesystem::path& file) {
   const std::string first_line = FirstLine(file);
-  if (first_line.starts_with("<?xml")) {
-    try {
-      return OpenCvXml(file).Read();
-    } catch (const settings::Error&) {
-      throw;
-    } catch (const cv::Exception& error) {
-      throw settings::Error({{file.string(), 0, 0, "OpenCV cannot read it: " + error.err}});
-    } catch (const std::exception& error) {  // its parser lets the standard library's pass
-      throw settings::Error({{file.string(), 0, 0, std::string("OpenCV cannot read it: ") + error.what()}});
-    }
-  }
+  if (first_line.starts_with("<?xml")) return ReadOpenCvXml(file);
   Camera camera;
   const bool of_opencv = first_line.starts_with("%YAML:");
   settings::Document document =

@@ -157,4 +157,13 @@ TEST_F(CameraFile, OfKalibr) {
               HasSubstr("camchain.yaml:6:"));
 }
 
+TEST_F(CameraFile, OfEurocWhoseSizeIsNone) {
+  for (const char* width : {"0", "752.5", "1e74"}) {
+    const std::string text = std::string("camera_model: pinhole\nresolution: [") + width +
+                             ", 480]\nintrinsics: [458.5, 457.25, 367.25, 248.375]\ndistortion_model: none\n"
+                             "distortion_coefficients: [0, 0, 0, 0]\n";
+    EXPECT_THAT(ErrorOf(Write("sensor.yaml", text)), HasSubstr("sensor.yaml:2:")) << width;
+  }
+}
+
 }  // namespace
