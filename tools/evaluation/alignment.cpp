@@ -28,7 +28,7 @@ Similarity Umeyama(const MatchedTrajectories& matched, bool with_scale) {
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(C, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Vector3d S = Eigen::Vector3d::Ones();
-  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) S.z() = -1;
+  if ((svd.matrixU() * svd.matrixV()).determinant() < 0) S.z() = -1;
 
   Similarity result;
   // Positions that do not move but for rounding (their size squared, times epsilon squared) have no extent.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -21,66 +22,61 @@ using Eigen::Vector2d;
 
 // The error of one axis: e_t = A e_t-1 + N noise, with covariance P at every t.
 struct SteadyState {
+  double variance;  // of the measurement
   Matrix2d P, A, N;
 };
 
-SteadyState SteadyStateOf(const LinearFilter& filter, double variance) {
+// The filter's gain is (alpha, beta / dt). Of P = (I - K H) M and M = F P F' + Q, both steady, remain
+//   alpha^2 + alpha beta - 2 beta + beta^2 / 6 = 0   and   variance beta^2 / (1 - alpha) = psd dt^3,
+// and P(0, 0) = alpha variance is the one that is asked for (Bar-Shalom et al., 6.5).
+SteadyState SteadyStateOf(const LinearFilter& filter) {
+  const bool valid = filter.axes > 0 && filter.dt > 0 && filter.psd > 0 && filter.sigma_position > 0;
+  if (!valid) throw std::invalid_argument("LinearFilter: axes, dt, psd and sigma_position must be positive");
   const double dt = filter.dt;
-  Matrix2d F, Q;
+  const auto alpha_of = [](double beta) { return (std::sqrt(beta * beta / 3 + 8 * beta) - beta) / 2; };
+  const double wanted = filter.psd * dt * dt * dt / (filter.sigma_position * filter.sigma_position);
+  double low = 0, high = 3 - std::sqrt(3.0);  // there alpha is 1
+  double beta = high, alpha = 1;
+  for (double last = 0; beta != last;) {
+    last = beta;
+    beta = (low + high) / 2;
+    alpha = alpha_of(beta);
+    (beta * beta / alpha / (1 - alpha) < wanted ? low : high) = beta;
+  }
+  const double variance = filter.sigma_position * filter.sigma_position / alpha;
+  SteadyState state{variance, {}, {}, {}};
+  const double across = variance * beta / dt;
+  state.P << variance * alpha, across, across, across / dt * (alpha - beta / 2) / (1 - alpha);
+  Matrix2d F, Q, keep;
   F << 1, dt, 0, 1;
   Q << dt * dt * dt / 3, dt * dt / 2, dt * dt / 2, dt;
-  Q *= filter.psd;
-  SteadyState state;
-  state.P << variance, 0, 0, filter.psd * dt + variance / (dt * dt);
-  for (int i = 0; i < 1'000'000; ++i) {
-    const Matrix2d prior = F * state.P * F.transpose() + Q;
-    const Vector2d K = prior.col(0) / (prior(0, 0) + variance);
-    Matrix2d keep = Matrix2d::Identity();
-    keep.col(0) -= K;
-    const Matrix2d noise = keep * Q * keep.transpose() + variance * K * K.transpose();
-    const Matrix2d P = keep * prior * keep.transpose() + variance * K * K.transpose();
-    const bool settled = ((P - state.P).array().abs() <= 1e-14 * P.array().abs()).all();
-    state = {P, keep * F, noise.llt().matrixL()};
-    if (settled) break;
-  }
+  keep << 1 - alpha, 0, -beta / dt, 1;
+  const Vector2d K(alpha, beta / dt);
+  state.A = keep * F;
+  state.N = (filter.psd * keep * Q * keep.transpose() + variance * K * K.transpose()).llt().matrixL();
   return state;
 }
 
-double VarianceOfMeasurement(const LinearFilter& filter) {
-  const bool valid = filter.axes > 0 && filter.dt > 0 && filter.psd > 0 && filter.sigma_position > 0;
-  if (!valid) throw std::invalid_argument("LinearFilter: axes, dt, psd and sigma_position must be positive");
-  const double wanted = filter.sigma_position * filter.sigma_position;
-  double low = wanted, high = wanted;  // a filter is never worse than one measurement
-  while (SteadyStateOf(filter, high).P(0, 0) < wanted) high *= 4;
-  for (int i = 0; i < 200 && high > low * (1 + 1e-13); ++i) {
-    const double middle = std::sqrt(low * high);
-    (SteadyStateOf(filter, middle).P(0, 0) < wanted ? low : high) = middle;
-  }
-  return std::sqrt(low * high);
-}
-
-// Calls add(frame, NEES) for every axis of one run.
-template <typename Add>
-void SimulateRun(const LinearFilter& filter, const SteadyState& state, int frames, Draws& random, Add add) {
+// Adds one run's NEES to `sums`, one of each frame.
+void AddRun(const LinearFilter& filter, const SteadyState& state, Draws& random, std::span<double> sums) {
   const Matrix2d start = state.P.llt().matrixL();
   const Matrix2d inverse = state.P.inverse();
+  const auto nees = [&](const Vector2d& e) {
+    switch (filter.judged) {
+      case LinearFilter::Judged::position:
+        return e[0] * e[0] / state.P(0, 0);
+      case LinearFilter::Judged::velocity:
+        return e[1] * e[1] / state.P(1, 1);
+      case LinearFilter::Judged::both:
+        break;
+    }
+    return e.dot(inverse * e);
+  };
   for (int axis = 0; axis < filter.axes; ++axis) {
     Vector2d e = start * Vector2d{random.Normal(), random.Normal()};
-    for (int k = 0; k < frames; ++k) {
-      if (k > 0) e = state.A * e + state.N * Vector2d{random.Normal(), random.Normal()};
-      double nees = 0;
-      switch (filter.judged) {
-        case LinearFilter::Judged::position:
-          nees = e[0] * e[0] / state.P(0, 0);
-          break;
-        case LinearFilter::Judged::velocity:
-          nees = e[1] * e[1] / state.P(1, 1);
-          break;
-        case LinearFilter::Judged::both:
-          nees = e.dot(inverse * e);
-          break;
-      }
-      add(static_cast<std::size_t>(k), nees);
+    for (double& sum : sums) {
+      sum += nees(e);
+      e = state.A * e + state.N * Vector2d{random.Normal(), random.Normal()};
     }
   }
 }
@@ -111,32 +107,31 @@ void RequireCounts(int runs, std::size_t frames, int trials) {
 
 }  // namespace
 
-double MeasurementSigma(const LinearFilter& filter) { return std::sqrt(VarianceOfMeasurement(filter)); }
+double MeasurementSigma(const LinearFilter& filter) { return std::sqrt(SteadyStateOf(filter).variance); }
 
 std::vector<std::vector<double>> SimulateNees(const LinearFilter& filter, int runs, int frames, std::uint64_t seed,
                                               std::uint64_t trial) {
   RequireCounts(runs, static_cast<std::size_t>(std::max(frames, 0)), 1);
-  const SteadyState state = SteadyStateOf(filter, VarianceOfMeasurement(filter));
+  const SteadyState state = SteadyStateOf(filter);
   std::vector<std::vector<double>> nees(static_cast<std::size_t>(runs),
                                         std::vector<double>(static_cast<std::size_t>(frames)));
   for (int m = 0; m < runs; ++m) {
     Draws random(seed, StreamOf(trial, m));
-    auto& run = nees[static_cast<std::size_t>(m)];
-    SimulateRun(filter, state, frames, random, [&](std::size_t k, double value) { run[k] += value; });
+    AddRun(filter, state, random, nees[static_cast<std::size_t>(m)]);
   }
   return nees;
 }
 
 ExactAnees ExactAneesOf(const LinearFilter& filter, int runs, int frames, int trials, std::uint64_t seed) {
   RequireCounts(runs, static_cast<std::size_t>(std::max(frames, 0)), trials);
-  const SteadyState state = SteadyStateOf(filter, VarianceOfMeasurement(filter));
+  const SteadyState state = SteadyStateOf(filter);
   const Band band = Chi2MeanBand(filter.dof(), runs);
   ExactAnees exact;
   for (int trial = 0; trial < trials; ++trial) {
     std::vector<double> sums(static_cast<std::size_t>(frames));
     for (int m = 0; m < runs; ++m) {
       Draws random(seed, StreamOf(static_cast<std::uint64_t>(trial), m));
-      SimulateRun(filter, state, frames, random, [&](std::size_t k, double value) { sums[k] += value; });
+      AddRun(filter, state, random, sums);
     }
     AddTrial(sums, runs, filter.dof(), band, exact);
   }

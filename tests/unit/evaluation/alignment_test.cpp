@@ -104,7 +104,6 @@ TEST(Align, SaysWhatIsNotDetermined) {
   EXPECT_LE(line.position.rmse, still.position.rmse);
 }
 
-// The aligned error does not depend on the world the estimate was given in.
 // Rounding grows with the distance from the origin: a hundred kilometres away, 1e-11 m is none that was gone.
 TEST(Align, RoundingFarFromTheOriginIsNoMotion) {
   TestRandom random(9);
@@ -119,6 +118,47 @@ TEST(Align, RoundingFarFromTheOriginIsNoMotion) {
   }
 }
 
+// Where the line is drawn, on both sides: positions `d` from their mean on one axis, and then a second axis that is small.
+TEST(Align, DrawsTheLineOfNoExtentWhereItSays) {
+  const auto scale_determined = [](double d, double mean) {
+    MatchedTrajectories matched;
+    for (const double side : {-1.0, 1.0}) {
+      matched.estimate.push_back({0, Eigen::Vector3d(mean + side * d, mean, mean), Eigen::Quaterniond::Identity()});
+      matched.truth.push_back({0, Eigen::Vector3d(side, 0, 0), Eigen::Quaterniond::Identity()});
+    }
+    return Align(matched, Alignment::sim3).scale_determined;
+  };
+  for (const double mean : {0.0, 0.5}) {
+    const double least = 1e-14 * std::sqrt(1 + 3 * mean * mean);
+    EXPECT_TRUE(scale_determined(1.03 * least, mean)) << mean;
+    EXPECT_FALSE(scale_determined(0.97 * least, mean)) << mean;
+  }
+}
+
+TEST(Align, DrawsTheLineOfOneDirectionWhereItSays) {
+  const auto rotation_determined = [](double singular_value) {
+    MatchedTrajectories matched;
+    const double x_across = 1e-5, y_across = singular_value / x_across;
+    for (const auto& [along, across] : {std::pair{-3., 1.}, {-1., -1.}, {1., -1.}, {3., 1.}}) {
+      matched.estimate.push_back({0, Eigen::Vector3d(3 * along, x_across * across, 0), Eigen::Quaterniond::Identity()});
+      matched.truth.push_back({0, Eigen::Vector3d(0.5 * along, y_across * across, 8), Eigen::Quaterniond::Identity()});
+    }
+    return Align(matched, Alignment::sim3).rotation_determined;
+  };
+  const double least = 1e-12 * std::sqrt((9 * 5) * (0.25 * 5));  // the mean square of `along` is 5
+  EXPECT_TRUE(rotation_determined(1.03 * least));
+  EXPECT_FALSE(rotation_determined(0.97 * least));
+}
+
+TEST(Align, RefusesWhatIsNotMatched) {
+  TestRandom random(11);
+  const MatchedTrajectories matched = NoisyPair(random, 3);
+  EXPECT_THROW(Align({}, Alignment::se3), std::logic_error);
+  EXPECT_THROW(Align({matched.estimate, {}}, Alignment::se3), std::logic_error);
+  EXPECT_THROW(Align({{}, matched.truth}, Alignment::se3), std::logic_error);
+}
+
+// The aligned error does not depend on the world the estimate was given in.
 TEST(Ate, IsInvariantUnderSimilaritiesOfTheEstimate) {
   TestRandom random(9);
   for (int trial = 0; trial < 30; ++trial) {

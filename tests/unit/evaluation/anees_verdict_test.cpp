@@ -4,7 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
+#include <tuple>
 
 #include "tests/unit/evaluation/random.h"
 #include "tools/evaluation/anees_test.h"
@@ -47,15 +49,55 @@ TEST(LinearFilter, IsHonestAtEveryFrame) {
        {LinearFilter::Judged::position, LinearFilter::Judged::velocity, LinearFilter::Judged::both}) {
     LinearFilter filter;
     filter.judged = judged;
-    const Nees nees = SimulateNees(filter, 1000, 40, 3, 0);
-    const Band band = Chi2MeanBand(filter.dof(), 1000, 1 - 1e-6);
-    for (const std::size_t k : {0u, 39u}) {
+    constexpr int kMany = 4000;
+    const Nees nees = SimulateNees(filter, kMany, 20, 3, 0);
+    const Band band = Chi2MeanBand(filter.dof(), kMany, 1 - 1e-6);
+    for (const std::size_t k : {0u, 19u}) {
       double mean = 0;
-      for (const auto& run : nees) mean += run[k] / 1000;
+      for (const auto& run : nees) mean += run[k] / kMany;
       EXPECT_GT(mean, band.low);
       EXPECT_LT(mean, band.high);
     }
   }
+}
+
+TEST(LinearFilter, IsRefusedWhereItIsNone) {
+  const auto works = [](int axes, double dt, double psd, double sigma) {
+    LinearFilter filter;
+    filter.axes = axes, filter.dt = dt, filter.psd = psd, filter.sigma_position = sigma;
+    try {
+      return MeasurementSigma(filter) > sigma;
+    } catch (const std::invalid_argument&) {
+      return false;
+    }
+  };
+  EXPECT_TRUE(works(1, 0.1, 0.1, 0.1));
+  EXPECT_FALSE(works(0, 0.1, 0.1, 0.1));
+  EXPECT_FALSE(works(1, 0, 0.1, 0.1));
+  EXPECT_FALSE(works(1, 0.1, 0, 0.1));
+  EXPECT_FALSE(works(1, 0.1, 0.1, 0));
+  for (const auto& [runs, frames, trials] : {std::tuple{0, 1, 1}, {1, 0, 1}, {1, 1, 0}}) {
+    EXPECT_THROW(ExactAneesOf({}, runs, frames, trials), std::invalid_argument) << runs << frames << trials;
+  }
+  EXPECT_THROW(SimulateNees({}, 0, 1, 1, 1), std::invalid_argument);
+  EXPECT_THROW(ExactAneesOfPool({}, 3, 1, 1), std::invalid_argument);
+  EXPECT_THROW(ExactAneesOfPool({{1}}, 3, 0, 1), std::invalid_argument);
+  EXPECT_EQ(ExactAneesOf({}, 1, 1, 1).shares.size(), 1u);
+  EXPECT_EQ(ExactAneesOfPool({{1}}, 3, 1, 1).shares.size(), 1u);
+}
+
+// Each trial's figures are those of the runs that it is of.
+TEST(ExactAnees, AreThoseOfSimulatedRuns) {
+  LinearFilter filter;
+  filter.judged = LinearFilter::Judged::both;
+  const ExactAnees exact = ExactAneesOf(filter, 3, 50, 2, 9);
+  const AneesShare first = ShareInBand(SimulateNees(filter, 3, 50, 9, 0), 6),
+                   second = ShareInBand(SimulateNees(filter, 3, 50, 9, 1), 6);
+  EXPECT_NE(first.mean, second.mean);
+  EXPECT_NEAR(exact.means[0], std::min(first.mean, second.mean), 1e-12);
+  EXPECT_NEAR(exact.means[1], std::max(first.mean, second.mean), 1e-12);
+  EXPECT_NEAR(exact.shares[0], std::min(first.share, second.share), 1e-12);
+  EXPECT_NEAR(exact.shares[1], std::max(first.share, second.share), 1e-12);
 }
 
 TEST(ShareInBand, ByHand) {
@@ -70,6 +112,10 @@ TEST(ShareInBand, ByHand) {
   EXPECT_EQ(ShareInBand({{9}, {NAN}}, 3).share, 1);
   EXPECT_EQ(ShareInBand({{9}, {9}}, 3).share, 0);
   EXPECT_EQ(ShareInBand({}, 3).frames, 0u);
+  // Runs of 1, 3 and 2 frames.
+  const AneesShare lengths = ShareInBand({{3}, {6, 9, 12}, {0, 3}}, 3);
+  EXPECT_EQ(lengths.frames, 3u);
+  EXPECT_NEAR(lengths.mean, (3 + 6 + 12) / 9., 1e-12);
 }
 
 // The stated rate of 1 %, 100 runs of 300 frames. Of 100 sets more than 5 are rejected once in 2000 times (binomial of
@@ -172,6 +218,24 @@ TEST(ExactAneesOfPool, AgreeWithFreshRuns) {
   EXPECT_THROW(ExactAneesOfPool({{1, 2}}, 3, 2), std::invalid_argument);
 }
 
+// A trial of the whole pool is the pool; of two of three runs it is any two, none twice. The share of each pair is
+// a third of 3000 trials: 5 standard deviations of the count are 129, false alarm rate 2e-6.
+TEST(ExactAneesOfPool, TakesEachRunAtMostOnce) {
+  const Nees pool = {{1, 4, 20, 0.01}, {3, 5, 30, 0.02}};
+  const AneesShare whole = ShareInBand(pool, 3);
+  EXPECT_EQ(whole.share, 0.5);
+  const ExactAnees same = ExactAneesOfPool(pool, 3, 2, 3);
+  ASSERT_EQ(same.shares.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(same.shares[i], 0.5);
+    EXPECT_NEAR(same.means[i], whole.mean, 1e-12);
+  }
+  std::map<double, int> pairs;
+  for (const double mean : ExactAneesOfPool({{2}, {20}, {200}}, 1, 2, 3000).means) ++pairs[mean];
+  ASSERT_EQ(pairs.size(), 3u);
+  for (const double mean : {11, 101, 110}) EXPECT_NEAR(pairs[mean], 1000, 129) << mean;
+}
+
 // 399 trials: four are beyond 1 % on one side, two on each of two sides.
 TEST(TestAnees, Figures) {
   ExactAnees exact;
@@ -191,6 +255,12 @@ TEST(TestAnees, Figures) {
   EXPECT_FALSE(TestAnees({{3}, {6.5}}, 3, exact, 0.01).mean_pass);
   EXPECT_FALSE(TestAnees({{2.1}, {2.1}}, 3, exact, 0.01).mean_pass);
   EXPECT_FALSE(TestAnees({{30, 0.01, 3}}, 3, exact, 0.01).share_pass);
+  // 0.29 times 100 is 28.999999999999996.
+  exact.shares.resize(99);
+  exact.means.resize(99);
+  EXPECT_EQ(TestAnees({{3}}, 3, exact, 0.29).threshold, exact.shares[28]);
+  EXPECT_EQ(TestAnees({{3}}, 3, exact, 0.58).mean_low, exact.means[28]);
+  EXPECT_EQ(TestAnees({{3}}, 3, exact, 0.58).mean_high, exact.means[70]);
 }
 
 TEST(TestAnees, RefusesTooFewTrials) {
