@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "sim/world/point_world.h"
-#include "tools/evaluation/chi2.h"
 #include "tools/evaluation/cramer_rao.h"
+#include "tools/evaluation/distributions.h"
 #include "tools/vobench/bridge.h"
 #include "tools/vobench/experiment.h"
 #include "tools/vobench/point_bound.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "sim/world/point_world.h"
-#include "tools/evaluation/chi2.h"
+#include "tools/evaluation/distributions.h"
 #include "tools/evaluation/statistics.h"
 #include "tools/vobench/bridge.h"
 #include "tools/vobench/experiment.h"

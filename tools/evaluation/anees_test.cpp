@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "tools/evaluation/chi2.h"
+#include "tools/evaluation/distributions.h"
 #include "tools/evaluation/draws.h"
 
 namespace evaluation {

@@ -26,12 +26,11 @@ bool GoesForward(const std::map<std::size_t, std::size_t>& truth_of, std::size_t
 
 std::vector<Match> OneToOne(const Stamps& estimate, const Stamps& truth, std::int64_t gap, bool may_cross) {
   std::vector<std::tuple<double, std::size_t, std::size_t>> candidates;
-  std::size_t first = 0;
   for (std::size_t i = 0; i < estimate.size(); ++i) {
-    while (first < truth.size() && truth[first] <= estimate[i] - gap) ++first;
-    for (std::size_t j = first; j < truth.size() && truth[j] < estimate[i] + gap; ++j) {
-      candidates.emplace_back(Apart(estimate[i], truth[j]), i, j);
-    }
+    const auto first = std::upper_bound(truth.begin(), truth.end(), estimate[i] - gap);
+    const auto last = std::lower_bound(first, truth.end(), estimate[i] + gap);
+    for (auto at = first; at != last; ++at)
+      candidates.emplace_back(Apart(estimate[i], *at), i, static_cast<std::size_t>(at - truth.begin()));
   }
   std::sort(candidates.begin(), candidates.end());
   std::map<std::size_t, std::size_t> truth_of;
@@ -84,7 +83,6 @@ std::vector<Match> Associate(const Stamps& estimate_ns, const Stamps& truth_ns, 
   if (!std::is_sorted(estimate_ns.begin(), estimate_ns.end()) || !std::is_sorted(truth_ns.begin(), truth_ns.end())) {
     throw std::logic_error("Associate: stamps are not in order of time");
   }
-  if (estimate_ns.empty() || truth_ns.empty()) return {};
   switch (options.rule) {
     case AssociationRule::nearest:
       return NearestOfLonger(estimate_ns, truth_ns, options.gap_ns);

@@ -22,12 +22,11 @@ constexpr double kPivot = 1e-12;
 // P^-1 b for the columns of b; nothing when P is not positive definite. Solved on the correlations, whose pivots have
 // no unit.
 std::optional<Eigen::MatrixXd> Solve(const Eigen::MatrixXd& P, const Eigen::MatrixXd& b) {
-  const Eigen::VectorXd variance = P.diagonal();
-  if (!P.allFinite() || !(variance.minCoeff() > 0)) return std::nullopt;
-  const Eigen::VectorXd weight = variance.cwiseSqrt().cwiseInverse();
+  if (!P.allFinite()) return std::nullopt;
+  const Eigen::VectorXd weight = P.diagonal().cwiseSqrt().cwiseInverse();  // a variance that is none leaves no number
   const Eigen::MatrixXd correlation = weight.asDiagonal() * P * weight.asDiagonal();
   const Eigen::LDLT<Eigen::MatrixXd> factors(correlation);
-  if (factors.info() != Eigen::Success || !(factors.vectorD().minCoeff() > kPivot)) return std::nullopt;
+  if (!(factors.vectorD().array() > kPivot).all()) return std::nullopt;
   return weight.asDiagonal() * factors.solve(Eigen::MatrixXd(weight.asDiagonal() * b));
 }
 
@@ -62,16 +61,15 @@ std::vector<FrameConsistency> ComputeConsistency(const EstimateRun& run, const T
   const Similarity to_estimate = GaugeOf(run.trajectory, truth, gap_ns, gauge);
 
   std::vector<FrameConsistency> frames;
-  std::size_t next_belief = 0;
   const auto matches = Associate(StampsOf(run.trajectory), StampsOf(truth), {AssociationRule::one_to_one, gap_ns});
   if (matches.empty()) return frames;
   const Eigen::Vector3d true_start = Apply(to_estimate, truth[matches.front().truth]).p_WC;
   for (const Match& match : matches) {
     const StampedPose& estimate = run.trajectory[match.estimate];
-    while (next_belief < run.beliefs.size() && run.beliefs[next_belief].velocity.stamp_ns < estimate.stamp_ns)
-      ++next_belief;
-    if (next_belief == run.beliefs.size() || run.beliefs[next_belief].velocity.stamp_ns != estimate.stamp_ns) continue;
-    const StampedBelief& belief = run.beliefs[next_belief];
+    const auto found = std::ranges::lower_bound(run.beliefs, estimate.stamp_ns, {},
+                                                [](const StampedBelief& belief) { return belief.velocity.stamp_ns; });
+    if (found == run.beliefs.end() || found->velocity.stamp_ns != estimate.stamp_ns) continue;
+    const StampedBelief& belief = *found;
     const StampedPose true_pose = Apply(to_estimate, truth[match.truth]);
     const auto true_velocity =
         truth_velocities ? VelocityAt(*truth_velocities, true_pose.stamp_ns) : std::optional<StampedVelocity>();

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "tools/evaluation/chi2.h"
+#include "tools/evaluation/distributions.h"
 #include "tools/evaluation/estimate_run.h"
 #include "tools/evaluation/statistics.h"
 #include "tools/evaluation/trajectory.h"

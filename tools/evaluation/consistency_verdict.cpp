@@ -91,7 +91,7 @@ void JudgeInnovations(const std::vector<JudgedRun>& runs, const VerdictOptions& 
   for (auto& run : innovations) std::erase_if(run, [](double value) { return std::isnan(value); });
   if (options.nis_by_feature) {
     const NisMeanVerdict mean = TestNisMean(nis, dof, options.nis_tolerance, options.false_alarm);
-    if (mean.runs > 1) {
+    if (mean.runs > 0) {
       verdict.nis_mean = mean;
       const bool low = mean.per_dof < 1;
       verdict.checks.push_back(

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "tools/evaluation/chi2.h"
+#include "tools/evaluation/distributions.h"
 #include "tools/evaluation/draws.h"
 
 namespace evaluation {

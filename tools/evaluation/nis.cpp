@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "tools/evaluation/chi2.h"
+#include "tools/evaluation/distributions.h"
 
 namespace evaluation {
 

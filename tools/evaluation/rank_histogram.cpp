@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "tools/evaluation/chi2.h"
+#include "tools/evaluation/distributions.h"
 
 namespace evaluation {
 namespace {
@@ -18,7 +18,7 @@ void Finish(RankHistogram& histogram, const std::vector<double>& shares) {
     const double expected = histogram.runs * shares[b];
     histogram.chi2 += (histogram.counts[b] - expected) * (histogram.counts[b] - expected) / expected;
   }
-  histogram.p_value = 1 - Chi2Cdf(histogram.chi2, static_cast<double>(shares.size()) - 1);
+  histogram.p_value = Chi2Survival(histogram.chi2, static_cast<double>(shares.size()) - 1);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ Whiteness TestWhiteness(const std::vector<double>& sequence, int lags) {
     result.autocorrelation.push_back(rho);
     result.ljung_box += n * (n + 2) * rho * rho / (n - static_cast<double>(lag));
   }
-  result.p_value = 1 - Chi2Cdf(result.ljung_box, static_cast<double>(most));
+  result.p_value = Chi2Survival(result.ljung_box, static_cast<double>(most));
   return result;
 }
 
@@ -125,15 +125,6 @@ NisVerdict TestNis(const std::vector<std::vector<double>>& nis, const std::vecto
   return verdict;
 }
 
-double StudentQuantile(double p, double dof) {
-  if (!(p > 0 && p < 1) || !(dof >= 5)) throw std::invalid_argument("StudentQuantile: p or dof out of range");
-  const double inside = std::abs(2 * p - 1);  // P(|z| less)
-  const double z = inside > 0 ? std::copysign(std::sqrt(Chi2Quantile(inside, 1)), p - 0.5) : 0.0;
-  const double z2 = z * z;
-  return z * (1 + (z2 + 1) / (4 * dof) + ((5 * z2 + 16) * z2 + 3) / (96 * dof * dof) +
-              (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * dof * dof * dof));
-}
-
 NisMeanVerdict TestNisMean(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof,
                            double tolerance, double false_alarm) {
   RequireEqual(nis.size(), dof.size());
@@ -159,21 +150,6 @@ NisMeanVerdict TestNisMean(const std::vector<std::vector<double>>& nis, const st
   verdict.high = 1 + half;
   verdict.pass = verdict.per_dof >= verdict.low && verdict.per_dof <= verdict.high;
   return verdict;
-}
-
-std::size_t BinomialLimit(std::size_t n, double p, double tail) {
-  const auto log_choose = [&](std::size_t c) {
-    return std::lgamma(static_cast<double>(n) + 1) - std::lgamma(static_cast<double>(c) + 1) -
-           std::lgamma(static_cast<double>(n - c) + 1);
-  };
-  double above = 0;
-  for (std::size_t c = n; c > 0; --c) {  // P(at least c)
-    const double term =
-        std::exp(log_choose(c) + static_cast<double>(c) * std::log(p) + static_cast<double>(n - c) * std::log1p(-p));
-    if (above + term > tail) return c;
-    above += term;
-  }
-  return 0;
 }
 
 }  // namespace evaluation

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "tools/evaluation/chi2.h"
+#include "tools/evaluation/distributions.h"
 
 namespace evaluation {
 
@@ -70,12 +70,5 @@ struct NisMeanVerdict {
 };
 NisMeanVerdict TestNisMean(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof,
                            double tolerance, double false_alarm = 0.01);
-
-// Quantile of Student's t, p in (0, 1), five degrees of freedom or more: Cornish-Fisher to the third order about the
-// normal's, within 0.5 % of it for 0.001 < p < 0.999 (of more than nine degrees).
-double StudentQuantile(double p, double dof);
-
-// The smallest c with P(more than c of n events of probability p) <= tail.
-std::size_t BinomialLimit(std::size_t n, double p, double tail);
 
 }  // namespace evaluation

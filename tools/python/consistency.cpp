@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "tools/evaluation/anees_test.h"
-#include "tools/evaluation/chi2.h"
+#include "tools/evaluation/distributions.h"
 #include "tools/python/module.h"
 #include "tools/vobench/point_consistency.h"
 #include "vo/odometry.h"
@@ -211,7 +211,8 @@ void AddAneesTest(py::module_& m) {
         const evaluation::Band band = evaluation::Chi2MeanBand(dof, runs, probability);
         return py::make_tuple(band.low, band.high);
       },
-      py::arg("dof"), py::arg("runs") = 1, py::arg("probability") = 0.95, Doc("tools/evaluation/chi2.h:Chi2MeanBand"));
+      py::arg("dof"), py::arg("runs") = 1, py::arg("probability") = 0.95,
+      Doc("tools/evaluation/distributions.h:Chi2MeanBand"));
 }
 
 }  // namespace

@@ -178,6 +178,21 @@ TEST(Ate, IsInvariantUnderSimilaritiesOfTheEstimate) {
   }
 }
 
+// Turned by 0.1 and 0.3 rad, moved by 0.2 and 0.4 m.
+TEST(Ate, ByHand) {
+  MatchedTrajectories matched;
+  for (const double turn : {0.1, 0.3}) {
+    matched.truth.push_back({0, Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity()});
+    matched.estimate.push_back({0, Eigen::Vector3d(0, turn + 0.1, 0), Exp({0, 0, turn})});
+  }
+  const Ate ate = ComputeAte(matched, Alignment::none);
+  EXPECT_EQ(ate.alignment, Alignment::none);
+  EXPECT_NEAR(ate.position.rmse, std::sqrt((0.04 + 0.16) / 2), 1e-12);
+  EXPECT_NEAR(ate.position.mean, 0.3, 1e-12);
+  EXPECT_NEAR(ate.orientation.rmse, std::sqrt((0.01 + 0.09) / 2), 1e-9);
+  EXPECT_NEAR(ate.orientation.max, 0.3, 1e-9);
+}
+
 TEST(Ate, MoreFreedomNeverHurts) {
   TestRandom random(10);
   for (int trial = 0; trial < 20; ++trial) {

@@ -10,7 +10,7 @@
 
 #include "tests/unit/evaluation/random.h"
 #include "tools/evaluation/anees_test.h"
-#include "tools/evaluation/chi2.h"
+#include "tools/evaluation/distributions.h"
 
 namespace evaluation {
 namespace {

@@ -72,6 +72,25 @@ TEST(ComputeConsistency, FindsTheErrorsThatWereMade) {
   }
 }
 
+// Frames and beliefs go together by their stamps; a frame without a belief is left out, wherever it is.
+TEST(ComputeConsistency, JudgesTheFramesThatHaveABelief) {
+  TestRandom random(30);
+  World world = HonestWorld(random, 6);
+  const auto all = Judge(world);
+  world.run.beliefs.erase(world.run.beliefs.begin() + 5);
+  world.run.beliefs.erase(world.run.beliefs.begin() + 2);
+  world.run.beliefs.erase(world.run.beliefs.begin());
+  const auto frames = Judge(world);
+  ASSERT_EQ(frames.size(), 3u);
+  const std::size_t left[] = {1, 3, 4};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(frames[i].stamp_ns, world.truth[left[i]].stamp_ns);
+    EXPECT_EQ(frames[i].nees_joint, all[left[i]].nees_joint);
+  }
+  world.run.beliefs.clear();
+  EXPECT_TRUE(Judge(world).empty());
+}
+
 // The mean of n independent NEES, against the band that it leaves once in a million honest runs.
 bool InBand(const std::vector<FrameConsistency>& frames, double FrameConsistency::*member, int dof) {
   double sum = 0;
@@ -152,6 +171,16 @@ TEST(NeesWithoutDirection, IsBlindToTheDirectionAndToNothingElse) {
   EXPECT_LT(sum / n, band.high);
 }
 
+TEST(NeesWithoutDirection, ByHand) {
+  const Eigen::MatrixXd P = Eigen::Vector2d(0.25, 4).asDiagonal();
+  const Eigen::Vector2d e(0.1, 0.2);
+  for (const double length : {1e-3, 1.0, 1e3})
+    EXPECT_NEAR(NeesWithoutDirection(e, P, length * Eigen::Vector2d::UnitX()), 0.04 / 4, 1e-15) << length;
+  EXPECT_EQ(NeesWithoutDirection(Eigen::Vector2d(0.1, 0), P, Eigen::Vector2d::UnitX()), 0);
+  EXPECT_TRUE(std::isnan(NeesWithoutDirection(e, P, Eigen::Vector2d::Zero())));
+  EXPECT_TRUE(std::isnan(NeesWithoutDirection(e, -P, Eigen::Vector2d::UnitX())));
+}
+
 TEST(ComputeConsistency, ScaleFreeNeesForgivesAWrongScaleAboutTheStart) {
   TestRandom random(26);
   World world = HonestWorld(random, 300);
@@ -180,6 +209,21 @@ TEST(Nees, HasNoAnswerWithoutAPositiveDefiniteCovariance) {
   EXPECT_TRUE(std::isnan(Nees(Eigen::VectorXd::Ones(6), P)));
   P(0, 1) = P(1, 0) = 0.5;
   EXPECT_NEAR(Nees(Eigen::VectorXd::Unit(6, 0), P), 4.0 / 3, 1e-12);
+  // The line is a pivot of 1e-12, of the correlations.
+  for (const double pivot : {0.97e-12, 1.03e-12}) {
+    P(0, 1) = P(1, 0) = std::sqrt(1 - pivot);
+    EXPECT_EQ(std::isnan(Nees(Eigen::VectorXd::Ones(6), P)), pivot < 1e-12) << pivot;
+  }
+  for (const double none : {std::nan(""), static_cast<double>(INFINITY)}) {
+    P.setIdentity();
+    P(0, 1) = none;  // and P(1, 0) is 0
+    EXPECT_TRUE(std::isnan(Nees(Eigen::VectorXd::Ones(6), P))) << none;
+  }
+  for (const double variance : {-1.0, 0.0, std::nan("")}) {
+    P.setIdentity();
+    P(3, 3) = variance;
+    EXPECT_TRUE(std::isnan(Nees(Eigen::VectorXd::Ones(6), P))) << variance;
+  }
   // Scales of units do not count as singular.
   EXPECT_NEAR(Nees(1e-9 * Eigen::VectorXd::Ones(6), 1e-18 * Eigen::MatrixXd::Identity(6, 6)), 6, 1e-9);
 }
@@ -240,6 +284,9 @@ TEST(Anees, AveragesOverRunsAtEachTime) {
   EXPECT_NEAR(points[1].band.high, Chi2Quantile(0.975, 12) / 2, 1e-12);
   EXPECT_EQ(points[2].runs, 1);
   EXPECT_EQ(points[2].anees, 5);
+  EXPECT_NEAR(points[2].band.low, Chi2Quantile(0.025, 6), 1e-12);
+  EXPECT_THROW(Anees({{1}}, {{4}, {5}}, 6), std::logic_error);
+  EXPECT_THROW(Anees({{1, 2}}, {{4}}, 6), std::logic_error);
 }
 
 // Why nothing is aligned before NEES. Random-walk drift with exactly the covariance that it has, from a known start:

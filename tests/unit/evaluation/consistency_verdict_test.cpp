@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
+#include <type_traits>
 
 #include "tests/unit/evaluation/point_world.h"
 
@@ -201,6 +203,269 @@ TEST_F(Verdict, WithoutDrawsThereAreNoRanks) {
   EXPECT_EQ(ranked(with), 2);
   EXPECT_TRUE(without.rank_histograms.empty());
   EXPECT_EQ(ranked(without), 0);
+}
+
+// Seven runs of ten frames whose numbers are made up, so that each figure can be told by hand or by the tests that the
+// verdict is made of: from frame 2 on.
+class VerdictByHand : public testing::Test {
+ protected:
+  VerdictByHand() {
+    for (int m = 0; m < 7; ++m) {
+      JudgedRun& run = runs_.emplace_back();
+      for (int k = 0; k < 10; ++k) {
+        JudgedFrame frame;
+        for (int d = 0; d < 12; ++d) frame.error[d] = 0.1 * random_.Normal();
+        for (std::size_t b = 0; b < 7; ++b) frame.scores.nees[b] = kStateBlocks[b].size * (0.5 + random_.Uniform());
+        frame.scores.draws = 9;
+        for (std::size_t d = 0; d < 12; ++d)
+          frame.scores.rank[d] = (k + static_cast<int>(d) * (m + 1)) % 10;  // of the first number: the frame
+        for (double& mass : frame.scores.hpd_mass) mass = random_.Uniform();
+        frame.scores.effective_components = k < 2 ? 99 : 1 + m;
+        for (std::size_t b = 0; b < 4; ++b)
+          frame.scores.energy[b] = k < 2 ? 99 : static_cast<double>(b) + 0.1 * (m + k);
+        frame.nis_dof = 3;
+        frame.nis = 3 * (0.5 + random_.Uniform());
+        frame.innovation = random_.Normal();
+        frame.bound = 0.01 * Matrix12d::Identity();
+        run.push_back(frame);
+      }
+    }
+    options_.first_frame = 2;
+    options_.trials = 100;
+    options_.false_alarm = 0.02;
+  }
+  // [run][frame] of one number, of frames 2 to 9.
+  template <class Get>
+  auto Judged(Get get) const {
+    std::vector<std::vector<std::decay_t<decltype(get(runs_[0][0]))>>> values;
+    for (const JudgedRun& run : runs_) {
+      values.emplace_back();
+      for (std::size_t k = 2; k < run.size(); ++k) values.back().push_back(get(run[k]));
+    }
+    return values;
+  }
+  std::vector<const Check*> Named(const std::string& start) const {
+    std::vector<const Check*> named;
+    for (const Check& check : verdict_.checks)
+      if (check.name.starts_with(start)) named.push_back(&check);
+    return named;
+  }
+  void ExpectCheck(const std::string& name, double value, double threshold, bool at_least, bool pass, double rate) {
+    ASSERT_EQ(Named(name).size(), 1u) << name;
+    const Check& check = *Named(name)[0];
+    EXPECT_EQ(check.value, value) << name;
+    EXPECT_EQ(check.threshold, threshold) << name;
+    EXPECT_EQ(check.at_least, at_least) << name;
+    EXPECT_EQ(check.pass, pass) << name;
+    EXPECT_EQ(check.false_alarm, rate) << name;
+  }
+  void ExpectAnees(std::size_t b, const ExactAnees& exact) {
+    const auto nees = Judged([&](const JudgedFrame& frame) { return frame.scores.nees[b]; });
+    const AneesVerdict anees = TestAnees(nees, kStateBlocks[b].size, exact, 0.02);
+    const std::string name = kStateBlocks[b].name;
+    ExpectCheck("ANEES share, " + name, anees.measured.share, anees.threshold, true, anees.share_pass, 0.02);
+    const bool low = anees.measured.mean < 1;
+    ExpectCheck("ANEES mean, " + name, anees.measured.mean, low ? anees.mean_low : anees.mean_high, low,
+                anees.mean_pass, 0.02);
+    EXPECT_EQ(verdict_.anees[b].measured.frames, 8u);
+  }
+
+  TestRandom random_{92};
+  std::vector<JudgedRun> runs_;
+  VerdictOptions options_;
+  ConsistencyVerdict verdict_;
+};
+
+TEST_F(VerdictByHand, AneesAgainstTheLinearFilter) {
+  for (const double size : {1.0, 1.3}) {  // on either side of the mean
+    for (JudgedRun& run : runs_)
+      for (JudgedFrame& frame : run)
+        for (double& nees : frame.scores.nees) nees *= size;
+    verdict_ = JudgeConsistency(runs_, options_);
+    for (std::size_t b = 0; b < 7; ++b) {
+      LinearFilter filter;
+      filter.axes = b == 6 ? 6 : kStateBlocks[b].size;
+      filter.judged = b == 6                       ? LinearFilter::Judged::both
+                      : b == 2 || b == 3 || b == 5 ? LinearFilter::Judged::velocity
+                                                   : LinearFilter::Judged::position;
+      ExpectAnees(b, ExactAneesOf(filter, 7, 8, 100));
+    }
+  }
+}
+
+TEST_F(VerdictByHand, AneesAgainstAPool) {
+  LinearisedRuns world;
+  for (int k = 0; k < 10; ++k) world.bound.push_back((1 + 0.1 * k) * Matrix12d::Identity());
+  for (int m = 0; m < 12; ++m) {
+    world.error.emplace_back();
+    for (int k = 0; k < 10; ++k) world.error.back().push_back(Vector12d(random_.Normals(12)));
+  }
+  const LinearisedRuns worlds[] = {world, world};
+  options_.linearised = worlds;
+  verdict_ = JudgeConsistency(runs_, options_);
+  for (std::size_t b = 0; b < 7; ++b) {
+    std::vector<std::vector<double>> pool;
+    for (const LinearisedRuns& one : worlds)
+      for (auto& run : NeesOf(one, kStateBlocks[b].start, kStateBlocks[b].size))
+        pool.emplace_back(run.begin() + 2, run.end());
+    ExpectAnees(b, ExactAneesOfPool(pool, kStateBlocks[b].size, 7, 100));
+  }
+}
+
+TEST_F(VerdictByHand, Ranks) {
+  verdict_ = JudgeConsistency(runs_, options_);
+  ASSERT_EQ(verdict_.rank_histograms.size(), 48u);  // of frames 3, 5, 7 and 9, in two bins
+  std::vector<RankHistogram> ranks, masses;
+  for (const std::size_t k : {3u, 5u, 7u, 9u}) {
+    for (std::size_t d = 0; d < 12; ++d) {
+      std::vector<int> of_runs;
+      for (const JudgedRun& run : runs_) of_runs.push_back(run[k].scores.rank[d]);
+      EXPECT_EQ(verdict_.rank_histograms[ranks.size()].counts, HistogramOfRanks(of_runs, 9, 2).counts);
+      ranks.push_back(HistogramOfRanks(of_runs, 9, 2));
+    }
+    for (const std::size_t b : {4u, 5u, 6u}) {
+      std::vector<double> of_runs;
+      for (const JudgedRun& run : runs_) of_runs.push_back(run[k].scores.hpd_mass[b]);
+      masses.push_back(HistogramOfValues(of_runs, 2));
+    }
+  }
+  const UniformityVerdict uniform = TestUniformity(ranks, 0.02), covered = TestUniformity(masses, 0.02);
+  ExpectCheck("ranks, smallest p-value", uniform.smallest_p, uniform.threshold, true, uniform.pass, 0.02);
+  ExpectCheck("coverage, smallest p-value", covered.smallest_p, covered.threshold, true, covered.pass, 0.02);
+  EXPECT_EQ(verdict_.coverage.tests, 12u);
+}
+
+TEST_F(VerdictByHand, RanksAtTheFramesThatThereAre) {
+  for (JudgedRun& run : runs_) run.resize(4);
+  verdict_ = JudgeConsistency(runs_, options_);
+  EXPECT_EQ(verdict_.rank_histograms.size(), 24u) << "two frames, neither twice";
+  // One number drawn: as many bins as ranks, whatever the runs are worth.
+  const auto seven = runs_;
+  for (int i = 0; i < 3; ++i) runs_.insert(runs_.end(), seven.begin(), seven.end());
+  for (JudgedRun& run : runs_)
+    for (JudgedFrame& frame : run) frame.scores.draws = 1, frame.scores.rank.fill(1);
+  verdict_ = JudgeConsistency(runs_, options_);
+  EXPECT_EQ(verdict_.rank_histograms[0].counts, (std::vector<int>{0, 28}));
+  // A run that ends early, and a frame that nobody drew at: its histograms stay where they belong.
+  runs_[0].resize(3);
+  for (JudgedRun& run : runs_) run[2].scores.draws = 0;
+  verdict_ = JudgeConsistency(runs_, options_);
+  ASSERT_EQ(verdict_.rank_histograms.size(), 24u);
+  EXPECT_EQ(verdict_.rank_histograms[11].runs, 0);
+  EXPECT_EQ(verdict_.rank_histograms[12].runs, 27);
+  EXPECT_EQ(verdict_.ranks.tests, 12u);
+  runs_[1][3].scores.draws = 2;
+  EXPECT_THROW(JudgeConsistency(runs_, options_), std::invalid_argument);
+  for (JudgedRun& run : runs_)
+    for (JudgedFrame& frame : run) frame.scores.draws = 0;
+  verdict_ = JudgeConsistency(runs_, options_);
+  EXPECT_TRUE(verdict_.rank_histograms.empty());
+  EXPECT_TRUE(Named("ranks").empty());
+  EXPECT_TRUE(Named("coverage").empty());
+}
+
+TEST_F(VerdictByHand, Innovations) {
+  const auto nis = Judged([](const JudgedFrame& frame) { return frame.nis; });
+  const auto dof = Judged([](const JudgedFrame& frame) { return frame.nis_dof; });
+  const auto innovations = Judged([](const JudgedFrame& frame) { return frame.innovation; });
+  for (JudgedRun& run : runs_) run.insert(run.begin() + 4, run[4])->innovation = NAN, run[4].nis_dof = 0;
+  verdict_ = JudgeConsistency(runs_, options_);
+  const NisVerdict size = TestNis(nis, dof, 0.02);
+  ExpectCheck("NIS, runs outside 95 %", static_cast<double>(size.outside), static_cast<double>(size.most_allowed),
+              false, size.pass, 0.02);
+  EXPECT_EQ(verdict_.nis->per_dof, size.per_dof);
+  const WhitenessVerdict white = TestWhiteness(innovations, 10, 0.02);
+  ExpectCheck("whiteness, runs rejected at 5 %", static_cast<double>(white.rejected),
+              static_cast<double>(white.most_allowed), false, white.pass, 0.02);
+  EXPECT_EQ(verdict_.whiteness->mean_autocorrelation, white.mean_autocorrelation);
+
+  options_.nis_by_feature = true;
+  options_.nis_tolerance = 0.003;
+  for (const double scale : {1.0, 1.5}) {
+    auto scaled = nis;
+    for (auto& run : scaled)
+      for (double& value : run) value *= scale;
+    for (JudgedRun& run : runs_)
+      for (JudgedFrame& frame : run) frame.nis *= scale;
+    verdict_ = JudgeConsistency(runs_, options_);
+    const NisMeanVerdict mean = TestNisMean(scaled, dof, 0.003, 0.02);
+    const bool low = mean.per_dof < 1;
+    EXPECT_EQ(low, scale == 1);
+    ExpectCheck("NIS / dof, mean over runs", mean.per_dof, low ? mean.low : mean.high, low, mean.pass, 0.02);
+    EXPECT_TRUE(verdict_.nis_mean && !verdict_.nis);
+  }
+  runs_.resize(5);  // no spread to speak of
+  verdict_ = JudgeConsistency(runs_, options_);
+  EXPECT_TRUE(Named("NIS").empty());
+  EXPECT_FALSE(verdict_.nis_mean);
+  for (JudgedRun& run : runs_)
+    for (JudgedFrame& frame : run) frame.innovation = NAN, frame.nis_dof = 0;
+  options_.nis_by_feature = false;
+  verdict_ = JudgeConsistency(runs_, options_);
+  EXPECT_TRUE(Named("NIS").empty() && Named("whiteness").empty());
+  EXPECT_FALSE(verdict_.nis || verdict_.whiteness);
+}
+
+TEST_F(VerdictByHand, Bound) {
+  for (JudgedRun& run : runs_) {
+    for (std::size_t k = 0; k < run.size(); ++k)
+      for (int d = 0; d < 12; ++d) run[k].error[d] = k < 2 || k == 5 ? 99 : d < 3 ? 0.1 : d < 6 ? 0.12 : 0.2;
+    run[5].bound.reset();
+  }
+  verdict_ = JudgeConsistency(runs_, options_);
+  ASSERT_EQ(Named("RMSE / bound").size(), 4u);
+  const double ratios[] = {1, 1.2, 2, 2};
+  for (std::size_t b = 0; b < 4; ++b) {
+    const Check& check = *Named("RMSE / bound")[b];
+    EXPECT_EQ(check.name, std::string("RMSE / bound, ") + kStateBlocks[b].name);
+    EXPECT_NEAR(check.value, ratios[b], 1e-12);
+    EXPECT_EQ(check.threshold, 1.2);
+    EXPECT_FALSE(check.at_least);
+    EXPECT_EQ(check.pass, check.value <= 1.2);
+    EXPECT_EQ(check.false_alarm, 0);
+  }
+  EXPECT_FALSE(verdict_.pass());
+  for (Check& check : verdict_.checks) check.pass = check.pass || check.name[0] != 'R';
+  EXPECT_FALSE(verdict_.pass());
+  const bool others = std::ranges::all_of(verdict_.checks, [](const Check& c) { return c.pass || c.name[0] == 'R'; });
+  EXPECT_EQ(verdict_.honest(), others);
+  for (JudgedRun& run : runs_)
+    for (JudgedFrame& frame : run) frame.bound.reset();
+  verdict_ = JudgeConsistency(runs_, options_);
+  EXPECT_TRUE(Named("RMSE").empty());
+  EXPECT_FALSE(verdict_.bound_ratio);
+}
+
+TEST_F(VerdictByHand, MeansAndWhatIsMissing) {
+  verdict_ = JudgeConsistency(runs_, options_);
+  EXPECT_NEAR(verdict_.effective_components, 4, 1e-12);  // 1 ... 7
+  for (std::size_t b = 0; b < 4; ++b) EXPECT_NEAR(verdict_.energy[b], static_cast<double>(b) + 0.1 * (3 + 5.5), 1e-12);
+  ExpectCheck("frames without a belief", 0, 0, false, true, 0);
+  EXPECT_NEAR(verdict_.false_alarm(), 18 * 0.02, 1e-12);
+  for (std::size_t k = 0; k < 10; ++k) {  // of one run there is no energy, of another not of the second part
+    runs_[6][k].scores.draws = 0;
+    runs_[0][k].scores.energy[1] = NAN;
+  }
+  runs_[1].resize(6);
+  runs_[2][1].scores.nees.fill(NAN);  // before the first that is judged
+  runs_[2][9].scores.nees.fill(NAN);
+  options_.rank_frames = {3};
+  verdict_ = JudgeConsistency(runs_, options_);
+  ExpectCheck("frames without a belief", 5, 0, false, false, 0);
+  EXPECT_NEAR(verdict_.effective_components, (8 * (1 + 3 + 4 + 5 + 6 + 7) + 4 * 2) / 52., 1e-12);
+  double sums[2] = {0, 0}, counts[2] = {0, 0};
+  for (int m = 0; m < 6; ++m) {
+    for (int k = 2; k < (m == 1 ? 6 : 10); ++k) {
+      sums[0] += 0.1 * (m + k), ++counts[0];
+      if (m > 0) sums[1] += 1 + 0.1 * (m + k), ++counts[1];
+    }
+  }
+  EXPECT_NEAR(verdict_.energy[0], sums[0] / counts[0], 1e-12);
+  EXPECT_NEAR(verdict_.energy[1], sums[1] / counts[1], 1e-12);
+  options_.first_frame = 9;
+  EXPECT_NO_THROW(JudgeConsistency(runs_, options_));
+  options_.first_frame = 10;
+  EXPECT_THROW(JudgeConsistency(runs_, options_), std::invalid_argument);
 }
 
 }  // namespace

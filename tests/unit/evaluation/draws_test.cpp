@@ -3,7 +3,7 @@
 #include <Random123/philox.h>
 #include <gtest/gtest.h>
 
-#include "tools/evaluation/chi2.h"
+#include "tools/evaluation/distributions.h"
 
 namespace evaluation {
 namespace {

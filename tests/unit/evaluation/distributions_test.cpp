@@ -1,4 +1,4 @@
-#include "tools/evaluation/chi2.h"
+#include "tools/evaluation/distributions.h"
 
 #include <gtest/gtest.h>
 
@@ -53,14 +53,70 @@ TEST(Chi2Cdf, IsThePoissonSumForEvenDegrees) {
   }
 }
 
+// Where nothing of 1 - P is left: of two degrees it is e^(-x/2).
+TEST(Chi2Survival, IsAccurateFarOut) {
+  for (const double x : {1.0, 10.0, 100.0, 1000.0}) {
+    EXPECT_NEAR(Chi2Survival(x, 2) / std::exp(-x / 2), 1, 1e-13) << x;
+    EXPECT_NEAR(Chi2Survival(x, 7) + Chi2Cdf(x, 7), 1, 1e-15) << x;
+  }
+}
+
 TEST(Chi2, RefusesNonsense) {
   EXPECT_THROW(Chi2Quantile(0, 3), std::invalid_argument);
   EXPECT_THROW(Chi2Quantile(1, 3), std::invalid_argument);
   EXPECT_THROW(Chi2Quantile(0.5, 0), std::invalid_argument);
   EXPECT_THROW(Chi2Cdf(1, -1), std::invalid_argument);
   EXPECT_THROW(Chi2MeanBand(3, 0), std::invalid_argument);
-  EXPECT_EQ(Chi2Cdf(0, 3), 0);
-  EXPECT_EQ(Chi2Cdf(-1, 3), 0);
+  EXPECT_THROW(Chi2Cdf(1, 0), std::invalid_argument);
+  EXPECT_THROW(Chi2Survival(1, 0), std::invalid_argument);
+  EXPECT_THROW(Chi2Cdf(1, INFINITY), std::invalid_argument);
+  EXPECT_NO_THROW(Chi2MeanBand(3, 1));
+  for (const double x : {-1.0, 0.0, static_cast<double>(-INFINITY)}) {
+    EXPECT_EQ(Chi2Cdf(x, 3), 0);
+    EXPECT_EQ(Chi2Survival(x, 3), 1);
+  }
+  EXPECT_EQ(Chi2Cdf(INFINITY, 3), 1);
+  EXPECT_EQ(Chi2Survival(INFINITY, 3), 0);
+  EXPECT_TRUE(std::isnan(Chi2Cdf(NAN, 3)));
+  EXPECT_TRUE(std::isnan(Chi2Survival(NAN, 3)));
+}
+
+// By bisection on the incomplete beta function in forty digits; of one and two degrees there are closed forms.
+TEST(StudentQuantile, AgreesWithFortyDigits) {
+  for (const double p : {0.001, 0.3, 0.9, 0.995}) {
+    EXPECT_NEAR(StudentQuantile(p, 1) / std::tan(M_PI * (p - 0.5)), 1, 1e-12) << p;
+    EXPECT_NEAR(StudentQuantile(p, 2) / ((2 * p - 1) / std::sqrt(2 * p * (1 - p))), 1, 1e-12) << p;
+  }
+  const struct {
+    double dof, probability, quantile;
+  } table[] = {
+      {5, 0.975, 2.5705818356363148},  {9, 0.995, 3.2498355415921257},   {19, 0.025, -2.0930240544083097},
+      {99, 0.995, 2.6264054572808272}, {3.5, 0.9995, 10.20482863165621}, {1000, 0.6, 0.25341451583949871},
+  };
+  for (const auto& row : table)
+    EXPECT_NEAR(StudentQuantile(row.probability, row.dof) / row.quantile, 1, 1e-12)
+        << row.dof << " " << row.probability;
+  EXPECT_EQ(StudentQuantile(0.5, 10), 0);
+  EXPECT_THROW(StudentQuantile(0.5, 0), std::invalid_argument);
+  EXPECT_THROW(StudentQuantile(0, 10), std::invalid_argument);
+  EXPECT_THROW(StudentQuantile(1, 10), std::invalid_argument);
+}
+
+TEST(BinomialLimit, AgreesWithTheSums) {
+  // n = 3, p = 0.5: P(> 2) = 1/8, P(> 1) = 1/2.
+  EXPECT_EQ(BinomialLimit(3, 0.5, 0.6), 1u);
+  EXPECT_EQ(BinomialLimit(3, 0.5, 0.2), 2u);
+  EXPECT_EQ(BinomialLimit(3, 0.5, 0.1), 3u);
+  EXPECT_EQ(BinomialLimit(100, 0.05, 0.01), 11u);  // P(> 10) = 0.0115, P(> 11) = 0.0043
+  EXPECT_EQ(BinomialLimit(20, 0.05, 0.01), 4u);    // this and the next: SciPy's binom.sf
+  EXPECT_EQ(BinomialLimit(7, 0.3, 0.05), 4u);
+  EXPECT_EQ(BinomialLimit(50, 0.5, 0.001), 36u);
+  EXPECT_EQ(BinomialLimit(0, 0.05, 0.01), 0u);
+  EXPECT_EQ(BinomialLimit(5, 0, 0), 0u);
+  EXPECT_EQ(BinomialLimit(5, 1, 0.5), 5u);
+  EXPECT_THROW(BinomialLimit(5, -0.1, 0.5), std::invalid_argument);
+  EXPECT_THROW(BinomialLimit(5, 1.1, 0.5), std::invalid_argument);
+  EXPECT_THROW(BinomialLimit(5, 0.5, -0.1), std::invalid_argument);
 }
 
 // The two-sided 95 % bands of docs/metrics.md, to the digits printed there.
