@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tools/evaluation/anees_test.h"
+#include "tools/evaluation/bound_ratio.h"
 #include "tools/evaluation/cramer_rao.h"
 #include "tools/evaluation/mixture_scores.h"
 #include "tools/evaluation/rank_histogram.h"

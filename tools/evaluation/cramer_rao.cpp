@@ -171,41 +171,4 @@ std::vector<std::vector<double>> NeesOf(const LinearisedRuns& runs, int start, i
   return nees;
 }
 
-BoundRatio CompareWithBound(const std::vector<std::vector<Vector12d>>& errors,
-                            const std::vector<std::vector<Matrix12d>>& bounds) {
-  using Sums = std::array<double, 4>;
-  std::vector<Sums> squares, traces;
-  Sums all_squares{}, all_traces{};
-  std::size_t count = 0;
-  if (errors.size() != bounds.size()) throw std::logic_error("CompareWithBound: a run without its bound");
-  for (std::size_t m = 0; m < errors.size(); ++m) {
-    if (errors[m].size() != bounds[m].size()) throw std::logic_error("CompareWithBound: a frame without its bound");
-    squares.resize(std::max(squares.size(), errors[m].size()));
-    traces.resize(squares.size());
-    for (std::size_t k = 0; k < errors[m].size(); ++k, ++count) {
-      for (std::size_t b = 0; b < 4; ++b) {
-        const auto start = 3 * static_cast<Index>(b);
-        const double square = errors[m][k].segment<3>(start).squaredNorm();
-        const double trace = bounds[m][k].diagonal().segment<3>(start).sum();
-        squares[k][b] += square;
-        traces[k][b] += trace;
-        all_squares[b] += square;
-        all_traces[b] += trace;
-      }
-    }
-  }
-  const auto ratio = [](double square, double trace) { return trace > 0 ? std::sqrt(square / trace) : kNaN; };
-  BoundRatio result;
-  for (std::size_t k = 0; k < squares.size(); ++k) {
-    Sums& frame = result.per_frame.emplace_back();
-    for (std::size_t b = 0; b < 4; ++b) frame[b] = ratio(squares[k][b], traces[k][b]);
-  }
-  for (std::size_t b = 0; b < 4; ++b) {
-    result.overall[b] = ratio(all_squares[b], all_traces[b]);
-    result.rmse[b] = std::sqrt(all_squares[b] / static_cast<double>(count));
-    result.bound[b] = std::sqrt(all_traces[b] / static_cast<double>(count));
-  }
-  return result;
-}
-
 }  // namespace evaluation

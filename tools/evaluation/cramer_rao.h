@@ -6,7 +6,6 @@
 //          bounds and what not.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -28,15 +27,5 @@ LinearisedRuns SimulateLinearised(const PointWorldProblem& problem, int runs, st
 
 // NEES[run][frame] of these errors; NaN where the bound is singular (a start known exactly).
 std::vector<std::vector<double>> NeesOf(const LinearisedRuns& runs, int start, int size);
-
-// Root mean square of errors against the bound, over runs: sqrt(sum |e|^2 / sum tr B) per block (p, phi, v, w).
-struct BoundRatio {
-  std::vector<std::array<double, 4>> per_frame;  // NaN where no run has a bound above zero
-  std::array<double, 4> overall{};               // over all frames and runs
-  std::array<double, 4> rmse{}, bound{};         // overall, root mean square [m, rad, m/s, rad/s]
-};
-// errors[run][frame], bounds[run][frame].
-BoundRatio CompareWithBound(const std::vector<std::vector<Vector12d>>& errors,
-                            const std::vector<std::vector<Matrix12d>>& bounds);
 
 }  // namespace evaluation

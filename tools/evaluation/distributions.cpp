@@ -1,5 +1,6 @@
 #include "tools/evaluation/distributions.h"
 
+#include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -24,14 +25,16 @@ void RequireInside(const char* who, double probability) {
 
 double Chi2Cdf(double x, double dof) {
   RequireDof("Chi2Cdf", dof);
-  if (!std::isfinite(x) || x <= 0) return std::isnan(x) ? x : x > 0;
-  return cdf(boost::math::chi_squared(dof), x);
+  const double inside = std::max(x, 0.0);
+  if (!std::isfinite(inside)) return std::isnan(x) ? x : 1;
+  return cdf(boost::math::chi_squared(dof), inside);
 }
 
 double Chi2Survival(double x, double dof) {
   RequireDof("Chi2Survival", dof);
-  if (!std::isfinite(x) || x <= 0) return std::isnan(x) ? x : x <= 0;
-  return cdf(complement(boost::math::chi_squared(dof), x));
+  const double inside = std::max(x, 0.0);
+  if (!std::isfinite(inside)) return std::isnan(x) ? x : 0;
+  return cdf(complement(boost::math::chi_squared(dof), inside));
 }
 
 double Chi2Quantile(double probability, double dof) {

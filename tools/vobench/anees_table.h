@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/evaluation/cramer_rao.h"
+#include "tools/evaluation/bound_ratio.h"
 #include "tools/evaluation/summary.h"
 #include "tools/vobench/point_bench.h"
 

