@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "tools/evaluation/draws.h"
@@ -49,7 +50,7 @@ class Blocks {
   }
   std::vector<std::vector<double>> All() const {
     std::vector<std::size_t> each(size());
-    for (std::size_t i = 0; i < size(); ++i) each[i] = i;
+    std::iota(each.begin(), each.end(), std::size_t{0});
     return Together(each);
   }
   // As many blocks as there are, with replacement: a function of the seed and the number of the resample.

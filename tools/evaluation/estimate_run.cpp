@@ -28,7 +28,6 @@ std::vector<StampedBelief> ReadBeliefs(const std::filesystem::path& file, Proble
                        " columns where 85 are expected (timestamp, 6 velocities, 78 of the covariance)");
       continue;
     }
-    bool good = true;
     std::array<double, 6 + kUpperTriangle> n{};
     for (std::size_t i = 0; i < n.size(); ++i) {
       const Token& token = line.tokens[i + 1];
@@ -36,20 +35,18 @@ std::vector<StampedBelief> ReadBeliefs(const std::filesystem::path& file, Proble
         n[i] = *number;
       } else {
         problems.Add(file, line.number, token.column, "'" + token.text + "' is not a finite number");
-        good = false;
       }
     }
     const auto stamp = ParseSeconds(line.tokens[0].text);
     if (!stamp) {
       problems.Add(file, line.number, line.tokens[0].column,
                    "'" + line.tokens[0].text + "' is not a time in seconds, 4e9 at most");
-      good = false;
-    } else if (!beliefs.empty() && *stamp <= beliefs.back().velocity.stamp_ns) {
+      continue;
+    }
+    if (!beliefs.empty() && *stamp <= beliefs.back().velocity.stamp_ns) {
       problems.Add(file, line.number, line.tokens[0].column,
                    "time " + line.tokens[0].text + " is not later than the one above");
-      good = false;
     }
-    if (!good) continue;
     StampedBelief belief{{*stamp, {n[0], n[1], n[2]}, {n[3], n[4], n[5]}}, Matrix12d::Zero()};
     std::size_t next = 6;
     for (int row = 0; row < 12; ++row) {

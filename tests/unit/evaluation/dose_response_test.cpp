@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 #include "tests/unit/evaluation/random.h"
+#include "tools/evaluation/draws.h"
 
 namespace evaluation {
 namespace {
@@ -37,7 +40,9 @@ TEST(IsotonicFit, PoolsWhatFalls) {
   EXPECT_THAT(IsotonicFit({4, 3, 2, 1}, {1, 1, 1, 1}), ElementsAre(2.5, 2.5, 2.5, 2.5));
   EXPECT_THAT(IsotonicFit({1, 3, 2}, {1, 3, 1}), ElementsAre(1, DoubleNear(2.75, 1e-15), DoubleNear(2.75, 1e-15)));
   EXPECT_THAT(IsotonicFit({9, 1, 9, 3}, {0, 1, 0, 1}), ElementsAre(testing::IsNan(), 1, 1, 3));
+  EXPECT_THAT(IsotonicFit({1, 2}, {0, 0}), ElementsAre(testing::IsNan(), testing::IsNan()));
   EXPECT_TRUE(IsotonicFit({}, {}).empty());
+  EXPECT_THROW(IsotonicFit({1, 2}, {1}), std::invalid_argument);
 }
 
 // The definition: no sequence that does not fall is nearer. Every one on a grid is tried.
@@ -67,7 +72,12 @@ TEST(DoseSpacing, IsGeometricWhereRatiosAreMoreAlike) {
   EXPECT_TRUE(AreGeometric({1e-3, 1e-2, 3e-2}));
   EXPECT_FALSE(AreGeometric({1, 2, 3, 4}));
   EXPECT_FALSE(AreGeometric({0, 1, 2, 4})) << "no logarithm of 0";
+  EXPECT_FALSE(AreGeometric({-1, 1}));
   EXPECT_FALSE(AreGeometric({3}));
+  EXPECT_FALSE(AreGeometric({}));
+  EXPECT_TRUE(AreGeometric({1, 2.1})) << "of two, by their ratio";
+  EXPECT_TRUE(AreGeometric({2.1, 1}));
+  EXPECT_FALSE(AreGeometric({1, 2}));
 }
 
 TEST(BreakingPoint, OfAStepIsBetweenItsDosesAndNoFiner) {
@@ -119,6 +129,10 @@ TEST(BreakingPoint, SaysWhatWasNotSeen) {
   EXPECT_DOUBLE_EQ(FindBreakingPoint(doses, gap)->at.dose, 2);
   EXPECT_THROW(FindBreakingPoint({1, 3, 2}, {}), std::invalid_argument);
   EXPECT_THROW(FindBreakingPoint({1, 1}, {}), std::invalid_argument);
+  EXPECT_THROW(FindBreakingPoint({1, 2, 2}, {}), std::invalid_argument);
+  EXPECT_THROW(FindBreakingPoint({2, 1, 1}, {}), std::invalid_argument);
+  EXPECT_THROW(FindBreakingPoint({3, 2, 5}, {}), std::invalid_argument);
+  EXPECT_NO_THROW(FindBreakingPoint({3, 2, 1}, {}));
   EXPECT_NO_THROW(FindBreakingPoint({1, 2}, Failures({0, 1}, 8)));
   EXPECT_THROW(FindBreakingPoint({1}, {{1, 0, 0}}), std::invalid_argument);
 }
@@ -127,6 +141,66 @@ TEST(BreakingPoint, AMildDoseThatFailsByChanceIsPooledWithItsNeighbours) {
   // Raw shares cross one half at the second dose and come back; 4 of 10 at both once pooled.
   const auto point = FindBreakingPoint({1, 2, 3, 4}, Failures({0, 0.6, 0.2, 1}, 10));
   EXPECT_DOUBLE_EQ(point->at.dose, 3 + 0.1 / 0.6);
+}
+
+// 16 of 32 runs are one half, though their shares of 12 of 12, 3 of 10 and 1 of 10, pooled, are 1.1e-16 less.
+TEST(BreakingPoint, HalfOfTheRunsIsHalfWhateverIsRounded) {
+  std::vector<DoseRun> runs;
+  const std::size_t failed[] = {0, 12, 3, 1}, count[] = {5, 12, 10, 10};
+  for (std::size_t d = 0; d < 4; ++d)
+    for (std::size_t i = 0; i < count[d]; ++i) runs.push_back({d, i, i < failed[d] ? 1. : 0.});
+  const auto point = FindBreakingPoint({1, 2, 3, 4}, runs, {0.9, 1, 1});
+  EXPECT_EQ(point->at.kind, Kind::inside);
+  EXPECT_EQ(point->at.dose, 2);
+}
+
+TEST(Bootstrap, RefusesOptionsThatMakeNoSense) {
+  const auto works = [](double level, int resamples) {
+    try {
+      MeansByDose(1, {{0, 0, 1}}, {level, resamples, 1});
+      return true;
+    } catch (const std::invalid_argument&) {
+      return false;
+    }
+  };
+  EXPECT_TRUE(works(0.01, 1));
+  EXPECT_TRUE(works(0.99, 1));
+  EXPECT_FALSE(works(0, 1));
+  EXPECT_FALSE(works(1, 1));
+  EXPECT_FALSE(works(1.5, 1));
+  EXPECT_FALSE(works(0.5, 0));
+  EXPECT_THROW(MeansByDose(1, {{1, 0, 1}}), std::invalid_argument);
+}
+
+// Of values 0 and 1 a resample's mean is 0, 1/2 and 1 with probabilities of 1/4, 1/2 and 1/4.
+TEST(DoseMeans, HaveTheIntervalOfTheirResamples) {
+  const std::vector<DoseRun> runs = {{0, 0, 0}, {0, 1, 1}};
+  const auto interval = [&](double level, int resamples) {
+    const DoseEstimate estimate = MeansByDose(1, runs, {level, resamples, 1})[0];
+    EXPECT_EQ(estimate.value, 0.5);
+    EXPECT_EQ(estimate.runs, 2u);
+    return std::pair(estimate.low, estimate.high);
+  };
+  EXPECT_EQ(interval(0.4, 4000), std::pair(0.5, 0.5));
+  EXPECT_EQ(interval(0.6, 4000), std::pair(0., 1.));
+  // Those of a few resamples, sorted: the ends of three without a third of a third, of eight without one at either end.
+  const auto means = [](int resamples) {
+    std::vector<double> all;
+    for (int i = 0; i < resamples; ++i) {
+      Draws draws(1, static_cast<std::uint64_t>(i));
+      const double first = std::floor(2 * draws.Uniform()), second = std::floor(2 * draws.Uniform());
+      all.push_back((first + second) / 2);
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  EXPECT_EQ(interval(0.5, 3), std::pair(means(3)[0], means(3)[2]));
+  EXPECT_EQ(interval(0.5, 8), std::pair(means(8)[2], means(8)[5]));
+  EXPECT_EQ(interval(0.9, 1), std::pair(means(1)[0], means(1)[0]));
+  const DoseEstimate none = MeansByDose(2, runs)[1];
+  EXPECT_EQ(none.runs, 0u);
+  EXPECT_TRUE(std::isnan(none.value) && std::isnan(none.low) && std::isnan(none.high));
+  EXPECT_TRUE(std::isnan(MeansByDose(1, {})[0].low));
 }
 
 TEST(DoseMedians, CountLostRunsAsWorseThanAnyNumber) {

@@ -3,6 +3,9 @@
 #include <Random123/philox.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
 #include "tools/evaluation/distributions.h"
 
 namespace evaluation {
@@ -27,6 +30,22 @@ TEST(Draws, AreAFunctionOfSeedAndStream) {
   EXPECT_EQ(values, b.Normals(50));
   EXPECT_NE(values, other_stream.Normals(50));
   EXPECT_NE(values, other_seed.Normals(50));
+}
+
+// Words of Philox in their order, both halves of each number among its arguments; normals by Box and Muller, in pairs.
+TEST(Draws, AreMadeOfThoseWords) {
+  const std::uint64_t seed = 0x0123456789abcdef, stream = 0xfedcba9876543210;
+  std::vector<double> uniform;
+  for (std::uint32_t block = 0; block < 3; ++block)
+    for (const std::uint32_t word : Philox({block, 0, 0x76543210, 0xfedcba98}, {0x89abcdef, 0x01234567}))
+      uniform.push_back((word + 0.5) / 4294967296.0);
+  Draws draws(seed, stream), normal(seed, stream);
+  for (const double value : uniform) EXPECT_EQ(draws.Uniform(), value);
+  for (std::size_t i = 0; i < uniform.size(); i += 2) {
+    const double radius = std::sqrt(-2 * std::log(uniform[i]));
+    EXPECT_NEAR(normal.Normal(), radius * std::cos(2 * M_PI * uniform[i + 1]), 1e-15);
+    EXPECT_NEAR(normal.Normal(), radius * std::sin(2 * M_PI * uniform[i + 1]), 1e-15);
+  }
 }
 
 // Mean, variance, fourth moment and dependence of neighbours of 200 000 normals, five standard deviations each: false

@@ -136,6 +136,100 @@ TEST(EstimateRun, ListsTheProblemsOfAllFilesAtOnce) {
   }
 }
 
+// One digit or sign a column, so that the n-th begins at character 2 n + 1.
+TEST(EstimateRun, SaysWhereABeliefIsWrong) {
+  const TemporaryFolder folder;
+  WriteEstimateRun(folder.path(), Sample());
+  const auto error_of = [&](const std::string& covariance) -> std::string {
+    folder.Write("covariance.txt", covariance);
+    try {
+      ReadEstimateRun(folder.path());
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto line = [](const std::string& stamp, std::size_t at = 0, const std::string& token = "") {
+    std::string text = stamp;
+    for (std::size_t i = 1; i < 85; ++i) text += ' ' + (i == at ? token : "0");
+    return text + '\n';
+  };
+  const std::string file = (folder.path() / "covariance.txt").string();
+  EXPECT_EQ(error_of(line("1") + line("2")), "");
+  EXPECT_EQ(error_of(line("1") + line("1")), file + ":2:1: time 1 is not later than the one above");
+  EXPECT_EQ(error_of(line("2") + line("1") + line("3")), file + ":2:1: time 1 is not later than the one above");
+  EXPECT_EQ(error_of(line("5e9") + line("2")), file + ":1:1: '5e9' is not a time in seconds, 4e9 at most");
+  EXPECT_EQ(error_of(line("1") + "2 0 0\n" + line("2")),
+            file + ":2:1: 3 columns where 85 are expected (timestamp, 6 velocities, 78 of the covariance)");
+  for (const std::size_t column : {1u, 6u, 7u, 84u})
+    EXPECT_EQ(error_of(line("1", column, "x")),
+              file + ":1:" + std::to_string(2 * column + 1) + ": 'x' is not a finite number");
+  std::size_t diagonal = 7;
+  for (std::size_t row = 0; row < 12; ++row) {
+    EXPECT_EQ(error_of(line("1", diagonal, "-1")), file + ":1:" + std::to_string(2 * diagonal + 1) + ": variance " +
+                                                       std::to_string(row + 1) + " is negative: -1");
+    diagonal += 12 - row;
+  }
+}
+
+TEST(EstimateRun, SaysWhereAFrameIsWrong) {
+  const TemporaryFolder folder;
+  WriteEstimateRun(folder.path(), Sample());
+  const std::string text = TemporaryFolder::Read(folder.path() / "frames.csv"),
+                    header = text.substr(0, text.find('\n'));
+  const auto error_of = [&](const std::string& rows) -> std::string {
+    folder.Write("frames.csv", header + '\n' + rows);
+    try {
+      ReadEstimateRun(folder.path());
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto row = [](std::size_t at, const std::string& token) {
+    std::string columns;
+    for (std::size_t i = 0; i < 16; ++i)
+      columns += (i == at ? token : i == 0 ? "1" : i == 11 ? "coasted" : "0") + (i < 15 ? "," : "\n");
+    return columns;
+  };
+  const std::string file = (folder.path() / "frames.csv").string();
+  EXPECT_EQ(error_of(row(0, "1") + row(0, "2")), "");
+  EXPECT_EQ(error_of(row(0, "1") + row(0, "1")), file + ":3:1: '1' is not later than the time above");
+  EXPECT_EQ(error_of(row(0, "x")), file + ":2:1: 'x' is not a time in seconds");
+  EXPECT_EQ(error_of("1,2\n" + row(0, "2")), file + ":2:1: 2 columns where 16 are expected");
+  for (std::size_t i = 1; i < 16; ++i) {
+    const std::string at = file + ":2:" + std::to_string(i < 12 ? 2 * i + 1 : 2 * i + 7) + ": ";
+    const char* what = i == 11                       ? "'tracked' or 'coasted'"
+                       : i == 5 || (i > 6 && i < 11) ? "a number of zero or more"
+                                                     : "a count";
+    EXPECT_EQ(error_of(row(i, "x")), at + "'x' is not " + what);
+    EXPECT_EQ(error_of(row(i, "-1")), at + "'-1' is not " + what);
+    EXPECT_EQ(error_of(row(i, "1x")), at + "'1x' is not " + what);
+  }
+}
+
+TEST(EstimateRun, WritesAsManyDigitsAsItSays) {
+  const TemporaryFolder folder;
+  EstimateRun run = Sample();
+  run.beliefs.resize(1);
+  run.frames.resize(1);
+  run.beliefs[0].velocity.v_WC.setConstant(1. / 3);
+  run.beliefs[0].velocity.w_WC_C.setConstant(2. / 3);
+  run.beliefs[0].covariance = 4. / 3 * Matrix12d::Identity();
+  FrameRecord& frame = run.frames[0];
+  frame.stamp_ns = 1'000'000'000;
+  frame.nis = frame.effective_particles = frame.ms_features = frame.ms_matching = frame.ms_filter = 100. / 3;
+  frame.tracked = true;
+  WriteEstimateRun(folder.path(), run);
+  const std::string covariance = TemporaryFolder::Read(folder.path() / "covariance.txt"),
+                    frames = TemporaryFolder::Read(folder.path() / "frames.csv");
+  EXPECT_THAT(covariance,
+              HasSubstr(" 0.333333333333 0.666666666667 0.666666666667 0.666666666667 1.33333333333333 0 0"));
+  EXPECT_THAT(covariance, testing::EndsWith(" 0 1.33333333333333\n"));
+  EXPECT_THAT(frames, testing::EndsWith(
+                          "\n1.000000000,50,40,120,7,33.3333333,80,33.3333,33.3333,33.3333,33.3333,tracked,3,1,4,2\n"));
+}
+
 TEST(EstimateRun, RefusesAWrongHeaderAndNegativeVariances) {
   const TemporaryFolder folder;
   EstimateRun run = Sample();
@@ -156,8 +250,12 @@ TEST(EstimateRun, RefusesAWrongHeaderAndNegativeVariances) {
 TEST(EstimateRun, WritesNothingWhenANumberIsNotFinite) {
   const TemporaryFolder folder;
   EstimateRun run = Sample();
-  run.frames[1].nis = std::nan("");
-  EXPECT_THROW(WriteEstimateRun(folder.path(), run), std::invalid_argument);
+  for (double FrameRecord::*member : {&FrameRecord::nis, &FrameRecord::effective_particles, &FrameRecord::ms_features,
+                                      &FrameRecord::ms_matching, &FrameRecord::ms_filter}) {
+    run = Sample();
+    run.frames[1].*member = std::nan("");
+    EXPECT_THROW(WriteEstimateRun(folder.path(), run), std::invalid_argument);
+  }
   run = Sample();
   run.beliefs[1].covariance(3, 4) = INFINITY;
   EXPECT_THROW(WriteEstimateRun(folder.path(), run), std::invalid_argument);
