@@ -92,7 +92,7 @@ std::vector<DoseEstimate> ByDose(std::size_t doses, const std::vector<DoseRun>& 
   std::vector<DoseEstimate> estimates(doses);
   const auto all = blocks.All();
   std::vector<std::vector<double>> resampled(doses);
-  for (int i = 0; i < options.resamples && blocks.size() > 0; ++i) {
+  for (int i = 0; i < options.resamples; ++i) {
     const auto drawn = blocks.Resampled(options.seed, static_cast<std::uint64_t>(i));
     for (std::size_t d = 0; d < doses; ++d) {
       if (!drawn[d].empty()) resampled[d].push_back(of(drawn[d]));
@@ -108,7 +108,7 @@ std::vector<DoseEstimate> ByDose(std::size_t doses, const std::vector<DoseRun>& 
 // The doses about the crossing, as indices: -inf where there is none before it, +inf where there is none after it.
 struct Half {
   double unbroken, broken;
-  double share;  // of the way between them
+  double share{};  // of the way between them, where both are there
 };
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -125,14 +125,14 @@ Half HalfOf(const std::vector<std::vector<double>>& failures) {
   const std::vector<double> fit = IsotonicFit(shares, weights);
   // One half itself counts; pooled means are rounded.
   const auto broken = std::find_if(fit.begin(), fit.end(), [](double share) { return share >= 0.5 - 1e-12; });
-  if (broken == fit.end()) return {indices.back(), kInfinity, 0};
+  if (broken == fit.end()) return {indices.back(), kInfinity};
   const auto k = static_cast<std::size_t>(broken - fit.begin());
-  if (k == 0) return {-kInfinity, indices.front(), 0};
+  if (k == 0) return {-kInfinity, indices.front()};
   return {indices[k - 1], indices[k], std::min(1.0, (0.5 - fit[k - 1]) / (fit[k] - fit[k - 1]))};
 }
 
 Crossing AtDose(const std::vector<double>& doses, double index) {
-  if (std::isinf(index)) return {index < 0 ? Crossing::Kind::at_the_first : Crossing::Kind::not_reached, 0};
+  if (std::isinf(index)) return {std::signbit(index) ? Crossing::Kind::at_the_first : Crossing::Kind::not_reached};
   return {Crossing::Kind::inside, doses[static_cast<std::size_t>(index)]};
 }
 
@@ -164,11 +164,11 @@ std::vector<double> IsotonicFit(const std::vector<double>& values, const std::ve
   };
   std::vector<Pool> pools;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!(weights[i] > 0)) {
-      if (!pools.empty()) pools.back().end = i + 1;
-      continue;
+    if (weights[i] > 0) {
+      pools.push_back({values[i], weights[i], i + 1});
+    } else if (!pools.empty()) {
+      pools.back().end = i + 1;
     }
-    pools.push_back({values[i], weights[i], i + 1});
     while (pools.size() > 1 && pools[pools.size() - 2].mean >= pools.back().mean) {
       const Pool last = pools.back();
       pools.pop_back();

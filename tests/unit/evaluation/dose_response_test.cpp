@@ -73,6 +73,9 @@ TEST(DoseSpacing, IsGeometricWhereRatiosAreMoreAlike) {
   EXPECT_FALSE(AreGeometric({1, 2, 3, 4}));
   EXPECT_FALSE(AreGeometric({0, 1, 2, 4})) << "no logarithm of 0";
   EXPECT_FALSE(AreGeometric({-1, 1}));
+  EXPECT_FALSE(AreGeometric({-1, -3}));
+  EXPECT_FALSE(AreGeometric({0, 1}));
+  EXPECT_FALSE(AreGeometric({0.1, 0.2, 0.3}));
   EXPECT_FALSE(AreGeometric({3}));
   EXPECT_FALSE(AreGeometric({}));
   EXPECT_TRUE(AreGeometric({1, 2.1})) << "of two, by their ratio";
@@ -88,6 +91,8 @@ TEST(BreakingPoint, OfAStepIsBetweenItsDosesAndNoFiner) {
   EXPECT_DOUBLE_EQ(point->at.dose, 3.5);
   EXPECT_EQ(point->low.dose, 3);
   EXPECT_EQ(point->high.dose, 4);
+  EXPECT_DOUBLE_EQ(FindBreakingPoint({1, 3, 5, 7}, Failures({0, 0.25, 0.75, 1}, 8))->at.dose, 4);
+  EXPECT_DOUBLE_EQ(FindBreakingPoint({1, 3, 5, 7}, Failures({0, 0.25, 1, 1}, 8))->at.dose, 3 + 2 / 3.);
   // The same with a constant factor, falling: sqrt(8 * 4).
   point = FindBreakingPoint({32, 16, 8, 4, 2}, Failures({0, 0, 0, 1, 1}, 8));
   EXPECT_DOUBLE_EQ(point->at.dose, std::sqrt(32));
@@ -152,6 +157,15 @@ TEST(BreakingPoint, HalfOfTheRunsIsHalfWhateverIsRounded) {
   const auto point = FindBreakingPoint({1, 2, 3, 4}, runs, {0.9, 1, 1});
   EXPECT_EQ(point->at.kind, Kind::inside);
   EXPECT_EQ(point->at.dose, 2);
+}
+
+// One block, one resample: what is drawn is what there is.
+TEST(BreakingPoint, OfOneBlockHasTheGapForItsInterval) {
+  const auto point = FindBreakingPoint({1, 2, 3}, {{0, 7, 0}, {1, 7, 1}, {2, 7, 1}}, {0.9, 1, 1});
+  EXPECT_EQ(point->at.dose, 1.5);
+  EXPECT_EQ(point->low.dose, 1);
+  EXPECT_EQ(point->high.dose, 2);
+  EXPECT_THROW(FindBreakingPoint({1, 2}, {{0, 0, 0}}, {0.9, 0, 1}), std::invalid_argument);
 }
 
 TEST(Bootstrap, RefusesOptionsThatMakeNoSense) {

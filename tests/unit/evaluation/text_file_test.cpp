@@ -4,6 +4,8 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include <limits>
+
 #include "tests/unit/evaluation/temporary_folder.h"
 
 namespace evaluation {
@@ -22,6 +24,13 @@ TEST(ParseSeconds, IsExactWhereADoubleIsNot) {
   EXPECT_FALSE(ParseSeconds("1e-101"));
   EXPECT_EQ(ParseSeconds("0e100"), 0);
   EXPECT_FALSE(ParseSeconds("0e101"));
+  EXPECT_EQ(ParseSeconds("9e-11"), 0);
+  EXPECT_EQ(ParseSeconds("1.00000000049"), 1'000'000'000);
+  EXPECT_EQ(ParseSeconds("1.0000000005"), 1'000'000'001);
+  EXPECT_EQ(ParseSeconds("2E1"), 20'000'000'000);
+  EXPECT_EQ(ParseSeconds("+2e+1"), 20'000'000'000);
+  EXPECT_EQ(ParseSeconds("0.00e3"), 0);
+  EXPECT_FALSE(ParseSeconds("1e10"));
   EXPECT_EQ(ParseSeconds("-1.5"), -1'500'000'000);
   EXPECT_EQ(ParseSeconds("7"), 7'000'000'000);
   EXPECT_EQ(ParseSeconds("000000000000000000001.5"), 1'500'000'000);
@@ -55,6 +64,18 @@ TEST(FormatSeconds, IsTheInverse) {
     EXPECT_EQ(ParseSeconds(FormatSeconds(t)), t);
   }
   EXPECT_EQ(FormatSeconds(33333333), "0.033333333");
+  EXPECT_EQ(FormatSeconds(-12'000'000'034), "-12.000000034");
+  EXPECT_EQ(FormatSeconds(std::numeric_limits<std::int64_t>::min()), "-9223372036.854775808");
+}
+
+TEST(SecondsAsRead, AreWholeSecondsAndTheRest) {
+  EXPECT_EQ(SecondsAsRead(1305031102'160407123), 1305031102.0 + 160407123 * 1e-9);
+  EXPECT_EQ(SecondsAsRead(-2'500'000'000), -2.5);
+}
+
+TEST(FormatNumber, HasAsManyDigitsAsAreAskedFor) {
+  EXPECT_EQ(FormatNumber(2. / 3, 3), "0.667");
+  EXPECT_EQ(FormatNumber(2. / 3, 12), "0.666666666667");
 }
 
 TEST(ParseNumber, TakesFiniteNumbersOnly) {
@@ -103,7 +124,24 @@ TEST(ReadLines, NamesWhatCannotBeRead) {
   EXPECT_THROW(ReadLines(folder.path()), InputError);
 }
 
+TEST(Problems, AreToldInTheirOrderWithTheirPlace) {
+  Problems problems;
+  EXPECT_NO_THROW(problems.ThrowIfAny());
+  problems.Add("a/b.txt", "is none");
+  problems.Add("c.txt", 12, 3, "neither");
+  try {
+    problems.ThrowIfAny();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "a/b.txt: is none\nc.txt:12:3: neither");
+  }
+}
+
 TEST(InputError, CountsBeyondFifty) {
+  std::string fifty = "x";
+  for (int i = 1; i < 50; ++i) fifty += "\nx";
+  EXPECT_EQ(InputError(std::vector<std::string>(50, "x")).what(), fifty);
+  EXPECT_EQ(InputError(std::vector<std::string>(51, "x")).what(), fifty + "\n... and 1 more problems");
   const InputError error(std::vector<std::string>(70, "x"));
   EXPECT_THAT(error.what(), HasSubstr("and 20 more"));
 }
@@ -128,6 +166,41 @@ TEST(WriteWhole, LeavesTheOldFileWhenTheDiskIsFull) {
   EXPECT_THAT(said, HasSubstr(file.string()));
   EXPECT_EQ(TemporaryFolder::Read(file), "old");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "something temporary remains";
+}
+
+std::ptrdiff_t OpenFiles() { return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {}); }
+
+// In pieces, with more and less than is kept back, and in one that is more than that.
+TEST(WholeFile, HoldsWhatWasAppended) {
+  const TemporaryFolder folder;
+  const std::ptrdiff_t open = OpenFiles();
+  for (const std::size_t piece : {1'000'003u, 3'000'000u}) {
+    std::string expected;
+    WholeFile out(folder.path() / "a");
+    for (int i = 0; i < 4; ++i) {
+      const std::string text(piece, static_cast<char>('a' + i));
+      out.Append(text);
+      out.Append("\n");
+      expected += text + "\n";
+    }
+    out.Commit();
+    EXPECT_EQ(TemporaryFolder::Read(folder.path() / "a"), expected);
+  }
+  EXPECT_EQ(OpenFiles(), open);
+}
+
+TEST(WholeFile, LeavesNothingUncommitted) {
+  const TemporaryFolder folder;
+  const std::ptrdiff_t open = OpenFiles();
+  WholeFile(folder.path() / "a").Append("x");
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  EXPECT_EQ(OpenFiles(), open);
+  // The name is that of a folder: nothing takes its place.
+  std::filesystem::create_directory(folder.path() / "b");
+  folder.Write("b/c", "kept");
+  EXPECT_THROW(WriteWhole(folder.path() / "b", "x"), std::runtime_error);
+  EXPECT_EQ(TemporaryFolder::Read(folder.path() / "b/c"), "kept");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
 TEST(WriteWhole, NamesTheFolderThatIsNotThere) {

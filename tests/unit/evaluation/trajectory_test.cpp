@@ -41,6 +41,38 @@ TEST(ReadTrajectory, ListsEveryProblemWithItsPlace) {
   EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 5) << said;
 }
 
+// Where the lines are drawn, from both sides: the quaternion's norm, and what passes for the same pose.
+TEST(ReadTrajectory, DrawsItsLinesWhereItSays) {
+  for (const char* norm : {"1.00097", "0.99903"}) EXPECT_EQ(Complaint("1 0 0 0 0 0 0 " + std::string(norm)), "");
+  for (const char* norm : {"1.00103", "0.99897"}) EXPECT_NE(Complaint("1 0 0 0 0 0 0 " + std::string(norm)), "");
+  EXPECT_THAT(Complaint("1 0 0 0 0 0 0 1.0123456789\n"),
+              HasSubstr("norm is 1.01235, which differs from 1 by more than 0.001"));
+  const std::string first = "1 2 0 0 0 0 0 1\n1 ";
+  EXPECT_EQ(Complaint(first + "2.0097 0 0 0 0 0 1\n"), "");
+  EXPECT_NE(Complaint(first + "2.0103 0 0 0 0 0 1\n"), "");
+  EXPECT_EQ(Complaint(first + "2 0 0 0 0 0.00846484 0.99996417\n"), "") << "0.97 degrees";
+  EXPECT_NE(Complaint(first + "2 0 0 0 0 0.00898846 0.99995960\n"), "") << "1.03 degrees";
+}
+
+// What is wrong in a line is not what later ones are held against.
+TEST(ReadTrajectory, GoesOnFromTheLastGoodLine) {
+  const std::string said =
+      Complaint("5 0 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n4 0 0 0 0 0 0 1\n9 0 0 0 0 0 0 2\n6 0 0 0 0 0 0 1\n");
+  EXPECT_THAT(said, HasSubstr("t.txt:2:1: time 3 lies before 5.000000000, the time of the pose above"));
+  EXPECT_THAT(said, HasSubstr("t.txt:3:1: time 4 lies before 5.000000000"));
+  EXPECT_THAT(said, HasSubstr("t.txt:4:9: the quaternion's norm is 2"));
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 2) << said;
+}
+
+TEST(ReadTrajectory, NormalisesUnlessAskedForWhatIsThere) {
+  const TemporaryFolder folder;
+  const auto file = folder.Write("t.txt", "1 0 0 0 0 0 0 1.0005\n1 0 0 0 0 0 0 1.0005\n");
+  ASSERT_EQ(ReadTrajectory(file).size(), 1u);
+  EXPECT_EQ(ReadTrajectory(file)[0].q_WC.w(), 1);
+  ASSERT_EQ(ReadTrajectory(file, Reading::as_written).size(), 2u);
+  EXPECT_EQ(ReadTrajectory(file, Reading::as_written)[0].q_WC.w(), 1.0005);
+}
+
 TEST(ReadTrajectory, RefusesAnEmptyFile) { EXPECT_THAT(Complaint("# nothing\n"), HasSubstr("holds no pose")); }
 
 TEST(ReadTrajectory, KeepsTheFirstOfEqualStampsButNotOfDifferentPoses) {
@@ -76,6 +108,41 @@ TEST(WriteTrajectory, RefusesWhatCouldNotBeReadBack) {
   trajectory[1].p_WC.x() = std::nan("");
   EXPECT_THROW(WriteTrajectory(folder.path() / "t.txt", trajectory), std::invalid_argument);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "t.txt"));
+  trajectory[1].p_WC.x() = 0;
+  trajectory[0].q_WC.y() = std::nan("");
+  EXPECT_THROW(WriteTrajectory(folder.path() / "t.txt", trajectory), std::invalid_argument);
+  trajectory = TestRandom(3).Walk(2);
+  trajectory[1].stamp_ns = trajectory[0].stamp_ns;
+  try {
+    WriteTrajectory(folder.path() / "t.txt", trajectory);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(error.what(),
+              (folder.path() / "t.txt").string() + ": entry 1 is not later than the one before; nothing was written");
+  }
+}
+
+TEST(WriteTrajectory, WritesTwelveDigits) {
+  const TemporaryFolder folder;
+  const Eigen::Vector3d third = Eigen::Vector3d::Constant(1. / 3);
+  WriteTrajectory(folder.path() / "t.txt", {{1, third, Eigen::Quaterniond(-1, 0, 0, 0)}});
+  EXPECT_EQ(TemporaryFolder::Read(folder.path() / "t.txt"),
+            "# timestamp tx ty tz qx qy qz qw\n"
+            "0.000000001 0.333333333333 0.333333333333 0.333333333333 -0 -0 -0 1\n");
+  WriteVelocities(folder.path() / "v.txt", {{1, third, 2 * third}});
+  EXPECT_EQ(TemporaryFolder::Read(folder.path() / "v.txt"),
+            "# timestamp vx vy vz wx wy wz\n0.000000001 0.333333333333 0.333333333333 0.333333333333 "
+            "0.666666666667 0.666666666667 0.666666666667\n");
+}
+
+TEST(PathLength, IsTheSumOfTheWay) {
+  EXPECT_EQ(PathLength({}), 0);
+  Trajectory path(3);
+  path[0].p_WC = {1, 1, 1};
+  path[1].p_WC = {4, 5, 1};
+  path[2].p_WC = {4, 5, 3};
+  EXPECT_EQ(WayAlong(path), (std::vector<double>{0, 5, 7}));
+  EXPECT_EQ(PathLength(path), 7);
 }
 
 TEST(Velocities, ReadBackAndAreFoundByTheirStamp) {
@@ -90,8 +157,31 @@ TEST(Velocities, ReadBackAndAreFoundByTheirStamp) {
   EXPECT_EQ(found->w_WC_C.y(), 0.25);
   EXPECT_FALSE(VelocityAt(back, 1'033'333'334));
   EXPECT_FALSE(VelocityAt(back, 2'000'000'000));
-  folder.Write("v.txt", "1 0 0 0 0 0 0\n1 0 0 0 0 0 0\n");
-  EXPECT_THROW(ReadVelocities(folder.path() / "v.txt"), InputError);
+  const auto error_of = [&](const std::string& text) -> std::string {
+    folder.Write("v.txt", text);
+    try {
+      ReadVelocities(folder.path() / "v.txt");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string file = (folder.path() / "v.txt").string();
+  EXPECT_EQ(error_of("2 0 0 0 0 0 0\n2 0 0 0 0 0 0\n"),
+            file + ":2:1: time 2 is not later than 2.000000000, the time above");
+  EXPECT_EQ(error_of("2 0 0 0 0 0 0\n1 0 0 0 0 0 0\n1.5 0 0 0 0 0 0\n"),
+            file + ":2:1: time 1 is not later than 2.000000000, the time above\n" + file +
+                ":3:1: time 1.5 is not later than 2.000000000, the time above");
+  EXPECT_EQ(error_of("2 0 0 0 0 0\n"), file + ":1:1: 6 columns where 7 are expected (timestamp vx vy vz wx wy wz)");
+  EXPECT_EQ(error_of("# none\n"), file + ": holds no velocity");
+  Velocities bad = velocities;
+  bad[1].stamp_ns = bad[0].stamp_ns;
+  EXPECT_THROW(WriteVelocities(folder.path() / "w.txt", bad), std::invalid_argument);
+  for (double* number : {&bad[0].v_WC.x(), &bad[0].w_WC_C.z()}) {
+    bad = velocities;
+    *number = std::nan("");
+    EXPECT_THROW(WriteVelocities(folder.path() / "w.txt", bad), std::invalid_argument);
+  }
 }
 
 TEST(Log, IsTheInverseOfExpAtAllAngles) {
