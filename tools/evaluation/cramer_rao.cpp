@@ -1,12 +1,12 @@
 #include "tools/evaluation/cramer_rao.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "tools/evaluation/draws.h"
+#include "tools/evaluation/square_root.h"
 
 namespace evaluation {
 namespace {
@@ -22,7 +22,7 @@ class Linearised {
  public:
   Linearised(const PointWorldProblem& problem, int runs, std::uint64_t seed) : problem_(problem), random_(seed, 0) {
     P_ = problem.start_covariance;
-    errors_ = Root(P_) * Noise(12, runs);
+    errors_ = SquareRootOf(P_).L * Noise(12, runs);
   }
 
   void Predict(std::size_t k) {
@@ -31,7 +31,8 @@ class Linearised {
     P_.topRows<12>() = (motion.F * P_.topRows<12>()).eval();
     P_.leftCols<12>() = (P_.leftCols<12>() * motion.F.transpose()).eval();
     P_.topLeftCorner<12, 12>() += motion.Q;
-    errors_.topRows<12>() = (motion.F * errors_.topRows<12>() + Root(motion.Q) * Noise(12, errors_.cols())).eval();
+    errors_.topRows<12>() =
+        (motion.F * errors_.topRows<12>() + SquareRootOf(motion.Q).L * Noise(12, errors_.cols())).eval();
   }
 
   void Update(std::size_t k) {
@@ -121,10 +122,6 @@ class Linearised {
     HomogeneousPoint point;
   };
   static Index Start(std::size_t i) { return 12 + 3 * static_cast<Index>(i); }
-  static Matrix12d Root(const Matrix12d& P) {
-    const Eigen::SelfAdjointEigenSolver<Matrix12d> solver(P);
-    return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
-  }
   MatrixXd Noise(Index rows, Index columns) {
     MatrixXd noise(rows, columns);
     for (double& value : noise.reshaped()) value = random_.Normal();

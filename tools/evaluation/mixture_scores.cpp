@@ -1,44 +1,22 @@
 #include "tools/evaluation/mixture_scores.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "tools/evaluation/distributions.h"
 #include "tools/evaluation/draws.h"
+#include "tools/evaluation/square_root.h"
 
 namespace evaluation {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kPivot = 1e-12;  // smallest eigenvalue, of the matrix of correlations, that counts as positive
 
 double TotalWeight(const Mixture& mixture) {
   double total = 0;
   for (const MixtureComponent& component : mixture) total += component.weight;
   return total;
-}
-
-// P = scale L L' scale with L of the correlations; `full` when all of them are positive.
-struct Root {
-  Eigen::MatrixXd L;  // times the scale
-  bool full = false;
-};
-
-Root RootOf(const Eigen::MatrixXd& P) {
-  const Eigen::VectorXd sigma = P.diagonal().cwiseMax(0).cwiseSqrt();
-  const Eigen::VectorXd weight = (sigma.array() > 0).select(sigma.cwiseInverse(), 0);
-  const Eigen::MatrixXd correlation = weight.asDiagonal() * P * weight.asDiagonal();
-  const Eigen::LLT<Eigen::MatrixXd> factor(correlation);
-  if (factor.info() == Eigen::Success) {
-    const Eigen::MatrixXd L = factor.matrixL();
-    if (L.diagonal().array().square().minCoeff() > kPivot) return {sigma.asDiagonal() * L, true};
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
-  const Eigen::VectorXd roots = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
-  return {sigma.asDiagonal() * solver.eigenvectors() * roots.asDiagonal(), false};
 }
 
 // Density of many points: the factors are taken once.
@@ -48,7 +26,7 @@ class Density {
     const double total = TotalWeight(mixture);
     for (const MixtureComponent& component : mixture) {
       if (!(component.weight > 0)) continue;
-      const Root root = RootOf(component.covariance);
+      const SquareRoot root = SquareRootOf(component.covariance);
       defined_ = defined_ && root.full;
       const double log_root = root.full ? root.L.diagonal().array().log().sum() : 0;
       log_factor_.push_back(std::log(component.weight / total) - log_root -
@@ -167,7 +145,7 @@ Eigen::MatrixXd Draw(const Mixture& mixture, int draws, std::uint64_t seed, std:
     std::size_t i = 0;
     while (i + 1 < mixture.size() && left >= mixture[i].weight) left -= mixture[i++].weight;
     while (!(mixture[i].weight > 0)) --i;  // rounding past the last component, which had no weight
-    if (roots[i].size() == 0) roots[i] = RootOf(mixture[i].covariance).L;
+    if (roots[i].size() == 0) roots[i] = SquareRootOf(mixture[i].covariance).L;
     points.col(k) = mixture[i].offset + roots[i] * random.Normals(points.rows());
   }
   return points;

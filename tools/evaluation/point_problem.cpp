@@ -1,6 +1,6 @@
 #include "tools/evaluation/point_problem.h"
 
-#include <Eigen/QR>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <string>
 
@@ -91,8 +91,11 @@ HomogeneousPoint PointOf(const PointLandmark& landmark, const StampedPose& ancho
   HomogeneousPoint point;
   point.direction << landmark.inverse_depth * anchor.p_WC + anchor.q_WC * landmark.ray.homogeneous(),
       landmark.inverse_depth;
-  const Eigen::Matrix4d basis = Eigen::HouseholderQR<Eigen::MatrixXd>(point.direction).householderQ();
-  point.across = basis.rightCols<3>().transpose();
+  // Householder's reflection of the direction into the last axis, from its far side: its other rows are across.
+  Eigen::Vector4d mirror = point.direction.normalized();
+  mirror[3] += std::copysign(1, mirror[3]);
+  point.across =
+      Eigen::Matrix<double, 3, 4>::Identity() - mirror.head<3>() * mirror.transpose() * (2 / mirror.squaredNorm());
   return point;
 }
 

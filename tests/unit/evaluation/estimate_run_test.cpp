@@ -226,6 +226,8 @@ TEST(EstimateRun, WritesAsManyDigitsAsItSays) {
   EXPECT_THAT(covariance,
               HasSubstr(" 0.333333333333 0.666666666667 0.666666666667 0.666666666667 1.33333333333333 0 0"));
   EXPECT_THAT(covariance, testing::EndsWith(" 0 1.33333333333333\n"));
+  EXPECT_THAT(covariance, testing::StartsWith("# timestamp vx vy vz wx wy wz, then the upper triangle of the 12 x 12 "
+                                              "covariance, row by row\n"));
   EXPECT_THAT(frames, testing::EndsWith(
                           "\n1.000000000,50,40,120,7,33.3333333,80,33.3333,33.3333,33.3333,33.3333,tracked,3,1,4,2\n"));
 }
@@ -249,16 +251,25 @@ TEST(EstimateRun, RefusesAWrongHeaderAndNegativeVariances) {
 
 TEST(EstimateRun, WritesNothingWhenANumberIsNotFinite) {
   const TemporaryFolder folder;
-  EstimateRun run = Sample();
+  const auto error_of = [&](const EstimateRun& run) -> std::string {
+    try {
+      WriteEstimateRun(folder.path(), run);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string at = FormatSeconds(Sample().frames[1].stamp_ns),
+                    what = " holds a number that is not finite; nothing was written";
   for (double FrameRecord::*member : {&FrameRecord::nis, &FrameRecord::effective_particles, &FrameRecord::ms_features,
                                       &FrameRecord::ms_matching, &FrameRecord::ms_filter}) {
-    run = Sample();
+    EstimateRun run = Sample();
     run.frames[1].*member = std::nan("");
-    EXPECT_THROW(WriteEstimateRun(folder.path(), run), std::invalid_argument);
+    EXPECT_EQ(error_of(run), "frames.csv: the frame at " + at + what);
   }
-  run = Sample();
+  EstimateRun run = Sample();
   run.beliefs[1].covariance(3, 4) = INFINITY;
-  EXPECT_THROW(WriteEstimateRun(folder.path(), run), std::invalid_argument);
+  EXPECT_EQ(error_of(run), "covariance.txt: the belief at " + at + what);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

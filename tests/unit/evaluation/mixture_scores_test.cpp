@@ -5,9 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "tests/unit/evaluation/random.h"
+#include "tools/evaluation/distributions.h"
+#include "tools/evaluation/draws.h"
 #include "tools/evaluation/rank_histogram.h"
 
 namespace evaluation {
@@ -35,6 +40,8 @@ TEST(Pit, IsTheMixturesDistributionFunction) {
   // Three quarters of the mass without a width below the error.
   const Mixture points{Gaussian1(3, 0, 0), Gaussian1(1, 2, 0)};
   EXPECT_EQ(Pit(points, Scalar(1))[0], 0.75);
+  EXPECT_EQ(Pit(points, Scalar(0))[0], 0.375) << "half of what lies at the error itself";
+  EXPECT_EQ(Pit(points, Scalar(-1))[0], 0);
   const Mixture thirds{Gaussian1(0.1, 0, 1), Gaussian1(0.2, 0, 1), Gaussian1(0.4, 0, 1), Gaussian1(0.7, 0, 1)};
   EXPECT_LE(Pit(thirds, Scalar(100))[0], 1) << "whatever weights add up to";
 }
@@ -97,6 +104,32 @@ TEST(HpdMass, OfOneGaussianIsItsChiSquare) {
   const Mixture twice{{1, Eigen::Vector2d::Zero(), P}, {2, Eigen::Vector2d::Zero(), P}};  // the same, by draws
   EXPECT_NEAR(HpdMass(twice, Draw(twice, 20'000, 7, 0), e), exact, 5 * 0.5 / std::sqrt(20'000));
   EXPECT_TRUE(std::isnan(HpdMass({Gaussian1(1, 0, 0)}, Eigen::MatrixXd(1, 0), Scalar(0))));
+}
+
+// Two components that are one Gaussian: the nearer to its middle, the higher.
+TEST(HpdMass, CountsTheDrawsThatAreHigher) {
+  const Mixture twice{Gaussian1(1, 0, 2), Gaussian1(2, 0, 2)};
+  EXPECT_EQ(HpdMass(twice, Eigen::RowVector4d(-0.5, 1.5, -3, 0.1), Scalar(1)), 2.5 / 5);
+  EXPECT_EQ(HpdMass(twice, Eigen::RowVector4d(-5, 1.5, -3, 4), Scalar(1)), 0.5 / 5);
+  EXPECT_TRUE(std::isnan(HpdMass(twice, Eigen::MatrixXd(1, 0), Scalar(1))));
+  EXPECT_NEAR(HpdMass({Gaussian1(1, 3, 2)}, Eigen::MatrixXd(1, 0), Scalar(1)), 2 * NormalCdf(1) - 1, 1e-12);
+  // A component of no weight does not matter, one without a width has no density.
+  EXPECT_EQ(HpdMass({Gaussian1(1, 0, 2), Gaussian1(0, 0, 0)}, Eigen::RowVector2d(0.5, 9), Scalar(1)), 1.5 / 3);
+  EXPECT_TRUE(std::isnan(HpdMass({Gaussian1(0, 0, 0), Gaussian1(1, 0, 2), Gaussian1(1, 0, 0), Gaussian1(1, 0, 2)},
+                                 Eigen::RowVector2d(0.5, 9), Scalar(1))));
+}
+
+// The first number of the stream says which component, the next ones where in it.
+TEST(Draw, TakesComponentsByTheirWeight) {
+  const Mixture mixture{Gaussian1(0.5, -1, 0), Gaussian1(0, 50, 1), Gaussian1(1.5, 1, 0), Gaussian1(2, 3, 0.5)};
+  const Eigen::MatrixXd draws = Draw(mixture, 200, 8, 3);
+  Draws random(8, 3);
+  for (Eigen::Index k = 0; k < 200; ++k) {
+    const double u = 4 * random.Uniform(), z = random.Normal();
+    EXPECT_NEAR(draws(0, k), u < 0.5 ? -1 : u < 2 ? 1 : 3 + 0.5 * z, 1e-12) << k;
+  }
+  const Mixture last{Gaussian1(1, 7, 0), Gaussian1(0, 50, 1)};
+  EXPECT_EQ(Draw(last, 5, 1, 0), Eigen::MatrixXd::Constant(1, 5, 7));
 }
 
 TEST(Draw, HasTheMomentsOfTheMixture) {
@@ -235,6 +268,75 @@ TEST(ScoreMixture, OfOneGaussianAgreesWithNees) {
   EXPECT_FALSE(std::isnan(quick.hpd_mass[0]));
   EXPECT_TRUE(std::isnan(ScoreMixture({mixture[0], mixture[0]}, error, 0, 0).hpd_mass[0]));
   EXPECT_THROW(ScoreMixture(mixture, error, 0, 1), std::invalid_argument);
+}
+
+// Each score is that of its block, of the draws of the whole.
+TEST(ScoreMixture, IsMadeOfItsParts) {
+  TestRandom random(45);
+  Mixture mixture = Ragged(random);
+  for (MixtureComponent& component : mixture) component.offset += Eigen::VectorXd::LinSpaced(12, 1, 2);
+  const Vector12d error = random.Normals(12);
+  const MixtureScores scores = ScoreMixture(mixture, error, 4, 30, 9);
+  const Eigen::MatrixXd draws = Draw(mixture, 30, 9, 4);
+  const Moments moments = MomentsOf(mixture);
+  for (std::size_t b = 0; b < 7; ++b) {
+    const StateBlock& block = kStateBlocks[b];
+    const Mixture part = Block(mixture, block);
+    const Eigen::VectorXd e = error.segment(block.start, block.size);
+    EXPECT_EQ(scores.nees[b], Nees(e - moments.mean.segment(block.start, block.size),
+                                   moments.covariance.block(block.start, block.start, block.size, block.size)));
+    EXPECT_EQ(scores.log_score[b], -LogDensity(part, e));
+    EXPECT_EQ(scores.hpd_mass[b], HpdMass(part, draws.middleRows(block.start, block.size), e));
+    if (b < 4) {
+      EXPECT_EQ(scores.energy[b], EnergyScore(draws.middleRows(block.start, block.size), e));
+    }
+  }
+  EXPECT_EQ(scores.pit, Pit(mixture, error));
+  const std::vector<int> ranks = Ranks(draws, error);
+  EXPECT_TRUE(std::equal(ranks.begin(), ranks.end(), scores.rank.begin(), scores.rank.end()));
+  EXPECT_EQ(scores.draws, 30);
+  EXPECT_EQ(scores.effective_components, EffectiveComponents(mixture));
+  for (MixtureComponent& component : mixture)
+    component.covariance.row(1).setZero(), component.covariance.col(1).setZero();
+  const MixtureScores flat = ScoreMixture(mixture, error, 4, 30, 9);
+  EXPECT_TRUE(std::isnan(flat.log_score[0]) && std::isnan(flat.hpd_mass[0]));
+  EXPECT_FALSE(std::isnan(flat.log_score[1]) || std::isnan(flat.hpd_mass[1]));
+}
+
+TEST(Ranks, CountTheDrawsBelow) {
+  Eigen::MatrixXd draws(2, 3);
+  draws << 1, 2, 3, 5, 5, 4;
+  EXPECT_EQ(Ranks(draws, Eigen::Vector2d(2.5, 5)), (std::vector<int>{2, 1}));
+}
+
+TEST(ScoreMixture, SaysAllThatIsWrong) {
+  const auto error_of = [](const Mixture& mixture, const Vector12d& error = Vector12d::Zero(),
+                           int draws = 2) -> std::string {
+    try {
+      ScoreMixture(mixture, error, 0, draws);
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const MixtureComponent good{1, Vector12d::Zero(), Matrix12d::Identity()};
+  EXPECT_EQ(error_of({good}), "");
+  EXPECT_EQ(error_of({good}, Vector12d::Zero(), 0), "");
+  EXPECT_EQ(error_of({{0, good.offset, good.covariance}, good}), "");
+  EXPECT_EQ(error_of({}), "ScoreMixture: no component;");
+  for (const int draws : {-1, 1})
+    EXPECT_EQ(error_of({good}, Vector12d::Zero(), draws), "ScoreMixture: draws must be none or at least two;");
+  EXPECT_EQ(error_of({good}, Vector12d::Constant(NAN)), "ScoreMixture: the error is not finite;");
+  EXPECT_EQ(error_of({good, {-0.5, good.offset, good.covariance}}), "ScoreMixture: component 1: weight -0.500000;");
+  EXPECT_EQ(error_of({good, {INFINITY, good.offset, good.covariance}}), "ScoreMixture: component 1: weight inf;");
+  EXPECT_EQ(error_of({{0, good.offset, good.covariance}}), "ScoreMixture: no weight above zero;");
+  const std::string dimensions = "ScoreMixture: component 0: not of twelve dimensions;",
+                    finite = "ScoreMixture: component 0: not finite;";
+  EXPECT_EQ(error_of({{1, Eigen::VectorXd::Zero(11), good.covariance}}), dimensions);
+  EXPECT_EQ(error_of({{1, good.offset, Eigen::MatrixXd::Zero(11, 12)}}), dimensions);
+  EXPECT_EQ(error_of({{1, good.offset, Eigen::MatrixXd::Zero(12, 11)}}), dimensions);
+  EXPECT_EQ(error_of({{1, Vector12d::Constant(NAN), good.covariance}}), finite);
+  EXPECT_EQ(error_of({{1, good.offset, Matrix12d::Constant(NAN)}}), finite);
 }
 
 TEST(ScoreMixture, RefusesWhatIsNoMixture) {
