@@ -20,7 +20,7 @@ NisSummary SummariseNis(const std::vector<FrameRecord>& frames) {
     inside += frame.nis >= band.low && frame.nis <= band.high;
     nis += frame.nis;
     dof += frame.nis_dof;
-    z.push_back((frame.nis - frame.nis_dof) / std::sqrt(2.0 * frame.nis_dof));
+    z.push_back((frame.nis - frame.nis_dof) / std::sqrt(frame.nis_dof));  // of equal spread, whatever that is
   }
   summary.frames = z.size();
   if (z.empty()) return summary;

@@ -14,7 +14,7 @@ struct NisSummary {
   double mean_per_dof = 0;  // sum of NIS / sum of degrees of freedom; ideal 1
   // Of frames inside the two-sided 95 % chi-square band of their own degrees of freedom; ideal 0.95
   double share_inside = 0;
-  // Autocorrelation, at lags 1 to 5 frames, of z_k = (NIS_k - dof_k) / sqrt(2 dof_k). White innovations give values
+  // Autocorrelation, at lags 1 to 5 frames, of z_k = (NIS_k - dof_k) / sqrt(dof_k). White innovations give values
   // within
   // +-1.96/sqrt(frames), 95 % each. The innovations themselves are not recorded: this sees dependence of their size
   // only.

@@ -16,7 +16,8 @@ void Finish(RankHistogram& histogram, const std::vector<double>& shares) {
   if (histogram.runs == 0) return;
   for (std::size_t b = 0; b < shares.size(); ++b) {
     const double expected = histogram.runs * shares[b];
-    histogram.chi2 += (histogram.counts[b] - expected) * (histogram.counts[b] - expected) / expected;
+    const double off = histogram.counts[b] - expected;
+    histogram.chi2 += off * off / expected;
   }
   histogram.p_value = Chi2Survival(histogram.chi2, static_cast<double>(shares.size()) - 1);
 }

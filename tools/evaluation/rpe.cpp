@@ -28,12 +28,11 @@ Rpe ComputeRpe(const MatchedTrajectories& matched, std::vector<IndexPair> pairs,
   rpe.pairs = std::move(pairs);
   rpe.scale = scale;
   for (const auto& [i, j] : rpe.pairs) {
-    if (i >= matched.estimate.size() || j >= matched.estimate.size() || j >= matched.truth.size()) {
+    if (std::max(i, j) >= std::min(matched.estimate.size(), matched.truth.size()))
       throw std::logic_error("ComputeRpe: a pair beyond the trajectories");
-    }
     const Motion A = Between(matched.estimate[i], matched.estimate[j], scale);
     const Motion B = Between(matched.truth[i], matched.truth[j], 1);
-    rpe.position.push_back((B.q.conjugate() * (A.t - B.t)).norm());  // translation of B^-1 A
+    rpe.position.push_back((A.t - B.t).norm());  // translation of B^-1 A, but for B's rotation
     rpe.orientation.push_back(AngleBetween(B.q, A.q));
   }
   rpe.position_statistics = Summarise(rpe.position);
@@ -46,7 +45,7 @@ std::vector<IndexPair> PairsByTime(const Trajectory& truth, std::int64_t delta_n
   std::size_t j = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const std::int64_t target = truth[i].stamp_ns + delta_ns;
-    const auto miss = [&](std::size_t k) { return std::abs(truth[k].stamp_ns - target); };
+    const auto miss = [&](std::size_t k) { return std::abs(truth.at(k).stamp_ns - target); };
     j = std::max(j, i + 1);
     while (j + 1 < truth.size() && miss(j + 1) < miss(j)) ++j;
     if (j < truth.size() && miss(j) <= tolerance_ns) pairs.emplace_back(i, j);
@@ -69,7 +68,7 @@ std::vector<IndexPair> PairsByPath(const Trajectory& trajectory, double delta_m,
   std::vector<IndexPair> pairs;
   if (selection == PairSelection::all) {
     for (std::size_t i = 0; i + 1 < way.size(); ++i) {
-      const auto miss = [&](std::size_t k) { return std::abs(way[k] - way[i] - delta_m); };
+      const auto miss = [&](std::size_t k) { return std::abs(way.at(k) - way[i] - delta_m); };
       std::size_t best = i + 1;
       for (std::size_t k = i + 2; k < way.size() && way[k - 1] - way[i] < delta_m; ++k) {
         if (miss(k) < miss(best)) best = k;
@@ -81,7 +80,7 @@ std::vector<IndexPair> PairsByPath(const Trajectory& trajectory, double delta_m,
   std::vector<std::size_t> emitted;
   double since = 0;
   for (std::size_t i = 1; i < way.size(); ++i) {
-    since += way[i] - way[i - 1];
+    since += way.at(i) - way[i - 1];
     if (since < delta_m) continue;
     emitted.push_back(i);
     since = 0;

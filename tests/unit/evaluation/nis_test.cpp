@@ -46,6 +46,9 @@ TEST(SummariseNis, SaysNothingOfNothing) {
   const NisSummary summary = SummariseNis({FrameRecord{}});
   EXPECT_EQ(summary.frames, 0u);
   EXPECT_TRUE(summary.autocorrelation.empty());
+  FrameRecord one;
+  one.nis_dof = 1;
+  EXPECT_EQ(SummariseNis({one}).frames, 1u);
 }
 
 // Eight frames and one that was coasted; the figures are SciPy's.
@@ -75,6 +78,8 @@ TEST(SummariseNis, Figures) {
   frames.resize(2);
   frames[1] = frames[0];
   EXPECT_TRUE(SummariseNis(frames).autocorrelation.empty()) << "no spread";
+  frames[1].nis += 1e-3;
+  EXPECT_NEAR(SummariseNis(frames).autocorrelation.at(0), -0.5, 1e-9) << "little is some";
 }
 
 }  // namespace

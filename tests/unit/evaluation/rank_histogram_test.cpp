@@ -18,6 +18,16 @@ TEST(RankHistogram, ByHand) {
   const RankHistogram same = HistogramOfValues({0, 0.1, 0.2, 0.3, 0.05, 0.33, 0.34, 0.5, 0.6, 0.66, 0.67, 1, NAN}, 3);
   EXPECT_EQ(same.counts, histogram.counts);
   EXPECT_EQ(same.runs, 12);
+  EXPECT_NEAR(same.chi2, 2, 1e-12);
+  EXPECT_NEAR(same.p_value, std::exp(-1), 1e-12);
+  const RankHistogram one = HistogramOfRanks({0}, 1, 2);
+  EXPECT_NEAR(one.chi2, 1, 1e-12);
+  EXPECT_EQ(HistogramOfRanks({}, 1, 2).p_value, 1);
+}
+
+TEST(RankHistogram, HasFiveRunsABinButTwoToTenBins) {
+  const int runs[] = {1, 14, 15, 49, 50, 1000}, bins[] = {2, 2, 3, 9, 10, 10};
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(BinsFor(runs[i]), bins[i]) << runs[i];
 }
 
 TEST(RankHistogram, UnevenBinsExpectWhatTheyAreWide) {
@@ -84,6 +94,10 @@ TEST(TestUniformity, NamesTheWorst) {
   EXPECT_EQ(verdict.threshold, 0.005);
   EXPECT_FALSE(verdict.pass);
   EXPECT_TRUE(TestUniformity({}, 0.01).pass);
+  EXPECT_EQ(TestUniformity({}, 0.01).threshold, 0);
+  bad.p_value = 0.005;
+  EXPECT_TRUE(TestUniformity({good, bad}, 0.01).pass) << "the threshold itself";
+  EXPECT_EQ(TestUniformity({bad, good, bad}, 0.01).worst, 0u);
 }
 
 }  // namespace

@@ -23,6 +23,11 @@ TEST(PairsByTime, TakesTheNearestAndDropsWhatMisses) {
   EXPECT_TRUE(PairsByTime({}).empty());
   EXPECT_TRUE(PairsByTime({At(0)}).empty());
   EXPECT_TRUE(PairsByTime({At(0), At(0.5)}).empty());
+  EXPECT_EQ(PairsByTime({At(0), At(1), At(2)}), (std::vector<IndexPair>{{0, 1}, {1, 2}}));
+  EXPECT_EQ(PairsByTime({At(0), At(1.05)}).size(), 1u) << "the tolerance itself";
+  EXPECT_EQ(PairsByTime({At(0), At(0.96), At(1.04)}), (std::vector<IndexPair>{{0, 1}})) << "of two as near, the first";
+  // However near, a pose is not its own partner.
+  EXPECT_TRUE(PairsByTime({At(0), At(0.5), At(1)}, 10'000'000, 20'000'000).empty());
 }
 
 TEST(PairsByTime, EqualsTheDefinitionByBruteForce) {
@@ -60,6 +65,36 @@ TEST(PairsByPath, AsEvo) {
   EXPECT_TRUE(PairsByPath(line, 1, PairSelection::all).empty());  // 0.8 and 1.2 both miss by more than a tenth
   EXPECT_EQ(PairsByPath(line, 2, PairSelection::all), (std::vector<IndexPair>{{0, 5}, {1, 6}, {2, 7}, {3, 8}, {4, 9}}));
   EXPECT_THROW(PairsByPath(line, 0, PairSelection::all), std::invalid_argument);
+  Trajectory halves;
+  for (int i = 0; i < 5; ++i) halves.push_back(At(i, 0.5 * i));
+  EXPECT_EQ(PairsByPath(halves, 1, PairSelection::consecutive), (std::vector<IndexPair>{{2, 4}})) << "a metre is there";
+  EXPECT_EQ(PairsByPath(halves, 0.5, PairSelection::all), (std::vector<IndexPair>{{0, 1}, {1, 2}, {2, 3}, {3, 4}}));
+  EXPECT_TRUE(PairsByPath({}, 1, PairSelection::all).empty());
+  EXPECT_TRUE(PairsByPath({At(0)}, 1, PairSelection::consecutive).empty());
+}
+
+// Steps are multiples of 1/8, some of none at all, so that ties and misses of just the tolerance occur.
+TEST(PairsByPath, EqualsTheDefinitionByBruteForce) {
+  TestRandom random(13);
+  for (int trial = 0; trial < 200; ++trial) {
+    Trajectory path;
+    std::vector<double> way;
+    for (int i = 0; i < 30; ++i) {
+      way.push_back(i == 0 ? 0 : way.back() + std::floor(5 * random.Uniform()) / 8);
+      path.push_back(At(i, way.back()));
+    }
+    for (const double delta : {0.5, 2.0}) {
+      std::vector<IndexPair> expected;
+      for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+        std::size_t best = i + 1;
+        const auto miss = [&](std::size_t k) { return std::abs(way[k] - way[i] - delta); };
+        for (std::size_t k = i + 1; k < way.size(); ++k)
+          if (miss(k) < miss(best)) best = k;
+        if (miss(best) <= 0.25 * delta) expected.emplace_back(i, best);
+      }
+      ASSERT_EQ(PairsByPath(path, delta, PairSelection::all, 0.25), expected);
+    }
+  }
 }
 
 // Worked by hand: the camera turns by 90 degrees about z while it goes 1 m along its x, the estimate sees 1.1 m and 91
@@ -73,9 +108,14 @@ TEST(ComputeRpe, IsTheErrorWorkedByHand) {
   const Rpe rpe = ComputeRpe(matched, {{0, 1}});
   EXPECT_NEAR(rpe.position[0], 0.1, 1e-12);
   EXPECT_NEAR(rpe.orientation[0], M_PI / 180, 1e-12);
+  EXPECT_EQ(rpe.position_statistics.max, rpe.position[0]);
+  EXPECT_EQ(rpe.orientation_statistics.max, rpe.orientation[0]);
+  EXPECT_EQ(rpe.scale, 1);
   EXPECT_NEAR(ComputeRpe(matched, {{0, 1}}, 1 / 1.1).position[0], 0, 1e-12);
   EXPECT_THROW(ComputeRpe(matched, {{0, 2}}), std::logic_error);
   EXPECT_THROW(ComputeRpe(matched, {{2, 0}}), std::logic_error);
+  matched.estimate.push_back(matched.estimate[1]);
+  EXPECT_THROW(ComputeRpe(matched, {{0, 2}}), std::logic_error) << "the truth has no third";
 }
 
 // In TUM's order the same error is seen from the other end: |t_A - A B^-1 t_B| differs once orientations do.

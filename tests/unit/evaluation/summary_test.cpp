@@ -155,6 +155,44 @@ TEST(Baseline, TheStartIsATenthOfASecond) {
   EXPECT_EQ(still[1].p_WC, path[1].p_WC);
 }
 
+// Each figure is of its own NEES, with as many degrees of freedom as that has.
+TEST(Judge, SumsUpConsistency) {
+  TestRandom random(59);
+  const Trajectory truth = random.Walk(30);
+  EstimateRun run;
+  Velocities velocities;
+  for (const StampedPose& pose : truth) {
+    run.trajectory.push_back(
+        {pose.stamp_ns, pose.p_WC + 0.1 * random.Normals(3), pose.q_WC * Exp(0.1 * random.Normals(3))});
+    Matrix12d P = 0.01 * Matrix12d::Identity();
+    P.topLeftCorner<6, 6>() *= 2;
+    velocities.push_back({pose.stamp_ns, random.Normals(3), random.Normals(3)});
+    run.beliefs.push_back({{pose.stamp_ns, velocities.back().v_WC + 0.1 * random.Normals(3),
+                            velocities.back().w_WC_C + 0.1 * random.Normals(3)},
+                           P});
+  }
+  const auto frames = ComputeConsistency(run, truth, velocities, 20'000'000);
+  const auto expect = [&](const NeesSummary& summary, double FrameConsistency::*member, int dof) {
+    std::vector<double> nees;
+    for (const FrameConsistency& frame : frames) nees.push_back(frame.*member);
+    const NeesSummary expected = SummariseNees(nees, dof);
+    EXPECT_EQ(summary.dof, dof);
+    EXPECT_EQ(summary.frames, expected.frames);
+    EXPECT_EQ(summary.mean, expected.mean);
+    EXPECT_EQ(summary.share_inside, expected.share_inside);
+  };
+  const Metrics metrics = Judge(run, truth, velocities);
+  ASSERT_TRUE(metrics.consistency && metrics.consistency->joint && metrics.consistency->joint_scale_free);
+  expect(metrics.consistency->pose, &FrameConsistency::nees_pose, 6);
+  expect(metrics.consistency->pose_scale_free, &FrameConsistency::nees_pose_scale_free, 5);
+  expect(*metrics.consistency->velocity, &FrameConsistency::nees_velocity, 6);
+  expect(*metrics.consistency->joint, &FrameConsistency::nees_joint, 12);
+  expect(*metrics.consistency->joint_scale_free, &FrameConsistency::nees_joint_scale_free, 11);
+  const Metrics without = Judge(run, truth, std::nullopt);
+  EXPECT_EQ(without.consistency->pose.mean, metrics.consistency->pose.mean);
+  EXPECT_FALSE(without.consistency->velocity || without.consistency->joint || without.consistency->joint_scale_free);
+}
+
 TEST(Judge, SumsUpTimesAndGuards) {
   TestRandom random(57);
   const Trajectory truth = random.Walk(4);
@@ -188,6 +226,7 @@ TEST(Quantile, WorkedByHand) {
   EXPECT_DOUBLE_EQ(Quantile({1, 2, 3, 6}, 1), 6);
   EXPECT_TRUE(std::isinf(Quantile({1, INFINITY}, 0.5)));
   EXPECT_EQ(Quantile({-INFINITY, 1}, 0.5), -INFINITY);
+  EXPECT_EQ(Quantile({1, INFINITY}, 0), 1);
   EXPECT_EQ(Quantile({-INFINITY, 1, 2}, 0.75), 1.5);
   EXPECT_TRUE(std::isnan(Quantile({}, 0.5)));
 }
