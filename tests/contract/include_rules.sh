@@ -27,8 +27,9 @@ forbid vo 'sim/|tools/(campaign|evaluation|report|verification|vobench)/' "vo se
 unlinked vo 'sim|evaluation|report|verification' "vo sees neither sim nor the judge"
 forbid vo 'glm/|embree[0-9]*/|assimp/|GL/' "vo builds without GLM, Embree, assimp and OSMesa"
 forbid sim 'Eigen/' "sim's mathematics is GLM, so that it shares none with vo"
-allow tools/evaluation 'Eigen/[A-Za-z]+|tools/evaluation/(compat/)?[a-z0-9_]+\.h|[a-z0-9_]+|(fcntl|unistd)\.h' "the judge needs Eigen, the standard library and POSIX's files only"
-unlinked tools/evaluation 'sim|vo|settings|report' "the judge needs Eigen only"
+allow tools/evaluation 'Eigen/[A-Za-z]+|tools/evaluation/(compat/)?[a-z0-9_]+\.h|[a-z0-9_]+|(fcntl|unistd)\.h|boost/math/distributions/[a-z_]+\.hpp' "the judge needs Eigen, Boost.Math, the standard library and POSIX's files only"
+report "Boost.Math is in distributions.cpp alone" < <(includes tools/evaluation | grep -E '^[^:]+:[0-9]+:boost/' | grep -v '^tools/evaluation/distributions\.cpp:' || true)
+unlinked tools/evaluation 'sim|vo|settings|report' "the judge needs Eigen and Boost's headers only"
 forbid tools/verification 'sim/|glm/|tools/vobench/' "what checks the simulator's sequences shares nothing with it"
 unlinked tools/verification 'sim|points|commands' "what checks the simulator's sequences shares nothing with it"
 forbid tools/campaign '(sim|vo)/|tools/(report|vobench)/' "the campaign runs whatever odometry there is: it knows none"

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 
@@ -66,9 +67,10 @@ std::vector<StampedBelief> ReadBeliefs(const std::filesystem::path& file, Proble
 
 // A whole number >= 0.
 std::optional<int> ParseCount(const std::string& text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < 0) return std::nullopt;
+  int value{};
+  const char* const all = std::to_address(text.end());
+  const auto [end, error] = std::from_chars(text.data(), all, value);
+  if (error != std::errc() || end != all || value < 0) return std::nullopt;
   return value;
 }
 

@@ -3,10 +3,12 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <string_view>
 #include <utility>
 
@@ -17,7 +19,7 @@ constexpr std::size_t kMostProblems = 50;
 
 std::string Join(const std::vector<std::string>& problems) {
   std::string text;
-  for (std::size_t i = 0; i < problems.size() && i < kMostProblems; ++i) {
+  for (std::size_t i = 0; i < std::min(problems.size(), kMostProblems); ++i) {
     if (i > 0) text += '\n';
     text += problems[i];
   }
@@ -87,11 +89,11 @@ void Lines::Advance() {
 Lines ReadLines(const std::filesystem::path& file, char separator) { return Lines(file, separator); }
 
 std::optional<double> ParseNumber(const std::string& text) {
-  double value = 0;
-  const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';  // from_chars knows no plus
-  const char* begin = text.data() + (plus ? 1 : 0);
-  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  double value{};
+  const char *begin = text.c_str(), *const all = std::to_address(text.end());
+  if (*begin == '+' && !text.starts_with("+-")) ++begin;  // from_chars knows no plus
+  const auto [end, error] = std::from_chars(begin, all, value);
+  if (error != std::errc() || end != all || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 
@@ -116,12 +118,11 @@ std::optional<std::int64_t> ParseSeconds(const std::string& text) {
   if (!any) return std::nullopt;
   if (i < text.size()) {
     if (text[i] != 'e' && text[i] != 'E') return std::nullopt;
-    const char* begin = text.data() + i + 1;
-    if (begin != text.data() + text.size() && *begin == '+') ++begin;
-    int written = 0;
-    const auto [end, error] = std::from_chars(begin, text.data() + text.size(), written);
-    if (error != std::errc() || end != text.data() + text.size() || written > 100 || written < -100)
-      return std::nullopt;
+    const char *begin = text.c_str() + i + 1, *const all = std::to_address(text.end());
+    if (*begin == '+') ++begin;
+    int written{};
+    const auto [end, error] = std::from_chars(begin, all, written);
+    if (error != std::errc() || end != all || written > 100 || written < -100) return std::nullopt;
     exponent += written;
   }
   const int shift = exponent + 9;  // to nanoseconds
@@ -144,10 +145,10 @@ std::optional<std::int64_t> Nanoseconds(double seconds) {
 }
 
 std::string FormatSeconds(std::int64_t stamp_ns) {
-  const std::uint64_t magnitude =
-      stamp_ns < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(stamp_ns) : static_cast<std::uint64_t>(stamp_ns);
+  const bool negative = stamp_ns < 0;
+  const auto bits = static_cast<std::uint64_t>(stamp_ns), magnitude = negative ? ~bits + 1 : bits;
   char text[40];
-  std::snprintf(text, sizeof text, "%s%llu.%09llu", stamp_ns < 0 ? "-" : "",
+  std::snprintf(text, sizeof text, "%s%llu.%09llu", negative ? "-" : "",
                 static_cast<unsigned long long>(magnitude / 1'000'000'000u),
                 static_cast<unsigned long long>(magnitude % 1'000'000'000u));
   return text;

@@ -76,12 +76,18 @@ TEST(Judge, WithoutFrameListCoverageIsUnknown) {
   EstimateRun run;
   run.trajectory = {truth.begin(), truth.begin() + 45};
   EXPECT_FALSE(Judge(run, truth, std::nullopt).coverage);
+  EXPECT_FALSE(Judge(run, truth, std::nullopt).nis);
+  Coverage nothing;
+  nothing.tracked = 0;
+  EXPECT_EQ(nothing.pose_coverage(), 0);
+  EXPECT_EQ(nothing.tracked_coverage(), 0);
   JudgeOptions options;
   options.frame_stamps_ns = StampsOf(truth);
   const Metrics metrics = Judge(run, truth, std::nullopt, options);
   ASSERT_TRUE(metrics.coverage);
   EXPECT_EQ(metrics.coverage->pose_coverage(), 0.75);
   EXPECT_FALSE(metrics.coverage->tracked_coverage());
+  EXPECT_EQ(metrics.options.frame_stamps_ns, options.frame_stamps_ns);
 }
 
 // Six decimals, as many systems write their stamps.
@@ -202,9 +208,11 @@ TEST(Judge, SumsUpTimesAndGuards) {
   for (std::size_t i = 0; i < 4; ++i) {
     run.frames[i].ms_features = 10 + static_cast<double>(i * i);
     run.frames[i].ms_matching = 5 - static_cast<double>(i);
-    run.frames[i].guards = {.unsettled = unsettled[i], .behind = 2, .indefinite = i == 2, .impossible = 0};
+    run.frames[i].guards = {.unsettled = unsettled[i], .behind = 2, .indefinite = i == 2, .impossible = i == 3 ? 5 : 0};
   }
   const Metrics metrics = Judge(run, truth, std::nullopt);
+  ASSERT_TRUE(metrics.nis);
+  EXPECT_EQ(metrics.nis->frames, 0u) << "none of them has an innovation";
   EXPECT_EQ(metrics.timing->ms_features, 12.5);
   EXPECT_EQ(metrics.timing->ms_matching, 3.5);
   EXPECT_EQ(metrics.timing->ms_filter, 1.5);
@@ -214,7 +222,8 @@ TEST(Judge, SumsUpTimesAndGuards) {
   EXPECT_EQ(metrics.guards->behind.times, 8);
   EXPECT_EQ(metrics.guards->behind.frames, 4);
   EXPECT_EQ(metrics.guards->indefinite.times, 1);
-  EXPECT_EQ(metrics.guards->impossible.frames, 0);
+  EXPECT_EQ(metrics.guards->impossible.frames, 1);
+  EXPECT_EQ(metrics.guards->impossible.times, 5);
   run.frames[3].guards.reset();
   EXPECT_FALSE(Judge(run, truth, std::nullopt).guards);
 }

@@ -41,7 +41,8 @@ TEST(ParseSeconds, IsExactWhereADoubleIsNot) {
 TEST(ParseSeconds, KnowsNoTimeBeyondFourBillionSeconds) {
   EXPECT_EQ(ParseSeconds("4e9"), kLatest_ns);
   EXPECT_EQ(ParseSeconds("-4e9"), -kLatest_ns);
-  for (const char* text : {"4000000000.000000001", "-4000000000.000000001", "9223372036.854775807"})
+  for (const char* text :
+       {"4000000000.000000001", "-4000000000.000000001", "9223372036.854775807", "18446744073.709551617"})
     EXPECT_EQ(ParseSeconds(text), std::nullopt) << text;
 }
 
@@ -185,6 +186,8 @@ TEST(WholeFile, HoldsWhatWasAppended) {
     }
     out.Commit();
     EXPECT_EQ(TemporaryFolder::Read(folder.path() / "a"), expected);
+    const auto mode = std::filesystem::status(folder.path() / "a").permissions();
+    EXPECT_EQ(mode & std::filesystem::perms::others_exec, std::filesystem::perms::none);
   }
   EXPECT_EQ(OpenFiles(), open);
 }
