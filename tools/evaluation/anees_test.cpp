@@ -36,13 +36,13 @@ SteadyState SteadyStateOf(const LinearFilter& filter) {
   const auto alpha_of = [](double beta) { return (std::sqrt(beta * beta / 3 + 8 * beta) - beta) / 2; };
   const double wanted = filter.psd * dt * dt * dt / (filter.sigma_position * filter.sigma_position);
   double low = 0, high = 3 - std::sqrt(3.0);  // there alpha is 1
-  double beta = high, alpha = 1;
-  for (double last = 0; beta != last;) {
+  double beta{}, alpha{}, last{};
+  do {
     last = beta;
     beta = (low + high) / 2;
     alpha = alpha_of(beta);
     (beta * beta / alpha / (1 - alpha) < wanted ? low : high) = beta;
-  }
+  } while (beta != last);
   const double variance = filter.sigma_position * filter.sigma_position / alpha;
   SteadyState state{variance, {}, {}, {}};
   const double across = variance * beta / dt;
