@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <span>
@@ -160,7 +161,7 @@ ExactAnees ExactAneesOfPool(const std::vector<std::vector<double>>& nees, int do
       const auto left = static_cast<double>(order.size() - at);
       std::swap(order[at], order[at + static_cast<std::size_t>(random.Uniform() * left)]);
       const auto& run = nees[order[at]];
-      for (std::size_t k = 0; k < run.size(); ++k) sums[k] += run[k];
+      std::transform(run.begin(), run.end(), sums.begin(), sums.begin(), std::plus<>());
     }
     AddTrial(sums, runs, dof, band, exact);
   }

@@ -104,6 +104,8 @@ TEST(LinearFilter, IsRefusedWhereItIsNone) {
   EXPECT_THROW(SimulateNees({}, 0, 1, 1, 1), std::invalid_argument);
   EXPECT_THROW(ExactAneesOfPool({}, 3, 1, 1), std::invalid_argument);
   EXPECT_THROW(ExactAneesOfPool({{1}}, 3, 0, 1), std::invalid_argument);
+  EXPECT_THROW(ExactAneesOfPool({{1}}, 3, 1, 0), std::invalid_argument);
+  EXPECT_THROW(ExactAneesOfPool({{}}, 3, 1, 1), std::invalid_argument);
   EXPECT_EQ(ExactAneesOf({}, 1, 1, 1).shares.size(), 1u);
   EXPECT_EQ(ExactAneesOfPool({{1}}, 3, 1, 1).shares.size(), 1u);
 }
@@ -277,6 +279,8 @@ TEST(TestAnees, Figures) {
   EXPECT_FALSE(TestAnees({{3}, {6.5}}, 3, exact, 0.01).mean_pass);
   EXPECT_FALSE(TestAnees({{2.1}, {2.1}}, 3, exact, 0.01).mean_pass);
   EXPECT_FALSE(TestAnees({{30, 0.01, 3}}, 3, exact, 0.01).share_pass);
+  exact.means.resize(199);  // as many as both have
+  EXPECT_EQ(TestAnees({{3}}, 3, exact, 0.01).threshold, exact.shares[1]);
   // 0.29 times 100 is 28.999999999999996.
   exact.shares.resize(99);
   exact.means.resize(99);
