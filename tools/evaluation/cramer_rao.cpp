@@ -1,7 +1,6 @@
 #include "tools/evaluation/cramer_rao.h"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

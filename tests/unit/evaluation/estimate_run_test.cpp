@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "tests/unit/evaluation/complaint.h"
 #include "tests/unit/evaluation/random.h"
 #include "tests/unit/evaluation/temporary_folder.h"
 #include "tools/evaluation/text_file.h"
@@ -140,14 +141,9 @@ TEST(EstimateRun, ListsTheProblemsOfAllFilesAtOnce) {
 TEST(EstimateRun, SaysWhereABeliefIsWrong) {
   const TemporaryFolder folder;
   WriteEstimateRun(folder.path(), Sample());
-  const auto error_of = [&](const std::string& covariance) -> std::string {
+  const auto error_of = [&](const std::string& covariance) {
     folder.Write("covariance.txt", covariance);
-    try {
-      ReadEstimateRun(folder.path());
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return ComplaintOf<InputError>([&] { ReadEstimateRun(folder.path()); });
   };
   const auto line = [](const std::string& stamp, std::size_t at = 0, const std::string& token = "") {
     std::string text = stamp;
@@ -177,14 +173,9 @@ TEST(EstimateRun, SaysWhereAFrameIsWrong) {
   WriteEstimateRun(folder.path(), Sample());
   const std::string text = TemporaryFolder::Read(folder.path() / "frames.csv"),
                     header = text.substr(0, text.find('\n'));
-  const auto error_of = [&](const std::string& rows) -> std::string {
+  const auto error_of = [&](const std::string& rows) {
     folder.Write("frames.csv", header + '\n' + rows);
-    try {
-      ReadEstimateRun(folder.path());
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return ComplaintOf<InputError>([&] { ReadEstimateRun(folder.path()); });
   };
   const auto row = [](std::size_t at, const std::string& token) {
     std::string columns;
@@ -251,13 +242,8 @@ TEST(EstimateRun, RefusesAWrongHeaderAndNegativeVariances) {
 
 TEST(EstimateRun, WritesNothingWhenANumberIsNotFinite) {
   const TemporaryFolder folder;
-  const auto error_of = [&](const EstimateRun& run) -> std::string {
-    try {
-      WriteEstimateRun(folder.path(), run);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+  const auto error_of = [&](const EstimateRun& run) {
+    return ComplaintOf<std::invalid_argument>([&] { WriteEstimateRun(folder.path(), run); });
   };
   const std::string at = FormatSeconds(Sample().frames[1].stamp_ns),
                     what = " holds a number that is not finite; nothing was written";

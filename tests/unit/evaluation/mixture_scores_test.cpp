@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/unit/evaluation/complaint.h"
 #include "tests/unit/evaluation/random.h"
 #include "tools/evaluation/distributions.h"
 #include "tools/evaluation/draws.h"
@@ -310,14 +311,8 @@ TEST(Ranks, CountTheDrawsBelow) {
 }
 
 TEST(ScoreMixture, SaysAllThatIsWrong) {
-  const auto error_of = [](const Mixture& mixture, const Vector12d& error = Vector12d::Zero(),
-                           int draws = 2) -> std::string {
-    try {
-      ScoreMixture(mixture, error, 0, draws);
-    } catch (const std::invalid_argument& e) {
-      return e.what();
-    }
-    return "";
+  const auto error_of = [](const Mixture& mixture, const Vector12d& error = Vector12d::Zero(), int draws = 2) {
+    return ComplaintOf<std::invalid_argument>([&] { ScoreMixture(mixture, error, 0, draws); });
   };
   const MixtureComponent good{1, Vector12d::Zero(), Matrix12d::Identity()};
   EXPECT_EQ(error_of({good}), "");

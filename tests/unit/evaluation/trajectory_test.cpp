@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/unit/evaluation/complaint.h"
 #include "tests/unit/evaluation/random.h"
 #include "tests/unit/evaluation/temporary_folder.h"
 #include "tools/evaluation/text_file.h"
@@ -15,12 +16,7 @@ using testing::Not;
 std::string Complaint(const std::string& content) {
   const TemporaryFolder folder;
   const auto file = folder.Write("t.txt", content);
-  try {
-    ReadTrajectory(file);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return ComplaintOf<InputError>([&] { ReadTrajectory(file); });
 }
 
 TEST(ReadTrajectory, ListsEveryProblemWithItsPlace) {
@@ -157,14 +153,9 @@ TEST(Velocities, ReadBackAndAreFoundByTheirStamp) {
   EXPECT_EQ(found->w_WC_C.y(), 0.25);
   EXPECT_FALSE(VelocityAt(back, 1'033'333'334));
   EXPECT_FALSE(VelocityAt(back, 2'000'000'000));
-  const auto error_of = [&](const std::string& text) -> std::string {
+  const auto error_of = [&](const std::string& text) {
     folder.Write("v.txt", text);
-    try {
-      ReadVelocities(folder.path() / "v.txt");
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return ComplaintOf<InputError>([&] { ReadVelocities(folder.path() / "v.txt"); });
   };
   const std::string file = (folder.path() / "v.txt").string();
   EXPECT_EQ(error_of("2 0 0 0 0 0 0\n2 0 0 0 0 0 0\n"),

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/unit/evaluation/complaint.h"
 #include "tests/unit/evaluation/temporary_folder.h"
 #include "tests/unit/report/fake_result.h"
 #include "tools/evaluation/text_file.h"
@@ -33,12 +34,7 @@ RunDescription Sample() {
 std::string Complaint(const std::string& content) {
   const TemporaryFolder folder;
   folder.Write("run.json", content);
-  try {
-    ReadRunJson(folder.path());
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return evaluation::ComplaintOf<InputError>([&] { ReadRunJson(folder.path()); });
 }
 
 TEST(RunJson, ReadsBackTheSame) {
