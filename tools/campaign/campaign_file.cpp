@@ -36,7 +36,7 @@ void RequireOdometry(Section& section, const std::string& where, const Changes& 
   }
 }
 
-// "7" or "1..10"
+// "7" or "1..10"; all ranges together are held to the limit, for what a few bytes ask for must fit into memory.
 bool ReadRange(const std::string& text, std::vector<std::uint64_t>& seeds, std::string& problem) {
   const std::size_t dots = text.find("..");
   std::uint64_t first = 0, last = 0;
@@ -45,6 +45,10 @@ bool ReadRange(const std::string& text, std::vector<std::uint64_t>& seeds, std::
   if (dots != std::string::npos && !settings::ParseInteger(text.substr(dots + 2), {}, last, problem)) return false;
   if (last < first || last - first >= kMostSeeds) {
     problem = fmt::format("'{}' is no range of 1 to {} seeds", text, kMostSeeds);
+    return false;
+  }
+  if (seeds.size() + (last - first) >= kMostSeeds) {
+    problem = fmt::format("with '{}' there are more than {} seeds", text, kMostSeeds);
     return false;
   }
   for (std::uint64_t seed = first; seed <= last; ++seed) seeds.push_back(seed);
@@ -215,7 +219,9 @@ void CampaignFile::RejectDoubles() {
   once(campaign_.scenarios, scenarios_);
   once(campaign_.factors, factors_);
   once(campaign_.systems, systems_);
-  if (std::set<std::uint64_t>(campaign_.seeds.begin(), campaign_.seeds.end()).size() != campaign_.seeds.size()) {
+  std::vector<std::uint64_t> sorted = campaign_.seeds;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
     document_.root().Reject("seeds", "'seeds': one is there twice");
   }
 }

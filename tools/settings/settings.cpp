@@ -270,7 +270,8 @@ void Section::IgnoreRest() { request_->ignores_rest = true; }
 
 Document Document::FromFile(const std::filesystem::path& path, Dialect dialect) {
   const auto fail = [&](const std::string& why) { throw Error({{path.string(), 0, 0, why}}); };
-  if (std::filesystem::is_directory(path)) fail("is a folder, not a file");
+  std::error_code none;  // of a name that no system takes; what opens it says why
+  if (std::filesystem::is_directory(path, none)) fail("is a folder, not a file");
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) fail(std::string("cannot be read: ") + std::strerror(errno ? errno : EIO));

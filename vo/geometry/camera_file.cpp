@@ -163,7 +163,8 @@ Camera ReadCamera(const std::filesystem::path& file) {
 }
 
 Camera CameraFrom(const std::string& preset_or_file) {
-  if (std::filesystem::exists(preset_or_file)) return ReadCamera(preset_or_file);
+  std::error_code none;  // a name that no system takes is no file's
+  if (std::filesystem::exists(preset_or_file, none)) return ReadCamera(preset_or_file);
   try {
     return CameraPreset(preset_or_file);
   } catch (const std::invalid_argument& error) {

@@ -178,6 +178,10 @@ TEST_F(CampaignFileTest, AHugeCampaignIsRefusedInsteadOfOverflowing) {
   EXPECT_THAT(Problems(text), HasSubstr("more than the 1e+07 that one campaign may have"));
   EXPECT_THAT(Problems("scenarios: [a.yaml]\nsystems: [rbpf]\nseeds: 0..18446744073709551615\n"),
               HasSubstr("is no range"));
+  EXPECT_THAT(Problems("scenarios: [a.yaml]\nsystems: [rbpf]\nseeds: [1..600000, 600001..1000000]\n"),
+              testing::IsEmpty());
+  EXPECT_THAT(Problems("scenarios: [a.yaml]\nsystems: [rbpf]\nseeds: [1..600000, 600001..1000001]\n"),
+              HasSubstr("with '600001..1000001' there are more than 1000000 seeds"));
 }
 
 }  // namespace

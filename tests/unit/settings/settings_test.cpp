@@ -197,6 +197,8 @@ TEST(Settings, FilesThatCannotBeRead) {
   };
   EXPECT_EQ(message("/nowhere/f.yaml"), "/nowhere/f.yaml: cannot be read: No such file or directory");
   EXPECT_EQ(message("/"), "/: is a folder, not a file");
+  const std::string longer_than_names_are(300, 'n');
+  EXPECT_EQ(message(longer_than_names_are), longer_than_names_are + ": cannot be read: File name too long");
 }
 
 TEST(Settings, FromFileReadsTheFile) {

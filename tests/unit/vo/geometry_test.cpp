@@ -135,12 +135,14 @@ TEST(Camera, LensJacobianIsTheDerivative) {
 }
 
 TEST(Camera, UnknownPresetNamesThePresets) {
-  try {
-    vo::CameraFrom("freiburg9");
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("freiburg9"), std::string::npos);
-    EXPECT_NE(std::string(error.what()).find("freiburg3"), std::string::npos);
+  for (const std::string& name : {std::string("freiburg9"), std::string(300, 'n')}) {  // the second: no file's, either
+    try {
+      vo::CameraFrom(name);
+      FAIL();
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("freiburg3"), std::string::npos);
+    }
   }
 }
 
