@@ -48,6 +48,9 @@ TEST(ProcessPool, TellsHowEachEnded) {
 }
 
 TEST(ProcessPool, BoundsMemory) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer ends a process that is out of memory in its own way";
+#endif
   ProcessPool pool;
   const auto take = [](std::size_t bytes) {
     return [bytes] {
