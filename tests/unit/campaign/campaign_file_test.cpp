@@ -180,8 +180,9 @@ TEST_F(CampaignFileTest, AHugeCampaignIsRefusedInsteadOfOverflowing) {
               HasSubstr("is no range"));
   EXPECT_THAT(Problems("scenarios: [a.yaml]\nsystems: [rbpf]\nseeds: [1..600000, 600001..1000000]\n"),
               testing::IsEmpty());
+  EXPECT_THAT(Problems("scenarios: [a.yaml]\nsystems: [rbpf]\nseeds: [18446744073709551615]\n"), testing::IsEmpty());
   EXPECT_THAT(Problems("scenarios: [a.yaml]\nsystems: [rbpf]\nseeds: [1..600000, 600001..1000001]\n"),
-              HasSubstr("with '600001..1000001' there are more than 1000000 seeds"));
+              HasSubstr("'seeds': 1000001 of them, more than the 1000000 of one campaign"));
 }
 
 }  // namespace
