@@ -37,20 +37,20 @@ void RequireOdometry(Section& section, const std::string& where, const Changes& 
 }
 
 struct SeedRange {
-  std::uint64_t first = 0, last = 0;
+  std::uint64_t first = 0, count = 0;
 };
 
 // "7" or "1..10"
 bool ReadRange(const std::string& text, SeedRange& range, std::string& problem) {
   const std::size_t dots = text.find("..");
   if (!settings::ParseInteger(text.substr(0, dots), {}, range.first, problem)) return false;
-  range.last = range.first;
-  if (dots != std::string::npos && !settings::ParseInteger(text.substr(dots + 2), {}, range.last, problem))
-    return false;
-  if (range.last < range.first || range.last - range.first >= kMostSeeds) {
+  std::uint64_t last = range.first;
+  if (dots != std::string::npos && !settings::ParseInteger(text.substr(dots + 2), {}, last, problem)) return false;
+  if (last < range.first || last - range.first >= kMostSeeds) {
     problem = fmt::format("'{}' is no range of 1 to {} seeds", text, kMostSeeds);
     return false;
   }
+  range.count = last - range.first + 1;
   return true;
 }
 
@@ -180,15 +180,15 @@ void CampaignFile::ReadSeeds() {
   root.ReadPassedOn("seeds", ranges);
   std::string problem;
   std::vector<SeedRange> good;
-  std::size_t count = 0;
-  for (const PassedOn& text : ranges) {
+  std::uint64_t count = 0;
+  for (const PassedOn& written : ranges) {
     SeedRange range;
-    if (!ReadRange(text.text, range, problem)) {
+    if (ReadRange(written.text, range, problem)) {
+      good.push_back(range);
+      count += range.count;
+    } else {
       root.Reject("seeds", "'seeds': " + problem);
-      continue;
     }
-    good.push_back(range);
-    count += range.last - range.first + 1;
   }
   if (ranges.empty()) root.Reject("seeds", "'seeds': at least one is needed");
   if (count > kMostSeeds) {  // before they are written out: a few lines may ask for more than memory holds
@@ -196,7 +196,7 @@ void CampaignFile::ReadSeeds() {
     return;
   }
   for (const SeedRange& range : good) {
-    for (std::uint64_t i = 0; i <= range.last - range.first; ++i) campaign_.seeds.push_back(range.first + i);
+    for (std::uint64_t i = 0; i < range.count; ++i) campaign_.seeds.push_back(range.first + i);
   }
   if (!complete()) return;
   double tasks = static_cast<double>(campaign_.scenarios.size() * campaign_.systems.size() * campaign_.seeds.size());
