@@ -9,6 +9,7 @@
 #include <string>
 #include <type_traits>
 
+#include "tests/unit/evaluation/complaint.h"
 #include "tests/unit/evaluation/point_world.h"
 
 namespace evaluation {
@@ -412,6 +413,9 @@ TEST_F(VerdictByHand, Bound) {
       for (int d = 0; d < 12; ++d) run[k].error[d] = k < 2 || k == 5 ? 99 : d < 3 ? 0.1 : d < 6 ? 0.12 : 0.2;
     run[5].bound.reset();
   }
+  for (JudgedFrame& frame : runs_[0]) frame.error *= std::sqrt(2);  // as large as this, the others smaller by as much
+  for (std::size_t m = 1; m < 7; ++m)
+    for (JudgedFrame& frame : runs_[m]) frame.error *= std::sqrt(5. / 6);
   verdict_ = JudgeConsistency(runs_, options_);
   ASSERT_EQ(Named("RMSE / bound").size(), 4u);
   const double ratios[] = {1, 1.2, 2, 2};
@@ -464,8 +468,22 @@ TEST_F(VerdictByHand, MeansAndWhatIsMissing) {
   EXPECT_NEAR(verdict_.energy[1], sums[1] / counts[1], 1e-12);
   options_.first_frame = 9;
   EXPECT_NO_THROW(JudgeConsistency(runs_, options_));
+  const std::string none = "JudgeConsistency: no run has a frame to judge";
   options_.first_frame = 10;
-  EXPECT_THROW(JudgeConsistency(runs_, options_), std::invalid_argument);
+  EXPECT_EQ(ComplaintOf<std::invalid_argument>([&] { JudgeConsistency(runs_, options_); }), none);
+  options_.first_frame = 0;
+  EXPECT_EQ(ComplaintOf<std::invalid_argument>([&] { JudgeConsistency({}, options_); }), none);
+}
+
+TEST_F(VerdictByHand, OneRunIsJudged) {
+  for (JudgedRun& run : runs_) run.resize(40, run.back());
+  runs_.resize(1);
+  for (JudgedFrame& frame : runs_[0]) frame.innovation = random_.Normal();
+  verdict_ = JudgeConsistency(runs_, options_);
+  EXPECT_EQ(Named("NIS, runs").size(), 1u);
+  EXPECT_EQ(Named("whiteness").size(), 1u);
+  EXPECT_EQ(verdict_.whiteness->mean_autocorrelation.size(), 10u) << "lags";
+  EXPECT_EQ(Named("RMSE / bound").size(), 4u);
 }
 
 }  // namespace

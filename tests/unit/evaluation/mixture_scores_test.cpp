@@ -72,13 +72,13 @@ TEST(EnergyScore, OfAGaussianInOneDimensionIsItsCrps) {
   }
 }
 
-// E|X| of three standard normals is 2 sqrt(2 / pi), E|X - X'| sqrt(2) times that. Five standard deviations of the mean.
 TEST(EnergyScore, ByHand) {
   // Draws 1, 3, 7 against 2: mean distance (1 + 1 + 5) / 3; distances between draws 2, 6, 4, over three pairs twice.
   EXPECT_NEAR(EnergyScore(Eigen::RowVector3d(1, 3, 7), Scalar(2)), 7.0 / 3 - 12.0 / 6, 1e-15);
   EXPECT_TRUE(std::isnan(EnergyScore(Scalar(1), Scalar(2)))) << "one draw has no spread";
 }
 
+// E|X| of three standard normals is 2 sqrt(2 / pi), E|X - X'| sqrt(2) times that. Five standard deviations of the mean.
 TEST(EnergyScore, IsUnbiasedWithFewDraws) {
   const Mixture mixture{{1, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity()}};
   const int n = 20'000;
