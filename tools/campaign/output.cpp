@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "tools/campaign/task_folder.h"
-#include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 
 namespace campaign {
 namespace fs = std::filesystem;

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 
 namespace campaign {
 namespace fs = std::filesystem;

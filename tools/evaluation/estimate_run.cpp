@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 
 namespace evaluation {
 namespace {

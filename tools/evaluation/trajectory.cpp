@@ -8,6 +8,7 @@
 
 #include "tools/evaluation/so3.h"
 #include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 
 namespace evaluation {
 namespace {

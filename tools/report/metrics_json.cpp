@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 #include "tools/report/json_text.h"
 #include "tools/report/text.h"
 #include "tools/report/text_summary.h"

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 #include "tools/limits/whole_number.h"
 #include "tools/report/json_text.h"
 

@@ -1,6 +1,6 @@
 #include "tools/report/report.h"
 
-#include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 #include "tools/report/page.h"
 #include "tools/report/result_data.h"
 

@@ -8,6 +8,7 @@
 #include "tools/campaign/calibration.h"
 #include "tools/campaign/command.h"
 #include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 #include "tools/vobench/campaign_sequence.h"
 #include "tools/vobench/errors.h"
 

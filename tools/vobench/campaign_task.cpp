@@ -14,6 +14,7 @@
 #include "sim/world/point_world.h"
 #include "tools/campaign/task_folder.h"
 #include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 #include "tools/report/metrics_json.h"
 #include "tools/vobench/bridge.h"
 #include "tools/vobench/campaign_external.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 #include "tools/vobench/errors.h"
 
 namespace vobench {

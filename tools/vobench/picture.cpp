@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 
 namespace vobench {
 namespace {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 
 namespace vobench {
 namespace fs = std::filesystem;

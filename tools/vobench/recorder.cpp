@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 #include "tools/vobench/picture.h"
 
 namespace vobench {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/world/point_world.h"
-#include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 #include "tools/report/text_summary.h"
 #include "tools/vobench/anees_table.h"
 #include "tools/vobench/bridge.h"

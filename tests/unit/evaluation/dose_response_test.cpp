@@ -81,6 +81,7 @@ TEST(DoseSpacing, IsGeometricWhereRatiosAreMoreAlike) {
   EXPECT_TRUE(AreGeometric({1, 2.1})) << "of two, by their ratio";
   EXPECT_TRUE(AreGeometric({2.1, 1}));
   EXPECT_FALSE(AreGeometric({1, 2}));
+  EXPECT_FALSE(AreGeometric({10, 11}));
 }
 
 TEST(BreakingPoint, OfAStepIsBetweenItsDosesAndNoFiner) {

@@ -188,6 +188,12 @@ TEST(EstimateRun, SaysWhereAFrameIsWrong) {
   EXPECT_EQ(error_of(row(0, "1") + row(0, "1")), file + ":3:1: '1' is not later than the time above");
   EXPECT_EQ(error_of(row(0, "x")), file + ":2:1: 'x' is not a time in seconds");
   EXPECT_EQ(error_of("1,2\n" + row(0, "2")), file + ":2:1: 2 columns where 16 are expected");
+  folder.Write("frames.csv", "1,2\n" + row(0, "2"));
+  EXPECT_EQ(ComplaintOf<InputError>([&] { ReadEstimateRun(folder.path()); }),
+            file + ":1:1: 2 columns where 16 are expected");
+  folder.Write("frames.csv", "time" + header.substr(header.find(',')) + '\n' + row(0, "2"));
+  EXPECT_EQ(ComplaintOf<InputError>([&] { ReadEstimateRun(folder.path()); }),
+            file + ":1:1: column 'time' where 'timestamp' is expected");
   for (std::size_t i = 1; i < 16; ++i) {
     const std::string at = file + ":2:" + std::to_string(i < 12 ? 2 * i + 1 : 2 * i + 7) + ": ";
     const char* what = i == 11                       ? "'tracked' or 'coasted'"

@@ -121,10 +121,12 @@ TEST(WriteTrajectory, RefusesWhatCouldNotBeReadBack) {
 TEST(WriteTrajectory, WritesTwelveDigits) {
   const TemporaryFolder folder;
   const Eigen::Vector3d third = Eigen::Vector3d::Constant(1. / 3);
-  WriteTrajectory(folder.path() / "t.txt", {{1, third, Eigen::Quaterniond(-1, 0, 0, 0)}});
+  WriteTrajectory(folder.path() / "t.txt",
+                  {{1, third, Eigen::Quaterniond(-1, 0, 0, 0)}, {2, third, Eigen::Quaterniond(0, 0, 1, 0)}});
   EXPECT_EQ(TemporaryFolder::Read(folder.path() / "t.txt"),
             "# timestamp tx ty tz qx qy qz qw\n"
-            "0.000000001 0.333333333333 0.333333333333 0.333333333333 -0 -0 -0 1\n");
+            "0.000000001 0.333333333333 0.333333333333 0.333333333333 -0 -0 -0 1\n"
+            "0.000000002 0.333333333333 0.333333333333 0.333333333333 0 1 0 0\n");
   WriteVelocities(folder.path() / "v.txt", {{1, third, 2 * third}});
   EXPECT_EQ(TemporaryFolder::Read(folder.path() / "v.txt"),
             "# timestamp vx vy vz wx wy wz\n0.000000001 0.333333333333 0.333333333333 0.333333333333 "

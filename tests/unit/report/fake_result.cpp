@@ -5,6 +5,7 @@
 
 #include "tests/unit/evaluation/random.h"
 #include "tools/evaluation/text_file.h"
+#include "tools/evaluation/whole_file.h"
 #include "tools/report/pictures.h"
 
 namespace report {

@@ -9,6 +9,7 @@
 #include "tests/unit/report/page_data.h"
 #include "tools/evaluation/text_file.h"
 #include "tools/evaluation/trajectory.h"
+#include "tools/evaluation/whole_file.h"
 #include "tools/report/page.h"
 #include "tools/report/result_data.h"
 #include "tools/report/text.h"

@@ -251,6 +251,29 @@ TEST(PathWindow, EliminatingLandmarksIsTheJointSolution) {
   ExpectTheJointSolution(MakeScene(5, 4, 24, 0.05, 1.0 / 525), vo::kLeft);
 }
 
+// A track's image is told by its anchor in the window: how far all of the window may have drifted does not matter, and the rounding of what is
+// taken away again must not show as two covariances of its coordinates.
+TEST(PathWindow, PredictsImagesHoweverFarThePathMayHaveDrifted) {
+  const Scene scene = MakeScene(5, 4, 24, 0.05, 1.0 / 525, 0);
+  std::vector<Vector3d> theta;
+  const vo::PathGaussian path = Solve(scene, false, &theta);
+  vo::PathGaussian drifted = path;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) drifted.covariance.block<3, 3>(6 * i, 6 * j) += 1e6 * Eigen::Matrix3d::Identity();
+  int seen = 0;
+  for (std::size_t i = 0; i < scene.tracks.size(); ++i) {
+    const vo::Track& track = scene.tracks[i];
+    const auto S_of = [&](const vo::PathGaussian& of) {
+      return vo::PathWindow::PredictLast(scene.input(), track, of, theta[i]).covariance;
+    };
+    EXPECT_EQ(S_of(drifted)(0, 1), S_of(drifted)(1, 0));
+    if (track.anchor_slot < 0) continue;
+    EXPECT_LT((S_of(drifted) - S_of(path)).norm(), 1e-3 * S_of(path).norm());
+    ++seen;
+  }
+  EXPECT_EQ(seen, 12);
+}
+
 // The prior of several steps says what the velocity's Kalman filter says one step after the other.
 TEST(PathPrior, LastVelocityIsTheVelocityFilters) {
   Draws draws(7);
