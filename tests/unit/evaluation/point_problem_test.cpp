@@ -146,6 +146,7 @@ TEST(ValidateProblem, SaysAllThatIsWrong) {
             }),
             "")
       << "known exactly";
+  EXPECT_EQ(complaint([](Problem& p) { p.truth.resize(1), p.landmarks.clear(); }), "") << "one frame is enough";
   EXPECT_EQ(complaint([](Problem& p) { p.truth.clear(), p.landmarks.clear(); }), "point world: no frame");
   EXPECT_EQ(complaint([](Problem& p) { p.truth[1].stamp_ns = p.truth[0].stamp_ns; }),
             "point world: time stands still at frame 1");

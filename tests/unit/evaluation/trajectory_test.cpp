@@ -149,11 +149,16 @@ TEST(Velocities, ReadBackAndAreFoundByTheirStamp) {
   WriteVelocities(folder.path() / "v.txt", velocities);
   const Velocities back = ReadVelocities(folder.path() / "v.txt");
   ASSERT_EQ(back.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(back[i].stamp_ns, velocities[i].stamp_ns);
+    EXPECT_EQ(back[i].v_WC, velocities[i].v_WC);
+    EXPECT_EQ(back[i].w_WC_C, velocities[i].w_WC_C);
+  }
   const auto found = VelocityAt(back, 1'033'333'333);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->v_WC.x(), -1);
   EXPECT_EQ(found->w_WC_C.y(), 0.25);
-  EXPECT_FALSE(VelocityAt(back, 1'033'333'334));
+  for (const std::int64_t other : {0, 1'000'000'001, 1'033'333'334}) EXPECT_FALSE(VelocityAt(back, other));
   EXPECT_FALSE(VelocityAt(back, 2'000'000'000));
   const auto error_of = [&](const std::string& text) {
     folder.Write("v.txt", text);

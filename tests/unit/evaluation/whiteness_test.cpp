@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "tests/unit/evaluation/random.h"
+#include "tools/evaluation/distributions.h"
 
 namespace evaluation {
 namespace {
@@ -49,6 +50,32 @@ TEST(TestWhiteness, Figures) {
   EXPECT_NEAR(result.p_value, 0.0894770376908635, 1e-12);
   EXPECT_EQ(result.count, 12u);
   EXPECT_NEAR(result.bound, 0.5658032638058332, 1e-15);
+}
+
+TEST(TestWhiteness, OfTwoValuesHasOneLag) {
+  const Whiteness two = TestWhiteness({1, -1}, 10);
+  ASSERT_EQ(two.autocorrelation.size(), 1u);
+  EXPECT_EQ(two.autocorrelation[0], -0.5);
+}
+
+// A run is rejected at 5 %, not a little above; as many may be as the quantile says.
+TEST(TestWhiteness, RunsAreRejectedAtFivePerCent) {
+  const auto run = [](double last) { return std::vector<double>{1, 2, 3, 4, 5, 6, last}; };
+  double low = 0, high = 5;  // p falls as the last value comes nearer to the line of the others
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (TestWhiteness(run(middle), 1).p_value > 0.052 ? low : high) = middle;
+  }
+  ASSERT_NEAR(TestWhiteness(run(low), 1).p_value, 0.052, 1e-6);
+  EXPECT_EQ(TestWhiteness(std::vector(400, run(low)), 1, 0.01).rejected, 0u);
+  EXPECT_EQ(TestWhiteness(std::vector(400, run(5)), 1, 0.01).rejected, 400u);
+  for (const std::size_t rejected : {31u, 32u}) {
+    std::vector<std::vector<double>> runs(400, run(low));
+    for (std::size_t m = 0; m < rejected; ++m) runs[m] = run(5);
+    const WhitenessVerdict verdict = TestWhiteness(runs, 1, 0.01);
+    EXPECT_EQ(verdict.most_allowed, 31u);
+    EXPECT_EQ(verdict.pass, rejected <= 31);
+  }
 }
 
 TEST(TestWhiteness, OfRunsIsOfThoseThatHaveOne) {
@@ -238,6 +265,40 @@ TEST(Nis, FiguresOfRunsAndOfFrames) {
   EXPECT_THROW(TestNis({{1}}, {}, 0.01), std::logic_error);
   EXPECT_THROW(TestNisMean({{1}}, {}, 0, 0.01), std::logic_error);
   EXPECT_THROW(NisOverRuns({{1}}, {{1, 2}}), std::logic_error);
+}
+
+TEST(Nis, OneDegreeOfFreedomCountsAndNoneDoesNot) {
+  const NisBand one = NisOfRun({1.5, 9}, {1, 0});
+  EXPECT_EQ(one.dof, 1);
+  EXPECT_EQ(one.per_dof, 1.5);
+  EXPECT_TRUE(one.inside);
+  const std::vector<NisBand> frames = NisOverRuns({{1.5, 9}, {}}, {{1, 0}, {}});
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(frames[0].dof, 1);
+  EXPECT_EQ(frames[1].dof, 0);
+  const NisVerdict verdict = TestNis({{1.5}, {9}}, {{1}, {0}});
+  EXPECT_EQ(verdict.runs, 1u);
+  EXPECT_EQ(verdict.per_dof, 1.5);
+  EXPECT_EQ(TestNis({}, {}).per_dof, 0);
+  EXPECT_THROW(NisOverRuns({{1}}, {}), std::logic_error);
+  const NisMeanVerdict mean =
+      TestNisMean({{1}, {1}, {1}, {2}, {2}, {2}, {5}}, {{1}, {1}, {1}, {1}, {1}, {1}, {0}}, 0.01);
+  EXPECT_EQ(mean.runs, 6u);
+  EXPECT_NEAR(mean.per_dof, 1.5, 1e-15);
+}
+
+// Of 400 honest runs 20 are outside; as many as the quantile says may be.
+TEST(Nis, AsManyRunsMayBeOutsideAsTheBinomialSays) {
+  const std::size_t most = BinomialLimit(400, 0.05, 0.01);
+  EXPECT_EQ(most, 31u);
+  for (const std::size_t outside : {most, most + 1}) {
+    std::vector<std::vector<double>> nis(400, {4});
+    for (std::size_t m = 0; m < outside; ++m) nis[m] = {40};
+    const NisVerdict verdict = TestNis(nis, std::vector<std::vector<int>>(400, {4}), 0.01);
+    EXPECT_EQ(verdict.most_allowed, most);
+    EXPECT_EQ(verdict.outside, outside);
+    EXPECT_EQ(verdict.pass, outside <= most);
+  }
 }
 
 TEST(TestNisMean, Figures) {
