@@ -10,6 +10,7 @@
 #include "vo/filter/particle_filter.h"
 #include "vo/filter/path_end.h"
 #include "vo/filter/resampling.h"
+#include "vo/geometry/symmetric.h"
 
 namespace vo {
 namespace {
@@ -228,7 +229,8 @@ BeliefComponent ParticleFilter::ComponentOnPath(const Particle& particle) const 
   component.covariance.topLeftCorner<6, 6>() = path.covariance.bottomRightCorner<6, 6>();
   component.covariance.bottomLeftCorner<6, 6>() = cross.rightCols<6>();
   component.covariance.topRightCorner<6, 6>() = cross.rightCols<6>().transpose();
-  component.covariance.bottomRightCorner<6, 6>() = path_prior_->last_covariance() + cross * last.by_pose.transpose();
+  component.covariance.bottomRightCorner<6, 6>() =
+      path_prior_->last_covariance() + Symmetrised(cross * last.by_pose.transpose());
   return component;
 }
 

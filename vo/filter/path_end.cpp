@@ -2,6 +2,7 @@
 
 #include "vo/filter/pose_gaussian.h"
 #include "vo/geometry/so3.h"
+#include "vo/geometry/symmetric.h"
 
 namespace vo {
 
@@ -43,7 +44,8 @@ void Extend(const PathPrior& prior, const MotionModel& step, const Pose& start, 
   path.covariance.conservativeResize(size + 6, size + 6);
   path.covariance.bottomLeftCorner(6, size) = cross;
   path.covariance.topRightCorner(size, 6) = cross.transpose();
-  path.covariance.bottomRightCorner<6, 6>() = cross * by_pose.transpose() + by_step * noise * by_step.transpose();
+  path.covariance.bottomRightCorner<6, 6>() =
+      Symmetrised(cross * by_pose.transpose() + by_step * noise * by_step.transpose());
   path.mean.push_back(Plus(path.mean.empty() ? start : path.mean.back(), u));
 }
 

@@ -7,6 +7,7 @@
 
 #include "vo/filter/pose_gaussian.h"
 #include "vo/geometry/so3.h"
+#include "vo/geometry/symmetric.h"
 
 namespace vo {
 namespace {
@@ -236,6 +237,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
   }
   path.covariance.setIdentity(size, size);
   llt_.solveInPlace(path.covariance);
+  path.covariance.triangularView<Eigen::StrictlyUpper>() = path.covariance.transpose();
   path.guards.unsettled = !descent.settled();
   if (llt_.info() != Eigen::Success) {
     path.guards.indefinite = 1;
@@ -272,10 +274,6 @@ Conditional Condition(const WindowInput& in, const Track& track, const PathGauss
   return {LG * L.transpose(), LG.lazyProduct(E)};
 }
 
-// After seconds without an image the poses of a window are uncertain together by more than a million times what is left of it in a
-// landmark's image: rounding is then far above that of the image's own size.
-Eigen::Matrix2d Symmetric(const Eigen::Matrix2d& product) { return 0.5 * (product + product.transpose()); }
-
 }  // namespace
 
 Landmark PathWindow::Smoothed(const WindowInput& in, const Track& track, const PathGaussian& path,
@@ -291,7 +289,8 @@ ImagePrediction PathWindow::PredictLast(const WindowInput& in, const Track& trac
   if (track.views.empty() && track.anchor_slot < 0) {  // the window knows nothing of it
     const auto last = path.covariance.bottomRightCorner<6, 6>();
     const Eigen::Matrix3d& P = in.landmarks[track.landmark].covariance;
-    return {true, h.z, Symmetric(h.J_pose * last * h.J_pose.transpose() + h.J_landmark * P * h.J_landmark.transpose())};
+    return {true, h.z,
+            Symmetrised(h.J_pose * last * h.J_pose.transpose() + h.J_landmark * P * h.J_landmark.transpose())};
   }
   const Conditional landmark = Condition(in, track, path, theta);
   Eigen::Matrix<double, 2, Eigen::Dynamic> J = -h.J_landmark.lazyProduct(landmark.by_pose);
@@ -299,7 +298,7 @@ ImagePrediction PathWindow::PredictLast(const WindowInput& in, const Track& trac
   if (track.anchor_slot >= 0) J.middleCols<6>(kPoseSize * track.anchor_slot) += AnchorJacobian(h, theta);
   // Thin: a blocked product is slower
   const Eigen::Matrix<double, Eigen::Dynamic, 2> PJt = path.covariance.lazyProduct(J.transpose());
-  return {true, h.z, Symmetric(J.lazyProduct(PJt) + h.J_landmark * landmark.covariance * h.J_landmark.transpose())};
+  return {true, h.z, Symmetrised(J.lazyProduct(PJt) + h.J_landmark * landmark.covariance * h.J_landmark.transpose())};
 }
 
 }  // namespace vo

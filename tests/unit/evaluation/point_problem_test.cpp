@@ -159,6 +159,8 @@ TEST(ValidateProblem, SaysAllThatIsWrong) {
   const std::string one = "point world: landmark 1: ";
   EXPECT_EQ(complaint([](Problem& p) { p.landmarks[1].inverse_depth_sigma = -1e-9; }),
             one + "inverse_depth_sigma must not be negative");
+  EXPECT_EQ(complaint([](Problem& p) { p.landmarks[0].frames = {5}; }),
+            "point world: landmark 0: measured beyond the last frame");
   for (const std::size_t beyond : {5, 7})
     EXPECT_EQ(complaint([&](Problem& p) { p.landmarks[1].anchor_frame = beyond; }),
               one + "anchored beyond the last frame");

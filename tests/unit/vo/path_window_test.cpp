@@ -150,6 +150,19 @@ TEST(PathEnd, AStepMoreIsAsIfSolvedAgain) {
   }
 }
 
+// Two images at once, then none for seconds: the velocity between the two is taken times a step of many thousand times their gap.
+TEST(PathEnd, IsSymmetricAfterAGap) {
+  Scene scene = MakeScene(5, 4, 24, 0.05, 1.0 / 525);
+  vo::PathGaussian path = Solve(scene, false);
+  for (const double dt : {1e-5, 4.0}) {
+    const vo::MotionModel step = vo::NearlyConstantVelocity({.position_noise = 0.6, .orientation_noise = 0.4}, dt);
+    vo::Extend(scene.prior(), step, scene.start, scene.velocity, path);
+    scene.steps.push_back(step);
+  }
+  EXPECT_EQ(path.covariance, path.covariance.transpose());
+  EXPECT_GT(path.covariance.diagonal().minCoeff(), 0);
+}
+
 // Iterations that end before they have settled: the last step is a guess, whose quadratic promise may be anything. Evidence that believed it
 // made a particle that had run astray outweigh all others.
 TEST(PathWindow, EvidenceDoesNotBelieveAStepThatNobodyLookedAt) {
