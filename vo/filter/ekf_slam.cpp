@@ -5,6 +5,7 @@
 
 #include "vo/filter/motion_model.h"
 #include "vo/geometry/so3.h"
+#include "vo/geometry/symmetric.h"
 
 namespace vo {
 namespace {
@@ -12,10 +13,6 @@ namespace {
 constexpr int kCamera = 12;        // pose and velocity
 constexpr double kSettled = 1e-6;  // squared step: a thousandth of a standard deviation
 constexpr int kMaxHalvings = 8;
-
-void Symmetrise(Eigen::MatrixXd& P) {
-  P.triangularView<Eigen::StrictlyUpper>() = P.transpose();
-}  // from the lower half
 
 // T P T', T = identity but for the rotation at `offset`.
 void Turn(Eigen::MatrixXd& P, int offset, const Eigen::Matrix3d& J) {

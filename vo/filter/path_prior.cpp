@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "vo/geometry/symmetric.h"
+
 namespace vo {
 
 PathPrior::PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance) {
@@ -25,12 +27,10 @@ PathPrior::PathPrior(const std::vector<MotionModel>& steps, const Matrix6& veloc
     V = (F22 * V * F22.transpose()).eval() + Q22;
   }
   const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
-  precision_ = llt.solve(Eigen::MatrixXd::Identity(kPoseSize * m, kPoseSize * m));
-  precision_ = 0.5 * (precision_ + precision_.transpose()).eval();
+  precision_ = Symmetrised(llt.solve(Eigen::MatrixXd::Identity(kPoseSize * m, kPoseSize * m)));
   log_det_precision_ = -2.0 * llt.matrixLLT().diagonal().array().log().sum();
   gain_ = llt.solve(with_velocity.transpose()).transpose();
-  last_covariance_ = V - gain_ * with_velocity.transpose();
-  last_covariance_ = 0.5 * (last_covariance_ + last_covariance_.transpose()).eval();
+  last_covariance_ = Symmetrised(V - gain_ * with_velocity.transpose());
 }
 
 }  // namespace vo

@@ -237,7 +237,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
   }
   path.covariance.setIdentity(size, size);
   llt_.solveInPlace(path.covariance);
-  path.covariance.triangularView<Eigen::StrictlyUpper>() = path.covariance.transpose();
+  Symmetrise(path.covariance);
   path.guards.unsettled = !descent.settled();
   if (llt_.info() != Eigen::Success) {
     path.guards.indefinite = 1;

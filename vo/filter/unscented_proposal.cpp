@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vo/geometry/so3.h"
+#include "vo/geometry/symmetric.h"
 
 namespace vo {
 namespace {
@@ -41,8 +42,7 @@ LandmarkUpdate UpdateFree(const Landmark& prior, const AnchorView& view, const M
   const Eigen::Matrix<double, N, 2> gain = z.cross * S.inverse();
   result.log_likelihood = LogNormal(e, S);
   result.landmark.mean.tail<N>() += gain * e;
-  const Eigen::Matrix<double, N, N> updated = P - gain * S * gain.transpose();
-  result.landmark.covariance.bottomRightCorner<N, N>() = 0.5 * (updated + updated.transpose());
+  result.landmark.covariance.bottomRightCorner<N, N>() = Symmetrised(P - gain * S * gain.transpose());
   return result;
 }
 

@@ -9,6 +9,8 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
+#include "vo/geometry/symmetric.h"
+
 namespace vo {
 
 template <int P, int K>
@@ -71,8 +73,7 @@ class VelocityFilter {
         H_ * S * H_.transpose() + Psi_Psi_ + Lambda_ * Lambda_.transpose() + cross + cross.transpose();  // (41)
     Gain gain;
     gain.matrix = P_mm.llt().solve(P_vm.transpose()).transpose();
-    gain.covariance = S - gain.matrix * P_vm.transpose();  // (43)
-    gain.covariance = 0.5 * (gain.covariance + gain.covariance.transpose()).eval();
+    gain.covariance = Symmetrised(S - gain.matrix * P_vm.transpose());  // (43)
     return gain;
   }
   void ConditionMean(const VectorP& s_pf_previous, const VectorK& mean, Gain& gain) const {

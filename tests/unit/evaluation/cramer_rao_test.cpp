@@ -8,7 +8,6 @@
 #include <Eigen/LU>
 #include <chrono>
 #include <cmath>
-#include <functional>
 
 #include "tests/unit/evaluation/point_world.h"
 #include "tools/evaluation/anees_test.h"
@@ -20,7 +19,6 @@ namespace evaluation {
 namespace {
 
 using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 

@@ -60,6 +60,11 @@ TEST(LinearisedMotion, AgreesWithFiniteDifferences) {
   }
 }
 
+void ExpectAcross(const HomogeneousPoint& point) {
+  EXPECT_LT((point.across * point.across.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+  EXPECT_LT((point.across * point.direction).norm(), 1e-14 * point.direction.norm());
+}
+
 // The right Jacobian against its series, sum (-A)^n / (n + 1)!, to the last digits where closed forms would cancel.
 TEST(LinearisedMotion, TurnsBySmallAnglesAsByLargeOnes) {
   using Wide3 = Eigen::Matrix<long double, 3, 3>;
@@ -83,8 +88,7 @@ TEST(PointOf, IsAcrossVeryNearPoints) {
   for (const double rho : {1e9, -1e9}) {
     landmark.inverse_depth = rho;
     const HomogeneousPoint point = PointOf(landmark, {0, Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity()});
-    EXPECT_LT((point.across * point.across.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
-    EXPECT_LT((point.across * point.direction).norm(), 1e-14 * point.direction.norm());
+    ExpectAcross(point);
   }
 }
 
@@ -98,8 +102,7 @@ TEST(LinearisedView, AgreesWithFiniteDifferences) {
     landmark.ray = {0.3, -0.2};
     landmark.inverse_depth = rho;
     const HomogeneousPoint point = PointOf(landmark, anchor);
-    EXPECT_LT((point.across * point.across.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
-    EXPECT_LT((point.across * point.direction).norm(), 1e-14 * point.direction.norm());
+    ExpectAcross(point);
     const AnchorJacobian of_anchor = LinearisedAnchor(landmark, anchor);
     const ViewJacobian view = LinearisedView(point, pose);
     const Eigen::Vector3d x_y_rho(0.3, -0.2, rho);
