@@ -46,5 +46,22 @@ TEST(Video, CtrlCEndsALiveOneAndTheResultIsWritten) {
   }
 }
 
+// A stream cannot be had again: where the filter ends it (here by a noise that no number can hold), what was tracked before is written.
+TEST(Video, OfALiveOneThatAFaultEndsWhatCameBeforeIsWritten) {
+  const TemporaryFolder here;
+  ASSERT_EQ(RunVobench({"render", TinyScenario().string(), "-o", "s", "--frames", "0:12"}, here.path()).status, 0);
+  const std::string filmed =
+      "mkfifo stream\n(while cat s/rgb/*.png; do kill -0 $$ || exit; done > stream) 2> /dev/null &\nexec \\";
+  const Outcome outcome = RunVobench({"track", "file://" + (here / "stream").string(), "-o", "out", "--camera",
+                                      "s/camera.yaml", "--set", "odometry.motion.position_noise=1e250"},
+                                     here.path(), filmed);
+  const std::string fault = "frame 1, prediction: the covariance of the pose is not a number";
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, testing::EndsWith("vobench: " + fault + "\n"));
+  const std::string estimate = ReadFile(here / "out/estimate.txt");
+  EXPECT_EQ(std::count(estimate.begin(), estimate.end(), '\n'), 1 + 1);
+  EXPECT_THAT(ReadFile(here / "out/report.html"), testing::HasSubstr("Ended after 1 frame: " + fault));
+}
+
 }  // namespace
 }  // namespace vobench::system_test

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <exception>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "tools/vobench/result.h"
 #include "tools/vobench/sequence_truth.h"
 #include "tools/vobench/tracker.h"
+#include "vo/filter/watched_filter.h"
 #include "vo/geometry/camera_file.h"
 #include "vo/sequence/read_ahead.h"
 
@@ -122,6 +124,7 @@ void Track(const TrackOptions& options) {
   if (options.view) view.emplace(description);
   const Truth shown = view && truth ? *truth : Truth{};
   const Clock tracking;
+  std::exception_ptr end;  // by a fault in a stream, which cannot be had again: what came before is the result
   {
     Progress progress("tracking", frames.value_or(0));
     if (!frames) fmt::print(stderr, "Ctrl-C ends it, and the result is written.\n");
@@ -136,14 +139,22 @@ void Track(const TrackOptions& options) {
       return vo::PreparedFrame(std::move(*frame));
     };
     while (const std::optional<vo::PreparedFrame> frame = Input(next)) {
-      tracker.Track(*frame);
+      try {
+        tracker.Track(*frame);
+      } catch (const vo::FilterFault& fault) {
+        if (frames || tracker.frames() == 0) throw;
+        end = std::current_exception();
+        description.notes.push_back(fmt::format("Ended after {} {}: {}", tracker.frames(),
+                                                tracker.frames() == 1 ? "frame" : "frames", fault.what()));
+        break;
+      }
       if (view && view->Asked(frame->frame)) view->Show({&tracker, 1}, shown, StartedAtTheOrigin());
       progress.Step();
       if (!frames && InterruptPending()) break;
     }
   }
   const double elapsed_s = tracking.seconds();
-  if (view) view->Show({&tracker, 1}, shown, StartedAtTheOrigin());
+  if (view && !end) view->Show({&tracker, 1}, shown, StartedAtTheOrigin());
   tracker.Write();
   const evaluation::EstimateRun estimates = tracker.Estimates();
   if (!frames) fmt::print(stderr, "{} frames came too fast and were let go\n", source->Dropped());
@@ -164,11 +175,12 @@ void Track(const TrackOptions& options) {
   description.versions = Versions();
   description.runs = {tracker.entry()};
   WriteResult(out.path(), description, judged);
-  if (options.map) WriteMap(*options.map, tracker.map());
+  if (options.map && !end) WriteMap(*options.map, tracker.map());
   out.Commit();
 
   fmt::print("{}{}The report is in {}\n", report::TextSummary(judged), report::TimeTable(estimates.frames, elapsed_s),
              (options.output / "report.html").string());
+  if (end) std::rethrow_exception(end);
 }
 
 }  // namespace vobench

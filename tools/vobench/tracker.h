@@ -27,14 +27,15 @@ class Tracker {
   Tracker(const TrackerSetup& setup, const vo::Camera& camera, std::int64_t frames,
           const std::optional<std::filesystem::path>& out, const std::string& folder);
 
-  // Throws BadInput when the frame does not fit the camera, or time goes back.
+  // Throws BadInput when the frame does not fit the camera, or time goes back: nothing has changed then. Throws
+  // vo::FilterFault: what was recorded before stands, of the map nothing is believed any more.
   void Track(const vo::Frame& frame) { Track(vo::PreparedFrame(frame)); }
   void Track(const vo::PreparedFrame& prepared);
 
   // The files of the run folder, but for the truth. Throws std::runtime_error.
-  void Write() const { recorder_.Write(odometry_.Map()); }
+  void Write() const { recorder_.Write(map()); }
 
-  std::vector<vo::MapPoint> map() const { return odometry_.Map(); }
+  std::vector<vo::MapPoint> map() const { return believed_ ? odometry_.Map() : std::vector<vo::MapPoint>{}; }
   std::vector<report::FeatureMark> marks() const { return MarksOf(odometry_.Features()); }  // of the last frame
   const report::RunEntry& entry() const { return entry_; }
   std::size_t frames() const { return recorder_.frames(); }
@@ -44,6 +45,7 @@ class Tracker {
   report::RunEntry entry_;
   vo::Odometry odometry_;
   Recorder recorder_;
+  bool believed_ = true;  // no fault has been found in the state of the odometry
 };
 
 }  // namespace vobench
