@@ -69,6 +69,13 @@ TEST_F(ErrorsTest, MissingFiles) {
   Fails({"report", "nowhere"}, 2, "nowhere");
 }
 
+TEST_F(ErrorsTest, NamesThatAreTooLong) {
+  const std::string name(300, 'n'), too_long = ": File name too long\n";
+  Fails({"track", name, "-o", "out", "--camera", "icl"}, 2, "vobench: " + name + too_long);
+  Fails({"verify", name}, 2, "vobench: " + name + "/rgb.txt" + too_long);
+  Fails({"render", TinyScenario().string(), "-o", name}, 1, "/" + name + too_long);
+}
+
 TEST_F(ErrorsTest, EmptyDirectory) {
   fs::create_directory(here_ / "empty");
   Fails({"track", "empty", "-o", "out", "--camera", "icl"}, 2, "empty");

@@ -3,8 +3,11 @@
 //          to be another (3), every other exception means that the work failed (1).
 #pragma once
 
+#include <filesystem>
 #include <new>
 #include <stdexcept>
+#include <string>
+#include <system_error>
 #include <utility>
 
 namespace vobench {
@@ -33,6 +36,14 @@ struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// "PATH: why", which the standard library tells the other way round and by its own function's name; else the error's words.
+inline std::string WordsOf(const std::exception& error) {
+  const auto* of_file = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
+  if (of_file == nullptr) return error.what();
+  const std::string to = of_file->path2().empty() ? "" : " -> " + of_file->path2().string();
+  return of_file->path1().string() + to + ": " + of_file->code().message();
+}
+
 // Reads an input: whatever goes wrong in there is the input's fault. The libraries' messages name file, line and value.
 template <class Function>
 auto Input(Function&& read) {
@@ -41,7 +52,7 @@ auto Input(Function&& read) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    throw BadInput(error.what());
+    throw BadInput(WordsOf(error));
   }
 }
 

@@ -50,7 +50,7 @@ int Main(int argc, char** argv) {
   } catch (const std::system_error& error) {
     // fmt calls standard output a file.
     const std::string unwritten = "cannot write to standard output: " + error.code().message();
-    std::fprintf(stderr, "vobench: %s\n", std::ferror(stdout) != 0 ? unwritten.c_str() : error.what());
+    std::fprintf(stderr, "vobench: %s\n", std::ferror(stdout) != 0 ? unwritten.c_str() : WordsOf(error).c_str());
     return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "vobench: %s\n", error.what());

@@ -41,7 +41,7 @@ void Verify(const VerifyOptions& options) {
     } catch (const Interrupted&) {
       throw;
     } catch (const std::runtime_error& error) {
-      throw BadInput(error.what());
+      throw BadInput(WordsOf(error));
     }
   }
   fmt::print("{:<44} {:>11} {:>11} {:<9}  verdict\n", "check", "worst", "bound", "unit");
