@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "tools/evaluation/draws.h"
 #include "tools/evaluation/square_root.h"
@@ -38,8 +39,7 @@ class Linearised {
     std::vector<std::size_t> seen;  // of alive_
     for (std::size_t i = 0; i < alive_.size(); ++i) {
       Living& living = alive_[i];
-      const auto& frames = problem_.landmarks[living.landmark].frames;
-      if (living.next < frames.size() && frames[living.next] == k) {
+      if (problem_.landmarks[living.landmark].frames[living.next] == k) {  // those without a next have left
         seen.push_back(i);
         ++living.next;
       }
@@ -67,7 +67,7 @@ class Linearised {
     innovation += problem_.sigma * Noise(rows, errors_.cols());
     const Eigen::LLT<MatrixXd> S(HPHt);
     const MatrixXd root = S.matrixL().solve(PHt.transpose());  // P H' S^-1 H P = root' root
-    if (errors_.cols() > 0) errors_.noalias() -= root.transpose() * S.matrixL().solve(innovation);
+    errors_.noalias() -= root.transpose() * S.matrixL().solve(innovation);
     P_.selfadjointView<Eigen::Lower>().rankUpdate(root.transpose(), -1);
     P_.triangularView<Eigen::StrictlyUpper>() = P_.transpose();
   }
@@ -76,9 +76,9 @@ class Linearised {
   void Exchange(std::size_t k) {
     std::vector<Living> kept;
     std::vector<Index> index(12);
-    for (Index i = 0; i < 12; ++i) index[static_cast<std::size_t>(i)] = i;
+    std::iota(index.begin(), index.end(), 0);
     for (std::size_t i = 0; i < alive_.size(); ++i) {
-      if (alive_[i].next >= problem_.landmarks[alive_[i].landmark].frames.size()) continue;
+      if (alive_[i].next == problem_.landmarks[alive_[i].landmark].frames.size()) continue;
       for (Index d = 0; d < 3; ++d) index.push_back(Start(i) + d);
       kept.push_back(alive_[i]);
     }

@@ -28,8 +28,7 @@ class Density {
       if (!(component.weight > 0)) continue;
       const SquareRoot root = SquareRootOf(component.covariance);
       defined_ = defined_ && root.full;
-      const double log_root = root.full ? root.L.diagonal().array().log().sum() : 0;
-      log_factor_.push_back(std::log(component.weight / total) - log_root -
+      log_factor_.push_back(std::log(component.weight / total) - root.L.diagonal().array().log().sum() -
                             0.5 * static_cast<double>(root.L.rows()) * std::log(2 * M_PI));
       L_.push_back(root.L);
       offset_.push_back(component.offset);

@@ -228,7 +228,10 @@ TEST(SimulateLinearised, HasIndependentErrorsInUnitsOfTheBound) {
     return off.cwiseAbs().maxCoeff();
   };
   ASSERT_EQ(runs.bound.size(), 9u);
+  const auto nees = NeesOf(runs, 3, 3);
+  ASSERT_EQ(nees[7].size(), 9u);
   for (std::size_t k = 0; k < 9; ++k) {
+    EXPECT_NEAR(nees[7][k] / Nees(runs.error[7][k].segment(3, 3), runs.bound[k].block(3, 3, 3, 3)), 1, 1e-9);
     EXPECT_LT(worst(k, k, 1), 6) << "frame " << k;
     EXPECT_GT(worst(k, k, 1.2), 6) << "frame " << k;
     if (k > 0) {
