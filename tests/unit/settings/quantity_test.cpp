@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <rapidcheck.h>
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <string>
 
@@ -121,13 +121,12 @@ TEST(Quantity, WholeNumbers) {
 
 TEST(Quantity, EveryFiniteDoubleIsReadBackAsItself) {
   EXPECT_TRUE(rc::check([](std::uint64_t bits) {
-    double written = 0;
-    std::memcpy(&written, &bits, sizeof written);
+    const auto written = std::bit_cast<double>(bits);
     RC_PRE(std::isfinite(written));
     double read = std::nan("");
     std::string problem;
     RC_ASSERT(ParseQuantity(FormatNumber(written), Unit::none, {}, read, problem));
-    RC_ASSERT(std::memcmp(&read, &written, sizeof read) == 0);
+    RC_ASSERT(std::bit_cast<std::uint64_t>(read) == bits);
   }));
 }
 
