@@ -8,7 +8,6 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
-#include <stdexcept>
 
 #include "sim/render/ray_scene.h"
 

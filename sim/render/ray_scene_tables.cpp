@@ -1,6 +1,5 @@
 // The tables that hits are looked up in: of triangles, materials, pictures, lamps.
 #include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>

@@ -1,5 +1,6 @@
 #include "sim/sensor/response.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sim {

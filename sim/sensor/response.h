@@ -1,7 +1,6 @@
 // Purpose: from the filled fraction of a pixel to its byte.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 

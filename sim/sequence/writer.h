@@ -8,7 +8,6 @@
 #include <exception>
 #include <filesystem>
 #include <mutex>
-#include <string>
 #include <thread>
 #include <vector>
 
