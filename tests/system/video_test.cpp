@@ -10,6 +10,10 @@
 namespace vobench::system_test {
 namespace {
 
+// Puts a stream of the pictures of s, over and over, beside what is run.
+constexpr const char* kFilmed =
+    "rm -rf stream out\nmkfifo stream\n(while cat s/rgb/*.png; do :; done > stream) 2> /dev/null &\n";
+
 TEST(Video, IsTrackedFrameByFrame) {
   const TemporaryFolder here;
   ASSERT_EQ(
@@ -33,7 +37,7 @@ TEST(Video, CtrlCEndsALiveOneAndTheResultIsWritten) {
   ASSERT_EQ(RunVobench({"render", TinyScenario().string(), "-o", "s", "--frames", "0:12"}, here.path()).status, 0);
   for (const char* moment : {"0", "0.1", "0.2", "0.3", "0.4"}) {
     const std::string filmed_until_stopped =
-        "rm -rf stream out\nmkfifo stream\n(while cat s/rgb/*.png; do :; done > stream) 2> /dev/null &\n"
+        std::string(kFilmed) +
         "(until ls .out.partial*/frames/* > /dev/null 2>&1; do sleep 0.01; kill -0 $$ || exit; done; sleep " +
         std::string(moment) + "; kill -INT $$) &\nexec \\";
     const Outcome outcome =
@@ -50,11 +54,9 @@ TEST(Video, CtrlCEndsALiveOneAndTheResultIsWritten) {
 TEST(Video, OfALiveOneThatAFaultEndsWhatCameBeforeIsWritten) {
   const TemporaryFolder here;
   ASSERT_EQ(RunVobench({"render", TinyScenario().string(), "-o", "s", "--frames", "0:12"}, here.path()).status, 0);
-  const std::string filmed =
-      "mkfifo stream\n(while cat s/rgb/*.png; do kill -0 $$ || exit; done > stream) 2> /dev/null &\nexec \\";
   const Outcome outcome = RunVobench({"track", "file://" + (here / "stream").string(), "-o", "out", "--camera",
                                       "s/camera.yaml", "--set", "odometry.motion.position_noise=1e250"},
-                                     here.path(), filmed);
+                                     here.path(), std::string(kFilmed) + "exec \\");
   const std::string fault = "frame 1, prediction: the covariance of the pose is not a number";
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.err, testing::EndsWith("vobench: " + fault + "\n"));

@@ -56,7 +56,7 @@ void Write(OutputFolder& folder, const std::vector<Tracker>& trackers, const Tru
            const TruthPictures& truth_pictures, const std::vector<report::JudgedRun>& judged,
            report::RunDescription description) {
   for (const Tracker& tracker : trackers) {
-    tracker.Write();
+    tracker.Write(tracker.map());
     WriteTruth(folder.path() / tracker.entry().path, truth);
     description.runs.push_back(tracker.entry());
   }

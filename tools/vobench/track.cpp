@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "tools/evaluation/text_file.h"
 #include "tools/report/text_summary.h"
@@ -155,7 +156,8 @@ void Track(const TrackOptions& options) {
   }
   const double elapsed_s = tracking.seconds();
   if (view && !end) view->Show({&tracker, 1}, shown, StartedAtTheOrigin());
-  tracker.Write();
+  const std::vector<vo::MapPoint> map = end ? std::vector<vo::MapPoint>{} : tracker.map();
+  tracker.Write(map);
   const evaluation::EstimateRun estimates = tracker.Estimates();
   if (!frames) fmt::print(stderr, "{} frames came too fast and were let go\n", source->Dropped());
 
@@ -175,7 +177,7 @@ void Track(const TrackOptions& options) {
   description.versions = Versions();
   description.runs = {tracker.entry()};
   WriteResult(out.path(), description, judged);
-  if (options.map && !end) WriteMap(*options.map, tracker.map());
+  if (options.map && !end) WriteMap(*options.map, map);
   out.Commit();
 
   fmt::print("{}{}The report is in {}\n", report::TextSummary(judged), report::TimeTable(estimates.frames, elapsed_s),

@@ -5,7 +5,6 @@
 #include "tools/vobench/errors.h"
 #include "tools/vobench/result.h"
 #include "tools/vobench/systems.h"
-#include "vo/filter/watched_filter.h"
 
 namespace vobench {
 namespace {
@@ -32,9 +31,6 @@ void Tracker::Track(const vo::PreparedFrame& prepared) {
       return odometry_.Track(prepared);
     } catch (const std::invalid_argument& error) {  // anything else is our bug
       throw BadInput(error.what());
-    } catch (const vo::FilterFault&) {
-      believed_ = false;
-      throw;
     }
   }();
   entry_.seconds += 1e-3 * prepared.ms + clock.seconds();

@@ -28,14 +28,14 @@ class Tracker {
           const std::optional<std::filesystem::path>& out, const std::string& folder);
 
   // Throws BadInput when the frame does not fit the camera, or time goes back: nothing has changed then. Throws
-  // vo::FilterFault: what was recorded before stands, of the map nothing is believed any more.
+  // vo::FilterFault: what was recorded before stands, the map is not to be believed any more.
   void Track(const vo::Frame& frame) { Track(vo::PreparedFrame(frame)); }
   void Track(const vo::PreparedFrame& prepared);
 
-  // The files of the run folder, but for the truth. Throws std::runtime_error.
-  void Write() const { recorder_.Write(map()); }
+  // The files of the run folder, but for the truth, with what is believed of the map. Throws std::runtime_error.
+  void Write(const std::vector<vo::MapPoint>& map) const { recorder_.Write(map); }
 
-  std::vector<vo::MapPoint> map() const { return believed_ ? odometry_.Map() : std::vector<vo::MapPoint>{}; }
+  std::vector<vo::MapPoint> map() const { return odometry_.Map(); }
   std::vector<report::FeatureMark> marks() const { return MarksOf(odometry_.Features()); }  // of the last frame
   const report::RunEntry& entry() const { return entry_; }
   std::size_t frames() const { return recorder_.frames(); }
@@ -45,7 +45,6 @@ class Tracker {
   report::RunEntry entry_;
   vo::Odometry odometry_;
   Recorder recorder_;
-  bool believed_ = true;  // no fault has been found in the state of the odometry
 };
 
 }  // namespace vobench
