@@ -1,5 +1,5 @@
 // What tests in a headless Chromium have in common: the program, the browser, an empty folder.
-// Arguments: VOBENCH MODULES [SHOTS]     MODULES has node_modules; SHOTS is a folder for pictures
+// Arguments: VOBENCH MODULES [...]     MODULES has node_modules
 // Exit:  77 where there is no Chromium.
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -7,7 +7,7 @@ import { tmpdir } from "node:os";
 import { delimiter, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
-export const [program, modules, shots] = process.argv.slice(2).map((path) => resolve(path));
+export const [program, modules] = process.argv.slice(2, 4).map((path) => resolve(path));
 const load = createRequire(resolve(modules, "package.json"));
 const { chromium } = load("playwright-core");
 export const axe = load.resolve("axe-core/axe.min.js");

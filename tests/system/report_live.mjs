@@ -1,6 +1,6 @@
 // A report while its run runs (--view): the page grows, says when the program has ended, and what the program leaves is the same
 // without it. tests/unit/vobench/live_server_test.cpp has who is answered and who is not.
-// Usage: node report_live.mjs VOBENCH MODULES
+// Usage: node report_live.mjs VOBENCH MODULES [RATE]     RATE of the frames of one second in Hz: enough that the page is seen growing
 // Exit:  0 all good, 1 something is not, 77 no Chromium here.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
@@ -11,7 +11,8 @@ import { join } from "node:path";
 import { here, program, scenes, withBrowser } from "./browser.mjs";
 
 await withBrowser(async (browser) => {
-  const words = ["run", join(scenes, "tiny.yaml"), "--system", "rb2pf,rbpf", "--set", "time.rate=2400 Hz", "--set", "sensor.exposure=0.2 ms"];
+  const rate = process.argv[4] ?? 2400;
+  const words = ["run", join(scenes, "tiny.yaml"), "--system", "rb2pf,rbpf", "--set", `time.rate=${rate} Hz`, "--set", "sensor.exposure=0.2 ms"];
   const running = spawn(program, [...words, "-o", "viewed", "--view"], { cwd: here, stdio: ["ignore", "ignore", "pipe"] });
   const ended = once(running, "exit");
   let said = "";

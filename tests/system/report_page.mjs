@@ -8,7 +8,9 @@ import { statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 
-import { axe, here, program, scenes, shots, withBrowser } from "./browser.mjs";
+import { axe, here, program, scenes, withBrowser } from "./browser.mjs";
+
+const shots = process.argv[4];
 
 function makePages() {
   const run = (...words) => execFileSync(program, words, { cwd: here, stdio: ["ignore", "ignore", "inherit"] });
