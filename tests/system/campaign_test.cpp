@@ -273,6 +273,26 @@ TEST_F(CampaignTest, SequencesAreSharedAndKnowTheirFiles) {
   EXPECT_EQ(sequences("cache"), 11u);
 }
 
+// A world of points has no pictures; what it is read from are its settings and the file that the camera moves by.
+TEST_F(CampaignTest, PointsKnowTheFileThatTheCameraMovesBy) {
+  const fs::path path = here_ / "path.txt";
+  WriteFile(here_ / "points.yaml",
+            "world: {points: {landmarks: room, points: 300}}\n"
+            "camera: {width: 160, height: 120, fx: 131.25, fy: 131.25, cx: 79.5, cy: 59.5}\n"
+            "time: {rate: 30 Hz, duration: 0.5 s}\ntrajectory: {type: recorded, file: path.txt}\n");
+  WriteFile(path, "0 2 1 2 0 0 0 1\n1 2.5 1 2 0 0 0 1\n2 2 1 2 0 0 0 1\n");
+  const std::string text = "scenarios: [{file: points.yaml}]\nsystems: [rbpf]\n";
+  MustRun(text, "out");
+  const std::string before = Results("out");
+  MustRun(text, "out");
+  WriteFile(path, "0 2 1 2 0 0 0 1\n1 2.9 1 2 0 0 0 1\n2 2 1 2 0 0 0 1\n");
+  const Outcome refused = Run(text, "out");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("out: 1 results there are not what c.yaml would give now"));
+  MustRun(text, "out", {"--update"});
+  EXPECT_NE(Results("out"), before);
+}
+
 TEST_F(CampaignTest, EverythingIsCheckedBeforeAnythingRuns) {
   std::string text = Points();
   text.replace(text.find("2 px"), 4, "2 kg");

@@ -139,6 +139,69 @@ TEST_F(LayoutsTest, EvaluateCountsTheFramesWithoutAPose) {
               testing::HasSubstr("pose coverage                1.0000  (of 9 frames)"));
   EXPECT_THAT(Run({"evaluate", "third.txt", "--truth", "all.txt"}).out,
               testing::Not(testing::HasSubstr("pose coverage")));
+  for (const std::string layout : {"euroc", "icl"}) {
+    Run({"render", TinyScenario().string(), "-o", layout, "--frames", "0:9", "--format", layout});
+    const std::string out = Run({"evaluate", "third.txt", "--truth", layout}).out;
+    EXPECT_THAT(out, testing::HasSubstr("pose coverage                0.3333  (of 9 frames)")) << layout;
+  }
+}
+
+// The truth of a run's folder is a file in it; the folder itself is an estimate, and no truth for anybody.
+TEST_F(LayoutsTest, EvaluateTakesNoEstimateForTheTruth) {
+  Run({"run", (TinyScenario().parent_path() / "points.yaml").string(), "-o", "out", "--set", "time.duration=0.3 s"});
+  for (const char* compat : {"tum ate", "evo ape -a"}) {
+    const Outcome outcome = RunVobench({"evaluate", "out", "--truth", "out", "--compat", compat}, here_.path());
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, testing::HasSubstr("out: no groundtruth.txt in it"));
+  }
+}
+
+// ov_eval does not normalise quaternions, whether their file is named or its folder.
+TEST_F(LayoutsTest, ASequencesTruthIsReadAsTheToolReadsIt) {
+  fs::create_directories(here_ / "seq");
+  std::ofstream truth(here_ / "seq/groundtruth.txt"), estimate(here_ / "estimate.txt");
+  for (int k = 0; k < 100; ++k) {
+    const double w = k % 2 == 0 ? 1.0009 : 0.9991;
+    truth << 0.1 * k << " " << 0.05 * k << " 0 0 0 0 0 " << w << "\n";
+    estimate << 0.1 * k << " " << 0.05 * k << " 0.01 0 0 0 0 1\n";
+  }
+  truth.close(), estimate.close();
+  const std::string of_file =
+      Run({"evaluate", "estimate.txt", "--truth", "seq/groundtruth.txt", "--compat", "ov se3 --segments 1"}).out;
+  EXPECT_EQ(Run({"evaluate", "estimate.txt", "--truth", "seq", "--compat", "ov se3 --segments 1"}).out, of_file);
+  std::ofstream normalised(here_ / "normalised.txt");
+  for (int k = 0; k < 100; ++k) normalised << 0.1 * k << " " << 0.05 * k << " 0 0 0 0 0 1\n";
+  normalised.close();
+  EXPECT_NE(Run({"evaluate", "estimate.txt", "--truth", "normalised.txt", "--compat", "ov se3 --segments 1"}).out,
+            of_file);
+}
+
+// A start that is known exactly, and a filter that sees nothing: no covariance is positive definite, nothing is matched.
+TEST_F(LayoutsTest, EvaluateGivesNoNumberWhereThereIsNone) {
+  const std::string points = (TinyScenario().parent_path() / "points.yaml").string();
+  Run({"run", points, "-o", "out", "--set", "time.duration=0.3 s", "--set", "world.points.measurement.drops=1"});
+  EXPECT_THAT(Run({"evaluate", "out/rb2pf/seed_1", "--truth", "out/rb2pf/seed_1/truth.txt"}).out,
+              testing::HasSubstr("NIS, per dof                 none: no frame has a matched feature"));
+}
+
+// The table of ANEES and the verdict's checks.
+TEST_F(LayoutsTest, AVerdictHasOneRatioToTheBound) {
+  const std::string points = (TinyScenario().parent_path() / "points.yaml").string();
+  const std::string out = Run({"run", points, "--runs", "10", "--verdict", "--set", "time.duration=0.07 s", "--set",
+                               "world.points.count=12"})
+                              .out;
+  const std::string kTable = "RMSE / Cramer-Rao bound:", kCheck = "RMSE / bound, ";
+  const std::size_t at = out.find(kTable);
+  ASSERT_NE(at, std::string::npos) << out;
+  const std::string line = out.substr(at + kTable.size(), out.find('\n', at) - at - kTable.size());
+  for (const std::string block : {"position", "orientation", "linear velocity", "angular velocity"}) {
+    const std::size_t in_line = line.find(" " + block + " "), check = out.find(kCheck + block);
+    ASSERT_NE(in_line, std::string::npos) << line;
+    ASSERT_NE(check, std::string::npos) << out;
+    EXPECT_EQ(std::stod(line.substr(in_line + block.size() + 2)),
+              std::stod(out.substr(check + kCheck.size() + block.size())))
+        << block;
+  }
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 #include "tools/campaign/output.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <random>
 #include <set>
 #include <stdexcept>
 #include <system_error>
@@ -37,20 +37,33 @@ std::string TimesLine(const fs::path& out, std::int64_t task) {
   return line + "\n";
 }
 
+// Whether there is anything that a campaign does not begin with.
+bool HasOthers(const fs::path& out) {
+  static const std::set<std::string> kOurs = {".lock", "tasks", "cache", "slurm"};
+  return std::any_of(fs::directory_iterator(out), {}, [](const fs::directory_entry& entry) {
+    const std::string name = entry.path().filename().string();
+    return !kOurs.contains(name) && !name.starts_with(".campaign.json.");
+  });
+}
+
+// Another one for each process, also where several have the same number (in containers, on several machines).
+fs::path OwnName(const fs::path& file) {
+  std::random_device device;
+  return file.parent_path() / fmt::format(".{}.{:08x}{:08x}", file.filename().string(), device(), device());
+}
+
 }  // namespace
 
 void PrepareOutput(const fs::path& out, const std::string& text) {
-  static const std::set<std::string> kOurs = {".lock", "tasks", "cache", "slurm"};
   fs::create_directories(out);
-  if (!fs::exists(out / "campaign.json")) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(out)) {
-      const std::string name = entry.path().filename().string();
-      if (kOurs.contains(name) || name.starts_with(".campaign.json.")) continue;
-      throw std::invalid_argument(
-          fmt::format("{}: is no campaign's folder (it has no campaign.json) and not empty", out.string()));
-    }
+  const fs::path record = out / "campaign.json";
+  if (fs::exists(record)) return;
+  // Another process may begin the same campaign at the same time: what is in the way is its own if the record is there now.
+  if (HasOthers(out) && !fs::exists(record)) {
+    throw std::invalid_argument(
+        fmt::format("{}: is no campaign's folder (it has no campaign.json) and not empty", out.string()));
   }
-  if (!fs::exists(out / "campaign.json")) WriteAtOnce(out / "campaign.json", text);
+  WriteAtOnce(record, text);
 }
 
 FileLock LockOutput(const fs::path& out, FileLock::Kind kind) {
@@ -98,6 +111,13 @@ void RemoveTasks(const fs::path& out, const std::vector<std::int64_t>& tasks) {
   for (const std::int64_t task : tasks) fs::remove_all(TaskPath(out, task));
 }
 
+void RemoveFailed(const fs::path& out, const std::vector<std::int64_t>& tasks) {
+  for (const std::int64_t task : tasks) {
+    const std::optional<TaskRecord> record = ReadRecord(out, task);
+    if (record && record->status == Status::failed) fs::remove_all(TaskPath(out, task));
+  }
+}
+
 Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, const fs::path& out) {
   Merged merged;
   std::string times = "task";
@@ -130,7 +150,7 @@ Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, c
 }
 
 void WriteAtOnce(const fs::path& file, const std::string& text) {
-  const fs::path own = file.parent_path() / fmt::format(".{}.{}", file.filename().string(), getpid());
+  const fs::path own = OwnName(file);
   evaluation::WriteWhole(own, text);
   std::error_code error, ignored;
   fs::rename(own, file, error);

@@ -36,6 +36,8 @@ struct OutputState {
 OutputState Inspect(const std::filesystem::path& out, const std::vector<std::string>& keys);
 
 void RemoveTasks(const std::filesystem::path& out, const std::vector<std::int64_t>& tasks);
+// Those of them that have failed; what others may have done in the meantime stays.
+void RemoveFailed(const std::filesystem::path& out, const std::vector<std::int64_t>& tasks);
 
 // What all tasks together say.
 struct Merged {

@@ -18,6 +18,15 @@ using Stamps = std::vector<std::int64_t>;
 // Seconds apart, as the reference tools have it.
 double Apart(std::int64_t a_ns, std::int64_t b_ns) { return std::abs(SecondsAsRead(a_ns) - SecondsAsRead(b_ns)); }
 
+std::vector<double> SecondsOf(const Stamps& stamps) {
+  std::vector<double> seconds(stamps.size());
+  std::transform(stamps.begin(), stamps.end(), seconds.begin(), SecondsAsRead);
+  return seconds;
+}
+
+// More than a difference of two stamps as doubles is off.
+constexpr std::int64_t kRounding_ns = 2000;
+
 // Whether a pair has its neighbours on the same side in both. truth_of: by estimate, those that are taken.
 bool GoesForward(const std::map<std::size_t, std::size_t>& truth_of, std::size_t i, std::size_t j) {
   const auto after = truth_of.lower_bound(i);
@@ -25,12 +34,17 @@ bool GoesForward(const std::map<std::size_t, std::size_t>& truth_of, std::size_t
 }
 
 std::vector<Match> OneToOne(const Stamps& estimate, const Stamps& truth, std::int64_t gap, bool may_cross) {
+  const std::vector<double> truth_s = SecondsOf(truth);
   std::vector<std::tuple<double, std::size_t, std::size_t>> candidates;
   for (std::size_t i = 0; i < estimate.size(); ++i) {
-    const auto first = std::upper_bound(truth.begin(), truth.end(), estimate[i] - gap);
-    const auto last = std::lower_bound(first, truth.end(), estimate[i] + gap);
-    for (auto at = first; at != last; ++at)
-      candidates.emplace_back(Apart(estimate[i], *at), i, static_cast<std::size_t>(at - truth.begin()));
+    const auto first = std::lower_bound(truth.begin(), truth.end(), estimate[i] - gap - kRounding_ns);
+    const auto last = std::upper_bound(first, truth.end(), estimate[i] + gap + kRounding_ns);
+    const double estimate_s = SecondsAsRead(estimate[i]);
+    for (auto at = first; at != last; ++at) {
+      const auto j = static_cast<std::size_t>(at - truth.begin());
+      const double apart = std::abs(estimate_s - truth_s[j]);
+      if (apart < SecondsAsRead(gap)) candidates.emplace_back(apart, i, j);
+    }
   }
   std::sort(candidates.begin(), candidates.end());
   std::map<std::size_t, std::size_t> truth_of;
@@ -52,7 +66,7 @@ std::vector<Match> NearestOfLonger(const Stamps& estimate, const Stamps& truth, 
   const Stamps& shorter = estimate_longer ? truth : estimate;
   for (std::size_t i = 0; i < shorter.size(); ++i) {
     const std::size_t j = NearestIndex(longer, shorter[i]);
-    if (std::abs(longer[j] - shorter[i]) > gap) continue;
+    if (Apart(longer[j], shorter[i]) > SecondsAsRead(gap)) continue;
     matches.push_back(estimate_longer ? Match{j, i} : Match{i, j});
   }
   return matches;

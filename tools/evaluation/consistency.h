@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -58,11 +59,12 @@ std::vector<FrameConsistency> ComputeConsistency(const EstimateRun& run, const T
 // run, their spread is only to be had from several runs.
 struct NeesSummary {
   int dof = 0;
-  std::size_t frames = 0;       // with a value
-  std::size_t unusable = 0;     // without: covariance not positive definite
-  double mean = 0, median = 0;  // ideal: dof, and the chi-square median
-  double last = 0;
-  double share_inside = 0;  // of frames inside the two-sided 95 % band of one run
+  std::size_t frames = 0;    // with a value
+  std::size_t unusable = 0;  // without (FrameConsistency says why)
+  // NaN without a frame. Ideal: dof, and the chi-square median
+  double mean = std::numeric_limits<double>::quiet_NaN(), median = mean;
+  double last = mean;
+  double share_inside = mean;  // of frames inside the two-sided 95 % band of one run
 };
 
 NeesSummary SummariseNees(const std::vector<double>& nees, int dof);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "tools/evaluation/estimate_run.h"
@@ -10,10 +11,11 @@
 namespace evaluation {
 
 struct NisSummary {
-  std::size_t frames = 0;   // with at least one matched feature
-  double mean_per_dof = 0;  // sum of NIS / sum of degrees of freedom; ideal 1
-  // Of frames inside the two-sided 95 % chi-square band of their own degrees of freedom; ideal 0.95
-  double share_inside = 0;
+  std::size_t frames = 0;  // with at least one matched feature
+  // NaN where there is no such frame: sum of NIS / sum of degrees of freedom; ideal 1
+  double mean_per_dof = std::numeric_limits<double>::quiet_NaN();
+  // Of frames inside the two-sided 95 % chi-square band of their own degrees of freedom; ideal 0.95, NaN as above
+  double share_inside = std::numeric_limits<double>::quiet_NaN();
   // Autocorrelation, at lags 1 to 5 frames, of z_k = (NIS_k - dof_k) / sqrt(dof_k). White innovations give values
   // within
   // +-1.96/sqrt(frames), 95 % each. The innovations themselves are not recorded: this sees dependence of their size

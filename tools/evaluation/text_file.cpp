@@ -148,8 +148,9 @@ std::string FormatSeconds(std::int64_t stamp_ns) {
 }
 
 double SecondsAsRead(std::int64_t stamp_ns) {
-  const std::int64_t whole = stamp_ns / 1'000'000'000;
-  return static_cast<double>(whole) + static_cast<double>(stamp_ns % 1'000'000'000) * 1e-9;
+  constexpr std::int64_t kHasADouble = std::int64_t{1} << 53;  // and all below: the quotient is rounded once
+  return std::abs(stamp_ns) <= kHasADouble ? static_cast<double>(stamp_ns) / 1e9
+                                           : *ParseNumber(FormatSeconds(stamp_ns));
 }
 
 std::string FormatNumber(double value, int digits) {

@@ -99,9 +99,9 @@ Json Of(const ev::NeesSummary& nees, const char* what, ev::Gauge gauge) {
                   "; ideal mean: dof. Frames of one run are dependent: no interval follows from their number"},
       {"dof", nees.dof},
       {"frames", nees.frames},
-      {"frames_without_positive_definite_covariance", nees.unusable},
+      {"frames_without_value", nees.unusable},
       {"mean", nees.mean},
-      {"mean_per_dof", nees.frames == 0 ? std::nan("") : nees.mean / nees.dof},
+      {"mean_per_dof", nees.mean / nees.dof},
       {"median", nees.median},
       {"last", nees.last},
       {"share_inside_95_percent_band", nees.share_inside}};

@@ -43,7 +43,7 @@ std::vector<RankTable> ReadRanks(const std::filesystem::path& out) {
       return value.value_or(0);
     };
     const double frame = number(1);
-    if (!(frame >= 1 && frame < 1e9)) problems.Add(file, line.number, line.tokens[1].column, "no frame's number");
+    if (!(frame >= 0 && frame < 1e9)) problems.Add(file, line.number, line.tokens[1].column, "no frame's number");
     const std::string &system = line.tokens[0].text, &dimension = line.tokens[2].text;
     if (number(3) == 1)
       tables.push_back(

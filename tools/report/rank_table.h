@@ -12,7 +12,7 @@ namespace report {
 // One histogram. A bar of an honest filter is between `low` and `high` with probability 95 % or more.
 struct RankTable {
   std::string system;
-  std::size_t frame = 0;  // 1, 2, ...
+  std::size_t frame = 0;  // 0 is the first of the sequence
   std::string dimension;  // "position x", ...
   double p_value = 1;     // of uniformity
   std::vector<double> counts, low, high;

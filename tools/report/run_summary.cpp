@@ -84,14 +84,9 @@ std::string SystemTiles(const std::vector<SystemSummary>& systems, const std::ve
   return html;
 }
 
-std::vector<std::string> ErrorCells(const ev::TrajectoryErrors& errors, double path_length_m) {
-  const bool rpe = !errors.rpe.pairs.empty();
-  return {Fixed(100 * errors.sim3.position.rmse, 2),
-          Fixed(100 * errors.sim3.position.rmse / path_length_m, 2),
-          Fixed(100 * errors.se3.position.rmse, 2),
-          errors.sim3.similarity.scale_determined ? Fixed(errors.sim3.similarity.scale, 3) : "–",
-          rpe ? Fixed(100 * errors.rpe.position_statistics.rmse, 2) : "–",
-          rpe ? Fixed(kDegrees * errors.rpe.orientation_statistics.rmse, 2) : "–"};
+std::vector<std::string> ErrorCells(const SystemSummary& s) {
+  return {Fixed(100 * s.ate_m, 2), Fixed(100 * s.ate_share_of_path, 2), Fixed(100 * s.ate_se3_m, 2), Fixed(s.scale, 3),
+          Fixed(100 * s.rpe_m, 2), Fixed(kDegrees * s.rpe_rad, 2)};
 }
 
 }  // namespace
@@ -136,7 +131,7 @@ std::string RunTable(const std::vector<JudgedRun>& judged) {
     if (rows.size() > kRows) break;
     const ev::Metrics& m = run.metrics;
     std::vector<std::string> cells = {Escape(DisplayName(run.run.system)), std::to_string(run.run.seed)};
-    for (std::string& cell : ErrorCells(m.errors, m.path_length_m)) cells.push_back(std::move(cell));
+    for (std::string& cell : ErrorCells(SummariseErrors(run))) cells.push_back(std::move(cell));
     const auto nees = [&](const std::optional<ev::NeesSummary>& n) {
       return Readable(n && n->frames > 0 ? n->mean / n->dof : nan);
     };
@@ -150,18 +145,17 @@ std::string RunTable(const std::vector<JudgedRun>& judged) {
     cells.push_back(m.timing ? Fixed(m.timing->ms_features + m.timing->ms_matching + m.timing->ms_filter, 1) : "–");
     rows.push_back(std::move(cells));
   }
-  const auto baseline = [&](const char* name, const ev::TrajectoryErrors& errors) {
-    std::vector<std::string> cells = {name, ""};
-    for (std::string& cell : ErrorCells(errors, judged[0].metrics.path_length_m)) cells.push_back(std::move(cell));
+  for (const SystemSummary& baseline : SummariseBaselines(judged)) {
+    std::vector<std::string> cells = {baseline.system, ""};
+    for (std::string& cell : ErrorCells(baseline)) cells.push_back(std::move(cell));
     cells.resize(rows.front().size());
     rows.push_back(std::move(cells));
-  };
-  baseline("constant pose", judged[0].metrics.constant_pose);
-  baseline("constant velocity", judged[0].metrics.constant_velocity);
+  }
   const std::string which = judged.size() > kRows ? "The first " + std::to_string(kRows) + " of " +
                                                         std::to_string(judged.size()) + " runs (metrics.json has all)"
                                                   : "Every run";
-  return Table(which + ", and the baselines. Aligned by Sim(3) unless the column says otherwise.", rows);
+  return Table(which + ", and the baselines, medians over runs. Aligned by Sim(3) unless the column says otherwise.",
+               rows);
 }
 
 }  // namespace report

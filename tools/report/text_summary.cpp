@@ -35,6 +35,11 @@ SystemSummary ErrorsOver(const std::string& name, const std::vector<const Judged
   s.ate_m = MedianOver(runs, ate);
   for (const JudgedRun* run : runs) s.ate_worst_m = std::max(s.ate_worst_m, ate(*run));
   s.ate_share_of_path = MedianOver(runs, [&](const JudgedRun& run) { return ate(run) / run.metrics.path_length_m; });
+  s.ate_se3_m = MedianOver(runs, [&](const JudgedRun& run) { return of(run).se3.position.rmse; });
+  s.scale = MedianOver(runs, [&](const JudgedRun& run) {
+    const evaluation::Similarity& similarity = of(run).sim3.similarity;
+    return similarity.scale_determined ? similarity.scale : kNaN;
+  });
   const auto rpe = [&](const JudgedRun& run, bool position) {
     const evaluation::Rpe& r = of(run).rpe;
     return r.pairs.empty() ? kNaN : position ? r.position_statistics.rmse : r.orientation_statistics.rmse;
@@ -46,7 +51,11 @@ SystemSummary ErrorsOver(const std::string& name, const std::vector<const Judged
   return s;
 }
 
+const evaluation::TrajectoryErrors& ErrorsOf(const JudgedRun& run) { return run.metrics.errors; }
+
 }  // namespace
+
+SystemSummary SummariseErrors(const JudgedRun& run) { return ErrorsOver(run.run.system, {&run}, ErrorsOf); }
 
 std::vector<SystemSummary> SummariseSystems(const std::vector<JudgedRun>& runs) {
   std::vector<std::string> systems;
@@ -59,8 +68,7 @@ std::vector<SystemSummary> SummariseSystems(const std::vector<JudgedRun>& runs) 
     for (const JudgedRun& run : runs) {
       if (run.run.system == system) own.push_back(&run);
     }
-    SystemSummary s = ErrorsOver(
-        system, own, [](const JudgedRun& run) -> const evaluation::TrajectoryErrors& { return run.metrics.errors; });
+    SystemSummary s = ErrorsOver(system, own, ErrorsOf);
     s.pose_coverage = MedianOver(
         own, [](const JudgedRun& run) { return run.metrics.coverage ? run.metrics.coverage->pose_coverage() : kNaN; });
     s.tracked_coverage = MedianOver(own, [](const JudgedRun& run) {

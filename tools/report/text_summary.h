@@ -12,8 +12,9 @@ namespace report {
 struct SystemSummary {
   std::string system;
   std::size_t runs = 0;
-  double ate_m = 0;        // position RMSE after Sim(3) alignment
-  double ate_worst_m = 0;  // of the seeds
+  double ate_m = 0;                 // position RMSE after Sim(3) alignment
+  double ate_worst_m = 0;           // of the seeds
+  double ate_se3_m = 0, scale = 0;  // after SE(3) alignment; scale of the Sim(3) one, NaN where it is not determined
   double ate_share_of_path = 0;
   double rpe_m = 0,
          rpe_rad = 0;  // RMSE over one second (JudgeOptions::rpe_delta_ns), translations times the Sim(3) scale
@@ -28,6 +29,9 @@ std::vector<SystemSummary> SummariseSystems(const std::vector<JudgedRun>& runs);
 
 // The same for the baselines, which never look at the images: "constant pose", "constant velocity".
 std::vector<SystemSummary> SummariseBaselines(const std::vector<JudgedRun>& runs);
+
+// Of one run, with its errors alone.
+SystemSummary SummariseErrors(const JudgedRun& run);
 
 // Seeds that both systems ran, and in how many of them the first has the smaller ATE (Sim(3)).
 struct Duel {

@@ -56,6 +56,12 @@ std::span<const std::uint8_t> Bytes(const std::string& text) {
 
 }  // namespace
 
+std::string DigestOfPointFiles(const sim::Scenario& scenario) {
+  std::string digests;
+  for (const fs::path& file : NamedFiles(scenario)) digests += campaign::DigestOfFile(file) + "\n";
+  return digests;
+}
+
 bool WorldIsKnown(const sim::Scenario& scenario, campaign::SequenceCache& cache) {
   return cache.Inputs(NameOfWorld(scenario)).has_value();
 }

@@ -1,4 +1,5 @@
-// Purpose: the pictures of a scenario in the campaign's cache: what they are named after, and how they get there.
+// Purpose: what a campaign's scenario reads from files, and its pictures in the cache: what they are named after, and how
+//          they get there.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +10,9 @@
 #include "tools/campaign/sequence_cache.h"
 
 namespace vobench {
+
+// Of the contents of the files that the motion in a world of points is read from; empty where there is none.
+std::string DigestOfPointFiles(const sim::Scenario& scenario);
 
 // The files of a scenario's world, by which the cache knows it. They are found by reading all of it once: `Find` does
 // so, and throws BadInput where it cannot be read. Files have changed or never been looked at: not known.

@@ -123,7 +123,7 @@ class SlurmRun {
 
 void RunOnSlurm(const CampaignWork& work, const CampaignOptions& options, std::vector<std::int64_t> tasks) {
   if (tasks.empty()) return;
-  campaign::RemoveTasks(options.output, tasks);  // failed ones: what is there from now on is new
+  campaign::RemoveFailed(options.output, tasks);  // what is there from now on is a result
   SlurmRun(work, options, std::move(tasks)).Run();
 }
 

@@ -47,7 +47,11 @@ std::string LevelValue(const nlohmann::json& resolved, const campaign::Factor& f
   return !factor.key.empty() && value->is_number() ? value->dump() : factor.levels[level].name;
 }
 
-std::string DigestOfSettings(const Experiment& experiment) { return campaign::Digest(experiment.resolved); }
+// Of pictures the key says which files they were made from.
+std::string DigestOfSettings(const Experiment& experiment) {
+  const sim::Scenario& scenario = experiment.scenario;
+  return campaign::Digest(experiment.resolved + (scenario.points ? DigestOfPointFiles(scenario) : ""));
+}
 
 // A world of points has the seed of its task.
 void RefuseSeed(campaign::CampaignFile& file, const campaign::TaskChoice& choice, const Experiment& experiment) {

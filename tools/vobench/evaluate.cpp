@@ -18,6 +18,8 @@ namespace {
 
 using evaluation::Statistics;
 
+constexpr const char* kNees = "NEES of the pose, per dof";
+
 evaluation::Alignment AlignmentOf(const std::string& name) {
   using evaluation::Alignment;
   for (const Alignment alignment : {Alignment::none, Alignment::se3, Alignment::sim3, Alignment::first}) {
@@ -47,23 +49,34 @@ std::optional<evaluation::JudgeOptions> RecordedOptions(const fs::path& run) {
   return std::nullopt;
 }
 
-evaluation::Trajectory ReadTruth(const fs::path& path) {
-  if (!fs::is_directory(path)) return evaluation::ReadTrajectory(path);
+// Of a file or a sequence.
+evaluation::Trajectory ReadTruth(const fs::path& path, evaluation::Reading reading = evaluation::Reading::strict) {
+  if (!fs::is_directory(path)) return evaluation::ReadTrajectory(path, reading);
+  if (const fs::path file = path / "groundtruth.txt"; fs::exists(file))
+    return evaluation::ReadTrajectory(file, reading);
   const std::optional<Truth> truth = ReadSequenceTruth(path);
   if (!truth) throw BadInput(fmt::format("{}: no groundtruth.txt in it", path.string()));
   return truth->poses;
 }
 
-// The trajectory of a file, a run folder or a sequence.
-evaluation::Trajectory ReadFor(const fs::path& path, evaluation::Reading reading) {
-  if (!fs::is_directory(path)) return evaluation::ReadTrajectory(path, reading);
-  return fs::exists(path / "estimate.txt") ? evaluation::ReadTrajectory(path / "estimate.txt", reading)
-                                           : ReadTruth(path);
+// Of a file, a run folder or a sequence.
+evaluation::Trajectory ReadEstimatedPoses(const fs::path& path, evaluation::Reading reading) {
+  const fs::path file = path / "estimate.txt";
+  return fs::exists(file) ? evaluation::ReadTrajectory(file, reading) : ReadTruth(path, reading);
 }
 
 void PrintStatistics(std::string_view what, const Statistics& s, double factor, std::string_view unit) {
   fmt::print("{:<28} rmse {:9.4f}  mean {:9.4f}  median {:9.4f}  max {:9.4f}  [{}]\n", what, factor * s.rmse,
              factor * s.mean, factor * s.median, factor * s.max, unit);
+}
+
+void PrintNees(const evaluation::NeesSummary& nees, evaluation::Gauge gauge) {
+  if (nees.frames == 0) {
+    fmt::print("{:<28} none: no frame has a covariance that is positive definite\n", kNees);
+    return;
+  }
+  fmt::print("{:<28} {:.3f}  (ideal 1; {})\n", kNees, nees.mean / nees.dof,
+             gauge == evaluation::Gauge::as_is ? "no alignment" : "the first poses made equal");
 }
 
 void Print(const evaluation::Metrics& metrics, evaluation::Alignment alignment) {
@@ -87,12 +100,13 @@ void Print(const evaluation::Metrics& metrics, evaluation::Alignment alignment) 
     if (const auto tracked = metrics.coverage->tracked_coverage())
       fmt::print("{:<28} {:.4f}\n", "tracked coverage", *tracked);
   }
-  if (metrics.consistency) {
-    const evaluation::NeesSummary& nees = metrics.consistency->pose;
-    fmt::print("{:<28} {:.3f}  (ideal 1; {})\n", "NEES of the pose, per dof", nees.mean / nees.dof,
-               metrics.options.gauge == evaluation::Gauge::as_is ? "no alignment" : "the first poses made equal");
+  if (metrics.consistency) PrintNees(metrics.consistency->pose, metrics.options.gauge);
+  if (!metrics.nis) return;
+  if (metrics.nis->frames == 0) {
+    fmt::print("{:<28} none: no frame has a matched feature\n", "NIS, per dof");
+  } else {
+    fmt::print("{:<28} {:.3f}  (ideal 1)\n", "NIS, per dof", metrics.nis->mean_per_dof);
   }
-  if (metrics.nis) fmt::print("{:<28} {:.3f}  (ideal 1)\n", "NIS, per dof", metrics.nis->mean_per_dof);
 }
 
 }  // namespace
@@ -101,7 +115,8 @@ void Evaluate(const EvaluateOptions& options) {
   if (options.compat) {
     const Reproduction tool = ParseCompat(*options.compat);
     fmt::print("{}", Input([&] {
-                 return tool.Run(ReadFor(options.estimate, tool.reading), ReadFor(options.truth, tool.reading));
+                 return tool.Run(ReadEstimatedPoses(options.estimate, tool.reading),
+                                 ReadTruth(options.truth, tool.reading));
                }));
     return;
   }
@@ -116,7 +131,7 @@ void Evaluate(const EvaluateOptions& options) {
   Print(Input([&] { return evaluation::Judge(estimate, truth, std::nullopt, how); }), AlignmentOf(options.align));
   if (!world_is_known) {
     fmt::print("{:<28} none: without the metrics.json of this run nothing says whether it began in the truth's world\n",
-               "NEES of the pose, per dof");
+               kNees);
   }
 }
 

@@ -6,15 +6,28 @@
 
 #include "tools/evaluation/whole_file.h"
 #include "tools/vobench/errors.h"
+#include "tools/vobench/output_folder.h"
 
 namespace vobench {
 namespace fs = std::filesystem;
+namespace {
 
-void RequireMapPath(const fs::path& file) {
+bool IsIn(const fs::path& inner, const fs::path& outer) {
+  const fs::path path = fs::weakly_canonical(inner), folder = fs::weakly_canonical(CleanPath(outer));
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
+}  // namespace
+
+void RequireMapPath(const fs::path& file, const std::optional<fs::path>& result) {
   if (file.extension() != ".ply") throw BadInput(fmt::format("--map {}: the name must end in .ply", file.string()));
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   if (!fs::is_directory(folder)) {
     throw BadInput(fmt::format("--map {}: there is no folder {}; make it first", file.string(), folder.string()));
+  }
+  if (result && IsIn(folder, *result)) {
+    throw BadInput(fmt::format("--map {}: is in {}, which the result replaces; choose another folder", file.string(),
+                               result->string()));
   }
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,9 @@
 
 namespace vobench {
 
-// Throws BadInput where the name does not end in .ply or its folder is not there: before the work, not after it.
-void RequireMapPath(const std::filesystem::path& file);
+// Throws BadInput where the name does not end in .ply, its folder is not there, or is (in) the folder that the result
+// replaces: before the work, not after it.
+void RequireMapPath(const std::filesystem::path& file, const std::optional<std::filesystem::path>& result);
 
 // `map.ply` itself, or `map_SYSTEM_seed_N.ply` where several runs leave a map each.
 std::filesystem::path MapPathOf(const std::filesystem::path& file, const report::RunEntry& run, bool several);

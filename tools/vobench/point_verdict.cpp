@@ -165,7 +165,7 @@ std::vector<report::RankTable> RankTables(const std::string& system, const std::
     const std::size_t dimension = i % kDimensions;
     report::RankTable& table = tables.emplace_back();
     table.system = system;
-    table.frame = rank_frames.at(i / kDimensions) + 1;
+    table.frame = rank_frames.at(i / kDimensions);
     table.dimension = fmt::format("{} {}", evaluation::kStateBlocks[dimension / 3].name, "xyz"[dimension % 3]);
     table.p_value = histogram.p_value;
     for (std::size_t bar = 0; bar < histogram.counts.size(); ++bar) {

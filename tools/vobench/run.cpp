@@ -69,7 +69,7 @@ void Write(OutputFolder& folder, const std::vector<Tracker>& trackers, const Tru
 
 void Run(const RunOptions& options) {
   const Clock clock;
-  if (options.map) RequireMapPath(*options.map);
+  if (options.map) RequireMapPath(*options.map, options.output);
   const Experiment experiment = ReadExperiment(options.scenario, options.overrides);
   if (experiment.scenario.points) return RunOnPoints(options, experiment, clock);
   if (options.bound) throw BadInput("--bound is for worlds of points: " + options.scenario.string() + " has images");

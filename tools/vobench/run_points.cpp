@@ -105,6 +105,11 @@ std::vector<std::string> Notes(const std::vector<PointRun>& runs) {
   return {warned == 1 ? first : fmt::format("{} (and so on: {} of {} runs)", first, warned, runs.size())};
 }
 
+template <class T>
+std::vector<T> WithoutFirst(const std::vector<T>& frames) {
+  return {frames.begin() + (frames.empty() ? 0 : 1), frames.end()};
+}
+
 std::vector<SystemRuns> BySystem(const RunOptions& options, std::vector<PointRun>& runs) {
   std::vector<SystemRuns> systems;
   for (const std::string& system : options.systems) {
@@ -116,8 +121,9 @@ std::vector<SystemRuns> BySystem(const RunOptions& options, std::vector<PointRun
       if (run.system != system) continue;
       all.metrics.push_back(run.judged.metrics);
       all.nees.push_back(std::move(run.nees));
-      errors.push_back(run.errors);
-      bounds.push_back(runs[errors.size() - 1].linearised.bound);  // the first system's runs come first
+      // The first frame is the prior's. The first system's runs come first, and have the bounds.
+      errors.push_back(WithoutFirst(run.errors));
+      bounds.push_back(WithoutFirst(runs[errors.size() - 1].linearised.bound));
     }
     if (options.bound || options.verdict) all.bound = evaluation::CompareWithBound(errors, bounds);
   }

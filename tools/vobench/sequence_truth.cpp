@@ -35,6 +35,26 @@ std::optional<std::int64_t> ParseNanoseconds(const std::string& text) {
   return whole && near ? std::optional(stamp_ns) : std::nullopt;
 }
 
+// ICL-NUIM's time is index / 30 s. indices_ns: the index read as seconds.
+std::int64_t IclNuimStamp(std::int64_t indices_ns) { return (indices_ns + 15) / 30; }
+
+std::optional<std::int64_t> ParseIclNuimIndex(const std::string& text) {
+  const auto indices_ns = evaluation::ParseSeconds(text);
+  return indices_ns ? std::optional(IclNuimStamp(*indices_ns)) : std::nullopt;
+}
+
+// Where a sequence lists its pictures, a line each that begins with its time. The first one there is says.
+struct FrameList {
+  const char* name;
+  char separator;
+  std::optional<std::int64_t> (*stamp)(const std::string& text);
+  const char* what;
+};
+constexpr FrameList kFrameLists[] = {
+    {"rgb.txt", ' ', evaluation::ParseSeconds, "a time in seconds, 4e9 at most"},
+    {"associations.txt", ' ', ParseIclNuimIndex, "the number of a frame"},
+    {"mav0/cam0/data.csv", ',', ParseNanoseconds, "a time in nanoseconds, 4e18 at most"}};
+
 // T_BS of a sensor: from the sensor's frame to the body's.
 Eigen::Isometry3d ReadExtrinsic(const fs::path& file) {
   std::array<double, 16> data{};
@@ -110,22 +130,23 @@ std::optional<Truth> ReadSequenceTruth(const fs::path& sequence) {
   const std::optional<fs::path> icl_nuim = IclNuimTruth(sequence);
   if (!icl_nuim) return std::nullopt;
   truth.poses = MirroredInY(evaluation::ReadTrajectory(*icl_nuim));
-  for (evaluation::StampedPose& pose : truth.poses) pose.stamp_ns = (pose.stamp_ns + 15) / 30;  // was: index as seconds
+  for (evaluation::StampedPose& pose : truth.poses) pose.stamp_ns = IclNuimStamp(pose.stamp_ns);
   fmt::print(stderr, "{}: original ICL-NUIM truth, mirrored in y to match a camera with fy > 0; time is index / 30 s\n",
              icl_nuim->string());
   return truth;
 }
 
 std::optional<std::vector<std::int64_t>> ReadFrameStamps(const fs::path& sequence) {
-  const fs::path list = sequence / "rgb.txt";
-  if (!fs::exists(list)) return std::nullopt;
+  const auto format = std::find_if(std::begin(kFrameLists), std::end(kFrameLists),
+                                   [&](const FrameList& list) { return fs::exists(sequence / list.name); });
+  if (format == std::end(kFrameLists)) return std::nullopt;
+  const fs::path list = sequence / format->name;
   std::vector<std::int64_t> stamps;
   evaluation::Problems problems;
-  for (const evaluation::Line& line : evaluation::ReadLines(list)) {
+  for (const evaluation::Line& line : evaluation::ReadLines(list, format->separator)) {
     const std::string& text = line.tokens[0].text;
-    const auto stamp_ns = evaluation::ParseSeconds(text);
-    if (!stamp_ns)
-      problems.Add(list, line.number, line.tokens[0].column, "'" + text + "' is not a time in seconds, 4e9 at most");
+    const auto stamp_ns = format->stamp(text);
+    if (!stamp_ns) problems.Add(list, line.number, line.tokens[0].column, "'" + text + "' is not " + format->what);
     if (stamp_ns && !stamps.empty() && *stamp_ns <= stamps.back())
       problems.Add(list, line.number, line.tokens[0].column, "time does not increase");
     stamps.push_back(stamp_ns.value_or(0));

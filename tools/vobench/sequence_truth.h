@@ -16,8 +16,8 @@ namespace vobench {
 // cam0). None when there is none of them. Throws evaluation::InputError or settings::Error.
 std::optional<Truth> ReadSequenceTruth(const std::filesystem::path& sequence);
 
-// When the pictures were taken that the sequence's rgb.txt lists. None where there is none (other layouts than TUM's).
-// Throws evaluation::InputError.
+// When the pictures were taken that the sequence lists: in rgb.txt, ICL-NUIM's associations.txt (index / 30 s) or EuRoC's
+// mav0/cam0/data.csv. None where it has no list. Throws evaluation::InputError.
 std::optional<std::vector<std::int64_t>> ReadFrameStamps(const std::filesystem::path& sequence);
 
 // S T S: the same trajectory as seen by a camera whose image is the right way up.

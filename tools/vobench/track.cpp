@@ -104,7 +104,7 @@ evaluation::JudgeOptions StartedAtTheOrigin() {
 
 void Track(const TrackOptions& options) {
   const Clock clock;
-  if (options.map) RequireMapPath(*options.map);
+  if (options.map) RequireMapPath(*options.map, options.output);
   const std::unique_ptr<vo::FrameSource> source = Input([&] { return vo::OpenFrames(options.sequence.string()); });
   vo::Camera camera = Input([&] { return ReadCamera(options); });
   const TrackSettings settings = Input([&] { return ReadSettings(options); });

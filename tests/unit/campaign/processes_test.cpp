@@ -3,14 +3,18 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
+#include <latch>
 #include <map>
 #include <memory>
 #include <thread>
+#include <vector>
 
 #include "tests/unit/campaign/folder.h"
 #include "tools/campaign/command.h"
 #include "tools/campaign/memory.h"
+#include "tools/campaign/output.h"
 #include "tools/campaign/process_pool.h"
 #include "tools/campaign/sequence_cache.h"
 #include "tools/campaign/task_folder.h"
@@ -269,6 +273,48 @@ TEST(SequenceCache, KnowsAWorldUntilOneOfItsFilesChanges) {
   EXPECT_EQ(SequenceCache(here / "cache").Inputs("world"), before);
   here.Write("picture", "now it is there");
   EXPECT_FALSE(SequenceCache(here / "cache").Inputs("world")) << "what was not found then would be now";
+}
+
+// Tasks of one campaign that are started at the same time begin in the same empty folder. (Before, about one in fifty said
+// that it is no campaign's folder.)
+TEST(PrepareOutput, ManyMayBeginAtOnce) {
+  const Folder here;
+  for (int trial = 0; trial < 200; ++trial) {
+    const std::filesystem::path out = here / std::to_string(trial);
+    std::vector<std::thread> threads;
+    std::atomic<int> refused = 0;
+    std::latch together(8);
+    for (int i = 0; i < 8; ++i) {
+      threads.emplace_back([&] {
+        together.arrive_and_wait();
+        try {
+          PrepareOutput(out, "{}");
+        } catch (const std::exception&) {
+          ++refused;
+        }
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    ASSERT_EQ(refused, 0) << trial;
+    ASSERT_EQ(here.Read(std::to_string(trial) + "/campaign.json"), "{}");
+  }
+  here.Write("other/notes.txt", "mine");
+  EXPECT_THROW(PrepareOutput(here / "other", "{}"), std::invalid_argument);
+}
+
+TEST(RemoveFailed, LeavesWhatIsDone) {
+  const Folder here;
+  const auto write = [&](std::int64_t task, Status status) {
+    TaskRecord record;
+    record.task = task;
+    record.status = status;
+    here.Write(TaskPath("", task).string() + "/task.json", ToJson(record));
+  };
+  write(0, Status::ok);
+  write(1, Status::failed);
+  write(2, Status::lost);
+  RemoveFailed(here.path(), {0, 1, 2, 3});
+  EXPECT_EQ(PresentTasks(here.path()), (std::vector<std::int64_t>{0, 2}));
 }
 
 }  // namespace

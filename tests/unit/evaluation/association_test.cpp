@@ -44,6 +44,26 @@ TEST(Associate, TheGapIsOpenForOneRuleAndClosedForTheOther) {
 }
 
 // Above a hundred poses a second two may each be within the gap of the other's truth.
+// Stamps that lie exactly the gap apart: which pairs that takes is a matter of rounding, and the tools' own, which
+// subtract the doubles that a stamp is read as.
+TEST(Associate, HoldsTheGapAgainstWhatTheToolsSubtract) {
+  for (const std::int64_t begin_ns : {std::int64_t{0}, std::int64_t{1'305'031'102'000'000'000}}) {
+    Stamps estimate, truth;
+    P tum, evo;
+    for (std::size_t k = 0; k < 200; ++k) {
+      truth.push_back(begin_ns + 103'700'000 * static_cast<std::int64_t>(k));
+      estimate.push_back(truth.back() + 20'000'000);
+      const double apart = std::stod(FormatSeconds(estimate[k])) - std::stod(FormatSeconds(truth[k]));
+      if (apart < 0.02) tum.emplace_back(k, k);
+      if (apart <= 0.02) evo.emplace_back(k, k);
+    }
+    ASSERT_GT(tum.size(), 20u);
+    ASSERT_LT(evo.size(), 190u);
+    EXPECT_EQ(Pairs(Associate(estimate, truth, kTum)), tum);
+    EXPECT_EQ(Pairs(Associate(estimate, truth, kNearest)), evo);
+  }
+}
+
 TEST(Associate, GoesForwardInBothButForTumsRule) {
   const Stamps estimate = {0, 4'000'000, 20'000'000}, truth = {3'000'000, 6'000'000, 21'000'000};
   EXPECT_EQ(Pairs(Associate(estimate, truth, kOneToOne)), (P{{1, 0}, {2, 2}}));

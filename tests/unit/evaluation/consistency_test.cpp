@@ -246,7 +246,12 @@ TEST(SummariseNees, CountsWhatHasNoAnswer) {
   EXPECT_EQ(summary.unusable, 1u);
   EXPECT_EQ(summary.mean, 9);
   EXPECT_EQ(summary.last, 12);
-  EXPECT_EQ(SummariseNees({}, 6).frames, 0u);
+  for (const std::vector<double>& none : {std::vector<double>{}, {std::nan("")}}) {
+    const NeesSummary nothing = SummariseNees(none, 6);
+    EXPECT_EQ(nothing.frames, 0u);
+    for (const double value : {nothing.mean, nothing.median, nothing.last, nothing.share_inside})
+      EXPECT_TRUE(std::isnan(value)) << "0 would be an answer";
+  }
 }
 
 TEST(ComputeConsistency, FirstPoseGaugeMovesTheTruthIntoTheWorldOfTheEstimate) {

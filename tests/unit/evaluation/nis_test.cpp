@@ -45,6 +45,8 @@ TEST(SummariseNis, HonestInnovationsPassAndWrongOnesDoNot) {
 TEST(SummariseNis, SaysNothingOfNothing) {
   const NisSummary summary = SummariseNis({FrameRecord{}});
   EXPECT_EQ(summary.frames, 0u);
+  EXPECT_TRUE(std::isnan(summary.mean_per_dof)) << "0 would be an answer";
+  EXPECT_TRUE(std::isnan(summary.share_inside));
   EXPECT_TRUE(summary.autocorrelation.empty());
   FrameRecord one;
   one.nis_dof = 1;

@@ -68,9 +68,14 @@ TEST(FormatSeconds, IsTheInverse) {
   EXPECT_EQ(FormatSeconds(std::numeric_limits<std::int64_t>::min()), "-9223372036.854775808");
 }
 
-TEST(SecondsAsRead, AreWholeSecondsAndTheRest) {
-  EXPECT_EQ(SecondsAsRead(1305031102'160407123), 1305031102.0 + 160407123 * 1e-9);
+TEST(SecondsAsRead, AreTheDoublesNearestToTheText) {
+  EXPECT_EQ(SecondsAsRead(1305031102'160407123), 1305031102.160407123);
   EXPECT_EQ(SecondsAsRead(-2'500'000'000), -2.5);
+  EXPECT_EQ(SecondsAsRead(5'020'000'000), 5.02);
+  for (std::int64_t stamp_ns = 1'000'000'007; stamp_ns < 4'000'000'000'000'000'000; stamp_ns += stamp_ns / 7) {
+    EXPECT_EQ(SecondsAsRead(stamp_ns), std::stod(FormatSeconds(stamp_ns))) << stamp_ns;
+    EXPECT_EQ(SecondsAsRead(-stamp_ns), -SecondsAsRead(stamp_ns));
+  }
 }
 
 TEST(FormatNumber, HasAsManyDigitsAsAreAskedFor) {

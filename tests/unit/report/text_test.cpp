@@ -6,6 +6,7 @@
 
 #include "tests/unit/evaluation/temporary_folder.h"
 #include "tests/unit/report/fake_result.h"
+#include "tools/report/run_summary.h"
 #include "tools/report/text_summary.h"
 
 namespace report {
@@ -63,6 +64,20 @@ TEST(TextSummary, ShowsMediansOfEachSystemAndTheBaselines) {
     EXPECT_THAT(text, HasSubstr(part));
   }
   EXPECT_EQ(TextSummary({}), "");
+}
+
+// Where each seed has a path of its own, so has each a baseline; the table has the median, as the terminal does.
+TEST(RunTable, HasTheBaselinesOfTheSummary) {
+  const evaluation::TemporaryFolder folder;
+  auto judged = WriteFakeResult(folder.path(), {});
+  for (std::size_t i = 0; i < judged.size(); ++i)
+    judged[i].metrics.constant_pose.sim3.position.rmse = 0.01 * static_cast<double>(1 + i % 3);
+  ASSERT_EQ(Fixed(100 * SummariseBaselines(judged)[0].ate_m, 2), "2.00");
+  const std::string table = RunTable(judged);
+  const std::size_t row = table.find("constant pose");
+  ASSERT_NE(row, std::string::npos);
+  const std::string cells = table.substr(row, table.find("</tr>", row) - row);
+  EXPECT_THAT(cells, HasSubstr(">2.00<"));
 }
 
 TEST(Compare, CountsSeedsThatBothRan) {

@@ -94,12 +94,27 @@ TEST(MapFile, IsReadByAssimp) {
 }
 
 TEST(MapFile, PathsAreCheckedBeforeTheWork) {
-  EXPECT_NO_THROW(RequireMapPath("map.ply"));
-  EXPECT_THROW(RequireMapPath("map.txt"), BadInput);
-  EXPECT_THROW(RequireMapPath("no/such/folder/map.ply"), BadInput);
+  EXPECT_NO_THROW(RequireMapPath("map.ply", std::nullopt));
+  EXPECT_NO_THROW(RequireMapPath("map.ply", "out"));
+  EXPECT_THROW(RequireMapPath("map.txt", "out"), BadInput);
+  EXPECT_THROW(RequireMapPath("no/such/folder/map.ply", "out"), BadInput);
   const report::RunEntry run{"rb2pf", 3, ".", 0};
   EXPECT_EQ(MapPathOf("out/map.ply", run, false), "out/map.ply");
   EXPECT_EQ(MapPathOf("out/map.ply", run, true), "out/map_rb2pf_seed_3.ply");
+}
+
+// The result replaces its folder, and all that is in it.
+TEST(MapFile, IsNotPutWhereTheResultReplacesIt) {
+  const std::filesystem::path here = std::filesystem::path(testing::TempDir()) / "map_file_test";
+  std::filesystem::create_directories(here / "out/inner");
+  for (const char* map : {"out/map.ply", "out/../out/map.ply", "out/inner/map.ply"}) {
+    EXPECT_THROW(RequireMapPath(here / map, here / "out"), BadInput) << map;
+    EXPECT_THROW(RequireMapPath(here / map, here / "out/"), BadInput) << map;
+    EXPECT_NO_THROW(RequireMapPath(here / map, here / "ou")) << map;
+    EXPECT_NO_THROW(RequireMapPath(here / map, here / "other/out")) << map;
+  }
+  EXPECT_NO_THROW(RequireMapPath(here / "map.ply", here / "out"));
+  std::filesystem::remove_all(here);
 }
 
 }  // namespace

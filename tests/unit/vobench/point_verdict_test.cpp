@@ -108,7 +108,7 @@ TEST(RankTables, HaveTheBandOfAnHonestBar) {
   histogram.p_value = 0.75;
   const std::vector<report::RankTable> tables = RankTables("rb2pf", {29, 59}, verdict);
   ASSERT_EQ(tables.size(), 1u);
-  EXPECT_EQ(tables[0].frame, 60u);
+  EXPECT_EQ(tables[0].frame, 59u);
   EXPECT_EQ(tables[0].dimension, "linear velocity y");
   EXPECT_EQ(tables[0].counts[1], 12);
   for (std::size_t bar = 0; bar < 10; ++bar) {

@@ -32,6 +32,25 @@ TEST(SequenceTruth, MirrorsOriginalIclNuimPoses) {
   fs::remove_all(folder);
 }
 
+// As many frames as the pictures listed, whichever layout lists them.
+TEST(FrameStamps, AreOfTheListThatTheLayoutHas) {
+  const fs::path folder = fs::path(testing::TempDir()) / "frame_stamps";
+  fs::remove_all(folder);
+  fs::create_directories(folder / "mav0/cam0");
+  EXPECT_FALSE(vobench::ReadFrameStamps(folder));
+  std::ofstream(folder / "mav0/cam0/data.csv") << "#timestamp [ns],filename\n1403636579763555584,1.png\n"
+                                                  "1403636579813555456,2.png\n";
+  using Stamps = std::vector<std::int64_t>;
+  EXPECT_EQ(vobench::ReadFrameStamps(folder).value(), (Stamps{1403636579763555584, 1403636579813555456}));
+  std::ofstream(folder / "associations.txt") << "0 depth/0.png 0 rgb/0.png\n1 depth/1.png 1 rgb/1.png\n";
+  EXPECT_EQ(vobench::ReadFrameStamps(folder).value(), (Stamps{0, 33333333}));
+  std::ofstream(folder / "rgb.txt") << "# timestamp filename\n0.25 rgb/a.png\n0.5 rgb/b.png\n";
+  EXPECT_EQ(vobench::ReadFrameStamps(folder).value(), (Stamps{250000000, 500000000}));
+  std::ofstream(folder / "rgb.txt") << "0.5 rgb/a.png\n0.25 rgb/b.png\nx rgb/c.png\n";
+  EXPECT_THROW(vobench::ReadFrameStamps(folder), evaluation::InputError);
+  fs::remove_all(folder);
+}
+
 TEST(SequenceTruth, RefusesEurocTimesThatDoNotAddUp) {
   const fs::path folder = fs::path(testing::TempDir()) / "euroc_truth",
                  poses = folder / "mav0/state_groundtruth_estimate0";
