@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
+#include <initializer_list>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -52,10 +53,8 @@ bool Approach(const CameraParams& c, const glm::dvec2& goal, glm::dvec2& p) {
   return false;
 }
 
-// The direction in the part of the plane around the optical axis on which the lens is one-to-one; none outside of it.
 // The target is approached in steps from the principal point, so that Newton's method does not jump over a fold.
-std::optional<glm::dvec3> Solve(const CameraParams& c, const glm::dvec2& target, int steps) {
-  if (c.lens == Lens::fisheye) return FisheyeOf(c).Unproject(target);
+std::optional<glm::dvec3> SolveInSteps(const CameraParams& c, const glm::dvec2& target, int steps) {
   glm::dvec2 p(0.0);
   for (int step = 1; step <= steps; ++step) {
     const glm::dvec2 last = p;
@@ -65,6 +64,16 @@ std::optional<glm::dvec3> Solve(const CameraParams& c, const glm::dvec2& target,
     }
   }
   return glm::dvec3(p, 1.0);
+}
+
+// The direction in the part of the plane around the optical axis on which the lens is one-to-one; none outside of it.
+// Where the lens is nearly flat on the way the method converges only from nearby: in more steps.
+std::optional<glm::dvec3> Solve(const CameraParams& c, const glm::dvec2& target, std::initializer_list<int> steps) {
+  if (c.lens == Lens::fisheye) return FisheyeOf(c).Unproject(target);
+  for (const int n : steps) {
+    if (const std::optional<glm::dvec3> solution = SolveInSteps(c, target, n)) return solution;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -97,7 +106,7 @@ std::vector<std::string> Problems(const CameraParams& c) {
   // The lines from the principal point to the border cover the image.
   const double right = c.width - 0.5, bottom = c.height - 0.5;
   const auto check = [&](double u, double v) {
-    if (!problems.empty() || Solve(c, Normalized(c, {u, v}), 16)) return;
+    if (!problems.empty() || Solve(c, Normalized(c, {u, v}), {16, 64})) return;
     std::ostringstream text;
     text << "distortion: folds over inside the image, before pixel (" << u << ", " << v
          << ") is reached from its middle";
@@ -145,7 +154,7 @@ glm::dvec2 Camera::Project(const glm::dvec3& X_C) const {
 glm::dvec3 Camera::Direction(const glm::dvec2& pixel) const {
   const glm::dvec2 target = Normalized(params_, pixel);
   if (IsPinhole(params_)) return {target, 1.0};
-  const std::optional<glm::dvec3> solution = Solve(params_, target, 4);
+  const std::optional<glm::dvec3> solution = Solve(params_, target, {4, 16, 64});
   if (!solution)
     throw std::invalid_argument("camera: pixel outside the part of the plane where the lens is one-to-one");
   return *solution;
