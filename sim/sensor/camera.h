@@ -47,8 +47,9 @@ class Camera {
 
   // A pinhole: Ray is linear in the pixel.
   bool straight() const { return table_ == nullptr; }
-  // Direction for rendering: from a table made once, within 0.003 px of it for lenses that are one-to-one in the image
-  // (float rounding is 0.0001 px of it; without distortion nothing else). Any pixel of the image, borders included.
+  // Direction for rendering: from a table made once, linear in a pixel. Within 0.003 px of it for real
+  // lenses in pictures of 512 x 512 or more (float rounding is 0.0001 px of it; without distortion nothing else); in
+  // smaller ones by a lens's bend within a pixel. Any pixel of the image, borders included.
   glm::vec3 Ray(float u, float v) const {
     if (!table_) return {(u - cx_) * inverse_fx_, (v - cy_) * inverse_fy_, 1.0f};
     const float x = u + 0.5f, y = v + 0.5f;  // the table holds the corners of the pixels
