@@ -149,7 +149,8 @@ std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion,
   std::vector<KeyPose> keys = ReadTumTrajectory(motion.file);
   Problems problems(motion.file);
   const double length_s = keys.back().t_s;
-  if (!(motion.start_s >= 0) || !(motion.start_s + end_s <= length_s)) {
+  constexpr double kRounding_s = 0.5e-9;  // stamps are whole nanoseconds
+  if (!(motion.start_s >= 0) || !(motion.start_s + end_s <= length_s + kRounding_s)) {
     problems.Add(0, 0,
                  "lasts " + settings::FormatNumber(length_s) + " s; asked for is " +
                      settings::FormatNumber(motion.start_s) + " s to " +

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "sim/scenario/stamps.h"
 #include "tests/unit/sim/motion_check.h"
 #include "tests/unit/sim/temporary_folder.h"
 #include "tools/settings/problem.h"
@@ -136,6 +137,26 @@ TEST(Recorded, ItsEndIsTheFilesEnd) {
   EXPECT_EQ(Message([&] { MakeRecordedTrajectory(motion, 1.5); }),
             motion.file.string() + ": lasts 2 s; asked for is 1 s to 2.5 s");
   EXPECT_NO_THROW(MakeRecordedTrajectory(motion, 1));
+}
+
+// 0.1 s + 1.2 s, the last of 13 frames at 10 Hz, is 1.3000000000000003 s in doubles.
+TEST(Recorded, IsUsedToItsEndWhateverSumsRoundTo) {
+  const TemporaryFolder folder;
+  std::string text;
+  for (int k = 0; k <= 13; ++k) {
+    const std::string tenths = std::to_string(k / 10) + "." + std::to_string(k % 10);
+    text += tenths + " " + tenths + " 0 0 0 0 0 1\n";
+  }
+  RecordedMotion motion;
+  motion.file = folder.Write("line.txt", text);
+  motion.start_s = 0.1;
+  motion.average_s = 0;
+  const double last_s = Seconds(1200000000);
+  ASSERT_GT(motion.start_s + last_s, 1.3);
+  const auto trajectory = MakeRecordedTrajectory(motion, last_s);
+  EXPECT_NEAR(trajectory->At(last_s).pose.p_WC.x, 1.3, 1e-12);
+  EXPECT_NEAR(trajectory->At(last_s).v_WC.x, 1, 1e-12);
+  EXPECT_THAT(Message([&] { MakeRecordedTrajectory(motion, last_s + 1e-9); }), HasSubstr("lasts 1.3 s; asked for is"));
 }
 
 TEST(Recorded, HandHeldFlightOfARealCamera) {
