@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "sim/random/random.h"
@@ -112,12 +113,10 @@ void Sensor::ExpectLight(const RadianceImage& radiance, std::size_t y, double pe
   const std::size_t width = static_cast<std::size_t>(radiance.width);
   const float* rgb = &radiance.rgb[3 * y * width];
   const float scale = static_cast<float>(per_radiance);
-  // Far beyond the full well a pixel is white whatever the noise.
-  const float most = 4.0f * static_cast<float>(params_.full_well_e);
   const auto expected = [&](float light) {
     if (!(light >= 0.0f))
       throw std::logic_error("sensor: the renderer delivered a radiance that is negative or not a number");
-    return std::min(light * scale, most);
+    return std::min(light * scale, std::numeric_limits<float>::max());  // a sensitivity may be 0
   };
   if (channels() == 3) {
     for (std::size_t i = 0; i < electrons.size(); ++i) electrons[i] = expected(rgb[i]);
@@ -128,6 +127,12 @@ void Sensor::ExpectLight(const RadianceImage& radiance, std::size_t y, double pe
   } else {
     for (std::size_t x = 0; x < width; ++x) electrons[x] = expected(Luminance(rgb + 3 * x));
   }
+  if (!pattern_.sensitivity.empty()) {
+    for (std::size_t i = 0; i < electrons.size(); ++i) electrons[i] *= pattern_.sensitivity[y * electrons.size() + i];
+  }
+  // Far beyond the full well a pixel is white whatever the noise.
+  const float most = 4.0f * static_cast<float>(params_.full_well_e);
+  for (float& expected_e : electrons) expected_e = std::min(expected_e, most);
 }
 
 Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame) const {
@@ -157,9 +162,6 @@ Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame, const E
     std::vector<float> electrons(row_size);
     for (std::size_t y = rows.begin(); y < rows.end(); ++y) {
       ExpectLight(radiance, y, per_radiance, electrons);
-      if (!pattern_.sensitivity.empty()) {
-        for (std::size_t i = 0; i < row_size; ++i) electrons[i] *= pattern_.sensitivity[y * row_size + i];
-      }
       if (!pattern_.dark_e_s.empty()) {
         const float time_s = static_cast<float>(setting.exposure_s);
         for (std::size_t i = 0; i < row_size; ++i) electrons[i] += time_s * pattern_.dark_e_s[y * row_size + i];

@@ -45,6 +45,7 @@ class Sensor {
   std::size_t channels() const { return params_.color && params_.mosaic == Mosaic::none ? 3 : 1; }
   // Expected electrons of row y -> electrons that are read out.
   void AddNoise(std::uint32_t frame, std::uint32_t first_pixel, std::span<float> electrons) const;
+  // Expected electrons of row y from light, four times full_well at most.
   void ExpectLight(const RadianceImage& radiance, std::size_t y, double per_radiance, std::span<float> electrons) const;
 
   SensorParams params_;

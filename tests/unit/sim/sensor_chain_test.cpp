@@ -1,14 +1,18 @@
 // The steps of the sensor one by one, in closed form, and the photon transfer of rendered flats.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "sim/render/ray_tracer.h"
 #include "sim/sensor/develop.h"
 #include "sim/sensor/emva.h"
+#include "sim/sensor/fixed_pattern.h"
 #include "sim/sensor/sensor.h"
 #include "tests/unit/sim/flat_picture.h"
 #include "tests/unit/sim/render/worlds.h"
@@ -152,6 +156,25 @@ TEST(SensorChain, FixedPatterns) {
   EXPECT_LT(std::abs(dark_variance / std::pow(65535 * 50 / 10000.0, 2) - 1) * std::sqrt(60000 / 2.0), kZ);
   EXPECT_THROW(Sensor(params, 4), std::invalid_argument);
   EXPECT_THROW(Sensor(params, 4, 10, 10).Capture(Flat(9, 10, glm::vec3(0.0f)), 0), std::invalid_argument);
+}
+
+// In light of 1000 times white only pixels of less than a thousandth of the mean's sensitivity are not white.
+TEST(SensorChain, InsensitivePixelsSaturateToo) {
+  SensorParams params = Silent();
+  params.photo_response_sigma = 0.3;
+  params.white = 0.001;
+  for (const float radiance : {1.0f, 3e38f}) {
+    const Image image = Sensor(params, 4, 320, 240).Capture(Flat(320, 240, glm::vec3(radiance)), 0);
+    const FixedPattern pattern = MakeFixedPattern(params, 4, 320, 240, 1);
+    int below_white = 0;
+    for (std::size_t i = 0; i < image.data.size(); ++i) {
+      const double code = 255 * std::min(1.0, 1e3 * double{radiance} * double{pattern.sensitivity[i]});
+      EXPECT_EQ(image.data[i], std::lround(code)) << i;
+      below_white += image.data[i] < 255;
+    }
+    EXPECT_GT(below_white, 10);
+    EXPECT_LT(below_white, 100);
+  }
 }
 
 TEST(SensorChain, HotPixels) {
