@@ -1,5 +1,6 @@
 #include "sim/sensor/develop.h"
 
+#include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -29,9 +30,13 @@ Image ToImage(const cv::Mat& mat, int bits) {
 }  // namespace
 
 Image Demosaic(const Image& mosaic) {
-  cv::Mat rgb;
+  // OpenCV leaves what is narrower than 3 pixels black. Mirrored about its first and last pixels it keeps the pattern.
+  const int margin = std::min(mosaic.width, mosaic.height) < 3 ? 2 : 0;
+  cv::Mat wide = View(mosaic), rgb;
+  if (margin > 0) cv::copyMakeBorder(wide, wide, margin, margin, margin, margin, cv::BORDER_REFLECT_101);
   // OpenCV names a pattern after its second row's second and third pixels: what it calls BG has red at (0, 0).
-  cv::cvtColor(View(mosaic), rgb, mosaic.bits == 8 ? cv::COLOR_BayerBG2RGB_EA : cv::COLOR_BayerBG2RGB);
+  cv::cvtColor(wide, rgb, mosaic.bits == 8 ? cv::COLOR_BayerBG2RGB_EA : cv::COLOR_BayerBG2RGB);
+  if (margin > 0) rgb = rgb(cv::Rect(margin, margin, mosaic.width, mosaic.height)).clone();
   return ToImage(rgb, mosaic.bits);
 }
 

@@ -223,6 +223,40 @@ TEST(SensorChain, BehindABayerFilter) {
   }
 }
 
+// OpenCV alone leaves what is narrower than 3 pixels black.
+TEST(SensorChain, TheSmallestPicturesBehindABayerFilter) {
+  SensorParams params = Silent();
+  params.color = true;
+  params.mosaic = Mosaic::demosaiced;
+  const glm::vec3 rgb(0.2f, 0.4f, 0.8f);
+  for (const int depth : {8, 16}) {
+    params.bit_depth = depth;
+    const double most = std::pow(2, depth) - 1;
+    const auto codes = [&](int width, int height) {
+      const Image image = Sensor(params, 1).Capture(Flat(width, height, rgb), 0);
+      EXPECT_EQ(image.width, width);
+      EXPECT_EQ(image.height, height);
+      EXPECT_EQ(image.channels, 3);
+      std::vector<int> all(image.data.begin(), image.data.end());
+      all.insert(all.end(), image.wide.begin(), image.wide.end());
+      return all;
+    };
+    const auto code = [&](float light) { return static_cast<int>(std::lround(most * static_cast<double>(light))); };
+    for (const auto& [width, height] : {std::pair(2, 2), {2, 7}, {5, 2}, {3, 3}}) {
+      const std::vector<int> all = codes(width, height);
+      ASSERT_EQ(all.size(), static_cast<std::size_t>(3 * width * height));
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        EXPECT_EQ(all[i], code(rgb[static_cast<int>(i % 3)])) << width << " x " << height << ", " << i;
+      }
+    }
+    EXPECT_THAT(codes(1, 1), testing::Each(code(0.2f))) << "red is all there is";
+    for (const auto& [width, height] : {std::pair(1, 6), {6, 1}}) {  // red and green
+      EXPECT_THAT(codes(width, height),
+                  testing::Each(testing::AllOf(testing::Ge(code(0.2f)), testing::Le(code(0.4f)))));
+    }
+  }
+}
+
 TEST(SensorChain, AsAJpegFile) {
   SensorParams params = Silent();
   params.color = true;
