@@ -248,8 +248,11 @@ Frame Simulator::Render(std::int64_t index) const {
 }
 
 std::vector<float> Simulator::Depth(std::int64_t index) const {
-  std::vector<float> depth;
-  parts_->renderer->Depth(parts_->camera, ViewAt(index), depth);
+  std::vector<SurfacePoint> points;
+  surfaces().Trace(parts_->camera, ViewAt(index), points);
+  std::vector<float> depth(points.size());
+  std::transform(points.begin(), points.end(), depth.begin(),
+                 [](const SurfacePoint& point) { return static_cast<float>(point.depth); });
   return depth;
 }
 

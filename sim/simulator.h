@@ -54,6 +54,7 @@ class Simulator {
   View ViewAt(std::int64_t index) const;  // the camera's at the stamp
   ExposureSetting SettingOf(std::int64_t index) const;
   // Z in the camera frame [m] at each pixel's centre at the stamp, rows from the top; 0: nothing there.
+  // From rays, whatever renders the pictures.
   std::vector<float> Depth(std::int64_t index) const;
 
   // For the truth streams (sim/truth): how the camera moves, and what each pixel sees. Both live as long as the

@@ -3,9 +3,14 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
+#include <memory>
 #include <stdexcept>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "sim/motion/sampled.h"
 #include "sim/world/scene.h"
@@ -62,6 +67,23 @@ TEST(Simulator, DepthIsThatOfTheTruthsPose) {
     }
   }
   EXPECT_GT(seen, 1000);
+}
+
+// Of triangles that meet at an edge the rasteriser may see the other one, past the wall's edge something for nothing.
+TEST(Simulator, DepthIsOfRaysWhateverRenders) {
+  const SmallWorld world;
+  const std::vector<std::pair<std::string, std::string>> wide = {
+      {"camera.fx", "30"}, {"camera.fy", "30"}, {"camera.distortion", "{k1: -0.2, k2: 0.03}"}};
+  Scenario scenario = LoadScenario(world.scenario(), wide);
+  const Simulator rays(scenario, 1);
+  scenario.render.engine = Engine::rasteriser;
+  std::unique_ptr<const Simulator> raster;
+  try {
+    raster = std::make_unique<const Simulator>(scenario, 1);
+  } catch (const std::runtime_error& error) {
+    GTEST_SKIP() << error.what();
+  }
+  for (const std::int64_t k : {0, 4, 8}) EXPECT_EQ(raster->Depth(k), rays.Depth(k)) << k;
 }
 
 TEST(Simulator, TheSameBytesWithAnyNumberOfThreadsAndInAnyOrder) {
