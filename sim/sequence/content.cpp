@@ -81,7 +81,7 @@ std::vector<StreamFile> WholeFiles(const Simulator& simulator, const SequenceCon
   if (content.layout == Layout::euroc && streams.contains(TruthStream::imu)) AddBiases(simulator, frames);
   std::vector<StreamFile> files = Lists(content.layout, simulator.scenario(), frames);
   Place(content.layout, SequenceStreams(simulator, content.first, content.first + whole, streams), files);
-  if (content.layout == Layout::tum && simulator.scenario().sensor.auto_exposure.on) {
+  if (simulator.scenario().sensor.auto_exposure.on) {
     std::string lines = "# timestamp exposure gain\n";
     for (const StampedTruth& frame : frames) lines += ExposureLine(frame.stamp_ns, simulator.SettingOf(frame.index));
     files.push_back(TextFile("exposure.txt", lines));

@@ -25,11 +25,10 @@ namespace {
 // What a sequence of any layout may have at its top level.
 std::set<std::string> SequenceNames() {
   std::set<std::string> names = sim::StreamNames();
-  names.insert({"camera.yaml", sim::kManifestName, sim::kJournalName});
-  names.insert(
-      {"rgb", "rgb.txt", "depth", "depth.txt", "groundtruth.txt", "velocity.txt", "exposure.txt"});  // TUM RGB-D
-  names.insert({"mav0", "truth"});                                                                   // EuRoC
-  names.insert({"associations.txt", "traj.gt.freiburg"});                                            // ICL-NUIM
+  names.insert({"camera.yaml", "exposure.txt", sim::kManifestName, sim::kJournalName});
+  names.insert({"rgb", "rgb.txt", "depth", "depth.txt", "groundtruth.txt", "velocity.txt"});  // TUM RGB-D
+  names.insert({"mav0", "truth"});                                                            // EuRoC
+  names.insert({"associations.txt", "traj.gt.freiburg"});                                     // ICL-NUIM
   names.insert({"preview.mp4", "unfinished-preview.mp4", "contact.jpg"});
   return names;
 }

@@ -202,6 +202,20 @@ TEST(SequenceWriter, WithoutAFrameNothingIsLeft) {
   EXPECT_TRUE(before == Tree(world.folder.path()));
 }
 
+TEST(SequenceWriter, AutomaticExposuresAreThereInEveryLayout) {
+  const SmallWorld world;
+  const Simulator simulator(LoadScenario(world.scenario(), {{"sensor.auto_exposure", "{on: true, target: 0.4}"}}), 1);
+  std::string expected = "# timestamp exposure gain\n";
+  for (std::int64_t k = 2; k < 5; ++k) expected += ExposureLine(simulator.StampNs(k), simulator.SettingOf(k));
+  for (const Layout layout : {Layout::tum, Layout::euroc, Layout::icl}) {
+    const fs::path folder = world.folder.path() / ToString(layout);
+    Write(simulator, folder, Frames(2, 5, layout), 1);
+    const auto tree = Tree(folder);
+    ASSERT_TRUE(tree.contains("exposure.txt")) << ToString(layout);
+    EXPECT_EQ(tree.at("exposure.txt"), expected) << ToString(layout);
+  }
+}
+
 TEST(SequenceWriter, IsNotFinishedWhileFramesAreLeft) {
   const SmallWorld world;
   const Simulator simulator(LoadScenario(world.scenario()), 1);
