@@ -6,7 +6,9 @@
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <sstream>
 #include <stdexcept>
+#include <string>
 #include <unordered_map>
 #include <utility>
 
@@ -19,6 +21,16 @@ namespace {
 constexpr int kMaxLog2Coarse = 8;
 constexpr std::size_t kMaxSamples = std::size_t{1} << 28;
 constexpr double kAgree = 0.02;  // relative difference of lamps' light that is interpolated over
+
+double LongestSide(const RayScene& rays, std::uint32_t t) {
+  double longest = 0;
+  for (int c = 0; c < 3; ++c)
+    longest = std::max(longest, glm::distance(glm::dvec3(rays.Corner(t, c)), glm::dvec3(rays.Corner(t, (c + 1) % 3))));
+  return longest;
+}
+
+// Samples so far apart are taken for spacing_m.
+double Most(double spacing_m) { return spacing_m * (1 + 1e-6); }
 
 // The place and normal of a sample, rounded: what has the same key has the same random numbers, and is the same sample
 // unless something is in between (the edge of a floor that goes on behind a wall): then they differ in `other`.
@@ -116,12 +128,9 @@ class Baker {
 
  private:
   int Log2Resolution(std::uint32_t t, double spacing_m, int most) const {
-    double longest = 0;
-    for (int c = 0; c < 3; ++c)
-      longest =
-          std::max(longest, glm::distance(glm::dvec3(rays_.Corner(t, c)), glm::dvec3(rays_.Corner(t, (c + 1) % 3))));
+    const double longest = LongestSide(rays_, t);
     int log2 = 0;
-    while (log2 < most && longest / static_cast<double>(1 << log2) > spacing_m * (1 + 1e-6)) ++log2;
+    while (log2 < most && longest / static_cast<double>(1 << log2) > Most(spacing_m)) ++log2;
     return log2;
   }
 
@@ -317,6 +326,27 @@ class Baker {
 };
 
 }  // namespace
+
+std::string CoarserThanAsked(const RayScene& rays, LightMode mode, const BakeParams& params) {
+  std::ostringstream text;
+  text.precision(3);
+  const auto tell = [&](const char* light, const char* key, double asked_m, int most_log2) {
+    const int steps = 1 << most_log2;
+    double farthest_m = 0;
+    std::uint32_t count = 0;
+    for (std::uint32_t t = 0; t < rays.triangle_count(); ++t) {
+      const double apart_m = LongestSide(rays, t) / steps;
+      if (apart_m > Most(asked_m)) farthest_m = std::max(farthest_m, apart_m), ++count;
+    }
+    if (count == 0) return;
+    text << (text.tellp() > 0 ? "; " : "baked light: ") << light << " are up to " << farthest_m << " m apart on "
+         << count << (count == 1 ? " triangle" : " triangles") << ", not render.bake." << key << " = " << asked_m
+         << " m: a side is divided into " << steps << " at most";
+  };
+  tell("samples", "spacing", params.spacing_m, kMaxLog2Coarse);
+  if (mode == LightMode::baked) tell("those of lamps", "finest", params.finest_m, kMaxLog2Resolution);
+  return text.str();
+}
 
 std::vector<std::string> Problems(const BakeParams& p) {
   std::vector<std::string> problems;

@@ -21,6 +21,6 @@ constexpr std::size_t LatticeIndex(std::size_t resolution, std::size_t i, std::s
 struct TriangleResolution {
   std::uint8_t log2_front = 0, log2_back = 0;
 };
-constexpr int kMaxLog2Resolution = 11;
+constexpr int kMaxLog2Resolution = 11;  // whatever spacing was asked for
 
 }  // namespace sim

@@ -13,8 +13,8 @@ enum class LightMode {
 };
 
 struct BakeParams {
-  double spacing_m = 0.1;  // at most, between samples of a triangle's light
-  double finest_m = 0.01;  // at an edge of a lamp's light, where that is baked too
+  double spacing_m = 0.1;  // at most, between samples of a triangle's light; a side is divided into 2^8 at most
+  double finest_m = 0.01;  // at an edge of a lamp's light, where that is baked too; into 2^11 at most
   int paths = 256;         // of each sample: a power of two
   int lamp_rays = 64;      // of each sample to each area lamp, where lamps are baked: a power of two
 };

@@ -159,6 +159,8 @@ class RayTracer final : public Renderer {
     const BakedLight light = arena_.execute(
         [&] { return CachedLight(scene, scene_, options.light, options.bake, options.light_folders, warnings); });
     scene_.SetLight(light);
+    if (std::string coarser = CoarserThanAsked(scene_, options.light, options.bake); !coarser.empty())
+      warnings.push_back(std::move(coarser));
     const bool has_ambient = std::any_of(scene.lights.begin(), scene.lights.end(),
                                          [](const Light& l) { return std::holds_alternative<AmbientLight>(l); });
     if (scene.objects.empty()) {
