@@ -32,7 +32,7 @@ void ReadMeasurement(Section section, PointMeasurement& measurement) {
 
 PointDescription ReadPoints(Section& root, Section& world, const CameraParams& camera) {
   for (const char* key : {"meshes", "objects", "lights", "background"}) Refuse(world, "world.", key);
-  for (const char* key : {"sensor", "render"}) Refuse(root, "", key);
+  for (const char* key : {"sensor", "render", "truth", "landmarks", "imu"}) Refuse(root, "", key);
   Section section = world.Child("points");
   PointDescription points;
   const bool known = section.RequireChoice("landmarks", points.landmarks,

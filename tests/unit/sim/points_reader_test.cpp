@@ -95,6 +95,12 @@ TEST(PointsReader, OneErrorForEachThingThatIsWrong) {
       ":1:45: 'world.meshes' is for worlds that are rendered: it goes with 'world.meshes', not with 'world.points'");
   EXPECT_THAT(Complaint(Text("{points: {landmarks: prior}}", "sensor: {exposure: 3 ms}\n")),
               HasSubstr(":2:9: 'sensor' is for worlds that are rendered"));
+  for (const char* line :
+       {"render: {reflections: true}", "truth: [depth]", "landmarks: {count: 5}", "imu: {rate: 9 Hz}"}) {
+    const std::string key = std::string(line).substr(0, std::string(line).find(':'));
+    EXPECT_THAT(Complaint(Text("{points: {landmarks: prior}}", std::string(line) + "\n")),
+                HasSubstr("'" + key + "' is for worlds that are rendered"));
+  }
   EXPECT_THAT(Complaint(Text("{}")), HasSubstr("the world is empty"));
 }
 
