@@ -88,8 +88,24 @@ bool IsSeen(const DepthRange& range, double Z, double error) {
   return Z >= range.min - rise && Z <= range.max + rise;
 }
 
+// Where a ray lies between those of four pixels, as CornersAt has it between the pixels: a lens bends what is between.
+Vector2d Between(const Frames& frames, const Corners& c, const cv::Mat& picture, const Vector3d& X) {
+  const std::size_t width = static_cast<std::size_t>(picture.cols),
+                    i = static_cast<std::size_t>(c.y) * width + static_cast<std::size_t>(c.x);
+  const Vector2d r[4] = {frames.rays()[i].head<2>(), frames.rays()[i + 1].head<2>(), frames.rays()[i + width].head<2>(),
+                         frames.rays()[i + width + 1].head<2>()};
+  Vector2d at(static_cast<double>(c.a), static_cast<double>(c.b));
+  for (int step = 0; step < 3; ++step) {
+    const double a = at.x(), b = at.y();
+    Eigen::Matrix2d J;
+    J << (1 - b) * (r[1] - r[0]) + b * (r[3] - r[2]), (1 - a) * (r[2] - r[0]) + a * (r[3] - r[1]);
+    at += J.inverse() * (X.hnormalized() - (1 - b) * ((1 - a) * r[0] + a * r[1]) - b * ((1 - a) * r[2] + a * r[3]));
+  }
+  return at;
+}
+
 // What is seen at a place of a picture, against a point X = Z ray + t there. All in inverse depth, which is linear in
-// the picture of a plane [1/m].
+// the plane of rays (X / Z, Y / Z) where a plane is seen [1/m].
 struct DepthMatch {
   double difference, bound, bend;  // bound: from rounding; bend: of the four pixels, from a plane
 };
@@ -100,7 +116,8 @@ std::optional<DepthMatch> MatchAt(const Frames& frames, const cv::Mat& there, co
   if (!(std::min({z[0], z[1], z[2], z[3]}) > 0)) return std::nullopt;
   double w[4];
   for (int i = 0; i < 4; ++i) w[i] = 1 / static_cast<double>(z[i]);
-  const double a = static_cast<double>(c.a), b = static_cast<double>(c.b);
+  const Vector2d at = Between(frames, c, there, X);
+  const double a = at.x(), b = at.y();
   const double seen = (1 - b) * ((1 - a) * w[0] + a * w[1]) + b * ((1 - a) * w[2] + a * w[3]);
   const vo::Camera& camera = frames.sequence().camera;
   // How the pixel moves when Z does, times the slope there.

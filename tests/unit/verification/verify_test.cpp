@@ -144,6 +144,20 @@ TEST_F(VerifyTest, OtherSequencesPass) {
   EXPECT_THAT(Failures(here_.path() / "sampled"), IsEmpty());
 }
 
+// Pixels so wide that a lens bends what is between them.
+TEST_F(VerifyTest, SmallPicturesThroughALensPass) {
+  const std::vector<std::pair<std::string, std::string>> camera[2] = {
+      {{"camera", "{width: 80, height: 60, fx: 45, fy: 45, cx: 39.5, cy: 29.5, distortion: {k1: -0.28, k2: 0.07}}"}},
+      {{"camera", "{width: 48, height: 36, fx: 24, fy: 24, cx: 23.5, cy: 17.5, distortion: {k1: -0.2, k2: 0.03}}"}}};
+  for (int i = 0; i < 2; ++i) {
+    auto settings = camera[i];
+    settings.emplace_back("truth", "[depth, depth_exr, distance, normals, flow, flow_backward, surface_id]");
+    const fs::path folder = here_.path() / ("small" + std::to_string(i));
+    Render(folder, settings, 6);
+    EXPECT_THAT(Failures(folder), IsEmpty());
+  }
+}
+
 TEST_F(VerifyTest, StampsShiftedInOneList) {
   for (const char* list : {"depth.txt", "groundtruth.txt", "velocity.txt", "flow.txt", "rgb.txt"}) {
     const fs::path folder = Copy();
