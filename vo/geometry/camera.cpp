@@ -2,21 +2,53 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <stdexcept>
 
 namespace vo {
 namespace {
 
-// Distance from the principal point, in focal lengths, of a ray at the angle theta from the axis; and its derivative.
-struct FisheyeRadius {
-  double value, by_theta;
+// How far from the axis a ray is, is a fisheye's angle theta or, of the other lens, its distance on the plane z = 1. At such a distance a it is
+// drawn so far from the principal point, in focal lengths (p1 and p2 apart); and the derivative by a.
+struct Radius {
+  double value, slope;
 };
-FisheyeRadius RadiusAt(const Camera& c, double theta) {
-  const double t2 = theta * theta;
-  return {theta * (1 + t2 * (c.k1 + t2 * (c.k2 + t2 * (c.k3 + t2 * c.k4)))),
-          1 + t2 * (3 * c.k1 + t2 * (5 * c.k2 + t2 * (7 * c.k3 + t2 * 9 * c.k4)))};
+Radius RadiusAt(const Camera& c, double a) {
+  const double s = a * a, k4 = c.lens == Lens::fisheye ? c.k4 : 0;
+  return {a * (1 + s * (c.k1 + s * (c.k2 + s * (c.k3 + s * k4)))),
+          1 + s * (3 * c.k1 + s * (5 * c.k2 + s * (7 * c.k3 + s * 9 * k4)))};
 }
+
+// Coefficients over [0, 1]; the polynomial lies between the least and the greatest.
+using Bernstein = std::array<double, 5>;
+
+// Where in [0, 1] it first is not positive, to 2^-halvings.
+std::optional<double> FirstZero(const Bernstein& b, int halvings) {
+  if (std::all_of(b.begin(), b.end(), [](double x) { return x > 0; })) return std::nullopt;
+  if (!(b[0] > 0) || halvings == 0) return 0.0;
+  Bernstein left = b, right = b;  // de Casteljau
+  for (std::size_t k = 1; k < b.size(); ++k) {
+    for (std::size_t i = 0; i + k < b.size(); ++i) right[i] = 0.5 * (right[i] + right[i + 1]);
+    left[k] = right[0];
+  }
+  if (const auto zero = FirstZero(left, halvings - 1)) return 0.5 * *zero;
+  if (const auto zero = FirstZero(right, halvings - 1)) return 0.5 + 0.5 * *zero;
+  return std::nullopt;
+}
+
+// The distance from the axis, no more than `farthest`, at which the radius ceases to grow: where its slope, a polynomial in s = a^2, first is 0.
+std::optional<double> Turn(const Camera& c, double farthest) {
+  const double s = farthest * farthest, k4 = c.lens == Lens::fisheye ? c.k4 : 0;
+  const double c1 = 3 * c.k1 * s, c2 = 5 * c.k2 * s * s, c3 = 7 * c.k3 * s * s * s, c4 = 9 * k4 * s * s * s * s;
+  const auto part =
+      FirstZero({1, 1 + c1 / 4, 1 + c1 / 2 + c2 / 6, 1 + 3 * c1 / 4 + c2 / 2 + c3 / 4, 1 + c1 + c2 + c3 + c4}, 50);
+  return part ? std::optional(farthest * std::sqrt(*part)) : std::nullopt;
+}
+
+double WidestAngle(const Camera& c) { return Turn(c, kWidestAngle).value_or(kWidestAngle); }
 
 // A point at distance r on the plane z = 1 is drawn to `scale` times itself; slope = (d scale / dr) / r.
 struct FisheyeScale {
@@ -25,18 +57,18 @@ struct FisheyeScale {
 FisheyeScale ScaleAt(const Camera& c, double r2) {
   if (r2 < 1e-8) return {1 + (c.k1 - 1.0 / 3) * r2, 2 * (c.k1 - 1.0 / 3)};  // atan r = r - r^3 / 3 + ...
   const double r = std::sqrt(r2);
-  const FisheyeRadius radius = RadiusAt(c, std::atan(r));
+  const Radius radius = RadiusAt(c, std::atan(r));
   const double scale = radius.value / r;
-  return {scale, (radius.by_theta / (1 + r2) - scale) / r2};
+  return {scale, (radius.slope / (1 + r2) - scale) / r2};
 }
 
 // The angle that is drawn at a distance from the principal point: Newton's method, kept between 0 and the widest.
 double AngleAt(const Camera& c, double radius) {
-  double below = 0, above = kWidestAngle, theta = std::min(radius, kWidestAngle);
+  double below = 0, above = WidestAngle(c), theta = std::min(radius, above);
   for (int i = 0; i < 60; ++i) {
-    const FisheyeRadius now = RadiusAt(c, theta);
+    const Radius now = RadiusAt(c, theta);
     (now.value > radius ? above : below) = theta;
-    const double newton = theta - (now.value - radius) / now.by_theta;
+    const double newton = theta - (now.value - radius) / now.slope;
     const double next = newton >= below && newton <= above ? newton : 0.5 * (below + above);
     if (std::abs(next - theta) < 1e-15) break;
     theta = next;
@@ -76,21 +108,13 @@ Eigen::Vector2d Camera::Project(const Eigen::Vector3d& X_C) const {
 
 bool Camera::Draws(const Eigen::Vector2d& xy) const {
   const double r2 = xy.squaredNorm();
-  if (lens == Lens::fisheye) return r2 <= std::tan(kWidestAngle) * std::tan(kWidestAngle);
-  // The radius r (1 + k1 r^2 + k2 r^4 + k3 r^6) grows as far as its slope, a cubic in s = r^2, has been positive: at the end and at its least.
-  const double a = 3 * k1, b = 5 * k2, c = 7 * k3;
-  const auto grows = [&](double s) { return 1 + s * (a + s * (b + s * c)) > 0; };
-  if (!grows(r2)) return false;
-  const double discriminant = b * b - 3 * a * c;
-  if (discriminant <= 0) return true;
-  const double q = -b - std::copysign(std::sqrt(discriminant), b);  // the cubic's two extrema are q / 3c and a / q
-  const auto grows_there = [&](double s) { return !(s > 0 && s < r2) || grows(s); };
-  return grows_there(a / q) && (c == 0 || grows_there(q / (3 * c)));
+  if (lens != Lens::fisheye) return !Turn(*this, std::sqrt(r2));
+  return r2 <= std::tan(kWidestAngle) * std::tan(kWidestAngle) && !Turn(*this, std::atan(std::sqrt(r2)));
 }
 
 bool Camera::HasRay(const Eigen::Vector2d& pixel) const {
   return lens != Lens::fisheye ||
-         std::hypot((pixel.x() - cx) / fx, (pixel.y() - cy) / fy) <= RadiusAt(*this, kWidestAngle).value;
+         std::hypot((pixel.x() - cx) / fx, (pixel.y() - cy) / fy) <= RadiusAt(*this, WidestAngle(*this)).value;
 }
 
 Eigen::Vector2d Camera::Undistort(const Eigen::Vector2d& pixel) const {

@@ -10,7 +10,8 @@ namespace vo {
 
 enum class Lens { radial_tangential, fisheye };
 
-// Of a fisheye lens only what lies within kWidestAngle of the optical axis is used: rays are points of the plane z = 1.
+// Of a fisheye lens only what lies within kWidestAngle of the optical axis, and within the angle where its radius ceases to grow, is used: rays
+// are points of the plane z = 1.
 constexpr double kWidestAngle = 1.4;  // [rad], 80 degrees
 
 struct Camera {
@@ -29,7 +30,7 @@ struct Camera {
   bool Draws(const Eigen::Vector2d& xy) const;
   // Whether a pixel, wherever it lies, is near enough to the axis of a fisheye lens to have a ray that can be used.
   bool HasRay(const Eigen::Vector2d& pixel) const;
-  // Pixel -> undistorted ray (x, y) on the plane z = 1, to 1e-12 by Newton's method; of a pixel without one, a ray at kWidestAngle.
+  // Pixel -> undistorted ray (x, y) on the plane z = 1, to 1e-12 by Newton's method; of a pixel of a fisheye lens without one, its widest ray.
   Eigen::Vector2d Undistort(const Eigen::Vector2d& pixel) const;
   // Where a camera of the same fx, fy, cx, cy without distortion would see that ray [px].
   Eigen::Vector2d Ideal(const Eigen::Vector2d& pixel) const;

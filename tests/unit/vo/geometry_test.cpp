@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "tests/unit/vo/draws.h"
 #include "vo/geometry/camera.h"
 #include "vo/geometry/camera_file.h"
@@ -119,6 +123,46 @@ TEST(Camera, APixelBeyondAFisheyesUsableAngleHasNoRay) {
       EXPECT_NEAR(camera.Undistort(pixel).norm(), std::tan(theta), 1e-9) << theta;
     }
   }
+}
+
+// The angle at which the radius ceases to grow, or the widest that is used, by walking out in small steps.
+double WidestByWalking(const vo::Camera& c) {
+  const auto radius = [&](double t) {
+    return t + c.k1 * std::pow(t, 3) + c.k2 * std::pow(t, 5) + c.k3 * std::pow(t, 7) + c.k4 * std::pow(t, 9);
+  };
+  constexpr double kStep = 1e-5;
+  double theta = 0;
+  while (theta + kStep < vo::kWidestAngle && radius(theta + kStep) > radius(theta)) theta += kStep;
+  return theta;
+}
+
+TEST(Camera, AFisheyeIsUsedAsFarAsItsRadiusGrows) {
+  vo::Camera late{640, 480, 460, 460, 320, 240, 0.3437, 0.1378, 0, 0, 0.3058, -0.2998, vo::Lens::fisheye};
+  vo::Camera early{640, 480, 320, 320, 320, 240, -0.2, 0, 0, 0, 0, 0, vo::Lens::fisheye};
+  vo::Camera wave = early, slow = early, plain = early;
+  wave.k1 = -0.8, wave.k2 = 0.2;                                  // goes back and then out again
+  slow.k1 = -1.99 / 3 / 0.81, slow.k2 = 1.0 / 5 / (0.81 * 0.81);  // its slope is 0.01 at 0.9
+  plain.k1 = 0.02;
+  const std::pair<vo::Camera, double> cases[] = {{late, 66}, {early, 74}, {wave, 42}, {slow, 80}, {plain, 80}};
+  for (const auto& [camera, widest_deg] : cases) {
+    const double widest = WidestByWalking(camera);
+    EXPECT_NEAR(widest * 180 / 3.14159265, widest_deg, 1) << "k1 " << camera.k1;
+    const Vector2d edge = camera.Project({std::tan(widest), 0, 1});
+    for (double theta = 0.01; theta < 1.56; theta += 0.01) {
+      if (std::abs(theta - widest) < 0.005) continue;
+      const Vector2d ray = std::tan(theta) * Vector2d(0.6, -0.8);
+      const Vector2d pixel = camera.Project({ray.x(), ray.y(), 1});
+      EXPECT_EQ(camera.Draws(ray), theta < widest) << "k1 " << camera.k1 << ", " << theta;
+      if (theta > widest) continue;
+      EXPECT_TRUE(camera.HasRay(pixel)) << "k1 " << camera.k1 << ", " << theta;
+      EXPECT_LT((camera.Undistort(pixel) - ray).norm(), 1e-9 * (1 + ray.squaredNorm()))
+          << "k1 " << camera.k1 << ", " << theta;
+    }
+    EXPECT_FALSE(camera.HasRay({edge.x() + 0.1, camera.cy})) << "k1 " << camera.k1;
+    EXPECT_LT(camera.Undistort({camera.cx, camera.cy + 2 * (edge.x() - camera.cx)}).norm(), std::tan(widest + 1e-4))
+        << "k1 " << camera.k1;
+  }
+  EXPECT_TRUE(late.Sees({0, 0})) << "45 degrees";
 }
 
 TEST(Camera, LensJacobianIsTheDerivative) {
