@@ -30,8 +30,8 @@ class PointOdometry {
   ~PointOdometry();
   PointOdometry(PointOdometry&&) noexcept;
 
-  // A new id becomes a landmark; one unseen for params.landmark.forget_after frames is dropped. Observations that contradict the
-  // others are set aside where params.filter.reject_outliers says so. Throws std::invalid_argument, and changes nothing, when
+  // A new id becomes a landmark; one unseen for params.landmark.forget_after frames is dropped. Observations where the lens has no ray are left
+  // out, those that contradict the others are set aside where params.filter.reject_outliers says so. Throws std::invalid_argument, and changes nothing, when
   // the stamp does not increase, an id comes twice or a pixel is no number; FilterFault (vo/filter/watched_filter.h) would be ours.
   Estimate Track(const PointFrame& frame);
 

@@ -20,7 +20,7 @@ struct TargetCorner {
   KnownDepth depth;
 };
 
-// The inner corners of the board, row by row; empty where it is not all in sight. Corners count as seen to within `sigma_px`. The board's
+// The inner corners of the board, row by row; empty where it is not all in sight, or the lens has no ray. Corners count as seen to within `sigma_px`. The board's
 // distance is one error that all corners share, but a filter takes theirs for independent: each is as uncertain as makes their mean right.
 std::vector<TargetCorner> FindTarget(const cv::Mat& grey, const Camera& camera, const TargetParams& target,
                                      double sigma_px);

@@ -11,6 +11,8 @@
 namespace vo {
 namespace {
 
+constexpr double kSamePlace = 1e-9;  // on the plane z = 1
+
 // How far from the axis a ray is, is a fisheye's angle theta or, of the other lens, its distance on the plane z = 1. At such a distance a it is
 // drawn so far from the principal point, in focal lengths (p1 and p2 apart); and the derivative by a.
 struct Radius {
@@ -48,7 +50,10 @@ std::optional<double> Turn(const Camera& c, double farthest) {
   return part ? std::optional(farthest * std::sqrt(*part)) : std::nullopt;
 }
 
-double WidestAngle(const Camera& c) { return Turn(c, kWidestAngle).value_or(kWidestAngle); }
+double FarthestAway(const Camera& c) {
+  const double farthest = c.lens == Lens::fisheye ? kWidestAngle : std::tan(kWidestAngle);
+  return Turn(c, farthest).value_or(farthest);
+}
 
 // A point at distance r on the plane z = 1 is drawn to `scale` times itself; slope = (d scale / dr) / r.
 struct FisheyeScale {
@@ -62,18 +67,18 @@ FisheyeScale ScaleAt(const Camera& c, double r2) {
   return {scale, (radius.slope / (1 + r2) - scale) / r2};
 }
 
-// The angle that is drawn at a distance from the principal point: Newton's method, kept between 0 and the widest.
-double AngleAt(const Camera& c, double radius) {
-  double below = 0, above = WidestAngle(c), theta = std::min(radius, above);
+// What is drawn so far from the principal point: Newton's method, kept between 0 and the widest.
+double AwayAt(const Camera& c, double radius) {
+  double below = 0, above = FarthestAway(c), away = std::min(radius, above);
   for (int i = 0; i < 60; ++i) {
-    const Radius now = RadiusAt(c, theta);
-    (now.value > radius ? above : below) = theta;
-    const double newton = theta - (now.value - radius) / now.slope;
+    const Radius now = RadiusAt(c, away);
+    (now.value > radius ? above : below) = away;
+    const double newton = away - (now.value - radius) / now.slope;
     const double next = newton >= below && newton <= above ? newton : 0.5 * (below + above);
-    if (std::abs(next - theta) < 1e-15) break;
-    theta = next;
+    if (std::abs(next - away) < 1e-15) break;
+    away = next;
   }
-  return theta;
+  return away;
 }
 
 Eigen::Vector2d Distort(const Camera& c, const Eigen::Vector2d& xy) {
@@ -99,6 +104,24 @@ Eigen::Matrix2d DistortJacobian(const Camera& c, const Eigen::Vector2d& xy) {
   return J;
 }
 
+// Newton's method for the ray that is drawn at `target`, both on the plane z = 1.
+Eigen::Vector2d Approach(const Camera& c, const Eigen::Vector2d& target, Eigen::Vector2d xy) {
+  for (int i = 0; i < 30; ++i) {
+    const Eigen::Vector2d step = DistortJacobian(c, xy).inverse() * (target - Distort(c, xy));
+    xy += step;
+    if (step.squaredNorm() < 1e-26) break;
+  }
+  return xy;
+}
+
+bool IsDrawnAt(const Camera& c, const Eigen::Vector2d& xy, const Eigen::Vector2d& target) {
+  return (Distort(c, xy) - target).norm() <= kSamePlace && c.Draws(xy);
+}
+
+Eigen::Vector2d Normalized(const Camera& c, const Eigen::Vector2d& pixel) {
+  return {(pixel.x() - c.cx) / c.fx, (pixel.y() - c.cy) / c.fy};
+}
+
 }  // namespace
 
 Eigen::Vector2d Camera::Project(const Eigen::Vector3d& X_C) const {
@@ -108,28 +131,27 @@ Eigen::Vector2d Camera::Project(const Eigen::Vector3d& X_C) const {
 
 bool Camera::Draws(const Eigen::Vector2d& xy) const {
   const double r2 = xy.squaredNorm();
-  if (lens != Lens::fisheye) return !Turn(*this, std::sqrt(r2));
-  return r2 <= std::tan(kWidestAngle) * std::tan(kWidestAngle) && !Turn(*this, std::atan(std::sqrt(r2)));
+  if (lens == Lens::fisheye)
+    return r2 <= std::tan(kWidestAngle) * std::tan(kWidestAngle) && !Turn(*this, std::atan(std::sqrt(r2)));
+  return !Turn(*this, std::sqrt(r2)) && DistortJacobian(*this, xy).determinant() > 0;
 }
 
 bool Camera::HasRay(const Eigen::Vector2d& pixel) const {
-  return lens != Lens::fisheye ||
-         std::hypot((pixel.x() - cx) / fx, (pixel.y() - cy) / fy) <= RadiusAt(*this, WidestAngle(*this)).value;
+  const Eigen::Vector2d target = Normalized(*this, pixel);
+  if (lens == Lens::fisheye) return std::hypot(target.x(), target.y()) <= RadiusAt(*this, FarthestAway(*this)).value;
+  return IsDrawnAt(*this, Undistort(pixel), target);
 }
 
 Eigen::Vector2d Camera::Undistort(const Eigen::Vector2d& pixel) const {
-  const Eigen::Vector2d target((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
-  if (lens == Lens::fisheye) {
-    const double radius = target.norm();
-    return radius < 1e-12 ? target : Eigen::Vector2d(std::tan(AngleAt(*this, radius)) / radius * target);
-  }
-  Eigen::Vector2d xy = target;
-  for (int i = 0; i < 30; ++i) {
-    const Eigen::Vector2d step = DistortJacobian(*this, xy).inverse() * (target - Distort(*this, xy));
-    xy += step;
-    if (step.squaredNorm() < 1e-26) break;
-  }
-  return xy;
+  const Eigen::Vector2d target = Normalized(*this, pixel);
+  const double radius = target.norm();
+  if (lens == Lens::fisheye)
+    return radius < 1e-12 ? target : Eigen::Vector2d(std::tan(AwayAt(*this, radius)) / radius * target);
+  const Eigen::Vector2d xy = Approach(*this, target, target);
+  if (IsDrawnAt(*this, xy, target)) return xy;
+  // There is no ray, or a step went past a turn of the radius.
+  const Eigen::Vector2d radial = AwayAt(*this, radius) / radius * target, nearer = Approach(*this, target, radial);
+  return IsDrawnAt(*this, nearer, target) ? nearer : radial;
 }
 
 Eigen::Matrix2d Camera::LensJacobian(const Eigen::Vector2d& xy) const {

@@ -25,12 +25,13 @@ struct Camera {
 
   // Point in C with z > 0 -> pixel, lens distortion included.
   Eigen::Vector2d Project(const Eigen::Vector3d& X_C) const;
-  // Whether the pixel of a ray (x, y) on the plane z = 1 is that ray's own. Past the angle where the lens's radius ceases to grow (or past
-  // kWidestAngle) Project() answers with a pixel of another ray. p1 and p2 move that angle by too little to be asked.
+  // Whether the pixel of a ray (x, y) on the plane z = 1 is that ray's own. Past the angle where the lens's radius ceases to grow, where p1 and
+  // p2 fold the picture, or past kWidestAngle of a fisheye, Project() answers with a pixel of another ray.
   bool Draws(const Eigen::Vector2d& xy) const;
-  // Whether a pixel, wherever it lies, is near enough to the axis of a fisheye lens to have a ray that can be used.
+  // Whether a ray that can be used is drawn at a pixel, wherever it lies: it is Undistort's, to 1e-9 on the plane z = 1.
   bool HasRay(const Eigen::Vector2d& pixel) const;
-  // Pixel -> undistorted ray (x, y) on the plane z = 1, to 1e-12 by Newton's method; of a pixel of a fisheye lens without one, its widest ray.
+  // Pixel -> undistorted ray (x, y) on the plane z = 1, to 1e-12 by Newton's method; of a pixel without one, the widest in its direction (p1 and
+  // p2 apart).
   Eigen::Vector2d Undistort(const Eigen::Vector2d& pixel) const;
   // Where a camera of the same fx, fy, cx, cy without distortion would see that ray [px].
   Eigen::Vector2d Ideal(const Eigen::Vector2d& pixel) const;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -163,6 +164,63 @@ TEST(Camera, AFisheyeIsUsedAsFarAsItsRadiusGrows) {
         << "k1 " << camera.k1;
   }
   EXPECT_TRUE(late.Sees({0, 0})) << "45 degrees";
+}
+
+// Along each direction the pixels out to the farthest that is drawn have a ray, and no others; where Newton's method jumps over a turn, too.
+TEST(Camera, APixelBeyondTheTurnOfTheRadiusHasNoRay) {
+  const vo::Camera barrel{640, 480, 320, 320, 320, 240, -0.15},
+      wave{640, 480, 200, 200, 320, 240, 0.9, -0.9, 0, 0, 0.2},
+      jumps{640, 480, 320, 320, 320, 240, 0.3, 0.2, 0, 0, -0.7},
+      far_jumps{640, 480, 320, 320, 320, 240, -0.9, 0.5, 0, 0, -0.1}, plain{640, 480, 320, 320, 320, 240};
+  for (const vo::Camera& c : {barrel, wave, jumps, far_jumps, plain, vo::CameraPreset("freiburg3")}) {
+    double farthest = 0;  // from the principal point, in focal lengths
+    for (double r = 0; r < 2; r += 1e-5) {
+      const double radius = r * (1 + r * r * (c.k1 + r * r * (c.k2 + r * r * c.k3)));
+      if (radius < farthest) break;
+      farthest = radius;
+    }
+    int with_ray = 0, without = 0;
+    for (double v = 0; v < 480; v += 7) {
+      for (double u = 0; u < 640; u += 7) {
+        const Vector2d pixel(u, v);
+        const double radius = std::hypot((u - c.cx) / c.fx, (v - c.cy) / c.fy);
+        if (std::abs(radius - farthest) < 1e-6) continue;
+        EXPECT_EQ(c.HasRay(pixel), radius < farthest) << "k1 " << c.k1 << ", pixel " << u << " " << v;
+        ++(radius < farthest ? with_ray : without);
+        const Vector2d ray = c.Undistort(pixel);
+        if (radius > farthest) {
+          EXPECT_LT((c.Project({ray.x(), ray.y(), 1}) - Vector2d(c.cx, c.cy)).norm(), c.fx * farthest + 1e-6)
+              << "the edge of what is drawn";
+          continue;
+        }
+        EXPECT_TRUE(c.Draws(ray)) << "k1 " << c.k1 << ", pixel " << u << " " << v;
+        EXPECT_LT((c.Project({ray.x(), ray.y(), 1}) - pixel).norm(), 1e-6)
+            << "k1 " << c.k1 << ", pixel " << u << " " << v;
+      }
+    }
+    EXPECT_GT(with_ray, 1000) << "k1 " << c.k1;
+    EXPECT_EQ(without > 0, farthest < 0.99 * 400 / c.fx) << "k1 " << c.k1;
+  }
+}
+
+// p1 and p2 bend the line where the picture folds: beyond it no ray is drawn, and none is found.
+TEST(Camera, ATangentialTermMovesTheTurn) {
+  vo::Camera camera{640, 480, 320, 320, 320, 240, -0.15, 0, 0.02, -0.03};
+  int drawn = 0, has_none = 0;
+  for (double y = -1.6; y < 1.6; y += 0.05) {
+    for (double x = -1.6; x < 1.6; x += 0.05) {
+      if (!camera.Draws({x, y})) continue;
+      const Vector2d pixel = camera.Project({x, y, 1});
+      ++drawn;
+      EXPECT_GT(camera.LensJacobian({x, y}).determinant(), 0) << x << " " << y;
+      EXPECT_TRUE(camera.HasRay(pixel)) << x << " " << y;
+      EXPECT_LT((camera.Undistort(pixel) - Vector2d(x, y)).norm(), 1e-5) << x << " " << y;
+    }
+  }
+  EXPECT_GT(drawn, 2000);
+  for (const Vector2d& corner : {Vector2d(0, 0), Vector2d(639, 0), Vector2d(0, 479), Vector2d(639, 479)})
+    has_none += !camera.HasRay(corner);
+  EXPECT_GE(has_none, 3);
 }
 
 TEST(Camera, LensJacobianIsTheDerivative) {

@@ -263,6 +263,20 @@ TEST(Odometry, LooksForLandmarksAllOverTheImageAndAddsNoneWhereOneIs) {
   }
 }
 
+// Beyond the turn of a lens's radius a picture that is no lens's has corners all the same.
+TEST(Odometry, BeginsNoLandmarkWhereTheLensHasNoRay) {
+  vo::Camera barrel = kCamera;
+  barrel.k1 = -0.6;  // the radius turns 129 px from the middle
+  vo::Odometry odometry(barrel, SmallImageParams(), vo::Prior(), 1);
+  odometry.Track({0, vo_test::Texture(7).Image(kCamera.width, kCamera.height, {0, 0})});
+  double farthest = 0;
+  for (const vo::FeatureView& view : odometry.Features())
+    farthest = std::max(farthest, (view.pixel - Vector2d(kCamera.cx, kCamera.cy)).norm());
+  EXPECT_GT(farthest, 110);
+  EXPECT_LT(farthest, 129.5);
+  EXPECT_GT(odometry.Features().size(), 30u);
+}
+
 // Before a wall that comes nearer all patterns grow, and those of landmarks near the edge reach out of the image: they are out of sight, long
 // before their corners are, and no landmark is judged by it.
 TEST(Odometry, JudgesNoLandmarkThatReachesOutOfTheImage) {

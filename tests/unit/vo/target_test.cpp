@@ -80,6 +80,15 @@ TEST(Target, IsNotFoundWhereItIsNot) {
   EXPECT_TRUE(vo::FindTarget(Picture(Facing(0.8, 0, 0), camera, 3, 1), camera, other, 0.2).empty());
 }
 
+TEST(Target, IsNotFoundWhereTheLensHasNoRay) {
+  const vo::Camera pinhole;
+  const cv::Mat beside = Picture({Vector3d(0.02, 0, 0.8), Eigen::Matrix3d::Identity()}, pinhole, 3, 1);
+  EXPECT_EQ(vo::FindTarget(beside, pinhole, kBoard, 0.2).size(), 54u);
+  vo::Camera barrel = pinhole;
+  barrel.k1 = -0.5;  // the radius turns 286 px from the middle, the board reaches to 320
+  EXPECT_TRUE(vo::FindTarget(beside, barrel, kBoard, 0.2).empty());
+}
+
 TEST(Target, KnownDepthsAreALandmarksPrior) {
   const vo::LandmarkParams params;
   const vo::FirstView view{{0.1, 0.2}, Eigen::Matrix2d::Identity() * 1e-6, {0, 0}, vo::KnownDepth{2, 0.01}};
