@@ -1,6 +1,8 @@
 #include "vo/odometry.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -12,12 +14,18 @@
 #include "vo/map/existence.h"
 #include "vo/map/forgetting.h"
 #include "vo/rolling_shutter.h"
+#include "vo/spread.h"
 #include "vo/target.h"
 
 namespace vo {
 namespace {
 
 constexpr int kStartRounds = 6;  // of the second frame, through a rolling shutter
+
+struct NewCorner {
+  Eigen::Vector2i pixel;
+  std::optional<KnownDepth> depth;  // of the target's
+};
 
 }  // namespace
 
@@ -39,11 +47,13 @@ struct Odometry::Impl {
   void Follow(const PreparedFrame& prepared, FrameDiagnostics& diagnostics);
   void BeginAgain(const PreparedFrame& second, FrameDiagnostics& diagnostics);
   void UpdateScores(const Association& association);
-  void Forget();
-  void AddFeatures(const PreparedFrame& prepared, const Vector6& velocity);
-  void AddTarget(const PreparedFrame& prepared, const Vector6& velocity, std::vector<FirstView>& first);
-  void Add(const Eigen::Vector2i& corner, const std::optional<KnownDepth>& depth, const PreparedFrame& prepared,
-           const Vector6& velocity, std::vector<FirstView>& first);
+  std::vector<NewCorner> NewCorners(const PreparedFrame& prepared);
+  std::vector<NewCorner> TargetCorners(const PreparedFrame& prepared);
+  void Forget(std::size_t wanted);
+  std::vector<NewCorner> ThatFit(std::vector<NewCorner> corners) const;
+  void AddFeatures(const std::vector<NewCorner>& corners, const PreparedFrame& prepared, const Vector6& velocity);
+  void Add(const NewCorner& corner, const PreparedFrame& prepared, const Vector6& velocity,
+           std::vector<FirstView>& first);
   Estimate Answer(std::int64_t stamp_ns, FrameDiagnostics diagnostics) const;
 
   Camera camera;
@@ -98,7 +108,7 @@ void Odometry::Impl::Begin(const PreparedFrame& prepared, const Vector6& velocit
   next_id = 0;
   target_frames = params.target.columns > 0 ? params.target.frames : 0;
   last_stamp_ns = prepared.frame.stamp_ns;
-  AddFeatures(prepared, velocity);
+  AddFeatures(ThatFit(NewCorners(prepared)), prepared, velocity);
 }
 
 void Odometry::Impl::Follow(const PreparedFrame& prepared, FrameDiagnostics& diagnostics) {
@@ -120,8 +130,9 @@ void Odometry::Impl::Follow(const PreparedFrame& prepared, FrameDiagnostics& dia
   diagnostics.ms_filter += watch.Lap();
   last_stamp_ns = stamp_ns;
 
-  Forget();
-  AddFeatures(prepared, filter.belief().velocity);
+  std::vector<NewCorner> corners = NewCorners(prepared);
+  Forget(corners.size());
+  AddFeatures(ThatFit(std::move(corners)), prepared, filter.belief().velocity);
   diagnostics.ms_features += watch.Lap();
 }
 
@@ -144,7 +155,9 @@ void Odometry::Impl::UpdateScores(const Association& association) {
     record.score = PredictScore(record.score, params.score);
     ++record.age;
     ++record.frames_unsearched;
+    record.searched = false;
   }
+  for (const Searched& searched : association.searched) records[searched.landmark].searched = true;
   const auto share = [&](std::size_t count) { return params.score.blind_share * static_cast<double>(count); };
   if (static_cast<double>(association.matches.size()) < share(association.searched.size())) return;  // a blind frame
   for (const Searched& searched : association.searched) {
@@ -155,11 +168,12 @@ void Odometry::Impl::UpdateScores(const Association& association) {
   }
 }
 
-void Odometry::Impl::Forget() {
+// Room for `wanted` new ones is made as far as nothing that was just searched for has to go.
+void Odometry::Impl::Forget(std::size_t wanted) {
   const std::vector<Filter::LandmarkBelief> beliefs = filter.LandmarkBeliefs();
   for (std::size_t n = 0; n < records.size(); ++n)
     records[n].permanent = beliefs[n].relative_sigma() < params.landmark.permanent_ratio;
-  const std::vector<bool> keep = WorthKeeping(records, params.landmark, params.score);
+  const std::vector<bool> keep = WorthKeeping(records, wanted, params.landmark, params.score);
   filter.KeepLandmarks(keep);
   std::size_t to = 0;
   for (std::size_t from = 0; from < records.size(); ++from)
@@ -168,45 +182,68 @@ void Odometry::Impl::Forget() {
 }
 
 // A new landmark; its first view is what the filter is to be told.
-void Odometry::Impl::Add(const Eigen::Vector2i& corner, const std::optional<KnownDepth>& depth,
-                         const PreparedFrame& prepared, const Vector6& velocity, std::vector<FirstView>& first) {
-  const Eigen::Vector2d pixel = corner.cast<double>();
+void Odometry::Impl::Add(const NewCorner& corner, const PreparedFrame& prepared, const Vector6& velocity,
+                         std::vector<FirstView>& first) {
+  const Eigen::Vector2d pixel = corner.pixel.cast<double>();
   LandmarkRecord record;
-  record.appearance = {prepared.brisk.Describe(corner, first_sampler), CutPatch(prepared.smooth, corner)};
+  record.appearance = {prepared.brisk.Describe(corner.pixel, first_sampler), CutPatch(prepared.smooth, corner.pixel)};
   record.id = next_id++;
   record.score = params.score.initial;
+  record.searched = true;
   records.push_back(record);
   first.push_back(FirstSeen(shutter.Row(pixel), filter.belief().pose, velocity));
   // The patch that later views are registered to defines the landmark: its first view is as good as the registration can be.
   first.back().R = PixelNoise(camera.LensJacobian(first.back().ray), params.features.noise != MatchNoise::constant
                                                                          ? params.features.sigma_floor_px
                                                                          : params.features.sigma_px);
-  first.back().depth = depth;
+  first.back().depth = corner.depth;
   views.push_back(
       {record.id, pixel, pixel, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
 }
 
-void Odometry::Impl::AddTarget(const PreparedFrame& prepared, const Vector6& velocity, std::vector<FirstView>& first) {
-  if (target_frames == 0) return;
+std::vector<NewCorner> Odometry::Impl::TargetCorners(const PreparedFrame& prepared) {
+  std::vector<NewCorner> found;
+  if (target_frames == 0) return found;
   --target_frames;
   const std::vector<TargetCorner> corners =
       FindTarget(prepared.grey, camera, params.target, params.features.sigma_floor_px);
-  if (corners.empty()) return;
+  if (corners.empty()) return found;
   target_frames = 0;
   for (const TargetCorner& corner : corners)
-    if (camera.Sees(corner.pixel.cast<double>(), border_px)) Add(corner.pixel, corner.depth, prepared, velocity, first);
+    if (camera.Sees(corner.pixel.cast<double>(), border_px)) found.push_back({corner.pixel, corner.depth});
+  return found;
 }
 
-void Odometry::Impl::AddFeatures(const PreparedFrame& prepared, const Vector6& velocity) {
-  std::vector<FirstView> first;
-  AddTarget(prepared, velocity, first);
+// Where a landmark may begin: the target's corners, then others, none where a landmark was found or is predicted.
+std::vector<NewCorner> Odometry::Impl::NewCorners(const PreparedFrame& prepared) {
+  std::vector<NewCorner> corners = TargetCorners(prepared);
   std::vector<Eigen::Vector2d> occupied = left_out;
   for (const FeatureView& view : views)
-    if (view.status == FeatureView::Status::matched || view.status == FeatureView::Status::fresh)
-      occupied.push_back(view.pixel);
+    if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
+  for (const NewCorner& corner : corners) occupied.push_back(corner.pixel.cast<double>());
   for (const Eigen::Vector2i& corner : DetectCorners(prepared.grey, occupied, border_px, params.features))
-    if (camera.Sees(corner.cast<double>()))
-      Add(corner, std::nullopt, prepared, velocity, first);  // not at the edge of a fisheye lens
+    if (camera.Sees(corner.cast<double>())) corners.push_back({corner, std::nullopt});
+  return corners;
+}
+
+// No more than the map has room for: the target's, then others from all over the image.
+std::vector<NewCorner> Odometry::Impl::ThatFit(std::vector<NewCorner> corners) const {
+  const std::size_t room = static_cast<std::size_t>(params.landmark.max_landmarks) - records.size();
+  if (corners.size() <= room) return corners;
+  std::vector<Eigen::Vector2d> pixels;
+  for (const NewCorner& corner : corners) pixels.push_back(corner.pixel.cast<double>());
+  const int cells = std::max(1, static_cast<int>(std::sqrt(room)));
+  std::vector<std::size_t> order = SpreadOver(pixels, cells, cells, camera.width, camera.height);
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return corners[i].depth.has_value(); });
+  std::vector<NewCorner> chosen;
+  for (std::size_t i = 0; i < room; ++i) chosen.push_back(corners[order[i]]);
+  return chosen;
+}
+
+void Odometry::Impl::AddFeatures(const std::vector<NewCorner>& corners, const PreparedFrame& prepared,
+                                 const Vector6& velocity) {
+  std::vector<FirstView> first;
+  for (const NewCorner& corner : corners) Add(corner, prepared, velocity, first);
   filter.AddLandmarks(first);
 }
 

@@ -71,7 +71,8 @@ struct LandmarkParams {
   double scale_sigma = 0;
   double permanent_ratio = 0.05;  // permanent when sigma_rho < ratio * rho (our choice; the paper gives no number)
   int forget_after = 90;          // drop a non-permanent landmark that could not be searched for so many frames
-  int max_landmarks = 1000;       // flat memory: beyond it the longest unseen are dropped
+  // Flat memory, of Odometry on images: new ones take the places of the longest unseen, and none begins while all are in view.
+  int max_landmarks = 1000;
 };
 
 // Existence score (44)-(49).

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <set>
 #include <utility>
@@ -275,6 +276,48 @@ TEST(Odometry, BeginsNoLandmarkWhereTheLensHasNoRay) {
   EXPECT_GT(farthest, 110);
   EXPECT_LT(farthest, 129.5);
   EXPECT_GT(odometry.Features().size(), 30u);
+}
+
+// A map that is full begins nothing new as long as what it holds is in view; what a frame has found stays.
+TEST(Odometry, HoldsNoMoreLandmarksThanItMay) {
+  const vo_test::Texture texture(1, 40.0, 24);
+  vo::Params params = SmallImageParams();
+  params.landmark.max_landmarks = 20;
+  vo::Odometry odometry(kCamera, params, KnownStart(), 1);
+  int found = 0;
+  for (int k = 0; k < 30; ++k) {
+    EXPECT_EQ(odometry.Track({k * kFrameNs, ViewFrom(TruthAt(k), texture)}).diagnostics.landmarks, 20) << k;
+    std::set<std::int64_t> in_map;
+    for (const vo::MapPoint& point : odometry.Map()) in_map.insert(point.id);
+    std::set<std::pair<int, int>> quarters;
+    for (const vo::FeatureView& view : odometry.Features()) {
+      quarters.emplace(view.pixel.x() * 2 / kCamera.width, view.pixel.y() * 2 / kCamera.height);
+      if (view.status != vo::FeatureView::Status::matched) continue;
+      EXPECT_TRUE(in_map.contains(view.id)) << "frame " << k << ", landmark " << view.id;
+      ++found;
+    }
+    EXPECT_EQ(quarters.size(), 4u) << k;
+  }
+  EXPECT_GT(found, 15 * 29);
+}
+
+// Where the camera then looks at something else, the map makes room for it.
+TEST(Odometry, AFullMapForgetsWhatIsOutOfView) {
+  const vo_test::Texture texture(1, 40.0, 24);
+  vo::Params params = SmallImageParams();
+  params.landmark.max_landmarks = 40;
+  const auto at = [](int k) { return vo::Pose{Vector3d(-0.03 * k, 0, 0), Eigen::Quaterniond::Identity()}; };
+  vo::Prior prior;
+  prior.v_WC = Vector3d(-0.9, 0, 0);
+  prior.velocity_covariance = 1e-3 * vo::Matrix6::Identity();
+  vo::Odometry odometry(kCamera, params, prior, 1);
+  int tracked = 0;
+  for (int k = 0; k < 70; ++k) {  // what was seen at first leaves the view after some 60
+    const vo::Estimate estimate = odometry.Track({k * kFrameNs, ViewFrom(at(k), texture)});
+    EXPECT_LE(estimate.diagnostics.landmarks, 40) << k;
+    tracked += estimate.diagnostics.tracked();
+  }
+  EXPECT_GE(tracked, 65);
 }
 
 // Before a wall that comes nearer all patterns grow, and those of landmarks near the edge reach out of the image: they are out of sight, long
