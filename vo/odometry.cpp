@@ -142,7 +142,7 @@ void Odometry::Impl::BeginAgain(const PreparedFrame& second, FrameDiagnostics& d
   const PreparedFrame first = *std::exchange(first_frame, std::nullopt);
   const double dt = static_cast<double>(second.frame.stamp_ns - first.frame.stamp_ns) * 1e-9;
   for (int round = 1; round < kStartRounds && diagnostics.tracked(); ++round) {
-    const Vector6 velocity = Minus(filter.belief().pose, prior.pose) / dt;
+    const Vector6 velocity = MinusNear(filter.belief().pose, prior.pose, dt * prior.w_WC_C) / dt;
     filter = WatchedFilter(MakeFilter(params, prior, seed));
     scale = UnknownScale(params.landmark.scale_sigma, prior.pose.p_WC);
     Begin(first, velocity);

@@ -37,6 +37,7 @@ void ParticleFilter::PredictPath(double dt) {
     for (Particle& particle : particles_) {
       const auto left = static_cast<Eigen::Index>(kPoseSize * steps_.size());
       particle.path.mean.pop_back();
+      particle.path.turns.pop_back();
       particle.path.covariance.conservativeResize(left, left);
     }
     if (!answered_.empty()) answered_.pop_back();
@@ -165,8 +166,10 @@ void ParticleFilter::CommitOldest(int count) {
     step_ = {model.F, model.Q};
     for (std::uint32_t i = 0; i < particles_.size(); ++i) UpdateGiven(particles_[i], k, i);
   }
-  for (Particle& particle : particles_)
+  for (Particle& particle : particles_) {
     particle.path.mean.erase(particle.path.mean.begin(), particle.path.mean.begin() + count);
+    particle.path.turns.erase(particle.path.turns.begin(), particle.path.turns.begin() + count);
+  }
   for (int& slot : anchor_slot_) slot = std::max(slot - count, -1);
   steps_.erase(steps_.begin(), steps_.begin() + count);
   path_prior_.reset();
@@ -204,7 +207,7 @@ void ParticleFilter::Fix(Particle& particle, int slot, const Pose& s) {
 
 void ParticleFilter::UpdateGiven(Particle& particle, int slot, std::uint32_t index) const {
   const Pose& s = particle.path.mean[slot];
-  UpdateVelocity(particle, s, VelocityGiven(particle), index);  // (37)-(43)
+  UpdateVelocity(particle, s, particle.path.turns[slot], VelocityGiven(particle), index);  // (37)-(43)
   UpdateLandmarksAt(slot, particle, particle.landmarks);
   particle.pose = s;
 }

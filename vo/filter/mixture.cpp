@@ -4,8 +4,9 @@
 
 namespace vo {
 
-BeliefComponent Component(const PoseGaussian& pose, const Pose& previous, const CameraVelocityFilter::Gain& gain) {
-  const Eigen::Vector3d delta = Log(previous.q_WC.conjugate() * pose.mean.q_WC);
+BeliefComponent Component(const PoseGaussian& pose, const Pose& previous, const Eigen::Vector3d& turn,
+                          const CameraVelocityFilter::Gain& gain) {
+  const Eigen::Vector3d delta = LogNear(previous.q_WC.conjugate() * pose.mean.q_WC, turn);
   Vector6 s_pf;
   s_pf << pose.mean.p_WC, delta;
   Matrix6 J = Matrix6::Identity();  // d(p, delta) / d(tangent at the mean)

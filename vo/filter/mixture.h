@@ -26,8 +26,9 @@ struct Belief {
   Matrix12 covariance = Matrix12::Zero();
 };
 
-// The velocity is an affine function of the pose still to be sampled, plus its own covariance.
-BeliefComponent Component(const PoseGaussian& pose, const Pose& previous, const CameraVelocityFilter::Gain& gain);
+// The velocity is an affine function of the pose still to be sampled, plus its own covariance. `turn`: since `previous`, as predicted [rad in C].
+BeliefComponent Component(const PoseGaussian& pose, const Pose& previous, const Eigen::Vector3d& turn,
+                          const CameraVelocityFilter::Gain& gain);
 
 // Weights sum to 1.
 Belief Moments(const std::vector<BeliefComponent>& mixture);

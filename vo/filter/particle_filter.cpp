@@ -19,12 +19,13 @@ CameraVelocityFilter StepOf(const MotionParams& motion, double dt) {
   return {model.F, model.Q};
 }
 
-// s_pf as the velocity filter sees it: position, and the rotation since the last frame (section 4).
-Vector6 PathState(const Pose& pose, const Pose& previous) {
+// s_pf as the velocity filter sees it: position, and the rotation since the last sampled pose (section 4), which was predicted to be `turn`.
+Vector6 PathState(const Pose& pose, const Pose& previous, const Eigen::Vector3d& turn) {
   Vector6 s;
-  s << pose.p_WC, Log(previous.q_WC.conjugate() * pose.q_WC);
+  s << pose.p_WC, LogNear(previous.q_WC.conjugate() * pose.q_WC, turn);
   return s;
 }
+Vector6 PathState(const Pose& pose) { return PathState(pose, pose, Eigen::Vector3d::Zero()); }
 
 bool KnowsWindows(const FilterParams& params) {
   return params.sampled == Sampled::pose &&
@@ -89,8 +90,8 @@ void ParticleFilter::Coast() {
   mixture_.clear();
   CameraVelocityFilter::Gain gain = step_.ConditionCovariance(particles_[0].velocity.covariance);
   for (const Particle& particle : particles_) {
-    step_.ConditionMean(PathState(particle.pose, particle.pose), particle.velocity.mean, gain);
-    mixture_.push_back(Component(particle.prediction, particle.pose, gain));
+    step_.ConditionMean(PathState(particle.pose), particle.velocity.mean, gain);
+    mixture_.push_back(Component(particle.prediction, particle.pose, PredictedTurn(particle), gain));
   }
   Answer();
 }
@@ -108,9 +109,10 @@ void ParticleFilter::SampleStep(std::span<const Match> matches) {
     // The motion model knows nothing of the image: what is believed then is the weighted samples themselves.
     const PoseGaussian believed =
         params_.proposal == Proposal::bootstrap ? PoseGaussian{s, Matrix6::Zero()} : proposal.pose;
-    step_.ConditionMean(PathState(particle.pose, particle.pose), particle.velocity.mean, gain);
-    mixture_.push_back(Component(believed, particle.pose, gain));
-    UpdateVelocity(particle, s, gain, i);  // 5-7, (37)-(43)
+    step_.ConditionMean(PathState(particle.pose), particle.velocity.mean, gain);
+    const Eigen::Vector3d turn = PredictedTurn(particle);
+    mixture_.push_back(Component(believed, particle.pose, turn, gain));
+    UpdateVelocity(particle, s, turn, gain, i);  // 5-7, (37)-(43)
     const double log_likelihood = UpdateLandmarks(particle, s, matches);
     particle.log_weight += params_.weight == Weight::evidence  // 8
                                ? proposal.log_evidence
@@ -124,12 +126,16 @@ void ParticleFilter::SampleStep(std::span<const Match> matches) {
 }
 
 PoseGaussian ParticleFilter::PredictPose(const Particle& particle, const Matrix6& covariance) const {
-  const Vector6 s = step_.PredictedMean(PathState(particle.pose, particle.pose), particle.velocity);  // (12)
+  const Vector6 s = step_.PredictedMean(PathState(particle.pose), particle.velocity);  // (12)
   const Pose mean{s.head<3>(), (particle.pose.q_WC * Exp(s.tail<3>())).normalized()};
   // (13) is a covariance of delta, about delta-hat; the tangent space at the mean is turned by the right Jacobian.
   Matrix6 J = Matrix6::Identity();
   J.bottomRightCorner<3, 3>() = RightJacobian(s.tail<3>());
   return {mean, J * covariance * J.transpose()};
+}
+
+Eigen::Vector3d ParticleFilter::PredictedTurn(const Particle& particle) const {
+  return step_.PredictedMean(PathState(particle.pose), particle.velocity).tail<3>();
 }
 
 PoseProposal ParticleFilter::ProposePose(const Particle& particle, std::span<const Match> matches) {
@@ -148,12 +154,12 @@ PoseProposal ParticleFilter::ProposePose(const Particle& particle, std::span<con
 }
 
 CameraVelocityFilter::Gain ParticleFilter::VelocityGiven(const Particle& particle) const {
-  return step_.Condition(PathState(particle.pose, particle.pose), particle.velocity);
+  return step_.Condition(PathState(particle.pose), particle.velocity);
 }
 
-void ParticleFilter::UpdateVelocity(Particle& particle, const Pose& pose, const CameraVelocityFilter::Gain& gain,
-                                    std::uint32_t index) const {
-  particle.velocity = gain.Given(PathState(pose, particle.pose));
+void ParticleFilter::UpdateVelocity(Particle& particle, const Pose& pose, const Eigen::Vector3d& turn,
+                                    const CameraVelocityFilter::Gain& gain, std::uint32_t index) const {
+  particle.velocity = gain.Given(PathState(pose, particle.pose, turn));
   // RB-PF: the velocity is sampled as well, from its exact conditional; this leaves the weight as it is.
   if (params_.sampled == Sampled::pose_and_velocity)
     particle.velocity = {

@@ -129,11 +129,12 @@ class ParticleFilter final : public Filter {
   void Coast();
   void SampleStep(std::span<const Match> matches);
   PoseGaussian PredictPose(const Particle& particle, const Matrix6& covariance) const;
+  Eigen::Vector3d PredictedTurn(const Particle& particle) const;  // since the last sampled pose [rad in C]
   PoseProposal ProposePose(const Particle& particle, std::span<const Match> matches);
   double UpdateLandmarks(Particle& particle, const Pose& pose, std::span<const Match> matches);
   CameraVelocityFilter::Gain VelocityGiven(const Particle& particle) const;
-  void UpdateVelocity(Particle& particle, const Pose& pose, const CameraVelocityFilter::Gain& gain,
-                      std::uint32_t index) const;
+  void UpdateVelocity(Particle& particle, const Pose& pose, const Eigen::Vector3d& turn,
+                      const CameraVelocityFilter::Gain& gain, std::uint32_t index) const;
   void Weigh();
   void ReplaceImpossible();
   void Answer();

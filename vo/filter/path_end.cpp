@@ -12,7 +12,7 @@ LastVelocity VelocityAtTheEnd(const PathPrior& prior, const Pose& start, const V
   Eigen::VectorXd off(kPoseSize * m);
   LastVelocity last{Vector6::Zero(), Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, kPoseSize * m)};
   for (int k = 0; k < m; ++k) {
-    const Vector6 u = Minus(path.mean[k], k == 0 ? start : path.mean[k - 1]);
+    const Vector6 u = StepTo(k, path, start);
     off.segment<6>(kPoseSize * k) = u - prior.MeanStep(k, velocity);
     Matrix6 J = Matrix6::Identity();
     J.bottomRightCorner<3, 3>() = InverseRightJacobian(u.tail<3>());
@@ -47,6 +47,7 @@ void Extend(const PathPrior& prior, const MotionModel& step, const Pose& start, 
   path.covariance.bottomRightCorner<6, 6>() =
       Symmetrised(cross * by_pose.transpose() + by_step * noise * by_step.transpose());
   path.mean.push_back(Plus(path.mean.empty() ? start : path.mean.back(), u));
+  path.turns.push_back(u.tail<3>());
 }
 
 }  // namespace vo

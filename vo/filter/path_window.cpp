@@ -36,8 +36,7 @@ void PathWindow::AddPrior(const PathPrior& prior, const WindowInput& in, const P
   const int m = prior.size();
   log_det_ = -prior.log_det_precision();
   for (int k = 0; k < m; ++k) {
-    const Pose& from = k == 0 ? in.start : path.mean[k - 1];
-    const Vector6 u = Minus(path.mean[k], from);
+    const Vector6 u = StepTo(k, path, in.start);
     r_.segment<6>(kPoseSize * k) = u - prior.MeanStep(k, in.velocity);
     auto J = J_.middleRows<6>(kPoseSize * k);
     J.setZero();

@@ -13,6 +13,7 @@
 #include "vo/filter/descent.h"
 #include "vo/filter/guards.h"
 #include "vo/filter/path_prior.h"
+#include "vo/filter/pose_gaussian.h"
 #include "vo/map/image_prediction.h"
 #include "vo/map/landmark.h"
 
@@ -43,11 +44,17 @@ struct WindowInput {
 
 struct PathGaussian {
   std::vector<Pose> mean;
-  Eigen::MatrixXd covariance;  // 6m x 6m
-  double objective = 0;        // -2 log density at its mode, up to a constant that is the same for all guesses
-  double log_evidence = 0;     // Laplace's approximation of log p(z in the window | sampled path)
+  std::vector<Eigen::Vector3d> turns;  // [rad in C] of the step to each pose, as it was predicted
+  Eigen::MatrixXd covariance;          // 6m x 6m
+  double objective = 0;                // -2 log density at its mode, up to a constant that is the same for all guesses
+  double log_evidence = 0;             // Laplace's approximation of log p(z in the window | sampled path)
   Guards guards;  // of the solution; where something was not positive definite, the evidence is not a number
 };
+
+// u of path_prior.h: of the rotation vectors that turn the pose before into the pose at `slot`, the one nearest to what was predicted.
+inline Vector6 StepTo(int slot, const PathGaussian& path, const Pose& start) {
+  return MinusNear(path.mean[slot], slot == 0 ? start : path.mean[slot - 1], path.turns[slot]);
+}
 
 struct WindowOptions {
   int max_iterations = 10;

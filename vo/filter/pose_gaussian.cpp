@@ -20,6 +20,12 @@ Vector6 Minus(const Pose& to, const Pose& from) {
   return d;
 }
 
+Vector6 MinusNear(const Pose& to, const Pose& from, const Eigen::Vector3d& turn) {
+  Vector6 d;
+  d << to.p_WC - from.p_WC, LogNear(from.q_WC.conjugate() * to.q_WC, turn);
+  return d;
+}
+
 double PoseGaussian::LogDensity(const Pose& pose) const {
   const Vector6 d = Minus(pose, mean);
   const Eigen::LLT<Matrix6> llt(covariance);

@@ -10,6 +10,8 @@ namespace vo {
 Pose Plus(const Pose& pose, const Vector6& d);
 // to (-) from: the d with from (+) d = to.
 Vector6 Minus(const Pose& to, const Pose& from);
+// The same where the way may have been more than half a turn: by the rotation vector nearest to `turn` [rad in C].
+Vector6 MinusNear(const Pose& to, const Pose& from, const Eigen::Vector3d& turn);
 
 struct PoseGaussian {
   Pose mean;

@@ -75,7 +75,7 @@ void ParticleFilter::Triangulate(Particle& particle) const {
 std::vector<Vector6> ParticleFilter::VelocitiesAlong(const Particle& particle) const {
   std::vector<Vector6> steps;  // mean velocities
   for (std::size_t k = 0; k < steps_.size(); ++k)
-    steps.push_back(Minus(particle.path.mean[k], k == 0 ? particle.pose : particle.path.mean[k - 1]) / steps_[k].dt);
+    steps.push_back(StepTo(static_cast<int>(k), particle.path, particle.pose) / steps_[k].dt);
   if (steps.size() == 1) return {steps[0], steps[0]};
   std::vector<Vector6> velocities(steps.size() + 1);
   for (std::size_t k = 1; k < steps.size(); ++k) {

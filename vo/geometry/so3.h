@@ -1,4 +1,4 @@
-// Purpose: rotations as the filter needs them: exponential, logarithm, right Jacobian and its inverse.
+// Purpose: rotations as the filter needs them: exponential, logarithms, right Jacobian and its inverse.
 // Source:  Sola, Deray, Atchuthan, "A micro Lie theory for state estimation in robotics", (132)-(147).
 // Convention: right perturbation, q = q_hat (x) Exp(phi), phi in radians in the body (camera) frame.
 #pragma once
@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 
 namespace vo {
 
@@ -34,8 +35,28 @@ inline Eigen::Vector3d Log(const Eigen::Quaterniond& q) {
   return (2.0 * half_angle / n) * q.vec();
 }
 
+// The rotation vector nearest to `near`: those of one rotation differ by full turns about its axis.
+inline Eigen::Vector3d LogNear(const Eigen::Quaterniond& q, const Eigen::Vector3d& near) {
+  const Eigen::Vector3d phi = Log(q);
+  const double angle = phi.norm();
+  const Eigen::Vector3d axis = angle < 1e-9 ? near.normalized() : Eigen::Vector3d(phi / angle);  // of a full turn: any
+  const double turns = std::round((near.dot(axis) - angle) / (2 * std::numbers::pi));
+  return turns == 0 ? phi : Eigen::Vector3d(phi + 2 * std::numbers::pi * turns * axis);
+}
+
+// The Jacobian is singular at full turns: it is taken this far beside them [rad].
+constexpr double kBesideFullTurn = 1e-4;
+inline Eigen::Vector3d BesideFullTurn(const Eigen::Vector3d& phi) {
+  const double angle = phi.norm();
+  if (angle < std::numbers::pi) return phi;
+  const double off = std::remainder(angle, 2 * std::numbers::pi);
+  if (std::abs(off) >= kBesideFullTurn) return phi;
+  return (1 + (std::copysign(kBesideFullTurn, off) - off) / angle) * phi;
+}
+
 // Exp(phi + d) = Exp(phi) Exp(J_r(phi) d) to first order in d.
-inline Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& phi) {
+inline Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& at) {
+  const Eigen::Vector3d phi = BesideFullTurn(at);
   const double t2 = phi.squaredNorm();
   const double t = std::sqrt(t2);
   const double a = t < 1e-3 ? 0.5 - t2 / 24.0 : (1.0 - std::cos(t)) / t2;
@@ -44,7 +65,8 @@ inline Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& phi) {
   return Eigen::Matrix3d::Identity() - a * K + b * K * K;
 }
 
-inline Eigen::Matrix3d InverseRightJacobian(const Eigen::Vector3d& phi) {
+inline Eigen::Matrix3d InverseRightJacobian(const Eigen::Vector3d& at) {
+  const Eigen::Vector3d phi = BesideFullTurn(at);
   const double t2 = phi.squaredNorm();
   const double t = std::sqrt(t2);
   const double b = t < 1e-3 ? 1.0 / 12.0 + t2 / 720.0 : 1.0 / t2 - (1.0 + std::cos(t)) / (2.0 * t * std::sin(t));
@@ -54,7 +76,7 @@ inline Eigen::Matrix3d InverseRightJacobian(const Eigen::Vector3d& phi) {
 
 // log det J_r(phi): the volume that Exp changes.
 inline double LogVolume(const Eigen::Vector3d& phi) {
-  const double t2 = phi.squaredNorm();
+  const double t2 = BesideFullTurn(phi).squaredNorm();
   return t2 < 1e-6 ? -t2 / 12.0 : std::log(2.0 * (1.0 - std::cos(std::sqrt(t2))) / t2);
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "tests/unit/vo/draws.h"
@@ -48,6 +49,43 @@ TEST(So3, LogUndoesExp) {
         << phi.transpose();
     const Eigen::Quaterniond q = vo::Exp(phi);
     EXPECT_LT((vo::Log(Eigen::Quaterniond(-q.coeffs())) - phi).norm(), 1e-13) << "the other sign of the same rotation";
+  }
+}
+
+// Whatever the number of turns; where it is the shortest one, to the bit what Log says.
+TEST(So3, LogNearKnowsTheTurns) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  vo_test::Draws draws(2);
+  for (const double size : {0.1, 1.0, 3.0, 3.3, 6.0, kTurn, 6.5, 9.5, 20.0, -4.0}) {
+    for (int i = 0; i < 20; ++i) {
+      const Vector3d axis = draws.Symmetrics<3>().normalized(), phi = size * axis;
+      const double off = std::abs(std::remainder(size, kTurn));  // at a full turn any axis is one
+      EXPECT_LT((vo::LogNear(vo::Exp(phi), phi) - phi).norm(), 1e-13) << phi.transpose();
+      const Vector3d near = phi + 0.05 * draws.Symmetrics<3>();
+      if (off == 0) continue;
+      EXPECT_LT((vo::LogNear(vo::Exp(phi), near) - phi).norm(), 1e-13) << phi.transpose();
+    }
+  }
+  for (const Vector3d& phi : RotationVectors())
+    for (const Vector3d& near : {Vector3d(0, 0, 0), phi, Vector3d(0.01, -0.02, 0.015)})
+      EXPECT_EQ(vo::LogNear(vo::Exp(phi), near), vo::Log(vo::Exp(phi))) << phi.transpose();
+  EXPECT_EQ(vo::LogNear(vo::Exp({0, 0, 3}), {0, 0, -1}).z(), 3 - kTurn) << "3 rad are farther away";
+}
+
+// At a full turn the rotation says nothing of two axes of three; taken beside it, the Jacobian and its inverse are one another's.
+TEST(So3, JacobiansPassFullTurns) {
+  vo_test::Draws draws(3);
+  for (const double size : {3.2, 6.0, 6.2831, 2 * std::numbers::pi, 6.2833, 7.0, 4 * std::numbers::pi}) {
+    const Vector3d phi = size * draws.Symmetrics<3>().normalized();
+    const Matrix3d J = vo::RightJacobian(phi);
+    EXPECT_LT((J * vo::InverseRightJacobian(phi) - Matrix3d::Identity()).norm(), 1e-9) << size;
+    EXPECT_NEAR(vo::LogVolume(phi), std::log(J.determinant()), 1e-5) << size;
+    // J_r(phi) = integral of Exp(-s phi) over s from 0 to 1, to what a ten thousandth of a radian changes
+    Matrix3d integral = Matrix3d::Zero();
+    constexpr int kSteps = 2000;
+    for (int i = 0; i < kSteps; ++i)
+      integral += vo::Exp(-(i + 0.5) / kSteps * phi).toRotationMatrix() / static_cast<double>(kSteps);
+    EXPECT_LT((J - integral).norm(), 2 * vo::kBesideFullTurn) << size;
   }
 }
 

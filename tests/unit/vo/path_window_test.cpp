@@ -83,6 +83,7 @@ Scene MakeScene(unsigned seed, int frames, int count, double depth_sigma, double
 vo::PathGaussian Solve(const Scene& scene, bool marginal, std::vector<Vector3d>* modes = nullptr, int iterations = 50) {
   vo::PathGaussian path;
   path.mean.assign(scene.truth.size(), scene.start);
+  path.turns.assign(scene.truth.size(), Vector3d::Zero());
   std::vector<Vector3d> theta;
   for (const vo::Track& track : scene.tracks) theta.push_back(scene.landmarks[track.landmark].mean);
   vo::PathWindow().Solve(scene.prior(), scene.input(), scene.tracks, {iterations, marginal}, path, theta);
@@ -174,6 +175,7 @@ TEST(PathWindow, EvidenceDoesNotBelieveAStepThatNobodyLookedAt) {
     vo::PathGaussian path;
     std::vector<Vector3d> theta;
     for (const vo::Track& track : scene.tracks) theta.push_back(scene.landmarks[track.landmark].mean);
+    path.turns.assign(scene.truth.size(), Vector3d::Zero());
     for (std::size_t k = 0; k < scene.truth.size(); ++k)
       path.mean.push_back(vo::Plus(scene.start, 0.1 * draws.Normals<6>()));
     for (const bool marginal : {false, true}) {
