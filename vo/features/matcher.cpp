@@ -10,11 +10,13 @@ namespace {
 
 constexpr double kMaxRefinementPx = 1.5;  // further than this the registration has left the matched corner
 constexpr double kMinCorrelation = 0.6;
-constexpr double kMaxZoom = 4;       // a predicted change of scale beyond it is not believed
-constexpr double kLostSigmas = 2.5;  // of the prediction that the largest window should cover
+constexpr double kMaxZoom = 4;           // a predicted change of scale beyond it is not believed
+constexpr double kLostSigmas = 2.5;      // of the prediction that the largest window should cover
+constexpr double kFarthestPx = 1 << 16;  // no image is wider
 
 Eigen::Vector2i Rounded(const Eigen::Vector2d& p) {
-  return {static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))};
+  const auto rounded = [](double x) { return static_cast<int>(std::lround(std::clamp(x, -kFarthestPx, kFarthestPx))); };
+  return {rounded(p.x()), rounded(p.y())};
 }
 
 // How the pattern of a landmark lies in the present image.
@@ -46,8 +48,10 @@ void SearchRegion(const SearchRequest& request, int side, const FeatureParams& p
       const double a = information(0, 0), b = information(0, 1) * dy, c = information(1, 1) * dy * dy - 1;
       const double discriminant = b * b - a * c;
       if (discriminant < 0) continue;
-      first = std::max(first, static_cast<int>(std::floor((-b - std::sqrt(discriminant)) / a)));
-      last = std::min(last, static_cast<int>(std::ceil((-b + std::sqrt(discriminant)) / a)));
+      // Within the window before they are cast; 0 / 0 is that of an ellipse without end.
+      const double beyond = half + 1, root = std::sqrt(discriminant);
+      first = static_cast<int>(std::min(beyond, std::max<double>(first, std::floor((-b - root) / a))));
+      last = static_cast<int>(std::max(-beyond, std::min<double>(last, std::ceil((-b + root) / a))));
       if (first > last) continue;
     }
     region.push_back({centre.y() + dy, centre.x() + first, centre.x() + last});
@@ -61,7 +65,8 @@ bool OnBorder(const Eigen::Vector2i& pixel, const Eigen::Vector2i& centre, int s
 }  // namespace
 
 int WindowOf(const Eigen::Matrix2d& S) {
-  return 2 * static_cast<int>(std::ceil(kLostSigmas * std::sqrt(std::max(S(0, 0), S(1, 1))))) + 1;
+  const double half = std::ceil(kLostSigmas * std::sqrt(std::max(S(0, 0), S(1, 1))));
+  return 2 * static_cast<int>(std::min(kFarthestPx, half)) + 1;
 }
 
 BriskSampler FirstSampler(const FeatureParams& params) {

@@ -26,7 +26,7 @@ struct SearchRequest {
   std::optional<int> widest_px = std::nullopt;          // no window is wider than this; none: as the settings have it
 };
 
-// Side of the window that covers a prediction of this covariance [px^2].
+// Side of the window that covers a prediction of this covariance [px^2], or any image where it is larger than that.
 int WindowOf(const Eigen::Matrix2d& S);
 
 // How a corner is described when it is first seen: as it lies.

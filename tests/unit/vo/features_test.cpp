@@ -310,10 +310,19 @@ TEST(Matcher, FindsShiftsThatFitTheWindowsAndNoOthers) {
       right += found[i].found && (found[i].found->pixel - corners[i].cast<double>() - shift).norm() < 0.1;
     return right / static_cast<double>(corners.size());
   };
-  EXPECT_GE(found_share({2.3, -1.6}, 1), 0.95);    // in 9 x 9
-  EXPECT_GE(found_share({-7.4, 6.5}, 1), 0.80);    // in 17 x 17; half-pixel shifts cost BRISK some bits
-  EXPECT_EQ(found_share({15.0, -14.0}, 1), 0.0);   // outside both, and the prediction was sure
-  EXPECT_GE(found_share({15.0, -14.0}, 8), 0.90);  // unsure: the window grows
+  EXPECT_GE(found_share({2.3, -1.6}, 1), 0.95);           // in 9 x 9
+  EXPECT_GE(found_share({-7.4, 6.5}, 1), 0.80);           // in 17 x 17; half-pixel shifts cost BRISK some bits
+  EXPECT_EQ(found_share({15.0, -14.0}, 1), 0.0);          // outside both, and the prediction was sure
+  EXPECT_GE(found_share({15.0, -14.0}, 8), 0.90);         // unsure: the window grows
+  for (const double nothing_known : {1e9, 1e100, 1e160})  // after the longest gap
+    EXPECT_EQ(found_share({15.0, -14.0}, nothing_known), found_share({15.0, -14.0}, 80)) << nothing_known;
+}
+
+TEST(Matcher, TheWindowCoversAPredictionHoweverLittleItSays) {
+  EXPECT_EQ(vo::WindowOf(Matrix2d::Identity()), 7);
+  EXPECT_EQ(vo::WindowOf(Vector2d(4, 100).asDiagonal()), 51);
+  for (const double sigma : {1e6, 1e9, 1e100, 1e160})
+    EXPECT_GE(vo::WindowOf(sigma * sigma * Matrix2d::Identity()), 100'000) << sigma;
 }
 
 TEST(Matcher, WhatReachesOutOfTheImageIsOutOfSightAndNotMissed) {
