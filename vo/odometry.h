@@ -52,7 +52,7 @@ struct Estimate {
 };
 
 struct MapPoint {
-  int id = 0;
+  std::int64_t id = 0;
   Eigen::Vector3d X_W = Eigen::Vector3d::Zero();      // [m], on the likeliest path
   double inverse_depth = 0, inverse_depth_sigma = 0;  // [1/m] from the anchor
   bool permanent = false;

@@ -164,7 +164,7 @@ const std::vector<BeliefComponent>& PointOdometry::Mixture() const {
 
 std::vector<MapPoint> PointOdometry::Map() const {
   std::vector<MapPoint> points = MakeMap(impl_->filter, impl_->scale);
-  for (std::size_t n = 0; n < points.size(); ++n) points[n].id = static_cast<int>(impl_->records[n].id);
+  for (std::size_t n = 0; n < points.size(); ++n) points[n].id = impl_->records[n].id;
   return points;
 }
 

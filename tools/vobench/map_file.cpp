@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
 #include "tools/evaluation/whole_file.h"
 #include "tools/vobench/errors.h"
@@ -52,7 +54,10 @@ std::string MapText(const std::vector<vo::MapPoint>& map) {
                                "inverse_depth_sigma", "relative_sigma"}) {
     text += fmt::format("property double {}\n", property);
   }
-  text += "property int id\nproperty uchar permanent\nend_header\n";
+  // PLY has no whole numbers of 64 bits; a double holds those up to 2^53.
+  const bool is_small =
+      std::all_of(map.begin(), map.end(), [](const vo::MapPoint& p) { return std::in_range<std::int32_t>(p.id); });
+  text += fmt::format("property {} id\nproperty uchar permanent\nend_header\n", is_small ? "int" : "double");
   for (const vo::MapPoint& point : map) {
     if (!point.moments) continue;
     const Eigen::Vector3d& X = point.moments->mean;

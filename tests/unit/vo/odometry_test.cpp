@@ -351,7 +351,7 @@ TEST(Odometry, JudgesNoLandmarkThatReachesOutOfTheImage) {
       EXPECT_GT(to_edge, margin - 2) << "frame " << k << ", landmark " << seen.id;
     }
   }
-  std::set<int> in_map;
+  std::set<std::int64_t> in_map;
   for (const vo::MapPoint& point : odometry.Map()) in_map.insert(point.id);
   int out_of_sight = 0;
   for (const int id : seen_at_first) {

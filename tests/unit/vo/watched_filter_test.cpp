@@ -417,6 +417,15 @@ TEST(PointOdometry, LeavesOutWhatAFisheyeSeesBesideIt) {
   EXPECT_EQ(next.diagnostics.landmarks, 2);
 }
 
+TEST(PointOdometry, AnIdIsAnyWholeNumber) {
+  vo::PointOdometry odometry({640, 480, 525, 525, 319.5, 239.5}, vo::Params(), vo::Prior(), 1);
+  const std::vector<std::int64_t> ids = {5'000'000'000, -7, std::numeric_limits<std::int64_t>::max()};
+  odometry.Track({0, {{ids[0], {100, 100}}, {ids[1], {200, 100}}, {ids[2], {300, 100}}}});
+  const std::vector<vo::MapPoint> map = odometry.Map();
+  ASSERT_EQ(map.size(), ids.size());
+  for (std::size_t n = 0; n < ids.size(); ++n) EXPECT_EQ(map[n].id, ids[n]);
+}
+
 TEST(PointOdometry, RefusesWhatIsNoPointAndNoPrior) {
   const vo::Camera camera{640, 480, 525, 525, 319.5, 239.5};
   vo::Prior prior;

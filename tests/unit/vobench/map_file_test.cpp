@@ -80,6 +80,14 @@ TEST(MapFile, HoldsMeanCovarianceAndWhatIsKnownOfTheDepth) {
   EXPECT_TRUE(Read(MapText({})).empty());
 }
 
+TEST(MapFile, HoldsIdsOfAnySize) {
+  std::vector<vo::MapPoint> points = SomePoints();
+  EXPECT_THAT(MapText(points), testing::HasSubstr("property int id\n"));
+  points[2].id = 5'000'000'000;
+  EXPECT_THAT(MapText(points), testing::HasSubstr("property double id\n"));
+  EXPECT_EQ(Read(MapText(points))[1].at("id"), 5'000'000'000);
+}
+
 TEST(MapFile, IsReadByAssimp) {
   const std::string text = MapText(SomePoints());
   Assimp::Importer importer;
