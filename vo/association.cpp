@@ -9,7 +9,6 @@
 
 #include "vo/features/matcher.h"
 #include "vo/filter/consensus.h"
-#include "vo/filter/motion_model.h"
 #include "vo/pilots.h"
 #include "vo/rolling_shutter.h"
 #include "vo/spread.h"
@@ -31,7 +30,7 @@ struct Sight {
   const Camera& camera;
   const PreparedFrame& frame;
   const Params& params;
-  MotionModel model;  // of the step to this frame
+  LastSeen last_seen;
   RollingShutter shutter;
   LocalMap map;  // of the reference
 
@@ -155,11 +154,7 @@ Residual ResidualOf(const Candidate& candidate, const Match& match, const MapVie
 // How fast the camera is if it is at `pose` and not where it was predicted to be: at the end of the step, by which nearly constant velocity has
 // changed by more than the step's mean has.
 Vector6 VelocityAt(const Sight& in, const Pose& pose) {
-  const Matrix6 V = in.filter.belief().covariance.bottomRightCorner<6, 6>();
-  const Matrix6 step = in.model.F.topRightCorner<6, 6>();
-  const Matrix6 predicted = step * V * step.transpose() + in.model.Q.topLeftCorner<6, 6>();
-  const Matrix6 shared = V * step.transpose() + in.model.Q.bottomLeftCorner<6, 6>();
-  return in.velocity() + shared * predicted.llt().solve(Minus(pose, in.prediction().mean));
+  return in.velocity() + VelocityChange(in.last_seen, in.params.motion, Minus(pose, in.prediction().mean));
 }
 
 // The pilots first, each request as it is; the others where the camera then turns out to be.
@@ -231,13 +226,13 @@ Consensus Agree(const Sight& in, std::span<const Candidate> candidates, const Re
 }  // namespace
 
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
-                      const PreparedFrame& frame, int border_px, double dt, const Params& params) {
+                      const PreparedFrame& frame, int border_px, const LastSeen& last_seen, const Params& params) {
   const Sight in{filter,
                  records,
                  camera,
                  frame,
                  params,
-                 NearlyConstantVelocity(params.motion, dt),
+                 last_seen,
                  RollingShutter(camera, params.features),
                  filter.ReferenceMap()};
   Association result;

@@ -8,6 +8,7 @@
 
 #include "vo/filter/filter.h"
 #include "vo/geometry/camera.h"
+#include "vo/last_seen.h"
 #include "vo/map/landmark_record.h"
 #include "vo/map/residual_history.h"
 #include "vo/odometry.h"
@@ -32,8 +33,8 @@ struct Association {
   double nis = 0;                         // sum of the matches' mahalanobis_sq
 };
 
-// After filter.Predict(dt). `records` are in the order of the filter's landmarks.
+// After filter.Predict(). `records` are in the order of the filter's landmarks.
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
-                      const PreparedFrame& frame, int border_px, double dt, const Params& params);
+                      const PreparedFrame& frame, int border_px, const LastSeen& last_seen, const Params& params);
 
 }  // namespace vo

@@ -46,6 +46,7 @@ struct Odometry::Impl {
   void Begin(const PreparedFrame& prepared, const Vector6& velocity);
   void Follow(const PreparedFrame& prepared, FrameDiagnostics& diagnostics);
   void BeginAgain(const PreparedFrame& second, FrameDiagnostics& diagnostics);
+  void SeenNow() { last_seen = {0, filter.belief().covariance.bottomRightCorner<6, 6>()}; }
   void UpdateScores(const Association& association);
   std::vector<NewCorner> NewCorners(const PreparedFrame& prepared);
   std::vector<NewCorner> TargetCorners(const PreparedFrame& prepared);
@@ -69,6 +70,7 @@ struct Odometry::Impl {
   std::vector<FeatureView> views;
   std::vector<Eigen::Vector2d> left_out;  // [px] of this frame: predicted, but not looked for
   std::optional<std::int64_t> last_stamp_ns;
+  LastSeen last_seen;
   int next_id = 0;
   int target_frames = 0;                     // in which the target may still be looked for
   std::optional<PreparedFrame> first_frame;  // kept until the second tells how fast its rows were passed over
@@ -108,6 +110,7 @@ void Odometry::Impl::Begin(const PreparedFrame& prepared, const Vector6& velocit
   next_id = 0;
   target_frames = params.target.columns > 0 ? params.target.frames : 0;
   last_stamp_ns = prepared.frame.stamp_ns;
+  SeenNow();
   AddFeatures(ThatFit(NewCorners(prepared)), prepared, velocity);
 }
 
@@ -116,9 +119,11 @@ void Odometry::Impl::Follow(const PreparedFrame& prepared, FrameDiagnostics& dia
   const double dt = static_cast<double>(stamp_ns - *last_stamp_ns) * 1e-9;
   Stopwatch watch;
   filter.Predict(dt);
-  Association association = Associate(filter, records, camera, prepared, border_px, dt, params);
+  last_seen.ago += dt;
+  Association association = Associate(filter, records, camera, prepared, border_px, last_seen, params);
   diagnostics.ms_matching += watch.Lap();
   filter.Update(association.matches);
+  if (!association.matches.empty()) SeenNow();
   scale.Lengthened(filter.lengthened());
   UpdateScores(association);
   diagnostics.searched = static_cast<int>(association.searched.size());
