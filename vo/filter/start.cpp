@@ -9,6 +9,7 @@
 
 #include "vo/filter/particle_filter.h"
 #include "vo/geometry/so3.h"
+#include "vo/geometry/symmetric.h"
 
 namespace vo {
 namespace {
@@ -163,6 +164,12 @@ void ParticleFilter::FollowFirst() {
     particle.landmarks = first.landmarks;
     for (Pose& pose : particle.path.mean)
       pose = {particle.pose.p_WC + turn * (pose.p_WC - first.pose.p_WC), (turn * pose.q_WC).normalized()};
+    const Eigen::Matrix3d R = turn.toRotationMatrix();
+    for (Eigen::Index k = 0; k < particle.path.covariance.rows(); k += kPoseSize) {  // of each pose, dp is in W
+      particle.path.covariance.middleRows<3>(k) = (R * particle.path.covariance.middleRows<3>(k)).eval();
+      particle.path.covariance.middleCols<3>(k) = (particle.path.covariance.middleCols<3>(k) * R.transpose()).eval();
+    }
+    Symmetrise(particle.path.covariance);
     particle.modes = first.modes;
     PlaceAnchors(particle);
   }
