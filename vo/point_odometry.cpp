@@ -85,11 +85,7 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
   diagnostics.ms_features = watch.Lap();
   if (!scale.known()) {
     mixture = filter.mixture();
-    for (BeliefComponent& component : mixture) {
-      component.covariance = scale.Covariance(component.pose, component.velocity, component.covariance);
-      component.pose = scale.Answered(component.pose);
-      component.velocity = scale.Answered(component.velocity);
-    }
+    for (BeliefComponent& component : mixture) component = scale.Answered(component, filter.belief());
   }
   return MakeEstimate(filter, scale, frame.stamp_ns, diagnostics);
 }

@@ -26,12 +26,17 @@ Vector6 UnknownScale::Answered(const Vector6& velocity) const {
   return answered;
 }
 
-Matrix12 UnknownScale::Covariance(const Pose& pose, const Vector6& velocity, const Matrix12& covariance) const {
-  if (known()) return covariance;
+// As they are answered, seen from the start; zero where there are angles.
+Eigen::Matrix<double, 12, 1> UnknownScale::Lengths(const Pose& pose, const Vector6& velocity) const {
   Eigen::Matrix<double, 12, 1> length = Eigen::Matrix<double, 12, 1>::Zero();
   length.segment<3>(0) = pose.p_WC - start_;
   length.segment<3>(6) = velocity.head<3>();
-  length *= kept_;
+  return kept_ * length;
+}
+
+Matrix12 UnknownScale::Covariance(const Pose& pose, const Vector6& velocity, const Matrix12& covariance) const {
+  if (known()) return covariance;
+  const Eigen::Matrix<double, 12, 1> length = Lengths(pose, velocity);
   Matrix12 wide = off_ * length * length.transpose();
   for (int row = 0; row < 12; row += 3) {
     for (int column = 0; column < 12; column += 3) {
@@ -43,6 +48,20 @@ Matrix12 UnknownScale::Covariance(const Pose& pose, const Vector6& velocity, con
     }
   }
   return wide;
+}
+
+BeliefComponent UnknownScale::Answered(const BeliefComponent& component, const Belief& belief) const {
+  if (known()) return component;
+  const Eigen::Matrix<double, 12, 1> length = Lengths(component.pose, component.velocity),
+                                     mean = Lengths(belief.pose, belief.velocity);
+  const Eigen::Matrix<double, 12, 1> outwards = (factor_ - 1) * (length - mean);
+  BeliefComponent answered = component;
+  answered.pose.p_WC = Answered(component.pose.p_WC) + outwards.segment<3>(0);
+  answered.velocity.head<3>() = Answered(component.velocity).head<3>() + outwards.segment<3>(6);
+  // off_ is Var exp(-eta) + (1 - E exp(-eta))^2
+  answered.covariance = Covariance(belief.pose, belief.velocity, component.covariance) +
+                        (square_ - factor_ * factor_) * (length * length.transpose() - mean * mean.transpose());
+  return answered;
 }
 
 PointMoments UnknownScale::Moments(const PointMoments& point) const {

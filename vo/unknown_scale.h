@@ -29,11 +29,17 @@ class UnknownScale {
   double AnsweredInverse(double inverse_length) const { return inverse_length / kept_; }
   // The covariance of a pose and velocity.
   Matrix12 Covariance(const Pose& pose, const Vector6& velocity, const Matrix12& covariance) const;
+  // A component of a mixture with the moments `belief`, so that those of what is answered are the answer's. A component at x_i becomes one at
+  // E exp(-eta) x_i, its covariance wider by Var exp(-eta) x_i x_i'. The answer stays where the mixture's mean x was, so all are moved by
+  // (1 - E exp(-eta)) x, and that is in their covariance, too.
+  BeliefComponent Answered(const BeliefComponent& component, const Belief& belief) const;
   PointMoments Moments(const PointMoments& point) const;
   // Of an inverse length and its standard deviation.
   double InverseDepthSigma(double mean, double sigma) const;
 
  private:
+  Eigen::Matrix<double, 12, 1> Lengths(const Pose& pose, const Vector6& velocity) const;
+
   Eigen::Vector3d start_;
   double factor_, square_;  // expected exp(-eta), and its square's
   double off_;              // expected (exp(-eta) - 1)^2

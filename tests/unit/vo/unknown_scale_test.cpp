@@ -5,8 +5,11 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "tests/unit/vo/draws.h"
+#include "vo/point_odometry.h"
 
 namespace {
 
@@ -90,6 +93,41 @@ TEST(UnknownScale, KnownChangesNoBit) {
   const vo::PointMoments point{{1, 2, 4}, Eigen::Matrix3d::Identity() * 0.1};
   EXPECT_EQ(known.Moments(point).covariance, point.covariance);
   EXPECT_EQ(known.InverseDepthSigma(0.3, 0.125), 0.125);
+}
+
+// Points before a camera that sets out: the mixture over particles, ranks and coverage are taken from, has the estimate's mean and covariance.
+TEST(UnknownScale, TheMixturesMomentsAreTheEstimate) {
+  const vo::Camera camera;
+  vo::Params params;
+  params.landmark.scale_sigma = 0.5;
+  params.filter.start_window = 0;
+  for (const int particles : {1, 8}) {
+    params.filter.particles = particles;
+    vo::Prior prior;
+    prior.v_WC = {1, 0.3, 0};
+    prior.velocity_covariance = 0.01 * vo::Matrix6::Identity();
+    vo::PointOdometry odometry(camera, params, prior, 1);
+    vo_test::Draws draws(3);
+    std::vector<Eigen::Vector3d> points;
+    for (int n = 0; n < 30; ++n)
+      points.push_back(Eigen::Vector3d(2, 1.5, 1).cwiseProduct(draws.Symmetrics<3>()) + Eigen::Vector3d(0, 0, 4));
+    for (int k = 0; k < 12; ++k) {
+      vo::PointFrame frame{k * 33'000'000, {}};
+      for (std::size_t n = 0; n < points.size(); ++n)
+        frame.observations.push_back({static_cast<std::int64_t>(n),
+                                      camera.Project(points[n] - 0.033 * k * prior.v_WC) + 0.7 * draws.Normals<2>()});
+      const vo::Estimate estimate = odometry.Track(frame);
+      if (k == 0) continue;
+      const vo::Belief moments = vo::Moments(odometry.Mixture());
+      EXPECT_LT((moments.pose.p_WC - estimate.pose.p_WC).norm(), 1e-12) << k;
+      EXPECT_LT((moments.velocity.head<3>() - estimate.v_WC).norm(), 1e-12) << k;
+      const Vector12 sigma = estimate.covariance.diagonal().cwiseSqrt();
+      const Matrix12 off = (moments.covariance - estimate.covariance).cwiseQuotient(sigma * sigma.transpose());
+      EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-9) << particles << " particles, frame " << k;
+      for (const vo::BeliefComponent& component : odometry.Mixture())
+        EXPECT_EQ(Eigen::LLT<Matrix12>(component.covariance).info(), Eigen::Success) << k;
+    }
+  }
 }
 
 }  // namespace
