@@ -119,9 +119,10 @@ struct FeatureParams {
   double max_hamming = 0.15;  // of 512 bits
   // Looked at first; believed only when the best pixel is not on its border. 1: the paper, without it.
   int window_quick_px = 5;
-  int window_px = 9;                // side of the search window about the prediction ...
-  int window_enlarged_px = 17;      // ... and when nothing fits there
-  int window_lost_px = 49;          // at most, when the prediction itself is uncertain (recovery)
+  int window_px = 9;            // side of the search window about the prediction ...
+  int window_enlarged_px = 17;  // ... and when nothing fits there
+  // At most, when the prediction itself is uncertain (recovery); where pilots agree, what the prediction from them asks for instead.
+  int window_lost_px = 49;
   int window_recovery_px = 241;     // of pilots: after a gap they find back what was there before
   bool subpixel = true;             // refine the match by registering the patch of the first view (our addition)
   double max_view_angle_deg = 45;   // between the present and the first viewing ray
