@@ -68,9 +68,11 @@ Estimate MakeEstimate(const Filter& filter, const UnknownScale& scale, std::int6
 std::vector<MapPoint> MakeMap(const Filter& filter, const UnknownScale& scale) {
   std::vector<MapPoint> points;
   const std::vector<Filter::LandmarkBelief> beliefs = filter.LandmarkBeliefs();
+  const std::vector<double> sigmas = filter.InverseDepthSigmas();
   std::vector<std::optional<PointMoments>> moments = filter.LandmarkPoints();
   for (std::size_t n = 0; n < beliefs.size(); ++n) {
-    const Filter::LandmarkBelief& belief = beliefs[n];
+    Filter::LandmarkBelief belief = beliefs[n];
+    belief.inverse_depth_sigma = sigmas[n];
     if (moments[n]) moments[n] = scale.Moments(*moments[n]);
     points.push_back({0, scale.Answered(belief.X_W), scale.AnsweredInverse(belief.inverse_depth),
                       scale.InverseDepthSigma(belief.inverse_depth, belief.inverse_depth_sigma), false,

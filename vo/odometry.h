@@ -55,7 +55,7 @@ struct MapPoint {
   std::int64_t id = 0;
   Eigen::Vector3d X_W = Eigen::Vector3d::Zero();      // [m], on the likeliest path
   double inverse_depth = 0, inverse_depth_sigma = 0;  // [1/m] from the anchor
-  bool permanent = false;
+  bool permanent = false;                             // by the poses that have been sampled alone
   double relative_sigma = 0;  // of the inverse depth but for the scale that all landmarks share, over the inverse depth
   // Mean [m] and covariance [m^2] in W over all that the filter holds possible: over particles (weighted means plus the spread of the
   // means), or of the joint Gaussian. None where the inverse depth is not positive in all of that.

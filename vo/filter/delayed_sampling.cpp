@@ -98,6 +98,10 @@ void ParticleFilter::UpdatePath(std::span<const Match> matches) {
   if (params_.weight != Weight::equal && ToResample()) Resample();
 }
 
+Track::View ParticleFilter::ViewOf(const Match& match, int slot) {
+  return {slot, match.z, match.R.inverse(), std::log(match.R.determinant()), match.moved};
+}
+
 void ParticleFilter::BuildTracks() {
   tracks_.clear();
   track_of_.assign(anchor_of_.size(), -1);
@@ -109,7 +113,7 @@ void ParticleFilter::BuildTracks() {
         const int anchor = anchor_of_[match.landmark];
         tracks_.push_back({match.landmark, anchor, anchor_slot_[anchor], {}});
       }
-      tracks_[index].views.push_back({slot, match.z, match.R.inverse(), std::log(match.R.determinant()), match.moved});
+      tracks_[index].views.push_back(ViewOf(match, slot));
     }
   }
 }

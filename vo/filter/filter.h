@@ -55,7 +55,14 @@ class Filter {
     double inverse_depth_sigma;
     double relative_sigma() const { return inverse_depth > 0 ? inverse_depth_sigma / inverse_depth : INFINITY; }
   };
+  // As far as poses have been sampled: what was seen since has moved the means, and not made them surer. What is kept for long is told by it.
   virtual std::vector<LandmarkBelief> LandmarkBeliefs() const = 0;
+  // Standard deviations of the inverse depths [1/m] by all that was seen, the poses not sampled yet as uncertain as they are. Costs more.
+  virtual std::vector<double> InverseDepthSigmas() const {
+    std::vector<double> sigmas;
+    for (const LandmarkBelief& belief : LandmarkBeliefs()) sigmas.push_back(belief.inverse_depth_sigma);
+    return sigmas;
+  }
   // Where the landmarks are in the world: mean and covariance over all that the filter holds possible, each landmark linearised at
   // its mean. What is not yet known to lie in front (inverse depth not positive) in all of that has no moments.
   virtual std::vector<std::optional<PointMoments>> LandmarkPoints() const = 0;

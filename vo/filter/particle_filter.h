@@ -63,6 +63,7 @@ class ParticleFilter final : public Filter {
   Pose AnchorOf(int landmark) const override { return Heaviest().anchors[anchor_of_[landmark]]; }
 
   std::vector<LandmarkBelief> LandmarkBeliefs() const override;
+  std::vector<double> InverseDepthSigmas() const override;
   std::vector<std::optional<PointMoments>> LandmarkPoints() const override;
   // The filter's answer: moments of the mixture over particles of the pose just before it is sampled, and the velocity with it.
   const Belief& belief() const override { return belief_; }
@@ -115,7 +116,13 @@ class ParticleFilter final : public Filter {
   Particle Sideways(const Particle& particle, std::uint32_t guess) const;
   void Triangulate(Particle& particle) const;
   void Decide();
+  WindowInput InputOf(const Particle& particle) const {
+    return {particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors};
+  }
+  static Track::View ViewOf(const Match& match, int slot);
   void BuildTracks();
+  std::vector<Track> TrackOfEach() const;
+  Eigen::Matrix3d PointCovariance(const Particle& particle, const Track& track) const;
   void WeighPaths();
   bool ToResample() const;
   void CommitOldest(int count);

@@ -280,6 +280,21 @@ Landmark PathWindow::Smoothed(const WindowInput& in, const Track& track, const P
   return {theta, Condition(in, track, path, theta).covariance};
 }
 
+Eigen::Matrix<double, 9, 9> PathWindow::WithAnchor(const WindowInput& in, const Track& track, const PathGaussian& path,
+                                                   const Eigen::Vector3d& theta) {
+  const Conditional landmark = Condition(in, track, path, theta);
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> cross = path.covariance.lazyProduct(landmark.by_pose.transpose());
+  Eigen::Matrix<double, 9, 9> P = Eigen::Matrix<double, 9, 9>::Zero();
+  P.bottomRightCorner<3, 3>() = landmark.covariance + landmark.by_pose.lazyProduct(cross);
+  if (track.anchor_slot >= 0) {
+    const Eigen::Index a = kPoseSize * track.anchor_slot;
+    P.topLeftCorner<6, 6>() = path.covariance.block<6, 6>(a, a);
+    P.topRightCorner<6, 3>() = -cross.middleRows<6>(a);
+    P.bottomLeftCorner<3, 6>() = P.topRightCorner<6, 3>().transpose();
+  }
+  return Symmetrised(P);
+}
+
 ImagePrediction PathWindow::PredictLast(const WindowInput& in, const Track& track, const PathGaussian& path,
                                         const Eigen::Vector3d& theta) {
   const Pose& anchor = track.anchor_slot < 0 ? in.anchors[track.anchor] : path.mean[track.anchor_slot];

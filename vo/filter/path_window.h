@@ -74,6 +74,9 @@ class PathWindow {
   // of them (all of them uncertain).
   static Landmark Smoothed(const WindowInput& in, const Track& track, const PathGaussian& path,
                            const Eigen::Vector3d& theta);
+  // Covariance of the anchor's pose (dp in W, dphi in C; zero where it has been sampled) and, behind it, the landmark, the poses as uncertain as they are.
+  static Eigen::Matrix<double, 9, 9> WithAnchor(const WindowInput& in, const Track& track, const PathGaussian& path,
+                                                const Eigen::Vector3d& theta);
   static ImagePrediction PredictLast(const WindowInput& in, const Track& track, const PathGaussian& path,
                                      const Eigen::Vector3d& theta);
 

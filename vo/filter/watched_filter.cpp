@@ -126,6 +126,14 @@ std::vector<Filter::LandmarkBelief> WatchedFilter::LandmarkBeliefs() const {
   return beliefs;
 }
 
+std::vector<double> WatchedFilter::InverseDepthSigmas() const {
+  std::vector<double> sigmas = filter_->InverseDepthSigmas();
+  for (const double sigma : sigmas)
+    Require(sigma >= 0 && std::isfinite(sigma), "landmarks",
+            "the variance of an inverse depth is negative or not a number");
+  return sigmas;
+}
+
 std::vector<std::optional<PointMoments>> WatchedFilter::LandmarkPoints() const {
   std::vector<std::optional<PointMoments>> points = filter_->LandmarkPoints();
   for (const std::optional<PointMoments>& point : points) {

@@ -35,6 +35,7 @@ class WatchedFilter final : public Filter {
   void KeepLandmarks(const std::vector<bool>& keep) override;
   std::vector<ImagePrediction> PredictImages(std::span<const int> landmarks) const override;
   std::vector<LandmarkBelief> LandmarkBeliefs() const override;
+  std::vector<double> InverseDepthSigmas() const override;
   std::vector<std::optional<PointMoments>> LandmarkPoints() const override;
 
   int landmark_count() const override { return filter_->landmark_count(); }

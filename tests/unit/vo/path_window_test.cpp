@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -258,6 +259,22 @@ void ExpectTheJointSolution(const Scene& scene, double left) {
   for (int i = 0; i < size; ++i)
     EXPECT_LT(std::abs(step[i]), left * std::sqrt(covariance(i, i))) << "at the joint mode, " << i;
   EXPECT_LT((path.covariance - covariance.topLeftCorner(6 * m, 6 * m)).norm() / path.covariance.norm(), 5e-3);
+  // And each landmark's with its anchor's pose, in units of the standard deviations.
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const vo::Track& track = scene.tracks[i];
+    const int l = 6 * m + 3 * static_cast<int>(i), a = 6 * std::max(track.anchor_slot, 0);
+    Eigen::Matrix<double, 9, 9> expected;
+    expected << covariance.block<6, 6>(a, a), covariance.block<6, 3>(a, l), covariance.block<3, 6>(l, a),
+        covariance.block<3, 3>(l, l);
+    Eigen::Matrix<double, 9, 9> P = vo::PathWindow::WithAnchor(scene.input(), track, path, theta[i]);
+    if (track.anchor_slot < 0) {
+      EXPECT_EQ(P.topRows<6>().norm() + P.leftCols<6>().norm(), 0);
+      P.topRows<6>() = expected.topRows<6>();
+      P.leftCols<6>() = expected.leftCols<6>();
+    }
+    const Eigen::Matrix<double, 9, 1> scale = expected.diagonal().cwiseSqrt().cwiseInverse();
+    EXPECT_LT((scale.asDiagonal() * (P - expected) * scale.asDiagonal()).norm(), 5e-3) << "landmark " << i;
+  }
 }
 
 // Of images taken at once, and through a rolling shutter: as near as Settled promises.
