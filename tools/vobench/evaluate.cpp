@@ -52,8 +52,8 @@ std::optional<evaluation::JudgeOptions> RecordedOptions(const fs::path& run) {
 // Of a file or a sequence.
 evaluation::Trajectory ReadTruth(const fs::path& path, evaluation::Reading reading = evaluation::Reading::strict) {
   if (!fs::is_directory(path)) return evaluation::ReadTrajectory(path, reading);
-  if (const fs::path file = path / "groundtruth.txt"; fs::exists(file))
-    return evaluation::ReadTrajectory(file, reading);
+  const fs::path file = path / "groundtruth.txt";
+  if (reading != evaluation::Reading::strict && fs::exists(file)) return evaluation::ReadTrajectory(file, reading);
   const std::optional<Truth> truth = ReadSequenceTruth(path);
   if (!truth) throw BadInput(fmt::format("{}: no groundtruth.txt in it", path.string()));
   return truth->poses;
