@@ -40,7 +40,7 @@ class Spool {
 
  public:
   // Memory has room for so many records; a series that is no longer touches no disk. Without a folder, all are in memory.
-  explicit Spool(std::optional<std::filesystem::path> folder, std::size_t in_memory = 1024)
+  explicit Spool(const std::optional<std::filesystem::path>& folder, std::size_t in_memory = 1024)
       : file_(folder.value_or("")), in_memory_(folder ? in_memory : std::numeric_limits<std::size_t>::max()) {}
 
   void Add(const Record& record) {
