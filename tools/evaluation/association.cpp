@@ -34,6 +34,7 @@ bool GoesForward(const std::map<std::size_t, std::size_t>& truth_of, std::size_t
 }
 
 std::vector<Match> OneToOne(const Stamps& estimate, const Stamps& truth, std::int64_t gap, bool may_cross) {
+  const double gap_s = SecondsAsRead(gap);
   const std::vector<double> truth_s = SecondsOf(truth);
   std::vector<std::tuple<double, std::size_t, std::size_t>> candidates;
   for (std::size_t i = 0; i < estimate.size(); ++i) {
@@ -43,7 +44,7 @@ std::vector<Match> OneToOne(const Stamps& estimate, const Stamps& truth, std::in
     for (auto at = first; at != last; ++at) {
       const auto j = static_cast<std::size_t>(at - truth.begin());
       const double apart = std::abs(estimate_s - truth_s[j]);
-      if (apart < SecondsAsRead(gap)) candidates.emplace_back(apart, i, j);
+      if (apart < gap_s) candidates.emplace_back(apart, i, j);
     }
   }
   std::sort(candidates.begin(), candidates.end());

@@ -6,14 +6,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tests/unit/vo/texture.h"
+#include "tests/unit/vo/two_walls.h"
 #include "vo/filter/pose_gaussian.h"
-#include "vo/geometry/so3.h"
 #include "vo/odometry.h"
 
 namespace {
-
-using Eigen::Vector3d;
 
 // By hand: position and velocity of one axis after T, both from a velocity of variance V and white acceleration of density q, have the variance
 // V T^2 + q T^3 / 3 and the covariance V T + q T^2 / 2.
@@ -37,54 +34,25 @@ TEST(VelocityChange, IsOverTheWholeGap) {
   }
 }
 
-const vo::Camera kCamera{320, 240, 260, 260, 159.5, 119.5};
 constexpr double kReadout = 0.026;
-
-vo::Pose TruthAt(double t) {
-  return {Vector3d(0.25 * std::sin(1.9 * t), 0.15 * std::sin(2.6 * t), 0.1 * std::sin(1.3 * t)),
-          vo::Exp({0.05 * std::sin(1.7 * t), 0.08 * std::sin(1.1 * t), 0.04 * std::sin(2.1 * t)})};
-}
-
-// A wall two metres ahead, which bends away to the right, by a camera that takes its rows one after the other.
-cv::Mat ViewAt(double stamp, const vo_test::Texture& texture) {
-  cv::Mat image(kCamera.height, kCamera.width, CV_8UC1);
-  for (int y = 0; y < kCamera.height; ++y) {
-    const vo::Pose pose = TruthAt(stamp + kReadout * (y / (kCamera.height - 1.0) - 0.5));
-    const Eigen::Matrix3d R = pose.q_WC.toRotationMatrix();
-    for (int x = 0; x < kCamera.width; ++x) {
-      const Vector3d ray = R * Vector3d((x - kCamera.cx) / kCamera.fx, (y - kCamera.cy) / kCamera.fy, 1);
-      Vector3d X = pose.p_WC + ray * (2 - pose.p_WC.z()) / ray.z();
-      if (X.x() > 0) X = pose.p_WC + ray * (2 + 0.5 * pose.p_WC.x() - pose.p_WC.z()) / (ray.z() - 0.5 * ray.x());
-      image.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(texture.At(X.head<2>()));
-    }
-  }
-  return image;
-}
 
 // Orientation error [rad] of the first image after so many dark ones.
 double ErrorAfter(int dark, int lag) {
   constexpr int kLit = 25;
   const vo_test::Texture texture(2, 40.0, 24);
-  vo::Params params;
-  params.features.grid_columns = 6;
-  params.features.grid_rows = 4;
-  params.features.per_cell = 2;
+  vo::Params params = vo_test::SmallImageParams();
   params.features.readout_s = kReadout;
   params.filter.start_window = 15;
   params.filter.lag = lag;
-  vo::Prior prior;
-  prior.pose = TruthAt(0);
-  prior.v_WC = (TruthAt(0.01).p_WC - TruthAt(0).p_WC) / 0.01;
-  prior.w_WC_C = vo::Log(TruthAt(0).q_WC.conjugate() * TruthAt(0.01).q_WC) / 0.01;
-  prior.velocity_covariance = 1e-3 * vo::Matrix6::Identity();
-  vo::Odometry odometry(kCamera, params, prior, 1);
+  vo::Odometry odometry(vo_test::kCamera, params, vo_test::KnownStart(), 1);
   vo::Estimate estimate;
-  const cv::Mat black(kCamera.height, kCamera.width, CV_8UC1, cv::Scalar(90));
+  const cv::Mat black(vo_test::kCamera.height, vo_test::kCamera.width, CV_8UC1, cv::Scalar(90));
   for (int k = 0; k <= kLit + dark; ++k)
-    estimate =
-        odometry.Track({k * 33'333'333LL, k >= kLit && k < kLit + dark ? black : ViewAt(k * 33'333'333e-9, texture)});
+    estimate = odometry.Track(
+        {k * vo_test::kFrameNs,
+         k >= kLit && k < kLit + dark ? black : vo_test::RolledView(vo_test::TruthAt, k, kReadout, texture)});
   EXPECT_TRUE(estimate.diagnostics.tracked());
-  return vo::Minus(estimate.pose, TruthAt((kLit + dark) * 33'333'333e-9)).tail<3>().norm();
+  return vo::Minus(estimate.pose, vo_test::TruthAt(kLit + dark)).tail<3>().norm();
 }
 
 // Given the pose after T, what nearly constant velocity leaves of the velocity's variance is q T / 4 at the least: so far, in half the readout, the
