@@ -59,7 +59,7 @@ std::vector<PointOdometry::Impl::Ray> PointOdometry::Impl::RaysOf(const PointFra
   for (const PointObservation& observation : frame.observations) {
     if (!ids.insert(observation.id).second) refuse(observation, " comes twice");
     if (!observation.pixel.allFinite()) refuse(observation, " is nowhere");
-    if (camera.HasRay(observation.pixel)) rays.push_back({observation.id, camera.Undistort(observation.pixel)});
+    if (const auto ray = camera.RayOf(observation.pixel)) rays.push_back({observation.id, *ray});
   }
   return rays;
 }

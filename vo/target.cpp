@@ -40,10 +40,9 @@ std::vector<TargetCorner> FindTarget(const cv::Mat& grey, const Camera& camera, 
     const auto columns = static_cast<std::size_t>(target.columns);
     const std::size_t column = i % columns, row = i / columns;
     board.emplace_back(static_cast<double>(column) * target.square_m, static_cast<double>(row) * target.square_m, 0);
-    const Eigen::Vector2d pixel(corners[i].x, corners[i].y);
-    if (!camera.HasRay(pixel)) return {};
-    const Eigen::Vector2d ray = camera.Undistort(pixel);
-    seen.emplace_back(ray.x(), ray.y());
+    const auto ray = camera.RayOf({corners[i].x, corners[i].y});
+    if (!ray) return {};
+    seen.emplace_back(ray->x(), ray->y());
   }
   cv::Vec3d rotation, translation;
   if (!cv::solvePnP(board, seen, cv::Mat::eye(3, 3, CV_64F), cv::noArray(), rotation, translation)) return {};

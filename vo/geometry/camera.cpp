@@ -118,6 +118,21 @@ bool IsDrawnAt(const Camera& c, const Eigen::Vector2d& xy, const Eigen::Vector2d
   return (Distort(c, xy) - target).norm() <= kSamePlace && c.Draws(xy);
 }
 
+// The ray that a radial-tangential lens draws at `target`, or the widest in its direction; and whether it is drawn there.
+struct Solution {
+  Eigen::Vector2d xy;
+  bool is_ray;
+};
+Solution Solve(const Camera& c, const Eigen::Vector2d& target) {
+  const Eigen::Vector2d xy = Approach(c, target, target);
+  if (IsDrawnAt(c, xy, target)) return {xy, true};
+  // There is no ray, or a step went past a turn of the radius.
+  const double radius = target.norm();
+  const Eigen::Vector2d radial = AwayAt(c, radius) / radius * target, nearer = Approach(c, target, radial);
+  if (IsDrawnAt(c, nearer, target)) return {nearer, true};
+  return {radial, IsDrawnAt(c, radial, target)};
+}
+
 Eigen::Vector2d Normalized(const Camera& c, const Eigen::Vector2d& pixel) {
   return {(pixel.x() - c.cx) / c.fx, (pixel.y() - c.cy) / c.fy};
 }
@@ -139,19 +154,20 @@ bool Camera::Draws(const Eigen::Vector2d& xy) const {
 bool Camera::HasRay(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2d target = Normalized(*this, pixel);
   if (lens == Lens::fisheye) return std::hypot(target.x(), target.y()) <= RadiusAt(*this, FarthestAway(*this)).value;
-  return IsDrawnAt(*this, Undistort(pixel), target);
+  return Solve(*this, target).is_ray;
+}
+
+std::optional<Eigen::Vector2d> Camera::RayOf(const Eigen::Vector2d& pixel) const {
+  if (lens == Lens::fisheye) return HasRay(pixel) ? std::optional(Undistort(pixel)) : std::nullopt;
+  const Solution solution = Solve(*this, Normalized(*this, pixel));
+  return solution.is_ray ? std::optional(solution.xy) : std::nullopt;
 }
 
 Eigen::Vector2d Camera::Undistort(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2d target = Normalized(*this, pixel);
+  if (lens != Lens::fisheye) return Solve(*this, target).xy;
   const double radius = target.norm();
-  if (lens == Lens::fisheye)
-    return radius < 1e-12 ? target : Eigen::Vector2d(std::tan(AwayAt(*this, radius)) / radius * target);
-  const Eigen::Vector2d xy = Approach(*this, target, target);
-  if (IsDrawnAt(*this, xy, target)) return xy;
-  // There is no ray, or a step went past a turn of the radius.
-  const Eigen::Vector2d radial = AwayAt(*this, radius) / radius * target, nearer = Approach(*this, target, radial);
-  return IsDrawnAt(*this, nearer, target) ? nearer : radial;
+  return radius < 1e-12 ? target : Eigen::Vector2d(std::tan(AwayAt(*this, radius)) / radius * target);
 }
 
 Eigen::Matrix2d Camera::LensJacobian(const Eigen::Vector2d& xy) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 
 namespace vo {
@@ -30,6 +31,8 @@ struct Camera {
   bool Draws(const Eigen::Vector2d& xy) const;
   // Whether a ray that can be used is drawn at a pixel, wherever it lies: it is Undistort's, to 1e-9 on the plane z = 1.
   bool HasRay(const Eigen::Vector2d& pixel) const;
+  // That ray; Undistort's where there is one.
+  std::optional<Eigen::Vector2d> RayOf(const Eigen::Vector2d& pixel) const;
   // Pixel -> undistorted ray (x, y) on the plane z = 1, to 1e-12 by Newton's method; of a pixel without one, the widest in its direction (p1 and
   // p2 apart).
   Eigen::Vector2d Undistort(const Eigen::Vector2d& pixel) const;
