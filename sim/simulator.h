@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "sim/motion/truth.h"
 #include "sim/scenario/scenario.h"
 #include "sim/sensor/auto_exposure.h"
 #include "sim/sensor/camera.h"
 #include "sim/sensor/image.h"
-#include "sim/truth.h"
 
 namespace sim {
 

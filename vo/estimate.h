@@ -1,13 +1,13 @@
 // Purpose: what Odometry and PointOdometry share: checked parameters, the filter and its start, the answer, the time spent. Not for users.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <memory>
 
+#include "vo/base/params.h"
+#include "vo/base/stopwatch.h"
 #include "vo/filter/watched_filter.h"
 #include "vo/odometry.h"
-#include "vo/params.h"
 #include "vo/unknown_scale.h"
 
 namespace vo {
@@ -26,19 +26,5 @@ std::vector<MapPoint> MakeMap(const Filter& filter, const UnknownScale& scale);
 
 // Throws std::invalid_argument when `stamp_ns` is not after `last_ns`.
 void RequireIncreasing(std::int64_t stamp_ns, std::int64_t last_ns);
-
-class Stopwatch {
- public:
-  // Milliseconds since the last call, or since the start.
-  double Lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-    return ms;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 }  // namespace vo

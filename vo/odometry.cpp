@@ -7,15 +7,15 @@
 #include <stdexcept>
 #include <utility>
 
-#include "vo/association.h"
 #include "vo/estimate.h"
 #include "vo/features/corner_detector.h"
 #include "vo/filter/pose_gaussian.h"
+#include "vo/frontend/association.h"
+#include "vo/frontend/rolling_shutter.h"
+#include "vo/frontend/spread.h"
+#include "vo/frontend/target.h"
 #include "vo/map/existence.h"
 #include "vo/map/forgetting.h"
-#include "vo/rolling_shutter.h"
-#include "vo/spread.h"
-#include "vo/target.h"
 
 namespace vo {
 namespace {

@@ -9,12 +9,13 @@
 #include <optional>
 #include <vector>
 
+#include "vo/base/params.h"
 #include "vo/filter/guards.h"
+#include "vo/frontend/feature_view.h"
+#include "vo/frontend/prepared_frame.h"
 #include "vo/geometry/camera.h"
 #include "vo/geometry/pose.h"
 #include "vo/map/point_moments.h"
-#include "vo/params.h"
-#include "vo/prepared_frame.h"
 
 namespace vo {
 
@@ -60,18 +61,6 @@ struct MapPoint {
   // Mean [m] and covariance [m^2] in W over all that the filter holds possible: over particles (weighted means plus the spread of the
   // means), or of the joint Gaussian. None where the inverse depth is not positive in all of that.
   std::optional<PointMoments> moments;
-};
-
-// A feature as seen in the last frame, for drawing and for measuring.
-struct FeatureView {
-  enum class Status { matched, missed, rejected, fresh };
-  int id = 0;
-  Eigen::Vector2d predicted = Eigen::Vector2d::Zero();  // [px]
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();      // [px], of the match (or the prediction when missed)
-  Eigen::Matrix2d S = Eigen::Matrix2d::Zero();          // innovation covariance [px^2]
-  // Of the match's error, as the filter takes it [px^2]; zero where nothing was found
-  Eigen::Matrix2d R = Eigen::Matrix2d::Zero();
-  Status status = Status::missed;
 };
 
 class Odometry {

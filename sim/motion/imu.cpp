@@ -5,7 +5,7 @@
 
 #include "sim/motion/so3.h"
 #include "sim/random/random.h"
-#include "sim/require.h"
+#include "tools/base/settings/require.h"
 
 namespace sim {
 namespace {
@@ -38,7 +38,7 @@ Drawn Draw(std::uint64_t seed, Stream stream, std::int64_t k) {
 }  // namespace
 
 std::vector<std::string> Problems(const ImuParams& p) {
-  Require require;
+  settings::Require require;
   require(p.rate_hz >= 1 && p.rate_hz <= 1e5, "rate", p.rate_hz, "must lie in 1 ... 100000 Hz");
   require(std::abs(glm::length(p.T_CI.q_WC) - 1) < 1e-6, "orientation of length", glm::length(p.T_CI.q_WC),
           "must be a unit quaternion");

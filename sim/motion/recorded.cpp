@@ -11,8 +11,8 @@
 #include <string_view>
 
 #include "sim/motion/spline.h"
-#include "tools/settings/problem.h"
-#include "tools/settings/quantity.h"
+#include "tools/base/settings/problem.h"
+#include "tools/base/settings/quantity.h"
 
 namespace sim {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "sim/motion/pose.h"
 #include "sim/motion/trajectory.h"
-#include "sim/render/radiance_image.h"
 #include "sim/sensor/camera.h"
 #include "sim/sensor/exposure.h"
+#include "sim/sensor/radiance_image.h"
 
 namespace sim {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "sim/motion/description.h"
-#include "tools/settings/settings.h"
+#include "tools/base/settings/settings.h"
 
 namespace sim {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/motion/description.h"
-#include "tools/settings/settings.h"
+#include "tools/base/settings/settings.h"
 
 namespace sim {
 

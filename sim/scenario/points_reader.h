@@ -1,9 +1,9 @@
 // Purpose: a world of landmarks without images, as scenarios write it: docs/point_world.md has the format.
 #pragma once
 
+#include "sim/scenario/point_description.h"
 #include "sim/sensor/camera.h"
-#include "sim/world/point_description.h"
-#include "tools/settings/settings.h"
+#include "tools/base/settings/settings.h"
 
 namespace sim {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "sim/motion/pose.h"
-#include "tools/settings/settings.h"
+#include "tools/base/settings/settings.h"
 
 namespace sim {
 

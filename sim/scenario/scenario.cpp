@@ -8,7 +8,7 @@
 #include "sim/scenario/pose_reader.h"
 #include "sim/scenario/sensor_reader.h"
 #include "sim/scenario/world_reader.h"
-#include "tools/settings/settings.h"
+#include "tools/base/settings/settings.h"
 
 namespace sim {
 namespace {

@@ -10,11 +10,11 @@
 
 #include "sim/light/params.h"
 #include "sim/motion/description.h"
+#include "sim/scenario/point_description.h"
+#include "sim/scenario/truth_streams.h"
 #include "sim/sensor/camera.h"
 #include "sim/sensor/description.h"
-#include "sim/truth/description.h"
 #include "sim/world/description.h"
-#include "sim/world/point_description.h"
 
 namespace sim {
 

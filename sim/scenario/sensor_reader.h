@@ -3,7 +3,7 @@
 
 #include "sim/sensor/camera.h"
 #include "sim/sensor/description.h"
-#include "tools/settings/settings.h"
+#include "tools/base/settings/settings.h"
 
 namespace sim {
 

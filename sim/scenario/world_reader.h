@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "sim/world/description.h"
-#include "tools/settings/settings.h"
+#include "tools/base/settings/settings.h"
 
 namespace sim {
 

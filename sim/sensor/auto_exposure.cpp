@@ -4,13 +4,13 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/require.h"
 #include "sim/sensor/response.h"
+#include "tools/base/settings/require.h"
 
 namespace sim {
 
 std::vector<std::string> Problems(const AutoExposureParams& p) {
-  Require require;
+  settings::Require require;
   require(p.target > 0 && p.target < 1, "target", p.target, "must lie between 0 and 1");
   require(p.speed > 0 && p.speed <= 1, "speed", p.speed, "must lie in 0 ... 1, above 0");
   require(p.shortest_s > 0, "shortest", p.shortest_s, "must be positive");

@@ -9,8 +9,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "sim/require.h"
 #include "sim/sensor/fisheye.h"
+#include "tools/base/settings/require.h"
 
 namespace sim {
 namespace {
@@ -79,7 +79,7 @@ std::optional<glm::dvec3> Solve(const CameraParams& c, const glm::dvec2& target,
 }  // namespace
 
 std::vector<std::string> Problems(const CameraParams& c) {
-  Require require;
+  settings::Require require;
   std::vector<std::string>& problems = require.problems;
   constexpr int kMaxSide = 1 << 14;
   require(c.width >= 1 && c.width <= kMaxSide, "width", c.width, "must lie in 1 ... 16384");

@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "sim/random/random.h"
-#include "sim/require.h"
 #include "sim/sensor/develop.h"
+#include "tools/base/settings/require.h"
 
 namespace sim {
 namespace {
@@ -32,7 +32,7 @@ float Poisson(float mean, double u) {
 }  // namespace
 
 std::vector<std::string> Problems(const SensorParams& p) {
-  Require require;
+  settings::Require require;
   require(p.exposure_s >= 0 && p.exposure_s <= 10, "exposure", p.exposure_s, "must lie in 0 ... 10 s");
   require(p.time_samples >= 1 && p.time_samples <= 1024, "time_samples", p.time_samples, "must lie in 1 ... 1024");
   require(std::abs(p.readout_s) <= 10, "rolling_shutter", p.readout_s, "must lie in -10 ... 10 s");

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/render/radiance_image.h"
 #include "sim/sensor/auto_exposure.h"
 #include "sim/sensor/description.h"
 #include "sim/sensor/fixed_pattern.h"
 #include "sim/sensor/image.h"
+#include "sim/sensor/radiance_image.h"
 #include "sim/sensor/response.h"
 
 namespace sim {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/render/radiance_image.h"
 #include "sim/sensor/camera.h"
 #include "sim/sensor/description.h"
+#include "sim/sensor/radiance_image.h"
 
 namespace sim {
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "sim/sequence/png.h"
-#include "tools/settings/quantity.h"
+#include "tools/base/settings/quantity.h"
 
 namespace sim {
 namespace {

@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "sim/sequence/format.h"
-#include "tools/settings/quantity.h"
+#include "tools/base/settings/quantity.h"
 
 namespace sim {
 namespace {

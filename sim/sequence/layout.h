@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "sim/motion/truth.h"
 #include "sim/scenario/scenario.h"
 #include "sim/sequence/stream_file.h"
-#include "sim/truth.h"
 
 namespace sim {
 

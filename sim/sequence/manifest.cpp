@@ -5,7 +5,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "tools/limits/json.h"
+#include "tools/base/limits/json.h"
 
 namespace sim {
 namespace {

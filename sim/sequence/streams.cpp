@@ -8,11 +8,11 @@
 
 #include "sim/render/surface_tracer.h"
 #include "sim/sensor/depth_noise.h"
+#include "sim/sequence/encode.h"
+#include "sim/sequence/flow.h"
 #include "sim/sequence/format.h"
-#include "sim/truth/encode.h"
-#include "sim/truth/flow.h"
-#include "sim/truth/landmarks.h"
-#include "tools/settings/quantity.h"
+#include "sim/sequence/landmarks.h"
+#include "tools/base/settings/quantity.h"
 
 namespace sim {
 namespace {

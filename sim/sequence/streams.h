@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "sim/scenario/truth_streams.h"
 #include "sim/sequence/stream_file.h"
 #include "sim/simulator.h"
-#include "sim/truth/description.h"
 
 namespace sim {
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "tools/limits/json.h"
+#include "tools/base/limits/json.h"
 
 namespace sim {
 namespace {

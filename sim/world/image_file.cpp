@@ -5,7 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
-#include "tools/limits/picture.h"
+#include "tools/base/limits/picture.h"
 
 namespace sim {
 namespace {

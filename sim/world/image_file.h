@@ -13,7 +13,7 @@ struct DecodedImage {
   std::vector<std::uint8_t> alpha;  // width * height where it was asked for and the picture has it, or nothing
 };
 
-// Decodes the kinds and sizes of picture that tools/limits/picture.h lets pass (PNG, JPEG, BMP, TIFF, WebP, ...) to 8 bits a channel.
+// Decodes the kinds and sizes of picture that tools/base/limits/picture.h lets pass (PNG, JPEG, BMP, TIFF, WebP, ...) to 8 bits a channel.
 // EXIF orientation is not applied.
 // PNG chunks (lengths, checksums, the end chunk) and JPEG segments (the end marker) are checked first, since decoders
 // accept some truncated files. Throws std::runtime_error saying what is wrong, without a file name.

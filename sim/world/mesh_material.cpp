@@ -12,7 +12,7 @@
 
 #include "sim/world/image_file.h"
 #include "sim/world/mesh_files.h"
-#include "tools/limits/picture.h"
+#include "tools/base/limits/picture.h"
 
 namespace sim {
 namespace {

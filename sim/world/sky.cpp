@@ -17,8 +17,8 @@
 #include <string>
 
 #include "sim/world/srgb.h"
-#include "tools/limits/exr.h"
-#include "tools/limits/picture.h"
+#include "tools/base/limits/exr.h"
+#include "tools/base/limits/picture.h"
 
 namespace sim {
 namespace {

@@ -7,10 +7,6 @@ target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/mesh_files.cpp
   ${CMAKE_CURRENT_LIST_DIR}/mesh_import.cpp
   ${CMAKE_CURRENT_LIST_DIR}/mesh_material.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/point_description.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/point_measurement.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/point_places.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/point_world.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene.cpp
   ${CMAKE_CURRENT_LIST_DIR}/sky.cpp
   ${CMAKE_CURRENT_LIST_DIR}/texture.cpp)

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "sim/world/point_world.h"
-#include "tools/vobench/bridge.h"
-#include "tools/vobench/experiment.h"
-#include "tools/vobench/prior.h"
+#include "sim/points/point_world.h"
+#include "tools/bench/systems/bridge.h"
+#include "tools/bench/systems/experiment.h"
+#include "tools/bench/systems/prior.h"
 #include "vo/point_odometry.h"
 
 namespace {

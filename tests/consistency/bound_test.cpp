@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "sim/world/point_world.h"
-#include "tools/evaluation/cramer_rao.h"
-#include "tools/evaluation/distributions.h"
-#include "tools/vobench/bridge.h"
-#include "tools/vobench/experiment.h"
-#include "tools/vobench/point_bound.h"
-#include "tools/vobench/prior.h"
-#include "tools/vobench/systems.h"
+#include "sim/points/point_world.h"
+#include "tools/bench/points/point_bound.h"
+#include "tools/bench/systems/bridge.h"
+#include "tools/bench/systems/experiment.h"
+#include "tools/bench/systems/prior.h"
+#include "tools/bench/systems/systems.h"
+#include "tools/judge/evaluation/cramer_rao.h"
+#include "tools/judge/evaluation/distributions.h"
 #include "vo/point_odometry.h"
 
 namespace {

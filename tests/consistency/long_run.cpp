@@ -16,11 +16,11 @@
 #include <unordered_map>
 #include <vector>
 
+#include "sim/points/point_world.h"
 #include "sim/simulator.h"
-#include "sim/world/point_world.h"
-#include "tools/vobench/bridge.h"
-#include "tools/vobench/experiment.h"
-#include "tools/vobench/prior.h"
+#include "tools/bench/systems/bridge.h"
+#include "tools/bench/systems/experiment.h"
+#include "tools/bench/systems/prior.h"
 #include "vo/odometry.h"
 #include "vo/point_odometry.h"
 

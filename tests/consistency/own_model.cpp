@@ -4,12 +4,12 @@
 #include <cmath>
 #include <sstream>
 
-#include "sim/world/point_world.h"
-#include "tools/vobench/bridge.h"
-#include "tools/vobench/experiment.h"
-#include "tools/vobench/point_bound.h"
-#include "tools/vobench/point_verdict.h"
-#include "tools/vobench/prior.h"
+#include "sim/points/point_world.h"
+#include "tools/bench/points/point_bound.h"
+#include "tools/bench/result/point_verdict.h"
+#include "tools/bench/systems/bridge.h"
+#include "tools/bench/systems/experiment.h"
+#include "tools/bench/systems/prior.h"
 #include "vo/point_odometry.h"
 
 namespace own_model {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/evaluation/consistency_verdict.h"
+#include "tools/judge/evaluation/consistency_verdict.h"
 #include "tools/vobench/commands.h"
 
 namespace own_model {

@@ -3,13 +3,13 @@
 
 #include <vector>
 
-#include "sim/world/point_world.h"
-#include "tools/evaluation/distributions.h"
-#include "tools/evaluation/statistics.h"
-#include "tools/vobench/bridge.h"
-#include "tools/vobench/experiment.h"
-#include "tools/vobench/point_bench.h"
-#include "tools/vobench/prior.h"
+#include "sim/points/point_world.h"
+#include "tools/bench/points/point_bench.h"
+#include "tools/bench/systems/bridge.h"
+#include "tools/bench/systems/experiment.h"
+#include "tools/bench/systems/prior.h"
+#include "tools/judge/evaluation/distributions.h"
+#include "tools/judge/evaluation/statistics.h"
 #include "vo/point_odometry.h"
 
 namespace {

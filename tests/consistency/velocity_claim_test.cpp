@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "sim/world/point_world.h"
-#include "tools/evaluation/distributions.h"
-#include "tools/evaluation/statistics.h"
-#include "tools/vobench/bridge.h"
-#include "tools/vobench/experiment.h"
-#include "tools/vobench/prior.h"
+#include "sim/points/point_world.h"
+#include "tools/bench/systems/bridge.h"
+#include "tools/bench/systems/experiment.h"
+#include "tools/bench/systems/prior.h"
+#include "tools/judge/evaluation/distributions.h"
+#include "tools/judge/evaluation/statistics.h"
 #include "vo/filter/particle_filter.h"
 #include "vo/point_odometry.h"
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/evaluation/text_file.h"
-#include "tools/evaluation/trajectory.h"
+#include "tools/judge/evaluation/text_file.h"
+#include "tools/judge/evaluation/trajectory.h"
 #include "vo/geometry/camera.h"
 #include "vo/geometry/camera_file.h"
 #include "vo/sequence/reader.h"

@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# The rules that hold the house up, as far as a search can see them. Usage: include_rules.sh PROJECT_ROOT
+# Include rules of docs/conventions.md and of the top-level layout, as far as a search can see them.
+# Usage: include_rules.sh PROJECT_ROOT
 # Prints each violation as file:line and exits 1; exits 2 when there is nothing to look at.
 set -euo pipefail
+here=$(cd -- "$(dirname -- "$0")" && pwd)
 cd -- "$1"
 violations=0
 
@@ -16,25 +18,26 @@ allow() { report "$3" < <(includes "$1" | grep -vE "^[^:]+:[0-9]+:($2)\$" || tru
 # No target of the others is linked either.
 unlinked() { report "$3" < <(find "$1" -name CMakeLists.txt -o -name '*.cmake' | sort | xargs -r grep -HnoE "vobench(::|_)($2)\>" || true); }
 
-for folder in sim vo tools/evaluation tools/limits tools/settings tools/verification tools/campaign; do
+for folder in sim vo tools/base tools/judge tools/bench tools/vobench; do
   [[ -n $(sources "$folder" 2>/dev/null) ]] || { echo "no C++ sources in $1/$folder" >&2; exit 2; }
   allow "$folder" '[A-Za-z0-9_].*' "an include that is not a plain path from the project root"
   forbid "$folder" '.*\.\./' "a relative include"
 done
-forbid sim 'vo/|tools/(campaign|evaluation|report|verification|vobench)/' "sim sees neither vo nor the judge"
-unlinked sim 'vo|evaluation|report|verification' "sim sees neither vo nor the judge"
-forbid vo 'sim/|tools/(campaign|evaluation|report|verification|vobench)/' "vo sees neither sim nor the judge"
-unlinked vo 'sim|evaluation|report|verification' "vo sees neither sim nor the judge"
+above='tools/(judge|bench|vobench|python)/'
+forbid sim "vo/|$above" "sim includes neither vo nor anything above it"
+unlinked sim 'vo|evaluation|report|verification|bench' "sim links neither vo nor anything above it"
+forbid vo "sim/|$above" "vo includes neither sim nor anything above it"
+unlinked vo 'sim|evaluation|report|verification|bench' "vo links neither sim nor anything above it"
 forbid vo 'glm/|embree[0-9]*/|assimp/|GL/' "vo builds without GLM, Embree, assimp and OSMesa"
 forbid sim 'Eigen/' "sim's mathematics is GLM, so that it shares none with vo"
-allow tools/evaluation 'Eigen/[A-Za-z]+|tools/evaluation/(compat/)?[a-z0-9_]+\.h|[a-z0-9_]+|(fcntl|unistd)\.h|boost/math/distributions/[a-z_]+\.hpp' "the judge needs Eigen, Boost.Math, the standard library and POSIX's files only"
-report "Boost.Math is in distributions.cpp alone" < <(includes tools/evaluation | grep -E '^[^:]+:[0-9]+:boost/' | grep -v '^tools/evaluation/distributions\.cpp:' || true)
-unlinked tools/evaluation 'sim|vo|settings|report' "the judge needs Eigen and Boost's headers only"
-forbid tools/verification 'sim/|glm/|tools/vobench/' "what checks the simulator's sequences shares nothing with it"
-unlinked tools/verification 'sim|points|commands' "what checks the simulator's sequences shares nothing with it"
-forbid tools/campaign '(sim|vo)/|tools/(report|vobench)/' "the campaign runs whatever odometry there is: it knows none"
-unlinked tools/campaign 'sim|vo|points|commands|report' "the campaign runs whatever odometry there is: it knows none"
-forbid tools/settings '(sim|vo)/|tools/(evaluation|report|vobench)/' "settings sees no other part"
-allow tools/limits 'tools/limits/[a-z0-9_]+\.h|[a-z0-9_]+' "what hostile files may cost concerns nobody's library"
+forbid tools/base "(sim|vo)/|$above" "tools/base carries everything and includes nothing above it"
+forbid tools/judge 'sim/|glm/|tools/(bench|vobench|python)/' "the judge includes neither the simulator nor the bench"
+allow tools/judge/evaluation 'Eigen/[A-Za-z]+|tools/judge/evaluation/(compat/)?[a-z0-9_]+\.h|[a-z0-9_]+|(fcntl|unistd)\.h|boost/math/distributions/[a-z_]+\.hpp' "the evaluation needs Eigen, Boost.Math, the standard library and POSIX's files only"
+report "Boost.Math is in distributions.cpp alone" < <(includes tools/judge/evaluation | grep -E '^[^:]+:[0-9]+:boost/' | grep -v '^tools/judge/evaluation/distributions\.cpp:' || true)
+unlinked tools/judge/evaluation 'sim|vo|settings|report' "the evaluation needs Eigen and Boost's headers only"
+unlinked tools/judge/verification 'sim|points|commands|bench' "what checks the simulator's sequences shares nothing with it"
+forbid tools/bench 'tools/(vobench|python)/' "the bench includes neither of its faces"
+allow tools/base/limits 'tools/base/limits/[a-z0-9_]+\.h|[a-z0-9_]+' "limits of untrusted files need the standard library only"
+report "include cycle between folders" < <(bash "$here/folder_cycles.sh" .)
 
 ((violations == 0)) || { echo "$violations violations of the include rules"; exit 1; }

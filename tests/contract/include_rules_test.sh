@@ -8,7 +8,7 @@ bash "$check" "$root"
 
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
-(cd -- "$root" && tar cf - sim vo tools/evaluation tools/limits tools/settings tools/verification tools/campaign) | tar xf - -C "$copy"
+(cd -- "$root" && tar cf - sim vo tools) | tar xf - -C "$copy"
 bash "$check" "$copy"
 
 failures=0
@@ -27,7 +27,7 @@ plant() {
 }
 plant sim/planted.cpp '#include "vo/odometry.h"'
 plant sim/planted.h '  #  include <vo/geometry/pose.h>'
-plant sim/planted.cpp '#include "tools/evaluation/ate.h"'
+plant sim/planted.cpp '#include "tools/judge/evaluation/ate.h"'
 plant sim/planted.cpp '#include <Eigen/Core>'
 plant sim/CMakeLists.txt 'target_link_libraries(vobench_sim PRIVATE vobench::vo)'
 plant vo/planted.cpp '#include "sim/simulator.h"'
@@ -37,17 +37,22 @@ plant vo/planted.h '#include <embree3/rtcore.h>'
 plant vo/planted.h '#include <assimp/scene.h>'
 plant vo/planted.cpp '#include SOME_MACRO'
 plant vo/CMakeLists.txt 'target_link_libraries(vobench_vo PUBLIC vobench_evaluation)'
-plant tools/campaign/planted.cpp '#include "vo/odometry.h"'
-plant tools/campaign/CMakeLists.txt 'target_link_libraries(vobench_campaign PUBLIC vobench::sim)'
-plant tools/evaluation/ate.cpp '#include <boost/math/distributions/normal.hpp>'
-plant tools/evaluation/distributions.cpp '#include <boost/filesystem.hpp>'
-plant tools/evaluation/planted.h '#include <opencv2/core.hpp>'
-plant tools/evaluation/planted.h '#include "tools/settings/settings.h"'
-plant tools/evaluation/planted.cpp '#include "vo/geometry/pose.h"'
-plant tools/evaluation/planted.cpp '#include <nlohmann/json.hpp>'
-plant tools/verification/planted.cpp '#include "sim/truth/flow.h"'
-plant tools/verification/CMakeLists.txt 'target_link_libraries(vobench_verification PRIVATE vobench::sim)'
-plant tools/settings/planted.cpp '#include "sim/simulator.h"'
-plant tools/limits/planted.cpp '#include <nlohmann/json.hpp>'
+plant sim/planted.cpp '#include "tools/bench/errors.h"'
+plant vo/planted.cpp '#include "tools/judge/evaluation/ate.h"'
+plant tools/base/planted.cpp '#include "tools/judge/evaluation/ate.h"'
+plant tools/judge/planted.cpp '#include "tools/bench/errors.h"'
+plant tools/bench/planted.cpp '#include "tools/vobench/commands.h"'
+plant vo/base/planted.cpp '#include "vo/filter/filter.h"'
+plant sim/motion/planted.cpp '#include "sim/render/camera_path.h"'
+plant tools/judge/evaluation/ate.cpp '#include <boost/math/distributions/normal.hpp>'
+plant tools/judge/evaluation/distributions.cpp '#include <boost/filesystem.hpp>'
+plant tools/judge/evaluation/planted.h '#include <opencv2/core.hpp>'
+plant tools/judge/evaluation/planted.h '#include "tools/base/settings/settings.h"'
+plant tools/judge/evaluation/planted.cpp '#include "vo/geometry/pose.h"'
+plant tools/judge/evaluation/planted.cpp '#include <nlohmann/json.hpp>'
+plant tools/judge/verification/planted.cpp '#include "sim/sequence/flow.h"'
+plant tools/judge/verification/CMakeLists.txt 'target_link_libraries(vobench_verification PRIVATE vobench::sim)'
+plant tools/base/settings/planted.cpp '#include "sim/simulator.h"'
+plant tools/base/limits/planted.cpp '#include <nlohmann/json.hpp>'
 ((failures == 0)) || exit 1
-echo "the rules hold; 22 planted violations were all noticed"
+echo "the rules hold; every planted violation was noticed"

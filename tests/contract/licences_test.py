@@ -142,7 +142,7 @@ def main():
     page = (ROOT / "docs/licences.md").read_text()
     lines = (line.split("#")[0].split() for line in (ROOT / "tools/packages.txt").read_text().splitlines())
     packages = [words[0] for words in lines if words]
-    lock = json.loads((ROOT / "tools/report/web/package-lock.json").read_text())
+    lock = json.loads((ROOT / "tools/bench/report/web/package-lock.json").read_text())
     linked = packages_of_program()
     wrong = problems(page, packages, lock, linked)
     assert not wrong, "\n".join(wrong)

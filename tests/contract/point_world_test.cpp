@@ -1,6 +1,6 @@
 // The simulator's point world against the odometry's own landmark model and camera, which share no code with it; and
 // the worlds of scenes/points.yaml against the odometry's motion model.
-#include "sim/world/point_world.h"
+#include "sim/points/point_world.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "vo/random.h"
+#include "vo/base/random.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tools/sbom prints a CycloneDX 1.5 bill of materials: what the specification requires, of the versions that are here.
+"""tools/dev/sbom prints a CycloneDX 1.5 bill of materials: what the specification requires, of the versions that are here.
 
 Usage: sbom_test.py PROJECT_ROOT BUILD_FOLDER
 """
@@ -50,7 +50,7 @@ def problems(bill):
 
 
 def main():
-    said = [subprocess.run((ROOT / "tools/sbom", BUILD), check=True, capture_output=True, text=True).stdout for _ in range(2)]
+    said = [subprocess.run((ROOT / "tools/dev/sbom", BUILD), check=True, capture_output=True, text=True).stdout for _ in range(2)]
     assert said[0] == said[1], "the same build, another bill"
     bill = json.loads(said[0])
     assert not problems(bill), problems(bill)
@@ -62,7 +62,7 @@ def main():
         assert by_name[name]["version"] == version, name
         assert by_name[name]["scope"] == "required", name
     assert by_name["ninja-build"]["scope"] == "excluded"
-    if (BUILD / "tools/report/web/node_modules").exists():
+    if (BUILD / "tools/bench/report/web/node_modules").exists():
         assert by_name["echarts"]["scope"] == "required" and by_name["typescript"]["scope"] == "excluded"
     ours = bill["dependencies"][0]["dependsOn"]
     assert any("libeigen3-dev" in reference for reference in ours) and not any("ninja" in reference for reference in ours)
@@ -73,7 +73,7 @@ def main():
         spoiled = copy.deepcopy(bill)
         plant(spoiled)
         assert problems(spoiled), "a planted error was not noticed"
-    nothing = subprocess.run((ROOT / "tools/sbom", "/nowhere"), capture_output=True, text=True)
+    nothing = subprocess.run((ROOT / "tools/dev/sbom", "/nowhere"), capture_output=True, text=True)
     assert nothing.returncode == 1 and "/nowhere" in nothing.stderr and nothing.stdout == "", nothing
     print(f"{len(bill['components'])} components")
 

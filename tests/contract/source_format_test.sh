@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The C++ sources are as clang-format 14 writes them by .clang-format (other versions write other things).
 # Usage: source_format_test.sh SOURCE_FOLDER
-# Exit: 0 they are, 1 not (clang-format names the places; tools/lint --fix mends them), 77 it is not installed.
+# Exit: 0 they are, 1 not (clang-format names the places; tools/dev/lint --fix mends them), 77 it is not installed.
 set -euo pipefail
 cd -- "$1"
 command -v clang-format-14 >/dev/null || { echo "clang-format-14 is not installed."; exit 77; }

@@ -1,8 +1,8 @@
 // campaign.yaml, and systems.yaml of other people's systems.
 #include "tests/fuzz/hold.h"
-#include "tools/campaign/campaign_file.h"
-#include "tools/campaign/external_system.h"
-#include "tools/campaign/results.h"
+#include "tools/bench/campaign/campaign_file.h"
+#include "tools/bench/campaign/external_system.h"
+#include "tools/bench/campaign/results.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static fuzz::InputFile file("campaign.yaml");

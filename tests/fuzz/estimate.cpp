@@ -1,6 +1,6 @@
 // covariance.txt and frames.csv of a run folder: the same bytes as either.
 #include "tests/fuzz/hold.h"
-#include "tools/evaluation/estimate_run.h"
+#include "tools/judge/evaluation/estimate_run.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static fuzz::InputFile beliefs("beliefs/covariance.txt"), frames("frames/frames.csv");

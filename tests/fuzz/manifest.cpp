@@ -2,8 +2,8 @@
 #include "sim/sequence/manifest.h"
 
 #include "tests/fuzz/hold.h"
-#include "tools/verification/check.h"
-#include "tools/verification/files.h"
+#include "tools/judge/verification/check.h"
+#include "tools/judge/verification/files.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static fuzz::InputFile file("manifest.json");

@@ -4,7 +4,7 @@
 #include "sim/world/texture.h"
 #include "tests/fuzz/hold.h"
 #include "tests/fuzz/png_sums.h"
-#include "tools/verification/files.h"
+#include "tools/judge/verification/files.h"
 #include "vo/sequence/reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

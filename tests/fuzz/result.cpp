@@ -1,10 +1,10 @@
 // The JSON of a result folder and of a campaign's tasks: metrics.json, run.json, pictures.json, truth/scale.json,
 // task.json; the same bytes as each, which their "format" tells apart.
 #include "tests/fuzz/hold.h"
-#include "tools/campaign/results.h"
-#include "tools/report/metrics_json.h"
-#include "tools/report/pictures.h"
-#include "tools/report/run_json.h"
+#include "tools/bench/campaign/results.h"
+#include "tools/bench/report/metrics_json.h"
+#include "tools/bench/report/pictures.h"
+#include "tools/bench/report/run_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static fuzz::InputFile metrics("metrics.json"), run("run.json"), pictures("pictures.json"), scale("truth/scale.json");

@@ -2,8 +2,8 @@
 #include "sim/scenario/scenario.h"
 
 #include "tests/fuzz/hold.h"
-#include "tools/settings/settings.h"
-#include "tools/vobench/odometry_settings.h"
+#include "tools/base/settings/settings.h"
+#include "tools/bench/systems/odometry_settings.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static fuzz::InputFile file("scenario.yaml");

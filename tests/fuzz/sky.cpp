@@ -2,7 +2,7 @@
 #include "sim/world/sky.h"
 
 #include "tests/fuzz/hold.h"
-#include "tools/verification/files.h"
+#include "tools/judge/verification/files.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static fuzz::InputFile exr("sky.exr"), flow("flow.flo");

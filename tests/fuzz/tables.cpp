@@ -4,10 +4,10 @@
 #include <memory>
 
 #include "tests/fuzz/hold.h"
-#include "tools/report/rank_table.h"
-#include "tools/report/verdict_table.h"
-#include "tools/verification/check.h"
-#include "tools/verification/files.h"
+#include "tools/bench/report/rank_table.h"
+#include "tools/bench/report/verdict_table.h"
+#include "tools/judge/verification/check.h"
+#include "tools/judge/verification/files.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // `timestamp tx ty tz qx qy qz qw`, by the judge and by the simulator, and `timestamp vx vy vz wx wy wz`.
-#include "tools/evaluation/trajectory.h"
+#include "tools/judge/evaluation/trajectory.h"
 
 #include "sim/motion/recorded.h"
 #include "tests/fuzz/hold.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/system/recorded.h"
-#include "tools/evaluation/statistics.h"
+#include "tools/judge/evaluation/statistics.h"
 
 namespace vobench::system_test {
 namespace {

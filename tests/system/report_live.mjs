@@ -1,5 +1,5 @@
 // A report while its run runs (--view): the page grows, says when the program has ended, and what the program leaves is the same
-// without it. tests/unit/vobench/live_server_test.cpp has who is answered and who is not.
+// without it. tests/unit/bench/live_server_test.cpp has who is answered and who is not.
 // Usage: node report_live.mjs VOBENCH MODULES [RATE]     RATE of the frames of one second in Hz: enough that the page is seen growing
 // Exit:  0 all good, 1 something is not, 77 no Chromium here.
 import assert from "node:assert/strict";

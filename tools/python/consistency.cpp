@@ -4,10 +4,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "tools/evaluation/anees_test.h"
-#include "tools/evaluation/distributions.h"
+#include "tools/bench/points/point_consistency.h"
+#include "tools/judge/evaluation/anees_test.h"
+#include "tools/judge/evaluation/distributions.h"
 #include "tools/python/module.h"
-#include "tools/vobench/point_consistency.h"
 #include "vo/odometry.h"
 
 namespace vobench::python {
@@ -176,7 +176,7 @@ evaluation::LinearFilter::Judged JudgedOf(const std::string& name) {
 void AddAneesTest(py::module_& m) {
   using evaluation::AneesVerdict;
   using evaluation::LinearFilter;
-  py::class_<LinearFilter>(m, "LinearFilter", Doc("tools/evaluation/anees_test.h:LinearFilter"))
+  py::class_<LinearFilter>(m, "LinearFilter", Doc("tools/judge/evaluation/anees_test.h:LinearFilter"))
       .def(py::init([](int axes, const std::string& judged, double dt, double psd, double sigma_position) {
              return LinearFilter{axes, JudgedOf(judged), dt, psd, sigma_position};
            }),
@@ -184,27 +184,30 @@ void AddAneesTest(py::module_& m) {
            py::arg("psd") = LinearFilter().psd, py::arg("sigma_position") = LinearFilter().sigma_position)
       .def_property_readonly("dof", &LinearFilter::dof)
       .def_property_readonly("measurement_sigma", &evaluation::MeasurementSigma,
-                             Doc("tools/evaluation/anees_test.h:MeasurementSigma"));
-  py::class_<AneesVerdict>(m, "AneesVerdict", Doc("tools/evaluation/anees_test.h:AneesVerdict"))
+                             Doc("tools/judge/evaluation/anees_test.h:MeasurementSigma"));
+  py::class_<AneesVerdict>(m, "AneesVerdict", Doc("tools/judge/evaluation/anees_test.h:AneesVerdict"))
       .def_property_readonly("passed", &AneesVerdict::pass)
       .def_property_readonly(
           "share", [](const AneesVerdict& v) { return v.measured.share; },
-          Doc("tools/evaluation/anees_test.h:AneesShare::share"))
+          Doc("tools/judge/evaluation/anees_test.h:AneesShare::share"))
       .def_property_readonly(
           "mean", [](const AneesVerdict& v) { return v.measured.mean; },
-          Doc("tools/evaluation/anees_test.h:AneesShare::mean"))
-      .def_readonly("threshold", &AneesVerdict::threshold, Doc("tools/evaluation/anees_test.h:AneesVerdict::threshold"))
-      .def_readonly("mean_low", &AneesVerdict::mean_low, Doc("tools/evaluation/anees_test.h:AneesVerdict::mean_low"))
+          Doc("tools/judge/evaluation/anees_test.h:AneesShare::mean"))
+      .def_readonly("threshold", &AneesVerdict::threshold,
+                    Doc("tools/judge/evaluation/anees_test.h:AneesVerdict::threshold"))
+      .def_readonly("mean_low", &AneesVerdict::mean_low,
+                    Doc("tools/judge/evaluation/anees_test.h:AneesVerdict::mean_low"))
       .def_readonly("mean_high", &AneesVerdict::mean_high)
       .def_readonly("false_alarm", &AneesVerdict::false_alarm,
-                    Doc("tools/evaluation/anees_test.h:AneesVerdict::false_alarm"))
+                    Doc("tools/judge/evaluation/anees_test.h:AneesVerdict::false_alarm"))
       .def("__bool__", &AneesVerdict::pass)
       .def("__repr__", py::overload_cast<const AneesVerdict&>(&Text));
   m.def("anees_test", &TestLinear, py::arg("nees"), py::arg_v("reference", LinearFilter(), "LinearFilter()"),
-        py::arg("false_alarm") = 0.01, Doc("tools/evaluation/anees_test.h:"));
+        py::arg("false_alarm") = 0.01, Doc("tools/judge/evaluation/anees_test.h:"));
   m.def("anees_test_against", &TestPool, py::arg("nees"), py::arg("dof"), py::arg("honest"),
-        py::arg("false_alarm") = 0.01, Doc("tools/evaluation/anees_test.h:ExactAneesOfPool"));
-  m.def("nees", &NeesOfArrays, py::arg("errors"), py::arg("covariances"), Doc("tools/evaluation/consistency.h:Nees"));
+        py::arg("false_alarm") = 0.01, Doc("tools/judge/evaluation/anees_test.h:ExactAneesOfPool"));
+  m.def("nees", &NeesOfArrays, py::arg("errors"), py::arg("covariances"),
+        Doc("tools/judge/evaluation/consistency.h:Nees"));
   m.def(
       "chi2_band",
       [](double dof, int runs, double probability) {
@@ -212,7 +215,7 @@ void AddAneesTest(py::module_& m) {
         return py::make_tuple(band.low, band.high);
       },
       py::arg("dof"), py::arg("runs") = 1, py::arg("probability") = 0.95,
-      Doc("tools/evaluation/distributions.h:Chi2MeanBand"));
+      Doc("tools/judge/evaluation/distributions.h:Chi2MeanBand"));
 }
 
 }  // namespace
@@ -228,7 +231,7 @@ void AddConsistency(py::module_& m) {
       .def_property_readonly(
           "sigmas", [](const PointPlay& p) { return Errors(p, &evaluation::FrameConsistency::sigma); },
           "(frames, 12): square roots of the covariance's diagonal")
-      .def_property_readonly("nees", &NeesOfBlocks, Doc("tools/vobench/point_bench.h:BlockNees"));
+      .def_property_readonly("nees", &NeesOfBlocks, Doc("tools/bench/points/point_bench.h:BlockNees"));
   m.def("judge", &Together, py::arg("estimates"), py::arg("truths"), "Estimates, each beside the truth of its time.");
   m.def("play", &PlayWorld, py::arg("world"), py::arg("filter"),
         "Plays what is left of a point world to a filter: anything with track(stamp_ns, ids, pixels) -> Estimate.");
@@ -238,22 +241,22 @@ void AddConsistency(py::module_& m) {
       .def_readonly("value", &evaluation::Check::value)
       .def_readonly("threshold", &evaluation::Check::threshold)
       .def_readonly("at_least", &evaluation::Check::at_least,
-                    Doc("tools/evaluation/consistency_verdict.h:Check::at_least"))
+                    Doc("tools/judge/evaluation/consistency_verdict.h:Check::at_least"))
       .def_readonly("passed", &evaluation::Check::pass)
       .def_readonly("false_alarm", &evaluation::Check::false_alarm,
-                    Doc("tools/evaluation/consistency_verdict.h:Check::false_alarm"));
-  py::class_<evaluation::ConsistencyVerdict>(m, "Verdict", Doc("tools/evaluation/consistency_verdict.h:"))
+                    Doc("tools/judge/evaluation/consistency_verdict.h:Check::false_alarm"));
+  py::class_<evaluation::ConsistencyVerdict>(m, "Verdict", Doc("tools/judge/evaluation/consistency_verdict.h:"))
       .def_property_readonly("honest", &evaluation::ConsistencyVerdict::honest,
-                             Doc("tools/evaluation/consistency_verdict.h:ConsistencyVerdict::honest"))
+                             Doc("tools/judge/evaluation/consistency_verdict.h:ConsistencyVerdict::honest"))
       .def_readonly("checks", &evaluation::ConsistencyVerdict::checks)
       .def_property_readonly("false_alarm", &evaluation::ConsistencyVerdict::false_alarm,
-                             Doc("tools/evaluation/consistency_verdict.h:ConsistencyVerdict::false_alarm"))
+                             Doc("tools/judge/evaluation/consistency_verdict.h:ConsistencyVerdict::false_alarm"))
       .def("__bool__", &evaluation::ConsistencyVerdict::honest)
       .def("__repr__", py::overload_cast<const evaluation::ConsistencyVerdict&>(&Text));
   const ConsistencyOptions defaults;
   m.def("test_consistency", &Test, py::arg("scenario"), py::arg("make"), py::arg("runs") = defaults.runs,
         py::arg("seed") = defaults.seed, py::arg("false_alarm") = defaults.false_alarm,
-        Doc("tools/vobench/point_consistency.h:TestConsistency"));
+        Doc("tools/bench/points/point_consistency.h:TestConsistency"));
 }
 
 }  // namespace vobench::python

@@ -1,9 +1,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "tools/evaluation/ate.h"
-#include "tools/evaluation/rpe.h"
-#include "tools/evaluation/text_file.h"
+#include "tools/judge/evaluation/ate.h"
+#include "tools/judge/evaluation/rpe.h"
+#include "tools/judge/evaluation/text_file.h"
 #include "tools/python/module.h"
 
 namespace vobench::python {
@@ -90,11 +90,11 @@ void AddErrorMeasures(py::module_& m) {
            "positions (n, 3) [m], orientations (n, 4): (x, y, z, w)")
       .def_static(
           "read", [](const std::filesystem::path& file) { return Trajectory{evaluation::ReadTrajectory(file)}; },
-          py::arg("file"), Doc("tools/evaluation/trajectory.h:ReadTrajectory"))
+          py::arg("file"), Doc("tools/judge/evaluation/trajectory.h:ReadTrajectory"))
       .def(
           "write",
           [](const Trajectory& t, const std::filesystem::path& file) { evaluation::WriteTrajectory(file, t.poses); },
-          py::arg("file"), Doc("tools/evaluation/trajectory.h:WriteTrajectory"))
+          py::arg("file"), Doc("tools/judge/evaluation/trajectory.h:WriteTrajectory"))
       .def("__len__", [](const Trajectory& t) { return t.poses.size(); })
       .def_property_readonly(
           "stamps_ns",
@@ -119,18 +119,18 @@ void AddErrorMeasures(py::module_& m) {
           "(n, 4): (x, y, z, w). A view.")
       .def_property_readonly(
           "path_length", [](const Trajectory& t) { return evaluation::PathLength(t.poses); },
-          Doc("tools/evaluation/trajectory.h:PathLength"));
+          Doc("tools/judge/evaluation/trajectory.h:PathLength"));
 
-  py::class_<evaluation::Statistics>(m, "Statistics", Doc("tools/evaluation/statistics.h:Statistics"))
+  py::class_<evaluation::Statistics>(m, "Statistics", Doc("tools/judge/evaluation/statistics.h:Statistics"))
       .def_readonly("count", &evaluation::Statistics::count)
       .def_readonly("rmse", &evaluation::Statistics::rmse)
       .def_readonly("mean", &evaluation::Statistics::mean)
       .def_readonly("median", &evaluation::Statistics::median)
-      .def_readonly("std", &evaluation::Statistics::std, Doc("tools/evaluation/statistics.h:Statistics::std"))
+      .def_readonly("std", &evaluation::Statistics::std, Doc("tools/judge/evaluation/statistics.h:Statistics::std"))
       .def_readonly("min", &evaluation::Statistics::min)
       .def_readonly("max", &evaluation::Statistics::max);
 
-  py::class_<evaluation::Ate>(m, "Ate", Doc("tools/evaluation/ate.h:"))
+  py::class_<evaluation::Ate>(m, "Ate", Doc("tools/judge/evaluation/ate.h:"))
       .def_readonly("position", &evaluation::Ate::position, "[m]")
       .def_readonly("orientation", &evaluation::Ate::orientation, "[rad]")
       .def_property_readonly(
@@ -144,9 +144,9 @@ void AddErrorMeasures(py::module_& m) {
       .def_property_readonly(
           "t", [](const evaluation::Ate& a) { return a.similarity.t; }, "[m]");
   m.def("ate", &AteOf, py::arg("estimate"), py::arg("truth"), py::arg("align") = "sim3", py::arg("gap_s") = 0.02,
-        Unlocked(), Doc("tools/evaluation/ate.h:"));
+        Unlocked(), Doc("tools/judge/evaluation/ate.h:"));
 
-  py::class_<evaluation::Rpe>(m, "Rpe", Doc("tools/evaluation/rpe.h:"))
+  py::class_<evaluation::Rpe>(m, "Rpe", Doc("tools/judge/evaluation/rpe.h:"))
       .def_readonly("position", &evaluation::Rpe::position_statistics, "[m]")
       .def_readonly("orientation", &evaluation::Rpe::orientation_statistics, "[rad]")
       .def_property_readonly(
@@ -154,7 +154,7 @@ void AddErrorMeasures(py::module_& m) {
       .def_property_readonly(
           "orientation_errors", [](const evaluation::Rpe& r) { return Copy(r.orientation); }, "per pair [rad]");
   m.def("rpe", &RpeOf, py::arg("estimate"), py::arg("truth"), py::arg("delta_s") = 1.0, py::arg("scale") = 1.0,
-        py::arg("gap_s") = 0.02, Unlocked(), Doc("tools/evaluation/rpe.h:"));
+        py::arg("gap_s") = 0.02, Unlocked(), Doc("tools/judge/evaluation/rpe.h:"));
 }
 
 }  // namespace vobench::python

@@ -5,18 +5,18 @@
 #include <stdexcept>
 
 #include "sim/world/scene.h"
-#include "tools/evaluation/text_file.h"
-#include "tools/settings/problem.h"
+#include "tools/base/settings/problem.h"
+#include "tools/judge/evaluation/text_file.h"
 
 namespace vobench::python {
 
 void AddErrors(py::module_& m) {
   py::register_exception<settings::Error>(m, "SettingsError", PyExc_ValueError).doc() =
-      Doc("tools/settings/problem.h:");
+      Doc("tools/base/settings/problem.h:");
   py::register_exception<sim::SceneError>(m, "SceneError", PyExc_ValueError).doc() =
       Doc("sim/world/scene.h:SceneError");
   py::register_exception<evaluation::InputError>(m, "InputError", PyExc_ValueError).doc() =
-      Doc("tools/evaluation/text_file.h:InputError");
+      Doc("tools/judge/evaluation/text_file.h:InputError");
 }
 
 Eigen::Quaterniond Rotation(const Eigen::Vector4d& xyzw) {

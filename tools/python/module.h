@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "sim/points/point_world.h"
 #include "sim/simulator.h"
-#include "sim/world/point_world.h"
-#include "tools/evaluation/trajectory.h"
+#include "tools/bench/systems/experiment.h"
+#include "tools/judge/evaluation/trajectory.h"
 #include "tools/python/docs.h"
-#include "tools/vobench/experiment.h"
 #include "vo/odometry.h"
 
 namespace vobench::python {

@@ -3,10 +3,10 @@
 #include <optional>
 #include <stdexcept>
 
+#include "tools/bench/systems/bridge.h"
+#include "tools/bench/systems/prior.h"
+#include "tools/bench/systems/systems.h"
 #include "tools/python/module.h"
-#include "tools/vobench/bridge.h"
-#include "tools/vobench/prior.h"
-#include "tools/vobench/systems.h"
 #include "vo/point_odometry.h"
 
 namespace vobench::python {

@@ -3,8 +3,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tools/bench/systems/bridge.h"
 #include "tools/python/module.h"
-#include "tools/vobench/bridge.h"
 #include "vo/geometry/camera_file.h"
 
 namespace vobench::python {
@@ -65,10 +65,10 @@ void AddCamera(py::module_& m) {
 
 void AddScenario(py::module_& m) {
   AddCamera(m);
-  py::class_<StampedTruth>(m, "Truth", Doc("sim/truth.h:Truth"))
+  py::class_<StampedTruth>(m, "Truth", Doc("sim/motion/truth.h:Truth"))
       .def_readonly("stamp_ns", &StampedTruth::stamp_ns)
       .def_property_readonly(
-          "p_WC", [](const StampedTruth& t) { return Vector(t.truth.p_WC); }, Doc("sim/truth.h:Truth::p_WC"))
+          "p_WC", [](const StampedTruth& t) { return Vector(t.truth.p_WC); }, Doc("sim/motion/truth.h:Truth::p_WC"))
       .def_property_readonly(
           "q_WC",
           [](const StampedTruth& t) {
@@ -78,15 +78,16 @@ void AddScenario(py::module_& m) {
           "(x, y, z, w); unit, w >= 0")
       .def_property_readonly("T_WC", &Matrix, "4 x 4, from C to W")
       .def_property_readonly(
-          "v_WC", [](const StampedTruth& t) { return Vector(t.truth.v_WC); }, Doc("sim/truth.h:Truth::v_WC"))
+          "v_WC", [](const StampedTruth& t) { return Vector(t.truth.v_WC); }, Doc("sim/motion/truth.h:Truth::v_WC"))
       .def_property_readonly(
-          "w_WC_C", [](const StampedTruth& t) { return Vector(t.truth.w_WC_C); }, Doc("sim/truth.h:Truth::w_WC_C"))
+          "w_WC_C", [](const StampedTruth& t) { return Vector(t.truth.w_WC_C); },
+          Doc("sim/motion/truth.h:Truth::w_WC_C"))
       .def_property_readonly(
-          "a_WC", [](const StampedTruth& t) { return Vector(t.truth.a_WC); }, Doc("sim/truth.h:Truth::a_WC"))
+          "a_WC", [](const StampedTruth& t) { return Vector(t.truth.a_WC); }, Doc("sim/motion/truth.h:Truth::a_WC"))
       .def_property_readonly(
           "alpha_WC_C", [](const StampedTruth& t) { return Vector(t.truth.alpha_WC_C); },
-          Doc("sim/truth.h:Truth::alpha_WC_C"));
-  py::class_<Experiment, Scenario>(m, "Scenario", Doc("tools/vobench/experiment.h:"))
+          Doc("sim/motion/truth.h:Truth::alpha_WC_C"));
+  py::class_<Experiment, Scenario>(m, "Scenario", Doc("tools/bench/systems/experiment.h:"))
       .def(py::init(&Load), py::arg("file"), py::arg("settings") = py::dict(), py::arg("seed") = py::none(),
            Doc("sim/scenario/scenario.h:LoadScenario"))
       .def_property_readonly("name", [](const Experiment& e) { return e.scenario.name; })
@@ -99,7 +100,7 @@ void AddScenario(py::module_& m) {
       .def_property_readonly("camera", [](const Experiment& e) { return CameraOf(e.scenario); })
       .def_property_readonly(
           "resolved", [](const Experiment& e) { return e.resolved; },
-          Doc("tools/vobench/experiment.h:Experiment::resolved"));
+          Doc("tools/bench/systems/experiment.h:Experiment::resolved"));
 }
 
 }  // namespace vobench::python

@@ -21,7 +21,7 @@ py::array Pixels(const py::object& self) {
 
 void AddSequence(py::module_& m) {
   py::class_<vo::Frame>(m, "ImageFrame", "An image of a sequence on disk; no truth.")
-      .def_readonly("stamp_ns", &vo::Frame::stamp_ns, Doc("vo/sequence/source.h:Frame::stamp_ns"))
+      .def_readonly("stamp_ns", &vo::Frame::stamp_ns, Doc("vo/base/source.h:Frame::stamp_ns"))
       .def_property_readonly("image", &Pixels,
                              "(height, width), or (height, width, 3): red, green, blue; uint8. A view of the frame.");
   py::class_<vo::SequenceReader>(m, "Sequence", Doc("vo/sequence/reader.h:"))
@@ -40,7 +40,7 @@ void AddSequence(py::module_& m) {
             if (!frame) throw py::stop_iteration();
             return *std::move(frame);
           },
-          Doc("vo/sequence/source.h:FrameSource::Next"));
+          Doc("vo/base/source.h:FrameSource::Next"));
 }
 
 }  // namespace vobench::python

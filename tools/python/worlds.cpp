@@ -4,8 +4,8 @@
 #include <thread>
 #include <utility>
 
+#include "tools/bench/systems/bridge.h"
 #include "tools/python/module.h"
-#include "tools/vobench/bridge.h"
 
 namespace vobench::python {
 namespace {
@@ -141,7 +141,7 @@ void AddSimulator(py::module_& m) {
             Checked(index, s.simulator.frame_count());
             return StampedTruth{s.simulator.StampNs(index), s.simulator.TruthAt(index)};
           },
-          py::arg("index"), Doc("sim/truth.h:Truth"));
+          py::arg("index"), Doc("sim/motion/truth.h:Truth"));
 }
 
 void AddPoints(py::module_& m) {
@@ -157,17 +157,17 @@ void AddPoints(py::module_& m) {
         return StampedTruth{f.stamp_ns, f.truth};
       });
 
-  py::class_<PointWorld>(m, "PointWorld", Doc("sim/world/point_world.h:"))
+  py::class_<PointWorld>(m, "PointWorld", Doc("sim/points/point_world.h:"))
       .def(py::init([](const Scenario& scenario, std::optional<std::uint64_t> seed) {
              return PointWorld{scenario, WorldOf(scenario, seed)};
            }),
-           py::arg("scenario"), py::arg("seed") = py::none(), Doc("sim/world/point_world.h:PointWorld::PointWorld"))
+           py::arg("scenario"), py::arg("seed") = py::none(), Doc("sim/points/point_world.h:PointWorld::PointWorld"))
       .def_readonly("scenario", &PointWorld::scenario)
       .def_property_readonly("seed", [](const PointWorld& w) { return w.world.scenario().seed; })
       .def_property_readonly("camera", [](const PointWorld& w) { return ToOdometry(w.world.camera().params()); })
       .def_property_readonly(
           "warnings", [](const PointWorld& w) { return w.world.Warnings(); },
-          Doc("sim/world/point_world.h:PointWorld::Warnings"))
+          Doc("sim/points/point_world.h:PointWorld::Warnings"))
       .def("__len__", [](const PointWorld& w) { return w.world.frame_count(); })
       .def("__iter__", [](const py::object& self) { return self; })
       .def(
@@ -177,14 +177,14 @@ void AddPoints(py::module_& m) {
             if (!frame) throw py::stop_iteration();
             return *std::move(frame);
           },
-          Doc("sim/world/point_world.h:PointWorld::Next"))
+          Doc("sim/points/point_world.h:PointWorld::Next"))
       .def(
           "truth",
           [](const PointWorld& w, std::int64_t index) {
             Checked(index, w.world.frame_count());
             return StampedTruth{w.world.StampNs(index), w.world.TruthAt(index)};
           },
-          py::arg("index"), Doc("sim/world/point_world.h:PointWorld::TruthAt"))
+          py::arg("index"), Doc("sim/points/point_world.h:PointWorld::TruthAt"))
       .def_property_readonly("landmarks", &Landmarks,
                              "(n, 4): every landmark seen so far, landmarks[id], homogeneous (x, y, z, w) in W.");
 }

@@ -12,19 +12,19 @@
 #include <string>
 #include <vector>
 
-#include "tools/campaign/digest.h"
-#include "tools/campaign/memory.h"
-#include "tools/campaign/output.h"
-#include "tools/campaign/slurm.h"
-#include "tools/campaign/task_folder.h"
-#include "tools/vobench/campaign_local.h"
-#include "tools/vobench/campaign_page.h"
-#include "tools/vobench/campaign_slurm.h"
-#include "tools/vobench/campaign_work.h"
+#include "tools/bench/campaign/digest.h"
+#include "tools/bench/campaign/local_engine.h"
+#include "tools/bench/campaign/memory.h"
+#include "tools/bench/campaign/output.h"
+#include "tools/bench/campaign/page.h"
+#include "tools/bench/campaign/slurm.h"
+#include "tools/bench/campaign/slurm_engine.h"
+#include "tools/bench/campaign/task_folder.h"
+#include "tools/bench/campaign/work.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/result/output_folder.h"
+#include "tools/bench/result/result.h"
 #include "tools/vobench/commands.h"
-#include "tools/vobench/errors.h"
-#include "tools/vobench/output_folder.h"
-#include "tools/vobench/result.h"
 
 namespace vobench {
 namespace fs = std::filesystem;

@@ -4,11 +4,11 @@
 
 #include "sim/sensor/emva.h"
 #include "sim/simulator.h"
-#include "tools/evaluation/trajectory.h"
-#include "tools/vobench/bridge.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/systems/bridge.h"
+#include "tools/bench/systems/experiment.h"
+#include "tools/judge/evaluation/trajectory.h"
 #include "tools/vobench/commands.h"
-#include "tools/vobench/errors.h"
-#include "tools/vobench/experiment.h"
 
 namespace vobench {
 

@@ -1,6 +1,5 @@
-// Purpose: what each sub-command is asked to do, and the function that does it. Each throws BadInput for what the
-// caller can
-//          mend and any other exception when the work fails; results go to stdout, progress and warnings to stderr.
+// Options and entry point of each sub-command. Each throws BadInput for a mistake of the caller and any other
+// exception when the work fails; results go to stdout, progress and warnings to stderr.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +10,12 @@
 #include <variant>
 #include <vector>
 
+#include "tools/base/settings/overrides.h"
+#include "tools/bench/campaign/options.h"
+
 namespace vobench {
 
-// --set key=value, in the order given; a later one wins.
-using Overrides = std::vector<std::pair<std::string, std::string>>;
+using settings::Overrides;
 
 // A scenario is rendered into a sequence on disk (docs/sequence_format.md).
 struct RenderOptions {
@@ -99,24 +100,6 @@ struct ExportOptions {
 };
 void Export(const ExportOptions& options);
 
-// Scenarios x variants x systems x seeds (docs/campaign.md). Throws TasksFailed after all else is done and written when
-// tasks failed.
-struct CampaignOptions {
-  std::filesystem::path file;
-  std::filesystem::path output;
-  std::optional<std::filesystem::path> cache;  // of sequences; OUT/cache unless told
-  std::string engine = "local";                // or slurm
-  int jobs = 1;                                // processes at a time, here
-  std::uint64_t memory_bytes = 0;              // of each; 0: an equal part of what the machine has left
-  double timeout_s = 0;                        // of a task; 0: none
-  bool dry_run = false;                        // tasks are listed only
-  bool update = false;                         // results of other settings may go
-  std::optional<std::int64_t> task;            // that one alone, again
-  std::optional<std::filesystem::path> list;   // those in line `part` of this file
-  int part = 0;
-  std::string partition, time;  // of Slurm's jobs
-  int tasks_per_job = 10;
-};
 void RunCampaign(const CampaignOptions& options);
 
 using Command = std::variant<RenderOptions, TrackOptions, EvaluateOptions, RunOptions, CheckOptions, ReportOptions,

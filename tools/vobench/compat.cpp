@@ -9,12 +9,12 @@
 #include <map>
 #include <sstream>
 
-#include "tools/evaluation/compat/evo.h"
-#include "tools/evaluation/compat/openvins.h"
-#include "tools/evaluation/compat/rpg.h"
-#include "tools/evaluation/compat/tum.h"
-#include "tools/evaluation/text_file.h"
-#include "tools/vobench/errors.h"
+#include "tools/bench/errors.h"
+#include "tools/judge/evaluation/compat/evo.h"
+#include "tools/judge/evaluation/compat/openvins.h"
+#include "tools/judge/evaluation/compat/rpg.h"
+#include "tools/judge/evaluation/compat/tum.h"
+#include "tools/judge/evaluation/text_file.h"
 
 namespace vobench {
 namespace {

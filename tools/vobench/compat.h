@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "tools/evaluation/trajectory.h"
+#include "tools/judge/evaluation/trajectory.h"
 
 namespace vobench {
 

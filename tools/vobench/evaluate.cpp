@@ -4,13 +4,13 @@
 #include <numbers>
 #include <string_view>
 
-#include "tools/evaluation/summary.h"
-#include "tools/report/metrics_json.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/report/metrics_json.h"
+#include "tools/bench/result/result.h"
+#include "tools/bench/result/sequence_truth.h"
+#include "tools/judge/evaluation/summary.h"
 #include "tools/vobench/commands.h"
 #include "tools/vobench/compat.h"
-#include "tools/vobench/errors.h"
-#include "tools/vobench/result.h"
-#include "tools/vobench/sequence_truth.h"
 
 namespace vobench {
 namespace fs = std::filesystem;

@@ -7,17 +7,17 @@
 #include <limits>
 #include <optional>
 
-#include "tools/evaluation/text_file.h"
-#include "tools/verification/files.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/result/progress.h"
+#include "tools/bench/result/sequence_truth.h"
+#include "tools/judge/evaluation/text_file.h"
+#include "tools/judge/verification/files.h"
 #include "tools/vobench/commands.h"
-#include "tools/vobench/errors.h"
-#include "tools/vobench/progress.h"
-#include "tools/vobench/sequence_truth.h"
 #include "vo/geometry/camera_file.h"
 #include "vo/sequence/reader.h"
 
 #ifdef VOBENCH_ROSBAG
-#include "tools/vobench/bag_file.h"
+#include "tools/bench/result/bag_file.h"
 #endif
 
 namespace vobench {

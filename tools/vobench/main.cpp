@@ -9,9 +9,9 @@
 #include <string>
 #include <system_error>
 
+#include "tools/bench/errors.h"
+#include "tools/bench/result/interrupt.h"
 #include "tools/vobench/arguments.h"
-#include "tools/vobench/errors.h"
-#include "tools/vobench/interrupt.h"
 
 namespace vobench {
 namespace {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <thread>
 
+#include "tools/bench/systems/systems.h"
 #include "tools/vobench/help_text.h"
-#include "tools/vobench/systems.h"
 
 namespace vobench {
 namespace {

@@ -10,13 +10,13 @@
 #include "sim/sequence/streams.h"
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"
-#include "tools/vobench/bridge.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/result/output_folder.h"
+#include "tools/bench/result/preview.h"
+#include "tools/bench/result/progress.h"
+#include "tools/bench/systems/bridge.h"
+#include "tools/bench/systems/experiment.h"
 #include "tools/vobench/commands.h"
-#include "tools/vobench/errors.h"
-#include "tools/vobench/experiment.h"
-#include "tools/vobench/output_folder.h"
-#include "tools/vobench/preview.h"
-#include "tools/vobench/progress.h"
 
 namespace vobench {
 namespace fs = std::filesystem;

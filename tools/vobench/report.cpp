@@ -1,12 +1,12 @@
-#include "tools/report/report.h"
+#include "tools/bench/report/report.h"
 
 #include <fmt/format.h>
 
 #include <stdexcept>
 
-#include "tools/report/run_json.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/report/run_json.h"
 #include "tools/vobench/commands.h"
-#include "tools/vobench/errors.h"
 
 namespace vobench {
 

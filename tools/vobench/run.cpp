@@ -7,20 +7,20 @@
 #include <vector>
 
 #include "sim/simulator.h"
-#include "tools/report/text_summary.h"
-#include "tools/vobench/bridge.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/live/live_view.h"
+#include "tools/bench/report/text_summary.h"
+#include "tools/bench/result/map_file.h"
+#include "tools/bench/result/parallel.h"
+#include "tools/bench/result/progress.h"
+#include "tools/bench/result/result.h"
+#include "tools/bench/result/tracker.h"
+#include "tools/bench/result/truth_pictures.h"
+#include "tools/bench/systems/bridge.h"
+#include "tools/bench/systems/experiment.h"
+#include "tools/bench/systems/prior.h"
 #include "tools/vobench/commands.h"
-#include "tools/vobench/errors.h"
-#include "tools/vobench/experiment.h"
-#include "tools/vobench/live_view.h"
-#include "tools/vobench/map_file.h"
-#include "tools/vobench/parallel.h"
-#include "tools/vobench/prior.h"
-#include "tools/vobench/progress.h"
-#include "tools/vobench/result.h"
 #include "tools/vobench/run_common.h"
-#include "tools/vobench/tracker.h"
-#include "tools/vobench/truth_pictures.h"
 
 namespace vobench {
 namespace {

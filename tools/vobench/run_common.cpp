@@ -6,12 +6,6 @@ Folder MakeFolder(const RunOptions& options) {
   return options.output ? std::make_unique<OutputFolder>(*options.output, kResultMarker, ResultNames()) : nullptr;
 }
 
-evaluation::JudgeOptions JudgeOptionsOf(const PriorSettings& prior) {
-  evaluation::JudgeOptions how;
-  if (prior.start == PriorSettings::Start::origin) how.gauge = evaluation::Gauge::first_pose;
-  return how;
-}
-
 report::RunDescription Describe(const RunOptions& options, const Experiment& experiment,
                                 const std::vector<std::string>& notes, const Clock& clock) {
   report::RunDescription description;

@@ -6,21 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "tools/evaluation/summary.h"
-#include "tools/report/run_json.h"
+#include "tools/bench/report/run_json.h"
+#include "tools/bench/result/output_folder.h"
+#include "tools/bench/result/result.h"
+#include "tools/bench/systems/experiment.h"
+#include "tools/judge/evaluation/summary.h"
 #include "tools/vobench/commands.h"
-#include "tools/vobench/experiment.h"
-#include "tools/vobench/output_folder.h"
-#include "tools/vobench/result.h"
 
 namespace vobench {
 
 using Folder = std::unique_ptr<OutputFolder>;  // none: nothing is kept
 
 Folder MakeFolder(const RunOptions& options);
-
-// Whose world the errors are taken in, as the prior has it.
-evaluation::JudgeOptions JudgeOptionsOf(const PriorSettings& prior);
 
 // All of run.json but the runs.
 report::RunDescription Describe(const RunOptions& options, const Experiment& experiment,

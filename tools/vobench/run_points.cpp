@@ -6,19 +6,19 @@
 #include <optional>
 #include <vector>
 
-#include "sim/world/point_world.h"
-#include "tools/evaluation/whole_file.h"
-#include "tools/report/text_summary.h"
-#include "tools/vobench/anees_table.h"
-#include "tools/vobench/bridge.h"
-#include "tools/vobench/errors.h"
-#include "tools/vobench/map_file.h"
-#include "tools/vobench/parallel.h"
-#include "tools/vobench/point_bound.h"
-#include "tools/vobench/point_tracker.h"
-#include "tools/vobench/point_verdict.h"
-#include "tools/vobench/prior.h"
-#include "tools/vobench/progress.h"
+#include "sim/points/point_world.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/points/point_bound.h"
+#include "tools/bench/report/text_summary.h"
+#include "tools/bench/result/anees_table.h"
+#include "tools/bench/result/map_file.h"
+#include "tools/bench/result/parallel.h"
+#include "tools/bench/result/point_tracker.h"
+#include "tools/bench/result/point_verdict.h"
+#include "tools/bench/result/progress.h"
+#include "tools/bench/systems/bridge.h"
+#include "tools/bench/systems/prior.h"
+#include "tools/judge/evaluation/whole_file.h"
 #include "tools/vobench/run_common.h"
 
 namespace vobench {

@@ -1,12 +1,12 @@
-#include "tools/verification/verify.h"
+#include "tools/judge/verification/verify.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
+#include "tools/bench/errors.h"
+#include "tools/bench/result/progress.h"
 #include "tools/vobench/commands.h"
-#include "tools/vobench/errors.h"
-#include "tools/vobench/progress.h"
 
 namespace vobench {
 namespace {

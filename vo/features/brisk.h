@@ -18,8 +18,8 @@
 #include <span>
 #include <vector>
 
+#include "vo/base/instruction_set.h"
 #include "vo/features/brisk_pattern.h"
-#include "vo/instruction_set.h"
 
 namespace vo {
 

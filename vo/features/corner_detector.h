@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "vo/params.h"
+#include "vo/base/params.h"
 
 namespace vo {
 

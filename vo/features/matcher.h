@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "vo/base/params.h"
 #include "vo/features/brisk.h"
 #include "vo/features/patch.h"
-#include "vo/params.h"
 
 namespace vo {
 

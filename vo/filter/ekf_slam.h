@@ -13,8 +13,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "vo/base/params.h"
 #include "vo/filter/filter.h"
-#include "vo/params.h"
 
 namespace vo {
 

@@ -3,8 +3,8 @@
 // Shapes:  F and Q are 12 x 12 in the order (p, delta, v, w); the noise of p and v (and of delta and w) is correlated.
 #pragma once
 
+#include "vo/base/params.h"
 #include "vo/geometry/pose.h"
-#include "vo/params.h"
 
 namespace vo {
 

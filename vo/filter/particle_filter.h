@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "vo/base/params.h"
 #include "vo/filter/filter.h"
 #include "vo/filter/mixture.h"
 #include "vo/filter/motion_model.h"
@@ -19,7 +20,6 @@
 #include "vo/filter/pose_gaussian.h"
 #include "vo/filter/proposal.h"
 #include "vo/map/landmark.h"
-#include "vo/params.h"
 
 namespace vo {
 

@@ -2,8 +2,8 @@
 // Tangent: (dp in W [m], dphi in C [rad]), right perturbation: pose = mean (+) d.
 #pragma once
 
+#include "vo/base/random.h"
 #include "vo/geometry/pose.h"
-#include "vo/random.h"
 
 namespace vo {
 

@@ -5,10 +5,10 @@
 
 #include <span>
 
+#include "vo/base/params.h"
 #include "vo/filter/guards.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/map/match_batch.h"
-#include "vo/params.h"
 
 namespace vo {
 

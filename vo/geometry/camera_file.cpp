@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "tools/settings/settings.h"
+#include "tools/base/settings/settings.h"
 #include "vo/geometry/calibration_numbers.h"
 #include "vo/geometry/opencv_xml.h"
 

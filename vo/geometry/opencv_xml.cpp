@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/limits/opencv_storage.h"
-#include "tools/settings/settings.h"
+#include "tools/base/limits/opencv_storage.h"
+#include "tools/base/settings/settings.h"
 #include "vo/geometry/calibration_numbers.h"
 
 namespace vo {

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "vo/params.h"
+#include "vo/base/params.h"
 
 namespace vo {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "vo/base/params.h"
 #include "vo/map/landmark_record.h"
-#include "vo/params.h"
 
 namespace vo {
 

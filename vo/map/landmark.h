@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "vo/base/params.h"
 #include "vo/geometry/pose.h"
 #include "vo/map/row_view.h"
-#include "vo/params.h"
 
 namespace vo {
 

@@ -12,7 +12,7 @@
 
 #include <cstdint>
 
-#include "vo/instruction_set.h"
+#include "vo/base/instruction_set.h"
 
 namespace vo {
 

@@ -10,8 +10,8 @@
 #include <optional>
 #include <thread>
 
-#include "vo/prepared_frame.h"
-#include "vo/sequence/source.h"
+#include "vo/base/source.h"
+#include "vo/frontend/prepared_frame.h"
 
 namespace vo {
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "tools/limits/picture.h"
+#include "tools/base/limits/picture.h"
 
 namespace vo {
 namespace {

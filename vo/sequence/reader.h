@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "vo/sequence/source.h"
+#include "vo/base/source.h"
 
 namespace vo {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "vo/sequence/source.h"
+#include "vo/base/source.h"
 
 namespace vo {
 

@@ -1,5 +1,5 @@
 // Somebody else's project against an installed vobench: is MyFilter consistent? Usage: own_filter_test SCENARIO FACTOR
-#include <tools/vobench/point_consistency.h>
+#include <tools/bench/points/point_consistency.h>
 #include <vo/point_odometry.h>
 
 #include <iostream>

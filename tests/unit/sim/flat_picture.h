@@ -3,7 +3,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "sim/render/radiance_image.h"
+#include "sim/sensor/radiance_image.h"
 
 namespace sim {
 

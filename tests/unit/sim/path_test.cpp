@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/motion/truth.h"
 #include "sim/scenario/scenario.h"
-#include "sim/truth.h"
 #include "tests/unit/sim/motion_check.h"
 #include "tests/unit/sim/small_world.h"
-#include "tools/settings/problem.h"
+#include "tools/base/settings/problem.h"
 
 namespace sim {
 namespace {

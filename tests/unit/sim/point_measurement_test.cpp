@@ -1,4 +1,4 @@
-#include "sim/world/point_measurement.h"
+#include "sim/points/point_measurement.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/world/point_world.h"
+#include "sim/points/point_world.h"
 
 #include <gmock/gmock.h>
 

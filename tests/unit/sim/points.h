@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/world/point_world.h"
+#include "sim/points/point_world.h"
 
 namespace sim {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "sim/points/point_world.h"
 #include "sim/simulator.h"
-#include "sim/world/point_world.h"
 #include "tests/unit/sim/temporary_folder.h"
 
 namespace sim {

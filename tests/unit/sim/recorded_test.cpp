@@ -11,7 +11,7 @@
 #include "sim/scenario/stamps.h"
 #include "tests/unit/sim/motion_check.h"
 #include "tests/unit/sim/temporary_folder.h"
-#include "tools/settings/problem.h"
+#include "tools/base/settings/problem.h"
 
 namespace sim {
 namespace {

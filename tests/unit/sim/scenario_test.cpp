@@ -8,7 +8,7 @@
 #include "sim/motion/so3.h"
 #include "sim/scenario/pose_reader.h"
 #include "tests/unit/sim/small_world.h"
-#include "tools/settings/settings.h"
+#include "tools/base/settings/settings.h"
 
 namespace sim {
 namespace {

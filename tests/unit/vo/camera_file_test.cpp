@@ -8,7 +8,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
-#include "tools/settings/problem.h"
+#include "tools/base/settings/problem.h"
 
 namespace {
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "vo/base/random.h"
 #include "vo/geometry/pose.h"
-#include "vo/random.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // A rolling shutter after a gap: the velocity that straightens the rows of the first image back follows from the whole gap, not from one frame's time.
-#include "vo/last_seen.h"
+#include "vo/frontend/last_seen.h"
 
 #include <gtest/gtest.h>
 

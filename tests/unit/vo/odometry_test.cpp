@@ -13,9 +13,9 @@
 
 #include "tests/unit/vo/texture.h"
 #include "tests/unit/vo/two_walls.h"
+#include "vo/base/params.h"
 #include "vo/features/brisk.h"
 #include "vo/geometry/so3.h"
-#include "vo/params.h"
 
 namespace {
 

@@ -11,9 +11,9 @@
 #include "tests/unit/vo/draws.h"
 #include "tests/unit/vo/landmark_field.h"
 #include "tests/unit/vo/wall.h"
+#include "vo/base/random.h"
 #include "vo/filter/resampling.h"
 #include "vo/geometry/so3.h"
-#include "vo/random.h"
 
 namespace {
 

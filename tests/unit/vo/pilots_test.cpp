@@ -1,6 +1,6 @@
 // Where the camera is, from few matches; which landmarks are asked; and what that is worth on images.
 
-#include "vo/pilots.h"
+#include "vo/frontend/pilots.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "tests/unit/vo/texture.h"
+#include "vo/frontend/spread.h"
 #include "vo/geometry/so3.h"
 #include "vo/odometry.h"
-#include "vo/spread.h"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <vector>
 
+#include "vo/base/random.h"
 #include "vo/geometry/so3.h"
-#include "vo/random.h"
 
 namespace {
 

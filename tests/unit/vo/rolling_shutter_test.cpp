@@ -1,5 +1,5 @@
 // The time of a row taken out of an image, against exact views of a camera that moves while it reads its rows.
-#include "vo/rolling_shutter.h"
+#include "vo/frontend/rolling_shutter.h"
 
 #include <gtest/gtest.h>
 

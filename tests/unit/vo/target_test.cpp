@@ -1,5 +1,5 @@
 // A chessboard that is drawn where a plane of known pose has it: the corners' depths come out as that plane has them, and as sure as they are.
-#include "vo/target.h"
+#include "vo/frontend/target.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What --compat prints on small trajectories of our own. The texts in compat/expected.txt were printed when every
-// golden value of the reference tools was met (tests/unit/evaluation/golden_test.cpp, which needs files that are not
+// golden value of the reference tools was met (tests/unit/judge/evaluation/golden_test.cpp, which needs files that are not
 // ours).
 #include "tools/vobench/compat.h"
 
@@ -10,10 +10,10 @@
 #include <map>
 #include <sstream>
 
-#include "tools/evaluation/compat/evo.h"
-#include "tools/evaluation/compat/tum.h"
-#include "tools/evaluation/text_file.h"
-#include "tools/vobench/errors.h"
+#include "tools/bench/errors.h"
+#include "tools/judge/evaluation/compat/evo.h"
+#include "tools/judge/evaluation/compat/tum.h"
+#include "tools/judge/evaluation/text_file.h"
 
 namespace vobench {
 namespace {

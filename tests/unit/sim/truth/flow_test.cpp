@@ -1,4 +1,4 @@
-#include "sim/truth/flow.h"
+#include "sim/sequence/flow.h"
 
 #include <gtest/gtest.h>
 

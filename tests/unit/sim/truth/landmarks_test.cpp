@@ -1,4 +1,4 @@
-#include "sim/truth/landmarks.h"
+#include "sim/sequence/landmarks.h"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "sim/render/surface_tracer.h"
+#include "sim/sequence/flow.h"
 #include "sim/sequence/format.h"
+#include "sim/sequence/landmarks.h"
 #include "sim/sequence/streams.h"
-#include "sim/truth/flow.h"
-#include "sim/truth/landmarks.h"
 #include "tests/unit/sim/render/moving_worlds.h"
 #include "tests/unit/sim/small_world.h"
 

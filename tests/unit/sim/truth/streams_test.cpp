@@ -12,8 +12,8 @@
 
 #include "sim/render/surface_tracer.h"
 #include "sim/sensor/depth_noise.h"
-#include "sim/truth/encode.h"
-#include "sim/truth/flow.h"
+#include "sim/sequence/encode.h"
+#include "sim/sequence/flow.h"
 #include "tests/unit/sim/small_world.h"
 
 namespace sim {

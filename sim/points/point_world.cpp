@@ -1,0 +1,173 @@
+#include "sim/points/point_world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "sim/motion/make.h"
+#include "sim/points/point_measurement.h"
+#include "sim/points/point_places.h"
+#include "sim/random/random.h"
+#include "sim/scenario/stamps.h"
+
+namespace sim {
+namespace {
+
+// A filter may have the same seed and the same generator: with another key the two share no number.
+constexpr std::uint64_t kKey = 0x706f696e745f776full;
+
+const PointDescription& PointsOf(const Scenario& scenario) {
+  if (scenario.points) return *scenario.points;
+  throw std::invalid_argument(scenario.name + ": the world has meshes, not points: it is rendered, not played");
+}
+
+Scenario Load(const std::filesystem::path& file, std::uint64_t seed) {
+  return LoadScenario(file, {{"seed", std::to_string(seed)}});
+}
+
+bool InImage(const CameraParams& camera, const glm::dvec2& pixel) {
+  return pixel.x >= -0.5 && pixel.x < camera.width - 0.5 && pixel.y >= -0.5 && pixel.y < camera.height - 0.5;
+}
+
+}  // namespace
+
+PointWorld::PointWorld(const Scenario& scenario)
+    : scenario_(scenario),
+      world_(PointsOf(scenario)),
+      key_(scenario.seed ^ kKey),
+      frames_(CountFrames(scenario.time)),
+      camera_(scenario.camera),
+      trajectory_(MakeTrajectory(scenario.motion, key_, Seconds(sim::StampNs(frames_ - 1, scenario.time)), 0)) {
+  const std::vector<std::string> problems = Problems(world_, scenario.camera);
+  if (!problems.empty()) throw std::invalid_argument("point world: " + problems.front());
+  scale_ = std::exp(world_.scale_sigma * Normals(RandomWords(key_, Stream::point_scale, 0, 0, 0))[0]);
+  const Truth start = TruthAt(0);
+  points_ = PlacePoints(world_, {start.p_WC, start.q_WC}, key_);
+  followed_.assign(points_.size(), false);
+}
+
+PointWorld::PointWorld(const std::filesystem::path& scenario, std::uint64_t seed) : PointWorld(Load(scenario, seed)) {}
+
+std::int64_t PointWorld::StampNs(std::int64_t index) const { return sim::StampNs(index, scenario_.time); }
+Truth PointWorld::TruthAt(std::int64_t index) const { return sim::TruthAt(*trajectory_, Seconds(StampNs(index))); }
+
+std::vector<std::string> PointWorld::Warnings() const {
+  if (world_.landmarks != Landmarks::room) return {};
+  const glm::dvec3 center = world_.center.value_or(TruthAt(0).p_WC);
+  for (std::int64_t k = 0; k < frames_; ++k) {
+    const glm::dvec3 from = glm::abs(TruthAt(k).p_WC - center);
+    if (std::max({from.x, from.y, from.z}) > world_.size_m / 2) {
+      return {"the camera leaves the room of points at frame " + std::to_string(k)};
+    }
+  }
+  return {};
+}
+
+PointWorld::Eye PointWorld::EyeOf(const Truth& truth) { return {truth, glm::transpose(glm::mat3_cast(truth.q_WC))}; }
+
+// X_C ~ R_CW (X_W - w p): for X_W = rho p_A + R_WA m, w = rho the anchored ray of an inverse-depth landmark.
+std::optional<PointWorld::View> PointWorld::See(const Eye& eye, const glm::dvec4& X_W) const {
+  const glm::dvec3 X_C = eye.R_CW * (glm::dvec3(X_W) - X_W.w * eye.truth.p_WC);
+  if (!(X_C.z > 0) || X_C.z < world_.min_depth_m * X_W.w) return std::nullopt;
+  const View view{camera_.Project(X_C), X_C};
+  if (!InImage(camera_.params(), view.pixel)) return std::nullopt;
+  // Far outside the image a lens need not be one-to-one: what it folds back into the image is not in view.
+  const glm::dvec2 ray(X_C.x / X_C.z, X_C.y / X_C.z);
+  if (glm::distance(camera_.Undistort(view.pixel), ray) > 1e-6 * (1 + glm::length(ray))) return std::nullopt;
+  return view;
+}
+
+std::optional<glm::dvec2> PointWorld::Project(const PointLandmark& landmark, std::int64_t frame) const {
+  const std::optional<View> view = See(EyeOf(TruthAt(frame)), landmark.X_W);
+  return view ? std::optional(view->pixel) : std::nullopt;
+}
+
+// How far the image moves during the exposure: X_C' = -w_C x X_C - w v_C, half of it before and after.
+double PointWorld::MovedPx(const Eye& eye, const PointLandmark& landmark, const View& view) const {
+  const double half_s = world_.measurement.blur_exposure_s / 2;
+  const glm::dvec3 rate = -glm::cross(eye.truth.w_WC_C, view.X_C) - landmark.X_W.w * (eye.R_CW * eye.truth.v_WC);
+  const glm::dvec3 before = view.X_C - half_s * rate, after = view.X_C + half_s * rate;
+  if (!(before.z > 0) || !(after.z > 0)) return std::hypot(camera_.width(), camera_.height());  // it rushes past
+  return glm::distance(camera_.Project(before), camera_.Project(after));
+}
+
+void PointWorld::Follow(std::int64_t frame, const Eye& eye) {
+  for (Track& track : tracks_) {
+    track.view = See(eye, landmarks_[static_cast<std::size_t>(track.id)].X_W);
+    if (track.view) track.last_in_view = frame;
+  }
+  std::erase_if(tracks_, [&](const Track& track) {
+    const bool forgotten = frame - track.last_in_view >= world_.forget_after;
+    if (forgotten && track.point) followed_[*track.point] = false;
+    return forgotten;
+  });
+}
+
+// The place in the image is uniform, the inverse depth normal.
+glm::dvec4 PointWorld::DrawFromPrior(const Eye& eye) const {
+  const auto id = static_cast<std::uint32_t>(landmarks_.size());
+  const Words place = RandomWords(key_, Stream::point_place, 0, id, 0);
+  const Words depth = RandomWords(key_, Stream::point_place, 0, id, 1);
+  const double margin = world_.margin_px;
+  const glm::dvec2 pixel(margin - 0.5 + Uniform(place[0], place[1]) * (camera_.width() - 2 * margin),
+                         margin - 0.5 + Uniform(place[2], place[3]) * (camera_.height() - 2 * margin));
+  const double rho = scale_ * (world_.inverse_depth + world_.inverse_depth_sigma * Normals(depth)[0]);
+  const glm::dvec3 ray = glm::transpose(eye.R_CW) * glm::dvec3(camera_.Undistort(pixel), 1.0);
+  return {rho * eye.truth.p_WC + ray, rho};
+}
+
+void PointWorld::Begin(std::int64_t frame, const glm::dvec4& X_W, std::optional<std::size_t> point, const View& view) {
+  const auto id = static_cast<std::int64_t>(landmarks_.size());
+  landmarks_.push_back({id, X_W, frame});
+  tracks_.push_back({id, point, frame, view});
+}
+
+// New landmarks until `count` are in view, as far as there are any.
+void PointWorld::Fill(std::int64_t frame, const Eye& eye) {
+  auto room = world_.count - std::count_if(tracks_.begin(), tracks_.end(), [](const Track& t) { return !!t.view; });
+  if (world_.landmarks == Landmarks::prior) {
+    for (; room > 0; --room) {
+      const glm::dvec4 X_W = DrawFromPrior(eye);
+      // z = 1 up to scale: it is in view whatever its inverse depth. A min_depth is none of a prior's business.
+      const glm::dvec3 X_C = eye.R_CW * (glm::dvec3(X_W) - X_W.w * eye.truth.p_WC);
+      Begin(frame, X_W, std::nullopt, {camera_.Project(X_C), X_C});
+    }
+    return;
+  }
+  for (std::size_t k = 0; k < points_.size() && room > 0; ++k) {
+    if (followed_[k]) continue;
+    const glm::dvec4 X_W(points_[k], 1.0);
+    const std::optional<View> view = See(eye, X_W);
+    if (!view) continue;
+    followed_[k] = true;
+    Begin(frame, X_W, k, *view);
+    --room;
+  }
+}
+
+std::optional<PointFrame> PointWorld::Next() {
+  if (next_ >= frames_) return std::nullopt;
+  PointFrame frame{next_, StampNs(next_), TruthAt(next_), {}};
+  ++next_;
+  const Eye eye = EyeOf(frame.truth);
+  Follow(frame.index, eye);
+  Fill(frame.index, eye);
+  const PointMeasurement& how = world_.measurement;
+  for (const Track& track : tracks_) {
+    if (!track.view) continue;
+    const PointLandmark& landmark = landmarks_[static_cast<std::size_t>(track.id)];
+    const ViewKey key{key_, static_cast<std::uint32_t>(frame.index), static_cast<std::uint32_t>(track.id)};
+    const std::optional<glm::dvec2> seen =
+        landmark.first_frame == frame.index
+            ? MeasureFirst(how, key, track.view->pixel)
+            : Measure(how, camera_.params(), key, track.view->pixel, MovedPx(eye, landmark, *track.view));
+    if (seen) frame.observations.push_back({track.id, seen->x, seen->y});
+  }
+  return frame;
+}
+
+}  // namespace sim

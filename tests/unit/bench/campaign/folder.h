@@ -1,0 +1,22 @@
+// Purpose: a folder that is gone when the test is, with files below it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "tests/unit/judge/evaluation/temporary_folder.h"
+
+namespace campaign {
+
+class Folder : public evaluation::TemporaryFolder {
+ public:
+  std::filesystem::path operator/(const std::string& name) const { return path() / name; }
+  // Folders on the way are made.
+  std::filesystem::path Write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((path() / name).parent_path());
+    return TemporaryFolder::Write(name, text);
+  }
+  std::string Read(const std::string& name) const { return TemporaryFolder::Read(path() / name); }
+};
+
+}  // namespace campaign

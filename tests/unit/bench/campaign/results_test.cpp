@@ -1,0 +1,161 @@
+// Records, results.csv and tables.
+#include "tools/bench/campaign/results.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tools/bench/campaign/table.h"
+
+namespace campaign {
+namespace {
+
+using testing::HasSubstr;
+
+TaskRecord Sample(std::int64_t task, Status status, double ate) {
+  TaskRecord record;
+  record.key = "k";
+  record.task = task;
+  record.scenario = "a, \"b\"";
+  record.levels = {{"blur", "0.004"}};
+  record.system = "rbpf";
+  record.seed = 18446744073709551615u;
+  record.status = status;
+  record.metrics.assign(MetricNames().size(), std::nullopt);
+  record.metrics[0] = ate;
+  return record;
+}
+
+Campaign Small() {  // 3 seeds x 2 blurs x 1 system
+  Campaign c;
+  c.scenarios.push_back({"s", "s.yaml", {}, {}});
+  c.factors.push_back({"blur", "k", {{"0 ms", {}}, {"4_ms", {}}}});
+  c.systems.push_back({"rbpf", "rbpf", {}, {}});
+  c.seeds = {1, 2, 3};
+  return c;
+}
+
+TEST(Results, ARecordIsReadAsItWasWritten) {
+  TaskRecord record = Sample(7, Status::crashed, 0.1 + 0.2);
+  record.reason = "ended by signal 11";
+  const TaskRecord again = RecordFromJson(ToJson(record));
+  EXPECT_EQ(ToJson(again), ToJson(record));
+  EXPECT_EQ(again.metrics, record.metrics) << "to the last bit";
+  EXPECT_EQ(again.seed, record.seed);
+  EXPECT_THROW(RecordFromJson(""), std::invalid_argument);
+  EXPECT_THROW(RecordFromJson(ToJson(record).substr(0, 100)), std::invalid_argument);
+  EXPECT_THROW(RecordFromJson("{\"format\": \"other\"}"), std::invalid_argument);
+  const std::string whole = ToJson(Sample(7, Status::ok, 1));
+  for (const std::string seed : {"-1", "1.5", "1e300", "18446744073709551616"}) {
+    std::string text = whole;
+    text.replace(text.find("18446744073709551615"), 20, seed);
+    try {
+      RecordFromJson(text);
+      ADD_FAILURE() << seed;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_THAT(error.what(), HasSubstr("'seed' is no whole number: "));
+    }
+  }
+}
+
+// A line of results.csv is a task, for whoever counts or sorts lines.
+TEST(Results, AReasonIsOneLine) {
+  TaskRecord record = Sample(0, Status::no_answer, 0);
+  record.reason = "t.txt:1:5: 'x' is not a finite number\r\nt.txt:2:1: 3 columns\n";
+  const std::string csv = ResultsCsv(Small(), {RecordFromJson(ToJson(record))});
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 2);
+  EXPECT_THAT(csv, HasSubstr(",t.txt:1:5: 'x' is not a finite number  t.txt:2:1: 3 columns \n"));
+}
+
+TEST(Results, CsvIsTidyAndQuoted) {
+  const std::string csv = ResultsCsv(Small(), {Sample(0, Status::ok, 0.25)});
+  EXPECT_THAT(csv, testing::StartsWith("task,scenario,blur,system,seed,status,ate_m,"));
+  EXPECT_THAT(csv, HasSubstr("\n0,\"a, \"\"b\"\"\",0.004,rbpf,18446744073709551615,ok,0.25,"));
+  const std::size_t header = csv.find('\n');
+  EXPECT_EQ(std::count(csv.begin(), csv.begin() + static_cast<std::ptrdiff_t>(header), ','),
+            static_cast<std::ptrdiff_t>(6 + MetricNames().size()));
+}
+
+TEST(Results, LostIsByTheRule) {
+  TaskRecord record = Sample(0, Status::ok, 0.2);
+  EXPECT_FALSE(IsLost(record, {}));
+  EXPECT_TRUE(IsLost(record, {0.5, 0.5, 0.1}));
+  EXPECT_FALSE(IsLost(record, {0.5, 0.5, 0.2})) << "not larger";
+  const auto set = [&](const std::string& name, double value) {
+    record.metrics[static_cast<std::size_t>(std::find(MetricNames().begin(), MetricNames().end(), name) -
+                                            MetricNames().begin())] = value;
+  };
+  set("tracked_coverage", 0.49);
+  EXPECT_TRUE(IsLost(record, {}));
+  EXPECT_FALSE(IsLost(record, {0.5, 0.4, 0}));
+  set("pose_coverage", 0.3);
+  EXPECT_TRUE(IsLost(record, {0.5, 0.4, 0}));
+}
+
+TEST(Table, QuartilesCountLostRunsAsWorseThanAnyNumber) {
+  const Campaign c = Small();
+  // blur 0 ms: 1, 2, 4; blur 4_ms: 3, lost, crashed
+  const std::vector<TaskRecord> records = {Sample(0, Status::ok, 4), Sample(1, Status::lost, 0.1),
+                                           Sample(2, Status::ok, 1), Sample(3, Status::ok, 3),
+                                           Sample(4, Status::ok, 2), Sample(5, Status::crashed, 0)};
+  const Table table = MakeTable(c, {"ate_m", "ATE", {"blur"}, {"system"}}, records);
+  ASSERT_EQ(table.cells.size(), 2u);
+  EXPECT_EQ(table.cells[0][0].median, 2);
+  EXPECT_EQ(table.cells[0][0].low, 1.5);
+  EXPECT_EQ(table.cells[0][0].high, 3);
+  EXPECT_EQ(table.cells[1][0].lost, 2u);
+  EXPECT_TRUE(std::isinf(table.cells[1][0].median));
+  EXPECT_TRUE(std::isinf(table.cells[1][0].low)) << "between 3 and a lost run lies no number";
+  const std::string text = Markdown({table});
+  EXPECT_THAT(text, HasSubstr("| blur | rbpf |\n|---|---:|\n| 0 ms | 2 [1.5, 3] |\n| 4_ms | X [X, X] |\n"));
+  EXPECT_THAT(Latex({table}), HasSubstr("4\\_ms & $\\times$ [$\\times$, $\\times$] \\\\\n"));
+}
+
+TEST(Table, HasItsUnitAndTheNumbersOfOthers) {
+  const std::vector<TaskRecord> records = {Sample(0, Status::ok, 0.04), Sample(1, Status::lost, 0.1)};
+  TableSpec spec{"ate_m", "ATE [cm]", {"blur"}, {"system"}};
+  spec.unit_in_si = 0.01;
+  spec.beside = {{"paper", {{"0 ms", "5.59"}, {"4_ms", "X"}}}, {"other", {{"4_ms", "7"}}}};
+  const Table table = MakeTable(Small(), spec, records);
+  EXPECT_THAT(Markdown({table}), HasSubstr("| blur | rbpf | paper | other |\n|---|---:|---:|---:|\n"
+                                           "| 0 ms | 4 | 5.59 | - |\n| 4_ms | X | X | 7 |\n"));
+  EXPECT_THAT(Latex({table}), HasSubstr("4\\_ms & $\\times$ & $\\times$ & 7 \\\\\n"));
+}
+
+// Whatever its texts are, a table has as many columns and lines as before.
+TEST(Table, TextsAreEscaped) {
+  Campaign c = Small();
+  c.factors[0].levels[0].name = "a|b\n^~";
+  c.systems[0].name = "x\ny|z";
+  TableSpec spec{"ate_m", "ATE\nof | all", {"blur"}, {"system"}};
+  spec.beside = {{"pa|per", {{"a|b\n^~", "5 % & |x|_1"}, {"4_ms", "X"}}}};
+  const Table table = MakeTable(c, spec, {Sample(0, Status::ok, 4), Sample(1, Status::ok, 3)});
+  EXPECT_THAT(Markdown({table}), testing::StartsWith("### ATE of | all\n\nMedian"));
+  EXPECT_THAT(Markdown({table}), HasSubstr("\n\n| blur | x y\\|z | pa\\|per |\n|---|---:|---:|\n"
+                                           "| a\\|b ^~ | 4 | 5 % & \\|x\\|_1 |\n| 4_ms | 3 | X |\n"));
+  EXPECT_THAT(Latex({table}), testing::StartsWith("% ATE of | all: Median"));
+  EXPECT_THAT(Latex({table}), HasSubstr("\nblur & x y|z & pa|per \\\\\n\\hline\n"
+                                        "a|b \\textasciicircum{}\\textasciitilde{} & 4 & 5 \\% \\& |x|\\_1 \\\\\n"
+                                        "4\\_ms & 3 & $\\times$ \\\\\n"));
+}
+
+TEST(Table, FailedTasksAreNoRunsAndAreCounted) {
+  const Campaign c = Small();
+  const std::vector<TaskRecord> records = {Sample(0, Status::ok, 4),     Sample(1, Status::failed, 0),
+                                           Sample(2, Status::failed, 1), Sample(3, Status::failed, 3),
+                                           Sample(4, Status::ok, 2),     Sample(5, Status::failed, 0)};
+  const std::string text = Markdown({MakeTable(c, {"ate_m", "ATE", {"blur"}, {"system"}}, records)});
+  EXPECT_THAT(text, HasSubstr("| 0 ms | 3 [2.5, 3.5] (1 failed) |\n| 4_ms | - (3 failed) |\n"));
+}
+
+TEST(Table, WhatIsInNeitherRowsNorColumnsIsPooled) {
+  std::vector<TaskRecord> records;
+  for (int k = 0; k < 6; ++k) records.push_back(Sample(k, Status::ok, k));
+  const Table table = MakeTable(Small(), {"ate_m", "ATE", {"scenario"}, {"system"}}, records);
+  ASSERT_EQ(table.cells.size(), 1u);
+  EXPECT_EQ(table.cells[0][0].runs, 6u);
+  EXPECT_EQ(table.cells[0][0].median, 2.5);
+}
+
+}  // namespace
+}  // namespace campaign

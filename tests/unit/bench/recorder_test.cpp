@@ -1,0 +1,64 @@
+#include "tools/bench/result/recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <random>
+#include <vector>
+
+#include "tests/unit/judge/evaluation/temporary_folder.h"
+
+namespace vobench {
+namespace {
+
+vo::Estimate Drawn(std::mt19937& engine, std::int64_t stamp_ns) {
+  const auto draw = [&] { return static_cast<double>(engine()) / 1e9; };
+  vo::Estimate estimate;
+  estimate.stamp_ns = stamp_ns;
+  estimate.pose.p_WC = {draw(), draw(), draw()};
+  estimate.pose.q_WC = Eigen::Quaterniond(draw(), draw(), draw(), draw()).normalized();
+  estimate.v_WC = {draw(), draw(), draw()};
+  estimate.w_WC_C = {draw(), draw(), draw()};
+  for (double& entry : estimate.covariance.reshaped()) entry = draw();  // to the bit, symmetric or not
+  estimate.diagnostics.searched = static_cast<int>(engine() % 100);
+  estimate.diagnostics.matched = static_cast<int>(engine() % 100);
+  estimate.diagnostics.nis = draw();
+  estimate.diagnostics.guards.indefinite = static_cast<int>(engine() % 100);
+  return estimate;
+}
+
+// More answers than memory has room for: all of them come back, to the bit.
+TEST(Recorder, GivesBackWhatItWasTold) {
+  const evaluation::TemporaryFolder folder;
+  Recorder recorder(folder.path());
+  std::mt19937 engine(1);
+  std::vector<vo::Estimate> told;
+  for (int k = 0; k < 2500; ++k) {
+    told.push_back(Drawn(engine, 1000 + k));
+    recorder.Add(told.back());
+  }
+  ASSERT_EQ(recorder.frames(), told.size());
+  const evaluation::EstimateRun run = recorder.Run();
+  ASSERT_EQ(run.trajectory.size(), told.size());
+  ASSERT_EQ(run.beliefs.size(), told.size());
+  ASSERT_EQ(run.frames.size(), told.size());
+  for (std::size_t k = 0; k < told.size(); ++k) {
+    SCOPED_TRACE(k);
+    const vo::Estimate& expected = told[k];
+    ASSERT_EQ(run.trajectory[k].stamp_ns, expected.stamp_ns);
+    ASSERT_EQ(run.trajectory[k].p_WC, expected.pose.p_WC);
+    ASSERT_EQ(run.trajectory[k].q_WC.coeffs(), expected.pose.q_WC.coeffs());
+    ASSERT_EQ(run.beliefs[k].velocity.stamp_ns, expected.stamp_ns);
+    ASSERT_EQ(run.beliefs[k].velocity.v_WC, expected.v_WC);
+    ASSERT_EQ(run.beliefs[k].velocity.w_WC_C, expected.w_WC_C);
+    ASSERT_EQ(run.beliefs[k].covariance, expected.covariance);
+    ASSERT_EQ(run.frames[k].stamp_ns, expected.stamp_ns);
+    ASSERT_EQ(run.frames[k].searched, expected.diagnostics.searched);
+    ASSERT_EQ(run.frames[k].matched, expected.diagnostics.matched);
+    ASSERT_EQ(run.frames[k].nis, expected.diagnostics.nis);
+    ASSERT_EQ(run.frames[k].guards->indefinite, expected.diagnostics.guards.indefinite);
+  }
+}
+
+}  // namespace
+}  // namespace vobench

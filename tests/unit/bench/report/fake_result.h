@@ -1,0 +1,33 @@
+// Purpose: a result folder as a real run would leave it, made up: a camera that walks a spiral, estimates that drift
+// from it with
+//          the uncertainty they claim (or with less).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/bench/report/metrics_json.h"
+#include "tools/bench/report/run_json.h"
+
+namespace report {
+
+struct FakeSystem {
+  std::string name = "rb2pf";
+  double drift = 0.01;  // of the position [m/s^0.5], of the orientation half as many [rad/s^0.5]
+  double claimed = 1;   // standard deviations claimed / true ones
+  double scale = 1;     // of the estimate
+};
+
+struct FakeOptions {
+  int frames = 90;
+  int seeds = 3;
+  bool truth = true;
+  bool pictures = true;
+  std::vector<FakeSystem> systems = {{"rb2pf", 0.01, 1, 1.02}, {"rbpf", 0.03, 0.5, 0.93}};
+};
+
+// Writes everything but report.html; returns what it judged.
+std::vector<JudgedRun> WriteFakeResult(const std::filesystem::path& out, const FakeOptions& options);
+
+}  // namespace report

@@ -1,0 +1,208 @@
+#include "tools/judge/evaluation/alignment.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/judge/evaluation/random.h"
+#include "tools/judge/evaluation/ate.h"
+#include "tools/judge/evaluation/baseline.h"
+
+namespace evaluation {
+namespace {
+
+Similarity RandomSimilarity(TestRandom& random, double scale) {
+  Similarity s;
+  s.scale = scale;
+  s.R = random.Orientation().toRotationMatrix();
+  s.t = 3 * random.Normals(3);
+  return s;
+}
+
+// A walk and a noisy copy of it.
+MatchedTrajectories NoisyPair(TestRandom& random, int poses) {
+  MatchedTrajectories matched;
+  matched.truth = random.Walk(poses);
+  for (const StampedPose& pose : matched.truth) {
+    matched.estimate.push_back(
+        {pose.stamp_ns, pose.p_WC + 0.02 * random.Normals(3), pose.q_WC * Exp(0.02 * random.Normals(3))});
+  }
+  return matched;
+}
+
+TEST(Align, FindsTheSimilarityThatWasApplied) {
+  TestRandom random(5);
+  for (int trial = 0; trial < 100; ++trial) {
+    const double scale = trial % 2 == 0 ? 1 : std::exp(random.Normal());
+    const Similarity applied = RandomSimilarity(random, scale);
+    const Trajectory estimate = random.Walk(3 + trial);
+    const MatchedTrajectories matched{estimate, Apply(applied, estimate)};
+    for (const Alignment alignment : {Alignment::se3, Alignment::sim3, Alignment::first}) {
+      if (scale != 1 && alignment != Alignment::sim3) continue;
+      const Similarity found = Align(matched, alignment);
+      EXPECT_NEAR(found.scale, scale, 1e-9 * scale);
+      EXPECT_LT((found.R - applied.R).norm(), 1e-9);
+      EXPECT_LT((found.t - applied.t).norm(), 1e-8);
+      EXPECT_NEAR(found.R.determinant(), 1, 1e-12);
+      EXPECT_TRUE(found.rotation_determined);
+      const Ate ate = ComputeAte(matched, alignment);
+      EXPECT_LT(ate.position.max, 1e-8);
+      EXPECT_LT(ate.orientation.max, 1e-7);
+    }
+  }
+}
+
+// The alignment is the best one: no small change of scale, rotation or translation makes the errors smaller.
+TEST(Align, IsAMinimum) {
+  TestRandom random(6);
+  const MatchedTrajectories matched = NoisyPair(random, 60);
+  const auto rmse = [&](const Similarity& similarity) {
+    double sum = 0;
+    for (std::size_t i = 0; i < matched.truth.size(); ++i) {
+      sum += (Apply(similarity, matched.estimate[i]).p_WC - matched.truth[i].p_WC).squaredNorm();
+    }
+    return std::sqrt(sum / static_cast<double>(matched.truth.size()));
+  };
+  for (const Alignment alignment : {Alignment::se3, Alignment::sim3}) {
+    const Similarity best = Align(matched, alignment);
+    for (int trial = 0; trial < 100; ++trial) {
+      Similarity other = best;
+      other.R = Exp(1e-3 * random.Normals(3)).toRotationMatrix() * best.R;
+      other.t += 1e-3 * random.Normals(3);
+      if (alignment == Alignment::sim3) other.scale *= 1 + 1e-3 * random.Normal();
+      EXPECT_LT(rmse(best), rmse(other));
+    }
+  }
+}
+
+TEST(Align, DoesNotMirror) {
+  TestRandom random(7);
+  MatchedTrajectories matched = NoisyPair(random, 30);
+  for (StampedPose& pose : matched.estimate) pose.p_WC.x() *= -1;
+  EXPECT_NEAR(Align(matched, Alignment::sim3).R.determinant(), 1, 1e-12);
+  EXPECT_GT(ComputeAte(matched, Alignment::sim3).position.rmse, 0.05);
+}
+
+TEST(Align, SaysWhatIsNotDetermined) {
+  TestRandom random(8);
+  const Trajectory truth = random.Walk(50);
+  const auto standing = MatchedTrajectories{ConstantPose(StampsOf(truth), truth[10]), truth};
+  const Ate still = ComputeAte(standing, Alignment::sim3);
+  EXPECT_FALSE(still.similarity.scale_determined);
+  EXPECT_FALSE(still.similarity.rotation_determined);
+  EXPECT_TRUE(still.orientation_errors.empty());
+  // All that is left is the spread of the truth about its mean.
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const StampedPose& pose : truth) mean += pose.p_WC / 50;
+  double variance = 0;
+  for (const StampedPose& pose : truth) variance += (pose.p_WC - mean).squaredNorm() / 50;
+  EXPECT_NEAR(still.position.rmse, std::sqrt(variance), 1e-12);
+
+  const StampedVelocity velocity{0, random.Normals(3), random.Normals(3)};
+  const auto straight = MatchedTrajectories{ConstantVelocity(StampsOf(truth), truth[0], velocity), truth};
+  const Ate line = ComputeAte(straight, Alignment::sim3);
+  EXPECT_TRUE(line.similarity.scale_determined);
+  EXPECT_FALSE(line.similarity.rotation_determined);
+  EXPECT_LE(line.position.rmse, still.position.rmse);
+}
+
+// Rounding grows with the distance from the origin: a hundred kilometres away, 1e-11 m is none that was gone.
+TEST(Align, RoundingFarFromTheOriginIsNoMotion) {
+  TestRandom random(9);
+  const Trajectory truth = random.Walk(50);
+  for (const double away_m : {0.0, 1e5}) {
+    Trajectory estimate = ConstantPose(StampsOf(truth), truth[10]);
+    for (std::size_t i = 0; i < estimate.size(); ++i) {
+      estimate[i].p_WC = Eigen::Vector3d::Constant(away_m) + (i % 2 == 0 ? 1 : -1) * Eigen::Vector3d::Constant(3e-11);
+    }
+    const Similarity found = Align({estimate, truth}, Alignment::sim3);
+    EXPECT_EQ(found.scale_determined, away_m == 0) << "there it is motion, however small";
+  }
+}
+
+// Where the line is drawn, on both sides: positions `d` from their mean on one axis, and then a second axis that is small.
+TEST(Align, DrawsTheLineOfNoExtentWhereItSays) {
+  const auto scale_determined = [](double d, double mean) {
+    MatchedTrajectories matched;
+    for (const double side : {-1.0, 1.0}) {
+      matched.estimate.push_back({0, Eigen::Vector3d(mean + side * d, mean, mean), Eigen::Quaterniond::Identity()});
+      matched.truth.push_back({0, Eigen::Vector3d(side, 0, 0), Eigen::Quaterniond::Identity()});
+    }
+    return Align(matched, Alignment::sim3).scale_determined;
+  };
+  for (const double mean : {0.0, 0.5}) {
+    const double least = 1e-14 * std::sqrt(1 + 3 * mean * mean);
+    EXPECT_TRUE(scale_determined(1.03 * least, mean)) << mean;
+    EXPECT_FALSE(scale_determined(0.97 * least, mean)) << mean;
+  }
+}
+
+TEST(Align, DrawsTheLineOfOneDirectionWhereItSays) {
+  const auto rotation_determined = [](double singular_value) {
+    MatchedTrajectories matched;
+    const double x_across = 1e-5, y_across = singular_value / x_across;
+    for (const auto& [along, across] : {std::pair{-3., 1.}, {-1., -1.}, {1., -1.}, {3., 1.}}) {
+      matched.estimate.push_back({0, Eigen::Vector3d(3 * along, x_across * across, 0), Eigen::Quaterniond::Identity()});
+      matched.truth.push_back({0, Eigen::Vector3d(0.5 * along, y_across * across, 8), Eigen::Quaterniond::Identity()});
+    }
+    return Align(matched, Alignment::sim3).rotation_determined;
+  };
+  const double least = 1e-12 * std::sqrt((9 * 5) * (0.25 * 5));  // the mean square of `along` is 5
+  EXPECT_TRUE(rotation_determined(1.03 * least));
+  EXPECT_FALSE(rotation_determined(0.97 * least));
+}
+
+TEST(Align, RefusesWhatIsNotMatched) {
+  TestRandom random(11);
+  const MatchedTrajectories matched = NoisyPair(random, 3);
+  EXPECT_THROW(Align({}, Alignment::se3), std::logic_error);
+  EXPECT_THROW(Align({matched.estimate, {}}, Alignment::se3), std::logic_error);
+  EXPECT_THROW(Align({{}, matched.truth}, Alignment::se3), std::logic_error);
+}
+
+// The aligned error does not depend on the world the estimate was given in.
+TEST(Ate, IsInvariantUnderSimilaritiesOfTheEstimate) {
+  TestRandom random(9);
+  for (int trial = 0; trial < 30; ++trial) {
+    const MatchedTrajectories matched = NoisyPair(random, 40);
+    const Similarity moved = RandomSimilarity(random, std::exp(random.Normal()));
+    const MatchedTrajectories other{Apply(moved, matched.estimate), matched.truth};
+    const Ate before = ComputeAte(matched, Alignment::sim3), after = ComputeAte(other, Alignment::sim3);
+    for (std::size_t i = 0; i < before.position_errors.size(); ++i) {
+      EXPECT_NEAR(before.position_errors[i], after.position_errors[i], 1e-10);
+      EXPECT_NEAR(before.orientation_errors[i], after.orientation_errors[i], 1e-9);
+    }
+    EXPECT_NEAR(before.similarity.scale, after.similarity.scale * moved.scale, 1e-9);
+    // And with scale left out it does depend on it: the test above is not blind.
+    EXPECT_GT(
+        std::abs(ComputeAte(other, Alignment::se3).position.rmse - ComputeAte(matched, Alignment::se3).position.rmse),
+        1e-3 * std::abs(std::log(moved.scale)));
+  }
+}
+
+// Turned by 0.1 and 0.3 rad, moved by 0.2 and 0.4 m.
+TEST(Ate, ByHand) {
+  MatchedTrajectories matched;
+  for (const double turn : {0.1, 0.3}) {
+    matched.truth.push_back({0, Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity()});
+    matched.estimate.push_back({0, Eigen::Vector3d(0, turn + 0.1, 0), Exp({0, 0, turn})});
+  }
+  const Ate ate = ComputeAte(matched, Alignment::none);
+  EXPECT_EQ(ate.alignment, Alignment::none);
+  EXPECT_NEAR(ate.position.rmse, std::sqrt((0.04 + 0.16) / 2), 1e-12);
+  EXPECT_NEAR(ate.position.mean, 0.3, 1e-12);
+  EXPECT_NEAR(ate.orientation.rmse, std::sqrt((0.01 + 0.09) / 2), 1e-9);
+  EXPECT_NEAR(ate.orientation.max, 0.3, 1e-9);
+}
+
+TEST(Ate, MoreFreedomNeverHurts) {
+  TestRandom random(10);
+  for (int trial = 0; trial < 20; ++trial) {
+    const MatchedTrajectories matched = NoisyPair(random, 25);
+    const auto rmse = [&](Alignment alignment) { return ComputeAte(matched, alignment).position.rmse; };
+    EXPECT_LE(rmse(Alignment::sim3), rmse(Alignment::se3));
+    EXPECT_LE(rmse(Alignment::se3), rmse(Alignment::none));
+    EXPECT_LE(rmse(Alignment::se3), rmse(Alignment::first));
+  }
+}
+
+}  // namespace
+}  // namespace evaluation

@@ -1,0 +1,155 @@
+#include "tools/judge/evaluation/text_file.h"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "tests/unit/judge/evaluation/temporary_folder.h"
+
+namespace evaluation {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(ParseSeconds, IsExactWhereADoubleIsNot) {
+  EXPECT_EQ(ParseSeconds("1305031102.160407123"), 1305031102'160407123);
+  EXPECT_EQ(ParseSeconds("1305031102.1604"), 1305031102'160400000);
+  EXPECT_EQ(ParseSeconds("0.033333333"), 33333333);
+  EXPECT_EQ(ParseSeconds("1.305031102160407066e+09"), 1305031102'160407066);
+  EXPECT_EQ(ParseSeconds("5e-10"), 1);  // rounded
+  EXPECT_EQ(ParseSeconds("4e-10"), 0);
+  EXPECT_EQ(ParseSeconds("1e-100"), 0);
+  EXPECT_FALSE(ParseSeconds("1e-101"));
+  EXPECT_EQ(ParseSeconds("0e100"), 0);
+  EXPECT_FALSE(ParseSeconds("0e101"));
+  EXPECT_EQ(ParseSeconds("9e-11"), 0);
+  EXPECT_EQ(ParseSeconds("1.00000000049"), 1'000'000'000);
+  EXPECT_EQ(ParseSeconds("1.0000000005"), 1'000'000'001);
+  EXPECT_EQ(ParseSeconds("2E1"), 20'000'000'000);
+  EXPECT_EQ(ParseSeconds("+2e+1"), 20'000'000'000);
+  EXPECT_EQ(ParseSeconds("0.00e3"), 0);
+  EXPECT_FALSE(ParseSeconds("1e10"));
+  EXPECT_EQ(ParseSeconds("-1.5"), -1'500'000'000);
+  EXPECT_EQ(ParseSeconds("7"), 7'000'000'000);
+  EXPECT_EQ(ParseSeconds("000000000000000000001.5"), 1'500'000'000);
+  EXPECT_EQ(ParseSeconds("-3999999999.999999999"), -3999999999'999999999);
+}
+
+// Sums and differences of two stamps, and of a stamp and a gap, must fit.
+TEST(ParseSeconds, KnowsNoTimeBeyondFourBillionSeconds) {
+  EXPECT_EQ(ParseSeconds("4e9"), kLatest_ns);
+  EXPECT_EQ(ParseSeconds("-4e9"), -kLatest_ns);
+  for (const char* text :
+       {"4000000000.000000001", "-4000000000.000000001", "9223372036.854775807", "18446744073.709551617"})
+    EXPECT_EQ(ParseSeconds(text), std::nullopt) << text;
+}
+
+TEST(Nanoseconds, AreThoseOfATimeThatMayBeAdded) {
+  EXPECT_EQ(Nanoseconds(0.02), 20'000'000);
+  EXPECT_EQ(Nanoseconds(-1e9), -1'000'000'000'000'000'000);
+  for (const double seconds : {1.1e9, -1e300, double(INFINITY), double(NAN)})
+    EXPECT_EQ(Nanoseconds(seconds), std::nullopt) << seconds;
+}
+
+TEST(ParseSeconds, RejectsWhatIsNoTime) {
+  for (const char* text :
+       {"", ".", "-", "nan", "1.2.3", "1s", "1e", "1e+", "0x10", "1 ", "9223372036.854775808", "1e300"}) {
+    EXPECT_EQ(ParseSeconds(text), std::nullopt) << text;
+  }
+}
+
+TEST(FormatSeconds, IsTheInverse) {
+  for (const std::int64_t t : {0L, 1L, 999'999'999L, 1305031102'160407123L, -1'500'000'000L, -1L}) {
+    EXPECT_EQ(ParseSeconds(FormatSeconds(t)), t);
+  }
+  EXPECT_EQ(FormatSeconds(0), "0.000000000");
+  EXPECT_EQ(FormatSeconds(33333333), "0.033333333");
+  EXPECT_EQ(FormatSeconds(-12'000'000'034), "-12.000000034");
+  EXPECT_EQ(FormatSeconds(std::numeric_limits<std::int64_t>::min()), "-9223372036.854775808");
+}
+
+TEST(SecondsAsRead, AreTheDoublesNearestToTheText) {
+  EXPECT_EQ(SecondsAsRead(1305031102'160407123), 1305031102.160407123);
+  EXPECT_EQ(SecondsAsRead(-2'500'000'000), -2.5);
+  EXPECT_EQ(SecondsAsRead(5'020'000'000), 5.02);
+  for (std::int64_t stamp_ns = 1'000'000'007; stamp_ns < 4'000'000'000'000'000'000; stamp_ns += stamp_ns / 7) {
+    EXPECT_EQ(SecondsAsRead(stamp_ns), std::stod(FormatSeconds(stamp_ns))) << stamp_ns;
+    EXPECT_EQ(SecondsAsRead(-stamp_ns), -SecondsAsRead(stamp_ns));
+  }
+}
+
+TEST(FormatNumber, HasAsManyDigitsAsAreAskedFor) {
+  EXPECT_EQ(FormatNumber(2. / 3, 3), "0.667");
+  EXPECT_EQ(FormatNumber(2. / 3, 12), "0.666666666667");
+}
+
+TEST(ParseNumber, TakesFiniteNumbersOnly) {
+  EXPECT_EQ(ParseNumber("-1.5e-3"), -1.5e-3);
+  EXPECT_EQ(ParseNumber("+2"), 2.0);
+  for (const char* text : {"", "nan", "inf", "1.2x", "1,2", "+-1", "1e999"})
+    EXPECT_EQ(ParseNumber(text), std::nullopt) << text;
+}
+
+std::vector<Line> AllLines(const std::filesystem::path& file, char separator = ' ') {
+  std::vector<Line> all;
+  for (const Line& line : ReadLines(file, separator)) all.push_back(line);
+  return all;
+}
+
+TEST(ReadLines, SplitsAndCountsColumns) {
+  const TemporaryFolder folder;
+  const auto lines = AllLines(folder.Write("a.txt", "# comment\n\n  1 \t two\r\n   # indented comment\n3\n"));
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].number, 3);
+  ASSERT_EQ(lines[0].tokens.size(), 2u);
+  EXPECT_EQ(lines[0].tokens[1].text, "two");
+  EXPECT_EQ(lines[0].tokens[1].column, 7);
+  const auto csv = AllLines(folder.Write("a.csv", "a,,b,\n"), ',');
+  ASSERT_EQ(csv[0].tokens.size(), 4u);
+  EXPECT_EQ(csv[0].tokens[1].text, "");
+  EXPECT_EQ(csv[0].tokens[2].column, 4);
+}
+
+// A line's memory serves the next one: nothing of a longer one may be left.
+TEST(ReadLines, KeepsNothingOfTheLineBefore) {
+  const TemporaryFolder folder;
+  const auto lines = AllLines(folder.Write("a.txt", "one two three\nfour\n\nfive six\n"));
+  ASSERT_EQ(lines.size(), 3u);
+  ASSERT_EQ(lines[1].tokens.size(), 1u);
+  EXPECT_EQ(lines[1].tokens[0].text, "four");
+  ASSERT_EQ(lines[2].tokens.size(), 2u);
+  EXPECT_EQ(lines[2].tokens[1].text, "six");
+  EXPECT_EQ(lines[2].number, 4);
+  EXPECT_TRUE(AllLines(folder.Write("nothing.txt", "# no line\n")).empty());
+}
+
+TEST(ReadLines, NamesWhatCannotBeRead) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(ReadLines(folder.path() / "absent"), InputError);
+  EXPECT_THROW(ReadLines(folder.path()), InputError);
+}
+
+TEST(Problems, AreToldInTheirOrderWithTheirPlace) {
+  Problems problems;
+  EXPECT_NO_THROW(problems.ThrowIfAny());
+  problems.Add("a/b.txt", "is none");
+  problems.Add("c.txt", 12, 3, "neither");
+  try {
+    problems.ThrowIfAny();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "a/b.txt: is none\nc.txt:12:3: neither");
+  }
+}
+
+TEST(InputError, CountsBeyondFifty) {
+  std::string fifty = "x";
+  for (int i = 1; i < 50; ++i) fifty += "\nx";
+  EXPECT_EQ(InputError(std::vector<std::string>(50, "x")).what(), fifty);
+  EXPECT_EQ(InputError(std::vector<std::string>(51, "x")).what(), fifty + "\n... and 1 more problems");
+  const InputError error(std::vector<std::string>(70, "x"));
+  EXPECT_THAT(error.what(), HasSubstr("and 20 more"));
+}
+
+}  // namespace
+}  // namespace evaluation

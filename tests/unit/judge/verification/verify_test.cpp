@@ -1,0 +1,400 @@
+// The verifier on a sequence of the simulator's: untouched it passes, and each kind of damage is noticed and named.
+#include "tools/judge/verification/verify.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/core.hpp>
+
+#include "sim/sequence/encode.h"
+#include "sim/sequence/writer.h"
+#include "sim/simulator.h"
+#include "tests/unit/sim/temporary_folder.h"
+#include "tools/judge/verification/files.h"
+
+namespace verification {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* kAll =
+    "[depth, depth_exr, distance, normals, flow, flow_backward, occlusion, surface_id, landmarks, acceleration, imu]";
+
+void Render(const fs::path& folder, std::vector<std::pair<std::string, std::string>> settings, std::int64_t frames,
+            const std::string& scenario = "tiny.yaml") {
+  const sim::Simulator simulator(sim::LoadScenario(fs::path(VOBENCH_SOURCE_DIR) / "scenes" / scenario, settings), 2);
+  const sim::SequenceContent content{sim::Layout::tum, 0, frames, "test"};
+  sim::SequenceWriter writer(simulator, folder, content, 2, sim::SequenceWriter::Start::fresh);
+  while (writer.Wait() > 0) {
+  }
+  writer.Finish();
+}
+
+std::string Read(const fs::path& file) { return sim::ReadWhole(file); }
+void Write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+template <class Bytes>
+void WriteBytes(const fs::path& file, const Bytes& bytes) {
+  Write(file, {bytes.begin(), bytes.end()});
+}
+
+std::vector<std::string> Lines(const fs::path& file) {
+  std::vector<std::string> lines;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+void WriteLines(const fs::path& file, const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  Write(file, text);
+}
+
+std::string Stamp(int k) {
+  return std::vector<std::string>{
+      "0.000000000", "0.033333333", "0.066666667", "0.100000000",
+      "0.133333333", "0.166666667", "0.200000000", "0.233333333"}[static_cast<std::size_t>(k)];
+}
+
+// Rendered once: `full` with all streams, `plain` as a scenario without `truth` has it.
+class VerifyTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    rendered_ = new sim::TemporaryFolder;
+    Render(rendered_->path() / "full", {{"truth", kAll}, {"landmarks.count", "200"}}, 8);
+    Render(rendered_->path() / "plain", {}, 8);
+  }
+  static void TearDownTestSuite() { delete rendered_; }
+
+  // A copy to spoil.
+  fs::path Copy(const std::string& which = "full") {
+    fs::copy(rendered_->path() / which, here_.path() / which, fs::copy_options::recursive);
+    return here_.path() / which;
+  }
+  static void Swap(const fs::path& folder, const std::string& stream, const std::string& extension, int a, int b) {
+    const fs::path one = folder / stream / (Stamp(a) + extension), two = folder / stream / (Stamp(b) + extension);
+    const std::string bytes = Read(one);
+    Write(one, Read(two));
+    Write(two, bytes);
+  }
+  // A number of a table's line (0: the header) gets `change` added.
+  static void Alter(const fs::path& file, std::size_t line, std::size_t word, double change, char separator = ' ') {
+    std::vector<std::string> lines = Lines(file);
+    std::stringstream in(lines.at(line)), out;
+    std::string text;
+    for (std::size_t i = 0; std::getline(in, text, separator); ++i) {
+      if (i > 0) out << separator;
+      if (i == word) {
+        char number[64];
+        std::snprintf(number, sizeof number, "%.12f", std::stod(text) + change);
+        text = number;
+      }
+      out << text;
+    }
+    lines[line] = out.str();
+    WriteLines(file, lines);
+  }
+  // The failures of the checks that failed, as "check: where".
+  static std::vector<std::string> Failures(const fs::path& folder) {
+    std::vector<std::string> failures;
+    for (const Check& check : Verify(folder)) {
+      for (const std::string& where : check.failures()) {
+        failures.push_back(check.name() + ": " + where + " (" + std::to_string(check.value()) + " > " +
+                           std::to_string(check.bound()) + ")");
+      }
+    }
+    return failures;
+  }
+
+  static sim::TemporaryFolder* rendered_;
+  sim::TemporaryFolder here_;
+};
+sim::TemporaryFolder* VerifyTest::rendered_ = nullptr;
+
+TEST_F(VerifyTest, AnUntouchedSequencePassesEveryCheck) {
+  for (const Check& check : Verify(rendered_->path() / "full")) {
+    EXPECT_GT(check.count(), 0u) << check.name();
+    EXPECT_THAT(check.failures(), IsEmpty()) << check.name() << ": " << check.value() << " > " << check.bound();
+  }
+  EXPECT_THAT(Failures(rendered_->path() / "plain"), IsEmpty());
+}
+
+// Another kind of motion, a distorted lens, an IMU off the camera with noise, a range from the middle.
+TEST_F(VerifyTest, OtherSequencesPass) {
+  std::vector<std::pair<std::string, std::string>> settings = {
+      {"truth", kAll},
+      {"camera.distortion", "{k1: 0.1, k2: -0.05, p1: 0.002, p2: -0.001}"},
+      {"imu.position", "[0.1, 0.02, -0.03]"},
+      {"imu.orientation", "[0.5, 0.5, 0.5, 0.5]"},
+      {"imu.gyroscope_noise", "2e-3"},
+      {"imu.accelerometer_noise", "2e-2"},
+      {"imu.gyroscope_walk", "1e-4"},
+      {"imu.accelerometer_walk", "1e-3"}};
+  Render(here_.path() / "lens", settings, 6);
+  EXPECT_THAT(Failures(here_.path() / "lens"), IsEmpty());
+  settings = {{"truth", kAll},
+              {"trajectory",
+               "{type: sampled, start: {position: [2.0, 1.41, 2.55], look_at: [2.35, 1.1, 0.0]}, position_noise: 0.5, "
+               "orientation_noise: 0.5}"},
+              {"imu.reading", "mean"}};
+  Render(here_.path() / "sampled", settings, 6);
+  EXPECT_THAT(Failures(here_.path() / "sampled"), IsEmpty());
+}
+
+// Pixels so wide that a lens bends what is between them.
+TEST_F(VerifyTest, SmallPicturesThroughALensPass) {
+  const std::vector<std::pair<std::string, std::string>> camera[2] = {
+      {{"camera", "{width: 80, height: 60, fx: 45, fy: 45, cx: 39.5, cy: 29.5, distortion: {k1: -0.28, k2: 0.07}}"}},
+      {{"camera", "{width: 48, height: 36, fx: 24, fy: 24, cx: 23.5, cy: 17.5, distortion: {k1: -0.2, k2: 0.03}}"}}};
+  for (int i = 0; i < 2; ++i) {
+    auto settings = camera[i];
+    settings.emplace_back("truth", "[depth, depth_exr, distance, normals, flow, flow_backward, surface_id]");
+    const fs::path folder = here_.path() / ("small" + std::to_string(i));
+    Render(folder, settings, 6);
+    EXPECT_THAT(Failures(folder), IsEmpty());
+  }
+}
+
+TEST_F(VerifyTest, StampsShiftedInOneList) {
+  for (const char* list : {"depth.txt", "groundtruth.txt", "velocity.txt", "flow.txt", "rgb.txt"}) {
+    const fs::path folder = Copy();
+    std::vector<std::string> lines = Lines(folder / list);
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+      const std::string next = i + 1 < lines.size() ? lines[i + 1].substr(0, 11) : "0.266666667";
+      lines[i] = next + lines[i].substr(11);
+    }
+    WriteLines(folder / list, lines);
+    EXPECT_THAT(Failures(folder), Contains(testing::AllOf(HasSubstr("stamps: "), HasSubstr(list)))) << list;
+    fs::remove_all(folder);
+  }
+}
+
+TEST_F(VerifyTest, TwoPicturesSwapped) {
+  for (const auto& [a, b] : {std::pair{2, 5}, {3, 4}, {0, 1}, {0, 7}}) {
+    for (const char* which : {"full", "plain"}) {
+      const fs::path folder = Copy(which);
+      Swap(folder, "rgb", ".png", a, b);
+      const auto failures = Failures(folder);
+      for (const int k : {a, b}) {
+        EXPECT_THAT(failures, Contains(testing::AllOf(HasSubstr("pictures"), HasSubstr("rgb " + Stamp(k)))))
+            << which << a << b;
+      }
+      fs::remove_all(folder);
+    }
+  }
+}
+
+// All pictures are those of the next frame: each fits its neighbours, only depth and poses know.
+TEST_F(VerifyTest, AllPicturesOneFrameLate) {
+  const fs::path folder = Copy("plain");
+  for (int k = 0; k < 7; ++k) {
+    fs::copy_file(folder / "rgb" / (Stamp(k + 1) + ".png"), folder / "rgb" / (Stamp(k) + ".png"),
+                  fs::copy_options::overwrite_existing);
+  }
+  EXPECT_THAT(Failures(folder), Contains(HasSubstr("pictures against neighbours: offset")));
+}
+
+TEST_F(VerifyTest, TwoDepthFilesSwapped) {
+  for (const auto& [which, stream, extension] :
+       {std::tuple{"full", "depth_exr", ".exr"}, {"full", "depth", ".png"}, {"plain", "depth", ".png"}}) {
+    const fs::path folder = Copy(which);
+    Swap(folder, stream, extension, 2, 5);
+    const auto failures = Failures(folder);
+    for (const int k : {2, 5}) EXPECT_THAT(failures, Contains(HasSubstr(": depth " + Stamp(k)))) << which << stream;
+    fs::remove_all(folder);
+  }
+}
+
+TEST_F(VerifyTest, AFlowOfAnotherFrame) {
+  for (const std::string stream : {"flow", "flow_backward"}) {
+    const fs::path folder = Copy();
+    fs::copy_file(folder / stream / (Stamp(4) + ".flo"), folder / stream / (Stamp(3) + ".flo"),
+                  fs::copy_options::overwrite_existing);
+    EXPECT_THAT(Failures(folder), Contains(HasSubstr(stream + " against depth and poses: " + stream + " " + Stamp(3))));
+    fs::remove_all(folder);
+  }
+}
+
+TEST_F(VerifyTest, APoseLineAltered) {
+  for (std::size_t axis = 1; axis <= 3; ++axis) {  // 1 mm
+    for (const char* which : {"full", "plain"}) {
+      const fs::path folder = Copy(which);
+      Alter(folder / "groundtruth.txt", 5, axis, 1e-3);
+      EXPECT_THAT(Failures(folder),
+                  Contains(testing::AllOf(HasSubstr("velocity against poses: position"), HasSubstr(Stamp(4)))))
+          << which << axis;
+      fs::remove_all(folder);
+    }
+  }
+  // 0.1 degree: each of x, y, z of the quaternion by half of it; its length stays 1 to 1e-3.
+  for (std::size_t axis = 4; axis <= 6; ++axis) {
+    const fs::path folder = Copy();
+    Alter(folder / "groundtruth.txt", 5, axis, 0.5 * 0.1 * 3.14159265 / 180);
+    const auto failures = Failures(folder);
+    EXPECT_THAT(failures,
+                Contains(testing::AllOf(HasSubstr("velocity against poses: orientation"), HasSubstr(Stamp(4)))));
+    EXPECT_THAT(failures, Contains(HasSubstr("flow against depth and poses: flow " + Stamp(4))));
+    fs::remove_all(folder);
+  }
+}
+
+TEST_F(VerifyTest, ANormalWithTheOtherSign) {
+  const fs::path folder = Copy(), file = folder / "normals" / (Stamp(3) + ".exr");
+  cv::Mat normals = ReadPicture(file);
+  normals.at<cv::Vec3f>(60, 80) *= -1.0f;
+  const std::span<const float> numbers(reinterpret_cast<const float*>(normals.data), normals.total() * 3);
+  WriteBytes(file, sim::EncodeExr(numbers, normals.cols, normals.rows, 3, true));
+  EXPECT_THAT(Failures(folder), Contains(HasSubstr("normals: unit, towards the camera: normals " + Stamp(3))));
+  // All with x the other way: unit and towards the camera still.
+  normals = ReadPicture(rendered_->path() / "full" / "normals" / (Stamp(3) + ".exr"));
+  for (int i = 0; i < static_cast<int>(normals.total()); ++i) normals.at<cv::Vec3f>(i)[0] *= -1.0f;
+  const std::span<const float> mirrored(reinterpret_cast<const float*>(normals.data), normals.total() * 3);
+  WriteBytes(file, sim::EncodeExr(mirrored, normals.cols, normals.rows, 3, true));
+  EXPECT_THAT(Failures(folder), Contains(HasSubstr("normals against depth: share beyond: normals " + Stamp(3))));
+}
+
+TEST_F(VerifyTest, DistanceIdsOcclusionAndLandmarks) {
+  const fs::path folder = Copy();
+  Swap(folder, "distance", ".exr", 2, 3);
+  Swap(folder, "occlusion", ".png", 1, 6);
+  Alter(folder / "landmark_tracks.txt", 100, 2, 1e-6);
+  Write(folder / "surfaces.txt", "# id mesh\n1 all\n");
+  const auto failures = Failures(folder);
+  EXPECT_THAT(failures, Contains(HasSubstr("distance against depth: distance " + Stamp(2))));
+  EXPECT_THAT(failures, Contains(HasSubstr("occlusion against depth: share beyond: occlusion " + Stamp(1))));
+  EXPECT_THAT(failures, Contains(HasSubstr("landmark_tracks against landmarks, poses: ")));
+  EXPECT_THAT(failures, Contains(HasSubstr("surface_id: where there is depth, in legend: ")));
+}
+
+TEST_F(VerifyTest, VelocityAccelerationAndImu) {
+  const fs::path folder = Copy();
+  Alter(folder / "velocity.txt", 5, 1, 2e-3);
+  Alter(folder / "acceleration.txt", 4, 6, 0.1);
+  const auto failures = Failures(folder);
+  EXPECT_THAT(failures, Contains(testing::AllOf(HasSubstr("velocity against poses: position"), HasSubstr(Stamp(4)))));
+  EXPECT_THAT(failures, Contains(testing::AllOf(HasSubstr("angular acceleration against rate"), HasSubstr(Stamp(3)))));
+  const fs::path other = Copy("plain");
+  fs::create_directory(other / "imu0");
+  for (const char* file : {"data.csv", "sensor.yaml"})
+    fs::copy_file(rendered_->path() / "full" / "imu0" / file, other / "imu0" / file);
+  EXPECT_THAT(Failures(other), IsEmpty());
+  std::string yaml = Read(other / "imu0" / "sensor.yaml");
+  yaml.replace(yaml.find("-9.81"), 5, "-9.71");
+  Write(other / "imu0" / "sensor.yaml", yaml);
+  EXPECT_THAT(Failures(other), Contains(HasSubstr("IMU against poses: velocity")));
+}
+
+// The scene whose objects move, at 160 x 120.
+void RenderMoving(const fs::path& folder, const std::string& truth) {
+  Render(folder,
+         {{"truth", truth},
+          {"landmarks.count", "200"},
+          {"camera", "{width: 160, height: 120, fx: 131.25, fy: 131.25, cx: 79.5, cy: 59.5}"},
+          {"sensor.time_samples", "4"}},
+         8, "moving.yaml");
+}
+std::string AllAndMoving() { return std::string(kAll).replace(0, 1, "[moving, "); }
+
+TEST_F(VerifyTest, MovingObjectsPass) {
+  RenderMoving(here_.path() / "moving", AllAndMoving());
+  for (const Check& check : Verify(here_.path() / "moving")) {
+    EXPECT_GT(check.count(), 0u) << check.name();
+    EXPECT_THAT(check.failures(), IsEmpty()) << check.name() << ": " << check.value() << " > " << check.bound();
+  }
+  // Without the mask any pixel may be an object's.
+  fs::remove(here_.path() / "moving" / "moving.txt");
+  EXPECT_THAT(Failures(here_.path() / "moving"), IsEmpty());
+}
+
+TEST_F(VerifyTest, MovingObjectsAndMasksThatAreWrong) {
+  const fs::path whole = here_.path() / "whole";
+  RenderMoving(whole, AllAndMoving());
+  const auto spoilt = [&](const char* name) {
+    fs::copy(whole, here_.path() / name, fs::copy_options::recursive);
+    return here_.path() / name;
+  };
+  for (std::size_t axis = 1; axis <= 3; ++axis) {  // 1 mm
+    const fs::path folder = spoilt("shifted");
+    Alter(folder / "objects" / "parcel.txt", 5, axis, 1e-3);
+    const auto failures = Failures(folder);
+    EXPECT_THAT(failures, Contains(HasSubstr("flow on objects against their poses: flow " + Stamp(4)))) << axis;
+    EXPECT_THAT(failures, testing::Not(Contains(HasSubstr("flow against depth")))) << "the world is right";
+    fs::remove_all(folder);
+  }
+  fs::path folder = spoilt("swapped");
+  Swap(folder, "moving", ".png", 1, 6);
+  EXPECT_THAT(Failures(folder), Contains(HasSubstr("moving: pixels that move as the others: moving " + Stamp(1))));
+
+  // One pixel, either way.
+  for (const int value : {0, 255}) {
+    folder = spoilt(value == 0 ? "less" : "more");
+    const fs::path file = folder / "moving" / (Stamp(3) + ".png");
+    cv::Mat mask = ReadPicture(file);
+    int flipped = -1;
+    for (int i = 160 * 30; i < static_cast<int>(mask.total()) && flipped < 0; ++i) {
+      if (mask.data[i] != value) flipped = i;
+    }
+    mask.data[flipped] = static_cast<std::uint8_t>(value);
+    WriteBytes(file, sim::EncodeGrey8({mask.data, mask.total()}, mask.cols, mask.rows));
+    EXPECT_THAT(Failures(folder), Contains(HasSubstr("moving: pixels that move as the others: moving " + Stamp(3))))
+        << value;
+  }
+
+  folder = spoilt("short");
+  std::vector<std::string> lines = Lines(folder / "objects" / "globe.txt");
+  lines.pop_back();
+  WriteLines(folder / "objects" / "globe.txt", lines);
+  EXPECT_THAT(Failures(folder),
+              Contains(HasSubstr("stamps: increasing, the same in all lists: objects/globe.txt: ends early")));
+
+  folder = spoilt("none");
+  fs::remove_all(folder / "objects");
+  EXPECT_THAT(Failures(folder), Contains(HasSubstr("pixels of objects, of which there are none")));
+}
+
+TEST_F(VerifyTest, FilesThatAreNotAsTheyShould) {
+  const fs::path folder = Copy();
+  fs::remove(folder / "depth" / (Stamp(2) + ".png"));
+  fs::resize_file(folder / "flow" / (Stamp(3) + ".flo"), 1000);
+  fs::copy_file(folder / "occlusion" / (Stamp(3) + ".png"), folder / "rgb" / (Stamp(3) + ".png"),
+                fs::copy_options::overwrite_existing);
+  Write(folder / "distance" / (Stamp(1) + ".exr"), "no picture");
+  std::vector<std::string> lines = Lines(folder / "velocity.txt");
+  lines[3] += " 7";
+  WriteLines(folder / "velocity.txt", lines);
+  const auto failures = Failures(folder);
+  for (const std::string& name :
+       {"depth/" + Stamp(2) + ".png: is not there", "flow/" + Stamp(3) + ".flo: is not as long",
+        "distance/" + Stamp(1) + ".exr: ", std::string("velocity.txt:4: 8 words, not 7")}) {
+    EXPECT_THAT(failures, Contains(testing::AllOf(HasSubstr("files: "), HasSubstr(name)))) << name;
+  }
+  EXPECT_THAT(failures, Contains(HasSubstr("pictures"))) << "a mask is no picture of the scene";
+  EXPECT_THROW(Verify(folder / "rgb"), std::runtime_error);
+}
+
+// Nothing is made for pixels that no picture of the sequence can have.
+TEST_F(VerifyTest, ACameraOfAnySizeIsRefused) {
+  const fs::path folder = Copy("plain");
+  const std::string camera = Read(folder / "camera.yaml");
+  for (const auto& [size, said] :
+       {std::pair{"width: 40000\nheight: 1\n", "camera.yaml: 40000 x 1 pixels: a side may have 32768"},
+        {"width: 32000\nheight: 1000\n", "camera.yaml: 32000 x 1000 pixels in "}}) {
+    const std::string before = "width: 160\nheight: 120\n";
+    std::string changed = camera;
+    ASSERT_TRUE(changed.starts_with(before)) << camera;
+    changed.replace(0, before.size(), size);
+    Write(folder / "camera.yaml", changed);
+    try {
+      Verify(folder);
+      ADD_FAILURE() << size;
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), HasSubstr(said));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace verification

@@ -1,0 +1,170 @@
+#include "tools/base/limits/picture.h"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <string_view>
+
+namespace limits {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+struct Size {
+  std::int64_t width = 0, height = 0;
+};
+
+std::int64_t Number(Bytes file, std::size_t at, std::size_t count, bool little) {
+  std::uint64_t value = 0;
+  if (at > file.size() || count > file.size() - at) return 0;  // no size: refused as such
+  for (std::size_t i = 0; i < count; ++i) value = value << 8 | file[at + (little ? count - 1 - i : i)];
+  return static_cast<std::int64_t>(value);
+}
+
+bool Begins(Bytes file, std::string_view magic, std::size_t at = 0) {
+  return file.size() >= at + magic.size() &&
+         std::equal(magic.begin(), magic.end(), file.begin() + static_cast<std::ptrdiff_t>(at),
+                    [](char c, std::uint8_t byte) { return static_cast<std::uint8_t>(c) == byte; });
+}
+
+Size OfPng(Bytes file) { return {Number(file, 16, 4, false), Number(file, 20, 4, false)}; }
+
+// The first frame's header: a marker 0xffc0 to 0xffcf that is neither of a Huffman table, an extension nor of
+// arithmetic coding.
+Size OfJpeg(Bytes file) {
+  for (std::size_t at = 2; at + 9 < file.size();) {
+    if (file[at] != 0xff) return {};
+    const std::uint8_t marker = file[at + 1];
+    if (marker == 0xff) {  // a fill byte
+      ++at;
+      continue;
+    }
+    if (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc)
+      return {Number(file, at + 7, 2, false), Number(file, at + 5, 2, false)};
+    at += 2 + static_cast<std::size_t>(Number(file, at + 2, 2, false));
+  }
+  return {};
+}
+
+Size OfBmp(Bytes file) {
+  if (Number(file, 14, 4, true) == 12) return {Number(file, 18, 2, true), Number(file, 20, 2, true)};
+  const auto height = static_cast<std::int32_t>(Number(file, 22, 4, true));  // negative: from the top
+  return {Number(file, 18, 4, true), height < 0 ? -std::int64_t{height} : height};
+}
+
+// The largest of the first directory's picture and tile: a decoder makes room for either.
+Size OfTiff(Bytes file, bool little) {
+  const auto directory = static_cast<std::size_t>(Number(file, 4, 4, little));
+  const std::int64_t entries = Number(file, directory, 2, little);
+  Size picture, tile;
+  for (std::int64_t i = 0; i < entries; ++i) {
+    const std::size_t at = directory + 2 + 12 * static_cast<std::size_t>(i);
+    constexpr std::int64_t kShort = 3;
+    const std::int64_t value = Number(file, at + 8, Number(file, at + 2, 2, little) == kShort ? 2 : 4, little);
+    switch (Number(file, at, 2, little)) {
+      case 256:
+        picture.width = value;
+        break;
+      case 257:
+        picture.height = value;
+        break;
+      case 322:
+        tile.width = value;
+        break;
+      case 323:
+        tile.height = value;
+        break;
+      default:
+        break;
+    }
+  }
+  if (picture.width < 1 || picture.height < 1) return {};
+  return {std::max(picture.width, tile.width), std::max(picture.height, tile.height)};
+}
+
+Size OfWebp(Bytes file) {
+  if (file.size() < 30) return {};
+  if (Begins(file, "VP8X", 12)) return {1 + Number(file, 24, 3, true), 1 + Number(file, 27, 3, true)};
+  if (Begins(file, "VP8L", 12)) {
+    const std::int64_t bits = Number(file, 21, 4, true);
+    return {1 + (bits & 0x3fff), 1 + ((bits >> 14) & 0x3fff)};
+  }
+  if (Begins(file, "VP8 ", 12)) return {Number(file, 26, 2, true) & 0x3fff, Number(file, 28, 2, true) & 0x3fff};
+  return {};
+}
+
+// Digits at `at`, which is moved behind them; nothing where there are none, or too many.
+std::optional<std::int64_t> Digits(Bytes file, std::size_t& at) {
+  std::int64_t value = 0;
+  const std::size_t begin = at;
+  for (; at < file.size() && std::isdigit(file[at]); ++at) {
+    if (at - begin > 9) return std::nullopt;
+    value = 10 * value + (file[at] - '0');
+  }
+  return at > begin ? std::optional(value) : std::nullopt;
+}
+
+Size OfPnm(Bytes file) {
+  std::size_t at = 2;
+  const auto next = [&] {
+    while (at < file.size() && (std::isspace(file[at]) || file[at] == '#')) {
+      if (file[at] == '#') {
+        while (at < file.size() && file[at] != '\n') ++at;
+      } else {
+        ++at;
+      }
+    }
+    return Digits(file, at).value_or(0);
+  };
+  const std::int64_t width = next();
+  return {width, next()};
+}
+
+// "-Y height +X width" after an empty line.
+Size OfHdr(Bytes file) {
+  const std::string_view text(reinterpret_cast<const char*>(file.data()), std::min<std::size_t>(file.size(), 4096));
+  const std::size_t line = text.find("\n-Y ");
+  if (line == std::string_view::npos) return {};
+  std::size_t at = line + 4;
+  const std::int64_t height = Digits(file, at).value_or(0);
+  if (!Begins(file, " +X ", at)) return {};
+  at += 4;
+  return {Digits(file, at).value_or(0), height};
+}
+
+std::optional<Size> SizeOf(Bytes file) {
+  if (Begins(file, "\x89PNG\r\n\x1a\n")) return OfPng(file);
+  if (Begins(file, "\xff\xd8")) return OfJpeg(file);
+  if (Begins(file, "BM")) return OfBmp(file);
+  if (Begins(file, std::string_view("II*\0", 4))) return OfTiff(file, true);
+  if (Begins(file, std::string_view("MM\0*", 4))) return OfTiff(file, false);
+  if (Begins(file, "RIFF") && Begins(file, "WEBP", 8)) return OfWebp(file);
+  if (file.size() > 2 && file[0] == 'P' && file[1] >= '1' && file[1] <= '6') return OfPnm(file);
+  if (Begins(file, "#?RGBE") || Begins(file, "#?RADIANCE")) return OfHdr(file);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::size_t bytes) {
+  const std::string size = std::to_string(width) + " x " + std::to_string(height) + " pixels";
+  if (width < 1 || height < 1) return "its header tells no size";
+  if (width > kLongestSide || height > kLongestSide)
+    return size + ": a side may have " + std::to_string(kLongestSide) + " at most";
+  if (width * height > kMostPixels) return size + ": a picture may have " + std::to_string(kMostPixels) + " at most";
+  if (width * height - kPixelsOfAnyFile >
+      kPixelsPerByte * static_cast<std::int64_t>(std::min<std::size_t>(bytes, 1u << 30))) {
+    return size + " in " + std::to_string(bytes) + " bytes: beyond " + std::to_string(kPixelsOfAnyFile) +
+           ", a byte may stand for " + std::to_string(kPixelsPerByte) + " at most";
+  }
+  return "";
+}
+
+std::string PictureProblem(Bytes file) {
+  if (file.size() > std::size_t{1} << 30) return "larger than 1 GiB";
+  const std::optional<Size> size = SizeOf(file);
+  if (!size) return "not a picture that is read here (PNG, JPEG, BMP, TIFF, WebP, PNM, HDR)";
+  return PictureSizeProblem(size->width, size->height, file.size());
+}
+
+}  // namespace limits

@@ -1,0 +1,172 @@
+#include "tools/base/settings/element.h"
+
+#include <yaml-cpp/depthguard.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+namespace settings {
+namespace {
+
+// Builds the tree from the parser's events. Aliases are refused: they are no use here, and expanding them can take
+// exponential space.
+class Builder : public YAML::EventHandler {
+ public:
+  Builder(std::string name, bool with_lines, Dialect dialect, std::vector<Problem>& problems)
+      : name_(std::move(name)), with_lines_(with_lines), dialect_(dialect), problems_(problems) {}
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { Add(MakeElement(Element::Kind::null, mark)); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    Complain(mark, "aliases (*name) are not supported: write the value out");
+    Add(MakeElement(Element::Kind::null, mark));
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, const std::string& value) override {
+    CheckTag(mark, tag);
+    Element element = MakeElement(Element::Kind::scalar, mark);
+    element.text = value;
+    const bool plain = tag == "?" || tag.empty();
+    if (plain && (value.empty() || value == "~" || value == "null")) element.kind = Element::Kind::null;
+    Add(std::move(element));
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    CheckTag(mark, tag);
+    open_.push_back({MakeElement(Element::Kind::list, mark), {}, false});
+  }
+  void OnSequenceEnd() override { Close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    CheckTag(mark, tag);
+    open_.push_back({MakeElement(Element::Kind::map, mark), {}, false});
+  }
+  void OnMapEnd() override { Close(); }
+
+  Element TakeRoot() { return std::move(root_); }
+
+  // What cv::FileStorage has appended to a file is one document more: its keys, where both are maps.
+  bool Join(Builder& next) {
+    if (root_.kind != Element::Kind::map || next.root_.kind != Element::Kind::map) return false;
+    for (Entry& entry : next.root_.entries) {
+      if (!root_.Find(entry.key)) root_.entries.push_back(std::move(entry));
+    }
+    return true;
+  }
+
+ private:
+  struct Open {
+    Element element;
+    Element key;  // of a map: the key that waits for its value
+    bool has_key = false;
+  };
+
+  Place PlaceOf(const YAML::Mark& mark) const {
+    return with_lines_ && mark.line >= 0 ? Place{name_, mark.line + 1, mark.column + 1} : Place{name_, 0, 0};
+  }
+  Element MakeElement(Element::Kind kind, const YAML::Mark& mark) const {
+    Element element;
+    element.kind = kind;
+    element.place = PlaceOf(mark);
+    return element;
+  }
+  void Complain(const Place& place, std::string message) {
+    problems_.push_back({place.file, place.line, place.column, std::move(message)});
+  }
+  void Complain(const YAML::Mark& mark, std::string message) { Complain(PlaceOf(mark), std::move(message)); }
+  void CheckTag(const YAML::Mark& mark, const std::string& tag) {
+    if (dialect_ == Dialect::opencv || tag == "?" || tag == "!" || tag.empty()) return;
+    Complain(mark, "tags (" + tag + ") are not supported");
+  }
+  void Close() {
+    Element element = std::move(open_.back().element);
+    open_.pop_back();
+    Add(std::move(element));
+  }
+  void Add(Element element) {
+    if (open_.empty()) {
+      root_ = std::move(element);
+      return;
+    }
+    Open& parent = open_.back();
+    if (parent.element.kind == Element::Kind::list) {
+      parent.element.items.push_back(std::move(element));
+    } else if (!parent.has_key) {
+      if (element.kind != Element::Kind::scalar)
+        Complain(element.place, "a key must be a plain word, not " + Describe(element));
+      parent.key = std::move(element);
+      parent.has_key = true;
+    } else {
+      parent.has_key = false;
+      if (element.kind == Element::Kind::null) element.place = parent.key.place;  // the parser's mark is after the line
+      if (parent.key.kind != Element::Kind::scalar) return;
+      if (const Element* first = parent.element.Find(parent.key.text)) {
+        std::string message = "duplicate key '" + parent.key.text + "'";
+        if (first->place.line > 0) message += ", given already on line " + std::to_string(first->place.line);
+        Complain(parent.key.place, std::move(message));
+        return;
+      }
+      parent.element.entries.push_back({std::move(parent.key.text), parent.key.place, std::move(element)});
+    }
+  }
+
+  std::string name_;
+  bool with_lines_;
+  Dialect dialect_;
+  std::vector<Problem>& problems_;
+  std::vector<Open> open_;
+  Element root_;
+};
+
+}  // namespace
+
+const Element* Element::Find(const std::string& key) const {
+  const auto at = std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) { return entry.key == key; });
+  return at == entries.end() ? nullptr : &at->value;
+}
+
+std::string Describe(const Element& element) {
+  switch (element.kind) {
+    case Element::Kind::null:
+      return "nothing";
+    case Element::Kind::scalar:
+      return "'" + (element.text.size() > 80 ? element.text.substr(0, 77) + "..." : element.text) + "'";
+    case Element::Kind::list:
+      return "a list";
+    case Element::Kind::map:
+      return "a section";
+  }
+  return "nothing";
+}
+
+Element ParseYaml(const std::string& text, const std::string& name, bool with_lines, std::vector<Problem>& problems,
+                  Dialect dialect) {
+  Builder builder(name, with_lines, dialect, problems);
+  try {
+    std::istringstream stream(dialect == Dialect::opencv && text.starts_with('%') ? "#" + text.substr(1) : text);
+    YAML::Parser parser(stream);
+    bool more = parser.HandleNextDocument(builder);
+    while (more) {
+      Builder rest(name, with_lines, dialect, problems);
+      more = parser.HandleNextDocument(rest);
+      if (!more || (dialect == Dialect::opencv && builder.Join(rest))) continue;
+      problems.push_back({name, 0, 0, "holds more than one YAML document"});
+      break;
+    }
+  } catch (const YAML::DeepRecursion&) {
+    problems.push_back({name, 0, 0, "not valid YAML: nested too deeply"});
+  } catch (const YAML::Exception& error) {
+    const bool place = with_lines && error.mark.line >= 0;
+    problems.push_back(
+        {name, place ? error.mark.line + 1 : 0, place ? error.mark.column + 1 : 0, "not valid YAML: " + error.msg});
+  }
+  Element root = builder.TakeRoot();
+  if (root.place.file.empty()) root.place.file = name;
+  return root;
+}
+
+}  // namespace settings

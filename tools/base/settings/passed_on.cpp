@@ -1,0 +1,68 @@
+// Values that are not for this reader but are handed on to another one as YAML.
+#include "tools/base/settings/settings.h"
+#include "tools/base/settings/state.h"
+
+namespace settings {
+namespace {
+
+std::string Flow(const Element& element) {
+  std::string text;
+  switch (element.kind) {
+    case Element::Kind::null:
+      return "null";
+    case Element::Kind::scalar:
+      return QuoteJson(element.text);
+    case Element::Kind::list:
+      for (const Element& item : element.items) text += (text.empty() ? "" : ", ") + Flow(item);
+      return "[" + text + "]";
+    case Element::Kind::map:
+      for (const Entry& entry : element.entries) {
+        text += (text.empty() ? "" : ", ") + QuoteJson(entry.key) + ": " + Flow(entry.value);
+      }
+      return "{" + text + "}";
+  }
+  return text;
+}
+
+}  // namespace
+
+bool Section::ReadPassedOn(const std::string& key, std::vector<PassedOn>& values) {
+  Request& request = Ask(key);
+  if (request.element != nullptr) {
+    values.clear();
+    if (request.element->kind == Element::Kind::list) {
+      for (const Element& item : request.element->items) values.push_back({item.text, Flow(item)});
+    } else {
+      values.push_back({request.element->text, Flow(*request.element)});
+    }
+    for (PassedOn& value : values) {
+      if (value.text.empty()) value.text = value.yaml;
+    }
+  }
+  std::string json;
+  for (const PassedOn& value : values) json += (json.empty() ? "" : ", ") + value.yaml;
+  request.kind = Request::Kind::value;
+  request.json = "[" + json + "]";
+  return request.element != nullptr;
+}
+
+bool Section::ReadPassedOn(const std::string& key, std::vector<std::pair<std::string, std::string>>& entries) {
+  Request& request = Ask(key);
+  bool good = request.element != nullptr;
+  if (good && request.element->kind != Element::Kind::map) {
+    state_->Complain(request.element->place,
+                     "'" + request.path + "': expected keys with values, not " + Describe(*request.element));
+    good = false;
+  }
+  if (good) {
+    entries.clear();
+    for (const Entry& entry : request.element->entries) entries.emplace_back(entry.key, Flow(entry.value));
+  }
+  std::string json;
+  for (const auto& [name, value] : entries) json += (json.empty() ? "" : ", ") + QuoteJson(name) + ": " + value;
+  request.kind = Request::Kind::value;
+  request.json = "{" + json + "}";
+  return good;
+}
+
+}  // namespace settings

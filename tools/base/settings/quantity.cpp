@@ -1,0 +1,181 @@
+#include "tools/base/settings/quantity.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <system_error>
+
+namespace settings {
+namespace {
+
+// value in SI = number * multiply / divide. Dividing by a power of ten rounds once: 9 ms is the double nearest to
+// 0.009.
+struct UnitName {
+  std::string_view name;
+  double multiply = 1, divide = 1;
+};
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr UnitName kTime[] = {{"s"}, {"ms", 1, 1e3}, {"us", 1, 1e6}, {"ns", 1, 1e9}, {"min", 60, 1}};
+constexpr UnitName kLength[] = {{"m"}, {"cm", 1, 1e2}, {"mm", 1, 1e3}, {"km", 1e3, 1}};
+constexpr UnitName kAngle[] = {{"rad"}, {"mrad", 1, 1e3}, {"deg", kPi, 180}};
+constexpr UnitName kSpeed[] = {{"m/s"}, {"cm/s", 1, 1e2}, {"mm/s", 1, 1e3}, {"km/h", 1, 3.6}};
+constexpr UnitName kAngularRate[] = {{"rad/s"}, {"deg/s", kPi, 180}};
+constexpr UnitName kFrequency[] = {{"Hz"}, {"kHz", 1e3, 1}};
+constexpr UnitName kRate[] = {{"1/s"}};
+constexpr UnitName kPixel[] = {{"px"}};
+constexpr UnitName kElectrons[] = {{"e"}};
+constexpr UnitName kElectronRate[] = {{"e/s"}};
+constexpr UnitName kAccelerationDensity[] = {{"m/s^1.5"}, {"cm/s^1.5", 1, 1e2}};
+constexpr UnitName kAngularAccelerationDensity[] = {{"rad/s^1.5"}, {"deg/s^1.5", kPi, 180}};
+
+struct Kind {
+  std::string_view article_and_name;
+  std::span<const UnitName> units;
+};
+
+Kind KindOf(Unit unit) {
+  switch (unit) {
+    case Unit::none:
+      return {"a number", {}};
+    case Unit::time:
+      return {"a time", kTime};
+    case Unit::length:
+      return {"a length", kLength};
+    case Unit::angle:
+      return {"an angle", kAngle};
+    case Unit::speed:
+      return {"a speed", kSpeed};
+    case Unit::angular_rate:
+      return {"an angular rate", kAngularRate};
+    case Unit::frequency:
+      return {"a frequency", kFrequency};
+    case Unit::rate:
+      return {"a rate", kRate};
+    case Unit::pixel:
+      return {"a number of pixels", kPixel};
+    case Unit::electrons:
+      return {"a number of electrons", kElectrons};
+    case Unit::electron_rate:
+      return {"a current of electrons", kElectronRate};
+    case Unit::acceleration_density:
+      return {"the density of an acceleration noise", kAccelerationDensity};
+    case Unit::angular_acceleration_density:
+      return {"the density of an angular acceleration noise", kAngularAccelerationDensity};
+  }
+  return {"a number", {}};
+}
+
+// Joined piece by piece: GCC 12 warns of "literal" + std::string where it inlines it (its bug 105651).
+std::string Quoted(std::string_view text) { return std::string("'").append(text).append("'"); }
+
+std::string Expected(const Kind& kind) {
+  if (kind.units.empty()) return "expected a bare number";
+  std::string text = "expected a number with ";
+  for (const UnitName& unit : kind.units) text += std::string(unit.name) + ", ";
+  return text + "or a bare number of " + std::string(kind.units[0].name);
+}
+
+std::string_view Trim(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+bool IsNotFinite(std::string_view text) {
+  if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
+  if (!text.empty() && text.front() == '.') text.remove_prefix(1);  // YAML writes .nan, .inf
+  std::string word;
+  for (const char c : text.substr(0, 3)) word += static_cast<char>(c | 0x20);
+  return word == "nan" || word == "inf";
+}
+
+bool InRange(double value, std::string_view text, const Range& range, std::string_view unit, std::string& problem) {
+  if (value >= range.min && value <= range.max) return true;
+  const std::string suffix = unit.empty() ? std::string() : std::string(" ").append(unit);
+  const bool from = std::isfinite(range.min), to = std::isfinite(range.max);
+  problem = Quoted(text);
+  if (range.min == std::numeric_limits<double>::denorm_min()) {
+    problem += to ? " must be positive and at most " + FormatNumber(range.max) + suffix : " must be positive";
+  } else if (from && to) {
+    problem += " must lie in " + FormatNumber(range.min) + " ... " + FormatNumber(range.max) + suffix;
+  } else if (from) {
+    problem += " must be at least " + FormatNumber(range.min) + suffix;
+  } else {
+    problem += " must be at most " + FormatNumber(range.max) + suffix;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool ParseQuantity(std::string_view text, Unit unit, const Range& range, double& value, std::string& problem) {
+  const Kind kind = KindOf(unit);
+  const std::string_view trimmed = Trim(text);
+  std::string_view digits = trimmed;
+  if (IsNotFinite(digits)) {
+    problem = Quoted(text) + " is not a finite number";
+    return false;
+  }
+  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
+  double number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (error == std::errc::result_out_of_range) {
+    problem = Quoted(text) + " is out of the range of numbers";
+    return false;
+  }
+  const std::string_view suffix = Trim(digits.substr(static_cast<std::size_t>(end - digits.data())));
+  bool known = error == std::errc() && suffix.empty();
+  if (error == std::errc()) {
+    for (const UnitName& candidate : kind.units) {
+      if (suffix != candidate.name) continue;
+      number = number * candidate.multiply / candidate.divide;
+      known = true;
+    }
+  }
+  if (!known) {
+    problem = Quoted(text) + " is not " + std::string(kind.article_and_name) + ": " + Expected(kind);
+    return false;
+  }
+  if (!std::isfinite(number)) {
+    problem = Quoted(text) + " is out of the range of numbers";
+    return false;
+  }
+  if (!InRange(number, text, range, kind.units.empty() ? "" : kind.units[0].name, problem)) return false;
+  value = number;
+  return true;
+}
+
+template <class T>
+bool ParseInteger(std::string_view text, const Range& range, T& value, std::string& problem) {
+  std::string_view digits = Trim(text);
+  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
+  T number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  const bool complete = end == digits.data() + digits.size() && !digits.empty();
+  if (complete && error == std::errc::result_out_of_range) {
+    problem = Quoted(text) + " does not fit: expected a whole number of at most " +
+              std::to_string(std::numeric_limits<T>::max());
+    return false;
+  }
+  if (!complete || error != std::errc()) {
+    problem = Quoted(text) + " is not a whole number" + (std::numeric_limits<T>::min() == 0 ? " of at least 0" : "");
+    return false;
+  }
+  if (!InRange(static_cast<double>(number), text, range, "", problem)) return false;
+  value = number;
+  return true;
+}
+
+template bool ParseInteger(std::string_view, const Range&, int&, std::string&);
+template bool ParseInteger(std::string_view, const Range&, std::int64_t&, std::string&);
+template bool ParseInteger(std::string_view, const Range&, std::uint64_t&, std::string&);
+
+std::string FormatNumber(double value) {
+  char text[32];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  return error == std::errc() ? std::string(text, end) : std::to_string(value);
+}
+
+}  // namespace settings

@@ -1,0 +1,156 @@
+// Purpose: a strict reader of settings files (YAML). Each component asks for the keys that it knows, giving its default
+// by
+//          the variable's present value; whatever is wrong is collected and thrown at once, and so is a key that nobody
+//          asked for.
+//
+//   settings::Document document = settings::Document::FromFile("scenario.yaml");
+//   document.Override("sensor.exposure", "8 ms");
+//   settings::Section sensor = document.root().Child("sensor");
+//   sensor.Read("exposure", exposure_s, settings::Unit::time, settings::Range::Positive());
+//   sensor.ReadChoice("response", response, {{"linear", Response::linear}, {"srgb", Response::srgb}});
+//   document.ThrowIfBad();
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "tools/base/settings/dialect.h"
+#include "tools/base/settings/problem.h"
+#include "tools/base/settings/quantity.h"
+
+namespace settings {
+
+// A value for another reader.
+struct PassedOn {
+  std::string text;  // as written, of a number or a word; else as below
+  std::string yaml;  // on one line, for Document::Override
+};
+
+struct Element;  // of the file
+struct Request;  // what was asked for
+struct State;    // of a document
+
+// A section of the document, or of what could be there: an absent section reads as one without keys. A cheap handle
+// that keeps the document's data alive. The readers return whether the key was there and good; otherwise `value` stays
+// as it was, and if it was there, the document knows a problem. Values written to are in SI.
+class Section {
+ public:
+  bool Has(const std::string& key) const;
+
+  bool Read(const std::string& key, double& value, Unit unit = Unit::none, const Range& range = {});
+  bool Read(const std::string& key, double& value, const Range& range) { return Read(key, value, Unit::none, range); }
+  bool Read(const std::string& key, int& value, const Range& range = {});
+  bool Read(const std::string& key, std::int64_t& value, const Range& range = {});
+  bool Read(const std::string& key, std::uint64_t& value, const Range& range = {});
+  bool Read(const std::string& key, bool& value);         // true or false
+  bool Read(const std::string& key, std::string& value);  // not empty
+  bool Read(const std::string& key, std::vector<double>& value, Unit unit = Unit::none, const Range& range = {});
+  bool Read(const std::string& key, std::vector<std::string>& value);
+  template <std::size_t N>
+  bool Read(const std::string& key, std::array<double, N>& value, Unit unit = Unit::none, const Range& range = {}) {
+    return ReadNumbers(key, value.data(), N, unit, range);
+  }
+
+  // Like Read with the same arguments, but a key that is not there is a problem.
+  template <class... Arguments>
+  bool Require(const std::string& key, Arguments&&... arguments) {
+    const bool good = Read(key, std::forward<Arguments>(arguments)...);
+    RequirePresent(key);
+    return good;
+  }
+
+  // One of the names. Throws std::logic_error when the default has none.
+  template <class T>
+  bool ReadChoice(const std::string& key, T& value,
+                  const std::vector<std::pair<std::string, std::type_identity_t<T>>>& names) {
+    std::vector<std::string> texts;
+    std::size_t index = names.size();
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      texts.push_back(names[i].first);
+      if (names[i].second == value) index = i;
+    }
+    const bool good = ReadName(key, texts, index);
+    if (good) value = names[index].second;
+    return good;
+  }
+  template <class T>
+  bool RequireChoice(const std::string& key, T& value,
+                     const std::vector<std::pair<std::string, std::type_identity_t<T>>>& names) {
+    const bool good = ReadChoice(key, value, names);
+    RequirePresent(key);
+    return good;
+  }
+
+  // A key that may be there though it is not read: the alternative to one that is.
+  void Allow(const std::string& key) { Ask(key); }
+
+  Section Child(const std::string& key);
+  // The sections of a list; none when it is absent. With a shorthand, an item that is a single word stands for
+  // {shorthand: word}.
+  std::vector<Section> List(const std::string& key, const std::string& shorthand = "");
+
+  // What is not for this reader, whatever it is. A list, or a single value as a list of one; and keys with values, in
+  // the order of the file.
+  bool ReadPassedOn(const std::string& key, std::vector<PassedOn>& values);
+  bool ReadPassedOn(const std::string& key, std::vector<std::pair<std::string, std::string>>& entries);
+
+  // Adds a problem at the place of `key` (dotted for one further down), or of this section where that is not there. For
+  // rules between several values.
+  void Reject(const std::string& key, const std::string& message);
+  void RequirePresent(const std::string& key);
+
+  // Not read here, whatever is in it: another reader's. Not in Resolved.
+  void Ignore(const std::string& key);
+  // All keys but those that are asked for.
+  void IgnoreRest();
+
+ private:
+  friend class Document;
+  Section(std::shared_ptr<State> state, Request* request) : state_(std::move(state)), request_(request) {}
+
+  const Element* Find(const std::string& key) const;
+  Request& Ask(const std::string& key);
+  bool ReadNumbers(const std::string& key, double* values, std::size_t count, Unit unit, const Range& range);
+  bool ReadName(const std::string& key, const std::vector<std::string>& names, std::size_t& index);
+  template <class T>
+  bool ReadWhole(const std::string& key, T& value, const Range& range);
+
+  std::shared_ptr<State> state_;
+  Request* request_;
+};
+
+class Document {
+ public:
+  // Throws Error when the file cannot be read or is not valid YAML. Duplicate keys and the like wait for ThrowIfBad.
+  static Document FromFile(const std::filesystem::path& path, Dialect dialect = Dialect::ours);
+  static Document FromText(const std::string& text, const std::string& name, Dialect dialect = Dialect::ours);
+
+  // Sets one value (YAML: "3", "8 ms", "[1, 2]", "{a: 1}") by its dotted key; numbers are indices of lists
+  // ("keys.0.time"). Problems with it name "--set a.b.c". Before the first root(); throws std::logic_error afterwards.
+  void Override(const std::string& key, const std::string& value);
+
+  Section root();
+
+  // Call it when everything has been asked for. Throws Error with all problems, among them each key that nobody asked
+  // for.
+  void ThrowIfBad() const;
+
+  // All values that were asked for, defaults included, in SI: JSON, which is YAML too. Read again, it gives the same
+  // settings.
+  std::string Resolved() const;
+
+ private:
+  explicit Document(std::shared_ptr<State> state) : state_(std::move(state)) {}
+
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace settings

@@ -1,0 +1,25 @@
+// Purpose: what a document knows while it is read. For the reader's own use.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "tools/base/settings/element.h"
+#include "tools/base/settings/request.h"
+
+namespace settings {
+
+struct State {
+  Element root;
+  Request requests;
+  bool reading = false;
+  std::vector<Problem> problems;
+  std::deque<Element> made;  // sections that the file writes as a single word
+
+  void Complain(const Place& place, std::string message) {
+    problems.push_back({place.file, place.line, place.column, std::move(message)});
+  }
+};
+
+}  // namespace settings

@@ -1,0 +1,266 @@
+#include "tools/bench/campaign/campaign_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/bench/campaign/curve_spec.h"
+#include "tools/bench/campaign/results.h"
+#include "tools/bench/campaign/table_spec.h"
+
+namespace campaign {
+namespace {
+
+using settings::PassedOn;
+using settings::Range;
+using settings::Section;
+
+constexpr std::size_t kMostSeeds = 1'000'000;
+constexpr double kMostTasks = 1e7;
+
+bool Contains(const std::vector<std::string>& all, const std::string& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+// Whether `key` is `section` or in it: "odometry.filter.lag" is in "odometry".
+bool IsIn(const std::string& section, const std::string& key) {
+  return key == section || key.starts_with(section + ".");
+}
+
+void RequireOdometry(Section& section, const std::string& where, const Changes& changes) {
+  for (const auto& [key, value] : changes) {
+    if (IsIn("odometry", key) || IsIn("prior", key)) continue;
+    section.Reject(where, fmt::format("'{}': a system changes settings under 'odometry' and 'prior' only: every system "
+                                      "sees the same pictures",
+                                      key));
+  }
+}
+
+struct SeedRange {
+  std::uint64_t first = 0, count = 0;
+};
+
+// "7" or "1..10"
+bool ReadRange(const std::string& text, SeedRange& range, std::string& problem) {
+  const std::size_t dots = text.find("..");
+  if (!settings::ParseInteger(text.substr(0, dots), {}, range.first, problem)) return false;
+  std::uint64_t last = range.first;
+  if (dots != std::string::npos && !settings::ParseInteger(text.substr(dots + 2), {}, last, problem)) return false;
+  if (last < range.first || last - range.first >= kMostSeeds) {
+    problem = fmt::format("'{}' is no range of 1 to {} seeds", text, kMostSeeds);
+    return false;
+  }
+  range.count = last - range.first + 1;
+  return true;
+}
+
+}  // namespace
+
+CampaignFile::CampaignFile(const std::filesystem::path& file, const Vocabulary& vocabulary)
+    : document_(settings::Document::FromFile(file)), vocabulary_(vocabulary) {
+  const std::filesystem::path folder = file.parent_path();
+  campaign_.name = file.stem().string();
+  document_.root().Read("name", campaign_.name);
+  ReadScenarios(folder);
+  ReadFactors();
+  ReadSystems(folder);
+  ReadSeeds();
+  ReadJudge();
+  campaign_.tables = ReadTables(document_.root(), campaign_, vocabulary_.metrics);
+  campaign_.curves = ReadCurves(document_.root(), campaign_, vocabulary_.metrics);
+  RejectDoubles();
+  campaign_.resolved = document_.Resolved();
+}
+
+bool CampaignFile::complete() const {
+  return !campaign_.scenarios.empty() && !campaign_.systems.empty() && !campaign_.seeds.empty() &&
+         std::none_of(campaign_.factors.begin(), campaign_.factors.end(),
+                      [](const Factor& factor) { return factor.levels.empty(); });
+}
+
+void CampaignFile::ReadScenarios(const std::filesystem::path& folder) {
+  Section root = document_.root();
+  scenarios_ = root.List("scenarios", "file");
+  if (scenarios_.empty()) root.Reject("scenarios", "'scenarios': at least one scenario file is needed");
+  for (Section& section : scenarios_) {
+    ScenarioEntry& entry = campaign_.scenarios.emplace_back();
+    std::string file;
+    section.Require("file", file);
+    entry.file = folder / file;
+    entry.name = entry.file.stem().string();
+    section.Read("name", entry.name);
+    section.ReadPassedOn("set", entry.set);
+  }
+}
+
+void CampaignFile::ReadFactors() {
+  factors_ = document_.root().List("vary");
+  for (Section& section : factors_) {
+    Factor& factor = campaign_.factors.emplace_back();
+    section.Require("name", factor.name);
+    for (const char* key : {"key", "values", "variants"}) section.Allow(key);
+    if (section.Has("variants") == section.Has("values") || section.Has("key") != section.Has("values")) {
+      section.Reject("name", "either 'key' with 'values', or 'variants' with a name and settings each");
+    }
+    if (section.Has("variants")) {
+      for (Section& variant : section.List("variants")) {
+        Level& level = factor.levels.emplace_back();
+        variant.Require("name", level.name);
+        variant.ReadPassedOn("set", level.set);
+      }
+      if (factor.levels.empty()) section.Reject("variants", "'variants': at least one is needed");
+    } else {
+      std::vector<PassedOn> values;
+      section.Read("key", factor.key);
+      section.ReadPassedOn("values", values);
+      for (const PassedOn& value : values) factor.levels.push_back({value.text, {{factor.key, value.yaml}}});
+      if (values.empty()) section.Reject("values", "'values': at least one is needed");
+    }
+    std::set<std::string> names;
+    for (const Level& level : factor.levels) {
+      if (!names.insert(level.name).second) {
+        section.Reject(section.Has("values") ? "values" : "variants", fmt::format("'{}' is there twice", level.name));
+      }
+    }
+    for (const char* taken : {"task", "scenario", "system", "seed", "status", "reason"}) {
+      if (factor.name == taken) section.Reject("name", "'" + factor.name + "': the results have such a column already");
+    }
+    if (Contains(vocabulary_.metrics, factor.name)) {
+      section.Reject("name", "'" + factor.name + "': the results have such a column already");
+    }
+  }
+}
+
+void CampaignFile::ReadSystems(const std::filesystem::path& folder) {
+  Section root = document_.root();
+  std::vector<ExternalSystem> external;
+  std::string file;
+  if (root.Read("external", file)) {
+    try {
+      external = ReadExternalSystems(folder / file);
+    } catch (const settings::Error& error) {
+      for (const settings::Problem& problem : error.problems()) root.Reject("external", settings::ToString(problem));
+    }
+  }
+  systems_ = root.List("systems", "name");
+  if (systems_.empty()) root.Reject("systems", "'systems': at least one is needed");
+  for (Section& section : systems_) {
+    SystemEntry& entry = campaign_.systems.emplace_back();
+    section.Require("name", entry.name);
+    std::string system = entry.name;
+    section.Read("system", system);
+    section.ReadPassedOn("set", entry.set);
+    RequireOdometry(section, "set", entry.set);
+    const auto found = std::find_if(external.begin(), external.end(), [&](const auto& e) { return e.name == system; });
+    if (Contains(vocabulary_.systems, system)) {
+      entry.system = system;
+    } else if (found != external.end()) {
+      entry.external = *found;
+      if (!entry.set.empty()) section.Reject("set", "'set': what is not ours is set in its command");
+    } else {
+      section.Reject(
+          section.Has("system") ? "system" : "name",
+          fmt::format("there is no system '{}'; there are {}{}", system, fmt::join(vocabulary_.systems, ", "),
+                      external.empty() ? " (others with 'external: systems.yaml')" : " and those of " + file));
+    }
+  }
+  for (std::size_t i = 0; i < scenarios_.size(); ++i) {
+    Section special = scenarios_[i].Child("for_system");
+    for (const SystemEntry& system : campaign_.systems) {
+      Changes& changes = campaign_.scenarios[i].for_system[system.name];
+      special.ReadPassedOn(system.name, changes);
+      RequireOdometry(special, system.name, changes);
+    }
+  }
+}
+
+void CampaignFile::ReadSeeds() {
+  Section root = document_.root();
+  std::vector<PassedOn> ranges = {{"1", "1"}};
+  root.ReadPassedOn("seeds", ranges);
+  std::string problem;
+  std::vector<SeedRange> good;
+  std::uint64_t count = 0;
+  for (const PassedOn& written : ranges) {
+    SeedRange range;
+    if (ReadRange(written.text, range, problem)) {
+      good.push_back(range);
+      count += range.count;
+    } else {
+      root.Reject("seeds", "'seeds': " + problem);
+    }
+  }
+  if (ranges.empty()) root.Reject("seeds", "'seeds': at least one is needed");
+  if (count > kMostSeeds) {  // before they are written out: a few lines may ask for more than memory holds
+    root.Reject("seeds", fmt::format("'seeds': {} of them, more than the {} of one campaign", count, kMostSeeds));
+    return;
+  }
+  for (const SeedRange& range : good) {
+    for (std::uint64_t i = 0; i < range.count; ++i) campaign_.seeds.push_back(range.first + i);
+  }
+  if (!complete()) return;
+  double tasks = static_cast<double>(campaign_.scenarios.size() * campaign_.systems.size() * campaign_.seeds.size());
+  for (const Factor& factor : campaign_.factors) tasks *= static_cast<double>(factor.levels.size());
+  if (tasks > kMostTasks) {
+    root.Reject("seeds", fmt::format("{:g} tasks, more than the {:g} that one campaign may have", tasks, kMostTasks));
+    campaign_.seeds.clear();
+  }
+}
+
+void CampaignFile::ReadJudge() {
+  Section root = document_.root(), judge = root.Child("judge"), lost = judge.Child("lost");
+  using evaluation::Alignment;
+  judge.ReadChoice(
+      "align", campaign_.align,
+      {{"none", Alignment::none}, {"se3", Alignment::se3}, {"sim3", Alignment::sim3}, {"first", Alignment::first}});
+  lost.Read("pose_coverage", campaign_.lost.pose_coverage, Range{0, 1});
+  lost.Read("tracked_coverage", campaign_.lost.tracked_coverage, Range{0, 1});
+  lost.Read("error", campaign_.lost.error_m, settings::Unit::length, Range::AtLeast(0));
+  root.ReadChoice("keep", campaign_.keep,
+                  {{"numbers", Keep::numbers}, {"estimate", Keep::estimate}, {"all", Keep::all}});
+}
+
+void CampaignFile::RejectDoubles() {
+  const auto once = [](auto& entries, auto& sections) {
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      if (!entries[i].name.empty() && !names.insert(entries[i].name).second) {
+        sections[i].Reject("name",
+                           fmt::format("the name '{}' is there twice; give another with 'name'", entries[i].name));
+      }
+    }
+  };
+  once(campaign_.scenarios, scenarios_);
+  once(campaign_.factors, factors_);
+  once(campaign_.systems, systems_);
+  std::vector<std::uint64_t> sorted = campaign_.seeds;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
+    document_.root().Reject("seeds", "'seeds': one is there twice");
+  }
+}
+
+void CampaignFile::Reject(const TaskChoice& choice, const std::string& key, const std::string& message) {
+  const auto sets = [&key](const Changes& changes) {
+    return std::any_of(changes.begin(), changes.end(), [&](const auto& change) { return change.first == key; });
+  };
+  const SystemEntry& system = campaign_.systems[choice.system];
+  const ScenarioEntry& scenario = campaign_.scenarios[choice.scenario];
+  const std::string text = key.empty() || message.starts_with("'" + key) ? message : "'" + key + "': " + message;
+  const auto tell = [&](Section& section, const std::string& where, const std::string& place) {
+    if (told_.emplace(place, text).second) section.Reject(where, text);
+  };
+  const auto special = scenario.for_system.find(system.name);
+  if (special != scenario.for_system.end() && sets(special->second)) {
+    return tell(scenarios_[choice.scenario], "for_system", "for " + scenario.name);
+  }
+  if (sets(system.set)) return tell(systems_[choice.system], "set", "system " + system.name);
+  for (std::size_t i = campaign_.factors.size(); i-- > 0;) {
+    if (!sets(campaign_.factors[i].levels[choice.levels[i]].set)) continue;
+    return tell(factors_[i], factors_[i].Has("values") ? "values" : "variants", "factor " + campaign_.factors[i].name);
+  }
+  const bool here = sets(scenario.set);
+  tell(scenarios_[choice.scenario], here ? "set" : "file", "scenario " + scenario.name + (here ? " set" : ""));
+}
+
+}  // namespace campaign

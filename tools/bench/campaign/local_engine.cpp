@@ -1,0 +1,138 @@
+#include "tools/bench/campaign/local_engine.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "tools/bench/campaign/sequence.h"
+#include "tools/bench/campaign/task.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/result/interrupt.h"
+#include "tools/bench/result/progress.h"
+
+namespace vobench {
+namespace {
+
+// A sequence that is not there, and who waits for it.
+struct Rendering {
+  std::string key;
+  std::size_t point = 0;  // one of those that show it
+  std::vector<std::int64_t> tasks;
+};
+
+class LocalRun {
+ public:
+  LocalRun(const CampaignWork& work, const std::filesystem::path& out, const std::vector<std::int64_t>& tasks,
+           const LocalOptions& options)
+      : work_(work), out_(out), options_(options), tasks_(static_cast<std::int64_t>(tasks.size())) {
+    std::map<std::string, std::size_t> known;
+    for (const std::int64_t task : tasks) {
+      const std::size_t p = campaign::ChoiceOf(work.campaign(), task).point;
+      const CampaignPoint& point = work.points()[p];
+      if (!point.images || work.cache().Has(point.sequence)) {
+        ready_.push_back(task);
+        continue;
+      }
+      const auto [at, is_new] = known.try_emplace(point.sequence, renderings_.size());
+      if (is_new) renderings_.push_back({point.sequence, p, {}});
+      renderings_[at->second].tasks.push_back(task);
+    }
+  }
+
+  void Run() {
+    const auto sequences = static_cast<std::int64_t>(renderings_.size());
+    if (sequences > 0) fmt::print(stderr, "{} sequences to render, then {} tasks\n", sequences, tasks_);
+    progress_.emplace("campaign", sequences + tasks_, 0, sequences > 0 ? "steps" : "tasks");
+    while (next_rendering_ < renderings_.size() || !ready_.empty() || pool_.running() > 0) {
+      while (StartOne()) {
+      }
+      const std::optional<campaign::ProcessEnd> end = pool_.Wait(std::chrono::milliseconds(200));
+      if (end) Finish(*end);
+      if (InterruptPending()) throw Interrupted("interrupted");
+    }
+  }
+
+ private:
+  // Sequences first: afterwards every process has something to do. The last of them are rendered by several threads
+  // where there is nothing else.
+  bool StartOne() {
+    const int free = options_.jobs - busy_;
+    if (free <= 0) return false;
+    const int left = static_cast<int>(renderings_.size() - next_rendering_);
+    if (left > 0) {
+      const int threads = ready_.empty() ? std::max(1, free / left) : 1;
+      const std::size_t index = next_rendering_++;
+      const Rendering& rendering = renderings_[index];
+      campaign::ProcessLimits limits = options_.limits;
+      limits.timeout_s = 0;
+      limits.memory_bytes *= static_cast<std::uint64_t>(threads);
+      pool_.Start(-1 - static_cast<std::int64_t>(index), limits, [&] {
+        const Experiment experiment = work_.ExperimentOf(AtPoint(work_.campaign(), rendering.point, 0));
+        RenderInto(work_.cache(), rendering.key, experiment.scenario, threads);
+      });
+      Occupy(-1 - static_cast<std::int64_t>(index), threads);
+      return true;
+    }
+    if (ready_.empty()) return false;
+    const std::int64_t task = ready_.front();
+    ready_.pop_front();
+    pool_.Start(task, options_.limits, [&] { RunTask(work_, out_, task); });
+    Occupy(task, 1);
+    return true;
+  }
+
+  void Occupy(std::int64_t id, int slots) {
+    slots_[id] = slots;
+    busy_ += slots;
+  }
+
+  void Finish(const campaign::ProcessEnd& end) {
+    busy_ -= slots_.at(end.id);
+    slots_.erase(end.id);
+    if (end.id >= 0) {
+      if (!end.problem.empty()) RecordFailure(work_, out_, end.id, end.problem);
+      progress_->Step();
+      return;
+    }
+    progress_->Step();
+    const Rendering& rendering = renderings_[static_cast<std::size_t>(-1 - end.id)];
+    for (const std::int64_t task : rendering.tasks) {
+      if (end.problem.empty()) {
+        ready_.push_back(task);
+      } else {
+        RecordFailure(work_, out_, task, "its sequence could not be rendered: " + end.problem);
+        progress_->Step();
+      }
+    }
+  }
+
+  const CampaignWork& work_;
+  const std::filesystem::path& out_;
+  const LocalOptions& options_;
+  std::int64_t tasks_;
+  std::optional<Progress> progress_;  // of sequences and tasks
+  std::vector<Rendering> renderings_;
+  std::size_t next_rendering_ = 0;
+  std::deque<std::int64_t> ready_;
+  std::map<std::int64_t, int> slots_;  // by task, or -1 - rendering
+  int busy_ = 0;
+  campaign::ProcessPool pool_;
+};
+
+}  // namespace
+
+void RunLocally(const CampaignWork& work, const std::filesystem::path& out, const std::vector<std::int64_t>& tasks,
+                const LocalOptions& options) {
+  if (tasks.empty()) return;
+  try {
+    LocalRun(work, out, tasks, options).Run();
+  } catch (const Interrupted&) {  // here or by the progress
+    throw Interrupted("the campaign was interrupted; what was done by then stays");
+  }
+}
+
+}  // namespace vobench

@@ -1,0 +1,30 @@
+// Options of `vobench campaign`.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace vobench {
+
+// Scenarios x variants x systems x seeds (docs/campaign.md). Throws TasksFailed after all else is done and written when
+// tasks failed.
+struct CampaignOptions {
+  std::filesystem::path file;
+  std::filesystem::path output;
+  std::optional<std::filesystem::path> cache;  // of sequences; OUT/cache unless told
+  std::string engine = "local";                // or slurm
+  int jobs = 1;                                // processes at a time, here
+  std::uint64_t memory_bytes = 0;              // of each; 0: an equal part of what the machine has left
+  double timeout_s = 0;                        // of a task; 0: none
+  bool dry_run = false;                        // tasks are listed only
+  bool update = false;                         // results of other settings may go
+  std::optional<std::int64_t> task;            // that one alone, again
+  std::optional<std::filesystem::path> list;   // those in line `part` of this file
+  int part = 0;
+  std::string partition, time;  // of Slurm's jobs
+  int tasks_per_job = 10;
+};
+
+}  // namespace vobench

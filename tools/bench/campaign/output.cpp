@@ -1,0 +1,162 @@
+#include "tools/bench/campaign/output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+
+#include "tools/bench/campaign/task_folder.h"
+#include "tools/judge/evaluation/whole_file.h"
+
+namespace campaign {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kTimes[] = {
+    "wall_s", "cpu_s", "tracking_s", "peak_memory_mb", "frame_features_ms", "frame_matching_ms", "frame_filter_ms"};
+
+// Of a failed task there are none.
+std::string TimesLine(const fs::path& out, std::int64_t task) {
+  std::ifstream stream(TaskPath(out, task) / "times.json", std::ios::binary);
+  const auto json = nlohmann::json::parse(stream, nullptr, false);
+  std::string line = std::to_string(task);
+  for (const char* name : kTimes) {
+    line += ",";
+    if (json.is_object() && json.contains(name) && json[name].is_number()) {
+      line += fmt::format("{:.6g}", json[name].get<double>());
+    }
+  }
+  return line + "\n";
+}
+
+// Whether there is anything that a campaign does not begin with.
+bool HasOthers(const fs::path& out) {
+  static const std::set<std::string> kOurs = {".lock", "tasks", "cache", "slurm"};
+  return std::any_of(fs::directory_iterator(out), {}, [](const fs::directory_entry& entry) {
+    const std::string name = entry.path().filename().string();
+    return !kOurs.contains(name) && !name.starts_with(".campaign.json.");
+  });
+}
+
+// Another one for each process, also where several have the same number (in containers, on several machines).
+fs::path OwnName(const fs::path& file) {
+  std::random_device device;
+  return file.parent_path() / fmt::format(".{}.{:08x}{:08x}", file.filename().string(), device(), device());
+}
+
+}  // namespace
+
+void PrepareOutput(const fs::path& out, const std::string& text) {
+  fs::create_directories(out);
+  const fs::path record = out / "campaign.json";
+  if (fs::exists(record)) return;
+  // Another process may begin the same campaign at the same time: what is in the way is its own if the record is there now.
+  if (HasOthers(out) && !fs::exists(record)) {
+    throw std::invalid_argument(
+        fmt::format("{}: is no campaign's folder (it has no campaign.json) and not empty", out.string()));
+  }
+  WriteAtOnce(record, text);
+}
+
+FileLock LockOutput(const fs::path& out, FileLock::Kind kind) {
+  for (int tries = 0; tries < 50; ++tries) {
+    if (std::optional<FileLock> lock = FileLock::Try(out / ".lock", kind)) return std::move(*lock);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  throw std::runtime_error(out.string() + ": another process is at work on this campaign");
+}
+
+std::vector<std::int64_t> PresentTasks(const fs::path& out) {
+  std::vector<std::int64_t> present;
+  if (!fs::exists(out / "tasks")) return present;
+  for (const fs::directory_entry& shard : fs::directory_iterator(out / "tasks")) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(shard)) {
+      const std::string name = entry.path().filename().string();
+      if (name.find_first_not_of("0123456789") == std::string::npos) present.push_back(std::stoll(name));
+    }
+  }
+  std::sort(present.begin(), present.end());
+  return present;
+}
+
+OutputState Inspect(const fs::path& out, const std::vector<std::string>& keys) {
+  OutputState state;
+  const std::vector<std::int64_t> present = PresentTasks(out);
+  auto next = present.begin();
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const auto task = static_cast<std::int64_t>(k);
+    const bool is_present = next != present.end() && *next == task;
+    if (is_present) ++next;
+    const std::optional<TaskRecord> record = is_present ? ReadRecord(out, task) : std::nullopt;
+    if (record && record->key != keys[k]) {
+      state.stale.push_back(task);
+    } else if (!record || record->status == Status::failed) {
+      state.missing.push_back(task);
+      state.failed += record.has_value();
+    }
+  }
+  state.stale.insert(state.stale.end(), next, present.end());  // of a longer campaign
+  return state;
+}
+
+void RemoveTasks(const fs::path& out, const std::vector<std::int64_t>& tasks) {
+  for (const std::int64_t task : tasks) fs::remove_all(TaskPath(out, task));
+}
+
+void RemoveFailed(const fs::path& out, const std::vector<std::int64_t>& tasks) {
+  for (const std::int64_t task : tasks) {
+    const std::optional<TaskRecord> record = ReadRecord(out, task);
+    if (record && record->status == Status::failed) fs::remove_all(TaskPath(out, task));
+  }
+}
+
+Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, const fs::path& out) {
+  Merged merged;
+  std::string times = "task";
+  for (const char* name : kTimes) times += std::string(",") + name;
+  times += "\n";
+  for (std::int64_t task = 0; task < Tasks(campaign); ++task) {
+    std::optional<TaskRecord> record = ReadRecord(out, task);
+    if (!record) throw std::runtime_error(fmt::format("{}: task {} is not there", out.string(), task));
+    if (record->status == Status::ok && IsLost(*record, campaign.lost)) record->status = Status::lost;
+    // Names, and what is told apart as a factor, may have changed since: nothing is done again for that.
+    const TaskChoice choice = ChoiceOf(campaign, task);
+    record->scenario = campaign.scenarios[choice.scenario].name;
+    record->levels = levels.at(choice.point);
+    record->system = campaign.systems[choice.system].name;
+    times += TimesLine(out, task);
+    merged.records.push_back(std::move(*record));
+  }
+  for (const TableSpec& spec : campaign.tables) merged.tables.push_back(MakeTable(campaign, spec, merged.records));
+  merged.curves = MakeCurves(campaign, merged.records);
+  WriteAtOnce(out / "results.csv", ResultsCsv(campaign, merged.records));
+  WriteAtOnce(out / "times.csv", times);
+  WriteAtOnce(out / "tables.md", Markdown(merged.tables) + CurvesMarkdown(merged.curves));
+  WriteAtOnce(out / "tables.tex", Latex(merged.tables));
+  if (merged.curves.empty()) {
+    fs::remove(out / "curves.csv");  // of a file that asked for some
+  } else {
+    WriteAtOnce(out / "curves.csv", CurvesCsv(merged.curves));
+  }
+  return merged;
+}
+
+void WriteAtOnce(const fs::path& file, const std::string& text) {
+  const fs::path own = OwnName(file);
+  evaluation::WriteWhole(own, text);
+  std::error_code error, ignored;
+  fs::rename(own, file, error);
+  if (!error) return;
+  fs::remove(own, ignored);
+  throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
+}
+
+}  // namespace campaign

@@ -1,0 +1,57 @@
+// Purpose: the folder of a campaign: who may write to it, which tasks have a result there, and the tables of all.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/bench/campaign/curves.h"
+#include "tools/bench/campaign/file_lock.h"
+#include "tools/bench/campaign/plan.h"
+#include "tools/bench/campaign/results.h"
+#include "tools/bench/campaign/table.h"
+
+namespace campaign {
+
+// Makes the folder, and the mark that says what it is: campaign.json, with `text` where it is new. Throws
+// std::invalid_argument where there is something else's folder, std::runtime_error.
+void PrepareOutput(const std::filesystem::path& out, const std::string& text);
+
+// Single tasks share the folder, a whole campaign has it for itself. A killed one's processes are given a moment to
+// end. Throws std::runtime_error when another one is at work.
+FileLock LockOutput(const std::filesystem::path& out, FileLock::Kind kind);
+
+// Tasks that have a folder, in order. Folders are listed and no file is opened: a hundredth of the time that a million
+// of those takes.
+std::vector<std::int64_t> PresentTasks(const std::filesystem::path& out);
+
+struct OutputState {
+  std::vector<std::int64_t> missing;  // and failed
+  std::size_t failed = 0;             // of those
+  std::vector<std::int64_t> stale;    // of other settings, another program, or beyond the last task
+};
+
+// keys[k]: what task k's result must depend on.
+OutputState Inspect(const std::filesystem::path& out, const std::vector<std::string>& keys);
+
+void RemoveTasks(const std::filesystem::path& out, const std::vector<std::int64_t>& tasks);
+// Those of them that have failed; what others may have done in the meantime stays.
+void RemoveFailed(const std::filesystem::path& out, const std::vector<std::int64_t>& tasks);
+
+// What all tasks together say.
+struct Merged {
+  std::vector<TaskRecord> records;  // in order, lost ones by the campaign's rule
+  std::vector<Table> tables;
+  std::vector<Curve> curves;
+};
+
+// Writes results.csv, times.csv, tables.md, tables.tex, and curves.csv where the campaign asks for curves, from the
+// tasks' folders alone; names and levels are the campaign's, whatever they were when a task ran. levels[p]: of point p.
+// All tasks must be there (std::runtime_error).
+Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, const std::filesystem::path& out);
+
+// Under a name of its own first: several processes may do so.
+void WriteAtOnce(const std::filesystem::path& file, const std::string& text);
+
+}  // namespace campaign

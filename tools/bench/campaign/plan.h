@@ -1,0 +1,125 @@
+// Purpose: a campaign as plain values: scenarios x varied settings x systems x seeds, and which of them task k is.
+// Source:  docs/campaign.md has the file's format.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/bench/campaign/external_system.h"
+#include "tools/judge/evaluation/alignment.h"
+
+namespace campaign {
+
+// Dotted keys with their values as YAML, a later one wins: what `--set` takes.
+using Changes = std::vector<std::pair<std::string, std::string>>;
+
+struct ScenarioEntry {
+  std::string name;
+  std::filesystem::path file;
+  Changes set;
+  std::map<std::string, Changes> for_system;  // by the system's name: of odometry and prior
+};
+
+// One value of something that is varied.
+struct Level {
+  std::string name;  // as the file writes it: "4 ms"
+  Changes set;
+};
+
+struct Factor {
+  std::string name;
+  std::string key;  // of a factor that changes one setting; else empty
+  std::vector<Level> levels;
+};
+
+struct SystemEntry {
+  std::string name;
+  std::string system;       // one of ours; empty: somebody else's
+  Changes set;              // of odometry and prior
+  ExternalSystem external;  // where system is empty
+};
+
+// A run is lost where it has a pose, or tracks, for less than these shares of the frames, or its error is larger.
+struct LostRule {
+  double pose_coverage = 0.5;
+  double tracked_coverage = 0.5;
+  double error_m = 0;  // ATE after the alignment of the campaign; 0: however large
+};
+
+// Somebody else's numbers, as they are printed elsewhere.
+struct Beside {
+  std::string name;
+  std::map<std::string, std::string> values;  // by the level of the table's only row name; "-" where there is none
+};
+
+// Medians over seeds, and over whatever is neither in rows nor in columns.
+struct TableSpec {
+  std::string metric;  // a column of results.csv
+  std::string title;
+  std::vector<std::string> rows, columns;  // "scenario", "system" or the name of a factor
+  double unit_in_si = 1;                   // of the numbers that are printed
+  std::vector<Beside> beside = {};         // more columns, behind ours
+};
+
+// How results change along one setting that is varied: docs/campaign.md, "Curves".
+struct CurveSpec {
+  std::string along;                 // the name of a factor
+  std::vector<double> doses;         // its levels in SI; the file's order is that of stress, so they rise or fall
+  std::string unit;                  // as the file writes them: "ms"; empty where it writes none
+  double unit_in_si = 1;             // one of it
+  std::vector<std::string> metrics;  // columns of results.csv
+  std::vector<std::string> by;       // a curve for each level of these: "scenario", or the names of factors
+  double break_error_m = 0;          // a run with a larger ate_m has broken, as a lost one has; 0: lost ones only
+};
+
+// What a task leaves beside task.json and times.json: nothing; metrics.json and estimate.txt; covariance.txt, frames.csv
+// and the truth, too.
+enum class Keep { numbers, estimate, all };
+
+struct Campaign {
+  std::string name;
+  std::vector<ScenarioEntry> scenarios;
+  std::vector<Factor> factors;
+  std::vector<SystemEntry> systems;
+  std::vector<std::uint64_t> seeds;
+  evaluation::Alignment align = evaluation::Alignment::sim3;
+  LostRule lost;
+  std::vector<TableSpec> tables;
+  std::vector<CurveSpec> curves;
+  Keep keep = Keep::estimate;
+  std::string resolved;  // all of it, defaults included, as JSON
+};
+
+// What task k does.
+struct TaskChoice {
+  std::size_t scenario = 0;
+  std::vector<std::size_t> levels;  // one for each factor
+  std::size_t system = 0;
+  std::size_t seed = 0;
+  // Scenario and levels as one number, 0 ... Points(campaign) - 1.
+  std::size_t point = 0;
+};
+
+std::size_t Points(const Campaign& campaign);
+std::int64_t Tasks(const Campaign& campaign);
+
+// Digits of k, the slowest first: seed, scenario, factors in the order of the file, system. More seeds leave the
+// numbers of all tasks as they are. Throws std::out_of_range.
+TaskChoice ChoiceOf(const Campaign& campaign, std::int64_t task);
+
+// Settings of the scenario at a point, in the order in which they apply; and those of odometry and prior of a system.
+Changes ChangesAt(const Campaign& campaign, const TaskChoice& choice);
+
+// What a task has of each name ("scenario", "system" or that of a factor), as the file writes it.
+std::vector<std::string> LevelsOf(const Campaign& campaign, const std::vector<std::string>& names,
+                                  const TaskChoice& choice);
+
+// "tiny, blur 4 ms, rb2pf, seed 3"
+std::string Describe(const Campaign& campaign, const TaskChoice& choice);
+
+}  // namespace campaign

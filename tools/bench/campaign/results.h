@@ -1,0 +1,70 @@
+// Purpose: what one task found, as a line of results.csv: docs/campaign.md has the columns.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/bench/campaign/plan.h"
+#include "tools/judge/evaluation/summary.h"
+
+namespace campaign {
+
+enum class Status {
+  ok,
+  lost,       // by the campaign's rule
+  crashed,    // somebody else's program: ended by a signal or with a status that is not 0
+  timed_out,  // the same, longer than its entry allows
+  no_answer,  // the same, without a trajectory that can be judged
+  failed,     // nothing was found out: the task is tried again by the next start
+};
+
+std::string Name(Status status);
+
+// By factor: a number in SI where it is one.
+using LevelValues = std::vector<std::pair<std::string, std::string>>;
+
+struct TaskRecord {
+  std::string key;  // of all that the result depends on: docs/campaign.md, "When the file changes"
+  std::int64_t task = 0;
+  std::string scenario, system;
+  LevelValues levels;
+  std::uint64_t seed = 0;
+  Status status = Status::failed;
+  std::string reason;                          // of what is neither ok nor lost; ToJson makes it one line
+  std::vector<std::optional<double>> metrics;  // in the order of MetricNames; none at all where nothing was judged
+};
+
+// Columns with their units: "ate_m", "rpe_orientation_rad", ...
+const std::vector<std::string>& MetricNames();
+std::vector<std::optional<double>> MetricValues(const evaluation::Metrics& metrics, evaluation::Alignment align);
+
+// Of shares of what was answered; of everything else a smaller value is better.
+bool LargerIsBetter(const std::string& metric);
+
+// A run's value of a metric, by its place among MetricNames: worse than any number (infinite) where it is lost or has no
+// answer, NaN where there is none, or the task failed.
+double ValueOf(const TaskRecord& record, std::size_t metric);
+// The place; their number where there is no such metric.
+std::size_t MetricIndex(const std::string& metric);
+
+// Whether a task that was judged counts as lost.
+bool IsLost(const TaskRecord& record, const LostRule& rule);
+
+// task.json. Reading throws std::invalid_argument where the text is not one.
+std::string ToJson(const TaskRecord& record);
+TaskRecord RecordFromJson(const std::string& text);
+
+// results.csv: a header, and a line for each record in their order.
+std::string ResultsCsv(const Campaign& campaign, const std::vector<TaskRecord>& records);
+
+// With a space for each line break.
+std::string OneLine(std::string text);
+
+// One field of a CSV line, quoted where it must be.
+std::string CsvField(const std::string& text);
+
+}  // namespace campaign

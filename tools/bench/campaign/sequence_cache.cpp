@@ -1,0 +1,66 @@
+#include "tools/bench/campaign/sequence_cache.h"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "tools/bench/campaign/digest.h"
+#include "tools/bench/campaign/output.h"
+
+namespace campaign {
+namespace fs = std::filesystem;
+
+fs::path SequenceCache::PathOf(const std::string& key) const { return folder_ / key.substr(0, 2) / key; }
+
+bool SequenceCache::Has(const std::string& key) const { return fs::exists(PathOf(key)); }
+
+FileLock SequenceCache::Take(const std::string& key) const {
+  fs::path lock = PathOf(key);
+  lock += ".lock";
+  fs::create_directories(lock.parent_path());
+  return FileLock::Wait(lock, FileLock::Kind::exclusive);
+}
+
+fs::path SequenceCache::InputsFile(const std::string& world) const {
+  return folder_ / "inputs" / (Digest(world) + ".json");
+}
+
+const std::string& SequenceCache::DigestNow(const fs::path& file) {
+  const auto [entry, is_new] = digests_.try_emplace(file);
+  if (is_new) entry->second = DigestOfFile(file);
+  return entry->second;
+}
+
+std::optional<std::string> SequenceCache::Inputs(const std::string& world) {
+  std::ifstream stream(InputsFile(world), std::ios::binary);
+  if (!stream) return std::nullopt;
+  const auto files = nlohmann::ordered_json::parse(stream, nullptr, false);
+  if (!files.is_object()) return std::nullopt;
+  std::string text;
+  for (const auto& [file, digest] : files.items()) {
+    if (digest != DigestNow(file)) return std::nullopt;
+    text += fs::path(file).filename().string() + " " + DigestNow(file) + "\n";
+  }
+  return text;
+}
+
+void SequenceCache::Remember(const std::string& world, const std::set<fs::path>& files) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const fs::path& file : files) json[file.string()] = DigestOfFile(file);
+  const fs::path path = InputsFile(world);
+  fs::create_directories(path.parent_path());
+  WriteAtOnce(path, json.dump(1) + "\n");
+}
+
+std::uint64_t SequenceCache::Bytes() const {
+  std::uint64_t bytes = 0;
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code gone;
+    const auto size = entry->is_regular_file(gone) ? entry->file_size(gone) : 0;
+    if (!gone) bytes += size;
+  }
+  return bytes;
+}
+
+}  // namespace campaign

@@ -1,0 +1,47 @@
+// Purpose: where rendered sequences are kept, by the name of their content, for all systems and campaigns that want
+// them.
+//
+//   DIR/ab/abcd...        a sequence, complete: it is given its name when all of it is there
+//   DIR/ab/abcd....lock   whoever renders it holds this
+//   DIR/inputs/...json    which files a world is read from, and their digests when it was last read
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "tools/bench/campaign/file_lock.h"
+
+namespace campaign {
+
+class SequenceCache {
+ public:
+  explicit SequenceCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  const std::filesystem::path& folder() const { return folder_; }
+
+  std::filesystem::path PathOf(const std::string& key) const;
+  bool Has(const std::string& key) const;
+  // Waits until nobody else makes this sequence, and keeps others from it. Throws std::runtime_error.
+  FileLock Take(const std::string& key) const;
+
+  // The files that a world is read from, with their digests, as one text; none where it was never read, or one of them
+  // has changed since: what it names may then have changed, too. `world` names it.
+  std::optional<std::string> Inputs(const std::string& world);
+  // They have been found by reading it. Throws std::runtime_error.
+  void Remember(const std::string& world, const std::set<std::filesystem::path>& files);
+
+  // Of all files in it.
+  std::uint64_t Bytes() const;
+
+ private:
+  const std::string& DigestNow(const std::filesystem::path& file);
+  std::filesystem::path InputsFile(const std::string& world) const;
+
+  std::filesystem::path folder_;
+  std::map<std::filesystem::path, std::string> digests_;  // a file is read once
+};
+
+}  // namespace campaign

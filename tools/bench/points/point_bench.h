@@ -1,0 +1,60 @@
+// Purpose: anybody's filter on a point world, judged: a few lines in a unit test. docs/point_world.md has them.
+//          Needs sim and tools/judge/evaluation only.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "sim/points/point_world.h"
+#include "tools/bench/points/truth.h"
+#include "tools/judge/evaluation/mixture_scores.h"
+#include "tools/judge/evaluation/summary.h"
+
+namespace vobench {
+
+// What a filter says after a frame: conventions as in docs/conventions.md.
+struct PointEstimate {
+  Eigen::Vector3d p_WC = Eigen::Vector3d::Zero();            // [m]
+  Eigen::Quaterniond q_WC = Eigen::Quaterniond::Identity();  // unit
+  Eigen::Vector3d v_WC = Eigen::Vector3d::Zero();            // in W [m/s]
+  Eigen::Vector3d w_WC_C = Eigen::Vector3d::Zero();          // in C [rad/s]
+  // (dp in W, dphi in C, dv in W, dw in C).
+  evaluation::Matrix12d covariance = evaluation::Matrix12d::Zero();
+};
+
+// It sees what a detector sees: stamps and observations, no truth.
+using PointFilter = std::function<PointEstimate(std::int64_t stamp_ns, const std::vector<sim::PointObservation>&)>;
+
+// NEES by evaluation::kStateBlocks: position, orientation, linear velocity, angular velocity, pose, velocity, joint;
+// NaN where the covariance is not positive definite.
+using BlockNees = std::array<double, evaluation::kStateBlocks.size()>;
+
+struct PointResult {
+  evaluation::Metrics metrics;
+  std::vector<BlockNees> nees;  // per frame; nothing is aligned
+};
+
+// Plays what is left of the world to the filter. Throws what the filter throws, and std::invalid_argument for an
+// estimate that is not finite.
+PointResult Judge(sim::PointWorld world, const PointFilter& filter, const evaluation::JudgeOptions& options = {});
+
+// The same, not judged yet.
+struct PointPlay {
+  std::vector<sim::PointFrame> frames;
+  Truth truth;
+  evaluation::EstimateRun estimates;  // a pose and a belief for each frame
+};
+PointPlay Play(sim::PointWorld& world, const PointFilter& filter);
+
+// Errors, sigmas and NEES of each frame; nothing is aligned.
+std::vector<evaluation::FrameConsistency> ConsistencyOf(const PointPlay& play);
+
+// For runs that were played elsewhere: one entry per pose with a belief.
+std::vector<BlockNees> NeesByBlock(const evaluation::EstimateRun& run, const Truth& truth,
+                                   evaluation::Gauge gauge = evaluation::Gauge::as_is);
+
+}  // namespace vobench

@@ -1,0 +1,36 @@
+// Purpose: is anybody's filter as uncertain as it is wrong? It plays many worlds drawn from its own prior, and is held
+//          against exact filters of the same worlds: a consistency test in a few lines. docs/point_world.md has them.
+// Source:  docs/metrics.md, "Consistency as pass or fail". Needs sim and tools/judge/evaluation only.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "sim/points/point_world.h"
+#include "tools/bench/points/point_bench.h"
+#include "tools/judge/evaluation/consistency_verdict.h"
+
+namespace vobench {
+
+// A new filter for each world. Of the world it may use what a filter is told: camera(), scenario(), TruthAt(0).
+using MakePointFilter = std::function<PointFilter(const sim::PointWorld& world)>;
+
+struct ConsistencyOptions {
+  int runs = 50;               // worlds, each with a seed of its own; 10 or more
+  std::uint64_t seed = 1;      // of the first; the others count up from it
+  double false_alarm = 0.001;  // of each check; an honest filter fails the whole in at most verdict.false_alarm()
+};
+
+// ANEES, ranks and coverage of every part of the state, and RMSE over the Cramer-Rao bound. What the filter says after
+// the first frame is taken as its knowledge of the start. Throws std::invalid_argument for options that make no sense,
+// for a world that is not drawn from a prior (ProblemOf) and for an estimate that is not finite; what `make` and its
+// filters throw.
+evaluation::ConsistencyVerdict TestConsistency(const sim::Scenario& scenario, const MakePointFilter& make,
+                                               const ConsistencyOptions& options = {});
+
+// One line for each check that failed: "ANEES mean, pose: 2.01, not <= 1.18". Empty where verdict.honest(); RMSE over
+// the bound says how good a filter is, not how honest, and is left out.
+std::string FailedChecks(const evaluation::ConsistencyVerdict& verdict);
+
+}  // namespace vobench

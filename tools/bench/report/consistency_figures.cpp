@@ -1,0 +1,163 @@
+// NEES, NIS and ranks, each with what an honest filter would show.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "tools/bench/report/drawn_runs.h"
+#include "tools/bench/report/figures.h"
+#include "tools/bench/report/text.h"
+#include "tools/judge/evaluation/nis.h"
+
+namespace report {
+namespace {
+
+namespace ev = evaluation;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+using Nees = double ev::FrameConsistency::*;
+
+Series NeesOf(const ResultData& data, const RunData& run, std::size_t system, Nees nees, int dof) {
+  Series line = LineOf(run.entry.system, system, {}, {});
+  for (const ev::FrameConsistency& frame : run.judged->consistency) {
+    line.x.push_back(Seconds(data, frame.stamp_ns));
+    line.y.push_back(frame.*nees / dof);
+  }
+  return line;
+}
+
+std::vector<ev::AneesPoint> AneesOf(const ResultData& data, const std::string& system, Nees nees, int dof,
+                                    std::size_t& runs) {
+  std::vector<std::vector<std::int64_t>> stamps;
+  std::vector<Numbers> values;
+  for (const RunData& run : data.runs) {
+    if (run.entry.system != system || !run.judged || run.judged->consistency.empty()) continue;
+    stamps.emplace_back();
+    values.emplace_back();
+    for (const ev::FrameConsistency& frame : run.judged->consistency) {
+      stamps.back().push_back(frame.stamp_ns);
+      values.back().push_back(frame.*nees);
+    }
+  }
+  runs = values.size();
+  return ev::Anees(stamps, values, dof);
+}
+
+void AddNees(const ResultData& data, const std::string& title, Nees nees, int dof, std::vector<Figure>& figures) {
+  Figure figure;
+  figure.title = title;
+  figure.description =
+      "Normalised estimation error squared in time, averaged over runs; an honest filter stays inside the band around "
+      "1 in 95 of 100 frames.";
+  figure.x.label = "time [s]";
+  figure.y = {"NEES / " + std::to_string(dof), true};
+  const std::vector<std::string> systems = data.Systems();
+  std::vector<Series> means;  // above all else
+  std::set<std::size_t> banded;
+  for (std::size_t s = 0; s < systems.size(); ++s) {
+    std::size_t runs = 0;
+    const auto points = AneesOf(data, systems[s], nees, dof, runs);
+    if (points.empty()) continue;
+    Series& mean = means.emplace_back(LineOf(systems[s], s, {}, {}));
+    Series band = LineAs(Role::expected,
+                         runs > 1 ? "95 % of " + std::to_string(runs) + " honest runs" : "95 % of honest runs", {}, {});
+    band.draw = Draw::band;
+    for (const ev::AneesPoint& point : points) {
+      mean.x.push_back(Seconds(data, point.stamp_ns));
+      mean.y.push_back(point.anees / dof);
+      band.y.push_back(point.band.low / dof);
+      band.high.push_back(point.band.high / dof);
+    }
+    band.x = mean.x;
+    if (banded.insert(runs).second) figure.series.insert(figure.series.begin(), band);
+    if (runs < 2) continue;
+    std::vector<const RunData*> faint = FaintRuns(data, systems[s]);
+    faint.push_back(&data.Typical(systems[s]));
+    for (const RunData* run : faint) {
+      if (!run->judged || run->judged->consistency.empty()) continue;
+      figure.series.push_back(NeesOf(data, *run, s, nees, dof));
+      figure.series.back().faint = true;
+    }
+  }
+  if (means.empty()) return;
+  figure.series.insert(figure.series.end(), means.begin(), means.end());
+  figures.push_back(figure);
+}
+
+}  // namespace
+
+std::vector<Figure> NeesFigures(const ResultData& data) {
+  std::vector<Figure> figures;
+  AddNees(data, "NEES of the pose", &ev::FrameConsistency::nees_pose, 6, figures);
+  AddNees(data, "NEES of the pose, blind to scale", &ev::FrameConsistency::nees_pose_scale_free, 5, figures);
+  AddNees(data, "NEES of the velocity", &ev::FrameConsistency::nees_velocity, 6, figures);
+  return figures;
+}
+
+std::vector<Figure> NisFigures(const ResultData& data) {
+  std::vector<Figure> figures;
+  const std::vector<std::string> systems = data.Systems();
+  for (std::size_t s = 0; s < systems.size(); ++s) {
+    const RunData& run = data.Typical(systems[s]);
+    Series nis = LineOf(systems[s], s, {}, {});
+    Series band = LineAs(Role::expected, "95 %", {}, {});
+    band.draw = Draw::band;
+    std::map<int, ev::Band> bands;
+    for (const ev::FrameRecord& frame : run.run.frames) {
+      nis.x.push_back(Seconds(data, frame.stamp_ns));
+      const int dof = frame.nis_dof;
+      if (dof > 0 && !bands.contains(dof)) bands[dof] = ev::Chi2MeanBand(dof, 1);
+      nis.y.push_back(dof > 0 ? frame.nis / dof : kNaN);
+      band.y.push_back(dof > 0 ? bands[dof].low / dof : kNaN);
+      band.high.push_back(dof > 0 ? bands[dof].high / dof : kNaN);
+    }
+    if (bands.empty()) continue;
+    band.x = nis.x;
+    Figure& figure = figures.emplace_back();
+    figure.title = "NIS of " + DisplayName(systems[s]);
+    figure.description = "Normalised innovation squared in time, with the band that 95 of 100 honest frames fall in.";
+    figure.x.label = "time [s]";
+    figure.y = {"NIS / dof", false, false, true};
+    figure.series = {band, nis};
+  }
+  return figures;
+}
+
+std::vector<Figure> RankFigures(const ResultData& data) {
+  const std::vector<std::string> systems = data.Systems();
+  std::size_t last = 0;
+  std::map<std::string, Figure> by_dimension;
+  std::vector<std::string> order;
+  for (const RankTable& table : data.ranks) last = std::max(last, table.frame);
+  for (const RankTable& table : data.ranks) {
+    const auto system = std::find(systems.begin(), systems.end(), table.system);
+    if (table.frame != last || system == systems.end()) continue;
+    const auto [at, is_new] = by_dimension.try_emplace(table.dimension);
+    Figure& figure = at->second;
+    Numbers places;
+    for (std::size_t bin = 0; bin < table.counts.size(); ++bin) places.push_back(static_cast<double>(bin + 1));
+    if (is_new) {
+      order.push_back(table.dimension);
+      figure.title = "Ranks of " + table.dimension;
+      figure.description =
+          "Where the truth falls among draws from the filter's belief, over runs: flat when honest, "
+          "high at both ends when over-confident, high in the middle when cautious.";
+      figure.x.label = "rank, in " + std::to_string(table.counts.size()) + " classes from lowest to highest";
+      figure.y = {"runs", false, false, true};
+      Series band = LineAs(Role::expected, "95 % of honest bars", places, table.low);
+      band.draw = Draw::band;
+      band.high = table.high;
+      figure.series.push_back(band);
+    }
+    Series bars = LineOf(table.system, static_cast<std::size_t>(system - systems.begin()), places, table.counts);
+    bars.draw = Draw::bars;
+    figure.series.push_back(bars);
+  }
+  std::vector<Figure> figures;
+  for (const std::string& dimension : order) figures.push_back(by_dimension[dimension]);
+  return figures;
+}
+
+}  // namespace report

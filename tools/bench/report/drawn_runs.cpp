@@ -1,0 +1,64 @@
+#include "tools/bench/report/drawn_runs.h"
+
+#include <algorithm>
+
+#include "tools/bench/report/text.h"
+
+namespace report {
+
+namespace ev = evaluation;
+
+std::vector<const RunData*> FaintRuns(const ResultData& data, const std::string& system) {
+  const RunData& typical = data.Typical(system);
+  std::vector<const RunData*> others;
+  for (const RunData& run : data.runs) {
+    if (run.entry.system == system && &run != &typical) others.push_back(&run);
+  }
+  if (others.size() <= kFaintRuns) return others;
+  const auto ate = [](const RunData* run) { return run->judged ? run->judged->metrics.errors.sim3.position.rmse : 0; };
+  std::stable_sort(others.begin(), others.end(), [&](const RunData* a, const RunData* b) { return ate(a) < ate(b); });
+  std::vector<const RunData*> kept;
+  for (std::size_t k = 0; k < kFaintRuns; ++k) kept.push_back(others[k * (others.size() - 1) / (kFaintRuns - 1)]);
+  return kept;
+}
+
+const RunData* AnyJudged(const ResultData& data) {
+  const auto found = std::find_if(data.runs.begin(), data.runs.end(), [](const RunData& run) { return run.judged; });
+  return found == data.runs.end() ? nullptr : &*found;
+}
+
+const ev::Trajectory& Reference(const ResultData& data) {
+  const RunData& shown = data.Typical(data.Systems().front());
+  if (shown.judged) return shown.judged->truth;
+  const RunData* judged = AnyJudged(data);
+  return judged ? judged->judged->truth : data.runs.front().run.trajectory;
+}
+
+double Seconds(const ResultData& data, std::int64_t stamp_ns) {
+  return static_cast<double>(stamp_ns - data.runs.front().run.trajectory.front().stamp_ns) * 1e-9;
+}
+
+Numbers Times(const ResultData& data, const ev::Trajectory& trajectory) {
+  Numbers times;
+  for (const ev::StampedPose& pose : trajectory) times.push_back(Seconds(data, pose.stamp_ns));
+  return times;
+}
+
+const ev::Trajectory& Drawn(const RunData& run) { return run.judged ? run.judged->aligned : run.run.trajectory; }
+
+Series LineOf(const std::string& system, std::size_t number, Numbers x, Numbers y) {
+  Series line = LineAs(Role::system, DisplayName(system), std::move(x), std::move(y));
+  line.system = number;
+  return line;
+}
+
+Series LineAs(Role role, const std::string& name, Numbers x, Numbers y) {
+  Series line;
+  line.name = name;
+  line.role = role;
+  line.x = std::move(x);
+  line.y = std::move(y);
+  return line;
+}
+
+}  // namespace report

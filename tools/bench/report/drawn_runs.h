@@ -1,0 +1,39 @@
+// Purpose: which runs the figures show, and on what clock.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/bench/report/figure.h"
+#include "tools/bench/report/result_data.h"
+
+namespace report {
+
+constexpr double kDegrees = 180 / M_PI;
+constexpr double kCentimetres = 100;
+
+// A system's other runs beside the typical one are drawn faint: these, from the best to the worst, both among them.
+constexpr std::size_t kFaintRuns = 9;
+std::vector<const RunData*> FaintRuns(const ResultData& data, const std::string& system);
+
+// None where nothing is judged.
+const RunData* AnyJudged(const ResultData& data);
+
+// The path that the drawn runs belong to: the truth, or where there is none the first run's own.
+const evaluation::Trajectory& Reference(const ResultData& data);
+
+// Time zero of every figure: the first pose of the first run.
+double Seconds(const ResultData& data, std::int64_t stamp_ns);
+Numbers Times(const ResultData& data, const evaluation::Trajectory& trajectory);
+
+// The trajectory that stands for a run: aligned where there is a truth.
+const evaluation::Trajectory& Drawn(const RunData& run);
+
+// A system's line.
+Series LineOf(const std::string& system, std::size_t number, Numbers x, Numbers y);
+// A line in another role, with its name.
+Series LineAs(Role role, const std::string& name, Numbers x, Numbers y);
+
+}  // namespace report

@@ -1,0 +1,67 @@
+// Purpose: what a diagram of the report shows, as values: axes with units, and series of numbers. Where and how it is
+//          drawn is the page's affair (tools/bench/report/web).
+// Source:  docs/report_data.md.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace report {
+
+using Numbers = std::vector<double>;  // NaN: no answer, a gap in the line
+
+struct Axis {
+  std::string label;         // with the unit
+  bool logarithmic = false;  // what is not positive is not drawn
+  bool reversed = false;     // grows to the left, or downwards
+  bool from_zero = false;    // zero belongs to it
+  bool stress = false;       // marked at the doses of a campaign alone
+  std::optional<double> low = {}, high = {};
+};
+
+enum class Draw {
+  line,
+  band,  // from y to high
+  dots,
+  bars,
+  interval,  // from (x, y) to (high, y)
+};
+
+enum class Role {
+  system,  // in the colour of its system
+  truth,
+  expected,  // what an honest one would show
+  context,   // grey
+  warning,
+};
+
+struct Series {
+  // In the legend; series of one name are shown and hidden together. Empty: always shown.
+  std::string name;
+  Draw draw = Draw::line;
+  Role role = Role::system;
+  std::size_t system = 0;  // of Role::system: 0, 1, ... as everywhere on the page
+  bool faint = false;      // one of many runs
+  Numbers x, y;
+  Numbers high = {};                    // of bands and intervals
+  Numbers z = {}, t = {};               // in space; seconds, to be told of a point of a path
+  std::vector<std::string> notes = {};  // to be told of each point
+};
+
+struct Figure {
+  enum class Kind {
+    plane,
+    space,  // x, y and z, to be turned
+  };
+  std::string title;
+  std::string description;  // for those who do not see it
+  Kind kind = Kind::plane;
+  Axis x, y;
+  bool equal_scale = false;  // a metre is as long in both directions
+  std::vector<Series> series;
+  std::string up = "z";  // of Kind::space: "x", "-x", ... points up
+};
+
+}  // namespace report

@@ -1,0 +1,124 @@
+#include "tools/bench/report/figure_json.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+
+#include "tools/bench/report/text.h"
+
+namespace report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "vobench figures 1";
+
+const char* NameOf(Draw draw) {
+  switch (draw) {
+    case Draw::line:
+      return "line";
+    case Draw::band:
+      return "band";
+    case Draw::dots:
+      return "dots";
+    case Draw::bars:
+      return "bars";
+    case Draw::interval:
+      return "interval";
+  }
+  return "";
+}
+
+const char* NameOf(Role role) {
+  switch (role) {
+    case Role::system:
+      return "system";
+    case Role::truth:
+      return "truth";
+    case Role::expected:
+      return "expected";
+    case Role::context:
+      return "context";
+    case Role::warning:
+      return "warning";
+  }
+  return "";
+}
+
+std::string Coded(const Numbers& numbers) {
+  std::string bytes;
+  for (const double number : numbers) {
+    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(number));
+    for (int k = 0; k < 4; ++k) bytes += static_cast<char>(bits >> (8 * k) & 0xFFu);
+  }
+  return Base64(bytes);
+}
+
+Json Of(const Axis& axis) {
+  Json json = {{"label", axis.label}};
+  if (axis.logarithmic) json["logarithmic"] = true;
+  if (axis.reversed) json["reversed"] = true;
+  if (axis.from_zero) json["from_zero"] = true;
+  if (axis.stress) json["stress"] = true;
+  if (axis.low) json["low"] = *axis.low;
+  if (axis.high) json["high"] = *axis.high;
+  return json;
+}
+
+Json Of(const Series& series, Columns& columns) {
+  Json json = {{"name", series.name},
+               {"draw", NameOf(series.draw)},
+               {"role", NameOf(series.role)},
+               {"x", columns.Add(series.x)},
+               {"y", columns.Add(series.y)}};
+  if (series.role == Role::system) json["system"] = series.system;
+  if (series.faint) json["faint"] = true;
+  if (!series.high.empty()) json["high"] = columns.Add(series.high);
+  if (!series.z.empty()) json["z"] = columns.Add(series.z);
+  if (!series.t.empty()) json["t"] = columns.Add(series.t);
+  if (!series.notes.empty()) json["notes"] = series.notes;
+  return json;
+}
+
+Json Of(const Figure& figure, const std::string& id, Columns& columns) {
+  const bool in_space = figure.kind == Figure::Kind::space;
+  Json json = {
+      {"id", id}, {"title", figure.title}, {"description", figure.description}, {"kind", in_space ? "space" : "plane"}};
+  if (in_space) {
+    json["up"] = figure.up;
+  } else {
+    json["x"] = Of(figure.x);
+    json["y"] = Of(figure.y);
+    if (figure.equal_scale) json["equal_scale"] = true;
+  }
+  json["series"] = Json::array();
+  for (const Series& series : figure.series) json["series"].push_back(Of(series, columns));
+  return json;
+}
+
+}  // namespace
+
+std::size_t Columns::Add(const Numbers& numbers) {
+  std::string coded = Coded(numbers);
+  const auto found = std::find(coded_.begin(), coded_.end(), coded);
+  if (found != coded_.end()) return static_cast<std::size_t>(found - coded_.begin());
+  coded_.push_back(std::move(coded));
+  return coded_.size() - 1;
+}
+
+std::string FiguresJson(const std::vector<std::string>& systems, const std::vector<Figure>& figures, const Json& more) {
+  Columns columns;
+  Json json = {{"format", kFormat}, {"systems", systems}, {"figures", Json::array()}};
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    json["figures"].push_back(Of(figures[i], "f" + std::to_string(i), columns));
+  }
+  json["columns"] = columns.coded();
+  if (more.is_object()) json.update(more);
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace), safe;
+  safe.reserve(text.size());
+  for (const char c : text) c == '<' ? safe += "\\u003c" : safe += c;
+  return safe;
+}
+
+}  // namespace report

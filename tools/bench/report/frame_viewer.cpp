@@ -1,0 +1,124 @@
+#include "tools/bench/report/frame_viewer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "tools/bench/report/drawn_runs.h"
+#include "tools/bench/report/text.h"
+#include "tools/judge/evaluation/text_file.h"
+
+namespace report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+std::string ReadBytes(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw evaluation::InputError({file.string() + ": cannot be read"});
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string ReadIfThere(const fs::path& file) { return fs::exists(file) ? ReadBytes(file) : std::string(); }
+
+std::size_t Bytes(const ViewedFrame& frame) {
+  std::size_t features = 0;
+  for (const auto& marks : frame.features) features += marks.size();
+  return frame.picture.size() + frame.depth.size() + frame.flow.size() + 28 * features;
+}
+
+// Every n-th, n as small as the room allows; none where not even one fits.
+std::vector<ViewedFrame> Fitting(std::vector<ViewedFrame> frames, std::size_t bytes) {
+  for (std::size_t every = 1; every <= frames.size(); ++every) {
+    std::vector<ViewedFrame> kept;
+    std::size_t total = 0;
+    for (std::size_t i = every / 2; i < frames.size(); i += every) total += Bytes(frames[i]);
+    if (total > bytes) continue;
+    for (std::size_t i = every / 2; i < frames.size(); i += every) kept.push_back(std::move(frames[i]));
+    return kept;
+  }
+  return {};
+}
+
+// Tenths of a pixel: [status, predicted, pixel, innovation covariance].
+Json Of(const FeatureMark& mark) {
+  const auto tenth = [](double value) { return std::round(10 * value) / 10; };
+  const Eigen::Matrix2d& S = mark.covariance;
+  return {static_cast<int>(mark.status),
+          tenth(mark.predicted.x()),
+          tenth(mark.predicted.y()),
+          tenth(mark.pixel.x()),
+          tenth(mark.pixel.y()),
+          tenth(S(0, 0)),
+          tenth(S(0, 1)),
+          tenth(S(1, 1))};
+}
+
+}  // namespace
+
+FrameViewer MakeFrameViewer(const fs::path& out, const ResultData& data, std::size_t bytes) {
+  FrameViewer viewer;
+  viewer.scale = ReadTruthScale(out);
+  const std::vector<std::string> systems = data.Systems();
+  std::map<std::int64_t, ViewedFrame> frames;
+  for (std::size_t s = 0; s < systems.size(); ++s) {
+    const RunData& run = data.Typical(systems[s]);
+    if (run.pictures.pictures.empty()) continue;
+    viewer.width = run.pictures.width;
+    viewer.height = run.pictures.height;
+    for (const KeptPicture& picture : run.pictures.pictures) {
+      ViewedFrame& frame = frames[picture.stamp_ns];
+      if (frame.picture.empty()) {
+        frame.t_s = Seconds(data, picture.stamp_ns);
+        frame.picture = ReadBytes(out / run.entry.path / PicturePath(picture.stamp_ns));
+        frame.depth = ReadIfThere(out / DepthPath(picture.stamp_ns));
+        frame.flow = ReadIfThere(out / FlowPath(picture.stamp_ns));
+        frame.features.resize(systems.size());
+      }
+      frame.features[s] = picture.features;
+    }
+  }
+  std::vector<ViewedFrame> all;
+  for (auto& [stamp, frame] : frames) all.push_back(std::move(frame));
+  viewer.frames = Fitting(std::move(all), bytes);
+  return viewer;
+}
+
+FrameViewer NewestFrame(const ResultData& data, std::int64_t stamp_ns, const Eigen::Vector2i& size, std::string picture,
+                        std::span<const std::vector<FeatureMark>> features) {
+  ViewedFrame frame;
+  frame.t_s = Seconds(data, stamp_ns);
+  frame.picture = std::move(picture);
+  for (const std::string& system : data.Systems()) {
+    std::vector<FeatureMark>& marks = frame.features.emplace_back();
+    std::ranges::copy_if(features[static_cast<std::size_t>(&data.Typical(system) - data.runs.data())],
+                         std::back_inserter(marks), IsDrawable);
+  }
+  return {size.x(), size.y(), {}, {std::move(frame)}};
+}
+
+Json ToJson(const FrameViewer& viewer) {
+  Json json = {{"width", viewer.width}, {"height", viewer.height}};
+  if (viewer.scale.farthest_m > 0) json["depth_m"] = {viewer.scale.nearest_m, viewer.scale.farthest_m};
+  if (viewer.scale.largest_flow_px > 0) json["flow_px"] = viewer.scale.largest_flow_px;
+  json["frames"] = Json::array();
+  for (const ViewedFrame& frame : viewer.frames) {
+    Json entry = {{"t", frame.t_s}, {"picture", Base64(frame.picture)}};
+    if (!frame.depth.empty()) entry["depth"] = Base64(frame.depth);
+    if (!frame.flow.empty()) entry["flow"] = Base64(frame.flow);
+    entry["features"] = Json::array();
+    for (const auto& marks : frame.features) {
+      Json features = Json::array();
+      for (const FeatureMark& mark : marks) features.push_back(Of(mark));
+      entry["features"].push_back(features);
+    }
+    json["frames"].push_back(entry);
+  }
+  return json;
+}
+
+}  // namespace report

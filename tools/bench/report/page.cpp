@@ -1,0 +1,123 @@
+#include "tools/bench/report/page.h"
+
+#include <algorithm>
+
+#include "tools/bench/report/drawn_runs.h"
+#include "tools/bench/report/figures.h"
+#include "tools/bench/report/guard_table.h"
+#include "tools/bench/report/html.h"
+#include "tools/bench/report/run_summary.h"
+#include "tools/bench/report/text.h"
+
+namespace report {
+namespace {
+
+namespace ev = evaluation;
+
+constexpr std::size_t kPictureBytes = 800'000;  // a third more in base64
+
+bool OwnWorld(const std::vector<JudgedRun>& judged) {
+  return std::any_of(judged.begin(), judged.end(),
+                     [](const JudgedRun& run) { return run.metrics.options.gauge == ev::Gauge::first_pose; });
+}
+
+std::string Record(const RunDescription& d) {
+  std::string html = "<p>Command</p><pre>" + Escape(d.command) + "</pre><p>Versions</p><pre>";
+  for (const auto& [name, version] : d.versions) html += Escape(name + " " + version) + "\n";
+  html += "</pre>";
+  if (!d.settings.empty()) {
+    html += "<details><summary>All settings, resolved</summary><pre>" + Escape(d.settings) + "</pre></details>";
+  }
+  return html;
+}
+
+std::string TypicalRuns(const ResultData& data) {
+  const std::vector<std::string> systems = data.Systems();
+  if (data.runs.size() == systems.size()) return "";
+  std::size_t most = 0;
+  for (const std::string& system : systems) {
+    most = std::max(
+        most, static_cast<std::size_t>(std::count_if(data.runs.begin(), data.runs.end(),
+                                                     [&](const auto& run) { return run.entry.system == system; })));
+  }
+  return " Bold: each system's typical run (of median ATE); faint: " +
+         (most > kFaintRuns + 1 ? std::to_string(kFaintRuns) + " of its other seeds, from the best to the worst."
+                                : std::string("its other seeds."));
+}
+
+std::string ShownSeeds(const ResultData& data) {
+  std::string text;
+  for (const std::string& system : data.Systems()) {
+    text += (text.empty() ? "" : ", ") + Escape(DisplayName(system)) + " with seed " +
+            std::to_string(data.Typical(system).entry.seed);
+  }
+  return text;
+}
+
+// All but the frames.
+Page PageOf(const ResultData& data) {
+  const std::vector<JudgedRun> judged = data.JudgedRuns();
+  Page page;
+  page.title = data.description.title.empty() ? "vobench report" : data.description.title;
+  page.summary = RunSummary(data, judged);
+  for (const std::string& system : data.Systems()) page.systems.push_back(DisplayName(system));
+  const std::string typical = TypicalRuns(data);
+  const std::string own_paths = " Every seed flies a path of its own; shown is that of seed " +
+                                std::to_string(data.Typical(data.Systems().front()).entry.seed) + ", where " +
+                                Escape(DisplayName(data.Systems().front())) + " has its median ATE.";
+  page.sections = {
+      {"Path",
+       (judged.empty() ? "In the odometry's own world and scale." : "Estimates aligned to the truth by Sim(3).") +
+           (data.SharedTruth() ? typical : own_paths),
+       PathFigures(data)},
+      {"Errors", "Distance from the truth, after the same alignment." + typical, AlignedErrorFigures(data)},
+      {"Runs", "", {}, RunTable(judged)},
+      {"Is it as uncertain as it is wrong?",
+       "NEES compares errors, not aligned, with the covariance the filter claims: 1 is ideal, above the band it is "
+       "over-confident, below it cautious. Frames of one run depend on each other, so the band holds for each frame by "
+       "itself. Scale: monocular odometry cannot see it; the second diagram does not count it." +
+           std::string(OwnWorld(judged) ? " These runs began in a world of their own: the truth was moved there by its "
+                                          "first pose, whose own error counts as theirs."
+                                        : ""),
+       NeesFigures(data)},
+      {"Is it consistent with its own model?", "", {}, VerdictTable(data.verdict)},
+      {"Ranks",
+       "Where the truth falls among 99 draws from the filter's belief at the last ranked frame, over runs (ranks.csv "
+       "has "
+       "all frames). An honest filter's bars are all alike: of a single bar, 95 of 100 are in the band.",
+       RankFigures(data)},
+      {"Innovations",
+       "NIS compares what the filter expected to see with what it saw; it needs no truth. Gating drops the largest "
+       "innovations, so an honest filter sits slightly below 1.",
+       NisFigures(data)},
+      {"Errors and what they should be",
+       "Truth minus estimate, not aligned; orientation about the camera's axes. The bands are what the filters claim, "
+       "±3σ. " +
+           ShownSeeds(data) + ".",
+       PoseErrorFigures(data)},
+      {"Velocity and what it should be", "The same of linear and angular velocity.", VelocityErrorFigures(data), "",
+       "Velocity"},
+      {"Pose in time", judged.empty() ? "" : "Aligned by Sim(3).", PoseFigures(data)},
+      {"Features and time", "", FrameFigures(data), GuardTable(judged)},
+      {"How this was made", "", {}, Record(data.description)},
+  };
+  return page;
+}
+
+}  // namespace
+
+Page RunPage(const std::filesystem::path& out, const ResultData& data) {
+  Page page = PageOf(data);
+  page.frames = MakeFrameViewer(out, data, kPictureBytes);
+  return page;
+}
+
+Page LivePage(const ResultData& data, FrameViewer newest) {
+  Page page = PageOf(data);
+  page.frames = std::move(newest);
+  page.live = true;
+  for (Section& section : page.sections) section.body.clear();
+  return page;
+}
+
+}  // namespace report

@@ -1,0 +1,17 @@
+// Purpose: the report of a run as a page.
+#pragma once
+
+#include <filesystem>
+
+#include "tools/bench/report/html.h"
+#include "tools/bench/report/result_data.h"
+
+namespace report {
+
+// `out` is the result folder, for its pictures. Throws evaluation::InputError where one cannot be read.
+Page RunPage(const std::filesystem::path& out, const ResultData& data);
+
+// Of runs that are not done yet: words, figures and their newest frame.
+Page LivePage(const ResultData& data, FrameViewer newest);
+
+}  // namespace report

@@ -1,0 +1,192 @@
+// Paths in space and in time.
+#include <algorithm>
+#include <cmath>
+
+#include "tools/bench/report/drawn_runs.h"
+#include "tools/bench/report/figures.h"
+#include "tools/bench/report/text.h"
+#include "tools/judge/evaluation/so3.h"
+
+namespace report {
+namespace {
+
+namespace ev = evaluation;
+using Points = std::vector<Eigen::Vector3d>;
+
+constexpr std::size_t kLandmarks = 2000;
+
+Points Positions(const ev::Trajectory& trajectory) {
+  Points positions;
+  for (const ev::StampedPose& pose : trajectory) positions.push_back(pose.p_WC);
+  return positions;
+}
+
+Numbers Component(const Points& points, int k) {
+  Numbers values;
+  for (const Eigen::Vector3d& p : points) values.push_back(p[k]);
+  return values;
+}
+
+// Cameras are mostly held upright: up is the world axis that is nearest to the mean of the images' upward direction.
+Eigen::Vector3d UpOf(const ev::Trajectory& trajectory) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const ev::StampedPose& pose : trajectory) mean -= pose.q_WC * Eigen::Vector3d::UnitY();
+  int axis = 0;
+  mean.cwiseAbs().maxCoeff(&axis);
+  return (mean[axis] < 0 ? -1 : 1) * Eigen::Vector3d::Unit(axis);
+}
+
+int AxisOf(const Eigen::Vector3d& direction) {
+  int largest = 0;
+  direction.cwiseAbs().maxCoeff(&largest);
+  return largest;
+}
+
+std::string NameOf(const Eigen::Vector3d& direction) {
+  return (direction.sum() < 0 ? "-" : "") + std::string(1, "xyz"[AxisOf(direction)]);
+}
+
+Axis WorldAxis(const Eigen::Vector3d& direction) {
+  return {std::string(1, "xyz"[AxisOf(direction)]) + " [m]", false, direction.sum() < 0};
+}
+
+// Landmarks in the world of the drawing, permanent ones only.
+Points Map(const RunData& run) {
+  Points points;
+  for (const Landmark& landmark : run.landmarks) {
+    if (!landmark.permanent) continue;
+    const ev::StampedPose at{0, landmark.X_W, Eigen::Quaterniond::Identity()};
+    points.push_back(run.judged ? ev::Apply(run.judged->metrics.errors.sim3.similarity, at).p_WC : at.p_WC);
+  }
+  const std::size_t every = (points.size() + kLandmarks - 1) / kLandmarks;
+  Points kept;
+  for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(every, 1)) kept.push_back(points[i]);
+  return kept;
+}
+
+void SetPoints(const Points& points, Series& series) {
+  series.x = Component(points, 0);
+  series.y = Component(points, 1);
+  series.z = Component(points, 2);
+}
+
+Series InSpace(const ResultData& data, const ev::Trajectory& trajectory, Series series) {
+  SetPoints(Positions(trajectory), series);
+  series.t = Times(data, trajectory);
+  return series;
+}
+
+// The page turns it; `up` says how it stands at first.
+Figure SpaceFigure(const ResultData& data, const std::string& described) {
+  Figure figure;
+  figure.kind = Figure::Kind::space;
+  figure.title = "In space";
+  figure.description = described + " Dots are the permanent landmarks of the final maps.";
+  figure.up = NameOf(UpOf(Reference(data)));
+  const std::vector<std::string> systems = data.Systems();
+  for (std::size_t s = 0; s < systems.size(); ++s) {
+    const RunData& typical = data.Typical(systems[s]);
+    if (const Points map = Map(typical); !map.empty()) {
+      Series dots = LineOf(systems[s], s, {}, {});
+      dots.draw = Draw::dots;
+      dots.faint = true;
+      SetPoints(map, dots);
+      figure.series.push_back(dots);
+    }
+    if (!data.SharedTruth()) continue;
+    for (const RunData* run : FaintRuns(data, systems[s])) {
+      Series line = InSpace(data, Drawn(*run), LineOf(systems[s], s, {}, {}));
+      line.faint = true;
+      figure.series.push_back(line);
+    }
+  }
+  if (AnyJudged(data)) figure.series.push_back(InSpace(data, Reference(data), LineAs(Role::truth, "truth", {}, {})));
+  for (std::size_t s = 0; s < systems.size(); ++s) {
+    figure.series.push_back(InSpace(data, Drawn(data.Typical(systems[s])), LineOf(systems[s], s, {}, {})));
+  }
+  return figure;
+}
+
+// The paths of the figure in space, seen along a world axis.
+Figure Projected(const Figure& space, const std::string& title, const std::string& described,
+                 const Eigen::Vector3d& right, const Eigen::Vector3d& up) {
+  Figure figure;
+  figure.title = title;
+  figure.description = described;
+  figure.x = WorldAxis(right);
+  figure.y = WorldAxis(up);
+  figure.equal_scale = true;
+  const auto along = [](const Series& series, const Eigen::Vector3d& direction) {
+    const Numbers* columns[] = {&series.x, &series.y, &series.z};
+    return *columns[AxisOf(direction)];
+  };
+  for (const Series& series : space.series) {
+    if (series.draw != Draw::line) continue;
+    Series flat = series;
+    flat.x = along(series, right);
+    flat.y = along(series, up);
+    flat.z.clear();
+    figure.series.push_back(flat);
+  }
+  return figure;
+}
+
+// Rotation vectors since the first pose, without jumps of a full turn [deg].
+Points RotationsSince(const Eigen::Quaterniond& start, const ev::Trajectory& trajectory) {
+  Points rotations;
+  for (const ev::StampedPose& pose : trajectory) {
+    Eigen::Vector3d phi = ev::Log(start.conjugate() * pose.q_WC);
+    if (!rotations.empty() && phi.norm() > 0) {
+      const Eigen::Vector3d& before = rotations.back();
+      const Eigen::Vector3d other = phi - 2 * M_PI * phi.normalized();
+      if ((other - before).norm() < (phi - before).norm()) phi = other;
+    }
+    rotations.push_back(phi);
+  }
+  for (Eigen::Vector3d& phi : rotations) phi *= kDegrees;
+  return rotations;
+}
+
+}  // namespace
+
+std::vector<Figure> PathFigures(const ResultData& data) {
+  const std::string described = AnyJudged(data)
+                                    ? "Truth and the estimates, aligned to it by rotation, translation and scale."
+                                    : "The estimates, each in its own scale; there is no truth.";
+  const Eigen::Vector3d up = UpOf(Reference(data));
+  const Eigen::Vector3d right = Eigen::Vector3d::Unit(AxisOf(up) == 0 ? 1 : 0);
+  const Figure space = SpaceFigure(data, described);
+  // right x forward = up, seen from above.
+  return {space, Projected(space, "From above", described, right, up.cross(right)),
+          Projected(space, "From the side", described, right, up)};
+}
+
+std::vector<Figure> PoseFigures(const ResultData& data) {
+  const std::vector<std::string> systems = data.Systems();
+  const Eigen::Quaterniond start = Reference(data).front().q_WC;
+  std::vector<Figure> figures;
+  for (const bool rotation : {false, true}) {
+    const auto values = [&](const ev::Trajectory& trajectory) {
+      return rotation ? RotationsSince(start, trajectory) : Positions(trajectory);
+    };
+    for (int k = 0; k < 3; ++k) {
+      const std::string name(1, "xyz"[k]);
+      Figure& figure = figures.emplace_back();
+      figure.title = rotation ? "Rotation about camera " + name + " since the start" : "Position " + name;
+      figure.description = "Truth and the typical run of each system, aligned, in time.";
+      figure.x.label = "time [s]";
+      figure.y.label = rotation ? "rotation [°]" : name + " [m]";
+      if (AnyJudged(data)) {
+        figure.series.push_back(
+            LineAs(Role::truth, "truth", Times(data, Reference(data)), Component(values(Reference(data)), k)));
+      }
+      for (std::size_t s = 0; s < systems.size(); ++s) {
+        const ev::Trajectory& drawn = Drawn(data.Typical(systems[s]));
+        figure.series.push_back(LineOf(systems[s], s, Times(data, drawn), Component(values(drawn), k)));
+      }
+    }
+  }
+  return figures;
+}
+
+}  // namespace report

@@ -1,0 +1,173 @@
+#include "tools/bench/report/result_data.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/bench/report/text.h"
+#include "tools/judge/evaluation/text_file.h"
+
+namespace report {
+namespace {
+
+namespace fs = std::filesystem;
+namespace ev = evaluation;
+
+std::vector<Landmark> ReadLandmarks(const fs::path& file) {
+  ev::Problems problems;
+  std::vector<Landmark> landmarks;
+  bool header = true;
+  for (const ev::Line& line : ev::ReadLines(file, ',')) {
+    if (line.tokens.size() != 7) {
+      problems.Add(file, line.number, 1, std::to_string(line.tokens.size()) + " columns where 7 are expected");
+      continue;
+    }
+    if (header) {
+      header = false;
+      if (line.tokens[0].text == "id") continue;
+      problems.Add(file, line.number, 1, "no header line");
+    }
+    Landmark landmark;
+    for (int k = 0; k < 3; ++k) {
+      const ev::Token& token = line.tokens[static_cast<std::size_t>(k) + 1];
+      const auto value = ev::ParseNumber(token.text);
+      if (!value) problems.Add(file, line.number, token.column, "'" + token.text + "' is not a finite number");
+      landmark.X_W[k] = value.value_or(0);
+    }
+    const ev::Token& last = line.tokens[6];
+    landmark.permanent = last.text == "1";
+    if (last.text != "0" && last.text != "1")
+      problems.Add(file, line.number, last.column, "'" + last.text + "' is not 0 or 1");
+    landmarks.push_back(landmark);
+  }
+  problems.ThrowIfAny();
+  return landmarks;
+}
+
+RunData ReadRun(const fs::path& out, const RunEntry& entry, const std::vector<RecordedMetrics>& recorded,
+                std::vector<std::string>& warnings) {
+  const fs::path folder = out / entry.path;
+  RunData data;
+  data.entry = entry;
+  data.run = ev::ReadEstimateRun(folder);
+  if (fs::exists(folder / "landmarks.csv")) data.landmarks = ReadLandmarks(folder / "landmarks.csv");
+  data.pictures = ReadPictures(folder);
+  if (!fs::exists(folder / "truth.txt")) return data;
+
+  std::optional<ev::Velocities> velocities;
+  if (fs::exists(folder / "truth_velocity.txt")) velocities = ev::ReadVelocities(folder / "truth_velocity.txt");
+  const auto found =
+      std::find_if(recorded.begin(), recorded.end(), [&](const RecordedMetrics& r) { return r.path == entry.path; });
+  data.judged = JudgeSeries(data.run, ev::ReadTrajectory(folder / "truth.txt"), velocities,
+                            found != recorded.end() ? found->options : ev::JudgeOptions{});
+  const std::string name = DisplayName(entry.system) + ", seed " + std::to_string(entry.seed);
+  if (found == recorded.end()) {
+    warnings.push_back(name + ": not in metrics.json; judged here with the default options.");
+    return data;
+  }
+  const double ate = data.judged->metrics.errors.sim3.position.rmse;
+  // Files are written with twelve digits.
+  if (!(std::abs(ate - found->ate_sim3_rmse_m) <= 1e-6 * ate + 1e-9)) {
+    warnings.push_back(name + ": metrics.json has an ATE of " + ev::FormatNumber(found->ate_sim3_rmse_m, 6) +
+                       " m, the files beside it give " + ev::FormatNumber(ate, 6) + " m. One of them was changed.");
+  }
+  return data;
+}
+
+// Equal poses at equal stamps.
+bool Agree(const ev::Trajectory& a, const ev::Trajectory& b) {
+  auto at = b.begin();
+  for (const ev::StampedPose& pose : a) {
+    while (at != b.end() && at->stamp_ns < pose.stamp_ns) ++at;
+    if (at == b.end()) break;
+    if (at->stamp_ns == pose.stamp_ns && (at->p_WC != pose.p_WC || at->q_WC.coeffs() != pose.q_WC.coeffs()))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+JudgedSeries JudgeSeries(const ev::EstimateRun& run, const ev::Trajectory& truth,
+                         const std::optional<ev::Velocities>& velocities, const ev::JudgeOptions& options) {
+  JudgedSeries series;
+  series.metrics = ev::Judge(run, truth, velocities, options);
+  ev::MatchedTrajectories matched = ev::MatchTrajectories(run.trajectory, truth, options.association);
+  series.aligned = ev::Apply(series.metrics.errors.sim3.similarity, matched.estimate);
+  series.truth = std::move(matched.truth);
+  if (!run.beliefs.empty()) {
+    series.consistency = ev::ComputeConsistency(run, truth, velocities, options.association.gap_ns, options.gauge);
+  }
+  return series;
+}
+
+std::vector<JudgedRun> ResultData::JudgedRuns() const {
+  std::vector<JudgedRun> judged;
+  for (const RunData& run : runs) {
+    if (run.judged) judged.push_back({run.entry, run.judged->metrics});
+  }
+  return judged;
+}
+
+std::vector<std::string> ResultData::Systems() const {
+  std::vector<std::string> systems;
+  for (const RunData& run : runs) {
+    if (std::find(systems.begin(), systems.end(), run.entry.system) == systems.end())
+      systems.push_back(run.entry.system);
+  }
+  return systems;
+}
+
+bool ResultData::SharedTruth() const {
+  const RunData* first = nullptr;
+  for (const RunData& run : runs) {
+    if (!run.judged) continue;
+    if (first == nullptr) first = &run;
+    if (!Agree(run.judged->truth, first->judged->truth)) return false;
+  }
+  return true;
+}
+
+const RunData& ResultData::Typical(const std::string& system) const {
+  const auto median = [this](const std::string& name) -> const RunData& {
+    std::vector<const RunData*> own;
+    for (const RunData& run : runs) {
+      if (run.entry.system == name) own.push_back(&run);
+    }
+    const auto ate = [](const RunData* run) {
+      return run->judged ? run->judged->metrics.errors.sim3.position.rmse : 0;
+    };
+    std::stable_sort(own.begin(), own.end(), [&](const RunData* a, const RunData* b) { return ate(a) < ate(b); });
+    return *own.at((own.size() - 1) / 2);
+  };
+  const std::string reference = Systems().front();
+  if (system == reference || SharedTruth()) return median(system);
+  const std::uint64_t seed = median(reference).entry.seed;
+  const auto same = std::find_if(runs.begin(), runs.end(), [&](const RunData& run) {
+    return run.entry.system == system && run.entry.seed == seed;
+  });
+  return same == runs.end() ? median(system) : *same;
+}
+
+ResultData ReadResult(const fs::path& out) {
+  ResultData data;
+  data.description = ReadRunJson(out);
+  std::vector<RecordedMetrics> recorded;
+  if (fs::exists(out / "metrics.json")) recorded = ReadMetricsJson(out);
+  std::vector<std::string> problems;
+  const auto note = [&](const auto& read) {
+    try {
+      read();
+    } catch (const ev::InputError& error) {
+      problems.push_back(error.what());
+    }
+  };
+  for (const RunEntry& entry : data.description.runs) {
+    note([&] { data.runs.push_back(ReadRun(out, entry, recorded, data.warnings)); });
+  }
+  note([&] { data.ranks = ReadRanks(out); });
+  note([&] { data.verdict = ReadVerdict(out); });
+  if (!problems.empty()) throw ev::InputError(problems);
+  return data;
+}
+
+}  // namespace report

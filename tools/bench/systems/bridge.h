@@ -1,0 +1,32 @@
+// Purpose: from the simulator's types to those of the odometry and of the judge. The image goes to the one, the truth
+// to the other.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/points/point_world.h"
+#include "sim/simulator.h"
+#include "tools/bench/points/truth.h"
+#include "vo/geometry/camera.h"
+#include "vo/point_odometry.h"
+#include "vo/sequence/reader.h"
+
+namespace vobench {
+
+vo::Camera ToOdometry(const sim::CameraParams& camera);
+// The same with the rolling shutter of its sensor.
+vo::Camera CameraOf(const sim::Scenario& scenario);
+// A copy of the pixels, in OpenCV's order of colours.
+vo::Frame ToOdometry(const sim::Frame& frame);
+vo::PointFrame ToOdometry(const sim::PointFrame& frame);
+
+// The truth of one frame alone, and of so many, from the first on.
+Truth TruthOf(const sim::Simulator& simulator, std::int64_t frame);
+Truth TruthOfFirst(const sim::Simulator& simulator, std::int64_t frames);
+
+// To stderr, one line each.
+void PrintWarnings(const std::vector<std::string>& warnings);
+
+}  // namespace vobench

@@ -1,0 +1,31 @@
+// Purpose: a scenario file with its three readers: the simulator's part, the odometry's and the prior.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "sim/scenario/scenario.h"
+#include "tools/base/settings/overrides.h"
+#include "tools/bench/systems/odometry_settings.h"
+#include "vo/geometry/camera.h"
+
+namespace vobench {
+
+using settings::Overrides;
+
+struct Experiment {
+  sim::Scenario scenario;
+  vo::Params odometry;
+  PriorSettings prior;
+  std::string resolved;  // all of it, defaults included: JSON, which is a scenario again
+};
+
+// The camera as the odometry is told it: the scenario's with its rolling shutter, but for prior.focal_error.
+vo::Camera ToldCamera(const Experiment& experiment);
+
+// Throws BadInput with every problem of all three parts.
+Experiment ReadExperiment(const std::filesystem::path& scenario, const Overrides& overrides);
+// The same as settings::Error, for those who know better where a problem comes from.
+Experiment LoadExperiment(const std::filesystem::path& scenario, const Overrides& overrides);
+
+}  // namespace vobench

@@ -1,0 +1,39 @@
+// Purpose: what the reference tools' reproductions share: numbers as text, and a trajectory as their options shift it.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <numbers>
+#include <string>
+
+#include "tools/judge/evaluation/text_file.h"
+#include "tools/judge/evaluation/trajectory.h"
+
+namespace evaluation::compat {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+// "%.*f".
+inline std::string Fixed(double value, int decimals) {
+  char text[352];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  return text;
+}
+
+// So many significant digits, with ".0" where a whole number would look like an integer, as Python has it.
+inline std::string Significant(double value, int digits) {
+  std::string text = FormatNumber(value, digits);
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
+// Stamps later by offset, positions times scale.
+inline Trajectory Shifted(Trajectory trajectory, std::int64_t offset_ns, double scale = 1) {
+  for (StampedPose& pose : trajectory) {
+    pose.stamp_ns += offset_ns;
+    pose.p_WC *= scale;
+  }
+  return trajectory;
+}
+
+}  // namespace evaluation::compat

@@ -1,0 +1,31 @@
+// Purpose: how small can errors be? The posterior Cramer-Rao bound of pose and velocity from points seen by a moving
+//          camera, given the measurements up to each frame.
+// Source:  P. Tichavsky, C. Muravchik, A. Nehorai, "Posterior Cramer-Rao bounds for discrete-time nonlinear filtering",
+//          IEEE Trans. Signal Processing 1998; Jacobians taken at one true trajectory, as M. Taylor 1979 does: the
+//          covariance of the exact Kalman filter of the world linearised at the truth. docs/metrics.md says what this
+//          bounds and what not.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tools/judge/evaluation/point_problem.h"
+
+namespace evaluation {
+
+// Covariance (dp in W, dphi in C, dv in W, dw in C) at each frame given the measurements up to and at it. Throws
+// InputError listing what is wrong with the problem (an index beyond the last frame, a point behind the camera, ...).
+std::vector<Matrix12d> FilteringBound(const PointWorldProblem& problem);
+
+// The exact Kalman filter of the world linearised at the truth, run `runs` times: errors[run][frame], whose covariance
+// is the bound and whose dependence over time is that of an honest filter. For ExactAneesOfPool.
+struct LinearisedRuns {
+  std::vector<Matrix12d> bound;               // per frame
+  std::vector<std::vector<Vector12d>> error;  // [run][frame]
+};
+LinearisedRuns SimulateLinearised(const PointWorldProblem& problem, int runs, std::uint64_t seed = 1);
+
+// NEES[run][frame] of these errors; NaN where the bound is singular (a start known exactly).
+std::vector<std::vector<double>> NeesOf(const LinearisedRuns& runs, int start, int size);
+
+}  // namespace evaluation

@@ -1,0 +1,81 @@
+// Purpose: the verdict on one run: every number of the judge, with how it was obtained. docs/metrics.md explains each.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "tools/judge/evaluation/ate.h"
+#include "tools/judge/evaluation/consistency.h"
+#include "tools/judge/evaluation/estimate_run.h"
+#include "tools/judge/evaluation/nis.h"
+#include "tools/judge/evaluation/rpe.h"
+
+namespace evaluation {
+
+struct JudgeOptions {
+  AssociationOptions association;
+  std::int64_t rpe_delta_ns = 1'000'000'000;
+  std::int64_t rpe_tolerance_ns = 50'000'000;
+  Gauge gauge = Gauge::as_is;  // of NEES only
+  // Stamps of all frames of the sequence, for pose coverage, where the run has no frames.csv.
+  std::optional<std::vector<std::int64_t>> frame_stamps_ns;
+};
+
+// A trajectory against the truth.
+struct TrajectoryErrors {
+  std::size_t pairs = 0;       // associated
+  Ate none, se3, sim3, first;  // by alignment
+  Rpe rpe;                     // estimate's translations times sim3's scale
+  Rpe rpe_unscaled;            // as they are
+  // How many pairs the truth offers on the frames of the sequence; rpe.pairs has those answered
+  std::size_t rpe_pairs_offered = 0;
+  const Ate& Aligned(Alignment alignment) const;
+};
+
+struct Coverage {
+  std::size_t frames = 0;
+  std::size_t with_pose = 0;
+  std::optional<std::size_t> tracked;  // frames with at least 10 matched features; nothing when the run does not say
+  double pose_coverage() const;
+  std::optional<double> tracked_coverage() const;
+};
+
+struct ConsistencySummary {
+  NeesSummary pose, pose_scale_free;
+  std::optional<NeesSummary> velocity, joint, joint_scale_free;  // where true velocities are known
+};
+
+struct Timing {
+  double ms_features = 0, ms_matching = 0, ms_filter = 0;  // medians over frames
+};
+
+// Over the frames of a run.
+struct GuardSummary {
+  struct Firings {
+    std::int64_t times = 0;
+    std::size_t frames = 0;  // in which it fired
+  };
+  Firings unsettled, behind, indefinite, impossible;
+};
+
+struct Metrics {
+  JudgeOptions options;
+  double path_length_m = 0;  // of the truth at the frames of the sequence
+  double duration_s = 0;     // between the first and the last of these
+  TrajectoryErrors errors;
+  TrajectoryErrors constant_pose, constant_velocity;  // baselines, from the true start, on all frames
+  std::optional<Coverage> coverage;
+  std::optional<ConsistencySummary> consistency;
+  std::optional<NisSummary> nis;
+  std::optional<Timing> timing;
+  std::optional<GuardSummary> guards;  // where all frames have them
+};
+
+// Throws InputError when estimate and truth do not overlap in time.
+Metrics Judge(const EstimateRun& run, const Trajectory& truth, const std::optional<Velocities>& truth_velocities,
+              const JudgeOptions& options = {});
+
+}  // namespace evaluation

@@ -1,0 +1,155 @@
+#include "tools/judge/evaluation/whiteness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace evaluation {
+namespace {
+
+NisBand Finish(double nis, double dof) {
+  NisBand band;
+  band.nis = nis;
+  band.dof = dof;
+  if (!(dof > 0)) return band;
+  band.per_dof = nis / dof;
+  band.band = {Chi2Quantile(0.025, dof) / dof, Chi2Quantile(0.975, dof) / dof};
+  band.inside = band.per_dof >= band.band.low && band.per_dof <= band.band.high;
+  return band;
+}
+
+void RequireEqual(std::size_t nis, std::size_t dof) {
+  if (nis != dof) throw std::logic_error("NIS: a value without its degrees of freedom");
+}
+
+}  // namespace
+
+Whiteness TestWhiteness(const std::vector<double>& sequence, int lags) {
+  Whiteness result;
+  result.count = sequence.size();
+  if (sequence.size() < 2) return result;
+  const double n = static_cast<double>(sequence.size());
+  result.bound = 1.96 / std::sqrt(n);
+  double mean = 0, squares = 0;
+  for (const double value : sequence) mean += value / n;
+  for (const double value : sequence) {
+    const double off = value - mean;
+    squares += off * off;
+  }
+  const auto most = std::min(static_cast<std::size_t>(std::max(lags, 0)), sequence.size() - 1);
+  if (!(squares > 0) || most == 0) return result;
+  for (std::size_t lag = 1; lag <= most; ++lag) {
+    double sum = 0;
+    for (std::size_t k = lag; k < sequence.size(); ++k) sum += (sequence[k] - mean) * (sequence[k - lag] - mean);
+    const double rho = sum / squares;
+    result.autocorrelation.push_back(rho);
+    result.ljung_box += n * (n + 2) * rho * rho / (n - static_cast<double>(lag));
+  }
+  result.p_value = Chi2Survival(result.ljung_box, static_cast<double>(most));
+  return result;
+}
+
+WhitenessVerdict TestWhiteness(const std::vector<std::vector<double>>& sequences, int lags, double false_alarm) {
+  WhitenessVerdict verdict;
+  verdict.false_alarm = false_alarm;
+  std::vector<std::size_t> with_lag;
+  for (const auto& sequence : sequences) {
+    const Whiteness run = TestWhiteness(sequence, lags);
+    if (run.autocorrelation.empty()) continue;
+    ++verdict.runs;
+    verdict.rejected += run.p_value < 0.05;
+    if (verdict.mean_autocorrelation.size() < run.autocorrelation.size()) {
+      verdict.mean_autocorrelation.resize(run.autocorrelation.size());
+      with_lag.resize(run.autocorrelation.size());
+    }
+    for (std::size_t l = 0; l < run.autocorrelation.size(); ++l) {
+      verdict.mean_autocorrelation[l] += run.autocorrelation[l];
+      ++with_lag[l];
+    }
+  }
+  for (std::size_t l = 0; l < with_lag.size(); ++l) verdict.mean_autocorrelation[l] /= static_cast<double>(with_lag[l]);
+  verdict.most_allowed = BinomialLimit(verdict.runs, 0.05, false_alarm);
+  verdict.pass = verdict.rejected <= verdict.most_allowed;
+  return verdict;
+}
+
+NisBand NisOfRun(const std::vector<double>& nis, const std::vector<int>& dof) {
+  RequireEqual(nis.size(), dof.size());
+  double sum = 0, degrees = 0;
+  for (std::size_t k = 0; k < nis.size(); ++k) {
+    if (dof[k] <= 0) continue;
+    sum += nis[k];
+    degrees += dof[k];
+  }
+  return Finish(sum, degrees);
+}
+
+std::vector<NisBand> NisOverRuns(const std::vector<std::vector<double>>& nis,
+                                 const std::vector<std::vector<int>>& dof) {
+  RequireEqual(nis.size(), dof.size());
+  std::vector<double> sum, degrees;
+  for (std::size_t m = 0; m < nis.size(); ++m) {
+    RequireEqual(nis[m].size(), dof[m].size());
+    if (nis[m].size() > sum.size()) {
+      sum.resize(nis[m].size());
+      degrees.resize(nis[m].size());
+    }
+    for (std::size_t k = 0; k < nis[m].size(); ++k) {
+      if (dof[m][k] <= 0) continue;
+      sum[k] += nis[m][k];
+      degrees[k] += dof[m][k];
+    }
+  }
+  std::vector<NisBand> bands;
+  for (std::size_t k = 0; k < sum.size(); ++k) bands.push_back(Finish(sum[k], degrees[k]));
+  return bands;
+}
+
+NisVerdict TestNis(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof,
+                   double false_alarm) {
+  RequireEqual(nis.size(), dof.size());
+  NisVerdict verdict;
+  verdict.false_alarm = false_alarm;
+  double sum = 0, degrees = 0;
+  for (std::size_t m = 0; m < nis.size(); ++m) {
+    const NisBand run = NisOfRun(nis[m], dof[m]);
+    if (!(run.dof > 0)) continue;
+    ++verdict.runs;
+    verdict.outside += !run.inside;
+    sum += run.nis;
+    degrees += run.dof;
+  }
+  if (degrees > 0) verdict.per_dof = sum / degrees;
+  verdict.most_allowed = BinomialLimit(verdict.runs, 0.05, false_alarm);
+  verdict.pass = verdict.outside <= verdict.most_allowed;
+  return verdict;
+}
+
+NisMeanVerdict TestNisMean(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof,
+                           double tolerance, double false_alarm) {
+  RequireEqual(nis.size(), dof.size());
+  std::vector<double> means;
+  for (std::size_t m = 0; m < nis.size(); ++m) {
+    const NisBand run = NisOfRun(nis[m], dof[m]);
+    if (run.dof > 0) means.push_back(run.per_dof);
+  }
+  NisMeanVerdict verdict;
+  verdict.runs = means.size();
+  verdict.false_alarm = false_alarm;
+  for (const double mean : means) verdict.per_dof += mean / static_cast<double>(means.size());
+  if (means.size() < 6) {  // no spread to speak of
+    verdict.runs = 0;
+    return verdict;
+  }
+  double squares = 0;
+  for (const double mean : means) squares += (mean - verdict.per_dof) * (mean - verdict.per_dof);
+  const auto n = static_cast<double>(means.size());
+  verdict.standard_error = std::sqrt(squares / (n * (n - 1)));
+  const double half = tolerance + StudentQuantile(1 - false_alarm / 2, n - 1) * verdict.standard_error;
+  verdict.low = 1 - half;
+  verdict.high = 1 + half;
+  verdict.pass = verdict.per_dof >= verdict.low && verdict.per_dof <= verdict.high;
+  return verdict;
+}
+
+}  // namespace evaluation

@@ -1,0 +1,78 @@
+// Purpose: the files of a sequence (docs/sequence_format.md, docs/truth.md), read again from nothing but their formats.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/judge/verification/check.h"
+#include "vo/geometry/camera.h"
+#include "vo/geometry/pose.h"
+
+namespace verification {
+
+// `timestamp filename`, or `timestamp numbers`.
+struct Entry {
+  std::int64_t stamp_ns = 0;
+  std::string file;
+  std::vector<double> numbers;
+};
+
+// What the manifest says of the motion: how rough the path is between two stamps. Absent: taken for smooth.
+struct Roughness {
+  bool sampled = false;                  // from white acceleration, between knots by cubics
+  double position = 0, orientation = 0;  // its density: square roots of power spectral densities [m/s^1.5, rad/s^1.5]
+  double knot_step_s = 0;
+};
+
+// Something that moves, by objects/NAME.txt: T_WO at the frames' stamps.
+struct Object {
+  std::string name;
+  std::vector<vo::Pose> poses;  // the identity where there is none
+  std::vector<bool> has_pose;
+};
+
+struct Imu {
+  double rate_hz = 200;
+  vo::Pose T_CI;
+  Eigen::Vector3d gravity_W{0, -9.81, 0};
+  bool mean = false;
+  double gyroscope_noise = 0, accelerometer_noise = 0, gyroscope_walk = 0, accelerometer_walk = 0;
+  std::vector<Entry> readings;  // six numbers each: w_I, f_I
+};
+
+struct Sequence {
+  std::filesystem::path folder;
+  vo::Camera camera;
+  std::map<std::string, std::vector<Entry>> images;  // by list, without ".txt": rgb, depth, flow, ...
+  std::map<std::string, std::vector<Entry>> texts;   // groundtruth, velocity, acceleration, objects/NAME
+  std::vector<std::int64_t> stamps;                  // of the frames: those on which most lists agree
+  std::vector<vo::Pose> poses;                       // of the frames; the identity where there is none
+  std::vector<bool> has_pose;
+  std::vector<Object> objects;
+  Roughness roughness;
+  bool rolling_shutter = false;  // says the manifest: each row has a time of its own
+  std::size_t surfaces = 0;      // how many the legend has, whose ids are 1, 2, ...
+  std::vector<Entry> landmarks;  // numbers: id, position, surface id; the stamp is 0
+  std::vector<Entry> tracks;     // numbers: id, u, v, visible
+  bool has_imu = false;
+  Imu imu;
+
+  // The file of a stream at a frame; empty when there is none.
+  std::string FileAt(const std::string& stream, std::size_t frame) const;
+};
+
+// Reads all that is text. What is malformed is a failure of `files`, lists that disagree in their stamps one of
+// `stamps`, both with file and line. Throws std::runtime_error where there is no sequence at all: no folder, no
+// rgb.txt, no groundtruth.txt, no camera.yaml, or a camera of more pixels than a picture may have.
+Sequence ReadSequence(const std::filesystem::path& folder, Check& files, Check& stamps);
+
+// One picture: 8-bit (grey or colour) and 16-bit PNG as they are, EXR as CV_32FC1 or CV_32FC3 (R, G, B), .flo as
+// CV_32FC2. Throws std::runtime_error naming the file.
+cv::Mat ReadPicture(const std::filesystem::path& file);
+
+}  // namespace verification

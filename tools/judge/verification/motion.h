@@ -1,0 +1,14 @@
+// Purpose: poses, velocities, accelerations and inertial readings against each other. docs/truth.md derives the bounds.
+#pragma once
+
+#include <vector>
+
+#include "tools/judge/verification/files.h"
+
+namespace verification {
+
+// velocity.txt: position and orientation from stamp to stamp; acceleration.txt: velocities; imu0: all three. Checks of
+// what is not there have count() 0.
+std::vector<Check> CheckMotion(const Sequence& sequence);
+
+}  // namespace verification
