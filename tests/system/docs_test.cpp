@@ -82,7 +82,7 @@ std::vector<std::string> Rows(const std::string& page) {
 TEST(Equations, FunctionsAndTestsExist) {
   const std::regex named("((?:`[A-Za-z_:.]+`, )*`[A-Za-z_:.]+`) in `([a-z_/0-9]+\\.[a-zA-Z]+)`"), word("`([^`]+)`");
   int names = 0;
-  for (const std::string& row : Rows("docs/equations.md")) {
+  for (const std::string& row : Rows("docs/algorithm.md")) {
     for (std::sregex_iterator at(row.begin(), row.end(), named), end; at != end; ++at) {
       const std::string file = (*at)[2], list = (*at)[1];
       ASSERT_TRUE(fs::exists(ProjectRoot() / file)) << file;
