@@ -140,8 +140,8 @@ DocPage ParsePage(const std::string& name, const std::string& text) {
 
 std::vector<std::string> PageNames() {
   std::vector<std::string> names = {"README.md", "SECURITY.md"};
-  for (const fs::directory_entry& entry : fs::directory_iterator(ProjectRoot() / "docs")) {
-    if (entry.path().extension() == ".md") names.push_back("docs/" + entry.path().filename().string());
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(ProjectRoot() / "docs")) {
+    if (entry.path().extension() == ".md") names.push_back(fs::relative(entry.path(), ProjectRoot()).string());
   }
   std::sort(names.begin(), names.end());
   return names;

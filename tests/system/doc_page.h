@@ -27,7 +27,7 @@ struct DocPage {
 std::filesystem::path ProjectRoot();
 DocPage ParsePage(const std::string& name, const std::string& text);
 DocPage ReadPage(const std::string& name);
-// README.md and docs/*.md.
+// README.md, SECURITY.md, docs/*.md and docs/notes/*.md.
 std::vector<std::string> PageNames();
 
 // Runs the page's commands in an empty folder beside a link to the scenes, as a reader would, until one fails. Nothing where all
