@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """tools/dev/sbom prints a CycloneDX 1.5 bill of materials: what the specification requires, of the versions that are here.
 
-Usage: sbom_test.py PROJECT_ROOT BUILD_FOLDER
+Usage: tools/dev/checks/sbom.py PROJECT_ROOT BUILD_FOLDER
 """
 import copy
 import json

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The C++ sources are as clang-format 14 writes them by .clang-format (other versions write other things).
-# Usage: source_format_test.sh SOURCE_FOLDER
+# Usage: tools/dev/checks/format.sh PROJECT_ROOT
 # Exit: 0 they are, 1 not (clang-format names the places; tools/dev/lint --fix mends them), 77 it is not installed.
 set -euo pipefail
 cd -- "$1"

@@ -2,7 +2,7 @@
 """docs/licences.md is complete and right: against tools/packages.txt, the npm lock file, Debian's copyright files and the
 libraries that the built program names. Each kind of error, planted in a copy, is seen.
 
-Usage: licences_test.py PROJECT_ROOT PROGRAM
+Usage: tools/dev/checks/licences.py PROJECT_ROOT PROGRAM
 """
 import functools
 import json
