@@ -11,11 +11,9 @@
 namespace vo {
 
 Params Checked(const Params& params) {
-  const std::vector<std::string> problems = Problems(params);
-  if (problems.empty()) return params;
-  std::string text;
-  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
-  throw std::invalid_argument(text);
+  const std::vector<settings::FieldProblem> problems = Problems(params);
+  if (!problems.empty()) throw std::invalid_argument(Join(problems, "\n"));
+  return params;
 }
 
 namespace {

@@ -163,7 +163,7 @@ void Odometry::Impl::UpdateScores(const Association& association) {
     record.searched = false;
   }
   for (const Searched& searched : association.searched) records[searched.landmark].searched = true;
-  const auto share = [&](std::size_t count) { return params.score.blind_share * static_cast<double>(count); };
+  const auto share = [&](std::size_t count) { return params.score.min_found_ratio * static_cast<double>(count); };
   if (static_cast<double>(association.matches.size()) < share(association.searched.size())) return;  // a blind frame
   for (const Searched& searched : association.searched) {
     LandmarkRecord& record = records[searched.landmark];

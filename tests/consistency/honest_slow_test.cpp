@@ -25,7 +25,7 @@ TEST(OwnModelSlow, EqualWeightsStayConsistentForTenSecondsAndResamplingDoesNot) 
                                           {"odometry.filter.particles", "16"},
                                           {"odometry.filter.lag", "5"}};
   vobench::Overrides equal = ten_seconds;
-  equal.emplace_back("odometry.filter.weight", "equal");
+  equal.emplace_back("odometry.filter.weight", "uniform");
   const auto verdict = Judge(Play(10, equal, 2001));
   EXPECT_TRUE(HonestButCoverage(verdict)) << Failures(verdict);
   std::cout << Failures(verdict, true);

@@ -37,7 +37,7 @@ TEST(OwnModel, EqualWeightsStayConsistentWhereResamplingDoesNot) {
                                        {"odometry.filter.particles", "16"},
                                        {"odometry.filter.lag", "5"}};
   vobench::Overrides equal = long_run;
-  equal.emplace_back("odometry.filter.weight", "equal");
+  equal.emplace_back("odometry.filter.weight", "uniform");
   const Runs runs = Play(30, equal);
   const auto verdict = Judge(runs);
   EXPECT_TRUE(HonestButCoverage(verdict)) << Failures(verdict);

@@ -27,7 +27,7 @@ double Anees(const char* told) {
                                                                 {"world.points.scale_sigma", "0.3"},
                                                                 {"odometry.landmark.scale_sigma", told},
                                                                 {"odometry.filter.lag", "5"},
-                                                                {"odometry.filter.weight", "equal"},
+                                                                {"odometry.filter.weight", "uniform"},
                                                                 {"odometry.filter.particles", "16"},
                                                                 {"odometry.filter.marginal_mode", "true"}});
   std::vector<double> nees;

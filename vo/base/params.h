@@ -1,18 +1,31 @@
-// Purpose: every setting of the odometry, with unit, default and what changing it does. Plain values; Validate lists all that is
-//          wrong at once. Defaults are the paper's (Section V-A) unless the comment says otherwise.
+// Settings of the odometry: one struct per component, with its field table (key in `odometry:`, unit, range, meaning).
+// Defaults are the paper's (Section V-A) unless the table says otherwise.
 #pragma once
 
+#include <numbers>
 #include <optional>
-#include <string>
 #include <vector>
+
+#include "tools/base/settings/fields.h"
 
 namespace vo {
 
-// Nearly constant velocity (6)-(9). Larger: the filter follows violent motion and trusts its prediction less.
+using settings::Range;
+using settings::Unit;
+
+// Nearly constant velocity (6)-(9).
 struct MotionParams {
-  double position_noise = 2.5;     // square root of the power spectral density of acceleration [m/s^1.5]
-  double orientation_noise = 1.0;  // the same for angular acceleration [rad/s^1.5]
+  double position_noise = 2.5;     // [m/s^1.5]
+  double orientation_noise = 1.0;  // [rad/s^1.5]
 };
+
+template <class V>
+void Visit(V& v, MotionParams& p) {
+  v("position_noise", p.position_noise,
+    {Unit::acceleration_density, Range::Positive(), "root of the power spectral density of white acceleration"});
+  v("orientation_noise", p.orientation_noise,
+    {Unit::angular_acceleration_density, Range::Positive(), "the same of white angular acceleration"});
+}
 
 enum class Sampled {
   nothing,            // EKF-SLAM: one Gaussian over everything
@@ -21,10 +34,10 @@ enum class Sampled {
 };
 
 enum class Proposal {
-  bootstrap,  // the motion model, blind to the image; the weight is the likelihood at the sample (FastSLAM 1.0)
+  bootstrap,  // the motion model, without the image; the weight is the likelihood at the sample (FastSLAM 1.0)
   ekf,        // one linearisation at the prediction, landmarks at their prior mean
   ukf,        // unscented transform of the predicted pose, and of each landmark given the pose: the paper
-  iterated,   // pose and landmarks re-linearised together until they settle
+  iterated,   // Gauss-Newton to the joint mode of pose and landmarks
 };
 
 enum class Bearing {
@@ -34,46 +47,69 @@ enum class Bearing {
 
 enum class Weight {
   importance,  // (17) at the sample: the paper
-  evidence,  // p(z_t | path) by Laplace's approximation: the same on a linear-Gaussian model, without the sample's noise
-  equal,  // all particles alike, but those that the window's images refute; drawn together, exact in mean and covariance. Needs lag > 0
+  evidence,    // p(z_t | path) by Laplace's approximation: the same on a linear-Gaussian model, without sampling noise
+  uniform,     // all alike but for rejected particles; drawn together, exact in mean and covariance. Needs lag > 0
+  equal = uniform,
 };
 
 struct FilterParams {
-  Sampled sampled = Sampled::pose;
-  Proposal proposal = Proposal::iterated;  // the paper: ukf; its first-order twin is ekf
+  Sampled sampled = Sampled::pose;  // no key: it is what tells the systems apart
+  Proposal proposal = Proposal::iterated;
   int particles = 8;
-  double resample_below = 0.5;  // resample when N_eff < this fraction of the particles
-  int max_iterations = 10;      // of the iterated proposal, and of a landmark given its pose
-  // Of ekfslam's update. 1: the textbook EKF; more: Gauss-Newton to the joint mode, which is biased in scale.
+  double resample_below = 0.5;
+  int max_iterations = 10;
   int joint_iterations = 1;
   Weight weight = Weight::evidence;
-  int lag = 0;  // poses kept un-sampled, so that later images speak before the map is committed to them (0: the paper)
-  // So many poses at the start are one window, found anew in every frame, before any of them is sampled (0: the
-  // paper). For pose-sampling filters with proposal ekf or iterated, and weight evidence or equal; others have none.
+  int lag = 0;
   int start_window = 30;
-  // Propose at the mode of the poses' marginal, not of poses and landmarks jointly: unbiased in scale, but it
-  // believes features.sigma_px, which must then be right.
   bool marginal_mode = false;
-  bool reject_outliers = true;  // matches that contradict the others are set aside before the update
-  // Spread of the sigma points, squared a factor of n + kappa (the paper gives no values: no weight is negative with
-  // these). beta: weight of the curvature in the covariance, 2 for a Gaussian.
-  double ukf_alpha = 1;
-  double ukf_beta = 2;
-  double ukf_kappa = 0;
+  bool reject_outliers = true;
+  double ukf_alpha = 1, ukf_beta = 2, ukf_kappa = 0;  // no weight is negative with these
 };
+
+template <class V>
+void Visit(V& v, FilterParams& p) {
+  using enum Proposal;
+  v("proposal", p.proposal, {{"bootstrap", bootstrap}, {"ekf", ekf}, {"ukf", ukf}, {"iterated", iterated}},
+    "of poses: motion model; one linearisation; unscented transform (the paper); joint mode");
+  v("particles", p.particles, {Range{1, 100'000}, "number of particles"});
+  v("resample_below", p.resample_below, {Range{0, 1}, "least N_eff, as a fraction of the particles"});
+  v("max_iterations", p.max_iterations, {Range{1, 1000}, "of Gauss-Newton: poses, a landmark given the pose"});
+  v("joint_iterations", p.joint_iterations, {Range{1, 1000}, "of `ekfslam`; above 1: the joint mode, biased in scale"});
+  v.Renamed("weight", "equal", "uniform");
+  v("weight", p.weight,
+    {{"importance", Weight::importance}, {"evidence", Weight::evidence}, {"uniform", Weight::uniform}},
+    "(17) at the sample (the paper); p(z_t given the path) by Laplace's approximation; all alike (with a lag)");
+  v("lag", p.lag, {Range{0, 100}, "poses that stay Gaussian before the oldest is sampled; 0: the paper"});
+  v("start_window", p.start_window, {Range{0, 100}, "first poses, solved as one window; 0: the paper"});
+  v("marginal_mode", p.marginal_mode, {"propose at the mode of the poses' marginal, unbiased in scale"});
+  v("reject_outliers", p.reject_outliers, {"leave out matches that contradict the others"});
+  v("ukf_alpha", p.ukf_alpha, {Range{.min = 0, .max = 1, .above_min = true}, "spread of the sigma points"});
+  v("ukf_beta", p.ukf_beta, {Range::AtLeast(0), "at least alpha squared; 2: a Gaussian's kurtosis"});
+  v("ukf_kappa", p.ukf_kappa, {Range::AtLeast(0), "the spread is alpha sqrt(n + kappa)"});
+}
 
 struct LandmarkParams {
   Bearing bearing = Bearing::estimated;
-  double inverse_depth = 0.25;        // of a new landmark [1/m]
+  double inverse_depth = 0.25;        // [1/m]
   double inverse_depth_sigma = 0.15;  // [1/m]
-  // Of the log of a factor that all lengths share: how well the scale is known beforehand. Part of the answer's
-  // covariance [-].
   double scale_sigma = 0;
-  double permanent_ratio = 0.05;  // permanent when sigma_rho < ratio * rho (our choice; the paper gives no number)
-  int forget_after = 90;          // drop a non-permanent landmark that could not be searched for so many frames
-  // Flat memory, of Odometry on images: new ones take the places of the longest unseen, and none begins while all are in view.
+  double permanent_ratio = 0.05;  // our choice; the paper gives no number
+  int forget_after = 90;
   int max_landmarks = 1000;
 };
+
+template <class V>
+void Visit(V& v, LandmarkParams& p) {
+  v("bearing", p.bearing, {{"fixed", Bearing::fixed}, {"estimated", Bearing::estimated}},
+    "state of a landmark: inverse depth alone (the paper); or ray and inverse depth");
+  v("inverse_depth", p.inverse_depth, {Range::Positive(), "prior mean of a new landmark [1/m]"});
+  v("inverse_depth_sigma", p.inverse_depth_sigma, {Range::Positive(), "its standard deviation [1/m]"});
+  v("scale_sigma", p.scale_sigma, {Range{0, 3}, "prior standard deviation of the log of the scale of all lengths"});
+  v("permanent_ratio", p.permanent_ratio, {Range::Positive(), "permanent when sigma_rho < ratio * rho"});
+  v("forget_after", p.forget_after, {Range::AtLeast(1), "frames without a search until one not permanent is deleted"});
+  v("max_landmarks", p.max_landmarks, {Range::AtLeast(10), "on images: new ones replace those longest out of view"});
+}
 
 // Existence score (44)-(49).
 struct ScoreParams {
@@ -83,61 +119,125 @@ struct ScoreParams {
   double become_visible = 0.05;     // P12
   double detection = 0.75;          // P_D
   double gate_probability = 0.995;  // P_G
-  double gate = 9.21;               // G, on the squared Mahalanobis distance (the paper's pair; 0.995 would be 10.6)
-  // Fewer found than this share of those searched: the frame was blind (blur, darkness), and no feature is judged by
-  // it; 0 is the paper
-  double blind_share = 0.2;
-  int grace_frames = 0;  // a landmark younger than this is not deleted for its score (0: the paper)
+  double gate = 9.21;               // G (the paper's pair; 0.995 would be 10.6)
+  double min_found_ratio = 0.2;
+  int grace_frames = 0;
 };
 
-// How the pattern lies when a landmark is looked for again: from the predicted pose, never estimated from the image.
+template <class V>
+void Visit(V& v, ScoreParams& p) {
+  const Range probability = Range::Between(0, 1);
+  v("initial", p.initial, {probability, "existence probability of a new landmark"});
+  v("delete_below", p.delete_below, {probability, "a landmark below this is deleted"});
+  v("stay_visible", p.stay_visible, {probability, "P22: visible in this frame if in the last"});
+  v("become_visible", p.become_visible, {probability, "P12: visible in this frame if not in the last"});
+  v("detection", p.detection, {probability, "P_D: a visible landmark is matched"});
+  v("gate_probability", p.gate_probability, {probability, "P_G: a match of the landmark lies in the gate"});
+  v("gate", p.gate, {Range::Positive(), "G: largest squared Mahalanobis distance of a match"});
+  v.Renamed("blind_share", "min_found_ratio");
+  v("min_found_ratio", p.min_found_ratio,
+    {Range{.min = 0, .max = 1, .below_max = true}, "a frame with fewer found of those searched changes no score"});
+  v("grace_frames", p.grace_frames, {Range::AtLeast(0), "a younger landmark is not deleted for its score"});
+}
+
+// Warp of BRISK's pattern when a landmark is searched again: by the predicted pose, never estimated from the image.
 enum class BriskWarp {
   none,        // as in the first view
-  similarity,  // turned and scaled
-  affine,      // and sheared
+  similarity,  // rotation and scale
+  affine,      // and shear
 };
 
 // Covariance of a match's error.
 enum class MatchNoise {
-  constant,  // sigma_px for all
-  registered,  // of a match that was registered: sigma_floor_px, and what the registration's least squares say, times noise_inflation
-  adaptive,  // the same times a factor that each landmark's own residuals tell
+  constant,    // sigma_px for all
+  registered,  // of a registered match: sigma_floor_px, and the registration's least-squares covariance * noise_inflation
+  adaptive,    // the same times a factor from each landmark's own residuals
 };
 
 struct FeatureParams {
-  double sigma_px = 0.7;  // standard deviation of a matched pixel, per axis [px] (the paper, to whole pixels: 2)
+  double sigma_px = 0.7;  // the paper, to whole pixels: 2
   MatchNoise noise = MatchNoise::adaptive;
-  double sigma_floor_px = 0.2;  // of a match and of a first view [px]
-  double noise_inflation = 4;   // the residuals of neighbouring pixels are not independent
+  double sigma_floor_px = 0.2;
+  double noise_inflation = 4;
   int grid_columns = 8, grid_rows = 6;
-  int per_cell = 3;               // corners wanted in every cell of the grid
-  int fast_threshold_start = 60;  // grey levels; lowered per cell ...
-  int fast_threshold_min = 7;     // ... to this at the least
-  double min_distance_px = 10;    // between a new corner and any feature in the image
-  double brisk_size_px = 12;  // diameter of BRISK's pattern in OpenCV's terms: larger is more distinct, less invariant
+  int per_cell = 3;
+  int fast_threshold_start = 60;  // grey levels
+  int fast_threshold_min = 7;
+  double min_distance_px = 10;
+  double brisk_size_px = 12;
   BriskWarp brisk_warp = BriskWarp::affine;
-  double max_hamming = 0.15;  // of 512 bits
-  // Looked at first; believed only when the best pixel is not on its border. 1: the paper, without it.
-  int window_quick_px = 5;
-  int window_px = 9;            // side of the search window about the prediction ...
-  int window_enlarged_px = 17;  // ... and when nothing fits there
-  // At most, when the prediction itself is uncertain (recovery); where pilots agree, what the prediction from them asks for instead.
-  int window_lost_px = 49;
-  int window_recovery_px = 241;     // of pilots: after a gap they find back what was there before
-  bool subpixel = true;             // refine the match by registering the patch of the first view (our addition)
-  double max_view_angle_deg = 45;   // between the present and the first viewing ray
-  double max_baseline_ratio = 0.3;  // camera's distance from the first view / depth there
-  int max_searched = 200;           // landmarks searched per frame
-  std::optional<double> readout_s = std::nullopt;  // rolling shutter, instead of what the camera's file says [s]
-  int pilots = 16;  // so many are looked for first; where the others then are, small windows find them (0: the paper)
+  double max_hamming = 0.15;
+  int search_first_px = 5;
+  int search_normal_px = 9;
+  int search_wide_px = 17;
+  int search_uncertain_px = 49;
+  int search_relocalise_px = 241;
+  bool subpixel = true;
+  double max_view_angle = 45 * std::numbers::pi / 180;  // [rad]
+  double max_baseline_ratio = 0.3;
+  int max_searched = 200;
+  std::optional<double> readout_s = std::nullopt;
+  int coarse_features = 16;
 };
 
-// A chessboard before the camera at the start tells the scale.
+template <class V>
+void Visit(V& v, FeatureParams& p) {
+  const Range window = Range::OddAtLeast(1);
+  v("sigma", p.sigma_px, {Unit::pixel, Range::Positive(), "of a match per axis; the paper, to whole pixels: 2 px"});
+  v("noise", p.noise,
+    {{"constant", MatchNoise::constant}, {"registered", MatchNoise::registered}, {"adaptive", MatchNoise::adaptive}},
+    "covariance of a match: `sigma`; from its registration; that times a factor from the landmark's residuals");
+  v("sigma_floor", p.sigma_floor_px, {Unit::pixel, Range::Positive(), "of a first view; least of a registered match"});
+  v("noise_inflation", p.noise_inflation, {Range::AtLeast(0), "factor on the registration's covariance"});
+  v("grid_columns", p.grid_columns, {Range::AtLeast(1), "cells of the grid on which corners are detected"});
+  v("grid_rows", p.grid_rows, {Range::AtLeast(1), "the same"});
+  v("per_cell", p.per_cell, {Range::AtLeast(1), "corners wanted in each cell"});
+  v("fast_threshold_start", p.fast_threshold_start,
+    {Range{1, 255}, "FAST's threshold [grey levels], lowered per cell"});
+  v("fast_threshold_min", p.fast_threshold_min, {Range{1, 255}, "its least value"});
+  v("min_distance", p.min_distance_px, {Unit::pixel, Range::Positive(), "of a new corner from any other feature"});
+  v("brisk_size", p.brisk_size_px, {Unit::pixel, Range::Positive(), "diameter of BRISK's pattern (OpenCV's size)"});
+  v("brisk_warp", p.brisk_warp,
+    {{"none", BriskWarp::none}, {"similarity", BriskWarp::similarity}, {"affine", BriskWarp::affine}},
+    "of the descriptor's pattern, by the predicted pose");
+  v("max_hamming", p.max_hamming,
+    {Range{.min = 0, .max = 1, .above_min = true}, "of a match, as a fraction of 512 bits"});
+  v.Renamed("window_quick", "search_first");
+  v.Renamed("window", "search_normal");
+  v.Renamed("window_enlarged", "search_wide");
+  v.Renamed("window_lost", "search_uncertain");
+  v.Renamed("window_recovery", "search_relocalise");
+  v("search_first", p.search_first_px, {Unit::pixel, window, "side of the first window; 1: the paper, without it"});
+  v("search_normal", p.search_normal_px, {Unit::pixel, window, "side of the search window about the prediction"});
+  v("search_wide", p.search_wide_px, {Unit::pixel, window, "the same where nothing fits in the normal one"});
+  v("search_uncertain", p.search_uncertain_px,
+    {Unit::pixel, window, "largest side, where the prediction is uncertain"});
+  v("search_relocalise", p.search_relocalise_px, {Unit::pixel, window, "the same for coarse features, after a gap"});
+  v("subpixel", p.subpixel, {"refine a match by registering the patch of the first view"});
+  v("max_view_angle", p.max_view_angle,
+    {Unit::angle, Range::Between(0, std::numbers::pi / 2), "between the first and the present viewing ray"});
+  v("max_baseline_ratio", p.max_baseline_ratio, {Range::Positive(), "distance from the first view / depth there"});
+  v("max_searched", p.max_searched, {Range::AtLeast(1), "landmarks searched per frame"});
+  v("rolling_shutter", p.readout_s, {Unit::time, Range{-1, 1}, "readout time of all rows, instead of the camera's"});
+  v.Renamed("pilots", "coarse_features");
+  v("coarse_features", p.coarse_features,
+    {Range::AtLeast(0), "landmarks searched first, in large windows; 0: the paper"});
+}
+
+// Calibration target: a chessboard before the camera at the start, which gives the scale.
 struct TargetParams {
-  int columns = 0, rows = 0;  // inner corners, where four squares meet; 0: there is none
-  double square_m = 0;        // side of a square
-  int frames = 30;            // it is looked for until it is found, in no more than so many frames
+  int columns = 0, rows = 0;
+  double square_m = 0;
+  int frames = 30;
 };
+
+template <class V>
+void Visit(V& v, TargetParams& p) {
+  v("columns", p.columns, {Range{0, 100}, "inner corners of the chessboard, where four squares meet; 0: none"});
+  v("rows", p.rows, {Range{0, 100}, "the same"});
+  v("square", p.square_m, {Unit::length, Range::AtLeast(0), "side of a square"});
+  v("frames", p.frames, {Range::AtLeast(1), "first frames in which it is searched"});
+}
 
 struct Params {
   MotionParams motion;
@@ -148,7 +248,17 @@ struct Params {
   TargetParams target;
 };
 
-// Everything wrong with the parameters, one sentence each, with the value; empty when all is well.
-std::vector<std::string> Problems(const Params& params);
+template <class V>
+void Visit(V& v, Params& p) {
+  v.Child("motion", p.motion);
+  v.Child("filter", p.filter);
+  v.Child("landmark", p.landmark);
+  v.Child("score", p.score);
+  v.Child("features", p.features);
+  v.Child("target", p.target);
+}
+
+// Ranges and the rules between several values; empty when all is well. Keys are those of `odometry:`.
+std::vector<settings::FieldProblem> Problems(Params params);
 
 }  // namespace vo

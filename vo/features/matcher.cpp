@@ -32,7 +32,7 @@ Eigen::Matrix2d PatternMap(const Eigen::Matrix2d& warp, const FeatureParams& par
 
 // The window that the prediction's own uncertainty asks for; nothing beyond the enlarged window while that is small.
 int LostWindow(const SearchRequest& request, const FeatureParams& params) {
-  return std::min(WindowOf(request.S), request.widest_px.value_or(params.window_lost_px));
+  return std::min(WindowOf(request.S), request.widest_px.value_or(params.search_uncertain_px));
 }
 
 // The window, row by row; where it is larger than the enlarged one, what of it lies in the ellipse of kLostSigmas about the prediction (the
@@ -44,7 +44,7 @@ void SearchRegion(const SearchRequest& request, int side, const FeatureParams& p
   region.clear();
   for (int dy = -half; dy <= half; ++dy) {
     int first = -half, last = half;
-    if (side > params.window_enlarged_px) {  // a dx^2 + 2 b dx + c <= 0
+    if (side > params.search_wide_px) {  // a dx^2 + 2 b dx + c <= 0
       const double a = information(0, 0), b = information(0, 1) * dy, c = information(1, 1) * dy * dy - 1;
       const double discriminant = b * b - a * c;
       if (discriminant < 0) continue;
@@ -87,10 +87,10 @@ std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& request
     results[i].in_sight = brisk.Describable(Rounded(request.predicted), sampler);
     int searched = 0;
     for (const int wanted :
-         {params.window_quick_px, params.window_px, params.window_enlarged_px, LostWindow(request, params)}) {
+         {params.search_first_px, params.search_normal_px, params.search_wide_px, LostWindow(request, params)}) {
       const int side = request.widest_px ? std::min(wanted, *request.widest_px) : wanted;
       if (side <= searched) continue;
-      const bool quick = searched == 0 && side < params.window_px;
+      const bool quick = searched == 0 && side < params.search_normal_px;
       searched = side;
       SearchRegion(request, side, params, region);
       const auto best = brisk.Nearest(request.appearance->descriptor, sampler, region);

@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "vo/features/matcher.h"
@@ -58,7 +57,7 @@ bool WorthSearching(const Sight& in, int landmark, const ImagePrediction& predic
   const Eigen::Vector3d estimate = in.filter.ModeOf(landmark);
   const Eigen::Vector3d first_ray = first.q_WC * Eigen::Vector3d(estimate.x(), estimate.y(), 1.0).normalized();
   const Eigen::Vector3d present_ray = now.q_WC * Eigen::Vector3d(prediction.z.x(), prediction.z.y(), 1.0).normalized();
-  if (first_ray.dot(present_ray) < std::cos(in.params.features.max_view_angle_deg * std::numbers::pi / 180))
+  if (first_ray.dot(present_ray) < std::cos(in.params.features.max_view_angle))
     return false;
   const double rho = estimate.z();
   return rho <= 0 || (now.p_WC - first.p_WC).norm() * rho < in.params.features.max_baseline_ratio;
@@ -170,7 +169,7 @@ Results Find(const Sight& in, const std::vector<Candidate>& candidates, const st
   for (const std::size_t i : pilots) {
     is_pilot[i] = true;
     first.push_back(requests[i]);
-    first.back().widest_px = in.params.features.window_recovery_px;
+    first.back().widest_px = in.params.features.search_relocalise_px;
   }
   const Results leading = in.Find(first);
   std::vector<Match> matches;
@@ -192,7 +191,7 @@ Results Find(const Sight& in, const std::vector<Candidate>& candidates, const st
     rest.back().predicted =
         in.shutter.on() ? motion.InImage(candidates[i].landmark, in.camera.Undistort(where->pixel)) : where->pixel;
     rest.back().S = where->covariance;
-    rest.back().widest_px = std::max(in.params.features.window_px, WindowOf(where->covariance));
+    rest.back().widest_px = std::max(in.params.features.search_normal_px, WindowOf(where->covariance));
   }
   const Results following = in.Find(rest);
   for (std::size_t i = 0, k = 0; i < candidates.size(); ++i)

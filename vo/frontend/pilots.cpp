@@ -21,7 +21,7 @@ int Rank(const LandmarkRecord& record) { return record.score < kSureScore ? 2 : 
 
 std::vector<std::size_t> ChoosePilots(std::span<const PilotCandidate> candidates, const Camera& camera,
                                       const FeatureParams& params) {
-  const auto count = static_cast<std::size_t>(params.pilots);
+  const auto count = static_cast<std::size_t>(params.coarse_features);
   std::vector<std::size_t> preferred;
   for (std::size_t i = 0; i < candidates.size(); ++i)
     if (candidates[i].record->age >= kSettledFrames) preferred.push_back(i);
@@ -31,7 +31,7 @@ std::vector<std::size_t> ChoosePilots(std::span<const PilotCandidate> candidates
   });
   std::vector<Eigen::Vector2d> pixels;
   for (const std::size_t i : preferred) pixels.push_back(candidates[i].pixel);
-  const int cells = static_cast<int>(std::ceil(std::sqrt(params.pilots)));
+  const int cells = static_cast<int>(std::ceil(std::sqrt(params.coarse_features)));
   std::vector<std::size_t> pilots;
   for (const std::size_t i : SpreadOver(pixels, cells, cells, camera.width, camera.height))
     if (pilots.size() < count) pilots.push_back(preferred[i]);

@@ -23,7 +23,7 @@ struct PilotCandidate {
   const LandmarkRecord* record;
 };
 
-// Indices of params.pilots candidates, spread over the image, in each part of it those that are surely there and well
+// Indices of params.coarse_features candidates, spread over the image, in each part of it those surely there and well
 // known first. None where fewer have been known for ten frames: as long as depths are mere beliefs, to look where these
 // say confirms them.
 std::vector<std::size_t> ChoosePilots(std::span<const PilotCandidate> candidates, const Camera& camera,

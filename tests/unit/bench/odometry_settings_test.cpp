@@ -7,7 +7,9 @@
 
 namespace vobench {
 namespace {
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 vo::Params Read(const std::string& text) {
   settings::Document document = settings::Document::FromText(text, "test.yaml");
@@ -26,10 +28,38 @@ std::string Complaint(const std::string& text) {
   return "accepted";
 }
 
+struct Any {
+  template <class T>
+  operator T() const;
+};
+// Members of an aggregate.
+template <class S, class... Given>
+constexpr std::size_t Members() {
+  if constexpr (requires { S{Given{}..., Any{}}; }) return Members<S, Given..., Any>();
+  return sizeof...(Given);
+}
+template <class S>
+std::size_t Rows() {
+  S values;
+  settings::FieldRows table;
+  Visit(table, values);
+  return table.rows.size();
+}
+
+TEST(OdometrySettingsTest, EveryMemberHasARow) {
+  EXPECT_EQ(Rows<vo::MotionParams>(), Members<vo::MotionParams>());
+  EXPECT_EQ(Rows<vo::FilterParams>() + 1, Members<vo::FilterParams>()) << "`sampled` is the system's";
+  EXPECT_EQ(Rows<vo::LandmarkParams>(), Members<vo::LandmarkParams>());
+  EXPECT_EQ(Rows<vo::ScoreParams>(), Members<vo::ScoreParams>());
+  EXPECT_EQ(Rows<vo::FeatureParams>(), Members<vo::FeatureParams>());
+  EXPECT_EQ(Rows<vo::TargetParams>(), Members<vo::TargetParams>());
+  EXPECT_EQ(Rows<PriorSettings>(), Members<PriorSettings>());
+}
+
 TEST(OdometrySettingsTest, NothingGivenIsTheDefaults) {
   const vo::Params params = Read(""), defaults;
   EXPECT_EQ(params.filter.particles, defaults.filter.particles);
-  EXPECT_EQ(params.features.max_view_angle_deg, defaults.features.max_view_angle_deg);
+  EXPECT_EQ(params.features.max_view_angle, defaults.features.max_view_angle);
   EXPECT_TRUE(vo::Problems(params).empty());
 }
 
@@ -44,7 +74,7 @@ TEST(OdometrySettingsTest, ReadsValuesWithUnits) {
   EXPECT_EQ(params.filter.particles, 16);
   EXPECT_EQ(params.landmark.bearing, vo::Bearing::fixed);
   EXPECT_EQ(params.features.sigma_px, 1.5);
-  EXPECT_NEAR(params.features.max_view_angle_deg, 30, 1e-12);
+  EXPECT_NEAR(params.features.max_view_angle, std::numbers::pi / 6, 1e-15);
   EXPECT_FALSE(params.features.subpixel);
 }
 
@@ -66,11 +96,43 @@ TEST(OdometrySettingsTest, ResolvedSettingsReadAgainAreTheSame) {
   ReadOdometry(document.root(), params);
   const std::string resolved = document.Resolved();
   const vo::Params again = Read(resolved);
-  EXPECT_NEAR(again.features.max_view_angle_deg, 31, 1e-12);
+  EXPECT_EQ(again.features.max_view_angle, params.features.max_view_angle);
   EXPECT_EQ(again.score.gate, params.score.gate);
   // All that there is: two levels of keys, of which the sections are five.
   EXPECT_THAT(resolved, HasSubstr("max_searched"));
   EXPECT_THAT(resolved, HasSubstr("orientation_noise"));
+}
+
+TEST(OdometrySettingsTest, OldKeyNamesTheNew) {
+  for (const auto& [old, now] :
+       {std::pair{"features: {window: 9}", "'features.window' has a new name: 'search_normal'"},
+        {"features: {window_quick: 5}", "'search_first'"},
+        {"features: {window_enlarged: 17}", "'search_wide'"},
+        {"features: {window_lost: 49}", "'search_uncertain'"},
+        {"features: {window_recovery: 241}", "'search_relocalise'"},
+        {"features: {pilots: 16}", "'coarse_features'"},
+        {"score: {blind_share: 0}", "'min_found_ratio'"},
+        {"filter: {weight: equal}", "'equal' has a new name: 'uniform'"}}) {
+    EXPECT_THAT(Complaint(old), AllOf(HasSubstr(now), Not(HasSubstr("\n")), Not(HasSubstr("known")))) << old;
+  }
+}
+
+// Ranges that two places once stated differently.
+TEST(OdometrySettingsTest, RangeIsOneForFilesAndStructs) {
+  for (const auto& [text, rule] : {std::pair{"landmark: {max_landmarks: 9}", "'9' must be at least 10"},
+                                   {"filter: {ukf_alpha: 0}", "'0' must be above 0 and at most 1"},
+                                   {"filter: {ukf_alpha: 0.5, ukf_beta: 0.2}", "filter.ukf_alpha squared"},
+                                   {"features: {search_normal: 8}", "'8' must be odd and at least 1"},
+                                   {"features: {min_distance: 0}", "'0' must be positive"},
+                                   {"score: {detection: 1}", "'1' must be above 0 and below 1"},
+                                   {"features: {max_view_angle: 90 deg}", "and below 90 deg"}}) {
+    EXPECT_THAT(Complaint(text), HasSubstr(rule));
+  }
+}
+
+TEST(OdometrySettingsTest, RuleBetweenValuesIsToldAtItsKey) {
+  EXPECT_THAT(Complaint("filter:\n  proposal: ukf\n  lag: 5\n"),
+              AllOf(HasSubstr("test.yaml:3:8: filter.lag = 5 needs filter.proposal ekf or iterated")));
 }
 
 TEST(OdometrySettingsTest, PriorHasUnits) {

@@ -186,20 +186,26 @@ TEST(Unscented, ProposalTracksAStepAndStaysSymmetric) {
 }
 
 TEST(Problems, RefuseWhatCannotBe) {
+  using testing::AllOf;
   using testing::ElementsAre;
+  using testing::Field;
   using testing::HasSubstr;
   vo::Params params;
   params.filter.proposal = vo::Proposal::ukf;
   EXPECT_TRUE(vo::Problems(params).empty());
   params.filter.lag = 5;
-  EXPECT_THAT(vo::Problems(params), ElementsAre(HasSubstr("filter.lag = 5 needs filter.proposal ekf or iterated")));
+  const auto about = [](const char* key, const char* words) {
+    return ElementsAre(
+        AllOf(Field(&settings::FieldProblem::key, key), Field(&settings::FieldProblem::message, HasSubstr(words))));
+  };
+  EXPECT_THAT(vo::Problems(params), about("filter.lag", "= 5 needs filter.proposal ekf or iterated"));
   params.filter.lag = 0;
   params.filter.proposal = vo::Proposal::iterated;
-  params.filter.weight = vo::Weight::equal;
-  EXPECT_THAT(vo::Problems(params), ElementsAre(HasSubstr("filter.lag = 0 must be above 0 for filter.weight equal")));
+  params.filter.weight = vo::Weight::uniform;
+  EXPECT_THAT(vo::Problems(params), about("filter.lag", "= 0 must be above 0 for filter.weight uniform"));
   params.filter.weight = vo::Weight::evidence;
   params.filter.proposal = vo::Proposal::bootstrap;
-  EXPECT_THAT(vo::Problems(params), ElementsAre(HasSubstr("filter.weight must be importance")));
+  EXPECT_THAT(vo::Problems(params), about("filter.weight", "must be importance"));
   params.filter.weight = vo::Weight::importance;
   EXPECT_TRUE(vo::Problems(params).empty());
   params.filter.ukf_alpha = 0;

@@ -25,7 +25,7 @@ std::vector<std::pair<std::string, vo::FilterParams>> Members() {
   members[2].second.start_window = 0;
   members[3].first = "lag, equal weights";
   members[3].second.lag = 5;
-  members[3].second.weight = vo::Weight::equal;
+  members[3].second.weight = vo::Weight::uniform;
   members[4].first = "ukf";
   members[4].second.proposal = vo::Proposal::ukf;
   members[5].first = "ekfslam";

@@ -118,7 +118,7 @@ TEST(Pilots, AreSettledSureAndSpread) {
     candidates.push_back({Vector2d(32 + 64 * (n % 10), 48 + 96 * (n % 50 / 10)), &records[n]});
   }
   vo::FeatureParams params;
-  params.pilots = 16;
+  params.coarse_features = 16;
   const std::vector<std::size_t> pilots = vo::ChoosePilots(candidates, kCamera, params);
   ASSERT_EQ(pilots.size(), 16u);
   std::set<std::pair<int, int>> cells;
@@ -130,7 +130,7 @@ TEST(Pilots, AreSettledSureAndSpread) {
 
   for (int n = 10; n < 100; ++n) records[n].age = 9;
   EXPECT_TRUE(vo::ChoosePilots(candidates, kCamera, params).empty()) << "ten settled landmarks are not sixteen";
-  params.pilots = 0;
+  params.coarse_features = 0;
   EXPECT_TRUE(vo::ChoosePilots(candidates, kCamera, params).empty());
 }
 
@@ -157,7 +157,7 @@ cv::Mat ViewFrom(const vo::Pose& pose, const vo_test::Texture& texture) {
 
 std::vector<vo::Estimate> Track(const std::vector<cv::Mat>& images, int pilots) {
   vo::Params params;
-  params.features.pilots = pilots;
+  params.features.coarse_features = pilots;
   params.motion.orientation_noise = 4;
   vo::Prior prior;
   prior.v_WC = {0.3, 0.12, 0};
@@ -190,9 +190,9 @@ TEST(Pilots, FollowAJoltAndTooManyAreNone) {
 
 // A third of a second in the dark, in which the camera turns by 0.12 rad, 58 px, that nothing foretold: how many of the
 // matches after it are of landmarks from before.
-double OldAfterTheDark(const std::vector<cv::Mat>& images, int window_recovery_px) {
+double OldAfterTheDark(const std::vector<cv::Mat>& images, int search_relocalise_px) {
   vo::Params params;
-  params.features.window_recovery_px = window_recovery_px;
+  params.features.search_relocalise_px = search_relocalise_px;
   vo::Prior prior;
   prior.v_WC = {0.3, 0.12, 0};
   prior.velocity_covariance = 1e-3 * vo::Matrix6::Identity();
@@ -222,8 +222,8 @@ TEST(Pilots, FindTheOldLandmarksAfterADarkTime) {
     images.push_back(ViewFrom({Vector3d(0.01 * k, 0.004 * k, 0), Eigen::Quaterniond::Identity()}, texture));
   images.insert(images.end(), 10, cv::Mat(kCamera.height, kCamera.width, CV_8UC1, cv::Scalar(90)));
   images.push_back(ViewFrom({Vector3d(0.3, 0.12, 0), vo::Exp({0, 0.12, 0})}, texture));
-  EXPECT_GT(OldAfterTheDark(images, vo::FeatureParams().window_recovery_px), 0.5);
-  EXPECT_LT(OldAfterTheDark(images, vo::FeatureParams().window_lost_px), 0.1) << "the control: windows do not reach";
+  EXPECT_GT(OldAfterTheDark(images, vo::FeatureParams().search_relocalise_px), 0.5);
+  EXPECT_LT(OldAfterTheDark(images, vo::FeatureParams().search_uncertain_px), 0.1) << "the control: windows do not reach";
 }
 
 }  // namespace

@@ -142,7 +142,7 @@ std::vector<Member> Members() {
                                  {"ukf", Plain()}};
   members[1].params.weight = vo::Weight::importance;
   members[2].params.lag = 3;
-  members[2].params.weight = vo::Weight::equal;
+  members[2].params.weight = vo::Weight::uniform;
   members[3].params.start_window = 4;
   members[4].params.sampled = vo::Sampled::pose_and_velocity;
   members[5].params.proposal = vo::Proposal::bootstrap;

@@ -31,7 +31,7 @@ std::vector<Member> Members() {
   std::vector<Member> members = {
       {"evidence", plain}, {"lag", plain}, {"start_window", plain}, {"ukf", plain}, {"ekfslam", plain}};
   members[1].params.lag = 5;
-  members[1].params.weight = vo::Weight::equal;
+  members[1].params.weight = vo::Weight::uniform;
   members[2].params.start_window = 10;
   members[3].params.proposal = vo::Proposal::ukf;
   members[4].params.sampled = vo::Sampled::nothing;

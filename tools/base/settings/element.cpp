@@ -17,8 +17,8 @@ namespace {
 // exponential space.
 class Builder : public YAML::EventHandler {
  public:
-  Builder(std::string name, bool with_lines, Dialect dialect, std::vector<Problem>& problems)
-      : name_(std::move(name)), with_lines_(with_lines), dialect_(dialect), problems_(problems) {}
+  Builder(Place from, Dialect dialect, std::vector<Problem>& problems)
+      : from_(std::move(from)), dialect_(dialect), problems_(problems) {}
 
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
@@ -47,6 +47,10 @@ class Builder : public YAML::EventHandler {
   }
   void OnMapEnd() override { Close(); }
 
+  Place PlaceOf(const YAML::Mark& mark) const {
+    return from_.key.empty() && mark.line >= 0 ? Place{from_.file, mark.line + 1, mark.column + 1} : from_;
+  }
+
   Element TakeRoot() { return std::move(root_); }
 
   // What cv::FileStorage has appended to a file is one document more: its keys, where both are maps.
@@ -65,9 +69,6 @@ class Builder : public YAML::EventHandler {
     bool has_key = false;
   };
 
-  Place PlaceOf(const YAML::Mark& mark) const {
-    return with_lines_ && mark.line >= 0 ? Place{name_, mark.line + 1, mark.column + 1} : Place{name_, 0, 0};
-  }
   Element MakeElement(Element::Kind kind, const YAML::Mark& mark) const {
     Element element;
     element.kind = kind;
@@ -75,7 +76,7 @@ class Builder : public YAML::EventHandler {
     return element;
   }
   void Complain(const Place& place, std::string message) {
-    problems_.push_back({place.file, place.line, place.column, std::move(message)});
+    problems_.push_back({place.file, place.line, place.column, std::move(message), place.key});
   }
   void Complain(const YAML::Mark& mark, std::string message) { Complain(PlaceOf(mark), std::move(message)); }
   void CheckTag(const YAML::Mark& mark, const std::string& tag) {
@@ -114,8 +115,7 @@ class Builder : public YAML::EventHandler {
     }
   }
 
-  std::string name_;
-  bool with_lines_;
+  Place from_;
   Dialect dialect_;
   std::vector<Problem>& problems_;
   std::vector<Open> open_;
@@ -143,29 +143,30 @@ std::string Describe(const Element& element) {
   return "nothing";
 }
 
-Element ParseYaml(const std::string& text, const std::string& name, bool with_lines, std::vector<Problem>& problems,
-                  Dialect dialect) {
-  Builder builder(name, with_lines, dialect, problems);
+Element ParseYaml(const std::string& text, const Place& from, std::vector<Problem>& problems, Dialect dialect) {
+  Builder builder(from, dialect, problems);
+  const auto fail = [&](const std::string& message, const YAML::Mark& mark = YAML::Mark::null_mark()) {
+    const Place place = builder.PlaceOf(mark);
+    problems.push_back({place.file, place.line, place.column, message, place.key});
+  };
   try {
     std::istringstream stream(dialect == Dialect::opencv && text.starts_with('%') ? "#" + text.substr(1) : text);
     YAML::Parser parser(stream);
     bool more = parser.HandleNextDocument(builder);
     while (more) {
-      Builder rest(name, with_lines, dialect, problems);
+      Builder rest(from, dialect, problems);
       more = parser.HandleNextDocument(rest);
       if (!more || (dialect == Dialect::opencv && builder.Join(rest))) continue;
-      problems.push_back({name, 0, 0, "holds more than one YAML document"});
+      fail("holds more than one YAML document");
       break;
     }
   } catch (const YAML::DeepRecursion&) {
-    problems.push_back({name, 0, 0, "not valid YAML: nested too deeply"});
+    fail("not valid YAML: nested too deeply");
   } catch (const YAML::Exception& error) {
-    const bool place = with_lines && error.mark.line >= 0;
-    problems.push_back(
-        {name, place ? error.mark.line + 1 : 0, place ? error.mark.column + 1 : 0, "not valid YAML: " + error.msg});
+    fail("not valid YAML: " + error.msg, error.mark);
   }
   Element root = builder.TakeRoot();
-  if (root.place.file.empty()) root.place.file = name;
+  if (root.place.file.empty()) root.place = from;
   return root;
 }
 

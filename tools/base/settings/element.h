@@ -1,4 +1,4 @@
-// Purpose: a YAML text as a tree in which every key and value knows its place. For the reader's own use.
+// Tree of a YAML text: keys and values with their places. Private to tools/base/settings.
 #pragma once
 
 #include <string>
@@ -12,6 +12,7 @@ namespace settings {
 struct Place {
   std::string file;
   int line = 0, column = 0;  // as in Problem
+  std::string key = {};
 };
 
 struct Entry;
@@ -36,10 +37,10 @@ struct Entry {
 // "a list", "a section", ...: for messages.
 std::string Describe(const Element& element);
 
-// Reads one YAML document (of OpenCV's dialect several, where all are maps); an empty text is a null element. Appends a problem for each duplicate key, alias, tag (of our
-// dialect) and key that is not a scalar, and goes on; a syntax error ends it with one problem. Without `with_lines` every place is
-// just the name.
-Element ParseYaml(const std::string& text, const std::string& name, bool with_lines, std::vector<Problem>& problems,
+// Reads one YAML document (of OpenCV's dialect several, where all are maps); an empty text is a null element. Appends a
+// problem for each duplicate key, alias, tag (of our dialect) and key that is not a scalar, and goes on; a syntax error
+// ends it with one problem. Places have the lines of the text, or are `from` where that has a key (--set).
+Element ParseYaml(const std::string& text, const Place& from, std::vector<Problem>& problems,
                   Dialect dialect = Dialect::ours);
 
 }  // namespace settings

@@ -1,4 +1,4 @@
-// Purpose: what is wrong with a settings file: every problem at once, each with its place.
+// Problems of a settings file: all at once, each with its place.
 #pragma once
 
 #include <stdexcept>
@@ -12,6 +12,7 @@ struct Problem {
   int line = 0;      // 1-based; 0: the whole file
   int column = 0;    // 1-based, in bytes
   std::string message;
+  std::string key = {};  // of a value from the command line: its dotted key
 };
 
 // "file:line:column: message", or "file: message" without a line.

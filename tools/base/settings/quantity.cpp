@@ -91,24 +91,18 @@ bool IsNotFinite(std::string_view text) {
   return word == "nan" || word == "inf";
 }
 
-bool InRange(double value, std::string_view text, const Range& range, std::string_view unit, std::string& problem) {
-  if (value >= range.min && value <= range.max) return true;
-  const std::string suffix = unit.empty() ? std::string() : std::string(" ").append(unit);
-  const bool from = std::isfinite(range.min), to = std::isfinite(range.max);
-  problem = Quoted(text);
-  if (range.min == std::numeric_limits<double>::denorm_min()) {
-    problem += to ? " must be positive and at most " + FormatNumber(range.max) + suffix : " must be positive";
-  } else if (from && to) {
-    problem += " must lie in " + FormatNumber(range.min) + " ... " + FormatNumber(range.max) + suffix;
-  } else if (from) {
-    problem += " must be at least " + FormatNumber(range.min) + suffix;
-  } else {
-    problem += " must be at most " + FormatNumber(range.max) + suffix;
-  }
+bool InRange(double value, std::string_view text, const Range& range, Unit unit, std::string& problem) {
+  if (range.Holds(value)) return true;
+  problem = Quoted(text) + " " + Rule(range, unit);
   return false;
 }
 
 }  // namespace
+
+std::string_view SymbolOf(Unit unit) {
+  const Kind kind = KindOf(unit);
+  return kind.units.empty() ? std::string_view() : kind.units[0].name;
+}
 
 bool ParseQuantity(std::string_view text, Unit unit, const Range& range, double& value, std::string& problem) {
   const Kind kind = KindOf(unit);
@@ -142,7 +136,7 @@ bool ParseQuantity(std::string_view text, Unit unit, const Range& range, double&
     problem = Quoted(text) + " is out of the range of numbers";
     return false;
   }
-  if (!InRange(number, text, range, kind.units.empty() ? "" : kind.units[0].name, problem)) return false;
+  if (!InRange(number, text, range, unit, problem)) return false;
   value = number;
   return true;
 }
@@ -163,7 +157,7 @@ bool ParseInteger(std::string_view text, const Range& range, T& value, std::stri
     problem = Quoted(text) + " is not a whole number" + (std::numeric_limits<T>::min() == 0 ? " of at least 0" : "");
     return false;
   }
-  if (!InRange(static_cast<double>(number), text, range, "", problem)) return false;
+  if (!InRange(static_cast<double>(number), text, range, Unit::none, problem)) return false;
   value = number;
   return true;
 }

@@ -52,7 +52,7 @@ void FindUnknownKeys(const Request& section, std::vector<Problem>& problems) {
     for (const Entry& entry : section.element->entries) {
       if (section.ignores_rest || section.Find(entry.key)) continue;
       problems.push_back({entry.place.file, entry.place.line, entry.place.column,
-                          "unknown key '" + entry.key + "'" + Suggest(entry.key, known)});
+                          "unknown key '" + entry.key + "'" + Suggest(entry.key, known), entry.place.key});
     }
   }
   for (const auto& child : section.children) FindUnknownKeys(*child.second, problems);

@@ -257,6 +257,11 @@ void Section::Reject(const std::string& key, const std::string& message) {
   state_->Complain(place, message);
 }
 
+void Section::Reject(const std::vector<FieldProblem>& problems) {
+  const std::string path = request_->path.empty() ? "" : request_->path + ".";
+  for (const FieldProblem& problem : problems) Reject(problem.key, path + problem.key + " " + problem.message);
+}
+
 void Section::RequirePresent(const std::string& key) {
   Request& request = Ask(key);
   if (request.element) return;
@@ -264,12 +269,25 @@ void Section::RequirePresent(const std::string& key) {
   state_->Complain(request_->place, "missing key '" + request.path + "'");
 }
 
+bool Section::Renamed(const std::string& key, const std::string& now) {
+  if (!Has(key)) return false;
+  state_->Complain(Ask(key).place, "'" + Ask(key).path + "' has a new name: '" + now + "'");
+  return true;
+}
+
+bool Section::Renamed(const std::string& key, const std::string& value, const std::string& now) {
+  const Element* element = Find(key);
+  if (!element || element->kind != Element::Kind::scalar || element->text != value) return false;
+  state_->Complain(Ask(key).place, "'" + Ask(key).path + "': '" + value + "' has a new name: '" + now + "'");
+  return true;
+}
+
 void Section::Ignore(const std::string& key) { Ask(key).kind = Request::Kind::ignored; }
 
 void Section::IgnoreRest() { request_->ignores_rest = true; }
 
 Document Document::FromFile(const std::filesystem::path& path, Dialect dialect) {
-  const auto fail = [&](const std::string& why) { throw Error({{path.string(), 0, 0, why}}); };
+  const auto fail = [&](const std::string& why) { throw Error({{path.string(), 0, 0, why, {}}}); };
   std::error_code none;  // of a name that no system takes; what opens it says why
   if (std::filesystem::is_directory(path, none)) fail("is a folder, not a file");
   errno = 0;
@@ -284,13 +302,16 @@ Document Document::FromFile(const std::filesystem::path& path, Dialect dialect) 
 Document Document::FromText(const std::string& text, const std::string& name, Dialect dialect) {
   auto state = std::make_shared<State>();
   std::vector<Problem> problems;
-  state->root = ParseYaml(text, name, true, problems, dialect);
+  state->root = ParseYaml(text, Place{name}, problems, dialect);
   const bool invalid = std::any_of(problems.begin(), problems.end(), [](const Problem& problem) {
     return problem.message.starts_with("not valid YAML");
   });
   if (state->root.kind != Element::Kind::map && state->root.kind != Element::Kind::null) {
-    problems.push_back({name, state->root.place.line, state->root.place.column,
-                        "expected keys with values, not " + Describe(state->root)});
+    problems.push_back({name,
+                        state->root.place.line,
+                        state->root.place.column,
+                        "expected keys with values, not " + Describe(state->root),
+                        {}});
     throw Error(std::move(problems));
   }
   if (invalid) throw Error(std::move(problems));
@@ -300,7 +321,7 @@ Document Document::FromText(const std::string& text, const std::string& name, Di
 
 void Document::Override(const std::string& key, const std::string& value) {
   if (state_->reading) throw std::logic_error("settings: Override after reading has begun");
-  const Place place{"--set " + key, 0, 0};
+  const Place place{"--set " + key, 0, 0, key};
   std::vector<std::string> parts;
   std::istringstream stream(key);
   for (std::string part; std::getline(stream, part, '.');) parts.push_back(part);
@@ -333,7 +354,7 @@ void Document::Override(const std::string& key, const std::string& value) {
       return state_->Complain(place, "'" + part + "' cannot be set inside " + Describe(*element));
     }
   }
-  *element = ParseYaml(value, place.file, false, state_->problems);
+  *element = ParseYaml(value, place, state_->problems);
 }
 
 Section Document::root() {

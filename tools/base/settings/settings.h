@@ -105,7 +105,11 @@ class Section {
   // Adds a problem at the place of `key` (dotted for one further down), or of this section where that is not there. For
   // rules between several values.
   void Reject(const std::string& key, const std::string& message);
+  void Reject(const std::vector<FieldProblem>& problems);
   void RequirePresent(const std::string& key);
+  // A problem that names the new key, or the new value of a key, where the old one is given; whether it is.
+  bool Renamed(const std::string& key, const std::string& now);
+  bool Renamed(const std::string& key, const std::string& value, const std::string& now);
 
   // Not read here, whatever is in it: another reader's. Not in Resolved.
   void Ignore(const std::string& key);

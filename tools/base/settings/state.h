@@ -18,7 +18,7 @@ struct State {
   std::deque<Element> made;  // sections that the file writes as a single word
 
   void Complain(const Place& place, std::string message) {
-    problems.push_back({place.file, place.line, place.column, std::move(message)});
+    problems.push_back({place.file, place.line, place.column, std::move(message), place.key});
   }
 };
 

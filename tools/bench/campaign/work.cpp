@@ -104,11 +104,8 @@ void CampaignWork::Resolve(const fs::path& path) {
           point.levels.emplace_back(factor.name, LevelValue(resolved, factor, choice.levels[i]));
         }
       } catch (const settings::Error& error) {
-        const std::string kSet = "--set ";
         for (const settings::Problem& problem : error.problems()) {
-          const bool ours = problem.file.starts_with(kSet);
-          file.Reject(choice, ours ? problem.file.substr(kSet.size()) : "",
-                      ours ? problem.message : settings::ToString(problem));
+          file.Reject(choice, problem.key, problem.key.empty() ? settings::ToString(problem) : problem.message);
         }
       }
     }

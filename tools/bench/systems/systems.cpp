@@ -13,7 +13,7 @@ namespace {
 
 void WithoutLag(vo::FilterParams& filter) {
   filter.lag = 0;
-  if (filter.weight == vo::Weight::equal) filter.weight = vo::Weight::evidence;
+  if (filter.weight == vo::Weight::uniform) filter.weight = vo::Weight::evidence;
 }
 
 }  // namespace
