@@ -1,79 +1,64 @@
 #include "vo/odometry.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "vo/estimate.h"
-#include "vo/features/corner_detector.h"
+#include "vo/base/stopwatch.h"
 #include "vo/filter/pose_gaussian.h"
+#include "vo/filter/watched_filter.h"
+#include "vo/filter_adapter.h"
 #include "vo/frontend/association.h"
+#include "vo/frontend/new_features.h"
 #include "vo/frontend/rolling_shutter.h"
-#include "vo/frontend/spread.h"
-#include "vo/frontend/target.h"
-#include "vo/map/existence.h"
 #include "vo/map/forgetting.h"
 
 namespace vo {
-namespace {
-
-constexpr int kStartRounds = 6;  // of the second frame, through a rolling shutter
-
-struct NewCorner {
-  Eigen::Vector2i pixel;
-  std::optional<KnownDepth> depth;  // of the target's
-};
-
-}  // namespace
 
 struct Odometry::Impl {
   Impl(const Camera& camera_, const Params& params_, const Prior& prior_, std::uint64_t seed_)
       : camera(camera_),
-        params(Checked(params_)),
+        params(params_),
         prior(prior_),
         seed(seed_),
         filter(MakeFilter(params, prior, seed)),
         scale(params.landmark.scale_sigma, prior.pose.p_WC),
         shutter(camera, params.features),
         first_sampler(FirstSampler(params.features)),
-        border_px(std::max(first_sampler.margin(), Patch::kRadius + 1)) {}
+        border_px(std::max(first_sampler.margin(), Patch::kRadius + 1)),
+        detector(camera, params, border_px) {}
 
   void Require(const Frame& frame) const;
-  Estimate Process(const PreparedFrame& prepared);
-  void Begin(const PreparedFrame& prepared, const Vector6& velocity);
-  void Follow(const PreparedFrame& prepared, FrameDiagnostics& diagnostics);
-  void BeginAgain(const PreparedFrame& second, FrameDiagnostics& diagnostics);
-  void SeenNow() { last_seen = {0, filter.belief().covariance.bottomRightCorner<6, 6>()}; }
-  void UpdateScores(const Association& association);
-  std::vector<NewCorner> NewCorners(const PreparedFrame& prepared);
-  std::vector<NewCorner> TargetCorners(const PreparedFrame& prepared);
+  Estimate Process(const PreparedFrame& frame);
+  void Begin(const PreparedFrame& frame, const Vector6& velocity);
+  void Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics);
+  void RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& diagnostics);
+  void Update(std::span<const Match> matches);
+  std::vector<NewFeature> DetectFeatures(const PreparedFrame& frame);
   void Forget(std::size_t wanted);
-  std::vector<NewCorner> ThatFit(std::vector<NewCorner> corners) const;
-  void AddFeatures(const std::vector<NewCorner>& corners, const PreparedFrame& prepared, const Vector6& velocity);
-  void Add(const NewCorner& corner, const PreparedFrame& prepared, const Vector6& velocity,
-           std::vector<FirstView>& first);
-  Estimate Answer(std::int64_t stamp_ns, FrameDiagnostics diagnostics) const;
+  void AddLandmarks(std::vector<NewFeature> features, const PreparedFrame& frame, const Vector6& velocity);
+  FirstView AddRecord(const NewFeature& feature, const PreparedFrame& frame, const Vector6& velocity);
+  Matrix6 VelocityCovariance() const { return filter.belief().covariance.bottomRightCorner<6, 6>(); }
 
   Camera camera;
   Params params;
   Prior prior;
   std::uint64_t seed;
   WatchedFilter filter;
-  UnknownScale scale;
+  ScaleAmbiguity scale;
   RollingShutter shutter;
   BriskSampler first_sampler;
   int border_px;
+  NewFeatureDetector detector;
   std::vector<LandmarkRecord> records;  // in the order of the filter's landmarks
   std::vector<FeatureView> views;
-  std::vector<Eigen::Vector2d> left_out;  // [px] of this frame: predicted, but not looked for
+  std::vector<Eigen::Vector2d> left_out;  // [px] predicted in this frame, beyond max_searched
   std::optional<std::int64_t> last_stamp_ns;
-  LastSeen last_seen;
+  SinceUpdate since_update;
   int next_id = 0;
-  int target_frames = 0;                     // in which the target may still be looked for
-  std::optional<PreparedFrame> first_frame;  // kept until the second tells how fast its rows were passed over
+  std::optional<PreparedFrame> first_frame;  // with a rolling shutter, until the second frame
 };
 
 void Odometry::Impl::Require(const Frame& frame) const {
@@ -84,48 +69,46 @@ void Odometry::Impl::Require(const Frame& frame) const {
   if (last_stamp_ns) RequireIncreasing(frame.stamp_ns, *last_stamp_ns);
 }
 
-Estimate Odometry::Impl::Process(const PreparedFrame& prepared) {
+Estimate Odometry::Impl::Process(const PreparedFrame& frame) {
   FrameDiagnostics diagnostics;
   if (last_stamp_ns) {
-    Follow(prepared, diagnostics);
-    if (first_frame) BeginAgain(prepared, diagnostics);
+    Follow(frame, diagnostics);
+    if (first_frame) RestartFirstFrame(frame, diagnostics);
   } else {
     Stopwatch watch;
     if (shutter.on()) {
-      first_frame = prepared;
-      first_frame->grey = prepared.grey.clone();  // the caller's memory
+      first_frame = frame;
+      first_frame->grey = frame.grey.clone();  // the memory is the caller's
     }
-    Begin(prepared, filter.belief().velocity);
+    Begin(frame, filter.belief().velocity);
     diagnostics.ms_features += watch.Lap();
   }
-  diagnostics.ms_features += prepared.ms;
-  return Answer(prepared.frame.stamp_ns, diagnostics);
+  diagnostics.ms_features += frame.ms;
+  diagnostics.landmarks = static_cast<int>(records.size());
+  diagnostics.permanent = static_cast<int>(
+      std::count_if(records.begin(), records.end(), [](const LandmarkRecord& r) { return r.permanent; }));
+  return MakeEstimate(filter, scale, frame.frame.stamp_ns, diagnostics);
 }
 
-// With a filter that has seen nothing yet.
-void Odometry::Impl::Begin(const PreparedFrame& prepared, const Vector6& velocity) {
-  records.clear();
-  views.clear();
-  left_out.clear();
-  next_id = 0;
-  target_frames = params.target.columns > 0 ? params.target.frames : 0;
-  last_stamp_ns = prepared.frame.stamp_ns;
-  SeenNow();
-  AddFeatures(ThatFit(NewCorners(prepared)), prepared, velocity);
+// First frame: its landmarks are seen at the prior pose, with `velocity` during the readout.
+void Odometry::Impl::Begin(const PreparedFrame& frame, const Vector6& velocity) {
+  last_stamp_ns = frame.frame.stamp_ns;
+  since_update = {0, VelocityCovariance()};
+  AddLandmarks(DetectFeatures(frame), frame, velocity);
 }
 
-void Odometry::Impl::Follow(const PreparedFrame& prepared, FrameDiagnostics& diagnostics) {
-  const std::int64_t stamp_ns = prepared.frame.stamp_ns;
-  const double dt = static_cast<double>(stamp_ns - *last_stamp_ns) * 1e-9;
+// One iteration of Algorithm 1; sections of docs/algorithm.md.
+void Odometry::Impl::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) {
+  const double dt = static_cast<double>(frame.frame.stamp_ns - *last_stamp_ns) * 1e-9;
   Stopwatch watch;
-  filter.Predict(dt);
-  last_seen.ago += dt;
-  Association association = Associate(filter, records, camera, prepared, border_px, last_seen, params);
+  filter.Predict(dt);  // line 2: (6)-(9), (12), (13)
+  since_update.dt_s += dt;
+  Association association =
+      Associate(filter, records, camera, frame, border_px, since_update, params);  // line 3: section 7
   diagnostics.ms_matching += watch.Lap();
-  filter.Update(association.matches);
-  if (!association.matches.empty()) SeenNow();
-  scale.Lengthened(filter.lengthened());
-  UpdateScores(association);
+
+  Update(association.matches);                       // lines 4-11: (15)-(17), (37)-(43)
+  UpdateScores(association, params.score, records);  // section 6: (44)-(49)
   diagnostics.searched = static_cast<int>(association.searched.size());
   diagnostics.matched = static_cast<int>(association.matches.size());
   diagnostics.nis = association.nis;
@@ -133,47 +116,43 @@ void Odometry::Impl::Follow(const PreparedFrame& prepared, FrameDiagnostics& dia
   views = std::move(association.views);
   left_out = std::move(association.left_out);
   diagnostics.ms_filter += watch.Lap();
-  last_stamp_ns = stamp_ns;
+  last_stamp_ns = frame.frame.stamp_ns;
 
-  std::vector<NewCorner> corners = NewCorners(prepared);
-  Forget(corners.size());
-  AddFeatures(ThatFit(std::move(corners)), prepared, filter.belief().velocity);
+  std::vector<NewFeature> features = DetectFeatures(frame);            // section 7
+  Forget(features.size());                                             // section 6: deletion
+  AddLandmarks(std::move(features), frame, filter.belief().velocity);  // section 5
   diagnostics.ms_features += watch.Lap();
 }
 
-// How fast the camera was in its first frame only the prior says, and the rows of that frame are as wrong as that: a turn that it does not know
-// of shears the whole map, for good. The second frame tells, so both are done again with what it says.
-void Odometry::Impl::BeginAgain(const PreparedFrame& second, FrameDiagnostics& diagnostics) {
+// The velocity in the first frame is that of the prior, and its error shears the map through the rolling shutter. The
+// second frame measures it: both frames are processed again with the result, as a fixed-point iteration.
+void Odometry::Impl::RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& diagnostics) {
+  constexpr int kRounds = 6;
   const PreparedFrame first = *std::exchange(first_frame, std::nullopt);
   const double dt = static_cast<double>(second.frame.stamp_ns - first.frame.stamp_ns) * 1e-9;
-  for (int round = 1; round < kStartRounds && diagnostics.tracked(); ++round) {
+  for (int round = 1; round < kRounds && diagnostics.tracked(); ++round) {
     const Vector6 velocity = MinusNear(filter.belief().pose, prior.pose, dt * prior.w_WC_C) / dt;
-    filter = WatchedFilter(MakeFilter(params, prior, seed));
-    scale = UnknownScale(params.landmark.scale_sigma, prior.pose.p_WC);
+    *this = Impl(camera, params, prior, seed);
     Begin(first, velocity);
     Follow(second, diagnostics);
   }
 }
 
-void Odometry::Impl::UpdateScores(const Association& association) {
-  for (LandmarkRecord& record : records) {
-    record.score = PredictScore(record.score, params.score);
-    ++record.age;
-    ++record.frames_unsearched;
-    record.searched = false;
-  }
-  for (const Searched& searched : association.searched) records[searched.landmark].searched = true;
-  const auto share = [&](std::size_t count) { return params.score.min_found_ratio * static_cast<double>(count); };
-  if (static_cast<double>(association.matches.size()) < share(association.searched.size())) return;  // a blind frame
-  for (const Searched& searched : association.searched) {
-    LandmarkRecord& record = records[searched.landmark];
-    record.score = UpdateScore(record.score, searched.mahalanobis_sq, params.score);
-    if (searched.mahalanobis_sq) record.residuals.Add(searched.residual);
-    record.frames_unsearched = 0;
-  }
+void Odometry::Impl::Update(std::span<const Match> matches) {
+  filter.Update(matches);
+  if (!matches.empty()) since_update = {0, VelocityCovariance()};
+  scale.AbsorbChange(filter.lengthened());
 }
 
-// Room for `wanted` new ones is made as far as nothing that was just searched for has to go.
+// Away from found landmarks and from predicted ones that were not searched for.
+std::vector<NewFeature> Odometry::Impl::DetectFeatures(const PreparedFrame& frame) {
+  std::vector<Eigen::Vector2d> occupied = left_out;
+  for (const FeatureView& view : views)
+    if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
+  return detector.Detect(frame, std::move(occupied));
+}
+
+// Deletes landmarks, also to make room for `wanted` new ones; those searched for in this frame are kept.
 void Odometry::Impl::Forget(std::size_t wanted) {
   const std::vector<Filter::LandmarkBelief> beliefs = filter.LandmarkBeliefs();
   for (std::size_t n = 0; n < records.size(); ++n)
@@ -186,77 +165,33 @@ void Odometry::Impl::Forget(std::size_t wanted) {
   records.resize(to);
 }
 
-// A new landmark; its first view is what the filter is to be told.
-void Odometry::Impl::Add(const NewCorner& corner, const PreparedFrame& prepared, const Vector6& velocity,
-                         std::vector<FirstView>& first) {
-  const Eigen::Vector2d pixel = corner.pixel.cast<double>();
+void Odometry::Impl::AddLandmarks(std::vector<NewFeature> features, const PreparedFrame& frame,
+                                  const Vector6& velocity) {
+  const auto capacity = static_cast<std::size_t>(params.landmark.max_landmarks) - records.size();
+  std::vector<FirstView> first_views;
+  for (const NewFeature& feature : LimitToCapacity(std::move(features), capacity, camera))
+    first_views.push_back(AddRecord(feature, frame, velocity));
+  filter.AddLandmarks(first_views);
+}
+
+FirstView Odometry::Impl::AddRecord(const NewFeature& feature, const PreparedFrame& frame, const Vector6& velocity) {
+  const Eigen::Vector2d pixel = feature.pixel.cast<double>();
   LandmarkRecord record;
-  record.appearance = {prepared.brisk.Describe(corner.pixel, first_sampler), CutPatch(prepared.smooth, corner.pixel)};
+  record.appearance = {frame.brisk.Describe(feature.pixel, first_sampler), CutPatch(frame.smooth, feature.pixel)};
   record.id = next_id++;
   record.score = params.score.initial;
   record.searched = true;
   records.push_back(record);
-  first.push_back(FirstSeen(shutter.Row(pixel), filter.belief().pose, velocity));
-  // The patch that later views are registered to defines the landmark: its first view is as good as the registration can be.
-  first.back().R = PixelNoise(camera.LensJacobian(first.back().ray), params.features.noise != MatchNoise::constant
-                                                                         ? params.features.sigma_floor_px
-                                                                         : params.features.sigma_px);
-  first.back().depth = corner.depth;
   views.push_back(
       {record.id, pixel, pixel, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
-}
-
-std::vector<NewCorner> Odometry::Impl::TargetCorners(const PreparedFrame& prepared) {
-  std::vector<NewCorner> found;
-  if (target_frames == 0) return found;
-  --target_frames;
-  const std::vector<TargetCorner> corners =
-      FindTarget(prepared.grey, camera, params.target, params.features.sigma_floor_px);
-  if (corners.empty()) return found;
-  target_frames = 0;
-  for (const TargetCorner& corner : corners)
-    if (camera.Sees(corner.pixel.cast<double>(), border_px)) found.push_back({corner.pixel, corner.depth});
-  return found;
-}
-
-// Where a landmark may begin: the target's corners, then others, none where a landmark was found or is predicted.
-std::vector<NewCorner> Odometry::Impl::NewCorners(const PreparedFrame& prepared) {
-  std::vector<NewCorner> corners = TargetCorners(prepared);
-  std::vector<Eigen::Vector2d> occupied = left_out;
-  for (const FeatureView& view : views)
-    if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
-  for (const NewCorner& corner : corners) occupied.push_back(corner.pixel.cast<double>());
-  for (const Eigen::Vector2i& corner : DetectCorners(prepared.grey, occupied, border_px, params.features))
-    if (camera.Sees(corner.cast<double>())) corners.push_back({corner, std::nullopt});
-  return corners;
-}
-
-// No more than the map has room for: the target's, then others from all over the image.
-std::vector<NewCorner> Odometry::Impl::ThatFit(std::vector<NewCorner> corners) const {
-  const std::size_t room = static_cast<std::size_t>(params.landmark.max_landmarks) - records.size();
-  if (corners.size() <= room) return corners;
-  std::vector<Eigen::Vector2d> pixels;
-  for (const NewCorner& corner : corners) pixels.push_back(corner.pixel.cast<double>());
-  const int cells = std::max(1, static_cast<int>(std::sqrt(room)));
-  std::vector<std::size_t> order = SpreadOver(pixels, cells, cells, camera.width, camera.height);
-  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return corners[i].depth.has_value(); });
-  std::vector<NewCorner> chosen;
-  for (std::size_t i = 0; i < room; ++i) chosen.push_back(corners[order[i]]);
-  return chosen;
-}
-
-void Odometry::Impl::AddFeatures(const std::vector<NewCorner>& corners, const PreparedFrame& prepared,
-                                 const Vector6& velocity) {
-  std::vector<FirstView> first;
-  for (const NewCorner& corner : corners) Add(corner, prepared, velocity, first);
-  filter.AddLandmarks(first);
-}
-
-Estimate Odometry::Impl::Answer(std::int64_t stamp_ns, FrameDiagnostics diagnostics) const {
-  diagnostics.landmarks = static_cast<int>(records.size());
-  diagnostics.permanent = static_cast<int>(
-      std::count_if(records.begin(), records.end(), [](const LandmarkRecord& r) { return r.permanent; }));
-  return MakeEstimate(filter, scale, stamp_ns, diagnostics);
+  FirstView view = FirstSeen(shutter.Row(pixel), filter.belief().pose, velocity);
+  // Later views are registered to the patch of the first, which thus defines the landmark: only the floor of the noise
+  // is left.
+  const double sigma_px =
+      params.features.noise != MatchNoise::constant ? params.features.sigma_floor_px : params.features.sigma_px;
+  view.R = PixelNoise(camera.LensJacobian(view.ray), sigma_px);
+  view.depth = feature.depth;
+  return view;
 }
 
 Odometry::Odometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)

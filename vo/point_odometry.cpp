@@ -9,19 +9,22 @@
 #include <unordered_set>
 #include <utility>
 
-#include "vo/estimate.h"
+#include "vo/base/source.h"
+#include "vo/base/stopwatch.h"
 #include "vo/filter/consensus.h"
+#include "vo/filter/watched_filter.h"
+#include "vo/filter_adapter.h"
 
 namespace vo {
 
 struct PointOdometry::Impl {
   Impl(const Camera& camera_, const Params& params_, const Prior& prior, std::uint64_t seed)
       : camera(camera_),
-        params(Checked(params_)),
+        params(params_),
         filter(MakeFilter(params, prior, seed)),
         scale(params.landmark.scale_sigma, prior.pose.p_WC) {}
 
-  // An observation on the plane z = 1.
+  // Observation on the plane z = 1.
   struct Ray {
     std::int64_t id;
     Eigen::Vector2d z;
@@ -40,14 +43,14 @@ struct PointOdometry::Impl {
   Camera camera;
   Params params;
   WatchedFilter filter;
-  UnknownScale scale;
-  std::vector<BeliefComponent> mixture;               // the filter's, the scale unknown
+  ScaleAmbiguity scale;
+  std::vector<BeliefComponent> mixture;               // of the answer, where the scale is unknown
   std::vector<Record> records;                        // in the order of the filter's landmarks
   std::unordered_map<std::int64_t, int> landmark_of;  // id -> index
   std::optional<std::int64_t> last_stamp_ns;
 };
 
-// Of each observation that has one; refuses what a frame cannot be.
+// Observations at invertible pixels; checks the frame.
 std::vector<PointOdometry::Impl::Ray> PointOdometry::Impl::RaysOf(const PointFrame& frame) const {
   if (last_stamp_ns) RequireIncreasing(frame.stamp_ns, *last_stamp_ns);
   const auto refuse = [&](const PointObservation& observation, const std::string& what) {
@@ -59,7 +62,7 @@ std::vector<PointOdometry::Impl::Ray> PointOdometry::Impl::RaysOf(const PointFra
   for (const PointObservation& observation : frame.observations) {
     if (!ids.insert(observation.id).second) refuse(observation, " comes twice");
     if (!observation.pixel.allFinite()) refuse(observation, " is nowhere");
-    if (const auto ray = camera.RayOf(observation.pixel)) rays.push_back({observation.id, *ray});
+    if (const auto ray = camera.TryUnproject(observation.pixel)) rays.push_back({observation.id, *ray});
   }
   return rays;
 }
@@ -73,7 +76,7 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
     const std::vector<Match> matches = MatchesIn(rays, diagnostics);
     diagnostics.ms_matching = watch.Lap();
     filter.Update(matches);
-    scale.Lengthened(filter.lengthened());
+    scale.AbsorbChange(filter.lengthened());
     diagnostics.ms_filter = watch.Lap();
   }
   last_stamp_ns = frame.stamp_ns;
@@ -85,7 +88,7 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
   diagnostics.ms_features = watch.Lap();
   if (!scale.known()) {
     mixture = filter.mixture();
-    for (BeliefComponent& component : mixture) component = scale.Answered(component, filter.belief());
+    for (BeliefComponent& component : mixture) component = scale.ToAnswer(component, filter.belief());
   }
   return MakeEstimate(filter, scale, frame.stamp_ns, diagnostics);
 }

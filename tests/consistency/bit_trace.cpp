@@ -30,7 +30,7 @@
 #include "vo/filter/ekf_slam.h"
 #include "vo/filter/particle_filter.h"
 #include "vo/geometry/so3.h"
-#include "vo/unknown_scale.h"
+#include "vo/scale_ambiguity.h"
 
 namespace {
 
@@ -144,7 +144,7 @@ class Player {
       time_ += frame % 9 == 0 ? 1.5 * kDt : kDt;
       TracePrediction(frame);
       filter_->Update(See(frame));
-      scale_.Lengthened(filter_->lengthened());
+      scale_.AbsorbChange(filter_->lengthened());
       TraceAnswer(frame, "answer");
       TraceMap(frame);
       if (frame % 20 == 13) Drop();
@@ -267,7 +267,7 @@ class Player {
     trace_.Add(filter_->effective_particles());
     trace_.Add(filter_->undecided() ? 1 : 0);
     trace_.Add(filter_->lengthened());
-    trace_.Add(scale_.Answered(belief.pose));
+    trace_.Add(scale_.ToAnswer(belief.pose));
     trace_.Add(scale_.Covariance(belief.pose, belief.velocity, belief.covariance));
   }
 
@@ -291,7 +291,7 @@ class Player {
 
   const Setting& setting_;
   Trace& trace_;
-  vo::UnknownScale scale_;
+  vo::ScaleAmbiguity scale_;
   std::unique_ptr<vo::Filter> filter_;
   vo::ParticleFilter* particles_ = nullptr;
   std::vector<Eigen::Vector3d> points_;  // in the order of the filter's landmarks [m in W]

@@ -154,8 +154,8 @@ TEST(CameraContract, BothUndoTheFisheyeWhereTheOdometryUsesIt) {
   int used = 0, beyond = 0;
   for (double v = 0; v <= 511; v += 8.9) {
     for (double u = 0; u <= 511; u += 8.9) {
-      if (!odometry.Sees({u, v})) {
-        EXPECT_LT(simulator.Direction({u, v}).z, std::cos(vo::kWidestAngle) + 1e-9) << u << " " << v;
+      if (!odometry.IsUsable({u, v})) {
+        EXPECT_LT(simulator.Direction({u, v}).z, std::cos(vo::kMaxFisheyeAngle) + 1e-9) << u << " " << v;
         ++beyond;
         continue;
       }

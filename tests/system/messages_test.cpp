@@ -160,7 +160,7 @@ const std::vector<Message>& Messages() {
       {"vo/geometry/camera_file.cpp",
        {"track", "pictures", "-o", "o", "--camera", "none.yaml"},
        {"none.yaml:9:12", "'camera_matrix.data': '.Nan' is not a finite number"}},
-      {"vo/estimate.cpp",
+      {"vo/filter_adapter.cpp",
        {"run", "POINTS", "--set", "odometry.motion.position_noise=-1"},
        {"odometry.motion.position_noise", "-1"}},
       {"tools/vobench/track.cpp", {"track", "pictures", "-o", "o"}, {"camera.yaml", "--camera PRESET|FILE"}},

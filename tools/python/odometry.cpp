@@ -127,7 +127,7 @@ py::tuple Features(const vo::Odometry& self) {
 void AddEstimate(py::module_& m) {
   const auto zero = [] { return Eigen::Vector3d(0, 0, 0); };
   const Eigen::Vector4d identity(0, 0, 0, 1);
-  py::class_<vo::Prior>(m, "Prior", Doc("vo/odometry.h:Prior"))
+  py::class_<vo::Prior>(m, "Prior", Doc("vo/base/result.h:Prior"))
       .def(py::init([](const Eigen::Vector3d& p_WC, const Eigen::Vector4d& q_WC, const Eigen::Vector3d& v_WC,
                        const Eigen::Vector3d& w_WC_C, const std::optional<vo::Matrix6>& pose_covariance,
                        const std::optional<vo::Matrix6>& velocity_covariance) {
@@ -143,24 +143,24 @@ void AddEstimate(py::module_& m) {
           "p_WC", [](const vo::Prior& p) { return p.pose.p_WC; }, "[m]")
       .def_property_readonly(
           "q_WC", [](const vo::Prior& p) { return Coefficients(p.pose.q_WC); }, "(x, y, z, w)")
-      .def_readwrite("v_WC", &vo::Prior::v_WC, Doc("vo/odometry.h:Prior::v_WC"))
-      .def_readwrite("w_WC_C", &vo::Prior::w_WC_C, Doc("vo/odometry.h:Prior::w_WC_C"))
+      .def_readwrite("v_WC", &vo::Prior::v_WC, Doc("vo/base/result.h:Prior::v_WC"))
+      .def_readwrite("w_WC_C", &vo::Prior::w_WC_C, Doc("vo/base/result.h:Prior::w_WC_C"))
       .def_readwrite("pose_covariance", &vo::Prior::pose_covariance)
       .def_readwrite("velocity_covariance", &vo::Prior::velocity_covariance);
-  py::class_<vo::Guards>(m, "Guards", Doc("vo/filter/guards.h:Guards"))
-      .def_readonly("unsettled", &vo::Guards::unsettled, Doc("vo/filter/guards.h:Guards::unsettled"))
-      .def_readonly("behind", &vo::Guards::behind, Doc("vo/filter/guards.h:Guards::behind"))
-      .def_readonly("indefinite", &vo::Guards::indefinite, Doc("vo/filter/guards.h:Guards::indefinite"))
-      .def_readonly("impossible", &vo::Guards::impossible, Doc("vo/filter/guards.h:Guards::impossible"));
+  py::class_<vo::Guards>(m, "Guards", Doc("vo/base/numerical_events.h:Guards"))
+      .def_readonly("unsettled", &vo::Guards::unsettled, Doc("vo/base/numerical_events.h:Guards::unsettled"))
+      .def_readonly("behind", &vo::Guards::behind, Doc("vo/base/numerical_events.h:Guards::behind"))
+      .def_readonly("indefinite", &vo::Guards::indefinite, Doc("vo/base/numerical_events.h:Guards::indefinite"))
+      .def_readonly("impossible", &vo::Guards::impossible, Doc("vo/base/numerical_events.h:Guards::impossible"));
   py::class_<vo::FrameDiagnostics>(m, "Diagnostics", "What an odometry did in a frame.")
-      .def_readonly("searched", &vo::FrameDiagnostics::searched, Doc("vo/odometry.h:FrameDiagnostics::searched"))
-      .def_readonly("matched", &vo::FrameDiagnostics::matched, Doc("vo/odometry.h:FrameDiagnostics::matched"))
-      .def_readonly("landmarks", &vo::FrameDiagnostics::landmarks, Doc("vo/odometry.h:FrameDiagnostics::landmarks"))
-      .def_readonly("nis", &vo::FrameDiagnostics::nis, Doc("vo/odometry.h:FrameDiagnostics::nis"))
+      .def_readonly("searched", &vo::FrameDiagnostics::searched, Doc("vo/base/result.h:FrameDiagnostics::searched"))
+      .def_readonly("matched", &vo::FrameDiagnostics::matched, Doc("vo/base/result.h:FrameDiagnostics::matched"))
+      .def_readonly("landmarks", &vo::FrameDiagnostics::landmarks, Doc("vo/base/result.h:FrameDiagnostics::landmarks"))
+      .def_readonly("nis", &vo::FrameDiagnostics::nis, Doc("vo/base/result.h:FrameDiagnostics::nis"))
       .def_readonly("nis_dof", &vo::FrameDiagnostics::nis_dof)
       .def_readonly("effective_particles", &vo::FrameDiagnostics::effective_particles,
-                    Doc("vo/odometry.h:FrameDiagnostics::effective_particles"))
-      .def_readonly("guards", &vo::FrameDiagnostics::guards, Doc("vo/odometry.h:FrameDiagnostics::guards"));
+                    Doc("vo/base/result.h:FrameDiagnostics::effective_particles"))
+      .def_readonly("guards", &vo::FrameDiagnostics::guards, Doc("vo/base/result.h:FrameDiagnostics::guards"));
   py::class_<vo::Estimate>(m, "Estimate", "What a filter says after a frame: conventions as in docs/conventions.md.")
       .def(py::init(&MakeEstimate), py::kw_only(), py::arg("covariance"), py::arg("p_WC") = zero(),
            py::arg("q_WC") = identity, py::arg("v_WC") = zero(), py::arg("w_WC_C") = zero(), py::arg("stamp_ns") = 0)
@@ -169,9 +169,9 @@ void AddEstimate(py::module_& m) {
           "p_WC", [](const vo::Estimate& e) { return e.pose.p_WC; }, "[m]")
       .def_property_readonly(
           "q_WC", [](const vo::Estimate& e) { return Coefficients(e.pose.q_WC); }, "(x, y, z, w)")
-      .def_readwrite("v_WC", &vo::Estimate::v_WC, Doc("vo/odometry.h:Estimate::v_WC"))
-      .def_readwrite("w_WC_C", &vo::Estimate::w_WC_C, Doc("vo/odometry.h:Estimate::w_WC_C"))
-      .def_readwrite("covariance", &vo::Estimate::covariance, Doc("vo/odometry.h:Estimate::covariance"))
+      .def_readwrite("v_WC", &vo::Estimate::v_WC, Doc("vo/base/result.h:Estimate::v_WC"))
+      .def_readwrite("w_WC_C", &vo::Estimate::w_WC_C, Doc("vo/base/result.h:Estimate::w_WC_C"))
+      .def_readwrite("covariance", &vo::Estimate::covariance, Doc("vo/base/result.h:Estimate::covariance"))
       .def_readonly("diagnostics", &vo::Estimate::diagnostics);
 }
 

@@ -1,5 +1,5 @@
-// Purpose: the instruction sets that inner loops are compiled for; which of them this machine has is asked at run time.
-//          All of them give the same bits.
+// Purpose: instruction sets that inner loops are compiled for, with dispatch at run time. All of them give the same
+//          bits.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,9 @@ namespace vo {
 
 enum class InstructionSet { base, avx2, avx512 };
 const char* Name(InstructionSet set);
-// What this machine has, in rising order.
+// Those of this machine, in ascending order.
 std::vector<InstructionSet> AvailableInstructionSets();
-// The last of them, asked once.
+// The last of them, determined once.
 InstructionSet BestInstructionSet();
 
 }  // namespace vo

@@ -1,12 +1,14 @@
-// Purpose: random numbers that are a function of their key, so that a run is the same whatever the order of work.
-// Source:  Random123 (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3"), Philox 4x32-10; Box-Muller normals.
+// Purpose: counter-based random numbers: a function of their key, independent of the order of evaluation.
+// Source:  Random123 (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3"), Philox 4x32-10; Box-Muller
+//          normals.
 #pragma once
 
 #include <cstdint>
 
 namespace vo {
 
-// Not the numbers of the simulator's streams, which are small: with the same seed the filter's draws would be the noise of its own images.
+// Disjoint from the simulator's streams (small numbers): with equal seeds the filter's draws must not equal the image
+// noise.
 enum class Stream : std::uint32_t { prior_pose = 0x10001, prior_velocity, pose, velocity, resampling };
 
 struct RandomKey {

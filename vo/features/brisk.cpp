@@ -7,14 +7,14 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-// Vectors are passed to functions that are inlined without exception: no ABI is involved.
+// Functions with vector arguments are always inlined: no ABI is involved.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace vo {
 namespace {
 
-constexpr int kLanes = 8;       // pixels of a row that are sampled at once, at the least
-constexpr int kMostLanes = 16;  // columns that are read at once: so many behind the image may be read, for nothing
+constexpr int kLanes = 8;      // pixels of a row per vector, at the least
+constexpr int kMaxLanes = 16;  // columns per vector, at the most: a row is padded by as many, whose values are not used
 
 template <class T, int Bytes>
 struct VectorOf {
@@ -23,7 +23,7 @@ struct VectorOf {
 template <int Lanes>
 using Ints = typename VectorOf<std::int32_t, 4 * Lanes>::type;
 template <int Lanes>
-using Sums = typename VectorOf<std::uint32_t, 4 * Lanes>::type;  // wrap around; differences are right
+using Sums = typename VectorOf<std::uint32_t, 4 * Lanes>::type;  // modulo 2^32; differences are exact
 template <int Lanes>
 using Floats = typename VectorOf<float, 4 * Lanes>::type;
 template <int Width>
@@ -36,34 +36,34 @@ template <class Vector>
   return v;
 }
 
-// Neighbouring pixels of a row, ready to be read: where the first lies in the integral image, and where its samples go.
+// Run of pixels of a row: address of the first in the integral image, offset of its samples.
 struct Row {
   const std::uint32_t* sum;
   int at, width;
 };
 
-// Rows are taken so many pixels at a time that their samples stay in the first cache; those of a point lie together.
+// Pixels per chunk: the samples stay in the first-level cache. samples[point * kStride + pixel].
 constexpr int kChunk = 160;
-constexpr int kStride = kChunk + kMostLanes;  // the last row's samples may be followed by some that nobody reads
+constexpr int kStride = kChunk + kMaxLanes;  // the vectors of the last row may reach beyond it
 
 struct Region {
-  std::span<const Row> rows;  // one after the other: each is written over what the one before wrote behind itself
+  std::span<const Row> rows;  // in order: each overwrites the excess of the row before it
   std::size_t step;           // of the integral image
   int pixels;
-  std::uint32_t* columns;  // room for the columns of all rows, one box's at a time
+  std::uint32_t* columns;  // buffer for the column sums of one box over all rows
 };
 
 constexpr int Padded(int width, int lanes = kLanes) { return (width + lanes - 1) / lanes * lanes; }
 
-// Columns that the boxes of a row reach into.
-int ColumnsOf(const Row& row, const BriskSampler::Box& box) { return row.width + box.width + 2; }
+// Number of columns under the boxes of a row.
+int ColumnCount(const Row& row, const BriskSampler::Box& box) { return row.width + box.width + 2; }
 
-// Room for that of every box, and what is read behind it.
-std::size_t RoomFor(const Row& row, const BriskSampler& sampler) {
-  return static_cast<std::size_t>(row.width + 2 * sampler.margin() + 2 + 3 * kMostLanes);
+// The largest of these over all boxes, padded to whole vectors.
+std::size_t BufferSize(const Row& row, const BriskSampler& sampler) {
+  return static_cast<std::size_t>(row.width + 2 * sampler.margin() + 2 + 3 * kMaxLanes);
 }
 
-// The integral image's columns, down the box: 256 times the sum of all that is left of a column, modulo 2^32.
+// Sums down the box from the integral image: 256 times the sum of everything left of each column, modulo 2^32.
 template <int Lanes>
 [[gnu::always_inline]] inline void SumColumns(const BriskSampler::Box& box, const std::uint32_t* sum, std::size_t step,
                                               int count, std::uint32_t* columns) {
@@ -85,8 +85,8 @@ template <int Lanes>
   return __builtin_convertvector(reinterpret_cast<Ints<Lanes>>(v), Floats<Lanes>);
 }
 
-// Mean grey over the box at neighbouring pixels, of which `columns` is the first's left column. In 256ths of a grey
-// level, rounded, less 32768.
+// Mean grey over the box at consecutive pixels; `columns`: left column of the first. In 256ths of a grey level,
+// rounded, minus 32768.
 template <int Lanes>
 [[gnu::always_inline]] inline Words<Lanes> Mean(const BriskSampler::Box& box, const std::uint32_t* columns) {
   using V = Sums<Lanes>;
@@ -98,7 +98,7 @@ template <int Lanes>
   return __builtin_convertvector(mean - 32768, Words<Lanes>);
 }
 
-// samples[point][pixel]
+// Box means of all pattern points at all pixels: samples[point * kStride + pixel].
 template <int Lanes>
 [[gnu::always_inline]] inline void Sample(const Region& region, const BriskSampler& sampler, std::int16_t* samples) {
   for (int n = 0; n < kBriskPoints; ++n) {
@@ -106,7 +106,7 @@ template <int Lanes>
     const auto offset = box.top * static_cast<std::ptrdiff_t>(region.step) + box.left;
     std::uint32_t* columns = region.columns;
     for (const Row& row : region.rows) {
-      const int count = ColumnsOf(row, box);
+      const int count = ColumnCount(row, box);
       SumColumns<Lanes>(box, row.sum + offset, region.step, count, columns);
       columns += Padded(count);
     }
@@ -122,88 +122,89 @@ template <int Lanes>
         const Words<kLanes> mean = Mean<kLanes>(box, columns + x);
         std::memcpy(of_point + row.at + x, &mean, sizeof mean);
       }
-      columns += Padded(ColumnsOf(row, box));
+      columns += Padded(ColumnCount(row, box));
     }
   }
 }
 
-// Comparisons by the bit that is wanted of them, as places of the points' samples.
-struct Places {
+// Pairs of a descriptor by the value of their bit, as offsets of the points' samples.
+struct PairOffsets {
   std::uint16_t first, second;
 };
-struct Wanted {
-  std::array<Places, kBriskPairs + 1> zeros, ones;
+struct PairsByBit {
+  std::array<PairOffsets, kBriskPairs + 1> zeros, ones;
   int zero_count, one_count;
 };
 
-Wanted SortPairs(const Descriptor& descriptor) {
-  static const auto places = [] {
-    std::array<Places, kBriskPairs> all;
+PairsByBit SortPairs(const Descriptor& descriptor) {
+  static const auto offsets = [] {
+    std::array<PairOffsets, kBriskPairs> all;
     for (std::size_t k = 0; k < all.size(); ++k)
       all[k] = {static_cast<std::uint16_t>(BriskComparisons()[k].first * kStride),
                 static_cast<std::uint16_t>(BriskComparisons()[k].second * kStride)};
     return all;
   }();
-  Wanted wanted;
-  Places* zero = wanted.zeros.data();
-  Places* one = wanted.ones.data();
-  for (std::size_t k = 0; k < places.size(); ++k) {  // no branch: written to both, and kept in one
+  PairsByBit pairs;
+  PairOffsets* zero = pairs.zeros.data();
+  PairOffsets* one = pairs.ones.data();
+  for (std::size_t k = 0; k < offsets.size(); ++k) {  // branch-free: written to both lists, kept in one
     const auto bit = static_cast<std::ptrdiff_t>((descriptor[k / 64] >> (k % 64)) & 1);
-    *zero = *one = places[k];
+    *zero = *one = offsets[k];
     one += bit;
     zero += 1 - bit;
   }
-  wanted.zero_count = static_cast<int>(zero - wanted.zeros.data());
-  wanted.one_count = static_cast<int>(one - wanted.ones.data());
-  return wanted;
+  pairs.zero_count = static_cast<int>(zero - pairs.zeros.data());
+  pairs.one_count = static_cast<int>(one - pairs.ones.data());
+  return pairs;
 }
 
-// How many of the pairs first > second, for `Width` pixels at a time.
+// Number of pairs with first > second, for `Width` pixels.
 template <int Width>
-[[gnu::always_inline]] inline Words<Width> CountGreater(const std::int16_t* samples, const Places* pairs, int count) {
+[[gnu::always_inline]] inline Words<Width> CountGreater(const std::int16_t* samples, const PairOffsets* pairs,
+                                                        int count) {
   Words<Width> greater = {};
-  for (const Places* pair = pairs; pair < pairs + count; ++pair) {
+  for (const PairOffsets* pair = pairs; pair < pairs + count; ++pair) {
     greater -= static_cast<Words<Width>>(Load<Words<Width>>(samples + pair->first) >
                                          Load<Words<Width>>(samples + pair->second));
   }
   return greater;
 }
 
-// Where 0 is wanted, a pair that is greater differs; where 1 is, one that is not.
+// Hamming distance: pairs with first > second whose bit is 0, plus pairs without whose bit is 1.
 template <int Width>
-[[gnu::always_inline]] inline void Compare(const std::int16_t* samples, int pixels, const Wanted& wanted,
+[[gnu::always_inline]] inline void Compare(const std::int16_t* samples, int pixels, const PairsByBit& pairs,
                                            std::uint16_t* distances) {
-  const auto all_ones = static_cast<std::int16_t>(wanted.one_count);
+  const auto all_ones = static_cast<std::int16_t>(pairs.one_count);
   for (int at = 0; at < pixels; at += Width, samples += Width) {
-    const Words<Width> count = CountGreater<Width>(samples, wanted.zeros.data(), wanted.zero_count) -
-                               CountGreater<Width>(samples, wanted.ones.data(), wanted.one_count) + all_ones;
+    const Words<Width> count = CountGreater<Width>(samples, pairs.zeros.data(), pairs.zero_count) -
+                               CountGreater<Width>(samples, pairs.ones.data(), pairs.one_count) + all_ones;
     std::memcpy(distances + at, &count, sizeof count);
   }
 }
 
-using Kernel = void (*)(const Region&, const BriskSampler&, const Wanted& wanted, std::int16_t* samples,
+using Kernel = void (*)(const Region&, const BriskSampler&, const PairsByBit& pairs, std::int16_t* samples,
                         std::uint16_t* distances);
 
-void BaseKernel(const Region& region, const BriskSampler& sampler, const Wanted& wanted, std::int16_t* samples,
+void BaseKernel(const Region& region, const BriskSampler& sampler, const PairsByBit& pairs, std::int16_t* samples,
                 std::uint16_t* distances) {
   Sample<8>(region, sampler, samples);
-  Compare<8>(samples, region.pixels, wanted, distances);
+  Compare<8>(samples, region.pixels, pairs, distances);
 }
 
 #ifdef __x86_64__
-[[gnu::target("avx2")]] void Avx2Kernel(const Region& region, const BriskSampler& sampler, const Wanted& wanted,
+[[gnu::target("avx2")]] void Avx2Kernel(const Region& region, const BriskSampler& sampler, const PairsByBit& pairs,
                                         std::int16_t* samples, std::uint16_t* distances) {
   Sample<8>(region, sampler, samples);
-  Compare<16>(samples, region.pixels, wanted, distances);
+  Compare<16>(samples, region.pixels, pairs, distances);
 }
 
 [[gnu::target("avx2,avx512f,avx512bw,avx512dq,avx512vl")]] void Avx512Kernel(const Region& region,
                                                                              const BriskSampler& sampler,
-                                                                             const Wanted& wanted,
+                                                                             const PairsByBit& pairs,
                                                                              std::int16_t* samples,
                                                                              std::uint16_t* distances) {
   Sample<16>(region, sampler, samples);
-  Compare<32>(samples, region.pixels, wanted, distances);
+  Compare<32>(samples, region.pixels, pairs, distances);
 }
 #endif
 
@@ -228,14 +229,14 @@ BriskSampler::BriskSampler(const Eigen::Matrix2d& map) {
     const float half = std::max(0.5f, static_cast<float>(scale * pattern[n].half_width));
     Box& box = boxes_[n];
     box.per_area = 1 / (4.0f * half * half);
-    // Borders, the pixels they lie in, and how much of these is inside; pixels reach half a pixel to either side.
+    // Borders, their pixels and the covered fractions of these; a pixel extends by half a pixel to either side.
     const auto low = static_cast<float>(place.x()) - half, high = static_cast<float>(place.x()) + half;
     const auto upper = static_cast<float>(place.y()) - half, lower = static_cast<float>(place.y()) + half;
     const auto pixel = [](float v) {                 // floor(v + 0.5)
-      const int whole = static_cast<int>(v + 0.5f);  // NOLINT(bugprone-incorrect-roundings): put right below
+      const int whole = static_cast<int>(v + 0.5f);  // NOLINT(bugprone-incorrect-roundings): corrected below
       return whole - (static_cast<float>(whole) > v + 0.5f);
     };
-    // Of 0 to 1. NOLINTNEXTLINE(bugprone-incorrect-roundings): no number between differs, and lround is slow
+    // For 0 ... 1. NOLINTNEXTLINE(bugprone-incorrect-roundings): equals lround there, which is slow
     const auto in_256ths = [](float inside) { return static_cast<int>(256 * inside + 0.5f); };
     box.left = pixel(low), box.top = pixel(upper);
     box.width = pixel(high) - box.left - 1, box.height = pixel(lower) - box.top - 1;
@@ -250,7 +251,7 @@ BriskSampler::BriskSampler(const Eigen::Matrix2d& map) {
 void BriskImage::Set(const cv::Mat& grey) {
   width_ = grey.cols, height_ = grey.rows;
   cv::Mat padded;
-  cv::copyMakeBorder(grey, padded, 0, 1, 0, 2 * kMostLanes, cv::BORDER_REPLICATE);
+  cv::copyMakeBorder(grey, padded, 0, 1, 0, 2 * kMaxLanes, cv::BORDER_REPLICATE);
   cv::integral(padded, integral_, CV_32S);
 }
 
@@ -264,7 +265,7 @@ Descriptor BriskImage::Describe(const Eigen::Vector2i& pixel, const BriskSampler
     throw std::invalid_argument("BRISK: the pixel is too near to the edge of the image");
   std::array<std::int16_t, std::size_t{kBriskPoints} * kStride> samples;
   const Row row{SumsAt(integral_, pixel.x(), pixel.y()), 0, 1};
-  std::vector<std::uint32_t> columns(RoomFor(row, sampler));
+  std::vector<std::uint32_t> columns(BufferSize(row, sampler));
   Sample<8>({{&row, 1}, integral_.step1(), 1, columns.data()}, sampler, samples.data());
   Descriptor descriptor{};
   const auto& pairs = BriskComparisons();
@@ -282,20 +283,20 @@ std::optional<BriskImage::Found> BriskImage::Nearest(const Descriptor& descripto
 std::optional<BriskImage::Found> BriskImage::Nearest(InstructionSet set, const Descriptor& descriptor,
                                                      const BriskSampler& sampler, std::span<const PixelRun> region,
                                                      std::vector<Found>* all) const {
-  constexpr int kWidest = 32;  // of a vector, in pixels
+  constexpr int kMaxWidth = 32;  // pixels per vector
   thread_local std::vector<Row> rows;
   thread_local std::vector<PixelRun> runs;  // of `rows`
   thread_local std::vector<std::uint32_t> columns;
   alignas(64) std::array<std::int16_t, std::size_t{kBriskPoints} * kStride> samples;
   alignas(64) std::array<std::uint16_t, kChunk> distances;
-  const Wanted wanted = SortPairs(descriptor);
+  const PairsByBit pairs = SortPairs(descriptor);
   const Kernel kernel = KernelFor(set);
   Found best{{}, kBriskPairs + 1};
   int pixels = 0;
   std::size_t room = 0;
   const auto take = [&] {
     columns.resize(std::max(columns.size(), room));
-    kernel({rows, integral_.step1(), pixels, columns.data()}, sampler, wanted, samples.data(), distances.data());
+    kernel({rows, integral_.step1(), pixels, columns.data()}, sampler, pairs, samples.data(), distances.data());
     for (std::size_t r = 0; r < rows.size(); ++r)
       for (int x = 0; x < rows[r].width; ++x) {
         const int distance = distances[static_cast<std::size_t>(rows[r].at + x)];
@@ -318,13 +319,13 @@ std::optional<BriskImage::Found> BriskImage::Nearest(InstructionSet set, const D
       if (pixels + width > kChunk) take();
       rows.push_back({SumsAt(integral_, first, run.y), pixels, width});
       runs.push_back({run.y, first, first + width - 1});
-      room += RoomFor(rows.back(), sampler);
+      room += BufferSize(rows.back(), sampler);
       pixels += width;
       first += width;
     }
   }
   if (!rows.empty()) take();
-  static_assert(kChunk % kWidest == 0);
+  static_assert(kChunk % kMaxWidth == 0);
   return best.distance <= kBriskPairs ? std::optional(best) : std::nullopt;
 }
 

@@ -1,4 +1,4 @@
-// Purpose: where BRISK looks about a pixel, and which of these places it compares.
+// Purpose: sampling pattern and short-distance pairs of BRISK.
 // Source:  Leutenegger, Chli & Siegwart, "BRISK: Binary Robust Invariant Scalable Keypoints", ICCV 2011; numbers and
 //          order as in OpenCV.
 // Units:   pixels, at scale 1 (a keypoint diameter of 7.2 px in OpenCV's terms).
@@ -13,13 +13,13 @@ inline constexpr int kBriskPoints = 60;
 inline constexpr int kBriskPairs = 512;
 inline constexpr double kBriskBasicDiameter = 7.2;  // OpenCV's KeyPoint::size of scale 1
 
-// A place on one of five circles; the image is averaged over a square of half-width `half_width` about it.
+// Sampling point on one of five circles: the mean of the image over a square of half-width `half_width`.
 struct BriskPoint {
   double x = 0, y = 0, half_width = 0;
 };
 const std::array<BriskPoint, kBriskPoints>& BriskPattern();
 
-// Bit k of a descriptor: is the image brighter at `first` than at `second`.
+// Bit k of a descriptor: I(first) > I(second).
 struct BriskPair {
   std::uint8_t first = 0, second = 0;
 };

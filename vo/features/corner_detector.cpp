@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <opencv2/features2d.hpp>
+#include <utility>
 
 namespace vo {
 namespace {
 
-// Strongest first; ties by position, so that the order never depends on the library's.
+// Strongest first; ties by position: independent of OpenCV's order.
 void SortByResponse(std::vector<cv::KeyPoint>& corners) {
   std::sort(corners.begin(), corners.end(), [](const cv::KeyPoint& a, const cv::KeyPoint& b) {
     if (a.response != b.response) return a.response > b.response;
@@ -23,7 +24,7 @@ bool FarFrom(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& 
 
 std::vector<Eigen::Vector2i> DetectCorners(const cv::Mat& grey, const std::vector<Eigen::Vector2d>& occupied,
                                            int border_px, const FeatureParams& params) {
-  constexpr int kFastMargin = 3;  // FAST's circle; it finds nothing closer to the edge of what it is given
+  constexpr int kFastMargin = 3;  // radius of FAST's circle: no corners closer to the edge of its input
   const cv::Rect usable(border_px, border_px, grey.cols - 2 * border_px, grey.rows - 2 * border_px);
   std::vector<Eigen::Vector2i> found;
   if (usable.width <= 0 || usable.height <= 0) return found;
@@ -64,6 +65,21 @@ std::vector<Eigen::Vector2i> DetectCorners(const cv::Mat& grey, const std::vecto
     }
   }
   return found;
+}
+
+std::vector<std::size_t> BucketRoundRobin(std::span<const Eigen::Vector2d> pixels, int columns, int rows, int width,
+                                          int height) {
+  std::vector<int> in_cell(static_cast<std::size_t>(columns * rows), 0);
+  std::vector<std::pair<int, std::size_t>> rounds;  // place within the cell, index
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const auto column = static_cast<int>(pixels[i].x() * columns / width);
+    const auto row = static_cast<int>(pixels[i].y() * rows / height);
+    rounds.emplace_back(in_cell[row * columns + column]++, i);
+  }
+  std::sort(rounds.begin(), rounds.end());
+  std::vector<std::size_t> order;
+  for (const auto& [round, i] : rounds) order.push_back(i);
+  return order;
 }
 
 }  // namespace vo

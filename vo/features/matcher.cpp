@@ -8,18 +8,18 @@
 namespace vo {
 namespace {
 
-constexpr double kMaxRefinementPx = 1.5;  // further than this the registration has left the matched corner
+constexpr double kMaxRefinementPx = 1.5;  // beyond it the registration has left the matched corner
 constexpr double kMinCorrelation = 0.6;
-constexpr double kMaxZoom = 4;           // a predicted change of scale beyond it is not believed
-constexpr double kLostSigmas = 2.5;      // of the prediction that the largest window should cover
-constexpr double kFarthestPx = 1 << 16;  // no image is wider
+constexpr double kMaxZoom = 4;         // a larger predicted change of scale is ignored
+constexpr double kSearchSigmas = 2.5;  // half-width of the uncertainty ellipse that is searched
+constexpr double kMaxPx = 1 << 16;     // no image is wider
 
 Eigen::Vector2i Rounded(const Eigen::Vector2d& p) {
-  const auto rounded = [](double x) { return static_cast<int>(std::lround(std::clamp(x, -kFarthestPx, kFarthestPx))); };
+  const auto rounded = [](double x) { return static_cast<int>(std::lround(std::clamp(x, -kMaxPx, kMaxPx))); };
   return {rounded(p.x()), rounded(p.y())};
 }
 
-// How the pattern of a landmark lies in the present image.
+// Map of BRISK's pattern from scale 1 to the present image.
 Eigen::Matrix2d PatternMap(const Eigen::Matrix2d& warp, const FeatureParams& params) {
   const double scale = params.brisk_size_px / kBriskBasicDiameter;
   const double determinant = warp.determinant();
@@ -30,17 +30,17 @@ Eigen::Matrix2d PatternMap(const Eigen::Matrix2d& warp, const FeatureParams& par
   return scale * std::sqrt(determinant) * Eigen::Rotation2Dd(angle).toRotationMatrix();
 }
 
-// The window that the prediction's own uncertainty asks for; nothing beyond the enlarged window while that is small.
-int LostWindow(const SearchRequest& request, const FeatureParams& params) {
-  return std::min(WindowOf(request.S), request.widest_px.value_or(params.search_uncertain_px));
+// Side of the largest window: by the innovation covariance, up to the limit of the request or of the settings.
+int LargestWindow(const SearchRequest& request, const FeatureParams& params) {
+  return std::min(WindowSide(request.S), request.widest_px.value_or(params.search_uncertain_px));
 }
 
-// The window, row by row; where it is larger than the enlarged one, what of it lies in the ellipse of kLostSigmas about the prediction (the
-// covariance of a lost landmark is mostly long and thin).
+// Pixels of the window by rows. A window beyond search_wide_px is clipped to the ellipse of kSearchSigmas about the
+// prediction, which is mostly long and thin.
 void SearchRegion(const SearchRequest& request, int side, const FeatureParams& params, std::vector<PixelRun>& region) {
   const Eigen::Vector2i centre = Rounded(request.predicted);
   const int half = side / 2;
-  const Eigen::Matrix2d information = request.S.inverse() / (kLostSigmas * kLostSigmas);
+  const Eigen::Matrix2d information = request.S.inverse() / (kSearchSigmas * kSearchSigmas);
   region.clear();
   for (int dy = -half; dy <= half; ++dy) {
     int first = -half, last = half;
@@ -48,7 +48,7 @@ void SearchRegion(const SearchRequest& request, int side, const FeatureParams& p
       const double a = information(0, 0), b = information(0, 1) * dy, c = information(1, 1) * dy * dy - 1;
       const double discriminant = b * b - a * c;
       if (discriminant < 0) continue;
-      // Within the window before they are cast; 0 / 0 is that of an ellipse without end.
+      // Clamped to the window before the cast; the order of arguments absorbs NaN (0 / 0: a degenerate ellipse).
       const double beyond = half + 1, root = std::sqrt(discriminant);
       first = static_cast<int>(std::min(beyond, std::max<double>(first, std::floor((-b - root) / a))));
       last = static_cast<int>(std::max(-beyond, std::min<double>(last, std::ceil((-b + root) / a))));
@@ -64,9 +64,9 @@ bool OnBorder(const Eigen::Vector2i& pixel, const Eigen::Vector2i& centre, int s
 
 }  // namespace
 
-int WindowOf(const Eigen::Matrix2d& S) {
-  const double half = std::ceil(kLostSigmas * std::sqrt(std::max(S(0, 0), S(1, 1))));
-  return 2 * static_cast<int>(std::min(kFarthestPx, half)) + 1;
+int WindowSide(const Eigen::Matrix2d& S) {
+  const double half = std::ceil(kSearchSigmas * std::sqrt(std::max(S(0, 0), S(1, 1))));
+  return 2 * static_cast<int>(std::min(kMaxPx, half)) + 1;
 }
 
 BriskSampler FirstSampler(const FeatureParams& params) {
@@ -87,7 +87,7 @@ std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& request
     results[i].in_sight = brisk.Describable(Rounded(request.predicted), sampler);
     int searched = 0;
     for (const int wanted :
-         {params.search_first_px, params.search_normal_px, params.search_wide_px, LostWindow(request, params)}) {
+         {params.search_first_px, params.search_normal_px, params.search_wide_px, LargestWindow(request, params)}) {
       const int side = request.widest_px ? std::min(wanted, *request.widest_px) : wanted;
       if (side <= searched) continue;
       const bool quick = searched == 0 && side < params.search_normal_px;

@@ -1,6 +1,7 @@
-// Purpose: finds each predicted landmark in the image: smallest Hamming distance over every pixel of a small window, the window
-//          enlarged where nothing fits; then refined below the pixel.
-// Source:  algorithm, section 7.
+// Purpose: guided matching: each predicted landmark is searched for at every pixel of a small window, by smallest
+//          Hamming distance; the window grows where nothing fits; the match is then registered to sub-pixel accuracy.
+// Source:  docs/algorithm.md, section 7.
+// Units:   pixels.
 #pragma once
 
 #include <optional>
@@ -12,7 +13,7 @@
 
 namespace vo {
 
-// How a landmark looked when it was first seen.
+// Appearance of a landmark in its first view.
 struct Appearance {
   Descriptor descriptor{};
   Patch patch;
@@ -21,29 +22,28 @@ struct Appearance {
 struct SearchRequest {
   const Appearance* appearance = nullptr;
   Eigen::Vector2d predicted = Eigen::Vector2d::Zero();  // [px]
-  Eigen::Matrix2d S = Eigen::Matrix2d::Zero();          // its covariance, pixel noise included [px^2]
+  Eigen::Matrix2d S = Eigen::Matrix2d::Zero();          // innovation covariance [px^2]
   Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();   // d(present pixel)/d(pixel of the first view)
-  std::optional<int> widest_px = std::nullopt;          // no window is wider than this; none: as the settings have it
+  std::optional<int> widest_px = std::nullopt;          // upper limit of the window's side; none: of the settings
 };
 
-// Side of the window that covers a prediction of this covariance [px^2], or any image where it is larger than that.
-int WindowOf(const Eigen::Matrix2d& S);
+// Side of the search window for an innovation covariance S [px^2]: 2 ceil(2.5 sigma) + 1, sigma^2 = max(S_xx, S_yy).
+int WindowSide(const Eigen::Matrix2d& S);
 
-// How a corner is described when it is first seen: as it lies.
+// Sampler for first views: upright, at the scale of the settings.
 BriskSampler FirstSampler(const FeatureParams& params);
 
 struct FoundFeature {
   Eigen::Vector2d pixel;
-  Eigen::Matrix2d noise;  // covariance of its error [px^2], as this image alone tells it
+  Eigen::Matrix2d noise;  // covariance of the measurement [px^2], from this image alone
 };
 
 struct SearchResult {
-  bool in_sight =
-      true;  // false: where it is predicted, its pattern reaches out of the image, and it was not looked for
+  bool in_sight = true;  // the pattern at the predicted pixel lies inside the image
   std::optional<FoundFeature> found;
 };
 
-// Of each request, in its order. `brisk` holds the image, `smooth` is it smoothed.
+// One result per request, in the same order. `brisk` holds the image; `smooth`: the smoothed image, for registration.
 std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& smooth,
                                        const BriskImage& brisk, const FeatureParams& params);
 

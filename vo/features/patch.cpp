@@ -9,11 +9,11 @@
 namespace vo {
 namespace {
 
-constexpr int kWindowRadius = 4;  // of the registered window
+constexpr int kWindowRadius = 4;  // registered part of the patch
 constexpr int kWindow = 2 * kWindowRadius + 1;
 constexpr int kPixels = kWindow * kWindow;
 constexpr int kIterations = 10;
-constexpr double kSettledPx = 0.01;
+constexpr double kConvergedPx = 0.01;
 
 using Window = Eigen::Matrix<double, kPixels, 1>;
 using WideWindow = Eigen::Matrix<double, kWindow + 2, kWindow + 2>;
@@ -25,8 +25,8 @@ inline double Bilinear(const std::uint8_t* data, std::size_t stride, double x, d
   return (1 - fy) * ((1 - fx) * p[0] + fx * p[1]) + fy * ((1 - fx) * p[stride] + fx * p[stride + 1]);
 }
 
-// The window about a place between the pixels: all of them are cut in the same ratio.
-Window Between(const std::uint8_t* data, std::size_t stride, const Eigen::Vector2d& centre) {
+// Window about a sub-pixel position, bilinear: the same weights for all pixels.
+Window SampleWindow(const std::uint8_t* data, std::size_t stride, const Eigen::Vector2d& centre) {
   const int ix = static_cast<int>(centre.x()), iy = static_cast<int>(centre.y());
   const double fx = centre.x() - ix, fy = centre.y() - iy;
   const std::uint8_t* p = data + static_cast<std::size_t>(iy - kWindowRadius) * stride + ix - kWindowRadius;
@@ -41,11 +41,11 @@ Window Between(const std::uint8_t* data, std::size_t stride, const Eigen::Vector
   return window;
 }
 
-// The patch as the present view should show it; one pixel wider than the window for its gradient. False: leaves the patch.
+// Patch warped to the present view, one pixel wider than the window for the gradient. False: it leaves the patch.
 bool WarpPatch(const Patch& patch, const Eigen::Matrix2d& warp, WideWindow& out) {
   constexpr int kReach = kWindowRadius + 1;
   const Eigen::Matrix2d to_first = warp.inverse();
-  const Eigen::Vector2d farthest = kReach * to_first.cwiseAbs().rowwise().sum();  // at two of the four corners
+  const Eigen::Vector2d farthest = kReach * to_first.cwiseAbs().rowwise().sum();  // over the four corners
   if (!(Patch::kRadius - farthest.maxCoeff() >= 0 && Patch::kRadius + farthest.maxCoeff() < Patch::kSide - 1))
     return false;
   for (int v = -kReach; v <= kReach; ++v) {
@@ -57,62 +57,64 @@ bool WarpPatch(const Patch& patch, const Eigen::Matrix2d& warp, WideWindow& out)
   return true;
 }
 
-// What a patch's gradients tell of a shift, along the two axes of their second moments H: beyond what noise and the grid of pixels alone would
-// seem to tell. The first axis is the one along an edge.
-class Axes {
+// Information of a patch's gradients on a shift, along the eigenvectors of the structure tensor H = sum g g', above the
+// level of noise and of the pixel grid. The first eigenvector lies along an edge.
+class StructureTensor {
  public:
-  // `ripple`: mean square of the patch's second differences along both axes, which noise has more of than anything smooth.
-  Axes(const Eigen::Matrix2d& H, double ripple) : ripple_(ripple) { solver_.computeDirect(H); }
+  // `ripple`: mean square of the patch's mixed second differences, high for noise and low for anything smooth.
+  StructureTensor(const Eigen::Matrix2d& H, double ripple) : ripple_(ripple) { solver_.computeDirect(H); }
 
-  // From now on the first axis tells nothing: along it the search has got lost.
-  void Slide() { slides_ = true; }
+  // Removes the first eigenvector, along which the iteration has diverged (aperture problem).
+  void RestrictToNormal() { normal_only_ = true; }
 
-  // The part of the sum of squares that least squares take away; `slope` is the derivative of half of it.
+  // Reduction of the sum of squares by the least-squares step, b' H^-1 b with b = `slope`.
   double Explained(const Eigen::Vector2d& slope) const {
     const Eigen::Array2d along = solver_.eigenvectors().transpose() * slope;
     return (along.square() / solver_.eigenvalues().array().max(kStaircase * solver_.eigenvalues()[1])).sum();
   }
 
-  // Of least squares. Zero along an axis of which nothing is told.
+  // H^-1, zero along an eigenvector without information.
   Eigen::Matrix2d Inverse(double residual_variance) const {
     Eigen::Vector2d inverse;
-    for (int i = 0; i < 2; ++i) inverse[i] = Told(i, residual_variance) > 0 ? 1 / solver_.eigenvalues()[i] : 0;
-    return Matrix(inverse);
+    for (int i = 0; i < 2; ++i) inverse[i] = Information(i, residual_variance) > 0 ? 1 / solver_.eigenvalues()[i] : 0;
+    return Rotated(inverse);
   }
 
-  // Nothing is known worse than to half the window's width.
+  // Bounded by half the window's width.
   Eigen::Matrix2d Covariance(double residual_variance) const {
     constexpr double kWidest = kWindowRadius * kWindowRadius;
     Eigen::Vector2d variances;
     for (int i = 0; i < 2; ++i) {
-      const double told = Told(i, residual_variance);
-      variances[i] =
-          kWidest * told > kCorrelated * residual_variance ? kCorrelated * residual_variance / told : kWidest;
+      const double information = Information(i, residual_variance);
+      variances[i] = kWidest * information > kCorrelated * residual_variance
+                         ? kCorrelated * residual_variance / information
+                         : kWidest;
     }
-    return Matrix(variances);
+    return Rotated(variances);
   }
 
  private:
-  // A straight edge in a smooth image has second moments along itself, too, for its pixels are steps.
+  // Smaller eigenvalue of a straight edge over the larger one: aliasing on the pixel grid.
   static constexpr double kStaircase = 0.02;
-  // Noise has gradients as well: of white noise in both images, smoothed, a pixel's have 0.27 of the residuals' variance and 0.17 of the ripple. Twice
-  // that, since one patch has more of it than another; the smaller, since what does not fit is not noise, nor is all that ripples.
+  // Gradient variance per pixel of smoothed white noise in both images: 0.27 of the residual variance, 0.17 of the
+  // ripple. Twice that covers the spread over patches; the smaller of both is used, since model error adds to each.
   static constexpr double kOfResidual = 0.5, kOfRipple = 0.34;
-  // Neighbouring pixels of a smooth image share their noise: there is more of it in slow gradients than in a pixel.
+  // Noise of neighbouring pixels is correlated after smoothing: its variance at low spatial frequency over that per
+  // pixel.
   static constexpr double kCorrelated = 2.5;
 
-  double Told(int axis, double residual_variance) const {
-    if (slides_ && axis == 0) return 0;
+  double Information(int axis, double residual_variance) const {
+    if (normal_only_ && axis == 0) return 0;
     const double noise = kPixels * std::min(kOfResidual * residual_variance, kOfRipple * ripple_);
     return solver_.eigenvalues()[axis] - kStaircase * solver_.eigenvalues()[1] - noise;
   }
-  Eigen::Matrix2d Matrix(const Eigen::Vector2d& along) const {
+  Eigen::Matrix2d Rotated(const Eigen::Vector2d& along) const {
     return solver_.eigenvectors() * along.asDiagonal() * solver_.eigenvectors().transpose();
   }
 
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver_;
   double ripple_;
-  bool slides_ = false;
+  bool normal_only_ = false;
 };
 
 double Ripple(const WideWindow& wide) {
@@ -161,36 +163,36 @@ std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& 
   H(0, 1) = H(1, 0) = gradient_x.dot(gradient_y);
   H(1, 1) = gradient_y.squaredNorm();
   if (!(template_norm > 1)) return std::nullopt;
-  Axes axes(H, Ripple(wide));
+  StructureTensor tensor(H, Ripple(wide));
 
-  const auto settle = [&]() -> std::optional<Registration> {
+  const auto iterate = [&]() -> std::optional<Registration> {
     Eigen::Vector2d x = start;
     for (int iteration = 0; iteration < kIterations; ++iteration) {
       if (!(x.x() >= kWindowRadius && x.y() >= kWindowRadius && x.x() < smooth.cols - kWindowRadius - 1 &&
             x.y() < smooth.rows - kWindowRadius - 1))
         return std::nullopt;
-      Window seen = Between(smooth.data, smooth.step[0], x);
+      Window seen = SampleWindow(smooth.data, smooth.step[0], x);
       seen.array() -= seen.mean();
       const double seen_norm = seen.norm();
       if (!(seen_norm > 1)) return std::nullopt;
       seen *= template_norm / seen_norm;  // gain
       const Window off = templ - seen;
       const Eigen::Vector2d slope(gradient_x.dot(off), gradient_y.dot(off));
-      // What no shift explains; gain, offset and two shifts are fitted.
-      const double variance = std::max(0.0, off.squaredNorm() - axes.Explained(slope)) / (kPixels - 4);
-      const Eigen::Matrix2d inverse = axes.Inverse(variance);
+      // Residual variance; gain, offset and two shifts are fitted.
+      const double variance = std::max(0.0, off.squaredNorm() - tensor.Explained(slope)) / (kPixels - 4);
+      const Eigen::Matrix2d inverse = tensor.Inverse(variance);
       if (inverse.isZero(0)) return std::nullopt;
       const Eigen::Vector2d step = inverse * slope;
       x += step;
       if ((x - start).norm() > max_shift_px) return std::nullopt;
-      if (step.norm() < kSettledPx)
-        return Registration{x, templ.dot(seen) / (template_norm * template_norm), axes.Covariance(variance)};
+      if (step.norm() < kConvergedPx)
+        return Registration{x, templ.dot(seen) / (template_norm * template_norm), tensor.Covariance(variance)};
     }
     return std::nullopt;
   };
-  if (auto found = settle()) return found;
-  axes.Slide();
-  return settle();
+  if (auto found = iterate()) return found;
+  tensor.RestrictToNormal();
+  return iterate();
 }
 
 }  // namespace vo

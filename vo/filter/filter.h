@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "vo/filter/guards.h"
+#include "vo/base/numerical_events.h"
 #include "vo/filter/mixture.h"
 #include "vo/filter/path_window.h"
 #include "vo/filter/pose_gaussian.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "vo/filter/descent.h"
-#include "vo/filter/guards.h"
+#include "vo/base/numerical_events.h"
 #include "vo/filter/path_prior.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/map/image_prediction.h"

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "vo/base/params.h"
-#include "vo/filter/guards.h"
+#include "vo/base/numerical_events.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/map/match_batch.h"
 

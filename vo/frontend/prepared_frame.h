@@ -1,5 +1,5 @@
-// Purpose: the first stage of the odometry: all that is made of a frame without knowing what came before it. Frames can be prepared ahead,
-//          in any thread; the second stage, Odometry::Track, takes them in order of time.
+// Purpose: per-frame preprocessing that does not depend on earlier frames. Frames can be prepared ahead, in any thread;
+//          Odometry::Track takes them in order of time.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -14,9 +14,9 @@ struct PreparedFrame {
 
   Frame frame;
   cv::Mat grey;      // CV_8UC1
-  cv::Mat smooth;    // of it, for patches
-  BriskImage brisk;  // of grey
-  double ms = 0;     // that preparing took
+  cv::Mat smooth;    // smoothed `grey`, for registration
+  BriskImage brisk;  // integral image of `grey`
+  double ms = 0;     // time of the preparation
 };
 
 }  // namespace vo

@@ -1,8 +1,7 @@
-// Purpose: an image whose rows were taken one after the other. Row y of h belongs to the time stamp + readout (y / (h - 1) - 1/2), and the camera has
-//          moved between the two, by the filter's own velocity (vo/map/row_view.h). To the filter what a row has seen is seen by a camera that
-//          stood somewhere else: so depths that are not known yet do no harm.
-// Source:  docs/conventions.md (stamp); Hedborg, Forssén, Felsberg, Ringaby 2012, "Rolling shutter bundle adjustment" (a pose per row,
-//          between those of the frames).
+// Purpose: rolling-shutter model: row y of h is exposed at stamp + readout (y / (h - 1) - 1/2), and the camera moves in
+//          between with constant velocity. To the filter, a row is seen by a camera displaced from its position at the
+//          stamp (vo/map/row_view.h): exact at unknown depth.
+// Source:  docs/conventions.md (stamp); Hedborg, Forssén, Felsberg, Ringaby 2012, "Rolling shutter bundle adjustment".
 // Units:   image points on the plane z = 1, pixels where said; seconds; velocity (v in W, w in C).
 #pragma once
 
@@ -23,11 +22,11 @@ class RollingShutter {
       : RollingShutter(camera, params.readout_s.value_or(camera.readout_s)) {}
 
   bool on() const { return readout_s_ != 0; }
-  // When row y [px] is exposed, after the stamp.
+  // Time of exposure of row y [px] after the stamp.
   double TimeOf(double y) const { return camera_.height > 1 ? readout_s_ * (y / (camera_.height - 1) - 0.5) : 0.0; }
 
   RowView Row(const Eigen::Vector2d& pixel) const { return {camera_.Undistort(pixel), TimeOf(pixel.y())}; }
-  // The pixel at which it is seen if it was at z at the stamp.
+  // Pixel of a point that is at z at the stamp and moves by `rate` = dz/dt.
   Eigen::Vector2d InImage(const Eigen::Vector2d& z, const Eigen::Vector2d& rate) const;
 
  private:
@@ -35,7 +34,7 @@ class RollingShutter {
   double readout_s_;
 };
 
-// The landmarks of a map, seen through a rolling shutter by a camera of this pose and velocity.
+// Projection of a map's landmarks through a rolling shutter, from a camera of this pose and velocity.
 class ImageMotion {
  public:
   ImageMotion(const RollingShutter& shutter, const LocalMap& map, const Pose& pose, const Vector6& velocity)
@@ -44,12 +43,23 @@ class ImageMotion {
   Eigen::Vector2d InImage(int landmark, const Eigen::Vector2d& z) const { return shutter_.InImage(z, Rate(landmark)); }
 
  private:
-  // dz/dt; zero where it does not matter, and behind the camera.
+  // dz/dt; zero with a global shutter and behind the camera.
   Eigen::Vector2d Rate(int landmark) const;
 
   const RollingShutter& shutter_;
   MapView map_;
   Vector6 velocity_;
 };
+
+// Time since the last update with matches, and the velocity's covariance then.
+struct SinceUpdate {
+  double dt_s = 0;
+  Matrix6 velocity_covariance;
+};
+
+// Correction of the predicted velocity given that the pose differs from its prediction by `pose_change` (dp in W, dphi
+// in C): its regression on the pose under nearly constant velocity (6)-(9) over the whole gap T = dt_s, the pose then
+// known, (V T + Q21) (V T^2 + Q11)^-1 pose_change.
+Vector6 VelocityCorrection(const SinceUpdate& since, const MotionParams& motion, const Vector6& pose_change);
 
 }  // namespace vo

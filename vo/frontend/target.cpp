@@ -10,7 +10,7 @@ namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;  // rotation vector and translation of the board, in C
 
-// Inverse depth of the board's plane on a ray (x, y, 1).
+// Inverse depth of the board's plane on the ray (x, y, 1).
 double InverseDepth(const Vector6d& pose, const Eigen::Vector2d& ray) {
   cv::Mat R;
   cv::Rodrigues(cv::Vec3d(pose[0], pose[1], pose[2]), R);
@@ -40,7 +40,7 @@ std::vector<TargetCorner> FindTarget(const cv::Mat& grey, const Camera& camera, 
     const auto columns = static_cast<std::size_t>(target.columns);
     const std::size_t column = i % columns, row = i / columns;
     board.emplace_back(static_cast<double>(column) * target.square_m, static_cast<double>(row) * target.square_m, 0);
-    const auto ray = camera.RayOf({corners[i].x, corners[i].y});
+    const auto ray = camera.TryUnproject({corners[i].x, corners[i].y});
     if (!ray) return {};
     seen.emplace_back(ray->x(), ray->y());
   }

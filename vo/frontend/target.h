@@ -1,7 +1,7 @@
-// Purpose: a chessboard of known size, seen at the start, tells the scale: the depths of its inner corners are known to a fraction of a
-//          per cent, and so are, through motion and parallax, those of everything else.
-// Source:  OpenCV's findChessboardCornersSB (Duda & Frese 2018, "Accurate detection and localization of checkerboard corners for
-//          calibration") and solvePnP.
+// Purpose: scale from a calibration target: a chessboard of known size at the start gives the inverse depths of its
+//          inner corners to a fraction of a per cent.
+// Source:  OpenCV's findChessboardCornersSB (Duda & Frese 2018, "Accurate detection and localization of checkerboard
+//          corners for calibration") and solvePnP.
 // Units:   metres, pixels.
 #pragma once
 
@@ -16,12 +16,13 @@
 namespace vo {
 
 struct TargetCorner {
-  Eigen::Vector2i pixel;  // whole, beside the corner: what is known is the board's plane there
+  Eigen::Vector2i pixel;  // nearest whole pixel; the depth is that of the board's plane there
   KnownDepth depth;
 };
 
-// The inner corners of the board, row by row; empty where it is not all in sight, or the lens has no ray. Corners count as seen to within `sigma_px`. The board's
-// distance is one error that all corners share, but a filter takes theirs for independent: each is as uncertain as makes their mean right.
+// Inner corners of the board, row by row; empty unless all are visible at invertible pixels. Corners are measured with
+// `sigma_px`. The distance of the board is an error common to all corners, but a filter takes them for independent:
+// sigma^2 is n times the variance from the board's pose, so that the mean of n corners has the right one.
 std::vector<TargetCorner> FindTarget(const cv::Mat& grey, const Camera& camera, const TargetParams& target,
                                      double sigma_px);
 

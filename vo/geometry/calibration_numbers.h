@@ -1,4 +1,4 @@
-// Purpose: the numbers of a calibration file, in the order that OpenCV, ROS, EuRoC and Kalibr share, into a camera.
+// Purpose: conversion of calibration coefficients, in the common order of OpenCV, ROS, EuRoC and Kalibr, to a camera.
 #pragma once
 
 #include <span>
@@ -9,11 +9,11 @@
 
 namespace vo {
 
-// k1 k2 p1 p2 [k3] or, of a fisheye lens (camera.lens), k1 k2 k3 k4; what follows must be zero. Returns what is wrong with
-// them, to be told after their name; empty: nothing.
+// k1 k2 p1 p2 [k3], or k1 k2 k3 k4 for a fisheye lens (camera.lens); further ones must be zero. Returns the problem,
+// worded to follow the name of the coefficients; empty: none.
 std::string SetLens(std::span<const double> coefficients, Camera& camera);
 
-// A camera matrix, 3 x 3, row by row. Returns what is wrong with it.
+// Camera matrix K, 3 x 3, row by row. Returns its problems.
 std::vector<std::string> SetMatrix(std::span<const double> matrix, Camera& camera);
 
 }  // namespace vo

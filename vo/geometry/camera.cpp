@@ -11,10 +11,10 @@
 namespace vo {
 namespace {
 
-constexpr double kSamePlace = 1e-9;  // on the plane z = 1
+constexpr double kReprojectionTolerance = 1e-9;  // on the plane z = 1
 
-// How far from the axis a ray is, is a fisheye's angle theta or, of the other lens, its distance on the plane z = 1. At such a distance a it is
-// drawn so far from the principal point, in focal lengths (p1 and p2 apart); and the derivative by a.
+// Radial distortion r_d(a) = a (1 + k1 a^2 + k2 a^4 + ...) in focal lengths and dr_d/da, without p1 and p2. a: angle to
+// the optical axis for a fisheye lens, distance on the plane z = 1 else.
 struct Radius {
   double value, slope;
 };
@@ -24,10 +24,10 @@ Radius RadiusAt(const Camera& c, double a) {
           1 + s * (3 * c.k1 + s * (5 * c.k2 + s * (7 * c.k3 + s * 9 * k4)))};
 }
 
-// Coefficients over [0, 1]; the polynomial lies between the least and the greatest.
+// Bernstein coefficients over [0, 1]: the polynomial lies in their convex hull.
 using Bernstein = std::array<double, 5>;
 
-// Where in [0, 1] it first is not positive, to 2^-halvings.
+// First argument in [0, 1] where the polynomial is not positive, to 2^-halvings.
 std::optional<double> FirstZero(const Bernstein& b, int halvings) {
   if (std::all_of(b.begin(), b.end(), [](double x) { return x > 0; })) return std::nullopt;
   if (!(b[0] > 0) || halvings == 0) return 0.0;
@@ -41,8 +41,8 @@ std::optional<double> FirstZero(const Bernstein& b, int halvings) {
   return std::nullopt;
 }
 
-// The distance from the axis, no more than `farthest`, at which the radius ceases to grow: where its slope, a polynomial in s = a^2, first is 0.
-std::optional<double> Turn(const Camera& c, double farthest) {
+// First a <= `farthest` with dr_d/da = 0, a polynomial in s = a^2: the distortion is injective below it.
+std::optional<double> TurningPoint(const Camera& c, double farthest) {
   const double s = farthest * farthest, k4 = c.lens == Lens::fisheye ? c.k4 : 0;
   const double c1 = 3 * c.k1 * s, c2 = 5 * c.k2 * s * s, c3 = 7 * c.k3 * s * s * s, c4 = 9 * k4 * s * s * s * s;
   const auto part =
@@ -50,12 +50,12 @@ std::optional<double> Turn(const Camera& c, double farthest) {
   return part ? std::optional(farthest * std::sqrt(*part)) : std::nullopt;
 }
 
-double FarthestAway(const Camera& c) {
-  const double farthest = c.lens == Lens::fisheye ? kWidestAngle : std::tan(kWidestAngle);
-  return Turn(c, farthest).value_or(farthest);
+double LargestInjective(const Camera& c) {
+  const double farthest = c.lens == Lens::fisheye ? kMaxFisheyeAngle : std::tan(kMaxFisheyeAngle);
+  return TurningPoint(c, farthest).value_or(farthest);
 }
 
-// A point at distance r on the plane z = 1 is drawn to `scale` times itself; slope = (d scale / dr) / r.
+// Fisheye: (x, y) is distorted to scale * (x, y), r = |(x, y)|; slope = (d scale / dr) / r.
 struct FisheyeScale {
   double scale, slope;
 };
@@ -67,9 +67,9 @@ FisheyeScale ScaleAt(const Camera& c, double r2) {
   return {scale, (radius.slope / (1 + r2) - scale) / r2};
 }
 
-// What is drawn so far from the principal point: Newton's method, kept between 0 and the widest.
-double AwayAt(const Camera& c, double radius) {
-  double below = 0, above = FarthestAway(c), away = std::min(radius, above);
+// Inverse of r_d(a): Newton's method, bracketed between 0 and the largest injective argument.
+double InverseRadius(const Camera& c, double radius) {
+  double below = 0, above = LargestInjective(c), away = std::min(radius, above);
   for (int i = 0; i < 60; ++i) {
     const Radius now = RadiusAt(c, away);
     (now.value > radius ? above : below) = away;
@@ -104,8 +104,8 @@ Eigen::Matrix2d DistortJacobian(const Camera& c, const Eigen::Vector2d& xy) {
   return J;
 }
 
-// Newton's method for the ray that is drawn at `target`, both on the plane z = 1.
-Eigen::Vector2d Approach(const Camera& c, const Eigen::Vector2d& target, Eigen::Vector2d xy) {
+// Newton's method for the ray with Distort(ray) = target, both on the plane z = 1.
+Eigen::Vector2d NewtonUndistort(const Camera& c, const Eigen::Vector2d& target, Eigen::Vector2d xy) {
   for (int i = 0; i < 30; ++i) {
     const Eigen::Vector2d step = DistortJacobian(c, xy).inverse() * (target - Distort(c, xy));
     xy += step;
@@ -114,23 +114,24 @@ Eigen::Vector2d Approach(const Camera& c, const Eigen::Vector2d& target, Eigen::
   return xy;
 }
 
-bool IsDrawnAt(const Camera& c, const Eigen::Vector2d& xy, const Eigen::Vector2d& target) {
-  return (Distort(c, xy) - target).norm() <= kSamePlace && c.Draws(xy);
+bool IsRayOf(const Camera& c, const Eigen::Vector2d& xy, const Eigen::Vector2d& target) {
+  return (Distort(c, xy) - target).norm() <= kReprojectionTolerance && c.IsInjective(xy);
 }
 
-// The ray that a radial-tangential lens draws at `target`, or the widest in its direction; and whether it is drawn there.
+// Ray of a radial-tangential lens with Distort(ray) = target, or the widest one in its direction; which of the two.
 struct Solution {
   Eigen::Vector2d xy;
   bool is_ray;
 };
 Solution Solve(const Camera& c, const Eigen::Vector2d& target) {
-  const Eigen::Vector2d xy = Approach(c, target, target);
-  if (IsDrawnAt(c, xy, target)) return {xy, true};
-  // There is no ray, or a step went past a turn of the radius.
+  const Eigen::Vector2d xy = NewtonUndistort(c, target, target);
+  if (IsRayOf(c, xy, target)) return {xy, true};
+  // There is no ray, or Newton's method went past the turning point: again from the radial solution.
   const double radius = target.norm();
-  const Eigen::Vector2d radial = AwayAt(c, radius) / radius * target, nearer = Approach(c, target, radial);
-  if (IsDrawnAt(c, nearer, target)) return {nearer, true};
-  return {radial, IsDrawnAt(c, radial, target)};
+  const Eigen::Vector2d radial = InverseRadius(c, radius) / radius * target,
+                        nearer = NewtonUndistort(c, target, radial);
+  if (IsRayOf(c, nearer, target)) return {nearer, true};
+  return {radial, IsRayOf(c, radial, target)};
 }
 
 Eigen::Vector2d Normalized(const Camera& c, const Eigen::Vector2d& pixel) {
@@ -144,21 +145,23 @@ Eigen::Vector2d Camera::Project(const Eigen::Vector3d& X_C) const {
   return {fx * d.x() + cx, fy * d.y() + cy};
 }
 
-bool Camera::Draws(const Eigen::Vector2d& xy) const {
+bool Camera::IsInjective(const Eigen::Vector2d& xy) const {
   const double r2 = xy.squaredNorm();
   if (lens == Lens::fisheye)
-    return r2 <= std::tan(kWidestAngle) * std::tan(kWidestAngle) && !Turn(*this, std::atan(std::sqrt(r2)));
-  return !Turn(*this, std::sqrt(r2)) && DistortJacobian(*this, xy).determinant() > 0;
+    return r2 <= std::tan(kMaxFisheyeAngle) * std::tan(kMaxFisheyeAngle) &&
+           !TurningPoint(*this, std::atan(std::sqrt(r2)));
+  return !TurningPoint(*this, std::sqrt(r2)) && DistortJacobian(*this, xy).determinant() > 0;
 }
 
-bool Camera::HasRay(const Eigen::Vector2d& pixel) const {
+bool Camera::IsInvertible(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2d target = Normalized(*this, pixel);
-  if (lens == Lens::fisheye) return std::hypot(target.x(), target.y()) <= RadiusAt(*this, FarthestAway(*this)).value;
+  if (lens == Lens::fisheye)
+    return std::hypot(target.x(), target.y()) <= RadiusAt(*this, LargestInjective(*this)).value;
   return Solve(*this, target).is_ray;
 }
 
-std::optional<Eigen::Vector2d> Camera::RayOf(const Eigen::Vector2d& pixel) const {
-  if (lens == Lens::fisheye) return HasRay(pixel) ? std::optional(Undistort(pixel)) : std::nullopt;
+std::optional<Eigen::Vector2d> Camera::TryUnproject(const Eigen::Vector2d& pixel) const {
+  if (lens == Lens::fisheye) return IsInvertible(pixel) ? std::optional(Undistort(pixel)) : std::nullopt;
   const Solution solution = Solve(*this, Normalized(*this, pixel));
   return solution.is_ray ? std::optional(solution.xy) : std::nullopt;
 }
@@ -167,16 +170,16 @@ Eigen::Vector2d Camera::Undistort(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2d target = Normalized(*this, pixel);
   if (lens != Lens::fisheye) return Solve(*this, target).xy;
   const double radius = target.norm();
-  return radius < 1e-12 ? target : Eigen::Vector2d(std::tan(AwayAt(*this, radius)) / radius * target);
+  return radius < 1e-12 ? target : Eigen::Vector2d(std::tan(InverseRadius(*this, radius)) / radius * target);
 }
 
 Eigen::Matrix2d Camera::LensJacobian(const Eigen::Vector2d& xy) const {
   return Eigen::Vector2d(fx, fy).asDiagonal() * DistortJacobian(*this, xy);
 }
 
-bool Camera::Sees(const Eigen::Vector2d& pixel, double border_px) const {
+bool Camera::IsUsable(const Eigen::Vector2d& pixel, double border_px) const {
   return pixel.x() >= border_px - 0.5 && pixel.y() >= border_px - 0.5 && pixel.x() <= width - 0.5 - border_px &&
-         pixel.y() <= height - 0.5 - border_px && HasRay(pixel);
+         pixel.y() <= height - 0.5 - border_px && IsInvertible(pixel);
 }
 
 Camera CameraPreset(const std::string& name) {

@@ -21,7 +21,7 @@ void RequireLens(settings::Section& section, const std::string& key, const std::
   if (!problem.empty()) section.Reject(key, "'" + name + "' " + problem);
 }
 
-// sensor.yaml of EuRoC, and a camera of Kalibr's camchain.yaml: the same keys but for the last.
+// sensor.yaml of EuRoC, and a camera of Kalibr's camchain.yaml, which differ in the key of the coefficients.
 void ReadEuroc(settings::Section section, const std::string& coefficients, Camera& camera) {
   enum class Model { pinhole } model = Model::pinhole;
   std::array<double, 2> size{};
@@ -90,7 +90,7 @@ void ReadOwn(settings::Section root, Camera& camera) {
   }
 }
 
-// Row by row; empty, and a problem known, where it is none.
+// Entries row by row; empty after a problem, which the section keeps.
 std::vector<double> OpenCvMatrix(settings::Section section, const std::string& name) {
   int rows = 0, columns = 0;
   std::vector<double> values;
@@ -107,9 +107,9 @@ std::vector<double> OpenCvMatrix(settings::Section section, const std::string& n
   return {};
 }
 
-// Not by cv::FileStorage, whose reader of YAML crashes, or never ends, on files that are nearly right (4.6).
+// Without cv::FileStorage, whose YAML reader crashes, or does not terminate, on slightly malformed files (OpenCV 4.6).
 void ReadOpenCvYaml(settings::Section root, Camera& camera) {
-  // The name that is there, of the two that OpenCV's own programs have given it.
+  // The key that is present, of the two spellings of OpenCV's programs.
   const auto either = [&](const char* name, const char* other) {
     return std::string(root.Has(name) || !root.Has(other) ? name : other);
   };
@@ -163,8 +163,8 @@ Camera ReadCamera(const std::filesystem::path& file) {
 }
 
 Camera CameraFrom(const std::string& preset_or_file) {
-  std::error_code none;  // a name that no system takes is no file's
-  if (std::filesystem::exists(preset_or_file, none)) return ReadCamera(preset_or_file);
+  std::error_code ignored;  // a name that is no valid path is not a file
+  if (std::filesystem::exists(preset_or_file, ignored)) return ReadCamera(preset_or_file);
   try {
     return CameraPreset(preset_or_file);
   } catch (const std::invalid_argument& error) {

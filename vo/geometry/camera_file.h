@@ -1,5 +1,5 @@
-// Purpose: calibration files, as the tools of the field write them, into the camera of the odometry.
-// Source:  docs/conventions.md, "Camera files". All of these count pixels from the centre of the first one, as we do.
+// Purpose: reader of calibration files in the formats of common calibration tools.
+// Source:  docs/conventions.md, "Camera files". All formats count pixels from the centre of the first one.
 // Units:   pixels.
 #pragma once
 
@@ -10,13 +10,13 @@
 
 namespace vo {
 
-// What a file is follows from its content: camera.yaml of docs/sequence_format.md; sensor.yaml of a camera of EuRoC;
-// camchain.yaml of Kalibr (cam0, pinhole with radtan or equidistant); camera_info of ROS (plumb_bob or equidistant); what
-// OpenCV's calibration sample writes by cv::FileStorage (YAML or XML, fisheye_model, too). Lenses of more coefficients
-// are refused. Throws settings::Error with every problem, with line and column but for OpenCV's XML.
+// The format is detected from the content: camera.yaml (docs/sequence_format.md); sensor.yaml of an EuRoC camera;
+// camchain.yaml of Kalibr (cam0, pinhole with radtan or equidistant); camera_info of ROS (plumb_bob or equidistant);
+// cv::FileStorage of OpenCV's calibration sample (YAML or XML, fisheye_model included). Lens models with more
+// coefficients are refused. Throws settings::Error with every problem, with line and column except for OpenCV's XML.
 Camera ReadCamera(const std::filesystem::path& file);
 
-// A preset's name or a file. Throws std::invalid_argument, too.
+// Name of a preset, or a file. Also throws std::invalid_argument.
 Camera CameraFrom(const std::string& preset_or_file);
 
 }  // namespace vo

@@ -64,7 +64,7 @@ class OpenCvXml {
     return value;
   }
 
-  // Row by row; empty, and a problem known, where it is not there.
+  // Entries row by row; empty after a problem.
   std::vector<double> Matrix(const char* name, const char* other) {
     const std::vector<double> values = Numbers(Find(name, other));
     if (values.empty()) Complain(std::string("'") + name + "' must be there, a matrix of numbers");
@@ -76,7 +76,7 @@ class OpenCvXml {
     return values;
   }
 
-  // Not by cv::Mat's reader, which makes room for as many rows and columns as the file says.
+  // Without cv::Mat's reader, which allocates as many rows and columns as the file states.
   static std::vector<double> Numbers(const cv::FileNode& matrix) {
     if (!matrix.isMap()) return {};
     const cv::FileNode rows = matrix["rows"], columns = matrix["cols"], data = matrix["data"];
@@ -105,7 +105,7 @@ Camera ReadOpenCvXml(const std::filesystem::path& file) {
     throw;
   } catch (const cv::Exception& error) {
     throw settings::Error({{file.string(), 0, 0, "OpenCV cannot read it: " + error.err}});
-  } catch (const std::exception& error) {  // its parser lets the standard library's pass
+  } catch (const std::exception& error) {  // the parser passes on those of the standard library
     throw settings::Error({{file.string(), 0, 0, std::string("OpenCV cannot read it: ") + error.what()}});
   }
 }

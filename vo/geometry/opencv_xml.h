@@ -1,4 +1,4 @@
-// Purpose: a calibration in OpenCV's XML (cv::FileStorage). Its YAML is read as all YAML is: camera_file.h.
+// Purpose: reader of calibrations in OpenCV's XML (cv::FileStorage); its YAML is read by camera_file.h.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace vo {
 
-// Throws settings::Error with all problems; they have no lines, since cv::FileStorage does not tell them.
+// Throws settings::Error with all problems, without lines: cv::FileStorage has none.
 Camera ReadOpenCvXml(const std::filesystem::path& file);
 
 }  // namespace vo

@@ -1,6 +1,7 @@
-// Purpose: rotations as the filter needs them: exponential, logarithms, right Jacobian and its inverse.
+// Purpose: SO(3) as unit quaternions: exponential, logarithm, right Jacobian and its inverse.
 // Source:  Sola, Deray, Atchuthan, "A micro Lie theory for state estimation in robotics", (132)-(147).
-// Convention: right perturbation, q = q_hat (x) Exp(phi), phi in radians in the body (camera) frame.
+// Frames:  right perturbation, q = q_hat (x) Exp(phi), phi in the body (camera) frame.
+// Units:   radians.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,7 +27,7 @@ inline Eigen::Quaterniond Exp(const Eigen::Vector3d& phi) {
   return q;
 }
 
-// The rotation vector of length at most pi.
+// Rotation vector of length at most pi.
 inline Eigen::Vector3d Log(const Eigen::Quaterniond& q) {
   const double n = q.vec().norm();
   const double w = q.w();
@@ -35,7 +36,7 @@ inline Eigen::Vector3d Log(const Eigen::Quaterniond& q) {
   return (2.0 * half_angle / n) * q.vec();
 }
 
-// The rotation vector nearest to `near`: those of one rotation differ by full turns about its axis.
+// Rotation vector nearest to `near` among phi + 2 pi k axis, k integer.
 inline Eigen::Vector3d LogNear(const Eigen::Quaterniond& q, const Eigen::Vector3d& near) {
   const Eigen::Vector3d phi = Log(q);
   const double angle = phi.norm();
@@ -44,19 +45,19 @@ inline Eigen::Vector3d LogNear(const Eigen::Quaterniond& q, const Eigen::Vector3
   return turns == 0 ? phi : Eigen::Vector3d(phi + 2 * std::numbers::pi * turns * axis);
 }
 
-// The Jacobian is singular at full turns: it is taken this far beside them [rad].
-constexpr double kBesideFullTurn = 1e-4;
-inline Eigen::Vector3d BesideFullTurn(const Eigen::Vector3d& phi) {
+// J_r is singular at |phi| = 2 pi k, k > 0: it is evaluated at this distance from there [rad].
+constexpr double kFullTurnOffset = 1e-4;
+inline Eigen::Vector3d AwayFromFullTurn(const Eigen::Vector3d& phi) {
   const double angle = phi.norm();
   if (angle < std::numbers::pi) return phi;
   const double off = std::remainder(angle, 2 * std::numbers::pi);
-  if (std::abs(off) >= kBesideFullTurn) return phi;
-  return (1 + (std::copysign(kBesideFullTurn, off) - off) / angle) * phi;
+  if (std::abs(off) >= kFullTurnOffset) return phi;
+  return (1 + (std::copysign(kFullTurnOffset, off) - off) / angle) * phi;
 }
 
-// Exp(phi + d) = Exp(phi) Exp(J_r(phi) d) to first order in d.
+// J_r: Exp(phi + d) = Exp(phi) Exp(J_r(phi) d) to first order in d.
 inline Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& at) {
-  const Eigen::Vector3d phi = BesideFullTurn(at);
+  const Eigen::Vector3d phi = AwayFromFullTurn(at);
   const double t2 = phi.squaredNorm();
   const double t = std::sqrt(t2);
   const double a = t < 1e-3 ? 0.5 - t2 / 24.0 : (1.0 - std::cos(t)) / t2;
@@ -66,7 +67,7 @@ inline Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& at) {
 }
 
 inline Eigen::Matrix3d InverseRightJacobian(const Eigen::Vector3d& at) {
-  const Eigen::Vector3d phi = BesideFullTurn(at);
+  const Eigen::Vector3d phi = AwayFromFullTurn(at);
   const double t2 = phi.squaredNorm();
   const double t = std::sqrt(t2);
   const double b = t < 1e-3 ? 1.0 / 12.0 + t2 / 720.0 : 1.0 / t2 - (1.0 + std::cos(t)) / (2.0 * t * std::sin(t));
@@ -74,9 +75,9 @@ inline Eigen::Matrix3d InverseRightJacobian(const Eigen::Vector3d& at) {
   return Eigen::Matrix3d::Identity() + 0.5 * K + b * K * K;
 }
 
-// log det J_r(phi): the volume that Exp changes.
+// log det J_r(phi): change of volume under Exp.
 inline double LogVolume(const Eigen::Vector3d& phi) {
-  const double t2 = BesideFullTurn(phi).squaredNorm();
+  const double t2 = AwayFromFullTurn(phi).squaredNorm();
   return t2 < 1e-6 ? -t2 / 12.0 : std::log(2.0 * (1.0 - std::cos(std::sqrt(t2))) / t2);
 }
 

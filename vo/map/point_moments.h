@@ -6,14 +6,10 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "vo/base/result.h"
 #include "vo/map/landmark.h"
 
 namespace vo {
-
-struct PointMoments {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-};
 
 // dX_W / d(x, y, rho) and dX_W / d(dp in W, dphi in A) of the anchor's pose. rho > 0 (a precondition).
 Eigen::Matrix3d PointJacobian(const Pose& anchor, const Eigen::Vector3d& landmark);

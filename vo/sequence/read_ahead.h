@@ -1,5 +1,5 @@
-// Purpose: the first stage of the pipeline in a thread of its own: while one frame is tracked the next ones are read, decoded and prepared.
-//          What comes out is the same as without it, in the same order.
+// Purpose: read-ahead: the next frames are read, decoded and prepared in a thread of their own while one is tracked.
+//          Frames and their order are the same as without it.
 #pragma once
 
 #include <condition_variable>
@@ -17,9 +17,9 @@ namespace vo {
 
 class ReadAhead {
  public:
-  // No more than `most` frames are waiting at a time. `source` is this object's alone as long as it lives.
+  // At most `most` frames wait at a time. `source` is used by this object alone during its lifetime.
   explicit ReadAhead(FrameSource& source, std::size_t most = 2);
-  ~ReadAhead();  // does not wait for frames that nobody asked for, but for the one being read
+  ~ReadAhead();  // waits for the frame that is being read, not for further ones
   ReadAhead(const ReadAhead&) = delete;
   ReadAhead& operator=(const ReadAhead&) = delete;
 

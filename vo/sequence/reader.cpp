@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "12.0345" -> nanoseconds, exactly: through integers, never through a double (1305031102.175304 has no double to the ns).
+// "12.0345" -> nanoseconds, in integers: no double represents 1305031102.175304 to the nanosecond.
 std::optional<std::int64_t> ParseStamp(const std::string& text) {
   const std::size_t dot = text.find('.');
   const std::string whole = text.substr(0, dot);
@@ -50,9 +50,9 @@ std::optional<std::int64_t> StampInNanoseconds(const std::string& text) {
   return std::stoll(text);
 }
 
-// A list of frames: a line for each, whose first word is its time and whose last one its image.
+// List of frames, one per line: the first word is the stamp, the last one the image.
 struct ListFormat {
-  fs::path list, images;  // file names are relative to the latter
+  fs::path list, images;  // file names are relative to `images`
   std::size_t words;
   std::optional<std::int64_t> (*stamp)(const std::string&);
   std::string not_a_stamp, expected;
@@ -70,15 +70,15 @@ ListFormat FormatOf(const fs::path& folder) {
   return {folder / "rgb.txt", folder, 2, ParseStamp, "a time stamp in seconds", "timestamp filename"};
 }
 
-// Separated by blanks or commas.
+// Words separated by blanks or commas.
 std::vector<std::string> Words(std::string line) {
   std::replace(line.begin(), line.end(), ',', ' ');
   std::istringstream in(line);
   return {std::istream_iterator<std::string>(in), std::istream_iterator<std::string>()};
 }
 
-// OpenCV decodes a PNG or JPEG that breaks off and fills the rest with grey; a whole file ends with its end mark.
-bool EndsAsItShould(const std::vector<std::uint8_t>& bytes) {
+// Whether a PNG or JPEG has its end marker: OpenCV decodes a truncated file, and fills the rest with grey.
+bool IsComplete(const std::vector<std::uint8_t>& bytes) {
   static constexpr std::uint8_t png[] = {0x89, 'P', 'N', 'G'};
   static constexpr std::uint8_t iend[] = {'I', 'E', 'N', 'D', 0xAE, 0x42, 0x60, 0x82};
   if (bytes.size() < 12) return false;
@@ -102,7 +102,7 @@ cv::Mat ReadImage(const fs::path& file) {
   in.seekg(0);
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!in || bytes.empty()) throw std::runtime_error(file.string() + ": cannot be read, or is empty");
-  if (!EndsAsItShould(bytes)) throw std::runtime_error(file.string() + ": image breaks off before its end");
+  if (!IsComplete(bytes)) throw std::runtime_error(file.string() + ": image breaks off before its end");
   if (const std::string problem = limits::PictureProblem(bytes); !problem.empty())
     throw std::runtime_error(file.string() + ": " + problem);
   const cv::Mat image = Decode(bytes, file);
@@ -110,9 +110,9 @@ cv::Mat ReadImage(const fs::path& file) {
   if ((image.depth() != CV_8U && image.depth() != CV_16U) || (image.channels() != 1 && image.channels() != 3))
     throw std::runtime_error(file.string() + ": expected a grey or colour image of 8 or 16 bits");
   if (image.depth() == CV_8U) return image;
-  cv::Mat bytes_of_it;
-  image.convertTo(bytes_of_it, CV_8U, 255.0 / 65535);
-  return bytes_of_it;
+  cv::Mat eight_bits;
+  image.convertTo(eight_bits, CV_8U, 255.0 / 65535);
+  return eight_bits;
 }
 
 }  // namespace
@@ -147,8 +147,8 @@ SequenceReader::SequenceReader(const fs::path& folder) {
     if (!entries_.empty() && *stamp_ns <= entries_.back().stamp_ns)
       complain("time stamp " + words[0] + " does not increase over line " + std::to_string(last_number));
     const fs::path image = format.images / words.back();
-    std::error_code why_not;  // a name of 300 letters is no exception, but a mistake like others
-    if (!fs::is_regular_file(image, why_not)) complain("image " + image.string() + " is not there");
+    std::error_code error;  // a name that is too long is reported like other problems
+    if (!fs::is_regular_file(image, error)) complain("image " + image.string() + " is not there");
     entries_.push_back({*stamp_ns, image});
     last_number = number;
   }

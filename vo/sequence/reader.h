@@ -1,6 +1,6 @@
-// Purpose: frames from a folder in TUM RGB-D layout (docs/sequence_format.md), or in that of the original ICL-NUIM files, which have
-//          associations.txt (`index depth-file index image-file`) instead of rgb.txt: their time is index / 30 s; or in that of EuRoC
-//          (mav0/cam0/data.csv, `timestamp in ns,filename`).
+// Purpose: reader of image sequences: TUM RGB-D layout (docs/sequence_format.md); ICL-NUIM's original layout
+//          (associations.txt, `index depth-file index image-file`, stamp = index / 30 s); EuRoC
+//          (mav0/cam0/data.csv, `stamp in ns,filename`).
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace vo {
 
 class SequenceReader : public FrameSource {
  public:
-  // Reads and checks the list of frames. Throws std::runtime_error naming file and lines: folder or list missing, no frames,
-  // a malformed line, stamps that do not increase (both lines named), image files that are not there.
+  // Reads and checks the list of frames. Throws std::runtime_error naming file and lines: folder or list missing, no
+  // frames, a malformed line, stamps that do not increase (both lines named), missing image files.
   explicit SequenceReader(const std::filesystem::path& folder);
 
   std::size_t size() const { return entries_.size(); }

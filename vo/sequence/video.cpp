@@ -13,7 +13,7 @@ namespace vo {
 namespace {
 
 constexpr const char* kCamera = "camera:";
-constexpr std::chrono::seconds kPatience(5);
+constexpr std::chrono::seconds kTimeout(5);
 
 bool IsLive(const std::string& what) { return what.starts_with(kCamera) || what.find("://") != std::string::npos; }
 
@@ -33,7 +33,7 @@ cv::VideoCapture OpenLive(const std::string& name) {
   return capture;
 }
 
-// Grey or colour of 8 bits is what OpenCV makes of every video.
+// Grey or colour of 8 bits.
 bool IsUsable(const cv::Mat& image) { return image.type() == CV_8UC3 || image.type() == CV_8UC1; }
 
 }  // namespace
@@ -44,7 +44,7 @@ VideoFile::VideoFile(const std::string& file) : file_(file) {
     throw std::runtime_error(file + ": is neither a sequence's folder nor a video that OpenCV can read");
   const double rate = capture_.get(cv::CAP_PROP_FPS), count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
   step_ns_ = rate > 0 && rate < 1e6 ? std::llround(1e9 / rate) : 33'333'333;
-  if (count >= 1 && count < 1e12) count_ = std::llround(count);  // as the file says: not always right
+  if (count >= 1 && count < 1e12) count_ = std::llround(count);  // by the file's header: not always correct
 }
 
 std::optional<Frame> VideoFile::Next() {
@@ -69,7 +69,7 @@ LiveCamera::~LiveCamera() {
 
 std::optional<Frame> LiveCamera::Next() {
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, kPatience, [this] { return newest_ || ended_; });
+  changed_.wait_for(lock, kTimeout, [this] { return newest_ || ended_; });
   return std::exchange(newest_, std::nullopt);
 }
 

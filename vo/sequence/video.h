@@ -1,6 +1,6 @@
-// Purpose: frames of a video file, and of a camera while it films.
+// Purpose: frames of a video file, and of a live camera.
 // Source:  OpenCV's videoio (FFmpeg, Video4Linux).
-// Units:   nanoseconds; the middle of the exposure is not known, so stamps are those of the file, or of arrival.
+// Units:   nanoseconds; mid-exposure is unknown, so stamps are those of the file, or of arrival.
 #pragma once
 
 #include <condition_variable>
@@ -13,7 +13,8 @@
 
 namespace vo {
 
-// Every frame of a file, with its presentation time; one that does not increase is put 1 / rate after the frame before.
+// Every frame of a file, stamped with its presentation time, or 1 / rate after the last frame where that does not
+// increase.
 class VideoFile : public FrameSource {
  public:
   // Throws std::runtime_error when it cannot be opened.
@@ -28,8 +29,8 @@ class VideoFile : public FrameSource {
   std::int64_t step_ns_ = 0, last_ns_ = -1;
 };
 
-// A camera that does not wait: Next() gives the newest frame, stamped when it arrived (from 0 at the first), and what
-// came while nobody asked is dropped and counted.
+// Live camera: Next() gives the newest frame, stamped with its time of arrival (0: the first frame); earlier ones that
+// were not read are dropped and counted.
 class LiveCamera : public FrameSource {
  public:
   // "camera:0", or an address that OpenCV reads (http, rtsp, udp). Throws std::runtime_error when it cannot be opened.

@@ -85,7 +85,7 @@ TEST(So3, JacobiansPassFullTurns) {
     constexpr int kSteps = 2000;
     for (int i = 0; i < kSteps; ++i)
       integral += vo::Exp(-(i + 0.5) / kSteps * phi).toRotationMatrix() / static_cast<double>(kSteps);
-    EXPECT_LT((J - integral).norm(), 2 * vo::kBesideFullTurn) << size;
+    EXPECT_LT((J - integral).norm(), 2 * vo::kFullTurnOffset) << size;
   }
 }
 
@@ -143,8 +143,8 @@ TEST(Camera, DrawsARayAsLongAsThePixelIsItsOwn) {
       one_to_one &= radius > last;
       last = std::max(last, radius);
       const vo::Camera& c = camera;
-      const bool at_the_turn = c.Draws(1.01 * xy) != c.Draws(0.99 * xy);
-      EXPECT_TRUE(at_the_turn || c.Draws(xy) == one_to_one) << "k1 " << c.k1 << ", r " << r;
+      const bool at_the_turn = c.IsInjective(1.01 * xy) != c.IsInjective(0.99 * xy);
+      EXPECT_TRUE(at_the_turn || c.IsInjective(xy) == one_to_one) << "k1 " << c.k1 << ", r " << r;
     }
     EXPECT_EQ(one_to_one, camera.k1 == 0 ? camera.k3 == 0 : camera.k3 > 1) << "k1 " << camera.k1;
   }
@@ -155,9 +155,9 @@ TEST(Camera, APixelBeyondAFisheyesUsableAngleHasNoRay) {
   for (const double theta : {0.0, 1.0, 1.399, 1.401, 1.5}) {
     const double radius = theta * (1 + 0.02 * theta * theta);
     const Vector2d pixel(camera.cx + 200 * 0.6 * radius, camera.cy - 200 * 0.8 * radius);
-    const bool usable = theta < vo::kWidestAngle;
-    EXPECT_EQ(camera.HasRay(pixel), usable) << theta;
-    EXPECT_EQ(camera.Draws(std::tan(theta) * Vector2d(0.6, -0.8)), usable) << theta;
+    const bool usable = theta < vo::kMaxFisheyeAngle;
+    EXPECT_EQ(camera.IsInvertible(pixel), usable) << theta;
+    EXPECT_EQ(camera.IsInjective(std::tan(theta) * Vector2d(0.6, -0.8)), usable) << theta;
     if (usable) {
       EXPECT_NEAR(camera.Undistort(pixel).norm(), std::tan(theta), 1e-9) << theta;
     }
@@ -171,7 +171,7 @@ double WidestByWalking(const vo::Camera& c) {
   };
   constexpr double kStep = 1e-5;
   double theta = 0;
-  while (theta + kStep < vo::kWidestAngle && radius(theta + kStep) > radius(theta)) theta += kStep;
+  while (theta + kStep < vo::kMaxFisheyeAngle && radius(theta + kStep) > radius(theta)) theta += kStep;
   return theta;
 }
 
@@ -191,17 +191,17 @@ TEST(Camera, AFisheyeIsUsedAsFarAsItsRadiusGrows) {
       if (std::abs(theta - widest) < 0.005) continue;
       const Vector2d ray = std::tan(theta) * Vector2d(0.6, -0.8);
       const Vector2d pixel = camera.Project({ray.x(), ray.y(), 1});
-      EXPECT_EQ(camera.Draws(ray), theta < widest) << "k1 " << camera.k1 << ", " << theta;
+      EXPECT_EQ(camera.IsInjective(ray), theta < widest) << "k1 " << camera.k1 << ", " << theta;
       if (theta > widest) continue;
-      EXPECT_TRUE(camera.HasRay(pixel)) << "k1 " << camera.k1 << ", " << theta;
+      EXPECT_TRUE(camera.IsInvertible(pixel)) << "k1 " << camera.k1 << ", " << theta;
       EXPECT_LT((camera.Undistort(pixel) - ray).norm(), 1e-9 * (1 + ray.squaredNorm()))
           << "k1 " << camera.k1 << ", " << theta;
     }
-    EXPECT_FALSE(camera.HasRay({edge.x() + 0.1, camera.cy})) << "k1 " << camera.k1;
+    EXPECT_FALSE(camera.IsInvertible({edge.x() + 0.1, camera.cy})) << "k1 " << camera.k1;
     EXPECT_LT(camera.Undistort({camera.cx, camera.cy + 2 * (edge.x() - camera.cx)}).norm(), std::tan(widest + 1e-4))
         << "k1 " << camera.k1;
   }
-  EXPECT_TRUE(late.Sees({0, 0})) << "45 degrees";
+  EXPECT_TRUE(late.IsUsable({0, 0})) << "45 degrees";
 }
 
 // Along each direction the pixels out to the farthest that is drawn have a ray, and no others; where Newton's method jumps over a turn, too.
@@ -223,7 +223,7 @@ TEST(Camera, APixelBeyondTheTurnOfTheRadiusHasNoRay) {
         const Vector2d pixel(u, v);
         const double radius = std::hypot((u - c.cx) / c.fx, (v - c.cy) / c.fy);
         if (std::abs(radius - farthest) < 1e-6) continue;
-        EXPECT_EQ(c.HasRay(pixel), radius < farthest) << "k1 " << c.k1 << ", pixel " << u << " " << v;
+        EXPECT_EQ(c.IsInvertible(pixel), radius < farthest) << "k1 " << c.k1 << ", pixel " << u << " " << v;
         ++(radius < farthest ? with_ray : without);
         const Vector2d ray = c.Undistort(pixel);
         if (radius > farthest) {
@@ -231,7 +231,7 @@ TEST(Camera, APixelBeyondTheTurnOfTheRadiusHasNoRay) {
               << "the edge of what is drawn";
           continue;
         }
-        EXPECT_TRUE(c.Draws(ray)) << "k1 " << c.k1 << ", pixel " << u << " " << v;
+        EXPECT_TRUE(c.IsInjective(ray)) << "k1 " << c.k1 << ", pixel " << u << " " << v;
         EXPECT_LT((c.Project({ray.x(), ray.y(), 1}) - pixel).norm(), 1e-6)
             << "k1 " << c.k1 << ", pixel " << u << " " << v;
       }
@@ -247,17 +247,17 @@ TEST(Camera, ATangentialTermMovesTheTurn) {
   int drawn = 0, has_none = 0;
   for (double y = -1.6; y < 1.6; y += 0.05) {
     for (double x = -1.6; x < 1.6; x += 0.05) {
-      if (!camera.Draws({x, y})) continue;
+      if (!camera.IsInjective({x, y})) continue;
       const Vector2d pixel = camera.Project({x, y, 1});
       ++drawn;
       EXPECT_GT(camera.LensJacobian({x, y}).determinant(), 0) << x << " " << y;
-      EXPECT_TRUE(camera.HasRay(pixel)) << x << " " << y;
+      EXPECT_TRUE(camera.IsInvertible(pixel)) << x << " " << y;
       EXPECT_LT((camera.Undistort(pixel) - Vector2d(x, y)).norm(), 1e-5) << x << " " << y;
     }
   }
   EXPECT_GT(drawn, 2000);
   for (const Vector2d& corner : {Vector2d(0, 0), Vector2d(639, 0), Vector2d(0, 479), Vector2d(639, 479)})
-    has_none += !camera.HasRay(corner);
+    has_none += !camera.IsInvertible(corner);
   EXPECT_GE(has_none, 3);
 }
 

@@ -1,4 +1,4 @@
-// Purpose: how often each system did what its equations do not say (vo/filter/guards.h), as an HTML table.
+// Purpose: how often each system did what its equations do not say (vo/base/numerical_events.h), as an HTML table.
 #pragma once
 
 #include <string>

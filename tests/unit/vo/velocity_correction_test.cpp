@@ -1,6 +1,4 @@
 // A rolling shutter after a gap: the velocity that straightens the rows of the first image back follows from the whole gap, not from one frame's time.
-#include "vo/frontend/last_seen.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,22 +6,23 @@
 
 #include "tests/unit/vo/two_walls.h"
 #include "vo/filter/pose_gaussian.h"
+#include "vo/frontend/rolling_shutter.h"
 #include "vo/odometry.h"
 
 namespace {
 
 // By hand: position and velocity of one axis after T, both from a velocity of variance V and white acceleration of density q, have the variance
 // V T^2 + q T^3 / 3 and the covariance V T + q T^2 / 2.
-TEST(VelocityChange, IsOverTheWholeGap) {
+TEST(VelocityCorrection, IsOverTheWholeGap) {
   const vo::MotionParams motion{.position_noise = 2.5, .orientation_noise = 1};
-  vo::LastSeen last;
+  vo::SinceUpdate last;
   last.velocity_covariance.setZero();
   last.velocity_covariance.diagonal() << 0.04, 0.09, 0.0, 0.01, 0.25, 0.0;
   vo::Vector6 off;
   off << 0.1, -0.2, 0.05, 0.02, -0.03, 0.04;
   for (const double T : {1.0 / 30, 0.7, 3.0}) {
-    last.ago = T;
-    const vo::Vector6 change = vo::VelocityChange(last, motion, off);
+    last.dt_s = T;
+    const vo::Vector6 change = vo::VelocityCorrection(last, motion, off);
     for (int i = 0; i < 6; ++i) {
       const double V = last.velocity_covariance(i, i), q = i < 3 ? 6.25 : 1;
       EXPECT_NEAR(change[i], (V * T + q * T * T / 2) / (V * T * T + q * T * T * T / 3) * off[i],
@@ -57,7 +56,7 @@ double ErrorAfter(int dark, int lag) {
 
 // Given the pose after T, what nearly constant velocity leaves of the velocity's variance is q T / 4 at the least: so far, in half the readout, the
 // outermost rows may be off. With the gain of one frame's time it was 7 mrad after 5 dark frames, and 93 after 20.
-TEST(LastSeen, StraightensTheFirstImageAfterAGap) {
+TEST(VelocityCorrection, StraightensTheFirstImageAfterAGap) {
   for (const int lag : {0, 5}) {
     const double without = ErrorAfter(0, lag);
     for (const int dark : {5, 20}) {

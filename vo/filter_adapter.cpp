@@ -1,4 +1,4 @@
-#include "vo/estimate.h"
+#include "vo/filter_adapter.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -10,13 +10,12 @@
 
 namespace vo {
 
-Params Checked(const Params& params) {
+namespace {
+
+void RequireValid(const Params& params) {
   const std::vector<settings::FieldProblem> problems = Problems(params);
   if (!problems.empty()) throw std::invalid_argument(Join(problems, "\n"));
-  return params;
 }
-
-namespace {
 
 bool IsCovariance(const Matrix6& P) {
   constexpr double kRounding = 1e-9;  // of its largest entry
@@ -25,7 +24,7 @@ bool IsCovariance(const Matrix6& P) {
              -kRounding * P.cwiseAbs().maxCoeff();
 }
 
-void RequireFinite(const Prior& prior) {
+void RequireValid(const Prior& prior) {
   std::string text;
   const auto require = [&](bool ok, const char* what) {
     if (!ok) text += std::string(text.empty() ? "" : "\n") + "prior: " + what;
@@ -40,7 +39,8 @@ void RequireFinite(const Prior& prior) {
 }  // namespace
 
 std::unique_ptr<Filter> MakeFilter(const Params& params, const Prior& prior, std::uint64_t seed) {
-  RequireFinite(prior);
+  RequireValid(params);
+  RequireValid(prior);
   FilterPrior out;
   out.pose = {prior.pose, prior.pose_covariance};
   out.velocity << prior.v_WC, prior.w_WC_C;
@@ -50,20 +50,20 @@ std::unique_ptr<Filter> MakeFilter(const Params& params, const Prior& prior, std
   return std::make_unique<ParticleFilter>(params.motion, params.filter, params.landmark, out, seed);
 }
 
-Estimate MakeEstimate(const Filter& filter, const UnknownScale& scale, std::int64_t stamp_ns,
+Estimate MakeEstimate(const Filter& filter, const ScaleAmbiguity& scale, std::int64_t stamp_ns,
                       FrameDiagnostics diagnostics) {
   diagnostics.effective_particles = filter.effective_particles();
   diagnostics.guards = filter.guards();
   const Belief& belief = filter.belief();
   return {stamp_ns,
-          scale.Answered(belief.pose),
-          scale.Answered(belief.velocity).head<3>(),
+          scale.ToAnswer(belief.pose),
+          scale.ToAnswer(belief.velocity).head<3>(),
           belief.velocity.tail<3>(),
           scale.Covariance(belief.pose, belief.velocity, belief.covariance),
           diagnostics};
 }
 
-std::vector<MapPoint> MakeMap(const Filter& filter, const UnknownScale& scale) {
+std::vector<MapPoint> MakeMap(const Filter& filter, const ScaleAmbiguity& scale) {
   std::vector<MapPoint> points;
   const std::vector<Filter::LandmarkBelief> beliefs = filter.LandmarkBeliefs();
   const std::vector<double> sigmas = filter.InverseDepthSigmas();
@@ -72,17 +72,11 @@ std::vector<MapPoint> MakeMap(const Filter& filter, const UnknownScale& scale) {
     Filter::LandmarkBelief belief = beliefs[n];
     belief.inverse_depth_sigma = sigmas[n];
     if (moments[n]) moments[n] = scale.Moments(*moments[n]);
-    points.push_back({0, scale.Answered(belief.X_W), scale.AnsweredInverse(belief.inverse_depth),
+    points.push_back({0, scale.ToAnswer(belief.X_W), scale.InverseToAnswer(belief.inverse_depth),
                       scale.InverseDepthSigma(belief.inverse_depth, belief.inverse_depth_sigma), false,
                       belief.relative_sigma(), moments[n]});
   }
   return points;
-}
-
-void RequireIncreasing(std::int64_t stamp_ns, std::int64_t last_ns) {
-  if (stamp_ns <= last_ns)
-    throw std::invalid_argument("time stamp " + std::to_string(stamp_ns) + " ns does not increase over " +
-                                std::to_string(last_ns) + " ns");
 }
 
 }  // namespace vo

@@ -1,6 +1,6 @@
 // Where the camera is, from few matches; which landmarks are asked; and what that is worth on images.
 
-#include "vo/frontend/pilots.h"
+#include "vo/frontend/coarse_features.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tests/unit/vo/texture.h"
-#include "vo/frontend/spread.h"
+#include "vo/features/corner_detector.h"
 #include "vo/geometry/so3.h"
 #include "vo/odometry.h"
 
@@ -57,7 +57,7 @@ Scene MakeScene() {
 }
 
 // Largest distance [px] of the landmarks behind the first `pilots` from where they are said to be.
-double Worst(const Scene& scene, const vo::PilotedPose& pose, int pilots) {
+double Worst(const Scene& scene, const vo::CoarsePose& pose, int pilots) {
   double worst = 0;
   for (int n = pilots; n < static_cast<int>(scene.landmarks.size()); ++n) {
     const auto where = pose.Predict(n, kCamera, 0.7);
@@ -68,9 +68,9 @@ double Worst(const Scene& scene, const vo::PilotedPose& pose, int pilots) {
   return worst;
 }
 
-TEST(Pilots, TellWhereAllOthersAre) {
+TEST(CoarseFeatures, TellWhereAllOthersAre) {
   const Scene scene = MakeScene();
-  const auto pose = vo::PilotedPose::From(scene.prediction, scene.map(), scene.Matches(16), {});
+  const auto pose = vo::CoarsePose::From(scene.prediction, scene.map(), scene.Matches(16), {});
   ASSERT_TRUE(pose);
   EXPECT_LT(Worst(scene, *pose, 16), 0.05);  // exact matches; the prior pulls, at a ten thousandth of their weight
   double plain = 0;
@@ -81,37 +81,37 @@ TEST(Pilots, TellWhereAllOthersAre) {
   EXPECT_GT(plain, 20) << "the prediction alone is far off";
 }
 
-TEST(Pilots, AreNotMovedByOutliers) {
+TEST(CoarseFeatures, AreNotMovedByOutliers) {
   const Scene scene = MakeScene();
   std::vector<vo::Match> matches = scene.Matches(16);
   for (int n = 0; n < 16; n += 4) matches[n].z += Vector2d(0.05, -0.03);  // 29 px, all the same way: a thing that moves
-  const auto pose = vo::PilotedPose::From(scene.prediction, scene.map(), matches, {});
+  const auto pose = vo::CoarsePose::From(scene.prediction, scene.map(), matches, {});
   ASSERT_TRUE(pose);
   EXPECT_LT(Worst(scene, *pose, 16), 0.7);
 }
 
-TEST(Pilots, KnowHowSureTheyAre) {
+TEST(CoarseFeatures, KnowHowSureTheyAre) {
   Scene scene = MakeScene();
   scene.landmarks[40].covariance(2, 2) = 0.04;  // a depth hardly known
-  const auto pose = vo::PilotedPose::From(scene.prediction, scene.map(), scene.Matches(16), {});
+  const auto pose = vo::CoarsePose::From(scene.prediction, scene.map(), scene.Matches(16), {});
   ASSERT_TRUE(pose);
   const auto sigma = [&](int n) { return std::sqrt(pose->Predict(n, kCamera, 0.7)->covariance.trace() / 2); };
   EXPECT_LT(sigma(41), 1.2);
   EXPECT_GT(sigma(40), 2 * sigma(41));
 }
 
-TEST(Pilots, SayNothingWhenFewOrAtOdds) {
+TEST(CoarseFeatures, SayNothingWhenFewOrAtOdds) {
   const Scene scene = MakeScene();
-  EXPECT_FALSE(vo::PilotedPose::From(scene.prediction, scene.map(), scene.Matches(5), {}));
+  EXPECT_FALSE(vo::CoarsePose::From(scene.prediction, scene.map(), scene.Matches(5), {}));
   std::vector<vo::Match> matches = scene.Matches(16);
   for (int n = 0; n < 16; ++n)
     matches[n].z += 0.1 * Vector2d(std::sin(7.0 * n), std::cos(11.0 * n));  // each its own way
-  EXPECT_FALSE(vo::PilotedPose::From(scene.prediction, scene.map(), matches, {}));
+  EXPECT_FALSE(vo::CoarsePose::From(scene.prediction, scene.map(), matches, {}));
 }
 
-TEST(Pilots, AreSettledSureAndSpread) {
+TEST(CoarseFeatures, AreSettledSureAndSpread) {
   std::vector<vo::LandmarkRecord> records(100);
-  std::vector<vo::PilotCandidate> candidates;
+  std::vector<vo::CoarseCandidate> candidates;
   for (int n = 0; n < 100; ++n) {
     records[n].age = 30;
     records[n].score = n < 50 ? 0.5 : 0.99;  // two at each place: one sure, one not
@@ -119,7 +119,7 @@ TEST(Pilots, AreSettledSureAndSpread) {
   }
   vo::FeatureParams params;
   params.coarse_features = 16;
-  const std::vector<std::size_t> pilots = vo::ChoosePilots(candidates, kCamera, params);
+  const std::vector<std::size_t> pilots = vo::SelectCoarseFeatures(candidates, kCamera, params);
   ASSERT_EQ(pilots.size(), 16u);
   std::set<std::pair<int, int>> cells;
   for (const std::size_t i : pilots) {
@@ -129,14 +129,14 @@ TEST(Pilots, AreSettledSureAndSpread) {
   EXPECT_EQ(cells.size(), 16u) << "one in each part of the image";
 
   for (int n = 10; n < 100; ++n) records[n].age = 9;
-  EXPECT_TRUE(vo::ChoosePilots(candidates, kCamera, params).empty()) << "ten settled landmarks are not sixteen";
+  EXPECT_TRUE(vo::SelectCoarseFeatures(candidates, kCamera, params).empty()) << "ten settled landmarks are not sixteen";
   params.coarse_features = 0;
-  EXPECT_TRUE(vo::ChoosePilots(candidates, kCamera, params).empty());
+  EXPECT_TRUE(vo::SelectCoarseFeatures(candidates, kCamera, params).empty());
 }
 
-TEST(Spread, TakesOneOfEachCellBeforeASecond) {
+TEST(BucketRoundRobin, TakesOneOfEachCellBeforeASecond) {
   const std::vector<Vector2d> pixels = {{10, 10}, {20, 20}, {30, 30}, {500, 400}, {510, 410}, {500, 10}};
-  EXPECT_EQ(vo::SpreadOver(pixels, 2, 2, 640, 480), (std::vector<std::size_t>{0, 3, 5, 1, 4, 2}));
+  EXPECT_EQ(vo::BucketRoundRobin(pixels, 2, 2, 640, 480), (std::vector<std::size_t>{0, 3, 5, 1, 4, 2}));
 }
 
 // A camera before a textured wall 2 m away that is jolted in frame 12: it turns by 0.025 rad at once, 12 px that
@@ -169,7 +169,7 @@ std::vector<vo::Estimate> Track(const std::vector<cv::Mat>& images, int pilots) 
   return estimates;
 }
 
-TEST(Pilots, FollowAJoltAndTooManyAreNone) {
+TEST(CoarseFeatures, FollowAJoltAndTooManyAreNone) {
   const vo_test::Texture texture(1, 80.0, 24);
   std::vector<cv::Mat> images;
   for (int k = 0; k < 14; ++k) images.push_back(ViewFrom(JoltedAt(k), texture));
@@ -215,7 +215,7 @@ double OldAfterTheDark(const std::vector<cv::Mat>& images, int search_relocalise
   return static_cast<double>(found) / static_cast<double>(old.size());
 }
 
-TEST(Pilots, FindTheOldLandmarksAfterADarkTime) {
+TEST(CoarseFeatures, FindTheOldLandmarksAfterADarkTime) {
   const vo_test::Texture texture(1, 80.0, 24);
   std::vector<cv::Mat> images;
   for (int k = 0; k < 20; ++k)
@@ -223,7 +223,8 @@ TEST(Pilots, FindTheOldLandmarksAfterADarkTime) {
   images.insert(images.end(), 10, cv::Mat(kCamera.height, kCamera.width, CV_8UC1, cv::Scalar(90)));
   images.push_back(ViewFrom({Vector3d(0.3, 0.12, 0), vo::Exp({0, 0.12, 0})}, texture));
   EXPECT_GT(OldAfterTheDark(images, vo::FeatureParams().search_relocalise_px), 0.5);
-  EXPECT_LT(OldAfterTheDark(images, vo::FeatureParams().search_uncertain_px), 0.1) << "the control: windows do not reach";
+  EXPECT_LT(OldAfterTheDark(images, vo::FeatureParams().search_uncertain_px), 0.1)
+      << "the control: windows do not reach";
 }
 
 }  // namespace

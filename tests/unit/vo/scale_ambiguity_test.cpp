@@ -1,5 +1,5 @@
 // Closed form against draws: a Gaussian whose lengths are multiplied by a log-normal factor.
-#include "vo/unknown_scale.h"
+#include "vo/scale_ambiguity.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 using vo::Matrix12;
 using Vector12 = Eigen::Matrix<double, 12, 1>;
 
-TEST(UnknownScale, IsTheSecondMomentOfWhatItMayBe) {
+TEST(ScaleAmbiguity, IsTheSecondMomentOfWhatItMayBe) {
   vo_test::Draws draws(1);
   Matrix12 A;
   for (double& a : A.reshaped()) a = 0.1 * draws.Normal();
@@ -27,7 +27,7 @@ TEST(UnknownScale, IsTheSecondMomentOfWhatItMayBe) {
   vo::Vector6 velocity;
   velocity << 0.3, 0.1, -0.2, 1, 2, 3;
   const double sigma = 0.3;
-  const Matrix12 wide = vo::UnknownScale(sigma, start).Covariance(pose, velocity, P);
+  const Matrix12 wide = vo::ScaleAmbiguity(sigma, start).Covariance(pose, velocity, P);
 
   const Matrix12 L = P.llt().matrixL();
   Vector12 at = Vector12::Zero();  // of lengths, seen from the start; angles are about their means
@@ -50,7 +50,7 @@ TEST(UnknownScale, IsTheSecondMomentOfWhatItMayBe) {
 }
 
 // A filter whose lengths became twice as long answers what it answered before; where the scale is known they are what they are.
-TEST(UnknownScale, AnswersKeepTheirScale) {
+TEST(ScaleAmbiguity, AnswersKeepTheirScale) {
   vo_test::Draws draws(2);
   Matrix12 A;
   for (double& a : A.reshaped()) a = 0.1 * draws.Normal();
@@ -67,27 +67,27 @@ TEST(UnknownScale, AnswersKeepTheirScale) {
   twice.segment<3>(6) *= 2;
   const Matrix12 P_longer = twice.asDiagonal() * P * twice.asDiagonal();
 
-  const vo::UnknownScale before(0.3, start);
-  vo::UnknownScale after = before;
-  after.Lengthened(4);
-  after.Lengthened(0.5);
-  EXPECT_LT((after.Answered(longer).p_WC - pose.p_WC).norm(), 1e-15);
-  EXPECT_LT((after.Answered(faster) - velocity).norm(), 1e-15);
+  const vo::ScaleAmbiguity before(0.3, start);
+  vo::ScaleAmbiguity after = before;
+  after.AbsorbChange(4);
+  after.AbsorbChange(0.5);
+  EXPECT_LT((after.ToAnswer(longer).p_WC - pose.p_WC).norm(), 1e-15);
+  EXPECT_LT((after.ToAnswer(faster) - velocity).norm(), 1e-15);
   EXPECT_LT((after.Covariance(longer, faster, P_longer) - before.Covariance(pose, velocity, P)).norm(), 1e-14);
   const vo::PointMoments point{start + way, P.topLeftCorner<3, 3>()}, far{start + 2 * way, 4 * P.topLeftCorner<3, 3>()};
   EXPECT_LT((after.Moments(far).mean - point.mean).norm(), 1e-15);
   EXPECT_LT((after.Moments(far).covariance - before.Moments(point).covariance).norm(), 1e-14);
-  EXPECT_EQ(after.AnsweredInverse(0.25), 0.5);
+  EXPECT_EQ(after.InverseToAnswer(0.25), 0.5);
   EXPECT_NEAR(after.InverseDepthSigma(0.25, 0.1), before.InverseDepthSigma(0.5, 0.2), 1e-15);
 
-  vo::UnknownScale known(0, start);
-  known.Lengthened(2);
-  EXPECT_EQ(known.Answered(longer).p_WC, longer.p_WC);
+  vo::ScaleAmbiguity known(0, start);
+  known.AbsorbChange(2);
+  EXPECT_EQ(known.ToAnswer(longer).p_WC, longer.p_WC);
   EXPECT_EQ(known.Covariance(longer, faster, P_longer), P_longer);
 }
 
-TEST(UnknownScale, KnownChangesNoBit) {
-  const vo::UnknownScale known(0, {1, 2, 3});
+TEST(ScaleAmbiguity, KnownChangesNoBit) {
+  const vo::ScaleAmbiguity known(0, {1, 2, 3});
   const Matrix12 P = Matrix12::Random();
   EXPECT_EQ(known.Covariance({}, vo::Vector6::Ones(), P), P);
   const vo::PointMoments point{{1, 2, 4}, Eigen::Matrix3d::Identity() * 0.1};
@@ -96,7 +96,7 @@ TEST(UnknownScale, KnownChangesNoBit) {
 }
 
 // Points before a camera that sets out: the mixture over particles, ranks and coverage are taken from, has the estimate's mean and covariance.
-TEST(UnknownScale, TheMixturesMomentsAreTheEstimate) {
+TEST(ScaleAmbiguity, TheMixturesMomentsAreTheEstimate) {
   const vo::Camera camera;
   vo::Params params;
   params.landmark.scale_sigma = 0.5;

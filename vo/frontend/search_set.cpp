@@ -1,0 +1,99 @@
+#include "vo/frontend/search_set.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "vo/features/corner_detector.h"
+
+namespace vo {
+namespace {
+
+// Margin about the image in image sizes: a landmark beyond it on the reference path is outside for every particle.
+constexpr double kMargin = 0.5;
+
+// Limits on the change of view since the first one: max_view_angle, max_baseline_ratio.
+bool IsSearchable(const AssociationContext& in, int landmark, const ImagePrediction& prediction) {
+  const Pose& now = in.prediction().mean;
+  const Pose first = in.filter.AnchorOf(landmark);
+  const Eigen::Vector3d estimate = in.filter.ModeOf(landmark);
+  const Eigen::Vector3d first_ray = first.q_WC * Eigen::Vector3d(estimate.x(), estimate.y(), 1.0).normalized();
+  const Eigen::Vector3d present_ray = now.q_WC * Eigen::Vector3d(prediction.z.x(), prediction.z.y(), 1.0).normalized();
+  if (first_ray.dot(present_ray) < std::cos(in.params.features.max_view_angle)) return false;
+  const double rho = estimate.z();
+  return rho <= 0 || (now.p_WC - first.p_WC).norm() * rho < in.params.features.max_baseline_ratio;
+}
+
+// Landmarks in front of the camera and near the image on the reference path: only for these is the costly prediction
+// over all particles made.
+std::vector<int> Predictable(const AssociationContext& in) {
+  const Camera& camera = in.camera;
+  const MapView map(in.map, in.prediction().mean);
+  std::vector<int> predictable;
+  for (int n = 0; n < in.filter.landmark_count(); ++n) {
+    if (in.records[n].score < in.params.score.delete_below) continue;
+    const Projection view = map(n);
+    if (!view.in_front || !camera.IsInjective(view.z)) continue;
+    const Eigen::Vector2d pixel = camera.Project({view.z.x(), view.z.y(), 1.0});
+    const bool near = pixel.x() > -kMargin * camera.width && pixel.x() < (1 + kMargin) * camera.width &&
+                      pixel.y() > -kMargin * camera.height && pixel.y() < (1 + kMargin) * camera.height;
+    if (near) predictable.push_back(n);
+  }
+  return predictable;
+}
+
+}  // namespace
+
+std::vector<Candidate> FindCandidates(const AssociationContext& in, int border_px) {
+  std::vector<Candidate> candidates;
+  const ImageMotion motion(in.shutter, in.map, in.prediction().mean, in.velocity());
+  const std::vector<int> predictable = Predictable(in);
+  const std::vector<ImagePrediction> predictions = in.filter.PredictImages(predictable);
+  for (std::size_t i = 0; i < predictable.size(); ++i) {
+    const int n = predictable[i];
+    const ImagePrediction& prediction = predictions[i];
+    if (!prediction.in_front || !in.camera.IsInjective(prediction.z) || !IsSearchable(in, n, prediction)) continue;
+    const Eigen::Vector2d pixel = motion.InImage(n, prediction.z);
+    if (!in.camera.IsUsable(pixel, border_px)) continue;
+    candidates.push_back(
+        {n, prediction, pixel, in.camera.LensJacobian(prediction.z),
+         in.params.features.noise == MatchNoise::adaptive ? in.records[n].residuals.Inflation() : 1.0});
+  }
+  return candidates;
+}
+
+std::vector<Eigen::Vector2d> LimitToBudget(std::vector<Candidate>& candidates, const AssociationContext& in) {
+  std::vector<Eigen::Vector2d> left_out;
+  const FeatureParams& params = in.params.features;
+  const auto budget = static_cast<std::size_t>(params.max_searched);
+  if (candidates.size() <= budget) return left_out;
+  std::stable_sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
+    return in.records[a.landmark].score > in.records[b.landmark].score;
+  });
+  std::vector<Eigen::Vector2d> pixels;
+  for (const Candidate& c : candidates) pixels.push_back(c.pixel);
+  const std::vector<std::size_t> order =
+      BucketRoundRobin(pixels, params.grid_columns, params.grid_rows, in.camera.width, in.camera.height);
+  std::vector<Candidate> chosen;
+  for (std::size_t i = 0; i < budget; ++i) chosen.push_back(candidates[order[i]]);
+  for (std::size_t i = budget; i < order.size(); ++i) left_out.push_back(pixels[order[i]]);
+  candidates = std::move(chosen);
+  return left_out;
+}
+
+SearchRequest RequestFor(const AssociationContext& in, const Candidate& candidate) {
+  const Eigen::Vector3d estimate = in.filter.ModeOf(candidate.landmark);
+  const Projection view = Project({in.prediction().mean, in.filter.AnchorOf(candidate.landmark)}, estimate);
+  const double sigma_px = in.params.features.sigma_px;
+  SearchRequest request{&in.records[candidate.landmark].appearance, candidate.pixel,
+                        candidate.lens * candidate.prediction.covariance * candidate.lens.transpose() +
+                            sigma_px * sigma_px * Eigen::Matrix2d::Identity(),
+                        Eigen::Matrix2d::Identity()};
+  if (view.in_front)
+    request.warp =
+        candidate.lens * view.J_landmark.leftCols<2>() * in.camera.LensJacobian(estimate.head<2>()).inverse();
+  return request;
+}
+
+}  // namespace vo
