@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim/light/cache.h"
 #include "sim/motion/make.h"
 #include "sim/random/random.h"
 #include "sim/render/rasteriser.h"
@@ -62,38 +63,58 @@ std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& p
   if (params.engine == Engine::rasteriser) {
     RasteriserOptions options;
     options.rays_per_time_sample = params.rays_per_time_sample;
-    options.light = params.light;
-    return MakeRasteriser(scene, options, &warnings);
+    auto renderer = MakeRasteriser(scene, options, &warnings);
+    if (params.light != LightMode::direct)
+      warnings.emplace_back(
+          "rasteriser: there is no baked light: render.light is taken as direct, with ambient light for what bounces");
+    return renderer;
   }
   RayTracerOptions options;
   options.rays_per_time_sample = params.rays_per_time_sample;
   options.jobs = jobs;
   options.reflections = params.reflections;
-  options.light = params.light;
-  options.bake = params.bake;
-  options.light_folders = params.light_folders;
-  return MakeRayTracer(scene, options, &warnings);
+  auto rays = tbb::task_arena(jobs).execute(
+      [&] { return LitScene(scene, params.light, params.bake, params.light_folders, warnings); });
+  return MakeRayTracer(scene, std::move(rays), options);
 }
+
+// Long enough for all frames.
+std::unique_ptr<Trajectory> MakeMotion(const Scenario& s, const MotionDescription& motion, std::uint64_t seed) {
+  return MakeTrajectory(motion, seed, Seconds(StampNs(CountFrames(s.time) - 1, s.time)),
+                        0.5 * (LongestExposure(s.sensor) + std::abs(s.sensor.readout_s)));
+}
+
+std::unique_ptr<Trajectory> MakeObjectMotion(const Scenario& s, std::size_t object) {
+  const ObjectDescription& description = s.world.objects[object];
+  try {
+    return MakeMotion(s, description.motion, ObjectSeed(s.seed, object));
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("object " + description.name + ": " + error.what());
+  }
+}
+
+// What lies between the world and the sensor.
+struct Optics {
+  Optics(const CameraParams& params, const OpticsParams& optics) : camera(params), vignetting(optics, camera) {}
+  Camera camera;
+  Vignetting vignetting;
+};
 
 }  // namespace
 
-std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& s) {
-  return MakeTrajectory(s.motion, s.seed, Seconds(StampNs(CountFrames(s.time) - 1, s.time)),
-                        0.5 * (LongestExposure(s.sensor) + std::abs(s.sensor.readout_s)));
-}
+std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& s) { return MakeMotion(s, s.motion, s.seed); }
 
 struct Simulator::Parts {
   Parts(const Scenario& s, int jobs)
       : scenario(WithImages(s)),
         frames(CountFrames(s.time)),
-        camera(s.camera),
+        optics(s.camera, s.sensor.optics),
         sensor(s.sensor, s.seed, s.camera.width, s.camera.height),
-        vignetting(s.sensor.optics, camera),
         trajectory(TrajectoryOf(s)),
         arena(Threads(jobs)) {
     Scene scene = LoadScene(s.world);
     for (std::size_t k = 0; k < scene.objects.size(); ++k) {
-      scene.objects[k].motion = MakeObjectMotion(s.world.objects[k], ObjectSeed(s.seed, k));
+      scene.objects[k].motion = MakeObjectMotion(s, k);
       object_motions.push_back(scene.objects[k].motion);
       object_names.push_back(scene.objects[k].name);
     }
@@ -115,39 +136,14 @@ struct Simulator::Parts {
     if (s.sensor.auto_exposure.on) Meter();
   }
 
-  // Long enough for all frames.
-  std::unique_ptr<Trajectory> MakeMotion(const MotionDescription& motion, std::uint64_t seed) const {
-    const SensorParams& s = scenario.sensor;
-    return MakeTrajectory(motion, seed, Seconds(sim::StampNs(frames - 1, scenario.time)),
-                          0.5 * (LongestExposure(s) + std::abs(s.readout_s)));
-  }
-  std::unique_ptr<Trajectory> MakeObjectMotion(const ObjectDescription& object, std::uint64_t seed) const {
-    try {
-      return MakeMotion(object.motion, seed);
-    } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument("object " + object.name + ": " + error.what());
-    }
-  }
-
-  // The settings of all frames, each from a small picture of the one before: they depend on nothing else.
+  // The settings of all frames, each metered on a picture of the frame before it at 1/8 of the resolution, one ray per pixel.
   void Meter() {
-    constexpr int kSmaller = 8;
-    CameraParams small = scenario.camera;
-    small.width = std::max(1, small.width / kSmaller);
-    small.height = std::max(1, small.height / kSmaller);
-    for (double* length : {&small.fx, &small.fy}) *length /= kSmaller;
-    for (double* centre : {&small.cx, &small.cy}) *centre = (*centre + 0.5) / kSmaller - 0.5;
-    const Camera camera_small(small);
-    const Vignetting vignetting_small(scenario.sensor.optics, camera_small);
+    const Optics small(Binned(scenario.camera, 8), scenario.sensor.optics);
     AutoExposure control(scenario.sensor);
     RadianceImage picture;
     for (std::int64_t k = 0; k < frames; ++k) {
       settings.push_back(control.setting());
-      Exposure exposure;
-      exposure.middle_s = Seconds(sim::StampNs(k, scenario.time));
-      exposure.exposure_s = control.setting().exposure_s;
-      exposure.row_delay_s = scenario.sensor.RowDelay(small.height);
-      Expose(camera_small, vignetting_small, exposure, k, picture);
+      Expose(small, MakeExposure(small, k), k, picture);
       control.Meter(picture);
     }
   }
@@ -157,16 +153,25 @@ struct Simulator::Parts {
     return settings.empty() ? ExposureSetting{s.exposure_s, s.gain} : settings[static_cast<std::size_t>(index)];
   }
 
+  // Of one time sample, through a pinhole.
+  Exposure MakeExposure(const Optics& to, std::int64_t index) const {
+    Exposure exposure;
+    exposure.middle_s = Seconds(sim::StampNs(index, scenario.time));
+    exposure.exposure_s = Setting(index).exposure_s;
+    exposure.row_delay_s = scenario.sensor.RowDelay(to.camera.height());
+    return exposure;
+  }
+
   // The light that an exposure collects on the sensor.
-  void Expose(const Camera& to, const Vignetting& shade, const Exposure& exposure, std::int64_t index,
-              RadianceImage& radiance) const {
+  void Expose(const Optics& to, const Exposure& exposure, std::int64_t index, RadianceImage& radiance) const {
     if (scenario.sensor.IsCovered(exposure.middle_s)) {
-      const auto pixels = static_cast<std::size_t>(to.width()) * static_cast<std::size_t>(to.height());
-      radiance = {to.width(), to.height(), std::vector<float>(3 * pixels, 0.0F)};
+      const int width = to.camera.width(), height = to.camera.height();
+      const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+      radiance = {width, height, std::vector<float>(3 * pixels, 0.0F)};
       return;
     }
-    renderer->Expose(to, *trajectory, exposure, FrameKey(index), radiance);
-    shade.Apply(radiance);
+    renderer->Expose(to.camera, *trajectory, exposure, FrameKey(index), radiance);
+    to.vignetting.Apply(radiance);
   }
 
   std::uint64_t FrameKey(std::int64_t index) const {
@@ -176,9 +181,8 @@ struct Simulator::Parts {
 
   Scenario scenario;
   std::int64_t frames;
-  Camera camera;
+  Optics optics;
   Sensor sensor;
-  Vignetting vignetting;
   std::unique_ptr<Trajectory> trajectory;
   std::vector<std::string> warnings;
   std::unique_ptr<Renderer> renderer;
@@ -195,7 +199,7 @@ Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
 std::int64_t Simulator::frame_count() const { return parts_->frames; }
-const Camera& Simulator::camera() const { return parts_->camera; }
+const Camera& Simulator::camera() const { return parts_->optics.camera; }
 const Scenario& Simulator::scenario() const { return parts_->scenario; }
 const std::vector<std::string>& Simulator::warnings() const { return parts_->warnings; }
 const Trajectory& Simulator::trajectory() const { return *parts_->trajectory; }
@@ -234,22 +238,19 @@ Frame Simulator::Render(std::int64_t index) const {
   frame.truth = TruthAt(index);
   frame.setting = parts.Setting(index);
   const SensorParams& sensor = parts.scenario.sensor;
-  Exposure exposure;
-  exposure.middle_s = Seconds(frame.stamp_ns);
-  exposure.exposure_s = frame.setting.exposure_s;
-  exposure.row_delay_s = sensor.RowDelay(parts.camera.height());
+  Exposure exposure = parts.MakeExposure(parts.optics, index);
   exposure.time_samples = sensor.time_samples;
   exposure.aperture_m = sensor.optics.aperture_m;
   exposure.focus_m = sensor.optics.focus_m;
   RadianceImage radiance;
-  parts.Expose(parts.camera, parts.vignetting, exposure, index, radiance);
+  parts.Expose(parts.optics, exposure, index, radiance);
   parts.arena.execute([&] { frame.image = parts.sensor.Capture(radiance, index, frame.setting); });
   return frame;
 }
 
 std::vector<float> Simulator::Depth(std::int64_t index) const {
   std::vector<SurfacePoint> points;
-  surfaces().Trace(parts_->camera, ViewAt(index), points);
+  surfaces().Trace(parts_->optics.camera, ViewAt(index), points);
   std::vector<float> depth(points.size());
   std::transform(points.begin(), points.end(), depth.begin(),
                  [](const SurfacePoint& point) { return static_cast<float>(point.depth); });

@@ -103,6 +103,7 @@ class Baker {
     Compute();
 
     BakedLight baked;
+    baked.has_lamps = with_lamps_;
     baked.layers = tracer_.layers();
     baked.resolutions.resize(triangles);
     std::vector<SideLight> sides(2 * std::size_t{triangles});
@@ -327,7 +328,9 @@ class Baker {
 
 }  // namespace
 
-std::string CoarserThanAsked(const RayScene& rays, LightMode mode, const BakeParams& params) {
+std::vector<std::string> BakeWarnings(const Scene& scene, const RayScene& rays, LightMode mode,
+                                      const BakeParams& params) {
+  std::vector<std::string> warnings;
   std::ostringstream text;
   text.precision(3);
   const auto tell = [&](const char* light, const char* key, double asked_m, int most_log2) {
@@ -345,7 +348,18 @@ std::string CoarserThanAsked(const RayScene& rays, LightMode mode, const BakePar
   };
   tell("samples", "spacing", params.spacing_m, kMaxLog2Coarse);
   if (mode == LightMode::baked) tell("those of lamps", "finest", params.finest_m, kMaxLog2Resolution);
-  return text.str();
+  if (text.tellp() > 0) warnings.push_back(text.str());
+  const bool has_ambient = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                       [](const Light& l) { return std::holds_alternative<AmbientLight>(l); });
+  if (!scene.objects.empty()) {
+    warnings.push_back(std::string("moving objects are not in baked light: lamps shine on them in each frame, ") +
+                       (has_ambient ? "and ambient light, which is for them alone"
+                                    : "but nothing stands for what bounces: add ambient light") +
+                       (mode == LightMode::baked ? "; they cast no shadows on what is baked" : ""));
+  } else if (has_ambient) {
+    warnings.emplace_back("ambient light is left out: it stands for what baked light computes");
+  }
+  return warnings;
 }
 
 std::vector<std::string> Problems(const BakeParams& p) {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "sim/light/baked_light.h"
 #include "sim/light/params.h"
 #include "sim/render/ray_scene.h"
 #include "sim/world/scene.h"
@@ -19,8 +19,9 @@ namespace sim {
 // `mode` is not direct. Throws std::invalid_argument for bad parameters and when more than 2^28 samples would be needed.
 BakedLight BakeLight(const Scene& scene, const RayScene& rays, LightMode mode, const BakeParams& params);
 
-// A warning: how far apart samples are, and on how many triangles, where that is more than `spacing` or, where lamps are
-// baked, than `finest`. Empty where all is as asked.
-std::string CoarserThanAsked(const RayScene& rays, LightMode mode, const BakeParams& params);
+// Limits of the light that BakeLight computes for this scene, a sentence each: samples that are farther apart than `spacing` or, where
+// lamps are baked, than `finest`; ambient light and moving objects, which are not in it.
+std::vector<std::string> BakeWarnings(const Scene& scene, const RayScene& rays, LightMode mode,
+                                      const BakeParams& params);
 
 }  // namespace sim

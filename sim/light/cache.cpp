@@ -201,7 +201,9 @@ BakedLight CachedLight(const Scene& scene, const RayScene& rays, LightMode mode,
     std::error_code error;
     if (!fs::exists(file, error)) continue;
     try {
-      return ReadLight(file, hash);
+      BakedLight light = ReadLight(file, hash);
+      light.has_lamps = mode == LightMode::baked;
+      return light;
     } catch (const std::runtime_error& problem) {
       warnings.push_back(std::string(problem.what()) + "; the light is computed anew");
     }
@@ -218,6 +220,15 @@ BakedLight CachedLight(const Scene& scene, const RayScene& rays, LightMode mode,
   }
   warnings.push_back("the baked light is not kept: " + failures);
   return light;
+}
+
+std::unique_ptr<RayScene> LitScene(const Scene& scene, LightMode mode, const BakeParams& params,
+                                   const std::vector<fs::path>& folders, std::vector<std::string>& warnings) {
+  auto rays = std::make_unique<RayScene>(scene);
+  if (mode == LightMode::direct) return rays;
+  rays->SetLight(CachedLight(scene, *rays, mode, params, folders, warnings));
+  for (std::string& warning : BakeWarnings(scene, *rays, mode, params)) warnings.push_back(std::move(warning));
+  return rays;
 }
 
 std::vector<fs::path> LightFolders(const fs::path& scenario_folder) {

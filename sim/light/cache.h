@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,12 @@ BakedLight ReadLight(const std::filesystem::path& file, const LightHash& hash);
 // is a warning, and is computed and written anew. No folder: always computed.
 BakedLight CachedLight(const Scene& scene, const RayScene& rays, LightMode mode, const BakeParams& params,
                        const std::vector<std::filesystem::path>& folders, std::vector<std::string>& warnings);
+
+// The scene as rays meet it, with its baked light from CachedLight; without, where `mode` is direct. BakeWarnings are appended too. Works in
+// parallel in the caller's task arena.
+std::unique_ptr<RayScene> LitScene(const Scene& scene, LightMode mode, const BakeParams& params,
+                                   const std::vector<std::filesystem::path>& folders,
+                                   std::vector<std::string>& warnings);
 
 // Where a scenario's light is kept: in `.vobench-cache` beside it, or in vobench/ of the user's cache folder
 // ($XDG_CACHE_HOME, or ~/.cache).

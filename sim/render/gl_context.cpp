@@ -51,7 +51,7 @@ class EglContext final : public GlContext {
       throw std::runtime_error("no device or surfaceless display serves (" + Join(reasons) + ")");
     }
     try {
-      LoadFunctions("EGL");
+      LoadFunctions();
     } catch (...) {
       Destroy();
       throw;
@@ -156,7 +156,7 @@ class MesaContext final : public GlContext {
         library_.Get<decltype(OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs")(attributes.data(), nullptr);
     if (context_ == nullptr) throw std::runtime_error("makes no OpenGL 4.5 context");
     try {
-      LoadFunctions("OSMesa");
+      LoadFunctions();
     } catch (...) {
       Destroy();
       throw;
@@ -188,15 +188,10 @@ class MesaContext final : public GlContext {
 GlContext::Current::Current(GlContext& context) : context_(context), lock_(context.mutex_) { context_.MakeCurrent(); }
 GlContext::Current::~Current() { context_.Release(); }
 
-void GlContext::LoadFunctions(const std::string& platform) {
+void GlContext::LoadFunctions() {
   const Current current(*this);
   const std::vector<std::string> missing = gl_.Load([this](const char* name) { return Find(name); });
   if (!missing.empty()) throw std::runtime_error("its OpenGL lacks " + Join(missing));
-  const auto text = [&](GLenum what) {
-    const GLubyte* bytes = gl_.GetString(what);
-    return bytes != nullptr ? std::string(reinterpret_cast<const char*>(bytes)) : std::string("?");
-  };
-  name_ = platform + ", " + text(GL_RENDERER) + ", OpenGL " + text(GL_VERSION);
 }
 
 std::unique_ptr<GlContext> MakeGlContext(GlPlatform platform) {

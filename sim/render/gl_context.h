@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <mutex>
-#include <string>
 
 #include "sim/render/gl_api.h"
 #include "sim/render/gl_platform.h"
@@ -30,19 +29,17 @@ class GlContext {
     std::lock_guard<std::mutex> lock_;
   };
 
-  const GlApi& gl() const { return gl_; }            // to be called only while Current
-  const std::string& name() const { return name_; }  // such as "EGL, llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5"
+  const GlApi& gl() const { return gl_; }  // to be called only while Current
 
  protected:
   virtual void MakeCurrent() = 0;  // throws std::runtime_error
   virtual void Release() noexcept = 0;
   virtual void* Find(const char* function) const = 0;
-  // For the end of the constructors: fills gl_ and name_. Throws std::runtime_error naming what is missing.
-  void LoadFunctions(const std::string& platform);
+  // For the end of the constructors: fills gl_. Throws std::runtime_error naming what is missing.
+  void LoadFunctions();
 
  private:
   GlApi gl_;
-  std::string name_;
   std::mutex mutex_;
 };
 

@@ -26,7 +26,7 @@ struct alignas(64) LaneInts {
 struct alignas(32) TriangleShading {
   float uv[2], uv_du[2], uv_dv[2];
   // Low 24 bits: the material; then 4 bits each: log2 of the baked light's resolution on the front and on the back
-  // (sim/light/lattice.h)
+  // (sim/render/baked_light.h)
   std::uint32_t material;
   std::int32_t first_light;  // in a layer of PacketScene::light: the front's samples, then the back's
 };

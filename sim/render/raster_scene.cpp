@@ -115,18 +115,6 @@ void RasterScene::Move(double t_s) {
   moved_to_s_ = t_s;
 }
 
-int RasterScene::ObjectOf(std::uint32_t triangle) const {
-  const auto next = std::upper_bound(objects_.begin(), objects_.end(), triangle,
-                                     [](std::uint32_t t, const Part& part) { return t < part.first_triangle; });
-  return static_cast<int>(next - objects_.begin()) - 1;
-}
-
-std::vector<Pose> RasterScene::ObjectPoses(double t_s) const {
-  std::vector<Pose> poses;
-  for (const Part& part : objects_) poses.push_back(part.motion->At(t_s).pose);
-  return poses;
-}
-
 void RasterScene::AppendMeshes(const Scene& scene) {
   texels_per_triangle_ = HasColors(scene) ? 10 : 7;
   std::vector<glm::vec4> table;

@@ -33,9 +33,6 @@ class RasterScene {
   bool moves() const { return !objects_.empty(); }
   // Puts the objects where they are at a time; before that they are nowhere.
   void Move(double t_s);
-  // Which of Scene::objects a triangle is of; -1: it stands still.
-  int ObjectOf(std::uint32_t triangle) const;
-  std::vector<Pose> ObjectPoses(double t_s) const;
 
   GLuint triangles() const { return triangles_.texture.id(); }
   GLuint materials() const { return materials_.texture.id(); }
@@ -46,8 +43,6 @@ class RasterScene {
   // A box around it, in W, with the objects where they are; a point where there is nothing.
   const glm::vec3& low() const { return low_; }
   const glm::vec3& high() const { return high_; }
-  // Corner 0 ... 2 of a triangle, in W, of an object's in O.
-  const glm::vec3& Corner(std::uint32_t triangle, int corner) const { return positions_[corners_[triangle][corner]]; }
 
  private:
   // What of the buffers is an object's, and its part of the table with all vectors in O.

@@ -120,14 +120,6 @@ int TriangleOn(vec3 ray, vec3 d) {
 }
 )";
 
-inline const std::string kSeenFragment = kGlslVersion + kLookUp + R"(
-layout(location = 0) out int seen;
-void main() {
-  vec3 ray = RayOfPixel(ivec2(gl_FragCoord.xy)).ray;
-  seen = TriangleOn(ray, rotation * ray) + 1;
-}
-)";
-
 // Light: sim/render/ray_tracer.h has the model, raster_scene.h and raster_light.h the tables.
 inline const std::string kShadeFragment = kGlslVersion + kLookUp + R"(
 uniform float share;  // side of the ray's part of the pixel

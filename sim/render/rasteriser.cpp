@@ -12,7 +12,6 @@
 
 #include "sim/render/gl_context.h"
 #include "sim/render/gl_objects.h"
-#include "sim/render/pixel_ray.h"
 #include "sim/render/raster_draw.h"
 #include "sim/render/raster_light.h"
 #include "sim/render/raster_scene.h"
@@ -43,17 +42,17 @@ void Check(const RasteriserOptions& o) {
 }
 
 // What of the scene is not rendered, a sentence for each kind.
-std::vector<std::string> Lacks(const Scene& scene, LightMode light) {
-  std::vector<std::string> lacks;
-  const auto names = [&](const auto& lacks_it) {
+std::vector<std::string> UnsupportedFeatures(const Scene& scene) {
+  std::vector<std::string> features;
+  const auto names = [&](const auto& needs_it) {
     std::string text;
     for (const Material& m : scene.materials) {
-      if (lacks_it(m)) text += (text.empty() ? "" : ", ") + m.name;
+      if (needs_it(m)) text += (text.empty() ? "" : ", ") + m.name;
     }
     return text;
   };
   const auto materials = [&](const std::string& found, const std::string& sentence) {
-    if (!found.empty()) lacks.push_back(sentence + ": " + found);
+    if (!found.empty()) features.push_back(sentence + ": " + found);
   };
   materials(names([](const Material& m) { return m.normal_map >= 0; }), "normal maps are not rendered; materials");
   materials(names([](const Material& m) { return m.emission_texture >= 0; }),
@@ -65,13 +64,10 @@ std::vector<std::string> Lacks(const Scene& scene, LightMode light) {
     has_visible = has_visible || (rect != nullptr && rect->visible);
     has_flicker = has_flicker || FlickerOf(lamp).depth > 0;
   }
-  if (has_flicker) lacks.emplace_back("lamps do not flicker");
-  if (has_visible) lacks.emplace_back("visible lamps are not seen");
-  if (scene.sky) lacks.emplace_back("the sky is not seen; world.background is");
-  if (light != LightMode::direct) {
-    lacks.emplace_back("there is no baked light: render.light is taken as direct, with ambient light for what bounces");
-  }
-  return lacks;
+  if (has_flicker) features.emplace_back("lamps do not flicker");
+  if (has_visible) features.emplace_back("visible lamps are not seen");
+  if (scene.sky) features.emplace_back("the sky is not seen; world.background is");
+  return features;
 }
 
 // Where in the pixel sample i of n goes, from its middle [px]: the ray tracer's pattern, moved so that its mean is the
@@ -102,19 +98,6 @@ std::vector<glm::dvec2> LensPoints(int count) {
   return points;
 }
 
-// How far along the ray, in lengths of it, the triangle is: on its plane, or where it is nearest to that when the view
-// and the ray differ by a part of a pixel (Moeller and Trumbore 1997, as in the shader).
-double DistanceTo(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& origin,
-                  const glm::dvec3& direction) {
-  const glm::dvec3 du = b - a, dv = c - a, from = origin - a;
-  const glm::dvec3 p = glm::cross(direction, dv), q = glm::cross(from, du);
-  const double determinant = glm::dot(du, p);
-  if (determinant == 0) return glm::dot(a - origin, direction) / glm::dot(direction, direction);
-  double u = std::max(0.0, glm::dot(from, p) / determinant), v = std::max(0.0, glm::dot(direction, q) / determinant);
-  if (u + v > 1) std::tie(u, v) = std::tuple(u / (u + v), v / (u + v));
-  return glm::dot(u * du + v * dv - from, direction) / glm::dot(direction, direction);
-}
-
 // Everything that lives in the context, and all that is done with it: only while it is current.
 class Drawing {
  public:
@@ -125,7 +108,6 @@ class Drawing {
         background_(scene.background),
         triangles_(gl, "triangles", kTriangleVertex, kNumberFragment),
         depth_(gl, "depth", kTriangleVertex, kNothingFragment),
-        seen_(gl, "seen", kScreenVertex, kSeenFragment),
         shade_(gl, "shade", kScreenVertex, ShadeFragment()),
         scene_(gl, scene),
         shadows_(gl, options.shadow_map_side),
@@ -204,34 +186,6 @@ class Drawing {
     Read(camera, 1.0f / static_cast<float>(count), out);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, 0);
   }
-
-  // 1 + the number of the triangle that each pixel's centre sees, 0: none.
-  std::vector<GLint> Seen(const Camera& camera, const View& from) {
-    const Pose& pose = from.pose;
-    scene_.Move(from.t_s);
-    Prepare(camera, camera.height(), 0.0);
-    SetUp();
-    const GlObject target = MakeFramebuffer(gl_), numbers = MakeTexture(gl_, GL_R32I, camera.width(), camera.height());
-    Attach(target, numbers);
-    gl_.Scissor(0, 0, camera.width(), camera.height());
-    const GLint none[4] = {};
-    gl_.ClearNamedFramebufferiv(target.id(), GL_COLOR, 0, none);
-    for (const RasterView& view : views_.strips[0].views) {
-      const glm::mat3 rotation(glm::mat3_cast(pose.q_WC));
-      DrawView(view, rotation, glm::vec3(pose.p_WC));
-      seen_.Use();
-      SetLookUp(seen_, view, rotation, glm::vec3(pose.p_WC), glm::vec2(0.0f), glm::vec2(0.0f));
-      DrawPixels(target, camera, view);
-    }
-    std::vector<GLint> out(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height()));
-    gl_.PixelStorei(GL_PACK_ALIGNMENT, 4);
-    gl_.ReadPixels(0, 0, camera.width(), camera.height(), GL_RED_INTEGER, GL_INT, out.data());
-    CheckGl(gl_, "reading depth");
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, 0);
-    return out;
-  }
-
-  const RasterScene& scene() const { return scene_; }
 
  private:
   static std::string ShadeFragment() {
@@ -345,7 +299,7 @@ class Drawing {
   RasteriserOptions options_;
   std::vector<Light> lights_;
   glm::vec3 ambient_{0.0f}, background_;
-  Program triangles_, depth_, seen_, shade_;
+  Program triangles_, depth_, shade_;
   RasterScene scene_;
   ShadowMaps shadows_;
   GlObject screen_array_;
@@ -381,30 +335,6 @@ class Rasteriser final : public Renderer {
     drawing_->Expose(camera, motion, exposure, out);
   }
 
-  void Depth(const Camera& camera, const View& view, std::vector<float>& out) const override {
-    const std::vector<GLint> seen = [&] {
-      const GlContext::Current current(*context_);
-      return drawing_->Seen(camera, view);
-    }();
-    const RasterScene& scene = drawing_->scene();
-    const std::vector<Pose> objects = scene.ObjectPoses(view.t_s);
-    out.assign(seen.size(), 0.0f);
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      if (seen[i] == 0) continue;
-      const auto triangle = static_cast<std::uint32_t>(seen[i] - 1);
-      const int width = camera.width(), x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
-      const glm::dvec3 ray = ExactRay(camera, x, y);
-      glm::dvec3 origin = view.pose.p_WC, direction = view.pose.q_WC * ray;
-      if (const int object = scene.ObjectOf(triangle); object >= 0) {
-        const Pose& T_WO = objects[static_cast<std::size_t>(object)];
-        const glm::dquat q_OW = glm::conjugate(T_WO.q_WC);
-        origin = q_OW * (origin - T_WO.p_WC), direction = q_OW * direction;
-      }
-      out[i] = static_cast<float>(ray.z * DistanceTo(scene.Corner(triangle, 0), scene.Corner(triangle, 1),
-                                                     scene.Corner(triangle, 2), origin, direction));
-    }
-  }
-
  private:
   std::unique_ptr<GlContext> context_;
   std::unique_ptr<Drawing> drawing_;
@@ -417,11 +347,9 @@ std::unique_ptr<Renderer> MakeRasteriser(const Scene& scene, const RasteriserOpt
   Check(options);
   auto rasteriser = std::make_unique<Rasteriser>(scene, options);
   if (warnings != nullptr) {
-    for (const std::string& lack : Lacks(scene, options.light)) warnings->push_back("rasteriser: " + lack);
+    for (const std::string& feature : UnsupportedFeatures(scene)) warnings->push_back("rasteriser: " + feature);
   }
   return rasteriser;
 }
-
-std::string DescribeGl(GlPlatform platform) { return MakeGlContext(platform)->name(); }
 
 }  // namespace sim

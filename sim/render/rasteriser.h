@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "sim/light/params.h"
 #include "sim/render/gl_platform.h"
 #include "sim/render/renderer.h"
 #include "sim/world/scene.h"
@@ -18,9 +17,8 @@ struct RasteriserOptions {
   int rays_per_time_sample = 1;
   bool jitter = true;  // false: every ray goes through the pixel's centre (for comparisons with closed forms)
   bool shadows = true;
-  int shadow_map_side = 1024;           // [texel] 16 ... 8192: a shadow's edge is off by a few times what one covers
-  LightMode light = LightMode::direct;  // of which only `direct` is rendered: others are a warning
-  int strip_rows = 8;                   // of a rolling shutter: rows that share the moment of their middle
+  int shadow_map_side = 1024;  // [texel] 16 ... 8192: a shadow's edge is off by a few times what one covers
+  int strip_rows = 8;          // of a rolling shutter: rows that share the moment of their middle
 };
 
 // Copies what it needs of the scene. As the ray tracer (sim/render/ray_tracer.h) with these differences:
@@ -32,8 +30,7 @@ struct RasteriserOptions {
 //   the distance from a lamp, 2 / shadow_map_side of the scene's size for a sun. What is nearer than 1 cm to a lamp
 //   casts none.
 // - What is nearer than 1 cm (Z; with a lens wider than 50 degrees aside: along the largest component) is not seen.
-// - Depth is computed in double precision on the triangle that is seen.
-// A lens that would need too large a picture is refused by Expose and Depth with std::invalid_argument.
+// A lens that would need too large a picture is refused by Expose with std::invalid_argument.
 // The bytes are the same on one machine with one OpenGL; another one's differ, in edges and by rounding. One call works
 // at a time, others wait. What of the scene is not rendered is named in sentences appended to `warnings`, where there
 // are any.
@@ -41,9 +38,5 @@ struct RasteriserOptions {
 // std::runtime_error when there is no OpenGL 4.5 without a display, saying why.
 std::unique_ptr<Renderer> MakeRasteriser(const Scene& scene, const RasteriserOptions& options = {},
                                          std::vector<std::string>* warnings = nullptr);
-
-// The OpenGL that `platform` stands for here, such as "EGL, llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 (Core Profile)
-// Mesa 22.3.6". Throws std::runtime_error as MakeRasteriser does.
-std::string DescribeGl(GlPlatform platform);
 
 }  // namespace sim

@@ -142,6 +142,7 @@ void RayScene::SetLight(const BakedLight& light) {
       throw std::invalid_argument("baked light: more than 2^31 samples");
   }
   if (light.samples.size() != count * light.layers.size()) throw std::invalid_argument("baked light: of another scene");
+  lamps_are_baked_ = light.has_lamps;
   light_ = light.samples;
   light_.resize(light_.size() + 16);  // lanes of weight 0 may look past the end
   packet_scene_.light = light_.data();

@@ -8,8 +8,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "sim/light/baked_light.h"
 #include "sim/motion/trajectory.h"
+#include "sim/render/baked_light.h"
 #include "sim/render/packet.h"
 #include "sim/world/scene.h"
 
@@ -55,6 +55,7 @@ class RayScene {
 
   // From now on hits have this light instead of ambient light. Throws std::invalid_argument when it is not this scene's.
   void SetLight(const BakedLight& light);
+  bool lamps_are_baked() const { return lamps_are_baked_; }
   // From now on metal and gloss mirror (Material::Mirrors).
   void AddReflections(const Scene& scene);
 
@@ -84,9 +85,6 @@ class RayScene {
       std::uint32_t triangle) const;  // square root of the ratio of the areas in texture coordinates and in W
   std::uint32_t MaterialIndex(std::uint32_t triangle) const {
     return shading_[triangle].material & ((1u << kMaterialBits) - 1);
-  }
-  bool IsLamp(std::uint32_t triangle) const {
-    return triangle >= filtered_first_ && triangle < still_triangles_ && filters_[triangle - filtered_first_].lamp;
   }
 
   // What Embree's filter needs of a triangle of the second geometry.
@@ -120,7 +118,7 @@ class RayScene {
   std::vector<TriangleNormals> normals_;    // or none
   std::vector<TriangleColor> colors_;       // or none
   std::vector<TriangleTangents> tangents_;  // or none
-  bool any_normals_ = false, any_colors_ = false, any_tangents_ = false;
+  bool any_normals_ = false, any_colors_ = false, any_tangents_ = false, lamps_are_baked_ = false;
   std::vector<MaterialShading> materials_;
   std::vector<GlossShading> gloss_;
   std::vector<LampShading> lamps_;

@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "sim/light/cache.h"
 #include "sim/random/random.h"
 #include "sim/render/packet.h"
 #include "sim/render/placed_objects.h"
@@ -146,31 +145,15 @@ PixelBlock MakeBlock(const Camera& camera, int x0, int y0, const BlockTime& time
 
 class RayTracer final : public Renderer {
  public:
-  RayTracer(const Scene& scene, const RayTracerOptions& options, std::vector<std::string>& warnings)
+  RayTracer(const Scene& scene, std::unique_ptr<RayScene> rays, const RayTracerOptions& options)
       : options_(options),
-        lights_(options.light == LightMode::baked && scene.objects.empty() ? std::vector<Light>() : scene.lights),
-        scene_(scene),
-        surfaces_(scene_, options.jobs),
+        lights_(rays->lamps_are_baked() && scene.objects.empty() ? std::vector<Light>() : scene.lights),
+        layers_(Flickers(scene.lights)),
+        scene_(std::move(rays)),
+        surfaces_(*scene_, options.jobs),
         kernel_(PacketKernel()),
         arena_(options.jobs > 0 ? options.jobs : tbb::task_arena::automatic) {
-    layers_ = Flickers(scene.lights);
-    if (options.reflections) scene_.AddReflections(scene);
-    if (options.light == LightMode::direct) return;
-    const BakedLight light = arena_.execute(
-        [&] { return CachedLight(scene, scene_, options.light, options.bake, options.light_folders, warnings); });
-    scene_.SetLight(light);
-    if (std::string coarser = CoarserThanAsked(scene_, options.light, options.bake); !coarser.empty())
-      warnings.push_back(std::move(coarser));
-    const bool has_ambient = std::any_of(scene.lights.begin(), scene.lights.end(),
-                                         [](const Light& l) { return std::holds_alternative<AmbientLight>(l); });
-    if (scene.objects.empty()) {
-      if (has_ambient) warnings.push_back("ambient light is left out: it stands for what baked light computes");
-      return;
-    }
-    warnings.push_back(std::string("moving objects are not in baked light: lamps shine on them in each frame, ") +
-                       (has_ambient ? "and ambient light, which is for them alone"
-                                    : "but nothing stands for what bounces: add ambient light") +
-                       (options.light == LightMode::baked ? "; they cast no shadows on what is baked" : ""));
+    if (options.reflections) scene_->AddReflections(scene);
   }
 
   void Expose(const Camera& camera, const Trajectory& motion, const Exposure& exposure, std::uint64_t key,
@@ -178,7 +161,7 @@ class RayTracer final : public Renderer {
     const std::vector<std::string> problems = Problems(exposure);
     if (!problems.empty()) throw std::invalid_argument("Expose: " + Join(problems));
     ExposureSamples samples = MakeSamples(camera, motion, exposure);
-    if (!scene_.objects().empty()) samples.Place(scene_, options_.light == LightMode::baked);
+    if (!scene_->objects().empty()) samples.Place(*scene_, scene_->lamps_are_baked());
     const int count = samples.per_row;
     const float share = options_.jitter ? 1.0f / std::sqrt(static_cast<float>(count)) : 1.0f;
     const float scale = 1.0f / static_cast<float>(count);
@@ -190,7 +173,7 @@ class RayTracer final : public Renderer {
       Lanes sum[3];
       const PixelBlock block = MakeBlock(camera, x0, y0, samples.time, options_.jitter ? &key : nullptr,
                                          exposure.aperture_m > 0, kernel_.scramble_block);
-      kernel_.expose_block(scene_.packet_scene(), samples.OfRow(y0), count, options_.jitter, share, block, sum);
+      kernel_.expose_block(scene_->packet_scene(), samples.OfRow(y0), count, options_.jitter, share, block, sum);
       for (int i = 0; i < kLanes; ++i) {
         if (block.valid.v[i] == 0) continue;
         const std::size_t x = static_cast<std::size_t>(x0 + i % kBlockSide),
@@ -199,14 +182,6 @@ class RayTracer final : public Renderer {
         for (int c = 0; c < 3; ++c) pixel[c] = sum[c].v[i] * scale;
       }
     });
-  }
-
-  void Depth(const Camera& camera, const View& view, std::vector<float>& out) const override {
-    std::vector<SurfacePoint> points;
-    surfaces_.Trace(camera, view, points);
-    out.resize(points.size());
-    std::transform(points.begin(), points.end(), out.begin(),
-                   [](const SurfacePoint& point) { return static_cast<float>(point.depth); });
   }
 
   const SurfaceTracer* surfaces() const override { return &surfaces_; }
@@ -332,7 +307,7 @@ class RayTracer final : public Renderer {
   RayTracerOptions options_;
   std::vector<Light> lights_;    // that shadow rays are sent to
   std::vector<Flicker> layers_;  // of lamps and of baked light; the first is steady
-  RayScene scene_;
+  std::unique_ptr<RayScene> scene_;
   SurfaceTracer surfaces_;
   KernelChoice kernel_;
   mutable tbb::task_arena arena_;
@@ -340,16 +315,19 @@ class RayTracer final : public Renderer {
 
 }  // namespace
 
-std::unique_ptr<Renderer> MakeRayTracer(const Scene& scene, const RayTracerOptions& options,
-                                        std::vector<std::string>* warnings) {
+std::unique_ptr<Renderer> MakeRayTracer(const Scene& scene, std::unique_ptr<RayScene> rays,
+                                        const RayTracerOptions& options) {
   if (options.rays_per_time_sample < 1 || options.rays_per_time_sample > 4096) {
     throw std::invalid_argument("ray tracer: rays_per_time_sample = " + std::to_string(options.rays_per_time_sample) +
                                 " must lie in 1 ... 4096");
   }
   if (options.jobs < 0)
     throw std::invalid_argument("ray tracer: jobs = " + std::to_string(options.jobs) + " must not be negative");
-  std::vector<std::string> ignored;
-  return std::make_unique<RayTracer>(scene, options, warnings != nullptr ? *warnings : ignored);
+  return std::make_unique<RayTracer>(scene, std::move(rays), options);
+}
+
+std::unique_ptr<Renderer> MakeRayTracer(const Scene& scene, const RayTracerOptions& options) {
+  return MakeRayTracer(scene, std::make_unique<RayScene>(scene), options);
 }
 
 }  // namespace sim

@@ -28,10 +28,6 @@ class Renderer {
   virtual void Expose(const Camera& camera, const Trajectory& motion, const Exposure& exposure, std::uint64_t key,
                       RadianceImage& out) const = 0;
 
-  // Z in the camera frame [m] of what is seen through each pixel's centre, rows from the top; 0 = nothing. `out` is
-  // resized.
-  virtual void Depth(const Camera& camera, const View& view, std::vector<float>& out) const = 0;
-
   // Exact queries of the geometry, as long as the renderer lives; null: this renderer has none, and a ray tracer of the
   // same scene is to be asked.
   virtual const SurfaceTracer* surfaces() const { return nullptr; }

@@ -117,6 +117,15 @@ std::vector<std::string> Problems(const CameraParams& c) {
   return problems;
 }
 
+CameraParams Binned(const CameraParams& params, int factor) {
+  CameraParams binned = params;
+  binned.width = std::max(1, params.width / factor);
+  binned.height = std::max(1, params.height / factor);
+  for (double* length : {&binned.fx, &binned.fy}) *length /= factor;
+  for (double* centre : {&binned.cx, &binned.cy}) *centre = (*centre + 0.5) / factor - 0.5;
+  return binned;
+}
+
 Camera::Camera(const CameraParams& params)
     : params_(params),
       cx_(static_cast<float>(params.cx)),

@@ -27,6 +27,9 @@ struct CameraParams {
 // whole image: a distortion that folds over inside it is a problem.
 std::vector<std::string> Problems(const CameraParams& params);
 
+// The camera whose pixels are `factor` x `factor` of this one's.
+CameraParams Binned(const CameraParams& params, int factor);
+
 class Camera {
  public:
   // Throws std::invalid_argument listing all Problems.

@@ -20,7 +20,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
-#include "sim/light/bake.h"
+#include "sim/light/cache.h"
 #include "sim/render/embree.h"
 #include "sim/render/packet.h"
 #include "sim/render/ray_scene.h"
@@ -321,19 +321,19 @@ void FirstFrame(benchmark::State& state, LightMode mode) {
   WorldDescription world;
   world.meshes.push_back({folder / "hall.gltf"});
   world.lights = TheWorld().scene.lights;
-  RayTracerOptions options;
-  options.light = mode;
-  options.bake = {1.0, 1.0, 2, 1};
-  options.light_folders = {folder};
+  std::vector<std::string> warnings;
+  const auto make = [&](const Scene& scene) {
+    return MakeRayTracer(scene, LitScene(scene, mode, {1.0, 1.0, 2, 1}, {folder}, warnings), {});
+  };
   const Camera camera(HallCamera());
-  if (mode != LightMode::direct) MakeRayTracer(LoadScene(world), options);
+  if (mode != LightMode::direct) make(LoadScene(world));
   double load_s = 0, build_s = 0;
   const auto now = [] { return std::chrono::steady_clock::now(); };
   for (auto _ : state) {
     const auto begin = now();
     const Scene scene = LoadScene(world);
     const auto loaded = now();
-    const auto renderer = MakeRayTracer(scene, options);
+    const auto renderer = make(scene);
     const auto built = now();
     RadianceImage image;
     renderer->Expose(camera, Still(), Exposure{}, 1, image);
@@ -369,12 +369,12 @@ class Walk : public Trajectory {
 void WholeFrame(benchmark::State& state, const FrameSettings& settings) {
   RayTracerOptions options;
   options.jobs = static_cast<int>(state.range(0));
-  options.light = settings.light;
-  options.bake = {1.0, 1.0, 2, 1};  // coarse and quick: its cost in a frame is the same
   const bool other = settings.detail != 1;
   const Scene detailed = other ? Hall(settings.detail) : Scene();
   const Scene& scene = other ? detailed : TheWorld().scene;
-  const auto renderer = MakeRayTracer(scene, options);
+  std::vector<std::string> warnings;
+  const BakeParams quick{1.0, 1.0, 2, 1};  // its cost in a frame is the same
+  const auto renderer = MakeRayTracer(scene, LitScene(scene, settings.light, quick, {}, warnings), options);
   CameraParams params = HallCamera();
   params.fx = params.fy *= static_cast<double>(settings.width) / kWidth;
   params.width = settings.width, params.height = settings.height;

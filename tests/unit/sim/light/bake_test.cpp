@@ -45,43 +45,44 @@ TEST(Bake, SpacingSetsTheResolution) {
 }
 
 // Two triangles whose longest sides are 100 m: 0.39 m where a side is divided into 256, 0.049 m into 2048; two of 5.66 m.
-TEST(Bake, ItIsToldWhereSamplesAreFartherApartThanAsked) {
+TEST(Bake, WarnsWhereSamplesAreFartherApartThanAsked) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.5f));
   AddQuad(scene, {0, 0, 0}, {60, 0, 0}, {0, 80, 0}, 0);
   AddQuad(scene, {0, 0, 9}, {4, 0, 0}, {0, 4, 0}, 0);
   BakeParams params = Quick();
-  const auto told = [&](LightMode mode) { return CoarserThanAsked(RayScene(scene), mode, params); };
+  const auto warnings = [&](LightMode mode) { return BakeWarnings(scene, RayScene(scene), mode, params); };
   params.spacing_m = 0.391, params.finest_m = 0.05;
-  EXPECT_EQ(told(LightMode::baked), "");
+  EXPECT_THAT(warnings(LightMode::baked), testing::IsEmpty());
   params.spacing_m = 0.2;
-  EXPECT_EQ(told(LightMode::baked_indirect),
-            "baked light: samples are up to 0.391 m apart on 2 triangles, not render.bake.spacing = 0.2 m: a side is "
-            "divided into 256 at most");
-  EXPECT_EQ(told(LightMode::baked), told(LightMode::baked_indirect));
+  const std::string coarse =
+      "baked light: samples are up to 0.391 m apart on 2 triangles, not render.bake.spacing = 0.2 m: a side is divided "
+      "into 256 at most";
+  EXPECT_THAT(warnings(LightMode::baked_indirect), testing::ElementsAre(coarse));
+  EXPECT_THAT(warnings(LightMode::baked), testing::ElementsAre(coarse));
   params.finest_m = 0.04;
-  EXPECT_EQ(told(LightMode::baked), told(LightMode::baked_indirect) +
-                                        "; those of lamps are up to 0.0488 m apart on 2 triangles, not "
-                                        "render.bake.finest = 0.04 m: a side is divided into 2048 at most");
+  EXPECT_THAT(warnings(LightMode::baked),
+              testing::ElementsAre(coarse +
+                                   "; those of lamps are up to 0.0488 m apart on 2 triangles, not render.bake.finest = "
+                                   "0.04 m: a side is divided into 2048 at most"));
   params.spacing_m = 0.01, params.finest_m = 0.01;
-  EXPECT_THAT(told(LightMode::baked_indirect), testing::HasSubstr("0.391 m apart on 4 triangles, not"));
+  EXPECT_THAT(warnings(LightMode::baked_indirect),
+              testing::ElementsAre(testing::HasSubstr("0.391 m apart on 4 triangles, not")));
 }
 
-// The light itself is so coarse, and the renderer says so once.
+// The light itself is so coarse, and the warning is given once.
 TEST(Bake, ALongTrianglesLightIsAsCoarseAsTheWarningSays) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.5f));
   AddQuad(scene, {0, 0, 0}, {60, 0, 0}, {0, 80, 0}, 0);
   scene.sky = Sky{{1, 2, 3}, {2, 1, 1}, {1, 1, 1}, 0, 0, {}, 0.0};
-  RayTracerOptions options;
-  options.light = LightMode::baked_indirect;
-  options.bake = Quick();
-  options.bake.spacing_m = 0.2;
-  options.bake.paths = 1;
+  BakeParams params = Quick();
+  params.spacing_m = 0.2;
+  params.paths = 1;
   std::vector<std::string> warnings;
-  MakeRayTracer(scene, options, &warnings);
+  LitScene(scene, LightMode::baked_indirect, params, {}, warnings);
   EXPECT_THAT(warnings, testing::ElementsAre(testing::HasSubstr("up to 0.391 m apart on 2 triangles")));
-  const BakedLight light = BakeLight(scene, RayScene(scene), LightMode::baked_indirect, options.bake);
+  const BakedLight light = BakeLight(scene, RayScene(scene), LightMode::baked_indirect, params);
   EXPECT_EQ(light.resolutions[0].log2_front, 8);
 }
 

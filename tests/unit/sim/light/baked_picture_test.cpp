@@ -10,12 +10,8 @@
 namespace sim::test {
 namespace {
 
-RayTracerOptions Baked(LightMode mode, double spacing_m = 0.2, double finest_m = 0.02) {
-  RayTracerOptions options = Centred();
-  options.light = mode;
-  options.bake.spacing_m = spacing_m;
-  options.bake.finest_m = finest_m;
-  return options;
+BakeParams Every(double spacing_m = 0.2, double finest_m = 0.02, int paths = 256) {
+  return {spacing_m, finest_m, paths};
 }
 
 // Light that is linear in place is looked up exactly, on both sides, at any resolution, by every kernel.
@@ -81,7 +77,8 @@ TEST(BakedPicture, WhiteFurnace) {
   Scene scene;
   AddMaterial(scene, {0.5f, 0.8f, 0.25f}, {1.0f, 0.2f, 3.0f});
   AddBox(scene, {-1, -2, -3}, {2, 2, 3}, 0);
-  const RadianceImage image = Render(scene, Camera(SmallCamera()), TiltedPose(), Baked(LightMode::baked, 1.0, 0.5));
+  const RadianceImage image =
+      Render(*MakeBaked(scene, LightMode::baked, Every(1.0, 0.5)), Camera(SmallCamera()), TiltedPose());
   glm::dvec3 mean(0.0);
   const int n = image.width * image.height;
   for (int i = 0; i < n; ++i) {
@@ -104,8 +101,8 @@ TEST(BakedPicture, ShadowsAreWhereTheyShouldBe) {
   scene.lights = {PointLight{{0.1, 0.2, 0.5}, {9, 8, 7}, {}}};
   const Camera camera(SmallCamera(160, 120));
   const RadianceImage direct = Render(scene, camera, {}, Centred());
-  const RadianceImage indirect = Render(scene, camera, {}, Baked(LightMode::baked_indirect));
-  const RadianceImage baked = Render(scene, camera, {}, Baked(LightMode::baked));
+  const RadianceImage indirect = Render(*MakeBaked(scene, LightMode::baked_indirect, Every()), camera, {});
+  const RadianceImage baked = Render(*MakeBaked(scene, LightMode::baked, Every()), camera, {});
   int differ = 0, dark = 0;
   for (std::size_t i = 0; i < direct.rgb.size(); i += 3) {
     EXPECT_EQ(direct.rgb[i], indirect.rgb[i]);
@@ -130,10 +127,9 @@ TEST(BakedPicture, NothingLeaksThroughAWall) {
   const glm::dquat back(0, 0, 1, 0);  // half a turn about y: looks along -z
   const Camera camera(SmallCamera());
   for (const LightMode mode : {LightMode::baked, LightMode::baked_indirect}) {
-    RayTracerOptions options = Baked(mode, 0.25, 0.1);
-    options.bake.paths = 64;
-    EXPECT_THAT(Render(scene, camera, {from_dark.p_WC, back}, options).rgb, testing::Each(0.0f));
-    EXPECT_THAT(Render(scene, camera, {{1, 1, 1.7}, back}, options).rgb, testing::Each(testing::Gt(0.05f)));
+    const auto renderer = MakeBaked(scene, mode, Every(0.25, 0.1, 64));
+    EXPECT_THAT(Render(*renderer, camera, {from_dark.p_WC, back}).rgb, testing::Each(0.0f));
+    EXPECT_THAT(Render(*renderer, camera, {{1, 1, 1.7}, back}).rgb, testing::Each(testing::Gt(0.05f)));
   }
 }
 
@@ -152,9 +148,8 @@ TEST(BakedPicture, SkyThroughAnOpening) {
   const Pose above{{0, 1.5, 0}, glm::normalize(down)};
   CameraParams narrow = SmallCamera(5, 5);
   narrow.fx = narrow.fy = 100;
-  RayTracerOptions options = Baked(LightMode::baked, 0.5);
-  options.bake.paths = 4096;
-  const RadianceImage image = Render(scene, Camera(narrow), above, options);
+  const RadianceImage image =
+      Render(*MakeBaked(scene, LightMode::baked, Every(0.5, 0.02, 4096)), Camera(narrow), above);
   // The middle of one unit square seen from another two above, four quarters: F = 2/pi (A atan(B) / .. ) with X = Y =
   // 1/2.
   const double x = 0.5, a = x / std::sqrt(1 + x * x),

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "sim/light/lattice.h"
+#include "sim/render/baked_light.h"
 
 namespace sim::test {
 namespace {

@@ -13,8 +13,7 @@ TEST(Depth, PlaneThroughADistortedLens) {
   const glm::dvec3 n = glm::dvec3(0.5, -0.25, -1.0), at(0, 0, 3);
   const Camera camera(DistortedCamera());
   const Pose pose = TiltedPose();
-  std::vector<float> depth;
-  MakeRayTracer(scene)->Depth(camera, pose, depth);
+  const std::vector<float> depth = DepthOf(*MakeRayTracer(scene), camera, pose);
   ASSERT_EQ(depth.size(), 120u * 90u);
   for (int v = 0; v < 90; ++v) {
     for (int u = 0; u < 120; ++u) {
@@ -32,8 +31,7 @@ TEST(Depth, SphereAndNothingBesideIt) {
   const int rings = 300;
   AddSphere(scene, center, 1.0, rings, 0);
   const Camera camera(DistortedCamera());
-  std::vector<float> depth;
-  MakeRayTracer(scene)->Depth(camera, Pose{}, depth);
+  const std::vector<float> depth = DepthOf(*MakeRayTracer(scene), camera, Pose{});
   int hits = 0, misses = 0;
   for (int v = 0; v < 90; ++v) {
     for (int u = 0; u < 120; ++u) {
@@ -58,9 +56,7 @@ TEST(Depth, SphereAndNothingBesideIt) {
 }
 
 TEST(Depth, EmptyWorld) {
-  std::vector<float> depth(7, 5.0f);
-  MakeRayTracer(Scene{})->Depth(Camera(SmallCamera(5, 3)), Pose{}, depth);
-  EXPECT_EQ(depth, std::vector<float>(15, 0.0f));
+  EXPECT_EQ(DepthOf(*MakeRayTracer(Scene{}), Camera(SmallCamera(5, 3)), Pose{}), std::vector<float>(15, 0.0f));
 }
 
 }  // namespace

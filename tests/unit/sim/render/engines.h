@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "sim/render/gl_context.h"
 #include "sim/render/rasteriser.h"
 #include "tests/unit/sim/render/worlds.h"
 
@@ -29,7 +30,7 @@ inline std::string EngineName(const testing::TestParamInfo<EngineUnderTest>& inf
 // Why this machine has no such OpenGL; empty where it has.
 inline std::string Missing(const EngineUnderTest& engine) {
   try {
-    if (engine.is_rasteriser) DescribeGl(engine.platform);
+    if (engine.is_rasteriser) MakeGlContext(engine.platform);
     return "";
   } catch (const std::runtime_error& error) {
     return error.what();

@@ -25,11 +25,6 @@ RadianceImage Expose(const Renderer& renderer, const Camera& camera, const Traje
 class RasteriserTest : public EngineTest {};
 INSTANTIATE_TEST_SUITE_P(Engine, RasteriserTest, testing::Values(kEgl, kOsmesa), EngineName);
 
-TEST_P(RasteriserTest, SaysWhichOpenGlItIs) {
-  EXPECT_THAT(DescribeGl(GetParam().platform),
-              testing::StartsWith(GetParam().platform == GlPlatform::egl ? "EGL, " : "OSMesa, "));
-}
-
 // Calls from several threads wait for each other; earlier calls with other cameras and exposures leave nothing behind;
 // nor does another rasteriser in the same process, on any platform.
 TEST_P(RasteriserTest, ResultsDependOnTheArgumentsAlone) {
@@ -66,9 +61,6 @@ TEST_P(RasteriserTest, NothingIsBackground) {
   EXPECT_EQ(image.pixel(8, 4)[0], 0.25f);
   EXPECT_EQ(image.pixel(8, 4)[1], 0.5f);
   EXPECT_EQ(image.pixel(8, 4)[2], 1.5f);
-  std::vector<float> depth(7, 5.0f);
-  renderer->Depth(Camera(SmallCamera(5, 3)), Pose{}, depth);
-  EXPECT_EQ(depth, std::vector<float>(15, 0.0f));
 }
 
 // The mean of a picture's samples does not move it, whatever their number: an edge at 41.0 covers half of pixel 41.
@@ -181,17 +173,13 @@ TEST_P(RasteriserTest, NamesWhatItDoesNotRender) {
   std::get<RectLight>(scene.lights[3]).visible = true;
   std::get<PointLight>(scene.lights[1]).flicker = {100, 0.5, 0};
   scene.sky.emplace();
-  RasteriserOptions options = On(GetParam());
-  options.light = LightMode::baked;
-  MakeRasteriser(scene, options, &warnings);
+  MakeRasteriser(scene, On(GetParam()), &warnings);
   EXPECT_THAT(warnings,
               testing::ElementsAre("rasteriser: normal maps are not rendered; materials: wall, ball",
                                    "rasteriser: of pictures that shine only the mean is rendered; materials: wall",
                                    "rasteriser: nothing is cut out of surfaces; materials: wall",
                                    "rasteriser: lamps do not flicker", "rasteriser: visible lamps are not seen",
-                                   "rasteriser: the sky is not seen; world.background is",
-                                   "rasteriser: there is no baked light: render.light is taken as direct, with ambient "
-                                   "light for what bounces"));
+                                   "rasteriser: the sky is not seen; world.background is"));
 }
 
 // Every ray of a lens, at the rims of its pixels too, falls into the view of its face.

@@ -37,10 +37,7 @@ TEST(Exposure, SameBytesWithOneAndTwoThreads) {
     EXPECT_EQ(image.rgb, Expose(*c, motion, exposure, 7, camera).rgb);
     EXPECT_NE(image.rgb, Expose(*a, motion, exposure, 8, camera).rgb);  // the key matters
   }
-  std::vector<float> depth_one, depth_two;
-  a->Depth(camera, TiltedPose(), depth_one);
-  b->Depth(camera, TiltedPose(), depth_two);
-  EXPECT_EQ(depth_one, depth_two);
+  EXPECT_EQ(DepthOf(*a, camera, TiltedPose()), DepthOf(*b, camera, TiltedPose()));
 }
 
 double WorstDifference(const RadianceImage& a, const RadianceImage& b, const std::vector<int>& rows) {

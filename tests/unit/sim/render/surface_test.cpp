@@ -91,8 +91,7 @@ TEST(Surface, CutOutsInPrimaryAndShadowRays) {
   EXPECT_GT(there, 500);
   EXPECT_GT(shadow, 100);
   EXPECT_GT(lit, 1000);
-  std::vector<float> depth;
-  MakeRayTracer(scene)->Depth(camera, {}, depth);
+  const std::vector<float> depth = DepthOf(*MakeRayTracer(scene), camera, Pose{});
   EXPECT_NEAR(depth[40 * 121 + 55],
               is_there(2 * RayInWorld(camera, {}, 55, 40).x, 2 * RayInWorld(camera, {}, 55, 40).y) ? 2 : 4, 1e-6);
 }
@@ -217,12 +216,10 @@ TEST(Surface, FlickerInEachRow) {
         exposure.exposure_s = 0.004;
         exposure.row_delay_s = row_delay_s;
         exposure.time_samples = time_samples;
-        RayTracerOptions options = Centred();
-        options.light = mode;
-        options.bake = {1.0, 0.5, 16, 16};
+        const BakeParams bake{1.0, 0.5, 16, 16};
         RadianceImage a, b;
-        MakeRayTracer(steady, options)->Expose(camera, SteadyMotion({}), exposure, 1, a);
-        MakeRayTracer(flickers, options)->Expose(camera, SteadyMotion({}), exposure, 1, b);
+        MakeBaked(steady, mode, bake)->Expose(camera, SteadyMotion({}), exposure, 1, a);
+        MakeBaked(flickers, mode, bake)->Expose(camera, SteadyMotion({}), exposure, 1, b);
         for (int v = 0; v < camera.height(); ++v) {
           const double expected = FlickerFactor(mains, exposure.RowMiddle(v, camera.height()), exposure.exposure_s);
           for (const int u : {0, 7, 16})

@@ -5,13 +5,17 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <memory>
 #include <numbers>
+#include <string>
 #include <vector>
 
+#include "sim/light/cache.h"
 #include "sim/motion/pose.h"
 #include "sim/motion/so3.h"
 #include "sim/motion/trajectory.h"
 #include "sim/render/ray_tracer.h"
+#include "sim/render/surface_tracer.h"
 #include "sim/sensor/camera.h"
 #include "sim/world/scene.h"
 
@@ -143,11 +147,29 @@ class SteadyMotion : public Trajectory {
   glm::dvec3 v_, w_;
 };
 
+inline std::unique_ptr<Renderer> MakeBaked(const Scene& scene, LightMode mode, const BakeParams& bake,
+                                           const RayTracerOptions& options = Centred()) {
+  std::vector<std::string> warnings;
+  return MakeRayTracer(scene, LitScene(scene, mode, bake, {}, warnings), options);
+}
+
+inline RadianceImage Render(const Renderer& renderer, const Camera& camera, const Pose& pose) {
+  RadianceImage image;
+  renderer.Expose(camera, SteadyMotion(pose), Exposure{}, 1, image);
+  return image;
+}
 inline RadianceImage Render(const Scene& scene, const Camera& camera, const Pose& pose,
                             const RayTracerOptions& options = Centred()) {
-  RadianceImage image;
-  MakeRayTracer(scene, options)->Expose(camera, SteadyMotion(pose), Exposure{}, 1, image);
-  return image;
+  return Render(*MakeRayTracer(scene, options), camera, pose);
+}
+
+// Z in C of what each pixel's centre sees; 0: nothing.
+inline std::vector<float> DepthOf(const Renderer& ray_tracer, const Camera& camera, const View& view) {
+  std::vector<SurfacePoint> points;
+  ray_tracer.surfaces()->Trace(camera, view, points);
+  std::vector<float> depth;
+  for (const SurfacePoint& point : points) depth.push_back(static_cast<float>(point.depth));
+  return depth;
 }
 
 }  // namespace sim::test
