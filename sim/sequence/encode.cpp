@@ -8,7 +8,6 @@
 
 #include <bit>
 #include <cstring>
-#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
 namespace sim {
@@ -40,12 +39,6 @@ void Append(std::vector<std::uint8_t>& bytes, const T* from, std::size_t count) 
   const std::size_t size = bytes.size();
   bytes.resize(size + count * sizeof(T));
   std::memcpy(bytes.data() + size, from, count * sizeof(T));
-}
-
-std::vector<std::uint8_t> Png(const cv::Mat& mat) {
-  std::vector<std::uint8_t> bytes;
-  if (!cv::imencode(".png", mat, bytes)) throw std::runtime_error("OpenCV cannot encode a PNG picture");
-  return bytes;
 }
 
 }  // namespace
@@ -81,15 +74,6 @@ std::vector<std::uint8_t> EncodeFlo(std::span<const float> uv, int width, int he
   Append(bytes, size, 2);
   Append(bytes, uv.data(), uv.size());
   return bytes;
-}
-
-std::vector<std::uint8_t> EncodeGrey8(std::span<const std::uint8_t> pixels, int width, int height) {
-  // OpenCV's header over pixels that it only reads, here and below.
-  return Png(cv::Mat(height, width, CV_8UC1, const_cast<std::uint8_t*>(pixels.data())));
-}
-
-std::vector<std::uint8_t> EncodeGrey16(std::span<const std::uint16_t> pixels, int width, int height) {
-  return Png(cv::Mat(height, width, CV_16UC1, const_cast<std::uint16_t*>(pixels.data())));
 }
 
 }  // namespace sim

@@ -1,6 +1,6 @@
 #include "sim/sequence/journal.h"
 
-#include <isa-l/crc.h>
+#include <libdeflate.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -13,7 +13,7 @@ namespace sim {
 namespace fs = std::filesystem;
 namespace {
 
-std::uint32_t Sum(std::span<const std::uint8_t> bytes) { return crc32_gzip_refl(0, bytes.data(), bytes.size()); }
+std::uint32_t Sum(std::span<const std::uint8_t> bytes) { return libdeflate_crc32(0, bytes.data(), bytes.size()); }
 
 std::optional<std::vector<std::uint8_t>> ReadBytes(const fs::path& path, std::uint64_t size) {
   std::error_code error;

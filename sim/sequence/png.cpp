@@ -1,13 +1,14 @@
 #include "sim/sequence/png.h"
 
-#include <isa-l/crc.h>
+#include <libdeflate.h>
 
 #include <algorithm>
+#include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
-#include "sim/sequence/compress.h"
 #include "sim/sequence/png_filter.h"
 
 namespace sim {
@@ -26,9 +27,30 @@ void AppendChunk(Bytes& file, std::string_view name, std::span<const std::uint8_
   PutBigEndian(static_cast<std::uint32_t>(content.size()), &file[start]);
   std::copy(name.begin(), name.end(), &file[start + 4]);
   file.insert(file.end(), content.begin(), content.end());
-  const std::uint32_t crc = crc32_gzip_refl(0, &file[start + 4], 4 + content.size());
+  const std::uint32_t crc = libdeflate_crc32(0, &file[start + 4], 4 + content.size());
   file.resize(file.size() + 4);
   PutBigEndian(crc, &file[file.size() - 4]);
+}
+
+// Memory that is about to be written: not zeroed first.
+struct Buffer {
+  explicit Buffer(std::size_t bytes) : data(std::make_unique_for_overwrite<std::uint8_t[]>(bytes)), size(bytes) {}
+  std::span<const std::uint8_t> bytes() const { return {data.get(), size}; }
+
+  std::unique_ptr<std::uint8_t[]> data;
+  std::size_t size;
+};
+
+// A zlib stream (RFC 1950).
+Buffer Compress(std::span<const std::uint8_t> content) {
+  constexpr int kLevel = 1;
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
+      libdeflate_alloc_compressor(kLevel), libdeflate_free_compressor);
+  if (!compressor) throw std::bad_alloc();
+  Buffer stream(libdeflate_zlib_compress_bound(compressor.get(), content.size()));
+  stream.size =
+      libdeflate_zlib_compress(compressor.get(), content.data(), content.size(), stream.data.get(), stream.size);
+  return stream;
 }
 
 // `row_bytes(y, out)` gives row y as PNG has it: most significant byte first.

@@ -12,6 +12,7 @@
 #include "sim/sequence/flow.h"
 #include "sim/sequence/format.h"
 #include "sim/sequence/landmarks.h"
+#include "sim/sequence/png.h"
 #include "tools/base/settings/quantity.h"
 
 namespace sim {
@@ -188,7 +189,7 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
         file.bytes = EncodeExr(Normals(surfaces, view, points), width, height, 3, true);
         break;
       case TruthStream::surface_id:
-        file.bytes = EncodeGrey16(SurfaceIds(surfaces, points), width, height);
+        file.bytes = EncodePng(width, height, 1, SurfaceIds(surfaces, points));
         break;
       case TruthStream::flow:
       case TruthStream::flow_backward:
@@ -196,11 +197,11 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
         break;
       case TruthStream::moving:
         file.bytes =
-            EncodeGrey8(Mask(points.size(), [&](std::size_t i) { return points[i].object != kWorld; }), width, height);
+            EncodePng(width, height, 1, Mask(points.size(), [&](std::size_t i) { return points[i].object != kWorld; }));
         break;
       case TruthStream::occlusion:
         file.bytes =
-            EncodeGrey8(Mask(to.occluded.size(), [&](std::size_t i) { return to.occluded[i] != 0; }), width, height);
+            EncodePng(width, height, 1, Mask(to.occluded.size(), [&](std::size_t i) { return to.occluded[i] != 0; }));
         break;
       case TruthStream::landmarks:
       case TruthStream::acceleration:

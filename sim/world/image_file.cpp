@@ -1,5 +1,7 @@
 #include "sim/world/image_file.h"
 
+#include <libdeflate.h>
+
 #include <algorithm>
 #include <array>
 #include <opencv2/imgcodecs.hpp>
@@ -18,19 +20,6 @@ std::uint32_t BigEndian32(Bytes b) {
   return (std::uint32_t{b[0]} << 24) | (std::uint32_t{b[1]} << 16) | (std::uint32_t{b[2]} << 8) | b[3];
 }
 
-// The checksum of PNG (ISO 3309).
-std::uint32_t Crc32(Bytes bytes) {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t i = 0; i < 256; ++i) {
-    std::uint32_t c = i;
-    for (int k = 0; k < 8; ++k) c = (c & 1u) ? 0xedb88320u ^ (c >> 1) : c >> 1;
-    table[i] = c;
-  }
-  std::uint32_t crc = 0xffffffffu;
-  for (const std::uint8_t b : bytes) crc = table[(crc ^ b) & 255u] ^ (crc >> 8);
-  return crc ^ 0xffffffffu;
-}
-
 void CheckPng(Bytes bytes) {
   std::size_t at = kPngSignature.size();
   for (;;) {  // length, type, data, checksum
@@ -38,7 +27,7 @@ void CheckPng(Bytes bytes) {
     const std::size_t length = BigEndian32(bytes.subspan(at));
     if (length > bytes.size() - at - 12) throw std::runtime_error("truncated PNG: a chunk is cut off");
     const Bytes type_and_data = bytes.subspan(at + 4, length + 4);
-    if (Crc32(type_and_data) != BigEndian32(bytes.subspan(at + 8 + length))) {
+    if (libdeflate_crc32(0, type_and_data.data(), type_and_data.size()) != BigEndian32(bytes.subspan(at + 8 + length))) {
       throw std::runtime_error("damaged PNG: wrong checksum in the chunk at byte " + std::to_string(at));
     }
     const std::array<std::uint8_t, 4> end{'I', 'E', 'N', 'D'};

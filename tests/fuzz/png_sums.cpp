@@ -1,6 +1,6 @@
 #include "tests/fuzz/png_sums.h"
 
-#include <isa-l/crc.h>
+#include <libdeflate.h>
 
 #include <algorithm>
 #include <iterator>
@@ -18,7 +18,7 @@ void MendPngSums(std::vector<std::uint8_t>& bytes) {
   std::size_t at = sizeof kSignature;
   while (at + 12 <= bytes.size() && word(at) <= bytes.size() - at - 12) {  // length, type, data, checksum
     const std::size_t length = word(at);
-    const std::uint32_t sum = crc32_gzip_refl(0, &bytes[at + 4], length + 4);
+    const std::uint32_t sum = libdeflate_crc32(0, &bytes[at + 4], length + 4);
     for (std::size_t k = 0; k < 4; ++k) bytes[at + 8 + length + k] = static_cast<std::uint8_t>(sum >> (24 - 8 * k));
     at += length + 12;
   }

@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "sim/sequence/encode.h"
+#include "sim/sequence/png.h"
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"
 #include "tests/unit/sim/temporary_folder.h"
@@ -338,7 +339,7 @@ TEST_F(VerifyTest, MovingObjectsAndMasksThatAreWrong) {
       if (mask.data[i] != value) flipped = i;
     }
     mask.data[flipped] = static_cast<std::uint8_t>(value);
-    WriteBytes(file, sim::EncodeGrey8({mask.data, mask.total()}, mask.cols, mask.rows));
+    WriteBytes(file, sim::EncodePng(mask.cols, mask.rows, 1, std::span(mask.data, mask.total())));
     EXPECT_THAT(Failures(folder), Contains(HasSubstr("moving: pixels that move as the others: moving " + Stamp(3))))
         << value;
   }
