@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/world/mesh_bytes.h"
-#include "sim/world/mesh_files.h"
+#include "sim/world/mesh_serialization.h"
+#include "sim/world/importer_files.h"
 
 namespace sim {
 namespace {
@@ -29,7 +29,7 @@ constexpr std::chrono::seconds kPatience(600);  // of whoever waits: an importer
 
 // What the child says: a length and so many bytes, for each of the problem, the files, those that are missing (each
 // text ends with a zero), and the scene.
-std::vector<std::uint8_t> Answer(const std::string& problem, const MeshFiles& files, const aiScene* scene) {
+std::vector<std::uint8_t> Answer(const std::string& problem, const ImporterFiles& files, const aiScene* scene) {
   std::vector<std::uint8_t> answer;
   const auto append = [&](const void* data, std::size_t size) {
     const auto* bytes = static_cast<const std::uint8_t*>(data);
@@ -53,7 +53,7 @@ std::vector<std::uint8_t> Answer(const std::string& problem, const MeshFiles& fi
 
 std::vector<std::uint8_t> Import(const fs::path& file) {
   Assimp::Importer importer;
-  auto* files = new MeshFiles(file);  // the importer owns it
+  auto* files = new ImporterFiles(file);  // the importer owns it
   importer.SetIOHandler(files);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "sim/world/image_file.h"
-#include "sim/world/mesh_files.h"
+#include "sim/world/importer_files.h"
 #include "tools/base/limits/picture.h"
 
 namespace sim {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/world/mesh_file.h"
+#include "sim/world/mesh_loader.h"
 #include "sim/world/scene.h"
 
 namespace sim {

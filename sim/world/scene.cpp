@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "sim/world/mesh_file.h"
+#include "sim/world/mesh_loader.h"
 
 namespace sim {
 namespace {

@@ -1,12 +1,12 @@
 target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/gltf_features.cpp
   ${CMAKE_CURRENT_LIST_DIR}/image_file.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/importer_files.cpp
   ${CMAKE_CURRENT_LIST_DIR}/light.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/mesh_bytes.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/mesh_file.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/mesh_files.cpp
   ${CMAKE_CURRENT_LIST_DIR}/mesh_import.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/mesh_loader.cpp
   ${CMAKE_CURRENT_LIST_DIR}/mesh_material.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/mesh_serialization.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene.cpp
   ${CMAKE_CURRENT_LIST_DIR}/sky.cpp
   ${CMAKE_CURRENT_LIST_DIR}/texture.cpp)

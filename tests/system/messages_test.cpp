@@ -72,7 +72,7 @@ const std::vector<Message>& Messages() {
       {"sim/world/scene.cpp",
        {"check", "TINY", "--set", "world.meshes=[{file: nothere.obj}]"},
        {"nothere.obj", "no such file"}},
-      {"sim/world/mesh_file.cpp",
+      {"sim/world/mesh_loader.cpp",
        {"check", "TINY", "--set", "world.meshes=[{file: FOLDER/broken.obj}]"},
        {"broken.obj", "vertex index out of range"}},
       {"sim/world/image_file.cpp",

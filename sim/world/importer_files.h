@@ -20,9 +20,9 @@ bool LiesBeside(const std::filesystem::path& mesh, const std::filesystem::path& 
 // Opens regular files below the mesh's folder, and nothing else; importers quietly do without a side file (an OBJ's
 // materials, say) that cannot be opened. From the first one on, the calling process has the limits of ImportMesh; each
 // file that is opened widens them.
-class MeshFiles : public Assimp::DefaultIOSystem {
+class ImporterFiles : public Assimp::DefaultIOSystem {
  public:
-  explicit MeshFiles(const std::filesystem::path& mesh);
+  explicit ImporterFiles(const std::filesystem::path& mesh);
   bool Exists(const char* file) const override;
   Assimp::IOStream* Open(const char* file, const char* mode) override;
 

@@ -1,4 +1,4 @@
-#include "sim/world/mesh_files.h"
+#include "sim/world/importer_files.h"
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -97,16 +97,16 @@ bool LiesBeside(const fs::path& mesh, const fs::path& file) {
   return IsBelow(mesh.parent_path(), file) || IsBelow(fs::weakly_canonical(mesh, error).parent_path(), file);
 }
 
-MeshFiles::MeshFiles(const fs::path& mesh) : mesh_(mesh), taken_(AddressSpace()) { LimitProcess(0, taken_); }
+ImporterFiles::ImporterFiles(const fs::path& mesh) : mesh_(mesh), taken_(AddressSpace()) { LimitProcess(0, taken_); }
 
-bool MeshFiles::MayOpen(const fs::path& file) const {
+bool ImporterFiles::MayOpen(const fs::path& file) const {
   std::error_code error;
   return fs::is_regular_file(file, error) && (file == mesh_ || LiesBeside(mesh_, file));
 }
 
-bool MeshFiles::Exists(const char* file) const { return MayOpen(file); }
+bool ImporterFiles::Exists(const char* file) const { return MayOpen(file); }
 
-Assimp::IOStream* MeshFiles::Open(const char* file, const char* mode) {
+Assimp::IOStream* ImporterFiles::Open(const char* file, const char* mode) {
   const bool is_new = all_.insert(file).second;
   std::unique_ptr<Assimp::IOStream> stream(mode[0] == 'r' && MayOpen(file) ? DefaultIOSystem::Open(file, mode)
                                                                            : nullptr);

@@ -1,4 +1,4 @@
-#include "sim/world/mesh_file.h"
+#include "sim/world/mesh_loader.h"
 
 #include <assimp/scene.h>
 

@@ -1,4 +1,4 @@
-#include "sim/world/mesh_bytes.h"
+#include "sim/world/mesh_serialization.h"
 
 #include <assimp/material.h>
 
