@@ -136,7 +136,8 @@ struct Simulator::Parts {
     if (s.sensor.auto_exposure.on) Meter();
   }
 
-  // The settings of all frames, each metered on a picture of the frame before it at 1/8 of the resolution, one ray per pixel.
+  // The settings of all frames, each metered on a picture of the frame before it at 1/8 of the resolution, one ray per
+  // pixel.
   void Meter() {
     const Optics small(Binned(scenario.camera, 8), scenario.sensor.optics);
     AutoExposure control(scenario.sensor);

@@ -1,4 +1,4 @@
-// Purpose: a scenario rendered into frames with exact truth.
+// Simulator: renders the frames of a scenario with exact truth.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,7 @@ struct Frame {
   Truth truth;
 };
 
-// How the camera moves in the simulator of this scenario, which need not be made for that: no mesh is read. Throws as
-// MakeTrajectory does.
+// Trajectory of the camera of a scenario, without a simulator: no mesh is read. Throws as MakeTrajectory does.
 std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& scenario);
 
 class Simulator {
@@ -43,7 +42,7 @@ class Simulator {
   std::int64_t frame_count() const;
   const Camera& camera() const;
   const Scenario& scenario() const;
-  // What was readable in the world but is probably not meant.
+  // Contents of the world that are readable but probably unintended.
   const std::vector<std::string>& warnings() const;
 
   // Pure functions of the scenario, its seed and the index in [0, frame_count); std::out_of_range otherwise. They may
@@ -54,16 +53,15 @@ class Simulator {
   View ViewAt(std::int64_t index) const;  // the camera's at the stamp
   ExposureSetting SettingOf(std::int64_t index) const;
   // Z in the camera frame [m] at each pixel's centre at the stamp, rows from the top; 0: nothing there.
-  // From rays, whatever renders the pictures.
+  // By ray intersection, with either renderer.
   std::vector<float> Depth(std::int64_t index) const;
 
-  // For the truth streams (sim/truth): how the camera moves, and what each pixel sees. Both live as long as the
-  // simulator.
+  // Camera trajectory, and the surface points that pixels see. Both live as long as the simulator.
   const Trajectory& trajectory() const;
   const SurfaceTracer& surfaces() const;
   // Of the world's meshes, as SurfaceTracer::MeshOf counts them; of an object's "OBJECT/MESH".
   const std::vector<std::string>& mesh_names() const;
-  // What moves in the world, and how at a frame's stamp: O in the place of C.
+  // Moving objects, and their state at a frame's stamp: O in the place of C.
   const std::vector<std::string>& object_names() const;
   Truth ObjectTruthAt(std::size_t object, std::int64_t index) const;
 

@@ -1,4 +1,5 @@
-// Purpose: the light of a whole world, computed once for all frames.
+// Baking of irradiance: the indirect light of what stands still, and its lamps where asked, once for all frames.
+// Private to sim.
 #pragma once
 
 #include <string>
@@ -10,17 +11,16 @@
 
 namespace sim {
 
-// Each triangle has one sample at least at its corners, on both sides. Samples of the same place and normal are one, so
-// that neighbours meet without a seam where their resolutions (powers of two) agree. They are `spacing` apart at most, as
-// long as no side is divided into more than 2^8. Where lamps are baked, a triangle's samples are made twice as dense,
-// again and again: everywhere until they are spacing / 4 apart, then about places where four neighbours differ by more
-// than 2 %; until they are `finest` apart or a side is divided into 2^11. Between samples that agree, light is
-// interpolated. Works in parallel (in the caller's task arena); the result does not depend on the number of threads.
-// `mode` is not direct. Throws std::invalid_argument for bad parameters and when more than 2^28 samples would be needed.
+// Samples on a regular lattice on both sides of each triangle, at most `spacing` apart (a side is divided into at most
+// 2^8). Samples of equal position and normal are shared, so that neighbours join without a seam where their resolutions
+// (powers of two) agree. Where lamps are baked, lattices are refined by factors of two: everywhere to spacing / 4, then
+// wherever four neighbours differ by more than 2 %, down to `finest` (a side is divided into at most 2^11). Light is
+// interpolated linearly in between. Parallel in the caller's task arena; the result does not depend on the number of
+// threads. `mode` is not direct. Throws std::invalid_argument for bad parameters and for more than 2^28 samples.
 BakedLight BakeLight(const Scene& scene, const RayScene& rays, LightMode mode, const BakeParams& params);
 
-// Limits of the light that BakeLight computes for this scene, a sentence each: samples that are farther apart than `spacing` or, where
-// lamps are baked, than `finest`; ambient light and moving objects, which are not in it.
+// Limits of the light that BakeLight computes for this scene, a sentence each: samples that are farther apart than
+// `spacing` or, where lamps are baked, than `finest`; ambient light and moving objects, which are not in it.
 std::vector<std::string> BakeWarnings(const Scene& scene, const RayScene& rays, LightMode mode,
                                       const BakeParams& params);
 

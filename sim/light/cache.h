@@ -1,8 +1,9 @@
-// Purpose: baked light kept in a file, so that only the first run computes it.
+// Cache of baked light on disk. Private to sim.
 //
-// A file's name is the hash of all that its content depends on: geometry, materials, pictures, lights, sky, settings and the
-// version of the computation. Inside: the word "vobench baked light", that hash, sizes, data, and a checksum of all that. It is
-// written under a temporary name and renamed: there are no half files, also when several programs write the same.
+// A file's name is the hash of all that its content depends on: geometry, materials, pictures, lights, sky, settings
+// and the version of the computation. Inside: the word "vobench baked light", that hash, sizes, data, and a checksum of
+// all that. It is written under a temporary name and renamed: there are no half files, also when several programs write
+// the same.
 #pragma once
 
 #include <array>
@@ -27,18 +28,18 @@ std::filesystem::path LightFile(const std::filesystem::path& folder, const Light
 void WriteLight(const std::filesystem::path& file, const LightHash& hash, const BakedLight& light);
 BakedLight ReadLight(const std::filesystem::path& file, const LightHash& hash);
 
-// From the first of the folders that has it; otherwise computed, and written to the first that can be written to. A damaged file
-// is a warning, and is computed and written anew. No folder: always computed.
+// Read from the first folder that has it; else computed, and written to the first writable folder. A damaged file is a
+// warning, and is computed and written again. No folder: always computed.
 BakedLight CachedLight(const Scene& scene, const RayScene& rays, LightMode mode, const BakeParams& params,
                        const std::vector<std::filesystem::path>& folders, std::vector<std::string>& warnings);
 
-// The scene as rays meet it, with its baked light from CachedLight; without, where `mode` is direct. BakeWarnings are appended too. Works in
-// parallel in the caller's task arena.
+// Scene tables of the ray tracer with the light of CachedLight; without, where `mode` is direct. Appends BakeWarnings
+// too. Parallel in the caller's task arena.
 std::unique_ptr<RayScene> LitScene(const Scene& scene, LightMode mode, const BakeParams& params,
                                    const std::vector<std::filesystem::path>& folders,
                                    std::vector<std::string>& warnings);
 
-// Where a scenario's light is kept: in `.vobench-cache` beside it, or in vobench/ of the user's cache folder
+// Cache folders of a scenario, best first: in `.vobench-cache` beside it, or in vobench/ of the user's cache folder
 // ($XDG_CACHE_HOME, or ~/.cache).
 std::vector<std::filesystem::path> LightFolders(const std::filesystem::path& scenario_folder);
 

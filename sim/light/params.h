@@ -1,4 +1,4 @@
-// Purpose: how the light of a world is computed: settings of a scenario.
+// Parameters of the illumination: which part of it is baked, and how finely.
 #pragma once
 
 #include <string>

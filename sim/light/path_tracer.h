@@ -1,6 +1,6 @@
-// Purpose: the light that a point of a surface receives, by following paths of light backwards.
-// Source:  Kajiya 1986, "The rendering equation"; next-event estimation and Russian roulette as in Pharr, Jakob and Humphreys,
-//          "Physically based rendering", chapter 14. Points: sim/render/sample_pattern.h.
+// Path tracer for the irradiance at a point of a surface. Private to sim/light.
+// Source: Kajiya 1986, "The rendering equation"; next-event estimation and Russian roulette as in Pharr, Jakob and
+//   Humphreys, "Physically based rendering", chapter 14. Points: sim/render/sample_pattern.h.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,14 @@ struct LightPoint {
   glm::dvec3 geometric;  // and that of the triangle, on the same side
 };
 
-// All results are irradiance / pi: the radiance of a white Lambert surface. Lamps are the sun, points and rectangles; light of
-// lamps that flicker differently is kept apart, in layers (0: steady). Surfaces are Lambert, with textures filtered over the width
-// of a path; normal maps are not looked at. The estimates are unbiased, functions of their arguments alone.
+// All results are irradiance / pi: the radiance of a white Lambert surface. Lamps are the sun, points and rectangles;
+// light of lamps that flicker differently is kept apart, in layers (0: steady). Surfaces are Lambert, with textures
+// filtered over the width of a path; normal maps are not looked at. The estimates are unbiased, functions of their
+// arguments alone.
 class PathTracer {
  public:
-  // Keeps references to both; of the scene the materials, textures, lights and sky. Throws std::invalid_argument for more than
-  // kMaxFlickers different flickers.
+  // Keeps references to both; of the scene the materials, textures, lights and sky. Throws std::invalid_argument for
+  // more than kMaxFlickers different flickers.
   PathTracer(const Scene& scene, const RayScene& rays);
 
   const std::vector<Flicker>& layers() const { return layers_; }

@@ -1,6 +1,5 @@
-// Purpose: three non-negative numbers in 32 bits, with nine bits each and an exponent in common: light of any strength to 0.2 %
-//          of its strongest colour.
-// Source:  the OpenGL extension EXT_texture_shared_exponent (RGB9_E5): c = mantissa * 2^(exponent - 24).
+// Shared-exponent colours (RGB9_E5): three non-negative numbers in 32 bits, to 0.2 % of the largest. Private to sim.
+// Source: the OpenGL extension EXT_texture_shared_exponent: c = mantissa * 2^(exponent - 24).
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Purpose: what a scenario says about the motion, before any file is read.
+// Parameters of a motion. No file has been read yet.
 #pragma once
 
 #include <filesystem>

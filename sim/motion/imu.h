@@ -1,6 +1,7 @@
-// Purpose: what an inertial measurement unit fixed to the camera reads.
-// Source:  specific force f = R_IW (a_I - g) and angular rate; white noise and bias as in Trawny and Roumeliotis 2005,
-//          "Indirect Kalman filter for 3D attitude estimation", and Kalibr's IMU noise model.
+// Inertial measurement unit (IMU) that is fixed to the camera: specific force and angular rate, white noise,
+// random-walk biases.
+// Source: f = R_IW (a_I - g); noise and bias as in Trawny and Roumeliotis 2005, "Indirect Kalman filter for 3D attitude
+//   estimation", and Kalibr's IMU noise model.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Purpose: from what a scenario says about the motion to the motion.
+// Factory of trajectories.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace sim {
 
-// A trajectory for stamps from 0 to last_stamp_s, each with `margin_s` around it: within the margin of the first and
-// last stamp a scripted or recorded motion may go on at constant velocity; a sampled one does so before the first only,
-// so that what comes later changes no frame. Throws what the one that is described throws: std::invalid_argument,
-// settings::Error.
+// A trajectory for stamps from 0 to last_stamp_s, each with `margin_s` around it. Within the margin of the first and
+// last stamp a scripted or recorded motion may be extrapolated at constant velocity; a sampled one before the first
+// only, so that a longer scenario begins with the same frames. Throws std::invalid_argument and settings::Error, as the
+// constructors of the trajectories do.
 std::unique_ptr<Trajectory> MakeTrajectory(const MotionDescription& motion, std::uint64_t seed, double last_stamp_s,
                                            double margin_s);
 

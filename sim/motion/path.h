@@ -1,4 +1,4 @@
-// Purpose: orbits, half spheres, turns on the spot and dollies: paths in closed form, for as long as one likes.
+// Closed-form trajectories: orbit, half sphere, rotation on the spot, dolly. Unlimited in time.
 #pragma once
 
 #include "sim/motion/description.h"

@@ -1,4 +1,4 @@
-// Purpose: where the camera is: T_WC of docs/conventions.md; and T_WO of an object that moves, by the same names.
+// Rigid pose: T_WC of the camera (docs/conventions.md), or T_WO of a moving object by the same names.
 #pragma once
 
 #include <glm/gtc/quaternion.hpp>

@@ -1,4 +1,4 @@
-// Purpose: a recorded trajectory, to be flown in a simulated world.
+// Trajectory from a recording in the TUM format.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,6 @@
-// Purpose: a trajectory sampled from the nearly-constant-velocity model (Bar-Shalom, Li, Kirubarajan 2001,
-// section 6.2.2;
-//          docs/conventions.md).
+// Sample of the nearly-constant-velocity model.
+// Source: Bar-Shalom, Li and Kirubarajan 2001, "Estimation with applications to tracking and navigation", section
+//   6.2.2; docs/conventions.md.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,8 @@ namespace sim {
 // and for small angles of the orientation.
 //
 // Soft walls change the model within their margin only: beyond its inner edge by s, -rate^2 s is added to an axis's
-// acceleration, and -2 rate v while it moves outwards. One who comes at speed v gets v / (e rate) far, so that margins
-// of rate times the usual speed keep the camera in; a wall is soft, and noise large enough pushes through.
+// acceleration, and -2 rate v while it moves outwards. A camera that arrives at speed v penetrates by v / (e rate); a
+// wall is soft, and large noise pushes through.
 //
 // Between knots the path is the cubic with the knots' values and derivatives: for the position that is its expectation
 // given the knots. What it lacks of the model there is at most sigma^2 h^3/192 of a position's and sigma^2 h/16 of a

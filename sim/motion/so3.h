@@ -1,5 +1,5 @@
-// Purpose: the exponential of rotations, its logarithm and right Jacobian (Forster et al. 2017, "On-manifold
-//          preintegration", equations 3-10). Rotation vectors in radians.
+// Exponential map, logarithm and right Jacobian of SO(3). Rotation vectors in radians.
+// Source: Forster et al. 2017, "On-manifold preintegration", equations 3-10.
 #pragma once
 
 #include <cmath>

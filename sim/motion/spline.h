@@ -1,4 +1,4 @@
-// Purpose: a smooth path through key poses.
+// Cubic spline trajectory through key poses.
 #pragma once
 
 #include <array>
@@ -9,11 +9,11 @@
 
 namespace sim {
 
-// The seven numbers (p, q) go through the keys on natural cubic splines, the quaternion is normalised afterwards: q = s
-// / |s|. Both are C2, pass through every key, and have their derivatives in closed form (w = 2 vec(conj(s) ds/dt) /
-// |s|^2, alpha = (2 vec(conj(s) d2s/dt2) - 2 (s . ds/dt) w) / |s|^2). The quaternion's sign is chosen to be near the previous key's. Motion does not depend on the choice of W.
-// Between keys that turn by much the angular velocity is not even: 1.07 times as fast in the middle as at the ends when
-// two keys are 60 degrees apart.
+//   q = s / |s|    w = 2 vec(conj(s) ds/dt) / |s|^2    alpha = (2 vec(conj(s) d2s/dt2) - 2 (s . ds/dt) w) / |s|^2
+//
+// with natural cubic splines for the seven components of (p, s). Both are C2 and pass through every key. The sign of
+// each key's quaternion is that nearest to the previous one. The motion does not depend on the choice of W.
+// The angular velocity varies between keys: by a factor of 1.07 from the ends to the middle at 60 degrees per key.
 class SplineTrajectory : public Trajectory {
  public:
   // At least two keys, times increasing, quaternions not zero. Throws std::invalid_argument naming each pair of keys

@@ -1,4 +1,4 @@
-// Purpose: what the judge knows about a frame.
+// Ground truth of a frame: pose, velocity, acceleration.
 #pragma once
 
 #include <glm/gtc/quaternion.hpp>

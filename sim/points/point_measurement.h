@@ -1,4 +1,4 @@
-// Purpose: from where a landmark's image is to what a detector says of it: noise, outliers, losses.
+// Measurement model of a landmark: Gaussian noise, outliers, missed detections.
 #pragma once
 
 #include <cstdint>

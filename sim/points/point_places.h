@@ -1,4 +1,4 @@
-// Purpose: where the landmarks of a world without images are, when they do not come from a prior.
+// Positions of the landmarks of a point world, where they are not drawn from a prior.
 #pragma once
 
 #include <cstdint>

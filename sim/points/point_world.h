@@ -1,9 +1,7 @@
-// Purpose: a world of landmarks without images, seen by a moving camera: which landmark is where in the image, with
-// chosen
-//          noise, outliers and losses, and the exact truth beside it. For testing filters apart from image processing.
-// Source:  docs/point_world.md. Landmarks are homogeneous, so that an inverse depth may vanish or be negative, as a
-// Gaussian
-//          prior has it (Civera, Davison, Montiel 2008, "Inverse depth parametrization for monocular SLAM").
+// Simulator of landmark observations without images: known data association, chosen noise, outliers and missed
+// detections, exact truth. For tests of filters apart from image processing.
+// Source: docs/point_world.md. Landmarks are homogeneous points, so that an inverse depth may vanish or be negative, as
+//   under a Gaussian prior (Civera, Davison and Montiel 2008, "Inverse depth parametrization for monocular SLAM").
 #pragma once
 
 #include <cstdint>

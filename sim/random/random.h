@@ -1,6 +1,5 @@
-// Purpose: random numbers that are functions of their key, so that no order of work can change them: Philox4x32-10
-// (Salmon et
-//          al. 2011, "Parallel random numbers: as easy as 1, 2, 3"; the Random123 library).
+// Counter-based random numbers (Philox4x32-10): functions of their key, in any order of work.
+// Source: Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3"; the Random123 library.
 #pragma once
 
 #include <Random123/philox.h>

@@ -1,5 +1,5 @@
-// Baked irradiance of the triangles of a scene, on a regular triangular lattice per side: light needs neither texture coordinates nor an
-// atlas, and cannot leak from one surface to the next.
+// Baked irradiance of the triangles of a scene, on a regular triangular lattice per side: light needs neither texture
+// coordinates nor an atlas, and cannot leak from one surface to the next.
 // Source: Yuksel, Keyser and House 2010, "Mesh colors".
 #pragma once
 
@@ -25,8 +25,9 @@ struct TriangleResolution {
 };
 constexpr int kMaxLog2Resolution = 11;
 
-// Samples of irradiance / pi (the radiance of a white surface), packed as EXT_texture_shared_exponent (sim/light/shared_exponent.h). Each
-// layer has them for all triangles in order, of each the front's lattice and then the back's.
+// Samples of irradiance / pi (the radiance of a white surface), packed as EXT_texture_shared_exponent
+// (sim/light/shared_exponent.h). Each layer has them for all triangles in order, of each the front's lattice and then
+// the back's.
 struct BakedLight {
   std::vector<TriangleResolution> resolutions;  // by triangle
   std::vector<Flicker> layers;         // the light of lamps with the same flicker is one layer; the first is steady

@@ -1,4 +1,4 @@
-// Purpose: Embree 3 (Debian 12) or 4 behind the few calls that we use. Private to sim/render and sim/light.
+// Ray queries of Embree 3 (Debian 12) or 4. Private to sim/render and sim/light.
 #pragma once
 
 #if __has_include(<embree4/rtcore.h>)
@@ -9,8 +9,8 @@
 
 namespace sim {
 
-// Intersect: the nearest hit; Occluded: any. Scenes of objects (instances) are asked without the coherent flag: with it,
-// rtcOccluded16 of Embree 3.13.5 does not return where no instance has motion blur.
+// Intersect: the nearest hit; Occluded: any. Scenes of objects (instances) are asked without the coherent flag: with
+// it, rtcOccluded16 of Embree 3.13.5 does not return where no instance has motion blur.
 #if RTC_VERSION_MAJOR >= 4
 static inline void IntersectCoherent16(const int* valid, RTCScene scene, RTCRayHit16* rays) {
   RTCIntersectArguments arguments;

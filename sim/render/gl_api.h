@@ -1,4 +1,4 @@
-// Purpose: the functions of OpenGL that the rasteriser calls, as pointers of one context. Private to sim/render.
+// Table of the OpenGL functions that the rasteriser calls, loaded for one context. Private to sim/render.
 #pragma once
 
 #include <GL/glcorearb.h>

@@ -1,6 +1,5 @@
-// Purpose: an OpenGL context without window or display: EGL (a GPU, or Mesa in software) or OSMesa (software).
-//          Private to sim/render.
-// Source:  EGL_EXT_platform_device, EGL_MESA_platform_surfaceless, EGL_KHR_surfaceless_context; GL/osmesa.h.
+// OpenGL context without window or display: EGL (GPU, or Mesa in software) or OSMesa (software). Private to sim/render.
+// Source: EGL_EXT_platform_device, EGL_MESA_platform_surfaceless, EGL_KHR_surfaceless_context; GL/osmesa.h.
 #pragma once
 
 #include <memory>
@@ -43,8 +42,7 @@ class GlContext {
   std::mutex mutex_;
 };
 
-// OpenGL 4.5 core. Throws std::runtime_error that says, for each platform that was
-// tried, why it does not serve.
+// OpenGL 4.5 core. Throws std::runtime_error that says, for each platform that was tried, why it does not serve.
 std::unique_ptr<GlContext> MakeGlContext(GlPlatform platform);
 
 }  // namespace sim

@@ -1,6 +1,5 @@
-// Purpose: what lives in an OpenGL context, each freed with its owner. Private to sim/render. Everything here wants the
-//          context to be current, the ends of lives included; all but Program throws nothing by itself: OpenGL's
-//          errors are asked for by CheckGl.
+// OpenGL objects with owners: buffers, textures, framebuffers, programs. Private to sim/render. The context must be
+// current for all of it, destructors included. Only Program throws by itself: CheckGl asks for the errors of OpenGL.
 #pragma once
 
 #include <cstddef>

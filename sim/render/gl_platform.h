@@ -1,4 +1,4 @@
-// Purpose: where a rasteriser's OpenGL comes from.
+// Platform of an OpenGL context.
 #pragma once
 
 namespace sim {

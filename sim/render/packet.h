@@ -1,4 +1,5 @@
-// Purpose: the inner loop's data and its one entry, in plain arrays: sixteen rays at a time. Private to sim/render.
+// Packet kernel, the inner loop of the ray tracer: its data in plain arrays, sixteen rays at a time. Private to
+// sim/render.
 //
 // The loop (packet.inc) is compiled several times, for several instruction sets, and PacketKernel() picks the best that
 // this machine has. Those files must therefore not use inline functions of other headers: the linker keeps only one
@@ -21,8 +22,8 @@ struct alignas(64) LaneInts {
   std::int32_t v[kLanes];
 };
 
-// What is looked up at a hit, in half a cache line: texture coordinates at corner 0 and the differences of corners 1 and 2
-// to them, since value(u, v) = value_0 + u (value_1 - value_0) + v (value_2 - value_0).
+// What is looked up at a hit, in half a cache line: texture coordinates at corner 0 and the differences of corners 1
+// and 2 to them, since value(u, v) = value_0 + u (value_1 - value_0) + v (value_2 - value_0).
 struct alignas(32) TriangleShading {
   float uv[2], uv_du[2], uv_dv[2];
   // Low 24 bits: the material; then 4 bits each: log2 of the baked light's resolution on the front and on the back
@@ -57,8 +58,8 @@ struct GlossShading {
   PictureShading picture;
   std::int32_t mirrors;  // -1, or 0: Lambert alone
 };
-// A rectangle that shines towards its normal, as it is seen in what mirrors. A point of its plane is corner + a u + b v with a = dual_u . (point -
-// corner), b likewise.
+// A rectangle that shines towards its normal, as it is seen in what mirrors. A point of its plane is corner + a u + b v
+// with a = dual_u . (point - corner), b likewise.
 struct LampShading {
   float corner[3], normal[3], dual_u[3], dual_v[3], radiance[3];
   std::int32_t layer;  // of RaySample::layer_factors
@@ -140,8 +141,8 @@ struct PixelBlock {
   Lanes x, y, z, x_du, x_dv, y_du, y_dv, z_du, z_dv;
   Lanes width;  // of the pixel: sqrt of |det(ray, ray_du, ray_dv)|, so that a surface at `ray * t` which faces it has t
                 // width
-  // A sample's time runs from 0 to 1. Of it the pixel's row looks at row_begin ... row_begin + row_part, and the pixel's
-  // ray at the fraction `moment` + RaySample::moment of that, less 1 where it is not below.
+  // A sample's time runs from 0 to 1. Of it the pixel's row looks at row_begin ... row_begin + row_part, and the
+  // pixel's ray at the fraction `moment` + RaySample::moment of that, less 1 where it is not below.
   Lanes row_begin, moment;
   float row_part;
   Lanes lens_cos, lens_sin;         // the turn of the lens's points

@@ -1,4 +1,4 @@
-// Purpose: the ray of a pixel's centre where the table's accuracy is not enough: truth, and what is seen at an edge.
+// Ray through the centre of a pixel to 1e-6 px, for truth: the lookup table of Camera::Ray is less accurate.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -9,8 +9,8 @@
 
 namespace sim {
 
-// In C, of any length: the camera's table, then one Newton step on Project, which takes the table's 0.003 px to 1e-6 px.
-// In small pictures, whose pixels are wide and bent, it may not: then the lens itself is inverted.
+// In C, of any length: the camera's table, then one Newton step on Project, which takes the table's 0.003 px to 1e-6
+// px. In small pictures, whose pixels are wide and bent, it may not: then the lens itself is inverted.
 inline glm::dvec3 ExactRay(const Camera& camera, int x, int y) {
   constexpr double kExact_px = 1e-6;
   const auto u = static_cast<float>(x), v = static_cast<float>(y);

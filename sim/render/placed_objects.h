@@ -1,4 +1,4 @@
-// Purpose: where a scene's moving objects are, at a moment or through an exposure, as rays meet them. Private to sim/render.
+// Embree scene of the moving objects at their poses, with motion blur through an exposure. Private to sim/render.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace sim {
 
-// An Embree scene of its own in which each object's tree is set by T_WO at one time, or at several evenly spaced ones between
-// which Embree takes the matrices as straight. There are as many (129 at most) as it takes for the corners of all objects'
-// boxes to be within 1e-6 m of their paths in the middle between two times.
+// An Embree scene of its own in which each object's tree is set by T_WO at one time, or at several evenly spaced ones
+// between which Embree takes the matrices as straight. There are as many (129 at most) as it takes for the corners of
+// all objects' boxes to be within 1e-6 m of their paths in the middle between two times.
 class PlacedObjects {
  public:
   // From begin_s to end_s >= begin_s; `scene` must outlive it. Several may be made at the same time. Throws

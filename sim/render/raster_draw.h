@@ -1,4 +1,4 @@
-// Purpose: drawing triangles with reversed depth: 1 at the near plane, 0 at infinity. Private to sim/render.
+// Depth-tested drawing of triangles with reversed Z: 1 at the near plane, 0 at infinity. Private to sim/render.
 #pragma once
 
 #include <glm/mat4x4.hpp>

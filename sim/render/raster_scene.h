@@ -1,4 +1,4 @@
-// Purpose: a scene in the form in which the rasteriser's shaders read it. Private to sim/render.
+// Scene tables of the rasteriser, in the form that the shaders read. Private to sim/render.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Purpose: the rasteriser's shaders (GLSL 4.50). Private to sim/render.
+// Shaders of the rasteriser (GLSL 4.50). Private to sim/render.
 //
 // A frame is made in two steps. First the triangles are drawn into a view, a pinhole picture that says which triangle
 // is seen where. Then each pixel of the picture takes its exact ray, looks up in the view which triangle that meets,
@@ -133,7 +133,8 @@ uniform sampler2DArrayShadow lasting_shadows, sample_shadows;
 layout(location = 0) out vec4 radiance;
 
 vec3 Texel(ivec3 level, ivec2 at) {
-  at += ivec2(at.x < 0 ? level.x : (at.x >= level.x ? -level.x : 0), at.y < 0 ? level.y : (at.y >= level.y ? -level.y : 0));
+  at += ivec2(at.x < 0 ? level.x : (at.x >= level.x ? -level.x : 0),
+              at.y < 0 ? level.y : (at.y >= level.y ? -level.y : 0));
   uint bits = texelFetch(texels, level.z + at.y * level.x + at.x).x;
   vec3 root = vec3(bits & 1023u, (bits >> 10) & 1023u, (bits >> 20) & 1023u) / 1023.0;
   return root * root;
@@ -202,7 +203,8 @@ void main() {
   }
   int first = number * texels_per_triangle;
   vec4 t0 = texelFetch(triangles, first), t1 = texelFetch(triangles, first + 1), t2 = texelFetch(triangles, first + 2);
-  vec4 t3 = texelFetch(triangles, first + 3), t4 = texelFetch(triangles, first + 4), t5 = texelFetch(triangles, first + 5);
+  vec4 t3 = texelFetch(triangles, first + 3), t4 = texelFetch(triangles, first + 4);
+  vec4 t5 = texelFetch(triangles, first + 5);
   vec4 t6 = texelFetch(triangles, first + 6);
 
   // Or the nearest place of the triangle, where the view and the ray differ by a part of a texel.

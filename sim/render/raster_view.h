@@ -1,6 +1,5 @@
-// Purpose: the pinhole pictures (views) into which triangles are drawn so that every ray of a lens finds its triangle.
-//          Private to sim/render.
-// Units:   tangents: x / z and y / z of a direction in the view's own axes.
+// Pinhole views that cover the rays of a lens: the render targets of the triangles. Private to sim/render.
+// Units: tangents: x / z and y / z of a direction in the view's own axes.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -15,7 +14,7 @@ namespace sim {
 constexpr int kFaceCount = 6;  // of a cube about the eye: +z, -z, +x, -x, +y, -y
 
 // The face that a direction goes through, and the directions, by rows, that are its right, its down and what it looks
-// along (a mirror image for every other face, which matters to nobody).
+// along (left-handed for every other face).
 int FaceOf(const glm::vec3& direction);
 glm::mat3 FaceFromCamera(int face);
 

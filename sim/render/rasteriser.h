@@ -1,4 +1,4 @@
-// Purpose: the renderer on OpenGL: the ray tracer's model of light on triangles that a GPU, or Mesa, has drawn.
+// Rasteriser on OpenGL 4.5: the reflection model of the ray tracer on triangles drawn by a GPU or by Mesa.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Purpose: a scene in the form in which rays meet it: Embree's tree, and tables for shading. Private to sim/render and sim/light.
+// Scene tables of the ray tracer: the bounding volume hierarchies of Embree, and shading tables. Private to sim.
 #pragma once
 
 #include <cstdint>
@@ -42,9 +42,10 @@ struct RayObject {
   Pose PoseAt(double t_s) const { return motion->At(t_s).pose; }
 };
 
-// Triangles are numbered through all meshes, in two Embree geometries: first those that are there everywhere, then those that
-// Embree has to ask about at each hit (cut-outs, visible lamps). Triangle() turns a hit into the index into every table. Those of
-// objects, two geometries in each one's own tree, come after all that stands still; baked light is not theirs.
+// Triangles are numbered through all meshes, in two Embree geometries: first those that are there everywhere, then
+// those that Embree has to ask about at each hit (cut-outs, visible lamps). Triangle() turns a hit into the index into
+// every table. Those of objects, two geometries in each one's own tree, come after all that stands still; baked light
+// is not theirs.
 class RayScene {
  public:
   // Throws std::invalid_argument for a scene with an index out of range, std::runtime_error when Embree fails.
@@ -53,7 +54,8 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  // From now on hits have this light instead of ambient light. Throws std::invalid_argument when it is not this scene's.
+  // From now on hits have this light instead of ambient light. Throws std::invalid_argument when it is not this
+  // scene's.
   void SetLight(const BakedLight& light);
   bool lamps_are_baked() const { return lamps_are_baked_; }
   // From now on metal and gloss mirror (Material::Mirrors).
@@ -74,10 +76,11 @@ class RayScene {
   std::uint32_t triangle_count() const { return still_triangles_; }  // of what stands still
   // Corner 0 ... 2 of a triangle, in W, of an object's in O.
   const glm::vec3& Corner(std::uint32_t triangle, int corner) const { return positions_[triangles_[triangle][corner]]; }
-  // Index in Scene::meshes of the mesh that a triangle is of; visible lamps count on behind the meshes, objects' meshes behind
-  // those.
+  // Index in Scene::meshes of the mesh that a triangle is of; visible lamps count on behind the meshes, objects' meshes
+  // behind those.
   std::uint32_t MeshOf(std::uint32_t triangle) const;
-  // What a triangle's shading tables say, interpolated at (u, v); the normal is neither unit nor turned towards anybody.
+  // What a triangle's shading tables say, interpolated at (u, v); the normal is not normalised and not oriented towards
+  // the viewer.
   glm::vec3 ShadingNormal(std::uint32_t triangle, float u, float v) const;
   glm::vec3 VertexColor(std::uint32_t triangle, float u, float v) const;
   glm::vec2 TextureCoordinates(std::uint32_t triangle, float u, float v) const;

@@ -1,4 +1,4 @@
-// Purpose: the renderer on Embree: primary rays, Lambert shading, shadow rays, filtered textures.
+// Ray tracer on Embree: primary rays, Lambertian reflection, shadow rays, filtered textures.
 #pragma once
 
 #include <memory>
@@ -21,12 +21,13 @@ struct RayTracerOptions {
 
 // Radiance of a surface with albedo a:
 //   L = emission + a * (sum of ambient radiances + 1/pi * sum over the other lights of V * E),
-// with E the irradiance of sim/world/light.h and V = 0 where a shadow ray meets a surface. With baked light in `rays`, that takes the place
-// of ambient light, and of the other lights too where they are baked; objects that move keep both, and cast shadows on what is not baked.
-// Textures are filtered over each ray's share of the pixel, 1/sqrt(number of rays) of its side. With reflections, what mirrors is
-// sim/render/packet_gloss.inc's model instead. The bytes are the same on machines with the same vector instructions; between others
-// (base, AVX2, AVX-512) they differ by rounding. Copies what it needs of the scene. Throws std::invalid_argument for options out of range
-// and for a scene whose indices are; std::runtime_error when Embree fails.
+// with E the irradiance of sim/world/light.h and V = 0 where a shadow ray meets a surface. With baked light in `rays`,
+// that takes the place of ambient light, and of the other lights too where they are baked; objects that move keep both,
+// and cast shadows on what is not baked. Textures are filtered over each ray's share of the pixel, 1/sqrt(number of
+// rays) of its side. With reflections, what mirrors is sim/render/packet_gloss.inc's model instead. The bytes are the
+// same on machines with the same vector instructions; between others (base, AVX2, AVX-512) they differ by rounding.
+// Copies what it needs of the scene. Throws std::invalid_argument for options out of range and for a scene whose
+// indices are; std::runtime_error when Embree fails.
 std::unique_ptr<Renderer> MakeRayTracer(const Scene& scene, const RayTracerOptions& options = {});
 // `rays` are of this scene (sim/light/cache.h: with baked light).
 std::unique_ptr<Renderer> MakeRayTracer(const Scene& scene, std::unique_ptr<RayScene> rays,

@@ -1,4 +1,4 @@
-// Purpose: the one interface between what a camera is shown and how it is computed.
+// Renderer: the radiance that a camera collects during an exposure.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,7 @@ namespace sim {
 
 class SurfaceTracer;
 
-// Results are functions of the arguments alone: not of the number of threads, of earlier calls, or of calls at the same
-// time from other threads, all of which are allowed.
+// Results are functions of the arguments alone. Concurrent calls are allowed.
 class Renderer {
  public:
   virtual ~Renderer() = default;

@@ -1,7 +1,7 @@
-// Purpose: where in a pixel, and where on an area light, the i-th ray of an exposure goes.
-// Source:  the first two dimensions of Sobol's sequence: any 2^k consecutive aligned points lie one in each elementary
-//          interval of area 2^-k (Niederreiter's (0, 2)-sequence); exclusive-oring all points with the same bits keeps
-//          that (Kollig and Keller 2002). Bits by pixel: Philox 4x32-10 (Salmon et al. 2011).
+// Sampling patterns of pixels, area lights and the lens.
+// Source: the first two dimensions of Sobol's sequence: any 2^k consecutive aligned points lie one in each elementary
+//   interval of area 2^-k (Niederreiter's (0, 2)-sequence); exclusive-oring all points with the same bits keeps that
+//   (Kollig and Keller 2002). Bits by pixel: Philox 4x32-10 (Salmon et al. 2011).
 #pragma once
 
 #include <cstdint>
@@ -20,12 +20,11 @@ inline double ToUnit(std::uint32_t fraction) { return (fraction + 0.5) * 0x1p-32
 // The i-th point of the sequence.
 PatternPoint SobolPoint(std::uint32_t i);
 
-// Where the first n points are on an area light, in parts of its sides: moved together so that their mean is its middle;
-// what that would put beyond its edge is on it.
+// The first n points on an area light, as fractions of its sides, shifted so that their mean is its centre and clamped
+// to its edges.
 std::vector<glm::dvec2> PointsOnLight(int n);
 
-// The i-th of n points of the unit disc, evenly spread (Vogel 1979's spiral), in an order that has nothing to do with
-// that of the other pattern.
+// The n points of Vogel's spiral (1979) in the unit disc, in an order that is not correlated with SobolPoint.
 struct DiscPoint {
   double x = 0.0, y = 0.0;
 };

@@ -58,7 +58,8 @@ struct Snapshot {
                             : scene.ObjectTriangle(static_cast<std::uint32_t>(object), geometry, primitive);
   }
 
-  // Where ray i meets its triangle's plane, in double: Embree's own distance is a float's. At a grazing angle its is kept.
+  // Where ray i meets its triangle's plane, in double: Embree's own distance is a float's. At a grazing angle its is
+  // kept.
   double PlaneDistance(const Packet& packet, int i, glm::dvec3 origin, glm::dvec3 direction) const {
     const std::uint32_t triangle = Triangle(packet, i);
     const std::int32_t object = Object(packet, i);

@@ -1,4 +1,4 @@
-// Purpose: which surface each pixel sees, exactly: what truth streams (depth, flow, normals, ids) are computed from.
+// Exact ray-surface intersections of pixel centres: source of depth, flow, normals and surface ids.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Purpose: what a scenario says about a world of landmarks without images. docs/point_world.md explains it.
+// Parameters of a point world (docs/point_world.md).
 #pragma once
 
 #include <glm/vec3.hpp>

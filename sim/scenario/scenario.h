@@ -1,4 +1,4 @@
-// Purpose: a scenario as plain values, and the reader of its file. docs/scenario.md has the format.
+// Scenario: all parameters of a simulation, and the reader of its file (docs/scenario.md).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Purpose: the stamps of a scenario's frames.
+// Time stamps of the frames.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Purpose: which truth a sequence is given beside poses and velocities, which it always has.
+// Selection of the truth streams of a sequence, beside poses and velocities, which are always there.
 #pragma once
 
 #include <optional>

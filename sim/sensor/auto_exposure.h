@@ -1,4 +1,4 @@
-// Purpose: exposure time and gain that follow the brightness of the picture, as cameras do.
+// Automatic exposure control: exposure time and gain from the mean brightness of the previous frame.
 #pragma once
 
 #include <string>
@@ -28,7 +28,7 @@ class AutoExposure {
   explicit AutoExposure(const SensorParams& sensor);
 
   const ExposureSetting& setting() const { return setting_; }
-  // What the frame looked like: mean radiances on the sensor (a small picture will do), before noise.
+  // Radiances of the frame on the sensor before noise; a reduced resolution suffices.
   void Meter(const RadianceImage& frame);
 
  private:

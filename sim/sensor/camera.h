@@ -1,6 +1,6 @@
-// Purpose: pixel <-> ray of the simulated camera: pinhole with radial-tangential distortion, or fisheye.
-// Source:  docs/conventions.md, "Camera model" (the models of OpenCV, TUM RGB-D and Kalibr).
-// Units:   pixels, the centre of the first pixel is (0, 0); directions in C (x right, y down, z forward).
+// Camera model: projection and back-projection, pinhole with radial-tangential distortion, or fisheye.
+// Source: docs/conventions.md, "Camera model" (the models of OpenCV, TUM RGB-D and Kalibr).
+// Units: pixels, the centre of the first pixel is (0, 0); directions in C (x right, y down, z forward).
 #pragma once
 
 #include <algorithm>

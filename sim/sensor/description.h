@@ -1,4 +1,4 @@
-// Purpose: the settings of optics and sensor, in the order in which the light meets them.
+// Parameters of optics and sensor, in the order of the signal path.
 #pragma once
 
 #include <vector>

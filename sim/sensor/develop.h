@@ -1,4 +1,4 @@
-// Purpose: what happens to a picture behind the sensor: colour from a Bayer mosaic, compression.
+// Image processing after the sensor: demosaicing, JPEG compression.
 #pragma once
 
 #include "sim/sensor/image.h"

@@ -1,5 +1,5 @@
-// Purpose: the sensor in the figures by which cameras are sold.
-// Source:  EMVA Standard 1288, release 4.0 linear, sections 2 and 3: its equations in brackets.
+// Figures of merit of the sensor by EMVA 1288.
+// Source: EMVA Standard 1288, release 4.0 linear, sections 2 and 3: its equations in brackets.
 #pragma once
 
 #include "sim/sensor/description.h"

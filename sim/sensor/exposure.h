@@ -1,4 +1,4 @@
-// Purpose: when, and through which opening, light falls on which row of the sensor.
+// Exposure: time interval of each row (global or rolling shutter) and aperture.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace sim {
 
-// Row y of h collects light for `exposure_s` around middle_s + row_delay_s (y - (h - 1) / 2): the stamp `middle_s` is the
-// middle of the exposure of the middle row, and of all rows of a global shutter (row_delay_s = 0). A negative delay
+// Row y of h collects light for `exposure_s` around middle_s + row_delay_s (y - (h - 1) / 2): the stamp `middle_s` is
+// the middle of the exposure of the middle row, and of all rows of a global shutter (row_delay_s = 0). A negative delay
 // reads from the last row to the first.
 struct Exposure {
   double middle_s = 0.0;

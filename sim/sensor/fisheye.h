@@ -1,5 +1,5 @@
-// Purpose: the fisheye lens: the angle from the optical axis, not its tangent, makes the distance in the image.
-// Source:  Kannala and Brandt 2006, as OpenCV (cv::fisheye) and Kalibr ("equidistant") write it; docs/conventions.md.
+// Fisheye projection: the image radius is a polynomial of the angle from the optical axis.
+// Source: Kannala and Brandt 2006, as OpenCV (cv::fisheye) and Kalibr ("equidistant") write it; docs/conventions.md.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Purpose: what differs from pixel to pixel and stays so: sensitivity and dark current (EMVA 1288: PRNU, DSNU).
+// Fixed-pattern noise: spatial nonuniformity of sensitivity (PRNU) and dark current (DSNU), EMVA 1288.
 #pragma once
 
 #include <cstdint>

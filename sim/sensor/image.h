@@ -1,4 +1,4 @@
-// Purpose: what the sensor delivers.
+// Digital image of the sensor.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Purpose: what the light on the sensor is, before the sensor: linear RGB radiance per pixel.
+// Linear RGB radiance on the sensor plane, by pixel.
 #pragma once
 
 #include <cstddef>

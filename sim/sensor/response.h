@@ -1,4 +1,4 @@
-// Purpose: from the filled fraction of a pixel to its byte.
+// Camera response function: from the fraction of the full scale to a code, and its inverse.
 #pragma once
 
 #include <array>

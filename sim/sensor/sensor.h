@@ -1,4 +1,5 @@
-// Purpose: light into bytes, with the noise of counting it (Janesick 2007, "Photon transfer"; EMVA 1288).
+// Sensor model: shot noise, dark current, read noise, fixed pattern, gain, saturation, response, quantisation.
+// Source: EMVA Standard 1288, release 4.0 linear; Janesick 2007, "Photon transfer".
 #pragma once
 
 #include <cstdint>
@@ -21,14 +22,15 @@ std::vector<std::string> Problems(const SensorParams& params);
 // Per pixel and channel, with L the mean linear radiance of the exposure, in the order of the light's way:
 //   light                N = full_well L / white * (exposure time / exposure_s) * (1 + photo_response_sigma z_fixed)
 //   dark current         D = (dark_current + dark_sigma z'_fixed, and more where the pixel is hot) * exposure time
-//   shot noise           n ~ Poisson(N + D); from a mean of 16 on by n = mean + sqrt(mean) z + (z^2 - 1) / 6, whose mean
-//                        is exact and whose variance is mean + 1/18
+//   shot noise           n ~ Poisson(N + D); from a mean of 16 on by n = mean + sqrt(mean) z + (z^2 - 1) / 6, whose
+//                        mean is exact and whose variance is mean + 1/18
 //   read noise           n + read_noise z'
 //   gain, black level    x = black_level + gain n / full_well, clipped to 0 ... 1 (saturation)
 //   response, bit depth  code = round((2^bit_depth - 1) R(x))
 //   development          colour from the mosaic; JPEG
-// Three channels have their full resolution unless there is a mosaic; grey is the luminance 0.2126 R + 0.7152 G + 0.0722
-// B, with one pixel's noise. z of different pixels, channels and (but for the fixed ones) frames are independent.
+// Three channels have their full resolution unless there is a mosaic; grey is the luminance 0.2126 R + 0.7152 G +
+// 0.0722 B, with one pixel's noise. z of different pixels, channels and (but for the fixed ones) frames are
+// independent.
 class Sensor {
  public:
   // width, height: of its pictures; only a fixed pattern needs them, 0 is well without. Throws std::invalid_argument
@@ -36,7 +38,8 @@ class Sensor {
   Sensor(const SensorParams& params, std::uint64_t seed, int width = 0, int height = 0);
 
   // Depends on its arguments, the settings and the seed alone. Works in the calling thread's TBB arena. Throws
-  // std::logic_error for a radiance that is negative or not a number: the renderer's fault; std::invalid_argument when the picture has another size than the fixed pattern.
+  // std::logic_error for a radiance that is negative or not a number: the renderer's fault; std::invalid_argument when
+  // the picture has another size than the fixed pattern.
   Image Capture(const RadianceImage& radiance, std::int64_t frame) const;
   // With the exposure time and the gain of this frame instead of the settings' own.
   Image Capture(const RadianceImage& radiance, std::int64_t frame, const ExposureSetting& setting) const;

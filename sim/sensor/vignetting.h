@@ -1,4 +1,4 @@
-// Purpose: the fall of illuminance towards the corners of the picture.
+// Vignetting: the fall-off of irradiance towards the corners of the image.
 #pragma once
 
 #include <string>

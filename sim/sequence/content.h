@@ -1,4 +1,4 @@
-// Purpose: what a sequence consists of: the files of each frame, and those of the whole.
+// Content of a sequence: the files of each frame, and those of the whole.
 #pragma once
 
 #include <cstdint>

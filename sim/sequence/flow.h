@@ -1,4 +1,4 @@
-// Purpose: optical flow and occlusion in closed form, from what each pixel sees.
+// Optical flow and occlusion in closed form, from the surface point that each pixel sees.
 #pragma once
 
 #include <cstdint>

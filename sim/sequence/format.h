@@ -1,4 +1,4 @@
-// Purpose: the texts of docs/sequence_format.md.
+// Text formats of docs/sequence_format.md, and image files.
 #pragma once
 
 #include <cstdint>

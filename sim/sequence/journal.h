@@ -1,5 +1,5 @@
-// Purpose: which frames of an unfinished sequence are whole: a text file with a line for each, written after the files
-//          of the frame. What has no line, or is not as its line says, is rendered again.
+// Journal of an unfinished sequence: the complete frames, a line each in a text file, appended after the files of the
+// frame. A frame without a line, or that differs from its line, is rendered again.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Purpose: points on the surfaces that a sequence shows, and where each frame sees them.
+// Surface landmarks of a sequence, and their views in each frame.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@ struct SurfaceLandmark {
   std::uint32_t mesh = 0;  // index in Scene::meshes
 };
 
-// `count` points (fewer where the camera sees next to nothing), spread over the surfaces that stand still: candidates lie under random
-// pixels (keyed by seed) of up to 64 frames spread over the whole scenario; of 8 `count` candidates each next one taken
-// is the farthest from those taken before (farthest-point sampling). A function of the scenario alone.
+// `count` points (fewer where the camera sees almost nothing), spread over the static surfaces: candidates lie under
+// random pixels (keyed by seed) of up to 64 frames spread over the whole scenario; of 8 `count` candidates each next
+// one taken is the farthest from those taken before (farthest-point sampling). A function of the scenario alone.
 std::vector<SurfaceLandmark> SpreadLandmarks(const Simulator& simulator, int count);
 
 struct LandmarkView {

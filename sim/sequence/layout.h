@@ -1,6 +1,6 @@
-// Purpose: where the parts of a sequence lie, and how its lists are written: docs/sequence_format.md has the layouts.
-// Source:  TUM RGB-D benchmark (Sturm et al. 2012); EuRoC MAV dataset in ASL's format (Burri et al. 2016); ICL-NUIM
-//          (Handa et al. 2014).
+// File layouts of a sequence (docs/sequence_format.md).
+// Source: TUM RGB-D benchmark (Sturm et al. 2012); EuRoC MAV dataset in ASL's format (Burri et al. 2016); ICL-NUIM
+//   (Handa et al. 2014).
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,5 @@
-// Purpose: the loops over samples of a PNG file: the Paeth filter, the order of bytes. Vector code, with AVX2 where
-//          there is one; all numbers are whole, so it gives the same.
-// Source:  W3C, Portable Network Graphics, third edition, 9.4.
+// Paeth filter and byte order of PNG rows, as vector code (AVX2 where available); integers, so with equal results.
+// Source: W3C, Portable Network Graphics, third edition, 9.4.
 #pragma once
 
 #include <cstddef>

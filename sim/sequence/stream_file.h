@@ -1,4 +1,4 @@
-// Purpose: a file of a sequence before it is on disk.
+// File of a sequence, in memory.
 #pragma once
 
 #include <cstdint>

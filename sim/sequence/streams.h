@@ -1,4 +1,4 @@
-// Purpose: the truth streams of a sequence as files: what there is for each frame, and for the whole.
+// Encoder of the truth streams: files of each frame, and of the whole sequence.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
 std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t first, std::int64_t last,
                                         const std::set<TruthStream>& streams);
 
-// What is known of the IMU, beside its readings and its biases.
+// Calibration file of the IMU.
 inline constexpr const char* kImuYaml = "imu0/sensor.yaml";
 
 // All names at a sequence's top level that either may make.

@@ -1,5 +1,4 @@
-// Purpose: a simulated sequence on disk, frame by frame, so that whatever stops the work leaves frames that can be used
-//          and gone on from.
+// Writer of a sequence: frame by frame, in parallel, resumable after any interruption.
 #pragma once
 
 #include <condition_variable>

@@ -1,4 +1,4 @@
-// Purpose: what a scenario says about its world, before any file is read.
+// Parameters of a world. No file has been read yet.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Purpose: what a glTF file asks for that we do not do, by name. assimp leaves such things out without a word.
+// Unsupported features of a glTF file, by name: assimp omits them without a message.
 #pragma once
 
 #include <filesystem>

@@ -27,7 +27,8 @@ void CheckPng(Bytes bytes) {
     const std::size_t length = BigEndian32(bytes.subspan(at));
     if (length > bytes.size() - at - 12) throw std::runtime_error("truncated PNG: a chunk is cut off");
     const Bytes type_and_data = bytes.subspan(at + 4, length + 4);
-    if (libdeflate_crc32(0, type_and_data.data(), type_and_data.size()) != BigEndian32(bytes.subspan(at + 8 + length))) {
+    if (libdeflate_crc32(0, type_and_data.data(), type_and_data.size()) !=
+        BigEndian32(bytes.subspan(at + 8 + length))) {
       throw std::runtime_error("damaged PNG: wrong checksum in the chunk at byte " + std::to_string(at));
     }
     const std::array<std::uint8_t, 4> end{'I', 'E', 'N', 'D'};

@@ -1,4 +1,4 @@
-// Purpose: picture files into bytes, refusing those that a decoder would quietly fill up with grey.
+// Decoder of image files that refuses damaged ones, which decoders complete with grey.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@ struct DecodedImage {
   std::vector<std::uint8_t> alpha;  // width * height where it was asked for and the picture has it, or nothing
 };
 
-// Decodes the kinds and sizes of picture that tools/base/limits/picture.h lets pass (PNG, JPEG, BMP, TIFF, WebP, ...) to 8 bits a channel.
-// EXIF orientation is not applied.
-// PNG chunks (lengths, checksums, the end chunk) and JPEG segments (the end marker) are checked first, since decoders
-// accept some truncated files. Throws std::runtime_error saying what is wrong, without a file name.
+// Decodes the kinds and sizes of picture that tools/base/limits/picture.h lets pass (PNG, JPEG, BMP, TIFF, WebP, ...)
+// to 8 bits a channel. EXIF orientation is not applied. PNG chunks (lengths, checksums, the end chunk) and JPEG
+// segments (the end marker) are checked first, since decoders accept some truncated files. Throws std::runtime_error
+// saying what is wrong, without a file name.
 DecodedImage DecodeImage(std::span<const std::uint8_t> bytes, bool with_alpha = false);
 
 }  // namespace sim

@@ -1,4 +1,4 @@
-// Purpose: the files that an importer may open, and what its process may use. Private to sim/world.
+// File access and resource limits of the import process. Private to sim/world.
 #pragma once
 
 #include <assimp/DefaultIOSystem.h>
@@ -10,7 +10,7 @@
 
 namespace sim {
 
-// The calling process says nothing more and leaves no core file.
+// Silences the calling process: no output, no core file.
 void SilenceProcess();
 
 // Whether `file`, links followed, lies in the mesh's folder or deeper. A mesh that is itself a link has two: where it

@@ -1,6 +1,6 @@
-// Purpose: what lights a world. Radiance, irradiance and intensity are linear RGB in one arbitrary but common unit: a white
-//          Lambert surface (albedo 1) under irradiance pi has radiance 1, and radiance 1 is what the sensor calls white
-//          at unit exposure. Directions and positions are in W.
+// Light sources. Radiance, irradiance and intensity are linear RGB in one arbitrary but common unit: a white Lambertian
+// surface (albedo 1) under irradiance pi has radiance 1, and radiance 1 is what the sensor calls white at unit
+// exposure. Directions and positions are in W.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -40,8 +40,8 @@ struct PointLight {
 
 // A parallelogram with corner `corner` and sides `side_u`, `side_v` that shines on the side of cross(side_u, side_v),
 // with the same radiance in all directions: soft shadows. Sample i of n of an exposure uses the i-th point of a fixed
-// n-point pattern on the light, the same for all pixels and frames: no noise, but at n = 1 a hard shadow. Where it is `visible`,
-// it is seen from the side on which it shines, as a surface of that radiance; it never casts a shadow.
+// n-point pattern on the light, the same for all pixels and frames: no noise, but at n = 1 a hard shadow. Where it is
+// `visible`, it is seen from the side on which it shines, as a surface of that radiance; it never casts a shadow.
 struct RectLight {
   glm::dvec3 corner{0.0};
   glm::dvec3 side_u{1.0, 0.0, 0.0};
@@ -53,10 +53,10 @@ struct RectLight {
 
 using Light = std::variant<AmbientLight, SunLight, PointLight, RectLight>;
 
-// That of a lamp; steady for the others, and for lamps of no depth.
+// The flicker of a lamp; steady for other lights, and for lamps of depth 0.
 Flicker FlickerOf(const Light& light);
-// All different ones of some lights: steady first, then in the order of the lights. Throws std::invalid_argument for more than 8:
-// a renderer keeps the light of each apart.
+// Distinct flickers of the lights: steady first, then in their order. Throws std::invalid_argument for more than 8: a
+// renderer keeps the light of each apart, in layers.
 constexpr std::size_t kMaxFlickers = 8;
 std::vector<Flicker> Flickers(const std::vector<Light>& lights);
 int LayerOf(const Light& light, const std::vector<Flicker>& flickers);

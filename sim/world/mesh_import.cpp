@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/world/mesh_serialization.h"
 #include "sim/world/importer_files.h"
+#include "sim/world/mesh_serialization.h"
 
 namespace sim {
 namespace {

@@ -1,7 +1,6 @@
-// Purpose: one mesh file through assimp, which is kept at a distance: in a process of its own, with limits on time,
-// memory and counts, and
-//          without files outside the mesh's folder. Private to sim/world.
-// Source:  docs/reliability.md, "Hostile input".
+// Import of a mesh file by assimp in a child process: limits on time, memory and counts, no files outside the folder of
+// the mesh. Private to sim/world.
+// Source: docs/reliability.md, "Hostile input".
 #pragma once
 
 #include <assimp/scene.h>

@@ -1,4 +1,4 @@
-// Purpose: one mesh file, through assimp, into the scene.
+// Loader of a mesh file into a scene.
 #pragma once
 
 #include <map>
@@ -9,8 +9,7 @@
 
 namespace sim {
 
-// Textures that are already in the scene, by file (embedded ones: by file and their name in it); -1: was found to be
-// bad.
+// Indices of textures in the scene, by file (embedded ones: by file and their name in it); -1: unreadable.
 using TextureCache = std::map<std::string, int>;
 
 // Appends the file's meshes (with the transforms of its nodes and of `description`), the materials and textures that

@@ -1,4 +1,4 @@
-// Purpose: the materials and pictures of a mesh file, from assimp's into the scene. Private to sim/world.
+// Materials and textures of a mesh file. Private to sim/world.
 #pragma once
 
 #include <assimp/scene.h>

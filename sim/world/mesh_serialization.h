@@ -1,5 +1,4 @@
-// Purpose: what an importer made of a mesh file, as bytes: it comes from another process (mesh_import.h). Private to
-// sim/world.
+// Serialisation of an imported scene, for the way out of the import process (mesh_import.h). Private to sim/world.
 #pragma once
 
 #include <assimp/scene.h>
@@ -12,11 +11,11 @@
 
 namespace sim {
 
-// Of limits on what a file may unpack to; empty: none is exceeded. Counts are of the whole file.
+// The limit on the counts of a whole file that is exceeded; empty: none.
 std::string MeshCountProblem(const aiScene& scene);
 
-// Nodes, meshes (positions, normals, first colours, texture coordinates, faces), materials and textures: what is made
-// use of.
+// Only what the loader reads: nodes, meshes (positions, normals, first colours, texture coordinates, faces), materials,
+// textures.
 std::vector<std::uint8_t> ToBytes(const aiScene& scene);
 // Throws std::runtime_error where the bytes end too early or name what is not there.
 std::unique_ptr<aiScene> SceneFromBytes(std::span<const std::uint8_t> bytes);

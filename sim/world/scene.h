@@ -1,5 +1,4 @@
-// Purpose: a world in memory, ready to be rendered: triangles in W, objects that move, materials, textures in linear light,
-//          lights.
+// Scene: triangles in W, moving objects, materials, textures in linear light, light sources.
 #pragma once
 
 #include <filesystem>
@@ -20,8 +19,8 @@
 
 namespace sim {
 
-// Albedo = base_color * vertex colour * texture; radiance = emission * emission texture + reflected light; each where present.
-// Lambert, or, to a renderer that is asked for reflections, glTF's metallic-roughness model.
+// Albedo = base_color * vertex colour * texture; radiance = emission * emission texture + reflected light; each where
+// present. Lambert, or, to a renderer that is asked for reflections, glTF's metallic-roughness model.
 struct Material {
   std::string name;
   glm::vec3 base_color{1.0f};  // linear
@@ -68,7 +67,7 @@ struct Scene {
   std::set<std::filesystem::path> files;  // all that were looked for: meshes, materials, pictures
 };
 
-// Whether parts of the material's surfaces are not there.
+// Whether the alpha test cuts holes into surfaces of the material.
 bool IsCutOut(const Scene& scene, const Material& material);
 
 // what(): every problem that was found, one per line, each naming its file.

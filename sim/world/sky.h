@@ -1,5 +1,5 @@
-// Purpose: what is seen where no surface is: one colour, a gradient, or a picture of all directions; with baked light it also
-//          shines.
+// Sky: the radiance of rays that meet no surface. Uniform, a gradient, or an environment map; it is a light source
+// where light is baked.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,9 @@
 
 namespace sim {
 
-// Linear radiance towards a unit direction d in W, whose up is +y. Without a picture: blended linearly in d.y between `horizon`
-// (d.y = 0) and `zenith` (1) or `ground` (-1).
-// With one: equirectangular, its middle towards -z, +x to the right of it, the upper row at the zenith; `turn` more turns the
-// world to the right; bilinear.
+// Linear radiance towards a unit direction d in W, whose up is +y. Without a picture: blended linearly in d.y between
+// `horizon` (d.y = 0) and `zenith` (1) or `ground` (-1). With one: equirectangular, its middle towards -z, +x to the
+// right of it, the upper row at the zenith; `turn` more turns the world to the right; bilinear.
 struct Sky {
   glm::vec3 zenith{0.0f}, horizon{0.0f}, ground{0.0f};
   int width = 0, height = 0;       // of the picture; 0: none

@@ -1,4 +1,4 @@
-// Purpose: the sRGB transfer curve (IEC 61966-2-1), from code to linear light. Both sides in [0, 1].
+// sRGB transfer function (IEC 61966-2-1), from code to linear light. Both sides in [0, 1].
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Purpose: a picture as a surface's colour: linear light, mip chain, trilinear filtering.
+// Texture: linear light, mipmaps, trilinear filtering.
 #pragma once
 
 #include <cstdint>
@@ -19,17 +19,17 @@ struct TextureLevel {
 // Texels are kept as the square roots of linear red, green, blue in 10 bits each (red lowest): at most 1/1023 * sqrt(c)
 // from the truth, which is a ninth to a half of the step of the 8-bit sRGB picture that they come from, in 4 bytes.
 // Texture coordinates: (0, 0) is the upper left corner of the picture, (1, 1) the lower right; the centre of texel (i,
-// j) is at
-// ((i + 0.5) / width, (j + 0.5) / height). The picture repeats outside.
+// j) is at ((i + 0.5) / width, (j + 0.5) / height). The picture repeats outside.
 //
-// Texels of pictures that are no colours (normal maps, roughness) are not roots but the bytes' own values in 10 bits, and the levels are
-// means of those.
+// Texels of pictures that are no colours (normal maps, roughness) are not roots but the bytes' own values in 10 bits,
+// and the levels are means of those.
 class Texture {
  public:
   enum class Content { color, numbers };
 
-  // rgb: width * height * 3 bytes, rows from the top, sRGB-coded where they are a colour. Each level is the area-weighted mean of
-  // the one below it, in linear light. alpha: none, or width * height bytes. Throws std::invalid_argument when a size is wrong.
+  // rgb: width * height * 3 bytes, rows from the top, sRGB-coded where they are a colour. Each level is the
+  // area-weighted mean of the one below it, in linear light. alpha: none, or width * height bytes. Throws
+  // std::invalid_argument when a size is wrong.
   Texture(std::string name, int width, int height, std::span<const std::uint8_t> rgb,
           std::span<const std::uint8_t> alpha = {}, Content content = Content::color);
 
