@@ -25,10 +25,4 @@ inline std::uint32_t PackShared(const glm::vec3& color) {
   return bits;
 }
 
-inline glm::vec3 UnpackShared(std::uint32_t bits) {
-  const float scale = std::ldexp(1.0f, static_cast<int>(bits >> 27) - 24);
-  return scale * glm::vec3(static_cast<float>(bits & 511u), static_cast<float>((bits >> 9) & 511u),
-                           static_cast<float>((bits >> 18) & 511u));
-}
-
 }  // namespace sim

@@ -19,7 +19,6 @@ namespace sim {
   X(ClearNamedFramebufferfv, CLEARNAMEDFRAMEBUFFERFV)           \
   X(ClearNamedFramebufferiv, CLEARNAMEDFRAMEBUFFERIV)           \
   X(ClipControl, CLIPCONTROL)                                   \
-  X(ColorMask, COLORMASK)                                       \
   X(CompileShader, COMPILESHADER)                               \
   X(CreateBuffers, CREATEBUFFERS)                               \
   X(CreateFramebuffers, CREATEFRAMEBUFFERS)                     \
@@ -45,7 +44,6 @@ namespace sim {
   X(GetProgramiv, GETPROGRAMIV)                                 \
   X(GetShaderInfoLog, GETSHADERINFOLOG)                         \
   X(GetShaderiv, GETSHADERIV)                                   \
-  X(GetString, GETSTRING)                                       \
   X(GetUniformLocation, GETUNIFORMLOCATION)                     \
   X(LinkProgram, LINKPROGRAM)                                   \
   X(NamedBufferStorage, NAMEDBUFFERSTORAGE)                     \

@@ -138,22 +138,4 @@ float Texture::Alpha(glm::vec2 uv) const {
          255;
 }
 
-glm::vec3 Texture::Sample(glm::vec2 uv, float footprint) const {
-  const float top = static_cast<float>(levels_.size() - 1);
-  const float level = std::clamp(std::log2(std::max(footprint, 1.0f)), 0.0f, top);
-  const int lower = static_cast<int>(level);
-  const auto bilinear = [&](int l) {
-    const TextureLevel& size = levels_[static_cast<std::size_t>(l)];
-    const float x = (uv.x - std::floor(uv.x)) * static_cast<float>(size.width) - 0.5f;
-    const float y = (uv.y - std::floor(uv.y)) * static_cast<float>(size.height) - 0.5f;
-    const float x0 = std::floor(x), y0 = std::floor(y);
-    const int i = static_cast<int>(x0), j = static_cast<int>(y0);
-    const float fx = x - x0, fy = y - y0;
-    return (1 - fy) * ((1 - fx) * Texel(l, i, j) + fx * Texel(l, i + 1, j)) +
-           fy * ((1 - fx) * Texel(l, i, j + 1) + fx * Texel(l, i + 1, j + 1));
-  };
-  const float blend = level - static_cast<float>(lower);
-  return blend > 0 ? (1 - blend) * bilinear(lower) + blend * bilinear(lower + 1) : bilinear(lower);
-}
-
 }  // namespace sim

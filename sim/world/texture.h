@@ -33,10 +33,6 @@ class Texture {
   Texture(std::string name, int width, int height, std::span<const std::uint8_t> rgb,
           std::span<const std::uint8_t> alpha = {}, Content content = Content::color);
 
-  // Linear light at uv, averaged over about `footprint` level-0 texels: blends the two nearest levels by
-  // log2(footprint).
-  glm::vec3 Sample(glm::vec2 uv, float footprint) const;
-
   // Bilinear at level 0, in [0, 1]; 1 where there is no alpha.
   float Alpha(glm::vec2 uv) const;
   bool has_alpha() const { return !alpha_.empty(); }

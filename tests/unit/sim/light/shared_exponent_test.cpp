@@ -11,6 +11,12 @@
 namespace sim::test {
 namespace {
 
+glm::vec3 UnpackShared(std::uint32_t bits) {
+  const float scale = std::ldexp(1.0f, static_cast<int>(bits >> 27) - 24);
+  return scale * glm::vec3(static_cast<float>(bits & 511u), static_cast<float>((bits >> 9) & 511u),
+                           static_cast<float>((bits >> 18) & 511u));
+}
+
 TEST(SharedExponent, HalfAStep) {
   for (float scale = 1e-5f; scale < 6e4f; scale *= 1.37f) {
     const glm::vec3 color(scale, 0.37f * scale, 0.011f * scale), back = UnpackShared(PackShared(color));

@@ -1,7 +1,8 @@
-// The inner loop's texture filter against Texture::Sample and closed forms.
+// The inner loop's texture filter against a second implementation and closed forms.
 #include <gtest/gtest.h>
 
 #include "tests/unit/sim/render/worlds.h"
+#include "tests/unit/sim/world/texture_sample.h"
 
 namespace sim::test {
 namespace {
@@ -52,7 +53,7 @@ TEST(TextureLookup, AgreesWithTheTexturesOwnFilterAtAllDistances) {
         const glm::vec2 uv((x.x + 1) / 2, (x.y + 1) / 2);
         if (uv.x < 0.01f || uv.x > 0.99f || uv.y < 0.01f || uv.y > 0.99f) continue;
         ++seen;
-        const glm::vec3 expected = scene.textures[0].Sample(uv, static_cast<float>(texels));
+        const glm::vec3 expected = Sample(scene.textures[0], uv, static_cast<float>(texels));
         // The loop's log2 is good to 0.01 levels, and neighbouring levels differ by less than 1. Uv are good to 1e-5
         // texels x 100.
         for (int c = 0; c < 3; ++c) ASSERT_NEAR(image.pixel(u, v)[c], expected[c], 0.01) << z << ": " << u << ", " << v;

@@ -33,12 +33,9 @@ TEST(Texture, TexelCentresGiveThePicture) {
   const Texture texture("noise", width, height, rgb);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const glm::vec3 at_centre =
-          texture.Sample({(static_cast<float>(x) + 0.5f) / width, (static_cast<float>(y) + 0.5f) / height}, 1.0f);
       for (int c = 0; c < 3; ++c) {
         const double exact = SrgbToLinear(rgb[static_cast<std::size_t>((y * width + x) * 3 + c)] / 255.0);
         ASSERT_NEAR(texture.Texel(0, x, y)[c], exact, CodingError(exact) + 1e-7);
-        ASSERT_NEAR(at_centre[c], texture.Texel(0, x, y)[c], 1e-5);
       }
     }
   }
@@ -88,33 +85,6 @@ TEST(Texture, LevelsAverageByPlace) {
   EXPECT_NEAR(texture.Texel(1, 0, 0).x, (1 + 1 / 3.0) / (7 / 3.0), 0.001);
   EXPECT_NEAR(texture.Texel(1, 1, 0).x, (2 / 3.0 + 1) / (7 / 3.0), 0.001);
   EXPECT_NEAR(texture.Texel(1, 2, 0).x, 1 / (7 / 3.0), 0.001);
-}
-
-TEST(Texture, InterpolatesBetweenTexelsAndLevels) {
-  const Texture texture("four", 2, 2, std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255});
-  const glm::vec3 middle = texture.Sample({0.5f, 0.5f}, 1.0f);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(middle[c], 0.5f, 1e-6);
-  const glm::vec3 quarter = texture.Sample({0.375f, 0.25f}, 1.0f);  // upper row, a quarter of the way from red to green
-  EXPECT_NEAR(quarter.x, 0.75f, 1e-6);
-  EXPECT_NEAR(quarter.y, 0.25f, 1e-6);
-  const glm::vec3 fine = texture.Sample({0.25f, 0.25f}, 1.0f), coarse = texture.Sample({0.25f, 0.25f}, 2.0f),
-                  between = texture.Sample({0.25f, 0.25f}, std::sqrt(2.0f)),
-                  beyond = texture.Sample({0.25f, 0.25f}, 1e9f);
-  for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(between[c], (fine[c] + coarse[c]) / 2, 1e-6);
-    EXPECT_NEAR(beyond[c], coarse[c], 1e-6);
-  }
-}
-
-TEST(Texture, Repeats) {
-  const Texture texture("noise", 8, 4, Noise(8, 4));
-  for (const glm::vec2 uv : {glm::vec2(0.01f, 0.02f), glm::vec2(0.99f, 0.5f), glm::vec2(0.4f, 0.999f)}) {
-    const glm::vec3 a = texture.Sample(uv, 1.3f), b = texture.Sample(uv + glm::vec2(3, -5), 1.3f);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 1e-4);
-  }
-  // The border between two repeats lies halfway between the last and the first texel.
-  const glm::vec3 border = texture.Sample({0.0f, 0.125f}, 1.0f);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(border[c], (texture.Texel(0, 0, 0)[c] + texture.Texel(0, 7, 0)[c]) / 2, 1e-6);
 }
 
 TEST(Texture, WrongSizeIsRefused) {
