@@ -15,7 +15,15 @@ export const scenes = fileURLToPath(new URL("../../scenes", import.meta.url));
 export const here = mkdtempSync(join(tmpdir(), "vobench-report-page-"));
 process.on("exit", () => rmSync(here, { recursive: true, force: true }));
 
-const flags = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+const flags = [
+  "--no-sandbox",
+  "--disable-gpu",
+  "--disable-quic",
+  "--no-first-run",
+  "--disable-background-networking",
+  "--disable-component-update",
+  "--disable-sync",
+];
 
 // `check` with a browser that has nothing of its own.
 export async function withBrowser(check) {

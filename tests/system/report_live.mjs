@@ -1,6 +1,6 @@
-// A report while its run runs (--view): the page grows, says when the program has ended, and what the program leaves is the same
-// without it. tests/unit/bench/live_server_test.cpp has who is answered and who is not.
-// Usage: node report_live.mjs VOBENCH MODULES [RATE]     RATE of the frames of one second in Hz: enough that the page is seen growing
+// A report while its run runs (--view): the page grows, says when the program has ended, and what the program leaves is
+// the same without it. tests/unit/bench/live_server_test.cpp has who is answered and who is not.
+// Usage: node report_live.mjs VOBENCH MODULES [RATE]     RATE of the frames of one second in Hz: enough to see it grow
 // Exit:  0 all good, 1 something is not, 77 no Chromium here.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
@@ -12,8 +12,20 @@ import { here, program, scenes, withBrowser } from "./browser.mjs";
 
 await withBrowser(async (browser) => {
   const rate = process.argv[4] ?? 2400;
-  const words = ["run", join(scenes, "tiny.yaml"), "--system", "rb2pf,rbpf", "--set", `time.rate=${rate} Hz`, "--set", "sensor.exposure=0.2 ms"];
-  const running = spawn(program, [...words, "-o", "viewed", "--view"], { cwd: here, stdio: ["ignore", "ignore", "pipe"] });
+  const words = [
+    "run",
+    join(scenes, "tiny.yaml"),
+    "--system",
+    "rb2pf,rbpf",
+    "--set",
+    `time.rate=${rate} Hz`,
+    "--set",
+    "sensor.exposure=0.2 ms",
+  ];
+  const running = spawn(program, [...words, "-o", "viewed", "--view"], {
+    cwd: here,
+    stdio: ["ignore", "ignore", "pipe"],
+  });
   const ended = once(running, "exit");
   let said = "";
   running.stderr.setEncoding("utf8");
@@ -32,12 +44,16 @@ await withBrowser(async (browser) => {
   page.on("pageerror", (error) => complaints.push(String(error)));
   await page.goto(address);
   const seen = () =>
-    page.evaluate(() => {
-      window.vobench?.drawAll(); // those below the screen, too
-      const chart = [...(window.vobench?.charts.values() ?? [])].find((c) => c.figure.title === "Position error");
-      return [chart ? chart.drawing.getOption().series[0].data.length : 0, document.querySelector("#frames img")?.alt];
-    }).catch(() => []); // while it loads anew
-  const counts = new Set(), pictures = new Set();
+    page
+      .evaluate(() => {
+        window.vobench?.drawAll(); // those below the screen, too
+        const id = window.vobench?.figures.find((figure) => figure.title === "Position error")?.id;
+        const drawn = document.querySelector(`#${id} .frame svg svg path`)?.getAttribute("d") ?? "";
+        return [drawn.match(/[ML]/g)?.length ?? 0, document.querySelector("#frames img")?.alt];
+      })
+      .catch(() => []); // while it loads anew
+  const counts = new Set(),
+    pictures = new Set();
   while (running.exitCode === null) {
     const [count, picture] = await seen();
     if (count) counts.add(count);
@@ -60,10 +76,12 @@ await withBrowser(async (browser) => {
     // What has the command line or the time that it took in it.
     if (!entry.isFile() || ["run.json", "metrics.json", "report.html", "frames.csv"].includes(entry.name)) continue;
     const file = join(entry.parentPath ?? entry.path, entry.name);
-    assert.ok(readFileSync(file).equals(readFileSync(file.replace("/viewed/", "/unviewed/"))), `${file} depends on --view`);
+    assert.ok(
+      readFileSync(file).equals(readFileSync(file.replace("/viewed/", "/unviewed/"))),
+      `${file} depends on --view`,
+    );
     ++compared;
   }
   assert.ok(compared > 50, `${compared} files compared`);
   console.log(`saw ${counts.size} states`);
 });
-

@@ -1,10 +1,10 @@
-// The report in a real browser: every figure has its data, reading, zooming, hiding, sorting and copying work, nothing is
-// loaded, nobody is left out (axe), at 1280 and 400 pixels, in light and dark, on paper and without scripts.
+// The report in a real browser: every figure has its data, reading, zooming, hiding, saving, sorting and copying work,
+// nothing is loaded, nobody is left out (axe), at 1280 and 400 pixels, in light and dark, on paper and without scripts.
 // Usage: node report_page.mjs VOBENCH MODULES [SHOTS]     MODULES has node_modules; SHOTS is a folder for pictures
 // Exit:  0 all good, 1 something is not, 77 no Chromium here.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { statSync, writeFileSync } from "node:fs";
+import { readFileSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 
@@ -31,57 +31,82 @@ curves: [{along: noise, of: [ate_m, nees_pose_per_dof], break_at: {error: 2 cm}}
 
 // A page with all its figures drawn; anything that it complains of or asks for fails.
 async function open(browser, file, options) {
-  const context = await browser.newContext({ viewport: { width: options.width, height: 900 }, colorScheme: options.scheme ?? "light", javaScriptEnabled: options.scripts ?? true });
+  const context = await browser.newContext({
+    viewport: { width: options.width, height: 900 },
+    hasTouch: options.width < 1000,
+    colorScheme: options.scheme ?? "light",
+    javaScriptEnabled: options.scripts ?? true,
+  });
   const page = await context.newPage();
   const complaints = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(String(error)));
-  page.on("request", (request) => /^(file|data|blob):/.test(request.url()) || complaints.push(`asks for ${request.url()}`));
+  page.on(
+    "request",
+    (request) => /^(file|data|blob):/.test(request.url()) || complaints.push(`asks for ${request.url()}`),
+  );
   await page.goto(pathToFileURL(file).href);
   if (options.scripts ?? true) {
-    await page.evaluate(() => {
-      for (const details of document.querySelectorAll("details.figures")) details.open = true;
-      window.vobench.drawAll();
-    });
+    await page.evaluate(() => window.vobench.drawAll());
     await page.waitForTimeout(300);
   }
   return { context, page, complaints };
 }
 
-// Every figure's numbers are in its drawing, and the drawing has marks and ink.
+// Every figure has all its numbers in its drawing, marks on its axes, and words that are neither cut nor on top of each
+// other.
 async function checkFigures(page, name) {
   const figures = await page.evaluate(() =>
     window.vobench.figures.map((figure) => {
-      const chart = window.vobench.charts.get(figure.id);
-      if (!chart) return { title: figure.title, drawn: false };
-      const option = chart.drawing.getOption();
-      const wanted = chart.shown();
+      const frame = document.querySelector(`#${figure.id} .frame`);
+      const svg = frame?.querySelector("svg");
+      if (!svg) return { title: figure.title, drawn: false };
       const drawable = (y) => !Number.isNaN(y) && !(figure.y.logarithmic && y <= 0);
-      const finite = (series) => series.x.filter((x, i) => Number.isFinite(x) && drawable(series.y[i])).length;
-      const given = option.series.map((series) => series.data.filter((point) => point.every((v) => v !== null)).length);
-      const svg = chart.element.querySelector("svg");
+      const finite = (series) =>
+        series.x.filter((x, i) => Number.isFinite(x) && drawable(series.y[i]) && drawable(series.high?.[i] ?? 1))
+          .length;
+      const marksAt = { line: /[ML]/g, dots: /M/g, band: /[ML]/g, bars: /Z/g, interval: /M/g };
+      const groups = [...svg.querySelectorAll("svg > g")].map((group) => ({
+        draw: group.getAttribute("class"),
+        marks: group.querySelector("path").getAttribute("d").match(marksAt[group.getAttribute("class")])?.length ?? 0,
+        bad: /NaN|Infinity/.test(group.innerHTML),
+      }));
+      const texts = [...svg.querySelectorAll("text")];
+      const all = svg.getBoundingClientRect();
+      const boxes = texts.map((text) => text.getBoundingClientRect());
+      const cut = ({ left, right, top, bottom }) =>
+        left < all.left || right > all.right || top < all.top || bottom > all.bottom;
+      const meet = (a, b) => a !== b && a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
       return {
         title: figure.title,
         drawn: true,
         space: figure.kind === "space",
-        series: wanted.map((series, i) => ({ draw: series.draw, finite: finite(series), given: given[i] })),
-        ink: svg.querySelectorAll("path, circle, rect, polygon").length,
-        marks: [...svg.querySelectorAll("text")].map((text) => text.textContent).filter((text) => /\d/.test(text)).length,
-        label: chart.frame.getAttribute("aria-label"),
-        wide: svg.getBoundingClientRect().width,
+        wanted: figure.series.map((series) => ({
+          draw: series.draw,
+          marks: finite(series) * (series.draw === "band" ? 2 : 1),
+          bad: false,
+        })),
+        groups,
+        marks: texts.filter((text) => /\d/.test(text.textContent)).length,
+        cut: texts.filter((_, i) => cut(boxes[i])).map((text) => text.textContent),
+        hit: texts.filter((_, i) => boxes.some((box) => meet(box, boxes[i]))).map((text) => text.textContent),
+        label: frame.getAttribute("aria-label"),
+        wide: all.width,
       };
     }),
   );
   assert.ok(figures.length >= 3, `${name}: only ${figures.length} figures`);
   for (const figure of figures) {
     assert.ok(figure.drawn, `${name}: ${figure.title} is not drawn`);
-    assert.ok(figure.series.length > 0, `${name}: ${figure.title} has no series`);
-    for (const series of figure.series) {
-      assert.ok(series.finite > 0, `${name}: ${figure.title} has an empty series`);
-      if (series.draw === "line" || series.draw === "dots") assert.equal(series.given, series.finite, `${name}: ${figure.title}`);
-    }
-    assert.ok(figure.ink >= figure.series.length, `${name}: ${figure.title} has ${figure.ink} shapes`);
+    assert.ok(figure.wanted.length > 0, `${name}: ${figure.title} has no series`);
+    assert.ok(
+      figure.wanted.every((series) => series.marks > 0),
+      `${name}: ${figure.title} has an empty series`,
+    );
+    assert.deepEqual(figure.groups, figure.wanted, `${name}: ${figure.title}`);
     if (!figure.space) assert.ok(figure.marks >= 3, `${name}: ${figure.title} has ${figure.marks} marks`);
+    assert.deepEqual(figure.cut, [], `${name}: words are cut in ${figure.title}`);
+    assert.deepEqual(figure.hit, [], `${name}: words overlap in ${figure.title}`);
     assert.ok(figure.label.includes(figure.title), `${name}: ${figure.title} has no name`);
     assert.ok(figure.wide > 200, `${name}: ${figure.title} is ${figure.wide} px wide`);
   }
@@ -89,16 +114,23 @@ async function checkFigures(page, name) {
 }
 
 const fits = (page) => page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth);
-const rangesOf = (page, title) =>
-  page.evaluate((t) => [...window.vobench.charts.values()].find((chart) => chart.figure.title === t).ranges(), title);
-const idOf = (page, title) => page.evaluate((t) => window.vobench.figures.find((figure) => figure.title === t).id, title);
+const idOf = (page, title) =>
+  page.evaluate((t) => window.vobench.figures.find((figure) => figure.title === t).id, title);
+const rangesOf = async (page, title) =>
+  page.evaluate((id) => window.vobench.charts.get(id).ranges(), await idOf(page, title));
+// The numbers written at the axes, and how the last series is drawn.
+const numbersOf = async (page, title) => page.locator(`#${await idOf(page, title)} .frame text`).allTextContents();
+const lastPath = async (page, title) => {
+  const paths = page.locator(`#${await idOf(page, title)} .frame svg svg path`);
+  return paths.last().getAttribute("d");
+};
 
 async function checkReadingAndZoom(page) {
   const frame = page.locator(`#${await idOf(page, "Position error")} .frame`);
   await frame.scrollIntoViewIfNeeded();
   const box = await frame.boundingBox();
   // The last point, read at the right end of the frame.
-  await page.mouse.move(box.x + box.width - 18, box.y + 60);
+  await page.mouse.move(box.x + box.width - 13, box.y + 60);
   const said = await frame.locator(".readout").innerText();
   const last = await page.evaluate(() => {
     const figure = window.vobench.figures.find((f) => f.title === "Position error");
@@ -108,19 +140,26 @@ async function checkReadingAndZoom(page) {
   assert.ok(said.includes(last), `read '${said}', expected ${last}`);
 
   const before = await rangesOf(page, "Position error");
+  const numbers = await numbersOf(page, "Position error");
   const other = await rangesOf(page, "NIS of RB-PF");
+  const path = await lastPath(page, "NIS of RB-PF");
   await page.mouse.move(box.x + 120, box.y + 50);
   await page.mouse.down();
   await page.mouse.move(box.x + 200, box.y + 150, { steps: 4 });
   await page.mouse.up();
   const zoomed = await rangesOf(page, "Position error");
-  assert.ok(zoomed.x.low > before.x.low && zoomed.x.high < before.x.high && zoomed.y.high < before.y.high, "dragging does not zoom");
+  const inside = (range, all) => range[0] > all[0] && range[1] < all[1];
+  assert.ok(inside(zoomed.x, before.x) && inside(zoomed.y, before.y), "dragging does not zoom");
+  assert.notDeepEqual(await numbersOf(page, "Position error"), numbers, "the axes stay as they were");
   const followed = await rangesOf(page, "NIS of RB-PF");
   assert.deepEqual(followed.x, zoomed.x, "time is not zoomed together");
   assert.deepEqual(followed.y, other.y);
+  assert.notEqual(await lastPath(page, "NIS of RB-PF"), path, "the other chart is not drawn anew");
   await page.mouse.dblclick(box.x + 150, box.y + 100);
   assert.deepEqual(await rangesOf(page, "Position error"), before, "a double click does not show all");
+  assert.deepEqual(await numbersOf(page, "Position error"), numbers);
   assert.deepEqual(await rangesOf(page, "NIS of RB-PF"), other);
+  assert.equal(await lastPath(page, "NIS of RB-PF"), path);
 
   await frame.focus();
   await page.keyboard.press("ArrowRight");
@@ -128,35 +167,37 @@ async function checkReadingAndZoom(page) {
   assert.match(await page.locator("#status").innerText(), /^time .* s, .*RB²-PF/);
   await page.keyboard.press("+");
   const closer = await rangesOf(page, "Position error");
-  assert.ok(closer.x.high - closer.x.low < before.x.high - before.x.low, "the keyboard does not zoom");
+  assert.ok(inside(closer.x, before.x), "the keyboard does not zoom");
   await page.keyboard.press("0");
   assert.deepEqual(await rangesOf(page, "Position error"), before);
 }
 
 async function checkTurning(page) {
   const title = "In space";
-  const place = () =>
-    page.evaluate((t) => {
-      const chart = [...window.vobench.charts.values()].find((c) => c.figure.title === t);
-      const line = chart.figure.series[chart.figure.series.length - 1];
-      return chart.at(line, line.x.length - 1);
-    }, title);
   const frame = page.locator(`#${await idOf(page, title)} .frame`);
   await frame.scrollIntoViewIfNeeded();
   const box = await frame.boundingBox();
-  const before = await place();
+  const before = await lastPath(page, title);
   await page.mouse.move(box.x + 100, box.y + 100);
   await page.mouse.down();
   await page.mouse.move(box.x + 180, box.y + 130, { steps: 3 });
   await page.mouse.up();
-  const turned = await place();
-  assert.ok(Math.hypot(turned[0] - before[0], turned[1] - before[1]) > 1e-3, "dragging does not turn");
+  const turned = await lastPath(page, title);
+  assert.notEqual(turned, before, "dragging does not turn");
   await page.mouse.dblclick(box.x + 100, box.y + 100);
-  assert.deepEqual(await place(), before);
+  assert.equal(await lastPath(page, title), before);
+  await frame.focus();
+  await page.keyboard.press("ArrowUp");
+  assert.notEqual(await lastPath(page, title), before, "the keyboard does not turn");
+  await page.keyboard.press("0");
+  assert.equal(await lastPath(page, title), before);
 }
 
 async function checkHiding(page) {
-  const count = () => page.evaluate(() => [...window.vobench.charts.values()].map((chart) => chart.drawing.getOption().series.length));
+  const count = () =>
+    page.evaluate(() =>
+      [...document.querySelectorAll(".frame > svg")].map((svg) => svg.querySelectorAll("svg > g").length),
+    );
   const before = await count();
   const button = page.locator(`#${await idOf(page, "Position error")} .legend button`, { hasText: "RB-PF" });
   await button.click();
@@ -167,13 +208,40 @@ async function checkHiding(page) {
   assert.deepEqual(await count(), before);
 }
 
+// A tap reads, and what was read stays until something else is tapped.
+async function checkTouch(page) {
+  const frame = page.locator(`#${await idOf(page, "Position error")} .frame`);
+  await frame.tap({ position: { x: 200, y: 80 } });
+  assert.match(await frame.locator(".readout").innerText(), /^time .* s\n.*RB²-PF/);
+  await page.locator("h1").tap();
+  assert.ok(await frame.locator(".readout").isHidden(), "what was read stays");
+}
+
+// A saved drawing stands by itself: well-formed, with colours in the place of the page's variables.
+async function checkSaving(page) {
+  const button = page.getByRole("button", { name: "Save Position error as SVG" });
+  const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
+  assert.equal(download.suggestedFilename(), "position_error.svg");
+  const text = readFileSync(await download.path(), "utf8");
+  const faults = await page.evaluate(
+    (svg) => new DOMParser().parseFromString(svg, "image/svg+xml").querySelectorAll("parsererror").length,
+    text,
+  );
+  assert.equal(faults, 0);
+  assert.match(text, /^<svg [^>]*width="\d+".*stroke="#0072b2"/s);
+  assert.doesNotMatch(text, /var\(/);
+}
+
 async function checkTable(page) {
   const table = page.locator(".table", { has: page.locator("th", { hasText: "ATE [cm]" }) }).first();
   const column = async () => (await table.locator("tbody td:nth-child(3)").allInnerTexts()).map(Number);
   const head = table.locator("thead th", { hasText: /^ATE \[cm\]/ }).locator("button");
   await head.click();
   const rising = await column();
-  assert.deepEqual(rising, [...rising].sort((a, b) => a - b));
+  assert.deepEqual(
+    rising,
+    [...rising].sort((a, b) => a - b),
+  );
   await head.click();
   assert.deepEqual(await column(), [...rising].reverse());
   const first = (await table.locator("tbody tr").first().locator("th, td").allInnerTexts()).map((text) => text.trim());
@@ -212,7 +280,9 @@ async function checkFrames(page) {
   await holder.getByRole("button", { name: "true flow" }).click();
   assert.match(await holder.locator("figcaption").innerText(), /full colour is [\d.]+ px/);
   await holder.getByRole("button", { name: "picture", exact: true }).click();
-  const whole = await page.evaluate(() => [...document.querySelectorAll("#frames img")].every((image) => image.complete && image.naturalWidth > 0));
+  const whole = await page.evaluate(() =>
+    [...document.querySelectorAll("#frames img")].every((image) => image.complete && image.naturalWidth > 0),
+  );
   assert.ok(whole, "a picture cannot be shown");
 }
 
@@ -220,7 +290,11 @@ async function checkAccessible(page, name) {
   await page.evaluate(() => window.scrollTo(0, 0));
   await page.addScriptTag({ path: axe });
   const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
-  assert.deepEqual(violations.map((v) => `${v.id}: ${v.nodes[0].html.slice(0, 200)} (${v.nodes[0].failureSummary})`), [], name);
+  assert.deepEqual(
+    violations.map((v) => `${v.id}: ${v.nodes[0].html.slice(0, 200)} (${v.nodes[0].failureSummary})`),
+    [],
+    name,
+  );
 }
 
 async function checkPrint(page, name) {
@@ -248,11 +322,17 @@ async function checkPage(browser, { name, file }) {
       await checkReadingAndZoom(page);
       await checkTurning(page);
       await checkHiding(page);
+      await checkSaving(page);
       await checkTable(page);
       await checkFrames(page);
     }
+    if (options.width === 400 && name === "images") await checkTouch(page);
     if (options.scheme === "dark") {
-      const dark = await page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).every((c) => Number(c) < 50));
+      const dark = await page.evaluate(() =>
+        getComputedStyle(document.body)
+          .backgroundColor.match(/\d+/g)
+          .every((c) => Number(c) < 50),
+      );
       assert.ok(dark, `${label}: it is not dark`);
     }
     if (options.width === 1280 && !options.scheme) await checkPrint(page, name);

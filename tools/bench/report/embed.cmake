@@ -1,7 +1,9 @@
-# Writes OUTPUT, web.cpp.in with STYLE and, where it is given, SCRIPT put in as they are.
-file(READ "${STYLE}" style)
+# Writes OUTPUT: web.cpp.in with the files of WEB, a style and scripts, put in as they are.
+list(POP_FRONT WEB style_file)
+file(READ "${style_file}" style)
 set(script "")
-if(SCRIPT)
-  file(READ "${SCRIPT}" script)
-endif()
+foreach(file IN LISTS WEB)
+  file(READ "${file}" part)
+  string(APPEND script "${part}\n")
+endforeach()
 configure_file("${CMAKE_CURRENT_LIST_DIR}/web.cpp.in" "${OUTPUT}" @ONLY)

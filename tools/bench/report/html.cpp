@@ -73,27 +73,16 @@ std::string Html(const Page& page) {
       std::string(kPolicy) + (page.live ? "; connect-src 'self'" : "") +
       "\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>" + Escape(page.title) +
       " – vobench</title><style>" + Style() + "</style></head><body><main>\n<h1>" + Escape(page.title) +
-      "</h1>\n<div id=\"summary\">" + page.summary + "</div>\n";
-  if (HasScript()) {
-    html +=
-        "<p class=\"hint unscripted\">Diagrams need scripts, which this browser does not run here. Words and "
-        "tables are complete.</p>\n";
-  } else {
-    html +=
-        "<p class=\"hint\">This program was built without the report's scripts: there are words and tables, "
-        "and no diagrams.</p>\n";
-  }
+      "</h1>\n<div id=\"summary\">" + page.summary +
+      "</div>\n<p class=\"hint unscripted\">Diagrams need scripts, which this browser does not run here. Words and "
+      "tables are complete.</p>\n";
   std::size_t number = 0;
   for (std::size_t i = 0; i < page.sections.size(); ++i) {
     if (page.frames && i == (page.live ? 0 : page.sections.size() - 1)) html += FramesSection(*page.frames);
     html += Of(page.sections[i], number);
   }
-  html += "</main>";
-  if (HasScript()) {
-    html += "<script type=\"application/json\" id=\"data\">" + DataJson(page) + "</script>\n<script>" + Script() +
-            "</script>";
-  }
-  return html + "</body></html>\n";
+  return html + "</main><script type=\"application/json\" id=\"data\">" + DataJson(page) + "</script>\n<script>" +
+         Script() + "</script></body></html>\n";
 }
 
 std::string Table(const std::string& caption, const std::vector<std::vector<std::string>>& rows) {

@@ -28,8 +28,8 @@ struct Page {
   bool live = false;                       // it asks for "data" beside it every second: DataJson, made anew
 };
 
-// Page and data stay below 3 MB: figures are thinned to 150 000 numbers. Without scripts (or where the program was
-// built without them) words and tables are all there is to see, and the page says so.
+// Page and data stay below 3 MB: figures are thinned to 150 000 numbers. A browser without scripts shows words and
+// tables, and says so.
 std::string Html(const Page& page);
 
 // What the page's script draws; of a live page its summary as well.

@@ -1,5 +1,4 @@
-// Purpose: what tools/bench/report/web/ became in the build: the page's style and, unless VOBENCH_REPORT_SCRIPTS is off, its
-//          script with the licences of what it contains.
+// Purpose: the page's style and script: the files of tools/bench/report/web/, embedded by the build.
 #pragma once
 
 #include <string>
@@ -7,7 +6,6 @@
 namespace report {
 
 const std::string& Style();
-const std::string& Script();  // empty without
-bool HasScript();
+const std::string& Script();
 
 }  // namespace report

@@ -11,7 +11,6 @@
 #include "tools/bench/report/result_data.h"
 #include "tools/bench/report/text.h"
 #include "tools/bench/report/text_summary.h"
-#include "tools/bench/report/web.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "tools/judge/evaluation/trajectory.h"
 #include "tools/judge/evaluation/whole_file.h"
@@ -83,20 +82,18 @@ TEST(WriteReport, ShowsWhatWasFound) {
   }
   EXPECT_THAT(html, HasSubstr("RB²-PF has the smaller ATE in <b>3 of 3 seeds</b> against RB-PF"));
   EXPECT_THAT(html, HasSubstr("scenes/spiral &amp; &lt;co&gt;.yaml"));
-  if (HasScript()) {
-    const nlohmann::json data = DataOf(html);
-    for (const char* title :
-         {"In space", "From above", "From the side", "Position error", "Orientation error", "NEES of the pose",
-          "NEES of the pose, blind to scale", "NEES of the velocity", "NIS of RB-PF", "Features of RB²-PF",
-          "Time of RB-PF", "Map of RB-PF", "Error of position x", "Error of angular velocity about camera z",
-          "Position y", "Rotation about camera z since the start"}) {
-      EXPECT_FALSE(FigureOf(data, title).is_null()) << title;
-    }
-    EXPECT_EQ(CountOf(html, "<figure class=\"figure\" id=\"f"), data.at("figures").size());
-    EXPECT_EQ(data.at("systems"), (nlohmann::json{"RB²-PF", "RB-PF"}));
-    EXPECT_GE(data.at("frames").at("frames").size(), 10u);
-    EXPECT_EQ(data.at("frames").at("frames")[0].at("features").size(), 2u);
+  const nlohmann::json data = DataOf(html);
+  for (const char* title :
+       {"In space", "From above", "From the side", "Position error", "Orientation error", "NEES of the pose",
+        "NEES of the pose, blind to scale", "NEES of the velocity", "NIS of RB-PF", "Features of RB²-PF",
+        "Time of RB-PF", "Map of RB-PF", "Error of position x", "Error of angular velocity about camera z",
+        "Position y", "Rotation about camera z since the start"}) {
+    EXPECT_FALSE(FigureOf(data, title).is_null()) << title;
   }
+  EXPECT_EQ(CountOf(html, "<figure class=\"figure\" id=\"f"), data.at("figures").size());
+  EXPECT_EQ(data.at("systems"), (nlohmann::json{"RB²-PF", "RB-PF"}));
+  EXPECT_GE(data.at("frames").at("frames").size(), 10u);
+  EXPECT_EQ(data.at("frames").at("frames")[0].at("features").size(), 2u);
   for (const JudgedRun& run : judged)
     EXPECT_THAT(html, HasSubstr("<td>" + Fixed(100 * run.metrics.errors.sim3.position.rmse, 2)));
   EXPECT_THAT(html, HasSubstr("<th scope=\"row\">constant velocity</th>"));
@@ -118,7 +115,6 @@ TEST(WriteReport, LoadsNothing) {
 
 // What a reader reads off a figure are the judge's numbers.
 TEST(WriteReport, FiguresHaveTheNumbersOfTheJudge) {
-  if (!HasScript()) GTEST_SKIP() << "built without scripts";
   const TemporaryFolder folder;
   WriteFakeResult(folder.path(), {});
   const nlohmann::json data = DataOf(PageOf(folder));
@@ -199,7 +195,6 @@ TEST(WriteReport, ShowsAnEstimateBesideTheTruthOfItsOwnSeed) {
   const std::string html = PageOf(folder);
   EXPECT_THAT(
       html, HasSubstr("Every seed flies a path of its own; shown is that of seed " + std::to_string(shown.entry.seed)));
-  if (!HasScript()) return;
   // From above: the truth and one run of each system, all in the same place.
   const nlohmann::json drawn = DataOf(html), above = FigureOf(drawn, "From above");
   ASSERT_EQ(above.at("series").size(), 3u);
@@ -211,7 +206,6 @@ TEST(WriteReport, ShowsAnEstimateBesideTheTruthOfItsOwnSeed) {
 
 // Of a hundred seeds ten are drawn: the typical one, the best, the worst, and some between.
 TEST(WriteReport, OfManySeedsDrawsAFew) {
-  if (!HasScript()) GTEST_SKIP() << "built without scripts";
   const TemporaryFolder folder;
   FakeOptions options;
   options.frames = 30;
@@ -326,7 +320,6 @@ TEST(WriteReport, StaysSmall) {
   const std::string html = PageOf(folder);
   EXPECT_LT(html.size(), 3'000'000u);
   ExpectWellFormed(html);
-  if (!HasScript()) return;
   const nlohmann::json data = DataOf(html);
   EXPECT_GE(data.at("frames").at("frames").size(), 4u);
   const auto& errors = ReadResult(folder.path()).Typical("rb2pf").judged->metrics.errors.sim3.position_errors;
