@@ -15,8 +15,13 @@ constexpr std::uint64_t kMostNodes = 1 << 20;     // and meshes, materials
 constexpr int kDeepestNode = 1000;
 constexpr std::uint64_t kMostTextureBytes = std::uint64_t{1} << 32;
 
+std::runtime_error Broken() { return std::runtime_error("the importer's answer is broken off"); }
+
+// Writer and Reader have the same members: one function per type describes both directions.
 class Writer {
  public:
+  static constexpr bool kReads = false;
+
   template <class T>
   void Value(const T& value) {
     Array(&value, 1);
@@ -27,15 +32,10 @@ class Writer {
     const auto* from = reinterpret_cast<const std::uint8_t*>(values);
     if (count > 0) bytes_.insert(bytes_.end(), from, from + count * sizeof(T));
   }
+  void Count(unsigned count, std::size_t /*least*/ = 1) { Value(count); }
   void Text(const aiString& text) {
     Value(text.length);
     Array(text.data, text.length);
-  }
-  // Whether it is there, and then so many.
-  template <class T>
-  void Optional(const T* values, std::size_t count) {
-    Value(static_cast<std::uint8_t>(values != nullptr));
-    if (values != nullptr) Array(values, count);
   }
   std::vector<std::uint8_t> Take() { return std::move(bytes_); }
 
@@ -45,41 +45,36 @@ class Writer {
 
 class Reader {
  public:
+  static constexpr bool kReads = true;
+
   explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
   template <class T>
-  T Value() {
-    T value{};
+  void Value(T& value) {
     Copy(&value, 1);
-    return value;
+  }
+  template <class T>
+  void Array(T*& values, std::size_t count) {
+    if (count > bytes_.size() / sizeof(T)) throw Broken();
+    if (count == 0) return;
+    values = new T[count];
+    Copy(values, count);
   }
   // A number of things that take `least` bytes each.
-  unsigned Count(std::size_t least = 1) {
-    const auto count = Value<unsigned>();
-    if (count > bytes_.size() / least) throw Broken();
-    return count;
+  void Count(unsigned& count, std::size_t least = 1) {
+    unsigned wanted = 0;
+    Value(wanted);
+    if (wanted > bytes_.size() / least) throw Broken();
+    count = wanted;
   }
-  template <class T>
-  T* Array(std::size_t count) {
-    if (count > bytes_.size() / sizeof(T)) throw Broken();
-    if (count == 0) return nullptr;
-    std::unique_ptr<T[]> values(new T[count]);
-    Copy(values.get(), count);
-    return values.release();
+  void Text(aiString& text) {
+    ai_uint32 length = 0;
+    Value(length);
+    if (length >= sizeof text.data) throw Broken();
+    Copy(text.data, length);
+    text.data[length] = '\0';
+    text.length = length;
   }
-  template <class T>
-  T* Optional(std::size_t count) {
-    return Value<std::uint8_t>() != 0 ? Array<T>(count) : nullptr;
-  }
-  aiString Text() {
-    aiString text;
-    text.length = Value<ai_uint32>();
-    if (text.length >= sizeof text.data) throw Broken();
-    Copy(text.data, text.length);
-    text.data[text.length] = '\0';
-    return text;
-  }
-  static std::runtime_error Broken() { return std::runtime_error("the importer's answer is broken off"); }
 
  private:
   template <class T>
@@ -93,75 +88,61 @@ class Reader {
   std::span<const std::uint8_t> bytes_;
 };
 
-void Write(Writer& out, const aiNode& node) {
-  out.Value(node.mTransformation);
-  out.Value(node.mNumMeshes);
-  out.Array(node.mMeshes, node.mNumMeshes);
-  out.Value(node.mNumChildren);
-  for (unsigned i = 0; i < node.mNumChildren; ++i) Write(out, *node.mChildren[i]);
+// An array that may be missing.
+template <class Io, class T>
+void PassOptional(Io& io, T*& values, std::size_t count) {
+  std::uint8_t there = values != nullptr;
+  io.Value(there);
+  if (there != 0) io.Array(values, count);
 }
 
-std::unique_ptr<aiNode> ReadNode(Reader& in, unsigned meshes, int depth = 0) {
-  if (depth > kDeepestNode) throw Reader::Broken();
-  auto node = std::make_unique<aiNode>();
-  node->mTransformation = in.Value<aiMatrix4x4>();
-  const unsigned named = in.Count(sizeof(unsigned));
-  node->mMeshes = in.Array<unsigned>(named);
-  node->mNumMeshes = named;
+// Pointers to what `pass` passes. `count` counts those that are there, should it throw.
+template <class Io, class T, class Pass>
+void PassList(Io& io, T**& list, unsigned& count, const Pass& pass) {
+  unsigned wanted = count;
+  io.Count(wanted);
+  if (Io::kReads && wanted > 0) list = new T*[wanted]();
+  for (unsigned i = 0; i < wanted; ++i) {
+    if (Io::kReads) list[i] = new T, count = i + 1;
+    pass(*list[i]);
+  }
+}
+
+template <class Io>
+void PassNode(Io& io, aiNode& node, unsigned meshes, int depth) {
+  if (depth > kDeepestNode) throw Broken();
+  io.Value(node.mTransformation);
+  unsigned named = node.mNumMeshes;
+  io.Count(named, sizeof(unsigned));
+  io.Array(node.mMeshes, named);
+  node.mNumMeshes = named;
   for (unsigned i = 0; i < named; ++i) {
-    if (node->mMeshes[i] >= meshes) throw Reader::Broken();
+    if (node.mMeshes[i] >= meshes) throw Broken();
   }
-  const unsigned children = in.Count();
-  if (children > 0) node->mChildren = new aiNode*[children]();
-  for (unsigned i = 0; i < children; ++i) {
-    node->mChildren[i] = ReadNode(in, meshes, depth + 1).release();
-    node->mNumChildren = i + 1;
-  }
-  return node;
+  PassList(io, node.mChildren, node.mNumChildren, [&](aiNode& child) { PassNode(io, child, meshes, depth + 1); });
 }
 
-void Write(Writer& out, const aiMesh& mesh) {
+template <class Io>
+void PassMesh(Io& io, aiMesh& mesh, unsigned materials) {
+  io.Text(mesh.mName);
+  io.Value(mesh.mPrimitiveTypes);
+  io.Value(mesh.mMaterialIndex);
+  if (mesh.mMaterialIndex >= materials) throw Broken();
+  io.Count(mesh.mNumVertices, sizeof(aiVector3D));
   const std::size_t n = mesh.mNumVertices;
-  out.Text(mesh.mName);
-  out.Value(mesh.mPrimitiveTypes);
-  out.Value(mesh.mMaterialIndex);
-  out.Value(mesh.mNumVertices);
-  out.Array(mesh.mVertices, n);
-  out.Optional(mesh.mNormals, n);
-  out.Optional(mesh.mColors[0], n);
-  for (const aiVector3D* uvs : mesh.mTextureCoords) out.Optional(uvs, n);
-  out.Value(mesh.mNumFaces);
+  io.Array(mesh.mVertices, n);
+  PassOptional(io, mesh.mNormals, n);
+  PassOptional(io, mesh.mColors[0], n);
+  for (aiVector3D*& uvs : mesh.mTextureCoords) PassOptional(io, uvs, n);
+  io.Count(mesh.mNumFaces, sizeof(unsigned));
+  if (Io::kReads && mesh.mNumFaces > 0) mesh.mFaces = new aiFace[mesh.mNumFaces];
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
-    const aiFace& face = mesh.mFaces[i];
-    out.Value(face.mNumIndices);
-    out.Array(face.mIndices, face.mNumIndices);
+    io.Count(mesh.mFaces[i].mNumIndices, sizeof(unsigned));
+    io.Array(mesh.mFaces[i].mIndices, mesh.mFaces[i].mNumIndices);
   }
 }
 
-std::unique_ptr<aiMesh> ReadMesh(Reader& in, unsigned materials) {
-  auto mesh = std::make_unique<aiMesh>();
-  mesh->mName = in.Text();
-  mesh->mPrimitiveTypes = in.Value<unsigned>();
-  mesh->mMaterialIndex = in.Value<unsigned>();
-  if (mesh->mMaterialIndex >= materials) throw Reader::Broken();
-  const unsigned n = in.Count(sizeof(aiVector3D));
-  mesh->mVertices = in.Array<aiVector3D>(n);
-  mesh->mNumVertices = n;
-  mesh->mNormals = in.Optional<aiVector3D>(n);
-  mesh->mColors[0] = in.Optional<aiColor4D>(n);
-  for (aiVector3D*& uvs : mesh->mTextureCoords) uvs = in.Optional<aiVector3D>(n);
-  const unsigned faces = in.Count(sizeof(unsigned));
-  if (faces > 0) mesh->mFaces = new aiFace[faces];
-  mesh->mNumFaces = faces;
-  for (unsigned i = 0; i < faces; ++i) {
-    const unsigned corners = in.Count(sizeof(unsigned));
-    mesh->mFaces[i].mIndices = in.Array<unsigned>(corners);
-    mesh->mFaces[i].mNumIndices = corners;
-  }
-  return mesh;
-}
-
-void Write(Writer& out, const aiMaterial& material) {
+void PassMaterial(Writer& out, const aiMaterial& material) {
   out.Value(material.mNumProperties);
   for (unsigned i = 0; i < material.mNumProperties; ++i) {
     const aiMaterialProperty& property = *material.mProperties[i];
@@ -174,17 +155,21 @@ void Write(Writer& out, const aiMaterial& material) {
   }
 }
 
-std::unique_ptr<aiMaterial> ReadMaterial(Reader& in) {
-  auto material = std::make_unique<aiMaterial>();
-  for (unsigned left = in.Count(); left > 0; --left) {
-    const aiString key = in.Text();
-    const auto semantic = in.Value<unsigned>(), index = in.Value<unsigned>();
-    const auto type = in.Value<aiPropertyTypeInfo>();
-    const unsigned length = in.Count();
-    const std::unique_ptr<char[]> data(in.Array<char>(length));
-    if (length > 0) material->AddBinaryProperty(data.get(), length, key.C_Str(), semantic, index, type);
+void PassMaterial(Reader& in, aiMaterial& material) {
+  unsigned left = 0;
+  for (in.Count(left); left > 0; --left) {
+    aiMaterialProperty property;  // owns its data
+    in.Text(property.mKey);
+    in.Value(property.mSemantic);
+    in.Value(property.mIndex);
+    in.Value(property.mType);
+    in.Count(property.mDataLength);
+    in.Array(property.mData, property.mDataLength);
+    if (property.mDataLength > 0) {
+      material.AddBinaryProperty(property.mData, property.mDataLength, property.mKey.C_Str(), property.mSemantic,
+                                 property.mIndex, property.mType);
+    }
   }
-  return material;
 }
 
 std::size_t TexelsOf(const aiTexture& texture) {  // or bytes, where it is a file
@@ -192,7 +177,7 @@ std::size_t TexelsOf(const aiTexture& texture) {  // or bytes, where it is a fil
                               : std::size_t{texture.mWidth} * texture.mHeight;
 }
 
-void Write(Writer& out, const aiTexture& texture) {
+void PassTexture(Writer& out, const aiTexture& texture) {
   out.Value(texture.mWidth);
   out.Value(texture.mHeight);
   out.Text(texture.mFilename);
@@ -201,24 +186,22 @@ void Write(Writer& out, const aiTexture& texture) {
   for (std::size_t i = bytes; i < TexelsOf(texture) * sizeof(aiTexel); ++i) out.Value(std::uint8_t{0});
 }
 
-std::unique_ptr<aiTexture> ReadTexture(Reader& in) {
-  auto texture = std::make_unique<aiTexture>();
-  texture->mWidth = in.Value<unsigned>();
-  texture->mHeight = in.Value<unsigned>();
-  texture->mFilename = in.Text();
-  texture->pcData = in.Array<aiTexel>(TexelsOf(*texture));
-  return texture;
+void PassTexture(Reader& in, aiTexture& texture) {
+  in.Value(texture.mWidth);
+  in.Value(texture.mHeight);
+  in.Text(texture.mFilename);
+  in.Array(texture.pcData, TexelsOf(texture));
 }
 
-// The list's length is at the same time how many of it there are, should one of them throw.
-template <class T, class Read>
-void ReadList(Reader& in, T**& list, unsigned& count, const Read& read) {
-  const unsigned wanted = in.Count();
-  if (wanted > 0) list = new T*[wanted]();
-  for (unsigned i = 0; i < wanted; ++i) {
-    list[i] = read().release();
-    count = i + 1;
-  }
+template <class Io>
+void PassScene(Io& io, aiScene& scene) {
+  PassList(io, scene.mMaterials, scene.mNumMaterials, [&](aiMaterial& material) { PassMaterial(io, material); });
+  PassList(io, scene.mTextures, scene.mNumTextures, [&](aiTexture& texture) { PassTexture(io, texture); });
+  PassList(io, scene.mMeshes, scene.mNumMeshes, [&](aiMesh& mesh) { PassMesh(io, mesh, scene.mNumMaterials); });
+  std::uint8_t has_root = scene.mRootNode != nullptr;
+  io.Value(has_root);
+  if (Io::kReads && has_root != 0) scene.mRootNode = new aiNode;
+  if (has_root != 0) PassNode(io, *scene.mRootNode, scene.mNumMeshes, 0);
 }
 
 // Nodes below and with this one, and how deep they go.
@@ -259,24 +242,14 @@ std::string MeshCountProblem(const aiScene& scene) {
 
 std::vector<std::uint8_t> ToBytes(const aiScene& scene) {
   Writer out;
-  out.Value(scene.mNumMaterials);
-  for (unsigned i = 0; i < scene.mNumMaterials; ++i) Write(out, *scene.mMaterials[i]);
-  out.Value(scene.mNumTextures);
-  for (unsigned i = 0; i < scene.mNumTextures; ++i) Write(out, *scene.mTextures[i]);
-  out.Value(scene.mNumMeshes);
-  for (unsigned i = 0; i < scene.mNumMeshes; ++i) Write(out, *scene.mMeshes[i]);
-  out.Value(static_cast<std::uint8_t>(scene.mRootNode != nullptr));
-  if (scene.mRootNode != nullptr) Write(out, *scene.mRootNode);
+  PassScene(out, const_cast<aiScene&>(scene));  // a writer changes nothing
   return out.Take();
 }
 
 std::unique_ptr<aiScene> SceneFromBytes(std::span<const std::uint8_t> bytes) {
   Reader in(bytes);
   auto scene = std::make_unique<aiScene>();
-  ReadList(in, scene->mMaterials, scene->mNumMaterials, [&] { return ReadMaterial(in); });
-  ReadList(in, scene->mTextures, scene->mNumTextures, [&] { return ReadTexture(in); });
-  ReadList(in, scene->mMeshes, scene->mNumMeshes, [&] { return ReadMesh(in, scene->mNumMaterials); });
-  if (in.Value<std::uint8_t>() != 0) scene->mRootNode = ReadNode(in, scene->mNumMeshes).release();
+  PassScene(in, *scene);
   return scene;
 }
 
