@@ -1,5 +1,5 @@
-// Purpose: conversion between the types of an odometry and those of its filter: prior to filter, belief to estimate and
-//          map. Private to vo.
+// Conversion between the types of an odometry and those of its filter: prior to filter, belief to estimate and map.
+// Private to vo.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Purpose: monocular visual odometry: one image in, one estimate out. Never throws on image content: with few or no
-//          matches it coasts on its motion model with growing covariance.
+// Monocular visual odometry: one image in, one estimate out. Never throws on image content: with few or no matches it
+// coasts on its motion model with growing covariance.
 // Source:  Zhou & Maskell, "RB2-PF: A Novel Filter-based Monocular Visual Odometry Algorithm", Algorithm 1;
 //          docs/algorithm.md.
 #pragma once

@@ -1,5 +1,5 @@
-// Purpose: visual odometry on points of known identity instead of images: the filter of Odometry without detection,
-//          matching and existence score.
+// Visual odometry on points of known identity instead of images: the filter of Odometry without detection, matching and
+// existence score.
 #pragma once
 
 #include <Eigen/Core>

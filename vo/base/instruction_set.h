@@ -1,5 +1,4 @@
-// Purpose: instruction sets that inner loops are compiled for, with dispatch at run time. All of them give the same
-//          bits.
+// Instruction sets that inner loops are compiled for, with dispatch at run time. All of them give the same bits.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Purpose: counter-based random numbers: a function of their key, independent of the order of evaluation.
+// Counter-based random numbers: a function of their key, independent of the order of evaluation.
 // Source:  Random123 (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3"), Philox 4x32-10; Box-Muller
 //          normals.
 #pragma once

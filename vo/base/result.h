@@ -1,4 +1,4 @@
-// Purpose: input prior and output of an odometry: estimate, diagnostics, map and features of a frame.
+// Input prior and output of an odometry: estimate, diagnostics, map and features of a frame.
 // Frames:  W world, C camera; p_WC and q_WC map points from C to W. See docs/conventions.md.
 #pragma once
 

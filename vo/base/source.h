@@ -1,5 +1,5 @@
-// Purpose: sources of frames in order of time: a folder of images, a video file, a camera. A frame has no field for
-//          ground truth.
+// Sources of frames in order of time: a folder of images, a video file, a camera. A frame has no field for ground
+// truth.
 #pragma once
 
 #include <cstdint>

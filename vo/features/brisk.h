@@ -1,4 +1,4 @@
-// Purpose: BRISK descriptors, and the pixel of a region with the nearest descriptor: Algorithm 1, line 3.
+// BRISK descriptors, and the pixel of a region with the nearest descriptor: Algorithm 1, line 3.
 // Source:  docs/algorithm.md, section 7; at equal rotation and scale 99.5 % of the bits are OpenCV's. Neither is
 //          estimated from the image: a corner is described upright, and searched for under the predicted warp.
 // Method:  all pixels of a window share one pattern, so each pattern point is one box filter with constant weights

@@ -1,4 +1,4 @@
-// Purpose: sampling pattern and short-distance pairs of BRISK.
+// Sampling pattern and short-distance pairs of BRISK.
 // Source:  Leutenegger, Chli & Siegwart, "BRISK: Binary Robust Invariant Scalable Keypoints", ICCV 2011; numbers and
 //          order as in OpenCV.
 // Units:   pixels, at scale 1 (a keypoint diameter of 7.2 px in OpenCV's terms).

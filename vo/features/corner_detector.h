@@ -1,5 +1,5 @@
-// Purpose: corners spread over the image by bucketing: in every cell of a grid the FAST threshold is lowered until
-//          enough are found.
+// Corners spread over the image by bucketing: in every cell of a grid the FAST threshold is lowered until enough are
+// found.
 // Source:  docs/algorithm.md, section 7; FAST-9 of OpenCV (Rosten & Drummond).
 // Units:   pixels.
 #pragma once

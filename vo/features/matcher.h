@@ -1,5 +1,5 @@
-// Purpose: guided matching: each predicted landmark is searched for at every pixel of a small window, by smallest
-//          Hamming distance; the window grows where nothing fits; the match is then registered to sub-pixel accuracy.
+// Guided matching: each predicted landmark is searched for at every pixel of a small window, by smallest Hamming
+// distance; the window grows where nothing fits; the match is then registered to sub-pixel accuracy.
 // Source:  docs/algorithm.md, section 7.
 // Units:   pixels.
 #pragma once

@@ -1,4 +1,4 @@
-// Purpose: sub-pixel registration of the patch of a landmark's first view to the present image.
+// Sub-pixel registration of the patch of a landmark's first view to the present image.
 // Source:  inverse-compositional Lucas-Kanade (Baker & Matthews, 2004), translation only, with gain and offset of
 //          brightness removed; the patch is first warped by the predicted change of view. An addition to the paper.
 // Units:   pixels, grey levels.

@@ -1,5 +1,5 @@
-// Purpose: data association of a frame, Algorithm 1, line 3: search set, guided matching and outlier rejection. Once
-//          per frame for all particles, so that all are weighted on the same data.
+// Data association of a frame, Algorithm 1, line 3: search set, guided matching and outlier rejection. Once per frame
+// for all particles, so that all are weighted on the same data.
 // Source:  docs/algorithm.md, section 7.
 #pragma once
 

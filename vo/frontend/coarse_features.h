@@ -1,5 +1,5 @@
-// Purpose: coarse-to-fine matching: the pose from a few coarse features, searched for in wide windows, predicts all
-//          others within small ones. It only guides the search; it is no measurement.
+// Coarse-to-fine matching: the pose from a few coarse features, searched for in wide windows, predicts all others
+// within small ones. It only guides the search; it is no measurement.
 // Source:  the coarse stage of Klein & Murray, "Parallel Tracking and Mapping" (2007); the pose is the robust fit of
 //          the outlier test (consensus.h) to the coarse matches alone.
 // Units:   pixels in the image; matches are on the plane z = 1.

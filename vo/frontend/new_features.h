@@ -1,5 +1,5 @@
-// Purpose: detection of the features at which landmarks begin: the corners of a calibration target, while one is
-//          expected, and corners spread over the image.
+// Detection of the features at which landmarks begin: the corners of a calibration target, while one is expected, and
+// corners spread over the image.
 // Source:  docs/algorithm.md, section 7.
 // Units:   pixels.
 #pragma once

@@ -1,5 +1,5 @@
-// Purpose: per-frame preprocessing that does not depend on earlier frames. Frames can be prepared ahead, in any thread;
-//          Odometry::Track takes them in order of time.
+// Per-frame preprocessing that does not depend on earlier frames. Frames can be prepared ahead, in any thread;
+// Odometry::Track takes them in order of time.
 #pragma once
 
 #include <opencv2/core.hpp>

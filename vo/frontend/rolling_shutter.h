@@ -1,6 +1,6 @@
-// Purpose: rolling-shutter model: row y of h is exposed at stamp + readout (y / (h - 1) - 1/2), and the camera moves in
-//          between with constant velocity. To the filter, a row is seen by a camera displaced from its position at the
-//          stamp (vo/map/row_view.h): exact at unknown depth.
+// Rolling-shutter model: row y of h is exposed at stamp + readout (y / (h - 1) - 1/2), and the camera moves in between
+// with constant velocity. To the filter, a row is seen by a camera displaced from its position at the stamp
+// (vo/map/row_view.h): exact at unknown depth.
 // Source:  docs/conventions.md (stamp); Hedborg, Forssén, Felsberg, Ringaby 2012, "Rolling shutter bundle adjustment".
 // Units:   image points on the plane z = 1, pixels where said; seconds; velocity (v in W, w in C).
 #pragma once

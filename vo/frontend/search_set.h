@@ -1,5 +1,5 @@
-// Purpose: search set of a frame: the landmarks that are predicted to be visible, at most max_searched of them.
-//          Private to vo/frontend.
+// Search set of a frame: the landmarks that are predicted to be visible, at most max_searched of them. Private to
+// vo/frontend.
 // Source:  docs/algorithm.md, section 7.
 #pragma once
 

@@ -1,5 +1,5 @@
-// Purpose: scale from a calibration target: a chessboard of known size at the start gives the inverse depths of its
-//          inner corners to a fraction of a per cent.
+// Scale from a calibration target: a chessboard of known size at the start gives the inverse depths of its inner
+// corners to a fraction of a per cent.
 // Source:  OpenCV's findChessboardCornersSB (Duda & Frese 2018, "Accurate detection and localization of checkerboard
 //          corners for calibration") and solvePnP.
 // Units:   metres, pixels.

@@ -1,4 +1,4 @@
-// Purpose: conversion of calibration coefficients, in the common order of OpenCV, ROS, EuRoC and Kalibr, to a camera.
+// Conversion of calibration coefficients, in the common order of OpenCV, ROS, EuRoC and Kalibr, to a camera.
 #pragma once
 
 #include <span>

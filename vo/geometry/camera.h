@@ -1,4 +1,4 @@
-// Purpose: camera model of the odometry: pinhole with radial-tangential distortion, or equidistant fisheye; presets.
+// Camera model of the odometry: pinhole with radial-tangential distortion, or equidistant fisheye; presets.
 // Source:  docs/conventions.md, "Camera model" (the models of OpenCV, TUM RGB-D and Kalibr).
 // Units:   pixels; the centre of the first pixel is (0, 0). Rays are (x, y) on the plane z = 1 of C.
 #pragma once

@@ -1,4 +1,4 @@
-// Purpose: reader of calibration files in the formats of common calibration tools.
+// Reader of calibration files in the formats of common calibration tools.
 // Source:  docs/conventions.md, "Camera files". All formats count pixels from the centre of the first one.
 // Units:   pixels.
 #pragma once

@@ -1,4 +1,4 @@
-// Purpose: reader of calibrations in OpenCV's XML (cv::FileStorage); its YAML is read by camera_file.h.
+// Reader of calibrations in OpenCV's XML (cv::FileStorage); its YAML is read by camera_file.h.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Purpose: rigid pose of the camera in the world, and matrix types of fixed size.
+// Rigid pose of the camera in the world, and matrix types of fixed size.
 // Frames:  W world, C camera (x right, y down, z forward). T_WC maps points from C to W. See docs/conventions.md.
 #pragma once
 

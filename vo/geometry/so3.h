@@ -1,4 +1,4 @@
-// Purpose: SO(3) as unit quaternions: exponential, logarithm, right Jacobian and its inverse.
+// SO(3) as unit quaternions: exponential, logarithm, right Jacobian and its inverse.
 // Source:  Sola, Deray, Atchuthan, "A micro Lie theory for state estimation in robotics", (132)-(147).
 // Frames:  right perturbation, q = q_hat (x) Exp(phi), phi in the body (camera) frame.
 // Units:   radians.

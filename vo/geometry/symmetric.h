@@ -1,6 +1,5 @@
-// Purpose: symmetric part of a matrix: restores the symmetry of a covariance that rounding has lost. Where large terms
-//          cancel (two images within a millisecond, then none for seconds) the asymmetry is far above the result's own
-//          precision.
+// Symmetric part of a matrix: restores the symmetry of a covariance that rounding has lost. Where large terms cancel
+// (two images within a millisecond, then none for seconds) the asymmetry is far above the result's own precision.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
-// Purpose: read-ahead: the next frames are read, decoded and prepared in a thread of their own while one is tracked.
-//          Frames and their order are the same as without it.
+// Read-ahead: the next frames are read, decoded and prepared in a thread of their own while one is tracked. Frames and
+// their order are the same as without it.
 #pragma once
 
 #include <condition_variable>

@@ -1,6 +1,5 @@
-// Purpose: reader of image sequences: TUM RGB-D layout (docs/sequence_format.md); ICL-NUIM's original layout
-//          (associations.txt, `index depth-file index image-file`, stamp = index / 30 s); EuRoC
-//          (mav0/cam0/data.csv, `stamp in ns,filename`).
+// Reader of image sequences: TUM RGB-D layout (docs/sequence_format.md); ICL-NUIM's original layout (associations.txt,
+// `index depth-file index image-file`, stamp = index / 30 s); EuRoC (mav0/cam0/data.csv, `stamp in ns,filename`).
 #pragma once
 
 #include <cstddef>

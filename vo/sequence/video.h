@@ -1,4 +1,4 @@
-// Purpose: frames of a video file, and of a live camera.
+// Frames of a video file, and of a live camera.
 // Source:  OpenCV's videoio (FFmpeg, Video4Linux).
 // Units:   nanoseconds; mid-exposure is unknown, so stamps are those of the file, or of arrival.
 #pragma once

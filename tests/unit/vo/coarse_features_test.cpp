@@ -1,4 +1,4 @@
-// Where the camera is, from few matches; which landmarks are asked; and what that is worth on images.
+// Coarse-to-fine matching: pose from few matches, choice of the coarse features, and their effect on images.
 
 #include "vo/frontend/coarse_features.h"
 
@@ -56,10 +56,10 @@ Scene MakeScene() {
   return scene;
 }
 
-// Largest distance [px] of the landmarks behind the first `pilots` from where they are said to be.
-double Worst(const Scene& scene, const vo::CoarsePose& pose, int pilots) {
+// Largest distance [px] of the landmarks beyond the first `coarse` from their predictions.
+double Worst(const Scene& scene, const vo::CoarsePose& pose, int coarse) {
   double worst = 0;
-  for (int n = pilots; n < static_cast<int>(scene.landmarks.size()); ++n) {
+  for (int n = coarse; n < static_cast<int>(scene.landmarks.size()); ++n) {
     const auto where = pose.Predict(n, kCamera, 0.7);
     if (!where) return std::numeric_limits<double>::infinity();
     const Vector2d z = scene.SeenAt(n);
@@ -119,10 +119,10 @@ TEST(CoarseFeatures, AreSettledSureAndSpread) {
   }
   vo::FeatureParams params;
   params.coarse_features = 16;
-  const std::vector<std::size_t> pilots = vo::SelectCoarseFeatures(candidates, kCamera, params);
-  ASSERT_EQ(pilots.size(), 16u);
+  const std::vector<std::size_t> coarse = vo::SelectCoarseFeatures(candidates, kCamera, params);
+  ASSERT_EQ(coarse.size(), 16u);
   std::set<std::pair<int, int>> cells;
-  for (const std::size_t i : pilots) {
+  for (const std::size_t i : coarse) {
     EXPECT_GE(i, 50u) << "the sure ones come first";
     cells.insert({static_cast<int>(candidates[i].pixel.x() / 160), static_cast<int>(candidates[i].pixel.y() / 120)});
   }
@@ -155,9 +155,9 @@ cv::Mat ViewFrom(const vo::Pose& pose, const vo_test::Texture& texture) {
   return image;
 }
 
-std::vector<vo::Estimate> Track(const std::vector<cv::Mat>& images, int pilots) {
+std::vector<vo::Estimate> Track(const std::vector<cv::Mat>& images, int coarse) {
   vo::Params params;
-  params.features.coarse_features = pilots;
+  params.features.coarse_features = coarse;
   params.motion.orientation_noise = 4;
   vo::Prior prior;
   prior.v_WC = {0.3, 0.12, 0};
@@ -185,7 +185,7 @@ TEST(CoarseFeatures, FollowAJoltAndTooManyAreNone) {
     EXPECT_EQ(without[k].covariance, too_many[k].covariance) << k;
     differs = differs || without[k].pose.p_WC != with[k].pose.p_WC;
   }
-  EXPECT_TRUE(differs) << "16 pilots are not none";
+  EXPECT_TRUE(differs) << "coarse features change the estimate";
 }
 
 // A third of a second in the dark, in which the camera turns by 0.12 rad, 58 px, that nothing foretold: how many of the

@@ -1,4 +1,4 @@
-// A rolling shutter after a gap: the velocity that straightens the rows of the first image back follows from the whole gap, not from one frame's time.
+// Velocity correction after a gap, by which the rows of a rolling shutter are corrected: it follows from the whole gap.
 #include <gtest/gtest.h>
 
 #include <cmath>
