@@ -261,7 +261,7 @@ class Baker {
   }
 
   // The lattice of twice the resolution. A new sample lies in the middle of a side of the old cells: `compute` (i, j,
-  // the two ends and the corners opposite to them, out: by layer) says true when it has computed it; else it is the
+  // the two ends and the corners opposite to them, out: by layer) returns true when it has computed it; else it is the
   // mean of the ends.
   template <class Function>
   SideLight Finer(const SideLight& old, const Function& compute) const {

@@ -19,7 +19,7 @@ std::string Join(const std::vector<std::string>& parts) {
   return text;
 }
 
-// A library that stays open: what it has started (threads of its own, say) would not survive its end.
+// A shared library that is never closed: the threads that it may have started would not survive that.
 class Library {
  public:
   explicit Library(std::initializer_list<const char*> names) {

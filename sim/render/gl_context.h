@@ -15,7 +15,7 @@ class GlContext {
  public:
   virtual ~GlContext() = default;
 
-  // While it lives the context is the calling thread's, and nobody else's: others wait.
+  // Makes the context current in the calling thread for its lifetime; other threads wait.
   class Current {
    public:
     explicit Current(GlContext& context);

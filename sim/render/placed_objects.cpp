@@ -76,7 +76,7 @@ PlacedObjects::PlacedObjects(const RayScene& scene, double begin_s, double end_s
     rtcAttachGeometryByID(scene_.get(), instance, static_cast<unsigned>(k));
     rtcReleaseGeometry(instance);
   }
-  // In one thread, as all trees: RayScene::Build says why.
+  // In one thread, as all trees: see RayScene::Build.
   tbb::task_arena(1).execute([this] { rtcCommitScene(scene_.get()); });
   const RTCError error = rtcGetDeviceError(device);
   if (error != RTC_ERROR_NONE)

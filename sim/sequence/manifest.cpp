@@ -59,7 +59,7 @@ std::vector<std::string> ManifestDifferences(const std::string& there, const std
   keys.erase("/frames");
   std::vector<std::string> differences;
   for (const std::string& key : keys) {
-    if (keys.contains("/scenario" + key)) continue;  // seed and camera: told once
+    if (keys.contains("/scenario" + key)) continue;  // seed and camera: reported once
     const auto text = [&](const Json& values) { return values.contains(key) ? values.at(key).dump() : "unset"; };
     const std::string old_value = text(a), new_value = text(b);
     if (old_value != new_value) differences.push_back(Dotted(key) + " is " + old_value + " there, not " + new_value);

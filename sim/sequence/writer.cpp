@@ -84,7 +84,7 @@ void SequenceWriter::Prepare(Start start) {
     RequireSame(whole_);
   }
   ours_ = true;
-  // The manifest comes first: it says what a folder is that a kill leaves behind.
+  // The manifest comes first: it identifies a folder that a killed process leaves behind.
   const std::vector<StreamFile> lists = WholeFiles(simulator_, content_, content_.last - content_.first);
   for (const StreamFile& file : lists) {
     if (file.path == kManifestName) WriteFile(folder_ / file.path, file.bytes);

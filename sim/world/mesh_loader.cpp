@@ -35,7 +35,7 @@ glm::dmat4 ToGlm(const aiMatrix4x4& m) {  // assimp is row-major, GLM column-maj
   return {m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4};
 }
 
-// Whether three corners lie on a line, as exactly as floats can say it.
+// Whether three corners lie on a line, within the rounding of floats.
 bool IsDegenerate(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   const glm::dvec3 ab = glm::dvec3(b) - glm::dvec3(a), ac = glm::dvec3(c) - glm::dvec3(a),
                    bc = glm::dvec3(c) - glm::dvec3(b);
