@@ -4,6 +4,7 @@
 #include "sim/world/texture.h"
 #include "tests/fuzz/hold.h"
 #include "tests/fuzz/png_sums.h"
+#include "tests/unit/sim/world/texture_sample.h"
 #include "tools/judge/verification/files.h"
 #include "vo/sequence/reader.h"
 
@@ -19,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const sim::DecodedImage image = sim::DecodeImage(bytes, with_alpha);
       constexpr std::int64_t kSmall = 1 << 20;  // a texture of more is the same work, and no decoder's
       if (std::int64_t{image.width} * image.height > kSmall) return;
-      sim::Texture("picture", image.width, image.height, image.rgb, image.alpha).Sample({0.5f, 0.5f}, 2);
+      sim::test::Sample(sim::Texture("picture", image.width, image.height, image.rgb, image.alpha), {0.5f, 0.5f}, 2);
     });
   }
   fuzz::Hold(frame.path().string(), [] { vo::SequenceReader(fuzz::Folder()).Next(); });
