@@ -115,7 +115,8 @@ class Baker {
       (i % 2 == 0 ? r.log2_front : r.log2_back) = static_cast<std::uint8_t>(sides[i].log2);
       count += sides[i].values.size() / layers_;
       if (count > kMaxSamples)
-        throw std::invalid_argument("baked light: more than 2^28 samples are needed; make render.bake.finest larger");
+        throw std::invalid_argument(
+            "baked light: more than 2^28 samples are needed; make render.bake.min_spacing larger");
     }
     baked.samples.reserve(count * layers_);
     for (std::size_t layer = 0; layer < layers_; ++layer) {
@@ -229,7 +230,7 @@ class Baker {
 
   SideLight Refine(SideLight side, std::uint32_t t, bool back) const {
     const int all = Log2Resolution(t, params_.spacing_m / 4, kMaxLog2Resolution),
-              most = Log2Resolution(t, params_.finest_m, kMaxLog2Resolution);
+              most = Log2Resolution(t, params_.min_spacing_m, kMaxLog2Resolution);
     while (side.log2 < most) {
       const bool everywhere = side.log2 < all;
       bool any = false;
@@ -347,7 +348,7 @@ std::vector<std::string> BakeWarnings(const Scene& scene, const RayScene& rays, 
          << " m: a side is divided into " << steps << " at most";
   };
   tell("samples", "spacing", params.spacing_m, kMaxLog2Coarse);
-  if (mode == LightMode::baked) tell("those of lamps", "finest", params.finest_m, kMaxLog2Resolution);
+  if (mode == LightMode::baked) tell("those of lamps", "min_spacing", params.min_spacing_m, kMaxLog2Resolution);
   if (text.tellp() > 0) warnings.push_back(text.str());
   const bool has_ambient = std::any_of(scene.lights.begin(), scene.lights.end(),
                                        [](const Light& l) { return std::holds_alternative<AmbientLight>(l); });
@@ -362,23 +363,15 @@ std::vector<std::string> BakeWarnings(const Scene& scene, const RayScene& rays, 
   return warnings;
 }
 
-std::vector<std::string> Problems(const BakeParams& p) {
-  std::vector<std::string> problems;
-  const auto require = [&](bool ok, const std::string& what) {
-    if (!ok) problems.push_back(what);
-  };
-  const auto is_power = [](int n) { return n > 0 && std::has_single_bit(static_cast<unsigned>(n)); };
-  require(p.spacing_m > 0 && std::isfinite(p.spacing_m), "spacing must be above 0");
-  require(p.finest_m > 0 && p.finest_m <= p.spacing_m, "finest must be above 0 and not above spacing");
-  require(is_power(p.paths) && p.paths <= 1 << 20,
-          "paths = " + std::to_string(p.paths) + " must be a power of two, at most 2^20");
-  require(is_power(p.lamp_rays) && p.lamp_rays <= 1 << 20,
-          "lamp_rays = " + std::to_string(p.lamp_rays) + " must be a power of two, at most 2^20");
-  return problems;
+std::vector<settings::FieldProblem> Problems(BakeParams p) {
+  settings::FieldCheck check;
+  Visit(check, p);
+  check.Require(p.min_spacing_m <= p.spacing_m, "min_spacing", p.min_spacing_m, "m must not be above spacing");
+  return check.problems;
 }
 
 BakedLight BakeLight(const Scene& scene, const RayScene& rays, LightMode mode, const BakeParams& params) {
-  for (const std::string& problem : Problems(params)) throw std::invalid_argument("baked light: " + problem);
+  ThrowIfAny(Problems(params), "baked light");
   if (mode == LightMode::direct) throw std::invalid_argument("baked light: nothing to bake");
   return Baker(scene, rays, mode, params).Bake();
 }

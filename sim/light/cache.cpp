@@ -94,7 +94,7 @@ LightHash HashOfLight(const Scene& scene, LightMode mode, const BakeParams& para
   Hasher hasher;
   hasher.Value(kVersion);
   hasher.Value(mode);
-  hasher.Value(params.spacing_m), hasher.Value(params.finest_m), hasher.Value(params.paths),
+  hasher.Value(params.spacing_m), hasher.Value(params.min_spacing_m), hasher.Value(params.paths),
       hasher.Value(params.lamp_rays);
   for (const Mesh& mesh : scene.meshes) {
     hasher.Array(mesh.positions), hasher.Array(mesh.normals), hasher.Array(mesh.uvs), hasher.Array(mesh.colors),

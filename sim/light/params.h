@@ -1,8 +1,9 @@
 // Parameters of the illumination: which part of it is baked, and how finely.
 #pragma once
 
-#include <string>
 #include <vector>
+
+#include "tools/base/settings/fields.h"
 
 namespace sim {
 
@@ -13,11 +14,22 @@ enum class LightMode {
 };
 
 struct BakeParams {
-  double spacing_m = 0.1;  // at most, between samples of a triangle's light; a side is divided into 2^8 at most
-  double finest_m = 0.01;  // at an edge of a lamp's light, where that is baked too; into 2^11 at most
-  int paths = 256;         // of each sample: a power of two
-  int lamp_rays = 64;      // of each sample to each area lamp, where lamps are baked: a power of two
+  double spacing_m = 0.1;
+  double min_spacing_m = 0.01;
+  int paths = 256;
+  int lamp_rays = 64;
 };
-std::vector<std::string> Problems(const BakeParams& params);
+
+template <class V>
+void Visit(V& v, BakeParams& p) {
+  using settings::Range, settings::Unit;
+  v("spacing", p.spacing_m, {Unit::length, Range::Positive(), "largest, of a triangle's samples; 2^8 to a side"});
+  v.Renamed("finest", "min_spacing");
+  v("min_spacing", p.min_spacing_m,
+    {Unit::length, Range::Positive(), "at edges of baked lamps' light; 2^11 to a side"});
+  v("paths", p.paths, {Range::PowerOfTwo(1 << 20), "of each sample"});
+  v("lamp_rays", p.lamp_rays, {Range::PowerOfTwo(1 << 20), "of each sample to each area lamp, where lamps are baked"});
+}
+std::vector<settings::FieldProblem> Problems(BakeParams params);
 
 }  // namespace sim

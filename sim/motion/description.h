@@ -8,30 +8,59 @@
 #include <vector>
 
 #include "sim/motion/pose.h"
+#include "tools/base/settings/fields.h"
 
 namespace sim {
+
+using settings::Range;
+using settings::Unit;
 
 // A box in W that a sampled motion is kept in: sim/motion/sampled.h.
 struct SoftWalls {
   glm::dvec3 low{0.0}, high{0.0};  // [m]
-  double margin = 0.5;             // how far before a wall it begins to push [m]
-  double rate = 4.0;               // how hard [1/s]: who comes at speed v is turned round within v / (e rate)
+  double margin = 0.5;             // [m]
+  double rate = 4.0;               // [1/s]
 };
 
 // Sampled from the nearly-constant-velocity model: sim/motion/sampled.h.
 struct SampledMotion {
-  Pose start;                       // at t = 0
-  glm::dvec3 velocity{0.0};         // v_WC at t = 0 [m/s]
-  glm::dvec3 angular_rate{0.0};     // w_WC_C at t = 0 [rad/s]
-  double velocity_sigma = 0.0;      // above 0: v_WC at t = 0 is drawn about `velocity`, per axis of W [m/s]
-  double angular_rate_sigma = 0.0;  // above 0: the same for w_WC_C, per axis of C [rad/s]
-  double position_noise = 0.5;      // square root of the power spectral density of acceleration [m/s^1.5]
-  double orientation_noise = 0.5;   // the same for angular acceleration [rad/s^1.5]
-  double position_return = 0.0;     // [1/s] 0: none. Larger: pulled back to the start harder and sooner
-  double orientation_return = 0.0;  // [1/s] the same for orientation
+  Pose start;                                              // at t = 0
+  glm::dvec3 velocity{0.0};                                // v_WC at t = 0 [m/s]
+  glm::dvec3 angular_rate{0.0};                            // w_WC_C at t = 0 [rad/s]
+  double velocity_sigma = 0.0, angular_rate_sigma = 0.0;   // [m/s], [rad/s]
+  double position_noise = 0.5, orientation_noise = 0.5;    // [m/s^1.5], [rad/s^1.5]
+  double position_return = 0.0, orientation_return = 0.0;  // [1/s]
   std::optional<SoftWalls> walls;
   double knot_step_s = 1.0 / 240.0;  // frames at 10, 12, 15, 20, 24, 30, 40, 48, 60, 80, 120, 240 Hz fall on knots
 };
+
+// But for the start pose.
+template <class V>
+void Visit(V& v, SampledMotion& p) {
+  const Range place{-1e6, 1e6}, noise = Range::AtLeast(0);
+  v.Child("start", [&](auto& start) {
+    start("velocity", p.velocity, {Unit::speed, place, "v_WC at t = 0"});
+    start("angular_rate", p.angular_rate, {Unit::angular_rate, place, "w_WC_C at t = 0"});
+    start("velocity_sigma", p.velocity_sigma, {Unit::speed, noise, "above 0: drawn about it, per axis of W and seed"});
+    start("angular_rate_sigma", p.angular_rate_sigma, {Unit::angular_rate, noise, "the same, per axis of C"});
+  });
+  v("position_noise", p.position_noise,
+    {Unit::acceleration_density, noise, "root of the power spectral density of white acceleration"});
+  v("orientation_noise", p.orientation_noise,
+    {Unit::angular_acceleration_density, noise, "the same of white angular acceleration"});
+  v("knot_step", p.knot_step_s, {Unit::time, Range{1e-5, 0.1}, "the model's own step"});
+  v("position_return", p.position_return, {Unit::rate, noise, "r: sigma / (2 r^1.5) from the start in the long run"});
+  v("orientation_return", p.orientation_return, {Unit::rate, noise, "the same of the orientation"});
+  if (!p.walls) return;
+  v.Child("walls", [&](auto& walls) {
+    walls("low", p.walls->low, {Unit::length, place, "corner of a box in W that keeps the camera in"});
+    walls("high", p.walls->high, {Unit::length, place, "the opposite corner"});
+    walls("margin", p.walls->margin, {Unit::length, Range::Positive(), "distance from a wall where it begins to push"});
+    walls("rate", p.walls->rate, {Unit::rate, Range::Positive(), "a speed v is turned round within v / (e rate)"});
+  });
+}
+// Ranges, and rules between several values. Keys are those of a trajectory.
+std::vector<settings::FieldProblem> Problems(SampledMotion motion);
 
 struct KeyPose {
   double t_s = 0.0;
@@ -46,10 +75,20 @@ struct ScriptedMotion {
 // A recorded trajectory: sim/motion/recorded.h.
 struct RecordedMotion {
   std::filesystem::path file;  // TUM: timestamp tx ty tz qx qy qz qw
-  double start_s = 0.0;        // of t = 0 after the file's first stamp
-  double average_s = 0.030;    // poses within such a time count as one, their mean; 0: each counts
-  std::optional<Pose> place;   // the whole motion is moved rigidly so that it starts here; without: as recorded
+  double start_time_s = 0.0;
+  double averaging_time_s = 0.030;
+  std::optional<Pose> start_pose;  // the whole motion is moved rigidly so that it starts here; without: as recorded
 };
+
+// But for file and start pose.
+template <class V>
+void Visit(V& v, RecordedMotion& p) {
+  v.Renamed("start", "start_time");
+  v.Renamed("average", "averaging_time");
+  v.Renamed("place", "start_pose");
+  v("start_time", p.start_time_s, {Unit::time, Range::AtLeast(0), "recorded: t = 0 after the file's first stamp"});
+  v("averaging_time", p.averaging_time_s, {Unit::time, Range{0, 0.5}, "recorded: poses within it count as their mean"});
+}
 
 // A number that changes with time.
 struct Swing {

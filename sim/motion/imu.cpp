@@ -5,7 +5,6 @@
 
 #include "sim/motion/so3.h"
 #include "sim/random/random.h"
-#include "tools/base/settings/require.h"
 
 namespace sim {
 namespace {
@@ -36,20 +35,6 @@ Drawn Draw(std::uint64_t seed, Stream stream, std::int64_t k) {
 }
 
 }  // namespace
-
-std::vector<std::string> Problems(const ImuParams& p) {
-  settings::Require require;
-  require(p.rate_hz >= 1 && p.rate_hz <= 1e5, "rate", p.rate_hz, "must lie in 1 ... 100000 Hz");
-  require(std::abs(glm::length(p.T_CI.q_WC) - 1) < 1e-6, "orientation of length", glm::length(p.T_CI.q_WC),
-          "must be a unit quaternion");
-  require(true, "length of position", glm::length(p.T_CI.p_WC), "must be finite");
-  require(true, "gravity", glm::length(p.gravity_W), "must be finite");
-  require(p.gyroscope_noise >= 0, "gyroscope_noise", p.gyroscope_noise, "must be at least 0");
-  require(p.accelerometer_noise >= 0, "accelerometer_noise", p.accelerometer_noise, "must be at least 0");
-  require(p.gyroscope_walk >= 0, "gyroscope_walk", p.gyroscope_walk, "must be at least 0");
-  require(p.accelerometer_walk >= 0, "accelerometer_walk", p.accelerometer_walk, "must be at least 0");
-  return require.problems;
-}
 
 ImuSample ImuAt(const Trajectory& trajectory, const ImuParams& params, double t_s) {
   const glm::dvec3& p_CI = params.T_CI.p_WC;

@@ -5,10 +5,10 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "sim/motion/trajectory.h"
+#include "tools/base/settings/fields.h"
 
 namespace sim {
 
@@ -19,17 +19,28 @@ enum class ImuReading {
 
 struct ImuParams {
   double rate_hz = 200.0;
-  Pose T_CI;                                 // maps points from I to C; I = C unless told
-  glm::dvec3 gravity_W{0.0, -9.81, 0.0};     // [m/s^2]
-  ImuReading reading = ImuReading::instant;  // mean: for a motion whose acceleration jumps, such as a sampled one
-  double gyroscope_noise = 0.0;      // square root of the power spectral density of white noise [rad/s/sqrt(Hz)]
-  double accelerometer_noise = 0.0;  // the same [m/s^2/sqrt(Hz)]
-  double gyroscope_walk = 0.0;       // of the noise that drives the bias [rad/s^2/sqrt(Hz)]
-  double accelerometer_walk = 0.0;   // the same [m/s^3/sqrt(Hz)]
+  Pose T_CI;                              // maps points from I to C
+  glm::dvec3 gravity_W{0.0, -9.81, 0.0};  // [m/s^2]
+  ImuReading reading = ImuReading::instant;
+  double gyroscope_noise = 0.0, accelerometer_noise = 0.0;  // [rad/s/sqrt(Hz)], [m/s^2/sqrt(Hz)]
+  double gyroscope_walk = 0.0, accelerometer_walk = 0.0;    // [rad/s^2/sqrt(Hz)], [m/s^3/sqrt(Hz)]
 };
 
-// Everything wrong with the parameters, one sentence each; empty when all is well.
-std::vector<std::string> Problems(const ImuParams& params);
+// But for the orientation, which is read with the pose's own rule.
+template <class V>
+void Visit(V& v, ImuParams& p) {
+  using settings::Range, settings::Unit;
+  const Range noise = Range::AtLeast(0);
+  v("rate", p.rate_hz, {Unit::frequency, Range{1, 1e5}, "readings per second"});
+  v("position", p.T_CI.p_WC, {Unit::length, Range{-1e6, 1e6}, "of I in C; also `orientation: [x, y, z, w]`"});
+  v("gravity", p.gravity_W, {Range{-1e6, 1e6}, "in W [m/s^2]"});
+  v("reading", p.reading, {{"instant", ImuReading::instant}, {"mean", ImuReading::mean}},
+    "at the stamp; or mean over the period, for paths whose acceleration jumps");
+  v("gyroscope_noise", p.gyroscope_noise, {noise, "root of the power spectral density [rad/s/sqrt(Hz)]"});
+  v("accelerometer_noise", p.accelerometer_noise, {noise, "the same [m/s^2/sqrt(Hz)]"});
+  v("gyroscope_walk", p.gyroscope_walk, {noise, "of the noise that drives the bias, 0 at first [rad/s^2/sqrt(Hz)]"});
+  v("accelerometer_walk", p.accelerometer_walk, {noise, "the same [m/s^3/sqrt(Hz)]"});
+}
 
 struct ImuSample {
   std::int64_t stamp_ns = 0;

@@ -53,9 +53,9 @@ bool ParseStamp(std::string_view text, std::int64_t& stamp_ns) {
 }
 
 // Collects what is wrong with a file; the first 20 are enough to see what it is.
-class Problems {
+class FileProblems {
  public:
-  explicit Problems(const std::filesystem::path& file) : file_(file.string()) {}
+  explicit FileProblems(const std::filesystem::path& file) : file_(file.string()) {}
   void Add(int line, int column, std::string message) {
     if (list_.size() < 20) list_.push_back({file_, line, column, std::move(message)});
     if (++count_ == 21) list_.push_back({file_, 0, 0, "further problems are not listed"});
@@ -73,7 +73,7 @@ class Problems {
 }  // namespace
 
 std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file) {
-  Problems problems(file);
+  FileProblems problems(file);
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream || std::filesystem::is_directory(file)) {
@@ -147,18 +147,18 @@ std::vector<KeyPose> Average(const std::vector<KeyPose>& keys, double average_s)
 
 std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion, double end_s) {
   std::vector<KeyPose> keys = ReadTumTrajectory(motion.file);
-  Problems problems(motion.file);
+  FileProblems problems(motion.file);
   const double length_s = keys.back().t_s;
   constexpr double kRounding_s = 0.5e-9;  // stamps are whole nanoseconds
-  if (!(motion.start_s >= 0) || !(motion.start_s + end_s <= length_s + kRounding_s)) {
+  if (!(motion.start_time_s >= 0) || !(motion.start_time_s + end_s <= length_s + kRounding_s)) {
     problems.Add(0, 0,
                  "lasts " + settings::FormatNumber(length_s) + " s; asked for is " +
-                     settings::FormatNumber(motion.start_s) + " s to " +
-                     settings::FormatNumber(motion.start_s + end_s) + " s");
+                     settings::FormatNumber(motion.start_time_s) + " s to " +
+                     settings::FormatNumber(motion.start_time_s + end_s) + " s");
     problems.ThrowIfAny();
   }
-  keys = Average(keys, motion.average_s);
-  for (KeyPose& key : keys) key.t_s -= motion.start_s;
+  keys = Average(keys, motion.averaging_time_s);
+  for (KeyPose& key : keys) key.t_s -= motion.start_time_s;
   const auto make = [&] {
     try {
       return std::make_unique<SplineTrajectory>(keys);
@@ -169,12 +169,12 @@ std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion,
     }
   };
   std::unique_ptr<Trajectory> trajectory = make();
-  if (!motion.place) return trajectory;
+  if (!motion.start_pose) return trajectory;
   // T = place * first^-1, applied from the left: the path keeps its shape.
   const Pose first = trajectory->At(0).pose;
-  const glm::dquat turn = glm::normalize(motion.place->q_WC) * glm::conjugate(first.q_WC);
+  const glm::dquat turn = glm::normalize(motion.start_pose->q_WC) * glm::conjugate(first.q_WC);
   for (KeyPose& key : keys) {
-    key.pose = {motion.place->p_WC + turn * (key.pose.p_WC - first.p_WC), glm::normalize(turn * key.pose.q_WC)};
+    key.pose = {motion.start_pose->p_WC + turn * (key.pose.p_WC - first.p_WC), glm::normalize(turn * key.pose.q_WC)};
   }
   return make();
 }

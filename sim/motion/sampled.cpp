@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <sstream>
-#include <stdexcept>
 
 #include "sim/motion/so3.h"
 #include "sim/random/random.h"
@@ -51,38 +49,12 @@ glm::dvec3 Push(const SoftWalls& walls, const glm::dvec3& p, const glm::dvec3& v
 }
 
 void Check(const SampledMotion& m, double end_s) {
-  std::ostringstream problems;
-  const auto require = [&](bool ok, const char* name, double value, const char* rule) {
-    if (!ok || !std::isfinite(value)) problems << "; " << name << " = " << value << " " << rule;
-  };
-  require(m.position_noise >= 0, "position_noise", m.position_noise, "must be at least 0");
-  require(m.orientation_noise >= 0, "orientation_noise", m.orientation_noise, "must be at least 0");
-  require(m.velocity_sigma >= 0, "velocity_sigma", m.velocity_sigma, "must be at least 0");
-  require(m.angular_rate_sigma >= 0, "angular_rate_sigma", m.angular_rate_sigma, "must be at least 0");
-  require(m.knot_step_s > 0 && m.knot_step_s <= 0.1, "knot_step", m.knot_step_s, "must lie between 0 and 0.1 s");
-  require(m.position_return >= 0 && m.position_return * m.knot_step_s <= 0.2, "position_return", m.position_return,
-          "must lie between 0 and 0.2 / knot_step");
-  require(m.orientation_return >= 0 && m.orientation_return * m.knot_step_s <= 0.2, "orientation_return",
-          m.orientation_return, "must lie between 0 and 0.2 / knot_step");
-  if (m.walls) {
-    const SoftWalls& w = *m.walls;
-    require(w.margin > 0, "walls.margin", w.margin, "must be positive");
-    require(w.rate > 0 && w.rate * m.knot_step_s <= 0.2, "walls.rate", w.rate,
-            "must lie between 0 and 0.2 / knot_step");
-    for (int axis = 0; axis < 3; ++axis) {
-      require(w.high[axis] - w.low[axis] >= 2 * w.margin, "walls.high", w.high[axis],
-              "must lie at least two margins above walls.low");
-      require(m.start.p_WC[axis] >= w.low[axis] && m.start.p_WC[axis] <= w.high[axis], "start position",
-              m.start.p_WC[axis], "must lie within the walls");
-    }
-  }
-  require(end_s >= 0 && end_s / m.knot_step_s < (1 << 25), "duration", end_s,
-          "must be at least 0 and less than 2^25 knots");
-  require(glm::length(m.start.q_WC) > 0, "orientation of length", glm::length(m.start.q_WC), "must not be 0");
-  require(true, "length of the start position", glm::length(m.start.p_WC), "must be finite");
-  require(true, "velocity", glm::length(m.velocity), "must be finite");
-  require(true, "angular_rate", glm::length(m.angular_rate), "must be finite");
-  if (!problems.str().empty()) throw std::invalid_argument("sampled motion: " + problems.str().substr(2));
+  std::vector<settings::FieldProblem> problems = Problems(m);
+  const double length = glm::length(m.start.q_WC) + glm::length(m.start.p_WC);
+  if (!(glm::length(m.start.q_WC) > 0) || !std::isfinite(length)) problems.push_back({"start", "is no pose"});
+  if (!(end_s >= 0 && end_s / m.knot_step_s < (1 << 25)))
+    problems.push_back({"duration", "must be at least 0 and less than 2^25 knots"});
+  ThrowIfAny(problems, "sampled motion");
 }
 
 Motion GoOn(const Motion& from, double dt) {
@@ -93,6 +65,26 @@ Motion GoOn(const Motion& from, double dt) {
 }
 
 }  // namespace
+
+std::vector<settings::FieldProblem> Problems(SampledMotion m) {
+  settings::FieldCheck check;
+  Visit(check, m);
+  const auto slow = [&](const char* key, double rate) {
+    check.Require(rate * m.knot_step_s <= 0.2, key, rate, "must not be above 0.2 / knot_step");
+  };
+  slow("position_return", m.position_return);
+  slow("orientation_return", m.orientation_return);
+  if (!m.walls) return check.problems;
+  const SoftWalls& w = *m.walls;
+  slow("walls.rate", w.rate);
+  for (int axis = 0; axis < 3; ++axis) {
+    check.Require(w.high[axis] - w.low[axis] >= 2 * w.margin, "walls.high", w.high[axis],
+                  "must lie at least two margins above low");
+    check.Require(m.start.p_WC[axis] >= w.low[axis] && m.start.p_WC[axis] <= w.high[axis], "start.position",
+                  m.start.p_WC[axis], "must lie within the walls");
+  }
+  return check.problems;
+}
 
 SampledTrajectory::SampledTrajectory(const SampledMotion& m, std::uint64_t seed, double end_s)
     : step_s_(m.knot_step_s), end_s_(end_s) {

@@ -18,7 +18,7 @@ std::vector<glm::dvec3> PlacePoints(const PointDescription& of, const Pose& star
   std::vector<glm::dvec3> points;
   if (of.landmarks == Landmarks::prior) return points;
   const glm::dvec3 center = of.center.value_or(start.p_WC);
-  for (int k = 0; k < of.points; ++k) {
+  for (int k = 0; k < of.total; ++k) {
     const Words words = RandomWords(key, Stream::point_place, 0, static_cast<std::uint32_t>(k), 0);
     const glm::dvec3 in(Uniform(words[0]) - 0.5, Uniform(words[1]) - 0.5, Uniform(words[2]) - 0.5);
     if (of.landmarks == Landmarks::room) {

@@ -42,8 +42,7 @@ PointWorld::PointWorld(const Scenario& scenario)
       frames_(CountFrames(scenario.time)),
       camera_(scenario.camera),
       trajectory_(MakeTrajectory(scenario.motion, key_, Seconds(sim::StampNs(frames_ - 1, scenario.time)), 0)) {
-  const std::vector<std::string> problems = Problems(world_, scenario.camera);
-  if (!problems.empty()) throw std::invalid_argument("point world: " + problems.front());
+  ThrowIfAny(Problems(world_, scenario.camera), "point world");
   scale_ = std::exp(world_.scale_sigma * Normals(RandomWords(key_, Stream::point_scale, 0, 0, 0))[0]);
   const Truth start = TruthAt(0);
   points_ = PlacePoints(world_, {start.p_WC, start.q_WC}, key_);

@@ -5,6 +5,7 @@
 #include "sim/motion/spline.h"
 #include "sim/scenario/path_reader.h"
 #include "sim/scenario/pose_reader.h"
+#include "tools/base/settings/field_reader.h"
 
 namespace sim {
 namespace {
@@ -13,39 +14,18 @@ using settings::Range;
 using settings::Section;
 using settings::Unit;
 
-const Range kNotNegative = Range::AtLeast(0);
-
 SampledMotion ReadSampled(Section& section) {
   SampledMotion motion;
   Section start = section.Child("start");
   ReadPose(start, motion.start);
-  ReadVector(start, "velocity", motion.velocity, Unit::speed);
-  ReadVector(start, "angular_rate", motion.angular_rate, Unit::angular_rate);
-  start.Read("velocity_sigma", motion.velocity_sigma, Unit::speed, kNotNegative);
-  start.Read("angular_rate_sigma", motion.angular_rate_sigma, Unit::angular_rate, kNotNegative);
-  section.Require("position_noise", motion.position_noise, Unit::acceleration_density, kNotNegative);
-  section.Require("orientation_noise", motion.orientation_noise, Unit::angular_acceleration_density, kNotNegative);
-  section.Read("knot_step", motion.knot_step_s, Unit::time, Range{1e-5, 0.1});
-  const Range range{0, 0.2 / motion.knot_step_s};
-  section.Read("position_return", motion.position_return, Unit::rate, range);
-  section.Read("orientation_return", motion.orientation_return, Unit::rate, range);
   section.Allow("walls");
   if (section.Has("walls")) {
+    motion.walls.emplace();
     Section walls = section.Child("walls");
-    SoftWalls& box = motion.walls.emplace();
-    walls.RequirePresent("low");
-    walls.RequirePresent("high");
-    ReadVector(walls, "low", box.low, Unit::length);
-    ReadVector(walls, "high", box.high, Unit::length);
-    walls.Read("margin", box.margin, Unit::length, Range::Positive());
-    walls.Read("rate", box.rate, Unit::rate, range);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!(box.high[axis] - box.low[axis] >= 2 * box.margin)) {
-        walls.Reject("high", "'walls': between low and high there must be two margins, along each axis");
-        break;
-      }
-    }
+    for (const char* key : {"low", "high"}) walls.RequirePresent(key);
   }
+  if (ReadFields(section, motion)) section.Reject(Problems(motion));
+  for (const char* key : {"position_noise", "orientation_noise"}) section.RequirePresent(key);
   return motion;
 }
 
@@ -58,7 +38,7 @@ ScriptedMotion ReadScripted(Section& section) {
   };
   for (Section& item : section.List("keys")) {
     KeyPose key;
-    const bool has_time = item.Require("time", key.t_s, Unit::time, kNotNegative);
+    const bool has_time = item.Require("time", key.t_s, Unit::time, Range::AtLeast(0));
     if (has_time && motion.keys.empty() && key.t_s != 0)
       reject(item, "time", "'time': the first key pose must be at 0 s");
     if (has_time && !motion.keys.empty() && key.t_s <= motion.keys.back().t_s) {
@@ -84,12 +64,11 @@ ScriptedMotion ReadScripted(Section& section) {
 RecordedMotion ReadRecorded(Section& section, const std::filesystem::path& folder) {
   RecordedMotion motion;
   motion.file = ReadFile(section, "file", folder);
-  section.Read("start", motion.start_s, Unit::time, kNotNegative);
-  section.Read("average", motion.average_s, Unit::time, Range{0, 0.5});
-  section.Allow("place");
-  if (section.Has("place")) {
-    Section place = section.Child("place");
-    ReadPose(place, motion.place.emplace());
+  ReadFields(section, motion);
+  section.Allow("start_pose");
+  if (section.Has("start_pose")) {
+    Section place = section.Child("start_pose");
+    ReadPose(place, motion.start_pose.emplace());
   }
   return motion;
 }

@@ -3,10 +3,10 @@
 
 #include <glm/vec3.hpp>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "sim/sensor/camera.h"
+#include "tools/base/settings/fields.h"
 
 namespace sim {
 
@@ -18,39 +18,78 @@ enum class Landmarks {
   cloud,  // in a box
 };
 
-// How a landmark in view becomes an observation. The first view of a landmark is never missing and never an outlier: it
-// is what defines the landmark.
+// Measurement model of a landmark in view. The first view, which defines the landmark, is never missing and never an
+// outlier.
 struct PointMeasurement {
-  double noise_px = 1.0;             // standard deviation per axis; no rounding to whole pixels
-  double outlier_probability = 0.0;  // that a view is replaced by a place that has nothing to do with the landmark: ...
-  double outlier_radius_px = 0.0;    // ... uniform in a disc about the true one; 0: uniform in the image
-  double drop_probability = 0.0;     // that a view is missing
-  // A point whose image moves by s px during the exposure is missing with probability x^4 / (1 + x^4), x = s / length.
-  double blur_length_px = 0.0;  // half of the points that move so far are missing; 0: none for this reason
-  double blur_exposure_s = 0.010;
+  double noise_px = 1.0;
+  double outlier_probability = 0.0, outlier_radius_px = 0.0;
+  double drop_probability = 0.0;
+  double blur_length_px = 0.0, blur_exposure_s = 0.010;
 };
+
+template <class V>
+void Visit(V& v, PointMeasurement& p) {
+  using settings::Range, settings::Unit;
+  const Range not_negative = Range::AtLeast(0);
+  v("noise", p.noise_px, {Unit::pixel, not_negative, "standard deviation per axis; no rounding to whole pixels"});
+  v("drops", p.drop_probability, {Range{0, 1}, "probability that a view is missing"});
+  v.Child("outliers", [&](auto& outliers) {
+    outliers("probability", p.outlier_probability, {Range{0, 1}, "that a view is another place: uniform"});
+    outliers("radius", p.outlier_radius_px,
+             {Unit::pixel, not_negative, "in a disc about the true one; 0: in the image"});
+  });
+  v.Child("blur", [&](auto& blur) {
+    blur("length", p.blur_length_px, {Unit::pixel, not_negative, "image motion that drops half of the views; 0: none"});
+    blur("exposure", p.blur_exposure_s, {Unit::time, not_negative, "in this time"});
+  });
+}
 
 struct PointDescription {
   Landmarks landmarks = Landmarks::prior;
-  int count = 100;        // new landmarks are first seen until so many are in view, where there are so many
-  int forget_after = 30;  // frames out of view until a landmark is dropped; seen later, it is another one
+  int count = 100;
+  int forget_after = 30;
   // Landmarks::prior
-  double inverse_depth = 0.25;        // mean of 1 / Z in the camera of the first view [1/m]
-  double inverse_depth_sigma = 0.15;  // its standard deviation; what falls below 0 stays so [1/m]
-  double scale_sigma = 0;             // of the log of a factor, drawn once, of all inverse depths: 0: there is none
-  double margin_px = 5.0;             // of the image, within which no landmark is first seen
+  double inverse_depth = 0.25, inverse_depth_sigma = 0.15;  // [1/m]
+  double scale_sigma = 0;
+  double margin_px = 5.0;
   // The others
-  int points = 3000;                 // in the whole world
-  double size_m = 5.0;               // side of the box or of the square
-  double distance_m = 3.0;           // of the square from the first camera
-  std::optional<glm::dvec3> center;  // of the box, in W [m]; without: where the camera starts
-  double min_depth_m = 0.0;          // nearer points are not seen
+  int total = 3000;
+  double size_m = 5.0;
+  double distance_m = 3.0;
+  std::optional<glm::dvec3> center;  // in W [m]
+  double min_depth_m = 0.0;
 
   PointMeasurement measurement;
 };
 
-// Everything wrong with the values, one sentence each, beginning with the dotted key of a scenario's `world.points`;
-// empty when all is well.
-std::vector<std::string> Problems(const PointDescription& points, const CameraParams& camera);
+template <class V>
+void Visit(V& v, PointDescription& p) {
+  using enum Landmarks;
+  using settings::Range, settings::Unit;
+  const Range number{1, 1'000'000}, not_negative = Range::AtLeast(0);
+  v("landmarks", p.landmarks, {{"prior", prior}, {"room", room}, {"plane", plane}, {"cloud", cloud}},
+    "drawn at the first view; on the faces of a box; on a square across the first axis; in a box");
+  v("count", p.count, {number, "landmarks in view: new ones are first seen up to it"});
+  v("forget_after", p.forget_after, {Range::AtLeast(1), "frames out of view; seen later, it is another landmark"});
+  if (p.landmarks == prior) {
+    v("inverse_depth", p.inverse_depth, {"mean of 1 / Z in the camera of the first view [1/m]"});
+    v("inverse_depth_sigma", p.inverse_depth_sigma, {not_negative, "its standard deviation; not cut off at 0"});
+    v("scale_sigma", p.scale_sigma, {Range{0, 3}, "of the log of a factor, drawn once, of all inverse depths"});
+    v("margin", p.margin_px, {Unit::pixel, not_negative, "of the image, where no landmark is first seen"});
+  } else {
+    v.Renamed("points", "total");
+    v("total", p.total, {number, "landmarks in the whole world"});
+    v("size", p.size_m, {Unit::length, Range::Positive(), "side of the box or square"});
+    v("min_depth", p.min_depth_m, {Unit::length, not_negative, "nearer points are not seen"});
+  }
+  if (p.landmarks == plane)
+    v("distance", p.distance_m, {Unit::length, Range::Positive(), "of the square from the first camera"});
+  if (p.landmarks == room || p.landmarks == cloud)
+    v("center", p.center, {Unit::length, Range{-1e6, 1e6}, "of the box, in W; none: where the camera starts"});
+  v.Child("measurement", p.measurement);
+}
+
+// Ranges, and rules between several values and the camera; keys are those of a scenario's `world.points`.
+std::vector<settings::FieldProblem> Problems(PointDescription points, const CameraParams& camera);
 
 }  // namespace sim

@@ -8,32 +8,16 @@
 #include "sim/scenario/pose_reader.h"
 #include "sim/scenario/sensor_reader.h"
 #include "sim/scenario/world_reader.h"
-#include "tools/base/settings/settings.h"
+#include "tools/base/settings/field_reader.h"
 
 namespace sim {
 namespace {
 
-using settings::Range;
 using settings::Section;
-using settings::Unit;
-
-const Range kNotNegative = Range::AtLeast(0);
 
 void ReadRender(Section section, const std::filesystem::path& folder, RenderParams& render) {
-  section.ReadChoice("engine", render.engine, {{"ray_tracer", Engine::ray_tracer}, {"rasteriser", Engine::rasteriser}});
-  section.Read("rays_per_time_sample", render.rays_per_time_sample, Range{1, 256});
-  section.Read("reflections", render.reflections);
-  section.ReadChoice(
-      "light", render.light,
-      {{"direct", LightMode::direct}, {"baked_indirect", LightMode::baked_indirect}, {"baked", LightMode::baked}});
-  Section bake = section.Child("bake");
-  bake.Read("spacing", render.bake.spacing_m, Unit::length);
-  bake.Read("finest", render.bake.finest_m, Unit::length);
-  bake.Read("paths", render.bake.paths);
-  bake.Read("lamp_rays", render.bake.lamp_rays);
-  for (const std::string& problem : Problems(render.bake)) {
-    bake.Reject(problem.substr(0, problem.find(' ')), "render.bake: " + problem);
-  }
+  ReadFields(section, render);
+  section.Child("bake").Reject(Problems(render.bake));
   render.light_folders = LightFolders(folder);
 }
 
@@ -42,16 +26,17 @@ void ReadMotionAndTime(Section root, const std::filesystem::path& folder, Scenar
   scenario.motion = ReadMotion(section, folder);
 
   Section time = root.Child("time");
-  time.Read("rate", scenario.time.rate_hz, Unit::frequency, Range{0.01, 10000});
   const auto* script = std::get_if<ScriptedMotion>(&scenario.motion);
   const double longest_s = script && !script->keys.empty() ? script->keys.back().t_s : 1e6;
   if (script) scenario.time.duration_s = longest_s;  // the default, of a script only
   if (!script) time.RequirePresent("duration");
-  const bool has_duration = time.Read("duration", scenario.time.duration_s, Unit::time, Range{0, longest_s});
-  const double frames = scenario.time.rate_hz * scenario.time.duration_s;
-  if ((has_duration || script) && std::round(frames) < 1)
-    time.Reject("duration", "'time.duration': there is not one frame in it");
-  if (frames > 1e7) time.Reject("duration", "'time.duration': more than ten million frames");
+  if (!ReadFields(time, scenario.time) || !(script || time.Has("duration"))) return;
+  settings::FieldCheck check;
+  const double duration_s = scenario.time.duration_s, frames = scenario.time.rate_hz * duration_s;
+  check.Require(duration_s <= longest_s, "duration", duration_s, "s is beyond the script's last key");
+  check.Require(std::round(frames) >= 1, "duration", duration_s, "s: there is not one frame in it");
+  check.Require(frames <= 1e7, "duration", duration_s, "s: more than ten million frames");
+  time.Reject(check.problems);
 }
 
 void ReadTruth(Section root, TruthParams& truth) {
@@ -65,18 +50,9 @@ void ReadTruth(Section root, TruthParams& truth) {
       if (stream) truth.streams.insert(*stream);
     }
   }
-  root.Child("landmarks").Read("count", truth.landmarks, Range{1, 100000});
-
+  ReadFields(root, truth);
   Section imu = root.Child("imu");
-  imu.Read("rate", truth.imu.rate_hz, Unit::frequency, Range{1, 100000});
-  ReadVector(imu, "position", truth.imu.T_CI.p_WC, Unit::length);
   ReadOrientation(imu, "orientation", truth.imu.T_CI.q_WC);
-  ReadVector(imu, "gravity", truth.imu.gravity_W);
-  imu.ReadChoice("reading", truth.imu.reading, {{"instant", ImuReading::instant}, {"mean", ImuReading::mean}});
-  imu.Read("gyroscope_noise", truth.imu.gyroscope_noise, kNotNegative);
-  imu.Read("accelerometer_noise", truth.imu.accelerometer_noise, kNotNegative);
-  imu.Read("gyroscope_walk", truth.imu.gyroscope_walk, kNotNegative);
-  imu.Read("accelerometer_walk", truth.imu.accelerometer_walk, kNotNegative);
 }
 
 }  // namespace

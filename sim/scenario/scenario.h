@@ -20,19 +20,36 @@ namespace sim {
 
 struct TimeParams {
   double rate_hz = 30.0;
-  double duration_s = 0.0;  // frames are at k / rate, k = 0 ... round(duration * rate) - 1
+  double duration_s = 0.0;
 };
+
+template <class V>
+void Visit(V& v, TimeParams& p) {
+  v("rate", p.rate_hz, {Unit::frequency, Range{0.01, 10000}, "frames per second"});
+  v("duration", p.duration_s, {Unit::time, Range{0, 1e6}, "frames at k / rate; of a script: up to its last key"});
+}
 
 enum class Engine { ray_tracer, rasteriser };  // docs/renderers.md
 
 struct RenderParams {
   Engine engine = Engine::ray_tracer;
-  int rays_per_time_sample = 1;  // more: smoother edges at few time samples
-  bool reflections = false;      // of metal and gloss
+  int rays_per_time_sample = 1;
+  bool reflections = false;
   LightMode light = LightMode::direct;
   BakeParams bake;
   std::vector<std::filesystem::path> light_folders;  // where baked light is kept
 };
+
+template <class V>
+void Visit(V& v, RenderParams& p) {
+  v("engine", p.engine, {{"ray_tracer", Engine::ray_tracer}, {"rasteriser", Engine::rasteriser}}, "docs/renderers.md");
+  v("rays_per_time_sample", p.rays_per_time_sample, {Range{1, 256}, "more: smoother edges at few time samples"});
+  v("reflections", p.reflections, {"of metal and gloss"});
+  v("light", p.light,
+    {{"direct", LightMode::direct}, {"baked_indirect", LightMode::baked_indirect}, {"baked", LightMode::baked}},
+    "lamps in each frame; and bounces, computed once; all computed once (docs/light.md)");
+  v.Child("bake", p.bake);
+}
 
 struct Scenario {
   std::string name;

@@ -33,8 +33,17 @@ std::string TruthStreamList();  // "depth, depth_exr, ...": for messages
 
 struct TruthParams {
   std::set<TruthStream> streams{TruthStream::depth};
-  int landmarks = 500;  // how many surface points are tracked
+  int landmarks = 500;
   ImuParams imu;
 };
+
+// But for the list of streams.
+template <class V>
+void Visit(V& v, TruthParams& p) {
+  v.Child("landmarks", [&](auto& landmarks) {
+    landmarks("count", p.landmarks, {settings::Range{1, 100000}, "surface points that are tracked"});
+  });
+  v.Child("imu", p.imu);
+}
 
 }  // namespace sim

@@ -2,28 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "sim/sensor/response.h"
-#include "tools/base/settings/require.h"
+#include "sim/sensor/sensor.h"
 
 namespace sim {
 
-std::vector<std::string> Problems(const AutoExposureParams& p) {
-  settings::Require require;
-  require(p.target > 0 && p.target < 1, "target", p.target, "must lie between 0 and 1");
-  require(p.speed > 0 && p.speed <= 1, "speed", p.speed, "must lie in 0 ... 1, above 0");
-  require(p.shortest_s > 0, "shortest", p.shortest_s, "must be positive");
-  require(p.longest_s >= p.shortest_s, "longest", p.longest_s, "must not be below shortest");
-  require(p.highest_gain >= 1, "highest_gain", p.highest_gain, "must be at least 1");
-  return require.problems;
-}
-
 AutoExposure::AutoExposure(const SensorParams& sensor) : sensor_(sensor), setting_{sensor.exposure_s, sensor.gain} {
-  std::string text;
-  for (const std::string& problem : Problems(sensor.auto_exposure))
-    text += (text.empty() ? "auto exposure: " : "; ") + problem;
-  if (!text.empty()) throw std::invalid_argument(text);
+  ThrowIfAny(Problems(sensor), "auto exposure");
 }
 
 double AutoExposure::Brightness(const RadianceImage& frame, double signal) const {

@@ -1,9 +1,6 @@
 // Automatic exposure control: exposure time and gain from the mean brightness of the previous frame.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "sim/sensor/description.h"
 #include "sim/sensor/radiance_image.h"
 
@@ -15,16 +12,13 @@ struct ExposureSetting {
   double gain = 1.0;
 };
 
-// Everything wrong with the settings, one sentence each, with the value.
-std::vector<std::string> Problems(const AutoExposureParams& params);
-
 // The signal of frame k is proportional to s = exposure_s * gain. With m(s) the mean of the picture that it makes, over
 // its pixels and channels, with dark current and black level, after the response, the next frame gets
 //   log s' = log s + speed (log s* - log s),   m(s*) = target,
 // within the limits; the exposure time grows before the gain does. The first frame has the sensor's own settings.
 class AutoExposure {
  public:
-  // Throws std::invalid_argument listing all Problems.
+  // Throws std::invalid_argument listing all Problems of the sensor.
   explicit AutoExposure(const SensorParams& sensor);
 
   const ExposureSetting& setting() const { return setting_; }

@@ -10,7 +10,6 @@
 #include <stdexcept>
 
 #include "sim/sensor/fisheye.h"
-#include "tools/base/settings/require.h"
 
 namespace sim {
 namespace {
@@ -78,42 +77,27 @@ std::optional<glm::dvec3> Solve(const CameraParams& c, const glm::dvec2& target,
 
 }  // namespace
 
-std::vector<std::string> Problems(const CameraParams& c) {
-  settings::Require require;
-  std::vector<std::string>& problems = require.problems;
-  constexpr int kMaxSide = 1 << 14;
-  require(c.width >= 1 && c.width <= kMaxSide, "width", c.width, "must lie in 1 ... 16384");
-  require(c.height >= 1 && c.height <= kMaxSide, "height", c.height, "must lie in 1 ... 16384");
-  require(c.fx > 0, "fx", c.fx, "must be positive");
-  require(c.fy > 0, "fy", c.fy, "must be positive");
-  for (const auto& [name, value] : {std::pair{"cx", c.cx},
-                                    {"cy", c.cy},
-                                    {"k1", c.k1},
-                                    {"k2", c.k2},
-                                    {"p1", c.p1},
-                                    {"p2", c.p2},
-                                    {"k3", c.k3},
-                                    {"k4", c.k4}}) {
-    require(true, name, value, "must be finite");
-  }
+std::vector<settings::FieldProblem> Problems(CameraParams c) {
+  settings::FieldCheck check;
+  Visit(check, c);
   if (c.lens == Lens::fisheye) {
-    require(c.p1 == 0, "p1", c.p1, "must be 0: a fisheye lens has no such term");
-    require(c.p2 == 0, "p2", c.p2, "must be 0: a fisheye lens has no such term");
+    check.Require(c.p1 == 0, "distortion.p1", c.p1, "must be 0: a fisheye lens has no such term");
+    check.Require(c.p2 == 0, "distortion.p2", c.p2, "must be 0: a fisheye lens has no such term");
   } else {
-    require(c.k4 == 0, "k4", c.k4, "must be 0: only a fisheye lens has such a term");
+    check.Require(c.k4 == 0, "distortion.k4", c.k4, "must be 0: only a fisheye lens has such a term");
   }
+  std::vector<settings::FieldProblem>& problems = check.problems;
   if (!problems.empty() || IsPinhole(c)) return problems;
   // The lines from the principal point to the border cover the image.
   const double right = c.width - 0.5, bottom = c.height - 0.5;
-  const auto check = [&](double u, double v) {
+  const auto invert = [&](double u, double v) {
     if (!problems.empty() || Solve(c, Normalized(c, {u, v}), {16, 64})) return;
     std::ostringstream text;
-    text << "distortion: folds over inside the image, before pixel (" << u << ", " << v
-         << ") is reached from its middle";
-    problems.push_back(text.str());
+    text << "folds over inside the image, before pixel (" << u << ", " << v << ") is reached from its middle";
+    problems.push_back({"distortion", text.str()});
   };
-  for (int i = 0; i <= c.width; ++i) check(i - 0.5, -0.5), check(i - 0.5, bottom);
-  for (int j = 0; j <= c.height; ++j) check(-0.5, j - 0.5), check(right, j - 0.5);
+  for (int i = 0; i <= c.width; ++i) invert(i - 0.5, -0.5), invert(i - 0.5, bottom);
+  for (int j = 0; j <= c.height; ++j) invert(-0.5, j - 0.5), invert(right, j - 0.5);
   return problems;
 }
 
@@ -132,12 +116,7 @@ Camera::Camera(const CameraParams& params)
       cy_(static_cast<float>(params.cy)),
       inverse_fx_(static_cast<float>(1 / params.fx)),
       inverse_fy_(static_cast<float>(1 / params.fy)) {
-  const std::vector<std::string> problems = Problems(params);
-  if (!problems.empty()) {
-    std::string text = "camera: ";
-    for (const std::string& problem : problems) text += (text.size() > 8 ? "; " : "") + problem;
-    throw std::invalid_argument(text);
-  }
+  ThrowIfAny(Problems(params), "camera");
   if (IsPinhole(params)) return;
   auto table = std::make_shared<std::vector<glm::vec3>>();
   table->reserve((static_cast<std::size_t>(params.width) + 1) * (static_cast<std::size_t>(params.height) + 1));

@@ -8,8 +8,9 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
-#include <string>
 #include <vector>
+
+#include "tools/base/settings/fields.h"
 
 namespace sim {
 
@@ -23,9 +24,30 @@ struct CameraParams {
   Lens lens = Lens::radial_tangential;
 };
 
-// Everything wrong with the parameters, one sentence each; empty when all is well. The lens must be one-to-one on the
-// whole image: a distortion that folds over inside it is a problem.
-std::vector<std::string> Problems(const CameraParams& params);
+template <class V>
+void Visit(V& v, CameraParams& p) {
+  using settings::Range, settings::Unit;
+  const Range side{1, 1 << 14};
+  v("width", p.width, {side, "of the image [px]"});
+  v("height", p.height, {side, "of the image [px]"});
+  v("fx", p.fx, {Unit::pixel, Range::Positive(), "focal length"});
+  v("fy", p.fy, {Unit::pixel, Range::Positive(), "focal length"});
+  v("cx", p.cx, {Unit::pixel, "principal point"});
+  v("cy", p.cy, {Unit::pixel, "principal point"});
+  v.Child("distortion", [&](auto& lens) {
+    lens("model", p.lens, {{"radial_tangential", Lens::radial_tangential}, {"fisheye", Lens::fisheye}}, "of the lens");
+    lens("k1", p.k1, {"radial"});
+    lens("k2", p.k2, {"radial"});
+    if (p.lens == Lens::radial_tangential) lens("p1", p.p1, {"tangential"});
+    if (p.lens == Lens::radial_tangential) lens("p2", p.p2, {"tangential"});
+    lens("k3", p.k3, {"radial"});
+    if (p.lens == Lens::fisheye) lens("k4", p.k4, {"radial, of a fisheye lens"});
+  });
+}
+
+// Ranges, and rules between several values. The lens must be one-to-one on the whole image: a distortion that folds
+// over inside it is a problem.
+std::vector<settings::FieldProblem> Problems(CameraParams params);
 
 // The camera whose pixels are `factor` x `factor` of this one's.
 CameraParams Binned(const CameraParams& params, int factor);

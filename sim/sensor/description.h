@@ -3,65 +3,114 @@
 
 #include <vector>
 
+#include "tools/base/settings/fields.h"
+
 namespace sim {
 
 enum class Response { linear, srgb };  // srgb: IEC 61966-2-1
 enum class Mosaic { none, raw, demosaiced };
 
-// In front of the sensor, apart from the lens's distortion (sim/sensor/camera.h).
+using settings::Range;
+using settings::Unit;
+
+// Optics in front of the sensor, apart from the lens's distortion (sim/sensor/camera.h).
 struct OpticsParams {
-  double aperture_m = 0.0;  // diameter of the entrance pupil: what is not at focus_m is blurred. 0: all is sharp
-  double focus_m = 2.0;     // Z of the plane that is sharp
-  bool natural_vignetting = false;  // illuminance falls with cos^4 of the angle from the optical axis
-  double vignetting_2 = 0.0;        // and with 1 + v2 r^2 + v4 r^4 + v6 r^6, where r is the distance from the principal
-  double vignetting_4 = 0.0;        // point in half diagonals of the image
-  double vignetting_6 = 0.0;
+  double aperture_m = 0.0;
+  double focus_m = 2.0;
+  bool natural_vignetting = false;
+  double vignetting_2 = 0.0, vignetting_4 = 0.0, vignetting_6 = 0.0;
 };
+
+template <class V>
+void Visit(V& v, OpticsParams& p) {
+  v("aperture", p.aperture_m, {Unit::length, Range{0, 1}, "diameter of the entrance pupil; 0: all is in focus"});
+  v("focus", p.focus_m, {Unit::length, Range::Positive(), "Z of the plane in focus"});
+  v("natural_vignetting", p.natural_vignetting, {"cos^4 of the angle from the optical axis"});
+  v("vignetting_2", p.vignetting_2, {"and 1 + v2 r^2 + v4 r^4 + v6 r^6,"});
+  v("vignetting_4", p.vignetting_4, {"r: distance from the principal point"});
+  v("vignetting_6", p.vignetting_6, {"in half diagonals of the image"});
+}
 
 // Exposure time and gain of each frame from the brightness of the one before: sim/sensor/auto_exposure.h.
 struct AutoExposureParams {
   bool on = false;
-  double target = 0.45;         // mean of the picture that is sought, as a fraction of the scale, after the response
-  double speed = 0.2;           // share of the error (of its logarithm) that is mended from frame to frame
-  double shortest_s = 0.00005;  // exposure time,
-  double longest_s = 0.020;     // which is used up before
-  double highest_gain = 8.0;    // the gain is
+  double target = 0.45;
+  double speed = 0.2;
+  double shortest_s = 0.00005, longest_s = 0.020;
+  double highest_gain = 8.0;
 };
 
-// A hand before the lens: frames whose exposure has its middle in [from_s, until_s) see no light.
+template <class V>
+void Visit(V& v, AutoExposureParams& p) {
+  v("on", p.on, {"exposure time and gain follow the brightness of the frame before"});
+  v("target", p.target, {Range::Between(0, 1), "mean of the picture after the response, as a fraction of the scale"});
+  v("speed", p.speed, {Range{.min = 0, .max = 1, .above_min = true}, "share of the log error corrected per frame"});
+  v("shortest", p.shortest_s, {Unit::time, Range::Positive(), "least exposure time"});
+  v("longest", p.longest_s, {Unit::time, "largest exposure time, reached before the gain grows"});
+  v("highest_gain", p.highest_gain, {Range::AtLeast(1), "largest gain"});
+}
+
+// Interval without light: frames whose exposure has its middle in [from_s, until_s) are dark.
 struct Covered {
   double from_s = 0.0, until_s = 0.0;
 };
 
-// How light becomes numbers: sim/sensor/sensor.h has the model.
+// Settings of the image formation: sim/sensor/sensor.h has the model.
 struct SensorParams {
-  double exposure_s = 0.010;  // longer: more motion blur. Brightness does not depend on it (`white` fixes that)
-  int time_samples = 16;      // instants averaged over the exposure; fewer: long blur gets grainy
-  double readout_s = 0.0;  // from the first row's exposure to the last's: rolling shutter. 0: all at once; < 0: upwards
+  double exposure_s = 0.010;
+  int time_samples = 16;
+  double readout_s = 0.0;
   AutoExposureParams auto_exposure;
   std::vector<Covered> covered;
   OpticsParams optics;
 
-  double white = 1.0;               // linear radiance that fills the scale at gain 1; smaller: brighter pictures
-  double full_well_e = 10000.0;     // electrons at `white`; fewer: more shot noise
-  double quantum_efficiency = 0.5;  // electrons per photon: no picture depends on it, figures in photons do
+  double white = 1.0;
+  double full_well_e = 10000.0;
+  double quantum_efficiency = 0.5;
   bool shot_noise = true;
-  double photo_response_sigma = 0.0;  // fixed pattern: each pixel collects 1 + this * z of its light (PRNU)
-  double dark_current_e_s = 0.0;      // electrons per second of exposure that no light made; they have shot noise too
-  double dark_sigma_e_s = 0.0;        // fixed pattern: of the dark current, from pixel to pixel (DSNU)
-  double hot_pixels = 0.0;            // the share of pixels whose dark current is
-  double hot_current_e_s = 1e5;       // exponentially distributed with this mean
-  double read_noise_e = 8.0;          // standard deviation, in electrons; 0: none
-  double gain = 1.0;                  // analogue, >= 1: full_well / gain electrons fill the scale
-  double black_level = 0.0;           // added to the signal, as a fraction of the scale
+  double photo_response_sigma = 0.0;
+  double dark_current_e_s = 0.0, dark_sigma_e_s = 0.0;
+  double hot_pixels = 0.0, hot_current_e_s = 1e5;
+  double read_noise_e = 8.0;
+  double gain = 1.0;
+  double black_level = 0.0;
   Response response = Response::srgb;
-  int bit_depth = 8;             // 8 ... 16
-  bool color = true;             // false: one channel of luminance
-  Mosaic mosaic = Mosaic::none;  // raw: one channel behind a Bayer filter, RGGB; demosaiced: and colour again of it
-  int jpeg_quality = 0;          // 1 ... 100: the picture has been a JPEG file; 0: not
+  int bit_depth = 8;
+  bool color = true;
+  Mosaic mosaic = Mosaic::none;
+  int jpeg_quality = 0;
 
   bool IsCovered(double t_s) const;  // at the middle of an exposure
   double RowDelay(int height) const { return height > 1 ? readout_s / (height - 1) : 0.0; }
 };
+
+template <class V>
+void Visit(V& v, SensorParams& p) {
+  const Range share{0, 1}, not_negative = Range::AtLeast(0);
+  v("exposure", p.exposure_s, {Unit::time, Range{0, 10}, "longer: more motion blur, not brighter; at most 1 / rate"});
+  v("time_samples", p.time_samples, {Range{1, 1024}, "instants of which an exposure is the mean"});
+  v("rolling_shutter", p.readout_s, {Unit::time, Range{-10, 10}, "readout time of all rows; below 0: upwards"});
+  v.Child("auto_exposure", p.auto_exposure);
+  v.Child("optics", p.optics);
+  v("white", p.white, {Range::Positive(), "linear radiance that fills the scale at gain 1"});
+  v("full_well", p.full_well_e, {Unit::electrons, Range{1, 1e9}, "electrons at `white`; fewer: more shot noise"});
+  v("quantum_efficiency", p.quantum_efficiency,
+    {Range{.min = 0, .max = 1, .above_min = true}, "electrons per photon: for figures in photons, not the images"});
+  v("shot_noise", p.shot_noise, {"Poisson noise of the electrons"});
+  v("photo_response_sigma", p.photo_response_sigma, {share, "fixed pattern of the sensitivity (PRNU), as a fraction"});
+  v("dark_current", p.dark_current_e_s, {Unit::electron_rate, not_negative, "mean dark current"});
+  v("dark_sigma", p.dark_sigma_e_s, {Unit::electron_rate, not_negative, "fixed pattern of the dark current (DSNU)"});
+  v("hot_pixels", p.hot_pixels, {share, "share of the pixels with a dark current that is"});
+  v("hot_current", p.hot_current_e_s, {Unit::electron_rate, not_negative, "exponentially distributed with this mean"});
+  v("read_noise", p.read_noise_e, {Unit::electrons, not_negative, "standard deviation; 0: none"});
+  v("gain", p.gain, {Range{1, 1000}, "analogue: full_well / gain electrons fill the scale"});
+  v("black_level", p.black_level, {Range{.min = 0, .max = 1, .below_max = true}, "offset, as a fraction of the scale"});
+  v("response", p.response, {{"linear", Response::linear}, {"srgb", Response::srgb}}, "camera response: IEC 61966-2-1");
+  v("bit_depth", p.bit_depth, {Range{8, 16}, "above 8: 16-bit PNG, the numbers in the highest bits"});
+  v("color", p.color, {"false: one channel of luminance"});
+  v("mosaic", p.mosaic, {{"none", Mosaic::none}, {"raw", Mosaic::raw}, {"demosaiced", Mosaic::demosaiced}},
+    "Bayer filter (RGGB): none; one raw channel; interpolated to three");
+  v("jpeg_quality", p.jpeg_quality, {Range{0, 100}, "compressed to JPEG and back; 0: not"});
+}
 
 }  // namespace sim

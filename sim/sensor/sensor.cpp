@@ -10,7 +10,6 @@
 
 #include "sim/random/random.h"
 #include "sim/sensor/develop.h"
-#include "tools/base/settings/require.h"
 
 namespace sim {
 namespace {
@@ -31,43 +30,24 @@ float Poisson(float mean, double u) {
 
 }  // namespace
 
-std::vector<std::string> Problems(const SensorParams& p) {
-  settings::Require require;
-  require(p.exposure_s >= 0 && p.exposure_s <= 10, "exposure", p.exposure_s, "must lie in 0 ... 10 s");
-  require(p.time_samples >= 1 && p.time_samples <= 1024, "time_samples", p.time_samples, "must lie in 1 ... 1024");
-  require(std::abs(p.readout_s) <= 10, "rolling_shutter", p.readout_s, "must lie in -10 ... 10 s");
-  require(p.white > 0, "white", p.white, "must be positive");
-  require(p.full_well_e >= 1 && p.full_well_e <= 1e9, "full_well", p.full_well_e, "must lie in 1 ... 1e9 electrons");
-  require(p.quantum_efficiency > 0 && p.quantum_efficiency <= 1, "quantum_efficiency", p.quantum_efficiency,
-          "must lie in 0 ... 1, above 0");
-  require(p.photo_response_sigma >= 0 && p.photo_response_sigma <= 1, "photo_response_sigma", p.photo_response_sigma,
-          "must lie in 0 ... 1");
-  require(p.dark_current_e_s >= 0, "dark_current", p.dark_current_e_s, "must not be negative");
-  require(p.dark_sigma_e_s >= 0, "dark_sigma", p.dark_sigma_e_s, "must not be negative");
-  require(p.hot_pixels >= 0 && p.hot_pixels <= 1, "hot_pixels", p.hot_pixels, "must lie in 0 ... 1");
-  require(p.hot_current_e_s >= 0, "hot_current", p.hot_current_e_s, "must not be negative");
-  require(p.read_noise_e >= 0 && p.read_noise_e <= p.full_well_e, "read_noise", p.read_noise_e,
-          "must lie between 0 and full_well");
-  require(p.gain >= 1 && p.gain <= 1000, "gain", p.gain, "must lie in 1 ... 1000");
-  require(p.black_level >= 0 && p.black_level < 1, "black_level", p.black_level, "must lie in 0 ... 1, below 1");
-  require(p.bit_depth >= 8 && p.bit_depth <= 16, "bit_depth", p.bit_depth, "must lie in 8 ... 16");
-  require(p.jpeg_quality >= 0 && p.jpeg_quality <= 100, "jpeg_quality", p.jpeg_quality, "must lie in 0 ... 100");
-  require(p.jpeg_quality == 0 || p.bit_depth == 8, "jpeg_quality", p.jpeg_quality, "needs a bit_depth of 8");
-  require(p.color || p.mosaic == Mosaic::none, "color", 0, "(false) does not go with a mosaic");
+std::vector<settings::FieldProblem> Problems(SensorParams p) {
+  settings::FieldCheck check;
+  Visit(check, p);
+  check.Require(p.read_noise_e <= p.full_well_e, "read_noise", p.read_noise_e, "must not be above full_well");
+  check.Require(p.jpeg_quality == 0 || p.bit_depth == 8, "jpeg_quality", p.jpeg_quality, "needs a bit_depth of 8");
+  if (!p.color && p.mosaic != Mosaic::none) check.Refuse("color", "= false does not go with a mosaic");
   if (p.auto_exposure.on) {
-    require(p.exposure_s > 0, "exposure", p.exposure_s, "must be positive for auto_exposure to start from");
-    require(p.auto_exposure.target > EncodeResponse(p.response, p.black_level), "auto_exposure.target",
-            p.auto_exposure.target, "must be above what black_level shows without any light");
-    for (const std::string& problem : Problems(p.auto_exposure)) require.problems.push_back("auto_exposure." + problem);
+    check.Require(p.exposure_s > 0, "exposure", p.exposure_s, "must be positive for auto_exposure to start from");
+    check.Require(p.auto_exposure.target > EncodeResponse(p.response, p.black_level), "auto_exposure.target",
+                  p.auto_exposure.target, "must be above what black_level shows without any light");
   }
+  check.Require(p.auto_exposure.longest_s >= p.auto_exposure.shortest_s, "auto_exposure.longest",
+                p.auto_exposure.longest_s, "must not be below shortest");
   for (const Covered& c : p.covered) {
-    require(c.from_s >= 0, "covered: from", c.from_s, "must not be negative");
-    require(c.until_s > c.from_s, "covered: until", c.until_s, "must be above from");
+    check.Require(c.from_s >= 0, "covered.from", c.from_s, "must not be negative");
+    check.Require(c.until_s > c.from_s, "covered.until", c.until_s, "must be above from");
   }
-  const OpticsParams& o = p.optics;
-  require(o.aperture_m >= 0 && o.aperture_m <= 1, "optics.aperture", o.aperture_m, "must lie in 0 ... 1 m");
-  require(o.focus_m > 0, "optics.focus", o.focus_m, "must be positive");
-  return require.problems;
+  return check.problems;
 }
 
 bool SensorParams::IsCovered(double t_s) const {
@@ -76,9 +56,7 @@ bool SensorParams::IsCovered(double t_s) const {
 
 Sensor::Sensor(const SensorParams& params, std::uint64_t seed, int width, int height)
     : params_(params), seed_(seed), response_(params.response) {
-  std::string text;
-  for (const std::string& problem : Problems(params)) text += (text.empty() ? "sensor: " : "; ") + problem;
-  if (!text.empty()) throw std::invalid_argument(text);
+  ThrowIfAny(Problems(params), "sensor");
   if (HasFixedPattern(params) && (width < 1 || height < 1))
     throw std::invalid_argument("sensor: a fixed pattern needs the size of the pictures");
   pattern_ = MakeFixedPattern(params, seed, width, height, static_cast<int>(channels()));

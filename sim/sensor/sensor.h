@@ -16,8 +16,8 @@
 
 namespace sim {
 
-// Everything wrong with the settings, one sentence each, with the value; empty when all is well.
-std::vector<std::string> Problems(const SensorParams& params);
+// Ranges, and rules between several values; empty when all is well.
+std::vector<settings::FieldProblem> Problems(SensorParams params);
 
 // Per pixel and channel, with L the mean linear radiance of the exposure, in the order of the light's way:
 //   light                N = full_well L / white * (exposure time / exposure_s) * (1 + photo_response_sigma z_fixed)

@@ -277,7 +277,7 @@ TEST_F(CampaignTest, SequencesAreSharedAndKnowTheirFiles) {
 TEST_F(CampaignTest, PointsKnowTheFileThatTheCameraMovesBy) {
   const fs::path path = here_ / "path.txt";
   WriteFile(here_ / "points.yaml",
-            "world: {points: {landmarks: room, points: 300}}\n"
+            "world: {points: {landmarks: room, total: 300}}\n"
             "camera: {width: 160, height: 120, fx: 131.25, fy: 131.25, cx: 79.5, cy: 59.5}\n"
             "time: {rate: 30 Hz, duration: 0.5 s}\ntrajectory: {type: recorded, file: path.txt}\n");
   WriteFile(path, "0 2 1 2 0 0 0 1\n1 2.5 1 2 0 0 0 1\n2 2 1 2 0 0 0 1\n");

@@ -68,6 +68,12 @@ TEST(DocPage, SeesTheCommandsOfThePagesThatHaveSome) {
   EXPECT_THAT(ReadPage("docs/metrics.md").anchors, testing::Contains("other-tools-numbers"));
 }
 
+TEST(DocPage, SettingsAreThoseOfTheProgram) {
+  const std::string page = ReadFile(ProjectRoot() / "docs/settings.md");
+  EXPECT_EQ(page.substr(page.find("\n## ")), RunVobench({"settings", "--markdown"}, ProjectRoot()).out)
+      << "the page's tables are the output of `vobench settings --markdown`";
+}
+
 std::vector<std::string> Rows(const std::string& page) {
   std::vector<std::string> rows;
   std::istringstream lines(ReadFile(ProjectRoot() / page));

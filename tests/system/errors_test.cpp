@@ -148,7 +148,8 @@ TEST_F(ErrorsTest, EveryMistakeInAScenarioIsNamedWithItsPlace) {
 TEST_F(ErrorsTest, PointsAreNotRendered) {
   const std::string scene = (TinyScenario().parent_path() / "points.yaml").string();
   Fails({"render", scene, "-o", "out"}, 2, "points: a world of points has no images");
-  Fails({"run", scene, "--set", "world.points.count=0"}, 2, "--set world.points.count: points: count = 0 must lie in");
+  Fails({"run", scene, "--set", "world.points.count=0"}, 2,
+        "--set world.points.count: 'world.points.count': '0' must lie in");
   Fails({"run", scene, "--set", "seed=3"}, 2, "say --seed 3");
   Fails({"run", scene, "--bound", "--set", "time.duration=0.1 s", "--set", "world.points.measurement.noise=0"}, 2,
         "no Cramer-Rao bound: views have no noise");
@@ -189,7 +190,8 @@ TEST_F(ErrorsTest, BadUsage) {
 
 TEST_F(ErrorsTest, HelpAndVersionSucceed) {
   EXPECT_EQ(RunVobench({"--version"}, here_.path()).status, 0);
-  for (const std::string command : {"render", "track", "evaluate", "run", "check", "verify", "campaign", "report"}) {
+  for (const std::string command :
+       {"render", "track", "evaluate", "run", "check", "settings", "verify", "campaign", "report"}) {
     const Outcome outcome = RunVobench({command, "--help"}, here_.path());
     EXPECT_EQ(outcome.status, 0);
     EXPECT_THAT(outcome.out, HasSubstr("\nExample: vobench " + command));

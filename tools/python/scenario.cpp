@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "tools/bench/systems/bridge.h"
+#include "tools/bench/systems/settings_table.h"
 #include "tools/python/module.h"
 #include "vo/geometry/camera_file.h"
 
@@ -65,6 +66,10 @@ void AddCamera(py::module_& m) {
 
 void AddScenario(py::module_& m) {
   AddCamera(m);
+  py::list settings;
+  for (const auto& [key, value, range, help] : SettingsTable())
+    settings.append(py::make_tuple(key, value, range, help));
+  m.attr("SETTINGS") = py::tuple(settings);
   py::class_<StampedTruth>(m, "Truth", Doc("sim/motion/truth.h:Truth"))
       .def_readonly("stamp_ns", &StampedTruth::stamp_ns)
       .def_property_readonly(

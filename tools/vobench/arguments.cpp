@@ -89,6 +89,7 @@ Command CommandOf(OptionTable& table, const std::string& line) {
   if (name == "evaluate") return table.evaluate;
   if (name == "verify") return table.verify;
   if (name == "export") return table.exported;
+  if (name == "settings") return table.settings;
   return table.report;
 }
 

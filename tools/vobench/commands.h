@@ -81,6 +81,13 @@ struct CheckOptions {
 };
 void Check(const CheckOptions& options);
 
+// All settings with defaults, ranges and meanings.
+struct SettingsOptions {
+  std::string prefix;  // only keys that begin so
+  bool markdown = false;
+};
+void Settings(const SettingsOptions& options);
+
 // report.html is made anew from a result folder.
 struct ReportOptions {
   std::filesystem::path output;
@@ -103,6 +110,6 @@ void Export(const ExportOptions& options);
 void RunCampaign(const CampaignOptions& options);
 
 using Command = std::variant<RenderOptions, TrackOptions, EvaluateOptions, RunOptions, CheckOptions, ReportOptions,
-                             VerifyOptions, CampaignOptions, ExportOptions>;
+                             VerifyOptions, CampaignOptions, ExportOptions, SettingsOptions>;
 
 }  // namespace vobench

@@ -20,7 +20,7 @@ CLI::App& AddCommand(CLI::App& app, const std::string& name, const std::string& 
 }
 
 void AddSet(CLI::App& command, OptionTable& table, const std::string& example) {
-  command.add_option("--set", table.set, "Change one setting, such as " + example + " (may be given again)")
+  command.add_option("--set", table.set, "Change one setting, such as " + example + "; `vobench settings` lists them")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
 }
@@ -229,6 +229,11 @@ void OptionTable::AddOthers() {
                                        "vobench check scenes/room.yaml");
   check_command.add_option("SCENARIO", check.scenario, "Scenario file (scenes/*.yaml)")->required();
   AddSet(check_command, *this, "camera.width=320");
+
+  CLI::App& settings_command = AddCommand(app, "settings", "List all settings: key, default, range, meaning",
+                                          "vobench settings odometry.filter");
+  settings_command.add_option("PREFIX", settings.prefix, "Only keys that begin so")->type_name("KEY");
+  settings_command.add_flag("--markdown", settings.markdown, "As the tables of docs/settings.md");
 
   CLI::App& verify_command =
       AddCommand(app, "verify", "Hold the streams of a sequence against each other: poses, depth, flow, IMU, pictures",

@@ -27,6 +27,7 @@ struct OptionTable {
   CampaignOptions campaign;
   ReportOptions report;
   ExportOptions exported;
+  SettingsOptions settings;
 
   // What is read as text first, and what several sub-commands share.
   std::vector<std::string> set;
@@ -41,7 +42,7 @@ struct OptionTable {
   void AddEvaluate();
   void AddRun();
   void AddCampaign();
-  void AddOthers();  // check, verify, export, report
+  void AddOthers();  // check, settings, verify, export, report
 };
 
 }  // namespace vobench

@@ -23,6 +23,11 @@ class Images(unittest.TestCase):
     def setUpClass(cls):
         cls.simulator = vobench.Simulator(tiny(), jobs=2)
 
+    def test_settings_are_listed(self):
+        rows = {key: (value, choices) for key, value, choices, _ in vobench.SETTINGS}
+        self.assertEqual(rows["odometry.filter.particles"], ("8", "1 ... 100000"))
+        self.assertEqual(rows["sensor.exposure"][0], "0.01 s")
+
     def test_frames_are_views_that_keep_what_they_show(self):
         frame = self.simulator.render(3)
         image = frame.image

@@ -67,7 +67,7 @@ TEST(Camera, TheTableOfRaysIsAsGoodAsTheHeaderSays) {
 TEST(Camera, ALensThatFoldsOverInsideTheImageIsRefused) {
   CameraParams params{640, 480, 525, 525, 319.5, 239.5};
   params.k1 = -0.9;  // r d(r) is largest at r = 0.61, where it is 0.41: inside the image, whose corner is at 0.76
-  EXPECT_THAT(Problems(params), testing::ElementsAre(HasSubstr("distortion: folds over inside the image")));
+  EXPECT_THAT(Join(Problems(params), "; "), testing::StartsWith("distortion folds over inside the image"));
   params.k1 = -0.15;  // largest at r = 1.49, where it is 0.99
   EXPECT_THAT(Problems(params), IsEmpty());
   params.k1 = 0;
@@ -162,16 +162,16 @@ TEST(Camera, AFisheyeLensIsUndone) {
 TEST(Camera, AFisheyeLensHasItsOwnFaults) {
   CameraParams params = TumVi();
   params.p1 = 0.1;
-  EXPECT_THAT(Problems(params), testing::ElementsAre("p1 = 0.1 must be 0: a fisheye lens has no such term"));
+  EXPECT_EQ(Join(Problems(params), "; "), "distortion.p1 = 0.1 must be 0: a fisheye lens has no such term");
   params = TumVi();
   params.k1 = -0.3;  // r(theta) is largest at 1.05
-  EXPECT_THAT(Problems(params), testing::ElementsAre(HasSubstr("folds over inside the image")));
+  EXPECT_THAT(Join(Problems(params), "; "), testing::StartsWith("distortion folds over inside the image"));
   params = TumVi();
   params.fx = params.fy = 70;  // the corners would lie beyond straight back
   EXPECT_THAT(Problems(params), testing::SizeIs(1));
   params = WorkedByHand();
   params.k4 = 0.1;
-  EXPECT_THAT(Problems(params), testing::ElementsAre(HasSubstr("k4 = 0.1 must be 0")));
+  EXPECT_EQ(Join(Problems(params), "; "), "distortion.k4 = 0.1 must be 0: only a fisheye lens has such a term");
 }
 
 TEST(Camera, BadParametersAreAllNamed) {
@@ -185,8 +185,8 @@ TEST(Camera, BadParametersAreAllNamed) {
     FAIL();
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),
-                 "camera: width = 0 must lie in 1 ... 16384; fx = -1 must be positive; cy = nan must be finite; "
-                 "k3 = inf must be finite");
+                 "camera: width = 0 must lie in 1 ... 16384; fx = -1 px must be positive; cy = nan px must be finite; "
+                 "distortion.k3 = inf must be finite");
   }
 }
 

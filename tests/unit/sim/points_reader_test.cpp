@@ -56,9 +56,9 @@ TEST(PointsReader, EveryKeyIsRead) {
   EXPECT_EQ(prior.measurement.blur_length_px, 9);
   EXPECT_EQ(prior.measurement.blur_exposure_s, 0.02);
   const PointDescription room =
-      *Read(Text("{points: {landmarks: room, points: 10, size: 4 m, center: [1, 2, 3], min_depth: 20 cm}}")).points;
+      *Read(Text("{points: {landmarks: room, total: 10, size: 4 m, center: [1, 2, 3], min_depth: 20 cm}}")).points;
   EXPECT_EQ(room.landmarks, Landmarks::room);
-  EXPECT_EQ(room.points, 10);
+  EXPECT_EQ(room.total, 10);
   EXPECT_EQ(room.size_m, 4);
   EXPECT_EQ(*room.center, glm::dvec3(1, 2, 3));
   EXPECT_EQ(room.min_depth_m, 0.2);
@@ -80,11 +80,11 @@ TEST(PointsReader, WhatItResolvesToIsTheSameWorld) {
 
 TEST(PointsReader, OneErrorForEachThingThatIsWrong) {
   EXPECT_EQ(Complaint(Text("{points: {landmarks: prior, count: 0}}")),
-            ":1:43: points: count = 0 must lie in 1 ... 1000000");
+            ":1:43: 'world.points.count': '0' must lie in 1 ... 1000000");
   EXPECT_EQ(Complaint(Text("{points: {landmarks: prior, measurement: {drops: 1.5}}}")),
-            ":1:57: points: measurement.drops = 1.5 must lie in 0 ... 1");
+            ":1:57: 'world.points.measurement.drops': '1.5' must lie in 0 ... 1");
   EXPECT_EQ(Complaint(Text("{points: {landmarks: prior, margin: 240 px}}")),
-            ":1:44: points: margin = 240 px must be at least 0 and leave something of the image");
+            ":1:44: world.points.margin = 240 px must leave something of the image");
   EXPECT_THAT(Complaint(Text("{points: {landmarks: prior, size: 5 m}}")), HasSubstr(":1:36: unknown key 'size'"));
   EXPECT_THAT(Complaint(Text("{points: {landmarks: prior, noize: 1 px}}")), HasSubstr("unknown key 'noize'"));
   EXPECT_THAT(Complaint(Text("{points: {landmarks: ruum, size: 3}}")),

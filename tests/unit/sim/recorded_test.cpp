@@ -97,8 +97,8 @@ TEST(Recorded, FliesWhatWasRecorded) {
   const TemporaryFolder folder;
   RecordedMotion motion;
   motion.file = folder.Write("circle.txt", Circle());
-  motion.start_s = 0.5;
-  motion.average_s = 0;
+  motion.start_time_s = 0.5;
+  motion.averaging_time_s = 0;
   const auto trajectory = MakeRecordedTrajectory(motion, 1.5);
   for (double t = 0; t <= 1.2; t += 0.013) {  // up to the very end the curvature fades: a natural spline
     const Motion at = trajectory->At(t);
@@ -114,10 +114,10 @@ TEST(Recorded, IsMovedRigidlyToItsPlace) {
   RecordedMotion motion;
   motion.file = folder.Write("circle.txt", Circle());
   const auto as_recorded = MakeRecordedTrajectory(motion, 2);
-  motion.place = Pose{{5, 1, -2}, Exp({0.3, 0.2, 0.1})};
+  motion.start_pose = Pose{{5, 1, -2}, Exp({0.3, 0.2, 0.1})};
   const auto moved = MakeRecordedTrajectory(motion, 2);
-  EXPECT_LT(glm::length(moved->At(0).pose.p_WC - motion.place->p_WC), 1e-14);
-  EXPECT_LT(glm::length(Log(glm::conjugate(motion.place->q_WC) * moved->At(0).pose.q_WC)), 1e-14);
+  EXPECT_LT(glm::length(moved->At(0).pose.p_WC - motion.start_pose->p_WC), 1e-14);
+  EXPECT_LT(glm::length(Log(glm::conjugate(motion.start_pose->q_WC) * moved->At(0).pose.q_WC)), 1e-14);
   const Motion a0 = as_recorded->At(0), b0 = moved->At(0);
   for (double t = 0; t <= 2; t += 0.1) {
     const Motion a = as_recorded->At(t), b = moved->At(t);
@@ -133,7 +133,7 @@ TEST(Recorded, ItsEndIsTheFilesEnd) {
   const TemporaryFolder folder;
   RecordedMotion motion;
   motion.file = folder.Write("circle.txt", Circle());
-  motion.start_s = 1;
+  motion.start_time_s = 1;
   EXPECT_EQ(Message([&] { MakeRecordedTrajectory(motion, 1.5); }),
             motion.file.string() + ": lasts 2 s; asked for is 1 s to 2.5 s");
   EXPECT_NO_THROW(MakeRecordedTrajectory(motion, 1));
@@ -149,10 +149,10 @@ TEST(Recorded, IsUsedToItsEndWhateverSumsRoundTo) {
   }
   RecordedMotion motion;
   motion.file = folder.Write("line.txt", text);
-  motion.start_s = 0.1;
-  motion.average_s = 0;
+  motion.start_time_s = 0.1;
+  motion.averaging_time_s = 0;
   const double last_s = Seconds(1200000000);
-  ASSERT_GT(motion.start_s + last_s, 1.3);
+  ASSERT_GT(motion.start_time_s + last_s, 1.3);
   const auto trajectory = MakeRecordedTrajectory(motion, last_s);
   EXPECT_NEAR(trajectory->At(last_s).pose.p_WC.x, 1.3, 1e-12);
   EXPECT_NEAR(trajectory->At(last_s).v_WC.x, 1, 1e-12);
@@ -178,7 +178,7 @@ TEST(Recorded, HandHeldFlightOfARealCamera) {
   EXPECT_LT(distances[distances.size() / 2], 0.0005);
   EXPECT_LT(distances.back(), 0.01);
   // Without averaging two stamps 0.3 ms apart are a speed of several metres a second.
-  motion.average_s = 0;
+  motion.averaging_time_s = 0;
   const auto jerking = MakeRecordedTrajectory(motion, end_s);
   double fastest = 0;
   for (const KeyPose& key : recorded) fastest = std::max(fastest, glm::length(jerking->At(key.t_s).v_WC));

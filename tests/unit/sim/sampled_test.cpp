@@ -261,10 +261,10 @@ TEST(Sampled, BadSettingsAreAllNamed) {
     SampledTrajectory(motion, 1, 1);
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "sampled motion: position_noise = -1 must be at least 0; orientation_noise = nan must be at least 0; "
-        "position_return = 1000 must lie between 0 and 0.2 / knot_step; orientation of length = 0 must not be 0");
+    EXPECT_STREQ(error.what(),
+                 "sampled motion: position_noise = -1 m/s^1.5 must be at least 0 m/s^1.5; "
+                 "orientation_noise = nan rad/s^1.5 must be at least 0 rad/s^1.5; "
+                 "position_return = 1000 must not be above 0.2 / knot_step; start is no pose");
   }
 }
 

@@ -133,10 +133,10 @@ TEST(Scenario, KeysOfLight) {
     {type: point, position: [1, 2, 3], intensity: [4, 5, 6], flicker: {frequency: 100 Hz, depth: 0.3, phase: 90 deg}},
     {type: rectangle, corner: [1, 2, 3], side_u: [1, 0, 0], side_v: [0, 0, 2], radiance: [7, 8, 9], visible: true, flicker: {frequency: 0.12 kHz, depth: 1}},
     {type: sky, file: sky.hdr, strength: 3, turn: 45 deg})",
-                              "{light: baked, bake: {spacing: 20 cm, finest: 5 mm, paths: 64, lamp_rays: 32}}")));
+                              "{light: baked, bake: {spacing: 20 cm, min_spacing: 5 mm, paths: 64, lamp_rays: 32}}")));
   EXPECT_EQ(s.render.light, LightMode::baked);
   EXPECT_EQ(s.render.bake.spacing_m, 0.2);
-  EXPECT_EQ(s.render.bake.finest_m, 0.005);
+  EXPECT_EQ(s.render.bake.min_spacing_m, 0.005);
   EXPECT_EQ(s.render.bake.paths, 64);
   EXPECT_EQ(s.render.bake.lamp_rays, 32);
   EXPECT_EQ(s.render.light_folders.at(0), folder.path() / ".vobench-cache");
@@ -176,16 +176,17 @@ TEST(Scenario, APresetIsWhatTheOtherKeysBeginWith) {
 
 TEST(Scenario, LightThatMakesNoSense) {
   const TemporaryFolder folder;
-  const std::string message =
-      Message(folder.Write("bad.yaml", WithLight(R"(
+  const std::string message = Message(
+      folder.Write("bad.yaml", WithLight(R"(
     {type: point, position: [1, 2, 3], intensity: [4, 5, 6], flicker: {depth: 0.3}},
     {type: point, position: [1, 2, 3], intensity: [4, 5, 6], flicker: {frequency: 100, depth: 1.5}},
     {type: sun, direction: [0, -1, 0], irradiance: [1, 2, 3], flicker: {depth: 0.3}},
     {type: sky, radiance: [1, 1, 1], file: sky.hdr},
     {type: sky, radiance: [1, 1, 1], turn: 3 deg})",
-                                                 "{light: fast, bake: {spacing: 1 cm, finest: 2 cm, paths: 100}}")));
+                                         "{light: fast, bake: {spacing: 1 cm, min_spacing: 2 cm, paths: 100}}")));
   for (const char* part : {"needs a frequency", "'world.lights.1.flicker.depth'", "'flicker'", "either 'radiance'",
-                           "a sky already", "only a sky from a file", "'fast'", "finest", "paths = 100"}) {
+                           "a sky already", "only a sky from a file", "'fast'",
+                           "min_spacing = 0.02 m must not be above spacing", "'100' must be a power of two"}) {
     EXPECT_THAT(message, HasSubstr(part));
   }
 }
@@ -206,15 +207,15 @@ trajectory:
   EXPECT_EQ(std::get<ScriptedMotion>(a.motion).keys.size(), 3u);
   EXPECT_EQ(std::get<ScriptedMotion>(a.motion).keys[1].t_s, 0.5);
   EXPECT_THAT(Message(scripted, {{"time.duration", "3 s"}}),
-              HasSubstr("--set time.duration: 'time.duration': '3 s' must lie in 0 ... 2 s"));
+              HasSubstr("--set time.duration: time.duration = 3 s is beyond the script's last key"));
 
   const Scenario b = LoadScenario(world.folder.Write("recorded.yaml", base + R"(
 time: {duration: 1 s}
-trajectory: {type: recorded, file: f.txt, start: 2 s, place: {position: [1, 2, 3], look_at: [1, 2, 0]}}
+trajectory: {type: recorded, file: f.txt, start_time: 2 s, start_pose: {position: [1, 2, 3], look_at: [1, 2, 0]}}
 )"));
   EXPECT_EQ(std::get<RecordedMotion>(b.motion).file, world.folder.path() / "f.txt");
-  EXPECT_EQ(std::get<RecordedMotion>(b.motion).start_s, 2);
-  EXPECT_EQ(std::get<RecordedMotion>(b.motion).place->p_WC, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(std::get<RecordedMotion>(b.motion).start_time_s, 2);
+  EXPECT_EQ(std::get<RecordedMotion>(b.motion).start_pose->p_WC, glm::dvec3(1, 2, 3));
 }
 
 TEST(Scenario, AllProblemsAtOnce) {
@@ -241,7 +242,7 @@ TEST(Scenario, AllProblemsAtOnce) {
            ": missing key 'camera.height'",
            ":3:22: unknown key 'hieght'; did you mean 'height'?",
            ":3:39: 'camera.fx': '3 ms' is not a number of pixels: expected a number with px",
-           ":4:20: sensor: exposure = 0.05 s is longer than the time between two frames",
+           ":4:20: sensor.exposure = 0.05 s is longer than the time between two frames",
            ":4:27: unknown key 'exposhure'; did you mean 'exposure'?",
            ":4:53: 'sensor.read_noise': '-1' must be at least 0 e",
            ":9:14: 'time': the first key pose must be at 0 s",
@@ -332,8 +333,18 @@ TEST(Scenario, OverridesAreChecked) {
   EXPECT_EQ(LoadScenario(world.scenario(), {{"odometry.filter.particles", "16"}}).seed, 5u) << "another reader's";
   EXPECT_EQ(Message(world.scenario(), {{"camera.widht", "3"}, {"seed", "-1"}, {"time.duration", "10 ms"}}),
             "--set seed: 'seed': '-1' is not a whole number of at least 0\n"
-            "--set time.duration: 'time.duration': there is not one frame in it\n"
+            "--set time.duration: time.duration = 0.01 s: there is not one frame in it\n"
             "--set camera.widht: unknown key 'widht'; did you mean 'width'?");
+}
+
+TEST(Scenario, OldKeyNamesTheNew) {
+  const SmallWorld world;
+  EXPECT_EQ(Message(world.scenario(), {{"render.bake.finest", "1 cm"}}),
+            "--set render.bake.finest: 'render.bake.finest' has a new name: 'min_spacing'");
+  const std::string recorded = "{type: recorded, file: f.txt, start: 2 s, average: 0 s, place: {position: [0, 0, 0]}}";
+  EXPECT_THAT(Message(world.scenario(), {{"trajectory", recorded}}),
+              testing::AllOf(HasSubstr("'start_time'"), HasSubstr("'averaging_time'"), HasSubstr("'start_pose'")));
+  EXPECT_THAT(Message(world.scenario(), {{"world", "{points: {landmarks: room, points: 9}}"}}), HasSubstr("'total'"));
 }
 
 TEST(LookAt, AxesByHand) {

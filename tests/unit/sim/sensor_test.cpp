@@ -187,7 +187,7 @@ TEST(Sensor, BadSettingsAreAllNamed) {
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),
                  "sensor: time_samples = 0 must lie in 1 ... 1024; white = 0 must be positive; "
-                 "read_noise = -1 must lie between 0 and full_well");
+                 "read_noise = -1 e must be at least 0 e");
   }
 }
 

@@ -41,9 +41,7 @@ bool Section::ReadPassedOn(const std::string& key, std::vector<PassedOn>& values
   }
   std::string json;
   for (const PassedOn& value : values) json += (json.empty() ? "" : ", ") + value.yaml;
-  request.kind = Request::Kind::value;
-  request.json = "[" + json + "]";
-  return request.element != nullptr;
+  return request.Keep("[" + json + "]", request.element != nullptr);
 }
 
 bool Section::ReadPassedOn(const std::string& key, std::vector<std::pair<std::string, std::string>>& entries) {
@@ -60,9 +58,7 @@ bool Section::ReadPassedOn(const std::string& key, std::vector<std::pair<std::st
   }
   std::string json;
   for (const auto& [name, value] : entries) json += (json.empty() ? "" : ", ") + QuoteJson(name) + ": " + value;
-  request.kind = Request::Kind::value;
-  request.json = "{" + json + "}";
-  return good;
+  return request.Keep("{" + json + "}", good);
 }
 
 }  // namespace settings

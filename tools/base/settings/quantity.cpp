@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <system_error>
 
@@ -35,37 +36,22 @@ struct Kind {
   std::span<const UnitName> units;
 };
 
-Kind KindOf(Unit unit) {
-  switch (unit) {
-    case Unit::none:
-      return {"a number", {}};
-    case Unit::time:
-      return {"a time", kTime};
-    case Unit::length:
-      return {"a length", kLength};
-    case Unit::angle:
-      return {"an angle", kAngle};
-    case Unit::speed:
-      return {"a speed", kSpeed};
-    case Unit::angular_rate:
-      return {"an angular rate", kAngularRate};
-    case Unit::frequency:
-      return {"a frequency", kFrequency};
-    case Unit::rate:
-      return {"a rate", kRate};
-    case Unit::pixel:
-      return {"a number of pixels", kPixel};
-    case Unit::electrons:
-      return {"a number of electrons", kElectrons};
-    case Unit::electron_rate:
-      return {"a current of electrons", kElectronRate};
-    case Unit::acceleration_density:
-      return {"the density of an acceleration noise", kAccelerationDensity};
-    case Unit::angular_acceleration_density:
-      return {"the density of an angular acceleration noise", kAngularAccelerationDensity};
-  }
-  return {"a number", {}};
-}
+constexpr Kind kKinds[] = {{"a number", {}},
+                           {"a time", kTime},
+                           {"a length", kLength},
+                           {"an angle", kAngle},
+                           {"a speed", kSpeed},
+                           {"an angular rate", kAngularRate},
+                           {"a frequency", kFrequency},
+                           {"a rate", kRate},
+                           {"a number of pixels", kPixel},
+                           {"a number of electrons", kElectrons},
+                           {"a current of electrons", kElectronRate},
+                           {"the density of an acceleration noise", kAccelerationDensity},
+                           {"the density of an angular acceleration noise", kAngularAccelerationDensity}};
+static_assert(std::size(kKinds) == static_cast<std::size_t>(Unit::angular_acceleration_density) + 1);
+
+const Kind& KindOf(Unit unit) { return kKinds[static_cast<std::size_t>(unit)]; }
 
 // Joined piece by piece: GCC 12 warns of "literal" + std::string where it inlines it (its bug 105651).
 std::string Quoted(std::string_view text) { return std::string("'").append(text).append("'"); }
@@ -100,12 +86,12 @@ bool InRange(double value, std::string_view text, const Range& range, Unit unit,
 }  // namespace
 
 std::string_view SymbolOf(Unit unit) {
-  const Kind kind = KindOf(unit);
+  const Kind& kind = KindOf(unit);
   return kind.units.empty() ? std::string_view() : kind.units[0].name;
 }
 
 bool ParseQuantity(std::string_view text, Unit unit, const Range& range, double& value, std::string& problem) {
-  const Kind kind = KindOf(unit);
+  const Kind& kind = KindOf(unit);
   const std::string_view trimmed = Trim(text);
   std::string_view digits = trimmed;
   if (IsNotFinite(digits)) {

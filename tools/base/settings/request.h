@@ -21,6 +21,12 @@ struct Request {
   std::vector<std::pair<std::string, std::unique_ptr<Request>>> children;  // of a list: without keys
 
   Request* Find(const std::string& key) const;
+  // A value was given out; returns `good`.
+  bool Keep(std::string text, bool good) {
+    kind = Kind::value;
+    json = std::move(text);
+    return good;
+  }
 };
 
 // Each key in the file that `section` or those below were not asked for, with the nearest that was.

@@ -27,10 +27,15 @@ std::string JsonNumbers(const double* values, std::size_t count) {
   return JsonList(items);
 }
 
+bool Fail(State& state, const Element& element, const std::string& path, const std::string& problem) {
+  state.Complain(element.place, "'" + path + "': " + problem);
+  return false;
+}
+
 // The scalar's text, or a problem.
-const std::string* Scalar(State& state, const Element& element, const std::string& key, const char* expected) {
+const std::string* Scalar(State& state, const Element& element, const std::string& path, const std::string& expected) {
   if (element.kind == Element::Kind::scalar) return &element.text;
-  state.Complain(element.place, "'" + key + "': expected " + expected + ", not " + Describe(element));
+  Fail(state, element, path, "expected " + expected + ", not " + Describe(element));
   return nullptr;
 }
 
@@ -38,18 +43,14 @@ bool Number(State& state, const Element& element, const std::string& key, Unit u
             double& value) {
   const std::string* text = Scalar(state, element, key, "a number");
   std::string problem;
-  if (text && ParseQuantity(*text, unit, range, value, problem)) return true;
-  if (text) state.Complain(element.place, "'" + key + "': " + problem);
-  return false;
+  return text && (ParseQuantity(*text, unit, range, value, problem) || Fail(state, element, key, problem));
 }
 
 // All items, so that each bad one is named.
 bool Numbers(State& state, const Element& element, const std::string& key, Unit unit, const Range& range,
              std::vector<double>& values) {
-  if (element.kind != Element::Kind::list) {
-    state.Complain(element.place, "'" + key + "': expected a list of numbers, not " + Describe(element));
-    return false;
-  }
+  if (element.kind != Element::Kind::list)
+    return Fail(state, element, key, "expected a list of numbers, not " + Describe(element));
   bool good = true;
   for (const Element& item : element.items) {
     double value = 0;
@@ -82,9 +83,7 @@ Request& Section::Ask(const std::string& key) {
 bool Section::Read(const std::string& key, double& value, Unit unit, const Range& range) {
   Request& request = Ask(key);
   const bool good = request.element && Number(*state_, *request.element, request.path, unit, range, value);
-  request.kind = Request::Kind::value;
-  request.json = FormatNumber(value);
-  return good;
+  return request.Keep(FormatNumber(value), good);
 }
 
 template <class T>
@@ -94,12 +93,10 @@ bool Section::ReadWhole(const std::string& key, T& value, const Range& range) {
   if (request.element) {
     const std::string* text = Scalar(*state_, *request.element, request.path, "a whole number");
     std::string problem;
-    good = text && ParseInteger(*text, range, value, problem);
-    if (text && !good) state_->Complain(request.element->place, "'" + request.path + "': " + problem);
+    good =
+        text && (ParseInteger(*text, range, value, problem) || Fail(*state_, *request.element, request.path, problem));
   }
-  request.kind = Request::Kind::value;
-  request.json = std::to_string(value);
-  return good;
+  return request.Keep(std::to_string(value), good);
 }
 
 bool Section::Read(const std::string& key, int& value, const Range& range) { return ReadWhole(key, value, range); }
@@ -117,12 +114,9 @@ bool Section::Read(const std::string& key, bool& value) {
     const std::string* text = Scalar(*state_, *request.element, request.path, "true or false");
     good = text && (*text == "true" || *text == "false");
     if (good) value = *text == "true";
-    if (text && !good)
-      state_->Complain(request.element->place, "'" + request.path + "': '" + *text + "' is neither true nor false");
+    if (text && !good) Fail(*state_, *request.element, request.path, "'" + *text + "' is neither true nor false");
   }
-  request.kind = Request::Kind::value;
-  request.json = value ? "true" : "false";
-  return good;
+  return request.Keep(value ? "true" : "false", good);
 }
 
 bool Section::Read(const std::string& key, std::string& value) {
@@ -130,10 +124,8 @@ bool Section::Read(const std::string& key, std::string& value) {
   const std::string* text = request.element ? Scalar(*state_, *request.element, request.path, "a text") : nullptr;
   const bool good = text && !text->empty();
   if (good) value = *text;
-  if (text && !good) state_->Complain(request.element->place, "'" + request.path + "': is empty");
-  request.kind = Request::Kind::value;
-  request.json = QuoteJson(value);
-  return good;
+  if (text && !good) Fail(*state_, *request.element, request.path, "is empty");
+  return request.Keep(QuoteJson(value), good);
 }
 
 bool Section::Read(const std::string& key, std::vector<double>& value, Unit unit, const Range& range) {
@@ -141,9 +133,7 @@ bool Section::Read(const std::string& key, std::vector<double>& value, Unit unit
   std::vector<double> read;
   const bool good = request.element && Numbers(*state_, *request.element, request.path, unit, range, read);
   if (good) value = std::move(read);
-  request.kind = Request::Kind::value;
-  request.json = JsonNumbers(value.data(), value.size());
-  return good;
+  return request.Keep(JsonNumbers(value.data(), value.size()), good);
 }
 
 bool Section::Read(const std::string& key, std::vector<std::string>& value) {
@@ -151,9 +141,7 @@ bool Section::Read(const std::string& key, std::vector<std::string>& value) {
   bool good = request.element != nullptr;
   std::vector<std::string> read;
   if (request.element && request.element->kind != Element::Kind::list) {
-    state_->Complain(request.element->place,
-                     "'" + request.path + "': expected a list of texts, not " + Describe(*request.element));
-    good = false;
+    good = Fail(*state_, *request.element, request.path, "expected a list of texts, not " + Describe(*request.element));
   } else if (request.element) {
     for (const Element& item : request.element->items) {
       const std::string* text = Scalar(*state_, item, key, "a text");
@@ -165,9 +153,7 @@ bool Section::Read(const std::string& key, std::vector<std::string>& value) {
   std::vector<std::string> items;
   items.reserve(value.size());
   for (const std::string& text : value) items.push_back(QuoteJson(text));
-  request.kind = Request::Kind::value;
-  request.json = JsonList(items);
-  return good;
+  return request.Keep(JsonList(items), good);
 }
 
 bool Section::ReadNumbers(const std::string& key, double* values, std::size_t count, Unit unit, const Range& range) {
@@ -175,14 +161,11 @@ bool Section::ReadNumbers(const std::string& key, double* values, std::size_t co
   std::vector<double> read;
   bool good = request.element && Numbers(*state_, *request.element, request.path, unit, range, read);
   if (good && read.size() != count) {
-    state_->Complain(request.element->place, "'" + request.path + "': expected " + std::to_string(count) +
-                                                 " numbers, not " + std::to_string(read.size()));
-    good = false;
+    good = Fail(*state_, *request.element, request.path,
+                "expected " + std::to_string(count) + " numbers, not " + std::to_string(read.size()));
   }
   if (good) std::copy(read.begin(), read.end(), values);
-  request.kind = Request::Kind::value;
-  request.json = JsonNumbers(values, count);
-  return good;
+  return request.Keep(JsonNumbers(values, count), good);
 }
 
 bool Section::ReadName(const std::string& key, const std::vector<std::string>& names, std::size_t& index) {
@@ -195,14 +178,10 @@ bool Section::ReadName(const std::string& key, const std::vector<std::string>& n
     const auto at = text ? std::find(names.begin(), names.end(), *text) : names.end();
     good = at != names.end();
     if (good) index = static_cast<std::size_t>(at - names.begin());
-    if (text && !good) {
-      state_->Complain(request.element->place,
-                       "'" + request.path + "': '" + *text + "' is not known" + Suggest(*text, names));
-    }
+    if (text && !good)
+      Fail(*state_, *request.element, request.path, "'" + *text + "' is not known" + Suggest(*text, names));
   }
-  request.kind = Request::Kind::value;
-  request.json = QuoteJson(names[index]);
-  return good;
+  return request.Keep(QuoteJson(names[index]), good);
 }
 
 Section Section::Child(const std::string& key) {
@@ -211,8 +190,7 @@ Section Section::Child(const std::string& key) {
     request.kind = Request::Kind::section;
     if (request.element && request.element->kind != Element::Kind::map &&
         request.element->kind != Element::Kind::null) {
-      state_->Complain(request.element->place,
-                       "'" + request.path + "': expected a section, not " + Describe(*request.element));
+      Fail(*state_, *request.element, request.path, "expected a section, not " + Describe(*request.element));
     }
   }
   return Section(state_, &request);
@@ -223,8 +201,7 @@ std::vector<Section> Section::List(const std::string& key, const std::string& sh
   if (request.kind == Request::Kind::absent) {
     request.kind = Request::Kind::list;
     if (request.element && request.element->kind != Element::Kind::list) {
-      state_->Complain(request.element->place,
-                       "'" + request.path + "': expected a list of sections, not " + Describe(*request.element));
+      Fail(*state_, *request.element, request.path, "expected a list of sections, not " + Describe(*request.element));
     } else if (request.element) {
       for (const Element& item : request.element->items) {
         auto child = std::make_unique<Request>();
@@ -235,7 +212,7 @@ std::vector<Section> Section::List(const std::string& key, const std::string& sh
           child->element = &state_->made.emplace_back(
               Element{Element::Kind::map, item.place, "", {}, {{shorthand, item.place, item}}});
         } else if (item.kind != Element::Kind::map) {
-          state_->Complain(item.place, "'" + request.path + "': expected a list of sections, not of " + Describe(item));
+          Fail(*state_, item, request.path, "expected a list of sections, not of " + Describe(item));
         }
         request.children.emplace_back("", std::move(child));
       }

@@ -8,6 +8,7 @@ _Array = NDArray[np.float64]
 _Path = Union[str, PathLike[str]]
 
 __version__: str
+SETTINGS: tuple[tuple[str, str, str, str], ...]  # key, default, range, meaning: docs/settings.md
 SYSTEMS: tuple[str, ...]
 
 class SettingsError(ValueError): ...

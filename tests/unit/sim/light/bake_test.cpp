@@ -13,7 +13,7 @@ namespace {
 BakeParams Quick() {
   BakeParams params;
   params.spacing_m = 0.5;
-  params.finest_m = 0.02;
+  params.min_spacing_m = 0.02;
   params.paths = 16;
   params.lamp_rays = 16;
   return params;
@@ -52,7 +52,7 @@ TEST(Bake, WarnsWhereSamplesAreFartherApartThanAsked) {
   AddQuad(scene, {0, 0, 9}, {4, 0, 0}, {0, 4, 0}, 0);
   BakeParams params = Quick();
   const auto warnings = [&](LightMode mode) { return BakeWarnings(scene, RayScene(scene), mode, params); };
-  params.spacing_m = 0.391, params.finest_m = 0.05;
+  params.spacing_m = 0.391, params.min_spacing_m = 0.05;
   EXPECT_THAT(warnings(LightMode::baked), testing::IsEmpty());
   params.spacing_m = 0.2;
   const std::string coarse =
@@ -60,12 +60,12 @@ TEST(Bake, WarnsWhereSamplesAreFartherApartThanAsked) {
       "into 256 at most";
   EXPECT_THAT(warnings(LightMode::baked_indirect), testing::ElementsAre(coarse));
   EXPECT_THAT(warnings(LightMode::baked), testing::ElementsAre(coarse));
-  params.finest_m = 0.04;
+  params.min_spacing_m = 0.04;
   EXPECT_THAT(warnings(LightMode::baked),
-              testing::ElementsAre(coarse +
-                                   "; those of lamps are up to 0.0488 m apart on 2 triangles, not render.bake.finest = "
-                                   "0.04 m: a side is divided into 2048 at most"));
-  params.spacing_m = 0.01, params.finest_m = 0.01;
+              testing::ElementsAre(
+                  coarse + "; those of lamps are up to 0.0488 m apart on 2 triangles, not render.bake.min_spacing = "
+                           "0.04 m: a side is divided into 2048 at most"));
+  params.spacing_m = 0.01, params.min_spacing_m = 0.01;
   EXPECT_THAT(warnings(LightMode::baked_indirect),
               testing::ElementsAre(testing::HasSubstr("0.391 m apart on 4 triangles, not")));
 }
@@ -137,7 +137,7 @@ TEST(Bake, BadParametersAreRefused) {
   params.paths = 100;
   EXPECT_THROW(BakeLight(scene, rays, LightMode::baked, params), std::invalid_argument);
   params = {};
-  params.finest_m = 1;
+  params.min_spacing_m = 1;
   EXPECT_THROW(BakeLight(scene, rays, LightMode::baked, params), std::invalid_argument);
   EXPECT_THROW(BakeLight(scene, rays, LightMode::direct, {}), std::invalid_argument);
 }

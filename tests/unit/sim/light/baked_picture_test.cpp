@@ -10,8 +10,8 @@
 namespace sim::test {
 namespace {
 
-BakeParams Every(double spacing_m = 0.2, double finest_m = 0.02, int paths = 256) {
-  return {spacing_m, finest_m, paths};
+BakeParams Every(double spacing_m = 0.2, double min_spacing_m = 0.02, int paths = 256) {
+  return {spacing_m, min_spacing_m, paths};
 }
 
 // Light that is linear in place is looked up exactly, on both sides, at any resolution, by every kernel.

@@ -199,14 +199,5 @@ TEST(Imu, AReadingDoesNotDependOnTheRange) {
   EXPECT_NE(ImuReadings(flight, imu, 4, 0, 0)[0].f_I, all[0].f_I);
 }
 
-TEST(Imu, BadParametersAreAllNamed) {
-  EXPECT_TRUE(Problems(ImuParams{}).empty());
-  ImuParams bad;
-  bad.rate_hz = 0;
-  bad.gyroscope_walk = -1;
-  bad.T_CI.q_WC = {2, 0, 0, 0};
-  EXPECT_EQ(Problems(bad).size(), 3u);
-}
-
 }  // namespace
 }  // namespace sim
