@@ -1,4 +1,4 @@
-// Purpose: what kind of YAML a file is in.
+// Dialects of YAML.
 #pragma once
 
 namespace settings {

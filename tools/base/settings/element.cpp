@@ -24,7 +24,7 @@ class Builder : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { Add(MakeElement(Element::Kind::null, mark)); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    Complain(mark, "aliases (*name) are not supported: write the value out");
+    AddProblem(mark, "aliases (*name) are not supported: write the value out");
     Add(MakeElement(Element::Kind::null, mark));
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, const std::string& value) override {
@@ -75,13 +75,13 @@ class Builder : public YAML::EventHandler {
     element.place = PlaceOf(mark);
     return element;
   }
-  void Complain(const Place& place, std::string message) {
+  void AddProblem(const Place& place, std::string message) {
     problems_.push_back({place.file, place.line, place.column, std::move(message), place.key});
   }
-  void Complain(const YAML::Mark& mark, std::string message) { Complain(PlaceOf(mark), std::move(message)); }
+  void AddProblem(const YAML::Mark& mark, std::string message) { AddProblem(PlaceOf(mark), std::move(message)); }
   void CheckTag(const YAML::Mark& mark, const std::string& tag) {
     if (dialect_ == Dialect::opencv || tag == "?" || tag == "!" || tag.empty()) return;
-    Complain(mark, "tags (" + tag + ") are not supported");
+    AddProblem(mark, "tags (" + tag + ") are not supported");
   }
   void Close() {
     Element element = std::move(open_.back().element);
@@ -98,7 +98,7 @@ class Builder : public YAML::EventHandler {
       parent.element.items.push_back(std::move(element));
     } else if (!parent.has_key) {
       if (element.kind != Element::Kind::scalar)
-        Complain(element.place, "a key must be a plain word, not " + Describe(element));
+        AddProblem(element.place, "a key must be a plain word, not " + Describe(element));
       parent.key = std::move(element);
       parent.has_key = true;
     } else {
@@ -108,7 +108,7 @@ class Builder : public YAML::EventHandler {
       if (const Element* first = parent.element.Find(parent.key.text)) {
         std::string message = "duplicate key '" + parent.key.text + "'";
         if (first->place.line > 0) message += ", given already on line " + std::to_string(first->place.line);
-        Complain(parent.key.place, std::move(message));
+        AddProblem(parent.key.place, std::move(message));
         return;
       }
       parent.element.entries.push_back({std::move(parent.key.text), parent.key.place, std::move(element)});

@@ -1,4 +1,4 @@
-// Purpose: what was asked of a document, with the values given out. For the reader's own use.
+// Registry of the keys that were read, with their values. Private to tools/base/settings.
 #pragma once
 
 #include <memory>

@@ -28,7 +28,7 @@ std::string JsonNumbers(const double* values, std::size_t count) {
 }
 
 bool Fail(State& state, const Element& element, const std::string& path, const std::string& problem) {
-  state.Complain(element.place, "'" + path + "': " + problem);
+  state.AddProblem(element.place, "'" + path + "': " + problem);
   return false;
 }
 
@@ -69,7 +69,7 @@ const Element* Section::Find(const std::string& key) const {
   return element && element->kind == Element::Kind::map ? element->Find(key) : nullptr;
 }
 
-Request& Section::Ask(const std::string& key) {
+Request& Section::Register(const std::string& key) {
   if (Request* known = request_->Find(key)) return *known;
   auto request = std::make_unique<Request>();
   request->kind = Request::Kind::absent;
@@ -81,14 +81,14 @@ Request& Section::Ask(const std::string& key) {
 }
 
 bool Section::Read(const std::string& key, double& value, Unit unit, const Range& range) {
-  Request& request = Ask(key);
+  Request& request = Register(key);
   const bool good = request.element && Number(*state_, *request.element, request.path, unit, range, value);
   return request.Keep(FormatNumber(value), good);
 }
 
 template <class T>
 bool Section::ReadWhole(const std::string& key, T& value, const Range& range) {
-  Request& request = Ask(key);
+  Request& request = Register(key);
   bool good = false;
   if (request.element) {
     const std::string* text = Scalar(*state_, *request.element, request.path, "a whole number");
@@ -108,7 +108,7 @@ bool Section::Read(const std::string& key, std::uint64_t& value, const Range& ra
 }
 
 bool Section::Read(const std::string& key, bool& value) {
-  Request& request = Ask(key);
+  Request& request = Register(key);
   bool good = false;
   if (request.element) {
     const std::string* text = Scalar(*state_, *request.element, request.path, "true or false");
@@ -120,7 +120,7 @@ bool Section::Read(const std::string& key, bool& value) {
 }
 
 bool Section::Read(const std::string& key, std::string& value) {
-  Request& request = Ask(key);
+  Request& request = Register(key);
   const std::string* text = request.element ? Scalar(*state_, *request.element, request.path, "a text") : nullptr;
   const bool good = text && !text->empty();
   if (good) value = *text;
@@ -129,7 +129,7 @@ bool Section::Read(const std::string& key, std::string& value) {
 }
 
 bool Section::Read(const std::string& key, std::vector<double>& value, Unit unit, const Range& range) {
-  Request& request = Ask(key);
+  Request& request = Register(key);
   std::vector<double> read;
   const bool good = request.element && Numbers(*state_, *request.element, request.path, unit, range, read);
   if (good) value = std::move(read);
@@ -137,7 +137,7 @@ bool Section::Read(const std::string& key, std::vector<double>& value, Unit unit
 }
 
 bool Section::Read(const std::string& key, std::vector<std::string>& value) {
-  Request& request = Ask(key);
+  Request& request = Register(key);
   bool good = request.element != nullptr;
   std::vector<std::string> read;
   if (request.element && request.element->kind != Element::Kind::list) {
@@ -157,7 +157,7 @@ bool Section::Read(const std::string& key, std::vector<std::string>& value) {
 }
 
 bool Section::ReadNumbers(const std::string& key, double* values, std::size_t count, Unit unit, const Range& range) {
-  Request& request = Ask(key);
+  Request& request = Register(key);
   std::vector<double> read;
   bool good = request.element && Numbers(*state_, *request.element, request.path, unit, range, read);
   if (good && read.size() != count) {
@@ -171,7 +171,7 @@ bool Section::ReadNumbers(const std::string& key, double* values, std::size_t co
 bool Section::ReadName(const std::string& key, const std::vector<std::string>& names, std::size_t& index) {
   if (index >= names.size())
     throw std::logic_error("settings: the default of '" + request_->path + "." + key + "' has no name");
-  Request& request = Ask(key);
+  Request& request = Register(key);
   bool good = false;
   if (request.element) {
     const std::string* text = Scalar(*state_, *request.element, request.path, "a name");
@@ -185,7 +185,7 @@ bool Section::ReadName(const std::string& key, const std::vector<std::string>& n
 }
 
 Section Section::Child(const std::string& key) {
-  Request& request = Ask(key);
+  Request& request = Register(key);
   if (request.kind == Request::Kind::absent) {
     request.kind = Request::Kind::section;
     if (request.element && request.element->kind != Element::Kind::map &&
@@ -197,7 +197,7 @@ Section Section::Child(const std::string& key) {
 }
 
 std::vector<Section> Section::List(const std::string& key, const std::string& shorthand) {
-  Request& request = Ask(key);
+  Request& request = Register(key);
   if (request.kind == Request::Kind::absent) {
     request.kind = Request::Kind::list;
     if (request.element && request.element->kind != Element::Kind::list) {
@@ -231,7 +231,7 @@ void Section::Reject(const std::string& key, const std::string& message) {
     element = element->kind == Element::Kind::map ? element->Find(part) : nullptr;
     if (element) place = element->place;
   }
-  state_->Complain(place, message);
+  state_->AddProblem(place, message);
 }
 
 void Section::Reject(const std::vector<FieldProblem>& problems) {
@@ -240,26 +240,27 @@ void Section::Reject(const std::vector<FieldProblem>& problems) {
 }
 
 void Section::RequirePresent(const std::string& key) {
-  Request& request = Ask(key);
+  Request& request = Register(key);
   if (request.element) return;
   request.kind = Request::Kind::absent;
-  state_->Complain(request_->place, "missing key '" + request.path + "'");
+  state_->AddProblem(request_->place, "missing key '" + request.path + "'");
 }
 
 bool Section::Renamed(const std::string& key, const std::string& now) {
   if (!Has(key)) return false;
-  state_->Complain(Ask(key).place, "'" + Ask(key).path + "' has a new name: '" + now + "'");
+  state_->AddProblem(Register(key).place, "'" + Register(key).path + "' has a new name: '" + now + "'");
   return true;
 }
 
 bool Section::Renamed(const std::string& key, const std::string& value, const std::string& now) {
   const Element* element = Find(key);
   if (!element || element->kind != Element::Kind::scalar || element->text != value) return false;
-  state_->Complain(Ask(key).place, "'" + Ask(key).path + "': '" + value + "' has a new name: '" + now + "'");
+  state_->AddProblem(Register(key).place,
+                     "'" + Register(key).path + "': '" + value + "' has a new name: '" + now + "'");
   return true;
 }
 
-void Section::Ignore(const std::string& key) { Ask(key).kind = Request::Kind::ignored; }
+void Section::Ignore(const std::string& key) { Register(key).kind = Request::Kind::ignored; }
 
 void Section::IgnoreRest() { request_->ignores_rest = true; }
 
@@ -303,7 +304,7 @@ void Document::Override(const std::string& key, const std::string& value) {
   std::istringstream stream(key);
   for (std::string part; std::getline(stream, part, '.');) parts.push_back(part);
   if (key.empty() || key.back() == '.' || std::find(parts.begin(), parts.end(), "") != parts.end()) {
-    return state_->Complain(place, "not a key: expected words with dots between them");
+    return state_->AddProblem(place, "not a key: expected words with dots between them");
   }
   Element* element = &state_->root;
   for (const std::string& part : parts) {
@@ -311,10 +312,10 @@ void Document::Override(const std::string& key, const std::string& value) {
     if (element->kind == Element::Kind::list) {
       std::uint64_t index = 0;
       std::string problem;
-      if (!ParseInteger(part, {}, index, problem)) return state_->Complain(place, "in a list: " + problem);
+      if (!ParseInteger(part, {}, index, problem)) return state_->AddProblem(place, "in a list: " + problem);
       if (index >= element->items.size()) {
-        return state_->Complain(place, "there is no item " + part + " in a list of " +
-                                           std::to_string(element->items.size()) + " (the first is 0)");
+        return state_->AddProblem(place, "there is no item " + part + " in a list of " +
+                                             std::to_string(element->items.size()) + " (the first is 0)");
       }
       element = &element->items[index];
     } else if (element->kind == Element::Kind::map) {
@@ -328,7 +329,7 @@ void Document::Override(const std::string& key, const std::string& value) {
       }
       element = &at->value;
     } else {
-      return state_->Complain(place, "'" + part + "' cannot be set inside " + Describe(*element));
+      return state_->AddProblem(place, "'" + part + "' cannot be set inside " + Describe(*element));
     }
   }
   *element = ParseYaml(value, place, state_->problems);

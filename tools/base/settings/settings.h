@@ -1,7 +1,6 @@
-// Purpose: a strict reader of settings files (YAML). Each component asks for the keys that it knows, giving its default
-// by
-//          the variable's present value; whatever is wrong is collected and thrown at once, and so is a key that nobody
-//          asked for.
+// Strict reader of settings files (YAML). Each component reads the keys that it knows; the default is the variable's
+// present value. All problems are collected and thrown at once, unknown keys among them. Structs with a field table
+// (fields.h) are read by field_reader.h.
 //
 //   settings::Document document = settings::Document::FromFile("scenario.yaml");
 //   document.Override("sensor.exposure", "8 ms");
@@ -28,8 +27,8 @@
 
 namespace settings {
 
-// A value for another reader.
-struct PassedOn {
+// Unparsed value, for another reader.
+struct RawYaml {
   std::string text;  // as written, of a number or a word; else as below
   std::string yaml;  // on one line, for Document::Override
 };
@@ -90,17 +89,16 @@ class Section {
   }
 
   // A key that may be there though it is not read: the alternative to one that is.
-  void Allow(const std::string& key) { Ask(key); }
+  void Allow(const std::string& key) { Register(key); }
 
   Section Child(const std::string& key);
   // The sections of a list; none when it is absent. With a shorthand, an item that is a single word stands for
   // {shorthand: word}.
   std::vector<Section> List(const std::string& key, const std::string& shorthand = "");
 
-  // What is not for this reader, whatever it is. A list, or a single value as a list of one; and keys with values, in
-  // the order of the file.
-  bool ReadPassedOn(const std::string& key, std::vector<PassedOn>& values);
-  bool ReadPassedOn(const std::string& key, std::vector<std::pair<std::string, std::string>>& entries);
+  // Unparsed values. A list, or a single value as a list of one; and keys with values, in the order of the file.
+  bool ReadRaw(const std::string& key, std::vector<RawYaml>& values);
+  bool ReadRaw(const std::string& key, std::vector<std::pair<std::string, std::string>>& entries);
 
   // Adds a problem at the place of `key` (dotted for one further down), or of this section where that is not there. For
   // rules between several values.
@@ -121,7 +119,7 @@ class Section {
   Section(std::shared_ptr<State> state, Request* request) : state_(std::move(state)), request_(request) {}
 
   const Element* Find(const std::string& key) const;
-  Request& Ask(const std::string& key);
+  Request& Register(const std::string& key);
   bool ReadNumbers(const std::string& key, double* values, std::size_t count, Unit unit, const Range& range);
   bool ReadName(const std::string& key, const std::vector<std::string>& names, std::size_t& index);
   template <class T>

@@ -1,4 +1,4 @@
-// Purpose: what a document knows while it is read. For the reader's own use.
+// State of a document while it is read. Private to tools/base/settings.
 #pragma once
 
 #include <deque>
@@ -17,7 +17,7 @@ struct State {
   std::vector<Problem> problems;
   std::deque<Element> made;  // sections that the file writes as a single word
 
-  void Complain(const Place& place, std::string message) {
+  void AddProblem(const Place& place, std::string message) {
     problems.push_back({place.file, place.line, place.column, std::move(message), place.key});
   }
 };

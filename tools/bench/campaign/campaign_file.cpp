@@ -11,8 +11,8 @@
 namespace campaign {
 namespace {
 
-using settings::PassedOn;
 using settings::Range;
+using settings::RawYaml;
 using settings::Section;
 
 constexpr std::size_t kMostSeeds = 1'000'000;
@@ -89,7 +89,7 @@ void CampaignFile::ReadScenarios(const std::filesystem::path& folder) {
     entry.file = folder / file;
     entry.name = entry.file.stem().string();
     section.Read("name", entry.name);
-    section.ReadPassedOn("set", entry.set);
+    section.ReadRaw("set", entry.set);
   }
 }
 
@@ -106,14 +106,14 @@ void CampaignFile::ReadFactors() {
       for (Section& variant : section.List("variants")) {
         Level& level = factor.levels.emplace_back();
         variant.Require("name", level.name);
-        variant.ReadPassedOn("set", level.set);
+        variant.ReadRaw("set", level.set);
       }
       if (factor.levels.empty()) section.Reject("variants", "'variants': at least one is needed");
     } else {
-      std::vector<PassedOn> values;
+      std::vector<RawYaml> values;
       section.Read("key", factor.key);
-      section.ReadPassedOn("values", values);
-      for (const PassedOn& value : values) factor.levels.push_back({value.text, {{factor.key, value.yaml}}});
+      section.ReadRaw("values", values);
+      for (const RawYaml& value : values) factor.levels.push_back({value.text, {{factor.key, value.yaml}}});
       if (values.empty()) section.Reject("values", "'values': at least one is needed");
     }
     std::set<std::string> names;
@@ -149,7 +149,7 @@ void CampaignFile::ReadSystems(const std::filesystem::path& folder) {
     section.Require("name", entry.name);
     std::string system = entry.name;
     section.Read("system", system);
-    section.ReadPassedOn("set", entry.set);
+    section.ReadRaw("set", entry.set);
     RequireOdometry(section, "set", entry.set);
     const auto found = std::find_if(external.begin(), external.end(), [&](const auto& e) { return e.name == system; });
     if (Contains(vocabulary_.systems, system)) {
@@ -168,7 +168,7 @@ void CampaignFile::ReadSystems(const std::filesystem::path& folder) {
     Section special = scenarios_[i].Child("for_system");
     for (const SystemEntry& system : campaign_.systems) {
       Changes& changes = campaign_.scenarios[i].for_system[system.name];
-      special.ReadPassedOn(system.name, changes);
+      special.ReadRaw(system.name, changes);
       RequireOdometry(special, system.name, changes);
     }
   }
@@ -176,12 +176,12 @@ void CampaignFile::ReadSystems(const std::filesystem::path& folder) {
 
 void CampaignFile::ReadSeeds() {
   Section root = document_.root();
-  std::vector<PassedOn> ranges = {{"1", "1"}};
-  root.ReadPassedOn("seeds", ranges);
+  std::vector<RawYaml> ranges = {{"1", "1"}};
+  root.ReadRaw("seeds", ranges);
   std::string problem;
   std::vector<SeedRange> good;
   std::uint64_t count = 0;
-  for (const PassedOn& written : ranges) {
+  for (const RawYaml& written : ranges) {
     SeedRange range;
     if (ReadRange(written.text, range, problem)) {
       good.push_back(range);

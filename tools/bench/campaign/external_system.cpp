@@ -71,7 +71,7 @@ std::vector<ExternalSystem> ReadExternalSystems(const std::filesystem::path& fil
     section.Require("command", system.command);
     settings::Section variables = section.Child("variables");
     std::vector<std::pair<std::string, std::string>> entries;
-    section.ReadPassedOn("variables", entries);
+    section.ReadRaw("variables", entries);
     for (const auto& [name, ignored] : entries) {
       std::string value;
       variables.Read(name, value);

@@ -52,7 +52,7 @@ void ReadBeside(Section& table, const Campaign& campaign, TableSpec& spec) {
     Beside beside;
     Changes values;
     section.Require("name", beside.name);
-    if (!section.ReadPassedOn("values", values)) section.RequirePresent("values");
+    if (!section.ReadRaw("values", values)) section.RequirePresent("values");
     const std::vector<std::string> levels = LevelNames(campaign, spec.rows.front());
     for (const auto& [level, value] : values) {
       const bool quoted = value.size() >= 2 && value.front() == '"' && value.back() == '"';

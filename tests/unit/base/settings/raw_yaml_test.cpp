@@ -9,15 +9,15 @@ namespace {
 using testing::ElementsAre;
 using testing::Pair;
 
-TEST(PassedOn, GivesTheSameValuesToAnotherReader) {
+TEST(RawYaml, GivesTheSameValuesToAnotherReader) {
   Document document =
       Document::FromText("v: [8 ms, 3, \"a 'b'\", [1, 2], {x: 1, y: [~]}]\none: 4 px\nset: {a.b: 3, c: [1]}\n", "f");
-  std::vector<PassedOn> values, one;
+  std::vector<RawYaml> values, one;
   std::vector<std::pair<std::string, std::string>> set;
   Section root = document.root();
-  EXPECT_TRUE(root.ReadPassedOn("v", values));
-  EXPECT_TRUE(root.ReadPassedOn("one", one));
-  EXPECT_TRUE(root.ReadPassedOn("set", set));
+  EXPECT_TRUE(root.ReadRaw("v", values));
+  EXPECT_TRUE(root.ReadRaw("one", one));
+  EXPECT_TRUE(root.ReadRaw("set", set));
   document.ThrowIfBad();
   ASSERT_EQ(values.size(), 5u);
   EXPECT_EQ(values[0].text, "8 ms");
@@ -40,13 +40,13 @@ TEST(PassedOn, GivesTheSameValuesToAnotherReader) {
 }
 
 // What is recorded of it is JSON, and both readers know it for nothing.
-TEST(PassedOn, NothingIsNullOfJson) {
+TEST(RawYaml, NothingIsNullOfJson) {
   Document document = Document::FromText("values: [~, 3]\nset: {a: ~, b: }\n", "f");
-  std::vector<PassedOn> values;
+  std::vector<RawYaml> values;
   std::vector<std::pair<std::string, std::string>> set;
   Section root = document.root();
-  root.ReadPassedOn("values", values);
-  root.ReadPassedOn("set", set);
+  root.ReadRaw("values", values);
+  root.ReadRaw("set", set);
   document.ThrowIfBad();
   EXPECT_THAT(document.Resolved(), testing::HasSubstr("[null, \"3\"]"));
   EXPECT_THAT(document.Resolved(), testing::HasSubstr("{\"a\": null, \"b\": null}"));
@@ -57,7 +57,7 @@ TEST(PassedOn, NothingIsNullOfJson) {
   EXPECT_THROW(other.ThrowIfBad(), Error);
 }
 
-TEST(PassedOn, AWordStandsForASection) {
+TEST(RawYaml, AWordStandsForASection) {
   Document document = Document::FromText("list: [one, {file: two, n: 3}]\n", "f");
   std::vector<std::string> files;
   for (Section& item : document.root().List("list", "file")) {
@@ -71,10 +71,10 @@ TEST(PassedOn, AWordStandsForASection) {
   EXPECT_THAT(files, ElementsAre("one", "two"));
 }
 
-TEST(PassedOn, WhatIsNoSectionIsAProblem) {
+TEST(RawYaml, WhatIsNoSectionIsAProblem) {
   Document document = Document::FromText("set: 3\nlist: [one]\n", "f");
   std::vector<std::pair<std::string, std::string>> set;
-  EXPECT_FALSE(document.root().ReadPassedOn("set", set));
+  EXPECT_FALSE(document.root().ReadRaw("set", set));
   document.root().List("list");
   try {
     document.ThrowIfBad();

@@ -1,4 +1,4 @@
-// Values that are not for this reader but are handed on to another one as YAML.
+// Unparsed values: YAML for another reader.
 #include "tools/base/settings/settings.h"
 #include "tools/base/settings/state.h"
 
@@ -26,8 +26,8 @@ std::string Flow(const Element& element) {
 
 }  // namespace
 
-bool Section::ReadPassedOn(const std::string& key, std::vector<PassedOn>& values) {
-  Request& request = Ask(key);
+bool Section::ReadRaw(const std::string& key, std::vector<RawYaml>& values) {
+  Request& request = Register(key);
   if (request.element != nullptr) {
     values.clear();
     if (request.element->kind == Element::Kind::list) {
@@ -35,21 +35,21 @@ bool Section::ReadPassedOn(const std::string& key, std::vector<PassedOn>& values
     } else {
       values.push_back({request.element->text, Flow(*request.element)});
     }
-    for (PassedOn& value : values) {
+    for (RawYaml& value : values) {
       if (value.text.empty()) value.text = value.yaml;
     }
   }
   std::string json;
-  for (const PassedOn& value : values) json += (json.empty() ? "" : ", ") + value.yaml;
+  for (const RawYaml& value : values) json += (json.empty() ? "" : ", ") + value.yaml;
   return request.Keep("[" + json + "]", request.element != nullptr);
 }
 
-bool Section::ReadPassedOn(const std::string& key, std::vector<std::pair<std::string, std::string>>& entries) {
-  Request& request = Ask(key);
+bool Section::ReadRaw(const std::string& key, std::vector<std::pair<std::string, std::string>>& entries) {
+  Request& request = Register(key);
   bool good = request.element != nullptr;
   if (good && request.element->kind != Element::Kind::map) {
-    state_->Complain(request.element->place,
-                     "'" + request.path + "': expected keys with values, not " + Describe(*request.element));
+    state_->AddProblem(request.element->place,
+                       "'" + request.path + "': expected keys with values, not " + Describe(*request.element));
     good = false;
   }
   if (good) {
