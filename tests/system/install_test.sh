@@ -9,6 +9,10 @@ fail() { echo "$*" >&2; exit 1; }
 
 "$cmake" --install "$build" --prefix "$folder/usr" --component development >"$folder/install.log" || { cat "$folder/install.log"; exit 1; }
 ! grep -rlF -e "$source" -e "$build" "$folder/usr/lib"*/*/cmake "$folder/usr/lib"*/cmake 2>/dev/null || fail "the package names the folder it was built in"
+for header in sim/render/packet.h sim/render/embree.h sim/light/bake.h; do
+  [[ -f $source/$header ]] || fail "$header: no such header"
+  [[ ! -e $folder/usr/include/vobench/$header ]] || fail "$header is private, and is installed"
+done
 launcher=
 if command -v ccache >/dev/null; then launcher=ccache; fi
 "$cmake" -S "$source/tests/system/outside" -B "$folder/outside" -G Ninja -DCMAKE_PREFIX_PATH="$folder/usr" -DCMAKE_BUILD_TYPE=Release \
