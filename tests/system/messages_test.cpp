@@ -120,7 +120,7 @@ const std::vector<Message>& Messages() {
        {"--set world.points.count", "'0'", "1 ... 1000000"}},
       {"sim/light/bake.cpp",
        {"check", "TINY", "--set", "render.light=baked", "--set", "render.bake.spacing=0.01 mm"},
-       {"--set render.bake.spacing", "not above spacing"}},
+       {"--set render.bake.spacing", "not be above spacing"}},
       {"sim/render/ray_tracer.cpp",
        {"check", "TINY", "--set", "render.rays_per_time_sample=0"},
        {"rays_per_time_sample", "0"}},
