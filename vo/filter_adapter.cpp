@@ -52,8 +52,8 @@ std::unique_ptr<Filter> MakeFilter(const Params& params, const Prior& prior, std
 
 Estimate MakeEstimate(const Filter& filter, const ScaleAmbiguity& scale, std::int64_t stamp_ns,
                       FrameDiagnostics diagnostics) {
-  diagnostics.effective_particles = filter.effective_particles();
-  diagnostics.guards = filter.guards();
+  diagnostics.effective_particles = filter.answer().effective_particles;
+  diagnostics.events = filter.answer().events;
   const Belief& belief = filter.belief();
   return {stamp_ns,
           scale.ToAnswer(belief.pose),

@@ -139,9 +139,8 @@ void Odometry::Impl::RestartFirstFrame(const PreparedFrame& second, FrameDiagnos
 }
 
 void Odometry::Impl::Update(std::span<const Match> matches) {
-  filter.Update(matches);
+  scale.AbsorbChange(filter.Update(matches).scale_change);
   if (!matches.empty()) since_update = {0, VelocityCovariance()};
-  scale.AbsorbChange(filter.lengthened());
 }
 
 // Away from found landmarks and from predicted ones that were not searched for.

@@ -75,8 +75,7 @@ Estimate PointOdometry::Impl::Process(const PointFrame& frame) {
     filter.Predict(static_cast<double>(frame.stamp_ns - *last_stamp_ns) * 1e-9);
     const std::vector<Match> matches = MatchesIn(rays, diagnostics);
     diagnostics.ms_matching = watch.Lap();
-    filter.Update(matches);
-    scale.AbsorbChange(filter.lengthened());
+    scale.AbsorbChange(filter.Update(matches).scale_change);
     diagnostics.ms_filter = watch.Lap();
   }
   last_stamp_ns = frame.stamp_ns;
@@ -104,8 +103,9 @@ std::vector<Match> PointOdometry::Impl::MatchesIn(std::span<const Ray> rays, Fra
     matches.push_back({known->second, ray.z, PixelNoise(camera.LensJacobian(ray.z), params.features.sigma_px)});
   }
   diagnostics.searched = static_cast<int>(matches.size());
-  const std::vector<bool> inlier = FindInliers(filter.ReferencePrediction(), filter.ReferenceMap(), matches,
-                                               OutlierGate(filter, params.score), params.filter);
+  const ReferencePath reference = filter.Reference();
+  const std::vector<bool> inlier = FindInliers(reference.prediction, reference.map, matches,
+                                               OutlierGate(filter.answer(), params.score), params.filter);
   std::size_t to = 0;
   for (std::size_t from = 0; from < matches.size(); ++from)
     if (inlier[from]) matches[to++] = matches[from];

@@ -144,7 +144,7 @@ class Player {
       time_ += frame % 9 == 0 ? 1.5 * kDt : kDt;
       TracePrediction(frame);
       filter_->Update(See(frame));
-      scale_.AbsorbChange(filter_->lengthened());
+      scale_.AbsorbChange(filter_->answer().scale_change);
       TraceAnswer(frame, "answer");
       TraceMap(frame);
       if (frame % 20 == 13) Drop();
@@ -202,15 +202,16 @@ class Player {
       const double missed = random_();
       if (!(X.z() > 0.2) || std::abs(X.x()) > 0.8 * X.z() || std::abs(X.y()) > 0.7 * X.z() || missed < 0.15) continue;
       const vo::RowView row = Seen(points_[n]);
-      const auto [z, moved] = row.AsTurned(filter_->belief().velocity);
+      const auto [z, centre_offset_W] = row.RotationCompensated(filter_->belief().velocity);
       Eigen::Matrix2d R = kSigma * kSigma * Eigen::Matrix2d::Identity();
       R(0, 1) = R(1, 0) = 0.1 * kSigma * kSigma;
-      matches.push_back({static_cast<int>(n), z, R, moved, row});
+      matches.push_back({static_cast<int>(n), z, R, centre_offset_W, row});
       if (setting_.events.bad_matches && n % 7 == 3) matches.back().z.x() += 30 * kSigma;
     }
     if (!setting_.events.bad_matches) return matches;
-    const std::vector<bool> inlier = vo::FindInliers(filter_->ReferencePrediction(), filter_->ReferenceMap(), matches,
-                                                     vo::OutlierGate(*filter_, vo::ScoreParams{}), setting_.filter);
+    const std::vector<bool> inlier =
+        vo::FindInliers(filter_->Reference().prediction, filter_->Reference().map, matches,
+                        vo::OutlierGate(filter_->answer(), vo::ScoreParams{}), setting_.filter);
     trace_.Begin(frame, "inliers");
     std::vector<vo::Match> chosen;
     for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -227,18 +228,18 @@ class Player {
 
   void TracePrediction(int frame) {
     trace_.Begin(frame, "prediction");
-    trace_.Add(filter_->ReferencePrediction().mean);
-    trace_.Add(filter_->ReferencePrediction().covariance);
+    trace_.Add(filter_->Reference().prediction.mean);
+    trace_.Add(filter_->Reference().prediction.covariance);
     trace_.Begin(frame, "map");
-    const vo::LocalMap map = filter_->ReferenceMap();
+    const vo::LocalMap map = filter_->Reference().map;
     std::vector<int> all;
     for (int n = 0; n < filter_->landmark_count(); ++n) {
       all.push_back(n);
       trace_.Add(map.landmarks[static_cast<std::size_t>(n)].mean);
       trace_.Add(map.landmarks[static_cast<std::size_t>(n)].covariance);
       trace_.Add(map.anchors[static_cast<std::size_t>(map.anchor_of[static_cast<std::size_t>(n)])]);
-      trace_.Add(filter_->ModeOf(n));
-      trace_.Add(filter_->AnchorOf(n));
+      trace_.Add(filter_->Reference().ModeOf(n));
+      trace_.Add(filter_->Reference().AnchorOf(n));
     }
     trace_.Begin(frame, "images");
     for (const vo::ImagePrediction& image : filter_->PredictImages(all)) {
@@ -262,11 +263,13 @@ class Player {
       trace_.Add(component.covariance);
     }
     trace_.Begin(frame, "events");
-    const vo::Guards& guards = filter_->guards();
-    for (const int count : {guards.unsettled, guards.behind, guards.indefinite, guards.impossible}) trace_.Add(count);
-    trace_.Add(filter_->effective_particles());
-    trace_.Add(filter_->undecided() ? 1 : 0);
-    trace_.Add(filter_->lengthened());
+    const vo::NumericalEvents& events = filter_->answer().events;
+    for (const int count :
+         {events.not_converged, events.behind_camera, events.not_positive_definite, events.non_finite_weight})
+      trace_.Add(count);
+    trace_.Add(filter_->answer().effective_particles);
+    trace_.Add(filter_->answer().initialising ? 1 : 0);
+    trace_.Add(filter_->answer().scale_change);
     trace_.Add(scale_.ToAnswer(belief.pose));
     trace_.Add(scale_.Covariance(belief.pose, belief.velocity, belief.covariance));
   }
@@ -349,21 +352,21 @@ std::vector<Setting> Settings() {
       {"ekfslam_fixed_rolling", joint, Bearing::fixed, {.rolling = true}},
       {"lag3", params(iterated, evidence, 3, 0), Bearing::estimated, dark},
       {"lag3_early_blackout", params(iterated, evidence, 3, 0), Bearing::fixed, early},
-      {"lag3_equal", params(iterated, equal, 3, 0), Bearing::estimated, {.bad_matches = true}},
+      {"lag3_equal", params(iterated, uniform, 3, 0), Bearing::estimated, {.bad_matches = true}},
       {"lag3_ekf", params(ekf, evidence, 3, 3), Bearing::fixed, {.unknown_start = true}},
       {"lag3_poisoned", params(iterated, evidence, 3, 0), Bearing::estimated, {.poisoned = 20}},
       {"lag5_marginal", marginal(params(iterated, evidence, 5, 5)), Bearing::estimated, {.known_depths = true}},
-      {"lag5_equal", sized(params(iterated, equal, 5, 0), 16), Bearing::estimated, {.rolling = true}},
+      {"lag5_equal", sized(params(iterated, uniform, 5, 0), 16), Bearing::estimated, {.rolling = true}},
       {"start5", params(iterated, evidence, 0, 5), Bearing::estimated, early},
       {"start5_lag3",
-       params(iterated, equal, 3, 5),
+       params(iterated, uniform, 3, 5),
        Bearing::estimated,
        {.rolling = true, .blackout_from = 4, .blackout_to = 7}},
       {"start5_ekf_rolling", params(ekf, evidence, 0, 5), Bearing::estimated, {.rolling = true}},
       {"start5_poisoned", params(iterated, evidence, 0, 5), Bearing::estimated, {.unknown_start = true, .poisoned = 5}},
       {"start30", params(iterated, evidence, 0, 30), Bearing::estimated, dark},
       {"start30_lag5_marginal",
-       sized(marginal(params(iterated, equal, 5, 30)), 16),
+       sized(marginal(params(iterated, uniform, 5, 30)), 16),
        Bearing::estimated,
        {.bad_matches = true}},
       {"start30_rolling",

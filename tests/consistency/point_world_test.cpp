@@ -7,6 +7,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "vo/filter/motion_model.h"
+
 namespace {
 
 using point_world::MakeRoom;

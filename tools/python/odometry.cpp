@@ -147,11 +147,15 @@ void AddEstimate(py::module_& m) {
       .def_readwrite("w_WC_C", &vo::Prior::w_WC_C, Doc("vo/base/result.h:Prior::w_WC_C"))
       .def_readwrite("pose_covariance", &vo::Prior::pose_covariance)
       .def_readwrite("velocity_covariance", &vo::Prior::velocity_covariance);
-  py::class_<vo::Guards>(m, "Guards", Doc("vo/base/numerical_events.h:Guards"))
-      .def_readonly("unsettled", &vo::Guards::unsettled, Doc("vo/base/numerical_events.h:Guards::unsettled"))
-      .def_readonly("behind", &vo::Guards::behind, Doc("vo/base/numerical_events.h:Guards::behind"))
-      .def_readonly("indefinite", &vo::Guards::indefinite, Doc("vo/base/numerical_events.h:Guards::indefinite"))
-      .def_readonly("impossible", &vo::Guards::impossible, Doc("vo/base/numerical_events.h:Guards::impossible"));
+  py::class_<vo::NumericalEvents>(m, "NumericalEvents", Doc("vo/base/numerical_events.h:NumericalEvents"))
+      .def_readonly("not_converged", &vo::NumericalEvents::not_converged,
+                    Doc("vo/base/numerical_events.h:NumericalEvents::not_converged"))
+      .def_readonly("behind_camera", &vo::NumericalEvents::behind_camera,
+                    Doc("vo/base/numerical_events.h:NumericalEvents::behind_camera"))
+      .def_readonly("not_positive_definite", &vo::NumericalEvents::not_positive_definite,
+                    Doc("vo/base/numerical_events.h:NumericalEvents::not_positive_definite"))
+      .def_readonly("non_finite_weight", &vo::NumericalEvents::non_finite_weight,
+                    Doc("vo/base/numerical_events.h:NumericalEvents::non_finite_weight"));
   py::class_<vo::FrameDiagnostics>(m, "Diagnostics", "What an odometry did in a frame.")
       .def_readonly("searched", &vo::FrameDiagnostics::searched, Doc("vo/base/result.h:FrameDiagnostics::searched"))
       .def_readonly("matched", &vo::FrameDiagnostics::matched, Doc("vo/base/result.h:FrameDiagnostics::matched"))
@@ -160,7 +164,7 @@ void AddEstimate(py::module_& m) {
       .def_readonly("nis_dof", &vo::FrameDiagnostics::nis_dof)
       .def_readonly("effective_particles", &vo::FrameDiagnostics::effective_particles,
                     Doc("vo/base/result.h:FrameDiagnostics::effective_particles"))
-      .def_readonly("guards", &vo::FrameDiagnostics::guards, Doc("vo/base/result.h:FrameDiagnostics::guards"));
+      .def_readonly("events", &vo::FrameDiagnostics::events, Doc("vo/base/result.h:FrameDiagnostics::events"));
   py::class_<vo::Estimate>(m, "Estimate", "What a filter says after a frame: conventions as in docs/conventions.md.")
       .def(py::init(&MakeEstimate), py::kw_only(), py::arg("covariance"), py::arg("p_WC") = zero(),
            py::arg("q_WC") = identity, py::arg("v_WC") = zero(), py::arg("w_WC_C") = zero(), py::arg("stamp_ns") = 0)

@@ -1,25 +1,25 @@
-// Purpose: how often the filter did something that its equations do not say. No such place is silent: each counts here.
+// Numerical events of one frame: where the filter did what its equations do not say.
 #pragma once
 
 namespace vo {
 
-// Counts of one frame, over all particles.
-struct Guards {
-  int unsettled = 0;  // searches for a mode that their number of iterations ended, not the mode
-  int behind = 0;     // matches that an update left out, because their landmark had come to lie behind the camera
-  // Matrices that should have been positive definite and were not: what was found by them counts as impossible.
-  int indefinite = 0;
+// Counts over all particles.
+struct NumericalEvents {
+  int not_converged = 0;  // minimisations that ended by their number of iterations
+  int behind_camera = 0;  // matches that an update left out, because their landmark had come to lie behind the camera
+  // Matrices without a Cholesky factor: the particle's evidence is not a number then.
+  int not_positive_definite = 0;
   // Particles whose evidence was not a number: each became a copy of the heaviest, with half of its weight.
-  int impossible = 0;
+  int non_finite_weight = 0;
 
-  Guards& operator+=(const Guards& more) {
-    unsettled += more.unsettled;
-    behind += more.behind;
-    indefinite += more.indefinite;
-    impossible += more.impossible;
+  NumericalEvents& operator+=(const NumericalEvents& more) {
+    not_converged += more.not_converged;
+    behind_camera += more.behind_camera;
+    not_positive_definite += more.not_positive_definite;
+    non_finite_weight += more.non_finite_weight;
     return *this;
   }
-  bool operator==(const Guards&) const = default;
+  bool operator==(const NumericalEvents&) const = default;
 };
 
 }  // namespace vo

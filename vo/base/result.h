@@ -31,7 +31,7 @@ struct FrameDiagnostics {
   double effective_particles = 0;  // before resampling
   // Time of frame preparation and corner detection; of the search; of the rest
   double ms_features = 0, ms_matching = 0, ms_filter = 0;
-  Guards guards;  // numerical events that the filter's equations do not cover
+  NumericalEvents events;  // where the filter did what its equations do not say
   bool tracked() const { return matched >= 10; }
 };
 

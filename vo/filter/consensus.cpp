@@ -6,11 +6,11 @@
 namespace vo {
 namespace {
 
-constexpr double kUndecided = 4;   // times as far, squared
-constexpr int kRounds = 4;         // at least, ...
-constexpr int kMostRounds = 12;    // ... and as long as the pose moves: after a dark time it begins far off
-constexpr double kStill = 0.1;     // of its standard deviation
-constexpr double kCauchySq = 5.7;  // 2.385^2: 95 % efficient on Gaussian residuals
+constexpr double kInitialising = 4;  // times the gate, squared
+constexpr int kRounds = 4;           // at least, ...
+constexpr int kMostRounds = 12;      // ... and as long as the pose moves: after a dark time it begins far off
+constexpr double kStill = 0.1;       // of its standard deviation
+constexpr double kCauchySq = 5.7;    // 2.385^2: 95 % efficient on Gaussian residuals
 constexpr double kFar = 1e6;
 
 bool Moved(const PoseGaussian& pose, const Pose& before) {
@@ -19,8 +19,8 @@ bool Moved(const PoseGaussian& pose, const Pose& before) {
 
 }  // namespace
 
-double OutlierGate(const Filter& filter, const ScoreParams& score) {
-  return filter.undecided() ? kUndecided * score.gate : score.gate;
+double OutlierGate(const FilterAnswer& answer, const ScoreParams& score) {
+  return answer.initialising ? kInitialising * score.gate : score.gate;
 }
 
 Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,

@@ -1,4 +1,4 @@
-// Purpose: tells outliers from inliers among the matches of one frame, once for all particles.
+// Robust pose and inliers of one frame's matches, once for all particles.
 // Source:  M-estimation by iteratively re-weighted covariances (Cauchy), then the chi-square gate on each residual.
 #pragma once
 
@@ -16,12 +16,13 @@ struct Consensus {
   std::vector<bool> inlier;  // of each match
 };
 
-// Squared distance [in standard deviations] from which on a match is an outlier. While the filter is undecided its map may be a wrong solution,
-// and the matches that contradict it are those that say so: then farther.
-double OutlierGate(const Filter& filter, const ScoreParams& score);
+// Squared Mahalanobis distance from which on a match is an outlier. Wider during initialisation: the map may be a wrong
+// mode, and matches that contradict it are those that show it.
+double OutlierGate(const FilterAnswer& answer, const ScoreParams& score);
 
-// Fits the pose of one particle robustly and marks the matches whose residual there, with the landmark's and the pixel's
-// covariance, has a squared Mahalanobis distance below `gate`. `start`: near the pose that is looked for, by an earlier fit.
+// Fits the pose of one particle robustly and marks the matches whose residual there, with the landmark's and the
+// pixel's covariance, has a squared Mahalanobis distance below `gate`. `start`: near the pose that is looked for, by an
+// earlier fit.
 Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,
                         double gate, const FilterParams& params, const std::optional<Pose>& start = std::nullopt);
 

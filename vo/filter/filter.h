@@ -1,5 +1,4 @@
-// Purpose: what an odometry needs of its filter, whatever member of the family it is. Between Predict and Update the caller finds the
-//          landmarks in the image.
+// Filter interface of the family: prediction, update, landmarks, and what an odometry reads of them.
 // Frames:  poses T_WC; image points on the plane z = 1 of an undistorted camera.
 #pragma once
 
@@ -10,19 +9,40 @@
 
 #include "vo/base/numerical_events.h"
 #include "vo/filter/mixture.h"
-#include "vo/filter/path_window.h"
 #include "vo/filter/pose_gaussian.h"
-#include "vo/filter/proposal.h"
-#include "vo/map/landmark.h"
+#include "vo/map/image_prediction.h"
+#include "vo/map/local_map.h"
 #include "vo/map/point_moments.h"
 
 namespace vo {
 
-// Start of a filter. Covariances: (dp in W, dphi in C) and (dv in W, dw in C).
+// Prior of a filter. Covariances: (dp in W, dphi in C) and (dv in W, dw in C).
 struct FilterPrior {
   PoseGaussian pose;
   Vector6 velocity = Vector6::Zero();
   Matrix6 velocity_covariance = Matrix6::Identity();
+};
+
+// Posterior of one frame.
+struct FilterAnswer {
+  Belief belief;                         // moments of the mixture
+  std::vector<BeliefComponent> mixture;  // empty before the first update
+  double effective_particles = 1;        // before resampling
+  NumericalEvents events;                // since the last prediction began
+  bool initialising = false;             // no pose is sampled yet: the whole map may turn out to be a wrong mode
+  double scale_change =
+      1;  // factor of all lengths, where the last update solved again for a path that was answered before
+};
+
+// One path of the posterior, taken as known: the data association's outlier test works with it. Valid until the filter
+// changes.
+struct ReferencePath {
+  PoseGaussian prediction;                 // of the present pose
+  LocalMap map;                            // landmarks given that path
+  std::span<const Eigen::Vector3d> modes;  // (x, y, rho) of the landmarks; empty: the map's means
+
+  Eigen::Vector3d ModeOf(int landmark) const { return modes.empty() ? map.landmarks[landmark].mean : modes[landmark]; }
+  const Pose& AnchorOf(int landmark) const { return map.anchors[map.anchor_of[landmark]]; }
 };
 
 class Filter {
@@ -31,52 +51,41 @@ class Filter {
 
   // dt > 0 [s].
   virtual void Predict(double dt) = 0;
-  // No matches: the filter coasts.
-  virtual void Update(std::span<const Match> matches) = 0;
+  // Without matches the filter coasts. Returns answer().
+  virtual const FilterAnswer& Update(std::span<const Match> matches) = 0;
   // A landmark for every first view, at the present pose. Indices follow those in use.
   virtual void AddLandmarks(std::span<const FirstView> views) = 0;
   // Keeps the landmarks marked true, in their order.
   virtual void KeepLandmarks(const std::vector<bool>& keep) = 0;
   virtual int landmark_count() const = 0;
+  virtual const FilterAnswer& answer() const = 0;
+  const Belief& belief() const { return answer().belief; }
+  const std::vector<BeliefComponent>& mixture() const { return answer().mixture; }
 
-  // Valid after Predict.
+  // Both valid between Predict and Update.
   virtual std::vector<ImagePrediction> PredictImages(std::span<const int> landmarks) const = 0;
-  // What the association's outlier test works with: one path that the filter holds possible and takes as known, the pose that
-  // follows it, and the landmarks as seen along it.
-  virtual const PoseGaussian& ReferencePrediction() const = 0;
-  virtual LocalMap ReferenceMap() const = 0;
-  // The landmark's (x, y, rho) in its anchor's camera, and the anchor, on that path.
-  virtual Eigen::Vector3d ModeOf(int landmark) const = 0;
-  virtual Pose AnchorOf(int landmark) const = 0;
+  virtual ReferencePath Reference() const = 0;
 
   struct LandmarkBelief {
-    Eigen::Vector3d X_W;   // on that path
+    Eigen::Vector3d X_W;   // on the reference path
     double inverse_depth;  // mean [1/m]
     double inverse_depth_sigma;
     double relative_sigma() const { return inverse_depth > 0 ? inverse_depth_sigma / inverse_depth : INFINITY; }
   };
-  // As far as poses have been sampled: what was seen since has moved the means, and not made them surer. What is kept for long is told by it.
+  // Means by all images, standard deviations by those of sampled poses alone. Decides which landmarks are permanent.
   virtual std::vector<LandmarkBelief> LandmarkBeliefs() const = 0;
-  // Standard deviations of the inverse depths [1/m] by all that was seen, the poses not sampled yet as uncertain as they are. Costs more.
-  virtual std::vector<double> InverseDepthSigmas() const {
-    std::vector<double> sigmas;
-    for (const LandmarkBelief& belief : LandmarkBeliefs()) sigmas.push_back(belief.inverse_depth_sigma);
-    return sigmas;
-  }
-  // Where the landmarks are in the world: mean and covariance over all that the filter holds possible, each landmark linearised at
-  // its mean. What is not yet known to lie in front (inverse depth not positive) in all of that has no moments.
+  // Standard deviations of the inverse depths [1/m] by all images, poses that are not sampled integrated out. Costs
+  // more.
+  virtual std::vector<double> InverseDepthSigmas() const;
+  // Moments of the landmarks' places in W over the posterior, each landmark linearised at its mean. None where an
+  // inverse depth is not positive somewhere in the posterior.
   virtual std::vector<std::optional<PointMoments>> LandmarkPoints() const = 0;
-  // The filter's answer: moments of its mixture.
-  virtual const Belief& belief() const = 0;
-  // The mixture itself; empty before the first Update.
-  virtual const std::vector<BeliefComponent>& mixture() const = 0;
-  virtual double effective_particles() const = 0;
-  // What fired since the last Predict began.
-  virtual const Guards& guards() const = 0;
-  // Nothing is sampled yet: the map may still turn out to be a wrong solution altogether.
-  virtual bool undecided() const { return false; }
-  // The last Update found the path anew that had been answered before: its lengths are so many times what they were.
-  virtual double lengthened() const { return 1; }
 };
+
+inline std::vector<double> Filter::InverseDepthSigmas() const {
+  std::vector<double> sigmas;
+  for (const LandmarkBelief& belief : LandmarkBeliefs()) sigmas.push_back(belief.inverse_depth_sigma);
+  return sigmas;
+}
 
 }  // namespace vo

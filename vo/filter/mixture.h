@@ -1,5 +1,5 @@
-// Purpose: moments of the mixture over particles that is the filter's answer (algorithm, sections 9 and 6 of the metrics):
-//          covariance = sum_i w_i (P_i + (mu_i - mu)(mu_i - mu)').
+// Moments of the mixture over particles, the filter's answer: covariance = sum_i w_i (P_i + (mu_i - mu)(mu_i - mu)').
+// Source:  docs/algorithm.md, section 9.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,8 @@ namespace vo {
 
 using CameraVelocityFilter = VelocityFilter<6, 6>;  // s_pf = (p, delta), s_kf = (v, w)
 
-// One particle's Gaussian over (pose, velocity) just before the pose is sampled; covariance in the tangent space at `pose`.
+// One particle's Gaussian over (pose, velocity) just before the pose is sampled; covariance in the tangent space at
+// `pose`.
 struct BeliefComponent {
   double weight = 0;
   Pose pose;
@@ -26,7 +27,8 @@ struct Belief {
   Matrix12 covariance = Matrix12::Zero();
 };
 
-// The velocity is an affine function of the pose still to be sampled, plus its own covariance. `turn`: since `previous`, as predicted [rad in C].
+// The velocity is an affine function of the pose still to be sampled, plus its own covariance. `turn`: since
+// `previous`, as predicted [rad in C].
 BeliefComponent Component(const PoseGaussian& pose, const Pose& previous, const Eigen::Vector3d& turn,
                           const CameraVelocityFilter::Gain& gain);
 

@@ -1,5 +1,5 @@
-// Purpose: the nearly-constant-velocity model over one time step, (6)-(9), for the camera state of section 1 of the algorithm:
-//          s_pf = (p, delta) with delta the rotation since the last frame, s_kf = (v, w). One block of 3 axes each.
+// Nearly-constant-velocity model over one time step, (6)-(9): s_pf = (p, delta), delta the rotation since the last
+// frame, s_kf = (v, w). One block of 3 axes each (docs/algorithm.md, section 1).
 // Shapes:  F and Q are 12 x 12 in the order (p, delta, v, w); the noise of p and v (and of delta and w) is correlated.
 #pragma once
 

@@ -26,6 +26,21 @@ LastVelocity VelocityAtTheEnd(const PathPrior& prior, const Pose& start, const V
   return last;
 }
 
+BeliefComponent ComponentAtTheEnd(const PathPrior& prior, const Pose& start, const Vector6& velocity,
+                                  const PathGaussian& path) {
+  const LastVelocity last = VelocityAtTheEnd(prior, start, velocity, path);
+  BeliefComponent component;
+  component.pose = path.mean.back();
+  component.velocity = last.mean;
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> cross = last.by_pose * path.covariance;
+  component.covariance.topLeftCorner<6, 6>() = path.covariance.bottomRightCorner<6, 6>();
+  component.covariance.bottomLeftCorner<6, 6>() = cross.rightCols<6>();
+  component.covariance.topRightCorner<6, 6>() = cross.rightCols<6>().transpose();
+  component.covariance.bottomRightCorner<6, 6>() =
+      prior.last_covariance() + Symmetrised(cross * last.by_pose.transpose());
+  return component;
+}
+
 void Extend(const PathPrior& prior, const MotionModel& step, const Pose& start, const Vector6& velocity,
             PathGaussian& path) {
   const Eigen::Index size = kPoseSize * prior.size();
@@ -48,6 +63,12 @@ void Extend(const PathPrior& prior, const MotionModel& step, const Pose& start, 
       Symmetrised(cross * by_pose.transpose() + by_step * noise * by_step.transpose());
   path.mean.push_back(Plus(path.mean.empty() ? start : path.mean.back(), u));
   path.turns.push_back(u.tail<3>());
+}
+
+void DropLast(PathGaussian& path) {
+  path.mean.pop_back();
+  path.turns.pop_back();
+  path.covariance.conservativeResize(path.covariance.rows() - kPoseSize, path.covariance.cols() - kPoseSize);
 }
 
 }  // namespace vo

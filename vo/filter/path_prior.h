@@ -1,7 +1,7 @@
-// Purpose: what the motion model says about several frames at once, before any image: the Gaussian of the steps
-//          u_k = (p_k - p_k-1, LogNear(q_k-1^-1 q_k, its prediction)), k = 1 ... m, with the velocities integrated out, and of the last velocity given them.
-// Source:  (6)-(9) in these coordinates are linear: u_k = F12 v_k-1 + noise, v_k = F22 v_k-1 + noise, the two noises correlated.
-// The covariances do not depend on the path: all particles share them.
+// Prior of several steps by the motion model: the Gaussian of u_k = (p_k - p_k-1, LogNear(q_k-1^-1 q_k, its
+// prediction)), k = 1 ... m, with the velocities integrated out, and of the last velocity given the steps.
+// Source:  (6)-(9) in these coordinates are linear: u_k = F12 v_k-1 + noise, v_k = F22 v_k-1 + noise, the two noises
+//          correlated. The covariances do not depend on the path: all particles share them.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// Purpose: a Gaussian over poses: mean and covariance in the tangent space at the mean, with its density and samples.
+// Gaussian over poses: mean and covariance in the tangent space at the mean, with its density and samples.
 // Tangent: (dp in W [m], dphi in C [rad]), right perturbation: pose = mean (+) d.
 #pragma once
 
@@ -10,7 +10,7 @@ namespace vo {
 Pose Plus(const Pose& pose, const Vector6& d);
 // to (-) from: the d with from (+) d = to.
 Vector6 Minus(const Pose& to, const Pose& from);
-// The same where the way may have been more than half a turn: by the rotation vector nearest to `turn` [rad in C].
+// The same for rotations that may exceed half a turn: the rotation vector nearest to `turn` [rad in C].
 Vector6 MinusNear(const Pose& to, const Pose& from, const Eigen::Vector3d& turn);
 
 struct PoseGaussian {
@@ -19,9 +19,9 @@ struct PoseGaussian {
 
   // Density with respect to volume on R^3 x SO(3), normalised in the tangent space.
   double LogDensity(const Pose& pose) const;
-  // The covariance need only be semi-definite: what is known stays as it is in the mean.
+  // The covariance need only be semi-definite.
   Pose Sample(const RandomKey& key) const;
-  // The same with the six standard normal numbers told.
+  // The sample of six given standard normal numbers.
   Pose Displaced(const Vector6& normals) const;
 };
 

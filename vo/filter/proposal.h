@@ -1,12 +1,10 @@
-// Purpose: the optimal proposal (15)(16): the prediction of one particle, updated with all matched features at once.
-// Source:  FastSLAM 2.0; the iterated form is a Gauss-Newton over pose and landmarks together, each landmark eliminated by its own
-//          Schur complement (algorithm, section 8): cost linear in the number of matches.
+// Optimal proposal (15)(16): the prediction of one particle, updated with all matched features at once.
+// Source:  FastSLAM 2.0; the iterated form is a Gauss-Newton over pose and landmarks together, each landmark eliminated
+//          by its own Schur complement (docs/algorithm.md, section 8): cost linear in the number of matches.
 #pragma once
 
-#include <span>
-
-#include "vo/base/params.h"
 #include "vo/base/numerical_events.h"
+#include "vo/base/params.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/map/match_batch.h"
 
@@ -16,20 +14,16 @@ struct PoseProposal {
   PoseGaussian pose;
   // log p(z_t | path of the particle): exact when linear and Gaussian, else Laplace's approximation
   double log_evidence = 0;
-  Guards guards;  // where something was not positive definite, the evidence is not a number
+  NumericalEvents events;  // not positive definite: the evidence is not a number
 };
 
-// `batch`: the matches, at least one, and the particle's landmarks, as loaded; at the end batch.linearised_at() says where it is linearised.
-// Proposal::ekf: one linearisation at the prediction. Proposal::iterated: until within kLeft (descent.h) of the mode or
-// max_iterations. Landmarks that come to lie behind the camera are left out of that iteration.
-// `start`: where the search for the mode begins, with the landmarks where the batch has them.
+// `batch`: the matches, at least one, and the particle's landmarks, as loaded; at the end batch.linearised_at() says
+// where it is linearised. Proposal::ekf: one linearisation at the prediction. Proposal::iterated: until within
+// kToleranceSigma (gauss_newton.h) of the mode or max_iterations. Landmarks that come to lie behind the camera are left
+// out of that iteration. `start`: where the search for the mode begins, with the landmarks where the batch has them.
 PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const FilterParams& params, const Pose& start);
 inline PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const FilterParams& params) {
   return Propose(prediction, batch, params, prediction.mean);
 }
-
-// The same with a batch of its own. No matches: the prediction itself.
-PoseProposal Propose(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,
-                     const FilterParams& params);
 
 }  // namespace vo

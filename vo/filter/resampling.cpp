@@ -37,13 +37,14 @@ double Normalise(std::vector<double>& log_weights) {
   return std::isfinite(peak) ? peak : 0;
 }
 
-std::vector<double> EqualUnlessRefuted(const std::vector<double>& log_evidence, double refuted) {
+std::vector<double> UniformExceptRejected(const std::vector<double>& log_evidence, double log_bayes_rejection) {
   double best = -std::numeric_limits<double>::infinity();
   for (const double e : log_evidence)
     if (std::isfinite(e)) best = std::max(best, e);
   std::vector<double> weights;
   for (const double e : log_evidence)
-    weights.push_back(std::isfinite(e) && e >= best - refuted ? 0 : -std::numeric_limits<double>::infinity());
+    weights.push_back(std::isfinite(e) && e >= best - log_bayes_rejection ? 0
+                                                                          : -std::numeric_limits<double>::infinity());
   Normalise(weights);
   return weights;
 }

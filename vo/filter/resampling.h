@@ -1,4 +1,4 @@
-// Purpose: systematic resampling and the effective number of particles.
+// Systematic resampling, normalisation of weights and the effective number of particles.
 // Source:  Doucet & Johansen, "A tutorial on particle filtering and smoothing", section 3.4.
 #pragma once
 
@@ -16,7 +16,8 @@ void SystematicAncestors(const std::vector<double>& weights, double u, std::vect
 // Returns the largest finite one before, 0 without any.
 double Normalise(std::vector<double>& log_weights);
 
-// Equal weights with sum 1, 0 for those whose log evidence is more than `refuted` below the best, or not a number.
-std::vector<double> EqualUnlessRefuted(const std::vector<double>& log_evidence, double refuted);
+// Uniform weights with sum 1, 0 where the log evidence is more than `log_bayes_rejection` below the best, or not a
+// number.
+std::vector<double> UniformExceptRejected(const std::vector<double>& log_evidence, double log_bayes_rejection);
 
 }  // namespace vo

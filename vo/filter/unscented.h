@@ -1,6 +1,6 @@
-// Purpose: the scaled unscented transform: mean, covariance and cross-covariance of y = h(x) for a Gaussian x, from 2 n + 1 points.
-// Source:  Julier, "The scaled unscented transformation" (2002); algorithm, section 3a. Sums are written about h(mean), so that
-//          small alpha, whose central weight is large and negative, does not cancel:
+// Scaled unscented transform: mean, covariance and cross-covariance of y = h(x) for a Gaussian x, from 2 n + 1 points.
+// Source:  Julier, "The scaled unscented transformation" (2002); docs/algorithm.md, section 3a. Sums are written about
+//          h(mean), so that small alpha, whose central weight is large and negative, does not cancel:
 //            mean = y0 + sum_i W_i (y_i - y0)
 //            cov  = sum_i W_i (y_i - y0)(y_i - y0)' + (beta - alpha^2) (mean - y0)(mean - y0)'
 //          which is positive semi-definite where beta >= alpha^2.

@@ -72,7 +72,8 @@ PoseProposal ProposeUnscented(const PoseGaussian& prediction, const LocalMap& ma
     Matrix23 J;
     for (int i = 0; i < PosePoints::kCount && in_front; ++i) {
       const Projection h =
-          Project(views[static_cast<std::size_t>(i) * map.anchors.size() + anchor].From(match.moved), landmark.mean);
+          Project(views[static_cast<std::size_t>(i) * map.anchors.size() + anchor].ShiftedBy(match.centre_offset_W),
+                  landmark.mean);
       in_front = h.in_front;
       y[i] = h.z;
       if (i == 0) J = h.J_landmark;
@@ -102,9 +103,9 @@ PoseProposal ProposeUnscented(const PoseGaussian& prediction, const LocalMap& ma
   PoseProposal proposal;
   proposal.pose = {Plus(prediction.mean, d), turn * llt.solve(Matrix6::Identity()) * turn.transpose()};
   proposal.log_evidence = log_evidence + 0.5 * b.dot(d) - half_log_det(prior) - half_log_det(llt);
-  proposal.guards.behind = behind;
+  proposal.events.behind_camera = behind;
   if (prior.info() != Eigen::Success || llt.info() != Eigen::Success) {
-    proposal.guards.indefinite = 1;
+    proposal.events.not_positive_definite = 1;
     proposal.log_evidence = std::numeric_limits<double>::quiet_NaN();
   }
   return proposal;

@@ -1,7 +1,7 @@
-// Purpose: the second Rao-Blackwellisation. Conditional on the sampled path s_pf, the rest of the state s_kf is Gaussian; its
-//          Kalman filter takes each sampled step as a measurement whose noise is correlated with the process noise.
-// Source:  (10), (18)-(25) and Algorithm 1, (37)-(43). Three places differ from print: Psi is a square root (18); the cross terms
-//          of P_mm are H Gamma Lambda' and its transpose (41); the sign in (43) is minus.
+// Kalman filter of the velocity, the second Rao-Blackwellisation: conditional on the sampled path s_pf, the rest of the
+// state s_kf is Gaussian. Each sampled step is a measurement whose noise is correlated with the process noise.
+// Source:  (10), (18)-(25) and Algorithm 1, (37)-(43). Three places differ from print: Psi is a square root (18); the
+//          cross terms of P_mm are H Gamma Lambda' and its transpose (41); the sign in (43) is minus.
 // Shapes:  P = dimension of s_pf, K = dimension of s_kf. Works for any F with F22 invertible and any Q with Q22 > 0.
 #pragma once
 

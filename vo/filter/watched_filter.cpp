@@ -7,7 +7,7 @@
 namespace vo {
 namespace {
 
-constexpr double kUnit = 1e-6;  // how far the weights' sum, or a quaternion's length, may be from 1
+constexpr double kUnit = 1e-6;  // tolerance of the weights' sum, and of a quaternion's length
 constexpr double kRounding = 1e-9;
 
 bool Finite(const Pose& pose) {
@@ -44,7 +44,8 @@ void WatchedFilter::RequireVariances(const Eigen::Ref<const Eigen::MatrixXd>& co
 }
 
 void WatchedFilter::RequireAnswer(const char* stage) const {
-  const Belief& belief = filter_->belief();
+  const FilterAnswer& answer = filter_->answer();
+  const Belief& belief = answer.belief;
   Require(Finite(belief.pose), stage, "the pose is not one");
   Require(belief.velocity.allFinite(), stage, "the velocity is not a number");
   RequireVariances(belief.covariance, stage, "pose and velocity", false);
@@ -53,39 +54,40 @@ void WatchedFilter::RequireAnswer(const char* stage) const {
           "the covariance of pose and velocity has a negative eigenvalue");
 #endif
   double sum = 0;
-  for (const BeliefComponent& component : filter_->mixture()) {
+  for (const BeliefComponent& component : answer.mixture) {
     Require(component.weight >= 0, stage, "a weight is negative or not a number");
     sum += component.weight;
   }
   Require(std::abs(sum - 1) < kUnit, stage, "the weights do not sum to 1");
-  const double effective = filter_->effective_particles();
-  Require(effective > 0 && std::isfinite(effective), stage, "the effective number of particles is not one");
+  Require(answer.effective_particles > 0 && std::isfinite(answer.effective_particles), stage,
+          "the effective number of particles is not one");
 }
 
 void WatchedFilter::Predict(double dt) {
   ++frame_;
   Require(dt > 0 && std::isfinite(dt), "prediction", "the time since the last frame is not positive");
   filter_->Predict(dt);
-  const PoseGaussian& prediction = filter_->ReferencePrediction();
+  const PoseGaussian prediction = filter_->Reference().prediction;
   Require(Finite(prediction.mean), "prediction", "the pose is not one");
   RequireVariances(prediction.covariance, "prediction", "the pose",
-                   true);  // the camera may have done something meanwhile
+                   true);  // the motion is uncertain
 }
 
-void WatchedFilter::Update(std::span<const Match> matches) {
+const FilterAnswer& WatchedFilter::Update(std::span<const Match> matches) {
+  const int count = landmark_count();
   for (const Match& match : matches) {
-    Require(match.landmark >= 0 && match.landmark < landmark_count(), "update",
-            "a match is of a landmark that is not in the map");
-    Require(match.z.allFinite() && match.moved.allFinite(), "update", "a match is at no point of the image");
+    Require(match.landmark >= 0 && match.landmark < count, "update", "a match is of a landmark that is not in the map");
+    Require(match.z.allFinite() && match.centre_offset_W.allFinite(), "update", "a match is at no point of the image");
     Require(PositiveDefinite(match.R), "update", "the noise of a match is not positive definite");
   }
-  filter_->Update(matches);
+  const FilterAnswer& answer = filter_->Update(matches);
   RequireAnswer("update");
+  return answer;
 }
 
 void WatchedFilter::AddLandmarks(std::span<const FirstView> views) {
   for (const FirstView& view : views) {
-    Require(view.ray.allFinite() && view.by_inverse_depth.allFinite(), "new landmarks",
+    Require(view.ray.allFinite() && view.d_ray_d_rho.allFinite(), "new landmarks",
             "a first view is at no point of the image");
     Require(PositiveDefinite(view.R), "new landmarks", "the noise of a first view is not positive definite");
     Require(!view.depth || (view.depth->inverse_depth > 0 && view.depth->sigma > 0 &&

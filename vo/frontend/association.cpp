@@ -29,8 +29,8 @@ Results SearchAll(const AssociationContext& in, const std::vector<SearchRequest>
 Match MatchOf(const AssociationContext& in, const Candidate& candidate, const FoundFeature& found,
               const Vector6& velocity) {
   const RowView row = in.shutter.Row(found.pixel);
-  const auto [z, moved] = row.AsTurned(velocity);
-  return {candidate.landmark, z, PixelNoise(candidate.lens, candidate.inflation * found.noise), moved, row};
+  const auto [z, centre_offset_W] = row.RotationCompensated(velocity);
+  return {candidate.landmark, z, PixelNoise(candidate.lens, candidate.inflation * found.noise), centre_offset_W, row};
 }
 
 // Residual of an inlier at the robust pose (`map`), relative to R without inflation.
@@ -85,9 +85,9 @@ Results SearchCoarseToFine(const AssociationContext& in, const std::vector<Candi
     if (result.found) matches.push_back(MatchOf(in, candidates[coarse[k]], *result.found, in.velocity()));
   }
 
-  const std::optional<CoarsePose> pose = CoarsePose::From(in.prediction(), in.map, matches, in.params);
+  const std::optional<CoarsePose> pose = CoarsePose::From(in.prediction(), in.reference.map, matches, in.params);
   const Pose& at = pose ? pose->pose().mean : in.prediction().mean;
-  const ImageMotion motion(in.shutter, in.map, at, VelocityAt(in, at));
+  const ImageMotion motion(in.shutter, in.reference.map, at, VelocityAt(in, at));
   std::vector<SearchRequest> fine;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (is_coarse[i]) continue;
@@ -111,14 +111,14 @@ std::vector<Match> MatchesOf(const AssociationContext& in, std::span<const Candi
 // from it.
 Consensus RobustPose(const AssociationContext& in, std::span<const Candidate> candidates, const Results& results,
                      std::vector<Match>& matches) {
-  const double gate = OutlierGate(in.filter, in.params.score);
+  const double gate = OutlierGate(in.filter.answer(), in.params.score);
   matches = MatchesOf(in, candidates, results, in.velocity());
   std::optional<Pose> at;
   for (int round = 0; in.shutter.on() && round < kShutterRounds; ++round) {
-    at = FindConsensus(in.prediction(), in.map, matches, gate, in.params.filter, at).pose.mean;
+    at = FindConsensus(in.prediction(), in.reference.map, matches, gate, in.params.filter, at).pose.mean;
     matches = MatchesOf(in, candidates, results, VelocityAt(in, *at));
   }
-  Consensus consensus = FindConsensus(in.prediction(), in.map, matches, gate, in.params.filter, at);
+  Consensus consensus = FindConsensus(in.prediction(), in.reference.map, matches, gate, in.params.filter, at);
   if (!in.params.filter.reject_outliers) consensus.inlier.assign(matches.size(), true);
   return consensus;
 }
@@ -135,7 +135,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
                               params,
                               since_update,
                               RollingShutter(camera, params.features),
-                              filter.ReferenceMap()};
+                              filter.Reference()};
   Association result;
   std::vector<Candidate> candidates = FindCandidates(in, border_px);
   result.left_out = LimitToBudget(candidates, in);
@@ -144,7 +144,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   const Results results = SearchCoarseToFine(in, candidates, requests);
   std::vector<Match> matches;
   const Consensus consensus = RobustPose(in, candidates, results, matches);
-  const MapView map(in.map, consensus.pose.mean);
+  const MapView map(in.reference.map, consensus.pose.mean);
 
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];

@@ -16,8 +16,8 @@ constexpr double kMargin = 0.5;
 // Limits on the change of view since the first one: max_view_angle, max_baseline_ratio.
 bool IsSearchable(const AssociationContext& in, int landmark, const ImagePrediction& prediction) {
   const Pose& now = in.prediction().mean;
-  const Pose first = in.filter.AnchorOf(landmark);
-  const Eigen::Vector3d estimate = in.filter.ModeOf(landmark);
+  const Pose first = in.reference.AnchorOf(landmark);
+  const Eigen::Vector3d estimate = in.reference.ModeOf(landmark);
   const Eigen::Vector3d first_ray = first.q_WC * Eigen::Vector3d(estimate.x(), estimate.y(), 1.0).normalized();
   const Eigen::Vector3d present_ray = now.q_WC * Eigen::Vector3d(prediction.z.x(), prediction.z.y(), 1.0).normalized();
   if (first_ray.dot(present_ray) < std::cos(in.params.features.max_view_angle)) return false;
@@ -29,7 +29,7 @@ bool IsSearchable(const AssociationContext& in, int landmark, const ImagePredict
 // over all particles made.
 std::vector<int> Predictable(const AssociationContext& in) {
   const Camera& camera = in.camera;
-  const MapView map(in.map, in.prediction().mean);
+  const MapView map(in.reference.map, in.prediction().mean);
   std::vector<int> predictable;
   for (int n = 0; n < in.filter.landmark_count(); ++n) {
     if (in.records[n].score < in.params.score.delete_below) continue;
@@ -47,7 +47,7 @@ std::vector<int> Predictable(const AssociationContext& in) {
 
 std::vector<Candidate> FindCandidates(const AssociationContext& in, int border_px) {
   std::vector<Candidate> candidates;
-  const ImageMotion motion(in.shutter, in.map, in.prediction().mean, in.velocity());
+  const ImageMotion motion(in.shutter, in.reference.map, in.prediction().mean, in.velocity());
   const std::vector<int> predictable = Predictable(in);
   const std::vector<ImagePrediction> predictions = in.filter.PredictImages(predictable);
   for (std::size_t i = 0; i < predictable.size(); ++i) {
@@ -83,8 +83,8 @@ std::vector<Eigen::Vector2d> LimitToBudget(std::vector<Candidate>& candidates, c
 }
 
 SearchRequest RequestFor(const AssociationContext& in, const Candidate& candidate) {
-  const Eigen::Vector3d estimate = in.filter.ModeOf(candidate.landmark);
-  const Projection view = Project({in.prediction().mean, in.filter.AnchorOf(candidate.landmark)}, estimate);
+  const Eigen::Vector3d estimate = in.reference.ModeOf(candidate.landmark);
+  const Projection view = Project({in.prediction().mean, in.reference.AnchorOf(candidate.landmark)}, estimate);
   const double sigma_px = in.params.features.sigma_px;
   SearchRequest request{&in.records[candidate.landmark].appearance, candidate.pixel,
                         candidate.lens * candidate.prediction.covariance * candidate.lens.transpose() +

@@ -26,9 +26,9 @@ struct AssociationContext {
   const Params& params;
   SinceUpdate since_update;
   RollingShutter shutter;
-  LocalMap map;  // the filter's reference
+  ReferencePath reference;
 
-  const PoseGaussian& prediction() const { return filter.ReferencePrediction(); }
+  const PoseGaussian& prediction() const { return reference.prediction; }
   const Vector6& velocity() const { return filter.belief().velocity; }
 };
 

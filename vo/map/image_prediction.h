@@ -1,4 +1,4 @@
-// Purpose: where a landmark should appear in the present image, and the moments of that over particles.
+// Predicted image of a landmark, and its moments over particles.
 // Units:   the plane z = 1.
 #pragma once
 
@@ -18,6 +18,12 @@ struct ImageMoments {
   Eigen::Vector2d z = Eigen::Vector2d::Zero();
   Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
 
+  void Add(double particle_weight, const ImagePrediction& one) {
+    if (!one.in_front) return;
+    weight += particle_weight;
+    z += particle_weight * one.z;
+    second += particle_weight * (one.z * one.z.transpose() + one.covariance);
+  }
   ImagePrediction Prediction() const {
     if (weight < 0.5) return {};
     const Eigen::Vector2d mean = z / weight;

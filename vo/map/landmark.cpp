@@ -28,12 +28,12 @@ Projection Project(const AnchorView& view, const Eigen::Vector3d& landmark) {
 }
 
 Match AtStamp(const Match& match, const AnchorView& view, const Eigen::Vector3d& theta) {
-  if (match.moved.isZero(0)) return match;
-  const Projection there = Project(view.From(match.moved), theta), here = Project(view, theta);
+  if (match.centre_offset_W.isZero(0)) return match;
+  const Projection there = Project(view.ShiftedBy(match.centre_offset_W), theta), here = Project(view, theta);
   if (!there.in_front || !here.in_front) return match;
   Match at_stamp = match;
   at_stamp.z += here.z - there.z;
-  at_stamp.moved.setZero();
+  at_stamp.centre_offset_W.setZero();
   return at_stamp;
 }
 
@@ -49,9 +49,9 @@ Matrix26 AnchorJacobian(const Projection& projection, const Eigen::Vector3d& lan
 }
 
 FirstView FirstSeen(const RowView& row, const Pose& pose, const Vector6& velocity) {
-  const auto [ray, moved] = row.AsTurned(velocity);
+  const auto [ray, centre_offset_W] = row.RotationCompensated(velocity);
   FirstView view{ray, Eigen::Matrix2d::Zero()};
-  view.by_inverse_depth = Project({pose, pose}, {ray.x(), ray.y(), 1.0}).J_shift * moved;
+  view.d_ray_d_rho = Project({pose, pose}, {ray.x(), ray.y(), 1.0}).J_shift * centre_offset_W;
   view.row = row;
   return view;
 }
@@ -60,11 +60,11 @@ Landmark NewLandmark(const FirstView& view, const LandmarkParams& params) {
   const double rho = view.depth ? view.depth->inverse_depth : params.inverse_depth;
   const double sigma = view.depth ? view.depth->sigma : params.inverse_depth_sigma;
   Landmark landmark;
-  landmark.mean << view.ray + rho * view.by_inverse_depth, rho;
+  landmark.mean << view.ray + rho * view.d_ray_d_rho, rho;
   landmark.covariance(2, 2) = sigma * sigma;
   if (params.bearing == Bearing::fixed) return landmark;
-  const Eigen::Vector2d coupling = sigma * sigma * view.by_inverse_depth;
-  landmark.covariance.topLeftCorner<2, 2>() = view.R + coupling * view.by_inverse_depth.transpose();
+  const Eigen::Vector2d coupling = sigma * sigma * view.d_ray_d_rho;
+  landmark.covariance.topLeftCorner<2, 2>() = view.R + coupling * view.d_ray_d_rho.transpose();
   landmark.covariance.topRightCorner<2, 1>() = coupling;
   landmark.covariance.bottomLeftCorner<1, 2>() = coupling.transpose();
   return landmark;
@@ -90,7 +90,8 @@ LandmarkUpdate UpdateLandmark(const Landmark& prior, const Eigen::Vector3d& gues
     theta = result.landmark.mean;
   }
   if (!h.in_front) return {prior, 0};
-  // At the mode this is Laplace's approximation of log p(z | pose): r'R^-1 r + (theta - prior)'P^-1(theta - prior) = e'S^-1 e.
+  // At the mode this is Laplace's approximation of log p(z | pose): r'R^-1 r + (theta - prior)'P^-1(theta - prior) =
+  // e'S^-1 e.
   result.log_likelihood = -0.5 * h.cost() - 0.5 * std::log(h.det_S) - std::log(2 * std::numbers::pi);
   // P - P J' S^-1 J P. One pixel takes away at most a factor of 1e6 of a variance: rounding leaves ten digits.
   Eigen::Matrix3d& P = result.landmark.covariance;

@@ -1,6 +1,8 @@
-// Purpose: a landmark anchored at the camera pose of its first view: a ray (x, y, 1) in that camera and an inverse depth.
-// Source:  algorithm, section 5. Projection X ~ R_CW (rho (p_A - p) + R_WA m), finite as rho -> 0; rho <= 0 is legal.
-// Units:   image points here are on the plane z = 1 of an undistorted camera [-]; rho is 1 / depth along z of the anchor [1/m].
+// Landmark with inverse depth: a ray (x, y, 1) in the camera of its first view, its anchor, and rho.
+// Source:  docs/algorithm.md, section 5. Projection X ~ R_CW (rho (p_A - p) + R_WA m), finite as rho -> 0; rho <= 0 is
+//          legal.
+// Units:   image points here are on the plane z = 1 of an undistorted camera [-]; rho is 1 / depth along z of the
+//          anchor [1/m].
 #pragma once
 
 #include <optional>
@@ -18,14 +20,14 @@ struct Landmark {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // with a fixed bearing only the last entry is not 0
 };
 
-// A feature found in the present image: which landmark, where on the plane z = 1, and the covariance of that. `moved`: a rolling shutter has seen
-// it not from the camera's position at the stamp, but from so far beside it, by the way that the camera has made in between. z and that are what
-// a velocity makes of `row`.
+// Match of a landmark with a feature of the present image, on the plane z = 1, with covariance R.
+// z and centre_offset_W follow from `row` by a velocity.
 struct Match {
   int landmark = 0;
   Eigen::Vector2d z = Eigen::Vector2d::Zero();
   Eigen::Matrix2d R = Eigen::Matrix2d::Zero();
-  Eigen::Vector3d moved = Eigen::Vector3d::Zero();  // [m] in W
+  Eigen::Vector3d centre_offset_W =
+      Eigen::Vector3d::Zero();  // [m] of the centre that z is seen from, from the one at the stamp
   RowView row = {};
 };
 
@@ -35,10 +37,10 @@ struct AnchorView {
       : R_CW(camera.q_WC.conjugate().toRotationMatrix()),
         R_CA(R_CW * anchor.q_WC.toRotationMatrix()),
         t_C(R_CW * (anchor.p_WC - camera.p_WC)) {}
-  // From a camera so far beside [m], in W.
-  AnchorView From(const Eigen::Vector3d& moved) const {
+  // From a camera whose centre is off by `offset_W` [m].
+  AnchorView ShiftedBy(const Eigen::Vector3d& offset_W) const {
     AnchorView view = *this;
-    view.t_C -= R_CW * moved;
+    view.t_C -= R_CW * offset_W;
     return view;
   }
   Eigen::Matrix3d R_CW;
@@ -66,7 +68,8 @@ struct Projection {
 
 Projection Project(const AnchorView& view, const Eigen::Vector3d& landmark);
 
-// As it would have been seen from the camera's place at the stamp, where a landmark at `theta` is; unchanged where that is behind one of the two.
+// The match of a landmark at `theta` as seen from the camera's centre at the stamp; unchanged where it lies behind one
+// of the two.
 Match AtStamp(const Match& match, const AnchorView& view, const Eigen::Vector3d& theta);
 
 // dz / d(dp in W, dphi in A) of the anchor's pose, for a landmark in front.
@@ -78,14 +81,14 @@ struct KnownDepth {
   double sigma;          // [1/m]
 };
 
-// Where a landmark is seen for the first time, on the plane z = 1: at ray + by_inverse_depth rho, with covariance R.
+// First view of a landmark on the plane z = 1: at ray + d_ray_d_rho rho, with covariance R.
 struct FirstView {
   Eigen::Vector2d ray;
   Eigen::Matrix2d R;
-  // Not zero: the camera moved between the row's time and the stamp.
-  Eigen::Vector2d by_inverse_depth = Eigen::Vector2d::Zero();
+  Eigen::Vector2d d_ray_d_rho =
+      Eigen::Vector2d::Zero();  // not 0: the camera moved between the row's time and the stamp
   std::optional<KnownDepth> depth = std::nullopt;
-  RowView row = {};  // ray and by_inverse_depth are what a velocity makes of it
+  RowView row = {};  // ray and d_ray_d_rho follow from it by a velocity
 };
 // By a camera of this pose and velocity. R and the depth are left to the caller.
 FirstView FirstSeen(const RowView& row, const Pose& pose, const Vector6& velocity);
@@ -95,13 +98,13 @@ Landmark NewLandmark(const FirstView& view, const LandmarkParams& params);
 // In W; far away for a vanishing rho.
 Eigen::Vector3d PointInWorld(const Pose& anchor, const Eigen::Vector3d& landmark);
 
-// What a matched feature says about a landmark once the pose is known.
+// Posterior of a landmark from a match at a known pose.
 struct LandmarkUpdate {
   Landmark landmark;
   double log_likelihood = 0;  // log p(z | pose): (3) for the EKF, Laplace's approximation at the mode else
 };
-// Linearised first at `guess`, then, up to max_iterations in all, at the mode (EKF: guess = prior.mean, max_iterations = 1).
-// A landmark behind the camera stays as it is.
+// Linearised first at `guess`, then, up to max_iterations in all, at the mode (EKF: guess = prior.mean, max_iterations
+// = 1). A landmark behind the camera stays as it is.
 LandmarkUpdate UpdateLandmark(const Landmark& prior, const Eigen::Vector3d& guess, const AnchorView& view,
                               const Match& match, int max_iterations);
 inline LandmarkUpdate UpdateLandmark(const Landmark& prior, const AnchorView& view, const Match& match,

@@ -1,4 +1,4 @@
-// Purpose: what all particles share about a landmark: how it looks, and whether it still exists. Its estimate is each particle's own.
+// Record of a landmark that all particles share: appearance and existence. The estimate is each particle's own.
 #pragma once
 
 #include "vo/features/matcher.h"

@@ -1,5 +1,5 @@
-// Purpose: one match linearised, the landmark's Gaussian integrated out: for landmarks that are updated one by one. The filter's inner
-//          loop has the same formulas for eight matches at a time, in match_lanes.inc.
+// Linearised match with the landmark's Gaussian integrated out, for landmarks that are updated one by one.
+// match_lanes.inc has the same formulas for eight matches at a time.
 // Units:   the plane z = 1, as in landmark.h.
 #pragma once
 
@@ -7,7 +7,8 @@
 
 namespace vo {
 
-// One match linearised at a landmark `theta` (not at its mean), the landmark's Gaussian integrated out: with the pose moved by d,
+// One match linearised at a landmark `theta` (not at its mean), the landmark's Gaussian integrated out: with the pose
+// moved by d,
 //   z - h = e - J_pose d + noise of covariance S = J P J' + R, and the landmark's mode is mean + gain (e - J_pose d).
 // Written out by rows (0: x, 1: y).
 struct LinearisedMatch {

@@ -1,4 +1,4 @@
-// Purpose: what one particle knows of the landmarks: enough to propose its next pose.
+// Map of one particle: its landmarks and their anchors.
 #pragma once
 
 #include <span>

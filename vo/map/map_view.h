@@ -1,4 +1,5 @@
-// Purpose: a map as one camera sees it. Many landmarks share an anchor: its view is made once, when first asked for.
+// Projection of a map into one camera. Landmarks share anchors: the view of an anchor is computed once, at its first
+// use.
 #pragma once
 
 #include <optional>
@@ -17,7 +18,7 @@ class MapView {
   Projection operator()(int n) const { return Project(ViewOf(n), map_.landmarks[n].mean); }
   // From where the match was seen.
   Projection operator()(const Match& match) const {
-    return Project(ViewOf(match.landmark).From(match.moved), map_.landmarks[match.landmark].mean);
+    return Project(ViewOf(match.landmark).ShiftedBy(match.centre_offset_W), map_.landmarks[match.landmark].mean);
   }
   Match AtStamp(const Match& match) const {
     return vo::AtStamp(match, ViewOf(match.landmark), map_.landmarks[match.landmark].mean);

@@ -34,10 +34,10 @@ double LogDet(const MatchSums& sums) {
 
 void MatchBatch::SetMatches(std::span<const Match> matches) {
   landmark_.clear();
-  moved_.clear();
+  centre_offset_W_.clear();
   for (const Match& match : matches) {
     landmark_.push_back(match.landmark);
-    moved_.push_back(match.moved);
+    centre_offset_W_.push_back(match.centre_offset_W);
   }
   SetBlocks();
   for (std::size_t i = 0; i < kLanes * blocks_.size(); ++i) {
@@ -61,7 +61,7 @@ void MatchBatch::Inflate(std::span<const double> factors) {
 
 void MatchBatch::SetLandmarks(std::span<const int> landmarks) {
   landmark_.assign(landmarks.begin(), landmarks.end());
-  moved_.assign(landmarks.size(), Eigen::Vector3d::Zero());
+  centre_offset_W_.assign(landmarks.size(), Eigen::Vector3d::Zero());
   SetBlocks();
   predictions_.assign(blocks_.size(), {});
 }
@@ -85,7 +85,7 @@ void MatchBatch::Load(const LocalMap& map) {
     for (int k = 0; k < 3; ++k) block.mean[k].v[lane] = landmark.mean[k];
     block.covariance[0].v[lane] = P(0, 0), block.covariance[1].v[lane] = P(0, 1), block.covariance[2].v[lane] = P(0, 2);
     block.covariance[3].v[lane] = P(1, 1), block.covariance[4].v[lane] = P(1, 2), block.covariance[5].v[lane] = P(2, 2);
-    for (int k = 0; k < 3; ++k) block.anchor_p[k].v[lane] = anchor.p_WC[k] - moved_[from][k];
+    for (int k = 0; k < 3; ++k) block.anchor_p[k].v[lane] = anchor.p_WC[k] - centre_offset_W_[from][k];
     for (int k = 0; k < 4; ++k) block.anchor_q[k].v[lane] = anchor.q_WC.coeffs()[k];
   }
   kernel_->prepare(blocks_.data(), static_cast<int>(blocks_.size()));

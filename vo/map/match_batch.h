@@ -1,4 +1,4 @@
-// Purpose: the matches of a frame and one particle's landmarks, eight at a time for the inner loop (match_lanes.h).
+// Batch of a frame's matches and one particle's landmarks, eight at a time for the inner loop (match_lanes.h).
 // Units:   the plane z = 1, as in landmark.h.
 #pragma once
 
@@ -33,7 +33,8 @@ class MatchBatch {
   // `marginal`: see FilterParams::marginal_mode.
   Information Linearise(const Pose& camera, bool marginal);
   const Pose& linearised_at() const { return linearised_at_; }
-  // Of each match: its residual with landmarks at their means, squared, in standard deviations; infinite behind the camera. Inflate does not matter.
+  // Of each match: its residual with landmarks at their means, squared, in standard deviations; infinite behind the
+  // camera. Inflate does not matter.
   void SquaredDistances(const Pose& camera, std::vector<double>& distances);
   // From now on the matches' covariances are `factors` times those given.
   void Inflate(std::span<const double> factors);
@@ -59,7 +60,7 @@ class MatchBatch {
   std::vector<PredictionLanes> predictions_;
   std::vector<Lanes> distances_;
   std::vector<int> landmark_;  // per match
-  std::vector<Eigen::Vector3d> moved_;
+  std::vector<Eigen::Vector3d> centre_offset_W_;
   Pose linearised_at_;
   Vector6 step_ = Vector6::Zero();
   bool following_ = false;  // by step_, which is still to be done

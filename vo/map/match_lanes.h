@@ -1,5 +1,5 @@
-// Purpose: the filter's inner loop, eight matches at a time: matches linearised with the landmark's Gaussian integrated
-//          out, their sums for the pose, and the landmarks' update. Private to vo/map: others use MatchBatch.
+// Inner loop of the filter, eight matches at a time: matches linearised with the landmark's Gaussian integrated out,
+// their sums for the pose, and the landmarks' update. Private to vo/map: others use MatchBatch.
 // Source:  as LinearisedMatch. With the pose moved by d: z - h = e - j d + noise of covariance S = J P J' + R, and the
 //          landmark's mode is mean + gain (e - j d).
 // Units:   the plane z = 1, as in landmark.h.
@@ -31,9 +31,9 @@ constexpr double kLandmarkSettled = 1e-10;
 struct MatchLanes {
   // Given. The first two are replaced by UpdateLandmarks.
   Lanes mean[3], covariance[6];
-  Lanes anchor_p[3], anchor_q[4];  // p_WA (less what the match has moved), q_WA (x y z w)
+  Lanes anchor_p[3], anchor_q[4];  // p_WA (less the match's centre offset), q_WA (x y z w)
   Lanes z[2], R_given[3];
-  Lanes R[3];       // believed: as given, or more
+  Lanes R[3];       // R_given, inflated by re-weighting
   Lanes min_depth;  // of X_C: what is nearer or behind is not in front; infinite where there is no match
 
   Lanes R_WA[3][3];  // Prepare

@@ -1,5 +1,6 @@
-// Purpose: where a landmark is in the world, as mean and covariance, from its inverse depth at an anchor.
-// Source:  algorithm, section 5: X_W = p_A + R_WA (x, y, 1) / rho, linearised at the mean; moments of a mixture.
+// Moments of a landmark's place in the world, from its inverse depth at an anchor.
+// Source:  docs/algorithm.md, section 5: X_W = p_A + R_WA (x, y, 1) / rho, linearised at the mean; moments of a
+//          mixture.
 // Units:   m and m^2, in W.
 #pragma once
 

@@ -6,7 +6,7 @@
 
 namespace vo {
 
-RowView::Turned RowView::AsTurned(const Vector6& velocity) const {
+RowView::Compensated RowView::RotationCompensated(const Vector6& velocity) const {
   if (time == 0) return {z, Eigen::Vector3d::Zero()};
   return {(Exp(time * velocity.tail<3>()) * z.homogeneous()).hnormalized(), time * velocity.head<3>()};
 }

@@ -1,5 +1,6 @@
-// Purpose: what a row of an image has seen, which stays as it is, and what that says of the frame's stamp, which depends on how the camera
-//          is believed to move in between. The turn is taken out of the point, exactly, since it needs no depth; the way is told to the filter.
+// Row measurement of a rolling shutter, and its rotation-compensated form at the frame's stamp.
+// The rotation between row and stamp needs no depth and is taken out exactly; the translation is left as an offset of
+// the camera's centre.
 // Units:   image points on the plane z = 1; seconds; velocity (v in W, w in C).
 #pragma once
 
@@ -10,15 +11,15 @@
 namespace vo {
 
 struct RowView {
-  Eigen::Vector2d z = Eigen::Vector2d::Zero();  // of the camera as it stood when the row was exposed
-  double time = 0;                              // of that, after the stamp; 0 without a rolling shutter
+  Eigen::Vector2d z = Eigen::Vector2d::Zero();  // in the camera at the row's time
+  double time = 0;                              // of the row, after the stamp; 0 without a rolling shutter
 
-  // As a camera would have seen it that had turned by then as it has at the stamp, and how far from its place there it stood, in W.
-  struct Turned {
+  // z in a camera with the orientation at the stamp and the centre at the row's time.
+  struct Compensated {
     Eigen::Vector2d z;
-    Eigen::Vector3d moved;
+    Eigen::Vector3d centre_offset_W;  // of that centre from the one at the stamp
   };
-  Turned AsTurned(const Vector6& velocity) const;
+  Compensated RotationCompensated(const Vector6& velocity) const;
 };
 
 }  // namespace vo

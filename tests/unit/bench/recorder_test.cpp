@@ -23,7 +23,7 @@ vo::Estimate Drawn(std::mt19937& engine, std::int64_t stamp_ns) {
   estimate.diagnostics.searched = static_cast<int>(engine() % 100);
   estimate.diagnostics.matched = static_cast<int>(engine() % 100);
   estimate.diagnostics.nis = draw();
-  estimate.diagnostics.guards.indefinite = static_cast<int>(engine() % 100);
+  estimate.diagnostics.events.not_positive_definite = static_cast<int>(engine() % 100);
   return estimate;
 }
 
@@ -56,7 +56,7 @@ TEST(Recorder, GivesBackWhatItWasTold) {
     ASSERT_EQ(run.frames[k].searched, expected.diagnostics.searched);
     ASSERT_EQ(run.frames[k].matched, expected.diagnostics.matched);
     ASSERT_EQ(run.frames[k].nis, expected.diagnostics.nis);
-    ASSERT_EQ(run.frames[k].guards->indefinite, expected.diagnostics.guards.indefinite);
+    ASSERT_EQ(run.frames[k].guards->indefinite, expected.diagnostics.events.not_positive_definite);
   }
 }
 

@@ -54,11 +54,11 @@ TEST(Family, KnowsFromWhereARowWasSeen) {
   std::vector<vo::Match> told, not_told;
   for (int n = 0; n < 60; ++n) {
     const Vector3d theta(0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n), 0.5 + 0.3 * std::sin(0.9 * n));
-    const Vector3d moved(0.01 + 0.005 * std::sin(n), -0.005 * std::cos(n), 0.004 * std::sin(2.0 * n));
-    const vo::Projection h = vo::Project(vo::AnchorView(truth, {}).From(moved), theta);
+    const Vector3d offset(0.01 + 0.005 * std::sin(n), -0.005 * std::cos(n), 0.004 * std::sin(2.0 * n));
+    const vo::Projection h = vo::Project(vo::AnchorView(truth, {}).ShiftedBy(offset), theta);
     first.push_back(
         {theta.head<2>(), kFine * kFine * Matrix2d::Identity(), Vector2d::Zero(), vo::KnownDepth{theta.z(), 1e-4}});
-    told.push_back({n, h.z, kFine * kFine * Matrix2d::Identity(), moved});
+    told.push_back({n, h.z, kFine * kFine * Matrix2d::Identity(), offset});
     not_told.push_back({n, h.z, kFine * kFine * Matrix2d::Identity()});
   }
   vo::FilterPrior prior;

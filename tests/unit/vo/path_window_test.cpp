@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "tests/unit/vo/draws.h"
-#include "vo/filter/descent.h"
+#include "tests/unit/vo/propose.h"
+#include "vo/filter/gauss_newton.h"
+#include "vo/filter/landmark_on_path.h"
 #include "vo/filter/motion_model.h"
 #include "vo/filter/path_end.h"
 #include "vo/filter/proposal.h"
@@ -70,11 +72,11 @@ Scene MakeScene(unsigned seed, int frames, int count, double depth_sigma, double
     scene.landmarks.push_back(landmark);
     vo::Track track{n, anchor, anchor == 0 ? -1 : 0, {}};
     for (int k = anchor; k < frames; ++k) {
-      const Vector3d moved =
+      const Vector3d offset =
           way * Vector3d(0.005 * std::sin(n), 0.004 * std::cos(2 * n + k), 0.003 * std::sin(3 * n - k));
-      const vo::Projection h = vo::Project(vo::AnchorView(scene.truth[k], first).From(moved), theta);
+      const vo::Projection h = vo::Project(vo::AnchorView(scene.truth[k], first).ShiftedBy(offset), theta);
       track.views.push_back({k, h.z + noise * draws.Normals<2>(), Eigen::Matrix2d::Identity() / (noise * noise),
-                             4 * std::log(noise), moved});
+                             4 * std::log(noise), offset});
     }
     scene.tracks.push_back(track);
   }
@@ -97,7 +99,7 @@ double Distance(const vo::Pose& a, const vo::Pose& b, const Matrix6& covariance)
   return std::sqrt(d.dot(covariance.llt().solve(d)));
 }
 
-// Two ways to one mode, each of which may leave kLeft of the way. Their marginal modes weigh curvature at points that differ in second
+// Two ways to one mode, each of which may leave kToleranceSigma of the way. Their marginal modes weigh curvature at points that differ in second
 // order, which the covariance shows.
 TEST(PathWindow, OfOnePoseIsTheProposal) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
@@ -116,10 +118,11 @@ TEST(PathWindow, OfOnePoseIsTheProposal) {
     std::vector<vo::Match> matches;
     std::vector<int> anchor_of(scene.landmarks.size(), 0);
     for (const vo::Track& track : scene.tracks)
-      matches.push_back({track.landmark, track.views[0].z, track.views[0].R_inverse.inverse(), track.views[0].moved});
-    const vo::PoseProposal one = vo::Propose(prediction, {scene.landmarks, anchor_of, scene.anchors}, matches,
-                                             {.max_iterations = 50, .marginal_mode = marginal});
-    EXPECT_LT(Distance(path.mean[0], one.pose.mean, one.pose.covariance), 2 * vo::kLeft)
+      matches.push_back(
+          {track.landmark, track.views[0].z, track.views[0].R_inverse.inverse(), track.views[0].centre_offset_W});
+    const vo::PoseProposal one = vo_test::Propose(prediction, {scene.landmarks, anchor_of, scene.anchors}, matches,
+                                                  {.max_iterations = 50, .marginal_mode = marginal});
+    EXPECT_LT(Distance(path.mean[0], one.pose.mean, one.pose.covariance), 2 * vo::kToleranceSigma)
         << "standard deviations, seed " << seed;
     EXPECT_LT((path.covariance - one.pose.covariance).norm() / one.pose.covariance.norm(), marginal ? 2e-2 : 1e-3)
         << "seed " << seed;
@@ -147,7 +150,7 @@ TEST(PathEnd, AStepMoreIsAsIfSolvedAgain) {
     VectorXd off(again.covariance.rows());
     for (std::size_t k = 0; k < path.mean.size(); ++k)
       off.segment<6>(6 * static_cast<Eigen::Index>(k)) = vo::Minus(path.mean[k], again.mean[k]);
-    EXPECT_LT(std::sqrt(off.dot(again.covariance.llt().solve(off))), 2 * vo::kLeft) << "seed " << seed;
+    EXPECT_LT(std::sqrt(off.dot(again.covariance.llt().solve(off))), 2 * vo::kToleranceSigma) << "seed " << seed;
     EXPECT_LT((path.covariance - again.covariance).norm(), 1e-3 * again.covariance.norm()) << "seed " << seed;
   }
 }
@@ -226,8 +229,9 @@ VectorXd Residual(const Scene& scene, const std::vector<vo::Pose>& poses, const 
     const vo::Pose& anchor = track.anchor_slot < 0 ? scene.anchors[track.anchor] : poses[track.anchor_slot];
     for (const vo::Track::View& view : track.views) {
       const Vector3d ray(theta[n].x(), theta[n].y(), 1);
-      const Vector3d X = poses[view.slot].q_WC.conjugate() *
-                         (anchor.q_WC * ray + theta[n].z() * (anchor.p_WC - poses[view.slot].p_WC - view.moved));
+      const Vector3d X =
+          poses[view.slot].q_WC.conjugate() *
+          (anchor.q_WC * ray + theta[n].z() * (anchor.p_WC - poses[view.slot].p_WC - view.centre_offset_W));
       for (int i = 0; i < 2; ++i) all.push_back((X[i] / X.z() - view.z[i]) * std::sqrt(view.R_inverse(0, 0)));
     }
   }
@@ -266,7 +270,7 @@ void ExpectTheJointSolution(const Scene& scene, double left) {
     Eigen::Matrix<double, 9, 9> expected;
     expected << covariance.block<6, 6>(a, a), covariance.block<6, 3>(a, l), covariance.block<3, 6>(l, a),
         covariance.block<3, 3>(l, l);
-    Eigen::Matrix<double, 9, 9> P = vo::PathWindow::WithAnchor(scene.input(), track, path, theta[i]);
+    Eigen::Matrix<double, 9, 9> P = vo::AnchorAndLandmarkCovariance(scene.input(), track, path, theta[i]);
     if (track.anchor_slot < 0) {
       EXPECT_EQ(P.topRows<6>().norm() + P.leftCols<6>().norm(), 0);
       P.topRows<6>() = expected.topRows<6>();
@@ -280,7 +284,7 @@ void ExpectTheJointSolution(const Scene& scene, double left) {
 // Of images taken at once, and through a rolling shutter: as near as Settled promises.
 TEST(PathWindow, EliminatingLandmarksIsTheJointSolution) {
   ExpectTheJointSolution(MakeScene(5, 4, 24, 0.05, 1.0 / 525, 0), 5e-3);
-  ExpectTheJointSolution(MakeScene(5, 4, 24, 0.05, 1.0 / 525), vo::kLeft);
+  ExpectTheJointSolution(MakeScene(5, 4, 24, 0.05, 1.0 / 525), vo::kToleranceSigma);
 }
 
 // A track's image is told by its anchor in the window: how far all of the window may have drifted does not matter, and the rounding of what is
@@ -296,7 +300,7 @@ TEST(PathWindow, PredictsImagesHoweverFarThePathMayHaveDrifted) {
   for (std::size_t i = 0; i < scene.tracks.size(); ++i) {
     const vo::Track& track = scene.tracks[i];
     const auto S_of = [&](const vo::PathGaussian& of) {
-      return vo::PathWindow::PredictLast(scene.input(), track, of, theta[i]).covariance;
+      return vo::PredictImageOnPath(scene.input(), track, of, theta[i]).covariance;
     };
     EXPECT_EQ(S_of(drifted)(0, 1), S_of(drifted)(1, 0));
     if (track.anchor_slot < 0) continue;
@@ -359,7 +363,8 @@ TEST(PathWindow, EvidenceOfTwoFramesIsThatOfTheFirstTimesTheSecondGivenIt) {
       vo::Landmark& landmark = second.landmarks[track.landmark];
       for (const vo::Track::View& view : track.views)
         if (view.slot == 0)
-          landmark = vo::UpdateLandmark(landmark, vo::AnchorView(s, scene.anchors[track.anchor]).From(view.moved),
+          landmark = vo::UpdateLandmark(landmark,
+                                        vo::AnchorView(s, scene.anchors[track.anchor]).ShiftedBy(view.centre_offset_W),
                                         {track.landmark, view.z, view.R_inverse.inverse()}, 10)
                          .landmark;
       std::erase_if(track.views, [](const vo::Track::View& view) { return view.slot == 0; });

@@ -65,8 +65,8 @@ TEST(RollingShutter, ARowIsSeenByACameraThatStoodElsewhere) {
   double uncorrected = 0, turned = 0;
   for (const Vector3d& theta : Points()) {
     const Vector2d pixel = Seen(camera, shutter, InWorld(theta));
-    const vo::RowView::Turned seen = shutter.Row(pixel).AsTurned(kVelocity);
-    const vo::Projection h = vo::Project(vo::AnchorView(kPose, kPose).From(seen.moved), theta);
+    const vo::RowView::Compensated seen = shutter.Row(pixel).RotationCompensated(kVelocity);
+    const vo::Projection h = vo::Project(vo::AnchorView(kPose, kPose).ShiftedBy(seen.centre_offset_W), theta);
     ASSERT_TRUE(h.in_front);
     EXPECT_LT((seen.z - h.z).norm(), 1e-9);
     turned = std::max(turned, (seen.z - theta.head<2>()).norm());
@@ -78,9 +78,9 @@ TEST(RollingShutter, ARowIsSeenByACameraThatStoodElsewhere) {
 
 TEST(RollingShutter, ImagesAtOnceStayAsTheyAre) {
   const vo::Camera camera = SomeCamera();
-  const vo::RowView::Turned seen = vo::RollingShutter(camera, 0).Row({100, 50}).AsTurned(kVelocity);
+  const vo::RowView::Compensated seen = vo::RollingShutter(camera, 0).Row({100, 50}).RotationCompensated(kVelocity);
   EXPECT_EQ(seen.z, camera.Undistort({100, 50}));
-  EXPECT_EQ(seen.moved, Vector3d::Zero());
+  EXPECT_EQ(seen.centre_offset_W, Vector3d::Zero());
 }
 
 // Where to look for a landmark that is known exactly.
@@ -111,20 +111,20 @@ TEST(RollingShutter, InImageIsWhereTheRowsTimeTakesIt) {
 }
 
 // Seen for the first time: with the depth, once it is known, the ray is right, whatever the depth, and exactly. Taken with another depth it is not:
-// that is what by_inverse_depth is for.
+// that is what d_ray_d_rho is for.
 TEST(RollingShutter, FirstViewsAreRightAtEveryDepth) {
   const vo::Camera camera = SomeCamera();
   const vo::RollingShutter shutter(camera, 0.026);
   double other_depth = 0;
   for (const Vector3d& theta : Points()) {
     const vo::FirstView view = vo::FirstSeen(shutter.Row(Seen(camera, shutter, InWorld(theta))), kPose, kVelocity);
-    EXPECT_LT((view.ray + theta.z() * view.by_inverse_depth - theta.head<2>()).norm(), 1e-9);
-    other_depth = std::max(other_depth, (view.ray + 0.25 * view.by_inverse_depth - theta.head<2>()).norm());
+    EXPECT_LT((view.ray + theta.z() * view.d_ray_d_rho - theta.head<2>()).norm(), 1e-9);
+    other_depth = std::max(other_depth, (view.ray + 0.25 * view.d_ray_d_rho - theta.head<2>()).norm());
   }
   EXPECT_GT(other_depth, 0.001) << "half a pixel";
 }
 
-// (ray + noise + by_inverse_depth rho, rho) of independent noise and rho, with both written out.
+// (ray + noise + d_ray_d_rho rho, rho) of independent noise and rho, with both written out.
 TEST(NewLandmark, KnowsHowItsRayHangsOnItsDepth) {
   vo::LandmarkParams usual;
   const vo::FirstView view{{0.2, -0.1}, 1e-6 * Eigen::Matrix2d::Identity(), {0.03, -0.02}};
@@ -135,7 +135,7 @@ TEST(NewLandmark, KnowsHowItsRayHangsOnItsDepth) {
     const double rho = params.inverse_depth, variance = std::pow(params.inverse_depth_sigma, 2);
     EXPECT_LT((landmark.mean - Vector3d(0.2 + 0.03 * rho, -0.1 - 0.02 * rho, rho)).norm(), 1e-15);
     Eigen::Matrix3d T = Eigen::Matrix3d::Identity(), independent = Vector3d(1e-6, 1e-6, variance).asDiagonal();
-    T.topRightCorner<2, 1>() = view.by_inverse_depth;
+    T.topRightCorner<2, 1>() = view.d_ray_d_rho;
     EXPECT_LT((landmark.covariance - T * independent * T.transpose()).norm(), 1e-15);
   }
   usual.bearing = vo::Bearing::fixed;  // one dimension: the ray of the depth that is believed

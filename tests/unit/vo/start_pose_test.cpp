@@ -27,10 +27,10 @@ TEST(StartPose, EveryParticleSaysWhatAFilterFromThereSays) {
   const vo_test::LandmarkField field({60, 0.8, 0.6, 0.2, kSigma}, draws);
   vo::PoseGaussian start;
   start.covariance = 0.25 * vo::Matrix6::Identity();
-  const vo::ParticleFilter all = FilterFrom(start, 8);
-  std::vector<vo::ParticleFilter> filters{all};
-  for (const vo::Particle& particle : all.particles())
-    filters.push_back(FilterFrom({particle.pose, vo::Matrix6::Zero()}, 1));
+  std::vector<vo::ParticleFilter> filters;
+  filters.push_back(FilterFrom(start, 8));
+  for (int i = 0; i < 8; ++i)
+    filters.push_back(FilterFrom({filters[0].particles()[static_cast<std::size_t>(i)].pose, vo::Matrix6::Zero()}, 1));
   for (vo::ParticleFilter& filter : filters) filter.AddLandmarks(field.first_views);
   for (int frame = 1; frame <= 10; ++frame) {
     const std::vector<vo::Match> matches = field.SeenFrom({{0, 0, 0.02 * frame}, vo::Exp({0, 0.005 * frame, 0})});

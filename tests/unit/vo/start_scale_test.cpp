@@ -1,5 +1,5 @@
 // The start's window finds its path anew in every frame, and with it its scale, which nothing but the priors of the depths tells. What the
-// filter says of that (Filter::lengthened) lets answers keep one scale.
+// filter says of that (FilterAnswer::scale_change) lets answers keep one scale.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ Change Fly(unsigned world, double speed, double spread, int from) {
     filter.Update(field.SeenFrom(camera));
     const double ratio = std::log(filter.belief().pose.p_WC.norm() / camera.p_WC.norm());
     if (frame == from) change = {-ratio, -ratio};
-    if (frame > from) change.answers -= std::log(filter.lengthened());
+    if (frame > from) change.answers -= std::log(filter.answer().scale_change);
     if (frame == kFrames) {
       change.filter += ratio;
       change.answers += ratio;
@@ -88,17 +88,17 @@ TEST(StartScale, NothingIsLengthenedAfterTheStart) {
   vo::ParticleFilter filter({}, vo::FilterParams{}, vo::LandmarkParams{}, vo::FilterPrior{}, 1);
   const vo_test::LandmarkField field({60, 0.8, 0.6, 0.4, kSigma}, draws);
   filter.AddLandmarks(field.first_views);
-  int lengthened = 0;
+  int rescaled = 0;
   for (int frame = 1; frame <= kFrames + 10; ++frame) {
     filter.Predict(1.0 / 30);
     filter.Update(field.SeenFrom({{frame / 30.0, 0, 0}, Eigen::Quaterniond::Identity()}));
     if (frame > kFrames + 1) {
-      EXPECT_EQ(filter.lengthened(), 1) << frame;
+      EXPECT_EQ(filter.answer().scale_change, 1) << frame;
     } else {
-      lengthened += filter.lengthened() != 1;
+      rescaled += filter.answer().scale_change != 1;
     }
   }
-  EXPECT_GT(lengthened, kFrames / 2);
+  EXPECT_GT(rescaled, kFrames / 2);
 }
 
 }  // namespace

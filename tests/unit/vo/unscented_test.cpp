@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "tests/unit/vo/propose.h"
 #include "vo/filter/unscented_proposal.h"
 #include "vo/geometry/so3.h"
 
@@ -122,7 +123,7 @@ TEST(UnscentedProposal, IsTheEkfWhereTheModelIsLinear) {
     const Scene scene = MakeScene(3, 12, 1e-6, 1e-6, 1e-6, fixed);
     const vo::PoseProposal ukf = vo::ProposeUnscented(scene.prediction, scene.map(), scene.matches, {});
     const vo::PoseProposal ekf =
-        vo::Propose(scene.prediction, scene.map(), scene.matches, {.proposal = vo::Proposal::ekf});
+        vo_test::Propose(scene.prediction, scene.map(), scene.matches, {.proposal = vo::Proposal::ekf});
     const vo::Matrix6 L = ekf.pose.covariance.llt().matrixL();
     EXPECT_LT((L.inverse() * vo::Minus(ukf.pose.mean, ekf.pose.mean)).norm(), 1e-3);
     EXPECT_LT((ukf.pose.covariance - ekf.pose.covariance).norm(), 1e-4 * ekf.pose.covariance.norm());

@@ -13,18 +13,12 @@
 #include <vector>
 
 #include "tests/unit/vo/wall.h"
+#include "vo/filter/algorithm1.h"
 #include "vo/filter/ekf_slam.h"
 #include "vo/filter/particle_filter.h"
+#include "vo/filter/window_phase.h"
 #include "vo/geometry/so3.h"
 #include "vo/point_odometry.h"
-
-namespace vo {
-
-struct ParticleFilterPeer {
-  static std::vector<Particle>& Particles(ParticleFilter& filter) { return filter.particles_; }
-};
-
-}  // namespace vo
 
 namespace {
 
@@ -58,7 +52,7 @@ std::unique_ptr<vo::ParticleFilter> MakeParticles(const vo::FilterParams& params
 
 struct Seen {
   std::vector<vo::Belief> beliefs;  // after each frame
-  vo::Guards guards;                // of all frames
+  vo::NumericalEvents events;       // of all frames
   std::optional<vo::FilterFault> fault;
 };
 
@@ -79,7 +73,7 @@ Seen Play(std::unique_ptr<vo::Filter> filter, const std::function<void(int)>& be
       watched.Update(Matches(frame));
       watched.LandmarkBeliefs();
       watched.LandmarkPoints();
-      seen.guards += watched.guards();
+      seen.events += watched.answer().events;
       seen.beliefs.push_back(watched.belief());
     }
   } catch (const vo::FilterFault& fault) {
@@ -97,38 +91,57 @@ bool Same(const Seen& a, const Seen& b) {
   return true;
 }
 
+// The state of one particle, written to behind its owner's back: no image leads to what a test puts there.
+struct State {
+  State(const vo::ParticleFilter& filter, std::size_t i) : particle(const_cast<vo::Particle&>(filter.particles()[i])) {
+    if (const auto* window = dynamic_cast<const vo::WindowPhase*>(&filter.phase()))
+      solution = const_cast<vo::PathSolution*>(&window->solutions()[i]);
+    if (const auto* algorithm = dynamic_cast<const vo::Algorithm1*>(&filter.phase()))
+      prediction = const_cast<vo::PoseGaussian*>(&algorithm->predictions()[i]);
+  }
+  vo::Particle& particle;
+  vo::PathSolution* solution = nullptr;
+  vo::PoseGaussian* prediction = nullptr;
+};
+
 struct Poison {
   const char* name;
-  std::function<void(vo::Particle&, double)> put;
+  std::function<void(const State&, double)> put;
 };
 
 const Poison kState[] = {
-    {"position", [](vo::Particle& p, double v) { p.pose.p_WC.y() = v; }},
-    {"orientation", [](vo::Particle& p, double v) { p.pose.q_WC.x() = v; }},
-    {"velocity", [](vo::Particle& p, double v) { p.velocity.mean[4] = v; }},
-    {"velocity's covariance", [](vo::Particle& p, double v) { p.velocity.covariance(2, 2) = v; }},
-    {"landmark", [](vo::Particle& p, double v) { p.landmarks[7].mean.z() = v; }},
-    {"landmark's covariance", [](vo::Particle& p, double v) { p.landmarks[7].covariance(2, 2) = v; }},
+    {"position", [](const State& s, double v) { s.particle.pose.p_WC.y() = v; }},
+    {"orientation", [](const State& s, double v) { s.particle.pose.q_WC.x() = v; }},
+    {"velocity", [](const State& s, double v) { s.particle.velocity.mean[4] = v; }},
+    {"velocity's covariance", [](const State& s, double v) { s.particle.velocity.covariance(2, 2) = v; }},
+    {"landmark", [](const State& s, double v) { s.particle.landmarks[7].mean.z() = v; }},
+    {"landmark's covariance", [](const State& s, double v) { s.particle.landmarks[7].covariance(2, 2) = v; }},
     {"all landmarks' covariances",
-     [](vo::Particle& p, double v) {
-       for (vo::Landmark& l : p.landmarks) l.covariance(2, 2) = v;
+     [](const State& s, double v) {
+       for (vo::Landmark& l : s.particle.landmarks) l.covariance(2, 2) = v;
      }},
-    {"anchor", [](vo::Particle& p, double v) { p.anchors[0].p_WC.x() = v; }},
-    {"weight", [](vo::Particle& p, double v) { p.log_weight = v; }},
+    {"anchor", [](const State& s, double v) { s.particle.anchors[0].p_WC.x() = v; }},
+    {"weight", [](const State& s, double v) { s.particle.log_weight = v; }},
     {"path",
-     [](vo::Particle& p, double v) {
-       if (!p.path.mean.empty()) p.path.mean.back().p_WC.z() = v;
+     [](const State& s, double v) {
+       if (s.solution && !s.solution->path.mean.empty()) s.solution->path.mean.back().p_WC.z() = v;
      }},
     {"path's covariance",
-     [](vo::Particle& p, double v) {
-       if (p.path.covariance.size() > 0) p.path.covariance(1, 1) = v;
+     [](const State& s, double v) {
+       if (s.solution && s.solution->path.covariance.size() > 0) s.solution->path.covariance(1, 1) = v;
      }},
     {"mode",
-     [](vo::Particle& p, double v) {
-       if (!p.modes.empty()) p.modes[7].x() = v;
+     [](const State& s, double v) {
+       if (s.solution) s.solution->modes[7].x() = v;
      }},
-    {"prediction", [](vo::Particle& p, double v) { p.prediction.mean.p_WC.x() = v; }},
-    {"prediction's covariance", [](vo::Particle& p, double v) { p.prediction.covariance(3, 3) = v; }},
+    {"prediction",
+     [](const State& s, double v) {
+       if (s.prediction) s.prediction->mean.p_WC.x() = v;
+     }},
+    {"prediction's covariance",
+     [](const State& s, double v) {
+       if (s.prediction) s.prediction->covariance(3, 3) = v;
+     }},
 };
 
 struct Member {
@@ -164,11 +177,11 @@ TEST_P(WatchedMember, NothingThatIsNoNumberPassesUnseen) {
       for (const bool all : {false, true}) {
         for (const bool between : {false, true}) {
           std::unique_ptr<vo::ParticleFilter> filter = MakeParticles(GetParam().params);
-          std::vector<vo::Particle>& particles = vo::ParticleFilterPeer::Particles(*filter);
+          const vo::ParticleFilter& particles = *filter;
           const auto put = [&](int frame) {
             if (frame != kPoisoned) return;
-            for (std::size_t i = 0; i < particles.size(); ++i)
-              if (all || i == 3) poison.put(particles[i], value);
+            for (std::size_t i = 0; i < particles.particles().size(); ++i)
+              if (all || i == 3) poison.put({particles, i}, value);
           };
           const Seen seen = between ? Play(std::move(filter), {}, put) : Play(std::move(filter), put);
           SCOPED_TRACE(std::string(poison.name) + (all ? " of all" : " of one") +
@@ -182,7 +195,7 @@ TEST_P(WatchedMember, NothingThatIsNoNumberPassesUnseen) {
             EXPECT_LE(seen.fault->frame(), kPoisoned + 4);
             EXPECT_THAT(seen.fault->what(), StartsWith("frame " + std::to_string(seen.fault->frame()) + ", "));
             ++faults;
-          } else if (!(seen.guards == healthy.guards)) {
+          } else if (!(seen.events == healthy.events)) {
             ++guarded;
           } else {
             EXPECT_TRUE(Same(seen, healthy)) << "other answers, and nobody says why";
@@ -203,10 +216,10 @@ TEST(WatchedFilter, AnImpossibleParticleIsReplacedAndCounted) {
   std::unique_ptr<vo::ParticleFilter> filter = MakeParticles(Plain());
   vo::ParticleFilter& particles = *filter;
   const Seen seen = Play(std::move(filter), {}, [&](int frame) {
-    if (frame == kPoisoned) vo::ParticleFilterPeer::Particles(particles)[3].log_weight = kNan;
+    if (frame == kPoisoned) State(particles, 3).particle.log_weight = kNan;
   });
   ASSERT_FALSE(seen.fault) << seen.fault->what();
-  EXPECT_EQ(seen.guards.impossible, 1);
+  EXPECT_EQ(seen.events.non_finite_weight, 1);
   const Seen healthy = Play(MakeParticles(Plain()), {});
   EXPECT_LT((seen.beliefs.back().pose.p_WC - healthy.beliefs.back().pose.p_WC).norm(), 0.05);
 }
@@ -220,13 +233,14 @@ TEST(WatchedFilter, WhereAllAreImpossibleTheWeightsBeginAgain) {
     std::unique_ptr<vo::ParticleFilter> filter = MakeParticles(params);
     vo::ParticleFilter& particles = *filter;
     const Seen seen = Play(std::move(filter), {}, [&](int frame) {
-      for (vo::Particle& particle : vo::ParticleFilterPeer::Particles(particles)) {
-        if (frame == kPoisoned) particle.log_weight = kNan;
-        EXPECT_EQ(std::isfinite(particle.log_weight), frame != kPoisoned) << window;
+      for (std::size_t i = 0; i < particles.particles().size(); ++i) {
+        double& log_weight = State(particles, i).particle.log_weight;
+        if (frame == kPoisoned) log_weight = kNan;
+        EXPECT_EQ(std::isfinite(log_weight), frame != kPoisoned) << window;
       }
     });
     ASSERT_FALSE(seen.fault) << seen.fault->what();
-    EXPECT_EQ(seen.guards.impossible, params.particles) << window;
+    EXPECT_EQ(seen.events.non_finite_weight, params.particles) << window;
   }
 }
 
@@ -303,32 +317,33 @@ class Broken final : public vo::Filter {
   std::function<void(LandmarkBelief&)> spoil_landmark = [](auto&) {};
   std::function<void(vo::PointMoments&)> spoil_point = [](auto&) {};
   double effective = 1;
-  int lost_landmarks = 0;
 
   void Predict(double dt) override {
     good.Predict(dt);
-    prediction_ = good.ReferencePrediction();
+    prediction_ = good.Reference().prediction;
     spoil_prediction(prediction_);
   }
-  void Update(std::span<const vo::Match> matches) override {
-    good.Update(matches);
-    belief_ = good.belief();
-    mixture_ = good.mixture();
-    spoil_belief(belief_);
-    spoil_component(mixture_[0]);
+  const vo::FilterAnswer& Update(std::span<const vo::Match> matches) override {
+    answer_ = good.Update(matches);
+    answer_.effective_particles = effective;
+    spoil_belief(answer_.belief);
+    spoil_component(answer_.mixture[0]);
+    return answer_;
   }
   void AddLandmarks(std::span<const vo::FirstView> views) override { good.AddLandmarks(views); }
   void KeepLandmarks(const std::vector<bool>& keep) override { good.KeepLandmarks(keep); }
   int landmark_count() const override { return good.landmark_count(); }
+  const vo::FilterAnswer& answer() const override { return answer_; }
   std::vector<vo::ImagePrediction> PredictImages(std::span<const int> landmarks) const override {
     auto predictions = good.PredictImages(landmarks);
     spoil_image(predictions[2]);
     return predictions;
   }
-  const vo::PoseGaussian& ReferencePrediction() const override { return prediction_; }
-  vo::LocalMap ReferenceMap() const override { return good.ReferenceMap(); }
-  Eigen::Vector3d ModeOf(int landmark) const override { return good.ModeOf(landmark); }
-  vo::Pose AnchorOf(int landmark) const override { return good.AnchorOf(landmark); }
+  vo::ReferencePath Reference() const override {
+    vo::ReferencePath reference = good.Reference();
+    reference.prediction = prediction_;
+    return reference;
+  }
   std::vector<LandmarkBelief> LandmarkBeliefs() const override {
     auto beliefs = good.LandmarkBeliefs();
     spoil_landmark(beliefs[2]);
@@ -339,15 +354,10 @@ class Broken final : public vo::Filter {
     if (points[2]) spoil_point(*points[2]);
     return points;
   }
-  const vo::Belief& belief() const override { return belief_; }
-  const std::vector<vo::BeliefComponent>& mixture() const override { return mixture_; }
-  double effective_particles() const override { return effective; }
-  const vo::Guards& guards() const override { return good.guards(); }
 
  private:
   vo::PoseGaussian prediction_;
-  vo::Belief belief_;
-  std::vector<vo::BeliefComponent> mixture_;
+  vo::FilterAnswer answer_;
 };
 
 // What the filter says, stage by stage.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/unit/vo/draws.h"
+#include "vo/filter/motion_model.h"
 #include "vo/filter/particle_filter.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/geometry/so3.h"

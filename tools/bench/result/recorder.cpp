@@ -29,7 +29,8 @@ evaluation::FrameRecord RecordOf(const vo::Estimate& estimate) {
   record.ms_matching = d.ms_matching;
   record.ms_filter = d.ms_filter;
   record.tracked = d.tracked();
-  record.guards = {d.guards.unsettled, d.guards.behind, d.guards.indefinite, d.guards.impossible};
+  record.guards = {d.events.not_converged, d.events.behind_camera, d.events.not_positive_definite,
+                   d.events.non_finite_weight};
   return record;
 }
 

@@ -20,7 +20,7 @@ struct StampedBelief {
   Matrix12d covariance = Matrix12d::Zero();
 };
 
-// How often a filter did in a frame what its equations do not say (vo/base/numerical_events.h).
+// Numerical events of a frame (vo/base/numerical_events.h).
 struct GuardCounts {
   int unsettled = 0, behind = 0, indefinite = 0, impossible = 0;
 };

@@ -1,12 +1,12 @@
 """Synthetic data for visual odometry, and the bench that tests it: docs/python.md."""
 from vobench._core import (
-    SETTINGS, SYSTEMS, AneesVerdict, Ate, Camera, Check, Diagnostics, Estimate, Frame, Guards, ImageFrame, InputError, LinearFilter, Odometry,
+    SETTINGS, SYSTEMS, AneesVerdict, Ate, Camera, Check, Diagnostics, Estimate, Frame, ImageFrame, InputError, LinearFilter, NumericalEvents, Odometry,
     PointFrame, PointOdometry, PointWorld, Prior, Rpe, Run, Scenario, SceneError, Sequence, SettingsError, Simulator, Statistics,
     Trajectory, Truth, Verdict, __version__, anees_test, anees_test_against, ate, chi2_band, judge, nees, play, rpe, test_consistency)
 
 __all__ = [
-    "SETTINGS", "SYSTEMS", "AneesVerdict", "Ate", "Camera", "Check", "Diagnostics", "Estimate", "Frame", "Guards", "ImageFrame", "InputError",
-    "LinearFilter", "Odometry", "PointFrame", "PointOdometry", "PointWorld", "Prior", "Rpe", "Run", "Scenario", "SceneError",
+    "SETTINGS", "SYSTEMS", "AneesVerdict", "Ate", "Camera", "Check", "Diagnostics", "Estimate", "Frame", "ImageFrame", "InputError",
+    "LinearFilter", "NumericalEvents", "Odometry", "PointFrame", "PointOdometry", "PointWorld", "Prior", "Rpe", "Run", "Scenario", "SceneError",
     "Sequence", "SettingsError", "Simulator", "Statistics", "Trajectory", "Truth", "Verdict", "__version__", "anees_test",
     "anees_test_against", "ate", "chi2_band", "judge", "nees", "play", "rpe", "test_consistency"]
 

@@ -1,0 +1,210 @@
+// Phases of the particle filter: which one runs when, what each samples, and that they hand over all they know.
+#include <gmock/gmock.h>
+
+#include <memory>
+#include <vector>
+
+#include "tests/unit/vo/draws.h"
+#include "tests/unit/vo/wall.h"
+#include "vo/filter/algorithm1.h"
+#include "vo/filter/fixed_lag.h"
+#include "vo/filter/initialisation.h"
+#include "vo/filter/particle_filter.h"
+#include "vo/geometry/so3.h"
+
+namespace {
+
+constexpr int kLandmarks = 30;
+constexpr double kDt = 1.0 / 30;
+
+vo::FilterPrior Prior() {
+  vo::FilterPrior prior;
+  prior.velocity_covariance = 0.04 * vo::Matrix6::Identity();
+  return prior;
+}
+
+vo::ParticleFilterSettings Settings(int lag, int start_window) {
+  vo::ParticleFilterSettings settings;
+  settings.filter.lag = lag;
+  settings.filter.start_window = start_window;
+  settings.seed = 4;
+  return settings;
+}
+
+vo::ParticleFilter MakeFilter(int lag, int start_window) {
+  const vo::ParticleFilterSettings s = Settings(lag, start_window);
+  vo::ParticleFilter filter(s.motion, s.filter, s.landmark, Prior(), s.seed);
+  filter.AddLandmarks(vo_test::WallFirstViews(kLandmarks));
+  return filter;
+}
+
+void Step(vo::Filter& filter, int frame) {
+  filter.Predict(kDt);
+  filter.Update(vo_test::WallMatches(kLandmarks, frame));
+}
+
+template <class Phase>
+bool Is(const vo::ParticleFilter& filter) {
+  return dynamic_cast<const Phase*>(&filter.phase()) != nullptr;
+}
+
+bool SameBits(const vo::FilterAnswer& a, const vo::FilterAnswer& b) {
+  return a.belief.pose.p_WC == b.belief.pose.p_WC && a.belief.velocity == b.belief.velocity &&
+         a.belief.covariance == b.belief.covariance;
+}
+
+TEST(FilterPhases, FollowTheSettings) {
+  vo::ParticleFilter paper = MakeFilter(0, 0), start = MakeFilter(0, 3), both = MakeFilter(2, 3),
+                     lag = MakeFilter(3, 3);
+  for (int frame = 1; frame <= 6; ++frame) {
+    for (vo::ParticleFilter* filter : {&paper, &start, &both, &lag}) Step(*filter, frame);
+    EXPECT_TRUE(Is<vo::Algorithm1>(paper));
+    EXPECT_EQ(Is<vo::Initialisation>(start), frame <= 3) << frame;
+    EXPECT_EQ(Is<vo::Algorithm1>(start), frame > 3) << frame;
+    EXPECT_EQ(Is<vo::Initialisation>(both), frame <= 3) << frame;
+    EXPECT_EQ(Is<vo::FixedLag>(both), frame > 3) << frame;
+    EXPECT_TRUE(Is<vo::FixedLag>(lag));
+    EXPECT_FALSE(paper.answer().initialising);
+    for (const vo::ParticleFilter* filter : {&start, &both, &lag})
+      EXPECT_EQ(filter->answer().initialising, frame <= 3) << frame;
+  }
+}
+
+// A particle filter is its phase, bit for bit.
+TEST(Algorithm1, IsTheFilterOfThePaper) {
+  vo::ParticleFilter filter = MakeFilter(0, 0);
+  vo::Algorithm1 algorithm(Settings(0, 0), Prior());
+  algorithm.AddLandmarks(vo_test::WallFirstViews(kLandmarks));
+  for (int frame = 1; frame <= 5; ++frame) {
+    Step(filter, frame);
+    Step(algorithm, frame);
+    EXPECT_TRUE(SameBits(filter.answer(), algorithm.answer())) << frame;
+  }
+}
+
+// Two predictions without an update between them are one over both times.
+TEST(Algorithm1, CoastsExactly) {
+  vo::Algorithm1 once(Settings(0, 0), Prior()), twice(Settings(0, 0), Prior());
+  once.Predict(2 * kDt);
+  once.Update({});
+  for (int i = 0; i < 2; ++i) {
+    twice.Predict(kDt);
+    twice.Update({});
+  }
+  EXPECT_TRUE(SameBits(once.answer(), twice.answer()));
+  EXPECT_EQ(once.particles()[0].pose.p_WC, Eigen::Vector3d::Zero()) << "sampled without an image";
+}
+
+// A new landmark needs a pose: the filter samples it, though no image has updated it.
+TEST(Algorithm1, SamplesWhereALandmarkBeginsWhileItCoasts) {
+  vo::Algorithm1 algorithm(Settings(0, 0), Prior());
+  algorithm.Predict(kDt);
+  algorithm.Update({});
+  algorithm.AddLandmarks(vo_test::WallFirstViews(2));
+  EXPECT_NE(algorithm.particles()[0].pose.p_WC, Eigen::Vector3d::Zero());
+  EXPECT_EQ(algorithm.particles()[0].anchors[0].p_WC, algorithm.particles()[0].pose.p_WC);
+}
+
+// One pose is sampled in each frame once the lag is full, the oldest one.
+TEST(FixedLag, SamplesTheOldestPose) {
+  vo::FixedLag phase(Settings(3, 0), Prior());
+  phase.AddLandmarks(vo_test::WallFirstViews(kLandmarks));
+  for (int frame = 1; frame <= 6; ++frame) {
+    const vo::Pose before = phase.particles()[2].pose;
+    Step(phase, frame);
+    EXPECT_EQ(phase.particles()[2].pose.p_WC == before.p_WC, frame <= 3) << frame;
+    EXPECT_EQ(phase.solutions()[2].path.mean.size(), static_cast<std::size_t>(std::min(frame, 3)));
+    EXPECT_EQ(phase.answer().initialising, frame <= 3);
+  }
+}
+
+// A frame that nothing refers to is integrated out: the path does not grow with the time without images.
+TEST(FixedLag, IntegratesUnusedPosesOut) {
+  vo::FixedLag phase(Settings(3, 0), Prior());
+  phase.AddLandmarks(vo_test::WallFirstViews(kLandmarks));
+  Step(phase, 1);
+  for (int frame = 2; frame <= 8; ++frame) {
+    phase.Predict(kDt);
+    phase.Update({});
+    EXPECT_EQ(phase.solutions()[0].path.mean.size(), 2u);
+  }
+}
+
+// From another start pose the shared solution is the same relative to it.
+TEST(Initialisation, SharesOneSolution) {
+  vo::FilterPrior prior = Prior();
+  prior.pose.covariance = 0.25 * vo::Matrix6::Identity();
+  vo::Initialisation phase(Settings(0, 10), prior);
+  phase.AddLandmarks(vo_test::WallFirstViews(kLandmarks));
+  for (int frame = 1; frame <= 5; ++frame) Step(phase, frame);
+  const auto relative = [&](std::size_t i) {
+    const vo::Pose &start = phase.particles()[i].pose, &end = phase.solutions()[i].path.mean.back();
+    return vo::Pose{start.q_WC.conjugate() * (end.p_WC - start.p_WC), start.q_WC.conjugate() * end.q_WC};
+  };
+  EXPECT_GT((phase.particles()[1].pose.p_WC - phase.particles()[0].pose.p_WC).norm(), 0.01);
+  for (std::size_t i = 1; i < phase.particles().size(); ++i) {
+    EXPECT_LT(vo::Minus(relative(i), relative(0)).norm(), 1e-12) << i;
+    EXPECT_EQ(phase.solutions()[i].modes, phase.solutions()[0].modes) << i;
+  }
+}
+
+TEST(Initialisation, HandsItsStateOver) {
+  for (const int lag : {0, 2}) {
+    vo::Initialisation phase(Settings(lag, 3), Prior());
+    phase.AddLandmarks(vo_test::WallFirstViews(kLandmarks));
+    for (int frame = 1; frame <= 3; ++frame) {
+      Step(phase, frame);
+      EXPECT_EQ(phase.Next(), nullptr) << frame;
+    }
+    Step(phase, 4);
+    const vo::FilterAnswer answer = phase.answer();
+    const std::vector<vo::Particle> particles = phase.particles().particles();
+    const std::unique_ptr<vo::ParticlePhase> next = phase.Next();
+    ASSERT_NE(next, nullptr);
+    EXPECT_TRUE(SameBits(next->answer(), answer));
+    EXPECT_EQ(next->landmark_count(), kLandmarks);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      EXPECT_EQ(next->particles()[i].pose.p_WC, particles[i].pose.p_WC);
+      EXPECT_NE(next->particles()[i].pose.p_WC, Eigen::Vector3d::Zero()) << "a pose is sampled";
+    }
+  }
+}
+
+// Rows are corrected from what they measured: a second correction along the same path changes nothing, and the window given stays as it is.
+TEST(ShutterCorrection, IsAFunctionOfTheRowsAndThePath) {
+  vo::LandmarkTable table;
+  table.Add(2);
+  vo::Window window;
+  window.AddAnchor(0, table);
+  window.Append(kDt, 1, table);
+  vo::Match row{0, {0.1, 0.2}, 1e-6 * Eigen::Matrix2d::Identity()},
+      still{1, {0.2, 0.1}, 1e-6 * Eigen::Matrix2d::Identity()};
+  row.row = {{0.11, 0.2}, 0.01};
+  const std::vector<vo::Match> matches{row, still};
+  window.SetMatches(matches, table);
+  vo::Particle particle;
+  particle.landmarks.resize(2);
+  for (vo::Landmark& landmark : particle.landmarks) landmark.mean = {0.1, 0.2, 0.5};
+  particle.anchors.resize(1);
+  vo::PathSolution solution;
+  solution.path.mean = {{{0.03, 0, 0}, vo::Exp({0, 0.02, 0})}};
+  solution.path.turns = {{0, 0.02, 0}};
+  solution.modes = {{0.1, 0.2, 0.5}, {0.1, 0.2, 0.5}};
+  const vo::WindowInput in{particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors};
+  const auto correct = [&](const vo::Window& of, vo::ShutterReference reference) {
+    return vo::CorrectShutter(of, table, {}, in, solution, reference, vo::LandmarkParams{}).window;
+  };
+  const auto match = [](const vo::Window& of, std::size_t i) { return of.frames()[0].matches[i]; };
+  const vo::Window row_pose = correct(window, vo::ShutterReference::row_pose);
+  EXPECT_EQ(match(window, 0).z, row.z);
+  EXPECT_EQ(match(row_pose, 1).z, still.z);
+  const vo::Vector6 velocity = vo::VelocitiesAlong(window, particle.pose, solution.path)[1];
+  EXPECT_EQ(match(row_pose, 0).z, row.row.RotationCompensated(velocity).z);
+  EXPECT_NEAR(match(row_pose, 0).centre_offset_W.x(), 0.01 * 0.03 / kDt, 1e-12);
+  const vo::Window frame_pose = correct(window, vo::ShutterReference::frame_pose);
+  EXPECT_EQ(match(frame_pose, 0).centre_offset_W, Eigen::Vector3d::Zero());
+  EXPECT_NE(match(frame_pose, 0).z, match(row_pose, 0).z);
+  EXPECT_EQ(match(correct(frame_pose, vo::ShutterReference::row_pose), 0).z, match(row_pose, 0).z);
+}
+
+}  // namespace

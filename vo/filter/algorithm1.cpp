@@ -1,0 +1,120 @@
+#include "vo/filter/algorithm1.h"
+
+#include <utility>
+
+namespace vo {
+
+Algorithm1::Algorithm1(const ParticleFilterSettings& settings, const FilterPrior& prior)
+    : ParticlePhase(settings, prior),
+      step_(VelocityFilterOver(settings.motion, 1.0)),
+      predictions_(particles_.size()),
+      features_(settings.filter) {}
+
+Algorithm1::Algorithm1(ParticlePhase&& finished)
+    : ParticlePhase(std::move(finished)),
+      step_(VelocityFilterOver(settings_.motion, 1.0)),
+      predictions_(particles_.size()),
+      features_(settings_.filter) {}
+
+void Algorithm1::Predict(double dt) {
+  BeginFrame();
+  since_sampled_ += dt;
+  step_ = VelocityFilterOver(settings_.motion, since_sampled_);
+  const Matrix6 covariance = step_.PredictedCovariance(particles_[0].velocity);  // (13), the same for all particles
+  for (std::size_t i = 0; i < particles_.size(); ++i)                            // line 2
+    predictions_[i] = PredictPose(step_, particles_[i], covariance);
+}
+
+const FilterAnswer& Algorithm1::Update(std::span<const Match> z) { return z.empty() ? Coast() : SampleStep(z); }
+
+const FilterAnswer& Algorithm1::SampleStep(std::span<const Match> z) {
+  const FilterParams& params = settings_.filter;
+  answer_.mixture.clear();
+  features_.Begin(z);
+  CameraVelocityFilter::Gain gain = step_.ConditionCovariance(particles_[0].velocity.covariance);
+  for (std::size_t i = 0; i < particles_.size(); ++i) {  // line 1
+    Particle& particle = particles_[i];
+    const PoseGaussian& predicted = predictions_[i];                       // 2, (12)(13)
+    const PoseProposal proposal = features_.Propose(predicted, MapOf(i));  // 3, (15)(16)
+    const Pose s = proposal.pose.Sample(Key(Stream::pose, i));             // 4
+    step_.ConditionMean(PathState(particle.pose), particle.velocity.mean, gain);
+    const Eigen::Vector3d turn = PredictedTurn(step_, particle);
+    // A proposal that is blind to the image is no posterior: the answer is the weighted samples.
+    const bool blind = params.proposal == Proposal::bootstrap;
+    answer_.mixture.push_back(
+        Component(blind ? PoseGaussian{s, Matrix6::Zero()} : proposal.pose, particle.pose, turn, gain));
+    answer_.events += proposal.events;
+    particle.velocity = VelocityGivenPose(gain, particle.pose, s, turn);  // 5-7, (37)-(43)
+    // RB-PF samples the velocity as well, from its exact conditional: the weight stays.
+    if (params.sampled == Sampled::pose_and_velocity)
+      particle.velocity = {SampleNormal(particle.velocity.mean, particle.velocity.covariance, Key(Stream::velocity, i)),
+                           Matrix6::Zero()};
+    const double log_likelihood = features_.UpdateLandmarks(s, MapOf(i), particle.landmarks);  // 9, (3)
+    particle.log_weight += params.weight == Weight::evidence                                   // 8
+                               ? proposal.log_evidence
+                               : predicted.LogDensity(s) + log_likelihood - proposal.pose.LogDensity(s);  // (17)
+    particle.pose = s;
+  }
+  since_sampled_ = 0;
+  Record(particles_.Normalise());
+  answer_.effective_particles = particles_.EffectiveSize();
+  FinishAnswer();
+  if (answer_.effective_particles < params.resample_below * params.particles)  // 11
+    particles_.Resample(Uniform(Key(Stream::resampling, 0), 0));
+  return answer_;
+}
+
+const FilterAnswer& Algorithm1::Coast() {
+  answer_.mixture.clear();
+  CameraVelocityFilter::Gain gain = step_.ConditionCovariance(particles_[0].velocity.covariance);
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const Particle& particle = particles_[i];
+    step_.ConditionMean(PathState(particle.pose), particle.velocity.mean, gain);
+    answer_.mixture.push_back(Component(predictions_[i], particle.pose, PredictedTurn(step_, particle), gain));
+  }
+  FinishAnswer();
+  return answer_;
+}
+
+void Algorithm1::AddLandmarks(std::span<const FirstView> views) {
+  if (views.empty()) return;
+  if (since_sampled_ > 0) SampleStep({});
+  const int anchor = AppendLandmarks(views);
+  for (Particle& particle : particles_) particle.anchors[anchor] = particle.pose;
+}
+
+std::vector<ImagePrediction> Algorithm1::PredictImages(std::span<const int> landmarks) const {
+  MatchBatch batch;
+  batch.SetLandmarks(landmarks);
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    batch.Load(MapOf(i));
+    batch.AddPredictions(predictions_[i].mean, predictions_[i].covariance, particles_.weights()[i]);
+  }
+  std::vector<ImagePrediction> predictions;
+  for (std::size_t i = 0; i < landmarks.size(); ++i) predictions.push_back(batch.Moments(i).Prediction());
+  return predictions;
+}
+
+ReferencePath Algorithm1::Reference() const {
+  const std::size_t heaviest = particles_.Heaviest();
+  return {predictions_[heaviest], MapOf(heaviest), {}};
+}
+
+ParticlePhase::Modes Algorithm1::ModesOf(std::size_t particle) const {
+  const std::vector<Landmark>& landmarks = particles_[particle].landmarks;
+  static_assert(sizeof(Landmark) % sizeof(double) == 0);
+  return {landmarks.empty() ? nullptr : landmarks[0].mean.data(), 3, table_.size(),
+          Eigen::OuterStride<>(sizeof(Landmark) / sizeof(double))};
+}
+
+std::vector<Eigen::Matrix3d> Algorithm1::PointCovariances(int landmark) const {
+  std::vector<Eigen::Matrix3d> covariances;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const Landmark& l = particles_[i].landmarks[landmark];
+    const Eigen::Matrix3d J = PointJacobian(AnchorOf(i, landmark), l.mean);
+    covariances.push_back(J * l.covariance * J.transpose());
+  }
+  return covariances;
+}
+
+}  // namespace vo

@@ -1,0 +1,43 @@
+// Algorithm 1: every pose is sampled in its own frame. RB2-PF and, with the velocity sampled as well, RB-PF and
+// FastSLAM.
+// Source:  Zhou & Maskell, Algorithm 1; docs/algorithm.md, section 3.
+#pragma once
+
+#include <vector>
+
+#include "vo/filter/feature_update.h"
+#include "vo/filter/particle_phase.h"
+#include "vo/filter/rao_blackwell.h"
+
+namespace vo {
+
+class Algorithm1 final : public ParticlePhase {
+ public:
+  Algorithm1(const ParticleFilterSettings& settings, const FilterPrior& prior);
+  // Goes on with the particles of a finished phase, all of whose poses are sampled.
+  explicit Algorithm1(ParticlePhase&& finished);
+
+  void Predict(double dt) override;
+  // Without matches nothing is sampled: the next Predict spans the time since the last sampled pose, which is exact.
+  const FilterAnswer& Update(std::span<const Match> z) override;
+  // At the present pose, which is sampled now if the filter coasts.
+  void AddLandmarks(std::span<const FirstView> views) override;
+  std::vector<ImagePrediction> PredictImages(std::span<const int> landmarks) const override;
+  ReferencePath Reference() const override;                                      // of the heaviest particle
+  const std::vector<PoseGaussian>& predictions() const { return predictions_; }  // (12)(13), of each particle
+
+ protected:
+  Modes ModesOf(std::size_t particle) const override;
+  std::vector<Eigen::Matrix3d> PointCovariances(int landmark) const override;
+
+ private:
+  const FilterAnswer& Coast();
+  const FilterAnswer& SampleStep(std::span<const Match> z);
+
+  double since_sampled_ = 0;   // [s]; 0 when the present pose is sampled
+  CameraVelocityFilter step_;  // from the last sampled pose to the present
+  std::vector<PoseGaussian> predictions_;
+  FeatureUpdate features_;
+};
+
+}  // namespace vo

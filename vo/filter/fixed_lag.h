@@ -1,0 +1,26 @@
+// Fixed lag: a pose is sampled once the images of the `lag` frames after it are in. Until the first one is sampled,
+// every solution is challenged by another mode.
+// Source:  docs/algorithm.md, section 9.
+#pragma once
+
+#include "vo/filter/window_phase.h"
+
+namespace vo {
+
+class FixedLag final : public WindowPhase {
+ public:
+  FixedLag(const ParticleFilterSettings& settings, const FilterPrior& prior) : WindowPhase(settings, prior) {}
+  // Goes on with the window and the solutions of a finished initialisation.
+  explicit FixedLag(WindowPhase&& finished) : WindowPhase(std::move(finished)) {}
+
+  void Predict(double dt) override;
+  const FilterAnswer& Update(std::span<const Match> z) override;
+
+ protected:
+  std::span<const double> SolutionWeights() const override { return particles_.weights(); }
+
+ private:
+  void Challenge(std::size_t particle);
+};
+
+}  // namespace vo

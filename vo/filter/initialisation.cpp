@@ -1,0 +1,194 @@
+#include "vo/filter/initialisation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "vo/filter/algorithm1.h"
+#include "vo/filter/fixed_lag.h"
+#include "vo/filter/mode_challenge.h"
+#include "vo/geometry/symmetric.h"
+
+namespace vo {
+namespace {
+
+constexpr int kShutterRounds = 4;
+constexpr double kObjectiveSettled = 0.1;  // change of -2 log p
+// The next frame solves it all again.
+constexpr double kStartToleranceSigma = 0.1;
+
+// The solution as seen from another start.
+void Transform(const Pose& from, const Pose& to, PathGaussian& path) {
+  const Eigen::Quaterniond turn = to.q_WC * from.q_WC.conjugate();
+  for (Pose& pose : path.mean) pose = {to.p_WC + turn * (pose.p_WC - from.p_WC), (turn * pose.q_WC).normalized()};
+  const Eigen::Matrix3d R = turn.toRotationMatrix();
+  for (Eigen::Index k = 0; k < path.covariance.rows(); k += kPoseSize) {  // of each pose, dp is in W
+    path.covariance.middleRows<3>(k) = (R * path.covariance.middleRows<3>(k)).eval();
+    path.covariance.middleCols<3>(k) = (path.covariance.middleCols<3>(k) * R.transpose()).eval();
+  }
+  Symmetrise(path.covariance);
+}
+
+}  // namespace
+
+void Initialisation::Predict(double dt) {
+  ExtendPaths(dt);
+  if (static_cast<int>(answered_.size()) == window_.size()) answered_.pop_back();  // its pose was integrated out
+  SetReferenceLandmarks();
+}
+
+const FilterAnswer& Initialisation::Update(std::span<const Match> z) {
+  if (!z.empty()) {
+    window_.SetMatches(z, table_);
+    AddEvidence(-1);
+    if (rolling())
+      IterateShutterCorrection();
+    else
+      Solve(0, StartOptions());
+    Challenge();
+    ShareSolution();
+    AddEvidence(1);
+    answer_.events += solutions_[0].path.events;
+  }
+  Answer(!z.empty());
+  answer_.scale_change = ScaleChange();
+  answered_ = solutions_[0].path.mean;
+  if (window_.size() > settings_.filter.start_window) Finish();
+  if (answer_.initialising)
+    SampleOldest(0);
+  else
+    SampleOldest(window_.size() - settings_.filter.lag);
+  return answer_;
+}
+
+std::unique_ptr<ParticlePhase> Initialisation::Next() {
+  if (answer_.initialising) return nullptr;
+  if (settings_.filter.lag > 0) return std::make_unique<FixedLag>(std::move(*this));
+  return std::make_unique<Algorithm1>(std::move(*this));
+}
+
+void Initialisation::AddLandmarks(std::span<const FirstView> views) {
+  WindowPhase::AddLandmarks(views);
+  first_views_.insert(first_views_.end(), views.begin(), views.end());
+}
+
+void Initialisation::KeepLandmarks(const std::vector<bool>& keep) {
+  WindowPhase::KeepLandmarks(keep);
+  Compact(keep, first_views_);
+}
+
+std::span<const double> Initialisation::SolutionWeights() const {
+  static constexpr double kOne[] = {1.0};
+  return kOne;
+}
+
+bool Initialisation::rolling() const {
+  return std::any_of(first_views_.begin(), first_views_.end(), [](const FirstView& v) { return v.row.time != 0; });
+}
+
+WindowOptions Initialisation::StartOptions() const {
+  WindowOptions options = Options(true);
+  options.tolerance_sigma = kStartToleranceSigma;
+  return options;
+}
+
+CorrectedWindow Initialisation::Corrected(const PathSolution& solution, ShutterReference reference) const {
+  return CorrectShutter(window_, table_, first_views_, InputOf(0), solution, reference, settings_.landmark);
+}
+
+void Initialisation::Take(CorrectedWindow&& corrected) {
+  window_ = std::move(corrected.window);
+  particles_[0].landmarks = std::move(corrected.landmarks);
+}
+
+// The path gives the corrections, and these the path: after one round in each frame residuals still reach fifteen
+// standard deviations after thirty frames.
+void Initialisation::IterateShutterCorrection() {
+  double before = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < kShutterRounds; ++round) {
+    Take(Corrected(solutions_[0], ShutterReference::frame_pose));
+    Solve(0, StartOptions());
+    if (std::abs(solutions_[0].path.objective - before) < kObjectiveSettled) break;
+    before = solutions_[0].path.objective;
+  }
+}
+
+void Initialisation::Challenge() {
+  PathSolution other = PerturbTranslation(window_, table_, InputOf(0), solutions_[0], frame_ % kGuesses);
+  WindowOptions options = StartOptions();
+  options.stop_if_above = solutions_[0].path.objective;
+  if (rolling()) {
+    const CorrectedWindow corrected = Corrected(other, ShutterReference::frame_pose);
+    const Particle& first = particles_[0];
+    Solve(corrected.window, {first.pose, first.velocity.mean, corrected.landmarks, first.anchors}, options, other);
+  } else {
+    Solve(window_, InputOf(0), options, other);
+  }
+  if (IsBetter(other.path, solutions_[0].path)) solutions_[0] = std::move(other);
+  window_.PlaceAnchors(solutions_[0].path, particles_[0].anchors);
+  if (rolling()) Take(Corrected(solutions_[0], ShutterReference::frame_pose));
+}
+
+// The first particle's solution becomes that of all, as seen from their start poses.
+void Initialisation::ShareSolution() {
+  for (std::size_t i = 1; i < particles_.size(); ++i) {
+    solutions_[i] = solutions_[0];
+    Transform(particles_[0].pose, particles_[i].pose, solutions_[i].path);
+    particles_[i].landmarks = particles_[0].landmarks;
+    window_.PlaceAnchors(solutions_[i].path, particles_[i].anchors);
+  }
+}
+
+// Each particle gets a solution of its own, to be sampled, and a weight.
+void Initialisation::Finish() {
+  const double log_evidence = solutions_[0].path.log_evidence;
+  if (rolling()) {
+    Take(Corrected(solutions_[0], ShutterReference::row_pose));
+    Solve(0, StartOptions());
+    ShareSolution();
+  }
+  answer_.initialising = false;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    particles_[i].log_weight -= log_evidence;
+    Solve(i, Options(false));
+    answer_.events += solutions_[i].path.events;
+    particles_[i].log_weight += solutions_[i].path.log_evidence;
+  }
+  Weigh();
+}
+
+// Factor of all lengths between the last answer's path and the present one, as far as scale explains the change. With
+// d* and d the poses' places from the start, now and as answered: the factor of least squares d'd* / d'd, to the power
+// of the share of the path's variance that lies along d, (d'Pd / d'd) / tr P. It is 1 where only the scale is uncertain
+// and nearly 0 where every pose is: a wrong length must not set the scale of all to come.
+double Initialisation::ScaleChange() const {
+  const Pose& start = particles_[0].pose;
+  const PathGaussian& path = solutions_[0].path;
+  const auto count = static_cast<Eigen::Index>(answered_.size());
+  Eigen::VectorXd was = Eigen::VectorXd::Zero(kPoseSize * count), is = was;
+  double variance = 0;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    was.segment<3>(kPoseSize * k) = answered_[static_cast<std::size_t>(k)].p_WC - start.p_WC;
+    is.segment<3>(kPoseSize * k) = path.mean[static_cast<std::size_t>(k)].p_WC - start.p_WC;
+    variance += path.covariance.block<3, 3>(kPoseSize * k, kPoseSize * k).trace();
+  }
+  const double square = was.squaredNorm(), product = was.dot(is);
+  if (!(product > 0)) return 1;  // nothing answered yet, or another direction
+  const auto P = path.covariance.topLeftCorner(kPoseSize * count, kPoseSize * count);
+  const double share = was.dot(P * was) / (square * variance);
+  if (!(share >= 0 && share <= 1)) return 1;  // counted as not_positive_definite
+  return std::pow(product / square, share);
+}
+
+std::vector<Eigen::Matrix3d> Initialisation::PointCovariances(int landmark) const {
+  const Eigen::Matrix3d first = PointCovariance(0, landmark);
+  std::vector<Eigen::Matrix3d> covariances;
+  for (const Particle& particle : particles_.particles()) {
+    const Eigen::Matrix3d turn = (particle.pose.q_WC * particles_[0].pose.q_WC.conjugate()).toRotationMatrix();
+    covariances.push_back(turn * first * turn.transpose());
+  }
+  return covariances;
+}
+
+}  // namespace vo

@@ -1,0 +1,42 @@
+// Initialisation: the first frames are one window, solved again with every image, before any pose is sampled.
+// All particles share one solution, as seen from their start poses, until the window is full; each solution is
+// challenged by another mode.
+// Source:  docs/algorithm.md, section 9.
+#pragma once
+
+#include "vo/filter/shutter_correction.h"
+#include "vo/filter/window_phase.h"
+
+namespace vo {
+
+class Initialisation final : public WindowPhase {
+ public:
+  Initialisation(const ParticleFilterSettings& settings, const FilterPrior& prior) : WindowPhase(settings, prior) {}
+
+  void Predict(double dt) override;
+  const FilterAnswer& Update(std::span<const Match> z) override;
+  void AddLandmarks(std::span<const FirstView> views) override;
+  void KeepLandmarks(const std::vector<bool>& keep) override;
+  // FixedLag or, for lag 0, Algorithm1, once the first poses are sampled.
+  std::unique_ptr<ParticlePhase> Next() override;
+
+ protected:
+  std::span<const double> SolutionWeights() const override;
+  std::vector<Eigen::Matrix3d> PointCovariances(int landmark) const override;
+
+ private:
+  bool rolling() const;
+  WindowOptions StartOptions() const;
+  CorrectedWindow Corrected(const PathSolution& solution, ShutterReference reference) const;
+  void Take(CorrectedWindow&& corrected);
+  void IterateShutterCorrection();
+  void Challenge();
+  void ShareSolution();
+  void Finish();
+  double ScaleChange() const;
+
+  std::vector<FirstView> first_views_;  // per landmark
+  std::vector<Pose> answered_;          // the path at the last answer
+};
+
+}  // namespace vo

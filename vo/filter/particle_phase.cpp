@@ -1,0 +1,92 @@
+#include "vo/filter/particle_phase.h"
+
+#include <cmath>
+
+namespace vo {
+
+ParticlePhase::ParticlePhase(const ParticleFilterSettings& settings, const FilterPrior& prior)
+    : settings_(settings), particles_(settings.filter.particles) {
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    Particle& particle = particles_[i];
+    particle.pose = prior.pose.Sample(Key(Stream::prior_pose, i));
+    particle.velocity = {prior.velocity, prior.velocity_covariance};
+    if (settings.filter.sampled == Sampled::pose_and_velocity)
+      particle.velocity = {SampleNormal(prior.velocity, prior.velocity_covariance, Key(Stream::prior_velocity, i)),
+                           Matrix6::Zero()};
+  }
+  answer_.belief.pose = prior.pose.mean;
+  answer_.belief.velocity = prior.velocity;
+  answer_.belief.covariance.topLeftCorner<6, 6>() = prior.pose.covariance;
+  answer_.belief.covariance.bottomRightCorner<6, 6>() = prior.velocity_covariance;
+  answer_.effective_particles = settings.filter.particles;
+}
+
+void ParticlePhase::BeginFrame() {
+  ++frame_;
+  answer_.events = {};
+  answer_.scale_change = 1;
+}
+
+int ParticlePhase::AppendLandmarks(std::span<const FirstView> views) {
+  const int anchor = table_.Add(static_cast<int>(views.size()));
+  for (Particle& particle : particles_) {
+    particle.anchors.resize(table_.anchor_count());
+    for (const FirstView& view : views) particle.landmarks.push_back(NewLandmark(view, settings_.landmark));
+  }
+  return anchor;
+}
+
+std::vector<int> ParticlePhase::CompactLandmarks(const std::vector<bool>& keep) {
+  for (Particle& particle : particles_) Compact(keep, particle.landmarks);
+  return table_.Keep(keep);
+}
+
+void ParticlePhase::Record(const ParticleSet::Replacement& replaced) {
+  answer_.events.non_finite_weight += static_cast<int>(replaced.particles.size());
+  if (replaced.by < 0) return;
+  for (const int i : replaced.particles) answer_.mixture[i] = answer_.mixture[replaced.by];
+}
+
+void ParticlePhase::FinishAnswer() {
+  for (std::size_t i = 0; i < answer_.mixture.size(); ++i) answer_.mixture[i].weight = particles_.weights()[i];
+  answer_.belief = Moments(answer_.mixture);
+}
+
+std::vector<Filter::LandmarkBelief> ParticlePhase::LandmarkBeliefs() const {
+  const std::size_t heaviest = particles_.Heaviest();
+  std::vector<LandmarkBelief> beliefs;
+  for (int n = 0; n < table_.size(); ++n)
+    beliefs.push_back({PointInWorld(AnchorOf(heaviest, n), ModesOf(heaviest).col(n)), 0, 0});
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const Modes modes = ModesOf(i);
+    for (int n = 0; n < table_.size(); ++n) beliefs[n].inverse_depth += particles_.weights()[i] * modes(2, n);
+  }
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const Modes modes = ModesOf(i);
+    for (int n = 0; n < table_.size(); ++n) {
+      const double off = modes(2, n) - beliefs[n].inverse_depth;
+      beliefs[n].inverse_depth_sigma +=
+          particles_.weights()[i] * (particles_[i].landmarks[n].covariance(2, 2) + off * off);  // the variance, so far
+    }
+  }
+  for (LandmarkBelief& belief : beliefs) belief.inverse_depth_sigma = std::sqrt(belief.inverse_depth_sigma);
+  return beliefs;
+}
+
+std::vector<std::optional<PointMoments>> ParticlePhase::LandmarkPoints() const {
+  const std::vector<double>& weights = particles_.weights();
+  std::vector<std::optional<PointMoments>> points(table_.size());
+  for (int n = 0; n < table_.size(); ++n) {
+    bool in_front = true;
+    for (std::size_t i = 0; i < weights.size(); ++i) in_front = in_front && (weights[i] == 0 || ModesOf(i)(2, n) > 0);
+    if (!in_front) continue;
+    const std::vector<Eigen::Matrix3d> covariances = PointCovariances(n);
+    PointMixture mixture;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+      if (weights[i] != 0) mixture.Add(weights[i], PointInWorld(AnchorOf(i, n), ModesOf(i).col(n)), covariances[i]);
+    points[n] = mixture.Moments();
+  }
+  return points;
+}
+
+}  // namespace vo

@@ -1,0 +1,183 @@
+#include "vo/filter/path_equations.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <numbers>
+
+#include "vo/geometry/so3.h"
+
+namespace vo {
+namespace {
+
+constexpr double kNegligible = 1e-4;  // of the information, through the unknown depth
+
+using Matrix62 = Eigen::Matrix<double, 6, 2>;
+
+}  // namespace
+
+void PathEquations::Begin(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks) {
+  const Eigen::Index size = kPoseSize * prior.size(), count = static_cast<Eigen::Index>(tracks.size());
+  A_.resize(size, size);
+  b_.resize(size);
+  Y_.resize(size, 6 * count);
+  Z_.resize(size, count);
+  y_.resize(3 * count);
+  eliminated_.resize(tracks.size());
+  for (std::size_t i = 0; i < tracks.size(); ++i)
+    eliminated_[i].L = LandmarkRoot(in.landmarks[tracks[i].landmark].covariance);
+}
+
+void PathEquations::AddPrior(const PathPrior& prior, const WindowInput& in, const PathGaussian& path) {
+  const int m = prior.size();
+  Eigen::VectorXd r(b_.size());
+  Eigen::MatrixXd J(b_.size(), 12);  // of the steps u: du_k / d(pose k-1), du_k / d(pose k), per step 6 x 12
+  log_det_ = -prior.log_det_precision();
+  for (int k = 0; k < m; ++k) {
+    const Vector6 u = StepTo(k, path, in.start);
+    r.segment<6>(kPoseSize * k) = u - prior.MeanStep(k, in.velocity);
+    auto J_k = J.middleRows<6>(kPoseSize * k);
+    J_k.setZero();
+    J_k.topLeftCorner<3, 3>() = -Eigen::Matrix3d::Identity();
+    J_k.block<3, 3>(3, 3) = -InverseRightJacobian(-u.tail<3>());
+    J_k.block<3, 3>(0, 6).setIdentity();
+    J_k.block<3, 3>(3, 9) = InverseRightJacobian(u.tail<3>());
+    log_det_ += 2 * LogVolume(u.tail<3>());
+  }
+  const Eigen::MatrixXd& W = prior.precision();
+  Eigen::VectorXd d(b_.size());
+  d.noalias() = W * r;
+  cost_ = r.dot(d);
+  behind_camera_ = 0;
+  y_columns_ = y_.size();
+  z_columns_ = 0;
+  b_.setZero();
+  A_.setZero();
+  for (int k = 0; k < m; ++k) {
+    const auto J_k = J.middleRows<6>(kPoseSize * k);
+    for (int a = k == 0 ? 1 : 0; a < 2; ++a) {  // pose k - 1 (not for the sampled start), pose k
+      const int i = k - 1 + a;
+      const auto J_a = J_k.middleCols<6>(kPoseSize * a);
+      b_.segment<6>(kPoseSize * i).noalias() -= J_a.transpose() * d.segment<6>(kPoseSize * k);
+      for (int l = 0; l < m; ++l) {
+        const Matrix6 JW = J_a.transpose() * W.block<6, 6>(kPoseSize * k, kPoseSize * l);
+        if (l > 0) A_.block<6, 6>(kPoseSize * i, kPoseSize * (l - 1)).noalias() += JW * J.block<6, 6>(kPoseSize * l, 0);
+        A_.block<6, 6>(kPoseSize * i, kPoseSize * l).noalias() += JW * J.block<6, 6>(kPoseSize * l, 6);
+      }
+    }
+  }
+}
+
+void PathEquations::AddTrack(std::size_t index, const WindowInput& in, const Track& track, const PathGaussian& path,
+                             const Eigen::Vector3d& theta, bool marginal) {
+  const Eigen::Index rows = 3 * static_cast<Eigen::Index>(index);
+  Eliminated& landmark = eliminated_[index];
+  const Eigen::Matrix3d& L = landmark.L;
+  const Pose& anchor = AnchorOn(path, in, track);
+  const Eigen::Vector3d off = in.landmarks[track.landmark].mean - theta;
+  auto E = Y_.middleCols<3>(rows);  // coupling of the poses with u
+  seen_.clear();
+  E.setZero();
+  Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+  landmark.used = false;
+  for (const Track::View& view : track.views) {
+    const Projection h = Project(AnchorView(path.mean[view.slot], anchor).ShiftedBy(view.centre_offset_W), theta);
+    if (!h.in_front) {
+      ++behind_camera_;
+      continue;
+    }
+    landmark.used = true;
+    const Eigen::Vector2d e = view.z - h.z - h.J_landmark * off;
+    const Eigen::Vector2d We = view.R_inverse * e;
+    const Matrix23 M = h.J_landmark * L;
+    const Matrix23 WM = view.R_inverse * M;
+    const Matrix62 JtW = h.J_pose.transpose() * view.R_inverse;
+    const Eigen::Index i = kPoseSize * view.slot;
+    A_.block<6, 6>(i, i).noalias() += JtW * h.J_pose;
+    b_.segment<6>(i).noalias() += JtW * e;
+    E.middleRows<6>(i).noalias() += JtW * M;
+    if (track.anchor_slot >= 0) {
+      const Matrix26 J_anchor = AnchorJacobian(h, theta);
+      const Matrix62 AtW = J_anchor.transpose() * view.R_inverse;
+      const Eigen::Index j = kPoseSize * track.anchor_slot;
+      A_.block<6, 6>(j, j).noalias() += AtW * J_anchor;
+      A_.block<6, 6>(i, j).noalias() += JtW * J_anchor;
+      A_.block<6, 6>(j, i).noalias() += AtW * h.J_pose;
+      b_.segment<6>(j).noalias() += AtW * e;
+      E.middleRows<6>(j).noalias() += AtW * M;
+    }
+    G.noalias() += M.transpose() * WM;
+    g.noalias() += WM.transpose() * e;
+    cost_ += e.dot(We);
+    if (marginal) seen_.push_back({view.slot, h.J_shift, WM, view.R_inverse});
+    log_det_ += view.log_det_R + 2 * std::log(2 * std::numbers::pi);
+  }
+  landmark.G.compute(G);
+  landmark.U_inverse = landmark.G.matrixU().solve(Eigen::Matrix3d::Identity());
+  const Eigen::Vector3d whitened = landmark.G.matrixL().solve(g);
+  cost_ -= whitened.squaredNorm();
+  log_det_ += 2 * std::log(landmark.G.matrixLLT().diagonal().prod());
+  if (marginal && landmark.used) AddMarginal(track, landmark, theta.z());
+  y_.segment<3>(rows) = whitened;
+  E = E.lazyProduct(landmark.U_inverse).eval();
+}
+
+// Gradient and Fisher information of -1/2 log|S|, S = J P J' + R of all views of one landmark, through dz/drho =
+// J_shift (p_A - p). With q = J P e_3: gradient J_shift' S^-1 q, information (q'S^-1 q) J_shift' S^-1 J_shift +
+// gradient gradient'.
+void PathEquations::AddMarginal(const Track& track, const Eliminated& landmark, double rho) {
+  const Eigen::Vector3d a = landmark.L.row(2);
+  const Eigen::Vector3d alpha = landmark.G.solve(a);
+  const double explained = a.dot(a - alpha);  // of the variance of rho
+  const bool matters = explained > kNegligible * rho * rho;
+  auto C = Y_.middleCols<3>(y_columns_);
+  auto gradient = Z_.col(z_columns_);
+  if (matters) {
+    C.setZero();
+    gradient.setZero();
+  }
+  for (const Seen& view : seen_) {
+    const Eigen::Matrix3d c = view.J_shift.transpose() * view.WM;
+    const Eigen::Vector3d g = c * alpha;
+    const Eigen::Index i = kPoseSize * view.slot, j = kPoseSize * track.anchor_slot;
+    b_.segment<3>(i) += g;
+    if (j >= 0) b_.segment<3>(j) -= g;
+    if (!matters) continue;
+    const Eigen::Matrix3d B = explained * view.J_shift.transpose() * view.R_inverse * view.J_shift;
+    A_.block<3, 3>(i, i) += B;
+    C.middleRows<3>(i) += c;
+    gradient.segment<3>(i) += g;
+    if (j < 0) continue;
+    A_.block<3, 3>(j, j) += B;
+    A_.block<3, 3>(i, j) -= B;
+    A_.block<3, 3>(j, i) -= B;
+    C.middleRows<3>(j) -= c;
+    gradient.segment<3>(j) -= g;
+  }
+  if (!matters) return;
+  C = C.lazyProduct(std::sqrt(explained) * landmark.U_inverse).eval();
+  y_columns_ += 3;
+  z_columns_ += 1;
+}
+
+void PathEquations::ReduceGradient() { b_.noalias() -= Y_.leftCols(y_.size()) * y_; }
+
+void PathEquations::ReduceInformation() {
+  if (y_columns_ > 0)  // Eigen divides by it
+    A_.selfadjointView<Eigen::Lower>().rankUpdate(Y_.leftCols(y_columns_), -1.0);
+  if (z_columns_ > 0) A_.selfadjointView<Eigen::Lower>().rankUpdate(Z_.leftCols(z_columns_), 1.0);
+}
+
+void PathEquations::MoveLandmarks(const Eigen::VectorXd& step, const WindowInput& in, std::span<const Track> tracks,
+                                  std::vector<Eigen::Vector3d>& theta) {
+  y_.noalias() -= Y_.leftCols(y_.size()).transpose() * step;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const Eliminated& landmark = eliminated_[i];
+    if (!landmark.used) continue;
+    const Eigen::Vector3d u =
+        landmark.G.matrixU().solve(Eigen::Vector3d(y_.segment<3>(3 * static_cast<Eigen::Index>(i))));
+    theta[i] = in.landmarks[tracks[i].landmark].mean + landmark.L * u;
+  }
+}
+
+}  // namespace vo

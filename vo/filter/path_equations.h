@@ -1,0 +1,64 @@
+// Normal equations of a path window: information on the poses, each landmark eliminated by its Schur complement.
+// A d = b with A = sum J'WJ - Y Y' + Z Z', b = sum J'W e - Y y; Y: whitened couplings of the landmarks, Z: gradients of
+// the marginal mode.
+// Shapes:  6m x 6m for m poses, in the order of path_window.h.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "vo/filter/path_window.h"
+
+namespace vo {
+
+class PathEquations {
+ public:
+  // A window, then its linearisations: the prior alone, then each track in turn.
+  void Begin(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks);
+  void AddPrior(const PathPrior& prior, const WindowInput& in, const PathGaussian& path);
+  void AddTrack(std::size_t index, const WindowInput& in, const Track& track, const PathGaussian& path,
+                const Eigen::Vector3d& theta, bool marginal);
+  // Takes the landmarks' share out of b, then out of A.
+  void ReduceGradient();
+  void ReduceInformation();
+
+  const Eigen::MatrixXd& A() const { return A_; }  // lower triangle, when reduced
+  const Eigen::VectorXd& b() const { return b_; }
+  double cost() const { return cost_; }  // constant part of -2 log of the evidence's exponent
+  double log_det() const { return log_det_; }
+  int behind_camera() const { return behind_camera_; }
+
+  // Landmarks follow the poses' step to first order: theta = mean + L u. Those without a view in front stay.
+  void MoveLandmarks(const Eigen::VectorXd& step, const WindowInput& in, std::span<const Track> tracks,
+                     std::vector<Eigen::Vector3d>& theta);
+
+ private:
+  // One landmark at the present linearisation, as a standard normal u with theta = mean + L u.
+  struct Eliminated {
+    Eigen::Matrix3d L;
+    Eigen::LLT<Eigen::Matrix3d> G;  // information of u given the poses
+    Eigen::Matrix3d U_inverse;      // of its upper factor
+    bool used = false;
+  };
+  struct Seen {
+    int slot = 0;
+    Matrix23 J_shift, WM;
+    Eigen::Matrix2d R_inverse;
+  };
+  void AddMarginal(const Track& track, const Eliminated& landmark, double rho);
+
+  Eigen::MatrixXd A_;
+  Eigen::VectorXd b_;
+  Eigen::MatrixXd Y_;
+  Eigen::VectorXd y_;
+  Eigen::MatrixXd Z_;
+  Eigen::Index y_columns_ = 0, z_columns_ = 0;  // in use
+  std::vector<Eliminated> eliminated_;          // per track
+  std::vector<Seen> seen_;                      // of the present track
+  double cost_ = 0, log_det_ = 0;
+  int behind_camera_ = 0;
+};
+
+}  // namespace vo

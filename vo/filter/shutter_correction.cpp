@@ -1,0 +1,56 @@
+#include "vo/filter/shutter_correction.h"
+
+namespace vo {
+
+std::vector<Vector6> VelocitiesAlong(const Window& window, const Pose& start, const PathGaussian& path) {
+  const std::vector<Window::Frame>& frames = window.frames();
+  std::vector<Vector6> steps;  // mean velocities
+  for (std::size_t k = 0; k < frames.size(); ++k)
+    steps.push_back(StepTo(static_cast<int>(k), path, start) / frames[k].dt);
+  if (steps.size() == 1) return {steps[0], steps[0]};
+  std::vector<Vector6> velocities(steps.size() + 1);
+  for (std::size_t k = 1; k < steps.size(); ++k) {
+    const double before = frames[k - 1].dt, after = frames[k].dt;
+    velocities[k] = (after * steps[k - 1] + before * steps[k]) / (before + after);
+  }
+  velocities.front() = 2 * steps.front() - velocities[1];
+  velocities.back() = 2 * steps.back() - velocities[steps.size() - 1];
+  return velocities;
+}
+
+CorrectedWindow CorrectShutter(const Window& window, const LandmarkTable& table, std::span<const FirstView> first_views,
+                               const WindowInput& in, const PathSolution& solution, ShutterReference reference,
+                               const LandmarkParams& params) {
+  const std::vector<Vector6> velocities = VelocitiesAlong(window, in.start, solution.path);
+  std::vector<Pose> anchors(in.anchors.begin(), in.anchors.end());
+  window.PlaceAnchors(solution.path, anchors);
+  std::vector<std::vector<AnchorView>> views;
+  for (const Pose& pose : solution.path.mean) views.push_back(ViewsOf(anchors, pose));
+
+  const auto correct = [&](int slot, const Match& seen) {
+    if (seen.row.time == 0) return seen;
+    Match match = seen;
+    const auto [z, centre_offset_W] = match.row.RotationCompensated(velocities[slot + 1]);
+    match.z = z;
+    match.centre_offset_W = centre_offset_W;
+    if (reference == ShutterReference::row_pose) return match;
+    return AtStamp(match, views[slot][table.anchor_of(match.landmark)], solution.modes[match.landmark]);
+  };
+  CorrectedWindow corrected{window.WithMatches(correct, table), {in.landmarks.begin(), in.landmarks.end()}};
+  for (std::size_t n = 0; n < first_views.size(); ++n) {
+    FirstView view = first_views[n];
+    if (view.row.time == 0) continue;
+    const int anchor = table.anchor_of(static_cast<int>(n));
+    const FirstView seen = FirstSeen(view.row, anchors[anchor], velocities[window.anchor_slot(anchor) + 1]);
+    view.ray = seen.ray;
+    view.d_ray_d_rho = seen.d_ray_d_rho;
+    if (reference == ShutterReference::frame_pose) {
+      view.ray += solution.modes[n].z() * seen.d_ray_d_rho;
+      view.d_ray_d_rho.setZero();
+    }
+    corrected.landmarks[n] = NewLandmark(view, params);
+  }
+  return corrected;
+}
+
+}  // namespace vo

@@ -1,0 +1,216 @@
+#include "vo/filter/window_phase.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vo/filter/landmark_on_path.h"
+#include "vo/filter/mode_challenge.h"
+#include "vo/filter/path_end.h"
+#include "vo/filter/path_sampling.h"
+
+namespace vo {
+namespace {
+
+// Uniform weights: log Bayes factor of the window's images against the best particle beyond which a particle is
+// rejected. Under a correct model the worst of 8 or 64 particles stays within 33 nats of the best; a particle in a
+// wrong mode is hundreds away.
+constexpr double kLogBayesRejection = 50;
+
+constexpr int kStartIterations = 50;
+
+}  // namespace
+
+WindowPhase::WindowPhase(const ParticleFilterSettings& settings, const FilterPrior& prior)
+    : ParticlePhase(settings, prior), solutions_(particles_.size()) {
+  answer_.initialising = true;
+}
+
+void WindowPhase::ExtendPaths(double dt) {
+  BeginFrame();
+  if (window_.LastIsUnused()) {
+    prior_.reset();
+    dt += window_.DropLast(table_);
+    for (PathSolution& solution : solutions_) DropLast(solution.path);
+  }
+  const auto prior = [this] {
+    std::vector<MotionModel> models;
+    for (const Window::Frame& frame : window_.frames())
+      models.push_back(NearlyConstantVelocity(settings_.motion, frame.dt));
+    return PathPrior(models, particles_[0].velocity.covariance);
+  };
+  if (!prior_) prior_.emplace(prior());
+  const MotionModel step = NearlyConstantVelocity(settings_.motion, dt);
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    Extend(*prior_, step, particles_[i].pose, particles_[i].velocity.mean, solutions_[i].path);
+  window_.Append(dt, frame_, table_);
+  prior_.emplace(prior());
+}
+
+void WindowPhase::SetReferenceLandmarks() {
+  const std::size_t heaviest = particles_.Heaviest();
+  reference_landmarks_ = particles_[heaviest].landmarks;
+  for (const Track& track : window_.tracks())
+    reference_landmarks_[track.landmark] = LandmarkGivenPath(InputOf(heaviest), track, solutions_[heaviest].path,
+                                                             solutions_[heaviest].modes[track.landmark]);
+}
+
+WindowOptions WindowPhase::Options(bool initialising) const {
+  const FilterParams& params = settings_.filter;
+  const int iterations = initialising ? std::max(params.max_iterations, kStartIterations) : params.max_iterations;
+  return {params.proposal == Proposal::ekf ? 1 : iterations, params.marginal_mode};
+}
+
+void WindowPhase::Solve(const Window& window, const WindowInput& in, const WindowOptions& options,
+                        PathSolution& solution) {
+  std::vector<Eigen::Vector3d> theta;
+  for (const Track& track : window.tracks()) theta.push_back(solution.modes[track.landmark]);
+  solver_.Solve(*prior_, in, window.tracks(), options, solution.path, theta);
+  for (std::size_t i = 0; i < theta.size(); ++i) solution.modes[window.tracks()[i].landmark] = theta[i];
+}
+
+void WindowPhase::Solve(std::size_t particle, const WindowOptions& options) {
+  Solve(window_, InputOf(particle), options, solutions_[particle]);
+  window_.PlaceAnchors(solutions_[particle].path, particles_[particle].anchors);
+}
+
+void WindowPhase::AddEvidence(double sign) {
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    particles_[i].log_weight += sign * solutions_[i].path.log_evidence;
+}
+
+void WindowPhase::Answer(bool updated) {
+  answer_.mixture.clear();
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    answer_.mixture.push_back(
+        ComponentAtTheEnd(*prior_, particles_[i].pose, particles_[i].velocity.mean, solutions_[i].path));
+  if (updated) Weigh();
+  FinishAnswer();
+}
+
+void WindowPhase::Weigh() {
+  std::vector<double> log_evidence;
+  for (const PathSolution& solution : solutions_) log_evidence.push_back(solution.path.log_evidence);
+  const ParticleSet::Replacement replaced = settings_.filter.weight == Weight::uniform
+                                                ? particles_.NormaliseUniform(log_evidence, kLogBayesRejection)
+                                                : particles_.Normalise();
+  Record(replaced);
+  for (const int i : replaced.particles) {
+    if (replaced.by < 0)
+      solutions_[i].path.log_evidence = 0;
+    else
+      solutions_[i] = solutions_[replaced.by];
+  }
+  answer_.effective_particles = particles_.EffectiveSize();
+}
+
+void WindowPhase::SampleOldest(int count) {
+  const FilterParams& params = settings_.filter;
+  const bool uniform = params.weight == Weight::uniform;
+  // Uniform weights: rejected particles are replaced before the draw, so that the copies differ by it.
+  if (uniform && count > 0 && particles_.AnyRejected()) Resample();
+  if (count > 0) Commit(count);
+  if (!uniform && answer_.effective_particles < params.resample_below * params.particles) Resample();
+}
+
+void WindowPhase::Resample() {
+  std::vector<PathSolution> children;
+  TakeAncestors(particles_.Resample(Uniform(Key(Stream::resampling, 0), 0)), solutions_, children);
+}
+
+// Samples the oldest poses, conditions the rest on them, and updates velocity and landmarks with those frames.
+void WindowPhase::Commit(int count) {
+  for (int k = 0; k < count; ++k) {
+    const std::vector<Pose> drawn =
+        SamplePoses(solutions_, k, settings_.filter.weight == Weight::uniform, [&](std::size_t i) {
+          return RandomKey{settings_.seed, Stream::pose, window_.frames()[k].number, static_cast<std::uint32_t>(i)};
+        });
+    for (std::size_t i = 0; i < particles_.size(); ++i) ConditionOn(k, drawn[i], solutions_[i].path);
+  }
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    window_.PlaceAnchors(solutions_[i].path, particles_[i].anchors);
+    if (count > 1)  // the draws of many poses move the landmarks far
+      solutions_[i].modes = Triangulate(window_, table_, InputOf(i), solutions_[i]);
+  }
+  for (int k = 0; k < count; ++k) {
+    const CameraVelocityFilter step = VelocityFilterOver(settings_.motion, window_.frames()[k].dt);
+    for (std::size_t i = 0; i < particles_.size(); ++i)
+      UpdateGivenPose(step, window_.frames()[k].matches, table_, k, solutions_[i], particles_[i]);
+  }
+  for (PathSolution& solution : solutions_) {
+    solution.path.mean.erase(solution.path.mean.begin(), solution.path.mean.begin() + count);
+    solution.path.turns.erase(solution.path.turns.begin(), solution.path.turns.begin() + count);
+  }
+  window_.DropOldest(count, table_);
+  prior_.reset();
+}
+
+void WindowPhase::AddLandmarks(std::span<const FirstView> views) {
+  if (views.empty()) return;
+  const int anchor = AppendLandmarks(views);
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    Particle& particle = particles_[i];
+    particle.anchors[anchor] = window_.size() == 0 ? particle.pose : solutions_[i].path.mean.back();
+    for (std::size_t n = particle.landmarks.size() - views.size(); n < particle.landmarks.size(); ++n)
+      solutions_[i].modes.push_back(particle.landmarks[n].mean);
+  }
+  window_.AddAnchor(anchor, table_);
+}
+
+void WindowPhase::KeepLandmarks(const std::vector<bool>& keep) {
+  window_.Keep(CompactLandmarks(keep), table_);
+  for (PathSolution& solution : solutions_) Compact(keep, solution.modes);
+}
+
+std::vector<ImagePrediction> WindowPhase::PredictImages(std::span<const int> landmarks) const {
+  const std::span<const double> weights = SolutionWeights();
+  std::vector<ImagePrediction> predictions;
+  for (const int landmark : landmarks) {
+    const Track track = window_.TrackOf(landmark, table_);
+    ImageMoments moments;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+      moments.Add(weights[i], PredictImageOnPath(InputOf(i), track, solutions_[i].path, solutions_[i].modes[landmark]));
+    predictions.push_back(moments.Prediction());
+  }
+  return predictions;
+}
+
+ReferencePath WindowPhase::Reference() const {
+  const std::size_t heaviest = particles_.Heaviest();
+  const PathSolution& solution = solutions_[heaviest];
+  LocalMap map = MapOf(heaviest);
+  map.landmarks = reference_landmarks_;
+  return {{solution.path.mean.back(), solution.path.covariance.bottomRightCorner<6, 6>()}, map, solution.modes};
+}
+
+std::vector<double> WindowPhase::InverseDepthSigmas() const {
+  const std::span<const double> weights = SolutionWeights();
+  std::vector<double> sigmas;
+  for (int n = 0; n < table_.size(); ++n) {
+    const Track track = window_.TrackOf(n, table_);
+    double mean = 0, square = 0;  // about the first particle's
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (weights[i] == 0) continue;
+      const Eigen::Vector3d& theta = solutions_[i].modes[n];
+      const double off = theta.z() - solutions_[0].modes[n].z();
+      mean += weights[i] * off;
+      square +=
+          weights[i] * (AnchorAndLandmarkCovariance(InputOf(i), track, solutions_[i].path, theta)(8, 8) + off * off);
+    }
+    sigmas.push_back(std::sqrt(square - mean * mean));
+  }
+  return sigmas;
+}
+
+Eigen::Matrix3d WindowPhase::PointCovariance(std::size_t particle, int landmark) const {
+  return PointCovarianceOnPath(InputOf(particle), window_.TrackOf(landmark, table_), solutions_[particle].path,
+                               solutions_[particle].modes[landmark]);
+}
+
+std::vector<Eigen::Matrix3d> WindowPhase::PointCovariances(int landmark) const {
+  std::vector<Eigen::Matrix3d> covariances(particles_.size(), Eigen::Matrix3d::Zero());
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    if (particles_.weights()[i] != 0) covariances[i] = PointCovariance(i, landmark);
+  return covariances;
+}
+
+}  // namespace vo

@@ -1,0 +1,66 @@
+// Phases with un-sampled poses: each particle's path is Gaussian over a window of frames, extended by prediction,
+// solved with every image, and sampled at its oldest end.
+// Source:  docs/algorithm.md, section 9.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "vo/filter/particle_phase.h"
+#include "vo/filter/path_prior.h"
+#include "vo/filter/rao_blackwell.h"
+#include "vo/filter/window.h"
+
+namespace vo {
+
+class WindowPhase : public ParticlePhase {
+ public:
+  void AddLandmarks(std::span<const FirstView> views) override;
+  void KeepLandmarks(const std::vector<bool>& keep) override;
+  std::vector<ImagePrediction> PredictImages(std::span<const int> landmarks) const override;
+  ReferencePath Reference() const override;  // of the heaviest particle
+  std::vector<double> InverseDepthSigmas() const override;
+  const std::vector<PathSolution>& solutions() const { return solutions_; }
+
+ protected:
+  WindowPhase(const ParticleFilterSettings& settings, const FilterPrior& prior);
+
+  // Weights of the first particles, those with a solution of their own.
+  virtual std::span<const double> SolutionWeights() const = 0;
+  Modes ModesOf(std::size_t particle) const override {
+    const std::vector<Eigen::Vector3d>& modes = solutions_[particle].modes;
+    return {modes.empty() ? nullptr : modes[0].data(), 3, table_.size(), Eigen::OuterStride<>(3)};
+  }
+  std::vector<Eigen::Matrix3d> PointCovariances(int landmark) const override;
+  Eigen::Matrix3d PointCovariance(std::size_t particle, int landmark) const;
+  WindowInput InputOf(std::size_t i) const {
+    return {particles_[i].pose, particles_[i].velocity.mean, particles_[i].landmarks, particles_[i].anchors};
+  }
+
+  // One more pose. The last one is integrated out if nothing refers to it.
+  void ExtendPaths(double dt);
+  // The landmarks of the heaviest particle, for the outlier test.
+  void SetReferenceLandmarks();
+  // Options of a solution; `initialising`: from a first guess that may be far off.
+  WindowOptions Options(bool initialising) const;
+  void Solve(const Window& window, const WindowInput& in, const WindowOptions& options, PathSolution& solution);
+  void Solve(std::size_t particle, const WindowOptions& options);
+  // To the log weights; -1 removes that of the last solution.
+  void AddEvidence(double sign);
+  // Mixture and belief; the weights first, if the window has new matches.
+  void Answer(bool updated);
+  void Weigh();
+  void SampleOldest(int count);
+  void Resample();
+
+  Window window_;
+  std::optional<PathPrior> prior_;  // of the window's steps; all particles share it
+  std::vector<PathSolution> solutions_;
+  PathWindow solver_;
+  std::vector<Landmark> reference_landmarks_;
+
+ private:
+  void Commit(int count);
+};
+
+}  // namespace vo
