@@ -1,7 +1,6 @@
 #include "sim/light/cache.h"
 
 #define XXH_INLINE_ALL
-#include <unistd.h>
 #include <xxhash.h>
 
 #include <cstdlib>
@@ -11,6 +10,8 @@
 #include <span>
 #include <stdexcept>
 #include <type_traits>
+
+#include "tools/base/files.h"
 
 namespace sim {
 namespace {
@@ -133,31 +134,16 @@ fs::path LightFile(const fs::path& folder, const LightHash& hash) {
 void WriteLight(const fs::path& file, const LightHash& hash, const BakedLight& light) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
-  const fs::path temporary = file.string() + "." + std::to_string(getpid()) + ".part";
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    const auto write = [&](const void* data, std::size_t size) {
-      out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
-    };
-    const Head head = MakeHead(hash, light);
-    const LightHash checksum = Checksum(head, light);
-    write(&head, sizeof head);
-    write(light.resolutions.data(), light.resolutions.size() * sizeof(TriangleResolution));
-    write(light.layers.data(), light.layers.size() * sizeof(Flicker));
-    write(light.samples.data(), light.samples.size() * sizeof(std::uint32_t));
-    write(checksum.data(), sizeof checksum);
-    out.close();
-    if (!out) {
-      fs::remove(temporary, error);
-      throw std::runtime_error(file.string() + ": cannot be written");
-    }
-  }
-  fs::rename(temporary, file, error);
-  if (error) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw std::runtime_error(file.string() + ": cannot be written: " + error.message());
-  }
+  base::AtomicFile out(file, base::Writers::many);
+  const auto write = [&](const void* data, std::size_t size) { out.Append({static_cast<const char*>(data), size}); };
+  const Head head = MakeHead(hash, light);
+  const LightHash checksum = Checksum(head, light);
+  write(&head, sizeof head);
+  write(light.resolutions.data(), light.resolutions.size() * sizeof(TriangleResolution));
+  write(light.layers.data(), light.layers.size() * sizeof(Flicker));
+  write(light.samples.data(), light.samples.size() * sizeof(std::uint32_t));
+  write(checksum.data(), sizeof checksum);
+  out.Commit();
 }
 
 BakedLight ReadLight(const fs::path& file, const LightHash& hash) {

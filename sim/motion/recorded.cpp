@@ -1,18 +1,18 @@
 #include "sim/motion/recorded.h"
 
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <glm/geometric.hpp>
-#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "sim/motion/spline.h"
 #include "tools/base/settings/problem.h"
 #include "tools/base/settings/quantity.h"
+#include "tools/base/text.h"
 
 namespace sim {
 namespace {
@@ -31,25 +31,6 @@ std::vector<Word> Split(std::string_view line) {
     at = line.find_first_not_of(kBlank, end);
   }
   return words;
-}
-
-// Decimal seconds as nanoseconds, exactly: a double cannot hold the nanoseconds of a stamp in the 21st century.
-bool ParseStamp(std::string_view text, std::int64_t& stamp_ns) {
-  const std::size_t point = std::min(text.find('.'), text.size());
-  const std::string_view whole = text.substr(0, point);
-  std::string fraction(text.substr(std::min(point + 1, text.size())));
-  if (whole.empty() || whole.size() > 10 || whole.find_first_not_of("0123456789") != std::string_view::npos ||
-      fraction.find_first_not_of("0123456789") != std::string::npos) {
-    return false;
-  }
-  fraction.resize(9, '0');
-  std::int64_t seconds = 0, nanoseconds = 0;
-  std::from_chars(whole.data(), whole.data() + whole.size(), seconds);
-  std::from_chars(fraction.data(), fraction.data() + fraction.size(), nanoseconds);
-  constexpr std::int64_t kLast_s = std::numeric_limits<std::int64_t>::max() / 1000000000 - 1;  // in the year 2262
-  if (seconds > kLast_s) return false;
-  stamp_ns = seconds * 1000000000 + nanoseconds;
-  return true;
 }
 
 // Collects what is wrong with a file; the first 20 are enough to see what it is.
@@ -92,8 +73,8 @@ std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file) {
                    "expected timestamp tx ty tz qx qy qz qw, not " + std::to_string(words.size()) + " words");
       continue;
     }
-    std::int64_t stamp_ns = 0;
-    bool good = ParseStamp(words[0].text, stamp_ns);
+    const std::optional<std::int64_t> stamp = base::ParseStamp(words[0].text);
+    bool good = stamp.has_value();
     if (!good)
       problems.Add(number, words[0].column, "'" + std::string(words[0].text) + "' is not a timestamp in seconds");
     double v[7] = {};
@@ -106,9 +87,9 @@ std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file) {
     if (!good) continue;
     const glm::dquat q(v[6], v[3], v[4], v[5]);
     if (!(std::abs(glm::length(q) - 1) <= 1e-3)) {
-      problems.Add(number, words[4].column,
-                   "the quaternion's length is " + settings::FormatNumber(glm::length(q)) + ", not 1");
+      problems.Add(number, words[4].column, "the quaternion's length is " + settings::FormatNumber(glm::length(q)) + ", not 1");
     }
+    const std::int64_t stamp_ns = *stamp;
     if (last_line > 0 && stamp_ns <= last_ns) {
       problems.Add(number, words[0].column,
                    "time " + std::string(words[0].text) + " is not after that of line " + std::to_string(last_line));

@@ -10,14 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/base/text.h"
+
 namespace sim {
 namespace {
-
-std::string Join(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
-  return text;
-}
 
 // A shared library that is never closed: the threads that it may have started would not survive that.
 class Library {
@@ -48,7 +44,7 @@ class EglContext final : public GlContext {
       if (Open(display, reasons)) break;
     }
     if (context_ == EGL_NO_CONTEXT) {
-      throw std::runtime_error("no device or surfaceless display serves (" + Join(reasons) + ")");
+      throw std::runtime_error("no device or surfaceless display serves (" + base::Join(reasons, ", ") + ")");
     }
     try {
       LoadFunctions();
@@ -191,7 +187,7 @@ GlContext::Current::~Current() { context_.Release(); }
 void GlContext::LoadFunctions() {
   const Current current(*this);
   const std::vector<std::string> missing = gl_.Load([this](const char* name) { return Find(name); });
-  if (!missing.empty()) throw std::runtime_error("its OpenGL lacks " + Join(missing));
+  if (!missing.empty()) throw std::runtime_error("its OpenGL lacks " + base::Join(missing, ", "));
 }
 
 std::unique_ptr<GlContext> MakeGlContext(GlPlatform platform) {

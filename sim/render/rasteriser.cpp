@@ -18,15 +18,10 @@
 #include "sim/render/raster_shaders.h"
 #include "sim/render/raster_view.h"
 #include "sim/render/sample_pattern.h"
+#include "tools/base/text.h"
 
 namespace sim {
 namespace {
-
-std::string Join(const std::vector<std::string>& sentences) {
-  std::string text;
-  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
-  return text;
-}
 
 void Check(const RasteriserOptions& o) {
   std::vector<std::string> problems;
@@ -38,7 +33,7 @@ void Check(const RasteriserOptions& o) {
   within(o.rays_per_time_sample, 1, 4096, "rays_per_time_sample");
   within(o.shadow_map_side, 16, 8192, "shadow_map_side");
   within(o.strip_rows, 1, 1 << 14, "strip_rows");
-  if (!problems.empty()) throw std::invalid_argument("rasteriser: " + Join(problems));
+  if (!problems.empty()) throw std::invalid_argument("rasteriser: " + base::Join(problems, "; "));
 }
 
 // What of the scene is not rendered, a sentence for each kind.
@@ -330,7 +325,7 @@ class Rasteriser final : public Renderer {
   void Expose(const Camera& camera, const Trajectory& motion, const Exposure& exposure, std::uint64_t /*key*/,
               RadianceImage& out) const override {
     const std::vector<std::string> problems = Problems(exposure);
-    if (!problems.empty()) throw std::invalid_argument("Expose: " + Join(problems));
+    if (!problems.empty()) throw std::invalid_argument("Expose: " + base::Join(problems, "; "));
     const GlContext::Current current(*context_);
     drawing_->Expose(camera, motion, exposure, out);
   }

@@ -19,18 +19,13 @@
 #include "sim/render/ray_scene.h"
 #include "sim/render/sample_pattern.h"
 #include "sim/render/surface_tracer.h"
+#include "tools/base/text.h"
 
 namespace sim {
 namespace {
 
 constexpr int kTileSide = 32;  // a multiple of the block's side; the tiles do not depend on the number of threads
 static_assert(kTileSide % kBlockSide == 0);
-
-std::string Join(const std::vector<std::string>& sentences) {
-  std::string text;
-  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
-  return text;
-}
 
 void Store(float (&to)[3], const glm::dvec3& from) {
   for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(from[c]);
@@ -159,7 +154,7 @@ class RayTracer final : public Renderer {
   void Expose(const Camera& camera, const Trajectory& motion, const Exposure& exposure, std::uint64_t key,
               RadianceImage& out) const override {
     const std::vector<std::string> problems = Problems(exposure);
-    if (!problems.empty()) throw std::invalid_argument("Expose: " + Join(problems));
+    if (!problems.empty()) throw std::invalid_argument("Expose: " + base::Join(problems, "; "));
     ExposureSamples samples = MakeSamples(camera, motion, exposure);
     if (!scene_->objects().empty()) samples.Place(*scene_, scene_->lamps_are_baked());
     const int count = samples.per_row;

@@ -7,6 +7,7 @@
 #include "sim/sequence/format.h"
 #include "sim/sequence/manifest.h"
 #include "sim/sequence/streams.h"
+#include "tools/base/text.h"
 
 namespace sim {
 namespace {
@@ -54,9 +55,7 @@ void Validate(const SequenceContent& content, const Simulator& simulator) {
                                 " are not a range within 0:" + std::to_string(simulator.frame_count()));
   }
   const std::vector<std::string> problems = Problems(content.layout, simulator.scenario());
-  std::string all;
-  for (const std::string& problem : problems) all += (all.empty() ? "" : "\n") + problem;
-  if (!all.empty()) throw std::invalid_argument(all);
+  if (!problems.empty()) throw std::invalid_argument(base::Join(problems, "\n"));
 }
 
 std::vector<StreamFile> FrameFiles(const Simulator& simulator, const SequenceContent& content, std::int64_t index) {

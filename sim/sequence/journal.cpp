@@ -9,6 +9,8 @@
 #include <optional>
 #include <sstream>
 
+#include "tools/base/files.h"
+
 namespace sim {
 namespace fs = std::filesystem;
 namespace {
@@ -48,8 +50,7 @@ std::string JournalLine(std::int64_t index, std::span<const JournalFile> files) 
 }
 
 Journal ReadJournal(const fs::path& folder) {
-  std::ifstream stream(folder / kJournalName, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string text = base::ReadFile(folder / kJournalName).value_or("");
   Journal whole;
   for (std::size_t start = 0, end; (end = text.find('\n', start)) != std::string::npos; start = end + 1) {
     std::istringstream line(text.substr(start, end - start));

@@ -5,14 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <stdexcept>
 #include <system_error>
 
-#include "sim/sequence/file_writer.h"
 #include "sim/sequence/manifest.h"
+#include "tools/base/files.h"
 
 namespace sim {
 namespace fs = std::filesystem;
@@ -27,17 +25,8 @@ bool IsEmpty(const fs::path& folder) {
   if (!fs::exists(fs::symlink_status(folder))) return true;
   if (!fs::is_directory(folder)) return false;
   return std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const fs::directory_entry& entry) {
-    return entry.path().filename() == UnfinishedName(kManifestName);
+    return entry.path().filename() == base::UnfinishedName(kManifestName);
   });
-}
-
-std::span<const std::uint8_t> Bytes(const std::string& text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
-std::string ReadText(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 }  // namespace
@@ -87,12 +76,12 @@ void SequenceWriter::Prepare(Start start) {
   // The manifest comes first: it identifies a folder that a killed process leaves behind.
   const std::vector<StreamFile> lists = WholeFiles(simulator_, content_, content_.last - content_.first);
   for (const StreamFile& file : lists) {
-    if (file.path == kManifestName) WriteFile(folder_ / file.path, file.bytes);
+    if (file.path == kManifestName) Write(file);
   }
   std::string journal;
   for (const auto& [index, files] : whole_) journal += JournalLine(index, files);
-  WriteFile(folder_ / kJournalName, Bytes(journal));
-  for (const StreamFile& file : lists) WriteFile(folder_ / file.path, file.bytes);
+  base::WriteFileAndFolders(folder_ / kJournalName, journal);
+  for (const StreamFile& file : lists) Write(file);
   RemoveStrays(lists);
 }
 
@@ -103,7 +92,7 @@ void SequenceWriter::RequireSame(const Journal& whole) const {
     throw std::invalid_argument(file.string() + ": is not there, so this is no sequence to resume");
   std::vector<std::string> differences;
   try {
-    differences = ManifestDifferences(ReadText(file), Manifest(simulator_, content_, 0));
+    differences = ManifestDifferences(base::ReadFile(file).value_or(""), Manifest(simulator_, content_, 0));
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(file.string() + ": " + error.what() + "; remove the folder to start anew");
   }
@@ -139,6 +128,10 @@ void SequenceWriter::RemoveStrays(const std::vector<StreamFile>& lists) const {
   for (const fs::path& stray : strays) fs::remove(stray, ignored);
 }
 
+void SequenceWriter::Write(const StreamFile& file) const {
+  base::WriteFileAndFolders(folder_ / file.path, base::AsText(file.bytes));
+}
+
 void SequenceWriter::Work() {
   for (;;) {
     std::int64_t index = 0;
@@ -150,10 +143,10 @@ void SequenceWriter::Work() {
     }
     try {
       const std::vector<StreamFile> files = FrameFiles(simulator_, content_, index);
-      for (const StreamFile& file : files) WriteFile(folder_ / file.path, file.bytes);
+      for (const StreamFile& file : files) Write(file);
       const std::vector<JournalFile> summed = Summed(files);
       const std::lock_guard lock(mutex_);
-      AppendToFile(folder_ / kJournalName, Bytes(JournalLine(index, summed)));
+      base::AppendToFile(folder_ / kJournalName, JournalLine(index, summed));
       whole_[index] = summed;
     } catch (...) {
       const std::lock_guard lock(mutex_);
@@ -205,7 +198,7 @@ void SequenceWriter::KeepOnly(std::int64_t whole) {
   whole_.erase(whole_.lower_bound(content_.first + whole), whole_.end());
   const std::vector<StreamFile> lists = WholeFiles(simulator_, content_, whole);
   RemoveStrays(lists);
-  for (const StreamFile& file : lists) ShortenFile(folder_ / file.path, file.bytes);
+  for (const StreamFile& file : lists) base::ShortenFile(folder_ / file.path, base::AsText(file.bytes));
 }
 
 void SequenceWriter::Finish() {

@@ -59,6 +59,7 @@ class SequenceWriter {
   void RequireSame(const Journal& whole) const;
   void KeepOnly(std::int64_t whole);
   void RemoveStrays(const std::vector<StreamFile>& lists) const;
+  void Write(const StreamFile& file) const;
   void Work();
 
   const Simulator& simulator_;

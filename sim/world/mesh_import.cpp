@@ -1,24 +1,22 @@
 #include "sim/world/mesh_import.h"
 
 #include <assimp/postprocess.h>
-#include <fcntl.h>
-#include <poll.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include <string.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <optional>
+#include <span>
 #include <stdexcept>
-#include <utility>
+#include <system_error>
 #include <vector>
 
 #include "sim/world/importer_files.h"
 #include "sim/world/mesh_serialization.h"
+#include "tools/base/child_process.h"
 
 namespace sim {
 namespace {
@@ -76,35 +74,6 @@ std::vector<std::uint8_t> Import(const fs::path& file) {
   return Answer(problem, *files, scene);
 }
 
-bool WriteAll(int to, const std::vector<std::uint8_t>& bytes) {
-  for (std::size_t at = 0; at < bytes.size();) {
-    const ssize_t written = write(to, bytes.data() + at, bytes.size() - at);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    at += static_cast<std::size_t>(written);
-  }
-  return true;
-}
-
-// Until the other end is closed, or nobody has the patience.
-std::pair<std::vector<std::uint8_t>, bool> ReadAll(int from) {
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  std::vector<std::uint8_t> bytes;
-  std::vector<std::uint8_t> piece(1 << 16);
-  for (;;) {
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
-    pollfd end{from, POLLIN, 0};
-    const int ready = left.count() > 0 ? poll(&end, 1, static_cast<int>(left.count())) : 0;
-    if (ready < 0 && errno == EINTR) continue;
-    if (ready <= 0) return {std::move(bytes), false};
-    const ssize_t read = ::read(from, piece.data(), piece.size());
-    if (read < 0 && errno == EINTR) continue;
-    if (read <= 0) return {std::move(bytes), read == 0};
-    bytes.insert(bytes.end(), piece.begin(), piece.begin() + read);
-  }
-}
-
 std::vector<std::string> Texts(std::span<const std::uint8_t> bytes) {
   std::vector<std::string> texts;
   for (auto at = bytes.begin(); at != bytes.end();) {
@@ -136,57 +105,42 @@ MeshImport FromAnswer(std::span<const std::uint8_t> answer) {
   return import;
 }
 
-std::string WhyItEnded(int status, bool patient) {
-  if (!patient) return "the importer (assimp) took longer than " + std::to_string(kPatience.count()) + " s";
-  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
-    return "the importer (assimp) took longer than a file of this size may";
-  if (WIFSIGNALED(status))
-    return std::string("the importer (assimp) crashed on it: ") + strsignal(WTERMSIG(status)) +
+std::string WhyItEnded(const base::ExitStatus& end, bool in_time) {
+  if (!in_time) return "the importer (assimp) took longer than " + std::to_string(kPatience.count()) + " s";
+  if (end.signal == SIGXCPU) return "the importer (assimp) took longer than a file of this size may";
+  if (end.signal != 0)
+    return std::string("the importer (assimp) crashed on it: ") + strsignal(end.signal) +
            "; the file is damaged, or of a kind that it cannot read";
   return "the importer (assimp) gave up on it";
+}
+
+base::ChildProcess StartImporter(const fs::path& file) {
+  try {
+    return base::ChildProcess([&](int answer) {
+      SilenceProcess();
+      return base::WriteAll(answer, base::AsText(Import(file)));
+    });
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(file.string() + ": no importer: " + error.what());
+  }
 }
 
 }  // namespace
 
 MeshImport ImportMesh(const fs::path& file) {
-  int ends[2] = {-1, -1};
-  if (pipe2(ends, O_CLOEXEC) != 0)
-    throw std::runtime_error(file.string() + ": no pipe to an importer: " + std::strerror(errno));
-  const pid_t parent = getpid(), child = fork();
-  if (child < 0) {
-    const std::string why = std::strerror(errno);
-    close(ends[0]);
-    close(ends[1]);
-    throw std::runtime_error(file.string() + ": no process for an importer: " + why);
-  }
-  if (child == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(1);
-    bool good = false;
-    try {
-      close(ends[0]);
-      SilenceProcess();
-      good = WriteAll(ends[1], Import(file));
-    } catch (...) {  // out of memory: the parent is told by the status
-    }
-    _exit(good ? 0 : 1);
-  }
-  close(ends[1]);
-  const auto [answer, patient] = ReadAll(ends[0]);
-  close(ends[0]);
-  if (!patient) kill(child, SIGKILL);
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  const base::ChildProcess importer = StartImporter(file);
+  const std::optional<std::string> answer = importer.ReadAnswer(std::chrono::steady_clock::now() + kPatience);
+  if (!answer) importer.Kill();
+  const base::ExitStatus end = importer.Wait();
   MeshImport import;
-  if (patient && WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+  if (answer && end.signal == 0 && end.status == 0) {
     try {
-      return FromAnswer(answer);
+      return FromAnswer(base::AsBytes(*answer));
     } catch (const std::runtime_error& error) {
       import.problem = error.what();
     }
   } else {
-    import.problem = "cannot be read: " + WhyItEnded(status, patient);
+    import.problem = "cannot be read: " + WhyItEnded(end, answer.has_value());
   }
   import.files.insert(file);
   return import;

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <utility>
 
 #include "sim/world/image_file.h"
 #include "sim/world/importer_files.h"
+#include "tools/base/files.h"
 #include "tools/base/limits/picture.h"
 
 namespace sim {
@@ -215,10 +215,9 @@ int MeshMaterialReader::TextureIndex(const std::string& name, const std::string&
       scene_.files.insert(file);
       if (!fs::exists(file)) return bad("no such file");
       if (!fs::is_regular_file(file)) return bad("not a file");
-      std::ifstream stream(file, std::ios::binary);
-      const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
-      if (!stream.is_open() || stream.bad()) return bad("cannot be opened");
-      image = DecodeImage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, with_alpha);
+      const std::optional<std::string> bytes = base::ReadFile(file);
+      if (!bytes) return bad("cannot be opened");
+      image = DecodeImage(base::AsBytes(*bytes), with_alpha);
     }
     const bool is_cut = std::any_of(image.alpha.begin(), image.alpha.end(), [](std::uint8_t a) { return a < 255; });
     if (!is_cut) image.alpha.clear();

@@ -7,15 +7,10 @@
 #include <utility>
 
 #include "sim/world/mesh_loader.h"
+#include "tools/base/text.h"
 
 namespace sim {
 namespace {
-
-std::string Join(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
-  return text;
-}
 
 bool IsFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -46,7 +41,7 @@ struct LightProblem {
 }  // namespace
 
 SceneError::SceneError(std::vector<std::string> problems)
-    : std::runtime_error(Join(problems)), problems_(std::move(problems)) {}
+    : std::runtime_error(base::Join(problems, "\n")), problems_(std::move(problems)) {}
 
 Scene LoadScene(const WorldDescription& description) {
   Scene scene;

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
@@ -17,6 +16,7 @@
 #include <string>
 
 #include "sim/world/srgb.h"
+#include "tools/base/files.h"
 #include "tools/base/limits/exr.h"
 #include "tools/base/limits/picture.h"
 
@@ -53,18 +53,17 @@ cv::Mat ReadExr(const std::filesystem::path& path) {
 }
 
 cv::Mat ReadPicture(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw std::runtime_error(file.string() + ": cannot be opened");
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
-  const std::span<const std::uint8_t> whole(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-  const bool is_exr = bytes.size() >= 4 && std::memcmp(bytes.data(), "\x76\x2f\x31\x01", 4) == 0;
+  const std::optional<std::string> bytes = base::ReadFile(file);
+  if (!bytes) throw std::runtime_error(file.string() + ": cannot be opened");
+  const std::span<const std::uint8_t> whole = base::AsBytes(*bytes);
+  const bool is_exr = bytes->starts_with("\x76\x2f\x31\x01");
   const std::string problem = is_exr ? limits::ExrProblem(whole) : limits::PictureProblem(whole);
   if (!problem.empty()) throw std::runtime_error(file.string() + (is_exr ? ": cannot be read: " : ": ") + problem);
   if (is_exr) return ReadExr(file);
   cv::Mat picture;
   try {
-    if (!bytes.empty())
-      picture = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data())),
+    if (!bytes->empty())
+      picture = cv::imdecode(cv::Mat(1, static_cast<int>(bytes->size()), CV_8U, const_cast<char*>(bytes->data())),
                              cv::IMREAD_UNCHANGED);
   } catch (const cv::Exception& error) {
     throw std::runtime_error(file.string() + ": cannot be decoded: " + error.err);

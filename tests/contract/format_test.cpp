@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "tools/judge/evaluation/trajectory.h"
 #include "vo/geometry/camera.h"
@@ -42,7 +43,7 @@ TEST_F(FormatContract, StampsAreExact) {
   std::string list, truth, velocity;
   for (const std::int64_t stamp : kStamps) {
     const std::string text = sim::FormatStamp(stamp);
-    EXPECT_EQ(text, evaluation::FormatSeconds(stamp));
+    EXPECT_EQ(text, base::FormatSeconds(stamp));
     list += text + " rgb/" + text + ".png\n";
     const std::vector<std::uint8_t> png = sim::EncodePng({2, 1, 1, {0, 255}});
     Write("rgb/" + text + ".png", std::string(png.begin(), png.end()));

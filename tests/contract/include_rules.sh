@@ -32,11 +32,12 @@ forbid vo 'glm/|embree[0-9]*/|assimp/|GL/' "vo builds without GLM, Embree, assim
 forbid sim 'Eigen/' "sim's mathematics is GLM, so that it shares none with vo"
 forbid tools/base "(sim|vo)/|$above" "tools/base carries everything and includes nothing above it"
 forbid tools/judge 'sim/|glm/|tools/(bench|vobench|python)/' "the judge includes neither the simulator nor the bench"
-allow tools/judge/evaluation 'Eigen/[A-Za-z]+|tools/judge/evaluation/(compat/)?[a-z0-9_]+\.h|[a-z0-9_]+|(fcntl|unistd)\.h|boost/math/distributions/[a-z_]+\.hpp' "the evaluation needs Eigen, Boost.Math, the standard library and POSIX's files only"
+allow tools/judge/evaluation 'Eigen/[A-Za-z]+|tools/judge/evaluation/(compat/)?[a-z0-9_]+\.h|tools/base/[a-z_]+\.h|[a-z0-9_]+|boost/math/distributions/[a-z_]+\.hpp' "the evaluation needs Eigen, Boost.Math, the standard library and what of tools/base needs no more only"
 report "Boost.Math is in distributions.cpp alone" < <(includes tools/judge/evaluation | grep -E '^[^:]+:[0-9]+:boost/' | grep -v '^tools/judge/evaluation/distributions\.cpp:' || true)
 unlinked tools/judge/evaluation 'sim|vo|settings|report' "the evaluation needs Eigen and Boost's headers only"
 unlinked tools/judge/verification 'sim|points|commands|bench' "what checks the simulator's sequences shares nothing with it"
 forbid tools/bench 'tools/(vobench|python)/' "the bench includes neither of its faces"
+report "files, text and processes need the standard library and POSIX only" < <(includes tools/base | grep -E '^tools/base/[a-z_]+\.(h|cpp):' | grep -vE ':[0-9]+:(tools/base/[a-z_]+\.h|[a-z0-9_]+|(sys/)?[a-z]+\.h)$' || true)
 allow tools/base/limits 'tools/base/limits/[a-z0-9_]+\.h|[a-z0-9_]+' "limits of untrusted files need the standard library only"
 report "include cycle between folders" < <(bash "$here/folder_cycles.sh" .)
 

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/ate.h"
 #include "tools/judge/evaluation/rpe.h"
 #include "tools/judge/evaluation/text_file.h"
@@ -26,7 +27,7 @@ Trajectory MakeTrajectory(const Stamps& stamps_ns, const Points& positions, cons
     if (i > 0 && stamps_ns.at(i) <= stamps_ns.at(i - 1)) {
       throw std::invalid_argument("stamps_ns[" + std::to_string(i) + "] is not after the one before");
     }
-    if (stamps_ns.at(i) < -evaluation::kLatest_ns || stamps_ns.at(i) > evaluation::kLatest_ns) {
+    if (stamps_ns.at(i) < -base::kLatest_ns || stamps_ns.at(i) > base::kLatest_ns) {
       throw std::invalid_argument("stamps_ns[" + std::to_string(i) + "] is beyond 4e18");
     }
     if (!positions.row(i).allFinite())

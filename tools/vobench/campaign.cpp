@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/base/files.h"
 #include "tools/bench/campaign/digest.h"
 #include "tools/bench/campaign/local_engine.h"
 #include "tools/bench/campaign/memory.h"
@@ -75,8 +75,7 @@ std::map<std::string, std::string> FilesOf(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (name == "times.json" || name == "log.txt" || !entry.is_regular_file()) continue;
-    std::ifstream stream(entry.path(), std::ios::binary);
-    files[name] = {std::istreambuf_iterator<char>(stream), {}};
+    files[name] = base::ReadFile(entry.path()).value_or("");
   }
   return files;
 }
@@ -140,9 +139,8 @@ void Conclude(const CampaignWork& work, const CampaignOptions& options) {
   std::vector<campaign::LevelValues> levels;
   for (const CampaignPoint& point : work.points()) levels.push_back(point.levels);
   const campaign::Merged merged = campaign::Merge(work.campaign(), levels, options.output);
-  campaign::WriteAtOnce(options.output / "report.html", CampaignPage(work.campaign(), merged));
-  std::ifstream tables(options.output / "tables.md");
-  fmt::print("{}\n", std::string(std::istreambuf_iterator<char>(tables), {}));
+  base::WriteFile(options.output / "report.html", CampaignPage(work.campaign(), merged), base::Writers::many);
+  fmt::print("{}\n", base::ReadFile(options.output / "tables.md").value_or(""));
   if (const std::uint64_t bytes = work.cache().Bytes(); bytes > 0) {
     fmt::print("{:.1f} MB of sequences in {}\n", static_cast<double>(bytes) * 1e-6, work.cache().folder().string());
   }
@@ -175,7 +173,7 @@ void RunAll(CampaignWork& work, const CampaignOptions& options) {
   }
   campaign::OutputState state = campaign::Inspect(options.output, keys);
   RefuseStale(options, state, tasks);
-  campaign::WriteAtOnce(options.output / "campaign.json", Record(work.campaign()));
+  base::WriteFile(options.output / "campaign.json", Record(work.campaign()), base::Writers::many);
   if (!state.stale.empty()) {
     campaign::RemoveTasks(options.output, state.stale);
     state = campaign::Inspect(options.output, keys);

@@ -1,17 +1,12 @@
 #include <algorithm>
 #include <vector>
 
+#include "tools/base/text.h"
 #include "tools/vobench/help_text.h"
 #include "tools/vobench/manual.h"
 
 namespace vobench {
 namespace {
-
-std::string Joined(const std::vector<std::string>& words, const std::string& between) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
-  return text;
-}
 
 // In single quotes; '"'"' is a quote in all three shells.
 std::string Quoted(const std::string& text) {
@@ -59,19 +54,19 @@ std::string BashCompletion(const CLI::App& app) {
       if (row.positional || row.argument.empty()) continue;
       std::vector<std::string> patterns;
       for (const std::string& name : row.names) patterns.push_back(command->get_name() + "," + name);
-      text += "    " + Joined(patterns, "|") + ") ";
+      text += "    " + base::Join(patterns, "|") + ") ";
       if (!row.choices.empty())
-        text += "COMPREPLY=($(compgen -W '" + Joined(row.choices, " ") + "' -- \"$word\")); ";
+        text += "COMPREPLY=($(compgen -W '" + base::Join(row.choices, " ") + "' -- \"$word\")); ";
       else if (row.path)
         text += "compopt -o default 2>/dev/null; ";
       text += "return ;;\n";
     }
   }
-  text += "  esac\n  case $command in\n    '') COMPREPLY=($(compgen -W '" + Joined(CommandNames(app), " ") + " " +
-          Joined(Names(app), " ") + "' -- \"$word\")); return ;;\n";
+  text += "  esac\n  case $command in\n    '') COMPREPLY=($(compgen -W '" + base::Join(CommandNames(app), " ") + " " +
+          base::Join(Names(app), " ") + "' -- \"$word\")); return ;;\n";
   for (const CLI::App* command : CommandsOf(app)) {
     text += "    " + command->get_name() + ") [[ $word == -* ]] && COMPREPLY=($(compgen -W '" +
-            Joined(Names(*command), " ") + "' -- \"$word\")) && return ;;\n";
+            base::Join(Names(*command), " ") + "' -- \"$word\")) && return ;;\n";
   }
   return text + "  esac\n  compopt -o default 2>/dev/null\n}\ncomplete -F _vobench vobench\n";
 }
@@ -90,7 +85,7 @@ std::string ZshCompletion(const CLI::App& app) {
     text += "  " + command->get_name() + ") _arguments";
     for (const OptionRow& row : RowsOf(*command)) {
       const std::string values =
-          row.choices.empty() ? (row.path ? "_files" : " ") : "(" + Joined(row.choices, " ") + ")";
+          row.choices.empty() ? (row.path ? "_files" : " ") : "(" + base::Join(row.choices, " ") + ")";
       if (row.positional) {
         text += " \\\n    " + Quoted("1:" + row.names.front() + ":_files");
         continue;
@@ -118,7 +113,7 @@ std::string FishCompletion(const CLI::App& app) {
       for (const std::string& name : row.names)
         text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
       if (!row.argument.empty()) text += row.path ? " -r" : " -x";
-      if (!row.choices.empty()) text += " -a '" + Joined(row.choices, " ") + "'";
+      if (!row.choices.empty()) text += " -a '" + base::Join(row.choices, " ") + "'";
       text += " -d " + Quoted(row.text) + "\n";
     }
   }

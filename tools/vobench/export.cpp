@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "tools/base/files.h"
+#include "tools/base/text.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/result/progress.h"
 #include "tools/bench/result/sequence_truth.h"
@@ -56,7 +58,7 @@ std::vector<DepthFile> ReadDepthList(const fs::path& list, char separator) {
   for (const evaluation::Line& line : evaluation::ReadLines(list, separator)) {
     // Seconds in TUM's list, nanoseconds in EuRoC's.
     const std::string stamp = line.tokens[0].text + (separator == ',' ? "e-9" : "");
-    const auto stamp_ns = evaluation::ParseSeconds(stamp);
+    const auto stamp_ns = base::ParseSeconds(stamp);
     if (!stamp_ns || line.tokens.size() < 2) {
       problems.Add(list, line.number, 1, "expected a stamp and the name of a file");
       continue;
@@ -72,7 +74,7 @@ std::vector<ImuReading> ReadImu(const fs::path& table) {
   std::vector<ImuReading> readings;
   evaluation::Problems problems;
   for (const evaluation::Line& line : evaluation::ReadLines(table, ',')) {
-    const auto stamp_ns = evaluation::ParseSeconds(line.tokens[0].text + "e-9");
+    const auto stamp_ns = base::ParseSeconds(line.tokens[0].text + "e-9");
     std::array<double, 6> values{};
     bool good = stamp_ns.has_value() && line.tokens.size() >= 7;
     for (std::size_t i = 0; good && i < 6; ++i) {
@@ -183,9 +185,11 @@ void Export(const ExportOptions& options) {
   vo::SequenceReader frames = Input([&] { return vo::SequenceReader(options.sequence); });
   const Streams streams = Input([&] { return ReadStreams(options.sequence); });
   const std::int64_t offset_ns = Input([&] { return OffsetOf(options.sequence, streams); });
-  BagFile bag(options.bag.string());
+  base::AtomicPath path(options.bag);
+  BagFile bag(path.path().string(), options.bag.string());
   Write(bag, frames, streams, offset_ns);
-  bag.Commit();
+  bag.Close();
+  path.Commit();
   fmt::print("{}: {} images{}, {} depth images, {} IMU readings, {} true poses\n", options.bag.string(), frames.size(),
              streams.camera ? " with the camera" : "", streams.depth.size(), streams.imu.size(), streams.truth.size());
   if (offset_ns != 0) fmt::print("A bag has no time 0: all times are {} s later\n", offset_ns / 1'000'000'000);

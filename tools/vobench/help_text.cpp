@@ -4,6 +4,8 @@
 #include <sstream>
 #include <utility>
 
+#include "tools/base/text.h"
+
 namespace vobench {
 namespace {
 
@@ -50,8 +52,7 @@ std::string Table(const std::vector<std::pair<std::string, std::string>>& rows) 
 }  // namespace
 
 std::string OptionRow::Synopsis() const {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  const std::string all = base::Join(names, ", ");
   return argument.empty() ? all : all + " " + argument;
 }
 

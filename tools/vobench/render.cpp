@@ -1,15 +1,13 @@
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 
-#include "sim/sequence/file_writer.h"
 #include "sim/sequence/manifest.h"
 #include "sim/sequence/streams.h"
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"
+#include "tools/base/files.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/result/output_folder.h"
 #include "tools/bench/result/preview.h"
@@ -36,7 +34,7 @@ std::set<std::string> SequenceNames() {
 // And while it is written: a killed run leaves what it had just begun.
 std::set<std::string> UnfinishedSequenceNames() {
   std::set<std::string> names = SequenceNames();
-  for (const std::string& name : SequenceNames()) names.insert(sim::UnfinishedName(name));
+  for (const std::string& name : SequenceNames()) names.insert(base::UnfinishedName(name));
   return names;
 }
 
@@ -77,8 +75,7 @@ void RequireRoom(const RenderOptions& options, const fs::path& folder, const fs:
 bool IsWhole(const fs::path& folder, const sim::Simulator& simulator, const sim::SequenceContent& content) {
   const fs::path manifest = folder / sim::kManifestName;
   if (!fs::exists(manifest)) return false;
-  std::ifstream stream(manifest, std::ios::binary);
-  const std::string there{std::istreambuf_iterator<char>(stream), {}};
+  const std::string there = base::ReadFile(manifest).value_or("");
   const auto differences = Input(
       [&] { return sim::ManifestDifferences(there, sim::Manifest(simulator, content, content.last - content.first)); });
   if (differences.empty()) return true;
@@ -134,7 +131,7 @@ void Render(const RenderOptions& options) {
     throw std::runtime_error(fmt::format("{}\n{}", error.what(), Kept(writer->Stop(), partial)));
   }
   writer->Finish();
-  ReplaceFolder(partial, folder);
+  base::ReplaceFolder(partial, folder);
   fs::remove(folder / sim::kJournalName);
   fmt::print("{} frames in {}\n", content.last - content.first, options.output.string());
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/points/point_world.h"
+#include "tools/base/files.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/points/point_bound.h"
 #include "tools/bench/report/text_summary.h"
@@ -18,7 +19,6 @@
 #include "tools/bench/result/progress.h"
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/prior.h"
-#include "tools/judge/evaluation/whole_file.h"
 #include "tools/vobench/run_common.h"
 
 namespace vobench {
@@ -212,7 +212,7 @@ void RunOnPoints(const RunOptions& options, const Experiment& experiment, const 
   if (folder) {
     report::RunDescription description = Describe(options, experiment, notes, clock);
     for (const report::JudgedRun& run : judged) description.runs.push_back(run.run);
-    evaluation::WriteWhole(folder->path() / "anees.csv", AneesCsv(systems));
+    base::WriteFile(folder->path() / "anees.csv", AneesCsv(systems));
     if (options.verdict) {
       std::string table = "system,check,value,relation,threshold,pass,false_alarm\n";
       std::vector<report::RankTable> ranks;
@@ -222,8 +222,8 @@ void RunOnPoints(const RunOptions& options, const Experiment& experiment, const 
         ranks.insert(ranks.end(), own.begin(), own.end());
         description.verdicts.push_back(VerdictSentence(v.system, setting, v.verdict));
       }
-      evaluation::WriteWhole(folder->path() / "verdict.csv", table);
-      evaluation::WriteWhole(folder->path() / "ranks.csv", report::RanksCsv(ranks));
+      base::WriteFile(folder->path() / "verdict.csv", table);
+      base::WriteFile(folder->path() / "ranks.csv", report::RanksCsv(ranks));
     }
     WriteResult(folder->path(), description, judged);
     folder->Commit();

@@ -4,57 +4,37 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 
 #include "tools/base/limits/picture.h"
+#include "tools/base/text.h"
 
 namespace vo {
 namespace {
 
 namespace fs = std::filesystem;
 
-// "12.0345" -> nanoseconds, in integers: no double represents 1305031102.175304 to the nanosecond.
-std::optional<std::int64_t> ParseStamp(const std::string& text) {
-  const std::size_t dot = text.find('.');
-  const std::string whole = text.substr(0, dot);
-  std::string fraction = dot == std::string::npos ? "" : text.substr(dot + 1);
-  const auto digits = [](const std::string& s) {
-    return std::all_of(s.begin(), s.end(), [](char c) { return c >= '0' && c <= '9'; });
-  };
-  if (whole.empty() || whole.size() > 10 || !digits(whole) || !digits(fraction)) return std::nullopt;
-  fraction.resize(9, '0');
-  constexpr std::int64_t kLast_s = std::numeric_limits<std::int64_t>::max() / 1'000'000'000 - 1;  // in the year 2262
-  const std::int64_t seconds = std::stoll(whole);
-  if (seconds > kLast_s) return std::nullopt;
-  return seconds * 1'000'000'000 + std::stoll(fraction);
-}
-
 // ICL-NUIM numbers its frames at 30 Hz.
-std::optional<std::int64_t> StampOfIndex(const std::string& text) {
-  if (text.empty() || text.size() > 9 ||
-      !std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }))
-    return std::nullopt;
-  return (std::stoll(text) * 1'000'000'000 + 15) / 30;
+std::optional<std::int64_t> StampOfIndex(std::string_view text) {
+  const auto index = text.size() <= 9 ? base::ParseWhole(text) : std::nullopt;
+  return index && *index >= 0 ? std::optional((*index * 1'000'000'000 + 15) / 30) : std::nullopt;
 }
 
 // EuRoC counts nanoseconds.
-std::optional<std::int64_t> StampInNanoseconds(const std::string& text) {
-  if (text.empty() || text.size() > 19 ||
-      !std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }))
-    return std::nullopt;
-  if (text.size() == 19 && text > "9223372036854775807") return std::nullopt;
-  return std::stoll(text);
+std::optional<std::int64_t> StampInNanoseconds(std::string_view text) {
+  const auto stamp_ns = base::ParseWhole(text);
+  return stamp_ns && *stamp_ns >= 0 ? stamp_ns : std::nullopt;
 }
 
 // List of frames, one per line: the first word is the stamp, the last one the image.
 struct ListFormat {
   fs::path list, images;  // file names are relative to `images`
   std::size_t words;
-  std::optional<std::int64_t> (*stamp)(const std::string&);
+  std::optional<std::int64_t> (*stamp)(std::string_view);
   std::string not_a_stamp, expected;
 };
 
@@ -67,7 +47,7 @@ ListFormat FormatOf(const fs::path& folder) {
       return {folder / "mav0/cam0/data.csv", folder / "mav0/cam0/data", 2, StampInNanoseconds,
               "a time stamp in nanoseconds", "timestamp,filename"};
   }
-  return {folder / "rgb.txt", folder, 2, ParseStamp, "a time stamp in seconds", "timestamp filename"};
+  return {folder / "rgb.txt", folder, 2, base::ParseStamp, "a time stamp in seconds", "timestamp filename"};
 }
 
 // Words separated by blanks or commas.

@@ -25,6 +25,7 @@ namespace vobench {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 struct Address {
   std::string host;
@@ -157,6 +158,7 @@ class Peer {
   bool Say(const std::string& text) const {
     return send(file_, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
   }
+  void End() const { shutdown(file_, SHUT_WR); }
   // All that comes until the other side closes.
   std::string Hear() const {
     std::string all;
@@ -229,9 +231,32 @@ TEST(LiveServer, ARequestThatNeverEndsIsCutOff) {
   std::string headers;
   while (headers.size() < 9000) headers += "X: y\r\n";
   peer.Say(headers);
-  EXPECT_THAT(peer.Hear(), testing::StartsWith("HTTP/1.1 431 "));
+  EXPECT_THAT(peer.Hear(), testing::StartsWith("HTTP/1.1 400 "));
   httplib::Client client(at.host, at.port);
   EXPECT_EQ(client.Get(at.path)->status, 200) << "others are served as before";
+}
+
+// No HTTP, half a request, two hosts: nothing is guessed at.
+TEST(LiveServer, MalformedRequestsAreRefused) {
+  LiveServer server;
+  server.Publish("secret", "secret");
+  const Address at = AddressOf(server);
+  const std::string host = "Host: 127.0.0.1:" + std::to_string(at.port) + "\r\n";
+  const auto answer = [&](const std::string& request) {
+    const Peer peer(at);
+    EXPECT_TRUE(peer.Say(request));
+    peer.End();
+    return peer.Hear();
+  };
+  EXPECT_THAT(answer("GET " + at.path + " HTTP/1.1\r\nhOST:  " + host.substr(6) + "\r\n"), HasSubstr("secret"));
+  for (const std::string& request :
+       {"\r\n\r\n" + host, "GET\r\n" + host + "\r\n", "GET " + at.path + "\r\n" + host + "\r\n",
+        "GET " + at.path + " HTTP/2\r\n" + host + "\r\n", "\x16\x03\x01\r\n" + host + "\r\n",
+        "GET " + at.path + " HTTP/1.1\r\n\r\n", "GET " + at.path + " HTTP/1.1\r\n" + host,
+        "GET " + at.path + " HTTP/1.1\r\n" + host + host + "\r\n",
+        "GET " + at.path + " HTTP/1.1\r\n" + host + "Host: b\r\n\r\n"}) {
+    EXPECT_THAT(answer(request), Not(HasSubstr("secret"))) << request;
+  }
 }
 
 TEST(LiveServer, ClientsThatSayNothingHoldUpNobody) {

@@ -12,10 +12,10 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
-#include "sim/sequence/file_writer.h"
 #include "sim/sequence/format.h"
 #include "sim/sequence/manifest.h"
 #include "tests/unit/sim/small_world.h"
+#include "tools/base/files.h"
 
 namespace sim {
 namespace {
@@ -277,8 +277,8 @@ TEST(SequenceWriter, ResumesFromDamage) {
       {"missing", [&](const fs::path& f) { fs::remove(f / "depth" / frame(0)); }},
       {"strays",
        [&](const fs::path& f) {
-         std::ofstream(f / "rgb" / UnfinishedName(frame(8))) << "half";
-         std::ofstream(f / UnfinishedName("rgb.txt")) << "half";
+         std::ofstream(f / "rgb" / base::UnfinishedName(frame(8))) << "half";
+         std::ofstream(f / base::UnfinishedName("rgb.txt")) << "half";
        }},
       {"torn journal",
        [&](const fs::path& f) { fs::resize_file(f / kJournalName, fs::file_size(f / kJournalName) - 20); }},
@@ -289,7 +289,7 @@ TEST(SequenceWriter, ResumesFromDamage) {
        [&](const fs::path& f) {
          fs::remove_all(f);
          fs::create_directory(f);
-         std::ofstream(f / UnfinishedName("manifest.json")) << "{";
+         std::ofstream(f / base::UnfinishedName("manifest.json")) << "{";
        }},
       {"nothing", [&](const fs::path& f) { fs::remove_all(f); }},
   };
@@ -388,34 +388,6 @@ TEST(SequenceWriter, RefusesWhatALayoutCannotSay) {
   EXPECT_THAT(Refusal(fast, world.folder.path() / "a", Frames(0, 9, Layout::icl)), HasSubstr("time.rate = 60 Hz"));
   const Simulator lens(LoadScenario(world.scenario(), {{"camera.distortion.k3", "0.01"}}), 1);
   EXPECT_THAT(Refusal(lens, world.folder.path() / "a", Frames(0, 9, Layout::euroc)), HasSubstr("k3 = 0.01"));
-}
-
-TEST(FileWriter, SaysWhyItCannotWrite) {
-  const TemporaryFolder folder;
-  const auto message = [](const fs::path& path, const std::string& text) {
-    try {
-      WriteFile(path, TextFile("", text).bytes);
-    } catch (const std::runtime_error& error) {
-      return std::string(error.what());
-    }
-    return std::string("no error");
-  };
-  const auto file = folder.path() / "new" / "a.txt";
-  EXPECT_EQ(message(file, "abc"), "no error");
-  EXPECT_EQ(ReadWhole(file), "abc");
-  EXPECT_EQ(message(file, "x"), "no error");
-  EXPECT_EQ(ReadWhole(file), "x") << "replaced";
-  EXPECT_EQ(message(file / "b", "x"), (file / "b").string() + ": cannot be written: Not a directory");
-  EXPECT_EQ(Tree(folder.path()).size(), 2u) << "no unfinished file is left";
-}
-
-// Where nothing new can be written, a file can be shortened all the same.
-TEST(FileWriter, ShortensWithoutRoom) {
-  const TemporaryFolder folder;
-  const fs::path file = folder.Write("list.txt", "one\ntwo\nthree\n");
-  fs::create_directory(folder.path() / UnfinishedName("list.txt"));  // in the way of a new file
-  ShortenFile(file, TextFile("", "one\n").bytes);
-  EXPECT_EQ(ReadWhole(file), "one\n");
 }
 
 }  // namespace

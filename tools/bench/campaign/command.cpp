@@ -1,40 +1,31 @@
 #include "tools/bench/campaign/command.h"
 
 #include <fcntl.h>
-#include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <optional>
+#include <stdexcept>
 #include <system_error>
+
+#include "tools/base/child_process.h"
 
 namespace campaign {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::seconds kGrace(3);  // from SIGTERM to SIGKILL
-constexpr int kNotStarted = 127;           // exit statuses, as shells have them
-constexpr int kEndedBySignal = 128;        // and which
+constexpr double kGrace_s = 3;       // from SIGTERM to SIGKILL
+constexpr int kNotStarted = 127;     // exit statuses, as shells have them
+constexpr int kEndedBySignal = 128;  // and which
 
 // That the leader is to end the group. No SIGTERM: `kill 0` in a script is meant for its own.
 int StopSignal() { return SIGRTMIN; }
 
-std::optional<int> WaitFor(const sigset_t& signals, Clock::time_point until) {
-  const auto left =
-      std::chrono::duration_cast<std::chrono::nanoseconds>(std::max(until - Clock::now(), Clock::duration::zero()));
-  const timespec wait{left.count() / 1'000'000'000, left.count() % 1'000'000'000};
-  const int signal = sigtimedwait(&signals, nullptr, &wait);
-  return signal > 0 ? std::optional(signal) : std::nullopt;
-}
-
-[[noreturn]] void Become(const std::string& command, const std::filesystem::path& folder, int log, pid_t leader) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != leader) _exit(kNotStarted);
+[[noreturn]] void Become(const std::string& command, const std::filesystem::path& folder, int log) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -47,18 +38,13 @@ std::optional<int> WaitFor(const sigset_t& signals, Clock::time_point until) {
 
 // Between the caller and sh, first of their group, with all signals blocked. It ends as sh does; when the caller says
 // stop, or dies, however that may be, it asks the group to end, and then kills it and itself.
-[[noreturn]] void Lead(const std::string& command, const std::filesystem::path& folder, int log, pid_t caller) {
+[[noreturn]] void Lead(const std::string& command, const std::filesystem::path& folder, int log) {
   setpgid(0, 0);
   prctl(PR_SET_CHILD_SUBREAPER, 1);  // to know when those without a parent have ended, too
-  prctl(PR_SET_PDEATHSIG, StopSignal());
-  if (getppid() != caller) _exit(kNotStarted);
-  const pid_t leader = getpid(), shell = fork();
+  const pid_t shell = base::ForkTied(SIGKILL);
   if (shell < 0) _exit(kNotStarted);
-  if (shell == 0) Become(command, folder, log, leader);
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGCHLD);
-  sigaddset(&signals, StopSignal());
+  if (shell == 0) Become(command, folder, log);
+  const sigset_t signals = base::SignalSet({SIGCHLD, StopSignal()});
   std::optional<Clock::time_point> killing;
   for (;;) {
     int status = 0;
@@ -66,46 +52,44 @@ std::optional<int> WaitFor(const sigset_t& signals, Clock::time_point until) {
     if (ended == shell && !killing) _exit(WIFEXITED(status) ? WEXITSTATUS(status) : kEndedBySignal + WTERMSIG(status));
     if (ended > 0) continue;
     if (ended < 0 || (killing && Clock::now() >= *killing)) kill(0, SIGKILL);
-    const std::optional<int> signal = WaitFor(signals, killing.value_or(Clock::now() + std::chrono::hours(1)));
+    const std::optional<int> signal = base::WaitForSignal(signals, killing.value_or(base::After(3600)));
     if (signal != StopSignal() || killing) continue;
-    killing = Clock::now() + kGrace;
+    killing = base::After(kGrace_s);
     kill(0, SIGTERM);
   }
+}
+
+pid_t StartLeader(const std::string& command, const std::filesystem::path& folder, const std::filesystem::path& log) {
+  const auto fail = [](const std::string& what) {
+    throw std::runtime_error(what + ": " + std::generic_category().message(errno));
+  };
+  const base::Descriptor file(open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  if (!file) fail(log.string() + ": cannot be made");
+  sigset_t all;
+  sigfillset(&all);
+  const base::SignalBlock blocked(all);
+  const pid_t leader = base::ForkTied(StopSignal());
+  if (leader == 0) Lead(command, folder, *file);
+  if (leader < 0) fail("cannot start a process");
+  setpgid(leader, leader);  // both sides say so: whichever comes first
+  return leader;
 }
 
 }  // namespace
 
 CommandEnd RunCommand(const std::string& command, const std::filesystem::path& folder, const std::filesystem::path& log,
                       double timeout_s) {
-  const auto fail = [](const std::string& what) {
-    throw std::runtime_error(what + ": " + std::generic_category().message(errno));
-  };
-  const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) fail(log.string() + ": cannot be made");
-  const auto close_log = [&] { close(file); };
-  const Clock::time_point start = Clock::now();
-  const auto limit = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timeout_s));
-  sigset_t all, child_ends, before;
-  sigfillset(&all);
-  sigemptyset(&child_ends);
-  sigaddset(&child_ends, SIGCHLD);
-  sigprocmask(SIG_SETMASK, &all, &before);
-  const pid_t caller = getpid(), leader = fork();
-  if (leader == 0) Lead(command, folder, file, caller);
-  const int error = errno;
-  sigprocmask(SIG_SETMASK, &before, nullptr);
-  close_log();
-  if (leader < 0) errno = error, fail("cannot start a process");
-  setpgid(leader, leader);  // both sides say so: whichever comes first
-
-  sigprocmask(SIG_BLOCK, &child_ends, nullptr);
+  const Clock::time_point start = Clock::now(), limit = base::After(timeout_s);
+  const pid_t leader = StartLeader(command, folder, log);
+  const sigset_t child_ends = base::SignalSet({SIGCHLD});
+  const base::SignalBlock blocked(child_ends);
   CommandEnd end;
   // WNOWAIT: while it is not waited for, its number and its group's belong to nobody else.
   siginfo_t info{};
   while (waitid(P_PID, static_cast<id_t>(leader), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == 0) {
     end.timed_out = Clock::now() >= limit;
     if (end.timed_out) break;
-    WaitFor(child_ends, limit);
+    base::WaitForSignal(child_ends, limit);
   }
   if (end.timed_out) {
     kill(leader, StopSignal());
@@ -114,7 +98,6 @@ CommandEnd RunCommand(const std::string& command, const std::filesystem::path& f
   kill(-leader, SIGKILL);  // what it has left behind
   int status = 0;
   waitpid(leader, &status, 0);
-  sigprocmask(SIG_SETMASK, &before, nullptr);
   end.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
   if (WIFEXITED(status)) end.status = WEXITSTATUS(status);

@@ -1,5 +1,4 @@
-// Purpose: a command of somebody else's, run by sh in a process group of its own, with a time-out; what it prints goes
-//          to a file.
+// Shell command in a process group of its own, with a time-out; its output goes to a file.
 #pragma once
 
 #include <filesystem>

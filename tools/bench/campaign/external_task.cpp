@@ -5,12 +5,12 @@
 
 #include <stdexcept>
 
+#include "tools/base/files.h"
 #include "tools/bench/campaign/calibration.h"
 #include "tools/bench/campaign/command.h"
 #include "tools/bench/campaign/sequence.h"
 #include "tools/bench/errors.h"
 #include "tools/judge/evaluation/text_file.h"
-#include "tools/judge/evaluation/whole_file.h"
 
 namespace vobench {
 namespace fs = std::filesystem;
@@ -34,8 +34,7 @@ fs::path WriteCalibrationFile(const campaign::ExternalSystem& system, const sim:
   const bool yaml = system.calibration != campaign::CalibrationFormat::dso &&
                     system.calibration != campaign::CalibrationFormat::lsd_slam;
   const fs::path file = folder / (yaml ? "calibration.yaml" : "calibration.txt");
-  evaluation::WriteWhole(
-      file, Input([&] { return campaign::WriteCalibration(CalibrationOf(scenario), system.calibration); }));
+  base::WriteFile(file, Input([&] { return campaign::WriteCalibration(CalibrationOf(scenario), system.calibration); }));
   return file;
 }
 

@@ -1,8 +1,11 @@
-// Purpose: a lock that dies with its process: flock(2) on a file or a folder.
+// Advisory lock on a file or a folder, flock(2); the end of its process releases it.
 #pragma once
 
 #include <filesystem>
 #include <optional>
+#include <utility>
+
+#include "tools/base/files.h"
 
 namespace campaign {
 
@@ -16,16 +19,12 @@ class FileLock {
   // Waits for it.
   static FileLock Wait(const std::filesystem::path& path, Kind kind);
 
-  ~FileLock();
-  FileLock(FileLock&& other) noexcept;
-  FileLock& operator=(FileLock&& other) noexcept;
-
   // Whether the path still names what is locked.
   bool Holds(const std::filesystem::path& path) const;
 
  private:
-  explicit FileLock(int file) : file_(file) {}
-  int file_ = -1;
+  explicit FileLock(base::Descriptor file) : file_(std::move(file)) {}
+  base::Descriptor file_;
 };
 
 }  // namespace campaign

@@ -7,14 +7,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <random>
 #include <set>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
 
+#include "tools/base/files.h"
 #include "tools/bench/campaign/task_folder.h"
-#include "tools/judge/evaluation/whole_file.h"
 
 namespace campaign {
 namespace fs = std::filesystem;
@@ -46,12 +45,6 @@ bool HasOthers(const fs::path& out) {
   });
 }
 
-// Another one for each process, also where several have the same number (in containers, on several machines).
-fs::path OwnName(const fs::path& file) {
-  std::random_device device;
-  return file.parent_path() / fmt::format(".{}.{:08x}{:08x}", file.filename().string(), device(), device());
-}
-
 }  // namespace
 
 void PrepareOutput(const fs::path& out, const std::string& text) {
@@ -63,7 +56,7 @@ void PrepareOutput(const fs::path& out, const std::string& text) {
     throw std::invalid_argument(
         fmt::format("{}: is no campaign's folder (it has no campaign.json) and not empty", out.string()));
   }
-  WriteAtOnce(record, text);
+  base::WriteFile(record, text, base::Writers::many);
 }
 
 FileLock LockOutput(const fs::path& out, FileLock::Kind kind) {
@@ -137,26 +130,16 @@ Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, c
   }
   for (const TableSpec& spec : campaign.tables) merged.tables.push_back(MakeTable(campaign, spec, merged.records));
   merged.curves = MakeCurves(campaign, merged.records);
-  WriteAtOnce(out / "results.csv", ResultsCsv(campaign, merged.records));
-  WriteAtOnce(out / "times.csv", times);
-  WriteAtOnce(out / "tables.md", Markdown(merged.tables) + CurvesMarkdown(merged.curves));
-  WriteAtOnce(out / "tables.tex", Latex(merged.tables));
+  base::WriteFile(out / "results.csv", ResultsCsv(campaign, merged.records), base::Writers::many);
+  base::WriteFile(out / "times.csv", times, base::Writers::many);
+  base::WriteFile(out / "tables.md", Markdown(merged.tables) + CurvesMarkdown(merged.curves), base::Writers::many);
+  base::WriteFile(out / "tables.tex", Latex(merged.tables), base::Writers::many);
   if (merged.curves.empty()) {
     fs::remove(out / "curves.csv");  // of a file that asked for some
   } else {
-    WriteAtOnce(out / "curves.csv", CurvesCsv(merged.curves));
+    base::WriteFile(out / "curves.csv", CurvesCsv(merged.curves), base::Writers::many);
   }
   return merged;
-}
-
-void WriteAtOnce(const fs::path& file, const std::string& text) {
-  const fs::path own = OwnName(file);
-  evaluation::WriteWhole(own, text);
-  std::error_code error, ignored;
-  fs::rename(own, file, error);
-  if (!error) return;
-  fs::remove(own, ignored);
-  throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
 }
 
 }  // namespace campaign

@@ -51,7 +51,4 @@ struct Merged {
 // All tasks must be there (std::runtime_error).
 Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, const std::filesystem::path& out);
 
-// Under a name of its own first: several processes may do so.
-void WriteAtOnce(const std::filesystem::path& file, const std::string& text);
-
 }  // namespace campaign

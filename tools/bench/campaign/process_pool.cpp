@@ -1,30 +1,20 @@
 #include "tools/bench/campaign/process_pool.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
 #include <fstream>
+#include <new>
 #include <stdexcept>
-#include <system_error>
 
 namespace campaign {
 namespace {
 
-sigset_t ChildEnds() {
-  sigset_t set;
-  sigemptyset(&set);
-  sigaddset(&set, SIGCHLD);
-  return set;
-}
+constexpr int kWorkFailed = 3;  // exit status
 
 // What counts for RLIMIT_DATA and is there already: the program's and its libraries' own. [bytes]
 std::uint64_t DataNow() {
@@ -34,128 +24,95 @@ std::uint64_t DataNow() {
   return pages[5] * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-std::string Gigabytes(std::uint64_t bytes) { return fmt::format("{:.3g} GB", static_cast<double>(bytes) * 1e-9); }
+void SetLimits(const ProcessLimits& limits) {
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  if (limits.memory_bytes == 0) return;
+  const rlim_t most = DataNow() + limits.memory_bytes;
+  const rlimit memory{most, most};
+  setrlimit(RLIMIT_DATA, &memory);
+}
 
-// All of it, whatever interrupts.
-std::string ReadAll(int file) {
-  std::string text;
-  char block[4096];
-  for (ssize_t got = 0; (got = read(file, block, sizeof block)) != 0;) {
-    if (got > 0) text.append(block, static_cast<std::size_t>(got));
-    if (got < 0 && errno != EINTR) break;
+std::string OutOfMemory(const ProcessLimits& limits) {
+  if (limits.memory_bytes == 0) return "out of memory";
+  return fmt::format("out of memory: more than the {:.3g} GB of --memory",
+                     static_cast<double>(limits.memory_bytes) * 1e-9);
+}
+
+// Returns the exit status; its problem goes to `answer`.
+int Do(const std::function<void()>& work, const ProcessLimits& limits, int answer) {
+  int status = 0;
+  std::string problem;
+  try {
+    work();
+  } catch (const std::bad_alloc&) {
+    status = 1;
+    problem = OutOfMemory(limits);
+  } catch (const std::invalid_argument& error) {
+    status = 1;
+    problem = error.what();
+  } catch (const std::exception& error) {
+    status = kWorkFailed;
+    problem = error.what();
   }
-  return text;
+  constexpr std::size_t kFitsIntoAPipe = 4000;
+  if (base::WriteAll(answer, problem.substr(0, kFitsIntoAPipe)) != 0) return 2;
+  std::fflush(nullptr);
+  return status;
 }
 
 }  // namespace
 
-ProcessPool::ProcessPool() {
-  // Blocked, so that it waits for sigtimedwait.
-  const sigset_t set = ChildEnds();
-  sigset_t before;
-  sigprocmask(SIG_BLOCK, &set, &before);
-  blocked_before_ = sigismember(&before, SIGCHLD) == 1;
-}
+ProcessPool::ProcessPool() : child_ends_(base::SignalSet({SIGCHLD})) {}
 
 ProcessPool::~ProcessPool() {
-  for (const Running& process : running_) kill(process.pid, SIGKILL);
+  for (const Running& process : running_) process.child.Kill();
   for (const Running& process : running_) {
-    waitpid(process.pid, nullptr, 0);
-    ReadAll(process.words);  // ends when all that it has started (RunCommand) is gone
-    close(process.words);
+    process.child.Wait();
+    process.child.ReadAnswer();  // ends when all that it has started (RunCommand) is gone
   }
-  const sigset_t set = ChildEnds();
-  if (!blocked_before_) sigprocmask(SIG_UNBLOCK, &set, nullptr);
 }
 
-bool ProcessPool::Fork(std::int64_t id, const ProcessLimits& limits) {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "cannot make a pipe");
-  std::fflush(nullptr);  // or both would write what waits
-  const pid_t parent = getpid(), pid = fork();
-  if (pid < 0) {
-    const int error = errno;
-    close(ends[0]), close(ends[1]);
-    throw std::system_error(error, std::generic_category(), "cannot start a process");
-  }
-  if (pid > 0) {
-    close(ends[1]);
-    std::optional<Clock::time_point> deadline;
-    if (limits.timeout_s > 0) {
-      deadline =
-          Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits.timeout_s));
-    }
-    running_.push_back({id, pid, ends[0], deadline, limits.timeout_s, false});
-    return true;
-  }
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);
-  close(ends[0]);
-  for (const Running& other : running_) close(other.words);
-  running_.clear();
-  own_words_ = ends[1];
-  const rlimit no_core{0, 0};
-  setrlimit(RLIMIT_CORE, &no_core);
-  if (limits.memory_bytes > 0) {
-    const rlim_t most = DataNow() + limits.memory_bytes;
-    const rlimit memory{most, most};
-    setrlimit(RLIMIT_DATA, &memory);
-  }
-  return false;
+void ProcessPool::Start(std::int64_t id, const ProcessLimits& limits, const std::function<void()>& work) {
+  std::fflush(nullptr);  // or both processes would write what waits
+  base::ChildProcess child([&](int answer) {
+    running_.clear();  // closes the others' pipes
+    SetLimits(limits);
+    return Do(work, limits, answer);
+  });
+  const auto deadline = limits.timeout_s > 0 ? base::After(limits.timeout_s) : base::SteadyTime::max();
+  running_.push_back({id, std::move(child), deadline, limits.timeout_s, false});
 }
 
-void ProcessPool::Leave(const std::string& problem, int status) {
-  constexpr std::size_t kFitsIntoAPipe = 4000;
-  const std::string words = problem.substr(0, kFitsIntoAPipe);
-  if (!words.empty() && write(own_words_, words.data(), words.size()) < 0) _exit(2);
-  std::fflush(nullptr);
-  _exit(problem.empty() ? 0 : status);
-}
-
-std::string ProcessPool::OutOfMemory(const ProcessLimits& limits) {
-  return limits.memory_bytes == 0 ? "out of memory"
-                                  : "out of memory: more than the " + Gigabytes(limits.memory_bytes) + " of --memory";
-}
-
-std::string ProcessPool::ProblemOf(const Running& process, int status, const std::string& words) {
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";
+std::string ProcessPool::ProblemOf(const Running& process, const base::ExitStatus& end) {
+  const std::string answer = process.child.ReadAnswer().value_or("");
+  if (end.signal == 0 && end.status == 0) return "";
   if (process.killed) return fmt::format("took longer than the {:g} s of --timeout", process.timeout_s);
-  if (WIFSIGNALED(status)) {
-    return fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
-  }
-  return words.empty() ? fmt::format("ended with status {}", WEXITSTATUS(status)) : words;
+  if (end.signal != 0) return fmt::format("ended by signal {} ({})", end.signal, strsignal(end.signal));
+  return answer.empty() ? fmt::format("ended with status {}", end.status) : answer;
 }
 
 std::optional<ProcessEnd> ProcessPool::Wait(std::chrono::milliseconds patience) {
-  const Clock::time_point until = Clock::now() + patience;
+  const base::SteadyTime until = std::chrono::steady_clock::now() + patience;
   for (;;) {
     for (auto process = running_.begin(); process != running_.end(); ++process) {
-      int status = 0;
-      if (waitpid(process->pid, &status, WNOHANG) != process->pid) continue;
-      const Running ended = *process;
+      const std::optional<base::ExitStatus> end = process->child.Poll();
+      if (!end) continue;
+      const ProcessEnd ended{process->id, ProblemOf(*process, *end), end->status == kWorkFailed};
       running_.erase(process);
-      const std::string words = ReadAll(ended.words);
-      close(ended.words);
-      return ProcessEnd{ended.id, ProblemOf(ended, status, words),
-                        WIFEXITED(status) && WEXITSTATUS(status) == kWorkFailed};
+      return ended;
     }
-    const Clock::time_point now = Clock::now();
-    Clock::time_point next = until;
+    const base::SteadyTime now = std::chrono::steady_clock::now();
+    base::SteadyTime next = until;
     for (Running& process : running_) {
-      if (!process.deadline || process.killed) continue;
-      if (*process.deadline <= now) {
-        process.killed = true;
-        kill(process.pid, SIGKILL);
-      } else {
-        next = std::min(next, *process.deadline);
-      }
+      if (process.killed) continue;
+      next = std::min(next, process.deadline);
+      if (process.deadline > now) continue;
+      process.killed = true;
+      process.child.Kill();
     }
     if (now >= until || running_.empty()) return std::nullopt;
-    const auto left =
-        std::chrono::duration_cast<std::chrono::nanoseconds>(std::max(next - now, Clock::duration::zero()));
-    const timespec timeout{left.count() / 1'000'000'000, left.count() % 1'000'000'000};
-    const sigset_t set = ChildEnds();
-    sigtimedwait(&set, nullptr, &timeout);
+    base::WaitForSignal(base::SignalSet({SIGCHLD}), next);
   }
 }
 

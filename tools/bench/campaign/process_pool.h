@@ -1,14 +1,16 @@
-// Purpose: work in processes of its own: one that crashes, hangs or takes too much memory ends alone.
-//          To be used before this process has threads: they are not there in a forked one.
+// Pool of forked processes with limits on memory and time; a crash ends one task only. Threads of this process do not
+// exist in a forked one.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "tools/base/child_process.h"
 
 namespace campaign {
 
@@ -32,20 +34,7 @@ class ProcessPool {
   ProcessPool& operator=(const ProcessPool&) = delete;
 
   // Forks a process that does work(); what that throws is its problem. It dies with this one.
-  template <class Work>
-  void Start(std::int64_t id, const ProcessLimits& limits, const Work& work) {
-    if (Fork(id, limits)) return;
-    try {
-      work();
-      Leave("");
-    } catch (const std::bad_alloc&) {
-      Leave(OutOfMemory(limits));
-    } catch (const std::invalid_argument& error) {
-      Leave(error.what());
-    } catch (const std::exception& error) {
-      Leave(error.what(), kWorkFailed);
-    }
-  }
+  void Start(std::int64_t id, const ProcessLimits& limits, const std::function<void()>& work);
 
   // The next process that ends; none when that takes longer than `patience`. Kills those whose time is over.
   std::optional<ProcessEnd> Wait(std::chrono::milliseconds patience);
@@ -53,26 +42,18 @@ class ProcessPool {
   std::size_t running() const { return running_.size(); }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  static constexpr int kWorkFailed = 3;  // exit status
   struct Running {
     std::int64_t id;
-    int pid;
-    int words;  // a pipe, for its problem
-    std::optional<Clock::time_point> deadline;
+    base::ChildProcess child;
+    base::SteadyTime deadline;
     double timeout_s;
     bool killed;
   };
 
-  // False in the new process.
-  bool Fork(std::int64_t id, const ProcessLimits& limits);
-  [[noreturn]] void Leave(const std::string& problem, int status = 1);
-  static std::string OutOfMemory(const ProcessLimits& limits);
-  static std::string ProblemOf(const Running& process, int status, const std::string& words);
+  static std::string ProblemOf(const Running& process, const base::ExitStatus& end);
 
+  base::SignalBlock child_ends_;  // SIGCHLD waits for Wait()
   std::vector<Running> running_;
-  int own_words_ = -1;  // in a forked process
-  bool blocked_before_ = false;
 };
 
 }  // namespace campaign

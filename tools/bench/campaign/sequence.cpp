@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
 
 #include "sim/scenario/stamps.h"
-#include "sim/sequence/file_writer.h"
 #include "sim/sequence/format.h"
 #include "sim/sequence/journal.h"
 #include "sim/sequence/layout.h"
@@ -17,6 +15,7 @@
 #include "sim/simulator.h"
 #include "sim/world/scene.h"
 #include "simulator_digest.h"
+#include "tools/base/files.h"
 #include "tools/bench/campaign/digest.h"
 #include "tools/bench/errors.h"
 
@@ -48,10 +47,6 @@ std::string NameOfWorld(const sim::Scenario& scenario) {
   std::string name;
   for (const fs::path& file : NamedFiles(scenario)) name += file.string() + "\n";
   return name;
-}
-
-std::span<const std::uint8_t> Bytes(const std::string& text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
 }  // namespace
@@ -99,7 +94,7 @@ void RenderInto(const campaign::SequenceCache& cache, const std::string& key, co
   }
   writer->Finish();
   fs::remove(partial / sim::kJournalName);
-  fs::rename(partial, folder);
+  base::ReplaceFolder(partial, folder);
 }
 
 fs::path InLayout(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario,
@@ -129,13 +124,13 @@ fs::path InLayout(const campaign::SequenceCache& cache, const std::string& key, 
     const std::vector<std::string> problems = sim::Problems(sim::Layout::euroc, scenario);
     if (!problems.empty()) throw BadInput(fmt::format("{}", fmt::join(problems, "; ")));
     for (const sim::StreamFile& file : sim::Lists(sim::Layout::euroc, scenario, frames)) {
-      sim::WriteFile(partial / file.path, file.bytes);
+      base::WriteFileAndFolders(partial / file.path, base::AsText(file.bytes));
     }
   } else {
-    sim::WriteFile(partial / "times.txt", Bytes(times));
+    base::WriteFile(partial / "times.txt", times);
   }
-  sim::WriteFile(partial / "camera.yaml", Bytes(sim::CameraYaml(scenario.camera, scenario.sensor.readout_s)));
-  fs::rename(partial, folder);
+  base::WriteFile(partial / "camera.yaml", sim::CameraYaml(scenario.camera, scenario.sensor.readout_s));
+  base::ReplaceFolder(partial, folder);
   return folder;
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "tools/base/files.h"
 #include "tools/bench/campaign/digest.h"
 #include "tools/bench/campaign/output.h"
 
@@ -49,7 +50,7 @@ void SequenceCache::Remember(const std::string& world, const std::set<fs::path>&
   for (const fs::path& file : files) json[file.string()] = DigestOfFile(file);
   const fs::path path = InputsFile(world);
   fs::create_directories(path.parent_path());
-  WriteAtOnce(path, json.dump(1) + "\n");
+  base::WriteFile(path, json.dump(1) + "\n", base::Writers::many);
 }
 
 std::uint64_t SequenceCache::Bytes() const {

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tools/base/files.h"
 #include "tools/bench/campaign/command.h"
 #include "tools/bench/campaign/digest.h"
 
@@ -26,8 +27,7 @@ struct Answer {
 Answer Ask(const std::string& command, const fs::path& where) {
   const fs::path log = where / "answer.txt";
   const CommandEnd end = RunCommand(command, where, log, kPatience_s);
-  std::ifstream stream(log, std::ios::binary);
-  return {!end.timed_out && end.signal == 0 && end.status == 0, {std::istreambuf_iterator<char>(stream), {}}};
+  return {!end.timed_out && end.signal == 0 && end.status == 0, base::ReadFile(log).value_or("")};
 }
 
 }  // namespace

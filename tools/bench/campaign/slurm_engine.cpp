@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "tools/base/files.h"
 #include "tools/bench/campaign/command.h"
 #include "tools/bench/campaign/output.h"
 #include "tools/bench/campaign/slurm.h"
@@ -67,7 +68,7 @@ class SlurmRun {
     std::string text;
     for (const std::string& line : lines) text += line + "\n";
     const fs::path list = folder_ / "tasks.txt", script = folder_ / "job.sh";
-    campaign::WriteAtOnce(list, text);
+    base::WriteFile(list, text, base::Writers::many);
     const auto word = [](const fs::path& path) { return campaign::QuotedForShell(fs::absolute(path).string()); };
     std::string command = fmt::format("{} campaign {} -o {} --cache {}", word(fs::read_symlink("/proc/self/exe")),
                                       word(options_.file), word(out_), word(work_.cache().folder()));
@@ -76,7 +77,7 @@ class SlurmRun {
     command += fmt::format(" --jobs 1 --list {} --part", word(list));
     const campaign::SlurmOptions slurm{options_.partition, options_.time, options_.memory_bytes,
                                        options_.tasks_per_job};
-    campaign::WriteAtOnce(script, campaign::BatchScript(slurm, name_, lines.size(), folder_, command));
+    base::WriteFile(script, campaign::BatchScript(slurm, name_, lines.size(), folder_, command), base::Writers::many);
     campaign::Submit(script, folder_);
   }
 

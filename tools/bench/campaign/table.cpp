@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/statistics.h"
 
 namespace campaign {
@@ -65,10 +66,6 @@ std::string EscapeLatex(const std::string& text) {
   return out;
 }
 
-std::string Join(const std::vector<std::string>& parts, const std::string& between) {
-  return fmt::format("{}", fmt::join(parts, between));
-}
-
 }  // namespace
 
 Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vector<TaskRecord>& records) {
@@ -103,7 +100,7 @@ Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vect
 
 std::vector<std::string> ColumnNames(const Table& table) {
   std::vector<std::string> names;
-  for (const auto& column : table.columns) names.push_back(Join(column, ", "));
+  for (const auto& column : table.columns) names.push_back(base::Join(column, ", "));
   for (const Beside& beside : table.spec.beside) names.push_back(beside.name);
   return names;
 }
@@ -161,7 +158,7 @@ std::string Latex(const std::vector<Table>& tables) {
     std::vector<std::string> line;
     for (const std::string& name : table.spec.rows) line.push_back(EscapeLatex(name));
     for (const std::string& name : ColumnNames(table)) line.push_back(EscapeLatex(name));
-    text += Join(line, " & ") + " \\\\\n\\hline\n";
+    text += base::Join(line, " & ") + " \\\\\n\\hline\n";
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
       line.clear();
       for (const std::string& level : table.rows[r]) line.push_back(EscapeLatex(level));
@@ -171,7 +168,7 @@ std::string Latex(const std::vector<Table>& tables) {
         const bool ours = c < table.columns.size();  // those of others may have anything in them
         line.push_back(ours || texts[c] == lost ? texts[c] : EscapeLatex(texts[c]));
       }
-      text += Join(line, " & ") + " \\\\\n";
+      text += base::Join(line, " & ") + " \\\\\n";
     }
     text += "\\hline\n\\end{tabular}\n";
   }

@@ -12,6 +12,7 @@
 #include "sim/points/point_world.h"
 #include "sim/scenario/stamps.h"
 #include "sim/simulator.h"
+#include "tools/base/files.h"
 #include "tools/bench/campaign/external_task.h"
 #include "tools/bench/campaign/sequence.h"
 #include "tools/bench/campaign/task_folder.h"
@@ -23,7 +24,6 @@
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/prior.h"
 #include "tools/judge/evaluation/text_file.h"
-#include "tools/judge/evaluation/whole_file.h"
 
 namespace vobench {
 namespace fs = std::filesystem;
@@ -106,7 +106,7 @@ void WriteTimes(const fs::path& folder, const Clock& clock, double tracking_s, c
       {"frame_features_ms", frame.ms_features},
       {"frame_matching_ms", frame.ms_matching},
       {"frame_filter_ms", frame.ms_filter}};
-  evaluation::WriteWhole(folder / "times.json", json.dump(1) + "\n");
+  base::WriteFile(folder / "times.json", json.dump(1) + "\n");
 }
 
 void WriteJudged(const fs::path& folder, const CampaignWork& work, Played& played, campaign::TaskRecord& record) {

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <system_error>
 
-#include "tools/judge/evaluation/whole_file.h"
+#include "tools/base/files.h"
 
 namespace campaign {
 namespace fs = std::filesystem;
@@ -18,10 +16,10 @@ fs::path TaskPath(const fs::path& out, std::int64_t task) {
 }
 
 std::optional<TaskRecord> ReadRecord(const fs::path& out, std::int64_t task) {
-  std::ifstream stream(TaskPath(out, task) / "task.json", std::ios::binary);
-  if (!stream) return std::nullopt;
+  const std::optional<std::string> text = base::ReadFile(TaskPath(out, task) / "task.json");
+  if (!text) return std::nullopt;
   try {
-    TaskRecord record = RecordFromJson({std::istreambuf_iterator<char>(stream), {}});
+    TaskRecord record = RecordFromJson(*text);
     if (record.task == task) return record;
   } catch (const std::invalid_argument&) {
     // A loss of power may leave a file without its content.
@@ -49,18 +47,9 @@ TaskFolder::~TaskFolder() {
 }
 
 void TaskFolder::Commit(const TaskRecord& record) {
-  evaluation::WriteWhole(hidden_ / "task.json", ToJson(record));
-  fs::path old = hidden_;
-  old.replace_extension("old");
-  std::error_code error;
-  fs::remove_all(old, error);
-  const bool replaces = fs::exists(final_);
-  if (replaces) fs::rename(final_, old, error);
-  if (!error) fs::rename(hidden_, final_, error);
-  if (error)
-    throw std::runtime_error(fmt::format("{}: cannot be given its name: {}", final_.string(), error.message()));
+  base::WriteFile(hidden_ / "task.json", ToJson(record));
+  base::ReplaceFolder(hidden_, final_);
   committed_ = true;
-  if (replaces) fs::remove_all(old, error);
 }
 
 }  // namespace campaign

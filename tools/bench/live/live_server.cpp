@@ -1,47 +1,44 @@
 #include "tools/bench/live/live_server.h"
 
-#include <arpa/inet.h>
 #include <fmt/format.h>
-#include <netinet/in.h>
+#include <httplib.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/random.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <list>
+#include <functional>
 #include <mutex>
+#include <semaphore>
 #include <stdexcept>
 #include <thread>
 #include <utility>
-#include <vector>
 
-#include "tools/bench/live/http_request.h"
+#include "tools/base/child_process.h"
+#include "tools/base/files.h"
 
 namespace vobench {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-using std::chrono::seconds;
-
 constexpr std::size_t kMostDroppedBytes = 65536;
-
-// Nobody may frame the page, guess at types, keep it or pass its address on.
-constexpr const char* kHeaders =
-    "Content-Security-Policy: default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src "
-    "'unsafe-inline'; "
-    "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n"
-    "X-Content-Type-Options: nosniff\r\n"
-    "Referrer-Policy: no-referrer\r\n"
-    "Cache-Control: no-store\r\n";
 
 constexpr const char* kWaiting =
     "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"1\">"
     "<title>vobench</title></head><body><p>Nothing to show yet.</p></body></html>";
+
+// Nobody may frame the page, guess at types, keep it or pass its address on.
+httplib::Headers SafeHeaders() {
+  return {{"Content-Security-Policy",
+           "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'; connect-src "
+           "'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+          {"X-Content-Type-Options", "nosniff"},
+          {"Referrer-Policy", "no-referrer"},
+          {"Cache-Control", "no-store"}};
+}
 
 std::string Token() {
   std::array<unsigned char, 16> bytes{};
@@ -53,56 +50,111 @@ std::string Token() {
   return token;
 }
 
-// A file descriptor, closed at the end.
-class Descriptor {
+// One connection with bounds on its time and on the length of its request, which httplib's own does not have.
+class Connection : public httplib::Stream {
  public:
-  explicit Descriptor(int file) : file_(file) {}
-  Descriptor(Descriptor&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
-  Descriptor& operator=(Descriptor&&) = delete;
-  ~Descriptor() {
-    if (file_ >= 0) close(file_);
+  // `stop` becomes readable when the server ends.
+  Connection(int socket, int stop) : socket_(socket), stop_(stop) {}
+
+  bool is_readable() const override { return true; }
+  bool is_writable() const override { return true; }
+  ssize_t read(char* to, std::size_t size) override {
+    if (at_ == end_) {
+      if (received_ > LiveServer::kMostRequestBytes || !Await(POLLIN)) return -1;
+      const ssize_t got = recv(*socket_, block_.data(), block_.size(), MSG_DONTWAIT);
+      if (got <= 0) return got;
+      received_ += static_cast<std::size_t>(got);
+      at_ = block_.data();
+      end_ = at_ + got;
+    }
+    const std::size_t count = std::min(size, static_cast<std::size_t>(end_ - at_));
+    std::copy_n(at_, count, to);
+    at_ += count;
+    return static_cast<ssize_t>(count);
   }
-  int operator*() const { return file_; }
+  ssize_t write(const char* from, std::size_t size) override {
+    if (!std::exchange(answers_, true)) until_ = base::After(LiveServer::kAnswerSeconds);
+    for (std::size_t sent = 0; sent < size;) {
+      if (!Await(POLLOUT)) return -1;
+      const ssize_t more = send(*socket_, from + sent, size - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
+      if (more < 0 && errno != EAGAIN) return -1;
+      if (more > 0) sent += static_cast<std::size_t>(more);
+    }
+    return static_cast<ssize_t>(size);
+  }
+  void get_remote_ip_and_port(std::string&, int&) const override {}
+  void get_local_ip_and_port(std::string&, int&) const override {}
+  socket_t socket() const override { return *socket_; }
+
+  // Reads and drops what the client still sends: a close before would take the answer away from it.
+  void Finish() {
+    shutdown(*socket_, SHUT_WR);
+    for (std::size_t dropped = 0; dropped < kMostDroppedBytes && Await(POLLIN);) {
+      const ssize_t got = recv(*socket_, block_.data(), block_.size(), MSG_DONTWAIT);
+      if (got <= 0) return;
+      dropped += static_cast<std::size_t>(got);
+    }
+  }
 
  private:
-  int file_;
+  // Whether the socket is ready before the deadline and the server's end.
+  bool Await(short event) const {
+    std::array<pollfd, 2> files = {{{*socket_, event, 0}, {stop_, POLLIN, 0}}};
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until_ - std::chrono::steady_clock::now()).count();
+    return left > 0 && poll(files.data(), files.size(), static_cast<int>(left)) > 0 && files[1].revents == 0;
+  }
+
+  base::Descriptor socket_;
+  int stop_;
+  base::SteadyTime until_ = base::After(LiveServer::kRequestSeconds);
+  std::array<char, 4096> block_;
+  const char *at_ = nullptr, *end_ = nullptr;
+  std::size_t received_ = 0;
+  bool answers_ = false;
 };
 
-struct Connection {
-  Descriptor socket;
-  Clock::time_point until;  // then it is closed, whatever the client does
-  std::string asked{};
-  std::string answer{};
-  std::size_t sent = 0;
-  bool said = false;        // all of the answer: what still comes is read and dropped, until the client closes ...
-  std::size_t dropped = 0;  // ... or has sent too much
+// A thread for each connection, and no more connections than threads.
+class Workers : public httplib::TaskQueue {
+ public:
+  void enqueue(std::function<void()> serve) override {
+    pool_.enqueue([this, serve] {
+      serve();
+      free_.release();
+    });
+    free_.acquire();  // before the next connection is accepted
+  }
+  void shutdown() override { pool_.shutdown(); }
 
-  short Awaits() const { return answer.empty() || said ? POLLIN : POLLOUT; }
+ private:
+  std::counting_semaphore<LiveServer::kMostConnections> free_{LiveServer::kMostConnections - 1};
+  httplib::ThreadPool pool_{LiveServer::kMostConnections};
 };
 
 }  // namespace
 
-class LiveServer::Loop {
+class LiveServer::Loop : public httplib::Server {
  public:
-  Loop() : listener_(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)), wake_(eventfd(0, EFD_CLOEXEC)) {
-    sockaddr_in address{};
-    socklen_t size = sizeof address;
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    auto* const at = reinterpret_cast<sockaddr*>(&address);
-    if (*listener_ < 0 || *wake_ < 0 || bind(*listener_, at, size) != 0 || listen(*listener_, kMostConnections) != 0 ||
-        getsockname(*listener_, at, &size) != 0) {
+  Loop() : stop_(eventfd(0, EFD_CLOEXEC)) {
+    set_default_headers(SafeHeaders());
+    set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+      Answer(request, response);
+      return HandlerResponse::Handled;
+    });
+    set_payload_max_length(kMostRequestBytes);
+    set_socket_options([](socket_t) {});  // without SO_REUSEPORT: no other program may have the port, too
+    new_task_queue = [] { return new Workers; };
+    const int port = bind_to_any_port("127.0.0.1");
+    if (!stop_ || port <= 0 || ::listen(svr_sock_, kMostConnections) != 0)
       throw std::runtime_error("--view: no port can be had on 127.0.0.1");
-    }
-    host_ = fmt::format("127.0.0.1:{}", ntohs(address.sin_port));
-    thread_ = std::thread([this] { Run(); });
+    host_ = fmt::format("127.0.0.1:{}", port);
+    thread_ = std::thread([this] { listen_after_bind(); });
+    while (!is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  ~Loop() {
-    eventfd_write(*wake_, 1);
+  ~Loop() override {
+    eventfd_write(*stop_, 1);
+    stop();
     thread_.join();
   }
-  Loop(const Loop&) = delete;
-  Loop& operator=(const Loop&) = delete;
 
   std::string Address() const { return "http://" + host_ + path_; }
   bool asked() const { return asked_; }
@@ -114,88 +166,34 @@ class LiveServer::Loop {
   }
 
  private:
-  void Run() {
-    for (;;) {
-      std::vector<pollfd> files = {{*wake_, POLLIN, 0}};
-      const bool room = connections_.size() < kMostConnections;
-      files.push_back({room ? *listener_ : -1, POLLIN, 0});
-      for (const Connection& connection : connections_) files.push_back({*connection.socket, connection.Awaits(), 0});
-      poll(files.data(), files.size(), PatienceMs());
-      if (files[0].revents != 0) return;
-      std::size_t n = 2;
-      const Clock::time_point now = Clock::now();
-      for (auto at = connections_.begin(); at != connections_.end(); ++n) {
-        const bool stays = now < at->until && (files[n].revents == 0 || Serve(*at));
-        at = stays ? std::next(at) : connections_.erase(at);
-      }
-      if (files[1].revents != 0) Accept();
-    }
+  bool process_and_close_socket(socket_t socket) override {
+    Connection connection(socket, *stop_);
+    bool closed = true;
+    process_request(connection, true, closed, [](httplib::Request& request) {
+      request.headers.erase("Accept-Encoding");  // compression costs the run more than the loopback interface gains
+      request.ranges.clear();
+    });
+    connection.Finish();
+    return true;
   }
 
-  // Until the first connection is due; for ever without one.
-  int PatienceMs() const {
-    if (connections_.empty()) return -1;
-    const auto first = std::min_element(connections_.begin(), connections_.end(),
-                                        [](const Connection& a, const Connection& b) { return a.until < b.until; });
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(first->until - Clock::now()).count();
-    return static_cast<int>(std::max<std::int64_t>(0, left));
-  }
-
-  void Accept() {
-    const int file = accept4(*listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-    if (file >= 0) connections_.push_back({Descriptor(file), Clock::now() + seconds(kRequestSeconds)});
-    // No more files: rather than ask again at once, let those who are there come to their end.
-    if (file < 0 && (errno == EMFILE || errno == ENFILE)) std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-
-  // One step. Whether the connection goes on.
-  bool Serve(Connection& connection) {
-    if (connection.Awaits() == POLLIN) {
-      char block[4096];
-      const ssize_t got = recv(*connection.socket, block, sizeof block, 0);
-      if (got < 0) return errno == EAGAIN || errno == EINTR;
-      if (got == 0) return false;
-      if (connection.said) return (connection.dropped += static_cast<std::size_t>(got)) < kMostDroppedBytes;
-      connection.asked.append(block, static_cast<std::size_t>(got));
-      const auto head = HeadLength(connection.asked);
-      const bool too_long = head.value_or(connection.asked.size()) > kMostRequestBytes;
-      if (!head && !too_long) return true;
-      connection.answer = too_long ? Answer(431) : AnswerTo(std::string_view(connection.asked).substr(0, *head));
-      connection.asked = {};
-      connection.until = Clock::now() + seconds(kAnswerSeconds);
-    }
-    const std::string_view rest = std::string_view(connection.answer).substr(connection.sent);
-    const ssize_t sent = send(*connection.socket, rest.data(), rest.size(), MSG_NOSIGNAL);
-    if (sent < 0) return errno == EAGAIN || errno == EINTR;
-    connection.sent += static_cast<std::size_t>(sent);
-    if (connection.sent < connection.answer.size()) return true;
-    // Closed at once, what the client has sent and nobody read would take the answer away from it.
-    connection.said = true;
-    return shutdown(*connection.socket, SHUT_WR) == 0;
-  }
-
-  static std::string Answer(int status, std::string_view more = "") {
-    return AnswerHead(status, 0, std::string(kHeaders).append(more));
-  }
-
-  std::string AnswerTo(std::string_view head) {
-    const std::optional<HttpRequest> request = ParseHead(head);
-    if (!request) return Answer(400);
-    if (request->method != "GET") return Answer(405, "Allow: GET\r\n");
+  void Answer(const httplib::Request& request, httplib::Response& response) {
+    response.status = 405;
+    if (request.method != "GET") return response.set_header("Allow", "GET");
+    response.status = 404;
+    const bool page = request.target == path_;
     // Another name that leads here (DNS rebinding) is none of ours.
-    const bool page = request->path == path_;
-    if (request->host != host_ || (!page && request->path != path_ + "data")) return Answer(404);
+    if (request.get_header_value_count("Host") != 1 || request.get_header_value("Host") != host_) return;
+    if (!page && request.target != path_ + "data") return;
+    response.status = 200;
     asked_ = true;
     const std::lock_guard lock(mutex_);
-    const std::string& body = page ? page_ : data_;
-    const char* type = page ? "text/html; charset=utf-8" : "application/json";
-    return AnswerHead(200, body.size(), fmt::format("{}Content-Type: {}\r\n", kHeaders, type)) + body;
+    response.set_content(page ? page_ : data_, page ? "text/html; charset=utf-8" : "application/json");
   }
 
   const std::string path_ = "/" + Token() + "/";
   std::string host_;
-  Descriptor listener_, wake_;
-  std::list<Connection> connections_;  // of the thread alone
+  base::Descriptor stop_;
   std::atomic<bool> asked_{true};
   std::mutex mutex_;  // of what follows
   std::string page_ = kWaiting, data_ = "{}";

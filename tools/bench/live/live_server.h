@@ -1,9 +1,8 @@
-// Purpose: a page and its data for browsers on this machine, and nobody else.
+// HTTP server on the loopback interface for one page and its data.
 //
-// It listens on 127.0.0.1 alone, at a port that is free. Its address has a token of 128 random bits from the system,
-// and what does not ask by that address and name is answered 404; anything but GET is 405: there is nothing to write.
-// Whoever connects can neither slow the work nor hold up its end nor fill the memory: SECURITY.md has the limits and
-// the tests that hold them.
+// It listens on 127.0.0.1 at a free port. Its address has a token of 128 random bits from the system; requests for
+// another path or Host are answered 404, methods other than GET 405. SECURITY.md has the limits on connections, their
+// time and their memory, and the tests that hold them.
 #pragma once
 
 #include <memory>
@@ -15,8 +14,8 @@ class LiveServer {
  public:
   static constexpr std::size_t kMostConnections = 16;  // more wait in the kernel's queue, and are answered later
   static constexpr std::size_t kMostRequestBytes = 8192;
-  static constexpr int kRequestSeconds = 3;  // that a client has to say what it wants, ...
-  static constexpr int kAnswerSeconds = 10;  // ... and to take the answer
+  static constexpr int kRequestSeconds = 3;  // from the connection to the end of the request
+  static constexpr int kAnswerSeconds = 10;  // from then to the end of the answer
 
   // Throws std::runtime_error where no port can be had.
   LiveServer();

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "tools/base/files.h"
 #include "tools/bench/report/drawn_runs.h"
 #include "tools/bench/report/text.h"
 #include "tools/judge/evaluation/text_file.h"
@@ -18,9 +18,9 @@ using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 std::string ReadBytes(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw evaluation::InputError({file.string() + ": cannot be read"});
-  return {std::istreambuf_iterator<char>(stream), {}};
+  std::optional<std::string> bytes = base::ReadFile(file);
+  if (!bytes) throw evaluation::InputError({file.string() + ": cannot be read"});
+  return std::move(*bytes);
 }
 
 std::string ReadIfThere(const fs::path& file) { return fs::exists(file) ? ReadBytes(file) : std::string(); }

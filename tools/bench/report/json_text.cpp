@@ -1,20 +1,20 @@
 #include "tools/bench/report/json_text.h"
 
-#include <fstream>
-#include <iterator>
+#include <optional>
+#include <utility>
 
+#include "tools/base/files.h"
 #include "tools/base/limits/json.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace report {
 
 std::string ReadJsonText(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw evaluation::InputError({file.string() + ": cannot be opened"});
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (const std::string problem = limits::JsonProblem(text); !problem.empty())
+  std::optional<std::string> text = base::ReadFile(file);
+  if (!text) throw evaluation::InputError({file.string() + ": cannot be opened"});
+  if (const std::string problem = limits::JsonProblem(*text); !problem.empty())
     throw evaluation::InputError({file.string() + ": " + problem});
-  return text;
+  return std::move(*text);
 }
 
 }  // namespace report

@@ -3,11 +3,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tools/base/files.h"
+#include "tools/base/text.h"
 #include "tools/bench/report/json_text.h"
 #include "tools/bench/report/text.h"
 #include "tools/bench/report/text_summary.h"
 #include "tools/judge/evaluation/text_file.h"
-#include "tools/judge/evaluation/whole_file.h"
 
 namespace report {
 namespace {
@@ -50,7 +51,7 @@ ev::AssociationRule RuleOf(const Json& name) {
 
 std::string HowAssociated(const ev::JudgeOptions& options) {
   return RuleName(options.association.rule) + " association, gap " +
-         ev::FormatNumber(Seconds(options.association.gap_ns), 6) + " s";
+         base::Significant(Seconds(options.association.gap_ns), 6) + " s";
 }
 
 Json Of(const ev::Ate& ate, const ev::JudgeOptions& options) {
@@ -67,10 +68,10 @@ Json Of(const ev::Ate& ate, const ev::JudgeOptions& options) {
 }
 
 Json Of(const ev::Rpe& rpe, const ev::JudgeOptions& options, const char* scale) {
-  const std::string how = "E = B^-1 A over " + ev::FormatNumber(Seconds(options.rpe_delta_ns), 6) +
+  const std::string how = "E = B^-1 A over " + base::Significant(Seconds(options.rpe_delta_ns), 6) +
                           " s, pairs by the truth's stamps within " +
-                          ev::FormatNumber(Seconds(options.rpe_tolerance_ns), 6) + " s, estimated translations times " +
-                          scale + "; " + HowAssociated(options);
+                          base::Significant(Seconds(options.rpe_tolerance_ns), 6) +
+                          " s, estimated translations times " + scale + "; " + HowAssociated(options);
   return {{"position", Of(rpe.position_statistics, "m", how)},
           {"orientation", Of(rpe.orientation_statistics, "rad", how)},
           {"scale", rpe.scale},
@@ -211,7 +212,7 @@ std::string MetricsJson(const std::vector<JudgedRun>& runs) {
 }
 
 void WriteMetricsJson(const std::filesystem::path& out, const std::vector<JudgedRun>& runs) {
-  ev::WriteWhole(out / "metrics.json", MetricsJson(runs));
+  base::WriteFile(out / "metrics.json", MetricsJson(runs));
 }
 
 std::vector<RecordedMetrics> ReadMetricsJson(const std::filesystem::path& out) {

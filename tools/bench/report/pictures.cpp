@@ -3,10 +3,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tools/base/files.h"
 #include "tools/base/limits/whole_number.h"
+#include "tools/base/text.h"
 #include "tools/bench/report/json_text.h"
 #include "tools/judge/evaluation/text_file.h"
-#include "tools/judge/evaluation/whole_file.h"
 
 namespace report {
 namespace {
@@ -64,7 +65,7 @@ bool IsDrawable(const FeatureMark& mark) {
          mark.covariance.cwiseAbs().maxCoeff() < 1e8;
 }
 
-fs::path PicturePath(std::int64_t stamp_ns) { return fs::path("frames") / (ev::FormatSeconds(stamp_ns) + ".jpg"); }
+fs::path PicturePath(std::int64_t stamp_ns) { return fs::path("frames") / (base::FormatSeconds(stamp_ns) + ".jpg"); }
 
 void WritePictures(const fs::path& run_folder, const KeptPictures& pictures) {
   Json json = {
@@ -74,9 +75,9 @@ void WritePictures(const fs::path& run_folder, const KeptPictures& pictures) {
     for (const FeatureMark& mark : picture.features) {
       if (IsDrawable(mark)) features.push_back(Of(mark));
     }
-    json["pictures"].push_back({{"timestamp", ev::FormatSeconds(picture.stamp_ns)}, {"features", features}});
+    json["pictures"].push_back({{"timestamp", base::FormatSeconds(picture.stamp_ns)}, {"features", features}});
   }
-  ev::WriteWhole(run_folder / "pictures.json", json.dump() + "\n");
+  base::WriteFile(run_folder / "pictures.json", json.dump() + "\n");
 }
 
 KeptPictures ReadPictures(const fs::path& run_folder) {
@@ -91,7 +92,7 @@ KeptPictures ReadPictures(const fs::path& run_folder) {
                             " and " + json.at("height").dump()});
     for (const Json& entry : json.at("pictures")) {
       KeptPicture& picture = kept.pictures.emplace_back();
-      const auto stamp = ev::ParseSeconds(entry.at("timestamp").get<std::string>());
+      const auto stamp = base::ParseSeconds(entry.at("timestamp").get<std::string>());
       if (!stamp) throw ev::InputError({entry.at("timestamp").dump() + " is no time"});
       picture.stamp_ns = *stamp;
       for (const Json& feature : entry.at("features")) picture.features.push_back(MarkFrom(feature));
@@ -105,7 +106,7 @@ void WriteTruthScale(const fs::path& out, const TruthPictures& scale) {
                      {"nearest_m", scale.nearest_m},
                      {"farthest_m", scale.farthest_m},
                      {"largest_flow_px", scale.largest_flow_px}};
-  ev::WriteWhole(out / "truth" / "scale.json", json.dump() + "\n");
+  base::WriteFile(out / "truth" / "scale.json", json.dump() + "\n");
 }
 
 TruthPictures ReadTruthScale(const fs::path& out) {
@@ -117,7 +118,7 @@ TruthPictures ReadTruthScale(const fs::path& out) {
   });
 }
 
-fs::path DepthPath(std::int64_t stamp_ns) { return fs::path("truth") / (ev::FormatSeconds(stamp_ns) + "_depth.jpg"); }
-fs::path FlowPath(std::int64_t stamp_ns) { return fs::path("truth") / (ev::FormatSeconds(stamp_ns) + "_flow.jpg"); }
+fs::path DepthPath(std::int64_t stamp_ns) { return fs::path("truth") / (base::FormatSeconds(stamp_ns) + "_depth.jpg"); }
+fs::path FlowPath(std::int64_t stamp_ns) { return fs::path("truth") / (base::FormatSeconds(stamp_ns) + "_flow.jpg"); }
 
 }  // namespace report

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace report {
@@ -16,7 +17,7 @@ std::string RanksCsv(const std::vector<RankTable>& tables) {
     for (std::size_t bar = 0; bar < table.counts.size(); ++bar) {
       text += start + std::to_string(bar + 1);
       for (const double value : {table.counts[bar], table.low[bar], table.high[bar], table.p_value}) {
-        text += "," + ev::FormatNumber(value, 6);
+        text += "," + base::Significant(value, 6);
       }
       text += "\n";
     }

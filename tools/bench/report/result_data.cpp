@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/base/text.h"
 #include "tools/bench/report/text.h"
 #include "tools/judge/evaluation/text_file.h"
 
@@ -67,8 +68,8 @@ RunData ReadRun(const fs::path& out, const RunEntry& entry, const std::vector<Re
   const double ate = data.judged->metrics.errors.sim3.position.rmse;
   // Files are written with twelve digits.
   if (!(std::abs(ate - found->ate_sim3_rmse_m) <= 1e-6 * ate + 1e-9)) {
-    warnings.push_back(name + ": metrics.json has an ATE of " + ev::FormatNumber(found->ate_sim3_rmse_m, 6) +
-                       " m, the files beside it give " + ev::FormatNumber(ate, 6) + " m. One of them was changed.");
+    warnings.push_back(name + ": metrics.json has an ATE of " + base::Significant(found->ate_sim3_rmse_m, 6) +
+                       " m, the files beside it give " + base::Significant(ate, 6) + " m. One of them was changed.");
   }
   return data;
 }

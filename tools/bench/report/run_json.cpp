@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "tools/base/files.h"
 #include "tools/base/limits/whole_number.h"
 #include "tools/bench/report/json_text.h"
 #include "tools/judge/evaluation/text_file.h"
-#include "tools/judge/evaluation/whole_file.h"
 
 namespace report {
 namespace {
@@ -78,7 +78,7 @@ void WriteRunJson(const fs::path& out, const RunDescription& description) {
   for (const RunEntry& run : description.runs) {
     json["runs"].push_back({{"system", run.system}, {"seed", run.seed}, {"path", run.path}, {"seconds", run.seconds}});
   }
-  evaluation::WriteWhole(out / "run.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  base::WriteFile(out / "run.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 RunDescription ReadRunJson(const fs::path& out) {

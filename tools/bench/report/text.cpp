@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <map>
 
+#include "tools/base/text.h"
+
 namespace report {
 namespace {
 
@@ -19,9 +21,7 @@ std::size_t Width(const std::string& text) {
 
 std::string Fixed(double value, int decimals) {
   if (!std::isfinite(value)) return "–";
-  char text[400];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
+  return base::Fixed(value, decimals);
 }
 
 std::string Readable(double value) {

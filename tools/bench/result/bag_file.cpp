@@ -8,11 +8,11 @@
 #include <sensor_msgs/Imu.h>
 
 #include <cerrno>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 namespace vobench {
 namespace {
@@ -45,9 +45,16 @@ void Written(const std::string& file, Work&& work) {
 }  // namespace
 
 struct BagFile::Impl {
-  std::string file, part;
+  std::string name;  // in errors
   std::unique_ptr<rosbag::Bag> bag = std::make_unique<rosbag::Bag>();
-  bool committed = false;
+
+  explicit Impl(std::string shown) : name(std::move(shown)) {}
+  ~Impl() {
+    try {
+      Close();
+    } catch (const std::exception&) {
+    }
+  }
 
   // A bag whose close failed is given up, not destroyed: it would close its file once more, and throw.
   void Close() {
@@ -61,31 +68,15 @@ struct BagFile::Impl {
 
   template <class Message>
   void Write(const std::string& topic, std::int64_t stamp_ns, const Message& message) {
-    Written(file, [&] { bag->write(topic, TimeOf(stamp_ns), message); });
+    Written(name, [&] { bag->write(topic, TimeOf(stamp_ns), message); });
   }
 };
 
-BagFile::BagFile(const std::string& file) : impl_(new Impl{file, file + ".part"}) {
-  try {
-    Written(file, [&] { impl_->bag->open(impl_->part, rosbag::bagmode::Write); });
-  } catch (...) {
-    Discard();  // without this object's end
-    throw;
-  }
+BagFile::BagFile(const std::string& file, const std::string& name) : impl_(std::make_unique<Impl>(name)) {
+  Written(name, [&] { impl_->bag->open(file, rosbag::bagmode::Write); });
 }
 
-BagFile::~BagFile() {
-  if (!impl_->committed) Discard();
-}
-
-void BagFile::Discard() {
-  try {
-    impl_->Close();
-  } catch (const std::exception&) {
-  }
-  std::error_code ignored;
-  std::filesystem::remove(impl_->part, ignored);
-}
+BagFile::~BagFile() = default;
 
 void BagFile::Image(const std::string& topic, std::int64_t stamp_ns, const Picture& picture) {
   auto message = Stamped<sensor_msgs::Image>(stamp_ns, "camera");
@@ -135,12 +126,8 @@ void BagFile::Pose(const std::string& topic, std::int64_t stamp_ns, const std::a
   impl_->Write(topic, stamp_ns, message);
 }
 
-void BagFile::Commit() {
-  Written(impl_->file, [&] { impl_->Close(); });
-  std::error_code error;
-  std::filesystem::rename(impl_->part, impl_->file, error);
-  if (error) throw std::runtime_error(impl_->file + ": cannot be written: " + error.message());
-  impl_->committed = true;
+void BagFile::Close() {
+  Written(impl_->name, [&] { impl_->Close(); });
 }
 
 std::vector<std::string> BagFile::Topics(const std::string& file) {

@@ -1,5 +1,5 @@
-// Purpose: a ROS 1 bag, written message by message. Behind it is Debian's rosbag storage library, whose headers are not C++20: this
-//          is the one place that includes them, and it is compiled as C++17.
+// ROS 1 bag file, written message by message with Debian's rosbag storage library, whose headers are not C++20: the only
+// source that includes them is compiled as C++17.
 // Source:  ROS bag format 2.0; sensor_msgs, geometry_msgs; REP 103 (units, optical frames), 104 (camera_info), 118 (depth images).
 #pragma once
 
@@ -12,12 +12,11 @@
 
 namespace vobench {
 
-// Written under a hidden name beside the file, and renamed by Commit. Throws std::runtime_error naming the file. Stamps at least 1 ns:
-// a bag has no time 0.
+// Throws std::runtime_error with `name`, the file in errors. Stamps are at least 1 ns: a bag has no time 0.
 class BagFile {
  public:
-  explicit BagFile(const std::string& file);
-  ~BagFile();  // without Commit, nothing is left
+  BagFile(const std::string& file, const std::string& name);
+  ~BagFile();
 
   struct Picture {
     std::uint32_t width = 0, height = 0, bytes_per_pixel = 0;
@@ -37,14 +36,12 @@ class BagFile {
   // T_WC: position, quaternion x y z w.
   void Pose(const std::string& topic, std::int64_t stamp_ns, const std::array<double, 3>& p,
             const std::array<double, 4>& q);
-  void Commit();
+  void Close();
 
   // Message counts by topic of a bag that is there, "TOPIC TYPE COUNT" each, as the library reads them back.
   static std::vector<std::string> Topics(const std::string& file);
 
  private:
-  void Discard();
-
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <utility>
 
+#include "tools/base/files.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/result/output_folder.h"
-#include "tools/judge/evaluation/whole_file.h"
 
 namespace vobench {
 namespace fs = std::filesystem;
@@ -70,8 +70,6 @@ std::string MapText(const std::vector<vo::MapPoint>& map) {
   return text;
 }
 
-void WriteMap(const fs::path& file, const std::vector<vo::MapPoint>& map) {
-  evaluation::WriteWhole(file, MapText(map));
-}
+void WriteMap(const fs::path& file, const std::vector<vo::MapPoint>& map) { base::WriteFile(file, MapText(map)); }
 
 }  // namespace vobench

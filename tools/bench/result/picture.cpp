@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/judge/evaluation/whole_file.h"
+#include "tools/base/files.h"
 
 namespace vobench {
 namespace {
@@ -31,9 +31,7 @@ std::string Jpeg(const cv::Mat& image) {
   return {jpeg.begin(), jpeg.end()};
 }
 
-void WritePicture(const std::filesystem::path& file, const cv::Mat& image) {
-  evaluation::WriteWhole(file, Jpeg(image));
-}
+void WritePicture(const std::filesystem::path& file, const cv::Mat& image) { base::WriteFile(file, Jpeg(image)); }
 
 cv::Mat DepthColours(const cv::Mat& depth, double nearest, double farthest) {
   cv::Mat levels(depth.size(), CV_8UC1), colours;

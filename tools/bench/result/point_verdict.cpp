@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "tools/base/text.h"
 #include "tools/bench/report/text.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/geometry/so3.h"
@@ -117,10 +118,9 @@ std::string VerdictSentence(const std::string& system, const std::string& settin
     return fmt::format("{} is consistent with its own model at {}.", name, setting);
   }
   const auto join = [](std::vector<std::string> texts) {
-    std::string all;
-    for (std::size_t i = 0; i < std::min<std::size_t>(texts.size(), 3); ++i) all += (i == 0 ? "" : ", ") + texts[i];
-    if (texts.size() > 3) all += fmt::format(" and {} more", texts.size() - 3);
-    return all;
+    const std::string more = texts.size() > 3 ? fmt::format(" and {} more", texts.size() - 3) : "";
+    texts.resize(std::min<std::size_t>(texts.size(), 3));
+    return base::Join(texts, ", ") + more;
   };
   const auto above = OutOfBand(verdict, true), below = OutOfBand(verdict, false);
   if (!above.empty() && below.empty())

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "tools/judge/evaluation/whole_file.h"
+#include "tools/base/files.h"
 
 namespace vobench {
 namespace fs = std::filesystem;
@@ -36,24 +36,22 @@ cv::VideoWriter OpenVideo(const fs::path& file, double rate_hz, cv::Size size) {
 }
 
 void WriteVideo(const fs::path& file, const std::vector<PreviewFrame>& frames, double rate_hz) {
-  const fs::path unfinished = file.parent_path() / ("unfinished-" + file.filename().string());
+  // The name's ending is the video's format.
+  base::AtomicPath unfinished(file, file.parent_path() / ("unfinished-" + file.filename().string()));
   cv::VideoWriter video;
   for (const PreviewFrame& frame : frames) {
     const cv::Mat image = Read(frame.image);
-    if (!video.isOpened()) video = OpenVideo(unfinished, rate_hz, image.size());
+    if (!video.isOpened()) video = OpenVideo(unfinished.path(), rate_hz, image.size());
     if (!video.isOpened()) FailVideo(file, "cannot be written");
     video.write(image);
   }
   video.release();
   // OpenCV does not say when a disk is full; a video that lacks its end cannot be opened.
-  const cv::VideoCapture back(unfinished.string(), cv::CAP_FFMPEG);
+  const cv::VideoCapture back(unfinished.path().string(), cv::CAP_FFMPEG);
   const auto count = back.isOpened() ? back.get(cv::CAP_PROP_FRAME_COUNT) : 0.0;
-  std::error_code error;
-  if (static_cast<std::size_t>(count) != frames.size()) {
-    fs::remove(unfinished, error);
+  if (static_cast<std::size_t>(count) != frames.size())
     FailVideo(file, fmt::format("has {} of {} frames when read back", count, frames.size()));
-  }
-  fs::rename(unfinished, file);
+  unfinished.Commit();
 }
 
 // At most 24, the first and the last among them.
@@ -92,7 +90,7 @@ void WriteContactSheet(const fs::path& file, const std::vector<PreviewFrame>& fr
   if (!cv::imencode(".jpg", sheet, jpeg, {cv::IMWRITE_JPEG_QUALITY, 90})) {
     throw std::runtime_error(file.string() + ": cannot encode this picture");
   }
-  evaluation::WriteWhole(file, std::string(jpeg.begin(), jpeg.end()));
+  base::WriteFile(file, std::string(jpeg.begin(), jpeg.end()));
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "tools/base/files.h"
 #include "tools/bench/result/picture.h"
-#include "tools/judge/evaluation/whole_file.h"
 
 namespace vobench {
 namespace fs = std::filesystem;
@@ -123,7 +123,7 @@ void Recorder::Add(const vo::Frame& frame, const vo::Estimate& estimate, const s
 
 void Recorder::Write(const std::vector<vo::MapPoint>& map) const {
   evaluation::WriteEstimateRun(*folder_, Run());
-  evaluation::WriteWhole(*folder_ / "landmarks.csv", LandmarkTable(map));
+  base::WriteFile(*folder_ / "landmarks.csv", LandmarkTable(map));
   if (!pictures_.pictures.empty()) report::WritePictures(*folder_, pictures_);
 }
 

@@ -5,12 +5,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 #include <vector>
 
 #include "tools/base/settings/settings.h"
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace vobench {
@@ -27,19 +28,16 @@ std::optional<fs::path> IclNuimTruth(const fs::path& sequence) {
 }
 
 // Nanoseconds as decimal digits.
-std::optional<std::int64_t> ParseNanoseconds(const std::string& text) {
-  std::int64_t stamp_ns = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), stamp_ns);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  const bool near = stamp_ns >= -evaluation::kLatest_ns && stamp_ns <= evaluation::kLatest_ns;
-  return whole && near ? std::optional(stamp_ns) : std::nullopt;
+std::optional<std::int64_t> ParseNanoseconds(std::string_view text) {
+  const auto stamp_ns = base::ParseWhole(text);
+  return stamp_ns && *stamp_ns >= -base::kLatest_ns && *stamp_ns <= base::kLatest_ns ? stamp_ns : std::nullopt;
 }
 
 // ICL-NUIM's time is index / 30 s. indices_ns: the index read as seconds.
 std::int64_t IclNuimStamp(std::int64_t indices_ns) { return (indices_ns + 15) / 30; }
 
-std::optional<std::int64_t> ParseIclNuimIndex(const std::string& text) {
-  const auto indices_ns = evaluation::ParseSeconds(text);
+std::optional<std::int64_t> ParseIclNuimIndex(std::string_view text) {
+  const auto indices_ns = base::ParseSeconds(text);
   return indices_ns ? std::optional(IclNuimStamp(*indices_ns)) : std::nullopt;
 }
 
@@ -47,11 +45,11 @@ std::optional<std::int64_t> ParseIclNuimIndex(const std::string& text) {
 struct FrameList {
   const char* name;
   char separator;
-  std::optional<std::int64_t> (*stamp)(const std::string& text);
+  std::optional<std::int64_t> (*stamp)(std::string_view text);
   const char* what;
 };
 constexpr FrameList kFrameLists[] = {
-    {"rgb.txt", ' ', evaluation::ParseSeconds, "a time in seconds, 4e9 at most"},
+    {"rgb.txt", ' ', base::ParseSeconds, "a time in seconds, 4e9 at most"},
     {"associations.txt", ' ', ParseIclNuimIndex, "the number of a frame"},
     {"mav0/cam0/data.csv", ',', ParseNanoseconds, "a time in nanoseconds, 4e18 at most"}};
 

@@ -9,16 +9,8 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 namespace vobench {
-
-SpoolFile::~SpoolFile() {
-  if (descriptor_ >= 0) close(descriptor_);
-}
-
-SpoolFile::SpoolFile(SpoolFile&& other) noexcept
-    : folder_(std::move(other.folder_)), size_(other.size_), descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 void SpoolFile::Fail(const char* what, int why) const {
   throw std::runtime_error(
@@ -26,36 +18,25 @@ void SpoolFile::Fail(const char* what, int why) const {
 }
 
 void SpoolFile::Open() {
-  do {
-    descriptor_ = open(folder_.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  } while (descriptor_ < 0 && errno == EINTR);
-  if (descriptor_ >= 0) return;
+  constexpr int kFlags = O_CLOEXEC | O_APPEND;
+  file_ =
+      base::Descriptor(base::Uninterrupted([&] { return open(folder_.c_str(), O_TMPFILE | O_RDWR | kFlags, 0600); }));
+  if (file_) return;
   if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) Fail("cannot keep", errno);
   std::string name = (folder_ / ".spool-XXXXXX").string();  // a file system without files that have no name
-  descriptor_ = mkostemp(name.data(), O_CLOEXEC);
-  if (descriptor_ < 0 || unlink(name.c_str()) != 0) Fail("cannot keep", errno);
+  file_ = base::Descriptor(mkostemp(name.data(), kFlags));
+  if (!file_ || unlink(name.c_str()) != 0) Fail("cannot keep", errno);
 }
 
 void SpoolFile::Append(const void* bytes, std::size_t count) {
-  if (descriptor_ < 0) Open();
-  const char* next = static_cast<const char*>(bytes);
-  std::uint64_t offset = size_;
-  size_ += count;
-  while (count > 0) {
-    const ssize_t written = pwrite(descriptor_, next, count, static_cast<off_t>(offset));
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) Fail("cannot keep", written < 0 ? errno : EIO);
-    next += written;
-    offset += static_cast<std::uint64_t>(written);
-    count -= static_cast<std::size_t>(written);
-  }
+  if (!file_) Open();
+  if (const int error = base::WriteAll(*file_, {static_cast<const char*>(bytes), count})) Fail("cannot keep", error);
 }
 
 void SpoolFile::Read(std::uint64_t offset, void* bytes, std::size_t count) const {
   char* next = static_cast<char*>(bytes);
   while (count > 0) {
-    const ssize_t got = pread(descriptor_, next, count, static_cast<off_t>(offset));
-    if (got < 0 && errno == EINTR) continue;
+    const ssize_t got = base::Uninterrupted([&] { return pread(*file_, next, count, static_cast<off_t>(offset)); });
     if (got <= 0) Fail("cannot read", got < 0 ? errno : EIO);
     next += got;
     offset += static_cast<std::uint64_t>(got);

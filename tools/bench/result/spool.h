@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "tools/base/files.h"
+
 namespace vobench {
 
 // A file that nobody else sees and that is gone with this object, however the program ends. It is made when something is first written.
@@ -18,9 +20,6 @@ namespace vobench {
 class SpoolFile {
  public:
   explicit SpoolFile(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  ~SpoolFile();
-  SpoolFile(SpoolFile&& other) noexcept;
-  SpoolFile& operator=(SpoolFile&&) = delete;
 
   void Append(const void* bytes, std::size_t count);
   void Read(std::uint64_t offset, void* bytes, std::size_t count) const;
@@ -30,8 +29,7 @@ class SpoolFile {
   [[noreturn]] void Fail(const char* what, int why) const;
 
   std::filesystem::path folder_;
-  std::uint64_t size_ = 0;
-  int descriptor_ = -1;
+  base::Descriptor file_;
 };
 
 template <class Record>

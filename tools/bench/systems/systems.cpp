@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "tools/base/text.h"
+
 namespace vobench {
 
 const std::vector<std::string>& SystemNames() {
@@ -38,10 +40,6 @@ vo::Params ForSystem(const std::string& name, vo::Params params) {
   return params;
 }
 
-std::string SystemList() {
-  std::string list;
-  for (const std::string& name : SystemNames()) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
+std::string SystemList() { return base::Join(SystemNames(), ", "); }
 
 }  // namespace vobench

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace evaluation {
@@ -75,7 +76,8 @@ std::vector<Match> NearestOfLonger(const Stamps& estimate, const Stamps& truth, 
 
 std::string Span(const Trajectory& trajectory) {
   if (trajectory.empty()) return "nothing";
-  return FormatSeconds(trajectory.front().stamp_ns) + " ... " + FormatSeconds(trajectory.back().stamp_ns) + " s";
+  return base::FormatSeconds(trajectory.front().stamp_ns) + " ... " + base::FormatSeconds(trajectory.back().stamp_ns) +
+         " s";
 }
 
 }  // namespace
@@ -119,7 +121,7 @@ MatchedTrajectories MatchTrajectories(const Trajectory& estimate, const Trajecto
   if (matched.estimate.empty()) {
     throw InputError({"estimate and truth have no pose in common: the estimate covers " + Span(estimate) +
                       ", the truth " + Span(truth) + ", and the gap allowed between stamps is " +
-                      FormatNumber(static_cast<double>(options.gap_ns) * 1e-9, 6) + " s"});
+                      base::Significant(static_cast<double>(options.gap_ns) * 1e-9, 6) + " s"});
   }
   return matched;
 }

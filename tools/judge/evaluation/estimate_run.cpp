@@ -9,8 +9,9 @@
 #include <optional>
 #include <stdexcept>
 
+#include "tools/base/files.h"
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"
-#include "tools/judge/evaluation/whole_file.h"
 
 namespace evaluation {
 namespace {
@@ -39,7 +40,7 @@ std::vector<StampedBelief> ReadBeliefs(const std::filesystem::path& file, Proble
         problems.Add(file, line.number, token.column, "'" + token.text + "' is not a finite number");
       }
     }
-    const auto stamp = ParseSeconds(line.tokens[0].text);
+    const auto stamp = base::ParseSeconds(line.tokens[0].text);
     if (!stamp) {
       problems.Add(file, line.number, line.tokens[0].column,
                    "'" + line.tokens[0].text + "' is not a time in seconds, 4e9 at most");
@@ -101,7 +102,7 @@ std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems&
     const auto bad = [&](std::size_t i, const char* what) {
       problems.Add(file, line.number, line.tokens[i].column, "'" + line.tokens[i].text + "' is not " + what);
     };
-    if (const auto stamp = ParseSeconds(line.tokens[0].text)) {
+    if (const auto stamp = base::ParseSeconds(line.tokens[0].text)) {
       record.stamp_ns = *stamp;
       if (!frames.empty() && *stamp <= frames.back().stamp_ns) bad(0, "later than the time above");
     } else {
@@ -150,7 +151,7 @@ void RequireFinite(const std::vector<StampedBelief>& beliefs) {
   for (const StampedBelief& belief : beliefs) {
     if (belief.covariance.allFinite() && belief.velocity.v_WC.allFinite() && belief.velocity.w_WC_C.allFinite())
       continue;
-    throw std::invalid_argument("covariance.txt: the belief at " + FormatSeconds(belief.velocity.stamp_ns) +
+    throw std::invalid_argument("covariance.txt: the belief at " + base::FormatSeconds(belief.velocity.stamp_ns) +
                                 " holds a number that is not finite; nothing was written");
   }
 }
@@ -160,28 +161,28 @@ void RequireFinite(const std::vector<FrameRecord>& frames) {
     const double numbers[] = {f.nis, f.effective_particles, f.ms_features, f.ms_matching, f.ms_filter};
     if (std::all_of(std::begin(numbers), std::end(numbers), [](double value) { return std::isfinite(value); }))
       continue;
-    throw std::invalid_argument("frames.csv: the frame at " + FormatSeconds(f.stamp_ns) +
+    throw std::invalid_argument("frames.csv: the frame at " + base::FormatSeconds(f.stamp_ns) +
                                 " holds a number that is not finite; nothing was written");
   }
 }
 
 std::string LineOf(const StampedBelief& belief) {
-  std::string text = FormatSeconds(belief.velocity.stamp_ns);
-  for (int k = 0; k < 3; ++k) text += ' ' + FormatNumber(belief.velocity.v_WC[k], 12);
-  for (int k = 0; k < 3; ++k) text += ' ' + FormatNumber(belief.velocity.w_WC_C[k], 12);
+  std::string text = base::FormatSeconds(belief.velocity.stamp_ns);
+  for (int k = 0; k < 3; ++k) text += ' ' + base::Significant(belief.velocity.v_WC[k], 12);
+  for (int k = 0; k < 3; ++k) text += ' ' + base::Significant(belief.velocity.w_WC_C[k], 12);
   // Fifteen digits: a covariance rounded more coarsely may no longer be positive definite.
   for (int row = 0; row < 12; ++row) {
-    for (int column = row; column < 12; ++column) text += ' ' + FormatNumber(belief.covariance(row, column), 15);
+    for (int column = row; column < 12; ++column) text += ' ' + base::Significant(belief.covariance(row, column), 15);
   }
   return text + '\n';
 }
 
 std::string LineOf(const FrameRecord& f, bool guarded) {
-  std::string text = FormatSeconds(f.stamp_ns);
+  std::string text = base::FormatSeconds(f.stamp_ns);
   for (const int value : {f.searched, f.matched, f.landmarks, f.permanent}) text += ',' + std::to_string(value);
-  text += ',' + FormatNumber(f.nis, 9) + ',' + std::to_string(f.nis_dof);
+  text += ',' + base::Significant(f.nis, 9) + ',' + std::to_string(f.nis_dof);
   for (const double value : {f.effective_particles, f.ms_features, f.ms_matching, f.ms_filter}) {
-    text += ',' + FormatNumber(value, 6);
+    text += ',' + base::Significant(value, 6);
   }
   text += f.tracked ? ",tracked" : ",coasted";
   if (guarded) {
@@ -192,7 +193,7 @@ std::string LineOf(const FrameRecord& f, bool guarded) {
 }
 
 void WriteBeliefs(const std::filesystem::path& file, const std::vector<StampedBelief>& beliefs) {
-  WholeFile out(file);
+  base::AtomicFile out(file);
   out.Append("# timestamp vx vy vz wx wy wz, then the upper triangle of the 12 x 12 covariance, row by row\n");
   for (const StampedBelief& belief : beliefs) out.Append(LineOf(belief));
   out.Commit();
@@ -201,7 +202,7 @@ void WriteBeliefs(const std::filesystem::path& file, const std::vector<StampedBe
 void WriteFrames(const std::filesystem::path& file, const std::vector<FrameRecord>& frames) {
   const bool guarded =
       std::all_of(frames.begin(), frames.end(), [](const FrameRecord& f) { return f.guards.has_value(); });
-  WholeFile out(file);
+  base::AtomicFile out(file);
   for (std::size_t i = 0; i < (guarded ? kColumns.size() : kWithoutGuards); ++i)
     out.Append((i == 0 ? "" : ",") + std::string(kColumns[i]));
   out.Append("\n");

@@ -1,5 +1,5 @@
-// Purpose: reading tables of text strictly, and writing their numbers. Every problem of a file is collected and reported
-//          at once, with file, line, column and the text found there.
+// Strict reader of tables of text: every problem of a file is collected and reported at once, with file, line, column and
+// the text found there.
 #pragma once
 
 #include <cstddef>
@@ -87,26 +87,14 @@ Lines ReadLines(const std::filesystem::path& file, char separator = ' ');
 // The whole text as a finite number; nothing when it is anything else ("nan", "1.2x", "").
 std::optional<double> ParseNumber(const std::string& text);
 
-// How far a stamp may be from zero, and how long what is added to one (a gap, an offset, a delta): their sums and
-// differences fit into 64 bits.
-constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;
+// Bound on what is added to a stamp (a gap, an offset, a delta) [s].
 constexpr double kLongest_s = 1e9;
-
-// Decimal seconds to nanoseconds, exactly (no double between; a tenth decimal is rounded). Exponents are understood.
-// Nothing beyond kLatest_ns.
-std::optional<std::int64_t> ParseSeconds(const std::string& text);
 
 // Of what is added to a stamp. Nothing beyond kLongest_s, and for what is no number.
 std::optional<std::int64_t> Nanoseconds(double seconds);
 
-// Nanoseconds as seconds with nine decimals.
-std::string FormatSeconds(std::int64_t stamp_ns);
-
 // The double that the reference tools read a stamp as. At 1.3e9 s a double resolves 0.24 us, which decides between two stamps that are
 // equally near; ours are to decide as theirs.
 double SecondsAsRead(std::int64_t stamp_ns);
-
-// A number with so many significant digits, shortest form ("%.*g").
-std::string FormatNumber(double value, int digits);
 
 }  // namespace evaluation

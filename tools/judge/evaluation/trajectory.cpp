@@ -6,9 +6,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "tools/base/files.h"
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/so3.h"
 #include "tools/judge/evaluation/text_file.h"
-#include "tools/judge/evaluation/whole_file.h"
 
 namespace evaluation {
 namespace {
@@ -29,7 +30,7 @@ std::optional<std::pair<std::int64_t, std::array<double, N>>> ParseLine(const st
     return std::nullopt;
   }
   bool good = true;
-  const auto stamp = ParseSeconds(line.tokens[0].text);
+  const auto stamp = base::ParseSeconds(line.tokens[0].text);
   if (!stamp) {
     problems.Add(file, line.number, line.tokens[0].column,
                  "'" + line.tokens[0].text + "' is not a time in seconds, 4e9 at most");
@@ -69,14 +70,14 @@ Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading) {
     const double norm = pose.q_WC.norm();
     if (std::abs(norm - 1) > kNormTolerance) {
       problems.Add(file, line.number, line.tokens[4].column,
-                   "the quaternion's norm is " + FormatNumber(norm, 6) + ", which differs from 1 by more than " +
-                       FormatNumber(kNormTolerance, 1));
+                   "the quaternion's norm is " + base::Significant(norm, 6) + ", which differs from 1 by more than " +
+                       base::Significant(kNormTolerance, 1));
       continue;
     }
     if (reading == Reading::strict) pose.q_WC.normalize();
     if (!trajectory.empty() && stamp < trajectory.back().stamp_ns) {
       problems.Add(file, line.number, line.tokens[0].column,
-                   "time " + line.tokens[0].text + " lies before " + FormatSeconds(trajectory.back().stamp_ns) +
+                   "time " + line.tokens[0].text + " lies before " + base::FormatSeconds(trajectory.back().stamp_ns) +
                        ", the time of the pose above");
       continue;
     }
@@ -96,16 +97,16 @@ Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading) {
 }
 
 void WriteTrajectory(const std::filesystem::path& file, const Trajectory& trajectory) {
-  WholeFile out(file);
+  base::AtomicFile out(file);
   out.Append("# timestamp tx ty tz qx qy qz qw\n");
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const StampedPose& pose = trajectory[i];
     RequireWritable(file, i, pose.p_WC.allFinite() && pose.q_WC.coeffs().allFinite(),
                     i == 0 || pose.stamp_ns > trajectory[i - 1].stamp_ns);
     const Eigen::Vector4d q = pose.q_WC.w() < 0 ? Eigen::Vector4d(-pose.q_WC.coeffs()) : pose.q_WC.coeffs();
-    std::string text = FormatSeconds(pose.stamp_ns);
+    std::string text = base::FormatSeconds(pose.stamp_ns);
     for (const double value : {pose.p_WC.x(), pose.p_WC.y(), pose.p_WC.z(), q.x(), q.y(), q.z(), q.w()}) {
-      text += ' ' + FormatNumber(value, 12);
+      text += ' ' + base::Significant(value, 12);
     }
     out.Append(text + '\n');
   }
@@ -121,8 +122,8 @@ Velocities ReadVelocities(const std::filesystem::path& file) {
     const auto& [stamp, n] = *parsed;
     if (!velocities.empty() && stamp <= velocities.back().stamp_ns) {
       problems.Add(file, line.number, line.tokens[0].column,
-                   "time " + line.tokens[0].text + " is not later than " + FormatSeconds(velocities.back().stamp_ns) +
-                       ", the time above");
+                   "time " + line.tokens[0].text + " is not later than " +
+                       base::FormatSeconds(velocities.back().stamp_ns) + ", the time above");
       continue;
     }
     velocities.push_back({stamp, {n[0], n[1], n[2]}, {n[3], n[4], n[5]}});
@@ -133,15 +134,15 @@ Velocities ReadVelocities(const std::filesystem::path& file) {
 }
 
 void WriteVelocities(const std::filesystem::path& file, const Velocities& velocities) {
-  WholeFile out(file);
+  base::AtomicFile out(file);
   out.Append("# timestamp vx vy vz wx wy wz\n");
   for (std::size_t i = 0; i < velocities.size(); ++i) {
     const StampedVelocity& entry = velocities[i];
     RequireWritable(file, i, entry.v_WC.allFinite() && entry.w_WC_C.allFinite(),
                     i == 0 || entry.stamp_ns > velocities[i - 1].stamp_ns);
-    std::string text = FormatSeconds(entry.stamp_ns);
-    for (int k = 0; k < 3; ++k) text += ' ' + FormatNumber(entry.v_WC[k], 12);
-    for (int k = 0; k < 3; ++k) text += ' ' + FormatNumber(entry.w_WC_C[k], 12);
+    std::string text = base::FormatSeconds(entry.stamp_ns);
+    for (int k = 0; k < 3; ++k) text += ' ' + base::Significant(entry.v_WC[k], 12);
+    for (int k = 0; k < 3; ++k) text += ' ' + base::Significant(entry.w_WC_C[k], 12);
     out.Append(text + '\n');
   }
   out.Commit();

@@ -14,10 +14,12 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "tools/base/files.h"
 #include "tools/base/limits/exr.h"
 #include "tools/base/limits/json.h"
 #include "tools/base/limits/picture.h"
 #include "tools/base/settings/settings.h"
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "vo/geometry/camera_file.h"
 
@@ -45,7 +47,7 @@ std::vector<Entry> ReadTable(const fs::path& file, std::size_t numbers, bool sta
       const std::string& text = line.tokens[0].text;
       std::optional<std::int64_t> stamp;
       if (separator == ' ') {
-        stamp = evaluation::ParseSeconds(text);
+        stamp = base::ParseSeconds(text);
       } else if (text.size() < 19 && text.find_first_not_of("0123456789") == std::string::npos && !text.empty()) {
         stamp = std::stoll(text);
       }
@@ -101,9 +103,9 @@ void CompareStamps(Sequence& s, Check& stamps) {
       continue;
     }
     const auto [here, there] = std::mismatch(list.begin(), list.end(), s.stamps.begin(), s.stamps.end());
-    stamps.Fail(name + ".txt: " + (here == list.end() ? "ends early" : "has " + evaluation::FormatSeconds(*here)) +
+    stamps.Fail(name + ".txt: " + (here == list.end() ? "ends early" : "has " + base::FormatSeconds(*here)) +
                 " where the other lists " +
-                (there == s.stamps.end() ? std::string("end") : "have " + evaluation::FormatSeconds(*there)));
+                (there == s.stamps.end() ? std::string("end") : "have " + base::FormatSeconds(*there)));
   }
 }
 
@@ -117,7 +119,7 @@ void PlacePoses(Sequence& s, const std::string& name, std::vector<vo::Pose>& pos
     const std::vector<double>& n = entry.numbers;
     const Eigen::Quaterniond q(n[6], n[3], n[4], n[5]);
     files.Add(std::abs(q.norm() - 1), 1e-3,
-              name + ".txt " + evaluation::FormatSeconds(entry.stamp_ns) + ": length of the quaternion");
+              name + ".txt " + base::FormatSeconds(entry.stamp_ns) + ": length of the quaternion");
     if (at == s.stamps.end() || *at != entry.stamp_ns) continue;
     const auto frame = static_cast<std::size_t>(at - s.stamps.begin());
     poses[frame] = {{n[0], n[1], n[2]}, q.normalized()};
@@ -148,8 +150,7 @@ void ReadScenario(const nlohmann::json& scenario, Sequence& s) {
 
 // A manifest that says something else than the simulator's is a failure of `files`.
 void ReadManifest(const fs::path& file, Sequence& s, Check& files) {
-  std::ifstream stream(file);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string text = base::ReadFile(file).value_or("");
   if (const std::string problem = limits::JsonProblem(text); !problem.empty())
     return files.Fail("manifest.json: " + problem);
   const nlohmann::json manifest = nlohmann::json::parse(text, nullptr, false);
@@ -283,8 +284,8 @@ cv::Mat ReadPicture(const fs::path& file) {
     if (!fs::is_regular_file(file)) throw std::runtime_error("is not there");
     if (file.extension() == ".flo") return ReadFlo(file);
     const bool is_exr = file.extension() == ".exr";
-    std::ifstream stream(file, std::ios::binary);
-    const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
+    const std::string text = base::ReadFile(file).value_or("");
+    const std::vector<std::uint8_t> bytes(text.begin(), text.end());
     const std::string problem = is_exr ? limits::ExrProblem(bytes) : limits::PictureProblem(bytes);
     if (!problem.empty()) throw std::runtime_error(problem);
     if (is_exr) return ReadExr(file);

@@ -3,6 +3,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace verification {
@@ -35,7 +36,7 @@ Frames::Frames(const Sequence& sequence, Check& files)
   }
 }
 
-std::string Frames::Stamp(std::size_t frame) const { return evaluation::FormatSeconds(sequence_.stamps[frame]); }
+std::string Frames::Stamp(std::size_t frame) const { return base::FormatSeconds(sequence_.stamps[frame]); }
 
 cv::Mat Frames::Picture(const std::string& stream, std::size_t frame) {
   while (!pictures_.empty() && pictures_.begin()->first + 5 < frame) pictures_.erase(pictures_.begin());

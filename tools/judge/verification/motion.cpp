@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "vo/geometry/so3.h"
 
@@ -63,8 +64,8 @@ std::vector<Step> Steps(const Sequence& s, const std::vector<Entry>& rates, cons
                        s.stamps[frame + 1] == rates[k + 1].stamp_ns && s.has_pose[frame] && s.has_pose[frame + 1];
     const double dt = static_cast<double>(rates[k + 1].stamp_ns - rates[k].stamp_ns) * 1e-9;
     steps.push_back({known ? dt : 0,
-                     std::string(file) + " " + evaluation::FormatSeconds(rates[k].stamp_ns) + " to " +
-                         evaluation::FormatSeconds(rates[k + 1].stamp_ns),
+                     std::string(file) + " " + base::FormatSeconds(rates[k].stamp_ns) + " to " +
+                         base::FormatSeconds(rates[k + 1].stamp_ns),
                      frame});
   }
   return steps;

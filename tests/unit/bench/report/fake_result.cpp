@@ -4,9 +4,10 @@
 #include <fstream>
 
 #include "tests/unit/judge/evaluation/random.h"
+#include "tools/base/files.h"
+#include "tools/base/text.h"
 #include "tools/bench/report/pictures.h"
 #include "tools/judge/evaluation/text_file.h"
-#include "tools/judge/evaluation/whole_file.h"
 
 namespace report {
 namespace {
@@ -81,7 +82,7 @@ std::string Landmarks(TestRandom& random) {
         5 * Eigen::Vector3d{random.Uniform(), 0.6 * random.Uniform(), random.Uniform()} - Eigen::Vector3d(2.5, 0, 3);
     p[i % 2 == 0 ? 0 : 2] = i % 4 < 2 ? -2.6 : 2.2;
     text += std::to_string(i);
-    for (int k = 0; k < 3; ++k) text += "," + ev::FormatNumber(p[k], 9);
+    for (int k = 0; k < 3; ++k) text += "," + base::Significant(p[k], 9);
     text += ",0.4,0.01," + std::string(i % 5 == 0 ? "0" : "1") + "\n";
   }
   return text;
@@ -126,15 +127,15 @@ std::vector<JudgedRun> WriteFakeResult(const std::filesystem::path& out, const F
       std::filesystem::create_directories(folder / "frames");
       const ev::EstimateRun run = FakeRun(system, options.frames, random);
       ev::WriteEstimateRun(folder, run);
-      ev::WriteWhole(folder / "landmarks.csv", Landmarks(random));
+      base::WriteFile(folder / "landmarks.csv", Landmarks(random));
       if (options.pictures) {
         KeptPictures kept{640, 480, {}};
         for (int k = 4; k < options.frames; k += options.frames / 12 + 1) {
           KeptPicture& picture = kept.pictures.emplace_back();
           picture.stamp_ns = run.trajectory[static_cast<std::size_t>(k)].stamp_ns;
           for (int i = 0; i < 40; ++i) picture.features.push_back(FakeFeature(i, random));
-          ev::WriteWhole(folder / PicturePath(picture.stamp_ns),
-                         std::string(reinterpret_cast<const char*>(kJpeg), sizeof kJpeg));
+          base::WriteFile(folder / PicturePath(picture.stamp_ns),
+                          std::string(reinterpret_cast<const char*>(kJpeg), sizeof kJpeg));
         }
         WritePictures(folder, kept);
       }

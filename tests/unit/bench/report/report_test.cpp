@@ -7,13 +7,13 @@
 #include "tests/unit/bench/report/fake_result.h"
 #include "tests/unit/bench/report/page_data.h"
 #include "tests/unit/judge/evaluation/temporary_folder.h"
+#include "tools/base/files.h"
 #include "tools/bench/report/page.h"
 #include "tools/bench/report/result_data.h"
 #include "tools/bench/report/text.h"
 #include "tools/bench/report/text_summary.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "tools/judge/evaluation/trajectory.h"
-#include "tools/judge/evaluation/whole_file.h"
 
 namespace report {
 namespace {
@@ -315,7 +315,7 @@ TEST(WriteReport, StaysSmall) {
   options.seeds = 6;
   WriteFakeResult(folder.path(), options);
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {
-    if (entry.path().extension() == ".jpg") evaluation::WriteWhole(entry.path(), std::string(120'000, 'x'));
+    if (entry.path().extension() == ".jpg") base::WriteFile(entry.path(), std::string(120'000, 'x'));
   }
   const std::string html = PageOf(folder);
   EXPECT_LT(html.size(), 3'000'000u);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tests/unit/judge/evaluation/random.h"
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace evaluation {
@@ -54,7 +55,8 @@ TEST(Associate, HoldsTheGapAgainstWhatTheToolsSubtract) {
       for (std::size_t k = 0; k < 200; ++k) {
         truth.push_back(begin_ns + 103'700'000 * static_cast<std::int64_t>(k + 1));
         estimate.push_back(truth.back() + apart_ns);
-        const double apart = std::abs(std::stod(FormatSeconds(estimate[k])) - std::stod(FormatSeconds(truth[k])));
+        const double apart =
+            std::abs(std::stod(base::FormatSeconds(estimate[k])) - std::stod(base::FormatSeconds(truth[k])));
         if (apart < 0.02) tum.emplace_back(k, k);
         if (apart <= 0.02) evo.emplace_back(k, k);
       }
@@ -136,8 +138,8 @@ TEST(MatchTrajectories, SaysWhatTimesWereCoveredWhenNothingFits) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("estimate covers 1.000000000 ... "));
-    EXPECT_THAT(error.what(), testing::HasSubstr(FormatSeconds(late.front().stamp_ns) + " ... " +
-                                                 FormatSeconds(late.back().stamp_ns) + " s"));
+    EXPECT_THAT(error.what(), testing::HasSubstr(base::FormatSeconds(late.front().stamp_ns) + " ... " +
+                                                 base::FormatSeconds(late.back().stamp_ns) + " s"));
     EXPECT_THAT(error.what(), testing::HasSubstr("is 0.0333333 s"));
   }
 }

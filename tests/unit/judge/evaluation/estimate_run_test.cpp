@@ -7,6 +7,7 @@
 #include "tests/unit/judge/evaluation/complaint.h"
 #include "tests/unit/judge/evaluation/random.h"
 #include "tests/unit/judge/evaluation/temporary_folder.h"
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace evaluation {
@@ -251,7 +252,7 @@ TEST(EstimateRun, WritesNothingWhenANumberIsNotFinite) {
   const auto error_of = [&](const EstimateRun& run) {
     return ComplaintOf<std::invalid_argument>([&] { WriteEstimateRun(folder.path(), run); });
   };
-  const std::string at = FormatSeconds(Sample().frames[1].stamp_ns),
+  const std::string at = base::FormatSeconds(Sample().frames[1].stamp_ns),
                     what = " holds a number that is not finite; nothing was written";
   for (double FrameRecord::*member : {&FrameRecord::nis, &FrameRecord::effective_particles, &FrameRecord::ms_features,
                                       &FrameRecord::ms_matching, &FrameRecord::ms_filter}) {

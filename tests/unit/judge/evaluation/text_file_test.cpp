@@ -5,44 +5,12 @@
 #include <limits>
 
 #include "tests/unit/judge/evaluation/temporary_folder.h"
+#include "tools/base/text.h"
 
 namespace evaluation {
 namespace {
 
 using testing::HasSubstr;
-
-TEST(ParseSeconds, IsExactWhereADoubleIsNot) {
-  EXPECT_EQ(ParseSeconds("1305031102.160407123"), 1305031102'160407123);
-  EXPECT_EQ(ParseSeconds("1305031102.1604"), 1305031102'160400000);
-  EXPECT_EQ(ParseSeconds("0.033333333"), 33333333);
-  EXPECT_EQ(ParseSeconds("1.305031102160407066e+09"), 1305031102'160407066);
-  EXPECT_EQ(ParseSeconds("5e-10"), 1);  // rounded
-  EXPECT_EQ(ParseSeconds("4e-10"), 0);
-  EXPECT_EQ(ParseSeconds("1e-100"), 0);
-  EXPECT_FALSE(ParseSeconds("1e-101"));
-  EXPECT_EQ(ParseSeconds("0e100"), 0);
-  EXPECT_FALSE(ParseSeconds("0e101"));
-  EXPECT_EQ(ParseSeconds("9e-11"), 0);
-  EXPECT_EQ(ParseSeconds("1.00000000049"), 1'000'000'000);
-  EXPECT_EQ(ParseSeconds("1.0000000005"), 1'000'000'001);
-  EXPECT_EQ(ParseSeconds("2E1"), 20'000'000'000);
-  EXPECT_EQ(ParseSeconds("+2e+1"), 20'000'000'000);
-  EXPECT_EQ(ParseSeconds("0.00e3"), 0);
-  EXPECT_FALSE(ParseSeconds("1e10"));
-  EXPECT_EQ(ParseSeconds("-1.5"), -1'500'000'000);
-  EXPECT_EQ(ParseSeconds("7"), 7'000'000'000);
-  EXPECT_EQ(ParseSeconds("000000000000000000001.5"), 1'500'000'000);
-  EXPECT_EQ(ParseSeconds("-3999999999.999999999"), -3999999999'999999999);
-}
-
-// Sums and differences of two stamps, and of a stamp and a gap, must fit.
-TEST(ParseSeconds, KnowsNoTimeBeyondFourBillionSeconds) {
-  EXPECT_EQ(ParseSeconds("4e9"), kLatest_ns);
-  EXPECT_EQ(ParseSeconds("-4e9"), -kLatest_ns);
-  for (const char* text :
-       {"4000000000.000000001", "-4000000000.000000001", "9223372036.854775807", "18446744073.709551617"})
-    EXPECT_EQ(ParseSeconds(text), std::nullopt) << text;
-}
 
 TEST(Nanoseconds, AreThoseOfATimeThatMayBeAdded) {
   EXPECT_EQ(Nanoseconds(0.02), 20'000'000);
@@ -51,36 +19,14 @@ TEST(Nanoseconds, AreThoseOfATimeThatMayBeAdded) {
     EXPECT_EQ(Nanoseconds(seconds), std::nullopt) << seconds;
 }
 
-TEST(ParseSeconds, RejectsWhatIsNoTime) {
-  for (const char* text :
-       {"", ".", "-", "nan", "1.2.3", "1s", "1e", "1e+", "0x10", "1 ", "9223372036.854775808", "1e300"}) {
-    EXPECT_EQ(ParseSeconds(text), std::nullopt) << text;
-  }
-}
-
-TEST(FormatSeconds, IsTheInverse) {
-  for (const std::int64_t t : {0L, 1L, 999'999'999L, 1305031102'160407123L, -1'500'000'000L, -1L}) {
-    EXPECT_EQ(ParseSeconds(FormatSeconds(t)), t);
-  }
-  EXPECT_EQ(FormatSeconds(0), "0.000000000");
-  EXPECT_EQ(FormatSeconds(33333333), "0.033333333");
-  EXPECT_EQ(FormatSeconds(-12'000'000'034), "-12.000000034");
-  EXPECT_EQ(FormatSeconds(std::numeric_limits<std::int64_t>::min()), "-9223372036.854775808");
-}
-
 TEST(SecondsAsRead, AreTheDoublesNearestToTheText) {
   EXPECT_EQ(SecondsAsRead(1305031102'160407123), 1305031102.160407123);
   EXPECT_EQ(SecondsAsRead(-2'500'000'000), -2.5);
   EXPECT_EQ(SecondsAsRead(5'020'000'000), 5.02);
   for (std::int64_t stamp_ns = 1'000'000'007; stamp_ns < 4'000'000'000'000'000'000; stamp_ns += stamp_ns / 7) {
-    EXPECT_EQ(SecondsAsRead(stamp_ns), std::stod(FormatSeconds(stamp_ns))) << stamp_ns;
+    EXPECT_EQ(SecondsAsRead(stamp_ns), std::stod(base::FormatSeconds(stamp_ns))) << stamp_ns;
     EXPECT_EQ(SecondsAsRead(-stamp_ns), -SecondsAsRead(stamp_ns));
   }
-}
-
-TEST(FormatNumber, HasAsManyDigitsAsAreAskedFor) {
-  EXPECT_EQ(FormatNumber(2. / 3, 3), "0.667");
-  EXPECT_EQ(FormatNumber(2. / 3, 12), "0.666666666667");
 }
 
 TEST(ParseNumber, TakesFiniteNumbersOnly) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/compat/format.h"
 #include "tools/judge/evaluation/rpe.h"
 #include "tools/judge/evaluation/so3.h"
@@ -126,9 +127,10 @@ EvoResult ComputeEvoRpe(const Trajectory& estimate, const Trajectory& truth, con
     result.errors.push_back(ErrorOf(rpe.position[k], rpe.orientation[k], options.common.relation));
   }
   result.statistics = Summarise(result.errors);
-  result.title = "RPE w.r.t. " + RelationName(options.common.relation) + "\nfor delta = " +
-                 (frames ? FormatNumber(options.delta, 12) + " (frames)" : Significant(options.delta, 12) + " (m)") +
-                 " using " + (options.all_pairs ? "all" : "consecutive") + " pairs\n" + AlignmentName(options.common);
+  result.title =
+      "RPE w.r.t. " + RelationName(options.common.relation) + "\nfor delta = " +
+      (frames ? base::Significant(options.delta, 12) + " (frames)" : Significant(options.delta, 12) + " (m)") +
+      " using " + (options.all_pairs ? "all" : "consecutive") + " pairs\n" + AlignmentName(options.common);
   return result;
 }
 

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <numbers>
 #include <string>
 
+#include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "tools/judge/evaluation/trajectory.h"
 
@@ -13,16 +13,11 @@ namespace evaluation::compat {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-// "%.*f".
-inline std::string Fixed(double value, int decimals) {
-  char text[352];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
+using base::Fixed;
 
 // So many significant digits, with ".0" where a whole number would look like an integer, as Python has it.
 inline std::string Significant(double value, int digits) {
-  std::string text = FormatNumber(value, digits);
+  std::string text = base::Significant(value, digits);
   if (text.find_first_of(".en") == std::string::npos) text += ".0";
   return text;
 }

@@ -1,0 +1,94 @@
+#include "tools/base/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <system_error>
+
+namespace base {
+namespace {
+
+std::string Printed(const char* format, int precision, double value) {
+  char text[352];  // the longest double has 309 digits before the point
+  std::snprintf(text, sizeof text, format, precision, value);
+  return text;
+}
+
+}  // namespace
+
+std::string Join(const std::vector<std::string>& parts, std::string_view separator) {
+  std::string text;
+  for (const std::string& part : parts) {
+    if (&part != &parts.front()) text += separator;
+    text += part;
+  }
+  return text;
+}
+
+std::string Fixed(double value, int decimals) { return Printed("%.*f", decimals, value); }
+
+std::string Significant(double value, int digits) { return Printed("%.*g", digits, value); }
+
+std::optional<std::int64_t> ParseWhole(std::string_view text) {
+  std::int64_t value = 0;
+  const char* const all = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), all, value);
+  return error == std::errc() && end == all ? std::optional(value) : std::nullopt;
+}
+
+std::optional<std::int64_t> ParseSeconds(std::string_view text) {
+  std::size_t i = 0;
+  const bool negative = !text.empty() && text[0] == '-';
+  if (!text.empty() && (text[0] == '-' || text[0] == '+')) ++i;
+  std::string digits;
+  int exponent = 0;  // of the number that the digits make, in powers of ten
+  bool point = false, any = false;
+  for (; i < text.size(); ++i) {
+    if (text[i] == '.' && !point) {
+      point = true;
+    } else if (text[i] >= '0' && text[i] <= '9') {
+      any = true;
+      if (!digits.empty() || text[i] != '0') digits += text[i];
+      if (point) --exponent;
+    } else {
+      break;
+    }
+  }
+  if (!any) return std::nullopt;
+  if (i < text.size()) {
+    if (text[i] != 'e' && text[i] != 'E') return std::nullopt;
+    text.remove_prefix(i + 1);
+    if (text.starts_with('+')) text.remove_prefix(1);
+    const std::optional<std::int64_t> written = ParseWhole(text);
+    if (!written || *written > 100 || *written < -100) return std::nullopt;
+    exponent += static_cast<int>(*written);
+  }
+  const int shift = exponent + 9;  // to nanoseconds
+  const int whole = static_cast<int>(digits.size()) + shift;
+  if (digits.empty() || whole < 0) return 0;
+  if (whole > 19) return std::nullopt;
+  std::uint64_t value = 0;  // 19 digits fit
+  for (int k = 0; k < whole; ++k) {
+    const std::size_t at = static_cast<std::size_t>(k);
+    value = value * 10 + static_cast<std::uint64_t>(at < digits.size() ? digits[at] - '0' : 0);
+  }
+  if (whole < static_cast<int>(digits.size()) && digits[static_cast<std::size_t>(whole)] >= '5') ++value;
+  if (value > static_cast<std::uint64_t>(kLatest_ns)) return std::nullopt;
+  return negative ? -static_cast<std::int64_t>(value) : static_cast<std::int64_t>(value);
+}
+
+std::optional<std::int64_t> ParseStamp(std::string_view text) {
+  return text.find_first_not_of("0123456789.") == std::string_view::npos ? ParseSeconds(text) : std::nullopt;
+}
+
+std::string FormatSeconds(std::int64_t stamp_ns) {
+  const bool negative = stamp_ns < 0;
+  const auto bits = static_cast<std::uint64_t>(stamp_ns), magnitude = negative ? ~bits + 1 : bits;
+  char text[40];
+  std::snprintf(text, sizeof text, "%s%llu.%09llu", negative ? "-" : "",
+                static_cast<unsigned long long>(magnitude / 1'000'000'000u),
+                static_cast<unsigned long long>(magnitude % 1'000'000'000u));
+  return text;
+}
+
+}  // namespace base

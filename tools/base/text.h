@@ -1,0 +1,34 @@
+// Text conversions: lists, numbers, time stamps.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace base {
+
+std::string Join(const std::vector<std::string>& parts, std::string_view separator);
+
+// "%.*f": a fixed number of decimals.
+std::string Fixed(double value, int decimals);
+// "%.*g": a number of significant digits, without trailing zeros.
+std::string Significant(double value, int digits);
+
+// A decimal integer that is all of the text.
+std::optional<std::int64_t> ParseWhole(std::string_view text);
+
+// Bound on a stamp's distance from zero: sums and differences of two stamps fit into 64 bits.
+constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;
+
+// Decimal seconds to nanoseconds, exact: no double between, a tenth decimal is rounded. Signs and exponents are
+// understood. None for other text and beyond kLatest_ns.
+std::optional<std::int64_t> ParseSeconds(std::string_view text);
+// The same of digits and a point only, as lists of frames and recorded motion write it.
+std::optional<std::int64_t> ParseStamp(std::string_view text);
+
+// Nanoseconds as seconds with nine decimals.
+std::string FormatSeconds(std::int64_t stamp_ns);
+
+}  // namespace base
