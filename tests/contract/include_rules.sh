@@ -37,6 +37,7 @@ report "Boost.Math is in distributions.cpp alone" < <(includes tools/judge/evalu
 unlinked tools/judge/evaluation 'sim|vo|settings|report' "the evaluation needs Eigen and Boost's headers only"
 unlinked tools/judge/verification 'sim|points|commands|bench' "what checks the simulator's sequences shares nothing with it"
 forbid tools/bench 'tools/(vobench|python)/' "the bench includes neither of its faces"
+forbid tools/bench/campaign '(sim|vo)/|tools/bench/(points|run|sequence|systems|tracking)/' "a campaign knows no odometry: task_runner.h"
 allow tools/base/limits 'tools/base/limits/[a-z0-9_]+\.h|[a-z0-9_]+' "limits of untrusted files need the standard library only"
 report "include cycle between folders" < <(bash "$here/folder_cycles.sh" .)
 

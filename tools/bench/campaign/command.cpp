@@ -12,7 +12,7 @@
 #include <optional>
 #include <system_error>
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -128,4 +128,4 @@ std::string QuotedForShell(const std::string& text) {
   return quoted + "'";
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -1,11 +1,10 @@
-// Purpose: a command of somebody else's, run by sh in a process group of its own, with a time-out; what it prints goes
-//          to a file.
+// Shell command in a process group of its own, with a time-out; its output goes to a file.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
-namespace campaign {
+namespace vobench::campaign {
 
 struct CommandEnd {
   bool timed_out = false;
@@ -23,4 +22,4 @@ CommandEnd RunCommand(const std::string& command, const std::filesystem::path& f
 // One word for sh.
 std::string QuotedForShell(const std::string& text);
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 int Open(const std::filesystem::path& path) {
@@ -65,4 +65,4 @@ bool FileLock::Holds(const std::filesystem::path& path) const {
          ours.st_dev == named.st_dev;
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -1,10 +1,10 @@
-// Purpose: a lock that dies with its process: flock(2) on a file or a folder.
+// File lock that ends with its process: flock(2) on a file or a folder.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 
-namespace campaign {
+namespace vobench::campaign {
 
 class FileLock {
  public:
@@ -28,4 +28,4 @@ class FileLock {
   int file_ = -1;
 };
 
-}  // namespace campaign
+}  // namespace vobench::campaign

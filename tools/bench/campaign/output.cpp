@@ -16,7 +16,7 @@
 #include "tools/bench/campaign/task_folder.h"
 #include "tools/judge/evaluation/whole_file.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace fs = std::filesystem;
 namespace {
 
@@ -58,7 +58,8 @@ void PrepareOutput(const fs::path& out, const std::string& text) {
   fs::create_directories(out);
   const fs::path record = out / "campaign.json";
   if (fs::exists(record)) return;
-  // Another process may begin the same campaign at the same time: what is in the way is its own if the record is there now.
+  // Another process may begin the same campaign at the same time: what is in the way is its own if the record is there
+  // now.
   if (HasOthers(out) && !fs::exists(record)) {
     throw std::invalid_argument(
         fmt::format("{}: is no campaign's folder (it has no campaign.json) and not empty", out.string()));
@@ -159,4 +160,4 @@ void WriteAtOnce(const fs::path& file, const std::string& text) {
   throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

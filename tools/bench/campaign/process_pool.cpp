@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <system_error>
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 sigset_t ChildEnds() {
@@ -159,4 +159,4 @@ std::optional<ProcessEnd> ProcessPool::Wait(std::chrono::milliseconds patience) 
   }
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

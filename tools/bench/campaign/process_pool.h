@@ -1,5 +1,5 @@
-// Purpose: work in processes of its own: one that crashes, hangs or takes too much memory ends alone.
-//          To be used before this process has threads: they are not there in a forked one.
+// Pool of forked processes: one that crashes, hangs or exceeds its memory ends alone. For use before this process has
+// threads, which a fork does not copy.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace campaign {
+namespace vobench::campaign {
 
 struct ProcessLimits {
   std::uint64_t memory_bytes = 0;  // that it may take (RLIMIT_DATA) beside what it starts with; 0: no limit
@@ -75,4 +75,4 @@ class ProcessPool {
   bool blocked_before_ = false;
 };
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -9,7 +9,7 @@
 
 #include "tools/judge/evaluation/whole_file.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace fs = std::filesystem;
 
 fs::path TaskPath(const fs::path& out, std::int64_t task) {
@@ -63,4 +63,4 @@ void TaskFolder::Commit(const TaskRecord& record) {
   if (replaces) fs::remove_all(old, error);
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

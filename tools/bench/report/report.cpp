@@ -1,13 +1,14 @@
 #include "tools/bench/report/report.h"
 
 #include "tools/bench/report/page.h"
-#include "tools/bench/report/result_data.h"
 #include "tools/judge/evaluation/whole_file.h"
 
-namespace report {
+namespace vobench::report {
 
-void WriteReport(const std::filesystem::path& out) {
-  evaluation::WriteWhole(out / "report.html", Html(RunPage(out, ReadResult(out))));
+void WriteReport(const std::filesystem::path& out, const ResultData& data) {
+  evaluation::WriteWhole(out / "report.html", Html(RunPage(out, data)));
 }
 
-}  // namespace report
+void WriteReport(const std::filesystem::path& out) { WriteReport(out, ReadResult(out)); }
+
+}  // namespace vobench::report

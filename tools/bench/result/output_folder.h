@@ -1,6 +1,5 @@
-// Purpose: a folder that appears whole or not at all. It is filled under a temporary name beside its final one, and
-// renamed
-//          when done; whatever stops the work before leaves the disk as it was.
+// Output folder written under a temporary name beside its final one and renamed when complete; removed if the work
+// stops before.
 #pragma once
 
 #include <filesystem>

@@ -9,8 +9,8 @@
 namespace evaluation {
 
 // A file that is there whole or not at all: written under a temporary name beside it, as it comes, and renamed when all
-// of it is on disk. What throws is std::runtime_error, naming the file and the reason (disk full, no such folder); then,
-// and where nothing is committed, the old file, if any, is untouched and no temporary one remains.
+// of it is on disk. What throws is std::runtime_error, naming the file and the reason (disk full, no such folder);
+// then, and where nothing is committed, the old file, if any, is untouched and no temporary one remains.
 class WholeFile {
  public:
   explicit WholeFile(std::filesystem::path file);
