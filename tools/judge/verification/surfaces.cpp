@@ -397,8 +397,8 @@ void SurfaceChecks::Occlusion(std::size_t frame, const std::string& stream, std:
     const auto is_right = [&](const Relative& move) -> std::optional<bool> {
       const Vector3d ray = move.R * frames_.rays()[i], X = Z * ray + move.t;
       const Vector2d pixel = X.z() > 0 ? frames_.sequence().camera.Project(X) : Vector2d(-9, -9);
-      if (!frames_.sequence().camera.Sees(pixel, -0.001)) return is_hidden;
-      if (!frames_.sequence().camera.Sees(pixel, 0.001)) return std::nullopt;
+      if (!frames_.sequence().camera.IsUsable(pixel, -0.001)) return is_hidden;
+      if (!frames_.sequence().camera.IsUsable(pixel, 0.001)) return std::nullopt;
       const double error = 2 * frames_.DepthError(X.z()) + 1e-5 * X.z();
       if (!is_hidden) return IsSeen(RangeAround(there, pixel.x(), pixel.y(), 1), X.z(), error);
       // It is not hidden where just this point is seen, on an even surface.
