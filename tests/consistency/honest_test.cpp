@@ -8,7 +8,7 @@ namespace own_model {
 namespace {
 
 void ExpectRejected(const evaluation::ConsistencyVerdict& verdict, const char* what) {
-  EXPECT_FALSE(verdict.honest()) << what;
+  EXPECT_FALSE(verdict.consistent()) << what;
   std::cout << what << ":\n" << Failures(verdict);
 }
 
@@ -16,7 +16,7 @@ void ExpectRejected(const evaluation::ConsistencyVerdict& verdict, const char* w
 TEST(OwnModel, TheFilterIsConsistentAndHalfOfPAndADelayAreNot) {
   const Runs runs = Play(kRuns);
   const auto verdict = Judge(runs);
-  EXPECT_TRUE(verdict.honest()) << Failures(verdict);
+  EXPECT_TRUE(verdict.consistent()) << Failures(verdict);
   EXPECT_TRUE(verdict.pass()) << "RMSE / bound <= 1.2:\n" << Failures(verdict);
   EXPECT_LE(verdict.false_alarm(), 0.02);
   std::cout << Failures(verdict, true);

@@ -11,7 +11,7 @@ TEST(Mutant, IsRejected) {
   try {
     const auto verdict = Judge(Play(kRuns));
     std::cout << Failures(verdict);
-    if (!verdict.honest()) return;
+    if (!verdict.consistent()) return;
     const auto without_delay = Judge(Play(kRuns, WithoutDelay()));
     std::cout << "without delay:\n" << Failures(without_delay);
     EXPECT_FALSE(HonestButCoverage(without_delay));

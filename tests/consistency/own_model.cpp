@@ -6,10 +6,10 @@
 
 #include "sim/points/point_world.h"
 #include "tools/bench/points/point_bound.h"
-#include "tools/bench/result/point_verdict.h"
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/experiment.h"
 #include "tools/bench/systems/prior.h"
+#include "tools/bench/tracking/verdict_recorder.h"
 #include "vo/point_odometry.h"
 
 namespace own_model {
@@ -75,7 +75,7 @@ Played PlayOne(const Experiment& experiment, std::uint64_t seed) {
   return played;
 }
 
-evaluation::JudgedRun JudgedAs(const Played& played, const Tampering& tampering) {
+evaluation::VerdictRun JudgedAs(const Played& played, const Tampering& tampering) {
   VerdictRecorder recorder(RankFrames(played.estimates.size(), 30));
   evaluation::EstimateRun run;
   Truth truth;
@@ -89,12 +89,11 @@ evaluation::JudgedRun JudgedAs(const Played& played, const Tampering& tampering)
     const auto late = static_cast<std::size_t>(tampering.delay);
     Append(estimate.stamp_ns, played.truth[k < late ? 0 : k - late], truth);
   }
+  const std::vector<evaluation::FrameConsistency> frames =
+      evaluation::ComputeConsistency(run, truth.poses, truth.velocities, evaluation::AssociationOptions().gap_ns);
   std::vector<evaluation::Vector12d> errors;
-  for (const auto& frame :
-       evaluation::ComputeConsistency(run, truth.poses, truth.velocities, evaluation::AssociationOptions().gap_ns)) {
-    errors.push_back(frame.error);
-  }
-  evaluation::JudgedRun judged = recorder.Finish(errors, NeesByBlock(run, truth), played.seed);
+  for (const auto& frame : frames) errors.push_back(frame.error);
+  evaluation::VerdictRun judged = recorder.Finish(errors, NeesByBlock(run, frames), played.seed);
   for (std::size_t k = 0; k < judged.size(); ++k) judged[k].bound = played.exact.bound[k];
   return judged;
 }
@@ -115,7 +114,7 @@ Runs Play(int runs, const Overrides& settings, std::uint64_t first_seed) {
 }
 
 evaluation::ConsistencyVerdict Judge(const Runs& runs, const Tampering& tampering) {
-  std::vector<evaluation::JudgedRun> judged;
+  std::vector<evaluation::VerdictRun> judged;
   std::vector<evaluation::LinearisedRuns> exact;
   for (const Played& played : *runs) {
     judged.push_back(JudgedAs(played, tampering));

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/bench/run/commands.h"
 #include "tools/judge/evaluation/consistency_verdict.h"
-#include "tools/vobench/commands.h"
 
 namespace own_model {
 

@@ -38,6 +38,7 @@ unlinked tools/judge/evaluation 'sim|vo|settings|report' "the evaluation needs E
 unlinked tools/judge/verification 'sim|points|commands|bench' "what checks the simulator's sequences shares nothing with it"
 forbid tools/bench 'tools/(vobench|python)/' "the bench includes neither of its faces"
 report "files, text and processes need the standard library and POSIX only" < <(includes tools/base | grep -E '^tools/base/[a-z_]+\.(h|cpp):' | grep -vE ':[0-9]+:(tools/base/[a-z_]+\.h|[a-z0-9_]+|(sys/)?[a-z]+\.h)$' || true)
+forbid tools/bench/campaign '(sim|vo)/|tools/bench/(points|run|sequence|systems|tracking)/' "a campaign knows no odometry: task_runner.h"
 allow tools/base/limits 'tools/base/limits/[a-z0-9_]+\.h|[a-z0-9_]+' "limits of untrusted files need the standard library only"
 report "include cycle between folders" < <(bash "$here/folder_cycles.sh" .)
 

@@ -6,9 +6,10 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static fuzz::InputFile file("campaign.yaml");
-  static const campaign::Vocabulary vocabulary{{"rb2pf", "rbpf", "fastslam1", "ekfslam"}, campaign::MetricNames()};
+  static const vobench::campaign::Vocabulary vocabulary{{"rb2pf", "rbpf", "fastslam1", "ekfslam"},
+                                                        vobench::campaign::MetricNames()};
   file.Write({data, size});
-  fuzz::Hold(file.path().string(), [] { campaign::CampaignFile(file.path(), vocabulary).ThrowIfBad(); });
-  fuzz::Hold(file.path().string(), [] { campaign::ReadExternalSystems(file.path()); });
+  fuzz::Hold(file.path().string(), [] { vobench::campaign::CampaignFile(file.path(), vocabulary).ThrowIfBad(); });
+  fuzz::Hold(file.path().string(), [] { vobench::campaign::ReadExternalSystems(file.path()); });
   return 0;
 }

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "tests/fuzz/hold.h"
-#include "tools/bench/report/rank_table.h"
-#include "tools/bench/report/verdict_table.h"
+#include "tools/bench/result/ranks.h"
+#include "tools/bench/result/verdict.h"
 #include "tools/judge/verification/check.h"
 #include "tools/judge/verification/files.h"
 
@@ -48,7 +48,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     verification::ReadSequence(folder, problems, stamps);
   });
   for (fuzz::InputFile* file : {&ranks, &verdict}) file->Write({data, size});
-  fuzz::Hold(ranks.path().string(), [] { report::ReadRanks(ranks.path().parent_path()); });
-  fuzz::Hold(verdict.path().string(), [] { report::ReadVerdict(verdict.path().parent_path()); });
+  fuzz::Hold(ranks.path().string(), [] { vobench::ReadRanks(ranks.path().parent_path()); });
+  fuzz::Hold(verdict.path().string(), [] { vobench::ReadVerdict(verdict.path().parent_path()); });
   return 0;
 }

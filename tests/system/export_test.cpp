@@ -8,7 +8,7 @@
 #ifdef VOBENCH_ROSBAG
 #include <algorithm>
 
-#include "tools/bench/result/bag_file.h"
+#include "tools/bench/sequence/bag_file.h"
 #endif
 
 namespace vobench::system_test {

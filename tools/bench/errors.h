@@ -1,6 +1,5 @@
-// Purpose: what decides the exit status: BadInput is the caller's to mend (2), NotConsistent is an answer that was
-// asked
-//          to be another (3), every other exception means that the work failed (1).
+// Exceptions by exit status: BadInput is a mistake of the caller (2), NotConsistent a verdict that was required to be
+// another (3); every other exception means that the work failed (1).
 #pragma once
 
 #include <filesystem>
@@ -36,7 +35,8 @@ struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// "PATH: why", which the standard library tells the other way round and by its own function's name; else the error's words.
+// "PATH: why", which the standard library tells the other way round and by its own function's name; else the error's
+// words.
 inline std::string WordsOf(const std::exception& error) {
   const auto* of_file = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
   if (of_file == nullptr) return error.what();

@@ -95,7 +95,7 @@ Numbers Errors(const PointPlay& play, evaluation::Vector12d evaluation::FrameCon
 }
 
 py::dict NeesOfBlocks(const PointPlay& play) {
-  const std::vector<BlockNees> nees = NeesByBlock(play.estimates, play.truth);
+  const std::vector<BlockNees> nees = NeesByBlock(play.estimates, ConsistencyOf(play));
   py::dict blocks;
   for (std::size_t b = 0; b < evaluation::kStateBlocks.size(); ++b) {
     py::array_t<double> values(static_cast<py::ssize_t>(nees.size()));
@@ -141,10 +141,10 @@ evaluation::AneesVerdict TestLinear(const Numbers& nees, const evaluation::Linea
       false_alarm);
 }
 
-evaluation::AneesVerdict TestPool(const Numbers& nees, int dof, const Numbers& honest, double false_alarm) {
-  const Nees runs = RunsOf(nees, "nees"), pool = RunsOf(honest, "honest");
+evaluation::AneesVerdict TestPool(const Numbers& nees, int dof, const Numbers& reference, double false_alarm) {
+  const Nees runs = RunsOf(nees, "nees"), pool = RunsOf(reference, "reference");
   if (runs.front().size() != pool.front().size())
-    throw std::invalid_argument("nees and honest must have equally many frames");
+    throw std::invalid_argument("nees and reference must have equally many frames");
   const int trials = TrialsFor(false_alarm);
   const py::gil_scoped_release unlocked;
   return evaluation::TestAnees(
@@ -153,7 +153,7 @@ evaluation::AneesVerdict TestPool(const Numbers& nees, int dof, const Numbers& h
 
 std::string Text(const evaluation::ConsistencyVerdict& verdict) {
   const std::string failed = FailedChecks(verdict);
-  return verdict.honest() ? "consistent: no check failed" : "not consistent:\n" + failed;
+  return verdict.consistent() ? "consistent: no check failed" : "not consistent:\n" + failed;
 }
 
 std::string Text(const evaluation::AneesVerdict& v) {
@@ -204,7 +204,7 @@ void AddAneesTest(py::module_& m) {
       .def("__repr__", py::overload_cast<const AneesVerdict&>(&Text));
   m.def("anees_test", &TestLinear, py::arg("nees"), py::arg_v("reference", LinearFilter(), "LinearFilter()"),
         py::arg("false_alarm") = 0.01, Doc("tools/judge/evaluation/anees_test.h:"));
-  m.def("anees_test_against", &TestPool, py::arg("nees"), py::arg("dof"), py::arg("honest"),
+  m.def("anees_test_against", &TestPool, py::arg("nees"), py::arg("dof"), py::arg("reference"),
         py::arg("false_alarm") = 0.01, Doc("tools/judge/evaluation/anees_test.h:ExactAneesOfPool"));
   m.def("nees", &NeesOfArrays, py::arg("errors"), py::arg("covariances"),
         Doc("tools/judge/evaluation/consistency.h:Nees"));
@@ -231,7 +231,7 @@ void AddConsistency(py::module_& m) {
       .def_property_readonly(
           "sigmas", [](const PointPlay& p) { return Errors(p, &evaluation::FrameConsistency::sigma); },
           "(frames, 12): square roots of the covariance's diagonal")
-      .def_property_readonly("nees", &NeesOfBlocks, Doc("tools/bench/points/point_bench.h:BlockNees"));
+      .def_property_readonly("nees", &NeesOfBlocks, Doc("tools/judge/evaluation/mixture_scores.h:BlockNees"));
   m.def("judge", &Together, py::arg("estimates"), py::arg("truths"), "Estimates, each beside the truth of its time.");
   m.def("play", &PlayWorld, py::arg("world"), py::arg("filter"),
         "Plays what is left of a point world to a filter: anything with track(stamp_ns, ids, pixels) -> Estimate.");
@@ -246,12 +246,12 @@ void AddConsistency(py::module_& m) {
       .def_readonly("false_alarm", &evaluation::Check::false_alarm,
                     Doc("tools/judge/evaluation/consistency_verdict.h:Check::false_alarm"));
   py::class_<evaluation::ConsistencyVerdict>(m, "Verdict", Doc("tools/judge/evaluation/consistency_verdict.h:"))
-      .def_property_readonly("honest", &evaluation::ConsistencyVerdict::honest,
-                             Doc("tools/judge/evaluation/consistency_verdict.h:ConsistencyVerdict::honest"))
+      .def_property_readonly("consistent", &evaluation::ConsistencyVerdict::consistent,
+                             Doc("tools/judge/evaluation/consistency_verdict.h:ConsistencyVerdict::consistent"))
       .def_readonly("checks", &evaluation::ConsistencyVerdict::checks)
       .def_property_readonly("false_alarm", &evaluation::ConsistencyVerdict::false_alarm,
                              Doc("tools/judge/evaluation/consistency_verdict.h:ConsistencyVerdict::false_alarm"))
-      .def("__bool__", &evaluation::ConsistencyVerdict::honest)
+      .def("__bool__", &evaluation::ConsistencyVerdict::consistent)
       .def("__repr__", py::overload_cast<const evaluation::ConsistencyVerdict&>(&Text));
   const ConsistencyOptions defaults;
   m.def("test_consistency", &Test, py::arg("scenario"), py::arg("make"), py::arg("runs") = defaults.runs,

@@ -39,14 +39,14 @@ vo::Params ParamsOf(const std::string& system, const py::dict& settings) {
 vo::Odometry OdometryOf(const Simulator& simulator, const std::string& system, std::uint64_t seed) {
   const Experiment& experiment = *simulator.scenario;
   const vo::Prior prior = PriorOf(experiment.prior, experiment.scenario.motion, TruthOf(simulator.simulator, 0), seed);
-  return {ToldCamera(experiment), ParamsOf(system, experiment.odometry), prior, seed};
+  return {CameraForOdometry(experiment), ParamsOf(system, experiment.odometry), prior, seed};
 }
 
 vo::PointOdometry OdometryOf(const PointWorld& world, const std::string& system, std::optional<std::uint64_t> seed) {
   const Experiment& experiment = *world.scenario;
   const std::uint64_t number = seed.value_or(world.world.scenario().seed);
-  return {ToldCamera(experiment), ParamsOf(system, experiment.odometry), PriorOf(experiment.prior, world.world, number),
-          number};
+  return {CameraForOdometry(experiment), ParamsOf(system, experiment.odometry),
+          PriorOf(experiment.prior, world.world, number), number};
 }
 
 vo::Frame FrameOf(std::int64_t stamp_ns, const Bytes& image) {

@@ -1,14 +1,14 @@
-// Purpose: the command line, read into the command it asks for.
+// The command line, parsed into the options of one sub-command.
 #pragma once
 
 #include <variant>
 
-#include "tools/vobench/commands.h"
+#include "tools/vobench/option_table.h"
 
 namespace vobench {
 
 // The command, or the exit status where there is none to run: 0 after --help and --version, 2 for a line that makes no
-// sense (the reason is on stderr).
+// sense (the reason is on stderr). Throws BadInput for what --compat cannot be.
 std::variant<Command, int> ParseArguments(int argc, char** argv);
 
 }  // namespace vobench

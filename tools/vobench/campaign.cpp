@@ -1,216 +1,57 @@
-// Scenarios x varied settings x systems x seeds: each a task with a folder of its own; what is done is not done again.
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <iterator>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <numeric>
-#include <optional>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
-#include "tools/base/files.h"
-#include "tools/bench/campaign/digest.h"
-#include "tools/bench/campaign/local_engine.h"
-#include "tools/bench/campaign/memory.h"
-#include "tools/bench/campaign/output.h"
-#include "tools/bench/campaign/page.h"
-#include "tools/bench/campaign/slurm.h"
-#include "tools/bench/campaign/slurm_engine.h"
-#include "tools/bench/campaign/task_folder.h"
-#include "tools/bench/campaign/work.h"
-#include "tools/bench/errors.h"
-#include "tools/bench/result/output_folder.h"
-#include "tools/bench/result/result.h"
-#include "tools/vobench/commands.h"
+#include "tools/vobench/option_table.h"
 
 namespace vobench {
-namespace fs = std::filesystem;
-namespace {
 
-std::string Record(const campaign::Campaign& campaign) {
-  nlohmann::ordered_json json = {{"format", "vobench campaign 1"}, {"tasks", campaign::Tasks(campaign)}};
-  json["order"] = {"seed", "scenario"};
-  for (const campaign::Factor& factor : campaign.factors) json["order"].push_back(factor.name);
-  json["order"].push_back("system");
-  json["versions"] = Versions();
-  json["campaign"] = nlohmann::ordered_json::parse(campaign.resolved);
-  return json.dump(2) + "\n";
-}
-
-LocalOptions LocalOptionsOf(const CampaignOptions& options, int jobs) {
-  const campaign::Share share = campaign::ShareOut(campaign::AvailableMemory(), jobs, options.memory_bytes);
-  if (share.processes < jobs) {
-    fmt::print(stderr, "vobench: {} at a time, not {}: no more of {:.3g} GB fit\n", share.processes, jobs,
-               static_cast<double>(share.bytes) * 1e-9);
-  }
-  return {share.processes, {share.bytes, options.timeout_s}};
-}
-
-std::vector<std::size_t> PointsOf(const campaign::Campaign& campaign, const std::vector<std::int64_t>& tasks) {
-  std::vector<std::size_t> points;
-  for (const std::int64_t task : tasks) points.push_back(campaign::ChoiceOf(campaign, task).point);
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  return points;
-}
-
-void List(const CampaignWork& work) {
-  const campaign::Campaign& campaign = work.campaign();
-  fmt::print("{}: {} scenarios", campaign.name, campaign.scenarios.size());
-  for (const campaign::Factor& factor : campaign.factors) fmt::print(" x {} {}", factor.levels.size(), factor.name);
-  fmt::print(" x {} systems x {} seeds = {} tasks\n", campaign.systems.size(), campaign.seeds.size(),
-             campaign::Tasks(campaign));
-  for (std::int64_t task = 0; task < campaign::Tasks(campaign); ++task) {
-    fmt::print("{:6}  {}\n", task, campaign::Describe(campaign, campaign::ChoiceOf(campaign, task)));
-  }
-}
-
-// All that a result consists of, but for the times.
-std::map<std::string, std::string> FilesOf(const fs::path& folder) {
-  std::map<std::string, std::string> files;
-  if (!fs::exists(folder)) return files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name == "times.json" || name == "log.txt" || !entry.is_regular_file()) continue;
-    files[name] = base::ReadFile(entry.path()).value_or("");
-  }
-  return files;
-}
-
-std::string ShortResult(const campaign::Campaign& campaign, const campaign::TaskRecord& record) {
-  const std::string what = campaign::Describe(campaign, campaign::ChoiceOf(campaign, record.task));
-  std::string text = fmt::format("task {} ({}): {}", record.task, what, campaign::Name(record.status));
-  if (!record.reason.empty()) text += ", " + record.reason;
-  if (!record.metrics.empty() && record.metrics.front()) text += fmt::format(", ATE {:.4g} m", *record.metrics.front());
-  return text;
-}
-
-// One alone, whatever is there of it.
-void RunAgain(CampaignWork& work, const CampaignOptions& options) {
-  const std::int64_t task = *options.task;
-  const campaign::TaskChoice choice = Input([&] { return campaign::ChoiceOf(work.campaign(), task); });
-  const campaign::FileLock lock = campaign::LockOutput(options.output, campaign::FileLock::Kind::shared);
-  const LocalOptions local = LocalOptionsOf(options, 1);
-  work.NameSequences({choice.point}, local.limits);
-  const fs::path folder = campaign::TaskPath(options.output, task);
-  const std::optional<campaign::TaskRecord> before = campaign::ReadRecord(options.output, task);
-  const auto files = FilesOf(folder);
-  RunLocally(work, options.output, {task}, local);
-  const std::optional<campaign::TaskRecord> record = campaign::ReadRecord(options.output, task);
-  if (!record) throw std::runtime_error(folder.string() + ": is not there");
-  fmt::print("{}\n", ShortResult(work.campaign(), *record));
-  if (record->status == campaign::Status::failed) throw TasksFailed("it failed");
-  if (!before || before->key != record->key || before->status == campaign::Status::failed) return;
-  if (FilesOf(folder) != files) throw std::runtime_error(folder.string() + ": came out different from before");
-  fmt::print("the same as before, byte for byte\n");
-}
-
-// Those of a list that are not done.
-void RunPart(CampaignWork& work, const CampaignOptions& options) {
-  const std::vector<std::int64_t> listed =
-      Input([&] { return campaign::ReadArrayLine(*options.list, static_cast<std::size_t>(options.part)); });
-  const std::vector<std::size_t> points = Input([&] { return PointsOf(work.campaign(), listed); });
-  const campaign::FileLock lock = campaign::LockOutput(options.output, campaign::FileLock::Kind::shared);
-  const LocalOptions local = LocalOptionsOf(options, options.jobs);
-  work.NameSequences(points, local.limits);
-  std::vector<std::int64_t> left;
-  for (const std::int64_t task : listed) {
-    const std::optional<campaign::TaskRecord> record = campaign::ReadRecord(options.output, task);
-    const bool done = record && record->status != campaign::Status::failed &&
-                      record->key == work.KeyOf(campaign::ChoiceOf(work.campaign(), task));
-    if (!done) left.push_back(task);
-  }
-  RunLocally(work, options.output, left, local);
-}
-
-void RefuseStale(const CampaignOptions& options, const campaign::OutputState& state, std::int64_t tasks) {
-  if (state.stale.empty() || options.update) return;
-  throw BadInput(fmt::format(
-      "{}: {} results there are not what {} would give now (settings, pictures, seeds or the program have changed), {} "
-      "are. --update does these anew and keeps the others; or choose another folder",
-      options.output.string(), state.stale.size(), options.file.string(),
-      std::max<std::int64_t>(0, tasks - static_cast<std::int64_t>(state.missing.size() + state.stale.size()))));
-}
-
-void Conclude(const CampaignWork& work, const CampaignOptions& options) {
-  std::vector<campaign::LevelValues> levels;
-  for (const CampaignPoint& point : work.points()) levels.push_back(point.levels);
-  const campaign::Merged merged = campaign::Merge(work.campaign(), levels, options.output);
-  base::WriteFile(options.output / "report.html", CampaignPage(work.campaign(), merged), base::Writers::many);
-  fmt::print("{}\n", base::ReadFile(options.output / "tables.md").value_or(""));
-  if (const std::uint64_t bytes = work.cache().Bytes(); bytes > 0) {
-    fmt::print("{:.1f} MB of sequences in {}\n", static_cast<double>(bytes) * 1e-6, work.cache().folder().string());
-  }
-  fmt::print("{} tasks in {}\nThe report is in {}\n", merged.records.size(), (options.output / "results.csv").string(),
-             (options.output / "report.html").string());
-  std::size_t failed = 0;
-  std::string first;
-  for (const campaign::TaskRecord& record : merged.records) {
-    if (record.status != campaign::Status::failed) continue;
-    if (failed++ == 0) first = ShortResult(work.campaign(), record);
-  }
-  if (failed > 0) {
-    throw TasksFailed(fmt::format("{} of {} tasks failed; the same command tries them again. The first: {}", failed,
-                                  merged.records.size(), first));
-  }
-}
-
-void RunAll(CampaignWork& work, const CampaignOptions& options) {
-  const bool slurm = options.engine == "slurm";
-  const campaign::FileLock lock = campaign::LockOutput(
-      options.output, slurm ? campaign::FileLock::Kind::shared : campaign::FileLock::Kind::exclusive);
-  const std::int64_t tasks = campaign::Tasks(work.campaign());
-  const LocalOptions local = LocalOptionsOf(options, options.jobs);
-  std::vector<std::size_t> points(work.points().size());
-  std::iota(points.begin(), points.end(), 0);
-  work.NameSequences(points, local.limits);
-  std::vector<std::string> keys;
-  for (std::int64_t task = 0; task < tasks; ++task) {
-    keys.push_back(work.KeyOf(campaign::ChoiceOf(work.campaign(), task)));
-  }
-  campaign::OutputState state = campaign::Inspect(options.output, keys);
-  RefuseStale(options, state, tasks);
-  base::WriteFile(options.output / "campaign.json", Record(work.campaign()), base::Writers::many);
-  if (!state.stale.empty()) {
-    campaign::RemoveTasks(options.output, state.stale);
-    state = campaign::Inspect(options.output, keys);
-  }
-  const auto left = static_cast<std::int64_t>(state.missing.size());
-  if (left < tasks) fmt::print(stderr, "{} of {} tasks are done\n", tasks - left, tasks);
-  try {
-    slurm ? RunOnSlurm(work, options, state.missing) : RunLocally(work, options.output, state.missing, local);
-  } catch (const Interrupted&) {
-    const std::string jobs = slurm ? fmt::format(" Jobs stay in the queue; `scancel --name={}` ends them.",
-                                                 campaign::SlurmJobName(fs::absolute(options.output)))
-                                   : "";
-    throw Interrupted(fmt::format(
-        "the campaign was interrupted; {} of {} tasks are done, and the same command goes on.{}",
-        tasks - static_cast<std::int64_t>(campaign::Inspect(options.output, keys).missing.size()), tasks, jobs));
-  }
-  Conclude(work, options);
-}
-
-}  // namespace
-
-void RunCampaign(const CampaignOptions& asked) {
-  CampaignOptions options = asked;
-  options.output = CleanPath(asked.output);
-  options.cache = CleanPath(asked.cache.value_or(options.output / "cache"));
-  CampaignWork work(options.file, *options.cache);
-  if (options.dry_run) return List(work);
-  RequireFolderIfThere(options.output);
-  RequireFolderIfThere(*options.cache);
-  try {
-    campaign::PrepareOutput(options.output, Record(work.campaign()));
-  } catch (const std::invalid_argument& error) {
-    throw BadInput(error.what());
-  }
-  if (options.task) return RunAgain(work, options);
-  if (options.list) return RunPart(work, options);
-  RunAll(work, options);
+void OptionTable::AddCampaign() {
+  CLI::App& command =
+      AddCommand("campaign", "Scenarios x varied settings x systems x seeds, on this machine or a cluster",
+                 "vobench campaign scenes/campaign_points.yaml -o out/points --jobs 2");
+  command.add_option("FILE", campaign.file, "Campaign file (docs/campaign.md)")->required();
+  command.add_option("-o,--output", campaign.output, "Folder of its results; what is done there is not done again")
+      ->required()
+      ->type_name("OUT");
+  command.add_flag("--dry-run", campaign.dry_run, "Check everything and list the tasks, no more");
+  CLI::Option* where = command.add_option("--engine", campaign.engine, "Where tasks run: local or slurm")
+                           ->check(CLI::IsMember({"local", "slurm"}))
+                           ->type_name("NAME")
+                           ->capture_default_str();
+  AddJobs(command, "Processes at a time, with --engine local");
+  command
+      .add_option("--memory", campaign.memory_bytes,
+                  "Of each process, such as 2GB (default: an equal part of what is left)")
+      ->transform(Plain(CLI::AsSizeValue(false)))
+      ->type_name("SIZE");
+  command.add_option("--timeout", campaign.timeout_s, "Seconds that a task may take (default: as long as it likes)")
+      ->check(Plain(CLI::PositiveNumber))
+      ->type_name("S");
+  command.add_option("--cache", campaign.cache, "Where rendered sequences are kept (default: OUT/cache)")
+      ->type_name("DIR");
+  command.add_flag("--update", campaign.update,
+                   "Results that the file as it is now would not give may go; else an error");
+  CLI::Option* task =
+      command.add_option("--task", campaign.task, "Run this one task again, and say whether it comes out the same")
+          ->check(Plain(CLI::NonNegativeNumber))
+          ->type_name("K")
+          ->excludes(where);
+  CLI::Option* list =
+      command.add_option("--list", campaign.list, "Run the tasks in line --part of this file, as job arrays do")
+          ->type_name("FILE")
+          ->excludes(task)
+          ->excludes(where);
+  command.add_option("--part", campaign.part, "A line of --list; the first is 0")
+      ->check(Plain(CLI::NonNegativeNumber))
+      ->type_name("N")
+      ->needs(list);
+  command.add_option("--partition", campaign.partition, "Of Slurm")->type_name("NAME");
+  command.add_option("--time", campaign.time, "Of one job of Slurm, such as 2:00:00")->type_name("TIME");
+  command.add_option("--tasks-per-job", campaign.tasks_per_job, "Of Slurm: tasks that one element of the array does")
+      ->check(Plain(CLI::Range(1, 1000000)))
+      ->type_name("N")
+      ->capture_default_str();
+  command.callback([this] {
+    campaign.jobs = jobs;
+    asked = campaign;
+  });
 }
 
 }  // namespace vobench

@@ -1,5 +1,5 @@
-// Purpose: --help that fits a terminal of 24 lines and 100 columns; and the rows that it, the man page and the shells'
-//          completions are made of.
+// Formatter of --help for a terminal of 24 lines and 100 columns, and the rows that the man page and bash's completion
+// share with it.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,5 @@
-// Purpose: the program. Exit status: 0 done, 1 the work failed, 2 bad usage or bad input, 3 not consistent
-//          though that was required.
+// The program. Exit status: 0 done, 1 the work failed, 2 bad usage or bad input, 3 not consistent
+// though that was required.
 #include <cerrno>
 #include <cstdio>
 #include <exception>
@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "tools/bench/errors.h"
-#include "tools/bench/result/interrupt.h"
+#include "tools/bench/interrupt.h"
 #include "tools/vobench/arguments.h"
 
 namespace vobench {
@@ -30,9 +30,9 @@ void Execute(const SettingsOptions& options) { Settings(options); }
 int Main(int argc, char** argv) {
   HoldInterrupts();
   cv::setNumThreads(1);  // how many threads there are says --jobs, of which OpenCV knows nothing
-  const std::variant<Command, int> asked = ParseArguments(argc, argv);
-  if (const int* status = std::get_if<int>(&asked)) return *status;
   try {
+    const std::variant<Command, int> asked = ParseArguments(argc, argv);
+    if (const int* status = std::get_if<int>(&asked)) return *status;
     std::visit([](const auto& options) { Execute(options); }, std::get<Command>(asked));
     if (std::fflush(stdout) != 0) {
       throw std::runtime_error("cannot write to standard output: " + std::generic_category().message(errno));

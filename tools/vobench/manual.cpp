@@ -29,7 +29,7 @@ std::string ManPage(const CLI::App& app, const std::string& version) {
   page +=
       ".SH DESCRIPTION\nA scenario is rendered into a sequence with exact truth, an odometry runs on the sequence, and "
       "a judge that knows both says "
-      "how wrong and how honest the odometry is.\n.SH COMMANDS\n";
+      "how accurate and how consistent the odometry is.\n.SH COMMANDS\n";
   for (const CLI::App* command : CommandsOf(app)) {
     page += ".SS " + Roff(Usage(*command)) + "\n" + Roff(command->get_description()) + ".\n";
     for (const OptionRow& row : RowsOf(*command)) {

@@ -1,4 +1,4 @@
-// Purpose: writes the man page or a shell's completion to stdout: vobench_manual man|bash|zsh|fish. Part of the build.
+// Man page or bash completion on stdout: vobench_manual man|bash. Part of the build.
 #include <cstdio>
 #include <string>
 
@@ -11,10 +11,8 @@ int main(int argc, char** argv) {
   std::string text;
   if (kind == "man") text = vobench::ManPage(table.app, VOBENCH_VERSION);
   if (kind == "bash") text = vobench::BashCompletion(table.app);
-  if (kind == "zsh") text = vobench::ZshCompletion(table.app);
-  if (kind == "fish") text = vobench::FishCompletion(table.app);
   if (text.empty()) {
-    std::fputs("usage: vobench_manual man|bash|zsh|fish\n", stderr);
+    std::fputs("usage: vobench_manual man|bash\n", stderr);
     return 2;
   }
   return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0 ? 0 : 1;

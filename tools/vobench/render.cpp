@@ -1,139 +1,54 @@
-#include <fmt/format.h>
+#include <sstream>
 
-#include <map>
-#include <set>
-
-#include "sim/sequence/manifest.h"
-#include "sim/sequence/streams.h"
-#include "sim/sequence/writer.h"
-#include "sim/simulator.h"
-#include "tools/base/files.h"
-#include "tools/bench/errors.h"
-#include "tools/bench/result/output_folder.h"
-#include "tools/bench/result/preview.h"
-#include "tools/bench/result/progress.h"
-#include "tools/bench/systems/bridge.h"
-#include "tools/bench/systems/experiment.h"
-#include "tools/vobench/commands.h"
+#include "tools/vobench/option_table.h"
 
 namespace vobench {
-namespace fs = std::filesystem;
 namespace {
 
-// What a sequence of any layout may have at its top level.
-std::set<std::string> SequenceNames() {
-  std::set<std::string> names = sim::StreamNames();
-  names.insert({"camera.yaml", "exposure.txt", sim::kManifestName, sim::kJournalName});
-  names.insert({"rgb", "rgb.txt", "depth", "depth.txt", "groundtruth.txt", "velocity.txt"});  // TUM RGB-D
-  names.insert({"mav0", "truth"});                                                            // EuRoC
-  names.insert({"associations.txt", "traj.gt.freiburg"});                                     // ICL-NUIM
-  names.insert({"preview.mp4", "unfinished-preview.mp4", "contact.jpg"});
-  return names;
-}
-
-// And while it is written: a killed run leaves what it had just begun.
-std::set<std::string> UnfinishedSequenceNames() {
-  std::set<std::string> names = SequenceNames();
-  for (const std::string& name : SequenceNames()) names.insert(base::UnfinishedName(name));
-  return names;
-}
-
-Overrides With(Overrides overrides, const RenderOptions& options) {
-  if (options.seed) overrides.emplace_back("seed", std::to_string(*options.seed));
-  if (options.truth) overrides.emplace_back("truth", "[" + *options.truth + "]");
-  return overrides;
-}
-
-sim::SequenceContent Content(const RenderOptions& options, const sim::Simulator& simulator) {
-  const std::map<std::string, sim::Layout> layouts = {
-      {"tum", sim::Layout::tum}, {"euroc", sim::Layout::euroc}, {"icl", sim::Layout::icl}};
-  const auto [first, last] = options.frames.value_or(std::pair<std::int64_t, std::int64_t>(0, simulator.frame_count()));
-  if (last > simulator.frame_count()) {
-    throw BadInput(
-        fmt::format("--frames {}:{}: the scenario has the frames 0 to {}", first, last, simulator.frame_count() - 1));
+// "A:B": the frames A, A+1, ..., B-1
+std::pair<std::int64_t, std::int64_t> ParseFrames(const std::string& text) {
+  std::istringstream stream(text);
+  std::int64_t first = 0, last = 0;
+  char colon = 0, rest = 0;
+  if (!(stream >> first >> colon >> last) || colon != ':' || stream >> rest || first < 0 || last <= first) {
+    throw CLI::ValidationError("--frames", "'" + text + "' is not A:B with 0 <= A < B (frames A to B-1)");
   }
-  const sim::SequenceContent content{layouts.at(options.format), first, last, "vobench " VOBENCH_VERSION};
-  Input([&] { sim::Validate(content, simulator); });
-  return content;
-}
-
-// Nothing of another hand's may be in the way, and without --resume nothing of an earlier run's that is not whole.
-void RequireRoom(const RenderOptions& options, const fs::path& folder, const fs::path& partial) {
-  RequireReplaceable(folder, sim::kManifestName, SequenceNames());
-  if (!fs::exists(fs::symlink_status(partial))) return;
-  if (!options.resume) {
-    throw BadInput(
-        fmt::format("{}: is there, left by a run that was interrupted (or is at work); --resume goes on with "
-                    "it, or remove it",
-                    partial.string()));
-  }
-  if (fs::exists(partial / sim::kManifestName))
-    RequireReplaceable(partial, sim::kManifestName, UnfinishedSequenceNames());
-}
-
-// The sequence of this content is there under its last name. Throws BadInput if another one is.
-bool IsWhole(const fs::path& folder, const sim::Simulator& simulator, const sim::SequenceContent& content) {
-  const fs::path manifest = folder / sim::kManifestName;
-  if (!fs::exists(manifest)) return false;
-  const std::string there = base::ReadFile(manifest).value_or("");
-  const auto differences = Input(
-      [&] { return sim::ManifestDifferences(there, sim::Manifest(simulator, content, content.last - content.first)); });
-  if (differences.empty()) return true;
-  throw BadInput(fmt::format("{}: is another sequence, there is nothing to resume:\n  {}", folder.string(),
-                             fmt::join(differences, "\n  ")));
-}
-
-void Preview(const fs::path& folder, const sim::Simulator& simulator, const sim::SequenceContent& content) {
-  std::vector<PreviewFrame> frames;
-  for (std::int64_t index = content.first; index < content.last; ++index) {
-    const std::int64_t stamp_ns = simulator.StampNs(index);
-    frames.push_back({index, stamp_ns, folder / sim::NamesOf(content.layout, index, stamp_ns).image});
-  }
-  WritePreview(folder, frames, simulator.scenario().time.rate_hz);
-}
-
-// What a stopped run leaves, for its last words.
-std::string Kept(std::int64_t whole, const fs::path& partial) {
-  if (whole == 0) return "no frame was finished, nothing was kept";
-  return fmt::format("the first {} frames are in {}; --resume goes on", whole, partial.string());
+  return {first, last};
 }
 
 }  // namespace
 
-void Render(const RenderOptions& options) {
-  const Experiment experiment = ReadExperiment(options.scenario, With(options.overrides, options));
-  const fs::path folder = CleanPath(options.output), partial = folder.string() + ".partial";
-  RequireRoom(options, folder, partial);
-  const sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, options.jobs); });
-  PrintWarnings(simulator.warnings());
-  const sim::SequenceContent content = Content(options, simulator);
-
-  if (options.resume && !fs::exists(partial) && IsWhole(folder, simulator, content)) {
-    fs::remove(folder / sim::kJournalName);  // a kill in the last moment leaves it
-    if (options.preview && !fs::exists(folder / "contact.jpg")) Preview(folder, simulator, content);
-    fmt::print("{} frames in {}, which was whole\n", content.last - content.first, options.output.string());
-    return;
-  }
-  std::optional<sim::SequenceWriter> writer;
-  try {
-    writer.emplace(simulator, partial, content, options.jobs,
-                   options.resume ? sim::SequenceWriter::Start::resume : sim::SequenceWriter::Start::fresh);
-  } catch (const std::invalid_argument& error) {
-    throw BadInput(error.what());
-  }
-  try {
-    Progress progress("rendering", content.last - content.first, writer->found());
-    while (const std::int64_t more = writer->Wait()) progress.Step(more);
-    if (options.preview) Preview(partial, simulator, content);
-  } catch (const Interrupted&) {
-    throw Interrupted("rendering was interrupted; " + Kept(writer->Stop(), partial));
-  } catch (const std::exception& error) {
-    throw std::runtime_error(fmt::format("{}\n{}", error.what(), Kept(writer->Stop(), partial)));
-  }
-  writer->Finish();
-  base::ReplaceFolder(partial, folder);
-  fs::remove(folder / sim::kJournalName);
-  fmt::print("{} frames in {}\n", content.last - content.first, options.output.string());
+void OptionTable::AddRender() {
+  CLI::App& command = AddCommand("render", "Render a scenario into a sequence: images with exact truth",
+                                 "vobench render scenes/room.yaml -o room --frames 0:30 --set sensor.exposure='5 ms'");
+  command.add_option("SCENARIO", render.scenario, "Scenario file (scenes/*.yaml)")->required();
+  command.add_option("-o,--output", render.output, "Sequence folder to make")->required()->type_name("SEQ");
+  command.add_option("--frames", frames, "Only the frames A to B-1; each is the same as in the whole")
+      ->type_name("A:B");
+  command.add_option("--format", render.format, "Layout: tum (TUM RGB-D), euroc (EuRoC, ASL) or icl (ICL-NUIM)")
+      ->check(CLI::IsMember({"tum", "euroc", "icl"}))
+      ->type_name("NAME")
+      ->capture_default_str();
+  command.add_flag("--resume", render.resume,
+                   "Go on with SEQ.partial, which an interrupted run left; the bytes are those of one run");
+  command.add_flag("--preview", render.preview, "Also preview.mp4 and contact.jpg, for the eye");
+  command
+      .add_option("--truth", render.truth,
+                  "Truth beside poses and velocities, separated by commas: depth, depth_exr, depth_kinect, distance, "
+                  "normals, flow, flow_backward, occlusion, surface_id, landmarks, acceleration, imu, moving "
+                  "(docs/truth.md)")
+      ->type_name("NAME,...");
+  AddSeed(command, "Seed instead of the scenario's");
+  AddEngine(command);
+  AddJobs(command, "Threads; the results do not depend on it");
+  AddSet(command, "camera.width=320");
+  command.callback([this, &command] {
+    if (!frames.empty()) render.frames = ParseFrames(frames);
+    if (command.count("--seed") > 0) render.seed = seed;
+    render.jobs = jobs;
+    render.overrides = ParsedOverrides();
+    asked = render;
+  });
 }
 
 }  // namespace vobench

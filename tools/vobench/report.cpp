@@ -1,24 +1,11 @@
-#include "tools/bench/report/report.h"
-
-#include <fmt/format.h>
-
-#include <stdexcept>
-
-#include "tools/bench/errors.h"
-#include "tools/bench/report/run_json.h"
-#include "tools/vobench/commands.h"
+#include "tools/vobench/option_table.h"
 
 namespace vobench {
 
-void Report(const ReportOptions& options) {
-  // Read here first, so that what is wrong with the folder is told from a report that cannot be written.
-  Input([&] { return report::ReadRunJson(options.output); });
-  try {
-    report::WriteReport(options.output);
-  } catch (const std::invalid_argument& error) {
-    throw BadInput(error.what());
-  }
-  fmt::print("{}\n", (options.output / "report.html").string());
+void OptionTable::AddReport() {
+  CLI::App& command = AddCommand("report", "Make report.html anew from a result folder", "vobench report out/room");
+  command.add_option("OUT", report.output, "Result folder")->required();
+  command.callback([this] { asked = report; });
 }
 
 }  // namespace vobench

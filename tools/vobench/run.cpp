@@ -1,110 +1,52 @@
-// A scenario is rendered into a sequence with exact truth, an odometry runs on the sequence, and a judge that knows
-// both says how wrong and how honest the odometry is.
-#include <fmt/format.h>
+#include <set>
 
-#include <memory>
-#include <optional>
-#include <vector>
-
-#include "sim/simulator.h"
-#include "tools/bench/errors.h"
-#include "tools/bench/live/live_view.h"
-#include "tools/bench/report/text_summary.h"
-#include "tools/bench/result/map_file.h"
-#include "tools/bench/result/parallel.h"
-#include "tools/bench/result/progress.h"
-#include "tools/bench/result/result.h"
-#include "tools/bench/result/tracker.h"
-#include "tools/bench/result/truth_pictures.h"
-#include "tools/bench/systems/bridge.h"
-#include "tools/bench/systems/experiment.h"
-#include "tools/bench/systems/prior.h"
-#include "tools/vobench/commands.h"
-#include "tools/vobench/run_common.h"
+#include "tools/bench/systems/systems.h"
+#include "tools/vobench/option_table.h"
 
 namespace vobench {
-namespace {
 
-// Each system with each seed. Of the truth they are told the start alone.
-std::vector<Tracker> MakeTrackers(const RunOptions& options, const Experiment& experiment,
-                                  const sim::Simulator& simulator, const Folder& folder) {
-  const vo::Camera camera = ToldCamera(experiment);
-  const Truth start = TruthOf(simulator, 0);
-  const std::optional<std::filesystem::path> out = folder ? std::optional(folder->path()) : std::nullopt;
-  std::vector<Tracker> trackers;
-  for (const std::string& system : options.systems) {
-    for (int run = 0; run < options.runs; ++run) {
-      const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(run);
-      const TrackerSetup setup{system, seed, experiment.odometry,
-                               PriorOf(experiment.prior, experiment.scenario.motion, start, seed)};
-      trackers.emplace_back(setup, camera, simulator.frame_count(), out, fmt::format("{}/seed_{}", system, seed));
+void OptionTable::AddRun() {
+  CLI::App& command = AddCommand("run", "Render a scenario, track it and judge the result, in memory, frame by frame",
+                                 "vobench run scenes/room.yaml -o out/room --system rb2pf,rbpf --runs 5");
+  command.add_option("SCENARIO", run.scenario, "Scenario file (scenes/*.yaml)")->required();
+  command.add_option("-o,--output", run.output, "Result folder to make; without it only the table is printed")
+      ->type_name("OUT");
+  command.add_option("--system", run.systems, "Systems to compare, separated by commas, of " + SystemList())
+      ->delimiter(',')
+      ->check(CLI::IsMember(SystemNames()))
+      ->allow_extra_args(false)
+      ->type_name("NAME,...")
+      ->capture_default_str();
+  command.add_option("--runs", run.runs, "Runs of each system, each with its own seed")
+      ->check(Plain(CLI::Range(1, 10000)))
+      ->type_name("N")
+      ->capture_default_str();
+  AddSeed(command, *this,
+          "Seed of the first run's filter and prior, and of its world of points; a scene keeps its own (--set seed=N)")
+      ->capture_default_str();
+  command.add_flag("--bound", run.bound,
+                   "Also the Cramer-Rao bound of worlds of points, and RMSE / bound; takes seconds a run");
+  command.add_flag("--verdict", run.verdict,
+                   "Also whether each system is consistent with its own model, check by check, in worlds of points "
+                   "from a prior; 10 runs or more");
+  command.add_flag("--require-consistent", run.require_consistent,
+                   "As --verdict, and exit status 3 where a system is not");
+  AddView(command, run.view);
+  AddMap(command, run.map);
+  AddEngine(command);
+  AddJobs(command, "Threads; the results do not depend on it");
+  AddSet(command, "odometry.filter.particles=16");
+  command.callback([this] {
+    if (std::set<std::string>(run.systems.begin(), run.systems.end()).size() != run.systems.size()) {
+      throw CLI::ValidationError("--system", "names a system twice");
     }
-  }
-  return trackers;
-}
-
-std::vector<report::JudgedRun> Judge(const std::vector<Tracker>& trackers, const Truth& truth,
-                                     const evaluation::JudgeOptions& how) {
-  std::vector<report::JudgedRun> judged;
-  for (const Tracker& tracker : trackers) {
-    judged.push_back({tracker.entry(), evaluation::Judge(tracker.Estimates(), truth.poses, truth.velocities, how)});
-  }
-  return judged;
-}
-
-void Write(OutputFolder& folder, const std::vector<Tracker>& trackers, const Truth& truth,
-           const TruthPictures& truth_pictures, const std::vector<report::JudgedRun>& judged,
-           report::RunDescription description) {
-  for (const Tracker& tracker : trackers) {
-    tracker.Write(tracker.map());
-    WriteTruth(folder.path() / tracker.entry().path, truth);
-    description.runs.push_back(tracker.entry());
-  }
-  truth_pictures.Write(folder.path());
-  WriteResult(folder.path(), description, judged);
-  folder.Commit();
-}
-
-}  // namespace
-
-void Run(const RunOptions& options) {
-  const Clock clock;
-  if (options.map) RequireMapPath(*options.map, options.output);
-  const Experiment experiment = ReadExperiment(options.scenario, options.overrides);
-  if (experiment.scenario.points) return RunOnPoints(options, experiment, clock);
-  if (options.bound) throw BadInput("--bound is for worlds of points: " + options.scenario.string() + " has images");
-  if (options.verdict)
-    throw BadInput("--verdict is for worlds of points: " + options.scenario.string() + " has images");
-  const Folder folder = MakeFolder(options);
-  sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, options.jobs); });
-  PrintWarnings(simulator.warnings());
-  std::vector<Tracker> odometries = MakeTrackers(options, experiment, simulator, folder);
-  std::optional<LiveView> view;
-  if (options.view) view.emplace(Describe(options, experiment, simulator.warnings(), clock));
-  const evaluation::JudgeOptions how = JudgeOptionsOf(experiment.prior);
-  TruthPictures truth_pictures;
-  {
-    Progress progress("running", simulator.frame_count());
-    while (const std::optional<sim::Frame> rendered = simulator.Next()) {
-      const vo::PreparedFrame frame(ToOdometry(*rendered));
-      if (folder && IsKept(rendered->index, simulator.frame_count())) truth_pictures.Add(simulator, rendered->index);
-      ForEach(odometries, options.jobs, [&](Tracker& odometry) { odometry.Track(frame); });
-      if (view && view->Asked(frame.frame)) view->Show(odometries, TruthOfFirst(simulator, rendered->index + 1), how);
-      progress.Step();
-    }
-  }
-  const Truth truth = TruthOfFirst(simulator, simulator.frame_count());
-  if (view) view->Show(odometries, truth, how);
-  const std::vector<report::JudgedRun> judged = Judge(odometries, truth, how);
-  for (const Tracker& tracker : odometries) {
-    if (options.map) WriteMap(MapPathOf(*options.map, tracker.entry(), odometries.size() > 1), tracker.map());
-  }
-  if (folder) {
-    Write(*folder, odometries, truth, truth_pictures, judged,
-          Describe(options, experiment, simulator.warnings(), clock));
-  }
-  fmt::print("{}", report::TextSummary(judged));
-  if (folder) fmt::print("The report is in {}\n", (*options.output / "report.html").string());
+    run.verdict = run.verdict || run.require_consistent;
+    run.seed = seed;
+    run.jobs = jobs;
+    run.overrides = ParsedOverrides();
+    run.command_line = command_line;
+    asked = run;
+  });
 }
 
 }  // namespace vobench

@@ -1,20 +1,13 @@
-#include <fmt/format.h>
-
-#include "tools/bench/errors.h"
-#include "tools/bench/systems/settings_table.h"
-#include "tools/vobench/commands.h"
+#include "tools/vobench/option_table.h"
 
 namespace vobench {
 
-void Settings(const SettingsOptions& options) {
-  if (options.markdown) return fmt::print("{}", SettingsMarkdown());
-  bool any = false;
-  for (const auto& [key, value, range, help] : SettingsTable()) {
-    if (!key.starts_with(options.prefix)) continue;
-    any = true;
-    fmt::print("{} = {}{}\n    {}\n", key, value, range.empty() ? "" : "   (" + range + ")", help);
-  }
-  if (!any) throw BadInput("no setting begins with '" + options.prefix + "'; `vobench settings` lists them all");
+void OptionTable::AddSettings() {
+  CLI::App& command =
+      AddCommand("settings", "List all settings: key, default, range, meaning", "vobench settings odometry.filter");
+  command.add_option("PREFIX", settings.prefix, "Only keys that begin so")->type_name("KEY");
+  command.add_flag("--markdown", settings.markdown, "As the tables of docs/settings.md");
+  command.callback([this] { asked = settings; });
 }
 
 }  // namespace vobench

@@ -42,6 +42,6 @@ int main(int, char** argv) {
     return [filter](auto stamp_ns, const auto& seen) { return filter->Track(stamp_ns, seen); };
   });
   std::cout << vobench::FailedChecks(verdict);
-  return verdict.honest() ? 0 : 1;
+  return verdict.consistent() ? 0 : 1;
 }
 // [example]

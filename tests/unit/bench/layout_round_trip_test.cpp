@@ -11,7 +11,7 @@
 
 #include "sim/sequence/writer.h"
 #include "tests/unit/sim/small_world.h"
-#include "tools/bench/result/sequence_truth.h"
+#include "tools/bench/sequence/sequence_truth.h"
 #include "tools/bench/systems/bridge.h"
 #include "vo/geometry/camera.h"
 #include "vo/geometry/camera_file.h"

@@ -1,4 +1,4 @@
-#include "tools/bench/result/map_file.h"
+#include "tools/bench/tracking/map_file.h"
 
 #include <assimp/scene.h>
 #include <gmock/gmock.h>
@@ -106,7 +106,7 @@ TEST(MapFile, PathsAreCheckedBeforeTheWork) {
   EXPECT_NO_THROW(RequireMapPath("map.ply", "out"));
   EXPECT_THROW(RequireMapPath("map.txt", "out"), BadInput);
   EXPECT_THROW(RequireMapPath("no/such/folder/map.ply", "out"), BadInput);
-  const report::RunEntry run{"rb2pf", 3, ".", 0};
+  const RunEntry run{"rb2pf", 3, ".", 0};
   EXPECT_EQ(MapPathOf("out/map.ply", run, false), "out/map.ply");
   EXPECT_EQ(MapPathOf("out/map.ply", run, true), "out/map_rb2pf_seed_3.ply");
 }

@@ -1,4 +1,4 @@
-#include "tools/bench/result/picture.h"
+#include "tools/bench/tracking/picture.h"
 
 #include <gtest/gtest.h>
 

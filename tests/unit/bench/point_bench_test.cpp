@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "tools/bench/points/point_bound.h"
-#include "tools/bench/result/anees_table.h"
+#include "tools/bench/result/anees.h"
 
 namespace vobench {
 namespace {

@@ -48,7 +48,7 @@ MakePointFilter EkfSlam(
 TEST(TestConsistency, PassesAFilterThatIsExact) {
   const Experiment experiment = HalfASecond();
   const evaluation::ConsistencyVerdict verdict = TestConsistency(experiment.scenario, EkfSlam(experiment));
-  EXPECT_TRUE(verdict.honest()) << FailedChecks(verdict);
+  EXPECT_TRUE(verdict.consistent()) << FailedChecks(verdict);
   EXPECT_EQ(FailedChecks(verdict), "");
   EXPECT_NEAR(verdict.false_alarm(), 0.016, 1e-12);
 }
@@ -58,7 +58,7 @@ TEST(TestConsistency, RejectsHalfAndTwiceTheCovariance) {
   for (const double factor : {0.5, 2.0}) {
     const evaluation::ConsistencyVerdict verdict =
         TestConsistency(experiment.scenario, EkfSlam(experiment, [&](PointEstimate& e) { e.covariance *= factor; }));
-    EXPECT_FALSE(verdict.honest());
+    EXPECT_FALSE(verdict.consistent());
     EXPECT_THAT(FailedChecks(verdict), HasSubstr("ANEES mean, joint: "));
     EXPECT_THAT(FailedChecks(verdict), HasSubstr(factor < 1 ? ", not <= 1." : ", not >= 0."));
     EXPECT_THAT(FailedChecks(verdict), Not(HasSubstr("RMSE / bound")));
@@ -67,7 +67,7 @@ TEST(TestConsistency, RejectsHalfAndTwiceTheCovariance) {
 
 TEST(TestConsistency, RejectsAFilterOfAnotherWorld) {  // a tenth of the world's noise
   const Experiment experiment = HalfASecond(), other = HalfASecond({{"odometry.motion.position_noise", "0.05"}});
-  EXPECT_FALSE(TestConsistency(experiment.scenario, EkfSlam(other)).honest());
+  EXPECT_FALSE(TestConsistency(experiment.scenario, EkfSlam(other)).consistent());
 }
 
 TEST(TestConsistency, CountsFramesWithoutACovariance) {

@@ -1,4 +1,4 @@
-#include "tools/bench/result/preview.h"
+#include "tools/bench/sequence/preview.h"
 
 #include <gmock/gmock.h>
 

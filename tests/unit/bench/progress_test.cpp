@@ -1,5 +1,5 @@
 // What a terminal shows, and what Ctrl-C does to work whose end is known or not.
-#include "tools/bench/result/progress.h"
+#include "tools/bench/progress.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "tools/bench/result/recorder.h"
+#include "tools/bench/tracking/recorder.h"
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ TEST(Recorder, GivesBackWhatItWasTold) {
     ASSERT_EQ(run.frames[k].searched, expected.diagnostics.searched);
     ASSERT_EQ(run.frames[k].matched, expected.diagnostics.matched);
     ASSERT_EQ(run.frames[k].nis, expected.diagnostics.nis);
-    ASSERT_EQ(run.frames[k].guards->indefinite, expected.diagnostics.events.not_positive_definite);
+    ASSERT_EQ(run.frames[k].events->not_positive_definite, expected.diagnostics.events.not_positive_definite);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "tools/bench/result/sequence_truth.h"
+#include "tools/bench/sequence/sequence_truth.h"
 
 #include <gtest/gtest.h>
 

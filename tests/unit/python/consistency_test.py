@@ -103,17 +103,17 @@ class AneesTest(unittest.TestCase):
             self.assertFalse(verdict, verdict)
             self.assertTrue(repr(verdict).startswith("not consistent: ANEES / dof "))
 
-    def test_holds_against_honest_runs_of_ones_own(self):
-        honest, _ = kalman(1, runs=600, seed=2)
-        self.assertTrue(vobench.anees_test_against(kalman(1)[0], 3, honest, false_alarm=0.001))
-        self.assertFalse(vobench.anees_test_against(2 * kalman(1)[0], 3, honest, false_alarm=0.001))
+    def test_holds_against_consistent_runs_of_ones_own(self):
+        reference, _ = kalman(1, runs=600, seed=2)
+        self.assertTrue(vobench.anees_test_against(kalman(1)[0], 3, reference, false_alarm=0.001))
+        self.assertFalse(vobench.anees_test_against(2 * kalman(1)[0], 3, reference, false_alarm=0.001))
 
     def test_says_what_is_wrong_with_its_arrays(self):
         with self.assertRaisesRegex(ValueError, r"errors must be \(..., n\) and covariances \(..., n, n\)"):
             vobench.nees(np.zeros((4, 3)), np.zeros((4, 3, 2)))
         with self.assertRaisesRegex(ValueError, r"nees must be \(runs, frames\)"):
             vobench.anees_test(np.ones(5))
-        with self.assertRaisesRegex(ValueError, "nees and honest must have equally many frames"):
+        with self.assertRaisesRegex(ValueError, "nees and reference must have equally many frames"):
             vobench.anees_test_against(np.ones((5, 5)), 3, np.ones((50, 4)))
         with self.assertRaisesRegex(ValueError, "false_alarm must be above 0"):
             vobench.anees_test(np.ones((5, 5)), false_alarm=0)

@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <sstream>
 #include <stdexcept>
 
-#include "tools/bench/campaign/opencv_yaml.h"
-
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 bool Distorted(const Calibration& c) {
@@ -67,26 +64,6 @@ std::string Orb(const Calibration& c, CalibrationFormat format) {
   return text + "Camera.RGB: 1\n" + kOrb;
 }
 
-Calibration FromOrb(const std::string& text, CalibrationFormat format) {
-  const OpenCvYaml file(text);
-  const std::string name = format == CalibrationFormat::orb_slam3 ? "Camera1." : "Camera.";
-  Calibration c;
-  c.fisheye = file.Text("Camera.type") == "KannalaBrandt8";
-  c.width = static_cast<int>(file.Number("Camera.width"));
-  c.height = static_cast<int>(file.Number("Camera.height"));
-  c.rate_hz = file.Number("Camera.fps");
-  c.fx = file.Number(name + "fx"), c.fy = file.Number(name + "fy");
-  c.cx = file.Number(name + "cx"), c.cy = file.Number(name + "cy");
-  c.k1 = file.Number(name + "k1"), c.k2 = file.Number(name + "k2");
-  if (c.fisheye) {
-    c.k3 = file.Number(name + "k3"), c.k4 = file.Number(name + "k4");
-  } else {
-    c.p1 = file.Number(name + "p1"), c.p2 = file.Number(name + "p2");
-    c.k3 = file.Has(name + "k3") ? file.Number(name + "k3") : 0;
-  }
-  return c;
-}
-
 // Four lines: the camera in shares of the size, the size, how to rectify, the size after it. Rectified images are
 // cropped; those without distortion stay as they are.
 std::string Lines(const Calibration& c, const std::string& model, double offset, const std::string& lens) {
@@ -110,30 +87,6 @@ std::string LsdSlam(const Calibration& c) {
   return Lines(c, "", 0, fmt::format(" {} {} {} {}", c.k1, c.k2, c.p1, c.p2));
 }
 
-Calibration FromLines(const std::string& text, bool dso) {
-  std::istringstream stream(text);
-  std::string line, model;
-  std::getline(stream, line);
-  std::istringstream first(line);
-  if (dso) first >> model;
-  std::vector<double> n;
-  for (double value = 0; first >> value;) n.push_back(value);
-  Calibration c;
-  if (!(stream >> c.width >> c.height) || (n.size() != 5 && n.size() != 8)) {
-    throw std::invalid_argument("not four lines of a calibration: " + line);
-  }
-  const double offset = dso || n.size() == 5 ? 0.5 : 0;
-  c.fx = n[0] * c.width, c.fy = n[1] * c.height;
-  c.cx = n[2] * c.width - offset, c.cy = n[3] * c.height - offset;
-  c.fisheye = model == "EquiDistant";
-  if (n.size() == 8) {
-    c.k1 = n[4], c.k2 = n[5];
-    (c.fisheye ? c.k3 : c.p1) = n[6];
-    (c.fisheye ? c.k4 : c.p2) = n[7];
-  }
-  return c;
-}
-
 std::string Svo(const Calibration& c) {
   Refuse(c.fisheye, CalibrationFormat::svo, "a fisheye lens");
   Refuse(c.k3 != 0, CalibrationFormat::svo, "k3");
@@ -142,18 +95,6 @@ std::string Svo(const Calibration& c) {
       "cam_d0: {}\ncam_d1: {}\ncam_d2: {}\ncam_d3: {}\n",
       c.width, c.height, Real(c.fx), Real(c.fy), Real(c.cx), Real(c.cy), Real(c.k1), Real(c.k2), Real(c.p1),
       Real(c.p2));
-}
-
-Calibration FromSvo(const std::string& text) {
-  const OpenCvYaml file(text);
-  Calibration c;
-  c.width = static_cast<int>(file.Number("cam_width"));
-  c.height = static_cast<int>(file.Number("cam_height"));
-  c.fx = file.Number("cam_fx"), c.fy = file.Number("cam_fy"), c.cx = file.Number("cam_cx"),
-  c.cy = file.Number("cam_cy");
-  c.k1 = file.Number("cam_d0"), c.k2 = file.Number("cam_d1"), c.p1 = file.Number("cam_d2"),
-  c.p2 = file.Number("cam_d3");
-  return c;
 }
 
 }  // namespace
@@ -176,21 +117,4 @@ std::string WriteCalibration(const Calibration& camera, CalibrationFormat format
   return "";
 }
 
-Calibration ReadCalibration(const std::string& text, CalibrationFormat format) {
-  switch (format) {
-    case CalibrationFormat::orb_slam2:
-    case CalibrationFormat::orb_slam3:
-      return FromOrb(text, format);
-    case CalibrationFormat::dso:
-    case CalibrationFormat::lsd_slam:
-      return FromLines(text, format == CalibrationFormat::dso);
-    case CalibrationFormat::svo:
-      return FromSvo(text);
-    case CalibrationFormat::none:
-    case CalibrationFormat::camera_yaml:
-      break;
-  }
-  throw std::invalid_argument("no calibration of ours is in the format " + Name(format));
-}
-
-}  // namespace campaign
+}  // namespace vobench::campaign

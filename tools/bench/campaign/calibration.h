@@ -1,7 +1,7 @@
-// Purpose: a camera as other people's systems want it in a file, and read back from one.
-// Source:  the sample files and readers of ORB-SLAM2 and 3 (Settings), DSO (README, "Geometric Calibration File"), SVO
-//          (svo_ros/param/camera_pinhole.yaml), LSD-SLAM (Undistorter.cpp). What each counts from differs: with the
-//          centre of the first pixel at (0, 0), as here, DSO and LSD-SLAM (without distortion) want (c + 0.5) / size.
+// Calibration file of a camera as other systems read it.
+// Source: the sample files and readers of ORB-SLAM2 and 3 (Settings), DSO (README, "Geometric Calibration File"), SVO
+// (svo_ros/param/camera_pinhole.yaml), LSD-SLAM (Undistorter.cpp). What each counts from differs: with the
+// centre of the first pixel at (0, 0), as here, DSO and LSD-SLAM (without distortion) want (c + 0.5) / size.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 #include "tools/bench/campaign/external_system.h"
 
-namespace campaign {
+namespace vobench::campaign {
 
 // As in docs/conventions.md: the centre of the first pixel is (0, 0).
 struct Calibration {
@@ -19,15 +19,9 @@ struct Calibration {
   double k4 = 0;  // of a fisheye lens, which has no p1, p2
   bool fisheye = false;
   double rate_hz = 30;
-
-  bool operator==(const Calibration&) const = default;
 };
 
 // The text of the file. Throws std::invalid_argument where the format has no place for this lens.
 std::string WriteCalibration(const Calibration& camera, CalibrationFormat format);
 
-// The camera that a system of this format sees in such a text: what the text does not say is as in Calibration{}.
-// Throws std::invalid_argument.
-Calibration ReadCalibration(const std::string& text, CalibrationFormat format);
-
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -8,7 +8,7 @@
 #include "tools/bench/campaign/results.h"
 #include "tools/bench/campaign/table_spec.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 using settings::Range;
@@ -263,4 +263,4 @@ void CampaignFile::Reject(const TaskChoice& choice, const std::string& key, cons
   tell(scenarios_[choice.scenario], here ? "set" : "file", "scenario " + scenario.name + (here ? " set" : ""));
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -1,4 +1,4 @@
-// Purpose: campaign.yaml, read strictly, and the place of each of its settings for problems that others find.
+// Reader of campaign.yaml, strict, with the place of each setting for problems that others find.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 #include "tools/base/settings/settings.h"
 #include "tools/bench/campaign/plan.h"
 
-namespace campaign {
+namespace vobench::campaign {
 
 // What a campaign may name.
 struct Vocabulary {
@@ -51,4 +51,4 @@ class CampaignFile {
   std::set<std::pair<std::string, std::string>> told_;
 };
 
-}  // namespace campaign
+}  // namespace vobench::campaign

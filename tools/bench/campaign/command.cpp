@@ -13,7 +13,7 @@
 
 #include "tools/base/child_process.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -111,4 +111,4 @@ std::string QuotedForShell(const std::string& text) {
   return quoted + "'";
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace campaign {
+namespace vobench::campaign {
 
 struct CommandEnd {
   bool timed_out = false;
@@ -22,4 +22,4 @@ CommandEnd RunCommand(const std::string& command, const std::filesystem::path& f
 // One word for sh.
 std::string QuotedForShell(const std::string& text);
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 using settings::Range;
@@ -121,4 +121,4 @@ std::vector<CurveSpec> ReadCurves(Section root, const Campaign& campaign, const 
   return curves;
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -1,5 +1,4 @@
-// Purpose: `curves` of a campaign's file.
-// Source:  docs/campaign.md, "Curves", has the format.
+// Reader of `curves` in campaign.yaml (docs/campaign.md, "Curves").
 #pragma once
 
 #include <string>
@@ -8,10 +7,10 @@
 #include "tools/base/settings/settings.h"
 #include "tools/bench/campaign/plan.h"
 
-namespace campaign {
+namespace vobench::campaign {
 
 // The scenarios and factors of the campaign must have been read. Problems go to the section's document.
 std::vector<CurveSpec> ReadCurves(settings::Section root, const Campaign& campaign,
                                   const std::vector<std::string>& metrics);
 
-}  // namespace campaign
+}  // namespace vobench::campaign

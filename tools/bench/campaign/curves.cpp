@@ -8,7 +8,7 @@
 
 #include "tools/bench/campaign/table.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 using evaluation::Crossing;
@@ -197,4 +197,4 @@ std::string BrokenMeans(const CurveSpec& spec) {
   return spec.break_error_m > 0 ? fmt::format("lost, or ATE above {:.3g} m", spec.break_error_m) : "lost";
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

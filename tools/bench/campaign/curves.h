@@ -1,5 +1,5 @@
-// Purpose: dose-response curves of a campaign: medians along a varied setting, and where half of the runs have broken.
-// Source:  tools/judge/evaluation/dose_response.h has the statistics.
+// Dose-response curves: medians along a varied setting, and the breaking point, where half of the runs have broken.
+// Source: tools/judge/evaluation/dose_response.h.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 #include "tools/bench/campaign/results.h"
 #include "tools/judge/evaluation/dose_response.h"
 
-namespace campaign {
+namespace vobench::campaign {
 
 // One system. A lost run counts as worse than any number; failed tasks are no runs.
 struct CurveLine {
@@ -43,4 +43,4 @@ std::string DoseText(const Curve& curve, const evaluation::Crossing& crossing);
 // What it takes for a run to be broken: "lost, or ATE above 0.05 m".
 std::string BrokenMeans(const CurveSpec& spec);
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 std::string Hex(const XXH128_hash_t& hash) { return fmt::format("{:016x}{:016x}", hash.high64, hash.low64); }
@@ -31,4 +31,4 @@ std::string DigestOfFile(const std::filesystem::path& file) {
 
 std::string DigestOfProgram() { return DigestOfFile("/proc/self/exe"); }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

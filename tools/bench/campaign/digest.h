@@ -1,12 +1,12 @@
-// Purpose: short names for long contents: the same content has the same name, another one another.
-// Source:  XXH3 with 128 bits (Collet): not against malice.
+// Content digests: equal contents have equal names. Not cryptographic.
+// Source: XXH3 with 128 bits (Collet).
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <string_view>
 
-namespace campaign {
+namespace vobench::campaign {
 
 // 32 hexadecimal digits of a text.
 std::string Digest(std::string_view text);
@@ -17,4 +17,4 @@ std::string DigestOfFile(const std::filesystem::path& file);
 // Of the program that runs: another build is another program.
 std::string DigestOfProgram();
 
-}  // namespace campaign
+}  // namespace vobench::campaign

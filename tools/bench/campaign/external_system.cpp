@@ -9,7 +9,7 @@
 #include "tools/base/settings/settings.h"
 #include "tools/bench/campaign/command.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 const std::vector<std::pair<std::string, SequenceLayout>> kLayouts = {
@@ -109,4 +109,4 @@ std::string Description(const ExternalSystem& system) {
   return text;
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -1,4 +1,4 @@
-// Purpose: how somebody else's odometry is started: an entry of systems.yaml (docs/campaign.md).
+// External odometry: an entry of systems.yaml, with its command (docs/campaign.md).
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace campaign {
+namespace vobench::campaign {
 
 enum class SequenceLayout {
   tum,     // rgb.txt and rgb/
@@ -41,4 +41,4 @@ std::string FillIn(const std::string& command, const std::vector<std::pair<std::
 // All that an answer depends on, as one text.
 std::string Description(const ExternalSystem& system);
 
-}  // namespace campaign
+}  // namespace vobench::campaign

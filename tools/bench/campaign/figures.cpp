@@ -5,13 +5,11 @@
 #include <cmath>
 
 #include "tools/bench/campaign/page.h"
-#include "tools/bench/report/text.h"
+#include "tools/bench/text.h"
 
-namespace vobench {
+namespace vobench::campaign {
 namespace {
 
-using campaign::Curve;
-using campaign::CurveLine;
 using evaluation::Crossing;
 using evaluation::DoseEstimate;
 using report::Axis;
@@ -23,7 +21,7 @@ using report::Series;
 
 // Doses in the unit of the file, harder to the right.
 Axis DoseAxis(const Curve& curve) {
-  const campaign::CurveSpec& spec = curve.spec;
+  const CurveSpec& spec = curve.spec;
   Axis axis;
   axis.label = spec.unit.empty() ? spec.along : fmt::format("{} [{}]", spec.along, spec.unit);
   axis.logarithmic = evaluation::AreGeometric(spec.doses);
@@ -40,7 +38,7 @@ Numbers Doses(const Curve& curve) {
 
 Series Of(const CurveLine& line, std::size_t system, Draw draw) {
   Series series;
-  series.name = report::DisplayName(line.system);
+  series.name = DisplayName(line.system);
   series.system = system;
   series.draw = draw;
   return series;
@@ -60,7 +58,7 @@ bool ComparedWithOne(const std::string& metric) {
   return (metric.starts_with("nees") || metric.starts_with("nis")) && metric.find("median") == std::string::npos;
 }
 
-std::string NumberText(double value) { return std::isinf(value) ? "lost" : report::Readable(value); }
+std::string NumberText(double value) { return std::isinf(value) ? "lost" : Readable(value); }
 
 std::string Told(const DoseEstimate& e, std::size_t lost) {
   if (e.runs == 0) return "no runs";
@@ -109,13 +107,13 @@ Figure MetricFigure(const Curve& curve, std::size_t metric) {
   }
   figure.y.logarithmic = low > 0 && high > 10 * low;
   figure.y.from_zero = !figure.y.logarithmic && low > 0;
-  if (ComparedWithOne(name)) figure.series.push_back(Level(curve, "honest: 1", 1));
+  if (ComparedWithOne(name)) figure.series.push_back(Level(curve, "consistent: 1", 1));
   return figure;
 }
 
 Figure BrokenFigure(const Curve& curve) {
   Figure figure;
-  figure.title = "Broken: " + campaign::BrokenMeans(curve.spec);
+  figure.title = "Broken: " + BrokenMeans(curve.spec);
   figure.description = fmt::format(
       "Share of runs broken along {}, with 95 % intervals; the bar at one half is the interval of the breaking point.",
       curve.spec.along);
@@ -133,7 +131,7 @@ Figure BrokenFigure(const Curve& curve) {
     const CurveLine& line = curve.lines[s];
     AddEstimates(curve, s, line.broken, figure);
     if (!line.breaks || line.breaks->at.kind == Crossing::Kind::not_reached) continue;
-    // Beside each other, so that equal ones can be told apart.
+    // ReferenceColumn each other, so that equal ones can be told apart.
     const double y = 0.5 + 0.03 * (static_cast<double>(s) - 0.5 * static_cast<double>(curve.lines.size() - 1));
     Series bar = Of(line, s, Draw::interval), at = Of(line, s, Draw::dots);
     const std::string told = fmt::format("half broken at {}, 95 %: {} to {}", DoseText(curve, line.breaks->at),
@@ -159,4 +157,4 @@ std::vector<Figure> CurveFigures(const Curve& curve) {
   return figures;
 }
 
-}  // namespace vobench
+}  // namespace vobench::campaign

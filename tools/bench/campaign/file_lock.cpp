@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <system_error>
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 base::Descriptor Open(const std::filesystem::path& path) {
@@ -46,4 +46,4 @@ bool FileLock::Holds(const std::filesystem::path& path) const {
          ours.st_dev == named.st_dev;
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -1,4 +1,4 @@
-// Advisory lock on a file or a folder, flock(2); the end of its process releases it.
+// File lock that ends with its process: flock(2) on a file or a folder.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 #include "tools/base/files.h"
 
-namespace campaign {
+namespace vobench::campaign {
 
 class FileLock {
  public:
@@ -27,4 +27,4 @@ class FileLock {
   base::Descriptor file_;
 };
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -8,13 +8,11 @@
 #include <optional>
 #include <string>
 
-#include "tools/bench/campaign/sequence.h"
-#include "tools/bench/campaign/task.h"
 #include "tools/bench/errors.h"
-#include "tools/bench/result/interrupt.h"
-#include "tools/bench/result/progress.h"
+#include "tools/bench/interrupt.h"
+#include "tools/bench/progress.h"
 
-namespace vobench {
+namespace vobench::campaign {
 namespace {
 
 // A sequence that is not there, and who waits for it.
@@ -31,7 +29,7 @@ class LocalRun {
       : work_(work), out_(out), options_(options), tasks_(static_cast<std::int64_t>(tasks.size())) {
     std::map<std::string, std::size_t> known;
     for (const std::int64_t task : tasks) {
-      const std::size_t p = campaign::ChoiceOf(work.campaign(), task).point;
+      const std::size_t p = ChoiceOf(work.campaign(), task).point;
       const CampaignPoint& point = work.points()[p];
       if (!point.images || work.cache().Has(point.sequence)) {
         ready_.push_back(task);
@@ -50,7 +48,7 @@ class LocalRun {
     while (next_rendering_ < renderings_.size() || !ready_.empty() || pool_.running() > 0) {
       while (StartOne()) {
       }
-      const std::optional<campaign::ProcessEnd> end = pool_.Wait(std::chrono::milliseconds(200));
+      const std::optional<ProcessEnd> end = pool_.Wait(std::chrono::milliseconds(200));
       if (end) Finish(*end);
       if (InterruptPending()) throw Interrupted("interrupted");
     }
@@ -67,20 +65,17 @@ class LocalRun {
       const int threads = ready_.empty() ? std::max(1, free / left) : 1;
       const std::size_t index = next_rendering_++;
       const Rendering& rendering = renderings_[index];
-      campaign::ProcessLimits limits = options_.limits;
+      ProcessLimits limits = options_.limits;
       limits.timeout_s = 0;
       limits.memory_bytes *= static_cast<std::uint64_t>(threads);
-      pool_.Start(-1 - static_cast<std::int64_t>(index), limits, [&] {
-        const Experiment experiment = work_.ExperimentOf(AtPoint(work_.campaign(), rendering.point, 0));
-        RenderInto(work_.cache(), rendering.key, experiment.scenario, threads);
-      });
+      pool_.Start(-1 - static_cast<std::int64_t>(index), limits, [&] { work_.Render(rendering.point, threads); });
       Occupy(-1 - static_cast<std::int64_t>(index), threads);
       return true;
     }
     if (ready_.empty()) return false;
     const std::int64_t task = ready_.front();
     ready_.pop_front();
-    pool_.Start(task, options_.limits, [&] { RunTask(work_, out_, task); });
+    pool_.Start(task, options_.limits, [&] { work_.Run(out_, task); });
     Occupy(task, 1);
     return true;
   }
@@ -90,11 +85,11 @@ class LocalRun {
     busy_ += slots;
   }
 
-  void Finish(const campaign::ProcessEnd& end) {
+  void Finish(const ProcessEnd& end) {
     busy_ -= slots_.at(end.id);
     slots_.erase(end.id);
     if (end.id >= 0) {
-      if (!end.problem.empty()) RecordFailure(work_, out_, end.id, end.problem);
+      if (!end.problem.empty()) work_.RecordFailure(out_, end.id, end.problem);
       progress_->Step();
       return;
     }
@@ -104,7 +99,7 @@ class LocalRun {
       if (end.problem.empty()) {
         ready_.push_back(task);
       } else {
-        RecordFailure(work_, out_, task, "its sequence could not be rendered: " + end.problem);
+        work_.RecordFailure(out_, task, "its sequence could not be rendered: " + end.problem);
         progress_->Step();
       }
     }
@@ -120,7 +115,7 @@ class LocalRun {
   std::deque<std::int64_t> ready_;
   std::map<std::int64_t, int> slots_;  // by task, or -1 - rendering
   int busy_ = 0;
-  campaign::ProcessPool pool_;
+  ProcessPool pool_;
 };
 
 }  // namespace
@@ -135,4 +130,4 @@ void RunLocally(const CampaignWork& work, const std::filesystem::path& out, cons
   }
 }
 
-}  // namespace vobench
+}  // namespace vobench::campaign

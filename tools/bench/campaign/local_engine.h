@@ -1,4 +1,4 @@
-// Purpose: tasks of a campaign on this machine: what they look at is rendered first, then they run, a process each.
+// Local engine: sequences are rendered first, then tasks run, each in its own process.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 #include "tools/bench/campaign/process_pool.h"
 #include "tools/bench/campaign/work.h"
 
-namespace vobench {
+namespace vobench::campaign {
 
 struct LocalOptions {
-  int jobs = 1;                    // processes at a time
-  campaign::ProcessLimits limits;  // of each; rendering has no time-out
+  int jobs = 1;          // processes at a time
+  ProcessLimits limits;  // of each; rendering has no time-out
 };
 
 // Every one of these tasks has a result afterwards, failed ones theirs. Sequences have their names. Throws Interrupted;
@@ -20,4 +20,4 @@ struct LocalOptions {
 void RunLocally(const CampaignWork& work, const std::filesystem::path& out, const std::vector<std::int64_t>& tasks,
                 const LocalOptions& options);
 
-}  // namespace vobench
+}  // namespace vobench::campaign

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-namespace campaign {
+namespace vobench::campaign {
 namespace fs = std::filesystem;
 namespace {
 
@@ -65,4 +65,4 @@ Share ShareOut(std::uint64_t available, int wanted, std::uint64_t each) {
   return {static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(wanted), fit)), each};
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -1,10 +1,10 @@
-// Purpose: how many processes fit into this machine's memory.
+// Number of processes that fit into this machine's memory.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 
-namespace campaign {
+namespace vobench::campaign {
 
 // What can be had without swapping: of the machine, or of the control groups (v2) that this process is in. The files of
 // the system are below `root`. [bytes]
@@ -15,8 +15,8 @@ struct Share {
   std::uint64_t bytes = 0;  // that each may have; 0: no limit, as nobody knows what is available
 };
 
-// `wanted` processes of `each` bytes, or as many as fit, one at least. each = 0: an equal part of what is available, never
-// 0 of it.
+// `wanted` processes of `each` bytes, or as many as fit, one at least. each = 0: an equal part of what is available,
+// never 0 of it.
 Share ShareOut(std::uint64_t available, int wanted, std::uint64_t each);
 
-}  // namespace campaign
+}  // namespace vobench::campaign

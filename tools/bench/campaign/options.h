@@ -1,4 +1,4 @@
-// Options of `vobench campaign`.
+// Options and entry point of `vobench campaign`.
 #pragma once
 
 #include <cstdint>
@@ -26,5 +26,11 @@ struct CampaignOptions {
   std::string partition, time;  // of Slurm's jobs
   int tasks_per_job = 10;
 };
+void RunCampaign(const CampaignOptions& options);
+
+namespace campaign {
+class TaskRunner;
+void RunCampaign(const CampaignOptions& options, const TaskRunner& runner);
+}  // namespace campaign
 
 }  // namespace vobench

@@ -15,7 +15,7 @@
 #include "tools/base/files.h"
 #include "tools/bench/campaign/task_folder.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace fs = std::filesystem;
 namespace {
 
@@ -51,7 +51,8 @@ void PrepareOutput(const fs::path& out, const std::string& text) {
   fs::create_directories(out);
   const fs::path record = out / "campaign.json";
   if (fs::exists(record)) return;
-  // Another process may begin the same campaign at the same time: what is in the way is its own if the record is there now.
+  // Another process may begin the same campaign at the same time: what is in the way is its own if the record is there
+  // now.
   if (HasOthers(out) && !fs::exists(record)) {
     throw std::invalid_argument(
         fmt::format("{}: is no campaign's folder (it has no campaign.json) and not empty", out.string()));
@@ -142,4 +143,4 @@ Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, c
   return merged;
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -1,4 +1,4 @@
-// Purpose: the folder of a campaign: who may write to it, which tasks have a result there, and the tables of all.
+// Output folder of a campaign: lock, finished tasks, and the tables over all tasks.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 #include "tools/bench/campaign/results.h"
 #include "tools/bench/campaign/table.h"
 
-namespace campaign {
+namespace vobench::campaign {
 
 // Makes the folder, and the mark that says what it is: campaign.json, with `text` where it is new. Throws
 // std::invalid_argument where there is something else's folder, std::runtime_error.
@@ -51,4 +51,4 @@ struct Merged {
 // All tasks must be there (std::runtime_error).
 Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, const std::filesystem::path& out);
 
-}  // namespace campaign
+}  // namespace vobench::campaign

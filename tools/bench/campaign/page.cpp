@@ -7,33 +7,26 @@
 #include <map>
 
 #include "tools/bench/campaign/table.h"
+#include "tools/bench/provenance.h"
 #include "tools/bench/report/html.h"
-#include "tools/bench/report/text.h"
-#include "tools/bench/result/result.h"
+#include "tools/bench/text.h"
 #include "tools/judge/evaluation/statistics.h"
 
-namespace vobench {
+namespace vobench::campaign {
 namespace {
-
-using campaign::Campaign;
-using campaign::Curve;
-using campaign::Status;
-using campaign::TaskRecord;
-using report::DisplayName;
-using report::Escape;
 
 constexpr std::size_t kRows = 500;
 
 using Row = std::vector<std::string>;
 
-std::string NumberText(double value) { return std::isinf(value) ? "lost" : report::Readable(value); }
+std::string NumberText(double value) { return std::isinf(value) ? "lost" : Readable(value); }
 
 // Over all tasks of a system that were answered, a lost one worse than any number.
 double MedianOf(const std::vector<TaskRecord>& records, const std::string& system, const std::string& metric) {
-  const std::size_t index = campaign::MetricIndex(metric);
+  const std::size_t index = MetricIndex(metric);
   std::vector<double> values;
   for (const TaskRecord& record : records) {
-    const double value = record.system == system ? campaign::ValueOf(record, index) : std::nan("");
+    const double value = record.system == system ? ValueOf(record, index) : std::nan("");
     if (!std::isnan(value)) values.push_back(value);
   }
   return evaluation::Median(values);
@@ -41,14 +34,14 @@ double MedianOf(const std::vector<TaskRecord>& records, const std::string& syste
 
 std::string What(const Campaign& campaign, const std::vector<TaskRecord>& records) {
   std::string text = fmt::format("{} scenario{}", campaign.scenarios.size(), campaign.scenarios.size() == 1 ? "" : "s");
-  for (const campaign::Factor& factor : campaign.factors) {
+  for (const Factor& factor : campaign.factors) {
     text += fmt::format(" × {} {}", factor.levels.size(), Escape(factor.name));
   }
   text += fmt::format(" × {} system{} × {} seed{} = <b>{} tasks</b>: ", campaign.systems.size(),
                       campaign.systems.size() == 1 ? "" : "s", campaign.seeds.size(),
                       campaign.seeds.size() == 1 ? "" : "s", records.size());
   std::map<std::string, std::size_t> counts;
-  for (const TaskRecord& record : records) ++counts[campaign::Name(record.status)];
+  for (const TaskRecord& record : records) ++counts[Name(record.status)];
   const char* between = "";
   for (const auto& [status, count] : counts) {
     text += fmt::format("{}{} {}", between, count, status);
@@ -62,7 +55,7 @@ std::string Verdicts(const std::vector<Curve>& curves) {
   std::string html;
   for (const Curve& curve : curves) {
     std::string sentence;
-    for (const campaign::CurveLine& line : curve.lines) {
+    for (const CurveLine& line : curve.lines) {
       if (!line.breaks) continue;
       const bool unbroken = line.breaks->at.kind == evaluation::Crossing::Kind::not_reached;
       sentence += sentence.empty() ? "" : "; ";
@@ -91,7 +84,7 @@ std::string SystemTiles(const Campaign& campaign, const std::vector<TaskRecord>&
     }
     const double nees = MedianOf(records, system, "nees_pose_per_dof"), ate = MedianOf(records, system, "ate_m");
     html += "<h2 class=\"system\">" + report::Key(s) + Escape(DisplayName(system)) + "</h2>" +
-            report::Tiles({{std::isinf(ate) ? "lost" : report::Fixed(100 * ate, 2) + " cm", "ATE, median of all tasks",
+            report::Tiles({{std::isinf(ate) ? "lost" : Fixed(100 * ate, 2) + " cm", "ATE, median of all tasks",
                             "position RMSE after the campaign's alignment; a lost run counts as worse than any number"},
                            {fmt::format("{} of {}", lost, runs), "runs lost",
                             "by the rule of the campaign; failed tasks are no runs"},
@@ -101,22 +94,22 @@ std::string SystemTiles(const Campaign& campaign, const std::vector<TaskRecord>&
   return html;
 }
 
-std::string TableHtml(const campaign::Table& table) {
+std::string TableHtml(const Table& table) {
   Row head;
   for (const std::string& name : table.spec.rows) head.push_back(Escape(name));
-  for (const std::string& name : campaign::ColumnNames(table)) head.push_back(Escape(name));
+  for (const std::string& name : ColumnNames(table)) head.push_back(Escape(name));
   std::vector<Row> rows = {head};
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     Row& row = rows.emplace_back();
     for (const std::string& level : table.rows[r]) row.push_back(Escape(level));
-    for (const std::string& text : campaign::RowTexts(table, r, "X")) row.push_back(Escape(text));
+    for (const std::string& text : RowTexts(table, r, "X")) row.push_back(Escape(text));
   }
-  return "<h3>" + Escape(table.spec.title) + "</h3>" + report::Table(campaign::Caption(table), rows);
+  return "<h3>" + Escape(table.spec.title) + "</h3>" + report::Table(Caption(table), rows);
 }
 
 std::string TaskTable(const Campaign& campaign, const std::vector<TaskRecord>& records) {
   Row head = {"task", "scenario"};
-  for (const campaign::Factor& factor : campaign.factors) head.push_back(Escape(factor.name));
+  for (const Factor& factor : campaign.factors) head.push_back(Escape(factor.name));
   const std::vector<std::string> shown = {"ate_m", "rpe_m", "tracked_coverage", "nees_pose_per_dof", "nis_per_dof"};
   for (const char* name : {"system", "seed", "status"}) head.push_back(name);
   head.insert(head.end(), shown.begin(), shown.end());
@@ -124,17 +117,17 @@ std::string TaskTable(const Campaign& campaign, const std::vector<TaskRecord>& r
   for (const TaskRecord& record : records) {
     if (rows.size() > kRows) break;
     Row row = {std::to_string(record.task), Escape(record.scenario)};
-    const campaign::TaskChoice choice = campaign::ChoiceOf(campaign, record.task);
+    const TaskChoice choice = ChoiceOf(campaign, record.task);
     for (std::size_t f = 0; f < campaign.factors.size(); ++f) {
       row.push_back(Escape(campaign.factors[f].levels[choice.levels[f]].name));
     }
     row.push_back(Escape(DisplayName(record.system)));
     row.push_back(std::to_string(record.seed));
-    row.push_back(campaign::Name(record.status));
+    row.push_back(Name(record.status));
     for (const std::string& metric : shown) {
-      const std::size_t index = campaign::MetricIndex(metric);
+      const std::size_t index = MetricIndex(metric);
       const bool there = index < record.metrics.size() && record.metrics[index].has_value();
-      row.push_back(there ? report::Readable(*record.metrics[index]) : "–");
+      row.push_back(there ? Readable(*record.metrics[index]) : "–");
     }
     rows.push_back(row);
   }
@@ -152,11 +145,11 @@ std::string Record(const Campaign& campaign) {
 
 }  // namespace
 
-std::string CampaignPage(const Campaign& campaign, const campaign::Merged& merged) {
+std::string CampaignPage(const Campaign& campaign, const Merged& merged) {
   report::Page page;
   page.title = campaign.name;
   page.summary = What(campaign, merged.records) + Verdicts(merged.curves) + SystemTiles(campaign, merged.records);
-  for (const campaign::SystemEntry& system : campaign.systems) page.systems.push_back(DisplayName(system.name));
+  for (const SystemEntry& system : campaign.systems) page.systems.push_back(DisplayName(system.name));
   for (const Curve& curve : merged.curves) {
     page.sections.push_back(
         {"Along " + curve.spec.along + (curve.group.empty() ? "" : ": " + curve.group),
@@ -165,11 +158,11 @@ std::string CampaignPage(const Campaign& campaign, const campaign::Merged& merge
          CurveFigures(curve)});
   }
   std::string tables;
-  for (const campaign::Table& table : merged.tables) tables += TableHtml(table);
+  for (const Table& table : merged.tables) tables += TableHtml(table);
   page.sections.push_back({"Tables", "", {}, tables});
   page.sections.push_back({"Tasks", "", {}, TaskTable(campaign, merged.records)});
   page.sections.push_back({"How this was made", "", {}, Record(campaign)});
   return report::Html(page);
 }
 
-}  // namespace vobench
+}  // namespace vobench::campaign

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace campaign {
+namespace vobench::campaign {
 
 std::size_t Points(const Campaign& campaign) {
   std::size_t points = campaign.scenarios.size();
@@ -69,4 +69,4 @@ std::string Describe(const Campaign& campaign, const TaskChoice& choice) {
   return text + fmt::format(", {}, seed {}", campaign.systems[choice.system].name, campaign.seeds[choice.seed]);
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

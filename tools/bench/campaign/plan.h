@@ -1,5 +1,5 @@
-// Purpose: a campaign as plain values: scenarios x varied settings x systems x seeds, and which of them task k is.
-// Source:  docs/campaign.md has the file's format.
+// Campaign as plain values: scenarios x varied settings x systems x seeds, and the choice of task k.
+// Source: docs/campaign.md.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 #include "tools/bench/campaign/external_system.h"
 #include "tools/judge/evaluation/alignment.h"
 
-namespace campaign {
+namespace vobench::campaign {
 
 // Dotted keys with their values as YAML, a later one wins: what `--set` takes.
 using Changes = std::vector<std::pair<std::string, std::string>>;
@@ -52,7 +52,7 @@ struct LostRule {
 };
 
 // Somebody else's numbers, as they are printed elsewhere.
-struct Beside {
+struct ReferenceColumn {
   std::string name;
   std::map<std::string, std::string> values;  // by the level of the table's only row name; "-" where there is none
 };
@@ -61,9 +61,9 @@ struct Beside {
 struct TableSpec {
   std::string metric;  // a column of results.csv
   std::string title;
-  std::vector<std::string> rows, columns;  // "scenario", "system" or the name of a factor
-  double unit_in_si = 1;                   // of the numbers that are printed
-  std::vector<Beside> beside = {};         // more columns, behind ours
+  std::vector<std::string> rows, columns;    // "scenario", "system" or the name of a factor
+  double unit_in_si = 1;                     // of the numbers that are printed
+  std::vector<ReferenceColumn> beside = {};  // more columns, behind ours
 };
 
 // How results change along one setting that is varied: docs/campaign.md, "Curves".
@@ -77,8 +77,8 @@ struct CurveSpec {
   double break_error_m = 0;          // a run with a larger ate_m has broken, as a lost one has; 0: lost ones only
 };
 
-// What a task leaves beside task.json and times.json: nothing; metrics.json and estimate.txt; covariance.txt, frames.csv
-// and the truth, too.
+// What a task leaves beside task.json and times.json: nothing; metrics.json and estimate.txt; covariance.txt,
+// frames.csv and the truth, too.
 enum class Keep { numbers, estimate, all };
 
 struct Campaign {
@@ -122,4 +122,4 @@ std::vector<std::string> LevelsOf(const Campaign& campaign, const std::vector<st
 // "tiny, blur 4 ms, rb2pf, seed 3"
 std::string Describe(const Campaign& campaign, const TaskChoice& choice);
 
-}  // namespace campaign
+}  // namespace vobench::campaign

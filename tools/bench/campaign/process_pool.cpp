@@ -11,7 +11,7 @@
 #include <new>
 #include <stdexcept>
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 constexpr int kWorkFailed = 3;  // exit status
@@ -116,4 +116,4 @@ std::optional<ProcessEnd> ProcessPool::Wait(std::chrono::milliseconds patience) 
   }
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

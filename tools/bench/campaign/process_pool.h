@@ -1,5 +1,5 @@
-// Pool of forked processes with limits on memory and time; a crash ends one task only. Threads of this process do not
-// exist in a forked one.
+// Pool of forked processes: one that crashes, hangs or exceeds its memory ends alone. For use before this process has
+// threads, which a fork does not copy.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@
 
 #include "tools/base/child_process.h"
 
-namespace campaign {
+namespace vobench::campaign {
 
 struct ProcessLimits {
   std::uint64_t memory_bytes = 0;  // that it may take (RLIMIT_DATA) beside what it starts with; 0: no limit
@@ -56,4 +56,4 @@ class ProcessPool {
   std::vector<Running> running_;
 };
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -11,7 +11,7 @@
 #include "tools/base/limits/json.h"
 #include "tools/base/limits/whole_number.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -41,11 +41,6 @@ Value Rmse(const evaluation::Statistics& statistics) {
   return statistics.count > 0 ? Value(statistics.rmse) : std::nullopt;
 }
 
-struct Metric {
-  const char* name;
-  Value (*of)(const Metrics& metrics, evaluation::Alignment align);
-};
-
 std::optional<evaluation::NeesSummary> Pose(const Metrics& m) {
   return m.consistency ? std::optional(m.consistency->pose) : std::nullopt;
 }
@@ -56,39 +51,51 @@ std::optional<evaluation::NeesSummary> Velocity(const Metrics& m) {
   return m.consistency ? m.consistency->velocity : std::nullopt;
 }
 
+// Columns of results.csv between `status` and `reason`, once: name, unit, whether larger is better, value. A column is
+// added here, and to the table in docs/campaign.md; task.json and results.csv are written and read by name.
+struct Column {
+  const char* name;
+  const char* unit;
+  bool larger_is_better;
+  Value (*of)(const Metrics& metrics, evaluation::Alignment align);
+};
+
 using A = evaluation::Alignment;
-constexpr Metric kMetrics[] = {
-    {"ate_m", [](const Metrics& m, A align) { return Rmse(m.errors.Aligned(align).position); }},
-    {"ate_none_m", [](const Metrics& m, A) { return Rmse(m.errors.none.position); }},
-    {"ate_se3_m", [](const Metrics& m, A) { return Rmse(m.errors.se3.position); }},
-    {"ate_sim3_m", [](const Metrics& m, A) { return Rmse(m.errors.sim3.position); }},
-    {"ate_first_m", [](const Metrics& m, A) { return Rmse(m.errors.first.position); }},
-    {"ate_orientation_rad", [](const Metrics& m, A align) { return Rmse(m.errors.Aligned(align).orientation); }},
-    {"ate_share_of_path",
+constexpr Column kColumns[] = {
+    {"ate_m", "m", false, [](const Metrics& m, A align) { return Rmse(m.errors.Aligned(align).position); }},
+    {"ate_none_m", "m", false, [](const Metrics& m, A) { return Rmse(m.errors.none.position); }},
+    {"ate_se3_m", "m", false, [](const Metrics& m, A) { return Rmse(m.errors.se3.position); }},
+    {"ate_sim3_m", "m", false, [](const Metrics& m, A) { return Rmse(m.errors.sim3.position); }},
+    {"ate_first_m", "m", false, [](const Metrics& m, A) { return Rmse(m.errors.first.position); }},
+    {"ate_orientation_rad", "rad", false,
+     [](const Metrics& m, A align) { return Rmse(m.errors.Aligned(align).orientation); }},
+    {"ate_share_of_path", "1", false,
      [](const Metrics& m, A align) { return Per(m.errors.Aligned(align).position.rmse, m.path_length_m); }},
-    {"rpe_m", [](const Metrics& m, A) { return Rmse(m.errors.rpe.position_statistics); }},
-    {"rpe_unscaled_m", [](const Metrics& m, A) { return Rmse(m.errors.rpe_unscaled.position_statistics); }},
-    {"rpe_orientation_rad", [](const Metrics& m, A) { return Rmse(m.errors.rpe.orientation_statistics); }},
-    {"rpe_pairs_share",
+    {"rpe_m", "m", false, [](const Metrics& m, A) { return Rmse(m.errors.rpe.position_statistics); }},
+    {"rpe_unscaled_m", "m", false, [](const Metrics& m, A) { return Rmse(m.errors.rpe_unscaled.position_statistics); }},
+    {"rpe_orientation_rad", "rad", false,
+     [](const Metrics& m, A) { return Rmse(m.errors.rpe.orientation_statistics); }},
+    {"rpe_pairs_share", "1", true,
      [](const Metrics& m, A) {
        return Per(static_cast<double>(m.errors.rpe.pairs.size()), static_cast<double>(m.errors.rpe_pairs_offered));
      }},
-    {"scale", [](const Metrics& m, A) { return Value(m.errors.sim3.similarity.scale); }},
-    {"pose_coverage",
+    {"scale", "1", false, [](const Metrics& m, A) { return Value(m.errors.sim3.similarity.scale); }},
+    {"pose_coverage", "1", true,
      [](const Metrics& m, A) { return m.coverage ? Value(m.coverage->pose_coverage()) : std::nullopt; }},
-    {"tracked_coverage",
+    {"tracked_coverage", "1", true,
      [](const Metrics& m, A) { return m.coverage ? m.coverage->tracked_coverage() : std::nullopt; }},
-    {"nees_pose_per_dof", [](const Metrics& m, A) { return PerDof(Pose(m)); }},
-    {"nees_pose_median_per_dof", [](const Metrics& m, A) { return MedianPerDof(Pose(m)); }},
-    {"nees_pose_scale_free_per_dof", [](const Metrics& m, A) { return PerDof(ScaleFree(m)); }},
-    {"nees_velocity_per_dof", [](const Metrics& m, A) { return PerDof(Velocity(m)); }},
-    {"nees_velocity_median_per_dof", [](const Metrics& m, A) { return MedianPerDof(Velocity(m)); }},
-    {"nis_per_dof", [](const Metrics& m, A) { return m.nis ? Value(m.nis->mean_per_dof) : std::nullopt; }},
-    {"path_length_m", [](const Metrics& m, A) { return Value(m.path_length_m); }},
-    {"duration_s", [](const Metrics& m, A) { return Value(m.duration_s); }},
-    {"constant_velocity_ate_m",
+    {"nees_pose_per_dof", "1", false, [](const Metrics& m, A) { return PerDof(Pose(m)); }},
+    {"nees_pose_median_per_dof", "1", false, [](const Metrics& m, A) { return MedianPerDof(Pose(m)); }},
+    {"nees_pose_scale_free_per_dof", "1", false, [](const Metrics& m, A) { return PerDof(ScaleFree(m)); }},
+    {"nees_velocity_per_dof", "1", false, [](const Metrics& m, A) { return PerDof(Velocity(m)); }},
+    {"nees_velocity_median_per_dof", "1", false, [](const Metrics& m, A) { return MedianPerDof(Velocity(m)); }},
+    {"nis_per_dof", "1", false, [](const Metrics& m, A) { return m.nis ? Value(m.nis->mean_per_dof) : std::nullopt; }},
+    {"path_length_m", "m", false, [](const Metrics& m, A) { return Value(m.path_length_m); }},
+    {"duration_s", "s", false, [](const Metrics& m, A) { return Value(m.duration_s); }},
+    {"constant_velocity_ate_m", "m", false,
      [](const Metrics& m, A align) { return Rmse(m.constant_velocity.Aligned(align).position); }},
-    {"constant_velocity_rpe_m", [](const Metrics& m, A) { return Rmse(m.constant_velocity.rpe.position_statistics); }},
+    {"constant_velocity_rpe_m", "m", false,
+     [](const Metrics& m, A) { return Rmse(m.constant_velocity.rpe.position_statistics); }},
 };
 
 template <class Number>
@@ -107,7 +114,7 @@ std::string Name(Status status) {
 const std::vector<std::string>& MetricNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const Metric& metric : kMetrics) all.emplace_back(metric.name);
+    for (const Column& column : kColumns) all.emplace_back(column.name);
     return all;
   }();
   return names;
@@ -115,16 +122,19 @@ const std::vector<std::string>& MetricNames() {
 
 std::vector<Value> MetricValues(const Metrics& metrics, evaluation::Alignment align) {
   std::vector<Value> values;
-  for (const Metric& metric : kMetrics) {
-    const Value value = metric.of(metrics, align);
+  for (const Column& column : kColumns) {
+    const Value value = column.of(metrics, align);
     values.push_back(value && std::isfinite(*value) ? value : std::nullopt);
   }
   return values;
 }
 
 bool LargerIsBetter(const std::string& metric) {
-  return metric == "pose_coverage" || metric == "tracked_coverage" || metric == "rpe_pairs_share";
+  const std::size_t index = MetricIndex(metric);
+  return index < std::size(kColumns) && kColumns[index].larger_is_better;
 }
+
+std::string UnitOf(const std::string& metric) { return kColumns[MetricIndex(metric)].unit; }
 
 double ValueOf(const TaskRecord& record, std::size_t metric) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -141,9 +151,8 @@ std::size_t MetricIndex(const std::string& metric) {
 
 bool IsLost(const TaskRecord& record, const LostRule& rule) {
   const auto value = [&](const char* name) -> Value {
-    const auto at = std::find(MetricNames().begin(), MetricNames().end(), name) - MetricNames().begin();
-    return static_cast<std::size_t>(at) < record.metrics.size() ? record.metrics[static_cast<std::size_t>(at)]
-                                                                : Value();
+    const std::size_t index = MetricIndex(name);
+    return index < record.metrics.size() ? record.metrics[index] : Value();
   };
   const Value pose = value("pose_coverage"), tracked = value("tracked_coverage"), error = value("ate_m");
   if ((pose && *pose < rule.pose_coverage) || (tracked && *tracked < rule.tracked_coverage)) return true;
@@ -230,4 +239,4 @@ std::string ResultsCsv(const Campaign& campaign, const std::vector<TaskRecord>& 
   return csv;
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

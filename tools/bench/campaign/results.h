@@ -1,4 +1,4 @@
-// Purpose: what one task found, as a line of results.csv: docs/campaign.md has the columns.
+// Result of one task, as a line of results.csv (docs/campaign.md). Its columns: results.cpp, kColumns.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 #include "tools/bench/campaign/plan.h"
 #include "tools/judge/evaluation/summary.h"
 
-namespace campaign {
+namespace vobench::campaign {
 
 enum class Status {
   ok,
@@ -44,9 +44,11 @@ std::vector<std::optional<double>> MetricValues(const evaluation::Metrics& metri
 
 // Of shares of what was answered; of everything else a smaller value is better.
 bool LargerIsBetter(const std::string& metric);
+// "m", "rad", "s" or "1"; of one of MetricNames.
+std::string UnitOf(const std::string& metric);
 
-// A run's value of a metric, by its place among MetricNames: worse than any number (infinite) where it is lost or has no
-// answer, NaN where there is none, or the task failed.
+// A run's value of a metric, by its place among MetricNames: worse than any number (infinite) where it is lost or has
+// no answer, NaN where there is none, or the task failed.
 double ValueOf(const TaskRecord& record, std::size_t metric);
 // The place; their number where there is no such metric.
 std::size_t MetricIndex(const std::string& metric);
@@ -67,4 +69,4 @@ std::string OneLine(std::string text);
 // One field of a CSV line, quoted where it must be.
 std::string CsvField(const std::string& text);
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -8,7 +8,7 @@
 #include "tools/bench/campaign/digest.h"
 #include "tools/bench/campaign/output.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace fs = std::filesystem;
 
 fs::path SequenceCache::PathOf(const std::string& key) const { return folder_ / key.substr(0, 2) / key; }
@@ -64,4 +64,4 @@ std::uint64_t SequenceCache::Bytes() const {
   return bytes;
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

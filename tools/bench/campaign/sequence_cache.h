@@ -1,9 +1,8 @@
-// Purpose: where rendered sequences are kept, by the name of their content, for all systems and campaigns that want
-// them.
+// Cache of rendered sequences, named by their content and shared by all systems and campaigns.
 //
-//   DIR/ab/abcd...        a sequence, complete: it is given its name when all of it is there
-//   DIR/ab/abcd....lock   whoever renders it holds this
-//   DIR/inputs/...json    which files a world is read from, and their digests when it was last read
+//   DIR/ab/abcd...        a sequence, complete: renamed when all of it is written
+//   DIR/ab/abcd....lock   held by the process that renders it
+//   DIR/inputs/...json    files that a world is read from, and their digests when it was last read
 #pragma once
 
 #include <cstdint>
@@ -15,7 +14,7 @@
 
 #include "tools/bench/campaign/file_lock.h"
 
-namespace campaign {
+namespace vobench::campaign {
 
 class SequenceCache {
  public:
@@ -44,4 +43,4 @@ class SequenceCache {
   std::map<std::filesystem::path, std::string> digests_;  // a file is read once
 };
 
-}  // namespace campaign
+}  // namespace vobench::campaign

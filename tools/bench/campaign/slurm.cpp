@@ -12,7 +12,7 @@
 #include "tools/bench/campaign/command.h"
 #include "tools/bench/campaign/digest.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace fs = std::filesystem;
 namespace {
 
@@ -87,4 +87,4 @@ SlurmAnswer AskForJobs(const std::string& name, const fs::path& where) {
   return {is_none ? SlurmState::gone : SlurmState::queued, answer.text};
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -1,4 +1,4 @@
-// Purpose: tasks as a job array of Slurm, through its own commands: sbatch and squeue.
+// Job arrays of Slurm through its own commands sbatch and squeue.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace campaign {
+namespace vobench::campaign {
 
 struct SlurmOptions {
   std::string partition;  // empty: the cluster's default
@@ -42,4 +42,4 @@ struct SlurmAnswer {
 };
 SlurmAnswer AskForJobs(const std::string& name, const std::filesystem::path& where);
 
-}  // namespace campaign
+}  // namespace vobench::campaign

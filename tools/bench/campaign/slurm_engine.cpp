@@ -13,13 +13,12 @@
 #include "tools/bench/campaign/command.h"
 #include "tools/bench/campaign/output.h"
 #include "tools/bench/campaign/slurm.h"
-#include "tools/bench/campaign/task.h"
 #include "tools/bench/campaign/task_folder.h"
 #include "tools/bench/errors.h"
-#include "tools/bench/result/interrupt.h"
-#include "tools/bench/result/progress.h"
+#include "tools/bench/interrupt.h"
+#include "tools/bench/progress.h"
 
-namespace vobench {
+namespace vobench::campaign {
 namespace fs = std::filesystem;
 namespace {
 
@@ -32,20 +31,20 @@ class SlurmRun {
         options_(options),
         out_(fs::absolute(options.output)),
         folder_(out_ / "slurm"),
-        name_(campaign::SlurmJobName(out_)),
+        name_(SlurmJobName(out_)),
         left_(std::move(tasks)),
         progress_("tasks", static_cast<std::int64_t>(left_.size()), 0, "tasks") {}
 
   void Run() {
     fs::create_directories(folder_);
-    const campaign::FileLock alone = campaign::LockOutput(folder_, campaign::FileLock::Kind::exclusive);
-    const campaign::SlurmAnswer earlier = campaign::AskForJobs(name_, folder_);
-    if (earlier.state == campaign::SlurmState::unknown) {
+    const FileLock alone = LockOutput(folder_, FileLock::Kind::exclusive);
+    const SlurmAnswer earlier = AskForJobs(name_, folder_);
+    if (earlier.state == SlurmState::unknown) {
       throw std::runtime_error(fmt::format(
           "squeue does not say whether jobs of an earlier start ({}) are in the queue, so nothing was submitted: {}",
           name_, earlier.words.empty() ? "it does not answer" : earlier.words));
     }
-    if (earlier.state == campaign::SlurmState::queued) {
+    if (earlier.state == SlurmState::queued) {
       fmt::print(stderr, "jobs of an earlier start ({}) are in the queue: waiting for them\n", name_);
       WaitForJobs();
     }
@@ -56,35 +55,34 @@ class SlurmRun {
       if (left_.size() == before) ++fruitless;
     }
     for (const std::int64_t task : left_) {
-      RecordFailure(work_, out_, task,
-                    fmt::format("no result from Slurm in {} rounds; its logs are in OUT/slurm", kRounds));
+      work_.RecordFailure(out_, task,
+                          fmt::format("no result from Slurm in {} rounds; its logs are in OUT/slurm", kRounds));
       progress_.Step();
     }
   }
 
  private:
   void SubmitRest() {
-    const std::vector<std::string> lines = campaign::ArrayLines(BySequence(), options_.tasks_per_job);
+    const std::vector<std::string> lines = ArrayLines(BySequence(), options_.tasks_per_job);
     std::string text;
     for (const std::string& line : lines) text += line + "\n";
     const fs::path list = folder_ / "tasks.txt", script = folder_ / "job.sh";
     base::WriteFile(list, text, base::Writers::many);
-    const auto word = [](const fs::path& path) { return campaign::QuotedForShell(fs::absolute(path).string()); };
+    const auto word = [](const fs::path& path) { return QuotedForShell(fs::absolute(path).string()); };
     std::string command = fmt::format("{} campaign {} -o {} --cache {}", word(fs::read_symlink("/proc/self/exe")),
                                       word(options_.file), word(out_), word(work_.cache().folder()));
     if (options_.memory_bytes > 0) command += fmt::format(" --memory {}", options_.memory_bytes);
     if (options_.timeout_s > 0) command += fmt::format(" --timeout {}", options_.timeout_s);
     command += fmt::format(" --jobs 1 --list {} --part", word(list));
-    const campaign::SlurmOptions slurm{options_.partition, options_.time, options_.memory_bytes,
-                                       options_.tasks_per_job};
-    base::WriteFile(script, campaign::BatchScript(slurm, name_, lines.size(), folder_, command), base::Writers::many);
-    campaign::Submit(script, folder_);
+    const SlurmOptions slurm{options_.partition, options_.time, options_.memory_bytes, options_.tasks_per_job};
+    base::WriteFile(script, BatchScript(slurm, name_, lines.size(), folder_, command), base::Writers::many);
+    Submit(script, folder_);
   }
 
   // An element of the array does tasks on the same pictures, so that its node reads them from the disk once.
   std::vector<std::int64_t> BySequence() const {
     std::vector<std::pair<std::size_t, std::int64_t>> tasks;
-    for (const std::int64_t task : left_) tasks.emplace_back(campaign::ChoiceOf(work_.campaign(), task).point, task);
+    for (const std::int64_t task : left_) tasks.emplace_back(ChoiceOf(work_.campaign(), task).point, task);
     std::sort(tasks.begin(), tasks.end());
     std::vector<std::int64_t> sorted;
     for (const auto& [point, task] : tasks) sorted.push_back(task);
@@ -95,9 +93,9 @@ class SlurmRun {
   void WaitForJobs() {
     using std::chrono::milliseconds;
     for (milliseconds pause(200);; pause = std::min(pause * 5 / 4, milliseconds(10'000))) {
-      const campaign::SlurmState state = campaign::AskForJobs(name_, folder_).state;
+      const SlurmState state = AskForJobs(name_, folder_).state;
       Collect();
-      if (left_.empty() || state == campaign::SlurmState::gone) return;
+      if (left_.empty() || state == SlurmState::gone) return;
       for (milliseconds slept(0); slept < pause; slept += milliseconds(100)) {
         if (InterruptPending()) throw Interrupted(name_);
         std::this_thread::sleep_for(milliseconds(100));
@@ -106,7 +104,7 @@ class SlurmRun {
   }
 
   void Collect() {
-    const std::vector<std::int64_t> present = campaign::PresentTasks(out_);
+    const std::vector<std::int64_t> present = PresentTasks(out_);
     const auto done = [&](std::int64_t task) { return std::binary_search(present.begin(), present.end(), task); };
     const auto count = static_cast<std::int64_t>(std::erase_if(left_, done));
     if (count > 0) progress_.Step(count);
@@ -124,8 +122,8 @@ class SlurmRun {
 
 void RunOnSlurm(const CampaignWork& work, const CampaignOptions& options, std::vector<std::int64_t> tasks) {
   if (tasks.empty()) return;
-  campaign::RemoveFailed(options.output, tasks);  // what is there from now on is a result
+  RemoveFailed(options.output, tasks);  // what is there from now on is a result
   SlurmRun(work, options, std::move(tasks)).Run();
 }
 
-}  // namespace vobench
+}  // namespace vobench::campaign

@@ -1,5 +1,4 @@
-// Purpose: tasks of a campaign through Slurm: submitted as a job array, waited for, and what did not come back once
-// more.
+// Slurm engine: tasks are submitted as a job array, waited for, and missing ones submitted again.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +8,10 @@
 #include "tools/bench/campaign/options.h"
 #include "tools/bench/campaign/work.h"
 
-namespace vobench {
+namespace vobench::campaign {
 
 // Every one of these tasks has a result afterwards, failed ones theirs. Jobs that an earlier start has submitted are
 // waited for first. Throws Interrupted, and leaves the jobs in the queue; std::runtime_error with sbatch's own words.
 void RunOnSlurm(const CampaignWork& work, const CampaignOptions& options, std::vector<std::int64_t> tasks);
 
-}  // namespace vobench
+}  // namespace vobench::campaign

@@ -10,7 +10,7 @@
 #include "tools/base/text.h"
 #include "tools/judge/evaluation/statistics.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 // Numbers each in the order in which they are first asked for.
@@ -43,7 +43,7 @@ std::string Text(const Cell& cell, double unit, const std::string& lost) {
   return text;
 }
 
-std::string ValueOf(const Beside& beside, const std::vector<std::string>& row, const std::string& lost) {
+std::string ValueOf(const ReferenceColumn& beside, const std::vector<std::string>& row, const std::string& lost) {
   const auto at = beside.values.find(row.front());
   if (at == beside.values.end()) return "-";
   return at->second == "X" ? lost : at->second;
@@ -101,14 +101,14 @@ Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vect
 std::vector<std::string> ColumnNames(const Table& table) {
   std::vector<std::string> names;
   for (const auto& column : table.columns) names.push_back(base::Join(column, ", "));
-  for (const Beside& beside : table.spec.beside) names.push_back(beside.name);
+  for (const ReferenceColumn& beside : table.spec.beside) names.push_back(beside.name);
   return names;
 }
 
 std::vector<std::string> RowTexts(const Table& table, std::size_t row, const std::string& lost) {
   std::vector<std::string> texts;
   for (const Cell& cell : table.cells[row]) texts.push_back(Text(cell, table.spec.unit_in_si, lost));
-  for (const Beside& beside : table.spec.beside) texts.push_back(ValueOf(beside, table.rows[row], lost));
+  for (const ReferenceColumn& beside : table.spec.beside) texts.push_back(ValueOf(beside, table.rows[row], lost));
   return texts;
 }
 
@@ -175,4 +175,4 @@ std::string Latex(const std::vector<Table>& tables) {
   return text;
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -1,4 +1,4 @@
-// Purpose: results as tables for people and papers: medians and quartiles by what was varied.
+// Tables over results: medians and quartiles by what was varied, as Markdown and LaTeX.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include "tools/bench/campaign/plan.h"
 #include "tools/bench/campaign/results.h"
 
-namespace campaign {
+namespace vobench::campaign {
 
 // One cell: quartiles over runs, a lost one counted as worse than any number.
 struct Cell {
@@ -38,4 +38,4 @@ std::string EscapeMarkdown(const std::string& text);
 std::string Markdown(const std::vector<Table>& tables);
 std::string Latex(const std::vector<Table>& tables);
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -7,7 +7,9 @@
 #include <numbers>
 #include <set>
 
-namespace campaign {
+#include "tools/bench/campaign/results.h"
+
+namespace vobench::campaign {
 namespace {
 
 using settings::Section;
@@ -49,7 +51,7 @@ void ReadBeside(Section& table, const Campaign& campaign, TableSpec& spec) {
     return table.Reject("beside", "'beside' needs exactly one name in 'rows'");
   }
   for (Section& section : sections) {
-    Beside beside;
+    ReferenceColumn beside;
     Changes values;
     section.Require("name", beside.name);
     if (!section.ReadRaw("values", values)) section.RequirePresent("values");
@@ -77,13 +79,18 @@ std::vector<TableSpec> ReadTables(Section root, const Campaign& campaign, const 
     section.Require("metric", table.metric);
     section.Read("rows", table.rows);
     section.Read("columns", table.columns);
-    if (!Contains(metrics, table.metric)) {
+    const bool known = Contains(metrics, table.metric);
+    if (!known) {
       section.Reject("metric",
                      fmt::format("there is no metric '{}'; there are {}", table.metric, fmt::join(metrics, ", ")));
     }
     CheckSides(section, table, factors);
-    section.ReadChoice("unit", table.unit_in_si,
-                       {{"SI", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}, {"deg", std::numbers::pi / 180}});
+    constexpr double kDegree = std::numbers::pi / 180;
+    section.ReadChoice("unit", table.unit_in_si, {{"SI", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}, {"deg", kDegree}});
+    const std::string fits = table.unit_in_si == 1 ? "" : table.unit_in_si == kDegree ? "rad" : "m";
+    if (known && !fits.empty() && UnitOf(table.metric) != fits) {
+      section.Reject("unit", fmt::format("'{}' is in {}, not in {}", table.metric, UnitOf(table.metric), fits));
+    }
     ReadBeside(section, campaign, table);
     table.title = table.metric;
     section.Read("title", table.title);
@@ -93,4 +100,4 @@ std::vector<TableSpec> ReadTables(Section root, const Campaign& campaign, const 
   return tables;
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -7,7 +7,7 @@
 
 #include "tools/base/files.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace fs = std::filesystem;
 
 fs::path TaskPath(const fs::path& out, std::int64_t task) {
@@ -52,4 +52,4 @@ void TaskFolder::Commit(const TaskRecord& record) {
   committed_ = true;
 }
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -1,4 +1,4 @@
-// Purpose: the folder of one task, which appears whole or not at all, and what is known of a task from it.
+// Folder of one task, written whole or not at all, and the record read from it.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 #include "tools/bench/campaign/file_lock.h"
 #include "tools/bench/campaign/results.h"
 
-namespace campaign {
+namespace vobench::campaign {
 
 // OUT/tasks/00/000123
 std::filesystem::path TaskPath(const std::filesystem::path& out, std::int64_t task);
@@ -39,4 +39,4 @@ class TaskFolder {
   bool committed_ = false;
 };
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -1,61 +1,64 @@
-// Purpose: a campaign whose every scenario, variant and system has been read and checked: what there is to do, and the
-//          name of what it depends on.
+// Resolved campaign: every scenario, variant and system read and checked, and the name of all that a task depends on.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "tools/bench/campaign/plan.h"
 #include "tools/bench/campaign/process_pool.h"
 #include "tools/bench/campaign/results.h"
 #include "tools/bench/campaign/sequence_cache.h"
-#include "tools/bench/systems/experiment.h"
+#include "tools/bench/campaign/task_runner.h"
 
-namespace vobench {
+namespace vobench::campaign {
 
 // A scenario with one value of everything that is varied.
 struct CampaignPoint {
   bool images = false;
   std::string sequence;               // of images: its name in the cache
-  campaign::LevelValues levels;       // for results.csv
+  LevelValues levels;                 // for results.csv
   std::vector<std::string> settings;  // digest of all settings, by system
 };
 
 class CampaignWork {
  public:
-  // Throws BadInput with every problem of the campaign's file and of all that it names; nothing is run.
-  CampaignWork(const std::filesystem::path& file, std::filesystem::path cache);
+  // Throws BadInput with every problem of the campaign's file and of all that it names; nothing is run. `runner` must
+  // outlive it.
+  CampaignWork(const std::filesystem::path& file, std::filesystem::path cache, const TaskRunner& runner);
 
-  const campaign::Campaign& campaign() const { return campaign_; }
+  const Campaign& campaign() const { return campaign_; }
   const std::vector<CampaignPoint>& points() const { return points_; }
-  const campaign::SequenceCache& cache() const { return cache_; }
+  const SequenceCache& cache() const { return cache_; }
 
   // Reads worlds that have not been read, in processes of their own, and names the sequences of these points. Throws
   // BadInput where one cannot be read.
-  void NameSequences(const std::vector<std::size_t>& points, const campaign::ProcessLimits& limits);
-
-  // The settings of one task, read anew. Throws BadInput, also when they are no longer what they were.
-  Experiment ExperimentOf(const campaign::TaskChoice& choice) const;
+  void NameSequences(const std::vector<std::size_t>& points, const ProcessLimits& limits);
 
   // Of all that a task's result depends on; the sequence of its point must have its name.
-  std::string KeyOf(const campaign::TaskChoice& choice) const;
-  // All but what it found out.
-  campaign::TaskRecord BlankRecord(std::int64_t task) const;
+  std::string KeyOf(const TaskChoice& choice) const;
+
+  // Renders the sequence of a point. Throws BadInput also where settings have changed, std::runtime_error.
+  void Render(std::size_t point, int threads) const;
+  // Runs a task into OUT/tasks/...; an older result goes. The sequence that it needs must be in the cache. Throws as
+  // Render: then nothing is written.
+  void Run(const std::filesystem::path& out, std::int64_t task) const;
+  // Records that nothing could be found out, and why.
+  void RecordFailure(const std::filesystem::path& out, std::int64_t task, const std::string& reason) const;
 
  private:
   void Resolve(const std::filesystem::path& file);
+  void RequireUnchanged(const TaskChoice& choice) const;
+  // All but what the task found out.
+  TaskRecord BlankRecord(std::int64_t task) const;
 
-  campaign::Campaign campaign_;
+  const TaskRunner& runner_;
+  Campaign campaign_;
   std::vector<CampaignPoint> points_;
-  campaign::SequenceCache cache_;
+  SequenceCache cache_;
   std::string program_;
 };
 
-// A task that does `point` with `system`, for asking what is the same with every seed.
-campaign::TaskChoice AtPoint(const campaign::Campaign& campaign, std::size_t point, std::size_t system);
-
-}  // namespace vobench
+}  // namespace vobench::campaign

@@ -6,8 +6,8 @@
 
 #include "tools/bench/report/html.h"
 #include "tools/bench/report/page.h"
-#include "tools/bench/report/result_data.h"
-#include "tools/bench/result/picture.h"
+#include "tools/bench/result/result.h"
+#include "tools/bench/tracking/picture.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace vobench {
@@ -17,7 +17,7 @@ constexpr std::size_t kLeastFrames = 3;  // fewer cannot be aligned
 
 }  // namespace
 
-LiveView::LiveView(report::RunDescription description) : description_(std::move(description)) {
+LiveView::LiveView(RunDescription description) : description_(std::move(description)) {
   fmt::print(stderr, "View: {}\n", server_.address());
 }
 
@@ -27,19 +27,19 @@ bool LiveView::Asked(const vo::Frame& newest) {
 }
 
 void LiveView::Show(std::span<const Tracker> trackers, const Truth& truth, const evaluation::JudgeOptions& how) {
-  report::ResultData data;
+  ResultData data;
   data.description = description_;
-  std::vector<std::vector<report::FeatureMark>> marks;
+  std::vector<std::vector<FeatureMark>> marks;
   for (const Tracker& tracker : trackers) {
     if (tracker.frames() < kLeastFrames) return;
-    report::RunData& run = data.runs.emplace_back();
+    RunData& run = data.runs.emplace_back();
     marks.push_back(tracker.marks());
     run.entry = tracker.entry();
     run.run = tracker.Estimates();
     data.description.seconds = std::max(data.description.seconds, run.entry.seconds);
     if (truth.poses.size() < kLeastFrames) continue;
     try {
-      run.judged = report::JudgeSeries(run.run, truth.poses, truth.velocities, how);
+      run.judged = evaluation::JudgeSeries(run.run, truth.poses, truth.velocities, how);
     } catch (const evaluation::InputError&) {  // the truth is of another time: not judged at the end, either
     }
   }

@@ -31,7 +31,8 @@ PointPlay Play(sim::PointWorld& world, const PointFilter& filter) {
 
 PointResult Judge(sim::PointWorld world, const PointFilter& filter, const evaluation::JudgeOptions& options) {
   const auto [frames, truth, run] = Play(world, filter);
-  return {evaluation::Judge(run, truth.poses, truth.velocities, options), NeesByBlock(run, truth, options.gauge)};
+  const evaluation::JudgedSeries judged = evaluation::JudgeSeries(run, truth.poses, truth.velocities, options);
+  return {judged.metrics, NeesByBlock(run, judged.consistency)};
 }
 
 std::vector<evaluation::FrameConsistency> ConsistencyOf(const PointPlay& play) {
@@ -39,9 +40,8 @@ std::vector<evaluation::FrameConsistency> ConsistencyOf(const PointPlay& play) {
                                         evaluation::AssociationOptions().gap_ns);
 }
 
-std::vector<BlockNees> NeesByBlock(const evaluation::EstimateRun& run, const Truth& truth, evaluation::Gauge gauge) {
-  const std::vector<evaluation::FrameConsistency> frames = evaluation::ComputeConsistency(
-      run, truth.poses, truth.velocities, evaluation::AssociationOptions().gap_ns, gauge);
+std::vector<BlockNees> NeesByBlock(const evaluation::EstimateRun& run,
+                                   const std::vector<evaluation::FrameConsistency>& frames) {
   std::vector<BlockNees> all;
   std::size_t belief = 0;
   for (const evaluation::FrameConsistency& frame : frames) {

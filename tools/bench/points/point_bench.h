@@ -1,10 +1,9 @@
-// Purpose: anybody's filter on a point world, judged: a few lines in a unit test. docs/point_world.md has them.
-//          Needs sim and tools/judge/evaluation only.
+// Judge of any filter on a point world: a few lines in a unit test (docs/point_world.md).
+// Needs sim and tools/judge/evaluation only.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -29,9 +28,7 @@ struct PointEstimate {
 // It sees what a detector sees: stamps and observations, no truth.
 using PointFilter = std::function<PointEstimate(std::int64_t stamp_ns, const std::vector<sim::PointObservation>&)>;
 
-// NEES by evaluation::kStateBlocks: position, orientation, linear velocity, angular velocity, pose, velocity, joint;
-// NaN where the covariance is not positive definite.
-using BlockNees = std::array<double, evaluation::kStateBlocks.size()>;
+using evaluation::BlockNees;
 
 struct PointResult {
   evaluation::Metrics metrics;
@@ -53,8 +50,8 @@ PointPlay Play(sim::PointWorld& world, const PointFilter& filter);
 // Errors, sigmas and NEES of each frame; nothing is aligned.
 std::vector<evaluation::FrameConsistency> ConsistencyOf(const PointPlay& play);
 
-// For runs that were played elsewhere: one entry per pose with a belief.
-std::vector<BlockNees> NeesByBlock(const evaluation::EstimateRun& run, const Truth& truth,
-                                   evaluation::Gauge gauge = evaluation::Gauge::as_is);
+// NEES of each of `frames`, whose covariances are the run's.
+std::vector<BlockNees> NeesByBlock(const evaluation::EstimateRun& run,
+                                   const std::vector<evaluation::FrameConsistency>& frames);
 
 }  // namespace vobench

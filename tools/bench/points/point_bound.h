@@ -1,4 +1,4 @@
-// Purpose: a point world that was played, as the problem whose Cramer-Rao bound the judge computes.
+// Cramer-Rao problem of a played point world, whose bound the judge computes.
 #pragma once
 
 #include <vector>

@@ -41,7 +41,7 @@ evaluation::MixtureScores Scores(const evaluation::Vector12d& error, const evalu
 evaluation::ConsistencyVerdict TestConsistency(const sim::Scenario& scenario, const MakePointFilter& make,
                                                const ConsistencyOptions& options) {
   Check(options);
-  std::vector<evaluation::JudgedRun> runs;
+  std::vector<evaluation::VerdictRun> runs;
   std::vector<evaluation::LinearisedRuns> exact;
   for (std::uint64_t seed = options.seed; runs.size() < static_cast<std::size_t>(options.runs); ++seed) {
     sim::Scenario of_seed = scenario;
@@ -51,8 +51,8 @@ evaluation::ConsistencyVerdict TestConsistency(const sim::Scenario& scenario, co
     exact.push_back(evaluation::SimulateLinearised(
         ProblemOf(world, play.frames, play.estimates.beliefs.front().covariance), kExactRuns, seed));
     const std::vector<evaluation::FrameConsistency> frames = ConsistencyOf(play);
-    const std::vector<BlockNees> nees = NeesByBlock(play.estimates, play.truth);
-    evaluation::JudgedRun& run = runs.emplace_back();
+    const std::vector<BlockNees> nees = NeesByBlock(play.estimates, frames);
+    evaluation::VerdictRun& run = runs.emplace_back();
     for (std::size_t k = 0; k < frames.size(); ++k) {
       evaluation::JudgedFrame& judged = run.emplace_back();
       judged.error = frames[k].error;

@@ -1,6 +1,6 @@
-// Purpose: is anybody's filter as uncertain as it is wrong? It plays many worlds drawn from its own prior, and is held
-//          against exact filters of the same worlds: a consistency test in a few lines. docs/point_world.md has them.
-// Source:  docs/metrics.md, "Consistency as pass or fail". Needs sim and tools/judge/evaluation only.
+// Consistency test of any filter: it plays many worlds drawn from its own prior, compared with exact filters of the
+// same worlds (docs/point_world.md).
+// Source: docs/metrics.md, "Consistency as pass or fail". Needs sim and tools/judge/evaluation only.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ using MakePointFilter = std::function<PointFilter(const sim::PointWorld& world)>
 struct ConsistencyOptions {
   int runs = 50;               // worlds, each with a seed of its own; 10 or more
   std::uint64_t seed = 1;      // of the first; the others count up from it
-  double false_alarm = 0.001;  // of each check; an honest filter fails the whole in at most verdict.false_alarm()
+  double false_alarm = 0.001;  // of each check; a consistent filter fails the whole in at most verdict.false_alarm()
 };
 
 // ANEES, ranks and coverage of every part of the state, and RMSE over the Cramer-Rao bound. What the filter says after
@@ -29,8 +29,8 @@ struct ConsistencyOptions {
 evaluation::ConsistencyVerdict TestConsistency(const sim::Scenario& scenario, const MakePointFilter& make,
                                                const ConsistencyOptions& options = {});
 
-// One line for each check that failed: "ANEES mean, pose: 2.01, not <= 1.18". Empty where verdict.honest(); RMSE over
-// the bound says how good a filter is, not how honest, and is left out.
+// One line for each check that failed: "ANEES mean, pose: 2.01, not <= 1.18". Empty where verdict.consistent(); RMSE
+// over the bound is accuracy, not consistency, and is left out.
 std::string FailedChecks(const evaluation::ConsistencyVerdict& verdict);
 
 }  // namespace vobench

@@ -1,4 +1,4 @@
-// Purpose: what the judge knows and the odometry does not.
+// Ground truth of a run, for the judge alone.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// NEES, NIS and ranks, each with what an honest filter would show.
+// NEES, NIS and ranks, each with what a consistent filter would show.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,10 +7,10 @@
 
 #include "tools/bench/report/drawn_runs.h"
 #include "tools/bench/report/figures.h"
-#include "tools/bench/report/text.h"
+#include "tools/bench/text.h"
 #include "tools/judge/evaluation/nis.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 namespace ev = evaluation;
@@ -49,7 +49,8 @@ void AddNees(const ResultData& data, const std::string& title, Nees nees, int do
   Figure figure;
   figure.title = title;
   figure.description =
-      "Normalised estimation error squared in time, averaged over runs; an honest filter stays inside the band around "
+      "Normalised estimation error squared in time, averaged over runs; a consistent filter stays inside the band "
+      "around "
       "1 in 95 of 100 frames.";
   figure.x.label = "time [s]";
   figure.y = {"NEES / " + std::to_string(dof), true};
@@ -61,8 +62,9 @@ void AddNees(const ResultData& data, const std::string& title, Nees nees, int do
     const auto points = AneesOf(data, systems[s], nees, dof, runs);
     if (points.empty()) continue;
     Series& mean = means.emplace_back(LineOf(systems[s], s, {}, {}));
-    Series band = LineAs(Role::expected,
-                         runs > 1 ? "95 % of " + std::to_string(runs) + " honest runs" : "95 % of honest runs", {}, {});
+    Series band =
+        LineAs(Role::expected,
+               runs > 1 ? "95 % of " + std::to_string(runs) + " consistent runs" : "95 % of consistent runs", {}, {});
     band.draw = Draw::band;
     for (const ev::AneesPoint& point : points) {
       mean.x.push_back(Seconds(data, point.stamp_ns));
@@ -117,7 +119,8 @@ std::vector<Figure> NisFigures(const ResultData& data) {
     band.x = nis.x;
     Figure& figure = figures.emplace_back();
     figure.title = "NIS of " + DisplayName(systems[s]);
-    figure.description = "Normalised innovation squared in time, with the band that 95 of 100 honest frames fall in.";
+    figure.description =
+        "Normalised innovation squared in time, with the band that 95 of 100 consistent frames fall in.";
     figure.x.label = "time [s]";
     figure.y = {"NIS / dof", false, false, true};
     figure.series = {band, nis};
@@ -142,11 +145,11 @@ std::vector<Figure> RankFigures(const ResultData& data) {
       order.push_back(table.dimension);
       figure.title = "Ranks of " + table.dimension;
       figure.description =
-          "Where the truth falls among draws from the filter's belief, over runs: flat when honest, "
-          "high at both ends when over-confident, high in the middle when cautious.";
+          "Where the truth falls among draws from the filter's belief, over runs: flat when consistent, "
+          "high at both ends when over-confident, high in the middle when under-confident.";
       figure.x.label = "rank, in " + std::to_string(table.counts.size()) + " classes from lowest to highest";
       figure.y = {"runs", false, false, true};
-      Series band = LineAs(Role::expected, "95 % of honest bars", places, table.low);
+      Series band = LineAs(Role::expected, "95 % of consistent bars", places, table.low);
       band.draw = Draw::band;
       band.high = table.high;
       figure.series.push_back(band);
@@ -160,4 +163,4 @@ std::vector<Figure> RankFigures(const ResultData& data) {
   return figures;
 }
 
-}  // namespace report
+}  // namespace vobench::report

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "tools/bench/report/text.h"
+#include "tools/bench/text.h"
 
-namespace report {
+namespace vobench::report {
 
 namespace ev = evaluation;
 
@@ -61,4 +61,4 @@ Series LineAs(Role role, const std::string& name, Numbers x, Numbers y) {
   return line;
 }
 
-}  // namespace report
+}  // namespace vobench::report

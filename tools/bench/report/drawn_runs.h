@@ -1,4 +1,4 @@
-// Purpose: which runs the figures show, and on what clock.
+// Runs that the figures show, and their time axis.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "tools/bench/report/figure.h"
-#include "tools/bench/report/result_data.h"
+#include "tools/bench/result/result.h"
 
-namespace report {
+namespace vobench::report {
 
 constexpr double kDegrees = 180 / M_PI;
 constexpr double kCentimetres = 100;
@@ -36,4 +36,4 @@ Series LineOf(const std::string& system, std::size_t number, Numbers x, Numbers 
 // A line in another role, with its name.
 Series LineAs(Role role, const std::string& name, Numbers x, Numbers y);
 
-}  // namespace report
+}  // namespace vobench::report

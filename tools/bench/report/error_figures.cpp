@@ -5,9 +5,9 @@
 
 #include "tools/bench/report/drawn_runs.h"
 #include "tools/bench/report/figures.h"
-#include "tools/bench/report/text.h"
+#include "tools/bench/text.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 namespace ev = evaluation;
@@ -130,4 +130,4 @@ std::vector<Figure> VelocityErrorFigures(const ResultData& data) {
                              {11, "angular velocity about camera z", "°/s", kDegrees}});
 }
 
-}  // namespace report
+}  // namespace vobench::report

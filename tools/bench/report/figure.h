@@ -1,6 +1,5 @@
-// Purpose: what a diagram of the report shows, as values: axes with units, and series of numbers. Where and how it is
-//          drawn is the page's affair (tools/bench/report/web).
-// Source:  docs/report_data.md.
+// Figure of a report as values: axes with units, and series of numbers. tools/bench/report/web draws it.
+// Source: docs/report_data.md.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace report {
+namespace vobench::report {
 
 using Numbers = std::vector<double>;  // NaN: no answer, a gap in the line
 
@@ -32,7 +31,7 @@ enum class Draw {
 enum class Role {
   system,  // in the colour of its system
   truth,
-  expected,  // what an honest one would show
+  expected,  // what a consistent filter would show
   context,   // grey
   warning,
 };
@@ -64,4 +63,4 @@ struct Figure {
   std::string up = "z";  // of Kind::space: "x", "-x", ... points up
 };
 
-}  // namespace report
+}  // namespace vobench::report

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "tools/bench/report/text.h"
+#include "tools/bench/text.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -121,4 +121,4 @@ std::string FiguresJson(const std::vector<std::string>& systems, const std::vect
   return safe;
 }
 
-}  // namespace report
+}  // namespace vobench::report

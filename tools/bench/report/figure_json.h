@@ -1,5 +1,5 @@
-// Purpose: the data of a page's figures as JSON, compact and safe inside an HTML page.
-// Source:  docs/report_data.md.
+// Figures of a page as JSON, compact and safe inside HTML.
+// Source: docs/report_data.md.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,7 +8,7 @@
 
 #include "tools/bench/report/figure.h"
 
-namespace report {
+namespace vobench::report {
 
 // Columns of numbers, each once: little-endian floats of 32 bits in base64. A NaN is a NaN.
 class Columns {
@@ -26,4 +26,4 @@ class Columns {
 std::string FiguresJson(const std::vector<std::string>& systems, const std::vector<Figure>& figures,
                         const nlohmann::ordered_json& more);
 
-}  // namespace report
+}  // namespace vobench::report

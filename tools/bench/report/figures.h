@@ -1,14 +1,14 @@
-// Purpose: the figures of a run's report.
-// Source:  docs/report.md says what each shows.
+// Figures of a run's report.
+// Source: docs/report.md.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
 #include "tools/bench/report/figure.h"
-#include "tools/bench/report/result_data.h"
+#include "tools/bench/result/result.h"
 
-namespace report {
+namespace vobench::report {
 
 // Paths in space with the permanent landmarks of the final maps, from above and from the side. In the truth's world
 // where there is one, aligned by Sim(3). "Above" is the world axis nearest to where the images' upper edges point.
@@ -28,4 +28,4 @@ std::vector<Figure> RankFigures(const ResultData& data);
 // Features and matches, landmarks, time by stage; frame by frame.
 std::vector<Figure> FrameFigures(const ResultData& data);
 
-}  // namespace report
+}  // namespace vobench::report

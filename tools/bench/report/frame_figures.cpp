@@ -4,9 +4,9 @@
 
 #include "tools/bench/report/drawn_runs.h"
 #include "tools/bench/report/figures.h"
-#include "tools/bench/report/text.h"
+#include "tools/bench/text.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 namespace ev = evaluation;
@@ -82,4 +82,4 @@ std::vector<Figure> FrameFigures(const ResultData& data) {
   return figures;
 }
 
-}  // namespace report
+}  // namespace vobench::report

@@ -8,10 +8,10 @@
 
 #include "tools/base/files.h"
 #include "tools/bench/report/drawn_runs.h"
-#include "tools/bench/report/text.h"
+#include "tools/bench/text.h"
 #include "tools/judge/evaluation/text_file.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -121,4 +121,4 @@ Json ToJson(const FrameViewer& viewer) {
   return json;
 }
 
-}  // namespace report
+}  // namespace vobench::report

@@ -1,5 +1,5 @@
-// Purpose: the pictures of the report, with features and truth: which are shown, and as JSON.
-// Source:  docs/report_data.md.
+// Frame viewer of a report: selected pictures with features and truth, and their JSON.
+// Source: docs/report_data.md.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "tools/bench/report/pictures.h"
-#include "tools/bench/report/result_data.h"
+#include "tools/bench/result/pictures.h"
+#include "tools/bench/result/result.h"
 
-namespace report {
+namespace vobench::report {
 
 struct ViewedFrame {
   double t_s = 0;                                  // as in the figures
@@ -22,7 +22,7 @@ struct ViewedFrame {
 
 struct FrameViewer {
   int width = 0, height = 0;  // of the camera's image [px]
-  TruthPictures scale;
+  TruthScale scale;
   std::vector<ViewedFrame> frames;
 };
 
@@ -36,4 +36,4 @@ FrameViewer NewestFrame(const ResultData& data, std::int64_t stamp_ns, const Eig
 
 nlohmann::ordered_json ToJson(const FrameViewer& viewer);
 
-}  // namespace report
+}  // namespace vobench::report

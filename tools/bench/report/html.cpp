@@ -3,11 +3,11 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/bench/report/figure_json.h"
-#include "tools/bench/report/text.h"
 #include "tools/bench/report/thin.h"
 #include "tools/bench/report/web.h"
+#include "tools/bench/text.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 constexpr std::size_t kNumbers = 150'000;  // 5.3 bytes each
@@ -110,4 +110,4 @@ std::string Tiles(const std::vector<Tile>& tiles) {
 
 std::string Key(std::size_t system) { return "<span class=\"key s" + std::to_string(system % kColours) + "\"></span>"; }
 
-}  // namespace report
+}  // namespace vobench::report

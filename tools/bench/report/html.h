@@ -1,5 +1,5 @@
-// Purpose: a page from its parts: words, tables, figures and pictures in one HTML file that loads nothing.
-// Source:  docs/report_data.md.
+// HTML page from words, tables, figures and pictures: one file that loads nothing.
+// Source: docs/report_data.md.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 #include "tools/bench/report/figure.h"
 #include "tools/bench/report/frame_viewer.h"
 
-namespace report {
+namespace vobench::report {
 
 struct Section {
   std::string title;       // text; as are those of figures
@@ -47,4 +47,4 @@ std::string Tiles(const std::vector<Tile>& tiles);
 // The colour of a system in words: a small square.
 std::string Key(std::size_t system);
 
-}  // namespace report
+}  // namespace vobench::report

@@ -4,21 +4,21 @@
 
 #include "tools/bench/report/drawn_runs.h"
 #include "tools/bench/report/figures.h"
-#include "tools/bench/report/guard_table.h"
 #include "tools/bench/report/html.h"
 #include "tools/bench/report/run_summary.h"
-#include "tools/bench/report/text.h"
+#include "tools/bench/report/tables.h"
+#include "tools/bench/text.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 namespace ev = evaluation;
 
 constexpr std::size_t kPictureBytes = 800'000;  // a third more in base64
 
-bool OwnWorld(const std::vector<JudgedRun>& judged) {
+bool OwnWorld(const std::vector<RunMetrics>& judged) {
   return std::any_of(judged.begin(), judged.end(),
-                     [](const JudgedRun& run) { return run.metrics.options.gauge == ev::Gauge::first_pose; });
+                     [](const RunMetrics& run) { return run.metrics.options.gauge == ev::Gauge::first_pose; });
 }
 
 std::string Record(const RunDescription& d) {
@@ -56,7 +56,7 @@ std::string ShownSeeds(const ResultData& data) {
 
 // All but the frames.
 Page PageOf(const ResultData& data) {
-  const std::vector<JudgedRun> judged = data.JudgedRuns();
+  const std::vector<RunMetrics> judged = data.Metrics();
   Page page;
   page.title = data.description.title.empty() ? "vobench report" : data.description.title;
   page.summary = RunSummary(data, judged);
@@ -72,23 +72,24 @@ Page PageOf(const ResultData& data) {
        PathFigures(data)},
       {"Errors", "Distance from the truth, after the same alignment." + typical, AlignedErrorFigures(data)},
       {"Runs", "", {}, RunTable(judged)},
-      {"Is it as uncertain as it is wrong?",
+      {"Consistency with the truth",
        "NEES compares errors, not aligned, with the covariance the filter claims: 1 is ideal, above the band it is "
-       "over-confident, below it cautious. Frames of one run depend on each other, so the band holds for each frame by "
+       "over-confident, below it under-confident (conservative). Frames of one run depend on each other, so the band "
+       "holds for each frame by "
        "itself. Scale: monocular odometry cannot see it; the second diagram does not count it." +
            std::string(OwnWorld(judged) ? " These runs began in a world of their own: the truth was moved there by its "
                                           "first pose, whose own error counts as theirs."
                                         : ""),
        NeesFigures(data)},
-      {"Is it consistent with its own model?", "", {}, VerdictTable(data.verdict)},
+      {"Consistency with its own model", "", {}, VerdictTable(data.verdict)},
       {"Ranks",
        "Where the truth falls among 99 draws from the filter's belief at the last ranked frame, over runs (ranks.csv "
        "has "
-       "all frames). An honest filter's bars are all alike: of a single bar, 95 of 100 are in the band.",
+       "all frames). A consistent filter's bars are all alike: of a single bar, 95 of 100 are in the band.",
        RankFigures(data)},
       {"Innovations",
        "NIS compares what the filter expected to see with what it saw; it needs no truth. Gating drops the largest "
-       "innovations, so an honest filter sits slightly below 1.",
+       "innovations, so a consistent filter sits slightly below 1.",
        NisFigures(data)},
       {"Errors and what they should be",
        "Truth minus estimate, not aligned; orientation about the camera's axes. The bands are what the filters claim, "
@@ -98,7 +99,7 @@ Page PageOf(const ResultData& data) {
       {"Velocity and what it should be", "The same of linear and angular velocity.", VelocityErrorFigures(data), "",
        "Velocity"},
       {"Pose in time", judged.empty() ? "" : "Aligned by Sim(3).", PoseFigures(data)},
-      {"Features and time", "", FrameFigures(data), GuardTable(judged)},
+      {"Features and time", "", FrameFigures(data), EventTable(judged)},
       {"How this was made", "", {}, Record(data.description)},
   };
   return page;
@@ -120,4 +121,4 @@ Page LivePage(const ResultData& data, FrameViewer newest) {
   return page;
 }
 
-}  // namespace report
+}  // namespace vobench::report

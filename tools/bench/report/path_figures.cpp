@@ -4,10 +4,10 @@
 
 #include "tools/bench/report/drawn_runs.h"
 #include "tools/bench/report/figures.h"
-#include "tools/bench/report/text.h"
+#include "tools/bench/text.h"
 #include "tools/judge/evaluation/so3.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 namespace ev = evaluation;
@@ -189,4 +189,4 @@ std::vector<Figure> PoseFigures(const ResultData& data) {
   return figures;
 }
 
-}  // namespace report
+}  // namespace vobench::report

@@ -2,12 +2,13 @@
 
 #include "tools/base/files.h"
 #include "tools/bench/report/page.h"
-#include "tools/bench/report/result_data.h"
 
-namespace report {
+namespace vobench::report {
 
-void WriteReport(const std::filesystem::path& out) {
-  base::WriteFile(out / "report.html", Html(RunPage(out, ReadResult(out))));
+void WriteReport(const std::filesystem::path& out, const ResultData& data) {
+  base::WriteFile(out / "report.html", Html(RunPage(out, data)));
 }
 
-}  // namespace report
+void WriteReport(const std::filesystem::path& out) { WriteReport(out, ReadResult(out)); }
+
+}  // namespace vobench::report

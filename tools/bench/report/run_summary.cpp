@@ -4,32 +4,32 @@
 #include <cmath>
 
 #include "tools/bench/report/html.h"
-#include "tools/bench/report/text.h"
-#include "tools/bench/report/text_summary.h"
+#include "tools/bench/result/system_summary.h"
+#include "tools/bench/text.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 namespace ev = evaluation;
 
 constexpr double kDegrees = 180 / M_PI;
-constexpr std::size_t kRows = 500;
 
 std::string Count(std::size_t n, const std::string& noun) {
   return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
 }
 
-// What the mean NEES per degree of freedom says in words, with and without the error of scale.
-std::string Honesty(const SystemSummary& s) {
+// Consistency in words from the mean NEES per degree of freedom, with and without the error of scale.
+std::string ConsistencyPhrase(const SystemSummary& s) {
   const double nees = s.nees_pose_per_dof;
   if (!std::isfinite(nees)) return "its uncertainty was not judged";
   std::string text;
   if (nees > 1.5) {
     text = "it is over-confident: errors are about " + Readable(std::sqrt(nees)) + " times what it claims";
   } else if (nees < 1 / 1.5) {
-    text = "it is cautious: errors are about " + Readable(std::sqrt(nees)) + " times what it claims";
+    text =
+        "it is under-confident (conservative): errors are about " + Readable(std::sqrt(nees)) + " times what it claims";
   } else {
-    text = "it is about as uncertain as it is wrong";
+    text = "its errors are about as large as it claims";
   }
   text += " (NEES " + Readable(nees) + " per degree of freedom, 1 is ideal";
   if (std::isfinite(s.nees_pose_scale_free_per_dof)) {
@@ -44,14 +44,14 @@ std::string SystemSentence(const SystemSummary& s, const std::vector<SystemSumma
   text += "<b>" + Fixed(100 * s.ate_m, 2) + " cm</b> (" + Percent(s.ate_share_of_path, 2) + " of the path";
   if (s.runs > 1) text += "; worst run " + Fixed(100 * s.ate_worst_m, 2) + " cm";
   text += "), drift " + Fixed(100 * s.rpe_m, 2) + " cm/s and " + Fixed(kDegrees * s.rpe_rad, 2) + " °/s, " +
-          Percent(s.tracked_coverage) + " of the frames tracked; " + Honesty(s) + ". ";
+          Percent(s.tracked_coverage) + " of the frames tracked; " + ConsistencyPhrase(s) + ". ";
   const double best = std::min(baselines[0].ate_m, baselines[1].ate_m);
   text += s.ate_m < best ? "The better of the two blind baselines is " + Readable(best / s.ate_m) + " times as far off."
                          : "<b>It does no better than a baseline that never looks at the images.</b>";
   return text;
 }
 
-std::string DuelSentence(const std::vector<JudgedRun>& runs, const SystemSummary& a, const SystemSummary& b) {
+std::string DuelSentence(const std::vector<RunMetrics>& runs, const SystemSummary& a, const SystemSummary& b) {
   const Duel duel = Compare(runs, a.system, b.system);
   if (duel.seeds == 0) return "";
   const std::string first = Escape(DisplayName(a.system)), second = Escape(DisplayName(b.system));
@@ -63,7 +63,7 @@ std::string DuelSentence(const std::vector<JudgedRun>& runs, const SystemSummary
   return text;
 }
 
-// Accuracy, drift and honesty: the three numbers that matter, of each system.
+// Accuracy, drift and consistency of each system.
 std::string SystemTiles(const std::vector<SystemSummary>& systems, const std::vector<SystemSummary>& baselines) {
   std::string html;
   for (std::size_t i = 0; i < systems.size(); ++i) {
@@ -77,21 +77,16 @@ std::string SystemTiles(const std::vector<SystemSummary>& systems, const std::ve
           "over one second; constant pose " + Fixed(100 * baselines[0].rpe_m, 1) + " cm/s, " +
               Fixed(kDegrees * baselines[0].rpe_rad, 1) + " °/s; " + Percent(s.tracked_coverage) +
               " of the frames tracked (at least 10 matched features), " + Percent(s.pose_coverage) + " with a pose"},
-         {Readable(s.nees_pose_per_dof), "NEES of the pose: how honest it is, 1 is ideal",
+         {Readable(s.nees_pose_per_dof), "NEES of the pose: how consistent it is, 1 is ideal",
           "per degree of freedom, not aligned; " + Readable(s.nees_pose_scale_free_per_dof) + " blind to scale, NIS " +
               Fixed(s.nis_per_dof, 2)}});
   }
   return html;
 }
 
-std::vector<std::string> ErrorCells(const SystemSummary& s) {
-  return {Fixed(100 * s.ate_m, 2), Fixed(100 * s.ate_share_of_path, 2), Fixed(100 * s.ate_se3_m, 2), Fixed(s.scale, 3),
-          Fixed(100 * s.rpe_m, 2), Fixed(kDegrees * s.rpe_rad, 2)};
-}
-
 }  // namespace
 
-std::string RunSummary(const ResultData& data, const std::vector<JudgedRun>& judged) {
+std::string RunSummary(const ResultData& data, const std::vector<RunMetrics>& judged) {
   const RunDescription& d = data.description;
   std::string systems;
   for (const std::string& system : data.Systems())
@@ -121,41 +116,4 @@ std::string RunSummary(const ResultData& data, const std::vector<JudgedRun>& jud
   return html + "</ul>\n" + SystemTiles(summaries, baselines);
 }
 
-std::string RunTable(const std::vector<JudgedRun>& judged) {
-  if (judged.empty()) return "";
-  std::vector<std::vector<std::string>> rows = {{"system", "seed", "ATE [cm]", "of path [%]", "ATE SE(3) [cm]", "scale",
-                                                 "RPE [cm/s]", "RPE [°/s]", "poses [%]", "tracked [%]", "NEES / dof",
-                                                 "… scale-free", "… of velocity", "NIS / dof", "ms / frame"}};
-  const double nan = std::nan("");
-  for (const JudgedRun& run : judged) {
-    if (rows.size() > kRows) break;
-    const ev::Metrics& m = run.metrics;
-    std::vector<std::string> cells = {Escape(DisplayName(run.run.system)), std::to_string(run.run.seed)};
-    for (std::string& cell : ErrorCells(SummariseErrors(run))) cells.push_back(std::move(cell));
-    const auto nees = [&](const std::optional<ev::NeesSummary>& n) {
-      return Readable(n && n->frames > 0 ? n->mean / n->dof : nan);
-    };
-    const bool consistency = m.consistency.has_value();
-    cells.push_back(Fixed(m.coverage ? 100 * m.coverage->pose_coverage() : nan, 1));
-    cells.push_back(Fixed(m.coverage ? 100 * m.coverage->tracked_coverage().value_or(nan) : nan, 1));
-    cells.push_back(consistency ? nees(m.consistency->pose) : "–");
-    cells.push_back(consistency ? nees(m.consistency->pose_scale_free) : "–");
-    cells.push_back(consistency ? nees(m.consistency->velocity) : "–");
-    cells.push_back(Fixed(m.nis && m.nis->frames > 0 ? m.nis->mean_per_dof : nan, 2));
-    cells.push_back(m.timing ? Fixed(m.timing->ms_features + m.timing->ms_matching + m.timing->ms_filter, 1) : "–");
-    rows.push_back(std::move(cells));
-  }
-  for (const SystemSummary& baseline : SummariseBaselines(judged)) {
-    std::vector<std::string> cells = {baseline.system, ""};
-    for (std::string& cell : ErrorCells(baseline)) cells.push_back(std::move(cell));
-    cells.resize(rows.front().size());
-    rows.push_back(std::move(cells));
-  }
-  const std::string which = judged.size() > kRows ? "The first " + std::to_string(kRows) + " of " +
-                                                        std::to_string(judged.size()) + " runs (metrics.json has all)"
-                                                  : "Every run";
-  return Table(which + ", and the baselines, medians over runs. Aligned by Sim(3) unless the column says otherwise.",
-               rows);
-}
-
-}  // namespace report
+}  // namespace vobench::report

@@ -1,17 +1,14 @@
-// Purpose: the report's words and its table of runs, as HTML.
+// Summary of a report in words, as HTML: what ran, accuracy, drift and consistency of each system.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "tools/bench/report/result_data.h"
+#include "tools/bench/result/result.h"
 
-namespace report {
+namespace vobench::report {
 
-// What ran, how wrong, how honest; in how many seeds the first system beats the others; the numbers that matter.
-std::string RunSummary(const ResultData& data, const std::vector<JudgedRun>& judged);
+// `judged` are the metrics of data.runs. With the seeds in which the first system beats each other one.
+std::string RunSummary(const ResultData& data, const std::vector<RunMetrics>& judged);
 
-// Every run (the first 500) and the baselines; empty for no runs.
-std::string RunTable(const std::vector<JudgedRun>& judged);
-
-}  // namespace report
+}  // namespace vobench::report

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 constexpr std::size_t kLeast = 16;  // points of a series, however many there are
@@ -119,4 +119,4 @@ std::vector<Figure> ThinTo(const std::vector<Figure>& figures, std::size_t numbe
   return thin;
 }
 
-}  // namespace report
+}  // namespace vobench::report

@@ -1,4 +1,4 @@
-// Purpose: figures small enough for a page, and nothing that stands out is lost.
+// Thinning of figures to a number of points, extremes kept.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 #include "tools/bench/report/figure.h"
 
-namespace report {
+namespace vobench::report {
 
 // At most about `most` points. Of a line or band the lowest and the highest of each stretch stay, and the first gap; of
 // a path (equal scale or in space) the point farthest from the straight line through each stretch; of anything else
@@ -19,4 +19,4 @@ std::size_t Count(const std::vector<Figure>& figures);
 // Thinned alike, and as little as it takes for no more than `numbers` numbers in all.
 std::vector<Figure> ThinTo(const std::vector<Figure>& figures, std::size_t numbers);
 
-}  // namespace report
+}  // namespace vobench::report

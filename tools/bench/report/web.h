@@ -1,11 +1,11 @@
-// Purpose: the page's style and script: the files of tools/bench/report/web/, embedded by the build.
+// Style and script of the page, embedded by the build from tools/bench/report/web/.
 #pragma once
 
 #include <string>
 
-namespace report {
+namespace vobench::report {
 
 const std::string& Style();
 const std::string& Script();
 
-}  // namespace report
+}  // namespace vobench::report

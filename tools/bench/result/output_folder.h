@@ -1,4 +1,5 @@
-// Output folder of a command: replaced atomically, and only when an older one is its own.
+// Output folder written under a temporary name beside its final one and renamed when complete; removed if the work
+// stops before.
 #pragma once
 
 #include <filesystem>

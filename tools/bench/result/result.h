@@ -1,49 +1,63 @@
-// Purpose: the top of a result folder (docs/result_folder.md): run.json, metrics.json, report.html, and the truth
-// beside each run.
+// Result folder: everything in it as values, read and written (docs/result_folder.md).
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "tools/bench/points/truth.h"
-#include "tools/bench/report/metrics_json.h"
-#include "tools/bench/report/run_json.h"
-#include "tools/bench/systems/prior.h"
+#include "tools/bench/result/landmarks.h"
+#include "tools/bench/result/metrics_json.h"
+#include "tools/bench/result/pictures.h"
+#include "tools/bench/result/ranks.h"
+#include "tools/bench/result/run_json.h"
+#include "tools/bench/result/verdict.h"
 #include "tools/judge/evaluation/summary.h"
 
 namespace vobench {
 
-// How to tell a result folder (see OutputFolder): this file is in it, and nothing but these names, those of systems
-// included.
-inline const std::string kResultMarker = "run.json";
-const std::set<std::string>& ResultNames();
-
-// Time since it was made, and when that was.
-class Clock {
- public:
-  double seconds() const;
-  std::string started_utc() const;  // ISO 8601
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  std::chrono::system_clock::time_point wall_ = std::chrono::system_clock::now();
+struct RunData {
+  RunEntry entry;
+  evaluation::EstimateRun run;
+  std::vector<Landmark> landmarks;
+  KeptPictures pictures;
+  std::optional<evaluation::JudgedSeries> judged;  // where the run has a truth
 };
 
-// Program, compiler and libraries, by name.
-std::map<std::string, std::string> Versions();
+struct ResultData {
+  RunDescription description;
+  std::vector<RunData> runs;
+  std::vector<RankTable> ranks;       // where a verdict was asked for
+  std::vector<VerdictRow> verdict;    // as well
+  std::vector<std::string> warnings;  // metrics.json and the files disagree
 
-// How the errors are aligned: from the first pose where the prior starts at the origin, else in the world frame.
-evaluation::JudgeOptions JudgeOptionsOf(const PriorSettings& prior);
+  // Of the judged runs, in their order.
+  std::vector<RunMetrics> Metrics() const;
+  // Systems in the order of first appearance.
+  std::vector<std::string> Systems() const;
+  // All runs fly the same path; false where each has drawn its own (worlds of points).
+  bool SharedTruth() const;
+  // Of a system's runs the one whose ATE is the (lower) median, or the first where nothing is judged. Where the truth
+  // is not shared, all systems show the path that is typical of the first, so that their runs can be compared.
+  const RunData& Typical(const std::string& system) const;
+};
 
-// truth.txt and truth_velocity.txt. Throws std::runtime_error.
-void WriteTruth(const std::filesystem::path& run_folder, const Truth& truth);
+// How to tell a result folder (see OutputFolder): this file is in it, and nothing but these names.
+inline const std::string kResultMarker = "run.json";
+std::set<std::string> ResultNames(const std::vector<std::string>& systems);
 
-// run.json, metrics.json (where runs were judged) and report.html. Throws std::runtime_error.
-void WriteResult(const std::filesystem::path& folder, const report::RunDescription& description,
-                 const std::vector<report::JudgedRun>& judged);
+// Files of one run, in its folder inside OUT, which must exist. Throws std::runtime_error.
+void WriteRun(const std::filesystem::path& out, const RunData& run);
+// truth.txt and, where they are known, truth_velocity.txt of a run. Throws std::runtime_error.
+void WriteTruth(const std::filesystem::path& run_folder, const evaluation::Trajectory& poses,
+                const std::optional<evaluation::Velocities>& velocities);
+// Files at the top: run.json; metrics.json, verdict.csv and ranks.csv where there is something in them. Throws
+// std::runtime_error.
+void WriteTop(const std::filesystem::path& out, const ResultData& data);
+
+// All of it, judged again with the options recorded in metrics.json. Throws evaluation::InputError with every problem
+// of every file.
+ResultData ReadResult(const std::filesystem::path& out);
 
 }  // namespace vobench

@@ -1,5 +1,4 @@
-// Purpose: from the simulator's types to those of the odometry and of the judge. The image goes to the one, the truth
-// to the other.
+// Conversion from types of the simulator to those of the odometry (images) and of the judge (truth).
 #pragma once
 
 #include <cstdint>

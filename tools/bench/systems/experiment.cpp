@@ -45,7 +45,7 @@ void ReadOthers(const std::filesystem::path& file, const Overrides& overrides, E
 
 }  // namespace
 
-vo::Camera ToldCamera(const Experiment& experiment) {
+vo::Camera CameraForOdometry(const Experiment& experiment) {
   vo::Camera camera = CameraOf(experiment.scenario);
   camera.fx *= 1 + experiment.prior.focal_error;
   camera.fy *= 1 + experiment.prior.focal_error;

@@ -1,4 +1,4 @@
-// Purpose: a scenario file with its three readers: the simulator's part, the odometry's and the prior.
+// Experiment: a scenario file read for simulator, odometry and prior.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ struct Experiment {
 };
 
 // The camera as the odometry is told it: the scenario's with its rolling shutter, but for prior.focal_error.
-vo::Camera ToldCamera(const Experiment& experiment);
+vo::Camera CameraForOdometry(const Experiment& experiment);
 
 // Throws BadInput with every problem of all three parts.
 Experiment ReadExperiment(const std::filesystem::path& scenario, const Overrides& overrides);

@@ -58,6 +58,12 @@ vo::Prior PriorOf(const PriorSettings& settings, const sim::MotionDescription& m
   return prior;
 }
 
+evaluation::JudgeOptions JudgeOptionsOf(const PriorSettings& prior) {
+  evaluation::JudgeOptions how;
+  if (prior.start == PriorSettings::Start::origin) how.gauge = evaluation::Gauge::first_pose;
+  return how;
+}
+
 evaluation::Matrix12d StartCovariance(const vo::Prior& prior) {
   evaluation::Matrix12d start = evaluation::Matrix12d::Zero();
   start.topLeftCorner<6, 6>() = prior.pose_covariance;

@@ -1,4 +1,4 @@
-// Purpose: what the odometry is told before the first frame. The one place where it may learn something of the truth.
+// Prior of the odometry before the first frame: the only place where it may get information from the truth.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 #include "sim/points/point_world.h"
 #include "tools/bench/points/truth.h"
 #include "tools/bench/systems/odometry_settings.h"
-#include "tools/judge/evaluation/estimate_run.h"
+#include "tools/judge/evaluation/summary.h"
 #include "vo/odometry.h"
 
 namespace vobench {
@@ -19,7 +19,7 @@ inline constexpr double kStartSigma = 1e-6;
 vo::Prior PriorAtOrigin(const PriorSettings& settings);
 
 // At the true pose. The velocity is the true one plus noise drawn from N(0, sigma^2) per axis, a function of the seed
-// alone, and its covariance says so: an honest prior.
+// alone, and its covariance says so: a consistent prior.
 vo::Prior PriorFromTruth(const PriorSettings& settings, const evaluation::StampedPose& pose,
                          const evaluation::StampedVelocity& velocity, std::uint64_t seed);
 
@@ -29,6 +29,9 @@ vo::Prior PriorOf(const PriorSettings& settings, const sim::MotionDescription& m
                   std::uint64_t seed);
 // The same at the start of a world.
 vo::Prior PriorOf(const PriorSettings& settings, const sim::PointWorld& world, std::uint64_t seed);
+
+// How errors are aligned: from the first pose where the prior starts at the origin, else in the world frame.
+evaluation::JudgeOptions JudgeOptionsOf(const PriorSettings& prior);
 
 // Of pose and velocity together, as the bound takes it.
 evaluation::Matrix12d StartCovariance(const vo::Prior& prior);

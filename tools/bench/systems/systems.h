@@ -1,4 +1,4 @@
-// Purpose: the odometries that can be compared, by name.
+// Names of the odometries that can be compared, and their settings.
 #pragma once
 
 #include <string>
@@ -13,9 +13,9 @@ const std::vector<std::string>& SystemNames();
 // The same for a help text, separated by commas.
 std::string SystemList();
 
-// The parameters with what makes the system out of them. rb2pf samples the pose only; rbpf the velocity too, at once whatever
-// the lag, and with weight evidence instead of equal; fastslam1 is rbpf with the motion model as its proposal and importance weights; ekfslam
-// samples nothing, not the scale either. Everything else stays.
+// The parameters with what makes the system out of them. rb2pf samples the pose only; rbpf the velocity too, at once
+// whatever the lag, and with weight evidence instead of equal; fastslam1 is rbpf with the motion model as its proposal
+// and importance weights; ekfslam samples nothing, not the scale either. Everything else stays.
 vo::Params ForSystem(const std::string& name, vo::Params params);
 
 }  // namespace vobench

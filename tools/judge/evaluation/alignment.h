@@ -1,5 +1,5 @@
-// Purpose: the transformation that lays an estimate upon the truth before absolute errors are taken.
-// Source:  S. Umeyama, "Least-squares estimation of transformation parameters between two point patterns", PAMI 1991.
+// Alignment of an estimated trajectory to the truth, before absolute errors are taken.
+// Source: S. Umeyama, "Least-squares estimation of transformation parameters between two point patterns", PAMI 1991.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,8 +1,8 @@
-// Purpose: pass or fail of ANEES over time. The share of frames whose ANEES over runs is inside its two-sided 95 %
-// band,
-//          against what an exact linear Kalman filter achieves: frames of one run are dependent, so that the share
-//          varies far more than a binomial of 0.95 would.
-// Source:  Bar-Shalom et al., 5.4; docs/metrics.md, "ANEES as pass or fail".
+// Test of average NEES (ANEES) over time: the share of frames whose ANEES over runs is inside its two-sided 95 % band,
+// compared with that of an exact linear Kalman filter. Frames of one run are dependent: the share varies
+// far more than a binomial of 0.95.
+//
+// Source: Bar-Shalom et al., 5.4; docs/metrics.md, "ANEES as pass or fail".
 #pragma once
 
 #include <cstddef>
@@ -30,22 +30,22 @@ double MeasurementSigma(const LinearFilter& filter);
 std::vector<std::vector<double>> SimulateNees(const LinearFilter& filter, int runs, int frames, std::uint64_t seed,
                                               std::uint64_t trial);
 
-// What honest filters have: share and mean (ShareInBand) of each of `trials` sets of runs, each in ascending order.
+// Of consistent filters: share and mean (ShareInBand) of each of `trials` sets of runs, each in ascending order.
 struct ExactAnees {
   std::vector<double> shares, means;
 };
 ExactAnees ExactAneesOf(const LinearFilter& filter, int runs, int frames, int trials = 500, std::uint64_t seed = 1);
 
-// The same from a pool of honest runs, nees[run][frame]: each trial takes `runs` of them, none twice, so that each by
-// itself is a set of independent runs; trials share runs, the less the larger the pool: ten times `runs` or more. For
-// exact filters that cost more than one axis, as the linearised point world of cramer_rao.h.
+// The same from a pool of consistent runs, nees[run][frame]: each trial takes `runs` of them, none twice, so that each
+// by itself is a set of independent runs; trials share runs, the less the larger the pool: ten times `runs` or more.
+// For exact filters that cost more than one axis, as the linearised point world of cramer_rao.h.
 ExactAnees ExactAneesOfPool(const std::vector<std::vector<double>>& nees, int dof, int runs, int trials = 1000,
                             std::uint64_t seed = 1);
 
 struct AneesShare {
   std::size_t frames = 0;       // with at least one value
   double share = 0;             // of these, inside the band of as many runs as have a value there
-  double above = 0, below = 0;  // shares outside: over-confident, timid
+  double above = 0, below = 0;  // shares outside: over-confident, under-confident
   double mean = 0;              // ANEES per degree of freedom, over frames
 };
 // nees[run][frame]; NaN is left out; runs may differ in length.

@@ -1,5 +1,5 @@
-// Purpose: which estimated pose belongs to which true pose, by time.
-// Source:  TUM RGB-D associate (tum), evo (nearest); see docs/metrics.md.
+// Association of estimated and true poses by time.
+// Source: TUM RGB-D associate (tum), evo (nearest); docs/metrics.md.
 #pragma once
 
 #include <cstddef>

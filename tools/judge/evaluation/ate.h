@@ -1,5 +1,5 @@
-// Purpose: absolute trajectory error: how far each estimated pose is from the true one, after a named alignment.
-// Source:  Sturm et al., "A benchmark for the evaluation of RGB-D SLAM systems", IROS 2012.
+// Absolute trajectory error (ATE): distance of each estimated pose from the true one after a named alignment.
+// Source: Sturm et al., "A benchmark for the evaluation of RGB-D SLAM systems", IROS 2012.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Purpose: what an estimate must beat: two that never look at the images.
+// Baseline trajectories without images: constant pose and constant velocity.
 #pragma once
 
 #include <cstdint>

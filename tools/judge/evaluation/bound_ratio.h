@@ -1,4 +1,4 @@
-// Purpose: how much larger are errors than they have to be? Their root mean square over that of the bound of cramer_rao.h.
+// Ratio of RMS errors to the RMS of the Cramer-Rao bound (cramer_rao.h): statistical efficiency.
 #pragma once
 
 #include <array>

@@ -1,8 +1,8 @@
-// Purpose: is the odometry as uncertain as it is wrong? Normalised estimation error squared (NEES), per frame and over
-// runs. Source:  Bar-Shalom, Li, Kirubarajan, "Estimation with applications to tracking and navigation", 5.4.
+// Normalised estimation error squared (NEES): e' P^-1 e, per frame and over runs.
+// Source: Bar-Shalom, Li, Kirubarajan, "Estimation with applications to tracking and navigation", 5.4.
 //
-// Errors are never aligned: an alignment fitted to the whole run makes an honest filter look over-confident early and
-// timid at the end (docs/metrics.md). Errors, in the order of the covariance: dp = p - p^ in W, dphi = Log(q^^-1 q) in
+// Errors are never aligned: an alignment fitted to the whole run makes a consistent filter look over-confident early
+// and under-confident at the end (docs/metrics.md). Order of the covariance: dp = p - p^ in W, dphi = Log(q^^-1 q) in
 // C, dv = v - v^ in W, dw = w - w^ in C; truth minus estimate (^).
 #pragma once
 
@@ -39,8 +39,8 @@ struct FrameConsistency {
   double nees_joint = 0;      // 12
   // The same, but blind to a wrong scale: the smallest over s of (e - s g)' P^-1 (e - s g), g the direction in which
   // the truth moves when it is scaled about its start: (p - p_start, 0, v, 0). The truth takes on the estimate's scale,
-  // so that error and covariance are in the same measure. Of an honest Gaussian error it is chi-square with one degree
-  // less; nothing is fitted across frames. NaN at the start itself, where scale does not show.
+  // so that error and covariance are in the same measure. Of a consistent Gaussian error it is chi-square with one
+  // degree less; nothing is fitted across frames. NaN at the start itself, where scale does not show.
   double nees_pose_scale_free = 0;   // 5
   double nees_joint_scale_free = 0;  // 11
 };
@@ -69,7 +69,8 @@ struct NeesSummary {
 
 NeesSummary SummariseNees(const std::vector<double>& nees, int dof);
 
-// Average NEES over runs at one frame, with the band that the average of M honest runs falls in with probability 95 %.
+// Average NEES over runs at one frame, with the band that the average of M consistent runs falls in with probability 95
+// %.
 struct AneesPoint {
   std::int64_t stamp_ns = 0;
   int runs = 0;  // with a value at this frame

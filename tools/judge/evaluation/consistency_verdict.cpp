@@ -11,7 +11,7 @@ namespace {
 
 // [run][frame] of one number, from first_frame on.
 template <typename T, typename Get>
-std::vector<std::vector<T>> Collect(const std::vector<JudgedRun>& runs, std::size_t first_frame, Get get) {
+std::vector<std::vector<T>> Collect(const std::vector<VerdictRun>& runs, std::size_t first_frame, Get get) {
   std::vector<std::vector<T>> values(runs.size());
   for (std::size_t m = 0; m < runs.size(); ++m)
     for (std::size_t k = first_frame; k < runs[m].size(); ++k) values[m].push_back(get(runs[m][k]));
@@ -48,12 +48,12 @@ std::vector<std::size_t> RankFrames(const VerdictOptions& options, std::size_t f
   return chosen;
 }
 
-void JudgeRanks(const std::vector<JudgedRun>& runs, const VerdictOptions& options, std::size_t frames,
+void JudgeRanks(const std::vector<VerdictRun>& runs, const VerdictOptions& options, std::size_t frames,
                 ConsistencyVerdict& verdict) {
   std::vector<RankHistogram> coverage;
   for (const std::size_t k : RankFrames(options, frames)) {
     std::vector<const MixtureScores*> ranked;  // none of a run that is lost by then, or has no belief there
-    for (const JudgedRun& run : runs)
+    for (const VerdictRun& run : runs)
       if (k < run.size() && run[k].scores.draws > 0) ranked.push_back(&run[k].scores);
     if (ranked.empty()) {
       verdict.rank_histograms.resize(verdict.rank_histograms.size() + 12);
@@ -84,7 +84,7 @@ void JudgeRanks(const std::vector<JudgedRun>& runs, const VerdictOptions& option
   add("coverage, smallest p-value", verdict.coverage);
 }
 
-void JudgeInnovations(const std::vector<JudgedRun>& runs, const VerdictOptions& options, ConsistencyVerdict& verdict) {
+void JudgeInnovations(const std::vector<VerdictRun>& runs, const VerdictOptions& options, ConsistencyVerdict& verdict) {
   const auto nis = Collect<double>(runs, options.first_frame, [](const JudgedFrame& f) { return f.nis; });
   const auto dof = Collect<int>(runs, options.first_frame, [](const JudgedFrame& f) { return f.nis_dof; });
   auto innovations = Collect<double>(runs, options.first_frame, [](const JudgedFrame& f) { return f.innovation; });
@@ -110,7 +110,7 @@ void JudgeInnovations(const std::vector<JudgedRun>& runs, const VerdictOptions& 
   }
 }
 
-void CompareRunsWithBound(const std::vector<JudgedRun>& runs, const VerdictOptions& options,
+void CompareRunsWithBound(const std::vector<VerdictRun>& runs, const VerdictOptions& options,
                           ConsistencyVerdict& verdict) {
   std::vector<std::vector<Vector12d>> errors(runs.size());
   std::vector<std::vector<Matrix12d>> bounds(runs.size());
@@ -138,7 +138,7 @@ bool ConsistencyVerdict::pass() const {
   return std::all_of(checks.begin(), checks.end(), [](const Check& check) { return check.pass; });
 }
 
-bool ConsistencyVerdict::honest() const {
+bool ConsistencyVerdict::consistent() const {
   return std::all_of(checks.begin(), checks.end(),
                      [](const Check& check) { return check.pass || check.name.starts_with("RMSE / bound"); });
 }
@@ -149,14 +149,14 @@ double ConsistencyVerdict::false_alarm() const {
   return sum;
 }
 
-ConsistencyVerdict JudgeConsistency(const std::vector<JudgedRun>& runs, const VerdictOptions& options) {
+ConsistencyVerdict JudgeConsistency(const std::vector<VerdictRun>& runs, const VerdictOptions& options) {
   std::size_t frames = 0;
-  for (const JudgedRun& run : runs) frames = std::max(frames, run.size());
+  for (const VerdictRun& run : runs) frames = std::max(frames, run.size());
   if (frames <= options.first_frame) throw std::invalid_argument("JudgeConsistency: no run has a frame to judge");
   ConsistencyVerdict verdict;
   const auto count = static_cast<int>(runs.size());
   std::size_t missing = 0;  // frames lost, or with a covariance that is none
-  for (const JudgedRun& run : runs) {
+  for (const VerdictRun& run : runs) {
     for (std::size_t k = options.first_frame; k < frames; ++k)
       missing += k >= run.size() || std::isnan(run[k].scores.nees.back());
   }
@@ -179,7 +179,7 @@ ConsistencyVerdict JudgeConsistency(const std::vector<JudgedRun>& runs, const Ve
   CompareRunsWithBound(runs, options, verdict);
   std::array<double, 4> with_energy{};
   double judged = 0;
-  for (const JudgedRun& run : runs) {
+  for (const VerdictRun& run : runs) {
     for (std::size_t k = options.first_frame; k < run.size(); ++k, ++judged) {
       verdict.effective_components += run[k].scores.effective_components;
       for (std::size_t b = 0; b < 4; ++b) {

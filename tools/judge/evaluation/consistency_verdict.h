@@ -1,5 +1,5 @@
-// Purpose: is the filter honest? Every test of consistency over many runs, each with its threshold and verdict.
-// Source:  docs/metrics.md, "Consistency as pass or fail".
+// Consistency verdict over many runs: every test with its threshold and false-alarm rate.
+// Source: docs/metrics.md, "Consistency as pass or fail".
 #pragma once
 
 #include <cstddef>
@@ -28,15 +28,15 @@ struct JudgedFrame {
                                                                  // NaN: none
   std::optional<Matrix12d> bound;                                // of cramer_rao.h
 };
-using JudgedRun = std::vector<JudgedFrame>;
+using VerdictRun = std::vector<JudgedFrame>;
 
 struct VerdictOptions {
   double false_alarm = 0.01;  // of each check
   LinearFilter reference;     // axes and part are set by the block that is judged
   int trials = 500;           // of the reference; at least 2 / false_alarm
-  // Honest runs of the world itself, or of each run's own world (cramer_rao.h), in all at least ten times as many as
-  // are judged; same frames. Prefer them: pose drifts, so that its ANEES remembers for seconds, and the linear filter,
-  // whose position is measured, would reject an exact odometry in one case of six (docs/metrics.md).
+  // Consistent runs of the world itself, or of each run's own world (cramer_rao.h), in all at least ten times as many
+  // as are judged; same frames. Prefer them: pose drifts, so that its ANEES remembers for seconds, and the linear
+  // filter, whose position is measured, would reject an exact odometry in one case of six (docs/metrics.md).
   std::span<const LinearisedRuns> linearised;
   std::size_t first_frame = 1;           // frames before are not judged (a start known exactly has no error)
   std::vector<std::size_t> rank_frames;  // for ranks and coverage; empty: four, the last among them, evenly spread
@@ -54,7 +54,7 @@ struct Check {
   double threshold = 0;
   bool at_least = true;  // passes when value >= threshold, else when value <= threshold
   bool pass = false;
-  double false_alarm = 0;  // of an honest filter; 0 where none can be stated (the ratio to the bound)
+  double false_alarm = 0;  // of a consistent filter; 0 where none can be stated (the ratio to the bound)
 };
 
 struct ConsistencyVerdict {
@@ -62,7 +62,8 @@ struct ConsistencyVerdict {
   // Behind them, by kStateBlocks.
   std::vector<AneesVerdict> anees;
   UniformityVerdict ranks, coverage;
-  // [frame of rank_frames][dimension], frame by frame; of no runs where nobody has a belief, and empty without any rank.
+  // [frame of rank_frames][dimension], frame by frame; of no runs where nobody has a belief, and empty without any
+  // rank.
   std::vector<RankHistogram> rank_histograms;
   std::optional<NisVerdict> nis;
   std::optional<NisMeanVerdict> nis_mean;  // nis_by_feature
@@ -71,11 +72,11 @@ struct ConsistencyVerdict {
   std::array<double, 4> energy{};   // mean where there were draws; NaN without [m, rad, m/s, rad/s]
   double effective_components = 0;  // mean
   bool pass() const;
-  bool honest() const;         // all but RMSE / bound, which says how good it is
+  bool consistent() const;     // all checks but RMSE / bound, which is accuracy
   double false_alarm() const;  // at most: the sum over the checks
 };
 
 // Throws std::invalid_argument without a run, or when no run has a frame after first_frame.
-ConsistencyVerdict JudgeConsistency(const std::vector<JudgedRun>& runs, const VerdictOptions& options = {});
+ConsistencyVerdict JudgeConsistency(const std::vector<VerdictRun>& runs, const VerdictOptions& options = {});
 
 }  // namespace evaluation

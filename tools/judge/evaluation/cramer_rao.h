@@ -1,9 +1,9 @@
-// Purpose: how small can errors be? The posterior Cramer-Rao bound of pose and velocity from points seen by a moving
-//          camera, given the measurements up to each frame.
-// Source:  P. Tichavsky, C. Muravchik, A. Nehorai, "Posterior Cramer-Rao bounds for discrete-time nonlinear filtering",
-//          IEEE Trans. Signal Processing 1998; Jacobians taken at one true trajectory, as M. Taylor 1979 does: the
-//          covariance of the exact Kalman filter of the world linearised at the truth. docs/metrics.md says what this
-//          bounds and what not.
+// Posterior Cramer-Rao bound of pose and velocity from points seen by a moving camera, given the measurements up to
+// each frame.
+// Source: P. Tichavsky, C. Muravchik, A. Nehorai, "Posterior Cramer-Rao bounds for discrete-time nonlinear filtering",
+// IEEE Trans. Signal Processing 1998. Jacobians are taken at one true trajectory, as in M. Taylor 1979: the
+// covariance of the exact Kalman filter of the world linearised at the truth. docs/metrics.md says what this
+// bounds and what not.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace evaluation {
 std::vector<Matrix12d> FilteringBound(const PointWorldProblem& problem);
 
 // The exact Kalman filter of the world linearised at the truth, run `runs` times: errors[run][frame], whose covariance
-// is the bound and whose dependence over time is that of an honest filter. For ExactAneesOfPool.
+// is the bound and whose dependence over time is that of a consistent filter. For ExactAneesOfPool.
 struct LinearisedRuns {
   std::vector<Matrix12d> bound;               // per frame
   std::vector<std::vector<Vector12d>> error;  // [run][frame]

@@ -1,6 +1,6 @@
-// Purpose: the distributions that verdicts are made of: chi-square, Student's t and the binomial.
-// Source:  Boost.Math, to nearly all digits of a double (tested against values of forty digits). What it is not defined for is
-// told by std::invalid_argument.
+// Distributions of test statistics: chi-square, Student's t and the binomial.
+// Source: Boost.Math, to nearly all digits of a double (tested against values of forty digits). Throws
+// std::invalid_argument where a distribution is not defined.
 #pragma once
 
 #include <cstddef>

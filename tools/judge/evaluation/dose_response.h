@@ -1,7 +1,7 @@
-// Purpose: what a stress does to an estimator: a number for each dose with its uncertainty, and the dose at which half
-//          of the runs have failed.
-// Source:  Efron and Tibshirani, "An introduction to the bootstrap" (1993), 13.3, percentile intervals; Ayer et al., "An
-//          empirical distribution function for sampling with incomplete information" (1955), pool adjacent violators.
+// Dose-response of an estimator under stress: a statistic per dose with its uncertainty, and the dose at which half
+// of the runs have failed.
+// Source: Efron and Tibshirani, "An introduction to the bootstrap" (1993), 13.3, percentile intervals; Ayer et al., "An
+// empirical distribution function for sampling with incomplete information" (1955), pool adjacent violators.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Purpose: the judge's own random numbers: each a function of (seed, stream, index), the same everywhere.
-// Source:  Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011 (Philox 4x32-10); Box-Muller.
+// Counter-based random numbers of the judge: each a function of (seed, stream, index).
+// Source: Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011 (Philox 4x32-10); Box-Muller.
 #pragma once
 
 #include <Eigen/Core>

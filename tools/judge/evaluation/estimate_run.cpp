@@ -17,10 +17,15 @@ namespace evaluation {
 namespace {
 
 constexpr std::size_t kUpperTriangle = 78;
-constexpr std::size_t kWithoutGuards = 12;  // columns
-const std::array<const char*, 16> kColumns = {
-    "timestamp",   "searched",    "matched",   "landmarks", "permanent", "nis",    "nis_dof",    "effective_particles",
-    "ms_features", "ms_matching", "ms_filter", "status",    "unsettled", "behind", "indefinite", "impossible"};
+// Columns of frames.csv, behind which kNumericalEvents stand where they are known.
+constexpr std::array kColumns = {"timestamp",   "searched",    "matched",   "landmarks",
+                                 "permanent",   "nis",         "nis_dof",   "effective_particles",
+                                 "ms_features", "ms_matching", "ms_filter", "status"};
+constexpr std::array kFormerEvents = {"unsettled", "behind", "indefinite", "impossible"};
+
+std::string ColumnName(std::size_t i) {
+  return i < kColumns.size() ? kColumns[i] : kNumericalEvents[i - kColumns.size()].name;
+}
 
 std::vector<StampedBelief> ReadBeliefs(const std::filesystem::path& file, Problems& problems) {
   std::vector<StampedBelief> beliefs;
@@ -79,9 +84,9 @@ std::optional<int> ParseCount(const std::string& text) {
 std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems& problems) {
   std::vector<FrameRecord> frames;
   bool header = true;
-  std::size_t columns = kColumns.size();
+  std::size_t columns = kColumns.size() + kNumericalEvents.size();
   for (const Line& line : ReadLines(file, ',')) {
-    if (header && line.tokens.size() == kWithoutGuards) columns = kWithoutGuards;
+    if (header && line.tokens.size() == kColumns.size()) columns = kColumns.size();
     if (line.tokens.size() != columns) {
       problems.Add(file, line.number, 1,
                    std::to_string(line.tokens.size()) + " columns where " + std::to_string(columns) + " are expected");
@@ -90,10 +95,12 @@ std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems&
     }
     if (header) {
       for (std::size_t i = 0; i < columns; ++i) {
-        if (line.tokens[i].text != kColumns[i]) {
-          problems.Add(file, line.number, line.tokens[i].column,
-                       "column '" + line.tokens[i].text + "' where '" + kColumns[i] + "' is expected");
-        }
+        const std::string& name = line.tokens[i].text;
+        if (name == ColumnName(i)) continue;
+        const bool former = i >= kColumns.size() && name == kFormerEvents[i - kColumns.size()];
+        problems.Add(file, line.number, line.tokens[i].column,
+                     "column '" + name + "' " + (former ? "is now" : "where") + " '" + ColumnName(i) + "'" +
+                         (former ? "" : " is expected"));
       }
       header = false;
       continue;
@@ -134,12 +141,11 @@ std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems&
     number(10, record.ms_filter);
     record.tracked = line.tokens[11].text == "tracked";
     if (!record.tracked && line.tokens[11].text != "coasted") bad(11, "'tracked' or 'coasted'");
-    if (columns > kWithoutGuards) {
-      GuardCounts& guards = record.guards.emplace();
-      count(12, guards.unsettled);
-      count(13, guards.behind);
-      count(14, guards.indefinite);
-      count(15, guards.impossible);
+    if (columns > kColumns.size()) {
+      record.events.emplace();
+      for (std::size_t i = 0; i < kNumericalEvents.size(); ++i) {
+        count(kColumns.size() + i, (*record.events).*kNumericalEvents[i].count);
+      }
     }
     frames.push_back(record);
   }
@@ -177,7 +183,7 @@ std::string LineOf(const StampedBelief& belief) {
   return text + '\n';
 }
 
-std::string LineOf(const FrameRecord& f, bool guarded) {
+std::string LineOf(const FrameRecord& f, bool with_events) {
   std::string text = base::FormatSeconds(f.stamp_ns);
   for (const int value : {f.searched, f.matched, f.landmarks, f.permanent}) text += ',' + std::to_string(value);
   text += ',' + base::Significant(f.nis, 9) + ',' + std::to_string(f.nis_dof);
@@ -185,9 +191,8 @@ std::string LineOf(const FrameRecord& f, bool guarded) {
     text += ',' + base::Significant(value, 6);
   }
   text += f.tracked ? ",tracked" : ",coasted";
-  if (guarded) {
-    for (const int value : {f.guards->unsettled, f.guards->behind, f.guards->indefinite, f.guards->impossible})
-      text += ',' + std::to_string(value);
+  if (with_events) {
+    for (const NumericalEvent& event : kNumericalEvents) text += ',' + std::to_string((*f.events).*event.count);
   }
   return text + '\n';
 }
@@ -200,13 +205,13 @@ void WriteBeliefs(const std::filesystem::path& file, const std::vector<StampedBe
 }
 
 void WriteFrames(const std::filesystem::path& file, const std::vector<FrameRecord>& frames) {
-  const bool guarded =
-      std::all_of(frames.begin(), frames.end(), [](const FrameRecord& f) { return f.guards.has_value(); });
+  const bool with_events =
+      std::all_of(frames.begin(), frames.end(), [](const FrameRecord& f) { return f.events.has_value(); });
   base::AtomicFile out(file);
-  for (std::size_t i = 0; i < (guarded ? kColumns.size() : kWithoutGuards); ++i)
-    out.Append((i == 0 ? "" : ",") + std::string(kColumns[i]));
+  for (std::size_t i = 0; i < kColumns.size() + (with_events ? kNumericalEvents.size() : 0); ++i)
+    out.Append((i == 0 ? "" : ",") + ColumnName(i));
   out.Append("\n");
-  for (const FrameRecord& frame : frames) out.Append(LineOf(frame, guarded));
+  for (const FrameRecord& frame : frames) out.Append(LineOf(frame, with_events));
   out.Commit();
 }
 

@@ -1,7 +1,8 @@
-// Purpose: what one run of an odometry left behind: estimate.txt, covariance.txt, frames.csv of docs/result_folder.md.
+// Run folder of an odometry: estimate.txt, covariance.txt, frames.csv (docs/result_folder.md).
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -20,10 +21,20 @@ struct StampedBelief {
   Matrix12d covariance = Matrix12d::Zero();
 };
 
-// Numerical events of a frame (vo/base/numerical_events.h).
-struct GuardCounts {
-  int unsettled = 0, behind = 0, indefinite = 0, impossible = 0;
+// Numerical events: how often in a frame a filter did what its equations do not say (docs/odometry.md).
+struct NumericalEvents {
+  int not_converged = 0, behind_camera = 0, not_positive_definite = 0, non_finite_weight = 0;
 };
+// Their names as columns of frames.csv and keys of metrics.json, once.
+struct NumericalEvent {
+  const char* name;
+  int NumericalEvents::*count;
+};
+inline constexpr std::array<NumericalEvent, 4> kNumericalEvents = {
+    {{"not_converged", &NumericalEvents::not_converged},
+     {"behind_camera", &NumericalEvents::behind_camera},
+     {"not_positive_definite", &NumericalEvents::not_positive_definite},
+     {"non_finite_weight", &NumericalEvents::non_finite_weight}}};
 
 // One line of frames.csv.
 struct FrameRecord {
@@ -36,9 +47,8 @@ struct FrameRecord {
   int nis_dof = 0;  // 2 per matched feature
   double effective_particles = 0;
   double ms_features = 0, ms_matching = 0, ms_filter = 0;
-  bool tracked = false;  // at least 10 matched features; else the filter coasted
-  // None: not known, as of other people's systems and of results before these were counted
-  std::optional<GuardCounts> guards;
+  bool tracked = false;                   // at least 10 matched features; else the filter coasted
+  std::optional<NumericalEvents> events;  // none where they are not known, as of other people's systems
 };
 
 struct EstimateRun {

@@ -1,10 +1,10 @@
-// Purpose: how well does a belief that is a mixture of Gaussians know the truth? Scores that stay right where a mixture
-//          is far from Gaussian and NEES is not.
-// Source:  Gneiting & Raftery, "Strictly proper scoring rules", JASA 2007 (energy and log score); Talts et al.,
-//          "Validating Bayesian inference algorithms with simulation-based calibration", 2018 (ranks).
+// Scores of a belief that is a mixture of Gaussians, given the truth: valid also where it is far from Gaussian, unlike
+// NEES.
+// Source: Gneiting & Raftery, "Strictly proper scoring rules", JASA 2007 (energy and log score); Talts et al.,
+// "Validating Bayesian inference algorithms with simulation-based calibration", 2018 (ranks).
 //
-// Everything lives in the tangent space at the belief's mean, in the order of the covariance: (dp in W, dphi in C, dv
-// in W, dw in C). The functions take any dimension; Block() cuts one out.
+// All vectors are in the tangent space at the mean of the belief, in the order of the covariance: (dp in W, dphi in C,
+// dv in W, dw in C). The functions take any dimension; Block() cuts one out.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,6 +31,9 @@ inline constexpr std::array<StateBlock, 7> kStateBlocks{{{"position", 0, 3},
                                                          {"velocity", 6, 6},
                                                          {"joint", 0, 12}}};
 
+// NEES by kStateBlocks; NaN where the covariance of the block is not positive definite.
+using BlockNees = std::array<double, kStateBlocks.size()>;
+
 struct MixtureComponent {
   double weight = 1;           // need not be normalised
   Eigen::VectorXd offset;      // the component's mean less the mixture's mean
@@ -50,7 +53,7 @@ Moments MomentsOf(const Mixture& mixture);
 // 1 / sum w_i^2.
 double EffectiveComponents(const Mixture& mixture);
 
-// Per dimension P(x_i <= error_i) under the mixture: uniform on (0, 1) if the belief is honest.
+// Per dimension P(x_i <= error_i) under the mixture: uniform on (0, 1) if the belief is calibrated.
 Eigen::VectorXd Pit(const Mixture& mixture, const Eigen::VectorXd& error);
 
 // log of the mixture's density at the error; NaN when a component's covariance is not positive definite.
@@ -59,12 +62,12 @@ double LogDensity(const Mixture& mixture, const Eigen::VectorXd& error);
 // One column per draw.
 Eigen::MatrixXd Draw(const Mixture& mixture, int draws, std::uint64_t seed, std::uint64_t stream);
 
-// Per dimension, how many of the draws lie below the error: uniform on 0 ... draws if the belief is honest.
+// Per dimension, how many of the draws lie below the error: uniform on 0 ... draws if the belief is calibrated.
 std::vector<int> Ranks(const Eigen::MatrixXd& draws, const Eigen::VectorXd& error);
 
-// The share of the mixture's mass at higher density than the error: uniform on (0, 1) if the belief is honest, so that
-// the highest-density region of probability c covers the truth in a share c of the runs. By draws, (hits + 1/2) / (n +
-// 1); exact, by chi-square, for a single component. NaN when there is no density.
+// The share of the mixture's mass at higher density than the error: uniform on (0, 1) if the belief is calibrated, so
+// that the highest-density region of probability c covers the truth in a share c of the runs. By draws, (hits + 1/2) /
+// (n + 1); exact, by chi-square, for a single component. NaN when there is no density.
 double HpdMass(const Mixture& mixture, const Eigen::MatrixXd& draws, const Eigen::VectorXd& error);
 
 // E|X - e| - E|X - X'| / 2, from draws, without bias (all pairs of different draws). Smaller is better; in the unit of

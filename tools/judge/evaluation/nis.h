@@ -1,5 +1,5 @@
-// Purpose: do the innovations have the size the filter expects? Normalised innovation squared (NIS) per frame.
-// Source:  Bar-Shalom et al., 5.4.2. Needs no truth.
+// Normalised innovation squared (NIS) per frame: nu' S^-1 nu.
+// Source: Bar-Shalom et al., 5.4.2. Needs no truth.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ struct NisSummary {
   double whiteness_bound = 0;
 };
 
-// Gating drops large innovations, so an honest gated filter sits slightly below 1.
+// Gating drops large innovations, so a consistent gated filter sits slightly below 1.
 NisSummary SummariseNis(const std::vector<FrameRecord>& frames);
 
 }  // namespace evaluation

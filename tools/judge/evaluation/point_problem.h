@@ -1,5 +1,5 @@
-// Purpose: the world of points as an estimation problem: its parameters, and the Jacobians of motion and view at the
-// truth. Source:  docs/metrics.md, "The Cramer-Rao bound". Written for the judge alone; checked against finite
+// Point world as an estimation problem: parameters, and Jacobians of motion and measurement at the truth.
+// Source: docs/metrics.md, "The Cramer-Rao bound". Written for the judge alone, tested against finite
 // differences.
 //
 // Model: p, v and (delta, w) per axis nearly constant velocity, q_t = q_t-1 Exp(delta); a point anchored where it was

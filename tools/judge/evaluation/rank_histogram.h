@@ -1,5 +1,5 @@
-// Purpose: are ranks (or PIT values, or HPD masses) of the truth uniform over runs? Simulation-based calibration.
-// Source:  Talts et al. 2018; Pearson's chi-square. A histogram is over runs only: frames of one run are dependent.
+// Uniformity test of ranks (or PIT values, or HPD masses) of the truth over runs: simulation-based calibration.
+// Source: Talts et al. 2018; Pearson's chi-square. A histogram is over runs only: frames of one run are dependent.
 #pragma once
 
 #include <string>

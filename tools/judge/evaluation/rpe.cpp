@@ -64,7 +64,7 @@ std::vector<IndexPair> PairsByFrames(std::size_t poses, std::size_t delta, PairS
 std::vector<IndexPair> PairsByPath(const Trajectory& trajectory, double delta_m, PairSelection selection,
                                    double tolerance) {
   if (!(delta_m > 0)) throw std::invalid_argument("PairsByPath: delta must be more than zero metres");
-  const std::vector<double> way = WayAlong(trajectory);
+  const std::vector<double> way = CumulativePathLength(trajectory);
   std::vector<IndexPair> pairs;
   if (selection == PairSelection::all) {
     for (std::size_t i = 0; i + 1 < way.size(); ++i) {

@@ -1,7 +1,7 @@
-// Purpose: relative pose error: how wrong the motion between two times is. Drift, which no alignment can hide.
-// Source:  Sturm et al., IROS 2012, equation (2): E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), P estimate, Q truth. Note that
-// TUM's own script
-//          composes A B^-1 instead; see compat/tum_rpe.h.
+// Relative pose error (RPE): error of the motion between two times, the drift, which no alignment hides.
+// Source: Sturm et al., IROS 2012, equation (2): E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), P estimate, Q truth.
+//
+// TUM's own script composes A B^-1 instead; see compat/tum_rpe.h.
 #pragma once
 
 #include <cstddef>

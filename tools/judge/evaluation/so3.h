@@ -1,4 +1,4 @@
-// Purpose: the few rotation formulas of the judge, its own so that a slip elsewhere cannot cancel here.
+// Rotation formulas of the judge: its own, so that a mistake elsewhere cannot cancel here.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// Purpose: the usual numbers that sum up a list of errors.
+// Summary statistics of a list of errors.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,8 @@ Statistics Summarise(const std::vector<double>& values);
 // The middle value (mean of the middle two); NaN when empty.
 double Median(std::vector<double> values);
 
-// The value below which a share (0 to 1) of the sorted values lies: between the two nearest, linearly; next to an infinite one, that. NaN
-// when empty.
+// The value below which a share (0 to 1) of the sorted values lies: between the two nearest, linearly; next to an
+// infinite one, that. NaN when empty.
 double Quantile(const std::vector<double>& sorted, double share);
 
 }  // namespace evaluation

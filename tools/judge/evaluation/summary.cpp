@@ -1,6 +1,7 @@
 #include "tools/judge/evaluation/summary.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include "tools/judge/evaluation/baseline.h"
 
@@ -21,9 +22,7 @@ Stamps FrameStamps(const EstimateRun& run, const JudgeOptions& options) {
   return stamps;
 }
 
-TrajectoryErrors ErrorsOf(const Trajectory& estimate, const Trajectory& truth, std::size_t pairs_offered,
-                          const JudgeOptions& options) {
-  const MatchedTrajectories matched = MatchTrajectories(estimate, truth, options.association);
+TrajectoryErrors ErrorsOf(const MatchedTrajectories& matched, std::size_t pairs_offered, const JudgeOptions& options) {
   TrajectoryErrors errors;
   errors.pairs = matched.estimate.size();
   errors.none = ComputeAte(matched, Alignment::none);
@@ -51,11 +50,7 @@ std::optional<Coverage> CoverageOf(const EstimateRun& run, const JudgeOptions& o
   return coverage;
 }
 
-std::optional<ConsistencySummary> ConsistencyOf(const EstimateRun& run, const Trajectory& truth,
-                                                const std::optional<Velocities>& truth_velocities,
-                                                const JudgeOptions& options) {
-  if (run.beliefs.empty()) return std::nullopt;
-  const auto frames = ComputeConsistency(run, truth, truth_velocities, options.association.gap_ns, options.gauge);
+ConsistencySummary Summarised(const std::vector<FrameConsistency>& frames, bool with_velocity) {
   const auto summarise = [&](double FrameConsistency::*member, int dof) {
     std::vector<double> values;
     for (const FrameConsistency& frame : frames) values.push_back(frame.*member);
@@ -64,7 +59,7 @@ std::optional<ConsistencySummary> ConsistencyOf(const EstimateRun& run, const Tr
   ConsistencySummary summary;
   summary.pose = summarise(&FrameConsistency::nees_pose, 6);
   summary.pose_scale_free = summarise(&FrameConsistency::nees_pose_scale_free, 5);
-  if (truth_velocities) {
+  if (with_velocity) {
     summary.velocity = summarise(&FrameConsistency::nees_velocity, 6);
     summary.joint = summarise(&FrameConsistency::nees_joint, 12);
     summary.joint_scale_free = summarise(&FrameConsistency::nees_joint_scale_free, 11);
@@ -83,19 +78,16 @@ std::optional<Timing> TimingOf(const std::vector<FrameRecord>& frames) {
   return Timing{Median(features), Median(matching), Median(filter)};
 }
 
-std::optional<GuardSummary> GuardsOf(const std::vector<FrameRecord>& frames) {
+std::optional<EventSummary> EventsOf(const std::vector<FrameRecord>& frames) {
   if (frames.empty()) return std::nullopt;
-  GuardSummary summary;
-  const auto add = [](int times, GuardSummary::Firings& firings) {
-    firings.times += times;
-    firings.frames += times > 0;
-  };
+  EventSummary summary;
   for (const FrameRecord& frame : frames) {
-    if (!frame.guards) return std::nullopt;
-    add(frame.guards->unsettled, summary.unsettled);
-    add(frame.guards->behind, summary.behind);
-    add(frame.guards->indefinite, summary.indefinite);
-    add(frame.guards->impossible, summary.impossible);
+    if (!frame.events) return std::nullopt;
+    for (std::size_t i = 0; i < summary.size(); ++i) {
+      const int times = (*frame.events).*kNumericalEvents[i].count;
+      summary[i].times += times;
+      summary[i].frames += times > 0;
+    }
   }
   return summary;
 }
@@ -125,9 +117,10 @@ std::optional<double> Coverage::tracked_coverage() const {
   return frames == 0 ? 0 : static_cast<double>(*tracked) / static_cast<double>(frames);
 }
 
-Metrics Judge(const EstimateRun& run, const Trajectory& truth, const std::optional<Velocities>& truth_velocities,
-              const JudgeOptions& options) {
-  Metrics metrics;
+JudgedSeries JudgeSeries(const EstimateRun& run, const Trajectory& truth,
+                         const std::optional<Velocities>& truth_velocities, const JudgeOptions& options) {
+  JudgedSeries series;
+  Metrics& metrics = series.metrics;
   metrics.options = options;
 
   // What the truth offers on the frames of the sequence, whether the odometry answered or not.
@@ -136,22 +129,35 @@ Metrics Judge(const EstimateRun& run, const Trajectory& truth, const std::option
   const MatchedTrajectories offered = MatchTrajectories(at_frames, truth, options.association);
   const std::size_t pairs_offered = PairsByTime(offered.truth, options.rpe_delta_ns, options.rpe_tolerance_ns).size();
 
-  metrics.errors = ErrorsOf(run.trajectory, truth, pairs_offered, options);
+  const auto errors_of = [&](const Trajectory& estimate) {
+    return ErrorsOf(MatchTrajectories(estimate, truth, options.association), pairs_offered, options);
+  };
+  MatchedTrajectories matched = MatchTrajectories(run.trajectory, truth, options.association);
+  metrics.errors = ErrorsOf(matched, pairs_offered, options);
+  series.aligned = Apply(metrics.errors.sim3.similarity, matched.estimate);
+  series.truth = std::move(matched.truth);
   metrics.path_length_m = PathLength(offered.truth);
   metrics.duration_s = static_cast<double>(offered.truth.back().stamp_ns - offered.truth.front().stamp_ns) * 1e-9;
 
   const StampedPose& start = offered.truth.front();
   const auto given = truth_velocities ? VelocityAt(*truth_velocities, start.stamp_ns) : std::nullopt;
-  metrics.constant_pose = ErrorsOf(ConstantPose(frames, start), truth, pairs_offered, options);
-  metrics.constant_velocity = ErrorsOf(ConstantVelocity(frames, start, given.value_or(StartVelocity(offered.truth))),
-                                       truth, pairs_offered, options);
+  metrics.constant_pose = errors_of(ConstantPose(frames, start));
+  metrics.constant_velocity = errors_of(ConstantVelocity(frames, start, given.value_or(StartVelocity(offered.truth))));
 
   metrics.coverage = CoverageOf(run, options, frames);
-  metrics.consistency = ConsistencyOf(run, truth, truth_velocities, options);
+  if (!run.beliefs.empty()) {
+    series.consistency = ComputeConsistency(run, truth, truth_velocities, options.association.gap_ns, options.gauge);
+    metrics.consistency = Summarised(series.consistency, truth_velocities.has_value());
+  }
   if (!run.frames.empty()) metrics.nis = SummariseNis(run.frames);
   metrics.timing = TimingOf(run.frames);
-  metrics.guards = GuardsOf(run.frames);
-  return metrics;
+  metrics.events = EventsOf(run.frames);
+  return series;
+}
+
+Metrics Judge(const EstimateRun& run, const Trajectory& truth, const std::optional<Velocities>& truth_velocities,
+              const JudgeOptions& options) {
+  return JudgeSeries(run, truth, truth_velocities, options).metrics;
 }
 
 }  // namespace evaluation

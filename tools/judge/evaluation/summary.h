@@ -1,4 +1,4 @@
-// Purpose: the verdict on one run: every number of the judge, with how it was obtained. docs/metrics.md explains each.
+// Metrics of one run: every number of the judge, with its options (docs/metrics.md).
 #pragma once
 
 #include <array>
@@ -52,14 +52,12 @@ struct Timing {
   double ms_features = 0, ms_matching = 0, ms_filter = 0;  // medians over frames
 };
 
-// Over the frames of a run.
-struct GuardSummary {
-  struct Firings {
-    std::int64_t times = 0;
-    std::size_t frames = 0;  // in which it fired
-  };
-  Firings unsettled, behind, indefinite, impossible;
+// Numerical events of a run, in the order of kNumericalEvents.
+struct EventCount {
+  std::int64_t times = 0;
+  std::size_t frames = 0;  // with at least one
 };
+using EventSummary = std::array<EventCount, kNumericalEvents.size()>;
 
 struct Metrics {
   JudgeOptions options;
@@ -71,10 +69,20 @@ struct Metrics {
   std::optional<ConsistencySummary> consistency;
   std::optional<NisSummary> nis;
   std::optional<Timing> timing;
-  std::optional<GuardSummary> guards;  // where all frames have them
+  std::optional<EventSummary> events;  // where all frames have them
+};
+
+// Metrics of a run and the series per frame behind them: pose k of `aligned` belongs to pose k of `truth`.
+struct JudgedSeries {
+  Metrics metrics;
+  Trajectory aligned, truth;                  // aligned by Sim(3), in the truth's world
+  std::vector<FrameConsistency> consistency;  // not aligned; empty without covariances
 };
 
 // Throws InputError when estimate and truth do not overlap in time.
+JudgedSeries JudgeSeries(const EstimateRun& run, const Trajectory& truth,
+                         const std::optional<Velocities>& truth_velocities, const JudgeOptions& options = {});
+// Its metrics alone.
 Metrics Judge(const EstimateRun& run, const Trajectory& truth, const std::optional<Velocities>& truth_velocities,
               const JudgeOptions& options = {});
 

@@ -1,5 +1,5 @@
-// Strict reader of tables of text: every problem of a file is collected and reported at once, with file, line, column and
-// the text found there.
+// Strict reader of text tables, and number formatting. All problems of a file are reported at once, with file, line,
+// column and the text found there.
 #pragma once
 
 #include <cstddef>
@@ -41,7 +41,8 @@ struct Line {
   std::vector<Token> tokens;
 };
 
-// The lines of a file that carry data: no empty ones, none that starts with '#'. Read one at a time as they are asked for, once:
+// The lines of a file that carry data: no empty ones, none that starts with '#'. Read one at a time as they are asked
+// for, once:
 //   for (const Line& line : ReadLines(file)) ...
 // A line is good until the next one is asked for.
 class Lines {
@@ -93,8 +94,8 @@ constexpr double kLongest_s = 1e9;
 // Of what is added to a stamp. Nothing beyond kLongest_s, and for what is no number.
 std::optional<std::int64_t> Nanoseconds(double seconds);
 
-// The double that the reference tools read a stamp as. At 1.3e9 s a double resolves 0.24 us, which decides between two stamps that are
-// equally near; ours are to decide as theirs.
+// The double that the reference tools read a stamp as. At 1.3e9 s a double resolves 0.24 us, which decides between two
+// stamps that are equally near; ours are to decide as theirs.
 double SecondsAsRead(std::int64_t stamp_ns);
 
 }  // namespace evaluation

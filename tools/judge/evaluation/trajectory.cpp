@@ -155,7 +155,7 @@ std::optional<StampedVelocity> VelocityAt(const Velocities& velocities, std::int
   return *found;
 }
 
-std::vector<double> WayAlong(const Trajectory& trajectory) {
+std::vector<double> CumulativePathLength(const Trajectory& trajectory) {
   std::vector<double> way;
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     way.push_back(i == 0 ? 0 : way.back() + (trajectory[i].p_WC - trajectory[i - 1].p_WC).norm());
@@ -163,6 +163,8 @@ std::vector<double> WayAlong(const Trajectory& trajectory) {
   return way;
 }
 
-double PathLength(const Trajectory& trajectory) { return trajectory.empty() ? 0 : WayAlong(trajectory).back(); }
+double PathLength(const Trajectory& trajectory) {
+  return trajectory.empty() ? 0 : CumulativePathLength(trajectory).back();
+}
 
 }  // namespace evaluation

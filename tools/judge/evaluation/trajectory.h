@@ -1,5 +1,5 @@
-// Purpose: trajectories and velocities as the judge sees them, read from and written to text files.
-// Source:  docs/conventions.md (frames, units), docs/sequence_format.md (files); the TUM RGB-D trajectory format.
+// Trajectories and velocities of the judge, read from and written to text files.
+// Source: docs/conventions.md (frames, units), docs/sequence_format.md (files); the TUM RGB-D trajectory format.
 #pragma once
 
 #include <Eigen/Core>
@@ -52,7 +52,7 @@ void WriteVelocities(const std::filesystem::path& file, const Velocities& veloci
 std::optional<StampedVelocity> VelocityAt(const Velocities& velocities, std::int64_t stamp_ns);
 
 // Length of the way through the positions up to each pose [m]; the first is 0.
-std::vector<double> WayAlong(const Trajectory& trajectory);
+std::vector<double> CumulativePathLength(const Trajectory& trajectory);
 
 // Length of the way through all positions [m].
 double PathLength(const Trajectory& trajectory);

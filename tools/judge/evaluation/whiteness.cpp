@@ -84,27 +84,6 @@ NisBand NisOfRun(const std::vector<double>& nis, const std::vector<int>& dof) {
   return Finish(sum, degrees);
 }
 
-std::vector<NisBand> NisOverRuns(const std::vector<std::vector<double>>& nis,
-                                 const std::vector<std::vector<int>>& dof) {
-  RequireEqual(nis.size(), dof.size());
-  std::vector<double> sum, degrees;
-  for (std::size_t m = 0; m < nis.size(); ++m) {
-    RequireEqual(nis[m].size(), dof[m].size());
-    if (nis[m].size() > sum.size()) {
-      sum.resize(nis[m].size());
-      degrees.resize(nis[m].size());
-    }
-    for (std::size_t k = 0; k < nis[m].size(); ++k) {
-      if (dof[m][k] <= 0) continue;
-      sum[k] += nis[m][k];
-      degrees[k] += dof[m][k];
-    }
-  }
-  std::vector<NisBand> bands;
-  for (std::size_t k = 0; k < sum.size(); ++k) bands.push_back(Finish(sum[k], degrees[k]));
-  return bands;
-}
-
 NisVerdict TestNis(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof,
                    double false_alarm) {
   RequireEqual(nis.size(), dof.size());

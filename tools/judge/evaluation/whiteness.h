@@ -1,7 +1,7 @@
-// Purpose: are innovations of the right size, and white? Normalised innovation squared (NIS) per run and over runs;
-//          autocorrelation of a scalar normalised innovation.
-// Source:  Bar-Shalom, Li, Kirubarajan, "Estimation with applications to tracking and navigation", 5.4; G. M. Ljung and
-//          G. E. P. Box, "On a measure of lack of fit in time series models", Biometrika 1978.
+// Size and whiteness of innovations: normalised innovation squared (NIS) per run and over runs, autocorrelation of a
+// scalar normalised innovation.
+// Source: Bar-Shalom, Li, Kirubarajan, "Estimation with applications to tracking and navigation", 5.4; G. M. Ljung and
+// G. E. P. Box, "On a measure of lack of fit in time series models", Biometrika 1978.
 #pragma once
 
 #include <cstddef>
@@ -44,8 +44,6 @@ struct NisBand {
 };
 // Values with dof <= 0 are left out.
 NisBand NisOfRun(const std::vector<double>& nis, const std::vector<int>& dof);
-// At each frame over runs ([run][frame]); runs may differ in length.
-std::vector<NisBand> NisOverRuns(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof);
 
 // Rejected when more runs are outside their 95 % band than the false-alarm quantile of a binomial of 0.05.
 struct NisVerdict {

@@ -1,4 +1,4 @@
-// Purpose: one line of the table that `vobench verify` prints: the worst of many comparisons, each against its bound.
+// One check of `vobench verify`: the worst of many comparisons, each against its bound.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Purpose: the files of a sequence (docs/sequence_format.md, docs/truth.md), read again from nothing but their formats.
+// Files of a sequence (docs/sequence_format.md, docs/truth.md), read from their formats alone.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Purpose: the pictures of a sequence's frames, decoded when they are asked for, and the geometry between two frames.
+// Pictures of a sequence, decoded on demand, and the geometry between two frames.
 #pragma once
 
 #include <map>

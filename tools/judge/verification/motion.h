@@ -1,4 +1,4 @@
-// Purpose: poses, velocities, accelerations and inertial readings against each other. docs/truth.md derives the bounds.
+// Checks of poses, velocities, accelerations and inertial readings against each other. Bounds: docs/truth.md.
 #pragma once
 
 #include <vector>

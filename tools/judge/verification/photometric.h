@@ -1,5 +1,5 @@
-// Purpose: pictures against each other, through depth and poses: is each at the place and time that its stamp says?
-//          docs/truth.md derives the bounds.
+// Photometric checks: pictures against each other through depth and poses, for place and time of their stamps.
+// Bounds: docs/truth.md.
 #pragma once
 
 #include <vector>

@@ -290,8 +290,8 @@ void SurfaceChecks::DepthInNeighbours(std::size_t frame) {
   if (best[1] < kNone) checks_[kNeighbours].Add(best[1], 1, "depth " + frames_.Stamp(frame) + ", objects");
 }
 
-// A pixel fits where one of the motions that it may have explains its flow. One that fits those of the others alone tells
-// that the mask is wrong.
+// A pixel fits where one of the motions that it may have explains its flow. One that fits those of the others alone
+// tells that the mask is wrong.
 void SurfaceChecks::Flow(std::size_t frame, const std::string& stream, std::size_t to, Check& check) {
   const cv::Mat flow = frames_.Picture(stream, frame), depth = frames_.Depth(frame);
   const PixelMotions motions(frames_, frame, to);

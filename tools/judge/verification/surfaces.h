@@ -1,5 +1,5 @@
-// Purpose: what each pixel sees, stream against stream: depth, distance, normals, ids, flow, occlusion, landmarks.
-//          docs/truth.md derives the bounds.
+// Checks of what each pixel sees: depth, distance, normals, ids, flow, occlusion, landmarks.
+// Bounds: docs/truth.md.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Purpose: are the streams of a sequence on disk true to each other? Nothing of the simulator is used here.
+// Verification of a sequence: its streams against each other, with nothing of the simulator.
 #pragma once
 
 #include <filesystem>

@@ -82,7 +82,7 @@ for kind, colour in (MyFilter, "tab:blue"), (Bold, "tab:red"):
     nees = np.array([run.nees["pose"] for run in runs])[:, 1:]  # the first pose is given
     right.plot(seconds[1:], nees.mean(axis=0) / 6, color=colour, label=kind.__name__)
 low, high = vobench.chi2_band(dof=6, runs=len(worlds))
-right.axhspan(low / 6, high / 6, color="0.85", label="95 % of honest ones, at one frame")
+right.axhspan(low / 6, high / 6, color="0.85", label="95 % of consistent ones, at one frame")
 right.set(xlabel="time [s]", ylabel="ANEES of the pose / 6", title="fifty worlds: as uncertain as it is wrong?", ylim=(0, 3))
 right.legend()
 figure.savefig(out / "consistency.jpg", dpi=110)

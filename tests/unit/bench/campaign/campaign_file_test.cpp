@@ -6,7 +6,7 @@
 #include "tests/unit/bench/campaign/folder.h"
 #include "tools/bench/campaign/results.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 using testing::ElementsAre;
@@ -186,4 +186,4 @@ TEST_F(CampaignFileTest, AHugeCampaignIsRefusedInsteadOfOverflowing) {
 }
 
 }  // namespace
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -8,7 +8,7 @@
 #include "tests/unit/bench/campaign/folder.h"
 #include "tools/bench/campaign/campaign_file.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 using testing::ElementsAre;
@@ -155,4 +155,4 @@ TEST_F(CurvesTest, CsvHasALineForEachNumber) {
 }
 
 }  // namespace
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -6,7 +6,7 @@
 
 #include "tests/unit/judge/evaluation/temporary_folder.h"
 
-namespace campaign {
+namespace vobench::campaign {
 
 class Folder : public evaluation::TemporaryFolder {
  public:
@@ -19,4 +19,4 @@ class Folder : public evaluation::TemporaryFolder {
   std::string Read(const std::string& name) const { return TemporaryFolder::Read(path() / name); }
 };
 
-}  // namespace campaign
+}  // namespace vobench::campaign

@@ -19,7 +19,7 @@
 #include "tools/bench/campaign/sequence_cache.h"
 #include "tools/bench/campaign/task_folder.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 using std::chrono::milliseconds;
@@ -318,4 +318,4 @@ TEST(RemoveFailed, LeavesWhatIsDone) {
 }
 
 }  // namespace
-}  // namespace campaign
+}  // namespace vobench::campaign

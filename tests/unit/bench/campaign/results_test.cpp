@@ -7,7 +7,7 @@
 
 #include "tools/bench/campaign/table.h"
 
-namespace campaign {
+namespace vobench::campaign {
 namespace {
 
 using testing::HasSubstr;
@@ -33,6 +33,16 @@ Campaign Small() {  // 3 seeds x 2 blurs x 1 system
   c.systems.push_back({"rbpf", "rbpf", {}, {}});
   c.seeds = {1, 2, 3};
   return c;
+}
+
+TEST(Columns, NamesEndWithTheirUnits) {
+  for (const std::string& name : MetricNames()) {
+    std::string suffix = "1";
+    for (const char* unit : {"m", "rad", "s"}) {
+      if (name.ends_with(std::string("_") + unit)) suffix = unit;
+    }
+    EXPECT_EQ(UnitOf(name), suffix) << name;
+  }
 }
 
 TEST(Results, ARecordIsReadAsItWasWritten) {
@@ -158,4 +168,4 @@ TEST(Table, WhatIsInNeitherRowsNorColumnsIsPooled) {
 }
 
 }  // namespace
-}  // namespace campaign
+}  // namespace vobench::campaign

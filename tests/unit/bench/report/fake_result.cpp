@@ -6,10 +6,10 @@
 #include "tests/unit/judge/evaluation/random.h"
 #include "tools/base/files.h"
 #include "tools/base/text.h"
-#include "tools/bench/report/pictures.h"
+#include "tools/bench/result/pictures.h"
 #include "tools/judge/evaluation/text_file.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 namespace ev = evaluation;
@@ -108,7 +108,7 @@ const unsigned char kJpeg[] = {
 
 }  // namespace
 
-std::vector<JudgedRun> WriteFakeResult(const std::filesystem::path& out, const FakeOptions& options) {
+std::vector<RunMetrics> WriteFakeResult(const std::filesystem::path& out, const FakeOptions& options) {
   RunDescription description;
   description.title = "A spiral in a room";
   description.input = "scenes/spiral & <co>.yaml";
@@ -118,7 +118,7 @@ std::vector<JudgedRun> WriteFakeResult(const std::filesystem::path& out, const F
   description.seconds = 61.5;
   description.settings = "filter:\n  particles: 8\n";
   description.versions = {{"vobench", "0.1.0"}, {"Eigen", "3.4.0"}};
-  std::vector<JudgedRun> judged;
+  std::vector<RunMetrics> judged;
   for (const FakeSystem& system : options.systems) {
     for (int seed = 1; seed <= options.seeds; ++seed) {
       TestRandom random(static_cast<std::uint32_t>(seed + 100 * static_cast<int>(system.name.size())));
@@ -158,4 +158,4 @@ std::vector<JudgedRun> WriteFakeResult(const std::filesystem::path& out, const F
   return judged;
 }
 
-}  // namespace report
+}  // namespace vobench::report

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "tools/bench/report/metrics_json.h"
-#include "tools/bench/report/run_json.h"
+#include "tools/bench/result/metrics_json.h"
+#include "tools/bench/result/run_json.h"
 
-namespace report {
+namespace vobench::report {
 
 struct FakeSystem {
   std::string name = "rb2pf";
@@ -28,6 +28,6 @@ struct FakeOptions {
 };
 
 // Writes everything but report.html; returns what it judged.
-std::vector<JudgedRun> WriteFakeResult(const std::filesystem::path& out, const FakeOptions& options);
+std::vector<RunMetrics> WriteFakeResult(const std::filesystem::path& out, const FakeOptions& options);
 
-}  // namespace report
+}  // namespace vobench::report

@@ -5,11 +5,11 @@
 #include "tests/unit/bench/report/fake_result.h"
 #include "tests/unit/judge/evaluation/complaint.h"
 #include "tests/unit/judge/evaluation/temporary_folder.h"
-#include "tools/bench/report/metrics_json.h"
-#include "tools/bench/report/run_json.h"
+#include "tools/bench/result/metrics_json.h"
+#include "tools/bench/result/run_json.h"
 #include "tools/judge/evaluation/text_file.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 using evaluation::InputError;
@@ -144,4 +144,4 @@ TEST(MetricsJson, GivesTheOptionsBack) {
 }
 
 }  // namespace
-}  // namespace report
+}  // namespace vobench::report

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 std::string Decoded(const std::string& text) {
@@ -49,4 +49,4 @@ std::vector<float> Column(const nlohmann::json& data, const nlohmann::json& inde
   return numbers;
 }
 
-}  // namespace report
+}  // namespace vobench::report

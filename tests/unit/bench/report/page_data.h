@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace report {
+namespace vobench::report {
 
 // What stands in the element "data"; fails the test where the page has none.
 nlohmann::json DataOf(const std::string& html);
@@ -16,4 +16,4 @@ nlohmann::json FigureOf(const nlohmann::json& data, const std::string& title);
 // A column's numbers.
 std::vector<float> Column(const nlohmann::json& data, const nlohmann::json& index);
 
-}  // namespace report
+}  // namespace vobench::report

@@ -4,9 +4,9 @@
 #include "tests/unit/bench/report/page_data.h"
 #include "tools/bench/report/figure_json.h"
 #include "tools/bench/report/html.h"
-#include "tools/bench/report/text.h"
+#include "tools/bench/text.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 using testing::HasSubstr;
@@ -76,4 +76,4 @@ TEST(Page, LeavesOutEmptySections) {
 }
 
 }  // namespace
-}  // namespace report
+}  // namespace vobench::report

@@ -1,14 +1,15 @@
 // Pictures, ranks and verdicts of a result folder, read back.
-#include "tools/bench/report/pictures.h"
+#include "tools/bench/result/pictures.h"
 
 #include <gmock/gmock.h>
 
 #include "tests/unit/judge/evaluation/temporary_folder.h"
-#include "tools/bench/report/rank_table.h"
-#include "tools/bench/report/verdict_table.h"
+#include "tools/bench/report/tables.h"
+#include "tools/bench/result/ranks.h"
+#include "tools/bench/result/verdict.h"
 #include "tools/judge/evaluation/text_file.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 using evaluation::InputError;
@@ -77,7 +78,7 @@ TEST(Ranks, ReadBackTheSame) {
   const TemporaryFolder folder;
   const std::vector<RankTable> tables = {{"rb2pf", 30, "position x", 0.25, {3, 4, 5}, {1, 1, 1}, {8, 8, 8}},
                                          {"rb2pf", 60, "position x", 0.5, {2, 10}, {2, 2}, {10, 10}}};
-  folder.Write("ranks.csv", RanksCsv(tables));
+  WriteRanks(folder.path(), tables);
   const std::vector<RankTable> back = ReadRanks(folder.path());
   ASSERT_EQ(back.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -106,9 +107,10 @@ TEST(Verdict, IsReadAndShown) {
                                   "rbpf,\"RMSE / bound\",3.5,<=,1.2,fail,0\n");
   const std::vector<VerdictRow> rows = ReadVerdict(folder.path());
   ASSERT_EQ(rows.size(), 2u);
-  EXPECT_EQ(rows[0].check, "ANEES share, position");
-  EXPECT_EQ(rows[1].threshold, 1.2);
-  EXPECT_FALSE(rows[1].pass);
+  EXPECT_EQ(rows[0].check.name, "ANEES share, position");
+  EXPECT_TRUE(rows[0].check.at_least);
+  EXPECT_EQ(rows[1].check.threshold, 1.2);
+  EXPECT_FALSE(rows[1].check.pass);
   const std::string html = VerdictTable(rows);
   EXPECT_THAT(html,
               HasSubstr("<td>ANEES share, position</td><td>0.950</td><td>&gt;= 0.900</td><td>pass</td><td>1 %</td>"));
@@ -134,10 +136,10 @@ TEST(Verdict, ALineMayBeLong) {
   const TemporaryFolder folder;
   const std::string header = "system,check,value,relation,threshold,pass,false_alarm\n", name(1'000'000, 'x');
   folder.Write("verdict.csv", header + "rb2pf,\"" + name + "\",1,>=,0.9,pass,0.01\n");
-  EXPECT_EQ(ReadVerdict(folder.path()).at(0).check, name);
+  EXPECT_EQ(ReadVerdict(folder.path()).at(0).check.name, name);
   folder.Write("verdict.csv", header + name + "\n");
   EXPECT_THROW(ReadVerdict(folder.path()), InputError);
 }
 
 }  // namespace
-}  // namespace report
+}  // namespace vobench::report

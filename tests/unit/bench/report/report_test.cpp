@@ -9,13 +9,13 @@
 #include "tests/unit/judge/evaluation/temporary_folder.h"
 #include "tools/base/files.h"
 #include "tools/bench/report/page.h"
-#include "tools/bench/report/result_data.h"
-#include "tools/bench/report/text.h"
-#include "tools/bench/report/text_summary.h"
+#include "tools/bench/result/result.h"
+#include "tools/bench/result/system_summary.h"
+#include "tools/bench/text.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "tools/judge/evaluation/trajectory.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 using evaluation::InputError;
@@ -94,7 +94,7 @@ TEST(WriteReport, ShowsWhatWasFound) {
   EXPECT_EQ(data.at("systems"), (nlohmann::json{"RB²-PF", "RB-PF"}));
   EXPECT_GE(data.at("frames").at("frames").size(), 10u);
   EXPECT_EQ(data.at("frames").at("frames")[0].at("features").size(), 2u);
-  for (const JudgedRun& run : judged)
+  for (const RunMetrics& run : judged)
     EXPECT_THAT(html, HasSubstr("<td>" + Fixed(100 * run.metrics.errors.sim3.position.rmse, 2)));
   EXPECT_THAT(html, HasSubstr("<th scope=\"row\">constant velocity</th>"));
   EXPECT_THAT(Markup(html), Not(HasSubstr("nan")));
@@ -164,7 +164,8 @@ TEST(WriteReport, SaysWhenAnEstimateIsNoBetterThanABlindOne) {
 }
 
 TEST(WriteReport, TellsTheOverConfidentFromTheCautious) {
-  for (const auto& [claimed, word] : {std::pair{0.3, "it is over-confident"}, {3.0, "it is cautious"}}) {
+  for (const auto& [claimed, word] :
+       {std::pair{0.3, "it is over-confident"}, {3.0, "it is under-confident (conservative)"}}) {
     const TemporaryFolder folder;
     FakeOptions options;
     options.seeds = 1;
@@ -179,7 +180,7 @@ TEST(WriteReport, ShowsAnEstimateBesideTheTruthOfItsOwnSeed) {
   const TemporaryFolder folder;
   const auto judged = WriteFakeResult(folder.path(), {});
   EXPECT_THAT(PageOf(folder), Not(HasSubstr("a path of its own")));
-  for (const JudgedRun& run : judged) {
+  for (const RunMetrics& run : judged) {
     for (const char* name :
          {"truth.txt", "estimate.txt"}) {  // moved as a whole: nothing that is judged changes but the place
       const auto file = folder.path() / run.run.path / name;
@@ -333,4 +334,4 @@ TEST(WriteReport, StaysSmall) {
 }
 
 }  // namespace
-}  // namespace report
+}  // namespace vobench::report

@@ -1,4 +1,4 @@
-#include "tools/bench/report/text.h"
+#include "tools/bench/text.h"
 
 #include <gmock/gmock.h>
 
@@ -7,9 +7,10 @@
 #include "tests/unit/bench/report/fake_result.h"
 #include "tests/unit/judge/evaluation/temporary_folder.h"
 #include "tools/bench/report/run_summary.h"
-#include "tools/bench/report/text_summary.h"
+#include "tools/bench/report/tables.h"
+#include "tools/bench/result/system_summary.h"
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 using testing::HasSubstr;
@@ -81,7 +82,7 @@ TEST(RunTable, HasTheBaselinesOfTheSummary) {
 }
 
 TEST(Compare, CountsSeedsThatBothRan) {
-  std::vector<JudgedRun> runs(5);
+  std::vector<RunMetrics> runs(5);
   const auto set = [&](std::size_t i, const char* system, std::uint64_t seed, double ate) {
     runs[i].run.system = system;
     runs[i].run.seed = seed;
@@ -98,4 +99,4 @@ TEST(Compare, CountsSeedsThatBothRan) {
 }
 
 }  // namespace
-}  // namespace report
+}  // namespace vobench::report

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 Series Wave(std::size_t size) {
@@ -86,4 +86,4 @@ TEST(ThinTo, MakesAllFitAndNoMoreThanThat) {
 }
 
 }  // namespace
-}  // namespace report
+}  // namespace vobench::report

@@ -1,8 +1,8 @@
-#include "tools/bench/report/time_table.h"
+#include "tools/bench/result/time_table.h"
 
 #include <gtest/gtest.h>
 
-namespace report {
+namespace vobench::report {
 namespace {
 
 // Twenty-one frames: frame k takes k, 2 k and 0.5 ms, the last 100 ms in matching.
@@ -24,4 +24,4 @@ TEST(TimeTable, IsWorkedByHand) {
 }
 
 }  // namespace
-}  // namespace report
+}  // namespace vobench::report

@@ -30,11 +30,11 @@ class Verdict : public testing::Test {
     delete pool_;
   }
   // The belief is the bound times `factor`, in two components that make up that Gaussian or, `split`, do not.
-  static std::vector<JudgedRun> Runs(double factor, double nis_factor = 1, double colour = 0) {
+  static std::vector<VerdictRun> Runs(double factor, double nis_factor = 1, double colour = 0) {
     TestRandom random(91);
-    std::vector<JudgedRun> runs;
+    std::vector<VerdictRun> runs;
     for (std::size_t m = 0; m < kRuns; ++m) {
-      JudgedRun& run = runs.emplace_back();
+      VerdictRun& run = runs.emplace_back();
       double last = 0;
       for (std::size_t k = 0; k < judged_->bound.size(); ++k) {
         JudgedFrame frame;
@@ -152,7 +152,7 @@ TEST_F(Verdict, AFrameWithoutABeliefHasNoRank) {
 // The histograms of a frame stay where they belong.
 TEST_F(Verdict, AFrameWithoutAnyBeliefHasEmptyHistograms) {
   auto runs = Runs(1);
-  for (JudgedRun& run : runs) run[10].scores.draws = 0;
+  for (VerdictRun& run : runs) run[10].scores.draws = 0;
   VerdictOptions options = Options();
   options.rank_frames = {10, 20};
   const ConsistencyVerdict verdict = JudgeConsistency(runs, options);
@@ -179,7 +179,7 @@ TEST_F(Verdict, WithoutInnovationsBoundOrPoolThereIsAneesAndRanks) {
   EXPECT_EQ(verdict.checks.size(), 17u);
   EXPECT_FALSE(verdict.nis || verdict.whiteness || verdict.bound_ratio);
   EXPECT_THROW(JudgeConsistency({}, options), std::invalid_argument);
-  EXPECT_THROW(JudgeConsistency({JudgedRun(1)}, options), std::invalid_argument);
+  EXPECT_THROW(JudgeConsistency({VerdictRun(1)}, options), std::invalid_argument);
 }
 
 // A belief that nobody drew from has no ranks; that is not a rank of zero among none.
@@ -189,7 +189,7 @@ TEST_F(Verdict, WithoutDrawsThereAreNoRanks) {
   const auto judged = [&](int draws) {
     auto runs = Runs(1);
     runs.resize(30);
-    for (JudgedRun& run : runs) {
+    for (VerdictRun& run : runs) {
       run.resize(20);
       for (JudgedFrame& frame : run) frame.scores.draws = draws;
     }
@@ -212,7 +212,7 @@ class VerdictByHand : public testing::Test {
  protected:
   VerdictByHand() {
     for (int m = 0; m < 7; ++m) {
-      JudgedRun& run = runs_.emplace_back();
+      VerdictRun& run = runs_.emplace_back();
       for (int k = 0; k < 10; ++k) {
         JudgedFrame frame;
         for (int d = 0; d < 12; ++d) frame.error[d] = 0.1 * random_.Normal();
@@ -239,7 +239,7 @@ class VerdictByHand : public testing::Test {
   template <class Get>
   auto Judged(Get get) const {
     std::vector<std::vector<std::decay_t<decltype(get(runs_[0][0]))>>> values;
-    for (const JudgedRun& run : runs_) {
+    for (const VerdictRun& run : runs_) {
       values.emplace_back();
       for (std::size_t k = 2; k < run.size(); ++k) values.back().push_back(get(run[k]));
     }
@@ -272,14 +272,14 @@ class VerdictByHand : public testing::Test {
   }
 
   TestRandom random_{92};
-  std::vector<JudgedRun> runs_;
+  std::vector<VerdictRun> runs_;
   VerdictOptions options_;
   ConsistencyVerdict verdict_;
 };
 
 TEST_F(VerdictByHand, AneesAgainstTheLinearFilter) {
   for (const double size : {1.0, 1.3}) {  // on either side of the mean
-    for (JudgedRun& run : runs_)
+    for (VerdictRun& run : runs_)
       for (JudgedFrame& frame : run)
         for (double& nees : frame.scores.nees) nees *= size;
     verdict_ = JudgeConsistency(runs_, options_);
@@ -320,13 +320,13 @@ TEST_F(VerdictByHand, Ranks) {
   for (const std::size_t k : {3u, 5u, 7u, 9u}) {
     for (std::size_t d = 0; d < 12; ++d) {
       std::vector<int> of_runs;
-      for (const JudgedRun& run : runs_) of_runs.push_back(run[k].scores.rank[d]);
+      for (const VerdictRun& run : runs_) of_runs.push_back(run[k].scores.rank[d]);
       EXPECT_EQ(verdict_.rank_histograms[ranks.size()].counts, HistogramOfRanks(of_runs, 9, 2).counts);
       ranks.push_back(HistogramOfRanks(of_runs, 9, 2));
     }
     for (const std::size_t b : {4u, 5u, 6u}) {
       std::vector<double> of_runs;
-      for (const JudgedRun& run : runs_) of_runs.push_back(run[k].scores.hpd_mass[b]);
+      for (const VerdictRun& run : runs_) of_runs.push_back(run[k].scores.hpd_mass[b]);
       masses.push_back(HistogramOfValues(of_runs, 2));
     }
   }
@@ -337,19 +337,19 @@ TEST_F(VerdictByHand, Ranks) {
 }
 
 TEST_F(VerdictByHand, RanksAtTheFramesThatThereAre) {
-  for (JudgedRun& run : runs_) run.resize(4);
+  for (VerdictRun& run : runs_) run.resize(4);
   verdict_ = JudgeConsistency(runs_, options_);
   EXPECT_EQ(verdict_.rank_histograms.size(), 24u) << "two frames, neither twice";
   // One number drawn: as many bins as ranks, whatever the runs are worth.
   const auto seven = runs_;
   for (int i = 0; i < 3; ++i) runs_.insert(runs_.end(), seven.begin(), seven.end());
-  for (JudgedRun& run : runs_)
+  for (VerdictRun& run : runs_)
     for (JudgedFrame& frame : run) frame.scores.draws = 1, frame.scores.rank.fill(1);
   verdict_ = JudgeConsistency(runs_, options_);
   EXPECT_EQ(verdict_.rank_histograms[0].counts, (std::vector<int>{0, 28}));
   // A run that ends early, and a frame that nobody drew at: its histograms stay where they belong.
   runs_[0].resize(3);
-  for (JudgedRun& run : runs_) run[2].scores.draws = 0;
+  for (VerdictRun& run : runs_) run[2].scores.draws = 0;
   verdict_ = JudgeConsistency(runs_, options_);
   ASSERT_EQ(verdict_.rank_histograms.size(), 24u);
   EXPECT_EQ(verdict_.rank_histograms[11].runs, 0);
@@ -357,7 +357,7 @@ TEST_F(VerdictByHand, RanksAtTheFramesThatThereAre) {
   EXPECT_EQ(verdict_.ranks.tests, 12u);
   runs_[1][3].scores.draws = 2;
   EXPECT_THROW(JudgeConsistency(runs_, options_), std::invalid_argument);
-  for (JudgedRun& run : runs_)
+  for (VerdictRun& run : runs_)
     for (JudgedFrame& frame : run) frame.scores.draws = 0;
   verdict_ = JudgeConsistency(runs_, options_);
   EXPECT_TRUE(verdict_.rank_histograms.empty());
@@ -369,7 +369,7 @@ TEST_F(VerdictByHand, Innovations) {
   const auto nis = Judged([](const JudgedFrame& frame) { return frame.nis; });
   const auto dof = Judged([](const JudgedFrame& frame) { return frame.nis_dof; });
   const auto innovations = Judged([](const JudgedFrame& frame) { return frame.innovation; });
-  for (JudgedRun& run : runs_) run.insert(run.begin() + 4, run[4])->innovation = NAN, run[4].nis_dof = 0;
+  for (VerdictRun& run : runs_) run.insert(run.begin() + 4, run[4])->innovation = NAN, run[4].nis_dof = 0;
   verdict_ = JudgeConsistency(runs_, options_);
   const NisVerdict size = TestNis(nis, dof, 0.02);
   ExpectCheck("NIS, runs outside 95 %", static_cast<double>(size.outside), static_cast<double>(size.most_allowed),
@@ -386,7 +386,7 @@ TEST_F(VerdictByHand, Innovations) {
     auto scaled = nis;
     for (auto& run : scaled)
       for (double& value : run) value *= scale;
-    for (JudgedRun& run : runs_)
+    for (VerdictRun& run : runs_)
       for (JudgedFrame& frame : run) frame.nis *= scale;
     verdict_ = JudgeConsistency(runs_, options_);
     const NisMeanVerdict mean = TestNisMean(scaled, dof, 0.003, 0.02);
@@ -399,7 +399,7 @@ TEST_F(VerdictByHand, Innovations) {
   verdict_ = JudgeConsistency(runs_, options_);
   EXPECT_TRUE(Named("NIS").empty());
   EXPECT_FALSE(verdict_.nis_mean);
-  for (JudgedRun& run : runs_)
+  for (VerdictRun& run : runs_)
     for (JudgedFrame& frame : run) frame.innovation = NAN, frame.nis_dof = 0;
   options_.nis_by_feature = false;
   verdict_ = JudgeConsistency(runs_, options_);
@@ -408,7 +408,7 @@ TEST_F(VerdictByHand, Innovations) {
 }
 
 TEST_F(VerdictByHand, Bound) {
-  for (JudgedRun& run : runs_) {
+  for (VerdictRun& run : runs_) {
     for (std::size_t k = 0; k < run.size(); ++k)
       for (int d = 0; d < 12; ++d) run[k].error[d] = k < 2 || k == 5 ? 99 : d < 3 ? 0.1 : d < 6 ? 0.12 : 0.2;
     run[5].bound.reset();
@@ -432,8 +432,8 @@ TEST_F(VerdictByHand, Bound) {
   for (Check& check : verdict_.checks) check.pass = check.pass || check.name[0] != 'R';
   EXPECT_FALSE(verdict_.pass());
   const bool others = std::ranges::all_of(verdict_.checks, [](const Check& c) { return c.pass || c.name[0] == 'R'; });
-  EXPECT_EQ(verdict_.honest(), others);
-  for (JudgedRun& run : runs_)
+  EXPECT_EQ(verdict_.consistent(), others);
+  for (VerdictRun& run : runs_)
     for (JudgedFrame& frame : run) frame.bound.reset();
   verdict_ = JudgeConsistency(runs_, options_);
   EXPECT_TRUE(Named("RMSE").empty());
@@ -476,7 +476,7 @@ TEST_F(VerdictByHand, MeansAndWhatIsMissing) {
 }
 
 TEST_F(VerdictByHand, OneRunIsJudged) {
-  for (JudgedRun& run : runs_) run.resize(40, run.back());
+  for (VerdictRun& run : runs_) run.resize(40, run.back());
   runs_.resize(1);
   for (JudgedFrame& frame : runs_[0]) frame.innovation = random_.Normal();
   verdict_ = JudgeConsistency(runs_, options_);

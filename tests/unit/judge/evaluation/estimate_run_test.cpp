@@ -34,7 +34,7 @@ EstimateRun Sample() {
     frame.effective_particles = 5.5;
     frame.ms_features = 1.5, frame.ms_matching = 2.25, frame.ms_filter = 0.75;
     frame.tracked = pose.stamp_ns % 2 == 0;
-    frame.guards = {3, 1, 4, 2};
+    frame.events = {3, 1, 4, 2};
     run.frames.push_back(frame);
   }
   return run;
@@ -58,9 +58,10 @@ TEST(EstimateRun, ReadsBackTheSame) {
               std::tie(g.stamp_ns, g.searched, g.matched, g.landmarks, g.permanent, g.nis, g.nis_dof));
     EXPECT_EQ(std::tie(f.effective_particles, f.ms_features, f.ms_matching, f.ms_filter, f.tracked),
               std::tie(g.effective_particles, g.ms_features, g.ms_matching, g.ms_filter, g.tracked));
-    ASSERT_TRUE(g.guards);
-    EXPECT_EQ(std::tie(g.guards->unsettled, g.guards->behind, g.guards->indefinite, g.guards->impossible),
-              std::tie(f.guards->unsettled, f.guards->behind, f.guards->indefinite, f.guards->impossible));
+    ASSERT_TRUE(g.events);
+    EXPECT_EQ(std::tie(g.events->not_converged, g.events->behind_camera, g.events->not_positive_definite,
+                       g.events->non_finite_weight),
+              std::make_tuple(3, 1, 4, 2));
   }
 }
 
@@ -73,23 +74,38 @@ TEST(EstimateRun, AVarianceMayBeZero) {
   EXPECT_EQ(ReadEstimateRun(folder.path()).beliefs[0].covariance, Matrix12d::Zero());
 }
 
-TEST(EstimateRun, FramesMayComeWithoutGuards) {
+TEST(EstimateRun, FramesMayComeWithoutEvents) {
   const TemporaryFolder folder;
   EstimateRun run = Sample();
-  run.frames[2].guards.reset();
+  run.frames[2].events.reset();
   WriteEstimateRun(folder.path(), run);
   const std::string header =
       "timestamp,searched,matched,landmarks,permanent,nis,nis_dof,effective_particles,ms_features,ms_matching,ms_"
       "filter,status";
   EXPECT_THAT(TemporaryFolder::Read(folder.path() / "frames.csv"), testing::StartsWith(header + "\n"));
-  for (const FrameRecord& frame : ReadEstimateRun(folder.path()).frames) EXPECT_FALSE(frame.guards);
+  for (const FrameRecord& frame : ReadEstimateRun(folder.path()).frames) EXPECT_FALSE(frame.events);
   folder.Write("frames.csv", header +
-                                 ",unsettled,behind,indefinite,impossible\n1,0,0,0,0,0,0,8,0,0,0,coasted,0,0,0,-1\n"
+                                 ",not_converged,behind_camera,not_positive_definite,non_finite_weight\n"
+                                 "1,0,0,0,0,0,0,8,0,0,0,coasted,0,0,0,-1\n"
                                  "2,0,0,0,0,0,0,8,0,0,0,coasted\n");
   EXPECT_THAT([&] { ReadEstimateRun(folder.path()); },
               testing::ThrowsMessage<InputError>(
                   testing::AllOf(HasSubstr("frames.csv:2:37: '-1' is not a count"),
                                  HasSubstr("frames.csv:3:1: 12 columns where 16 are expected"))));
+}
+
+TEST(EstimateRun, FormerColumnNamesAreRejected) {
+  const TemporaryFolder folder;
+  WriteEstimateRun(folder.path(), Sample());
+  folder.Write("frames.csv",
+               "timestamp,searched,matched,landmarks,permanent,nis,nis_dof,effective_particles,ms_features,"
+               "ms_matching,ms_filter,status,unsettled,behind,indefinite,impossible\n");
+  EXPECT_THAT(
+      [&] { ReadEstimateRun(folder.path()); },
+      testing::ThrowsMessage<InputError>(testing::AllOf(HasSubstr("column 'unsettled' is now 'not_converged'"),
+                                                        HasSubstr("column 'behind' is now 'behind_camera'"),
+                                                        HasSubstr("column 'indefinite' is now 'not_positive_definite'"),
+                                                        HasSubstr("column 'impossible' is now 'non_finite_weight'"))));
 }
 
 TEST(EstimateRun, PartsMayBeMissingAndOldOnesDoNotLinger) {

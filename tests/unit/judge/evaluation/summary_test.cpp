@@ -199,16 +199,16 @@ TEST(Judge, SumsUpConsistency) {
   EXPECT_FALSE(without.consistency->velocity || without.consistency->joint || without.consistency->joint_scale_free);
 }
 
-TEST(Judge, SumsUpTimesAndGuards) {
+TEST(Judge, SumsUpTimesAndEvents) {
   TestRandom random(57);
   const Trajectory truth = random.Walk(4);
   EstimateRun run = RunOf(truth, StampsOf(truth), 4);
-  EXPECT_FALSE(Judge(run, truth, std::nullopt).guards) << "no frame tells of them";
-  const int unsettled[] = {0, 3, 0, 1};
+  EXPECT_FALSE(Judge(run, truth, std::nullopt).events) << "no frame tells of them";
+  const int not_converged[] = {0, 3, 0, 1};
   for (std::size_t i = 0; i < 4; ++i) {
     run.frames[i].ms_features = 10 + static_cast<double>(i * i);
     run.frames[i].ms_matching = 5 - static_cast<double>(i);
-    run.frames[i].guards = {.unsettled = unsettled[i], .behind = 2, .indefinite = i == 2, .impossible = i == 3 ? 5 : 0};
+    run.frames[i].events = {not_converged[i], 2, i == 2, i == 3 ? 5 : 0};
   }
   const Metrics metrics = Judge(run, truth, std::nullopt);
   ASSERT_TRUE(metrics.nis);
@@ -216,16 +216,14 @@ TEST(Judge, SumsUpTimesAndGuards) {
   EXPECT_EQ(metrics.timing->ms_features, 12.5);
   EXPECT_EQ(metrics.timing->ms_matching, 3.5);
   EXPECT_EQ(metrics.timing->ms_filter, 1.5);
-  ASSERT_TRUE(metrics.guards);
-  EXPECT_EQ(metrics.guards->unsettled.times, 4);
-  EXPECT_EQ(metrics.guards->unsettled.frames, 2);
-  EXPECT_EQ(metrics.guards->behind.times, 8);
-  EXPECT_EQ(metrics.guards->behind.frames, 4);
-  EXPECT_EQ(metrics.guards->indefinite.times, 1);
-  EXPECT_EQ(metrics.guards->impossible.frames, 1);
-  EXPECT_EQ(metrics.guards->impossible.times, 5);
-  run.frames[3].guards.reset();
-  EXPECT_FALSE(Judge(run, truth, std::nullopt).guards);
+  ASSERT_TRUE(metrics.events);
+  const std::pair<std::int64_t, std::size_t> expected[] = {{4, 2}, {8, 4}, {1, 1}, {5, 1}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ((*metrics.events)[i].times, expected[i].first) << kNumericalEvents[i].name;
+    EXPECT_EQ((*metrics.events)[i].frames, expected[i].second) << kNumericalEvents[i].name;
+  }
+  run.frames[3].events.reset();
+  EXPECT_FALSE(Judge(run, truth, std::nullopt).events);
 }
 
 TEST(Quantile, WorkedByHand) {

@@ -139,7 +139,7 @@ TEST(PathLength, IsTheSumOfTheWay) {
   path[0].p_WC = {1, 1, 1};
   path[1].p_WC = {4, 5, 1};
   path[2].p_WC = {4, 5, 3};
-  EXPECT_EQ(WayAlong(path), (std::vector<double>{0, 5, 7}));
+  EXPECT_EQ(CumulativePathLength(path), (std::vector<double>{0, 5, 7}));
   EXPECT_EQ(PathLength(path), 7);
 }
 

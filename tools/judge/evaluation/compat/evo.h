@@ -1,7 +1,7 @@
-// Purpose: what evo_ape and evo_rpe compute and print, to every digit. Not reproduced: --delta_unit deg and rad,
-//          --project_to_plane, --pose_relation point_distance.
-// Source:  docs/metrics.md, "Other tools' numbers"; M. Grupp, "evo: Python package for the evaluation of odometry and
-//          SLAM".
+// Errors as evo_ape and evo_rpe compute and print them, to every digit. Not reproduced: --delta_unit deg and rad,
+// --project_to_plane, --pose_relation point_distance.
+// Source: docs/metrics.md, "Other tools' numbers"; M. Grupp, "evo: Python package for the evaluation of odometry and
+// SLAM".
 #pragma once
 
 #include <cstddef>

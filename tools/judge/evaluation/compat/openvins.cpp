@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "tools/judge/evaluation/compat/format.h"
 #include "tools/judge/evaluation/compat/subtrajectory.h"
 #include "tools/judge/evaluation/text_file.h"
 
@@ -115,34 +114,21 @@ OvResult ComputeOv(const Trajectory& estimate, const Trajectory& truth, OvAlignm
   result.ori = Summarised(ori);
   result.pos = Summarised(pos);
   std::sort(segments_m.begin(), segments_m.end());
-  const std::vector<double> way = WayAlong(matched.truth);
+  const std::vector<double> way = CumulativePathLength(matched.truth);
   for (const double length : segments_m) result.segments.push_back(Segment(aligned, exact, way, length));
   return result;
 }
 
-std::string Print(const OvResult& result) {
-  const std::string rule(38, '=');
-  std::string text = rule + "\nAbsolute Trajectory Error\n" + rule + "\n";
-  const auto add = [&](const std::string& name, double ori, double pos) {
-    const auto column = [&](const char* what, double value) {
-      std::string key = name + "_" + what;
-      key.resize(8, ' ');
-      return key + " = " + Fixed(value, 3);
-    };
-    text += column("ori", ori) + " | " + column("pos", pos) + "\n";
-  };
-  add("rmse", result.ori.rmse, result.pos.rmse);
-  add("mean", result.ori.mean, result.pos.mean);
-  add("min", result.ori.min, result.pos.min);
-  add("max", result.ori.max, result.pos.max);
-  add("std", result.ori.std, result.pos.std);
-  text += rule + "\nRelative Pose Error\n" + rule + "\n";
+std::vector<NamedValue> Values(const OvResult& result) {
+  std::vector<NamedValue> values;
+  Append("ori", result.ori, "deg", values);
+  Append("pos", result.pos, "m", values);
   for (const OvSegment& segment : result.segments) {
-    text += "seg " + std::to_string(static_cast<int>(segment.length_m)) +
-            " - median_ori = " + Fixed(segment.ori.median, 3) + " | median_pos = " + Fixed(segment.pos.median, 3) +
-            " (" + std::to_string(segment.pos.count) + " samples)\n";
+    const std::string over = Fixed(segment.length_m, 2) + "m_";
+    Append(over + "ori", segment.ori, "deg", values);
+    Append(over + "pos", segment.pos, "m", values);
   }
-  return text;
+  return values;
 }
 
 }  // namespace evaluation::compat

@@ -1,11 +1,11 @@
-// Purpose: what OpenVINS's ov_eval (error_singlerun) computes and prints, to every digit, but for NEES. Trajectories are
-//          used as they are written, as there: read them with Reading::as_written.
-// Source:  docs/metrics.md, "Other tools' numbers"; Geneva et al., "OpenVINS", ICRA 2020.
+// Errors as OpenVINS's ov_eval (error_singlerun) computes them, without NEES. Trajectories are used as they are
+// written, as there: read them with Reading::as_written.
+// Source: docs/metrics.md, "Other tools' numbers"; Geneva et al., "OpenVINS", ICRA 2020.
 #pragma once
 
-#include <string>
 #include <vector>
 
+#include "tools/judge/evaluation/compat/format.h"
 #include "tools/judge/evaluation/statistics.h"
 #include "tools/judge/evaluation/trajectory.h"
 
@@ -23,10 +23,12 @@ struct OvResult {
   std::vector<OvSegment> segments;  // in order of length
 };
 
-// In these statistics std divides by n - 1, as there. Throws InputError where estimate and truth have less than two poses in common.
+// In these statistics std divides by n - 1, as there. Throws InputError where estimate and truth have less than two
+// poses in common.
 OvResult ComputeOv(const Trajectory& estimate, const Trajectory& truth, OvAlignment alignment,
                    std::vector<double> segments_m = {8, 16, 24, 32, 40});
 
-std::string Print(const OvResult& result);
+// By the tool's own names; relative errors begin with their length, "8.00m_pos_rmse".
+std::vector<NamedValue> Values(const OvResult& result);
 
 }  // namespace evaluation::compat

@@ -1,7 +1,7 @@
-// Purpose: the pseudo-random numbers of Python 3's `random` module, so that a script that draws with a fixed seed is
-//          reproduced draw by draw.
-// Source:  Matsumoto and Nishimura, "Mersenne Twister", TOMACS 1998 (init_by_array); Python's documentation of
-//          `random`. Held by numbers printed by Python 3.11.
+// Pseudo-random numbers of Python 3's `random` module, so that a script with a fixed seed is reproduced draw by draw.
+//
+// Source: Matsumoto and Nishimura, "Mersenne Twister", TOMACS 1998 (init_by_array); Python's documentation of `random`.
+// Tested against numbers printed by Python 3.11.
 #pragma once
 
 #include <cstddef>

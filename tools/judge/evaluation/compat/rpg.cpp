@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/judge/evaluation/compat/format.h"
 #include "tools/judge/evaluation/compat/subtrajectory.h"
 #include "tools/judge/evaluation/so3.h"
 
@@ -35,7 +34,7 @@ std::vector<double> Lengths(double way_m) {
 RpgRelativeErrors Relative(const MatchedTrajectories& matched, double length_m, double scale) {
   std::vector<double> trans, trans_perc, rot, rot_per_m, yaw, gravity;
   const double tolerance_m = 0.2 * length_m;
-  for (const auto& [i, j] : PairsByLength(WayAlong(matched.truth), length_m, tolerance_m)) {
+  for (const auto& [i, j] : PairsByLength(CumulativePathLength(matched.truth), length_m, tolerance_m)) {
     const StampedPose &a = matched.estimate[i], &b = matched.estimate[j];
     const StampedPose &c = matched.truth[i], &d = matched.truth[j];
     const Eigen::Quaterniond A = a.q_WC.conjugate() * b.q_WC, B = c.q_WC.conjugate() * d.q_WC;
@@ -53,21 +52,6 @@ RpgRelativeErrors Relative(const MatchedTrajectories& matched, double length_m, 
   }
   return {length_m,       Summarise(trans),  Summarise(trans_perc), Summarise(rot), Summarise(rot_per_m),
           Summarise(yaw), Summarise(gravity)};
-}
-
-std::string Lines(const std::string& label, const Statistics& s) {
-  std::string text = label + ":\n";
-  const auto add = [&](const char* name, const std::string& value) {
-    text += "  " + std::string(name) + ": " + value + "\n";
-  };
-  add("max", Significant(s.max, 12));
-  add("mean", Significant(s.mean, 12));
-  add("median", Significant(s.median, 12));
-  add("min", Significant(s.min, 12));
-  add("num_samples", std::to_string(s.count));
-  add("rmse", Significant(s.rmse, 12));
-  add("std", Significant(s.std, 12));
-  return text;
 }
 
 }  // namespace
@@ -94,14 +78,20 @@ RpgResult ComputeRpg(const Trajectory& estimate, const Trajectory& truth, RpgAli
   return result;
 }
 
-std::string Print(const RpgResult& result) {
-  std::string text = "# absolute_err_statistics\n" + Lines("rot", result.rot) + Lines("trans", result.trans);
+std::vector<NamedValue> Values(const RpgResult& result) {
+  std::vector<NamedValue> values;
+  Append("trans", result.trans, "m", values);
+  Append("rot", result.rot, "deg", values);
   for (const RpgRelativeErrors& errors : result.relative) {
-    text += "# relative_error_statistics_" + Fixed(errors.length_m, 2) + " m\n" + Lines("gravity", errors.gravity) +
-            Lines("rot", errors.rot) + Lines("rot_deg_per_m", errors.rot_deg_per_m) + Lines("trans", errors.trans) +
-            Lines("trans_perc", errors.trans_perc) + Lines("yaw", errors.yaw);
+    const std::string over = Fixed(errors.length_m, 2) + "m_";
+    Append(over + "trans", errors.trans, "m", values);
+    Append(over + "trans_perc", errors.trans_perc, "%", values);
+    Append(over + "rot", errors.rot, "deg", values);
+    Append(over + "rot_deg_per_m", errors.rot_deg_per_m, "deg/m", values);
+    Append(over + "yaw", errors.yaw, "deg", values);
+    Append(over + "gravity", errors.gravity, "deg", values);
   }
-  return text;
+  return values;
 }
 
 }  // namespace evaluation::compat

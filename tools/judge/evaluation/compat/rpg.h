@@ -1,13 +1,13 @@
-// Purpose: what rpg_trajectory_evaluation computes and writes into its absolute_err_statistics and
-//          relative_error_statistics files. Not reproduced, because they are mistakes (docs/metrics.md): the entry
-//          `scale` of absolute errors, and pairs after a gap in the truth.
-// Source:  docs/metrics.md, "Other tools' numbers"; Zhang and Scaramuzza, IROS 2018.
+// Errors as rpg_trajectory_evaluation computes them for its absolute_err_statistics and relative_error_statistics
+// files. Not reproduced, because they are mistakes (docs/metrics.md): the entry `scale` of absolute errors, and pairs
+// after a gap in the truth.
+// Source: docs/metrics.md, "Other tools' numbers"; Zhang and Scaramuzza, IROS 2018.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "tools/judge/evaluation/alignment.h"
+#include "tools/judge/evaluation/compat/format.h"
 #include "tools/judge/evaluation/statistics.h"
 
 namespace evaluation::compat {
@@ -32,7 +32,7 @@ struct RpgResult {
 RpgResult ComputeRpg(const Trajectory& estimate, const Trajectory& truth, RpgAlignment alignment,
                      std::vector<double> lengths_m = {});
 
-// As YAML, with twelve significant digits.
-std::string Print(const RpgResult& result);
+// By the tool's own names; relative errors begin with their length, "1.00m_trans_rmse".
+std::vector<NamedValue> Values(const RpgResult& result);
 
 }  // namespace evaluation::compat

@@ -1,6 +1,6 @@
-// Purpose: what rpg_trajectory_evaluation and ov_eval share: sub-trajectories of a length, and alignment by yaw alone.
-// Source:  docs/metrics.md, "Other tools' numbers"; Zhang and Scaramuzza, "A tutorial on quantitative trajectory
-//          evaluation for visual(-inertial) odometry", IROS 2018.
+// Sub-trajectories of a length, and alignment by yaw alone, as rpg_trajectory_evaluation and ov_eval have them.
+// Source: docs/metrics.md, "Other tools' numbers"; Zhang and Scaramuzza, "A tutorial on quantitative trajectory
+// evaluation for visual(-inertial) odometry", IROS 2018.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// Purpose: what TUM's evaluate_ate and evaluate_rpe scripts print, to every digit.
-// Source:  docs/metrics.md, "Other tools' numbers"; the scripts of the TUM RGB-D benchmark.
+// Errors as TUM's evaluate_ate and evaluate_rpe scripts print them, to every digit.
+// Source: docs/metrics.md, "Other tools' numbers"; the scripts of the TUM RGB-D benchmark.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// Purpose: the relative pose error exactly as TUM's evaluate_rpe script has it, to compare with published numbers.
-//          Differs from ours: E = A B^-1; pairs chosen by the estimate; truth is the nearest stamp (may repeat).
-// Source:  docs/metrics.md, "Other tools' numbers".
+// Relative pose error as in TUM's evaluate_rpe script, for comparison with published numbers.
+// Differs from ours: E = A B^-1; pairs chosen by the estimate; truth is the nearest stamp (may repeat).
+// Source: docs/metrics.md, "Other tools' numbers".
 #pragma once
 
 #include <cstddef>

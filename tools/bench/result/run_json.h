@@ -1,0 +1,41 @@
+// run.json of a result folder: what ran, and how to run it again.
+// Source: docs/result_folder.md.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace vobench {
+
+// One run: what one system did with one seed.
+struct RunEntry {
+  std::string system;  // "rb2pf", "rbpf", ...
+  std::uint64_t seed = 0;
+  std::string path;    // of the run folder, relative to the result folder: "rb2pf/seed_1", or "." for `track`
+  double seconds = 0;  // wall time of this run
+};
+
+struct RunDescription {
+  std::string title;                            // for people: the scenario's or the sequence's name
+  std::string input;                            // scenario file or sequence folder, as given
+  std::string command;                          // the command line
+  std::string started_utc;                      // ISO 8601, "2026-01-31T12:00:00Z"
+  double seconds = 0;                           // wall time of everything
+  std::string settings;                         // all of them, resolved, as YAML
+  std::map<std::string, std::string> versions;  // program and libraries, by name
+  std::vector<std::string> notes;               // what a reader must know: warnings, coasted gaps
+  std::vector<std::string> verdicts;            // in a sentence each, where they were asked for (--verdict)
+  std::vector<RunEntry> runs;
+};
+
+// Writes OUT/run.json whole or not at all; throws std::runtime_error when it cannot.
+void WriteRunJson(const std::filesystem::path& out, const RunDescription& description);
+
+// Throws std::invalid_argument naming the file and every field that is missing or of the wrong type, and run folders
+// that lead out of the result folder.
+RunDescription ReadRunJson(const std::filesystem::path& out);
+
+}  // namespace vobench

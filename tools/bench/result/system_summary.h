@@ -1,0 +1,45 @@
+// Summary of each system over its seeds, comparison of two systems, and the table for a terminal.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/bench/result/metrics_json.h"
+
+namespace vobench {
+
+// What one system scored: medians over its seeds.
+struct SystemSummary {
+  std::string system;
+  std::size_t runs = 0;
+  double ate_m = 0;                 // position RMSE after Sim(3) alignment
+  double ate_worst_m = 0;           // of the seeds
+  double ate_se3_m = 0, scale = 0;  // after SE(3) alignment; scale of the Sim(3) one, NaN where it is not determined
+  double ate_share_of_path = 0;
+  double rpe_m = 0,
+         rpe_rad = 0;  // RMSE over one second (JudgeOptions::rpe_delta_ns), translations times the Sim(3) scale
+  double pose_coverage = 0, tracked_coverage = 0;  // NaN where unknown
+  double nees_pose_per_dof = 0, nees_pose_scale_free_per_dof = 0,
+         nees_velocity_per_dof = 0;  // time means; NaN where unknown
+  double nis_per_dof = 0;            // NaN where unknown
+};
+
+// One per system, in the order of first appearance.
+std::vector<SystemSummary> SummariseSystems(const std::vector<RunMetrics>& runs);
+
+// The same for the baselines, which never look at the images: "constant pose", "constant velocity".
+std::vector<SystemSummary> SummariseBaselines(const std::vector<RunMetrics>& runs);
+
+// Of one run, with its errors alone.
+SystemSummary SummariseErrors(const RunMetrics& run);
+
+// Seeds that both systems ran, and in how many of them the first has the smaller ATE (Sim(3)).
+struct Duel {
+  std::size_t seeds = 0, wins = 0;
+};
+Duel Compare(const std::vector<RunMetrics>& runs, const std::string& first, const std::string& second);
+
+// A table: systems and baselines, then what the columns mean. Ends with a line break. Empty for no runs.
+std::string TextSummary(const std::vector<RunMetrics>& runs);
+
+}  // namespace vobench

@@ -1,0 +1,38 @@
+// Consistency verdict of a system in words, as a table for a terminal, and as verdict.csv of a result folder.
+// Source: docs/metrics.md, "Consistency as pass or fail"; docs/result_folder.md.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/judge/evaluation/consistency_verdict.h"
+
+namespace vobench {
+
+struct SystemVerdict {
+  std::string system;   // "rb2pf"
+  std::string setting;  // "8 particles, lag 0"
+  std::size_t runs = 0, frames = 0;
+  evaluation::ConsistencyVerdict verdict;
+};
+
+// One sentence: consistent, over-confident, under-confident (conservative), or not consistent for another reason.
+std::string VerdictSentence(const SystemVerdict& verdict);
+// Every check with value, threshold, pass or FAIL and false-alarm rate; the sentence is the last line.
+std::string VerdictText(const SystemVerdict& verdict);
+
+// One line of verdict.csv.
+struct VerdictRow {
+  std::string system;
+  evaluation::Check check;
+};
+std::vector<VerdictRow> VerdictRows(const SystemVerdict& verdict);
+
+// verdict.csv: system,check,value,relation,threshold,pass,false_alarm. Throws std::runtime_error.
+void WriteVerdict(const std::filesystem::path& out, const std::vector<VerdictRow>& rows);
+// No rows where there is no such file. Throws evaluation::InputError with every problem of it.
+std::vector<VerdictRow> ReadVerdict(const std::filesystem::path& out);
+
+}  // namespace vobench

@@ -1,0 +1,237 @@
+#include "tools/bench/run/campaign_tasks.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <opencv2/core/utility.hpp>
+#include <optional>
+
+#include "sim/points/point_world.h"
+#include "sim/scenario/stamps.h"
+#include "sim/simulator.h"
+#include "tools/base/files.h"
+#include "tools/bench/campaign/digest.h"
+#include "tools/bench/campaign/options.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/provenance.h"
+#include "tools/bench/result/metrics_json.h"
+#include "tools/bench/result/result.h"
+#include "tools/bench/run/campaign_sequence.h"
+#include "tools/bench/run/external_task.h"
+#include "tools/bench/systems/bridge.h"
+#include "tools/bench/systems/experiment.h"
+#include "tools/bench/systems/prior.h"
+#include "tools/bench/systems/systems.h"
+#include "tools/bench/tracking/point_tracker.h"
+#include "tools/bench/tracking/tracker.h"
+#include "tools/judge/evaluation/text_file.h"
+
+namespace vobench {
+namespace fs = std::filesystem;
+namespace {
+
+using campaign::Campaign;
+using campaign::TaskChoice;
+using campaign::TaskRecord;
+
+// Estimates of a system, and the truth they are judged by.
+struct TaskOutput {
+  evaluation::EstimateRun run;
+  Truth truth;
+  evaluation::JudgeOptions how;
+  double seconds = 0;
+};
+
+TaskOutput PlayPoints(const Experiment& experiment, const std::string& system, std::uint64_t seed) {
+  sim::Scenario scenario = experiment.scenario;
+  scenario.seed = seed;
+  sim::PointWorld world = Input([&] { return sim::PointWorld(scenario); });
+  PointTracker tracker({system, seed, experiment.odometry, PriorOf(experiment.prior, world, seed)},
+                       CameraForOdometry(experiment), std::nullopt, "");
+  TaskOutput output;
+  while (const std::optional<sim::PointFrame> frame = world.Next()) {
+    Append(frame->stamp_ns, frame->truth, output.truth);
+    tracker.Track(ToOdometry(*frame));
+  }
+  output.run = tracker.Estimates();
+  output.seconds = tracker.entry().seconds;
+  return output;
+}
+
+Truth TruthOfAllFrames(const sim::Scenario& scenario) {
+  const std::unique_ptr<sim::Trajectory> trajectory = Input([&] { return sim::TrajectoryOf(scenario); });
+  Truth truth;
+  for (std::int64_t index = 0; index < sim::CountFrames(scenario.time); ++index) {
+    const std::int64_t stamp_ns = sim::StampNs(index, scenario.time);
+    Append(stamp_ns, sim::TruthAt(*trajectory, sim::Seconds(stamp_ns)), truth);
+  }
+  return truth;
+}
+
+TaskOutput PlayImages(const Experiment& experiment, const fs::path& sequence, const std::string& system,
+                      std::uint64_t seed) {
+  vo::SequenceReader reader = Input([&] { return vo::SequenceReader(sequence); });
+  TaskOutput output;
+  output.truth = TruthOfAllFrames(experiment.scenario);
+  Tracker tracker(
+      {system, seed, experiment.odometry, PriorOf(experiment.prior, experiment.scenario.motion, output.truth, seed)},
+      CameraForOdometry(experiment), static_cast<std::int64_t>(reader.size()), std::nullopt, "");
+  while (const std::optional<vo::Frame> frame = Input([&] { return reader.Next(); })) tracker.Track(*frame);
+  output.run = tracker.Estimates();
+  output.seconds = tracker.entry().seconds;
+  return output;
+}
+
+// Times differ from run to run: they are kept apart.
+evaluation::Timing TakeTimes(TaskOutput& output) {
+  evaluation::Timing timing;
+  std::vector<double> features, matching, filter;
+  for (evaluation::FrameRecord& frame : output.run.frames) {
+    features.push_back(std::exchange(frame.ms_features, 0));
+    matching.push_back(std::exchange(frame.ms_matching, 0));
+    filter.push_back(std::exchange(frame.ms_filter, 0));
+  }
+  if (output.run.frames.empty()) return timing;
+  return {evaluation::Median(features), evaluation::Median(matching), evaluation::Median(filter)};
+}
+
+void WriteTimes(const fs::path& folder, const Clock& clock, double tracking_s, const evaluation::Timing& frame) {
+  rusage used{}, children{};
+  getrusage(RUSAGE_SELF, &used);
+  getrusage(RUSAGE_CHILDREN, &children);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  const nlohmann::ordered_json json = {
+      {"wall_s", clock.seconds()},
+      {"cpu_s",
+       seconds(used.ru_utime) + seconds(used.ru_stime) + seconds(children.ru_utime) + seconds(children.ru_stime)},
+      {"tracking_s", tracking_s},
+      {"peak_memory_mb", 1.024e-3 * static_cast<double>(std::max(used.ru_maxrss, children.ru_maxrss))},
+      {"frame_features_ms", frame.ms_features},
+      {"frame_matching_ms", frame.ms_matching},
+      {"frame_filter_ms", frame.ms_filter}};
+  base::WriteFile(folder / "times.json", json.dump(1) + "\n");
+}
+
+void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& output, TaskRecord& record) {
+  evaluation::Metrics metrics = evaluation::Judge(output.run, output.truth.poses, output.truth.velocities, output.how);
+  metrics.timing.reset();
+  record.metrics = campaign::MetricValues(metrics, campaign.align);
+  if (campaign.keep == campaign::Keep::numbers) return;
+  WriteMetricsJson(folder, {{{record.system, record.seed, ".", 0}, metrics}});
+  if (campaign.keep == campaign::Keep::all) {
+    evaluation::WriteEstimateRun(folder, output.run);
+    WriteTruth(folder, output.truth.poses, output.truth.velocities);
+  } else {
+    evaluation::WriteTrajectory(folder / "estimate.txt", output.run.trajectory);
+  }
+}
+
+Experiment Load(const Campaign& campaign, const TaskChoice& choice) {
+  const campaign::Changes changes = campaign::ChangesAt(campaign, choice);
+  Experiment experiment = LoadExperiment(campaign.scenarios[choice.scenario].file, changes);
+  const auto asks = [](const auto& change) { return change.first == "truth"; };
+  if (experiment.scenario.points || std::any_of(changes.begin(), changes.end(), asks)) return experiment;
+  // No truth beside poses and velocities unless the campaign asks for it: nobody here would look at it.
+  experiment.scenario.truth.streams.clear();
+  for (std::string* resolved : {&experiment.scenario.resolved, &experiment.resolved}) {
+    auto json = nlohmann::ordered_json::parse(*resolved);
+    json["truth"] = nlohmann::ordered_json::array();
+    *resolved = json.dump(2);
+  }
+  return experiment;
+}
+
+// Of pictures the key says which files they were made from.
+std::string DigestOfSettings(const Experiment& experiment) {
+  const sim::Scenario& scenario = experiment.scenario;
+  return campaign::Digest(experiment.resolved + (scenario.points ? DigestOfPointFiles(scenario) : ""));
+}
+
+// A world of points has the seed of its task, and no pictures for somebody else's system.
+void RefusePoints(const Campaign& campaign, const TaskChoice& choice, const campaign::TaskRunner::Refuse& refuse) {
+  for (const auto& [key, value] : campaign::ChangesAt(campaign, choice)) {
+    if (key == "seed") refuse("seed", "each task has a world of its own, with the seed of the task");
+  }
+  const campaign::SystemEntry& system = campaign.systems[choice.system];
+  if (system.system.empty()) refuse("", "a world of points has no pictures for '" + system.name + "'");
+}
+
+}  // namespace
+
+std::vector<std::string> CampaignTasks::Systems() const { return SystemNames(); }
+
+campaign::TaskSettings CampaignTasks::Settings(const Campaign& campaign, const TaskChoice& choice,
+                                               const Refuse& refuse) const {
+  const Experiment experiment = Load(campaign, choice);
+  const bool images = !experiment.scenario.points;
+  if (!images) RefusePoints(campaign, choice, refuse);
+  const campaign::SystemEntry& system = campaign.systems[choice.system];
+  if (system.system.empty() && experiment.prior.focal_error != 0) {
+    // It would not reach the system, and must not look as if it did.
+    refuse("prior.focal_error", "'" + system.name + "' is not ours: it is given the camera as it is");
+  }
+  return {images, experiment.resolved, DigestOfSettings(experiment)};
+}
+
+std::optional<std::string> CampaignTasks::SequenceName(const Campaign& campaign, const TaskChoice& choice,
+                                                       campaign::SequenceCache& cache) const {
+  return SequenceKey(Input([&] { return Load(campaign, choice); }).scenario, cache);
+}
+
+void CampaignTasks::ReadWorld(const Campaign& campaign, const TaskChoice& choice,
+                              campaign::SequenceCache& cache) const {
+  try {
+    FindWorld(Load(campaign, choice).scenario, cache);
+  } catch (const BadInput& error) {
+    throw std::invalid_argument(error.what());
+  }
+}
+
+void CampaignTasks::Render(const Campaign& campaign, const TaskChoice& choice, const campaign::SequenceCache& cache,
+                           const std::string& sequence, int threads) const {
+  RenderInto(cache, sequence, Input([&] { return Load(campaign, choice); }).scenario, threads);
+}
+
+void CampaignTasks::Run(const Campaign& campaign, const TaskChoice& choice, const campaign::SequenceCache& cache,
+                        const std::string& sequence, const fs::path& folder, TaskRecord& record) const {
+  const Clock clock;
+  cv::setNumThreads(1);
+  const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
+  const campaign::SystemEntry& system = campaign.systems[choice.system];
+  const Experiment experiment = Input([&] { return Load(campaign, choice); });
+  TaskOutput output;
+  if (system.system.empty()) {
+    const Clock tracking;
+    ExternalAnswer answer = RunExternal(system.external, cache, sequence, experiment.scenario, record.seed, folder);
+    output.seconds = tracking.seconds();
+    record.status = answer.status;
+    record.reason = answer.reason;
+    output.run.trajectory = std::move(answer.trajectory);
+    output.truth = TruthOfAllFrames(experiment.scenario);
+    output.how.frame_stamps_ns = evaluation::StampsOf(output.truth.poses);
+  } else {
+    output = experiment.scenario.points ? PlayPoints(experiment, system.system, record.seed)
+                                        : PlayImages(experiment, cache.PathOf(sequence), system.system, record.seed);
+    output.how = JudgeOptionsOf(experiment.prior);
+  }
+  const evaluation::Timing frame = TakeTimes(output);
+  if (record.status == campaign::Status::ok) {
+    try {
+      WriteJudged(folder, campaign, output, record);
+    } catch (const evaluation::InputError& error) {
+      if (!system.system.empty()) throw;
+      record.status = campaign::Status::no_answer;
+      record.reason = error.what();
+    }
+  }
+  WriteTimes(folder, clock, output.seconds, frame);
+}
+
+void RunCampaign(const CampaignOptions& options) { campaign::RunCampaign(options, CampaignTasks()); }
+
+}  // namespace vobench

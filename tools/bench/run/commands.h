@@ -1,0 +1,116 @@
+// Options and entry point of each sub-command but `campaign` (tools/bench/campaign/options.h). Each throws BadInput for
+// a mistake of the caller and any other exception when the work fails; results go to stdout, progress to stderr.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/base/settings/overrides.h"
+#include "tools/judge/evaluation/trajectory.h"
+
+namespace vobench {
+
+using settings::Overrides;
+
+// A scenario is rendered into a sequence on disk (docs/sequence_format.md).
+struct RenderOptions {
+  std::filesystem::path scenario;
+  std::filesystem::path output;
+  std::optional<std::pair<std::int64_t, std::int64_t>> frames;  // [first, last)
+  std::optional<std::uint64_t> seed;                            // instead of the scenario's
+  std::string format = "tum";                                   // or euroc, icl
+  bool resume = false;                                          // go on with what an earlier run left
+  bool preview = false;                                         // a video and a contact sheet, too
+  std::optional<std::string> truth;                             // streams, separated by commas, instead of its own
+  int jobs = 1;
+  Overrides overrides;
+};
+void Render(const RenderOptions& options);
+
+// An odometry runs on a sequence and leaves a result folder (docs/result_folder.md).
+struct TrackOptions {
+  std::filesystem::path sequence;
+  std::filesystem::path output;
+  std::string system = "rb2pf";
+  std::optional<std::string> camera;  // a preset or a file; the sequence's camera.yaml unless told
+  std::optional<std::filesystem::path> settings;
+  std::uint64_t seed = 1;
+  bool view = false;                         // the report in a browser, while it runs
+  std::optional<std::filesystem::path> map;  // a PLY file of the landmarks, too
+  Overrides overrides;
+  std::string command_line;  // for the record
+};
+void Track(const TrackOptions& options);
+
+// Another tool's numbers: how it reads trajectories, and its output. Throws evaluation::InputError.
+struct Reproduction {
+  evaluation::Reading reading = evaluation::Reading::strict;
+  std::function<std::string(const evaluation::Trajectory& estimate, const evaluation::Trajectory& truth)> Run;
+};
+
+// An estimated trajectory is held against the truth.
+struct EvaluateOptions {
+  std::filesystem::path estimate;  // TUM file or a run folder
+  std::filesystem::path truth;     // TUM file or a sequence
+  std::string align = "sim3";
+  std::optional<Reproduction> compat;  // printed instead (docs/metrics.md)
+};
+void Evaluate(const EvaluateOptions& options);
+
+// All of it in memory: rendered once, tracked by each system with each seed, judged, reported.
+struct RunOptions {
+  std::filesystem::path scenario;
+  std::optional<std::filesystem::path> output;
+  std::optional<std::filesystem::path> map;  // a PLY file of each run's landmarks, too
+  std::vector<std::string> systems = {"rb2pf"};
+  int runs = 1;
+  std::uint64_t seed = 1;           // of the first run; the others count up from it
+  bool bound = false;               // the Cramer-Rao bound too, of worlds of points
+  bool verdict = false;             // and whether the systems are consistent, as pass or fail
+  bool view = false;                // the report in a browser, while it runs; not of worlds of points
+  bool require_consistent = false;  // NotConsistent is thrown where one is not, after all is printed and written
+  int jobs = 1;
+  Overrides overrides;
+  std::string command_line;  // for the record
+};
+void Run(const RunOptions& options);
+
+// A scenario is read, its world loaded, and what it says is summed up.
+struct CheckOptions {
+  std::filesystem::path scenario;
+  Overrides overrides;
+};
+void Check(const CheckOptions& options);
+
+// All settings with defaults, ranges and meanings.
+struct SettingsOptions {
+  std::string prefix;  // only keys that begin so
+  bool markdown = false;
+};
+void Settings(const SettingsOptions& options);
+
+// report.html is made anew from a result folder.
+struct ReportOptions {
+  std::filesystem::path output;
+};
+void Report(const ReportOptions& options);
+
+// The streams of a sequence are held against each other. Throws Inconsistent after printing when they disagree.
+struct VerifyOptions {
+  std::filesystem::path sequence;
+};
+void Verify(const VerifyOptions& options);
+
+// A sequence is written in another form.
+struct ExportOptions {
+  std::filesystem::path sequence;
+  std::filesystem::path bag;  // a ROS 1 bag
+};
+void Export(const ExportOptions& options);
+
+}  // namespace vobench

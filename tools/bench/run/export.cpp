@@ -1,0 +1,205 @@
+// A sequence, of any layout that `track` reads, as a ROS 1 bag.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+
+#include "tools/base/files.h"
+#include "tools/base/text.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/progress.h"
+#include "tools/bench/run/commands.h"
+#include "tools/bench/sequence/sequence_truth.h"
+#include "tools/judge/evaluation/text_file.h"
+#include "tools/judge/verification/files.h"
+#include "vo/geometry/camera_file.h"
+#include "vo/sequence/reader.h"
+
+#ifdef VOBENCH_ROSBAG
+#include "tools/bench/sequence/bag_file.h"
+#endif
+
+namespace vobench {
+#ifdef VOBENCH_ROSBAG
+namespace {
+namespace fs = std::filesystem;
+
+struct DepthFile {
+  std::int64_t stamp_ns = 0;
+  fs::path file;
+};
+
+struct ImuReading {
+  std::int64_t stamp_ns = 0;
+  std::array<double, 3> angular_rate{}, specific_force{};
+};
+
+// What there is beside the images.
+struct Streams {
+  std::optional<vo::Camera> camera;
+  std::vector<DepthFile> depth;
+  std::vector<ImuReading> imu;
+  evaluation::Trajectory truth;
+};
+
+std::optional<fs::path> First(const fs::path& sequence, std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    if (fs::exists(sequence / name)) return sequence / name;
+  }
+  return std::nullopt;
+}
+
+std::vector<DepthFile> ReadDepthList(const fs::path& list, char separator) {
+  std::vector<DepthFile> files;
+  evaluation::Problems problems;
+  for (const evaluation::Line& line : evaluation::ReadLines(list, separator)) {
+    // Seconds in TUM's list, nanoseconds in EuRoC's.
+    const std::string stamp = line.tokens[0].text + (separator == ',' ? "e-9" : "");
+    const auto stamp_ns = base::ParseSeconds(stamp);
+    if (!stamp_ns || line.tokens.size() < 2) {
+      problems.Add(list, line.number, 1, "expected a stamp and the name of a file");
+      continue;
+    }
+    const fs::path folder = separator == ',' ? list.parent_path() / "data" : list.parent_path();
+    files.push_back({*stamp_ns, folder / line.tokens[1].text});
+  }
+  problems.ThrowIfAny();
+  return files;
+}
+
+std::vector<ImuReading> ReadImu(const fs::path& table) {
+  std::vector<ImuReading> readings;
+  evaluation::Problems problems;
+  for (const evaluation::Line& line : evaluation::ReadLines(table, ',')) {
+    const auto stamp_ns = base::ParseSeconds(line.tokens[0].text + "e-9");
+    std::array<double, 6> values{};
+    bool good = stamp_ns.has_value() && line.tokens.size() >= 7;
+    for (std::size_t i = 0; good && i < 6; ++i) {
+      const auto number = evaluation::ParseNumber(line.tokens[i + 1].text);
+      good = number.has_value();
+      values[i] = number.value_or(0);
+    }
+    if (!good) {
+      problems.Add(table, line.number, 1, "expected timestamp [ns], angular rate and specific force: seven numbers");
+      continue;
+    }
+    readings.push_back({*stamp_ns, {values[0], values[1], values[2]}, {values[3], values[4], values[5]}});
+  }
+  problems.ThrowIfAny();
+  return readings;
+}
+
+Streams ReadStreams(const fs::path& sequence) {
+  Streams streams;
+  if (const auto file = First(sequence, {"camera.yaml", "mav0/cam0/sensor.yaml"}))
+    streams.camera = vo::ReadCamera(*file);
+  if (const auto list = First(sequence, {"depth.txt"})) streams.depth = ReadDepthList(*list, ' ');
+  if (const auto list = First(sequence, {"mav0/depth0/data.csv"})) streams.depth = ReadDepthList(*list, ',');
+  if (const auto table = First(sequence, {"imu0/data.csv", "mav0/imu0/data.csv", "truth/imu0/data.csv"}))
+    streams.imu = ReadImu(*table);
+  if (const auto truth = ReadSequenceTruth(sequence)) streams.truth = truth->poses;
+  return streams;
+}
+
+BagFile::Lens LensOf(const vo::Camera& c) {
+  BagFile::Lens lens{
+      static_cast<std::uint32_t>(c.width), static_cast<std::uint32_t>(c.height), c.fx, c.fy, c.cx, c.cy, "plumb_bob",
+      {c.k1, c.k2, c.p1, c.p2, c.k3}};
+  if (c.lens == vo::Lens::fisheye) {
+    lens.model = "equidistant";
+    lens.coefficients = {c.k1, c.k2, c.k3, c.k4};
+  }
+  return lens;
+}
+
+BagFile::Picture PictureOf(const cv::Mat& image, const char* encoding) {
+  return {static_cast<std::uint32_t>(image.cols), static_cast<std::uint32_t>(image.rows),
+          static_cast<std::uint32_t>(image.elemSize()), encoding, image.data};
+}
+
+cv::Mat ReadDepth(const fs::path& file) {
+  const cv::Mat stored = Input([&] { return verification::ReadPicture(file); });
+  if (stored.type() != CV_16UC1) {
+    throw BadInput(fmt::format("{}: is not a 16-bit PNG of depth in metres x 5000", file.string()));
+  }
+  cv::Mat metres;
+  stored.convertTo(metres, CV_32F, 1.0 / 5000);
+  return metres;
+}
+
+// All of it, in order of time, which is moved by `offset_ns`.
+void Write(BagFile& bag, vo::SequenceReader& frames, const Streams& streams, std::int64_t offset_ns) {
+  std::size_t depth = 0, imu = 0, pose = 0;
+  const auto until = [&](std::int64_t stamp_ns) {
+    for (; imu < streams.imu.size() && streams.imu[imu].stamp_ns <= stamp_ns; ++imu) {
+      const ImuReading& reading = streams.imu[imu];
+      bag.Imu("/imu", reading.stamp_ns + offset_ns, reading.angular_rate, reading.specific_force);
+    }
+    for (; pose < streams.truth.size() && streams.truth[pose].stamp_ns <= stamp_ns; ++pose) {
+      const evaluation::StampedPose& at = streams.truth[pose];
+      bag.Pose("/ground_truth/pose", at.stamp_ns + offset_ns, {at.p_WC.x(), at.p_WC.y(), at.p_WC.z()},
+               {at.q_WC.x(), at.q_WC.y(), at.q_WC.z(), at.q_WC.w()});
+    }
+    for (; depth < streams.depth.size() && streams.depth[depth].stamp_ns <= stamp_ns; ++depth) {
+      bag.Image("/camera/depth/image_raw", streams.depth[depth].stamp_ns + offset_ns,
+                PictureOf(ReadDepth(streams.depth[depth].file), "32FC1"));
+    }
+  };
+  Progress progress("exporting", static_cast<std::int64_t>(frames.size()));
+  while (const std::optional<vo::Frame> frame = Input([&] { return frames.Next(); })) {
+    until(frame->stamp_ns);
+    bag.Image("/camera/image_raw", frame->stamp_ns + offset_ns,
+              PictureOf(frame->image, frame->image.channels() == 3 ? "bgr8" : "mono8"));
+    if (streams.camera) bag.CameraInfo("/camera/camera_info", frame->stamp_ns + offset_ns, LensOf(*streams.camera));
+    progress.Step();
+  }
+  until(std::numeric_limits<std::int64_t>::max());
+}
+
+void RequireFree(const fs::path& bag) {
+  if (fs::exists(bag)) {
+    throw BadInput(fmt::format("--bag {}: is there already; remove it or choose another name", bag.string()));
+  }
+  if (const fs::path folder = fs::absolute(bag).parent_path(); !fs::is_directory(folder)) {
+    throw BadInput(fmt::format("--bag {}: there is no folder {}; make it first", bag.string(), folder.string()));
+  }
+}
+
+// A bag has no time 0, and none before it.
+std::int64_t OffsetOf(const fs::path& sequence, const Streams& streams) {
+  std::int64_t first = vo::SequenceReader(sequence).Next()->stamp_ns;
+  if (!streams.imu.empty()) first = std::min(first, streams.imu.front().stamp_ns);
+  if (!streams.truth.empty()) first = std::min(first, streams.truth.front().stamp_ns);
+  if (!streams.depth.empty()) first = std::min(first, streams.depth.front().stamp_ns);
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  return first > 0 ? 0 : (-first / kSecond + 1) * kSecond;
+}
+
+}  // namespace
+
+void Export(const ExportOptions& options) {
+  RequireFree(options.bag);
+  vo::SequenceReader frames = Input([&] { return vo::SequenceReader(options.sequence); });
+  const Streams streams = Input([&] { return ReadStreams(options.sequence); });
+  const std::int64_t offset_ns = Input([&] { return OffsetOf(options.sequence, streams); });
+  base::AtomicPath path(options.bag);
+  BagFile bag(path.path().string(), options.bag.string());
+  Write(bag, frames, streams, offset_ns);
+  bag.Close();
+  path.Commit();
+  fmt::print("{}: {} images{}, {} depth images, {} IMU readings, {} true poses\n", options.bag.string(), frames.size(),
+             streams.camera ? " with the camera" : "", streams.depth.size(), streams.imu.size(), streams.truth.size());
+  if (offset_ns != 0) fmt::print("A bag has no time 0: all times are {} s later\n", offset_ns / 1'000'000'000);
+}
+#else
+void Export(const ExportOptions&) {
+  throw BadInput(
+      "this program was built without rosbag: install librosbag-storage-dev, libsensor-msgs-dev and "
+      "libgeometry-msgs-dev, and build again");
+}
+#endif
+
+}  // namespace vobench

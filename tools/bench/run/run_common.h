@@ -1,0 +1,32 @@
+// Description and result folder of a run, of images and of points.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/bench/provenance.h"
+#include "tools/bench/result/output_folder.h"
+#include "tools/bench/result/result.h"
+#include "tools/bench/run/commands.h"
+#include "tools/bench/systems/experiment.h"
+#include "tools/judge/evaluation/summary.h"
+
+namespace vobench {
+
+using Folder = std::unique_ptr<OutputFolder>;  // none: nothing is kept
+
+Folder MakeFolder(const RunOptions& options);
+
+// All of run.json but the runs.
+RunDescription Describe(const RunOptions& options, const Experiment& experiment, const std::vector<std::string>& notes,
+                        const Clock& clock);
+
+// Writes the files at the top of the folder and report.html, and gives the folder its name. Throws std::runtime_error.
+void Conclude(OutputFolder& folder, ResultData& result);
+
+// Each run has a world of points of its own, seeded like its filter. Called by Run.
+void RunOnPoints(const RunOptions& options, const Experiment& experiment, const Clock& clock);
+
+}  // namespace vobench

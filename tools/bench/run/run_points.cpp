@@ -1,0 +1,223 @@
+// A world of points is played to each system with each seed, and judged: Monte Carlo without images.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "sim/points/point_world.h"
+#include "tools/base/files.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/parallel.h"
+#include "tools/bench/points/point_bound.h"
+#include "tools/bench/progress.h"
+#include "tools/bench/result/anees.h"
+#include "tools/bench/result/system_summary.h"
+#include "tools/bench/run/run_common.h"
+#include "tools/bench/systems/bridge.h"
+#include "tools/bench/systems/prior.h"
+#include "tools/bench/tracking/map_file.h"
+#include "tools/bench/tracking/point_tracker.h"
+#include "tools/bench/tracking/verdict_recorder.h"
+
+namespace vobench {
+namespace {
+
+struct PointRun {
+  std::string system;
+  std::uint64_t seed = 1;
+  // When it is done:
+  RunData data;  // metrics alone where nothing is written
+  std::vector<BlockNees> nees;
+  std::vector<evaluation::Vector12d> errors;  // only where the bound is asked for
+  evaluation::LinearisedRuns linearised;  // of the first system's runs: the bound, and for the verdict exact filters
+  evaluation::VerdictRun verdict;         // only where the verdict is asked for
+  std::vector<std::string> warnings;
+};
+
+sim::PointWorld WorldOf(const Experiment& experiment, std::uint64_t seed) {
+  sim::Scenario scenario = experiment.scenario;
+  scenario.seed = seed;
+  return Input([&] { return sim::PointWorld(scenario); });
+}
+
+constexpr int kExactRuns = 10;  // of each world, against which the verdict is held
+
+std::vector<std::size_t> RanksAmong(const sim::PointWorld& world) {
+  return RankFrames(static_cast<std::size_t>(world.frame_count()), world.scenario().time.rate_hz);
+}
+
+// `step` is called after each frame.
+template <class Step>
+void Play(const RunOptions& options, const Experiment& experiment, const Folder& folder, PointRun& run,
+          const Step& step) {
+  sim::PointWorld world = WorldOf(experiment, run.seed);
+  const TrackerSetup setup{run.system, run.seed, experiment.odometry, PriorOf(experiment.prior, world, run.seed)};
+  PointTracker tracker(setup, CameraForOdometry(experiment), folder ? std::optional(folder->path()) : std::nullopt,
+                       fmt::format("{}/seed_{}", run.system, run.seed));
+  Truth truth;
+  const bool bound = options.bound || options.verdict;
+  std::vector<sim::PointFrame> frames;
+  VerdictRecorder recorder(options.verdict ? RanksAmong(world) : std::vector<std::size_t>());
+  while (const std::optional<sim::PointFrame> frame = world.Next()) {
+    Append(frame->stamp_ns, frame->truth, truth);
+    const vo::Estimate estimate = tracker.Track(ToOdometry(*frame));
+    if (options.verdict) recorder.Add(estimate, tracker.mixture());
+    if (bound) frames.push_back(*frame);
+    step();
+  }
+  run.data = tracker.Result();
+  evaluation::JudgedSeries& judged = run.data.judged.emplace(
+      evaluation::JudgeSeries(run.data.run, truth.poses, truth.velocities, JudgeOptionsOf(experiment.prior)));
+  run.nees = NeesByBlock(run.data.run, judged.consistency);
+  run.warnings = world.Warnings();
+  if (bound) {
+    for (const evaluation::FrameConsistency& frame : judged.consistency) run.errors.push_back(frame.error);
+    if (run.system == options.systems.front()) {
+      run.linearised =
+          evaluation::SimulateLinearised(Input([&] { return ProblemOf(world, frames, StartCovariance(setup.prior)); }),
+                                         options.verdict ? kExactRuns : 0, run.seed);
+    }
+    if (options.verdict) run.verdict = recorder.Finish(run.errors, run.nees, run.seed);
+  }
+  if (options.map) {
+    const bool several = options.systems.size() > 1 || options.runs > 1;
+    WriteMap(MapPathOf(*options.map, tracker.entry(), several), tracker.map());
+  }
+  if (!folder) {
+    run.data = {run.data.entry, {}, {}, {}, evaluation::JudgedSeries{judged.metrics, {}, {}, {}}};
+    return;
+  }
+  WriteRun(folder->path(), run.data);
+  WriteTruth(folder->path() / run.data.entry.path, truth.poses, truth.velocities);
+}
+
+// One line for each thing to be warned of.
+std::vector<std::string> Notes(const std::vector<PointRun>& runs) {
+  std::size_t warned = 0;
+  std::string first;
+  for (const PointRun& run : runs) {
+    if (run.warnings.empty()) continue;
+    if (warned++ == 0) first = fmt::format("seed {}: {}", run.seed, run.warnings.front());
+  }
+  if (warned == 0) return {};
+  return {warned == 1 ? first : fmt::format("{} (and so on: {} of {} runs)", first, warned, runs.size())};
+}
+
+template <class T>
+std::vector<T> WithoutFirst(const std::vector<T>& frames) {
+  return {frames.begin() + (frames.empty() ? 0 : 1), frames.end()};
+}
+
+std::vector<SystemRuns> BySystem(const RunOptions& options, std::vector<PointRun>& runs) {
+  std::vector<SystemRuns> systems;
+  for (const std::string& system : options.systems) {
+    SystemRuns& all = systems.emplace_back();
+    all.system = system;
+    std::vector<std::vector<evaluation::Vector12d>> errors;
+    std::vector<std::vector<evaluation::Matrix12d>> bounds;
+    for (PointRun& run : runs) {
+      if (run.system != system) continue;
+      all.metrics.push_back(run.data.judged->metrics);
+      all.nees.push_back(std::move(run.nees));
+      // The first frame is the prior's. The first system's runs come first, and have the bounds.
+      errors.push_back(WithoutFirst(run.errors));
+      bounds.push_back(WithoutFirst(runs[errors.size() - 1].linearised.bound));
+    }
+    if (options.bound || options.verdict) all.bound = evaluation::CompareWithBound(errors, bounds);
+  }
+  return systems;
+}
+
+std::vector<SystemVerdict> Verdicts(const RunOptions& options, const std::string& setting,
+                                    const std::vector<std::size_t>& rank_frames, std::vector<PointRun>& runs) {
+  std::vector<SystemVerdict> verdicts;
+  std::vector<evaluation::LinearisedRuns> linearised;
+  for (PointRun& run : runs) {
+    if (run.system == options.systems.front()) linearised.push_back(std::move(run.linearised));
+  }
+  for (const std::string& system : options.systems) {
+    std::vector<evaluation::VerdictRun> judged;
+    for (PointRun& run : runs) {
+      if (run.system != system) continue;
+      judged.push_back(std::move(run.verdict));
+      const std::vector<evaluation::Matrix12d>& bound = linearised[judged.size() - 1].bound;
+      for (std::size_t k = 0; k < judged.back().size(); ++k) judged.back()[k].bound = bound[k];
+    }
+    verdicts.push_back({system, setting, judged.size(), judged.front().size(),
+                        evaluation::JudgeConsistency(judged, VerdictOptionsFor(rank_frames, linearised))});
+  }
+  return verdicts;
+}
+
+std::string SettingOf(const vo::FilterParams& filter) {
+  return fmt::format("{} particles, lag {}{}", filter.particles, filter.lag,
+                     filter.marginal_mode ? ", marginal mode" : "");
+}
+
+void Require(const std::vector<SystemVerdict>& verdicts) {
+  std::string failed;
+  for (const SystemVerdict& v : verdicts) {
+    if (!v.verdict.consistent()) failed += (failed.empty() ? "" : "\n") + VerdictSentence(v);
+  }
+  if (!failed.empty()) throw NotConsistent(failed);
+}
+
+}  // namespace
+
+void RunOnPoints(const RunOptions& options, const Experiment& experiment, const Clock& clock) {
+  for (const auto& [key, value] : options.overrides) {
+    if (key == "seed") throw BadInput("--set seed=" + value + ": each run has a world of its own; say --seed " + value);
+  }
+  if (options.view) throw BadInput("--view is for runs on images: worlds of points are done in seconds");
+  if (options.verdict && options.runs < 10) {
+    throw BadInput(fmt::format("--verdict needs 10 runs or more, not {}: say --runs 100", options.runs));
+  }
+  const Folder folder = MakeFolder(options);
+  std::vector<PointRun> runs;
+  for (const std::string& system : options.systems) {
+    for (int run = 0; run < options.runs; ++run) {
+      runs.push_back({system, options.seed + static_cast<std::uint64_t>(run), {}, {}, {}, {}, {}, {}});
+    }
+  }
+  std::vector<std::size_t> rank_frames;
+  {
+    const sim::PointWorld first = WorldOf(experiment, options.seed);
+    const std::int64_t frames = first.frame_count();
+    if (options.verdict) rank_frames = RanksAmong(first);
+    Progress progress("running", frames * static_cast<std::int64_t>(runs.size()));
+    std::mutex mutex;
+    ForEach(runs, options.jobs, [&](PointRun& run) {
+      Play(options, experiment, folder, run, [&] {
+        const std::lock_guard lock(mutex);
+        progress.Step();
+      });
+    });
+  }
+  const std::vector<std::string> notes = Notes(runs);
+  PrintWarnings(notes);
+  const std::vector<SystemRuns> systems = BySystem(options, runs);
+  std::vector<SystemVerdict> verdicts;
+  if (options.verdict) verdicts = Verdicts(options, SettingOf(experiment.odometry.filter), rank_frames, runs);
+  ResultData result;
+  for (PointRun& run : runs) result.runs.push_back(std::move(run.data));
+  if (folder) {
+    result.description = Describe(options, experiment, notes, clock);
+    for (const SystemVerdict& v : verdicts) {
+      const auto rows = VerdictRows(v);
+      const auto ranks = RankTables(v.system, rank_frames, v.verdict);
+      result.verdict.insert(result.verdict.end(), rows.begin(), rows.end());
+      result.ranks.insert(result.ranks.end(), ranks.begin(), ranks.end());
+      result.description.verdicts.push_back(VerdictSentence(v));
+    }
+    base::WriteFile(folder->path() / "anees.csv", AneesCsv(systems));
+    Conclude(*folder, result);
+  }
+  fmt::print("{}{}", TextSummary(result.Metrics()), AneesTable(systems));
+  for (const SystemVerdict& v : verdicts) fmt::print("{}", VerdictText(v));
+  if (folder) fmt::print("The report is in {}\n", (*options.output / "report.html").string());
+  if (options.require_consistent) Require(verdicts);
+}
+
+}  // namespace vobench

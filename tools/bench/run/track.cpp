@@ -1,0 +1,188 @@
+#include <fmt/format.h>
+
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "tools/bench/errors.h"
+#include "tools/bench/interrupt.h"
+#include "tools/bench/live/live_view.h"
+#include "tools/bench/progress.h"
+#include "tools/bench/result/output_folder.h"
+#include "tools/bench/result/result.h"
+#include "tools/bench/result/system_summary.h"
+#include "tools/bench/result/time_table.h"
+#include "tools/bench/run/commands.h"
+#include "tools/bench/run/run_common.h"
+#include "tools/bench/sequence/sequence_truth.h"
+#include "tools/bench/systems/odometry_settings.h"
+#include "tools/bench/systems/prior.h"
+#include "tools/bench/systems/systems.h"
+#include "tools/bench/tracking/map_file.h"
+#include "tools/bench/tracking/tracker.h"
+#include "tools/judge/evaluation/text_file.h"
+#include "vo/filter/watched_filter.h"
+#include "vo/geometry/camera_file.h"
+#include "vo/sequence/read_ahead.h"
+
+namespace vobench {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::int64_t kFramesOfACamera = 3000;  // nobody knows: pictures are kept at every 300th frame
+
+constexpr double kUnknownScale = 0.5;  // of a recording: nobody knows how large its scene is
+
+struct TrackSettings {
+  vo::Params params;
+  PriorSettings prior{PriorSettings::Start::origin, 0.5, 0.5};
+  std::string resolved;
+};
+
+TrackSettings ReadSettings(const TrackOptions& options) {
+  settings::Document document =
+      options.settings ? settings::Document::FromFile(*options.settings) : settings::Document::FromText("", "--set");
+  for (const auto& [key, value] : options.overrides) document.Override(key, value);
+  TrackSettings out;
+  settings::Section odometry = document.root().Child("odometry");
+  if (!odometry.Has("target")) out.params.landmark.scale_sigma = kUnknownScale;  // which would tell
+  ReadOdometry(odometry, out.params);
+  settings::Section prior = document.root().Child("prior");
+  ReadPrior(prior, out.prior);
+  if (out.prior.start == PriorSettings::Start::truth) {
+    prior.Reject("start", "'truth' is for `vobench run`: this command tells the odometry nothing of the truth");
+  }
+  document.ThrowIfBad();
+  out.resolved = document.Resolved();
+  return out;
+}
+
+vo::Camera ReadCamera(const TrackOptions& options) {
+  if (options.camera) return vo::CameraFrom(*options.camera);
+  if (!fs::is_directory(options.sequence)) {
+    throw BadInput(fmt::format("{}: a video says nothing of its camera; say which one with --camera PRESET|FILE",
+                               options.sequence.string()));
+  }
+  const fs::path file = options.sequence / "camera.yaml";
+  const fs::path euroc = options.sequence / "mav0/cam0/sensor.yaml";
+  if (!fs::exists(file) && fs::exists(euroc)) return vo::ReadCamera(euroc);
+  if (!fs::exists(file)) {
+    throw BadInput(fmt::format("{}: is not there; say which camera with --camera PRESET|FILE", file.string()));
+  }
+  return vo::ReadCamera(file);
+}
+
+std::string Record(const vo::Camera& c, const std::string& resolved) {
+  nlohmann::ordered_json all;
+  all["camera"] = {{"width", c.width},
+                   {"height", c.height},
+                   {"fx", c.fx},
+                   {"fy", c.fy},
+                   {"cx", c.cx},
+                   {"cy", c.cy},
+                   {"distortion",
+                    {{"model", c.lens == vo::Lens::fisheye ? "fisheye" : "radial_tangential"},
+                     {"k1", c.k1},
+                     {"k2", c.k2},
+                     {"p1", c.p1},
+                     {"p2", c.p2},
+                     {"k3", c.k3},
+                     {"k4", c.k4}}},
+                   {"rolling_shutter_s", c.readout_s}};
+  all.update(nlohmann::ordered_json::parse(resolved));
+  return all.dump(2);
+}
+
+// A trajectory that starts at the origin is judged in its own world.
+evaluation::JudgeOptions StartedAtTheOrigin() {
+  evaluation::JudgeOptions options;
+  options.gauge = evaluation::Gauge::first_pose;
+  return options;
+}
+
+}  // namespace
+
+void Track(const TrackOptions& options) {
+  const Clock clock;
+  if (options.map) RequireMapPath(*options.map, options.output);
+  const std::unique_ptr<vo::FrameSource> source = Input([&] { return vo::OpenFrames(options.sequence.string()); });
+  vo::Camera camera = Input([&] { return ReadCamera(options); });
+  const TrackSettings settings = Input([&] { return ReadSettings(options); });
+  camera.fx *= 1 + settings.prior.focal_error;
+  camera.fy *= 1 + settings.prior.focal_error;
+  const std::optional<Truth> truth = Input([&] { return ReadSequenceTruth(options.sequence); });
+  const std::optional<std::int64_t> frames = source->Count();
+  OutputFolder out(options.output, kResultMarker, ResultNames(SystemNames()));
+
+  Tracker tracker({options.system, options.seed, settings.params, PriorAtOrigin(settings.prior)}, camera,
+                  frames.value_or(kFramesOfACamera), out.path(), ".");
+  RunDescription description;
+  description.title = fs::weakly_canonical(options.sequence).filename().string();
+  description.input = options.sequence.string();
+  description.command = options.command_line;
+  description.started_utc = clock.started_utc();
+  std::optional<LiveView> view;
+  if (options.view) view.emplace(description);
+  const Truth shown = view && truth ? *truth : Truth{};
+  const Clock tracking;
+  std::exception_ptr end;  // by a fault in a stream, which cannot be had again: what came before is the result
+  {
+    Progress progress("tracking", frames.value_or(0));
+    if (!frames) fmt::print(stderr, "Ctrl-C ends it, and the result is written.\n");
+    // What is recorded is read, decoded and prepared while the frame before is tracked. A camera's newest frame is the
+    // one that is wanted: it is not asked for before the last is done with.
+    std::optional<vo::ReadAhead> ahead;
+    if (frames) ahead.emplace(*source);
+    const auto next = [&]() -> std::optional<vo::PreparedFrame> {
+      if (ahead) return ahead->Next();
+      std::optional<vo::Frame> frame = source->Next();
+      if (!frame) return std::nullopt;
+      return vo::PreparedFrame(std::move(*frame));
+    };
+    while (const std::optional<vo::PreparedFrame> frame = Input(next)) {
+      try {
+        tracker.Track(*frame);
+      } catch (const vo::FilterFault& fault) {
+        if (frames || tracker.frames() == 0) throw;
+        end = std::current_exception();
+        description.notes.push_back(fmt::format("Ended after {} {}: {}", tracker.frames(),
+                                                tracker.frames() == 1 ? "frame" : "frames", fault.what()));
+        break;
+      }
+      if (view && view->Asked(frame->frame)) view->Show({&tracker, 1}, shown, StartedAtTheOrigin());
+      progress.Step();
+      if (!frames && InterruptPending()) break;
+    }
+  }
+  const double elapsed_s = tracking.seconds();
+  if (view && !end) view->Show({&tracker, 1}, shown, StartedAtTheOrigin());
+  const std::vector<vo::MapPoint> map = end ? std::vector<vo::MapPoint>{} : tracker.map();
+  ResultData result;
+  RunData& run = result.runs.emplace_back(tracker.Result(map));
+  WriteRun(out.path(), run);
+  if (!frames) fmt::print(stderr, "{} frames came too fast and were let go\n", source->Dropped());
+
+  if (truth) {
+    try {
+      run.judged = evaluation::JudgeSeries(run.run, truth->poses, truth->velocities, StartedAtTheOrigin());
+      WriteTruth(out.path(), truth->poses, truth->velocities);
+    } catch (const evaluation::InputError& error) {  // of another time: the estimate is worth keeping all the same
+      description.notes.push_back(fmt::format("Not judged: {}", error.what()));
+      fmt::print(stderr, "vobench: not judged: {}\n", error.what());
+    }
+  }
+  description.seconds = clock.seconds();
+  description.settings = Record(camera, settings.resolved);
+  description.versions = Versions();
+  result.description = std::move(description);
+  if (options.map && !end) WriteMap(*options.map, map);
+  Conclude(out, result);
+
+  fmt::print("{}{}The report is in {}\n", TextSummary(result.Metrics()), TimeTable(run.run.frames, elapsed_s),
+             (options.output / "report.html").string());
+  if (end) std::rethrow_exception(end);
+}
+
+}  // namespace vobench

@@ -1,0 +1,156 @@
+#include "tools/bench/sequence/sequence_truth.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+#include <vector>
+
+#include "tools/base/settings/settings.h"
+#include "tools/base/text.h"
+#include "tools/judge/evaluation/text_file.h"
+
+namespace vobench {
+namespace fs = std::filesystem;
+namespace {
+
+std::optional<fs::path> IclNuimTruth(const fs::path& sequence) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(sequence)) {
+    if (entry.path().string().ends_with(".gt.freiburg")) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files.empty() ? std::nullopt : std::optional(files.front());
+}
+
+// Nanoseconds as decimal digits.
+std::optional<std::int64_t> ParseNanoseconds(std::string_view text) {
+  const auto stamp_ns = base::ParseWhole(text);
+  return stamp_ns && *stamp_ns >= -base::kLatest_ns && *stamp_ns <= base::kLatest_ns ? stamp_ns : std::nullopt;
+}
+
+// ICL-NUIM's time is index / 30 s. indices_ns: the index read as seconds.
+std::int64_t IclNuimStamp(std::int64_t indices_ns) { return (indices_ns + 15) / 30; }
+
+std::optional<std::int64_t> ParseIclNuimIndex(std::string_view text) {
+  const auto indices_ns = base::ParseSeconds(text);
+  return indices_ns ? std::optional(IclNuimStamp(*indices_ns)) : std::nullopt;
+}
+
+// Where a sequence lists its pictures, a line each that begins with its time. The first one there is says.
+struct FrameList {
+  const char* name;
+  char separator;
+  std::optional<std::int64_t> (*stamp)(std::string_view text);
+  const char* what;
+};
+constexpr FrameList kFrameLists[] = {
+    {"rgb.txt", ' ', base::ParseSeconds, "a time in seconds, 4e9 at most"},
+    {"associations.txt", ' ', ParseIclNuimIndex, "the number of a frame"},
+    {"mav0/cam0/data.csv", ',', ParseNanoseconds, "a time in nanoseconds, 4e18 at most"}};
+
+// T_BS of a sensor: from the sensor's frame to the body's.
+Eigen::Isometry3d ReadExtrinsic(const fs::path& file) {
+  std::array<double, 16> data{};
+  settings::Document document = settings::Document::FromFile(file);
+  settings::Section root = document.root(), T_BS = root.Child("T_BS");
+  T_BS.Require("data", data);
+  T_BS.IgnoreRest();
+  root.IgnoreRest();
+  document.ThrowIfBad();
+  Eigen::Isometry3d T;
+  T.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(data.data());
+  return T;
+}
+
+// timestamp, p_RS_R, q_RS (w first), velocity, biases: of the body. The camera's pose is T_RB T_BC.
+evaluation::Trajectory ReadEurocTruth(const fs::path& file, const fs::path& camera) {
+  const Eigen::Isometry3d T_BC = ReadExtrinsic(camera);
+  evaluation::Trajectory poses;
+  evaluation::Problems problems;
+  for (const evaluation::Line& line : evaluation::ReadLines(file, ',')) {
+    if (line.tokens.size() < 8) {
+      problems.Add(file, line.number, 1, "expected timestamp, position, quaternion (w x y z), ...");
+      continue;
+    }
+    const auto stamp_ns = ParseNanoseconds(line.tokens[0].text);
+    if (!stamp_ns)
+      problems.Add(file, line.number, 1, "'" + line.tokens[0].text + "' is not a time in nanoseconds, 4e18 at most");
+    if (stamp_ns && !poses.empty() && *stamp_ns <= poses.back().stamp_ns) {
+      problems.Add(file, line.number, 1, "time does not increase");
+    }
+    double v[7] = {};
+    for (std::size_t i = 0; i < 7; ++i) {
+      const auto number = evaluation::ParseNumber(line.tokens[i + 1].text);
+      if (!number) {
+        problems.Add(file, line.number, line.tokens[i + 1].column, "'" + line.tokens[i + 1].text + "' is not a number");
+      }
+      v[i] = number.value_or(0.0);
+    }
+    const Eigen::Quaterniond q_RB(v[3], v[4], v[5], v[6]);
+    if (std::abs(q_RB.norm() - 1) > 1e-3) problems.Add(file, line.number, 1, "the quaternion's norm is not 1");
+    const Eigen::Isometry3d T_RB = Eigen::Translation3d(v[0], v[1], v[2]) * q_RB.normalized();
+    const Eigen::Isometry3d T_RC = T_RB * T_BC;
+    poses.push_back({stamp_ns.value_or(0), T_RC.translation(), Eigen::Quaterniond(T_RC.linear())});
+  }
+  if (poses.empty()) problems.Add(file, "has no poses");
+  problems.ThrowIfAny();
+  return poses;
+}
+
+}  // namespace
+
+evaluation::Trajectory MirroredInY(evaluation::Trajectory trajectory) {
+  for (evaluation::StampedPose& pose : trajectory) {
+    pose.p_WC.y() = -pose.p_WC.y();
+    pose.q_WC.x() = -pose.q_WC.x();  // a rotation's axis is a pseudo-vector
+    pose.q_WC.z() = -pose.q_WC.z();
+  }
+  return trajectory;
+}
+
+std::optional<Truth> ReadSequenceTruth(const fs::path& sequence) {
+  Truth truth;
+  if (fs::exists(sequence / "groundtruth.txt")) {
+    truth.poses = evaluation::ReadTrajectory(sequence / "groundtruth.txt");
+    if (fs::exists(sequence / "velocity.txt")) truth.velocities = evaluation::ReadVelocities(sequence / "velocity.txt");
+    return truth;
+  }
+  if (!fs::is_directory(sequence)) return std::nullopt;
+  if (const fs::path euroc = sequence / "mav0/state_groundtruth_estimate0/data.csv"; fs::exists(euroc)) {
+    truth.poses = ReadEurocTruth(euroc, sequence / "mav0/cam0/sensor.yaml");
+    return truth;
+  }
+  const std::optional<fs::path> icl_nuim = IclNuimTruth(sequence);
+  if (!icl_nuim) return std::nullopt;
+  truth.poses = MirroredInY(evaluation::ReadTrajectory(*icl_nuim));
+  for (evaluation::StampedPose& pose : truth.poses) pose.stamp_ns = IclNuimStamp(pose.stamp_ns);
+  fmt::print(stderr, "{}: original ICL-NUIM truth, mirrored in y to match a camera with fy > 0; time is index / 30 s\n",
+             icl_nuim->string());
+  return truth;
+}
+
+std::optional<std::vector<std::int64_t>> ReadFrameStamps(const fs::path& sequence) {
+  const auto format = std::find_if(std::begin(kFrameLists), std::end(kFrameLists),
+                                   [&](const FrameList& list) { return fs::exists(sequence / list.name); });
+  if (format == std::end(kFrameLists)) return std::nullopt;
+  const fs::path list = sequence / format->name;
+  std::vector<std::int64_t> stamps;
+  evaluation::Problems problems;
+  for (const evaluation::Line& line : evaluation::ReadLines(list, format->separator)) {
+    const std::string& text = line.tokens[0].text;
+    const auto stamp_ns = format->stamp(text);
+    if (!stamp_ns) problems.Add(list, line.number, line.tokens[0].column, "'" + text + "' is not " + format->what);
+    if (stamp_ns && !stamps.empty() && *stamp_ns <= stamps.back())
+      problems.Add(list, line.number, line.tokens[0].column, "time does not increase");
+    stamps.push_back(stamp_ns.value_or(0));
+  }
+  problems.ThrowIfAny();
+  return stamps;
+}
+
+}  // namespace vobench

@@ -1,0 +1,30 @@
+// Numbers, names and tables as text, for reports and terminals.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vobench {
+
+// A fixed number of decimals; "–" for what is not a number.
+std::string Fixed(double value, int decimals);
+
+// Significant digits that suit a reader: "12.3", "0.0456", "1.2e+07"; "–" for what is not a number.
+std::string Readable(double value);
+
+// 0.987 as "98.7 %"; "–" for what is not a number.
+std::string Percent(double share, int decimals = 1);
+
+// How the system is called in writing: "rb2pf" is RB²-PF. Unknown names as they are.
+std::string DisplayName(const std::string& system);
+
+// As text inside HTML or an attribute.
+std::string Escape(const std::string& text);
+
+// Rows of as many cells each, for a terminal: the first column to the left, the others to the right. Each row ends with
+// a line break.
+std::string AlignedTable(const std::vector<std::vector<std::string>>& rows);
+
+std::string Base64(const std::string& bytes);
+
+}  // namespace vobench

@@ -1,0 +1,121 @@
+#include "tools/bench/tracking/recorder.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "tools/base/files.h"
+#include "tools/bench/tracking/picture.h"
+
+namespace vobench {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::int64_t kPictures = 24;
+
+evaluation::FrameRecord RecordOf(const vo::Estimate& estimate) {
+  const vo::FrameDiagnostics& d = estimate.diagnostics;
+  evaluation::FrameRecord record;
+  record.stamp_ns = estimate.stamp_ns;
+  record.searched = d.searched;
+  record.matched = d.matched;
+  record.landmarks = d.landmarks;
+  record.permanent = d.permanent;
+  record.nis = d.nis;
+  record.nis_dof = d.nis_dof;
+  record.effective_particles = d.effective_particles;
+  record.ms_features = d.ms_features;
+  record.ms_matching = d.ms_matching;
+  record.ms_filter = d.ms_filter;
+  record.tracked = d.tracked();
+  record.events = {d.events.not_converged, d.events.behind_camera, d.events.not_positive_definite,
+                   d.events.non_finite_weight};
+  return record;
+}
+
+FeatureMark MarkOf(const vo::FeatureView& feature) {
+  using Status = FeatureMark::Status;
+  switch (feature.status) {
+    case vo::FeatureView::Status::matched:
+      return {Status::matched, feature.predicted, feature.pixel, feature.S};
+    case vo::FeatureView::Status::missed:
+      return {Status::missed, feature.predicted, feature.pixel, feature.S};
+    case vo::FeatureView::Status::rejected:
+      return {Status::rejected, feature.predicted, feature.pixel, feature.S};
+    case vo::FeatureView::Status::fresh:
+      return {Status::fresh, feature.pixel, feature.pixel, Eigen::Matrix2d::Zero()};
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<FeatureMark> MarksOf(const std::vector<vo::FeatureView>& features) {
+  std::vector<FeatureMark> marks;
+  for (const vo::FeatureView& feature : features) marks.push_back(MarkOf(feature));
+  return marks;
+}
+
+// The middle frame of each stretch: the very first has nothing tracked to show.
+bool IsKept(std::int64_t index, std::int64_t frames) {
+  const std::int64_t every = std::max<std::int64_t>(1, (frames + kPictures - 1) / kPictures);
+  return index % every == every / 2;
+}
+
+Recorder::Recorder(std::int64_t frames, std::optional<fs::path> folder)
+    : folder_(std::move(folder)), expected_frames_(frames), answers_(folder_) {
+  if (folder_) fs::create_directories(*folder_ / "frames");
+}
+
+Recorder::Recorder(std::optional<fs::path> folder) : folder_(std::move(folder)), answers_(folder_) {
+  if (folder_) fs::create_directories(*folder_);
+}
+
+Recorder::Answer Recorder::AnswerOf(const vo::Estimate& estimate) {
+  Answer answer{};
+  answer.stamp_ns = estimate.stamp_ns;
+  Eigen::Vector3d::Map(answer.p_WC.data()) = estimate.pose.p_WC;
+  Eigen::Vector4d::Map(answer.q_WC.data()) = estimate.pose.q_WC.coeffs();
+  Eigen::Vector3d::Map(answer.v_WC.data()) = estimate.v_WC;
+  Eigen::Vector3d::Map(answer.w_WC_C.data()) = estimate.w_WC_C;
+  evaluation::Matrix12d::Map(answer.covariance.data()) = estimate.covariance;
+  answer.frame = RecordOf(estimate);
+  return answer;
+}
+
+void Recorder::Add(const vo::Estimate& estimate) { answers_.Add(AnswerOf(estimate)); }
+
+evaluation::EstimateRun Recorder::Run() const {
+  evaluation::EstimateRun run;
+  run.trajectory.reserve(frames());
+  run.beliefs.reserve(frames());
+  run.frames.reserve(frames());
+  answers_.ForEach([&](const Answer& answer) {
+    const Eigen::Quaterniond q_WC(Eigen::Vector4d::Map(answer.q_WC.data()));
+    run.trajectory.push_back({answer.stamp_ns, Eigen::Vector3d::Map(answer.p_WC.data()), q_WC});
+    run.beliefs.push_back(
+        {{answer.stamp_ns, Eigen::Vector3d::Map(answer.v_WC.data()), Eigen::Vector3d::Map(answer.w_WC_C.data())},
+         evaluation::Matrix12d::Map(answer.covariance.data())});
+    run.frames.push_back(answer.frame);
+  });
+  return run;
+}
+
+void Recorder::Add(const vo::Frame& frame, const vo::Estimate& estimate, const std::vector<vo::FeatureView>& features) {
+  const auto index = static_cast<std::int64_t>(frames());
+  Add(estimate);
+  if (!folder_ || !IsKept(index, expected_frames_)) return;
+  WritePicture(*folder_ / PicturePath(frame.stamp_ns), frame.image);
+  pictures_.width = frame.image.cols;
+  pictures_.height = frame.image.rows;
+  pictures_.pictures.push_back({frame.stamp_ns, MarksOf(features)});
+}
+
+RunData Recorder::Result(const RunEntry& entry, const std::vector<vo::MapPoint>& map) const {
+  RunData data{entry, Run(), {}, pictures_, {}};
+  for (const vo::MapPoint& point : map) {
+    data.landmarks.push_back({point.id, point.X_W, point.inverse_depth, point.inverse_depth_sigma, point.permanent});
+  }
+  return data;
+}
+
+}  // namespace vobench

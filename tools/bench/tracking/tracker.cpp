@@ -1,0 +1,40 @@
+#include "tools/bench/tracking/tracker.h"
+
+#include <stdexcept>
+
+#include "tools/bench/errors.h"
+#include "tools/bench/provenance.h"
+#include "tools/bench/systems/systems.h"
+
+namespace vobench {
+namespace {
+
+std::optional<std::filesystem::path> Within(const std::optional<std::filesystem::path>& out,
+                                            const std::string& folder) {
+  if (!out) return std::nullopt;
+  return (*out / folder).lexically_normal();
+}
+
+}  // namespace
+
+Tracker::Tracker(const TrackerSetup& setup, const vo::Camera& camera, std::int64_t frames,
+                 const std::optional<std::filesystem::path>& out, const std::string& folder)
+    : entry_{setup.system, setup.seed, folder, 0},
+      odometry_(
+          Input([&] { return vo::Odometry(camera, ForSystem(setup.system, setup.params), setup.prior, setup.seed); })),
+      recorder_(frames, Within(out, folder)) {}
+
+void Tracker::Track(const vo::PreparedFrame& prepared) {
+  const Clock clock;
+  const vo::Estimate estimate = [&] {
+    try {
+      return odometry_.Track(prepared);
+    } catch (const std::invalid_argument& error) {  // anything else is our bug
+      throw BadInput(error.what());
+    }
+  }();
+  entry_.seconds += 1e-3 * prepared.ms + clock.seconds();
+  recorder_.Add(prepared.frame, estimate, odometry_.Features());
+}
+
+}  // namespace vobench

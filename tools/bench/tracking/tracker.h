@@ -1,0 +1,50 @@
+// One odometry on image frames, with the record of its run.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "tools/bench/result/run_json.h"
+#include "tools/bench/tracking/recorder.h"
+#include "vo/odometry.h"
+
+namespace vobench {
+
+// Which system, with which parameters and seed.
+struct TrackerSetup {
+  std::string system;
+  std::uint64_t seed = 1;
+  vo::Params params;
+  vo::Prior prior;
+};
+
+class Tracker {
+ public:
+  // `folder`, if any, is the run folder of the finished run inside `out`: pictures go there on the way. Throws
+  // BadInput.
+  Tracker(const TrackerSetup& setup, const vo::Camera& camera, std::int64_t frames,
+          const std::optional<std::filesystem::path>& out, const std::string& folder);
+
+  // Throws BadInput when the frame does not fit the camera, or time goes back: nothing has changed then. Throws
+  // vo::FilterFault: what was recorded before stands, the map is not to be believed any more.
+  void Track(const vo::Frame& frame) { Track(vo::PreparedFrame(frame)); }
+  void Track(const vo::PreparedFrame& prepared);
+
+  // All of it, to be written and drawn. Throws std::runtime_error.
+  RunData Result(const std::vector<vo::MapPoint>& map) const { return recorder_.Result(entry_, map); }
+
+  std::vector<vo::MapPoint> map() const { return odometry_.Map(); }
+  std::vector<FeatureMark> marks() const { return MarksOf(odometry_.Features()); }  // of the last frame
+  const RunEntry& entry() const { return entry_; }
+  std::size_t frames() const { return recorder_.frames(); }
+  evaluation::EstimateRun Estimates() const { return recorder_.Run(); }  // all of them, read from the spool
+
+ private:
+  RunEntry entry_;
+  vo::Odometry odometry_;
+  Recorder recorder_;
+};
+
+}  // namespace vobench
