@@ -21,7 +21,7 @@ void OptionTable::AddRun() {
       ->check(Plain(CLI::Range(1, 10000)))
       ->type_name("N")
       ->capture_default_str();
-  AddSeed(command, *this,
+  AddSeed(command,
           "Seed of the first run's filter and prior, and of its world of points; a scene keeps its own (--set seed=N)")
       ->capture_default_str();
   command.add_flag("--bound", run.bound,
