@@ -49,7 +49,6 @@ enum class Weight {
   importance,  // (17) at the sample: the paper
   evidence,    // p(z_t | path) by Laplace's approximation: the same on a linear-Gaussian model, without sampling noise
   uniform,     // all alike but for rejected particles; drawn together, exact in mean and covariance. Needs lag > 0
-  equal = uniform,
 };
 
 struct FilterParams {
