@@ -87,7 +87,8 @@ std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file) {
     if (!good) continue;
     const glm::dquat q(v[6], v[3], v[4], v[5]);
     if (!(std::abs(glm::length(q) - 1) <= 1e-3)) {
-      problems.Add(number, words[4].column, "the quaternion's length is " + settings::FormatNumber(glm::length(q)) + ", not 1");
+      problems.Add(number, words[4].column,
+                   "the quaternion's length is " + settings::FormatNumber(glm::length(q)) + ", not 1");
     }
     const std::int64_t stamp_ns = *stamp;
     if (last_line > 0 && stamp_ns <= last_ns) {
