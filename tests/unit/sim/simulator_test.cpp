@@ -232,7 +232,7 @@ TEST(Simulator, AHandBeforeTheLensLeavesTheNoiseAndTheTruth) {
     with("[{from: 1 s, until: 0.5 s}]");
     FAIL();
   } catch (const std::exception& error) {
-    EXPECT_THAT(error.what(), HasSubstr("covered: until = 0.5 must be above from"));
+    EXPECT_THAT(error.what(), HasSubstr("sensor.covered.until = 0.5 must be above from"));
   }
 }
 
