@@ -185,7 +185,7 @@ TEST_F(CampaignTest, EntriesAreCheckedBeforeAnythingRuns) {
   // What would not reach it is refused.
   text = CampaignOf("[a]");
   text.replace(text.find("time.duration"), 0, "prior.focal_error: 0.02, ");
-  EXPECT_THAT(Run(text, "told").err, HasSubstr("'prior.focal_error': 'a' is not ours: it is told the camera as it is"));
+  EXPECT_THAT(Run(text, "told").err, HasSubstr("c.yaml:1:58: 'prior.focal_error': 'a' is not ours"));
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ class Stubs(unittest.TestCase):
                 self.assertGreater(len(said), 20, name)
 
     def test_the_words_are_those_of_the_headers(self):
-        self.assertIn("a scenario rendered into frames with exact truth", vobench.Simulator.__doc__)
+        self.assertIn("renders the frames of a scenario with exact truth", vobench.Simulator.__doc__)
         self.assertIn("mid-exposure", vobench.Frame.stamp_ns.__doc__)
 
 
