@@ -60,8 +60,8 @@ Scene MakeScene(unsigned seed, int matches, bool some_behind = true) {
     Matrix2d R;
     R << 1.2, 0.3, 0.3, 0.8;
     const Vector3d offset = 0.03 * draws.Symmetrics<3>();
-    const vo::Projection h = vo::Project(vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[n]]).ShiftedBy(offset),
-                                         scene.landmarks[n].mean);
+    const vo::Projection h = vo::Project(
+        vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[n]]).ShiftedBy(offset), scene.landmarks[n].mean);
     scene.matches.push_back({n, h.z + 5 * sigma * draws.Symmetrics<2>(), sigma * sigma * R, offset});
   }
   return scene;
@@ -82,7 +82,8 @@ vo::MatchBatch::Information Expected(const Scene& scene, const std::vector<Vecto
     const vo::Match& match = scene.matches[i];
     const vo::Landmark& landmark = scene.landmarks[match.landmark];
     const vo::Projection h = vo::Project(
-        vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]).ShiftedBy(match.centre_offset_W), theta[i]);
+        vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]).ShiftedBy(match.centre_offset_W),
+        theta[i]);
     terms.emplace_back();
     if (!h.in_front) continue;
     const Vector2d e = match.z - h.z - h.J_landmark * (landmark.mean - theta[i]);
@@ -160,9 +161,9 @@ TEST_P(EveryInstructionSet, DistancesAreThoseOfTheResidualsAsGiven) {
     for (std::size_t i = 0; i < distances.size(); ++i) {
       const vo::Match& match = scene.matches[i];
       const vo::Landmark& landmark = scene.landmarks[match.landmark];
-      const vo::Projection h =
-          vo::Project(vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]).ShiftedBy(match.centre_offset_W),
-                      landmark.mean);
+      const vo::Projection h = vo::Project(
+          vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]).ShiftedBy(match.centre_offset_W),
+          landmark.mean);
       if (!h.in_front) {
         EXPECT_EQ(distances[i], INFINITY) << i;
         continue;
@@ -202,8 +203,8 @@ TEST_P(EveryInstructionSet, LandmarksAreUpdatedAsOneByOne) {
       batch.Store(landmarks);
       double sum = 0;
       for (const vo::Match& match : scene.matches) {
-        const vo::AnchorView view =
-            vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]]).ShiftedBy(match.centre_offset_W);
+        const vo::AnchorView view = vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]])
+                                        .ShiftedBy(match.centre_offset_W);
         const vo::LandmarkUpdate update = vo::UpdateLandmark(scene.landmarks[match.landmark], view, match, iterations);
         expected[match.landmark] = update.landmark;
         sum += update.log_likelihood;

@@ -129,7 +129,8 @@ TEST(WorldSize, DenormalVariancesAreVariances) {
       const vo::Match match{0, view.ray, view.R};
       watched.Predict(1.0 / 30);
       watched.Update({&match, 1});
-      EXPECT_EQ(watched.answer().events.not_positive_definite + watched.answer().events.non_finite_weight, 0) << member.name << ' ' << frame;
+      EXPECT_EQ(watched.answer().events.not_positive_definite + watched.answer().events.non_finite_weight, 0)
+          << member.name << ' ' << frame;
       EXPECT_TRUE(watched.belief().pose.p_WC.allFinite() && watched.belief().covariance.allFinite())
           << member.name << ' ' << frame;
     }
