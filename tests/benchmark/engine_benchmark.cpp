@@ -11,6 +11,7 @@
 #include "sim/render/rasteriser.h"
 #include "sim/render/ray_tracer.h"
 #include "sim/scenario/scenario.h"
+#include "source_dir.h"
 
 namespace {
 

@@ -16,6 +16,7 @@
 #include "sim/sequence/png.h"
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"
+#include "source_dir.h"
 
 namespace {
 

@@ -25,6 +25,7 @@
 #include <thread>
 #include <vector>
 
+#include "source_dir.h"
 #include "vo/base/instruction_set.h"
 #include "vo/filter/consensus.h"
 #include "vo/filter/ekf_slam.h"

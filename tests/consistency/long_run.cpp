@@ -18,6 +18,7 @@
 
 #include "sim/points/point_world.h"
 #include "sim/simulator.h"
+#include "source_dir.h"
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/experiment.h"
 #include "tools/bench/systems/prior.h"

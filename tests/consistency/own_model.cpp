@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "sim/points/point_world.h"
+#include "source_dir.h"
 #include "tools/bench/points/point_bound.h"
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/experiment.h"

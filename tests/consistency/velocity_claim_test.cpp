@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/points/point_world.h"
+#include "source_dir.h"
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/experiment.h"
 #include "tools/bench/systems/prior.h"

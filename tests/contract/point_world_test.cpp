@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "source_dir.h"
 #include "vo/filter/motion_model.h"
 #include "vo/geometry/camera.h"
 #include "vo/geometry/so3.h"

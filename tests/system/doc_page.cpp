@@ -6,6 +6,7 @@
 #include <regex>
 #include <sstream>
 
+#include "source_dir.h"
 #include "tests/system/program.h"
 
 namespace vobench::system_test {

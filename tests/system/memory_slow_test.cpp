@@ -10,6 +10,7 @@
 #include <iostream>
 #include <thread>
 
+#include "source_dir.h"
 #include "tests/system/program.h"
 
 namespace vobench::system_test {

@@ -1,3 +1,4 @@
+#include "source_dir.h"
 #include "tests/system/program.h"
 
 #include <signal.h>

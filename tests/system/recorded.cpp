@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "source_dir.h"
 #include "tests/system/program.h"
 
 namespace vobench::system_test {

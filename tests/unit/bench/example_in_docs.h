@@ -8,6 +8,8 @@
 #include <iterator>
 #include <string>
 
+#include "source_dir.h"
+
 namespace vobench {
 
 inline std::string ReadWhole(const std::filesystem::path& file) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "source_dir.h"
 #include "tools/bench/points/point_bench.h"
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/experiment.h"

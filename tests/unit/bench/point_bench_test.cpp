@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "source_dir.h"
 #include "tools/bench/points/point_bound.h"
 #include "tools/bench/result/anees.h"
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "source_dir.h"
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/experiment.h"
 #include "tools/bench/systems/prior.h"

@@ -4,6 +4,7 @@
 // [example]
 #include "sim/scenario/scenario.h"
 #include "sim/simulator.h"
+#include "source_dir.h"
 #include "tools/judge/evaluation/summary.h"
 
 // Whatever you want to test. This one believes that it stands still.

@@ -11,6 +11,7 @@
 
 #include "sim/motion/make.h"
 #include "sim/scenario/scenario.h"
+#include "source_dir.h"
 
 namespace sim {
 namespace {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "sim/scenario/stamps.h"
+#include "source_dir.h"
 #include "tests/unit/sim/motion_check.h"
 #include "tests/unit/sim/temporary_folder.h"
 #include "tools/base/settings/problem.h"

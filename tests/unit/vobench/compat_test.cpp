@@ -10,6 +10,7 @@
 #include <map>
 #include <sstream>
 
+#include "source_dir.h"
 #include "tools/bench/errors.h"
 #include "tools/judge/evaluation/compat/evo.h"
 #include "tools/judge/evaluation/compat/tum.h"

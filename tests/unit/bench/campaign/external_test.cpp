@@ -5,6 +5,7 @@
 #include <map>
 #include <sstream>
 
+#include "source_dir.h"
 #include "tests/unit/bench/campaign/folder.h"
 #include "tools/base/settings/problem.h"
 #include "tools/bench/campaign/calibration.h"

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "source_dir.h"
 #include "tools/judge/evaluation/compat/evo.h"
 #include "tools/judge/evaluation/compat/format.h"
 #include "tools/judge/evaluation/compat/openvins.h"

@@ -11,6 +11,7 @@
 #include "sim/sequence/png.h"
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"
+#include "source_dir.h"
 #include "tests/unit/sim/temporary_folder.h"
 #include "tools/judge/verification/files.h"
 

@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "sim/scenario/scenario.h"
+#include "source_dir.h"
 #include "tests/unit/sim/render/engines.h"
 
 namespace sim::test {
