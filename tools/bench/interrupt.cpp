@@ -1,30 +1,27 @@
 #include "tools/bench/interrupt.h"
 
-#include <csignal>
+#include "tools/base/child_process.h"
 
 namespace vobench {
 namespace {
 
-constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
+sigset_t Signals() { return base::SignalSet({SIGINT, SIGTERM, SIGHUP}); }
 
 }  // namespace
 
 void HoldInterrupts() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int signal : kSignals) sigaddset(&set, signal);
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  const sigset_t signals = Signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   // A pipe that was closed (`vobench ... | head`) is an error of the write, not the end of the program.
-  std::signal(SIGPIPE, SIG_IGN);
+  signal(SIGPIPE, SIG_IGN);
 }
 
 bool InterruptPending() {
-  sigset_t pending;
+  const sigset_t signals = Signals();
+  sigset_t pending, ours;
   sigpending(&pending);
-  for (const int signal : kSignals) {
-    if (sigismember(&pending, signal) == 1) return true;
-  }
-  return false;
+  sigandset(&ours, &pending, &signals);
+  return sigisemptyset(&ours) == 0;
 }
 
 }  // namespace vobench

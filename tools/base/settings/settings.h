@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -21,11 +22,19 @@
 #include <utility>
 #include <vector>
 
-#include "tools/base/settings/dialect.h"
 #include "tools/base/settings/problem.h"
 #include "tools/base/settings/quantity.h"
 
 namespace settings {
+
+// Settings given beside a file, --set KEY=VALUE: (dotted key, YAML value), a later one wins.
+using Overrides = std::vector<std::pair<std::string, std::string>>;
+
+// Dialects of YAML.
+enum class Dialect {
+  ours,
+  opencv,  // as cv::FileStorage writes it: the first line, "%YAML:1.0", is none of YAML's, and matrices have tags
+};
 
 // Unparsed value, for another reader.
 struct RawYaml {
@@ -46,9 +55,8 @@ class Section {
 
   bool Read(const std::string& key, double& value, Unit unit = Unit::none, const Range& range = {});
   bool Read(const std::string& key, double& value, const Range& range) { return Read(key, value, Unit::none, range); }
-  bool Read(const std::string& key, int& value, const Range& range = {});
-  bool Read(const std::string& key, std::int64_t& value, const Range& range = {});
-  bool Read(const std::string& key, std::uint64_t& value, const Range& range = {});
+  template <std::integral T>  // int, std::int64_t, std::uint64_t
+  bool Read(const std::string& key, T& value, const Range& range = {});
   bool Read(const std::string& key, bool& value);         // true or false
   bool Read(const std::string& key, std::string& value);  // not empty
   bool Read(const std::string& key, std::vector<double>& value, Unit unit = Unit::none, const Range& range = {});
@@ -122,8 +130,8 @@ class Section {
   Request& Register(const std::string& key);
   bool ReadNumbers(const std::string& key, double* values, std::size_t count, Unit unit, const Range& range);
   bool ReadName(const std::string& key, const std::vector<std::string>& names, std::size_t& index);
-  template <class T>
-  bool ReadWhole(const std::string& key, T& value, const Range& range);
+  template <class T, class Parse>
+  bool ReadBy(const std::string& key, T& value, const Parse& parse);
 
   std::shared_ptr<State> state_;
   Request* request_;

@@ -1,4 +1,4 @@
-// Runs that the figures show, and their time axis.
+// Drawing steps of the figures: runs that they show, their time axis, lines and bands.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,6 @@
 
 namespace vobench::report {
 
-constexpr double kDegrees = 180 / M_PI;
 constexpr double kCentimetres = 100;
 
 // A system's other runs beside the typical one are drawn faint: these, from the best to the worst, both among them.
@@ -31,9 +30,16 @@ Numbers Times(const ResultData& data, const evaluation::Trajectory& trajectory);
 // The trajectory that stands for a run: aligned where there is a truth.
 const evaluation::Trajectory& Drawn(const RunData& run);
 
+// A figure along that time, without series.
+Figure InTime(const std::string& title, const std::string& description, const Axis& y);
+
 // A system's line.
 Series LineOf(const std::string& system, std::size_t number, Numbers x, Numbers y);
 // A line in another role, with its name.
 Series LineAs(Role role, const std::string& name, Numbers x, Numbers y);
+// What a consistent filter would show.
+Series Band(const std::string& name, Numbers x, Numbers low, Numbers high);
+// One of many runs.
+Series Faint(Series series);
 
 }  // namespace vobench::report

@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "tools/bench/text.h"
+#include "tools/judge/evaluation/statistics.h"
 
 namespace vobench {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegrees = 180 / M_PI;
 
 // The median over runs of what `value` says of each; NaN when any run has no answer.
 template <class Value>
@@ -51,44 +52,42 @@ SystemSummary ErrorsOver(const std::string& name, const std::vector<const RunMet
   return s;
 }
 
-const evaluation::TrajectoryErrors& ErrorsOf(const RunMetrics& run) { return run.metrics.errors; }
+SystemSummary Summary(const std::string& name, const std::vector<const RunMetrics*>& runs) {
+  SystemSummary s = ErrorsOver(
+      name, runs, [](const RunMetrics& run) -> const evaluation::TrajectoryErrors& { return run.metrics.errors; });
+  s.pose_coverage = MedianOver(
+      runs, [](const RunMetrics& run) { return run.metrics.coverage ? run.metrics.coverage->pose_coverage() : kNaN; });
+  s.tracked_coverage = MedianOver(runs, [](const RunMetrics& run) {
+    return run.metrics.coverage ? run.metrics.coverage->tracked_coverage().value_or(kNaN) : kNaN;
+  });
+  const auto nees = [&](const auto& member) {
+    return MedianOver(runs, [&](const RunMetrics& run) {
+      return run.metrics.consistency ? PerDof((*run.metrics.consistency).*member) : kNaN;
+    });
+  };
+  s.nees_pose_per_dof = nees(&evaluation::ConsistencySummary::pose);
+  s.nees_pose_scale_free_per_dof = nees(&evaluation::ConsistencySummary::pose_scale_free);
+  s.nees_velocity_per_dof = nees(&evaluation::ConsistencySummary::velocity);
+  s.nis_per_dof = MedianOver(runs, [](const RunMetrics& run) {
+    return run.metrics.nis && run.metrics.nis->frames > 0 ? run.metrics.nis->mean_per_dof : kNaN;
+  });
+  return s;
+}
 
 }  // namespace
 
-SystemSummary SummariseErrors(const RunMetrics& run) { return ErrorsOver(run.run.system, {&run}, ErrorsOf); }
+SystemSummary Summarise(const RunMetrics& run) { return Summary(run.run.system, {&run}); }
 
 std::vector<SystemSummary> SummariseSystems(const std::vector<RunMetrics>& runs) {
   std::vector<std::string> systems;
+  std::map<std::string, std::vector<const RunMetrics*>> runs_of;
   for (const RunMetrics& run : runs) {
-    if (std::find(systems.begin(), systems.end(), run.run.system) == systems.end()) systems.push_back(run.run.system);
+    auto& own = runs_of[run.run.system];
+    if (own.empty()) systems.push_back(run.run.system);
+    own.push_back(&run);
   }
   std::vector<SystemSummary> summaries;
-  for (const std::string& system : systems) {
-    std::vector<const RunMetrics*> own;
-    for (const RunMetrics& run : runs) {
-      if (run.run.system == system) own.push_back(&run);
-    }
-    SystemSummary s = ErrorsOver(system, own, ErrorsOf);
-    s.pose_coverage = MedianOver(
-        own, [](const RunMetrics& run) { return run.metrics.coverage ? run.metrics.coverage->pose_coverage() : kNaN; });
-    s.tracked_coverage = MedianOver(own, [](const RunMetrics& run) {
-      return run.metrics.coverage ? run.metrics.coverage->tracked_coverage().value_or(kNaN) : kNaN;
-    });
-    const auto nees = [&](const auto& pick) {
-      return MedianOver(own, [&](const RunMetrics& run) {
-        return run.metrics.consistency ? PerDof(pick(*run.metrics.consistency)) : kNaN;
-      });
-    };
-    using Summary = evaluation::ConsistencySummary;
-    using Nees = std::optional<evaluation::NeesSummary>;
-    s.nees_pose_per_dof = nees([](const Summary& c) -> Nees { return c.pose; });
-    s.nees_pose_scale_free_per_dof = nees([](const Summary& c) -> Nees { return c.pose_scale_free; });
-    s.nees_velocity_per_dof = nees([](const Summary& c) -> Nees { return c.velocity; });
-    s.nis_per_dof = MedianOver(own, [](const RunMetrics& run) {
-      return run.metrics.nis && run.metrics.nis->frames > 0 ? run.metrics.nis->mean_per_dof : kNaN;
-    });
-    summaries.push_back(s);
-  }
+  for (const std::string& system : systems) summaries.push_back(Summary(system, runs_of[system]));
   return summaries;
 }
 
@@ -143,6 +142,27 @@ std::string TextSummary(const std::vector<RunMetrics>& runs) {
       "frames with 10 or more matched features. NEES: of the pose, not aligned, 1 is ideal; scale-free: blind to the "
       "map's scale.\n";
   return text;
+}
+
+std::string TimeTable(const std::vector<evaluation::FrameRecord>& frames, double elapsed_s) {
+  if (frames.empty()) return "";
+  std::vector<std::vector<std::string>> rows = {{"Time per frame [ms]", "median", "95 %", "longest"}};
+  const auto add = [&](const std::string& name, const auto& time_of) {
+    std::vector<double> times;
+    for (const evaluation::FrameRecord& frame : frames) times.push_back(time_of(frame));
+    std::sort(times.begin(), times.end());
+    rows.push_back({name, Fixed(evaluation::Quantile(times, 0.5), 2), Fixed(evaluation::Quantile(times, 0.95), 2),
+                    Fixed(times.back(), 2)});
+  };
+  using Record = evaluation::FrameRecord;
+  add("features", [](const Record& f) { return f.ms_features; });
+  add("matching", [](const Record& f) { return f.ms_matching; });
+  add("filter", [](const Record& f) { return f.ms_filter; });
+  add("all", [](const Record& f) { return f.ms_features + f.ms_matching + f.ms_filter; });
+  const double n = static_cast<double>(frames.size());
+  return AlignedTable(rows) + std::to_string(frames.size()) + " frames in " + Fixed(elapsed_s, 2) +
+         " s, read and tracked: " + Fixed(1e3 * elapsed_s / n, 2) + " ms each, " + Fixed(n / elapsed_s, 1) +
+         " a second.\n";
 }
 
 }  // namespace vobench

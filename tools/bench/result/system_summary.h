@@ -1,4 +1,5 @@
-// Summary of each system over its seeds, comparison of two systems, and the table for a terminal.
+// Summary of each system over its seeds, comparison of two systems, and the tables for a terminal: of accuracy and of
+// time.
 #pragma once
 
 #include <string>
@@ -30,8 +31,8 @@ std::vector<SystemSummary> SummariseSystems(const std::vector<RunMetrics>& runs)
 // The same for the baselines, which never look at the images: "constant pose", "constant velocity".
 std::vector<SystemSummary> SummariseBaselines(const std::vector<RunMetrics>& runs);
 
-// Of one run, with its errors alone.
-SystemSummary SummariseErrors(const RunMetrics& run);
+// Of one run.
+SystemSummary Summarise(const RunMetrics& run);
 
 // Seeds that both systems ran, and in how many of them the first has the smaller ATE (Sim(3)).
 struct Duel {
@@ -41,5 +42,10 @@ Duel Compare(const std::vector<RunMetrics>& runs, const std::string& first, cons
 
 // A table: systems and baselines, then what the columns mean. Ends with a line break. Empty for no runs.
 std::string TextSummary(const std::vector<RunMetrics>& runs);
+
+// Time per stage of an odometry [ms]: a row for each stage and one for all of them, median, 95th percentile and longest
+// over the frames. `elapsed_s` is how long all frames took by the clock, reading them included: with stages side by side
+// less than the sum. Empty for no frames.
+std::string TimeTable(const std::vector<evaluation::FrameRecord>& frames, double elapsed_s);
 
 }  // namespace vobench

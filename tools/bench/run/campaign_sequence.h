@@ -1,12 +1,10 @@
-// Sequences of a campaign in the cache: name by content, rendering, other layouts.
+// Sequences of a campaign in the cache: name by content, rendering.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "sim/scenario/scenario.h"
-#include "tools/bench/campaign/external_system.h"
 #include "tools/bench/campaign/sequence_cache.h"
 
 namespace vobench {
@@ -24,10 +22,5 @@ std::optional<std::string> SequenceKey(const sim::Scenario& scenario, campaign::
 // Renders the sequence unless it is there, going on with what a killed process left. Waits where another one is at it.
 // Throws BadInput, std::runtime_error.
 void RenderInto(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario, int jobs);
-
-// The sequence in another layout, made of links to the pictures in the cache; itself for TUM's. Made where it is not
-// there.
-std::filesystem::path InLayout(const campaign::SequenceCache& cache, const std::string& key,
-                               const sim::Scenario& scenario, campaign::SequenceLayout layout);
 
 }  // namespace vobench

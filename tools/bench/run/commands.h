@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/base/settings/overrides.h"
+#include "tools/base/settings/settings.h"
 #include "tools/judge/evaluation/trajectory.h"
 
 namespace vobench {

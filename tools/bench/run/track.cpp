@@ -13,7 +13,6 @@
 #include "tools/bench/result/output_folder.h"
 #include "tools/bench/result/result.h"
 #include "tools/bench/result/system_summary.h"
-#include "tools/bench/result/time_table.h"
 #include "tools/bench/run/commands.h"
 #include "tools/bench/run/run_common.h"
 #include "tools/bench/sequence/sequence_truth.h"
