@@ -5,7 +5,6 @@
 #include <map>
 #include <set>
 
-#include "tools/bench/report/drawn_runs.h"
 #include "tools/bench/report/figures.h"
 #include "tools/bench/text.h"
 #include "tools/judge/evaluation/nis.h"

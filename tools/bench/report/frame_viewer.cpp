@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/base/files.h"
-#include "tools/bench/report/drawn_runs.h"
+#include "tools/bench/report/figures.h"
 #include "tools/bench/text.h"
 #include "tools/judge/evaluation/text_file.h"
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/bench/report/drawn_runs.h"
 #include "tools/bench/report/figures.h"
 #include "tools/bench/text.h"
 #include "tools/judge/evaluation/so3.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "tools/base/files.h"
-#include "tools/bench/report/drawn_runs.h"
 #include "tools/bench/report/figures.h"
 #include "tools/bench/report/summary.h"
 #include "tools/bench/text.h"

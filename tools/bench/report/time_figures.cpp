@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "tools/bench/report/drawn_runs.h"
 #include "tools/bench/report/figures.h"
 #include "tools/bench/text.h"
 

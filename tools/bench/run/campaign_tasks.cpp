@@ -208,11 +208,8 @@ class CampaignTasks : public campaign::TaskRunner {
     TaskOutput output;
     if (system.system.empty()) {
       const Clock tracking;
-      ExternalAnswer answer = RunExternal(system.external, cache, sequence, experiment.scenario, record.seed, folder);
+      output.run.trajectory = RunExternal(system.external, cache, sequence, experiment.scenario, folder, record);
       output.seconds = tracking.seconds();
-      record.status = answer.status;
-      record.reason = answer.reason;
-      output.run.trajectory = std::move(answer.trajectory);
       output.truth = TruthOfAllFrames(experiment.scenario);
       output.how.frame_stamps_ns = evaluation::StampsOf(output.truth.poses);
     } else {

@@ -82,9 +82,9 @@ fs::path InLayout(const campaign::SequenceCache& cache, const std::string& key, 
 
 }  // namespace
 
-ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
-                           const std::string& key, const sim::Scenario& scenario, std::uint64_t seed,
-                           const fs::path& folder) {
+evaluation::Trajectory RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
+                                   const std::string& key, const sim::Scenario& scenario, const fs::path& folder,
+                                   campaign::TaskRecord& record) {
   const fs::path sequence = fs::absolute(InLayout(cache, key, scenario, system.layout));
   const fs::path at_work = fs::absolute(folder) / "work", trajectory = at_work / system.trajectory;
   fs::create_directories(at_work);
@@ -93,30 +93,34 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
   values.insert(values.end(), {{"sequence", sequence.string()},
                                {"calibration", calibration.string()},
                                {"trajectory", trajectory.string()},
-                               {"seed", std::to_string(seed)}});
+                               {"seed", std::to_string(record.seed)}});
   const campaign::CommandEnd end =
       campaign::RunCommand(campaign::FillIn(system.command, values), at_work, folder / "log.txt", system.timeout_s);
-  ExternalAnswer answer;
+  const auto lost = [&](campaign::Status status, const std::string& reason) {
+    record.status = status;
+    record.reason = reason;
+  };
+  evaluation::Trajectory estimate;
   if (end.timed_out) {
-    answer = {campaign::Status::timed_out, fmt::format("took longer than {:g} s", system.timeout_s), {}};
+    lost(campaign::Status::timed_out, fmt::format("took longer than {:g} s", system.timeout_s));
   } else if (end.signal != 0) {
-    answer = {campaign::Status::crashed, fmt::format("ended by signal {} ({})", end.signal, strsignal(end.signal)), {}};
+    lost(campaign::Status::crashed, fmt::format("ended by signal {} ({})", end.signal, strsignal(end.signal)));
   } else if (end.status != 0) {
-    answer = {campaign::Status::crashed, fmt::format("ended with status {}", end.status), {}};
+    lost(campaign::Status::crashed, fmt::format("ended with status {}", end.status));
   } else {
     try {
-      answer.trajectory = evaluation::ReadTrajectory(trajectory);
+      estimate = evaluation::ReadTrajectory(trajectory);
     } catch (const evaluation::InputError& error) {
       // Where the task lies does not belong into a table that is the same everywhere.
       std::string reason = error.what();
       for (std::size_t at = 0; (at = reason.find(trajectory.string(), at)) != std::string::npos;) {
         reason.replace(at, trajectory.string().size(), system.trajectory);
       }
-      answer = {campaign::Status::no_answer, reason, {}};
+      lost(campaign::Status::no_answer, reason);
     }
   }
   fs::remove_all(at_work);
-  return answer;
+  return estimate;
 }
 
 }  // namespace vobench

@@ -9,7 +9,6 @@
 #include "sim/simulator.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/live/live_view.h"
-#include "tools/bench/parallel.h"
 #include "tools/bench/progress.h"
 #include "tools/bench/result/result.h"
 #include "tools/bench/result/system_summary.h"
@@ -66,7 +65,7 @@ void Run(const RunOptions& options) {
     while (const std::optional<sim::Frame> rendered = simulator.Next()) {
       const vo::PreparedFrame frame(ToOdometry(*rendered));
       if (folder && IsKept(rendered->index, simulator.frame_count())) truth_pictures.Add(simulator, rendered->index);
-      ForEach(odometries, options.jobs, [&](Tracker& odometry) { odometry.Track(frame); });
+      ForEach(odometries.size(), options.jobs, [&](std::size_t i) { odometries[i].Track(frame); });
       if (view && view->Asked(frame.frame)) view->Show(odometries, TruthOfFirst(simulator, rendered->index + 1), how);
       progress.Step();
     }

@@ -9,7 +9,6 @@
 #include "sim/points/point_world.h"
 #include "tools/base/files.h"
 #include "tools/bench/errors.h"
-#include "tools/bench/parallel.h"
 #include "tools/bench/points/point_bound.h"
 #include "tools/bench/progress.h"
 #include "tools/bench/result/anees.h"
@@ -188,8 +187,8 @@ void RunOnPoints(const RunOptions& options, const Experiment& experiment, const 
     if (options.verdict) rank_frames = RanksAmong(first);
     Progress progress("running", frames * static_cast<std::int64_t>(runs.size()));
     std::mutex mutex;
-    ForEach(runs, options.jobs, [&](PointRun& run) {
-      Play(options, experiment, folder, run, [&] {
+    ForEach(runs.size(), options.jobs, [&](std::size_t i) {
+      Play(options, experiment, folder, runs[i], [&] {
         const std::lock_guard lock(mutex);
         progress.Step();
       });

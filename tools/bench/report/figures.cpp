@@ -1,4 +1,4 @@
-#include "tools/bench/report/drawn_runs.h"
+#include "tools/bench/report/figures.h"
 
 #include <algorithm>
 

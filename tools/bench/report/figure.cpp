@@ -1,4 +1,4 @@
-#include "tools/bench/report/figure_json.h"
+#include "tools/bench/report/figure.h"
 
 #include <algorithm>
 #include <bit>
