@@ -121,7 +121,6 @@ class AtomicFolder {
   AtomicFolder& operator=(const AtomicFolder&) = delete;
 
   const std::filesystem::path& path() const { return temporary_; }
-  const std::filesystem::path& final_path() const { return final_; }
   void Commit();
 
  private:

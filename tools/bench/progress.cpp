@@ -29,8 +29,7 @@ Progress::Progress(std::string what, std::int64_t total, std::int64_t done, std:
       terminal_(isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()),
       drawn_(start_) {
-  if (terminal_) return;
-  if (total_ == 0) return;
+  if (terminal_ || total_ == 0) return;
   fmt::print(stderr, "{}: {} {}", what_, total_, unit_);
   if (before_ > 0) fmt::print(stderr, ", {} of them are there", before_);
   fmt::print(stderr, "\n");
@@ -54,13 +53,10 @@ void Progress::Step(std::int64_t count) {
 
 void Progress::Draw() const {
   const double elapsed = Seconds(drawn_ - start_);
-  if (total_ == 0) {
-    fmt::print(stderr, "{}{}: {} {}, {}{}", terminal_ ? "\r" : "", what_, done_, unit_, Duration(elapsed),
+  if (total_ == 0 || !terminal_) {
+    const std::string of = total_ == 0 ? "" : fmt::format("/{}", total_);
+    fmt::print(stderr, "{}{}: {}{} {}, {}{}", terminal_ ? "\r" : "", what_, done_, of, unit_, Duration(elapsed),
                terminal_ ? "    " : "\n");
-    return;
-  }
-  if (!terminal_) {
-    fmt::print(stderr, "{}: {}/{} {}, {}\n", what_, done_, total_, unit_, Duration(elapsed));
     return;
   }
   constexpr int kWidth = 30;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -168,34 +170,27 @@ std::string WindowProblem(Cursor window, std::size_t bytes) {
 
 // The library takes an attribute of a type that it knows as long as the type is, whatever the header says, and reads on
 // from there.
-constexpr std::pair<std::string_view, std::int32_t> kLengths[] = {{"box2f", 16},
-                                                                  {"box2i", 16},
-                                                                  {"chromaticities", 32},
-                                                                  {"compression", 1},
-                                                                  {"deepImageState", 1},
-                                                                  {"double", 8},
-                                                                  {"envmap", 1},
-                                                                  {"float", 4},
-                                                                  {"int", 4},
-                                                                  {"keycode", 28},
-                                                                  {"lineOrder", 1},
-                                                                  {"m33d", 72},
-                                                                  {"m33f", 36},
-                                                                  {"m44d", 128},
-                                                                  {"m44f", 64},
-                                                                  {"rational", 8},
-                                                                  {"tiledesc", 9},
-                                                                  {"timecode", 8},
-                                                                  {"v2d", 16},
-                                                                  {"v2f", 8},
-                                                                  {"v2i", 8},
-                                                                  {"v3d", 24},
-                                                                  {"v3f", 12},
-                                                                  {"v3i", 12}};
+const std::map<std::int32_t, std::set<std::string_view>>& TypesByLength() {
+  static const std::map<std::int32_t, std::set<std::string_view>> types = {
+      {1, {"compression", "deepImageState", "envmap", "lineOrder"}},
+      {4, {"float", "int"}},
+      {8, {"double", "rational", "timecode", "v2f", "v2i"}},
+      {9, {"tiledesc"}},
+      {12, {"v3f", "v3i"}},
+      {16, {"box2f", "box2i", "v2d"}},
+      {24, {"v3d"}},
+      {28, {"keycode"}},
+      {32, {"chromaticities"}},
+      {36, {"m33f"}},
+      {64, {"m44f"}},
+      {72, {"m33d"}},
+      {128, {"m44d"}}};
+  return types;
+}
 
 bool IsAsLongAsItsType(const std::string& type, Cursor value, std::int32_t size) {
-  for (const auto& [name, length] : kLengths) {
-    if (type == name) return size == length;
+  for (const auto& [length, types] : TypesByLength()) {
+    if (types.contains(type)) return size == length;
   }
   if (type == "preview") {
     const std::int64_t width = value.Number().value_or(0), height = value.Number().value_or(0);

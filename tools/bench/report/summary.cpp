@@ -84,24 +84,17 @@ std::string SystemTiles(const std::vector<SystemSummary>& systems, const std::ve
 }
 
 constexpr std::size_t kRows = 500;
-
 constexpr std::size_t kErrorCells = 8;  // the other cells of a baseline are empty
 
 std::vector<std::string> Cells(const std::string& name, const std::string& seed, const SystemSummary& s) {
-  return {name,
-          seed,
-          Fixed(100 * s.ate_m, 2),
-          Fixed(100 * s.ate_share_of_path, 2),
-          Fixed(100 * s.ate_se3_m, 2),
-          Fixed(s.scale, 3),
-          Fixed(100 * s.rpe_m, 2),
-          Fixed(kDegrees * s.rpe_rad, 2),
-          Fixed(100 * s.pose_coverage, 1),
-          Fixed(100 * s.tracked_coverage, 1),
-          Readable(s.nees_pose_per_dof),
-          Readable(s.nees_pose_scale_free_per_dof),
-          Readable(s.nees_velocity_per_dof),
-          Fixed(s.nis_per_dof, 2)};
+  std::vector<std::string> cells = {name, seed};
+  for (const double share : {s.ate_m, s.ate_share_of_path, s.ate_se3_m}) cells.push_back(Fixed(100 * share, 2));
+  cells.insert(cells.end(), {Fixed(s.scale, 3), Fixed(100 * s.rpe_m, 2), Fixed(kDegrees * s.rpe_rad, 2)});
+  for (const double coverage : {s.pose_coverage, s.tracked_coverage}) cells.push_back(Fixed(100 * coverage, 1));
+  for (const double nees : {s.nees_pose_per_dof, s.nees_pose_scale_free_per_dof, s.nees_velocity_per_dof})
+    cells.push_back(Readable(nees));
+  cells.push_back(Fixed(s.nis_per_dof, 2));
+  return cells;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // and time of each frame.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "tools/bench/report/figures.h"
@@ -86,58 +87,47 @@ std::vector<Figure> ErrorFigures(const ResultData& data, int first_kind) {
   return figures;
 }
 
-template <class Value>
-Numbers Of(const RunData& run, const Value& value) {
-  Numbers values;
-  for (const ev::FrameRecord& frame : run.run.frames) values.push_back(value(frame));
-  return values;
-}
-
-// A line for a part of the whole: told apart by colour, of one system.
-Series Part(std::size_t number, const char* name, Numbers t, Numbers values) {
-  Series part = LineOf(name, number, std::move(t), std::move(values));
-  part.name = name;
-  return part;
-}
-
 void AddFigures(const ResultData& data, std::size_t s, std::vector<Figure>& figures) {
   const std::string system = data.Systems()[s], name = DisplayName(system);
   const RunData& run = data.Typical(system);
   if (run.run.frames.empty()) return;
-  const Numbers t = Of(run, [&](const ev::FrameRecord& frame) { return Seconds(data, frame.stamp_ns); });
-  const auto line = [&](Role role, const char* label, const auto& value) {
-    Series series = LineAs(role, label, t, Of(run, value));
-    series.system = s;
+  const auto line = [&](Role role, const char* label, const auto& value, std::size_t colour) {
+    Series series = LineAs(role, label, {}, {});
+    series.system = colour;
+    for (const ev::FrameRecord& frame : run.run.frames) {
+      series.x.push_back(Seconds(data, frame.stamp_ns));
+      series.y.push_back(std::invoke(value, frame));
+    }
     return series;
   };
+  using Frame = ev::FrameRecord;
   Figure features =
       InTime("Features of " + name, "Landmarks searched for and found in each frame.", FromZero("features"));
-  features.series = {
-      line(Role::context, "searched", [](const ev::FrameRecord& f) { return f.searched; }),
-      line(Role::system, "matched", [](const ev::FrameRecord& f) { return f.matched; }),
-  };
+  features.series = {line(Role::context, "searched", &Frame::searched, s),
+                     line(Role::system, "matched", &Frame::matched, s)};
   Series coasted = LineAs(Role::warning, "coasted", {}, {});
   coasted.draw = Draw::dots;
-  for (const ev::FrameRecord& frame : run.run.frames) {
+  for (const Frame& frame : run.run.frames) {
     if (frame.tracked) continue;
     coasted.x.push_back(Seconds(data, frame.stamp_ns));
     coasted.y.push_back(frame.matched);
   }
   if (!coasted.x.empty()) features.series.push_back(coasted);
   Figure map = InTime("Map of " + name, "Landmarks in the map after each frame.", FromZero("landmarks"));
-  map.series = {line(Role::context, "all", [](const ev::FrameRecord& f) { return f.landmarks; }),
-                line(Role::system, "permanent", [](const ev::FrameRecord& f) { return f.permanent; })};
+  map.series = {line(Role::context, "all", &Frame::landmarks, s),
+                line(Role::system, "permanent", &Frame::permanent, s)};
   figures.push_back(features);
   figures.push_back(map);
 
+  // A line for each part of the whole: by colour, of one system.
   Figure time =
       InTime("Time of " + name, "Milliseconds that each stage took, frame by frame.", FromZero("time per frame [ms]"));
-  time.series = {Part(2, "features", t, Of(run, [](const ev::FrameRecord& f) { return f.ms_features; })),
-                 Part(3, "matching", t, Of(run, [](const ev::FrameRecord& f) { return f.ms_matching; })),
-                 Part(4, "filter", t, Of(run, [](const ev::FrameRecord& f) { return f.ms_filter; }))};
-  const auto taken = [](const ev::FrameRecord& f) { return f.ms_features + f.ms_matching + f.ms_filter; };
+  time.series = {line(Role::system, "features", &Frame::ms_features, 2),
+                 line(Role::system, "matching", &Frame::ms_matching, 3),
+                 line(Role::system, "filter", &Frame::ms_filter, 4)};
+  const auto taken = [](const Frame& f) { return f.ms_features + f.ms_matching + f.ms_filter; };
   if (std::ranges::any_of(
-          run.run.frames, [&](double ms) { return ms > 0; }, taken))
+          run.run.frames, [](double ms) { return ms > 0; }, taken))
     figures.push_back(time);
 }
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 
 #include "tools/bench/text.h"
 #include "tools/judge/evaluation/statistics.h"
@@ -11,95 +9,82 @@
 namespace vobench {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-// The median over runs of what `value` says of each; NaN when any run has no answer.
-template <class Value>
-double MedianOver(const std::vector<const RunMetrics*>& runs, const Value& value) {
-  std::vector<double> values;
-  for (const RunMetrics* run : runs) values.push_back(value(*run));
-  if (std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) return kNaN;
-  return evaluation::Median(values);
-}
+using Runs = std::vector<SystemSummary>;
 
 double PerDof(const std::optional<evaluation::NeesSummary>& nees) {
   return nees && nees->frames > 0 ? nees->mean / nees->dof : kNaN;
 }
 
-// The error part of a summary, over the trajectory that `of` picks.
-template <class Errors>
-SystemSummary ErrorsOver(const std::string& name, const std::vector<const RunMetrics*>& runs, const Errors& of) {
+SystemSummary ErrorsOf(const std::string& name, const RunMetrics& run, const evaluation::TrajectoryErrors& errors) {
   SystemSummary s;
   s.system = name;
-  s.runs = runs.size();
-  const auto ate = [&](const RunMetrics& run) { return of(run).sim3.position.rmse; };
-  s.ate_m = MedianOver(runs, ate);
-  for (const RunMetrics* run : runs) s.ate_worst_m = std::max(s.ate_worst_m, ate(*run));
-  s.ate_share_of_path = MedianOver(runs, [&](const RunMetrics& run) { return ate(run) / run.metrics.path_length_m; });
-  s.ate_se3_m = MedianOver(runs, [&](const RunMetrics& run) { return of(run).se3.position.rmse; });
-  s.scale = MedianOver(runs, [&](const RunMetrics& run) {
-    const evaluation::Similarity& similarity = of(run).sim3.similarity;
-    return similarity.scale_determined ? similarity.scale : kNaN;
-  });
-  const auto rpe = [&](const RunMetrics& run, bool position) {
-    const evaluation::Rpe& r = of(run).rpe;
-    return r.pairs.empty() ? kNaN : position ? r.position_statistics.rmse : r.orientation_statistics.rmse;
-  };
-  s.rpe_m = MedianOver(runs, [&](const RunMetrics& run) { return rpe(run, true); });
-  s.rpe_rad = MedianOver(runs, [&](const RunMetrics& run) { return rpe(run, false); });
-  s.pose_coverage = s.tracked_coverage = kNaN;
-  s.nees_pose_per_dof = s.nees_pose_scale_free_per_dof = s.nees_velocity_per_dof = s.nis_per_dof = kNaN;
+  s.runs = 1;
+  s.ate_m = s.ate_worst_m = errors.sim3.position.rmse;
+  s.ate_share_of_path = s.ate_m / run.metrics.path_length_m;
+  s.ate_se3_m = errors.se3.position.rmse;
+  if (errors.sim3.similarity.scale_determined) s.scale = errors.sim3.similarity.scale;
+  if (errors.rpe.pairs.empty()) return s;
+  s.rpe_m = errors.rpe.position_statistics.rmse;
+  s.rpe_rad = errors.rpe.orientation_statistics.rmse;
   return s;
 }
 
-SystemSummary Summary(const std::string& name, const std::vector<const RunMetrics*>& runs) {
-  SystemSummary s = ErrorsOver(
-      name, runs, [](const RunMetrics& run) -> const evaluation::TrajectoryErrors& { return run.metrics.errors; });
-  s.pose_coverage = MedianOver(
-      runs, [](const RunMetrics& run) { return run.metrics.coverage ? run.metrics.coverage->pose_coverage() : kNaN; });
-  s.tracked_coverage = MedianOver(runs, [](const RunMetrics& run) {
-    return run.metrics.coverage ? run.metrics.coverage->tracked_coverage().value_or(kNaN) : kNaN;
-  });
-  const auto nees = [&](const auto& member) {
-    return MedianOver(runs, [&](const RunMetrics& run) {
-      return run.metrics.consistency ? PerDof((*run.metrics.consistency).*member) : kNaN;
-    });
-  };
-  s.nees_pose_per_dof = nees(&evaluation::ConsistencySummary::pose);
-  s.nees_pose_scale_free_per_dof = nees(&evaluation::ConsistencySummary::pose_scale_free);
-  s.nees_velocity_per_dof = nees(&evaluation::ConsistencySummary::velocity);
-  s.nis_per_dof = MedianOver(runs, [](const RunMetrics& run) {
-    return run.metrics.nis && run.metrics.nis->frames > 0 ? run.metrics.nis->mean_per_dof : kNaN;
-  });
+// NaN when any run has no answer.
+SystemSummary MedianOf(const Runs& runs) {
+  using S = SystemSummary;
+  S s = runs.front();
+  s.runs = runs.size();
+  s.ate_worst_m = 0;
+  for (const S& run : runs) s.ate_worst_m = std::max(s.ate_worst_m, run.ate_m);
+  for (double S::*const member : {&S::ate_m, &S::ate_share_of_path, &S::ate_se3_m, &S::scale, &S::rpe_m, &S::rpe_rad,
+                                  &S::pose_coverage, &S::tracked_coverage, &S::nees_pose_per_dof,
+                                  &S::nees_pose_scale_free_per_dof, &S::nees_velocity_per_dof, &S::nis_per_dof}) {
+    std::vector<double> values;
+    for (const S& run : runs) values.push_back(run.*member);
+    const bool complete = std::ranges::none_of(values, [](double value) { return std::isnan(value); });
+    s.*member = complete ? evaluation::Median(values) : kNaN;
+  }
   return s;
 }
 
 }  // namespace
 
-SystemSummary Summarise(const RunMetrics& run) { return Summary(run.run.system, {&run}); }
+SystemSummary Summarise(const RunMetrics& run) {
+  const evaluation::Metrics& m = run.metrics;
+  SystemSummary s = ErrorsOf(run.run.system, run, m.errors);
+  if (m.coverage) {
+    s.pose_coverage = m.coverage->pose_coverage();
+    s.tracked_coverage = m.coverage->tracked_coverage().value_or(kNaN);
+  }
+  if (m.consistency) {
+    s.nees_pose_per_dof = PerDof(m.consistency->pose);
+    s.nees_pose_scale_free_per_dof = PerDof(m.consistency->pose_scale_free);
+    s.nees_velocity_per_dof = PerDof(m.consistency->velocity);
+  }
+  if (m.nis && m.nis->frames > 0) s.nis_per_dof = m.nis->mean_per_dof;
+  return s;
+}
 
 std::vector<SystemSummary> SummariseSystems(const std::vector<RunMetrics>& runs) {
-  std::vector<std::string> systems;
-  std::map<std::string, std::vector<const RunMetrics*>> runs_of;
+  std::vector<Runs> systems;
   for (const RunMetrics& run : runs) {
-    auto& own = runs_of[run.run.system];
-    if (own.empty()) systems.push_back(run.run.system);
-    own.push_back(&run);
+    auto own = std::ranges::find(systems, run.run.system, [](const Runs& all) { return all.front().system; });
+    if (own == systems.end()) own = systems.emplace(own);
+    own->push_back(Summarise(run));
   }
   std::vector<SystemSummary> summaries;
-  for (const std::string& system : systems) summaries.push_back(Summary(system, runs_of[system]));
+  for (const Runs& own : systems) summaries.push_back(MedianOf(own));
   return summaries;
 }
 
 std::vector<SystemSummary> SummariseBaselines(const std::vector<RunMetrics>& runs) {
   if (runs.empty()) return {};
-  std::vector<const RunMetrics*> all;
-  for (const RunMetrics& run : runs) all.push_back(&run);
-  using Errors = evaluation::TrajectoryErrors;
-  return {ErrorsOver("constant pose", all,
-                     [](const RunMetrics& run) -> const Errors& { return run.metrics.constant_pose; }),
-          ErrorsOver("constant velocity", all,
-                     [](const RunMetrics& run) -> const Errors& { return run.metrics.constant_velocity; })};
+  Runs still, steady;
+  for (const RunMetrics& run : runs) {
+    still.push_back(ErrorsOf("constant pose", run, run.metrics.constant_pose));
+    steady.push_back(ErrorsOf("constant velocity", run, run.metrics.constant_velocity));
+  }
+  return {MedianOf(still), MedianOf(steady)};
 }
 
 Duel Compare(const std::vector<RunMetrics>& runs, const std::string& first, const std::string& second) {

@@ -2,6 +2,7 @@
 // time.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -9,20 +10,20 @@
 
 namespace vobench {
 
-// What one system scored: medians over its seeds.
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// What one system scored: medians over its seeds. NaN where unknown.
 struct SystemSummary {
   std::string system;
   std::size_t runs = 0;
-  double ate_m = 0;                 // position RMSE after Sim(3) alignment
-  double ate_worst_m = 0;           // of the seeds
-  double ate_se3_m = 0, scale = 0;  // after SE(3) alignment; scale of the Sim(3) one, NaN where it is not determined
-  double ate_share_of_path = 0;
-  double rpe_m = 0,
-         rpe_rad = 0;  // RMSE over one second (JudgeOptions::rpe_delta_ns), translations times the Sim(3) scale
-  double pose_coverage = 0, tracked_coverage = 0;  // NaN where unknown
-  double nees_pose_per_dof = 0, nees_pose_scale_free_per_dof = 0,
-         nees_velocity_per_dof = 0;  // time means; NaN where unknown
-  double nis_per_dof = 0;            // NaN where unknown
+  double ate_m = kNaN;                    // position RMSE after Sim(3) alignment
+  double ate_worst_m = kNaN;              // of the seeds
+  double ate_se3_m = kNaN, scale = kNaN;  // after SE(3) alignment; scale of the Sim(3) one
+  double ate_share_of_path = kNaN;
+  double rpe_m = kNaN, rpe_rad = kNaN;  // RMSE over JudgeOptions::rpe_delta_ns, translations times the Sim(3) scale
+  double pose_coverage = kNaN, tracked_coverage = kNaN;
+  double nees_pose_per_dof = kNaN, nees_pose_scale_free_per_dof = kNaN, nees_velocity_per_dof = kNaN;  // time means
+  double nis_per_dof = kNaN;
 };
 
 // One per system, in the order of first appearance.
