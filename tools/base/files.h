@@ -105,7 +105,8 @@ class AtomicFile {
 void WriteFile(const std::filesystem::path& file, std::string_view bytes, Writers writers = Writers::one);
 void WriteFileAndFolders(const std::filesystem::path& file, std::string_view bytes);
 
-// WriteFileAndFolders of at most as many bytes as the file has. Without room for a second file they overwrite its beginning.
+// WriteFileAndFolders of at most as many bytes as the file has. Without room for a second file they overwrite its
+// beginning.
 void ShortenFile(const std::filesystem::path& file, std::string_view bytes);
 
 // Appends in one system call, if the system takes all bytes at once.

@@ -35,7 +35,7 @@ struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// "PATH: why", which the standard library tells the other way round and by its own function's name; else the error's
+// "PATH: why", which the standard library writes the other way round and with its own function's name; else the error's
 // words.
 inline std::string WordsOf(const std::exception& error) {
   const auto* of_file = dynamic_cast<const std::filesystem::filesystem_error*>(&error);

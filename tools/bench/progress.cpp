@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tools/base/child_process.h"
 #include "tools/bench/errors.h"
-#include "tools/bench/interrupt.h"
 
 namespace vobench {
 namespace {
@@ -18,7 +18,24 @@ constexpr auto kPlainLine = std::chrono::seconds(10);
 
 double Seconds(std::chrono::steady_clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
+sigset_t Signals() { return base::SignalSet({SIGINT, SIGTERM, SIGHUP}); }
+
 }  // namespace
+
+void HoldInterrupts() {
+  const sigset_t signals = Signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  // A pipe that was closed (`vobench ... | head`) is an error of the write, not the end of the program.
+  signal(SIGPIPE, SIG_IGN);
+}
+
+bool InterruptPending() {
+  const sigset_t signals = Signals();
+  sigset_t pending, ours;
+  sigpending(&pending);
+  sigandset(&ours, &pending, &signals);
+  return sigisemptyset(&ours) == 0;
+}
 
 Progress::Progress(std::string what, std::int64_t total, std::int64_t done, std::string unit)
     : what_(std::move(what)),

@@ -168,8 +168,8 @@ std::string WindowProblem(Cursor window, std::size_t bytes) {
   return PictureSizeProblem(corner[2] - corner[0] + 1, corner[3] - corner[1] + 1, bytes);
 }
 
-// The library takes an attribute of a type that it knows as long as the type is, whatever the header says, and reads on
-// from there.
+// The library takes an attribute of one of these types to be as long as the type, whatever the header says, and reads
+// on from there.
 const std::map<std::int32_t, std::set<std::string_view>>& TypesByLength() {
   static const std::map<std::int32_t, std::set<std::string_view>> types = {
       {1, {"compression", "deepImageState", "envmap", "lineOrder"}},

@@ -16,8 +16,8 @@ constexpr int kDeepestJson = 100;  // of lists and objects in each other; ours g
 constexpr std::size_t kMostStorageBytes = 1 << 20;
 constexpr int kDeepestStorage = 100;  // elements in each other
 
-// What is wrong with a text for nlohmann-json, which copies and prints values by recursion; empty: nothing. Whether it is
-// JSON at all is left to the parser.
+// What is wrong with a text for nlohmann-json, which copies and prints values by recursion; empty: nothing. Whether it
+// is JSON at all is left to the parser.
 std::string JsonProblem(std::string_view text);
 
 // What is wrong with an XML text for OpenCV's cv::FileStorage; empty: nothing. Without a bound (4.6) a few 10 kB of

@@ -1,4 +1,4 @@
-// Strict reader of settings files (YAML). Each component reads the keys that it knows; the default is the variable's
+// Strict reader of settings files (YAML). Each component reads its own keys; the default is the variable's
 // present value. All problems are collected and thrown at once, unknown keys among them. Structs with a field table
 // (fields.h) are read by field_reader.h.
 //
@@ -48,7 +48,7 @@ struct State;    // of a document
 
 // A section of the document, or of what could be there: an absent section reads as one without keys. A cheap handle
 // that keeps the document's data alive. The readers return whether the key was there and good; otherwise `value` stays
-// as it was, and if it was there, the document knows a problem. Values written to are in SI.
+// as it was, and if it was there, the document has a problem. Values written to are in SI.
 class Section {
  public:
   bool Has(const std::string& key) const;
@@ -149,7 +149,7 @@ class Document {
 
   Section root();
 
-  // Call it when everything has been asked for. Throws Error with all problems, among them each key that nobody asked
+  // Call it when everything has been asked for. Throws Error with all problems, among them each key that was not asked
   // for.
   void ThrowIfBad() const;
 

@@ -1,4 +1,5 @@
-// Figure of a report as values: axes with units, and series of numbers; and as JSON, which tools/bench/report/web draws.
+// Figure of a report as values: axes with units, and series of numbers; and as JSON, from which tools/bench/report/web
+// draws.
 // Source: docs/report_data.md.
 #pragma once
 
@@ -46,8 +47,8 @@ struct Series {
   bool faint = false;      // one of many runs
   Numbers x, y;
   Numbers high = {};                    // of bands and intervals
-  Numbers z = {}, t = {};               // in space; seconds, to be told of a point of a path
-  std::vector<std::string> notes = {};  // to be told of each point
+  Numbers z = {}, t = {};               // in space; seconds, shown with a point of a path
+  std::vector<std::string> notes = {};  // shown with each point
 };
 
 struct Figure {

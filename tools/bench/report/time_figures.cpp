@@ -1,5 +1,5 @@
-// Typical runs in time: errors after alignment, each component of the error beside the claim of the filter; features, map
-// and time of each frame.
+// Typical runs in time: errors after alignment, each component of the error beside the claim of the filter; features,
+// map and time of each frame.
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -56,7 +56,7 @@ struct ResultData {
 // From the smallest ATE to the largest; the order stays where nothing is judged.
 void SortByAte(std::vector<const RunData*>& runs);
 
-// How to tell a result folder (see OutputFolder): this file is in it, and nothing but these names.
+// Mark of a result folder (see OutputFolder): this file is in it, and nothing but these names.
 inline const std::string kResultMarker = "run.json";
 std::set<std::string> ResultNames(const std::vector<std::string>& systems);
 

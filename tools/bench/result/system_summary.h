@@ -45,8 +45,8 @@ Duel Compare(const std::vector<RunMetrics>& runs, const std::string& first, cons
 std::string TextSummary(const std::vector<RunMetrics>& runs);
 
 // Time per stage of an odometry [ms]: a row for each stage and one for all of them, median, 95th percentile and longest
-// over the frames. `elapsed_s` is how long all frames took by the clock, reading them included: with stages side by side
-// less than the sum. Empty for no frames.
+// over the frames. `elapsed_s` is how long all frames took by the clock, reading them included: with stages side by
+// side less than the sum. Empty for no frames.
 std::string TimeTable(const std::vector<evaluation::FrameRecord>& frames, double elapsed_s);
 
 }  // namespace vobench

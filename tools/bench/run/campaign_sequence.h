@@ -12,7 +12,7 @@ namespace vobench {
 // Of the contents of the files that the motion in a world of points is read from; empty where there is none.
 std::string DigestOfPointFiles(const sim::Scenario& scenario);
 
-// Reads the world of a scenario and tells the cache its files. Throws BadInput where one cannot be read.
+// Reads the world of a scenario and gives the cache the names of its files. Throws BadInput where one cannot be read.
 void FindWorld(const sim::Scenario& scenario, campaign::SequenceCache& cache);
 
 // Of all that the pictures depend on: settings, contents of files, version of the program. None where the files of the

@@ -138,7 +138,7 @@ Experiment Load(const Campaign& campaign, const TaskChoice& choice) {
   Experiment experiment = LoadExperiment(campaign.scenarios[choice.scenario].file, changes);
   const auto asks = [](const auto& change) { return change.first == "truth"; };
   if (experiment.scenario.points || std::any_of(changes.begin(), changes.end(), asks)) return experiment;
-  // No truth beside poses and velocities unless the campaign asks for it: nobody here would look at it.
+  // No truth beside poses and velocities unless the campaign asks for it: it would not be read here.
   experiment.scenario.truth.streams.clear();
   for (std::string* resolved : {&experiment.scenario.resolved, &experiment.resolved}) {
     auto json = nlohmann::ordered_json::parse(*resolved);
@@ -154,7 +154,7 @@ std::string DigestOfSettings(const Experiment& experiment) {
   return campaign::Digest(experiment.resolved + (scenario.points ? DigestOfPointFiles(scenario) : ""));
 }
 
-// A world of points has the seed of its task, and no pictures for somebody else's system.
+// A world of points has the seed of its task, and no pictures for an external system.
 void RefusePoints(const Campaign& campaign, const TaskChoice& choice, const campaign::TaskRunner::Refuse& refuse) {
   for (const auto& [key, value] : campaign::ChangesAt(campaign, choice)) {
     if (key == "seed") refuse("seed", "each task has a world of its own, with the seed of the task");

@@ -37,7 +37,7 @@ struct TrackOptions {
   std::filesystem::path sequence;
   std::filesystem::path output;
   std::string system = "rb2pf";
-  std::optional<std::string> camera;  // a preset or a file; the sequence's camera.yaml unless told
+  std::optional<std::string> camera;  // a preset or a file; absent: the sequence's camera.yaml
   std::optional<std::filesystem::path> settings;
   std::uint64_t seed = 1;
   bool view = false;                         // the report in a browser, while it runs

@@ -1,5 +1,5 @@
-// A scenario is rendered into a sequence with exact truth, an odometry runs on the sequence, and a judge that knows
-// both tests accuracy and consistency of the odometry.
+// A scenario is rendered into a sequence with exact truth, an odometry runs on the sequence, and a judge
+// tests accuracy and consistency of the estimate against the truth.
 #include <fmt/format.h>
 
 #include <memory>
@@ -24,7 +24,7 @@
 namespace vobench {
 namespace {
 
-// Each system with each seed. Of the truth they are told the start alone.
+// Each system with each seed. Of the truth they get the start alone.
 std::vector<Tracker> MakeTrackers(const RunOptions& options, const Experiment& experiment,
                                   const sim::Simulator& simulator, const Folder& folder) {
   const vo::Camera camera = CameraForOdometry(experiment);

@@ -27,8 +27,8 @@ RunDescription Describe(const RunOptions& options, const Experiment& experiment,
 // Writes the files at the top of the folder and report.html, and gives the folder its name. Throws std::runtime_error.
 void Conclude(OutputFolder& folder, ResultData& result);
 
-// task(i) for i = 0 ... count - 1 on `jobs` threads. Items share nothing: results do not depend on that number. Throws the
-// first exception of a task.
+// task(i) for i = 0 ... count - 1 on `jobs` threads. Items share nothing: results do not depend on that number. Throws
+// the first exception of a task.
 void ForEach(std::size_t count, int jobs, const std::function<void(std::size_t)>& task);
 
 // Each run has a world of points of its own, seeded like its filter. Called by Run.
