@@ -20,16 +20,6 @@ struct NotConsistent : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The streams of a sequence disagree; the work failed (1), and what disagrees has been printed.
-struct Inconsistent : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-// A campaign is done but for tasks that failed (exit 1); the message names the first.
-struct TasksFailed : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 // The work was stopped by a signal (exit 1); the message says what was kept.
 struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;

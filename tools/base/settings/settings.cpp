@@ -1,7 +1,6 @@
 #include "tools/base/settings/settings.h"
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 
 #include "tools/base/settings/state.h"

@@ -1,13 +1,11 @@
 // NEES, NIS and ranks, each with what a consistent filter would show.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
 
 #include "tools/bench/report/figures.h"
 #include "tools/bench/text.h"
-#include "tools/judge/evaluation/nis.h"
 
 namespace vobench::report {
 namespace {

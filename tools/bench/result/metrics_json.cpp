@@ -7,7 +7,6 @@
 #include "tools/base/text.h"
 #include "tools/bench/result/json_file.h"
 #include "tools/bench/result/system_summary.h"
-#include "tools/bench/text.h"
 
 namespace vobench {
 namespace {

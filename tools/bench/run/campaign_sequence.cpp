@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <stdexcept>
-#include <system_error>
 #include <vector>
 
 #include "sim/sequence/journal.h"

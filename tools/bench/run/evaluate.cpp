@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <string_view>
 
 #include "tools/bench/errors.h"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <string.h>
 
-#include <stdexcept>
 
 #include "sim/scenario/stamps.h"
 #include "sim/sequence/format.h"

@@ -2,7 +2,6 @@
 // tests accuracy and consistency of the estimate against the truth.
 #include <fmt/format.h>
 
-#include <memory>
 #include <optional>
 #include <vector>
 

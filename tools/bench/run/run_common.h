@@ -12,7 +12,6 @@
 #include "tools/bench/result/result.h"
 #include "tools/bench/run/commands.h"
 #include "tools/bench/systems/experiment.h"
-#include "tools/judge/evaluation/summary.h"
 
 namespace vobench {
 

@@ -1,7 +1,6 @@
 // A world of points is played to each system with each seed, and judged: Monte Carlo without images.
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <mutex>
 #include <optional>
 #include <vector>
