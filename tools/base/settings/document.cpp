@@ -107,12 +107,12 @@ Document Document::FromText(const std::string& text, const std::string& name, Di
   const bool invalid = std::any_of(problems.begin(), problems.end(), [](const Problem& problem) {
     return problem.message.starts_with("not valid YAML");
   });
-  if (state->root.kind != Element::Kind::map && state->root.kind != Element::Kind::null) {
+  const bool has_keys = state->root.kind == Element::Kind::map || state->root.kind == Element::Kind::null;
+  if (!has_keys) {
     problems.push_back(Place{name, state->root.place.line, state->root.place.column}.AsProblem(
         "expected keys with values, not " + Describe(state->root)));
-    throw Error(std::move(problems));
   }
-  if (invalid) throw Error(std::move(problems));
+  if (invalid || !has_keys) throw Error(std::move(problems));
   state->problems = std::move(problems);
   return Document(std::move(state));
 }

@@ -129,14 +129,14 @@ bool Section::Read(const std::string& key, std::vector<std::string>& value) {
   });
 }
 
-bool Section::ReadNumbers(const std::string& key, double* values, std::size_t count, Unit unit, const Range& range) {
-  std::vector<double> value(values, values + count);
+bool Section::Read(const std::string& key, std::span<double> values, Unit unit, const Range& range) {
+  std::vector<double> value(values.begin(), values.end());
   const bool good = ReadBy(key, value, [&](const Value& given, std::vector<double>& read) {
     return given.Numbers(unit, range, read) &&
-           (read.size() == count ||
-            given.Fail("expected " + std::to_string(count) + " numbers, not " + std::to_string(read.size())));
+           (read.size() == values.size() ||
+            given.Fail("expected " + std::to_string(values.size()) + " numbers, not " + std::to_string(read.size())));
   });
-  std::copy(value.begin(), value.end(), values);
+  std::ranges::copy(value, values.begin());
   return good;
 }
 

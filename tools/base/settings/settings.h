@@ -10,12 +10,12 @@
 //   document.ThrowIfBad();
 #pragma once
 
-#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -60,10 +60,8 @@ class Section {
   bool Read(const std::string& key, std::string& value);  // not empty
   bool Read(const std::string& key, std::vector<double>& value, Unit unit = Unit::none, const Range& range = {});
   bool Read(const std::string& key, std::vector<std::string>& value);
-  template <std::size_t N>
-  bool Read(const std::string& key, std::array<double, N>& value, Unit unit = Unit::none, const Range& range = {}) {
-    return ReadNumbers(key, value.data(), N, unit, range);
-  }
+  // A list of as many numbers.
+  bool Read(const std::string& key, std::span<double> values, Unit unit = Unit::none, const Range& range = {});
 
   // Like Read with the same arguments, but a key that is not there is a problem.
   template <class... Arguments>
@@ -127,7 +125,6 @@ class Section {
 
   const Element* Find(const std::string& key) const;
   Request& Register(const std::string& key);
-  bool ReadNumbers(const std::string& key, double* values, std::size_t count, Unit unit, const Range& range);
   bool ReadName(const std::string& key, const std::vector<std::string>& names, std::size_t& index);
   template <class T, class Parse>
   bool ReadBy(const std::string& key, T& value, const Parse& parse);
