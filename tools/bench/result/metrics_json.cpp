@@ -184,7 +184,7 @@ Json Of(const SystemSummary& s) {
 
 }  // namespace
 
-std::string MetricsJson(const std::vector<RunMetrics>& runs) {
+void WriteMetricsJson(const std::filesystem::path& out, const std::vector<RunMetrics>& runs) {
   Json json = {{"format", kFormat}, {"systems", Json::array()}, {"baselines", Json::array()}, {"runs", Json::array()}};
   for (const SystemSummary& summary : SummariseSystems(runs)) json["systems"].push_back(Of(summary));
   for (const SystemSummary& summary : SummariseBaselines(runs)) json["baselines"].push_back(Of(summary));
@@ -193,11 +193,7 @@ std::string MetricsJson(const std::vector<RunMetrics>& runs) {
     run.update(Of(judged.metrics));
     json["runs"].push_back(run);
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-void WriteMetricsJson(const std::filesystem::path& out, const std::vector<RunMetrics>& runs) {
-  base::WriteFile(out / "metrics.json", MetricsJson(runs));
+  base::WriteFile(out / "metrics.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 std::vector<RecordedMetrics> ReadMetricsJson(const std::filesystem::path& out) {
