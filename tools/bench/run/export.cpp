@@ -75,7 +75,7 @@ std::vector<ImuReading> ReadImu(const fs::path& table) {
   evaluation::Problems problems;
   for (const evaluation::Line& line : evaluation::ReadLines(table, ',')) {
     const auto stamp_ns = base::ParseSeconds(line.tokens[0].text + "e-9");
-    Eigen::Matrix<double, 6, 1> values;
+    Eigen::Matrix<double, 6, 1> values = Eigen::Matrix<double, 6, 1>::Zero();
     bool good = stamp_ns.has_value() && line.tokens.size() >= 7;
     for (std::size_t i = 1; good && i < 7; ++i) {
       const auto number = evaluation::ParseNumber(line.tokens[i].text);
