@@ -112,12 +112,6 @@ std::string VerdictText(const SystemVerdict& v) {
   return text + VerdictSentence(v) + "\n";
 }
 
-std::vector<VerdictRow> VerdictRows(const SystemVerdict& v) {
-  std::vector<VerdictRow> rows;
-  for (const ev::Check& check : v.verdict.checks) rows.push_back({v.system, check});
-  return rows;
-}
-
 void WriteVerdict(const std::filesystem::path& out, const std::vector<VerdictRow>& rows) {
   std::string text = "system,check,value,relation,threshold,pass,false_alarm\n";
   for (const auto& [system, check] : rows) {

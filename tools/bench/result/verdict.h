@@ -29,7 +29,6 @@ struct VerdictRow {
   std::string system;
   evaluation::Check check;
 };
-std::vector<VerdictRow> VerdictRows(const SystemVerdict& verdict);
 
 // verdict.csv: system,check,value,relation,threshold,pass,false_alarm. Throws std::runtime_error.
 void WriteVerdict(const std::filesystem::path& out, const std::vector<VerdictRow>& rows);
