@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <string.h>
 
-
 #include "sim/scenario/stamps.h"
 #include "sim/sequence/format.h"
 #include "sim/sequence/layout.h"
