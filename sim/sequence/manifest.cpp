@@ -5,7 +5,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "tools/base/limits/json.h"
+#include "tools/base/limits/structured_text.h"
 
 namespace sim {
 namespace {

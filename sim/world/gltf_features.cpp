@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "tools/base/limits/json.h"
+#include "tools/base/limits/structured_text.h"
 
 namespace sim {
 namespace {

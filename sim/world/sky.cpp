@@ -17,7 +17,6 @@
 
 #include "sim/world/srgb.h"
 #include "tools/base/files.h"
-#include "tools/base/limits/exr.h"
 #include "tools/base/limits/picture.h"
 
 namespace sim {

@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "tests/fuzz/hold.h"
-#include "tools/bench/result/ranks.h"
 #include "tools/bench/result/verdict.h"
 #include "tools/judge/verification/check.h"
 #include "tools/judge/verification/files.h"

@@ -8,7 +8,7 @@
 #ifdef VOBENCH_ROSBAG
 #include <algorithm>
 
-#include "tools/bench/sequence/bag_file.h"
+#include "tests/system/bag_topics.h"
 #endif
 
 namespace vobench::system_test {
@@ -32,7 +32,7 @@ TEST_F(ExportTest, EveryLayoutGivesTheSameMessages) {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("5 images with the camera, 5 depth images"));
     EXPECT_THAT(outcome.out, HasSubstr("all times are 1 s later"));
-    const std::vector<std::string> topics = BagFile::Topics((here_ / (layout + ".bag")).string());
+    const std::vector<std::string> topics = BagTopics((here_ / (layout + ".bag")).string());
     for (const std::string topic :
          {"/camera/camera_info sensor_msgs/CameraInfo 5", "/camera/depth/image_raw sensor_msgs/Image 5",
           "/camera/image_raw sensor_msgs/Image 5", "/ground_truth/pose geometry_msgs/PoseStamped 5"}) {
@@ -41,7 +41,7 @@ TEST_F(ExportTest, EveryLayoutGivesTheSameMessages) {
     EXPECT_EQ(topics.size(), 5u);
     EXPECT_THAT(topics.back(), testing::StartsWith("/imu sensor_msgs/Imu "));
   }
-  EXPECT_EQ(BagFile::Topics((here_ / "tum.bag").string()), BagFile::Topics((here_ / "euroc.bag").string()));
+  EXPECT_EQ(BagTopics((here_ / "tum.bag").string()), BagTopics((here_ / "euroc.bag").string()));
 }
 
 // The numbers, by another program: Debian's python3-rosbag.

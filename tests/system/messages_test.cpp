@@ -232,7 +232,7 @@ const std::vector<Message>& Messages() {
       {"tools/bench/systems/experiment.cpp",
        {"check", "TINY", "--set", "odometry.filter.particles=-2"},
        {"--set odometry.filter.particles", "'-2'", "1 ... "}},
-      {"tools/bench/run/report.cpp", {"report", "nowhere"}, {"nowhere/run.json", "cannot be opened"}},
+      {"tools/bench/run/run_common.cpp", {"report", "nowhere"}, {"nowhere/run.json", "cannot be opened"}},
       {"tools/judge/verification/files.cpp", {"verify", "nowhere"}, {"nowhere/rgb.txt", "is not there, and is needed"}},
 #ifdef VOBENCH_ROSBAG
       {"tools/bench/run/export.cpp",

@@ -47,7 +47,8 @@ struct ExitStatus {
 // of this process only the calling one exists in the child.
 class ChildProcess {
  public:
-  // Runs work(answer) in the child; `answer` is the write end of a pipe, the result the exit status, 1 for an exception.
+  // Runs work(answer) in the child; `answer` is the write end of a pipe, the result the exit status, 1 for an
+  // exception.
   // Throws std::system_error when no process can be started.
   explicit ChildProcess(const std::function<int(int answer)>& work);
 

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cerrno>
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -105,7 +104,8 @@ class AtomicFile {
 void WriteFile(const std::filesystem::path& file, std::string_view bytes, Writers writers = Writers::one);
 void WriteFileAndFolders(const std::filesystem::path& file, std::string_view bytes);
 
-// WriteFileAndFolders of at most as many bytes as the file has. Without room for a second file they overwrite its beginning.
+// WriteFileAndFolders of at most as many bytes as the file has. Without room for a second file they overwrite its
+// beginning.
 void ShortenFile(const std::filesystem::path& file, std::string_view bytes);
 
 // Appends in one system call, if the system takes all bytes at once.
@@ -121,7 +121,6 @@ class AtomicFolder {
   AtomicFolder& operator=(const AtomicFolder&) = delete;
 
   const std::filesystem::path& path() const { return temporary_; }
-  const std::filesystem::path& final_path() const { return final_; }
   void Commit();
 
  private:

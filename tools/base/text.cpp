@@ -1,6 +1,5 @@
 #include "tools/base/text.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <system_error>

@@ -20,22 +20,12 @@ struct NotConsistent : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The streams of a sequence disagree; the work failed (1), and what disagrees has been printed.
-struct Inconsistent : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-// A campaign is done but for tasks that failed (exit 1); the message names the first.
-struct TasksFailed : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 // The work was stopped by a signal (exit 1); the message says what was kept.
 struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// "PATH: why", which the standard library tells the other way round and by its own function's name; else the error's
+// "PATH: why", which the standard library writes the other way round and with its own function's name; else the error's
 // words.
 inline std::string WordsOf(const std::exception& error) {
   const auto* of_file = dynamic_cast<const std::filesystem::filesystem_error*>(&error);

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tools/base/child_process.h"
 #include "tools/bench/errors.h"
-#include "tools/bench/interrupt.h"
 
 namespace vobench {
 namespace {
@@ -18,7 +18,24 @@ constexpr auto kPlainLine = std::chrono::seconds(10);
 
 double Seconds(std::chrono::steady_clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
+sigset_t Signals() { return base::SignalSet({SIGINT, SIGTERM, SIGHUP}); }
+
 }  // namespace
+
+void HoldInterrupts() {
+  const sigset_t signals = Signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  // A pipe that was closed (`vobench ... | head`) is an error of the write, not the end of the program.
+  signal(SIGPIPE, SIG_IGN);
+}
+
+bool InterruptPending() {
+  const sigset_t signals = Signals();
+  sigset_t pending, ours;
+  sigpending(&pending);
+  sigandset(&ours, &pending, &signals);
+  return sigisemptyset(&ours) == 0;
+}
 
 Progress::Progress(std::string what, std::int64_t total, std::int64_t done, std::string unit)
     : what_(std::move(what)),
@@ -29,8 +46,7 @@ Progress::Progress(std::string what, std::int64_t total, std::int64_t done, std:
       terminal_(isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()),
       drawn_(start_) {
-  if (terminal_) return;
-  if (total_ == 0) return;
+  if (terminal_ || total_ == 0) return;
   fmt::print(stderr, "{}: {} {}", what_, total_, unit_);
   if (before_ > 0) fmt::print(stderr, ", {} of them are there", before_);
   fmt::print(stderr, "\n");
@@ -54,13 +70,10 @@ void Progress::Step(std::int64_t count) {
 
 void Progress::Draw() const {
   const double elapsed = Seconds(drawn_ - start_);
-  if (total_ == 0) {
-    fmt::print(stderr, "{}{}: {} {}, {}{}", terminal_ ? "\r" : "", what_, done_, unit_, Duration(elapsed),
+  if (total_ == 0 || !terminal_) {
+    const std::string of = total_ == 0 ? "" : fmt::format("/{}", total_);
+    fmt::print(stderr, "{}{}: {}{} {}, {}{}", terminal_ ? "\r" : "", what_, done_, of, unit_, Duration(elapsed),
                terminal_ ? "    " : "\n");
-    return;
-  }
-  if (!terminal_) {
-    fmt::print(stderr, "{}: {}/{} {}, {}\n", what_, done_, total_, unit_, Duration(elapsed));
     return;
   }
   constexpr int kWidth = 30;

@@ -1,4 +1,5 @@
-// Progress on stderr: a bar with the remaining time on a terminal, plain lines otherwise.
+// Long work: progress on stderr, a bar with the remaining time on a terminal and plain lines otherwise; and Ctrl-C,
+// noticed between two steps, so that destructors run and nothing half-written stays.
 #pragma once
 
 #include <chrono>
@@ -6,6 +7,11 @@
 #include <string>
 
 namespace vobench {
+
+// From now on SIGINT, SIGTERM and SIGHUP wait to be asked for. Call once, before any thread starts: threads inherit it.
+void HoldInterrupts();
+// Whether one of them waits.
+bool InterruptPending();
 
 class Progress {
  public:
@@ -16,7 +22,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   // So many more of the total are done, at least one. Throws Interrupted when Ctrl-C or a request to end has arrived,
-  // but not where the total is unknown: there that is how the work ends, and the caller asks for it (interrupt.h).
+  // but not where the total is unknown: there that is how the work ends, and the caller calls InterruptPending.
   void Step(std::int64_t count = 1);
 
  private:

@@ -1,9 +1,10 @@
 #include "tools/bench/text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <map>
 
 #include "tools/base/text.h"
@@ -27,15 +28,8 @@ std::string Fixed(double value, int decimals) {
 std::string Readable(double value) {
   if (!std::isfinite(value)) return "–";
   const double size = std::abs(value);
-  if (size != 0 && (size >= 1e5 || size < 1e-3)) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.1e", value);
-    return text;
-  }
-  if (size >= 100) return Fixed(value, 0);
-  if (size >= 10) return Fixed(value, 1);
-  if (size >= 1) return Fixed(value, 2);
-  return Fixed(value, 3);
+  if (size != 0 && (size >= 1e5 || size < 1e-3)) return fmt::format("{:.1e}", value);
+  return Fixed(value, size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3);
 }
 
 std::string Percent(double share, int decimals) {
@@ -50,27 +44,12 @@ std::string DisplayName(const std::string& system) {
 }
 
 std::string Escape(const std::string& text) {
+  static const std::map<char, const char*> entities = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
   std::string escaped;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      case '\'':
-        escaped += "&#39;";
-        break;
-      default:
-        escaped += c;
-    }
+    const auto entity = entities.find(c);
+    entity == entities.end() ? escaped += c : escaped += entity->second;
   }
   return escaped;
 }

@@ -1,10 +1,13 @@
 // Numbers, names and tables as text, for reports and terminals.
 #pragma once
 
+#include <numbers>
 #include <string>
 #include <vector>
 
 namespace vobench {
+
+constexpr double kDegrees = 180 / std::numbers::pi;  // of a radian
 
 // A fixed number of decimals; "–" for what is not a number.
 std::string Fixed(double value, int decimals);

@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "tools/bench/errors.h"
-#include "tools/bench/interrupt.h"
+#include "tools/bench/progress.h"
 #include "tools/vobench/arguments.h"
 
 namespace vobench {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/base/limits/opencv_storage.h"
+#include "tools/base/limits/structured_text.h"
 #include "tools/base/settings/settings.h"
 #include "vo/geometry/calibration_numbers.h"
 

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tools/bench/result/ranks.h"
 #include "tools/bench/tracking/verdict_recorder.h"
 #include "tools/judge/evaluation/mixture_scores.h"
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <optional>
+#include <set>
 #include <string_view>
+#include <utility>
 
 namespace limits {
 namespace {
@@ -61,22 +64,11 @@ Size OfTiff(Bytes file, bool little) {
     const std::size_t at = directory + 2 + 12 * static_cast<std::size_t>(i);
     constexpr std::int64_t kShort = 3;
     const std::int64_t value = Number(file, at + 8, Number(file, at + 2, 2, little) == kShort ? 2 : 4, little);
-    switch (Number(file, at, 2, little)) {
-      case 256:
-        picture.width = value;
-        break;
-      case 257:
-        picture.height = value;
-        break;
-      case 322:
-        tile.width = value;
-        break;
-      case 323:
-        tile.height = value;
-        break;
-      default:
-        break;
-    }
+    const std::int64_t tag = Number(file, at, 2, little);
+    if (tag == 256) picture.width = value;
+    if (tag == 257) picture.height = value;
+    if (tag == 322) tile.width = value;
+    if (tag == 323) tile.height = value;
   }
   if (picture.width < 1 || picture.height < 1) return {};
   return {std::max(picture.width, tile.width), std::max(picture.height, tile.height)};
@@ -144,6 +136,79 @@ std::optional<Size> SizeOf(Bytes file) {
   return std::nullopt;
 }
 
+// Reads on from a place; nothing where the file ends before.
+class Cursor {
+ public:
+  Cursor(Bytes file, std::size_t at) : file_(file), at_(std::min(at, file.size())) {}
+
+  std::optional<std::int32_t> Number() {
+    if (left() < 4) return std::nullopt;
+    return static_cast<std::int32_t>(limits::Number(file_, std::exchange(at_, at_ + 4), 4, true));
+  }
+  std::optional<std::string> Text() {
+    const auto rest = file_.subspan(at_);
+    const auto end = std::find(rest.begin(), rest.end(), std::uint8_t{0});
+    if (end == rest.end()) return std::nullopt;
+    std::string text(rest.begin(), end);
+    at_ += text.size() + 1;
+    return text;
+  }
+  void Skip(std::size_t bytes) { at_ += bytes; }
+  std::size_t left() const { return file_.size() - at_; }
+
+ private:
+  Bytes file_;
+  std::size_t at_;
+};
+
+// "xMin yMin xMax yMax"
+std::string WindowProblem(Cursor window, std::size_t bytes) {
+  std::int64_t corner[4] = {};
+  for (std::int64_t& value : corner) value = window.Number().value_or(0);
+  return PictureSizeProblem(corner[2] - corner[0] + 1, corner[3] - corner[1] + 1, bytes);
+}
+
+// The library takes an attribute of one of these types to be as long as the type, whatever the header says, and reads
+// on from there.
+const std::map<std::int32_t, std::set<std::string_view>>& TypesByLength() {
+  static const std::map<std::int32_t, std::set<std::string_view>> types = {
+      {1, {"compression", "deepImageState", "envmap", "lineOrder"}},
+      {4, {"float", "int"}},
+      {8, {"double", "rational", "timecode", "v2f", "v2i"}},
+      {9, {"tiledesc"}},
+      {12, {"v3f", "v3i"}},
+      {16, {"box2f", "box2i", "v2d"}},
+      {24, {"v3d"}},
+      {28, {"keycode"}},
+      {32, {"chromaticities"}},
+      {36, {"m33f"}},
+      {64, {"m44f"}},
+      {72, {"m33d"}},
+      {128, {"m44d"}}};
+  return types;
+}
+
+bool IsAsLongAsItsType(const std::string& type, Cursor value, std::int32_t size) {
+  for (const auto& [length, types] : TypesByLength()) {
+    if (types.contains(type)) return size == length;
+  }
+  if (type == "preview") {
+    const std::int64_t width = value.Number().value_or(0), height = value.Number().value_or(0);
+    return width >= 0 && height >= 0 && width < kLongestSide && height < kLongestSide && size == 8 + 4 * width * height;
+  }
+  if (type == "chlist") {  // names, each with 16 bytes; an empty one ends them
+    const std::size_t end = value.left() - static_cast<std::size_t>(size);
+    while (value.left() > end) {
+      const std::string name = value.Text().value_or("");
+      if (name.empty()) return value.left() == end;
+      if (value.left() < 16) return false;
+      value.Skip(16);
+    }
+    return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::size_t bytes) {
@@ -165,6 +230,41 @@ std::string PictureProblem(Bytes file) {
   const std::optional<Size> size = SizeOf(file);
   if (!size) return "not a picture that is read here (PNG, JPEG, BMP, TIFF, WebP, PNM, HDR)";
   return PictureSizeProblem(size->width, size->height, file.size());
+}
+
+std::string ExrProblem(Bytes file) {
+  constexpr std::uint8_t kManyParts = 0x10;  // in the second byte of the version
+  const bool many_parts = file.size() > 5 && (file[5] & kManyParts) != 0;
+  Cursor at(file, 8);
+  // An empty name ends a part; where there are many, a second one ends the last of them.
+  for (bool between_parts = false;;) {
+    const std::optional<std::string> name = at.Text();
+    if (!name) return "its header breaks off";
+    if (name->empty()) {
+      if (!many_parts || between_parts) return "";
+      between_parts = true;
+      continue;
+    }
+    between_parts = false;
+    const std::optional<std::string> type = at.Text();
+    const std::optional<std::int32_t> size = at.Number();
+    if (!type || !size || *size < 0 || static_cast<std::size_t>(*size) > at.left())
+      return "its attribute '" + name->substr(0, 40) + "' goes beyond the file's end";
+    if (*type == "stringvector" || *type == "idmanifest")
+      return "its attribute '" + name->substr(0, 40) + "' is of a type that is not used here";
+    if (!IsAsLongAsItsType(*type, at, *size))
+      return "its attribute '" + name->substr(0, 40) + "' is not as long as its type";
+    if (*name == "dataWindow" || *name == "displayWindow") {
+      if (std::string problem = WindowProblem(at, file.size()); !problem.empty()) return problem;
+    }
+    if (*name == "tiles") {
+      Cursor tile = at;
+      const std::int64_t width = tile.Number().value_or(0), height = tile.Number().value_or(0);
+      if (const std::string problem = PictureSizeProblem(width, height, file.size()); !problem.empty())
+        return "tiles: " + problem;
+    }
+    at.Skip(static_cast<std::size_t>(*size));
+  }
 }
 
 }  // namespace limits

@@ -1,7 +1,7 @@
-// Purpose: whether a picture file may be given to a decoder: its kind, and the size that its header tells, before
-// anything is
-//          allocated for it.
-// Source:  ISO 15948 (PNG), ITU T.81 (JPEG), TIFF 6.0, RFC 9649 (WebP); docs/reliability.md, "Hostile input".
+// Limits of picture files from elsewhere: whether one may be given to a decoder, by its kind and the size in its
+// header, before anything is allocated for it.
+// Source: ISO 15948 (PNG), ITU T.81 (JPEG), TIFF 6.0, RFC 9649 (WebP), openexr.com/en/latest/OpenEXRFileLayout.html;
+// docs/reliability.md, "Hostile input".
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,12 @@ constexpr std::int64_t kPixelsPerByte = 128;        // and to so many more for e
 // What is wrong with a size for a file of so many bytes; empty: nothing.
 std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::size_t bytes);
 
-// The same of a whole file. PNG, JPEG, BMP, TIFF, WebP, PNM and Radiance HDR pass; other kinds are not read, so that a
-// decoder that nobody needs meets nobody's file.
+// The same of a whole file. PNG, JPEG, BMP, TIFF, WebP, PNM and Radiance HDR pass; other kinds are not read, so that no
+// file reaches a decoder that is not needed.
 std::string PictureProblem(std::span<const std::uint8_t> file);
+
+// What is wrong with an OpenEXR file, all of it, by its header; empty: nothing. The library (3.1) makes room for an
+// attribute of any size that the header states, and for tables of a picture of any height.
+std::string ExrProblem(std::span<const std::uint8_t> file);
 
 }  // namespace limits

@@ -1,5 +1,3 @@
-#include "tools/base/settings/element.h"
-
 #include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
@@ -7,8 +5,11 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <sstream>
 #include <utility>
+
+#include "tools/base/settings/state.h"
 
 namespace settings {
 namespace {
@@ -24,7 +25,7 @@ class Builder : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { Add(MakeElement(Element::Kind::null, mark)); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    AddProblem(mark, "aliases (*name) are not supported: write the value out");
+    AddProblem(PlaceOf(mark), "aliases (*name) are not supported: write the value out");
     Add(MakeElement(Element::Kind::null, mark));
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, const std::string& value) override {
@@ -75,13 +76,10 @@ class Builder : public YAML::EventHandler {
     element.place = PlaceOf(mark);
     return element;
   }
-  void AddProblem(const Place& place, std::string message) {
-    problems_.push_back({place.file, place.line, place.column, std::move(message), place.key});
-  }
-  void AddProblem(const YAML::Mark& mark, std::string message) { AddProblem(PlaceOf(mark), std::move(message)); }
+  void AddProblem(const Place& place, std::string message) { problems_.push_back(place.AsProblem(std::move(message))); }
   void CheckTag(const YAML::Mark& mark, const std::string& tag) {
     if (dialect_ == Dialect::opencv || tag == "?" || tag == "!" || tag.empty()) return;
-    AddProblem(mark, "tags (" + tag + ") are not supported");
+    AddProblem(PlaceOf(mark), "tags (" + tag + ") are not supported");
   }
   void Close() {
     Element element = std::move(open_.back().element);
@@ -125,7 +123,7 @@ class Builder : public YAML::EventHandler {
 }  // namespace
 
 const Element* Element::Find(const std::string& key) const {
-  const auto at = std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) { return entry.key == key; });
+  const auto at = std::ranges::find(entries, key, &Entry::key);
   return at == entries.end() ? nullptr : &at->value;
 }
 
@@ -143,11 +141,47 @@ std::string Describe(const Element& element) {
   return "nothing";
 }
 
+std::string Flow(const Element& element) {
+  std::string text;
+  switch (element.kind) {
+    case Element::Kind::null:
+      return "null";
+    case Element::Kind::scalar:
+      return QuoteJson(element.text);
+    case Element::Kind::list:
+      for (const Element& item : element.items) text += (text.empty() ? "" : ", ") + Flow(item);
+      return "[" + text + "]";
+    case Element::Kind::map:
+      for (const Entry& entry : element.entries) {
+        text += (text.empty() ? "" : ", ") + QuoteJson(entry.key) + ": " + Flow(entry.value);
+      }
+      return "{" + text + "}";
+  }
+  return text;
+}
+
+std::string QuoteJson(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      quoted += '\\';
+      quoted += c;
+    } else if (byte < 0x20 || byte == 0x7f) {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\u%04x", static_cast<unsigned>(byte));
+      quoted += code;
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + "\"";
+}
+
 Element ParseYaml(const std::string& text, const Place& from, std::vector<Problem>& problems, Dialect dialect) {
   Builder builder(from, dialect, problems);
   const auto fail = [&](const std::string& message, const YAML::Mark& mark = YAML::Mark::null_mark()) {
-    const Place place = builder.PlaceOf(mark);
-    problems.push_back({place.file, place.line, place.column, message, place.key});
+    problems.push_back(builder.PlaceOf(mark).AsProblem(message));
   };
   try {
     std::istringstream stream(dialect == Dialect::opencv && text.starts_with('%') ? "#" + text.substr(1) : text);

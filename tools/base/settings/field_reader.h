@@ -3,7 +3,6 @@
 
 #include <array>
 #include <concepts>
-#include <string>
 #include <type_traits>
 #include <utility>
 

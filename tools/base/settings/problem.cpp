@@ -3,15 +3,6 @@
 #include <utility>
 
 namespace settings {
-namespace {
-
-std::string Join(const std::vector<Problem>& problems) {
-  std::string text;
-  for (const Problem& problem : problems) text += (text.empty() ? "" : "\n") + ToString(problem);
-  return text;
-}
-
-}  // namespace
 
 std::string ToString(const Problem& problem) {
   std::string place = problem.file;
@@ -19,6 +10,12 @@ std::string ToString(const Problem& problem) {
   return place + ": " + problem.message;
 }
 
-Error::Error(std::vector<Problem> problems) : std::runtime_error(Join(problems)), problems_(std::move(problems)) {}
+std::string Joined(const std::vector<Problem>& problems) {
+  std::string text;
+  for (const Problem& problem : problems) text += (text.empty() ? "" : "\n") + ToString(problem);
+  return text;
+}
+
+Error::Error(std::vector<Problem> problems) : std::runtime_error(Joined(problems)), problems_(std::move(problems)) {}
 
 }  // namespace settings

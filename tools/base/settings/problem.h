@@ -18,6 +18,9 @@ struct Problem {
 // "file:line:column: message", or "file: message" without a line.
 std::string ToString(const Problem& problem);
 
+// All of them, one a line.
+std::string Joined(const std::vector<Problem>& problems);
+
 // what(): all problems, one per line, in the order of the file.
 class Error : public std::runtime_error {
  public:

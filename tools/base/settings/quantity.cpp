@@ -1,5 +1,6 @@
 #include "tools/base/settings/quantity.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -69,18 +70,16 @@ std::string_view Trim(std::string_view text) {
   return text;
 }
 
+std::string_view WithoutPlus(std::string_view number) {
+  return number.starts_with('+') && !number.starts_with("+-") ? number.substr(1) : number;
+}
+
 bool IsNotFinite(std::string_view text) {
   if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
   if (!text.empty() && text.front() == '.') text.remove_prefix(1);  // YAML writes .nan, .inf
   std::string word;
   for (const char c : text.substr(0, 3)) word += static_cast<char>(c | 0x20);
   return word == "nan" || word == "inf";
-}
-
-bool InRange(double value, std::string_view text, const Range& range, Unit unit, std::string& problem) {
-  if (range.Holds(value)) return true;
-  problem = Quoted(text) + " " + Rule(range, unit);
-  return false;
 }
 
 }  // namespace
@@ -92,58 +91,42 @@ std::string_view SymbolOf(Unit unit) {
 
 bool ParseQuantity(std::string_view text, Unit unit, const Range& range, double& value, std::string& problem) {
   const Kind& kind = KindOf(unit);
-  const std::string_view trimmed = Trim(text);
-  std::string_view digits = trimmed;
-  if (IsNotFinite(digits)) {
-    problem = Quoted(text) + " is not a finite number";
+  const auto fail = [&](const std::string& what) {
+    problem = Quoted(text).append(what);
     return false;
-  }
-  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
+  };
+  if (IsNotFinite(Trim(text))) return fail(" is not a finite number");
+  const std::string_view digits = WithoutPlus(Trim(text));
   double number = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (error == std::errc::result_out_of_range) {
-    problem = Quoted(text) + " is out of the range of numbers";
-    return false;
-  }
+  if (error == std::errc::result_out_of_range) return fail(" is out of the range of numbers");
   const std::string_view suffix = Trim(digits.substr(static_cast<std::size_t>(end - digits.data())));
-  bool known = error == std::errc() && suffix.empty();
-  if (error == std::errc()) {
-    for (const UnitName& candidate : kind.units) {
-      if (suffix != candidate.name) continue;
-      number = number * candidate.multiply / candidate.divide;
-      known = true;
-    }
-  }
-  if (!known) {
-    problem = Quoted(text) + " is not " + std::string(kind.article_and_name) + ": " + Expected(kind);
-    return false;
-  }
-  if (!std::isfinite(number)) {
-    problem = Quoted(text) + " is out of the range of numbers";
-    return false;
-  }
-  if (!InRange(number, text, range, unit, problem)) return false;
+  const auto unit_name = std::ranges::find(kind.units, suffix, &UnitName::name);
+  if (error != std::errc() || (!suffix.empty() && unit_name == kind.units.end()))
+    return fail(" is not " + std::string(kind.article_and_name) + ": " + Expected(kind));
+  if (!suffix.empty()) number = number * unit_name->multiply / unit_name->divide;
+  if (!std::isfinite(number)) return fail(" is out of the range of numbers");
+  if (!range.Holds(number)) return fail(" " + Rule(range, unit));
   value = number;
   return true;
 }
 
 template <class T>
 bool ParseInteger(std::string_view text, const Range& range, T& value, std::string& problem) {
-  std::string_view digits = Trim(text);
-  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
+  const auto fail = [&](const std::string& what) {
+    problem = Quoted(text).append(what);
+    return false;
+  };
+  const std::string_view digits = WithoutPlus(Trim(text));
   T number = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   const bool complete = end == digits.data() + digits.size() && !digits.empty();
   if (complete && error == std::errc::result_out_of_range) {
-    problem = Quoted(text) + " does not fit: expected a whole number of at most " +
-              std::to_string(std::numeric_limits<T>::max());
-    return false;
+    return fail(" does not fit: expected a whole number of at most " + std::to_string(std::numeric_limits<T>::max()));
   }
-  if (!complete || error != std::errc()) {
-    problem = Quoted(text) + " is not a whole number" + (std::numeric_limits<T>::min() == 0 ? " of at least 0" : "");
-    return false;
-  }
-  if (!InRange(static_cast<double>(number), text, range, Unit::none, problem)) return false;
+  if (!complete || error != std::errc())
+    return fail(std::string(" is not a whole number") + (std::numeric_limits<T>::min() == 0 ? " of at least 0" : ""));
+  if (!range.Holds(static_cast<double>(number))) return fail(" " + Rule(range, Unit::none));
   value = number;
   return true;
 }

@@ -1,64 +1,59 @@
 #include "tools/base/settings/settings.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 
-#include "tools/base/settings/element.h"
-#include "tools/base/settings/request.h"
 #include "tools/base/settings/state.h"
 
 namespace settings {
-
 namespace {
 
-std::string JsonList(const std::vector<std::string>& items) {
+std::string Json(double value) { return FormatNumber(value); }
+std::string Json(bool value) { return value ? "true" : "false"; }
+std::string Json(const std::string& value) { return QuoteJson(value); }
+template <std::integral T>
+std::string Json(T value) {
+  return std::to_string(value);
+}
+template <class T>
+std::string Json(const std::vector<T>& values) {
   std::string text = "[";
-  for (const std::string& item : items) text += (text.size() > 1 ? ", " : "") + item;
+  for (const T& value : values) text += (text.size() > 1 ? ", " : "") + Json(value);
   return text + "]";
 }
 
-std::string JsonNumbers(const double* values, std::size_t count) {
-  std::vector<std::string> items;
-  for (std::size_t i = 0; i < count; ++i) items.push_back(FormatNumber(values[i]));
-  return JsonList(items);
-}
+// A value of the file; `path` names it in problems.
+struct Value {
+  State& state;
+  const Element& element;
+  const std::string& path;
 
-bool Fail(State& state, const Element& element, const std::string& path, const std::string& problem) {
-  state.AddProblem(element.place, "'" + path + "': " + problem);
-  return false;
-}
-
-// The scalar's text, or a problem.
-const std::string* Scalar(State& state, const Element& element, const std::string& path, const std::string& expected) {
-  if (element.kind == Element::Kind::scalar) return &element.text;
-  Fail(state, element, path, "expected " + expected + ", not " + Describe(element));
-  return nullptr;
-}
-
-bool Number(State& state, const Element& element, const std::string& key, Unit unit, const Range& range,
-            double& value) {
-  const std::string* text = Scalar(state, element, key, "a number");
-  std::string problem;
-  return text && (ParseQuantity(*text, unit, range, value, problem) || Fail(state, element, key, problem));
-}
-
-// All items, so that each bad one is named.
-bool Numbers(State& state, const Element& element, const std::string& key, Unit unit, const Range& range,
-             std::vector<double>& values) {
-  if (element.kind != Element::Kind::list)
-    return Fail(state, element, key, "expected a list of numbers, not " + Describe(element));
-  bool good = true;
-  for (const Element& item : element.items) {
-    double value = 0;
-    good = Number(state, item, key, unit, range, value) && good;
-    values.push_back(value);
+  bool Fail(const std::string& problem) const {
+    state.problems.push_back(element.place.AsProblem("'" + path + "': " + problem));
+    return false;
   }
-  return good;
-}
+  bool Is(Element::Kind kind, const std::string& expected) const {
+    return element.kind == kind || Fail("expected " + expected + ", not " + Describe(element));
+  }
+  bool IsScalar(const std::string& expected) const { return Is(Element::Kind::scalar, expected); }
+
+  bool Number(Unit unit, const Range& range, double& value) const {
+    std::string problem;
+    return IsScalar("a number") && (ParseQuantity(element.text, unit, range, value, problem) || Fail(problem));
+  }
+  // All items, so that each bad one is named.
+  template <class T, class Read>
+  bool Items(const std::string& expected, std::vector<T>& values, const Read& read) const {
+    values.clear();
+    bool good = Is(Element::Kind::list, expected);
+    for (const Element& item : element.items) good = read(Value{state, item, path}, values.emplace_back()) && good;
+    return good;
+  }
+  bool Numbers(Unit unit, const Range& range, std::vector<double>& values) const {
+    return Items("a list of numbers", values,
+                 [&](const Value& item, double& value) { return item.Number(unit, range, value); });
+  }
+};
 
 }  // namespace
 
@@ -80,118 +75,122 @@ Request& Section::Register(const std::string& key) {
   return *request_->children.back().second;
 }
 
+template <class T, class Parse>
+bool Section::ReadBy(const std::string& key, T& value, const Parse& parse) {
+  Request& request = Register(key);
+  T read = value;
+  const bool good = request.element && parse(Value{*state_, *request.element, request.path}, read);
+  if (good) value = std::move(read);
+  return request.Keep(Json(value), good);
+}
+
 bool Section::Read(const std::string& key, double& value, Unit unit, const Range& range) {
-  Request& request = Register(key);
-  const bool good = request.element && Number(*state_, *request.element, request.path, unit, range, value);
-  return request.Keep(FormatNumber(value), good);
+  return ReadBy(key, value, [&](const Value& given, double& read) { return given.Number(unit, range, read); });
 }
 
-template <class T>
-bool Section::ReadWhole(const std::string& key, T& value, const Range& range) {
-  Request& request = Register(key);
-  bool good = false;
-  if (request.element) {
-    const std::string* text = Scalar(*state_, *request.element, request.path, "a whole number");
+template <std::integral T>
+bool Section::Read(const std::string& key, T& value, const Range& range) {
+  return ReadBy(key, value, [&](const Value& given, T& read) {
     std::string problem;
-    good =
-        text && (ParseInteger(*text, range, value, problem) || Fail(*state_, *request.element, request.path, problem));
-  }
-  return request.Keep(std::to_string(value), good);
+    return given.IsScalar("a whole number") &&
+           (ParseInteger(given.element.text, range, read, problem) || given.Fail(problem));
+  });
 }
-
-bool Section::Read(const std::string& key, int& value, const Range& range) { return ReadWhole(key, value, range); }
-bool Section::Read(const std::string& key, std::int64_t& value, const Range& range) {
-  return ReadWhole(key, value, range);
-}
-bool Section::Read(const std::string& key, std::uint64_t& value, const Range& range) {
-  return ReadWhole(key, value, range);
-}
+template bool Section::Read(const std::string&, int&, const Range&);
+template bool Section::Read(const std::string&, std::int64_t&, const Range&);
+template bool Section::Read(const std::string&, std::uint64_t&, const Range&);
 
 bool Section::Read(const std::string& key, bool& value) {
-  Request& request = Register(key);
-  bool good = false;
-  if (request.element) {
-    const std::string* text = Scalar(*state_, *request.element, request.path, "true or false");
-    good = text && (*text == "true" || *text == "false");
-    if (good) value = *text == "true";
-    if (text && !good) Fail(*state_, *request.element, request.path, "'" + *text + "' is neither true nor false");
-  }
-  return request.Keep(value ? "true" : "false", good);
+  return ReadBy(key, value, [](const Value& given, bool& read) {
+    const std::string& text = given.element.text;
+    read = text == "true";
+    return given.IsScalar("true or false") &&
+           (read || text == "false" || given.Fail("'" + text + "' is neither true nor false"));
+  });
 }
 
 bool Section::Read(const std::string& key, std::string& value) {
-  Request& request = Register(key);
-  const std::string* text = request.element ? Scalar(*state_, *request.element, request.path, "a text") : nullptr;
-  const bool good = text && !text->empty();
-  if (good) value = *text;
-  if (text && !good) Fail(*state_, *request.element, request.path, "is empty");
-  return request.Keep(QuoteJson(value), good);
+  return ReadBy(key, value, [](const Value& given, std::string& read) {
+    read = given.element.text;
+    return given.IsScalar("a text") && (!read.empty() || given.Fail("is empty"));
+  });
 }
 
 bool Section::Read(const std::string& key, std::vector<double>& value, Unit unit, const Range& range) {
-  Request& request = Register(key);
-  std::vector<double> read;
-  const bool good = request.element && Numbers(*state_, *request.element, request.path, unit, range, read);
-  if (good) value = std::move(read);
-  return request.Keep(JsonNumbers(value.data(), value.size()), good);
+  return ReadBy(key, value, [&](const Value& given, auto& read) { return given.Numbers(unit, range, read); });
 }
 
 bool Section::Read(const std::string& key, std::vector<std::string>& value) {
-  Request& request = Register(key);
-  bool good = request.element != nullptr;
-  std::vector<std::string> read;
-  if (request.element && request.element->kind != Element::Kind::list) {
-    good = Fail(*state_, *request.element, request.path, "expected a list of texts, not " + Describe(*request.element));
-  } else if (request.element) {
-    for (const Element& item : request.element->items) {
-      const std::string* text = Scalar(*state_, item, key, "a text");
-      good = good && text;
-      read.push_back(text ? *text : "");
-    }
-  }
-  if (good) value = std::move(read);
-  std::vector<std::string> items;
-  items.reserve(value.size());
-  for (const std::string& text : value) items.push_back(QuoteJson(text));
-  return request.Keep(JsonList(items), good);
+  return ReadBy(key, value, [](const Value& given, auto& read) {
+    return given.Items("a list of texts", read, [](const Value& item, std::string& text) {
+      text = item.element.text;
+      return item.IsScalar("a text");
+    });
+  });
 }
 
-bool Section::ReadNumbers(const std::string& key, double* values, std::size_t count, Unit unit, const Range& range) {
-  Request& request = Register(key);
-  std::vector<double> read;
-  bool good = request.element && Numbers(*state_, *request.element, request.path, unit, range, read);
-  if (good && read.size() != count) {
-    good = Fail(*state_, *request.element, request.path,
-                "expected " + std::to_string(count) + " numbers, not " + std::to_string(read.size()));
-  }
-  if (good) std::copy(read.begin(), read.end(), values);
-  return request.Keep(JsonNumbers(values, count), good);
+bool Section::Read(const std::string& key, std::span<double> values, Unit unit, const Range& range) {
+  std::vector<double> value(values.begin(), values.end());
+  const bool good = ReadBy(key, value, [&](const Value& given, std::vector<double>& read) {
+    return given.Numbers(unit, range, read) &&
+           (read.size() == values.size() ||
+            given.Fail("expected " + std::to_string(values.size()) + " numbers, not " + std::to_string(read.size())));
+  });
+  std::ranges::copy(value, values.begin());
+  return good;
 }
 
 bool Section::ReadName(const std::string& key, const std::vector<std::string>& names, std::size_t& index) {
   if (index >= names.size())
     throw std::logic_error("settings: the default of '" + request_->path + "." + key + "' has no name");
+  std::string name = names[index];
+  const bool good = ReadBy(key, name, [&](const Value& given, std::string& read) {
+    read = given.element.text;
+    return given.IsScalar("a name") && (std::ranges::find(names, read) != names.end() ||
+                                        given.Fail("'" + read + "' is not known" + Suggest(read, names)));
+  });
+  index = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+  return good;
+}
+
+bool Section::ReadRaw(const std::string& key, std::vector<RawYaml>& values) {
   Request& request = Register(key);
-  bool good = false;
-  if (request.element) {
-    const std::string* text = Scalar(*state_, *request.element, request.path, "a name");
-    const auto at = text ? std::find(names.begin(), names.end(), *text) : names.end();
-    good = at != names.end();
-    if (good) index = static_cast<std::size_t>(at - names.begin());
-    if (text && !good)
-      Fail(*state_, *request.element, request.path, "'" + *text + "' is not known" + Suggest(*text, names));
+  if (const Element* element = request.element) {
+    values.clear();
+    const auto add = [&](const Element& item) {
+      const std::string yaml = Flow(item);
+      values.push_back({item.text.empty() ? yaml : item.text, yaml});
+    };
+    if (element->kind == Element::Kind::list) {
+      std::ranges::for_each(element->items, add);
+    } else {
+      add(*element);
+    }
   }
-  return request.Keep(QuoteJson(names[index]), good);
+  std::string json;
+  for (const RawYaml& value : values) json += (json.empty() ? "" : ", ") + value.yaml;
+  return request.Keep("[" + json + "]", request.element != nullptr);
+}
+
+bool Section::ReadRaw(const std::string& key, std::vector<std::pair<std::string, std::string>>& entries) {
+  Request& request = Register(key);
+  const bool good =
+      request.element && Value{*state_, *request.element, request.path}.Is(Element::Kind::map, "keys with values");
+  if (good) {
+    entries.clear();
+    for (const Entry& entry : request.element->entries) entries.emplace_back(entry.key, Flow(entry.value));
+  }
+  std::string json;
+  for (const auto& [name, value] : entries) json += (json.empty() ? "" : ", ") + QuoteJson(name) + ": " + value;
+  return request.Keep("{" + json + "}", good);
 }
 
 Section Section::Child(const std::string& key) {
   Request& request = Register(key);
   if (request.kind == Request::Kind::absent) {
     request.kind = Request::Kind::section;
-    if (request.element && request.element->kind != Element::Kind::map &&
-        request.element->kind != Element::Kind::null) {
-      Fail(*state_, *request.element, request.path, "expected a section, not " + Describe(*request.element));
-    }
+    if (request.element && request.element->kind != Element::Kind::null)
+      Value{*state_, *request.element, request.path}.Is(Element::Kind::map, "a section");
   }
   return Section(state_, &request);
 }
@@ -200,9 +199,8 @@ std::vector<Section> Section::List(const std::string& key, const std::string& sh
   Request& request = Register(key);
   if (request.kind == Request::Kind::absent) {
     request.kind = Request::Kind::list;
-    if (request.element && request.element->kind != Element::Kind::list) {
-      Fail(*state_, *request.element, request.path, "expected a list of sections, not " + Describe(*request.element));
-    } else if (request.element) {
+    if (request.element &&
+        Value{*state_, *request.element, request.path}.Is(Element::Kind::list, "a list of sections")) {
       for (const Element& item : request.element->items) {
         auto child = std::make_unique<Request>();
         child->element = &item;
@@ -212,7 +210,7 @@ std::vector<Section> Section::List(const std::string& key, const std::string& sh
           child->element = &state_->made.emplace_back(
               Element{Element::Kind::map, item.place, "", {}, {{shorthand, item.place, item}}});
         } else if (item.kind != Element::Kind::map) {
-          Fail(*state_, item, request.path, "expected a list of sections, not of " + Describe(item));
+          Value{*state_, item, request.path}.Fail("expected a list of sections, not of " + Describe(item));
         }
         request.children.emplace_back("", std::move(child));
       }
@@ -226,12 +224,11 @@ std::vector<Section> Section::List(const std::string& key, const std::string& sh
 void Section::Reject(const std::string& key, const std::string& message) {
   const Element* element = request_->element;
   Place place = request_->place;
-  std::istringstream parts(key);
-  for (std::string part; element && std::getline(parts, part, '.');) {
-    element = element->kind == Element::Kind::map ? element->Find(part) : nullptr;
+  for (const std::string& part : Split(key)) {
+    element = element && element->kind == Element::Kind::map ? element->Find(part) : nullptr;
     if (element) place = element->place;
   }
-  state_->AddProblem(place, message);
+  state_->problems.push_back(place.AsProblem(message));
 }
 
 void Section::Reject(const std::vector<FieldProblem>& problems) {
@@ -243,117 +240,24 @@ void Section::RequirePresent(const std::string& key) {
   Request& request = Register(key);
   if (request.element) return;
   request.kind = Request::Kind::absent;
-  state_->AddProblem(request_->place, "missing key '" + request.path + "'");
+  state_->problems.push_back(request_->place.AsProblem("missing key '" + request.path + "'"));
 }
 
 bool Section::Renamed(const std::string& key, const std::string& now) {
   if (!Has(key)) return false;
-  state_->AddProblem(Register(key).place, "'" + Register(key).path + "' has a new name: '" + now + "'");
+  Reject(key, "'" + Register(key).path + "' has a new name: '" + now + "'");
   return true;
 }
 
 bool Section::Renamed(const std::string& key, const std::string& value, const std::string& now) {
   const Element* element = Find(key);
   if (!element || element->kind != Element::Kind::scalar || element->text != value) return false;
-  state_->AddProblem(Register(key).place,
-                     "'" + Register(key).path + "': '" + value + "' has a new name: '" + now + "'");
+  Reject(key, "'" + Register(key).path + "': '" + value + "' has a new name: '" + now + "'");
   return true;
 }
 
 void Section::Ignore(const std::string& key) { Register(key).kind = Request::Kind::ignored; }
 
 void Section::IgnoreRest() { request_->ignores_rest = true; }
-
-Document Document::FromFile(const std::filesystem::path& path, Dialect dialect) {
-  const auto fail = [&](const std::string& why) { throw Error({{path.string(), 0, 0, why, {}}}); };
-  std::error_code none;  // of a name that no system takes; what opens it says why
-  if (std::filesystem::is_directory(path, none)) fail("is a folder, not a file");
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail(std::string("cannot be read: ") + std::strerror(errno ? errno : EIO));
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (file.bad()) fail("cannot be read to its end");
-  return FromText(text.str(), path.string(), dialect);
-}
-
-Document Document::FromText(const std::string& text, const std::string& name, Dialect dialect) {
-  auto state = std::make_shared<State>();
-  std::vector<Problem> problems;
-  state->root = ParseYaml(text, Place{name}, problems, dialect);
-  const bool invalid = std::any_of(problems.begin(), problems.end(), [](const Problem& problem) {
-    return problem.message.starts_with("not valid YAML");
-  });
-  if (state->root.kind != Element::Kind::map && state->root.kind != Element::Kind::null) {
-    problems.push_back({name,
-                        state->root.place.line,
-                        state->root.place.column,
-                        "expected keys with values, not " + Describe(state->root),
-                        {}});
-    throw Error(std::move(problems));
-  }
-  if (invalid) throw Error(std::move(problems));
-  state->problems = std::move(problems);
-  return Document(std::move(state));
-}
-
-void Document::Override(const std::string& key, const std::string& value) {
-  if (state_->reading) throw std::logic_error("settings: Override after reading has begun");
-  const Place place{"--set " + key, 0, 0, key};
-  std::vector<std::string> parts;
-  std::istringstream stream(key);
-  for (std::string part; std::getline(stream, part, '.');) parts.push_back(part);
-  if (key.empty() || key.back() == '.' || std::find(parts.begin(), parts.end(), "") != parts.end()) {
-    return state_->AddProblem(place, "not a key: expected words with dots between them");
-  }
-  Element* element = &state_->root;
-  for (const std::string& part : parts) {
-    if (element->kind == Element::Kind::null) element->kind = Element::Kind::map;
-    if (element->kind == Element::Kind::list) {
-      std::uint64_t index = 0;
-      std::string problem;
-      if (!ParseInteger(part, {}, index, problem)) return state_->AddProblem(place, "in a list: " + problem);
-      if (index >= element->items.size()) {
-        return state_->AddProblem(place, "there is no item " + part + " in a list of " +
-                                             std::to_string(element->items.size()) + " (the first is 0)");
-      }
-      element = &element->items[index];
-    } else if (element->kind == Element::Kind::map) {
-      auto at =
-          std::find_if(element->entries.begin(), element->entries.end(), [&](const Entry& e) { return e.key == part; });
-      if (at == element->entries.end()) {
-        Element null;
-        null.place = place;
-        element->entries.push_back({part, place, std::move(null)});
-        at = element->entries.end() - 1;
-      }
-      element = &at->value;
-    } else {
-      return state_->AddProblem(place, "'" + part + "' cannot be set inside " + Describe(*element));
-    }
-  }
-  *element = ParseYaml(value, place, state_->problems);
-}
-
-Section Document::root() {
-  if (!state_->reading) {
-    state_->reading = true;
-    state_->requests.element = &state_->root;
-    state_->requests.place = Place{state_->root.place.file, 0, 0};
-  }
-  return Section(state_, &state_->requests);
-}
-
-void Document::ThrowIfBad() const {
-  std::vector<Problem> problems = state_->problems;
-  FindUnknownKeys(state_->requests, problems);
-  if (problems.empty()) return;
-  std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) {
-    return std::pair(a.line, a.column) < std::pair(b.line, b.column);
-  });
-  throw Error(std::move(problems));
-}
-
-std::string Document::Resolved() const { return ToJson(state_->requests); }
 
 }  // namespace settings

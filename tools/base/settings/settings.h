@@ -1,4 +1,4 @@
-// Strict reader of settings files (YAML). Each component reads the keys that it knows; the default is the variable's
+// Strict reader of settings files (YAML). Each component reads its own keys; the default is the variable's
 // present value. All problems are collected and thrown at once, unknown keys among them. Structs with a field table
 // (fields.h) are read by field_reader.h.
 //
@@ -10,22 +10,30 @@
 //   document.ThrowIfBad();
 #pragma once
 
-#include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "tools/base/settings/dialect.h"
 #include "tools/base/settings/problem.h"
 #include "tools/base/settings/quantity.h"
 
 namespace settings {
+
+// Settings given beside a file, --set KEY=VALUE: (dotted key, YAML value), a later one wins.
+using Overrides = std::vector<std::pair<std::string, std::string>>;
+
+// Dialects of YAML.
+enum class Dialect {
+  ours,
+  opencv,  // as cv::FileStorage writes it: the first line, "%YAML:1.0", is none of YAML's, and matrices have tags
+};
 
 // Unparsed value, for another reader.
 struct RawYaml {
@@ -39,24 +47,21 @@ struct State;    // of a document
 
 // A section of the document, or of what could be there: an absent section reads as one without keys. A cheap handle
 // that keeps the document's data alive. The readers return whether the key was there and good; otherwise `value` stays
-// as it was, and if it was there, the document knows a problem. Values written to are in SI.
+// as it was, and if it was there, the document has a problem. Values written to are in SI.
 class Section {
  public:
   bool Has(const std::string& key) const;
 
   bool Read(const std::string& key, double& value, Unit unit = Unit::none, const Range& range = {});
   bool Read(const std::string& key, double& value, const Range& range) { return Read(key, value, Unit::none, range); }
-  bool Read(const std::string& key, int& value, const Range& range = {});
-  bool Read(const std::string& key, std::int64_t& value, const Range& range = {});
-  bool Read(const std::string& key, std::uint64_t& value, const Range& range = {});
+  template <std::integral T>  // int, std::int64_t, std::uint64_t
+  bool Read(const std::string& key, T& value, const Range& range = {});
   bool Read(const std::string& key, bool& value);         // true or false
   bool Read(const std::string& key, std::string& value);  // not empty
   bool Read(const std::string& key, std::vector<double>& value, Unit unit = Unit::none, const Range& range = {});
   bool Read(const std::string& key, std::vector<std::string>& value);
-  template <std::size_t N>
-  bool Read(const std::string& key, std::array<double, N>& value, Unit unit = Unit::none, const Range& range = {}) {
-    return ReadNumbers(key, value.data(), N, unit, range);
-  }
+  // A list of as many numbers.
+  bool Read(const std::string& key, std::span<double> values, Unit unit = Unit::none, const Range& range = {});
 
   // Like Read with the same arguments, but a key that is not there is a problem.
   template <class... Arguments>
@@ -120,10 +125,9 @@ class Section {
 
   const Element* Find(const std::string& key) const;
   Request& Register(const std::string& key);
-  bool ReadNumbers(const std::string& key, double* values, std::size_t count, Unit unit, const Range& range);
   bool ReadName(const std::string& key, const std::vector<std::string>& names, std::size_t& index);
-  template <class T>
-  bool ReadWhole(const std::string& key, T& value, const Range& range);
+  template <class T, class Parse>
+  bool ReadBy(const std::string& key, T& value, const Parse& parse);
 
   std::shared_ptr<State> state_;
   Request* request_;
@@ -141,7 +145,7 @@ class Document {
 
   Section root();
 
-  // Call it when everything has been asked for. Throws Error with all problems, among them each key that nobody asked
+  // Call it when everything has been asked for. Throws Error with all problems, among them each key that was not asked
   // for.
   void ThrowIfBad() const;
 

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "tools/bench/errors.h"
-#include "tools/bench/interrupt.h"
 #include "tools/bench/progress.h"
 
 namespace vobench::campaign {

@@ -8,8 +8,8 @@
 
 namespace vobench {
 
-// Scenarios x variants x systems x seeds (docs/campaign.md). Throws TasksFailed after all else is done and written when
-// tasks failed.
+// Scenarios x variants x systems x seeds (docs/campaign.md). Throws std::runtime_error after all else is done and
+// written when tasks failed.
 struct CampaignOptions {
   std::filesystem::path file;
   std::filesystem::path output;

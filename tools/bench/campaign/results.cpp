@@ -8,8 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "tools/base/limits/json.h"
-#include "tools/base/limits/whole_number.h"
+#include "tools/base/limits/structured_text.h"
 
 namespace vobench::campaign {
 namespace {

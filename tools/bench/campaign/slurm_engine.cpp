@@ -15,7 +15,6 @@
 #include "tools/bench/campaign/slurm.h"
 #include "tools/bench/campaign/task_folder.h"
 #include "tools/bench/errors.h"
-#include "tools/bench/interrupt.h"
 #include "tools/bench/progress.h"
 
 namespace vobench::campaign {

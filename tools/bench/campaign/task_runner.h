@@ -1,5 +1,5 @@
 // Interface by which a campaign has its tasks done. Plan, output and processes know neither odometry nor simulator:
-// tools/bench/run/campaign_tasks.h implements it.
+// tools/bench/run/campaign_tasks.cpp implements it.
 #pragma once
 
 #include <filesystem>

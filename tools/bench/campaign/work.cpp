@@ -12,7 +12,7 @@
 #include "tools/bench/campaign/digest.h"
 #include "tools/bench/campaign/task_folder.h"
 #include "tools/bench/errors.h"
-#include "tools/bench/interrupt.h"
+#include "tools/bench/progress.h"
 
 namespace vobench::campaign {
 namespace fs = std::filesystem;

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "tools/bench/report/html.h"
-#include "tools/bench/report/page.h"
+#include "tools/bench/report/report.h"
 #include "tools/bench/result/result.h"
 #include "tools/bench/tracking/picture.h"
 #include "tools/judge/evaluation/text_file.h"

@@ -1,14 +1,11 @@
 // NEES, NIS and ranks, each with what a consistent filter would show.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
 
-#include "tools/bench/report/drawn_runs.h"
 #include "tools/bench/report/figures.h"
 #include "tools/bench/text.h"
-#include "tools/judge/evaluation/nis.h"
 
 namespace vobench::report {
 namespace {
@@ -20,67 +17,59 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 using Nees = double ev::FrameConsistency::*;
 
 Series NeesOf(const ResultData& data, const RunData& run, std::size_t system, Nees nees, int dof) {
-  Series line = LineOf(run.entry.system, system, {}, {});
+  Numbers t, values;
   for (const ev::FrameConsistency& frame : run.judged->consistency) {
-    line.x.push_back(Seconds(data, frame.stamp_ns));
-    line.y.push_back(frame.*nees / dof);
+    t.push_back(Seconds(data, frame.stamp_ns));
+    values.push_back(frame.*nees / dof);
   }
-  return line;
+  return LineOf(run.entry.system, system, t, values);
 }
 
-std::vector<ev::AneesPoint> AneesOf(const ResultData& data, const std::string& system, Nees nees, int dof,
-                                    std::size_t& runs) {
+bool HasNees(const RunData* run) { return run->judged && !run->judged->consistency.empty(); }
+
+std::vector<ev::AneesPoint> AneesOf(const std::vector<const RunData*>& runs, Nees nees, int dof) {
   std::vector<std::vector<std::int64_t>> stamps;
   std::vector<Numbers> values;
-  for (const RunData& run : data.runs) {
-    if (run.entry.system != system || !run.judged || run.judged->consistency.empty()) continue;
+  for (const RunData* run : runs) {
     stamps.emplace_back();
     values.emplace_back();
-    for (const ev::FrameConsistency& frame : run.judged->consistency) {
+    for (const ev::FrameConsistency& frame : run->judged->consistency) {
       stamps.back().push_back(frame.stamp_ns);
       values.back().push_back(frame.*nees);
     }
   }
-  runs = values.size();
   return ev::Anees(stamps, values, dof);
 }
 
 void AddNees(const ResultData& data, const std::string& title, Nees nees, int dof, std::vector<Figure>& figures) {
-  Figure figure;
-  figure.title = title;
-  figure.description =
-      "Normalised estimation error squared in time, averaged over runs; a consistent filter stays inside the band "
-      "around "
-      "1 in 95 of 100 frames.";
-  figure.x.label = "time [s]";
-  figure.y = {"NEES / " + std::to_string(dof), true};
+  Figure figure = InTime(title,
+                         "Normalised estimation error squared in time, averaged over runs; a consistent filter stays "
+                         "inside the band around 1 in 95 of 100 frames.",
+                         {"NEES / " + std::to_string(dof), true});
   const std::vector<std::string> systems = data.Systems();
   std::vector<Series> means;  // above all else
   std::set<std::size_t> banded;
   for (std::size_t s = 0; s < systems.size(); ++s) {
-    std::size_t runs = 0;
-    const auto points = AneesOf(data, systems[s], nees, dof, runs);
+    std::vector<const RunData*> runs = data.RunsOf(systems[s]);
+    std::erase_if(runs, [](const RunData* run) { return !HasNees(run); });
+    const auto points = AneesOf(runs, nees, dof);
     if (points.empty()) continue;
-    Series& mean = means.emplace_back(LineOf(systems[s], s, {}, {}));
-    Series band =
-        LineAs(Role::expected,
-               runs > 1 ? "95 % of " + std::to_string(runs) + " consistent runs" : "95 % of consistent runs", {}, {});
-    band.draw = Draw::band;
+    Numbers t, mean, low, high;
     for (const ev::AneesPoint& point : points) {
-      mean.x.push_back(Seconds(data, point.stamp_ns));
-      mean.y.push_back(point.anees / dof);
-      band.y.push_back(point.band.low / dof);
-      band.high.push_back(point.band.high / dof);
+      t.push_back(Seconds(data, point.stamp_ns));
+      mean.push_back(point.anees / dof);
+      low.push_back(point.band.low / dof);
+      high.push_back(point.band.high / dof);
     }
-    band.x = mean.x;
-    if (banded.insert(runs).second) figure.series.insert(figure.series.begin(), band);
-    if (runs < 2) continue;
+    means.push_back(LineOf(systems[s], s, t, mean));
+    const std::string consistent = runs.size() > 1 ? std::to_string(runs.size()) + " consistent" : "consistent";
+    if (banded.insert(runs.size()).second)
+      figure.series.insert(figure.series.begin(), Band("95 % of " + consistent + " runs", t, low, high));
+    if (runs.size() < 2) continue;
     std::vector<const RunData*> faint = FaintRuns(data, systems[s]);
     faint.push_back(&data.Typical(systems[s]));
     for (const RunData* run : faint) {
-      if (!run->judged || run->judged->consistency.empty()) continue;
-      figure.series.push_back(NeesOf(data, *run, s, nees, dof));
-      figure.series.back().faint = true;
+      if (HasNees(run)) figure.series.push_back(Faint(NeesOf(data, *run, s, nees, dof)));
     }
   }
   if (means.empty()) return;
@@ -102,28 +91,22 @@ std::vector<Figure> NisFigures(const ResultData& data) {
   std::vector<Figure> figures;
   const std::vector<std::string> systems = data.Systems();
   for (std::size_t s = 0; s < systems.size(); ++s) {
-    const RunData& run = data.Typical(systems[s]);
-    Series nis = LineOf(systems[s], s, {}, {});
-    Series band = LineAs(Role::expected, "95 %", {}, {});
-    band.draw = Draw::band;
+    Numbers t, nis, low, high;
     std::map<int, ev::Band> bands;
-    for (const ev::FrameRecord& frame : run.run.frames) {
-      nis.x.push_back(Seconds(data, frame.stamp_ns));
+    for (const ev::FrameRecord& frame : data.Typical(systems[s]).run.frames) {
       const int dof = frame.nis_dof;
       if (dof > 0 && !bands.contains(dof)) bands[dof] = ev::Chi2MeanBand(dof, 1);
-      nis.y.push_back(dof > 0 ? frame.nis / dof : kNaN);
-      band.y.push_back(dof > 0 ? bands[dof].low / dof : kNaN);
-      band.high.push_back(dof > 0 ? bands[dof].high / dof : kNaN);
+      t.push_back(Seconds(data, frame.stamp_ns));
+      nis.push_back(dof > 0 ? frame.nis / dof : kNaN);
+      low.push_back(dof > 0 ? bands[dof].low / dof : kNaN);
+      high.push_back(dof > 0 ? bands[dof].high / dof : kNaN);
     }
     if (bands.empty()) continue;
-    band.x = nis.x;
-    Figure& figure = figures.emplace_back();
-    figure.title = "NIS of " + DisplayName(systems[s]);
-    figure.description =
-        "Normalised innovation squared in time, with the band that 95 of 100 consistent frames fall in.";
-    figure.x.label = "time [s]";
-    figure.y = {"NIS / dof", false, false, true};
-    figure.series = {band, nis};
+    Figure& figure = figures.emplace_back(
+        InTime("NIS of " + DisplayName(systems[s]),
+               "Normalised innovation squared in time, with the band that 95 of 100 consistent frames fall in.",
+               {"NIS / dof", false, false, true}));
+    figure.series = {Band("95 %", t, low, high), LineOf(systems[s], s, t, nis)};
   }
   return figures;
 }
@@ -149,10 +132,7 @@ std::vector<Figure> RankFigures(const ResultData& data) {
           "high at both ends when over-confident, high in the middle when under-confident.";
       figure.x.label = "rank, in " + std::to_string(table.counts.size()) + " classes from lowest to highest";
       figure.y = {"runs", false, false, true};
-      Series band = LineAs(Role::expected, "95 % of consistent bars", places, table.low);
-      band.draw = Draw::band;
-      band.high = table.high;
-      figure.series.push_back(band);
+      figure.series.push_back(Band("95 % of consistent bars", places, table.low, table.high));
     }
     Series bars = LineOf(table.system, static_cast<std::size_t>(system - systems.begin()), places, table.counts);
     bars.draw = Draw::bars;

@@ -1,8 +1,10 @@
-// Figure of a report as values: axes with units, and series of numbers. tools/bench/report/web draws it.
+// Figure of a report as values: axes with units, and series of numbers; and as JSON, from which tools/bench/report/web
+// draws.
 // Source: docs/report_data.md.
 #pragma once
 
 #include <cstddef>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,8 +47,8 @@ struct Series {
   bool faint = false;      // one of many runs
   Numbers x, y;
   Numbers high = {};                    // of bands and intervals
-  Numbers z = {}, t = {};               // in space; seconds, to be told of a point of a path
-  std::vector<std::string> notes = {};  // to be told of each point
+  Numbers z = {}, t = {};               // in space; seconds, shown with a point of a path
+  std::vector<std::string> notes = {};  // shown with each point
 };
 
 struct Figure {
@@ -62,5 +64,10 @@ struct Figure {
   std::vector<Series> series;
   std::string up = "z";  // of Kind::space: "x", "-x", ... points up
 };
+
+// {"format", "systems", "figures", "columns", and `more`'s members}; figures are named f0, f1, ... on the page. Text
+// that is no UTF-8 is repaired; no "<" is left, so that no text can end the element that the JSON stands in.
+std::string FiguresJson(const std::vector<std::string>& systems, const std::vector<Figure>& figures,
+                        const nlohmann::ordered_json& more);
 
 }  // namespace vobench::report

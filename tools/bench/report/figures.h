@@ -1,8 +1,10 @@
-// Figures of a run's report.
+// Figures of a run's report; and the steps that they share: runs that are drawn, their time axis, lines and bands.
 // Source: docs/report.md.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "tools/bench/report/figure.h"
@@ -27,5 +29,36 @@ std::vector<Figure> NisFigures(const ResultData& data);
 std::vector<Figure> RankFigures(const ResultData& data);
 // Features and matches, landmarks, time by stage; frame by frame.
 std::vector<Figure> FrameFigures(const ResultData& data);
+
+constexpr double kCentimetres = 100;
+
+// A system's other runs beside the typical one are drawn faint: these, from the best to the worst, both among them.
+constexpr std::size_t kFaintRuns = 9;
+std::vector<const RunData*> FaintRuns(const ResultData& data, const std::string& system);
+
+// None where nothing is judged.
+const RunData* AnyJudged(const ResultData& data);
+
+// The path that the drawn runs belong to: the truth, or where there is none the first run's own.
+const evaluation::Trajectory& Reference(const ResultData& data);
+
+// Time zero of every figure: the first pose of the first run.
+double Seconds(const ResultData& data, std::int64_t stamp_ns);
+Numbers Times(const ResultData& data, const evaluation::Trajectory& trajectory);
+
+// The trajectory that stands for a run: aligned where there is a truth.
+const evaluation::Trajectory& Drawn(const RunData& run);
+
+// A figure along that time, without series.
+Figure InTime(const std::string& title, const std::string& description, const Axis& y);
+
+// A system's line.
+Series LineOf(const std::string& system, std::size_t number, Numbers x, Numbers y);
+// A line in another role, with its name.
+Series LineAs(Role role, const std::string& name, Numbers x, Numbers y);
+// What a consistent filter would show.
+Series Band(const std::string& name, Numbers x, Numbers low, Numbers high);
+// One of many runs.
+Series Faint(Series series);
 
 }  // namespace vobench::report

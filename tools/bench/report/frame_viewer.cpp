@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/base/files.h"
-#include "tools/bench/report/drawn_runs.h"
+#include "tools/bench/report/figures.h"
 #include "tools/bench/text.h"
 #include "tools/judge/evaluation/text_file.h"
 
@@ -48,14 +48,11 @@ std::vector<ViewedFrame> Fitting(std::vector<ViewedFrame> frames, std::size_t by
 Json Of(const FeatureMark& mark) {
   const auto tenth = [](double value) { return std::round(10 * value) / 10; };
   const Eigen::Matrix2d& S = mark.covariance;
-  return {static_cast<int>(mark.status),
-          tenth(mark.predicted.x()),
-          tenth(mark.predicted.y()),
-          tenth(mark.pixel.x()),
-          tenth(mark.pixel.y()),
-          tenth(S(0, 0)),
-          tenth(S(0, 1)),
-          tenth(S(1, 1))};
+  Json numbers = {static_cast<int>(mark.status)};
+  for (const Eigen::Vector2d& at : {mark.predicted, mark.pixel})
+    for (const double value : at) numbers.push_back(tenth(value));
+  for (const double value : {S(0, 0), S(0, 1), S(1, 1)}) numbers.push_back(tenth(value));
+  return numbers;
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tools/bench/report/figure_json.h"
+#include "tools/bench/report/figure.h"
 #include "tools/bench/report/thin.h"
 #include "tools/bench/report/web.h"
 #include "tools/bench/text.h"
@@ -26,17 +26,15 @@ std::vector<Figure> FiguresOf(const Page& page) {
   return figures;
 }
 
-std::string Placeholder(const Figure& figure, std::size_t number) {
-  return "<figure class=\"figure\" id=\"f" + std::to_string(number) + "\"><figcaption>" + Escape(figure.title) +
-         "</figcaption></figure>\n";
-}
-
 // Panels three abreast where there is room; two stand wider.
 std::string Grid(const Section& section, std::size_t& number) {
   if (section.figures.empty()) return "";
   const char* style = section.figures.size() <= 2 || section.figures.size() == 4 ? "grid two" : "grid";
   std::string html = std::string("<div class=\"") + style + "\">";
-  for (const Figure& figure : section.figures) html += Placeholder(figure, number++);
+  for (const Figure& figure : section.figures) {
+    html += "<figure class=\"figure\" id=\"f" + std::to_string(number++) + "\"><figcaption>" + Escape(figure.title) +
+            "</figcaption></figure>\n";
+  }
   html += "</div>\n";
   if (section.fold.empty()) return html;
   return "<details class=\"figures\"><summary>" + Escape(section.fold) + "</summary>" + html + "</details>\n";

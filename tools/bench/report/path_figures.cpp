@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/bench/report/drawn_runs.h"
 #include "tools/bench/report/figures.h"
 #include "tools/bench/text.h"
 #include "tools/judge/evaluation/so3.h"
@@ -27,19 +26,18 @@ Numbers Component(const Points& points, int k) {
   return values;
 }
 
-// Cameras are mostly held upright: up is the world axis that is nearest to the mean of the images' upward direction.
-Eigen::Vector3d UpOf(const ev::Trajectory& trajectory) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const ev::StampedPose& pose : trajectory) mean -= pose.q_WC * Eigen::Vector3d::UnitY();
-  int axis = 0;
-  mean.cwiseAbs().maxCoeff(&axis);
-  return (mean[axis] < 0 ? -1 : 1) * Eigen::Vector3d::Unit(axis);
-}
-
 int AxisOf(const Eigen::Vector3d& direction) {
   int largest = 0;
   direction.cwiseAbs().maxCoeff(&largest);
   return largest;
+}
+
+// Cameras are mostly held upright: up is the world axis that is nearest to the mean of the images' upward direction.
+Eigen::Vector3d UpOf(const ev::Trajectory& trajectory) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const ev::StampedPose& pose : trajectory) mean -= pose.q_WC * Eigen::Vector3d::UnitY();
+  const int axis = AxisOf(mean);
+  return (mean[axis] < 0 ? -1 : 1) * Eigen::Vector3d::Unit(axis);
 }
 
 std::string NameOf(const Eigen::Vector3d& direction) {
@@ -87,17 +85,14 @@ Figure SpaceFigure(const ResultData& data, const std::string& described) {
   for (std::size_t s = 0; s < systems.size(); ++s) {
     const RunData& typical = data.Typical(systems[s]);
     if (const Points map = Map(typical); !map.empty()) {
-      Series dots = LineOf(systems[s], s, {}, {});
+      Series dots = Faint(LineOf(systems[s], s, {}, {}));
       dots.draw = Draw::dots;
-      dots.faint = true;
       SetPoints(map, dots);
       figure.series.push_back(dots);
     }
     if (!data.SharedTruth()) continue;
     for (const RunData* run : FaintRuns(data, systems[s])) {
-      Series line = InSpace(data, Drawn(*run), LineOf(systems[s], s, {}, {}));
-      line.faint = true;
-      figure.series.push_back(line);
+      figure.series.push_back(InSpace(data, Drawn(*run), Faint(LineOf(systems[s], s, {}, {}))));
     }
   }
   if (AnyJudged(data)) figure.series.push_back(InSpace(data, Reference(data), LineAs(Role::truth, "truth", {}, {})));
@@ -171,11 +166,9 @@ std::vector<Figure> PoseFigures(const ResultData& data) {
     };
     for (int k = 0; k < 3; ++k) {
       const std::string name(1, "xyz"[k]);
-      Figure& figure = figures.emplace_back();
-      figure.title = rotation ? "Rotation about camera " + name + " since the start" : "Position " + name;
-      figure.description = "Truth and the typical run of each system, aligned, in time.";
-      figure.x.label = "time [s]";
-      figure.y.label = rotation ? "rotation [°]" : name + " [m]";
+      Figure& figure = figures.emplace_back(InTime(
+          rotation ? "Rotation about camera " + name + " since the start" : "Position " + name,
+          "Truth and the typical run of each system, aligned, in time.", {rotation ? "rotation [°]" : name + " [m]"}));
       if (AnyJudged(data)) {
         figure.series.push_back(
             LineAs(Role::truth, "truth", Times(data, Reference(data)), Component(values(Reference(data)), k)));

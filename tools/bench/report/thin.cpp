@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
+#include <span>
 
 namespace vobench::report {
 namespace {
@@ -16,23 +17,18 @@ Numbers Pick(const Numbers& all, const std::vector<std::size_t>& indices) {
   return picked;
 }
 
-bool Less(double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; }
-
 // Of [begin, end): the extremes, and the first that has no answer.
 void AddExtremes(const Series& series, std::size_t begin, std::size_t end, std::vector<std::size_t>& indices) {
-  const auto place = [&](const Numbers& numbers, auto less) {
-    const auto first = numbers.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto last = numbers.begin() + static_cast<std::ptrdiff_t>(end);
-    return static_cast<std::size_t>(std::min_element(first, last, less) - numbers.begin());
+  const auto stretch = [&](const Numbers& numbers) { return std::span(numbers).subspan(begin, end - begin); };
+  const auto add = [&](auto at, auto first) { indices.push_back(begin + static_cast<std::size_t>(at - first)); };
+  const auto low = stretch(series.y), high = stretch(series.high.empty() ? series.y : series.high);
+  const auto before = [](auto less) {  // NaN comes last
+    return [less](double a, double b) { return std::isnan(b) ? !std::isnan(a) : less(a, b); };
   };
-  const Numbers& upper = series.high.empty() ? series.y : series.high;
-  indices.push_back(place(series.y, Less));
-  indices.push_back(place(upper, [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a > b; }));
-  for (std::size_t i = begin; i < end; ++i) {
-    if (!std::isnan(series.y[i])) continue;
-    indices.push_back(i);
-    break;
-  }
+  add(std::ranges::min_element(low, before(std::less())), low.begin());
+  add(std::ranges::min_element(high, before(std::greater())), high.begin());
+  const auto gap = std::ranges::find_if(low, [](double y) { return std::isnan(y); });
+  if (gap != low.end()) add(gap, low.begin());
 }
 
 // Of [begin, end): the point farthest from the line between its ends.

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <cstdint>
+#include <numeric>
 
 #include "tools/bench/text.h"
 #include "tools/judge/evaluation/anees_test.h"
@@ -23,25 +23,14 @@ std::vector<std::vector<double>> OfBlock(const SystemRuns& runs, std::size_t blo
   return all;
 }
 
-struct Point {
-  int runs = 0;
-  double anees = 0;
-};
-Point At(const std::vector<std::vector<double>>& nees, std::size_t frame) {
-  Point point;
+// ANEES by frame, whose number stands for its stamp.
+std::vector<evaluation::AneesPoint> ByFrame(const std::vector<std::vector<double>>& nees, int dof) {
+  std::vector<std::vector<std::int64_t>> frames;
   for (const std::vector<double>& run : nees) {
-    if (frame >= run.size() || std::isnan(run[frame])) continue;
-    ++point.runs;
-    point.anees += run[frame];
+    std::vector<std::int64_t>& numbers = frames.emplace_back(run.size());
+    std::iota(numbers.begin(), numbers.end(), 1);
   }
-  point.anees /= std::max(1, point.runs);
-  return point;
-}
-
-std::size_t Frames(const std::vector<std::vector<double>>& nees) {
-  std::size_t frames = 0;
-  for (const std::vector<double>& run : nees) frames = std::max(frames, run.size());
-  return frames;
+  return evaluation::Anees(frames, nees, dof);
 }
 
 template <class Value>
@@ -75,7 +64,7 @@ std::string AneesTable(const std::vector<SystemRuns>& systems) {
                             dof);
         continue;
       }
-      const Point last = At(nees, Frames(nees) - 1);
+      const evaluation::AneesPoint last = ByFrame(nees, dof).back();
       text += fmt::format("{:<18}{:>4}{:>12}{:>12}  {:<16}{:>8.1f} %{:>7.1f} %{:>7.1f} %\n", kStateBlocks[b].name, dof,
                           Readable(share.mean), Readable(last.anees / dof),
                           fmt::format("{:.2f} ... {:.2f}", band.low / dof, band.high / dof), 100 * share.share,
@@ -101,13 +90,9 @@ std::string AneesCsv(const std::vector<SystemRuns>& systems) {
   for (const SystemRuns& runs : systems) {
     for (std::size_t b = 0; b < kStateBlocks.size(); ++b) {
       const int dof = kStateBlocks[b].size;
-      const auto nees = OfBlock(runs, b);
-      for (std::size_t k = 0; k < Frames(nees); ++k) {
-        const Point point = At(nees, k);
-        if (point.runs == 0) continue;
-        const evaluation::Band band = evaluation::Chi2MeanBand(dof, point.runs);
-        text += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{:.6g}\n", runs.system, kStateBlocks[b].name, dof, k + 1,
-                            point.runs, point.anees / dof, band.low / dof, band.high / dof);
+      for (const evaluation::AneesPoint& point : ByFrame(OfBlock(runs, b), dof)) {
+        text += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{:.6g}\n", runs.system, kStateBlocks[b].name, dof,
+                            point.stamp_ns, point.runs, point.anees / dof, point.band.low / dof, point.band.high / dof);
       }
     }
   }

@@ -1,14 +1,12 @@
 #include "tools/bench/result/metrics_json.h"
 
-#include <cmath>
-#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <iterator>
 
 #include "tools/base/files.h"
 #include "tools/base/text.h"
-#include "tools/bench/result/json_text.h"
+#include "tools/bench/result/json_file.h"
 #include "tools/bench/result/system_summary.h"
-#include "tools/bench/text.h"
-#include "tools/judge/evaluation/text_file.h"
 
 namespace vobench {
 namespace {
@@ -17,6 +15,7 @@ using Json = nlohmann::ordered_json;
 namespace ev = evaluation;
 
 constexpr const char* kFormat = "vobench metrics 1";
+constexpr const char* kRules[] = {"one_to_one", "tum", "nearest"};
 
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
@@ -30,23 +29,12 @@ Json Of(const ev::Statistics& s, const char* unit, const std::string& how) {
           {"median", s.median}, {"std", s.std}, {"min", s.min},     {"max", s.max}};
 }
 
-std::string RuleName(ev::AssociationRule rule) {
-  switch (rule) {
-    case ev::AssociationRule::tum:
-      return "tum";
-    case ev::AssociationRule::nearest:
-      return "nearest";
-    case ev::AssociationRule::one_to_one:
-      break;
-  }
-  return "one_to_one";
-}
+std::string RuleName(ev::AssociationRule rule) { return kRules[static_cast<std::size_t>(rule)]; }
 
 ev::AssociationRule RuleOf(const Json& name) {
-  for (const ev::AssociationRule rule : {ev::AssociationRule::tum, ev::AssociationRule::nearest}) {
-    if (name == RuleName(rule)) return rule;
-  }
-  return ev::AssociationRule::one_to_one;
+  const auto found = std::find(std::begin(kRules), std::end(kRules), name);
+  return found == std::end(kRules) ? ev::AssociationRule::one_to_one
+                                   : static_cast<ev::AssociationRule>(found - std::begin(kRules));
 }
 
 std::string HowAssociated(const ev::JudgeOptions& options) {
@@ -91,10 +79,10 @@ Json Of(const ev::TrajectoryErrors& errors, const ev::JudgeOptions& options) {
   return json;
 }
 
-Json Of(const ev::NeesSummary& nees, const char* what, ev::Gauge gauge) {
+Json Of(const ev::NeesSummary& nees, const std::string& what, ev::Gauge gauge) {
   return {
       {"unit", "1"},
-      {"how", std::string(what) + "; errors not aligned" +
+      {"how", what + "; errors not aligned" +
                   (gauge == ev::Gauge::first_pose ? ", truth moved into the estimate's world by the first pair of poses"
                                                   : "") +
                   "; ideal mean: dof. Frames of one run are dependent: no interval follows from their number"},
@@ -134,16 +122,15 @@ Json Of(const ev::Metrics& metrics) {
   }
   if (metrics.consistency) {
     const ev::ConsistencySummary& c = *metrics.consistency;
-    json["nees"]["pose"] = Of(c.pose, "position and orientation", options.gauge);
-    json["nees"]["pose_scale_free"] =
-        Of(c.pose_scale_free, "position and orientation, smallest over the scale of the map about the start",
-           options.gauge);
-    if (c.velocity) json["nees"]["velocity"] = Of(*c.velocity, "linear and angular velocity", options.gauge);
-    if (c.joint) json["nees"]["joint"] = Of(*c.joint, "pose and velocity", options.gauge);
-    if (c.joint_scale_free) {
-      json["nees"]["joint_scale_free"] = Of(
-          *c.joint_scale_free, "pose and velocity, smallest over the scale of the map about the start", options.gauge);
-    }
+    const auto add = [&](const char* name, const std::optional<ev::NeesSummary>& nees, const std::string& what) {
+      if (nees) json["nees"][name] = Of(*nees, what, options.gauge);
+    };
+    const std::string smallest = ", smallest over the scale of the map about the start";
+    add("pose", c.pose, "position and orientation");
+    add("pose_scale_free", c.pose_scale_free, "position and orientation" + smallest);
+    add("velocity", c.velocity, "linear and angular velocity");
+    add("joint", c.joint, "pose and velocity");
+    add("joint_scale_free", c.joint_scale_free, "pose and velocity" + smallest);
   }
   if (metrics.nis) {
     json["nis"] = {
@@ -197,7 +184,7 @@ Json Of(const SystemSummary& s) {
 
 }  // namespace
 
-std::string MetricsJson(const std::vector<RunMetrics>& runs) {
+void WriteMetricsJson(const std::filesystem::path& out, const std::vector<RunMetrics>& runs) {
   Json json = {{"format", kFormat}, {"systems", Json::array()}, {"baselines", Json::array()}, {"runs", Json::array()}};
   for (const SystemSummary& summary : SummariseSystems(runs)) json["systems"].push_back(Of(summary));
   for (const SystemSummary& summary : SummariseBaselines(runs)) json["baselines"].push_back(Of(summary));
@@ -206,27 +193,19 @@ std::string MetricsJson(const std::vector<RunMetrics>& runs) {
     run.update(Of(judged.metrics));
     json["runs"].push_back(run);
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-void WriteMetricsJson(const std::filesystem::path& out, const std::vector<RunMetrics>& runs) {
-  base::WriteFile(out / "metrics.json", MetricsJson(runs));
+  base::WriteFile(out / "metrics.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 std::vector<RecordedMetrics> ReadMetricsJson(const std::filesystem::path& out) {
-  const std::filesystem::path file = out / "metrics.json";
-  const std::string text = ReadJsonText(file);
-  std::vector<RecordedMetrics> recorded;
-  try {
-    const Json json = Json::parse(text);
-    if (json.at("format") != kFormat) throw ev::InputError({file.string() + ": the format is not '" + kFormat + "'"});
-    const auto nanoseconds = [&](const Json& value) {
+  return ReadJson(out / "metrics.json", kFormat, [](const Json& json) {
+    const auto nanoseconds = [](const Json& value) {
       const auto ns = ev::Nanoseconds(value.get<double>());
-      if (!ns) throw ev::InputError({file.string() + ": " + value.dump() + " s is no time of 1e9 s at most"});
+      if (!ns) throw ev::InputError({value.dump() + " s is no time of 1e9 s at most"});
       return *ns;
     };
+    std::vector<RecordedMetrics> recorded;
     for (const Json& run : json.at("runs")) {
-      RecordedMetrics metrics;
+      RecordedMetrics& metrics = recorded.emplace_back();
       metrics.path = run.at("path").get<std::string>();
       const Json& options = run.at("options");
       metrics.options.association.rule = RuleOf(options.at("association"));
@@ -235,12 +214,9 @@ std::vector<RecordedMetrics> ReadMetricsJson(const std::filesystem::path& out) {
       metrics.options.rpe_tolerance_ns = nanoseconds(options.at("rpe_tolerance_s"));
       metrics.options.gauge = options.at("nees_gauge") == "first_pose" ? ev::Gauge::first_pose : ev::Gauge::as_is;
       metrics.ate_sim3_rmse_m = run.at("errors").at("ate").at("sim3").at("position").at("rmse").get<double>();
-      recorded.push_back(metrics);
     }
-  } catch (const Json::exception& error) {
-    throw ev::InputError({file.string() + ": " + error.what()});
-  }
-  return recorded;
+    return recorded;
+  });
 }
 
 }  // namespace vobench

@@ -16,10 +16,8 @@ struct RunMetrics {
   evaluation::Metrics metrics;
 };
 
-// The text of metrics.json: "systems" (medians over seeds) and "runs" (everything).
-std::string MetricsJson(const std::vector<RunMetrics>& runs);
-
-// Writes OUT/metrics.json whole or not at all; throws std::runtime_error when it cannot.
+// Writes OUT/metrics.json, "systems" (medians over seeds) and "runs" (everything), whole or not at all; throws
+// std::runtime_error when it cannot.
 void WriteMetricsJson(const std::filesystem::path& out, const std::vector<RunMetrics>& runs);
 
 // What the report needs back to judge again as before, and to see whether it gets the same.

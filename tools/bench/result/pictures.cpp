@@ -1,13 +1,11 @@
 #include "tools/bench/result/pictures.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "tools/base/files.h"
-#include "tools/base/limits/whole_number.h"
+#include "tools/base/limits/structured_text.h"
 #include "tools/base/text.h"
-#include "tools/bench/result/json_text.h"
-#include "tools/judge/evaluation/text_file.h"
+#include "tools/bench/result/json_file.h"
 
 namespace vobench {
 namespace {
@@ -42,27 +40,11 @@ FeatureMark MarkFrom(const Json& json) {
   return mark;
 }
 
-// What is wrong is told with the file's name.
-template <class Read>
-auto Parsed(const fs::path& file, const char* format, const Read& read) {
-  const std::string text = ReadJsonText(file);
-  try {
-    const Json json = Json::parse(text);
-    if (json.at("format") != format) throw ev::InputError({"the format is not '" + std::string(format) + "'"});
-    return read(json);
-  } catch (const Json::exception& error) {
-    throw ev::InputError({file.string() + ": " + error.what()});
-  } catch (const ev::InputError& error) {
-    throw ev::InputError({file.string() + ": " + error.what()});
-  }
-}
-
 }  // namespace
 
 bool IsDrawable(const FeatureMark& mark) {
-  return mark.pixel.allFinite() && mark.pixel.cwiseAbs().maxCoeff() < 1e5 && mark.predicted.allFinite() &&
-         mark.predicted.cwiseAbs().maxCoeff() < 1e5 && mark.covariance.allFinite() &&
-         mark.covariance.cwiseAbs().maxCoeff() < 1e8;
+  const auto below = [](const auto& values, double most) { return (values.array().abs() < most).all(); };
+  return below(mark.pixel, 1e5) && below(mark.predicted, 1e5) && below(mark.covariance, 1e8);
 }
 
 fs::path PicturePath(std::int64_t stamp_ns) { return fs::path("frames") / (base::FormatSeconds(stamp_ns) + ".jpg"); }
@@ -83,7 +65,7 @@ void WritePictures(const fs::path& run_folder, const KeptPictures& pictures) {
 KeptPictures ReadPictures(const fs::path& run_folder) {
   const fs::path file = run_folder / "pictures.json";
   if (!fs::exists(file)) return {};
-  return Parsed(file, kFormat, [](const Json& json) {
+  return ReadJson(file, kFormat, [](const Json& json) {
     KeptPictures kept;
     kept.width = limits::WholeNumber<int>(json.at("width")).value_or(0);
     kept.height = limits::WholeNumber<int>(json.at("height")).value_or(0);
@@ -112,7 +94,7 @@ void WriteTruthScale(const fs::path& out, const TruthScale& scale) {
 TruthScale ReadTruthScale(const fs::path& out) {
   const fs::path file = out / "truth" / "scale.json";
   if (!fs::exists(file)) return {};
-  return Parsed(file, kScaleFormat, [](const Json& json) {
+  return ReadJson(file, kScaleFormat, [](const Json& json) {
     return TruthScale{json.at("nearest_m").get<double>(), json.at("farthest_m").get<double>(),
                       json.at("largest_flow_px").get<double>()};
   });

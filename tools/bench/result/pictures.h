@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
-#include <string>
 #include <vector>
 
 namespace vobench {

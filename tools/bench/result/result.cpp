@@ -1,8 +1,12 @@
 #include "tools/bench/result/result.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "tools/base/files.h"
 #include "tools/base/text.h"
 #include "tools/bench/text.h"
 #include "tools/judge/evaluation/text_file.h"
@@ -12,6 +16,47 @@ namespace {
 
 namespace fs = std::filesystem;
 namespace ev = evaluation;
+
+void WriteLandmarks(const fs::path& run_folder, const std::vector<Landmark>& landmarks) {
+  std::string table = "id,x,y,z,inverse_depth,inverse_depth_sigma,permanent\n";
+  for (const Landmark& l : landmarks) {
+    table += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}\n", l.id, l.X_W.x(), l.X_W.y(), l.X_W.z(),
+                         l.inverse_depth, l.inverse_depth_sigma, l.permanent ? 1 : 0);
+  }
+  base::WriteFile(run_folder / "landmarks.csv", table);
+}
+
+std::vector<Landmark> ReadLandmarks(const fs::path& run_folder) {
+  const fs::path file = run_folder / "landmarks.csv";
+  if (!fs::exists(file)) return {};
+  ev::Problems problems;
+  std::vector<Landmark> landmarks;
+  bool header = true;
+  for (const ev::Line& line : ev::ReadLines(file, ',')) {
+    if (line.tokens.size() != 7) {
+      problems.Add(file, line.number, 1, std::to_string(line.tokens.size()) + " columns where 7 are expected");
+      continue;
+    }
+    if (std::exchange(header, false)) {
+      if (line.tokens[0].text == "id") continue;
+      problems.Add(file, line.number, 1, "no header line");
+    }
+    Landmark landmark;
+    for (int k = 0; k < 3; ++k) {
+      const ev::Token& token = line.tokens[static_cast<std::size_t>(k) + 1];
+      const auto value = ev::ParseNumber(token.text);
+      if (!value) problems.Add(file, line.number, token.column, "'" + token.text + "' is not a finite number");
+      landmark.X_W[k] = value.value_or(0);
+    }
+    const ev::Token& last = line.tokens[6];
+    landmark.permanent = last.text == "1";
+    if (last.text != "0" && last.text != "1")
+      problems.Add(file, line.number, last.column, "'" + last.text + "' is not 0 or 1");
+    landmarks.push_back(landmark);
+  }
+  problems.ThrowIfAny();
+  return landmarks;
+}
 
 RunData ReadRun(const fs::path& out, const RunEntry& entry, const std::vector<RecordedMetrics>& recorded,
                 std::vector<std::string>& warnings) {
@@ -94,6 +139,19 @@ std::vector<RunMetrics> ResultData::Metrics() const {
   return judged;
 }
 
+std::vector<const RunData*> ResultData::RunsOf(const std::string& system) const {
+  std::vector<const RunData*> own;
+  for (const RunData& run : runs) {
+    if (run.entry.system == system) own.push_back(&run);
+  }
+  return own;
+}
+
+void SortByAte(std::vector<const RunData*>& runs) {
+  std::ranges::stable_sort(
+      runs, {}, [](const RunData* run) { return run->judged ? run->judged->metrics.errors.sim3.position.rmse : 0; });
+}
+
 std::vector<std::string> ResultData::Systems() const {
   std::vector<std::string> systems;
   for (const RunData& run : runs) {
@@ -115,14 +173,8 @@ bool ResultData::SharedTruth() const {
 
 const RunData& ResultData::Typical(const std::string& system) const {
   const auto median = [this](const std::string& name) -> const RunData& {
-    std::vector<const RunData*> own;
-    for (const RunData& run : runs) {
-      if (run.entry.system == name) own.push_back(&run);
-    }
-    const auto ate = [](const RunData* run) {
-      return run->judged ? run->judged->metrics.errors.sim3.position.rmse : 0;
-    };
-    std::stable_sort(own.begin(), own.end(), [&](const RunData* a, const RunData* b) { return ate(a) < ate(b); });
+    std::vector<const RunData*> own = RunsOf(name);
+    SortByAte(own);
     return *own.at((own.size() - 1) / 2);
   };
   const std::string reference = Systems().front();

@@ -1,21 +1,29 @@
 // Result folder: everything in it as values, read and written (docs/result_folder.md).
 #pragma once
 
+#include <Eigen/Core>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "tools/bench/result/landmarks.h"
 #include "tools/bench/result/metrics_json.h"
 #include "tools/bench/result/pictures.h"
-#include "tools/bench/result/ranks.h"
 #include "tools/bench/result/run_json.h"
 #include "tools/bench/result/verdict.h"
 #include "tools/judge/evaluation/summary.h"
 
 namespace vobench {
+
+// Of the map after the last frame, landmarks.csv.
+struct Landmark {
+  std::int64_t id = 0;
+  Eigen::Vector3d X_W = Eigen::Vector3d::Zero();      // [m]
+  double inverse_depth = 0, inverse_depth_sigma = 0;  // [1/m]; not read back
+  bool permanent = false;
+};
 
 struct RunData {
   RunEntry entry;
@@ -34,6 +42,8 @@ struct ResultData {
 
   // Of the judged runs, in their order.
   std::vector<RunMetrics> Metrics() const;
+  // A system's runs, in their order.
+  std::vector<const RunData*> RunsOf(const std::string& system) const;
   // Systems in the order of first appearance.
   std::vector<std::string> Systems() const;
   // All runs fly the same path; false where each has drawn its own (worlds of points).
@@ -43,7 +53,10 @@ struct ResultData {
   const RunData& Typical(const std::string& system) const;
 };
 
-// How to tell a result folder (see OutputFolder): this file is in it, and nothing but these names.
+// From the smallest ATE to the largest; the order stays where nothing is judged.
+void SortByAte(std::vector<const RunData*>& runs);
+
+// Mark of a result folder (see OutputFolder): this file is in it, and nothing but these names.
 inline const std::string kResultMarker = "run.json";
 std::set<std::string> ResultNames(const std::vector<std::string>& systems);
 

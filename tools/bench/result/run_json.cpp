@@ -1,13 +1,11 @@
 #include "tools/bench/result/run_json.h"
 
+#include <algorithm>
 #include <exception>
-#include <nlohmann/json.hpp>
-#include <set>
 
 #include "tools/base/files.h"
-#include "tools/base/limits/whole_number.h"
-#include "tools/bench/result/json_text.h"
-#include "tools/judge/evaluation/text_file.h"
+#include "tools/base/limits/structured_text.h"
+#include "tools/bench/result/json_file.h"
 
 namespace vobench {
 namespace {
@@ -54,11 +52,7 @@ class Fields {
 // Below the result folder, whatever the platform makes of it.
 bool Inside(const std::string& path) {
   const fs::path p(path);
-  if (path.empty() || p.is_absolute()) return false;
-  for (const fs::path& part : p) {
-    if (part == "..") return false;
-  }
-  return true;
+  return !path.empty() && !p.is_absolute() && std::find(p.begin(), p.end(), "..") == p.end();
 }
 
 }  // namespace
@@ -83,13 +77,7 @@ void WriteRunJson(const fs::path& out, const RunDescription& description) {
 
 RunDescription ReadRunJson(const fs::path& out) {
   const fs::path file = out / "run.json";
-  const std::string text = ReadJsonText(file);
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::exception& error) {
-    throw evaluation::InputError({file.string() + ": " + error.what()});
-  }
+  const Json json = ReadJson(file);
   evaluation::Problems problems;
   RunDescription description;
   std::string format;

@@ -26,7 +26,7 @@ struct RunDescription {
   double seconds = 0;                           // wall time of everything
   std::string settings;                         // all of them, resolved, as YAML
   std::map<std::string, std::string> versions;  // program and libraries, by name
-  std::vector<std::string> notes;               // what a reader must know: warnings, coasted gaps
+  std::vector<std::string> notes;               // for the reader: warnings, coasted gaps
   std::vector<std::string> verdicts;            // in a sentence each, where they were asked for (--verdict)
   std::vector<RunEntry> runs;
 };

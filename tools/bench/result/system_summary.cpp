@@ -2,105 +2,89 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "tools/bench/text.h"
+#include "tools/judge/evaluation/statistics.h"
 
 namespace vobench {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegrees = 180 / M_PI;
-
-// The median over runs of what `value` says of each; NaN when any run has no answer.
-template <class Value>
-double MedianOver(const std::vector<const RunMetrics*>& runs, const Value& value) {
-  std::vector<double> values;
-  for (const RunMetrics* run : runs) values.push_back(value(*run));
-  if (std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) return kNaN;
-  return evaluation::Median(values);
-}
+using Runs = std::vector<SystemSummary>;
 
 double PerDof(const std::optional<evaluation::NeesSummary>& nees) {
   return nees && nees->frames > 0 ? nees->mean / nees->dof : kNaN;
 }
 
-// The error part of a summary, over the trajectory that `of` picks.
-template <class Errors>
-SystemSummary ErrorsOver(const std::string& name, const std::vector<const RunMetrics*>& runs, const Errors& of) {
+SystemSummary ErrorsOf(const std::string& name, const RunMetrics& run, const evaluation::TrajectoryErrors& errors) {
   SystemSummary s;
   s.system = name;
-  s.runs = runs.size();
-  const auto ate = [&](const RunMetrics& run) { return of(run).sim3.position.rmse; };
-  s.ate_m = MedianOver(runs, ate);
-  for (const RunMetrics* run : runs) s.ate_worst_m = std::max(s.ate_worst_m, ate(*run));
-  s.ate_share_of_path = MedianOver(runs, [&](const RunMetrics& run) { return ate(run) / run.metrics.path_length_m; });
-  s.ate_se3_m = MedianOver(runs, [&](const RunMetrics& run) { return of(run).se3.position.rmse; });
-  s.scale = MedianOver(runs, [&](const RunMetrics& run) {
-    const evaluation::Similarity& similarity = of(run).sim3.similarity;
-    return similarity.scale_determined ? similarity.scale : kNaN;
-  });
-  const auto rpe = [&](const RunMetrics& run, bool position) {
-    const evaluation::Rpe& r = of(run).rpe;
-    return r.pairs.empty() ? kNaN : position ? r.position_statistics.rmse : r.orientation_statistics.rmse;
-  };
-  s.rpe_m = MedianOver(runs, [&](const RunMetrics& run) { return rpe(run, true); });
-  s.rpe_rad = MedianOver(runs, [&](const RunMetrics& run) { return rpe(run, false); });
-  s.pose_coverage = s.tracked_coverage = kNaN;
-  s.nees_pose_per_dof = s.nees_pose_scale_free_per_dof = s.nees_velocity_per_dof = s.nis_per_dof = kNaN;
+  s.runs = 1;
+  s.ate_m = s.ate_worst_m = errors.sim3.position.rmse;
+  s.ate_share_of_path = s.ate_m / run.metrics.path_length_m;
+  s.ate_se3_m = errors.se3.position.rmse;
+  if (errors.sim3.similarity.scale_determined) s.scale = errors.sim3.similarity.scale;
+  if (errors.rpe.pairs.empty()) return s;
+  s.rpe_m = errors.rpe.position_statistics.rmse;
+  s.rpe_rad = errors.rpe.orientation_statistics.rmse;
   return s;
 }
 
-const evaluation::TrajectoryErrors& ErrorsOf(const RunMetrics& run) { return run.metrics.errors; }
+// NaN when any run has no answer.
+SystemSummary MedianOf(const Runs& runs) {
+  using S = SystemSummary;
+  S s = runs.front();
+  s.runs = runs.size();
+  s.ate_worst_m = 0;
+  for (const S& run : runs) s.ate_worst_m = std::max(s.ate_worst_m, run.ate_m);
+  for (double S::*const member : {&S::ate_m, &S::ate_share_of_path, &S::ate_se3_m, &S::scale, &S::rpe_m, &S::rpe_rad,
+                                  &S::pose_coverage, &S::tracked_coverage, &S::nees_pose_per_dof,
+                                  &S::nees_pose_scale_free_per_dof, &S::nees_velocity_per_dof, &S::nis_per_dof}) {
+    std::vector<double> values;
+    for (const S& run : runs) values.push_back(run.*member);
+    const bool complete = std::ranges::none_of(values, [](double value) { return std::isnan(value); });
+    s.*member = complete ? evaluation::Median(values) : kNaN;
+  }
+  return s;
+}
 
 }  // namespace
 
-SystemSummary SummariseErrors(const RunMetrics& run) { return ErrorsOver(run.run.system, {&run}, ErrorsOf); }
+SystemSummary Summarise(const RunMetrics& run) {
+  const evaluation::Metrics& m = run.metrics;
+  SystemSummary s = ErrorsOf(run.run.system, run, m.errors);
+  if (m.coverage) {
+    s.pose_coverage = m.coverage->pose_coverage();
+    s.tracked_coverage = m.coverage->tracked_coverage().value_or(kNaN);
+  }
+  if (m.consistency) {
+    s.nees_pose_per_dof = PerDof(m.consistency->pose);
+    s.nees_pose_scale_free_per_dof = PerDof(m.consistency->pose_scale_free);
+    s.nees_velocity_per_dof = PerDof(m.consistency->velocity);
+  }
+  if (m.nis && m.nis->frames > 0) s.nis_per_dof = m.nis->mean_per_dof;
+  return s;
+}
 
 std::vector<SystemSummary> SummariseSystems(const std::vector<RunMetrics>& runs) {
-  std::vector<std::string> systems;
+  std::vector<Runs> systems;
   for (const RunMetrics& run : runs) {
-    if (std::find(systems.begin(), systems.end(), run.run.system) == systems.end()) systems.push_back(run.run.system);
+    auto own = std::ranges::find(systems, run.run.system, [](const Runs& all) { return all.front().system; });
+    if (own == systems.end()) own = systems.emplace(own);
+    own->push_back(Summarise(run));
   }
   std::vector<SystemSummary> summaries;
-  for (const std::string& system : systems) {
-    std::vector<const RunMetrics*> own;
-    for (const RunMetrics& run : runs) {
-      if (run.run.system == system) own.push_back(&run);
-    }
-    SystemSummary s = ErrorsOver(system, own, ErrorsOf);
-    s.pose_coverage = MedianOver(
-        own, [](const RunMetrics& run) { return run.metrics.coverage ? run.metrics.coverage->pose_coverage() : kNaN; });
-    s.tracked_coverage = MedianOver(own, [](const RunMetrics& run) {
-      return run.metrics.coverage ? run.metrics.coverage->tracked_coverage().value_or(kNaN) : kNaN;
-    });
-    const auto nees = [&](const auto& pick) {
-      return MedianOver(own, [&](const RunMetrics& run) {
-        return run.metrics.consistency ? PerDof(pick(*run.metrics.consistency)) : kNaN;
-      });
-    };
-    using Summary = evaluation::ConsistencySummary;
-    using Nees = std::optional<evaluation::NeesSummary>;
-    s.nees_pose_per_dof = nees([](const Summary& c) -> Nees { return c.pose; });
-    s.nees_pose_scale_free_per_dof = nees([](const Summary& c) -> Nees { return c.pose_scale_free; });
-    s.nees_velocity_per_dof = nees([](const Summary& c) -> Nees { return c.velocity; });
-    s.nis_per_dof = MedianOver(own, [](const RunMetrics& run) {
-      return run.metrics.nis && run.metrics.nis->frames > 0 ? run.metrics.nis->mean_per_dof : kNaN;
-    });
-    summaries.push_back(s);
-  }
+  for (const Runs& own : systems) summaries.push_back(MedianOf(own));
   return summaries;
 }
 
 std::vector<SystemSummary> SummariseBaselines(const std::vector<RunMetrics>& runs) {
   if (runs.empty()) return {};
-  std::vector<const RunMetrics*> all;
-  for (const RunMetrics& run : runs) all.push_back(&run);
-  using Errors = evaluation::TrajectoryErrors;
-  return {ErrorsOver("constant pose", all,
-                     [](const RunMetrics& run) -> const Errors& { return run.metrics.constant_pose; }),
-          ErrorsOver("constant velocity", all,
-                     [](const RunMetrics& run) -> const Errors& { return run.metrics.constant_velocity; })};
+  Runs still, steady;
+  for (const RunMetrics& run : runs) {
+    still.push_back(ErrorsOf("constant pose", run, run.metrics.constant_pose));
+    steady.push_back(ErrorsOf("constant velocity", run, run.metrics.constant_velocity));
+  }
+  return {MedianOf(still), MedianOf(steady)};
 }
 
 Duel Compare(const std::vector<RunMetrics>& runs, const std::string& first, const std::string& second) {
@@ -143,6 +127,27 @@ std::string TextSummary(const std::vector<RunMetrics>& runs) {
       "frames with 10 or more matched features. NEES: of the pose, not aligned, 1 is ideal; scale-free: blind to the "
       "map's scale.\n";
   return text;
+}
+
+std::string TimeTable(const std::vector<evaluation::FrameRecord>& frames, double elapsed_s) {
+  if (frames.empty()) return "";
+  std::vector<std::vector<std::string>> rows = {{"Time per frame [ms]", "median", "95 %", "longest"}};
+  const auto add = [&](const std::string& name, const auto& time_of) {
+    std::vector<double> times;
+    for (const evaluation::FrameRecord& frame : frames) times.push_back(time_of(frame));
+    std::sort(times.begin(), times.end());
+    rows.push_back({name, Fixed(evaluation::Quantile(times, 0.5), 2), Fixed(evaluation::Quantile(times, 0.95), 2),
+                    Fixed(times.back(), 2)});
+  };
+  using Record = evaluation::FrameRecord;
+  add("features", [](const Record& f) { return f.ms_features; });
+  add("matching", [](const Record& f) { return f.ms_matching; });
+  add("filter", [](const Record& f) { return f.ms_filter; });
+  add("all", [](const Record& f) { return f.ms_features + f.ms_matching + f.ms_filter; });
+  const double n = static_cast<double>(frames.size());
+  return AlignedTable(rows) + std::to_string(frames.size()) + " frames in " + Fixed(elapsed_s, 2) +
+         " s, read and tracked: " + Fixed(1e3 * elapsed_s / n, 2) + " ms each, " + Fixed(n / elapsed_s, 1) +
+         " a second.\n";
 }
 
 }  // namespace vobench

@@ -1,6 +1,8 @@
-// Summary of each system over its seeds, comparison of two systems, and the table for a terminal.
+// Summary of each system over its seeds, comparison of two systems, and the tables for a terminal: of accuracy and of
+// time.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -8,20 +10,20 @@
 
 namespace vobench {
 
-// What one system scored: medians over its seeds.
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// What one system scored: medians over its seeds. NaN where unknown.
 struct SystemSummary {
   std::string system;
   std::size_t runs = 0;
-  double ate_m = 0;                 // position RMSE after Sim(3) alignment
-  double ate_worst_m = 0;           // of the seeds
-  double ate_se3_m = 0, scale = 0;  // after SE(3) alignment; scale of the Sim(3) one, NaN where it is not determined
-  double ate_share_of_path = 0;
-  double rpe_m = 0,
-         rpe_rad = 0;  // RMSE over one second (JudgeOptions::rpe_delta_ns), translations times the Sim(3) scale
-  double pose_coverage = 0, tracked_coverage = 0;  // NaN where unknown
-  double nees_pose_per_dof = 0, nees_pose_scale_free_per_dof = 0,
-         nees_velocity_per_dof = 0;  // time means; NaN where unknown
-  double nis_per_dof = 0;            // NaN where unknown
+  double ate_m = kNaN;                    // position RMSE after Sim(3) alignment
+  double ate_worst_m = kNaN;              // of the seeds
+  double ate_se3_m = kNaN, scale = kNaN;  // after SE(3) alignment; scale of the Sim(3) one
+  double ate_share_of_path = kNaN;
+  double rpe_m = kNaN, rpe_rad = kNaN;  // RMSE over JudgeOptions::rpe_delta_ns, translations times the Sim(3) scale
+  double pose_coverage = kNaN, tracked_coverage = kNaN;
+  double nees_pose_per_dof = kNaN, nees_pose_scale_free_per_dof = kNaN, nees_velocity_per_dof = kNaN;  // time means
+  double nis_per_dof = kNaN;
 };
 
 // One per system, in the order of first appearance.
@@ -30,8 +32,8 @@ std::vector<SystemSummary> SummariseSystems(const std::vector<RunMetrics>& runs)
 // The same for the baselines, which never look at the images: "constant pose", "constant velocity".
 std::vector<SystemSummary> SummariseBaselines(const std::vector<RunMetrics>& runs);
 
-// Of one run, with its errors alone.
-SystemSummary SummariseErrors(const RunMetrics& run);
+// Of one run.
+SystemSummary Summarise(const RunMetrics& run);
 
 // Seeds that both systems ran, and in how many of them the first has the smaller ATE (Sim(3)).
 struct Duel {
@@ -41,5 +43,10 @@ Duel Compare(const std::vector<RunMetrics>& runs, const std::string& first, cons
 
 // A table: systems and baselines, then what the columns mean. Ends with a line break. Empty for no runs.
 std::string TextSummary(const std::vector<RunMetrics>& runs);
+
+// Time per stage of an odometry [ms]: a row for each stage and one for all of them, median, 95th percentile and longest
+// over the frames. `elapsed_s` is how long all frames took by the clock, reading them included: with stages side by
+// side less than the sum. Empty for no frames.
+std::string TimeTable(const std::vector<evaluation::FrameRecord>& frames, double elapsed_s);
 
 }  // namespace vobench

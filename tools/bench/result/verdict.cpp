@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <utility>
 
 #include "tools/base/files.h"
+#include "tools/base/text.h"
 #include "tools/bench/text.h"
 #include "tools/judge/evaluation/text_file.h"
 
@@ -57,6 +57,13 @@ bool IsRow(const std::vector<ev::Token>& fields) {
          (fields[5].text == "pass" || fields[5].text == "fail");
 }
 
+// A finite number; 0, and a problem, for anything else.
+double NumberIn(const ev::Token& token, const std::filesystem::path& file, int line, ev::Problems& problems) {
+  const auto value = ev::ParseNumber(token.text);
+  if (!value) problems.Add(file, line, token.column, "'" + token.text + "' is not a finite number");
+  return value.value_or(0);
+}
+
 }  // namespace
 
 std::string VerdictSentence(const SystemVerdict& v) {
@@ -67,10 +74,9 @@ std::string VerdictSentence(const SystemVerdict& v) {
   }
   if (failed.empty()) return fmt::format("{} is consistent with its own model at {}.", name, v.setting);
   const auto join = [](const std::vector<std::string>& texts) {
-    std::string all;
-    for (std::size_t i = 0; i < std::min<std::size_t>(texts.size(), 3); ++i) all += (i == 0 ? "" : ", ") + texts[i];
-    if (texts.size() > 3) all += fmt::format(" and {} more", texts.size() - 3);
-    return all;
+    const std::size_t shown = std::min<std::size_t>(texts.size(), 3), more = texts.size() - shown;
+    return fmt::format("{}{}", fmt::join(texts.begin(), texts.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+                       more > 0 ? fmt::format(" and {} more", more) : "");
   };
   const auto above = OutOfBand(v.verdict, true), below = OutOfBand(v.verdict, false);
   if (!above.empty() && below.empty())
@@ -99,17 +105,11 @@ std::string VerdictText(const SystemVerdict& v) {
   }
   text += fmt::format(
       "\nEnergy score [cm, deg, cm/s, deg/s]: {:.3f}, {:.4f}, {:.3f}, {:.3f}; effective components {:.1f}\n",
-      100 * verdict.energy[0], 180 / M_PI * verdict.energy[1], 100 * verdict.energy[2], 180 / M_PI * verdict.energy[3],
+      100 * verdict.energy[0], kDegrees * verdict.energy[1], 100 * verdict.energy[2], kDegrees * verdict.energy[3],
       verdict.effective_components);
   text += fmt::format("A consistent filter fails one of these checks in at most {:.0f} % of such tables.\n",
                       100 * verdict.false_alarm());
   return text + VerdictSentence(v) + "\n";
-}
-
-std::vector<VerdictRow> VerdictRows(const SystemVerdict& v) {
-  std::vector<VerdictRow> rows;
-  for (const ev::Check& check : v.verdict.checks) rows.push_back({v.system, check});
-  return rows;
 }
 
 void WriteVerdict(const std::filesystem::path& out, const std::vector<VerdictRow>& rows) {
@@ -136,16 +136,83 @@ std::vector<VerdictRow> ReadVerdict(const std::filesystem::path& out) {
       problems.Add(file, number, 1, "not system,\"check\",value,relation,threshold,pass,false_alarm");
       continue;
     }
-    const auto value = [&](std::size_t k) {
-      const auto parsed = ev::ParseNumber(fields[k].text);
-      if (!parsed) problems.Add(file, number, fields[k].column, "'" + fields[k].text + "' is not a finite number");
-      return parsed.value_or(0);
-    };
+    const auto value = [&](std::size_t k) { return NumberIn(fields[k], file, number, problems); };
     rows.push_back({fields[0].text,
                     {fields[1].text, value(2), value(4), fields[3].text == ">=", fields[5].text == "pass", value(6)}});
   }
   problems.ThrowIfAny();
   return rows;
+}
+
+std::vector<RankTable> RankTables(const std::string& system, const std::vector<std::size_t>& rank_frames,
+                                  const ev::ConsistencyVerdict& verdict) {
+  constexpr std::size_t kDimensions = 12;
+  constexpr double kTail = 0.025;  // of a consistent bar, on either side of its band
+  std::vector<RankTable> tables;
+  for (std::size_t i = 0; i < verdict.rank_histograms.size(); ++i) {
+    const ev::RankHistogram& histogram = verdict.rank_histograms[i];
+    if (histogram.runs == 0) continue;
+    const std::size_t dimension = i % kDimensions;
+    RankTable& table = tables.emplace_back();
+    table.system = system;
+    table.frame = rank_frames.at(i / kDimensions);
+    table.dimension = std::string(ev::kStateBlocks[dimension / 3].name) + " " + "xyz"[dimension % 3];
+    table.p_value = histogram.p_value;
+    for (std::size_t bar = 0; bar < histogram.counts.size(); ++bar) {
+      const double share = histogram.shares[bar];
+      const auto runs = static_cast<std::size_t>(histogram.runs);
+      table.counts.push_back(histogram.counts[bar]);
+      table.low.push_back(static_cast<double>(runs - ev::BinomialLimit(runs, 1 - share, kTail)));
+      table.high.push_back(static_cast<double>(ev::BinomialLimit(runs, share, kTail)));
+    }
+  }
+  return tables;
+}
+
+void WriteRanks(const std::filesystem::path& out, const std::vector<RankTable>& tables) {
+  std::string text = "system,frame,dimension,bar,count,low,high,p_value\n";
+  for (const RankTable& table : tables) {
+    const std::string start = table.system + "," + std::to_string(table.frame) + "," + table.dimension + ",";
+    for (std::size_t bar = 0; bar < table.counts.size(); ++bar) {
+      text += start + std::to_string(bar + 1);
+      for (const double value : {table.counts[bar], table.low[bar], table.high[bar], table.p_value}) {
+        text += "," + base::Significant(value, 6);
+      }
+      text += "\n";
+    }
+  }
+  base::WriteFile(out / "ranks.csv", text);
+}
+
+std::vector<RankTable> ReadRanks(const std::filesystem::path& out) {
+  const std::filesystem::path file = out / "ranks.csv";
+  if (!std::filesystem::exists(file)) return {};
+  ev::Problems problems;
+  std::vector<RankTable> tables;
+  bool header = true;
+  for (const ev::Line& line : ev::ReadLines(file, ',')) {
+    if (std::exchange(header, false)) continue;
+    if (line.tokens.size() != 8) {
+      problems.Add(file, line.number, 1, std::to_string(line.tokens.size()) + " columns where 8 are expected");
+      continue;
+    }
+    const auto number = [&](std::size_t column) { return NumberIn(line.tokens[column], file, line.number, problems); };
+    const double frame = number(1);
+    if (!(frame >= 0 && frame < 1e9)) problems.Add(file, line.number, line.tokens[1].column, "no frame's number");
+    const std::string &system = line.tokens[0].text, &dimension = line.tokens[2].text;
+    if (number(3) == 1)
+      tables.push_back(
+          {system, static_cast<std::size_t>(std::clamp(frame, 0.0, 1e9)), dimension, number(7), {}, {}, {}});
+    if (tables.empty() || tables.back().system != system || tables.back().dimension != dimension) {
+      problems.Add(file, line.number, 1, "bars of a histogram must follow each other, from 1");
+      continue;
+    }
+    tables.back().counts.push_back(number(4));
+    tables.back().low.push_back(number(5));
+    tables.back().high.push_back(number(6));
+  }
+  problems.ThrowIfAny();
+  return tables;
 }
 
 }  // namespace vobench

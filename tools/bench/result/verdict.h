@@ -1,4 +1,5 @@
-// Consistency verdict of a system in words, as a table for a terminal, and as verdict.csv of a result folder.
+// Consistency verdict of a system in words, as a table for a terminal, and as verdict.csv of a result folder; the rank
+// histograms (simulation-based calibration) behind it, and ranks.csv.
 // Source: docs/metrics.md, "Consistency as pass or fail"; docs/result_folder.md.
 #pragma once
 
@@ -28,11 +29,29 @@ struct VerdictRow {
   std::string system;
   evaluation::Check check;
 };
-std::vector<VerdictRow> VerdictRows(const SystemVerdict& verdict);
 
 // verdict.csv: system,check,value,relation,threshold,pass,false_alarm. Throws std::runtime_error.
 void WriteVerdict(const std::filesystem::path& out, const std::vector<VerdictRow>& rows);
 // No rows where there is no such file. Throws evaluation::InputError with every problem of it.
 std::vector<VerdictRow> ReadVerdict(const std::filesystem::path& out);
+
+// One histogram. A bar of a consistent filter is between `low` and `high` with probability 95 % or more.
+struct RankTable {
+  std::string system;
+  std::size_t frame = 0;  // 0 is the first of the sequence
+  std::string dimension;  // "position x", ...
+  double p_value = 1;     // of uniformity
+  std::vector<double> counts, low, high;
+};
+
+// The histograms behind the verdict's check of ranks; `rank_frames` as they were given to it.
+std::vector<RankTable> RankTables(const std::string& system, const std::vector<std::size_t>& rank_frames,
+                                  const evaluation::ConsistencyVerdict& verdict);
+
+// ranks.csv, a line for each bar: system,frame,dimension,bar,count,low,high,p_value. Throws std::runtime_error.
+void WriteRanks(const std::filesystem::path& out, const std::vector<RankTable>& tables);
+
+// None where there is no such file. Throws evaluation::InputError with every problem of it.
+std::vector<RankTable> ReadRanks(const std::filesystem::path& out);
 
 }  // namespace vobench

@@ -4,13 +4,9 @@
 
 #include <optional>
 #include <stdexcept>
-#include <system_error>
 #include <vector>
 
-#include "sim/scenario/stamps.h"
-#include "sim/sequence/format.h"
 #include "sim/sequence/journal.h"
-#include "sim/sequence/layout.h"
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"
 #include "sim/world/scene.h"
@@ -91,43 +87,6 @@ void RenderInto(const campaign::SequenceCache& cache, const std::string& key, co
   writer->Finish();
   fs::remove(partial / sim::kJournalName);
   base::ReplaceFolder(partial, folder);
-}
-
-fs::path InLayout(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario,
-                  campaign::SequenceLayout layout) {
-  const fs::path sequence = cache.PathOf(key);
-  if (layout == campaign::SequenceLayout::tum) return sequence;
-  const fs::path folder = sequence.string() + "." + campaign::Name(layout);
-  const campaign::FileLock lock = cache.Take(key);
-  if (fs::exists(folder)) return folder;
-  const fs::path partial = folder.string() + ".partial";
-  fs::remove_all(partial);
-  const std::unique_ptr<sim::Trajectory> trajectory = sim::TrajectoryOf(scenario);
-  std::vector<sim::StampedTruth> frames;
-  std::string times;
-  for (std::int64_t index = 0; index < sim::CountFrames(scenario.time); ++index) {
-    const std::int64_t stamp_ns = sim::StampNs(index, scenario.time);
-    frames.push_back({index, stamp_ns, sim::TruthAt(*trajectory, sim::Seconds(stamp_ns))});
-    const std::string number = fmt::format("{:06}", index);
-    const fs::path link =
-        partial / (layout == campaign::SequenceLayout::euroc ? sim::NamesOf(sim::Layout::euroc, index, stamp_ns).image
-                                                             : "images/" + number + ".png");
-    fs::create_directories(link.parent_path());
-    fs::create_hard_link(sequence / sim::NamesOf(sim::Layout::tum, index, stamp_ns).image, link);
-    times += fmt::format("{} {} {:.9g}\n", number, sim::FormatStamp(stamp_ns), 1e3 * scenario.sensor.exposure_s);
-  }
-  if (layout == campaign::SequenceLayout::euroc) {
-    const std::vector<std::string> problems = sim::Problems(sim::Layout::euroc, scenario);
-    if (!problems.empty()) throw BadInput(fmt::format("{}", fmt::join(problems, "; ")));
-    for (const sim::StreamFile& file : sim::Lists(sim::Layout::euroc, scenario, frames)) {
-      base::WriteFileAndFolders(partial / file.path, base::AsText(file.bytes));
-    }
-  } else {
-    base::WriteFile(partial / "times.txt", times);
-  }
-  base::WriteFile(partial / "camera.yaml", sim::CameraYaml(scenario.camera, scenario.sensor.readout_s));
-  base::ReplaceFolder(partial, folder);
-  return folder;
 }
 
 }  // namespace vobench

@@ -1,12 +1,10 @@
-// Sequences of a campaign in the cache: name by content, rendering, other layouts.
+// Sequences of a campaign in the cache: name by content, rendering.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "sim/scenario/scenario.h"
-#include "tools/bench/campaign/external_system.h"
 #include "tools/bench/campaign/sequence_cache.h"
 
 namespace vobench {
@@ -14,7 +12,7 @@ namespace vobench {
 // Of the contents of the files that the motion in a world of points is read from; empty where there is none.
 std::string DigestOfPointFiles(const sim::Scenario& scenario);
 
-// Reads the world of a scenario and tells the cache its files. Throws BadInput where one cannot be read.
+// Reads the world of a scenario and gives the cache the names of its files. Throws BadInput where one cannot be read.
 void FindWorld(const sim::Scenario& scenario, campaign::SequenceCache& cache);
 
 // Of all that the pictures depend on: settings, contents of files, version of the program. None where the files of the
@@ -24,10 +22,5 @@ std::optional<std::string> SequenceKey(const sim::Scenario& scenario, campaign::
 // Renders the sequence unless it is there, going on with what a killed process left. Waits where another one is at it.
 // Throws BadInput, std::runtime_error.
 void RenderInto(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario, int jobs);
-
-// The sequence in another layout, made of links to the pictures in the cache; itself for TUM's. Made where it is not
-// there.
-std::filesystem::path InLayout(const campaign::SequenceCache& cache, const std::string& key,
-                               const sim::Scenario& scenario, campaign::SequenceLayout layout);
 
 }  // namespace vobench

@@ -1,5 +1,5 @@
-#include "tools/bench/run/campaign_tasks.h"
-
+// Tasks of a campaign on our odometries and on external programs: played or tracked, judged, written to their folders.
+// A result is a function of the campaign's file and the task's number; times are kept apart.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
@@ -15,6 +15,7 @@
 #include "tools/base/files.h"
 #include "tools/bench/campaign/digest.h"
 #include "tools/bench/campaign/options.h"
+#include "tools/bench/campaign/task_runner.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/provenance.h"
 #include "tools/bench/result/metrics_json.h"
@@ -34,6 +35,7 @@ namespace fs = std::filesystem;
 namespace {
 
 using campaign::Campaign;
+using campaign::SequenceCache;
 using campaign::TaskChoice;
 using campaign::TaskRecord;
 
@@ -136,7 +138,7 @@ Experiment Load(const Campaign& campaign, const TaskChoice& choice) {
   Experiment experiment = LoadExperiment(campaign.scenarios[choice.scenario].file, changes);
   const auto asks = [](const auto& change) { return change.first == "truth"; };
   if (experiment.scenario.points || std::any_of(changes.begin(), changes.end(), asks)) return experiment;
-  // No truth beside poses and velocities unless the campaign asks for it: nobody here would look at it.
+  // No truth beside poses and velocities unless the campaign asks for it: it would not be read here.
   experiment.scenario.truth.streams.clear();
   for (std::string* resolved : {&experiment.scenario.resolved, &experiment.resolved}) {
     auto json = nlohmann::ordered_json::parse(*resolved);
@@ -152,7 +154,7 @@ std::string DigestOfSettings(const Experiment& experiment) {
   return campaign::Digest(experiment.resolved + (scenario.points ? DigestOfPointFiles(scenario) : ""));
 }
 
-// A world of points has the seed of its task, and no pictures for somebody else's system.
+// A world of points has the seed of its task, and no pictures for an external system.
 void RefusePoints(const Campaign& campaign, const TaskChoice& choice, const campaign::TaskRunner::Refuse& refuse) {
   for (const auto& [key, value] : campaign::ChangesAt(campaign, choice)) {
     if (key == "seed") refuse("seed", "each task has a world of its own, with the seed of the task");
@@ -161,76 +163,75 @@ void RefusePoints(const Campaign& campaign, const TaskChoice& choice, const camp
   if (system.system.empty()) refuse("", "a world of points has no pictures for '" + system.name + "'");
 }
 
-}  // namespace
+class CampaignTasks : public campaign::TaskRunner {
+ public:
+  std::vector<std::string> Systems() const override { return SystemNames(); }
 
-std::vector<std::string> CampaignTasks::Systems() const { return SystemNames(); }
-
-campaign::TaskSettings CampaignTasks::Settings(const Campaign& campaign, const TaskChoice& choice,
-                                               const Refuse& refuse) const {
-  const Experiment experiment = Load(campaign, choice);
-  const bool images = !experiment.scenario.points;
-  if (!images) RefusePoints(campaign, choice, refuse);
-  const campaign::SystemEntry& system = campaign.systems[choice.system];
-  if (system.system.empty() && experiment.prior.focal_error != 0) {
-    // It would not reach the system, and must not look as if it did.
-    refuse("prior.focal_error", "'" + system.name + "' is not ours: it is given the camera as it is");
+  campaign::TaskSettings Settings(const Campaign& campaign, const TaskChoice& choice,
+                                  const Refuse& refuse) const override {
+    const Experiment experiment = Load(campaign, choice);
+    const bool images = !experiment.scenario.points;
+    if (!images) RefusePoints(campaign, choice, refuse);
+    const campaign::SystemEntry& system = campaign.systems[choice.system];
+    if (system.system.empty() && experiment.prior.focal_error != 0) {
+      // It would not reach the system, and must not look as if it did.
+      refuse("prior.focal_error", "'" + system.name + "' is not ours: it is given the camera as it is");
+    }
+    return {images, experiment.resolved, DigestOfSettings(experiment)};
   }
-  return {images, experiment.resolved, DigestOfSettings(experiment)};
-}
 
-std::optional<std::string> CampaignTasks::SequenceName(const Campaign& campaign, const TaskChoice& choice,
-                                                       campaign::SequenceCache& cache) const {
-  return SequenceKey(Input([&] { return Load(campaign, choice); }).scenario, cache);
-}
-
-void CampaignTasks::ReadWorld(const Campaign& campaign, const TaskChoice& choice,
-                              campaign::SequenceCache& cache) const {
-  try {
-    FindWorld(Load(campaign, choice).scenario, cache);
-  } catch (const BadInput& error) {
-    throw std::invalid_argument(error.what());
+  std::optional<std::string> SequenceName(const Campaign& campaign, const TaskChoice& choice,
+                                          SequenceCache& cache) const override {
+    return SequenceKey(Input([&] { return Load(campaign, choice); }).scenario, cache);
   }
-}
 
-void CampaignTasks::Render(const Campaign& campaign, const TaskChoice& choice, const campaign::SequenceCache& cache,
-                           const std::string& sequence, int threads) const {
-  RenderInto(cache, sequence, Input([&] { return Load(campaign, choice); }).scenario, threads);
-}
-
-void CampaignTasks::Run(const Campaign& campaign, const TaskChoice& choice, const campaign::SequenceCache& cache,
-                        const std::string& sequence, const fs::path& folder, TaskRecord& record) const {
-  const Clock clock;
-  cv::setNumThreads(1);
-  const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
-  const campaign::SystemEntry& system = campaign.systems[choice.system];
-  const Experiment experiment = Input([&] { return Load(campaign, choice); });
-  TaskOutput output;
-  if (system.system.empty()) {
-    const Clock tracking;
-    ExternalAnswer answer = RunExternal(system.external, cache, sequence, experiment.scenario, record.seed, folder);
-    output.seconds = tracking.seconds();
-    record.status = answer.status;
-    record.reason = answer.reason;
-    output.run.trajectory = std::move(answer.trajectory);
-    output.truth = TruthOfAllFrames(experiment.scenario);
-    output.how.frame_stamps_ns = evaluation::StampsOf(output.truth.poses);
-  } else {
-    output = experiment.scenario.points ? PlayPoints(experiment, system.system, record.seed)
-                                        : PlayImages(experiment, cache.PathOf(sequence), system.system, record.seed);
-    output.how = JudgeOptionsOf(experiment.prior);
-  }
-  const evaluation::Timing frame = TakeTimes(output);
-  if (record.status == campaign::Status::ok) {
+  void ReadWorld(const Campaign& campaign, const TaskChoice& choice, SequenceCache& cache) const override {
     try {
-      WriteJudged(folder, campaign, output, record);
-    } catch (const evaluation::InputError& error) {
-      if (!system.system.empty()) throw;
-      record.status = campaign::Status::no_answer;
-      record.reason = error.what();
+      FindWorld(Load(campaign, choice).scenario, cache);
+    } catch (const BadInput& error) {
+      throw std::invalid_argument(error.what());
     }
   }
-  WriteTimes(folder, clock, output.seconds, frame);
-}
+
+  void Render(const Campaign& campaign, const TaskChoice& choice, const SequenceCache& cache,
+              const std::string& sequence, int threads) const override {
+    RenderInto(cache, sequence, Input([&] { return Load(campaign, choice); }).scenario, threads);
+  }
+
+  void Run(const Campaign& campaign, const TaskChoice& choice, const SequenceCache& cache, const std::string& sequence,
+           const fs::path& folder, TaskRecord& record) const override {
+    const Clock clock;
+    cv::setNumThreads(1);
+    const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
+    const campaign::SystemEntry& system = campaign.systems[choice.system];
+    const Experiment experiment = Input([&] { return Load(campaign, choice); });
+    TaskOutput output;
+    if (system.system.empty()) {
+      const Clock tracking;
+      output.run.trajectory = RunExternal(system.external, cache, sequence, experiment.scenario, folder, record);
+      output.seconds = tracking.seconds();
+      output.truth = TruthOfAllFrames(experiment.scenario);
+      output.how.frame_stamps_ns = evaluation::StampsOf(output.truth.poses);
+    } else {
+      output = experiment.scenario.points ? PlayPoints(experiment, system.system, record.seed)
+                                          : PlayImages(experiment, cache.PathOf(sequence), system.system, record.seed);
+      output.how = JudgeOptionsOf(experiment.prior);
+    }
+    const evaluation::Timing frame = TakeTimes(output);
+    if (record.status == campaign::Status::ok) {
+      try {
+        WriteJudged(folder, campaign, output, record);
+      } catch (const evaluation::InputError& error) {
+        if (!system.system.empty()) throw;
+        record.status = campaign::Status::no_answer;
+        record.reason = error.what();
+      }
+    }
+    WriteTimes(folder, clock, output.seconds, frame);
+  }
+};
+
+}  // namespace
 
 void RunCampaign(const CampaignOptions& options) { campaign::RunCampaign(options, CampaignTasks()); }
 

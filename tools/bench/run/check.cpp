@@ -14,7 +14,7 @@ namespace vobench {
 
 namespace {
 
-// The first lines, which tell what is the same of all worlds.
+// The first lines, the same for all worlds.
 void PrintFrames(const CheckOptions& options, const sim::Scenario& scenario, const Truth& truth) {
   const sim::CameraParams& camera = scenario.camera;
   fmt::print("{}: good\n", options.scenario.string());
@@ -55,8 +55,7 @@ void Check(const CheckOptions& options) {
   if (experiment.scenario.points) return CheckPoints(options, experiment.scenario);
   const sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, 1); });
   PrintWarnings(simulator.warnings());
-  Truth truth;
-  for (std::int64_t k = 0; k < simulator.frame_count(); ++k) Append(simulator.StampNs(k), simulator.TruthAt(k), truth);
+  const Truth truth = TruthOfFirst(simulator, simulator.frame_count());
   const sim::Scenario& scenario = experiment.scenario;
   PrintFrames(options, scenario, truth);
   fmt::print("  {:.2f} m of path, {} meshes, {} lights, seed {}\n", evaluation::PathLength(truth.poses),

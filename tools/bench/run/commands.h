@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/base/settings/overrides.h"
+#include "tools/base/settings/settings.h"
 #include "tools/judge/evaluation/trajectory.h"
 
 namespace vobench {
@@ -37,7 +37,7 @@ struct TrackOptions {
   std::filesystem::path sequence;
   std::filesystem::path output;
   std::string system = "rb2pf";
-  std::optional<std::string> camera;  // a preset or a file; the sequence's camera.yaml unless told
+  std::optional<std::string> camera;  // a preset or a file; absent: the sequence's camera.yaml
   std::optional<std::filesystem::path> settings;
   std::uint64_t seed = 1;
   bool view = false;                         // the report in a browser, while it runs
@@ -100,7 +100,8 @@ struct ReportOptions {
 };
 void Report(const ReportOptions& options);
 
-// The streams of a sequence are held against each other. Throws Inconsistent after printing when they disagree.
+// The streams of a sequence are held against each other. Throws std::runtime_error after printing when they
+// disagree.
 struct VerifyOptions {
   std::filesystem::path sequence;
 };

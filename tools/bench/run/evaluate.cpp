@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <numbers>
 #include <string_view>
 
 #include "tools/bench/errors.h"
@@ -9,6 +7,7 @@
 #include "tools/bench/result/result.h"
 #include "tools/bench/run/commands.h"
 #include "tools/bench/sequence/sequence_truth.h"
+#include "tools/bench/text.h"
 #include "tools/judge/evaluation/summary.h"
 
 namespace vobench {
@@ -79,7 +78,6 @@ void PrintNees(const evaluation::NeesSummary& nees, evaluation::Gauge gauge) {
 }
 
 void Print(const evaluation::Metrics& metrics, evaluation::Alignment alignment) {
-  constexpr double kDegrees = 180 / std::numbers::pi;
   const evaluation::TrajectoryErrors& errors = metrics.errors;
   const evaluation::Ate& ate = errors.Aligned(alignment);
   const evaluation::Rpe& rpe = alignment == evaluation::Alignment::sim3 ? errors.rpe : errors.rpe_unscaled;

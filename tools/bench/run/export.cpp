@@ -1,8 +1,8 @@
 // A sequence, of any layout that `track` reads, as a ROS 1 bag.
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <initializer_list>
 #include <limits>
 #include <optional>
@@ -34,7 +34,7 @@ struct DepthFile {
 
 struct ImuReading {
   std::int64_t stamp_ns = 0;
-  std::array<double, 3> angular_rate{}, specific_force{};
+  Eigen::Vector3d angular_rate, specific_force;
 };
 
 // What there is beside the images.
@@ -75,18 +75,18 @@ std::vector<ImuReading> ReadImu(const fs::path& table) {
   evaluation::Problems problems;
   for (const evaluation::Line& line : evaluation::ReadLines(table, ',')) {
     const auto stamp_ns = base::ParseSeconds(line.tokens[0].text + "e-9");
-    std::array<double, 6> values{};
+    Eigen::Matrix<double, 6, 1> values = Eigen::Matrix<double, 6, 1>::Zero();
     bool good = stamp_ns.has_value() && line.tokens.size() >= 7;
-    for (std::size_t i = 0; good && i < 6; ++i) {
-      const auto number = evaluation::ParseNumber(line.tokens[i + 1].text);
+    for (std::size_t i = 1; good && i < 7; ++i) {
+      const auto number = evaluation::ParseNumber(line.tokens[i].text);
       good = number.has_value();
-      values[i] = number.value_or(0);
+      values[static_cast<Eigen::Index>(i) - 1] = number.value_or(0);
     }
     if (!good) {
       problems.Add(table, line.number, 1, "expected timestamp [ns], angular rate and specific force: seven numbers");
       continue;
     }
-    readings.push_back({*stamp_ns, {values[0], values[1], values[2]}, {values[3], values[4], values[5]}});
+    readings.push_back({*stamp_ns, values.head<3>(), values.tail<3>()});
   }
   problems.ThrowIfAny();
   return readings;
@@ -102,22 +102,6 @@ Streams ReadStreams(const fs::path& sequence) {
     streams.imu = ReadImu(*table);
   if (const auto truth = ReadSequenceTruth(sequence)) streams.truth = truth->poses;
   return streams;
-}
-
-BagFile::Lens LensOf(const vo::Camera& c) {
-  BagFile::Lens lens{
-      static_cast<std::uint32_t>(c.width), static_cast<std::uint32_t>(c.height), c.fx, c.fy, c.cx, c.cy, "plumb_bob",
-      {c.k1, c.k2, c.p1, c.p2, c.k3}};
-  if (c.lens == vo::Lens::fisheye) {
-    lens.model = "equidistant";
-    lens.coefficients = {c.k1, c.k2, c.k3, c.k4};
-  }
-  return lens;
-}
-
-BagFile::Picture PictureOf(const cv::Mat& image, const char* encoding) {
-  return {static_cast<std::uint32_t>(image.cols), static_cast<std::uint32_t>(image.rows),
-          static_cast<std::uint32_t>(image.elemSize()), encoding, image.data};
 }
 
 cv::Mat ReadDepth(const fs::path& file) {
@@ -139,21 +123,19 @@ void Write(BagFile& bag, vo::SequenceReader& frames, const Streams& streams, std
       bag.Imu("/imu", reading.stamp_ns + offset_ns, reading.angular_rate, reading.specific_force);
     }
     for (; pose < streams.truth.size() && streams.truth[pose].stamp_ns <= stamp_ns; ++pose) {
-      const evaluation::StampedPose& at = streams.truth[pose];
-      bag.Pose("/ground_truth/pose", at.stamp_ns + offset_ns, {at.p_WC.x(), at.p_WC.y(), at.p_WC.z()},
-               {at.q_WC.x(), at.q_WC.y(), at.q_WC.z(), at.q_WC.w()});
+      bag.Pose("/ground_truth/pose", streams.truth[pose].stamp_ns + offset_ns, streams.truth[pose]);
     }
     for (; depth < streams.depth.size() && streams.depth[depth].stamp_ns <= stamp_ns; ++depth) {
       bag.Image("/camera/depth/image_raw", streams.depth[depth].stamp_ns + offset_ns,
-                PictureOf(ReadDepth(streams.depth[depth].file), "32FC1"));
+                ReadDepth(streams.depth[depth].file), "32FC1");
     }
   };
   Progress progress("exporting", static_cast<std::int64_t>(frames.size()));
   while (const std::optional<vo::Frame> frame = Input([&] { return frames.Next(); })) {
     until(frame->stamp_ns);
-    bag.Image("/camera/image_raw", frame->stamp_ns + offset_ns,
-              PictureOf(frame->image, frame->image.channels() == 3 ? "bgr8" : "mono8"));
-    if (streams.camera) bag.CameraInfo("/camera/camera_info", frame->stamp_ns + offset_ns, LensOf(*streams.camera));
+    bag.Image("/camera/image_raw", frame->stamp_ns + offset_ns, frame->image,
+              frame->image.channels() == 3 ? "bgr8" : "mono8");
+    if (streams.camera) bag.CameraInfo("/camera/camera_info", frame->stamp_ns + offset_ns, *streams.camera);
     progress.Step();
   }
   until(std::numeric_limits<std::int64_t>::max());

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 #include <string.h>
 
-#include <stdexcept>
-
+#include "sim/scenario/stamps.h"
+#include "sim/sequence/format.h"
+#include "sim/sequence/layout.h"
+#include "sim/simulator.h"
 #include "tools/base/files.h"
 #include "tools/bench/campaign/calibration.h"
 #include "tools/bench/campaign/command.h"
 #include "tools/bench/errors.h"
-#include "tools/bench/run/campaign_sequence.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace vobench {
@@ -38,11 +39,50 @@ fs::path WriteCalibrationFile(const campaign::ExternalSystem& system, const sim:
   return file;
 }
 
+// The sequence in another layout, made of links to the pictures in the cache; itself for TUM's. Made where it is not
+// there.
+fs::path InLayout(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario,
+                  campaign::SequenceLayout layout) {
+  const fs::path sequence = cache.PathOf(key);
+  if (layout == campaign::SequenceLayout::tum) return sequence;
+  const fs::path folder = sequence.string() + "." + campaign::Name(layout);
+  const campaign::FileLock lock = cache.Take(key);
+  if (fs::exists(folder)) return folder;
+  const fs::path partial = folder.string() + ".partial";
+  fs::remove_all(partial);
+  const std::unique_ptr<sim::Trajectory> trajectory = sim::TrajectoryOf(scenario);
+  std::vector<sim::StampedTruth> frames;
+  std::string times;
+  for (std::int64_t index = 0; index < sim::CountFrames(scenario.time); ++index) {
+    const std::int64_t stamp_ns = sim::StampNs(index, scenario.time);
+    frames.push_back({index, stamp_ns, sim::TruthAt(*trajectory, sim::Seconds(stamp_ns))});
+    const std::string number = fmt::format("{:06}", index);
+    const fs::path link =
+        partial / (layout == campaign::SequenceLayout::euroc ? sim::NamesOf(sim::Layout::euroc, index, stamp_ns).image
+                                                             : "images/" + number + ".png");
+    fs::create_directories(link.parent_path());
+    fs::create_hard_link(sequence / sim::NamesOf(sim::Layout::tum, index, stamp_ns).image, link);
+    times += fmt::format("{} {} {:.9g}\n", number, sim::FormatStamp(stamp_ns), 1e3 * scenario.sensor.exposure_s);
+  }
+  if (layout == campaign::SequenceLayout::euroc) {
+    const std::vector<std::string> problems = sim::Problems(sim::Layout::euroc, scenario);
+    if (!problems.empty()) throw BadInput(fmt::format("{}", fmt::join(problems, "; ")));
+    for (const sim::StreamFile& file : sim::Lists(sim::Layout::euroc, scenario, frames)) {
+      base::WriteFileAndFolders(partial / file.path, base::AsText(file.bytes));
+    }
+  } else {
+    base::WriteFile(partial / "times.txt", times);
+  }
+  base::WriteFile(partial / "camera.yaml", sim::CameraYaml(scenario.camera, scenario.sensor.readout_s));
+  base::ReplaceFolder(partial, folder);
+  return folder;
+}
+
 }  // namespace
 
-ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
-                           const std::string& key, const sim::Scenario& scenario, std::uint64_t seed,
-                           const fs::path& folder) {
+evaluation::Trajectory RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
+                                   const std::string& key, const sim::Scenario& scenario, const fs::path& folder,
+                                   campaign::TaskRecord& record) {
   const fs::path sequence = fs::absolute(InLayout(cache, key, scenario, system.layout));
   const fs::path at_work = fs::absolute(folder) / "work", trajectory = at_work / system.trajectory;
   fs::create_directories(at_work);
@@ -51,30 +91,34 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
   values.insert(values.end(), {{"sequence", sequence.string()},
                                {"calibration", calibration.string()},
                                {"trajectory", trajectory.string()},
-                               {"seed", std::to_string(seed)}});
+                               {"seed", std::to_string(record.seed)}});
   const campaign::CommandEnd end =
       campaign::RunCommand(campaign::FillIn(system.command, values), at_work, folder / "log.txt", system.timeout_s);
-  ExternalAnswer answer;
+  const auto lost = [&](campaign::Status status, const std::string& reason) {
+    record.status = status;
+    record.reason = reason;
+  };
+  evaluation::Trajectory estimate;
   if (end.timed_out) {
-    answer = {campaign::Status::timed_out, fmt::format("took longer than {:g} s", system.timeout_s), {}};
+    lost(campaign::Status::timed_out, fmt::format("took longer than {:g} s", system.timeout_s));
   } else if (end.signal != 0) {
-    answer = {campaign::Status::crashed, fmt::format("ended by signal {} ({})", end.signal, strsignal(end.signal)), {}};
+    lost(campaign::Status::crashed, fmt::format("ended by signal {} ({})", end.signal, strsignal(end.signal)));
   } else if (end.status != 0) {
-    answer = {campaign::Status::crashed, fmt::format("ended with status {}", end.status), {}};
+    lost(campaign::Status::crashed, fmt::format("ended with status {}", end.status));
   } else {
     try {
-      answer.trajectory = evaluation::ReadTrajectory(trajectory);
+      estimate = evaluation::ReadTrajectory(trajectory);
     } catch (const evaluation::InputError& error) {
       // Where the task lies does not belong into a table that is the same everywhere.
       std::string reason = error.what();
       for (std::size_t at = 0; (at = reason.find(trajectory.string(), at)) != std::string::npos;) {
         reason.replace(at, trajectory.string().size(), system.trajectory);
       }
-      answer = {campaign::Status::no_answer, reason, {}};
+      lost(campaign::Status::no_answer, reason);
     }
   }
   fs::remove_all(at_work);
-  return answer;
+  return estimate;
 }
 
 }  // namespace vobench

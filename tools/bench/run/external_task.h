@@ -1,7 +1,6 @@
 // Run of an external program on a cached sequence; its crash or silence is a result.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -13,16 +12,11 @@
 
 namespace vobench {
 
-struct ExternalAnswer {
-  campaign::Status status = campaign::Status::ok;  // or crashed, timed_out, no_answer
-  std::string reason;                              // of those
-  evaluation::Trajectory trajectory;               // of ok
-};
-
-// Leaves in `folder` what it printed (log.txt) and the calibration that it was given. Throws std::runtime_error and
+// The trajectory, with record.seed; where there is none, status (crashed, timed_out, no_answer) and reason of `record`
+// say why. Leaves in `folder` what the program printed (log.txt) and its calibration. Throws std::runtime_error and
 // BadInput where it could not be started as its entry says.
-ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
-                           const std::string& sequence, const sim::Scenario& scenario, std::uint64_t seed,
-                           const std::filesystem::path& folder);
+evaluation::Trajectory RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
+                                   const std::string& sequence, const sim::Scenario& scenario,
+                                   const std::filesystem::path& folder, campaign::TaskRecord& record);
 
 }  // namespace vobench

@@ -20,21 +20,17 @@ namespace vobench {
 namespace fs = std::filesystem;
 namespace {
 
-// What a sequence of any layout may have at its top level.
-std::set<std::string> SequenceNames() {
+// What a sequence of any layout may have at its top level; and while it is written: a killed run leaves what it had
+// just begun.
+std::set<std::string> SequenceNames(bool unfinished) {
   std::set<std::string> names = sim::StreamNames();
   names.insert({"camera.yaml", "exposure.txt", sim::kManifestName, sim::kJournalName});
   names.insert({"rgb", "rgb.txt", "depth", "depth.txt", "groundtruth.txt", "velocity.txt"});  // TUM RGB-D
   names.insert({"mav0", "truth"});                                                            // EuRoC
   names.insert({"associations.txt", "traj.gt.freiburg"});                                     // ICL-NUIM
   names.insert({"preview.mp4", "unfinished-preview.mp4", "contact.jpg"});
-  return names;
-}
-
-// And while it is written: a killed run leaves what it had just begun.
-std::set<std::string> UnfinishedSequenceNames() {
-  std::set<std::string> names = SequenceNames();
-  for (const std::string& name : SequenceNames()) names.insert(base::UnfinishedName(name));
+  if (!unfinished) return names;
+  for (const std::string& name : std::set(names)) names.insert(base::UnfinishedName(name));
   return names;
 }
 
@@ -59,7 +55,7 @@ sim::SequenceContent Content(const RenderOptions& options, const sim::Simulator&
 
 // Nothing of another hand's may be in the way, and without --resume nothing of an earlier run's that is not whole.
 void RequireRoom(const RenderOptions& options, const fs::path& folder, const fs::path& partial) {
-  RequireReplaceable(folder, sim::kManifestName, SequenceNames());
+  RequireReplaceable(folder, sim::kManifestName, SequenceNames(false));
   if (!fs::exists(fs::symlink_status(partial))) return;
   if (!options.resume) {
     throw BadInput(
@@ -67,8 +63,7 @@ void RequireRoom(const RenderOptions& options, const fs::path& folder, const fs:
                     "it, or remove it",
                     partial.string()));
   }
-  if (fs::exists(partial / sim::kManifestName))
-    RequireReplaceable(partial, sim::kManifestName, UnfinishedSequenceNames());
+  if (fs::exists(partial / sim::kManifestName)) RequireReplaceable(partial, sim::kManifestName, SequenceNames(true));
 }
 
 // The sequence of this content is there under its last name. Throws BadInput if another one is.

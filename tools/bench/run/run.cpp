@@ -1,15 +1,13 @@
-// A scenario is rendered into a sequence with exact truth, an odometry runs on the sequence, and a judge that knows
-// both tests accuracy and consistency of the odometry.
+// A scenario is rendered into a sequence with exact truth, an odometry runs on the sequence, and a judge
+// tests accuracy and consistency of the estimate against the truth.
 #include <fmt/format.h>
 
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include "sim/simulator.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/live/live_view.h"
-#include "tools/bench/parallel.h"
 #include "tools/bench/progress.h"
 #include "tools/bench/result/result.h"
 #include "tools/bench/result/system_summary.h"
@@ -25,7 +23,7 @@
 namespace vobench {
 namespace {
 
-// Each system with each seed. Of the truth they are told the start alone.
+// Each system with each seed. Of the truth they get the start alone.
 std::vector<Tracker> MakeTrackers(const RunOptions& options, const Experiment& experiment,
                                   const sim::Simulator& simulator, const Folder& folder) {
   const vo::Camera camera = CameraForOdometry(experiment);
@@ -66,7 +64,7 @@ void Run(const RunOptions& options) {
     while (const std::optional<sim::Frame> rendered = simulator.Next()) {
       const vo::PreparedFrame frame(ToOdometry(*rendered));
       if (folder && IsKept(rendered->index, simulator.frame_count())) truth_pictures.Add(simulator, rendered->index);
-      ForEach(odometries, options.jobs, [&](Tracker& odometry) { odometry.Track(frame); });
+      ForEach(odometries.size(), options.jobs, [&](std::size_t i) { odometries[i].Track(frame); });
       if (view && view->Asked(frame.frame)) view->Show(odometries, TruthOfFirst(simulator, rendered->index + 1), how);
       progress.Step();
     }

@@ -1,5 +1,12 @@
 #include "tools/bench/run/run_common.h"
 
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <stdexcept>
+
+#include "tools/bench/errors.h"
 #include "tools/bench/report/report.h"
 #include "tools/bench/systems/systems.h"
 
@@ -29,6 +36,21 @@ void Conclude(OutputFolder& folder, ResultData& result) {
   WriteTop(folder.path(), result);
   report::WriteReport(folder.path(), result);
   folder.Commit();
+}
+
+void ForEach(std::size_t count, int jobs, const std::function<void(std::size_t)>& task) {
+  tbb::task_arena(jobs).execute([&] { tbb::parallel_for(std::size_t{0}, count, task, tbb::simple_partitioner()); });
+}
+
+void Report(const ReportOptions& options) {
+  // Read here first, so that a fault of the folder differs from a report that cannot be written.
+  Input([&] { return ReadRunJson(options.output); });
+  try {
+    report::WriteReport(options.output);
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(error.what());
+  }
+  fmt::print("{}\n", (options.output / "report.html").string());
 }
 
 }  // namespace vobench

@@ -1,7 +1,8 @@
 // Description and result folder of a run, of images and of points.
 #pragma once
 
-#include <filesystem>
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,7 +12,6 @@
 #include "tools/bench/result/result.h"
 #include "tools/bench/run/commands.h"
 #include "tools/bench/systems/experiment.h"
-#include "tools/judge/evaluation/summary.h"
 
 namespace vobench {
 
@@ -25,6 +25,10 @@ RunDescription Describe(const RunOptions& options, const Experiment& experiment,
 
 // Writes the files at the top of the folder and report.html, and gives the folder its name. Throws std::runtime_error.
 void Conclude(OutputFolder& folder, ResultData& result);
+
+// task(i) for i = 0 ... count - 1 on `jobs` threads. Items share nothing: results do not depend on that number. Throws
+// the first exception of a task.
+void ForEach(std::size_t count, int jobs, const std::function<void(std::size_t)>& task);
 
 // Each run has a world of points of its own, seeded like its filter. Called by Run.
 void RunOnPoints(const RunOptions& options, const Experiment& experiment, const Clock& clock);

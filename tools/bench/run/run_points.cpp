@@ -1,7 +1,6 @@
 // A world of points is played to each system with each seed, and judged: Monte Carlo without images.
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -9,7 +8,6 @@
 #include "sim/points/point_world.h"
 #include "tools/base/files.h"
 #include "tools/bench/errors.h"
-#include "tools/bench/parallel.h"
 #include "tools/bench/points/point_bound.h"
 #include "tools/bench/progress.h"
 #include "tools/bench/result/anees.h"
@@ -110,20 +108,21 @@ std::vector<T> WithoutFirst(const std::vector<T>& frames) {
   return {frames.begin() + (frames.empty() ? 0 : 1), frames.end()};
 }
 
+// Runs stand by system, and by seed: run k of a system is that of the k-th seed. The first system's have the bounds.
 std::vector<SystemRuns> BySystem(const RunOptions& options, std::vector<PointRun>& runs) {
   std::vector<SystemRuns> systems;
+  const std::size_t seeds = runs.size() / options.systems.size();
   for (const std::string& system : options.systems) {
-    SystemRuns& all = systems.emplace_back();
-    all.system = system;
     std::vector<std::vector<evaluation::Vector12d>> errors;
     std::vector<std::vector<evaluation::Matrix12d>> bounds;
-    for (PointRun& run : runs) {
-      if (run.system != system) continue;
-      all.metrics.push_back(run.data.judged->metrics);
-      all.nees.push_back(std::move(run.nees));
-      // The first frame is the prior's. The first system's runs come first, and have the bounds.
-      errors.push_back(WithoutFirst(run.errors));
-      bounds.push_back(WithoutFirst(runs[errors.size() - 1].linearised.bound));
+    PointRun* const own = &runs[seeds * systems.size()];
+    SystemRuns& all = systems.emplace_back();
+    all.system = system;
+    for (std::size_t k = 0; k < seeds; ++k) {
+      all.metrics.push_back(own[k].data.judged->metrics);
+      all.nees.push_back(std::move(own[k].nees));
+      errors.push_back(WithoutFirst(own[k].errors));  // the first frame is the prior's
+      bounds.push_back(WithoutFirst(runs[k].linearised.bound));
     }
     if (options.bound || options.verdict) all.bound = evaluation::CompareWithBound(errors, bounds);
   }
@@ -134,16 +133,13 @@ std::vector<SystemVerdict> Verdicts(const RunOptions& options, const std::string
                                     const std::vector<std::size_t>& rank_frames, std::vector<PointRun>& runs) {
   std::vector<SystemVerdict> verdicts;
   std::vector<evaluation::LinearisedRuns> linearised;
-  for (PointRun& run : runs) {
-    if (run.system == options.systems.front()) linearised.push_back(std::move(run.linearised));
-  }
+  const std::size_t seeds = runs.size() / options.systems.size();
+  for (std::size_t k = 0; k < seeds; ++k) linearised.push_back(std::move(runs[k].linearised));
   for (const std::string& system : options.systems) {
     std::vector<evaluation::VerdictRun> judged;
-    for (PointRun& run : runs) {
-      if (run.system != system) continue;
-      judged.push_back(std::move(run.verdict));
-      const std::vector<evaluation::Matrix12d>& bound = linearised[judged.size() - 1].bound;
-      for (std::size_t k = 0; k < judged.back().size(); ++k) judged.back()[k].bound = bound[k];
+    for (std::size_t k = 0; k < seeds; ++k) {
+      evaluation::VerdictRun& run = judged.emplace_back(std::move(runs[seeds * verdicts.size() + k].verdict));
+      for (std::size_t i = 0; i < run.size(); ++i) run[i].bound = linearised[k].bound[i];
     }
     verdicts.push_back({system, setting, judged.size(), judged.front().size(),
                         evaluation::JudgeConsistency(judged, VerdictOptionsFor(rank_frames, linearised))});
@@ -188,8 +184,8 @@ void RunOnPoints(const RunOptions& options, const Experiment& experiment, const 
     if (options.verdict) rank_frames = RanksAmong(first);
     Progress progress("running", frames * static_cast<std::int64_t>(runs.size()));
     std::mutex mutex;
-    ForEach(runs, options.jobs, [&](PointRun& run) {
-      Play(options, experiment, folder, run, [&] {
+    ForEach(runs.size(), options.jobs, [&](std::size_t i) {
+      Play(options, experiment, folder, runs[i], [&] {
         const std::lock_guard lock(mutex);
         progress.Step();
       });
@@ -205,9 +201,8 @@ void RunOnPoints(const RunOptions& options, const Experiment& experiment, const 
   if (folder) {
     result.description = Describe(options, experiment, notes, clock);
     for (const SystemVerdict& v : verdicts) {
-      const auto rows = VerdictRows(v);
+      for (const evaluation::Check& check : v.verdict.checks) result.verdict.push_back({v.system, check});
       const auto ranks = RankTables(v.system, rank_frames, v.verdict);
-      result.verdict.insert(result.verdict.end(), rows.begin(), rows.end());
       result.ranks.insert(result.ranks.end(), ranks.begin(), ranks.end());
       result.description.verdicts.push_back(VerdictSentence(v));
     }

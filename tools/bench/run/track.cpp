@@ -7,13 +7,11 @@
 #include <vector>
 
 #include "tools/bench/errors.h"
-#include "tools/bench/interrupt.h"
 #include "tools/bench/live/live_view.h"
 #include "tools/bench/progress.h"
 #include "tools/bench/result/output_folder.h"
 #include "tools/bench/result/result.h"
 #include "tools/bench/result/system_summary.h"
-#include "tools/bench/result/time_table.h"
 #include "tools/bench/run/commands.h"
 #include "tools/bench/run/run_common.h"
 #include "tools/bench/sequence/sequence_truth.h"
@@ -31,9 +29,9 @@ namespace vobench {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::int64_t kFramesOfACamera = 3000;  // nobody knows: pictures are kept at every 300th frame
+constexpr std::int64_t kFramesOfACamera = 3000;  // not known: pictures are kept at every 300th frame
 
-constexpr double kUnknownScale = 0.5;  // of a recording: nobody knows how large its scene is
+constexpr double kUnknownScale = 0.5;  // of a recording: the size of its scene is not known
 
 struct TrackSettings {
   vo::Params params;
@@ -47,7 +45,7 @@ TrackSettings ReadSettings(const TrackOptions& options) {
   for (const auto& [key, value] : options.overrides) document.Override(key, value);
   TrackSettings out;
   settings::Section odometry = document.root().Child("odometry");
-  if (!odometry.Has("target")) out.params.landmark.scale_sigma = kUnknownScale;  // which would tell
+  if (!odometry.Has("target")) out.params.landmark.scale_sigma = kUnknownScale;  // which has the scale
   ReadOdometry(odometry, out.params);
   settings::Section prior = document.root().Child("prior");
   ReadPrior(prior, out.prior);

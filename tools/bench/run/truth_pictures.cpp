@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kWidest = 240;
 
-// The value that such a share of the sorted ones lies below: a few wild ones shall not take all colours.
+// The value that such a share of the sorted ones lies below: a few outliers must not take all colours.
 double Quantile(std::vector<float>& values, double share) {
   if (values.empty()) return 0;
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));

@@ -2,17 +2,16 @@
 
 #include <geometry_msgs/PoseStamped.h>
 #include <rosbag/bag.h>
-#include <rosbag/view.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/Imu.h>
 
 #include <cerrno>
-#include <map>
 #include <memory>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace vobench {
 namespace {
@@ -27,6 +26,13 @@ Message Stamped(std::int64_t stamp_ns, const char* frame) {
   message.header.stamp = TimeOf(stamp_ns);
   message.header.frame_id = frame;
   return message;
+}
+
+template <class From, class To>
+void Set(const From& from, To& to) {
+  to.x = from.x();
+  to.y = from.y();
+  to.z = from.z();
 }
 
 // Rosbag says that a write failed, not why: the system does.
@@ -78,67 +84,48 @@ BagFile::BagFile(const std::string& file, const std::string& name) : impl_(std::
 
 BagFile::~BagFile() = default;
 
-void BagFile::Image(const std::string& topic, std::int64_t stamp_ns, const Picture& picture) {
+void BagFile::Image(const std::string& topic, std::int64_t stamp_ns, const cv::Mat& image, const char* encoding) {
   auto message = Stamped<sensor_msgs::Image>(stamp_ns, "camera");
-  message.width = picture.width;
-  message.height = picture.height;
-  message.encoding = picture.encoding;
-  message.step = picture.width * picture.bytes_per_pixel;
-  message.data.assign(picture.data, picture.data + std::size_t{message.step} * picture.height);
+  message.width = static_cast<std::uint32_t>(image.cols);
+  message.height = static_cast<std::uint32_t>(image.rows);
+  message.encoding = encoding;
+  message.step = message.width * static_cast<std::uint32_t>(image.elemSize());
+  message.data.assign(image.data, image.data + std::size_t{message.step} * message.height);
   impl_->Write(topic, stamp_ns, message);
 }
 
-void BagFile::CameraInfo(const std::string& topic, std::int64_t stamp_ns, const Lens& lens) {
+void BagFile::CameraInfo(const std::string& topic, std::int64_t stamp_ns, const vo::Camera& c) {
+  const bool fisheye = c.lens == vo::Lens::fisheye;
   auto message = Stamped<sensor_msgs::CameraInfo>(stamp_ns, "camera");
-  message.width = lens.width;
-  message.height = lens.height;
-  message.distortion_model = lens.model;
-  message.D = lens.coefficients;
-  message.K = {lens.fx, 0, lens.cx, 0, lens.fy, lens.cy, 0, 0, 1};
+  message.width = static_cast<std::uint32_t>(c.width);
+  message.height = static_cast<std::uint32_t>(c.height);
+  message.distortion_model = fisheye ? "equidistant" : "plumb_bob";
+  message.D = fisheye ? std::vector{c.k1, c.k2, c.k3, c.k4} : std::vector{c.k1, c.k2, c.p1, c.p2, c.k3};
+  message.K = {c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1};
   message.R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  message.P = {lens.fx, 0, lens.cx, 0, 0, lens.fy, lens.cy, 0, 0, 0, 1, 0};
+  message.P = {c.fx, 0, c.cx, 0, 0, c.fy, c.cy, 0, 0, 0, 1, 0};
   impl_->Write(topic, stamp_ns, message);
 }
 
-void BagFile::Imu(const std::string& topic, std::int64_t stamp_ns, const std::array<double, 3>& angular_rate,
-                  const std::array<double, 3>& specific_force) {
+void BagFile::Imu(const std::string& topic, std::int64_t stamp_ns, const Eigen::Vector3d& angular_rate,
+                  const Eigen::Vector3d& specific_force) {
   auto message = Stamped<sensor_msgs::Imu>(stamp_ns, "imu");
   message.orientation_covariance[0] = -1;  // no orientation in it
-  message.angular_velocity.x = angular_rate[0];
-  message.angular_velocity.y = angular_rate[1];
-  message.angular_velocity.z = angular_rate[2];
-  message.linear_acceleration.x = specific_force[0];
-  message.linear_acceleration.y = specific_force[1];
-  message.linear_acceleration.z = specific_force[2];
+  Set(angular_rate, message.angular_velocity);
+  Set(specific_force, message.linear_acceleration);
   impl_->Write(topic, stamp_ns, message);
 }
 
-void BagFile::Pose(const std::string& topic, std::int64_t stamp_ns, const std::array<double, 3>& p,
-                   const std::array<double, 4>& q) {
+void BagFile::Pose(const std::string& topic, std::int64_t stamp_ns, const evaluation::StampedPose& T_WC) {
   auto message = Stamped<geometry_msgs::PoseStamped>(stamp_ns, "world");
-  message.pose.position.x = p[0];
-  message.pose.position.y = p[1];
-  message.pose.position.z = p[2];
-  message.pose.orientation.x = q[0];
-  message.pose.orientation.y = q[1];
-  message.pose.orientation.z = q[2];
-  message.pose.orientation.w = q[3];
+  Set(T_WC.p_WC, message.pose.position);
+  Set(T_WC.q_WC, message.pose.orientation);
+  message.pose.orientation.w = T_WC.q_WC.w();
   impl_->Write(topic, stamp_ns, message);
 }
 
 void BagFile::Close() {
   Written(impl_->name, [&] { impl_->Close(); });
-}
-
-std::vector<std::string> BagFile::Topics(const std::string& file) {
-  rosbag::Bag bag(file, rosbag::bagmode::Read);
-  std::map<std::string, std::size_t> counts;
-  for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
-    ++counts[message.getTopic() + " " + message.getDataType()];
-  }
-  std::vector<std::string> topics;
-  for (const auto& [topic, count] : counts) topics.push_back(topic + " " + std::to_string(count));
-  return topics;
 }
 
 }  // namespace vobench

@@ -3,12 +3,14 @@
 // Source: ROS bag format 2.0; sensor_msgs, geometry_msgs; REP 103 (units, optical frames), 104 (camera_info), 118.
 #pragma once
 
-#include <array>
-#include <cstddef>
+#include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <opencv2/core/mat.hpp>
 #include <string>
-#include <vector>
+
+#include "tools/judge/evaluation/trajectory.h"
+#include "vo/geometry/camera.h"
 
 namespace vobench {
 
@@ -19,28 +21,13 @@ class BagFile {
   BagFile(const std::string& file, const std::string& name);
   ~BagFile();
 
-  struct Picture {
-    std::uint32_t width = 0, height = 0, bytes_per_pixel = 0;
-    std::string encoding;  // bgr8, mono8, 32FC1
-    const std::uint8_t* data = nullptr;
-  };
-  struct Lens {
-    std::uint32_t width = 0, height = 0;
-    double fx = 0, fy = 0, cx = 0, cy = 0;
-    std::string model;  // plumb_bob, equidistant
-    std::vector<double> coefficients;
-  };
-  void Image(const std::string& topic, std::int64_t stamp_ns, const Picture& picture);
-  void CameraInfo(const std::string& topic, std::int64_t stamp_ns, const Lens& lens);
-  void Imu(const std::string& topic, std::int64_t stamp_ns, const std::array<double, 3>& angular_rate,
-           const std::array<double, 3>& specific_force);
-  // T_WC: position, quaternion x y z w.
-  void Pose(const std::string& topic, std::int64_t stamp_ns, const std::array<double, 3>& p,
-            const std::array<double, 4>& q);
+  // encoding: bgr8, mono8, 32FC1.
+  void Image(const std::string& topic, std::int64_t stamp_ns, const cv::Mat& image, const char* encoding);
+  void CameraInfo(const std::string& topic, std::int64_t stamp_ns, const vo::Camera& camera);
+  void Imu(const std::string& topic, std::int64_t stamp_ns, const Eigen::Vector3d& angular_rate,
+           const Eigen::Vector3d& specific_force);
+  void Pose(const std::string& topic, std::int64_t stamp_ns, const evaluation::StampedPose& T_WC);
   void Close();
-
-  // Message counts by topic of a bag that is there, "TOPIC TYPE COUNT" each, as the library reads them back.
-  static std::vector<std::string> Topics(const std::string& file);
 
  private:
   struct Impl;

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "sim/scenario/scenario.h"
-#include "tools/base/settings/overrides.h"
+#include "tools/base/settings/settings.h"
 #include "tools/bench/systems/odometry_settings.h"
 #include "vo/geometry/camera.h"
 

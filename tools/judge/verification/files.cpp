@@ -15,9 +15,8 @@
 #include <system_error>
 
 #include "tools/base/files.h"
-#include "tools/base/limits/exr.h"
-#include "tools/base/limits/json.h"
 #include "tools/base/limits/picture.h"
+#include "tools/base/limits/structured_text.h"
 #include "tools/base/settings/settings.h"
 #include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"

@@ -1,6 +1,6 @@
-#include "tools/base/limits/exr.h"
-
 #include <gmock/gmock.h>
+
+#include "tools/base/limits/picture.h"
 
 namespace limits {
 namespace {

@@ -1,9 +1,9 @@
-#include "tools/base/limits/whole_number.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <nlohmann/json.hpp>
+
+#include "tools/base/limits/structured_text.h"
 
 namespace limits {
 namespace {

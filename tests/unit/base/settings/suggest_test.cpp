@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tools/base/settings/request.h"
+#include "tools/base/settings/state.h"
 
 namespace settings {
 namespace {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/unit/bench/report/page_data.h"
-#include "tools/bench/report/figure_json.h"
+#include "tools/bench/report/figure.h"
 #include "tools/bench/report/html.h"
 #include "tools/bench/text.h"
 

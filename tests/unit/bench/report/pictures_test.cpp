@@ -4,8 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/unit/judge/evaluation/temporary_folder.h"
-#include "tools/bench/report/tables.h"
-#include "tools/bench/result/ranks.h"
+#include "tools/bench/report/summary.h"
 #include "tools/bench/result/verdict.h"
 #include "tools/judge/evaluation/text_file.h"
 

@@ -8,7 +8,6 @@
 #include "tests/unit/bench/report/page_data.h"
 #include "tests/unit/judge/evaluation/temporary_folder.h"
 #include "tools/base/files.h"
-#include "tools/bench/report/page.h"
 #include "tools/bench/result/result.h"
 #include "tools/bench/result/system_summary.h"
 #include "tools/bench/text.h"

@@ -6,8 +6,7 @@
 
 #include "tests/unit/bench/report/fake_result.h"
 #include "tests/unit/judge/evaluation/temporary_folder.h"
-#include "tools/bench/report/run_summary.h"
-#include "tools/bench/report/tables.h"
+#include "tools/bench/report/summary.h"
 #include "tools/bench/result/system_summary.h"
 
 namespace vobench::report {

@@ -1,6 +1,6 @@
-#include "tools/bench/result/time_table.h"
-
 #include <gtest/gtest.h>
+
+#include "tools/bench/result/system_summary.h"
 
 namespace vobench::report {
 namespace {

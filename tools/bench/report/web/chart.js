@@ -158,14 +158,14 @@ class Chart {
 
   // What is left of the axes is as wide as the marks of y; where both axes have one scale, these depend on it in turn.
   setScales() {
-    const set = () => {
-      const { x, y } = this.ranges();
-      this.x = new Scale(this.figure.x, x, 0, this.inner.width);
-      this.y = new Scale(this.figure.y, y, this.inner.height, 0);
-    };
-    set();
+    this.scaleAxes();
     this.left = 12 + kDigit * Math.max(2, ...this.y.marks(34).map((mark) => short(mark).length));
-    set();
+    this.scaleAxes();
+  }
+  scaleAxes() {
+    const { x, y } = this.ranges();
+    this.x = new Scale(this.figure.x, x, 0, this.inner.width);
+    this.y = new Scale(this.figure.y, y, this.inner.height, 0);
   }
 
   // Axes around (0, 0) to (width, height).
@@ -212,8 +212,10 @@ class Chart {
   /** Other numbers in the same series. @param {Figure} figure */
   update(figure) {
     this.figure = figure;
+    this.measure();
     this.draw();
   }
+  measure() {}
 
   // The drawing as a file, in the light colours.
   svgText() {

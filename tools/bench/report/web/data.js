@@ -1,4 +1,4 @@
-// Data of a page, as in docs/report_data.md; written by tools/bench/report/figure_json.cpp and frame_viewer.cpp.
+// Data of a page, as in docs/report_data.md; written by tools/bench/report/figure.cpp and frame_viewer.cpp.
 
 /** @typedef {{label: string, logarithmic?: boolean, reversed?: boolean, from_zero?: boolean, stress?: boolean,
  *             low?: number, high?: number}} Axis */

@@ -79,12 +79,6 @@ class SpaceChart extends Chart {
     this.view = { ...kView };
     super.showAll();
   }
-  /** @param {Figure} figure */
-  update(figure) {
-    this.figure = figure;
-    this.measure();
-    this.draw();
-  }
 
   // The rows of the rotation that the screen needs: to the right, and upwards.
   setScales() {
@@ -96,9 +90,7 @@ class SpaceChart extends Chart {
     const { turn, tilt } = this.view;
     this.right = sum(a, b, Math.cos(turn), -Math.sin(turn));
     this.upwards = sum(sum(a, b, Math.sin(turn), Math.cos(turn)), unit(index, sign), Math.sin(tilt), Math.cos(tilt));
-    const { x, y } = this.ranges();
-    this.x = new Scale(this.figure.x, x, 0, this.inner.width);
-    this.y = new Scale(this.figure.y, y, this.inner.height, 0);
+    this.scaleAxes();
   }
   /** @returns {Ranges} */
   whole() {

@@ -1,4 +1,4 @@
-// Tables of a report, as HTML. Empty where there is nothing in them.
+// Summary and tables of a report, as HTML.
 #pragma once
 
 #include <string>
@@ -8,6 +8,11 @@
 
 namespace vobench::report {
 
+// In words and tiles: what ran, accuracy, drift and consistency of each system, and the seeds in which the first system
+// beats each other one. `judged` are the metrics of data.runs.
+std::string RunSummary(const ResultData& data, const std::vector<RunMetrics>& judged);
+
+// Tables, empty where there is nothing in them.
 // Every run (the first 500) and the baselines.
 std::string RunTable(const std::vector<RunMetrics>& judged);
 // Numerical events by system, summed over runs.

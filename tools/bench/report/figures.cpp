@@ -1,4 +1,4 @@
-#include "tools/bench/report/drawn_runs.h"
+#include "tools/bench/report/figures.h"
 
 #include <algorithm>
 
@@ -9,14 +9,10 @@ namespace vobench::report {
 namespace ev = evaluation;
 
 std::vector<const RunData*> FaintRuns(const ResultData& data, const std::string& system) {
-  const RunData& typical = data.Typical(system);
-  std::vector<const RunData*> others;
-  for (const RunData& run : data.runs) {
-    if (run.entry.system == system && &run != &typical) others.push_back(&run);
-  }
+  std::vector<const RunData*> others = data.RunsOf(system);
+  std::erase(others, &data.Typical(system));
   if (others.size() <= kFaintRuns) return others;
-  const auto ate = [](const RunData* run) { return run->judged ? run->judged->metrics.errors.sim3.position.rmse : 0; };
-  std::stable_sort(others.begin(), others.end(), [&](const RunData* a, const RunData* b) { return ate(a) < ate(b); });
+  SortByAte(others);
   std::vector<const RunData*> kept;
   for (std::size_t k = 0; k < kFaintRuns; ++k) kept.push_back(others[k * (others.size() - 1) / (kFaintRuns - 1)]);
   return kept;
@@ -46,6 +42,15 @@ Numbers Times(const ResultData& data, const ev::Trajectory& trajectory) {
 
 const ev::Trajectory& Drawn(const RunData& run) { return run.judged ? run.judged->aligned : run.run.trajectory; }
 
+Figure InTime(const std::string& title, const std::string& description, const Axis& y) {
+  Figure figure;
+  figure.title = title;
+  figure.description = description;
+  figure.x.label = "time [s]";
+  figure.y = y;
+  return figure;
+}
+
 Series LineOf(const std::string& system, std::size_t number, Numbers x, Numbers y) {
   Series line = LineAs(Role::system, DisplayName(system), std::move(x), std::move(y));
   line.system = number;
@@ -59,6 +64,18 @@ Series LineAs(Role role, const std::string& name, Numbers x, Numbers y) {
   line.x = std::move(x);
   line.y = std::move(y);
   return line;
+}
+
+Series Band(const std::string& name, Numbers x, Numbers low, Numbers high) {
+  Series band = LineAs(Role::expected, name, std::move(x), std::move(low));
+  band.draw = Draw::band;
+  band.high = std::move(high);
+  return band;
+}
+
+Series Faint(Series series) {
+  series.faint = true;
+  return series;
 }
 
 }  // namespace vobench::report

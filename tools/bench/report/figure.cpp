@@ -1,8 +1,9 @@
-#include "tools/bench/report/figure_json.h"
+#include "tools/bench/report/figure.h"
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "tools/bench/text.h"
@@ -14,46 +15,29 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "vobench figures 1";
 
-const char* NameOf(Draw draw) {
-  switch (draw) {
-    case Draw::line:
-      return "line";
-    case Draw::band:
-      return "band";
-    case Draw::dots:
-      return "dots";
-    case Draw::bars:
-      return "bars";
-    case Draw::interval:
-      return "interval";
-  }
-  return "";
-}
+constexpr const char* kDraws[] = {"line", "band", "dots", "bars", "interval"};
+constexpr const char* kRoles[] = {"system", "truth", "expected", "context", "warning"};
 
-const char* NameOf(Role role) {
-  switch (role) {
-    case Role::system:
-      return "system";
-    case Role::truth:
-      return "truth";
-    case Role::expected:
-      return "expected";
-    case Role::context:
-      return "context";
-    case Role::warning:
-      return "warning";
+// Columns of numbers, each once: little-endian floats of 32 bits in base64. A NaN is a NaN.
+class Columns {
+ public:
+  // The number of the column in the JSON's "columns".
+  std::size_t Add(const Numbers& numbers) {
+    std::string bytes;
+    for (const double number : numbers) {
+      const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(number));
+      for (int k = 0; k < 4; ++k) bytes += static_cast<char>(bits >> (8 * k) & 0xFFu);
+    }
+    const std::string coded = Base64(bytes);
+    const auto at = std::ranges::find(coded_, coded) - coded_.begin();
+    if (at == std::ssize(coded_)) coded_.push_back(coded);
+    return static_cast<std::size_t>(at);
   }
-  return "";
-}
+  const std::vector<std::string>& coded() const { return coded_; }
 
-std::string Coded(const Numbers& numbers) {
-  std::string bytes;
-  for (const double number : numbers) {
-    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(number));
-    for (int k = 0; k < 4; ++k) bytes += static_cast<char>(bits >> (8 * k) & 0xFFu);
-  }
-  return Base64(bytes);
-}
+ private:
+  std::vector<std::string> coded_;
+};
 
 Json Of(const Axis& axis) {
   Json json = {{"label", axis.label}};
@@ -68,8 +52,8 @@ Json Of(const Axis& axis) {
 
 Json Of(const Series& series, Columns& columns) {
   Json json = {{"name", series.name},
-               {"draw", NameOf(series.draw)},
-               {"role", NameOf(series.role)},
+               {"draw", kDraws[static_cast<std::size_t>(series.draw)]},
+               {"role", kRoles[static_cast<std::size_t>(series.role)]},
                {"x", columns.Add(series.x)},
                {"y", columns.Add(series.y)}};
   if (series.role == Role::system) json["system"] = series.system;
@@ -98,14 +82,6 @@ Json Of(const Figure& figure, const std::string& id, Columns& columns) {
 }
 
 }  // namespace
-
-std::size_t Columns::Add(const Numbers& numbers) {
-  std::string coded = Coded(numbers);
-  const auto found = std::find(coded_.begin(), coded_.end(), coded);
-  if (found != coded_.end()) return static_cast<std::size_t>(found - coded_.begin());
-  coded_.push_back(std::move(coded));
-  return coded_.size() - 1;
-}
 
 std::string FiguresJson(const std::vector<std::string>& systems, const std::vector<Figure>& figures, const Json& more) {
   Columns columns;

@@ -1,7 +1,8 @@
-#include "tools/bench/report/run_summary.h"
+#include "tools/bench/report/summary.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "tools/bench/report/html.h"
 #include "tools/bench/result/system_summary.h"
@@ -11,8 +12,6 @@ namespace vobench::report {
 namespace {
 
 namespace ev = evaluation;
-
-constexpr double kDegrees = 180 / M_PI;
 
 std::string Count(std::size_t n, const std::string& noun) {
   return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
@@ -84,6 +83,20 @@ std::string SystemTiles(const std::vector<SystemSummary>& systems, const std::ve
   return html;
 }
 
+constexpr std::size_t kRows = 500;
+constexpr std::size_t kErrorCells = 8;  // the other cells of a baseline are empty
+
+std::vector<std::string> Cells(const std::string& name, const std::string& seed, const SystemSummary& s) {
+  std::vector<std::string> cells = {name, seed};
+  for (const double share : {s.ate_m, s.ate_share_of_path, s.ate_se3_m}) cells.push_back(Fixed(100 * share, 2));
+  cells.insert(cells.end(), {Fixed(s.scale, 3), Fixed(100 * s.rpe_m, 2), Fixed(kDegrees * s.rpe_rad, 2)});
+  for (const double coverage : {s.pose_coverage, s.tracked_coverage}) cells.push_back(Fixed(100 * coverage, 1));
+  for (const double nees : {s.nees_pose_per_dof, s.nees_pose_scale_free_per_dof, s.nees_velocity_per_dof})
+    cells.push_back(Readable(nees));
+  cells.push_back(Fixed(s.nis_per_dof, 2));
+  return cells;
+}
+
 }  // namespace
 
 std::string RunSummary(const ResultData& data, const std::vector<RunMetrics>& judged) {
@@ -114,6 +127,67 @@ std::string RunSummary(const ResultData& data, const std::vector<RunMetrics>& ju
     if (!duel.empty()) html += "<li>" + duel + "</li>";
   }
   return html + "</ul>\n" + SystemTiles(summaries, baselines);
+}
+
+std::string RunTable(const std::vector<RunMetrics>& judged) {
+  if (judged.empty()) return "";
+  std::vector<std::vector<std::string>> rows = {{"system", "seed", "ATE [cm]", "of path [%]", "ATE SE(3) [cm]", "scale",
+                                                 "RPE [cm/s]", "RPE [°/s]", "poses [%]", "tracked [%]", "NEES / dof",
+                                                 "… scale-free", "… of velocity", "NIS / dof", "ms / frame"}};
+  for (const RunMetrics& run : judged) {
+    if (rows.size() > kRows) break;
+    rows.push_back(Cells(Escape(DisplayName(run.run.system)), std::to_string(run.run.seed), Summarise(run)));
+    const std::optional<ev::Timing>& timing = run.metrics.timing;
+    rows.back().push_back(timing ? Fixed(timing->ms_features + timing->ms_matching + timing->ms_filter, 1) : "–");
+  }
+  for (const SystemSummary& baseline : SummariseBaselines(judged)) {
+    rows.push_back(Cells(baseline.system, "", baseline));
+    rows.back().resize(kErrorCells);
+    rows.back().resize(rows.front().size());
+  }
+  const std::string which = judged.size() > kRows ? "The first " + std::to_string(kRows) + " of " +
+                                                        std::to_string(judged.size()) + " runs (metrics.json has all)"
+                                                  : "Every run";
+  return Table(which + ", and the baselines, medians over runs. Aligned by Sim(3) unless the column says otherwise.",
+               rows);
+}
+
+std::string EventTable(const std::vector<RunMetrics>& judged) {
+  std::vector<std::string> systems;  // in the order of the runs
+  std::map<std::string, ev::EventSummary> sums;
+  for (const RunMetrics& run : judged) {
+    if (!run.metrics.events) continue;
+    const auto [sum, fresh] = sums.try_emplace(run.run.system);
+    if (fresh) systems.push_back(run.run.system);
+    for (std::size_t i = 0; i < sum->second.size(); ++i) {
+      sum->second[i].times += (*run.metrics.events)[i].times;
+      sum->second[i].frames += (*run.metrics.events)[i].frames;
+    }
+  }
+  if (systems.empty()) return "";
+  std::vector<std::vector<std::string>> rows = {{"times (in frames)", "mode not reached", "landmark behind the camera",
+                                                 "matrix not positive definite", "weight not finite"}};
+  for (const std::string& system : systems) {
+    rows.push_back({Escape(DisplayName(system))});
+    for (const ev::EventCount& count : sums[system]) {
+      rows.back().push_back(std::to_string(count.times) + " (" + std::to_string(count.frames) + ")");
+    }
+  }
+  return Table(
+      "Numerical events, which the filters' equations do not have: summed over particles, frames and runs. The first "
+      "two are rare and harmless; the last two should be 0.",
+      rows);
+}
+
+std::string VerdictTable(const std::vector<VerdictRow>& rows) {
+  if (rows.empty()) return "";
+  std::vector<std::vector<std::string>> cells = {{"system", "check", "value", "passes", "verdict", "false alarm"}};
+  for (const auto& [system, check] : rows) {
+    cells.push_back({Escape(DisplayName(system)), Escape(check.name), Readable(check.value),
+                     Escape((check.at_least ? ">= " : "<= ") + Readable(check.threshold)),
+                     check.pass ? "pass" : "<b>FAIL</b>", check.false_alarm > 0 ? Percent(check.false_alarm, 0) : "–"});
+  }
+  return Table("Each check, with the rate at which a consistent filter would fail it.", cells);
 }
 
 }  // namespace vobench::report
