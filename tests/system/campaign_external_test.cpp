@@ -185,7 +185,7 @@ TEST_F(CampaignTest, EntriesAreCheckedBeforeAnythingRuns) {
   // What would not reach it is refused.
   text = CampaignOf("[a]");
   text.replace(text.find("time.duration"), 0, "prior.focal_error: 0.02, ");
-  const std::string column = std::to_string(text.find("prior.focal_error") + 1);
+  const std::string column = std::to_string(text.find("{prior.focal_error") + 1);
   EXPECT_THAT(Run(text, "unequal").err, HasSubstr("c.yaml:1:" + column + ": 'prior.focal_error': 'a' is not ours"));
 }
 
