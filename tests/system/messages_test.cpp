@@ -186,7 +186,7 @@ const std::vector<Message>& Messages() {
       {"tools/judge/evaluation/compat/openvins.cpp",
        {"evaluate", "one.txt", "--truth", "nine.txt", "--compat", "ov se3"},
        {"less than two poses in common"}},
-      {"tools/judge/evaluation/compat/tum_rpe.cpp",
+      {"tools/judge/evaluation/compat/tum.cpp",
        {"evaluate", "one.txt", "--truth", "nine.txt", "--compat", "tum rpe"},
        {"no pair of poses is left"}},
       {"tools/vobench/compat.cpp",

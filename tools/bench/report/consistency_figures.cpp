@@ -8,7 +8,7 @@
 #include "tools/bench/report/drawn_runs.h"
 #include "tools/bench/report/figures.h"
 #include "tools/bench/text.h"
-#include "tools/judge/evaluation/nis.h"
+#include "tools/judge/evaluation/whiteness.h"
 
 namespace vobench::report {
 namespace {

@@ -8,8 +8,8 @@
 #include <map>
 #include <stdexcept>
 
-#include "tools/judge/evaluation/alignment.h"
 #include "tools/judge/evaluation/association.h"
+#include "tools/judge/evaluation/ate.h"
 #include "tools/judge/evaluation/so3.h"
 
 namespace evaluation {

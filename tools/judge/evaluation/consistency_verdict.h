@@ -3,14 +3,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "tools/judge/evaluation/anees_test.h"
-#include "tools/judge/evaluation/bound_ratio.h"
 #include "tools/judge/evaluation/cramer_rao.h"
 #include "tools/judge/evaluation/mixture_scores.h"
 #include "tools/judge/evaluation/rank_histogram.h"
@@ -61,14 +59,11 @@ struct ConsistencyVerdict {
   std::vector<Check> checks;
   // Behind them, by kStateBlocks.
   std::vector<AneesVerdict> anees;
-  UniformityVerdict ranks, coverage;
   // [frame of rank_frames][dimension], frame by frame; of no runs where nobody has a belief, and empty without any
   // rank.
   std::vector<RankHistogram> rank_histograms;
-  std::optional<NisVerdict> nis;
   std::optional<NisMeanVerdict> nis_mean;  // nis_by_feature
   std::optional<WhitenessVerdict> whiteness;
-  std::optional<BoundRatio> bound_ratio;
   std::array<double, 4> energy{};   // mean where there were draws; NaN without [m, rad, m/s, rad/s]
   double effective_components = 0;  // mean
   bool pass() const;

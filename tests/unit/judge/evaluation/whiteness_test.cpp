@@ -20,7 +20,6 @@ TEST(TestWhiteness, ByHand) {
   ASSERT_EQ(result.autocorrelation.size(), 2u);
   EXPECT_NEAR(result.autocorrelation[0], 0.4, 1e-15);
   EXPECT_NEAR(result.autocorrelation[1], -0.1, 1e-15);
-  EXPECT_NEAR(result.ljung_box, 35 * (0.04 + 0.01 / 3), 1e-13);
   EXPECT_NEAR(result.p_value, std::exp(-35 * (0.04 + 0.01 / 3) / 2), 1e-12);
   EXPECT_NEAR(result.bound, 1.96 / std::sqrt(5), 1e-15);
   EXPECT_EQ(TestWhiteness({1, 2, 3}, 10).autocorrelation.size(), 2u);
@@ -46,9 +45,7 @@ TEST(TestWhiteness, Figures) {
   const double rho[] = {-0.3281229923161925, -0.3690668928121707, 0.3921632873332819, -0.2444170328681931};
   ASSERT_EQ(result.autocorrelation.size(), 4u);
   for (std::size_t l = 0; l < 4; ++l) EXPECT_NEAR(result.autocorrelation[l], rho[l], 1e-14) << l;
-  EXPECT_NEAR(result.ljung_box, 8.057986034935418, 1e-12);
   EXPECT_NEAR(result.p_value, 0.0894770376908635, 1e-12);
-  EXPECT_EQ(result.count, 12u);
   EXPECT_NEAR(result.bound, 0.5658032638058332, 1e-15);
 }
 
@@ -84,7 +81,6 @@ TEST(TestWhiteness, OfRunsIsOfThoseThatHaveOne) {
       TestWhiteness({{1, 2, 3, 4, 5}, {5, 4, 3, 2, 1}, {1, 2, 3}, {7}, {4, 4, 4, 4}}, 2, 0.01);
   EXPECT_EQ(verdict.runs, 3u);
   EXPECT_EQ(verdict.rejected, 0u);
-  EXPECT_EQ(verdict.false_alarm, 0.01);
   EXPECT_EQ(verdict.most_allowed, BinomialLimit(3, 0.05, 0.01));
   ASSERT_EQ(verdict.mean_autocorrelation.size(), 2u);
   EXPECT_NEAR(verdict.mean_autocorrelation[0], (0.4 + 0.4 + 0) / 3, 1e-15);
@@ -185,9 +181,7 @@ TEST(Innovations, OfAnExactFilterAreWhiteAndOfTheirSize) {
 TEST(Innovations, OfAFilterWithTheWrongNoiseAreOfTheWrongSize) {
   const Runs halved = SimulateRuns(61, Filter::half_R), doubled = SimulateRuns(61, Filter::double_R);
   EXPECT_FALSE(TestNis(halved.nis, halved.dof, 1e-4).pass);
-  EXPECT_GT(TestNis(halved.nis, halved.dof).per_dof, 1.1);
   EXPECT_FALSE(TestNis(doubled.nis, doubled.dof, 1e-4).pass);
-  EXPECT_LT(TestNis(doubled.nis, doubled.dof).per_dof, 0.9);
 }
 
 // One frame's delay between the two sensors shows in how a frame's innovations depend on those of the frame before: in
@@ -267,8 +261,6 @@ TEST(Nis, FiguresOfRunsAndOfFrames) {
   const NisVerdict verdict = TestNis(nis, dof, 0.01);
   EXPECT_EQ(verdict.runs, 3u);
   EXPECT_EQ(verdict.outside, 0u);
-  EXPECT_EQ(verdict.per_dof, 32.0 / 22);
-  EXPECT_EQ(verdict.false_alarm, 0.01);
   EXPECT_EQ(verdict.most_allowed, BinomialLimit(3, 0.05, 0.01));
   EXPECT_TRUE(verdict.pass);
   EXPECT_EQ(TestNis({{3}, {}, {5}}, {{3}, {}, {0}}, 0.01).runs, 1u);
@@ -288,8 +280,6 @@ TEST(Nis, OneDegreeOfFreedomCountsAndNoneDoesNot) {
   EXPECT_EQ(NisOfRun({9}, {0}).dof, 0);
   const NisVerdict verdict = TestNis({{1.5}, {9}}, {{1}, {0}});
   EXPECT_EQ(verdict.runs, 1u);
-  EXPECT_EQ(verdict.per_dof, 1.5);
-  EXPECT_EQ(TestNis({}, {}).per_dof, 0);
   EXPECT_THROW(NisOfRun({1}, {}), std::logic_error);
   const NisMeanVerdict mean =
       TestNisMean({{1}, {1}, {1}, {2}, {2}, {2}, {5}}, {{1}, {1}, {1}, {1}, {1}, {1}, {0}}, 0.01);
@@ -325,7 +315,6 @@ TEST(TestNisMean, Figures) {
   EXPECT_NEAR(verdict.standard_error, 0.11722412976277306, 1e-14);
   EXPECT_NEAR(verdict.low, 1 - 0.4846000234579169, 1e-12);
   EXPECT_NEAR(verdict.high, 1 + 0.4846000234579169, 1e-12);
-  EXPECT_EQ(verdict.false_alarm, 0.01);
   EXPECT_TRUE(verdict.pass);
   nis.pop_back();
   dof.pop_back();
