@@ -87,17 +87,12 @@ void JudgeInnovations(const std::vector<VerdictRun>& runs, const VerdictOptions&
   const auto dof = Collect<int>(runs, options.first_frame, [](const JudgedFrame& f) { return f.nis_dof; });
   auto innovations = Collect<double>(runs, options.first_frame, [](const JudgedFrame& f) { return f.innovation; });
   for (auto& run : innovations) std::erase_if(run, [](double value) { return std::isnan(value); });
-  if (options.nis_by_feature) {
-    const NisMeanVerdict mean = TestNisMean(nis, dof, options.nis_tolerance, options.false_alarm);
-    if (mean.runs > 0) {
-      verdict.nis_mean = mean;
-      const bool low = mean.per_dof < 1;
-      verdict.checks.push_back(
-          {"NIS / dof, mean over runs", mean.per_dof, low ? mean.low : mean.high, low, mean.pass, options.false_alarm});
-    }
-  } else if (const NisVerdict size = TestNis(nis, dof, options.false_alarm); size.runs > 0) {
-    verdict.checks.push_back({"NIS, runs outside 95 %", static_cast<double>(size.outside),
-                              static_cast<double>(size.most_allowed), false, size.pass, options.false_alarm});
+  const NisMeanVerdict mean = TestNisMean(nis, dof, options.nis_tolerance, options.false_alarm);
+  if (mean.runs > 0) {
+    verdict.nis_mean = mean;
+    const bool low = mean.per_dof < 1;
+    verdict.checks.push_back(
+        {"NIS / dof, mean over runs", mean.per_dof, low ? mean.low : mean.high, low, mean.pass, options.false_alarm});
   }
   const WhitenessVerdict white = TestWhiteness(innovations, 10, options.false_alarm);
   if (white.runs > 0) {

@@ -6,24 +6,6 @@
 #include <stdexcept>
 
 namespace evaluation {
-namespace {
-
-void RequireEqual(std::size_t nis, std::size_t dof) {
-  if (nis != dof) throw std::logic_error("NIS: a value without its degrees of freedom");
-}
-
-// Of the runs that have innovations.
-std::vector<NisBand> BandsOf(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof) {
-  RequireEqual(nis.size(), dof.size());
-  std::vector<NisBand> bands;
-  for (std::size_t m = 0; m < nis.size(); ++m) {
-    const NisBand run = NisOfRun(nis[m], dof[m]);
-    if (run.dof > 0) bands.push_back(run);
-  }
-  return bands;
-}
-
-}  // namespace
 
 NisSummary SummariseNis(const std::vector<FrameRecord>& frames) {
   NisSummary summary;
@@ -97,38 +79,20 @@ WhitenessVerdict TestWhiteness(const std::vector<std::vector<double>>& sequences
   return verdict;
 }
 
-NisBand NisOfRun(const std::vector<double>& nis, const std::vector<int>& dof) {
-  RequireEqual(nis.size(), dof.size());
-  double sum = 0, degrees = 0;
-  for (std::size_t k = 0; k < nis.size(); ++k) {
-    if (dof[k] <= 0) continue;
-    sum += nis[k];
-    degrees += dof[k];
-  }
-  NisBand band{sum, degrees};
-  if (!(degrees > 0)) return band;
-  band.per_dof = sum / degrees;
-  band.band = {Chi2Quantile(0.025, degrees) / degrees, Chi2Quantile(0.975, degrees) / degrees};
-  band.inside = band.per_dof >= band.band.low && band.per_dof <= band.band.high;
-  return band;
-}
-
-NisVerdict TestNis(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof,
-                   double false_alarm) {
-  NisVerdict verdict;
-  for (const NisBand& run : BandsOf(nis, dof)) {
-    ++verdict.runs;
-    verdict.outside += !run.inside;
-  }
-  verdict.most_allowed = BinomialLimit(verdict.runs, 0.05, false_alarm);
-  verdict.pass = verdict.outside <= verdict.most_allowed;
-  return verdict;
-}
-
 NisMeanVerdict TestNisMean(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof,
                            double tolerance, double false_alarm) {
+  if (nis.size() != dof.size()) throw std::logic_error("NIS: a run without its degrees of freedom");
   std::vector<double> means;
-  for (const NisBand& run : BandsOf(nis, dof)) means.push_back(run.per_dof);
+  for (std::size_t m = 0; m < nis.size(); ++m) {
+    if (nis[m].size() != dof[m].size()) throw std::logic_error("NIS: a value without its degrees of freedom");
+    double sum = 0, degrees = 0;
+    for (std::size_t k = 0; k < nis[m].size(); ++k) {
+      if (dof[m][k] <= 0) continue;
+      sum += nis[m][k];
+      degrees += dof[m][k];
+    }
+    if (degrees > 0) means.push_back(sum / degrees);
+  }
   NisMeanVerdict verdict;
   verdict.runs = means.size();
   for (const double mean : means) verdict.per_dof += mean / static_cast<double>(means.size());

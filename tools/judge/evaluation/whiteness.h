@@ -52,29 +52,11 @@ struct WhitenessVerdict {
 WhitenessVerdict TestWhiteness(const std::vector<std::vector<double>>& sequences, int lags = 10,
                                double false_alarm = 0.01);
 
-// NIS of white innovations: their sum over a run is chi-square with the sum of degrees of freedom.
-struct NisBand {
-  double nis = 0, dof = 0;
-  double per_dof = 0;  // ideal 1
-  Band band;           // 95 %, of per_dof
-  bool inside = false;
-};
-// Values with dof <= 0 are left out.
-NisBand NisOfRun(const std::vector<double>& nis, const std::vector<int>& dof);
-
-// Rejected when more runs are outside their 95 % band than the false-alarm quantile of a binomial of 0.05.
-struct NisVerdict {
-  std::size_t runs = 0, outside = 0, most_allowed = 0;
-  bool pass = true;
-};
-NisVerdict TestNis(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof,
-                   double false_alarm = 0.01);
-
-// NIS whose sum is no chi-square, because its terms depend on each other, but whose mean is the degrees of freedom: the
-// mean over runs of each run's NIS per degree of freedom, with Student's t on the spread of the runs. With hundreds of
-// thousands of degrees of freedom a thousandth is significant: rejected only where the mean is beyond 1 +- tolerance.
+// Mean over runs of each run's NIS per degree of freedom, with Student's t on the spread of the runs: the terms of a
+// run may depend on each other, as the NIS of features that share the error of the pose. With hundreds of thousands of
+// degrees of freedom a thousandth is significant: rejected only where the mean is beyond 1 +- tolerance.
 struct NisMeanVerdict {
-  std::size_t runs = 0;
+  std::size_t runs = 0;       // with a degree of freedom
   double per_dof = 0;         // mean over runs
   double standard_error = 0;  // of it
   double low = 0, high = 0;   // 1 -+ (tolerance + t standard_error): passes within
