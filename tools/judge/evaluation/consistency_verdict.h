@@ -40,8 +40,8 @@ struct VerdictOptions {
   std::vector<std::size_t> rank_frames;  // for ranks and coverage; empty: four, the last among them, evenly spread
   double largest_bound_ratio = 1.2;
   // The NIS of a frame may be a sum over features, each with its own S: what the features share (the pose) is in every
-  // one of them, and the sum is no chi-square though its mean is the degrees of freedom. Its mean over runs is tested, by
-  // the spread of the runs themselves, and may be off by nis_tolerance.
+  // one of them, and the sum is no chi-square though its mean is the degrees of freedom. Its mean over runs is tested,
+  // by the spread of the runs themselves, and may be off by nis_tolerance.
   double nis_tolerance = 0.01;
 };
 

@@ -61,8 +61,8 @@ class Lines {
     Lines* lines_;
   };
 
-  // separator ' ' stands for any run of spaces and tabs; with any other, fields may be empty. Throws InputError when the
-  // file cannot be read, as begin and ++ do.
+  // separator ' ' stands for any run of spaces and tabs; with any other, fields may be empty. Throws InputError when
+  // the file cannot be read, as begin and ++ do.
   explicit Lines(const std::filesystem::path& file, char separator = ' ');
 
   Iterator begin() {

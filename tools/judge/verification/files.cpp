@@ -131,16 +131,6 @@ std::vector<std::string> ObjectNames(const fs::path& folder) {
   return names;
 }
 
-// Of the scenario in a manifest.
-void ReadScenario(const nlohmann::json& scenario, Sequence& s) {
-  const nlohmann::json sensor = scenario.value("sensor", nlohmann::json::object());
-  s.rolling_shutter = sensor.is_object() && sensor.value("rolling_shutter", 0.0) != 0;
-  const nlohmann::json trajectory = scenario.value("trajectory", nlohmann::json::object());
-  if (!trajectory.is_object() || trajectory.value("type", "") != "sampled") return;
-  s.roughness = {true, trajectory.value("position_noise", 0.0), trajectory.value("orientation_noise", 0.0),
-                 trajectory.value("knot_step", 1.0 / 240)};
-}
-
 // A manifest that says something else than the simulator's is a failure of `files`.
 void ReadManifest(const fs::path& file, Sequence& s, Check& files) {
   const std::string text = base::ReadFile(file).value_or("");
@@ -149,7 +139,13 @@ void ReadManifest(const fs::path& file, Sequence& s, Check& files) {
   const nlohmann::json manifest = nlohmann::json::parse(text, nullptr, false);
   if (!manifest.is_object() || !manifest.contains("scenario") || !manifest["scenario"].is_object()) return;
   try {
-    ReadScenario(manifest["scenario"], s);
+    const nlohmann::json& scenario = manifest["scenario"];
+    const nlohmann::json sensor = scenario.value("sensor", nlohmann::json::object());
+    s.rolling_shutter = sensor.is_object() && sensor.value("rolling_shutter", 0.0) != 0;
+    const nlohmann::json trajectory = scenario.value("trajectory", nlohmann::json::object());
+    if (!trajectory.is_object() || trajectory.value("type", "") != "sampled") return;
+    s.roughness = {true, trajectory.value("position_noise", 0.0), trajectory.value("orientation_noise", 0.0),
+                   trajectory.value("knot_step", 1.0 / 240)};
   } catch (const nlohmann::json::exception& error) {
     files.Fail(std::string("manifest.json: ") + error.what());
   }

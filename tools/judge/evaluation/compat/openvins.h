@@ -12,8 +12,8 @@ namespace evaluation::compat {
 
 enum class OvAlignment { posyaw, posyawsingle, se3, se3single, sim3, none };
 
-// ori and pos, absolute, then of each length in ascending order. std divides by n - 1, as there. Throws InputError where
-// estimate and truth have less than two poses in common.
+// ori and pos, absolute, then of each length in ascending order. std divides by n - 1, as there. Throws InputError
+// where estimate and truth have less than two poses in common.
 std::vector<NamedStatistics> ComputeOv(const Trajectory& estimate, const Trajectory& truth, OvAlignment alignment,
                                        std::vector<double> segments_m = {8, 16, 24, 32, 40});
 
