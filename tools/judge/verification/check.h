@@ -11,14 +11,14 @@ namespace verification {
 // The largest value / bound of what is added; what is not a number is larger than all.
 struct Worst {
   double value = 0, bound = 1, ratio = -1;
+  std::size_t count = 0;  // of all
   // Whether it is the worst now.
   bool Add(double v, double b) {
     const double r = v == v ? v / b : std::numeric_limits<double>::infinity();
-    if (r > ratio) {
-      *this = {v, b, r};
-      return true;
-    }
-    return false;
+    ++count;
+    if (!(r > ratio)) return false;
+    ratio = r, value = v, bound = b;
+    return true;
   }
 };
 
@@ -28,18 +28,17 @@ class Check {
 
   // |difference| against what it may be at most (> 0); `where`: the file, frame or pixel. What is not a number fails.
   void Add(double value, double bound, const std::string& where) {
-    ++count_;
     if (worst_.Add(value, bound)) where_ = where;
     if (!(value <= bound)) failures_.push_back(where);
   }
   // The worst of what was added to it, if anything was.
   void Add(const Worst& worst, const std::string& where) {
-    if (worst.ratio >= 0) Add(worst.value, worst.bound, where);
+    if (worst.count > 0) Add(worst.value, worst.bound, where);
   }
   // Something that has no size, such as a missing file.
   void Fail(const std::string& what) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    ++count_;
+    ++worst_.count;
     failures_.push_back(what);
     if (where_.empty() || worst_.ratio < kInfinity) where_ = what;
     worst_.ratio = worst_.value = kInfinity;
@@ -47,7 +46,7 @@ class Check {
 
   const std::string& name() const { return name_; }
   const std::string& unit() const { return unit_; }
-  std::size_t count() const { return count_; }
+  std::size_t count() const { return worst_.count; }
   double value() const { return worst_.value; }  // where value / bound is largest
   double bound() const { return worst_.bound; }
   const std::string& where() const { return where_; }
@@ -57,8 +56,7 @@ class Check {
 
  private:
   std::string name_, unit_, where_;
-  std::size_t count_ = 0;
-  Worst worst_{0, 0, -1};
+  Worst worst_{0, 0, -1, 0};
   std::vector<std::string> failures_;
 };
 
