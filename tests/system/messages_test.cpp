@@ -168,7 +168,7 @@ const std::vector<Message>& Messages() {
       {"tools/judge/evaluation/text_file.cpp",
        {"evaluate", "nowhere.txt", "--truth", "one.txt"},
        {"nowhere.txt", "cannot be opened"}},
-      {"tools/judge/evaluation/trajectory.cpp",
+      {"tools/judge/evaluation/text_file.cpp",
        {"evaluate", "nan.txt", "--truth", "one.txt"},
        {"nan.txt:2:5", "'nan' is not a finite number"}},
       {"tools/judge/evaluation/trajectory.cpp",
