@@ -62,7 +62,7 @@ Nees Play(const Overrides& settings) {
     }
     const Eigen::Matrix<double, 6, 1> error = ErrorOf(last, frames.back().truth).head<6>();
     const evaluation::Matrix12d bound =
-        evaluation::FilteringBound(ProblemOf(world, frames, StartCovariance(prior))).back();
+        evaluation::SimulateLinearised(ProblemOf(world, frames, StartCovariance(prior)), 0).bound.back();
     nees.by_bound += error.dot(bound.topLeftCorner<6, 6>().ldlt().solve(error));
     nees.by_filter += error.dot(last.covariance.topLeftCorner<6, 6>().ldlt().solve(error));
   }

@@ -33,13 +33,6 @@ std::int64_t Nanoseconds(const char* option, double seconds) {
   return *ns;
 }
 
-// "trans_rmse = 0.0123456789012 m", a line each.
-std::string Table(const std::vector<NamedValue>& values) {
-  std::string text;
-  for (const NamedValue& v : values) text += fmt::format("{} = {:.12g} {}\n", v.name, v.value, v.unit);
-  return text;
-}
-
 // The options of one program, parsed from the words after its name.
 class Words {
  public:
@@ -164,7 +157,7 @@ Reproduction Rpg(const std::vector<std::string>& arguments) {
   words.app().add_option("--lengths", lengths)->delimiter(',')->check(CLI::PositiveNumber);
   words.Parse(arguments);
   return {evaluation::Reading::strict, [alignment, lengths](const Trajectory& estimate, const Trajectory& truth) {
-            return Table(Values(ComputeRpg(estimate, truth, alignment, lengths)));
+            return Print(ComputeRpg(estimate, truth, alignment, lengths).errors);
           }};
 }
 
@@ -180,7 +173,7 @@ Reproduction Ov(const std::vector<std::string>& arguments) {
   words.app().add_option("--segments", segments)->delimiter(',')->check(CLI::PositiveNumber);
   words.Parse(arguments);
   return {evaluation::Reading::as_written, [alignment, segments](const Trajectory& estimate, const Trajectory& truth) {
-            return Table(Values(ComputeOv(estimate, truth, alignment, segments)));
+            return Print(ComputeOv(estimate, truth, alignment, segments));
           }};
 }
 

@@ -107,7 +107,7 @@ TEST(PointBound, TheProblemIsTheWorldThatWasPlayed) {
   for (const sim::PointFrame& frame : frames) observations += frame.observations.size();
   EXPECT_EQ(views, observations);
   // More views, less doubt: below what the motion alone would leave.
-  const auto bound = evaluation::FilteringBound(problem);
+  const auto bound = evaluation::SimulateLinearised(problem, 0).bound;
   EXPECT_LT(bound[5](0, 0), bound[0](0, 0) + 25 * bound[0](6, 6) / 900);
 }
 

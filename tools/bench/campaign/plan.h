@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tools/bench/campaign/external_system.h"
-#include "tools/judge/evaluation/alignment.h"
+#include "tools/judge/evaluation/ate.h"
 
 namespace vobench::campaign {
 

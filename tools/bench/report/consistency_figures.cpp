@@ -6,6 +6,7 @@
 
 #include "tools/bench/report/figures.h"
 #include "tools/bench/text.h"
+#include "tools/judge/evaluation/whiteness.h"
 
 namespace vobench::report {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/judge/evaluation/bound_ratio.h"
+#include "tools/judge/evaluation/cramer_rao.h"
 #include "tools/judge/evaluation/mixture_scores.h"
 #include "tools/judge/evaluation/summary.h"
 

@@ -32,7 +32,7 @@ std::vector<Landmark> ReadLandmarks(const fs::path& run_folder) {
   ev::Problems problems;
   std::vector<Landmark> landmarks;
   bool header = true;
-  for (const ev::Line& line : ev::ReadLines(file, ',')) {
+  for (const ev::Line& line : ev::Lines(file, ',')) {
     if (line.tokens.size() != 7) {
       problems.Add(file, line.number, 1, std::to_string(line.tokens.size()) + " columns where 7 are expected");
       continue;

@@ -190,7 +190,7 @@ std::vector<RankTable> ReadRanks(const std::filesystem::path& out) {
   ev::Problems problems;
   std::vector<RankTable> tables;
   bool header = true;
-  for (const ev::Line& line : ev::ReadLines(file, ',')) {
+  for (const ev::Line& line : ev::Lines(file, ',')) {
     if (std::exchange(header, false)) continue;
     if (line.tokens.size() != 8) {
       problems.Add(file, line.number, 1, std::to_string(line.tokens.size()) + " columns where 8 are expected");

@@ -55,7 +55,7 @@ std::optional<fs::path> First(const fs::path& sequence, std::initializer_list<co
 std::vector<DepthFile> ReadDepthList(const fs::path& list, char separator) {
   std::vector<DepthFile> files;
   evaluation::Problems problems;
-  for (const evaluation::Line& line : evaluation::ReadLines(list, separator)) {
+  for (const evaluation::Line& line : evaluation::Lines(list, separator)) {
     // Seconds in TUM's list, nanoseconds in EuRoC's.
     const std::string stamp = line.tokens[0].text + (separator == ',' ? "e-9" : "");
     const auto stamp_ns = base::ParseSeconds(stamp);
@@ -73,7 +73,7 @@ std::vector<DepthFile> ReadDepthList(const fs::path& list, char separator) {
 std::vector<ImuReading> ReadImu(const fs::path& table) {
   std::vector<ImuReading> readings;
   evaluation::Problems problems;
-  for (const evaluation::Line& line : evaluation::ReadLines(table, ',')) {
+  for (const evaluation::Line& line : evaluation::Lines(table, ',')) {
     const auto stamp_ns = base::ParseSeconds(line.tokens[0].text + "e-9");
     Eigen::Matrix<double, 6, 1> values = Eigen::Matrix<double, 6, 1>::Zero();
     bool good = stamp_ns.has_value() && line.tokens.size() >= 7;

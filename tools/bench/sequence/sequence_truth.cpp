@@ -72,7 +72,7 @@ evaluation::Trajectory ReadEurocTruth(const fs::path& file, const fs::path& came
   const Eigen::Isometry3d T_BC = ReadExtrinsic(camera);
   evaluation::Trajectory poses;
   evaluation::Problems problems;
-  for (const evaluation::Line& line : evaluation::ReadLines(file, ',')) {
+  for (const evaluation::Line& line : evaluation::Lines(file, ',')) {
     if (line.tokens.size() < 8) {
       problems.Add(file, line.number, 1, "expected timestamp, position, quaternion (w x y z), ...");
       continue;
@@ -141,7 +141,7 @@ std::optional<std::vector<std::int64_t>> ReadFrameStamps(const fs::path& sequenc
   const fs::path list = sequence / format->name;
   std::vector<std::int64_t> stamps;
   evaluation::Problems problems;
-  for (const evaluation::Line& line : evaluation::ReadLines(list, format->separator)) {
+  for (const evaluation::Line& line : evaluation::Lines(list, format->separator)) {
     const std::string& text = line.tokens[0].text;
     const auto stamp_ns = format->stamp(text);
     if (!stamp_ns) problems.Add(list, line.number, line.tokens[0].column, "'" + text + "' is not " + format->what);

@@ -77,7 +77,6 @@ evaluation::VerdictOptions VerdictOptionsFor(std::vector<std::size_t> rank_frame
   evaluation::VerdictOptions options;
   options.linearised = linearised;
   options.rank_frames = std::move(rank_frames);
-  options.nis_by_feature = true;
   return options;
 }
 

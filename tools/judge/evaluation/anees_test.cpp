@@ -6,13 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <numeric>
 #include <span>
 #include <stdexcept>
 #include <string>
 
-#include "tools/judge/evaluation/distributions.h"
+#include "tools/judge/evaluation/consistency.h"
 #include "tools/judge/evaluation/draws.h"
 
 namespace evaluation {
@@ -82,18 +81,24 @@ void AddRun(const LinearFilter& filter, const SteadyState& state, Draws& random,
   }
 }
 
-// sums: of NEES over the runs, per frame.
-void AddTrial(const std::vector<double>& sums, int runs, int dof, const Band& band, ExactAnees& exact) {
-  double inside = 0, mean = 0;
-  for (const double sum : sums) {
-    inside += sum / runs >= band.low && sum / runs <= band.high;
-    mean += sum / runs / dof;
+// Share and mean of each trial; add_runs(trial, sums) adds the NEES of its runs, frame by frame.
+template <class AddRuns>
+ExactAnees OverTrials(int runs, std::size_t frames, int trials, int dof, const AddRuns& add_runs) {
+  if (runs < 1 || frames < 1 || trials < 1)
+    throw std::invalid_argument("ANEES of an exact filter: needs at least one run, frame and trial");
+  const Band band = Chi2MeanBand(dof, runs);
+  ExactAnees exact;
+  for (int trial = 0; trial < trials; ++trial) {
+    std::vector<double> sums(frames);
+    add_runs(static_cast<std::uint64_t>(trial), sums);
+    double inside = 0, mean = 0;
+    for (const double sum : sums) {
+      inside += sum / runs >= band.low && sum / runs <= band.high;
+      mean += sum / runs / dof;
+    }
+    exact.shares.push_back(inside / static_cast<double>(frames));
+    exact.means.push_back(mean / static_cast<double>(frames));
   }
-  exact.shares.push_back(inside / static_cast<double>(sums.size()));
-  exact.means.push_back(mean / static_cast<double>(sums.size()));
-}
-
-ExactAnees Sorted(ExactAnees exact) {
   std::sort(exact.shares.begin(), exact.shares.end());
   std::sort(exact.means.begin(), exact.means.end());
   return exact;
@@ -101,18 +106,13 @@ ExactAnees Sorted(ExactAnees exact) {
 
 std::uint64_t StreamOf(std::uint64_t trial, int run) { return (trial << 24) + static_cast<std::uint64_t>(run); }
 
-void RequireCounts(int runs, std::size_t frames, int trials) {
-  if (runs < 1 || frames < 1 || trials < 1)
-    throw std::invalid_argument("ANEES of an exact filter: needs at least one run, frame and trial");
-}
-
 }  // namespace
 
 double MeasurementSigma(const LinearFilter& filter) { return std::sqrt(SteadyStateOf(filter).variance); }
 
 std::vector<std::vector<double>> SimulateNees(const LinearFilter& filter, int runs, int frames, std::uint64_t seed,
                                               std::uint64_t trial) {
-  RequireCounts(runs, static_cast<std::size_t>(std::max(frames, 0)), 1);
+  if (runs < 1 || frames < 1) throw std::invalid_argument("SimulateNees: needs at least one run and frame");
   const SteadyState state = SteadyStateOf(filter);
   std::vector<std::vector<double>> nees(static_cast<std::size_t>(runs),
                                         std::vector<double>(static_cast<std::size_t>(frames)));
@@ -124,24 +124,18 @@ std::vector<std::vector<double>> SimulateNees(const LinearFilter& filter, int ru
 }
 
 ExactAnees ExactAneesOf(const LinearFilter& filter, int runs, int frames, int trials, std::uint64_t seed) {
-  RequireCounts(runs, static_cast<std::size_t>(std::max(frames, 0)), trials);
   const SteadyState state = SteadyStateOf(filter);
-  const Band band = Chi2MeanBand(filter.dof(), runs);
-  ExactAnees exact;
-  for (int trial = 0; trial < trials; ++trial) {
-    std::vector<double> sums(static_cast<std::size_t>(frames));
-    for (int m = 0; m < runs; ++m) {
-      Draws random(seed, StreamOf(static_cast<std::uint64_t>(trial), m));
-      AddRun(filter, state, random, sums);
-    }
-    AddTrial(sums, runs, filter.dof(), band, exact);
-  }
-  return Sorted(std::move(exact));
+  return OverTrials(runs, static_cast<std::size_t>(std::max(frames, 0)), trials, filter.dof(),
+                    [&](std::uint64_t trial, std::vector<double>& sums) {
+                      for (int m = 0; m < runs; ++m) {
+                        Draws random(seed, StreamOf(trial, m));
+                        AddRun(filter, state, random, sums);
+                      }
+                    });
 }
 
 ExactAnees ExactAneesOfPool(const std::vector<std::vector<double>>& nees, int dof, int runs, int trials,
                             std::uint64_t seed) {
-  RequireCounts(runs, nees.empty() ? 0 : nees.front().size(), trials);
   for (const auto& run : nees) {
     if (run.size() != nees.front().size() ||
         std::any_of(run.begin(), run.end(), [](double v) { return std::isnan(v); }))
@@ -149,50 +143,32 @@ ExactAnees ExactAneesOfPool(const std::vector<std::vector<double>>& nees, int do
   }
   if (nees.size() < static_cast<std::size_t>(runs))
     throw std::invalid_argument("ExactAneesOfPool: the pool has fewer runs than a trial");
-  const Band band = Chi2MeanBand(dof, runs);
   std::vector<std::size_t> order(nees.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  ExactAnees exact;
-  for (int trial = 0; trial < trials; ++trial) {
-    Draws random(seed, static_cast<std::uint64_t>(trial));
-    std::vector<double> sums(nees.front().size());
-    for (int m = 0; m < runs; ++m) {
-      const auto at = static_cast<std::size_t>(m);
-      const auto left = static_cast<double>(order.size() - at);
-      std::swap(order[at], order[at + static_cast<std::size_t>(random.Uniform() * left)]);
-      const auto& run = nees[order[at]];
-      std::transform(run.begin(), run.end(), sums.begin(), sums.begin(), std::plus<>());
-    }
-    AddTrial(sums, runs, dof, band, exact);
-  }
-  return Sorted(std::move(exact));
+  return OverTrials(runs, nees.empty() ? 0 : nees.front().size(), trials, dof,
+                    [&](std::uint64_t trial, std::vector<double>& sums) {
+                      Draws random(seed, trial);
+                      for (std::size_t m = 0; m < static_cast<std::size_t>(runs); ++m) {
+                        const auto left = static_cast<double>(order.size() - m);
+                        std::swap(order[m], order[m + static_cast<std::size_t>(random.Uniform() * left)]);
+                        const auto& run = nees[order[m]];
+                        std::transform(run.begin(), run.end(), sums.begin(), sums.begin(), std::plus<>());
+                      }
+                    });
 }
 
 AneesShare ShareInBand(const std::vector<std::vector<double>>& nees, int dof) {
-  std::vector<double> sum;
-  std::vector<int> count;
+  std::vector<std::vector<std::int64_t>> frames;  // numbers in place of stamps
   for (const auto& run : nees) {
-    if (run.size() > sum.size()) {
-      sum.resize(run.size());
-      count.resize(run.size());
-    }
-    for (std::size_t k = 0; k < run.size(); ++k) {
-      if (std::isnan(run[k])) continue;
-      sum[k] += run[k];
-      ++count[k];
-    }
+    std::vector<std::int64_t>& numbers = frames.emplace_back(run.size());
+    std::iota(numbers.begin(), numbers.end(), 0);
   }
-  std::map<int, Band> bands;
   AneesShare share;
-  for (std::size_t k = 0; k < sum.size(); ++k) {
-    if (count[k] == 0) continue;
-    if (!bands.contains(count[k])) bands[count[k]] = Chi2MeanBand(dof, count[k]);
-    const Band& band = bands[count[k]];
-    const double anees = sum[k] / count[k];
+  for (const AneesPoint& point : Anees(frames, nees, dof)) {
     ++share.frames;
-    share.mean += anees / dof;
-    share.above += anees > band.high;
-    share.below += anees < band.low;
+    share.mean += point.anees / dof;
+    share.above += point.anees > point.band.high;
+    share.below += point.anees < point.band.low;
   }
   if (share.frames == 0) return share;
   const auto n = static_cast<double>(share.frames);

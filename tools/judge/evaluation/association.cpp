@@ -100,15 +100,8 @@ std::vector<Match> Associate(const Stamps& estimate_ns, const Stamps& truth_ns, 
   if (!std::is_sorted(estimate_ns.begin(), estimate_ns.end()) || !std::is_sorted(truth_ns.begin(), truth_ns.end())) {
     throw std::logic_error("Associate: stamps are not in order of time");
   }
-  switch (options.rule) {
-    case AssociationRule::nearest:
-      return NearestOfLonger(estimate_ns, truth_ns, options.gap_ns);
-    case AssociationRule::tum:
-      return OneToOne(estimate_ns, truth_ns, options.gap_ns, true);
-    case AssociationRule::one_to_one:
-      break;
-  }
-  return OneToOne(estimate_ns, truth_ns, options.gap_ns, false);
+  if (options.rule == AssociationRule::nearest) return NearestOfLonger(estimate_ns, truth_ns, options.gap_ns);
+  return OneToOne(estimate_ns, truth_ns, options.gap_ns, options.rule == AssociationRule::tum);
 }
 
 MatchedTrajectories MatchTrajectories(const Trajectory& estimate, const Trajectory& truth,

@@ -11,8 +11,8 @@
 namespace evaluation {
 
 enum class AssociationRule {
-  one_to_one,  // ours: all pairs closer than the gap, closest first, each pose used once, and never back in time: a pair
-               // that would cross a closer one is left out
+  one_to_one,  // ours: all pairs closer than the gap, closest first, each pose used once, and never back in time: a
+               // pair that would cross a closer one is left out
   tum,         // TUM's: the same, but pairs may cross
   nearest,     // evo's: each pose of the shorter trajectory takes the nearest of the longer, at most the gap away; one
                // pose of the longer may be used twice

@@ -1,23 +1,122 @@
 #include "tools/judge/evaluation/ate.h"
 
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
 #include "tools/judge/evaluation/so3.h"
 
 namespace evaluation {
+namespace {
+
+// Singular values below this fraction of what the point sets' sizes allow count as zero.
+constexpr double kRankTolerance = 1e-12;
+
+// Of the estimate and of the truth.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> Centroids(const MatchedTrajectories& matched) {
+  const double n = static_cast<double>(matched.estimate.size());
+  Eigen::Vector3d x_mean = Eigen::Vector3d::Zero(), y_mean = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
+    x_mean += matched.estimate[i].p_WC / n;
+    y_mean += matched.truth[i].p_WC / n;
+  }
+  return {x_mean, y_mean};
+}
+
+Similarity Umeyama(const MatchedTrajectories& matched, bool with_scale) {
+  const double n = static_cast<double>(matched.estimate.size());
+  const auto [x_mean, y_mean] = Centroids(matched);
+  Eigen::Matrix3d C = Eigen::Matrix3d::Zero();
+  double x_variance = 0, y_variance = 0;
+  for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
+    const Eigen::Vector3d x = matched.estimate[i].p_WC - x_mean, y = matched.truth[i].p_WC - y_mean;
+    C += y * x.transpose() / n;
+    x_variance += x.squaredNorm() / n;
+    y_variance += y.squaredNorm() / n;
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(C, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d S = Eigen::Vector3d::Ones();
+  if ((svd.matrixU() * svd.matrixV()).determinant() < 0) S.z() = -1;
+
+  Similarity result;
+  // Positions that do not move but for rounding (their size squared, times epsilon squared) have no extent.
+  result.scale_determined = x_variance > 1e-28 * (1 + x_mean.squaredNorm());
+  result.rotation_determined =
+      result.scale_determined && svd.singularValues()[1] > kRankTolerance * std::sqrt(x_variance * y_variance);
+  if (result.scale_determined) {
+    result.R = svd.matrixU() * S.asDiagonal() * svd.matrixV().transpose();
+    if (with_scale) result.scale = svd.singularValues().dot(S) / x_variance;
+  }
+  result.t = y_mean - result.scale * result.R * x_mean;
+  return result;
+}
+
+}  // namespace
+
+std::string Name(Alignment alignment) {
+  constexpr std::array kNames = {"none", "se3", "sim3", "first"};
+  return kNames.at(static_cast<std::size_t>(alignment));
+}
+
+Similarity Align(const MatchedTrajectories& matched, Alignment alignment) {
+  if (matched.estimate.empty() || matched.estimate.size() != matched.truth.size()) {
+    throw std::logic_error("Align: needs matched trajectories of at least one pose");
+  }
+  if (alignment == Alignment::none) return {};
+  if (alignment != Alignment::first) return Umeyama(matched, alignment == Alignment::sim3);
+  Similarity result;
+  result.R = (matched.truth[0].q_WC * matched.estimate[0].q_WC.conjugate()).toRotationMatrix();
+  result.t = matched.truth[0].p_WC - result.R * matched.estimate[0].p_WC;
+  return result;
+}
+
+Eigen::Matrix3d BestYaw(const Eigen::Matrix3d& C) {
+  const double theta = std::atan2(C(0, 1) - C(1, 0), C(0, 0) + C(1, 1));
+  return Eigen::AngleAxisd(theta, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
+Similarity AlignYaw(const MatchedTrajectories& matched) {
+  const auto [x_mean, y_mean] = Centroids(matched);
+  Eigen::Matrix3d C = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
+    C += (matched.estimate[i].p_WC - x_mean) * (matched.truth[i].p_WC - y_mean).transpose();
+  }
+  Similarity result;
+  result.R = BestYaw(C);
+  result.t = y_mean - result.R * x_mean;
+  return result;
+}
+
+StampedPose Apply(const Similarity& similarity, const StampedPose& pose) {
+  return {pose.stamp_ns, similarity.scale * similarity.R * pose.p_WC + similarity.t,
+          (Eigen::Quaterniond(similarity.R) * pose.q_WC).normalized()};
+}
+
+Trajectory Apply(const Similarity& similarity, const Trajectory& trajectory) {
+  Trajectory result;
+  for (const StampedPose& pose : trajectory) result.push_back(Apply(similarity, pose));
+  return result;
+}
+
+PoseErrors ErrorsAfter(const Similarity& similarity, const MatchedTrajectories& matched) {
+  PoseErrors errors;
+  for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
+    const StampedPose aligned = Apply(similarity, matched.estimate[i]);
+    errors.position.push_back((aligned.p_WC - matched.truth[i].p_WC).norm());
+    errors.orientation.push_back(AngleBetween(matched.truth[i].q_WC, aligned.q_WC));
+  }
+  return errors;
+}
 
 Ate ComputeAte(const MatchedTrajectories& matched, Alignment alignment) {
-  Ate ate;
-  ate.alignment = alignment;
-  ate.similarity = Align(matched, alignment);
-  for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
-    const StampedPose aligned = Apply(ate.similarity, matched.estimate[i]);
-    ate.position_errors.push_back((aligned.p_WC - matched.truth[i].p_WC).norm());
-    if (ate.similarity.rotation_determined) {
-      ate.orientation_errors.push_back(AngleBetween(matched.truth[i].q_WC, aligned.q_WC));
-    }
-  }
-  ate.position = Summarise(ate.position_errors);
-  ate.orientation = Summarise(ate.orientation_errors);
-  return ate;
+  const Similarity similarity = Align(matched, alignment);
+  PoseErrors errors = ErrorsAfter(similarity, matched);
+  if (!similarity.rotation_determined) errors.orientation.clear();
+  const Statistics position = Summarise(errors.position), orientation = Summarise(errors.orientation);
+  return {alignment, similarity, std::move(errors.position), std::move(errors.orientation), position, orientation};
 }
 
 }  // namespace evaluation

@@ -1,23 +1,66 @@
 // Absolute trajectory error (ATE): distance of each estimated pose from the true one after a named alignment.
-// Source: Sturm et al., "A benchmark for the evaluation of RGB-D SLAM systems", IROS 2012.
+// Source: Sturm et al., "A benchmark for the evaluation of RGB-D SLAM systems", IROS 2012; alignment: S. Umeyama,
+// "Least-squares estimation of transformation parameters between two point patterns", PAMI 1991.
 #pragma once
 
+#include <Eigen/Core>
+#include <string>
 #include <vector>
 
-#include "tools/judge/evaluation/alignment.h"
 #include "tools/judge/evaluation/association.h"
 #include "tools/judge/evaluation/statistics.h"
+#include "tools/judge/evaluation/trajectory.h"
 
 namespace evaluation {
 
+enum class Alignment {
+  none,   // as it is
+  se3,    // rotation and translation that minimise the squared position errors
+  sim3,   // and scale: for monocular estimates
+  first,  // the first pair of poses made equal
+};
+
+// "none", "se3", "sim3", "first".
+std::string Name(Alignment alignment);
+
+// X_truth ~ scale * R * X_estimate + t.
+struct Similarity {
+  double scale = 1;
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d t = Eigen::Vector3d::Zero();  // [m]
+  // What the positions left open: on one line (or one point) the rotation about it is arbitrary, on one point the scale
+  // too. Aligned positions are optimal all the same; aligned orientations then mean nothing.
+  bool rotation_determined = true;
+  bool scale_determined = true;
+};
+
+// Uses positions only, except `first`. At least one pair (a precondition: std::logic_error).
+Similarity Align(const MatchedTrajectories& matched, Alignment alignment);
+
+// Rotation about z and translation that minimise the squared position errors.
+// Source: Zhang and Scaramuzza, "A tutorial on quantitative trajectory evaluation for visual(-inertial) odometry",
+// IROS 2018.
+Similarity AlignYaw(const MatchedTrajectories& matched);
+
+// The rotation about z that brings C = sum x y' (x estimate, y truth) closest: argmax tr(Rz C).
+Eigen::Matrix3d BestYaw(const Eigen::Matrix3d& C);
+
+StampedPose Apply(const Similarity& similarity, const StampedPose& pose);
+Trajectory Apply(const Similarity& similarity, const Trajectory& trajectory);
+
+// Per pair |p_aligned - p_truth| [m] and angle of R_truth' R_aligned [rad].
+struct PoseErrors {
+  std::vector<double> position, orientation;
+};
+PoseErrors ErrorsAfter(const Similarity& similarity, const MatchedTrajectories& matched);
+
 struct Ate {
   Alignment alignment = Alignment::none;
-  Similarity similarity;                // that was applied to the estimate
-  std::vector<double> position_errors;  // |p_aligned - p_truth| per pair [m]
-  // Angle of R_truth' R_aligned per pair [rad]; empty if the rotation is undetermined
-  std::vector<double> orientation_errors;
-  Statistics position;     // [m]
-  Statistics orientation;  // [rad]
+  Similarity similarity;                   // that was applied to the estimate
+  std::vector<double> position_errors;     // |p_aligned - p_truth| per pair [m]
+  std::vector<double> orientation_errors;  // per pair [rad]; empty if the rotation is undetermined
+  Statistics position;                     // [m]
+  Statistics orientation;                  // [rad]
 };
 
 Ate ComputeAte(const MatchedTrajectories& matched, Alignment alignment);

@@ -8,8 +8,8 @@
 #include <map>
 #include <stdexcept>
 
-#include "tools/judge/evaluation/alignment.h"
 #include "tools/judge/evaluation/association.h"
+#include "tools/judge/evaluation/ate.h"
 #include "tools/judge/evaluation/so3.h"
 
 namespace evaluation {
@@ -28,13 +28,6 @@ std::optional<Eigen::MatrixXd> Solve(const Eigen::MatrixXd& P, const Eigen::Matr
   const Eigen::LDLT<Eigen::MatrixXd> factors(correlation);
   if (!(factors.vectorD().array() > kPivot).all()) return std::nullopt;
   return weight.asDiagonal() * factors.solve(Eigen::MatrixXd(weight.asDiagonal() * b));
-}
-
-Similarity GaugeOf(const Trajectory& estimate, const Trajectory& truth, std::int64_t gap_ns, Gauge gauge) {
-  if (gauge == Gauge::as_is) return {};
-  // Moves the truth into the estimate's world: the two are exchanged.
-  const MatchedTrajectories matched = MatchTrajectories(truth, estimate, {AssociationRule::one_to_one, gap_ns});
-  return Align(matched, Alignment::first);
 }
 
 }  // namespace
@@ -58,10 +51,13 @@ double NeesWithoutDirection(const Eigen::VectorXd& error, const Eigen::MatrixXd&
 std::vector<FrameConsistency> ComputeConsistency(const EstimateRun& run, const Trajectory& truth,
                                                  const std::optional<Velocities>& truth_velocities, std::int64_t gap_ns,
                                                  Gauge gauge) {
-  const Similarity to_estimate = GaugeOf(run.trajectory, truth, gap_ns, gauge);
-
+  const AssociationOptions association{AssociationRule::one_to_one, gap_ns};
+  // Moves the truth into the estimate's world: the two are exchanged.
+  const Similarity to_estimate = gauge == Gauge::as_is
+                                     ? Similarity{}
+                                     : Align(MatchTrajectories(truth, run.trajectory, association), Alignment::first);
   std::vector<FrameConsistency> frames;
-  const auto matches = Associate(StampsOf(run.trajectory), StampsOf(truth), {AssociationRule::one_to_one, gap_ns});
+  const auto matches = Associate(StampsOf(run.trajectory), StampsOf(truth), association);
   if (matches.empty()) return frames;
   const Eigen::Vector3d true_start = Apply(to_estimate, truth[matches.front().truth]).p_WC;
   for (const Match& match : matches) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -73,15 +72,14 @@ void JudgeRanks(const std::vector<VerdictRun>& runs, const VerdictOptions& optio
       coverage.push_back(HistogramOfValues(masses, bins));
     }
   }
-  verdict.ranks = TestUniformity(verdict.rank_histograms, options.false_alarm);
-  if (verdict.ranks.tests == 0) verdict.rank_histograms.clear();
-  verdict.coverage = TestUniformity(coverage, options.false_alarm);
-  const auto add = [&](const char* name, const UniformityVerdict& test) {
+  const auto add = [&](const char* name, const std::vector<RankHistogram>& histograms) {
+    const UniformityVerdict test = TestUniformity(histograms, options.false_alarm);
     if (test.tests > 0)
-      verdict.checks.push_back({name, test.smallest_p, test.threshold, true, test.pass, test.false_alarm});
+      verdict.checks.push_back({name, test.smallest_p, test.threshold, true, test.pass, options.false_alarm});
+    return test.tests > 0;
   };
-  add("ranks, smallest p-value", verdict.ranks);
-  add("coverage, smallest p-value", verdict.coverage);
+  if (!add("ranks, smallest p-value", verdict.rank_histograms)) verdict.rank_histograms.clear();
+  add("coverage, smallest p-value", coverage);
 }
 
 void JudgeInnovations(const std::vector<VerdictRun>& runs, const VerdictOptions& options, ConsistencyVerdict& verdict) {
@@ -89,24 +87,18 @@ void JudgeInnovations(const std::vector<VerdictRun>& runs, const VerdictOptions&
   const auto dof = Collect<int>(runs, options.first_frame, [](const JudgedFrame& f) { return f.nis_dof; });
   auto innovations = Collect<double>(runs, options.first_frame, [](const JudgedFrame& f) { return f.innovation; });
   for (auto& run : innovations) std::erase_if(run, [](double value) { return std::isnan(value); });
-  if (options.nis_by_feature) {
-    const NisMeanVerdict mean = TestNisMean(nis, dof, options.nis_tolerance, options.false_alarm);
-    if (mean.runs > 0) {
-      verdict.nis_mean = mean;
-      const bool low = mean.per_dof < 1;
-      verdict.checks.push_back(
-          {"NIS / dof, mean over runs", mean.per_dof, low ? mean.low : mean.high, low, mean.pass, mean.false_alarm});
-    }
-  } else if (const NisVerdict size = TestNis(nis, dof, options.false_alarm); size.runs > 0) {
-    verdict.nis = size;
-    verdict.checks.push_back({"NIS, runs outside 95 %", static_cast<double>(size.outside),
-                              static_cast<double>(size.most_allowed), false, size.pass, size.false_alarm});
+  const NisMeanVerdict mean = TestNisMean(nis, dof, options.nis_tolerance, options.false_alarm);
+  if (mean.runs > 0) {
+    verdict.nis_mean = mean;
+    const bool low = mean.per_dof < 1;
+    verdict.checks.push_back(
+        {"NIS / dof, mean over runs", mean.per_dof, low ? mean.low : mean.high, low, mean.pass, options.false_alarm});
   }
   const WhitenessVerdict white = TestWhiteness(innovations, 10, options.false_alarm);
   if (white.runs > 0) {
     verdict.whiteness = white;
     verdict.checks.push_back({"whiteness, runs rejected at 5 %", static_cast<double>(white.rejected),
-                              static_cast<double>(white.most_allowed), false, white.pass, white.false_alarm});
+                              static_cast<double>(white.most_allowed), false, white.pass, options.false_alarm});
   }
 }
 
@@ -114,21 +106,18 @@ void CompareRunsWithBound(const std::vector<VerdictRun>& runs, const VerdictOpti
                           ConsistencyVerdict& verdict) {
   std::vector<std::vector<Vector12d>> errors(runs.size());
   std::vector<std::vector<Matrix12d>> bounds(runs.size());
-  bool any = false;
   for (std::size_t m = 0; m < runs.size(); ++m) {
     for (std::size_t k = options.first_frame; k < runs[m].size(); ++k) {
       if (!runs[m][k].bound) continue;
       errors[m].push_back(runs[m][k].error);
       bounds[m].push_back(*runs[m][k].bound);
-      any = true;
     }
   }
-  if (!any) return;
-  verdict.bound_ratio = CompareWithBound(errors, bounds);
+  if (std::ranges::all_of(bounds, [](const auto& run) { return run.empty(); })) return;
+  const BoundRatio ratio = CompareWithBound(errors, bounds);
   for (std::size_t b = 0; b < 4; ++b) {
-    const double ratio = verdict.bound_ratio->overall[b];
-    verdict.checks.push_back({std::string("RMSE / bound, ") + kStateBlocks[b].name, ratio, options.largest_bound_ratio,
-                              false, ratio <= options.largest_bound_ratio, 0});
+    verdict.checks.push_back({std::string("RMSE / bound, ") + kStateBlocks[b].name, ratio.overall[b],
+                              options.largest_bound_ratio, false, ratio.overall[b] <= options.largest_bound_ratio, 0});
   }
 }
 
@@ -169,10 +158,10 @@ ConsistencyVerdict JudgeConsistency(const std::vector<VerdictRun>& runs, const V
     const AneesVerdict& anees = verdict.anees.back();
     const std::string name = kStateBlocks[b].name;
     verdict.checks.push_back(
-        {"ANEES share, " + name, anees.measured.share, anees.threshold, true, anees.share_pass, anees.false_alarm});
+        {"ANEES share, " + name, anees.measured.share, anees.threshold, true, anees.share_pass, options.false_alarm});
     const bool low = anees.measured.mean < 1;  // the side that it is on
     verdict.checks.push_back({"ANEES mean, " + name, anees.measured.mean, low ? anees.mean_low : anees.mean_high, low,
-                              anees.mean_pass, anees.false_alarm});
+                              anees.mean_pass, options.false_alarm});
   }
   JudgeRanks(runs, options, frames, verdict);
   JudgeInnovations(runs, options, verdict);

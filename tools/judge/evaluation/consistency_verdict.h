@@ -3,14 +3,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "tools/judge/evaluation/anees_test.h"
-#include "tools/judge/evaluation/bound_ratio.h"
 #include "tools/judge/evaluation/cramer_rao.h"
 #include "tools/judge/evaluation/mixture_scores.h"
 #include "tools/judge/evaluation/rank_histogram.h"
@@ -41,10 +39,9 @@ struct VerdictOptions {
   std::size_t first_frame = 1;           // frames before are not judged (a start known exactly has no error)
   std::vector<std::size_t> rank_frames;  // for ranks and coverage; empty: four, the last among them, evenly spread
   double largest_bound_ratio = 1.2;
-  // The NIS of a frame is a sum over features, each with its own S: what the features share (the pose) is in every one
-  // of them, and the sum is no chi-square though its mean is the degrees of freedom. Its mean over runs is then tested,
+  // The NIS of a frame may be a sum over features, each with its own S: what the features share (the pose) is in every
+  // one of them, and the sum is no chi-square though its mean is the degrees of freedom. Its mean over runs is tested,
   // by the spread of the runs themselves, and may be off by nis_tolerance.
-  bool nis_by_feature = false;
   double nis_tolerance = 0.01;
 };
 
@@ -61,14 +58,11 @@ struct ConsistencyVerdict {
   std::vector<Check> checks;
   // Behind them, by kStateBlocks.
   std::vector<AneesVerdict> anees;
-  UniformityVerdict ranks, coverage;
   // [frame of rank_frames][dimension], frame by frame; of no runs where nobody has a belief, and empty without any
   // rank.
   std::vector<RankHistogram> rank_histograms;
-  std::optional<NisVerdict> nis;
-  std::optional<NisMeanVerdict> nis_mean;  // nis_by_feature
+  std::optional<NisMeanVerdict> nis_mean;
   std::optional<WhitenessVerdict> whiteness;
-  std::optional<BoundRatio> bound_ratio;
   std::array<double, 4> energy{};   // mean where there were draws; NaN without [m, rad, m/s, rad/s]
   double effective_components = 0;  // mean
   bool pass() const;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -19,21 +20,14 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 class Blocks {
  public:
   Blocks(std::size_t doses, const std::vector<DoseRun>& runs) : doses_(doses) {
-    std::vector<std::size_t> names;
+    std::map<std::size_t, std::vector<std::vector<double>>> blocks;
     for (const DoseRun& run : runs) {
       if (run.dose >= doses) throw std::invalid_argument("a run's dose is not one of the doses");
-      if (!std::isnan(run.value)) names.push_back(run.block);
+      if (!std::isnan(run.value)) blocks.try_emplace(run.block, doses).first->second[run.dose].push_back(run.value);
     }
-    std::sort(names.begin(), names.end());
-    names.erase(std::unique(names.begin(), names.end()), names.end());
-    values_.resize(names.size(), std::vector<std::vector<double>>(doses));
-    for (const DoseRun& run : runs) {
-      if (std::isnan(run.value)) continue;
-      const auto block = std::lower_bound(names.begin(), names.end(), run.block) - names.begin();
-      values_[static_cast<std::size_t>(block)][run.dose].push_back(run.value);
-    }
-    for (auto& block : values_) {
+    for (auto& [name, block] : blocks) {
       for (auto& values : block) std::sort(values.begin(), values.end());
+      values_.push_back(std::move(block));
     }
   }
 
@@ -89,7 +83,6 @@ std::vector<DoseEstimate> ByDose(std::size_t doses, const std::vector<DoseRun>& 
                                  const std::function<double(const std::vector<double>&)>& of) {
   Check(options);
   const Blocks blocks(doses, runs);
-  std::vector<DoseEstimate> estimates(doses);
   const auto all = blocks.All();
   std::vector<std::vector<double>> resampled(doses);
   for (int i = 0; i < options.resamples; ++i) {
@@ -98,9 +91,10 @@ std::vector<DoseEstimate> ByDose(std::size_t doses, const std::vector<DoseRun>& 
       if (!drawn[d].empty()) resampled[d].push_back(of(drawn[d]));
     }
   }
+  std::vector<DoseEstimate> estimates;
   for (std::size_t d = 0; d < doses; ++d) {
     const auto [low, high] = Percentiles(resampled[d], options.level);
-    estimates[d] = {all[d].size(), of(all[d]), low, high};
+    estimates.push_back({all[d].size(), of(all[d]), low, high});
   }
   return estimates;
 }

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <iterator>
-#include <memory>
-#include <optional>
+#include <limits>
 #include <stdexcept>
 
 #include "tools/base/files.h"
@@ -17,40 +14,37 @@ namespace evaluation {
 namespace {
 
 constexpr std::size_t kUpperTriangle = 78;
-// Columns of frames.csv, behind which kNumericalEvents stand where they are known.
-constexpr std::array kColumns = {"timestamp",   "searched",    "matched",   "landmarks",
-                                 "permanent",   "nis",         "nis_dof",   "effective_particles",
-                                 "ms_features", "ms_matching", "ms_filter", "status"};
+// Columns of frames.csv between the stamp and the status: counts, or numbers with so many digits.
+struct Column {
+  const char* name;
+  int FrameRecord::*count;
+  double FrameRecord::*number = nullptr;
+  int digits = 6;
+};
+constexpr std::array<Column, 10> kColumns = {{{"searched", &FrameRecord::searched},
+                                              {"matched", &FrameRecord::matched},
+                                              {"landmarks", &FrameRecord::landmarks},
+                                              {"permanent", &FrameRecord::permanent},
+                                              {"nis", nullptr, &FrameRecord::nis, 9},
+                                              {"nis_dof", &FrameRecord::nis_dof},
+                                              {"effective_particles", nullptr, &FrameRecord::effective_particles},
+                                              {"ms_features", nullptr, &FrameRecord::ms_features},
+                                              {"ms_matching", nullptr, &FrameRecord::ms_matching},
+                                              {"ms_filter", nullptr, &FrameRecord::ms_filter}}};
+constexpr std::size_t kStatus = kColumns.size() + 1;  // behind it kNumericalEvents, where they are known
 constexpr std::array kFormerEvents = {"unsettled", "behind", "indefinite", "impossible"};
 
 std::string ColumnName(std::size_t i) {
-  return i < kColumns.size() ? kColumns[i] : kNumericalEvents[i - kColumns.size()].name;
+  if (i == 0) return "timestamp";
+  return i < kStatus ? kColumns[i - 1].name : i == kStatus ? "status" : kNumericalEvents[i - kStatus - 1].name;
 }
 
 std::vector<StampedBelief> ReadBeliefs(const std::filesystem::path& file, Problems& problems) {
   std::vector<StampedBelief> beliefs;
-  for (const Line& line : ReadLines(file)) {
-    if (line.tokens.size() != 7 + kUpperTriangle) {
-      problems.Add(file, line.number, line.tokens.front().column,
-                   std::to_string(line.tokens.size()) +
-                       " columns where 85 are expected (timestamp, 6 velocities, 78 of the covariance)");
-      continue;
-    }
+  for (const Line& line : Lines(file)) {
     std::array<double, 6 + kUpperTriangle> n{};
-    for (std::size_t i = 0; i < n.size(); ++i) {
-      const Token& token = line.tokens[i + 1];
-      if (const auto number = ParseNumber(token.text)) {
-        n[i] = *number;
-      } else {
-        problems.Add(file, line.number, token.column, "'" + token.text + "' is not a finite number");
-      }
-    }
-    const auto stamp = base::ParseSeconds(line.tokens[0].text);
-    if (!stamp) {
-      problems.Add(file, line.number, line.tokens[0].column,
-                   "'" + line.tokens[0].text + "' is not a time in seconds, 4e9 at most");
-      continue;
-    }
+    const auto stamp = ParseRow(file, line, "timestamp, 6 velocities, 78 of the covariance", n, problems);
+    if (!stamp) continue;
     if (!beliefs.empty() && *stamp <= beliefs.back().velocity.stamp_ns) {
       problems.Add(file, line.number, line.tokens[0].column,
                    "time " + line.tokens[0].text + " is not later than the one above");
@@ -58,13 +52,13 @@ std::vector<StampedBelief> ReadBeliefs(const std::filesystem::path& file, Proble
     StampedBelief belief{{*stamp, {n[0], n[1], n[2]}, {n[3], n[4], n[5]}}, Matrix12d::Zero()};
     std::size_t next = 6;
     for (int row = 0; row < 12; ++row) {
+      const Token& variance = line.tokens[1 + next];
+      if (n[next] < 0) {
+        problems.Add(file, line.number, variance.column,
+                     "variance " + std::to_string(row + 1) + " is negative: " + variance.text);
+      }
       for (int column = row; column < 12; ++column, ++next) {
         belief.covariance(row, column) = belief.covariance(column, row) = n[next];
-      }
-      if (belief.covariance(row, row) < 0) {
-        const std::size_t diagonal = next - static_cast<std::size_t>(12 - row);
-        problems.Add(file, line.number, line.tokens[1 + diagonal].column,
-                     "variance " + std::to_string(row + 1) + " is negative: " + line.tokens[1 + diagonal].text);
       }
     }
     beliefs.push_back(belief);
@@ -74,19 +68,17 @@ std::vector<StampedBelief> ReadBeliefs(const std::filesystem::path& file, Proble
 
 // A whole number >= 0.
 std::optional<int> ParseCount(const std::string& text) {
-  int value{};
-  const char* const all = std::to_address(text.end());
-  const auto [end, error] = std::from_chars(text.data(), all, value);
-  if (error != std::errc() || end != all || value < 0) return std::nullopt;
-  return value;
+  const auto value = base::ParseWhole(text);
+  if (!value || *value < 0 || *value > std::numeric_limits<int>::max()) return std::nullopt;
+  return static_cast<int>(*value);
 }
 
 std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems& problems) {
   std::vector<FrameRecord> frames;
   bool header = true;
-  std::size_t columns = kColumns.size() + kNumericalEvents.size();
-  for (const Line& line : ReadLines(file, ',')) {
-    if (header && line.tokens.size() == kColumns.size()) columns = kColumns.size();
+  std::size_t columns = kStatus + 1 + kNumericalEvents.size();
+  for (const Line& line : Lines(file, ',')) {
+    if (header && line.tokens.size() == kStatus + 1) columns = kStatus + 1;
     if (line.tokens.size() != columns) {
       problems.Add(file, line.number, 1,
                    std::to_string(line.tokens.size()) + " columns where " + std::to_string(columns) + " are expected");
@@ -97,7 +89,7 @@ std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems&
       for (std::size_t i = 0; i < columns; ++i) {
         const std::string& name = line.tokens[i].text;
         if (name == ColumnName(i)) continue;
-        const bool former = i >= kColumns.size() && name == kFormerEvents[i - kColumns.size()];
+        const bool former = i > kStatus && name == kFormerEvents[i - kStatus - 1];
         problems.Add(file, line.number, line.tokens[i].column,
                      "column '" + name + "' " + (former ? "is now" : "where") + " '" + ColumnName(i) + "'" +
                          (former ? "" : " is expected"));
@@ -115,37 +107,26 @@ std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems&
     } else {
       bad(0, "a time in seconds");
     }
-    const auto count = [&](std::size_t i, int& into) {
-      const auto value = ParseCount(line.tokens[i].text);
-      if (value)
-        into = *value;
-      else
-        bad(i, "a count");
-    };
-    const auto number = [&](std::size_t i, double& into) {
-      const auto value = ParseNumber(line.tokens[i].text);
+    const auto take = [&](std::size_t i, const auto& value, auto& into, const char* what) {
       if (value && *value >= 0)
         into = *value;
       else
-        bad(i, "a number of zero or more");
+        bad(i, what);
     };
-    count(1, record.searched);
-    count(2, record.matched);
-    count(3, record.landmarks);
-    count(4, record.permanent);
-    number(5, record.nis);
-    count(6, record.nis_dof);
-    number(7, record.effective_particles);
-    number(8, record.ms_features);
-    number(9, record.ms_matching);
-    number(10, record.ms_filter);
-    record.tracked = line.tokens[11].text == "tracked";
-    if (!record.tracked && line.tokens[11].text != "coasted") bad(11, "'tracked' or 'coasted'");
-    if (columns > kColumns.size()) {
-      record.events.emplace();
-      for (std::size_t i = 0; i < kNumericalEvents.size(); ++i) {
-        count(kColumns.size() + i, (*record.events).*kNumericalEvents[i].count);
-      }
+    for (std::size_t i = 1; i < kStatus; ++i) {
+      const Column& column = kColumns[i - 1];
+      const std::string& text = line.tokens[i].text;
+      if (column.count != nullptr)
+        take(i, ParseCount(text), record.*column.count, "a count");
+      else
+        take(i, ParseNumber(text), record.*column.number, "a number of zero or more");
+    }
+    const std::string& status = line.tokens[kStatus].text;
+    record.tracked = status == "tracked";
+    if (!record.tracked && status != "coasted") bad(kStatus, "'tracked' or 'coasted'");
+    if (columns > kStatus + 1) record.events.emplace();
+    for (std::size_t i = kStatus + 1; i < columns; ++i) {
+      take(i, ParseCount(line.tokens[i].text), (*record.events).*kNumericalEvents[i - kStatus - 1].count, "a count");
     }
     frames.push_back(record);
   }
@@ -153,42 +134,26 @@ std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems&
 }
 
 // Before anything is written, so that a bad number leaves nothing behind.
-void RequireFinite(const std::vector<StampedBelief>& beliefs) {
-  for (const StampedBelief& belief : beliefs) {
-    if (belief.covariance.allFinite() && belief.velocity.v_WC.allFinite() && belief.velocity.w_WC_C.allFinite())
-      continue;
-    throw std::invalid_argument("covariance.txt: the belief at " + base::FormatSeconds(belief.velocity.stamp_ns) +
-                                " holds a number that is not finite; nothing was written");
-  }
-}
-
-void RequireFinite(const std::vector<FrameRecord>& frames) {
-  for (const FrameRecord& f : frames) {
-    const double numbers[] = {f.nis, f.effective_particles, f.ms_features, f.ms_matching, f.ms_filter};
-    if (std::all_of(std::begin(numbers), std::end(numbers), [](double value) { return std::isfinite(value); }))
-      continue;
-    throw std::invalid_argument("frames.csv: the frame at " + base::FormatSeconds(f.stamp_ns) +
-                                " holds a number that is not finite; nothing was written");
-  }
+void RequireFinite(bool finite, const char* what, std::int64_t stamp_ns) {
+  if (finite) return;
+  throw std::invalid_argument(std::string(what) + " at " + base::FormatSeconds(stamp_ns) +
+                              " holds a number that is not finite; nothing was written");
 }
 
 std::string LineOf(const StampedBelief& belief) {
-  std::string text = base::FormatSeconds(belief.velocity.stamp_ns);
-  for (int k = 0; k < 3; ++k) text += ' ' + base::Significant(belief.velocity.v_WC[k], 12);
-  for (int k = 0; k < 3; ++k) text += ' ' + base::Significant(belief.velocity.w_WC_C[k], 12);
-  // Fifteen digits: a covariance rounded more coarsely may no longer be positive definite.
+  std::vector<double> triangle;
   for (int row = 0; row < 12; ++row) {
-    for (int column = row; column < 12; ++column) text += ' ' + base::Significant(belief.covariance(row, column), 15);
+    for (int column = row; column < 12; ++column) triangle.push_back(belief.covariance(row, column));
   }
-  return text + '\n';
+  // Fifteen digits: a covariance rounded more coarsely may no longer be positive definite.
+  return base::FormatSeconds(belief.velocity.stamp_ns) + FormatNumbers(NumbersOf(belief.velocity)) +
+         FormatNumbers(triangle, 15) + '\n';
 }
 
 std::string LineOf(const FrameRecord& f, bool with_events) {
   std::string text = base::FormatSeconds(f.stamp_ns);
-  for (const int value : {f.searched, f.matched, f.landmarks, f.permanent}) text += ',' + std::to_string(value);
-  text += ',' + base::Significant(f.nis, 9) + ',' + std::to_string(f.nis_dof);
-  for (const double value : {f.effective_particles, f.ms_features, f.ms_matching, f.ms_filter}) {
-    text += ',' + base::Significant(value, 6);
+  for (const auto& [name, count, number, digits] : kColumns) {
+    text += ',' + (count != nullptr ? std::to_string(f.*count) : base::Significant(f.*number, digits));
   }
   text += f.tracked ? ",tracked" : ",coasted";
   if (with_events) {
@@ -208,7 +173,7 @@ void WriteFrames(const std::filesystem::path& file, const std::vector<FrameRecor
   const bool with_events =
       std::all_of(frames.begin(), frames.end(), [](const FrameRecord& f) { return f.events.has_value(); });
   base::AtomicFile out(file);
-  for (std::size_t i = 0; i < kColumns.size() + (with_events ? kNumericalEvents.size() : 0); ++i)
+  for (std::size_t i = 0; i <= kStatus + (with_events ? kNumericalEvents.size() : 0); ++i)
     out.Append((i == 0 ? "" : ",") + ColumnName(i));
   out.Append("\n");
   for (const FrameRecord& frame : frames) out.Append(LineOf(frame, with_events));
@@ -242,8 +207,17 @@ EstimateRun ReadEstimateRun(const std::filesystem::path& folder) {
 }
 
 void WriteEstimateRun(const std::filesystem::path& folder, const EstimateRun& run) {
-  RequireFinite(run.beliefs);
-  RequireFinite(run.frames);
+  for (const auto& [velocity, covariance] : run.beliefs) {
+    RequireFinite(covariance.allFinite() && velocity.v_WC.allFinite() && velocity.w_WC_C.allFinite(),
+                  "covariance.txt: the belief", velocity.stamp_ns);
+  }
+  for (const FrameRecord& frame : run.frames) {
+    RequireFinite(std::ranges::all_of(kColumns,
+                                      [&](const Column& column) {
+                                        return column.number == nullptr || std::isfinite(frame.*column.number);
+                                      }),
+                  "frames.csv: the frame", frame.stamp_ns);
+  }
   WriteTrajectory(folder / "estimate.txt", run.trajectory);
   const auto write = [&](const char* name, const auto& rows, const auto& write_rows) {
     if (rows.empty()) {

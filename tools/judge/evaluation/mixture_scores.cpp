@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "tools/judge/evaluation/distributions.h"
 #include "tools/judge/evaluation/draws.h"
-#include "tools/judge/evaluation/square_root.h"
 
 namespace evaluation {
 namespace {
@@ -54,18 +55,6 @@ class Density {
   std::vector<Eigen::VectorXd> offset_;
   bool defined_ = true;
 };
-
-double HpdMass(const Mixture& mixture, const Density& density, const Eigen::MatrixXd& draws,
-               const Eigen::VectorXd& error) {
-  if (!density.defined()) return kNaN;
-  if (mixture.size() == 1) {
-    return Chi2Cdf(Nees(error - mixture[0].offset, mixture[0].covariance), static_cast<double>(error.size()));
-  }
-  if (draws.cols() == 0) return kNaN;
-  const double at_error = density.Log(error)[0];
-  const auto higher = (density.Log(draws).array() > at_error).count();
-  return (static_cast<double>(higher) + 0.5) / (static_cast<double>(draws.cols()) + 1);
-}
 
 void Check(const Mixture& mixture, const Vector12d& error, int draws) {
   std::string problems;
@@ -116,24 +105,6 @@ double EffectiveComponents(const Mixture& mixture) {
   return total * total / squares;
 }
 
-Eigen::VectorXd Pit(const Mixture& mixture, const Eigen::VectorXd& error) {
-  const double total = TotalWeight(mixture);
-  Eigen::VectorXd pit = Eigen::VectorXd::Zero(error.size());
-  for (const MixtureComponent& component : mixture) {
-    for (Eigen::Index i = 0; i < error.size(); ++i) {
-      const double d = error[i] - component.offset[i], variance = component.covariance(i, i);
-      const double below = variance > 0 ? 0.5 * std::erfc(-d / std::sqrt(2 * variance)) : (d > 0) + 0.5 * (d == 0);
-      pit[i] += component.weight / total * below;
-    }
-  }
-  return pit.cwiseMin(1);  // weights add up to 1 to rounding only
-}
-
-double LogDensity(const Mixture& mixture, const Eigen::VectorXd& error) {
-  const Density density(mixture);
-  return density.defined() ? density.Log(error)[0] : kNaN;
-}
-
 Eigen::MatrixXd Draw(const Mixture& mixture, int draws, std::uint64_t seed, std::uint64_t stream) {
   evaluation::Draws random(seed, stream);
   const double total = TotalWeight(mixture);
@@ -158,7 +129,15 @@ std::vector<int> Ranks(const Eigen::MatrixXd& draws, const Eigen::VectorXd& erro
 }
 
 double HpdMass(const Mixture& mixture, const Eigen::MatrixXd& draws, const Eigen::VectorXd& error) {
-  return HpdMass(mixture, Density(mixture), draws, error);
+  const Density density(mixture);
+  if (!density.defined()) return kNaN;
+  if (mixture.size() == 1) {
+    return Chi2Cdf(Nees(error - mixture[0].offset, mixture[0].covariance), static_cast<double>(error.size()));
+  }
+  if (draws.cols() == 0) return kNaN;
+  const double at_error = density.Log(error)[0];
+  const auto higher = (density.Log(draws).array() > at_error).count();
+  return (static_cast<double>(higher) + 0.5) / (static_cast<double>(draws.cols()) + 1);
 }
 
 double EnergyScore(const Eigen::MatrixXd& draws, const Eigen::VectorXd& error) {
@@ -181,14 +160,11 @@ MixtureScores ScoreMixture(const Mixture& mixture, const Vector12d& error, std::
     const Mixture part = Block(mixture, block);
     const Eigen::VectorXd e = error.segment(block.start, block.size);
     const Eigen::MatrixXd x = points.middleRows(block.start, block.size);
-    const Density density(part);
     scores.nees[b] = Nees(e - moments.mean.segment(block.start, block.size),
                           moments.covariance.block(block.start, block.start, block.size, block.size));
-    scores.log_score[b] = density.defined() ? -density.Log(e)[0] : kNaN;
-    scores.hpd_mass[b] = HpdMass(part, density, x, e);
+    scores.hpd_mass[b] = HpdMass(part, x, e);
     if (b < scores.energy.size()) scores.energy[b] = EnergyScore(x, e);
   }
-  scores.pit = Pit(mixture, error);
   const std::vector<int> ranks = Ranks(points, error);
   std::copy(ranks.begin(), ranks.end(), scores.rank.begin());
   scores.draws = draws;

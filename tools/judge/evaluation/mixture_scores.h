@@ -1,6 +1,6 @@
 // Scores of a belief that is a mixture of Gaussians, given the truth: valid also where it is far from Gaussian, unlike
 // NEES.
-// Source: Gneiting & Raftery, "Strictly proper scoring rules", JASA 2007 (energy and log score); Talts et al.,
+// Source: Gneiting & Raftery, "Strictly proper scoring rules", JASA 2007 (energy score); Talts et al.,
 // "Validating Bayesian inference algorithms with simulation-based calibration", 2018 (ranks).
 //
 // All vectors are in the tangent space at the mean of the belief, in the order of the covariance: (dp in W, dphi in C,
@@ -10,8 +10,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <limits>
-#include <string>
 #include <vector>
 
 #include "tools/judge/evaluation/consistency.h"
@@ -53,12 +51,6 @@ Moments MomentsOf(const Mixture& mixture);
 // 1 / sum w_i^2.
 double EffectiveComponents(const Mixture& mixture);
 
-// Per dimension P(x_i <= error_i) under the mixture: uniform on (0, 1) if the belief is calibrated.
-Eigen::VectorXd Pit(const Mixture& mixture, const Eigen::VectorXd& error);
-
-// log of the mixture's density at the error; NaN when a component's covariance is not positive definite.
-double LogDensity(const Mixture& mixture, const Eigen::VectorXd& error);
-
 // One column per draw.
 Eigen::MatrixXd Draw(const Mixture& mixture, int draws, std::uint64_t seed, std::uint64_t stream);
 
@@ -77,11 +69,9 @@ double EnergyScore(const Eigen::MatrixXd& draws, const Eigen::VectorXd& error);
 // All of it for one frame.
 struct MixtureScores {
   std::array<double, 7> nees{};  // of the matched moments, by kStateBlocks; NaN without a positive definite covariance
-  std::array<double, 7> hpd_mass{};   // by kStateBlocks; NaN without a density
-  std::array<double, 7> log_score{};  // -log density [nats], by kStateBlocks; NaN without a density. Smaller is better
-  std::array<double, 4> energy{};     // of the first four of kStateBlocks [m, rad, m/s, rad/s]
-  Vector12d pit = Vector12d::Zero();
-  std::array<int, 12> rank{};  // of the truth among `draws` draws
+  std::array<double, 7> hpd_mass{};  // by kStateBlocks; NaN without a density
+  std::array<double, 4> energy{};    // of the first four of kStateBlocks [m, rad, m/s, rad/s]
+  std::array<int, 12> rank{};        // of the truth among `draws` draws
   int draws = 0;
   double effective_components = 0;
 };

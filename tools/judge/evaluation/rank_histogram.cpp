@@ -61,14 +61,10 @@ RankHistogram HistogramOfValues(const std::vector<double>& values, int bins) {
 
 UniformityVerdict TestUniformity(const std::vector<RankHistogram>& histograms, double false_alarm) {
   UniformityVerdict verdict;
-  verdict.false_alarm = false_alarm;
-  for (std::size_t i = 0; i < histograms.size(); ++i) {
-    if (histograms[i].runs == 0) continue;
+  for (const RankHistogram& histogram : histograms) {
+    if (histogram.runs == 0) continue;
     ++verdict.tests;
-    if (histograms[i].p_value < verdict.smallest_p) {
-      verdict.smallest_p = histograms[i].p_value;
-      verdict.worst = i;
-    }
+    verdict.smallest_p = std::min(verdict.smallest_p, histogram.p_value);
   }
   verdict.threshold = verdict.tests == 0 ? 0 : false_alarm / static_cast<double>(verdict.tests);
   verdict.pass = verdict.smallest_p >= verdict.threshold;

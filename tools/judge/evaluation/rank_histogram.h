@@ -26,10 +26,8 @@ RankHistogram HistogramOfValues(const std::vector<double>& values, int bins = 10
 // below the false-alarm rate (Bonferroni: no independence is needed, and the rate is an upper bound).
 struct UniformityVerdict {
   double smallest_p = 1;  // of a single histogram
-  std::size_t worst = 0;  // which
   std::size_t tests = 0;
-  double threshold = 0;    // of smallest_p: false_alarm / tests
-  double false_alarm = 0;  // of the whole
+  double threshold = 0;  // of smallest_p: false_alarm, of the whole, / tests
   bool pass = true;
 };
 

@@ -1,7 +1,7 @@
 // Relative pose error (RPE): error of the motion between two times, the drift, which no alignment hides.
 // Source: Sturm et al., IROS 2012, equation (2): E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), P estimate, Q truth.
 //
-// TUM's own script composes A B^-1 instead; see compat/tum_rpe.h.
+// TUM's own script composes A B^-1 instead; see compat/tum.h.
 #pragma once
 
 #include <cstddef>
@@ -44,5 +44,10 @@ std::vector<IndexPair> PairsByFrames(std::size_t poses, std::size_t delta, PairS
 // tolerance, a part of delta.
 std::vector<IndexPair> PairsByPath(const Trajectory& trajectory, double delta_m, PairSelection selection,
                                    double tolerance = 0.1);
+
+// rpg's and ov_eval's sub-trajectories: from every pose the one whose distance along the way is nearest to length
+// further, if nearer than the tolerance; the earliest of equally near. Starts without such an end are left out. way:
+// not decreasing [m].
+std::vector<IndexPair> PairsByLength(const std::vector<double>& way, double length_m, double tolerance_m);
 
 }  // namespace evaluation

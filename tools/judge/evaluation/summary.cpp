@@ -1,9 +1,8 @@
 #include "tools/judge/evaluation/summary.h"
 
-#include <stdexcept>
 #include <utility>
 
-#include "tools/judge/evaluation/baseline.h"
+#include "tools/judge/evaluation/so3.h"
 
 namespace evaluation {
 namespace {
@@ -11,29 +10,20 @@ namespace {
 using Stamps = std::vector<std::int64_t>;
 
 Stamps FrameStamps(const EstimateRun& run, const JudgeOptions& options) {
+  if (run.frames.empty()) return options.frame_stamps_ns.value_or(StampsOf(run.trajectory));
   Stamps stamps;
-  if (!run.frames.empty()) {
-    for (const FrameRecord& frame : run.frames) stamps.push_back(frame.stamp_ns);
-  } else if (options.frame_stamps_ns) {
-    stamps = *options.frame_stamps_ns;
-  } else {
-    stamps = StampsOf(run.trajectory);
-  }
+  for (const FrameRecord& frame : run.frames) stamps.push_back(frame.stamp_ns);
   return stamps;
 }
 
 TrajectoryErrors ErrorsOf(const MatchedTrajectories& matched, std::size_t pairs_offered, const JudgeOptions& options) {
-  TrajectoryErrors errors;
-  errors.pairs = matched.estimate.size();
-  errors.none = ComputeAte(matched, Alignment::none);
-  errors.se3 = ComputeAte(matched, Alignment::se3);
-  errors.sim3 = ComputeAte(matched, Alignment::sim3);
-  errors.first = ComputeAte(matched, Alignment::first);
+  const auto ate = [&](Alignment alignment) { return ComputeAte(matched, alignment); };
+  const Ate sim3 = ate(Alignment::sim3);
   const auto pairs = PairsByTime(matched.truth, options.rpe_delta_ns, options.rpe_tolerance_ns);
-  errors.rpe = ComputeRpe(matched, pairs, errors.sim3.similarity.scale);
-  errors.rpe_unscaled = ComputeRpe(matched, pairs, 1);
-  errors.rpe_pairs_offered = pairs_offered;
-  return errors;
+  return {matched.estimate.size(),    ate(Alignment::none),
+          ate(Alignment::se3),        sim3,
+          ate(Alignment::first),      ComputeRpe(matched, pairs, sim3.similarity.scale),
+          ComputeRpe(matched, pairs), pairs_offered};
 }
 
 std::optional<Coverage> CoverageOf(const EstimateRun& run, const JudgeOptions& options, const Stamps& frames) {
@@ -69,13 +59,12 @@ ConsistencySummary Summarised(const std::vector<FrameConsistency>& frames, bool 
 
 std::optional<Timing> TimingOf(const std::vector<FrameRecord>& frames) {
   if (frames.empty()) return std::nullopt;
-  std::vector<double> features, matching, filter;
-  for (const FrameRecord& frame : frames) {
-    features.push_back(frame.ms_features);
-    matching.push_back(frame.ms_matching);
-    filter.push_back(frame.ms_filter);
-  }
-  return Timing{Median(features), Median(matching), Median(filter)};
+  const auto median = [&](double FrameRecord::*member) {
+    std::vector<double> values;
+    for (const FrameRecord& frame : frames) values.push_back(frame.*member);
+    return Median(values);
+  };
+  return Timing{median(&FrameRecord::ms_features), median(&FrameRecord::ms_matching), median(&FrameRecord::ms_filter)};
 }
 
 std::optional<EventSummary> EventsOf(const std::vector<FrameRecord>& frames) {
@@ -94,18 +83,33 @@ std::optional<EventSummary> EventsOf(const std::vector<FrameRecord>& frames) {
 
 }  // namespace
 
-const Ate& TrajectoryErrors::Aligned(Alignment alignment) const {
-  switch (alignment) {
-    case Alignment::none:
-      return none;
-    case Alignment::se3:
-      return se3;
-    case Alignment::sim3:
-      return sim3;
-    case Alignment::first:
-      return first;
+Trajectory ConstantVelocity(const std::vector<std::int64_t>& stamps_ns, const StampedPose& start,
+                            const StampedVelocity& velocity) {
+  Trajectory trajectory;
+  for (const std::int64_t stamp : stamps_ns) {
+    const double dt = static_cast<double>(stamp - start.stamp_ns) * 1e-9;
+    trajectory.push_back({stamp, start.p_WC + velocity.v_WC * dt, start.q_WC * Exp(velocity.w_WC_C * dt)});
   }
-  throw std::logic_error("an alignment that was not computed");
+  return trajectory;
+}
+
+StampedVelocity StartVelocity(const Trajectory& trajectory) {
+  StampedVelocity velocity;
+  if (trajectory.empty()) return velocity;
+  const StampedPose& first = trajectory.front();
+  velocity.stamp_ns = first.stamp_ns;
+  std::size_t i = 0;
+  while (i + 1 < trajectory.size() && trajectory[i].stamp_ns - first.stamp_ns < 100'000'000) ++i;
+  if (i == 0) return velocity;
+  const double dt = static_cast<double>(trajectory[i].stamp_ns - first.stamp_ns) * 1e-9;
+  velocity.v_WC = (trajectory[i].p_WC - first.p_WC) / dt;
+  velocity.w_WC_C = Log(first.q_WC.conjugate() * trajectory[i].q_WC) / dt;
+  return velocity;
+}
+
+const Ate& TrajectoryErrors::Aligned(Alignment alignment) const {
+  const std::array all = {&none, &se3, &sim3, &first};
+  return *all.at(static_cast<std::size_t>(alignment));
 }
 
 double Coverage::pose_coverage() const {
@@ -125,7 +129,7 @@ JudgedSeries JudgeSeries(const EstimateRun& run, const Trajectory& truth,
 
   // What the truth offers on the frames of the sequence, whether the odometry answered or not.
   const Stamps frames = FrameStamps(run, options);
-  Trajectory at_frames = ConstantPose(frames, {});
+  Trajectory at_frames = ConstantVelocity(frames, {});
   const MatchedTrajectories offered = MatchTrajectories(at_frames, truth, options.association);
   const std::size_t pairs_offered = PairsByTime(offered.truth, options.rpe_delta_ns, options.rpe_tolerance_ns).size();
 
@@ -141,7 +145,7 @@ JudgedSeries JudgeSeries(const EstimateRun& run, const Trajectory& truth,
 
   const StampedPose& start = offered.truth.front();
   const auto given = truth_velocities ? VelocityAt(*truth_velocities, start.stamp_ns) : std::nullopt;
-  metrics.constant_pose = errors_of(ConstantPose(frames, start));
+  metrics.constant_pose = errors_of(ConstantVelocity(frames, start));
   metrics.constant_velocity = errors_of(ConstantVelocity(frames, start, given.value_or(StartVelocity(offered.truth))));
 
   metrics.coverage = CoverageOf(run, options, frames);

@@ -10,10 +10,18 @@
 #include "tools/judge/evaluation/ate.h"
 #include "tools/judge/evaluation/consistency.h"
 #include "tools/judge/evaluation/estimate_run.h"
-#include "tools/judge/evaluation/nis.h"
 #include "tools/judge/evaluation/rpe.h"
+#include "tools/judge/evaluation/whiteness.h"
 
 namespace evaluation {
+
+// Baseline without images: the true start pose moved on with constant v (in W) and constant w (in C), at each stamp.
+Trajectory ConstantVelocity(const std::vector<std::int64_t>& stamps_ns, const StampedPose& start,
+                            const StampedVelocity& velocity = {});
+
+// The velocity at the start of a trajectory: mean over its first 0.1 s (to the first pose at least so much later; to
+// the last if none is). Zero for a single pose.
+StampedVelocity StartVelocity(const Trajectory& trajectory);
 
 struct JudgeOptions {
   AssociationOptions association;

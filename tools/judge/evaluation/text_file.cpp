@@ -1,10 +1,7 @@
 #include "tools/judge/evaluation/text_file.h"
 
-#include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include "tools/base/text.h"
@@ -78,8 +75,6 @@ void Lines::Advance() {
   at_end_ = true;
 }
 
-Lines ReadLines(const std::filesystem::path& file, char separator) { return Lines(file, separator); }
-
 std::optional<double> ParseNumber(const std::string& text) {
   double value{};
   const char *begin = text.c_str(), *const all = std::to_address(text.end());
@@ -87,6 +82,35 @@ std::optional<double> ParseNumber(const std::string& text) {
   const auto [end, error] = std::from_chars(begin, all, value);
   if (error != std::errc() || end != all || !std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+std::optional<std::int64_t> ParseRow(const std::filesystem::path& file, const Line& line, const char* columns,
+                                     std::span<double> numbers, Problems& problems) {
+  const auto bad = [&](const Token& token, const std::string& what) {
+    problems.Add(file, line.number, token.column, what);
+  };
+  if (line.tokens.size() != numbers.size() + 1) {
+    bad(line.tokens.front(), std::to_string(line.tokens.size()) + " columns where " +
+                                 std::to_string(numbers.size() + 1) + " are expected (" + columns + ")");
+    return std::nullopt;
+  }
+  bool good = true;
+  const auto stamp = base::ParseSeconds(line.tokens[0].text);
+  if (!stamp) bad(line.tokens[0], "'" + line.tokens[0].text + "' is not a time in seconds, 4e9 at most");
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const Token& token = line.tokens[i + 1];
+    const auto number = ParseNumber(token.text);
+    if (!number) bad(token, "'" + token.text + "' is not a finite number");
+    good = good && number;
+    numbers[i] = number.value_or(0);
+  }
+  return good ? stamp : std::nullopt;
+}
+
+std::string FormatNumbers(std::span<const double> numbers, int digits) {
+  std::string text;
+  for (const double number : numbers) text += ' ' + base::Significant(number, digits);
+  return text;
 }
 
 std::optional<std::int64_t> Nanoseconds(double seconds) {

@@ -2,12 +2,12 @@
 // column and the text found there.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -43,7 +43,7 @@ struct Line {
 
 // The lines of a file that carry data: no empty ones, none that starts with '#'. Read one at a time as they are asked
 // for, once:
-//   for (const Line& line : ReadLines(file)) ...
+//   for (const Line& line : Lines(file)) ...
 // A line is good until the next one is asked for.
 class Lines {
  public:
@@ -61,9 +61,10 @@ class Lines {
     Lines* lines_;
   };
 
-  Lines(const std::filesystem::path& file, char separator);
+  // separator ' ' stands for any run of spaces and tabs; with any other, fields may be empty. Throws InputError when
+  // the file cannot be read, as begin and ++ do.
+  explicit Lines(const std::filesystem::path& file, char separator = ' ');
 
-  // Throws InputError when the file cannot be read on, as ++ does.
   Iterator begin() {
     Advance();
     return Iterator(this);
@@ -81,12 +82,16 @@ class Lines {
   bool at_end_ = false;
 };
 
-// separator ' ' stands for any run of spaces and tabs; with any other, fields may be empty. Throws InputError when the
-// file cannot be read.
-Lines ReadLines(const std::filesystem::path& file, char separator = ' ');
-
 // The whole text as a finite number; nothing when it is anything else ("nan", "1.2x", "").
 std::optional<double> ParseNumber(const std::string& text);
+
+// The stamp of a line `timestamp numbers`, and its numbers; nothing, with the problems noted, when any is bad. columns:
+// their names.
+std::optional<std::int64_t> ParseRow(const std::filesystem::path& file, const Line& line, const char* columns,
+                                     std::span<double> numbers, Problems& problems);
+
+// " x" of each number, of so many significant digits.
+std::string FormatNumbers(std::span<const double> numbers, int digits = 12);
 
 // Bound on what is added to a stamp (a gap, an offset, a delta) [s].
 constexpr double kLongest_s = 1e9;

@@ -18,43 +18,23 @@ constexpr double kNormTolerance = 1e-3;
 constexpr double kSamePosition = 0.01;                  // [m]
 constexpr double kSameOrientation = 0.017453292519943;  // 1 degree
 
-// The stamp and N numbers of a line; nothing, with the problems noted, when any is bad.
-template <std::size_t N>
-std::optional<std::pair<std::int64_t, std::array<double, N>>> ParseLine(const std::filesystem::path& file,
-                                                                        const Line& line, const char* columns,
-                                                                        Problems& problems) {
-  if (line.tokens.size() != N + 1) {
-    problems.Add(file, line.number, line.tokens.front().column,
-                 std::to_string(line.tokens.size()) + " columns where " + std::to_string(N + 1) + " are expected (" +
-                     columns + ")");
-    return std::nullopt;
-  }
-  bool good = true;
-  const auto stamp = base::ParseSeconds(line.tokens[0].text);
-  if (!stamp) {
-    problems.Add(file, line.number, line.tokens[0].column,
-                 "'" + line.tokens[0].text + "' is not a time in seconds, 4e9 at most");
-    good = false;
-  }
-  std::array<double, N> numbers{};
-  for (std::size_t i = 0; i < N; ++i) {
-    const Token& token = line.tokens[i + 1];
-    if (const auto number = ParseNumber(token.text)) {
-      numbers[i] = *number;
-    } else {
-      problems.Add(file, line.number, token.column, "'" + token.text + "' is not a finite number");
-      good = false;
+// A line per entry: its stamp and its numbers.
+template <class Entries, class NumbersOf>
+void Write(const std::filesystem::path& file, const char* header, const Entries& entries, const NumbersOf& numbers_of) {
+  base::AtomicFile out(file);
+  out.Append(header);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const auto numbers = numbers_of(entries[i]);
+    const bool finite = std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
+    if (!finite || (i > 0 && entries[i].stamp_ns <= entries[i - 1].stamp_ns)) {
+      throw std::invalid_argument(
+          file.string() + ": entry " + std::to_string(i) +
+          (finite ? " is not later than the one before" : " holds a number that is not finite") +
+          "; nothing was written");
     }
+    out.Append(base::FormatSeconds(entries[i].stamp_ns) + FormatNumbers(numbers) + '\n');
   }
-  if (!good) return std::nullopt;
-  return std::pair{*stamp, numbers};
-}
-
-void RequireWritable(const std::filesystem::path& file, std::size_t index, bool finite, bool increasing) {
-  if (finite && increasing) return;
-  throw std::invalid_argument(file.string() + ": entry " + std::to_string(index) +
-                              (finite ? " is not later than the one before" : " holds a number that is not finite") +
-                              "; nothing was written");
+  out.Commit();
 }
 
 }  // namespace
@@ -62,10 +42,11 @@ void RequireWritable(const std::filesystem::path& file, std::size_t index, bool 
 Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading) {
   Problems problems;
   Trajectory trajectory;
-  for (const Line& line : ReadLines(file)) {
-    const auto parsed = ParseLine<7>(file, line, "timestamp tx ty tz qx qy qz qw", problems);
+  for (const Line& line : Lines(file)) {
+    std::array<double, 7> n{};
+    const auto parsed = ParseRow(file, line, "timestamp tx ty tz qx qy qz qw", n, problems);
     if (!parsed) continue;
-    const auto& [stamp, n] = *parsed;
+    const std::int64_t stamp = *parsed;
     StampedPose pose{stamp, {n[0], n[1], n[2]}, Eigen::Quaterniond(n[6], n[3], n[4], n[5])};
     const double norm = pose.q_WC.norm();
     if (std::abs(norm - 1) > kNormTolerance) {
@@ -97,60 +78,44 @@ Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading) {
 }
 
 void WriteTrajectory(const std::filesystem::path& file, const Trajectory& trajectory) {
-  base::AtomicFile out(file);
-  out.Append("# timestamp tx ty tz qx qy qz qw\n");
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    const StampedPose& pose = trajectory[i];
-    RequireWritable(file, i, pose.p_WC.allFinite() && pose.q_WC.coeffs().allFinite(),
-                    i == 0 || pose.stamp_ns > trajectory[i - 1].stamp_ns);
+  Write(file, "# timestamp tx ty tz qx qy qz qw\n", trajectory, [](const StampedPose& pose) {
+    const Eigen::Vector3d& p = pose.p_WC;
     const Eigen::Vector4d q = pose.q_WC.w() < 0 ? Eigen::Vector4d(-pose.q_WC.coeffs()) : pose.q_WC.coeffs();
-    std::string text = base::FormatSeconds(pose.stamp_ns);
-    for (const double value : {pose.p_WC.x(), pose.p_WC.y(), pose.p_WC.z(), q.x(), q.y(), q.z(), q.w()}) {
-      text += ' ' + base::Significant(value, 12);
-    }
-    out.Append(text + '\n');
-  }
-  out.Commit();
+    return std::array{p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
+  });
 }
 
 Velocities ReadVelocities(const std::filesystem::path& file) {
   Problems problems;
   Velocities velocities;
-  for (const Line& line : ReadLines(file)) {
-    const auto parsed = ParseLine<6>(file, line, "timestamp vx vy vz wx wy wz", problems);
-    if (!parsed) continue;
-    const auto& [stamp, n] = *parsed;
-    if (!velocities.empty() && stamp <= velocities.back().stamp_ns) {
+  for (const Line& line : Lines(file)) {
+    std::array<double, 6> n{};
+    const auto stamp = ParseRow(file, line, "timestamp vx vy vz wx wy wz", n, problems);
+    if (!stamp) continue;
+    if (!velocities.empty() && *stamp <= velocities.back().stamp_ns) {
       problems.Add(file, line.number, line.tokens[0].column,
                    "time " + line.tokens[0].text + " is not later than " +
                        base::FormatSeconds(velocities.back().stamp_ns) + ", the time above");
       continue;
     }
-    velocities.push_back({stamp, {n[0], n[1], n[2]}, {n[3], n[4], n[5]}});
+    velocities.push_back({*stamp, {n[0], n[1], n[2]}, {n[3], n[4], n[5]}});
   }
   problems.ThrowIfAny();
   if (velocities.empty()) throw InputError({file.string() + ": holds no velocity"});
   return velocities;
 }
 
+std::array<double, 6> NumbersOf(const StampedVelocity& entry) {
+  const Eigen::Vector3d &v = entry.v_WC, &w = entry.w_WC_C;
+  return {v.x(), v.y(), v.z(), w.x(), w.y(), w.z()};
+}
+
 void WriteVelocities(const std::filesystem::path& file, const Velocities& velocities) {
-  base::AtomicFile out(file);
-  out.Append("# timestamp vx vy vz wx wy wz\n");
-  for (std::size_t i = 0; i < velocities.size(); ++i) {
-    const StampedVelocity& entry = velocities[i];
-    RequireWritable(file, i, entry.v_WC.allFinite() && entry.w_WC_C.allFinite(),
-                    i == 0 || entry.stamp_ns > velocities[i - 1].stamp_ns);
-    std::string text = base::FormatSeconds(entry.stamp_ns);
-    for (int k = 0; k < 3; ++k) text += ' ' + base::Significant(entry.v_WC[k], 12);
-    for (int k = 0; k < 3; ++k) text += ' ' + base::Significant(entry.w_WC_C[k], 12);
-    out.Append(text + '\n');
-  }
-  out.Commit();
+  Write(file, "# timestamp vx vy vz wx wy wz\n", velocities, NumbersOf);
 }
 
 std::optional<StampedVelocity> VelocityAt(const Velocities& velocities, std::int64_t stamp_ns) {
-  const auto found = std::lower_bound(velocities.begin(), velocities.end(), stamp_ns,
-                                      [](const StampedVelocity& v, std::int64_t t) { return v.stamp_ns < t; });
+  const auto found = std::ranges::lower_bound(velocities, stamp_ns, {}, &StampedVelocity::stamp_ns);
   if (found == velocities.end() || found->stamp_ns != stamp_ns) return std::nullopt;
   return *found;
 }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -26,6 +27,9 @@ struct StampedVelocity {
   Eigen::Vector3d v_WC = Eigen::Vector3d::Zero();    // of the camera centre, in W [m/s]
   Eigen::Vector3d w_WC_C = Eigen::Vector3d::Zero();  // angular velocity of C against W, in C [rad/s]
 };
+
+// vx vy vz wx wy wz.
+std::array<double, 6> NumbersOf(const StampedVelocity& velocity);
 
 using Velocities = std::vector<StampedVelocity>;
 

@@ -2,35 +2,42 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 namespace evaluation {
-namespace {
 
-NisBand Finish(double nis, double dof) {
-  NisBand band;
-  band.nis = nis;
-  band.dof = dof;
-  if (!(dof > 0)) return band;
-  band.per_dof = nis / dof;
-  band.band = {Chi2Quantile(0.025, dof) / dof, Chi2Quantile(0.975, dof) / dof};
-  band.inside = band.per_dof >= band.band.low && band.per_dof <= band.band.high;
-  return band;
+NisSummary SummariseNis(const std::vector<FrameRecord>& frames) {
+  NisSummary summary;
+  double nis = 0, dof = 0;
+  std::size_t inside = 0;
+  std::vector<double> z;
+  std::map<int, Band> bands;
+  for (const FrameRecord& frame : frames) {
+    if (frame.nis_dof <= 0) continue;
+    if (!bands.contains(frame.nis_dof)) bands[frame.nis_dof] = Chi2MeanBand(frame.nis_dof, 1);
+    const Band& band = bands[frame.nis_dof];
+    inside += frame.nis >= band.low && frame.nis <= band.high;
+    nis += frame.nis;
+    dof += frame.nis_dof;
+    z.push_back((frame.nis - frame.nis_dof) / std::sqrt(frame.nis_dof));  // of equal spread, whatever that is
+  }
+  summary.frames = z.size();
+  if (z.empty()) return summary;
+  const Whiteness whiteness = TestWhiteness(z, 5);
+  summary.mean_per_dof = nis / dof;
+  summary.share_inside = static_cast<double>(inside) / static_cast<double>(z.size());
+  summary.whiteness_bound = whiteness.bound;
+  summary.autocorrelation = whiteness.autocorrelation;
+  return summary;
 }
-
-void RequireEqual(std::size_t nis, std::size_t dof) {
-  if (nis != dof) throw std::logic_error("NIS: a value without its degrees of freedom");
-}
-
-}  // namespace
 
 Whiteness TestWhiteness(const std::vector<double>& sequence, int lags) {
   Whiteness result;
-  result.count = sequence.size();
-  if (sequence.size() < 2) return result;
+  if (sequence.empty()) return result;
   const double n = static_cast<double>(sequence.size());
   result.bound = 1.96 / std::sqrt(n);
-  double mean = 0, squares = 0;
+  double mean = 0, squares = 0, ljung_box = 0;
   for (const double value : sequence) mean += value / n;
   for (const double value : sequence) {
     const double off = value - mean;
@@ -43,15 +50,14 @@ Whiteness TestWhiteness(const std::vector<double>& sequence, int lags) {
     for (std::size_t k = lag; k < sequence.size(); ++k) sum += (sequence[k] - mean) * (sequence[k - lag] - mean);
     const double rho = sum / squares;
     result.autocorrelation.push_back(rho);
-    result.ljung_box += n * (n + 2) * rho * rho / (n - static_cast<double>(lag));
+    ljung_box += n * (n + 2) * rho * rho / (n - static_cast<double>(lag));
   }
-  result.p_value = Chi2Survival(result.ljung_box, static_cast<double>(most));
+  result.p_value = Chi2Survival(ljung_box, static_cast<double>(most));
   return result;
 }
 
 WhitenessVerdict TestWhiteness(const std::vector<std::vector<double>>& sequences, int lags, double false_alarm) {
   WhitenessVerdict verdict;
-  verdict.false_alarm = false_alarm;
   std::vector<std::size_t> with_lag;
   for (const auto& sequence : sequences) {
     const Whiteness run = TestWhiteness(sequence, lags);
@@ -73,48 +79,22 @@ WhitenessVerdict TestWhiteness(const std::vector<std::vector<double>>& sequences
   return verdict;
 }
 
-NisBand NisOfRun(const std::vector<double>& nis, const std::vector<int>& dof) {
-  RequireEqual(nis.size(), dof.size());
-  double sum = 0, degrees = 0;
-  for (std::size_t k = 0; k < nis.size(); ++k) {
-    if (dof[k] <= 0) continue;
-    sum += nis[k];
-    degrees += dof[k];
-  }
-  return Finish(sum, degrees);
-}
-
-NisVerdict TestNis(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof,
-                   double false_alarm) {
-  RequireEqual(nis.size(), dof.size());
-  NisVerdict verdict;
-  verdict.false_alarm = false_alarm;
-  double sum = 0, degrees = 0;
-  for (std::size_t m = 0; m < nis.size(); ++m) {
-    const NisBand run = NisOfRun(nis[m], dof[m]);
-    if (!(run.dof > 0)) continue;
-    ++verdict.runs;
-    verdict.outside += !run.inside;
-    sum += run.nis;
-    degrees += run.dof;
-  }
-  if (degrees > 0) verdict.per_dof = sum / degrees;
-  verdict.most_allowed = BinomialLimit(verdict.runs, 0.05, false_alarm);
-  verdict.pass = verdict.outside <= verdict.most_allowed;
-  return verdict;
-}
-
 NisMeanVerdict TestNisMean(const std::vector<std::vector<double>>& nis, const std::vector<std::vector<int>>& dof,
                            double tolerance, double false_alarm) {
-  RequireEqual(nis.size(), dof.size());
+  if (nis.size() != dof.size()) throw std::logic_error("NIS: a run without its degrees of freedom");
   std::vector<double> means;
   for (std::size_t m = 0; m < nis.size(); ++m) {
-    const NisBand run = NisOfRun(nis[m], dof[m]);
-    if (run.dof > 0) means.push_back(run.per_dof);
+    if (nis[m].size() != dof[m].size()) throw std::logic_error("NIS: a value without its degrees of freedom");
+    double sum = 0, degrees = 0;
+    for (std::size_t k = 0; k < nis[m].size(); ++k) {
+      if (dof[m][k] <= 0) continue;
+      sum += nis[m][k];
+      degrees += dof[m][k];
+    }
+    if (degrees > 0) means.push_back(sum / degrees);
   }
   NisMeanVerdict verdict;
   verdict.runs = means.size();
-  verdict.false_alarm = false_alarm;
   for (const double mean : means) verdict.per_dof += mean / static_cast<double>(means.size());
   if (means.size() < 6) {  // no spread to speak of
     verdict.runs = 0;

@@ -2,25 +2,53 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace verification {
+
+// The largest value / bound of what is added; what is not a number is larger than all.
+struct Worst {
+  double value = 0, bound = 1, ratio = -1;
+  std::size_t count = 0;  // of all
+  // Whether it is the worst now.
+  bool Add(double v, double b) {
+    const double r = v == v ? v / b : std::numeric_limits<double>::infinity();
+    ++count;
+    if (!(r > ratio)) return false;
+    ratio = r, value = v, bound = b;
+    return true;
+  }
+};
 
 class Check {
  public:
   Check(std::string name, std::string unit) : name_(std::move(name)), unit_(std::move(unit)) {}
 
   // |difference| against what it may be at most (> 0); `where`: the file, frame or pixel. What is not a number fails.
-  void Add(double value, double bound, const std::string& where);
+  void Add(double value, double bound, const std::string& where) {
+    if (worst_.Add(value, bound)) where_ = where;
+    if (!(value <= bound)) failures_.push_back(where);
+  }
+  // The worst of what was added to it, if anything was.
+  void Add(const Worst& worst, const std::string& where) {
+    if (worst.count > 0) Add(worst.value, worst.bound, where);
+  }
   // Something that has no size, such as a missing file.
-  void Fail(const std::string& what);
+  void Fail(const std::string& what) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    ++worst_.count;
+    failures_.push_back(what);
+    if (where_.empty() || worst_.ratio < kInfinity) where_ = what;
+    worst_.ratio = worst_.value = kInfinity;
+  }
 
   const std::string& name() const { return name_; }
   const std::string& unit() const { return unit_; }
-  std::size_t count() const { return count_; }
-  double value() const { return value_; }  // where value / bound is largest
-  double bound() const { return bound_; }
+  std::size_t count() const { return worst_.count; }
+  double value() const { return worst_.value; }  // where value / bound is largest
+  double bound() const { return worst_.bound; }
   const std::string& where() const { return where_; }
   bool failed() const { return !failures_.empty(); }
   // The places that failed, in the order in which they were added.
@@ -28,8 +56,7 @@ class Check {
 
  private:
   std::string name_, unit_, where_;
-  std::size_t count_ = 0;
-  double value_ = 0, bound_ = 0, worst_ = -1;
+  Worst worst_{0, 0, -1, 0};
   std::vector<std::string> failures_;
 };
 

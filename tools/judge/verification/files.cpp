@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
@@ -27,43 +25,38 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string At(const fs::path& file, int line) { return file.filename().string() + ":" + std::to_string(line); }
-
 // `timestamp` and so many numbers, or a file name (numbers = 0), on each line. separator ',': stamps in nanoseconds.
 std::vector<Entry> ReadTable(const fs::path& file, std::size_t numbers, bool stamped, bool increasing, char separator,
                              Check& files) {
   std::vector<Entry> entries;
-  for (const evaluation::Line& line : evaluation::ReadLines(file, separator)) {
+  for (const evaluation::Line& line : evaluation::Lines(file, separator)) {
+    bool good = true;
+    const auto fail = [&](const std::string& what) {
+      files.Fail(file.filename().string() + ":" + std::to_string(line.number) + ": " + what);
+      good = false;
+    };
     const std::size_t first = stamped ? 1 : 0, words = first + std::max<std::size_t>(numbers, 1);
     if (line.tokens.size() != words) {
-      files.Fail(At(file, line.number) + ": " + std::to_string(line.tokens.size()) + " words, not " +
-                 std::to_string(words));
+      fail(std::to_string(line.tokens.size()) + " words, not " + std::to_string(words));
       continue;
     }
     Entry entry;
-    bool good = true;
     if (stamped) {
       const std::string& text = line.tokens[0].text;
-      std::optional<std::int64_t> stamp;
-      if (separator == ' ') {
-        stamp = base::ParseSeconds(text);
-      } else if (text.size() < 19 && text.find_first_not_of("0123456789") == std::string::npos && !text.empty()) {
-        stamp = std::stoll(text);
-      }
-      if (stamp) entry.stamp_ns = *stamp;
-      if (!stamp) files.Fail(At(file, line.number) + ": '" + text + "' is not a time stamp"), good = false;
+      auto stamp = separator == ' ' ? base::ParseSeconds(text) : base::ParseWhole(text);
+      if (separator != ' ' && (text.size() > 18 || text.starts_with('-'))) stamp.reset();
+      if (!stamp) fail("'" + text + "' is not a time stamp");
+      entry.stamp_ns = stamp.value_or(0);
     }
     if (numbers == 0) entry.file = line.tokens[1].text;
-    for (std::size_t i = 0; i < numbers; ++i) {
-      const auto number = evaluation::ParseNumber(line.tokens[first + i].text);
-      if (number) entry.numbers.push_back(*number);
-      if (!number)
-        files.Fail(At(file, line.number) + ": '" + line.tokens[first + i].text + "' is not a number"), good = false;
+    for (std::size_t i = first; i < first + numbers; ++i) {
+      const auto number = evaluation::ParseNumber(line.tokens[i].text);
+      if (!number) fail("'" + line.tokens[i].text + "' is not a number");
+      entry.numbers.push_back(number.value_or(0));
     }
-    if (good && increasing && !entries.empty() && entry.stamp_ns <= entries.back().stamp_ns) {
-      files.Fail(At(file, line.number) + ": time does not increase");
-    }
-    if (good) entries.push_back(std::move(entry));
+    if (!good) continue;
+    if (increasing && !entries.empty() && entry.stamp_ns <= entries.back().stamp_ns) fail("time does not increase");
+    entries.push_back(std::move(entry));
   }
   return entries;
 }
@@ -137,16 +130,6 @@ std::vector<std::string> ObjectNames(const fs::path& folder) {
   return names;
 }
 
-// Of the scenario in a manifest.
-void ReadScenario(const nlohmann::json& scenario, Sequence& s) {
-  const nlohmann::json sensor = scenario.value("sensor", nlohmann::json::object());
-  s.rolling_shutter = sensor.is_object() && sensor.value("rolling_shutter", 0.0) != 0;
-  const nlohmann::json trajectory = scenario.value("trajectory", nlohmann::json::object());
-  if (!trajectory.is_object() || trajectory.value("type", "") != "sampled") return;
-  s.roughness = {true, trajectory.value("position_noise", 0.0), trajectory.value("orientation_noise", 0.0),
-                 trajectory.value("knot_step", 1.0 / 240)};
-}
-
 // A manifest that says something else than the simulator's is a failure of `files`.
 void ReadManifest(const fs::path& file, Sequence& s, Check& files) {
   const std::string text = base::ReadFile(file).value_or("");
@@ -155,7 +138,13 @@ void ReadManifest(const fs::path& file, Sequence& s, Check& files) {
   const nlohmann::json manifest = nlohmann::json::parse(text, nullptr, false);
   if (!manifest.is_object() || !manifest.contains("scenario") || !manifest["scenario"].is_object()) return;
   try {
-    ReadScenario(manifest["scenario"], s);
+    const nlohmann::json& scenario = manifest["scenario"];
+    const nlohmann::json sensor = scenario.value("sensor", nlohmann::json::object());
+    s.rolling_shutter = sensor.is_object() && sensor.value("rolling_shutter", 0.0) != 0;
+    const nlohmann::json trajectory = scenario.value("trajectory", nlohmann::json::object());
+    if (!trajectory.is_object() || trajectory.value("type", "") != "sampled") return;
+    s.roughness = {true, trajectory.value("position_noise", 0.0), trajectory.value("orientation_noise", 0.0),
+                   trajectory.value("knot_step", 1.0 / 240)};
   } catch (const nlohmann::json::exception& error) {
     files.Fail(std::string("manifest.json: ") + error.what());
   }
@@ -202,22 +191,16 @@ cv::Mat ReadExr(const fs::path& path) {
 }
 
 cv::Mat ReadFlo(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  char magic[4] = {};
+  const std::string bytes = base::ReadFile(path).value_or("");
   std::int32_t size[2] = {0, 0};
-  stream.read(magic, 4);
-  stream.read(reinterpret_cast<char*>(size), 8);
-  if (!stream || std::memcmp(magic, "PIEH", 4) != 0 || size[0] < 1 || size[1] < 1 || size[0] > 1 << 15 ||
-      size[1] > 1 << 15) {
+  if (bytes.starts_with("PIEH") && bytes.size() >= 12) std::memcpy(size, bytes.data() + 4, 8);
+  if (size[0] < 1 || size[1] < 1 || size[0] > 1 << 15 || size[1] > 1 << 15) {
     throw std::runtime_error("is no .flo file");
   }
-  const std::uintmax_t length =
-      12 + std::uintmax_t{8} * static_cast<std::uintmax_t>(size[0]) * static_cast<std::uintmax_t>(size[1]);
-  if (fs::file_size(path) != length) throw std::runtime_error("is not as long as its size says");
+  const std::size_t length = std::size_t{8} * static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
+  if (bytes.size() != 12 + length) throw std::runtime_error("is not as long as its size says");
   cv::Mat flow(size[1], size[0], CV_32FC2);
-  stream.read(reinterpret_cast<char*>(flow.data), static_cast<std::streamsize>(flow.total() * flow.elemSize()));
-  if (!stream || stream.peek() != std::ifstream::traits_type::eof())
-    throw std::runtime_error("is not as long as its size says");
+  std::memcpy(flow.data, bytes.data() + 12, length);
   return flow;
 }
 
@@ -235,8 +218,7 @@ void RequirePossibleSize(const Sequence& s) {
 std::string Sequence::FileAt(const std::string& stream, std::size_t frame) const {
   const auto list = images.find(stream);
   if (list == images.end()) return "";
-  const auto at = std::lower_bound(list->second.begin(), list->second.end(), stamps[frame],
-                                   [](const Entry& entry, std::int64_t stamp) { return entry.stamp_ns < stamp; });
+  const auto at = std::ranges::lower_bound(list->second, stamps[frame], {}, &Entry::stamp_ns);
   return at != list->second.end() && at->stamp_ns == stamps[frame] ? at->file : "";
 }
 
@@ -267,7 +249,7 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
   for (Object& object : s.objects) PlacePoses(s, "objects/" + object.name, object.poses, object.has_pose, files);
   if (fs::exists(folder / "manifest.json")) ReadManifest(folder / "manifest.json", s, files);
   if (fs::exists(folder / "surfaces.txt")) {
-    for ([[maybe_unused]] const evaluation::Line& line : evaluation::ReadLines(folder / "surfaces.txt")) ++s.surfaces;
+    for ([[maybe_unused]] const evaluation::Line& line : evaluation::Lines(folder / "surfaces.txt")) ++s.surfaces;
   }
   if (fs::exists(folder / "landmarks.txt"))
     s.landmarks = ReadTable(folder / "landmarks.txt", 5, false, false, ' ', files);

@@ -1,11 +1,8 @@
-#include "tools/judge/verification/motion.h"
-
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "tools/base/text.h"
-#include "tools/judge/evaluation/text_file.h"
+#include "tools/judge/verification/comparisons.h"
 #include "vo/geometry/so3.h"
 
 namespace verification {
@@ -122,76 +119,66 @@ struct State {
   Eigen::Quaterniond q;  // of I, in W
 };
 
-// Dead reckoning from one frame's pose and velocity to the next frame's stamp. Readings are joined by straight lines
-// (instant) or held over their period (mean).
-class DeadReckoning {
- public:
-  explicit DeadReckoning(const Imu& imu) : imu_(imu) {}
+// The first reading behind a time.
+std::vector<Entry>::const_iterator After(const std::vector<Entry>& readings, std::int64_t t_ns) {
+  return std::ranges::upper_bound(readings, t_ns, {}, &Entry::stamp_ns);
+}
 
-  // Also: how far the readings change on the way: the largest difference of neighbours, and of neighbouring
-  // differences.
-  bool Run(std::int64_t from_ns, std::int64_t to_ns, State& x, double (&first)[2], double (&second)[2]) const {
-    const std::vector<Entry>& r = imu_.readings;
-    const auto after = [&](std::int64_t stamp) {
-      return static_cast<std::size_t>(
-          std::upper_bound(r.begin(), r.end(), stamp, [](std::int64_t t, const Entry& e) { return t < e.stamp_ns; }) -
-          r.begin());
-    };
-    const std::size_t begin = after(from_ns), end = after(to_ns);
-    if (begin < 2 || end + 1 >= r.size()) return false;
-    const auto period = static_cast<std::int64_t>(std::llround(1e9 / imu_.rate_hz));
-    std::vector<std::int64_t> times{from_ns};
-    for (std::size_t i = begin - 1; i <= end; ++i) {
-      const std::int64_t t = imu_.mean ? r[i].stamp_ns - period / 2 : r[i].stamp_ns;
-      if (t > from_ns && t < to_ns) times.push_back(t);
+// w, or f, at a time. Readings are joined by straight lines (instant) or held over their period (mean).
+Vector3d Reading(const Imu& imu, std::int64_t t_ns, std::size_t first) {
+  const auto next = After(imu.readings, t_ns);
+  const Entry &a = *(next - 1), &b = next == imu.readings.end() ? a : *next;
+  if (b.stamp_ns == a.stamp_ns) return Numbers(a, first);
+  const double part = static_cast<double>(t_ns - a.stamp_ns) / static_cast<double>(b.stamp_ns - a.stamp_ns);
+  if (imu.mean) return Numbers(part < 0.5 ? a : b, first);
+  return (1 - part) * Numbers(a, first) + part * Numbers(b, first);
+}
+
+void Advance(const Imu& imu, std::int64_t from_ns, std::int64_t to_ns, State& x) {
+  const double dt = static_cast<double>(to_ns - from_ns) * 1e-9;
+  const std::int64_t middle = from_ns + (to_ns - from_ns) / 2;
+  const std::int64_t begin = imu.mean ? middle : from_ns, end = imu.mean ? middle : to_ns;
+  const Vector3d w0 = Reading(imu, begin, 0), w1 = Reading(imu, end, 0);
+  const Vector3d f0 = Reading(imu, begin, 3), f1 = Reading(imu, end, 3);
+  const Eigen::Quaterniond q1 = (x.q * vo::Exp(dt / 2 * (w0 + w1) + dt * dt / 12 * w0.cross(w1))).normalized();
+  const Eigen::Quaterniond half = (x.q * vo::Exp(dt / 4 * (w0 + w1))).normalized();
+  const Vector3d g = imu.gravity_W;
+  const Vector3d a0 = x.q * f0 + g, am = half * (0.5 * (f0 + f1)) + g, a1 = q1 * f1 + g;
+  x.p += dt * x.v + dt * dt / 6 * (a0 + 2 * am);
+  x.v += dt / 6 * (a0 + 4 * am + a1);
+  x.q = q1;
+}
+
+// Dead reckoning from one frame's pose and velocity to the next frame's stamp. Also: how far the readings change on the
+// way: the largest difference of neighbours, and of neighbouring differences.
+bool Reckon(const Imu& imu, std::int64_t from_ns, std::int64_t to_ns, State& x, double (&first)[2],
+            double (&second)[2]) {
+  const std::vector<Entry>& r = imu.readings;
+  const auto begin = static_cast<std::size_t>(After(r, from_ns) - r.begin()),
+             end = static_cast<std::size_t>(After(r, to_ns) - r.begin());
+  if (begin < 2 || end + 1 >= r.size()) return false;
+  const auto period = static_cast<std::int64_t>(std::llround(1e9 / imu.rate_hz));
+  std::vector<std::int64_t> times{from_ns};
+  for (std::size_t i = begin - 1; i <= end; ++i) {
+    const std::int64_t t = imu.mean ? r[i].stamp_ns - period / 2 : r[i].stamp_ns;
+    if (t > from_ns && t < to_ns) times.push_back(t);
+  }
+  times.push_back(to_ns);
+  for (std::size_t i = 0; i + 1 < times.size(); ++i) Advance(imu, times[i], times[i + 1], x);
+  for (std::size_t i = begin - 1; i <= end; ++i) {
+    for (const std::size_t c : {std::size_t{0}, std::size_t{1}}) {
+      const Vector3d step = Numbers(r[i], 3 * c) - Numbers(r[i - 1], 3 * c);
+      first[c] = std::max(first[c], step.norm());
+      if (i >= 2) second[c] = std::max(second[c], (step - Numbers(r[i - 1], 3 * c) + Numbers(r[i - 2], 3 * c)).norm());
     }
-    times.push_back(to_ns);
-    for (std::size_t i = 0; i + 1 < times.size(); ++i) Advance(times[i], times[i + 1], x);
-    for (std::size_t i = begin - 1; i <= end; ++i) {
-      for (const std::size_t c : {std::size_t{0}, std::size_t{1}}) {
-        const Vector3d step = Numbers(r[i], 3 * c) - Numbers(r[i - 1], 3 * c);
-        first[c] = std::max(first[c], step.norm());
-        if (i >= 2)
-          second[c] = std::max(second[c], (step - Numbers(r[i - 1], 3 * c) + Numbers(r[i - 2], 3 * c)).norm());
-      }
-    }
-    return true;
   }
-
- private:
-  // w, or f, at a time.
-  Vector3d Reading(std::int64_t t_ns, std::size_t first) const {
-    const std::vector<Entry>& r = imu_.readings;
-    const auto next =
-        std::upper_bound(r.begin(), r.end(), t_ns, [](std::int64_t t, const Entry& e) { return t < e.stamp_ns; });
-    const Entry &a = *(next - 1), &b = next == r.end() ? a : *next;
-    if (b.stamp_ns == a.stamp_ns) return Numbers(a, first);
-    const double part = static_cast<double>(t_ns - a.stamp_ns) / static_cast<double>(b.stamp_ns - a.stamp_ns);
-    if (imu_.mean) return Numbers(part < 0.5 ? a : b, first);
-    return (1 - part) * Numbers(a, first) + part * Numbers(b, first);
-  }
-  void Advance(std::int64_t from_ns, std::int64_t to_ns, State& x) const {
-    const double dt = static_cast<double>(to_ns - from_ns) * 1e-9;
-    const std::int64_t middle = from_ns + (to_ns - from_ns) / 2;
-    const Vector3d w0 = Reading(imu_.mean ? middle : from_ns, 0), w1 = Reading(imu_.mean ? middle : to_ns, 0);
-    const Vector3d f0 = Reading(imu_.mean ? middle : from_ns, 3), f1 = Reading(imu_.mean ? middle : to_ns, 3);
-    const Eigen::Quaterniond q1 = (x.q * vo::Exp(dt / 2 * (w0 + w1) + dt * dt / 12 * w0.cross(w1))).normalized();
-    const Eigen::Quaterniond half = (x.q * vo::Exp(dt / 4 * (w0 + w1))).normalized();
-    const Vector3d g = imu_.gravity_W;
-    const Vector3d a0 = x.q * f0 + g, am = half * (0.5 * (f0 + f1)) + g, a1 = q1 * f1 + g;
-    x.p += dt * x.v + dt * dt / 6 * (a0 + 2 * am);
-    x.v += dt / 6 * (a0 + 4 * am + a1);
-    x.q = q1;
-  }
-
-  const Imu& imu_;
-};
+  return true;
+}
 
 void CheckImu(const Sequence& s, Check& velocity, Check& orientation) {
   const auto velocities = s.texts.find("velocity");
   if (!s.has_imu || velocities == s.texts.end()) return;
   const std::vector<Entry>& v = velocities->second;
-  const DeadReckoning reckoning(s.imu);
   const double period = 1 / s.imu.rate_hz;
   const auto state = [&](std::size_t frame, const Entry& line) {
     const vo::Pose& pose = s.poses[frame];
@@ -205,7 +192,7 @@ void CheckImu(const Sequence& s, Check& velocity, Check& orientation) {
     State x = state(steps[k].frame, v[k]);
     const State end = state(steps[k].frame + 1, v[k + 1]);
     double first[2] = {}, second[2] = {};
-    if (!reckoning.Run(v[k].stamp_ns, v[k + 1].stamp_ns, x, first, second)) continue;
+    if (!Reckon(s.imu, v[k].stamp_ns, v[k + 1].stamp_ns, x, first, second)) continue;
     // Straight lines between readings miss period^2 / 8 of the second derivative at most; a mean that is used for part
     // of its period, at either end, may be off by what neighbours differ by. The path's own roughness between its
     // readings.

@@ -1,10 +1,10 @@
-#include "tools/judge/verification/photometric.h"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "tools/judge/verification/comparisons.h"
 
 namespace verification {
 namespace {
@@ -159,17 +159,16 @@ double Motion(Frames& frames, std::size_t from, std::size_t to) {
 
 }  // namespace
 
-PhotometricChecks::PhotometricChecks(Frames& frames)
-    : frames_(frames),
-      checks_{{"pictures against neighbours: offset", "px"},
-              {"pictures: own stamp against the next ones", "of misfit"}} {}
+std::vector<Check> PhotometricChecks() {
+  return {{"pictures against neighbours: offset", "px"}, {"pictures: own stamp against the next ones", "of misfit"}};
+}
 
-void PhotometricChecks::Frame(std::size_t frame) {
-  if (frames_.sequence().rolling_shutter) return;  // depth is that of the stamp, rows are not
+void ComparePictures(Frames& frames, std::size_t frame, std::vector<Check>& checks) {
+  if (frames.sequence().rolling_shutter) return;  // depth is that of the stamp, rows are not
   constexpr std::size_t kEnough = 500;
   double offset = kNone, offset_bound = 1, order = kNone;
-  for (const std::size_t partner : Partners(frame, frames_.count())) {
-    const Pair pair = Match(frames_, frame, partner);
+  for (const std::size_t partner : Partners(frame, frames.count())) {
+    const Pair pair = Match(frames, frame, partner);
     if (pair.samples.size() < kEnough) continue;
     const Offset fit = Fit(pair.samples);
     // The mean over an exposure (at most the time between two frames) of a motion that bends by `bend` lies up to bend
@@ -180,17 +179,17 @@ void PhotometricChecks::Frame(std::size_t frame) {
     double best_other = kNone;
     for (const std::ptrdiff_t step : {-1, 1}) {
       const auto other = static_cast<std::ptrdiff_t>(frame) + step;
-      if (other < 0 || other >= static_cast<std::ptrdiff_t>(frames_.count())) continue;
+      if (other < 0 || other >= static_cast<std::ptrdiff_t>(frames.count())) continue;
       const auto candidate = static_cast<std::size_t>(other);
-      const cv::Mat picture = frames_.Smooth(candidate);
-      if (candidate == partner || picture.empty() || Motion(frames_, frame, candidate) < 0.5) continue;
+      const cv::Mat picture = frames.Smooth(candidate);
+      if (candidate == partner || picture.empty() || Motion(frames, frame, candidate) < 0.5) continue;
       best_other = std::min(best_other, Misfit(pair.samples, picture));
     }
-    if (best_other < kNone) order = std::min(order, Misfit(pair.samples, frames_.Smooth(frame)) / best_other);
+    if (best_other < kNone) order = std::min(order, Misfit(pair.samples, frames.Smooth(frame)) / best_other);
   }
-  const std::string where = "rgb " + frames_.Stamp(frame);
-  if (offset < kNone) checks_[0].Add(offset, offset_bound, where);
-  if (order < kNone) checks_[1].Add(order, 1, where);
+  const std::string where = "rgb " + frames.Stamp(frame);
+  if (offset < kNone) checks[0].Add(offset, offset_bound, where);
+  if (order < kNone) checks[1].Add(order, 1, where);
 }
 
 }  // namespace verification

@@ -1,8 +1,8 @@
-#include "tools/judge/verification/surfaces.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "tools/judge/verification/comparisons.h"
 
 namespace verification {
 namespace {
@@ -34,20 +34,6 @@ enum Row {
   kTracks,
   kObjects,  // those two only where there are objects
   kMask
-};
-
-// The worst of many pixels, strictly: value / bound.
-struct Worst {
-  double value = 0, bound = 1, ratio = -1;
-  std::size_t count = 0;
-  void Add(double v, double b) {
-    ++count;
-    const double r = v == v ? v / b : kNone;
-    if (r > ratio) ratio = r, value = v, bound = b;
-  }
-  void Into(Check& check, const std::string& where) const {
-    if (count > 0) check.Add(value, bound, where);
-  }
 };
 
 // The share of pixels beyond their bound.
@@ -129,48 +115,8 @@ std::optional<DepthMatch> MatchAt(const Frames& frames, const cv::Mat& there, co
                     std::abs(w[0] - w[1] - w[2] + w[3])};
 }
 
-}  // namespace
-
-SurfaceChecks::SurfaceChecks(Frames& frames)
-    : frames_(frames),
-      checks_{{"depth.png against depth_exr", "m"},
-              {"distance against depth", "m"},
-              {"normals: unit, towards the camera", ""},
-              {"normals against depth: share beyond", ""},
-              {"surface_id: where there is depth, in legend", ""},
-              {"depth in the neighbouring frames: median", "of bound"},
-              {"flow against depth and poses", "px"},
-              {"flow_backward against depth and poses", "px"},
-              {"flow there and back: share beyond", ""},
-              {"occlusion against depth: share beyond", ""},
-              {"occlusion_backward against depth: share", ""},
-              {"landmark_tracks against landmarks, poses", "px"},
-              {"landmark_tracks visible: share beyond", ""}} {
-  if (frames.sequence().objects.empty()) return;
-  checks_.emplace_back("flow on objects against their poses", "px");
-  checks_.emplace_back("moving: pixels that move as the others", "");
-}
-
-void SurfaceChecks::Frame(std::size_t frame) {
-  DepthPictures(frame);
-  Distance(frame);
-  Normals(frame);
-  SurfaceIds(frame);
-  DepthInNeighbours(frame);
-  if (frame + 1 < frames_.count()) {
-    Flow(frame, "flow", frame + 1, checks_[kFlow]);
-    FlowThereAndBack(frame);
-    Occlusion(frame, "occlusion", frame + 1, checks_[kOcclusion]);
-  }
-  if (frame > 0) {
-    Flow(frame, "flow_backward", frame - 1, checks_[kBackward]);
-    Occlusion(frame, "occlusion_backward", frame - 1, checks_[kOcclusionBackward]);
-  }
-  Landmarks(frame);
-}
-
-void SurfaceChecks::DepthPictures(std::size_t frame) {
-  const cv::Mat coded = frames_.Picture("depth", frame), exact = frames_.Picture("depth_exr", frame);
+void DepthPictures(Frames& frames, std::size_t frame, Check& check) {
+  const cv::Mat coded = frames.Picture("depth", frame), exact = frames.Picture("depth_exr", frame);
   if (coded.empty() || exact.empty()) return;
   Worst worst;
   for (std::size_t i = 0; i < exact.total(); ++i) {
@@ -178,27 +124,27 @@ void SurfaceChecks::DepthPictures(std::size_t frame) {
     const bool fits = Z * 5000 < 65535.5;
     worst.Add(std::abs(step - (fits ? Z : 0)), 1.0001e-4 + kFloat * Z);
   }
-  worst.Into(checks_[kDepth], "depth " + frames_.Stamp(frame));
+  check.Add(worst, "depth " + frames.Stamp(frame));
 }
 
-void SurfaceChecks::Distance(std::size_t frame) {
-  const cv::Mat distance = frames_.Picture("distance", frame), depth = frames_.Depth(frame);
+void Distance(Frames& frames, std::size_t frame, Check& check) {
+  const cv::Mat distance = frames.Picture("distance", frame), depth = frames.Depth(frame);
   if (distance.empty() || depth.empty()) return;
   Worst worst;
   for (std::size_t i = 0; i < depth.total(); ++i) {
-    const double Z = At(depth, i), length = frames_.rays()[i].norm(), D = At(distance, i);
+    const double Z = At(depth, i), length = frames.rays()[i].norm(), D = At(distance, i);
     if (Z == 0 && D * 5000 > 65535 * length) continue;  // beyond what 16 bits hold
-    worst.Add(std::abs(D - Z * length), length * frames_.DepthError(Z) + 2 * kFloat * D + 1e-12);
+    worst.Add(std::abs(D - Z * length), length * frames.DepthError(Z) + 2 * kFloat * D + 1e-12);
   }
-  worst.Into(checks_[kDistance], "distance " + frames_.Stamp(frame));
+  check.Add(worst, "distance " + frames.Stamp(frame));
 }
 
 // The plane through four neighbours, where they and the middle lie on one to what their depths may be wrong by.
-void SurfaceChecks::Normals(std::size_t frame) {
-  const cv::Mat normals = frames_.Picture("normals", frame), depth = frames_.Depth(frame);
+void Normals(Frames& frames, std::size_t frame, std::vector<Check>& checks) {
+  const cv::Mat normals = frames.Picture("normals", frame), depth = frames.Depth(frame);
   if (normals.empty() || depth.empty()) return;
   const auto width = static_cast<std::size_t>(depth.cols);
-  const std::vector<Vector3d>& rays = frames_.rays();
+  const std::vector<Vector3d>& rays = frames.rays();
   Worst facing;
   Share share;
   for (std::size_t i = 0; i < depth.total(); ++i) {
@@ -219,9 +165,9 @@ void SurfaceChecks::Normals(std::size_t frame) {
     }
     const Vector3d across = X[1] - X[0], down = X[3] - X[2], fit = down.cross(across).normalized();
     if (!whole || !fit.allFinite()) continue;
-    double error = std::abs(fit.dot(rays[i])) * frames_.DepthError(Z);  // of a point, off the plane
+    double error = std::abs(fit.dot(rays[i])) * frames.DepthError(Z);  // of a point, off the plane
     for (int k = 0; k < 4; ++k)
-      error = std::max(error, std::abs(fit.dot(rays[cross[k]])) * frames_.DepthError(X[k].z()));
+      error = std::max(error, std::abs(fit.dot(rays[cross[k]])) * frames.DepthError(X[k].z()));
     bool plane = true;
     for (const Vector3d& there : X) plane = plane && std::abs(fit.dot(there - Z * rays[i])) <= 2 * error;
     if (!plane) continue;
@@ -230,32 +176,33 @@ void SurfaceChecks::Normals(std::size_t frame) {
     if (bound > 0.3) continue;  // too coarse to say anything
     share.Add((n - (fit.dot(rays[i]) > 0 ? Vector3d(-fit) : fit)).norm() <= bound);
   }
-  facing.Into(checks_[kFacing], "normals " + frames_.Stamp(frame));
-  share.Into(checks_[kNormals], "normals " + frames_.Stamp(frame));
+  checks[kFacing].Add(facing, "normals " + frames.Stamp(frame));
+  share.Into(checks[kNormals], "normals " + frames.Stamp(frame));
 }
 
-void SurfaceChecks::SurfaceIds(std::size_t frame) {
-  const cv::Mat ids = frames_.Picture("surface_id", frame), depth = frames_.Depth(frame);
+void SurfaceIds(Frames& frames, std::size_t frame, Check& check) {
+  const cv::Mat ids = frames.Picture("surface_id", frame), depth = frames.Depth(frame);
   if (ids.empty() || depth.empty()) return;
+  const bool exact = !frames.Picture("depth_exr", frame).empty();
   std::size_t bad = 0;
   for (std::size_t i = 0; i < ids.total(); ++i) {
     const std::uint16_t id = ids.at<std::uint16_t>(static_cast<int>(i));
     if (At(depth, i) > 0 && id == 0) ++bad;
-    if (At(depth, i) == 0 && id != 0 && !frames_.Picture("depth_exr", frame).empty()) ++bad;
-    if (id > frames_.sequence().surfaces) ++bad;
+    if (At(depth, i) == 0 && id != 0 && exact) ++bad;
+    if (id > frames.sequence().surfaces) ++bad;
   }
-  checks_[kIds].Add(static_cast<double>(bad), 0.5, "surface_id " + frames_.Stamp(frame));
+  check.Add(static_cast<double>(bad), 0.5, "surface_id " + frames.Stamp(frame));
 }
 
 // A point that is seen here lies, in a neighbouring frame, on what is seen there: the inverse depth of a plane is
 // linear in the picture. Half of the samples must be within what rounding explains; the others may be hidden there.
-void SurfaceChecks::DepthInNeighbours(std::size_t frame) {
-  const cv::Mat here = frames_.Depth(frame);
-  if (here.empty() || !frames_.sequence().has_pose[frame]) return;
+void DepthInNeighbours(Frames& frames, std::size_t frame, Check& check) {
+  const cv::Mat here = frames.Depth(frame);
+  if (here.empty() || !frames.sequence().has_pose[frame]) return;
   double best[2] = {kNone, kNone};  // of the world, of objects
-  for (const std::size_t partner : Partners(frame, frames_.count())) {
-    const cv::Mat there = frames_.Depth(partner);
-    const PixelMotions motions(frames_, frame, partner);
+  for (const std::size_t partner : Partners(frame, frames.count())) {
+    const cv::Mat there = frames.Depth(partner);
+    const PixelMotions motions(frames, frame, partner);
     if (there.empty() || !motions.known()) continue;
     std::vector<double> ratios[2];
     for (int y = 1; y < here.rows; y += 3) {
@@ -266,12 +213,12 @@ void SurfaceChecks::DepthInNeighbours(std::size_t frame) {
         if (Z == 0) continue;
         double ratio = kNone;
         for (const Relative& move : motions.Of(i)) {
-          const Vector3d ray = move.R * frames_.rays()[i], X = Z * ray + move.t;
+          const Vector3d ray = move.R * frames.rays()[i], X = Z * ray + move.t;
           if (X.z() <= 0) continue;
-          const Vector2d pixel = frames_.sequence().camera.Project(X);
+          const Vector2d pixel = frames.sequence().camera.Project(X);
           const auto c = CornersAt(there, pixel.x(), pixel.y());
           if (!c) continue;
-          if (const auto match = MatchAt(frames_, there, *c, Z, ray, X))
+          if (const auto match = MatchAt(frames, there, *c, Z, ray, X))
             ratio = std::min(ratio, match->difference / (match->bound + match->bend / 4));
         }
         if (ratio < kNone) ratios[motions.IsMoving(i)].push_back(ratio);
@@ -286,22 +233,23 @@ void SurfaceChecks::DepthInNeighbours(std::size_t frame) {
       best[kind] = std::min(best[kind], ratios[kind][middle]);
     }
   }
-  if (best[0] < kNone) checks_[kNeighbours].Add(best[0], 1, "depth " + frames_.Stamp(frame));
-  if (best[1] < kNone) checks_[kNeighbours].Add(best[1], 1, "depth " + frames_.Stamp(frame) + ", objects");
+  if (best[0] < kNone) check.Add(best[0], 1, "depth " + frames.Stamp(frame));
+  if (best[1] < kNone) check.Add(best[1], 1, "depth " + frames.Stamp(frame) + ", objects");
 }
 
 // A pixel fits where one of the motions that it may have explains its flow. One that fits those of the others alone
 // tells that the mask is wrong.
-void SurfaceChecks::Flow(std::size_t frame, const std::string& stream, std::size_t to, Check& check) {
-  const cv::Mat flow = frames_.Picture(stream, frame), depth = frames_.Depth(frame);
-  const PixelMotions motions(frames_, frame, to);
+void Flow(Frames& frames, std::size_t frame, const std::string& stream, std::size_t to, Check& check,
+          std::vector<Check>& checks) {
+  const cv::Mat flow = frames.Picture(stream, frame), depth = frames.Depth(frame);
+  const PixelMotions motions(frames, frame, to);
   if (flow.empty() || depth.empty() || !motions.known()) return;
-  const vo::Camera& camera = frames_.sequence().camera;
+  const vo::Camera& camera = frames.sequence().camera;
   const auto width = static_cast<std::size_t>(depth.cols);
   Worst worst[2];
   std::size_t masked_wrong = 0, masked = 0;
   for (std::size_t i = 0; i < depth.total(); ++i) {
-    const double Z = At(depth, i), error = frames_.DepthError(Z);
+    const double Z = At(depth, i), error = frames.DepthError(Z);
     if (Z == 0) continue;
     const float* uv = reinterpret_cast<const float*>(flow.data) + 2 * i;
     const std::size_t x = i % width, y = i / width;
@@ -311,7 +259,7 @@ void SurfaceChecks::Flow(std::size_t frame, const std::string& stream, std::size
       Worst best;
       best.ratio = kNone, best.value = kNone;
       for (const Relative& move : moves) {
-        const Vector3d ray = move.R * frames_.rays()[i], X = Z * ray + move.t;
+        const Vector3d ray = move.R * frames.rays()[i], X = Z * ray + move.t;
         Worst here;
         if (std::abs(X.z()) <= 2 * error) return Worst{};  // on the other camera's edge
         if (!known || X.z() < 0) {
@@ -335,23 +283,23 @@ void SurfaceChecks::Flow(std::size_t frame, const std::string& stream, std::size
       worst[motions.IsMoving(i)].Add(best.value, best.bound);
     }
   }
-  const std::string where = stream + " " + frames_.Stamp(frame);
-  worst[0].Into(check, where);
-  if (frames_.sequence().objects.empty()) {
-    worst[1].Into(check, where + ": pixels of objects, of which there are none");
+  const std::string where = stream + " " + frames.Stamp(frame);
+  check.Add(worst[0], where);
+  if (frames.sequence().objects.empty()) {
+    check.Add(worst[1], where + ": pixels of objects, of which there are none");
     return;
   }
-  worst[1].Into(checks_[kObjects], where);
-  if (masked > 0 && !frames_.Picture("moving", frame).empty()) {
-    checks_[kMask].Add(static_cast<double>(masked_wrong), 0.5, "moving " + frames_.Stamp(frame) + " (" + stream + ")");
+  checks[kObjects].Add(worst[1], where);
+  if (masked > 0 && !frames.Picture("moving", frame).empty()) {
+    checks[kMask].Add(static_cast<double>(masked_wrong), 0.5, "moving " + frames.Stamp(frame) + " (" + stream + ")");
   }
 }
 
 // What moves by f to the next frame comes back by the flow there, bilinear between four pixels; that misses no more
 // than by what the pixels around depart from a plane, on one surface (by far) and between two.
-void SurfaceChecks::FlowThereAndBack(std::size_t frame) {
-  const cv::Mat forward = frames_.Picture("flow", frame), hidden = frames_.Picture("occlusion", frame),
-                backward = frames_.Picture("flow_backward", frame + 1);
+void FlowThereAndBack(Frames& frames, std::size_t frame, Check& check) {
+  const cv::Mat forward = frames.Picture("flow", frame), hidden = frames.Picture("occlusion", frame),
+                backward = frames.Picture("flow_backward", frame + 1);
   if (forward.empty() || hidden.empty() || backward.empty()) return;
   Share share;
   for (int y = 0; y < forward.rows; ++y) {
@@ -380,13 +328,13 @@ void SurfaceChecks::FlowThereAndBack(std::size_t frame) {
     }
   }
   // Strips of surfaces narrower than a pixel lie along edges: as long, together, as half of two sides of the picture.
-  share.Into(checks_[kThereAndBack], "flow " + frames_.Stamp(frame) + ", flow_backward " + frames_.Stamp(frame + 1),
+  share.Into(check, "flow " + frames.Stamp(frame) + ", flow_backward " + frames.Stamp(frame + 1),
              0.5 * (forward.cols + forward.rows) / static_cast<double>(forward.total()));
 }
 
-void SurfaceChecks::Occlusion(std::size_t frame, const std::string& stream, std::size_t to, Check& check) {
-  const cv::Mat hidden = frames_.Picture(stream, frame), here = frames_.Depth(frame), there = frames_.Depth(to);
-  const PixelMotions motions(frames_, frame, to);
+void Occlusion(Frames& frames, std::size_t frame, const std::string& stream, std::size_t to, Check& check) {
+  const cv::Mat hidden = frames.Picture(stream, frame), here = frames.Depth(frame), there = frames.Depth(to);
+  const PixelMotions motions(frames, frame, to);
   if (hidden.empty() || here.empty() || there.empty() || !motions.known()) return;
   Share share;
   for (std::size_t i = 0; i < here.total(); ++i) {
@@ -395,15 +343,15 @@ void SurfaceChecks::Occlusion(std::size_t frame, const std::string& stream, std:
     if (Z == 0) continue;
     // Whether the mask of what is hidden is right, if the pixel moves so; none: at the picture's border.
     const auto is_right = [&](const Relative& move) -> std::optional<bool> {
-      const Vector3d ray = move.R * frames_.rays()[i], X = Z * ray + move.t;
-      const Vector2d pixel = X.z() > 0 ? frames_.sequence().camera.Project(X) : Vector2d(-9, -9);
-      if (!frames_.sequence().camera.IsUsable(pixel, -0.001)) return is_hidden;
-      if (!frames_.sequence().camera.IsUsable(pixel, 0.001)) return std::nullopt;
-      const double error = 2 * frames_.DepthError(X.z()) + 1e-5 * X.z();
+      const Vector3d ray = move.R * frames.rays()[i], X = Z * ray + move.t;
+      const Vector2d pixel = X.z() > 0 ? frames.sequence().camera.Project(X) : Vector2d(-9, -9);
+      if (!frames.sequence().camera.IsUsable(pixel, -0.001)) return is_hidden;
+      if (!frames.sequence().camera.IsUsable(pixel, 0.001)) return std::nullopt;
+      const double error = 2 * frames.DepthError(X.z()) + 1e-5 * X.z();
       if (!is_hidden) return IsSeen(RangeAround(there, pixel.x(), pixel.y(), 1), X.z(), error);
       // It is not hidden where just this point is seen, on an even surface.
       const auto c = CornersAt(there, pixel.x(), pixel.y());
-      const auto match = c ? MatchAt(frames_, there, *c, Z, ray, X) : std::nullopt;
+      const auto match = c ? MatchAt(frames, there, *c, Z, ray, X) : std::nullopt;
       return !match || match->bend > 2 * match->bound || match->difference > match->bound;
     };
     std::optional<bool> right;
@@ -413,16 +361,14 @@ void SurfaceChecks::Occlusion(std::size_t frame, const std::string& stream, std:
     }
     if (right) share.Add(*right);
   }
-  share.Into(check, stream + " " + frames_.Stamp(frame));
+  share.Into(check, stream + " " + frames.Stamp(frame));
 }
 
-void SurfaceChecks::Landmarks(std::size_t frame) {
-  const Sequence& s = frames_.sequence();
-  const auto by_stamp = [](const Entry& a, const Entry& b) { return a.stamp_ns < b.stamp_ns; };
-  const auto [first, last] =
-      std::equal_range(s.tracks.begin(), s.tracks.end(), Entry{s.stamps[frame], "", {}}, by_stamp);
+void Landmarks(Frames& frames, std::size_t frame, std::vector<Check>& checks) {
+  const Sequence& s = frames.sequence();
+  const auto [first, last] = std::ranges::equal_range(s.tracks, s.stamps[frame], {}, &Entry::stamp_ns);
   if (first == last || !s.has_pose[frame]) return;
-  const cv::Mat depth = frames_.Depth(frame);
+  const cv::Mat depth = frames.Depth(frame);
   Worst worst;
   std::size_t odd = 0;
   for (auto track = first; track != last; ++track) {
@@ -437,14 +383,55 @@ void SurfaceChecks::Landmarks(std::size_t frame) {
     worst.Add((s.camera.Project(X) - Vector2d(t[1], t[2])).norm(), 2e-9 + 4e-12 * s.camera.fx / X.z());
     if (depth.empty()) continue;
     const DepthRange near = RangeAround(depth, t[1], t[2], 1);
-    const double error = 2 * frames_.DepthError(X.z()) + 1e-5 * X.z();
+    const double error = 2 * frames.DepthError(X.z()) + 1e-5 * X.z();
     odd += t[3] != 0 ? !IsSeen(near, X.z(), error) : !(near.min < X.z());
   }
-  worst.Into(checks_[kLandmarks], "landmark_tracks.txt " + frames_.Stamp(frame));
+  checks[kLandmarks].Add(worst, "landmark_tracks.txt " + frames.Stamp(frame));
   const auto count = static_cast<double>(last - first);
   if (!depth.empty())
-    checks_[kTracks].Add(static_cast<double>(odd) / count, kEdges + 3 / count,
-                         "landmark_tracks.txt " + frames_.Stamp(frame));
+    checks[kTracks].Add(static_cast<double>(odd) / count, kEdges + 3 / count,
+                        "landmark_tracks.txt " + frames.Stamp(frame));
+}
+
+}  // namespace
+
+std::vector<Check> SurfaceChecks(const Sequence& sequence) {
+  std::vector<Check> checks = {{"depth.png against depth_exr", "m"},
+                               {"distance against depth", "m"},
+                               {"normals: unit, towards the camera", ""},
+                               {"normals against depth: share beyond", ""},
+                               {"surface_id: where there is depth, in legend", ""},
+                               {"depth in the neighbouring frames: median", "of bound"},
+                               {"flow against depth and poses", "px"},
+                               {"flow_backward against depth and poses", "px"},
+                               {"flow there and back: share beyond", ""},
+                               {"occlusion against depth: share beyond", ""},
+                               {"occlusion_backward against depth: share", ""},
+                               {"landmark_tracks against landmarks, poses", "px"},
+                               {"landmark_tracks visible: share beyond", ""}};
+  if (!sequence.objects.empty()) {
+    checks.emplace_back("flow on objects against their poses", "px");
+    checks.emplace_back("moving: pixels that move as the others", "");
+  }
+  return checks;
+}
+
+void CompareSurfaces(Frames& frames, std::size_t frame, std::vector<Check>& checks) {
+  DepthPictures(frames, frame, checks[kDepth]);
+  Distance(frames, frame, checks[kDistance]);
+  Normals(frames, frame, checks);
+  SurfaceIds(frames, frame, checks[kIds]);
+  DepthInNeighbours(frames, frame, checks[kNeighbours]);
+  if (frame + 1 < frames.count()) {
+    Flow(frames, frame, "flow", frame + 1, checks[kFlow], checks);
+    FlowThereAndBack(frames, frame, checks[kThereAndBack]);
+    Occlusion(frames, frame, "occlusion", frame + 1, checks[kOcclusion]);
+  }
+  if (frame > 0) {
+    Flow(frames, frame, "flow_backward", frame - 1, checks[kBackward], checks);
+    Occlusion(frames, frame, "occlusion_backward", frame - 1, checks[kOcclusionBackward]);
+  }
+  Landmarks(frames, frame, checks);
 }
 
 }  // namespace verification

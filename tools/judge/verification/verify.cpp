@@ -1,8 +1,6 @@
 #include "tools/judge/verification/verify.h"
 
-#include "tools/judge/verification/motion.h"
-#include "tools/judge/verification/photometric.h"
-#include "tools/judge/verification/surfaces.h"
+#include "tools/judge/verification/comparisons.h"
 
 namespace verification {
 
@@ -11,16 +9,15 @@ std::vector<Check> Verify(const std::filesystem::path& folder,
   Check files("files: present, readable, of one size", ""), stamps("stamps: increasing, the same in all lists", "");
   const Sequence sequence = ReadSequence(folder, files, stamps);
   Frames frames(sequence, files);
-  PhotometricChecks pictures(frames);
-  SurfaceChecks surfaces(frames);
+  std::vector<Check> pictures = PhotometricChecks(), surfaces = SurfaceChecks(sequence);
   for (std::size_t frame = 0; frame < frames.count(); ++frame) {
     for (const auto& [stream, list] : sequence.images) frames.Picture(stream, frame);
-    pictures.Frame(frame);
-    surfaces.Frame(frame);
+    ComparePictures(frames, frame, pictures);
+    CompareSurfaces(frames, frame, surfaces);
     if (progress) progress(frame + 1, frames.count());
   }
   std::vector<Check> checks = {files, stamps};
-  for (const auto& part : {CheckMotion(sequence), pictures.checks(), surfaces.checks()}) {
+  for (const auto& part : {CheckMotion(sequence), pictures, surfaces}) {
     checks.insert(checks.end(), part.begin(), part.end());
   }
   return checks;

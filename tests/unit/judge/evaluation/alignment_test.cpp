@@ -1,10 +1,8 @@
-#include "tools/judge/evaluation/alignment.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/unit/judge/evaluation/random.h"
 #include "tools/judge/evaluation/ate.h"
-#include "tools/judge/evaluation/baseline.h"
+#include "tools/judge/evaluation/summary.h"
 
 namespace evaluation {
 namespace {
@@ -84,7 +82,7 @@ TEST(Align, DoesNotMirror) {
 TEST(Align, SaysWhatIsNotDetermined) {
   TestRandom random(8);
   const Trajectory truth = random.Walk(50);
-  const auto standing = MatchedTrajectories{ConstantPose(StampsOf(truth), truth[10]), truth};
+  const auto standing = MatchedTrajectories{ConstantVelocity(StampsOf(truth), truth[10]), truth};
   const Ate still = ComputeAte(standing, Alignment::sim3);
   EXPECT_FALSE(still.similarity.scale_determined);
   EXPECT_FALSE(still.similarity.rotation_determined);
@@ -109,7 +107,7 @@ TEST(Align, RoundingFarFromTheOriginIsNoMotion) {
   TestRandom random(9);
   const Trajectory truth = random.Walk(50);
   for (const double away_m : {0.0, 1e5}) {
-    Trajectory estimate = ConstantPose(StampsOf(truth), truth[10]);
+    Trajectory estimate = ConstantVelocity(StampsOf(truth), truth[10]);
     for (std::size_t i = 0; i < estimate.size(); ++i) {
       estimate[i].p_WC = Eigen::Vector3d::Constant(away_m) + (i % 2 == 0 ? 1 : -1) * Eigen::Vector3d::Constant(3e-11);
     }

@@ -1,9 +1,9 @@
-#include "tools/judge/evaluation/bound_ratio.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
+
+#include "tools/judge/evaluation/cramer_rao.h"
 
 namespace evaluation {
 namespace {

@@ -8,8 +8,8 @@
 #include <Eigen/LU>
 
 #include "tests/unit/judge/evaluation/random.h"
-#include "tools/judge/evaluation/alignment.h"
 #include "tools/judge/evaluation/association.h"
+#include "tools/judge/evaluation/ate.h"
 
 namespace evaluation {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "tests/unit/judge/evaluation/point_world.h"
 #include "tools/judge/evaluation/anees_test.h"
-#include "tools/judge/evaluation/bound_ratio.h"
 #include "tools/judge/evaluation/mixture_scores.h"
 #include "tools/judge/evaluation/text_file.h"
 
@@ -109,9 +108,9 @@ PointWorldProblem InterruptedWorld() {
   return problem;
 }
 
-TEST(FilteringBound, IsTheInverseOfTheWholeInformation) {
+TEST(LinearisedBound, IsTheInverseOfTheWholeInformation) {
   PointWorldProblem problem = InterruptedWorld();
-  const auto bound = FilteringBound(problem);
+  const auto bound = SimulateLinearised(problem, 0).bound;
   ASSERT_EQ(bound.size(), 9u);
   double worst = 0;
   for (std::size_t k = 0; k < 9; ++k) worst = std::max(worst, Difference(bound[k], BatchBound(problem, k)));
@@ -125,7 +124,7 @@ TEST(FilteringBound, IsTheInverseOfTheWholeInformation) {
 // A camera that stands still, its orientation known, its velocity unknown but constant; one point straight ahead with
 // known inverse depth. The x of the view at t is x_0 - rho v t + noise: a regression with known intercept or one known
 // with the noise of the first view.
-TEST(FilteringBound, OfAConstantVelocityIsALinearRegression) {
+TEST(LinearisedBound, OfAConstantVelocityIsALinearRegression) {
   const double rho = 0.25, sigma = 2e-3, P0 = 1e-4, V0 = 0.04;
   for (const double anchor_sigma : {0.0, 3e-3}) {
     PointWorldProblem problem;
@@ -144,7 +143,7 @@ TEST(FilteringBound, OfAConstantVelocityIsALinearRegression) {
       if (k > 0) landmark.frames.push_back(k);
     }
     problem.landmarks = {landmark};
-    const auto bound = FilteringBound(problem);
+    const auto bound = SimulateLinearised(problem, 0).bound;
     for (std::size_t k = 1; k < 50; ++k) {
       const double t = static_cast<double>(k) * 0.033333333;
       tt += rho * rho * t * t / (sigma * sigma);
@@ -160,24 +159,24 @@ TEST(FilteringBound, OfAConstantVelocityIsALinearRegression) {
 }
 
 // Without points the bound is the motion model's: P = F P F' + Q, in closed form for constant orientation.
-TEST(FilteringBound, WithoutPointsIsDeadReckoning) {
+TEST(LinearisedBound, WithoutPointsIsDeadReckoning) {
   PointWorldProblem problem;
   problem.start_covariance(6, 6) = 0.04;
   for (std::size_t k = 0; k < 31; ++k)
     problem.truth.push_back(
         {static_cast<std::int64_t>(k) * 100'000'000, Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity()});
-  const Matrix12d P = FilteringBound(problem).back();
+  const Matrix12d P = SimulateLinearised(problem, 0).bound.back();
   EXPECT_NEAR(P(0, 0), 6.25 * 27 / 3 + 0.04 * 9, 1e-9);  // 3 s
   EXPECT_NEAR(P(0, 6), 6.25 * 9 / 2 + 0.04 * 3, 1e-9);
   EXPECT_NEAR(P(6, 6), 6.25 * 3 + 0.04, 1e-9);
   EXPECT_NEAR(P(3, 3), 27.0 / 3, 1e-9);
 }
 
-TEST(FilteringBound, RefusesWhatCannotBe) {
+TEST(LinearisedBound, RefusesWhatCannotBe) {
   TestRandom random(84);
   PointWorldProblem problem = MakePointWorld(random, 5, 3);
   problem.sigma = 0;
-  EXPECT_THROW(FilteringBound(problem), InputError);
+  EXPECT_THROW(SimulateLinearised(problem, 0).bound, InputError);
 }
 
 // The linearised world's exact filter is honest, at every block: mean NEES of 400 runs at three frames against a band
@@ -241,11 +240,11 @@ TEST(SimulateLinearised, HasIndependentErrorsInUnitsOfTheBound) {
 }
 
 // A hundred features for ten seconds. The time is written into the test's record, not judged.
-TEST(FilteringBound, OfAHundredFeaturesAndTenSeconds) {
+TEST(LinearisedBound, OfAHundredFeaturesAndTenSeconds) {
   TestRandom random(86);
   const PointWorldProblem problem = MakePointWorld(random, 300, 100, 0.3);
   const auto start = std::chrono::steady_clock::now();
-  const auto bound = FilteringBound(problem);
+  const auto bound = SimulateLinearised(problem, 0).bound;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   RecordProperty("seconds", std::to_string(seconds));
   for (const Matrix12d& P : bound) {

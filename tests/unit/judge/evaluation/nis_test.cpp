@@ -1,8 +1,7 @@
-#include "tools/judge/evaluation/nis.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/unit/judge/evaluation/random.h"
+#include "tools/judge/evaluation/whiteness.h"
 
 namespace evaluation {
 namespace {

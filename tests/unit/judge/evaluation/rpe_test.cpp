@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/judge/evaluation/random.h"
-#include "tools/judge/evaluation/alignment.h"
-#include "tools/judge/evaluation/compat/tum_rpe.h"
+#include "tools/judge/evaluation/ate.h"
+#include "tools/judge/evaluation/compat/tum.h"
 
 namespace evaluation {
 namespace {

@@ -1,10 +1,9 @@
-#include "tools/judge/evaluation/square_root.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/unit/judge/evaluation/random.h"
+#include "tools/judge/evaluation/draws.h"
 
 namespace evaluation {
 namespace {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/judge/evaluation/random.h"
-#include "tools/judge/evaluation/baseline.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace evaluation {
@@ -156,7 +155,7 @@ TEST(Baseline, TheStartIsATenthOfASecond) {
   path.resize(2);
   EXPECT_NEAR(StartVelocity(path).v_WC.x(), 40 * 40 / 0.04, 1e-6) << "all there is";
   EXPECT_EQ(StartVelocity({}).v_WC.norm(), 0);
-  const Trajectory still = ConstantPose({1, 2}, path[1]);
+  const Trajectory still = ConstantVelocity({1, 2}, path[1]);
   EXPECT_EQ(still[1].stamp_ns, 2);
   EXPECT_EQ(still[1].p_WC, path[1].p_WC);
 }

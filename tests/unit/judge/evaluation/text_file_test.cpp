@@ -38,11 +38,11 @@ TEST(ParseNumber, TakesFiniteNumbersOnly) {
 
 std::vector<Line> AllLines(const std::filesystem::path& file, char separator = ' ') {
   std::vector<Line> all;
-  for (const Line& line : ReadLines(file, separator)) all.push_back(line);
+  for (const Line& line : Lines(file, separator)) all.push_back(line);
   return all;
 }
 
-TEST(ReadLines, SplitsAndCountsColumns) {
+TEST(Lines, SplitsAndCountsColumns) {
   const TemporaryFolder folder;
   const auto lines = AllLines(folder.Write("a.txt", "# comment\n\n  1 \t two\r\n   # indented comment\n3\n"));
   ASSERT_EQ(lines.size(), 2u);
@@ -57,7 +57,7 @@ TEST(ReadLines, SplitsAndCountsColumns) {
 }
 
 // A line's memory serves the next one: nothing of a longer one may be left.
-TEST(ReadLines, KeepsNothingOfTheLineBefore) {
+TEST(Lines, KeepsNothingOfTheLineBefore) {
   const TemporaryFolder folder;
   const auto lines = AllLines(folder.Write("a.txt", "one two three\nfour\n\nfive six\n"));
   ASSERT_EQ(lines.size(), 3u);
@@ -69,10 +69,10 @@ TEST(ReadLines, KeepsNothingOfTheLineBefore) {
   EXPECT_TRUE(AllLines(folder.Write("nothing.txt", "# no line\n")).empty());
 }
 
-TEST(ReadLines, NamesWhatCannotBeRead) {
+TEST(Lines, NamesWhatCannotBeRead) {
   const TemporaryFolder folder;
-  EXPECT_THROW(ReadLines(folder.path() / "absent"), InputError);
-  EXPECT_THROW(ReadLines(folder.path()), InputError);
+  EXPECT_THROW(Lines(folder.path() / "absent"), InputError);
+  EXPECT_THROW(Lines(folder.path()), InputError);
 }
 
 TEST(Problems, AreToldInTheirOrderWithTheirPlace) {

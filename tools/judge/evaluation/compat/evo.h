@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/judge/evaluation/alignment.h"
-#include "tools/judge/evaluation/statistics.h"
+#include "tools/judge/evaluation/ate.h"
 
 namespace evaluation::compat {
 

@@ -1,14 +1,15 @@
-// Shared parts of the reference tools' reproductions: numbers as text, named values, shifted trajectories.
+// Statistics of the reference tools' errors as text, and shifted trajectories.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/base/text.h"
 #include "tools/judge/evaluation/statistics.h"
-#include "tools/judge/evaluation/text_file.h"
 #include "tools/judge/evaluation/trajectory.h"
 
 namespace evaluation::compat {
@@ -24,22 +25,28 @@ inline std::string Significant(double value, int digits) {
   return text;
 }
 
-struct NamedValue {
+// Statistics by their names in the tools' output.
+inline std::array<std::pair<std::string, double>, 6> Parts(const Statistics& s) {
+  return {{{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"std", s.std}, {"min", s.min}, {"max", s.max}}};
+}
+
+// Errors of one kind, by the tool's own name; those of sub-trajectories begin with their length, "8.00m_pos".
+struct NamedStatistics {
   std::string name;
-  double value = 0;
+  Statistics statistics;
   std::string unit;
 };
 
-// "NAME_rmse", "NAME_mean", ... of statistics in `unit`.
-inline void Append(const std::string& name, const Statistics& s, const std::string& unit,
-                   std::vector<NamedValue>& values) {
-  values.insert(values.end(), {{name + "_rmse", s.rmse, unit},
-                               {name + "_mean", s.mean, unit},
-                               {name + "_median", s.median, unit},
-                               {name + "_std", s.std, unit},
-                               {name + "_min", s.min, unit},
-                               {name + "_max", s.max, unit},
-                               {name + "_samples", static_cast<double>(s.count), "1"}});
+// "trans_rmse = 0.0123456789012 m", a line each.
+inline std::string Print(const std::vector<NamedStatistics>& errors) {
+  std::string text;
+  for (const auto& [name, statistics, unit] : errors) {
+    for (const auto& [part, value] : Parts(statistics)) {
+      text += name + "_" + part + " = " + base::Significant(value, 12) + " " + unit + "\n";
+    }
+    text += name + "_samples = " + std::to_string(statistics.count) + " 1\n";
+  }
+  return text;
 }
 
 // Stamps later by offset, positions times scale.

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "tools/judge/evaluation/compat/subtrajectory.h"
+#include "tools/judge/evaluation/ate.h"
+#include "tools/judge/evaluation/rpe.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace evaluation::compat {
@@ -78,8 +79,8 @@ Statistics Summarised(const std::vector<double>& values) {
   return s;
 }
 
-OvSegment Segment(const std::vector<Pose>& estimate, const std::vector<Pose>& truth, const std::vector<double>& way,
-                  double length_m) {
+void AddSegment(const std::vector<Pose>& estimate, const std::vector<Pose>& truth, const std::vector<double>& way,
+                double length_m, std::vector<NamedStatistics>& errors) {
   std::vector<double> ori, pos;
   for (const auto& [i, j] : PairsByLength(way, length_m, kSegmentTolerance_m)) {
     const auto motion = [](const Pose& from, const Pose& to) {
@@ -90,13 +91,15 @@ OvSegment Segment(const std::vector<Pose>& estimate, const std::vector<Pose>& tr
     ori.push_back(kDegrees * AngleOf(world * B.R.transpose() * A.R * world.transpose()));
     pos.push_back((world * (B.R.transpose() * (A.p - B.p))).norm());
   }
-  return {length_m, Summarised(ori), Summarised(pos)};
+  const std::string over = Fixed(length_m, 2) + "m_";
+  errors.push_back({over + "ori", Summarised(ori), "deg"});
+  errors.push_back({over + "pos", Summarised(pos), "m"});
 }
 
 }  // namespace
 
-OvResult ComputeOv(const Trajectory& estimate, const Trajectory& truth, OvAlignment alignment,
-                   std::vector<double> segments_m) {
+std::vector<NamedStatistics> ComputeOv(const Trajectory& estimate, const Trajectory& truth, OvAlignment alignment,
+                                       std::vector<double> segments_m) {
   const MatchedTrajectories matched = Associate(estimate, truth);
   const Similarity similarity = AlignmentOf(matched, alignment);
   const Eigen::Quaterniond turn = Eigen::Quaterniond(similarity.R).normalized();
@@ -110,25 +113,11 @@ OvResult ComputeOv(const Trajectory& estimate, const Trajectory& truth, OvAlignm
     ori.push_back(kDegrees * AngleOf(aligned[i].R.transpose() * exact[i].R));
     pos.push_back((exact[i].p - aligned[i].p).norm());
   }
-  OvResult result;
-  result.ori = Summarised(ori);
-  result.pos = Summarised(pos);
+  std::vector<NamedStatistics> errors = {{"ori", Summarised(ori), "deg"}, {"pos", Summarised(pos), "m"}};
   std::sort(segments_m.begin(), segments_m.end());
   const std::vector<double> way = CumulativePathLength(matched.truth);
-  for (const double length : segments_m) result.segments.push_back(Segment(aligned, exact, way, length));
-  return result;
-}
-
-std::vector<NamedValue> Values(const OvResult& result) {
-  std::vector<NamedValue> values;
-  Append("ori", result.ori, "deg", values);
-  Append("pos", result.pos, "m", values);
-  for (const OvSegment& segment : result.segments) {
-    const std::string over = Fixed(segment.length_m, 2) + "m_";
-    Append(over + "ori", segment.ori, "deg", values);
-    Append(over + "pos", segment.pos, "m", values);
-  }
-  return values;
+  for (const double length : segments_m) AddSegment(aligned, exact, way, length, errors);
+  return errors;
 }
 
 }  // namespace evaluation::compat

@@ -6,24 +6,18 @@
 
 #include <vector>
 
-#include "tools/judge/evaluation/alignment.h"
+#include "tools/judge/evaluation/ate.h"
 #include "tools/judge/evaluation/compat/format.h"
-#include "tools/judge/evaluation/statistics.h"
 
 namespace evaluation::compat {
 
 enum class RpgAlignment { sim3, se3, posyaw, none };  // align_type, over all frames
 
-struct RpgRelativeErrors {
-  double length_m = 0;                                      // of the sub-trajectories
-  Statistics trans;                                         // [m]
-  Statistics trans_perc, rot, rot_deg_per_m, yaw, gravity;  // [%], [deg], [deg/m], [deg], [deg]
-};
-
 struct RpgResult {
-  Similarity similarity;                    // that was applied to the estimate
-  Statistics trans, rot;                    // [m], [deg]
-  std::vector<RpgRelativeErrors> relative;  // of lengths with at least two sub-trajectories
+  Similarity similarity;  // that was applied to the estimate
+  // trans and rot, then trans, trans_perc, rot, rot_deg_per_m, yaw and gravity of each length that has at least two
+  // sub-trajectories
+  std::vector<NamedStatistics> errors;
 };
 
 // Sub-trajectories of 10, 20, 30, 40 and 50 % of the length of the truth through the associated poses, cut to
@@ -31,8 +25,5 @@ struct RpgResult {
 // Throws InputError where estimate and truth do not overlap in time.
 RpgResult ComputeRpg(const Trajectory& estimate, const Trajectory& truth, RpgAlignment alignment,
                      std::vector<double> lengths_m = {});
-
-// By the tool's own names; relative errors begin with their length, "1.00m_trans_rmse".
-std::vector<NamedValue> Values(const RpgResult& result);
 
 }  // namespace evaluation::compat
