@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/sequence/stream_file.h"
+#include "sim/sequence/encode.h"
 
 namespace sim {
 

@@ -13,6 +13,7 @@
 #include "sim/sequence/content.h"
 #include "sim/sequence/journal.h"
 #include "sim/simulator.h"
+#include "tools/base/files.h"
 
 namespace sim {
 
@@ -66,7 +67,7 @@ class SequenceWriter {
   std::filesystem::path folder_;
   SequenceContent content_;
   std::vector<std::filesystem::path> made_;  // the folder and its parents, where they were not there; innermost first
-  int lock_ = -1;                            // the folder, open
+  base::Descriptor lock_;                    // the folder, open
   std::int64_t found_ = 0;
   bool ours_ = false;  // what is in the folder
   bool over_ = false;
