@@ -108,7 +108,7 @@ double PointWorld::MovedPx(const Eye& eye, const PointLandmark& landmark, const 
   const double half_s = world_.measurement.blur_exposure_s / 2;
   const glm::dvec3 rate = -glm::cross(eye.truth.w_WC_C, view.X_C) - landmark.X_W.w * (eye.R_CW * eye.truth.v_WC);
   const glm::dvec3 before = view.X_C - half_s * rate, after = view.X_C + half_s * rate;
-  if (!(before.z > 0) || !(after.z > 0)) return std::hypot(camera_.width(), camera_.height());  // it rushes past
+  if (!(before.z > 0) || !(after.z > 0)) return std::hypot(camera_.width(), camera_.height());  // it passes the camera
   return glm::distance(camera_.Project(before), camera_.Project(after));
 }
 
@@ -149,7 +149,7 @@ void PointWorld::Fill(std::int64_t frame, const Eye& eye) {
   if (world_.landmarks == Landmarks::prior) {
     for (; room > 0; --room) {
       const glm::dvec4 X_W = DrawFromPrior(eye);
-      // z = 1 up to scale: it is in view whatever its inverse depth. A min_depth is none of a prior's business.
+      // z = 1 up to scale: it is in view whatever its inverse depth. min_depth does not apply to a prior.
       const glm::dvec3 X_C = eye.R_CW * (glm::dvec3(X_W) - X_W.w * eye.truth.p_WC);
       Begin(frame, X_W, std::nullopt, {camera_.Project(X_C), X_C});
     }

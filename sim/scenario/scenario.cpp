@@ -41,7 +41,7 @@ void ReadMotionAndTime(Section root, const std::filesystem::path& folder, Scenar
 
 enum class Preset { none, kinect, icl_nuim };
 
-// What the other keys begin with: docs/sensor.md says where the numbers come from.
+// Defaults of the other keys; sources of the numbers: docs/sensor.md.
 void Apply(Preset preset, SensorParams& sensor) {
   if (preset == Preset::kinect) {
     sensor.exposure_s = 0.020;
@@ -61,14 +61,14 @@ void Apply(Preset preset, SensorParams& sensor) {
 // rate_hz: of the frames, within which an exposure and the shutter must end.
 void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
   section.Allow("preset");
-  if (section.Has("preset")) {  // a manifest without one says nothing of it
+  if (section.Has("preset")) {  // resolved only where given
     Preset preset = Preset::none;
     section.ReadChoice("preset", preset,
                        {{"none", Preset::none}, {"kinect", Preset::kinect}, {"icl_nuim", Preset::icl_nuim}});
     Apply(preset, sensor);
   }
   section.Allow("covered");
-  if (section.Has("covered")) {  // a manifest of a sequence without says nothing of it
+  if (section.Has("covered")) {  // resolved only where given
     for (Section& item : section.List("covered")) {
       Covered& covered = sensor.covered.emplace_back();
       item.Require("from", covered.from_s, Unit::time);

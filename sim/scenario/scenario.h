@@ -133,7 +133,7 @@ void Visit(V& v, RenderParams& p) {
   v.Child("bake", p.bake);
 }
 
-// docs/truth.md says what each is and how exact.
+// Contents and exactness: docs/truth.md.
 enum class TruthStream {
   depth,         // 16-bit PNG
   depth_exr,     // the same in float

@@ -13,7 +13,7 @@ namespace {
 
 using settings::Section;
 
-// Three ways to say what the sky is: one radiance, three that are blended, or a picture.
+// One radiance, three that are blended, or a picture.
 SkyDescription ReadSky(Section& section, const std::filesystem::path& folder) {
   SkyDescription sky;
   for (const char* key : {"radiance", "zenith", "horizon", "ground", "file", "strength", "turn"}) section.Allow(key);
@@ -97,7 +97,7 @@ void ReadWorld(Section section, const std::filesystem::path& folder, double dura
   for (Section& mesh : section.List("meshes")) world.meshes.push_back(ReadMesh(mesh, folder));
   if (world.meshes.empty()) section.Reject("meshes", "'world.meshes': the world is empty");
   section.Allow("objects");
-  if (section.Has("objects")) {  // a manifest of a world without any says nothing of them
+  if (section.Has("objects")) {  // resolved only where given
     for (Section& object : section.List("objects")) {
       world.objects.push_back(ReadObject(object, folder, duration_s, world.objects));
     }

@@ -12,7 +12,7 @@
 namespace sim {
 namespace {
 
-// Which streams the scenario asks for; other layouts than TUM's have depth anyway.
+// Truth streams of the scenario; layouts other than TUM's have depth in any case.
 std::set<TruthStream> StreamsOf(const SequenceContent& content, const Simulator& simulator) {
   std::set<TruthStream> streams = simulator.scenario().truth.streams;
   if (content.layout != Layout::tum) streams.erase(TruthStream::depth);

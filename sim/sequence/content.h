@@ -16,7 +16,7 @@ struct SequenceContent {
   std::string program;               // name and version, for the record
 };
 
-// Throws std::invalid_argument for frames that the simulator does not have, and for what the layout cannot say.
+// Throws std::invalid_argument for frames that the simulator does not have, and for what the layout has no place for.
 void Validate(const SequenceContent& content, const Simulator& simulator);
 
 // Everything that is a frame's own, rendered and encoded: a pure function of its index, whatever else is written.

@@ -80,7 +80,7 @@ void SequenceWriter::Prepare(Start start) {
   RemoveStrays(lists);
 }
 
-// The last frame is rendered once more: the manifest knows the names of meshes, textures and recorded motion only.
+// The last frame is rendered once more: the manifest has only the names of meshes, textures and recorded motion.
 void SequenceWriter::RequireSame(const Journal& whole) const {
   const fs::path file = folder_ / kManifestName;
   if (!fs::exists(file))
