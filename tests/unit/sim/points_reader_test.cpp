@@ -6,6 +6,7 @@
 #include "sim/scenario/scenario.h"
 #include "sim/simulator.h"
 #include "tests/unit/sim/temporary_folder.h"
+#include "tools/base/settings/problem.h"
 
 namespace sim {
 namespace {
