@@ -8,13 +8,12 @@
 #include <stdexcept>
 
 #include "sim/light/cache.h"
-#include "sim/motion/make.h"
+#include "sim/motion/trajectory.h"
 #include "sim/random/random.h"
 #include "sim/render/rasteriser.h"
 #include "sim/render/ray_tracer.h"
 #include "sim/render/surface_tracer.h"
-#include "sim/scenario/stamps.h"
-#include "sim/sensor/auto_exposure.h"
+#include "sim/scenario/scenario.h"
 #include "sim/sensor/exposure.h"
 #include "sim/sensor/sensor.h"
 #include "sim/sensor/vignetting.h"

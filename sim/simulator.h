@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "sim/motion/truth.h"
+#include "sim/motion/trajectory.h"
 #include "sim/scenario/scenario.h"
-#include "sim/sensor/auto_exposure.h"
 #include "sim/sensor/camera.h"
+#include "sim/sensor/exposure.h"
 #include "sim/sensor/image.h"
 
 namespace sim {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <numbers>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -44,17 +45,17 @@ void Visit(V& v, SampledMotion& p) {
     start("velocity_sigma", p.velocity_sigma, {Unit::speed, noise, "above 0: drawn about it, per axis of W and seed"});
     start("angular_rate_sigma", p.angular_rate_sigma, {Unit::angular_rate, noise, "the same, per axis of C"});
   });
-  v("position_noise", p.position_noise,
-    {Unit::acceleration_density, noise, "root of the power spectral density of white acceleration"});
-  v("orientation_noise", p.orientation_noise,
-    {Unit::angular_acceleration_density, noise, "the same of white angular acceleration"});
+  v.Required("position_noise", p.position_noise,
+             {Unit::acceleration_density, noise, "root of the power spectral density of white acceleration"});
+  v.Required("orientation_noise", p.orientation_noise,
+             {Unit::angular_acceleration_density, noise, "the same of white angular acceleration"});
   v("knot_step", p.knot_step_s, {Unit::time, Range{1e-5, 0.1}, "the model's own step"});
   v("position_return", p.position_return, {Unit::rate, noise, "r: sigma / (2 r^1.5) from the start in the long run"});
   v("orientation_return", p.orientation_return, {Unit::rate, noise, "the same of the orientation"});
   if (!p.walls) return;
   v.Child("walls", [&](auto& walls) {
-    walls("low", p.walls->low, {Unit::length, place, "corner of a box in W that keeps the camera in"});
-    walls("high", p.walls->high, {Unit::length, place, "the opposite corner"});
+    walls.Required("low", p.walls->low, {Unit::length, place, "corner of a box in W that keeps the camera in"});
+    walls.Required("high", p.walls->high, {Unit::length, place, "the opposite corner"});
     walls("margin", p.walls->margin, {Unit::length, Range::Positive(), "distance from a wall where it begins to push"});
     walls("rate", p.walls->rate, {Unit::rate, Range::Positive(), "a speed v is turned round within v / (e rate)"});
   });
@@ -110,6 +111,41 @@ struct PathMotion {
   glm::dvec3 move{0.0};  // [m]
   Swing along;           // how much of it
 };
+
+enum class PathKind { orbit, half_sphere, rpy, dolly };
+
+// But for the start pose and the speed.
+template <class V>
+void Visit(V& v, PathKind kind, PathMotion& p) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  const Range place{-1e6, 1e6}, period{1e-3, 1e6};
+  if (kind == PathKind::orbit || kind == PathKind::half_sphere) {
+    v.Required("center", p.pivot, {Unit::length, place, "orbit, half_sphere: the camera turns about it"});
+    v.Required("period", p.azimuth.period_s, {Unit::time, period, "of a turn or a swing; dolly: there and back"});
+  }
+  if (kind == PathKind::orbit) {
+    v("sweep", p.azimuth.size, {Unit::angle, Range{0, kTurn}, "swings by half of it to both sides; orbit: 0 is round"});
+    p.azimuth.kind = p.azimuth.size > 0 ? Swing::Kind::about : Swing::Kind::steady;
+    p.azimuth.size = p.azimuth.size > 0 ? p.azimuth.size / 2 : kTurn;
+  } else if (kind == PathKind::half_sphere) {
+    v.Required("sweep", p.azimuth.size, {Unit::angle, Range{0, kTurn}, "swings by half of it to both sides"});
+    v.Required("rise", p.elevation.size, {Unit::angle, Range{0, kTurn / 4}, "half_sphere: climbs, and comes back"});
+    v.Required("rise_period", p.elevation.period_s, {Unit::time, period, "in this time"});
+    p.azimuth.size /= 2;
+    p.elevation.kind = Swing::Kind::there_and_back;
+  } else if (kind == PathKind::rpy) {
+    glm::dvec3 angles(0.0), periods(1.0);
+    v.Required("angles", angles, {Unit::angle, Range{-kTurn, kTurn}, "rpy: of roll, pitch, yaw, on the spot"});
+    v.Required("periods", periods, {Unit::time, period, "each is angle * sin(2 pi t / period)"});
+    p.roll = {Swing::Kind::about, angles.x, periods.x};
+    p.pitch = {Swing::Kind::about, angles.y, periods.y};
+    p.yaw = {Swing::Kind::about, angles.z, periods.z};
+  } else {
+    v.Required("move", p.move, {Unit::length, place, "dolly: there and back, in W"});
+    v.Required("period", p.along.period_s, {Unit::time, period, "of it"});
+    p.along = {Swing::Kind::there_and_back, 1, p.along.period_s};
+  }
+}
 
 using MotionDescription = std::variant<SampledMotion, ScriptedMotion, RecordedMotion, PathMotion>;
 

@@ -20,18 +20,8 @@ glm::dvec3 AccelerationOfI(const Motion& m, const glm::dvec3& p_CI) {
 }
 
 // Two vectors of standard normal numbers: the gyroscope's and the accelerometer's.
-struct Drawn {
-  glm::dvec3 gyroscope, accelerometer;
-};
-Drawn Draw(std::uint64_t seed, Stream stream, std::int64_t k) {
-  Drawn drawn{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto z = Normals(RandomWords(seed, stream, static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(k >> 32),
-                                       static_cast<std::uint32_t>(axis)));
-    drawn.gyroscope[axis] = z[0];
-    drawn.accelerometer[axis] = z[1];
-  }
-  return drawn;
+std::array<glm::dvec3, 2> Draw(std::uint64_t seed, Stream stream, std::int64_t k) {
+  return NormalVectors(seed, stream, static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(k >> 32));
 }
 
 }  // namespace
@@ -62,16 +52,16 @@ std::vector<ImuSample> ImuReadings(const Trajectory& trajectory, const ImuParams
     const std::int64_t stamp_ns = std::llround(static_cast<double>(k) * 1e9 / params.rate_hz);
     if (stamp_ns > last_ns) return samples;
     if (k > 0) {
-      const Drawn step = Draw(seed, Stream::imu_walk, k);
-      gyroscope_bias += params.gyroscope_walk / root * step.gyroscope;
-      accelerometer_bias += params.accelerometer_walk / root * step.accelerometer;
+      const auto [gyroscope, accelerometer] = Draw(seed, Stream::imu_walk, k);
+      gyroscope_bias += params.gyroscope_walk / root * gyroscope;
+      accelerometer_bias += params.accelerometer_walk / root * accelerometer;
     }
     if (stamp_ns < first_ns) continue;
     ImuSample sample = ImuAt(trajectory, params, static_cast<double>(stamp_ns) * 1e-9);
-    const Drawn noise = Draw(seed, Stream::imu_noise, k);
+    const auto [gyroscope, accelerometer] = Draw(seed, Stream::imu_noise, k);
     sample.stamp_ns = stamp_ns;
-    sample.w_I += gyroscope_bias + params.gyroscope_noise * root * noise.gyroscope;
-    sample.f_I += accelerometer_bias + params.accelerometer_noise * root * noise.accelerometer;
+    sample.w_I += gyroscope_bias + params.gyroscope_noise * root * gyroscope;
+    sample.f_I += accelerometer_bias + params.accelerometer_noise * root * accelerometer;
     sample.gyroscope_bias = gyroscope_bias;
     sample.accelerometer_bias = accelerometer_bias;
     samples.push_back(sample);

@@ -26,13 +26,12 @@ struct ImuParams {
   double gyroscope_walk = 0.0, accelerometer_walk = 0.0;    // [rad/s^2/sqrt(Hz)], [m/s^3/sqrt(Hz)]
 };
 
-// But for the orientation, which is read with the pose's own rule.
 template <class V>
 void Visit(V& v, ImuParams& p) {
   using settings::Range, settings::Unit;
   const Range noise = Range::AtLeast(0);
   v("rate", p.rate_hz, {Unit::frequency, Range{1, 1e5}, "readings per second"});
-  v("position", p.T_CI.p_WC, {Unit::length, Range{-1e6, 1e6}, "of I in C; also `orientation: [x, y, z, w]`"});
+  v("position", p.T_CI.p_WC, {Unit::length, Range{-1e6, 1e6}, "of I in C"});
   v("gravity", p.gravity_W, {Range{-1e6, 1e6}, "in W [m/s^2]"});
   v("reading", p.reading, {{"instant", ImuReading::instant}, {"mean", ImuReading::mean}},
     "at the stamp; or mean over the period, for paths whose acceleration jumps");
@@ -40,6 +39,7 @@ void Visit(V& v, ImuParams& p) {
   v("accelerometer_noise", p.accelerometer_noise, {noise, "the same [m/s^2/sqrt(Hz)]"});
   v("gyroscope_walk", p.gyroscope_walk, {noise, "of the noise that drives the bias, 0 at first [rad/s^2/sqrt(Hz)]"});
   v("accelerometer_walk", p.accelerometer_walk, {noise, "the same [m/s^3/sqrt(Hz)]"});
+  v("orientation", p.T_CI.q_WC, {"of I in C: x, y, z, w"});
 }
 
 struct ImuSample {

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -79,8 +78,6 @@ Motion PathTrajectory::At(double t_s) const {
   motion.alpha_WC_C = C.alpha;
   return motion;
 }
-
-double PathTrajectory::end_s() const { return std::numeric_limits<double>::infinity(); }
 
 double MeanSpeed(const Trajectory& trajectory, double end_s) {
   constexpr int kSteps = 4096;

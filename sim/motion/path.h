@@ -18,7 +18,6 @@ class PathTrajectory : public Trajectory {
   explicit PathTrajectory(const PathMotion& motion);
 
   Motion At(double t_s) const override;
-  double end_s() const override;  // infinite
 
  private:
   PathMotion motion_;

@@ -33,78 +33,70 @@ std::vector<Word> Split(std::string_view line) {
   return words;
 }
 
-// Collects what is wrong with a file; the first 20 are enough to see what it is.
-class FileProblems {
- public:
-  explicit FileProblems(const std::filesystem::path& file) : file_(file.string()) {}
-  void Add(int line, int column, std::string message) {
-    if (list_.size() < 20) list_.push_back({file_, line, column, std::move(message)});
-    if (++count_ == 21) list_.push_back({file_, 0, 0, "further problems are not listed"});
-  }
-  void ThrowIfAny() const {
-    if (!list_.empty()) throw settings::Error(list_);
-  }
+constexpr std::size_t kMostProblems = 20;  // enough to see what a file is
 
- private:
-  std::string file_;
-  std::vector<settings::Problem> list_;
-  int count_ = 0;
-};
+void ThrowIfAny(std::vector<settings::Problem> problems, const std::filesystem::path& file) {
+  if (problems.size() > kMostProblems) {
+    problems.resize(kMostProblems);
+    problems.push_back({file.string(), 0, 0, "further problems are not listed", {}});
+  }
+  if (!problems.empty()) throw settings::Error(std::move(problems));
+}
+
+[[noreturn]] void Fail(const std::filesystem::path& file, const std::string& message) {
+  throw settings::Error({{file.string(), 0, 0, message, {}}});
+}
 
 }  // namespace
 
 std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file) {
-  FileProblems problems(file);
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file)) {
-    problems.Add(0, 0, std::string("cannot be read: ") + std::strerror(errno ? errno : EISDIR));
-    problems.ThrowIfAny();
-  }
+  if (!stream || std::filesystem::is_directory(file))
+    Fail(file, std::string("cannot be read: ") + std::strerror(errno ? errno : EISDIR));
+  std::vector<settings::Problem> problems;
+  const auto add = [&](int line, int column, std::string message) {
+    problems.push_back({file.string(), line, column, std::move(message), {}});
+  };
   std::vector<KeyPose> keys;
   std::int64_t first_ns = 0, last_ns = 0;
   int last_line = 0, number = 0;
-  for (std::string line; std::getline(stream, line);) {
+  for (std::string line; problems.size() <= kMostProblems && std::getline(stream, line);) {
     ++number;
     const std::vector<Word> words = Split(line);
     if (words.empty() || words[0].text.front() == '#') continue;
     if (words.size() != 8) {
-      problems.Add(number, 1,
-                   "expected timestamp tx ty tz qx qy qz qw, not " + std::to_string(words.size()) + " words");
+      add(number, 1, "expected timestamp tx ty tz qx qy qz qw, not " + std::to_string(words.size()) + " words");
       continue;
     }
     const std::optional<std::int64_t> stamp = base::ParseStamp(words[0].text);
     bool good = stamp.has_value();
-    if (!good)
-      problems.Add(number, words[0].column, "'" + std::string(words[0].text) + "' is not a timestamp in seconds");
+    if (!good) add(number, words[0].column, "'" + std::string(words[0].text) + "' is not a timestamp in seconds");
     double v[7] = {};
     for (std::size_t i = 0; i < 7; ++i) {
       std::string problem;
       if (settings::ParseQuantity(words[i + 1].text, settings::Unit::none, {}, v[i], problem)) continue;
-      problems.Add(number, words[i + 1].column, problem);
+      add(number, words[i + 1].column, problem);
       good = false;
     }
     if (!good) continue;
     const glm::dquat q(v[6], v[3], v[4], v[5]);
     if (!(std::abs(glm::length(q) - 1) <= 1e-3)) {
-      problems.Add(number, words[4].column,
-                   "the quaternion's length is " + settings::FormatNumber(glm::length(q)) + ", not 1");
+      add(number, words[4].column, "the quaternion's length is " + settings::FormatNumber(glm::length(q)) + ", not 1");
     }
     const std::int64_t stamp_ns = *stamp;
     if (last_line > 0 && stamp_ns <= last_ns) {
-      problems.Add(number, words[0].column,
-                   "time " + std::string(words[0].text) + " is not after that of line " + std::to_string(last_line));
+      add(number, words[0].column,
+          "time " + std::string(words[0].text) + " is not after that of line " + std::to_string(last_line));
     }
     if (last_line == 0) first_ns = stamp_ns;
     last_line = number;
     last_ns = stamp_ns;
     keys.push_back({static_cast<double>(stamp_ns - first_ns) * 1e-9, {{v[0], v[1], v[2]}, q}});
   }
-  if (stream.bad()) problems.Add(0, 0, "cannot be read to its end");
-  problems.ThrowIfAny();
-  if (keys.size() < 2)
-    problems.Add(0, 0, "holds " + std::to_string(keys.size()) + " poses; a motion needs two at least");
-  problems.ThrowIfAny();
+  if (stream.bad()) add(0, 0, "cannot be read to its end");
+  ThrowIfAny(std::move(problems), file);
+  if (keys.size() < 2) Fail(file, "holds " + std::to_string(keys.size()) + " poses; a motion needs two at least");
   for (KeyPose& key : keys) key.pose.q_WC = glm::normalize(key.pose.q_WC);
   return keys;
 }
@@ -129,15 +121,12 @@ std::vector<KeyPose> Average(const std::vector<KeyPose>& keys, double average_s)
 
 std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion, double end_s) {
   std::vector<KeyPose> keys = ReadTumTrajectory(motion.file);
-  FileProblems problems(motion.file);
   const double length_s = keys.back().t_s;
   constexpr double kRounding_s = 0.5e-9;  // stamps are whole nanoseconds
   if (!(motion.start_time_s >= 0) || !(motion.start_time_s + end_s <= length_s + kRounding_s)) {
-    problems.Add(0, 0,
-                 "lasts " + settings::FormatNumber(length_s) + " s; asked for is " +
-                     settings::FormatNumber(motion.start_time_s) + " s to " +
-                     settings::FormatNumber(motion.start_time_s + end_s) + " s");
-    problems.ThrowIfAny();
+    Fail(motion.file, "lasts " + settings::FormatNumber(length_s) + " s; asked for is " +
+                          settings::FormatNumber(motion.start_time_s) + " s to " +
+                          settings::FormatNumber(motion.start_time_s + end_s) + " s");
   }
   keys = Average(keys, motion.averaging_time_s);
   for (KeyPose& key : keys) key.t_s -= motion.start_time_s;
@@ -145,9 +134,7 @@ std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion,
     try {
       return std::make_unique<SplineTrajectory>(keys);
     } catch (const std::invalid_argument& error) {
-      problems.Add(0, 0, error.what());
-      problems.ThrowIfAny();
-      throw;
+      Fail(motion.file, error.what());
     }
   };
   std::unique_ptr<Trajectory> trajectory = make();

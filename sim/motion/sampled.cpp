@@ -10,29 +10,14 @@
 namespace sim {
 namespace {
 
-struct Noise {
-  glm::dvec3 n1, n2;
-};
-
-// Cholesky: Q = L L^T with L = sigma [h^1.5/sqrt(3) 0; sqrt(3 h)/2 sqrt(h)/2].
-Noise Draw(std::uint64_t seed, Stream stream, std::size_t knot, double sigma, double h) {
-  Noise noise{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto z =
-        Normals(RandomWords(seed, stream, static_cast<std::uint32_t>(knot), 0, static_cast<std::uint32_t>(axis)));
-    noise.n1[axis] = sigma * std::sqrt(h * h * h / 3) * z[0];
-    noise.n2[axis] = sigma * (std::sqrt(3 * h) / 2 * z[0] + std::sqrt(h) / 2 * z[1]);
-  }
-  return noise;
+// (n1, n2). Cholesky: Q = L L^T with L = sigma [h^1.5/sqrt(3) 0; sqrt(3 h)/2 sqrt(h)/2].
+std::array<glm::dvec3, 2> Draw(std::uint64_t seed, Stream stream, std::size_t knot, double sigma, double h) {
+  const auto [a, b] = NormalVectors(seed, stream, static_cast<std::uint32_t>(knot), 0);
+  return {sigma * std::sqrt(h * h * h / 3) * a, sigma * (std::sqrt(3 * h) / 2 * a + std::sqrt(h) / 2 * b)};
 }
 
 glm::dvec3 Drawn(const glm::dvec3& mean, double sigma, std::uint64_t seed, std::uint32_t which) {
-  glm::dvec3 drawn = mean;
-  for (int axis = 0; axis < 3 && sigma > 0; ++axis) {
-    const Words words = RandomWords(seed, Stream::start_velocity, 0, which, static_cast<std::uint32_t>(axis));
-    drawn[axis] += sigma * Normals(words)[0];
-  }
-  return drawn;
+  return sigma > 0 ? mean + sigma * NormalVectors(seed, Stream::start_velocity, 0, which)[0] : mean;
 }
 
 // Of the walls: within the margin, critically damped towards its inner edge while the camera is beyond or goes
@@ -87,7 +72,7 @@ std::vector<settings::FieldProblem> Problems(SampledMotion m) {
 }
 
 SampledTrajectory::SampledTrajectory(const SampledMotion& m, std::uint64_t seed, double end_s)
-    : step_s_(m.knot_step_s), end_s_(end_s) {
+    : step_s_(m.knot_step_s) {
   Check(m, end_s);
   const double h = step_s_;
   Motion x{m.start, Drawn(m.velocity, m.velocity_sigma, seed, 0), Drawn(m.angular_rate, m.angular_rate_sigma, seed, 1)};
@@ -97,16 +82,16 @@ SampledTrajectory::SampledTrajectory(const SampledMotion& m, std::uint64_t seed,
   knots_.reserve(steps + 1);
   knots_.push_back(x);
   for (std::size_t k = 0; k < steps; ++k) {
-    const Noise moved = Draw(seed, Stream::position_noise, k, m.position_noise, h);
-    const Noise turned = Draw(seed, Stream::orientation_noise, k, m.orientation_noise, h);
+    const auto [moved, moved_faster] = Draw(seed, Stream::position_noise, k, m.position_noise, h);
+    const auto [turned, turned_faster] = Draw(seed, Stream::orientation_noise, k, m.orientation_noise, h);
     const double r = m.position_return, s = m.orientation_return;
     glm::dvec3 a = -r * r * (x.pose.p_WC - start.p_WC) - 2 * r * x.v_WC;
     if (m.walls) a += Push(*m.walls, x.pose.p_WC, x.v_WC);
     const glm::dvec3 b = -s * s * Log(glm::conjugate(start.q_WC) * x.pose.q_WC) - 2 * s * x.w_WC_C;
-    x.pose.p_WC += h * x.v_WC + h * h / 2 * a + moved.n1;
-    x.v_WC += h * a + moved.n2;
-    x.pose.q_WC = glm::normalize(x.pose.q_WC * Exp(h * x.w_WC_C + h * h / 2 * b + turned.n1));
-    x.w_WC_C += h * b + turned.n2;
+    x.pose.p_WC += h * x.v_WC + h * h / 2 * a + moved;
+    x.v_WC += h * a + moved_faster;
+    x.pose.q_WC = glm::normalize(x.pose.q_WC * Exp(h * x.w_WC_C + h * h / 2 * b + turned));
+    x.w_WC_C += h * b + turned_faster;
     knots_.push_back(x);
   }
 }

@@ -46,12 +46,11 @@ class SampledTrajectory : public Trajectory {
   SampledTrajectory(const SampledMotion& motion, std::uint64_t seed, double end_s);
 
   Motion At(double t_s) const override;
-  double end_s() const override { return end_s_; }
 
   const std::vector<Motion>& knots() const { return knots_; }
 
  private:
-  double step_s_, end_s_;
+  double step_s_;
   std::vector<Motion> knots_;
 };
 

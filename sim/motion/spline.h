@@ -21,7 +21,7 @@ class SplineTrajectory : public Trajectory {
   explicit SplineTrajectory(const std::vector<KeyPose>& keys);
 
   Motion At(double t_s) const override;
-  double end_s() const override { return times_.back(); }
+  double end_s() const { return times_.back(); }
 
  private:
   using Numbers = std::array<double, 7>;  // p, then x y z w of the quaternion

@@ -5,7 +5,7 @@
 #include <glm/vec2.hpp>
 #include <optional>
 
-#include "sim/scenario/point_description.h"
+#include "sim/scenario/scenario.h"
 #include "sim/sensor/camera.h"
 
 namespace sim {

@@ -8,11 +8,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/motion/make.h"
+#include "sim/motion/trajectory.h"
 #include "sim/points/point_measurement.h"
-#include "sim/points/point_places.h"
 #include "sim/random/random.h"
-#include "sim/scenario/stamps.h"
+#include "sim/scenario/scenario.h"
 
 namespace sim {
 namespace {
@@ -25,12 +24,30 @@ const PointDescription& PointsOf(const Scenario& scenario) {
   throw std::invalid_argument(scenario.name + ": the world has meshes, not points: it is rendered, not played");
 }
 
-Scenario Load(const std::filesystem::path& file, std::uint64_t seed) {
-  return LoadScenario(file, {{"seed", std::to_string(seed)}});
-}
-
 bool InImage(const CameraParams& camera, const glm::dvec2& pixel) {
   return pixel.x >= -0.5 && pixel.x < camera.width - 0.5 && pixel.y >= -0.5 && pixel.y < camera.height - 0.5;
+}
+
+// Landmarks that are not drawn from a prior: uniform on the six faces of the box, on the square, or in the box; `start`
+// is the first camera. Point k is a function of (key, k) alone: more points leave the first ones where they are.
+std::vector<glm::dvec3> PlacePoints(const PointDescription& of, const Pose& start, std::uint64_t key) {
+  std::vector<glm::dvec3> points;
+  if (of.landmarks == Landmarks::prior) return points;
+  const glm::dvec3 center = of.center.value_or(start.p_WC);
+  for (int k = 0; k < of.total; ++k) {
+    const Words words = RandomWords(key, Stream::point_place, 0, static_cast<std::uint32_t>(k), 0);
+    glm::dvec3 in(Uniform(words[0]) - 0.5, Uniform(words[1]) - 0.5, Uniform(words[2]) - 0.5);
+    if (of.landmarks == Landmarks::plane) {
+      points.push_back(start.p_WC + start.q_WC * glm::dvec3(of.size_m * in.x, of.size_m * in.y, of.distance_m));
+      continue;
+    }
+    if (of.landmarks == Landmarks::room) {
+      double& across = in[static_cast<int>(words[3] % 3)];  // of the faces, all of the same area
+      across = across < 0 ? -0.5 : 0.5;
+    }
+    points.push_back(center + of.size_m * in);
+  }
+  return points;
 }
 
 }  // namespace
@@ -49,7 +66,8 @@ PointWorld::PointWorld(const Scenario& scenario)
   followed_.assign(points_.size(), false);
 }
 
-PointWorld::PointWorld(const std::filesystem::path& scenario, std::uint64_t seed) : PointWorld(Load(scenario, seed)) {}
+PointWorld::PointWorld(const std::filesystem::path& scenario, std::uint64_t seed)
+    : PointWorld(LoadScenario(scenario, {{"seed", std::to_string(seed)}})) {}
 
 std::int64_t PointWorld::StampNs(std::int64_t index) const { return sim::StampNs(index, scenario_.time); }
 Truth PointWorld::TruthAt(std::int64_t index) const { return sim::TruthAt(*trajectory_, Seconds(StampNs(index))); }
@@ -90,7 +108,7 @@ double PointWorld::MovedPx(const Eye& eye, const PointLandmark& landmark, const 
   const double half_s = world_.measurement.blur_exposure_s / 2;
   const glm::dvec3 rate = -glm::cross(eye.truth.w_WC_C, view.X_C) - landmark.X_W.w * (eye.R_CW * eye.truth.v_WC);
   const glm::dvec3 before = view.X_C - half_s * rate, after = view.X_C + half_s * rate;
-  if (!(before.z > 0) || !(after.z > 0)) return std::hypot(camera_.width(), camera_.height());  // it rushes past
+  if (!(before.z > 0) || !(after.z > 0)) return std::hypot(camera_.width(), camera_.height());  // it passes the camera
   return glm::distance(camera_.Project(before), camera_.Project(after));
 }
 
@@ -131,7 +149,7 @@ void PointWorld::Fill(std::int64_t frame, const Eye& eye) {
   if (world_.landmarks == Landmarks::prior) {
     for (; room > 0; --room) {
       const glm::dvec4 X_W = DrawFromPrior(eye);
-      // z = 1 up to scale: it is in view whatever its inverse depth. A min_depth is none of a prior's business.
+      // z = 1 up to scale: it is in view whatever its inverse depth. min_depth does not apply to a prior.
       const glm::dvec3 X_C = eye.R_CW * (glm::dvec3(X_W) - X_W.w * eye.truth.p_WC);
       Begin(frame, X_W, std::nullopt, {camera_.Project(X_C), X_C});
     }

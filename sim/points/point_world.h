@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "sim/motion/trajectory.h"
-#include "sim/motion/truth.h"
 #include "sim/scenario/scenario.h"
 #include "sim/sensor/camera.h"
 

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <glm/vec3.hpp>
 
 namespace sim {
 
@@ -60,6 +61,17 @@ inline std::array<double, 2> Normals(double u1, double u2) {
 inline std::array<double, 2> Normals(const Words& words) {
   return Normals(Uniform(words[0], words[1]), Uniform(words[2], words[3]));
 }
+// The same for each axis of two vectors, keyed by (seed, stream, frame, pixel, axis).
+inline std::array<glm::dvec3, 2> NormalVectors(std::uint64_t seed, Stream stream, std::uint32_t frame,
+                                               std::uint32_t pixel) {
+  std::array<glm::dvec3, 2> vectors{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto z = Normals(RandomWords(seed, stream, frame, pixel, static_cast<std::uint32_t>(axis)));
+    for (std::size_t i = 0; i < 2; ++i) vectors[i][axis] = z[i];
+  }
+  return vectors;
+}
+
 // ln of x in [0.5, 2^32], and the cosine and sine of `turns_24` * 2^-24 turns, to 3e-7: polynomials of Cephes
 // (Moshier), written without branches so that loops over them become vector code, and with the same result on every
 // machine.

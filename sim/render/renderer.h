@@ -8,7 +8,7 @@
 #include "sim/motion/trajectory.h"
 #include "sim/sensor/camera.h"
 #include "sim/sensor/exposure.h"
-#include "sim/sensor/radiance_image.h"
+#include "sim/sensor/image.h"
 
 namespace sim {
 

@@ -1,35 +1,74 @@
 #include "sim/scenario/motion_reader.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <stdexcept>
 
+#include "sim/motion/path.h"
+#include "sim/motion/so3.h"
 #include "sim/motion/spline.h"
-#include "sim/scenario/path_reader.h"
-#include "sim/scenario/pose_reader.h"
 #include "tools/base/settings/field_reader.h"
 
 namespace sim {
 namespace {
 
-using settings::Range;
 using settings::Section;
-using settings::Unit;
 
-SampledMotion ReadSampled(Section& section) {
+// `position`, and either `look_at` (a point in W) with an optional `roll`, or `orientation`. False when anything is
+// wrong.
+bool ReadPose(Section& section, Pose& pose) {
+  const Range place{-1e6, 1e6};
+  settings::FieldReader fields(section);
+  fields.Required("position", pose.p_WC, {Unit::length, place, "in W"});
+  for (const char* key : {"look_at", "roll", "orientation"}) section.Allow(key);
+  const auto reject = [&](const std::string& key, const std::string& message) {
+    section.Reject(key, message);
+    return false;
+  };
+  bool good = true;
+  if (!section.Has("look_at")) {
+    if (section.Has("roll")) good = reject("roll", "'roll' goes with 'look_at', which is not there");
+    fields("orientation", pose.q_WC, {"x, y, z, w"});
+    return fields.good() && good;
+  }
+  if (section.Has("orientation")) good = reject("orientation", "'look_at' and 'orientation' exclude each other");
+  glm::dvec3 target(0.0);
+  double roll_rad = 0;
+  fields("look_at", target, {Unit::length, place, "a point in W"});
+  good = fields.good() && good;
+  fields("roll", roll_rad, {Unit::angle, Range{-7, 7}, "to the right"});
+  if (!good) return false;
+  if (glm::distance(target, pose.p_WC) < 1e-9) return reject("look_at", "'look_at' is where the camera is");
+  pose.q_WC = LookAt(pose.p_WC, target, roll_rad);
+  return true;
+}
+
+// With `speed`: by how much faster a path must be flown so that this is its mean over [0, end_s]; 1 without.
+double ReadPace(Section& section, const Trajectory& path, double end_s) {
+  section.Allow("speed");
+  if (!section.Has("speed")) return 1;
+  const double mean_speed = MeanSpeed(path, end_s);
+  double speed = mean_speed;
+  section.Read("speed", speed, Unit::speed, Range::Positive());
+  if (mean_speed > 0) return speed / mean_speed;
+  section.Reject("speed", "'speed': the path does not move");
+  return 1;
+}
+
+MotionDescription ReadSampled(Section& section, const std::filesystem::path& /*folder*/) {
   SampledMotion motion;
   Section start = section.Child("start");
   ReadPose(start, motion.start);
   section.Allow("walls");
-  if (section.Has("walls")) {
-    motion.walls.emplace();
-    Section walls = section.Child("walls");
-    for (const char* key : {"low", "high"}) walls.RequirePresent(key);
-  }
+  if (section.Has("walls")) motion.walls.emplace();
   if (ReadFields(section, motion)) section.Reject(Problems(motion));
-  for (const char* key : {"position_noise", "orientation_noise"}) section.RequirePresent(key);
   return motion;
 }
 
-ScriptedMotion ReadScripted(Section& section) {
+MotionDescription ReadScripted(Section& section, const std::filesystem::path& /*folder*/) {
   ScriptedMotion motion;
   bool good = true;
   const auto reject = [&](Section& where, const std::string& key, const std::string& message) {
@@ -52,8 +91,8 @@ ScriptedMotion ReadScripted(Section& section) {
   if (motion.keys.size() < 2) reject(section, "keys", "'trajectory.keys': two key poses are needed at least");
   if (!good) return motion;
   try {
-    static_cast<void>(SplineTrajectory{motion.keys});  // for what it throws
-    const double pace = ReadPace(section, motion);
+    const SplineTrajectory spline(motion.keys);
+    const double pace = ReadPace(section, spline, spline.end_s());
     for (KeyPose& key : motion.keys) key.t_s /= pace;
   } catch (const std::invalid_argument& error) {
     section.Reject("keys", std::string("'trajectory.keys': ") + error.what());
@@ -61,7 +100,7 @@ ScriptedMotion ReadScripted(Section& section) {
   return motion;
 }
 
-RecordedMotion ReadRecorded(Section& section, const std::filesystem::path& folder) {
+MotionDescription ReadRecorded(Section& section, const std::filesystem::path& folder) {
   RecordedMotion motion;
   motion.file = ReadFile(section, "file", folder);
   ReadFields(section, motion);
@@ -73,7 +112,38 @@ RecordedMotion ReadRecorded(Section& section, const std::filesystem::path& folde
   return motion;
 }
 
+template <PathKind kind>
+MotionDescription ReadPath(Section& section, const std::filesystem::path& /*folder*/) {
+  PathMotion motion;
+  section.RequirePresent("start");
+  Section start = section.Child("start");
+  const bool good = ReadPose(start, motion.start);
+  settings::FieldReader fields(section);
+  Visit(fields, kind, motion);
+  if (!good) return motion;
+  try {
+    const PathTrajectory path(motion);
+    double longest_s = 0;
+    const std::array<Swing*, 3> moving = {&motion.azimuth, &motion.elevation, &motion.along};
+    for (const Swing* swing : moving) longest_s = std::max(longest_s, swing->size != 0 ? swing->period_s : 0);
+    const double pace = ReadPace(section, path, longest_s);
+    for (Swing* swing : moving) swing->period_s /= pace;
+  } catch (const std::invalid_argument& error) {
+    section.Reject("start", error.what());
+  }
+  return motion;
+}
+
 }  // namespace
+
+glm::dquat LookAt(const glm::dvec3& eye, const glm::dvec3& target, double roll_rad) {
+  const glm::dvec3 forward = glm::normalize(target - eye);
+  const glm::dvec3 up =
+      std::abs(forward.y) < 1 - 1e-12 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, forward.y > 0 ? 1 : -1);
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, up));
+  const glm::dvec3 down = glm::cross(forward, right);
+  return glm::normalize(glm::quat_cast(glm::dmat3(right, down, forward)) * Exp({0, 0, roll_rad}));
+}
 
 std::filesystem::path ReadFile(Section& section, const std::string& key, const std::filesystem::path& folder) {
   std::string name;
@@ -81,26 +151,18 @@ std::filesystem::path ReadFile(Section& section, const std::string& key, const s
 }
 
 MotionDescription ReadMotion(Section& section, const std::filesystem::path& folder) {
-  enum class Kind { sampled, scripted, recorded, orbit, half_sphere, rpy, dolly } kind = Kind::sampled;
-  const bool known = section.RequireChoice("type", kind,
-                                           {{"sampled", Kind::sampled},
-                                            {"scripted", Kind::scripted},
-                                            {"recorded", Kind::recorded},
-                                            {"orbit", Kind::orbit},
-                                            {"half_sphere", Kind::half_sphere},
-                                            {"rpy", Kind::rpy},
-                                            {"dolly", Kind::dolly}});
-  if (!known) {
-    section.IgnoreRest();
-    return SampledMotion{};
-  }
-  if (kind == Kind::sampled) return ReadSampled(section);
-  if (kind == Kind::scripted) return ReadScripted(section);
-  if (kind == Kind::recorded) return ReadRecorded(section, folder);
-  return ReadPath(section, kind == Kind::orbit         ? PathKind::orbit
-                           : kind == Kind::half_sphere ? PathKind::half_sphere
-                           : kind == Kind::rpy         ? PathKind::rpy
-                                                       : PathKind::dolly);
+  MotionDescription (*read)(Section&, const std::filesystem::path&) = ReadSampled;
+  const bool known = section.RequireChoice("type", read,
+                                           {{"sampled", ReadSampled},
+                                            {"scripted", ReadScripted},
+                                            {"recorded", ReadRecorded},
+                                            {"orbit", ReadPath<PathKind::orbit>},
+                                            {"half_sphere", ReadPath<PathKind::half_sphere>},
+                                            {"rpy", ReadPath<PathKind::rpy>},
+                                            {"dolly", ReadPath<PathKind::dolly>}});
+  if (known) return read(section, folder);
+  section.IgnoreRest();
+  return SampledMotion{};
 }
 
 }  // namespace sim

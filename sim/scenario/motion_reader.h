@@ -14,4 +14,9 @@ std::filesystem::path ReadFile(settings::Section& section, const std::string& ke
 
 MotionDescription ReadMotion(settings::Section& section, const std::filesystem::path& folder);
 
+// The camera at `eye` that looks at `target`, upright in a world whose up is +y, then turned by roll_rad about its own
+// z axis (to the right, clockwise as the camera sees it, when positive). Straight up, the camera's upper edge is
+// towards +z, straight down towards -z. The two points must differ.
+glm::dquat LookAt(const glm::dvec3& eye, const glm::dvec3& target, double roll_rad);
+
 }  // namespace sim

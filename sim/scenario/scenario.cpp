@@ -1,13 +1,13 @@
 #include "sim/scenario/scenario.h"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "sim/light/cache.h"
 #include "sim/scenario/motion_reader.h"
-#include "sim/scenario/points_reader.h"
-#include "sim/scenario/pose_reader.h"
-#include "sim/scenario/sensor_reader.h"
 #include "sim/scenario/world_reader.h"
+#include "sim/sensor/sensor.h"
 #include "tools/base/settings/field_reader.h"
 
 namespace sim {
@@ -39,23 +39,103 @@ void ReadMotionAndTime(Section root, const std::filesystem::path& folder, Scenar
   time.Reject(check.problems);
 }
 
-void ReadTruth(Section root, TruthParams& truth) {
-  std::vector<std::string> names;
-  for (const TruthStream stream : truth.streams) names.push_back(Name(stream));
-  if (root.Read("truth", names)) {
-    truth.streams.clear();
-    for (const std::string& name : names) {
-      const std::optional<TruthStream> stream = TruthStreamOf(name);
-      if (!stream) root.Reject("truth", "'truth': there is no '" + name + "'; there are " + TruthStreamList());
-      if (stream) truth.streams.insert(*stream);
+enum class Preset { none, kinect, icl_nuim };
+
+// Defaults of the other keys; sources of the numbers: docs/sensor.md.
+void Apply(Preset preset, SensorParams& sensor) {
+  if (preset == Preset::kinect) {
+    sensor.exposure_s = 0.020;
+    sensor.readout_s = 0.026;
+    sensor.mosaic = Mosaic::demosaiced;
+    sensor.full_well_e = 6000;
+    sensor.read_noise_e = 12;
+  }
+  if (preset == Preset::icl_nuim) {
+    sensor.exposure_s = 0;
+    sensor.time_samples = 1;
+    sensor.full_well_e = 4000;
+    sensor.read_noise_e = 10;
+  }
+}
+
+// rate_hz: of the frames, within which an exposure and the shutter must end.
+void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
+  section.Allow("preset");
+  if (section.Has("preset")) {  // resolved only where given
+    Preset preset = Preset::none;
+    section.ReadChoice("preset", preset,
+                       {{"none", Preset::none}, {"kinect", Preset::kinect}, {"icl_nuim", Preset::icl_nuim}});
+    Apply(preset, sensor);
+  }
+  section.Allow("covered");
+  if (section.Has("covered")) {  // resolved only where given
+    for (Section& item : section.List("covered")) {
+      Covered& covered = sensor.covered.emplace_back();
+      item.Require("from", covered.from_s, Unit::time);
+      item.Require("until", covered.until_s, Unit::time);
     }
   }
-  ReadFields(root, truth);
-  Section imu = root.Child("imu");
-  ReadOrientation(imu, "orientation", truth.imu.T_CI.q_WC);
+  ReadFields(section, sensor);
+  section.Reject(Problems(sensor));
+  settings::FieldCheck check;
+  const auto within_frame = [&](const char* key, double value_s) {
+    check.Require(std::abs(value_s) * rate_hz <= 1, key, value_s, "s is longer than the time between two frames");
+  };
+  within_frame("exposure", sensor.exposure_s);
+  within_frame("rolling_shutter", sensor.readout_s);
+  if (sensor.auto_exposure.on) within_frame("auto_exposure.longest", sensor.auto_exposure.longest_s);
+  section.Reject(check.problems);
+}
+
+void Refuse(Section& section, const std::string& path, const std::string& key) {
+  if (!section.Has(key)) return;
+  section.Allow(key);
+  section.Reject(key, "'" + path + key + "' is for worlds that are rendered: it goes with 'world.meshes', not with " +
+                          "'world.points'");
+}
+
+// `world.points`. What belongs to rendering is refused beside it.
+PointDescription ReadPoints(Section& root, Section& world, const CameraParams& camera) {
+  for (const char* key : {"meshes", "objects", "lights", "background"}) Refuse(world, "world.", key);
+  for (const char* key : {"sensor", "render", "truth", "landmarks", "imu"}) Refuse(root, "", key);
+  Section section = world.Child("points");
+  PointDescription points;
+  const bool good = ReadFields(section, points);
+  section.RequirePresent("landmarks");
+  if (good && section.Has("landmarks")) {
+    section.Reject(Problems(points, camera));
+  } else {
+    section.IgnoreRest();  // which keys there are depends on the kind of landmarks
+  }
+  return points;
+}
+
+// Whether what is seen at all places within the margin has Z > 0. The corners look farthest from the axis.
+bool LooksAhead(const CameraParams& c, double margin_px) {
+  if (c.lens != Lens::fisheye) return true;
+  for (const double u : {margin_px - 0.5, c.width - margin_px - 0.5}) {
+    for (const double v : {margin_px - 0.5, c.height - margin_px - 0.5}) {
+      const auto direction = Unproject(c, {u, v});
+      if (direction && !(direction->z > 0)) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
+
+std::vector<settings::FieldProblem> Problems(PointDescription p, const CameraParams& camera) {
+  settings::FieldCheck check;
+  Visit(check, p);
+  if (p.landmarks != Landmarks::prior) return check.problems;
+  check.Require(2 * p.margin_px < std::min(camera.width, camera.height), "margin", p.margin_px,
+                "px must leave something of the image");
+  check.Require(
+      LooksAhead(camera, p.margin_px), "margin", p.margin_px,
+      "px must leave out what the fisheye lens sees 90 degrees and more from its axis: a landmark of a prior begins in "
+      "front of the camera");
+  return check.problems;
+}
 
 Scenario LoadScenario(const std::filesystem::path& path,
                       const std::vector<std::pair<std::string, std::string>>& overrides) {
@@ -67,7 +147,8 @@ Scenario LoadScenario(const std::filesystem::path& path,
   scenario.name = path.stem().string();
   root.Read("name", scenario.name);
   root.Read("seed", scenario.seed);
-  ReadCamera(root.Child("camera"), scenario.camera);
+  Section camera = root.Child("camera");
+  if (ReadFields(camera, scenario.camera)) camera.Reject(Problems(scenario.camera));
   ReadMotionAndTime(root, folder, scenario);
   Section world = root.Child("world");
   world.Allow("points");
@@ -77,13 +158,29 @@ Scenario LoadScenario(const std::filesystem::path& path,
     ReadWorld(world, folder, scenario.time.duration_s, scenario.world);
     ReadSensor(root.Child("sensor"), scenario.time.rate_hz, scenario.sensor);
     ReadRender(root.Child("render"), folder, scenario.render);
-    ReadTruth(root, scenario.truth);
+    ReadFields(root, scenario.truth);
   }
   root.Ignore("odometry");
   root.Ignore("prior");
   document.ThrowIfBad();
   scenario.resolved = document.Resolved();
   return scenario;
+}
+
+std::int64_t CountFrames(const TimeParams& time) {
+  const double frames = std::round(time.rate_hz * time.duration_s);
+  if (!(time.rate_hz > 0) || !(frames >= 1 && frames <= 1e7)) {
+    throw std::invalid_argument("simulator: the scenario has no frame, or more than ten million");
+  }
+  return static_cast<std::int64_t>(frames);
+}
+
+std::int64_t StampNs(std::int64_t index, const TimeParams& time) {
+  if (index < 0 || index >= CountFrames(time)) {
+    throw std::out_of_range("simulator: there is no frame " + std::to_string(index) + " of " +
+                            std::to_string(CountFrames(time)));
+  }
+  return std::llround(static_cast<double>(index) * 1e9 / time.rate_hz);
 }
 
 }  // namespace sim

@@ -1,42 +1,19 @@
 #include "sim/scenario/world_reader.h"
 
 #include <glm/geometric.hpp>
-#include <numbers>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "sim/scenario/motion_reader.h"
-#include "sim/scenario/pose_reader.h"
+#include "tools/base/settings/field_reader.h"
 
 namespace sim {
 namespace {
 
-using settings::Range;
 using settings::Section;
-using settings::Unit;
 
-const Range kNotNegative = Range::AtLeast(0);
-
-// Of a light: none of the three may be negative.
-void ReadColor(Section& section, const std::string& key, glm::dvec3& color) {
-  if (ReadVector(section, key, color) && (color.x < 0 || color.y < 0 || color.z < 0)) {
-    section.Reject(key, "'" + key + "': light is not negative");
-  }
-}
-
-enum class LightKind { ambient, sun, point, rectangle, sky };
-
-void ReadFlicker(Section section, Flicker& flicker) {
-  section.Read("frequency", flicker.frequency_hz, Unit::frequency, kNotNegative);
-  section.Read("depth", flicker.depth, Range{0, 1});
-  double phase_rad = 2 * std::numbers::pi * flicker.phase;
-  section.Read("phase", phase_rad, Unit::angle);
-  flicker.phase = phase_rad / (2 * std::numbers::pi);
-  if (flicker.depth > 0 && flicker.frequency_hz == 0)
-    section.Reject("frequency", "a lamp that flickers needs a frequency above 0");
-}
-
-// Three ways to say what the sky is: one radiance, three that are blended, or a picture.
+// One radiance, three that are blended, or a picture.
 SkyDescription ReadSky(Section& section, const std::filesystem::path& folder) {
   SkyDescription sky;
   for (const char* key : {"radiance", "zenith", "horizon", "ground", "file", "strength", "turn"}) section.Allow(key);
@@ -46,66 +23,43 @@ SkyDescription ReadSky(Section& section, const std::filesystem::path& folder) {
   }
   if (section.Has("file")) {
     sky.file = ReadFile(section, "file", folder);
-    section.Read("strength", sky.strength, kNotNegative);
-    double turn_rad = 0;
-    section.Read("turn", turn_rad, Unit::angle);
-    sky.turn = turn_rad / (2 * std::numbers::pi);
+    ReadFields(section, sky);
     return sky;
   }
   for (const char* key : {"strength", "turn"}) {
     if (section.Has(key)) section.Reject(key, std::string("'") + key + "': only a sky from a file has it");
   }
   if (section.Has("radiance")) {
-    ReadColor(section, "radiance", sky.zenith);
+    settings::FieldReader fields(section);
+    fields("radiance", sky.zenith, {kOfLight, "from everywhere"});
     sky.horizon = sky.ground = sky.zenith;
-    return sky;
+  } else {
+    ReadFields(section, sky);
   }
-  ReadColor(section, "zenith", sky.zenith);
-  ReadColor(section, "horizon", sky.horizon);
-  sky.ground = sky.horizon;
-  ReadColor(section, "ground", sky.ground);
   return sky;
 }
 
-Light ReadLight(Section& section, LightKind kind) {
-  using Kind = LightKind;
-  if (kind == Kind::sun) {
-    SunLight light;
-    if (ReadVector(section, "direction", light.direction) && glm::length(light.direction) == 0) {
-      section.Reject("direction", "'direction' has no length");
-    }
-    ReadColor(section, "irradiance", light.irradiance);
-    return light;
+template <class L>
+Light ReadLight(Section& section) {
+  L light;
+  ReadFields(section, light);
+  if constexpr (std::is_same_v<L, SunLight>) {
+    if (glm::length(light.direction) == 0) section.Reject("direction", "'direction' has no length");
   }
-  if (kind == Kind::point) {
-    PointLight light;
-    ReadVector(section, "position", light.position, Unit::length);
-    ReadColor(section, "intensity", light.intensity);
-    ReadFlicker(section.Child("flicker"), light.flicker);
-    return light;
-  }
-  if (kind == Kind::rectangle) {
-    RectLight light;
-    ReadVector(section, "corner", light.corner, Unit::length);
-    ReadVector(section, "side_u", light.side_u, Unit::length);
-    ReadVector(section, "side_v", light.side_v, Unit::length);
+  if constexpr (std::is_same_v<L, RectLight>) {
     if (glm::length(glm::cross(light.side_u, light.side_v)) == 0) section.Reject("side_u", "the rectangle has no area");
-    ReadColor(section, "radiance", light.radiance);
-    ReadFlicker(section.Child("flicker"), light.flicker);
-    section.Read("visible", light.visible);
-    return light;
   }
-  AmbientLight light;
-  ReadColor(section, "radiance", light.radiance);
+  if constexpr (requires { light.flicker; }) {
+    if (light.flicker.depth > 0 && light.flicker.frequency_hz == 0)
+      section.Child("flicker").Reject("frequency", "a lamp that flickers needs a frequency above 0");
+  }
   return light;
 }
 
 MeshDescription ReadMesh(Section& section, const std::filesystem::path& folder) {
   MeshDescription mesh;
   mesh.file = ReadFile(section, "file", folder);
-  ReadVector(section, "position", mesh.position, Unit::length);
-  ReadOrientation(section, "orientation", mesh.orientation);
-  section.Read("scale", mesh.scale, Range{1e-9, 1e9});
+  ReadFields(section, mesh);
   return mesh;
 }
 
@@ -143,27 +97,27 @@ void ReadWorld(Section section, const std::filesystem::path& folder, double dura
   for (Section& mesh : section.List("meshes")) world.meshes.push_back(ReadMesh(mesh, folder));
   if (world.meshes.empty()) section.Reject("meshes", "'world.meshes': the world is empty");
   section.Allow("objects");
-  if (section.Has("objects")) {  // a manifest of a world without any says nothing of them
+  if (section.Has("objects")) {  // resolved only where given
     for (Section& object : section.List("objects")) {
       world.objects.push_back(ReadObject(object, folder, duration_s, world.objects));
     }
   }
   for (Section& light : section.List("lights")) {
-    LightKind kind = LightKind::ambient;
-    light.RequireChoice("type", kind,
-                        {{"ambient", LightKind::ambient},
-                         {"sun", LightKind::sun},
-                         {"point", LightKind::point},
-                         {"rectangle", LightKind::rectangle},
-                         {"sky", LightKind::sky}});
-    if (kind != LightKind::sky) {
-      world.lights.push_back(ReadLight(light, kind));
+    Light (*read)(Section&) = ReadLight<AmbientLight>;  // null: a sky
+    light.RequireChoice("type", read,
+                        {{"ambient", ReadLight<AmbientLight>},
+                         {"sun", ReadLight<SunLight>},
+                         {"point", ReadLight<PointLight>},
+                         {"rectangle", ReadLight<RectLight>},
+                         {"sky", nullptr}});
+    if (read != nullptr) {
+      world.lights.push_back(read(light));
       continue;
     }
     if (world.sky) light.Reject("type", "there is a sky already: a world has one at most");
     world.sky = ReadSky(light, folder);
   }
-  ReadColor(section, "background", world.background);
+  ReadFields(section, world);
 }
 
 }  // namespace sim

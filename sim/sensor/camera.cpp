@@ -1,15 +1,14 @@
 #include "sim/sensor/camera.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
 #include <initializer_list>
-#include <optional>
+#include <numbers>
 #include <sstream>
 #include <stdexcept>
-
-#include "sim/sensor/fisheye.h"
 
 namespace sim {
 namespace {
@@ -18,7 +17,49 @@ bool IsPinhole(const CameraParams& c) {
   return c.lens == Lens::radial_tangential && c.k1 == 0 && c.k2 == 0 && c.p1 == 0 && c.p2 == 0 && c.k3 == 0;
 }
 
-Fisheye FisheyeOf(const CameraParams& c) { return {{c.k1, c.k2, c.k3, c.k4}}; }
+// r(theta) = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8), in units of the focal length.
+double FisheyeRadius(const CameraParams& c, double theta) {
+  const double t2 = theta * theta;
+  return theta * (1 + t2 * (c.k1 + t2 * (c.k2 + t2 * (c.k3 + t2 * c.k4))));
+}
+
+double FisheyeRadiusByTheta(const CameraParams& c, double theta) {
+  const double t2 = theta * theta;
+  return 1 + t2 * (3 * c.k1 + t2 * (5 * c.k2 + t2 * (7 * c.k3 + t2 * 9 * c.k4)));
+}
+
+// Direction of any length, not along -z -> the point in units of the focal length.
+glm::dvec2 FisheyeProject(const CameraParams& c, const glm::dvec3& direction) {
+  const double off_axis = std::hypot(direction.x, direction.y);
+  if (off_axis == 0) return glm::dvec2(0.0);
+  return FisheyeRadius(c, std::atan2(off_axis, direction.z)) / off_axis * glm::dvec2(direction);
+}
+
+// The unit direction of a point, to 1e-14; none where the lens is not one-to-one on the way from the axis to it, or
+// where it would lie more than pi from the axis.
+std::optional<glm::dvec3> FisheyeUnproject(const CameraParams& c, const glm::dvec2& point) {
+  const double radius = glm::length(point);
+  if (radius == 0) return glm::dvec3(0.0, 0.0, 1.0);
+  // March to the first angle that is too large, then halve and refine: a fold on the way is seen.
+  constexpr int kSteps = 256;
+  double below = 0, above = 0;
+  for (int i = 1; i <= kSteps && above == 0; ++i) {
+    const double theta = std::numbers::pi * i / kSteps;
+    if (!(FisheyeRadiusByTheta(c, theta - 0.5 * std::numbers::pi / kSteps) > 1e-6)) return std::nullopt;
+    (FisheyeRadius(c, theta) >= radius ? above : below) = theta;
+  }
+  if (above == 0 || !(FisheyeRadiusByTheta(c, above) > 1e-6)) return std::nullopt;
+  double theta = 0.5 * (below + above);
+  for (int i = 0; i < 60; ++i) {
+    const double miss = FisheyeRadius(c, theta) - radius;
+    (miss > 0 ? above : below) = theta;
+    const double newton = theta - miss / FisheyeRadiusByTheta(c, theta);
+    const double next = newton > below && newton < above ? newton : 0.5 * (below + above);
+    if (std::abs(next - theta) < 1e-15) break;
+    theta = next;
+  }
+  return glm::dvec3(std::sin(theta) / radius * point, std::cos(theta));
+}
 
 glm::dvec2 Distort(const CameraParams& c, const glm::dvec2& p) {
   const double x = p.x, y = p.y, r2 = x * x + y * y;
@@ -68,7 +109,7 @@ std::optional<glm::dvec3> SolveInSteps(const CameraParams& c, const glm::dvec2& 
 // The direction in the part of the plane around the optical axis on which the lens is one-to-one; none outside of it.
 // Where the lens is nearly flat on the way the method converges only from nearby: in more steps.
 std::optional<glm::dvec3> Solve(const CameraParams& c, const glm::dvec2& target, std::initializer_list<int> steps) {
-  if (c.lens == Lens::fisheye) return FisheyeOf(c).Unproject(target);
+  if (c.lens == Lens::fisheye) return FisheyeUnproject(c, target);
   for (const int n : steps) {
     if (const std::optional<glm::dvec3> solution = SolveInSteps(c, target, n)) return solution;
   }
@@ -99,6 +140,12 @@ std::vector<settings::FieldProblem> Problems(CameraParams c) {
   for (int i = 0; i <= c.width; ++i) invert(i - 0.5, -0.5), invert(i - 0.5, bottom);
   for (int j = 0; j <= c.height; ++j) invert(-0.5, j - 0.5), invert(right, j - 0.5);
   return problems;
+}
+
+std::optional<glm::dvec3> Unproject(const CameraParams& params, const glm::dvec2& pixel) {
+  const glm::dvec2 target = Normalized(params, pixel);
+  if (IsPinhole(params)) return glm::dvec3(target, 1.0);
+  return Solve(params, target, {4, 16, 64});
 }
 
 CameraParams Binned(const CameraParams& params, int factor) {
@@ -134,15 +181,13 @@ Camera::Camera(const CameraParams& params)
 }
 
 glm::dvec2 Camera::Project(const glm::dvec3& X_C) const {
-  const glm::dvec2 d = params_.lens == Lens::fisheye ? FisheyeOf(params_).Project(X_C)
-                                                     : Distort(params_, {X_C.x / X_C.z, X_C.y / X_C.z});
+  const glm::dvec2 d =
+      params_.lens == Lens::fisheye ? FisheyeProject(params_, X_C) : Distort(params_, {X_C.x / X_C.z, X_C.y / X_C.z});
   return {params_.fx * d.x + params_.cx, params_.fy * d.y + params_.cy};
 }
 
 glm::dvec3 Camera::Direction(const glm::dvec2& pixel) const {
-  const glm::dvec2 target = Normalized(params_, pixel);
-  if (IsPinhole(params_)) return {target, 1.0};
-  const std::optional<glm::dvec3> solution = Solve(params_, target, {4, 16, 64});
+  const std::optional<glm::dvec3> solution = Unproject(params_, pixel);
   if (!solution)
     throw std::invalid_argument("camera: pixel outside the part of the plane where the lens is one-to-one");
   return *solution;

@@ -1,5 +1,6 @@
 // Camera model: projection and back-projection, pinhole with radial-tangential distortion, or fisheye.
-// Source: docs/conventions.md, "Camera model" (the models of OpenCV, TUM RGB-D and Kalibr).
+// Source: docs/conventions.md, "Camera model" (the models of OpenCV, TUM RGB-D and Kalibr); Kannala and Brandt 2006 for
+//   the fisheye, as OpenCV (cv::fisheye) and Kalibr ("equidistant") write it.
 // Units: pixels, the centre of the first pixel is (0, 0); directions in C (x right, y down, z forward).
 #pragma once
 
@@ -8,6 +9,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "tools/base/settings/fields.h"
@@ -28,12 +30,12 @@ template <class V>
 void Visit(V& v, CameraParams& p) {
   using settings::Range, settings::Unit;
   const Range side{1, 1 << 14};
-  v("width", p.width, {side, "of the image [px]"});
-  v("height", p.height, {side, "of the image [px]"});
-  v("fx", p.fx, {Unit::pixel, Range::Positive(), "focal length"});
-  v("fy", p.fy, {Unit::pixel, Range::Positive(), "focal length"});
-  v("cx", p.cx, {Unit::pixel, "principal point"});
-  v("cy", p.cy, {Unit::pixel, "principal point"});
+  v.Required("width", p.width, {side, "of the image [px]"});
+  v.Required("height", p.height, {side, "of the image [px]"});
+  v.Required("fx", p.fx, {Unit::pixel, Range::Positive(), "focal length"});
+  v.Required("fy", p.fy, {Unit::pixel, Range::Positive(), "focal length"});
+  v.Required("cx", p.cx, {Unit::pixel, "principal point"});
+  v.Required("cy", p.cy, {Unit::pixel, "principal point"});
   v.Child("distortion", [&](auto& lens) {
     lens("model", p.lens, {{"radial_tangential", Lens::radial_tangential}, {"fisheye", Lens::fisheye}}, "of the lens");
     lens("k1", p.k1, {"radial"});
@@ -48,6 +50,10 @@ void Visit(V& v, CameraParams& p) {
 // Ranges, and rules between several values. The lens must be one-to-one on the whole image: a distortion that folds
 // over inside it is a problem.
 std::vector<settings::FieldProblem> Problems(CameraParams params);
+
+// Pixel -> direction in C: (X/Z, Y/Z, 1), or a unit vector of a fisheye lens; to 1e-13 (Newton's method). None far
+// outside the image, where the lens is not one-to-one.
+std::optional<glm::dvec3> Unproject(const CameraParams& params, const glm::dvec2& pixel);
 
 // The camera whose pixels are `factor` x `factor` of this one's.
 CameraParams Binned(const CameraParams& params, int factor);
@@ -64,8 +70,7 @@ class Camera {
   // Point in C -> pixel, lens distortion included. Z > 0; a fisheye lens sees every direction but that of -z.
   glm::dvec2 Project(const glm::dvec3& X_C) const;
 
-  // Pixel -> direction in C: (X/Z, Y/Z, 1), or a unit vector of a fisheye lens; to 1e-13 (Newton's method). Throws
-  // std::invalid_argument far outside the image, where the lens is not one-to-one.
+  // Unproject. Throws std::invalid_argument where there is none.
   glm::dvec3 Direction(const glm::dvec2& pixel) const;
   // (X/Z, Y/Z) of it. Throws also where Z is not positive.
   glm::dvec2 Undistort(const glm::dvec2& pixel) const;

@@ -11,7 +11,8 @@ namespace sim {
 
 // With (dx, dy) normal of standard deviation 1/2 px and n normal of standard deviation 1/6:
 //   Z' = 351.30 m / round(351.30 m / Z(x + dx, y + dy) + n),
-// Z(.) bilinear in depth where its four neighbours lie within 10 cm of each other, else the nearest of them. 0 stays 0. A function of the arguments alone.
+// Z(.) bilinear in depth where its four neighbours lie within 10 cm of each other, else the nearest of them. 0 stays 0.
+// A function of the arguments alone.
 std::vector<float> WithKinectNoise(std::span<const float> depth_m, int width, int height, std::uint64_t seed,
                                    std::int64_t frame);
 

@@ -31,7 +31,7 @@ void Visit(V& v, OpticsParams& p) {
   v("vignetting_6", p.vignetting_6, {"in half diagonals of the image"});
 }
 
-// Exposure time and gain of each frame from the brightness of the one before: sim/sensor/auto_exposure.h.
+// Exposure time and gain of each frame from the brightness of the one before: sim/sensor/exposure.h.
 struct AutoExposureParams {
   bool on = false;
   double target = 0.45;

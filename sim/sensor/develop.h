@@ -1,9 +1,40 @@
-// Image processing after the sensor: demosaicing, JPEG compression.
+// Image processing after the sensor: camera response function, demosaicing, JPEG compression.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
+#include "sim/sensor/description.h"
 #include "sim/sensor/image.h"
 
 namespace sim {
+
+// R(x) for x in [0, 1]: x itself, or the sRGB curve.
+double EncodeResponse(Response response, double x);
+
+// code = round(255 R(x)), R(x) = x or the sRGB curve; exact at every threshold R^-1((code + 1/2) / 255) as rounded to
+// float.
+class ResponseCurve {
+ public:
+  explicit ResponseCurve(Response response);
+
+  // x in [0, 1]; what is beyond is clipped, NaN is 0.
+  std::uint8_t Encode(float x) const {
+    if (!(x > 0.0f)) return 0;
+    if (x >= 1.0f) return 255;
+    int code = guess_[static_cast<std::size_t>(x * kCells)];
+    while (code < 255 && x >= threshold_[static_cast<std::size_t>(code)]) ++code;
+    return static_cast<std::uint8_t>(code);
+  }
+
+  // The fraction that a code stands for.
+  static double Decode(Response response, double code_0_to_1);
+
+ private:
+  static constexpr int kCells = 4096;
+  std::array<float, 255> threshold_{};        // from code i to i + 1
+  std::array<std::uint8_t, kCells> guess_{};  // the code at the lower end of each cell
+};
 
 // The channel that the pixel's filter lets through: RGGB, red at (0, 0). 0: red, 1: green, 2: blue.
 inline int BayerChannel(int x, int y) { return (x & 1) + (y & 1); }

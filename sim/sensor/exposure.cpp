@@ -1,6 +1,9 @@
 #include "sim/sensor/exposure.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "sim/sensor/sensor.h"
 
 namespace sim {
 
@@ -15,6 +18,43 @@ std::vector<std::string> Problems(const Exposure& exposure) {
     problems.push_back("an aperture is not negative");
   if (!(exposure.focus_m > 0)) problems.push_back("the plane of focus lies in front of the camera");
   return problems;
+}
+
+AutoExposure::AutoExposure(const SensorParams& sensor) : sensor_(sensor), setting_{sensor.exposure_s, sensor.gain} {
+  ThrowIfAny(Problems(sensor), "auto exposure");
+}
+
+double AutoExposure::Brightness(const RadianceImage& frame, double signal) const {
+  const double dark = sensor_.black_level + signal * sensor_.dark_current_e_s / sensor_.full_well_e;
+  const double scale = signal / (sensor_.white * sensor_.exposure_s);
+  const auto shown = [&](float light) { return EncodeResponse(sensor_.response, std::min(1.0, dark + scale * light)); };
+  double sum = 0;
+  for (std::size_t i = 0; i < frame.rgb.size(); i += 3) {
+    const float* rgb = &frame.rgb[i];
+    if (!sensor_.color) {
+      sum += shown(Luminance(rgb));
+    } else if (sensor_.mosaic == Mosaic::raw) {
+      sum += (shown(rgb[0]) + 2 * shown(rgb[1]) + shown(rgb[2])) / 4;
+    } else {
+      sum += (shown(rgb[0]) + shown(rgb[1]) + shown(rgb[2])) / 3;
+    }
+  }
+  return 3 * sum / static_cast<double>(frame.rgb.size());
+}
+
+void AutoExposure::Meter(const RadianceImage& frame) {
+  const AutoExposureParams& p = sensor_.auto_exposure;
+  const double lowest = p.shortest_s, highest = p.longest_s * p.highest_gain;
+  // The wanted signal by halving: brightness grows with it.
+  double low = std::log(lowest), high = std::log(highest);
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (Brightness(frame, std::exp(middle)) < p.target ? low : high) = middle;
+  }
+  const double now = std::log(setting_.exposure_s * setting_.gain);
+  const double next = std::clamp(std::exp(now + p.speed * (0.5 * (low + high) - now)), lowest, highest);
+  setting_.exposure_s = std::clamp(next, p.shortest_s, p.longest_s);
+  setting_.gain = std::max(1.0, next / setting_.exposure_s);
 }
 
 }  // namespace sim

@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "sim/random/random.h"
-#include "sim/sensor/develop.h"
 
 namespace sim {
 namespace {
@@ -54,11 +53,35 @@ bool SensorParams::IsCovered(double t_s) const {
   return std::ranges::any_of(covered, [&](const Covered& c) { return t_s >= c.from_s && t_s < c.until_s; });
 }
 
+FixedPattern MakeFixedPattern(const SensorParams& params, std::uint64_t seed, int width, int height, int channels) {
+  FixedPattern pattern;
+  const bool has_sensitivity = params.photo_response_sigma > 0;
+  const bool has_dark = params.dark_current_e_s > 0 || params.dark_sigma_e_s > 0 || params.hot_pixels > 0;
+  if (!has_sensitivity && !has_dark) return pattern;
+  if (width < 1 || height < 1) throw std::invalid_argument("sensor: a fixed pattern needs the size of the pictures");
+  const std::size_t n =
+      static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(channels);
+  if (has_sensitivity) pattern.sensitivity.resize(n);
+  if (has_dark) pattern.dark_e_s.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto pixel = static_cast<std::uint32_t>(i / static_cast<std::size_t>(channels)),
+               channel = static_cast<std::uint32_t>(i % static_cast<std::size_t>(channels));
+    const auto [z_light, z_dark] = Normals(RandomWords(seed, Stream::fixed_pattern, 0, pixel, channel));
+    if (has_sensitivity)
+      pattern.sensitivity[i] = static_cast<float>(std::max(0.0, 1 + params.photo_response_sigma * z_light));
+    if (!has_dark) continue;
+    const Words words = RandomWords(seed, Stream::fixed_pattern, 1, pixel, channel);
+    const bool hot = Uniform(words[0], words[1]) < params.hot_pixels;
+    const double hot_e_s = hot ? -params.hot_current_e_s * std::log(Uniform(words[2], words[3])) : 0.0;
+    pattern.dark_e_s[i] =
+        static_cast<float>(std::max(0.0, params.dark_current_e_s + params.dark_sigma_e_s * z_dark) + hot_e_s);
+  }
+  return pattern;
+}
+
 Sensor::Sensor(const SensorParams& params, std::uint64_t seed, int width, int height)
     : params_(params), seed_(seed), response_(params.response) {
   ThrowIfAny(Problems(params), "sensor");
-  if (HasFixedPattern(params) && (width < 1 || height < 1))
-    throw std::invalid_argument("sensor: a fixed pattern needs the size of the pictures");
   pattern_ = MakeFixedPattern(params, seed, width, height, static_cast<int>(channels()));
 }
 
@@ -113,11 +136,9 @@ void Sensor::ExpectLight(const RadianceImage& radiance, std::size_t y, double pe
   for (float& expected_e : electrons) expected_e = std::min(expected_e, most);
 }
 
-Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame) const {
-  return Capture(radiance, frame, {params_.exposure_s, params_.gain});
-}
-
-Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame, const ExposureSetting& setting) const {
+Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame,
+                      const std::optional<ExposureSetting>& of_frame) const {
+  const ExposureSetting setting = of_frame.value_or(ExposureSetting{params_.exposure_s, params_.gain});
   const std::size_t width = static_cast<std::size_t>(radiance.width),
                     height = static_cast<std::size_t>(radiance.height), row_size = width * channels();
   Image image{radiance.width, radiance.height, static_cast<int>(channels()), {}, params_.bit_depth, {}};
@@ -159,6 +180,26 @@ Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame, const E
   });
   if (params_.mosaic == Mosaic::demosaiced) image = Demosaic(image);
   return params_.jpeg_quality > 0 ? ThroughJpeg(image, params_.jpeg_quality) : image;
+}
+
+EmvaFigures Emva(const SensorParams& p) {
+  EmvaFigures f;
+  const double codes = std::pow(2.0, p.bit_depth) - 1;
+  f.system_gain = codes * p.gain / p.full_well_e;
+  const double dark_e = p.dark_current_e_s * p.exposure_s;
+  const double dark_variance = p.read_noise_e * p.read_noise_e + (p.shot_noise ? dark_e : 0.0);
+  f.dark_noise_e = std::sqrt(dark_variance);
+  f.saturation_e = (1 - p.black_level) * p.full_well_e / p.gain - dark_e;
+  f.saturation_p = f.saturation_e / p.quantum_efficiency;
+  // SNR = N / sqrt(N + sigma_d^2 + sigma_q^2 / K^2) = 1.
+  const double floor = dark_variance + 1 / (12 * f.system_gain * f.system_gain);
+  const double shot = p.shot_noise ? 1.0 : 0.0;
+  f.sensitivity_p = (0.5 * shot + std::sqrt(0.25 * shot + floor)) / p.quantum_efficiency;
+  f.snr_max = f.saturation_e / std::sqrt(shot * f.saturation_e + floor);
+  f.dynamic_range = f.saturation_p / f.sensitivity_p;
+  f.prnu_percent = 100 * p.photo_response_sigma;
+  f.dsnu_e = p.dark_sigma_e_s * p.exposure_s;
+  return f;
 }
 
 }  // namespace sim

@@ -1,23 +1,29 @@
-// Sensor model: shot noise, dark current, read noise, fixed pattern, gain, saturation, response, quantisation.
-// Source: EMVA Standard 1288, release 4.0 linear; Janesick 2007, "Photon transfer".
+// Sensor model: shot noise, dark current, read noise, fixed pattern, gain, saturation, response, quantisation; its
+// figures of merit by EMVA 1288.
+// Source: EMVA Standard 1288, release 4.0 linear, sections 2 and 3; Janesick 2007, "Photon transfer".
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "sim/sensor/auto_exposure.h"
-#include "sim/sensor/description.h"
-#include "sim/sensor/fixed_pattern.h"
-#include "sim/sensor/image.h"
-#include "sim/sensor/radiance_image.h"
-#include "sim/sensor/response.h"
+#include "sim/sensor/develop.h"
+#include "sim/sensor/exposure.h"
 
 namespace sim {
 
 // Ranges, and rules between several values; empty when all is well.
 std::vector<settings::FieldProblem> Problems(SensorParams params);
+
+// Fixed-pattern noise: spatial nonuniformity of sensitivity (PRNU) and dark current (DSNU) of every pixel and channel,
+// in the image's order; empty: the same for all. A function of the settings, the size and the seed.
+struct FixedPattern {
+  std::vector<float> sensitivity;  // factor of the light, >= 0
+  std::vector<float> dark_e_s;     // dark current [electrons / s], >= 0
+};
+FixedPattern MakeFixedPattern(const SensorParams& params, std::uint64_t seed, int width, int height, int channels);
 
 // Per pixel and channel, with L the mean linear radiance of the exposure, in the order of the light's way:
 //   light                N = full_well L / white * (exposure time / exposure_s) * (1 + photo_response_sigma z_fixed)
@@ -40,9 +46,9 @@ class Sensor {
   // Depends on its arguments, the settings and the seed alone. Works in the calling thread's TBB arena. Throws
   // std::logic_error for a radiance that is negative or not a number: the renderer's fault; std::invalid_argument when
   // the picture has another size than the fixed pattern.
-  Image Capture(const RadianceImage& radiance, std::int64_t frame) const;
-  // With the exposure time and the gain of this frame instead of the settings' own.
-  Image Capture(const RadianceImage& radiance, std::int64_t frame, const ExposureSetting& setting) const;
+  // of_frame: exposure time and gain of this frame instead of the settings' own.
+  Image Capture(const RadianceImage& radiance, std::int64_t frame,
+                const std::optional<ExposureSetting>& of_frame = std::nullopt) const;
 
  private:
   std::size_t channels() const { return params_.color && params_.mosaic == Mosaic::none ? 3 : 1; }
@@ -56,5 +62,21 @@ class Sensor {
   ResponseCurve response_;
   FixedPattern pattern_;
 };
+
+// Figures of merit; equations of the standard in brackets.
+struct EmvaFigures {
+  double system_gain = 0.0;    // K: digital numbers per electron, before the response curve (6)
+  double dark_noise_e = 0.0;   // sigma_d of the exposure: read noise and the shot noise of the dark current
+  double saturation_p = 0.0;   // photons per pixel that fill the scale, above the black level
+  double saturation_e = 0.0;   // the same in electrons
+  double sensitivity_p = 0.0;  // absolute sensitivity threshold: photons at which SNR = 1 (27)
+  double snr_max = 0.0;        // at saturation: sqrt(saturation_e) without a fixed pattern
+  double dynamic_range = 0.0;  // saturation_p / sensitivity_p (28)
+  double prnu_percent = 0.0;
+  double dsnu_e = 0.0;  // of the exposure
+};
+
+// Of a picture with the given exposure time and gain; hot pixels apart.
+EmvaFigures Emva(const SensorParams& params);
 
 }  // namespace sim

@@ -6,7 +6,7 @@
 
 #include "sim/sensor/camera.h"
 #include "sim/sensor/description.h"
-#include "sim/sensor/radiance_image.h"
+#include "sim/sensor/image.h"
 
 namespace sim {
 

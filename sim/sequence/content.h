@@ -1,4 +1,4 @@
-// Content of a sequence: the files of each frame, and those of the whole.
+// Content of a sequence: the files of each frame, those of the whole, and its provenance record, manifest.json.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "sim/sequence/layout.h"
-#include "sim/sequence/stream_file.h"
 #include "sim/simulator.h"
 
 namespace sim {
@@ -17,7 +16,7 @@ struct SequenceContent {
   std::string program;               // name and version, for the record
 };
 
-// Throws std::invalid_argument for frames that the simulator does not have, and for what the layout cannot say.
+// Throws std::invalid_argument for frames that the simulator does not have, and for what the layout has no place for.
 void Validate(const SequenceContent& content, const Simulator& simulator);
 
 // Everything that is a frame's own, rendered and encoded: a pure function of its index, whatever else is written.
@@ -25,5 +24,15 @@ std::vector<StreamFile> FrameFiles(const Simulator& simulator, const SequenceCon
 
 // Lists, truth, camera, manifest of the first `whole` frames of the content. Of fewer frames no file is longer.
 std::vector<StreamFile> WholeFiles(const Simulator& simulator, const SequenceContent& content, std::int64_t whole);
+
+inline constexpr char kManifestName[] = "manifest.json";
+
+// JSON: program version, layout, seed, range of frames asked for, frames that are there (`whole`), camera, scenario.
+std::string Manifest(const Simulator& simulator, const SequenceContent& content, std::int64_t whole);
+
+// Differences of two manifests apart from the number of frames: "scenario.sensor.exposure is 0.01 there, not 0.002",
+// one line for each key; empty when the one sequence is a part of the other. Throws std::invalid_argument when `there`
+// is no JSON object.
+std::vector<std::string> ManifestDifferences(const std::string& there, const std::string& wanted);
 
 }  // namespace sim

@@ -4,30 +4,6 @@
 #include <glm/gtc/quaternion.hpp>
 
 namespace sim {
-namespace {
-
-// Where each point that is seen here is at the other stamp, in W.
-class PointsThere {
- public:
-  PointsThere(const SurfaceTracer& surfaces, const View& here, const View& there)
-      : here_(here.pose),
-        objects_here_(surfaces.ObjectPoses(here.t_s)),
-        objects_there_(surfaces.ObjectPoses(there.t_s)) {}
-
-  glm::dvec3 operator()(const SurfacePoint& point) const {
-    const glm::dvec3 X_W = here_.p_WC + here_.q_WC * point.X_C;
-    if (point.object == kWorld) return X_W;
-    const auto object = static_cast<std::size_t>(point.object);
-    const Pose &now = objects_here_[object], &then = objects_there_[object];
-    return then.p_WC + then.q_WC * (glm::conjugate(now.q_WC) * (X_W - now.p_WC));
-  }
-
- private:
-  Pose here_;
-  std::vector<Pose> objects_here_, objects_there_;
-};
-
-}  // namespace
 
 bool HasPixel(const Camera& camera, const glm::dvec3& X_C) {
   if (camera.params().lens == Lens::fisheye) return X_C.x != 0 || X_C.y != 0 || X_C.z > 0;
@@ -48,7 +24,15 @@ FlowImage FlowBetween(const SurfaceTracer& surfaces, const Camera& camera, std::
                       const View& here, const View& there) {
   FlowImage flow{std::vector<float>(2 * points.size(), kUnknownFlow), std::vector<std::uint8_t>(points.size(), 1)};
   const glm::dquat q_CW = glm::conjugate(there.pose.q_WC);
-  const PointsThere point_there(surfaces, here, there);
+  const std::vector<Pose> objects_here = surfaces.ObjectPoses(here.t_s),
+                          objects_there = surfaces.ObjectPoses(there.t_s);
+  const auto point_there = [&](const SurfacePoint& point) {  // in W
+    const glm::dvec3 X_W = here.pose.p_WC + here.pose.q_WC * point.X_C;
+    if (point.object == kWorld) return X_W;
+    const auto object = static_cast<std::size_t>(point.object);
+    const Pose &now = objects_here[object], &then = objects_there[object];
+    return then.p_WC + then.q_WC * (glm::conjugate(now.q_WC) * (X_W - now.p_WC));
+  };
   std::vector<glm::dvec3> in_image;
   std::vector<std::size_t> pixel_of;
   const auto width = static_cast<std::size_t>(camera.width());

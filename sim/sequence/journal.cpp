@@ -4,9 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
-#include <optional>
 #include <sstream>
 
 #include "tools/base/files.h"
@@ -17,18 +14,11 @@ namespace {
 
 std::uint32_t Sum(std::span<const std::uint8_t> bytes) { return libdeflate_crc32(0, bytes.data(), bytes.size()); }
 
-std::optional<std::vector<std::uint8_t>> ReadBytes(const fs::path& path, std::uint64_t size) {
-  std::error_code error;
-  if (fs::file_size(path, error) != size || error) return std::nullopt;
-  std::vector<std::uint8_t> bytes(size);
-  std::ifstream file(path, std::ios::binary);
-  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  return file ? std::optional(std::move(bytes)) : std::nullopt;
-}
-
 bool IsWhole(const fs::path& folder, const JournalFile& file) {
-  const auto bytes = ReadBytes(folder / file.path, file.size);
-  return bytes && Sum(*bytes) == file.crc32;
+  std::error_code error;
+  if (fs::file_size(folder / file.path, error) != file.size || error) return false;
+  const std::string bytes = base::ReadFile(folder / file.path).value_or("");
+  return bytes.size() == file.size && Sum(base::AsBytes(bytes)) == file.crc32;
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/sequence/stream_file.h"
+#include "sim/sequence/encode.h"
 
 namespace sim {
 
@@ -31,7 +31,7 @@ std::vector<JournalFile> Summed(std::span<const StreamFile> files);
 // "index path size crc32 path size crc32 ...", with the newline.
 std::string JournalLine(std::int64_t index, std::span<const JournalFile> files);
 
-// The frames of which every file in `folder` has the size and the sum that the journal there tells; each is read whole.
+// The frames of which every file in `folder` has its size and sum in the journal there; each is read whole.
 // A line that breaks off or makes no sense counts for nothing. No journal: no frames.
 Journal ReadJournal(const std::filesystem::path& folder);
 

@@ -1,14 +1,25 @@
 #include "sim/sequence/layout.h"
 
-#include <stdexcept>
-
-#include "sim/sequence/format.h"
 #include "tools/base/settings/quantity.h"
+#include "tools/base/text.h"
 
 namespace sim {
 namespace {
 
 using Frames = std::span<const StampedTruth>;
+
+std::string Line(std::string line, char separator, std::initializer_list<double> numbers) {
+  for (const double number : numbers) line += separator + FormatDecimal(number);
+  return line + "\n";
+}
+
+std::string Distortion(const CameraParams& c) {
+  const auto number = settings::FormatNumber;
+  const std::string radial = "k1: " + number(c.k1) + ", k2: " + number(c.k2);
+  if (c.lens == Lens::fisheye)
+    return "{model: fisheye, " + radial + ", k3: " + number(c.k3) + ", k4: " + number(c.k4) + "}";
+  return "{" + radial + ", p1: " + number(c.p1) + ", p2: " + number(c.p2) + ", k3: " + number(c.k3) + "}";
+}
 
 // ---- TUM RGB-D; the lists of depth and other truth are with their streams (sim/sequence/streams.h)
 
@@ -16,7 +27,7 @@ std::vector<StreamFile> TumLists(Frames frames) {
   std::string rgb = "# timestamp filename\n", truth = "# timestamp tx ty tz qx qy qz qw\n",
               velocity = "# timestamp vx vy vz wx wy wz\n";
   for (const StampedTruth& frame : frames) {
-    const std::string stamp = FormatStamp(frame.stamp_ns);
+    const std::string stamp = base::FormatSeconds(frame.stamp_ns);
     const FrameNames names = NamesOf(Layout::tum, frame.index, frame.stamp_ns);
     rgb.append(stamp).append(" ").append(names.image).append("\n");
     truth += TruthLine(frame.stamp_ns, frame.truth);
@@ -67,12 +78,9 @@ std::string EurocImu(const ImuParams& imu) {
 std::string EurocTruthLine(const StampedTruth& frame) {
   const Truth& t = frame.truth;
   const glm::dvec3 &w = frame.gyroscope_bias, &a = frame.accelerometer_bias;
-  std::string line = std::to_string(frame.stamp_ns);
-  for (const double number : {t.p_WC.x, t.p_WC.y, t.p_WC.z, t.q_WC.w, t.q_WC.x, t.q_WC.y, t.q_WC.z, t.v_WC.x, t.v_WC.y,
-                              t.v_WC.z, w.x, w.y, w.z, a.x, a.y, a.z}) {
-    line += "," + FormatDecimal(number);
-  }
-  return line + "\n";
+  return Line(std::to_string(frame.stamp_ns), ',',
+              {t.p_WC.x, t.p_WC.y, t.p_WC.z, t.q_WC.w, t.q_WC.x, t.q_WC.y, t.q_WC.z, t.v_WC.x, t.v_WC.y, t.v_WC.z, w.x,
+               w.y, w.z, a.x, a.y, a.z});
 }
 
 std::vector<StreamFile> EurocLists(const Scenario& scenario, Frames frames) {
@@ -128,16 +136,39 @@ std::vector<StreamFile> IclLists(Frames frames) {
 
 }  // namespace
 
+std::string FormatDecimal(double number) {
+  const std::string text = base::Fixed(number, 12);
+  return text == "-0.000000000000" ? text.substr(1) : text;
+}
+
+std::string TruthLine(std::int64_t stamp_ns, const Truth& t) {
+  return Line(base::FormatSeconds(stamp_ns), ' ',
+              {t.p_WC.x, t.p_WC.y, t.p_WC.z, t.q_WC.x, t.q_WC.y, t.q_WC.z, t.q_WC.w});
+}
+
+std::string ExposureLine(std::int64_t stamp_ns, const ExposureSetting& setting) {
+  return Line(base::FormatSeconds(stamp_ns), ' ', {setting.exposure_s, setting.gain});
+}
+
+std::string VelocityLine(std::int64_t stamp_ns, const Truth& t) {
+  return Line(base::FormatSeconds(stamp_ns), ' ', {t.v_WC.x, t.v_WC.y, t.v_WC.z, t.w_WC_C.x, t.w_WC_C.y, t.w_WC_C.z});
+}
+
+std::string AccelerationLine(std::int64_t stamp_ns, const Truth& t) {
+  return Line(base::FormatSeconds(stamp_ns), ' ',
+              {t.a_WC.x, t.a_WC.y, t.a_WC.z, t.alpha_WC_C.x, t.alpha_WC_C.y, t.alpha_WC_C.z});
+}
+
+std::string CameraYaml(const CameraParams& c, double readout_s) {
+  const auto number = settings::FormatNumber;
+  return "width: " + std::to_string(c.width) + "\nheight: " + std::to_string(c.height) + "\nfx: " + number(c.fx) +
+         "\nfy: " + number(c.fy) + "\ncx: " + number(c.cx) + "\ncy: " + number(c.cy) +
+         "\ndistortion: " + Distortion(c) + "\n" +
+         (readout_s != 0 ? "rolling_shutter: " + number(readout_s) + " s\n" : "");
+}
+
 std::string ToString(Layout layout) {
-  switch (layout) {
-    case Layout::tum:
-      return "tum";
-    case Layout::euroc:
-      return "euroc";
-    case Layout::icl:
-      return "icl";
-  }
-  throw std::logic_error("no such layout");
+  return layout == Layout::tum ? "tum" : layout == Layout::euroc ? "euroc" : "icl";
 }
 
 std::vector<std::string> Problems(Layout layout, const Scenario& scenario) {
@@ -152,28 +183,17 @@ std::vector<std::string> Problems(Layout layout, const Scenario& scenario) {
 }
 
 FrameNames NamesOf(Layout layout, std::int64_t index, std::int64_t stamp_ns) {
-  switch (layout) {
-    case Layout::tum:
-      return {"rgb/" + FormatStamp(stamp_ns) + ".png", "depth/" + FormatStamp(stamp_ns) + ".png"};
-    case Layout::euroc:
-      return {"mav0/cam0/data/" + std::to_string(stamp_ns) + ".png",
-              "mav0/depth0/data/" + std::to_string(stamp_ns) + ".png"};
-    case Layout::icl:
-      return {"rgb/" + std::to_string(index) + ".png", "depth/" + std::to_string(index) + ".png"};
+  if (layout == Layout::euroc) {
+    const std::string name = std::to_string(stamp_ns) + ".png";
+    return {"mav0/cam0/data/" + name, "mav0/depth0/data/" + name};
   }
-  throw std::logic_error("no such layout");
+  const std::string name = (layout == Layout::tum ? base::FormatSeconds(stamp_ns) : std::to_string(index)) + ".png";
+  return {"rgb/" + name, "depth/" + name};
 }
 
 std::vector<StreamFile> Lists(Layout layout, const Scenario& scenario, Frames frames) {
-  switch (layout) {
-    case Layout::tum:
-      return TumLists(frames);
-    case Layout::euroc:
-      return EurocLists(scenario, frames);
-    case Layout::icl:
-      return IclLists(frames);
-  }
-  throw std::logic_error("no such layout");
+  if (layout == Layout::tum) return TumLists(frames);
+  return layout == Layout::euroc ? EurocLists(scenario, frames) : IclLists(frames);
 }
 
 }  // namespace sim

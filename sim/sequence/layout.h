@@ -1,4 +1,4 @@
-// File layouts of a sequence (docs/sequence_format.md).
+// File layouts and text formats of a sequence (docs/sequence_format.md).
 // Source: TUM RGB-D benchmark (Sturm et al. 2012); EuRoC MAV dataset in ASL's format (Burri et al. 2016); ICL-NUIM
 //   (Handa et al. 2014).
 #pragma once
@@ -8,9 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "sim/motion/truth.h"
+#include "sim/motion/trajectory.h"
 #include "sim/scenario/scenario.h"
-#include "sim/sequence/stream_file.h"
+#include "sim/sensor/exposure.h"
+#include "sim/sequence/encode.h"
 
 namespace sim {
 
@@ -34,8 +35,20 @@ struct StampedTruth {
   Truth truth;
   glm::dvec3 gyroscope_bias{0.0}, accelerometer_bias{0.0};  // of the IMU, in I
 };
-// Lists of frames and truth, with a line for each of `frames`, which are in order of time; and what the layout says of
-// its sensors.
+// Lists of frames and truth, with a line for each of `frames`, which are in order of time; and the sensor files
+// of the layout.
 std::vector<StreamFile> Lists(Layout layout, const Scenario& scenario, std::span<const StampedTruth> frames);
+
+// Twelve decimals: beyond any use, so that rounding is never a question; a negative zero loses its sign.
+std::string FormatDecimal(double number);
+// "stamp tx ty tz qx qy qz qw" and "stamp vx vy vz wx wy wz", with the newline.
+std::string TruthLine(std::int64_t stamp_ns, const Truth& truth);
+std::string VelocityLine(std::int64_t stamp_ns, const Truth& truth);
+// "stamp ax ay az alphax alphay alphaz", the same.
+std::string AccelerationLine(std::int64_t stamp_ns, const Truth& truth);
+// "stamp exposure gain", the time in seconds.
+std::string ExposureLine(std::int64_t stamp_ns, const ExposureSetting& setting);
+// readout_s: of the rolling shutter, 0: none.
+std::string CameraYaml(const CameraParams& camera, double readout_s);
 
 }  // namespace sim

@@ -10,10 +10,10 @@
 #include "sim/sensor/depth_noise.h"
 #include "sim/sequence/encode.h"
 #include "sim/sequence/flow.h"
-#include "sim/sequence/format.h"
 #include "sim/sequence/landmarks.h"
-#include "sim/sequence/png.h"
+#include "sim/sequence/layout.h"
 #include "tools/base/settings/quantity.h"
+#include "tools/base/text.h"
 
 namespace sim {
 namespace {
@@ -25,30 +25,32 @@ constexpr char kObjectFolder[] = "objects";
 // A stream with one file per frame. frame_step: of the other frame that it needs.
 struct ImageStream {
   TruthStream stream;
-  std::string folder, extension;
+  const char *folder, *extension;
   std::int64_t frame_step;
 };
-const std::vector<ImageStream>& ImageStreams() {
-  static const std::vector<ImageStream> streams = {{TruthStream::depth, "depth", ".png", 0},
-                                                   {TruthStream::depth_exr, "depth_exr", ".exr", 0},
-                                                   {TruthStream::depth_kinect, "depth_kinect", ".png", 0},
-                                                   {TruthStream::distance, "distance", ".exr", 0},
-                                                   {TruthStream::normals, "normals", ".exr", 0},
-                                                   {TruthStream::surface_id, "surface_id", ".png", 0},
-                                                   {TruthStream::moving, "moving", ".png", 0},
-                                                   {TruthStream::flow, "flow", ".flo", 1},
-                                                   {TruthStream::flow_backward, "flow_backward", ".flo", -1},
-                                                   {TruthStream::occlusion, "occlusion", ".png", 1},
-                                                   {TruthStream::occlusion, "occlusion_backward", ".png", -1}};
-  return streams;
+constexpr ImageStream kImageStreams[] = {{TruthStream::depth, "depth", ".png", 0},
+                                         {TruthStream::depth_exr, "depth_exr", ".exr", 0},
+                                         {TruthStream::depth_kinect, "depth_kinect", ".png", 0},
+                                         {TruthStream::distance, "distance", ".exr", 0},
+                                         {TruthStream::normals, "normals", ".exr", 0},
+                                         {TruthStream::surface_id, "surface_id", ".png", 0},
+                                         {TruthStream::moving, "moving", ".png", 0},
+                                         {TruthStream::flow, "flow", ".flo", 1},
+                                         {TruthStream::flow_backward, "flow_backward", ".flo", -1},
+                                         {TruthStream::occlusion, "occlusion", ".png", 1},
+                                         {TruthStream::occlusion, "occlusion_backward", ".png", -1}};
+
+std::string PathIn(const ImageStream& of, const std::string& stamp) {
+  return std::string(of.folder) + "/" + stamp + of.extension;
 }
 
 bool HasFrame(const Simulator& simulator, std::int64_t index) { return index >= 0 && index < simulator.frame_count(); }
 
-template <class Function>
-std::vector<float> Floats(const std::vector<SurfacePoint>& points, const Function& value) {
-  std::vector<float> values(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) values[i] = static_cast<float>(value(points[i]));
+// value(p) of each pixel's p.
+template <class T, class P, class Function>
+std::vector<T> Each(const std::vector<P>& pixels, const Function& value) {
+  std::vector<T> values(pixels.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i) values[i] = static_cast<T>(value(pixels[i]));
   return values;
 }
 
@@ -65,25 +67,6 @@ std::vector<float> Normals(const SurfaceTracer& surfaces, const View& view, cons
     for (int c = 0; c < 3; ++c) normals[3 * i + static_cast<std::size_t>(c)] = static_cast<float>(n[c]);
   }
   return normals;
-}
-
-std::vector<std::uint16_t> SurfaceIds(const SurfaceTracer& surfaces, const std::vector<SurfacePoint>& points) {
-  std::vector<std::uint16_t> ids(points.size(), 0);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points[i].triangle == kNoTriangle) continue;
-    const std::uint32_t id = surfaces.MeshOf(points[i].triangle) + 1;
-    if (id > 65535) throw std::runtime_error("surface_id: the world has more than 65535 meshes");
-    ids[i] = static_cast<std::uint16_t>(id);
-  }
-  return ids;
-}
-
-// 255: true.
-template <class Function>
-std::vector<std::uint8_t> Mask(std::size_t count, const Function& is) {
-  std::vector<std::uint8_t> mask(count);
-  for (std::size_t i = 0; i < count; ++i) mask[i] = is(i) ? 255 : 0;
-  return mask;
 }
 
 std::string Numbers(const char* format, const glm::dvec3& v) {
@@ -139,7 +122,7 @@ void AppendLandmarks(const Simulator& simulator, std::int64_t first, std::int64_
               std::to_string(landmarks[id].mesh + 1) + "\n";
   }
   for (std::int64_t index = first; index < last; ++index) {
-    const std::string stamp = FormatStamp(simulator.StampNs(index));
+    const std::string stamp = base::FormatSeconds(simulator.StampNs(index));
     for (const LandmarkView& view : ViewsOf(simulator, landmarks, index)) {
       char text[96];
       std::snprintf(text, sizeof text, " %u %.9f %.9f %d\n", view.id, view.pixel.x, view.pixel.y, view.visible ? 1 : 0);
@@ -160,48 +143,53 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
   std::vector<SurfacePoint> points;
   FlowImage flow[2];  // to the next frame, to the one before
   std::vector<StreamFile> files;
-  for (const auto& [stream, folder, extension, frame_step] : ImageStreams()) {
-    if (!streams.contains(stream) || !HasFrame(simulator, index + frame_step)) continue;
+  for (const ImageStream& of : kImageStreams) {
+    if (!streams.contains(of.stream) || !HasFrame(simulator, index + of.frame_step)) continue;
     if (points.empty()) surfaces.Trace(camera, view, points);
-    FlowImage& to = flow[frame_step < 0];
-    if (frame_step != 0 && to.uv.empty()) {
-      to = FlowBetween(surfaces, camera, points, view, simulator.ViewAt(index + frame_step));
+    FlowImage& to = flow[of.frame_step < 0];
+    if (of.frame_step != 0 && to.uv.empty()) {
+      to = FlowBetween(surfaces, camera, points, view, simulator.ViewAt(index + of.frame_step));
     }
     StreamFile& file = files.emplace_back();
-    file.path = folder + "/" + FormatStamp(simulator.StampNs(index)) + extension;
-    const auto depth = [](const SurfacePoint& point) { return point.depth; };
+    file.path = PathIn(of, base::FormatSeconds(simulator.StampNs(index)));
+    const auto depth = [&] { return Each<float>(points, [](const SurfacePoint& point) { return point.depth; }); };
     const auto distance = [](const SurfacePoint& point) { return glm::length(point.X_C); };
-    switch (stream) {
+    const auto moves = [](const SurfacePoint& point) { return point.object != kWorld ? 255 : 0; };
+    const auto surface_id = [&](const SurfacePoint& point) {
+      const std::uint32_t id = point.triangle == kNoTriangle ? 0 : surfaces.MeshOf(point.triangle) + 1;
+      if (id > 65535) throw std::runtime_error("surface_id: the world has more than 65535 meshes");
+      return id;
+    };
+    switch (of.stream) {
       case TruthStream::depth:
-        file.bytes = EncodeDepthPng(Floats(points, depth), width, height);
+        file.bytes = EncodeDepthPng(depth(), width, height);
         break;
       case TruthStream::depth_exr:
-        file.bytes = EncodeExr(Floats(points, depth), width, height, 1, false);
+        file.bytes = EncodeExr(depth(), width, height, 1, false);
         break;
       case TruthStream::depth_kinect:
-        file.bytes = EncodeDepthPng(
-            WithKinectNoise(Floats(points, depth), width, height, simulator.scenario().seed, index), width, height);
+        file.bytes =
+            EncodeDepthPng(WithKinectNoise(depth(), width, height, simulator.scenario().seed, index), width, height);
         break;
       case TruthStream::distance:
-        file.bytes = EncodeExr(Floats(points, distance), width, height, 1, false);
+        file.bytes = EncodeExr(Each<float>(points, distance), width, height, 1, false);
         break;
       case TruthStream::normals:
         file.bytes = EncodeExr(Normals(surfaces, view, points), width, height, 3, true);
         break;
       case TruthStream::surface_id:
-        file.bytes = EncodePng(width, height, 1, SurfaceIds(surfaces, points));
+        file.bytes = EncodePng(width, height, 1, Each<std::uint16_t>(points, surface_id));
         break;
       case TruthStream::flow:
       case TruthStream::flow_backward:
         file.bytes = EncodeFlo(to.uv, width, height);
         break;
       case TruthStream::moving:
-        file.bytes =
-            EncodePng(width, height, 1, Mask(points.size(), [&](std::size_t i) { return points[i].object != kWorld; }));
+        file.bytes = EncodePng(width, height, 1, Each<std::uint8_t>(points, moves));
         break;
       case TruthStream::occlusion:
         file.bytes =
-            EncodePng(width, height, 1, Mask(to.occluded.size(), [&](std::size_t i) { return to.occluded[i] != 0; }));
+            EncodePng(width, height, 1, Each<std::uint8_t>(to.occluded, [](int is) { return is != 0 ? 255 : 0; }));
         break;
       case TruthStream::landmarks:
       case TruthStream::acceleration:
@@ -215,22 +203,21 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
 std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t first, std::int64_t last,
                                         const Streams& streams) {
   std::vector<StreamFile> files;
-  for (const auto& [stream, folder, extension, frame_step] : ImageStreams()) {
-    if (!streams.contains(stream)) continue;
-    std::string list = "# timestamp filename\n";
-    for (std::int64_t index = first; index < last; ++index) {
-      if (!HasFrame(simulator, index + frame_step)) continue;
-      const std::string stamp = FormatStamp(simulator.StampNs(index));
-      list.append(stamp).append(" ").append(folder).append("/").append(stamp).append(extension).append("\n");
-    }
-    files.push_back(TextFile(folder + ".txt", list));
+  // A header, and a line of each frame.
+  const auto append = [&](const std::string& path, std::string text, const auto& line) {
+    for (std::int64_t index = first; index < last; ++index) text += line(index);
+    files.push_back(TextFile(path, text));
+  };
+  for (const ImageStream& of : kImageStreams) {
+    if (!streams.contains(of.stream)) continue;
+    append(std::string(of.folder) + ".txt", "# timestamp filename\n", [&](std::int64_t index) {
+      const std::string stamp = base::FormatSeconds(simulator.StampNs(index));
+      return HasFrame(simulator, index + of.frame_step) ? stamp + " " + PathIn(of, stamp) + "\n" : "";
+    });
   }
   for (std::size_t k = 0; k < simulator.object_names().size(); ++k) {
-    std::string poses = "# timestamp tx ty tz qx qy qz qw\n";
-    for (std::int64_t index = first; index < last; ++index) {
-      poses += TruthLine(simulator.StampNs(index), simulator.ObjectTruthAt(k, index));
-    }
-    files.push_back(TextFile(kObjectFolder + ("/" + simulator.object_names()[k]) + ".txt", poses));
+    append(kObjectFolder + ("/" + simulator.object_names()[k]) + ".txt", "# timestamp tx ty tz qx qy qz qw\n",
+           [&](std::int64_t index) { return TruthLine(simulator.StampNs(index), simulator.ObjectTruthAt(k, index)); });
   }
   if (streams.contains(TruthStream::surface_id)) {
     std::string legend = "# id mesh; 0: nothing\n";
@@ -240,11 +227,8 @@ std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t
     files.push_back(TextFile("surfaces.txt", legend));
   }
   if (streams.contains(TruthStream::acceleration)) {
-    std::string acceleration = "# timestamp ax ay az alphax alphay alphaz\n";
-    for (std::int64_t index = first; index < last; ++index) {
-      acceleration += AccelerationLine(simulator.StampNs(index), simulator.TruthAt(index));
-    }
-    files.push_back(TextFile("acceleration.txt", acceleration));
+    append("acceleration.txt", "# timestamp ax ay az alphax alphay alphaz\n",
+           [&](std::int64_t index) { return AccelerationLine(simulator.StampNs(index), simulator.TruthAt(index)); });
   }
   if (streams.contains(TruthStream::landmarks)) AppendLandmarks(simulator, first, last, files);
   if (streams.contains(TruthStream::imu)) AppendImu(simulator, first, last, files);
@@ -254,9 +238,9 @@ std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t
 std::set<std::string> StreamNames() {
   std::set<std::string> names = {"surfaces.txt", "acceleration.txt", "landmarks.txt", "landmark_tracks.txt",
                                  "imu0",         kObjectFolder};
-  for (const ImageStream& stream : ImageStreams()) {
+  for (const ImageStream& stream : kImageStreams) {
     names.insert(stream.folder);
-    names.insert(stream.folder + ".txt");
+    names.insert(std::string(stream.folder) + ".txt");
   }
   return names;
 }

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/scenario/truth_streams.h"
-#include "sim/sequence/stream_file.h"
+#include "sim/scenario/scenario.h"
+#include "sim/sequence/encode.h"
 #include "sim/simulator.h"
 
 namespace sim {

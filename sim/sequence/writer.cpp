@@ -2,23 +2,18 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <set>
 #include <stdexcept>
 #include <system_error>
 
-#include "sim/sequence/manifest.h"
+#include "sim/sequence/content.h"
 #include "tools/base/files.h"
 
 namespace sim {
 namespace fs = std::filesystem;
 namespace {
-
-[[noreturn]] void Fail(const fs::path& path, const std::string& what, const std::error_code& error) {
-  throw std::runtime_error(path.string() + ": " + what + ": " + error.message());
-}
 
 // Nothing is there, or nothing but a manifest that a kill left unfinished.
 bool IsEmpty(const fs::path& folder) {
@@ -61,9 +56,9 @@ void SequenceWriter::Prepare(Start start) {
   for (fs::path path = folder_; !fs::exists(path); path = path.parent_path()) made_.push_back(path);
   std::error_code error;
   fs::create_directories(folder_, error);
-  if (error) Fail(folder_, "cannot make this folder", error);
-  lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+  if (error) throw std::runtime_error(folder_.string() + ": cannot make this folder: " + error.message());
+  lock_ = base::Descriptor(open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (lock_ && flock(*lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     throw std::runtime_error(folder_.string() + ": another process is writing it");
   }
   if (!empty) {
@@ -85,7 +80,7 @@ void SequenceWriter::Prepare(Start start) {
   RemoveStrays(lists);
 }
 
-// The last frame is rendered once more: the manifest knows the names of meshes, textures and recorded motion only.
+// The last frame is rendered once more: the manifest has only the names of meshes, textures and recorded motion.
 void SequenceWriter::RequireSame(const Journal& whole) const {
   const fs::path file = folder_ / kManifestName;
   if (!fs::exists(file))
@@ -182,7 +177,7 @@ std::int64_t SequenceWriter::Stop() noexcept {
   } catch (...) {
     // What is left is what a kill would have left: resuming mends it.
   }
-  if (lock_ >= 0) close(lock_);
+  lock_.Close();
   return whole;
 }
 

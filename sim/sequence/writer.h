@@ -13,6 +13,7 @@
 #include "sim/sequence/content.h"
 #include "sim/sequence/journal.h"
 #include "sim/simulator.h"
+#include "tools/base/files.h"
 
 namespace sim {
 
@@ -20,8 +21,8 @@ namespace sim {
 //         while (writer.Wait() > 0) {}      // progress in between
 //         writer.Finish();
 // First come the lists, the truth and the manifest of all frames, then the frames, `jobs` of them at the same time:
-// one is encoded while another is rendered. Every file appears whole under its name, and the journal tells which frames
-// are whole. The bytes do not depend on `jobs`, on the order of the frames or on how often the work was stopped, and
+// one is encoded while another is rendered. Every file appears whole under its name, and the journal lists the frames
+// that are whole. The bytes do not depend on `jobs`, on the order of the frames or on how often the work was stopped, and
 // those of a frame not on the range.
 class SequenceWriter {
  public:
@@ -66,7 +67,7 @@ class SequenceWriter {
   std::filesystem::path folder_;
   SequenceContent content_;
   std::vector<std::filesystem::path> made_;  // the folder and its parents, where they were not there; innermost first
-  int lock_ = -1;                            // the folder, open
+  base::Descriptor lock_;                    // the folder, open
   std::int64_t found_ = 0;
   bool ours_ = false;  // what is in the folder
   bool over_ = false;

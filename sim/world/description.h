@@ -21,6 +21,13 @@ struct MeshDescription {
   glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
   double scale = 1.0;  // metres per unit of the file, > 0
 };
+// But for the file.
+template <class V>
+void Visit(V& v, MeshDescription& p) {
+  v("position", p.position, {Unit::length, kOfPlaces, "of the file's origin in W"});
+  v("orientation", p.orientation, {"of the file in W: x, y, z, w"});
+  v("scale", p.scale, {Range{1e-9, 1e9}, "metres per unit of the file"});
+}
 
 // A mesh file that moves as a rigid body. It is set into the object's own frame O as a mesh is set into the world.
 struct ObjectDescription {
@@ -36,5 +43,10 @@ struct WorldDescription {
   glm::dvec3 background{0.0};  // linear radiance of a ray that meets nothing; not used where there is a sky
   std::optional<SkyDescription> sky;
 };
+// But for meshes, objects and lights.
+template <class V>
+void Visit(V& v, WorldDescription& p) {
+  v("background", p.background, {kOfLight, "radiance where nothing is and there is no sky"});
+}
 
 }  // namespace sim

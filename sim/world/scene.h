@@ -86,7 +86,7 @@ class SceneError : public std::runtime_error {
 // coordinate that is not finite; a texture that is missing, truncated, not an image, or named by an absolute path or
 // one that leaves the mesh file's folder; a light that is not finite or has no direction. A textured material on a mesh
 // without texture coordinates is a warning; its base colour is used. Objects are without motion: whoever knows the
-// time that they are needed for makes it (sim/motion/make.h).
+// time that they are needed for makes it (sim/motion/trajectory.h).
 Scene LoadScene(const WorldDescription& description);
 
 }  // namespace sim

@@ -4,7 +4,10 @@
 
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <numbers>
 #include <vector>
+
+#include "sim/world/light.h"
 
 namespace sim {
 
@@ -20,13 +23,28 @@ struct Sky {
   glm::dvec3 Radiance(const glm::dvec3& direction) const;
 };
 
-// How a scenario describes one.
+// How a scenario describes one: a picture, or three colours.
 struct SkyDescription {
   glm::dvec3 zenith{0.0}, horizon{0.0}, ground{0.0};
   std::filesystem::path file;  // empty: none. Radiance HDR or EXR (linear), or whatever else OpenCV reads (sRGB-coded)
   double strength = 1.0;       // factor on the picture
   double turn = 0.0;
 };
+// But for the file, and `radiance` for one colour instead of three.
+template <class V>
+void Visit(V& v, SkyDescription& p) {
+  if (p.file.empty()) {
+    v("zenith", p.zenith, {kOfLight, "sky: radiance from above"});
+    v("horizon", p.horizon, {kOfLight, "sky: from the sides"});
+    p.ground = p.horizon;
+    v("ground", p.ground, {kOfLight, "sky: from below; default: as the horizon"});
+  } else {
+    v("strength", p.strength, {settings::Range::AtLeast(0), "sky: factor on the picture of its file"});
+    double turn_rad = 2 * std::numbers::pi * p.turn;
+    v("turn", turn_rad, {settings::Unit::angle, "sky: turns the world to the right"});
+    p.turn = turn_rad / (2 * std::numbers::pi);
+  }
+}
 
 // Throws std::runtime_error naming the file when it cannot be read or holds what is not light (negative, not finite).
 Sky LoadSky(const SkyDescription& description);

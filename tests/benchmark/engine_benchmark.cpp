@@ -7,7 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "sim/motion/make.h"
+#include "sim/motion/trajectory.h"
 #include "sim/render/rasteriser.h"
 #include "sim/render/ray_tracer.h"
 #include "sim/scenario/scenario.h"

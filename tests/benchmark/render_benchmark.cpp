@@ -142,7 +142,6 @@ Pose HallPose() {
 class Still : public Trajectory {
  public:
   Motion At(double) const override { return {HallPose()}; }
-  double end_s() const override { return 1; }
 };
 
 // Light that looks as if baked: what it says does not matter to its cost.
@@ -362,7 +361,6 @@ class Walk : public Trajectory {
     motion.pose.p_WC += t_s * motion.v_WC;
     return motion;
   }
-  double end_s() const override { return 1; }
 };
 
 // Whole pictures by the renderer, with its threads.

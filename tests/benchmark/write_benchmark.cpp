@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "sim/sequence/format.h"
-#include "sim/sequence/png.h"
+#include "sim/sequence/encode.h"
+#include "sim/sequence/layout.h"
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"
 #include "source_dir.h"

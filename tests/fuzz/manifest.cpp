@@ -1,6 +1,5 @@
 // manifest.json of a sequence: by who goes on with it, and by who verifies it.
-#include "sim/sequence/manifest.h"
-
+#include "sim/sequence/content.h"
 #include "tests/fuzz/hold.h"
 #include "tools/judge/verification/check.h"
 #include "tools/judge/verification/files.h"

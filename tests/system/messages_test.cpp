@@ -38,7 +38,7 @@ const std::vector<Message>& Messages() {
        {"track", "pictures", "-o", "o", "--camera", "half.yaml"},
        {"half.yaml", "missing key 'height'", "missing key 'cy'"}},
       // Scenario, motion, world, sensor.
-      {"sim/motion/make.cpp",
+      {"sim/motion/trajectory.cpp",
        {"check", "TINY", "--set",
         "world.objects=[{file: room/parcel.obj, trajectory: {type: scripted, keys: [{time: 0 s, position: [0, 0, 0], "
         "orientation: [0, 0, 0, 1]}, {time: 0.1 s, position: [0, 0, 1], orientation: [0, 0, 0, 1]}]}}]"},
@@ -62,7 +62,7 @@ const std::vector<Message>& Messages() {
       {"sim/sensor/sensor.cpp",
        {"render", "TINY", "-o", "o", "--set", "sensor.jpeg_quality=300"},
        {"--set sensor.jpeg_quality", "'300'", "0 ... 100"}},
-      {"sim/sensor/auto_exposure.cpp",
+      {"sim/sensor/exposure.cpp",
        {"check", "TINY", "--set", "sensor.auto_exposure={on: true, shortest: 30 ms, longest: 1 ms}"},
        {"auto_exposure.longest = 0.001", "not be below shortest"}},
       {"sim/sensor/vignetting.cpp",

@@ -70,10 +70,11 @@ void AddScenario(py::module_& m) {
   for (const auto& [key, value, range, help] : SettingsTable())
     settings.append(py::make_tuple(key, value, range, help));
   m.attr("SETTINGS") = py::tuple(settings);
-  py::class_<StampedTruth>(m, "Truth", Doc("sim/motion/truth.h:Truth"))
+  py::class_<StampedTruth>(m, "Truth", Doc("sim/motion/trajectory.h:Truth"))
       .def_readonly("stamp_ns", &StampedTruth::stamp_ns)
       .def_property_readonly(
-          "p_WC", [](const StampedTruth& t) { return Vector(t.truth.p_WC); }, Doc("sim/motion/truth.h:Truth::p_WC"))
+          "p_WC", [](const StampedTruth& t) { return Vector(t.truth.p_WC); },
+          Doc("sim/motion/trajectory.h:Truth::p_WC"))
       .def_property_readonly(
           "q_WC",
           [](const StampedTruth& t) {
@@ -83,15 +84,17 @@ void AddScenario(py::module_& m) {
           "(x, y, z, w); unit, w >= 0")
       .def_property_readonly("T_WC", &Matrix, "4 x 4, from C to W")
       .def_property_readonly(
-          "v_WC", [](const StampedTruth& t) { return Vector(t.truth.v_WC); }, Doc("sim/motion/truth.h:Truth::v_WC"))
+          "v_WC", [](const StampedTruth& t) { return Vector(t.truth.v_WC); },
+          Doc("sim/motion/trajectory.h:Truth::v_WC"))
       .def_property_readonly(
           "w_WC_C", [](const StampedTruth& t) { return Vector(t.truth.w_WC_C); },
-          Doc("sim/motion/truth.h:Truth::w_WC_C"))
+          Doc("sim/motion/trajectory.h:Truth::w_WC_C"))
       .def_property_readonly(
-          "a_WC", [](const StampedTruth& t) { return Vector(t.truth.a_WC); }, Doc("sim/motion/truth.h:Truth::a_WC"))
+          "a_WC", [](const StampedTruth& t) { return Vector(t.truth.a_WC); },
+          Doc("sim/motion/trajectory.h:Truth::a_WC"))
       .def_property_readonly(
           "alpha_WC_C", [](const StampedTruth& t) { return Vector(t.truth.alpha_WC_C); },
-          Doc("sim/motion/truth.h:Truth::alpha_WC_C"));
+          Doc("sim/motion/trajectory.h:Truth::alpha_WC_C"));
   py::class_<Experiment, Scenario>(m, "Scenario", Doc("tools/bench/systems/experiment.h:"))
       .def(py::init(&Load), py::arg("file"), py::arg("settings") = py::dict(), py::arg("seed") = py::none(),
            Doc("sim/scenario/scenario.h:LoadScenario"))

@@ -141,7 +141,7 @@ void AddSimulator(py::module_& m) {
             Checked(index, s.simulator.frame_count());
             return StampedTruth{s.simulator.StampNs(index), s.simulator.TruthAt(index)};
           },
-          py::arg("index"), Doc("sim/motion/truth.h:Truth"));
+          py::arg("index"), Doc("sim/motion/trajectory.h:Truth"));
 }
 
 void AddPoints(py::module_& m) {

@@ -1,10 +1,9 @@
-#include "sim/sensor/auto_exposure.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <stdexcept>
 
+#include "sim/sensor/exposure.h"
 #include "sim/sensor/sensor.h"
 
 namespace sim {

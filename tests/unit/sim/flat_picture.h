@@ -3,7 +3,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "sim/sensor/radiance_image.h"
+#include "sim/sensor/image.h"
 
 namespace sim {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/motion/make.h"
+#include "sim/motion/trajectory.h"
 #include "sim/scenario/scenario.h"
 #include "source_dir.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/motion/truth.h"
+#include "sim/motion/trajectory.h"
 #include "sim/scenario/scenario.h"
 #include "tests/unit/sim/motion_check.h"
 #include "tests/unit/sim/small_world.h"

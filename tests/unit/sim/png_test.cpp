@@ -1,6 +1,4 @@
 // PNG files hold what was put in: OpenCV (libpng) reads the same samples, pngcheck finds no fault.
-#include "sim/sequence/png.h"
-
 #include <gmock/gmock.h>
 #include <libdeflate.h>
 
@@ -11,7 +9,7 @@
 #include <tuple>
 
 #include "sim/random/random.h"
-#include "sim/sequence/png_filter.h"
+#include "sim/sequence/encode.h"
 #include "tests/unit/sim/temporary_folder.h"
 
 namespace sim {

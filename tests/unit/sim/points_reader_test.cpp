@@ -1,12 +1,12 @@
-#include "sim/scenario/points_reader.h"
-
 #include <gmock/gmock.h>
 
 #include <string>
 
 #include "sim/points/point_world.h"
+#include "sim/scenario/scenario.h"
 #include "sim/simulator.h"
 #include "tests/unit/sim/temporary_folder.h"
+#include "tools/base/settings/problem.h"
 
 namespace sim {
 namespace {

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "sim/scenario/stamps.h"
+#include "sim/scenario/scenario.h"
 #include "source_dir.h"
 #include "tests/unit/sim/motion_check.h"
 #include "tests/unit/sim/temporary_folder.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "sim/motion/so3.h"
-#include "sim/scenario/pose_reader.h"
+#include "sim/scenario/motion_reader.h"
 #include "tests/unit/sim/small_world.h"
 #include "tools/base/settings/settings.h"
 
@@ -238,7 +238,7 @@ TEST(Scenario, AllProblemsAtOnce) {
   for (const char* problem : {
            ":2:19: 'world.lights.0.type': 'torch' is not known; known: ",
            ":2:50: 'direction' has no length",
-           ":2:73: 'irradiance': light is not negative",
+           ":2:74: 'world.lights.1.irradiance': '-1' must lie in 0 ... 1000000",
            ": missing key 'camera.height'",
            ":3:22: unknown key 'hieght'; did you mean 'height'?",
            ":3:39: 'camera.fx': '3 ms' is not a number of pixels: expected a number with px",

@@ -11,8 +11,6 @@
 
 #include "sim/render/ray_tracer.h"
 #include "sim/sensor/develop.h"
-#include "sim/sensor/emva.h"
-#include "sim/sensor/fixed_pattern.h"
 #include "sim/sensor/sensor.h"
 #include "tests/unit/sim/flat_picture.h"
 #include "tests/unit/sim/render/worlds.h"
@@ -53,7 +51,7 @@ TEST(SensorChain, GainBlackLevelSaturationAndDepth) {
 TEST(SensorChain, TheFramesOwnExposureAndGain) {
   SensorParams params = Silent();
   params.exposure_s = 0.010;
-  const Image image = Sensor(params, 1).Capture(Flat(3, 2, glm::vec3(0.2f)), 0, {0.005, 3.0});
+  const Image image = Sensor(params, 1).Capture(Flat(3, 2, glm::vec3(0.2f)), 0, ExposureSetting{0.005, 3.0});
   EXPECT_EQ(image.data[0], std::lround(255 * 0.2 * 0.5 * 3));
 }
 

@@ -12,8 +12,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
-#include "sim/sequence/format.h"
-#include "sim/sequence/manifest.h"
+#include "sim/sequence/content.h"
+#include "sim/sequence/layout.h"
 #include "tests/unit/sim/small_world.h"
 #include "tools/base/files.h"
 
@@ -53,9 +53,6 @@ std::string Refusal(const Simulator& simulator, const fs::path& folder, const Se
 }
 
 TEST(Format, TextsByHand) {
-  EXPECT_EQ(FormatStamp(0), "0.000000000");
-  EXPECT_EQ(FormatStamp(33333333), "0.033333333");
-  EXPECT_EQ(FormatStamp(12000000001), "12.000000001");
   Truth truth;
   truth.p_WC = {1, -0.5, -1e-15};
   truth.v_WC = {0.25, 0, 0};
@@ -122,7 +119,7 @@ TEST(SequenceWriter, WritesTheFormat) {
     EXPECT_LT(glm::length(v - exact.v_WC), 1e-11);
     EXPECT_LT(glm::length(w - exact.w_WC_C), 1e-11);
 
-    const std::string name = FormatStamp(simulator.StampNs(k)) + ".png";
+    const std::string name = base::FormatSeconds(simulator.StampNs(k)) + ".png";
     const cv::Mat rgb = cv::imread((folder / "rgb" / name).string(), cv::IMREAD_UNCHANGED);
     const cv::Mat depth = cv::imread((folder / "depth" / name).string(), cv::IMREAD_UNCHANGED);
     ASSERT_EQ(rgb.type(), CV_8UC3);
@@ -264,7 +261,7 @@ TEST(SequenceWriter, ResumesFromDamage) {
   const fs::path whole = world.folder.path() / "whole";
   Write(simulator, whole, 0, 9, 2);
   const auto expected = Tree(whole);
-  const auto frame = [&](std::int64_t k) { return FormatStamp(simulator.StampNs(k)) + ".png"; };
+  const auto frame = [&](std::int64_t k) { return base::FormatSeconds(simulator.StampNs(k)) + ".png"; };
   const std::vector<std::pair<std::string, std::function<void(const fs::path&)>>> damages = {
       {"truncated", [&](const fs::path& f) { fs::resize_file(f / "rgb" / frame(8), 100); }},
       {"empty", [&](const fs::path& f) { fs::resize_file(f / "depth" / frame(7), 0); }},

@@ -1,10 +1,15 @@
 // Reader of a settings section by the field table of its struct (fields.h): strict, all problems at once.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <concepts>
+#include <set>
+#include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "tools/base/settings/fields.h"
 #include "tools/base/settings/settings.h"
@@ -31,6 +36,30 @@ class FieldReader {
     const bool given = section_.Has(key);
     if (!renamed_value_) Note(section_.ReadChoice(key, value, choices) || !given);
     renamed_value_ = false;
+  }
+  // A list of names.
+  template <class T>
+  void operator()(const char* key, std::set<T>& values, const Choices<std::type_identity_t<T>>& choices, const char*) {
+    std::vector<std::string> names;
+    for (const auto& [name, choice] : choices) {
+      if (values.contains(choice)) names.push_back(name);
+    }
+    if (!section_.Read(key, names)) return static_cast<void>(Note(!section_.Has(key)));
+    values.clear();
+    for (const std::string& name : names) {
+      const auto at = std::ranges::find(choices, name, &Choices<T>::value_type::first);
+      if (Note(at != choices.end())) {
+        values.insert(at->second);
+      } else {
+        section_.Reject(key, "'" + std::string(key) + "': there is no '" + name + "'; there are " + NamesOf(choices));
+      }
+    }
+  }
+  template <class T>
+  void Required(const char* key, T& value, const Field& field) {
+    (*this)(key, value, field);
+    section_.RequirePresent(key);
+    Note(section_.Has(key));
   }
   template <class S>
   void Child(const char* key, S&& child) {
@@ -64,11 +93,28 @@ class FieldReader {
       const bool good = section_.Read(key, numbers, field.unit, field.range);
       value = {numbers[0], numbers[1], numbers[2]};
       return good;
+    } else if constexpr (Quaternion<T>) {
+      return ReadQuaternion(key, value);
     } else if constexpr (std::integral<T>) {
       return section_.Read(key, value, field.range);
     } else {
       return section_.Read(key, value, field.unit, field.range);
     }
+  }
+  // x, y, z, w; the length is 1 within 1e-3, and is made so by the quaternion's own functions.
+  template <class Q>
+  bool ReadQuaternion(const char* key, Q& value) {
+    std::array<double, 4> numbers{value.x, value.y, value.z, value.w};
+    if (!section_.Read(key, numbers, Unit::none, Range{-1.001, 1.001})) return false;
+    Q q = value;
+    q.x = numbers[0], q.y = numbers[1], q.z = numbers[2], q.w = numbers[3];
+    const bool good = std::abs(length(q) - 1) <= 1e-3;
+    if (good) value = normalize(q);
+    if (!good) {
+      section_.Reject(key, "'" + std::string(key) + "': the quaternion's length is " + FormatNumber(length(q)) +
+                               ", not 1 (x, y, z, w)");
+    }
+    return good;
   }
 
   Section section_;

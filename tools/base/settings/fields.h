@@ -11,6 +11,7 @@
 
 #include <concepts>
 #include <limits>
+#include <set>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -69,12 +70,23 @@ struct Field {
 
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
+// "a, b, c".
+template <class T>
+std::string NamesOf(const Choices<T>& choices) {
+  std::string names;
+  for (const auto& [name, choice] : choices) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
 
 template <class T>
 concept Vector3 = requires(T t) {
   t.x, t.y, t.z;
 }
 &&!requires(T t) { t.w; };
+template <class T>
+concept Quaternion = requires(T t) {
+  t.x, t.y, t.z, t.w;
+};
 template <class T>
 concept Optional = requires(T t) {
   t.has_value();
@@ -96,6 +108,11 @@ class FieldVisitor {
       Visit(static_cast<V&>(*this), child);
     }
     prefix_ = outer;
+  }
+  // A field without which a file is not read.
+  template <class T>
+  void Required(const char* key, T& value, const Field& field) {
+    static_cast<V&> (*this)(key, value, field);
   }
   // A key, or a value of the next choice, of older files: for the reader.
   void Renamed(const char*, const char*) {}
@@ -130,6 +147,8 @@ class FieldCheck : public FieldVisitor<FieldCheck> {
   }
   template <class T>
   void operator()(const char*, T&, const Choices<std::type_identity_t<T>>&, const char*) {}
+  template <class T>
+  void operator()(const char*, std::set<T>&, const Choices<std::type_identity_t<T>>&, const char*) {}
 
   // Adds "= value rule" unless `ok`.
   void Require(bool ok, const std::string& key, double value, const std::string& rule);
@@ -156,6 +175,8 @@ class FieldRows : public FieldVisitor<FieldRows> {
     } else if constexpr (Vector3<T>) {
       const std::string xy = Text(value.x, Unit::none) + ", " + Text(value.y, Unit::none);
       Add(key, xy + ", " + Text(value.z, field.unit), range, field.help);
+    } else if constexpr (Quaternion<T>) {
+      Add(key, "0, 0, 0, 1", "length 1", field.help);
     } else if constexpr (Numeric<T>) {
       Add(key, Text(static_cast<double>(value), field.unit), range, field.help);
     } else {
@@ -164,12 +185,16 @@ class FieldRows : public FieldVisitor<FieldRows> {
   }
   template <class T>
   void operator()(const char* key, T& value, const Choices<std::type_identity_t<T>>& choices, const char* help) {
-    std::string names, name;
-    for (const auto& [text, choice] : choices) {
-      names += (names.empty() ? "" : ", ") + text;
-      if (choice == value) name = text;
+    (*this)(key, std::set<T>{value}, choices, help);
+  }
+  template <class T>
+  void operator()(const char* key, const std::set<T>& values, const Choices<std::type_identity_t<T>>& choices,
+                  const char* help) {
+    Choices<T> chosen;
+    for (const auto& choice : choices) {
+      if (values.contains(choice.second)) chosen.push_back(choice);
     }
-    Add(key, name, names, help);
+    Add(key, NamesOf(chosen), NamesOf(choices), help);
   }
 
   std::vector<FieldRow> rows;

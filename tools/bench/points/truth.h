@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "sim/motion/truth.h"
+#include "sim/motion/trajectory.h"
 #include "tools/judge/evaluation/trajectory.h"
 
 namespace vobench {

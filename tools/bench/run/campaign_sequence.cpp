@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sim/scenario/scenario.h"
 #include "sim/sequence/journal.h"
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"

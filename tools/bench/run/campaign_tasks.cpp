@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "sim/points/point_world.h"
-#include "sim/scenario/stamps.h"
+#include "sim/scenario/scenario.h"
 #include "sim/simulator.h"
 #include "tools/base/files.h"
 #include "tools/bench/campaign/digest.h"

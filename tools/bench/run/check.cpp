@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/sensor/emva.h"
+#include "sim/sensor/sensor.h"
 #include "sim/simulator.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/run/commands.h"

@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 #include <string.h>
 
-#include "sim/scenario/stamps.h"
-#include "sim/sequence/format.h"
+#include "sim/scenario/scenario.h"
 #include "sim/sequence/layout.h"
 #include "sim/simulator.h"
 #include "tools/base/files.h"
@@ -62,7 +61,7 @@ fs::path InLayout(const campaign::SequenceCache& cache, const std::string& key, 
                                                              : "images/" + number + ".png");
     fs::create_directories(link.parent_path());
     fs::create_hard_link(sequence / sim::NamesOf(sim::Layout::tum, index, stamp_ns).image, link);
-    times += fmt::format("{} {} {:.9g}\n", number, sim::FormatStamp(stamp_ns), 1e3 * scenario.sensor.exposure_s);
+    times += fmt::format("{} {} {:.9g}\n", number, base::FormatSeconds(stamp_ns), 1e3 * scenario.sensor.exposure_s);
   }
   if (layout == campaign::SequenceLayout::euroc) {
     const std::vector<std::string> problems = sim::Problems(sim::Layout::euroc, scenario);

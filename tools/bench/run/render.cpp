@@ -3,7 +3,7 @@
 #include <map>
 #include <set>
 
-#include "sim/sequence/manifest.h"
+#include "sim/sequence/content.h"
 #include "sim/sequence/streams.h"
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"

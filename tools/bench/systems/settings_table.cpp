@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <tuple>
+
 #include "sim/scenario/scenario.h"
 #include "tools/bench/systems/odometry_settings.h"
 
@@ -21,12 +23,25 @@ std::vector<settings::FieldRow> SettingsTable() {
   table.Child("trajectory", sampled);
   sim::RecordedMotion recorded;
   table.Child("trajectory", recorded);
+  for (const sim::PathKind kind :
+       {sim::PathKind::orbit, sim::PathKind::half_sphere, sim::PathKind::rpy, sim::PathKind::dolly}) {
+    sim::PathMotion path;
+    table.Child("trajectory", [&](auto& trajectory) { Visit(trajectory, kind, path); });
+  }
   Visit(table, scenario.truth);
   for (const sim::Landmarks kind : {sim::Landmarks::prior, sim::Landmarks::plane, sim::Landmarks::room}) {
     sim::PointDescription points;
     points.landmarks = kind;
     table.Child("world", [&](auto& world) { world.Child("points", points); });
   }
+  sim::MeshDescription mesh;
+  table.Child("world.meshes.N", mesh);
+  std::tuple<sim::AmbientLight, sim::SunLight, sim::PointLight, sim::RectLight, sim::SkyDescription> lights;
+  std::apply([&](auto&... light) { (table.Child("world.lights.N", light), ...); }, lights);
+  sim::SkyDescription sky;
+  sky.file = "FILE";
+  table.Child("world.lights.N", sky);
+  table.Child("world", scenario.world);
   vo::Params odometry;
   table.Child("odometry", odometry);
   PriorSettings prior;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "tools/base/settings/field_reader.h"
 
@@ -148,6 +149,52 @@ TEST(FieldReader, SaysEveryProblemAtItsPlace) {
             "f.yaml:4:8: unknown key 'k4'; did you mean 'k1'?");
   EXPECT_EQ(Read("form: round", example), "f.yaml:1:7: 'form' has a new name: 'shape'");
   EXPECT_EQ(Read("shape: circle", example), "f.yaml:1:8: 'shape': 'circle' has a new name: 'round'");
+}
+
+struct Turn {
+  double x = 0, y = 0, z = 0, w = 1;
+};
+double length(const Turn& q) { return std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w); }
+Turn normalize(const Turn& q) { return {q.x / length(q), q.y / length(q), q.z / length(q), q.w / length(q)}; }
+struct Placed {
+  Turn turn = {};
+  std::set<Shape> shapes = {Shape::round};
+  int count = 1;
+};
+template <class V>
+void Visit(V& v, Placed& p) {
+  v("turn", p.turn, {"x, y, z, w"});
+  v("shapes", p.shapes, {{"round", Shape::round}, {"square", Shape::square}}, "of it");
+  v.Required("count", p.count, {"number"});
+}
+
+TEST(FieldReader, QuaternionsListsOfNamesAndWhatMustBeThere) {
+  const auto read = [](const std::string& text, Placed& placed) -> std::string {
+    Document document = Document::FromText(text, "f.yaml");
+    const bool good = ReadFields(document.root(), placed);
+    try {
+      document.ThrowIfBad();
+    } catch (const Error& error) {
+      EXPECT_FALSE(good);
+      return error.what();
+    }
+    EXPECT_TRUE(good);
+    return "";
+  };
+  Placed placed, plain, bad;
+  EXPECT_EQ(read("{turn: [0, 0.6, 0, 0.8004], shapes: [square], count: 3}", placed), "");
+  EXPECT_NEAR(length(placed.turn), 1, 1e-15);
+  EXPECT_THAT(placed.shapes, ElementsAre(Shape::square));
+  EXPECT_EQ(read("{count: 3}", plain), "");
+  EXPECT_THAT(plain.shapes, ElementsAre(Shape::round));
+  EXPECT_EQ(read("{turn: [0, 0, 0, 0.9], shapes: [round, oval]}", bad),
+            "f.yaml: missing key 'count'\n"
+            "f.yaml:1:8: 'turn': the quaternion's length is 0.9, not 1 (x, y, z, w)\n"
+            "f.yaml:1:32: 'shapes': there is no 'oval'; there are round, square");
+  FieldRows table;
+  Visit(table, plain);
+  EXPECT_EQ(table.rows.at(0).value + "|" + table.rows.at(1).value + "|" + table.rows.at(1).range,
+            "0, 0, 0, 1|round|round, square");
 }
 
 TEST(Problem, OfAValueFromTheCommandLineHasItsKey) {

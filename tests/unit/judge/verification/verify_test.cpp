@@ -8,7 +8,6 @@
 #include <opencv2/core.hpp>
 
 #include "sim/sequence/encode.h"
-#include "sim/sequence/png.h"
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"
 #include "source_dir.h"

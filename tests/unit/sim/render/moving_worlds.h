@@ -41,7 +41,6 @@ class SeenFrom : public Trajectory {
     motion.pose = {q_OW * (camera_.p_WC - object.p_WC), q_OW * camera_.q_WC};
     return motion;
   }
-  double end_s() const override { return 1e9; }
 
  private:
   std::shared_ptr<const Trajectory> object_;

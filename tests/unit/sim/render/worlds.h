@@ -140,7 +140,6 @@ class SteadyMotion : public Trajectory {
   explicit SteadyMotion(const Pose& start, const glm::dvec3& v_WC = {}, const glm::dvec3& w_WC_C = {})
       : start_(start), v_(v_WC), w_(w_WC_C) {}
   Motion At(double t_s) const override { return {{start_.p_WC + t_s * v_, start_.q_WC * Exp(t_s * w_)}, v_, w_}; }
-  double end_s() const override { return 1e9; }
 
  private:
   Pose start_;

@@ -40,7 +40,6 @@ TEST(Imu, OnATurntable) {
   class Turntable : public Trajectory {
    public:
     Motion At(double t) const override { return {{{0, 0, 0}, Exp({0, 0, 3 * t})}, {}, {0, 0, 3}}; }
-    double end_s() const override { return 10; }
   };
   ImuParams imu;
   imu.gravity_W = glm::dvec3(0);

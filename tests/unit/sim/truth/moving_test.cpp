@@ -7,8 +7,8 @@
 
 #include "sim/render/surface_tracer.h"
 #include "sim/sequence/flow.h"
-#include "sim/sequence/format.h"
 #include "sim/sequence/landmarks.h"
+#include "sim/sequence/layout.h"
 #include "sim/sequence/streams.h"
 #include "tests/unit/sim/render/moving_worlds.h"
 #include "tests/unit/sim/small_world.h"

@@ -51,10 +51,12 @@ std::vector<float> ReadExr(const std::filesystem::path& path, const std::vector<
   return values;
 }
 
-TEST(TruthStreams, NamesAndBack) {
-  for (const TruthStream stream : All()) EXPECT_EQ(TruthStreamOf(Name(stream)), stream);
-  EXPECT_EQ(TruthStreamOf("depths"), std::nullopt);
-  EXPECT_THAT(TruthStreamList(), StartsWith("depth, depth_exr, depth_kinect, distance, "));
+TEST(TruthStreams, EachHasAName) {
+  TruthParams truth{.streams = All()};
+  settings::FieldRows table;
+  Visit(table, truth);
+  EXPECT_EQ(table.rows.at(0).value, table.rows.at(0).range);
+  EXPECT_THAT(table.rows.at(0).value, StartsWith("depth, depth_exr, depth_kinect, distance, "));
 }
 
 TEST(TruthStreams, FilesOfAFrame) {
