@@ -1,5 +1,5 @@
 // Linked with a filter that has one mistake: tests/consistency/CMakeLists.txt says which. The verdict that passes the
-// honest filter (honest_test.cpp: same worlds, same thresholds) must reject it, in one of two settings.
+// honest filter (own_model_test.cpp: same worlds, same thresholds) must reject it, in one of two settings.
 #include <gtest/gtest.h>
 
 #include "tests/consistency/own_model.h"

@@ -73,7 +73,7 @@ std::map<std::string, Row> BySystem(const std::string& csv) {
   return rows;
 }
 
-TEST_F(CampaignTest, WhateverAnotherProgramDoesIsAResult) {
+TEST_F(CampaignTest, ExternalOutcomesAreResults) {
   WriteFile(here_ / "systems.yaml", Systems());
   const std::string text =
       CampaignOf("[rb2pf, ours, euroc, images, frames_lost, crashes, gives_up, hangs, silent, nonsense, elsewhere]");
@@ -133,7 +133,7 @@ TEST_F(CampaignTest, AnotherProgramIsJudgedAsOursIs) {
   EXPECT_EQ(task.at("coverage").at("pose_coverage"), track.at("coverage").at("pose_coverage"));
 }
 
-TEST_F(CampaignTest, AStoppedCampaignTakesAnotherProgramAlongWithAllThatItStarted) {
+TEST_F(CampaignTest, StopsExternalPrograms) {
   WriteFile(here_ / "systems.yaml",
             "systems:\n  - {name: slow, command: \"sleep 300 & echo -n $! > number; mv number " +
                 (here_ / "began").string() + "; wait\"}\n");

@@ -115,7 +115,7 @@ TEST_F(CampaignKillTest, ATaskThatHangsFailsAndTheOthersGoOn) {
   EXPECT_EQ(ok, 3u);
 }
 
-TEST_F(CampaignKillTest, CtrlCEndsItAndSaysHowToGoOn) {
+TEST_F(CampaignKillTest, CtrlC) {
   MustRun(Points(), "whole");
   const std::string when_some_are_done =
       "(until [ -d out/tasks/00/000003 ]; do sleep 0.01; done; kill -INT $$) &\nexec \\";

@@ -63,7 +63,7 @@ TEST_F(CampaignSlurmTest, TheCampaignTheDaemonAndTheNodeAreKilled) {
 }
 
 // A controller that is away for a while: its jobs may well be in the queue.
-TEST_F(CampaignTest, NothingIsSubmittedWhileNobodyKnowsWhatIsInTheQueue) {
+TEST_F(CampaignTest, SubmitsNothingIntoAnUnknownQueue) {
   const auto command = [&](const std::string& name, const std::string& script) {
     WriteFile(here_ / ("bin/" + name), "#!/bin/sh\n" + script);
     fs::permissions(here_ / ("bin/" + name), fs::perms::owner_all);

@@ -126,7 +126,7 @@ TEST_F(CampaignTest, NumbersAloneAreTheSameNumbers) {
 }
 
 // prior.focal_error reaches the odometry alone, in both commands and both kinds of worlds: the truth stays.
-TEST_F(CampaignTest, AWrongFocalLengthIsToldToTheOdometryAlone) {
+TEST_F(CampaignTest, FocalErrorReachesTheOdometryAlone) {
   const auto text = [](const fs::path& scenario) {
     return "scenarios: [{file: " + scenario.string() + ", set: {time.duration: 0.4 s}}]\n" +
            "vary: [{name: told, key: prior.focal_error, values: [0, 0.3]}]\nsystems: [rb2pf]\n";
@@ -147,7 +147,7 @@ TEST_F(CampaignTest, AWrongFocalLengthIsToldToTheOdometryAlone) {
   }
 }
 
-TEST_F(CampaignTest, OneTaskAgainIsTheSameAndInAnyOrderTheTableIs) {
+TEST_F(CampaignTest, OneTaskAgainAndAnyOrder) {
   MustRun(Images(), "out");
   const auto all = Lasting("out");
   const Outcome again = Run(Images(), "out", {"--task", "5"});

@@ -2,7 +2,6 @@
 #include "tests/system/program.h"
 
 #include <signal.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -72,17 +71,6 @@ bool KillVobench(const std::vector<std::string>& arguments, const fs::path& wher
   waitpid(child, &status, 0);
   if (WIFEXITED(status) && WEXITSTATUS(status) != 0) throw std::runtime_error("the program failed by itself");
   return WIFSIGNALED(status);
-}
-
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (fs::temp_directory_path() / "vobench-test-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a temporary folder like " + name);
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
 }
 
 std::string ReadFile(const fs::path& path) {

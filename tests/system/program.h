@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/temporary_folder.h"
+
 namespace vobench::system_test {
 
 // Where the program is.
@@ -31,19 +33,7 @@ int StartVobench(const std::vector<std::string>& arguments, const std::filesyste
 bool KillVobench(const std::vector<std::string>& arguments, const std::filesystem::path& where,
                  const std::function<bool()>& now);
 
-// A new empty folder, removed at the end of its life.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
+using vobench_test::TemporaryFolder;
 
 std::string ReadFile(const std::filesystem::path& path);
 void WriteFile(const std::filesystem::path& path, const std::string& text);

@@ -101,7 +101,7 @@ TEST_F(ResumeTest, AWholeSequenceIsLeftAlone) {
   EXPECT_TRUE(Tree(here_.path()) == before);
 }
 
-TEST_F(ResumeTest, AnInterruptedRunSaysHowToGoOnAndIsNotOverwritten) {
+TEST_F(ResumeTest, InterruptedRun) {
   const std::string endless = "time.duration=1000 s";
   const std::string motion =
       "trajectory={type: sampled, start: {position: [2.5, 1.4, 2], look_at: [3, 1.2, 0]}, "

@@ -51,7 +51,7 @@ TEST(Video, CtrlCEndsALiveOneAndTheResultIsWritten) {
 }
 
 // A stream cannot be had again: where the filter ends it (here by a noise that no number can hold), what was tracked before is written.
-TEST(Video, OfALiveOneThatAFaultEndsWhatCameBeforeIsWritten) {
+TEST(Video, FaultKeepsWhatCameBefore) {
   const TemporaryFolder here;
   ASSERT_EQ(RunVobench({"render", TinyScenario().string(), "-o", "s", "--frames", "0:12"}, here.path()).status, 0);
   const Outcome outcome = RunVobench({"track", "file://" + (here / "stream").string(), "-o", "out", "--camera",

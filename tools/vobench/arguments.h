@@ -3,9 +3,13 @@
 
 #include <variant>
 
-#include "tools/vobench/option_table.h"
+#include "tools/bench/campaign/options.h"
+#include "tools/bench/run/commands.h"
 
 namespace vobench {
+
+using Command = std::variant<RenderOptions, TrackOptions, EvaluateOptions, RunOptions, CheckOptions, ReportOptions,
+                             VerifyOptions, CampaignOptions, ExportOptions, SettingsOptions>;
 
 // The command, or the exit status where there is none to run: 0 after --help and --version, 2 for a line that makes no
 // sense (the reason is on stderr). Throws BadInput for what --compat cannot be.

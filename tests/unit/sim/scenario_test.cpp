@@ -313,7 +313,7 @@ TEST(Scenario, WhatIsWrongWithObjects) {
   }
 }
 
-TEST(Scenario, TruthIsDepthUnlessTold) {
+TEST(Scenario, TruthIsDepthByDefault) {
   const SmallWorld world;
   EXPECT_EQ(LoadScenario(world.scenario()).truth.streams, std::set<TruthStream>{TruthStream::depth});
   EXPECT_TRUE(LoadScenario(world.scenario(), {{"truth", "[]"}}).truth.streams.empty());

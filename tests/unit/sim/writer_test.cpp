@@ -225,7 +225,7 @@ TEST(SequenceWriter, IsNotFinishedWhileFramesAreLeft) {
 }
 
 // A folder that is stopped names exactly its frames, can be read, and grows to the same bytes.
-TEST(SequenceWriter, AStoppedSequenceIsAPrefixAndResumesToTheSameBytes) {
+TEST(SequenceWriter, StopsAndResumes) {
   const SmallWorld world;
   const Simulator simulator(LoadScenario(world.scenario()), 2);
   for (const Layout layout : {Layout::tum, Layout::euroc, Layout::icl}) {

@@ -75,7 +75,7 @@ TEST(ReadLines, NamesWhatCannotBeRead) {
   EXPECT_THROW(ReadLines(folder.path()), InputError);
 }
 
-TEST(Problems, AreToldInTheirOrderWithTheirPlace) {
+TEST(Problems, OrderAndPlace) {
   Problems problems;
   EXPECT_NO_THROW(problems.ThrowIfAny());
   problems.Add("a/b.txt", "is none");

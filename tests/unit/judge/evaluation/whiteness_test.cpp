@@ -222,7 +222,7 @@ TEST(Innovations, VerdictsKeepTheirFalseAlarmRate) {
 
 // Runs whose terms share half of their variance: their sum is far from a chi-square of as many degrees, and TestNis
 // rejects nearly always. By the runs' own spread 1 % is 1 %: at most 13 of 400 (exceeded once in 10 000 times).
-TEST(Innovations, TheMeanOfDependentTermsIsTestedByTheSpreadOfRuns) {
+TEST(Innovations, MeanOfDependentTerms) {
   TestRandom random(64);
   int of_sum = 0, of_mean = 0, of_wrong = 0;
   for (int i = 0; i < 400; ++i) {
@@ -298,7 +298,7 @@ TEST(Nis, OneDegreeOfFreedomCountsAndNoneDoesNot) {
 }
 
 // Of 400 honest runs 20 are outside; as many as the quantile says may be.
-TEST(Nis, AsManyRunsMayBeOutsideAsTheBinomialSays) {
+TEST(Nis, BinomialNumberOutside) {
   const std::size_t most = BinomialLimit(400, 0.05, 0.01);
   EXPECT_EQ(most, 31u);
   for (const std::size_t outside : {most, most + 1}) {

@@ -13,7 +13,7 @@ void ExpectRejected(const evaluation::ConsistencyVerdict& verdict, const char* w
 }
 
 // One set of runs for those whose filter is as it should be.
-TEST(OwnModel, TheFilterIsConsistentAndHalfOfPAndADelayAreNot) {
+TEST(OwnModel, FilterIsConsistent) {
   const Runs runs = Play(kRuns);
   const auto verdict = Judge(runs);
   EXPECT_TRUE(verdict.consistent()) << Failures(verdict);
@@ -31,7 +31,7 @@ TEST(OwnModel, TheFilterIsConsistentWithoutDelay) {
 
 // Two seconds of sampled poses. Weights tell the particles apart by the accidents of their draws, and each resampling
 // costs what they knew of the drift: the same filter with them is rejected, as is P x 0.5 without.
-TEST(OwnModel, EqualWeightsStayConsistentWhereResamplingDoesNot) {
+TEST(OwnModel, EqualWeightsStayConsistent) {
   const vobench::Overrides long_run = {{"time.duration", "2 s"},
                                        {"world.points.count", "20"},
                                        {"odometry.filter.particles", "16"},
