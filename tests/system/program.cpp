@@ -1,4 +1,3 @@
-#include "source_dir.h"
 #include "tests/system/program.h"
 
 #include <signal.h>
@@ -97,6 +96,6 @@ std::map<std::string, std::string> Tree(const fs::path& folder) {
   return tree;
 }
 
-fs::path TinyScenario() { return fs::path(VOBENCH_SOURCE_DIR) / "scenes" / "tiny.yaml"; }
+fs::path TinyScenario() { return fs::path(VOBENCH_TEST_SCENES) / "tiny.yaml"; }
 
 }  // namespace vobench::system_test

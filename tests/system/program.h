@@ -1,4 +1,4 @@
-// Purpose: runs the built program as a user would, and small helpers to spoil its inputs.
+// The built program, run as by a user, and what spoils its inputs.
 #pragma once
 
 #include <filesystem>
@@ -44,7 +44,7 @@ std::map<std::string, std::string> Tree(const std::filesystem::path& folder);
 // One argument for the shell.
 std::string Quoted(const std::string& text);
 
-// A small scenario of the project's own: scenes/tiny.yaml.
+// scenes/tiny.yaml in a copy of the scenes with small textures.
 std::filesystem::path TinyScenario();
 
 }  // namespace vobench::system_test

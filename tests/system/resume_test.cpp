@@ -107,7 +107,7 @@ TEST_F(ResumeTest, InterruptedRun) {
       "trajectory={type: sampled, start: {position: [2.5, 1.4, 2], look_at: [3, 1.2, 0]}, "
       "position_noise: 0.1, orientation_noise: 0.1, position_return: 1 1/s}";
   const auto arguments = Render("out", {"--set", endless, "--set", motion});
-  const Outcome outcome = RunVobench(arguments, here_.path(), "exec timeout -s INT 3 \\");
+  const Outcome outcome = RunVobench(arguments, here_.path(), "exec timeout -s INT 2 \\");
   EXPECT_THAT(outcome.err, HasSubstr("rendering was interrupted; the first "));
   EXPECT_THAT(outcome.err, HasSubstr("out.partial; --resume goes on"));
   EXPECT_FALSE(fs::exists(here_ / "out"));

@@ -35,7 +35,7 @@ TEST(Video, IsTrackedFrameByFrame) {
 TEST(Video, CtrlCEndsALiveOneAndTheResultIsWritten) {
   const TemporaryFolder here;
   ASSERT_EQ(RunVobench({"render", TinyScenario().string(), "-o", "s", "--frames", "0:12"}, here.path()).status, 0);
-  for (const char* moment : {"0", "0.1", "0.2", "0.3", "0.4"}) {
+  for (const char* moment : {"0", "0.1", "0.3"}) {
     const std::string filmed_until_stopped =
         std::string(kFilmed) +
         "(until ls .out.partial*/frames/* > /dev/null 2>&1; do sleep 0.01; kill -0 $$ || exit; done; sleep " +

@@ -1,4 +1,4 @@
-// Purpose: the parts of the Python module, and the types that they share. docs/python.md.
+// The parts of the Python module, and the types that they share. docs/python.md.
 #pragma once
 
 #include <pybind11/eigen.h>

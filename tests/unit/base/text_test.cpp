@@ -1,6 +1,6 @@
 #include "tools/base/text.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <limits>
 

@@ -1,7 +1,7 @@
 // PNG files hold what was put in: OpenCV (libpng) reads the same samples, pngcheck finds no fault.
 #include "sim/sequence/png.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <libdeflate.h>
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Purpose: a smooth random texture with a known value everywhere, for tests that need images with exact geometry.
+// A smooth random texture with a known value everywhere, for tests that need images with exact geometry.
 #pragma once
 
 #include <Eigen/Core>

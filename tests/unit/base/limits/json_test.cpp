@@ -1,6 +1,6 @@
 #include "tools/base/limits/json.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace limits {
 namespace {

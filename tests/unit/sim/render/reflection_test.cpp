@@ -1,5 +1,5 @@
 // Metal and gloss: mirrors against the mirrored world, lobes against sums over the hemisphere, energy in a furnace.
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-// Purpose: a folder of small files that goes away with the test.
+// Small pictures, and the folder of the tests that read meshes.
 #pragma once
 
 #include <cstdint>
