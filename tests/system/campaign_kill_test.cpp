@@ -106,8 +106,8 @@ TEST_F(CampaignKillTest, ATaskThatHangsFailsAndTheOthersGoOn) {
   const Outcome outcome = Run(text, "out", {"--timeout", "4"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.err,
-              HasSubstr("1 of 2 tasks failed; the same command tries them again. The first: task 1 (points, noise "
-                        "0.5 px, rbpf_16, seed 1): failed, took longer than the 4 s of --timeout"));
+              testing::AllOf(HasSubstr("1 of 2 tasks"), HasSubstr("task 1 (points, noise 0.5 px, rbpf_16, seed 1)"),
+                             HasSubstr("4 s of --timeout")));
   EXPECT_THAT(Results("out"), testing::ContainsRegex(",rb2pf,[^\n]*,ok,"));
 }
 
@@ -117,8 +117,7 @@ TEST_F(CampaignKillTest, CtrlC) {
       "(until [ -d out/tasks/00/000003 ]; do sleep 0.01; done; kill -INT $$) &\nexec \\";
   const Outcome outcome = RunVobench(Words("out"), here_.path(), when_some_are_done);
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.err, testing::ContainsRegex("the campaign was interrupted; [0-9]+ of 30 tasks are done, and the "
-                                                  "same command goes on"));
+  EXPECT_THAT(outcome.err, testing::ContainsRegex("interrupted.* [0-9]+ of 30 tasks"));
   EXPECT_LT(Done("out"), 30u);
   MustRun(Points(), "out");
   EXPECT_TRUE(Lasting("out") == Lasting("whole"));

@@ -26,8 +26,7 @@ TEST(Video, IsTrackedFrameByFrame) {
   EXPECT_THAT(estimate, testing::HasSubstr("\n0.033333333 "));
   const Outcome without = RunVobench({"track", "s/preview.mp4", "-o", "other"}, here.path());
   EXPECT_EQ(without.status, 2);
-  EXPECT_THAT(without.err,
-              testing::HasSubstr("preview.mp4: a video says nothing of its camera; say which one with --camera"));
+  EXPECT_THAT(without.err, testing::AllOf(testing::HasSubstr("preview.mp4"), testing::HasSubstr("--camera")));
   EXPECT_FALSE(std::filesystem::exists(here / "other"));
 }
 
@@ -44,7 +43,7 @@ TEST(Video, CtrlCEndsALiveOneAndTheResultIsWritten) {
         RunVobench({"track", "file://" + (here / "stream").string(), "-o", "out", "--camera", "s/camera.yaml"},
                    here.path(), filmed_until_stopped);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_THAT(outcome.err, testing::HasSubstr("Ctrl-C ends it, and the result is written."));
+    EXPECT_THAT(outcome.err, testing::HasSubstr("Ctrl-C"));
     const std::string estimate = ReadFile(here / "out/estimate.txt");
     EXPECT_GT(std::count(estimate.begin(), estimate.end(), '\n'), 1);
   }

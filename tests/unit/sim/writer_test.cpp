@@ -374,7 +374,7 @@ TEST(SequenceWriter, RefusesWhatIsThereAndBadRanges) {
     make(world.scenario() / "below" / "a file", 0, 1, 1);
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("wall.yaml/below/a file: cannot make this folder: Not a directory"));
+    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("wall.yaml/below/a file: "), HasSubstr("Not a directory")));
   }
   EXPECT_FALSE(fs::exists(folder));
   fs::create_directory(folder);
