@@ -1,5 +1,3 @@
-#include "tools/vobench/compat.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +13,7 @@
 #include "tools/judge/evaluation/compat/rpg.h"
 #include "tools/judge/evaluation/compat/tum.h"
 #include "tools/judge/evaluation/text_file.h"
+#include "tools/vobench/arguments.h"
 
 namespace vobench {
 namespace {

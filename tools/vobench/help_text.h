@@ -1,5 +1,5 @@
-// Texts made of the option table: --help for a terminal of 24 lines and 100 columns, the man page and bash's completion.
-// Source of the last two: docs/install.md.
+// Texts made of the option table: --help for a terminal of 24 lines and 100 columns, the man page, bash's completion
+// (docs/install.md).
 #pragma once
 
 #include <string>

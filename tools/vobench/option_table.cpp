@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "tools/bench/systems/systems.h"
-#include "tools/vobench/compat.h"
 #include "tools/vobench/help_text.h"
 
 namespace vobench {
@@ -104,7 +103,7 @@ void AddRender(OptionTable& table) {
     if (!(stream >> first >> colon >> last) || colon != ':' || stream >> rest || first < 0 || last <= first) {
       throw CLI::ValidationError("--frames", "'" + text + "' is not A:B with 0 <= A < B (frames A to B-1)");
     }
-    frames = {first, last};
+    frames.emplace(first, last);
   };
   command
       .add_option_function<std::string>("--frames", parse_frames,

@@ -1,7 +1,7 @@
 // What --compat prints on small trajectories of our own. The texts in compat/expected.txt were printed when every
 // golden value of the reference tools was met (tests/unit/judge/evaluation/golden_test.cpp, which needs files that are not
 // ours).
-#include "tools/vobench/compat.h"
+#include "tools/vobench/arguments.h"
 
 #include <gmock/gmock.h>
 
