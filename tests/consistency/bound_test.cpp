@@ -71,7 +71,7 @@ Nees Play(const Overrides& settings) {
 
 // False alarms: 1e-3 each, two-sided (an error far below the bound is a mistake in the bound). The upper end of the band is 1.32 in the
 // mean: an RMSE of 1.15 times the bound is rejected as often as not.
-TEST(Bound, EkfSlamReachesItAndIsHonestAndTheJointModeIsNeither) {
+TEST(Bound, EkfSlamReachesIt) {
   const Nees textbook = Play({});
   const evaluation::Band band = evaluation::Chi2MeanBand(6, kRuns, 0.999);
   EXPECT_GT(textbook.by_bound / kRuns, band.low);

@@ -1,4 +1,4 @@
-// Purpose: hours of motion through ever new landmarks: does the odometry stay as fast, and as small, as it was?
+// Hours of motion through ever new landmarks: does the odometry stay as fast, and as small, as it was?
 // How:     the world is a process of its own, so that what it keeps is not counted as the odometry's.
 #pragma once
 

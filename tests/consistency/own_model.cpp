@@ -127,7 +127,7 @@ evaluation::ConsistencyVerdict Judge(const Runs& runs, const Tampering& tamperin
   return evaluation::JudgeConsistency(judged, options);
 }
 
-bool HonestButCoverage(const evaluation::ConsistencyVerdict& verdict) {
+bool PassesButCoverage(const evaluation::ConsistencyVerdict& verdict) {
   return std::all_of(verdict.checks.begin(), verdict.checks.end(), [](const evaluation::Check& check) {
     return check.pass || check.name.starts_with("RMSE / bound") || check.name.starts_with("coverage");
   });

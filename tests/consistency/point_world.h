@@ -1,5 +1,5 @@
-// Purpose: a world of points for the filter's own tests: landmarks on the walls of a room, a camera in smooth hand-held motion,
-//          known association and Gaussian pixel noise. Truth and filter share no code: projection is written out here.
+// A world of points for the filter's own tests: landmarks on the walls of a room, a camera in smooth hand-held motion,
+// known association and Gaussian pixel noise. Truth and filter share no code: projection is written out here.
 #pragma once
 
 #include <Eigen/Core>

@@ -47,7 +47,7 @@ double MedianAte(const vo::Params& params) {
   return errors[kRuns / 2];
 }
 
-TEST(PointWorld, IteratedProposalTracksWithinTwoCentimetresAndTheOneShotDoesNot) {
+TEST(PointWorld, IteratedProposalTracks) {
   const double iterated = MedianAte(OnePixel());
   vo::Params ekf = OnePixel();
   ekf.filter.proposal = vo::Proposal::ekf;
@@ -125,14 +125,14 @@ double Score(const Nees& nees) {
   return (std::cbrt(nees.sum / k) - (1 - 2 / (9 * k))) / std::sqrt(2 / (9 * k));
 }
 
-TEST(PointWorld, FirstStepIsConsistentAndHalvedCovarianceIsRejected) {
+TEST(PointWorld, FirstStepIsConsistent) {
   EXPECT_LT(std::abs(Score(FirstStepNees(200, 1.0))), 3.3);
   EXPECT_GT(std::abs(Score(FirstStepNees(200, 0.5))), 3.3);
   EXPECT_GT(std::abs(Score(FirstStepNees(200, 2.0))), 3.3);
 }
 
 // Blackout: no matches for ten frames. The covariance grows, the filter goes on and comes back.
-TEST(PointWorld, CoastsThroughABlackoutWithGrowingCovarianceAndRecovers) {
+TEST(PointWorld, CoastsThroughABlackout) {
   World world = MakeRoom(2, 90, 1.0);
   for (int k = 45; k < 55; ++k) world.views[static_cast<std::size_t>(k)].clear();
   vo::Params params = OnePixel();
@@ -146,7 +146,7 @@ TEST(PointWorld, CoastsThroughABlackoutWithGrowingCovarianceAndRecovers) {
 }
 
 // RB2-PF keeps the velocity as a Gaussian; RB-PF samples it, and its answer carries the sampling noise of a few particles.
-TEST(PointWorld, KalmanFilteredVelocityIsBetterThanSampledVelocity) {
+TEST(PointWorld, FilteredVelocityBeatsSampled) {
   const auto angular_rate_error = [](vo::Sampled sampled) {  // RMS against the central difference of truth [rad/s]
     vo::Params params = OnePixel();
     params.filter.sampled = sampled;

@@ -48,7 +48,7 @@ double Anees(const char* told) {
 
 // False alarm 1e-3 as far as the errors are Gaussian: the mean over independent runs is chi-square. Those of a scale are log-normal; with a
 // spread of 0.3 the variance of a squared error is then a third larger, and the false alarm below 5e-3.
-TEST(Scale, UnknownItIsPartOfTheCovarianceAndTakenForKnownItIsNot) {
+TEST(Scale, UnknownScaleIsPartOfTheCovariance) {
   const evaluation::Band band = evaluation::Chi2MeanBand(3, kRuns, 0.999);
   const double unknown = Anees("0.3"), known = Anees("0");
   std::cout << "ANEES of the position: " << unknown << ", the scale taken for known: " << known << '\n';

@@ -72,7 +72,7 @@ double Mean(const std::vector<double>& values) { return evaluation::Summarise(va
 // draws, seldom more than four of weight, in six dimensions: the median over runs was 116, of RB2-PF's particles 2.5.
 // (RB-PF's answer, which takes the velocity before it is drawn, was 2.7 in the mean.) Without a lag RB2-PF's answer
 // is 1.7: the poses, sampled at once, are what is over-confident then.
-TEST(VelocityClaim, GaussiansOfTheVelocityAreHonestAndEightSamplesAreNot) {
+TEST(VelocityClaim, GaussianVelocityIsConsistent) {
   const Nees gaussians = Play(vo::Sampled::pose, {{"odometry.filter.lag", "5"}, {"odometry.filter.weight", "uniform"}});
   const evaluation::Band band = evaluation::Chi2MeanBand(6, kRuns, 0.999);
   EXPECT_GT(6 * Mean(gaussians.answer), band.low);

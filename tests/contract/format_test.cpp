@@ -1,14 +1,13 @@
 // What the simulator writes, the odometry and the judge read: stamps, cameras, colours, truth.
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "sim/sequence/layout.h"
+#include "tests/temporary_folder.h"
 #include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "tools/judge/evaluation/trajectory.h"
@@ -21,18 +20,11 @@ namespace fs = std::filesystem;
 
 class FormatContract : public testing::Test {
  protected:
-  FormatContract() {
-    std::string name = (fs::temp_directory_path() / "format-contract-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    here_ = name;
-    fs::create_directory(here_ / "rgb");
-  }
-  ~FormatContract() override { fs::remove_all(here_); }
-  void Write(const std::string& name, const std::string& content) const {
-    std::ofstream(here_ / name, std::ios::binary) << content;
-  }
+  FormatContract() { fs::create_directory(here_ / "rgb"); }
+  void Write(const std::string& name, const std::string& content) const { folder_.Write(name, content); }
 
-  fs::path here_;
+  const vobench_test::TemporaryFolder folder_;
+  const fs::path here_ = folder_.path();
 };
 
 // Times that no double holds to the nanosecond.

@@ -6,30 +6,24 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <stdexcept>
+
+#include "tests/temporary_folder.h"
 
 namespace fuzz {
 namespace fs = std::filesystem;
 
 const fs::path& Folder() {
-  struct Own {
-    Own() {
-      std::error_code error;
-      const fs::path in_memory = "/dev/shm";
-      const bool there = fs::is_directory(in_memory, error) && access(in_memory.c_str(), W_OK) == 0;
-      std::string name = ((there ? in_memory : fs::temp_directory_path()) / "vobench_fuzz_XXXXXX").string();
-      if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
-      path = name;
-      fs::current_path(path);
-    }
-    ~Own() {
-      std::error_code ignored;
-      fs::remove_all(path, ignored);
-    }
-    fs::path path;
-  };
-  static const Own own;
-  return own.path;
+  static const auto own = [] {
+    std::error_code error;
+    const fs::path in_memory = "/dev/shm";
+    const bool there = fs::is_directory(in_memory, error) && access(in_memory.c_str(), W_OK) == 0;
+    auto folder = std::make_unique<vobench_test::TemporaryFolder>(there ? in_memory : fs::temp_directory_path());
+    fs::current_path(folder->path());
+    return folder;
+  }();
+  return own->path();
 }
 
 InputFile::InputFile(const std::string& name) : path_(name) {

@@ -1,7 +1,7 @@
-// Purpose: the contract of every fuzz target: whatever bytes a file holds, its reader returns, or throws an exception
+// The contract of every fuzz target: whatever bytes a file holds, its reader returns, or throws an exception
 // that names the
-//          file. Anything else stops the program: another exception is told here, a crash by the sanitizers, time and
-//          memory by whoever runs the target.
+// file. Anything else stops the program: another exception is told here, a crash by the sanitizers, time and
+// memory by whoever runs the target.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Purpose: the checksums of a PNG's chunks, put right.
+// The checksums of a PNG's chunks, put right.
 #pragma once
 
 #include <cstdint>

@@ -1,17 +1,16 @@
 // What tests in a headless Chromium have in common: the program, the browser, an empty folder.
-// Arguments: VOBENCH MODULES [...]     MODULES has node_modules
+// Arguments: VOBENCH MODULES [...]     MODULES has node_modules, and beside it are the scenes
 // Exit:  77 where there is no Chromium.
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { delimiter, join, resolve } from "node:path";
-import { fileURLToPath } from "node:url";
 
 export const [program, modules] = process.argv.slice(2, 4).map((path) => resolve(path));
 const load = createRequire(resolve(modules, "package.json"));
 const { chromium } = load("playwright-core");
 export const axe = load.resolve("axe-core/axe.min.js");
-export const scenes = fileURLToPath(new URL("../../scenes", import.meta.url));
+export const scenes = resolve(modules, "../scenes"); // with small textures
 export const here = mkdtempSync(join(tmpdir(), "vobench-report-page-"));
 process.on("exit", () => rmSync(here, { recursive: true, force: true }));
 

@@ -1,4 +1,4 @@
-// Purpose: a small campaign in a folder of its own, for tests of what a user would do with it.
+// A small campaign in a folder of its own, for tests of what a user would do with it.
 #pragma once
 
 #include <gmock/gmock.h>

@@ -73,7 +73,7 @@ std::map<std::string, Row> BySystem(const std::string& csv) {
   return rows;
 }
 
-TEST_F(CampaignTest, WhateverAnotherProgramDoesIsAResult) {
+TEST_F(CampaignTest, ExternalOutcomesAreResults) {
   WriteFile(here_ / "systems.yaml", Systems());
   const std::string text =
       CampaignOf("[rb2pf, ours, euroc, images, frames_lost, crashes, gives_up, hangs, silent, nonsense, elsewhere]");
@@ -97,7 +97,7 @@ TEST_F(CampaignTest, WhateverAnotherProgramDoesIsAResult) {
   EXPECT_EQ(rows["hangs"]["status"], "timed_out");
   EXPECT_EQ(rows["hangs"]["reason"], "took longer than 1 s");
   for (const char* name : {"silent", "nonsense", "elsewhere"}) EXPECT_EQ(rows[name]["status"], "no_answer") << name;
-  EXPECT_THAT(rows["silent"]["reason"], HasSubstr("trajectory.txt: cannot be"));
+  EXPECT_THAT(rows["silent"]["reason"], HasSubstr("trajectory.txt: "));
   EXPECT_THAT(rows["nonsense"]["reason"], HasSubstr("trajectory.txt:1:"));
   EXPECT_THAT(ReadFile(here_ / "out/tables.md"), HasSubstr("| X |"));
   // What it said, and the calibration that it was given, are kept.
@@ -133,7 +133,7 @@ TEST_F(CampaignTest, AnotherProgramIsJudgedAsOursIs) {
   EXPECT_EQ(task.at("coverage").at("pose_coverage"), track.at("coverage").at("pose_coverage"));
 }
 
-TEST_F(CampaignTest, AStoppedCampaignTakesAnotherProgramAlongWithAllThatItStarted) {
+TEST_F(CampaignTest, StopsExternalPrograms) {
   WriteFile(here_ / "systems.yaml",
             "systems:\n  - {name: slow, command: \"sleep 300 & echo -n $! > number; mv number " +
                 (here_ / "began").string() + "; wait\"}\n");
@@ -166,7 +166,7 @@ TEST_F(CampaignTest, EntriesAreCheckedBeforeAnythingRuns) {
   WriteFile(here_ / "systems.yaml", "systems:\n  - {name: a, command: \"x {vocabulary}\"}\n");
   const Outcome bad = Run(CampaignOf("[a, b]"), "out");
   EXPECT_EQ(bad.status, 2);
-  EXPECT_THAT(bad.err, HasSubstr("systems.yaml:2:24: 'command': {vocabulary} stands for nothing"));
+  EXPECT_THAT(bad.err, HasSubstr("systems.yaml:2:24: 'command': {vocabulary}"));
   EXPECT_THAT(bad.err, HasSubstr("there is no system 'b'"));
   EXPECT_FALSE(fs::exists(here_ / "out"));
   // A lens that the calibration cannot say: the task fails, with the reason.

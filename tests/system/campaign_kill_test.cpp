@@ -5,7 +5,6 @@
 #include <chrono>
 #include <fstream>
 #include <random>
-#include <sstream>
 #include <thread>
 
 #include "tests/system/campaign.h"
@@ -103,26 +102,22 @@ TEST_F(CampaignKillTest, TheCampaignTakesItsProcessesAlong) {
 TEST_F(CampaignKillTest, ATaskThatHangsFailsAndTheOthersGoOn) {
   std::string text = Points("1");
   text.replace(text.find("particles: 16"), 13, "particles: 100000");
+  text.replace(text.find("[0.5 px, 1 px, 2 px]"), 20, "[0.5 px]");
   const Outcome outcome = Run(text, "out", {"--timeout", "4"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.err,
-              HasSubstr("3 of 6 tasks failed; the same command tries them again. The first: task 1 (points, noise "
-                        "0.5 px, rbpf_16, seed 1): failed, took longer than the 4 s of --timeout"));
-  std::istringstream lines(Results("out"));
-  std::size_t ok = 0;
-  for (std::string line; std::getline(lines, line);)
-    ok += line.find(",rb2pf,") != std::string::npos && line.find(",ok,") != std::string::npos;
-  EXPECT_EQ(ok, 3u);
+              testing::AllOf(HasSubstr("1 of 2 tasks"), HasSubstr("task 1 (points, noise 0.5 px, rbpf_16, seed 1)"),
+                             HasSubstr("4 s of --timeout")));
+  EXPECT_THAT(Results("out"), testing::ContainsRegex(",rb2pf,[^\n]*,ok,"));
 }
 
-TEST_F(CampaignKillTest, CtrlCEndsItAndSaysHowToGoOn) {
+TEST_F(CampaignKillTest, CtrlC) {
   MustRun(Points(), "whole");
   const std::string when_some_are_done =
       "(until [ -d out/tasks/00/000003 ]; do sleep 0.01; done; kill -INT $$) &\nexec \\";
   const Outcome outcome = RunVobench(Words("out"), here_.path(), when_some_are_done);
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.err, testing::ContainsRegex("the campaign was interrupted; [0-9]+ of 30 tasks are done, and the "
-                                                  "same command goes on"));
+  EXPECT_THAT(outcome.err, testing::ContainsRegex("interrupted.* [0-9]+ of 30 tasks"));
   EXPECT_LT(Done("out"), 30u);
   MustRun(Points(), "out");
   EXPECT_TRUE(Lasting("out") == Lasting("whole"));

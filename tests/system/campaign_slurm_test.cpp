@@ -63,7 +63,7 @@ TEST_F(CampaignSlurmTest, TheCampaignTheDaemonAndTheNodeAreKilled) {
 }
 
 // A controller that is away for a while: its jobs may well be in the queue.
-TEST_F(CampaignTest, NothingIsSubmittedWhileNobodyKnowsWhatIsInTheQueue) {
+TEST_F(CampaignTest, SubmitsNothingIntoAnUnknownQueue) {
   const auto command = [&](const std::string& name, const std::string& script) {
     WriteFile(here_ / ("bin/" + name), "#!/bin/sh\n" + script);
     fs::permissions(here_ / ("bin/" + name), fs::perms::owner_all);
@@ -79,8 +79,8 @@ TEST_F(CampaignTest, NothingIsSubmittedWhileNobodyKnowsWhatIsInTheQueue) {
   };
   const Outcome outcome = run();
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("squeue does not say whether jobs of an earlier start (vobench-"));
-  EXPECT_THAT(outcome.err, HasSubstr("are in the queue, so nothing was submitted: slurm_load_jobs error: Unable to"));
+  EXPECT_THAT(outcome.err, HasSubstr("squeue"));
+  EXPECT_THAT(outcome.err, HasSubstr("slurm_load_jobs error: Unable to"));
   EXPECT_FALSE(fs::exists(here_ / "submitted"));
   EXPECT_THAT(run().err, HasSubstr("no result from Slurm in 3 rounds")) << "of a queue that is known to be empty";
   EXPECT_TRUE(fs::exists(here_ / "submitted"));

@@ -47,7 +47,8 @@ TEST_F(DeterminismTest, MovingObjectsDoNotDependOnThreads) {
   const std::string scenario = (TinyScenario().parent_path() / "moving.yaml").string();
   const auto render = [&](const std::string& folder, const std::string& jobs) {
     Vobench({"render", scenario, "-o", folder, "--frames", "20:24", "--jobs", jobs, "--set",
-             "sensor.rolling_shutter=10 ms"});
+             "sensor.rolling_shutter=10 ms", "--set",
+             "camera={width: 160, height: 120, fx: 131.25, fy: 131.25, cx: 79.5, cy: 59.5}"});
   };
   render("one", "1");
   const auto one = Tree(here_ / "one");

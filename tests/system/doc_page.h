@@ -1,9 +1,9 @@
-// Purpose: a page of the docs as a test sees it: the commands in its code blocks, and the files that it shows.
-//          Before a block may stand, as a comment that readers do not see:
-//            <!-- file: NAME -->      the block is this file; it is there for the commands that follow
-//            <!-- slow -->            its commands take more than seconds: they run in the slow tests
-//            <!-- not run: WHY -->    its commands are not run, and why
-//          A fenced block without a language is run whole; of an indented one, the lines that begin with `vobench`.
+// A page of the docs as a test sees it: the commands in its code blocks, and the files that it shows.
+// Before a block may stand, as a comment that readers do not see:
+// <!-- file: NAME -->      the block is this file; it is there for the commands that follow
+// <!-- slow -->            its commands take more than seconds: they run in the slow tests
+// <!-- not run: WHY -->    its commands are not run, and why
+// A fenced block without a language is run whole; of an indented one, the lines that begin with `vobench`.
 #pragma once
 
 #include <filesystem>

@@ -111,7 +111,7 @@ TEST_F(ExportTest, DepthOfAnySizeIsRefused) {
   EXPECT_THAT(outcome.err, HasSubstr("0.000000000.png: 30000 x 30000 pixels: a picture may have"));
 }
 #else
-TEST_F(ExportTest, SaysWhatIsMissing) {
+TEST_F(ExportTest, MissingInputs) {
   const Outcome outcome = Run({"export", "seq", "--bag", "x.bag"});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, HasSubstr("librosbag-storage-dev"));

@@ -81,7 +81,7 @@ TEST_F(LayoutsTest, OneSequenceInEachLayoutGivesOneEstimate) {
   EXPECT_THAT(ReadFile(here_ / "tum.ply"), testing::StartsWith("ply\nformat ascii 1.0\n"));
 }
 
-TEST_F(LayoutsTest, EveryRunOfSeveralLeavesTrajectoriesByTheRulesAndAMap) {
+TEST_F(LayoutsTest, EveryRunLeavesTrajectoriesAndAMap) {
   const std::string points = (TinyScenario().parent_path() / "points.yaml").string();
   Run({"run", points, "-o", "out", "--runs", "2", "--map", "map.ply", "--set", "time.duration=0.3 s"});
   for (const std::string seed : {"1", "2"}) {

@@ -1,6 +1,6 @@
 // While strangers flood its server, a run goes on, and its results are those of a run that nobody could look at.
 #include <arpa/inet.h>
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>

@@ -213,7 +213,7 @@ const std::vector<Message>& Messages() {
       {"tools/bench/run/render.cpp",
        {"render", "TINY", "-o", "o", "--frames", "100:200"},
        {"--frames 100:200", "0 to 29"}},
-      {"tools/vobench/render.cpp",
+      {"tools/vobench/option_table.cpp",
        {"render", "TINY", "-o", "o", "--frames", "5"},
        {"--frames", "'5'", "A:B with 0 <= A < B"}},
       {"tools/vobench/option_table.cpp",
@@ -330,7 +330,7 @@ class MessagesTest : public testing::Test {
   TemporaryFolder here_;
 };
 
-TEST_F(MessagesTest, EachSaysWhatAndWhereAndWhatToDoAndLeavesNothing) {
+TEST_F(MessagesTest, EachNamesPlaceAndReason) {
   SpoiltFiles();
   const auto before = Tree(here_.path());
   for (const Message& message : Messages()) {

@@ -1,8 +1,6 @@
-#include "source_dir.h"
 #include "tests/system/program.h"
 
 #include <signal.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -74,17 +72,6 @@ bool KillVobench(const std::vector<std::string>& arguments, const fs::path& wher
   return WIFSIGNALED(status);
 }
 
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (fs::temp_directory_path() / "vobench-test-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a temporary folder like " + name);
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
-
 std::string ReadFile(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error("cannot read " + path.string());
@@ -109,6 +96,6 @@ std::map<std::string, std::string> Tree(const fs::path& folder) {
   return tree;
 }
 
-fs::path TinyScenario() { return fs::path(VOBENCH_SOURCE_DIR) / "scenes" / "tiny.yaml"; }
+fs::path TinyScenario() { return fs::path(VOBENCH_TEST_SCENES) / "tiny.yaml"; }
 
 }  // namespace vobench::system_test

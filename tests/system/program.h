@@ -1,4 +1,4 @@
-// Purpose: runs the built program as a user would, and small helpers to spoil its inputs.
+// The built program, run as by a user, and what spoils its inputs.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +6,8 @@
 #include <map>
 #include <string>
 #include <vector>
+
+#include "tests/temporary_folder.h"
 
 namespace vobench::system_test {
 
@@ -31,19 +33,7 @@ int StartVobench(const std::vector<std::string>& arguments, const std::filesyste
 bool KillVobench(const std::vector<std::string>& arguments, const std::filesystem::path& where,
                  const std::function<bool()>& now);
 
-// A new empty folder, removed at the end of its life.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
+using vobench_test::TemporaryFolder;
 
 std::string ReadFile(const std::filesystem::path& path);
 void WriteFile(const std::filesystem::path& path, const std::string& text);
@@ -54,7 +44,7 @@ std::map<std::string, std::string> Tree(const std::filesystem::path& folder);
 // One argument for the shell.
 std::string Quoted(const std::string& text);
 
-// A small scenario of the project's own: scenes/tiny.yaml.
+// scenes/tiny.yaml in a copy of the scenes with small textures.
 std::filesystem::path TinyScenario();
 
 }  // namespace vobench::system_test

@@ -1,6 +1,6 @@
-// Purpose: the program on recorded sequences, which are not part of the project: they are looked for in $VOBENCH_DATA,
+// The program on recorded sequences, which are not part of the project: they are looked for in $VOBENCH_DATA,
 // or else
-//          in ../shared/data beside the checkout.
+// in ../shared/data beside the checkout.
 #pragma once
 
 #include <cstdint>

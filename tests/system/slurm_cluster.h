@@ -1,5 +1,5 @@
-// Purpose: a real Slurm of one node, on the loopback interface alone: munged, slurmctld and slurmd with a configuration
-//          of their own in a temporary folder.
+// A real Slurm of one node, on the loopback interface alone: munged, slurmctld and slurmd with a configuration
+// of their own in a temporary folder.
 #pragma once
 
 #include <string>

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 
 #include "tools/base/text.h"
 #include "tools/judge/evaluation/ate.h"
@@ -37,16 +38,17 @@ Trajectory MakeTrajectory(const Stamps& stamps_ns, const Points& positions, cons
   return trajectory;
 }
 
-// A view of one member of all poses.
-template <class T>
-py::array Column(const py::object& self, const T* (*first)(const StampedPose&), py::ssize_t width) {
+// A view of one member of all poses: `width` numbers from First(pose) on.
+template <auto First, py::ssize_t width>
+py::array Column(const py::object& self) {
   const evaluation::Trajectory& poses = self.cast<const Trajectory&>().poses;
+  using T = std::remove_cvref_t<decltype(*First(poses.front()))>;
   std::vector<py::ssize_t> shape{py::ssize_t(poses.size())}, strides{sizeof(StampedPose)};
   if (width > 1) {
     shape.push_back(width);
     strides.push_back(sizeof(T));
   }
-  return py::array(py::dtype::of<T>(), shape, strides, poses.empty() ? nullptr : first(poses.front()), self);
+  return py::array(py::dtype::of<T>(), shape, strides, poses.empty() ? nullptr : First(poses.front()), self);
 }
 
 evaluation::Alignment AlignmentOf(const std::string& name) {
@@ -97,27 +99,11 @@ void AddErrorMeasures(py::module_& m) {
           [](const Trajectory& t, const std::filesystem::path& file) { evaluation::WriteTrajectory(file, t.poses); },
           py::arg("file"), Doc("tools/judge/evaluation/trajectory.h:WriteTrajectory"))
       .def("__len__", [](const Trajectory& t) { return t.poses.size(); })
-      .def_property_readonly(
-          "stamps_ns",
-          [](const py::object& self) {
-            return Column<std::int64_t>(
-                self, [](const StampedPose& p) { return &p.stamp_ns; }, 1);
-          },
-          "(n,). A view.")
-      .def_property_readonly(
-          "positions",
-          [](const py::object& self) {
-            return Column<double>(
-                self, [](const StampedPose& p) { return p.p_WC.data(); }, 3);
-          },
-          "(n, 3) [m]. A view.")
-      .def_property_readonly(
-          "orientations",
-          [](const py::object& self) {
-            return Column<double>(
-                self, [](const StampedPose& p) { return p.q_WC.coeffs().data(); }, 4);
-          },
-          "(n, 4): (x, y, z, w). A view.")
+      .def_property_readonly("stamps_ns", &Column<[](const StampedPose& p) { return &p.stamp_ns; }, 1>, "(n,). A view.")
+      .def_property_readonly("positions", &Column<[](const StampedPose& p) { return p.p_WC.data(); }, 3>,
+                             "(n, 3) [m]. A view.")
+      .def_property_readonly("orientations", &Column<[](const StampedPose& p) { return p.q_WC.coeffs().data(); }, 4>,
+                             "(n, 4): (x, y, z, w). A view.")
       .def_property_readonly(
           "path_length", [](const Trajectory& t) { return evaluation::PathLength(t.poses); },
           Doc("tools/judge/evaluation/trajectory.h:PathLength"));

@@ -9,6 +9,23 @@
 #include "tools/judge/evaluation/text_file.h"
 
 namespace vobench::python {
+namespace {
+
+struct Entry {
+  const char *key, *text;
+};
+constexpr Entry kDocs[] = {
+#include "docstrings.inc"
+};
+
+}  // namespace
+
+const char* Doc(const std::string& key) {
+  for (const Entry& entry : kDocs) {
+    if (entry.key == key) return entry.text;
+  }
+  throw std::logic_error("no documentation of " + key);
+}
 
 void AddErrors(py::module_& m) {
   py::register_exception<settings::Error>(m, "SettingsError", PyExc_ValueError).doc() =
@@ -43,8 +60,7 @@ PYBIND11_MODULE(_core, m) {
   m.attr("__version__") = VOBENCH_VERSION;
   vobench::python::AddErrors(m);
   vobench::python::AddScenario(m);
-  vobench::python::AddWorlds(m);
-  vobench::python::AddSequence(m);
+  vobench::python::AddFrames(m);
   vobench::python::AddOdometry(m);
   vobench::python::AddErrorMeasures(m);
   vobench::python::AddConsistency(m);

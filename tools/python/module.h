@@ -1,4 +1,4 @@
-// Purpose: the parts of the Python module, and the types that they share. docs/python.md.
+// The parts of the Python module, and the types that they share. docs/python.md.
 #pragma once
 
 #include <pybind11/eigen.h>
@@ -16,12 +16,16 @@
 #include "sim/simulator.h"
 #include "tools/bench/systems/experiment.h"
 #include "tools/judge/evaluation/trajectory.h"
-#include "tools/python/docs.h"
 #include "vo/odometry.h"
 
 namespace vobench::python {
 
 namespace py = pybind11;
+
+// "sim/simulator.h:Simulator::Render": the comment of that declaration; "sim/simulator.h:": the header's purpose. What
+// there is, docstrings.py reads from the headers when the module is built. Throws std::logic_error for a key that there
+// is none of.
+const char* Doc(const std::string& key);
 
 // Work during which Python may do something else.
 using Unlocked = py::call_guard<py::gil_scoped_release>;
@@ -50,19 +54,27 @@ struct Trajectory {
   evaluation::Trajectory poses;
 };
 
-// (x, y, z, w), as in docs/conventions.md.
-inline Eigen::Vector4d Coefficients(const Eigen::Quaterniond& q) { return q.coeffs(); }
-// Throws std::invalid_argument where it is no rotation.
+// Of (x, y, z, w). Throws std::invalid_argument where it is no rotation.
 Eigen::Quaterniond Rotation(const Eigen::Vector4d& xyzw);
 
 // {"filter.particles": 16} as overrides, with a prefix before each key.
 Overrides OverridesOf(const py::dict& settings, const std::string& prefix = "");
 
+// The source's next frame, while Python may do something else; ends Python's iteration after the last.
+template <class Source>
+auto NextOf(Source& source) {
+  auto frame = [&] {
+    const py::gil_scoped_release unlocked;
+    return source.Next();
+  }();
+  if (!frame) throw py::stop_iteration();
+  return *std::move(frame);
+}
+
 // Each adds classes and functions; in this order, so that signatures name Python's types.
 void AddErrors(py::module_& m);
 void AddScenario(py::module_& m);       // Scenario, Camera, Truth
-void AddWorlds(py::module_& m);         // Simulator, Frame, PointWorld, PointFrame
-void AddSequence(py::module_& m);       // Sequence, ImageFrame
+void AddFrames(py::module_& m);         // Simulator, Frame, PointWorld, PointFrame, Sequence, ImageFrame
 void AddOdometry(py::module_& m);       // Prior, Estimate, Odometry, PointOdometry
 void AddErrorMeasures(py::module_& m);  // Trajectory, ate, rpe
 void AddConsistency(py::module_& m);    // nees, anees_test, judge, play, test_consistency

@@ -35,7 +35,7 @@ vo::Params ParamsOf(const std::string& system, const py::dict& settings) {
   return ParamsOf(system, params);
 }
 
-// As `vobench run` starts it: what it is told of the start is a function of the seed.
+// As `vobench run` starts it: its prior is a function of the seed.
 vo::Odometry OdometryOf(const Simulator& simulator, const std::string& system, std::uint64_t seed) {
   const Experiment& experiment = *simulator.scenario;
   const vo::Prior prior = PriorOf(experiment.prior, experiment.scenario.motion, TruthOf(simulator.simulator, 0), seed);
@@ -124,10 +124,24 @@ py::tuple Features(const vo::Odometry& self) {
   return py::make_tuple(ids, status, predicted, pixel, S, R);
 }
 
+// A class with pose and velocity.
+template <class State>
+py::class_<State> AddState(py::module_& m, const std::string& name, const char* doc) {
+  py::class_<State> added(m, name.c_str(), doc);
+  added
+      .def_property_readonly(
+          "p_WC", [](const State& s) { return s.pose.p_WC; }, "[m]")
+      .def_property_readonly(
+          "q_WC", [](const State& s) -> Eigen::Vector4d { return s.pose.q_WC.coeffs(); }, "(x, y, z, w)")
+      .def_readwrite("v_WC", &State::v_WC, Doc("vo/base/result.h:" + name + "::v_WC"))
+      .def_readwrite("w_WC_C", &State::w_WC_C, Doc("vo/base/result.h:" + name + "::w_WC_C"));
+  return added;
+}
+
 void AddEstimate(py::module_& m) {
   const auto zero = [] { return Eigen::Vector3d(0, 0, 0); };
   const Eigen::Vector4d identity(0, 0, 0, 1);
-  py::class_<vo::Prior>(m, "Prior", Doc("vo/base/result.h:Prior"))
+  AddState<vo::Prior>(m, "Prior", Doc("vo/base/result.h:Prior"))
       .def(py::init([](const Eigen::Vector3d& p_WC, const Eigen::Vector4d& q_WC, const Eigen::Vector3d& v_WC,
                        const Eigen::Vector3d& w_WC_C, const std::optional<vo::Matrix6>& pose_covariance,
                        const std::optional<vo::Matrix6>& velocity_covariance) {
@@ -139,12 +153,6 @@ void AddEstimate(py::module_& m) {
            py::kw_only(), py::arg("p_WC") = zero(), py::arg("q_WC") = identity, py::arg("v_WC") = zero(),
            py::arg("w_WC_C") = zero(), py::arg("pose_covariance") = py::none(),
            py::arg("velocity_covariance") = py::none())
-      .def_property_readonly(
-          "p_WC", [](const vo::Prior& p) { return p.pose.p_WC; }, "[m]")
-      .def_property_readonly(
-          "q_WC", [](const vo::Prior& p) { return Coefficients(p.pose.q_WC); }, "(x, y, z, w)")
-      .def_readwrite("v_WC", &vo::Prior::v_WC, Doc("vo/base/result.h:Prior::v_WC"))
-      .def_readwrite("w_WC_C", &vo::Prior::w_WC_C, Doc("vo/base/result.h:Prior::w_WC_C"))
       .def_readwrite("pose_covariance", &vo::Prior::pose_covariance)
       .def_readwrite("velocity_covariance", &vo::Prior::velocity_covariance);
   py::class_<vo::NumericalEvents>(m, "NumericalEvents", Doc("vo/base/numerical_events.h:NumericalEvents"))
@@ -165,18 +173,25 @@ void AddEstimate(py::module_& m) {
       .def_readonly("effective_particles", &vo::FrameDiagnostics::effective_particles,
                     Doc("vo/base/result.h:FrameDiagnostics::effective_particles"))
       .def_readonly("events", &vo::FrameDiagnostics::events, Doc("vo/base/result.h:FrameDiagnostics::events"));
-  py::class_<vo::Estimate>(m, "Estimate", "What a filter says after a frame: conventions as in docs/conventions.md.")
+  AddState<vo::Estimate>(m, "Estimate", "What a filter says after a frame: conventions as in docs/conventions.md.")
       .def(py::init(&MakeEstimate), py::kw_only(), py::arg("covariance"), py::arg("p_WC") = zero(),
            py::arg("q_WC") = identity, py::arg("v_WC") = zero(), py::arg("w_WC_C") = zero(), py::arg("stamp_ns") = 0)
       .def_readwrite("stamp_ns", &vo::Estimate::stamp_ns)
-      .def_property_readonly(
-          "p_WC", [](const vo::Estimate& e) { return e.pose.p_WC; }, "[m]")
-      .def_property_readonly(
-          "q_WC", [](const vo::Estimate& e) { return Coefficients(e.pose.q_WC); }, "(x, y, z, w)")
-      .def_readwrite("v_WC", &vo::Estimate::v_WC, Doc("vo/base/result.h:Estimate::v_WC"))
-      .def_readwrite("w_WC_C", &vo::Estimate::w_WC_C, Doc("vo/base/result.h:Estimate::w_WC_C"))
       .def_readwrite("covariance", &vo::Estimate::covariance, Doc("vo/base/result.h:Estimate::covariance"))
       .def_readonly("diagnostics", &vo::Estimate::diagnostics);
+}
+
+template <class Class>
+py::class_<Class> AddClass(py::module_& m, const std::string& name, const std::string& header) {
+  py::class_<Class> added(m, name.c_str(), Doc(header));
+  added
+      .def(py::init([](const vo::Camera& camera, const std::string& system, const py::dict& settings,
+                       const vo::Prior& prior,
+                       std::uint64_t seed) { return Class(camera, ParamsOf(system, settings), prior, seed); }),
+           py::arg("camera"), py::arg("system") = "rb2pf", py::arg("settings") = py::dict(),
+           py::arg_v("prior", vo::Prior(), "Prior()"), py::arg("seed") = 1, Doc(header + name + "::" + name))
+      .def("map", &Map<Class>, "(ids, X_W (n, 3)) of the landmarks in the map [m]");
+  return added;
 }
 
 }  // namespace
@@ -184,12 +199,7 @@ void AddEstimate(py::module_& m) {
 void AddOdometry(py::module_& m) {
   m.attr("SYSTEMS") = py::tuple(py::cast(SystemNames()));
   AddEstimate(m);
-  py::class_<vo::Odometry>(m, "Odometry", Doc("vo/odometry.h:"))
-      .def(py::init([](const vo::Camera& camera, const std::string& system, const py::dict& settings,
-                       const vo::Prior& prior,
-                       std::uint64_t seed) { return vo::Odometry(camera, ParamsOf(system, settings), prior, seed); }),
-           py::arg("camera"), py::arg("system") = "rb2pf", py::arg("settings") = py::dict(),
-           py::arg_v("prior", vo::Prior(), "Prior()"), py::arg("seed") = 1, Doc("vo/odometry.h:Odometry::Odometry"))
+  AddClass<vo::Odometry>(m, "Odometry", "vo/odometry.h:")
       .def_static("of", py::overload_cast<const Simulator&, const std::string&, std::uint64_t>(&OdometryOf),
                   py::arg("simulator"), py::arg("system") = "rb2pf", py::arg("seed") = 1,
                   "With the scenario's settings and prior, as `vobench run` has it.")
@@ -209,15 +219,8 @@ void AddOdometry(py::module_& m) {
            "What was seen of each landmark in the last frame: (ids (n,), status (n,): 0 matched, 1 missed, 2 rejected "
            "as an outlier, 3 new; "
            "predicted (n, 2), pixel (n, 2) [px], S (n, 2, 2): covariance of the prediction, R (n, 2, 2): of the "
-           "match's error [px^2]).")
-      .def("map", &Map<vo::Odometry>, "(ids, X_W (n, 3)) of the landmarks in the map [m]");
-  py::class_<vo::PointOdometry>(m, "PointOdometry", Doc("vo/point_odometry.h:"))
-      .def(py::init(
-               [](const vo::Camera& camera, const std::string& system, const py::dict& settings, const vo::Prior& prior,
-                  std::uint64_t seed) { return vo::PointOdometry(camera, ParamsOf(system, settings), prior, seed); }),
-           py::arg("camera"), py::arg("system") = "rb2pf", py::arg("settings") = py::dict(),
-           py::arg_v("prior", vo::Prior(), "Prior()"), py::arg("seed") = 1,
-           Doc("vo/point_odometry.h:PointOdometry::PointOdometry"))
+           "match's error [px^2]).");
+  AddClass<vo::PointOdometry>(m, "PointOdometry", "vo/point_odometry.h:")
       .def_static("of",
                   py::overload_cast<const PointWorld&, const std::string&, std::optional<std::uint64_t>>(&OdometryOf),
                   py::arg("world"), py::arg("system") = "rb2pf", py::arg("seed") = py::none(),
@@ -236,8 +239,7 @@ void AddOdometry(py::module_& m) {
       .def("particles", &Particles,
            "What the last estimate is the moments of: (weight (n,), p_WC (n, 3), q_WC (n, 4), velocity (n, 6): v in W, "
            "w in C, "
-           "covariance (n, 12, 12)); empty before the first update.")
-      .def("map", &Map<vo::PointOdometry>, "(ids, X_W (n, 3)) of the landmarks in the map [m]");
+           "covariance (n, 12, 12)); empty before the first update.");
 }
 
 }  // namespace vobench::python

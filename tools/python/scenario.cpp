@@ -62,6 +62,29 @@ void AddCamera(py::module_& m) {
       .def("undistort", &Undistort, py::arg("pixels"), Doc("vo/geometry/camera.h:Camera::Undistort"));
 }
 
+void AddTruth(py::module_& m) {
+  py::class_<StampedTruth> truth(m, "Truth", Doc("sim/motion/trajectory.h:Truth"));
+  truth.def_readonly("stamp_ns", &StampedTruth::stamp_ns)
+      .def_property_readonly(
+          "q_WC",
+          [](const StampedTruth& t) {
+            const glm::dquat& q = t.truth.q_WC;
+            return Eigen::Vector4d(q.x, q.y, q.z, q.w);
+          },
+          "(x, y, z, w); unit, w >= 0")
+      .def_property_readonly("T_WC", &Matrix, "4 x 4, from C to W");
+  const std::pair<const char*, glm::dvec3 sim::Truth::*> vectors[] = {{"p_WC", &sim::Truth::p_WC},
+                                                                      {"v_WC", &sim::Truth::v_WC},
+                                                                      {"w_WC_C", &sim::Truth::w_WC_C},
+                                                                      {"a_WC", &sim::Truth::a_WC},
+                                                                      {"alpha_WC_C", &sim::Truth::alpha_WC_C}};
+  for (const auto& [name, member] : vectors) {
+    truth.def_property_readonly(
+        name, [member = member](const StampedTruth& t) { return Vector(t.truth.*member); },
+        Doc(std::string("sim/motion/trajectory.h:Truth::") + name));
+  }
+}
+
 }  // namespace
 
 void AddScenario(py::module_& m) {
@@ -70,31 +93,7 @@ void AddScenario(py::module_& m) {
   for (const auto& [key, value, range, help] : SettingsTable())
     settings.append(py::make_tuple(key, value, range, help));
   m.attr("SETTINGS") = py::tuple(settings);
-  py::class_<StampedTruth>(m, "Truth", Doc("sim/motion/trajectory.h:Truth"))
-      .def_readonly("stamp_ns", &StampedTruth::stamp_ns)
-      .def_property_readonly(
-          "p_WC", [](const StampedTruth& t) { return Vector(t.truth.p_WC); },
-          Doc("sim/motion/trajectory.h:Truth::p_WC"))
-      .def_property_readonly(
-          "q_WC",
-          [](const StampedTruth& t) {
-            const glm::dquat& q = t.truth.q_WC;
-            return Eigen::Vector4d(q.x, q.y, q.z, q.w);
-          },
-          "(x, y, z, w); unit, w >= 0")
-      .def_property_readonly("T_WC", &Matrix, "4 x 4, from C to W")
-      .def_property_readonly(
-          "v_WC", [](const StampedTruth& t) { return Vector(t.truth.v_WC); },
-          Doc("sim/motion/trajectory.h:Truth::v_WC"))
-      .def_property_readonly(
-          "w_WC_C", [](const StampedTruth& t) { return Vector(t.truth.w_WC_C); },
-          Doc("sim/motion/trajectory.h:Truth::w_WC_C"))
-      .def_property_readonly(
-          "a_WC", [](const StampedTruth& t) { return Vector(t.truth.a_WC); },
-          Doc("sim/motion/trajectory.h:Truth::a_WC"))
-      .def_property_readonly(
-          "alpha_WC_C", [](const StampedTruth& t) { return Vector(t.truth.alpha_WC_C); },
-          Doc("sim/motion/trajectory.h:Truth::alpha_WC_C"));
+  AddTruth(m);
   py::class_<Experiment, Scenario>(m, "Scenario", Doc("tools/bench/systems/experiment.h:"))
       .def(py::init(&Load), py::arg("file"), py::arg("settings") = py::dict(), py::arg("seed") = py::none(),
            Doc("sim/scenario/scenario.h:LoadScenario"))

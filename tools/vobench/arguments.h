@@ -1,14 +1,23 @@
 // The command line, parsed into the options of one sub-command.
 #pragma once
 
+#include <string>
 #include <variant>
 
-#include "tools/vobench/option_table.h"
+#include "tools/bench/campaign/options.h"
+#include "tools/bench/run/commands.h"
 
 namespace vobench {
+
+using Command = std::variant<RenderOptions, TrackOptions, EvaluateOptions, RunOptions, CheckOptions, ReportOptions,
+                             VerifyOptions, CampaignOptions, ExportOptions, SettingsOptions>;
 
 // The command, or the exit status where there is none to run: 0 after --help and --version, 2 for a line that makes no
 // sense (the reason is on stderr). Throws BadInput for what --compat cannot be.
 std::variant<Command, int> ParseArguments(int argc, char** argv);
+
+// --compat of `vobench evaluate`: the other tool and its own options (docs/metrics.md, "Other tools' numbers"). "tum",
+// "tum ate --verbose", "evo rpe --delta 10 --all_pairs", ...: throws BadInput saying what there is.
+Reproduction ParseCompat(const std::string& request);
 
 }  // namespace vobench

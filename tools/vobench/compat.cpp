@@ -1,5 +1,3 @@
-#include "tools/vobench/compat.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +13,7 @@
 #include "tools/judge/evaluation/compat/rpg.h"
 #include "tools/judge/evaluation/compat/tum.h"
 #include "tools/judge/evaluation/text_file.h"
+#include "tools/vobench/arguments.h"
 
 namespace vobench {
 namespace {
@@ -34,35 +33,26 @@ std::int64_t Nanoseconds(const char* option, double seconds) {
 }
 
 // The options of one program, parsed from the words after its name.
-class Words {
- public:
-  explicit Words(std::string name) : name_(std::move(name)), app_("", name_) { app_.set_help_flag(); }
-  CLI::App& app() { return app_; }
-
-  void Parse(std::vector<std::string> words) {
-    std::reverse(words.begin(), words.end());  // as CLI11 wants them
-    try {
-      app_.parse(words);
-    } catch (const CLI::ParseError& error) {
-      throw BadInput(fmt::format("--compat '{} ...': {}\n{}", name_, error.what(), kTools));
-    }
+void Parse(CLI::App& app, std::vector<std::string> words) {
+  app.set_help_flag();
+  std::reverse(words.begin(), words.end());  // as CLI11 wants them
+  try {
+    app.parse(words);
+  } catch (const CLI::ParseError& error) {
+    throw BadInput(fmt::format("--compat '{} ...': {}\n{}", app.get_name(), error.what(), kTools));
   }
-
- private:
-  std::string name_;
-  CLI::App app_;
-};
+}
 
 Reproduction TumAte(const std::vector<std::string>& arguments, bool verbose) {
   TumAteOptions options;
   options.verbose = verbose;
   double gap = 0.02, offset = 0;
-  Words words("tum ate");
-  words.app().add_option("--offset", offset);
-  words.app().add_option("--scale", options.scale);
-  words.app().add_option("--max_difference", gap)->check(CLI::PositiveNumber);
-  words.app().add_flag("--verbose", options.verbose);
-  words.Parse(arguments);
+  CLI::App app("", "tum ate");
+  app.add_option("--offset", offset);
+  app.add_option("--scale", options.scale);
+  app.add_option("--max_difference", gap)->check(CLI::PositiveNumber);
+  app.add_flag("--verbose", options.verbose);
+  Parse(app, arguments);
   options.max_difference_ns = Nanoseconds("--max_difference", gap);
   options.offset_ns = Nanoseconds("--offset", offset);
   return {evaluation::Reading::strict, [options](const Trajectory& estimate, const Trajectory& truth) {
@@ -79,16 +69,16 @@ Reproduction TumRpe(const std::vector<std::string>& arguments, bool verbose) {
                                                      {"m", TumDeltaUnit::metres},
                                                      {"rad", TumDeltaUnit::radians},
                                                      {"deg", TumDeltaUnit::degrees}};
-  Words words("tum rpe");
-  words.app().add_flag("--fixed_delta", options.fixed_delta);
-  words.app().add_option("--delta", options.delta)->check(CLI::PositiveNumber);
-  words.app().add_option("--delta_unit", options.unit)->transform(CLI::CheckedTransformer(units));
-  words.app().add_option("--max_pairs", options.max_pairs);
-  words.app().add_option("--offset", offset);
-  words.app().add_option("--scale", options.scale);
-  words.app().add_option("--seed", options.seed);
-  words.app().add_flag("--verbose", options.verbose);
-  words.Parse(arguments);
+  CLI::App app("", "tum rpe");
+  app.add_flag("--fixed_delta", options.fixed_delta);
+  app.add_option("--delta", options.delta)->check(CLI::PositiveNumber);
+  app.add_option("--delta_unit", options.unit)->transform(CLI::CheckedTransformer(units));
+  app.add_option("--max_pairs", options.max_pairs);
+  app.add_option("--offset", offset);
+  app.add_option("--scale", options.scale);
+  app.add_option("--seed", options.seed);
+  app.add_flag("--verbose", options.verbose);
+  Parse(app, arguments);
   options.offset_ns = Nanoseconds("--offset", offset);
   if (options.unit == TumDeltaUnit::seconds) Nanoseconds("--delta", options.delta);
   return {evaluation::Reading::strict, [options](const Trajectory& estimate, const Trajectory& truth) {
@@ -115,8 +105,7 @@ Reproduction Evo(const std::string& program, const std::vector<std::string>& arg
                                                         {"angle_deg", EvoRelation::angle_deg},
                                                         {"angle_rad", EvoRelation::angle_rad}};
   const std::map<std::string, EvoDeltaUnit> units = {{"f", EvoDeltaUnit::frames}, {"m", EvoDeltaUnit::metres}};
-  Words words("evo " + program);
-  CLI::App& app = words.app();
+  CLI::App app("", "evo " + program);
   app.add_option("-r,--pose_relation", common.relation)->transform(CLI::CheckedTransformer(relations));
   CLI::Option* align = app.add_flag("-a,--align", common.align);
   CLI::Option* scale = app.add_flag("-s,--correct_scale", common.correct_scale);
@@ -131,7 +120,7 @@ Reproduction Evo(const std::string& program, const std::vector<std::string>& arg
     app.add_flag("--all_pairs", options.all_pairs);
     app.add_flag("--pairs_from_reference", options.pairs_from_reference);
   }
-  words.Parse(arguments);
+  Parse(app, arguments);
   if (options.unit == EvoDeltaUnit::frames && options.delta != std::floor(options.delta)) {
     throw BadInput(fmt::format("--compat 'evo rpe --delta {}': frames are counted whole", options.delta));
   }
@@ -152,10 +141,10 @@ Reproduction Rpg(const std::vector<std::string>& arguments) {
                                                           {"se3", RpgAlignment::se3},
                                                           {"posyaw", RpgAlignment::posyaw},
                                                           {"none", RpgAlignment::none}};
-  Words words("rpg");
-  words.app().add_option("--align_type", alignment)->transform(CLI::CheckedTransformer(alignments));
-  words.app().add_option("--lengths", lengths)->delimiter(',')->check(CLI::PositiveNumber);
-  words.Parse(arguments);
+  CLI::App app("", "rpg");
+  app.add_option("--align_type", alignment)->transform(CLI::CheckedTransformer(alignments));
+  app.add_option("--lengths", lengths)->delimiter(',')->check(CLI::PositiveNumber);
+  Parse(app, arguments);
   return {evaluation::Reading::strict, [alignment, lengths](const Trajectory& estimate, const Trajectory& truth) {
             return Print(ComputeRpg(estimate, truth, alignment, lengths).errors);
           }};
@@ -168,10 +157,10 @@ Reproduction Ov(const std::vector<std::string>& arguments) {
       {"posyaw", OvAlignment::posyaw}, {"posyawsingle", OvAlignment::posyawsingle},
       {"se3", OvAlignment::se3},       {"se3single", OvAlignment::se3single},
       {"sim3", OvAlignment::sim3},     {"none", OvAlignment::none}};
-  Words words("ov");
-  words.app().add_option("MODE", alignment)->required()->transform(CLI::CheckedTransformer(alignments));
-  words.app().add_option("--segments", segments)->delimiter(',')->check(CLI::PositiveNumber);
-  words.Parse(arguments);
+  CLI::App app("", "ov");
+  app.add_option("MODE", alignment)->required()->transform(CLI::CheckedTransformer(alignments));
+  app.add_option("--segments", segments)->delimiter(',')->check(CLI::PositiveNumber);
+  Parse(app, arguments);
   return {evaluation::Reading::as_written, [alignment, segments](const Trajectory& estimate, const Trajectory& truth) {
             return Print(ComputeOv(estimate, truth, alignment, segments));
           }};

@@ -1,10 +1,13 @@
-// Formatter of --help for a terminal of 24 lines and 100 columns, and the rows that the man page and bash's completion
-// share with it.
+// Texts made of the option table: --help for a terminal of 24 lines and 100 columns, the man page, bash's completion
+// (docs/install.md).
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace vobench {
 
@@ -14,6 +17,7 @@ struct OptionRow {
   std::string text;                  // "Sequence folder to make (required)", "... [tum]"
   std::vector<std::string> choices;  // where there are some
   bool positional = false;
+  bool required = false;
   bool path = false;             // a file or a folder
   std::string Synopsis() const;  // "-o, --output SEQ"
 };
@@ -24,9 +28,12 @@ std::vector<const CLI::App*> CommandsOf(const CLI::App& app);
 // "vobench render [OPTIONS] SCENARIO -o SEQ": what must be given.
 std::string Usage(const CLI::App& command);
 
-class HelpText : public CLI::FormatterBase {
- public:
-  std::string make_help(const CLI::App* command, std::string name, CLI::AppFormatMode mode) const override;
-};
+std::string HelpText(const CLI::App& command);
+
+// Of section 1, in roff.
+std::string ManPage(const CLI::App& app, const std::string& version);
+
+// Commands, options, choices, and files where an option takes one.
+std::string BashCompletion(const CLI::App& app);
 
 }  // namespace vobench

@@ -27,36 +27,32 @@ void Execute(const CampaignOptions& options) { RunCampaign(options); }
 void Execute(const ExportOptions& options) { Export(options); }
 void Execute(const SettingsOptions& options) { Settings(options); }
 
-int Main(int argc, char** argv) {
+int Fail(int status, const std::string& reason) {
+  std::fflush(stdout);
+  std::fprintf(stderr, "vobench: %s\n", reason.c_str());
+  return status;
+}
+
+int Main(int argc, char** argv) try {
   HoldInterrupts();
-  cv::setNumThreads(1);  // how many threads there are says --jobs, of which OpenCV knows nothing
-  try {
-    const std::variant<Command, int> asked = ParseArguments(argc, argv);
-    if (const int* status = std::get_if<int>(&asked)) return *status;
-    std::visit([](const auto& options) { Execute(options); }, std::get<Command>(asked));
-    if (std::fflush(stdout) != 0) {
-      throw std::runtime_error("cannot write to standard output: " + std::generic_category().message(errno));
-    }
-    return 0;
-  } catch (const BadInput& error) {
-    std::fprintf(stderr, "vobench: %s\n", error.what());
-    return 2;
-  } catch (const NotConsistent& error) {
-    std::fflush(stdout);
-    std::fprintf(stderr, "vobench: %s\n", error.what());
-    return 3;
-  } catch (const std::bad_alloc&) {
-    std::fputs("vobench: out of memory\n", stderr);
-    return 1;
-  } catch (const std::system_error& error) {
-    // fmt calls standard output a file.
-    const std::string unwritten = "cannot write to standard output: " + error.code().message();
-    std::fprintf(stderr, "vobench: %s\n", std::ferror(stdout) != 0 ? unwritten.c_str() : WordsOf(error).c_str());
-    return 1;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "vobench: %s\n", error.what());
-    return 1;
-  }
+  cv::setNumThreads(1);  // --jobs bounds the threads; OpenCV's own would come on top
+  const std::variant<Command, int> asked = ParseArguments(argc, argv);
+  if (const int* status = std::get_if<int>(&asked)) return *status;
+  std::visit([](const auto& options) { Execute(options); }, std::get<Command>(asked));
+  if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
+  return 0;
+} catch (const BadInput& error) {
+  return Fail(2, error.what());
+} catch (const NotConsistent& error) {
+  return Fail(3, error.what());
+} catch (const std::bad_alloc&) {
+  return Fail(1, "out of memory");
+} catch (const std::system_error& error) {
+  // fmt calls standard output a file.
+  return Fail(1,
+              std::ferror(stdout) != 0 ? "cannot write to standard output: " + error.code().message() : WordsOf(error));
+} catch (const std::exception& error) {
+  return Fail(1, error.what());
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <string>
 
-#include "tools/vobench/manual.h"
+#include "tools/vobench/help_text.h"
 #include "tools/vobench/option_table.h"
 
 int main(int argc, char** argv) {

@@ -1,84 +1,324 @@
 #include "tools/vobench/option_table.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <set>
+#include <sstream>
+#include <string>
 #include <thread>
+#include <vector>
 
+#include "tools/bench/systems/systems.h"
 #include "tools/vobench/help_text.h"
 
 namespace vobench {
+namespace {
 
-CLI::App& OptionTable::AddCommand(const std::string& name, const std::string& help, const std::string& example) {
-  CLI::App& command = *app.add_subcommand(name, help);
+namespace fs = std::filesystem;
+
+// A sub-command and where its options are parsed to.
+template <class Options>
+struct Parsed {
+  CLI::App& command;
+  Options& options;
+};
+
+template <class Options>
+Parsed<Options> AddCommand(OptionTable& table, const std::string& name, const std::string& help,
+                           const std::string& example) {
+  CLI::App& command = *table.app.add_subcommand(name, help);
+  const auto options = std::make_shared<Options>();
   command.footer("Example: " + example);
-  return command;
+  command.callback([&table, options] { table.asked = *options; });
+  return {command, *options};
 }
 
-void OptionTable::AddSet(CLI::App& command, const std::string& example) {
-  command.add_option("--set", set, "Change one setting, such as " + example + "; `vobench settings` lists them")
+// "-o,--output SEQ": names of an option, and of its argument in the help.
+template <class T>
+CLI::Option* Add(CLI::App& command, const std::string& synopsis, T& value, const std::string& help) {
+  const std::size_t space = synopsis.find(' ');
+  CLI::Option* option = command.add_option(synopsis.substr(0, space), value, help);
+  return space == std::string::npos ? option : option->type_name(synopsis.substr(space + 1));
+}
+
+// A check that leaves the argument's name in the help as it is.
+CLI::Validator Plain(const CLI::Validator& check) { return check.description(""); }
+
+void AddSet(CLI::App& command, Overrides& overrides, const std::string& example) {
+  const auto parse = [&overrides](const std::vector<std::string>& all) {
+    for (const std::string& text : all) {
+      const std::size_t equals = text.find('=');
+      if (equals == 0 || equals == std::string::npos) {
+        throw CLI::ValidationError("--set", "'" + text + "' is not key=value");
+      }
+      overrides.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+    }
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set", parse, "Change one setting, such as " + example + "; `vobench settings` lists them")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
 }
 
-void OptionTable::AddView(CLI::App& command, bool& view) {
-  command.add_flag("--view", view, "The report in a browser while it runs; its address is printed");
-}
-
-void OptionTable::AddMap(CLI::App& command, std::optional<std::filesystem::path>& map) {
-  command.add_option("--map", map, "Also the landmarks with their covariance: docs/result_folder.md")
-      ->type_name("FILE.ply");
-}
-
-void OptionTable::AddJobs(CLI::App& command, const std::string& help) {
-  command.add_option("-j,--jobs", jobs, help)
-      ->check(Plain(CLI::Range(1, 1024)))
-      ->type_name("N")
-      ->default_str("all cores");
-}
-
-void OptionTable::AddEngine(CLI::App& command) {
-  command.add_option("--engine", engine, "What renders, ray_tracer or rasteriser: docs/renderers.md")
+void AddEngine(CLI::App& command, Overrides& overrides) {
+  command
+      .add_option_function<std::string>(
+          "--engine", [&overrides](const std::string& engine) { overrides.emplace_back("render.engine", engine); },
+          "What renders, ray_tracer or rasteriser: docs/renderers.md")
       ->check(CLI::IsMember({"ray_tracer", "rasteriser"}))
       ->type_name("NAME");
 }
 
-CLI::Option* OptionTable::AddSeed(CLI::App& command, const std::string& help) {
-  return command.add_option("--seed", seed, help)->check(Plain(CLI::NonNegativeNumber))->type_name("N");
+void AddView(CLI::App& command, bool& view) {
+  command.add_flag("--view", view, "The report in a browser while it runs; its address is printed");
 }
 
-Overrides OptionTable::ParsedOverrides() const {
-  Overrides all;
-  if (!engine.empty()) all.emplace_back("render.engine", engine);
-  for (const std::string& text : set) {
-    const std::size_t equals = text.find('=');
-    if (equals == 0 || equals == std::string::npos) {
-      throw CLI::ValidationError("--set", "'" + text + "' is not key=value");
-    }
-    all.emplace_back(text.substr(0, equals), text.substr(equals + 1));
-  }
-  return all;
+void AddMap(CLI::App& command, std::optional<fs::path>& map) {
+  Add(command, "--map FILE.ply", map, "Also the landmarks with their covariance: docs/result_folder.md");
 }
+
+void AddJobs(CLI::App& command, int& jobs, const std::string& help) {
+  jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  Add(command, "-j,--jobs N", jobs, help)->check(Plain(CLI::Range(1, 1024)))->default_str("all cores");
+}
+
+template <class T>
+CLI::Option* AddSeed(CLI::App& command, T& seed, const std::string& help) {
+  return Add(command, "--seed N", seed, help)->check(Plain(CLI::NonNegativeNumber));
+}
+
+void AddRender(OptionTable& table) {
+  const auto [command, render] =
+      AddCommand<RenderOptions>(table, "render", "Render a scenario into a sequence: images with exact truth",
+                                "vobench render scenes/room.yaml -o room --frames 0:30 --set sensor.exposure='5 ms'");
+  Add(command, "SCENARIO", render.scenario, "Scenario file (scenes/*.yaml)")->required();
+  Add(command, "-o,--output SEQ", render.output, "Sequence folder to make")->required();
+  const auto parse_frames = [&frames = render.frames](const std::string& text) {
+    std::istringstream stream(text);
+    std::int64_t first = 0, last = 0;
+    char colon = 0, rest = 0;
+    if (!(stream >> first >> colon >> last) || colon != ':' || stream >> rest || first < 0 || last <= first) {
+      throw CLI::ValidationError("--frames", "'" + text + "' is not A:B with 0 <= A < B (frames A to B-1)");
+    }
+    frames.emplace(first, last);
+  };
+  command
+      .add_option_function<std::string>("--frames", parse_frames,
+                                        "Only the frames A to B-1; each is the same as in the whole")
+      ->type_name("A:B");
+  Add(command, "--format NAME", render.format, "Layout: tum (TUM RGB-D), euroc (EuRoC, ASL) or icl (ICL-NUIM)")
+      ->check(CLI::IsMember({"tum", "euroc", "icl"}))
+      ->capture_default_str();
+  command.add_flag("--resume", render.resume,
+                   "Go on with SEQ.partial, which an interrupted run left; the bytes are those of one run");
+  command.add_flag("--preview", render.preview, "Also preview.mp4 and contact.jpg, for the eye");
+  Add(command, "--truth NAME,...", render.truth,
+      "Truth beside poses and velocities, separated by commas: depth, depth_exr, depth_kinect, distance, normals, "
+      "flow, flow_backward, occlusion, surface_id, landmarks, acceleration, imu, moving (docs/truth.md)");
+  AddSeed(command, render.seed, "Seed instead of the scenario's");
+  AddEngine(command, render.overrides);
+  AddJobs(command, render.jobs, "Threads; the results do not depend on it");
+  AddSet(command, render.overrides, "camera.width=320");
+}
+
+void AddTrack(OptionTable& table) {
+  const auto [command, track] = AddCommand<TrackOptions>(
+      table, "track", "Run an odometry on a sequence (TUM RGB-D, EuRoC or ICL-NUIM layout) from disk",
+      "vobench track rgbd_dataset_freiburg1_xyz -o out/xyz --camera freiburg1 --seed 3");
+  Add(command, "SEQ", track.sequence, "Sequence folder, video file, camera:0, or the address of a stream")->required();
+  Add(command, "-o,--output OUT", track.output, "Result folder to make")->required();
+  Add(command, "--system NAME", track.system, "One of " + SystemList())
+      ->check(CLI::IsMember(SystemNames()))
+      ->capture_default_str();
+  Add(command, "--camera PRESET|FILE", track.camera,
+      "freiburg1, freiburg2, freiburg3, icl, or a calibration file (ours, OpenCV, ROS, Kalibr, EuRoC); the sequence's "
+      "own unless told");
+  Add(command, "--settings FILE", track.settings, "YAML file with an `odometry:` and perhaps a `prior:` section");
+  AddView(command, track.view);
+  AddMap(command, track.map);
+  AddSeed(command, track.seed, "Seed of the filter")->capture_default_str();
+  AddSet(command, track.overrides, "odometry.filter.particles=16");
+}
+
+void AddEvaluate(OptionTable& table) {
+  const auto [command, evaluate] =
+      AddCommand<EvaluateOptions>(table, "evaluate", "Hold an estimated trajectory against the truth",
+                                  "vobench evaluate out/xyz/estimate.txt --truth room --align sim3");
+  Add(command, "ESTIMATE", evaluate.estimate, "Trajectory in TUM format, or a run folder")->required();
+  Add(command, "--truth SEQ|FILE", evaluate.truth, "Trajectory in TUM format, or a sequence folder")->required();
+  CLI::Option* align =
+      Add(command, "--align NAME", evaluate.align, "What the estimate may be moved by before: none, se3, sim3 or first")
+          ->check(CLI::IsMember({"none", "se3", "sim3", "first"}))
+          ->capture_default_str();
+  command
+      .add_option_function<std::string>(
+          "--compat", [&compat = evaluate.compat](const std::string& request) { compat = ParseCompat(request); },
+          "Print what another tool prints: tum, evo, rpg or ov, and its own options in the same quotes, such as 'evo "
+          "ape -as': docs/metrics.md")
+      ->type_name("TOOL")
+      ->excludes(align);
+}
+
+void AddRun(OptionTable& table) {
+  const auto [command, run] = AddCommand<RunOptions>(
+      table, "run", "Render a scenario, track it and judge the result, in memory, frame by frame",
+      "vobench run scenes/room.yaml -o out/room --system rb2pf,rbpf --runs 5");
+  Add(command, "SCENARIO", run.scenario, "Scenario file (scenes/*.yaml)")->required();
+  Add(command, "-o,--output OUT", run.output, "Result folder to make; without it only the table is printed");
+  const auto parse_systems = [&systems = run.systems](const std::vector<std::string>& names) {
+    if (std::set<std::string>(names.begin(), names.end()).size() != names.size()) {
+      throw CLI::ValidationError("--system", "names a system twice");
+    }
+    systems = names;
+  };
+  command
+      .add_option_function<std::vector<std::string>>("--system", parse_systems,
+                                                     "Systems to compare, separated by commas, of " + SystemList())
+      ->delimiter(',')
+      ->check(CLI::IsMember(SystemNames()))
+      ->allow_extra_args(false)
+      ->type_name("NAME,...")
+      ->default_str(run.systems.front());
+  Add(command, "--runs N", run.runs, "Runs of each system, each with its own seed")
+      ->check(Plain(CLI::Range(1, 10000)))
+      ->capture_default_str();
+  AddSeed(command, run.seed,
+          "Seed of the first run's filter and prior, and of its world of points; a scene keeps its own (--set seed=N)")
+      ->capture_default_str();
+  command.add_flag("--bound", run.bound,
+                   "Also the Cramer-Rao bound of worlds of points, and RMSE / bound; takes seconds a run");
+  command.add_flag("--verdict", run.verdict,
+                   "Also whether each system is consistent with its own model, check by check, in worlds of points "
+                   "from a prior; 10 runs or more");
+  command.add_flag_callback(
+      "--require-consistent", [&run = run] { run.verdict = run.require_consistent = true; },
+      "As --verdict, and exit status 3 where a system is not");
+  AddView(command, run.view);
+  AddMap(command, run.map);
+  AddEngine(command, run.overrides);
+  AddJobs(command, run.jobs, "Threads; the results do not depend on it");
+  AddSet(command, run.overrides, "odometry.filter.particles=16");
+}
+
+void AddCampaign(OptionTable& table) {
+  const auto [command, campaign] = AddCommand<CampaignOptions>(
+      table, "campaign", "Scenarios x varied settings x systems x seeds, on this machine or a cluster",
+      "vobench campaign scenes/campaign_points.yaml -o out/points --jobs 2");
+  Add(command, "FILE", campaign.file, "Campaign file (docs/campaign.md)")->required();
+  Add(command, "-o,--output OUT", campaign.output, "Folder of its results; what is done there is not done again")
+      ->required();
+  command.add_flag("--dry-run", campaign.dry_run, "Check everything and list the tasks, no more");
+  CLI::Option* where = Add(command, "--engine NAME", campaign.engine, "Where tasks run: local or slurm")
+                           ->check(CLI::IsMember({"local", "slurm"}))
+                           ->capture_default_str();
+  AddJobs(command, campaign.jobs, "Processes at a time, with --engine local");
+  Add(command, "--memory SIZE", campaign.memory_bytes,
+      "Of each process, such as 2GB (default: an equal part of what is left)")
+      ->transform(Plain(CLI::AsSizeValue(false)));
+  Add(command, "--timeout S", campaign.timeout_s, "Seconds that a task may take (default: as long as it likes)")
+      ->check(Plain(CLI::PositiveNumber));
+  Add(command, "--cache DIR", campaign.cache, "Where rendered sequences are kept (default: OUT/cache)");
+  command.add_flag("--update", campaign.update,
+                   "Results that the file as it is now would not give may go; else an error");
+  CLI::Option* task =
+      Add(command, "--task K", campaign.task, "Run this one task again, and say whether it comes out the same")
+          ->check(Plain(CLI::NonNegativeNumber))
+          ->excludes(where);
+  CLI::Option* list =
+      Add(command, "--list FILE", campaign.list, "Run the tasks in line --part of this file, as job arrays do")
+          ->excludes(task)
+          ->excludes(where);
+  Add(command, "--part N", campaign.part, "A line of --list; the first is 0")
+      ->check(Plain(CLI::NonNegativeNumber))
+      ->needs(list);
+  Add(command, "--partition NAME", campaign.partition, "Of Slurm");
+  Add(command, "--time TIME", campaign.time, "Of one job of Slurm, such as 2:00:00");
+  Add(command, "--tasks-per-job N", campaign.tasks_per_job, "Of Slurm: tasks that one element of the array does")
+      ->check(Plain(CLI::Range(1, 1000000)))
+      ->capture_default_str();
+}
+
+void AddCheck(OptionTable& table) {
+  const auto [command, check] =
+      AddCommand<CheckOptions>(table, "check", "Read a scenario and all it names, and say what is wrong with it",
+                               "vobench check scenes/room.yaml");
+  Add(command, "SCENARIO", check.scenario, "Scenario file (scenes/*.yaml)")->required();
+  AddSet(command, check.overrides, "camera.width=320");
+}
+
+void AddSettings(OptionTable& table) {
+  const auto [command, settings] = AddCommand<SettingsOptions>(
+      table, "settings", "List all settings: key, default, range, meaning", "vobench settings odometry.filter");
+  Add(command, "PREFIX KEY", settings.prefix, "Only keys that begin so");
+  command.add_flag("--markdown", settings.markdown, "As the tables of docs/settings.md");
+}
+
+void AddVerify(OptionTable& table) {
+  const auto [command, verify] = AddCommand<VerifyOptions>(
+      table, "verify", "Hold the streams of a sequence against each other: poses, depth, flow, IMU, pictures",
+      "vobench verify room");
+  Add(command, "SEQ", verify.sequence, "Sequence folder")->required();
+}
+
+void AddExport(OptionTable& table) {
+  const auto [command, exported] = AddCommand<ExportOptions>(
+      table, "export", "Write a sequence in another form: a ROS 1 bag (docs/sequence_format.md)",
+      "vobench export room --bag room.bag");
+  Add(command, "SEQ", exported.sequence, "Sequence folder")->required();
+  Add(command, "--bag FILE.bag", exported.bag, "ROS 1 bag to make")->required();
+}
+
+void AddReport(OptionTable& table) {
+  const auto [command, report] = AddCommand<ReportOptions>(
+      table, "report", "Make report.html anew from a result folder", "vobench report out/room");
+  Add(command, "OUT", report.output, "Result folder")->required();
+}
+
+// As it could be typed again.
+std::string CommandLine(int argc, char** argv) {
+  std::string line = "vobench";
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const bool plain = !argument.empty() && argument.find_first_of(" \t\n'\"\\$`*?;&|<>(){}[]~#!") == std::string::npos;
+    std::string quoted;
+    for (const char c : argument) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += " " + (plain ? argument : "'" + quoted + "'");
+  }
+  return line;
+}
+
+}  // namespace
 
 OptionTable::OptionTable()
-    : app("vobench: synthetic data for visual odometry, and the bench that tests it", "vobench"),
-      jobs(static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))) {
-  app.formatter(std::make_shared<HelpText>());
+    : app("vobench: synthetic data for visual odometry, and the bench that tests it", "vobench") {
+  app.formatter_fn([](const CLI::App* command, std::string, CLI::AppFormatMode) { return HelpText(*command); });
   app.set_help_flag("-h,--help", "Show this help and exit");
   app.set_version_flag("--version", "vobench " VOBENCH_VERSION, "Which vobench this is");
   app.require_subcommand(1);
   app.footer(
       "`vobench COMMAND --help` tells more. Exit status: 0 done, 1 the work failed or `verify` found a disagreement, "
       "2 bad usage or input, 3 not consistent though `run --require-consistent` asked for it.");
-  AddRender();
-  AddTrack();
-  AddEvaluate();
-  AddRun();
-  AddCampaign();
-  AddCheck();
-  AddSettings();
-  AddVerify();
-  AddExport();
-  AddReport();
+  for (const auto add : {AddRender, AddTrack, AddEvaluate, AddRun, AddCampaign, AddCheck, AddSettings, AddVerify,
+                         AddExport, AddReport}) {
+    add(*this);
+  }
+}
+
+std::variant<Command, int> ParseArguments(int argc, char** argv) {
+  OptionTable table;
+  try {
+    table.app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return table.app.exit(error) == 0 ? 0 : 2;
+  }
+  const auto record = [&](auto& options) {
+    if constexpr (requires { options.command_line; }) options.command_line = CommandLine(argc, argv);
+  };
+  std::visit(record, *table.asked);
+  return *std::move(table.asked);
 }
 
 }  // namespace vobench

@@ -1,4 +1,4 @@
-// Purpose: one write of one command fails; what the program then says and leaves.
+// One write of one command fails; what the program then says and leaves.
 #pragma once
 
 #include <cstdint>

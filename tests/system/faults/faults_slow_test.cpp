@@ -1,6 +1,6 @@
 // Each write of each command fails once, in each of four ways. With VOBENCH_FAULTS_REPORT=FILE the figures of
 // docs/reliability.md are appended to FILE.
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <fstream>

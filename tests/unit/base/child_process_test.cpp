@@ -1,6 +1,6 @@
 #include "tools/base/child_process.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <chrono>

@@ -93,7 +93,7 @@ TEST(WriteFile, MissingFolderIsNamed) {
   }
 }
 
-TEST(WriteFile, MakesFoldersAndSaysWhyItCannot) {
+TEST(WriteFile, MakesFolders) {
   const TemporaryFolder folder;
   const auto message = [](const fs::path& path, const std::string& text) {
     try {

@@ -1,6 +1,6 @@
 #include "tools/base/text.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <limits>
 
@@ -57,7 +57,7 @@ TEST(ParseSeconds, IsExactWhereADoubleIsNot) {
 }
 
 // Sums and differences of two stamps, and of a stamp and a gap, must fit.
-TEST(ParseSeconds, KnowsNoTimeBeyondFourBillionSeconds) {
+TEST(ParseSeconds, EndsAtFourBillionSeconds) {
   EXPECT_EQ(ParseSeconds("4e9"), kLatest_ns);
   EXPECT_EQ(ParseSeconds("-4e9"), -kLatest_ns);
   for (const char* text :

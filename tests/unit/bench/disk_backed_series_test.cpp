@@ -64,7 +64,7 @@ TEST(DiskBackedSeries, AShortSeriesTouchesNoDisk) {
       ThrowsMessage<std::runtime_error>(AllOf(HasSubstr("/nowhere: "), HasSubstr("No such file or directory"))));
 }
 
-TEST(DiskBackedSeries, SaysThatTheDiskIsFull) {
+TEST(DiskBackedSeries, FullDisk) {
   const TemporaryFolder folder;
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};

@@ -1,4 +1,4 @@
-// Purpose: an example of the docs is compiled and run: what stands between two marks in a test's source must stand on the page.
+// An example of the docs is compiled and run: what stands between two marks in a test's source must stand on the page.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -259,7 +259,7 @@ TEST(LiveServer, MalformedRequestsAreRefused) {
   }
 }
 
-TEST(LiveServer, ClientsThatSayNothingHoldUpNobody) {
+TEST(LiveServer, SilentClients) {
   auto server = std::make_unique<LiveServer>();
   const Address at = AddressOf(*server);
   std::vector<std::unique_ptr<Peer>> slow;
@@ -280,7 +280,7 @@ TEST(LiveServer, ClientsThatSayNothingHoldUpNobody) {
   EXPECT_LT(SecondsOf([&] { server.reset(); }), kSoon_s) << "the end waits for no client";
 }
 
-TEST(LiveServer, AClientThatDoesNotListenHoldsUpNobody) {
+TEST(LiveServer, DeafClient) {
   auto server = std::make_unique<LiveServer>();
   const Address at = AddressOf(*server);
   server->Publish(std::string(32 << 20, 'p'), "data");  // more than the kernel keeps for a socket

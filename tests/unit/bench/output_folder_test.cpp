@@ -1,12 +1,11 @@
 #include "tools/bench/result/output_folder.h"
 
 #include <gmock/gmock.h>
-#include <stdlib.h>
 
 #include <fstream>
-#include <stdexcept>
 #include <string>
 
+#include "tests/temporary_folder.h"
 #include "tools/bench/errors.h"
 
 namespace vobench {
@@ -19,13 +18,6 @@ const std::set<std::string> kOurs = {"run.json", "report.html", "frames"};
 
 class OutputFolderTest : public testing::Test {
  protected:
-  OutputFolderTest() {
-    std::string name = (fs::temp_directory_path() / "output-folder-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    here_ = name;
-  }
-  ~OutputFolderTest() override { fs::remove_all(here_); }
-
   static void Write(const fs::path& file, const std::string& text) {
     fs::create_directories(file.parent_path());
     std::ofstream(file) << text;
@@ -48,7 +40,8 @@ class OutputFolderTest : public testing::Test {
     return "accepted";
   }
 
-  fs::path here_;
+  const vobench_test::TemporaryFolder folder_;
+  const fs::path here_ = folder_.path();
 };
 
 TEST_F(OutputFolderTest, AppearsOnlyWhenCommitted) {

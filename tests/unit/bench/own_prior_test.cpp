@@ -40,12 +40,12 @@ double Score(const Overrides& changes, double claimed_covariance = 1) {
 // So fast that one step shows depths: an inverse depth that is off by its sigma of 0.0125 / m moves a point by 0.4 px.
 const std::pair<std::string, std::string> kFast = {"trajectory.start.velocity", "[2, 0, 0]"};
 
-TEST(OwnPrior, FirstUpdatesAreHonest) {
+TEST(OwnPrior, FirstUpdatesAreConsistent) {
   EXPECT_LT(std::abs(Score({})), 5);
   EXPECT_LT(std::abs(Score({kFast})), 5);
 }
 
-TEST(OwnPrior, DishonestOnesAreRejected) {
+TEST(OwnPrior, InconsistentOnesAreRejected) {
   EXPECT_GT(Score({}, 0.5), 5) << "half the covariance";
   EXPECT_GT(Score({{"world.points.measurement.noise", "1.3 px"}}), 5) << "more noise than the odometry knows of";
   EXPECT_GT(Score({kFast, {"world.points.inverse_depth_sigma", "0.05"}}), 5)

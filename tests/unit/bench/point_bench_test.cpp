@@ -147,7 +147,7 @@ TEST(AneesTable, HandWorkedNumbers) {
                                                "rb2pf,position,3,2,2,3.5,0.206224,2.40823\n"));
 }
 
-TEST(AneesTable, SaysWhereThereIsNoCovariance) {
+TEST(AneesTable, WithoutCovariance) {
   SystemRuns runs = TwoRuns();
   for (auto& run : runs.nees)
     for (BlockNees& frame : run) frame[0] = std::numeric_limits<double>::quiet_NaN();

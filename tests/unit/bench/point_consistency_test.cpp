@@ -83,7 +83,7 @@ TEST(TestConsistency, CountsFramesWithoutACovariance) {
   EXPECT_THAT(FailedChecks(verdict), HasSubstr("frames without a belief: 1, not <= 0\n"));
 }
 
-TEST(TestConsistency, SaysWhatCannotBe) {
+TEST(TestConsistency, RefusesImpossibleOptions) {
   const Experiment experiment = HalfASecond();
   const auto message = [&](const sim::Scenario& scenario, const Tamper& tamper,
                            const ConsistencyOptions& options) -> std::string {

@@ -2,7 +2,6 @@
 #include "tests/unit/bench/example_in_docs.h"
 
 // [example]
-#include "source_dir.h"
 #include "tools/bench/points/point_bench.h"
 
 // Whatever you want to test. This one has seen nothing and says so: at the start, with a metre and a radian of doubt.

@@ -33,7 +33,7 @@ TEST(PriorTest, ThePoseIsTheTrueOne) {
   EXPECT_EQ(prior.pose_covariance.diagonal().maxCoeff(), kStartSigma * kStartSigma);
 }
 
-TEST(PriorTest, TheVelocityIsOffByWhatItsCovarianceSays) {
+TEST(PriorTest, VelocityErrorHasItsCovariance) {
   // Chi-square with 6 * 1000 degrees of freedom: mean 6000, sigma 109.5. The band of 5 sigma is left once in 1.7
   // million.
   EXPECT_NEAR(Nees(1000, 1), 6000, 5 * std::sqrt(2 * 6000.0));
@@ -51,7 +51,7 @@ TEST(PriorTest, IsAFunctionOfTheSeed) {
 }
 
 // Where the scenario draws the velocity itself, the odometry is told what it was drawn about, and no truth.
-TEST(PriorTest, OfADrawnVelocityTheMeanIsTold) {
+TEST(PriorTest, DrawnVelocityGivesTheMean) {
   sim::SampledMotion motion;
   motion.velocity = {1, 2, 3};
   motion.angular_rate = {4, 5, 6};

@@ -85,7 +85,7 @@ class PendingInterrupt {
   sigset_t set_{}, before_{};
 };
 
-TEST(Progress, CtrlCThrowsAwayWhatHasAKnownEndAndNothingElse) {
+TEST(Progress, CtrlCOfAKnownEnd) {
   const PendingInterrupt interrupt;
   Progress film("tracking", 2), camera("tracking", 0);
   EXPECT_THROW(film.Step(), Interrupted);

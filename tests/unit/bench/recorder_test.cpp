@@ -28,7 +28,7 @@ vo::Estimate Drawn(std::mt19937& engine, std::int64_t stamp_ns) {
 }
 
 // More answers than memory has room for: all of them come back, to the bit.
-TEST(Recorder, GivesBackWhatItWasTold) {
+TEST(Recorder, RoundTrip) {
   const evaluation::TemporaryFolder folder;
   Recorder recorder(folder.path());
   std::mt19937 engine(1);

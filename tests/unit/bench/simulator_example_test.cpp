@@ -4,10 +4,9 @@
 // [example]
 #include "sim/scenario/scenario.h"
 #include "sim/simulator.h"
-#include "source_dir.h"
 #include "tools/judge/evaluation/summary.h"
 
-// Whatever you want to test. This one believes that it stands still.
+// Whatever you want to test. This one says that it stands still.
 struct MyOdometry {
   evaluation::StampedPose Track(std::int64_t stamp_ns, const sim::Image&) { return {.stamp_ns = stamp_ns}; }
 };

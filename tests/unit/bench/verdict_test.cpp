@@ -45,7 +45,7 @@ TEST(MixtureAbout, HasTheMomentsOfTheEstimate) {
   EXPECT_LT((moments.covariance - belief.covariance).norm(), 1e-12);
 }
 
-TEST(VerdictRecorder, KeepsMixturesOfRankFramesOnlyAndTheSizeOfInnovations) {
+TEST(VerdictRecorder, KeepsMixturesOfRankFrames) {
   VerdictRecorder recorder({2});
   vo::Estimate estimate;
   vo::BeliefComponent one;
@@ -81,7 +81,7 @@ SystemVerdict Verdict(const std::string& system, double mean) {
   return {system, "lag 5", 100, 300, verdict};
 }
 
-TEST(VerdictSentence, SaysWhatIsWrong) {
+TEST(VerdictSentence, FailedChecks) {
   EXPECT_EQ(VerdictSentence(Verdict("rb2pf", 1)), "RB²-PF is consistent with its own model at lag 5.");
   EXPECT_EQ(VerdictSentence(Verdict("rb2pf", 2.5)),
             "RB²-PF is over-confident at lag 5: ANEES of position 2.50 (an exact filter's: 0.90 to 1.10).");

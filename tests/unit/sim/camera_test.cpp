@@ -47,7 +47,7 @@ TEST(Camera, UndistortUndoesProject) {
   }
 }
 
-TEST(Camera, TheTableOfRaysIsAsGoodAsTheHeaderSays) {
+TEST(Camera, TableOfRays) {
   const Camera camera(Freiburg1());
   double worst_px = 0;
   for (float v = -0.5f; v <= 479.5f; v += 0.77f) {

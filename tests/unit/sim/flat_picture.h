@@ -1,4 +1,4 @@
-// Purpose: pictures of one radiance everywhere, and how far a statistic of them may stray.
+// Pictures of one radiance everywhere, and how far a statistic of them may stray.
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -1,4 +1,4 @@
-// Purpose: checks that hold for every trajectory.
+// Checks that hold for every trajectory.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The scenarios in scenes/paper move as fast as the paper's sequences do on average (its Table I), and last as long.
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -1,5 +1,5 @@
 // PNG files hold what was put in: OpenCV (libpng) reads the same samples, pngcheck finds no fault.
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <libdeflate.h>
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Purpose: scenarios of points for tests.
+// Scenarios of points for tests.
 #pragma once
 
 #include <map>

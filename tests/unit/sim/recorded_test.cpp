@@ -141,7 +141,7 @@ TEST(Recorded, ItsEndIsTheFilesEnd) {
 }
 
 // 0.1 s + 1.2 s, the last of 13 frames at 10 Hz, is 1.3000000000000003 s in doubles.
-TEST(Recorded, IsUsedToItsEndWhateverSumsRoundTo) {
+TEST(Recorded, IsUsedToItsEnd) {
   const TemporaryFolder folder;
   std::string text;
   for (int k = 0; k <= 13; ++k) {

@@ -61,7 +61,7 @@ std::vector<Pair> FrameNoises(const Trajectory& trajectory, int frames, double d
 }
 
 // False alarms: 1e-6 for each of the three seeds.
-TEST(Sampled, PositionNoiseBetweenFramesHasTheModelsCovariance) {
+TEST(Sampled, PositionNoiseBetweenFrames) {
   constexpr double kDt = 1.0 / 30, kSigma = 0.7;
   for (const std::uint64_t seed : {1, 2, 3}) {
     const SampledTrajectory trajectory(Free(kSigma, 0.4), seed, 500);
@@ -76,7 +76,7 @@ TEST(Sampled, PositionNoiseBetweenFramesHasTheModelsCovariance) {
 }
 
 // False alarms: 1e-6 for each of the three seeds.
-TEST(Sampled, OrientationNoiseBetweenKnotsHasTheModelsCovariance) {
+TEST(Sampled, OrientationNoiseBetweenKnots) {
   constexpr double kSigma = 0.9;
   const SampledMotion motion = Free(0.3, kSigma);
   const double h = motion.knot_step_s;
@@ -123,7 +123,7 @@ TEST(Sampled, NoisesOfStepsAndAxesAreIndependent) {
   EXPECT_LT(std::abs(with_orientation), kZ);
 }
 
-TEST(Sampled, VelocitiesAreTheDerivativesOfThePoseBetweenKnots) {
+TEST(Sampled, VelocitiesAreDerivatives) {
   const SampledTrajectory trajectory(Free(2, 3), 5, 2);
   const double h = Free(2, 3).knot_step_s;
   for (int k = -1; k < 400; ++k) {
@@ -227,7 +227,7 @@ TEST(Sampled, StartVelocitiesAreDrawnAboutTheGivenOnes) {
 // has: turns do not commute. With knots at the frames the increments are the model's, to rounding. The remainder of the
 // model, what w and the two noises of the knots do not explain, is measured against the standard deviation of the
 // model's own noise.
-TEST(Sampled, FinerKnotsDifferFromTheModelAtFramesByAPartOfItsNoise) {
+TEST(Sampled, FinerKnotsAtFrames) {
   constexpr double kSigma = 0.5, kFrame = 1.0 / 30;
   const auto remainder = [&](int knots_per_frame) {
     SampledMotion motion = Free(0.5, kSigma);

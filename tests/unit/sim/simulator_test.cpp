@@ -70,7 +70,7 @@ TEST(Simulator, DepthIsThatOfTheTruthsPose) {
 }
 
 // Of triangles that meet at an edge the rasteriser may see the other one, past the wall's edge something for nothing.
-TEST(Simulator, DepthIsOfRaysWhateverRenders) {
+TEST(Simulator, DepthIsOfRays) {
   const SmallWorld world;
   const std::vector<std::pair<std::string, std::string>> wide = {
       {"camera.fx", "30"}, {"camera.fy", "30"}, {"camera.distortion", "{k1: -0.2, k2: 0.03}"}};
@@ -86,7 +86,7 @@ TEST(Simulator, DepthIsOfRaysWhateverRenders) {
   for (const std::int64_t k : {0, 4, 8}) EXPECT_EQ(raster->Depth(k), rays.Depth(k)) << k;
 }
 
-TEST(Simulator, TheSameBytesWithAnyNumberOfThreadsAndInAnyOrder) {
+TEST(Simulator, SameBytesInAnyOrder) {
   const SmallWorld world;
   const Scenario scenario = LoadScenario(world.scenario());
   const Simulator one(scenario, 1), three(scenario, 3);

@@ -1,4 +1,4 @@
-// Purpose: a world of one coloured wall, and a scenario in it, in a folder.
+// A world of one coloured wall, and a scenario in it, in a folder.
 #pragma once
 
 #include <string>

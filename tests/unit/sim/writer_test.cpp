@@ -222,7 +222,7 @@ TEST(SequenceWriter, IsNotFinishedWhileFramesAreLeft) {
 }
 
 // A folder that is stopped names exactly its frames, can be read, and grows to the same bytes.
-TEST(SequenceWriter, AStoppedSequenceIsAPrefixAndResumesToTheSameBytes) {
+TEST(SequenceWriter, StopsAndResumes) {
   const SmallWorld world;
   const Simulator simulator(LoadScenario(world.scenario()), 2);
   for (const Layout layout : {Layout::tum, Layout::euroc, Layout::icl}) {
@@ -371,7 +371,7 @@ TEST(SequenceWriter, RefusesWhatIsThereAndBadRanges) {
     make(world.scenario() / "below" / "a file", 0, 1, 1);
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("wall.yaml/below/a file: cannot make this folder: Not a directory"));
+    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("wall.yaml/below/a file: "), HasSubstr("Not a directory")));
   }
   EXPECT_FALSE(fs::exists(folder));
   fs::create_directory(folder);

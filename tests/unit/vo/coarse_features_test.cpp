@@ -90,7 +90,7 @@ TEST(CoarseFeatures, AreNotMovedByOutliers) {
   EXPECT_LT(Worst(scene, *pose, 16), 0.7);
 }
 
-TEST(CoarseFeatures, KnowHowSureTheyAre) {
+TEST(CoarseFeatures, CovarianceMatchesErrors) {
   Scene scene = MakeScene();
   scene.landmarks[40].covariance(2, 2) = 0.04;  // a depth hardly known
   const auto pose = vo::CoarsePose::From(scene.prediction, scene.map(), scene.Matches(16), {});
@@ -109,7 +109,7 @@ TEST(CoarseFeatures, SayNothingWhenFewOrAtOdds) {
   EXPECT_FALSE(vo::CoarsePose::From(scene.prediction, scene.map(), matches, {}));
 }
 
-TEST(CoarseFeatures, AreSettledSureAndSpread) {
+TEST(CoarseFeatures, AreSettledPreciseAndSpread) {
   std::vector<vo::LandmarkRecord> records(100);
   std::vector<vo::CoarseCandidate> candidates;
   for (int n = 0; n < 100; ++n) {

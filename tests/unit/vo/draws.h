@@ -1,6 +1,6 @@
-// Purpose: random numbers of the odometry's tests, the same with every compiler: std::mt19937_64 is defined to the bit, and a vector is
-//          drawn element by element, because a language that leaves the order of arguments open would give another world per compiler.
-// Source:  Box and Muller 1958.
+// Random numbers of the odometry's tests, the same with every compiler: std::mt19937_64 is defined to the bit, and a vector is
+// drawn element by element, because a language that leaves the order of arguments open would give another world per compiler.
+// Source: Box and Muller 1958.
 #pragma once
 
 #include <Eigen/Core>

@@ -26,7 +26,7 @@ TEST(ExactDraws, HaveMeanZeroAndTheIdentityForCovariance) {
   EXPECT_FALSE(vo::EnoughForExactDraws(6, 6));
 }
 
-TEST(ExactDraws, DoNotCorrelateWithTheOffsetsFromFourteenParticlesOn) {
+TEST(ExactDraws, AreIndependentFromFourteenParticlesOn) {
   for (const double scale : {1e-9, 1.0, 1e6}) {
     const vo::ParticleColumns offsets = scale * (Normals(14, 2, vo::Stream::velocity).array() + 3);
     const vo::ParticleColumns draws = vo::ExactDraws(offsets, Normals(14, 2));

@@ -47,7 +47,7 @@ vo::ParticleFilter Start(const vo::FilterParams& params, std::uint64_t seed) {
 }
 
 // Every landmark is seen from elsewhere, as through a rolling shutter: told so, all members find the camera; not told, they take it for the camera's way.
-TEST(Family, KnowsFromWhereARowWasSeen) {
+TEST(Family, RowPositions) {
   constexpr double kFine = 0.05 * kSigma;
   const vo::Pose truth{Vector3d(0.01, -0.005, 0.008), vo::Exp({0.004, 0.005, -0.003})};
   std::vector<vo::FirstView> first;

@@ -1,5 +1,5 @@
 // Phases of the particle filter: which one runs when, what each samples, and that they hand over all they know.
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <memory>
 #include <vector>

@@ -18,7 +18,7 @@ vo::LandmarkRecord Record(bool permanent, double score, int age, int frames_unse
   return record;
 }
 
-TEST(WorthKeeping, PermanentOnesStayOthersWhileTheyExistAndAreSearched) {
+TEST(WorthKeeping, PermanentOnesStay) {
   vo::LandmarkParams landmark;
   landmark.forget_after = 90;
   vo::ScoreParams score;
@@ -30,7 +30,7 @@ TEST(WorthKeeping, PermanentOnesStayOthersWhileTheyExistAndAreSearched) {
   EXPECT_THAT(vo::WorthKeeping(records, 0, landmark, score), ElementsAre(true, true, false, false, true));
 }
 
-TEST(WorthKeeping, WhereThereIsNoRoomTheLongestUnsearchedGoOldestFirst) {
+TEST(WorthKeeping, LongestUnsearchedGoFirst) {
   vo::LandmarkParams landmark;
   landmark.max_landmarks = 3;
   const vo::LandmarkRecord records[] = {Record(true, 1, 900, 0), Record(true, 1, 800, 7), Record(true, 1, 700, 2),

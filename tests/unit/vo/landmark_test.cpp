@@ -88,7 +88,7 @@ double Quadrature(const vo::Landmark& prior, const vo::AnchorView& view, const v
 
 // Laplace's weight against the integral, for a depth two to four standard deviations from its prior mean; the linearisation at the
 // prior (3) is off by far more: section 8's lesson.
-TEST(Landmark, LaplaceWeightIsTheIntegralWhereThePriorLinearisationIsNot) {
+TEST(Landmark, LaplaceWeightIsTheIntegral) {
   Draws draws(3);
   double worst_iterated = 0, worst_prior = 0;
   for (int i = 0; i < 100; ++i) {

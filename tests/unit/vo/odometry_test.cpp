@@ -10,6 +10,7 @@
 #include <limits>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "tests/unit/vo/texture.h"
 #include "tests/unit/vo/two_walls.h"
@@ -84,8 +85,8 @@ TEST(Odometry, CoastsOverBlankFramesAndRecovers) {
   EXPECT_LT(outcome.rms, 0.3 * outcome.path_extent);
 }
 
-// A camera that turns on the spot, and takes 26 of 33 ms to read its rows, sees the walls bent, and who does not know it thinks that it
-// moves. Told of it the odometry stays nearly where it is; told the opposite direction it goes farther off.
+// A camera that turns on the spot, and takes 26 of 33 ms to read its rows, sees the walls bent, which looks like motion. With the true readout
+// time the estimate stays nearly where the camera is; with the opposite sign it goes farther off.
 TEST(Odometry, StraightensARollingShutter) {
   const auto turned = [](double k) {
     const double t = k / 30.0;
@@ -93,28 +94,36 @@ TEST(Odometry, StraightensARollingShutter) {
                     vo::Exp({0.15 * std::sin(4.5 * t), 0.15 * std::sin(3.7 * t), 0.1 * std::sin(5.1 * t)})};
   };
   const double readout = 0.026;
-  const auto moved = [&](double taken, double told) {  // rms over time, mean over textures [m]
+  constexpr unsigned kTextures = 3;
+  constexpr int kFrames = 30;
+  std::vector<cv::Mat> at_once, rolled;  // texture by texture
+  for (unsigned seed = 1; seed <= kTextures; ++seed) {
+    const vo_test::Texture texture(seed, 40.0, 24);
+    for (int k = 0; k < kFrames; ++k) {
+      at_once.push_back(RolledView(turned, k, 0, texture));
+      rolled.push_back(RolledView(turned, k, readout, texture));
+    }
+  }
+  const auto moved = [&](const std::vector<cv::Mat>& images, double told) {  // rms over time, mean over textures [m]
     double sum = 0;
-    constexpr int kTextures = 3, kFrames = 30;
-    for (unsigned seed = 1; seed <= kTextures; ++seed) {
-      const vo_test::Texture texture(seed, 40.0, 24);
+    for (unsigned texture = 0; texture < kTextures; ++texture) {
       vo::Params params = SmallImageParams();
       params.features.readout_s = told;
-      // It is the rows that are compared, not how far each match is believed
-      params.features.noise = vo::MatchNoise::registered;
+      params.features.noise = vo::MatchNoise::registered;  // it is the rows that are compared, not their weights
       vo::Prior prior;
       prior.w_WC_C = vo::Log(turned(1).q_WC) * 30;
       prior.velocity_covariance = 1e-3 * vo::Matrix6::Identity();
       vo::Odometry odometry(kCamera, params, prior, 1);
       double squares = 0;
-      for (int k = 0; k < kFrames; ++k)
-        squares += odometry.Track({k * kFrameNs, RolledView(turned, k, taken, texture)}).pose.p_WC.squaredNorm();
+      for (int k = 0; k < kFrames; ++k) {
+        squares += odometry.Track({k * kFrameNs, images[texture * kFrames + k]}).pose.p_WC.squaredNorm();
+      }
       sum += std::sqrt(squares / kFrames);
     }
     return sum / kTextures;
   };
-  const double global = moved(0, 0), told = moved(readout, readout), not_told = moved(readout, 0),
-               upwards = moved(readout, -readout);
+  const double global = moved(at_once, 0), told = moved(rolled, readout), not_told = moved(rolled, 0),
+               upwards = moved(rolled, -readout);
   std::printf("moved by [mm]: global shutter %.2f; rolling, told %.2f, not told %.2f, told the opposite %.2f\n",
               1e3 * global, 1e3 * told, 1e3 * not_told, 1e3 * upwards);
   EXPECT_GT(not_told, 9 * told);  // what is left: the velocity changes within a step
@@ -149,12 +158,14 @@ TEST(Odometry, FindsOutHowFastItsFirstFrameWas) {
   EXPECT_LT(wrong, 1.5 * known + 0.5);
 }
 
-// What trembles is believed less than what stands still, each by its own residuals; with `registered` both are believed alike.
-TEST(Odometry, BelievesTremblingLandmarksLess) {
+// What trembles weighs less than what stands still, each by its own residuals; with `registered` both weigh alike.
+TEST(Odometry, WeighsTremblingLandmarksLess) {
   const vo_test::Texture texture(5, 40.0, 24);
   // Columns, in bands of 40 rows that go to and fro by 0.6 px, neighbours the opposite way
   constexpr int kTrembling = 100;
-  const auto image = [&](int k) {
+  constexpr int kFrames = 40;
+  std::vector<cv::Mat> images;
+  for (int k = 0; k < kFrames; ++k) {
     const cv::Mat still = ViewFrom(TruthAt(k), texture);
     cv::Mat seen = ViewByRows(
         [&](int y) {
@@ -163,16 +174,16 @@ TEST(Odometry, BelievesTremblingLandmarksLess) {
         },
         texture);
     still.colRange(kTrembling, kCamera.width).copyTo(seen.colRange(kTrembling, kCamera.width));
-    return seen;
-  };
+    images.push_back(seen);
+  }
   const auto believed =
       [&](vo::MatchNoise noise) {  // median standard deviation [px] where it trembles over that elsewhere
         vo::Params params = SmallImageParams();
         params.features.noise = noise;
         vo::Odometry odometry(kCamera, params, KnownStart(), 1);
         std::vector<double> sigmas[2];
-        for (int k = 0; k < 40; ++k) {
-          odometry.Track({k * kFrameNs, image(k)});
+        for (int k = 0; k < kFrames; ++k) {
+          odometry.Track({k * kFrameNs, images[k]});
           if (k < 30) continue;
           for (const vo::FeatureView& view : odometry.Features()) {
             if (view.status != vo::FeatureView::Status::matched || std::abs(view.pixel.x() - kTrembling) < 20) continue;
@@ -193,7 +204,7 @@ TEST(Odometry, BelievesTremblingLandmarksLess) {
 }
 
 // Landmarks that there is no time to look for hold their place: no second one is put on the same corner.
-TEST(Odometry, LooksForLandmarksAllOverTheImageAndAddsNoneWhereOneIs) {
+TEST(Odometry, SearchesAllOverTheImage) {
   const vo_test::Texture texture(4, 40.0, 24);
   vo::Params params = SmallImageParams();
   params.features.max_searched = 30;  // of 48
@@ -258,7 +269,7 @@ TEST(Odometry, HoldsNoMoreLandmarksThanItMay) {
 }
 
 // Where the camera then looks at something else, the map makes room for it.
-TEST(Odometry, AFullMapForgetsWhatIsOutOfView) {
+TEST(Odometry, FullMapMakesRoom) {
   const vo_test::Texture texture(1, 40.0, 24);
   vo::Params params = SmallImageParams();
   params.landmark.max_landmarks = 40;
@@ -348,7 +359,7 @@ TEST(Odometry, TakesVaryingTimeStepsAndALongGap) {
   EXPECT_TRUE(e.covariance.allFinite());
 }
 
-TEST(Odometry, RefusesTimeThatDoesNotIncreaseAndImagesOfAnotherSize) {
+TEST(Odometry, RefusesBadStampsAndSizes) {
   vo::Odometry odometry(kCamera, {}, {}, 1);
   const cv::Mat image(kCamera.height, kCamera.width, CV_8UC1, cv::Scalar(0));
   odometry.Track({5, image});

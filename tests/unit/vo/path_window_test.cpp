@@ -170,7 +170,7 @@ TEST(PathEnd, IsSymmetricAfterAGap) {
 
 // Iterations that end before they have settled: the last step is a guess, whose quadratic promise may be anything. Evidence that believed it
 // made a particle that had run astray outweigh all others.
-TEST(PathWindow, EvidenceDoesNotBelieveAStepThatNobodyLookedAt) {
+TEST(PathWindow, EvidenceOfAnUnseenStep) {
   double worst = -1e300;
   int unsettled = 0;
   for (unsigned seed = 1; seed <= 200; ++seed) {
@@ -289,7 +289,7 @@ TEST(PathWindow, EliminatingLandmarksIsTheJointSolution) {
 
 // A track's image is told by its anchor in the window: how far all of the window may have drifted does not matter, and the rounding of what is
 // taken away again must not show as two covariances of its coordinates.
-TEST(PathWindow, PredictsImagesHoweverFarThePathMayHaveDrifted) {
+TEST(PathWindow, PredictsImagesAfterDrift) {
   const Scene scene = MakeScene(5, 4, 24, 0.05, 1.0 / 525, 0);
   std::vector<Vector3d> theta;
   const vo::PathGaussian path = Solve(scene, false, &theta);
@@ -336,7 +336,7 @@ TEST(PathPrior, LastVelocityIsTheVelocityFilters) {
 
 // p(z_1, z_2) = p(z_1) p(z_2 | z_1): the window's evidence grows by what the next frame says, whichever way it is counted. With
 // small noise everything is linear, and Laplace's approximation exact.
-TEST(PathWindow, EvidenceOfTwoFramesIsThatOfTheFirstTimesTheSecondGivenIt) {
+TEST(PathWindow, EvidenceOfTwoFramesFactors) {
   const Scene scene = MakeScene(9, 2, 30, 1e-4, 1e-5);
   Scene first = scene;
   for (vo::Track& track : first.tracks)

@@ -127,7 +127,7 @@ Differences Compare(const Case& c, double dt, double angle_time) {
           relative(P_paper, P7)};
 }
 
-TEST(QuaternionForm, TangentSpaceGivesThePapersMatricesToFirstOrder) {
+TEST(QuaternionForm, TangentSpaceGivesThePapersMatrices) {
   for (std::uint32_t i = 0; i < 50; ++i) {
     const Case c = RandomCase(i);
     const double rate = c.w.norm();

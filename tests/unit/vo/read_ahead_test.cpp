@@ -58,7 +58,7 @@ TEST(ReadAhead, HoldsNoMoreThanWasSaid) {
   }
 }
 
-TEST(ReadAhead, TellsAnErrorAfterTheFramesBeforeIt) {
+TEST(ReadAhead, ErrorsComeAfterEarlierFrames) {
   Colours source(2, true);
   vo::ReadAhead ahead(source);
   EXPECT_TRUE(ahead.Next());

@@ -125,7 +125,7 @@ TEST(RollingShutter, FirstViewsAreRightAtEveryDepth) {
 }
 
 // (ray + noise + d_ray_d_rho rho, rho) of independent noise and rho, with both written out.
-TEST(NewLandmark, KnowsHowItsRayHangsOnItsDepth) {
+TEST(NewLandmark, RayDependsOnDepth) {
   vo::LandmarkParams usual;
   const vo::FirstView view{{0.2, -0.1}, 1e-6 * Eigen::Matrix2d::Identity(), {0.03, -0.02}};
   for (const double scale : {1.0, 1.7}) {

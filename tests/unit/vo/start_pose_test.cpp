@@ -21,7 +21,7 @@ vo::ParticleFilter FilterFrom(const vo::PoseGaussian& start, int particles) {
 
 // At rest up to a velocity that is as likely in all directions, nothing hangs on where the camera looks: each particle says what a filter says that
 // was told its start. The two round differently.
-TEST(StartPose, EveryParticleSaysWhatAFilterFromThereSays) {
+TEST(StartPose, EveryParticleIsAFilterFromThere) {
   constexpr double kSigma = 1.0 / 525;
   vo_test::Draws draws(2);
   const vo_test::LandmarkField field({60, 0.8, 0.6, 0.2, kSigma}, draws);

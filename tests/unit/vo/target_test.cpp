@@ -32,22 +32,22 @@ BoardPose Facing(double distance, double tilt, double roll) {
   return {Vector3d(0, 0, distance) - axes * Vector3d(4 * 0.05, 2.5 * 0.05, 0), axes};
 }
 
-// Each pixel is the mean of 5 x 5 rays, with Gaussian noise of so many grey levels.
+// Each pixel is the mean of 3 x 3 rays, with Gaussian noise of so many grey levels.
 cv::Mat Picture(const BoardPose& board, const vo::Camera& camera, double noise, unsigned seed) {
   cv::Mat image(camera.height, camera.width, CV_8UC1);
   vo_test::Draws draws(seed);
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
       double sum = 0;
-      for (int k = 0; k < 25; ++k) {
-        const Vector2d ray = camera.Undistort({u + (k % 5 - 2) / 5.0, v + (k / 5 - 2) / 5.0});
+      for (int k = 0; k < 9; ++k) {
+        const Vector2d ray = camera.Undistort({u + (k % 3 - 1) / 3.0, v + (k / 3 - 1) / 3.0});
         const Vector3d at =
             board.axes.transpose() * (ray.homogeneous() / board.InverseDepth(ray) - board.corner) / 0.05;
         const bool on = at.x() > -1 && at.x() < 9 && at.y() > -1 && at.y() < 6;
         const bool black = (static_cast<int>(std::floor(at.x())) + static_cast<int>(std::floor(at.y()))) % 2 != 0;
         sum += on && black ? 40 : 210;
       }
-      image.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(sum / 25 + noise * draws.Normal());
+      image.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(sum / 9 + noise * draws.Normal());
     }
   }
   return image;

@@ -1,12 +1,10 @@
-// Purpose: a smooth random texture with a known value everywhere, for tests that need images with exact geometry.
+// A smooth random texture with a known value everywhere, for tests that need images with exact geometry.
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <opencv2/core.hpp>
-#include <vector>
 
 #include "tests/unit/vo/draws.h"
 
@@ -15,16 +13,19 @@ namespace vo_test {
 class Texture {
  public:
   // Wave numbers up to `max_frequency` [rad per unit].
-  explicit Texture(unsigned seed, double max_frequency = 0.45, int waves = 60) {
+  explicit Texture(unsigned seed, double max_frequency = 0.45, int waves = 60)
+      : x_(waves), y_(waves), phase_(waves), scale_(93 / std::sqrt(static_cast<float>(waves))) {
     Draws draws(seed);
-    for (int i = 0; i < waves; ++i)
-      waves_.push_back(
-          {max_frequency * draws.Symmetric(), max_frequency * draws.Symmetric(), 6.2832 * draws.Uniform()});
+    for (int i = 0; i < waves; ++i) {
+      x_[i] = static_cast<float>(max_frequency * draws.Symmetric());
+      y_[i] = static_cast<float>(max_frequency * draws.Symmetric());
+      phase_[i] = static_cast<float>(6.2832 * draws.Uniform());
+    }
   }
+  // In single precision, in which Eigen takes four sines at once: right to a thousandth of a grey level.
   double At(const Eigen::Vector2d& p) const {
-    double sum = 0;
-    for (const auto& w : waves_) sum += std::sin(w[0] * p.x() + w[1] * p.y() + w[2]);
-    return 128 + 93 / std::sqrt(static_cast<double>(waves_.size())) * sum;
+    const Eigen::Vector2f at = p.cast<float>();
+    return 128 + scale_ * (x_ * at.x() + y_ * at.y() + phase_).sin().sum();
   }
   // Pixel x of the image shows the texture at map * x + shift.
   cv::Mat Image(int width, int height, const Eigen::Vector2d& shift,
@@ -37,7 +38,8 @@ class Texture {
   }
 
  private:
-  std::vector<std::array<double, 3>> waves_;
+  Eigen::ArrayXf x_, y_, phase_;
+  float scale_;
 };
 
 }  // namespace vo_test

@@ -1,5 +1,5 @@
-// Purpose: images with exact geometry, without a renderer: a camera in the hand, in front of two textured walls that meet in an edge.
-// Units:   m, rad, s; poses T_WC; times in frames of 1/30 s.
+// Images with exact geometry, without a renderer: a camera in the hand, in front of two textured walls that meet in an edge.
+// Units: m, rad, s; poses T_WC; times in frames of 1/30 s.
 #pragma once
 
 #include <cmath>

@@ -163,7 +163,7 @@ TEST(UnscentedProposal, OneFeatureIsTheTextbookUpdate) {
 }
 
 // Far from linear the mean of the transform is closer to the truth (10^5 samples) than the projection of the mean is.
-TEST(UnscentedProposal, MeanOfAnUncertainLandmarkBeatsTheLinearisation) {
+TEST(UnscentedProposal, MeanBeatsTheLinearisation) {
   vo::Landmark landmark;
   landmark.mean = Vector3d(0.2, -0.1, 0.25);
   landmark.covariance(2, 2) = 0.15 * 0.15;

@@ -148,7 +148,7 @@ TEST(VelocityFilter, EveryMisprintIsSeen) {
 
 // With nearly constant velocity all factors of (41) commute, so the transposed cross terms cannot show there: why the test above
 // uses a general F.
-TEST(VelocityFilter, NearlyConstantVelocityHidesTheTransposedCrossTerms) {
+TEST(VelocityFilter, TransposedCrossTerms) {
   const vo::MotionModel model = vo::NearlyConstantVelocity({}, 1.0 / 30);
   const Step step{model.F, model.Q};
   VectorXd mean = VectorXd::LinSpaced(6, -1, 1), printed_mean = mean;

@@ -1,6 +1,6 @@
-// Purpose: what a camera sees that flies sideways past a wall in front of it, without a renderer: for tests of what a filter does whatever
-//          the images say.
-// Units:   the plane z = 1 of an undistorted camera.
+// What a camera sees that flies sideways past a wall in front of it, without a renderer: for tests of what a filter does whatever
+// the images say.
+// Units: the plane z = 1 of an undistorted camera.
 #pragma once
 
 #include <cmath>

@@ -168,7 +168,7 @@ class WatchedMember : public testing::TestWithParam<Member> {};
 
 // Into one particle or all, between frames or after the prediction. Then a fault names this frame or one soon after, or a guard counts
 // more than without, or the place was not used any more and every answer is the same: a number that is none changes no answer unseen.
-TEST_P(WatchedMember, NothingThatIsNoNumberPassesUnseen) {
+TEST_P(WatchedMember, NonFiniteStateIsCaught) {
   const Seen healthy = Play(MakeParticles(GetParam().params), {});
   ASSERT_FALSE(healthy.fault) << healthy.fault->what();
   int faults = 0, guarded = 0;

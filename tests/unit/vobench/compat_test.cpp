@@ -1,7 +1,7 @@
 // What --compat prints on small trajectories of our own. The texts in compat/expected.txt were printed when every
 // golden value of the reference tools was met (tests/unit/judge/evaluation/golden_test.cpp, which needs files that are not
 // ours).
-#include "tools/vobench/compat.h"
+#include "tools/vobench/arguments.h"
 
 #include <gmock/gmock.h>
 
@@ -50,14 +50,14 @@ std::vector<std::pair<std::string, std::string>> Expected() {
   return all;
 }
 
-TEST(Compat, PrintsWhatItPrintedWithAllGoldenValuesMet) {
+TEST(Compat, PrintsTheGoldenTexts) {
   const auto expected = Expected();
   EXPECT_EQ(expected.size(), 21u);
   for (const auto& [request, text] : expected) EXPECT_EQ(Printed(request), text) << request;
 }
 
 // Three standard errors: one seed of 370 fails it; the seed is the script's own. A mean over other pairs does fail.
-TEST(Compat, TumsRandomPairsAreAsTheMeanOverAllPairsSays) {
+TEST(Compat, TumRandomPairs) {
   using namespace evaluation::compat;
   const evaluation::Rpe drawn = ComputeTumRpe(Estimate(), TruthRead(), {});
   const evaluation::Rpe all = ComputeTumRpe(Estimate(), TruthRead(), {.max_pairs = 0});

@@ -9,7 +9,6 @@
 
 #include "tools/vobench/arguments.h"
 #include "tools/vobench/help_text.h"
-#include "tools/vobench/manual.h"
 
 namespace vobench {
 namespace {

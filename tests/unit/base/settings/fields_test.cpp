@@ -140,7 +140,7 @@ TEST(FieldReader, ReadsWhatTheTableNamesAndResolvesTheRest) {
   EXPECT_EQ(Read("{}", other).find("shutter"), std::string::npos) << "an optional field that is not given";
 }
 
-TEST(FieldReader, SaysEveryProblemAtItsPlace) {
+TEST(FieldReader, EveryProblemAtItsPlace) {
   Example example;
   EXPECT_EQ(Read("exposure: 20 s\ninner: {side: 4}\nrays: 3\nlens: {k4: 0}\n", example),
             "f.yaml:1:11: 'exposure': '20 s' must lie in 0 ... 10 s\n"

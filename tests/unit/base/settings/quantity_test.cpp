@@ -63,7 +63,7 @@ TEST(Quantity, NumbersAsPeopleWriteThem) {
   EXPECT_EQ(Value("2e", Unit::electrons), 2.0);
 }
 
-TEST(Quantity, AWrongUnitSaysWhatIsExpected) {
+TEST(Quantity, WrongUnit) {
   EXPECT_EQ(Problem("8 px", Unit::time),
             "'8 px' is not a time: expected a number with s, ms, us, ns, min, or a bare number of s");
   EXPECT_EQ(Problem("8 ms", Unit::none), "'8 ms' is not a number: expected a bare number");

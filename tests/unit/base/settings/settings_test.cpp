@@ -154,7 +154,7 @@ TEST(Settings, AKeyWithoutValueIsAProblemForAValue) {
             "f.yaml:3:4: 'z': is empty");
 }
 
-TEST(Settings, OtherReadersSectionsAreIgnoredWhateverIsInThem) {
+TEST(Settings, OtherReadersSectionsAreIgnored) {
   Document document = Document::FromText("mine: 1\nodometry: {any: [thing]}\n", "f.yaml");
   double mine = 0;
   document.root().Read("mine", mine);

@@ -150,7 +150,7 @@ tabels: []
               testing::AllOf(HasSubstr("'scenarios': at least one"), HasSubstr("'systems': at least one")));
 }
 
-TEST_F(CampaignFileTest, ProblemsOfASettingAreToldOnceAndWhereItIsSet) {
+TEST_F(CampaignFileTest, SettingProblemsOnceAndInPlace) {
   CampaignFile file(here_.Write("c.yaml", kFull), kWords);
   for (std::int64_t k = 0; k < Tasks(file.campaign()); ++k) {
     const TaskChoice choice = ChoiceOf(file.campaign(), k);

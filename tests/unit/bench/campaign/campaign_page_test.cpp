@@ -71,7 +71,7 @@ TEST(CurveFigures, HaveTheMediansWithTheirIntervals) {
   EXPECT_THAT(band.high, testing::Each(testing::DoubleEq(0.011)));
 }
 
-TEST(CurveFigures, LostRunsAreInfiniteAndTold) {
+TEST(CurveFigures, LostRunsAreInfinite) {
   const Figure ate = CurveFigures(Sample(false))[0];
   const Series& runs = *Drawn(ate, Draw::dots, 1).at(0);
   EXPECT_EQ(std::count(runs.y.begin(), runs.y.end(), kInfinity), 3);
@@ -97,7 +97,7 @@ TEST(CurveFigures, StressGrowsToTheRight) {
   EXPECT_TRUE(CurveFigures(Sample(true))[0].x.reversed);
 }
 
-TEST(CampaignPage, SaysWhatBreaksAndEscapesNames) {
+TEST(CampaignPage, BreakingPointsAndEscapedNames) {
   campaign::Campaign campaign;
   campaign.name = "</script><b>";
   campaign.seeds = {1, 2};

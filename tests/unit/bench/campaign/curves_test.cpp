@@ -82,7 +82,7 @@ TEST_F(CurvesTest, AreReadWithTheirDosesInSi) {
   EXPECT_EQ(c.curves[1].break_error_m, 0);
 }
 
-TEST_F(CurvesTest, EveryProblemIsTold) {
+TEST_F(CurvesTest, EveryProblemIsNamed) {
   const std::string said = Problems(R"(curves:
   - {along: light, of: [ate_m]}
   - {along: steps, of: [ate_m]}

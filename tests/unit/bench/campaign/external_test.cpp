@@ -122,7 +122,7 @@ TEST(Calibration, IsReadBackAsItWasWritten) {
 }
 
 // Worked by hand after each system's documentation: writer and reader here could share a mistake.
-TEST(Calibration, SaysWhatEachSystemDocuments) {
+TEST(Calibration, DocumentedFormats) {
   Calibration c = Plain();
   c.width = 640, c.height = 400, c.fx = 320, c.fy = 300, c.cx = 319.5, c.cy = 199.5;
   EXPECT_EQ(WriteCalibration(c, CalibrationFormat::dso), "Pinhole 0.5 0.75 0.5 0.5 0\n640 400\nnone\n640 400\n")
@@ -187,7 +187,7 @@ TEST(Slurm, TasksAreDealtOutInOrderAndReadBack) {
   EXPECT_THROW(ReadArrayLine(here.Write("bad", "1 x\n"), 0), std::invalid_argument);
 }
 
-TEST(Slurm, TheScriptSaysWhatIsAsked) {
+TEST(Slurm, Script) {
   const std::string script = BatchScript({"long", "1:00", 1 << 30, 10}, "name", 3, "/out", "do --part");
   for (const char* expected : {"#!/bin/sh\n", "--job-name=name\n", "--array=0-2\n", "--partition=long\n",
                                "--time=1:00\n", "--mem=1280M\n", "exec do --part \"$SLURM_ARRAY_TASK_ID\"\n"}) {

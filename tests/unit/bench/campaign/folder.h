@@ -1,4 +1,4 @@
-// Purpose: a folder that is gone when the test is, with files below it.
+// A folder that is gone when the test is, with files below it.
 #pragma once
 
 #include <filesystem>

@@ -34,7 +34,7 @@ std::map<std::int64_t, std::string> WaitForAll(ProcessPool& pool) {
   return ends;
 }
 
-TEST(ProcessPool, TellsHowEachEnded) {
+TEST(ProcessPool, ExitStatuses) {
   ProcessPool pool;
   pool.Start(1, {}, [] {});
   pool.Start(2, {}, [] { throw std::runtime_error("no such file"); });
@@ -93,7 +93,7 @@ TEST(Memory, NoMoreProcessesThanFit) {
   EXPECT_GT(AvailableMemory(), 1'000'000u);
 }
 
-TEST(Memory, IsThatOfTheTightestControlGroupLessTheCacheThatIsGivenBack) {
+TEST(Memory, IsThatOfTheTightestControlGroup) {
   const Folder root;
   root.Write("proc/meminfo", "MemTotal: 9000 kB\nMemAvailable: 8000 kB\n");
   EXPECT_EQ(AvailableMemory(root.path()), 8'192'000u) << "no control groups";
@@ -124,7 +124,7 @@ class CommandTest : public testing::Test {
   Folder here_;
 };
 
-TEST_F(CommandTest, TellsHowItEnded) {
+TEST_F(CommandTest, ExitStatuses) {
   const CommandEnd good = Run("echo out; echo err >&2; pwd > where");
   EXPECT_EQ(good.status, 0);
   EXPECT_EQ(good.signal, 0);
@@ -171,7 +171,7 @@ bool Runs(const std::string& process) {
 }
 
 // A process that runs a command, ended in the three ways that a campaign knows.
-TEST_F(CommandTest, EndsWithAllThatItStartedWhenTheProcessThatWaitsForItIsKilled) {
+TEST_F(CommandTest, EndsWithItsParent) {
   const auto work = [this] {
     here_.Write("caller", std::to_string(getpid()));
     Run("sh -c 'sleep 60 & echo -n $! > number; mv number grandchild; wait'; exit 0", 60);
@@ -258,7 +258,7 @@ TEST(TaskFolder, WhatAKillLeftIsNotTakenOver) {
   EXPECT_FALSE(ReadRecord(out.path(), 4));
 }
 
-TEST(SequenceCache, KnowsAWorldUntilOneOfItsFilesChanges) {
+TEST(SequenceCache, ChangedFilesMiss) {
   const Folder here;
   const auto mesh = here.Write("mesh", "1"), absent = here / "picture";
   SequenceCache cache(here / "cache");

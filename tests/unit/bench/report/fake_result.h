@@ -1,6 +1,6 @@
-// Purpose: a result folder as a real run would leave it, made up: a camera that walks a spiral, estimates that drift
+// A result folder as a real run would leave it, made up: a camera that walks a spiral, estimates that drift
 // from it with
-//          the uncertainty they claim (or with less).
+// the uncertainty they claim (or with less).
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Purpose: the data that a page carries, read back as a browser would.
+// The data that a page carries, read back as a browser would.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -145,7 +145,7 @@ TEST(WriteReport, IsTheSameEveryTime) {
   EXPECT_EQ(PageOf(folder), PageOf(folder));
 }
 
-TEST(WriteReport, SaysWhenTheFirstSystemDoesNotWin) {
+TEST(WriteReport, FirstSystemDoesNotWin) {
   const TemporaryFolder folder;
   FakeOptions options;
   options.systems = {{"rb2pf", 0.05, 1, 1}, {"rbpf", 0.01, 1, 1}};
@@ -153,7 +153,7 @@ TEST(WriteReport, SaysWhenTheFirstSystemDoesNotWin) {
   EXPECT_THAT(PageOf(folder), HasSubstr("RB²-PF does not beat RB-PF here."));
 }
 
-TEST(WriteReport, SaysWhenAnEstimateIsNoBetterThanABlindOne) {
+TEST(WriteReport, NoBetterThanAConstantPose) {
   const TemporaryFolder folder;
   FakeOptions options;
   options.seeds = 1;
@@ -162,7 +162,7 @@ TEST(WriteReport, SaysWhenAnEstimateIsNoBetterThanABlindOne) {
   EXPECT_THAT(PageOf(folder), HasSubstr("It does no better than a baseline that never looks at the images."));
 }
 
-TEST(WriteReport, TellsTheOverConfidentFromTheCautious) {
+TEST(WriteReport, OverConfidentAndCautious) {
   for (const auto& [claimed, word] :
        {std::pair{0.3, "it is over-confident"}, {3.0, "it is under-confident (conservative)"}}) {
     const TemporaryFolder folder;
@@ -249,7 +249,7 @@ TEST(WriteReport, WithATrajectoryAloneShowsThat) {
   EXPECT_THAT(html, Not(HasSubstr("NIS of")));
 }
 
-TEST(WriteReport, SaysWhenMetricsAndFilesDisagree) {
+TEST(WriteReport, MetricsAndFilesDisagree) {
   const TemporaryFolder folder;
   FakeOptions options;
   options.seeds = 1;

@@ -79,7 +79,7 @@ TEST(Align, DoesNotMirror) {
   EXPECT_GT(ComputeAte(matched, Alignment::sim3).position.rmse, 0.05);
 }
 
-TEST(Align, SaysWhatIsNotDetermined) {
+TEST(Align, Undetermined) {
   TestRandom random(8);
   const Trajectory truth = random.Walk(50);
   const auto standing = MatchedTrajectories{ConstantVelocity(StampsOf(truth), truth[10]), truth};
@@ -117,7 +117,7 @@ TEST(Align, RoundingFarFromTheOriginIsNoMotion) {
 }
 
 // Where the line is drawn, on both sides: positions `d` from their mean on one axis, and then a second axis that is small.
-TEST(Align, DrawsTheLineOfNoExtentWhereItSays) {
+TEST(Align, NoExtentThreshold) {
   const auto scale_determined = [](double d, double mean) {
     MatchedTrajectories matched;
     for (const double side : {-1.0, 1.0}) {
@@ -133,7 +133,7 @@ TEST(Align, DrawsTheLineOfNoExtentWhereItSays) {
   }
 }
 
-TEST(Align, DrawsTheLineOfOneDirectionWhereItSays) {
+TEST(Align, OneDirectionThreshold) {
   const auto rotation_determined = [](double singular_value) {
     MatchedTrajectories matched;
     const double x_across = 1e-5, y_across = singular_value / x_across;

@@ -129,7 +129,7 @@ TEST(Associate, EqualsTheDefinitionByBruteForce) {
   EXPECT_GT(differ, 20);
 }
 
-TEST(MatchTrajectories, SaysWhatTimesWereCoveredWhenNothingFits) {
+TEST(MatchTrajectories, NamesTheTimesWhenNothingFits) {
   TestRandom random(4);
   Trajectory late = random.Walk(3);
   for (StampedPose& pose : late) pose.stamp_ns += 100'000'000'000;

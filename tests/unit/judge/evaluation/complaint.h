@@ -1,4 +1,4 @@
-// Purpose: what a call that must be refused says.
+// What a call that must be refused says.
 #pragma once
 
 #include <string>

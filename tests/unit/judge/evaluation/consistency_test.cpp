@@ -102,7 +102,7 @@ bool InBand(const std::vector<FrameConsistency>& frames, double FrameConsistency
 
 // False alarm rate: 5e-6 (five means). The frames of this world are independent by construction, so that averaging them
 // is right.
-TEST(ComputeConsistency, HonestErrorsAreInsideTheirBands) {
+TEST(ComputeConsistency, ConsistentErrorsAreInsideTheirBands) {
   TestRandom random(21);
   const auto frames = Judge(HonestWorld(random, 2000));
   EXPECT_TRUE(InBand(frames, &FrameConsistency::nees_pose, 6));
@@ -124,7 +124,7 @@ TEST(ComputeConsistency, HalvedCovarianceIsRejected) {
   EXPECT_FALSE(InBand(frames, &FrameConsistency::nees_joint, 12));
 }
 
-TEST(ComputeConsistency, AnErrorOnTheWrongSideOfTheOrientationIsRejected) {
+TEST(ComputeConsistency, ErrorOnTheWrongSideIsRejected) {
   TestRandom random(22);
   EXPECT_FALSE(InBand(Judge(HonestWorld(random, 2000, nullptr, true)), &FrameConsistency::nees_pose, 6));
 }
@@ -181,7 +181,7 @@ TEST(NeesWithoutDirection, ByHand) {
   EXPECT_TRUE(std::isnan(NeesWithoutDirection(e, -P, Eigen::Vector2d::UnitX())));
 }
 
-TEST(ComputeConsistency, ScaleFreeNeesForgivesAWrongScaleAboutTheStart) {
+TEST(ComputeConsistency, ScaleFreeNees) {
   TestRandom random(26);
   World world = HonestWorld(random, 300);
   const Eigen::Vector3d start = world.truth[0].p_WC;
@@ -199,7 +199,7 @@ TEST(ComputeConsistency, ScaleFreeNeesForgivesAWrongScaleAboutTheStart) {
   EXPECT_TRUE(std::isnan(before[0].nees_pose_scale_free)) << "at the start itself the scale does not show";
 }
 
-TEST(Nees, HasNoAnswerWithoutAPositiveDefiniteCovariance) {
+TEST(Nees, NeedsAPositiveDefiniteCovariance) {
   Eigen::MatrixXd P = Eigen::MatrixXd::Zero(6, 6);
   EXPECT_TRUE(std::isnan(Nees(Eigen::VectorXd::Zero(6), P)));
   P.setIdentity();
@@ -254,7 +254,7 @@ TEST(SummariseNees, CountsWhatHasNoAnswer) {
   }
 }
 
-TEST(ComputeConsistency, FirstPoseGaugeMovesTheTruthIntoTheWorldOfTheEstimate) {
+TEST(ComputeConsistency, FirstPoseGauge) {
   TestRandom random(27);
   World world = HonestWorld(random, 40);
   world.run.trajectory[0] = world.truth[0];  // a start that is known

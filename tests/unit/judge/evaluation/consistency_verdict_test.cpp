@@ -68,7 +68,7 @@ class Verdict : public testing::Test {
 LinearisedRuns *Verdict::judged_ = nullptr, *Verdict::pool_ = nullptr;
 
 // False alarm rate: 0.036, the sum over eighteen checks of 0.002 each; the seed was not chosen by its outcome.
-TEST_F(Verdict, AnHonestFilterPasses) {
+TEST_F(Verdict, ConsistentFilterPasses) {
   const ConsistencyVerdict verdict = JudgeConsistency(Runs(1), Options(0.002));
   for (const Check& check : verdict.checks) {
     EXPECT_TRUE(check.pass) << check.name << ' ' << check.value << " against " << check.threshold;
@@ -83,7 +83,7 @@ TEST_F(Verdict, AnHonestFilterPasses) {
   EXPECT_GT(verdict.energy[0], 0);
 }
 
-TEST_F(Verdict, HalvedCovarianceIsRejectedByAneesRanksAndCoverage) {
+TEST_F(Verdict, HalvedCovarianceIsRejected) {
   const ConsistencyVerdict verdict = JudgeConsistency(Runs(0.5), Options());
   EXPECT_FALSE(verdict.pass());
   for (const char* name : {"ANEES share, position", "ANEES share, orientation", "ANEES share, linear",
@@ -161,7 +161,7 @@ TEST_F(Verdict, AFrameWithoutAnyBeliefHasEmptyHistograms) {
   EXPECT_EQ(verdict.rank_histograms[12].runs, kRuns);
 }
 
-TEST_F(Verdict, WithoutInnovationsBoundOrPoolThereIsAneesAndRanks) {
+TEST_F(Verdict, AneesAndRanksAlone) {
   auto runs = Runs(1);
   runs.resize(30);
   for (auto& run : runs) {

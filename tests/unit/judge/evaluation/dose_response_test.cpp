@@ -112,7 +112,7 @@ TEST(BreakingPoint, OfALogisticIsItsMiddle) {
   EXPECT_NEAR(point->at.dose, 6, 1e-9);
 }
 
-TEST(BreakingPoint, SaysWhatWasNotSeen) {
+TEST(BreakingPoint, Unobserved) {
   const std::vector<double> doses = {1, 2, 4};
   auto point = FindBreakingPoint(doses, Failures({0, 0, 0.25}, 4));
   EXPECT_EQ(point->at.kind, Kind::not_reached);
@@ -143,14 +143,14 @@ TEST(BreakingPoint, SaysWhatWasNotSeen) {
   EXPECT_THROW(FindBreakingPoint({1}, {{1, 0, 0}}), std::invalid_argument);
 }
 
-TEST(BreakingPoint, AMildDoseThatFailsByChanceIsPooledWithItsNeighbours) {
+TEST(BreakingPoint, PoolsNeighbours) {
   // Raw shares cross one half at the second dose and come back; 4 of 10 at both once pooled.
   const auto point = FindBreakingPoint({1, 2, 3, 4}, Failures({0, 0.6, 0.2, 1}, 10));
   EXPECT_DOUBLE_EQ(point->at.dose, 3 + 0.1 / 0.6);
 }
 
 // 16 of 32 runs are one half, though their shares of 12 of 12, 3 of 10 and 1 of 10, pooled, are 1.1e-16 less.
-TEST(BreakingPoint, HalfOfTheRunsIsHalfWhateverIsRounded) {
+TEST(BreakingPoint, HalfOfTheRuns) {
   std::vector<DoseRun> runs;
   const std::size_t failed[] = {0, 12, 3, 1}, count[] = {5, 12, 10, 10};
   for (std::size_t d = 0; d < 4; ++d)
@@ -296,7 +296,7 @@ double CoverageOfMedian(double scale_about_median) {
   return covered / static_cast<double>(kExperiments);
 }
 
-TEST(DoseMedians, IntervalsHoldTheTruthAsOftenAsTheySay) {
+TEST(DoseMedians, IntervalCoverage) {
   const double coverage = CoverageOfMedian(1);
   EXPECT_GT(coverage, kBandLow);
   EXPECT_LT(coverage, kBandHigh);
@@ -326,7 +326,7 @@ double CoverageOfBreak(double truth, bool same_runs_at_all_doses) {
   return covered / static_cast<double>(kExperiments);
 }
 
-TEST(BreakingPoint, IntervalsHoldTheTruthAsOftenAsTheySay) {
+TEST(BreakingPoint, IntervalCoverage) {
   const double coverage = CoverageOfBreak(10, true);
   EXPECT_GT(coverage, kBandLow);
   EXPECT_LT(coverage, kBandHigh);
@@ -335,7 +335,7 @@ TEST(BreakingPoint, IntervalsHoldTheTruthAsOftenAsTheySay) {
 
 // Runs of different doses have nothing in common: neighbours together say more, and isotonic intervals say no less than
 // they should.
-TEST(BreakingPoint, IntervalsOfIndependentDosesHoldTheTruth) {
+TEST(BreakingPoint, IntervalsOfIndependentDoses) {
   const double coverage = CoverageOfBreak(10, false);
   EXPECT_GT(coverage, kBandLow);
   EXPECT_LT(CoverageOfBreak(12, false), kBandLow);

@@ -155,7 +155,7 @@ TEST(EstimateRun, ListsTheProblemsOfAllFilesAtOnce) {
 }
 
 // One digit or sign a column, so that the n-th begins at character 2 n + 1.
-TEST(EstimateRun, SaysWhereABeliefIsWrong) {
+TEST(EstimateRun, BeliefErrorsHavePlaces) {
   const TemporaryFolder folder;
   WriteEstimateRun(folder.path(), Sample());
   const auto error_of = [&](const std::string& covariance) {
@@ -185,7 +185,7 @@ TEST(EstimateRun, SaysWhereABeliefIsWrong) {
   }
 }
 
-TEST(EstimateRun, SaysWhereAFrameIsWrong) {
+TEST(EstimateRun, FrameErrorsHavePlaces) {
   const TemporaryFolder folder;
   WriteEstimateRun(folder.path(), Sample());
   const std::string text = TemporaryFolder::Read(folder.path() / "frames.csv"),
@@ -222,7 +222,7 @@ TEST(EstimateRun, SaysWhereAFrameIsWrong) {
   }
 }
 
-TEST(EstimateRun, WritesAsManyDigitsAsItSays) {
+TEST(EstimateRun, Digits) {
   const TemporaryFolder folder;
   EstimateRun run = Sample();
   run.beliefs.resize(1);

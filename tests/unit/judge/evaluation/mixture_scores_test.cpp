@@ -181,7 +181,7 @@ Calibration Calibrate(Belief belief, std::uint32_t seed, int frames = 400) {
 }
 
 // False alarm rate 2e-4: two tests of 1e-4.
-TEST(ScoreMixture, AnHonestMixtureIsUniform) {
+TEST(ScoreMixture, ConsistentMixtureIsUniform) {
   const Calibration honest = Calibrate(Belief::honest, 40);
   EXPECT_TRUE(TestUniformity(honest.ranks, 1e-4).pass) << TestUniformity(honest.ranks).smallest_p;
   EXPECT_TRUE(TestUniformity(honest.coverage, 1e-4).pass) << TestUniformity(honest.coverage).smallest_p;
@@ -196,13 +196,13 @@ TEST(ScoreMixture, HalvedCovarianceAndWrongWeightsAreRejected) {
 }
 
 // What NEES cannot see: one Gaussian with the mixture's own moments.
-TEST(ScoreMixture, AGaussianWithTheRightMomentsIsStillTold) {
+TEST(ScoreMixture, GaussianOfTheRightMomentsIsRejected) {
   EXPECT_FALSE(TestUniformity(Calibrate(Belief::one_gaussian, 42).coverage, 1e-4).pass);
 }
 
 // A proper score is best, on average, for the belief that the truth was drawn from: paired differences, at least five
 // standard errors.
-TEST(ScoreMixture, EnergyScorePrefersTheHonestBelief) {
+TEST(ScoreMixture, ProperScores) {
   TestRandom random(43);
   const int n = 800;
   double energy_gain = 0, energy_squares = 0;
@@ -278,7 +278,7 @@ TEST(Ranks, CountTheDrawsBelow) {
   EXPECT_EQ(Ranks(draws, Eigen::Vector2d(2.5, 5)), (std::vector<int>{2, 1}));
 }
 
-TEST(ScoreMixture, SaysAllThatIsWrong) {
+TEST(ScoreMixture, AllProblemsAtOnce) {
   const auto error_of = [](const Mixture& mixture, const Vector12d& error = Vector12d::Zero(), int draws = 2) {
     return ComplaintOf<std::invalid_argument>([&] { ScoreMixture(mixture, error, 0, draws); });
   };

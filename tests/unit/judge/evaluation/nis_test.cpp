@@ -23,7 +23,7 @@ std::vector<FrameRecord> Frames(TestRandom& random, int count, double scale, dou
 }
 
 // All limits at five standard deviations: false alarm below 1e-6 each.
-TEST(SummariseNis, HonestInnovationsPassAndWrongOnesDoNot) {
+TEST(SummariseNis, AcceptsAndRejects) {
   const int n = 2000;
   const double share_limit = 5 * std::sqrt(0.95 * 0.05 / n), mean_limit = 5 * std::sqrt(2.0 / (n * 49.0));
   TestRandom random(30);
@@ -41,7 +41,7 @@ TEST(SummariseNis, HonestInnovationsPassAndWrongOnesDoNot) {
   EXPECT_GT(SummariseNis(Frames(random, n, 1, 0.7)).autocorrelation[0], 5 / std::sqrt(n));
 }
 
-TEST(SummariseNis, SaysNothingOfNothing) {
+TEST(SummariseNis, Empty) {
   const NisSummary summary = SummariseNis({FrameRecord{}});
   EXPECT_EQ(summary.frames, 0u);
   EXPECT_TRUE(std::isnan(summary.mean_per_dof)) << "0 would be an answer";

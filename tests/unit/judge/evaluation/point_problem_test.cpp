@@ -133,7 +133,7 @@ TEST(LinearisedView, TheCheckSeesAFlippedSign) {
   EXPECT_GT((J - differences).norm(), 0.1);
 }
 
-TEST(ValidateProblem, SaysAllThatIsWrong) {
+TEST(ValidateProblem, AllAtOnce) {
   TestRandom random(84);
   PointWorldProblem good = MakePointWorld(random, 5, 3);
   for (PointLandmark& landmark : good.landmarks) landmark.frames = {4};

@@ -1,4 +1,4 @@
-// Purpose: small worlds of points for the judge's tests: a camera with random acceleration among points around it.
+// Small worlds of points for the judge's tests: a camera with random acceleration among points around it.
 #pragma once
 
 #include "tests/unit/judge/evaluation/random.h"

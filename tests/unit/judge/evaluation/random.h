@@ -1,5 +1,5 @@
-// Purpose: random numbers of the judge's tests: a function of (seed, index), the same everywhere.
-// Source:  Random123, Philox 4x32-10; Box-Muller.
+// Random numbers of the judge's tests: a function of (seed, index), the same everywhere.
+// Source: Random123, Philox 4x32-10; Box-Muller.
 #pragma once
 
 #include <Random123/philox.h>

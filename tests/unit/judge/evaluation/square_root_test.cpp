@@ -31,7 +31,7 @@ TEST(SquareRoot, OfASingularOneIsStillARoot) {
 }
 
 // Scales of units do not count: the line is a pivot of 1e-12 of the correlations.
-TEST(SquareRoot, DrawsItsLineWhereItSays) {
+TEST(SquareRoot, Threshold) {
   for (const double pivot : {0.97e-12, 1.03e-12}) {
     Eigen::Matrix2d P;
     P << 1e-8, std::sqrt(1 - pivot), std::sqrt(1 - pivot), 1e8;

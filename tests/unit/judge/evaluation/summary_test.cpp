@@ -106,7 +106,7 @@ TEST(Judge, PoseCoverageBearsRoundedStamps) {
   EXPECT_EQ(Judge(run, truth, std::nullopt, options).coverage->pose_coverage(), 0.75);
 }
 
-TEST(Judge, RpeScalesTheEstimateWhereItSaysSo) {
+TEST(Judge, RpeScalesTheEstimate) {
   TestRandom random(54);
   const Trajectory truth = random.Walk(90);
   Similarity half;

@@ -75,7 +75,7 @@ TEST(Lines, NamesWhatCannotBeRead) {
   EXPECT_THROW(Lines(folder.path()), InputError);
 }
 
-TEST(Problems, AreToldInTheirOrderWithTheirPlace) {
+TEST(Problems, OrderAndPlace) {
   Problems problems;
   EXPECT_NO_THROW(problems.ThrowIfAny());
   problems.Add("a/b.txt", "is none");

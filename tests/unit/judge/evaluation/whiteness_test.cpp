@@ -205,7 +205,7 @@ TEST(Innovations, WhitenessKeepsItsFalseAlarmRate) {
 }
 
 // Runs whose terms share half of their variance: their sum is far from a chi-square of as many degrees. By the runs' own spread 1 % is 1 %: at most 13 of 400 (exceeded once in 10 000 times).
-TEST(Innovations, TheMeanOfDependentTermsIsTestedByTheSpreadOfRuns) {
+TEST(Innovations, MeanOfDependentTerms) {
   TestRandom random(64);
   int of_mean = 0, of_wrong = 0;
   for (int i = 0; i < 400; ++i) {

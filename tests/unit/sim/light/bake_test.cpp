@@ -71,7 +71,7 @@ TEST(Bake, WarnsWhereSamplesAreFartherApartThanAsked) {
 }
 
 // The light itself is so coarse, and the warning is given once.
-TEST(Bake, ALongTrianglesLightIsAsCoarseAsTheWarningSays) {
+TEST(Bake, LongTrianglesAreCoarse) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.5f));
   AddQuad(scene, {0, 0, 0}, {60, 0, 0}, {0, 80, 0}, 0);

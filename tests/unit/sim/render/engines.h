@@ -1,4 +1,4 @@
-// Purpose: the same test for every renderer: ray tracer, rasteriser on EGL, rasteriser on OSMesa.
+// The same test for every renderer: ray tracer, rasteriser on EGL, rasteriser on OSMesa.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -200,7 +200,7 @@ TEST(MovingRays, TheSameBytesFromAnyThreads) {
 }
 
 // Objects are not in baked light: they have lamps and ambient light as in `direct`, and what is baked does not.
-TEST(MovingRays, AreLitByLampsAndAmbientLightWhereLightIsBaked) {
+TEST(MovingRays, AreLitWhereLightIsBaked) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.5f));
   AddQuad(scene, {-3, 1, 0}, {6, 0, 0}, {0, 0, 6}, 0);  // y is down here

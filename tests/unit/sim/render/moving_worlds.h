@@ -1,4 +1,4 @@
-// Purpose: worlds in which something moves, and the same worlds standing still.
+// Worlds in which something moves, and the same worlds standing still.
 #pragma once
 
 #include <memory>

@@ -75,7 +75,7 @@ void ExpectInstructionSetsToAgree(bool moving) {
 TEST(Packet, InstructionSetsAgree) { ExpectInstructionSetsToAgree(false); }
 TEST(Packet, InstructionSetsAgreeOnObjects) { ExpectInstructionSetsToAgree(true); }
 
-TEST(Packet, BitsOfABlockArePixelScrambleWithEveryInstructionSet) {
+TEST(Packet, BitsWithEveryInstructionSet) {
   std::vector<ScrambleBlockFunction> kernels{packet_base::ScrambleBlock};
   const std::string best = PacketKernel().name;
   if (best != "base") kernels.push_back(packet_avx2::ScrambleBlock);

@@ -33,7 +33,7 @@ std::vector<Case> Lenses() {
       {"pinhole", {640, 480, 525, 525, 319.5, 239.5}}};
 }
 
-TEST(PixelRay, IsThatOfThePixelToAMillionthInPicturesOfAnySize) {
+TEST(PixelRay, HoldsInPicturesOfAnySize) {
   for (const auto& [name, params] : Lenses()) {
     const Camera camera(params);
     double worst_px = 0;

@@ -103,7 +103,7 @@ TEST_P(RasteriserTest, ALensDoesNotShiftWhatItBlurs) {
 
 // The line of sampling_test.cpp that leans under a rolling shutter: each strip has the moment of its middle row, so
 // that with strips of one row all rows are right, and with strips of eight they are off by three and a half rows' turn.
-TEST_P(RasteriserTest, AStripOfARollingShutterHasTheMomentOfItsMiddle) {
+TEST_P(RasteriserTest, RollingShutterStrips) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.0f), glm::vec3(1.0f));
   AddQuad(scene, {0.1f, -9, 1}, {9, 0, 0}, {0, 18, 0}, 0);

@@ -1,5 +1,5 @@
 // Exposure: time samples, antialiasing, determinism.
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <limits>
 

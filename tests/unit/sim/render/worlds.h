@@ -1,4 +1,4 @@
-// Purpose: small worlds and cameras whose pictures are known in closed form.
+// Small worlds and cameras whose pictures are known in closed form.
 #pragma once
 
 #include <cmath>

@@ -120,7 +120,7 @@ TEST(World, OneTextureForManyMeshesIsReadOnce) {
   EXPECT_THAT(LoadScene(world).textures, SizeIs(1));
 }
 
-TEST(World, TexturedMaterialWithoutTextureCoordinatesIsOneWarning) {
+TEST(World, TextureWithoutCoordinatesIsOneWarning) {
   const Folder folder;
   folder.Write("square.mtl", Textured("paint.png"));
   folder.Write("paint.png", EncodeNoise(".png", 4, 4));

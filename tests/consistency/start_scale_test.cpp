@@ -67,7 +67,7 @@ Change Fly(double speed, double spread, int from) {
 }
 
 // Once depths are known apart, the near ones weigh more in what the scale is than they did before: measured 0.029 and 0.184.
-TEST(StartScale, AnswersKeepTheirsWhereDepthsAreSpread) {
+TEST(StartScale, SpreadDepths) {
   for (const double speed : {1.0, 0.3}) {
     const Change change = Fly(speed, 0.2, 6);
     EXPECT_GT(change.filter, 0.02);
@@ -76,14 +76,14 @@ TEST(StartScale, AnswersKeepTheirsWhereDepthsAreSpread) {
 }
 
 // Lengths that noise has told are not kept as they are: past a wall it is the filter's next answers that are right. Measured 0.49 and 0.31.
-TEST(StartScale, AnswersFollowTheFilterWhereLittleWasKnown) {
+TEST(StartScale, PlaneWithLittleInformation) {
   const Change change = Fly(0.3, 0, 3);
   EXPECT_GT(change.filter, 0.2);
   EXPECT_GT(change.answers, 0.5 * change.filter);
 }
 
 // What the last frame of the window said is said once.
-TEST(StartScale, NothingIsLengthenedAfterTheStart) {
+TEST(StartScale, ConstantAfterTheStart) {
   vo_test::Draws draws(1);
   vo::ParticleFilter filter({}, vo::FilterParams{}, vo::LandmarkParams{}, vo::FilterPrior{}, 1);
   const vo_test::LandmarkField field({60, 0.8, 0.6, 0.4, kSigma}, draws);

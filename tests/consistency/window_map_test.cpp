@@ -69,7 +69,7 @@ Scores Play(unsigned world) {
 }
 
 // Sums over 200 worlds of one landmark each are chi-squared with 200 and 600 degrees of freedom: each is outside of its bounds once in 1000 times.
-TEST(WindowMap, IsAsSureAsItsErrors) {
+TEST(WindowMap, CovarianceMatchesErrors) {
   constexpr int kWorlds = 200;
   Scores sum;
   for (unsigned world = 1; world <= kWorlds; ++world) {
@@ -90,7 +90,7 @@ TEST(WindowMap, IsAsSureAsItsErrors) {
 // Sideways past sixty points: in every frame of the start's window the depths become surer (to a hundredth, by which a linearisation elsewhere may
 // differ), and not at a stroke when its poses are drawn. What all depths have in common is then the spread of eight draws: a third of what it should
 // be once in 500 times. It was the prior's 0.15 in all frames of the window, and a seventh of that behind it.
-TEST(WindowMap, GrowsSurerFrameByFrame) {
+TEST(WindowMap, CovarianceShrinks) {
   const vo::Camera camera;
   vo_test::Draws draws(5);
   std::vector<Vector3d> points;

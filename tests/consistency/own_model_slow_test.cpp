@@ -1,4 +1,4 @@
-// As honest_test.cpp with four times the particles, on runs that nothing was tuned on.
+// As own_model_test.cpp with four times the particles, on runs that nothing was tuned on.
 #include <gtest/gtest.h>
 
 #include "tests/consistency/own_model.h"
@@ -9,17 +9,17 @@ namespace {
 // False alarms: 0.1 % per check, 1.6 % in all. 500 such runs show what is left of the filter's own mistakes: joint
 // ANEES 1.027 (the limit is 1.0269), and the coverage of the mixture's highest-density regions, which 128 narrow
 // components in twelve dimensions do not give (docs/point_world.md).
-TEST(OwnModelSlow, TheFilterIsConsistentOnFreshRunsAndEightTenthsOfPAreNot) {
+TEST(OwnModelSlow, ConsistentOnFreshRuns) {
   const Runs runs = Play(100, {{"odometry.filter.particles", "128"}}, 1001);
   const auto verdict = Judge(runs);
-  EXPECT_TRUE(HonestButCoverage(verdict)) << Failures(verdict);
+  EXPECT_TRUE(PassesButCoverage(verdict)) << Failures(verdict);
   std::cout << Failures(verdict, true);
-  EXPECT_FALSE(HonestButCoverage(Judge(runs, {0.8, 0})));
+  EXPECT_FALSE(PassesButCoverage(Judge(runs, {0.8, 0})));
 }
 
 // Ten seconds, a hundred points, equal weights: ten runs do not see the 5 % by which the position is over-confident
 // (docs/odometry.md has the verdict of 100); they see what resampling does.
-TEST(OwnModelSlow, EqualWeightsStayConsistentForTenSecondsAndResamplingDoesNot) {
+TEST(OwnModelSlow, EqualWeightsForTenSeconds) {
   const vobench::Overrides ten_seconds = {{"time.duration", "10 s"},
                                           {"world.points.count", "100"},
                                           {"odometry.filter.particles", "16"},
@@ -27,9 +27,9 @@ TEST(OwnModelSlow, EqualWeightsStayConsistentForTenSecondsAndResamplingDoesNot) 
   vobench::Overrides equal = ten_seconds;
   equal.emplace_back("odometry.filter.weight", "uniform");
   const auto verdict = Judge(Play(10, equal, 2001));
-  EXPECT_TRUE(HonestButCoverage(verdict)) << Failures(verdict);
+  EXPECT_TRUE(PassesButCoverage(verdict)) << Failures(verdict);
   std::cout << Failures(verdict, true);
-  EXPECT_FALSE(HonestButCoverage(Judge(Play(10, ten_seconds, 2001))));
+  EXPECT_FALSE(PassesButCoverage(Judge(Play(10, ten_seconds, 2001))));
 }
 
 }  // namespace

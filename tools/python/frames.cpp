@@ -6,6 +6,7 @@
 
 #include "tools/bench/systems/bridge.h"
 #include "tools/python/module.h"
+#include "vo/sequence/reader.h"
 
 namespace vobench::python {
 namespace {
@@ -86,6 +87,14 @@ sim::Frame NextFrame(FrameIterator& self) {
   if (self.next >= self.simulator->simulator.frame_count()) throw py::stop_iteration();
   const py::gil_scoped_release unlocked;
   return self.simulator->simulator.Render(self.next++);
+}
+
+// Red, green, blue: a view of OpenCV's blue, green, red, backwards.
+py::array PixelsOfMat(const py::object& self) {
+  const cv::Mat& image = self.cast<const vo::Frame&>().image;
+  const auto row = static_cast<py::ssize_t>(image.step[0]);
+  if (image.channels() == 1) return ViewOf(image.data, {image.rows, image.cols}, {row, 1}, self);
+  return ViewOf(image.data + 2, {image.rows, image.cols, 3}, {row, 3, -1}, self);
 }
 
 void AddSimulator(py::module_& m) {
@@ -171,13 +180,7 @@ void AddPoints(py::module_& m) {
       .def("__len__", [](const PointWorld& w) { return w.world.frame_count(); })
       .def("__iter__", [](const py::object& self) { return self; })
       .def(
-          "__next__",
-          [](PointWorld& w) {
-            std::optional<sim::PointFrame> frame = w.world.Next();
-            if (!frame) throw py::stop_iteration();
-            return *std::move(frame);
-          },
-          Doc("sim/points/point_world.h:PointWorld::Next"))
+          "__next__", [](PointWorld& w) { return NextOf(w.world); }, Doc("sim/points/point_world.h:PointWorld::Next"))
       .def(
           "truth",
           [](const PointWorld& w, std::int64_t index) {
@@ -189,11 +192,25 @@ void AddPoints(py::module_& m) {
                              "(n, 4): every landmark seen so far, landmarks[id], homogeneous (x, y, z, w) in W.");
 }
 
+void AddSequence(py::module_& m) {
+  py::class_<vo::Frame>(m, "ImageFrame", "An image of a sequence on disk; no truth.")
+      .def_readonly("stamp_ns", &vo::Frame::stamp_ns, Doc("vo/base/source.h:Frame::stamp_ns"))
+      .def_property_readonly("image", &PixelsOfMat,
+                             "(height, width), or (height, width, 3): red, green, blue; uint8. A view of the frame.");
+  py::class_<vo::SequenceReader>(m, "Sequence", Doc("vo/sequence/reader.h:"))
+      .def(py::init<const std::filesystem::path&>(), py::arg("folder"),
+           Doc("vo/sequence/reader.h:SequenceReader::SequenceReader"))
+      .def("__len__", &vo::SequenceReader::size)
+      .def("__iter__", [](py::object self) { return self; })
+      .def("__next__", &NextOf<vo::SequenceReader>, Doc("vo/base/source.h:FrameSource::Next"));
+}
+
 }  // namespace
 
-void AddWorlds(py::module_& m) {
+void AddFrames(py::module_& m) {
   AddSimulator(m);
   AddPoints(m);
+  AddSequence(m);
 }
 
 }  // namespace vobench::python
