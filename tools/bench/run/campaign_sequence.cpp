@@ -16,7 +16,6 @@
 #include "sim/world/scene.h"
 #include "simulator_digest.h"
 #include "tools/base/files.h"
-#include "tools/bench/campaign/digest.h"
 #include "tools/bench/errors.h"
 
 namespace vobench {
