@@ -3,7 +3,7 @@
 
 #include "tests/fuzz/hold.h"
 #include "tools/base/settings/settings.h"
-#include "tools/bench/systems/odometry_settings.h"
+#include "tools/bench/systems/experiment.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static fuzz::InputFile file("scenario.yaml");

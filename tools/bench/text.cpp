@@ -86,4 +86,13 @@ std::string Base64(const std::string& bytes) {
   return text;
 }
 
+std::string Replaced(const std::string& text, const std::map<char, const char*>& replacements) {
+  std::string out;
+  for (const char c : text) {
+    const auto found = replacements.find(c);
+    out += found == replacements.end() ? std::string(1, c) : found->second;
+  }
+  return out;
+}
+
 }  // namespace vobench

@@ -1,6 +1,7 @@
 // Numbers, names and tables as text, for reports and terminals.
 #pragma once
 
+#include <map>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -27,6 +28,9 @@ std::string Escape(const std::string& text);
 // Rows of as many cells each, for a terminal: the first column to the left, the others to the right. Each row ends with
 // a line break.
 std::string AlignedTable(const std::vector<std::vector<std::string>>& rows);
+
+// With a text in the place of each of these characters.
+std::string Replaced(const std::string& text, const std::map<char, const char*>& replacements);
 
 std::string Base64(const std::string& bytes);
 

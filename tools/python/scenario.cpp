@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "tools/bench/systems/bridge.h"
-#include "tools/bench/systems/settings_table.h"
+#include "tools/bench/systems/experiment.h"
 #include "tools/python/module.h"
 #include "vo/geometry/camera_file.h"
 

@@ -1,9 +1,9 @@
-#include "tools/bench/systems/odometry_settings.h"
-
 #include <gmock/gmock.h>
 
 #include <numbers>
 #include <string>
+
+#include "tools/bench/systems/experiment.h"
 
 namespace vobench {
 namespace {

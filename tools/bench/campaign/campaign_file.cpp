@@ -4,9 +4,7 @@
 
 #include <algorithm>
 
-#include "tools/bench/campaign/curve_spec.h"
 #include "tools/bench/campaign/results.h"
-#include "tools/bench/campaign/table_spec.h"
 
 namespace vobench::campaign {
 namespace {
@@ -18,18 +16,10 @@ using settings::Section;
 constexpr std::size_t kMostSeeds = 1'000'000;
 constexpr double kMostTasks = 1e7;
 
-bool Contains(const std::vector<std::string>& all, const std::string& one) {
-  return std::find(all.begin(), all.end(), one) != all.end();
-}
-
-// Whether `key` is `section` or in it: "odometry.filter.lag" is in "odometry".
-bool IsIn(const std::string& section, const std::string& key) {
-  return key == section || key.starts_with(section + ".");
-}
-
 void RequireOdometry(Section& section, const std::string& where, const Changes& changes) {
   for (const auto& [key, value] : changes) {
-    if (IsIn("odometry", key) || IsIn("prior", key)) continue;
+    const std::string first = key.substr(0, key.find('.'));
+    if (first == "odometry" || first == "prior") continue;
     section.Reject(where, fmt::format("'{}': a system changes settings under 'odometry' and 'prior' only: every system "
                                       "sees the same pictures",
                                       key));
@@ -56,8 +46,8 @@ bool ReadRange(const std::string& text, SeedRange& range, std::string& problem) 
 
 }  // namespace
 
-CampaignFile::CampaignFile(const std::filesystem::path& file, const Vocabulary& vocabulary)
-    : document_(settings::Document::FromFile(file)), vocabulary_(vocabulary) {
+CampaignFile::CampaignFile(const std::filesystem::path& file, std::vector<std::string> systems)
+    : document_(settings::Document::FromFile(file)), our_systems_(std::move(systems)) {
   const std::filesystem::path folder = file.parent_path();
   campaign_.name = file.stem().string();
   document_.root().Read("name", campaign_.name);
@@ -66,16 +56,15 @@ CampaignFile::CampaignFile(const std::filesystem::path& file, const Vocabulary& 
   ReadSystems(folder);
   ReadSeeds();
   ReadJudge();
-  campaign_.tables = ReadTables(document_.root(), campaign_, vocabulary_.metrics);
-  campaign_.curves = ReadCurves(document_.root(), campaign_, vocabulary_.metrics);
+  campaign_.tables = ReadTables(document_.root(), campaign_);
+  campaign_.curves = ReadCurves(document_.root(), campaign_);
   RejectDoubles();
   campaign_.resolved = document_.Resolved();
 }
 
 bool CampaignFile::complete() const {
   return !campaign_.scenarios.empty() && !campaign_.systems.empty() && !campaign_.seeds.empty() &&
-         std::none_of(campaign_.factors.begin(), campaign_.factors.end(),
-                      [](const Factor& factor) { return factor.levels.empty(); });
+         std::ranges::none_of(campaign_.factors, [](const Factor& factor) { return factor.levels.empty(); });
 }
 
 void CampaignFile::ReadScenarios(const std::filesystem::path& folder) {
@@ -122,10 +111,8 @@ void CampaignFile::ReadFactors() {
         section.Reject(section.Has("values") ? "values" : "variants", fmt::format("'{}' is there twice", level.name));
       }
     }
-    for (const char* taken : {"task", "scenario", "system", "seed", "status", "reason"}) {
-      if (factor.name == taken) section.Reject("name", "'" + factor.name + "': the results have such a column already");
-    }
-    if (Contains(vocabulary_.metrics, factor.name)) {
+    const std::vector<std::string> taken = {"task", "scenario", "system", "seed", "status", "reason"};
+    if (std::ranges::count(taken, factor.name) > 0 || std::ranges::count(MetricNames(), factor.name) > 0) {
       section.Reject("name", "'" + factor.name + "': the results have such a column already");
     }
   }
@@ -151,8 +138,8 @@ void CampaignFile::ReadSystems(const std::filesystem::path& folder) {
     section.Read("system", system);
     section.ReadRaw("set", entry.set);
     RequireOdometry(section, "set", entry.set);
-    const auto found = std::find_if(external.begin(), external.end(), [&](const auto& e) { return e.name == system; });
-    if (Contains(vocabulary_.systems, system)) {
+    const auto found = std::ranges::find(external, system, &ExternalSystem::name);
+    if (std::ranges::count(our_systems_, system) > 0) {
       entry.system = system;
     } else if (found != external.end()) {
       entry.external = *found;
@@ -160,7 +147,7 @@ void CampaignFile::ReadSystems(const std::filesystem::path& folder) {
     } else {
       section.Reject(
           section.Has("system") ? "system" : "name",
-          fmt::format("there is no system '{}'; there are {}{}", system, fmt::join(vocabulary_.systems, ", "),
+          fmt::format("there is no system '{}'; there are {}{}", system, fmt::join(our_systems_, ", "),
                       external.empty() ? " (others with 'external: systems.yaml')" : " and those of " + file));
     }
   }
@@ -242,25 +229,24 @@ void CampaignFile::RejectDoubles() {
 
 void CampaignFile::Reject(const TaskChoice& choice, const std::string& key, const std::string& message) {
   const auto sets = [&key](const Changes& changes) {
-    return std::any_of(changes.begin(), changes.end(), [&](const auto& change) { return change.first == key; });
+    return std::ranges::count(changes, key, &Changes::value_type::first) > 0;
   };
   const SystemEntry& system = campaign_.systems[choice.system];
   const ScenarioEntry& scenario = campaign_.scenarios[choice.scenario];
   const std::string text = key.empty() || message.starts_with("'" + key) ? message : "'" + key + "': " + message;
-  const auto tell = [&](Section& section, const std::string& where, const std::string& place) {
-    if (told_.emplace(place, text).second) section.Reject(where, text);
+  const auto tell = [&](Section& section, const std::string& where) {
+    if (rejected_.emplace(&section, where, text).second) section.Reject(where, text);
   };
   const auto special = scenario.for_system.find(system.name);
   if (special != scenario.for_system.end() && sets(special->second)) {
-    return tell(scenarios_[choice.scenario], "for_system", "for " + scenario.name);
+    return tell(scenarios_[choice.scenario], "for_system");
   }
-  if (sets(system.set)) return tell(systems_[choice.system], "set", "system " + system.name);
+  if (sets(system.set)) return tell(systems_[choice.system], "set");
   for (std::size_t i = campaign_.factors.size(); i-- > 0;) {
     if (!sets(campaign_.factors[i].levels[choice.levels[i]].set)) continue;
-    return tell(factors_[i], factors_[i].Has("values") ? "values" : "variants", "factor " + campaign_.factors[i].name);
+    return tell(factors_[i], factors_[i].Has("values") ? "values" : "variants");
   }
-  const bool here = sets(scenario.set);
-  tell(scenarios_[choice.scenario], here ? "set" : "file", "scenario " + scenario.name + (here ? " set" : ""));
+  tell(scenarios_[choice.scenario], sets(scenario.set) ? "set" : "file");
 }
 
 }  // namespace vobench::campaign

@@ -1,11 +1,10 @@
 // Reader of campaign.yaml, strict, with the place of each setting for problems that others find.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <set>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "tools/base/settings/settings.h"
@@ -13,24 +12,23 @@
 
 namespace vobench::campaign {
 
-// What a campaign may name.
-struct Vocabulary {
-  std::vector<std::string> systems;  // ours
-  std::vector<std::string> metrics;  // columns of results.csv
-};
+// The sections `tables` and `curves` (docs/campaign.md) of a campaign whose scenarios, factors and systems have been
+// read. Problems go to the section's document. Without tables in the file there is one, of ate_m by everything.
+std::vector<TableSpec> ReadTables(settings::Section root, const Campaign& campaign);
+std::vector<CurveSpec> ReadCurves(settings::Section root, const Campaign& campaign);
 
 class CampaignFile {
  public:
-  // Files named in it are relative to its folder. Throws settings::Error only where it cannot be read as YAML at all;
-  // other problems wait for ThrowIfBad.
-  CampaignFile(const std::filesystem::path& file, const Vocabulary& vocabulary);
+  // Files named in it are relative to its folder; `systems` are the names of ours. Throws settings::Error only where it
+  // cannot be read as YAML at all; other problems wait for ThrowIfBad.
+  CampaignFile(const std::filesystem::path& file, std::vector<std::string> systems);
 
   const Campaign& campaign() const { return campaign_; }
   // Whether enough of it is good that its points can be asked for.
   bool complete() const;
 
-  // A problem with a setting of this choice (`key` as in ChangesAt), told where the campaign sets it, or else where it
-  // names the scenario. The same problem is told once.
+  // A problem with a setting of this choice (`key` as in ChangesAt), at the place where the campaign sets it, or else
+  // where it names the scenario. The same problem is reported once.
   void Reject(const TaskChoice& choice, const std::string& key, const std::string& message);
 
   // Throws settings::Error with all problems.
@@ -45,10 +43,10 @@ class CampaignFile {
   void RejectDoubles();
 
   settings::Document document_;
-  Vocabulary vocabulary_;
+  std::vector<std::string> our_systems_;
   Campaign campaign_;
   std::vector<settings::Section> scenarios_, factors_, systems_;
-  std::set<std::pair<std::string, std::string>> told_;
+  std::set<std::tuple<const settings::Section*, std::string, std::string>> rejected_;  // section, key, message
 };
 
 }  // namespace vobench::campaign

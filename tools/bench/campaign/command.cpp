@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "tools/base/child_process.h"
+#include "tools/bench/text.h"
 
 namespace vobench::campaign {
 namespace {
@@ -79,7 +80,7 @@ pid_t StartLeader(const std::string& command, const std::filesystem::path& folde
 
 CommandEnd RunCommand(const std::string& command, const std::filesystem::path& folder, const std::filesystem::path& log,
                       double timeout_s) {
-  const Clock::time_point start = Clock::now(), limit = base::After(timeout_s);
+  const Clock::time_point limit = base::After(timeout_s);
   const pid_t leader = StartLeader(command, folder, log);
   const sigset_t child_ends = base::SignalSet({SIGCHLD});
   const base::SignalBlock blocked(child_ends);
@@ -98,17 +99,12 @@ CommandEnd RunCommand(const std::string& command, const std::filesystem::path& f
   kill(-leader, SIGKILL);  // what it has left behind
   int status = 0;
   waitpid(leader, &status, 0);
-  end.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
   if (WIFEXITED(status)) end.status = WEXITSTATUS(status);
   if (end.status > kEndedBySignal && end.status < kEndedBySignal + NSIG) end.signal = end.status - kEndedBySignal;
   return end;
 }
 
-std::string QuotedForShell(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
+std::string QuotedForShell(const std::string& text) { return "'" + Replaced(text, {{'\'', "'\\''"}}) + "'"; }
 
 }  // namespace vobench::campaign

@@ -10,7 +10,6 @@ struct CommandEnd {
   bool timed_out = false;
   int signal = 0;  // that ended it
   int status = 0;  // its exit status otherwise
-  double seconds = 0;
 };
 
 // Starts `command` in `folder`. When it ends, what it leaves behind in its group is killed. When its time is over, or

@@ -43,8 +43,7 @@ CurveLine MakeLine(const CurveSpec& spec, const std::string& system,
 
 void MakeCurvesOf(const Campaign& campaign, const CurveSpec& spec, const std::vector<TaskRecord>& records,
                   std::vector<Curve>& curves) {
-  const auto along = static_cast<std::size_t>(std::find_if(campaign.factors.begin(), campaign.factors.end(),
-                                                           [&](const auto& f) { return f.name == spec.along; }) -
+  const auto along = static_cast<std::size_t>(std::ranges::find(campaign.factors, spec.along, &Factor::name) -
                                               campaign.factors.begin());
   // By group in the order of the tasks, then by system.
   std::vector<std::string> groups;
@@ -93,14 +92,10 @@ std::string NameOf(Crossing::Kind kind) {
   return "";
 }
 
-std::string Number(double value) {
-  if (std::isnan(value)) return "-";
-  return std::isinf(value) ? "X" : fmt::format("{:.3g}", value);
-}
-
 std::string CellText(const DoseEstimate& estimate) {
   if (estimate.runs == 0) return "-";
-  return fmt::format("{} [{}, {}]", Number(estimate.value), Number(estimate.low), Number(estimate.high));
+  return fmt::format("{} [{}, {}]", NumberText(estimate.value, 1, "X"), NumberText(estimate.low, 1, "X"),
+                     NumberText(estimate.high, 1, "X"));
 }
 
 std::string TitleOf(const Curve& curve, const std::string& what) {
@@ -144,16 +139,13 @@ std::string CurvesMarkdown(const std::vector<Curve>& curves) {
   std::string text;
   for (const Curve& curve : curves) {
     const auto table = [&](const std::string& title, const std::string& caption, const auto& estimates) {
-      text += fmt::format("\n### {}\n\n{}\n\n| {} |", OneLine(TitleOf(curve, title)), caption,
-                          EscapeMarkdown(curve.spec.along));
-      for (const CurveLine& line : curve.lines) text += " " + EscapeMarkdown(line.system) + " |";
-      text += "\n|---|";
-      for (std::size_t i = 0; i < curve.lines.size(); ++i) text += "---:|";
+      std::vector<TextRow> rows = {{curve.spec.along}};
+      for (const CurveLine& line : curve.lines) rows[0].push_back(line.system);
       for (std::size_t d = 0; d < curve.levels.size(); ++d) {
-        text += "\n| " + EscapeMarkdown(curve.levels[d]) + " |";
-        for (const CurveLine& line : curve.lines) text += " " + CellText(estimates(line)[d]) + " |";
+        TextRow& row = rows.emplace_back(TextRow{curve.levels[d]});
+        for (const CurveLine& line : curve.lines) row.push_back(CellText(estimates(line)[d]));
       }
-      text += "\n";
+      text += fmt::format("\n### {}\n\n{}\n\n{}", OneLine(TitleOf(curve, title)), caption, MarkdownRows(rows, 1));
     };
     for (std::size_t m = 0; m < curve.spec.metrics.size(); ++m) {
       table(

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <set>
-#include <tuple>
 
 #include "tools/base/settings/settings.h"
 #include "tools/bench/campaign/command.h"
@@ -26,26 +25,36 @@ const std::vector<std::pair<std::string, CalibrationFormat>> kFormats = {
 
 template <class T>
 std::string NameIn(const std::vector<std::pair<std::string, T>>& names, T value) {
-  return std::find_if(names.begin(), names.end(), [&](const auto& entry) { return entry.second == value; })->first;
+  return std::ranges::find(names, value, &std::pair<std::string, T>::second)->first;
 }
 
-// The next {word} from `at` on: its begin and its end, or npos. Braces around anything else are sh's own.
-std::pair<std::size_t, std::size_t> NextPlaceholder(const std::string& command, std::size_t at) {
+// A word in braces, or what stands between two such. Braces around anything else, and behind $, are sh's own.
+struct Piece {
+  std::string text;  // without the braces
+  bool is_placeholder = false;
+};
+
+std::vector<Piece> Pieces(const std::string& command) {
   constexpr char kWord[] = "abcdefghijklmnopqrstuvwxyz_0123456789";
-  for (std::size_t open = command.find('{', at); open != std::string::npos; open = command.find('{', open + 1)) {
+  std::vector<Piece> pieces;
+  std::size_t done = 0;
+  for (std::size_t open = command.find('{'); open != std::string::npos; open = command.find('{', open + 1)) {
     const std::size_t close = command.find_first_not_of(kWord, open + 1);
     const bool is_shells = open > 0 && command[open - 1] == '$';
-    if (close != std::string::npos && command[close] == '}' && close > open + 1 && !is_shells) return {open, close + 1};
+    if (close == std::string::npos || command[close] != '}' || close == open + 1 || is_shells) continue;
+    pieces.push_back({command.substr(done, open - done), false});
+    pieces.push_back({command.substr(open + 1, close - open - 1), true});
+    done = close + 1;
   }
-  return {std::string::npos, std::string::npos};
+  pieces.push_back({command.substr(done), false});
+  return pieces;
 }
 
 void CheckPlaceholders(settings::Section& section, const ExternalSystem& system) {
   std::set<std::string> known = {"sequence", "calibration", "trajectory", "seed"};
   for (const auto& [name, value] : system.variables) known.insert(name);
-  for (auto [begin, end] = NextPlaceholder(system.command, 0); begin != std::string::npos;
-       std::tie(begin, end) = NextPlaceholder(system.command, end)) {
-    const std::string word = system.command.substr(begin + 1, end - begin - 2);
+  for (const auto& [word, is_placeholder] : Pieces(system.command)) {
+    if (!is_placeholder) continue;
     if (!known.contains(word)) {
       section.Reject("command", fmt::format("'command': {{{}}} stands for nothing; there are {{{}}}", word,
                                             fmt::join(known, "}, {")));
@@ -90,16 +99,11 @@ std::vector<ExternalSystem> ReadExternalSystems(const std::filesystem::path& fil
 
 std::string FillIn(const std::string& command, const std::vector<std::pair<std::string, std::string>>& values) {
   std::string text;
-  std::size_t done = 0;
-  for (auto [begin, end] = NextPlaceholder(command, 0); begin != std::string::npos;
-       std::tie(begin, end) = NextPlaceholder(command, end)) {
-    const std::string word = command.substr(begin + 1, end - begin - 2);
-    const auto found = std::find_if(values.begin(), values.end(), [&](const auto& v) { return v.first == word; });
-    text += command.substr(done, begin - done);
-    text += found == values.end() ? command.substr(begin, end - begin) : QuotedForShell(found->second);
-    done = end;
+  for (const auto& [piece, is_placeholder] : Pieces(command)) {
+    const auto found = std::ranges::find(values, piece, &std::pair<std::string, std::string>::first);
+    text += !is_placeholder ? piece : found == values.end() ? "{" + piece + "}" : QuotedForShell(found->second);
   }
-  return text + command.substr(done);
+  return text;
 }
 
 std::string Description(const ExternalSystem& system) {

@@ -58,11 +58,9 @@ bool ComparedWithOne(const std::string& metric) {
   return (metric.starts_with("nees") || metric.starts_with("nis")) && metric.find("median") == std::string::npos;
 }
 
-std::string NumberText(double value) { return std::isinf(value) ? "lost" : Readable(value); }
-
 std::string Told(const DoseEstimate& e, std::size_t lost) {
   if (e.runs == 0) return "no runs";
-  return fmt::format("{} [{}, {}], {} runs{}", NumberText(e.value), NumberText(e.low), NumberText(e.high), e.runs,
+  return fmt::format("{} [{}, {}], {} runs{}", NumberOrLost(e.value), NumberOrLost(e.low), NumberOrLost(e.high), e.runs,
                      lost > 0 ? fmt::format(", {} lost", lost) : "");
 }
 
@@ -131,7 +129,7 @@ Figure BrokenFigure(const Curve& curve) {
     const CurveLine& line = curve.lines[s];
     AddEstimates(curve, s, line.broken, figure);
     if (!line.breaks || line.breaks->at.kind == Crossing::Kind::not_reached) continue;
-    // ReferenceColumn each other, so that equal ones can be told apart.
+    // One above the other, so that equal ones are distinct.
     const double y = 0.5 + 0.03 * (static_cast<double>(s) - 0.5 * static_cast<double>(curve.lines.size() - 1));
     Series bar = Of(line, s, Draw::interval), at = Of(line, s, Draw::dots);
     const std::string told = fmt::format("half broken at {}, 95 %: {} to {}", DoseText(curve, line.breaks->at),

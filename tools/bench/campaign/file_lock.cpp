@@ -1,7 +1,6 @@
 #include "tools/bench/campaign/file_lock.h"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 
 #include <cerrno>
@@ -9,34 +8,26 @@
 #include <system_error>
 
 namespace vobench::campaign {
-namespace {
 
-base::Descriptor Open(const std::filesystem::path& path) {
+// `how` with LOCK_NB does not wait for another process.
+std::optional<FileLock> FileLock::Take(const std::filesystem::path& path, int how) {
+  const auto fail = [&](const char* what) {
+    throw std::runtime_error(path.string() + what + std::generic_category().message(errno));
+  };
   const int flags = std::filesystem::is_directory(path) ? O_RDONLY | O_DIRECTORY : O_RDWR | O_CREAT;
   base::Descriptor file(base::Uninterrupted([&] { return open(path.c_str(), flags | O_CLOEXEC, 0666); }));
-  if (!file) throw std::runtime_error(path.string() + ": cannot be opened: " + std::generic_category().message(errno));
-  return file;
+  if (!file) fail(": cannot be opened: ");
+  if (base::Uninterrupted([&] { return flock(*file, how); }) == 0) return FileLock(std::move(file));
+  if (errno != EWOULDBLOCK) fail(": cannot be locked: ");
+  return std::nullopt;
 }
-
-// Whether it could: `how` with LOCK_NB does not wait for another process.
-bool Lock(const base::Descriptor& file, const std::filesystem::path& path, int how) {
-  if (base::Uninterrupted([&] { return flock(*file, how); }) == 0) return true;
-  if (errno == EWOULDBLOCK) return false;
-  throw std::runtime_error(path.string() + ": cannot be locked: " + std::generic_category().message(errno));
-}
-
-}  // namespace
 
 std::optional<FileLock> FileLock::Try(const std::filesystem::path& path, Kind kind) {
-  FileLock lock(Open(path));
-  if (!Lock(lock.file_, path, (kind == Kind::shared ? LOCK_SH : LOCK_EX) | LOCK_NB)) return std::nullopt;
-  return lock;
+  return Take(path, static_cast<int>(kind) | LOCK_NB);
 }
 
 FileLock FileLock::Wait(const std::filesystem::path& path, Kind kind) {
-  FileLock lock(Open(path));
-  Lock(lock.file_, path, kind == Kind::shared ? LOCK_SH : LOCK_EX);
-  return lock;
+  return Take(path, static_cast<int>(kind)).value();
 }
 
 bool FileLock::Holds(const std::filesystem::path& path) const {

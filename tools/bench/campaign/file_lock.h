@@ -1,6 +1,8 @@
 // File lock that ends with its process: flock(2) on a file or a folder.
 #pragma once
 
+#include <sys/file.h>
+
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -11,7 +13,7 @@ namespace vobench::campaign {
 
 class FileLock {
  public:
-  enum class Kind { shared, exclusive };
+  enum class Kind { shared = LOCK_SH, exclusive = LOCK_EX };
 
   // None when another process holds it. The file is made where it is not there; a folder must be there. Programs that
   // are started do not inherit it; forked processes do. Throws std::runtime_error where there can be no lock.
@@ -24,6 +26,8 @@ class FileLock {
 
  private:
   explicit FileLock(base::Descriptor file) : file_(std::move(file)) {}
+  static std::optional<FileLock> Take(const std::filesystem::path& path, int how);
+
   base::Descriptor file_;
 };
 

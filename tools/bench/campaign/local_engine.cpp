@@ -1,22 +1,22 @@
-#include "tools/bench/campaign/local_engine.h"
-
+// Sequences and tasks of a campaign in processes of this machine.
 #include <fmt/format.h>
 
 #include <chrono>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 
+#include "tools/bench/campaign/work.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/progress.h"
 
 namespace vobench::campaign {
 namespace {
 
-// A sequence that is not there, and who waits for it.
+// A sequence that is not there, and the tasks that need it.
 struct Rendering {
-  std::string key;
   std::size_t point = 0;  // one of those that show it
   std::vector<std::int64_t> tasks;
 };
@@ -24,8 +24,8 @@ struct Rendering {
 class LocalRun {
  public:
   LocalRun(const CampaignWork& work, const std::filesystem::path& out, const std::vector<std::int64_t>& tasks,
-           const LocalOptions& options)
-      : work_(work), out_(out), options_(options), tasks_(static_cast<std::int64_t>(tasks.size())) {
+           const Share& share)
+      : work_(work), out_(out), share_(share), tasks_(static_cast<std::int64_t>(tasks.size())) {
     std::map<std::string, std::size_t> known;
     for (const std::int64_t task : tasks) {
       const std::size_t p = ChoiceOf(work.campaign(), task).point;
@@ -35,7 +35,7 @@ class LocalRun {
         continue;
       }
       const auto [at, is_new] = known.try_emplace(point.sequence, renderings_.size());
-      if (is_new) renderings_.push_back({point.sequence, p, {}});
+      if (is_new) renderings_.push_back({p, {}});
       renderings_[at->second].tasks.push_back(task);
     }
   }
@@ -57,29 +57,27 @@ class LocalRun {
   // Sequences first: afterwards every process has something to do. The last of them are rendered by several threads
   // where there is nothing else.
   bool StartOne() {
-    const int free = options_.jobs - busy_;
+    const int free = share_.processes - busy_;
     if (free <= 0) return false;
-    const int left = static_cast<int>(renderings_.size() - next_rendering_);
-    if (left > 0) {
-      const int threads = ready_.empty() ? std::max(1, free / left) : 1;
+    if (const std::size_t left = renderings_.size() - next_rendering_; left > 0) {
+      const int threads = ready_.empty() ? std::max(1, free / static_cast<int>(left)) : 1;
       const std::size_t index = next_rendering_++;
-      const Rendering& rendering = renderings_[index];
-      ProcessLimits limits = options_.limits;
+      ProcessLimits limits = share_.limits;
       limits.timeout_s = 0;
       limits.memory_bytes *= static_cast<std::uint64_t>(threads);
-      pool_.Start(-1 - static_cast<std::int64_t>(index), limits, [&] { work_.Render(rendering.point, threads); });
-      Occupy(-1 - static_cast<std::int64_t>(index), threads);
+      Start(-1 - static_cast<std::int64_t>(index), threads, limits,
+            [&] { work_.Render(renderings_[index].point, threads); });
       return true;
     }
     if (ready_.empty()) return false;
     const std::int64_t task = ready_.front();
     ready_.pop_front();
-    pool_.Start(task, options_.limits, [&] { work_.Run(out_, task); });
-    Occupy(task, 1);
+    Start(task, 1, share_.limits, [&] { work_.Run(out_, task); });
     return true;
   }
 
-  void Occupy(std::int64_t id, int slots) {
+  void Start(std::int64_t id, int slots, const ProcessLimits& limits, const std::function<void()>& work) {
+    pool_.Start(id, limits, work);
     slots_[id] = slots;
     busy_ += slots;
   }
@@ -87,14 +85,12 @@ class LocalRun {
   void Finish(const ProcessEnd& end) {
     busy_ -= slots_.at(end.id);
     slots_.erase(end.id);
+    progress_->Step();
     if (end.id >= 0) {
       if (!end.problem.empty()) work_.RecordFailure(out_, end.id, end.problem);
-      progress_->Step();
       return;
     }
-    progress_->Step();
-    const Rendering& rendering = renderings_[static_cast<std::size_t>(-1 - end.id)];
-    for (const std::int64_t task : rendering.tasks) {
+    for (const std::int64_t task : renderings_[static_cast<std::size_t>(-1 - end.id)].tasks) {
       if (end.problem.empty()) {
         ready_.push_back(task);
       } else {
@@ -106,7 +102,7 @@ class LocalRun {
 
   const CampaignWork& work_;
   const std::filesystem::path& out_;
-  const LocalOptions& options_;
+  const Share& share_;
   std::int64_t tasks_;
   std::optional<Progress> progress_;  // of sequences and tasks
   std::vector<Rendering> renderings_;
@@ -120,10 +116,10 @@ class LocalRun {
 }  // namespace
 
 void RunLocally(const CampaignWork& work, const std::filesystem::path& out, const std::vector<std::int64_t>& tasks,
-                const LocalOptions& options) {
+                const Share& share) {
   if (tasks.empty()) return;
   try {
-    LocalRun(work, out, tasks, options).Run();
+    LocalRun(work, out, tasks, share).Run();
   } catch (const Interrupted&) {  // here or by the progress
     throw Interrupted("the campaign was interrupted; what was done by then stays");
   }

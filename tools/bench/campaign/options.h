@@ -13,7 +13,7 @@ namespace vobench {
 struct CampaignOptions {
   std::filesystem::path file;
   std::filesystem::path output;
-  std::optional<std::filesystem::path> cache;  // of sequences; OUT/cache unless told
+  std::optional<std::filesystem::path> cache;  // of sequences; OUT/cache unless given
   std::string engine = "local";                // or slurm
   int jobs = 1;                                // processes at a time, here
   std::uint64_t memory_bytes = 0;              // of each; 0: an equal part of what the machine has left

@@ -6,14 +6,13 @@
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
 
 #include "tools/base/files.h"
-#include "tools/bench/campaign/task_folder.h"
+#include "tools/bench/errors.h"
 
 namespace vobench::campaign {
 namespace fs = std::filesystem;
@@ -54,8 +53,7 @@ void PrepareOutput(const fs::path& out, const std::string& text) {
   // Another process may begin the same campaign at the same time: what is in the way is its own if the record is there
   // now.
   if (HasOthers(out) && !fs::exists(record)) {
-    throw std::invalid_argument(
-        fmt::format("{}: is no campaign's folder (it has no campaign.json) and not empty", out.string()));
+    throw BadInput(fmt::format("{}: is no campaign's folder (it has no campaign.json) and not empty", out.string()));
   }
   base::WriteFile(record, text, base::Writers::many);
 }
@@ -66,6 +64,48 @@ FileLock LockOutput(const fs::path& out, FileLock::Kind kind) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   throw std::runtime_error(out.string() + ": another process is at work on this campaign");
+}
+
+fs::path TaskPath(const fs::path& out, std::int64_t task) {
+  constexpr std::int64_t kInOneFolder = 10'000;
+  return out / "tasks" / fmt::format("{:02}", task / kInOneFolder) / fmt::format("{:06}", task);
+}
+
+std::optional<TaskRecord> ReadRecord(const fs::path& out, std::int64_t task) {
+  const std::optional<std::string> text = base::ReadFile(TaskPath(out, task) / "task.json");
+  if (!text) return std::nullopt;
+  try {
+    TaskRecord record = RecordFromJson(*text);
+    if (record.task == task) return record;
+  } catch (const std::invalid_argument&) {
+    // A loss of power may leave a file without its content.
+  }
+  return std::nullopt;
+}
+
+TaskFolder::TaskFolder(const fs::path& out, std::int64_t task) : final_(TaskPath(out, task)) {
+  hidden_ = final_.parent_path() / fmt::format(".{}.partial", final_.filename().string());
+  try {
+    do {  // whoever had it before may just have given it its name
+      fs::create_directories(hidden_);
+      lock_ = FileLock::Try(hidden_, FileLock::Kind::exclusive);
+      if (!lock_) throw std::runtime_error("another process is at work on this task");
+    } while (!lock_->Holds(hidden_));
+    for (const fs::directory_entry& left : fs::directory_iterator(hidden_)) fs::remove_all(left.path());
+  } catch (const std::exception& error) {
+    throw std::runtime_error(fmt::format("{}: {}", final_.string(), error.what()));
+  }
+}
+
+TaskFolder::~TaskFolder() {
+  std::error_code ignored;
+  if (!committed_) fs::remove_all(hidden_, ignored);
+}
+
+void TaskFolder::Commit(const TaskRecord& record) {
+  base::WriteFile(hidden_ / "task.json", ToJson(record));
+  base::ReplaceFolder(hidden_, final_);
+  committed_ = true;
 }
 
 std::vector<std::int64_t> PresentTasks(const fs::path& out) {
@@ -94,15 +134,10 @@ OutputState Inspect(const fs::path& out, const std::vector<std::string>& keys) {
       state.stale.push_back(task);
     } else if (!record || record->status == Status::failed) {
       state.missing.push_back(task);
-      state.failed += record.has_value();
     }
   }
   state.stale.insert(state.stale.end(), next, present.end());  // of a longer campaign
   return state;
-}
-
-void RemoveTasks(const fs::path& out, const std::vector<std::int64_t>& tasks) {
-  for (const std::int64_t task : tasks) fs::remove_all(TaskPath(out, task));
 }
 
 void RemoveFailed(const fs::path& out, const std::vector<std::int64_t>& tasks) {
@@ -121,7 +156,7 @@ Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, c
     std::optional<TaskRecord> record = ReadRecord(out, task);
     if (!record) throw std::runtime_error(fmt::format("{}: task {} is not there", out.string(), task));
     if (record->status == Status::ok && IsLost(*record, campaign.lost)) record->status = Status::lost;
-    // Names, and what is told apart as a factor, may have changed since: nothing is done again for that.
+    // Names and levels may have changed since the task ran: its result is the same.
     const TaskChoice choice = ChoiceOf(campaign, task);
     record->scenario = campaign.scenarios[choice.scenario].name;
     record->levels = levels.at(choice.point);

@@ -1,8 +1,9 @@
-// Output folder of a campaign: lock, finished tasks, and the tables over all tasks.
+// Output folder of a campaign: lock, folders of the tasks, and the tables over all tasks.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,13 +15,41 @@
 
 namespace vobench::campaign {
 
-// Makes the folder, and the mark that says what it is: campaign.json, with `text` where it is new. Throws
-// std::invalid_argument where there is something else's folder, std::runtime_error.
+// Makes the folder, and the mark that says what it is: campaign.json, with `text` where it is new. Throws BadInput
+// where there is something else's folder, std::runtime_error.
 void PrepareOutput(const std::filesystem::path& out, const std::string& text);
 
 // Single tasks share the folder, a whole campaign has it for itself. A killed one's processes are given a moment to
 // end. Throws std::runtime_error when another one is at work.
 FileLock LockOutput(const std::filesystem::path& out, FileLock::Kind kind);
+
+// OUT/tasks/00/000123
+std::filesystem::path TaskPath(const std::filesystem::path& out, std::int64_t task);
+
+// task.json of a task; none where there is none or it cannot be read: the task is done again.
+std::optional<TaskRecord> ReadRecord(const std::filesystem::path& out, std::int64_t task);
+
+// Takes the task for this process, and makes the folder to write in. A kill leaves it under its hidden name; whoever
+// takes the task next begins with an empty one.
+class TaskFolder {
+ public:
+  // Throws std::runtime_error when it cannot be made, and when another process is at work on this task.
+  TaskFolder(const std::filesystem::path& out, std::int64_t task);
+  // Removes what was not committed.
+  ~TaskFolder();
+  TaskFolder(const TaskFolder&) = delete;
+  TaskFolder& operator=(const TaskFolder&) = delete;
+
+  const std::filesystem::path& path() const { return hidden_; }
+
+  // Writes task.json and gives the folder its name; an older one of that name goes. Throws std::runtime_error.
+  void Commit(const TaskRecord& record);
+
+ private:
+  std::filesystem::path final_, hidden_;
+  std::optional<FileLock> lock_;  // on the hidden folder
+  bool committed_ = false;
+};
 
 // Tasks that have a folder, in order. Folders are listed and no file is opened: a hundredth of the time that a million
 // of those takes.
@@ -28,15 +57,13 @@ std::vector<std::int64_t> PresentTasks(const std::filesystem::path& out);
 
 struct OutputState {
   std::vector<std::int64_t> missing;  // and failed
-  std::size_t failed = 0;             // of those
   std::vector<std::int64_t> stale;    // of other settings, another program, or beyond the last task
 };
 
 // keys[k]: what task k's result must depend on.
 OutputState Inspect(const std::filesystem::path& out, const std::vector<std::string>& keys);
 
-void RemoveTasks(const std::filesystem::path& out, const std::vector<std::int64_t>& tasks);
-// Those of them that have failed; what others may have done in the meantime stays.
+// Of these tasks those that have failed; what others may have done in the meantime stays.
 void RemoveFailed(const std::filesystem::path& out, const std::vector<std::int64_t>& tasks);
 
 // What all tasks together say.

@@ -13,13 +13,19 @@
 #include "tools/judge/evaluation/statistics.h"
 
 namespace vobench::campaign {
+
+std::string NumberOrLost(double value) { return std::isinf(value) ? "lost" : Readable(value); }
+
 namespace {
 
 constexpr std::size_t kRows = 500;
 
-using Row = std::vector<std::string>;
-
-std::string NumberText(double value) { return std::isinf(value) ? "lost" : Readable(value); }
+std::vector<TextRow> Escaped(std::vector<TextRow> rows) {
+  for (TextRow& row : rows) {
+    for (std::string& cell : row) cell = Escape(cell);
+  }
+  return rows;
+}
 
 // Over all tasks of a system that were answered, a lost one worse than any number.
 double MedianOf(const std::vector<TaskRecord>& records, const std::string& system, const std::string& metric) {
@@ -50,7 +56,7 @@ std::string What(const Campaign& campaign, const std::vector<TaskRecord>& record
   return "<p>" + text + ".</p>\n";
 }
 
-// What each system bears, in a sentence for each curve.
+// Breaking point of each system, in a sentence for each curve.
 std::string Verdicts(const std::vector<Curve>& curves) {
   std::string html;
   for (const Curve& curve : curves) {
@@ -88,52 +94,37 @@ std::string SystemTiles(const Campaign& campaign, const std::vector<TaskRecord>&
                             "position RMSE after the campaign's alignment; a lost run counts as worse than any number"},
                            {fmt::format("{} of {}", lost, runs), "runs lost",
                             "by the rule of the campaign; failed tasks are no runs"},
-                           {NumberText(nees), "NEES of the pose, median of all tasks; 1 is ideal",
+                           {NumberOrLost(nees), "NEES of the pose, median of all tasks; 1 is ideal",
                             "time mean per degree of freedom, not aligned"}});
   }
   return html;
 }
 
 std::string TableHtml(const Table& table) {
-  Row head;
-  for (const std::string& name : table.spec.rows) head.push_back(Escape(name));
-  for (const std::string& name : ColumnNames(table)) head.push_back(Escape(name));
-  std::vector<Row> rows = {head};
-  for (std::size_t r = 0; r < table.rows.size(); ++r) {
-    Row& row = rows.emplace_back();
-    for (const std::string& level : table.rows[r]) row.push_back(Escape(level));
-    for (const std::string& text : RowTexts(table, r, "X")) row.push_back(Escape(text));
-  }
-  return "<h3>" + Escape(table.spec.title) + "</h3>" + report::Table(Caption(table), rows);
+  return "<h3>" + Escape(table.spec.title) + "</h3>" + report::Table(Caption(table), Escaped(Texts(table, "X")));
 }
 
 std::string TaskTable(const Campaign& campaign, const std::vector<TaskRecord>& records) {
-  Row head = {"task", "scenario"};
-  for (const Factor& factor : campaign.factors) head.push_back(Escape(factor.name));
+  const std::vector<std::string> varied = VariedNames(campaign);
   const std::vector<std::string> shown = {"ate_m", "rpe_m", "tracked_coverage", "nees_pose_per_dof", "nis_per_dof"};
-  for (const char* name : {"system", "seed", "status"}) head.push_back(name);
+  TextRow head = varied;
+  head.insert(head.begin(), "task");
+  head.insert(head.end(), {"system", "seed", "status"});
   head.insert(head.end(), shown.begin(), shown.end());
-  std::vector<Row> rows = {head};
-  for (const TaskRecord& record : records) {
-    if (rows.size() > kRows) break;
-    Row row = {std::to_string(record.task), Escape(record.scenario)};
-    const TaskChoice choice = ChoiceOf(campaign, record.task);
-    for (std::size_t f = 0; f < campaign.factors.size(); ++f) {
-      row.push_back(Escape(campaign.factors[f].levels[choice.levels[f]].name));
-    }
-    row.push_back(Escape(DisplayName(record.system)));
-    row.push_back(std::to_string(record.seed));
-    row.push_back(Name(record.status));
+  std::vector<TextRow> rows = {head};
+  for (std::size_t i = 0; i < std::min(kRows, records.size()); ++i) {
+    const TaskRecord& record = records[i];
+    TextRow& row = rows.emplace_back(LevelsOf(campaign, varied, ChoiceOf(campaign, record.task)));
+    row.insert(row.begin(), std::to_string(record.task));
+    row.insert(row.end(), {DisplayName(record.system), std::to_string(record.seed), Name(record.status)});
     for (const std::string& metric : shown) {
-      const std::size_t index = MetricIndex(metric);
-      const bool there = index < record.metrics.size() && record.metrics[index].has_value();
-      row.push_back(there ? Readable(*record.metrics[index]) : "–");
+      const std::optional<double> value = record.metric(MetricIndex(metric));
+      row.push_back(value ? Readable(*value) : "–");
     }
-    rows.push_back(row);
   }
   const std::string which =
       records.size() > kRows ? fmt::format("The first {} of {} tasks", kRows, records.size()) : "Every task";
-  return report::Table(which + "; results.csv has all, with more columns.", rows);
+  return report::Table(which + "; results.csv has all, with more columns.", Escaped(rows));
 }
 
 std::string Record(const Campaign& campaign) {

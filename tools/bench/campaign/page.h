@@ -16,6 +16,9 @@ namespace vobench::campaign {
 // them have. Stress grows to the right; lost runs are on the upper edge (on the lower one where more is better).
 std::vector<report::Figure> CurveFigures(const Curve& curve);
 
+// For readers: "lost" where it is infinite.
+std::string NumberOrLost(double value);
+
 std::string CampaignPage(const Campaign& campaign, const Merged& merged);
 
 }  // namespace vobench::campaign

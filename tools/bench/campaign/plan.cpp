@@ -48,6 +48,12 @@ Changes ChangesAt(const Campaign& campaign, const TaskChoice& choice) {
   return all;
 }
 
+std::vector<std::string> VariedNames(const Campaign& campaign) {
+  std::vector<std::string> names = {"scenario"};
+  for (const Factor& factor : campaign.factors) names.push_back(factor.name);
+  return names;
+}
+
 std::vector<std::string> LevelsOf(const Campaign& campaign, const std::vector<std::string>& names,
                                   const TaskChoice& choice) {
   std::vector<std::string> levels;

@@ -115,6 +115,8 @@ TaskChoice ChoiceOf(const Campaign& campaign, std::int64_t task);
 // Settings of the scenario at a point, in the order in which they apply; and those of odometry and prior of a system.
 Changes ChangesAt(const Campaign& campaign, const TaskChoice& choice);
 
+// What is varied: "scenario" and the names of the factors.
+std::vector<std::string> VariedNames(const Campaign& campaign);
 // What a task has of each name ("scenario", "system" or that of a factor), as the file writes it.
 std::vector<std::string> LevelsOf(const Campaign& campaign, const std::vector<std::string>& names,
                                   const TaskChoice& choice);

@@ -1,10 +1,11 @@
-// Pool of forked processes: one that crashes, hangs or exceeds its memory ends alone. For use before this process has
-// threads, which a fork does not copy.
+// Pool of forked processes, as many as fit into memory: one that crashes, hangs or exceeds its share ends alone. For
+// use before this process has threads, which a fork does not copy.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -27,7 +28,7 @@ struct ProcessEnd {
 
 class ProcessPool {
  public:
-  ProcessPool();
+  ProcessPool() = default;
   // Kills what still runs, and waits for it and for the commands that it runs.
   ~ProcessPool();
   ProcessPool(const ProcessPool&) = delete;
@@ -52,8 +53,21 @@ class ProcessPool {
 
   static std::string ProblemOf(const Running& process, const base::ExitStatus& end);
 
-  base::SignalBlock child_ends_;  // SIGCHLD waits for Wait()
+  base::SignalBlock child_ends_{base::SignalSet({SIGCHLD})};  // it waits for Wait()
   std::vector<Running> running_;
 };
+
+// What can be had without swapping: of the machine, or of the control groups (v2) that this process is in. The files of
+// the system are below `root`. [bytes]
+std::uint64_t AvailableMemory(const std::filesystem::path& root = "/");
+
+struct Share {
+  int processes = 1;     // at a time
+  ProcessLimits limits;  // of each; memory 0: no limit, where the amount that is available is unknown
+};
+
+// `wanted` processes of `each` bytes, or as many as fit, one at least. each = 0: an equal part of what is available,
+// never 0 of it.
+Share ShareOut(std::uint64_t available, int wanted, std::uint64_t each);
 
 }  // namespace vobench::campaign

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "tools/base/limits/structured_text.h"
+#include "tools/bench/text.h"
 
 namespace vobench::campaign {
 namespace {
@@ -28,72 +29,67 @@ const std::vector<std::pair<Status, std::string>> kStatuses = {{Status::ok, "ok"
 
 Value Per(double sum, double count) { return count > 0 ? Value(sum / count) : std::nullopt; }
 
-Value PerDof(const std::optional<evaluation::NeesSummary>& nees) {
-  return nees && nees->frames > 0 ? Per(nees->mean, nees->dof) : std::nullopt;
-}
-
-Value MedianPerDof(const std::optional<evaluation::NeesSummary>& nees) {
-  return nees && nees->frames > 0 ? Per(nees->median, nees->dof) : std::nullopt;
-}
-
 Value Rmse(const evaluation::Statistics& statistics) {
   return statistics.count > 0 ? Value(statistics.rmse) : std::nullopt;
 }
 
-std::optional<evaluation::NeesSummary> Pose(const Metrics& m) {
-  return m.consistency ? std::optional(m.consistency->pose) : std::nullopt;
-}
-std::optional<evaluation::NeesSummary> ScaleFree(const Metrics& m) {
-  return m.consistency ? std::optional(m.consistency->pose_scale_free) : std::nullopt;
-}
-std::optional<evaluation::NeesSummary> Velocity(const Metrics& m) {
-  return m.consistency ? m.consistency->velocity : std::nullopt;
+using evaluation::NeesSummary;
+using Consistency = evaluation::ConsistencySummary;
+
+// Mean or median of the NEES of a part of the state.
+template <class Part>
+Value NeesPerDof(const Metrics& m, Part Consistency::*part, double NeesSummary::*statistic) {
+  if (!m.consistency) return std::nullopt;
+  const std::optional<NeesSummary> nees = (*m.consistency).*part;
+  return nees && nees->frames > 0 ? Per((*nees).*statistic, nees->dof) : std::nullopt;
 }
 
-// Columns of results.csv between `status` and `reason`, once: name, unit, whether larger is better, value. A column is
-// added here, and to the table in docs/campaign.md; task.json and results.csv are written and read by name.
+// Columns of results.csv between `status` and `reason`, once: name with its unit, whether larger is better, value. A
+// column is added here, and to the table in docs/campaign.md; task.json and results.csv are written and read by name.
 struct Column {
   const char* name;
-  const char* unit;
   bool larger_is_better;
   Value (*of)(const Metrics& metrics, evaluation::Alignment align);
 };
 
 using A = evaluation::Alignment;
 constexpr Column kColumns[] = {
-    {"ate_m", "m", false, [](const Metrics& m, A align) { return Rmse(m.errors.Aligned(align).position); }},
-    {"ate_none_m", "m", false, [](const Metrics& m, A) { return Rmse(m.errors.none.position); }},
-    {"ate_se3_m", "m", false, [](const Metrics& m, A) { return Rmse(m.errors.se3.position); }},
-    {"ate_sim3_m", "m", false, [](const Metrics& m, A) { return Rmse(m.errors.sim3.position); }},
-    {"ate_first_m", "m", false, [](const Metrics& m, A) { return Rmse(m.errors.first.position); }},
-    {"ate_orientation_rad", "rad", false,
-     [](const Metrics& m, A align) { return Rmse(m.errors.Aligned(align).orientation); }},
-    {"ate_share_of_path", "1", false,
+    {"ate_m", false, [](const Metrics& m, A align) { return Rmse(m.errors.Aligned(align).position); }},
+    {"ate_none_m", false, [](const Metrics& m, A) { return Rmse(m.errors.none.position); }},
+    {"ate_se3_m", false, [](const Metrics& m, A) { return Rmse(m.errors.se3.position); }},
+    {"ate_sim3_m", false, [](const Metrics& m, A) { return Rmse(m.errors.sim3.position); }},
+    {"ate_first_m", false, [](const Metrics& m, A) { return Rmse(m.errors.first.position); }},
+    {"ate_orientation_rad", false, [](const Metrics& m, A align) { return Rmse(m.errors.Aligned(align).orientation); }},
+    {"ate_share_of_path", false,
      [](const Metrics& m, A align) { return Per(m.errors.Aligned(align).position.rmse, m.path_length_m); }},
-    {"rpe_m", "m", false, [](const Metrics& m, A) { return Rmse(m.errors.rpe.position_statistics); }},
-    {"rpe_unscaled_m", "m", false, [](const Metrics& m, A) { return Rmse(m.errors.rpe_unscaled.position_statistics); }},
-    {"rpe_orientation_rad", "rad", false,
-     [](const Metrics& m, A) { return Rmse(m.errors.rpe.orientation_statistics); }},
-    {"rpe_pairs_share", "1", true,
+    {"rpe_m", false, [](const Metrics& m, A) { return Rmse(m.errors.rpe.position_statistics); }},
+    {"rpe_unscaled_m", false, [](const Metrics& m, A) { return Rmse(m.errors.rpe_unscaled.position_statistics); }},
+    {"rpe_orientation_rad", false, [](const Metrics& m, A) { return Rmse(m.errors.rpe.orientation_statistics); }},
+    {"rpe_pairs_share", true,
      [](const Metrics& m, A) {
        return Per(static_cast<double>(m.errors.rpe.pairs.size()), static_cast<double>(m.errors.rpe_pairs_offered));
      }},
-    {"scale", "1", false, [](const Metrics& m, A) { return Value(m.errors.sim3.similarity.scale); }},
-    {"pose_coverage", "1", true,
+    {"scale", false, [](const Metrics& m, A) { return Value(m.errors.sim3.similarity.scale); }},
+    {"pose_coverage", true,
      [](const Metrics& m, A) { return m.coverage ? Value(m.coverage->pose_coverage()) : std::nullopt; }},
-    {"tracked_coverage", "1", true,
+    {"tracked_coverage", true,
      [](const Metrics& m, A) { return m.coverage ? m.coverage->tracked_coverage() : std::nullopt; }},
-    {"nees_pose_per_dof", "1", false, [](const Metrics& m, A) { return PerDof(Pose(m)); }},
-    {"nees_pose_median_per_dof", "1", false, [](const Metrics& m, A) { return MedianPerDof(Pose(m)); }},
-    {"nees_pose_scale_free_per_dof", "1", false, [](const Metrics& m, A) { return PerDof(ScaleFree(m)); }},
-    {"nees_velocity_per_dof", "1", false, [](const Metrics& m, A) { return PerDof(Velocity(m)); }},
-    {"nees_velocity_median_per_dof", "1", false, [](const Metrics& m, A) { return MedianPerDof(Velocity(m)); }},
-    {"nis_per_dof", "1", false, [](const Metrics& m, A) { return m.nis ? Value(m.nis->mean_per_dof) : std::nullopt; }},
-    {"path_length_m", "m", false, [](const Metrics& m, A) { return Value(m.path_length_m); }},
-    {"duration_s", "s", false, [](const Metrics& m, A) { return Value(m.duration_s); }},
-    {"constant_velocity_ate_m", "m", false,
+    {"nees_pose_per_dof", false,
+     [](const Metrics& m, A) { return NeesPerDof(m, &Consistency::pose, &NeesSummary::mean); }},
+    {"nees_pose_median_per_dof", false,
+     [](const Metrics& m, A) { return NeesPerDof(m, &Consistency::pose, &NeesSummary::median); }},
+    {"nees_pose_scale_free_per_dof", false,
+     [](const Metrics& m, A) { return NeesPerDof(m, &Consistency::pose_scale_free, &NeesSummary::mean); }},
+    {"nees_velocity_per_dof", false,
+     [](const Metrics& m, A) { return NeesPerDof(m, &Consistency::velocity, &NeesSummary::mean); }},
+    {"nees_velocity_median_per_dof", false,
+     [](const Metrics& m, A) { return NeesPerDof(m, &Consistency::velocity, &NeesSummary::median); }},
+    {"nis_per_dof", false, [](const Metrics& m, A) { return m.nis ? Value(m.nis->mean_per_dof) : std::nullopt; }},
+    {"path_length_m", false, [](const Metrics& m, A) { return Value(m.path_length_m); }},
+    {"duration_s", false, [](const Metrics& m, A) { return Value(m.duration_s); }},
+    {"constant_velocity_ate_m", false,
      [](const Metrics& m, A align) { return Rmse(m.constant_velocity.Aligned(align).position); }},
-    {"constant_velocity_rpe_m", "m", false,
+    {"constant_velocity_rpe_m", false,
      [](const Metrics& m, A) { return Rmse(m.constant_velocity.rpe.position_statistics); }},
 };
 
@@ -107,7 +103,7 @@ Number Whole(const Json& json, const char* name) {
 }  // namespace
 
 std::string Name(Status status) {
-  return std::find_if(kStatuses.begin(), kStatuses.end(), [&](const auto& s) { return s.first == status; })->second;
+  return std::ranges::find(kStatuses, status, &std::pair<Status, std::string>::first)->second;
 }
 
 const std::vector<std::string>& MetricNames() {
@@ -133,14 +129,19 @@ bool LargerIsBetter(const std::string& metric) {
   return index < std::size(kColumns) && kColumns[index].larger_is_better;
 }
 
-std::string UnitOf(const std::string& metric) { return kColumns[MetricIndex(metric)].unit; }
+std::string UnitOf(const std::string& metric) {
+  for (const std::string unit : {"m", "rad", "s"}) {
+    if (metric.ends_with("_" + unit)) return unit;
+  }
+  return "1";
+}
 
 double ValueOf(const TaskRecord& record, std::size_t metric) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (record.status == Status::failed) return kNone;
   if (record.status != Status::ok) return LargerIsBetter(MetricNames().at(metric)) ? -kInfinity : kInfinity;
-  return metric < record.metrics.size() ? record.metrics[metric].value_or(kNone) : kNone;
+  return record.metric(metric).value_or(kNone);
 }
 
 std::size_t MetricIndex(const std::string& metric) {
@@ -149,10 +150,7 @@ std::size_t MetricIndex(const std::string& metric) {
 }
 
 bool IsLost(const TaskRecord& record, const LostRule& rule) {
-  const auto value = [&](const char* name) -> Value {
-    const std::size_t index = MetricIndex(name);
-    return index < record.metrics.size() ? record.metrics[index] : Value();
-  };
+  const auto value = [&](const char* name) { return record.metric(MetricIndex(name)); };
   const Value pose = value("pose_coverage"), tracked = value("tracked_coverage"), error = value("ate_m");
   if ((pose && *pose < rule.pose_coverage) || (tracked && *tracked < rule.tracked_coverage)) return true;
   return rule.error_m > 0 && !(error && *error <= rule.error_m);
@@ -190,8 +188,7 @@ TaskRecord RecordFromJson(const std::string& text) {
     record.reason = json.at("reason");
     record.levels = json.at("levels").get<LevelValues>();
     const std::string status = json.at("status");
-    const auto found =
-        std::find_if(kStatuses.begin(), kStatuses.end(), [&](const auto& s) { return s.second == status; });
+    const auto found = std::ranges::find(kStatuses, status, &std::pair<Status, std::string>::second);
     if (found == kStatuses.end()) throw std::invalid_argument("no status '" + status + "'");
     record.status = found->first;
     if (!json.at("metrics").empty()) {
@@ -206,17 +203,11 @@ TaskRecord RecordFromJson(const std::string& text) {
   }
 }
 
-std::string OneLine(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return text;
-}
+std::string OneLine(const std::string& text) { return Replaced(text, {{'\n', " "}, {'\r', " "}}); }
 
 std::string CsvField(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
+  return '"' + Replaced(text, {{'"', "\"\""}}) + '"';
 }
 
 std::string ResultsCsv(const Campaign& campaign, const std::vector<TaskRecord>& records) {
@@ -231,7 +222,7 @@ std::string ResultsCsv(const Campaign& campaign, const std::vector<TaskRecord>& 
     csv += fmt::format(",{},{},{}", CsvField(record.system), record.seed, Name(record.status));
     for (std::size_t i = 0; i < MetricNames().size(); ++i) {
       csv += ",";
-      if (i < record.metrics.size() && record.metrics[i]) csv += fmt::format("{}", *record.metrics[i]);
+      if (const Value value = record.metric(i)) csv += fmt::format("{}", *value);
     }
     csv += "," + CsvField(record.reason) + "\n";
   }

@@ -36,6 +36,10 @@ struct TaskRecord {
   Status status = Status::failed;
   std::string reason;                          // of what is neither ok nor lost; ToJson makes it one line
   std::vector<std::optional<double>> metrics;  // in the order of MetricNames; none at all where nothing was judged
+
+  std::optional<double> metric(std::size_t index) const {
+    return index < metrics.size() ? metrics[index] : std::nullopt;
+  }
 };
 
 // Columns with their units: "ate_m", "rpe_orientation_rad", ...
@@ -44,7 +48,7 @@ std::vector<std::optional<double>> MetricValues(const evaluation::Metrics& metri
 
 // Of shares of what was answered; of everything else a smaller value is better.
 bool LargerIsBetter(const std::string& metric);
-// "m", "rad", "s" or "1"; of one of MetricNames.
+// "m", "rad" or "s", with which the name ends; else "1".
 std::string UnitOf(const std::string& metric);
 
 // A run's value of a metric, by its place among MetricNames: worse than any number (infinite) where it is lost or has
@@ -64,7 +68,7 @@ TaskRecord RecordFromJson(const std::string& text);
 std::string ResultsCsv(const Campaign& campaign, const std::vector<TaskRecord>& records);
 
 // With a space for each line break.
-std::string OneLine(std::string text);
+std::string OneLine(const std::string& text);
 
 // One field of a CSV line, quoted where it must be.
 std::string CsvField(const std::string& text);

@@ -7,20 +7,16 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "tools/base/files.h"
-#include "tools/bench/campaign/digest.h"
-#include "tools/bench/campaign/local_engine.h"
-#include "tools/bench/campaign/memory.h"
 #include "tools/bench/campaign/options.h"
 #include "tools/bench/campaign/output.h"
 #include "tools/bench/campaign/page.h"
 #include "tools/bench/campaign/slurm.h"
-#include "tools/bench/campaign/slurm_engine.h"
-#include "tools/bench/campaign/task_folder.h"
 #include "tools/bench/campaign/work.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/provenance.h"
@@ -32,29 +28,28 @@ namespace {
 
 std::string Record(const Campaign& campaign) {
   nlohmann::ordered_json json = {{"format", "vobench campaign 1"}, {"tasks", Tasks(campaign)}};
-  json["order"] = {"seed", "scenario"};
-  for (const Factor& factor : campaign.factors) json["order"].push_back(factor.name);
+  json["order"] = {"seed"};
+  for (const std::string& name : VariedNames(campaign)) json["order"].push_back(name);
   json["order"].push_back("system");
   json["versions"] = Versions();
   json["campaign"] = nlohmann::ordered_json::parse(campaign.resolved);
   return json.dump(2) + "\n";
 }
 
-LocalOptions LocalOptionsOf(const CampaignOptions& options, int jobs) {
-  const Share share = ShareOut(AvailableMemory(), jobs, options.memory_bytes);
+Share ShareOf(const CampaignOptions& options, int jobs) {
+  Share share = ShareOut(AvailableMemory(), jobs, options.memory_bytes);
   if (share.processes < jobs) {
     fmt::print(stderr, "vobench: {} at a time, not {}: no more of {:.3g} GB fit\n", share.processes, jobs,
-               static_cast<double>(share.bytes) * 1e-9);
+               static_cast<double>(share.limits.memory_bytes) * 1e-9);
   }
-  return {share.processes, {share.bytes, options.timeout_s}};
+  share.limits.timeout_s = options.timeout_s;
+  return share;
 }
 
 std::vector<std::size_t> PointsOf(const Campaign& campaign, const std::vector<std::int64_t>& tasks) {
-  std::vector<std::size_t> points;
-  for (const std::int64_t task : tasks) points.push_back(ChoiceOf(campaign, task).point);
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  return points;
+  std::set<std::size_t> points;
+  for (const std::int64_t task : tasks) points.insert(ChoiceOf(campaign, task).point);
+  return {points.begin(), points.end()};
 }
 
 void List(const CampaignWork& work) {
@@ -92,12 +87,12 @@ void RunAgain(CampaignWork& work, const CampaignOptions& options) {
   const std::int64_t task = *options.task;
   const TaskChoice choice = Input([&] { return ChoiceOf(work.campaign(), task); });
   const FileLock lock = LockOutput(options.output, FileLock::Kind::shared);
-  const LocalOptions local = LocalOptionsOf(options, 1);
-  work.NameSequences({choice.point}, local.limits);
+  const Share share = ShareOf(options, 1);
+  work.NameSequences({choice.point}, share.limits);
   const fs::path folder = TaskPath(options.output, task);
   const std::optional<TaskRecord> before = ReadRecord(options.output, task);
   const auto files = FilesOf(folder);
-  RunLocally(work, options.output, {task}, local);
+  RunLocally(work, options.output, {task}, share);
   const std::optional<TaskRecord> record = ReadRecord(options.output, task);
   if (!record) throw std::runtime_error(folder.string() + ": is not there");
   fmt::print("{}\n", ShortResult(work.campaign(), *record));
@@ -113,8 +108,8 @@ void RunPart(CampaignWork& work, const CampaignOptions& options) {
       Input([&] { return ReadArrayLine(*options.list, static_cast<std::size_t>(options.part)); });
   const std::vector<std::size_t> points = Input([&] { return PointsOf(work.campaign(), listed); });
   const FileLock lock = LockOutput(options.output, FileLock::Kind::shared);
-  const LocalOptions local = LocalOptionsOf(options, options.jobs);
-  work.NameSequences(points, local.limits);
+  const Share share = ShareOf(options, options.jobs);
+  work.NameSequences(points, share.limits);
   std::vector<std::int64_t> left;
   for (const std::int64_t task : listed) {
     const std::optional<TaskRecord> record = ReadRecord(options.output, task);
@@ -122,7 +117,7 @@ void RunPart(CampaignWork& work, const CampaignOptions& options) {
         record && record->status != Status::failed && record->key == work.KeyOf(ChoiceOf(work.campaign(), task));
     if (!done) left.push_back(task);
   }
-  RunLocally(work, options.output, left, local);
+  RunLocally(work, options.output, left, share);
 }
 
 void RefuseStale(const CampaignOptions& options, const OutputState& state, std::int64_t tasks) {
@@ -161,10 +156,10 @@ void RunAll(CampaignWork& work, const CampaignOptions& options) {
   const bool slurm = options.engine == "slurm";
   const FileLock lock = LockOutput(options.output, slurm ? FileLock::Kind::shared : FileLock::Kind::exclusive);
   const std::int64_t tasks = Tasks(work.campaign());
-  const LocalOptions local = LocalOptionsOf(options, options.jobs);
+  const Share share = ShareOf(options, options.jobs);
   std::vector<std::size_t> points(work.points().size());
   std::iota(points.begin(), points.end(), 0);
-  work.NameSequences(points, local.limits);
+  work.NameSequences(points, share.limits);
   std::vector<std::string> keys;
   for (std::int64_t task = 0; task < tasks; ++task) {
     keys.push_back(work.KeyOf(ChoiceOf(work.campaign(), task)));
@@ -173,13 +168,13 @@ void RunAll(CampaignWork& work, const CampaignOptions& options) {
   RefuseStale(options, state, tasks);
   base::WriteFile(options.output / "campaign.json", Record(work.campaign()), base::Writers::many);
   if (!state.stale.empty()) {
-    RemoveTasks(options.output, state.stale);
+    for (const std::int64_t task : state.stale) fs::remove_all(TaskPath(options.output, task));
     state = Inspect(options.output, keys);
   }
   const auto left = static_cast<std::int64_t>(state.missing.size());
   if (left < tasks) fmt::print(stderr, "{} of {} tasks are done\n", tasks - left, tasks);
   try {
-    slurm ? RunOnSlurm(work, options, state.missing) : RunLocally(work, options.output, state.missing, local);
+    slurm ? RunOnSlurm(work, options, state.missing) : RunLocally(work, options.output, state.missing, share);
   } catch (const Interrupted&) {
     const std::string jobs = slurm ? fmt::format(" Jobs stay in the queue; `scancel --name={}` ends them.",
                                                  SlurmJobName(fs::absolute(options.output)))
@@ -201,11 +196,7 @@ void RunCampaign(const CampaignOptions& asked, const TaskRunner& runner) {
   if (options.dry_run) return List(work);
   RequireFolderIfThere(options.output);
   RequireFolderIfThere(*options.cache);
-  try {
-    PrepareOutput(options.output, Record(work.campaign()));
-  } catch (const std::invalid_argument& error) {
-    throw BadInput(error.what());
-  }
+  PrepareOutput(options.output, Record(work.campaign()));
   if (options.task) return RunAgain(work, options);
   if (options.list) return RunPart(work, options);
   RunAll(work, options);

@@ -1,15 +1,37 @@
 #include "tools/bench/campaign/sequence_cache.h"
 
+#define XXH_INLINE_ALL
+#include <fmt/format.h>
+#include <xxhash.h>
+
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <vector>
 
 #include "tools/base/files.h"
-#include "tools/bench/campaign/digest.h"
-#include "tools/bench/campaign/output.h"
 
 namespace vobench::campaign {
 namespace fs = std::filesystem;
+namespace {
+
+std::string Hex(const XXH128_hash_t& hash) { return fmt::format("{:016x}{:016x}", hash.high64, hash.low64); }
+
+}  // namespace
+
+std::string Digest(std::string_view text) { return Hex(XXH3_128bits(text.data(), text.size())); }
+
+std::string DigestOfFile(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || fs::is_directory(file)) return "absent";
+  XXH3_state_t state;
+  XXH3_128bits_reset(&state);
+  std::vector<char> block(1 << 20);
+  while (stream.read(block.data(), static_cast<std::streamsize>(block.size())), stream.gcount() > 0) {
+    XXH3_128bits_update(&state, block.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  return Hex(XXH3_128bits_digest(&state));
+}
 
 fs::path SequenceCache::PathOf(const std::string& key) const { return folder_ / key.substr(0, 2) / key; }
 

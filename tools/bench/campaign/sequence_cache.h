@@ -11,10 +11,17 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "tools/bench/campaign/file_lock.h"
 
 namespace vobench::campaign {
+
+// Digests of a content, not cryptographic (XXH3 of 128 bits, Collet), as 32 hexadecimal digits; of a file "absent"
+// where it cannot be opened.
+std::string Digest(std::string_view text);
+std::string DigestOfFile(const std::filesystem::path& file);
 
 class SequenceCache {
  public:

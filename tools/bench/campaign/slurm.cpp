@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
+#include <utility>
 
 #include "tools/base/files.h"
 #include "tools/bench/campaign/command.h"
-#include "tools/bench/campaign/digest.h"
+#include "tools/bench/campaign/output.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/progress.h"
 
 namespace vobench::campaign {
 namespace fs = std::filesystem;
@@ -18,6 +23,7 @@ namespace {
 
 constexpr std::size_t kMostElements = 1000;  // MaxArraySize is 1001 unless the cluster says otherwise
 constexpr double kPatience_s = 120;
+constexpr int kRounds = 3;  // that may pass without a single new result
 
 struct Answer {
   bool good = false;
@@ -30,7 +36,114 @@ Answer Ask(const std::string& command, const fs::path& where) {
   return {!end.timed_out && end.signal == 0 && end.status == 0, base::ReadFile(log).value_or("")};
 }
 
+class SlurmRun {
+ public:
+  SlurmRun(const CampaignWork& work, const CampaignOptions& options, std::vector<std::int64_t> tasks)
+      : work_(work),
+        options_(options),
+        out_(fs::absolute(options.output)),
+        folder_(out_ / "slurm"),
+        name_(SlurmJobName(out_)),
+        left_(std::move(tasks)),
+        progress_("tasks", static_cast<std::int64_t>(left_.size()), 0, "tasks") {}
+
+  void Run() {
+    fs::create_directories(folder_);
+    const FileLock alone = LockOutput(folder_, FileLock::Kind::exclusive);
+    const Answer earlier = AskForJobs();
+    if (!earlier.good) {
+      throw std::runtime_error(fmt::format(
+          "squeue does not say whether jobs of an earlier start ({}) are in the queue, so nothing was submitted: {}",
+          name_, earlier.text.empty() ? "it does not answer" : earlier.text));
+    }
+    if (!IsGone(earlier)) {
+      fmt::print(stderr, "jobs of an earlier start ({}) are in the queue: waiting for them\n", name_);
+      WaitForJobs();
+    }
+    for (int fruitless = 0; !left_.empty() && fruitless < kRounds;) {
+      const std::size_t before = left_.size();
+      SubmitRest();
+      WaitForJobs();
+      if (left_.size() == before) ++fruitless;
+    }
+    for (const std::int64_t task : left_) {
+      work_.RecordFailure(out_, task,
+                          fmt::format("no result from Slurm in {} rounds; its logs are in OUT/slurm", kRounds));
+      progress_.Step();
+    }
+  }
+
+ private:
+  // Not good where the controller does not answer, or there is no squeue here.
+  Answer AskForJobs() const { return Ask("squeue --noheader --format=%A --name=" + name_, folder_); }
+  // Whether no job of this name is left, queued or at work.
+  static bool IsGone(const Answer& jobs) {
+    return jobs.good && jobs.text.find_first_of("0123456789") == std::string::npos;
+  }
+
+  void SubmitRest() {
+    const std::vector<std::string> lines = ArrayLines(BySequence(), options_.tasks_per_job);
+    std::string text;
+    for (const std::string& line : lines) text += line + "\n";
+    const fs::path list = folder_ / "tasks.txt", script = folder_ / "job.sh";
+    base::WriteFile(list, text, base::Writers::many);
+    const auto word = [](const fs::path& path) { return QuotedForShell(fs::absolute(path).string()); };
+    std::string command = fmt::format("{} campaign {} -o {} --cache {}", word(fs::read_symlink("/proc/self/exe")),
+                                      word(options_.file), word(out_), word(work_.cache().folder()));
+    if (options_.memory_bytes > 0) command += fmt::format(" --memory {}", options_.memory_bytes);
+    if (options_.timeout_s > 0) command += fmt::format(" --timeout {}", options_.timeout_s);
+    command += fmt::format(" --jobs 1 --list {} --part", word(list));
+    base::WriteFile(script, BatchScript(options_, name_, lines.size(), folder_, command), base::Writers::many);
+    const Answer answer = Ask("sbatch --parsable " + QuotedForShell(script.string()), folder_);
+    if (!answer.good) throw std::runtime_error("sbatch: " + answer.text);
+  }
+
+  // An element of the array does tasks on the same pictures, so that its node reads them from the disk once.
+  std::vector<std::int64_t> BySequence() const {
+    std::vector<std::pair<std::size_t, std::int64_t>> tasks;
+    for (const std::int64_t task : left_) tasks.emplace_back(ChoiceOf(work_.campaign(), task).point, task);
+    std::sort(tasks.begin(), tasks.end());
+    std::vector<std::int64_t> sorted;
+    for (const auto& [point, task] : tasks) sorted.push_back(task);
+    return sorted;
+  }
+
+  // Until the last result is there, or no job is left.
+  void WaitForJobs() {
+    using std::chrono::milliseconds;
+    for (milliseconds pause(200);; pause = std::min(pause * 5 / 4, milliseconds(10'000))) {
+      const bool is_gone = IsGone(AskForJobs());
+      Collect();
+      if (left_.empty() || is_gone) return;
+      for (milliseconds slept(0); slept < pause; slept += milliseconds(100)) {
+        if (InterruptPending()) throw Interrupted(name_);
+        std::this_thread::sleep_for(milliseconds(100));
+      }
+    }
+  }
+
+  void Collect() {
+    const std::vector<std::int64_t> present = PresentTasks(out_);
+    const auto done = [&](std::int64_t task) { return std::binary_search(present.begin(), present.end(), task); };
+    const auto count = static_cast<std::int64_t>(std::erase_if(left_, done));
+    if (count > 0) progress_.Step(count);
+  }
+
+  const CampaignWork& work_;
+  const CampaignOptions& options_;
+  fs::path out_, folder_;
+  std::string name_;
+  std::vector<std::int64_t> left_;
+  Progress progress_;
+};
+
 }  // namespace
+
+void RunOnSlurm(const CampaignWork& work, const CampaignOptions& options, std::vector<std::int64_t> tasks) {
+  if (tasks.empty()) return;
+  RemoveFailed(options.output, tasks);  // what is there from now on is a result
+  SlurmRun(work, options, std::move(tasks)).Run();
+}
 
 std::string SlurmJobName(const fs::path& out) {
   return "vobench-" + Digest(fs::weakly_canonical(out).string()).substr(0, 12);
@@ -61,7 +174,7 @@ std::vector<std::int64_t> ReadArrayLine(const fs::path& list, std::size_t part) 
   return tasks;
 }
 
-std::string BatchScript(const SlurmOptions& options, const std::string& name, std::size_t elements,
+std::string BatchScript(const CampaignOptions& options, const std::string& name, std::size_t elements,
                         const fs::path& logs, const std::string& command) {
   std::string script = fmt::format("#!/bin/sh\n#SBATCH --job-name={}\n#SBATCH --array=0-{}\n#SBATCH --output=\"{}\"\n",
                                    name, elements - 1, (logs / "%A_%a.log").string());
@@ -73,18 +186,6 @@ std::string BatchScript(const SlurmOptions& options, const std::string& name, st
     script += fmt::format("#SBATCH --mem={}M\n", options.memory_bytes / kMegabyte + kProgram);
   }
   return script + "exec " + command + " \"$SLURM_ARRAY_TASK_ID\"\n";
-}
-
-void Submit(const fs::path& script, const fs::path& where) {
-  const Answer answer = Ask("sbatch --parsable " + QuotedForShell(script.string()), where);
-  if (!answer.good) throw std::runtime_error("sbatch: " + answer.text);
-}
-
-SlurmAnswer AskForJobs(const std::string& name, const fs::path& where) {
-  const Answer answer = Ask("squeue --noheader --format=%A --name=" + name, where);
-  if (!answer.good) return {SlurmState::unknown, answer.text};
-  const bool is_none = answer.text.find_first_of("0123456789") == std::string::npos;
-  return {is_none ? SlurmState::gone : SlurmState::queued, answer.text};
 }
 
 }  // namespace vobench::campaign

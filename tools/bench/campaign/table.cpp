@@ -8,6 +8,7 @@
 #include <map>
 
 #include "tools/base/text.h"
+#include "tools/bench/text.h"
 #include "tools/judge/evaluation/statistics.h"
 
 namespace vobench::campaign {
@@ -28,16 +29,11 @@ class Numbered {
   std::map<std::vector<std::string>, std::size_t> numbers_;
 };
 
-std::string Number(double value, double unit, const std::string& lost) {
-  if (std::isnan(value)) return "-";
-  return std::isinf(value) ? lost : fmt::format("{:.3g}", value / unit);
-}
-
 std::string Text(const Cell& cell, double unit, const std::string& lost) {
   if (cell.runs == 0) return cell.failed == 0 ? "-" : fmt::format("- ({} failed)", cell.failed);
-  std::string text = Number(cell.median, unit, lost);
+  std::string text = NumberText(cell.median, unit, lost);
   if (cell.runs > 1 && !std::isnan(cell.median)) {
-    text += fmt::format(" [{}, {}]", Number(cell.low, unit, lost), Number(cell.high, unit, lost));
+    text += fmt::format(" [{}, {}]", NumberText(cell.low, unit, lost), NumberText(cell.high, unit, lost));
   }
   if (cell.failed > 0) text += fmt::format(" ({} failed)", cell.failed);
   return text;
@@ -49,21 +45,19 @@ std::string ValueOf(const ReferenceColumn& beside, const std::vector<std::string
   return at->second == "X" ? lost : at->second;
 }
 
+std::string EscapeMarkdown(const std::string& text) { return Replaced(OneLine(text), {{'|', "\\|"}}); }
+
 std::string EscapeLatex(const std::string& text) {
-  std::string out;
-  for (const char c : OneLine(text)) {
-    if (c == '\\') {
-      out += "\\textbackslash{}";
-    } else if (c == '^') {
-      out += "\\textasciicircum{}";
-    } else if (c == '~') {
-      out += "\\textasciitilde{}";
-    } else {
-      if (std::string("_%&#${}").find(c) != std::string::npos) out += '\\';
-      out += c;
-    }
-  }
-  return out;
+  return Replaced(OneLine(text), {{'\\', "\\textbackslash{}"},
+                                  {'^', "\\textasciicircum{}"},
+                                  {'~', "\\textasciitilde{}"},
+                                  {'_', "\\_"},
+                                  {'%', "\\%"},
+                                  {'&', "\\&"},
+                                  {'#', "\\#"},
+                                  {'$', "\\$"},
+                                  {'{', "\\{"},
+                                  {'}', "\\}"}});
 }
 
 }  // namespace
@@ -84,7 +78,6 @@ Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vect
       continue;
     }
     ++cell.runs;
-    cell.lost += record.status != Status::ok;
     if (const double value = ValueOf(record, metric); !std::isnan(value)) values[at].push_back(value);
   }
   table.cells.assign(table.rows.size(), std::vector<Cell>(table.columns.size()));
@@ -98,18 +91,21 @@ Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vect
   return table;
 }
 
-std::vector<std::string> ColumnNames(const Table& table) {
-  std::vector<std::string> names;
-  for (const auto& column : table.columns) names.push_back(base::Join(column, ", "));
-  for (const ReferenceColumn& beside : table.spec.beside) names.push_back(beside.name);
-  return names;
+std::string NumberText(double value, double unit, const std::string& lost) {
+  if (std::isnan(value)) return "-";
+  return std::isinf(value) ? lost : fmt::format("{:.3g}", value / unit);
 }
 
-std::vector<std::string> RowTexts(const Table& table, std::size_t row, const std::string& lost) {
-  std::vector<std::string> texts;
-  for (const Cell& cell : table.cells[row]) texts.push_back(Text(cell, table.spec.unit_in_si, lost));
-  for (const ReferenceColumn& beside : table.spec.beside) texts.push_back(ValueOf(beside, table.rows[row], lost));
-  return texts;
+std::vector<TextRow> Texts(const Table& table, const std::string& lost) {
+  std::vector<TextRow> rows = {table.spec.rows};
+  for (const auto& column : table.columns) rows[0].push_back(base::Join(column, ", "));
+  for (const ReferenceColumn& beside : table.spec.beside) rows[0].push_back(beside.name);
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    TextRow& row = rows.emplace_back(table.rows[r]);
+    for (const Cell& cell : table.cells[r]) row.push_back(Text(cell, table.spec.unit_in_si, lost));
+    for (const ReferenceColumn& beside : table.spec.beside) row.push_back(ValueOf(beside, table.rows[r], lost));
+  }
+  return rows;
 }
 
 std::string Caption(const Table& table) {
@@ -121,54 +117,43 @@ std::string Caption(const Table& table) {
   return fmt::format("Median [quartiles] over {} runs a cell; X: lost, which counts as worse than any number.", runs);
 }
 
-std::string EscapeMarkdown(const std::string& text) {
-  std::string out;
-  for (const char c : OneLine(text)) {
-    if (c == '|') out += '\\';
-    out += c;
-  }
-  return out;
-}
-
-std::string Markdown(const std::vector<Table>& tables) {
+std::string MarkdownRows(const std::vector<TextRow>& rows, std::size_t left) {
   std::string text;
-  for (const Table& table : tables) {
-    text += fmt::format("{}### {}\n\n{}\n\n|", text.empty() ? "" : "\n", OneLine(table.spec.title), Caption(table));
-    for (const std::string& name : table.spec.rows) text += " " + EscapeMarkdown(name) + " |";
-    for (const std::string& name : ColumnNames(table)) text += " " + EscapeMarkdown(name) + " |";
-    text += "\n|";
-    for (std::size_t i = 0; i < table.spec.rows.size(); ++i) text += "---|";
-    for (std::size_t i = 0; i < table.columns.size() + table.spec.beside.size(); ++i) text += "---:|";
-    for (std::size_t r = 0; r < table.rows.size(); ++r) {
-      text += "\n|";
-      for (const std::string& level : table.rows[r]) text += " " + EscapeMarkdown(level) + " |";
-      for (const std::string& cell : RowTexts(table, r, "X")) text += " " + EscapeMarkdown(cell) + " |";
-    }
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    text += "|";
+    for (const std::string& cell : rows[r]) text += " " + EscapeMarkdown(cell) + " |";
+    text += "\n";
+    if (r > 0) continue;
+    text += "|";
+    for (std::size_t c = 0; c < rows[0].size(); ++c) text += c < left ? "---|" : "---:|";
     text += "\n";
   }
   return text;
 }
 
-std::string Latex(const std::vector<Table>& tables) {
+std::string Markdown(const std::vector<Table>& tables) {
   std::string text;
   for (const Table& table : tables) {
+    text += fmt::format("{}### {}\n\n{}\n\n{}", text.empty() ? "" : "\n", OneLine(table.spec.title), Caption(table),
+                        MarkdownRows(Texts(table, "X"), table.spec.rows.size()));
+  }
+  return text;
+}
+
+std::string Latex(const std::vector<Table>& tables) {
+  const std::string lost = "$\\times$";
+  std::string text;
+  for (const Table& table : tables) {
+    std::vector<TextRow> rows = Texts(table, lost);
+    const std::size_t left = table.spec.rows.size(), others = left + table.columns.size();
     text += fmt::format("% {}: {}\n\\begin{{tabular}}{{{}{}}}\n\\hline\n", OneLine(table.spec.title), Caption(table),
-                        std::string(table.spec.rows.size(), 'l'),
-                        std::string(table.columns.size() + table.spec.beside.size(), 'r'));
-    std::vector<std::string> line;
-    for (const std::string& name : table.spec.rows) line.push_back(EscapeLatex(name));
-    for (const std::string& name : ColumnNames(table)) line.push_back(EscapeLatex(name));
-    text += base::Join(line, " & ") + " \\\\\n\\hline\n";
-    for (std::size_t r = 0; r < table.rows.size(); ++r) {
-      line.clear();
-      for (const std::string& level : table.rows[r]) line.push_back(EscapeLatex(level));
-      const std::string lost = "$\\times$";
-      const std::vector<std::string> texts = RowTexts(table, r, lost);
-      for (std::size_t c = 0; c < texts.size(); ++c) {
-        const bool ours = c < table.columns.size();  // those of others may have anything in them
-        line.push_back(ours || texts[c] == lost ? texts[c] : EscapeLatex(texts[c]));
+                        std::string(left, 'l'), std::string(rows[0].size() - left, 'r'));
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      for (std::size_t c = 0; c < rows[r].size(); ++c) {
+        const bool is_number = r > 0 && c >= left && (c < others || rows[r][c] == lost);  // others: anything
+        if (!is_number) rows[r][c] = EscapeLatex(rows[r][c]);
       }
-      text += base::Join(line, " & ") + " \\\\\n";
+      text += base::Join(rows[r], " & ") + " \\\\\n" + (r == 0 ? "\\hline\n" : "");
     }
     text += "\\hline\n\\end{tabular}\n";
   }

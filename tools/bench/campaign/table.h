@@ -12,8 +12,8 @@ namespace vobench::campaign {
 
 // One cell: quartiles over runs, a lost one counted as worse than any number.
 struct Cell {
-  std::size_t runs = 0, lost = 0, failed = 0;  // runs: all but the failed
-  double low = 0, median = 0, high = 0;        // infinite where it falls on a lost run; NaN without runs
+  std::size_t runs = 0, failed = 0;      // runs: all but the failed
+  double low = 0, median = 0, high = 0;  // infinite where it falls on a lost run; NaN without runs
 };
 
 struct Table {
@@ -24,17 +24,18 @@ struct Table {
 
 Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vector<TaskRecord>& records);
 
-// Behind those of the rows: ours, and those of others beside them.
-std::vector<std::string> ColumnNames(const Table& table);
-// What a row has in these: "0.0123 [0.0101, 0.0150]", `lost` for what falls on a lost run, "-" without runs.
-std::vector<std::string> RowTexts(const Table& table, std::size_t row, const std::string& lost);
+// Head and rows as texts: the levels of the row, then our numbers, "0.0123 [0.0101, 0.0150]", and those of others.
+// `lost` stands for what falls on a lost run, "-" for no runs.
+using TextRow = std::vector<std::string>;
+std::vector<TextRow> Texts(const Table& table, const std::string& lost);
 // What a cell is, and over how many runs.
 std::string Caption(const Table& table);
+// "-" for NaN, `lost` for infinity.
+std::string NumberText(double value, double unit, const std::string& lost);
 
-// As it may stand in a cell of Markdown's.
-std::string EscapeMarkdown(const std::string& text);
-
-// All tables of the campaign: "0.0123 [0.0101, 0.0150]", X for lost.
+// Rows, the first of them the head, as Markdown: so many columns to the left, the others to the right.
+std::string MarkdownRows(const std::vector<TextRow>& rows, std::size_t left);
+// All tables of the campaign.
 std::string Markdown(const std::vector<Table>& tables);
 std::string Latex(const std::vector<Table>& tables);
 

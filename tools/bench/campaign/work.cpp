@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 
 #include "tools/bench/campaign/campaign_file.h"
-#include "tools/bench/campaign/digest.h"
-#include "tools/bench/campaign/task_folder.h"
+#include "tools/bench/campaign/output.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/progress.h"
 
@@ -21,14 +20,11 @@ namespace {
 // The value of a dotted key in SI, where there is such a number; or else as the campaign writes it.
 std::string LevelValue(const nlohmann::json& resolved, const Factor& factor, std::size_t level) {
   const nlohmann::json* value = &resolved;
-  for (std::size_t at = 0; !factor.key.empty() && at <= factor.key.size();) {
-    const std::size_t dot = std::min(factor.key.find('.', at), factor.key.size());
-    const std::string part = factor.key.substr(at, dot - at);
-    if (!value->is_object() || !value->contains(part)) return factor.levels[level].name;
-    value = &(*value)[part];
-    at = dot + 1;
+  std::istringstream parts(factor.key);
+  for (std::string part; value != nullptr && std::getline(parts, part, '.');) {
+    value = value->is_object() && value->contains(part) ? &value->at(part) : nullptr;
   }
-  return !factor.key.empty() && value->is_number() ? value->dump() : factor.levels[level].name;
+  return value != nullptr && value->is_number() ? value->dump() : factor.levels[level].name;
 }
 
 // A task that does `point` with `system`, for what is the same with every seed.
@@ -39,12 +35,12 @@ TaskChoice AtPoint(const Campaign& campaign, std::size_t point, std::size_t syst
 }  // namespace
 
 CampaignWork::CampaignWork(const fs::path& file, fs::path cache, const TaskRunner& runner)
-    : runner_(runner), cache_(std::move(cache)), program_(DigestOfProgram()) {
+    : runner_(runner), cache_(std::move(cache)), program_(DigestOfFile("/proc/self/exe")) {
   Input([&] { Resolve(file); });
 }
 
 void CampaignWork::Resolve(const fs::path& path) {
-  CampaignFile file(path, {runner_.Systems(), MetricNames()});
+  CampaignFile file(path, runner_.Systems());
   campaign_ = file.campaign();
   const std::size_t points = file.complete() ? Points(campaign_) : 0;
   for (std::size_t p = 0; p < points; ++p) {

@@ -61,4 +61,10 @@ class CampaignWork {
   std::string program_;
 };
 
+// Local engine: sequences are rendered first, then tasks run, each in a process of its own. Every one of these tasks
+// has a result afterwards, failed ones theirs. Rendering has no time-out. Sequences have their names. Throws
+// Interrupted; what is done by then stays. No thread may have been started before.
+void RunLocally(const CampaignWork& work, const std::filesystem::path& out, const std::vector<std::int64_t>& tasks,
+                const Share& share);
+
 }  // namespace vobench::campaign

@@ -1,6 +1,7 @@
 #include "tools/bench/live/live_server.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <httplib.h>
 #include <poll.h>
 #include <sys/eventfd.h>
@@ -45,9 +46,7 @@ std::string Token() {
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
     throw std::runtime_error("--view: the system gives no random numbers");
   }
-  std::string token;
-  for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);
-  return token;
+  return fmt::format("{:02x}", fmt::join(bytes, ""));
 }
 
 // One connection with bounds on its time and on the length of its request, which httplib's own does not have.

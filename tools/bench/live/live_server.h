@@ -19,14 +19,14 @@ class LiveServer {
 
   // Throws std::runtime_error where no port can be had.
   LiveServer();
-  ~LiveServer();  // from now on nobody answers; waits for no client
+  ~LiveServer();  // no request is answered from now on; waits for no client
   LiveServer(const LiveServer&) = delete;
   LiveServer& operator=(const LiveServer&) = delete;
 
   // "http://127.0.0.1:40123/0f...9c/". The page is there, the data in "data" below it.
   const std::string& address() const { return address_; }
 
-  // Whether somebody who may has asked since the last Publish.
+  // Whether there was a valid request since the last Publish.
   bool Asked() const;
   void Publish(std::string page, std::string data);
 

@@ -11,11 +11,6 @@
 #include "tools/judge/evaluation/text_file.h"
 
 namespace vobench {
-namespace {
-
-constexpr std::size_t kLeastFrames = 3;  // fewer cannot be aligned
-
-}  // namespace
 
 LiveView::LiveView(RunDescription description) : description_(std::move(description)) {
   fmt::print(stderr, "View: {}\n", server_.address());
@@ -27,6 +22,7 @@ bool LiveView::Asked(const vo::Frame& newest) {
 }
 
 void LiveView::Show(std::span<const Tracker> trackers, const Truth& truth, const evaluation::JudgeOptions& how) {
+  constexpr std::size_t kLeastFrames = 3;  // fewer cannot be aligned
   ResultData data;
   data.description = description_;
   std::vector<std::vector<FeatureMark>> marks;

@@ -17,7 +17,7 @@ class LiveView {
   // Says on stderr where it is. `description` as in run.json, as far as it is known. Throws std::runtime_error.
   explicit LiveView(RunDescription description);
 
-  // After a frame, which is kept: whether somebody has asked since the last time.
+  // After a frame, which is kept: whether there was a request since the last Show.
   bool Asked(const vo::Frame& newest);
   // Judges what there is, all of it, and shows it. No result depends on it. Throws std::runtime_error where what was
   // answered cannot be read.

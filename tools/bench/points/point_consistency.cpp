@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tools/base/settings/fields.h"
 #include "tools/bench/points/point_bound.h"
 
 namespace vobench {
@@ -14,15 +15,11 @@ namespace {
 constexpr int kExactRuns = 10;  // of each world, against which the verdict is held
 
 void Check(const ConsistencyOptions& options) {
-  std::ostringstream problems;
-  if (options.runs < 10) problems << "runs = " << options.runs << " must be 10 or more\n";
-  if (!(options.false_alarm > 0 && options.false_alarm < 0.5)) {
-    problems << "false_alarm = " << options.false_alarm << " must be above 0 and below 0.5\n";
-  }
-  std::string text = problems.str();
-  if (text.empty()) return;
-  text.pop_back();
-  throw std::invalid_argument(text);
+  settings::FieldCheck check;
+  check.Require(options.runs >= 10, "runs", options.runs, "must be 10 or more");
+  check.Require(options.false_alarm > 0 && options.false_alarm < 0.5, "false_alarm", options.false_alarm,
+                "must be above 0 and below 0.5");
+  if (!check.problems.empty()) throw std::invalid_argument(settings::Join(check.problems, "\n"));
 }
 
 // A covariance that is not positive definite has no scores: JudgeConsistency counts it as a frame without a belief.

@@ -13,7 +13,7 @@
 
 namespace vobench {
 
-// A new filter for each world. Of the world it may use what a filter is told: camera(), scenario(), TruthAt(0).
+// A new filter for each world. Of the world it may use what a filter is given: camera(), scenario(), TruthAt(0).
 using MakePointFilter = std::function<PointFilter(const sim::PointWorld& world)>;
 
 struct ConsistencyOptions {

@@ -15,6 +15,12 @@ struct Truth {
 };
 
 // Adds the truth of a frame.
-void Append(std::int64_t stamp_ns, const sim::Truth& of_frame, Truth& truth);
+inline void Append(std::int64_t stamp_ns, const sim::Truth& of_frame, Truth& truth) {
+  const auto vector = [](const glm::dvec3& v) { return Eigen::Vector3d(v.x, v.y, v.z); };
+  const glm::dquat& q = of_frame.q_WC;
+  truth.poses.push_back({stamp_ns, vector(of_frame.p_WC), {q.w, q.x, q.y, q.z}});
+  if (!truth.velocities) truth.velocities.emplace();
+  truth.velocities->push_back({stamp_ns, vector(of_frame.v_WC), vector(of_frame.w_WC_C)});
+}
 
 }  // namespace vobench

@@ -13,7 +13,6 @@
 #include "sim/world/scene.h"
 #include "simulator_digest.h"
 #include "tools/base/files.h"
-#include "tools/bench/campaign/digest.h"
 #include "tools/bench/errors.h"
 
 namespace vobench {

@@ -13,7 +13,6 @@
 #include "sim/scenario/scenario.h"
 #include "sim/simulator.h"
 #include "tools/base/files.h"
-#include "tools/bench/campaign/digest.h"
 #include "tools/bench/campaign/options.h"
 #include "tools/bench/campaign/task_runner.h"
 #include "tools/bench/errors.h"
@@ -26,9 +25,9 @@
 #include "tools/bench/systems/experiment.h"
 #include "tools/bench/systems/prior.h"
 #include "tools/bench/systems/systems.h"
-#include "tools/bench/tracking/point_tracker.h"
 #include "tools/bench/tracking/tracker.h"
 #include "tools/judge/evaluation/text_file.h"
+#include "vo/sequence/reader.h"
 
 namespace vobench {
 namespace fs = std::filesystem;

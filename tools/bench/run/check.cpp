@@ -55,7 +55,7 @@ void Check(const CheckOptions& options) {
   if (experiment.scenario.points) return CheckPoints(options, experiment.scenario);
   const sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, 1); });
   PrintWarnings(simulator.warnings());
-  const Truth truth = TruthOfFirst(simulator, simulator.frame_count());
+  const Truth truth = TruthOf(simulator, 0, simulator.frame_count());
   const sim::Scenario& scenario = experiment.scenario;
   PrintFrames(options, scenario, truth);
   fmt::print("  {:.2f} m of path, {} meshes, {} lights, seed {}\n", evaluation::PathLength(truth.poses),

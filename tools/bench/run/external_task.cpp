@@ -7,25 +7,14 @@
 #include "sim/sequence/layout.h"
 #include "sim/simulator.h"
 #include "tools/base/files.h"
-#include "tools/bench/campaign/calibration.h"
 #include "tools/bench/campaign/command.h"
 #include "tools/bench/errors.h"
+#include "tools/bench/run/calibration.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace vobench {
 namespace fs = std::filesystem;
 namespace {
-
-campaign::Calibration CalibrationOf(const sim::Scenario& scenario) {
-  const sim::CameraParams& c = scenario.camera;
-  campaign::Calibration out;
-  out.width = c.width, out.height = c.height;
-  out.fx = c.fx, out.fy = c.fy, out.cx = c.cx, out.cy = c.cy;
-  out.k1 = c.k1, out.k2 = c.k2, out.p1 = c.p1, out.p2 = c.p2, out.k3 = c.k3, out.k4 = c.k4;
-  out.fisheye = c.lens == sim::Lens::fisheye;
-  out.rate_hz = scenario.time.rate_hz;
-  return out;
-}
 
 fs::path WriteCalibrationFile(const campaign::ExternalSystem& system, const sim::Scenario& scenario,
                               const fs::path& sequence, const fs::path& folder) {
@@ -34,7 +23,8 @@ fs::path WriteCalibrationFile(const campaign::ExternalSystem& system, const sim:
   const bool yaml = system.calibration != campaign::CalibrationFormat::dso &&
                     system.calibration != campaign::CalibrationFormat::lsd_slam;
   const fs::path file = folder / (yaml ? "calibration.yaml" : "calibration.txt");
-  base::WriteFile(file, Input([&] { return campaign::WriteCalibration(CalibrationOf(scenario), system.calibration); }));
+  base::WriteFile(file,
+                  Input([&] { return WriteCalibration(scenario.camera, scenario.time.rate_hz, system.calibration); }));
   return file;
 }
 

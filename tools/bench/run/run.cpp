@@ -65,11 +65,11 @@ void Run(const RunOptions& options) {
       const vo::PreparedFrame frame(ToOdometry(*rendered));
       if (folder && IsKept(rendered->index, simulator.frame_count())) truth_pictures.Add(simulator, rendered->index);
       ForEach(odometries.size(), options.jobs, [&](std::size_t i) { odometries[i].Track(frame); });
-      if (view && view->Asked(frame.frame)) view->Show(odometries, TruthOfFirst(simulator, rendered->index + 1), how);
+      if (view && view->Asked(frame.frame)) view->Show(odometries, TruthOf(simulator, 0, rendered->index + 1), how);
       progress.Step();
     }
   }
-  const Truth truth = TruthOfFirst(simulator, simulator.frame_count());
+  const Truth truth = TruthOf(simulator, 0, simulator.frame_count());
   if (view) view->Show(odometries, truth, how);
   ResultData result;
   for (const Tracker& tracker : odometries) {

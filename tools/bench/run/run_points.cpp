@@ -16,7 +16,7 @@
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/prior.h"
 #include "tools/bench/tracking/map_file.h"
-#include "tools/bench/tracking/point_tracker.h"
+#include "tools/bench/tracking/tracker.h"
 #include "tools/bench/tracking/verdict_recorder.h"
 
 namespace vobench {
@@ -65,7 +65,7 @@ void Play(const RunOptions& options, const Experiment& experiment, const Folder&
     if (bound) frames.push_back(*frame);
     step();
   }
-  run.data = tracker.Result();
+  run.data = tracker.Result(tracker.map());
   evaluation::JudgedSeries& judged = run.data.judged.emplace(
       evaluation::JudgeSeries(run.data.run, truth.poses, truth.velocities, JudgeOptionsOf(experiment.prior)));
   run.nees = NeesByBlock(run.data.run, judged.consistency);

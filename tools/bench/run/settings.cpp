@@ -2,7 +2,7 @@
 
 #include "tools/bench/errors.h"
 #include "tools/bench/run/commands.h"
-#include "tools/bench/systems/settings_table.h"
+#include "tools/bench/systems/experiment.h"
 
 namespace vobench {
 

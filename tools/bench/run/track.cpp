@@ -15,7 +15,7 @@
 #include "tools/bench/run/commands.h"
 #include "tools/bench/run/run_common.h"
 #include "tools/bench/sequence/sequence_truth.h"
-#include "tools/bench/systems/odometry_settings.h"
+#include "tools/bench/systems/experiment.h"
 #include "tools/bench/systems/prior.h"
 #include "tools/bench/systems/systems.h"
 #include "tools/bench/tracking/map_file.h"

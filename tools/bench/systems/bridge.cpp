@@ -57,15 +57,9 @@ vo::PointFrame ToOdometry(const sim::PointFrame& frame) {
   return out;
 }
 
-Truth TruthOf(const sim::Simulator& simulator, std::int64_t frame) {
+Truth TruthOf(const sim::Simulator& simulator, std::int64_t first, std::int64_t frames) {
   Truth truth;
-  Append(simulator.StampNs(frame), simulator.TruthAt(frame), truth);
-  return truth;
-}
-
-Truth TruthOfFirst(const sim::Simulator& simulator, std::int64_t frames) {
-  Truth truth;
-  for (std::int64_t k = 0; k < frames; ++k) Append(simulator.StampNs(k), simulator.TruthAt(k), truth);
+  for (std::int64_t k = first; k < first + frames; ++k) Append(simulator.StampNs(k), simulator.TruthAt(k), truth);
   return truth;
 }
 

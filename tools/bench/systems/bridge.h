@@ -8,9 +8,9 @@
 #include "sim/points/point_world.h"
 #include "sim/simulator.h"
 #include "tools/bench/points/truth.h"
+#include "vo/base/source.h"
 #include "vo/geometry/camera.h"
 #include "vo/point_odometry.h"
-#include "vo/sequence/reader.h"
 
 namespace vobench {
 
@@ -21,9 +21,8 @@ vo::Camera CameraOf(const sim::Scenario& scenario);
 vo::Frame ToOdometry(const sim::Frame& frame);
 vo::PointFrame ToOdometry(const sim::PointFrame& frame);
 
-// The truth of one frame alone, and of so many, from the first on.
-Truth TruthOf(const sim::Simulator& simulator, std::int64_t frame);
-Truth TruthOfFirst(const sim::Simulator& simulator, std::int64_t frames);
+// The truth of so many frames from `first` on.
+Truth TruthOf(const sim::Simulator& simulator, std::int64_t first, std::int64_t frames = 1);
 
 // To stderr, one line each.
 void PrintWarnings(const std::vector<std::string>& warnings);

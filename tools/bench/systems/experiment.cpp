@@ -1,36 +1,17 @@
 #include "tools/bench/systems/experiment.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
-#include "tools/base/settings/settings.h"
+#include "tools/base/settings/field_reader.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/systems/bridge.h"
 
 namespace vobench {
 namespace {
-
-// One reader's problems that the other has not told already: both see the same file.
-class Collector {
- public:
-  template <class Reader>
-  void Read(const Reader& reader) {
-    try {
-      reader();
-    } catch (const settings::Error& error) {
-      for (const settings::Problem& problem : error.problems()) {
-        if (told_.insert(settings::ToString(problem)).second) problems_.push_back(problem);
-      }
-    }
-  }
-  void ThrowIfBad() const {
-    if (!problems_.empty()) throw settings::Error(problems_);
-  }
-
- private:
-  std::set<std::string> told_;
-  std::vector<settings::Problem> problems_;
-};
 
 void ReadOthers(const std::filesystem::path& file, const Overrides& overrides, Experiment& experiment) {
   settings::Document document = settings::Document::FromFile(file);
@@ -45,6 +26,13 @@ void ReadOthers(const std::filesystem::path& file, const Overrides& overrides, E
 
 }  // namespace
 
+void ReadOdometry(settings::Section section, vo::Params& params) {
+  settings::ReadFields(section, params);
+  section.Reject(vo::Problems(params));
+}
+
+void ReadPrior(settings::Section section, PriorSettings& prior) { settings::ReadFields(section, prior); }
+
 vo::Camera CameraForOdometry(const Experiment& experiment) {
   vo::Camera camera = CameraOf(experiment.scenario);
   camera.fx *= 1 + experiment.prior.focal_error;
@@ -54,10 +42,20 @@ vo::Camera CameraForOdometry(const Experiment& experiment) {
 
 Experiment LoadExperiment(const std::filesystem::path& scenario, const Overrides& overrides) {
   Experiment experiment;
-  Collector collector;
-  collector.Read([&] { experiment.scenario = sim::LoadScenario(scenario, overrides); });
-  collector.Read([&] { ReadOthers(scenario, overrides, experiment); });
-  collector.ThrowIfBad();
+  std::vector<settings::Problem> problems;
+  std::set<std::string> texts;  // both readers see the same file: each problem once
+  const auto read = [&](const auto& reader) {
+    try {
+      reader();
+    } catch (const settings::Error& error) {
+      for (const settings::Problem& problem : error.problems()) {
+        if (texts.insert(settings::ToString(problem)).second) problems.push_back(problem);
+      }
+    }
+  };
+  read([&] { experiment.scenario = sim::LoadScenario(scenario, overrides); });
+  read([&] { ReadOthers(scenario, overrides, experiment); });
+  if (!problems.empty()) throw settings::Error(problems);
   nlohmann::ordered_json all = nlohmann::ordered_json::parse(experiment.scenario.resolved);
   all.update(nlohmann::ordered_json::parse(experiment.resolved));
   experiment.resolved = all.dump(2);
@@ -66,6 +64,58 @@ Experiment LoadExperiment(const std::filesystem::path& scenario, const Overrides
 
 Experiment ReadExperiment(const std::filesystem::path& scenario, const Overrides& overrides) {
   return Input([&] { return LoadExperiment(scenario, overrides); });
+}
+
+std::vector<settings::FieldRow> SettingsTable() {
+  settings::FieldRows table;
+  sim::Scenario scenario;
+  table.Child("camera", scenario.camera);
+  scenario.camera.lens = sim::Lens::fisheye;
+  table.Child("camera", scenario.camera);
+  table.Child("sensor", scenario.sensor);
+  table.Child("render", scenario.render);
+  table.Child("time", scenario.time);
+  sim::SampledMotion sampled;
+  sampled.walls.emplace();
+  table.Child("trajectory", sampled);
+  sim::RecordedMotion recorded;
+  table.Child("trajectory", recorded);
+  for (const sim::PathKind kind :
+       {sim::PathKind::orbit, sim::PathKind::half_sphere, sim::PathKind::rpy, sim::PathKind::dolly}) {
+    sim::PathMotion path;
+    table.Child("trajectory", [&](auto& trajectory) { Visit(trajectory, kind, path); });
+  }
+  Visit(table, scenario.truth);
+  for (const sim::Landmarks kind : {sim::Landmarks::prior, sim::Landmarks::plane, sim::Landmarks::room}) {
+    sim::PointDescription points;
+    points.landmarks = kind;
+    table.Child("world", [&](auto& world) { world.Child("points", points); });
+  }
+  sim::MeshDescription mesh;
+  table.Child("world.meshes.N", mesh);
+  std::tuple<sim::AmbientLight, sim::SunLight, sim::PointLight, sim::RectLight, sim::SkyDescription> lights;
+  std::apply([&](auto&... light) { (table.Child("world.lights.N", light), ...); }, lights);
+  sim::SkyDescription sky;
+  sky.file = "FILE";
+  table.Child("world.lights.N", sky);
+  table.Child("world", scenario.world);
+  vo::Params odometry;
+  table.Child("odometry", odometry);
+  PriorSettings prior;
+  table.Child("prior", prior);
+  return table.rows;
+}
+
+std::string SettingsMarkdown() {
+  std::string text, last;
+  for (const auto& [key, value, range, help] : SettingsTable()) {
+    const std::string section = key.substr(0, key.find('.'));
+    if (section != last)
+      text += fmt::format("\n## {}\n\n| key | default | range | meaning |\n|---|---|---|---|\n", section);
+    last = section;
+    text += fmt::format("| `{}` | {} | {} | {} |\n", key, value, range, help);
+  }
+  return text;
 }
 
 }  // namespace vobench

@@ -3,15 +3,44 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "sim/scenario/scenario.h"
 #include "tools/base/settings/settings.h"
-#include "tools/bench/systems/odometry_settings.h"
+#include "vo/base/params.h"
 #include "vo/geometry/camera.h"
 
 namespace vobench {
 
 using settings::Overrides;
+
+// Prior of pose and velocity, and the camera's error: docs/getting_started.md.
+struct PriorSettings {
+  enum class Start {
+    truth,   // the true pose, and the true velocity with noise of the sigmas below: `run` only
+    origin,  // the identity, at rest
+  };
+  Start start = Start::truth;
+  double velocity_sigma = 0.1;      // [m/s]
+  double angular_rate_sigma = 0.1;  // [rad/s]
+  double focal_error = 0;
+};
+
+template <class V>
+void Visit(V& v, PriorSettings& p) {
+  using settings::Range;
+  v("start", p.start, {{"truth", PriorSettings::Start::truth}, {"origin", PriorSettings::Start::origin}},
+    "pose and velocity of the first frame: the true ones, the velocity with noise; or the identity, at rest");
+  v("velocity_sigma", p.velocity_sigma, {settings::Unit::speed, Range::Positive(), "of the velocity, per axis"});
+  v("angular_rate_sigma", p.angular_rate_sigma,
+    {settings::Unit::angular_rate, Range::Positive(), "of the angular velocity, per axis"});
+  v("focal_error", p.focal_error,
+    {Range{-0.9, 9}, "relative error of fx and fy of the camera that the odometry is given"});
+}
+
+// Sections `odometry` and `prior`. What is given is read, the rest stays. Problems go to the section's document.
+void ReadOdometry(settings::Section section, vo::Params& params);
+void ReadPrior(settings::Section section, PriorSettings& prior);
 
 struct Experiment {
   sim::Scenario scenario;
@@ -20,12 +49,17 @@ struct Experiment {
   std::string resolved;  // all of it, defaults included: JSON, which is a scenario again
 };
 
-// The camera as the odometry is told it: the scenario's with its rolling shutter, but for prior.focal_error.
+// The camera that the odometry is given: the scenario's with its rolling shutter, but for prior.focal_error.
 vo::Camera CameraForOdometry(const Experiment& experiment);
 
 // Throws BadInput with every problem of all three parts.
 Experiment ReadExperiment(const std::filesystem::path& scenario, const Overrides& overrides);
-// The same as settings::Error, for those who know better where a problem comes from.
+// The same as settings::Error, for callers that find the place of a problem themselves.
 Experiment LoadExperiment(const std::filesystem::path& scenario, const Overrides& overrides);
+
+// All settings, from the field tables of their structs: keys as --set takes them, sections in the order of a scenario.
+std::vector<settings::FieldRow> SettingsTable();
+// docs/settings.md from its first heading of a section on.
+std::string SettingsMarkdown();
 
 }  // namespace vobench

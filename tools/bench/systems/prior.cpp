@@ -1,26 +1,14 @@
 #include "tools/bench/systems/prior.h"
 
-#include <Random123/philox.h>
-
-#include <cmath>
-#include <numbers>
+#include "vo/base/random.h"
 
 namespace vobench {
 namespace {
 
-// Standard normals as a function of (seed, dimension), by Box and Muller. The stream's number keeps them apart from the
-// simulator's and the filter's, which may have the same seed.
+// Standard normal as a function of (seed, dimension). The second word of the counter keeps it apart from the draws of
+// simulator and filter, which may have the same seed.
 double Normal(std::uint64_t seed, std::uint32_t dimension) {
-  constexpr std::uint32_t kStream = 0x7072696f;  // "prio"
-  r123::Philox4x32 philox;
-  const r123::Philox4x32::ctr_type counter = {{dimension, kStream, 0, 0}};
-  const r123::Philox4x32::key_type key = {{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
-  const r123::Philox4x32::ctr_type bits = philox(counter, key);
-  const auto uniform = [&](std::size_t i) {  // on (0, 1), 53 bits
-    const std::uint64_t wide = (static_cast<std::uint64_t>(bits[i]) << 32 | bits[i + 1]) >> 11;
-    return (static_cast<double>(wide) + 0.5) * 0x1p-53;
-  };
-  return std::sqrt(-2 * std::log(uniform(0))) * std::cos(2 * std::numbers::pi * uniform(2));
+  return vo::Normal({seed, vo::Stream{}, dimension, 0x7072696f}, 0);  // "prio"
 }
 
 }  // namespace

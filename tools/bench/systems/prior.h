@@ -6,9 +6,9 @@
 #include "sim/motion/description.h"
 #include "sim/points/point_world.h"
 #include "tools/bench/points/truth.h"
-#include "tools/bench/systems/odometry_settings.h"
+#include "tools/bench/systems/experiment.h"
 #include "tools/judge/evaluation/summary.h"
-#include "vo/odometry.h"
+#include "vo/base/result.h"
 
 namespace vobench {
 
@@ -23,8 +23,8 @@ vo::Prior PriorAtOrigin(const PriorSettings& settings);
 vo::Prior PriorFromTruth(const PriorSettings& settings, const evaluation::StampedPose& pose,
                          const evaluation::StampedVelocity& velocity, std::uint64_t seed);
 
-// As the settings have it. A velocity that the scenario draws for each seed (velocity_sigma, angular_rate_sigma of a
-// sampled motion) is not told with noise of its own: the odometry is told what it is drawn about.
+// As the settings have it. Of a velocity that the scenario draws for each seed (velocity_sigma, angular_rate_sigma of a
+// sampled motion) the mean is the mean of that distribution, without noise of its own.
 vo::Prior PriorOf(const PriorSettings& settings, const sim::MotionDescription& motion, const Truth& start,
                   std::uint64_t seed);
 // The same at the start of a world.

@@ -1,5 +1,6 @@
 #include "tools/bench/systems/systems.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "tools/base/text.h"
@@ -11,31 +12,19 @@ const std::vector<std::string>& SystemNames() {
   return names;
 }
 
-namespace {
-
-void WithoutLag(vo::FilterParams& filter) {
+vo::Params ForSystem(const std::string& name, vo::Params params) {
+  if (std::ranges::count(SystemNames(), name) == 0) throw std::logic_error("no system " + name);
+  vo::FilterParams& filter = params.filter;
+  if (name == "rb2pf") {
+    filter.sampled = vo::Sampled::pose;
+    return params;
+  }
+  filter.sampled = name == "ekfslam" ? vo::Sampled::nothing : vo::Sampled::pose_and_velocity;
   filter.lag = 0;
   if (filter.weight == vo::Weight::uniform) filter.weight = vo::Weight::evidence;
-}
-
-}  // namespace
-
-vo::Params ForSystem(const std::string& name, vo::Params params) {
-  if (name == "rb2pf") {
-    params.filter.sampled = vo::Sampled::pose;
-  } else if (name == "rbpf") {
-    params.filter.sampled = vo::Sampled::pose_and_velocity;
-    WithoutLag(params.filter);
-  } else if (name == "fastslam1") {
-    params.filter.sampled = vo::Sampled::pose_and_velocity;
-    params.filter.proposal = vo::Proposal::bootstrap;
-    params.filter.weight = vo::Weight::importance;
-    WithoutLag(params.filter);
-  } else if (name == "ekfslam") {
-    params.filter.sampled = vo::Sampled::nothing;
-    WithoutLag(params.filter);
-  } else {
-    throw std::logic_error("no system " + name);
+  if (name == "fastslam1") {
+    filter.proposal = vo::Proposal::bootstrap;
+    filter.weight = vo::Weight::importance;
   }
   return params;
 }

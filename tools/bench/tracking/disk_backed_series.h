@@ -14,8 +14,8 @@
 
 namespace vobench {
 
-// A file that nobody else sees and that is gone with this object, however the program ends. It is made when something
-// is first written. Throws std::runtime_error naming the folder and the reason (disk full, nobody may write there).
+// Unnamed file that ends with this object, however the program ends. It is made when something is first written. Throws
+// std::runtime_error naming the folder and the reason (disk full, no permission).
 class SeriesFile {
  public:
   explicit SeriesFile(std::filesystem::path folder) : folder_(std::move(folder)) {}

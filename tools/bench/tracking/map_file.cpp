@@ -15,8 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 bool IsIn(const fs::path& inner, const fs::path& outer) {
-  const fs::path path = fs::weakly_canonical(inner), folder = fs::weakly_canonical(CleanPath(outer));
-  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+  return *fs::weakly_canonical(inner).lexically_relative(fs::weakly_canonical(CleanPath(outer))).begin() != "..";
 }
 
 }  // namespace

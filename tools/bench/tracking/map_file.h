@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tools/bench/result/run_json.h"
-#include "vo/odometry.h"
+#include "vo/base/result.h"
 
 namespace vobench {
 

@@ -10,14 +10,9 @@
 #include "tools/base/files.h"
 
 namespace vobench {
-namespace {
-
-constexpr int kWidest = 480;
-constexpr int kQuality = 80;
-
-}  // namespace
 
 std::string Jpeg(const cv::Mat& image) {
+  constexpr int kWidest = 480, kQuality = 80;
   cv::Mat small = image;
   if (image.cols > kWidest) {
     const int height =

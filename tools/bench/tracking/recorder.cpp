@@ -32,26 +32,13 @@ evaluation::FrameRecord RecordOf(const vo::Estimate& estimate) {
   return record;
 }
 
-FeatureMark MarkOf(const vo::FeatureView& feature) {
-  using Status = FeatureMark::Status;
-  switch (feature.status) {
-    case vo::FeatureView::Status::matched:
-      return {Status::matched, feature.predicted, feature.pixel, feature.S};
-    case vo::FeatureView::Status::missed:
-      return {Status::missed, feature.predicted, feature.pixel, feature.S};
-    case vo::FeatureView::Status::rejected:
-      return {Status::rejected, feature.predicted, feature.pixel, feature.S};
-    case vo::FeatureView::Status::fresh:
-      return {Status::fresh, feature.pixel, feature.pixel, Eigen::Matrix2d::Zero()};
-  }
-  return {};
-}
-
 }  // namespace
 
 std::vector<FeatureMark> MarksOf(const std::vector<vo::FeatureView>& features) {
   std::vector<FeatureMark> marks;
-  for (const vo::FeatureView& feature : features) marks.push_back(MarkOf(feature));
+  for (const vo::FeatureView& f : features) {  // the statuses are the same, in the same order
+    marks.push_back({static_cast<FeatureMark::Status>(f.status), f.predicted, f.pixel, f.S});
+  }
   return marks;
 }
 
@@ -70,7 +57,7 @@ Recorder::Recorder(std::optional<fs::path> folder) : folder_(std::move(folder)),
   if (folder_) fs::create_directories(*folder_);
 }
 
-Recorder::Answer Recorder::AnswerOf(const vo::Estimate& estimate) {
+void Recorder::Add(const vo::Estimate& estimate) {
   Answer answer{};
   answer.stamp_ns = estimate.stamp_ns;
   Eigen::Vector3d::Map(answer.p_WC.data()) = estimate.pose.p_WC;
@@ -79,10 +66,8 @@ Recorder::Answer Recorder::AnswerOf(const vo::Estimate& estimate) {
   Eigen::Vector3d::Map(answer.w_WC_C.data()) = estimate.w_WC_C;
   evaluation::Matrix12d::Map(answer.covariance.data()) = estimate.covariance;
   answer.frame = RecordOf(estimate);
-  return answer;
+  answers_.Add(answer);
 }
-
-void Recorder::Add(const vo::Estimate& estimate) { answers_.Add(AnswerOf(estimate)); }
 
 evaluation::EstimateRun Recorder::Run() const {
   evaluation::EstimateRun run;

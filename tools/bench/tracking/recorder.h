@@ -11,7 +11,8 @@
 #include "tools/bench/result/result.h"
 #include "tools/bench/tracking/disk_backed_series.h"
 #include "tools/judge/evaluation/estimate_run.h"
-#include "vo/odometry.h"
+#include "vo/base/result.h"
+#include "vo/base/source.h"
 
 namespace vobench {
 
@@ -48,7 +49,6 @@ class Recorder {
     std::array<double, 144> covariance;
     evaluation::FrameRecord frame;
   };
-  static Answer AnswerOf(const vo::Estimate& estimate);
 
   std::optional<std::filesystem::path> folder_;
   std::int64_t expected_frames_ = 0;

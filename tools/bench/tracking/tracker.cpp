@@ -17,12 +17,17 @@ std::optional<std::filesystem::path> Within(const std::optional<std::filesystem:
 
 }  // namespace
 
-Tracker::Tracker(const TrackerSetup& setup, const vo::Camera& camera, std::int64_t frames,
-                 const std::optional<std::filesystem::path>& out, const std::string& folder)
+template <class Odometry>
+RecordedOdometry<Odometry>::RecordedOdometry(const TrackerSetup& setup, const vo::Camera& camera,
+                                             const std::string& folder, Recorder recorder)
     : entry_{setup.system, setup.seed, folder, 0},
       odometry_(
-          Input([&] { return vo::Odometry(camera, ForSystem(setup.system, setup.params), setup.prior, setup.seed); })),
-      recorder_(frames, Within(out, folder)) {}
+          Input([&] { return Odometry(camera, ForSystem(setup.system, setup.params), setup.prior, setup.seed); })),
+      recorder_(std::move(recorder)) {}
+
+Tracker::Tracker(const TrackerSetup& setup, const vo::Camera& camera, std::int64_t frames,
+                 const std::optional<std::filesystem::path>& out, const std::string& folder)
+    : RecordedOdometry(setup, camera, folder, Recorder(frames, Within(out, folder))) {}
 
 void Tracker::Track(const vo::PreparedFrame& prepared) {
   const Clock clock;
@@ -35,6 +40,18 @@ void Tracker::Track(const vo::PreparedFrame& prepared) {
   }();
   entry_.seconds += 1e-3 * prepared.ms + clock.seconds();
   recorder_.Add(prepared.frame, estimate, odometry_.Features());
+}
+
+PointTracker::PointTracker(const TrackerSetup& setup, const vo::Camera& camera,
+                           const std::optional<std::filesystem::path>& out, const std::string& folder)
+    : RecordedOdometry(setup, camera, folder, Recorder(Within(out, folder))) {}
+
+vo::Estimate PointTracker::Track(const vo::PointFrame& frame) {
+  const Clock clock;
+  const vo::Estimate estimate = odometry_.Track(frame);
+  entry_.seconds += clock.seconds();
+  recorder_.Add(estimate);
+  return estimate;
 }
 
 }  // namespace vobench

@@ -1,14 +1,16 @@
-// One odometry on image frames, with the record of its run.
+// One odometry with the record of its run: on image frames, or on a world of points with known identity.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tools/bench/result/run_json.h"
 #include "tools/bench/tracking/recorder.h"
 #include "vo/odometry.h"
+#include "vo/point_odometry.h"
 
 namespace vobench {
 
@@ -20,7 +22,27 @@ struct TrackerSetup {
   vo::Prior prior;
 };
 
-class Tracker {
+// What both kinds have in common.
+template <class Odometry>
+class RecordedOdometry {
+ public:
+  // All of it, to be written and drawn. Throws std::runtime_error.
+  RunData Result(const std::vector<vo::MapPoint>& map) const { return recorder_.Result(entry_, map); }
+
+  std::vector<vo::MapPoint> map() const { return odometry_.Map(); }
+  const RunEntry& entry() const { return entry_; }
+  std::size_t frames() const { return recorder_.frames(); }
+  evaluation::EstimateRun Estimates() const { return recorder_.Run(); }  // all of them, read from the spool
+
+ protected:
+  RecordedOdometry(const TrackerSetup& setup, const vo::Camera& camera, const std::string& folder, Recorder recorder);
+
+  RunEntry entry_;
+  Odometry odometry_;
+  Recorder recorder_;
+};
+
+class Tracker : public RecordedOdometry<vo::Odometry> {
  public:
   // `folder`, if any, is the run folder of the finished run inside `out`: pictures go there on the way. Throws
   // BadInput.
@@ -28,23 +50,22 @@ class Tracker {
           const std::optional<std::filesystem::path>& out, const std::string& folder);
 
   // Throws BadInput when the frame does not fit the camera, or time goes back: nothing has changed then. Throws
-  // vo::FilterFault: what was recorded before stands, the map is not to be believed any more.
+  // vo::FilterFault: what was recorded before stands, the map is invalid.
   void Track(const vo::Frame& frame) { Track(vo::PreparedFrame(frame)); }
   void Track(const vo::PreparedFrame& prepared);
 
-  // All of it, to be written and drawn. Throws std::runtime_error.
-  RunData Result(const std::vector<vo::MapPoint>& map) const { return recorder_.Result(entry_, map); }
-
-  std::vector<vo::MapPoint> map() const { return odometry_.Map(); }
   std::vector<FeatureMark> marks() const { return MarksOf(odometry_.Features()); }  // of the last frame
-  const RunEntry& entry() const { return entry_; }
-  std::size_t frames() const { return recorder_.frames(); }
-  evaluation::EstimateRun Estimates() const { return recorder_.Run(); }  // all of them, read from the spool
+};
 
- private:
-  RunEntry entry_;
-  vo::Odometry odometry_;
-  Recorder recorder_;
+class PointTracker : public RecordedOdometry<vo::PointOdometry> {
+ public:
+  // As of Tracker.
+  PointTracker(const TrackerSetup& setup, const vo::Camera& camera, const std::optional<std::filesystem::path>& out,
+               const std::string& folder);
+
+  vo::Estimate Track(const vo::PointFrame& frame);
+  // What the last estimate is the moments of.
+  const std::vector<vo::BeliefComponent>& mixture() const { return odometry_.Mixture(); }
 };
 
 }  // namespace vobench

@@ -8,11 +8,6 @@
 #include "vo/geometry/so3.h"
 
 namespace vobench {
-namespace {
-
-constexpr int kDraws = 99;  // ranks 0 ... 99
-
-}  // namespace
 
 std::vector<std::size_t> RankFrames(std::size_t frames, double rate_hz) {
   if (frames < 2) return {};
@@ -55,6 +50,7 @@ evaluation::VerdictRun VerdictRecorder::Finish(const std::vector<evaluation::Vec
     throw std::invalid_argument("VerdictRecorder: errors of " + std::to_string(errors.size()) + " and NEES of " +
                                 std::to_string(nees.size()) + " frames, of " + std::to_string(frames_.size()));
   }
+  constexpr int kDraws = 99;  // ranks 0 ... 99
   evaluation::VerdictRun run;
   for (std::size_t k = 0; k < frames_.size(); ++k) {
     const Frame& frame = frames_[k];

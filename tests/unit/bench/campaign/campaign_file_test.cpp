@@ -13,12 +13,12 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Pair;
 
-const Vocabulary kWords = {{"rb2pf", "rbpf"}, MetricNames()};
+const std::vector<std::string> kSystems = {"rb2pf", "rbpf"};
 
 class CampaignFileTest : public testing::Test {
  protected:
   Campaign Read(const std::string& text) {
-    CampaignFile file(here_.Write("c.yaml", text), kWords);
+    CampaignFile file(here_.Write("c.yaml", text), kSystems);
     file.ThrowIfBad();
     return file.campaign();
   }
@@ -151,7 +151,7 @@ tabels: []
 }
 
 TEST_F(CampaignFileTest, SettingProblemsOnceAndInPlace) {
-  CampaignFile file(here_.Write("c.yaml", kFull), kWords);
+  CampaignFile file(here_.Write("c.yaml", kFull), kSystems);
   for (std::int64_t k = 0; k < Tasks(file.campaign()); ++k) {
     const TaskChoice choice = ChoiceOf(file.campaign(), k);
     file.Reject(choice, "sensor.exposure", "too long");

@@ -26,7 +26,7 @@ vary:
 systems: [rb2pf, rbpf]
 seeds: 1..8
 )" + curves),
-                      {{"rb2pf", "rbpf"}, MetricNames()});
+                      {"rb2pf", "rbpf"});
     file.ThrowIfBad();
     return file.campaign();
   }

@@ -13,11 +13,10 @@
 
 #include "tests/unit/bench/campaign/folder.h"
 #include "tools/bench/campaign/command.h"
-#include "tools/bench/campaign/memory.h"
 #include "tools/bench/campaign/output.h"
 #include "tools/bench/campaign/process_pool.h"
 #include "tools/bench/campaign/sequence_cache.h"
-#include "tools/bench/campaign/task_folder.h"
+#include "tools/bench/errors.h"
 
 namespace vobench::campaign {
 namespace {
@@ -87,9 +86,9 @@ TEST(Memory, NoMoreProcessesThanFit) {
   EXPECT_EQ(ShareOut(10, 4, 3).processes, 3);
   EXPECT_EQ(ShareOut(10, 2, 3).processes, 2);
   EXPECT_EQ(ShareOut(10, 2, 30).processes, 1) << "one at least";
-  EXPECT_EQ(ShareOut(10, 2, 0).bytes, 5u);
-  EXPECT_EQ(ShareOut(1, 2, 0).bytes, 1u) << "0 would be no limit";
-  EXPECT_EQ(ShareOut(0, 2, 0).bytes, 1u);
+  EXPECT_EQ(ShareOut(10, 2, 0).limits.memory_bytes, 5u);
+  EXPECT_EQ(ShareOut(1, 2, 0).limits.memory_bytes, 1u) << "0 would be no limit";
+  EXPECT_EQ(ShareOut(0, 2, 0).limits.memory_bytes, 1u);
   EXPECT_GT(AvailableMemory(), 1'000'000u);
 }
 
@@ -299,7 +298,7 @@ TEST(PrepareOutput, ManyMayBeginAtOnce) {
     ASSERT_EQ(here.Read(std::to_string(trial) + "/campaign.json"), "{}");
   }
   here.Write("other/notes.txt", "mine");
-  EXPECT_THROW(PrepareOutput(here / "other", "{}"), std::invalid_argument);
+  EXPECT_THROW(PrepareOutput(here / "other", "{}"), BadInput);
 }
 
 TEST(RemoveFailed, LeavesWhatIsDone) {

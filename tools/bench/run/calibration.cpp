@@ -1,19 +1,25 @@
-#include "tools/bench/campaign/calibration.h"
+#include "tools/bench/run/calibration.h"
 
 #include <fmt/format.h>
 
 #include <stdexcept>
 
-namespace vobench::campaign {
+namespace vobench {
 namespace {
 
-bool Distorted(const Calibration& c) {
+using campaign::CalibrationFormat;
+using sim::CameraParams;
+
+bool IsFisheye(const CameraParams& c) { return c.lens == sim::Lens::fisheye; }
+
+bool Distorted(const CameraParams& c) {
   return c.k1 != 0 || c.k2 != 0 || c.p1 != 0 || c.p2 != 0 || c.k3 != 0 || c.k4 != 0;
 }
 
 void Refuse(bool impossible, CalibrationFormat format, const char* why) {
-  if (impossible)
+  if (impossible) {
     throw std::invalid_argument(fmt::format("a calibration for {} has no place for {}", Name(format), why));
+  }
 }
 
 // What both ORB-SLAMs want beside the camera: the values of their own samples for TUM RGB-D.
@@ -42,17 +48,17 @@ std::string Real(double value) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
-std::string Orb(const Calibration& c, CalibrationFormat format) {
+std::string Orb(const CameraParams& c, double rate_hz, CalibrationFormat format) {
   const bool three = format == CalibrationFormat::orb_slam3;
-  Refuse(c.fisheye && !three, format, "a fisheye lens");
+  Refuse(IsFisheye(c) && !three, format, "a fisheye lens");
   const std::string name = three ? "Camera1" : "Camera";
   std::string text = "%YAML:1.0\n---\n";
   if (three) text += "File.version: \"1.0\"\n";
-  text += fmt::format("Camera.type: \"{}\"\n", c.fisheye ? "KannalaBrandt8" : "PinHole");
+  text += fmt::format("Camera.type: \"{}\"\n", IsFisheye(c) ? "KannalaBrandt8" : "PinHole");
   const auto add = [&](const char* key, double value) { text += fmt::format("{}.{}: {}\n", name, key, Real(value)); };
   add("fx", c.fx), add("fy", c.fy), add("cx", c.cx), add("cy", c.cy);
   add("k1", c.k1), add("k2", c.k2);
-  if (c.fisheye) {
+  if (IsFisheye(c)) {
     add("k3", c.k3), add("k4", c.k4);
   } else {
     add("p1", c.p1), add("p2", c.p2);
@@ -60,35 +66,35 @@ std::string Orb(const Calibration& c, CalibrationFormat format) {
   }
   text += fmt::format("Camera.width: {}\nCamera.height: {}\n", c.width, c.height);
   // ORB-SLAM3 reads a whole number here and refuses any other.
-  text += three ? fmt::format("Camera.fps: {:.0f}\n", c.rate_hz) : fmt::format("Camera.fps: {}\n", Real(c.rate_hz));
+  text += three ? fmt::format("Camera.fps: {:.0f}\n", rate_hz) : fmt::format("Camera.fps: {}\n", Real(rate_hz));
   return text + "Camera.RGB: 1\n" + kOrb;
 }
 
 // Four lines: the camera in shares of the size, the size, how to rectify, the size after it. Rectified images are
 // cropped; those without distortion stay as they are.
-std::string Lines(const Calibration& c, const std::string& model, double offset, const std::string& lens) {
+std::string Lines(const CameraParams& c, const std::string& model, double offset, const std::string& lens) {
   return fmt::format("{}{} {} {} {}{}\n{} {}\n{}\n{} {}\n", model, c.fx / c.width, c.fy / c.height,
                      (c.cx + offset) / c.width, (c.cy + offset) / c.height, lens, c.width, c.height,
-                     Distorted(c) || c.fisheye ? "crop" : "none", c.width, c.height);
+                     Distorted(c) || IsFisheye(c) ? "crop" : "none", c.width, c.height);
 }
 
-std::string Dso(const Calibration& c) {
-  if (c.fisheye) return Lines(c, "EquiDistant ", 0.5, fmt::format(" {} {} {} {}", c.k1, c.k2, c.k3, c.k4));
+std::string Dso(const CameraParams& c) {
+  if (IsFisheye(c)) return Lines(c, "EquiDistant ", 0.5, fmt::format(" {} {} {} {}", c.k1, c.k2, c.k3, c.k4));
   Refuse(c.k3 != 0, CalibrationFormat::dso, "k3");
   if (!Distorted(c)) return Lines(c, "Pinhole ", 0.5, " 0");
   return Lines(c, "RadTan ", 0.5, fmt::format(" {} {} {} {}", c.k1, c.k2, c.p1, c.p2));
 }
 
 // With eight numbers its reader uses OpenCV's convention, with five its own.
-std::string LsdSlam(const Calibration& c) {
-  Refuse(c.fisheye, CalibrationFormat::lsd_slam, "a fisheye lens");
+std::string LsdSlam(const CameraParams& c) {
+  Refuse(IsFisheye(c), CalibrationFormat::lsd_slam, "a fisheye lens");
   Refuse(c.k3 != 0, CalibrationFormat::lsd_slam, "k3");
   if (!Distorted(c)) return Lines(c, "", 0.5, " 0");
   return Lines(c, "", 0, fmt::format(" {} {} {} {}", c.k1, c.k2, c.p1, c.p2));
 }
 
-std::string Svo(const Calibration& c) {
-  Refuse(c.fisheye, CalibrationFormat::svo, "a fisheye lens");
+std::string Svo(const CameraParams& c) {
+  Refuse(IsFisheye(c), CalibrationFormat::svo, "a fisheye lens");
   Refuse(c.k3 != 0, CalibrationFormat::svo, "k3");
   return fmt::format(
       "cam_model: Pinhole\ncam_width: {}\ncam_height: {}\ncam_fx: {}\ncam_fy: {}\ncam_cx: {}\ncam_cy: {}\n"
@@ -99,11 +105,11 @@ std::string Svo(const Calibration& c) {
 
 }  // namespace
 
-std::string WriteCalibration(const Calibration& camera, CalibrationFormat format) {
+std::string WriteCalibration(const CameraParams& camera, double rate_hz, CalibrationFormat format) {
   switch (format) {
     case CalibrationFormat::orb_slam2:
     case CalibrationFormat::orb_slam3:
-      return Orb(camera, format);
+      return Orb(camera, rate_hz, format);
     case CalibrationFormat::dso:
       return Dso(camera);
     case CalibrationFormat::svo:
@@ -117,4 +123,4 @@ std::string WriteCalibration(const Calibration& camera, CalibrationFormat format
   return "";
 }
 
-}  // namespace vobench::campaign
+}  // namespace vobench

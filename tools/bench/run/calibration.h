@@ -1,0 +1,18 @@
+// Calibration file of a camera as other systems read it.
+// Source: the sample files and readers of ORB-SLAM2 and 3 (Settings), DSO (README, "Geometric Calibration File"), SVO
+// (svo_ros/param/camera_pinhole.yaml), LSD-SLAM (Undistorter.cpp). What each counts from differs: with the
+// centre of the first pixel at (0, 0), as here, DSO and LSD-SLAM (without distortion) want (c + 0.5) / size.
+#pragma once
+
+#include <string>
+
+#include "sim/sensor/camera.h"
+#include "tools/bench/campaign/external_system.h"
+
+namespace vobench {
+
+// The text of the file; empty for formats without a file of their own. Throws std::invalid_argument where the format
+// has no place for this lens.
+std::string WriteCalibration(const sim::CameraParams& camera, double rate_hz, campaign::CalibrationFormat format);
+
+}  // namespace vobench
