@@ -15,6 +15,7 @@
 #include "sim/world/scene.h"
 #include "simulator_digest.h"
 #include "tools/base/files.h"
+#include "tools/base/text.h"
 #include "tools/bench/campaign/digest.h"
 #include "tools/bench/errors.h"
 
