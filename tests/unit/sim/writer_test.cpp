@@ -16,6 +16,7 @@
 #include "sim/sequence/layout.h"
 #include "tests/unit/sim/small_world.h"
 #include "tools/base/files.h"
+#include "tools/base/text.h"
 
 namespace sim {
 namespace {
