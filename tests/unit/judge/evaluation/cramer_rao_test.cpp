@@ -176,7 +176,7 @@ TEST(LinearisedBound, RefusesWhatCannotBe) {
   TestRandom random(84);
   PointWorldProblem problem = MakePointWorld(random, 5, 3);
   problem.sigma = 0;
-  EXPECT_THROW(SimulateLinearised(problem, 0).bound, InputError);
+  EXPECT_THROW(SimulateLinearised(problem, 0), InputError);
 }
 
 // The linearised world's exact filter is honest, at every block: mean NEES of 400 runs at three frames against a band
