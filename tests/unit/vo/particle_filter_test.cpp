@@ -12,7 +12,7 @@
 #include "tests/unit/vo/landmark_field.h"
 #include "tests/unit/vo/wall.h"
 #include "vo/base/random.h"
-#include "vo/filter/resampling.h"
+#include "vo/filter/particle_set.h"
 #include "vo/geometry/so3.h"
 
 namespace {
