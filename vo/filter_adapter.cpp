@@ -1,6 +1,5 @@
 #include "vo/filter_adapter.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -20,8 +19,7 @@ void RequireValid(const Params& params) {
 bool IsCovariance(const Matrix6& P) {
   constexpr double kRounding = 1e-9;  // of its largest entry
   return P.allFinite() && (P - P.transpose()).cwiseAbs().maxCoeff() <= kRounding * P.cwiseAbs().maxCoeff() &&
-         Eigen::SelfAdjointEigenSolver<Matrix6>(P, Eigen::EigenvaluesOnly).eigenvalues().minCoeff() >=
-             -kRounding * P.cwiseAbs().maxCoeff();
+         LeastEigenvalue(P) >= -kRounding * P.cwiseAbs().maxCoeff();
 }
 
 void RequireValid(const Prior& prior) {
@@ -66,15 +64,14 @@ Estimate MakeEstimate(const Filter& filter, const ScaleAmbiguity& scale, std::in
 std::vector<MapPoint> MakeMap(const Filter& filter, const ScaleAmbiguity& scale) {
   std::vector<MapPoint> points;
   const std::vector<Filter::LandmarkBelief> beliefs = filter.LandmarkBeliefs();
-  const std::vector<double> sigmas = filter.InverseDepthSigmas();
-  std::vector<std::optional<PointMoments>> moments = filter.LandmarkPoints();
+  const std::vector<Filter::LandmarkSpread> spreads = filter.LandmarkSpreads();
   for (std::size_t n = 0; n < beliefs.size(); ++n) {
     Filter::LandmarkBelief belief = beliefs[n];
-    belief.inverse_depth_sigma = sigmas[n];
-    if (moments[n]) moments[n] = scale.Moments(*moments[n]);
+    belief.inverse_depth_sigma = spreads[n].inverse_depth_sigma;
     points.push_back({0, scale.ToAnswer(belief.X_W), scale.InverseToAnswer(belief.inverse_depth),
                       scale.InverseDepthSigma(belief.inverse_depth, belief.inverse_depth_sigma), false,
-                      belief.relative_sigma(), moments[n]});
+                      belief.relative_sigma(), std::nullopt});
+    if (spreads[n].place) points.back().moments = scale.Moments(*spreads[n].place);
   }
   return points;
 }

@@ -7,13 +7,14 @@
 #include <utility>
 
 #include "vo/base/stopwatch.h"
+#include "vo/filter/landmark_table.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/filter/watched_filter.h"
 #include "vo/filter_adapter.h"
 #include "vo/frontend/association.h"
 #include "vo/frontend/new_features.h"
 #include "vo/frontend/rolling_shutter.h"
-#include "vo/map/forgetting.h"
+#include "vo/map/landmark_record.h"
 
 namespace vo {
 
@@ -30,16 +31,134 @@ struct Odometry::Impl {
         border_px(std::max(first_sampler.margin(), Patch::kRadius + 1)),
         detector(camera, params, border_px) {}
 
-  void Require(const Frame& frame) const;
-  Estimate Process(const PreparedFrame& frame);
-  void Begin(const PreparedFrame& frame, const Vector6& velocity);
-  void Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics);
-  void RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& diagnostics);
-  void Update(std::span<const Match> matches);
-  std::vector<NewFeature> DetectFeatures(const PreparedFrame& frame);
-  void Forget(std::size_t wanted);
-  void AddLandmarks(std::vector<NewFeature> features, const PreparedFrame& frame, const Vector6& velocity);
-  FirstView AddRecord(const NewFeature& feature, const PreparedFrame& frame, const Vector6& velocity);
+  void Require(const Frame& frame) const {
+    if (frame.image.cols != camera.width || frame.image.rows != camera.height)
+      throw std::invalid_argument("image is " + std::to_string(frame.image.cols) + " x " +
+                                  std::to_string(frame.image.rows) + ", the camera " + std::to_string(camera.width) +
+                                  " x " + std::to_string(camera.height));
+    if (last_stamp_ns) RequireIncreasing(frame.stamp_ns, *last_stamp_ns);
+  }
+
+  Estimate Process(const PreparedFrame& frame) {
+    FrameDiagnostics diagnostics;
+    if (last_stamp_ns) {
+      Follow(frame, diagnostics);
+      if (first_frame) RestartFirstFrame(frame, diagnostics);
+    } else {
+      Stopwatch watch;
+      if (shutter.on()) {
+        first_frame = frame;
+        first_frame->grey = frame.grey.clone();  // the memory is the caller's
+      }
+      Begin(frame, filter.belief().velocity);
+      diagnostics.ms_features += watch.Lap();
+    }
+    diagnostics.ms_features += frame.ms;
+    diagnostics.landmarks = static_cast<int>(records.size());
+    diagnostics.permanent = static_cast<int>(
+        std::count_if(records.begin(), records.end(), [](const LandmarkRecord& r) { return r.permanent; }));
+    return MakeEstimate(filter, scale, frame.frame.stamp_ns, diagnostics);
+  }
+
+  // First frame: its landmarks are seen at the prior pose, with `velocity` during the readout.
+  void Begin(const PreparedFrame& frame, const Vector6& velocity) {
+    last_stamp_ns = frame.frame.stamp_ns;
+    since_update = {0, VelocityCovariance()};
+    AddLandmarks(DetectFeatures(frame), frame, velocity);
+  }
+
+  // One iteration of Algorithm 1; sections of docs/algorithm.md.
+  void Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) {
+    const double dt = static_cast<double>(frame.frame.stamp_ns - *last_stamp_ns) * 1e-9;
+    Stopwatch watch;
+    filter.Predict(dt);  // line 2: (6)-(9), (12), (13)
+    since_update.dt_s += dt;
+    Association association =
+        Associate(filter, records, camera, frame, border_px, since_update, params);  // line 3: section 7
+    diagnostics.ms_matching += watch.Lap();
+
+    Update(association.matches);                       // lines 4-11: (15)-(17), (37)-(43)
+    UpdateScores(association, params.score, records);  // section 6: (44)-(49)
+    diagnostics.searched = static_cast<int>(association.searched.size());
+    diagnostics.matched = static_cast<int>(association.matches.size());
+    diagnostics.nis = association.nis;
+    diagnostics.nis_dof = 2 * diagnostics.matched;
+    views = std::move(association.views);
+    left_out = std::move(association.left_out);
+    diagnostics.ms_filter += watch.Lap();
+    last_stamp_ns = frame.frame.stamp_ns;
+
+    std::vector<NewFeature> features = DetectFeatures(frame);            // section 7
+    Forget(features.size());                                             // section 6: deletion
+    AddLandmarks(std::move(features), frame, filter.belief().velocity);  // section 5
+    diagnostics.ms_features += watch.Lap();
+  }
+
+  // The velocity in the first frame is that of the prior, and its error shears the map through the rolling shutter. The
+  // second frame measures it: both frames are processed again with the result, as a fixed-point iteration.
+  void RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& diagnostics) {
+    constexpr int kRounds = 6;
+    const PreparedFrame first = *std::exchange(first_frame, std::nullopt);
+    const double dt = static_cast<double>(second.frame.stamp_ns - first.frame.stamp_ns) * 1e-9;
+    for (int round = 1; round < kRounds && diagnostics.tracked(); ++round) {
+      const Vector6 velocity = MinusNear(filter.belief().pose, prior.pose, dt * prior.w_WC_C) / dt;
+      *this = Impl(camera, params, prior, seed);
+      Begin(first, velocity);
+      Follow(second, diagnostics);
+    }
+  }
+
+  void Update(std::span<const Match> matches) {
+    scale.AbsorbChange(filter.Update(matches).scale_change);
+    if (!matches.empty()) since_update = {0, VelocityCovariance()};
+  }
+
+  // Away from found landmarks and from predicted ones that were not searched for.
+  std::vector<NewFeature> DetectFeatures(const PreparedFrame& frame) {
+    std::vector<Eigen::Vector2d> occupied = left_out;
+    for (const FeatureView& view : views)
+      if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
+    return detector.Detect(frame, std::move(occupied));
+  }
+
+  // Deletes landmarks, also to make room for `wanted` new ones; those searched for in this frame are kept.
+  void Forget(std::size_t wanted) {
+    const std::vector<Filter::LandmarkBelief> beliefs = filter.LandmarkBeliefs();
+    for (std::size_t n = 0; n < records.size(); ++n)
+      records[n].permanent = beliefs[n].relative_sigma() < params.landmark.permanent_ratio;
+    const std::vector<bool> keep = LandmarksToKeep(records, wanted, params.landmark, params.score);
+    filter.KeepLandmarks(keep);
+    Compact(keep, records);
+  }
+
+  void AddLandmarks(std::vector<NewFeature> features, const PreparedFrame& frame, const Vector6& velocity) {
+    const auto capacity = static_cast<std::size_t>(params.landmark.max_landmarks) - records.size();
+    std::vector<FirstView> first_views;
+    for (const NewFeature& feature : LimitToCapacity(std::move(features), capacity, camera))
+      first_views.push_back(AddRecord(feature, frame, velocity));
+    filter.AddLandmarks(first_views);
+  }
+
+  FirstView AddRecord(const NewFeature& feature, const PreparedFrame& frame, const Vector6& velocity) {
+    const Eigen::Vector2d pixel = feature.pixel.cast<double>();
+    LandmarkRecord record;
+    record.appearance = {frame.brisk.Describe(feature.pixel, first_sampler), CutPatch(frame.smooth, feature.pixel)};
+    record.id = next_id++;
+    record.score = params.score.initial;
+    record.searched = true;
+    records.push_back(record);
+    views.push_back(
+        {record.id, pixel, pixel, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
+    FirstView view = FirstSeen(shutter.Row(pixel), filter.belief().pose, velocity);
+    // Later views are registered to the patch of the first, which thus defines the landmark: only the floor of the
+    // noise is left.
+    const double sigma_px =
+        params.features.noise != MatchNoise::constant ? params.features.sigma_floor_px : params.features.sigma_px;
+    view.R = PixelNoise(camera.LensJacobian(view.ray), sigma_px);
+    view.depth = feature.depth;
+    return view;
+  }
+
   Matrix6 VelocityCovariance() const { return filter.belief().covariance.bottomRightCorner<6, 6>(); }
 
   Camera camera;
@@ -60,138 +179,6 @@ struct Odometry::Impl {
   int next_id = 0;
   std::optional<PreparedFrame> first_frame;  // with a rolling shutter, until the second frame
 };
-
-void Odometry::Impl::Require(const Frame& frame) const {
-  if (frame.image.cols != camera.width || frame.image.rows != camera.height)
-    throw std::invalid_argument("image is " + std::to_string(frame.image.cols) + " x " +
-                                std::to_string(frame.image.rows) + ", the camera " + std::to_string(camera.width) +
-                                " x " + std::to_string(camera.height));
-  if (last_stamp_ns) RequireIncreasing(frame.stamp_ns, *last_stamp_ns);
-}
-
-Estimate Odometry::Impl::Process(const PreparedFrame& frame) {
-  FrameDiagnostics diagnostics;
-  if (last_stamp_ns) {
-    Follow(frame, diagnostics);
-    if (first_frame) RestartFirstFrame(frame, diagnostics);
-  } else {
-    Stopwatch watch;
-    if (shutter.on()) {
-      first_frame = frame;
-      first_frame->grey = frame.grey.clone();  // the memory is the caller's
-    }
-    Begin(frame, filter.belief().velocity);
-    diagnostics.ms_features += watch.Lap();
-  }
-  diagnostics.ms_features += frame.ms;
-  diagnostics.landmarks = static_cast<int>(records.size());
-  diagnostics.permanent = static_cast<int>(
-      std::count_if(records.begin(), records.end(), [](const LandmarkRecord& r) { return r.permanent; }));
-  return MakeEstimate(filter, scale, frame.frame.stamp_ns, diagnostics);
-}
-
-// First frame: its landmarks are seen at the prior pose, with `velocity` during the readout.
-void Odometry::Impl::Begin(const PreparedFrame& frame, const Vector6& velocity) {
-  last_stamp_ns = frame.frame.stamp_ns;
-  since_update = {0, VelocityCovariance()};
-  AddLandmarks(DetectFeatures(frame), frame, velocity);
-}
-
-// One iteration of Algorithm 1; sections of docs/algorithm.md.
-void Odometry::Impl::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) {
-  const double dt = static_cast<double>(frame.frame.stamp_ns - *last_stamp_ns) * 1e-9;
-  Stopwatch watch;
-  filter.Predict(dt);  // line 2: (6)-(9), (12), (13)
-  since_update.dt_s += dt;
-  Association association =
-      Associate(filter, records, camera, frame, border_px, since_update, params);  // line 3: section 7
-  diagnostics.ms_matching += watch.Lap();
-
-  Update(association.matches);                       // lines 4-11: (15)-(17), (37)-(43)
-  UpdateScores(association, params.score, records);  // section 6: (44)-(49)
-  diagnostics.searched = static_cast<int>(association.searched.size());
-  diagnostics.matched = static_cast<int>(association.matches.size());
-  diagnostics.nis = association.nis;
-  diagnostics.nis_dof = 2 * diagnostics.matched;
-  views = std::move(association.views);
-  left_out = std::move(association.left_out);
-  diagnostics.ms_filter += watch.Lap();
-  last_stamp_ns = frame.frame.stamp_ns;
-
-  std::vector<NewFeature> features = DetectFeatures(frame);            // section 7
-  Forget(features.size());                                             // section 6: deletion
-  AddLandmarks(std::move(features), frame, filter.belief().velocity);  // section 5
-  diagnostics.ms_features += watch.Lap();
-}
-
-// The velocity in the first frame is that of the prior, and its error shears the map through the rolling shutter. The
-// second frame measures it: both frames are processed again with the result, as a fixed-point iteration.
-void Odometry::Impl::RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& diagnostics) {
-  constexpr int kRounds = 6;
-  const PreparedFrame first = *std::exchange(first_frame, std::nullopt);
-  const double dt = static_cast<double>(second.frame.stamp_ns - first.frame.stamp_ns) * 1e-9;
-  for (int round = 1; round < kRounds && diagnostics.tracked(); ++round) {
-    const Vector6 velocity = MinusNear(filter.belief().pose, prior.pose, dt * prior.w_WC_C) / dt;
-    *this = Impl(camera, params, prior, seed);
-    Begin(first, velocity);
-    Follow(second, diagnostics);
-  }
-}
-
-void Odometry::Impl::Update(std::span<const Match> matches) {
-  scale.AbsorbChange(filter.Update(matches).scale_change);
-  if (!matches.empty()) since_update = {0, VelocityCovariance()};
-}
-
-// Away from found landmarks and from predicted ones that were not searched for.
-std::vector<NewFeature> Odometry::Impl::DetectFeatures(const PreparedFrame& frame) {
-  std::vector<Eigen::Vector2d> occupied = left_out;
-  for (const FeatureView& view : views)
-    if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
-  return detector.Detect(frame, std::move(occupied));
-}
-
-// Deletes landmarks, also to make room for `wanted` new ones; those searched for in this frame are kept.
-void Odometry::Impl::Forget(std::size_t wanted) {
-  const std::vector<Filter::LandmarkBelief> beliefs = filter.LandmarkBeliefs();
-  for (std::size_t n = 0; n < records.size(); ++n)
-    records[n].permanent = beliefs[n].relative_sigma() < params.landmark.permanent_ratio;
-  const std::vector<bool> keep = WorthKeeping(records, wanted, params.landmark, params.score);
-  filter.KeepLandmarks(keep);
-  std::size_t to = 0;
-  for (std::size_t from = 0; from < records.size(); ++from)
-    if (keep[from]) std::swap(records[to++], records[from]);
-  records.resize(to);
-}
-
-void Odometry::Impl::AddLandmarks(std::vector<NewFeature> features, const PreparedFrame& frame,
-                                  const Vector6& velocity) {
-  const auto capacity = static_cast<std::size_t>(params.landmark.max_landmarks) - records.size();
-  std::vector<FirstView> first_views;
-  for (const NewFeature& feature : LimitToCapacity(std::move(features), capacity, camera))
-    first_views.push_back(AddRecord(feature, frame, velocity));
-  filter.AddLandmarks(first_views);
-}
-
-FirstView Odometry::Impl::AddRecord(const NewFeature& feature, const PreparedFrame& frame, const Vector6& velocity) {
-  const Eigen::Vector2d pixel = feature.pixel.cast<double>();
-  LandmarkRecord record;
-  record.appearance = {frame.brisk.Describe(feature.pixel, first_sampler), CutPatch(frame.smooth, feature.pixel)};
-  record.id = next_id++;
-  record.score = params.score.initial;
-  record.searched = true;
-  records.push_back(record);
-  views.push_back(
-      {record.id, pixel, pixel, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
-  FirstView view = FirstSeen(shutter.Row(pixel), filter.belief().pose, velocity);
-  // Later views are registered to the patch of the first, which thus defines the landmark: only the floor of the noise
-  // is left.
-  const double sigma_px =
-      params.features.noise != MatchNoise::constant ? params.features.sigma_floor_px : params.features.sigma_px;
-  view.R = PixelNoise(camera.LensJacobian(view.ray), sigma_px);
-  view.depth = feature.depth;
-  return view;
-}
 
 Odometry::Odometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)
     : impl_(std::make_unique<Impl>(camera, params, prior, seed)) {}

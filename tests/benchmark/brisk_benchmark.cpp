@@ -32,7 +32,7 @@ void Ours(benchmark::State& state, vo::InstructionSet set) {
     brisk.Set(image);
     for (int n = 0; n < kLandmarks; ++n) {
       wanted[0] = static_cast<std::uint64_t>(n);
-      benchmark::DoNotOptimize(brisk.Nearest(set, wanted, sampler, Window(Centre(n), side)));
+      benchmark::DoNotOptimize(brisk.Nearest(wanted, sampler, Window(Centre(n), side), set));
     }
   }
 }

@@ -283,13 +283,14 @@ class Player {
       trace_.Add(belief.inverse_depth_sigma);
     }
     trace_.Begin(frame, "sigmas");
-    for (const double sigma : filter_->InverseDepthSigmas()) trace_.Add(sigma);
+    const std::vector<vo::Filter::LandmarkSpread> spreads = filter_->LandmarkSpreads();
+    for (const auto& spread : spreads) trace_.Add(spread.inverse_depth_sigma);
     trace_.Begin(frame, "points");
-    for (const std::optional<vo::PointMoments>& point : filter_->LandmarkPoints()) {
-      trace_.Add(point ? 1 : 0);
-      if (!point) continue;
-      trace_.Add(point->mean);
-      trace_.Add(point->covariance);
+    for (const auto& [sigma, place] : spreads) {
+      trace_.Add(place ? 1 : 0);
+      if (!place) continue;
+      trace_.Add(place->mean);
+      trace_.Add(place->covariance);
     }
   }
 

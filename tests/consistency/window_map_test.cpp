@@ -62,9 +62,10 @@ Scores Play(unsigned world) {
   }
   const vo::Filter::LandmarkBelief belief = filter.LandmarkBeliefs()[0];
   const double error = belief.inverse_depth - truth;
-  const vo::PointMoments place = *filter.LandmarkPoints()[0];
+  const auto [sigma, moments] = filter.LandmarkSpreads()[0];
+  const vo::PointMoments place = *moments;
   const Vector3d off = place.mean - points[0];
-  return {std::pow(error / filter.InverseDepthSigmas()[0], 2), off.dot(place.covariance.inverse() * off),
+  return {std::pow(error / sigma, 2), off.dot(place.covariance.inverse() * off),
           std::pow(error / belief.inverse_depth_sigma, 2)};
 }
 

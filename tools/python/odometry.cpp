@@ -155,15 +155,15 @@ void AddEstimate(py::module_& m) {
            py::arg("velocity_covariance") = py::none())
       .def_readwrite("pose_covariance", &vo::Prior::pose_covariance)
       .def_readwrite("velocity_covariance", &vo::Prior::velocity_covariance);
-  py::class_<vo::NumericalEvents>(m, "NumericalEvents", Doc("vo/base/numerical_events.h:NumericalEvents"))
+  py::class_<vo::NumericalEvents>(m, "NumericalEvents", Doc("vo/base/result.h:NumericalEvents"))
       .def_readonly("not_converged", &vo::NumericalEvents::not_converged,
-                    Doc("vo/base/numerical_events.h:NumericalEvents::not_converged"))
+                    Doc("vo/base/result.h:NumericalEvents::not_converged"))
       .def_readonly("behind_camera", &vo::NumericalEvents::behind_camera,
-                    Doc("vo/base/numerical_events.h:NumericalEvents::behind_camera"))
+                    Doc("vo/base/result.h:NumericalEvents::behind_camera"))
       .def_readonly("not_positive_definite", &vo::NumericalEvents::not_positive_definite,
-                    Doc("vo/base/numerical_events.h:NumericalEvents::not_positive_definite"))
+                    Doc("vo/base/result.h:NumericalEvents::not_positive_definite"))
       .def_readonly("non_finite_weight", &vo::NumericalEvents::non_finite_weight,
-                    Doc("vo/base/numerical_events.h:NumericalEvents::non_finite_weight"));
+                    Doc("vo/base/result.h:NumericalEvents::non_finite_weight"));
   py::class_<vo::FrameDiagnostics>(m, "Diagnostics", "What an odometry did in a frame.")
       .def_readonly("searched", &vo::FrameDiagnostics::searched, Doc("vo/base/result.h:FrameDiagnostics::searched"))
       .def_readonly("matched", &vo::FrameDiagnostics::matched, Doc("vo/base/result.h:FrameDiagnostics::matched"))

@@ -3,14 +3,8 @@
 namespace vo {
 
 const char* Name(InstructionSet set) {
-  switch (set) {
-    case InstructionSet::avx2:
-      return "AVX2";
-    case InstructionSet::avx512:
-      return "AVX-512";
-    default:
-      return "base";
-  }
+  constexpr const char* kNames[] = {"base", "AVX2", "AVX-512"};
+  return kNames[static_cast<int>(set)];
 }
 
 std::vector<InstructionSet> AvailableInstructionSets() {

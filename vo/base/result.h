@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "vo/base/numerical_events.h"
 #include "vo/geometry/pose.h"
 
 namespace vo {
@@ -19,6 +18,25 @@ struct Prior {
   Eigen::Vector3d w_WC_C = Eigen::Vector3d::Zero();  // [rad/s]
   Matrix6 pose_covariance = Matrix6::Zero();
   Matrix6 velocity_covariance = Matrix6::Identity() * 0.25;
+};
+
+// Numerical events of one frame, where the filter did what its equations do not say: counts over all particles.
+struct NumericalEvents {
+  int not_converged = 0;  // minimisations that ended by their number of iterations
+  int behind_camera = 0;  // matches that an update left out, because their landmark had come to lie behind the camera
+  // Matrices without a Cholesky factor: the particle's evidence is not a number then.
+  int not_positive_definite = 0;
+  // Particles whose evidence was not a number: each became a copy of the heaviest, with half of its weight.
+  int non_finite_weight = 0;
+
+  NumericalEvents& operator+=(const NumericalEvents& more) {
+    not_converged += more.not_converged;
+    behind_camera += more.behind_camera;
+    not_positive_definite += more.not_positive_definite;
+    non_finite_weight += more.non_finite_weight;
+    return *this;
+  }
+  bool operator==(const NumericalEvents&) const = default;
 };
 
 struct FrameDiagnostics {

@@ -276,12 +276,7 @@ Descriptor BriskImage::Describe(const Eigen::Vector2i& pixel, const BriskSampler
 }
 
 std::optional<BriskImage::Found> BriskImage::Nearest(const Descriptor& descriptor, const BriskSampler& sampler,
-                                                     std::span<const PixelRun> region) const {
-  return Nearest(BestInstructionSet(), descriptor, sampler, region);
-}
-
-std::optional<BriskImage::Found> BriskImage::Nearest(InstructionSet set, const Descriptor& descriptor,
-                                                     const BriskSampler& sampler, std::span<const PixelRun> region,
+                                                     std::span<const PixelRun> region, InstructionSet set,
                                                      std::vector<Found>* all) const {
   constexpr int kMaxWidth = 32;  // pixels per vector
   thread_local std::vector<Row> rows;

@@ -64,11 +64,10 @@ class BriskImage {
     Eigen::Vector2i pixel;
     int distance;
   };
+  // `all`: the result at every describable pixel, in order.
   std::optional<Found> Nearest(const Descriptor& descriptor, const BriskSampler& sampler,
-                               std::span<const PixelRun> region) const;
-  // The same with a given instruction set; `all`: the result at every describable pixel, in order.
-  std::optional<Found> Nearest(InstructionSet set, const Descriptor& descriptor, const BriskSampler& sampler,
-                               std::span<const PixelRun> region, std::vector<Found>* all = nullptr) const;
+                               std::span<const PixelRun> region, InstructionSet set = BestInstructionSet(),
+                               std::vector<Found>* all = nullptr) const;
 
  private:
   cv::Mat integral_;  // rows are longer than the image's, so that whole vectors can be read at its right edge

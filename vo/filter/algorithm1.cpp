@@ -2,27 +2,30 @@
 
 #include <utility>
 
+#include "vo/filter/unscented_proposal.h"
+
 namespace vo {
+namespace {
+
+UnscentedParams Spread(const FilterParams& params) { return {params.ukf_alpha, params.ukf_beta, params.ukf_kappa}; }
+
+}  // namespace
 
 Algorithm1::Algorithm1(const ParticleFilterSettings& settings, const FilterPrior& prior)
-    : ParticlePhase(settings, prior),
-      step_(VelocityFilterOver(settings.motion, 1.0)),
-      predictions_(particles_.size()),
-      features_(settings.filter) {}
+    : ParticlePhase(settings, prior), step_(settings.motion, 1.0), predictions_(particles_.size()) {}
 
 Algorithm1::Algorithm1(ParticlePhase&& finished)
-    : ParticlePhase(std::move(finished)),
-      step_(VelocityFilterOver(settings_.motion, 1.0)),
-      predictions_(particles_.size()),
-      features_(settings_.filter) {}
+    : ParticlePhase(std::move(finished)), step_(settings_.motion, 1.0), predictions_(particles_.size()) {
+  for (Particle& particle : particles_) particle.solution = {};  // large, and not read again
+}
 
 void Algorithm1::Predict(double dt) {
   BeginFrame();
   since_sampled_ += dt;
-  step_ = VelocityFilterOver(settings_.motion, since_sampled_);
+  step_ = {settings_.motion, since_sampled_};
   const Matrix6 covariance = step_.PredictedCovariance(particles_[0].velocity);  // (13), the same for all particles
   for (std::size_t i = 0; i < particles_.size(); ++i)                            // line 2
-    predictions_[i] = PredictPose(step_, particles_[i], covariance);
+    predictions_[i] = PredictPose(step_, particles_[i].pose, particles_[i].velocity, covariance);
 }
 
 const FilterAnswer& Algorithm1::Update(std::span<const Match> z) { return z.empty() ? Coast() : SampleStep(z); }
@@ -30,15 +33,15 @@ const FilterAnswer& Algorithm1::Update(std::span<const Match> z) { return z.empt
 const FilterAnswer& Algorithm1::SampleStep(std::span<const Match> z) {
   const FilterParams& params = settings_.filter;
   answer_.mixture.clear();
-  features_.Begin(z);
-  CameraVelocityFilter::Gain gain = step_.ConditionCovariance(particles_[0].velocity.covariance);
+  batch_.SetMatches(z);
+  VelocityFilter::Gain gain = step_.ConditionCovariance(particles_[0].velocity.covariance);
   for (std::size_t i = 0; i < particles_.size(); ++i) {  // line 1
     Particle& particle = particles_[i];
-    const PoseGaussian& predicted = predictions_[i];                       // 2, (12)(13)
-    const PoseProposal proposal = features_.Propose(predicted, MapOf(i));  // 3, (15)(16)
-    const Pose s = proposal.pose.Sample(Key(Stream::pose, i));             // 4
+    const PoseGaussian& predicted = predictions_[i];            // 2, (12)(13)
+    const PoseProposal proposal = ProposePose(i, z);            // 3, (15)(16)
+    const Pose s = proposal.pose.Sample(Key(Stream::pose, i));  // 4
     step_.ConditionMean(PathState(particle.pose), particle.velocity.mean, gain);
-    const Eigen::Vector3d turn = PredictedTurn(step_, particle);
+    const Eigen::Vector3d turn = PredictedTurn(step_, particle.pose, particle.velocity);
     // A proposal that is blind to the image is no posterior: the answer is the weighted samples.
     const bool blind = params.proposal == Proposal::bootstrap;
     answer_.mixture.push_back(
@@ -49,8 +52,8 @@ const FilterAnswer& Algorithm1::SampleStep(std::span<const Match> z) {
     if (params.sampled == Sampled::pose_and_velocity)
       particle.velocity = {SampleNormal(particle.velocity.mean, particle.velocity.covariance, Key(Stream::velocity, i)),
                            Matrix6::Zero()};
-    const double log_likelihood = features_.UpdateLandmarks(s, MapOf(i), particle.landmarks);  // 9, (3)
-    particle.log_weight += params.weight == Weight::evidence                                   // 8
+    const double log_likelihood = UpdateLandmarks(i, s, z);   // 9, (3)
+    particle.log_weight += params.weight == Weight::evidence  // 8
                                ? proposal.log_evidence
                                : predicted.LogDensity(s) + log_likelihood - proposal.pose.LogDensity(s);  // (17)
     particle.pose = s;
@@ -60,17 +63,50 @@ const FilterAnswer& Algorithm1::SampleStep(std::span<const Match> z) {
   answer_.effective_particles = particles_.EffectiveSize();
   FinishAnswer();
   if (answer_.effective_particles < params.resample_below * params.particles)  // 11
-    particles_.Resample(Uniform(Key(Stream::resampling, 0), 0));
+    Resample();
   return answer_;
+}
+
+PoseProposal Algorithm1::ProposePose(std::size_t particle, std::span<const Match> z) {
+  const FilterParams& params = settings_.filter;
+  const PoseGaussian& prediction = predictions_[particle];
+  if (z.empty()) return {prediction, 0, {}};
+  const LocalMap map = MapOf(particle);
+  if (params.proposal == Proposal::ukf) return ProposeUnscented(prediction, map, z, Spread(params));
+  batch_.Load(map);
+  if (params.proposal == Proposal::bootstrap) return {prediction, 0, {}};
+  return Propose(prediction, batch_, params, prediction.mean);
+}
+
+double Algorithm1::UpdateLandmarks(std::size_t particle, const Pose& sampled, std::span<const Match> z) {
+  const FilterParams& params = settings_.filter;
+  std::vector<Landmark>& landmarks = particles_[particle].landmarks;
+  if (z.empty()) return 0;
+  double log_likelihood = 0;
+  if (params.proposal != Proposal::ukf) {
+    if (params.proposal == Proposal::iterated) batch_.Follow(Minus(sampled, batch_.linearised_at()));
+    log_likelihood = batch_.UpdateLandmarks(sampled, params.proposal == Proposal::ekf ? 1 : params.max_iterations);
+    batch_.Store(landmarks);
+    return log_likelihood;
+  }
+  for (const Match& match : z) {
+    Landmark& landmark = landmarks[match.landmark];
+    const AnchorView view = AnchorView(sampled, AnchorOf(particle, match.landmark)).ShiftedBy(match.centre_offset_W);
+    const LandmarkUpdate update = UpdateLandmarkUnscented(landmark, view, match, Spread(params));
+    landmark = update.landmark;
+    log_likelihood += update.log_likelihood;
+  }
+  return log_likelihood;
 }
 
 const FilterAnswer& Algorithm1::Coast() {
   answer_.mixture.clear();
-  CameraVelocityFilter::Gain gain = step_.ConditionCovariance(particles_[0].velocity.covariance);
+  VelocityFilter::Gain gain = step_.ConditionCovariance(particles_[0].velocity.covariance);
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const Particle& particle = particles_[i];
     step_.ConditionMean(PathState(particle.pose), particle.velocity.mean, gain);
-    answer_.mixture.push_back(Component(predictions_[i], particle.pose, PredictedTurn(step_, particle), gain));
+    answer_.mixture.push_back(
+        Component(predictions_[i], particle.pose, PredictedTurn(step_, particle.pose, particle.velocity), gain));
   }
   FinishAnswer();
   return answer_;

@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "vo/filter/feature_update.h"
 #include "vo/filter/particle_phase.h"
-#include "vo/filter/rao_blackwell.h"
+#include "vo/filter/proposal.h"
+#include "vo/filter/velocity_filter.h"
 
 namespace vo {
 
@@ -33,11 +33,16 @@ class Algorithm1 final : public ParticlePhase {
  private:
   const FilterAnswer& Coast();
   const FilterAnswer& SampleStep(std::span<const Match> z);
+  // (15)(16) by the proposal that the settings name (docs/algorithm.md, sections 3, 3a and 8). The prediction itself
+  // without matches, or for a proposal that is blind to the image.
+  PoseProposal ProposePose(std::size_t particle, std::span<const Match> z);
+  // Of the same particle, at its sampled pose. Returns the sum of log p(z | pose) (3).
+  double UpdateLandmarks(std::size_t particle, const Pose& sampled, std::span<const Match> z);
 
-  double since_sampled_ = 0;   // [s]; 0 when the present pose is sampled
-  CameraVelocityFilter step_;  // from the last sampled pose to the present
+  double since_sampled_ = 0;  // [s]; 0 when the present pose is sampled
+  VelocityFilter step_;       // from the last sampled pose to the present
   std::vector<PoseGaussian> predictions_;
-  FeatureUpdate features_;
+  MatchBatch batch_;  // a frame's matches, and one particle in turn
 };
 
 }  // namespace vo

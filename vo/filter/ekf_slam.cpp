@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "vo/filter/motion_model.h"
+#include "vo/geometry/covariance.h"
 #include "vo/geometry/so3.h"
-#include "vo/geometry/symmetric.h"
 
 namespace vo {
 namespace {
@@ -162,23 +162,22 @@ void EkfSlam::KeepLandmarks(const std::vector<bool>& keep) {
 }
 
 std::vector<ImagePrediction> EkfSlam::PredictImages(std::span<const int> landmarks) const {
-  std::vector<ImagePrediction> predictions;
-  for (const int n : landmarks) predictions.push_back(PredictImage(n));
+  std::vector<ImagePrediction> predictions(landmarks.size());
+  for (std::size_t k = 0; k < landmarks.size(); ++k) {
+    const int n = landmarks[k];
+    const Landmark& l = state_.landmarks[n];
+    const Projection h = Project({state_.pose, state_.anchors[state_.anchor_of[n]]}, l.mean);
+    if (!h.in_front) continue;
+    Eigen::Matrix<double, 2, 15> H;
+    H << h.J_pose, AnchorJacobian(h, l.mean), h.J_landmark;
+    const int at[] = {0, state_.AnchorOffsetOf(n), OffsetOf(n)}, local[] = {0, 6, 12}, size[] = {6, 6, 3};
+    Eigen::Matrix<double, 15, 15> P;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        P.block(local[i], local[j], size[i], size[j]) = P_.block(at[i], at[j], size[i], size[j]);
+    predictions[k] = {true, h.z, H * P * H.transpose()};
+  }
   return predictions;
-}
-
-ImagePrediction EkfSlam::PredictImage(int landmark) const {
-  const Landmark& l = state_.landmarks[landmark];
-  const Projection h = Project({state_.pose, state_.anchors[state_.anchor_of[landmark]]}, l.mean);
-  if (!h.in_front) return {};
-  Eigen::Matrix<double, 2, 15> H;
-  H << h.J_pose, AnchorJacobian(h, l.mean), h.J_landmark;
-  const int at[] = {0, state_.AnchorOffsetOf(landmark), OffsetOf(landmark)}, local[] = {0, 6, 12}, size[] = {6, 6, 3};
-  Eigen::Matrix<double, 15, 15> P;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      P.block(local[i], local[j], size[i], size[j]) = P_.block(at[i], at[j], size[i], size[j]);
-  return {true, h.z, H * P * H.transpose()};
 }
 
 std::vector<Filter::LandmarkBelief> EkfSlam::LandmarkBeliefs() const {
@@ -191,20 +190,21 @@ std::vector<Filter::LandmarkBelief> EkfSlam::LandmarkBeliefs() const {
   return beliefs;
 }
 
-std::vector<std::optional<PointMoments>> EkfSlam::LandmarkPoints() const {
-  std::vector<std::optional<PointMoments>> points(state_.landmarks.size());
+std::vector<Filter::LandmarkSpread> EkfSlam::LandmarkSpreads() const {
+  std::vector<LandmarkSpread> spreads;
   for (int n = 0; n < landmark_count(); ++n) {
     const Pose& anchor = state_.anchors[state_.anchor_of[n]];
     const Eigen::Vector3d& theta = state_.landmarks[n].mean;
+    spreads.push_back({std::sqrt(state_.landmarks[n].covariance(2, 2)), std::nullopt});
     if (!(theta.z() > 0)) continue;
     const int a = state_.AnchorOffsetOf(n), l = OffsetOf(n);
     Eigen::Matrix<double, 3, 9> J;
     J << PointAnchorJacobian(anchor, theta), PointJacobian(anchor, theta);
     Eigen::Matrix<double, 9, 9> P;
     P << P_.block<6, 6>(a, a), P_.block<6, 3>(a, l), P_.block<3, 6>(l, a), P_.block<3, 3>(l, l);
-    points[n] = PointMoments{PointInWorld(anchor, theta), J * P * J.transpose()};
+    spreads.back().place = PointMoments{PointInWorld(anchor, theta), J * P * J.transpose()};
   }
-  return points;
+  return spreads;
 }
 
 void EkfSlam::Answer() {

@@ -15,7 +15,7 @@
 
 #include "vo/base/params.h"
 #include "vo/filter/filter.h"
-#include "vo/filter/joint_measurement.h"
+#include "vo/filter/joint_state.h"
 
 namespace vo {
 
@@ -40,7 +40,7 @@ class EkfSlam final : public Filter {
   ReferencePath Reference() const override { return {reference_, state_.map(), {}}; }
   std::vector<LandmarkBelief> LandmarkBeliefs() const override;
   // Of the joint Gaussian, the anchor's pose and its correlation with the landmark included.
-  std::vector<std::optional<PointMoments>> LandmarkPoints() const override;
+  std::vector<LandmarkSpread> LandmarkSpreads() const override;
 
   // Covariance of the whole state; a landmark's three entries begin at OffsetOf.
   const Eigen::MatrixXd& covariance() const { return P_; }
@@ -49,7 +49,6 @@ class EkfSlam final : public Filter {
  private:
   struct Mode;
   Mode FindMode(std::span<const Match> matches) const;
-  ImagePrediction PredictImage(int landmark) const;
   void Answer();
 
   MotionParams motion_;

@@ -7,12 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "vo/base/numerical_events.h"
+#include "vo/base/result.h"
 #include "vo/filter/mixture.h"
 #include "vo/filter/pose_gaussian.h"
-#include "vo/map/image_prediction.h"
 #include "vo/map/local_map.h"
-#include "vo/map/point_moments.h"
+#include "vo/map/moments.h"
 
 namespace vo {
 
@@ -74,18 +73,14 @@ class Filter {
   };
   // Means by all images, standard deviations by those of sampled poses alone. Decides which landmarks are permanent.
   virtual std::vector<LandmarkBelief> LandmarkBeliefs() const = 0;
-  // Standard deviations of the inverse depths [1/m] by all images, poses that are not sampled integrated out. Costs
-  // more.
-  virtual std::vector<double> InverseDepthSigmas() const;
-  // Moments of the landmarks' places in W over the posterior, each landmark linearised at its mean. None where an
-  // inverse depth is not positive somewhere in the posterior.
-  virtual std::vector<std::optional<PointMoments>> LandmarkPoints() const = 0;
+  // By all images, poses that are not sampled integrated out. Costs more.
+  struct LandmarkSpread {
+    double inverse_depth_sigma;  // [1/m]
+    // Moments of the landmark's place in W over the posterior, linearised at the landmark's mean. None where an inverse
+    // depth is not positive somewhere in the posterior.
+    std::optional<PointMoments> place;
+  };
+  virtual std::vector<LandmarkSpread> LandmarkSpreads() const = 0;
 };
-
-inline std::vector<double> Filter::InverseDepthSigmas() const {
-  std::vector<double> sigmas;
-  for (const LandmarkBelief& belief : LandmarkBeliefs()) sigmas.push_back(belief.inverse_depth_sigma);
-  return sigmas;
-}
 
 }  // namespace vo

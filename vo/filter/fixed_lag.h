@@ -18,9 +18,6 @@ class FixedLag final : public WindowPhase {
 
  protected:
   std::span<const double> SolutionWeights() const override { return particles_.weights(); }
-
- private:
-  void Challenge(std::size_t particle);
 };
 
 }  // namespace vo

@@ -7,8 +7,7 @@
 
 #include "vo/filter/algorithm1.h"
 #include "vo/filter/fixed_lag.h"
-#include "vo/filter/mode_challenge.h"
-#include "vo/geometry/symmetric.h"
+#include "vo/geometry/covariance.h"
 
 namespace vo {
 namespace {
@@ -46,19 +45,17 @@ const FilterAnswer& Initialisation::Update(std::span<const Match> z) {
       IterateShutterCorrection();
     else
       Solve(0, StartOptions());
-    Challenge();
+    Challenge(0, frame_, StartOptions());
+    if (rolling()) Take(Corrected(particles_[0].solution, ShutterReference::frame_pose));
     ShareSolution();
     AddEvidence(1);
-    answer_.events += solutions_[0].path.events;
+    answer_.events += particles_[0].solution.path.events;
   }
   Answer(!z.empty());
   answer_.scale_change = ScaleChange();
-  answered_ = solutions_[0].path.mean;
+  answered_ = particles_[0].solution.path.mean;
   if (window_.size() > settings_.filter.start_window) Finish();
-  if (answer_.initialising)
-    SampleOldest(0);
-  else
-    SampleOldest(window_.size() - settings_.filter.lag);
+  SampleOldest(answer_.initialising ? 0 : window_.size() - settings_.filter.lag);
   return answer_;
 }
 
@@ -107,44 +104,36 @@ void Initialisation::Take(CorrectedWindow&& corrected) {
 void Initialisation::IterateShutterCorrection() {
   double before = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kShutterRounds; ++round) {
-    Take(Corrected(solutions_[0], ShutterReference::frame_pose));
+    Take(Corrected(particles_[0].solution, ShutterReference::frame_pose));
     Solve(0, StartOptions());
-    if (std::abs(solutions_[0].path.objective - before) < kObjectiveSettled) break;
-    before = solutions_[0].path.objective;
+    if (std::abs(particles_[0].solution.path.objective - before) < kObjectiveSettled) break;
+    before = particles_[0].solution.path.objective;
   }
 }
 
-void Initialisation::Challenge() {
-  PathSolution other = PerturbTranslation(window_, table_, InputOf(0), solutions_[0], frame_ % kGuesses);
-  WindowOptions options = StartOptions();
-  options.stop_if_above = solutions_[0].path.objective;
-  if (rolling()) {
-    const CorrectedWindow corrected = Corrected(other, ShutterReference::frame_pose);
-    const Particle& first = particles_[0];
-    Solve(corrected.window, {first.pose, first.velocity.mean, corrected.landmarks, first.anchors}, options, other);
-  } else {
-    Solve(window_, InputOf(0), options, other);
-  }
-  if (IsBetter(other.path, solutions_[0].path)) solutions_[0] = std::move(other);
-  window_.PlaceAnchors(solutions_[0].path, particles_[0].anchors);
-  if (rolling()) Take(Corrected(solutions_[0], ShutterReference::frame_pose));
+void Initialisation::SolveOther(std::size_t i, const WindowOptions& options, PathSolution& other) {
+  if (!rolling()) return WindowPhase::SolveOther(i, options, other);
+  const CorrectedWindow corrected = Corrected(other, ShutterReference::frame_pose);
+  WindowInput in = InputOf(i);
+  in.landmarks = corrected.landmarks;
+  Solve(corrected.window, in, options, other);
 }
 
 // The first particle's solution becomes that of all, as seen from their start poses.
 void Initialisation::ShareSolution() {
   for (std::size_t i = 1; i < particles_.size(); ++i) {
-    solutions_[i] = solutions_[0];
-    Transform(particles_[0].pose, particles_[i].pose, solutions_[i].path);
+    particles_[i].solution = particles_[0].solution;
+    Transform(particles_[0].pose, particles_[i].pose, particles_[i].solution.path);
     particles_[i].landmarks = particles_[0].landmarks;
-    window_.PlaceAnchors(solutions_[i].path, particles_[i].anchors);
+    window_.PlaceAnchors(particles_[i].solution.path, particles_[i].anchors);
   }
 }
 
 // Each particle gets a solution of its own, to be sampled, and a weight.
 void Initialisation::Finish() {
-  const double log_evidence = solutions_[0].path.log_evidence;
+  const double log_evidence = particles_[0].solution.path.log_evidence;
   if (rolling()) {
-    Take(Corrected(solutions_[0], ShutterReference::row_pose));
+    Take(Corrected(particles_[0].solution, ShutterReference::row_pose));
     Solve(0, StartOptions());
     ShareSolution();
   }
@@ -152,8 +141,8 @@ void Initialisation::Finish() {
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     particles_[i].log_weight -= log_evidence;
     Solve(i, Options(false));
-    answer_.events += solutions_[i].path.events;
-    particles_[i].log_weight += solutions_[i].path.log_evidence;
+    answer_.events += particles_[i].solution.path.events;
+    particles_[i].log_weight += particles_[i].solution.path.log_evidence;
   }
   Weigh();
 }
@@ -164,7 +153,7 @@ void Initialisation::Finish() {
 // and nearly 0 where every pose is: a wrong length must not set the scale of all to come.
 double Initialisation::ScaleChange() const {
   const Pose& start = particles_[0].pose;
-  const PathGaussian& path = solutions_[0].path;
+  const PathGaussian& path = particles_[0].solution.path;
   const auto count = static_cast<Eigen::Index>(answered_.size());
   Eigen::VectorXd was = Eigen::VectorXd::Zero(kPoseSize * count), is = was;
   double variance = 0;

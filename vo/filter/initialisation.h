@@ -23,6 +23,8 @@ class Initialisation final : public WindowPhase {
  protected:
   std::span<const double> SolutionWeights() const override;
   std::vector<Eigen::Matrix3d> PointCovariances(int landmark) const override;
+  // With a rolling shutter, of the rows as the other mode corrects them.
+  void SolveOther(std::size_t i, const WindowOptions& options, PathSolution& other) override;
 
  private:
   bool rolling() const;
@@ -30,7 +32,6 @@ class Initialisation final : public WindowPhase {
   CorrectedWindow Corrected(const PathSolution& solution, ShutterReference reference) const;
   void Take(CorrectedWindow&& corrected);
   void IterateShutterCorrection();
-  void Challenge();
   void ShareSolution();
   void Finish();
   double ScaleChange() const;

@@ -1,5 +1,5 @@
 // Joint state of EKF-SLAM: camera pose and velocity, anchor poses, and landmarks, with their places in the state
-// vector.
+// vector; and the measurement of a frame, its matches linearised at one state.
 // Order:   camera (12), then each anchor (6) followed by its landmarks (3 each).
 // Tangent: pose and anchors (dp in W, dphi in C), velocity (dv in W, dw in C); right perturbation.
 #pragma once
@@ -32,5 +32,43 @@ struct JointState {
   // Keeps the landmarks marked true, and the anchors that they use. Returns the entries of the state vector that stay.
   std::vector<int> Keep(const std::vector<bool>& keep);
 };
+
+// H = dz / d(state) with three non-zero blocks for each match.
+class JointMeasurement {
+ public:
+  // At `state` = prior (+) d, as derivatives by d. Matches of landmarks behind the camera are left out.
+  JointMeasurement(std::span<const Match> matches, const JointState& state, const Eigen::VectorXd& d);
+
+  std::size_t size() const { return rows_.size(); }
+  double cost() const { return cost_; }  // sum of r' R^-1 r
+  template <class Matrix>
+  Eigen::MatrixXd Times(const Matrix& M) const;                                // H M
+  void AddTransposeTimes(const Eigen::VectorXd& y, Eigen::VectorXd& x) const;  // x += H' y
+  void AddNoise(Eigen::MatrixXd& S) const;                                     // S += R
+  void AddResidual(Eigen::VectorXd& innovation) const;
+
+ private:
+  struct Row {
+    Eigen::Vector2d residual;
+    Eigen::Matrix2d R;
+    Matrix26 H_pose, H_anchor;
+    Matrix23 H_landmark;
+    int anchor_offset = 0, landmark_offset = 0;
+  };
+  std::vector<Row> rows_;
+  double cost_ = 0;
+};
+
+template <class Matrix>
+Eigen::MatrixXd JointMeasurement::Times(const Matrix& M) const {
+  Eigen::MatrixXd result(2 * rows_.size(), M.cols());
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Row& row = rows_[i];
+    result.middleRows<2>(2 * i).noalias() = row.H_pose * M.template topRows<6>() +
+                                            row.H_anchor * M.template middleRows<6>(row.anchor_offset) +
+                                            row.H_landmark * M.template middleRows<3>(row.landmark_offset);
+  }
+  return result;
+}
 
 }  // namespace vo

@@ -1,11 +1,13 @@
 #include "vo/filter/mixture.h"
 
+#include <algorithm>
+
 #include "vo/geometry/so3.h"
 
 namespace vo {
 
 BeliefComponent Component(const PoseGaussian& pose, const Pose& previous, const Eigen::Vector3d& turn,
-                          const CameraVelocityFilter::Gain& gain) {
+                          const VelocityFilter::Gain& gain) {
   const Eigen::Vector3d delta = LogNear(previous.q_WC.conjugate() * pose.mean.q_WC, turn);
   Vector6 s_pf;
   s_pf << pose.mean.p_WC, delta;
@@ -21,12 +23,9 @@ BeliefComponent Component(const PoseGaussian& pose, const Pose& previous, const 
 }
 
 Belief Moments(const std::vector<BeliefComponent>& mixture) {
-  std::size_t heaviest = 0;
-  for (std::size_t i = 1; i < mixture.size(); ++i)
-    if (mixture[i].weight > mixture[heaviest].weight) heaviest = i;
-
+  const auto lighter = [](const BeliefComponent& a, const BeliefComponent& b) { return a.weight < b.weight; };
   Belief belief;
-  belief.pose = mixture[heaviest].pose;
+  belief.pose = std::max_element(mixture.begin(), mixture.end(), lighter)->pose;
   for (int iteration = 0; iteration < 10; ++iteration) {  // mean on SO(3); two or three rounds suffice
     Vector6 mean_offset = Vector6::Zero();
     for (const BeliefComponent& component : mixture)

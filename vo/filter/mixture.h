@@ -4,13 +4,9 @@
 
 #include <vector>
 
-#include "vo/filter/pose_gaussian.h"
 #include "vo/filter/velocity_filter.h"
-#include "vo/geometry/pose.h"
 
 namespace vo {
-
-using CameraVelocityFilter = VelocityFilter<6, 6>;  // s_pf = (p, delta), s_kf = (v, w)
 
 // One particle's Gaussian over (pose, velocity) just before the pose is sampled; covariance in the tangent space at
 // `pose`.
@@ -30,7 +26,7 @@ struct Belief {
 // The velocity is an affine function of the pose still to be sampled, plus its own covariance. `turn`: since
 // `previous`, as predicted [rad in C].
 BeliefComponent Component(const PoseGaussian& pose, const Pose& previous, const Eigen::Vector3d& turn,
-                          const CameraVelocityFilter::Gain& gain);
+                          const VelocityFilter::Gain& gain);
 
 // Weights sum to 1.
 Belief Moments(const std::vector<BeliefComponent>& mixture);

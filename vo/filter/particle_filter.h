@@ -27,8 +27,7 @@ class ParticleFilter final : public Filter {
   }
   ReferencePath Reference() const override { return phase_->Reference(); }
   std::vector<LandmarkBelief> LandmarkBeliefs() const override { return phase_->LandmarkBeliefs(); }
-  std::vector<double> InverseDepthSigmas() const override { return phase_->InverseDepthSigmas(); }
-  std::vector<std::optional<PointMoments>> LandmarkPoints() const override { return phase_->LandmarkPoints(); }
+  std::vector<LandmarkSpread> LandmarkSpreads() const override { return phase_->LandmarkSpreads(); }
 
   const ParticlePhase& phase() const { return *phase_; }
   const std::vector<Particle>& particles() const { return phase_->particles().particles(); }

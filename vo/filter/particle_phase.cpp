@@ -53,30 +53,29 @@ void ParticlePhase::FinishAnswer() {
 }
 
 std::vector<Filter::LandmarkBelief> ParticlePhase::LandmarkBeliefs() const {
+  const std::vector<double>& weights = particles_.weights();
   const std::size_t heaviest = particles_.Heaviest();
+  std::vector<Modes> modes;  // per particle
+  for (std::size_t i = 0; i < weights.size(); ++i) modes.push_back(ModesOf(i));
   std::vector<LandmarkBelief> beliefs;
-  for (int n = 0; n < table_.size(); ++n)
-    beliefs.push_back({PointInWorld(AnchorOf(heaviest, n), ModesOf(heaviest).col(n)), 0, 0});
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const Modes modes = ModesOf(i);
-    for (int n = 0; n < table_.size(); ++n) beliefs[n].inverse_depth += particles_.weights()[i] * modes(2, n);
-  }
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const Modes modes = ModesOf(i);
-    for (int n = 0; n < table_.size(); ++n) {
-      const double off = modes(2, n) - beliefs[n].inverse_depth;
-      beliefs[n].inverse_depth_sigma +=
-          particles_.weights()[i] * (particles_[i].landmarks[n].covariance(2, 2) + off * off);  // the variance, so far
+  for (int n = 0; n < table_.size(); ++n) {
+    double mean = 0, variance = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) mean += weights[i] * modes[i](2, n);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const double off = modes[i](2, n) - mean;
+      variance += weights[i] * (particles_[i].landmarks[n].covariance(2, 2) + off * off);
     }
+    beliefs.push_back({PointInWorld(AnchorOf(heaviest, n), modes[heaviest].col(n)), mean, std::sqrt(variance)});
   }
-  for (LandmarkBelief& belief : beliefs) belief.inverse_depth_sigma = std::sqrt(belief.inverse_depth_sigma);
   return beliefs;
 }
 
-std::vector<std::optional<PointMoments>> ParticlePhase::LandmarkPoints() const {
+std::vector<Filter::LandmarkSpread> ParticlePhase::LandmarkSpreads() const {
   const std::vector<double>& weights = particles_.weights();
-  std::vector<std::optional<PointMoments>> points(table_.size());
-  for (int n = 0; n < table_.size(); ++n) {
+  std::vector<LandmarkSpread> spreads;
+  for (const LandmarkBelief& belief : LandmarkBeliefs()) {
+    const int n = static_cast<int>(spreads.size());
+    spreads.push_back({belief.inverse_depth_sigma, std::nullopt});
     bool in_front = true;
     for (std::size_t i = 0; i < weights.size(); ++i) in_front = in_front && (weights[i] == 0 || ModesOf(i)(2, n) > 0);
     if (!in_front) continue;
@@ -84,9 +83,9 @@ std::vector<std::optional<PointMoments>> ParticlePhase::LandmarkPoints() const {
     PointMixture mixture;
     for (std::size_t i = 0; i < weights.size(); ++i)
       if (weights[i] != 0) mixture.Add(weights[i], PointInWorld(AnchorOf(i, n), ModesOf(i).col(n)), covariances[i]);
-    points[n] = mixture.Moments();
+    spreads.back().place = mixture.Moments();
   }
-  return points;
+  return spreads;
 }
 
 }  // namespace vo

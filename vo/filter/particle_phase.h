@@ -27,7 +27,7 @@ class ParticlePhase : public Filter {
 
   void KeepLandmarks(const std::vector<bool>& keep) override { CompactLandmarks(keep); }
   std::vector<LandmarkBelief> LandmarkBeliefs() const override;
-  std::vector<std::optional<PointMoments>> LandmarkPoints() const override;
+  std::vector<LandmarkSpread> LandmarkSpreads() const override;
   int landmark_count() const override { return table_.size(); }
   const FilterAnswer& answer() const override { return answer_; }
   const ParticleSet& particles() const { return particles_; }
@@ -54,6 +54,7 @@ class ParticlePhase : public Filter {
   }
   // New landmarks of all particles. Returns the anchor's index; its pose is left to the caller.
   int AppendLandmarks(std::span<const FirstView> views);
+  void Resample() { particles_.Resample(Uniform(Key(Stream::resampling, 0), 0)); }
   // Counts replaced particles, and copies their components of the mixture.
   void Record(const ParticleSet::Replacement& replaced);
   // The belief from the mixture and the weights.

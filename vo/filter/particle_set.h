@@ -1,20 +1,29 @@
 // Weighted particles: normalisation, replacement of particles without a finite weight, systematic resampling.
-// Source:  Algorithm 1, lines 8 and 11.
+// Source:  Algorithm 1, lines 8 and 11; Doucet & Johansen, "A tutorial on particle filtering and smoothing", section
+//          3.4.
+// Frames:  poses T_WC.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
-#include "vo/filter/particle.h"
+#include "vo/filter/path_gaussian.h"
+#include "vo/map/landmark.h"
 
 namespace vo {
 
-// Each child takes its ancestor's item; `ancestors` ascend. The last child of an ancestor takes the item itself, so
-// that no memory is allocated; `children` is workspace.
-template <class Item>
-void TakeAncestors(const std::vector<int>& ancestors, std::vector<Item>& items, std::vector<Item>& children);
+// One hypothesis of the sampled path, and what is Gaussian given that path.
+struct Particle {
+  Pose pose;                        // the last one sampled
+  VelocityFilter::State velocity;   // given the path: (v in W, w in C); all particles have the same covariance
+  std::vector<Landmark> landmarks;  // given the path
+  std::vector<Pose> anchors;        // of the landmarks' first views, on this particle's path
+  PathSolution solution;            // of the poses that are not sampled, given the path
+  double log_weight = 0;
+};
+
+// Ancestor of each new particle: expected number of copies of i is N w_i, off by less than 1. u in [0, 1).
+void SystematicAncestors(const std::vector<double>& weights, double u, std::vector<int>& ancestors);
 
 class ParticleSet {
  public:
@@ -31,7 +40,7 @@ class ParticleSet {
   double EffectiveSize() const;                                    // 1 / sum w^2
 
   // Particles whose log weight is not finite became copies of `by`, which shares its weight with them. None has a
-  // finite one: `by` is -1, and their log weights begin at 0 again.
+  // finite one: `by` is -1, and their log weights and evidences begin at 0 again.
   struct Replacement {
     std::vector<int> particles;
     int by = -1;
@@ -41,8 +50,8 @@ class ParticleSet {
   // Uniform weights, and 0 for particles whose log evidence is more than `log_bayes_rejection` below the best.
   Replacement NormaliseUniform(const std::vector<double>& log_evidence, double log_bayes_rejection);
 
-  // Systematic resampling with u in [0, 1): uniform weights, log weights 0. Returns the ancestor of each particle.
-  const std::vector<int>& Resample(double u);
+  // Systematic resampling with u in [0, 1): uniform weights, log weights 0.
+  void Resample(double u);
   bool AnyRejected() const;  // has weight 0
 
  private:
@@ -53,23 +62,5 @@ class ParticleSet {
   std::vector<Particle> children_;  // workspace of resampling, without memory of their own
   std::vector<int> ancestors_;
 };
-
-template <class Item>
-void TakeAncestors(const std::vector<int>& ancestors, std::vector<Item>& items, std::vector<Item>& children) {
-  children.resize(items.size());
-  int childless = 0;
-  for (std::size_t i = 0; i < ancestors.size(); ++i) {
-    Item& ancestor = items[ancestors[i]];
-    const bool last = i + 1 == ancestors.size() || ancestors[i + 1] != ancestors[i];
-    if (last) {
-      std::swap(children[i], ancestor);
-    } else {  // a copy, in the memory of an item without children
-      while (std::binary_search(ancestors.begin(), ancestors.end(), childless)) ++childless;
-      std::swap(children[i], items[childless++]);
-      children[i] = ancestor;
-    }
-  }
-  items.swap(children);
-}
 
 }  // namespace vo

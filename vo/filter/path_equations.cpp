@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "vo/geometry/covariance.h"
 #include "vo/geometry/so3.h"
 
 namespace vo {
@@ -24,7 +25,7 @@ void PathEquations::Begin(const PathPrior& prior, const WindowInput& in, std::sp
   y_.resize(3 * count);
   eliminated_.resize(tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i)
-    eliminated_[i].L = LandmarkRoot(in.landmarks[tracks[i].landmark].covariance);
+    eliminated_[i].L = SemidefiniteRoot<3>(in.landmarks[tracks[i].landmark].covariance);
 }
 
 void PathEquations::AddPrior(const PathPrior& prior, const WindowInput& in, const PathGaussian& path) {

@@ -9,9 +9,39 @@
 #include <span>
 #include <vector>
 
-#include "vo/filter/path_window.h"
+#include "vo/filter/path_gaussian.h"
+#include "vo/map/landmark.h"
 
 namespace vo {
+
+// Observations of one landmark in the window, the same for all particles. A landmark's first view is its prior, not an
+// observation.
+struct Track {
+  struct View {
+    int slot = 0;
+    Eigen::Vector2d z = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d R_inverse = Eigen::Matrix2d::Identity();
+    double log_det_R = 0;
+    Eigen::Vector3d centre_offset_W = Eigen::Vector3d::Zero();  // as in Match
+  };
+  int landmark = 0;
+  int anchor = 0;        // index of the anchor pose
+  int anchor_slot = -1;  // its slot, or -1: it has been sampled
+  std::vector<View> views;
+};
+
+// Sampled state of one particle, from which its window begins.
+struct WindowInput {
+  const Pose& start;        // the last sampled pose
+  const Vector6& velocity;  // mean at the start
+  std::span<const Landmark> landmarks;
+  std::span<const Pose> anchors;  // those of the window are not read
+};
+
+// The anchor's pose on the particle's path, sampled or not.
+inline const Pose& AnchorOn(const PathGaussian& path, const WindowInput& in, const Track& track) {
+  return track.anchor_slot < 0 ? in.anchors[track.anchor] : path.mean[track.anchor_slot];
+}
 
 class PathEquations {
  public:

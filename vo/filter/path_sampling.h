@@ -1,6 +1,6 @@
-// Sampling of un-sampled poses: draws of one slot for all particles, the rest of a path given a pose, and the landmarks
-// given a sampled pose.
-// Source:  docs/algorithm.md, section 9.
+// Sampling of un-sampled poses: draws of one slot for all particles, and a particle given its sampled pose.
+// Source:  docs/algorithm.md, section 9; second-order exact sampling of ensemble filters (Pham, Mon. Weather Rev. 129,
+//          2001), with the offsets projected out besides.
 #pragma once
 
 #include <functional>
@@ -8,28 +8,29 @@
 #include <vector>
 
 #include "vo/base/random.h"
-#include "vo/filter/rao_blackwell.h"
+#include "vo/filter/particle_set.h"
 #include "vo/filter/window.h"
 
 namespace vo {
 
+// Draws for all particles together that are exact to second order: over the particles mean 0, covariance I and, with
+// enough particles, no correlation with where the particles are. On a linear-Gaussian model the particles then have the
+// moments of infinitely many; each by itself is still a draw. One column per particle.
+using ParticleColumns = Eigen::MatrixXd;
+
+// `normals`: independent standard normal numbers, returned as they are where six dimensions and a mean exceed the
+// number of particles. `offsets`: of the particles from any common point; projected out where there are two particles
+// more than rows in both (14 for poses).
+ParticleColumns ExactDraws(const ParticleColumns& offsets, const ParticleColumns& normals);
+
 // One pose for each particle from its marginal at `slot`; slots before it have been conditioned on. `exact`: draws of
-// all particles together that are exact to second order (exact_draws.h), where there are enough.
-std::vector<Pose> SamplePoses(const std::vector<PathSolution>& solutions, int slot, bool exact,
+// all particles together that are exact to second order, where there are enough.
+std::vector<Pose> SamplePoses(const ParticleSet& particles, int slot, bool exact,
                               const std::function<RandomKey(std::size_t)>& key);
-
-// The rest of the path given its pose at `slot`: a conditional Gaussian. The covariance loses that pose, the mean keeps
-// it.
-void ConditionOn(int slot, const Pose& pose, PathGaussian& path);
-
-// Landmarks given one sampled pose and its matches, linearised at the modes.
-void UpdateLandmarks(std::span<const Match> matches, const LandmarkTable& table, const Pose& pose,
-                     std::span<const Pose> anchors, std::span<const Eigen::Vector3d> modes,
-                     std::vector<Landmark>& landmarks);
 
 // The particle given the sampled pose at `slot` of its path: velocity (37)-(43), then landmarks. Its pose becomes that
 // one.
-void UpdateGivenPose(const CameraVelocityFilter& step, std::span<const Match> matches, const LandmarkTable& table,
-                     int slot, const PathSolution& solution, Particle& particle);
+void UpdateGivenPose(const VelocityFilter& step, std::span<const Match> matches, const LandmarkTable& table, int slot,
+                     Particle& particle);
 
 }  // namespace vo

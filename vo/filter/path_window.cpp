@@ -1,129 +1,156 @@
 #include "vo/filter/path_window.h"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 
-#include "vo/filter/path_equations.h"
-#include "vo/geometry/symmetric.h"
+#include "vo/filter/pose_gaussian.h"
+#include "vo/geometry/covariance.h"
 
 namespace vo {
 namespace {
 
 // Problem of MinimiseToMode: the poses of the window and, following them, the landmarks.
-class PathProblem {
- public:
-  PathProblem(PathEquations& equations, const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks,
-              bool marginal, PathGaussian& path, std::vector<Eigen::Vector3d>& theta)
-      : equations_(equations),
-        prior_(prior),
-        in_(in),
-        tracks_(tracks),
-        marginal_(marginal),
-        path_(path),
-        theta_(theta) {
-    equations_.Begin(prior, in, tracks);
-    step_.setZero(kPoseSize * prior.size());
-  }
+struct PathProblem {
+  PathEquations& equations;
+  const PathPrior& prior;
+  const WindowInput& in;
+  std::span<const Track> tracks;
+  bool marginal;
+  PathGaussian& path;
+  std::vector<Eigen::Vector3d>& theta;
+  Eigen::VectorXd step = {};
+  std::vector<Pose> accepted_poses = {};
+  std::vector<Eigen::Vector3d> accepted_theta = {};
+  double predicted_decrease = 0;
+  Eigen::LLT<Eigen::MatrixXd> llt = {};
 
   double Linearise() {
-    equations_.AddPrior(prior_, in_, path_);
-    for (std::size_t i = 0; i < tracks_.size(); ++i)
-      equations_.AddTrack(i, in_, tracks_[i], path_, theta_[i], marginal_);
-    return marginal_ ? equations_.cost() + equations_.log_det() : equations_.cost();
+    equations.AddPrior(prior, in, path);
+    for (std::size_t i = 0; i < tracks.size(); ++i) equations.AddTrack(i, in, tracks[i], path, theta[i], marginal);
+    return marginal ? equations.cost() + equations.log_det() : equations.cost();
   }
   void HalveStep() {
-    step_ *= 0.5;
+    step *= 0.5;
     MovePoses(-1);
-    for (std::size_t i = 0; i < theta_.size(); ++i) theta_[i] -= 0.5 * (theta_[i] - accepted_theta_[i]);
+    for (std::size_t i = 0; i < theta.size(); ++i) theta[i] -= 0.5 * (theta[i] - accepted_theta[i]);
   }
   double Slope() {
-    equations_.ReduceGradient();
-    return equations_.b().dot(step_);
+    equations.ReduceGradient();
+    return equations.b().dot(step);
   }
   void TakeBack(double share) {
     MovePoses(share);
-    step_ *= 1 + share;
+    step *= 1 + share;
   }
   double Solve() {
-    equations_.ReduceInformation();
-    llt_.compute(equations_.A().selfadjointView<Eigen::Lower>());
-    step_ = equations_.b();
-    llt_.solveInPlace(step_);
-    return equations_.b().dot(step_);
+    equations.ReduceInformation();
+    llt.compute(equations.A().selfadjointView<Eigen::Lower>());
+    step = equations.b();
+    llt.solveInPlace(step);
+    return equations.b().dot(step);
   }
-  void Accept(double objective, double predicted_decrease) {
-    accepted_poses_ = path_.mean;
-    accepted_theta_.assign(theta_.begin(), theta_.end());
-    predicted_decrease_ = predicted_decrease;
-    path_.events.behind_camera = equations_.behind_camera();
-    path_.objective = objective - predicted_decrease;
-    path_.log_evidence = -0.5 * (equations_.cost() - predicted_decrease + equations_.log_det()) -
-                         llt_.matrixLLT().diagonal().array().log().sum();
+  void Accept(double objective, double decrease) {
+    accepted_poses = path.mean;
+    accepted_theta.assign(theta.begin(), theta.end());
+    predicted_decrease = decrease;
+    path.events.behind_camera = equations.behind_camera();
+    path.objective = objective - decrease;
+    path.log_evidence =
+        -0.5 * (equations.cost() - decrease + equations.log_det()) - llt.matrixLLT().diagonal().array().log().sum();
   }
   void Step() {
     MovePoses(1);
-    equations_.MoveLandmarks(step_, in_, tracks_, theta_);
+    equations.MoveLandmarks(step, in, tracks, theta);
   }
   void Restore() {
-    path_.mean = accepted_poses_;
-    theta_ = accepted_theta_;
-    path_.objective += predicted_decrease_;
-    path_.log_evidence -= 0.5 * predicted_decrease_;
+    path.mean = accepted_poses;
+    theta = accepted_theta;
+    path.objective += predicted_decrease;
+    path.log_evidence -= 0.5 * predicted_decrease;
   }
-  const Eigen::LLT<Eigen::MatrixXd>& llt() const { return llt_; }
-
- private:
   void MovePoses(double share) {  // of the step
-    for (int k = 0; k < prior_.size(); ++k)
-      path_.mean[k] = Plus(path_.mean[k], share * step_.segment<6>(kPoseSize * k));
+    for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], share * step.segment<6>(kPoseSize * k));
   }
-
-  PathEquations& equations_;
-  const PathPrior& prior_;
-  const WindowInput& in_;
-  std::span<const Track> tracks_;
-  bool marginal_;
-  PathGaussian& path_;
-  std::vector<Eigen::Vector3d>& theta_;
-  Eigen::VectorXd step_;
-  std::vector<Pose> accepted_poses_;
-  std::vector<Eigen::Vector3d> accepted_theta_;
-  double predicted_decrease_ = 0;
-  Eigen::LLT<Eigen::MatrixXd> llt_;
 };
 
 }  // namespace
 
-Eigen::Matrix3d LandmarkRoot(const Eigen::Matrix3d& P) {
-  Eigen::Matrix3d L = Eigen::Matrix3d::Zero();
-  for (int j = 0; j < 3; ++j) {
-    const double d = P(j, j) - L.row(j).head(j).squaredNorm();
-    if (d <= 0) continue;
-    L(j, j) = std::sqrt(d);
-    for (int i = j + 1; i < 3; ++i) L(i, j) = (P(i, j) - L.row(i).head(j).dot(L.row(j).head(j))) / L(j, j);
-  }
-  return L;
-}
-
-PathWindow::PathWindow() : equations_(std::make_unique<PathEquations>()) {}
-PathWindow::~PathWindow() = default;
-PathWindow::PathWindow(PathWindow&&) noexcept = default;
-PathWindow& PathWindow::operator=(PathWindow&&) noexcept = default;
-
 void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks,
                        const WindowOptions& options, PathGaussian& path, std::vector<Eigen::Vector3d>& theta) {
   path.events = {};
-  PathProblem problem(*equations_, prior, in, tracks, options.marginal, path, theta);
+  equations_.Begin(prior, in, tracks);
+  PathProblem problem{equations_, prior, in, tracks, options.marginal, path, theta};
+  problem.step.setZero(kPoseSize * prior.size());
   Descent descent(options.max_iterations, options.tolerance_sigma, options.stop_if_above);
   MinimiseToMode(problem, descent);
   path.covariance.setIdentity(kPoseSize * prior.size(), kPoseSize * prior.size());
-  problem.llt().solveInPlace(path.covariance);
+  problem.llt.solveInPlace(path.covariance);
   Symmetrise(path.covariance);
   path.events.not_converged = !descent.converged();
-  if (problem.llt().info() != Eigen::Success) {
+  if (problem.llt.info() != Eigen::Success) {
     path.events.not_positive_definite = 1;
     path.log_evidence = path.objective = std::numeric_limits<double>::quiet_NaN();
   }
+}
+
+LandmarkOnPath::Conditional LandmarkOnPath::Condition() const {
+  const Eigen::Matrix3d L = SemidefiniteRoot<3>(in_.landmarks[track_.landmark].covariance);
+  const Pose& anchor = AnchorOn(path_, in_, track_);
+  Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
+  Eigen::Matrix<double, 3, Eigen::Dynamic> E =
+      Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, path_.covariance.cols());
+  for (const Track::View& view : track_.views) {
+    const Projection h = Project(AnchorView(path_.mean[view.slot], anchor).ShiftedBy(view.centre_offset_W), theta_);
+    if (!h.in_front) continue;
+    const Matrix23 M = h.J_landmark * L;
+    const Eigen::Matrix<double, 3, 2> MtW = M.transpose() * view.R_inverse;
+    G.noalias() += MtW * M;
+    E.middleCols<6>(kPoseSize * view.slot).noalias() += MtW * h.J_pose;
+    if (track_.anchor_slot >= 0)
+      E.middleCols<6>(kPoseSize * track_.anchor_slot).noalias() += MtW * AnchorJacobian(h, theta_);
+  }
+  const Eigen::Matrix3d LG = L * G.inverse();
+  return {LG * L.transpose(), LG.lazyProduct(E)};
+}
+
+Eigen::Matrix<double, 9, 9> LandmarkOnPath::WithAnchor() const {
+  const Conditional landmark = Condition();
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> cross = path_.covariance.lazyProduct(landmark.D.transpose());
+  Eigen::Matrix<double, 9, 9> P = Eigen::Matrix<double, 9, 9>::Zero();
+  P.bottomRightCorner<3, 3>() = landmark.P + landmark.D.lazyProduct(cross);
+  if (track_.anchor_slot >= 0) {
+    const Eigen::Index a = kPoseSize * track_.anchor_slot;
+    P.topLeftCorner<6, 6>() = path_.covariance.block<6, 6>(a, a);
+    P.topRightCorner<6, 3>() = -cross.middleRows<6>(a);
+    P.bottomLeftCorner<3, 6>() = P.topRightCorner<6, 3>().transpose();
+  }
+  return Symmetrised(P);
+}
+
+Eigen::Matrix3d LandmarkOnPath::PointCovariance() const {
+  const Pose& anchor = in_.anchors[track_.anchor];
+  Eigen::Matrix<double, 3, 9> J;
+  J << PointAnchorJacobian(anchor, theta_), PointJacobian(anchor, theta_);
+  return Symmetrised(J * WithAnchor() * J.transpose());
+}
+
+ImagePrediction LandmarkOnPath::Image() const {
+  const Projection h = Project({path_.mean.back(), AnchorOn(path_, in_, track_)}, theta_);
+  if (!h.in_front) return {};
+  if (track_.views.empty() && track_.anchor_slot < 0) {  // the window does not see it
+    const auto last = path_.covariance.bottomRightCorner<6, 6>();
+    const Eigen::Matrix3d& P = in_.landmarks[track_.landmark].covariance;
+    return {true, h.z,
+            Symmetrised(h.J_pose * last * h.J_pose.transpose() + h.J_landmark * P * h.J_landmark.transpose())};
+  }
+  const Conditional landmark = Condition();
+  Eigen::Matrix<double, 2, Eigen::Dynamic> J = -h.J_landmark.lazyProduct(landmark.D);
+  J.rightCols<6>() += h.J_pose;
+  if (track_.anchor_slot >= 0) J.middleCols<6>(kPoseSize * track_.anchor_slot) += AnchorJacobian(h, theta_);
+  // Thin: a blocked product is slower
+  const Eigen::Matrix<double, Eigen::Dynamic, 2> PJt = path_.covariance.lazyProduct(J.transpose());
+  return {true, h.z, Symmetrised(J.lazyProduct(PJt) + h.J_landmark * landmark.P * h.J_landmark.transpose())};
 }
 
 }  // namespace vo

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "vo/filter/unscented.h"
+#include "vo/geometry/covariance.h"
 #include "vo/geometry/so3.h"
 
 namespace vo {
@@ -37,6 +37,10 @@ Pose PoseGaussian::Sample(const RandomKey& key) const { return Displaced(NormalV
 
 Pose PoseGaussian::Displaced(const Vector6& normals) const {
   return Plus(mean, SemidefiniteRoot<6>(covariance) * normals);
+}
+
+double LeastEigenvalue(const Matrix6& P) {
+  return Eigen::SelfAdjointEigenSolver<Matrix6>(P, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
 }
 
 Vector6 SampleNormal(const Vector6& mean, const Matrix6& covariance, const RandomKey& key) {

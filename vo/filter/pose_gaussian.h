@@ -25,6 +25,9 @@ struct PoseGaussian {
   Pose Displaced(const Vector6& normals) const;
 };
 
+// Of a symmetric matrix.
+double LeastEigenvalue(const Matrix6& P);
+
 // A covariance that is only semi-definite is legal.
 Vector6 SampleNormal(const Vector6& mean, const Matrix6& covariance, const RandomKey& key);
 

@@ -21,79 +21,64 @@ Matrix6 Inverse(const Eigen::LLT<Matrix6>& llt) {
 }
 
 // Problem of MinimiseToMode: the pose, its prediction and all matches, the landmarks eliminated.
-class PoseProblem {
- public:
-  PoseProblem(const PoseGaussian& prediction, const Eigen::LLT<Matrix6>& prior, MatchBatch& batch, bool marginal,
-              PoseProposal& proposal)
-      : prediction_(prediction),
-        batch_(batch),
-        marginal_(marginal),
-        prior_information_(Inverse(prior)),
-        prior_log_det_(2.0 * HalfLogDeterminant(prior)),
-        proposal_(proposal),
-        linearised_at_(proposal.pose.mean) {}
+struct PoseProblem {
+  const PoseGaussian& prediction;
+  MatchBatch& batch;
+  bool marginal;
+  Matrix6 prior_information;
+  double prior_log_det;
+  PoseProposal& proposal;
+  Pose linearised_at;  // of the covariance and the evidence
+  MatchBatch::Information system = {};
+  Vector6 step = Vector6::Zero();
+  std::optional<Vector6> move = {};  // since the last linearisation
+  double predicted_decrease = 0;
+  Eigen::LLT<Matrix6> llt = {};
 
   double Linearise() {
-    if (move_) batch_.Follow(*move_);
-    system_ = batch_.Linearise(pose(), marginal_);
-    const Vector6 offset = Minus(pose(), prediction_.mean);
+    if (move) batch.Follow(*move);
+    system = batch.Linearise(pose(), marginal);
+    const Vector6 offset = Minus(pose(), prediction.mean);
     Matrix6 J_prior = Matrix6::Identity();  // d(offset) / dd
     J_prior.bottomRightCorner<3, 3>() = InverseRightJacobian(offset.tail<3>());
-    system_.A = J_prior.transpose() * prior_information_ * J_prior + system_.A;
-    const Vector6 information_offset = prior_information_ * offset;
-    system_.b = system_.b - J_prior.transpose() * information_offset;
-    system_.cost = offset.dot(information_offset) + system_.cost;
-    system_.log_det = prior_log_det_ + system_.log_det;
-    return marginal_ ? system_.cost + system_.log_det : system_.cost;
+    system.A = J_prior.transpose() * prior_information * J_prior + system.A;
+    const Vector6 information_offset = prior_information * offset;
+    system.b = system.b - J_prior.transpose() * information_offset;
+    system.cost = offset.dot(information_offset) + system.cost;
+    system.log_det = prior_log_det + system.log_det;
+    return marginal ? system.cost + system.log_det : system.cost;
   }
-  double Slope() const { return system_.b.dot(step_); }
+  double Slope() const { return system.b.dot(step); }
   void HalveStep() {
-    step_ *= 0.5;
-    Move(-step_);
+    step *= 0.5;
+    Move(-step);
   }
   void TakeBack(double share) {
-    Move(share * step_);
-    step_ *= 1 + share;
+    Move(share * step);
+    step *= 1 + share;
   }
   double Solve() {
-    llt_.compute(system_.A);
-    step_ = llt_.solve(system_.b);
-    return system_.b.dot(step_);
+    llt.compute(system.A);
+    step = llt.solve(system.b);
+    return system.b.dot(step);
   }
   // p(z) = p(s) p(z | s) / p(s | z) at the new mean, where the quadratic cost is less by the decrement.
-  void Accept(double, double predicted_decrease) {
-    linearised_at_ = pose();
-    proposal_.events.behind_camera = system_.behind;
-    predicted_decrease_ = predicted_decrease;
-    proposal_.log_evidence =
-        -0.5 * (system_.cost - predicted_decrease + system_.log_det + 2.0 * HalfLogDeterminant(llt_));
+  void Accept(double, double decrease) {
+    linearised_at = pose();
+    proposal.events.behind_camera = system.behind;
+    predicted_decrease = decrease;
+    proposal.log_evidence = -0.5 * (system.cost - decrease + system.log_det + 2.0 * HalfLogDeterminant(llt));
   }
-  void Step() { Move(step_); }
+  void Step() { Move(step); }
   void Restore() {
-    pose() = linearised_at_;
-    proposal_.log_evidence -= 0.5 * predicted_decrease_;
+    pose() = linearised_at;
+    proposal.log_evidence -= 0.5 * predicted_decrease;
   }
-  const Eigen::LLT<Matrix6>& llt() const { return llt_; }
-
- private:
-  Pose& pose() { return proposal_.pose.mean; }
+  Pose& pose() { return proposal.pose.mean; }
   void Move(const Vector6& d) {
     pose() = Plus(pose(), d);
-    move_ = d;
+    move = d;
   }
-
-  const PoseGaussian& prediction_;
-  MatchBatch& batch_;
-  bool marginal_;
-  Matrix6 prior_information_;
-  double prior_log_det_;
-  PoseProposal& proposal_;
-  MatchBatch::Information system_;
-  Vector6 step_ = Vector6::Zero();
-  std::optional<Vector6> move_;  // since the last linearisation
-  Pose linearised_at_;           // of the covariance and the evidence
-  double predicted_decrease_ = 0;
-  Eigen::LLT<Matrix6> llt_;
 };
 
 }  // namespace
@@ -101,12 +86,13 @@ class PoseProblem {
 PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const FilterParams& params, const Pose& start) {
   const Eigen::LLT<Matrix6> prior(prediction.covariance);
   PoseProposal proposal{{start, prediction.covariance}, 0.0, {}};
-  PoseProblem problem(prediction, prior, batch, params.marginal_mode, proposal);
+  PoseProblem problem{prediction, batch, params.marginal_mode, Inverse(prior), 2.0 * HalfLogDeterminant(prior),
+                      proposal,   start};
   Descent descent(params.proposal == Proposal::ekf ? 1 : params.max_iterations);
   MinimiseToMode(problem, descent);
-  proposal.pose.covariance = Inverse(problem.llt());
+  proposal.pose.covariance = Inverse(problem.llt);
   proposal.events.not_converged = !descent.converged();
-  if (prior.info() != Eigen::Success || problem.llt().info() != Eigen::Success) {
+  if (prior.info() != Eigen::Success || problem.llt.info() != Eigen::Success) {
     proposal.events.not_positive_definite = 1;
     proposal.log_evidence = std::numeric_limits<double>::quiet_NaN();
   }

@@ -3,8 +3,8 @@
 //          by its own Schur complement (docs/algorithm.md, section 8): cost linear in the number of matches.
 #pragma once
 
-#include "vo/base/numerical_events.h"
 #include "vo/base/params.h"
+#include "vo/base/result.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/map/match_batch.h"
 
@@ -22,8 +22,5 @@ struct PoseProposal {
 // kToleranceSigma (gauss_newton.h) of the mode or max_iterations. Landmarks that come to lie behind the camera are left
 // out of that iteration. `start`: where the search for the mode begins, with the landmarks where the batch has them.
 PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const FilterParams& params, const Pose& start);
-inline PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const FilterParams& params) {
-  return Propose(prediction, batch, params, prediction.mean);
-}
 
 }  // namespace vo

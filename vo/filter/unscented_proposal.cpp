@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "vo/geometry/so3.h"
-#include "vo/geometry/symmetric.h"
 
 namespace vo {
 namespace {

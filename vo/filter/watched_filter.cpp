@@ -18,13 +18,15 @@ bool Symmetric(const Eigen::Ref<const Eigen::MatrixXd>& P) {
   return (P - P.transpose()).cwiseAbs().maxCoeff() <= kRounding * P.diagonal().cwiseAbs().maxCoeff();
 }
 
+#if !defined(NDEBUG)
 // Whatever the units: as correlations, of what varies at all. Costs too much to be looked at everywhere.
-[[maybe_unused]] bool NoNegativeEigenvalue(const Matrix12& P) {
+bool NoNegativeEigenvalue(const Matrix12& P) {
   const Eigen::Array<double, 12, 1> scale = (P.diagonal().array() > 0).select(P.diagonal().array().rsqrt(), 0);
   const Matrix12 correlation = scale.matrix().asDiagonal() * P * scale.matrix().asDiagonal();
   return Eigen::SelfAdjointEigenSolver<Matrix12>(correlation, Eigen::EigenvaluesOnly).eigenvalues().minCoeff() >
          -kRounding;
 }
+#endif
 
 bool PositiveDefinite(const Eigen::Matrix2d& R) { return R.allFinite() && R(0, 0) > 0 && R.determinant() > 0; }
 
@@ -122,28 +124,20 @@ std::vector<Filter::LandmarkBelief> WatchedFilter::LandmarkBeliefs() const {
   std::vector<LandmarkBelief> beliefs = filter_->LandmarkBeliefs();
   for (const LandmarkBelief& belief : beliefs) {
     Require(belief.X_W.allFinite() && std::isfinite(belief.inverse_depth), "landmarks", "a landmark is nowhere");
-    Require(belief.inverse_depth_sigma >= 0 && std::isfinite(belief.inverse_depth_sigma), "landmarks",
-            "the variance of an inverse depth is negative or not a number");
+    RequireSigma(belief.inverse_depth_sigma);
   }
   return beliefs;
 }
 
-std::vector<double> WatchedFilter::InverseDepthSigmas() const {
-  std::vector<double> sigmas = filter_->InverseDepthSigmas();
-  for (const double sigma : sigmas)
-    Require(sigma >= 0 && std::isfinite(sigma), "landmarks",
-            "the variance of an inverse depth is negative or not a number");
-  return sigmas;
-}
-
-std::vector<std::optional<PointMoments>> WatchedFilter::LandmarkPoints() const {
-  std::vector<std::optional<PointMoments>> points = filter_->LandmarkPoints();
-  for (const std::optional<PointMoments>& point : points) {
-    if (!point) continue;
-    Require(point->mean.allFinite(), "landmarks", "a landmark is nowhere");
-    RequireVariances(point->covariance, "landmarks", "a landmark", false);
+std::vector<Filter::LandmarkSpread> WatchedFilter::LandmarkSpreads() const {
+  std::vector<LandmarkSpread> spreads = filter_->LandmarkSpreads();
+  for (const LandmarkSpread& spread : spreads) {
+    RequireSigma(spread.inverse_depth_sigma);
+    if (!spread.place) continue;
+    Require(spread.place->mean.allFinite(), "landmarks", "a landmark is nowhere");
+    RequireVariances(spread.place->covariance, "landmarks", "a landmark", false);
   }
-  return points;
+  return spreads;
 }
 
 }  // namespace vo

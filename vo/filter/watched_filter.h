@@ -3,6 +3,7 @@
 // Cost:    2 us for a frame of 100 features, a fortieth of the time of eight particles.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -35,8 +36,7 @@ class WatchedFilter final : public Filter {
   void KeepLandmarks(const std::vector<bool>& keep) override;
   std::vector<ImagePrediction> PredictImages(std::span<const int> landmarks) const override;
   std::vector<LandmarkBelief> LandmarkBeliefs() const override;
-  std::vector<double> InverseDepthSigmas() const override;
-  std::vector<std::optional<PointMoments>> LandmarkPoints() const override;
+  std::vector<LandmarkSpread> LandmarkSpreads() const override;
 
   int landmark_count() const override { return filter_->landmark_count(); }
   const FilterAnswer& answer() const override { return filter_->answer(); }
@@ -49,6 +49,10 @@ class WatchedFilter final : public Filter {
   void RequireVariances(const Eigen::Ref<const Eigen::MatrixXd>& covariance, const char* stage, const char* whose,
                         bool above_zero) const;
   void RequireAnswer(const char* stage) const;
+  void RequireSigma(double sigma) const {
+    Require(sigma >= 0 && std::isfinite(sigma), "landmarks",
+            "the variance of an inverse depth is negative or not a number");
+  }
 
   std::unique_ptr<Filter> filter_;
   int frame_ = 0;

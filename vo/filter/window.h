@@ -1,5 +1,5 @@
-// Window of frames whose poses are not sampled, the same for all particles: their matches, and the landmarks' tracks
-// through them.
+// Window of frames whose poses are not sampled, the same for all particles: their matches, the landmarks' tracks
+// through them, and first guesses of its solution.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,6 @@
 #include "vo/filter/path_window.h"
 
 namespace vo {
-
-// Poses not sampled yet and, of each landmark, (x, y, rho) by all images until now.
-struct PathSolution {
-  PathGaussian path;
-  std::vector<Eigen::Vector3d> modes;
-};
 
 class Window {
  public:
@@ -61,5 +55,25 @@ class Window {
   std::vector<Track> tracks_;     // of the landmarks with a match
   std::vector<int> track_of_;     // per landmark: index into tracks_ or -1
 };
+
+// Landmarks given one sampled pose and its matches, linearised at the modes.
+void UpdateLandmarks(std::span<const Match> matches, const LandmarkTable& table, const Pose& pose,
+                     std::span<const Pose> anchors, std::span<const Eigen::Vector3d> modes,
+                     std::vector<Landmark>& landmarks);
+
+// Challenge of a solution: a first guess for another mode of the same images, to be solved and compared by its
+// objective. Sideways motion and rotation nearly explain each other as long as depths are unknown: several modes fit
+// nearly as well (depth reversal), and no later image undoes a wrong choice.
+constexpr std::uint32_t kGuesses = 6;
+
+// The path with another sideways motion: `guess` 0: none, 1: the opposite, 2 ... 5: along an axis of the first camera.
+// Rotated so that points at the mean depth keep their images; landmarks are triangulated from the new path.
+PathSolution PerturbTranslation(const Window& window, const LandmarkTable& table, const WindowInput& in,
+                                const PathSolution& solution, std::uint32_t guess);
+
+// Modes of the landmarks given the path, by Gauss-Newton from those of the solution: all views of a landmark linearised
+// together.
+std::vector<Eigen::Vector3d> Triangulate(const Window& window, const LandmarkTable& table, const WindowInput& in,
+                                         const PathSolution& solution);
 
 }  // namespace vo

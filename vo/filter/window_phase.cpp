@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vo/filter/landmark_on_path.h"
-#include "vo/filter/mode_challenge.h"
-#include "vo/filter/path_end.h"
 #include "vo/filter/path_sampling.h"
 
 namespace vo {
@@ -21,7 +18,7 @@ constexpr int kStartIterations = 50;
 }  // namespace
 
 WindowPhase::WindowPhase(const ParticleFilterSettings& settings, const FilterPrior& prior)
-    : ParticlePhase(settings, prior), solutions_(particles_.size()) {
+    : ParticlePhase(settings, prior) {
   answer_.initialising = true;
 }
 
@@ -30,7 +27,7 @@ void WindowPhase::ExtendPaths(double dt) {
   if (window_.LastIsUnused()) {
     prior_.reset();
     dt += window_.DropLast(table_);
-    for (PathSolution& solution : solutions_) DropLast(solution.path);
+    for (Particle& particle : particles_) DropLast(particle.solution.path);
   }
   const auto prior = [this] {
     std::vector<MotionModel> models;
@@ -41,7 +38,7 @@ void WindowPhase::ExtendPaths(double dt) {
   if (!prior_) prior_.emplace(prior());
   const MotionModel step = NearlyConstantVelocity(settings_.motion, dt);
   for (std::size_t i = 0; i < particles_.size(); ++i)
-    Extend(*prior_, step, particles_[i].pose, particles_[i].velocity.mean, solutions_[i].path);
+    Extend(*prior_, step, particles_[i].pose, particles_[i].velocity.mean, particles_[i].solution.path);
   window_.Append(dt, frame_, table_);
   prior_.emplace(prior());
 }
@@ -50,8 +47,7 @@ void WindowPhase::SetReferenceLandmarks() {
   const std::size_t heaviest = particles_.Heaviest();
   reference_landmarks_ = particles_[heaviest].landmarks;
   for (const Track& track : window_.tracks())
-    reference_landmarks_[track.landmark] = LandmarkGivenPath(InputOf(heaviest), track, solutions_[heaviest].path,
-                                                             solutions_[heaviest].modes[track.landmark]);
+    reference_landmarks_[track.landmark] = OnPath(heaviest, track).GivenPath();
 }
 
 WindowOptions WindowPhase::Options(bool initialising) const {
@@ -69,37 +65,40 @@ void WindowPhase::Solve(const Window& window, const WindowInput& in, const Windo
 }
 
 void WindowPhase::Solve(std::size_t particle, const WindowOptions& options) {
-  Solve(window_, InputOf(particle), options, solutions_[particle]);
-  window_.PlaceAnchors(solutions_[particle].path, particles_[particle].anchors);
+  Solve(window_, InputOf(particle), options, particles_[particle].solution);
+  window_.PlaceAnchors(particles_[particle].solution.path, particles_[particle].anchors);
+}
+
+void WindowPhase::Challenge(std::size_t i, std::uint32_t guess, WindowOptions options) {
+  PathSolution other = PerturbTranslation(window_, table_, InputOf(i), particles_[i].solution, guess % kGuesses);
+  const double objective = particles_[i].solution.path.objective;
+  options.stop_if_above = objective;
+  SolveOther(i, options, other);
+  // By the density at the mode, not by evidence: evidence rewards depths that stay unknown, as if each had a prior of
+  // its own, and prefers a deep scene with little parallax to a wall.
+  if (other.path.objective < objective || std::isnan(objective)) particles_[i].solution = std::move(other);
+  window_.PlaceAnchors(particles_[i].solution.path, particles_[i].anchors);
 }
 
 void WindowPhase::AddEvidence(double sign) {
   for (std::size_t i = 0; i < particles_.size(); ++i)
-    particles_[i].log_weight += sign * solutions_[i].path.log_evidence;
+    particles_[i].log_weight += sign * particles_[i].solution.path.log_evidence;
 }
 
 void WindowPhase::Answer(bool updated) {
   answer_.mixture.clear();
   for (std::size_t i = 0; i < particles_.size(); ++i)
     answer_.mixture.push_back(
-        ComponentAtTheEnd(*prior_, particles_[i].pose, particles_[i].velocity.mean, solutions_[i].path));
+        ComponentAtTheEnd(*prior_, particles_[i].pose, particles_[i].velocity.mean, particles_[i].solution.path));
   if (updated) Weigh();
   FinishAnswer();
 }
 
 void WindowPhase::Weigh() {
   std::vector<double> log_evidence;
-  for (const PathSolution& solution : solutions_) log_evidence.push_back(solution.path.log_evidence);
-  const ParticleSet::Replacement replaced = settings_.filter.weight == Weight::uniform
-                                                ? particles_.NormaliseUniform(log_evidence, kLogBayesRejection)
-                                                : particles_.Normalise();
-  Record(replaced);
-  for (const int i : replaced.particles) {
-    if (replaced.by < 0)
-      solutions_[i].path.log_evidence = 0;
-    else
-      solutions_[i] = solutions_[replaced.by];
-  }
+  for (const Particle& particle : particles_) log_evidence.push_back(particle.solution.path.log_evidence);
+  Record(settings_.filter.weight == Weight::uniform ? particles_.NormaliseUniform(log_evidence, kLogBayesRejection)
+                                                    : particles_.Normalise());
   answer_.effective_particles = particles_.EffectiveSize();
 }
 
@@ -112,33 +111,29 @@ void WindowPhase::SampleOldest(int count) {
   if (!uniform && answer_.effective_particles < params.resample_below * params.particles) Resample();
 }
 
-void WindowPhase::Resample() {
-  std::vector<PathSolution> children;
-  TakeAncestors(particles_.Resample(Uniform(Key(Stream::resampling, 0), 0)), solutions_, children);
-}
-
 // Samples the oldest poses, conditions the rest on them, and updates velocity and landmarks with those frames.
 void WindowPhase::Commit(int count) {
   for (int k = 0; k < count; ++k) {
     const std::vector<Pose> drawn =
-        SamplePoses(solutions_, k, settings_.filter.weight == Weight::uniform, [&](std::size_t i) {
+        SamplePoses(particles_, k, settings_.filter.weight == Weight::uniform, [&](std::size_t i) {
           return RandomKey{settings_.seed, Stream::pose, window_.frames()[k].number, static_cast<std::uint32_t>(i)};
         });
-    for (std::size_t i = 0; i < particles_.size(); ++i) ConditionOn(k, drawn[i], solutions_[i].path);
+    for (std::size_t i = 0; i < particles_.size(); ++i) ConditionOn(k, drawn[i], particles_[i].solution.path);
   }
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    window_.PlaceAnchors(solutions_[i].path, particles_[i].anchors);
+    window_.PlaceAnchors(particles_[i].solution.path, particles_[i].anchors);
     if (count > 1)  // the draws of many poses move the landmarks far
-      solutions_[i].modes = Triangulate(window_, table_, InputOf(i), solutions_[i]);
+      particles_[i].solution.modes = Triangulate(window_, table_, InputOf(i), particles_[i].solution);
   }
   for (int k = 0; k < count; ++k) {
-    const CameraVelocityFilter step = VelocityFilterOver(settings_.motion, window_.frames()[k].dt);
+    const VelocityFilter step(settings_.motion, window_.frames()[k].dt);
     for (std::size_t i = 0; i < particles_.size(); ++i)
-      UpdateGivenPose(step, window_.frames()[k].matches, table_, k, solutions_[i], particles_[i]);
+      UpdateGivenPose(step, window_.frames()[k].matches, table_, k, particles_[i]);
   }
-  for (PathSolution& solution : solutions_) {
-    solution.path.mean.erase(solution.path.mean.begin(), solution.path.mean.begin() + count);
-    solution.path.turns.erase(solution.path.turns.begin(), solution.path.turns.begin() + count);
+  for (Particle& particle : particles_) {
+    PathGaussian& path = particle.solution.path;
+    path.mean.erase(path.mean.begin(), path.mean.begin() + count);
+    path.turns.erase(path.turns.begin(), path.turns.begin() + count);
   }
   window_.DropOldest(count, table_);
   prior_.reset();
@@ -147,18 +142,17 @@ void WindowPhase::Commit(int count) {
 void WindowPhase::AddLandmarks(std::span<const FirstView> views) {
   if (views.empty()) return;
   const int anchor = AppendLandmarks(views);
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    Particle& particle = particles_[i];
-    particle.anchors[anchor] = window_.size() == 0 ? particle.pose : solutions_[i].path.mean.back();
+  for (Particle& particle : particles_) {
+    particle.anchors[anchor] = window_.size() == 0 ? particle.pose : particle.solution.path.mean.back();
     for (std::size_t n = particle.landmarks.size() - views.size(); n < particle.landmarks.size(); ++n)
-      solutions_[i].modes.push_back(particle.landmarks[n].mean);
+      particle.solution.modes.push_back(particle.landmarks[n].mean);
   }
   window_.AddAnchor(anchor, table_);
 }
 
 void WindowPhase::KeepLandmarks(const std::vector<bool>& keep) {
   window_.Keep(CompactLandmarks(keep), table_);
-  for (PathSolution& solution : solutions_) Compact(keep, solution.modes);
+  for (Particle& particle : particles_) Compact(keep, particle.solution.modes);
 }
 
 std::vector<ImagePrediction> WindowPhase::PredictImages(std::span<const int> landmarks) const {
@@ -167,8 +161,7 @@ std::vector<ImagePrediction> WindowPhase::PredictImages(std::span<const int> lan
   for (const int landmark : landmarks) {
     const Track track = window_.TrackOf(landmark, table_);
     ImageMoments moments;
-    for (std::size_t i = 0; i < weights.size(); ++i)
-      moments.Add(weights[i], PredictImageOnPath(InputOf(i), track, solutions_[i].path, solutions_[i].modes[landmark]));
+    for (std::size_t i = 0; i < weights.size(); ++i) moments.Add(weights[i], OnPath(i, track).Image());
     predictions.push_back(moments.Prediction());
   }
   return predictions;
@@ -176,34 +169,31 @@ std::vector<ImagePrediction> WindowPhase::PredictImages(std::span<const int> lan
 
 ReferencePath WindowPhase::Reference() const {
   const std::size_t heaviest = particles_.Heaviest();
-  const PathSolution& solution = solutions_[heaviest];
+  const PathSolution& solution = particles_[heaviest].solution;
   LocalMap map = MapOf(heaviest);
   map.landmarks = reference_landmarks_;
   return {{solution.path.mean.back(), solution.path.covariance.bottomRightCorner<6, 6>()}, map, solution.modes};
 }
 
-std::vector<double> WindowPhase::InverseDepthSigmas() const {
+std::vector<Filter::LandmarkSpread> WindowPhase::LandmarkSpreads() const {
   const std::span<const double> weights = SolutionWeights();
-  std::vector<double> sigmas;
+  std::vector<LandmarkSpread> spreads = ParticlePhase::LandmarkSpreads();
   for (int n = 0; n < table_.size(); ++n) {
     const Track track = window_.TrackOf(n, table_);
     double mean = 0, square = 0;  // about the first particle's
     for (std::size_t i = 0; i < weights.size(); ++i) {
       if (weights[i] == 0) continue;
-      const Eigen::Vector3d& theta = solutions_[i].modes[n];
-      const double off = theta.z() - solutions_[0].modes[n].z();
+      const double off = particles_[i].solution.modes[n].z() - particles_[0].solution.modes[n].z();
       mean += weights[i] * off;
-      square +=
-          weights[i] * (AnchorAndLandmarkCovariance(InputOf(i), track, solutions_[i].path, theta)(8, 8) + off * off);
+      square += weights[i] * (OnPath(i, track).WithAnchor()(8, 8) + off * off);
     }
-    sigmas.push_back(std::sqrt(square - mean * mean));
+    spreads[n].inverse_depth_sigma = std::sqrt(square - mean * mean);
   }
-  return sigmas;
+  return spreads;
 }
 
 Eigen::Matrix3d WindowPhase::PointCovariance(std::size_t particle, int landmark) const {
-  return PointCovarianceOnPath(InputOf(particle), window_.TrackOf(landmark, table_), solutions_[particle].path,
-                               solutions_[particle].modes[landmark]);
+  return OnPath(particle, window_.TrackOf(landmark, table_)).PointCovariance();
 }
 
 std::vector<Eigen::Matrix3d> WindowPhase::PointCovariances(int landmark) const {

@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "vo/filter/particle_phase.h"
-#include "vo/filter/path_prior.h"
-#include "vo/filter/rao_blackwell.h"
 #include "vo/filter/window.h"
 
 namespace vo {
@@ -19,8 +17,7 @@ class WindowPhase : public ParticlePhase {
   void KeepLandmarks(const std::vector<bool>& keep) override;
   std::vector<ImagePrediction> PredictImages(std::span<const int> landmarks) const override;
   ReferencePath Reference() const override;  // of the heaviest particle
-  std::vector<double> InverseDepthSigmas() const override;
-  const std::vector<PathSolution>& solutions() const { return solutions_; }
+  std::vector<LandmarkSpread> LandmarkSpreads() const override;
 
  protected:
   WindowPhase(const ParticleFilterSettings& settings, const FilterPrior& prior);
@@ -28,13 +25,17 @@ class WindowPhase : public ParticlePhase {
   // Weights of the first particles, those with a solution of their own.
   virtual std::span<const double> SolutionWeights() const = 0;
   Modes ModesOf(std::size_t particle) const override {
-    const std::vector<Eigen::Vector3d>& modes = solutions_[particle].modes;
+    const std::vector<Eigen::Vector3d>& modes = particles_[particle].solution.modes;
     return {modes.empty() ? nullptr : modes[0].data(), 3, table_.size(), Eigen::OuterStride<>(3)};
   }
   std::vector<Eigen::Matrix3d> PointCovariances(int landmark) const override;
   Eigen::Matrix3d PointCovariance(std::size_t particle, int landmark) const;
   WindowInput InputOf(std::size_t i) const {
     return {particles_[i].pose, particles_[i].velocity.mean, particles_[i].landmarks, particles_[i].anchors};
+  }
+
+  LandmarkOnPath OnPath(std::size_t i, const Track& track) const {
+    return {InputOf(i), track, particles_[i].solution.path, particles_[i].solution.modes[track.landmark]};
   }
 
   // One more pose. The last one is integrated out if nothing refers to it.
@@ -45,17 +46,20 @@ class WindowPhase : public ParticlePhase {
   WindowOptions Options(bool initialising) const;
   void Solve(const Window& window, const WindowInput& in, const WindowOptions& options, PathSolution& solution);
   void Solve(std::size_t particle, const WindowOptions& options);
+  // Replaces the solution by another mode where that is better: from first guess number `guess`, taken in turn.
+  void Challenge(std::size_t particle, std::uint32_t guess, WindowOptions options);
+  virtual void SolveOther(std::size_t particle, const WindowOptions& options, PathSolution& other) {
+    Solve(window_, InputOf(particle), options, other);
+  }
   // To the log weights; -1 removes that of the last solution.
   void AddEvidence(double sign);
   // Mixture and belief; the weights first, if the window has new matches.
   void Answer(bool updated);
   void Weigh();
   void SampleOldest(int count);
-  void Resample();
 
   Window window_;
   std::optional<PathPrior> prior_;  // of the window's steps; all particles share it
-  std::vector<PathSolution> solutions_;
   PathWindow solver_;
   std::vector<Landmark> reference_landmarks_;
 

@@ -6,9 +6,8 @@
 
 #include "vo/features/matcher.h"
 #include "vo/filter/consensus.h"
-#include "vo/frontend/coarse_features.h"
 #include "vo/frontend/search_set.h"
-#include "vo/map/existence.h"
+#include "vo/map/landmark_record.h"
 
 namespace vo {
 namespace {
@@ -49,9 +48,9 @@ Vector6 VelocityAt(const AssociationContext& in, const Pose& pose) {
 }
 
 // Request in a small window about the prediction of the landmark from the coarse pose.
-SearchRequest Refined(const AssociationContext& in, const CoarsePose& pose, const ImageMotion& motion, int landmark,
+SearchRequest Refined(const AssociationContext& in, const PoseGaussian& pose, const ImageMotion& motion, int landmark,
                       SearchRequest request) {
-  const auto prediction = pose.Predict(landmark, in.camera, in.params.features.sigma_px);
+  const auto prediction = PredictPixel(pose, motion.view(), landmark, in.camera, in.params.features.sigma_px);
   if (!prediction) return request;
   request.predicted =
       in.shutter.on() ? motion.InImage(landmark, in.camera.Undistort(prediction->pixel)) : prediction->pixel;
@@ -64,9 +63,7 @@ SearchRequest Refined(const AssociationContext& in, const CoarsePose& pose, cons
 // pose.
 Results SearchCoarseToFine(const AssociationContext& in, const std::vector<Candidate>& candidates,
                            const std::vector<SearchRequest>& requests) {
-  std::vector<CoarseCandidate> possible;
-  for (const Candidate& c : candidates) possible.push_back({c.pixel, &in.records[c.landmark]});
-  const std::vector<std::size_t> coarse = SelectCoarseFeatures(possible, in.camera, in.params.features);
+  const std::vector<std::size_t> coarse = SelectCoarseFeatures(candidates, in.records, in.camera, in.params.features);
   if (coarse.empty()) return SearchAll(in, requests);
 
   Results results(candidates.size());
@@ -85,8 +82,8 @@ Results SearchCoarseToFine(const AssociationContext& in, const std::vector<Candi
     if (result.found) matches.push_back(MatchOf(in, candidates[coarse[k]], *result.found, in.velocity()));
   }
 
-  const std::optional<CoarsePose> pose = CoarsePose::From(in.prediction(), in.reference.map, matches, in.params);
-  const Pose& at = pose ? pose->pose().mean : in.prediction().mean;
+  const std::optional<PoseGaussian> pose = FitCoarsePose(in.prediction(), in.reference.map, matches, in.params);
+  const Pose& at = pose ? pose->mean : in.prediction().mean;
   const ImageMotion motion(in.shutter, in.reference.map, at, VelocityAt(in, at));
   std::vector<SearchRequest> fine;
   for (std::size_t i = 0; i < candidates.size(); ++i) {

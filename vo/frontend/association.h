@@ -14,7 +14,6 @@
 #include "vo/frontend/rolling_shutter.h"
 #include "vo/geometry/camera.h"
 #include "vo/map/landmark_record.h"
-#include "vo/map/residual_history.h"
 
 namespace vo {
 

@@ -1,10 +1,12 @@
 // Detection of the features at which landmarks begin: the corners of a calibration target, while one is expected, and
 // corners spread over the image.
-// Source:  docs/algorithm.md, section 7.
-// Units:   pixels.
+// Source:  docs/algorithm.md, section 7. Target: OpenCV's findChessboardCornersSB (Duda & Frese 2018, "Accurate
+//          detection and localization of checkerboard corners for calibration") and solvePnP.
+// Units:   pixels; metres.
 #pragma once
 
 #include <Eigen/Core>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <vector>
 
@@ -16,9 +18,16 @@
 namespace vo {
 
 struct NewFeature {
-  Eigen::Vector2i pixel;
-  std::optional<KnownDepth> depth;  // on the target
+  Eigen::Vector2i pixel;            // of a corner of the target: the nearest whole one
+  std::optional<KnownDepth> depth;  // on the target: that of the board's plane there
 };
+
+// Scale from a calibration target, a chessboard of known size: the inner corners of the board with their inverse
+// depths, row by row; empty unless all are visible at invertible pixels. Corners are measured with `sigma_px`. The
+// distance of the board is an error common to all corners, but a filter takes them for independent: sigma^2 is n times
+// the variance from the board's pose, so that the mean of n corners has the right one.
+std::vector<NewFeature> FindTarget(const cv::Mat& grey, const Camera& camera, const TargetParams& target,
+                                   double sigma_px);
 
 class NewFeatureDetector {
  public:
@@ -29,8 +38,6 @@ class NewFeatureDetector {
   std::vector<NewFeature> Detect(const PreparedFrame& frame, std::vector<Eigen::Vector2d> occupied);
 
  private:
-  std::vector<NewFeature> DetectTarget(const PreparedFrame& frame);
-
   Camera camera_;
   FeatureParams features_;
   TargetParams target_;

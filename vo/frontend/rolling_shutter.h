@@ -1,6 +1,6 @@
 // Rolling-shutter model: row y of h is exposed at stamp + readout (y / (h - 1) - 1/2), and the camera moves in between
 // with constant velocity. To the filter, a row is seen by a camera displaced from its position at the stamp
-// (vo/map/row_view.h): exact at unknown depth.
+// (RowView): exact at unknown depth.
 // Source:  docs/conventions.md (stamp); Hedborg, Forssén, Felsberg, Ringaby 2012, "Rolling shutter bundle adjustment".
 // Units:   image points on the plane z = 1, pixels where said; seconds; velocity (v in W, w in C).
 #pragma once
@@ -10,8 +10,7 @@
 #include "vo/base/params.h"
 #include "vo/geometry/camera.h"
 #include "vo/map/landmark.h"
-#include "vo/map/map_view.h"
-#include "vo/map/row_view.h"
+#include "vo/map/local_map.h"
 
 namespace vo {
 
@@ -40,6 +39,7 @@ class ImageMotion {
   ImageMotion(const RollingShutter& shutter, const LocalMap& map, const Pose& pose, const Vector6& velocity)
       : shutter_(shutter), map_(map, pose), velocity_(velocity) {}
 
+  const MapView& view() const { return map_; }
   Eigen::Vector2d InImage(int landmark, const Eigen::Vector2d& z) const { return shutter_.InImage(z, Rate(landmark)); }
 
  private:

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "vo/features/corner_detector.h"
+#include "vo/filter/consensus.h"
 
 namespace vo {
 namespace {
@@ -42,6 +43,14 @@ std::vector<int> Predictable(const AssociationContext& in) {
   }
   return predictable;
 }
+
+constexpr int kMinAge = 10;  // [frames]
+constexpr double kHighScore = 0.9;
+constexpr std::size_t kMinInliers = 6;  // a pose has six degrees of freedom, a match gives two equations
+constexpr double kMinInlierRatio = 0.5;
+
+// Lower rank is searched first.
+int Rank(const LandmarkRecord& record) { return record.score < kHighScore ? 2 : record.permanent ? 0 : 1; }
 
 }  // namespace
 
@@ -94,6 +103,49 @@ SearchRequest RequestFor(const AssociationContext& in, const Candidate& candidat
     request.warp =
         candidate.lens * view.J_landmark.leftCols<2>() * in.camera.LensJacobian(estimate.head<2>()).inverse();
   return request;
+}
+
+std::vector<std::size_t> SelectCoarseFeatures(std::span<const Candidate> candidates,
+                                              std::span<const LandmarkRecord> records, const Camera& camera,
+                                              const FeatureParams& params) {
+  const auto record = [&](std::size_t i) -> const LandmarkRecord& { return records[candidates[i].landmark]; };
+  const auto count = static_cast<std::size_t>(params.coarse_features);
+  std::vector<std::size_t> preferred;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (record(i).age >= kMinAge) preferred.push_back(i);
+  if (count == 0 || preferred.size() < count) return {};
+  std::stable_sort(preferred.begin(), preferred.end(),
+                   [&](std::size_t a, std::size_t b) { return Rank(record(a)) < Rank(record(b)); });
+  std::vector<Eigen::Vector2d> pixels;
+  for (const std::size_t i : preferred) pixels.push_back(candidates[i].pixel);
+  const int cells = static_cast<int>(std::ceil(std::sqrt(params.coarse_features)));
+  std::vector<std::size_t> chosen;
+  for (const std::size_t i : BucketRoundRobin(pixels, cells, cells, camera.width, camera.height))
+    if (chosen.size() < count) chosen.push_back(preferred[i]);
+  return chosen;
+}
+
+std::optional<PoseGaussian> FitCoarsePose(const PoseGaussian& prediction, const LocalMap& map,
+                                          std::span<const Match> matches, const Params& params) {
+  if (matches.size() < kMinInliers) return std::nullopt;
+  const Consensus found = FindConsensus(prediction, map, matches, params.score.gate, params.filter);
+  const auto inliers = static_cast<std::size_t>(std::count(found.inlier.begin(), found.inlier.end(), true));
+  if (inliers < kMinInliers || static_cast<double>(inliers) < kMinInlierRatio * static_cast<double>(matches.size()))
+    return std::nullopt;
+  return found.pose;
+}
+
+std::optional<PixelPrediction> PredictPixel(const PoseGaussian& pose, const MapView& view, int landmark,
+                                            const Camera& camera, double sigma_px) {
+  const Projection h = view(landmark);
+  if (!h.in_front || !camera.IsInjective(h.z)) return std::nullopt;
+  const Eigen::Matrix2d lens = camera.LensJacobian(h.z);
+  const Matrix26 J_pose = lens * h.J_pose;
+  const Matrix23 J_landmark = lens * h.J_landmark;
+  return PixelPrediction{camera.Project({h.z.x(), h.z.y(), 1.0}),
+                         J_pose * pose.covariance * J_pose.transpose() +
+                             J_landmark * view.landmark(landmark).covariance * J_landmark.transpose() +
+                             sigma_px * sigma_px * Eigen::Matrix2d::Identity()};
 }
 
 }  // namespace vo

@@ -1,9 +1,13 @@
-// Search set of a frame: the landmarks that are predicted to be visible, at most max_searched of them. Private to
-// vo/frontend.
-// Source:  docs/algorithm.md, section 7.
+// Search set of a frame: the landmarks that are predicted to be visible, at most max_searched of them; and
+// coarse-to-fine matching, where the pose from a few coarse features, searched for in wide windows, predicts all others
+// within small ones. It only guides the search; it is no measurement. Private to vo/frontend.
+// Source:  docs/algorithm.md, section 7; the coarse stage of Klein & Murray, "Parallel Tracking and Mapping" (2007).
+//          The pose is the robust fit of the outlier test (consensus.h) to the coarse matches alone.
+// Units:   pixels in the image; matches are on the plane z = 1.
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,5 +52,24 @@ std::vector<Candidate> FindCandidates(const AssociationContext& in, int border_p
 std::vector<Eigen::Vector2d> LimitToBudget(std::vector<Candidate>& candidates, const AssociationContext& in);
 
 SearchRequest RequestFor(const AssociationContext& in, const Candidate& candidate);
+
+// Indices of params.coarse_features candidates: spread over the image, in each part of it those of high score and known
+// depth first. Empty where fewer have been in the map for ten frames: matches about the prediction of an unknown depth
+// would confirm it.
+std::vector<std::size_t> SelectCoarseFeatures(std::span<const Candidate> candidates,
+                                              std::span<const LandmarkRecord> records, const Camera& camera,
+                                              const FeatureParams& params);
+
+// Robust fit of the pose to the coarse matches. None when fewer than six of them are inliers, or fewer than half.
+std::optional<PoseGaussian> FitCoarsePose(const PoseGaussian& prediction, const LocalMap& map,
+                                          std::span<const Match> matches, const Params& params);
+
+struct PixelPrediction {
+  Eigen::Vector2d pixel;
+  Eigen::Matrix2d covariance;  // from pose, landmark and pixel noise [px^2]
+};
+// `view`: from the mean of `pose`. None: behind the camera, or not injective there.
+std::optional<PixelPrediction> PredictPixel(const PoseGaussian& pose, const MapView& view, int landmark,
+                                            const Camera& camera, double sigma_px);
 
 }  // namespace vo

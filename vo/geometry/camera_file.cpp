@@ -1,18 +1,55 @@
 #include "vo/geometry/camera_file.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <limits>
+#include <opencv2/core.hpp>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
+#include "tools/base/limits/structured_text.h"
 #include "tools/base/settings/settings.h"
-#include "vo/geometry/calibration_numbers.h"
-#include "vo/geometry/opencv_xml.h"
 
 namespace vo {
 namespace {
+
+// Calibration coefficients in the common order of OpenCV, ROS, EuRoC and Kalibr: k1 k2 p1 p2 [k3], or k1 k2 k3 k4 for a
+// fisheye lens (camera.lens); further ones must be zero. Returns the problem, worded to follow the name of the
+// coefficients; empty: none.
+std::string SetLens(std::span<const double> coefficients, Camera& camera) {
+  const std::size_t most = camera.lens == Lens::fisheye ? 4 : 5;
+  if (coefficients.size() < 4)
+    return "must be k1, k2, p1, p2 and perhaps k3, or k1 ... k4 of an equidistant lens; there are " +
+           std::to_string(coefficients.size()) + " numbers";
+  for (std::size_t i = most; i < coefficients.size(); ++i) {
+    if (coefficients[i] != 0)
+      return "has more than " + std::to_string(most) + " coefficients that are not zero: that lens is not known here";
+  }
+  camera.k1 = coefficients[0];
+  camera.k2 = coefficients[1];
+  const bool fisheye = camera.lens == Lens::fisheye;
+  (fisheye ? camera.k3 : camera.p1) = coefficients[2];
+  (fisheye ? camera.k4 : camera.p2) = coefficients[3];
+  if (!fisheye && coefficients.size() > 4) camera.k3 = coefficients[4];
+  return "";
+}
+
+// Camera matrix K, 3 x 3, row by row. Returns its problems.
+std::vector<std::string> SetMatrix(std::span<const double> matrix, Camera& camera) {
+  if (matrix.size() != 9) return {"'camera_matrix' must have 3 x 3 numbers"};
+  std::vector<std::string> problems;
+  camera.fx = matrix[0];
+  camera.cx = matrix[2];
+  camera.fy = matrix[4];
+  camera.cy = matrix[5];
+  if (!(camera.fx > 0 && camera.fy > 0)) problems.emplace_back("'camera_matrix': fx and fy must be positive");
+  if (matrix[1] != 0) problems.emplace_back("'camera_matrix': skew is not known here");
+  return problems;
+}
 
 void RequireLens(settings::Section& section, const std::string& key, const std::string& name, Camera& camera) {
   std::vector<double> coefficients;
@@ -127,6 +164,79 @@ void ReadOpenCvYaml(settings::Section root, Camera& camera) {
       root.Reject(lens_key, "'distortion_coefficients' " + problem);
   }
   root.IgnoreRest();
+}
+
+// Entries of a matrix of OpenCV's XML, row by row; empty where it is none. Without cv::Mat's reader, which allocates as
+// many rows and columns as the file states.
+std::vector<double> Numbers(const cv::FileNode& matrix) {
+  if (!matrix.isMap()) return {};
+  const cv::FileNode rows = matrix["rows"], columns = matrix["cols"], data = matrix["data"];
+  if (!rows.isInt() || !columns.isInt() || !data.isSeq()) return {};
+  const std::int64_t count = static_cast<std::int64_t>(static_cast<int>(rows)) * static_cast<int>(columns);
+  if (count < 1 || static_cast<std::size_t>(count) != data.size()) return {};
+  std::vector<double> values;
+  for (const cv::FileNode& value : data) {
+    if (!value.isInt() && !value.isReal()) return {};
+    values.push_back(static_cast<double>(value));
+  }
+  return values;
+}
+
+cv::FileStorage OpenXml(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string text;
+  for (std::array<char, 4096> block; stream && text.size() <= limits::kMostStorageBytes;) {
+    stream.read(block.data(), block.size());
+    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  if (const std::string problem = limits::OpenCvStorageProblem(text); !problem.empty())
+    throw settings::Error({{file.string(), 0, 0, "OpenCV cannot read it: it is " + problem}});
+  cv::FileStorage storage(file.string(), cv::FileStorage::READ);
+  if (!storage.isOpened()) throw settings::Error({{file.string(), 0, 0, "OpenCV cannot read it"}});
+  return storage;
+}
+
+// OpenCV's XML (cv::FileStorage). Problems have no lines.
+Camera ReadOpenCvXml(const std::filesystem::path& file) try {
+  const cv::FileStorage storage = OpenXml(file);
+  std::vector<settings::Problem> problems;
+  const auto complain = [&](const std::string& message) { problems.push_back({file.string(), 0, 0, message}); };
+  // The key that is present, of the two spellings.
+  const auto find = [&](const char* name, const char* other) {
+    const cv::FileNode node = storage[name];
+    return node.empty() ? storage[other] : node;
+  };
+  const auto size = [&](const char* name, const char* other) {
+    const cv::FileNode node = find(name, other);
+    const int value = node.isInt() ? static_cast<int>(node) : 0;
+    if (value <= 0) complain(std::string("'") + name + "' must be there, a positive whole number");
+    return value;
+  };
+  const auto matrix = [&](const char* name, const char* other) {
+    std::vector<double> values = Numbers(find(name, other));
+    if (values.empty()) complain(std::string("'") + name + "' must be there, a matrix of numbers");
+    if (std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); })) return values;
+    complain(std::string("'") + name + "' has a number that is none");
+    return std::vector<double>();
+  };
+  Camera camera;
+  camera.width = size("image_width", "image_Width");
+  camera.height = size("image_height", "image_Height");
+  if (const std::vector<double> values = matrix("camera_matrix", "Camera_Matrix"); !values.empty())
+    for (const std::string& problem : SetMatrix(values, camera)) complain(problem);
+  const cv::FileNode fisheye = storage["fisheye_model"];
+  if (fisheye.isInt() && static_cast<int>(fisheye) != 0) camera.lens = Lens::fisheye;
+  if (const std::vector<double> values = matrix("distortion_coefficients", "Distortion_Coefficients"); !values.empty())
+    if (const std::string problem = SetLens(values, camera); !problem.empty())
+      complain("'distortion_coefficients' " + problem);
+  if (!problems.empty()) throw settings::Error(problems);
+  return camera;
+} catch (const settings::Error&) {
+  throw;
+} catch (const cv::Exception& error) {
+  throw settings::Error({{file.string(), 0, 0, "OpenCV cannot read it: " + error.err}});
+} catch (const std::exception& error) {  // the parser passes on those of the standard library
+  throw settings::Error({{file.string(), 0, 0, std::string("OpenCV cannot read it: ") + error.what()}});
 }
 
 std::string FirstLine(const std::filesystem::path& file) {

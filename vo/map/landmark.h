@@ -11,13 +11,27 @@
 
 #include "vo/base/params.h"
 #include "vo/geometry/pose.h"
-#include "vo/map/row_view.h"
 
 namespace vo {
 
 struct Landmark {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();        // (x, y, rho)
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // with a fixed bearing only the last entry is not 0
+};
+
+// Row measurement of a rolling shutter, and its rotation-compensated form at the frame's stamp. The rotation between
+// row and stamp needs no depth and is taken out exactly; the translation is left as an offset of the camera's centre.
+// Velocity: (v in W, w in C); time in seconds.
+struct RowView {
+  Eigen::Vector2d z = Eigen::Vector2d::Zero();  // in the camera at the row's time
+  double time = 0;                              // of the row, after the stamp; 0 without a rolling shutter
+
+  // z in a camera with the orientation at the stamp and the centre at the row's time.
+  struct Compensated {
+    Eigen::Vector2d z;
+    Eigen::Vector3d centre_offset_W;  // of that centre from the one at the stamp
+  };
+  Compensated RotationCompensated(const Vector6& velocity) const;
 };
 
 // Match of a landmark with a feature of the present image, on the plane z = 1, with covariance R.
@@ -98,6 +112,10 @@ Landmark NewLandmark(const FirstView& view, const LandmarkParams& params);
 // In W; far away for a vanishing rho.
 Eigen::Vector3d PointInWorld(const Pose& anchor, const Eigen::Vector3d& landmark);
 
+// dX_W / d(x, y, rho) and dX_W / d(dp in W, dphi in A) of the anchor's pose. rho > 0 (a precondition).
+Eigen::Matrix3d PointJacobian(const Pose& anchor, const Eigen::Vector3d& landmark);
+Eigen::Matrix<double, 3, 6> PointAnchorJacobian(const Pose& anchor, const Eigen::Vector3d& landmark);
+
 // Posterior of a landmark from a match at a known pose.
 struct LandmarkUpdate {
   Landmark landmark;
@@ -107,9 +125,5 @@ struct LandmarkUpdate {
 // = 1). A landmark behind the camera stays as it is.
 LandmarkUpdate UpdateLandmark(const Landmark& prior, const Eigen::Vector3d& guess, const AnchorView& view,
                               const Match& match, int max_iterations);
-inline LandmarkUpdate UpdateLandmark(const Landmark& prior, const AnchorView& view, const Match& match,
-                                     int max_iterations) {
-  return UpdateLandmark(prior, prior.mean, view, match, max_iterations);
-}
 
 }  // namespace vo

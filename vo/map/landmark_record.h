@@ -1,10 +1,44 @@
-// Record of a landmark that all particles share: appearance and existence. The estimate is each particle's own.
+// Record of a landmark that all particles share: appearance, existence score, residual history, and the selection of
+// the landmarks that the map keeps. The estimate is each particle's own.
+// Source:  docs/algorithm.md, section 6: (44)-(49), probabilistic data association with at most one detection. Residual
+//          history: conjugate estimate of a variance (inverse gamma), with forgetting. The latter, and the bound on the
+//          number of landmarks, are ours.
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "vo/base/params.h"
 #include "vo/features/matcher.h"
-#include "vo/map/residual_history.h"
 
 namespace vo {
+
+// Normalised residual of one match.
+struct Residual {
+  double ratio = 1;   // squared error over R; 1 on average where R is right
+  double weight = 0;  // 0 ... 1: little where the landmark itself is known less well than it is seen
+
+  // r: match less prediction; of the landmark: its own covariance in the image.
+  static Residual Of(const Eigen::Vector2d& r, const Eigen::Matrix2d& of_landmark, const Eigen::Matrix2d& R);
+};
+
+// Ratio of a landmark's squared residuals to their stated covariance R. Depth edges, gloss and repetitive texture are
+// not visible in a single patch; the residuals of several frames show them.
+class ResidualHistory {
+ public:
+  void Add(const Residual& residual);
+  // By what to multiply R from now on: twice the mean of the ratios, since errors of neighbouring frames are alike; no
+  // less than 1, for the same reason, and no more than kMost. 2 for a landmark that has not been seen again.
+  double Inflation() const;
+
+  static constexpr double kMost = 16;
+
+ private:
+  double weight_ = 0, sum_ = 0;
+};
 
 struct LandmarkRecord {
   int id = 0;
@@ -16,5 +50,19 @@ struct LandmarkRecord {
   bool permanent = false;
   ResidualHistory residuals;  // of its matches; used with MatchNoise::adaptive
 };
+
+// (44): the score before the image is looked at.
+double PredictScore(double score, const ScoreParams& params);
+
+// (45)-(49) for a feature that was searched for. `mahalanobis_sq` = nu' S^-1 nu of its detection, with S of pose,
+// landmark and pixel before sampling; none = no detection. S itself is not needed: V_G * Lambda = G / (2 P_G) exp(-d^2
+// / 2).
+double UpdateScore(double predicted_score, std::optional<double> mahalanobis_sq, const ScoreParams& params);
+
+// Kept are the permanent ones, and those that exist and were searched for in the last forget_after frames. Beyond
+// max_landmarks, with the `wanted` that are to come, the longest unsearched go, of these the oldest (the first in
+// `records`), but none that the last frame searched for.
+std::vector<bool> LandmarksToKeep(std::span<const LandmarkRecord> records, std::size_t wanted,
+                                  const LandmarkParams& landmark, const ScoreParams& score);
 
 }  // namespace vo

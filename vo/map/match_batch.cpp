@@ -32,6 +32,15 @@ double LogDet(const MatchSums& sums) {
 
 }  // namespace
 
+const MatchKernel& MatchKernelOf(InstructionSet set) {
+#ifdef __x86_64__
+  if (set == InstructionSet::avx512) return match_avx512::kKernel;
+  if (set == InstructionSet::avx2) return match_avx2::kKernel;
+#endif
+  static_cast<void>(set);
+  return match_base::kKernel;
+}
+
 void MatchBatch::SetMatches(std::span<const Match> matches) {
   landmark_.clear();
   centre_offset_W_.clear();

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "vo/map/image_prediction.h"
 #include "vo/map/local_map.h"
 #include "vo/map/match_lanes.h"
+#include "vo/map/moments.h"
 
 namespace vo {
 

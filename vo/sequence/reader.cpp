@@ -105,13 +105,13 @@ SequenceReader::SequenceReader(const fs::path& folder) {
   if (!in)
     throw std::runtime_error(list.string() +
                              ": cannot be read (a sequence folder has one, see docs/sequence_format.md)");
-  std::ostringstream problems;
+  std::vector<std::string> problems;
   std::string line;
   int number = 0, last_number = 0;
   while (std::getline(in, line)) {
     ++number;
     const auto complain = [&](const std::string& text) {
-      problems << list.string() << ":" << number << ": " << text << "\n";
+      problems.push_back(list.string() + ":" + std::to_string(number) + ": " + text);
     };
     const std::vector<std::string> words = Words(line);
     if (words.empty() || words[0][0] == '#') continue;
@@ -132,12 +132,8 @@ SequenceReader::SequenceReader(const fs::path& folder) {
     entries_.push_back({*stamp_ns, image});
     last_number = number;
   }
-  std::string text = problems.str();
-  if (text.empty() && entries_.empty()) text = list.string() + ": no frames\n";
-  if (!text.empty()) {
-    text.pop_back();
-    throw std::runtime_error(text);
-  }
+  if (problems.empty() && entries_.empty()) problems.push_back(list.string() + ": no frames");
+  if (!problems.empty()) throw std::runtime_error(base::Join(problems, "\n"));
 }
 
 std::optional<Frame> SequenceReader::Next() {

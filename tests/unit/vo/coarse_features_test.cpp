@@ -1,7 +1,5 @@
 // Coarse-to-fine matching: pose from few matches, choice of the coarse features, and their effect on images.
 
-#include "vo/frontend/coarse_features.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 
 #include "tests/unit/vo/texture.h"
 #include "vo/features/corner_detector.h"
+#include "vo/frontend/search_set.h"
 #include "vo/geometry/so3.h"
 #include "vo/odometry.h"
 
@@ -57,10 +56,11 @@ Scene MakeScene() {
 }
 
 // Largest distance [px] of the landmarks beyond the first `coarse` from their predictions.
-double Worst(const Scene& scene, const vo::CoarsePose& pose, int coarse) {
+double Worst(const Scene& scene, const vo::PoseGaussian& pose, int coarse) {
+  const vo::MapView view(scene.map(), pose.mean);
   double worst = 0;
   for (int n = coarse; n < static_cast<int>(scene.landmarks.size()); ++n) {
-    const auto where = pose.Predict(n, kCamera, 0.7);
+    const auto where = vo::PredictPixel(pose, view, n, kCamera, 0.7);
     if (!where) return std::numeric_limits<double>::infinity();
     const Vector2d z = scene.SeenAt(n);
     worst = std::max(worst, (where->pixel - kCamera.Project({z.x(), z.y(), 1})).norm());
@@ -70,7 +70,7 @@ double Worst(const Scene& scene, const vo::CoarsePose& pose, int coarse) {
 
 TEST(CoarseFeatures, TellWhereAllOthersAre) {
   const Scene scene = MakeScene();
-  const auto pose = vo::CoarsePose::From(scene.prediction, scene.map(), scene.Matches(16), {});
+  const auto pose = vo::FitCoarsePose(scene.prediction, scene.map(), scene.Matches(16), {});
   ASSERT_TRUE(pose);
   EXPECT_LT(Worst(scene, *pose, 16), 0.05);  // exact matches; the prior pulls, at a ten thousandth of their weight
   double plain = 0;
@@ -85,7 +85,7 @@ TEST(CoarseFeatures, AreNotMovedByOutliers) {
   const Scene scene = MakeScene();
   std::vector<vo::Match> matches = scene.Matches(16);
   for (int n = 0; n < 16; n += 4) matches[n].z += Vector2d(0.05, -0.03);  // 29 px, all the same way: a thing that moves
-  const auto pose = vo::CoarsePose::From(scene.prediction, scene.map(), matches, {});
+  const auto pose = vo::FitCoarsePose(scene.prediction, scene.map(), matches, {});
   ASSERT_TRUE(pose);
   EXPECT_LT(Worst(scene, *pose, 16), 0.7);
 }
@@ -93,33 +93,37 @@ TEST(CoarseFeatures, AreNotMovedByOutliers) {
 TEST(CoarseFeatures, CovarianceMatchesErrors) {
   Scene scene = MakeScene();
   scene.landmarks[40].covariance(2, 2) = 0.04;  // a depth hardly known
-  const auto pose = vo::CoarsePose::From(scene.prediction, scene.map(), scene.Matches(16), {});
+  const auto pose = vo::FitCoarsePose(scene.prediction, scene.map(), scene.Matches(16), {});
   ASSERT_TRUE(pose);
-  const auto sigma = [&](int n) { return std::sqrt(pose->Predict(n, kCamera, 0.7)->covariance.trace() / 2); };
+  const vo::MapView view(scene.map(), pose->mean);
+  const auto sigma = [&](int n) {
+    return std::sqrt(vo::PredictPixel(*pose, view, n, kCamera, 0.7)->covariance.trace() / 2);
+  };
   EXPECT_LT(sigma(41), 1.2);
   EXPECT_GT(sigma(40), 2 * sigma(41));
 }
 
 TEST(CoarseFeatures, SayNothingWhenFewOrAtOdds) {
   const Scene scene = MakeScene();
-  EXPECT_FALSE(vo::CoarsePose::From(scene.prediction, scene.map(), scene.Matches(5), {}));
+  EXPECT_FALSE(vo::FitCoarsePose(scene.prediction, scene.map(), scene.Matches(5), {}));
   std::vector<vo::Match> matches = scene.Matches(16);
   for (int n = 0; n < 16; ++n)
     matches[n].z += 0.1 * Vector2d(std::sin(7.0 * n), std::cos(11.0 * n));  // each its own way
-  EXPECT_FALSE(vo::CoarsePose::From(scene.prediction, scene.map(), matches, {}));
+  EXPECT_FALSE(vo::FitCoarsePose(scene.prediction, scene.map(), matches, {}));
 }
 
 TEST(CoarseFeatures, AreSettledPreciseAndSpread) {
   std::vector<vo::LandmarkRecord> records(100);
-  std::vector<vo::CoarseCandidate> candidates;
+  std::vector<vo::Candidate> candidates(100);
   for (int n = 0; n < 100; ++n) {
     records[n].age = 30;
     records[n].score = n < 50 ? 0.5 : 0.99;  // two at each place: one sure, one not
-    candidates.push_back({Vector2d(32 + 64 * (n % 10), 48 + 96 * (n % 50 / 10)), &records[n]});
+    candidates[n].landmark = n;
+    candidates[n].pixel = Vector2d(32 + 64 * (n % 10), 48 + 96 * (n % 50 / 10));
   }
   vo::FeatureParams params;
   params.coarse_features = 16;
-  const std::vector<std::size_t> coarse = vo::SelectCoarseFeatures(candidates, kCamera, params);
+  const std::vector<std::size_t> coarse = vo::SelectCoarseFeatures(candidates, records, kCamera, params);
   ASSERT_EQ(coarse.size(), 16u);
   std::set<std::pair<int, int>> cells;
   for (const std::size_t i : coarse) {
@@ -129,9 +133,10 @@ TEST(CoarseFeatures, AreSettledPreciseAndSpread) {
   EXPECT_EQ(cells.size(), 16u) << "one in each part of the image";
 
   for (int n = 10; n < 100; ++n) records[n].age = 9;
-  EXPECT_TRUE(vo::SelectCoarseFeatures(candidates, kCamera, params).empty()) << "ten settled landmarks are not sixteen";
+  EXPECT_TRUE(vo::SelectCoarseFeatures(candidates, records, kCamera, params).empty())
+      << "ten settled landmarks are not sixteen";
   params.coarse_features = 0;
-  EXPECT_TRUE(vo::SelectCoarseFeatures(candidates, kCamera, params).empty());
+  EXPECT_TRUE(vo::SelectCoarseFeatures(candidates, records, kCamera, params).empty());
 }
 
 TEST(BucketRoundRobin, TakesOneOfEachCellBeforeASecond) {

@@ -122,6 +122,7 @@ TEST(Bootstrap, WeightIsTheLikelihoodAtTheSample) {
     for (const vo::Match& match : views.matches)
       log_likelihood +=
           vo::UpdateLandmark(before[i].landmarks[static_cast<std::size_t>(match.landmark)],
+                             before[i].landmarks[static_cast<std::size_t>(match.landmark)].mean,
                              {filter.particles()[i].pose, before[i].anchors[0]}, match, params.max_iterations)
               .log_likelihood;
     expected.push_back(log_likelihood);

@@ -144,7 +144,7 @@ TEST(Brisk, WindowDistancesWithEveryInstructionSet) {
     ASSERT_GT(expected.size(), 500u);
     for (const vo::InstructionSet set : vo::AvailableInstructionSets()) {
       std::vector<vo::BriskImage::Found> all;
-      const auto best = brisk.Nearest(set, wanted, sampler, region, &all);
+      const auto best = brisk.Nearest(wanted, sampler, region, set, &all);
       ASSERT_EQ(all.size(), expected.size()) << vo::Name(set);
       for (std::size_t i = 0; i < all.size(); ++i) {
         EXPECT_EQ(all[i].pixel, expected[i].pixel);

@@ -113,7 +113,7 @@ TEST(FixedLag, SamplesTheOldestPose) {
     const vo::Pose before = phase.particles()[2].pose;
     Step(phase, frame);
     EXPECT_EQ(phase.particles()[2].pose.p_WC == before.p_WC, frame <= 3) << frame;
-    EXPECT_EQ(phase.solutions()[2].path.mean.size(), static_cast<std::size_t>(std::min(frame, 3)));
+    EXPECT_EQ(phase.particles()[2].solution.path.mean.size(), static_cast<std::size_t>(std::min(frame, 3)));
     EXPECT_EQ(phase.answer().initialising, frame <= 3);
   }
 }
@@ -126,7 +126,7 @@ TEST(FixedLag, IntegratesUnusedPosesOut) {
   for (int frame = 2; frame <= 8; ++frame) {
     phase.Predict(kDt);
     phase.Update({});
-    EXPECT_EQ(phase.solutions()[0].path.mean.size(), 2u);
+    EXPECT_EQ(phase.particles()[0].solution.path.mean.size(), 2u);
   }
 }
 
@@ -138,13 +138,13 @@ TEST(Initialisation, SharesOneSolution) {
   phase.AddLandmarks(vo_test::WallFirstViews(kLandmarks));
   for (int frame = 1; frame <= 5; ++frame) Step(phase, frame);
   const auto relative = [&](std::size_t i) {
-    const vo::Pose &start = phase.particles()[i].pose, &end = phase.solutions()[i].path.mean.back();
+    const vo::Pose &start = phase.particles()[i].pose, &end = phase.particles()[i].solution.path.mean.back();
     return vo::Pose{start.q_WC.conjugate() * (end.p_WC - start.p_WC), start.q_WC.conjugate() * end.q_WC};
   };
   EXPECT_GT((phase.particles()[1].pose.p_WC - phase.particles()[0].pose.p_WC).norm(), 0.01);
   for (std::size_t i = 1; i < phase.particles().size(); ++i) {
     EXPECT_LT(vo::Minus(relative(i), relative(0)).norm(), 1e-12) << i;
-    EXPECT_EQ(phase.solutions()[i].modes, phase.solutions()[0].modes) << i;
+    EXPECT_EQ(phase.particles()[i].solution.modes, phase.particles()[0].solution.modes) << i;
   }
 }
 

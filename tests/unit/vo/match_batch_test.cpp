@@ -205,7 +205,8 @@ TEST_P(EveryInstructionSet, LandmarksAreUpdatedAsOneByOne) {
       for (const vo::Match& match : scene.matches) {
         const vo::AnchorView view = vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]])
                                         .ShiftedBy(match.centre_offset_W);
-        const vo::LandmarkUpdate update = vo::UpdateLandmark(scene.landmarks[match.landmark], view, match, iterations);
+        const vo::LandmarkUpdate update = vo::UpdateLandmark(
+            scene.landmarks[match.landmark], scene.landmarks[match.landmark].mean, view, match, iterations);
         expected[match.landmark] = update.landmark;
         sum += update.log_likelihood;
       }

@@ -8,7 +8,8 @@
 
 #include "tests/unit/vo/wall.h"
 #include "vo/base/random.h"
-#include "vo/filter/resampling.h"
+#include "vo/filter/particle_set.h"
+#include "vo/geometry/so3.h"
 
 namespace {
 

@@ -74,18 +74,18 @@ TEST(ParticleSet, UniformWeightsRejectByTheBayesFactor) {
   EXPECT_TRUE(set.AnyRejected());
   set.NormaliseUniform({-100, -149, -149, -100}, 50);
   EXPECT_FALSE(set.AnyRejected());
+  set.NormaliseUniform({-1000, kNan, -INFINITY, -1003}, 50);
+  EXPECT_THAT(set.weights(), ElementsAre(0.5, 0.0, 0.0, 0.5));
+  set.NormaliseUniform({kNan, -INFINITY, kNan, kNan}, 50);
+  EXPECT_THAT(set.weights(), ElementsAre(0.25, 0.25, 0.25, 0.25));
 }
 
 // Systematic resampling at u = 0.5: points at (k + 0.5) / 4 of the cumulated weights.
-TEST(ParticleSet, ResamplesWhatFollowsTheParticlesAlike) {
+TEST(ParticleSet, Resamples) {
   vo::ParticleSet set = Set({std::log(0.1), std::log(0.55), std::log(0.05), std::log(0.3)});
   set.Normalise();
-  std::vector<int> items{10, 11, 12, 13}, children;
-  const std::vector<int> ancestors = set.Resample(0.5);
-  vo::TakeAncestors(ancestors, items, children);
-  EXPECT_THAT(ancestors, ElementsAre(1, 1, 1, 3));
+  set.Resample(0.5);
   EXPECT_THAT(Places(set), ElementsAre(1, 1, 1, 3));
-  EXPECT_THAT(items, ElementsAre(11, 11, 11, 13));
   EXPECT_THAT(set.weights(), ElementsAre(0.25, 0.25, 0.25, 0.25));
   for (const vo::Particle& particle : set.particles()) EXPECT_EQ(particle.log_weight, 0);
 }

@@ -14,9 +14,8 @@
 #include "tests/unit/vo/draws.h"
 #include "tests/unit/vo/propose.h"
 #include "vo/filter/gauss_newton.h"
-#include "vo/filter/landmark_on_path.h"
 #include "vo/filter/motion_model.h"
-#include "vo/filter/path_end.h"
+#include "vo/filter/path_gaussian.h"
 #include "vo/filter/proposal.h"
 #include "vo/filter/velocity_filter.h"
 #include "vo/geometry/so3.h"
@@ -106,7 +105,7 @@ TEST(PathWindow, OfOnePoseIsTheProposal) {
     const bool marginal = seed % 2 == 0;
     const Scene scene = MakeScene(seed, 1, 60, 0.01, 0.2 / 525);
     const vo::PathGaussian path = Solve(scene, marginal);
-    const vo::VelocityFilter<6, 6> step(scene.steps[0].F, scene.steps[0].Q);
+    const vo::VelocityFilter step(scene.steps[0]);
     Vector6 start;
     start << scene.start.p_WC, Vector3d::Zero();
     const Vector6 s = step.PredictedMean(start, {scene.velocity, scene.velocity_covariance});
@@ -270,7 +269,7 @@ void ExpectTheJointSolution(const Scene& scene, double left) {
     Eigen::Matrix<double, 9, 9> expected;
     expected << covariance.block<6, 6>(a, a), covariance.block<6, 3>(a, l), covariance.block<3, 6>(l, a),
         covariance.block<3, 3>(l, l);
-    Eigen::Matrix<double, 9, 9> P = vo::AnchorAndLandmarkCovariance(scene.input(), track, path, theta[i]);
+    Eigen::Matrix<double, 9, 9> P = vo::LandmarkOnPath(scene.input(), track, path, theta[i]).WithAnchor();
     if (track.anchor_slot < 0) {
       EXPECT_EQ(P.topRows<6>().norm() + P.leftCols<6>().norm(), 0);
       P.topRows<6>() = expected.topRows<6>();
@@ -300,7 +299,7 @@ TEST(PathWindow, PredictsImagesAfterDrift) {
   for (std::size_t i = 0; i < scene.tracks.size(); ++i) {
     const vo::Track& track = scene.tracks[i];
     const auto S_of = [&](const vo::PathGaussian& of) {
-      return vo::PredictImageOnPath(scene.input(), track, of, theta[i]).covariance;
+      return vo::LandmarkOnPath(scene.input(), track, of, theta[i]).Image().covariance;
     };
     EXPECT_EQ(S_of(drifted)(0, 1), S_of(drifted)(1, 0));
     if (track.anchor_slot < 0) continue;
@@ -315,16 +314,16 @@ TEST(PathPrior, LastVelocityIsTheVelocityFilters) {
   Draws draws(7);
   Scene scene = MakeScene(7, 6, 0, 0.05, 1);
   const vo::PathPrior prior = scene.prior();
-  vo::VelocityFilter<6, 6>::State state{scene.velocity, scene.velocity_covariance};
+  vo::VelocityFilter::State state{scene.velocity, scene.velocity_covariance};
   VectorXd off(36);
   double log_density = 0;
   for (int k = 0; k < 6; ++k) {
-    const vo::VelocityFilter<6, 6> step(scene.steps[k].F, scene.steps[k].Q);
+    const vo::VelocityFilter step(scene.steps[k]);
     const Vector6 u = 0.03 * draws.Normals<6>();
     const Vector6 nu = u - step.PredictedMean(Vector6::Zero(), state);
     const Matrix6 S = step.PredictedCovariance(state);
     log_density += -0.5 * nu.dot(S.inverse() * nu) - 0.5 * std::log(S.determinant());
-    state = step.Update(Vector6::Zero(), u, state);
+    state = step.Condition(Vector6::Zero(), state).Given(u);
     off.segment<6>(6 * k) = u - prior.MeanStep(k, scene.velocity);
   }
   const Vector6 last = prior.LastMean(scene.velocity) + prior.gain() * off;
@@ -350,11 +349,11 @@ TEST(PathWindow, EvidenceOfTwoFramesFactors) {
     Scene second = scene;
     second.start = s;
     second.anchors[1] = s;
-    const vo::VelocityFilter<6, 6> step(scene.steps[0].F, scene.steps[0].Q);
+    const vo::VelocityFilter step(scene.steps[0]);
     Vector6 from, to;
     from << scene.start.p_WC, Vector3d::Zero();
     to << s.p_WC, vo::Log(scene.start.q_WC.conjugate() * s.q_WC);
-    const auto state = step.Update(from, to, {scene.velocity, scene.velocity_covariance});
+    const auto state = step.Condition(from, {scene.velocity, scene.velocity_covariance}).Given(to);
     second.velocity = state.mean;
     second.velocity_covariance = state.covariance;
     second.steps.erase(second.steps.begin());
@@ -363,7 +362,7 @@ TEST(PathWindow, EvidenceOfTwoFramesFactors) {
       vo::Landmark& landmark = second.landmarks[track.landmark];
       for (const vo::Track::View& view : track.views)
         if (view.slot == 0)
-          landmark = vo::UpdateLandmark(landmark,
+          landmark = vo::UpdateLandmark(landmark, landmark.mean,
                                         vo::AnchorView(s, scene.anchors[track.anchor]).ShiftedBy(view.centre_offset_W),
                                         {track.landmark, view.z, view.R_inverse.inverse()}, 10)
                          .landmark;

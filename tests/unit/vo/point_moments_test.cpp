@@ -1,10 +1,9 @@
-#include "vo/map/point_moments.h"
-
 #include <gtest/gtest.h>
 
 #include "vo/filter/ekf_slam.h"
 #include "vo/filter/particle_filter.h"
 #include "vo/geometry/so3.h"
+#include "vo/map/moments.h"
 
 namespace vo {
 namespace {
@@ -56,14 +55,14 @@ TEST(PointMoments, FiltersAgreeOnANewLandmark) {
   EkfSlam ekf({}, params, landmark, prior);
   particles.AddLandmarks({&view, 1});
   ekf.AddLandmarks({&view, 1});
-  const auto a = particles.LandmarkPoints(), b = ekf.LandmarkPoints();
-  ASSERT_EQ(a.size(), 1u);
-  ASSERT_TRUE(a[0] && b[0]);
-  EXPECT_LT((a[0]->mean - b[0]->mean).norm(), 1e-9);
-  EXPECT_LT((a[0]->covariance - b[0]->covariance).norm(), 1e-9 * b[0]->covariance.norm());
+  ASSERT_EQ(particles.LandmarkSpreads().size(), 1u);
+  const auto a = particles.LandmarkSpreads()[0].place, b = ekf.LandmarkSpreads()[0].place;
+  ASSERT_TRUE(a && b);
+  EXPECT_LT((a->mean - b->mean).norm(), 1e-9);
+  EXPECT_LT((a->covariance - b->covariance).norm(), 1e-9 * b->covariance.norm());
   const Landmark known = NewLandmark(view, landmark);
   const Eigen::Matrix3d J = PointJacobian(kAnchor, known.mean);
-  EXPECT_LT((a[0]->covariance - J * known.covariance * J.transpose()).norm(), 1e-9 * a[0]->covariance.norm());
+  EXPECT_LT((a->covariance - J * known.covariance * J.transpose()).norm(), 1e-9 * a->covariance.norm());
 }
 
 }  // namespace

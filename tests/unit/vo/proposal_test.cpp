@@ -12,7 +12,7 @@
 #include "tests/unit/vo/propose.h"
 #include "vo/filter/consensus.h"
 #include "vo/filter/gauss_newton.h"
-#include "vo/filter/resampling.h"
+#include "vo/filter/particle_set.h"
 #include "vo/geometry/so3.h"
 
 namespace {
@@ -151,7 +151,7 @@ TEST(Proposal, EvidenceEqualsTheImportanceWeightWhenLinear) {
     const vo::Pose s = proposal.pose.Sample({.seed = 5, .particle = i});
     double log_weight = scene.prediction.LogDensity(s) - proposal.pose.LogDensity(s);
     for (const vo::Match& match : scene.matches)
-      log_weight += vo::UpdateLandmark(scene.landmarks[match.landmark],
+      log_weight += vo::UpdateLandmark(scene.landmarks[match.landmark], scene.landmarks[match.landmark].mean,
                                        {s, scene.anchors[scene.anchor_of[match.landmark]]}, match, 10)
                         .log_likelihood;
     EXPECT_NEAR(log_weight, proposal.log_evidence, 1e-4 * std::abs(proposal.log_evidence) * 1e-2) << i;
@@ -252,24 +252,6 @@ TEST(Resampling, CopiesAreWithinOneOfExpected) {
     for (const int a : ancestors) mean[a] += 1.0 / n;
   }
   for (std::size_t i = 0; i < w.size(); ++i) EXPECT_NEAR(mean[i], 5 * w[i], 1e-3);
-}
-
-TEST(Resampling, WeightsSurviveExtremes) {
-  std::vector<double> w = {-1e5, -1e5 + std::log(3.0), -INFINITY, NAN};
-  vo::Normalise(w);
-  EXPECT_NEAR(w[0], 0.25, 1e-12);
-  EXPECT_NEAR(w[1], 0.75, 1e-12);
-  EXPECT_EQ(w[2] + w[3], 0);
-  std::vector<double> none = {-INFINITY, NAN};
-  vo::Normalise(none);
-  EXPECT_EQ(none[0], 0.5);
-  EXPECT_NEAR(vo::EffectiveParticles({0.25, 0.25, 0.25, 0.25}), 4, 1e-12);
-}
-
-TEST(Resampling, EqualWeightsButForTheRefuted) {
-  EXPECT_EQ(vo::UniformExceptRejected({-1000, -1049.9, -1050.1, NAN, -INFINITY, -1003}, 50),
-            (std::vector<double>{1.0 / 3, 1.0 / 3, 0, 0, 0, 1.0 / 3}));
-  EXPECT_EQ(vo::UniformExceptRejected({NAN, -INFINITY}, 50), (std::vector<double>{0.5, 0.5}));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ inline vo::PoseProposal Propose(const vo::PoseGaussian& prediction, const vo::Lo
   vo::MatchBatch batch;
   batch.SetMatches(matches);
   batch.Load(map);
-  return vo::Propose(prediction, batch, params);
+  return vo::Propose(prediction, batch, params, prediction.mean);
 }
 
 }  // namespace vo_test

@@ -1,11 +1,11 @@
 // Rao-Blackwell steps against the joint Gaussian of pose and velocity, conditioned by Bayes' rule.
-#include "vo/filter/rao_blackwell.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
 
 #include "tests/unit/vo/draws.h"
+#include "vo/filter/particle_set.h"
+#include "vo/filter/velocity_filter.h"
 #include "vo/geometry/so3.h"
 
 namespace {
@@ -42,13 +42,14 @@ Joint JointAfterAStep(const vo::Particle& particle) {
 
 TEST(RaoBlackwell, PredictionIsTheMarginalOfThePose) {
   const vo::Particle particle = MakeParticle(1);
-  const vo::CameraVelocityFilter step = vo::VelocityFilterOver(kMotion, kDt);
-  const vo::PoseGaussian predicted = vo::PredictPose(step, particle, step.PredictedCovariance(particle.velocity));
+  const vo::VelocityFilter step(kMotion, kDt);
+  const vo::PoseGaussian predicted =
+      vo::PredictPose(step, particle.pose, particle.velocity, step.PredictedCovariance(particle.velocity));
   const Joint joint = JointAfterAStep(particle);
   EXPECT_LT((predicted.mean.p_WC - joint.mean.head<3>()).norm(), 1e-12);
   const Eigen::Vector3d delta = vo::Log(particle.pose.q_WC.conjugate() * predicted.mean.q_WC);
   EXPECT_LT((delta - joint.mean.segment<3>(3)).norm(), 1e-12);
-  EXPECT_LT((vo::PredictedTurn(step, particle) - delta).norm(), 1e-12);
+  EXPECT_LT((vo::PredictedTurn(step, particle.pose, particle.velocity) - delta).norm(), 1e-12);
   Matrix6 J = Matrix6::Identity();  // from delta to the tangent space at the mean
   J.bottomRightCorner<3, 3>() = vo::RightJacobian(delta);
   const Matrix6 expected = J * joint.covariance.topLeftCorner<6, 6>() * J.transpose();
@@ -59,20 +60,19 @@ TEST(RaoBlackwell, PredictionIsTheMarginalOfThePose) {
 TEST(RaoBlackwell, VelocityIsTheConditionalGivenThePose) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const vo::Particle particle = MakeParticle(seed);
-    const vo::CameraVelocityFilter step = vo::VelocityFilterOver(kMotion, kDt);
-    const Eigen::Vector3d turn = vo::PredictedTurn(step, particle);
+    const vo::VelocityFilter step(kMotion, kDt);
+    const Eigen::Vector3d turn = vo::PredictedTurn(step, particle.pose, particle.velocity);
     vo_test::Draws draws(100 + seed);
     const Joint joint = JointAfterAStep(particle);
     const Vector6 s = joint.mean.head<6>() + 0.02 * draws.Normals<6>();
     const vo::Pose sampled{s.head<3>(), particle.pose.q_WC * vo::Exp(s.tail<3>())};
     const auto conditional = [&](const Matrix12& covariance) {
       const Matrix6 gain = covariance.topLeftCorner<6, 6>().llt().solve(covariance.topRightCorner<6, 6>()).transpose();
-      return vo::CameraVelocityFilter::State{
-          joint.mean.tail<6>() + gain * (s - joint.mean.head<6>()),
-          covariance.bottomRightCorner<6, 6>() - gain * covariance.topRightCorner<6, 6>()};
+      return vo::VelocityFilter::State{joint.mean.tail<6>() + gain * (s - joint.mean.head<6>()),
+                                       covariance.bottomRightCorner<6, 6>() - gain * covariance.topRightCorner<6, 6>()};
     };
-    const vo::CameraVelocityFilter::State expected = conditional(joint.covariance);
-    const vo::CameraVelocityFilter::State found = vo::VelocityGivenPose(
+    const vo::VelocityFilter::State expected = conditional(joint.covariance);
+    const vo::VelocityFilter::State found = vo::VelocityGivenPose(
         step.Condition(vo::PathState(particle.pose), particle.velocity), particle.pose, sampled, turn);
     EXPECT_LT((found.mean - expected.mean).norm(), 1e-9) << seed;
     EXPECT_LT((found.covariance - expected.covariance).norm(), 1e-9) << seed;
@@ -87,11 +87,11 @@ TEST(RaoBlackwell, VelocityIsTheConditionalGivenThePose) {
 TEST(RaoBlackwell, VelocityFollowsARotationOfMoreThanHalfATurn) {
   vo::Particle particle;
   particle.velocity = {Vector6::Unit(5) * 4.0, 0.01 * Matrix6::Identity()};
-  const vo::CameraVelocityFilter step = vo::VelocityFilterOver(kMotion, 1.0);
+  const vo::VelocityFilter step(kMotion, 1.0);
   const vo::Pose sampled{{0, 0, 0}, vo::Exp({0, 0, 4.0})};
-  const vo::CameraVelocityFilter::State velocity =
+  const vo::VelocityFilter::State velocity =
       vo::VelocityGivenPose(step.Condition(vo::PathState(particle.pose), particle.velocity), particle.pose, sampled,
-                            vo::PredictedTurn(step, particle));
+                            vo::PredictedTurn(step, particle.pose, particle.velocity));
   EXPECT_NEAR(velocity.mean[5], 4.0, 1e-9);
 }
 

@@ -1,6 +1,4 @@
 // What a landmark's residuals say of its noise, against draws whose variance is known.
-#include "vo/map/residual_history.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "tests/unit/vo/draws.h"
+#include "vo/map/landmark_record.h"
 
 namespace {
 

@@ -1,6 +1,4 @@
 // A chessboard that is drawn where a plane of known pose has it: the corners' depths come out as that plane has them, and as sure as they are.
-#include "vo/frontend/target.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -8,6 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "tests/unit/vo/draws.h"
+#include "vo/frontend/new_features.h"
 
 namespace {
 
@@ -61,11 +60,11 @@ TEST(Target, DepthsAreThoseOfTheBoard) {
     const BoardPose board = Facing(distance, tilt, roll);
     const auto corners = vo::FindTarget(Picture(board, camera, 3, 1), camera, kBoard, 0.2);
     ASSERT_EQ(corners.size(), 54u) << distance;
-    for (const vo::TargetCorner& corner : corners) {
+    for (const vo::NewFeature& corner : corners) {
       const double truth = board.InverseDepth(camera.Undistort(corner.pixel.cast<double>()));
-      EXPECT_NEAR(corner.depth.inverse_depth / truth, 1, 2e-3);  // one part in 2000 is what comes out
-      EXPECT_NEAR(corner.depth.inverse_depth, truth, 3 * corner.depth.sigma);
-      EXPECT_LT(corner.depth.sigma / truth, 0.02);
+      EXPECT_NEAR(corner.depth->inverse_depth / truth, 1, 2e-3);  // one part in 2000 is what comes out
+      EXPECT_NEAR(corner.depth->inverse_depth, truth, 3 * corner.depth->sigma);
+      EXPECT_LT(corner.depth->sigma / truth, 0.02);
     }
   }
 }

@@ -1,5 +1,3 @@
-#include "vo/filter/unscented.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>

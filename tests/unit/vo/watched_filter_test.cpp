@@ -72,7 +72,7 @@ Seen Play(std::unique_ptr<vo::Filter> filter, const std::function<void(int)>& be
       watched.PredictImages(all);
       watched.Update(Matches(frame));
       watched.LandmarkBeliefs();
-      watched.LandmarkPoints();
+      watched.LandmarkSpreads();
       seen.events += watched.answer().events;
       seen.beliefs.push_back(watched.belief());
     }
@@ -94,8 +94,7 @@ bool Same(const Seen& a, const Seen& b) {
 // The state of one particle, written to behind its owner's back: no image leads to what a test puts there.
 struct State {
   State(const vo::ParticleFilter& filter, std::size_t i) : particle(const_cast<vo::Particle&>(filter.particles()[i])) {
-    if (const auto* window = dynamic_cast<const vo::WindowPhase*>(&filter.phase()))
-      solution = const_cast<vo::PathSolution*>(&window->solutions()[i]);
+    if (dynamic_cast<const vo::WindowPhase*>(&filter.phase())) solution = &particle.solution;
     if (const auto* algorithm = dynamic_cast<const vo::Algorithm1*>(&filter.phase()))
       prediction = const_cast<vo::PoseGaussian*>(&algorithm->predictions()[i]);
   }
@@ -349,10 +348,10 @@ class Broken final : public vo::Filter {
     spoil_landmark(beliefs[2]);
     return beliefs;
   }
-  std::vector<std::optional<vo::PointMoments>> LandmarkPoints() const override {
-    auto points = good.LandmarkPoints();
-    if (points[2]) spoil_point(*points[2]);
-    return points;
+  std::vector<LandmarkSpread> LandmarkSpreads() const override {
+    auto spreads = good.LandmarkSpreads();
+    if (spreads[2].place) spoil_point(*spreads[2].place);
+    return spreads;
   }
 
  private:

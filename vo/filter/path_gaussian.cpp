@@ -1,10 +1,18 @@
-#include "vo/filter/path_end.h"
+#include "vo/filter/path_gaussian.h"
 
-#include "vo/filter/pose_gaussian.h"
+#include <Eigen/Cholesky>
+
+#include "vo/geometry/covariance.h"
 #include "vo/geometry/so3.h"
-#include "vo/geometry/symmetric.h"
 
 namespace vo {
+namespace {
+
+// mean + by_pose (poses - their means) + N(0, prior.last_covariance())
+struct LastVelocity {
+  Vector6 mean;  // (v in W, w in C)
+  Eigen::Matrix<double, 6, Eigen::Dynamic> by_pose;
+};
 
 LastVelocity VelocityAtTheEnd(const PathPrior& prior, const Pose& start, const Vector6& velocity,
                               const PathGaussian& path) {
@@ -24,6 +32,35 @@ LastVelocity VelocityAtTheEnd(const PathPrior& prior, const Pose& start, const V
   }
   last.mean = prior.LastMean(velocity) + prior.gain() * off;
   return last;
+}
+
+}  // namespace
+
+PathPrior::PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance) {
+  const int m = static_cast<int>(steps.size());
+  Eigen::MatrixXd covariance(kPoseSize * m, kPoseSize * m);                  // of u
+  Eigen::Matrix<double, 6, Eigen::Dynamic> with_velocity(6, kPoseSize * m);  // Cov(v_k, u_1..k)
+  Matrix6 V = velocity_covariance;
+  last_of_first_ = Matrix6::Identity();
+  for (int k = 0; k < m; ++k) {
+    const Matrix6 F12 = steps[k].F.topRightCorner<6, 6>(), F22 = steps[k].F.bottomRightCorner<6, 6>();
+    const Matrix6 Q11 = steps[k].Q.topLeftCorner<6, 6>(), Q21 = steps[k].Q.bottomLeftCorner<6, 6>(),
+                  Q22 = steps[k].Q.bottomRightCorner<6, 6>();
+    mean_of_step_.push_back(F12 * last_of_first_);
+    last_of_first_ = F22 * last_of_first_;
+    covariance.block(kPoseSize * k, 0, 6, kPoseSize * k) = F12 * with_velocity.leftCols(kPoseSize * k);
+    covariance.block(0, kPoseSize * k, kPoseSize * k, 6) =
+        covariance.block(kPoseSize * k, 0, 6, kPoseSize * k).transpose();
+    covariance.block<6, 6>(kPoseSize * k, kPoseSize * k) = F12 * V * F12.transpose() + Q11;
+    with_velocity.leftCols(kPoseSize * k) = (F22 * with_velocity.leftCols(kPoseSize * k)).eval();
+    with_velocity.middleCols<6>(kPoseSize * k) = F22 * V * F12.transpose() + Q21;
+    V = (F22 * V * F22.transpose()).eval() + Q22;
+  }
+  const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
+  precision_ = Symmetrised(llt.solve(Eigen::MatrixXd::Identity(kPoseSize * m, kPoseSize * m)));
+  log_det_precision_ = -2.0 * llt.matrixLLT().diagonal().array().log().sum();
+  gain_ = llt.solve(with_velocity.transpose()).transpose();
+  last_covariance_ = Symmetrised(V - gain_ * with_velocity.transpose());
 }
 
 BeliefComponent ComponentAtTheEnd(const PathPrior& prior, const Pose& start, const Vector6& velocity,
@@ -69,6 +106,17 @@ void DropLast(PathGaussian& path) {
   path.mean.pop_back();
   path.turns.pop_back();
   path.covariance.conservativeResize(path.covariance.rows() - kPoseSize, path.covariance.cols() - kPoseSize);
+}
+
+void ConditionOn(int slot, const Pose& s, PathGaussian& path) {
+  const int rest = static_cast<int>(path.covariance.rows()) - 6;
+  const Eigen::LLT<Matrix6> llt(path.covariance.topLeftCorner<6, 6>());
+  const Vector6 d = llt.solve(Minus(s, path.mean[slot]));
+  const Eigen::MatrixXd cross = path.covariance.bottomLeftCorner(rest, 6);
+  for (int k = 0; k < rest / 6; ++k)
+    path.mean[slot + 1 + k] = Plus(path.mean[slot + 1 + k], cross.middleRows<6>(kPoseSize * k) * d);
+  path.mean[slot] = s;
+  path.covariance = (path.covariance.bottomRightCorner(rest, rest) - cross * llt.solve(cross.transpose())).eval();
 }
 
 }  // namespace vo

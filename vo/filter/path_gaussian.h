@@ -1,0 +1,84 @@
+// Gaussian over a path of poses that are not sampled: its prior by the motion model, the velocity at its end, extension
+// by a step, and conditioning on a pose.
+// Source:  docs/algorithm.md, section 9. (6)-(9) are linear in the steps u_k = (p_k - p_k-1, LogNear(q_k-1^-1 q_k, its
+//          prediction)), k = 1 ... m: u_k = F12 v_k-1 + noise, v_k = F22 v_k-1 + noise, the two noises correlated. The
+//          velocity is linear in the steps, these in the poses, and the next step is linear in the velocity.
+// Tangent: per pose (dp in W, dphi in C); slot 0 is the oldest pose that is not sampled.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "vo/base/result.h"
+#include "vo/filter/mixture.h"
+#include "vo/filter/motion_model.h"
+#include "vo/filter/pose_gaussian.h"
+
+namespace vo {
+
+constexpr Eigen::Index kPoseSize = 6;  // rows of a pose, or a step, in a vector of several
+
+// Gaussian of the steps u with the velocities integrated out, and of the last velocity given the steps. The covariances
+// do not depend on the path: all particles share them.
+class PathPrior {
+ public:
+  // Steps in order of time; covariance of the velocity at the start of the first.
+  PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance);
+
+  int size() const { return static_cast<int>(mean_of_step_.size()); }
+  const Eigen::MatrixXd& precision() const { return precision_; }  // of u, 6m x 6m
+  double log_det_precision() const { return log_det_precision_; }
+  Vector6 MeanStep(int k, const Vector6& velocity) const { return mean_of_step_[k] * velocity; }
+
+  // Last velocity given the steps: mean = LastMean(v_0) + gain (u - mean of u), covariance.
+  Vector6 LastMean(const Vector6& velocity) const { return last_of_first_ * velocity; }
+  const Eigen::Matrix<double, 6, Eigen::Dynamic>& gain() const { return gain_; }
+  const Matrix6& last_covariance() const { return last_covariance_; }
+
+ private:
+  std::vector<Matrix6> mean_of_step_;  // of the first velocity
+  Matrix6 last_of_first_;
+  Eigen::MatrixXd precision_;
+  double log_det_precision_ = 0;
+  Eigen::Matrix<double, 6, Eigen::Dynamic> gain_;
+  Matrix6 last_covariance_;
+};
+
+struct PathGaussian {
+  std::vector<Pose> mean;
+  std::vector<Eigen::Vector3d> turns;  // [rad in C] of the step to each pose, as it was predicted
+  Eigen::MatrixXd covariance;          // 6m x 6m
+  double objective = 0;                // -2 log density at its mode, up to a constant that all first guesses share
+  // Laplace's approximation of log p(z in the window | sampled path); NaN: not positive definite
+  double log_evidence = 0;
+  NumericalEvents events;  // of the solution
+};
+
+// Poses not sampled yet and, of each landmark, (x, y, rho) by all images until now.
+struct PathSolution {
+  PathGaussian path;
+  std::vector<Eigen::Vector3d> modes;
+};
+
+// u: of the rotation vectors that turn the pose before into the pose at `slot`, the one nearest to the prediction.
+inline Vector6 StepTo(int slot, const PathGaussian& path, const Pose& start) {
+  return MinusNear(path.mean[slot], slot == 0 ? start : path.mean[slot - 1], path.turns[slot]);
+}
+
+// Last pose and velocity of the path: a component of the answer's mixture, its weight left open. `start`, `velocity`:
+// the last sampled pose and the mean velocity there.
+BeliefComponent ComponentAtTheEnd(const PathPrior& prior, const Pose& start, const Vector6& velocity,
+                                  const PathGaussian& path);
+
+// One pose more, a step after the end; `prior` is that of the path before. Nothing is solved: a pose that no image has
+// seen changes no other.
+void Extend(const PathPrior& prior, const MotionModel& step, const Pose& start, const Vector6& velocity,
+            PathGaussian& path);
+// The last pose integrated out.
+void DropLast(PathGaussian& path);
+
+// The rest of the path given its pose at `slot`: a conditional Gaussian. The covariance loses that pose, the mean keeps
+// it.
+void ConditionOn(int slot, const Pose& pose, PathGaussian& path);
+
+}  // namespace vo
