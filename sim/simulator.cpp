@@ -60,21 +60,17 @@ std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& p
                                        std::vector<std::string>& warnings) {
   WarnOfGloss(scene, params, warnings);
   if (params.engine == Engine::rasteriser) {
-    RasteriserOptions options;
-    options.rays_per_time_sample = params.rays_per_time_sample;
-    auto renderer = MakeRasteriser(scene, options, &warnings);
+    auto renderer = MakeRasteriser(scene, {.rays_per_time_sample = params.rays_per_time_sample}, &warnings);
     if (params.light != LightMode::direct)
       warnings.emplace_back(
           "rasteriser: there is no baked light: render.light is taken as direct, with ambient light for what bounces");
     return renderer;
   }
-  RayTracerOptions options;
-  options.rays_per_time_sample = params.rays_per_time_sample;
-  options.jobs = jobs;
-  options.reflections = params.reflections;
   auto rays = tbb::task_arena(jobs).execute(
       [&] { return LitScene(scene, params.light, params.bake, params.light_folders, warnings); });
-  return MakeRayTracer(scene, std::move(rays), options);
+  return MakeRayTracer(
+      scene, std::move(rays),
+      {.rays_per_time_sample = params.rays_per_time_sample, .jobs = jobs, .reflections = params.reflections});
 }
 
 // Long enough for all frames.
@@ -119,11 +115,7 @@ struct Simulator::Parts {
     }
     warnings = scene.warnings;
     renderer = MakeRenderer(scene, s.render, Threads(jobs), warnings);
-    if (renderer->surfaces() == nullptr) {
-      RayTracerOptions plain;
-      plain.jobs = Threads(jobs);
-      exact = MakeRayTracer(scene, plain);
-    }
+    if (renderer->surfaces() == nullptr) exact = MakeRayTracer(scene, {.jobs = Threads(jobs)});
     for (const Mesh& mesh : scene.meshes) mesh_names.push_back(mesh.name);
     for (const Light& light : scene.lights) {
       const auto* rect = std::get_if<RectLight>(&light);
@@ -155,11 +147,9 @@ struct Simulator::Parts {
 
   // Of one time sample, through a pinhole.
   Exposure MakeExposure(const Optics& to, std::int64_t index) const {
-    Exposure exposure;
-    exposure.middle_s = Seconds(sim::StampNs(index, scenario.time));
-    exposure.exposure_s = Setting(index).exposure_s;
-    exposure.row_delay_s = scenario.sensor.RowDelay(to.camera.height());
-    return exposure;
+    return {.middle_s = Seconds(sim::StampNs(index, scenario.time)),
+            .exposure_s = Setting(index).exposure_s,
+            .row_delay_s = scenario.sensor.RowDelay(to.camera.height())};
   }
 
   // The light that an exposure collects on the sensor.

@@ -3,9 +3,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -13,7 +15,6 @@
 #include <utility>
 
 #include "sim/light/path_tracer.h"
-#include "sim/light/shared_exponent.h"
 
 namespace sim {
 namespace {
@@ -33,13 +34,8 @@ double LongestSide(const RayScene& rays, std::uint32_t t) {
 double Most(double spacing_m) { return spacing_m * (1 + 1e-6); }
 
 // The place and normal of a sample, rounded: what has the same key has the same random numbers, and is the same sample
-// unless something is in between (the edge of a floor that goes on behind a wall): then they differ in `other`.
-struct SampleKey {
-  std::int64_t x, y, z;
-  std::int32_t nx, ny, nz;
-  std::int32_t other = 0;
-  bool operator==(const SampleKey&) const = default;
-};
+// unless something is in between (the edge of a floor that goes on behind a wall): then they differ in the last number.
+using SampleKey = std::array<std::int64_t, 7>;  // x, y, z, normal, other
 
 std::uint64_t Mix(std::uint64_t h, std::uint64_t word) {  // SplitMix64's finaliser (Steele, Lea and Flood 2014)
   h = (h ^ word) + 0x9e3779b97f4a7c15u;
@@ -51,9 +47,7 @@ std::uint64_t Mix(std::uint64_t h, std::uint64_t word) {  // SplitMix64's finali
 struct HashKey {
   std::uint64_t operator()(const SampleKey& k) const {
     std::uint64_t h = 0;
-    for (const std::int64_t w :
-         {k.x, k.y, k.z, std::int64_t{k.nx}, std::int64_t{k.ny}, std::int64_t{k.nz}, std::int64_t{k.other}})
-      h = Mix(h, static_cast<std::uint64_t>(w));
+    for (const std::int64_t w : k) h = Mix(h, static_cast<std::uint64_t>(w));
     return h;
   }
 };
@@ -139,7 +133,7 @@ class Baker {
   // The index of the sample that this is, or as which it becomes known.
   std::uint32_t IndexOf(const Sample& sample, std::unordered_map<SampleKey, std::uint32_t, HashKey>& known) {
     SampleKey key = sample.key;
-    for (;; ++key.other) {
+    for (;; ++key.back()) {
       const auto [entry, is_new] = known.try_emplace(key, static_cast<std::uint32_t>(samples_.size()));
       if (is_new) samples_.push_back(sample);
       if (is_new || tracer_.SeeEachOther(samples_[entry->second].point, sample.point)) return entry->second;
@@ -163,13 +157,8 @@ class Baker {
     sample.point.position = place + (0.02 / r) * ((a + b + c) / 3.0 - place);
     const auto whole = [](double x) { return static_cast<std::int64_t>(std::floor(x + 0.5)); };
     const glm::dvec3& n = sample.point.normal;
-    sample.key = {whole(place.x / step_),
-                  whole(place.y / step_),
-                  whole(place.z / step_),
-                  static_cast<std::int32_t>(whole(n.x * 512)),
-                  static_cast<std::int32_t>(whole(n.y * 512)),
-                  static_cast<std::int32_t>(whole(n.z * 512)),
-                  0};
+    sample.key = {whole(place.x / step_), whole(place.y / step_), whole(place.z / step_),
+                  whole(n.x * 512),       whole(n.y * 512),       whole(n.z * 512)};
     return sample;
   }
 
@@ -254,9 +243,7 @@ class Baker {
         low = glm::min(low, s[layer * stride]);
         high = glm::max(high, s[layer * stride]);
       }
-      for (int c = 0; c < 3; ++c) {
-        if (high[c] - low[c] > kAgree * high[c]) return false;
-      }
+      if (glm::any(glm::greaterThan(glm::dvec3(high - low), kAgree * glm::dvec3(high)))) return false;
     }
     return true;
   }

@@ -31,6 +31,10 @@ class Hasher {
                   std::is_same_v<T, glm::dvec3>);
     Bytes(&value, sizeof value);
   }
+  template <class... T>
+  void Values(const T&... values) {
+    (Value(values), ...);
+  }
   template <class T>
   void Array(const std::vector<T>& values) {
     static_assert(std::has_unique_object_representations_v<T> || std::is_same_v<T, glm::vec3> ||
@@ -53,14 +57,13 @@ class Hasher {
 struct HashLight {
   Hasher& hasher;
   void operator()(const AmbientLight&) const {}  // is left out of baked light
-  void operator()(const SunLight& l) const { hasher.Value(l.direction), hasher.Value(l.irradiance); }
-  void operator()(const PointLight& l) const { hasher.Value(l.position), hasher.Value(l.intensity), Lamp(l.flicker); }
+  void operator()(const SunLight& l) const { hasher.Values(l.direction, l.irradiance); }
+  void operator()(const PointLight& l) const { hasher.Values(l.position, l.intensity), Lamp(l.flicker); }
   void operator()(const RectLight& l) const {
-    for (const glm::dvec3& v : {l.corner, l.side_u, l.side_v, l.radiance}) hasher.Value(v);
-    hasher.Value(l.visible);
+    hasher.Values(l.corner, l.side_u, l.side_v, l.radiance, l.visible);
     Lamp(l.flicker);
   }
-  void Lamp(const Flicker& f) const { hasher.Value(f.frequency_hz), hasher.Value(f.depth), hasher.Value(f.phase); }
+  void Lamp(const Flicker& f) const { hasher.Values(f.frequency_hz, f.depth, f.phase); }
 };
 
 // The head of a file, all of 8 bytes.
@@ -71,12 +74,21 @@ struct Head {
 static_assert(sizeof(Head) == 24 + 6 * 8);
 static_assert(sizeof(TriangleResolution) == 2 && sizeof(Flicker) == 24);
 
+// The arrays of a file, in their order.
+template <class Baked, class Function>
+void ForEachArray(Baked& light, const Function& function) {
+  function(light.resolutions), function(light.layers), function(light.samples);
+}
+
+template <class T>
+std::size_t SizeOf(const std::vector<T>& array) {
+  return array.size() * sizeof(T);
+}
+
 LightHash Checksum(const Head& head, const BakedLight& light) {
   Hasher hasher;
   hasher.Bytes(&head, sizeof head);
-  hasher.Bytes(light.resolutions.data(), light.resolutions.size() * sizeof(TriangleResolution));
-  hasher.Bytes(light.layers.data(), light.layers.size() * sizeof(Flicker));
-  hasher.Bytes(light.samples.data(), light.samples.size() * sizeof(std::uint32_t));
+  ForEachArray(light, [&](const auto& array) { hasher.Bytes(array.data(), SizeOf(array)); });
   return hasher.Result();
 }
 
@@ -93,33 +105,28 @@ Head MakeHead(const LightHash& hash, const BakedLight& light) {
 
 LightHash HashOfLight(const Scene& scene, LightMode mode, const BakeParams& params) {
   Hasher hasher;
-  hasher.Value(kVersion);
-  hasher.Value(mode);
-  hasher.Value(params.spacing_m), hasher.Value(params.min_spacing_m), hasher.Value(params.paths),
-      hasher.Value(params.lamp_rays);
+  hasher.Values(kVersion, mode, params.spacing_m, params.min_spacing_m, params.paths, params.lamp_rays);
   for (const Mesh& mesh : scene.meshes) {
     hasher.Array(mesh.positions), hasher.Array(mesh.normals), hasher.Array(mesh.uvs), hasher.Array(mesh.colors),
         hasher.Array(mesh.triangles);
     hasher.Value(mesh.material);
   }
   for (const Material& m : scene.materials) {
-    hasher.Value(m.base_color), hasher.Value(m.emission), hasher.Value(m.texture), hasher.Value(m.emission_texture);
-    hasher.Value(m.alpha), hasher.Value(m.alpha_cutoff);
+    hasher.Values(m.base_color, m.emission, m.texture, m.emission_texture, m.alpha, m.alpha_cutoff);
   }
   for (const Texture& t : scene.textures) {
-    hasher.Value(t.width()), hasher.Value(t.height()), hasher.Value(t.content());
+    hasher.Values(t.width(), t.height(), t.content());
     hasher.Array(t.texels()), hasher.Array(t.alpha());
   }
   for (const Light& light : scene.lights) {
     hasher.Value(light.index());
     std::visit(HashLight{hasher}, light);
   }
-  hasher.Value(scene.background);
-  hasher.Value(scene.sky.has_value());
+  hasher.Values(scene.background, scene.sky.has_value());
   if (scene.sky) {
-    hasher.Value(scene.sky->zenith), hasher.Value(scene.sky->horizon), hasher.Value(scene.sky->ground);
-    hasher.Value(scene.sky->width), hasher.Value(scene.sky->height), hasher.Value(scene.sky->turn);
-    hasher.Array(scene.sky->picture);
+    const Sky& sky = *scene.sky;
+    hasher.Values(sky.zenith, sky.horizon, sky.ground, sky.width, sky.height, sky.turn);
+    hasher.Array(sky.picture);
   }
   return hasher.Result();
 }
@@ -139,9 +146,7 @@ void WriteLight(const fs::path& file, const LightHash& hash, const BakedLight& l
   const Head head = MakeHead(hash, light);
   const LightHash checksum = Checksum(head, light);
   write(&head, sizeof head);
-  write(light.resolutions.data(), light.resolutions.size() * sizeof(TriangleResolution));
-  write(light.layers.data(), light.layers.size() * sizeof(Flicker));
-  write(light.samples.data(), light.samples.size() * sizeof(std::uint32_t));
+  ForEachArray(light, [&](const auto& array) { write(array.data(), SizeOf(array)); });
   write(checksum.data(), sizeof checksum);
   out.Commit();
 }
@@ -169,9 +174,7 @@ BakedLight ReadLight(const fs::path& file, const LightHash& hash) {
   light.resolutions.resize(head.triangles);
   light.layers.resize(head.layers);
   light.samples.resize(head.samples);
-  read(light.resolutions.data(), light.resolutions.size() * sizeof(TriangleResolution));
-  read(light.layers.data(), light.layers.size() * sizeof(Flicker));
-  read(light.samples.data(), light.samples.size() * sizeof(std::uint32_t));
+  ForEachArray(light, [&](auto& array) { read(array.data(), SizeOf(array)); });
   LightHash checksum{};
   read(checksum.data(), sizeof checksum);
   if (checksum != Checksum(head, light)) throw bad("is damaged: wrong checksum");

@@ -29,6 +29,16 @@ glm::dvec3 CosineDirection(const glm::dvec3& n, double u, double v) {
   return radius * std::cos(angle) * t + radius * std::sin(angle) * s + std::sqrt(std::max(0.0, 1.0 - u)) * n;
 }
 
+RTCRay MakeRay(const glm::dvec3& origin, const glm::dvec3& direction, float reach) {
+  const glm::vec3 o(origin), d(direction);
+  RTCRay ray{};
+  ray.org_x = o.x, ray.org_y = o.y, ray.org_z = o.z;
+  ray.dir_x = d.x, ray.dir_y = d.y, ray.dir_z = d.z;
+  ray.tfar = reach;
+  ray.mask = 0xffffffffu;
+  return ray;
+}
+
 double Strength(const glm::dvec3& color) { return color.x + color.y + color.z; }
 
 }  // namespace
@@ -57,41 +67,27 @@ PathTracer::PathTracer(const Scene& scene, const RayScene& rays)
 }
 
 PathTracer::Reach PathTracer::Towards(const Lamp& lamp, const LightPoint& point, double u, double v) const {
+  const LightSource source = *SourceOf(*lamp.light, {u, v});
   Reach reach;
-  if (const auto* sun = std::get_if<SunLight>(lamp.light)) {
-    reach.directional = true;
-    reach.to = -glm::normalize(sun->direction);
+  reach.to = source.place;
+  reach.directional = source.kind == LightSource::Kind::sun;
+  if (reach.directional) {
     const double cosine = glm::dot(point.normal, reach.to);
-    if (cosine > 0 && glm::dot(point.geometric, reach.to) > 0) reach.light = sun->irradiance * (cosine * kInvPi);
+    if (cosine > 0 && glm::dot(point.geometric, reach.to) > 0) reach.light = source.power * (cosine * kInvPi);
     return reach;
   }
-  glm::dvec3 intensity(0.0);
-  if (const auto* bulb = std::get_if<PointLight>(lamp.light)) {
-    reach.to = bulb->position;
-    intensity = bulb->intensity;
-  }
-  double emitted = 1.0;
-  if (const auto* rect = std::get_if<RectLight>(lamp.light)) {
-    const glm::dvec3 area = glm::cross(rect->side_u, rect->side_v);
-    reach.to = rect->corner + u * rect->side_u + v * rect->side_v;
-    intensity = rect->radiance;
-    emitted = -glm::dot(area, glm::normalize(reach.to - point.position));  // area times the cosine there
-  }
+  double emitted = 1.0;  // of a rectangle: the area times the cosine there
+  if (source.kind == LightSource::Kind::rectangle)
+    emitted = -glm::dot(source.area, glm::normalize(reach.to - point.position));
   const glm::dvec3 l = reach.to - point.position;
   const double r2 = glm::dot(l, l), cosine = glm::dot(point.normal, l) / std::sqrt(r2);
   if (cosine > 0 && emitted > 0 && r2 > 0 && glm::dot(point.geometric, l) > 0)
-    reach.light = intensity * (emitted * cosine / r2 * kInvPi);
+    reach.light = source.power * (emitted * cosine / r2 * kInvPi);
   return reach;
 }
 
 bool PathTracer::IsFree(const glm::dvec3& origin, const glm::dvec3& direction, float reach) const {
-  RTCRay ray{};
-  ray.org_x = static_cast<float>(origin.x), ray.org_y = static_cast<float>(origin.y),
-  ray.org_z = static_cast<float>(origin.z);
-  ray.dir_x = static_cast<float>(direction.x), ray.dir_y = static_cast<float>(direction.y),
-  ray.dir_z = static_cast<float>(direction.z);
-  ray.tfar = reach;
-  ray.mask = 0xffffffffu;
+  RTCRay ray = MakeRay(origin, direction, reach);
   Occluded1(rays_.embree(), &ray);
   return ray.tfar >= 0;
 }
@@ -110,16 +106,11 @@ bool PathTracer::SeeEachOther(const LightPoint& a, const LightPoint& b) const {
 bool PathTracer::Trace(const LightPoint& from, const glm::dvec3& direction, Met& met) const {
   const glm::dvec3 origin = Origin(from);
   RTCRayHit ray{};
-  ray.ray.org_x = static_cast<float>(origin.x), ray.ray.org_y = static_cast<float>(origin.y),
-  ray.ray.org_z = static_cast<float>(origin.z);
-  ray.ray.dir_x = static_cast<float>(direction.x), ray.ray.dir_y = static_cast<float>(direction.y),
-  ray.ray.dir_z = static_cast<float>(direction.z);
-  ray.ray.tfar = std::numeric_limits<float>::infinity();
-  ray.ray.mask = 0xffffffffu;
+  ray.ray = MakeRay(origin, direction, std::numeric_limits<float>::infinity());
   ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   Intersect1(rays_.embree(), &ray);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  met.triangle = rays_.Triangle(ray.hit.geomID, ray.hit.primID);
+  met.triangle = rays_.Triangle(ray.hit.instID[0], ray.hit.geomID, ray.hit.primID);
   met.u = ray.hit.u, met.v = ray.hit.v;
   met.distance = ray.ray.tfar;
   met.point.position = origin + met.distance * direction;
@@ -130,51 +121,36 @@ bool PathTracer::Trace(const LightPoint& from, const glm::dvec3& direction, Met&
   return true;
 }
 
-namespace {
-
 // The texel nearest to where the ray met, of the level whose texels are as wide as the path: paths together filter it.
-glm::dvec3 LookUp(const Texture& texture, glm::vec2 uv, double footprint) {
+glm::dvec3 PathTracer::LookUp(int picture, const Met& met, double width) const {
+  const Texture& texture = scene_.textures[static_cast<std::size_t>(picture)];
+  const double footprint =
+      width * rays_.UvPerMetre(met.triangle) * std::sqrt(static_cast<double>(texture.width()) * texture.height());
   const int top = static_cast<int>(texture.levels().size()) - 1;
   const int level = std::clamp(static_cast<int>(std::lround(std::log2(std::max(footprint, 1.0)))), 0, top);
   const TextureLevel& size = texture.levels()[static_cast<std::size_t>(level)];
+  glm::vec2 uv = rays_.TextureCoordinates(met.triangle, met.u, met.v);
   uv -= glm::floor(uv);
   const int x = std::min(static_cast<int>(uv.x * static_cast<float>(size.width)), size.width - 1);
   const int y = std::min(static_cast<int>(uv.y * static_cast<float>(size.height)), size.height - 1);
   return texture.Texel(level, x, y);
 }
 
-}  // namespace
-
 glm::dvec3 PathTracer::Albedo(const Met& met, double width) const {
   const std::size_t index = rays_.MaterialIndex(met.triangle);
   if (index >= scene_.materials.size()) return glm::dvec3(0.0);  // a visible lamp
   const Material& material = scene_.materials[index];
-  glm::dvec3 albedo = glm::dvec3(material.base_color) * glm::dvec3(rays_.VertexColor(met.triangle, met.u, met.v));
-  if (material.texture >= 0) {
-    const Texture& texture = scene_.textures[static_cast<std::size_t>(material.texture)];
-    albedo *= LookUp(
-        texture, rays_.TextureCoordinates(met.triangle, met.u, met.v),
-        width * rays_.UvPerMetre(met.triangle) * std::sqrt(static_cast<double>(texture.width()) * texture.height()));
-  }
-  return albedo;
+  const glm::dvec3 albedo = glm::dvec3(material.base_color) * glm::dvec3(rays_.VertexColor(met.triangle, met.u, met.v));
+  return material.texture < 0 ? albedo : albedo * LookUp(material.texture, met, width);
 }
 
 glm::dvec3 PathTracer::Emission(const Met& met, double width) const {
   const std::size_t index = rays_.MaterialIndex(met.triangle);
   if (index >= scene_.materials.size()) return glm::dvec3(0.0);  // a visible lamp: has been counted as a lamp
   const Material& material = scene_.materials[index];
-  glm::dvec3 emission(material.emission);
-  if (material.emission_texture >= 0 && Strength(emission) > 0) {
-    const Texture& texture = scene_.textures[static_cast<std::size_t>(material.emission_texture)];
-    emission *= LookUp(
-        texture, rays_.TextureCoordinates(met.triangle, met.u, met.v),
-        width * rays_.UvPerMetre(met.triangle) * std::sqrt(static_cast<double>(texture.width()) * texture.height()));
-  }
-  return emission;
-}
-
-glm::dvec3 PathTracer::Sky(const glm::dvec3& direction) const {
-  return scene_.sky ? scene_.sky->Radiance(direction) : glm::dvec3(scene_.background);
+  const glm::dvec3 emission(material.emission);
+  const bool has_picture = material.emission_texture >= 0 && Strength(emission) > 0;
+  return has_picture ? emission * LookUp(material.emission_texture, met, width) : emission;
 }
 
 void PathTracer::AddDirect(const LightPoint& point, std::uint64_t key, int samples, std::span<glm::dvec3> sums) const {
@@ -207,7 +183,7 @@ void PathTracer::AddIndirect(const LightPoint& point, std::uint64_t key, int pat
     for (std::uint32_t bounce = 0;; ++bounce) {
       Met met;
       if (!Trace(at, direction, met)) {
-        sums[0] += factor * Sky(direction);
+        sums[0] += factor * (scene_.sky ? scene_.sky->Radiance(direction) : glm::dvec3(scene_.background));
         break;
       }
       length += met.distance;

@@ -54,9 +54,9 @@ class PathTracer {
   bool IsSeen(const LightPoint& point, const Reach& reach) const;
   bool IsFree(const glm::dvec3& origin, const glm::dvec3& direction, float reach) const;
   bool Trace(const LightPoint& from, const glm::dvec3& direction, Met& met) const;
+  glm::dvec3 LookUp(int picture, const Met& met, double width) const;
   glm::dvec3 Albedo(const Met& met, double width) const;
   glm::dvec3 Emission(const Met& met, double width) const;
-  glm::dvec3 Sky(const glm::dvec3& direction) const;
 
   const Scene& scene_;
   const RayScene& rays_;

@@ -3,8 +3,11 @@
 // Source: Yuksel, Keyser and House 2010, "Mesh colors".
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "sim/world/light.h"
@@ -25,9 +28,26 @@ struct TriangleResolution {
 };
 constexpr int kMaxLog2Resolution = 11;
 
-// Samples of irradiance / pi (the radiance of a white surface), packed as EXT_texture_shared_exponent
-// (sim/light/shared_exponent.h). Each layer has them for all triangles in order, of each the front's lattice and then
-// the back's.
+// Shared-exponent colours (RGB9_E5): three non-negative numbers in 32 bits, to 0.2 % of the largest.
+// Source: the OpenGL extension EXT_texture_shared_exponent: c = mantissa * 2^(exponent - 24).
+constexpr float kLargestShared = 511.0f / 512.0f * 65536.0f;
+
+// Rounded to the nearest; what is negative (or not a number) becomes 0, what is too large the largest.
+inline std::uint32_t PackShared(const glm::vec3& color) {
+  float c[3];
+  for (int k = 0; k < 3; ++k) c[k] = color[k] > 0 ? std::min(color[k], kLargestShared) : 0.0f;
+  const float largest = std::max({c[0], c[1], c[2]});
+  int exponent = 0;
+  if (largest > 0) std::frexp(largest, &exponent);  // largest < 2^exponent
+  int shared = largest > 0 ? std::clamp(exponent + 15, 0, 31) : 0;
+  if (std::lround(std::ldexp(largest, 24 - shared)) == 512) ++shared;
+  std::uint32_t bits = static_cast<std::uint32_t>(shared) << 27;
+  for (int k = 0; k < 3; ++k) bits |= static_cast<std::uint32_t>(std::lround(std::ldexp(c[k], 24 - shared))) << (9 * k);
+  return bits;
+}
+
+// Samples of irradiance / pi (the radiance of a white surface), of PackShared. Each layer has them
+// for all triangles in order, of each the front's lattice and then the back's.
 struct BakedLight {
   std::vector<TriangleResolution> resolutions;  // by triangle
   std::vector<Flicker> layers;         // the light of lamps with the same flicker is one layer; the first is steady

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/render/rasteriser.h"
 #include "tools/base/text.h"
 
 namespace sim {
@@ -36,28 +37,25 @@ class Library {
   void* handle_ = nullptr;
 };
 
+#define VOBENCH_GET(function) library_.Get<decltype(function)>(#function)
+
 class EglContext final : public GlContext {
  public:
-  EglContext() : library_({"libEGL.so.1"}), find_(library_.Get<decltype(eglGetProcAddress)>("eglGetProcAddress")) {
+  EglContext() : library_({"libEGL.so.1"}), find_(VOBENCH_GET(eglGetProcAddress)) {
     std::vector<std::string> reasons;
     for (const EGLDisplay display : Displays()) {
       if (Open(display, reasons)) break;
     }
-    if (context_ == EGL_NO_CONTEXT) {
+    if (context_ == EGL_NO_CONTEXT)
       throw std::runtime_error("no device or surfaceless display serves (" + base::Join(reasons, ", ") + ")");
-    }
-    try {
-      LoadFunctions();
-    } catch (...) {
-      Destroy();
-      throw;
-    }
   }
-  ~EglContext() override { Destroy(); }
+  ~EglContext() override {
+    if (context_ != EGL_NO_CONTEXT) VOBENCH_GET(eglDestroyContext)(display_, context_);
+  }
 
  protected:
   void MakeCurrent() override {
-    if (Egl<decltype(eglBindAPI)>("eglBindAPI")(EGL_OPENGL_API) != EGL_TRUE ||
+    if (VOBENCH_GET(eglBindAPI)(EGL_OPENGL_API) != EGL_TRUE ||
         make_current_(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE) {
       throw std::runtime_error("EGL: the context cannot be made current, error " + ErrorCode());
     }
@@ -66,18 +64,14 @@ class EglContext final : public GlContext {
   void* Find(const char* function) const override { return reinterpret_cast<void*>(find_(function)); }
 
  private:
-  template <class Function>
-  Function* Egl(const char* name) const {
-    return library_.Get<Function>(name);
-  }
-  std::string ErrorCode() const { return std::to_string(Egl<decltype(eglGetError)>("eglGetError")()); }
+  std::string ErrorCode() const { return std::to_string(VOBENCH_GET(eglGetError)()); }
 
   // GPUs first: the vendors' libraries list their devices in an order of their own, Mesa its software last.
   std::vector<EGLDisplay> Displays() const {
     std::vector<EGLDisplay> displays;
     const auto get = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(find_("eglGetPlatformDisplayEXT"));
     const auto query = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(find_("eglQueryDevicesEXT"));
-    const char* known = Egl<decltype(eglQueryString)>("eglQueryString")(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    const char* known = VOBENCH_GET(eglQueryString)(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     const std::string_view extensions = known != nullptr ? known : "";
     if (get == nullptr) return displays;
     std::array<EGLDeviceEXT, 32> devices{};
@@ -96,32 +90,27 @@ class EglContext final : public GlContext {
 
   // A display is the process's: it is never terminated, since somebody else may be using it.
   bool Open(EGLDisplay display, std::vector<std::string>& reasons) {
-    if (display == EGL_NO_DISPLAY ||
-        Egl<decltype(eglInitialize)>("eglInitialize")(display, nullptr, nullptr) != EGL_TRUE) {
+    if (display == EGL_NO_DISPLAY || VOBENCH_GET(eglInitialize)(display, nullptr, nullptr) != EGL_TRUE) {
       reasons.push_back("a display does not start");
       return false;
     }
-    if (Egl<decltype(eglBindAPI)>("eglBindAPI")(EGL_OPENGL_API) != EGL_TRUE) {
+    if (VOBENCH_GET(eglBindAPI)(EGL_OPENGL_API) != EGL_TRUE) {
       reasons.push_back("a display has no OpenGL");
       return false;
     }
     const std::array<EGLint, 7> attributes = {
         EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
-    const EGLContext context = Egl<decltype(eglCreateContext)>("eglCreateContext")(display, EGL_NO_CONFIG_KHR,
-                                                                                   EGL_NO_CONTEXT, attributes.data());
+    const EGLContext context =
+        VOBENCH_GET(eglCreateContext)(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
     if (context == EGL_NO_CONTEXT) {
       reasons.push_back("a display makes no OpenGL 4.5 context, error " + ErrorCode());
       return false;
     }
     display_ = display;
     context_ = context;
-    make_current_ = Egl<decltype(eglMakeCurrent)>("eglMakeCurrent");
+    make_current_ = VOBENCH_GET(eglMakeCurrent);
     return true;
-  }
-
-  void Destroy() noexcept {
-    if (context_ != EGL_NO_CONTEXT) Egl<decltype(eglDestroyContext)>("eglDestroyContext")(display_, context_);
   }
 
   Library library_;
@@ -135,8 +124,8 @@ class MesaContext final : public GlContext {
  public:
   MesaContext()
       : library_({"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"}),
-        find_(library_.Get<decltype(OSMesaGetProcAddress)>("OSMesaGetProcAddress")),
-        make_current_(library_.Get<decltype(OSMesaMakeCurrent)>("OSMesaMakeCurrent")) {
+        find_(VOBENCH_GET(OSMesaGetProcAddress)),
+        make_current_(VOBENCH_GET(OSMesaMakeCurrent)) {
     const std::array<int, 11> attributes = {OSMESA_FORMAT,
                                             OSMESA_RGBA,
                                             OSMESA_DEPTH_BITS,
@@ -148,17 +137,10 @@ class MesaContext final : public GlContext {
                                             OSMESA_CONTEXT_MINOR_VERSION,
                                             5,
                                             0};
-    context_ =
-        library_.Get<decltype(OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs")(attributes.data(), nullptr);
+    context_ = VOBENCH_GET(OSMesaCreateContextAttribs)(attributes.data(), nullptr);
     if (context_ == nullptr) throw std::runtime_error("makes no OpenGL 4.5 context");
-    try {
-      LoadFunctions();
-    } catch (...) {
-      Destroy();
-      throw;
-    }
   }
-  ~MesaContext() override { Destroy(); }
+  ~MesaContext() override { VOBENCH_GET(OSMesaDestroyContext)(context_); }
 
  protected:
   void MakeCurrent() override {
@@ -170,14 +152,14 @@ class MesaContext final : public GlContext {
   void* Find(const char* function) const override { return reinterpret_cast<void*>(find_(function)); }
 
  private:
-  void Destroy() noexcept { library_.Get<decltype(OSMesaDestroyContext)>("OSMesaDestroyContext")(context_); }
-
   Library library_;
   decltype(OSMesaGetProcAddress)* find_;
   decltype(OSMesaMakeCurrent)* make_current_;
   OSMesaContext context_ = nullptr;
   std::array<unsigned char, 4> pixel_{};  // the window that OSMesa insists on; nothing is drawn into it
 };
+
+#undef VOBENCH_GET
 
 }  // namespace
 
@@ -191,22 +173,23 @@ void GlContext::LoadFunctions() {
 }
 
 std::unique_ptr<GlContext> MakeGlContext(GlPlatform platform) {
-  std::string reasons;
-  if (platform != GlPlatform::osmesa) {
+  std::vector<std::string> reasons;
+  std::unique_ptr<GlContext> made;
+  const auto attempt = [&](const char* name, auto make) {
+    if (made != nullptr) return;
     try {
-      return std::make_unique<EglContext>();
+      auto context = make();
+      context->LoadFunctions();
+      made = std::move(context);
     } catch (const std::runtime_error& error) {
-      reasons = std::string("EGL: ") + error.what();
+      reasons.push_back(name + std::string(": ") + error.what());
     }
-  }
-  if (platform != GlPlatform::egl) {
-    try {
-      return std::make_unique<MesaContext>();
-    } catch (const std::runtime_error& error) {
-      reasons += (reasons.empty() ? "OSMesa: " : "; OSMesa: ") + std::string(error.what());
-    }
-  }
-  throw std::runtime_error("rasteriser: no OpenGL without a display. " + reasons);
+  };
+  if (platform != GlPlatform::osmesa) attempt("EGL", [] { return std::make_unique<EglContext>(); });
+  if (platform != GlPlatform::egl) attempt("OSMesa", [] { return std::make_unique<MesaContext>(); });
+  if (made == nullptr)
+    throw std::runtime_error("rasteriser: no OpenGL without a display. " + base::Join(reasons, "; "));
+  return made;
 }
 
 }  // namespace sim

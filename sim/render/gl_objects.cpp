@@ -7,18 +7,25 @@
 namespace sim {
 namespace {
 
+// Throws what the compiler or the linker says about `id` unless its `status` is good.
+template <class Get, class GetLog>
+void CheckBuilt(GLuint id, GLenum status, const Get& get, const GetLog& get_log, const std::string& what) {
+  GLint good = 0, length = 0;
+  get(id, status, &good);
+  if (good != 0) return;
+  get(id, GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+  get_log(id, length, nullptr, log.data());
+  throw std::runtime_error("rasteriser: " + what + ": " + log);
+}
+
 GlObject Compile(const GlApi& gl, const std::string& name, GLenum kind, const std::string& source) {
   GlObject shader(gl, gl.CreateShader(kind), [](const GlApi& api, GLuint id) { api.DeleteShader(id); });
   const char* text = source.c_str();
   gl.ShaderSource(shader.id(), 1, &text, nullptr);
   gl.CompileShader(shader.id());
-  GLint good = 0, length = 0;
-  gl.GetShaderiv(shader.id(), GL_COMPILE_STATUS, &good);
-  if (good != 0) return shader;
-  gl.GetShaderiv(shader.id(), GL_INFO_LOG_LENGTH, &length);
-  std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
-  gl.GetShaderInfoLog(shader.id(), length, nullptr, log.data());
-  throw std::runtime_error("rasteriser: shader " + name + ": " + log);
+  CheckBuilt(shader.id(), GL_COMPILE_STATUS, gl.GetShaderiv, gl.GetShaderInfoLog, "shader " + name);
+  return shader;
 }
 
 }  // namespace
@@ -42,13 +49,17 @@ GlObject MakeBuffer(const GlApi& gl, std::size_t bytes, const void* data) {
   return buffer;
 }
 
-GlObject MakeTexture(const GlApi& gl, GLenum format, int width, int height) {
+GlObject NewTexture(const GlApi& gl, GLenum target) {
   GLuint id = 0;
-  gl.CreateTextures(GL_TEXTURE_2D, 1, &id);
-  GlObject texture(gl, id, [](const GlApi& api, GLuint t) { api.DeleteTextures(1, &t); });
-  gl.TextureStorage2D(id, 1, format, width, height);
-  gl.TextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  gl.TextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  gl.CreateTextures(target, 1, &id);
+  return {gl, id, [](const GlApi& api, GLuint t) { api.DeleteTextures(1, &t); }};
+}
+
+GlObject MakeTexture(const GlApi& gl, GLenum format, int width, int height) {
+  GlObject texture = NewTexture(gl, GL_TEXTURE_2D);
+  gl.TextureStorage2D(texture.id(), 1, format, width, height);
+  gl.TextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  gl.TextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   return texture;
 }
 
@@ -62,10 +73,8 @@ BufferTexture::BufferTexture(const GlApi& gl, GLenum format, std::size_t texels,
                                 " in a buffer at most; the ray tracer has no such limit");
   }
   buffer = MakeBuffer(gl, bytes, data);
-  GLuint id = 0;
-  gl.CreateTextures(GL_TEXTURE_BUFFER, 1, &id);
-  texture = GlObject(gl, id, [](const GlApi& api, GLuint t) { api.DeleteTextures(1, &t); });
-  gl.TextureBuffer(id, format, buffer.id());
+  texture = NewTexture(gl, GL_TEXTURE_BUFFER);
+  gl.TextureBuffer(texture.id(), format, buffer.id());
 }
 
 GlObject MakeVertexArray(const GlApi& gl) {
@@ -87,13 +96,7 @@ Program::Program(const GlApi& gl, const std::string& name, const std::string& ve
   gl.AttachShader(program_.id(), first.id());
   gl.AttachShader(program_.id(), second.id());
   gl.LinkProgram(program_.id());
-  GLint good = 0, length = 0;
-  gl.GetProgramiv(program_.id(), GL_LINK_STATUS, &good);
-  if (good != 0) return;
-  gl.GetProgramiv(program_.id(), GL_INFO_LOG_LENGTH, &length);
-  std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
-  gl.GetProgramInfoLog(program_.id(), length, nullptr, log.data());
-  throw std::runtime_error("rasteriser: shaders " + name + " do not link: " + log);
+  CheckBuilt(program_.id(), GL_LINK_STATUS, gl.GetProgramiv, gl.GetProgramInfoLog, "shaders " + name + " do not link");
 }
 
 void Program::Use() const { gl_->UseProgram(program_.id()); }

@@ -7,11 +7,11 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
-#include "sim/render/gl_api.h"
+#include "sim/render/gl_context.h"
 
 namespace sim {
 
@@ -44,10 +44,13 @@ class GlObject {
   Delete delete_ = nullptr;
 };
 
+// Without storage; target: GL_TEXTURE_...
+GlObject NewTexture(const GlApi& gl, GLenum target);
+
 GlObject MakeBuffer(const GlApi& gl, std::size_t bytes, const void* data);
 template <class T>
-GlObject MakeBuffer(const GlApi& gl, const std::span<T>& data) {
-  return MakeBuffer(gl, data.size_bytes(), data.data());
+GlObject MakeBuffer(const GlApi& gl, const std::vector<T>& data) {
+  return MakeBuffer(gl, data.size() * sizeof(T), data.data());
 }
 
 // One level, nearest texel, nothing beyond its border.
@@ -57,7 +60,13 @@ GlObject MakeTexture(const GlApi& gl, GLenum format, int width, int height);
 struct BufferTexture {
   GlObject buffer, texture;
   BufferTexture() = default;
-  // `texels`: how many; of more than the context can read std::invalid_argument names `what`.
+  // Each of `data` is `texels_each` texels. Of more than the context can read std::invalid_argument names `what`.
+  template <class T>
+  BufferTexture(const GlApi& gl, GLenum format, const std::vector<T>& data, const std::string& what,
+                std::size_t texels_each = 1)
+      : BufferTexture(gl, format, texels_each * data.size(), data.size() * sizeof(T), data.data(), what) {}
+
+ private:
   BufferTexture(const GlApi& gl, GLenum format, std::size_t texels, std::size_t bytes, const void* data,
                 const std::string& what);
 };

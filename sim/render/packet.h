@@ -1,12 +1,13 @@
 // Packet kernel, the inner loop of the ray tracer: its data in plain arrays, sixteen rays at a time. Private to
 // sim/render.
 //
-// The loop (packet.inc) is compiled several times, for several instruction sets, and PacketKernel() picks the best that
-// this machine has. Those files must therefore not use inline functions of other headers: the linker keeps only one
+// The loop (packet.inc) is compiled several times, for several instruction sets, and PacketKernels() says which this
+// machine has. Those files must therefore not use inline functions of other headers: the linker keeps only one
 // copy of such a function, perhaps the one that this machine cannot run.
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "sim/render/embree.h"
 
@@ -22,23 +23,22 @@ struct alignas(64) LaneInts {
   std::int32_t v[kLanes];
 };
 
-// What is looked up at a hit, in half a cache line: texture coordinates at corner 0 and the differences of corners 1
-// and 2 to them, since value(u, v) = value_0 + u (value_1 - value_0) + v (value_2 - value_0).
+// value(u, v) = value_0 + u (value_1 - value_0) + v (value_2 - value_0): the value at corner 0 and the differences of
+// corners 1 and 2 to it.
+template <int kSize>
+struct OverTriangle {
+  float first[kSize], du[kSize], dv[kSize];
+};
+
+// What is looked up at a hit, in half a cache line.
 struct alignas(32) TriangleShading {
-  float uv[2], uv_du[2], uv_dv[2];
+  OverTriangle<2> uv;  // texture coordinates
   // Low 24 bits: the material; then 4 bits each: log2 of the baked light's resolution on the front and on the back
   // (sim/render/baked_light.h)
   std::uint32_t material;
   std::int32_t first_light;  // in a layer of PacketScene::light: the front's samples, then the back's
 };
 constexpr std::uint32_t kMaterialBits = 24;
-// The same for the shading normal; only where lights are looked at from each hit.
-struct TriangleNormals {
-  float normal[3], normal_du[3], normal_dv[3];
-};
-struct TriangleColor {
-  float color[3], color_du[3], color_dv[3];
-};
 // Unit vectors in the triangle's plane, to the right and up in its picture; 0 where it has none.
 struct TriangleTangents {
   float right[3], up[3];
@@ -81,13 +81,14 @@ struct PacketScene {
   RTCScene embree;
   std::int32_t filtered_first;       // the triangle with number 0 in Embree's second geometry, that with filters
   const TriangleShading* triangles;  // by triangle
-  const TriangleNormals* normals;    // by triangle; null: all flat
-  const TriangleColor* colors;       // by triangle; null: no vertex colours anywhere
+  const OverTriangle<3>* normals;    // by triangle; null: all flat
+  const OverTriangle<3>* colors;     // by triangle; null: no vertex colours anywhere
   const TriangleTangents* tangents;  // by triangle; null: no normal maps anywhere
   const MaterialShading* materials;
   const LevelShading* levels;
   const std::uint32_t* texels;  // sim/world/texture.h's coding
-  const std::uint32_t* light;  // baked, as sim/light/shared_exponent.h packs it, layer after layer; null: ambient light
+  const std::uint32_t*
+      light;  // baked, as PackShared (sim/render/baked_light.h) does, layer after layer; null: ambient light
   std::int32_t light_layers, light_stride;
   bool any_emission, any_emission_picture;
   const GlossShading* gloss;  // by material; null: nothing mirrors
@@ -112,7 +113,7 @@ constexpr int kMaxLightLayers = 8;
 //   directional:         power * max(0, n . (x, y, z))
 //   from point (x, y, z): power * max(0, n . l / r) / r^2, times max(0, -normal . l / r) when one_sided
 struct LightSample {
-  float x, y, z;  // W: towards the light (unit), or its position
+  float place[3];  // (x, y, z) in W: towards the light (unit), or its position
   float power[3];
   float normal[3];
   bool directional, one_sided;
@@ -166,19 +167,7 @@ struct KernelChoice {
   ScrambleBlockFunction scramble_block;
   const char* name;
 };
-KernelChoice PacketKernel();
-
-namespace packet_base {
-void ExposeBlock(const PacketScene&, const RaySample*, int, bool, float, const PixelBlock&, Lanes[3]);
-void ScrambleBlock(std::uint64_t, std::uint32_t, std::uint32_t, BlockBits&);
-}  // namespace packet_base
-namespace packet_avx2 {
-void ExposeBlock(const PacketScene&, const RaySample*, int, bool, float, const PixelBlock&, Lanes[3]);
-void ScrambleBlock(std::uint64_t, std::uint32_t, std::uint32_t, BlockBits&);
-}  // namespace packet_avx2
-namespace packet_avx512 {
-void ExposeBlock(const PacketScene&, const RaySample*, int, bool, float, const PixelBlock&, Lanes[3]);
-void ScrambleBlock(std::uint64_t, std::uint32_t, std::uint32_t, BlockBits&);
-}  // namespace packet_avx512
+// Those that this machine can run; the fastest is the last.
+std::vector<KernelChoice> PacketKernels();
 
 }  // namespace sim

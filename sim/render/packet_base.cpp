@@ -1,2 +1,3 @@
 #define VOBENCH_PACKET_NAMESPACE packet_base
+#define VOBENCH_PACKET_NAME "base"
 #include "sim/render/packet.inc"

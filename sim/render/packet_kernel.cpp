@@ -2,17 +2,28 @@
 
 namespace sim {
 
-KernelChoice PacketKernel() {
+namespace packet_base {
+extern const KernelChoice kKernel;
+}
+namespace packet_avx2 {
+extern const KernelChoice kKernel;
+}
+namespace packet_avx512 {
+extern const KernelChoice kKernel;
+}
+
+std::vector<KernelChoice> PacketKernels() {
+  std::vector<KernelChoice> kernels{packet_base::kKernel};
 #if defined(__x86_64__) && defined(__GNUC__)
   __builtin_cpu_init();
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return kernels;
+  kernels.push_back(packet_avx2::kKernel);
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("fma")) {
-    return {packet_avx512::ExposeBlock, packet_avx512::ScrambleBlock, "avx512"};
+      __builtin_cpu_supports("avx512vl")) {
+    kernels.push_back(packet_avx512::kKernel);
   }
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    return {packet_avx2::ExposeBlock, packet_avx2::ScrambleBlock, "avx2"};
 #endif
-  return {packet_base::ExposeBlock, packet_base::ScrambleBlock, "base"};
+  return kernels;
 }
 
 }  // namespace sim

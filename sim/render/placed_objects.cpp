@@ -1,12 +1,8 @@
 #include "sim/render/placed_objects.h"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
-#include <stdexcept>
-#include <string>
 
 namespace sim {
 namespace {
@@ -55,8 +51,7 @@ PlacedObjects::PlacedObjects(const RayScene& scene, double begin_s, double end_s
     for (const RayObject& object : objects) parts = std::max(parts, PartsOf(object, begin_s, end_s));
   }
   const RTCDevice device = scene.device();
-  scene_.reset(rtcNewScene(device));
-  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+  scene_ = NewTree(device);
   for (std::size_t k = 0; k < objects.size(); ++k) {
     RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(instance, objects[k].tree.get());
@@ -76,11 +71,8 @@ PlacedObjects::PlacedObjects(const RayScene& scene, double begin_s, double end_s
     rtcAttachGeometryByID(scene_.get(), instance, static_cast<unsigned>(k));
     rtcReleaseGeometry(instance);
   }
-  // In one thread, as all trees: see RayScene::Build.
-  tbb::task_arena(1).execute([this] { rtcCommitScene(scene_.get()); });
-  const RTCError error = rtcGetDeviceError(device);
-  if (error != RTC_ERROR_NONE)
-    throw std::runtime_error("Embree: placing the objects failed, error " + std::to_string(error));
+  CommitTree(scene_);
+  CheckEmbree(device, "placing the objects");
   packet_ = {scene_.get(), scene.first_triangles(), turns_.data(), parts + 1, false};
 }
 

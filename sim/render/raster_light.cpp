@@ -5,15 +5,16 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "sim/render/raster_draw.h"
 #include "sim/render/raster_view.h"
 
 namespace sim {
 namespace {
 
-enum Kind { kSun, kPoint, kRectangle };
+using Kind = LightSource::Kind;
 
 Kind KindOf(const RasterLight& light) { return static_cast<Kind>(static_cast<int>(light.place.w)); }
+
+int LayersOf(Kind kind) { return kind == Kind::sun ? 1 : kFaceCount; }
 
 // Two right angles to d, of length 1.
 std::array<glm::dvec3, 2> Across(const glm::dvec3& d) {
@@ -35,42 +36,10 @@ glm::vec4 OverBox(const glm::dvec3& axis, const RasterScene& scene) {
   return glm::vec4(glm::dvec4(axis * scale, (around - low) * scale));
 }
 
-struct AddLight {
-  const glm::dvec2& point;
-  const RasterScene& scene;
-  std::vector<RasterLight>& out;
-  int& lasting_layers;
-  int& sample_layers;
-
-  void operator()(const AmbientLight&) const {}
-  void operator()(const SunLight& light) const {
-    const glm::dvec3 towards = -glm::normalize(light.direction);
-    RasterLight& l = Add(towards, light.irradiance, kSun);
-    const auto [u, v] = Across(towards);
-    l.map[0] = OverBox(u, scene), l.map[1] = OverBox(v, scene), l.map[2] = OverBox(towards, scene);
-  }
-  void operator()(const PointLight& light) const { Add(light.position, light.intensity, kPoint); }
-  void operator()(const RectLight& light) const {
-    const glm::dvec3 cross = glm::cross(light.side_u, light.side_v);
-    const glm::dvec3 at = light.corner + point.x * light.side_u + point.y * light.side_v;
-    Add(at, light.radiance * glm::length(cross), kRectangle).normal = glm::vec4(glm::dvec4(glm::normalize(cross), 0.0));
-  }
-  RasterLight& Add(const glm::dvec3& place, const glm::dvec3& power, Kind kind) const {
-    int& layers = kind == kRectangle ? sample_layers : lasting_layers;
-    RasterLight l{};
-    l.place = glm::vec4(glm::dvec4(place, static_cast<double>(kind)));
-    l.power = glm::vec4(glm::dvec4(power, static_cast<double>(layers)));
-    layers += kind == kSun ? 1 : kFaceCount;
-    out.push_back(l);
-    return out.back();
-  }
-};
-
 int Layers(const std::vector<RasterLight>& lights, bool of_rectangles) {
   int layers = 0;
   for (const RasterLight& light : lights) {
-    const Kind kind = KindOf(light);
-    if ((kind == kRectangle) == of_rectangles) layers += kind == kSun ? 1 : kFaceCount;
+    if ((KindOf(light) == Kind::rectangle) == of_rectangles) layers += LayersOf(KindOf(light));
   }
   return layers;
 }
@@ -80,15 +49,27 @@ int Layers(const std::vector<RasterLight>& lights, bool of_rectangles) {
 std::vector<RasterLight> LightsOfSample(const std::vector<Light>& lights, const glm::dvec2& point,
                                         const RasterScene& scene) {
   std::vector<RasterLight> out;
-  int lasting_layers = 0, sample_layers = 0;
-  for (const Light& light : lights) std::visit(AddLight{point, scene, out, lasting_layers, sample_layers}, light);
+  for (const Light& light : lights) {
+    const std::optional<LightSource> source = SourceOf(light, point);
+    if (!source) continue;
+    const bool is_rectangle = source->kind == Kind::rectangle;
+    RasterLight l{};
+    l.place = glm::vec4(glm::dvec4(source->place, static_cast<double>(source->kind)));
+    const glm::dvec3 power = is_rectangle ? source->power * glm::length(source->area) : source->power;
+    l.power = glm::vec4(glm::dvec4(power, static_cast<double>(Layers(out, is_rectangle))));
+    if (is_rectangle) l.normal = glm::vec4(glm::dvec4(glm::normalize(source->area), 0.0));
+    if (source->kind == Kind::sun) {
+      const auto [u, v] = Across(source->place);
+      l.map[0] = OverBox(u, scene), l.map[1] = OverBox(v, scene), l.map[2] = OverBox(source->place, scene);
+    }
+    out.push_back(l);
+  }
   return out;
 }
 
 GlObject ShadowMaps::MakeMaps(int layers, int side) const {
-  GLuint id = 0;
-  gl_.CreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
-  GlObject maps(gl_, id, [](const GlApi& api, GLuint t) { api.DeleteTextures(1, &t); });
+  GlObject maps = NewTexture(gl_, GL_TEXTURE_2D_ARRAY);
+  const GLuint id = maps.id();
   gl_.TextureStorage3D(id, 1, GL_DEPTH_COMPONENT32F, side, side, std::max(layers, 1));
   gl_.TextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR);  // the mean of four comparisons
   gl_.TextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
@@ -104,7 +85,7 @@ void ShadowMaps::Draw(const RasterScene& scene, const Program& triangles,
   if (!lasting_) {
     lasting_ = MakeMaps(Layers(lights[0], false), side_);
     for (const RasterLight& light : lights[0]) {
-      if (KindOf(light) != kRectangle) DrawLight(scene, triangles, light, lasting_, side_);
+      if (KindOf(light) != Kind::rectangle) DrawLight(scene, triangles, light, lasting_, side_);
     }
   }
   const int layers = Layers(lights[0], true);
@@ -116,7 +97,7 @@ void ShadowMaps::Draw(const RasterScene& scene, const Program& triangles,
   for (const std::vector<RasterLight>& of_sample : lights) {
     samples_.push_back(MakeMaps(layers, side));
     for (const RasterLight& light : of_sample) {
-      if (KindOf(light) == kRectangle) DrawLight(scene, triangles, light, samples_.back(), side);
+      if (KindOf(light) == Kind::rectangle) DrawLight(scene, triangles, light, samples_.back(), side);
     }
   }
 }
@@ -126,27 +107,34 @@ void ShadowMaps::DrawSample(const RasterScene& scene, const Program& triangles,
   if (!lasting_) lasting_ = MakeMaps(Layers(lights, false), side_);
   if (samples_.empty()) samples_.push_back(MakeMaps(Layers(lights, true), side_));
   for (const RasterLight& light : lights) {
-    DrawLight(scene, triangles, light, KindOf(light) == kRectangle ? samples_[0] : lasting_, side_);
+    DrawLight(scene, triangles, light, KindOf(light) == Kind::rectangle ? samples_[0] : lasting_, side_);
   }
 }
 
 void ShadowMaps::DrawLight(const RasterScene& scene, const Program& triangles, const RasterLight& light,
                            const GlObject& maps, int side) const {
+  const auto draw = [&](int layer, const glm::vec3& origin, const glm::mat4& clip) {
+    const GlObject target = MakeFramebuffer(gl_);
+    gl_.NamedFramebufferTextureLayer(target.id(), GL_DEPTH_ATTACHMENT, maps.id(), 0, layer);
+    gl_.NamedFramebufferDrawBuffer(target.id(), GL_NONE);
+    scene.Draw(triangles, target, glm::ivec2(side), origin, clip);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, 0);
+  };
   const int first = static_cast<int>(light.power.w);
-  if (KindOf(light) == kSun) {
+  if (KindOf(light) == Kind::sun) {
     glm::mat4 clip(0.0f);  // by rows
     clip[0] = 2.0f * light.map[0] - glm::vec4(0, 0, 0, 1);
     clip[1] = 2.0f * light.map[1] - glm::vec4(0, 0, 0, 1);
     clip[2] = light.map[2];
     clip[3] = glm::vec4(0, 0, 0, 1);
-    DrawDepth(gl_, scene, triangles, glm::vec3(0.0f), glm::transpose(clip), maps, first, side);
+    draw(first, glm::vec3(0.0f), glm::transpose(clip));
     return;
   }
   // As the shader has it: no comparison lacks a neighbour.
   const float border = 1.0f + 16.0f / static_cast<float>(side);
   for (int face = 0; face < kFaceCount; ++face) {
     const glm::mat4 clip = ClipFromView(glm::vec2(-border), glm::vec2(border)) * glm::mat4(FaceFromCamera(face));
-    DrawDepth(gl_, scene, triangles, glm::vec3(light.place), clip, maps, first + face, side);
+    draw(first + face, glm::vec3(light.place), clip);
   }
 }
 

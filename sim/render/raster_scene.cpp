@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
 
@@ -24,13 +25,7 @@ bool HasColors(const Scene& scene) {
                                           [&](const MovingObject& object) { return any(object.meshes); });
 }
 
-// A value at corner 0 and its differences to corners 1 and 2.
-template <class T>
-struct OverTriangle {
-  T first, du, dv;
-  OverTriangle(const std::vector<T>& values, const glm::uvec3& t)
-      : first(values[t.x]), du(values[t.y] - first), dv(values[t.z] - first) {}
-};
+glm::vec4 Row(const float (&v)[3], float w) { return {v[0], v[1], v[2], w}; }
 
 }  // namespace
 
@@ -38,8 +33,8 @@ RasterScene::RasterScene(const GlApi& gl, const Scene& scene) : gl_(gl) {
   CheckScene(scene);
   AppendTextures(scene);
   AppendMeshes(scene);
-  position_buffer_ = MakeBuffer(gl, std::span(positions_));
-  corner_buffer_ = MakeBuffer(gl, std::span(corners_));
+  position_buffer_ = MakeBuffer(gl, positions_);
+  corner_buffer_ = MakeBuffer(gl, corners_);
   vertex_array_ = MakeVertexArray(gl);
   const GLuint array = vertex_array_.id();
   gl.VertexArrayVertexBuffer(array, 0, position_buffer_.id(), 0, sizeof(glm::vec3));
@@ -50,7 +45,17 @@ RasterScene::RasterScene(const GlApi& gl, const Scene& scene) : gl_(gl) {
   CheckGl(gl, "loading the scene");
 }
 
-void RasterScene::Draw() const {
+void RasterScene::Draw(const Program& triangles, const GlObject& target, const glm::ivec2& size,
+                       const glm::vec3& origin, const glm::mat4& clip) const {
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, target.id());
+  gl_.Viewport(0, 0, size.x, size.y);
+  gl_.Scissor(0, 0, size.x, size.y);
+  gl_.Enable(GL_DEPTH_TEST);
+  const float far = 0.0f;
+  gl_.ClearNamedFramebufferfv(target.id(), GL_DEPTH, 0, &far);
+  triangles.Use();
+  triangles.Set("origin", origin);
+  triangles.Set("clip_from_world", clip);
   gl_.BindVertexArray(vertex_array_.id());
   gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * corners_.size()), GL_UNSIGNED_INT, nullptr);
 }
@@ -79,12 +84,9 @@ void RasterScene::AppendTextures(const Scene& scene) {
     }
     materials.emplace_back(emission, Bits(has_texture ? static_cast<int>(scene.textures[texture].levels().size()) : 0));
   }
-  texels_ =
-      BufferTexture(gl_, GL_R32UI, texels.size(), texels.size() * sizeof(std::uint32_t), texels.data(), "the textures");
-  levels_ = BufferTexture(gl_, GL_RGBA32I, levels.size(), levels.size() * sizeof(glm::ivec4), levels.data(),
-                          "the textures' levels");
-  materials_ = BufferTexture(gl_, GL_RGBA32F, materials.size(), materials.size() * sizeof(glm::vec4), materials.data(),
-                             "the materials");
+  texels_ = BufferTexture(gl_, GL_R32UI, texels, "the textures");
+  levels_ = BufferTexture(gl_, GL_RGBA32I, levels, "the textures' levels");
+  materials_ = BufferTexture(gl_, GL_RGBA32F, materials, "the materials");
 }
 
 void RasterScene::Move(double t_s) {
@@ -134,8 +136,7 @@ void RasterScene::AppendMeshes(const Scene& scene) {
     table.insert(table.end(), part.table.begin(), part.table.end());
     objects_.push_back(std::move(part));
   }
-  triangles_ =
-      BufferTexture(gl_, GL_RGBA32F, table.size(), table.size() * sizeof(glm::vec4), table.data(), "the triangles");
+  triangles_ = BufferTexture(gl_, GL_RGBA32F, table, "the triangles");
 }
 
 void RasterScene::AppendMesh(const Scene& scene, const Mesh& mesh, std::vector<glm::vec4>& table) {
@@ -145,39 +146,34 @@ void RasterScene::AppendMesh(const Scene& scene, const Mesh& mesh, std::vector<g
   const int texture = scene.materials[static_cast<std::size_t>(mesh.material)].texture;
   for (const glm::uvec3& t : mesh.triangles) {
     corners_.push_back(first + t);
-    const OverTriangle<glm::vec3> p(mesh.positions, t);
-    const glm::dvec3 cross = glm::cross(glm::dvec3(p.du), glm::dvec3(p.dv));
+    const OverTriangle<3> p = Over(mesh.positions, t);
+    const glm::dvec3 cross = glm::cross(glm::dvec3(glm::make_vec3(p.du)), glm::dvec3(glm::make_vec3(p.dv)));
     const double area = glm::length(cross);
-    glm::vec3 normal = area > 0 ? glm::vec3(cross / area) : glm::vec3(0, 0, 1), normal_du(0.0f), normal_dv(0.0f);
-    if (!mesh.normals.empty()) {
-      const OverTriangle<glm::vec3> n(mesh.normals, t);
-      normal = n.first, normal_du = n.du, normal_dv = n.dv;
+    OverTriangle<3> normal{};
+    if (mesh.normals.empty()) {
+      Store(normal.first, area > 0 ? cross / area : glm::dvec3(0, 0, 1));
+    } else {
+      normal = Over(mesh.normals, t);
     }
-    glm::vec2 uv(0.0f), uv_du(0.0f), uv_dv(0.0f);
+    OverTriangle<2> uv{};
     double texels_per_metre = 0.0;
     if (texture >= 0) {
       const Texture& picture = scene.textures[static_cast<std::size_t>(texture)];
-      const OverTriangle<glm::vec2> place(mesh.uvs, t);
-      uv = place.first - glm::floor(place.first);  // pictures repeat: near 0 floats are finest
-      uv_du = place.du, uv_dv = place.dv;
+      uv = UvsOver(mesh, t);
       const double texels =
-          std::abs(double{uv_du.x} * uv_dv.y - double{uv_du.y} * uv_dv.x) * picture.width() * picture.height();
+          std::abs(double{uv.du[0]} * uv.dv[1] - double{uv.du[1]} * uv.dv[0]) * picture.width() * picture.height();
       texels_per_metre = area > 0 ? std::sqrt(texels / area) : 0.0;
     }
-    table.emplace_back(p.first, Bits(mesh.material));
-    table.emplace_back(p.du, static_cast<float>(texels_per_metre));
-    table.emplace_back(p.dv, 0.0f);
-    table.emplace_back(normal, uv.x);
-    table.emplace_back(normal_du, uv.y);
-    table.emplace_back(normal_dv, 0.0f);
-    table.emplace_back(uv_du, uv_dv);
+    table.push_back(Row(p.first, Bits(mesh.material)));
+    table.push_back(Row(p.du, static_cast<float>(texels_per_metre)));
+    table.push_back(Row(p.dv, 0.0f));
+    table.push_back(Row(normal.first, uv.first[0]));
+    table.push_back(Row(normal.du, uv.first[1]));
+    table.push_back(Row(normal.dv, 0.0f));
+    table.emplace_back(uv.du[0], uv.du[1], uv.dv[0], uv.dv[1]);
     if (!has_colors) continue;
-    const std::vector<glm::vec3> white(3, glm::vec3(1.0f));
-    const OverTriangle<glm::vec3> color =
-        mesh.colors.empty() ? OverTriangle<glm::vec3>(white, {0, 1, 2}) : OverTriangle<glm::vec3>(mesh.colors, t);
-    table.emplace_back(color.first, 0.0f);
-    table.emplace_back(color.du, 0.0f);
-    table.emplace_back(color.dv, 0.0f);
+    const OverTriangle<3> color = ColorsOver(mesh, t);
+    for (const auto* row : {&color.first, &color.du, &color.dv}) table.push_back(Row(*row, 0.0f));
   }
 }
 

@@ -28,7 +28,10 @@ class RasterScene {
   // tables, std::runtime_error when it runs out of memory.
   RasterScene(const GlApi& gl, const Scene& scene);
 
-  void Draw() const;  // all triangles, with what is set
+  // Draws all triangles into the target's first `size` pixels, by depth, which is cleared before. clip: of positions
+  // less `origin`.
+  void Draw(const Program& triangles, const GlObject& target, const glm::ivec2& size, const glm::vec3& origin,
+            const glm::mat4& clip) const;
 
   bool moves() const { return !objects_.empty(); }
   // Puts the objects where they are at a time; before that they are nowhere.

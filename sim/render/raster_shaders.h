@@ -29,8 +29,9 @@ inline const std::string kScreenVertex = kGlslVersion + R"(
 void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.5, 1.0); }
 )";
 
+// Light: sim/render/ray_tracer.h has the model, raster_scene.h and raster_light.h the tables.
+inline const std::string kShadeFragment = kGlslVersion + R"(
 // Faces of a cube: sim/render/raster_view.h has the same.
-inline const std::string kFaces = R"(
 int FaceOf(vec3 d) {
   vec3 s = abs(d);
   if (s.z >= s.x && s.z >= s.y) return d.z >= 0.0 ? 0 : 1;
@@ -42,10 +43,8 @@ vec3 InFace(vec3 d, int face) {
   vec3 v = face < 2 ? d : (face < 4 ? d.yzx : d.zxy);
   return (face & 1) == 0 ? v : vec3(v.xy, -v.z);
 }
-)";
 
 // The pixel's ray and the triangle that it meets.
-inline const std::string kLookUp = kFaces + R"(
 uniform sampler2D rays;        // in C, of the corners of the pixels
 uniform isampler2D numbers;    // the view
 uniform int view_face;
@@ -118,10 +117,7 @@ int TriangleOn(vec3 ray, vec3 d) {
   }
   return found >= 0 ? found : (is_border ? -1 : nearest);
 }
-)";
 
-// Light: sim/render/ray_tracer.h has the model, raster_scene.h and raster_light.h the tables.
-inline const std::string kShadeFragment = kGlslVersion + kLookUp + R"(
 uniform float share;  // side of the ray's part of the pixel
 uniform samplerBuffer materials, lights;
 uniform isamplerBuffer levels;

@@ -101,6 +101,17 @@ glm::mat3 FaceFromCamera(int face) {
   return glm::transpose(rows);
 }
 
+glm::mat4 ClipFromView(const glm::vec2& low, const glm::vec2& high) {
+  glm::mat4 clip(0.0f);  // by columns
+  clip[0][0] = 2.0f / (high.x - low.x);
+  clip[1][1] = 2.0f / (high.y - low.y);
+  clip[2][0] = -(high.x + low.x) / (high.x - low.x);
+  clip[2][1] = -(high.y + low.y) / (high.y - low.y);
+  clip[3][2] = kNear;
+  clip[2][3] = 1.0f;
+  return clip;
+}
+
 RasterViews MakeRasterViews(const Camera& camera, int strip_rows, double margin, int longest_side) {
   RasterViews out;
   const int width = camera.width(), height = camera.height();

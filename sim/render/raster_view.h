@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -17,6 +18,14 @@ constexpr int kFaceCount = 6;  // of a cube about the eye: +z, -z, +x, -x, +y, -
 // along (left-handed for every other face).
 int FaceOf(const glm::vec3& direction);
 glm::mat3 FaceFromCamera(int face);
+
+// Near plane, along the view's axis [m]; what is nearer is not seen. Depth is reversed: kNear / z, 1 at the near plane,
+// 0 at infinity. In 32-bit floats its error is 1e-7 z relative far from the near plane; for a triangle that reaches up
+// to the near plane it is 1e-7 z / kNear.
+constexpr float kNear = 0.01f;
+
+// From a view's axes (x right, y down, z along) to clip space: `low` and `high` are the tangents of its corners.
+glm::mat4 ClipFromView(const glm::vec2& low, const glm::vec2& high);
 
 struct RasterView {
   int face = 0;

@@ -12,7 +12,6 @@
 
 #include "sim/render/gl_context.h"
 #include "sim/render/gl_objects.h"
-#include "sim/render/raster_draw.h"
 #include "sim/render/raster_light.h"
 #include "sim/render/raster_scene.h"
 #include "sim/render/raster_shaders.h"
@@ -39,20 +38,17 @@ void Check(const RasteriserOptions& o) {
 // What of the scene is not rendered, a sentence for each kind.
 std::vector<std::string> UnsupportedFeatures(const Scene& scene) {
   std::vector<std::string> features;
-  const auto names = [&](const auto& needs_it) {
-    std::string text;
+  const auto materials = [&](const std::string& sentence, const auto& needs_it) {
+    std::vector<std::string> names;
     for (const Material& m : scene.materials) {
-      if (needs_it(m)) text += (text.empty() ? "" : ", ") + m.name;
+      if (needs_it(m)) names.push_back(m.name);
     }
-    return text;
+    if (!names.empty()) features.push_back(sentence + "; materials: " + base::Join(names, ", "));
   };
-  const auto materials = [&](const std::string& found, const std::string& sentence) {
-    if (!found.empty()) features.push_back(sentence + ": " + found);
-  };
-  materials(names([](const Material& m) { return m.normal_map >= 0; }), "normal maps are not rendered; materials");
-  materials(names([](const Material& m) { return m.emission_texture >= 0; }),
-            "of pictures that shine only the mean is rendered; materials");
-  materials(names([](const Material& m) { return m.alpha_cutoff > 0; }), "nothing is cut out of surfaces; materials");
+  materials("normal maps are not rendered", [](const Material& m) { return m.normal_map >= 0; });
+  materials("of pictures that shine only the mean is rendered",
+            [](const Material& m) { return m.emission_texture >= 0; });
+  materials("nothing is cut out of surfaces", [](const Material& m) { return m.alpha_cutoff > 0; });
   bool has_flicker = false, has_visible = false;
   for (const Light& lamp : scene.lights) {
     const auto* rect = std::get_if<RectLight>(&lamp);
@@ -65,31 +61,27 @@ std::vector<std::string> UnsupportedFeatures(const Scene& scene) {
   return features;
 }
 
-// Where in the pixel sample i of n goes, from its middle [px]: the ray tracer's pattern, moved so that its mean is the
-// middle and the picture stays where it is.
-std::vector<glm::vec2> Jitter(int count, bool jitter) {
-  std::vector<glm::dvec2> points;
+// Moved so that their mean is the middle, and the picture stays where it is.
+void Centre(std::vector<glm::dvec2>& points) {
   glm::dvec2 mean(0.0);
-  for (int i = 0; i < count; ++i) {
-    const PatternPoint point = SobolPoint(static_cast<std::uint32_t>(i));
-    points.emplace_back(ToUnit(point.u), ToUnit(point.v));
-    mean += points.back() / static_cast<double>(count);
-  }
-  std::vector<glm::vec2> out;
-  for (const glm::dvec2& point : points) out.emplace_back(jitter ? point - mean : glm::dvec2(0.0));
-  return out;
+  for (const glm::dvec2& point : points) mean += point / static_cast<double>(points.size());
+  for (glm::dvec2& point : points) point -= mean;
+}
+
+// Where in the pixel sample i of n goes, from its middle [px]: the ray tracer's pattern, centred.
+std::vector<glm::vec2> Jitter(int count, bool jitter) {
+  std::vector<glm::dvec2> points(static_cast<std::size_t>(count), glm::dvec2(0.0));
+  for (std::uint32_t i = 0; jitter && i < points.size(); ++i)
+    points[i] = {ToUnit(SobolPoint(i).u), ToUnit(SobolPoint(i).v)};
+  Centre(points);
+  return {points.begin(), points.end()};
 }
 
 // Where on the lens, in its radii, sample i of n goes through: the ray tracer's points, which it turns from pixel to
-// pixel, moved so that their mean is the middle and what is out of focus stays where it is.
+// pixel, centred.
 std::vector<glm::dvec2> LensPoints(int count) {
-  std::vector<glm::dvec2> points;
-  glm::dvec2 mean(0.0);
-  for (const DiscPoint& point : DiscPoints(count)) {
-    points.emplace_back(point.x, point.y);
-    mean += points.back() / static_cast<double>(count);
-  }
-  for (glm::dvec2& point : points) point -= mean;
+  std::vector<glm::dvec2> points = DiscPoints(count);
+  Centre(points);
   return points;
 }
 
@@ -117,7 +109,9 @@ class Drawing {
     const int count = exposure.time_samples * options_.rays_per_time_sample;
     Prepare(camera, exposure.row_delay_s != 0 ? options_.strip_rows : camera.height(),
             exposure.aperture_m / exposure.focus_m);
-    SetUp();
+    gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    gl_.DepthFunc(GL_GREATER);
+    gl_.Enable(GL_SCISSOR_TEST);
     const std::vector<glm::vec2> jitter = Jitter(count, options_.jitter);
     const std::vector<glm::dvec2> lens = LensPoints(count);
     const std::vector<glm::dvec2> on_light = PointsOnLight(count);
@@ -131,8 +125,7 @@ class Drawing {
       table.insert(table.end(), lights.back().begin(), lights.back().end());
     }
     if (options_.shadows && !scene_.moves()) shadows_.Draw(scene_, depth_, lights);
-    const BufferTexture light_table(gl_, GL_RGBA32F, 6 * table.size(), table.size() * sizeof(RasterLight), table.data(),
-                                    "the lights");
+    const BufferTexture light_table(gl_, GL_RGBA32F, table, "the lights", sizeof(RasterLight) / sizeof(glm::vec4));
     const GlObject target = MakeFramebuffer(gl_), sum = MakeTexture(gl_, GL_RGBA32F, camera.width(), camera.height());
     Attach(target, sum);
     gl_.Scissor(0, 0, camera.width(), camera.height());
@@ -208,12 +201,6 @@ class Drawing {
     key_ = key;
   }
 
-  void SetUp() const {
-    gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    gl_.DepthFunc(GL_GREATER);
-    gl_.Enable(GL_SCISSOR_TEST);
-  }
-
   void Attach(const GlObject& target, const GlObject& texture) const {
     gl_.NamedFramebufferTexture(target.id(), GL_COLOR_ATTACHMENT0, texture.id(), 0);
     gl_.NamedFramebufferDrawBuffer(target.id(), GL_COLOR_ATTACHMENT0);
@@ -236,20 +223,13 @@ class Drawing {
   }
 
   void DrawView(const RasterView& view, const glm::mat3& rotation, const glm::vec3& origin) const {
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, view_target_.id());
-    gl_.Viewport(0, 0, view.width, view.height);
-    gl_.Scissor(0, 0, view.width, view.height);
-    gl_.Enable(GL_DEPTH_TEST);
     const GLint none[4] = {};
-    const float far = 0.0f;
+    gl_.Scissor(0, 0, view.width, view.height);
     gl_.ClearNamedFramebufferiv(view_target_.id(), GL_COLOR, 0, none);
-    gl_.ClearNamedFramebufferfv(view_target_.id(), GL_DEPTH, 0, &far);
-    triangles_.Use();
-    triangles_.Set("origin", origin);
-    const glm::vec2 high = view.low + view.texel * glm::vec2(view.width, view.height);
-    triangles_.Set("clip_from_world",
-                   ClipFromView(view.low, high) * glm::mat4(FaceFromCamera(view.face) * glm::transpose(rotation)));
-    scene_.Draw();
+    const glm::ivec2 size(view.width, view.height);
+    const glm::vec2 high = view.low + view.texel * glm::vec2(size);
+    scene_.Draw(triangles_, view_target_, size, origin,
+                ClipFromView(view.low, high) * glm::mat4(FaceFromCamera(view.face) * glm::transpose(rotation)));
   }
 
   void SetLookUp(const Program& program, const RasterView& view, const glm::mat3& rotation, const glm::vec3& origin,

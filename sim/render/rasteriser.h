@@ -5,11 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "sim/render/gl_platform.h"
 #include "sim/render/renderer.h"
 #include "sim/world/scene.h"
 
 namespace sim {
+
+enum class GlPlatform {
+  automatic,  // the first of those below that works
+  egl,        // libEGL.so.1, on a device that it lists (GPUs first) or surfaceless; no display
+  osmesa      // libOSMesa.so: Mesa in software. No longer a part of Mesa since 25.1
+};
 
 struct RasteriserOptions {
   GlPlatform platform = GlPlatform::automatic;

@@ -1,16 +1,46 @@
 #include "sim/render/ray_scene.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 
 namespace sim {
 namespace {
 
-void Check(const Scene& scene) {
+// Asked for each hit of the second geometry by a ray: leaves valid[i] as it is where there is a surface, else sets it
+// to 0.
+void FilterHits(const RTCFilterFunctionNArguments* arguments, bool shadow) {
+  const auto* filters = static_cast<const RayScene::Filter*>(arguments->geometryUserPtr);
+  const unsigned n = arguments->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const RayScene::Filter& filter = filters[RTCHitN_primID(arguments->hit, n, i)];
+    if (filter.lamp) {
+      const float along = RTCHitN_Ng_x(arguments->hit, n, i) * RTCRayN_dir_x(arguments->ray, n, i) +
+                          RTCHitN_Ng_y(arguments->hit, n, i) * RTCRayN_dir_y(arguments->ray, n, i) +
+                          RTCHitN_Ng_z(arguments->hit, n, i) * RTCRayN_dir_z(arguments->ray, n, i);
+      if (shadow || along > 0) arguments->valid[i] = 0;
+      continue;
+    }
+    const float u = RTCHitN_u(arguments->hit, n, i), v = RTCHitN_v(arguments->hit, n, i);
+    const float alpha = filter.factor * (filter.alpha != nullptr ? filter.alpha->Alpha(At(filter.uv, u, v)) : 1.0f);
+    if (alpha < filter.cutoff) arguments->valid[i] = 0;
+  }
+}
+
+void FilterIntersect(const RTCFilterFunctionNArguments* arguments) { FilterHits(arguments, false); }
+
+void FilterOccluded(const RTCFilterFunctionNArguments* arguments) { FilterHits(arguments, true); }
+
+}  // namespace
+
+void CheckScene(const Scene& scene) {
   const auto require = [](bool ok, const std::string& what) {
     if (!ok) throw std::invalid_argument("scene: " + what);
   };
@@ -19,12 +49,11 @@ void Check(const Scene& scene) {
       require(texture >= -1 && texture < static_cast<int>(scene.textures.size()),
               "material " + m.name + ": no such texture");
     }
-    require(m.normal_map < 0 ||
-                scene.textures[static_cast<std::size_t>(m.normal_map)].content() == Texture::Content::numbers,
-            "material " + m.name + ": its normal map is not one");
-    require(m.gloss_texture < 0 ||
-                scene.textures[static_cast<std::size_t>(m.gloss_texture)].content() == Texture::Content::numbers,
-            "material " + m.name + ": its metallic-roughness picture is one of colours");
+    const auto has_numbers = [&](int texture) {
+      return texture < 0 || scene.textures[static_cast<std::size_t>(texture)].content() == Texture::Content::numbers;
+    };
+    require(has_numbers(m.normal_map), "material " + m.name + ": its normal map is not one");
+    require(has_numbers(m.gloss_texture), "material " + m.name + ": its metallic-roughness picture is one of colours");
   }
   require(scene.materials.size() < (1u << kMaterialBits), "too many materials");
   const auto check = [&](const Mesh& mesh) {
@@ -47,12 +76,8 @@ void Check(const Scene& scene) {
   }
 }
 
-}  // namespace
-
-void CheckScene(const Scene& scene) { Check(scene); }
-
 RayScene::RayScene(const Scene& scene) {
-  Check(scene);
+  CheckScene(scene);
   AppendTextures(scene);
   std::size_t mesh_count = 0;
   const auto take_in = [&](const std::vector<Mesh>& meshes) {
@@ -66,14 +91,7 @@ RayScene::RayScene(const Scene& scene) {
   take_in(scene.meshes);
   for (const MovingObject& object : scene.objects) take_in(object.meshes);
   alpha_textures_.reserve(mesh_count);  // filters point at them
-  for (const bool cut_out : {false, true}) {
-    filtered_first_ = static_cast<std::uint32_t>(triangles_.size());
-    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-      const Mesh& mesh = scene.meshes[i];
-      const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-      if (IsCutOut(scene, material) == cut_out) AppendMesh(scene, mesh, material, mesh.material, i, false);
-    }
-  }
+  filtered_first_ = AppendMeshes(scene, scene.meshes, 0)[1];
   AppendLamps(scene);
   still_triangles_ = static_cast<std::uint32_t>(triangles_.size());
   AppendObjects(scene);
@@ -150,43 +168,97 @@ void RayScene::SetLight(const BakedLight& light) {
   packet_scene_.light_stride = static_cast<std::int32_t>(count);
 }
 
+glm::dvec3 RayScene::AreaNormal(std::uint32_t triangle) const {
+  const glm::dvec3 a(Corner(triangle, 0)), b(Corner(triangle, 1)), c(Corner(triangle, 2));
+  return glm::cross(b - a, c - a);
+}
+
 glm::vec3 RayScene::ShadingNormal(std::uint32_t triangle, float u, float v) const {
-  if (!any_normals_) {
-    const glm::dvec3 a(Corner(triangle, 0)), b(Corner(triangle, 1)), c(Corner(triangle, 2));
-    const glm::dvec3 cross = glm::cross(b - a, c - a);
-    return glm::vec3(cross / std::max(glm::length(cross), 1e-300));
-  }
-  const TriangleNormals& n = normals_[triangle];
-  glm::vec3 normal;
-  for (int c = 0; c < 3; ++c) normal[c] = n.normal[c] + u * n.normal_du[c] + v * n.normal_dv[c];
-  return normal;
+  if (any_normals_) return At(normals_[triangle], u, v);
+  const glm::dvec3 normal = AreaNormal(triangle);
+  return glm::vec3(normal / std::max(glm::length(normal), 1e-300));
 }
 
 glm::vec3 RayScene::VertexColor(std::uint32_t triangle, float u, float v) const {
-  if (!any_colors_) return glm::vec3(1.0f);
-  const TriangleColor& color = colors_[triangle];
-  glm::vec3 result;
-  for (int c = 0; c < 3; ++c) result[c] = color.color[c] + u * color.color_du[c] + v * color.color_dv[c];
-  return result;
+  return any_colors_ ? At(colors_[triangle], u, v) : glm::vec3(1.0f);
 }
 
 glm::vec2 RayScene::TextureCoordinates(std::uint32_t triangle, float u, float v) const {
-  const TriangleShading& t = shading_[triangle];
-  return {t.uv[0] + u * t.uv_du[0] + v * t.uv_dv[0], t.uv[1] + u * t.uv_du[1] + v * t.uv_dv[1]};
+  return At(shading_[triangle].uv, u, v);
 }
 
 double RayScene::UvPerMetre(std::uint32_t triangle) const {
-  const TriangleShading& t = shading_[triangle];
-  const glm::dvec3 a(Corner(triangle, 0)), b(Corner(triangle, 1)), c(Corner(triangle, 2));
-  const double area = glm::length(glm::cross(b - a, c - a));
-  const double uv_area =
-      std::abs(static_cast<double>(t.uv_du[0]) * t.uv_dv[1] - static_cast<double>(t.uv_du[1]) * t.uv_dv[0]);
+  const OverTriangle<2>& uv = shading_[triangle].uv;
+  const double area = glm::length(AreaNormal(triangle));
+  const double uv_area = std::abs(static_cast<double>(uv.du[0]) * uv.dv[1] - static_cast<double>(uv.du[1]) * uv.dv[0]);
   return area > 0 ? std::sqrt(uv_area / area) : 0.0;
 }
 
 std::uint32_t RayScene::MeshOf(std::uint32_t triangle) const {
   const auto next = std::upper_bound(first_triangle_.begin(), first_triangle_.end(), triangle);
   return mesh_index_[static_cast<std::size_t>(next - first_triangle_.begin()) - 1];
+}
+
+void RayScene::Attach(RTCScene to, std::size_t begin, std::size_t end, bool filtered, std::size_t first_filter) const {
+  RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  const std::span<const glm::uvec3> triangles(triangles_.data() + begin, end - begin);
+  std::uint32_t low = ~0u, high = 0;  // of the vertices
+  for (const glm::uvec3& t : triangles) low = std::min({low, t.x, t.y, t.z}), high = std::max({high, t.x, t.y, t.z});
+  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
+                                           std::size_t{high} - low + 1);
+  void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
+                                          triangles.size());
+  if (vertices != nullptr && indices != nullptr) {
+    std::copy(positions_.begin() + low, positions_.begin() + high + 1, static_cast<glm::vec3*>(vertices));
+    std::transform(triangles.begin(), triangles.end(), static_cast<glm::uvec3*>(indices),
+                   [low](const glm::uvec3& t) { return t - low; });
+    if (filtered) {
+      rtcSetGeometryUserData(geometry, const_cast<Filter*>(filters_.data() + first_filter));  // Embree only hands it on
+      rtcSetGeometryIntersectFilterFunction(geometry, FilterIntersect);
+      rtcSetGeometryOccludedFilterFunction(geometry, FilterOccluded);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(to, geometry, filtered ? 1 : 0);
+  }
+  rtcReleaseGeometry(geometry);
+}
+
+EmbreeScene NewTree(RTCDevice device) {
+  EmbreeScene tree(rtcNewScene(device));
+  rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips through between two triangles
+  return tree;
+}
+
+void CommitTree(const EmbreeScene& tree) {
+  tbb::task_arena(1).execute([&] { rtcCommitScene(tree.get()); });
+}
+
+void CheckEmbree(RTCDevice device, const char* what) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error != RTC_ERROR_NONE)
+    throw std::runtime_error(std::string("Embree: ") + what + " failed, error " + std::to_string(error));
+}
+
+void RayScene::Build() {
+  device_.reset(rtcNewDevice(nullptr));
+  if (!device_) throw std::runtime_error("Embree: no device, error " + std::to_string(rtcGetDeviceError(nullptr)));
+  scene_ = NewTree(device_.get());
+  if (filtered_first_ > 0) Attach(scene_.get(), 0, filtered_first_, false, 0);
+  if (filtered_first_ < still_triangles_) Attach(scene_.get(), filtered_first_, still_triangles_, true, 0);
+  CommitTree(scene_);
+  std::size_t first_filter = still_triangles_ - filtered_first_;
+  for (std::size_t k = 0; k < objects_.size(); ++k) {
+    const auto begin = static_cast<std::size_t>(first_triangles_[2 * k]),
+               filtered = static_cast<std::size_t>(first_triangles_[2 * k + 1]),
+               end =
+                   k + 1 < objects_.size() ? static_cast<std::size_t>(first_triangles_[2 * k + 2]) : triangles_.size();
+    objects_[k].tree = NewTree(device_.get());
+    if (begin < filtered) Attach(objects_[k].tree.get(), begin, filtered, false, 0);
+    if (filtered < end) Attach(objects_[k].tree.get(), filtered, end, true, first_filter);
+    first_filter += end - filtered;
+    CommitTree(objects_[k].tree);
+  }
+  CheckEmbree(device_.get(), "building the scene");
 }
 
 }  // namespace sim

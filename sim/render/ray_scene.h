@@ -1,6 +1,7 @@
 // Scene tables of the ray tracer: the bounding volume hierarchies of Embree, and shading tables. Private to sim.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -18,12 +19,27 @@ namespace sim {
 // Throws std::invalid_argument for a scene with an index out of range.
 void CheckScene(const Scene& scene);
 
-// Into the plain arrays of sim/render/packet.h.
-inline void Store(float (&to)[3], const glm::vec3& from) {
-  for (int c = 0; c < 3; ++c) to[c] = from[c];
+// Into the plain arrays of sim/render/packet.h, and out of them.
+template <int kSize, class T>
+void Store(float (&to)[kSize], const glm::vec<kSize, T>& from) {
+  for (int c = 0; c < kSize; ++c) to[c] = static_cast<float>(from[c]);
 }
-inline void Store(float (&to)[2], const glm::vec2& from) {
-  for (int c = 0; c < 2; ++c) to[c] = from[c];
+template <int kSize>
+OverTriangle<kSize> Over(const std::vector<glm::vec<kSize, float>>& values, const glm::uvec3& t) {
+  OverTriangle<kSize> over;
+  Store(over.first, values[t.x]);
+  Store(over.du, values[t.y] - values[t.x]);
+  Store(over.dv, values[t.z] - values[t.x]);
+  return over;
+}
+// The same of texture coordinates, near 0, where floats are finest: pictures repeat. And of colours; white without any.
+OverTriangle<2> UvsOver(const Mesh& mesh, const glm::uvec3& t);
+OverTriangle<3> ColorsOver(const Mesh& mesh, const glm::uvec3& t);
+template <int kSize>
+glm::vec<kSize, float> At(const OverTriangle<kSize>& over, float u, float v) {
+  glm::vec<kSize, float> value;
+  for (int c = 0; c < kSize; ++c) value[c] = over.first[c] + u * over.du[c] + v * over.dv[c];
+  return value;
 }
 
 struct EmbreeRelease {
@@ -32,6 +48,12 @@ struct EmbreeRelease {
 };
 using EmbreeDevice = std::unique_ptr<std::remove_pointer_t<RTCDevice>, EmbreeRelease>;
 using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, EmbreeRelease>;
+
+EmbreeScene NewTree(RTCDevice device);
+// In one thread: where triangles touch, which one a ray meets may depend on the tree, and the tree on the threads.
+void CommitTree(const EmbreeScene& tree);
+// Throws std::runtime_error when Embree has failed at `what`.
+void CheckEmbree(RTCDevice device, const char* what);
 
 // One object that moves, as an Embree scene in its own frame O.
 struct RayObject {
@@ -67,15 +89,16 @@ class RayScene {
   const std::vector<RayObject>& objects() const { return objects_; }
   const std::int32_t* first_triangles() const { return first_triangles_.data(); }  // PacketObjects has what they are
 
-  std::uint32_t Triangle(std::uint32_t geometry, std::uint32_t primitive) const {
-    return primitive + (geometry == 1 ? filtered_first_ : 0u);
-  }
-  std::uint32_t ObjectTriangle(std::uint32_t object, std::uint32_t geometry, std::uint32_t primitive) const {
-    return primitive + static_cast<std::uint32_t>(first_triangles_[2 * object + geometry]);
+  // instance: RTC_INVALID_GEOMETRY_ID of what stands still, else the object.
+  std::uint32_t Triangle(std::uint32_t instance, std::uint32_t geometry, std::uint32_t primitive) const {
+    if (instance == RTC_INVALID_GEOMETRY_ID) return primitive + (geometry == 1 ? filtered_first_ : 0u);
+    return primitive + static_cast<std::uint32_t>(first_triangles_[2 * instance + geometry]);
   }
   std::uint32_t triangle_count() const { return still_triangles_; }  // of what stands still
   // Corner 0 ... 2 of a triangle, in W, of an object's in O.
   const glm::vec3& Corner(std::uint32_t triangle, int corner) const { return positions_[triangles_[triangle][corner]]; }
+  // (corner 1 - corner 0) x (corner 2 - corner 0): twice the area long.
+  glm::dvec3 AreaNormal(std::uint32_t triangle) const;
   // Index in Scene::meshes of the mesh that a triangle is of; visible lamps count on behind the meshes, objects' meshes
   // behind those.
   std::uint32_t MeshOf(std::uint32_t triangle) const;
@@ -84,15 +107,15 @@ class RayScene {
   glm::vec3 ShadingNormal(std::uint32_t triangle, float u, float v) const;
   glm::vec3 VertexColor(std::uint32_t triangle, float u, float v) const;
   glm::vec2 TextureCoordinates(std::uint32_t triangle, float u, float v) const;
-  double UvPerMetre(
-      std::uint32_t triangle) const;  // square root of the ratio of the areas in texture coordinates and in W
+  // Square root of the ratio of the areas in texture coordinates and in W.
+  double UvPerMetre(std::uint32_t triangle) const;
   std::uint32_t MaterialIndex(std::uint32_t triangle) const {
     return shading_[triangle].material & ((1u << kMaterialBits) - 1);
   }
 
   // What Embree's filter needs of a triangle of the second geometry.
   struct Filter {
-    glm::vec2 uv, uv_du, uv_dv;
+    OverTriangle<2> uv;
     const Texture* alpha = nullptr;
     float factor = 1.0f, cutoff = 0.0f;
     bool lamp = false;
@@ -100,13 +123,14 @@ class RayScene {
 
  private:
   void AppendTextures(const Scene& scene);
-  void AppendMesh(const Scene& scene, const Mesh& mesh, const Material& material, std::int32_t material_index,
-                  std::size_t mesh_index, bool lamp);
+  // Returns the first triangles of what is there everywhere and of cut-outs, which come behind.
+  std::array<std::uint32_t, 2> AppendMeshes(const Scene& scene, const std::vector<Mesh>& meshes,
+                                            std::size_t mesh_index);
+  void AppendMesh(const Scene& scene, const Mesh& mesh, const Material& material, std::size_t mesh_index, bool lamp);
   void AppendLamps(const Scene& scene);
   void AppendObjects(const Scene& scene);
   // Triangles [begin, end) as a geometry of `to`, with the filters from first_filter on where there are any.
   void Attach(RTCScene to, std::size_t begin, std::size_t end, bool filtered, std::size_t first_filter) const;
-  EmbreeScene NewTree() const;
   void Build();
 
   std::vector<glm::vec3> positions_;
@@ -118,8 +142,8 @@ class RayScene {
   std::vector<Filter> filters_;
   std::vector<Texture> alpha_textures_;  // copies of those that filters look at
   std::vector<TriangleShading> shading_;
-  std::vector<TriangleNormals> normals_;    // or none
-  std::vector<TriangleColor> colors_;       // or none
+  std::vector<OverTriangle<3>> normals_;    // or none
+  std::vector<OverTriangle<3>> colors_;     // or none
   std::vector<TriangleTangents> tangents_;  // or none
   bool any_normals_ = false, any_colors_ = false, any_tangents_ = false, lamps_are_baked_ = false;
   std::vector<MaterialShading> materials_;

@@ -1,5 +1,6 @@
 // The tables that hits are looked up in: of triangles, materials, pictures, lamps.
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -8,15 +9,21 @@
 #include "sim/render/ray_scene.h"
 
 namespace sim {
-namespace {
 
-constexpr std::uint32_t kWhiteTexel = 0x3fffffff, kFlatNormalTexel = 512u | (512u << 10) | (1023u << 20);
+OverTriangle<2> UvsOver(const Mesh& mesh, const glm::uvec3& t) {
+  OverTriangle<2> uv = Over(mesh.uvs, t);
+  for (float& c : uv.first) c -= std::floor(c);
+  return uv;
+}
 
-}  // namespace
+OverTriangle<3> ColorsOver(const Mesh& mesh, const glm::uvec3& t) {
+  return mesh.colors.empty() ? OverTriangle<3>{{1, 1, 1}, {0, 0, 0}, {0, 0, 0}} : Over(mesh.colors, t);
+}
 
 // Level 0 is a white texel and level 1 a flat normal: what a material without texture looks up, so that the inner loop
 // need not ask.
 void RayScene::AppendTextures(const Scene& scene) {
+  constexpr std::uint32_t kWhiteTexel = 0x3fffffff, kFlatNormalTexel = 512u | (512u << 10) | (1023u << 20);
   const auto append = [&](int width, int height, const std::uint32_t* from) {
     levels_.push_back({static_cast<std::uint32_t>(width) | (static_cast<std::uint32_t>(height) << 16),
                        static_cast<std::int32_t>(texels_.size())});
@@ -57,8 +64,21 @@ void RayScene::AppendTextures(const Scene& scene) {
   }
 }
 
-void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& material, std::int32_t material_index,
-                          std::size_t mesh_index, bool lamp) {
+std::array<std::uint32_t, 2> RayScene::AppendMeshes(const Scene& scene, const std::vector<Mesh>& meshes,
+                                                    std::size_t mesh_index) {
+  std::array<std::uint32_t, 2> first{};
+  for (const bool cut_out : {false, true}) {
+    first[cut_out] = static_cast<std::uint32_t>(triangles_.size());
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+      const Material& material = scene.materials[static_cast<std::size_t>(meshes[i].material)];
+      if (IsCutOut(scene, material) == cut_out) AppendMesh(scene, meshes[i], material, mesh_index + i, false);
+    }
+  }
+  return first;
+}
+
+void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& material, std::size_t mesh_index,
+                          bool lamp) {
   const auto first = static_cast<std::uint32_t>(positions_.size());
   first_triangle_.push_back(static_cast<std::uint32_t>(triangles_.size()));
   mesh_index_.push_back(static_cast<std::uint32_t>(mesh_index));
@@ -75,59 +95,41 @@ void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& 
   for (const glm::uvec3& t : mesh.triangles) {
     triangles_.emplace_back(first + t);
     TriangleShading s{};
-    s.material = static_cast<std::uint32_t>(material_index);
+    s.material = static_cast<std::uint32_t>(mesh.material);
     const glm::dvec3 p0(mesh.positions[t.x]), side_u = glm::dvec3(mesh.positions[t.y]) - p0,
                                               side_v = glm::dvec3(mesh.positions[t.z]) - p0;
-    glm::dvec2 uv(0.0), du(0.0), dv(0.0);
-    if (textured) {
-      uv = mesh.uvs[t.x];
-      du = glm::dvec2(mesh.uvs[t.y]) - uv;
-      dv = glm::dvec2(mesh.uvs[t.z]) - uv;
-      uv -= glm::floor(uv);  // pictures repeat: near 0 floats are finest
-    }
-    Store(s.uv, glm::vec2(uv));
-    Store(s.uv_du, glm::vec2(du));
-    Store(s.uv_dv, glm::vec2(dv));
+    if (textured) s.uv = UvsOver(mesh, t);
     shading_.push_back(s);
     if (any_normals_) {
-      TriangleNormals n{};
+      OverTriangle<3> n{};
       if (mesh.normals.empty()) {
         const glm::dvec3 cross = glm::cross(side_u, side_v);
         const double area = glm::length(cross);
-        Store(n.normal, area > 0 ? glm::vec3(cross / area) : glm::vec3(0, 0, 1));
+        Store(n.first, area > 0 ? cross / area : glm::dvec3(0, 0, 1));
       } else {
-        const glm::vec3 normal = mesh.normals[t.x];
-        Store(n.normal, normal);
-        Store(n.normal_du, mesh.normals[t.y] - normal);
-        Store(n.normal_dv, mesh.normals[t.z] - normal);
+        n = Over(mesh.normals, t);
       }
       normals_.push_back(n);
     }
     if (any_tangents_) {
       // X = X_0 + a side_u + b side_v and (s, t) = uv + a du + b dv: dX/ds and dX/dt. Up in the picture is -t.
+      glm::dvec2 du(0.0), dv(0.0);
+      if (textured) {
+        du = glm::dvec2(mesh.uvs[t.y]) - glm::dvec2(mesh.uvs[t.x]);
+        dv = glm::dvec2(mesh.uvs[t.z]) - glm::dvec2(mesh.uvs[t.x]);
+      }
       const double determinant = du.x * dv.y - du.y * dv.x;
       const glm::dvec3 along_s = (dv.y * side_u - du.y * side_v) * (determinant < 0 ? -1.0 : 1.0);
       const glm::dvec3 along_t = (du.x * side_v - dv.x * side_u) * (determinant < 0 ? -1.0 : 1.0);
       TriangleTangents tangents{};
       if (determinant != 0 && glm::length(along_s) > 0 && glm::length(along_t) > 0) {
-        Store(tangents.right, glm::vec3(glm::normalize(along_s)));
-        Store(tangents.up, glm::vec3(-glm::normalize(along_t)));
+        Store(tangents.right, glm::normalize(along_s));
+        Store(tangents.up, -glm::normalize(along_t));
       }
       tangents_.push_back(tangents);
     }
-    if (any_colors_) {
-      TriangleColor c{{1, 1, 1}, {0, 0, 0}, {0, 0, 0}};
-      if (!mesh.colors.empty()) {
-        const glm::vec3 color = mesh.colors[t.x];
-        Store(c.color, color);
-        Store(c.color_du, mesh.colors[t.y] - color);
-        Store(c.color_dv, mesh.colors[t.z] - color);
-      }
-      colors_.push_back(c);
-    }
-    if (cut_out || lamp)
-      filters_.push_back(
-          {glm::vec2(uv), glm::vec2(du), glm::vec2(dv), alpha, material.alpha, material.alpha_cutoff, lamp});
+    if (any_colors_) colors_.push_back(ColorsOver(mesh, t));
+    if (cut_out || lamp) filters_.push_back({s.uv, alpha, material.alpha, material.alpha_cutoff, lamp});
   }
 }
 
@@ -137,23 +139,19 @@ void RayScene::AppendLamps(const Scene& scene) {
   for (const Light& light : scene.lights) {
     const auto* rect = std::get_if<RectLight>(&light);
     if (rect == nullptr || !rect->visible) continue;
-    Material material;
-    material.base_color = glm::vec3(0.0f);
-    material.emission = glm::vec3(rect->radiance);
     MaterialShading m{};
-    Store(m.emission, material.emission);
+    Store(m.emission, rect->radiance);
     m.color = m.emission_picture = {0, 1};
     m.normal_map = {1, 1};
-    const auto index = static_cast<std::int32_t>(materials_.size());
-    materials_.push_back(m);
     Mesh mesh;
-    mesh.name = "lamp";
+    mesh.material = static_cast<int>(materials_.size());
+    materials_.push_back(m);
     for (const glm::dvec3& corner : {rect->corner, rect->corner + rect->side_u,
                                      rect->corner + rect->side_u + rect->side_v, rect->corner + rect->side_v}) {
       mesh.positions.emplace_back(corner);
     }
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    AppendMesh(scene, mesh, material, index, mesh_index++, true);
+    AppendMesh(scene, mesh, Material{}, mesh_index++, true);
   }
 }
 
@@ -165,17 +163,12 @@ void RayScene::AppendObjects(const Scene& scene) {
     object.motion = moving.motion;
     object.low = glm::vec3(std::numeric_limits<float>::infinity());
     object.high = -object.low;
-    for (const bool cut_out : {false, true}) {
-      first_triangles_.push_back(static_cast<std::int32_t>(triangles_.size()));
-      for (std::size_t i = 0; i < moving.meshes.size(); ++i) {
-        const Mesh& mesh = moving.meshes[i];
-        const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-        if (IsCutOut(scene, material) != cut_out) continue;
-        AppendMesh(scene, mesh, material, mesh.material, mesh_index + i, false);
-        for (const glm::vec3& p : mesh.positions)
-          object.low = glm::min(object.low, p), object.high = glm::max(object.high, p);
-      }
+    for (const Mesh& mesh : moving.meshes) {
+      for (const glm::vec3& p : mesh.positions)
+        object.low = glm::min(object.low, p), object.high = glm::max(object.high, p);
     }
+    for (const std::uint32_t first : AppendMeshes(scene, moving.meshes, mesh_index))
+      first_triangles_.push_back(static_cast<std::int32_t>(first));
     mesh_index += moving.meshes.size();
   }
 }
@@ -195,11 +188,11 @@ void RayScene::AddReflections(const Scene& scene) {
     const glm::dvec3 normal = glm::normalize(glm::cross(rect->side_u, rect->side_v));
     const glm::dvec3 across_u = glm::cross(rect->side_v, normal), across_v = glm::cross(normal, rect->side_u);
     LampShading lamp{};
-    Store(lamp.corner, glm::vec3(rect->corner));
-    Store(lamp.normal, glm::vec3(normal));
-    Store(lamp.dual_u, glm::vec3(across_u / glm::dot(across_u, rect->side_u)));
-    Store(lamp.dual_v, glm::vec3(across_v / glm::dot(across_v, rect->side_v)));
-    Store(lamp.radiance, glm::vec3(rect->radiance));
+    Store(lamp.corner, rect->corner);
+    Store(lamp.normal, normal);
+    Store(lamp.dual_u, across_u / glm::dot(across_u, rect->side_u));
+    Store(lamp.dual_v, across_v / glm::dot(across_v, rect->side_v));
+    Store(lamp.radiance, rect->radiance);
     lamp.layer = LayerOf(light, layers);
     lamps_.push_back(lamp);
   }

@@ -1,6 +1,5 @@
 #include "sim/render/ray_tracer.h"
 
-#include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -9,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -26,41 +26,6 @@ namespace {
 
 constexpr int kTileSide = 32;  // a multiple of the block's side; the tiles do not depend on the number of threads
 static_assert(kTileSide % kBlockSide == 0);
-
-void Store(float (&to)[3], const glm::dvec3& from) {
-  for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(from[c]);
-}
-
-// A light as one ray of a pixel sees it; only a rectangular one differs between rays.
-struct SampleLight {
-  glm::dvec2 point;  // in parts of a rectangle's sides
-  std::vector<LightSample>& out;
-
-  void operator()(const AmbientLight&) const {}
-  void operator()(const SunLight& light) const {
-    LightSample s{};
-    const glm::dvec3 towards = -glm::normalize(light.direction);
-    s.x = static_cast<float>(towards.x), s.y = static_cast<float>(towards.y), s.z = static_cast<float>(towards.z);
-    Store(s.power, light.irradiance);
-    s.directional = true;
-    out.push_back(s);
-  }
-  void operator()(const PointLight& light) const { At(light.position, light.intensity, nullptr); }
-  void operator()(const RectLight& light) const {
-    const glm::dvec3 cross = glm::cross(light.side_u, light.side_v);
-    const glm::dvec3 at = light.corner + point.x * light.side_u + point.y * light.side_v;
-    const glm::dvec3 normal = glm::normalize(cross);
-    At(at, light.radiance * glm::length(cross), &normal);
-  }
-  void At(const glm::dvec3& position, const glm::dvec3& intensity, const glm::dvec3* normal) const {
-    LightSample s{};
-    s.x = static_cast<float>(position.x), s.y = static_cast<float>(position.y), s.z = static_cast<float>(position.z);
-    Store(s.power, intensity);
-    s.one_sided = normal != nullptr;
-    if (normal != nullptr) Store(s.normal, *normal);
-    out.push_back(s);
-  }
-};
 
 // Where in a sample's time the rows of a block are: the sample lasts from the first moment of the block's earliest row
 // to the last of its latest.
@@ -121,11 +86,8 @@ PixelBlock MakeBlock(const Camera& camera, int x0, int y0, const BlockTime& time
   if (key != nullptr) scramble(*key, static_cast<std::uint32_t>(x0), static_cast<std::uint32_t>(y0), bits);
   block.scramble_u = bits.word[0];
   block.scramble_v = bits.word[1];
-  for (int row = 0; row < kBlockSide; ++row) {
-    const float begin = time.RowBegin(row);
-    for (int i = row * kBlockSide; i < (row + 1) * kBlockSide; ++i) block.row_begin.v[i] = begin;
-  }
   for (int i = 0; i < kLanes; ++i) {
+    block.row_begin.v[i] = time.RowBegin(i / kBlockSide);
     block.valid.v[i] = x0 + i % kBlockSide < camera.width() && y0 + i / kBlockSide < camera.height() ? -1 : 0;
     block.moment.v[i] =
         key != nullptr ? static_cast<float>(static_cast<std::uint32_t>(bits.word[2].v[i]) >> 8) * 0x1p-24f : 0.5f;
@@ -146,7 +108,7 @@ class RayTracer final : public Renderer {
         layers_(Flickers(scene.lights)),
         scene_(std::move(rays)),
         surfaces_(*scene_, options.jobs),
-        kernel_(PacketKernel()),
+        kernel_(PacketKernels().back()),
         arena_(options.jobs > 0 ? options.jobs : tbb::task_arena::automatic) {
     if (options.reflections) scene_->AddReflections(scene);
   }
@@ -223,13 +185,18 @@ class RayTracer final : public Renderer {
     const std::vector<glm::dvec2> on_light = PointsOnLight(count);
     for (int i = 0; i < count; ++i) {
       for (const Light& light : lights_) {
-        std::vector<LightSample>& lights = out.lights[static_cast<std::size_t>(i)];
-        const std::size_t before = lights.size();
-        std::visit(SampleLight{on_light[static_cast<std::size_t>(i)], lights}, light);
-        if (lights.size() > before) lights.back().layer = LayerOf(light, layers_);
+        const std::optional<LightSource> source = SourceOf(light, on_light[static_cast<std::size_t>(i)]);
+        if (!source) continue;
+        LightSample& s = out.lights[static_cast<std::size_t>(i)].emplace_back();
+        Store(s.place, source->place);
+        s.directional = source->kind == LightSource::Kind::sun;
+        s.one_sided = source->kind == LightSource::Kind::rectangle;
+        Store(s.power, s.one_sided ? source->power * glm::length(source->area) : source->power);
+        if (s.one_sided) Store(s.normal, glm::normalize(source->area));
+        s.layer = LayerOf(light, layers_);
       }
     }
-    const std::vector<DiscPoint> lens = DiscPoints(count);
+    const std::vector<glm::dvec2> lens = DiscPoints(count);
     const int rows = out.rolls ? (camera.height() + kBlockSide - 1) / kBlockSide : 1;
     out.samples.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(count));
     out.begins_s.resize(out.samples.size());
@@ -244,8 +211,7 @@ class RayTracer final : public Renderer {
         s.point_u = point.u;
         s.point_v = point.v;
         s.moment = options_.jitter ? Moment(i) : 0.0f;
-        s.lens[0] = static_cast<float>(0.5 * exposure.aperture_m * lens[static_cast<std::size_t>(i)].x);
-        s.lens[1] = static_cast<float>(0.5 * exposure.aperture_m * lens[static_cast<std::size_t>(i)].y);
+        Store(s.lens, 0.5 * exposure.aperture_m * lens[static_cast<std::size_t>(i)]);
         s.inverse_focus = static_cast<float>(1 / exposure.focus_m);
         s.lights = out.lights[static_cast<std::size_t>(i)].data();
         s.light_count = static_cast<int>(out.lights[static_cast<std::size_t>(i)].size());
@@ -284,18 +250,14 @@ class RayTracer final : public Renderer {
     const int tiles_x = (camera.width() + kTileSide - 1) / kTileSide,
               tiles_y = (camera.height() + kTileSide - 1) / kTileSide;
     arena_.execute([&] {
-      tbb::parallel_for(tbb::blocked_range2d<int>(0, tiles_y, 1, 0, tiles_x, 1),
-                        [&](const tbb::blocked_range2d<int>& tiles) {
-                          for (int ty = tiles.rows().begin(); ty < tiles.rows().end(); ++ty) {
-                            for (int tx = tiles.cols().begin(); tx < tiles.cols().end(); ++tx) {
-                              const int x_end = std::min((tx + 1) * kTileSide, camera.width());
-                              const int y_end = std::min((ty + 1) * kTileSide, camera.height());
-                              for (int y = ty * kTileSide; y < y_end; y += kBlockSide) {
-                                for (int x = tx * kTileSide; x < x_end; x += kBlockSide) function(x, y);
-                              }
-                            }
-                          }
-                        });
+      tbb::parallel_for(0, tiles_x * tiles_y, [&](int tile) {
+        const int tile_x = tile % tiles_x * kTileSide, tile_y = tile / tiles_x * kTileSide;
+        const int x_end = std::min(tile_x + kTileSide, camera.width()),
+                  y_end = std::min(tile_y + kTileSide, camera.height());
+        for (int y = tile_y; y < y_end; y += kBlockSide) {
+          for (int x = tile_x; x < x_end; x += kBlockSide) function(x, y);
+        }
+      });
     });
   }
 

@@ -1,12 +1,12 @@
 #include "sim/render/sample_pattern.h"
 
-#include <Random123/philox.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <numbers>
 #include <utility>
+
+#include "sim/random/random.h"
 
 namespace sim {
 
@@ -37,12 +37,12 @@ std::vector<glm::dvec2> PointsOnLight(int n) {
   return points;
 }
 
-std::vector<DiscPoint> DiscPoints(int n) {
-  std::vector<DiscPoint> points;
+std::vector<glm::dvec2> DiscPoints(int n) {
+  std::vector<glm::dvec2> points;
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   for (int i = 0; i < n; ++i) {
     const double radius = std::sqrt((i + 0.5) / n);
-    points.push_back({radius * std::cos(golden * i), radius * std::sin(golden * i)});
+    points.emplace_back(radius * std::cos(golden * i), radius * std::sin(golden * i));
   }
   // Fisher and Yates's shuffle, always the same.
   for (int i = n - 1; i > 0; --i) {
@@ -53,12 +53,8 @@ std::vector<DiscPoint> DiscPoints(int n) {
 }
 
 PixelBits PixelScramble(std::uint64_t key, std::uint32_t x, std::uint32_t y) {
-  constexpr std::uint32_t kStream = 0x70697865u;  // "pixe": no other use of the key shares it
-  const r123::Philox4x32 philox;
-  const r123::Philox4x32::ctr_type counter = {{x, y, 0u, kStream}};
-  const r123::Philox4x32::key_type philox_key = {
-      {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)}};
-  const r123::Philox4x32::ctr_type bits = philox(counter, philox_key);
+  constexpr auto kStream = static_cast<Stream>(0x70697865u);  // "pixe": no other use of the key shares it
+  const Words bits = RandomWords(key, kStream, 0, y, x);
   return {{bits[0], bits[1]}, bits[2], bits[3]};
 }
 

@@ -25,10 +25,7 @@ PatternPoint SobolPoint(std::uint32_t i);
 std::vector<glm::dvec2> PointsOnLight(int n);
 
 // The n points of Vogel's spiral (1979) in the unit disc, in an order that is not correlated with SobolPoint.
-struct DiscPoint {
-  double x = 0.0, y = 0.0;
-};
-std::vector<DiscPoint> DiscPoints(int n);
+std::vector<glm::dvec2> DiscPoints(int n);
 
 // Random bits of a pixel, a function of the arguments alone: to be exclusive-ored to its points, a fraction of the time
 // of a sample, and of a turn of the disc's points.

@@ -6,14 +6,12 @@ target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/packet_base.cpp
   ${CMAKE_CURRENT_LIST_DIR}/packet_kernel.cpp
   ${CMAKE_CURRENT_LIST_DIR}/placed_objects.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/raster_draw.cpp
   ${CMAKE_CURRENT_LIST_DIR}/raster_light.cpp
   ${CMAKE_CURRENT_LIST_DIR}/raster_scene.cpp
   ${CMAKE_CURRENT_LIST_DIR}/raster_view.cpp
   ${CMAKE_CURRENT_LIST_DIR}/rasteriser.cpp
   ${CMAKE_CURRENT_LIST_DIR}/ray_scene.cpp
   ${CMAKE_CURRENT_LIST_DIR}/ray_scene_tables.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/ray_scene_tree.cpp
   ${CMAKE_CURRENT_LIST_DIR}/ray_tracer.cpp
   ${CMAKE_CURRENT_LIST_DIR}/sample_pattern.cpp
   ${CMAKE_CURRENT_LIST_DIR}/surface_tracer.cpp)

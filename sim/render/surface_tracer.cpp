@@ -1,6 +1,5 @@
 #include "sim/render/surface_tracer.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -11,7 +10,6 @@
 #include <glm/mat3x3.hpp>
 #include <limits>
 
-#include "sim/render/pixel_ray.h"
 #include "sim/render/placed_objects.h"
 #include "sim/render/ray_scene.h"
 
@@ -24,12 +22,9 @@ struct Packet {
   alignas(64) int valid[kLanes] = {};
 
   void Set(int i, const glm::dvec3& eye, const glm::dvec3& direction) {
-    rays.ray.org_x[i] = static_cast<float>(eye.x);
-    rays.ray.org_y[i] = static_cast<float>(eye.y);
-    rays.ray.org_z[i] = static_cast<float>(eye.z);
-    rays.ray.dir_x[i] = static_cast<float>(direction.x);
-    rays.ray.dir_y[i] = static_cast<float>(direction.y);
-    rays.ray.dir_z[i] = static_cast<float>(direction.z);
+    const glm::vec3 o(eye), d(direction);
+    rays.ray.org_x[i] = o.x, rays.ray.org_y[i] = o.y, rays.ray.org_z[i] = o.z;
+    rays.ray.dir_x[i] = d.x, rays.ray.dir_y[i] = d.y, rays.ray.dir_z[i] = d.z;
     rays.ray.tfar[i] = std::numeric_limits<float>::infinity();
     rays.ray.mask[i] = 0xffffffffu;
     rays.hit.geomID[i] = rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
@@ -44,18 +39,16 @@ struct Snapshot {
       : scene(rays), objects(rays, view.t_s, view.t_s), T_WO(poses) {}
 
   void Meet(Packet& packet) const {
-    IntersectCoherent16(packet.valid, scene.embree(), &packet.rays);
-    if (objects.embree() != nullptr) IntersectObjects16(packet.valid, objects.embree(), &packet.rays);
+    Intersect16(packet.valid, scene.embree(), &packet.rays, true);
+    if (objects.embree() != nullptr) Intersect16(packet.valid, objects.embree(), &packet.rays, false);
   }
   std::int32_t Object(const Packet& packet, int i) const {
     const std::uint32_t instance = packet.rays.hit.instID[0][i];
     return instance == RTC_INVALID_GEOMETRY_ID ? kWorld : static_cast<std::int32_t>(instance);
   }
   std::uint32_t Triangle(const Packet& packet, int i) const {
-    const std::uint32_t geometry = packet.rays.hit.geomID[i], primitive = packet.rays.hit.primID[i];
-    const std::int32_t object = Object(packet, i);
-    return object == kWorld ? scene.Triangle(geometry, primitive)
-                            : scene.ObjectTriangle(static_cast<std::uint32_t>(object), geometry, primitive);
+    const auto& hit = packet.rays.hit;
+    return scene.Triangle(hit.instID[0][i], hit.geomID[i], hit.primID[i]);
   }
 
   // Where ray i meets its triangle's plane, in double: Embree's own distance is a float's. At a grazing angle its is
@@ -70,9 +63,8 @@ struct Snapshot {
       direction = q_OW * direction;
     }
     const double embree = packet.rays.ray.tfar[i];
-    const glm::dvec3 a(scene.Corner(triangle, 0)), b(scene.Corner(triangle, 1)), c(scene.Corner(triangle, 2));
-    const glm::dvec3 normal = glm::cross(b - a, c - a);
-    const double distance = glm::dot(normal, a - origin) / glm::dot(normal, direction);
+    const glm::dvec3 normal = scene.AreaNormal(triangle), corner(scene.Corner(triangle, 0));
+    const double distance = glm::dot(normal, corner - origin) / glm::dot(normal, direction);
     return std::abs(distance - embree) <= 1e-4 * embree ? distance : embree;
   }
 
@@ -85,15 +77,22 @@ template <class Function>
 void ForEachPacket(int jobs, std::size_t count, const Function& function) {
   tbb::task_arena arena(jobs > 0 ? jobs : tbb::task_arena::automatic);
   const std::size_t packets = (count + kLanes - 1) / kLanes;
-  arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, packets, 64),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t p = range.begin(); p < range.end(); ++p) function(p);
-                      });
-  });
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, packets, function); });
 }
 
 }  // namespace
+
+glm::dvec3 ExactRay(const Camera& camera, int x, int y) {
+  constexpr double kExact_px = 1e-6;
+  const auto u = static_cast<float>(x), v = static_cast<float>(y);
+  const glm::dvec2 pixel(x, y);
+  const glm::dvec3 ray(camera.Ray(u, v));
+  const glm::dvec3 du(camera.Ray(u + 0.5f, v) - camera.Ray(u - 0.5f, v)),
+      dv(camera.Ray(u, v + 0.5f) - camera.Ray(u, v - 0.5f));
+  const glm::dvec2 miss = pixel - camera.Project(ray);
+  const glm::dvec3 better = ray + miss.x * du + miss.y * dv;
+  return glm::distance(camera.Project(better), pixel) < kExact_px ? better : camera.Direction(pixel);
+}
 
 void SurfaceTracer::Trace(const Camera& camera, const View& view, std::vector<SurfacePoint>& out) const {
   const Pose& pose = view.pose;
@@ -156,10 +155,7 @@ std::vector<Pose> SurfaceTracer::ObjectPoses(double t_s) const {
   return poses;
 }
 
-glm::dvec3 SurfaceTracer::Normal(std::uint32_t triangle) const {
-  const glm::dvec3 a(scene_.Corner(triangle, 0)), b(scene_.Corner(triangle, 1)), c(scene_.Corner(triangle, 2));
-  return glm::cross(b - a, c - a);
-}
+glm::dvec3 SurfaceTracer::Normal(std::uint32_t triangle) const { return scene_.AreaNormal(triangle); }
 
 std::uint32_t SurfaceTracer::MeshOf(std::uint32_t triangle) const { return scene_.MeshOf(triangle); }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "tools/base/limits/picture.h"
@@ -62,6 +63,18 @@ void CheckJpeg(Bytes bytes) {
 
 }  // namespace
 
+cv::Mat DecodeMatrix(Bytes bytes, int flags) {
+  cv::Mat picture;
+  try {
+    const cv::Mat data(1, static_cast<int>(bytes.size()), CV_8U, const_cast<std::uint8_t*>(bytes.data()));
+    if (!bytes.empty()) picture = cv::imdecode(data, flags);
+  } catch (const cv::Exception& error) {
+    throw std::runtime_error("cannot be decoded: " + error.err);
+  }
+  if (picture.empty()) throw std::runtime_error("not a picture that can be decoded");
+  return picture;
+}
+
 DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
   if (bytes.empty()) throw std::runtime_error("the file is empty");
   if (const std::string problem = limits::PictureProblem(bytes); !problem.empty()) throw std::runtime_error(problem);
@@ -70,16 +83,8 @@ DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
   } else if (bytes.size() >= 2 && bytes[0] == 0xff && bytes[1] == 0xd8) {
     CheckJpeg(bytes);
   }
-  cv::Mat bgr, all;
-  try {
-    const cv::Mat data(1, static_cast<int>(bytes.size()), CV_8U, const_cast<std::uint8_t*>(bytes.data()));
-    if (with_alpha) all = cv::imdecode(data, cv::IMREAD_UNCHANGED);
-    bgr = cv::imdecode(data, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
-  } catch (const cv::Exception& error) {
-    throw std::runtime_error("cannot be decoded: " + error.err);
-  }
-  if (bgr.empty()) throw std::runtime_error("not a picture that can be decoded");
-
+  const cv::Mat bgr = DecodeMatrix(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION),
+                all = with_alpha ? DecodeMatrix(bytes, cv::IMREAD_UNCHANGED) : cv::Mat();
   DecodedImage image{bgr.cols, bgr.rows, std::vector<std::uint8_t>(bgr.total() * 3), {}};
   if (all.channels() == 4 && all.size() == bgr.size() && (all.depth() == CV_8U || all.depth() == CV_16U)) {
     cv::Mat alpha;
@@ -87,13 +92,7 @@ DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
     alpha.convertTo(alpha, CV_8U, all.depth() == CV_16U ? 1.0 / 257.0 : 1.0);
     image.alpha.assign(alpha.begin<std::uint8_t>(), alpha.end<std::uint8_t>());
   }
-  std::uint8_t* to = image.rgb.data();
-  for (int y = 0; y < bgr.rows; ++y) {
-    const std::uint8_t* row = bgr.ptr<std::uint8_t>(y);
-    for (int x = 0; x < bgr.cols; ++x, to += 3) {
-      for (int c = 0; c < 3; ++c) to[c] = row[3 * x + 2 - c];
-    }
-  }
+  cv::cvtColor(bgr, cv::Mat(bgr.size(), CV_8UC3, image.rgb.data()), cv::COLOR_BGR2RGB);
   return image;
 }
 

@@ -5,6 +5,10 @@
 #include <span>
 #include <vector>
 
+namespace cv {
+class Mat;
+}
+
 namespace sim {
 
 struct DecodedImage {
@@ -18,5 +22,8 @@ struct DecodedImage {
 // segments (the end marker) are checked first, since decoders accept some truncated files. Throws std::runtime_error
 // saying what is wrong, without a file name.
 DecodedImage DecodeImage(std::span<const std::uint8_t> bytes, bool with_alpha = false);
+
+// What OpenCV makes of it, with its flags IMREAD_...; nothing is checked before. Throws as DecodeImage.
+cv::Mat DecodeMatrix(std::span<const std::uint8_t> bytes, int flags);
 
 }  // namespace sim

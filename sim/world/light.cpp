@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -13,6 +14,19 @@ double FlickerFactor(const Flicker& flicker, double t_s, double width_s) {
   const double smoothing = half_angle > 0 ? std::sin(half_angle) / half_angle : 1.0;
   const double turns = flicker.frequency_hz * t_s + flicker.phase;
   return 1.0 + flicker.depth * smoothing * std::sin(2 * std::numbers::pi * (turns - std::floor(turns)));
+}
+
+std::optional<LightSource> SourceOf(const Light& light, const glm::dvec2& part) {
+  using Kind = LightSource::Kind;
+  if (const auto* sun = std::get_if<SunLight>(&light))
+    return LightSource{Kind::sun, -glm::normalize(sun->direction), sun->irradiance};
+  if (const auto* point = std::get_if<PointLight>(&light))
+    return LightSource{Kind::point, point->position, point->intensity};
+  if (const auto* rect = std::get_if<RectLight>(&light)) {
+    return LightSource{Kind::rectangle, rect->corner + part.x * rect->side_u + part.y * rect->side_v, rect->radiance,
+                       glm::cross(rect->side_u, rect->side_v)};
+  }
+  return std::nullopt;
 }
 
 Flicker FlickerOf(const Light& light) {

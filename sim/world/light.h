@@ -3,8 +3,10 @@
 // exposure. Directions and positions are in W.
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <numbers>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -91,6 +93,16 @@ void Visit(V& v, RectLight& p) {
 }
 
 using Light = std::variant<AmbientLight, SunLight, PointLight, RectLight>;
+
+// A light as what is lit by one of its points sees it.
+struct LightSource {
+  enum class Kind { sun, point, rectangle } kind;
+  glm::dvec3 place;      // towards a sun (unit), or where it is, in W
+  glm::dvec3 power;      // irradiance, intensity, or of a rectangle the radiance
+  glm::dvec3 area{0.0};  // of a rectangle: cross(side_u, side_v)
+};
+// part: in parts of a rectangle's sides. None for ambient light.
+std::optional<LightSource> SourceOf(const Light& light, const glm::dvec2& part);
 
 // The flicker of a lamp; steady for other lights, and for lamps of depth 0.
 Flicker FlickerOf(const Light& light);

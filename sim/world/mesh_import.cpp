@@ -1,108 +1,157 @@
 #include "sim/world/mesh_import.h"
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/postprocess.h>
+#include <fcntl.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
 #include <chrono>
 #include <csignal>
-#include <cstring>
+#include <fstream>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
 
-#include "sim/world/importer_files.h"
 #include "sim/world/mesh_serialization.h"
 #include "tools/base/child_process.h"
+
+// The address and the thread sanitizer reserve terabytes.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define VOBENCH_NO_MEMORY_LIMIT
+#elif defined(__has_feature)  // clang's way to ask
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define VOBENCH_NO_MEMORY_LIMIT
+#endif
+#endif
 
 namespace sim {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::seconds kPatience(600);  // of whoever waits: an importer that sleeps uses no processor
+constexpr rlim_t kSeconds = 5, kSecondsPerMegabyte = 10;
+#if defined(VOBENCH_NO_MEMORY_LIMIT)
+constexpr bool kLimitMemory = false;
+#else
+constexpr bool kLimitMemory = true;
+#endif
+constexpr rlim_t kMemory = rlim_t{512} << 20, kMemoryPerByte = 64;
 
-// What the child says: a length and so many bytes, for each of the problem, the files, those that are missing (each
-// text ends with a zero), and the scene.
-std::vector<std::uint8_t> Answer(const std::string& problem, const ImporterFiles& files, const aiScene* scene) {
-  std::vector<std::uint8_t> answer;
-  const auto append = [&](const void* data, std::size_t size) {
-    const auto* bytes = static_cast<const std::uint8_t*>(data);
-    const std::uint64_t length = size;
-    const std::size_t at = answer.size();
-    answer.resize(at + sizeof length + size);
-    std::copy_n(reinterpret_cast<const std::uint8_t*>(&length), sizeof length, &answer[at]);
-    std::copy_n(bytes, size, answer.begin() + static_cast<std::ptrdiff_t>(at + sizeof length));
-  };
-  append(problem.data(), problem.size());
-  std::string names, missing;
-  for (const fs::path& file : files.all()) names += file.string() + '\0';
-  for (const std::string& file : files.missing()) missing += file + '\0';
-  append(names.data(), names.size());
-  append(missing.data(), missing.size());
-  const std::vector<std::uint8_t> bytes =
-      scene != nullptr && problem.empty() ? ToBytes(*scene) : std::vector<std::uint8_t>();
-  append(bytes.data(), bytes.size());
-  return answer;
+// A soft limit, no higher than what the system allows.
+void Limit(__rlimit_resource what, rlim_t most) {
+  rlimit limit{};
+  if (getrlimit(what, &limit) != 0) return;
+  limit.rlim_cur = std::min(most, limit.rlim_max);
+  setrlimit(what, &limit);
 }
 
+// Of the address space that is taken already, which is the parent's.
+rlim_t AddressSpace() {
+  std::ifstream stream("/proc/self/statm");
+  rlim_t pages = 0;
+  stream >> pages;
+  return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
+}
+
+void LimitProcess(std::uint64_t bytes, rlim_t taken) {
+  Limit(RLIMIT_CPU, kSeconds + kSecondsPerMegabyte * (bytes / 1'000'000));
+  if (kLimitMemory) Limit(RLIMIT_AS, taken + kMemory + kMemoryPerByte * bytes);
+}
+
+// A file that cannot be read past its end for ever: assimp's PLY importer (5.2) does so when a header is cut off.
+class BoundedStream : public Assimp::IOStream {
+ public:
+  explicit BoundedStream(std::unique_ptr<Assimp::IOStream> stream) : stream_(std::move(stream)) {}
+
+  std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
+    const std::size_t read = stream_->Read(buffer, size, count);
+    constexpr int kPatience = 1000;
+    if (read == 0 && ++empty_reads_ > kPatience) throw std::runtime_error("the file ends too early");
+    return read;
+  }
+  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+  aiReturn Seek(std::size_t offset, aiOrigin origin) override { return stream_->Seek(offset, origin); }
+  std::size_t Tell() const override { return stream_->Tell(); }
+  std::size_t FileSize() const override { return stream_->FileSize(); }
+  void Flush() override {}
+
+ private:
+  std::unique_ptr<Assimp::IOStream> stream_;
+  int empty_reads_ = 0;
+};
+
+// Opens regular files below the mesh's folder, and nothing else; importers quietly do without a side file (an OBJ's
+// materials, say) that cannot be opened. From the first one on, the calling process has the limits of ImportMesh; each
+// file that is opened widens them.
+class ImporterFiles : public Assimp::DefaultIOSystem {
+ public:
+  // import: gets the files that are looked for, and those that are missing.
+  ImporterFiles(const fs::path& mesh, MeshImport& import) : mesh_(mesh), import_(import), taken_(AddressSpace()) {
+    LimitProcess(0, taken_);
+  }
+  bool Exists(const char* file) const override { return MayOpen(file); }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    const bool is_new = import_.files.insert(file).second;
+    std::unique_ptr<Assimp::IOStream> stream(mode[0] == 'r' && MayOpen(file) ? DefaultIOSystem::Open(file, mode)
+                                                                             : nullptr);
+    if (stream == nullptr) {
+      import_.missing.insert(fs::path(file).filename().string());
+      return nullptr;
+    }
+    if (is_new) bytes_ += stream->FileSize();
+    LimitProcess(bytes_, taken_);
+    return new BoundedStream(std::move(stream));  // Close() deletes it
+  }
+
+ private:
+  bool MayOpen(const fs::path& file) const {
+    std::error_code error;
+    return fs::is_regular_file(file, error) && (file == mesh_ || LiesBeside(mesh_, file));
+  }
+
+  fs::path mesh_;
+  MeshImport& import_;
+  std::uint64_t bytes_ = 0;  // of all files that were opened
+  rlim_t taken_;             // of the address space, before the first one [bytes]
+};
+
+// No output, no core file.
+void SilenceProcess() {
+  const int nowhere = open("/dev/null", O_RDWR);
+  for (const int output : {STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, output);
+  Limit(RLIMIT_CORE, 0);
+}
+
+constexpr std::chrono::seconds kPatience(600);  // of whoever waits: an importer that sleeps uses no processor
+
 std::vector<std::uint8_t> Import(const fs::path& file) {
+  MeshImport import;
   Assimp::Importer importer;
-  auto* files = new ImporterFiles(file);  // the importer owns it
-  importer.SetIOHandler(files);
+  importer.SetIOHandler(new ImporterFiles(file, import));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
-  // What is too large is not worked on.
-  const std::string too_large = scene != nullptr ? MeshCountProblem(*scene) : "";
-  if (too_large.empty() && scene != nullptr)
+  if (scene != nullptr) import.problem = MeshCountProblem(*scene);  // what is too large is not worked on
+  if (scene != nullptr && import.problem.empty()) {
     scene =
         importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
-  std::string problem = too_large;
+    if (scene != nullptr) import.problem = MeshCountProblem(*scene);
+  }
   if (scene == nullptr) {
     const std::string reason = importer.GetErrorString();
     const bool only_lines = reason.find("No meshes remaining") != std::string::npos;  // the importer's words for it
     const bool too_much = reason.find("bad_alloc") != std::string::npos;              // the library's
-    problem = only_lines ? "has no triangles"
-              : too_much ? "cannot be read: the importer (assimp) wants more memory than a file of this size may"
-                         : "cannot be read: " + reason;
-  } else if (problem.empty()) {
-    problem = MeshCountProblem(*scene);
+    import.problem = only_lines ? "has no triangles"
+                     : too_much ? "cannot be read: the importer (assimp) wants more memory than a file of this size may"
+                                : "cannot be read: " + reason;
   }
-  return Answer(problem, *files, scene);
-}
-
-std::vector<std::string> Texts(std::span<const std::uint8_t> bytes) {
-  std::vector<std::string> texts;
-  for (auto at = bytes.begin(); at != bytes.end();) {
-    const auto end = std::find(at, bytes.end(), std::uint8_t{0});
-    texts.emplace_back(at, end);
-    at = end == bytes.end() ? end : end + 1;
-  }
-  return texts;
-}
-
-MeshImport FromAnswer(std::span<const std::uint8_t> answer) {
-  const auto next = [&] {
-    std::uint64_t length = 0;
-    if (answer.size() < sizeof length) throw std::runtime_error("the importer's answer is broken off");
-    std::memcpy(&length, answer.data(), sizeof length);
-    answer = answer.subspan(sizeof length);
-    if (answer.size() < length) throw std::runtime_error("the importer's answer is broken off");
-    const auto part = answer.first(length);
-    answer = answer.subspan(length);
-    return part;
-  };
-  MeshImport import;
-  const auto problem = next();
-  import.problem.assign(problem.begin(), problem.end());
-  for (const std::string& file : Texts(next())) import.files.insert(file);
-  for (const std::string& file : Texts(next())) import.missing.insert(file);
-  const auto scene = next();
-  if (import.problem.empty()) import.scene = SceneFromBytes(scene);
-  return import;
+  if (import.problem.empty()) import.scene.reset(importer.GetOrphanedScene());
+  return ToBytes(import);
 }
 
 std::string WhyItEnded(const base::ExitStatus& end, bool in_time) {
@@ -125,7 +174,21 @@ base::ChildProcess StartImporter(const fs::path& file) {
   }
 }
 
+// Links followed, both ways.
+bool IsBelow(const fs::path& folder, const fs::path& file) {
+  std::error_code error;
+  const fs::path top = fs::weakly_canonical(folder.empty() ? "." : folder, error),
+                 real = fs::weakly_canonical(file, error);
+  if (error) return false;
+  return std::mismatch(top.begin(), top.end(), real.begin(), real.end()).first == top.end();
+}
+
 }  // namespace
+
+bool LiesBeside(const fs::path& mesh, const fs::path& file) {
+  std::error_code error;
+  return IsBelow(mesh.parent_path(), file) || IsBelow(fs::weakly_canonical(mesh, error).parent_path(), file);
+}
 
 MeshImport ImportMesh(const fs::path& file) {
   const base::ChildProcess importer = StartImporter(file);
@@ -135,7 +198,7 @@ MeshImport ImportMesh(const fs::path& file) {
   MeshImport import;
   if (answer && end.signal == 0 && end.status == 0) {
     try {
-      return FromAnswer(base::AsBytes(*answer));
+      return ImportFromBytes(base::AsBytes(*answer));
     } catch (const std::runtime_error& error) {
       import.problem = error.what();
     }

@@ -19,6 +19,10 @@ struct MeshImport {
   std::set<std::string> missing;          // those that could not be opened, without their folder
 };
 
+// Whether `file`, links followed, lies in the mesh's folder or deeper. A mesh that is itself a link has two: where it
+// is named, and where it leads.
+bool LiesBeside(const std::filesystem::path& mesh, const std::filesystem::path& file);
+
 // Time is the processor's: five seconds, and ten more for each MB of the files that are opened. Memory: 512 MiB, and 64
 // bytes for each of theirs. An importer that crashes or runs into a limit is a problem with the file like any other.
 // Throws std::runtime_error where no process can be started.

@@ -17,18 +17,17 @@
 #include "sim/world/gltf_features.h"
 #include "sim/world/mesh_import.h"
 #include "sim/world/mesh_material.h"
-#include "sim/world/srgb.h"
 
 namespace sim {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string LowerExtension(const fs::path& file) {
-  std::string text = file.extension().string();
-  std::transform(text.begin(), text.end(), text.begin(),
+bool IsGltf(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
+  return extension == ".gltf" || extension == ".glb";
 }
 
 glm::dmat4 ToGlm(const aiMatrix4x4& m) {  // assimp is row-major, GLM column-major
@@ -43,7 +42,7 @@ bool IsDegenerate(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   return !(glm::length(glm::cross(ab, ac)) > 1e-10 * longest2);
 }
 
-bool IsFinite(const aiVector3D& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool IsFinite(float x, float y, float z) { return std::isfinite(x) && std::isfinite(y) && std::isfinite(z); }
 
 std::string ToText(const aiVector3D& v) {
   std::ostringstream text;
@@ -53,9 +52,7 @@ std::string ToText(const aiVector3D& v) {
 
 class FileReader {
  public:
-  FileReader(const MeshDescription& description, Scene& scene, TextureCache& textures,
-             std::vector<std::string>& problems)
-      : file_(description.file), scene_(scene), textures_(textures), problems_(problems) {
+  FileReader(const MeshFile& file, const MeshDescription& description) : file_(file) {
     world_from_file_ = glm::mat4_cast(description.orientation);
     for (int c = 0; c < 3; ++c) world_from_file_[c] *= description.scale;
     world_from_file_[3] = glm::dvec4(description.position, 1.0);
@@ -63,37 +60,31 @@ class FileReader {
 
   void Read() {
     std::error_code error;
-    if (!fs::exists(file_, error)) return Problem("no such file");
-    if (!fs::is_regular_file(file_, error)) return Problem("not a file");
+    if (!fs::exists(file_.path, error)) return file_.Problem("no such file");
+    if (!fs::is_regular_file(file_.path, error)) return file_.Problem("not a file");
 
     GltfFeatures features;
-    const std::string extension = LowerExtension(file_);
-    if (extension == ".gltf" || extension == ".glb") {
-      features = ReadGltfFeatures(file_);
-      for (const std::string& what : features.impossible) Problem(what);
+    if (file_.is_gltf) {
+      features = ReadGltfFeatures(file_.path);
+      for (const std::string& what : features.impossible) file_.Problem(what);
       if (!features.impossible.empty()) return;
-      for (const std::string& what : features.not_rendered) Warn(what);
+      for (const std::string& what : features.not_rendered) file_.Warn(what);
     }
 
-    MeshImport import = ImportMesh(file_);
-    scene_.files.insert(import.files.begin(), import.files.end());
-    if (import.scene == nullptr) return Problem(import.problem);
+    MeshImport import = ImportMesh(file_.path);
+    file_.scene.files.insert(import.files.begin(), import.files.end());
+    if (import.scene == nullptr) return file_.Problem(import.problem);
     ai_ = import.scene.get();
-    for (const std::string& missing : import.missing) {
-      scene_.warnings.push_back(file_.string() + ": names " + missing + ", which cannot be opened");
-    }
+    for (const std::string& missing : import.missing) file_.Warn("names " + missing + ", which cannot be opened");
 
-    materials_ = std::make_unique<MeshMaterialReader>(file_, *ai_, scene_, textures_, problems_);
-    materials_->SetEmissionStrengths(features.emission_strengths);
-    const std::size_t problems_before = problems_.size(), meshes_before = scene_.meshes.size();
+    materials_ = std::make_unique<MeshMaterialReader>(file_, *ai_, features.emission_strengths);
+    const std::size_t problems_before = file_.problems.size(), meshes_before = file_.scene.meshes.size();
     if (ai_->mRootNode != nullptr) AppendNode(*ai_->mRootNode, world_from_file_);
-    if (problems_.size() == problems_before && scene_.meshes.size() == meshes_before) Problem("has no triangles");
+    if (file_.problems.size() == problems_before && file_.scene.meshes.size() == meshes_before)
+      file_.Problem("has no triangles");
   }
 
  private:
-  void Warn(const std::string& what) { scene_.warnings.push_back(file_.string() + ": " + what); }
-  void Problem(const std::string& what) { problems_.push_back(file_.string() + ": " + what); }
-
   void AppendNode(const aiNode& node, const glm::dmat4& world_from_parent) {
     const glm::dmat4 world_from_node = world_from_parent * ToGlm(node.mTransformation);
     for (unsigned i = 0; i < node.mNumMeshes; ++i) AppendMesh(*ai_->mMeshes[node.mMeshes[i]], world_from_node);
@@ -103,12 +94,12 @@ class FileReader {
   void AppendMesh(const aiMesh& in, const glm::dmat4& world_from_node) {
     if ((in.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) return;
     Mesh out;
-    out.name = in.mName.length > 0 ? in.mName.C_Str() : "mesh " + std::to_string(scene_.meshes.size());
+    out.name = in.mName.length > 0 ? in.mName.C_Str() : "mesh " + std::to_string(file_.scene.meshes.size());
     const std::string label = "mesh '" + out.name + "': ";
     const glm::dmat3 linear(world_from_node);
     const glm::dmat3 normal_transform = glm::transpose(glm::inverse(linear));
     if (!(std::abs(glm::determinant(linear)) > 0))
-      return Problem(label + "its node's transform is singular or not finite");
+      return file_.Problem(label + "its node's transform is singular or not finite");
 
     const bool mirrored = glm::determinant(linear) < 0;  // the front stays in front
 
@@ -116,26 +107,24 @@ class FileReader {
     for (unsigned i = 0; i < in.mNumVertices; ++i) {
       const aiVector3D& v = in.mVertices[i];
       const glm::vec3 x(world_from_node * glm::dvec4(v.x, v.y, v.z, 1.0));
-      if (!std::isfinite(x.x) || !std::isfinite(x.y) || !std::isfinite(x.z)) {
-        return Problem(label + "vertex " + std::to_string(i) + " is not finite: " + ToText(v));
+      if (!IsFinite(x.x, x.y, x.z)) {
+        return file_.Problem(label + "vertex " + std::to_string(i) + " is not finite: " + ToText(v));
       }
       out.positions.push_back(x);
     }
     AppendNormals(in, normal_transform, label, out);
     if (in.HasVertexColors(0)) {
-      const std::string extension = LowerExtension(file_);
-      const bool coded = extension != ".gltf" && extension != ".glb";
-      const auto linear_of = [&](float c) { return coded ? static_cast<float>(SrgbToLinear(c)) : c; };
+      const auto linear_of = [&](float c) { return file_.is_gltf ? c : static_cast<float>(SrgbToLinear(c)); };
       bool any_alpha = false;
       for (unsigned i = 0; i < in.mNumVertices; ++i) {
         const aiColor4D& c = in.mColors[0][i];
         out.colors.emplace_back(linear_of(c.r), linear_of(c.g), linear_of(c.b));
-        if (!(std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b))) {
-          return Problem(label + "the colour of vertex " + std::to_string(i) + " is not finite");
+        if (!IsFinite(c.r, c.g, c.b)) {
+          return file_.Problem(label + "the colour of vertex " + std::to_string(i) + " is not finite");
         }
         any_alpha = any_alpha || c.a != in.mColors[0][0].a;  // where a file has none, assimp makes up one
       }
-      if (any_alpha) Warn(label + "the alpha of its vertex colours is not used");
+      if (any_alpha) file_.Warn(label + "the alpha of its vertex colours is not used");
     }
     std::size_t degenerate = 0;
     out.triangles.reserve(in.mNumFaces);
@@ -144,7 +133,7 @@ class FileReader {
       if (face.mNumIndices != 3) continue;
       glm::uvec3 t(face.mIndices[0], face.mIndices[1], face.mIndices[2]);
       if (std::max({t.x, t.y, t.z}) >= in.mNumVertices) {
-        return Problem(label + "triangle " + std::to_string(i) + " names a vertex that does not exist");
+        return file_.Problem(label + "triangle " + std::to_string(i) + " names a vertex that does not exist");
       }
       if (IsDegenerate(out.positions[t.x], out.positions[t.y], out.positions[t.z])) {
         ++degenerate;
@@ -154,25 +143,22 @@ class FileReader {
       out.triangles.push_back(t);
     }
     if (degenerate > 0) {
-      Warn(label + std::to_string(degenerate) + " of " + std::to_string(in.mNumFaces) +
-           " triangles without area are left out");
+      file_.Warn(label + std::to_string(degenerate) + " of " + std::to_string(in.mNumFaces) +
+                 " triangles without area are left out");
     }
     if (out.triangles.empty()) return;
     if (!CheckRounding(label, out.positions)) return;
     const MeshMaterial& material = materials_->Material(in.mMaterialIndex);
     out.material = material.index;
     AppendUvs(in, material.uv, label, out);
-    scene_.meshes.push_back(std::move(out));
+    file_.scene.meshes.push_back(std::move(out));
   }
 
   // Coordinates are floats: far from the origin they are coarse. Says so when the rounding is 1e-5 of the mesh's size,
   // and refuses it at 1e-3.
   bool CheckRounding(const std::string& label, const std::vector<glm::vec3>& positions) {
     glm::vec3 low = positions[0], high = low;
-    for (const glm::vec3& x : positions) {
-      low = glm::min(low, x);
-      high = glm::max(high, x);
-    }
+    for (const glm::vec3& x : positions) low = glm::min(low, x), high = glm::max(high, x);
     const glm::vec3 far = glm::max(glm::abs(low), glm::abs(high));
     const double rounding = 0x1p-24 * std::max({far.x, far.y, far.z}),
                  size = glm::length(glm::dvec3(high) - glm::dvec3(low));
@@ -182,10 +168,10 @@ class FileReader {
     text << label << "it lies near (" << middle.x << ", " << middle.y << ", " << middle.z << ") m, where numbers are "
          << rounding << " m coarse, but is only " << size << " m large: move it near the origin with 'position'";
     if (rounding > 1e-3 * size) {
-      Problem(text.str());
+      file_.Problem(text.str());
       return false;
     }
-    Warn(text.str());
+    file_.Warn(text.str());
     return true;
   }
 
@@ -196,8 +182,8 @@ class FileReader {
       const glm::dvec3 n = transform * glm::dvec3(v.x, v.y, v.z);
       const double length = glm::length(n);
       if (!(length > 0) || !std::isfinite(length)) {
-        scene_.warnings.push_back(file_.string() + ": " + label + "the normal of vertex " + std::to_string(i) + " is " +
-                                  ToText(v) + "; flat normals are used");
+        file_.Warn(label + "the normal of vertex " + std::to_string(i) + " is " + ToText(v) +
+                   "; flat normals are used");
         out.normals.clear();
         return;
       }
@@ -206,44 +192,42 @@ class FileReader {
   }
 
   void AppendUvs(const aiMesh& in, const UvChoice& choice, const std::string& label, Mesh& out) {
-    const Material& material = scene_.materials[static_cast<std::size_t>(out.material)];
+    const Material& material = file_.scene.materials[static_cast<std::size_t>(out.material)];
     const int texture =
         std::max({material.texture, material.emission_texture, material.normal_map, material.gloss_texture});
     if (texture < 0) return;
     if (!in.HasTextureCoords(choice.channel)) {
-      const std::string& name = scene_.textures[static_cast<std::size_t>(texture)].name();
-      Warn(label + "no texture coordinates for texture " + name + "; the base colour is used");
+      const std::string& name = file_.scene.textures[static_cast<std::size_t>(texture)].name();
+      file_.Warn(label + "no texture coordinates for texture " + name + "; the base colour is used");
       Material plain = material;
       plain.texture = plain.emission_texture = plain.normal_map = plain.gloss_texture = -1;
-      out.material = static_cast<int>(scene_.materials.size());
-      scene_.materials.push_back(std::move(plain));
+      out.material = static_cast<int>(file_.scene.materials.size());
+      file_.scene.materials.push_back(std::move(plain));
       return;
     }
     for (unsigned i = 0; i < in.mNumVertices; ++i) {
       const aiVector3D& uv = in.mTextureCoords[choice.channel][i];
-      if (!IsFinite(uv)) {
-        return Problem(label + "the texture coordinate of vertex " + std::to_string(i) +
-                       " is not finite: " + ToText(uv));
+      if (!IsFinite(uv.x, uv.y, uv.z)) {
+        return file_.Problem(label + "the texture coordinate of vertex " + std::to_string(i) +
+                             " is not finite: " + ToText(uv));
       }
       out.uvs.emplace_back(choice.transform *
                            glm::dvec3(uv.x, 1.0 - static_cast<double>(uv.y), 1.0));  // assimp has v up in all formats
     }
   }
 
-  fs::path file_;
+  const MeshFile& file_;
   glm::dmat4 world_from_file_{1.0};
   const aiScene* ai_ = nullptr;
   std::unique_ptr<MeshMaterialReader> materials_;
-  Scene& scene_;
-  TextureCache& textures_;
-  std::vector<std::string>& problems_;
 };
 
 }  // namespace
 
 void AppendMeshFile(const MeshDescription& description, Scene& scene, TextureCache& textures,
                     std::vector<std::string>& problems) {
-  FileReader(description, scene, textures, problems).Read();
+  const MeshFile file{description.file, IsGltf(description.file), scene, textures, problems};
+  FileReader(file, description).Read();
 }
 
 }  // namespace sim

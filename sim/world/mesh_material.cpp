@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "sim/world/image_file.h"
-#include "sim/world/importer_files.h"
+#include "sim/world/mesh_import.h"
 #include "tools/base/files.h"
 #include "tools/base/limits/picture.h"
 
@@ -54,15 +54,6 @@ std::string DecodePercent(const std::string& text) {
 
 }  // namespace
 
-MeshMaterialReader::MeshMaterialReader(const fs::path& file, const aiScene& from, Scene& scene, TextureCache& textures,
-                                       std::vector<std::string>& problems)
-    : file_(file), ai_(from), materials_(from.mNumMaterials), scene_(scene), textures_(textures), problems_(problems) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  is_gltf_ = extension == ".gltf" || extension == ".glb";
-}
-
 const MeshMaterial& MeshMaterialReader::Material(unsigned index) {
   MeshMaterial& known = materials_.at(index);
   if (known.index < 0) known = Read(*ai_.mMaterials[index], index < strengths_.size() ? strengths_[index] : 1.0f);
@@ -83,8 +74,7 @@ MeshMaterial MeshMaterialReader::Read(const aiMaterial& in, float emission_stren
   emission = emission * emission_strength;
   for (const float c : {color.r, color.g, color.b, emission.r, emission.g, emission.b}) {
     if (!std::isfinite(c) || c < 0) {
-      problems_.push_back(file_.string() + ": material '" + material.name +
-                          "': a colour is negative or not finite: " + std::to_string(c));
+      file_.Problem("material '" + material.name + "': a colour is negative or not finite: " + std::to_string(c));
       break;
     }
   }
@@ -109,17 +99,17 @@ MeshMaterial MeshMaterialReader::Read(const aiMaterial& in, float emission_stren
   in.Get(AI_MATKEY_ROUGHNESS_FACTOR, material.roughness);
   material.metallic = std::clamp(material.metallic, 0.0f, 1.0f);
   material.roughness = std::clamp(material.roughness, 0.0f, 1.0f);
-  if (is_gltf_) {
+  if (file_.is_gltf) {
     material.gloss_texture = ReadTexture(in, aiTextureType_UNKNOWN, "metallic-roughness ", Texture::Content::numbers,
                                          false, material.name, uvs);
   }
   if (in.GetTextureCount(aiTextureType_OPACITY) > 0) {
-    Warn("material '" + material.name + "': its opacity texture is not used; it is opaque");
+    file_.Warn("material '" + material.name + "': its opacity texture is not used; it is opaque");
   }
   MeshMaterial result;
-  result.index = static_cast<int>(scene_.materials.size());
+  result.index = static_cast<int>(file_.scene.materials.size());
   if (!uvs.empty()) result.uv = uvs.front();
-  scene_.materials.push_back(std::move(material));
+  file_.scene.materials.push_back(std::move(material));
   return result;
 }
 
@@ -128,7 +118,7 @@ void MeshMaterialReader::ReadAlpha(const aiMaterial& in, sim::Material& material
   if (in.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != AI_SUCCESS) {
     ai_real opacity = 1;
     if (in.Get(AI_MATKEY_OPACITY, opacity) == AI_SUCCESS && opacity < 1) {
-      Warn("material '" + material.name + "': transparency is not rendered; it is opaque");
+      file_.Warn("material '" + material.name + "': transparency is not rendered; it is opaque");
     }
     return;
   }
@@ -139,7 +129,7 @@ void MeshMaterialReader::ReadAlpha(const aiMaterial& in, sim::Material& material
     material.alpha_cutoff = cutoff;
   } else if (name == "BLEND") {
     material.alpha_cutoff = 0.5f;
-    Warn("material '" + material.name + "': alphaMode BLEND is not rendered; it is a cut-out where alpha is 0.5");
+    file_.Warn("material '" + material.name + "': alphaMode BLEND is not rendered; it is a cut-out where alpha is 0.5");
   }
 }
 
@@ -153,7 +143,7 @@ int MeshMaterialReader::ReadTexture(const aiMaterial& in, aiTextureType type, co
   const std::string label = "material '" + name + "': the " + what + "texture " + path.C_Str();
   const UvChoice uv = ReadUvChoice(in, type, label);
   if (!uvs.empty() && uvs.front() != uv) {
-    Warn(label + " has other texture coordinates than the material's first; it is left out");
+    file_.Warn(label + " has other texture coordinates than the material's first; it is left out");
     return -1;
   }
   uvs.push_back(uv);
@@ -167,8 +157,8 @@ UvChoice MeshMaterialReader::ReadUvChoice(const aiMaterial& in, aiTextureType ty
   choice.channel = static_cast<unsigned>(std::max(channel, 0));
   aiUVTransform t;
   if (in.Get(AI_MATKEY_UVTRANSFORM(type, 0), t) != AI_SUCCESS) return choice;
-  if (!is_gltf_) {
-    Warn(label + ": its transform is not applied");
+  if (!file_.is_gltf) {
+    file_.Warn(label + ": its transform is not applied");
     return choice;
   }
   // KHR_texture_transform: uv' = offset + rotation * scale * uv. assimp keeps the rotation's negative, and an offset
@@ -188,16 +178,17 @@ int MeshMaterialReader::TextureIndex(const std::string& name, const std::string&
   fs::path path = fs::path(text).lexically_normal();
   const aiTexture* embedded = ai_.GetEmbeddedTexture(name.c_str());
   std::error_code error;
-  if (embedded == nullptr && is_gltf_ && !fs::exists(file_.parent_path() / path, error)) {
+  if (embedded == nullptr && file_.is_gltf && !fs::exists(file_.path.parent_path() / path, error)) {
     text = DecodePercent(text);
     path = fs::path(text).lexically_normal();
   }
-  const fs::path file = embedded != nullptr ? file_ / name : (file_.parent_path() / path).lexically_normal();
+  const fs::path file = embedded != nullptr ? file_.path / name : (file_.path.parent_path() / path).lexically_normal();
   const std::string kind = content == Texture::Content::numbers ? " (numbers)" : with_alpha ? " (with alpha)" : "";
-  const auto [entry, is_new] = textures_.try_emplace(file.string() + kind, -1);
+  const auto [entry, is_new] = file_.textures.try_emplace(file.string() + kind, -1);
   if (!is_new) return entry->second;  // a bad one has been reported
   const auto bad = [&](const std::string& what) {
-    problems_.push_back(file.string() + ": texture of material '" + material + "' in " + file_.string() + ": " + what);
+    file_.problems.push_back(file.string() + ": texture of material '" + material + "' in " + file_.path.string() +
+                             ": " + what);
     return -1;
   };
   try {
@@ -206,13 +197,13 @@ int MeshMaterialReader::TextureIndex(const std::string& name, const std::string&
       image = DecodeEmbedded(*embedded, with_alpha);
     } else {
       const bool has_drive = text.size() > 1 && text[1] == ':';
-      if (path.is_absolute() || has_drive || (!path.empty() && *path.begin() == "..") || !LiesBeside(file_, file)) {
-        entry->second = -1;
-        problems_.push_back(file_.string() + ": material '" + material + "': the texture path '" + name +
-                            "' must be relative and stay inside the mesh file's folder");
+      if (path.is_absolute() || has_drive || (!path.empty() && *path.begin() == "..") ||
+          !LiesBeside(file_.path, file)) {
+        file_.Problem("material '" + material + "': the texture path '" + name +
+                      "' must be relative and stay inside the mesh file's folder");
         return -1;
       }
-      scene_.files.insert(file);
+      file_.scene.files.insert(file);
       if (!fs::exists(file)) return bad("no such file");
       if (!fs::is_regular_file(file)) return bad("not a file");
       const std::optional<std::string> bytes = base::ReadFile(file);
@@ -221,11 +212,11 @@ int MeshMaterialReader::TextureIndex(const std::string& name, const std::string&
     }
     const bool is_cut = std::any_of(image.alpha.begin(), image.alpha.end(), [](std::uint8_t a) { return a < 255; });
     if (!is_cut) image.alpha.clear();
-    scene_.textures.emplace_back(file.string(), image.width, image.height, image.rgb, image.alpha, content);
+    file_.scene.textures.emplace_back(file.string(), image.width, image.height, image.rgb, image.alpha, content);
   } catch (const std::exception& problem) {
     return bad(problem.what());
   }
-  return entry->second = static_cast<int>(scene_.textures.size()) - 1;
+  return entry->second = static_cast<int>(file_.scene.textures.size()) - 1;
 }
 
 }  // namespace sim

@@ -15,6 +15,18 @@
 
 namespace sim {
 
+// A mesh file that is read, and where its content goes.
+struct MeshFile {
+  std::filesystem::path path;
+  bool is_gltf;
+  Scene& scene;
+  TextureCache& textures;
+  std::vector<std::string>& problems;
+
+  void Warn(const std::string& what) const { scene.warnings.push_back(path.string() + ": " + what); }
+  void Problem(const std::string& what) const { problems.push_back(path.string() + ": " + what); }
+};
+
 // Which texture coordinates a material's pictures want: a channel of the file, and what is applied to it (v down):
 // uv' = transform * (u, v, 1).
 struct UvChoice {
@@ -30,11 +42,9 @@ struct MeshMaterial {
 
 class MeshMaterialReader {
  public:
-  MeshMaterialReader(const std::filesystem::path& file, const aiScene& from, Scene& scene, TextureCache& textures,
-                     std::vector<std::string>& problems);
-
-  // Factors on the emission of the file's materials; none: 1.
-  void SetEmissionStrengths(std::vector<float> strengths) { strengths_ = std::move(strengths); }
+  // emission_strengths: factors on the emission of the file's materials; where there is none: 1.
+  MeshMaterialReader(const MeshFile& file, const aiScene& from, std::vector<float> emission_strengths)
+      : file_(file), ai_(from), strengths_(std::move(emission_strengths)), materials_(from.mNumMaterials) {}
 
   // Adds the file's material to the scene when it is asked for the first time.
   const MeshMaterial& Material(unsigned index);
@@ -46,16 +56,11 @@ class MeshMaterialReader {
                   const std::string& name, std::vector<UvChoice>& uvs);
   UvChoice ReadUvChoice(const aiMaterial& in, aiTextureType type, const std::string& label);
   int TextureIndex(const std::string& name, const std::string& material, Texture::Content content, bool with_alpha);
-  void Warn(const std::string& what) { scene_.warnings.push_back(file_.string() + ": " + what); }
 
-  std::filesystem::path file_;
+  const MeshFile& file_;
   const aiScene& ai_;
-  bool is_gltf_;
-  std::vector<MeshMaterial> materials_;  // by the file's index; index -1: not used yet
   std::vector<float> strengths_;
-  Scene& scene_;
-  TextureCache& textures_;
-  std::vector<std::string>& problems_;
+  std::vector<MeshMaterial> materials_;  // by the file's index; index -1: not used yet
 };
 
 }  // namespace sim

@@ -37,6 +37,10 @@ class Writer {
     Value(text.length);
     Array(text.data, text.length);
   }
+  void Text(const std::string& text) {
+    Value(text.size());
+    Array(text.data(), text.size());
+  }
   std::vector<std::uint8_t> Take() { return std::move(bytes_); }
 
  private:
@@ -74,6 +78,13 @@ class Reader {
     Copy(text.data, length);
     text.data[length] = '\0';
     text.length = length;
+  }
+  void Text(std::string& text) {
+    std::size_t length = 0;
+    Value(length);
+    if (length > bytes_.size()) throw Broken();
+    text.resize(length);
+    Copy(text.data(), length);
   }
 
  private:
@@ -142,32 +153,28 @@ void PassMesh(Io& io, aiMesh& mesh, unsigned materials) {
   }
 }
 
-void PassMaterial(Writer& out, const aiMaterial& material) {
-  out.Value(material.mNumProperties);
-  for (unsigned i = 0; i < material.mNumProperties; ++i) {
-    const aiMaterialProperty& property = *material.mProperties[i];
-    out.Text(property.mKey);
-    out.Value(property.mSemantic);
-    out.Value(property.mIndex);
-    out.Value(property.mType);
-    out.Value(property.mDataLength);
-    out.Array(property.mData, property.mDataLength);
-  }
+template <class Io>
+void PassProperty(Io& io, aiMaterialProperty& property) {
+  io.Text(property.mKey);
+  io.Value(property.mSemantic);
+  io.Value(property.mIndex);
+  io.Value(property.mType);
+  io.Count(property.mDataLength);
+  io.Array(property.mData, property.mDataLength);
 }
 
-void PassMaterial(Reader& in, aiMaterial& material) {
-  unsigned left = 0;
-  for (in.Count(left); left > 0; --left) {
-    aiMaterialProperty property;  // owns its data
-    in.Text(property.mKey);
-    in.Value(property.mSemantic);
-    in.Value(property.mIndex);
-    in.Value(property.mType);
-    in.Count(property.mDataLength);
-    in.Array(property.mData, property.mDataLength);
-    if (property.mDataLength > 0) {
-      material.AddBinaryProperty(property.mData, property.mDataLength, property.mKey.C_Str(), property.mSemantic,
-                                 property.mIndex, property.mType);
+template <class Io>
+void PassMaterial(Io& io, aiMaterial& material) {
+  unsigned count = material.mNumProperties;
+  io.Count(count);
+  for (unsigned i = 0; i < count; ++i) {
+    if constexpr (Io::kReads) {
+      aiMaterialProperty p;  // owns its data
+      PassProperty(io, p);
+      if (p.mDataLength > 0)
+        material.AddBinaryProperty(p.mData, p.mDataLength, p.mKey.C_Str(), p.mSemantic, p.mIndex, p.mType);
+    } else {
+      PassProperty(io, *material.mProperties[i]);
     }
   }
 }
@@ -177,20 +184,18 @@ std::size_t TexelsOf(const aiTexture& texture) {  // or bytes, where it is a fil
                               : std::size_t{texture.mWidth} * texture.mHeight;
 }
 
-void PassTexture(Writer& out, const aiTexture& texture) {
-  out.Value(texture.mWidth);
-  out.Value(texture.mHeight);
-  out.Text(texture.mFilename);
-  const std::size_t bytes = texture.mHeight == 0 ? texture.mWidth : TexelsOf(texture) * sizeof(aiTexel);
-  out.Array(reinterpret_cast<const std::uint8_t*>(texture.pcData), bytes);
-  for (std::size_t i = bytes; i < TexelsOf(texture) * sizeof(aiTexel); ++i) out.Value(std::uint8_t{0});
-}
-
-void PassTexture(Reader& in, aiTexture& texture) {
-  in.Value(texture.mWidth);
-  in.Value(texture.mHeight);
-  in.Text(texture.mFilename);
-  in.Array(texture.pcData, TexelsOf(texture));
+template <class Io>
+void PassTexture(Io& io, aiTexture& texture) {
+  io.Value(texture.mWidth);
+  io.Value(texture.mHeight);
+  io.Text(texture.mFilename);
+  const std::size_t texels = TexelsOf(texture),
+                    whole = texture.mHeight == 0 ? texture.mWidth / sizeof(aiTexel) : texels;
+  if (Io::kReads || whole == texels) return io.Array(texture.pcData, texels);
+  io.Array(texture.pcData, whole);
+  aiTexel last{};  // the rest of a file's bytes
+  std::memcpy(&last, texture.pcData + whole, texture.mWidth % sizeof(aiTexel));
+  io.Value(last);
 }
 
 template <class Io>
@@ -202,6 +207,30 @@ void PassScene(Io& io, aiScene& scene) {
   io.Value(has_root);
   if (Io::kReads && has_root != 0) scene.mRootNode = new aiNode;
   if (has_root != 0) PassNode(io, *scene.mRootNode, scene.mNumMeshes, 0);
+}
+
+template <class Io, class T>
+void PassTexts(Io& io, std::set<T>& texts) {
+  auto count = static_cast<unsigned>(texts.size());
+  io.Count(count);
+  if constexpr (Io::kReads) {
+    for (std::string text; count > 0; --count) io.Text(text), texts.insert(text);
+  } else {
+    for (const T& each : texts) {
+      const std::string text = each;
+      io.Text(text);
+    }
+  }
+}
+
+template <class Io>
+void PassImport(Io& io, MeshImport& import) {
+  io.Text(import.problem);
+  PassTexts(io, import.files);
+  PassTexts(io, import.missing);
+  if (!import.problem.empty()) return;
+  if (Io::kReads) import.scene = std::make_unique<aiScene>();
+  PassScene(io, *import.scene);
 }
 
 // Nodes below and with this one, and how deep they go.
@@ -240,17 +269,17 @@ std::string MeshCountProblem(const aiScene& scene) {
   return "";
 }
 
-std::vector<std::uint8_t> ToBytes(const aiScene& scene) {
+std::vector<std::uint8_t> ToBytes(const MeshImport& import) {
   Writer out;
-  PassScene(out, const_cast<aiScene&>(scene));  // a writer changes nothing
+  PassImport(out, const_cast<MeshImport&>(import));  // a writer changes nothing
   return out.Take();
 }
 
-std::unique_ptr<aiScene> SceneFromBytes(std::span<const std::uint8_t> bytes) {
+MeshImport ImportFromBytes(std::span<const std::uint8_t> bytes) {
   Reader in(bytes);
-  auto scene = std::make_unique<aiScene>();
-  PassScene(in, *scene);
-  return scene;
+  MeshImport import;
+  PassImport(in, import);
+  return import;
 }
 
 }  // namespace sim

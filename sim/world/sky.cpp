@@ -15,7 +15,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/world/srgb.h"
+#include "sim/world/image_file.h"
+#include "sim/world/texture.h"
 #include "tools/base/files.h"
 #include "tools/base/limits/picture.h"
 
@@ -59,16 +60,11 @@ cv::Mat ReadPicture(const std::filesystem::path& file) {
   const std::string problem = is_exr ? limits::ExrProblem(whole) : limits::PictureProblem(whole);
   if (!problem.empty()) throw std::runtime_error(file.string() + (is_exr ? ": cannot be read: " : ": ") + problem);
   if (is_exr) return ReadExr(file);
-  cv::Mat picture;
   try {
-    if (!bytes->empty())
-      picture = cv::imdecode(cv::Mat(1, static_cast<int>(bytes->size()), CV_8U, const_cast<char*>(bytes->data())),
-                             cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception& error) {
-    throw std::runtime_error(file.string() + ": cannot be decoded: " + error.err);
+    return DecodeMatrix(whole, cv::IMREAD_UNCHANGED);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(file.string() + ": " + error.what());
   }
-  if (picture.empty()) throw std::runtime_error(file.string() + ": not a picture that can be decoded");
-  return picture;
 }
 
 }  // namespace
@@ -92,11 +88,7 @@ glm::dvec3 Sky::Radiance(const glm::dvec3& d) const {
 }
 
 Sky LoadSky(const SkyDescription& description) {
-  Sky sky;
-  sky.zenith = description.zenith;
-  sky.horizon = description.horizon;
-  sky.ground = description.ground;
-  sky.turn = description.turn;
+  Sky sky{description.zenith, description.horizon, description.ground, 0, 0, {}, description.turn};
   if (description.file.empty()) return sky;
   const cv::Mat read = ReadPicture(description.file);
   if (read.channels() != 1 && read.channels() != 3 && read.channels() != 4) {

@@ -1,7 +1,6 @@
 target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/gltf_features.cpp
   ${CMAKE_CURRENT_LIST_DIR}/image_file.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/importer_files.cpp
   ${CMAKE_CURRENT_LIST_DIR}/light.cpp
   ${CMAKE_CURRENT_LIST_DIR}/mesh_import.cpp
   ${CMAKE_CURRENT_LIST_DIR}/mesh_loader.cpp

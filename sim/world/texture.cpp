@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/world/srgb.h"
-
 namespace sim {
 namespace {
 
@@ -50,26 +48,19 @@ std::vector<Shrink> ShrinkWeights(int n, int m) {
   return result;
 }
 
-std::vector<float> Halve(const std::vector<float>& in, int width, int height, int new_width, int new_height) {
-  const auto size = [](int w, int h) { return static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * 3; };
-  std::vector<float> wide(size(new_width, height)), out(size(new_width, new_height));
-  const std::vector<Shrink> across = ShrinkWeights(width, new_width), down = ShrinkWeights(height, new_height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < new_width; ++x) {
-      const Shrink& s = across[static_cast<std::size_t>(x)];
-      float* to = &wide[size(new_width, y) + static_cast<std::size_t>(x) * 3];
+// Of an array [outer][n][inner] along its middle axis, to [outer][m][inner].
+std::vector<float> ShrinkAxis(const std::vector<float>& in, std::size_t outer, int n, int m, std::size_t inner) {
+  const std::size_t from_stride = static_cast<std::size_t>(n) * inner;
+  std::vector<float> out(outer * static_cast<std::size_t>(m) * inner);
+  const std::vector<Shrink> weights = ShrinkWeights(n, m);
+  float* to = out.data();
+  for (std::size_t o = 0; o < outer; ++o) {
+    for (const Shrink& s : weights) {
       for (int k = 0; k < 4; ++k) {
-        const float* from = &in[size(width, y) + static_cast<std::size_t>(std::min(s.first + k, width - 1)) * 3];
-        for (int c = 0; c < 3; ++c) to[c] += s.weight[static_cast<std::size_t>(k)] * from[c];
+        const float* from = &in[o * from_stride + static_cast<std::size_t>(std::min(s.first + k, n - 1)) * inner];
+        for (std::size_t i = 0; i < inner; ++i) to[i] += s.weight[static_cast<std::size_t>(k)] * from[i];
       }
-    }
-  }
-  for (int y = 0; y < new_height; ++y) {
-    const Shrink& s = down[static_cast<std::size_t>(y)];
-    float* to = &out[size(new_width, y)];
-    for (int k = 0; k < 4; ++k) {
-      const float* from = &wide[size(new_width, std::min(s.first + k, height - 1))];
-      for (int i = 0; i < 3 * new_width; ++i) to[i] += s.weight[static_cast<std::size_t>(k)] * from[i];
+      to += inner;
     }
   }
   return out;
@@ -108,7 +99,8 @@ Texture::Texture(std::string name, int width, int height, std::span<const std::u
     for (std::size_t i = 0; 3 * i < linear.size(); ++i) texels_[first + i] = Encode(&linear[3 * i], roots);
     if (width == 1 && height == 1) break;
     const int half_width = std::max(1, width / 2), half_height = std::max(1, height / 2);
-    linear = Halve(linear, width, height, half_width, half_height);
+    linear = ShrinkAxis(linear, static_cast<std::size_t>(height), width, half_width, 3);
+    linear = ShrinkAxis(linear, 1, height, half_height, 3 * static_cast<std::size_t>(half_width));
     width = half_width;
     height = half_height;
   }

@@ -1,6 +1,7 @@
 // Texture: linear light, mipmaps, trilinear filtering.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -9,6 +10,11 @@
 #include <vector>
 
 namespace sim {
+
+// sRGB transfer function (IEC 61966-2-1), from code to linear light. Both sides in [0, 1].
+inline double SrgbToLinear(double code) {
+  return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
+}
 
 // One level of the mip chain: level l has max(1, floor(size / 2^l)) texels a side.
 struct TextureLevel {

@@ -227,7 +227,7 @@ void Bare(benchmark::State& state) {
         rays.ray.id[i] = rays.ray.flags[i] = 0;
         rays.hit.geomID[i] = rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
       }
-      IntersectCoherent16(block.valid.v, world.rays.embree(), &rays);
+      Intersect16(block.valid.v, world.rays.embree(), &rays, true);
       sum += rays.ray.tfar[5];
     }
     benchmark::DoNotOptimize(sum);
@@ -242,7 +242,7 @@ void Shaded(benchmark::State& state, ExposeBlockFunction expose, int lights, boo
   PacketScene scene = world.rays.packet_scene();
   if (!baked) scene.light = nullptr;
   LightSample lamp{};
-  lamp.x = 10, lamp.y = 5, lamp.z = 4;
+  lamp.place[0] = 10, lamp.place[1] = 5, lamp.place[2] = 4;
   for (float& p : lamp.power) p = 20;
   RaySample sample = world.frame.sample;
   sample.lights = &lamp;
@@ -407,14 +407,11 @@ int main(int argc, char** argv) {
     for (const Texture& t : scene.textures) bytes += t.texels().size() * 4;
     std::printf("%zu triangles, %.1f MB of pictures, made in %.2f s; best instruction set: %s\n", CountTriangles(scene),
                 static_cast<double>(bytes) * 1e-6,
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), PacketKernel().name);
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+                PacketKernels().back().name);
   }
-  const std::string best = PacketKernel().name;
-  std::vector<KernelChoice> kernels{{packet_base::ExposeBlock, packet_base::ScrambleBlock, "base"}};
-  if (best != "base") kernels.push_back({packet_avx2::ExposeBlock, packet_avx2::ScrambleBlock, "avx2"});
-  if (best == "avx512") kernels.push_back({packet_avx512::ExposeBlock, packet_avx512::ScrambleBlock, "avx512"});
   benchmark::RegisterBenchmark("bare/rtcIntersect16", Bare)->Unit(benchmark::kMillisecond);
-  for (const KernelChoice& kernel : kernels) {
+  for (const KernelChoice& kernel : PacketKernels()) {
     const std::string name = kernel.name;
     benchmark::RegisterBenchmark(("sample/baked/" + name).c_str(), Shaded, kernel.expose_block, 0, true)
         ->Unit(benchmark::kMillisecond);

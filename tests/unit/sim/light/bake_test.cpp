@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <tbb/task_arena.h>
 
-#include "sim/light/shared_exponent.h"
 #include "tests/unit/sim/render/worlds.h"
 
 namespace sim::test {

@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "sim/light/shared_exponent.h"
 #include "sim/render/sample_pattern.h"
 #include "tests/unit/sim/render/worlds.h"
 
@@ -20,10 +19,6 @@ TEST(BakedPicture, LatticeIsInterpolatedLinearly) {
   AddMaterial(scene, glm::vec3(1.0f));
   AddQuad(scene, {-3, -3, 2}, {6, 0, 0}, {0, 6, 0}, 0);  // its front, cross(x, y) = +z, is turned away
   RayScene rays(scene);
-  std::vector<ExposeBlockFunction> kernels{packet_base::ExposeBlock};
-  const std::string best = PacketKernel().name;
-  if (best != "base") kernels.push_back(packet_avx2::ExposeBlock);
-  if (best == "avx512") kernels.push_back(packet_avx512::ExposeBlock);
   for (const int log2 : {0, 1, 3, 6}) {
     for (const bool back : {true, false}) {
       BakedLight light;
@@ -45,7 +40,7 @@ TEST(BakedPicture, LatticeIsInterpolatedLinearly) {
         if (!back) light.samples.insert(light.samples.end(), other.begin(), other.end());
       }
       rays.SetLight(light);
-      for (const ExposeBlockFunction expose : kernels) {
+      for (const KernelChoice& kernel : PacketKernels()) {
         for (float y0 = -1.4f; y0 < 1.3f; y0 += 0.37f) {
           RaySample sample{};
           for (int c = 0; c < 3; ++c) sample.rotation[c][c] = 1;
@@ -58,7 +53,7 @@ TEST(BakedPicture, LatticeIsInterpolatedLinearly) {
             block.valid.v[i] = -1;
           }
           Lanes sum[3];
-          expose(rays.packet_scene(), &sample, 1, false, 1.0f, block, sum);
+          kernel.expose_block(rays.packet_scene(), &sample, 1, false, 1.0f, block, sum);
           for (int i = 0; i < kLanes; ++i) {
             const float x = 2 * block.x.v[i] * (back ? 1.0f : -1.0f), y = 2 * block.y.v[i];
             EXPECT_NEAR(sum[0].v[i], 0.5f * (1 + (x + 3) / 6), 0.002f)

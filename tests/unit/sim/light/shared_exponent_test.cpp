@@ -1,6 +1,4 @@
 // Packed light keeps what it promises.
-#include "sim/light/shared_exponent.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

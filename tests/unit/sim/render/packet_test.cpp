@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
+#include <vector>
 
 #include "sim/render/placed_objects.h"
 #include "sim/render/ray_scene.h"
@@ -29,7 +29,7 @@ void ExpectInstructionSetsToAgree(bool moving) {
   const PlacedObjects placed(rays, 0.0, 0.1);
 
   LightSample lamp{};
-  lamp.x = 1, lamp.y = -1, lamp.z = 0;
+  lamp.place[0] = 1, lamp.place[1] = -1, lamp.place[2] = 0;
   for (float& p : lamp.power) p = 9;
   RaySample samples[4]{};
   for (std::uint32_t i = 0; i < 4; ++i) {
@@ -54,20 +54,17 @@ void ExpectInstructionSetsToAgree(bool moving) {
     block.scramble_u.v[i] = static_cast<std::int32_t>(PixelScramble(1, static_cast<std::uint32_t>(i), 0).point.u);
   }
   Lanes base[3];
-  packet_base::ExposeBlock(rays.packet_scene(), samples, 4, true, 0.5f, block, base);
+  const std::vector<KernelChoice> kernels = PacketKernels();
+  kernels[0].expose_block(rays.packet_scene(), samples, 4, true, 0.5f, block, base);
   for (int i = 0; i < kLanes; ++i) EXPECT_GE(base[0].v[i], i == 5 ? 0.0f : 0.01f);
 
-  const std::string best = PacketKernel().name;
-  std::vector<ExposeBlockFunction> others;
-  if (best != "base") others.push_back(packet_avx2::ExposeBlock);
-  if (best == "avx512") others.push_back(packet_avx512::ExposeBlock);
-  if (others.empty()) GTEST_SKIP() << "this machine has only the base instruction set";
-  for (const ExposeBlockFunction other : others) {
+  if (kernels.size() == 1) GTEST_SKIP() << "this machine has only the base instruction set";
+  for (const KernelChoice& kernel : kernels) {
     Lanes sum[3];
-    other(rays.packet_scene(), samples, 4, true, 0.5f, block, sum);
+    kernel.expose_block(rays.packet_scene(), samples, 4, true, 0.5f, block, sum);
     for (int c = 0; c < 3; ++c) {
       for (int i = 0; i < kLanes; ++i)
-        EXPECT_NEAR(sum[c].v[i], base[c].v[i], 1e-4f * (1 + base[c].v[i])) << c << ", " << i;
+        EXPECT_NEAR(sum[c].v[i], base[c].v[i], 1e-4f * (1 + base[c].v[i])) << kernel.name << ", " << c << ", " << i;
     }
   }
 }
@@ -76,14 +73,10 @@ TEST(Packet, InstructionSetsAgree) { ExpectInstructionSetsToAgree(false); }
 TEST(Packet, InstructionSetsAgreeOnObjects) { ExpectInstructionSetsToAgree(true); }
 
 TEST(Packet, BitsWithEveryInstructionSet) {
-  std::vector<ScrambleBlockFunction> kernels{packet_base::ScrambleBlock};
-  const std::string best = PacketKernel().name;
-  if (best != "base") kernels.push_back(packet_avx2::ScrambleBlock);
-  if (best == "avx512") kernels.push_back(packet_avx512::ScrambleBlock);
-  for (const ScrambleBlockFunction scramble : kernels) {
+  for (const KernelChoice& kernel : PacketKernels()) {
     for (const std::uint64_t key : {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{0xfedcba9876543210}}) {
       BlockBits bits;
-      scramble(key, 636, 1000, bits);
+      kernel.scramble_block(key, 636, 1000, bits);
       for (int i = 0; i < kLanes; ++i) {
         const PixelBits expected =
             PixelScramble(key, 636u + static_cast<std::uint32_t>(i % 4), 1000u + static_cast<std::uint32_t>(i / 4));

@@ -1,11 +1,11 @@
-#include "sim/render/pixel_ray.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <string>
 #include <vector>
+
+#include "sim/render/surface_tracer.h"
 
 namespace sim {
 namespace {

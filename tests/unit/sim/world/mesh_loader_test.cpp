@@ -7,7 +7,6 @@
 #include <glm/vector_relational.hpp>
 
 #include "sim/world/scene.h"
-#include "sim/world/srgb.h"
 #include "tests/unit/sim/world/files.h"
 
 namespace sim::test {

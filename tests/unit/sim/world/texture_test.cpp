@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "sim/world/srgb.h"
-
 namespace sim {
 namespace {
 
