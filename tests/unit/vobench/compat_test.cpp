@@ -1,8 +1,6 @@
 // What --compat prints on small trajectories of our own. The texts in compat/expected.txt were printed when every
 // golden value of the reference tools was met (tests/unit/judge/evaluation/golden_test.cpp, which needs files that are not
 // ours).
-#include "tools/vobench/arguments.h"
-
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -15,6 +13,7 @@
 #include "tools/judge/evaluation/compat/evo.h"
 #include "tools/judge/evaluation/compat/tum.h"
 #include "tools/judge/evaluation/text_file.h"
+#include "tools/vobench/arguments.h"
 
 namespace vobench {
 namespace {
