@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "vo/filter/pose_gaussian.h"
 #include "vo/filter/watched_filter.h"
 #include "vo/filter_adapter.h"
+#include "vo/frontend/adaptive_association.h"
 #include "vo/frontend/association.h"
 #include "vo/frontend/new_features.h"
 #include "vo/frontend/rolling_shutter.h"
@@ -29,7 +31,8 @@ struct Odometry::Impl {
         shutter(camera, params.features),
         first_sampler(FirstSampler(params.features)),
         border_px(std::max(first_sampler.margin(), Patch::kRadius + 1)),
-        detector(camera, params, border_px) {}
+        detector(camera, params, border_px),
+        adaptive(camera) {}
 
   void Require(const Frame& frame) const {
     if (frame.image.cols != camera.width || frame.image.rows != camera.height)
@@ -71,10 +74,19 @@ struct Odometry::Impl {
   void Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) {
     const double dt = static_cast<double>(frame.frame.stamp_ns - *last_stamp_ns) * 1e-9;
     Stopwatch watch;
-    filter.Predict(dt);  // line 2: (6)-(9), (12), (13)
+    const double coasting_s = since_update.dt_s;
     since_update.dt_s += dt;
-    Association association =
-        Associate(filter, records, camera, frame, border_px, since_update, params);  // line 3: section 7
+    const auto associate = [&](const MotionInput& input) {
+      since_update.input = input;
+      return Associate(filter, records, camera, frame, border_px, since_update, params);  // line 3: section 7
+    };
+    Association association;
+    if (params.motion.adaptive) {
+      association = adaptive.PredictAndAssociate(filter, dt, coasting_s, frame.grey, associate);
+    } else {
+      filter.Predict(dt);  // line 2: (6)-(9), (12), (13)
+      association = associate({});
+    }
     diagnostics.ms_matching += watch.Lap();
 
     Update(association.matches);                       // lines 4-11: (15)-(17), (37)-(43)
@@ -88,6 +100,7 @@ struct Odometry::Impl {
     diagnostics.ms_filter += watch.Lap();
     last_stamp_ns = frame.frame.stamp_ns;
 
+    if (params.motion.adaptive && !filter.answer().initialising) UpdateTypicalDepth(association.matches);
     std::vector<NewFeature> features = DetectFeatures(frame);            // section 7
     Forget(features.size());                                             // section 6: deletion
     AddLandmarks(std::move(features), frame, filter.belief().velocity);  // section 5
@@ -111,6 +124,25 @@ struct Odometry::Impl {
   void Update(std::span<const Match> matches) {
     scale.AbsorbChange(filter.Update(matches).scale_change);
     if (!matches.empty()) since_update = {0, VelocityCovariance()};
+  }
+
+  // Prior of new landmarks: the median depth of those in view, whose map may have any scale. Kept where too few are
+  // known.
+  void UpdateTypicalDepth(std::span<const Match> matches) {
+    constexpr double kKnown = 0.3, kRelativeSigma = 1;
+    constexpr std::size_t kEnough = 8;
+    const std::vector<Filter::LandmarkBelief> beliefs = filter.LandmarkBeliefs();
+    const Pose& pose = filter.belief().pose;
+    std::vector<double> depths;
+    for (const Match& match : matches) {
+      const Filter::LandmarkBelief& belief = beliefs[match.landmark];
+      const double depth = (pose.q_WC.conjugate() * (belief.X_W - pose.p_WC)).z();
+      if (belief.relative_sigma() < kKnown && depth > 0) depths.push_back(depth);
+    }
+    if (depths.size() < kEnough) return;
+    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+    std::nth_element(depths.begin(), middle, depths.end());
+    typical_depth = {1 / *middle, kRelativeSigma / *middle};
   }
 
   // Away from found landmarks and from predicted ones that were not searched for.
@@ -155,7 +187,7 @@ struct Odometry::Impl {
     const double sigma_px =
         params.features.noise != MatchNoise::constant ? params.features.sigma_floor_px : params.features.sigma_px;
     view.R = PixelNoise(camera.LensJacobian(view.ray), sigma_px);
-    view.depth = feature.depth;
+    view.depth = feature.depth ? feature.depth : typical_depth;
     return view;
   }
 
@@ -176,6 +208,8 @@ struct Odometry::Impl {
   std::vector<Eigen::Vector2d> left_out;  // [px] predicted in this frame, beyond max_searched
   std::optional<std::int64_t> last_stamp_ns;
   SinceUpdate since_update;
+  AdaptiveAssociation adaptive;
+  std::optional<KnownDepth> typical_depth;
   int next_id = 0;
   std::optional<PreparedFrame> first_frame;  // with a rolling shutter, until the second frame
 };

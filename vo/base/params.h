@@ -17,6 +17,7 @@ using settings::Unit;
 struct MotionParams {
   double position_noise = 2.5;     // [m/s^1.5]
   double orientation_noise = 1.0;  // [rad/s^1.5]
+  bool adaptive = false;
 };
 
 template <class V>
@@ -25,6 +26,8 @@ void Visit(V& v, MotionParams& p) {
     {Unit::acceleration_density, Range::Positive(), "root of the power spectral density of white acceleration"});
   v("orientation_noise", p.orientation_noise,
     {Unit::angular_acceleration_density, Range::Positive(), "the same of white angular acceleration"});
+  v("adaptive", p.adaptive,
+    {"on images: estimate both on line, at least as above, and repeat failed predictions; `vobench track`: true"});
 }
 
 enum class Sampled {

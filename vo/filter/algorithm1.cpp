@@ -19,13 +19,19 @@ Algorithm1::Algorithm1(ParticlePhase&& finished)
   for (Particle& particle : particles_) particle.solution = {};  // large, and not read again
 }
 
-void Algorithm1::Predict(double dt) {
+void Algorithm1::Predict(double dt, const MotionInput& input) {
   BeginFrame();
   since_sampled_ += dt;
-  step_ = {settings_.motion, since_sampled_};
+  PredictAgain(input);
+}
+
+void Algorithm1::PredictAgain(const MotionInput& input) {
+  step_ = {settings_.motion, since_sampled_, input};
   const Matrix6 covariance = step_.PredictedCovariance(particles_[0].velocity);  // (13), the same for all particles
-  for (std::size_t i = 0; i < particles_.size(); ++i)                            // line 2
+  for (std::size_t i = 0; i < particles_.size(); ++i) {                          // line 2
     predictions_[i] = PredictPose(step_, particles_[i].pose, particles_[i].velocity, covariance);
+    if (input.turn) predictions_[i].mean.q_WC = (particles_[i].pose.q_WC * *input.turn).normalized();
+  }
 }
 
 const FilterAnswer& Algorithm1::Update(std::span<const Match> z) { return z.empty() ? Coast() : SampleStep(z); }

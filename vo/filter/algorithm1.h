@@ -17,7 +17,8 @@ class Algorithm1 final : public ParticlePhase {
   // Goes on with the particles of a finished phase, all of whose poses are sampled.
   explicit Algorithm1(ParticlePhase&& finished);
 
-  void Predict(double dt) override;
+  void Predict(double dt, const MotionInput& input = {}) override;
+  void PredictAgain(const MotionInput& input) override;
   // Without matches nothing is sampled: the next Predict spans the time since the last sampled pose, which is exact.
   const FilterAnswer& Update(std::span<const Match> z) override;
   // At the present pose, which is sampled now if the filter coasts.

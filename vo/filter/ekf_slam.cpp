@@ -36,9 +36,18 @@ EkfSlam::EkfSlam(const MotionParams& motion, const FilterParams& filter, const L
   answer_.mixture.clear();
 }
 
-void EkfSlam::Predict(double dt) {
+void EkfSlam::Predict(double dt, const MotionInput& input) {
+  before_ = {dt, state_.pose, P_.topRows<kCameraSize>(), P_.leftCols<kCameraSize>(), since_known_};
+  PredictAgain(input);
+}
+
+void EkfSlam::PredictAgain(const MotionInput& input) {
   answer_.events = {};
-  const MotionModel model = NearlyConstantVelocity(motion_, dt);
+  state_.pose = before_.pose;
+  P_.topRows<kCameraSize>() = before_.camera_rows;
+  P_.leftCols<kCameraSize>() = before_.camera_columns;
+  since_known_ = before_.since_known;
+  const MotionModel model = NearlyConstantVelocity(motion_, before_.dt, input);
   const Vector6 u = model.F.topRightCorner<6, 6>() * state_.velocity;
   state_.pose.p_WC += u.head<3>();
   state_.pose.q_WC = (state_.pose.q_WC * Exp(u.tail<3>())).normalized();

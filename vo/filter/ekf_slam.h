@@ -25,7 +25,8 @@ class EkfSlam final : public Filter {
   EkfSlam(const MotionParams& motion, const FilterParams& filter, const LandmarkParams& landmark,
           const FilterPrior& prior);
 
-  void Predict(double dt) override;
+  void Predict(double dt, const MotionInput& input = {}) override;
+  void PredictAgain(const MotionInput& input) override;  // input.turn is left out
   // One linearisation at the prediction: the textbook EKF. With joint_iterations above 1 at most that many steps of
   // Gauss-Newton to the joint mode of poses and landmarks: landmarks are then linearised where this frame's noise has
   // moved them, so that motion is seen in noise (docs/odometry.md). Covariance by Joseph's form.
@@ -57,6 +58,12 @@ class EkfSlam final : public Filter {
   JointState state_;
   Eigen::MatrixXd P_;
   Matrix12 since_known_ = Matrix12::Zero();  // covariance of the camera, had its pose been known at the last update
+  struct BeforePrediction {
+    double dt;  // [s]
+    Pose pose;
+    Eigen::MatrixXd camera_rows, camera_columns;  // of P_
+    Matrix12 since_known;
+  } before_;
   PoseGaussian reference_;
   FilterAnswer answer_;
 };

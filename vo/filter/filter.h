@@ -9,6 +9,7 @@
 
 #include "vo/base/result.h"
 #include "vo/filter/mixture.h"
+#include "vo/filter/motion_model.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/map/local_map.h"
 #include "vo/map/moments.h"
@@ -49,7 +50,9 @@ class Filter {
   virtual ~Filter() = default;
 
   // dt > 0 [s].
-  virtual void Predict(double dt) = 0;
+  virtual void Predict(double dt, const MotionInput& input = {}) = 0;
+  // The prediction that was made last, anew with another input. Nothing was updated since.
+  virtual void PredictAgain(const MotionInput& input) = 0;
   // Without matches the filter coasts. Returns answer().
   virtual const FilterAnswer& Update(std::span<const Match> matches) = 0;
   // A landmark for every first view, at the present pose. Indices follow those in use.

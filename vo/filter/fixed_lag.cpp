@@ -2,8 +2,15 @@
 
 namespace vo {
 
-void FixedLag::Predict(double dt) {
-  ExtendPaths(dt);
+void FixedLag::Predict(double dt, const MotionInput& input) {
+  BeginFrame();
+  PredictOver(dt, input);
+}
+
+void FixedLag::PredictAgain(const MotionInput& input) { PredictOver(0, input); }
+
+void FixedLag::PredictOver(double dt, const MotionInput& input) {
+  ExtendPaths(dt, input);
   if (!answer_.initialising)  // the poses sampled since have changed the rest
     for (std::size_t i = 0; i < particles_.size(); ++i) Solve(i, Options(false));
   SetReferenceLandmarks();

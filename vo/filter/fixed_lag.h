@@ -13,11 +13,15 @@ class FixedLag final : public WindowPhase {
   // Goes on with the window and the solutions of a finished initialisation.
   explicit FixedLag(WindowPhase&& finished) : WindowPhase(std::move(finished)) {}
 
-  void Predict(double dt) override;
+  void Predict(double dt, const MotionInput& input = {}) override;
+  void PredictAgain(const MotionInput& input) override;
   const FilterAnswer& Update(std::span<const Match> z) override;
 
  protected:
   std::span<const double> SolutionWeights() const override { return particles_.weights(); }
+
+ private:
+  void PredictOver(double dt, const MotionInput& input);
 };
 
 }  // namespace vo

@@ -31,9 +31,15 @@ void Transform(const Pose& from, const Pose& to, PathGaussian& path) {
 
 }  // namespace
 
-void Initialisation::Predict(double dt) {
-  ExtendPaths(dt);
+void Initialisation::Predict(double dt, const MotionInput& input) {
+  BeginFrame();
+  ExtendPaths(dt, input);
   if (static_cast<int>(answered_.size()) == window_.size()) answered_.pop_back();  // its pose was integrated out
+  SetReferenceLandmarks();
+}
+
+void Initialisation::PredictAgain(const MotionInput& input) {
+  ExtendPaths(0, input);
   SetReferenceLandmarks();
 }
 
@@ -145,6 +151,9 @@ void Initialisation::Finish() {
     particles_[i].log_weight += particles_[i].solution.path.log_evidence;
   }
   Weigh();
+  // An unknown scale is a gauge freedom: where each particle drew its own, their common map would have none.
+  if (settings_.landmark.scale_sigma > 0)
+    for (Particle& particle : particles_) ConditionOnScale(particle.pose, particle.solution.path);
 }
 
 // Factor of all lengths between the last answer's path and the present one, as far as scale explains the change. With

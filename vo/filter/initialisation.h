@@ -13,7 +13,8 @@ class Initialisation final : public WindowPhase {
  public:
   Initialisation(const ParticleFilterSettings& settings, const FilterPrior& prior) : WindowPhase(settings, prior) {}
 
-  void Predict(double dt) override;
+  void Predict(double dt, const MotionInput& input = {}) override;
+  void PredictAgain(const MotionInput& input) override;
   const FilterAnswer& Update(std::span<const Match> z) override;
   void AddLandmarks(std::span<const FirstView> views) override;
   void KeepLandmarks(const std::vector<bool>& keep) override;

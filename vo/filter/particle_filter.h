@@ -16,7 +16,8 @@ class ParticleFilter final : public Filter {
   ParticleFilter(const MotionParams& motion, const FilterParams& filter, const LandmarkParams& landmark,
                  const FilterPrior& prior, std::uint64_t seed);
 
-  void Predict(double dt) override { phase_->Predict(dt); }
+  void Predict(double dt, const MotionInput& input = {}) override { phase_->Predict(dt, input); }
+  void PredictAgain(const MotionInput& input) override { phase_->PredictAgain(input); }
   const FilterAnswer& Update(std::span<const Match> matches) override;
   void AddLandmarks(std::span<const FirstView> views) override { phase_->AddLandmarks(views); }
   void KeepLandmarks(const std::vector<bool>& keep) override { phase_->KeepLandmarks(keep); }

@@ -108,6 +108,15 @@ void DropLast(PathGaussian& path) {
   path.covariance.conservativeResize(path.covariance.rows() - kPoseSize, path.covariance.cols() - kPoseSize);
 }
 
+void ConditionOnScale(const Pose& start, PathGaussian& path) {
+  constexpr double kLeft = 1e-4;  // of the variance: the covariance stays definite
+  Eigen::VectorXd d = Eigen::VectorXd::Zero(path.covariance.rows());
+  for (std::size_t k = 0; k < path.mean.size(); ++k)
+    d.segment<3>(kPoseSize * static_cast<Eigen::Index>(k)) = path.mean[k].p_WC - start.p_WC;
+  const double information = d.dot(path.covariance.llt().solve(d));
+  if (information > 0) path.covariance -= (1 - kLeft) / information * d * d.transpose();
+}
+
 void ConditionOn(int slot, const Pose& s, PathGaussian& path) {
   const int rest = static_cast<int>(path.covariance.rows()) - 6;
   const Eigen::LLT<Matrix6> llt(path.covariance.topLeftCorner<6, 6>());

@@ -77,6 +77,10 @@ void Extend(const PathPrior& prior, const MotionModel& step, const Pose& start, 
 // The last pose integrated out.
 void DropLast(PathGaussian& path);
 
+// The path given its scale: the covariance without the direction d = (p_k - start, 0) along which only the scale of all
+// lengths differs, P - d d' / (d' P^-1 d), but for a hundredth of its standard deviation.
+void ConditionOnScale(const Pose& start, PathGaussian& path);
+
 // The rest of the path given its pose at `slot`: a conditional Gaussian. The covariance loses that pose, the mean keeps
 // it.
 void ConditionOn(int slot, const Pose& pose, PathGaussian& path);

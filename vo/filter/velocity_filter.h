@@ -23,7 +23,8 @@ class VelocityFilter {
 
   explicit VelocityFilter(const MotionModel& step);
   // Over dt > 0 [s].
-  VelocityFilter(const MotionParams& motion, double dt) : VelocityFilter(NearlyConstantVelocity(motion, dt)) {}
+  VelocityFilter(const MotionParams& motion, double dt, const MotionInput& input = {})
+      : VelocityFilter(NearlyConstantVelocity(motion, dt, input)) {}
 
   // (12)(13): the next s_pf before it is sampled.
   Vector6 PredictedMean(const Vector6& s_pf, const State& s_kf) const;

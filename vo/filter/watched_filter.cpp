@@ -65,10 +65,19 @@ void WatchedFilter::RequireAnswer(const char* stage) const {
           "the effective number of particles is not one");
 }
 
-void WatchedFilter::Predict(double dt) {
+void WatchedFilter::Predict(double dt, const MotionInput& input) {
   ++frame_;
   Require(dt > 0 && std::isfinite(dt), "prediction", "the time since the last frame is not positive");
-  filter_->Predict(dt);
+  filter_->Predict(dt, input);
+  RequirePrediction();
+}
+
+void WatchedFilter::PredictAgain(const MotionInput& input) {
+  filter_->PredictAgain(input);
+  RequirePrediction();
+}
+
+void WatchedFilter::RequirePrediction() const {
   const PoseGaussian prediction = filter_->Reference().prediction;
   Require(Finite(prediction.mean), "prediction", "the pose is not one");
   RequireVariances(prediction.covariance, "prediction", "the pose",

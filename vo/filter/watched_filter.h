@@ -30,7 +30,8 @@ class WatchedFilter final : public Filter {
   explicit WatchedFilter(std::unique_ptr<Filter> filter) : filter_(std::move(filter)) {}
   const Filter& watched() const { return *filter_; }
 
-  void Predict(double dt) override;
+  void Predict(double dt, const MotionInput& input = {}) override;
+  void PredictAgain(const MotionInput& input) override;
   const FilterAnswer& Update(std::span<const Match> matches) override;
   void AddLandmarks(std::span<const FirstView> views) override;
   void KeepLandmarks(const std::vector<bool>& keep) override;
@@ -48,6 +49,7 @@ class WatchedFilter final : public Filter {
   }
   void RequireVariances(const Eigen::Ref<const Eigen::MatrixXd>& covariance, const char* stage, const char* whose,
                         bool above_zero) const;
+  void RequirePrediction() const;
   void RequireAnswer(const char* stage) const;
   void RequireSigma(double sigma) const {
     Require(sigma >= 0 && std::isfinite(sigma), "landmarks",

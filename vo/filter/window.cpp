@@ -19,8 +19,8 @@ Track Window::TrackOf(int landmark, const LandmarkTable& table) const {
   return {landmark, anchor, anchor_slot_[anchor], {}};
 }
 
-void Window::Append(double dt, std::uint32_t number, const LandmarkTable& table) {
-  frames_.push_back({dt, number, {}});
+void Window::Append(double dt, std::uint32_t number, const MotionInput& input, const LandmarkTable& table) {
+  frames_.push_back({dt, number, input, {}});
   BuildTracks(table);
 }
 

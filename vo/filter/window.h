@@ -16,6 +16,7 @@ class Window {
   struct Frame {
     double dt = 0;  // [s] since the one before
     std::uint32_t number = 0;
+    MotionInput input;
     std::vector<Match> matches;
   };
 
@@ -26,7 +27,7 @@ class Window {
   int anchor_slot(int anchor) const { return anchor_slot_[anchor]; }  // -1: sampled
 
   // The table is that of the landmarks, for the tracks.
-  void Append(double dt, std::uint32_t number, const LandmarkTable& table);
+  void Append(double dt, std::uint32_t number, const MotionInput& input, const LandmarkTable& table);
   void SetMatches(std::span<const Match> matches, const LandmarkTable& table);  // of the last frame
   void DropOldest(int count, const LandmarkTable& table);
   bool LastIsUnused() const;                    // no match, no anchor

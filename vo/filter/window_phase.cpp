@@ -22,8 +22,7 @@ WindowPhase::WindowPhase(const ParticleFilterSettings& settings, const FilterPri
   answer_.initialising = true;
 }
 
-void WindowPhase::ExtendPaths(double dt) {
-  BeginFrame();
+void WindowPhase::ExtendPaths(double dt, const MotionInput& input) {
   if (window_.LastIsUnused()) {
     prior_.reset();
     dt += window_.DropLast(table_);
@@ -32,14 +31,18 @@ void WindowPhase::ExtendPaths(double dt) {
   const auto prior = [this] {
     std::vector<MotionModel> models;
     for (const Window::Frame& frame : window_.frames())
-      models.push_back(NearlyConstantVelocity(settings_.motion, frame.dt));
+      models.push_back(NearlyConstantVelocity(settings_.motion, frame.dt, frame.input));
     return PathPrior(models, particles_[0].velocity.covariance);
   };
   if (!prior_) prior_.emplace(prior());
-  const MotionModel step = NearlyConstantVelocity(settings_.motion, dt);
-  for (std::size_t i = 0; i < particles_.size(); ++i)
-    Extend(*prior_, step, particles_[i].pose, particles_[i].velocity.mean, particles_[i].solution.path);
-  window_.Append(dt, frame_, table_);
+  const MotionModel step = NearlyConstantVelocity(settings_.motion, dt, input);
+  for (Particle& particle : particles_) {
+    std::vector<Pose>& path = particle.solution.path.mean;
+    const Pose last = path.empty() ? particle.pose : path.back();
+    Extend(*prior_, step, particle.pose, particle.velocity.mean, particle.solution.path);
+    if (input.turn) path.back().q_WC = (last.q_WC * *input.turn).normalized();
+  }
+  window_.Append(dt, frame_, input, table_);
   prior_.emplace(prior());
 }
 
@@ -126,7 +129,7 @@ void WindowPhase::Commit(int count) {
       particles_[i].solution.modes = Triangulate(window_, table_, InputOf(i), particles_[i].solution);
   }
   for (int k = 0; k < count; ++k) {
-    const VelocityFilter step(settings_.motion, window_.frames()[k].dt);
+    const VelocityFilter step(settings_.motion, window_.frames()[k].dt, window_.frames()[k].input);
     for (std::size_t i = 0; i < particles_.size(); ++i)
       UpdateGivenPose(step, window_.frames()[k].matches, table_, k, particles_[i]);
   }

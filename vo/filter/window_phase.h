@@ -38,8 +38,8 @@ class WindowPhase : public ParticlePhase {
     return {InputOf(i), track, particles_[i].solution.path, particles_[i].solution.modes[track.landmark]};
   }
 
-  // One more pose. The last one is integrated out if nothing refers to it.
-  void ExtendPaths(double dt);
+  // One more pose, dt [s] after the last, which is integrated out if nothing refers to it. dt = 0: in its place.
+  void ExtendPaths(double dt, const MotionInput& input);
   // The landmarks of the heaviest particle, for the outlier test.
   void SetReferenceLandmarks();
   // Options of a solution; `initialising`: from a first guess that may be far off.

@@ -142,6 +142,8 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   std::vector<Match> matches;
   const Consensus consensus = RobustPose(in, candidates, results, matches);
   const MapView map(in.reference.map, consensus.pose.mean);
+  result.predicted = in.prediction();
+  result.agreed = consensus.pose;
 
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];
@@ -170,6 +172,14 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
     result.views.push_back(view);
   }
   return result;
+}
+
+void Association::RejectAll() {
+  matches.clear();
+  nis = 0;
+  for (Searched& one : searched) one.mahalanobis_sq.reset();
+  for (FeatureView& view : views)
+    if (view.status == FeatureView::Status::matched) view.status = FeatureView::Status::rejected;
 }
 
 void UpdateScores(const Association& association, const ScoreParams& params, std::span<LandmarkRecord> records) {

@@ -23,11 +23,11 @@ Eigen::Vector2d ImageMotion::Rate(int landmark) const {
 }
 
 Vector6 VelocityCorrection(const SinceUpdate& since, const MotionParams& motion, const Vector6& pose_change) {
-  const MotionModel model = NearlyConstantVelocity(motion, since.dt_s);
+  const MotionModel model = NearlyConstantVelocity(motion, since.dt_s, since.input);
   const Matrix6& V = since.velocity_covariance;
   const Matrix6 step = model.F.topRightCorner<6, 6>();
   const Matrix6 predicted = step * V * step.transpose() + model.Q.topLeftCorner<6, 6>();
-  const Matrix6 shared = V * step.transpose() + model.Q.bottomLeftCorner<6, 6>();
+  const Matrix6 shared = model.F.bottomRightCorner<6, 6>() * V * step.transpose() + model.Q.bottomLeftCorner<6, 6>();
   return shared * predicted.llt().solve(pose_change);
 }
 

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "vo/base/params.h"
+#include "vo/filter/motion_model.h"
 #include "vo/geometry/camera.h"
 #include "vo/map/landmark.h"
 #include "vo/map/local_map.h"
@@ -55,11 +56,12 @@ class ImageMotion {
 struct SinceUpdate {
   double dt_s = 0;
   Matrix6 velocity_covariance;
+  MotionInput input = {};  // of the prediction
 };
 
 // Correction of the predicted velocity given that the pose differs from its prediction by `pose_change` (dp in W, dphi
 // in C): its regression on the pose under nearly constant velocity (6)-(9) over the whole gap T = dt_s, the pose then
-// known, (V T + Q21) (V T^2 + Q11)^-1 pose_change.
+// known, (F22 V F12' + Q21) (F12 V F12' + Q11)^-1 pose_change.
 Vector6 VelocityCorrection(const SinceUpdate& since, const MotionParams& motion, const Vector6& pose_change);
 
 }  // namespace vo

@@ -244,6 +244,18 @@ TEST(EkfSlam, CovarianceStaysSymmetricAndPositive) {
   }
 }
 
+TEST(EkfSlam, PredictAgainLeavesNoTrace) {
+  World world = Draw(3, {10, 0, 0});
+  vo::EkfSlam once = RunOn(world, 10), twice = once;
+  once.Predict(0.1, {7, 5});
+  twice.Predict(0.1);
+  twice.PredictAgain({30, 2});
+  twice.PredictAgain({7, 5});
+  EXPECT_EQ(once.covariance(), twice.covariance());
+  EXPECT_EQ(once.Reference().prediction.covariance, twice.Reference().prediction.covariance);
+  EXPECT_EQ(once.Reference().prediction.mean.p_WC, twice.Reference().prediction.mean.p_WC);
+}
+
 TEST(EkfSlam, CoastsInOneStepAsInTwo) {
   World world = Draw(3, {10, 0, 0});
   vo::EkfSlam one = RunOn(world, 10), two = one;

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "tests/unit/vo/draws.h"
@@ -80,6 +82,42 @@ TEST(Algorithm1, IsTheFilterOfThePaper) {
     Step(algorithm, frame);
     EXPECT_TRUE(SameBits(filter.answer(), algorithm.answer())) << frame;
   }
+}
+
+// A prediction made again is the prediction with that input, bit for bit, in every phase.
+TEST(FilterPhases, PredictAgainLeavesNoTrace) {
+  const vo::MotionInput wide{20, 9}, turned{4, 4, vo::Exp(Eigen::Vector3d(0.01, -0.02, 0.005)), 0.01};
+  for (const auto& [lag, start_window] : {std::pair(0, 0), std::pair(0, 3), std::pair(2, 0), std::pair(2, 3)}) {
+    vo::ParticleFilter once = MakeFilter(lag, start_window), twice = MakeFilter(lag, start_window);
+    for (int frame = 1; frame <= 7; ++frame) {
+      const vo::MotionInput& input = frame % 3 == 0 ? turned : wide;
+      const std::vector<vo::Match> matches = vo_test::WallMatches(kLandmarks, frame);
+      const std::span<const vo::Match> z = frame == 5 ? std::span<const vo::Match>() : matches;
+      once.Predict(kDt, input);
+      twice.Predict(kDt);
+      twice.PredictAgain(turned);
+      twice.PredictAgain(input);
+      EXPECT_EQ(once.Reference().prediction.covariance, twice.Reference().prediction.covariance) << frame;
+      once.Update(z);
+      twice.Update(z);
+      EXPECT_TRUE(SameBits(once.answer(), twice.answer())) << lag << " " << start_window << " " << frame;
+    }
+  }
+}
+
+// The velocity of a coasting filter decays: the camera comes to rest after kCoastingTime times its velocity.
+TEST(Algorithm1, CoastsToRest) {
+  vo::FilterPrior prior = Prior();
+  prior.velocity << 1, 0, 0, 0, 0.5, 0;
+  vo::Algorithm1 algorithm(Settings(0, 0), prior);
+  for (int frame = 0; frame < 60; ++frame) {
+    algorithm.Predict(kDt, {1, 1, std::nullopt, frame * kDt});
+    algorithm.Update({});
+  }
+  const double way = kDt + vo::kCoastingTime;
+  EXPECT_NEAR(algorithm.answer().belief.pose.p_WC.x(), way, 1e-6);
+  EXPECT_NEAR(vo::Log(algorithm.answer().belief.pose.q_WC).y(), 0.5 * way, 1e-6);
+  EXPECT_LT(algorithm.answer().belief.velocity.norm(), 1e-6);
 }
 
 // Two predictions without an update between them are one over both times.
@@ -176,7 +214,7 @@ TEST(ShutterCorrection, IsAFunctionOfTheRowsAndThePath) {
   table.Add(2);
   vo::Window window;
   window.AddAnchor(0, table);
-  window.Append(kDt, 1, table);
+  window.Append(kDt, 1, {}, table);
   vo::Match row{0, {0.1, 0.2}, 1e-6 * Eigen::Matrix2d::Identity()},
       still{1, {0.2, 0.1}, 1e-6 * Eigen::Matrix2d::Identity()};
   row.row = {{0.11, 0.2}, 0.01};

@@ -155,6 +155,26 @@ TEST(PathEnd, AStepMoreIsAsIfSolvedAgain) {
 }
 
 // Two images at once, then none for seconds: the velocity between the two is taken times a step of many thousand times their gap.
+// Against the projector M that takes the direction of the scale to a hundredth, M P M'.
+TEST(PathGaussian, GivenItsScale) {
+  const Scene scene = MakeScene(5, 4, 0, 0.1, 1e-3);
+  Draws draws(6);
+  vo::PathGaussian path;
+  path.mean = scene.truth;
+  MatrixXd root(24, 24);
+  for (int column = 0; column < 24; ++column)
+    for (int block = 0; block < 4; ++block) root.block<6, 1>(6 * block, column) = draws.Normals<6>();
+  const MatrixXd P = root * root.transpose() * 1e-4;
+  path.covariance = P;
+  vo::ConditionOnScale(scene.start, path);
+  VectorXd d = VectorXd::Zero(24);
+  for (int k = 0; k < 4; ++k) d.segment<3>(6 * k) = scene.truth[k].p_WC - scene.start.p_WC;
+  const VectorXd information = P.inverse() * d;
+  const MatrixXd M = MatrixXd::Identity(24, 24) - 0.99 / d.dot(information) * d * information.transpose();
+  EXPECT_LT((path.covariance - M * P * M.transpose()).norm(), 1e-10 * P.norm());
+  EXPECT_NEAR(d.dot(path.covariance.inverse() * d) / d.dot(information), 1e4, 1e-3);
+}
+
 TEST(PathEnd, IsSymmetricAfterAGap) {
   Scene scene = MakeScene(5, 4, 24, 0.05, 1.0 / 525);
   vo::PathGaussian path = Solve(scene, false);

@@ -317,7 +317,8 @@ class Broken final : public vo::Filter {
   std::function<void(vo::PointMoments&)> spoil_point = [](auto&) {};
   double effective = 1;
 
-  void Predict(double dt) override {
+  void PredictAgain(const vo::MotionInput& input) override { good.PredictAgain(input); }
+  void Predict(double dt, const vo::MotionInput& /*input*/) override {
     good.Predict(dt);
     prediction_ = good.Reference().prediction;
     spoil_prediction(prediction_);

@@ -32,6 +32,9 @@ namespace {
 constexpr std::int64_t kFramesOfACamera = 3000;  // not known: pictures are kept at every 300th frame
 
 constexpr double kUnknownScale = 0.5;  // of a recording: the size of its scene is not known
+// Root of the power spectral density of acceleration over the prior depth [1/s^1.5], until both are estimated: with an
+// unknown scale only their ratio matters.
+constexpr double kAccelerationPerDepth = 0.625;
 
 struct TrackSettings {
   vo::Params params;
@@ -46,7 +49,11 @@ TrackSettings ReadSettings(const TrackOptions& options) {
   TrackSettings out;
   settings::Section odometry = document.root().Child("odometry");
   if (!odometry.Has("target")) out.params.landmark.scale_sigma = kUnknownScale;  // which has the scale
+  out.params.motion.adaptive = true;
+  const bool position_noise_given = odometry.Child("motion").Has("position_noise");
   ReadOdometry(odometry, out.params);
+  if (!position_noise_given)
+    out.params.motion.position_noise = kAccelerationPerDepth / out.params.landmark.inverse_depth;
   settings::Section prior = document.root().Child("prior");
   ReadPrior(prior, out.prior);
   if (out.prior.start == PriorSettings::Start::truth) {

@@ -1,0 +1,77 @@
+#include "vo/frontend/adaptive_association.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "vo/frontend/image_alignment.h"
+
+namespace vo {
+namespace {
+
+constexpr double kFailedRatio = 4;        // innovation ratio of a failed prediction
+constexpr double kFailedAgreement = 0.4;  // fewer of the searched agree
+constexpr int kWidenings = 2;
+constexpr double kAlignedNoise = 4;  // factor on the densities about an aligned rotation
+constexpr double kClearlyMore = 1.2;
+constexpr std::size_t kClearlyMoreMatches = 3;
+constexpr double kLeastMatches = 8, kLeastAgreement = 0.1;
+
+bool Failed(const Association& association, const InnovationRatios& ratios) {
+  return std::max(ratios.position, ratios.orientation) > kFailedRatio ||
+         static_cast<double>(association.matches.size()) <
+             kFailedAgreement * static_cast<double>(association.searched.size());
+}
+
+bool HasMatches(const Association& association) {
+  return static_cast<double>(association.matches.size()) >=
+         std::max(kLeastMatches, kLeastAgreement * static_cast<double>(association.searched.size()));
+}
+
+InnovationRatios RatiosOf(const Association& association) {
+  return RatiosOf(association.predicted, association.agreed);
+}
+
+}  // namespace
+
+bool AdaptiveAssociation::Repeat(Filter& filter, const MotionInput& repeated,
+                                 const std::function<Association(const MotionInput&)>& associate, MotionInput& input,
+                                 Association& association) const {
+  filter.PredictAgain(repeated);
+  Association again = associate(repeated);
+  const auto before = static_cast<double>(association.matches.size());
+  if (static_cast<double>(again.matches.size()) > kClearlyMore * before + kClearlyMoreMatches) {
+    input = repeated;
+    association = std::move(again);
+    return true;
+  }
+  filter.PredictAgain(input);
+  return false;
+}
+
+Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, double coasting_s, const cv::Mat& grey,
+                                                     const std::function<Association(const MotionInput&)>& associate) {
+  MotionInput input = noise_.Input();
+  input.coasting_s = coasting_s;
+  filter.Predict(dt, input);
+  Association association = associate(input);
+  for (int k = 0; k < kWidenings && Failed(association, RatiosOf(association)); ++k)
+    if (!Repeat(filter, Widened(input, RatiosOf(association)), associate, input, association)) break;
+  if (Failed(association, RatiosOf(association)) && !matched_.empty()) {
+    if (const auto R = AlignRotation(camera_, matched_, Thumbnails(grey))) {
+      MotionInput aligned = input;
+      aligned.position_noise *= kAlignedNoise;
+      aligned.orientation_noise *= kAlignedNoise;
+      aligned.turn = R->conjugate();
+      Repeat(filter, aligned, associate, input, association);
+    }
+  }
+  if (HasMatches(association)) {
+    noise_.Learn(RatiosOf(association), input);
+    matched_ = Thumbnails(grey);
+  } else {
+    association.RejectAll();
+  }
+  return association;
+}
+
+}  // namespace vo
