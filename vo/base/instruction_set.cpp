@@ -1,5 +1,7 @@
 #include "vo/base/instruction_set.h"
 
+#include <Eigen/Core>
+
 namespace vo {
 
 const char* Name(InstructionSet set) {
@@ -21,6 +23,12 @@ std::vector<InstructionSet> AvailableInstructionSets() {
 InstructionSet BestInstructionSet() {
   static const InstructionSet best = AvailableInstructionSets().back();
   return best;
+}
+
+void FixBlocksOfProducts() {
+  constexpr std::ptrdiff_t kKibibyte = 1024;
+  static const bool fixed = (Eigen::setCpuCacheSizes(32 * kKibibyte, 512 * kKibibyte, 8192 * kKibibyte), true);
+  static_cast<void>(fixed);
 }
 
 }  // namespace vo

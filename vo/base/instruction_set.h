@@ -1,4 +1,5 @@
-// Instruction sets that inner loops are compiled for, with dispatch at run time. All of them give the same bits.
+// What of the machine may differ while the bits stay: instruction sets of inner loops, with dispatch at run time, and the
+// block sizes of matrix products.
 #pragma once
 
 #include <vector>
@@ -11,5 +12,9 @@ const char* Name(InstructionSet set);
 std::vector<InstructionSet> AvailableInstructionSets();
 // The last of them, determined once.
 InstructionSet BestInstructionSet();
+
+// Makes Eigen cut products of large matrices alike on every machine: by itself it does so by the caches it finds, and
+// sums then have another order. Once for the process.
+void FixBlocksOfProducts();
 
 }  // namespace vo

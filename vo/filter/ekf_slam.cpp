@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vo/base/instruction_set.h"
 #include "vo/filter/motion_model.h"
 #include "vo/geometry/covariance.h"
 #include "vo/geometry/so3.h"
@@ -25,6 +26,7 @@ void Turn(Eigen::MatrixXd& P, int offset, const Eigen::Matrix3d& J) {
 EkfSlam::EkfSlam(const MotionParams& motion, const FilterParams& filter, const LandmarkParams& landmark,
                  const FilterPrior& prior)
     : motion_(motion), landmark_params_(landmark), joint_iterations_(filter.joint_iterations) {
+  FixBlocksOfProducts();
   state_.pose = prior.pose.mean;
   state_.velocity = prior.velocity;
   P_.setZero(kCameraSize, kCameraSize);

@@ -2,10 +2,13 @@
 
 #include <cmath>
 
+#include "vo/base/instruction_set.h"
+
 namespace vo {
 
 ParticlePhase::ParticlePhase(const ParticleFilterSettings& settings, const FilterPrior& prior)
     : settings_(settings), particles_(settings.filter.particles) {
+  FixBlocksOfProducts();
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     Particle& particle = particles_[i];
     particle.pose = prior.pose.Sample(Key(Stream::prior_pose, i));

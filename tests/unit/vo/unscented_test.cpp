@@ -130,7 +130,8 @@ TEST(UnscentedProposal, IsTheEkfWhereTheModelIsLinear) {
       const vo::AnchorView view(scene.prediction.mean,
                                 scene.anchors[static_cast<std::size_t>(scene.anchor_of[match.landmark])]);
       const vo::Landmark& prior = scene.landmarks[static_cast<std::size_t>(match.landmark)];
-      const auto a = vo::UpdateLandmarkUnscented(prior, view, match, {}), b = vo::UpdateLandmark(prior, view, match, 1);
+      const auto a = vo::UpdateLandmarkUnscented(prior, view, match, {}),
+                 b = vo::UpdateLandmark(prior, prior.mean, view, match, 1);
       EXPECT_LT((a.landmark.mean - b.landmark.mean).norm(), 1e-9);
       EXPECT_LT((a.landmark.covariance - b.landmark.covariance).norm(), 1e-4 * b.landmark.covariance.norm());
       EXPECT_NEAR(a.log_likelihood, b.log_likelihood, 1e-4 * std::abs(b.log_likelihood));

@@ -193,7 +193,7 @@ TaskRecord RecordFromJson(const std::string& text) {
     record.status = found->first;
     if (!json.at("metrics").empty()) {
       for (const std::string& name : MetricNames()) {
-        const Json& value = json.at("metrics").at(name);
+        const Json value = json.at("metrics").value(name, Json());  // null in records of programs without the column
         record.metrics.push_back(value.is_null() ? Value() : Value(value.get<double>()));
       }
     }

@@ -7,6 +7,7 @@
 #include "sim/sequence/layout.h"
 #include "sim/simulator.h"
 #include "tools/base/files.h"
+#include "tools/base/text.h"
 #include "tools/bench/campaign/command.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/run/calibration.h"
