@@ -52,7 +52,8 @@ std::vector<float> ReadExr(const std::filesystem::path& path, const std::vector<
 }
 
 TEST(TruthStreams, EachHasAName) {
-  TruthParams truth{.streams = All()};
+  TruthParams truth;
+  truth.streams = All();
   settings::FieldRows table;
   Visit(table, truth);
   EXPECT_EQ(table.rows.at(0).value, table.rows.at(0).range);
