@@ -13,6 +13,7 @@ MOST_MEMBERS, MOST_LINES, MOST_VIRTUALS = 12, 220, 12
 
 def without_comments(text):
     text = re.sub(r'"(\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', lambda m: '""' if m[0][0] == '"' else " ", text, flags=re.S)
+    text = re.sub(r"=\s*\{\s*\}", "= 0", text)  # default arguments and initialisers
     return re.sub(r"^\s*#[^\n]*", "", text, flags=re.M)
 
 

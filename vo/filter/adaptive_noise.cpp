@@ -40,8 +40,10 @@ void AdaptiveNoise::Learn(const InnovationRatios& ratios, const MotionInput& use
 }
 
 MotionInput Widened(const MotionInput& used, const InnovationRatios& ratios) {
-  return {used.position_noise * std::clamp(ratios.position, kLeastWidening, kMostOfOne),
-          used.orientation_noise * std::clamp(ratios.orientation, kLeastWidening, kMostOfOne), used.turn};
+  MotionInput wide = used;
+  wide.position_noise *= std::clamp(ratios.position, kLeastWidening, kMostOfOne);
+  wide.orientation_noise *= std::clamp(ratios.orientation, kLeastWidening, kMostOfOne);
+  return wide;
 }
 
 }  // namespace vo

@@ -45,25 +45,19 @@ void EkfSlam::Predict(double dt, const MotionInput& input) {
 
 void EkfSlam::PredictAgain(const MotionInput& input) {
   answer_.events = {};
-  state_.pose = before_.pose;
-  P_.topRows<kCameraSize>() = before_.camera_rows;
-  P_.leftCols<kCameraSize>() = before_.camera_columns;
-  since_known_ = before_.since_known;
   const MotionModel model = NearlyConstantVelocity(motion_, before_.dt, input);
   const Vector6 u = model.F.topRightCorner<6, 6>() * state_.velocity;
-  state_.pose.p_WC += u.head<3>();
-  state_.pose.q_WC = (state_.pose.q_WC * Exp(u.tail<3>())).normalized();
+  state_.pose = {before_.pose.p_WC + u.head<3>(), (before_.pose.q_WC * Exp(u.tail<3>())).normalized()};
   // q Exp(phi) Exp(u + du) = q Exp(u) Exp(Exp(u)' phi + J_r(u) du).
-  const Eigen::Matrix3d J_r = RightJacobian(u.tail<3>());
   Matrix12 G = Matrix12::Identity();  // of (p, delta, v, w)
-  G.block<3, 3>(3, 3) = J_r;
+  G.block<3, 3>(3, 3) = RightJacobian(u.tail<3>());
   Matrix12 F = G * model.F;
   F.block<3, 3>(3, 3) = Exp(u.tail<3>()).toRotationMatrix().transpose();
   const Matrix12 noise = G * model.Q * G.transpose();
-
-  since_known_ = F * since_known_ * F.transpose() + noise;
+  since_known_ = F * before_.since_known * F.transpose() + noise;
   reference_ = {state_.pose, since_known_.topLeftCorner<6, 6>()};
-  P_.topRows<kCameraSize>() = (F * P_.topRows<kCameraSize>()).eval();
+  P_.leftCols<kCameraSize>() = before_.camera_columns;
+  P_.topRows<kCameraSize>() = F * before_.camera_rows;
   P_.leftCols<kCameraSize>() = (P_.leftCols<kCameraSize>() * F.transpose()).eval();
   P_.topLeftCorner<kCameraSize, kCameraSize>() += noise;
 }

@@ -4,13 +4,19 @@ namespace vo {
 
 void FixedLag::Predict(double dt, const MotionInput& input) {
   BeginFrame();
-  PredictOver(dt, input);
+  ExtendPaths(dt, input);
+  extended_.resize(particles_.size());
+  for (std::size_t i = 0; i < particles_.size(); ++i) extended_[i] = particles_[i].solution;
+  SolveAgain();
 }
 
-void FixedLag::PredictAgain(const MotionInput& input) { PredictOver(0, input); }
+void FixedLag::PredictAgain(const MotionInput& input) {
+  for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].solution = extended_[i];
+  ExtendPaths(0, input);
+  SolveAgain();
+}
 
-void FixedLag::PredictOver(double dt, const MotionInput& input) {
-  ExtendPaths(dt, input);
+void FixedLag::SolveAgain() {
   if (!answer_.initialising)  // the poses sampled since have changed the rest
     for (std::size_t i = 0; i < particles_.size(); ++i) Solve(i, Options(false));
   SetReferenceLandmarks();

@@ -21,7 +21,9 @@ class FixedLag final : public WindowPhase {
   std::span<const double> SolutionWeights() const override { return particles_.weights(); }
 
  private:
-  void PredictOver(double dt, const MotionInput& input);
+  void SolveAgain();
+
+  std::vector<PathSolution> extended_;  // by the last prediction, before it was solved again
 };
 
 }  // namespace vo
