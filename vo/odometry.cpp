@@ -100,9 +100,10 @@ struct Odometry::Impl {
     diagnostics.ms_filter += watch.Lap();
     last_stamp_ns = frame.frame.stamp_ns;
 
-    if (params.motion.adaptive && !filter.answer().initialising) UpdateTypicalDepth(association.matches);
+    const std::vector<Filter::LandmarkBelief> beliefs = filter.LandmarkBeliefs();
+    if (params.motion.adaptive && !filter.answer().initialising) UpdateTypicalDepth(association.matches, beliefs);
     std::vector<NewFeature> features = DetectFeatures(frame);            // section 7
-    Forget(features.size());                                             // section 6: deletion
+    Forget(features.size(), beliefs);                                    // section 6: deletion
     AddLandmarks(std::move(features), frame, filter.belief().velocity);  // section 5
     diagnostics.ms_features += watch.Lap();
   }
@@ -128,10 +129,9 @@ struct Odometry::Impl {
 
   // Prior of new landmarks: the median depth of those in view, whose map may have any scale. Kept where too few are
   // known.
-  void UpdateTypicalDepth(std::span<const Match> matches) {
+  void UpdateTypicalDepth(std::span<const Match> matches, std::span<const Filter::LandmarkBelief> beliefs) {
     constexpr double kKnown = 0.3, kRelativeSigma = 1;
     constexpr std::size_t kEnough = 8;
-    const std::vector<Filter::LandmarkBelief> beliefs = filter.LandmarkBeliefs();
     const Pose& pose = filter.belief().pose;
     std::vector<double> depths;
     for (const Match& match : matches) {
@@ -154,8 +154,7 @@ struct Odometry::Impl {
   }
 
   // Deletes landmarks, also to make room for `wanted` new ones; those searched for in this frame are kept.
-  void Forget(std::size_t wanted) {
-    const std::vector<Filter::LandmarkBelief> beliefs = filter.LandmarkBeliefs();
+  void Forget(std::size_t wanted, std::span<const Filter::LandmarkBelief> beliefs) {
     for (std::size_t n = 0; n < records.size(); ++n)
       records[n].permanent = beliefs[n].relative_sigma() < params.landmark.permanent_ratio;
     const std::vector<bool> keep = LandmarksToKeep(records, wanted, params.landmark, params.score);

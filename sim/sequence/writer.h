@@ -22,7 +22,7 @@ namespace sim {
 //         writer.Finish();
 // First come the lists, the truth and the manifest of all frames, then the frames, `jobs` of them at the same time:
 // one is encoded while another is rendered. Every file appears whole under its name, and the journal lists the frames
-// that are whole. The bytes do not depend on `jobs`, on the order of the frames or on how often the work was stopped, and
+// that are whole. The bytes depend neither on `jobs`, nor on the order of the frames, nor on how often work stopped;
 // those of a frame not on the range.
 class SequenceWriter {
  public:

@@ -16,7 +16,12 @@ constexpr double kClearlyMore = 1.2;
 constexpr std::size_t kClearlyMoreMatches = 3;
 constexpr double kLeastMatches = 8, kLeastAgreement = 0.1;
 
-bool Failed(const Association& association, const InnovationRatios& ratios) {
+InnovationRatios RatiosOf(const Association& association) {
+  return RatiosOf(association.predicted, association.agreed);
+}
+
+bool Failed(const Association& association) {
+  const InnovationRatios ratios = RatiosOf(association);
   return std::max(ratios.position, ratios.orientation) > kFailedRatio ||
          static_cast<double>(association.matches.size()) <
              kFailedAgreement * static_cast<double>(association.searched.size());
@@ -25,10 +30,6 @@ bool Failed(const Association& association, const InnovationRatios& ratios) {
 bool HasMatches(const Association& association) {
   return static_cast<double>(association.matches.size()) >=
          std::max(kLeastMatches, kLeastAgreement * static_cast<double>(association.searched.size()));
-}
-
-InnovationRatios RatiosOf(const Association& association) {
-  return RatiosOf(association.predicted, association.agreed);
 }
 
 }  // namespace
@@ -54,10 +55,10 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
   input.coasting_s = coasting_s;
   filter.Predict(dt, input);
   Association association = associate(input);
-  for (int k = 0; k < kWidenings && Failed(association, RatiosOf(association)); ++k)
+  for (int k = 0; k < kWidenings && Failed(association); ++k)
     if (!Repeat(filter, Widened(input, RatiosOf(association)), associate, input, association)) break;
-  if (Failed(association, RatiosOf(association)) && !matched_.empty()) {
-    if (const auto R = AlignRotation(camera_, matched_, Thumbnails(grey))) {
+  if (Failed(association) && !matched_.empty()) {
+    if (const auto R = AlignRotation(camera_, Thumbnails(matched_), Thumbnails(grey))) {
       MotionInput aligned = input;
       aligned.position_noise *= kAlignedNoise;
       aligned.orientation_noise *= kAlignedNoise;
@@ -67,7 +68,7 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
   }
   if (HasMatches(association)) {
     noise_.Learn(RatiosOf(association), input);
-    matched_ = Thumbnails(grey);
+    grey.copyTo(matched_);  // the memory is the caller's
   } else {
     association.RejectAll();
   }

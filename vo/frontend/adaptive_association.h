@@ -6,7 +6,6 @@
 
 #include <functional>
 #include <opencv2/core.hpp>
-#include <vector>
 
 #include "vo/filter/adaptive_noise.h"
 #include "vo/frontend/association.h"
@@ -30,7 +29,7 @@ class AdaptiveAssociation {
 
   Camera camera_;
   AdaptiveNoise noise_;
-  std::vector<cv::Mat> matched_;  // thumbnails of the last frame with matches
+  cv::Mat matched_;  // grey image of the last frame with matches
 };
 
 }  // namespace vo

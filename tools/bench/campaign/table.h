@@ -33,7 +33,7 @@ std::string Caption(const Table& table);
 // "-" for NaN, `lost` for infinity.
 std::string NumberText(double value, double unit, const std::string& lost);
 
-// Rows, the first of them the head, as Markdown: so many columns to the left, the others to the right.
+// Markdown of the rows, the first of them the head: `left` columns aligned to the left, the others to the right.
 std::string MarkdownRows(const std::vector<TextRow>& rows, std::size_t left);
 // All tables of the campaign.
 std::string Markdown(const std::vector<Table>& tables);

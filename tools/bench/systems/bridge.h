@@ -21,7 +21,7 @@ vo::Camera CameraOf(const sim::Scenario& scenario);
 vo::Frame ToOdometry(const sim::Frame& frame);
 vo::PointFrame ToOdometry(const sim::PointFrame& frame);
 
-// The truth of so many frames from `first` on.
+// Truth of `frames` frames from `first` on.
 Truth TruthOf(const sim::Simulator& simulator, std::int64_t first, std::int64_t frames = 1);
 
 // To stderr, one line each.

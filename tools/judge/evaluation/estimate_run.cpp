@@ -14,7 +14,7 @@ namespace evaluation {
 namespace {
 
 constexpr std::size_t kUpperTriangle = 78;
-// Columns of frames.csv between the stamp and the status: counts, or numbers with so many digits.
+// Columns of frames.csv between the stamp and the status: counts, or numbers of `digits` digits.
 struct Column {
   const char* name;
   int FrameRecord::*count;

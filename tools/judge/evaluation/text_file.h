@@ -90,7 +90,7 @@ std::optional<double> ParseNumber(const std::string& text);
 std::optional<std::int64_t> ParseRow(const std::filesystem::path& file, const Line& line, const char* columns,
                                      std::span<double> numbers, Problems& problems);
 
-// " x" of each number, of so many significant digits.
+// Each number after a space, to `digits` significant digits.
 std::string FormatNumbers(std::span<const double> numbers, int digits = 12);
 
 // Bound on what is added to a stamp (a gap, an offset, a delta) [s].
