@@ -12,7 +12,6 @@
 namespace vo {
 namespace {
 
-constexpr int kFirstFrames = 8;  // challenged by all guesses: short windows are cheap, and a wrong mode costs the map
 constexpr int kShutterRounds = 4;
 constexpr double kObjectiveSettled = 0.1;  // change of -2 log p
 // The next frame solves it all again.
@@ -52,11 +51,8 @@ const FilterAnswer& Initialisation::Update(std::span<const Match> z) {
       IterateShutterCorrection();
     else
       Solve(0, StartOptions());
-    const bool first = window_.size() <= kFirstFrames;
-    for (std::uint32_t guess = first ? 0 : frame_; guess < (first ? kGuesses : frame_ + 1); ++guess) {
-      Challenge(0, guess, StartOptions());
-      if (rolling()) Take(Corrected(particles_[0].solution, ShutterReference::frame_pose));
-    }
+    Challenge(0, frame_, StartOptions());
+    if (rolling()) Take(Corrected(particles_[0].solution, ShutterReference::frame_pose));
     ShareSolution();
     AddEvidence(1);
     answer_.events += particles_[0].solution.path.events;
