@@ -17,6 +17,7 @@
 #include "vo/frontend/new_features.h"
 #include "vo/frontend/rolling_shutter.h"
 #include "vo/map/landmark_record.h"
+#include "vo/start_trajectory.h"
 
 namespace vo {
 
@@ -67,6 +68,7 @@ struct Odometry::Impl {
   void Begin(const PreparedFrame& frame, const Vector6& velocity) {
     last_stamp_ns = frame.frame.stamp_ns;
     since_update = {0, VelocityCovariance()};
+    start.Add(frame.frame.stamp_ns, filter.answer(), scale);
     AddLandmarks(DetectFeatures(frame), frame, velocity);
   }
 
@@ -89,7 +91,8 @@ struct Odometry::Impl {
     }
     diagnostics.ms_matching += watch.Lap();
 
-    Update(association.matches);                       // lines 4-11: (15)-(17), (37)-(43)
+    Update(association.matches);  // lines 4-11: (15)-(17), (37)-(43)
+    start.Add(frame.frame.stamp_ns, filter.answer(), scale);
     UpdateScores(association, params.score, records);  // section 6: (44)-(49)
     diagnostics.searched = static_cast<int>(association.searched.size());
     diagnostics.matched = static_cast<int>(association.matches.size());
@@ -198,6 +201,7 @@ struct Odometry::Impl {
   std::uint64_t seed;
   WatchedFilter filter;
   ScaleAmbiguity scale;
+  StartTrajectory start;
   RollingShutter shutter;
   BriskSampler first_sampler;
   int border_px;
@@ -236,6 +240,8 @@ std::vector<MapPoint> Odometry::Map() const {
   }
   return points;
 }
+
+const std::vector<StampedPose>& Odometry::Reissued() const { return impl_->start.reissued(); }
 
 const std::vector<FeatureView>& Odometry::Features() const { return impl_->views; }
 

@@ -28,6 +28,10 @@ class Odometry {
   // The same for a frame that was prepared elsewhere (ReadAhead).
   Estimate Track(const PreparedFrame& frame);
 
+  // Poses of the start's frames, from the first to the present one, given all images of the start: filled by the Track
+  // that ends the start (params.filter.start_window), empty otherwise. The answers of these frames were given from the
+  // images until then; later answers continue these poses, in their scale.
+  const std::vector<StampedPose>& Reissued() const;
   std::vector<MapPoint> Map() const;
   const std::vector<FeatureView>& Features() const;
 

@@ -16,6 +16,7 @@
 #include "vo/filter/landmark_table.h"
 #include "vo/filter/watched_filter.h"
 #include "vo/filter_adapter.h"
+#include "vo/start_trajectory.h"
 
 namespace vo {
 
@@ -65,6 +66,7 @@ struct PointOdometry::Impl {
       scale.AbsorbChange(filter.Update(matches).scale_change);
       diagnostics.ms_filter = watch.Lap();
     }
+    start.Add(frame.stamp_ns, filter.answer(), scale);
     last_stamp_ns = frame.stamp_ns;
     Forget();
     AddNew(rays);
@@ -132,6 +134,7 @@ struct PointOdometry::Impl {
   Params params;
   WatchedFilter filter;
   ScaleAmbiguity scale;
+  StartTrajectory start;
   std::vector<BeliefComponent> mixture;               // of the answer, where the scale is unknown
   std::vector<Record> records;                        // in the order of the filter's landmarks
   std::unordered_map<std::int64_t, int> landmark_of;  // id -> index
@@ -144,6 +147,8 @@ PointOdometry::~PointOdometry() = default;
 PointOdometry::PointOdometry(PointOdometry&&) noexcept = default;
 
 Estimate PointOdometry::Track(const PointFrame& frame) { return impl_->Process(frame); }
+
+const std::vector<StampedPose>& PointOdometry::Reissued() const { return impl_->start.reissued(); }
 
 const Filter& PointOdometry::filter() const { return impl_->filter.watched(); }
 

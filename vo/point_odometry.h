@@ -38,6 +38,8 @@ class PointOdometry {
   // finite; FilterFault (vo/filter/watched_filter.h) on an internal error (a bug).
   Estimate Track(const PointFrame& frame);
 
+  // As of Odometry.
+  const std::vector<StampedPose>& Reissued() const;
   // Mixture whose moments are the estimate.
   const std::vector<BeliefComponent>& Mixture() const;
   const Filter& filter() const;

@@ -90,7 +90,7 @@ TEST_F(DeterminismTest, RunsDoNotDependOnThreads) {
   }
   for (const std::string system : {"rb2pf", "rbpf"}) {
     for (const std::string seed : {"1", "2"}) {
-      for (const std::string file : {"estimate.txt", "covariance.txt", "landmarks.csv", "truth.txt"}) {
+      for (const std::string file : {"estimate.txt", "live.txt", "covariance.txt", "landmarks.csv", "truth.txt"}) {
         const std::string name = "/" + system + "/seed_" + seed + "/" + file;
         for (const std::string& jobs : kThreads)
           EXPECT_TRUE(Read("jobs1" + name) == Read("jobs" + jobs + name)) << name << ' ' << jobs;
@@ -109,7 +109,7 @@ TEST_F(DeterminismTest, RunsOnPointsDoNotDependOnThreads) {
   }
   for (const std::string system : {"rb2pf", "rbpf"}) {
     for (const std::string seed : {"1", "2", "3"}) {
-      for (const std::string file : {"estimate.txt", "covariance.txt", "landmarks.csv", "truth.txt"}) {
+      for (const std::string file : {"estimate.txt", "live.txt", "covariance.txt", "landmarks.csv", "truth.txt"}) {
         const std::string name = "/" + system + "/seed_" + seed + "/" + file;
         for (const std::string& jobs : kThreads)
           EXPECT_TRUE(Read("jobs1" + name) == Read("jobs" + jobs + name)) << name << ' ' << jobs;
@@ -132,7 +132,7 @@ TEST_F(DeterminismTest, ThroughTheDiskOrInMemoryIsTheSame) {
   Succeeds({"run", "-o", "memory", "--seed", "3", "--set", duration, "--set",
             "prior={start: origin, velocity_sigma: 0.5, angular_rate_sigma: 0.5}", "--set",
             "odometry={landmark: {scale_sigma: 0.5}, motion: {adaptive: true}}"});
-  for (const std::string file : {"estimate.txt", "covariance.txt", "landmarks.csv"}) {
+  for (const std::string file : {"estimate.txt", "live.txt", "covariance.txt", "landmarks.csv"}) {
     EXPECT_TRUE(Read("disk/" + file) == Read("memory/rb2pf/seed_3/" + file)) << file;
   }
   // Told the true start, it comes to something else: the comparison can fail.

@@ -71,7 +71,7 @@ TEST_F(LayoutsTest, OneSequenceInEachLayoutGivesOneEstimate) {
     Run({"track", layout, "-o", "out_" + layout, "--map", layout + ".ply"});
   }
   ExpectTum("tum/groundtruth.txt");
-  for (const std::string name : {"estimate.txt", "covariance.txt", "truth.txt"}) {
+  for (const std::string name : {"estimate.txt", "live.txt", "covariance.txt", "truth.txt"}) {
     const std::string of_tum = ReadFile(here_ / "out_tum" / name);
     EXPECT_EQ(of_tum, ReadFile(here_ / "out_euroc" / name)) << name;
     if (name != "covariance.txt") ExpectTum("out_tum/" + name);

@@ -46,6 +46,8 @@ TEST(Video, CtrlCEndsALiveOneAndTheResultIsWritten) {
     EXPECT_THAT(outcome.err, testing::HasSubstr("Ctrl-C"));
     const std::string estimate = ReadFile(here / "out/estimate.txt");
     EXPECT_GT(std::count(estimate.begin(), estimate.end(), '\n'), 1);
+    const std::string live = ReadFile(here / "out/live.txt");
+    EXPECT_EQ(std::count(live.begin(), live.end(), '\n'), std::count(estimate.begin(), estimate.end(), '\n'));
   }
 }
 
@@ -61,6 +63,7 @@ TEST(Video, FaultKeepsWhatCameBefore) {
   EXPECT_THAT(outcome.err, testing::EndsWith("vobench: " + fault + "\n"));
   const std::string estimate = ReadFile(here / "out/estimate.txt");
   EXPECT_EQ(std::count(estimate.begin(), estimate.end(), '\n'), 1 + 1);
+  EXPECT_EQ(ReadFile(here / "out/live.txt"), estimate);
   EXPECT_THAT(ReadFile(here / "out/report.html"), testing::HasSubstr("Ended after 1 frame: " + fault));
 }
 

@@ -190,6 +190,15 @@ py::class_<Class> AddClass(py::module_& m, const std::string& name, const std::s
                        std::uint64_t seed) { return Class(camera, ParamsOf(system, settings), prior, seed); }),
            py::arg("camera"), py::arg("system") = "rb2pf", py::arg("settings") = py::dict(),
            py::arg_v("prior", vo::Prior(), "Prior()"), py::arg("seed") = 1, Doc(header + name + "::" + name))
+      .def(
+          "reissued",
+          [](const Class& self) {
+            Trajectory trajectory;
+            for (const auto& [stamp_ns, pose] : self.Reissued())
+              trajectory.poses.push_back({stamp_ns, pose.p_WC, pose.q_WC});
+            return trajectory;
+          },
+          Doc("vo/odometry.h:Odometry::Reissued"))
       .def("map", &Map<Class>, "(ids, X_W (n, 3)) of the landmarks in the map [m]");
   return added;
 }

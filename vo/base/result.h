@@ -62,6 +62,11 @@ struct Estimate {
   FrameDiagnostics diagnostics;
 };
 
+struct StampedPose {
+  std::int64_t stamp_ns = 0;
+  Pose pose;
+};
+
 // First two moments of a point in W [m, m^2].
 struct PointMoments {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();

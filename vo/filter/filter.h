@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,6 +24,12 @@ struct FilterPrior {
   Matrix6 velocity_covariance = Matrix6::Identity();
 };
 
+// Pose of a frame of the start, given all images of the start.
+struct StartPose {
+  std::uint32_t frame = 0;  // predictions before it; 0: the first frame
+  Pose pose;                // mean of the mixture
+};
+
 // Posterior of one frame.
 struct FilterAnswer {
   Belief belief;                         // moments of the mixture
@@ -32,6 +39,9 @@ struct FilterAnswer {
   bool initialising = false;             // no pose is sampled yet: the whole map may turn out to be a wrong mode
   double scale_change =
       1;  // factor of all lengths, where the last update solved again for a path that was answered before
+  // Where the last update ended the initialisation: its first frame and those of its window, the present one included,
+  // as the poses are sampled from. Frames that no image refers to have been integrated out.
+  std::vector<StartPose> start;
 };
 
 // One path of the posterior, taken as known: the data association's outlier test works with it. Valid until the filter

@@ -135,6 +135,22 @@ void Initialisation::ShareSolution() {
   }
 }
 
+// Means over particles.
+std::vector<StartPose> Initialisation::StartPath() const {
+  const std::vector<double>& weights = particles_.weights();
+  const auto mean = [&](const auto& pose_of) {
+    std::vector<BeliefComponent> mixture;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+      mixture.push_back({weights[i], pose_of(particles_[i]), Vector6::Zero(), Matrix12::Zero()});
+    return Moments(mixture).pose;
+  };
+  std::vector<StartPose> start = {{0, mean([](const Particle& particle) { return particle.pose; })}};
+  for (int k = 0; k < window_.size(); ++k)
+    start.push_back(
+        {window_.frames()[k].number, mean([k](const Particle& particle) { return particle.solution.path.mean[k]; })});
+  return start;
+}
+
 // Each particle gets a solution of its own, to be sampled, and a weight.
 void Initialisation::Finish() {
   const double log_evidence = particles_[0].solution.path.log_evidence;
@@ -151,6 +167,7 @@ void Initialisation::Finish() {
     particles_[i].log_weight += particles_[i].solution.path.log_evidence;
   }
   Weigh();
+  answer_.start = StartPath();
   // An unknown scale is a gauge freedom: where each particle drew its own, their common map would have none.
   if (settings_.landmark.scale_sigma > 0)
     for (Particle& particle : particles_) ConditionOnScale(particle.pose, particle.solution.path);

@@ -34,6 +34,7 @@ class Initialisation final : public WindowPhase {
   void Take(CorrectedWindow&& corrected);
   void IterateShutterCorrection();
   void ShareSolution();
+  std::vector<StartPose> StartPath() const;
   void Finish();
   double ScaleChange() const;
 

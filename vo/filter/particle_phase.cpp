@@ -28,6 +28,7 @@ void ParticlePhase::BeginFrame() {
   ++frame_;
   answer_.events = {};
   answer_.scale_change = 1;
+  answer_.start.clear();
 }
 
 int ParticlePhase::AppendLandmarks(std::span<const FirstView> views) {

@@ -55,6 +55,7 @@ void WatchedFilter::RequireAnswer(const char* stage) const {
   Require(NoNegativeEigenvalue(belief.covariance), stage,
           "the covariance of pose and velocity has a negative eigenvalue");
 #endif
+  for (const StartPose& pose : answer.start) Require(Finite(pose.pose), stage, "a pose of the start is not one");
   double sum = 0;
   for (const BeliefComponent& component : answer.mixture) {
     Require(component.weight >= 0, stage, "a weight is negative or not a number");

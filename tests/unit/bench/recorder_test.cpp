@@ -40,6 +40,7 @@ TEST(Recorder, RoundTrip) {
   ASSERT_EQ(recorder.frames(), told.size());
   const evaluation::EstimateRun run = recorder.Run();
   ASSERT_EQ(run.trajectory.size(), told.size());
+  ASSERT_EQ(run.live.size(), told.size());
   ASSERT_EQ(run.beliefs.size(), told.size());
   ASSERT_EQ(run.frames.size(), told.size());
   for (std::size_t k = 0; k < told.size(); ++k) {
@@ -48,6 +49,7 @@ TEST(Recorder, RoundTrip) {
     ASSERT_EQ(run.trajectory[k].stamp_ns, expected.stamp_ns);
     ASSERT_EQ(run.trajectory[k].p_WC, expected.pose.p_WC);
     ASSERT_EQ(run.trajectory[k].q_WC.coeffs(), expected.pose.q_WC.coeffs());
+    ASSERT_EQ(run.live[k].p_WC, expected.pose.p_WC);
     ASSERT_EQ(run.beliefs[k].velocity.stamp_ns, expected.stamp_ns);
     ASSERT_EQ(run.beliefs[k].velocity.v_WC, expected.v_WC);
     ASSERT_EQ(run.beliefs[k].velocity.w_WC_C, expected.w_WC_C);
@@ -57,6 +59,31 @@ TEST(Recorder, RoundTrip) {
     ASSERT_EQ(run.frames[k].matched, expected.diagnostics.matched);
     ASSERT_EQ(run.frames[k].nis, expected.diagnostics.nis);
     ASSERT_EQ(run.frames[k].events->not_positive_definite, expected.diagnostics.events.not_positive_definite);
+  }
+}
+
+// The trajectory has the re-issued poses, the answers stay as they were given, and what is none changes nothing.
+TEST(Recorder, ReissuedPosesReplaceThoseOfTheTrajectory) {
+  Recorder recorder(std::nullopt);
+  std::mt19937 engine(2);
+  std::vector<vo::StampedPose> reissued;
+  std::vector<vo::Estimate> told;
+  for (int k = 0; k < 5; ++k) {
+    told.push_back(Drawn(engine, 1000 + k));
+    recorder.Add(told.back());
+    if (k < 3) reissued.push_back({told.back().stamp_ns, Drawn(engine, 0).pose});
+    if (k == 2) recorder.Reissue(reissued);
+    if (k > 2) recorder.Reissue({});
+  }
+  const evaluation::EstimateRun run = recorder.Run();
+  ASSERT_EQ(run.trajectory.size(), 5u);
+  ASSERT_EQ(run.live.size(), 5u);
+  for (std::size_t k = 0; k < 5; ++k) {
+    const vo::Pose& expected = k < 3 ? reissued[k].pose : told[k].pose;
+    EXPECT_EQ(run.trajectory[k].stamp_ns, told[k].stamp_ns);
+    EXPECT_EQ(run.trajectory[k].p_WC, expected.p_WC) << k;
+    EXPECT_EQ(run.trajectory[k].q_WC.coeffs(), expected.q_WC.coeffs()) << k;
+    EXPECT_EQ(run.live[k].p_WC, told[k].pose.p_WC) << k;
   }
 }
 

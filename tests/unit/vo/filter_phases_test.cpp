@@ -186,6 +186,32 @@ TEST(Initialisation, SharesOneSolution) {
   }
 }
 
+// A camera that moves by equal steps. At the end of the start its poses are given by all images: nearer to equal steps
+// than the answers were, which knew less. A frame that no image refers to is left out.
+TEST(Initialisation, GivesItsPathAtItsEnd) {
+  for (const int lag : {0, 2}) {
+    vo::ParticleFilter filter = MakeFilter(lag, 6);
+    std::vector<vo::StartPose> answered{{0, {}}}, start;
+    for (std::uint32_t frame = 1; frame <= 9; ++frame) {
+      filter.Predict(kDt);
+      filter.Update(frame == 3 ? std::vector<vo::Match>() : vo_test::WallMatches(kLandmarks, static_cast<int>(frame)));
+      EXPECT_EQ(filter.answer().start.empty(), frame != 8) << frame;
+      if (frame == 8) start = filter.answer().start;
+      if (frame != 3 && frame <= 8) answered.push_back({frame, filter.belief().pose});
+    }
+    ASSERT_EQ(start.size(), 8u);
+    EXPECT_EQ(start[0].pose.p_WC, Eigen::Vector3d::Zero());
+    const auto unevenness = [](const std::vector<vo::StartPose>& poses) {
+      double squares = 0;
+      for (const auto& [frame, pose] : poses)
+        squares += (pose.p_WC - static_cast<double>(frame) / 8 * poses.back().pose.p_WC).squaredNorm();
+      return std::sqrt(squares) / poses.back().pose.p_WC.norm();
+    };
+    for (std::size_t k = 0; k < start.size(); ++k) EXPECT_EQ(start[k].frame, k < 3 ? k : k + 1);
+    EXPECT_LT(unevenness(start), 0.7 * unevenness(answered)) << lag;
+  }
+}
+
 TEST(Initialisation, HandsItsStateOver) {
   for (const int lag : {0, 2}) {
     vo::Initialisation phase(Settings(lag, 3), Prior());

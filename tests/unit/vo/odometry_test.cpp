@@ -67,6 +67,50 @@ TEST(Odometry, FollowsACameraInFrontOfTexturedWalls) {
   EXPECT_GT(odometry.Features().size(), 30u);
 }
 
+// Of points with one factor of length, fitted through the first one; turns are not fitted.
+double ScaledRms(const std::vector<Vector3d>& x) {
+  double xy = 0, xx = 0, yy = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const Vector3d a = x[k] - x[0], b = TruthAt(static_cast<double>(k)).p_WC - TruthAt(0).p_WC;
+    xy += a.dot(b), xx += a.squaredNorm(), yy += b.squaredNorm();
+  }
+  return std::sqrt((yy - xy * xy / xx) / static_cast<double>(x.size()));
+}
+
+// The frame that ends the start gives all its poses anew, one for each frame whether its first frame was processed again
+// (rolling shutter) or not; no other frame does, and no other system has any.
+TEST(Odometry, ReissuesTheStart) {
+  constexpr int kWindow = 12;
+  const vo_test::Texture texture(3, 40.0, 24);
+  for (const double readout : {0.0, 5e-3}) {
+    vo::Params params = SmallImageParams();
+    params.filter.start_window = kWindow;
+    params.features.readout_s = readout;
+    params.landmark.scale_sigma = 0.5;
+    vo::Odometry odometry(kCamera, params, KnownStart(), 1);
+    params.filter.sampled = vo::Sampled::nothing;
+    vo::Odometry ekf(kCamera, params, KnownStart(), 1);
+    std::vector<Vector3d> answered, reissued;
+    for (int k = 0; k <= kWindow + 2; ++k) {
+      const cv::Mat image = ViewFrom(TruthAt(k), texture);
+      const vo::Estimate estimate = odometry.Track({k * kFrameNs, image});
+      if (k <= kWindow + 1) answered.push_back(estimate.pose.p_WC);
+      EXPECT_EQ(odometry.Reissued().size(), k == kWindow + 1 ? kWindow + 2u : 0u) << k;
+      for (const vo::StampedPose& pose : odometry.Reissued()) {
+        EXPECT_EQ(pose.stamp_ns, static_cast<std::int64_t>(reissued.size()) * kFrameNs);
+        reissued.push_back(pose.pose.p_WC);
+      }
+      ekf.Track({k * kFrameNs, image});
+      EXPECT_TRUE(ekf.Reissued().empty());
+    }
+    ASSERT_EQ(reissued.size(), answered.size());
+    EXPECT_LT((reissued[0] - KnownStart().pose.p_WC).norm(), 1e-12);
+    std::printf("readout %g s: rms of the start [mm] %.2f, answered %.2f\n", readout, 1e3 * ScaledRms(reissued),
+                1e3 * ScaledRms(answered));
+    EXPECT_LT(ScaledRms(reissued), ScaledRms(answered));
+  }
+}
+
 TEST(Odometry, CoastsOverBlankFramesAndRecovers) {
   const vo_test::Texture texture(2, 40.0, 24);
   vo::Odometry odometry(kCamera, SmallImageParams(), KnownStart(), 1);

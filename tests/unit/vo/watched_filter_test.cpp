@@ -316,6 +316,7 @@ class Broken final : public vo::Filter {
   std::function<void(LandmarkBelief&)> spoil_landmark = [](auto&) {};
   std::function<void(vo::PointMoments&)> spoil_point = [](auto&) {};
   double effective = 1;
+  std::vector<vo::StartPose> start;
 
   void PredictAgain(const vo::MotionInput& input) override { good.PredictAgain(input); }
   void Predict(double dt, const vo::MotionInput& /*input*/) override {
@@ -326,6 +327,7 @@ class Broken final : public vo::Filter {
   const vo::FilterAnswer& Update(std::span<const vo::Match> matches) override {
     answer_ = good.Update(matches);
     answer_.effective_particles = effective;
+    answer_.start = start;
     spoil_belief(answer_.belief);
     spoil_component(answer_.mixture[0]);
     return answer_;
@@ -395,6 +397,10 @@ TEST(WatchedFilter, RefusesWhatIsNoAnswer) {
      "frame 1, update: a weight is negative or not a number"},
     {[](Broken& f) { f.spoil_component = [](auto& c) { c.weight = 0.5; }; },
      "frame 1, update: the weights do not sum to 1"},
+    {[](Broken& f) {
+       f.start = {{0, {}}, {1, {{0, kNan, 0}}}};
+     },
+     "frame 1, update: a pose of the start is not one"},
     {[](Broken& f) { f.effective = kNan; }, "frame 1, update: the effective number of particles is not one"},
     {[](Broken& f) { f.spoil_landmark = [](auto& l) { l.X_W.z() = kInf; }; },
      "frame 1, landmarks: a landmark is nowhere"},

@@ -106,7 +106,8 @@ std::string TableHtml(const Table& table) {
 
 std::string TaskTable(const Campaign& campaign, const std::vector<TaskRecord>& records) {
   const std::vector<std::string> varied = VariedNames(campaign);
-  const std::vector<std::string> shown = {"ate_m", "rpe_m", "tracked_coverage", "nees_pose_per_dof", "nis_per_dof"};
+  const std::vector<std::string> shown = {"ate_m",      "ate_live_m", "rpe_m", "tracked_coverage", "nees_pose_per_dof",
+                                          "nis_per_dof"};
   TextRow head = varied;
   head.insert(head.begin(), "task");
   head.insert(head.end(), {"system", "seed", "status"});

@@ -55,6 +55,8 @@ struct Column {
 using A = evaluation::Alignment;
 constexpr Column kColumns[] = {
     {"ate_m", false, [](const Metrics& m, A align) { return Rmse(m.errors.Aligned(align).position); }},
+    {"ate_live_m", false,
+     [](const Metrics& m, A align) { return m.live ? Rmse(m.live->Aligned(align).position) : std::nullopt; }},
     {"ate_none_m", false, [](const Metrics& m, A) { return Rmse(m.errors.none.position); }},
     {"ate_se3_m", false, [](const Metrics& m, A) { return Rmse(m.errors.se3.position); }},
     {"ate_sim3_m", false, [](const Metrics& m, A) { return Rmse(m.errors.sim3.position); }},

@@ -109,6 +109,7 @@ Json Of(const ev::Metrics& metrics) {
                {"errors", Of(metrics.errors, options)},
                {"ate_share_of_path", Number(metrics.errors.sim3.position.rmse / metrics.path_length_m, "1",
                                             "position RMSE after sim3 alignment / path length")}};
+  if (metrics.live) json["live_errors"] = Of(*metrics.live, options);
   if (metrics.coverage) {
     json["coverage"] = {
         {"frames", metrics.coverage->frames},
@@ -169,6 +170,7 @@ Json Of(const SystemSummary& s) {
   return {{"system", s.system},
           {"runs", s.runs},
           {"ate", median(s.ate_m, "m", "position RMSE after sim3 alignment")},
+          {"ate_live", median(s.ate_live_m, "m", "position RMSE of the answers as given, after sim3 alignment")},
           {"ate_worst", Number(s.ate_worst_m, "m", "largest over runs of: position RMSE after sim3 alignment")},
           {"ate_share_of_path", median(s.ate_share_of_path, "1", "position RMSE after sim3 alignment / path length")},
           {"rpe_position", median(s.rpe_m, "m", "RPE position RMSE, scaled by sim3")},

@@ -17,6 +17,7 @@ struct SystemSummary {
   std::string system;
   std::size_t runs = 0;
   double ate_m = kNaN;                    // position RMSE after Sim(3) alignment
+  double ate_live_m = kNaN;               // of the answers as they were given
   double ate_worst_m = kNaN;              // of the seeds
   double ate_se3_m = kNaN, scale = kNaN;  // after SE(3) alignment; scale of the Sim(3) one
   double ate_share_of_path = kNaN;

@@ -128,7 +128,7 @@ void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& o
     evaluation::WriteEstimateRun(folder, output.run);
     WriteTruth(folder, output.truth.poses, output.truth.velocities);
   } else {
-    evaluation::WriteTrajectory(folder / "estimate.txt", output.run.trajectory);
+    evaluation::WriteEstimateRun(folder, {output.run.trajectory, output.run.live, {}, {}});
   }
 }
 

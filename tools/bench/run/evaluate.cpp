@@ -85,6 +85,7 @@ void Print(const evaluation::Metrics& metrics, evaluation::Alignment alignment) 
              static_cast<double>(metrics.options.association.gap_ns) * 1e-6, metrics.path_length_m, metrics.duration_s);
   fmt::print("alignment: {}, scale {:.6f}\n", evaluation::Name(alignment), ate.similarity.scale);
   PrintStatistics("ATE position", ate.position, 100, "cm");
+  if (metrics.live) PrintStatistics("ATE of the live answers", metrics.live->Aligned(alignment).position, 100, "cm");
   if (ate.orientation.count > 0) PrintStatistics("ATE orientation", ate.orientation, kDegrees, "deg");
   if (rpe.position_statistics.count > 0) {
     PrintStatistics("RPE position, per second", rpe.position_statistics, 100, "cm/s");

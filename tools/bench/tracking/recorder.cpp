@@ -69,19 +69,28 @@ void Recorder::Add(const vo::Estimate& estimate) {
   answers_.Add(answer);
 }
 
+void Recorder::Reissue(const std::vector<vo::StampedPose>& poses) {
+  if (!poses.empty()) reissued_ = poses;
+}
+
 evaluation::EstimateRun Recorder::Run() const {
   evaluation::EstimateRun run;
-  run.trajectory.reserve(frames());
+  run.live.reserve(frames());
   run.beliefs.reserve(frames());
   run.frames.reserve(frames());
   answers_.ForEach([&](const Answer& answer) {
     const Eigen::Quaterniond q_WC(Eigen::Vector4d::Map(answer.q_WC.data()));
-    run.trajectory.push_back({answer.stamp_ns, Eigen::Vector3d::Map(answer.p_WC.data()), q_WC});
+    run.live.push_back({answer.stamp_ns, Eigen::Vector3d::Map(answer.p_WC.data()), q_WC});
     run.beliefs.push_back(
         {{answer.stamp_ns, Eigen::Vector3d::Map(answer.v_WC.data()), Eigen::Vector3d::Map(answer.w_WC_C.data())},
          evaluation::Matrix12d::Map(answer.covariance.data())});
     run.frames.push_back(answer.frame);
   });
+  run.trajectory = run.live;
+  for (std::size_t k = 0; k < reissued_.size(); ++k) {
+    const auto& [stamp_ns, pose] = reissued_[k];
+    run.trajectory[k] = {stamp_ns, pose.p_WC, pose.q_WC};
+  }
   return run;
 }
 

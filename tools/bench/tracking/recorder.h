@@ -32,6 +32,8 @@ class Recorder {
   // Throws std::runtime_error naming a picture, or the folder of the spool, that cannot be written.
   void Add(const vo::Frame& frame, const vo::Estimate& estimate, const std::vector<vo::FeatureView>& features);
   void Add(const vo::Estimate& estimate);
+  // Poses of the first frames, one each, for the trajectory: the answers stay as they are. None changes nothing.
+  void Reissue(const std::vector<vo::StampedPose>& poses);
 
   std::size_t frames() const { return answers_.size(); }
   // All answers so far. Throws std::runtime_error.
@@ -40,7 +42,7 @@ class Recorder {
   RunData Result(const RunEntry& entry, const std::vector<vo::MapPoint>& map) const;
 
  private:
-  // One frame's: what estimate.txt, covariance.txt and frames.csv say of it.
+  // One frame's: what live.txt, covariance.txt and frames.csv say of it.
   struct Answer {
     std::int64_t stamp_ns;
     std::array<double, 3> p_WC;
@@ -54,6 +56,7 @@ class Recorder {
   std::int64_t expected_frames_ = 0;
   KeptPictures pictures_;
   DiskBackedSeries<Answer> answers_;
+  std::vector<vo::StampedPose> reissued_;
 };
 
 }  // namespace vobench

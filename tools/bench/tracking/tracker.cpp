@@ -40,6 +40,7 @@ void Tracker::Track(const vo::PreparedFrame& prepared) {
   }();
   entry_.seconds += 1e-3 * prepared.ms + clock.seconds();
   recorder_.Add(prepared.frame, estimate, odometry_.Features());
+  recorder_.Reissue(odometry_.Reissued());
 }
 
 PointTracker::PointTracker(const TrackerSetup& setup, const vo::Camera& camera,
@@ -51,6 +52,7 @@ vo::Estimate PointTracker::Track(const vo::PointFrame& frame) {
   const vo::Estimate estimate = odometry_.Track(frame);
   entry_.seconds += clock.seconds();
   recorder_.Add(estimate);
+  recorder_.Reissue(odometry_.Reissued());
   return estimate;
 }
 

@@ -51,17 +51,17 @@ double NeesWithoutDirection(const Eigen::VectorXd& error, const Eigen::MatrixXd&
 std::vector<FrameConsistency> ComputeConsistency(const EstimateRun& run, const Trajectory& truth,
                                                  const std::optional<Velocities>& truth_velocities, std::int64_t gap_ns,
                                                  Gauge gauge) {
+  const Trajectory& answers = run.answers();
   const AssociationOptions association{AssociationRule::one_to_one, gap_ns};
   // Moves the truth into the estimate's world: the two are exchanged.
-  const Similarity to_estimate = gauge == Gauge::as_is
-                                     ? Similarity{}
-                                     : Align(MatchTrajectories(truth, run.trajectory, association), Alignment::first);
+  const Similarity to_estimate =
+      gauge == Gauge::as_is ? Similarity{} : Align(MatchTrajectories(truth, answers, association), Alignment::first);
   std::vector<FrameConsistency> frames;
-  const auto matches = Associate(StampsOf(run.trajectory), StampsOf(truth), association);
+  const auto matches = Associate(StampsOf(answers), StampsOf(truth), association);
   if (matches.empty()) return frames;
   const Eigen::Vector3d true_start = Apply(to_estimate, truth[matches.front().truth]).p_WC;
   for (const Match& match : matches) {
-    const StampedPose& estimate = run.trajectory[match.estimate];
+    const StampedPose& estimate = answers[match.estimate];
     const auto found = std::ranges::lower_bound(run.beliefs, estimate.stamp_ns, {},
                                                 [](const StampedBelief& belief) { return belief.velocity.stamp_ns; });
     if (found == run.beliefs.end() || found->velocity.stamp_ns != estimate.stamp_ns) continue;

@@ -51,6 +51,7 @@ double Nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
 double NeesWithoutDirection(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance,
                             const Eigen::VectorXd& direction);
 
+// Of the answers as they were given: the covariances are theirs.
 std::vector<FrameConsistency> ComputeConsistency(const EstimateRun& run, const Trajectory& truth,
                                                  const std::optional<Velocities>& truth_velocities, std::int64_t gap_ns,
                                                  Gauge gauge = Gauge::as_is);

@@ -195,6 +195,9 @@ EstimateRun ReadEstimateRun(const std::filesystem::path& folder) {
     }
   };
   attempt([&] { run.trajectory = ReadTrajectory(folder / "estimate.txt"); });
+  if (std::filesystem::exists(folder / "live.txt")) {
+    attempt([&] { run.live = ReadTrajectory(folder / "live.txt"); });
+  }
   if (std::filesystem::exists(folder / "covariance.txt")) {
     attempt([&] { run.beliefs = ReadBeliefs(folder / "covariance.txt", problems); });
   }
@@ -226,6 +229,7 @@ void WriteEstimateRun(const std::filesystem::path& folder, const EstimateRun& ru
       write_rows(folder / name, rows);
     }
   };
+  write("live.txt", run.live, WriteTrajectory);
   write("covariance.txt", run.beliefs, WriteBeliefs);
   write("frames.csv", run.frames, WriteFrames);
 }

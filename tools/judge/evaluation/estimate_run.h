@@ -1,4 +1,4 @@
-// Run folder of an odometry: estimate.txt, covariance.txt, frames.csv (docs/result_folder.md).
+// Run folder of an odometry: estimate.txt, live.txt, covariance.txt, frames.csv (docs/result_folder.md).
 #pragma once
 
 #include <Eigen/Core>
@@ -51,16 +51,19 @@ struct FrameRecord {
 };
 
 struct EstimateRun {
-  Trajectory trajectory;               // one pose per frame that has one
-  std::vector<StampedBelief> beliefs;  // may be empty: no covariance, no consistency
+  Trajectory trajectory;  // one pose per frame that has one, re-issued ones in the place of the answers
+  Trajectory live;        // the answers as they were given; may be empty: those are not known, or the trajectory itself
+  std::vector<StampedBelief> beliefs;  // of the answers; may be empty: no covariance, no consistency
   std::vector<FrameRecord> frames;     // may be empty: no coverage, no NIS. Else every frame of the sequence
+
+  const Trajectory& answers() const { return live.empty() ? trajectory : live; }
 };
 
-// folder/estimate.txt is required, covariance.txt and frames.csv are read where they exist. Throws InputError with
-// every problem of all three files at once.
+// folder/estimate.txt is required, the others are read where they exist. Throws InputError with every problem of all
+// files at once.
 EstimateRun ReadEstimateRun(const std::filesystem::path& folder);
 
-// Writes the three files into folder, which must exist; empty parts are not written (and removed if a former run left
+// Writes the files into folder, which must exist; empty parts are not written (and removed if a former run left
 // them). Each file is written whole or not at all. Throws std::invalid_argument when a number is not finite,
 // std::runtime_error when a file cannot be written.
 void WriteEstimateRun(const std::filesystem::path& folder, const EstimateRun& run);

@@ -138,6 +138,7 @@ JudgedSeries JudgeSeries(const EstimateRun& run, const Trajectory& truth,
   };
   MatchedTrajectories matched = MatchTrajectories(run.trajectory, truth, options.association);
   metrics.errors = ErrorsOf(matched, pairs_offered, options);
+  if (!run.live.empty()) metrics.live = errors_of(run.live);
   series.aligned = Apply(metrics.errors.sim3.similarity, matched.estimate);
   series.truth = std::move(matched.truth);
   metrics.path_length_m = PathLength(offered.truth);

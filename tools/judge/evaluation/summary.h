@@ -69,9 +69,10 @@ using EventSummary = std::array<EventCount, kNumericalEvents.size()>;
 
 struct Metrics {
   JudgeOptions options;
-  double path_length_m = 0;  // of the truth at the frames of the sequence
-  double duration_s = 0;     // between the first and the last of these
-  TrajectoryErrors errors;
+  double path_length_m = 0;                           // of the truth at the frames of the sequence
+  double duration_s = 0;                              // between the first and the last of these
+  TrajectoryErrors errors;                            // of the trajectory
+  std::optional<TrajectoryErrors> live;               // of the answers as they were given, where the run has them apart
   TrajectoryErrors constant_pose, constant_velocity;  // baselines, from the true start, on all frames
   std::optional<Coverage> coverage;
   std::optional<ConsistencySummary> consistency;

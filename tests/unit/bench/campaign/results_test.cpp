@@ -64,6 +64,7 @@ TEST(Columns, Values) {
   set(m.errors.sim3, 3, 3.5);
   set(m.errors.first, 4, 4.5);
   m.errors.sim3.similarity.scale = 5;
+  set(m.live.emplace().se3, 6, 6.5);
   m.path_length_m = 8;
   m.duration_s = 9;
   const auto set_rpe = [](evaluation::Rpe& rpe, double position, double orientation) {
@@ -85,6 +86,7 @@ TEST(Columns, Values) {
   m.consistency = {nees(6, 102, 108), nees(5, 95, 90), nees(3, 60, 66), nees(12, 1, 1), nees(11, 1, 1)};
   m.nis.emplace().mean_per_dof = 23;
   const std::map<std::string, double> expected = {{"ate_m", 2},
+                                                  {"ate_live_m", 6},
                                                   {"ate_none_m", 1},
                                                   {"ate_se3_m", 2},
                                                   {"ate_sim3_m", 3},

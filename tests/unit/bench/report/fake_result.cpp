@@ -72,6 +72,9 @@ ev::EstimateRun FakeRun(const FakeSystem& system, int frames, TestRandom& random
     frame.tracked = frame.matched >= 10;
     run.frames.push_back(frame);
   }
+  if (system.reissued) run.live = run.trajectory;
+  for (int k = 0; k < std::min(20, frames) && system.reissued; ++k)
+    run.trajectory[k].p_WC = (run.trajectory[k].p_WC + PoseAt(k * dt).p_WC) / 2;
   return run;
 }
 

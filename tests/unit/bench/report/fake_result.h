@@ -14,9 +14,10 @@ namespace vobench::report {
 
 struct FakeSystem {
   std::string name = "rb2pf";
-  double drift = 0.01;  // of the position [m/s^0.5], of the orientation half as many [rad/s^0.5]
-  double claimed = 1;   // standard deviations claimed / true ones
-  double scale = 1;     // of the estimate
+  double drift = 0.01;    // of the position [m/s^0.5], of the orientation half as many [rad/s^0.5]
+  double claimed = 1;     // standard deviations claimed / true ones
+  double scale = 1;       // of the estimate
+  bool reissued = false;  // the start: half of the answers' errors
 };
 
 struct FakeOptions {
@@ -24,7 +25,7 @@ struct FakeOptions {
   int seeds = 3;
   bool truth = true;
   bool pictures = true;
-  std::vector<FakeSystem> systems = {{"rb2pf", 0.01, 1, 1.02}, {"rbpf", 0.03, 0.5, 0.93}};
+  std::vector<FakeSystem> systems = {{"rb2pf", 0.01, 1, 1.02, true}, {"rbpf", 0.03, 0.5, 0.93}};
 };
 
 // Writes everything but report.html; returns what it judged.

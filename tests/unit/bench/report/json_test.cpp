@@ -83,6 +83,10 @@ TEST(MetricsJson, GivesEveryNumberItsUnitAndOrigin) {
   const auto& sim3 = run.at("errors").at("ate").at("sim3").at("position");
   EXPECT_EQ(sim3.at("unit"), "m");
   EXPECT_EQ(sim3.at("rmse").get<double>(), metrics.errors.sim3.position.rmse);
+  EXPECT_EQ(run.at("live_errors").at("ate").at("sim3").at("position").at("rmse").get<double>(),
+            metrics.live->sim3.position.rmse);
+  EXPECT_FALSE(json.at("runs").at(3).contains("live_errors"));
+  EXPECT_TRUE(json.at("systems").at(1).at("ate_live").at("value").is_null());
   EXPECT_THAT(sim3.at("how").get<std::string>(),
               testing::AllOf(HasSubstr("'sim3' over 90 pairs"), HasSubstr("one_to_one association, gap 0.02 s")));
   EXPECT_THAT(run.at("errors").at("rpe").at("sim3_scale").at("position").at("how").get<std::string>(),

@@ -52,6 +52,11 @@ TEST(TextSummary, ShowsMediansOfEachSystemAndTheBaselines) {
   std::vector<double> ates;
   for (int i = 0; i < 3; ++i) ates.push_back(judged[static_cast<std::size_t>(i)].metrics.errors.sim3.position.rmse);
   EXPECT_EQ(systems[0].ate_m, evaluation::Median(ates));
+  EXPECT_NE(systems[0].ate_live_m, systems[0].ate_m);
+  EXPECT_EQ(systems[0].ate_live_m,
+            evaluation::Median({judged[0].metrics.live->sim3.position.rmse, judged[1].metrics.live->sim3.position.rmse,
+                                judged[2].metrics.live->sim3.position.rmse}));
+  EXPECT_TRUE(std::isnan(systems[1].ate_live_m)) << "has no answers apart from its trajectory";
   EXPECT_EQ(systems[0].ate_worst_m, *std::max_element(ates.begin(), ates.end()));
   const auto baselines = SummariseBaselines(judged);
   EXPECT_EQ(baselines[0].ate_m, judged[0].metrics.constant_pose.sim3.position.rmse);
@@ -60,7 +65,8 @@ TEST(TextSummary, ShowsMediansOfEachSystemAndTheBaselines) {
   const std::string text = TextSummary(judged);
   for (const std::string& part :
        {std::string("RB²-PF"), std::string("RB-PF"), std::string("constant pose"), std::string("constant velocity"),
-        Fixed(100 * systems[0].ate_m, 2), Fixed(100 * baselines[1].ate_m, 2), std::string("in 3 of 3 seeds")}) {
+        Fixed(100 * systems[0].ate_m, 2), Fixed(100 * systems[0].ate_live_m, 2), Fixed(100 * baselines[1].ate_m, 2),
+        std::string("in 3 of 3 seeds")}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
   EXPECT_EQ(TextSummary({}), "");

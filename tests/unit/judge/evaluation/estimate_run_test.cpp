@@ -19,6 +19,7 @@ EstimateRun Sample() {
   TestRandom random(40);
   EstimateRun run;
   run.trajectory = random.Walk(4);
+  run.live = random.Walk(4);
   for (const StampedPose& pose : run.trajectory) {
     Matrix12d A;
     for (int i = 0; i < 12; ++i) A.col(i) = random.Normals(12);
@@ -46,9 +47,13 @@ TEST(EstimateRun, ReadsBackTheSame) {
   WriteEstimateRun(folder.path(), run);
   const EstimateRun back = ReadEstimateRun(folder.path());
   ASSERT_EQ(back.trajectory.size(), 4u);
+  ASSERT_EQ(back.live.size(), 4u);
   ASSERT_EQ(back.beliefs.size(), 4u);
   ASSERT_EQ(back.frames.size(), 4u);
   for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(back.live[k].stamp_ns, run.live[k].stamp_ns);
+    EXPECT_LT((back.live[k].p_WC - run.live[k].p_WC).norm(), 1e-10);
+    EXPECT_LT((back.trajectory[k].p_WC - run.trajectory[k].p_WC).norm(), 1e-10);
     const Matrix12d &P = run.beliefs[k].covariance, &Q = back.beliefs[k].covariance;
     EXPECT_LT((P - Q).cwiseAbs().maxCoeff(), 1e-13 * P.cwiseAbs().maxCoeff());
     EXPECT_LT((run.beliefs[k].velocity.v_WC - back.beliefs[k].velocity.v_WC).norm(), 1e-10);
@@ -112,10 +117,14 @@ TEST(EstimateRun, PartsMayBeMissingAndOldOnesDoNotLinger) {
   const TemporaryFolder folder;
   EstimateRun run = Sample();
   WriteEstimateRun(folder.path(), run);
+  EXPECT_EQ(run.answers()[1].p_WC, run.live[1].p_WC);
+  run.live.clear();
   run.beliefs.clear();
   run.frames.clear();
   WriteEstimateRun(folder.path(), run);
   const EstimateRun back = ReadEstimateRun(folder.path());
+  EXPECT_TRUE(back.live.empty());
+  EXPECT_EQ(back.answers()[1].p_WC, back.trajectory[1].p_WC) << "not told apart: the trajectory itself";
   EXPECT_TRUE(back.beliefs.empty());
   EXPECT_TRUE(back.frames.empty());
   EXPECT_EQ(back.trajectory.size(), 4u);
@@ -138,6 +147,7 @@ TEST(EstimateRun, ListsTheProblemsOfAllFilesAtOnce) {
   const TemporaryFolder folder;
   WriteEstimateRun(folder.path(), Sample());
   folder.Write("estimate.txt", "1 0 0 x 0 0 0 1\n");
+  folder.Write("live.txt", "1 0 0 0 0 0 0 2\n");
   folder.Write("covariance.txt", "1 2 3\n");
   folder.Write("frames.csv",
                "timestamp,searched,matched,landmarks,permanent,nis,nis_dof,effective_particles,ms_features,ms_matching,"
@@ -146,9 +156,9 @@ TEST(EstimateRun, ListsTheProblemsOfAllFilesAtOnce) {
     ReadEstimateRun(folder.path());
     FAIL();
   } catch (const InputError& error) {
-    for (const char* part :
-         {"estimate.txt:1:7: 'x'", "covariance.txt:1:1: 3 columns", "frames.csv:2:5: '-3' is not a count",
-          "frames.csv:2:12: 'nan'", "frames.csv:2:27: 'lost' is not 'tracked' or 'coasted'"}) {
+    for (const char* part : {"estimate.txt:1:7: 'x'", "live.txt:1:", "covariance.txt:1:1: 3 columns",
+                             "frames.csv:2:5: '-3' is not a count", "frames.csv:2:12: 'nan'",
+                             "frames.csv:2:27: 'lost' is not 'tracked' or 'coasted'"}) {
       EXPECT_THAT(error.what(), HasSubstr(part));
     }
   }

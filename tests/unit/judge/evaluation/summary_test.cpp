@@ -198,6 +198,30 @@ TEST(Judge, SumsUpConsistency) {
   EXPECT_FALSE(without.consistency->velocity || without.consistency->joint || without.consistency->joint_scale_free);
 }
 
+// Errors are those of the trajectory, with the answers' beside them; covariances belong to the answers.
+TEST(Judge, TellsTheAnswersFromTheTrajectory) {
+  TestRandom random(60);
+  const Trajectory truth = random.Walk(40);
+  EstimateRun run = RunOf(truth, StampsOf(truth), 40);
+  for (const StampedPose& pose : truth) {
+    run.trajectory[run.beliefs.size()].p_WC += 0.01 * random.Normals(3);
+    run.beliefs.push_back({{pose.stamp_ns, {}, {}}, 0.01 * Matrix12d::Identity()});
+  }
+  const Metrics alone = Judge(run, truth, std::nullopt);
+  EXPECT_FALSE(alone.live);
+  run.live = run.trajectory;
+  for (std::size_t k = 0; k < 10; ++k) run.live[k].p_WC += 0.3 * random.Normals(3);
+  const Metrics both = Judge(run, truth, std::nullopt);
+  EXPECT_EQ(both.errors.sim3.position.rmse, alone.errors.sim3.position.rmse);
+  ASSERT_TRUE(both.live);
+  EXPECT_GT(both.live->sim3.position.rmse, 3 * both.errors.sim3.position.rmse);
+  std::swap(run.live, run.trajectory);
+  const Metrics exchanged = Judge(run, truth, std::nullopt);
+  EXPECT_EQ(exchanged.errors.none.position.rmse, both.live->none.position.rmse);
+  EXPECT_EQ(exchanged.consistency->pose.mean, alone.consistency->pose.mean);
+  EXPECT_GT(both.consistency->pose.mean, 2 * alone.consistency->pose.mean);
+}
+
 TEST(Judge, SumsUpTimesAndEvents) {
   TestRandom random(57);
   const Trajectory truth = random.Walk(4);
