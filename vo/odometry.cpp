@@ -98,6 +98,7 @@ struct Odometry::Impl {
     diagnostics.matched = static_cast<int>(association.matches.size());
     diagnostics.nis = association.nis;
     diagnostics.nis_dof = 2 * diagnostics.matched;
+    diagnostics.repeated = association.repeated;
     views = std::move(association.views);
     left_out = std::move(association.left_out);
     diagnostics.ms_filter += watch.Lap();
@@ -117,7 +118,7 @@ struct Odometry::Impl {
     constexpr int kRounds = 6;
     const PreparedFrame first = *std::exchange(first_frame, std::nullopt);
     const double dt = static_cast<double>(second.frame.stamp_ns - first.frame.stamp_ns) * 1e-9;
-    for (int round = 1; round < kRounds && diagnostics.tracked(); ++round) {
+    for (int round = 1; round < kRounds && diagnostics.matched >= FrameDiagnostics::kTrackedMatches; ++round) {
       const Vector6 velocity = MinusNear(filter.belief().pose, prior.pose, dt * prior.w_WC_C) / dt;
       *this = Impl(camera, params, prior, seed);
       Begin(first, velocity);

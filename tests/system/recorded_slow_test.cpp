@@ -30,7 +30,7 @@ void ExpectWithin(const Limits& limits, const std::string& name, const std::stri
     std::printf("%s seed %2d: ATE %.2f cm, RPE %.2f cm/s, tracked %.3f\n", name.c_str(), static_cast<int>(seed),
                 scores.ate_cm, scores.rpe_cm_per_s, scores.tracked_coverage);
     EXPECT_EQ(scores.pose_coverage, 1) << seed;
-    EXPECT_GE(scores.tracked_coverage, 0.95) << seed;
+    EXPECT_GE(scores.tracked_coverage, 0.9) << seed;
     ate.push_back(scores.ate_cm);
     rpe.push_back(scores.rpe_cm_per_s);
     constant_pose = scores.constant_pose_ate_cm;

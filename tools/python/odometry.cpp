@@ -172,7 +172,10 @@ void AddEstimate(py::module_& m) {
       .def_readonly("nis_dof", &vo::FrameDiagnostics::nis_dof)
       .def_readonly("effective_particles", &vo::FrameDiagnostics::effective_particles,
                     Doc("vo/base/result.h:FrameDiagnostics::effective_particles"))
-      .def_readonly("events", &vo::FrameDiagnostics::events, Doc("vo/base/result.h:FrameDiagnostics::events"));
+      .def_readonly("events", &vo::FrameDiagnostics::events, Doc("vo/base/result.h:FrameDiagnostics::events"))
+      .def_readonly("repeated", &vo::FrameDiagnostics::repeated, Doc("vo/base/result.h:FrameDiagnostics::repeated"))
+      .def_property_readonly("tracked", &vo::FrameDiagnostics::tracked,
+                             Doc("vo/base/result.h:FrameDiagnostics::tracked"));
   AddState<vo::Estimate>(m, "Estimate", "What a filter says after a frame: conventions as in docs/conventions.md.")
       .def(py::init(&MakeEstimate), py::kw_only(), py::arg("covariance"), py::arg("p_WC") = zero(),
            py::arg("q_WC") = identity, py::arg("v_WC") = zero(), py::arg("w_WC_C") = zero(), py::arg("stamp_ns") = 0)

@@ -50,7 +50,13 @@ struct FrameDiagnostics {
   // Time of frame preparation and corner detection; of the search; of the rest
   double ms_features = 0, ms_matching = 0, ms_filter = 0;
   NumericalEvents events;  // where the filter did what its equations do not say
-  bool tracked() const { return matched >= 10; }
+  int repeated = 0;        // predictions made again in this frame, kept or not: the first one had failed
+  static constexpr int kTrackedMatches = 10;
+  static constexpr double kTrackedAgreement = 0.4;
+  // The frame shows what was predicted: enough landmarks match, enough of the searched do, at the first prediction.
+  bool tracked() const {
+    return matched >= kTrackedMatches && matched >= kTrackedAgreement * searched && repeated == 0;
+  }
 };
 
 struct Estimate {

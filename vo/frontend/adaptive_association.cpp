@@ -55,17 +55,22 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
   input.coasting_s = coasting_s;
   filter.Predict(dt, input);
   Association association = associate(input);
-  for (int k = 0; k < kWidenings && Failed(association); ++k)
+  int repeated = 0;
+  for (int k = 0; k < kWidenings && Failed(association); ++k) {
+    ++repeated;
     if (!Repeat(filter, Widened(input, RatiosOf(association)), associate, input, association)) break;
+  }
   if (Failed(association) && !matched_.empty()) {
     if (const auto R = AlignRotation(camera_, Thumbnails(matched_), Thumbnails(grey))) {
       MotionInput aligned = input;
       aligned.position_noise *= kAlignedNoise;
       aligned.orientation_noise *= kAlignedNoise;
       aligned.turn = R->conjugate();
+      ++repeated;
       Repeat(filter, aligned, associate, input, association);
     }
   }
+  association.repeated = repeated;
   if (HasMatches(association)) {
     noise_.Learn(RatiosOf(association), input);
     grey.copyTo(matched_);  // the memory is the caller's

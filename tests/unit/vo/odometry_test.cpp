@@ -67,6 +67,41 @@ TEST(Odometry, FollowsACameraInFrontOfTexturedWalls) {
   EXPECT_GT(odometry.Features().size(), 30u);
 }
 
+TEST(FrameDiagnostics, WhatIsTracked) {
+  const auto tracked = [](int searched, int matched, int repeated) {
+    vo::FrameDiagnostics d;
+    d.searched = searched, d.matched = matched, d.repeated = repeated;
+    return d.tracked();
+  };
+  EXPECT_TRUE(tracked(10, 10, 0));
+  EXPECT_FALSE(tracked(9, 9, 0)) << "too few";
+  EXPECT_TRUE(tracked(50, 20, 0));
+  EXPECT_FALSE(tracked(50, 19, 0)) << "fewer than two fifths of the searched";
+  EXPECT_FALSE(tracked(50, 50, 1)) << "not where they were predicted";
+}
+
+// A jerk of four degrees, 18 px, between two frames is found by a prediction that is made again: it has matches enough,
+// but does not count as tracked.
+TEST(Odometry, TellsAFrameWhosePredictionFailed) {
+  constexpr int kJerk = 20;
+  const vo_test::Texture texture(4, 40.0, 24);
+  vo::Params params = SmallImageParams();
+  params.motion.adaptive = true;
+  vo::Odometry odometry(kCamera, params, KnownStart(), 1);
+  for (int k = 0; k < kJerk + 8; ++k) {
+    vo::Pose pose = TruthAt(k);
+    if (k >= kJerk) pose.q_WC = pose.q_WC * vo::Exp({0, 0.07, 0});
+    const vo::FrameDiagnostics d = odometry.Track({k * kFrameNs, ViewFrom(pose, texture)}).diagnostics;
+    EXPECT_GE(d.matched, k == 0 ? 0 : 10) << k;
+    EXPECT_EQ(d.tracked(), d.matched >= 10 && 10 * d.matched >= 4 * d.searched && d.repeated == 0) << k;
+    if (k == kJerk) {
+      EXPECT_GT(d.repeated, 0);
+    } else if ((k > 10 && k < kJerk) || k > kJerk + 5) {
+      EXPECT_TRUE(d.tracked()) << k;
+    }
+  }
+}
+
 // Of points with one factor of length, fitted through the first one; turns are not fitted.
 double ScaledRms(const std::vector<Vector3d>& x) {
   double xy = 0, xx = 0, yy = 0;

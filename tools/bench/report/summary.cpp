@@ -77,7 +77,9 @@ std::string SystemTiles(const std::vector<SystemSummary>& systems, const std::ve
          {Fixed(100 * s.rpe_m, 2) + " cm/s, " + Fixed(kDegrees * s.rpe_rad, 2) + " °/s", "RPE: how fast it drifts",
           "over one second; constant pose " + Fixed(100 * baselines[0].rpe_m, 1) + " cm/s, " +
               Fixed(kDegrees * baselines[0].rpe_rad, 1) + " °/s; " + Percent(s.tracked_coverage) +
-              " of the frames tracked (at least 10 matched features), " + Percent(s.pose_coverage) + " with a pose"},
+              " of the frames tracked (at least 10, and 40 % of the searched, features match at the first "
+              "prediction), " +
+              Percent(s.pose_coverage) + " with a pose"},
          {Readable(s.nees_pose_per_dof), "NEES of the pose: how consistent it is, 1 is ideal",
           "per degree of freedom, not aligned; " + Readable(s.nees_pose_scale_free_per_dof) + " blind to scale, NIS " +
               Fixed(s.nis_per_dof, 2)}});

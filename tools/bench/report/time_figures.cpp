@@ -105,14 +105,14 @@ void AddFigures(const ResultData& data, std::size_t s, std::vector<Figure>& figu
       InTime("Features of " + name, "Landmarks searched for and found in each frame.", FromZero("features"));
   features.series = {line(Role::context, "searched", &Frame::searched, s),
                      line(Role::system, "matched", &Frame::matched, s)};
-  Series coasted = LineAs(Role::warning, "coasted", {}, {});
-  coasted.draw = Draw::dots;
+  Series untracked = LineAs(Role::warning, "not tracked", {}, {});
+  untracked.draw = Draw::dots;
   for (const Frame& frame : run.run.frames) {
     if (frame.tracked) continue;
-    coasted.x.push_back(Seconds(data, frame.stamp_ns));
-    coasted.y.push_back(frame.matched);
+    untracked.x.push_back(Seconds(data, frame.stamp_ns));
+    untracked.y.push_back(frame.matched);
   }
-  if (!coasted.x.empty()) features.series.push_back(coasted);
+  if (!untracked.x.empty()) features.series.push_back(untracked);
   Figure map = InTime("Map of " + name, "Landmarks in the map after each frame.", FromZero("landmarks"));
   map.series = {line(Role::context, "all", &Frame::landmarks, s),
                 line(Role::system, "permanent", &Frame::permanent, s)};

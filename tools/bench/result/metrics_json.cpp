@@ -117,8 +117,9 @@ Json Of(const ev::Metrics& metrics) {
         {"pose_coverage", Number(metrics.coverage->pose_coverage(), "1", "frames with a pose / frames")}};
     if (metrics.coverage->tracked) {
       json["coverage"]["frames_tracked"] = *metrics.coverage->tracked;
-      json["coverage"]["tracked_coverage"] =
-          Number(*metrics.coverage->tracked_coverage(), "1", "frames with at least 10 matched features / frames");
+      json["coverage"]["tracked_coverage"] = Number(
+          *metrics.coverage->tracked_coverage(), "1",
+          "frames in which at least 10, and 40 % of the searched, features match at the first prediction / frames");
     }
   }
   if (metrics.consistency) {

@@ -127,9 +127,9 @@ std::string TextSummary(const std::vector<RunMetrics>& runs) {
       "Medians over runs. ATE: position RMSE after Sim(3) alignment; live: of the answers as they were given. RPE: "
       "over "
       "one\n"
-      "second, scale of the alignment. tracked: frames with 10 or more matched features. NEES: of the pose, live, not "
-      "aligned,\n"
-      "1 is ideal; scale-free: blind to the map's scale.\n";
+      "second, scale of the alignment. tracked: frames in which at least 10, and 40 % of the searched, features match "
+      "at the\n"
+      "first prediction. NEES: of the pose, live, not aligned, 1 is ideal; scale-free: blind to the map's scale.\n";
   return text;
 }
 

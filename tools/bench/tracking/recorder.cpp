@@ -29,6 +29,7 @@ evaluation::FrameRecord RecordOf(const vo::Estimate& estimate) {
   record.tracked = d.tracked();
   record.events = {d.events.not_converged, d.events.behind_camera, d.events.not_positive_definite,
                    d.events.non_finite_weight};
+  record.repeated = d.repeated;
   return record;
 }
 

@@ -31,11 +31,13 @@ constexpr std::array<Column, 10> kColumns = {{{"searched", &FrameRecord::searche
                                               {"ms_features", nullptr, &FrameRecord::ms_features},
                                               {"ms_matching", nullptr, &FrameRecord::ms_matching},
                                               {"ms_filter", nullptr, &FrameRecord::ms_filter}}};
-constexpr std::size_t kStatus = kColumns.size() + 1;  // behind it kNumericalEvents, where they are known
+constexpr std::size_t kStatus = kColumns.size() + 1;  // behind it kNumericalEvents and `repeated`, where they are known
+constexpr std::size_t kRepeated = kStatus + kNumericalEvents.size() + 1;
 constexpr std::array kFormerEvents = {"unsettled", "behind", "indefinite", "impossible"};
 
 std::string ColumnName(std::size_t i) {
   if (i == 0) return "timestamp";
+  if (i == kRepeated) return "repeated";
   return i < kStatus ? kColumns[i - 1].name : i == kStatus ? "status" : kNumericalEvents[i - kStatus - 1].name;
 }
 
@@ -76,9 +78,10 @@ std::optional<int> ParseCount(const std::string& text) {
 std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems& problems) {
   std::vector<FrameRecord> frames;
   bool header = true;
-  std::size_t columns = kStatus + 1 + kNumericalEvents.size();
+  std::size_t columns = kRepeated + 1;
   for (const Line& line : Lines(file, ',')) {
-    if (header && line.tokens.size() == kStatus + 1) columns = kStatus + 1;
+    for (const std::size_t fewer : {kStatus + 1, kRepeated})
+      if (header && line.tokens.size() == fewer) columns = fewer;
     if (line.tokens.size() != columns) {
       problems.Add(file, line.number, 1,
                    std::to_string(line.tokens.size()) + " columns where " + std::to_string(columns) + " are expected");
@@ -89,7 +92,7 @@ std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems&
       for (std::size_t i = 0; i < columns; ++i) {
         const std::string& name = line.tokens[i].text;
         if (name == ColumnName(i)) continue;
-        const bool former = i > kStatus && name == kFormerEvents[i - kStatus - 1];
+        const bool former = i > kStatus && i < kRepeated && name == kFormerEvents[i - kStatus - 1];
         problems.Add(file, line.number, line.tokens[i].column,
                      "column '" + name + "' " + (former ? "is now" : "where") + " '" + ColumnName(i) + "'" +
                          (former ? "" : " is expected"));
@@ -123,10 +126,12 @@ std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems&
     }
     const std::string& status = line.tokens[kStatus].text;
     record.tracked = status == "tracked";
-    if (!record.tracked && status != "coasted") bad(kStatus, "'tracked' or 'coasted'");
+    if (!record.tracked && status != "weak" && status != "coasted") bad(kStatus, "'tracked', 'weak' or 'coasted'");
     if (columns > kStatus + 1) record.events.emplace();
+    if (columns > kRepeated) record.repeated.emplace();
     for (std::size_t i = kStatus + 1; i < columns; ++i) {
-      take(i, ParseCount(line.tokens[i].text), (*record.events).*kNumericalEvents[i - kStatus - 1].count, "a count");
+      int& into = i == kRepeated ? *record.repeated : (*record.events).*kNumericalEvents[i - kStatus - 1].count;
+      take(i, ParseCount(line.tokens[i].text), into, "a count");
     }
     frames.push_back(record);
   }
@@ -150,15 +155,15 @@ std::string LineOf(const StampedBelief& belief) {
          FormatNumbers(triangle, 15) + '\n';
 }
 
-std::string LineOf(const FrameRecord& f, bool with_events) {
+std::string LineOf(const FrameRecord& f, std::size_t columns) {
   std::string text = base::FormatSeconds(f.stamp_ns);
   for (const auto& [name, count, number, digits] : kColumns) {
     text += ',' + (count != nullptr ? std::to_string(f.*count) : base::Significant(f.*number, digits));
   }
-  text += f.tracked ? ",tracked" : ",coasted";
-  if (with_events) {
+  text += f.tracked ? ",tracked" : f.matched > 0 ? ",weak" : ",coasted";
+  if (columns > kStatus + 1)
     for (const NumericalEvent& event : kNumericalEvents) text += ',' + std::to_string((*f.events).*event.count);
-  }
+  if (columns > kRepeated) text += ',' + std::to_string(*f.repeated);
   return text + '\n';
 }
 
@@ -170,13 +175,16 @@ void WriteBeliefs(const std::filesystem::path& file, const std::vector<StampedBe
 }
 
 void WriteFrames(const std::filesystem::path& file, const std::vector<FrameRecord>& frames) {
-  const bool with_events =
-      std::all_of(frames.begin(), frames.end(), [](const FrameRecord& f) { return f.events.has_value(); });
+  const auto all = [&](const auto& has) { return std::all_of(frames.begin(), frames.end(), has); };
+  std::size_t columns = kStatus + 1;
+  if (all([](const FrameRecord& f) { return f.events.has_value(); })) {
+    columns = kRepeated;
+    if (all([](const FrameRecord& f) { return f.repeated.has_value(); })) ++columns;
+  }
   base::AtomicFile out(file);
-  for (std::size_t i = 0; i <= kStatus + (with_events ? kNumericalEvents.size() : 0); ++i)
-    out.Append((i == 0 ? "" : ",") + ColumnName(i));
+  for (std::size_t i = 0; i < columns; ++i) out.Append((i == 0 ? "" : ",") + ColumnName(i));
   out.Append("\n");
-  for (const FrameRecord& frame : frames) out.Append(LineOf(frame, with_events));
+  for (const FrameRecord& frame : frames) out.Append(LineOf(frame, columns));
   out.Commit();
 }
 

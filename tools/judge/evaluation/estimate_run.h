@@ -46,8 +46,9 @@ struct FrameRecord {
   int nis_dof = 0;  // 2 per matched feature
   double effective_particles = 0;
   double ms_features = 0, ms_matching = 0, ms_filter = 0;
-  bool tracked = false;                   // at least 10 matched features; else the filter coasted
+  bool tracked = false;                   // docs/metrics.md, "Coverage"; by the rule of the program that wrote it
   std::optional<NumericalEvents> events;  // none where they are not known, as of other people's systems
+  std::optional<int> repeated;            // predictions made again in this frame; none as well
 };
 
 struct EstimateRun {

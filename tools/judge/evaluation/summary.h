@@ -46,7 +46,7 @@ struct TrajectoryErrors {
 struct Coverage {
   std::size_t frames = 0;
   std::size_t with_pose = 0;
-  std::optional<std::size_t> tracked;  // frames with at least 10 matched features; nothing when the run does not say
+  std::optional<std::size_t> tracked;  // frames; nothing when the run does not say
   double pose_coverage() const;
   std::optional<double> tracked_coverage() const;
 };

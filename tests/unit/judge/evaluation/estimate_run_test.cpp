@@ -36,6 +36,7 @@ EstimateRun Sample() {
     frame.ms_features = 1.5, frame.ms_matching = 2.25, frame.ms_filter = 0.75;
     frame.tracked = pose.stamp_ns % 2 == 0;
     frame.events = {3, 1, 4, 2};
+    frame.repeated = 1;
     run.frames.push_back(frame);
   }
   return run;
@@ -61,8 +62,8 @@ TEST(EstimateRun, ReadsBackTheSame) {
     const FrameRecord &f = run.frames[k], &g = back.frames[k];
     EXPECT_EQ(std::tie(f.stamp_ns, f.searched, f.matched, f.landmarks, f.permanent, f.nis, f.nis_dof),
               std::tie(g.stamp_ns, g.searched, g.matched, g.landmarks, g.permanent, g.nis, g.nis_dof));
-    EXPECT_EQ(std::tie(f.effective_particles, f.ms_features, f.ms_matching, f.ms_filter, f.tracked),
-              std::tie(g.effective_particles, g.ms_features, g.ms_matching, g.ms_filter, g.tracked));
+    EXPECT_EQ(std::tie(f.effective_particles, f.ms_features, f.ms_matching, f.ms_filter, f.tracked, f.repeated),
+              std::tie(g.effective_particles, g.ms_features, g.ms_matching, g.ms_filter, g.tracked, g.repeated));
     ASSERT_TRUE(g.events);
     EXPECT_EQ(std::tie(g.events->not_converged, g.events->behind_camera, g.events->not_positive_definite,
                        g.events->non_finite_weight),
@@ -89,8 +90,14 @@ TEST(EstimateRun, FramesMayComeWithoutEvents) {
       "filter,status";
   EXPECT_THAT(TemporaryFolder::Read(folder.path() / "frames.csv"), testing::StartsWith(header + "\n"));
   for (const FrameRecord& frame : ReadEstimateRun(folder.path()).frames) EXPECT_FALSE(frame.events);
-  folder.Write("frames.csv", header +
-                                 ",not_converged,behind_camera,not_positive_definite,non_finite_weight\n"
+  // Of a program that did not count repetitions; what its status says stays.
+  const std::string events = ",not_converged,behind_camera,not_positive_definite,non_finite_weight";
+  folder.Write("frames.csv", header + events + "\n1,30,11,0,0,0,0,8,0,0,0,tracked,0,0,0,0\n");
+  const FrameRecord former = ReadEstimateRun(folder.path()).frames.at(0);
+  EXPECT_TRUE(former.tracked && former.events);
+  EXPECT_FALSE(former.repeated);
+  folder.Write("frames.csv", header + events +
+                                 "\n"
                                  "1,0,0,0,0,0,0,8,0,0,0,coasted,0,0,0,-1\n"
                                  "2,0,0,0,0,0,0,8,0,0,0,coasted\n");
   EXPECT_THAT([&] { ReadEstimateRun(folder.path()); },
@@ -158,7 +165,7 @@ TEST(EstimateRun, ListsTheProblemsOfAllFilesAtOnce) {
   } catch (const InputError& error) {
     for (const char* part : {"estimate.txt:1:7: 'x'", "live.txt:1:", "covariance.txt:1:1: 3 columns",
                              "frames.csv:2:5: '-3' is not a count", "frames.csv:2:12: 'nan'",
-                             "frames.csv:2:27: 'lost' is not 'tracked' or 'coasted'"}) {
+                             "frames.csv:2:27: 'lost' is not 'tracked', 'weak' or 'coasted'"}) {
       EXPECT_THAT(error.what(), HasSubstr(part));
     }
   }
@@ -206,24 +213,24 @@ TEST(EstimateRun, FrameErrorsHavePlaces) {
   };
   const auto row = [](std::size_t at, const std::string& token) {
     std::string columns;
-    for (std::size_t i = 0; i < 16; ++i)
-      columns += (i == at ? token : i == 0 ? "1" : i == 11 ? "coasted" : "0") + (i < 15 ? "," : "\n");
+    for (std::size_t i = 0; i < 17; ++i)
+      columns += (i == at ? token : i == 0 ? "1" : i == 11 ? "coasted" : "0") + (i < 16 ? "," : "\n");
     return columns;
   };
   const std::string file = (folder.path() / "frames.csv").string();
   EXPECT_EQ(error_of(row(0, "1") + row(0, "2")), "");
   EXPECT_EQ(error_of(row(0, "1") + row(0, "1")), file + ":3:1: '1' is not later than the time above");
   EXPECT_EQ(error_of(row(0, "x")), file + ":2:1: 'x' is not a time in seconds");
-  EXPECT_EQ(error_of("1,2\n" + row(0, "2")), file + ":2:1: 2 columns where 16 are expected");
+  EXPECT_EQ(error_of("1,2\n" + row(0, "2")), file + ":2:1: 2 columns where 17 are expected");
   folder.Write("frames.csv", "1,2\n" + row(0, "2"));
   EXPECT_EQ(ComplaintOf<InputError>([&] { ReadEstimateRun(folder.path()); }),
-            file + ":1:1: 2 columns where 16 are expected");
+            file + ":1:1: 2 columns where 17 are expected");
   folder.Write("frames.csv", "time" + header.substr(header.find(',')) + '\n' + row(0, "2"));
   EXPECT_EQ(ComplaintOf<InputError>([&] { ReadEstimateRun(folder.path()); }),
             file + ":1:1: column 'time' where 'timestamp' is expected");
-  for (std::size_t i = 1; i < 16; ++i) {
+  for (std::size_t i = 1; i < 17; ++i) {
     const std::string at = file + ":2:" + std::to_string(i < 12 ? 2 * i + 1 : 2 * i + 7) + ": ";
-    const char* what = i == 11                       ? "'tracked' or 'coasted'"
+    const char* what = i == 11                       ? "'tracked', 'weak' or 'coasted'"
                        : i == 5 || (i > 6 && i < 11) ? "a number of zero or more"
                                                      : "a count";
     EXPECT_EQ(error_of(row(i, "x")), at + "'x' is not " + what);
@@ -252,8 +259,25 @@ TEST(EstimateRun, Digits) {
   EXPECT_THAT(covariance, testing::EndsWith(" 0 1.33333333333333\n"));
   EXPECT_THAT(covariance, testing::StartsWith("# timestamp vx vy vz wx wy wz, then the upper triangle of the 12 x 12 "
                                               "covariance, row by row\n"));
-  EXPECT_THAT(frames, testing::EndsWith(
-                          "\n1.000000000,50,40,120,7,33.3333333,80,33.3333,33.3333,33.3333,33.3333,tracked,3,1,4,2\n"));
+  EXPECT_THAT(
+      frames,
+      testing::EndsWith("\n1.000000000,50,40,120,7,33.3333333,80,33.3333,33.3333,33.3333,33.3333,tracked,3,1,4,2,1\n"));
+}
+
+// What is not tracked has matches, or none.
+TEST(EstimateRun, StatusOfAFrame) {
+  const TemporaryFolder folder;
+  EstimateRun run = Sample();
+  for (FrameRecord& frame : run.frames) frame.tracked = false;
+  run.frames[0].tracked = true;
+  run.frames[2].matched = 0;
+  WriteEstimateRun(folder.path(), run);
+  const std::string text = TemporaryFolder::Read(folder.path() / "frames.csv");
+  const std::size_t tracked = text.find(",tracked,"), weak = text.find(",weak,"), coasted = text.find(",coasted,");
+  EXPECT_LT(tracked, weak);
+  EXPECT_LT(weak, coasted);
+  const std::vector<FrameRecord> frames = ReadEstimateRun(folder.path()).frames;
+  for (std::size_t k = 0; k < frames.size(); ++k) EXPECT_EQ(frames[k].tracked, k == 0);
 }
 
 TEST(EstimateRun, RefusesAWrongHeaderAndNegativeVariances) {
