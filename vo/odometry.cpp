@@ -21,8 +21,11 @@
 
 namespace vo {
 
-struct Odometry::Impl {
-  Impl(const Camera& camera_, const Params& params_, const Prior& prior_, std::uint64_t seed_)
+namespace {
+
+// One odometry from one start.
+struct Tracker {
+  Tracker(const Camera& camera_, const Params& params_, const Prior& prior_, std::uint64_t seed_)
       : camera(camera_),
         params(params_),
         prior(prior_),
@@ -47,13 +50,10 @@ struct Odometry::Impl {
     FrameDiagnostics diagnostics;
     if (last_stamp_ns) {
       Follow(frame, diagnostics);
-      if (first_frame) RestartFirstFrame(frame, diagnostics);
+      if (first_frame && has_matched) RestartFirstFrame(frame, diagnostics);
     } else {
       Stopwatch watch;
-      if (shutter.on()) {
-        first_frame = frame;
-        first_frame->grey = frame.grey.clone();  // the memory is the caller's
-      }
+      if (shutter.on()) KeepFirstFrame(frame);
       Begin(frame, filter.belief().velocity);
       diagnostics.ms_features += watch.Lap();
     }
@@ -61,7 +61,14 @@ struct Odometry::Impl {
     diagnostics.landmarks = static_cast<int>(records.size());
     diagnostics.permanent = static_cast<int>(
         std::count_if(records.begin(), records.end(), [](const LandmarkRecord& r) { return r.permanent; }));
-    return MakeEstimate(filter, scale, frame.frame.stamp_ns, diagnostics);
+    Estimate estimate = MakeEstimate(filter, scale, frame.frame.stamp_ns, diagnostics);
+    estimate.covariance.topLeftCorner<6, 6>() += pose_before_start;
+    return estimate;
+  }
+
+  void KeepFirstFrame(const PreparedFrame& frame) {
+    first_frame = frame;
+    first_frame->grey = frame.grey.clone();  // the memory is the caller's
   }
 
   // First frame: its landmarks are seen at the prior pose, with `velocity` during the readout.
@@ -90,6 +97,9 @@ struct Odometry::Impl {
       association = associate({});
     }
     diagnostics.ms_matching += watch.Lap();
+    if (params.motion.adaptive && association.matches.empty() && filter.answer().initialising && !has_matched)
+      return BeginAgain(frame, association, diagnostics);
+    has_matched = true;
 
     Update(association.matches);  // lines 4-11: (15)-(17), (37)-(43)
     start.Add(frame.frame.stamp_ns, filter.answer(), scale);
@@ -112,6 +122,21 @@ struct Odometry::Impl {
     diagnostics.ms_features += watch.Lap();
   }
 
+  // Start with the present frame where no landmark of the first is found, at the pose of the prior. What the camera may
+  // have moved until then stays in the covariance of all answers to come.
+  void BeginAgain(const PreparedFrame& frame, Association& association, FrameDiagnostics& diagnostics) {
+    filter.Update({});
+    Tracker again(camera, params, prior, seed);
+    again.pose_before_start = pose_before_start + filter.belief().covariance.topLeftCorner<6, 6>();
+    again.next_id = next_id;
+    *this = std::move(again);
+    diagnostics.searched = static_cast<int>(association.searched.size());
+    diagnostics.repeated = association.repeated;
+    if (shutter.on()) KeepFirstFrame(frame);
+    Begin(frame, filter.belief().velocity);
+    views.insert(views.begin(), association.views.begin(), association.views.end());
+  }
+
   // The velocity in the first frame is that of the prior, and its error shears the map through the rolling shutter. The
   // second frame measures it: both frames are processed again with the result, as a fixed-point iteration.
   void RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& diagnostics) {
@@ -120,7 +145,9 @@ struct Odometry::Impl {
     const double dt = static_cast<double>(second.frame.stamp_ns - first.frame.stamp_ns) * 1e-9;
     for (int round = 1; round < kRounds && diagnostics.matched >= FrameDiagnostics::kTrackedMatches; ++round) {
       const Vector6 velocity = MinusNear(filter.belief().pose, prior.pose, dt * prior.w_WC_C) / dt;
-      *this = Impl(camera, params, prior, seed);
+      const Matrix6 before_start = pose_before_start;
+      *this = Tracker(camera, params, prior, seed);
+      pose_before_start = before_start;
       Begin(first, velocity);
       Follow(second, diagnostics);
     }
@@ -134,7 +161,7 @@ struct Odometry::Impl {
   // Prior of new landmarks: the median depth of those in view, whose map may have any scale. Kept where too few are
   // known.
   void UpdateTypicalDepth(std::span<const Match> matches, std::span<const Filter::LandmarkBelief> beliefs) {
-    constexpr double kKnown = 0.3, kRelativeSigma = 1;
+    constexpr double kKnown = 0.3, kRelativeSigma = 1.4;
     constexpr std::size_t kEnough = 8;
     const Pose& pose = filter.belief().pose;
     std::vector<double> depths;
@@ -209,7 +236,9 @@ struct Odometry::Impl {
   NewFeatureDetector detector;
   std::vector<LandmarkRecord> records;  // in the order of the filter's landmarks
   std::vector<FeatureView> views;
-  std::vector<Eigen::Vector2d> left_out;  // [px] predicted in this frame, beyond max_searched
+  std::vector<Eigen::Vector2d> left_out;        // [px] predicted in this frame, beyond max_searched
+  bool has_matched = false;                     // some frame
+  Matrix6 pose_before_start = Matrix6::Zero();  // covariance of the path from the first image to the start
   std::optional<std::int64_t> last_stamp_ns;
   SinceUpdate since_update;
   AdaptiveAssociation adaptive;
@@ -218,32 +247,70 @@ struct Odometry::Impl {
   std::optional<PreparedFrame> first_frame;  // with a rolling shutter, until the second frame
 };
 
+// A start whose velocity the prior does not know well is made twice.
+Prior WithVagueVelocity(Prior prior) {
+  constexpr double kFactor = 4;  // of the standard deviation
+  prior.velocity_covariance *= kFactor * kFactor;
+  return prior;
+}
+
+}  // namespace
+
+// With an unknown motion, two trackers make the start, with a vague prior of the velocity and with that given: the first
+// may take a wrong mode where the camera hardly moves at first, the second where it moves quickly. One answers, the
+// other takes over where its matches fit clearly better; the start over, one goes on.
+struct Odometry::Impl {
+  Impl(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed) {
+    if (params.motion.adaptive && params.filter.start_window > params.filter.lag)
+      trackers.emplace_back(camera, params, WithVagueVelocity(prior), seed);
+    trackers.emplace_back(camera, params, prior, seed);
+  }
+
+  Estimate Process(const PreparedFrame& frame) {
+    constexpr double kClearly = 1.15;
+    std::vector<Estimate> estimates;
+    for (Tracker& tracker : trackers) estimates.push_back(tracker.Process(frame));
+    const auto score = [](const Tracker& tracker) { return tracker.filter.answer().start_score; };
+    if (trackers.size() > 1 && score(trackers[1]) > kClearly * score(trackers[0])) {
+      std::swap(trackers[0], trackers[1]);
+      std::swap(estimates[0], estimates[1]);
+    }
+    const auto ended = [](const Tracker& tracker) { return !tracker.filter.answer().initialising; };
+    if (std::ranges::any_of(trackers, ended)) trackers.erase(trackers.begin() + 1, trackers.end());
+    return estimates[0];
+  }
+  const Tracker& tracker() const { return trackers[0]; }
+
+  std::vector<Tracker> trackers;  // the first answers
+};
+
 Odometry::Odometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)
     : impl_(std::make_unique<Impl>(camera, params, prior, seed)) {}
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;
 
 Estimate Odometry::Track(const Frame& frame) {
-  impl_->Require(frame);
+  impl_->tracker().Require(frame);
   return impl_->Process(PreparedFrame(frame));
 }
 
 Estimate Odometry::Track(const PreparedFrame& frame) {
-  impl_->Require(frame.frame);
+  impl_->tracker().Require(frame.frame);
   return impl_->Process(frame);
 }
 
 std::vector<MapPoint> Odometry::Map() const {
-  std::vector<MapPoint> points = MakeMap(impl_->filter, impl_->scale);
+  const Tracker& tracker = impl_->tracker();
+  std::vector<MapPoint> points = MakeMap(tracker.filter, tracker.scale);
   for (std::size_t n = 0; n < points.size(); ++n) {
-    points[n].id = impl_->records[n].id;
-    points[n].permanent = impl_->records[n].permanent;
+    points[n].id = tracker.records[n].id;
+    points[n].permanent = tracker.records[n].permanent;
   }
   return points;
 }
 
-const std::vector<StampedPose>& Odometry::Reissued() const { return impl_->start.reissued(); }
+const std::vector<StampedPose>& Odometry::Reissued() const { return impl_->tracker().start.reissued(); }
 
-const std::vector<FeatureView>& Odometry::Features() const { return impl_->views; }
+const std::vector<FeatureView>& Odometry::Features() const { return impl_->tracker().views; }
 
 }  // namespace vo

@@ -28,7 +28,7 @@ class Odometry {
   // The same for a frame that was prepared elsewhere (ReadAhead).
   Estimate Track(const PreparedFrame& frame);
 
-  // Poses of the start's frames, from the first to the present one, given all images of the start: filled by the Track
+  // Poses of the start's frames, from the first that the map refers to until the present one, given all images of the start: filled by the Track
   // that ends the start (params.filter.start_window), empty otherwise. The answers of these frames were given from the
   // images until then; later answers continue these poses, in their scale.
   const std::vector<StampedPose>& Reissued() const;

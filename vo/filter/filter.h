@@ -37,6 +37,8 @@ struct FilterAnswer {
   double effective_particles = 1;        // before resampling
   NumericalEvents events;                // since the last prediction began
   bool initialising = false;             // no pose is sampled yet: the whole map may turn out to be a wrong mode
+  // Of the initialisation: the window's -2 log density at its mode below that of as many coordinates at the 99 % gate.
+  double start_score = 0;
   double scale_change =
       1;  // factor of all lengths, where the last update solved again for a path that was answered before
   // Where the last update ended the initialisation: its first frame and those of its window, the present one included,

@@ -16,6 +16,7 @@ constexpr int kShutterRounds = 4;
 constexpr double kObjectiveSettled = 0.1;  // change of -2 log p
 // The next frame solves it all again.
 constexpr double kStartToleranceSigma = 0.1;
+constexpr double kGatePerMeasurement = 9.21 / 2;  // 99 % of chi-squared with two degrees of freedom
 
 // The solution as seen from another start.
 void Transform(const Pose& from, const Pose& to, PathGaussian& path) {
@@ -51,14 +52,14 @@ const FilterAnswer& Initialisation::Update(std::span<const Match> z) {
       IterateShutterCorrection();
     else
       Solve(0, StartOptions());
-    Challenge(0, frame_, StartOptions());
-    if (rolling()) Take(Corrected(particles_[0].solution, ShutterReference::frame_pose));
+    ChallengeInTurn();
     ShareSolution();
     AddEvidence(1);
     answer_.events += particles_[0].solution.path.events;
   }
   Answer(!z.empty());
   answer_.scale_change = ScaleChange();
+  answer_.start_score = kGatePerMeasurement * Measurements() - particles_[0].solution.path.objective;
   answered_ = particles_[0].solution.path.mean;
   if (window_.size() > settings_.filter.start_window) Finish();
   SampleOldest(answer_.initialising ? 0 : window_.size() - settings_.filter.lag);
@@ -123,6 +124,16 @@ void Initialisation::SolveOther(std::size_t i, const WindowOptions& options, Pat
   WindowInput in = InputOf(i);
   in.landmarks = corrected.landmarks;
   Solve(corrected.window, in, options, other);
+}
+
+// By one other mode in each frame; by all where the present one does not fit: its objective is above the number of
+// measurements.
+void Initialisation::ChallengeInTurn() {
+  for (std::uint32_t k = 0; k < kGuesses; ++k) {
+    Challenge(0, frame_ + k, StartOptions());
+    if (rolling()) Take(Corrected(particles_[0].solution, ShutterReference::frame_pose));
+    if (particles_[0].solution.path.objective < Measurements()) break;
+  }
 }
 
 // The first particle's solution becomes that of all, as seen from their start poses.

@@ -33,6 +33,7 @@ class Initialisation final : public WindowPhase {
   CorrectedWindow Corrected(const PathSolution& solution, ShutterReference reference) const;
   void Take(CorrectedWindow&& corrected);
   void IterateShutterCorrection();
+  void ChallengeInTurn();
   void ShareSolution();
   std::vector<StartPose> StartPath() const;
   void Finish();

@@ -78,9 +78,19 @@ void WindowPhase::Challenge(std::size_t i, std::uint32_t guess, WindowOptions op
   options.stop_if_above = objective;
   SolveOther(i, options, other);
   // By the density at the mode, not by evidence: evidence rewards depths that stay unknown, as if each had a prior of
-  // its own, and prefers a deep scene with little parallax to a wall.
-  if (other.path.objective < objective || std::isnan(objective)) particles_[i].solution = std::move(other);
+  // its own, and prefers a deep scene with little parallax to a wall. Where the descent has not ended, the objective is
+  // that of an expansion far from the mode; matches behind the camera are not part of it.
+  const NumericalEvents &had = particles_[i].solution.path.events, &has = other.path.events;
+  if (std::isnan(objective) ||
+      (other.path.objective < objective && has.not_converged == 0 && has.behind_camera <= had.behind_camera))
+    particles_[i].solution = std::move(other);
   window_.PlaceAnchors(particles_[i].solution.path, particles_[i].anchors);
+}
+
+int WindowPhase::Measurements() const {
+  int views = 0;
+  for (const Track& track : window_.tracks()) views += static_cast<int>(track.views.size());
+  return 2 * views;
 }
 
 void WindowPhase::AddEvidence(double sign) {

@@ -51,6 +51,8 @@ class WindowPhase : public ParticlePhase {
   virtual void SolveOther(std::size_t particle, const WindowOptions& options, PathSolution& other) {
     Solve(window_, InputOf(particle), options, other);
   }
+  // Image coordinates in the window.
+  int Measurements() const;
   // To the log weights; -1 removes that of the last solution.
   void AddEvidence(double sign);
   // Mixture and belief; the weights first, if the window has new matches.

@@ -14,7 +14,7 @@ constexpr int kWidenings = 2;
 constexpr double kAlignedNoise = 4;  // factor on the densities about an aligned rotation
 constexpr double kClearlyMore = 1.2;
 constexpr std::size_t kClearlyMoreMatches = 3;
-constexpr double kLeastMatches = 8, kLeastAgreement = 0.1;
+constexpr double kLeastMatches = 8, kLeastAgreement = 0.1, kLeastAgreementAtTheStart = 0.25;
 
 InnovationRatios RatiosOf(const Association& association) {
   return RatiosOf(association.predicted, association.agreed);
@@ -27,9 +27,11 @@ bool Failed(const Association& association) {
              kFailedAgreement * static_cast<double>(association.searched.size());
 }
 
-bool HasMatches(const Association& association) {
+// The whole map follows from the first matches: at the start more of the searched have to agree.
+bool HasMatches(const Association& association, bool initialising) {
+  const double agreement = initialising ? kLeastAgreementAtTheStart : kLeastAgreement;
   return static_cast<double>(association.matches.size()) >=
-         std::max(kLeastMatches, kLeastAgreement * static_cast<double>(association.searched.size()));
+         std::max(kLeastMatches, agreement * static_cast<double>(association.searched.size()));
 }
 
 }  // namespace
@@ -71,7 +73,7 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
     }
   }
   association.repeated = repeated;
-  if (HasMatches(association)) {
+  if (HasMatches(association, filter.answer().initialising)) {
     noise_.Learn(RatiosOf(association), input);
     grey.copyTo(matched_);  // the memory is the caller's
   } else {

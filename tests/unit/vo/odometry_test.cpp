@@ -102,6 +102,33 @@ TEST(Odometry, TellsAFrameWhosePredictionFailed) {
   }
 }
 
+// The first image shows something else: the start begins with the second. What the camera may have moved in between
+// stays in the covariance; it does not where the first image shows the scene.
+TEST(Odometry, BeginsAgainWhereNothingOfTheFirstImageIsFound) {
+  const vo_test::Texture scene(4, 40.0, 24), other(9, 40.0, 24);
+  vo::Params params = SmallImageParams();
+  params.motion.adaptive = true;
+  vo::Prior prior = KnownStart();
+  prior.velocity_covariance = vo::Matrix6::Identity();
+  const auto position_variance_after = [&](const vo_test::Texture& first, int* least_matched) {
+    vo::Odometry odometry(kCamera, params, prior, 1);
+    double variance = 0;
+    for (int k = 0; k < 8; ++k) {
+      const vo::Estimate e = odometry.Track({k * kFrameNs, ViewFrom(TruthAt(k), k == 0 ? first : scene)});
+      if (k > 1) *least_matched = std::min(*least_matched, e.diagnostics.matched);
+      variance = e.covariance.topLeftCorner<3, 3>().trace();
+    }
+    return variance;
+  };
+  int matched = 1000, matched_of_one_scene = 1000;
+  const double begun_again = position_variance_after(other, &matched);
+  const double of_one_scene = position_variance_after(scene, &matched_of_one_scene);
+  EXPECT_GE(matched, 10);
+  EXPECT_GE(matched_of_one_scene, 10);
+  const double dt = 1e-9 * static_cast<double>(kFrameNs);
+  EXPECT_GT(begun_again - of_one_scene, 3 * dt * dt) << "three axes, the prior's sigma of 1 m/s or more";
+}
+
 // Of points with one factor of length, fitted through the first one; turns are not fitted.
 double ScaledRms(const std::vector<Vector3d>& x) {
   double xy = 0, xx = 0, yy = 0;

@@ -88,10 +88,10 @@ evaluation::EstimateRun Recorder::Run() const {
     run.frames.push_back(answer.frame);
   });
   run.trajectory = run.live;
-  for (std::size_t k = 0; k < reissued_.size(); ++k) {
-    const auto& [stamp_ns, pose] = reissued_[k];
-    run.trajectory[k] = {stamp_ns, pose.p_WC, pose.q_WC};
-  }
+  if (reissued_.empty()) return run;
+  const auto before = [&](const evaluation::StampedPose& pose) { return pose.stamp_ns < reissued_[0].stamp_ns; };
+  auto at = std::ranges::find_if_not(run.trajectory, before);
+  for (const auto& [stamp_ns, pose] : reissued_) *at++ = {stamp_ns, pose.p_WC, pose.q_WC};
   return run;
 }
 
