@@ -214,18 +214,69 @@ struct Odometry::Impl {
 };
 
 Odometry::Odometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)
-    : impl_(std::make_unique<Impl>(camera, params, prior, seed)) {}
+    : impl_(std::make_unique<Impl>(camera, params, prior, seed)) {
+  if (!params.calibration.estimate) return;
+  calibration_.emplace(camera, params.features.readout_s ? params.features.readout_s : camera.readout_s);
+}
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;
 
 Estimate Odometry::Track(const Frame& frame) {
   impl_->Require(frame);
-  return impl_->Process(PreparedFrame(frame));
+  return Track(PreparedFrame(frame));
 }
 
 Estimate Odometry::Track(const PreparedFrame& frame) {
   impl_->Require(frame.frame);
-  return impl_->Process(frame);
+  const Estimate estimate = impl_->Process(frame);
+  return calibration_ ? Calibrated(frame, estimate) : estimate;
+}
+
+// The frames until then are tracked again with the first readout time that is known: a map that was begun with another
+// is sheared. A later change holds from the next frame on.
+Estimate Odometry::Calibrated(const PreparedFrame& frame, const Estimate& estimate) {
+  Stopwatch watch;
+  const bool starting = calibration_->starting();
+  if (starting) {
+    first_frames_.push_back({frame.frame.stamp_ns, frame.grey.clone()});  // the memory is the caller's
+    first_places_.push_back(estimate.pose.p_WC);
+  }
+  if (!calibration_->Add(estimate.stamp_ns, estimate.pose, impl_->views)) return estimate;
+  const bool changed = ChangeReadout();
+  Estimate out = changed && starting ? TrackFirstFramesAgain() : estimate;
+  if (!calibration_->starting()) first_frames_.clear();
+  out.diagnostics.ms_filter += watch.Lap();
+  return out;
+}
+
+// Whether it is another one from now on.
+bool Odometry::ChangeReadout() {
+  const std::optional<double> readout_s = calibration_->ChangeReadout();
+  if (!readout_s) return false;
+  impl_->params.features.readout_s = readout_s;
+  impl_->shutter = RollingShutter(impl_->camera, impl_->params.features);
+  return true;
+}
+
+// With the parameters of impl_. Where the scale is not known, the answers keep that of those already given.
+Estimate Odometry::TrackFirstFramesAgain() {
+  constexpr int kRounds = 3;
+  Estimate last;
+  for (int round = 1; round <= kRounds; ++round) {
+    impl_ = std::make_unique<Impl>(impl_->camera, impl_->params, impl_->prior, impl_->seed);
+    calibration_->Restart();
+    double product = 0, square = 0;
+    for (std::size_t k = 0; k < first_frames_.size(); ++k) {
+      last = impl_->Process(PreparedFrame(first_frames_[k]));
+      calibration_->Add(last.stamp_ns, last.pose, impl_->views);
+      const Eigen::Vector3d from_start = last.pose.p_WC - impl_->prior.pose.p_WC;
+      product += from_start.dot(first_places_[k] - impl_->prior.pose.p_WC);
+      square += from_start.squaredNorm();
+    }
+    if (product > 0) impl_->scale.AbsorbChange(square / product);
+    if (round == kRounds || !ChangeReadout()) break;
+  }
+  return MakeEstimate(impl_->filter, impl_->scale, last.stamp_ns, last.diagnostics);
 }
 
 std::vector<MapPoint> Odometry::Map() const {
@@ -238,5 +289,9 @@ std::vector<MapPoint> Odometry::Map() const {
 }
 
 const std::vector<FeatureView>& Odometry::Features() const { return impl_->views; }
+
+std::optional<CalibrationEstimate> Odometry::Calibration() const {
+  return calibration_ ? std::optional(calibration_->Estimate()) : std::nullopt;
+}
 
 }  // namespace vo

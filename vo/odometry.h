@@ -6,10 +6,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "vo/base/params.h"
 #include "vo/base/result.h"
+#include "vo/calibration/self_calibration.h"
 #include "vo/frontend/prepared_frame.h"
 #include "vo/geometry/camera.h"
 
@@ -30,10 +32,19 @@ class Odometry {
 
   std::vector<MapPoint> Map() const;
   const std::vector<FeatureView>& Features() const;
+  // None without params.calibration.estimate.
+  std::optional<CalibrationEstimate> Calibration() const;
 
  private:
   struct Impl;
+  Estimate Calibrated(const PreparedFrame& frame, const Estimate& estimate);
+  bool ChangeReadout();
+  Estimate TrackFirstFramesAgain();
+
   std::unique_ptr<Impl> impl_;
+  std::optional<SelfCalibration> calibration_;
+  std::vector<Frame> first_frames_;            // as long as they may be tracked again
+  std::vector<Eigen::Vector3d> first_places_;  // answered in them
 };
 
 }  // namespace vo
