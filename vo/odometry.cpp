@@ -61,9 +61,18 @@ struct Tracker {
     diagnostics.landmarks = static_cast<int>(records.size());
     diagnostics.permanent = static_cast<int>(
         std::count_if(records.begin(), records.end(), [](const LandmarkRecord& r) { return r.permanent; }));
-    Estimate estimate = MakeEstimate(filter, scale, frame.frame.stamp_ns, diagnostics);
+    return Answer(frame.frame.stamp_ns, diagnostics);
+  }
+
+  Estimate Answer(std::int64_t stamp_ns, const FrameDiagnostics& diagnostics) const {
+    Estimate estimate = MakeEstimate(filter, scale, stamp_ns, diagnostics);
     estimate.covariance.topLeftCorner<6, 6>() += pose_before_start;
     return estimate;
+  }
+
+  void SetReadout(double readout_s) {
+    params.features.readout_s = readout_s;
+    shutter = RollingShutter(camera, params.features);
   }
 
   void KeepFirstFrame(const PreparedFrame& frame) {
@@ -260,7 +269,8 @@ Prior WithVagueVelocity(Prior prior) {
 // may take a wrong mode where the camera hardly moves at first, the second where it moves quickly. One answers, the
 // other takes over where its matches fit clearly better; the start over, one goes on.
 struct Odometry::Impl {
-  Impl(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed) {
+  Impl(const Camera& camera_, const Params& params_, const Prior& prior_, std::uint64_t seed_)
+      : camera(camera_), params(params_), prior(prior_), seed(seed_) {
     if (params.motion.adaptive && params.filter.start_window > params.filter.lag)
       trackers.emplace_back(camera, params, WithVagueVelocity(prior), seed);
     trackers.emplace_back(camera, params, prior, seed);
@@ -279,24 +289,92 @@ struct Odometry::Impl {
     if (std::ranges::any_of(trackers, ended)) trackers.erase(trackers.begin() + 1, trackers.end());
     return estimates[0];
   }
+  void SetReadout(double readout_s) {
+    params.features.readout_s = readout_s;
+    for (Tracker& tracker : trackers) tracker.SetReadout(readout_s);
+  }
   const Tracker& tracker() const { return trackers[0]; }
 
+  Camera camera;
+  Params params;
+  Prior prior;
+  std::uint64_t seed;
   std::vector<Tracker> trackers;  // the first answers
 };
 
 Odometry::Odometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)
-    : impl_(std::make_unique<Impl>(camera, params, prior, seed)) {}
+    : impl_(std::make_unique<Impl>(camera, params, prior, seed)) {
+  if (!params.calibration.estimate) return;
+  calibration_.emplace(camera, params.features.readout_s ? params.features.readout_s : camera.readout_s);
+}
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;
 
 Estimate Odometry::Track(const Frame& frame) {
   impl_->tracker().Require(frame);
-  return impl_->Process(PreparedFrame(frame));
+  return Track(PreparedFrame(frame));
 }
 
 Estimate Odometry::Track(const PreparedFrame& frame) {
   impl_->tracker().Require(frame.frame);
-  return impl_->Process(frame);
+  const Estimate estimate = impl_->Process(frame);
+  reissued_ = impl_->tracker().start.reissued();
+  return calibration_ ? Calibrated(frame, estimate) : estimate;
+}
+
+// The frames until then are tracked again with the first readout time that is known: a map that was begun with another
+// is sheared. A later change holds from the next frame on.
+Estimate Odometry::Calibrated(const PreparedFrame& frame, const Estimate& estimate) {
+  Stopwatch watch;
+  const bool starting = calibration_->starting();
+  if (starting) {
+    first_frames_.push_back({frame.frame.stamp_ns, frame.grey.clone()});  // the memory is the caller's
+    first_places_.push_back(estimate.pose.p_WC);
+  }
+  if (!calibration_->Add(estimate.stamp_ns, estimate.pose, impl_->tracker().views)) return estimate;
+  const bool changed = ChangeReadout();
+  Estimate out = changed && starting ? TrackFirstFramesAgain() : estimate;
+  if (!calibration_->starting()) first_frames_.clear();
+  out.diagnostics.ms_filter += watch.Lap();
+  return out;
+}
+
+// Whether it is another one from now on.
+bool Odometry::ChangeReadout() {
+  const std::optional<double> readout_s = calibration_->ChangeReadout();
+  if (!readout_s) return false;
+  impl_->SetReadout(*readout_s);
+  return true;
+}
+
+// With the readout time that impl_ has now. Where the scale is not known, the answers keep that of those already given.
+Estimate Odometry::TrackFirstFramesAgain() {
+  constexpr int kRounds = 3;
+  Estimate last;
+  const Eigen::Vector3d origin = impl_->prior.pose.p_WC;
+  for (int round = 1; round <= kRounds; ++round) {
+    impl_ = std::make_unique<Impl>(impl_->camera, impl_->params, impl_->prior, impl_->seed);
+    calibration_->Restart();
+    reissued_.clear();
+    double product = 0, square = 0;
+    for (std::size_t k = 0; k < first_frames_.size(); ++k) {
+      last = impl_->Process(PreparedFrame(first_frames_[k]));
+      reissued_.push_back({last.stamp_ns, last.pose});
+      const std::vector<StampedPose>& start = impl_->tracker().start.reissued();
+      std::copy(start.begin(), start.end(), reissued_.end() - static_cast<std::ptrdiff_t>(start.size()));
+      calibration_->Add(last.stamp_ns, last.pose, impl_->tracker().views);
+      const Eigen::Vector3d from_start = last.pose.p_WC - origin;
+      product += from_start.dot(first_places_[k] - origin);
+      square += from_start.squaredNorm();
+    }
+    if (product > 0) {
+      impl_->trackers[0].scale.AbsorbChange(square / product);
+      for (StampedPose& pose : reissued_) pose.pose.p_WC = origin + product / square * (pose.pose.p_WC - origin);
+    }
+    if (round == kRounds || !ChangeReadout()) break;
+  }
+  const Tracker& tracker = impl_->tracker();
+  return tracker.Answer(last.stamp_ns, last.diagnostics);
 }
 
 std::vector<MapPoint> Odometry::Map() const {
@@ -309,8 +387,12 @@ std::vector<MapPoint> Odometry::Map() const {
   return points;
 }
 
-const std::vector<StampedPose>& Odometry::Reissued() const { return impl_->tracker().start.reissued(); }
+const std::vector<StampedPose>& Odometry::Reissued() const { return reissued_; }
 
 const std::vector<FeatureView>& Odometry::Features() const { return impl_->tracker().views; }
+
+std::optional<CalibrationEstimate> Odometry::Calibration() const {
+  return calibration_ ? std::optional(calibration_->Estimate()) : std::nullopt;
+}
 
 }  // namespace vo

@@ -6,10 +6,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "vo/base/params.h"
 #include "vo/base/result.h"
+#include "vo/calibration/self_calibration.h"
 #include "vo/frontend/prepared_frame.h"
 #include "vo/geometry/camera.h"
 
@@ -28,16 +30,26 @@ class Odometry {
   // The same for a frame that was prepared elsewhere (ReadAhead).
   Estimate Track(const PreparedFrame& frame);
 
-  // Poses of the start's frames, from the first that the map refers to until the present one, given all images of the start: filled by the Track
-  // that ends the start (params.filter.start_window), empty otherwise. The answers of these frames were given from the
-  // images until then; later answers continue these poses, in their scale.
+  // Poses given more images than their answers were, in order up to the present frame; empty unless this Track found
+  // them. Where the start ends (params.filter.start_window): of its frames, from the first that the map refers to.
+  // Where a readout time is first known: of all frames. Later answers continue these poses, in their scale.
   const std::vector<StampedPose>& Reissued() const;
   std::vector<MapPoint> Map() const;
   const std::vector<FeatureView>& Features() const;
+  // None without params.calibration.estimate.
+  std::optional<CalibrationEstimate> Calibration() const;
 
  private:
   struct Impl;
+  Estimate Calibrated(const PreparedFrame& frame, const Estimate& estimate);
+  bool ChangeReadout();
+  Estimate TrackFirstFramesAgain();
+
   std::unique_ptr<Impl> impl_;
+  std::optional<SelfCalibration> calibration_;
+  std::vector<StampedPose> reissued_;
+  std::vector<Frame> first_frames_;            // as long as they may be tracked again
+  std::vector<Eigen::Vector3d> first_places_;  // answered in them
 };
 
 }  // namespace vo

@@ -163,8 +163,7 @@ std::string CameraYaml(const CameraParams& c, double readout_s) {
   const auto number = settings::FormatNumber;
   return "width: " + std::to_string(c.width) + "\nheight: " + std::to_string(c.height) + "\nfx: " + number(c.fx) +
          "\nfy: " + number(c.fy) + "\ncx: " + number(c.cx) + "\ncy: " + number(c.cy) +
-         "\ndistortion: " + Distortion(c) + "\n" +
-         (readout_s != 0 ? "rolling_shutter: " + number(readout_s) + " s\n" : "");
+         "\ndistortion: " + Distortion(c) + "\n" + "rolling_shutter: " + number(readout_s) + " s\n";
 }
 
 std::string ToString(Layout layout) {

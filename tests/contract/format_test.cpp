@@ -86,6 +86,8 @@ TEST_F(FormatContract, TheCameraIsReadAsWritten) {
   Write("camera.yaml", sim::CameraYaml(written, 0.026));
   const vo::Camera read = vo::ReadCamera(here_ / "camera.yaml");
   EXPECT_EQ(read.readout_s, 0.026);
+  Write("global.yaml", sim::CameraYaml(written, 0));
+  EXPECT_EQ(vo::ReadCamera(here_ / "global.yaml").readout_s, 0.0) << "stated";
   EXPECT_EQ(read.width, written.width);
   EXPECT_EQ(read.height, written.height);
   EXPECT_EQ(read.fx, written.fx);

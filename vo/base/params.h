@@ -241,6 +241,18 @@ void Visit(V& v, TargetParams& p) {
   v("frames", p.frames, {Range::AtLeast(1), "first frames in which it is searched"});
 }
 
+// What is estimated of the camera itself.
+struct CalibrationParams {
+  bool estimate = false;
+};
+
+template <class V>
+void Visit(V& v, CalibrationParams& p) {
+  v("estimate", p.estimate,
+    {"on images: the shutter's readout time where it is not stated, and a check of the focal length; `vobench track`: "
+     "true"});
+}
+
 struct Params {
   MotionParams motion;
   FilterParams filter;
@@ -248,6 +260,7 @@ struct Params {
   ScoreParams score;
   FeatureParams features;
   TargetParams target;
+  CalibrationParams calibration;
 };
 
 template <class V>
@@ -258,6 +271,7 @@ void Visit(V& v, Params& p) {
   v.Child("score", p.score);
   v.Child("features", p.features);
   v.Child("target", p.target);
+  v.Child("calibration", p.calibration);
 }
 
 // Ranges and the rules between several values; empty when all is well. Keys are those of `odometry:`.

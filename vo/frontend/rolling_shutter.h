@@ -19,7 +19,7 @@ class RollingShutter {
  public:
   RollingShutter(const Camera& camera, double readout_s) : camera_(camera), readout_s_(readout_s) {}
   RollingShutter(const Camera& camera, const FeatureParams& params)
-      : RollingShutter(camera, params.readout_s.value_or(camera.readout_s)) {}
+      : RollingShutter(camera, params.readout_s.value_or(camera.readout_s.value_or(0))) {}
 
   bool on() const { return readout_s_ != 0; }
   // Time of exposure of row y [px] after the stamp.

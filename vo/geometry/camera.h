@@ -21,8 +21,8 @@ struct Camera {
   double k4 = 0;                                      // [-] of a fisheye lens, which has no p1, p2
   Lens lens = Lens::radial_tangential;
   // Rolling shutter: from the exposure of the first row to that of the last [s]; 0: global shutter, < 0: last row
-  // first.
-  double readout_s = 0;
+  // first. None: not stated.
+  std::optional<double> readout_s = 0;
 
   // Pixel of a point in C with z > 0, lens distortion included.
   Eigen::Vector2d Project(const Eigen::Vector3d& X_C) const;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <opencv2/core.hpp>
 #include <span>
 #include <stdexcept>
@@ -112,7 +113,8 @@ void ReadOwn(settings::Section root, Camera& camera) {
   root.Require("fy", camera.fy, settings::Unit::pixel, settings::Range::Positive());
   root.Require("cx", camera.cx, settings::Unit::pixel);
   root.Require("cy", camera.cy, settings::Unit::pixel);
-  root.Read("rolling_shutter", camera.readout_s, settings::Unit::time, settings::Range{-1, 1});
+  double readout_s = 0;
+  if (root.Read("rolling_shutter", readout_s, settings::Unit::time, settings::Range{-1, 1})) camera.readout_s = readout_s;
   settings::Section lens = root.Child("distortion");
   lens.ReadChoice("model", camera.lens, {{"radial_tangential", Lens::radial_tangential}, {"fisheye", Lens::fisheye}});
   lens.Read("k1", camera.k1);
@@ -220,6 +222,7 @@ Camera ReadOpenCvXml(const std::filesystem::path& file) try {
     return std::vector<double>();
   };
   Camera camera;
+  camera.readout_s = std::nullopt;
   camera.width = size("image_width", "image_Width");
   camera.height = size("image_height", "image_Height");
   if (const std::vector<double> values = matrix("camera_matrix", "Camera_Matrix"); !values.empty())
@@ -252,6 +255,7 @@ Camera ReadCamera(const std::filesystem::path& file) {
   const std::string first_line = FirstLine(file);
   if (first_line.starts_with("<?xml")) return ReadOpenCvXml(file);
   Camera camera;
+  camera.readout_s = std::nullopt;
   const bool of_opencv = first_line.starts_with("%YAML:");
   settings::Document document =
       settings::Document::FromFile(file, of_opencv ? settings::Dialect::opencv : settings::Dialect::ours);

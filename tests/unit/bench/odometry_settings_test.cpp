@@ -53,6 +53,7 @@ TEST(OdometrySettingsTest, EveryMemberHasARow) {
   EXPECT_EQ(Rows<vo::ScoreParams>(), Members<vo::ScoreParams>());
   EXPECT_EQ(Rows<vo::FeatureParams>(), Members<vo::FeatureParams>());
   EXPECT_EQ(Rows<vo::TargetParams>(), Members<vo::TargetParams>());
+  EXPECT_EQ(Rows<vo::CalibrationParams>(), Members<vo::CalibrationParams>());
   EXPECT_EQ(Rows<PriorSettings>(), Members<PriorSettings>());
 }
 

@@ -120,6 +120,16 @@ TEST_F(CameraFile, OfOpenCvWithOlderNamesAndAppended) {
   ExpectPlumbBob(vo::ReadCamera(file));
 }
 
+// A global shutter is one that is stated.
+TEST_F(CameraFile, SaysWhetherTheShutterIsStated) {
+  const std::string own = "width: 640\nheight: 480\nfx: 525\nfy: 525\ncx: 319.5\ncy: 239.5\n";
+  EXPECT_EQ(vo::ReadCamera(Write("own.yaml", own)).readout_s, std::nullopt);
+  EXPECT_EQ(vo::ReadCamera(Write("own.yaml", own + "rolling_shutter: 0 ms\n")).readout_s, 0.0);
+  EXPECT_EQ(vo::ReadCamera(Write("own.yaml", own + "rolling_shutter: -26 ms\n")).readout_s, -0.026);
+  EXPECT_EQ(vo::ReadCamera(WriteByOpenCv("opencv.yaml", cv::Mat(matrix_), cv::Mat(radtan_))).readout_s, std::nullopt);
+  EXPECT_EQ(vo::ReadCamera(WriteByOpenCv("opencv.xml", cv::Mat(matrix_), cv::Mat(radtan_))).readout_s, std::nullopt);
+}
+
 TEST_F(CameraFile, OfRos) {
   const std::string text =
       "image_width: 752\nimage_height: 480\ncamera_name: left\ncamera_matrix:\n  rows: 3\n  cols: 3\n"

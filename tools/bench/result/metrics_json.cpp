@@ -194,6 +194,7 @@ void WriteMetricsJson(const std::filesystem::path& out, const std::vector<RunMet
   for (const RunMetrics& judged : runs) {
     Json run = {{"system", judged.run.system}, {"seed", judged.run.seed}, {"path", judged.run.path}};
     run.update(Of(judged.metrics));
+    if (judged.run.calibration) run["calibration"] = ToJson(*judged.run.calibration);
     json["runs"].push_back(run);
   }
   base::WriteFile(out / "metrics.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

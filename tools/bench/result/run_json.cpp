@@ -71,6 +71,7 @@ void WriteRunJson(const fs::path& out, const RunDescription& description) {
                {"settings", description.settings}};
   for (const RunEntry& run : description.runs) {
     json["runs"].push_back({{"system", run.system}, {"seed", run.seed}, {"path", run.path}, {"seconds", run.seconds}});
+    if (run.calibration) json["runs"].back()["calibration"] = ToJson(*run.calibration);
   }
   base::WriteFile(out / "run.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
@@ -108,6 +109,13 @@ RunDescription ReadRunJson(const fs::path& out) {
     fields.Take("seconds", run.seconds);
     if (!run.path.empty() && !Inside(run.path))
       problems.Add(file, where + "path '" + run.path + "' leads out of the folder");
+    if (runs[i].is_object() && runs[i].contains("calibration")) {
+      try {
+        run.calibration = CalibrationFromJson(runs[i].at("calibration"));
+      } catch (const Json::exception& error) {
+        problems.Add(file, where + "'calibration': " + error.what());
+      }
+    }
     description.runs.push_back(run);
   }
   problems.ThrowIfAny();

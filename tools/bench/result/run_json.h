@@ -5,8 +5,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "tools/bench/result/calibration_record.h"
 
 namespace vobench {
 
@@ -16,6 +19,7 @@ struct RunEntry {
   std::uint64_t seed = 0;
   std::string path;    // of the run folder, relative to the result folder: "rb2pf/seed_1", or "." for `track`
   double seconds = 0;  // wall time of this run
+  std::optional<CalibrationRecord> calibration = std::nullopt;  // where it was estimated
 };
 
 struct RunDescription {

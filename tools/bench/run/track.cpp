@@ -50,6 +50,7 @@ TrackSettings ReadSettings(const TrackOptions& options) {
   settings::Section odometry = document.root().Child("odometry");
   if (!odometry.Has("target")) out.params.landmark.scale_sigma = kUnknownScale;  // which has the scale
   out.params.motion.adaptive = true;
+  out.params.calibration.estimate = true;
   const bool position_noise_given = odometry.Child("motion").Has("position_noise");
   ReadOdometry(odometry, out.params);
   if (!position_noise_given)
@@ -95,7 +96,7 @@ std::string Record(const vo::Camera& c, const std::string& resolved) {
                      {"p2", c.p2},
                      {"k3", c.k3},
                      {"k4", c.k4}}},
-                   {"rolling_shutter_s", c.readout_s}};
+                   {"rolling_shutter_s", c.readout_s ? nlohmann::ordered_json(*c.readout_s) : nullptr}};
   all.update(nlohmann::ordered_json::parse(resolved));
   return all.dump(2);
 }
@@ -178,6 +179,8 @@ void Track(const TrackOptions& options) {
       fmt::print(stderr, "vobench: not judged: {}\n", error.what());
     }
   }
+  const std::string warning = run.entry.calibration ? CalibrationWarning(*run.entry.calibration) : "";
+  if (!warning.empty()) description.notes.push_back("Warning: " + warning);
   description.seconds = clock.seconds();
   description.settings = Record(camera, settings.resolved);
   description.versions = Versions();
@@ -187,6 +190,10 @@ void Track(const TrackOptions& options) {
 
   fmt::print("{}{}The report is in {}\n", TextSummary(result.Metrics()), TimeTable(run.run.frames, elapsed_s),
              (options.output / "report.html").string());
+  if (run.entry.calibration) {
+    fmt::print("{}", CalibrationSummary(*run.entry.calibration));
+    if (!warning.empty()) fmt::print(stderr, "vobench: warning: {}\n", warning);
+  }
   if (end) std::rethrow_exception(end);
 }
 

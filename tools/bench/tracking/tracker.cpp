@@ -15,6 +15,17 @@ std::optional<std::filesystem::path> Within(const std::optional<std::filesystem:
   return (*out / folder).lexically_normal();
 }
 
+CalibrationRecord RecordOf(const vo::CalibrationEstimate& estimate, double focal_px) {
+  CalibrationRecord record;
+  if (estimate.readout_s) record.readout_s = {estimate.readout_s->value, estimate.readout_s->sigma};
+  record.readout_used_s = estimate.readout_used_s;
+  record.focal_px = focal_px;
+  if (estimate.focal_factor) record.focal_factor = {estimate.focal_factor->value, estimate.focal_factor->sigma};
+  record.pattern_px = estimate.pattern_px;
+  record.focal_is_wrong = estimate.focal_is_wrong();
+  return record;
+}
+
 }  // namespace
 
 template <class Odometry>
@@ -27,7 +38,7 @@ RecordedOdometry<Odometry>::RecordedOdometry(const TrackerSetup& setup, const vo
 
 Tracker::Tracker(const TrackerSetup& setup, const vo::Camera& camera, std::int64_t frames,
                  const std::optional<std::filesystem::path>& out, const std::string& folder)
-    : RecordedOdometry(setup, camera, folder, Recorder(frames, Within(out, folder))) {}
+    : RecordedOdometry(setup, camera, folder, Recorder(frames, Within(out, folder))), focal_px_(camera.fx) {}
 
 void Tracker::Track(const vo::PreparedFrame& prepared) {
   const Clock clock;
@@ -41,6 +52,12 @@ void Tracker::Track(const vo::PreparedFrame& prepared) {
   entry_.seconds += 1e-3 * prepared.ms + clock.seconds();
   recorder_.Add(prepared.frame, estimate, odometry_.Features());
   recorder_.Reissue(odometry_.Reissued());
+}
+
+RunData Tracker::Result(const std::vector<vo::MapPoint>& map) const {
+  RunData data = RecordedOdometry::Result(map);
+  if (const auto calibration = odometry_.Calibration()) data.entry.calibration = RecordOf(*calibration, focal_px_);
+  return data;
 }
 
 PointTracker::PointTracker(const TrackerSetup& setup, const vo::Camera& camera,

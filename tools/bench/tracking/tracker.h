@@ -54,7 +54,11 @@ class Tracker : public RecordedOdometry<vo::Odometry> {
   void Track(const vo::Frame& frame) { Track(vo::PreparedFrame(frame)); }
   void Track(const vo::PreparedFrame& prepared);
 
+  RunData Result(const std::vector<vo::MapPoint>& map) const;
   std::vector<FeatureMark> marks() const { return MarksOf(odometry_.Features()); }  // of the last frame
+
+ private:
+  double focal_px_;  // as stated
 };
 
 class PointTracker : public RecordedOdometry<vo::PointOdometry> {

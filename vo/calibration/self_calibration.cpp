@@ -1,0 +1,100 @@
+#include "vo/calibration/self_calibration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace vo {
+namespace {
+
+// Of a period between frames: of a shorter readout the filter's velocity, which is that between frames, corrects no more
+// than it spoils.
+constexpr double kLeastReadout = 0.15;
+constexpr double kLeastChange = 0.002;  // [s] of a readout time that is in use: less does no harm
+constexpr double kSignificant = 3;      // [sigma]
+// A window of a larger standard deviation says nothing.
+constexpr double kWideReadout = 0.005, kWideFocal = 0.05;
+
+}  // namespace
+
+bool CalibrationEstimate::focal_is_wrong() const {
+  return focal_factor && std::abs(focal_factor->value - 1) - kConfidence95 * focal_factor->sigma > kWrongFocal;
+}
+
+Measured RandomEffectsMean(std::span<const Measured> measured) {
+  double between = 0;  // variance
+  const auto mean = [&] {
+    double sum = 0, weights = 0;
+    for (const Measured& m : measured) {
+      const double weight = 1 / (m.sigma * m.sigma + between);
+      sum += weight * m.value;
+      weights += weight;
+    }
+    return Measured{sum / weights, 1 / std::sqrt(weights)};
+  };
+  const Measured fixed = mean();
+  if (measured.size() < 2) return fixed;
+  double excess = 1 - static_cast<double>(measured.size()), squares = 0;
+  for (const Measured& m : measured) {
+    const double weight = 1 / (m.sigma * m.sigma);
+    excess += weight * (m.value - fixed.value) * (m.value - fixed.value);
+    squares += weight * weight;
+  }
+  const double weights = 1 / (fixed.sigma * fixed.sigma);
+  between = std::max(0.0, excess / (weights - squares / weights));
+  return mean();
+}
+
+bool SelfCalibration::Add(std::int64_t stamp_ns, const Pose& pose, std::span<const FeatureView> features) {
+  if (windows_ == kMostWindows || std::max(readouts_.size(), log_focals_.size()) == kEnough) return false;
+  TrackedFrame frame{stamp_ns, pose, {}};
+  for (const FeatureView& view : features) {
+    if (view.status == FeatureView::Status::matched || view.status == FeatureView::Status::fresh)
+      frame.sightings.push_back({view.id, view.pixel, view.R});
+  }
+  frames_.push_back(std::move(frame));
+  if (frames_.size() < kWindowFrames) return false;
+  ++windows_;
+  period_s_ = static_cast<double>(stamp_ns - frames_.front().stamp_ns) * 1e-9 / (kWindowFrames - 1);
+  const std::optional<WindowFit> fit = FitWindow(frames_, camera_, readout_s_, !stated_);
+  frames_.clear();
+  if (fit && !stated_ && fit->readout_s.sigma < kWideReadout) readouts_.push_back(fit->readout_s);
+  if (fit && fit->log_focal.sigma < kWideFocal) {
+    log_focals_.push_back(fit->log_focal);
+    px_of_focal_ += fit->px_of_focal;
+  }
+  return true;
+}
+
+std::optional<double> SelfCalibration::ChangeReadout() {
+  if (readouts_.empty()) return std::nullopt;
+  const auto [value, sigma] = RandomEffectsMean(readouts_);
+  const double least = readout_s_ == 0 ? kLeastReadout * period_s_ : kLeastChange;
+  if (std::abs(value - readout_s_) < std::max(least, kSignificant * sigma)) return std::nullopt;
+  log_focals_.clear();  // of tracks that another readout time has distorted
+  px_of_focal_ = 0;
+  return readout_s_ = value;
+}
+
+void SelfCalibration::Restart() {
+  windows_ = 0;
+  frames_.clear();
+  readouts_.clear();
+  log_focals_.clear();
+  px_of_focal_ = 0;
+}
+
+CalibrationEstimate SelfCalibration::Estimate() const {
+  CalibrationEstimate out;
+  out.readout_used_s = readout_s_;
+  if (!readouts_.empty()) out.readout_s = RandomEffectsMean(readouts_);
+  if (!log_focals_.empty()) {
+    const Measured log_focal = RandomEffectsMean(log_focals_);
+    const double factor = std::exp(log_focal.value);
+    out.focal_factor = {factor, factor * log_focal.sigma};
+    out.pattern_px = px_of_focal_ / static_cast<double>(log_focals_.size()) * std::abs(log_focal.value);
+  }
+  return out;
+}
+
+}  // namespace vo
