@@ -105,7 +105,8 @@ bool Agree(const ev::Trajectory& a, const ev::Trajectory& b) {
 std::set<std::string> ResultNames(const std::vector<std::string>& systems) {
   std::set<std::string> names = {"run.json",     "metrics.json",       "anees.csv",  "verdict.csv",   "report.html",
                                  "estimate.txt", "covariance.txt",     "frames.csv", "frames",        "landmarks.csv",
-                                 "truth.txt",    "truth_velocity.txt", "ranks.csv",  "pictures.json", "truth"};
+                                 "truth.txt",    "truth_velocity.txt", "ranks.csv",  "pictures.json", "truth",
+                                 "matches.csv",  "lives.csv"};
   names.insert(systems.begin(), systems.end());
   return names;
 }

@@ -54,7 +54,9 @@ class Tracker : public RecordedOdometry<vo::Odometry> {
   void Track(const vo::Frame& frame) { Track(vo::PreparedFrame(frame)); }
   void Track(const vo::PreparedFrame& prepared);
 
-  std::vector<FeatureMark> marks() const { return MarksOf(odometry_.Features()); }  // of the last frame
+  // Of the last frame.
+  const std::vector<vo::FeatureView>& features() const { return odometry_.Features(); }
+  std::vector<FeatureMark> marks() const { return MarksOf(features()); }
 };
 
 class PointTracker : public RecordedOdometry<vo::PointOdometry> {
