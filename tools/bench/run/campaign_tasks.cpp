@@ -118,8 +118,22 @@ void WriteTimes(const fs::path& folder, const Clock& clock, double tracking_s, c
   base::WriteFile(folder / "times.json", json.dump(1) + "\n");
 }
 
+// Without the frames that the campaign does not judge.
+evaluation::Metrics JudgeOutside(const campaign::Omitted& omit, const TaskOutput& output) {
+  evaluation::EstimateRun run = output.run;
+  evaluation::JudgeOptions how = output.how;
+  const auto inside = [&](std::int64_t stamp_ns) {
+    return sim::Seconds(stamp_ns) >= omit.from_s && sim::Seconds(stamp_ns) < omit.until_s;
+  };
+  std::erase_if(run.trajectory, [&](const evaluation::StampedPose& pose) { return inside(pose.stamp_ns); });
+  std::erase_if(run.beliefs, [&](const evaluation::StampedBelief& belief) { return inside(belief.velocity.stamp_ns); });
+  std::erase_if(run.frames, [&](const evaluation::FrameRecord& frame) { return inside(frame.stamp_ns); });
+  if (how.frame_stamps_ns) std::erase_if(*how.frame_stamps_ns, inside);
+  return evaluation::Judge(run, output.truth.poses, output.truth.velocities, how);
+}
+
 void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& output, TaskRecord& record) {
-  evaluation::Metrics metrics = evaluation::Judge(output.run, output.truth.poses, output.truth.velocities, output.how);
+  evaluation::Metrics metrics = JudgeOutside(campaign.omit, output);
   metrics.timing.reset();
   record.metrics = campaign::MetricValues(metrics, campaign.align);
   if (campaign.keep == campaign::Keep::numbers) return;
