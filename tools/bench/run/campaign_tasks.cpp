@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <opencv2/core/utility.hpp>
 #include <optional>
@@ -120,16 +121,12 @@ void WriteTimes(const fs::path& folder, const Clock& clock, double tracking_s, c
 
 // Without the frames that the campaign does not judge.
 evaluation::Metrics JudgeOutside(const campaign::Omitted& omit, const TaskOutput& output) {
-  evaluation::EstimateRun run = output.run;
+  const std::int64_t from_ns = std::llround(1e9 * omit.from_s), until_ns = std::llround(1e9 * omit.until_s);
   evaluation::JudgeOptions how = output.how;
-  const auto inside = [&](std::int64_t stamp_ns) {
-    return sim::Seconds(stamp_ns) >= omit.from_s && sim::Seconds(stamp_ns) < omit.until_s;
-  };
-  std::erase_if(run.trajectory, [&](const evaluation::StampedPose& pose) { return inside(pose.stamp_ns); });
-  std::erase_if(run.beliefs, [&](const evaluation::StampedBelief& belief) { return inside(belief.velocity.stamp_ns); });
-  std::erase_if(run.frames, [&](const evaluation::FrameRecord& frame) { return inside(frame.stamp_ns); });
-  if (how.frame_stamps_ns) std::erase_if(*how.frame_stamps_ns, inside);
-  return evaluation::Judge(run, output.truth.poses, output.truth.velocities, how);
+  if (how.frame_stamps_ns)
+    std::erase_if(*how.frame_stamps_ns, [&](std::int64_t at_ns) { return at_ns >= from_ns && at_ns < until_ns; });
+  return evaluation::Judge(evaluation::Outside(output.run, from_ns, until_ns), output.truth.poses,
+                           output.truth.velocities, how);
 }
 
 void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& output, TaskRecord& record) {

@@ -119,7 +119,7 @@ void Track(const TrackOptions& options) {
   const std::optional<Truth> truth = Input([&] { return ReadSequenceTruth(options.sequence); });
   std::optional<MatchErrors> match_errors;
   if (options.truth) {
-    if (!truth) throw BadInput(fmt::format("{}: has no groundtruth.txt for --truth", options.sequence.string()));
+    if (!truth) throw BadInput(fmt::format("{}: has no truth for --truth", options.sequence.string()));
     Input([&] { return &match_errors.emplace(options.sequence, camera, *truth); });
   }
   camera.fx *= 1 + settings.prior.focal_error;

@@ -56,6 +56,9 @@ struct EstimateRun {
   std::vector<FrameRecord> frames;     // may be empty: no coverage, no NIS. Else every frame of the sequence
 };
 
+// The run as if its sequence did not have the frames of [from_ns, until_ns).
+EstimateRun Outside(EstimateRun run, std::int64_t from_ns, std::int64_t until_ns);
+
 // folder/estimate.txt is required, covariance.txt and frames.csv are read where they exist. Throws InputError with
 // every problem of all three files at once.
 EstimateRun ReadEstimateRun(const std::filesystem::path& folder);
