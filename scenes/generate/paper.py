@@ -7,6 +7,7 @@ import numpy as np
 
 from hand import held, through
 from noise import rng_of
+from scenario import section
 
 SCENES = Path(__file__).resolve().parent.parent
 DEG, PI = math.pi / 180, math.pi
@@ -88,14 +89,6 @@ SEQUENCES = {
     "lr_kt1": ("living_room", stations(LR_KT1), 30.0, (6.3, 10.0), ICL, "Nearly on one place in the living room"),
     "lr_kt2": ("living_room", stations(LR_KT2), 29.4, (28.2, 12.5), ICL, "Round the table of the living room"),
 }
-
-
-def section(text, name):
-    """A section of a scenario file, as it is written there."""
-    lines = text.split("\n")
-    first = next(i for i, line in enumerate(lines) if line.startswith(name + ":"))
-    end = next((i for i in range(first + 1, len(lines)) if lines[i] and not lines[i].startswith((" ", "#"))), len(lines))
-    return "\n".join(lines[first:end]).rstrip() + "\n"
 
 
 def main():

@@ -72,6 +72,12 @@ TEST_F(CampaignTest, ShippedSweepsAreGood) {
       {"campaign", (sweeps.parent_path() / "survival.yaml").string(), "-o", "out", "--dry-run"}, here_.path());
   EXPECT_EQ(survival.status, 0) << survival.err;
   EXPECT_THAT(survival.out, HasSubstr("case 20 blank frames, filter with a lag, rb2pf, seed 5"));
+  for (const char* name : {"events", "steps", "returns"}) {
+    const fs::path file = sweeps.parent_path() / "stress" / (std::string(name) + ".yaml");
+    const Outcome stress = RunVobench({"campaign", file.string(), "-o", "out", "--dry-run"}, here_.path());
+    EXPECT_EQ(stress.status, 0) << stress.err;
+    EXPECT_THAT(stress.out, HasSubstr("rb2pf, seed 10"));
+  }
   for (const char* name : {"blur", "read_noise", "contrast", "angular_rate", "frame_rate", "rolling_shutter",
                            "feature_count", "particle_count", "lag", "moving_objects", "process_noise_too_small",
                            "process_noise_too_large", "intrinsics"}) {

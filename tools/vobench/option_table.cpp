@@ -137,6 +137,8 @@ void AddTrack(OptionTable& table) {
       "freiburg1, freiburg2, freiburg3, icl, or a calibration file (ours, OpenCV, ROS, Kalibr, EuRoC); the sequence's "
       "own unless told");
   Add(command, "--settings FILE", track.settings, "YAML file with an `odometry:` and perhaps a `prior:` section");
+  command.add_flag("--truth", track.truth,
+                   "Also errors of matches and predictions, and lives of landmarks: docs/match_errors.md");
   AddView(command, track.view);
   AddMap(command, track.map);
   AddSeed(command, track.seed, "Seed of the filter")->capture_default_str();

@@ -200,6 +200,13 @@ void CampaignFile::ReadJudge() {
   judge.ReadChoice(
       "align", campaign_.align,
       {{"none", Alignment::none}, {"se3", Alignment::se3}, {"sim3", Alignment::sim3}, {"first", Alignment::first}});
+  judge.Allow("omit");
+  if (judge.Has("omit")) {
+    Section omit = judge.Child("omit");
+    const bool from = omit.Require("from", campaign_.omit.from_s, settings::Unit::time, Range::AtLeast(0));
+    const bool until = omit.Require("until", campaign_.omit.until_s, settings::Unit::time, Range::AtLeast(0));
+    if (from && until && campaign_.omit.empty()) omit.Reject("until", "'until' is not after 'from'");
+  }
   lost.Read("pose_coverage", campaign_.lost.pose_coverage, Range{0, 1});
   lost.Read("tracked_coverage", campaign_.lost.tracked_coverage, Range{0, 1});
   lost.Read("error", campaign_.lost.error_m, settings::Unit::length, Range::AtLeast(0));

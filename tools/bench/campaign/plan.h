@@ -51,6 +51,12 @@ struct LostRule {
   double error_m = 0;  // ATE after the alignment of the campaign; 0: however large
 };
 
+// Frames that are not judged: as if the sequence did not have them. Empty where until_s is not above from_s.
+struct Omitted {
+  double from_s = 0, until_s = 0;
+  bool empty() const { return !(until_s > from_s); }
+};
+
 // Somebody else's numbers, as they are printed elsewhere.
 struct ReferenceColumn {
   std::string name;
@@ -88,6 +94,7 @@ struct Campaign {
   std::vector<SystemEntry> systems;
   std::vector<std::uint64_t> seeds;
   evaluation::Alignment align = evaluation::Alignment::sim3;
+  Omitted omit;
   LostRule lost;
   std::vector<TableSpec> tables;
   std::vector<CurveSpec> curves;

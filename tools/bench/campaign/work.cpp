@@ -131,10 +131,11 @@ void CampaignWork::RecordFailure(const fs::path& out, std::int64_t task, const s
 std::string CampaignWork::KeyOf(const TaskChoice& choice) const {
   const CampaignPoint& point = points_[choice.point];
   const SystemEntry& system = campaign_.systems[choice.system];
-  return Digest(fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", program_, point.settings[choice.system], point.sequence,
-                            system.system, system.system.empty() ? Description(system.external) : "",
+  const Omitted& omit = campaign_.omit;
+  return Digest(fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{} {}", program_, point.settings[choice.system],
+                            point.sequence, system.system, system.system.empty() ? Description(system.external) : "",
                             campaign_.seeds[choice.seed], evaluation::Name(campaign_.align),
-                            static_cast<int>(campaign_.keep)));
+                            static_cast<int>(campaign_.keep), omit.from_s, omit.until_s));
 }
 
 TaskRecord CampaignWork::BlankRecord(std::int64_t task) const {

@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <opencv2/core/utility.hpp>
 #include <optional>
@@ -118,8 +119,18 @@ void WriteTimes(const fs::path& folder, const Clock& clock, double tracking_s, c
   base::WriteFile(folder / "times.json", json.dump(1) + "\n");
 }
 
+// Without the frames that the campaign does not judge.
+evaluation::Metrics JudgeOutside(const campaign::Omitted& omit, const TaskOutput& output) {
+  const std::int64_t from_ns = std::llround(1e9 * omit.from_s), until_ns = std::llround(1e9 * omit.until_s);
+  evaluation::JudgeOptions how = output.how;
+  if (how.frame_stamps_ns)
+    std::erase_if(*how.frame_stamps_ns, [&](std::int64_t at_ns) { return at_ns >= from_ns && at_ns < until_ns; });
+  return evaluation::Judge(evaluation::Outside(output.run, from_ns, until_ns), output.truth.poses,
+                           output.truth.velocities, how);
+}
+
 void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& output, TaskRecord& record) {
-  evaluation::Metrics metrics = evaluation::Judge(output.run, output.truth.poses, output.truth.velocities, output.how);
+  evaluation::Metrics metrics = JudgeOutside(campaign.omit, output);
   metrics.timing.reset();
   record.metrics = campaign::MetricValues(metrics, campaign.align);
   if (campaign.keep == campaign::Keep::numbers) return;

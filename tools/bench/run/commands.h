@@ -40,6 +40,7 @@ struct TrackOptions {
   std::optional<std::string> camera;  // a preset or a file; absent: the sequence's camera.yaml
   std::optional<std::filesystem::path> settings;
   std::uint64_t seed = 1;
+  bool truth = false;                        // also matches and landmarks against the truth
   bool view = false;                         // the report in a browser, while it runs
   std::optional<std::filesystem::path> map;  // a PLY file of the landmarks, too
   Overrides overrides;

@@ -19,6 +19,7 @@
 #include "tools/bench/systems/prior.h"
 #include "tools/bench/systems/systems.h"
 #include "tools/bench/tracking/map_file.h"
+#include "tools/bench/tracking/match_errors.h"
 #include "tools/bench/tracking/tracker.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "vo/filter/watched_filter.h"
@@ -116,9 +117,14 @@ void Track(const TrackOptions& options) {
   const std::unique_ptr<vo::FrameSource> source = Input([&] { return vo::OpenFrames(options.sequence.string()); });
   vo::Camera camera = Input([&] { return ReadCamera(options); });
   const TrackSettings settings = Input([&] { return ReadSettings(options); });
+  const std::optional<Truth> truth = Input([&] { return ReadSequenceTruth(options.sequence); });
+  std::optional<MatchErrors> match_errors;
+  if (options.truth) {
+    if (!truth) throw BadInput(fmt::format("{}: has no truth for --truth", options.sequence.string()));
+    Input([&] { return &match_errors.emplace(options.sequence, camera, *truth); });
+  }
   camera.fx *= 1 + settings.prior.focal_error;
   camera.fy *= 1 + settings.prior.focal_error;
-  const std::optional<Truth> truth = Input([&] { return ReadSequenceTruth(options.sequence); });
   const std::optional<std::int64_t> frames = source->Count();
   OutputFolder out(options.output, kResultMarker, ResultNames(SystemNames()));
 
@@ -157,6 +163,7 @@ void Track(const TrackOptions& options) {
                                                 tracker.frames() == 1 ? "frame" : "frames", fault.what()));
         break;
       }
+      if (match_errors) match_errors->Add(frame->frame.stamp_ns, tracker.features());
       if (view && view->Asked(frame->frame)) view->Show({&tracker, 1}, shown, StartedAtTheOrigin());
       progress.Step();
       if (!frames && InterruptPending()) break;
@@ -168,6 +175,7 @@ void Track(const TrackOptions& options) {
   ResultData result;
   RunData& run = result.runs.emplace_back(tracker.Result(map));
   WriteRun(out.path(), run);
+  if (match_errors) match_errors->Write(out.path());
   if (!frames) fmt::print(stderr, "{} frames came too fast and were let go\n", source->Dropped());
 
   if (truth) {
@@ -188,8 +196,8 @@ void Track(const TrackOptions& options) {
   if (options.map && !end) WriteMap(*options.map, map);
   Conclude(out, result);
 
-  fmt::print("{}{}The report is in {}\n", TextSummary(result.Metrics()), TimeTable(run.run.frames, elapsed_s),
-             (options.output / "report.html").string());
+  fmt::print("{}{}{}The report is in {}\n", TextSummary(result.Metrics()), TimeTable(run.run.frames, elapsed_s),
+             match_errors ? match_errors->Table() : "", (options.output / "report.html").string());
   if (run.entry.calibration) {
     fmt::print("{}", CalibrationSummary(*run.entry.calibration));
     if (!warning.empty()) fmt::print(stderr, "vobench: warning: {}\n", warning);

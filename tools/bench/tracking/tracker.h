@@ -55,7 +55,9 @@ class Tracker : public RecordedOdometry<vo::Odometry> {
   void Track(const vo::PreparedFrame& prepared);
 
   RunData Result(const std::vector<vo::MapPoint>& map) const;
-  std::vector<FeatureMark> marks() const { return MarksOf(odometry_.Features()); }  // of the last frame
+  // Of the last frame.
+  const std::vector<vo::FeatureView>& features() const { return odometry_.Features(); }
+  std::vector<FeatureMark> marks() const { return MarksOf(features()); }
 
  private:
   double focal_px_;  // as stated

@@ -190,6 +190,15 @@ void WriteFrames(const std::filesystem::path& file, const std::vector<FrameRecor
 
 }  // namespace
 
+EstimateRun Outside(EstimateRun run, std::int64_t from_ns, std::int64_t until_ns) {
+  const auto inside = [&](std::int64_t stamp_ns) { return stamp_ns >= from_ns && stamp_ns < until_ns; };
+  for (Trajectory* poses : {&run.trajectory, &run.live})
+    std::erase_if(*poses, [&](const StampedPose& pose) { return inside(pose.stamp_ns); });
+  std::erase_if(run.beliefs, [&](const StampedBelief& belief) { return inside(belief.velocity.stamp_ns); });
+  std::erase_if(run.frames, [&](const FrameRecord& frame) { return inside(frame.stamp_ns); });
+  return run;
+}
+
 EstimateRun ReadEstimateRun(const std::filesystem::path& folder) {
   EstimateRun run;
   Problems problems;

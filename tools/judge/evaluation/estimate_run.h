@@ -60,6 +60,9 @@ struct EstimateRun {
   const Trajectory& answers() const { return live.empty() ? trajectory : live; }
 };
 
+// The run as if its sequence did not have the frames of [from_ns, until_ns).
+EstimateRun Outside(EstimateRun run, std::int64_t from_ns, std::int64_t until_ns);
+
 // folder/estimate.txt is required, the others are read where they exist. Throws InputError with every problem of all
 // files at once.
 EstimateRun ReadEstimateRun(const std::filesystem::path& folder);

@@ -150,6 +150,16 @@ tabels: []
               testing::AllOf(HasSubstr("'scenarios': at least one"), HasSubstr("'systems': at least one")));
 }
 
+TEST_F(CampaignFileTest, AnIntervalIsNotJudged) {
+  EXPECT_TRUE(Read(kFull).omit.empty());
+  const Campaign c = Read(std::string(kFull) + "judge: {omit: {from: 3 s, until: 4500 ms}}\n");
+  EXPECT_EQ(c.omit.from_s, 3);
+  EXPECT_EQ(c.omit.until_s, 4.5);
+  EXPECT_THAT(Problems(std::string(kFull) + "judge: {omit: {from: 3 s, until: 3 s}}\n"),
+              HasSubstr("'until' is not after 'from'"));
+  EXPECT_THAT(Problems(std::string(kFull) + "judge: {omit: {from: 3 s}}\n"), HasSubstr("judge.omit.until"));
+}
+
 TEST_F(CampaignFileTest, SettingProblemsOnceAndInPlace) {
   CampaignFile file(here_.Write("c.yaml", kFull), kSystems);
   for (std::int64_t k = 0; k < Tasks(file.campaign()); ++k) {

@@ -72,6 +72,22 @@ TEST(EstimateRun, ReadsBackTheSame) {
 }
 
 // A start that is known exactly.
+TEST(EstimateRun, OutsideLeavesOutWholeFrames) {
+  const EstimateRun run = Sample();
+  const auto stamp = [&](std::size_t k) { return run.trajectory[k].stamp_ns; };
+  const EstimateRun rest = Outside(run, stamp(1), stamp(3));
+  const std::vector<std::int64_t> kept = {stamp(0), stamp(3)};
+  ASSERT_EQ(rest.trajectory.size(), 2u);
+  ASSERT_EQ(rest.beliefs.size(), 2u);
+  ASSERT_EQ(rest.frames.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(rest.trajectory[k].stamp_ns, kept[k]);
+    EXPECT_EQ(rest.beliefs[k].velocity.stamp_ns, kept[k]);
+    EXPECT_EQ(rest.frames[k].stamp_ns, kept[k]);
+  }
+  EXPECT_EQ(Outside(run, stamp(1), stamp(1)).trajectory.size(), 4u);
+}
+
 TEST(EstimateRun, AVarianceMayBeZero) {
   const TemporaryFolder folder;
   EstimateRun run = Sample();
