@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <fstream>
 #include <limits>
-#include <optional>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -114,7 +114,8 @@ void ReadOwn(settings::Section root, Camera& camera) {
   root.Require("cx", camera.cx, settings::Unit::pixel);
   root.Require("cy", camera.cy, settings::Unit::pixel);
   double readout_s = 0;
-  if (root.Read("rolling_shutter", readout_s, settings::Unit::time, settings::Range{-1, 1})) camera.readout_s = readout_s;
+  if (root.Read("rolling_shutter", readout_s, settings::Unit::time, settings::Range{-1, 1}))
+    camera.readout_s = readout_s;
   settings::Section lens = root.Child("distortion");
   lens.ReadChoice("model", camera.lens, {{"radial_tangential", Lens::radial_tangential}, {"fisheye", Lens::fisheye}});
   lens.Read("k1", camera.k1);

@@ -130,9 +130,9 @@ TEST(SequenceWriter, WritesTheFormat) {
       EXPECT_EQ(rgb.at<cv::Vec3b>(10, 20)[2 - c], image.data[static_cast<std::size_t>(3 * (10 * 64 + 20) + c)]);
     EXPECT_NEAR(depth.at<std::uint16_t>(10, 20), 5000.0 * static_cast<double>(simulator.Depth(k)[10 * 64 + 20]), 0.51);
   }
-  EXPECT_EQ(
-      tree.at("camera.yaml"),
-      "width: 64\nheight: 48\nfx: 52\nfy: 52\ncx: 31.5\ncy: 23.5\ndistortion: {k1: 0, k2: 0, p1: 0, p2: 0, k3: 0}\n");
+  EXPECT_EQ(tree.at("camera.yaml"),
+            "width: 64\nheight: 48\nfx: 52\nfy: 52\ncx: 31.5\ncy: 23.5\ndistortion: {k1: 0, k2: 0, p1: 0, p2: 0, k3: "
+            "0}\nrolling_shutter: 0 s\n");
   const auto manifest = nlohmann::json::parse(tree.at("manifest.json"));
   EXPECT_EQ(manifest["program"], "test 1");
   EXPECT_EQ(manifest["seed"], 5);

@@ -103,11 +103,10 @@ bool Agree(const ev::Trajectory& a, const ev::Trajectory& b) {
 }  // namespace
 
 std::set<std::string> ResultNames(const std::vector<std::string>& systems) {
-  std::set<std::string> names = {"run.json",           "metrics.json", "anees.csv",     "live.txt",
-                                 "verdict.csv",        "report.html",  "estimate.txt",  "covariance.txt",
-                                 "frames.csv",         "frames",       "landmarks.csv", "truth.txt",
-                                 "truth_velocity.txt", "ranks.csv",    "pictures.json", "truth",
-                                 "matches.csv",        "lives.csv"};
+  std::set<std::string> names = {"run.json",      "metrics.json", "anees.csv",          "live.txt",   "verdict.csv",
+                                 "report.html",   "estimate.txt", "covariance.txt",     "frames.csv", "frames",
+                                 "landmarks.csv", "truth.txt",    "truth_velocity.txt", "ranks.csv",  "pictures.json",
+                                 "truth",         "matches.csv",  "lives.csv"};
   names.insert(systems.begin(), systems.end());
   return names;
 }
