@@ -16,6 +16,7 @@ struct Limits {
   double ate_cm, rpe_cm_per_s;  // of the median over seeds
   double worst_ate_cm = 100;
   double below_baselines = 3;  // the baselines err by at least this factor more
+  double least_tracked = 0.9;
 };
 
 void ExpectWithin(const Limits& limits, const std::string& name, const std::string& camera,
@@ -30,7 +31,7 @@ void ExpectWithin(const Limits& limits, const std::string& name, const std::stri
     std::printf("%s seed %2d: ATE %.2f cm, RPE %.2f cm/s, tracked %.3f\n", name.c_str(), static_cast<int>(seed),
                 scores.ate_cm, scores.rpe_cm_per_s, scores.tracked_coverage);
     EXPECT_EQ(scores.pose_coverage, 1) << seed;
-    EXPECT_GE(scores.tracked_coverage, 0.9) << seed;
+    EXPECT_GE(scores.tracked_coverage, limits.least_tracked) << seed;
     ate.push_back(scores.ate_cm);
     rpe.push_back(scores.rpe_cm_per_s);
     constant_pose = scores.constant_pose_ate_cm;
@@ -55,7 +56,8 @@ std::string OwnCamera(const std::string& name) {
 // It hardly moves: standing still errs by 4 cm.
 TEST(RecordedSlowTest, Freiburg1Rpy) { ExpectWithin({2.5, 7, 6, 2}, "tum_fr1_rpy", "freiburg1"); }
 TEST(RecordedSlowTest, EurocMh05) { ExpectWithin({5, 5, 6}, "euroc_mh05", OwnCamera("euroc_mh05")); }
-TEST(RecordedSlowTest, Hololens) { ExpectWithin({8, 30, 17}, "hololens", OwnCamera("hololens")); }
+// Some predictions fail: the frames are 8 cm apart.
+TEST(RecordedSlowTest, Hololens) { ExpectWithin({8, 30, 17, 3, 0.8}, "hololens", OwnCamera("hololens")); }
 
 // Without the joint mode's bias: docs/odometry.md.
 TEST(RecordedSlowTest, Freiburg1Marginal) {
