@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "vo/base/median.h"
 #include "vo/base/stopwatch.h"
 #include "vo/filter/landmark_table.h"
 #include "vo/filter/pose_gaussian.h"
@@ -53,8 +54,7 @@ struct Tracker {
       if (first_frame && has_matched) RestartFirstFrame(frame, diagnostics);
     } else {
       Stopwatch watch;
-      if (shutter.on()) KeepFirstFrame(frame);
-      Begin(frame, filter.belief().velocity);
+      Start(frame);
       diagnostics.ms_features += watch.Lap();
     }
     diagnostics.ms_features += frame.ms;
@@ -75,9 +75,20 @@ struct Tracker {
     shutter = RollingShutter(camera, params.features);
   }
 
-  void KeepFirstFrame(const PreparedFrame& frame) {
-    first_frame = frame;
-    first_frame->grey = frame.grey.clone();  // the memory is the caller's
+  // As it was before its first frame.
+  Tracker Restarted() const {
+    Tracker again(camera, params, prior, seed);
+    again.pose_before_start = pose_before_start;
+    again.first_id = again.next_id = first_id;
+    return again;
+  }
+
+  void Start(const PreparedFrame& frame) {
+    if (shutter.on()) {
+      first_frame = frame;
+      first_frame->grey = frame.grey.clone();  // the memory is the caller's
+    }
+    Begin(frame, filter.belief().velocity);
   }
 
   // First frame: its landmarks are seen at the prior pose, with `velocity` during the readout.
@@ -135,14 +146,12 @@ struct Tracker {
   // have moved until then stays in the covariance of all answers to come.
   void BeginAgain(const PreparedFrame& frame, Association& association, FrameDiagnostics& diagnostics) {
     filter.Update({});
-    Tracker again(camera, params, prior, seed);
-    again.pose_before_start = pose_before_start + filter.belief().covariance.topLeftCorner<6, 6>();
-    again.next_id = next_id;
-    *this = std::move(again);
+    pose_before_start += filter.belief().covariance.topLeftCorner<6, 6>();
+    first_id = next_id;
+    *this = Restarted();
     diagnostics.searched = static_cast<int>(association.searched.size());
     diagnostics.repeated = association.repeated;
-    if (shutter.on()) KeepFirstFrame(frame);
-    Begin(frame, filter.belief().velocity);
+    Start(frame);
     views.insert(views.begin(), association.views.begin(), association.views.end());
   }
 
@@ -154,9 +163,7 @@ struct Tracker {
     const double dt = static_cast<double>(second.frame.stamp_ns - first.frame.stamp_ns) * 1e-9;
     for (int round = 1; round < kRounds && diagnostics.matched >= FrameDiagnostics::kTrackedMatches; ++round) {
       const Vector6 velocity = MinusNear(filter.belief().pose, prior.pose, dt * prior.w_WC_C) / dt;
-      const Matrix6 before_start = pose_before_start;
-      *this = Tracker(camera, params, prior, seed);
-      pose_before_start = before_start;
+      *this = Restarted();
       Begin(first, velocity);
       Follow(second, diagnostics);
     }
@@ -180,9 +187,8 @@ struct Tracker {
       if (belief.relative_sigma() < kKnown && depth > 0) depths.push_back(depth);
     }
     if (depths.size() < kEnough) return;
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-    std::nth_element(depths.begin(), middle, depths.end());
-    typical_depth = {1 / *middle, kRelativeSigma / *middle};
+    const double depth = UpperMedian(std::move(depths));
+    typical_depth = {1 / depth, kRelativeSigma / depth};
   }
 
   // Away from found landmarks and from predicted ones that were not searched for.
@@ -252,7 +258,7 @@ struct Tracker {
   SinceUpdate since_update;
   AdaptiveAssociation adaptive;
   std::optional<KnownDepth> typical_depth;
-  int next_id = 0;
+  int first_id = 0, next_id = 0;             // of the landmarks since this start; of the next one
   std::optional<PreparedFrame> first_frame;  // with a rolling shutter, until the second frame
 };
 
@@ -269,8 +275,7 @@ Prior WithVagueVelocity(Prior prior) {
 // may take a wrong mode where the camera hardly moves at first, the second where it moves quickly. One answers, the
 // other takes over where its matches fit clearly better; the start over, one goes on.
 struct Odometry::Impl {
-  Impl(const Camera& camera_, const Params& params_, const Prior& prior_, std::uint64_t seed_)
-      : camera(camera_), params(params_), prior(prior_), seed(seed_) {
+  Impl(const Camera& camera, const Params& params, const Prior& prior_, std::uint64_t seed) : prior(prior_) {
     if (params.motion.adaptive && params.filter.start_window > params.filter.lag)
       trackers.emplace_back(camera, params, WithVagueVelocity(prior), seed);
     trackers.emplace_back(camera, params, prior, seed);
@@ -287,18 +292,20 @@ struct Odometry::Impl {
     }
     const auto ended = [](const Tracker& tracker) { return !tracker.filter.answer().initialising; };
     if (std::ranges::any_of(trackers, ended)) trackers.erase(trackers.begin() + 1, trackers.end());
+    FrameDiagnostics& diagnostics = estimates[0].diagnostics;
+    for (std::size_t i = 1; i < estimates.size(); ++i) {  // the frame is prepared once
+      diagnostics.ms_features += estimates[i].diagnostics.ms_features - frame.ms;
+      diagnostics.ms_matching += estimates[i].diagnostics.ms_matching;
+      diagnostics.ms_filter += estimates[i].diagnostics.ms_filter;
+    }
     return estimates[0];
   }
   void SetReadout(double readout_s) {
-    params.features.readout_s = readout_s;
     for (Tracker& tracker : trackers) tracker.SetReadout(readout_s);
   }
   const Tracker& tracker() const { return trackers[0]; }
 
-  Camera camera;
-  Params params;
   Prior prior;
-  std::uint64_t seed;
   std::vector<Tracker> trackers;  // the first answers
 };
 
@@ -353,7 +360,8 @@ Estimate Odometry::TrackFirstFramesAgain() {
   Estimate last;
   const Eigen::Vector3d origin = impl_->prior.pose.p_WC;
   for (int round = 1; round <= kRounds; ++round) {
-    impl_ = std::make_unique<Impl>(impl_->camera, impl_->params, impl_->prior, impl_->seed);
+    const Tracker& tracker = impl_->tracker();
+    impl_ = std::make_unique<Impl>(tracker.camera, tracker.params, impl_->prior, tracker.seed);
     calibration_->Restart();
     reissued_.clear();
     double product = 0, square = 0;
@@ -373,8 +381,7 @@ Estimate Odometry::TrackFirstFramesAgain() {
     }
     if (round == kRounds || !ChangeReadout()) break;
   }
-  const Tracker& tracker = impl_->tracker();
-  return tracker.Answer(last.stamp_ns, last.diagnostics);
+  return impl_->tracker().Answer(last.stamp_ns, last.diagnostics);
 }
 
 std::vector<MapPoint> Odometry::Map() const {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "vo/base/median.h"
 #include "vo/filter/pose_gaussian.h"
 
 namespace vo {
@@ -42,13 +43,11 @@ std::vector<double> RegularTimes(std::vector<double> times) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < times.size(); ++k) steps.push_back(times[k] - times[k - 1]);
   if (steps.empty()) return times;
-  std::vector<double> sorted = steps;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double usual = UpperMedian(steps);
   double periods = 0;
   for (double& step : steps) {
-    const double count = std::round(step / *middle);
-    if (count < 1 || std::abs(step / *middle - count) > kJitter) return times;
+    const double count = std::round(step / usual);
+    if (count < 1 || std::abs(step / usual - count) > kJitter) return times;
     periods += step = count;
   }
   const double period = (times.back() - times.front()) / periods;

@@ -1,6 +1,6 @@
 // Calibration checked while the odometry runs, from the tracks of the first windows of frames: the shutter's readout
 // time, where nobody states it, and the focal length.
-// Source:  docs/odometry.md, "Calibration".
+// Source:  docs/calibration.md.
 #pragma once
 
 #include <cstdint>

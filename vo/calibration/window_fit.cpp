@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "vo/base/median.h"
 #include "vo/calibration/frame_motion.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/map/landmark.h"
@@ -229,9 +230,7 @@ class Bundle {
     for (const Linear& l : linear_)
       if (l.in_front) squares.push_back(l.square);
     if (squares.empty()) return 1;
-    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-    std::nth_element(squares.begin(), middle, squares.end());
-    return std::max(1e-12, *middle / kMedianOfChiSq);
+    return std::max(1e-12, UpperMedian(std::move(squares)) / kMedianOfChiSq);
   }
 
   double Cost() const {

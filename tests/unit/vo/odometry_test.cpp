@@ -129,6 +129,29 @@ TEST(Odometry, BeginsAgainWhereNothingOfTheFirstImageIsFound) {
   EXPECT_GT(begun_again - of_one_scene, 3 * dt * dt) << "three axes, the prior's sigma of 1 m/s or more";
 }
 
+// Landmarks keep their numbers through that, also where a rolling shutter has the first frame processed again.
+TEST(Odometry, NumbersNoLandmarkTwiceWhereItBeginsAgain) {
+  const vo_test::Texture scene(4, 40.0, 24), other(9, 40.0, 24);
+  for (const double readout : {0.0, 5e-3}) {
+    vo::Params params = SmallImageParams();
+    params.motion.adaptive = true;
+    params.features.readout_s = readout;
+    vo::Odometry odometry(kCamera, params, KnownStart(), 1);
+    std::set<int> begun[2];
+    for (int k = 0; k < 3; ++k) {
+      odometry.Track({k * kFrameNs, ViewFrom(TruthAt(k), k == 0 ? other : scene)});
+      int matched = 0;
+      for (const vo::FeatureView& view : odometry.Features()) {
+        if (k < 2 && view.status == vo::FeatureView::Status::fresh) begun[k].insert(view.id);
+        if (k < 2 || view.status != vo::FeatureView::Status::matched) continue;
+        ++matched;
+        EXPECT_TRUE(begun[1].contains(view.id) && !begun[0].contains(view.id)) << view.id;
+      }
+      EXPECT_TRUE(k < 2 || matched >= 10) << matched;
+    }
+  }
+}
+
 // Of points with one factor of length, fitted through the first one; turns are not fitted.
 double ScaledRms(const std::vector<Vector3d>& x) {
   double xy = 0, xx = 0, yy = 0;

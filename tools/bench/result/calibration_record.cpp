@@ -30,7 +30,7 @@ std::string FocalText(const CalibrationRecord& record) {
 }  // namespace
 
 Json ToJson(const CalibrationRecord& record) {
-  Json json = {{"how", "bundle adjustment of windows of 30 frames, random-effects mean over them: docs/odometry.md"},
+  Json json = {{"how", "bundle adjustment of windows of 30 frames, random-effects mean over them: docs/calibration.md"},
                {"rolling_shutter_used_s", record.readout_used_s},
                {"focal_px", record.focal_px}};
   if (record.readout_s) json["rolling_shutter"] = Of(*record.readout_s, "s", "from the first row to the last");

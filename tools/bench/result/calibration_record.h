@@ -1,5 +1,5 @@
 // What an odometry has found out about its camera: in run.json and metrics.json, and in words.
-// Source: docs/odometry.md, "Calibration".
+// Source: docs/calibration.md.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -124,12 +124,10 @@ std::string TextSummary(const std::vector<RunMetrics>& runs) {
             std::to_string(duel.seeds) + " seeds against " + DisplayName(systems[i].system) + ".\n";
   }
   text +=
-      "Medians over runs. ATE: position RMSE after Sim(3) alignment; live: of the answers as they were given. RPE: "
-      "over "
-      "one\n"
-      "second, scale of the alignment. tracked: frames in which at least 10, and 40 % of the searched, features match "
-      "at the\n"
-      "first prediction. NEES: of the pose, live, not aligned, 1 is ideal; scale-free: blind to the map's scale.\n";
+      "Medians over runs. ATE: position RMSE after Sim(3) alignment; live: of the answers as they were given. "
+      "RPE: over one\nsecond, scale of the alignment. tracked: frames in which at least 10, and 40 % of the searched, "
+      "features match at the\nfirst prediction. NEES: of the pose, live, not aligned, 1 is ideal; scale-free: blind to "
+      "the map's scale.\n";
   return text;
 }
 
