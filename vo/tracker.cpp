@@ -1,0 +1,239 @@
+#include "vo/tracker.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "vo/base/median.h"
+#include "vo/base/source.h"
+#include "vo/base/stopwatch.h"
+#include "vo/filter/landmark_table.h"
+#include "vo/filter/pose_gaussian.h"
+#include "vo/filter_adapter.h"
+
+namespace vo {
+
+Tracker::Tracker(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)
+    : camera_(camera),
+      params_(params),
+      prior_(prior),
+      seed_(seed),
+      filter_(MakeFilter(params, prior, seed)),
+      scale_(params.landmark.scale_sigma, prior.pose.p_WC),
+      shutter_(camera, params.features),
+      first_sampler_(FirstSampler(params.features)),
+      border_px_(std::max(first_sampler_.margin(), Patch::kRadius + 1)),
+      detector_(camera, params, border_px_),
+      adaptive_(camera) {}
+
+void Tracker::Require(const Frame& frame) const {
+  if (frame.image.cols != camera_.width || frame.image.rows != camera_.height)
+    throw std::invalid_argument("image is " + std::to_string(frame.image.cols) + " x " +
+                                std::to_string(frame.image.rows) + ", the camera " + std::to_string(camera_.width) +
+                                " x " + std::to_string(camera_.height));
+  if (last_stamp_ns_) RequireIncreasing(frame.stamp_ns, *last_stamp_ns_);
+}
+
+Estimate Tracker::Process(const PreparedFrame& frame) {
+  FrameDiagnostics diagnostics;
+  if (last_stamp_ns_) {
+    Follow(frame, diagnostics);
+    if (first_frame_ && has_matched_) RestartFirstFrame(frame, diagnostics);
+  } else {
+    Stopwatch watch;
+    Start(frame);
+    diagnostics.ms_features += watch.Lap();
+  }
+  diagnostics.ms_features += frame.ms;
+  diagnostics.landmarks = static_cast<int>(records_.size());
+  diagnostics.permanent = static_cast<int>(
+      std::count_if(records_.begin(), records_.end(), [](const LandmarkRecord& r) { return r.permanent; }));
+  return Answer(frame.frame.stamp_ns, diagnostics);
+}
+
+Estimate Tracker::Answer(std::int64_t stamp_ns, const FrameDiagnostics& diagnostics) const {
+  Estimate estimate = MakeEstimate(filter_, scale_, stamp_ns, diagnostics);
+  estimate.covariance.topLeftCorner<6, 6>() += pose_before_start_;
+  return estimate;
+}
+
+void Tracker::SetReadout(double readout_s) {
+  params_.features.readout_s = readout_s;
+  shutter_ = RollingShutter(camera_, params_.features);
+}
+
+Tracker Tracker::Restarted() const {
+  Tracker again(camera_, params_, prior_, seed_);
+  again.pose_before_start_ = pose_before_start_;
+  again.first_id_ = again.next_id_ = first_id_;
+  return again;
+}
+
+void Tracker::Start(const PreparedFrame& frame) {
+  if (shutter_.on()) {
+    first_frame_ = frame;
+    first_frame_->grey = frame.grey.clone();  // the memory is the caller's
+  }
+  Begin(frame, filter_.belief().velocity);
+}
+
+// First frame: its landmarks are seen at the prior pose, with `velocity` during the readout.
+void Tracker::Begin(const PreparedFrame& frame, const Vector6& velocity) {
+  last_stamp_ns_ = frame.frame.stamp_ns;
+  since_update_ = {0, VelocityCovariance()};
+  start_.Add(frame.frame.stamp_ns, filter_.answer(), scale_);
+  AddLandmarks(DetectFeatures(frame), frame, velocity);
+}
+
+// One iteration of Algorithm 1; sections of docs/algorithm.md.
+void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) {
+  const double dt = static_cast<double>(frame.frame.stamp_ns - *last_stamp_ns_) * 1e-9;
+  Stopwatch watch;
+  const double coasting_s = since_update_.dt_s;
+  since_update_.dt_s += dt;
+  const auto associate = [&](const MotionInput& input) {
+    since_update_.input = input;
+    return Associate(filter_, records_, camera_, frame, border_px_, since_update_, params_);  // line 3: section 7
+  };
+  Association association;
+  if (params_.motion.adaptive) {
+    association = adaptive_.PredictAndAssociate(filter_, dt, coasting_s, frame.grey, associate);
+  } else {
+    filter_.Predict(dt);  // line 2: (6)-(9), (12), (13)
+    association = associate({});
+  }
+  diagnostics.ms_matching += watch.Lap();
+  if (params_.motion.adaptive && association.matches.empty() && filter_.answer().initialising && !has_matched_)
+    return BeginAgain(frame, association, diagnostics);
+  has_matched_ = true;
+
+  Update(association.matches);  // lines 4-11: (15)-(17), (37)-(43)
+  start_.Add(frame.frame.stamp_ns, filter_.answer(), scale_);
+  UpdateScores(association, params_.score, records_);  // section 6: (44)-(49)
+  diagnostics.searched = static_cast<int>(association.searched.size());
+  diagnostics.matched = static_cast<int>(association.matches.size());
+  diagnostics.nis = association.nis;
+  diagnostics.nis_dof = 2 * diagnostics.matched;
+  diagnostics.repeated = association.repeated;
+  views_ = std::move(association.views);
+  left_out_ = std::move(association.left_out);
+  diagnostics.ms_filter += watch.Lap();
+  last_stamp_ns_ = frame.frame.stamp_ns;
+
+  const std::vector<Filter::LandmarkBelief> beliefs = filter_.LandmarkBeliefs();
+  if (params_.motion.adaptive && !filter_.answer().initialising) UpdateTypicalDepth(association.matches, beliefs);
+  std::vector<NewFeature> features = DetectFeatures(frame);             // section 7
+  Forget(features.size(), beliefs);                                     // section 6: deletion
+  AddLandmarks(std::move(features), frame, filter_.belief().velocity);  // section 5
+  diagnostics.ms_features += watch.Lap();
+}
+
+// Start with the present frame where no landmark of the first is found, at the pose of the prior. What the camera may
+// have moved until then stays in the covariance of all answers to come.
+void Tracker::BeginAgain(const PreparedFrame& frame, Association& association, FrameDiagnostics& diagnostics) {
+  filter_.Update({});
+  pose_before_start_ += filter_.belief().covariance.topLeftCorner<6, 6>();
+  first_id_ = next_id_;
+  *this = Restarted();
+  diagnostics.searched = static_cast<int>(association.searched.size());
+  diagnostics.repeated = association.repeated;
+  Start(frame);
+  views_.insert(views_.begin(), association.views.begin(), association.views.end());
+}
+
+// The velocity in the first frame is that of the prior, and its error shears the map through the rolling shutter. The
+// second frame measures it: both frames are processed again with the result, as a fixed-point iteration.
+void Tracker::RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& diagnostics) {
+  constexpr int kRounds = 6;
+  const PreparedFrame first = *std::exchange(first_frame_, std::nullopt);
+  const double dt = static_cast<double>(second.frame.stamp_ns - first.frame.stamp_ns) * 1e-9;
+  for (int round = 1; round < kRounds && diagnostics.matched >= FrameDiagnostics::kTrackedMatches; ++round) {
+    const Vector6 velocity = MinusNear(filter_.belief().pose, prior_.pose, dt * prior_.w_WC_C) / dt;
+    *this = Restarted();
+    Begin(first, velocity);
+    Follow(second, diagnostics);
+  }
+}
+
+void Tracker::Update(std::span<const Match> matches) {
+  scale_.AbsorbChange(filter_.Update(matches).scale_change);
+  if (!matches.empty()) since_update_ = {0, VelocityCovariance()};
+}
+
+// Prior of new landmarks: the median depth of those in view, whose map may have any scale. Kept where too few are
+// known.
+void Tracker::UpdateTypicalDepth(std::span<const Match> matches, std::span<const Filter::LandmarkBelief> beliefs) {
+  constexpr double kKnown = 0.3, kRelativeSigma = 1.4;
+  constexpr std::size_t kEnough = 8;
+  const Pose& pose = filter_.belief().pose;
+  std::vector<double> depths;
+  for (const Match& match : matches) {
+    const Filter::LandmarkBelief& belief = beliefs[match.landmark];
+    const double depth = (pose.q_WC.conjugate() * (belief.X_W - pose.p_WC)).z();
+    if (belief.relative_sigma() < kKnown && depth > 0) depths.push_back(depth);
+  }
+  if (depths.size() < kEnough) return;
+  const double depth = UpperMedian(std::move(depths));
+  typical_depth_ = {1 / depth, kRelativeSigma / depth};
+}
+
+// Away from found landmarks and from predicted ones that were not searched for.
+std::vector<NewFeature> Tracker::DetectFeatures(const PreparedFrame& frame) {
+  std::vector<Eigen::Vector2d> occupied = left_out_;
+  for (const FeatureView& view : views_)
+    if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
+  return detector_.Detect(frame, std::move(occupied));
+}
+
+// Deletes landmarks, also to make room for `wanted` new ones; those searched for in this frame are kept.
+void Tracker::Forget(std::size_t wanted, std::span<const Filter::LandmarkBelief> beliefs) {
+  for (std::size_t n = 0; n < records_.size(); ++n)
+    records_[n].permanent = beliefs[n].relative_sigma() < params_.landmark.permanent_ratio;
+  const std::vector<bool> keep = LandmarksToKeep(records_, wanted, params_.landmark, params_.score);
+  filter_.KeepLandmarks(keep);
+  Compact(keep, records_);
+}
+
+void Tracker::AddLandmarks(std::vector<NewFeature> features, const PreparedFrame& frame, const Vector6& velocity) {
+  const auto capacity = static_cast<std::size_t>(params_.landmark.max_landmarks) - records_.size();
+  std::vector<FirstView> first_views;
+  for (const NewFeature& feature : LimitToCapacity(std::move(features), capacity, camera_))
+    first_views.push_back(AddRecord(feature, frame, velocity));
+  filter_.AddLandmarks(first_views);
+}
+
+FirstView Tracker::AddRecord(const NewFeature& feature, const PreparedFrame& frame, const Vector6& velocity) {
+  const Eigen::Vector2d pixel = feature.pixel.cast<double>();
+  LandmarkRecord record;
+  record.appearance = {frame.brisk.Describe(feature.pixel, first_sampler_), CutPatch(frame.smooth, feature.pixel)};
+  record.id = next_id_++;
+  record.score = params_.score.initial;
+  record.searched = true;
+  records_.push_back(record);
+  views_.push_back(
+      {record.id, pixel, pixel, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
+  FirstView view = FirstSeen(shutter_.Row(pixel), filter_.belief().pose, velocity);
+  // Later views are registered to the patch of the first, which thus defines the landmark: only the floor of the
+  // noise is left.
+  const double sigma_px =
+      params_.features.noise != MatchNoise::constant ? params_.features.sigma_floor_px : params_.features.sigma_px;
+  view.R = PixelNoise(camera_.LensJacobian(view.ray), sigma_px);
+  view.depth = feature.depth ? feature.depth : typical_depth_;
+  return view;
+}
+
+Matrix6 Tracker::VelocityCovariance() const { return filter_.belief().covariance.bottomRightCorner<6, 6>(); }
+
+std::vector<MapPoint> Tracker::Map() const {
+  std::vector<MapPoint> points = MakeMap(filter_, scale_);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    points[n].id = records_[n].id;
+    points[n].permanent = records_[n].permanent;
+  }
+  return points;
+}
+
+void Tracker::KeepScale(double change) { scale_.AbsorbChange(change); }
+
+}  // namespace vo

@@ -1,0 +1,84 @@
+// Odometry from one start: the filter with its map of landmarks, the association of each image, and what follows from
+// both. Private to Odometry, which makes a start with two of them.
+// Source:  docs/algorithm.md; Algorithm 1.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "vo/base/params.h"
+#include "vo/base/result.h"
+#include "vo/filter/watched_filter.h"
+#include "vo/frontend/adaptive_association.h"
+#include "vo/frontend/association.h"
+#include "vo/frontend/new_features.h"
+#include "vo/frontend/rolling_shutter.h"
+#include "vo/geometry/camera.h"
+#include "vo/map/landmark_record.h"
+#include "vo/scale_ambiguity.h"
+#include "vo/start_trajectory.h"
+
+namespace vo {
+
+class Tracker {
+ public:
+  Tracker(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed);
+
+  // Throws std::invalid_argument as Odometry::Track does.
+  void Require(const Frame& frame) const;
+  Estimate Process(const PreparedFrame& frame);
+  // Present state as the estimate of a frame.
+  Estimate Answer(std::int64_t stamp_ns, const FrameDiagnostics& diagnostics) const;
+  std::vector<MapPoint> Map() const;
+
+  const FilterAnswer& answer() const { return filter_.answer(); }
+  const std::vector<StampedPose>& reissued() const { return start_.reissued(); }
+  const std::vector<FeatureView>& views() const { return views_; }
+
+  void SetReadout(double readout_s);
+  // The answers keep their scale although the filter's path has all lengths times `change`.
+  void KeepScale(double change);
+  // As it was before its first frame.
+  Tracker Restarted() const;
+
+ private:
+  void Start(const PreparedFrame& frame);
+  void Begin(const PreparedFrame& frame, const Vector6& velocity);
+  void Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics);
+  void BeginAgain(const PreparedFrame& frame, Association& association, FrameDiagnostics& diagnostics);
+  void RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& diagnostics);
+  void Update(std::span<const Match> matches);
+  void UpdateTypicalDepth(std::span<const Match> matches, std::span<const Filter::LandmarkBelief> beliefs);
+  std::vector<NewFeature> DetectFeatures(const PreparedFrame& frame);
+  void Forget(std::size_t wanted, std::span<const Filter::LandmarkBelief> beliefs);
+  void AddLandmarks(std::vector<NewFeature> features, const PreparedFrame& frame, const Vector6& velocity);
+  FirstView AddRecord(const NewFeature& feature, const PreparedFrame& frame, const Vector6& velocity);
+  Matrix6 VelocityCovariance() const;
+
+  Camera camera_;
+  Params params_;
+  Prior prior_;
+  std::uint64_t seed_;
+  WatchedFilter filter_;
+  ScaleAmbiguity scale_;
+  StartTrajectory start_;
+  RollingShutter shutter_;
+  BriskSampler first_sampler_;
+  int border_px_;
+  NewFeatureDetector detector_;
+  std::vector<LandmarkRecord> records_;  // in the order of the filter's landmarks
+  std::vector<FeatureView> views_;
+  std::vector<Eigen::Vector2d> left_out_;        // [px] predicted in this frame, beyond max_searched
+  bool has_matched_ = false;                     // some frame
+  Matrix6 pose_before_start_ = Matrix6::Zero();  // covariance of the path from the first image to the start
+  std::optional<std::int64_t> last_stamp_ns_;
+  SinceUpdate since_update_;
+  AdaptiveAssociation adaptive_;
+  std::optional<KnownDepth> typical_depth_;
+  int first_id_ = 0, next_id_ = 0;            // of the landmarks since this start; of the next one
+  std::optional<PreparedFrame> first_frame_;  // with a rolling shutter, until the second frame
+};
+
+}  // namespace vo
