@@ -1,6 +1,7 @@
 #include "vo/tracker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,6 +14,11 @@
 #include "vo/filter_adapter.h"
 
 namespace vo {
+namespace {
+
+constexpr std::size_t kEnoughToBegin = 20;  // features, where no landmark is found
+
+}  // namespace
 
 Tracker::Tracker(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)
     : camera_(camera),
@@ -25,7 +31,8 @@ Tracker::Tracker(const Camera& camera, const Params& params, const Prior& prior,
       first_sampler_(FirstSampler(params.features)),
       border_px_(std::max(first_sampler_.margin(), Patch::kRadius + 1)),
       detector_(camera, params, border_px_),
-      adaptive_(camera) {}
+      adaptive_(camera),
+      relocaliser_(camera, params.features, border_px_) {}
 
 void Tracker::Require(const Frame& frame) const {
   if (frame.image.cols != camera_.width || frame.image.rows != camera_.height)
@@ -54,7 +61,7 @@ Estimate Tracker::Process(const PreparedFrame& frame) {
 
 Estimate Tracker::Answer(std::int64_t stamp_ns, const FrameDiagnostics& diagnostics) const {
   Estimate estimate = MakeEstimate(filter_, scale_, stamp_ns, diagnostics);
-  estimate.covariance.topLeftCorner<6, 6>() += pose_before_start_;
+  estimate.covariance.topLeftCorner<6, 6>() += pose_before_start_ + pose_before_loss_;
   return estimate;
 }
 
@@ -92,13 +99,16 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
   Stopwatch watch;
   const double coasting_s = since_update_.dt_s;
   since_update_.dt_s += dt;
+  ++frames_;
   const auto associate = [&](const MotionInput& input) {
     since_update_.input = input;
     return Associate(filter_, records_, camera_, frame, border_px_, since_update_, params_);  // line 3: section 7
   };
   Association association;
   if (params_.motion.adaptive) {
-    association = adaptive_.PredictAndAssociate(filter_, dt, coasting_s, frame.grey, associate);
+    association = adaptive_.PredictAndAssociate(
+        filter_, dt, coasting_s, frame.grey, associate,
+        [&](const Association& now, bool failed) { return Relocalise(frame, now, failed); });
   } else {
     filter_.Predict(dt);  // line 2: (6)-(9), (12), (13)
     association = associate({});
@@ -108,6 +118,9 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
     return BeginAgain(frame, association, diagnostics);
   has_matched_ = true;
 
+  if (std::ranges::any_of(association.matches, [&](const Match& m) { return records_[m.landmark].lost; }))
+    pose_before_loss_.setZero();
+  if (!association.matches.empty()) known_before_loss_ = pose_before_loss_;
   Update(association.matches);  // lines 4-11: (15)-(17), (37)-(43)
   start_.Add(frame.frame.stamp_ns, filter_.answer(), scale_);
   UpdateScores(association, params_.score, records_);  // section 6: (44)-(49)
@@ -123,7 +136,14 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
 
   const std::vector<Filter::LandmarkBelief> beliefs = filter_.LandmarkBeliefs();
   if (params_.motion.adaptive && !filter_.answer().initialising) UpdateTypicalDepth(association.matches, beliefs);
-  std::vector<NewFeature> features = DetectFeatures(frame);             // section 7
+  std::vector<NewFeature> features = DetectFeatures(frame);  // section 7
+  if (params_.motion.adaptive && association.matches.empty()) {
+    if (features.size() < kEnoughToBegin)
+      features.clear();  // of noise, in darkness
+    else
+      LoseLandmarks();
+  }
+  if (!association.matches.empty() || !features.empty()) adaptive_.Keep(frame.grey);
   Forget(features.size(), beliefs);                                     // section 6: deletion
   AddLandmarks(std::move(features), frame, filter_.belief().velocity);  // section 5
   diagnostics.ms_features += watch.Lap();
@@ -154,6 +174,48 @@ void Tracker::RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& d
     Begin(first, velocity);
     Follow(second, diagnostics);
   }
+}
+
+// Correction of the path where landmarks that were not matched for a while are recognised.
+std::optional<PathCorrection> Tracker::Relocalise(const PreparedFrame& frame, const Association& association,
+                                                  bool failed) const {
+  constexpr int kEvery = 3;            // [frames]
+  constexpr double kOlder = 0.1;       // of the matches: they tie the path to the part of the map that was recognised
+  constexpr double kDisplaced_px = 4;  // median, below which the ordinary search finds them
+  if (filter_.answer().initialising || params_.filter.lag > 0) return std::nullopt;
+  if (!failed && frames_ % kEvery != 0) return std::nullopt;
+  std::vector<KnownPoint> points;
+  std::vector<int> landmark_of;
+  const std::vector<Filter::LandmarkBelief> beliefs = filter_.LandmarkBeliefs();
+  for (std::size_t n = 0; n < records_.size(); ++n) {
+    if (!records_[n].unseen()) continue;
+    points.push_back({&records_[n].appearance.descriptor, beliefs[n].X_W});
+    landmark_of.push_back(static_cast<int>(n));
+  }
+  const std::optional<Relocalisation> found = relocaliser_.Find(frame, points);
+  if (!found) return std::nullopt;
+  const int first = landmark_of[static_cast<std::size_t>(found->inliers.back())] + 1;
+  const auto older = std::ranges::count_if(association.matches, [&](const Match& m) { return m.landmark < first; });
+  if (!failed && static_cast<double>(older) > kOlder * static_cast<double>(association.matches.size()))
+    return std::nullopt;
+  const Pose predicted = Inverse(filter_.Reference().prediction.mean);
+  std::vector<double> displacements;  // on the plane z = 1
+  for (const int i : found->inliers) {
+    const Eigen::Vector3d& X_W = points[static_cast<std::size_t>(i)].X_W;
+    const Eigen::Vector3d was = predicted.p_WC + predicted.q_WC * X_W;
+    const Pose seen = Inverse(found->pose);
+    const Eigen::Vector3d is = seen.p_WC + seen.q_WC * X_W;
+    displacements.push_back(was.z() > 0 ? (was.hnormalized() - is.hnormalized()).norm() : INFINITY);
+  }
+  if (UpperMedian(std::move(displacements)) * camera_.fx < kDisplaced_px) return std::nullopt;
+  return PathCorrection{found->pose, first};
+}
+
+// Where the image shows features, and none of the map's. What the filter samples next has no memory of the present
+// covariance, once the particles are resampled.
+void Tracker::LoseLandmarks() {
+  for (LandmarkRecord& record : records_) record.lost = true;
+  pose_before_loss_ = known_before_loss_ + filter_.belief().covariance.topLeftCorner<6, 6>();
 }
 
 void Tracker::Update(std::span<const Match> matches) {
@@ -188,8 +250,11 @@ std::vector<NewFeature> Tracker::DetectFeatures(const PreparedFrame& frame) {
 
 // Deletes landmarks, also to make room for `wanted` new ones; those searched for in this frame are kept.
 void Tracker::Forget(std::size_t wanted, std::span<const Filter::LandmarkBelief> beliefs) {
-  for (std::size_t n = 0; n < records_.size(); ++n)
+  constexpr double kKnown = 0.3;
+  for (std::size_t n = 0; n < records_.size(); ++n) {
     records_[n].permanent = beliefs[n].relative_sigma() < params_.landmark.permanent_ratio;
+    records_[n].known = beliefs[n].relative_sigma() < kKnown;
+  }
   const std::vector<bool> keep = LandmarksToKeep(records_, wanted, params_.landmark, params_.score);
   filter_.KeepLandmarks(keep);
   Compact(keep, records_);

@@ -14,6 +14,7 @@
 #include "vo/frontend/adaptive_association.h"
 #include "vo/frontend/association.h"
 #include "vo/frontend/new_features.h"
+#include "vo/frontend/relocalisation.h"
 #include "vo/frontend/rolling_shutter.h"
 #include "vo/geometry/camera.h"
 #include "vo/map/landmark_record.h"
@@ -49,7 +50,10 @@ class Tracker {
   void Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics);
   void BeginAgain(const PreparedFrame& frame, Association& association, FrameDiagnostics& diagnostics);
   void RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& diagnostics);
+  std::optional<PathCorrection> Relocalise(const PreparedFrame& frame, const Association& association,
+                                           bool failed) const;
   void Update(std::span<const Match> matches);
+  void LoseLandmarks();
   void UpdateTypicalDepth(std::span<const Match> matches, std::span<const Filter::LandmarkBelief> beliefs);
   std::vector<NewFeature> DetectFeatures(const PreparedFrame& frame);
   void Forget(std::size_t wanted, std::span<const Filter::LandmarkBelief> beliefs);
@@ -73,10 +77,14 @@ class Tracker {
   std::vector<Eigen::Vector2d> left_out_;        // [px] predicted in this frame, beyond max_searched
   bool has_matched_ = false;                     // some frame
   Matrix6 pose_before_start_ = Matrix6::Zero();  // covariance of the path from the first image to the start
+  // Of the pose at which the landmarks since the last loss began; before the loss that lasts.
+  Matrix6 pose_before_loss_ = Matrix6::Zero(), known_before_loss_ = Matrix6::Zero();
   std::optional<std::int64_t> last_stamp_ns_;
   SinceUpdate since_update_;
   AdaptiveAssociation adaptive_;
+  Relocaliser relocaliser_;
   std::optional<KnownDepth> typical_depth_;
+  int frames_ = 0;
   int first_id_ = 0, next_id_ = 0;            // of the landmarks since this start; of the next one
   std::optional<PreparedFrame> first_frame_;  // with a rolling shutter, until the second frame
 };

@@ -22,13 +22,28 @@ Algorithm1::Algorithm1(ParticlePhase&& finished)
 void Algorithm1::Predict(double dt, const MotionInput& input) {
   BeginFrame();
   since_sampled_ += dt;
+  correction_ = {};
   PredictAgain(input);
 }
 
 void Algorithm1::PredictAgain(const MotionInput& input) {
+  if (!correction_.motions.empty()) {
+    for (Pose& motion : correction_.motions) motion = Inverse(motion);
+    Move(std::exchange(correction_, {}));
+  }
   step_ = {settings_.motion, since_sampled_, input};
+  PredictParticles(input);  // line 2
+  if (!input.correction) return;
+  for (const PoseGaussian& prediction : predictions_)
+    correction_.motions.push_back(input.correction->pose * Inverse(prediction.mean));
+  correction_.first_landmark = input.correction->first_landmark;
+  Move(correction_);
+  PredictParticles(input);
+}
+
+void Algorithm1::PredictParticles(const MotionInput& input) {
   const Matrix6 covariance = step_.PredictedCovariance(particles_[0].velocity);  // (13), the same for all particles
-  for (std::size_t i = 0; i < particles_.size(); ++i) {                          // line 2
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
     predictions_[i] = PredictPose(step_, particles_[i].pose, particles_[i].velocity, covariance);
     if (input.turn) predictions_[i].mean.q_WC = (particles_[i].pose.q_WC * *input.turn).normalized();
   }

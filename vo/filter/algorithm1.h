@@ -32,6 +32,7 @@ class Algorithm1 final : public ParticlePhase {
   std::vector<Eigen::Matrix3d> PointCovariances(int landmark) const override;
 
  private:
+  void PredictParticles(const MotionInput& input);
   const FilterAnswer& Coast();
   const FilterAnswer& SampleStep(std::span<const Match> z);
   // (15)(16) by the proposal that the settings name (docs/algorithm.md, sections 3, 3a and 8). The prediction itself
@@ -43,7 +44,8 @@ class Algorithm1 final : public ParticlePhase {
   double since_sampled_ = 0;  // [s]; 0 when the present pose is sampled
   VelocityFilter step_;       // from the last sampled pose to the present
   std::vector<PoseGaussian> predictions_;
-  MatchBatch batch_;  // a frame's matches, and one particle in turn
+  Correction correction_;  // of this frame's prediction
+  MatchBatch batch_;       // a frame's matches, and one particle in turn
 };
 
 }  // namespace vo

@@ -16,6 +16,13 @@ struct MotionModel {
   Matrix12 Q = Matrix12::Zero();
 };
 
+// Present pose as landmarks seen long ago give it, which the path has drifted away from: each particle's last sampled
+// pose, its velocity and the landmarks concerned move in W such that its prediction has this pose.
+struct PathCorrection {
+  Pose pose;
+  int first_landmark = 0;  // this one and those behind it move, but for those first seen with the one before
+};
+
 // Input of one prediction besides its time.
 struct MotionInput {
   // Factors on the power spectral densities of MotionParams.
@@ -25,6 +32,9 @@ struct MotionInput {
   std::optional<Eigen::Quaterniond> turn = std::nullopt;
   // The last seconds of the step, in which no image was matched: the velocity decays, with kCoastingTime.
   double coasting_s = 0;
+  // Until the update: a prediction made again without it is that of the path as it was. Of poses sampled in their own
+  // frame (lag 0, after the start); left out by other filters.
+  std::optional<PathCorrection> correction = std::nullopt;
 };
 
 constexpr double kCoastingTime = 0.1;  // [s]; hand-held motion changes its velocity in this time

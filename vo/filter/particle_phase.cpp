@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "vo/base/instruction_set.h"
+#include "vo/geometry/covariance.h"
 
 namespace vo {
 
@@ -43,6 +44,27 @@ int ParticlePhase::AppendLandmarks(std::span<const FirstView> views) {
 std::vector<int> ParticlePhase::CompactLandmarks(const std::vector<bool>& keep) {
   for (Particle& particle : particles_) Compact(keep, particle.landmarks);
   return table_.Keep(keep);
+}
+
+void ParticlePhase::Move(const Correction& correction) {
+  const int first = correction.first_landmark;
+  std::vector<bool> moves(static_cast<std::size_t>(table_.anchor_count()), false);
+  for (int n = first; n < table_.size(); ++n)
+    if (first == 0 || table_.anchor_of(n) != table_.anchor_of(first - 1)) moves[table_.anchor_of(n)] = true;
+  const Eigen::Matrix3d R = correction.motions[particles_.Heaviest()].q_WC.toRotationMatrix();
+  Matrix6 P = particles_[0].velocity.covariance;  // v is in W, w in C
+  P.topRows<3>() = R * P.topRows<3>();
+  P.leftCols<3>() *= R.transpose();
+  P = Symmetrised(P);
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    Particle& particle = particles_[i];
+    const Pose& M = correction.motions[i];
+    particle.pose = M * particle.pose;
+    particle.velocity.mean.head<3>() = M.q_WC * particle.velocity.mean.head<3>();
+    particle.velocity.covariance = P;  // the same for all
+    for (std::size_t a = 0; a < moves.size(); ++a)
+      if (moves[a]) particle.anchors[a] = M * particle.anchors[a];
+  }
 }
 
 void ParticlePhase::Record(const ParticleSet::Replacement& replaced) {

@@ -54,6 +54,12 @@ class ParticlePhase : public Filter {
   }
   // New landmarks of all particles. Returns the anchor's index; its pose is left to the caller.
   int AppendLandmarks(std::span<const FirstView> views);
+  // Motion of each particle's path in W, T_WC -> M T_WC: last sampled pose, velocity and landmarks (PathCorrection).
+  struct Correction {
+    std::vector<Pose> motions;
+    int first_landmark = 0;
+  };
+  void Move(const Correction& correction);
   void Resample() { particles_.Resample(Uniform(Key(Stream::resampling, 0), 0)); }
   // Counts replaced particles, and copies their components of the mixture.
   void Record(const ParticleSet::Replacement& replaced);

@@ -11,7 +11,10 @@ namespace {
 constexpr double kFailedRatio = 4;        // innovation ratio of a failed prediction
 constexpr double kFailedAgreement = 0.4;  // fewer of the searched agree
 constexpr int kWidenings = 2;
-constexpr double kAlignedNoise = 4;  // factor on the densities about an aligned rotation
+constexpr double kAlignedNoise = 4;       // factor on the densities about an aligned rotation
+constexpr double kRelocalisedNoise = 16;  // the same about the pose from recognised landmarks
+constexpr int kLeastRecognised = 15;
+constexpr double kLeastRecall = 0.4;  // of the landmarks that the recognised ones let expect
 constexpr double kClearlyMore = 1.2;
 constexpr std::size_t kClearlyMoreMatches = 3;
 constexpr double kLeastMatches = 8, kLeastAgreement = 0.1, kLeastAgreementAtTheStart = 0.25;
@@ -34,52 +37,82 @@ bool HasMatches(const Association& association, bool initialising) {
          std::max(kLeastMatches, agreement * static_cast<double>(association.searched.size()));
 }
 
-}  // namespace
-
-bool AdaptiveAssociation::Repeat(Filter& filter, const MotionInput& repeated,
-                                 const std::function<Association(const MotionInput&)>& associate, MotionInput& input,
-                                 Association& association) const {
-  filter.PredictAgain(repeated);
-  Association again = associate(repeated);
-  const auto before = static_cast<double>(association.matches.size());
-  if (static_cast<double>(again.matches.size()) > kClearlyMore * before + kClearlyMoreMatches) {
-    input = repeated;
-    association = std::move(again);
-    return true;
-  }
-  filter.PredictAgain(input);
-  return false;
+// Whether a relocalised frame shows the landmarks that it should.
+bool ShowsThePlace(const Association& association) {
+  return association.unseen_matched >= kLeastRecognised &&
+         association.unseen_matched >= kLeastRecall * association.unseen;
 }
 
-Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, double coasting_s, const cv::Mat& grey,
-                                                     const std::function<Association(const MotionInput&)>& associate) {
-  MotionInput input = noise_.Input();
-  input.coasting_s = coasting_s;
-  filter.Predict(dt, input);
-  Association association = associate(input);
+// The prediction of a frame that is kept until now, and its association.
+struct Trial {
+  Filter& filter;
+  const std::function<Association(const MotionInput&)>& associate;
+  MotionInput input;
+  Association association;
   int repeated = 0;
-  for (int k = 0; k < kWidenings && Failed(association); ++k) {
-    ++repeated;
-    if (!Repeat(filter, Widened(input, RatiosOf(association)), associate, input, association)) break;
+
+  // The same with another prediction, which is kept where `better` than the present one.
+  template <class Better>
+  bool Repeat(const MotionInput& other, const Better& better) {
+    filter.PredictAgain(other);
+    Association again = associate(other);
+    if (better(again)) {
+      input = other;
+      association = std::move(again);
+      return true;
+    }
+    filter.PredictAgain(input);
+    return false;
   }
-  if (Failed(association) && !matched_.empty()) {
-    if (const auto R = AlignRotation(camera_, Thumbnails(matched_), Thumbnails(grey))) {
-      MotionInput aligned = input;
+  bool initialising() const { return filter.answer().initialising; }
+  bool HasMatches() const { return vo::HasMatches(association, initialising()); }
+  double matches() const { return static_cast<double>(association.matches.size()); }
+  bool HasClearlyMore(const Association& again) const {
+    return static_cast<double>(again.matches.size()) > kClearlyMore * matches() + kClearlyMoreMatches;
+  }
+};
+
+}  // namespace
+
+Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, double coasting_s, const cv::Mat& grey,
+                                                     const std::function<Association(const MotionInput&)>& associate,
+                                                     const Relocalise& relocalise) {
+  MotionInput first = noise_.Input();
+  first.coasting_s = coasting_s;
+  filter.Predict(dt, first);
+  Trial trial{filter, associate, first, associate(first)};
+  const auto failed = [&] { return Failed(trial.association); };
+  const auto clearly_more = [&](const Association& again) { return trial.HasClearlyMore(again); };
+  for (int k = 0; k < kWidenings && failed(); ++k) {
+    ++trial.repeated;
+    if (!trial.Repeat(Widened(trial.input, RatiosOf(trial.association)), clearly_more)) break;
+  }
+  if (failed() && !last_.empty()) {
+    if (const auto R = AlignRotation(camera_, Thumbnails(last_), Thumbnails(grey))) {
+      MotionInput aligned = trial.input;
       aligned.position_noise *= kAlignedNoise;
       aligned.orientation_noise *= kAlignedNoise;
       aligned.turn = R->conjugate();
-      ++repeated;
-      Repeat(filter, aligned, associate, input, association);
+      ++trial.repeated;
+      trial.Repeat(aligned, [&](const Association& again) {  // without matches it is the better prediction
+        return trial.HasClearlyMore(again) || (!trial.initialising() && !trial.HasMatches() &&
+                                               again.matches.size() >= trial.association.matches.size());
+      });
     }
   }
-  association.repeated = repeated;
-  if (HasMatches(association, filter.answer().initialising)) {
-    noise_.Learn(RatiosOf(association), input);
-    grey.copyTo(matched_);  // the memory is the caller's
-  } else {
-    association.RejectAll();
+  if (const auto recognised = relocalise(trial.association, failed())) {
+    MotionInput moved = trial.input;
+    moved.position_noise *= kRelocalisedNoise;
+    moved.orientation_noise *= kRelocalisedNoise;
+    moved.correction = recognised;
+    if (trial.Repeat(moved, ShowsThePlace)) ++trial.repeated;
   }
-  return association;
+  trial.association.repeated = trial.repeated;
+  if (trial.HasMatches())
+    noise_.Learn(RatiosOf(trial.association), trial.input);
+  else
+    trial.association.RejectAll();
+  return std::move(trial.association);
 }
 
 }  // namespace vo

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "vo/filter/adaptive_noise.h"
 #include "vo/frontend/association.h"
@@ -16,20 +17,21 @@ class AdaptiveAssociation {
  public:
   explicit AdaptiveAssociation(const Camera& camera) : camera_(camera) {}
 
+  // Correction of the path where the frame shows landmarks that the association does not find; `failed`: its prediction.
+  using Relocalise = std::function<std::optional<PathCorrection>(const Association& association, bool failed)>;
   // `associate` is called after each prediction, with its input. `coasting_s`: time from the first frame without
   // matches to the last frame; 0 where that had matches.
   Association PredictAndAssociate(Filter& filter, double dt, double coasting_s, const cv::Mat& grey,
-                                  const std::function<Association(const MotionInput&)>& associate);
+                                  const std::function<Association(const MotionInput&)>& associate,
+                                  const Relocalise& relocalise);
+
+  // `grey`: of a frame whose pose is not integrated out, being that of matches or of new landmarks.
+  void Keep(const cv::Mat& grey) { grey.copyTo(last_); }  // the memory is the caller's
 
  private:
-  // Whether the repetition is kept; otherwise the prediction of `input` is restored.
-  bool Repeat(Filter& filter, const MotionInput& repeated,
-              const std::function<Association(const MotionInput&)>& associate, MotionInput& input,
-              Association& association) const;
-
   Camera camera_;
   AdaptiveNoise noise_;
-  cv::Mat matched_;  // grey image of the last frame with matches
+  cv::Mat last_;  // grey image of the last pose
 };
 
 }  // namespace vo

@@ -165,9 +165,11 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
         searched.residual = ResidualOf(c, match, map);
         result.nis += *searched.mahalanobis_sq;
         result.matches.push_back(match);
+        if (records[c.landmark].unseen()) ++result.unseen_matched;
       }
       ++m;
     }
+    if (records[c.landmark].unseen()) ++result.unseen;
     result.searched.push_back(searched);
     result.views.push_back(view);
   }
@@ -184,18 +186,24 @@ void Association::RejectAll() {
 
 void UpdateScores(const Association& association, const ScoreParams& params, std::span<LandmarkRecord> records) {
   for (LandmarkRecord& record : records) {
-    record.score = PredictScore(record.score, params);
+    if (!record.lost) record.score = PredictScore(record.score, params);
+    ++record.frames_unmatched;
     ++record.age;
     ++record.frames_unsearched;
     record.searched = false;
   }
   for (const Searched& searched : association.searched) records[searched.landmark].searched = true;
-  const double min_found = params.min_found_ratio * static_cast<double>(association.searched.size());
-  if (static_cast<double>(association.matches.size()) < min_found) return;
+  const auto expected = std::ranges::count_if(
+      association.searched, [&](const Searched& s) { return s.mahalanobis_sq || !records[s.landmark].lost; });
+  if (static_cast<double>(association.matches.size()) < params.min_found_ratio * static_cast<double>(expected)) return;
   for (const Searched& searched : association.searched) {
     LandmarkRecord& record = records[searched.landmark];
     record.score = UpdateScore(record.score, searched.mahalanobis_sq, params);
-    if (searched.mahalanobis_sq) record.residuals.Add(searched.residual);
+    if (searched.mahalanobis_sq) {
+      record.residuals.Add(searched.residual);
+      record.frames_unmatched = 0;
+      record.lost = false;
+    }
     record.frames_unsearched = 0;
   }
 }

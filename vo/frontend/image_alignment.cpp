@@ -3,7 +3,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
+#include <span>
 
 #include "vo/geometry/so3.h"
 
@@ -16,6 +18,9 @@ constexpr int kIterations = 15;
 constexpr double kStill_px = 0.02;      // of the level
 constexpr double kHuber = 10;           // grey levels
 constexpr double kLeastOverlap = 0.25;  // of the pixels
+constexpr double kExplained = 0.5;      // most of the mean absolute deviation that may be left
+constexpr int kGridX = 3, kGridY = 5;   // steps up and down, left and right
+constexpr double kGridStep = 0.1;       // [rad], within the basin of the coarsest level
 
 double Bilinear(const cv::Mat& image, const Eigen::Vector2d& at) {
   const int x = static_cast<int>(at.x()), y = static_cast<int>(at.y());
@@ -57,30 +62,68 @@ std::vector<TemplatePixel> TemplateOf(const Camera& camera, const cv::Mat& level
   return pixels;
 }
 
-// One level, from `R`; false where the images do not determine the rotation.
-bool AlignLevel(const Camera& camera, const cv::Mat& then, const cv::Mat& now, Eigen::Quaterniond& R) {
-  const double scale = static_cast<double>(camera.width) / now.cols;
-  const std::vector<TemplatePixel> pixels = TemplateOf(camera, then, scale);
-  std::vector<std::pair<const TemplatePixel*, double>> residuals;
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    residuals.clear();
-    double offset = 0;  // of the exposures
-    for (const TemplatePixel& pixel : pixels) {
+// Differences of the grey levels at the pixels that both images show, less their mean, that of the exposures.
+struct Residuals {
+  std::vector<const TemplatePixel*> pixels;
+  std::vector<double> differences;
+
+  // False where the images overlap too little.
+  bool Set(const Camera& camera, std::span<const TemplatePixel> earlier, const cv::Mat& now,
+           const Eigen::Quaterniond& R) {
+    const double scale = static_cast<double>(camera.width) / now.cols;
+    pixels.clear();
+    differences.clear();
+    double sum = 0;
+    for (const TemplatePixel& pixel : earlier) {
       const Eigen::Vector3d ray = R * pixel.ray;
       if (ray.z() <= 0 || !camera.IsInjective(ray.hnormalized())) continue;
       const Eigen::Vector2d at = Reduced(camera.Project(ray), scale);
       if (!(at.x() >= 0 && at.y() >= 0 && at.x() < now.cols - 1 && at.y() < now.rows - 1)) continue;
-      residuals.emplace_back(&pixel, Bilinear(now, at) - pixel.grey);
-      offset += residuals.back().second;
+      pixels.push_back(&pixel);
+      differences.push_back(Bilinear(now, at) - pixel.grey);
+      sum += differences.back();
     }
-    if (static_cast<double>(residuals.size()) < kLeastOverlap * static_cast<double>(pixels.size())) return false;
-    offset /= static_cast<double>(residuals.size());
+    for (double& difference : differences) difference -= sum / static_cast<double>(differences.size());
+    return static_cast<double>(pixels.size()) >= kLeastOverlap * static_cast<double>(earlier.size());
+  }
+  double MeanAbsolute() const {
+    double sum = 0;
+    for (const double difference : differences) sum += std::abs(difference);
+    return sum / static_cast<double>(differences.size());
+  }
+};
+
+// The best of a grid of rotations, on the coarsest level.
+Eigen::Quaterniond BestOfGrid(const Camera& camera, const cv::Mat& then, const cv::Mat& now) {
+  const std::vector<TemplatePixel> pixels = TemplateOf(camera, then, static_cast<double>(camera.width) / then.cols);
+  std::vector<Eigen::Quaterniond> rotations{Eigen::Quaterniond::Identity()};
+  for (int x = -kGridX; x <= kGridX; ++x)
+    for (int y = -kGridY; y <= kGridY; ++y) rotations.push_back(Exp(kGridStep * Eigen::Vector3d(x, y, 0)));
+  Residuals residuals;
+  Eigen::Quaterniond best = rotations[0];
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Quaterniond& R : rotations) {
+    if (!residuals.Set(camera, pixels, now, R) || residuals.MeanAbsolute() >= least) continue;
+    least = residuals.MeanAbsolute();
+    best = R;
+  }
+  return best;
+}
+
+// One level, from `R`; false where the images do not determine the rotation.
+bool AlignLevel(const Camera& camera, const cv::Mat& then, const cv::Mat& now, Eigen::Quaterniond& R) {
+  const double scale = static_cast<double>(camera.width) / now.cols;
+  const std::vector<TemplatePixel> pixels = TemplateOf(camera, then, scale);
+  Residuals residuals;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    if (!residuals.Set(camera, pixels, now, R)) return false;
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    for (const auto& [pixel, difference] : residuals) {
-      const double r = difference - offset, weight = kHuber / std::max(kHuber, std::abs(r));
-      A += weight * pixel->J * pixel->J.transpose();
-      b += weight * r * pixel->J;
+    for (std::size_t i = 0; i < residuals.pixels.size(); ++i) {
+      const Eigen::Vector3d& J = residuals.pixels[i]->J;
+      const double r = residuals.differences[i], weight = kHuber / std::max(kHuber, std::abs(r));
+      A += weight * J * J.transpose();
+      b += weight * r * J;
     }
     const Eigen::LLT<Eigen::Matrix3d> llt(A);
     if (llt.info() != Eigen::Success) return false;
@@ -89,6 +132,19 @@ bool AlignLevel(const Camera& camera, const cv::Mat& then, const cv::Mat& now, E
     if (step.norm() * camera.fx / scale < kStill_px) break;
   }
   return true;
+}
+
+// Whether the later image is the earlier one, turned: a part of what varies in it is the same.
+bool Explains(const Camera& camera, const cv::Mat& then, const cv::Mat& now, const Eigen::Quaterniond& R) {
+  const std::vector<TemplatePixel> pixels = TemplateOf(camera, then, static_cast<double>(camera.width) / now.cols);
+  Residuals residuals;
+  if (!residuals.Set(camera, pixels, now, R)) return false;
+  double mean = 0, deviation = 0;
+  for (const TemplatePixel* pixel : residuals.pixels)
+    mean += pixel->grey / static_cast<double>(residuals.pixels.size());
+  for (const TemplatePixel* pixel : residuals.pixels)
+    deviation += std::abs(pixel->grey - mean) / static_cast<double>(residuals.pixels.size());
+  return residuals.MeanAbsolute() < kExplained * deviation;
 }
 
 }  // namespace
@@ -108,11 +164,11 @@ std::vector<cv::Mat> Thumbnails(const cv::Mat& grey) {
 }
 
 std::optional<Eigen::Quaterniond> AlignRotation(const Camera& camera, const std::vector<cv::Mat>& then,
-                                                const std::vector<cv::Mat>& now, const Eigen::Quaterniond& start) {
-  Eigen::Quaterniond R = start;
+                                                const std::vector<cv::Mat>& now) {
+  Eigen::Quaterniond R = BestOfGrid(camera, then[0], now[0]);
   for (std::size_t level = 0; level < then.size(); ++level)
     if (!AlignLevel(camera, then[level], now[level], R)) return std::nullopt;
-  return R;
+  return Explains(camera, then.back(), now.back(), R) ? std::optional(R) : std::nullopt;
 }
 
 }  // namespace vo

@@ -16,10 +16,10 @@ namespace vo {
 // Small smoothed copies of an image (CV_8UC1), coarse to fine: about 40, 80 and 160 px wide, CV_32FC1.
 std::vector<cv::Mat> Thumbnails(const cv::Mat& grey);
 
-// R with m_now ~ R m_then for the rays of distant points, from `start`. None where less than a quarter of the earlier
-// image is in both, or where the images do not determine it.
+// R with m_now ~ R m_then for the rays of distant points, from the best of a grid of turns. None where
+// less than a quarter of the earlier image is in both, where the images do not determine it, or where it leaves most of
+// their difference.
 std::optional<Eigen::Quaterniond> AlignRotation(const Camera& camera, const std::vector<cv::Mat>& then,
-                                                const std::vector<cv::Mat>& now,
-                                                const Eigen::Quaterniond& start = Eigen::Quaterniond::Identity());
+                                                const std::vector<cv::Mat>& now);
 
 }  // namespace vo

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "vo/features/corner_detector.h"
@@ -33,7 +34,8 @@ std::vector<int> Predictable(const AssociationContext& in) {
   const MapView map(in.reference.map, in.prediction().mean);
   std::vector<int> predictable;
   for (int n = 0; n < in.filter.landmark_count(); ++n) {
-    if (in.records[n].score < in.params.score.delete_below) continue;
+    const bool wanted = in.relocalising() && in.records[n].unseen();
+    if (in.records[n].score < in.params.score.delete_below && !wanted) continue;
     const Projection view = map(n);
     if (!view.in_front || !camera.IsInjective(view.z)) continue;
     const Eigen::Vector2d pixel = camera.Project({view.z.x(), view.z.y(), 1.0});
@@ -77,16 +79,19 @@ std::vector<Eigen::Vector2d> LimitToBudget(std::vector<Candidate>& candidates, c
   const FeatureParams& params = in.params.features;
   const auto budget = static_cast<std::size_t>(params.max_searched);
   if (candidates.size() <= budget) return left_out;
-  std::stable_sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
-    return in.records[a.landmark].score > in.records[b.landmark].score;
-  });
+  const auto order_key = [&](const Candidate& c) {
+    const LandmarkRecord& record = in.records[c.landmark];
+    return std::tuple(!(in.relocalising() && record.unseen()), record.lost, -record.score);
+  };
+  std::ranges::stable_sort(candidates, {}, order_key);
   std::vector<Eigen::Vector2d> pixels;
   for (const Candidate& c : candidates) pixels.push_back(c.pixel);
   const std::vector<std::size_t> order =
       BucketRoundRobin(pixels, params.grid_columns, params.grid_rows, in.camera.width, in.camera.height);
   std::vector<Candidate> chosen;
   for (std::size_t i = 0; i < budget; ++i) chosen.push_back(candidates[order[i]]);
-  for (std::size_t i = budget; i < order.size(); ++i) left_out.push_back(pixels[order[i]]);
+  for (std::size_t i = budget; i < order.size(); ++i)
+    if (!in.records[candidates[order[i]].landmark].lost) left_out.push_back(pixels[order[i]]);
   candidates = std::move(chosen);
   return left_out;
 }

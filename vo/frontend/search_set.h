@@ -33,6 +33,7 @@ struct AssociationContext {
   ReferencePath reference;
 
   const PoseGaussian& prediction() const { return reference.prediction; }
+  bool relocalising() const { return since_update.input.correction.has_value(); }
   const Vector6& velocity() const { return filter.belief().velocity; }
 };
 

@@ -18,4 +18,10 @@ struct Pose {
   Eigen::Quaterniond q_WC = Eigen::Quaterniond::Identity();  // unit, maps C to W
 };
 
+// Composition of motions: T_AB T_BC.
+inline Pose operator*(const Pose& AB, const Pose& BC) {
+  return {AB.p_WC + AB.q_WC * BC.p_WC, (AB.q_WC * BC.q_WC).normalized()};
+}
+inline Pose Inverse(const Pose& T) { return {-(T.q_WC.conjugate() * T.p_WC), T.q_WC.conjugate()}; }
+
 }  // namespace vo

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vo {
 namespace {
@@ -10,6 +11,23 @@ namespace {
 constexpr double kHonestMatches = 8;  // that a new landmark is taken to have behind it
 constexpr double kKept = 0.98;        // of the past, from match to match: fifty of them count
 constexpr double kAlike = 2;          // how many frames' errors say as much as one alone would
+
+// Drops `count` of `landmarks`, one after the other: that between whose neighbours the fewest landmarks were begun.
+void Thin(std::span<const LandmarkRecord> records, std::size_t count, std::vector<std::size_t>& landmarks,
+          std::vector<bool>& keep) {
+  for (; count > 0; --count) {
+    std::size_t densest = 0;
+    int least = std::numeric_limits<int>::max();
+    for (std::size_t i = 0; i < landmarks.size(); ++i) {
+      const std::size_t before = i > 0 ? i - 1 : 0, after = std::min(i + 1, landmarks.size() - 1);
+      const int gap = records[landmarks[after]].id - records[landmarks[before]].id;
+      const int of_two = after - before == 2 ? gap : 2 * gap;  // the first and the last have one neighbour
+      if (of_two < least) least = of_two, densest = i;
+    }
+    keep[landmarks[densest]] = false;
+    landmarks.erase(landmarks.begin() + static_cast<std::ptrdiff_t>(densest));
+  }
+}
 
 }  // namespace
 
@@ -48,21 +66,23 @@ std::vector<bool> LandmarksToKeep(std::span<const LandmarkRecord> records, std::
                                   const LandmarkParams& landmark, const ScoreParams& score) {
   std::vector<bool> keep(records.size());
   std::size_t count = wanted;
-  std::vector<std::size_t> out_of_view;
+  std::vector<std::size_t> unsettled, permanent;  // out of view
   for (std::size_t n = 0; n < records.size(); ++n) {
     const LandmarkRecord& record = records[n];
-    const bool exists = record.score >= score.delete_below || record.age < score.grace_frames;
+    const bool exists =
+        record.score >= score.delete_below || record.age < score.grace_frames || (record.lost && record.known);
     keep[n] = record.permanent || (exists && record.frames_unsearched < landmark.forget_after);
     if (!keep[n]) continue;
     ++count;
-    if (!record.searched) out_of_view.push_back(n);
+    if (!record.searched) (record.permanent ? permanent : unsettled).push_back(n);
   }
   const auto room = static_cast<std::size_t>(landmark.max_landmarks);
   if (count <= room) return keep;
-  std::stable_sort(out_of_view.begin(), out_of_view.end(), [&](std::size_t a, std::size_t b) {
-    return records[a].frames_unsearched > records[b].frames_unsearched;
-  });
-  for (std::size_t i = 0; i < std::min(count - room, out_of_view.size()); ++i) keep[out_of_view[i]] = false;
+  const std::size_t excess = count - room, first = std::min(excess, unsettled.size());
+  std::ranges::stable_sort(unsettled, std::ranges::greater{},
+                           [&](std::size_t n) { return records[n].frames_unsearched; });
+  for (std::size_t i = 0; i < first; ++i) keep[unsettled[i]] = false;
+  Thin(records, std::min(excess - first, permanent.size()), permanent, keep);
   return keep;
 }
 

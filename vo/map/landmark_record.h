@@ -45,10 +45,19 @@ struct LandmarkRecord {
   Appearance appearance;
   double score = 0;           // existence (44)-(49)
   int age = 0;                // frames since it was first seen
+  int frames_unmatched = 0;   // in a row
   int frames_unsearched = 0;  // in a row; a blind frame searches for nothing
   bool searched = false;      // in the last frame, blind or not, or begun in it
   bool permanent = false;
+  bool known = false;         // its depth, well enough for a pose
+  bool lost = false;          // not found since a frame without matches
   ResidualHistory residuals;  // of its matches; used with MatchNoise::adaptive
+
+  // A landmark to relocalise by.
+  bool unseen() const {
+    constexpr int kLong = 15;  // [frames]
+    return known && (lost || frames_unmatched >= kLong);
+  }
 };
 
 // (44): the score before the image is looked at.
@@ -59,9 +68,10 @@ double PredictScore(double score, const ScoreParams& params);
 // / 2).
 double UpdateScore(double predicted_score, std::optional<double> mahalanobis_sq, const ScoreParams& params);
 
-// Kept are the permanent ones, and those that exist and were searched for in the last forget_after frames. Beyond
-// max_landmarks, with the `wanted` that are to come, the longest unsearched go, of these the oldest (the first in
-// `records`), but none that the last frame searched for.
+// Kept are the permanent ones, and those that exist (lost ones: are known) and were searched for in the last
+// forget_after frames. Beyond max_landmarks, with the `wanted` that are to come, some go that the last frame did not
+// search for: of those that are not permanent the longest unsearched, of these the oldest (the first in `records`);
+// then permanent ones, so that the rest are spread evenly over the landmarks that were ever begun, and so over the path.
 std::vector<bool> LandmarksToKeep(std::span<const LandmarkRecord> records, std::size_t wanted,
                                   const LandmarkParams& landmark, const ScoreParams& score);
 

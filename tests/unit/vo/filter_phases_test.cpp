@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -106,6 +107,37 @@ TEST(FilterPhases, PredictAgainLeavesNoTrace) {
 }
 
 // The velocity of a coasting filter decays: the camera comes to rest after kCoastingTime times its velocity.
+// The present pose is set, and what was first seen behind the given landmark moves along: its image stays. A prediction
+// made again without the correction is the first one.
+TEST(Algorithm1, CorrectsThePath) {
+  vo::ParticleFilter filter = MakeFilter(0, 0);
+  for (int frame = 1; frame <= 4; ++frame) Step(filter, frame);
+  filter.AddLandmarks(vo_test::WallFirstViews(10));
+  Step(filter, 5);
+  filter.Predict(kDt);
+  std::vector<int> all(kLandmarks + 10);
+  std::iota(all.begin(), all.end(), 0);
+  const std::vector<vo::ImagePrediction> before = filter.PredictImages(all);
+  const vo::PoseGaussian predicted = filter.Reference().prediction;
+  const vo::Pose pose{predicted.mean.p_WC + Eigen::Vector3d(0.3, 0.1, -0.2), vo::Exp({0.02, -0.03, 0.1})};
+  vo::MotionInput input;
+  input.correction = {pose, kLandmarks};
+  filter.PredictAgain(input);
+  EXPECT_LT((filter.Reference().prediction.mean.p_WC - pose.p_WC).norm(), 1e-12);
+  EXPECT_LT(vo::Log(filter.Reference().prediction.mean.q_WC.conjugate() * pose.q_WC).norm(), 1e-12);
+  const std::vector<vo::ImagePrediction> corrected = filter.PredictImages(all);
+  for (int n = 0; n < kLandmarks; ++n) EXPECT_GT((corrected[n].z - before[n].z).norm(), 1e-3) << n;
+  for (int n = kLandmarks; n < kLandmarks + 10; ++n) EXPECT_LT((corrected[n].z - before[n].z).norm(), 1e-12) << n;
+
+  filter.PredictAgain({});
+  const std::vector<vo::ImagePrediction> restored = filter.PredictImages(all);
+  for (int n = 0; n < kLandmarks + 10; ++n) {
+    EXPECT_LT((restored[n].z - before[n].z).norm(), 1e-12) << n;
+    EXPECT_LT((restored[n].covariance - before[n].covariance).norm(), 1e-12) << n;
+  }
+  EXPECT_LT((filter.Reference().prediction.covariance - predicted.covariance).norm(), 1e-12);
+}
+
 TEST(Algorithm1, CoastsToRest) {
   vo::FilterPrior prior = Prior();
   prior.velocity << 1, 0, 0, 0, 0.5, 0;

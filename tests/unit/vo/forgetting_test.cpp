@@ -30,12 +30,12 @@ TEST(LandmarksToKeep, PermanentOnesStay) {
   EXPECT_THAT(vo::LandmarksToKeep(records, 0, landmark, score), ElementsAre(true, true, false, false, true));
 }
 
-TEST(LandmarksToKeep, LongestUnsearchedGoFirst) {
+TEST(LandmarksToKeep, PermanentOnesGoLast) {
   vo::LandmarkParams landmark;
   landmark.max_landmarks = 3;
   const vo::LandmarkRecord records[] = {Record(true, 1, 900, 0), Record(true, 1, 800, 7), Record(true, 1, 700, 2),
                                         Record(false, 1, 60, 2), Record(false, 1, 0, 0)};
-  EXPECT_THAT(vo::LandmarksToKeep(records, 0, landmark, {}), ElementsAre(true, false, false, true, true));
+  EXPECT_THAT(vo::LandmarksToKeep(records, 0, landmark, {}), ElementsAre(true, false, true, false, true));
 }
 
 TEST(LandmarksToKeep, RoomForNewOnesIsMadeByWhatWasNotSearched) {
@@ -44,11 +44,35 @@ TEST(LandmarksToKeep, RoomForNewOnesIsMadeByWhatWasNotSearched) {
   vo::LandmarkRecord records[] = {Record(true, 1, 900, 0), Record(true, 1, 800, 7), Record(true, 1, 700, 2),
                                   Record(false, 1, 60, 2), Record(false, 1, 3, 0)};
   EXPECT_THAT(vo::LandmarksToKeep(records, 1, landmark, {}), ElementsAre(true, true, true, true, true));
-  EXPECT_THAT(vo::LandmarksToKeep(records, 2, landmark, {}), ElementsAre(true, false, true, true, true));
-  EXPECT_THAT(vo::LandmarksToKeep(records, 3, landmark, {}), ElementsAre(true, false, false, true, true));
+  EXPECT_THAT(vo::LandmarksToKeep(records, 2, landmark, {}), ElementsAre(true, true, true, false, true));
+  EXPECT_THAT(vo::LandmarksToKeep(records, 3, landmark, {}), ElementsAre(true, false, true, false, true));
   EXPECT_THAT(vo::LandmarksToKeep(records, 100, landmark, {}), ElementsAre(true, false, false, false, true));
   for (vo::LandmarkRecord& record : records) ++record.frames_unsearched;  // a blind frame
   EXPECT_THAT(vo::LandmarksToKeep(records, 100, landmark, {}), ElementsAre(true, false, false, false, true));
+}
+
+// Of 200 permanent ones half are neighbours in birth, and of the others every tenth is left.
+TEST(LandmarksToKeep, PermanentOnesAreThinned) {
+  vo::LandmarkParams landmark;
+  landmark.max_landmarks = 60;
+  std::vector<vo::LandmarkRecord> records;
+  for (int i = 0; i < 200; ++i) {
+    records.push_back(Record(true, 1, 900, 5));
+    records.back().id = i < 100 ? i : 10 * i;  // 0 ... 99, 1000 ... 1990
+  }
+  const std::vector<bool> keep = vo::LandmarksToKeep(records, 0, landmark, {});
+  EXPECT_EQ(std::ranges::count(keep, true), 60);
+  std::vector<int> kept;
+  for (std::size_t i = 0; i < records.size(); ++i)
+    if (keep[i]) kept.push_back(records[i].id);
+  // None of the sparse half goes as long as the dense half has closer ones.
+  for (std::size_t i = 1; i + 1 < kept.size(); ++i) EXPECT_GE(kept[i + 1] - kept[i - 1], 20) << kept[i];
+}
+
+TEST(LandmarksToKeep, LostOnesStayWhereTheirDepthIsKnown) {
+  vo::LandmarkRecord records[] = {Record(false, 0, 50, 5), Record(false, 0, 50, 5), Record(false, 0, 50, 5)};
+  records[0].lost = records[1].lost = records[1].known = records[2].known = true;
+  EXPECT_THAT(vo::LandmarksToKeep(records, 0, {}, {}), ElementsAre(false, true, false));
 }
 
 }  // namespace

@@ -216,6 +216,42 @@ TEST(Odometry, CoastsOverBlankFramesAndRecovers) {
 
 // A camera that turns on the spot, and takes 26 of 33 ms to read its rows, sees the walls bent, which looks like motion. With the true readout
 // time the estimate stays nearly where the camera is; with the opposite sign it goes farther off.
+// Half a second of darkness, in which the camera turns away and comes back by another way: the landmarks are recognised,
+// and one trajectory of one scale goes on.
+TEST(Odometry, FindsItsPlaceAgain) {
+  constexpr int kDark = 30, kLight = 45, kFrames = 75;
+  vo::Params params = SmallImageParams();
+  params.motion.adaptive = true;
+  params.features.per_cell = 5;
+  params.filter.start_window = 10;
+  const vo_test::Texture texture(1, 40.0, 100);
+  vo::Odometry odometry(kCamera, params, KnownStart(), 1);
+  std::vector<vo::Estimate> estimates;
+  const cv::Mat dark(kCamera.height, kCamera.width, CV_8UC1, cv::Scalar(4));
+  const auto pose_at = [](int k) {  // turned by 34 degrees, more than half of the field of view
+    vo::Pose pose = TruthAt(k);
+    if (k >= kLight) pose.q_WC = pose.q_WC * vo::Exp({0, 0.6, 0});
+    return pose;
+  };
+  for (int k = 0; k < kFrames; ++k)
+    estimates.push_back(
+        odometry.Track({k * kFrameNs, k >= kDark && k < kLight ? dark : ViewFrom(pose_at(k), texture)}));
+  EXPECT_EQ(estimates[kLight - 1].diagnostics.matched, 0);
+  EXPECT_GE(estimates[kLight].diagnostics.matched, vo::FrameDiagnostics::kTrackedMatches);
+  EXPECT_GT(estimates[kLight].diagnostics.repeated, 0) << "the prediction has failed";
+  Eigen::Matrix3Xd x(3, kFrames), y(3, kFrames);
+  int n = 0;
+  for (int k = 0; k < kFrames; ++k) {
+    if (k >= kDark && k < kLight) continue;
+    x.col(n) = estimates[static_cast<std::size_t>(k)].pose.p_WC;
+    y.col(n++) = pose_at(k).p_WC;
+  }
+  x.conservativeResize(3, n), y.conservativeResize(3, n);
+  const Eigen::Matrix4d T = Eigen::umeyama(x, y, true);
+  const Eigen::Matrix3Xd error = ((T.topLeftCorner<3, 3>() * x).colwise() + Vector3d(T.topRightCorner<3, 1>())) - y;
+  EXPECT_LT(std::sqrt(error.squaredNorm() / n), 0.01);
+}
+
 TEST(Odometry, StraightensARollingShutter) {
   const auto turned = [](double k) {
     const double t = k / 30.0;

@@ -1,0 +1,47 @@
+// Relocalisation: the camera's pose from landmarks that are recognised by their descriptors alone, wherever the
+// prediction is.
+// Source:  nearest neighbours with Lowe's ratio test ("Distinctive image features", 2004); P3P and consensus (Fischler &
+//          Bolles 1981), by OpenCV's solvePnPRansac. docs/algorithm.md, section 7.2.
+// Frames:  points in W, poses T_WC; image points on the plane z = 1.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "vo/base/params.h"
+#include "vo/features/brisk.h"
+#include "vo/frontend/prepared_frame.h"
+#include "vo/geometry/camera.h"
+#include "vo/geometry/pose.h"
+
+namespace vo {
+
+struct KnownPoint {
+  const Descriptor* descriptor = nullptr;
+  Eigen::Vector3d X_W;
+};
+
+struct Relocalisation {
+  Pose pose;                 // T_WC
+  std::vector<int> inliers;  // indices of the points, increasing
+};
+
+class Relocaliser {
+ public:
+  Relocaliser(const Camera& camera, const FeatureParams& params, int border_px);
+
+  // None where fewer than kLeastInliers points agree on a pose: by chance some five of a thousand do.
+  std::optional<Relocalisation> Find(const PreparedFrame& frame, std::span<const KnownPoint> points) const;
+
+  static constexpr std::size_t kLeastInliers = 12;
+
+ private:
+  Camera camera_;
+  FeatureParams params_;
+  int border_px_;
+  BriskSampler sampler_;
+};
+
+}  // namespace vo
