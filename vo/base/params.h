@@ -97,6 +97,7 @@ struct LandmarkParams {
   double inverse_depth_sigma = 0.15;  // [1/m]
   double scale_sigma = 0;
   double permanent_ratio = 0.05;  // our choice; the paper gives no number
+  int proving_matches = 0;
   int forget_after = 90;
   int max_landmarks = 1000;
 };
@@ -109,6 +110,9 @@ void Visit(V& v, LandmarkParams& p) {
   v("inverse_depth_sigma", p.inverse_depth_sigma, {Range::Positive(), "its standard deviation [1/m]"});
   v("scale_sigma", p.scale_sigma, {Range{0, 3}, "prior standard deviation of the log of the scale of all lengths"});
   v("permanent_ratio", p.permanent_ratio, {Range::Positive(), "permanent when sigma_rho < ratio * rho"});
+  v("proving_matches", p.proving_matches,
+    {Range::AtLeast(0),
+     "on images, Algorithm 1: matches that agree until a new one acts on the pose; `vobench track`: 5"});
   v("forget_after", p.forget_after, {Range::AtLeast(1), "frames without a search until one not permanent is deleted"});
   v("max_landmarks", p.max_landmarks, {Range::AtLeast(10), "on images: new ones replace those longest out of view"});
 }

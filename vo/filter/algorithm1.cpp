@@ -1,5 +1,7 @@
 #include "vo/filter/algorithm1.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "vo/filter/unscented_proposal.h"
@@ -51,10 +53,16 @@ void Algorithm1::PredictParticles(const MotionInput& input) {
 
 const FilterAnswer& Algorithm1::Update(std::span<const Match> z) { return z.empty() ? Coast() : SampleStep(z); }
 
-const FilterAnswer& Algorithm1::SampleStep(std::span<const Match> z) {
+const FilterAnswer& Algorithm1::SampleStep(std::span<const Match> matches) {
   const FilterParams& params = settings_.filter;
   answer_.mixture.clear();
+  acting_.clear();
+  provisional_.clear();
+  std::ranges::partition_copy(matches, std::back_inserter(provisional_), std::back_inserter(acting_),
+                              &Match::provisional);
+  const std::span<const Match> z(acting_);
   batch_.SetMatches(z);
+  provisional_batch_.SetMatches(provisional_);
   VelocityFilter::Gain gain = step_.ConditionCovariance(particles_[0].velocity.covariance);
   for (std::size_t i = 0; i < particles_.size(); ++i) {  // line 1
     Particle& particle = particles_[i];
@@ -73,7 +81,8 @@ const FilterAnswer& Algorithm1::SampleStep(std::span<const Match> z) {
     if (params.sampled == Sampled::pose_and_velocity)
       particle.velocity = {SampleNormal(particle.velocity.mean, particle.velocity.covariance, Key(Stream::velocity, i)),
                            Matrix6::Zero()};
-    const double log_likelihood = UpdateLandmarks(i, s, z);   // 9, (3)
+    const double log_likelihood = UpdateLandmarks(i, s, z);  // 9, (3)
+    UpdateProvisional(i, s);
     particle.log_weight += params.weight == Weight::evidence  // 8
                                ? proposal.log_evidence
                                : predicted.LogDensity(s) + log_likelihood - proposal.pose.LogDensity(s);  // (17)
@@ -118,6 +127,18 @@ double Algorithm1::UpdateLandmarks(std::size_t particle, const Pose& sampled, st
     log_likelihood += update.log_likelihood;
   }
   return log_likelihood;
+}
+
+void Algorithm1::UpdateProvisional(std::size_t particle, const Pose& sampled) {
+  const FilterParams& params = settings_.filter;
+  if (provisional_.empty()) return;
+  if (params.proposal == Proposal::ukf) {
+    UpdateLandmarks(particle, sampled, provisional_);
+    return;
+  }
+  provisional_batch_.Load(MapOf(particle));
+  provisional_batch_.UpdateLandmarks(sampled, params.proposal == Proposal::ekf ? 1 : params.max_iterations);
+  provisional_batch_.Store(particles_[particle].landmarks);
 }
 
 const FilterAnswer& Algorithm1::Coast() {

@@ -34,18 +34,21 @@ class Algorithm1 final : public ParticlePhase {
  private:
   void PredictParticles(const MotionInput& input);
   const FilterAnswer& Coast();
-  const FilterAnswer& SampleStep(std::span<const Match> z);
+  const FilterAnswer& SampleStep(std::span<const Match> matches);
   // (15)(16) by the proposal that the settings name (docs/algorithm.md, sections 3, 3a and 8). The prediction itself
   // without matches, or for a proposal that is blind to the image.
   PoseProposal ProposePose(std::size_t particle, std::span<const Match> z);
   // Of the same particle, at its sampled pose. Returns the sum of log p(z | pose) (3).
   double UpdateLandmarks(std::size_t particle, const Pose& sampled, std::span<const Match> z);
+  // The same of provisional_, to which the proposal is blind.
+  void UpdateProvisional(std::size_t particle, const Pose& sampled);
 
   double since_sampled_ = 0;  // [s]; 0 when the present pose is sampled
   VelocityFilter step_;       // from the last sampled pose to the present
   std::vector<PoseGaussian> predictions_;
-  Correction correction_;  // of this frame's prediction
-  MatchBatch batch_;       // a frame's matches, and one particle in turn
+  Correction correction_;                    // of this frame's prediction
+  std::vector<Match> acting_, provisional_;  // a frame's matches
+  MatchBatch batch_, provisional_batch_;     // these, and one particle in turn
 };
 
 }  // namespace vo

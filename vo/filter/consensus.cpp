@@ -12,6 +12,7 @@ constexpr int kMostRounds = 12;      // ... and as long as the pose moves: after
 constexpr double kStill = 0.1;       // of its standard deviation
 constexpr double kCauchySq = 5.7;    // 2.385^2: 95 % efficient on Gaussian residuals
 constexpr double kFar = 1e6;
+constexpr double kIgnored = 1e12;
 
 bool Moved(const PoseGaussian& pose, const Pose& before) {
   return (Minus(pose.mean, before).array().abs() > kStill * pose.covariance.diagonal().array().sqrt()).any();
@@ -35,8 +36,9 @@ Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std
   bool moves = true;
   for (int round = 0; round < kMostRounds && (round < kRounds || moves); ++round) {
     const Pose before = found.pose.mean;
-    std::transform(distances.begin(), distances.end(), factors.begin(),
-                   [](double d) { return 1.0 + std::min(d, kFar) / kCauchySq; });
+    std::transform(distances.begin(), distances.end(), matches.begin(), factors.begin(), [](double d, const Match& z) {
+      return z.provisional ? kIgnored : 1.0 + std::min(d, kFar) / kCauchySq;
+    });
     batch.Inflate(factors);
     found.pose = Propose(prediction, batch, params, before).pose;
     moves = Moved(found.pose, before);

@@ -20,7 +20,7 @@ struct Consensus {
 // mode, and matches that contradict it are those that show it.
 double OutlierGate(const FilterAnswer& answer, const ScoreParams& score);
 
-// Fits the pose of one particle robustly and marks the matches whose residual there, with the landmark's and the
+// Fits the pose of one particle robustly, without provisional matches, and marks the matches whose residual there, with the landmark's and the
 // pixel's covariance, has a squared Mahalanobis distance below `gate`. `start`: near the pose that is looked for, by an
 // earlier fit.
 Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,

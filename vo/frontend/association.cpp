@@ -6,6 +6,7 @@
 
 #include "vo/features/matcher.h"
 #include "vo/filter/consensus.h"
+#include "vo/frontend/moving_points.h"
 #include "vo/frontend/search_set.h"
 #include "vo/map/landmark_record.h"
 
@@ -101,6 +102,8 @@ std::vector<Match> MatchesOf(const AssociationContext& in, std::span<const Candi
   std::vector<Match> matches;
   for (std::size_t i = 0; i < candidates.size(); ++i)
     if (results[i].found) matches.push_back(MatchOf(in, candidates[i], *results[i].found, velocity));
+  if (in.params.landmark.proving_matches > 0 && !in.filter.answer().initialising)
+    MarkProvisional(in.records, in.params.landmark.proving_matches, matches);
   return matches;
 }
 
@@ -203,6 +206,7 @@ void UpdateScores(const Association& association, const ScoreParams& params, std
       record.residuals.Add(searched.residual);
       record.frames_unmatched = 0;
       record.lost = false;
+      ++record.inliers;
     }
     record.frames_unsearched = 0;
   }

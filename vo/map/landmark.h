@@ -43,6 +43,7 @@ struct Match {
   Eigen::Vector3d centre_offset_W =
       Eigen::Vector3d::Zero();  // [m] of the centre that z is seen from, from the one at the stamp
   RowView row = {};
+  bool provisional = false;  // it tells of the landmark and not of the pose (Algorithm 1 and consensus)
 };
 
 // The anchor's camera A seen from the present camera C.

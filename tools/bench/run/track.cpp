@@ -37,6 +37,8 @@ constexpr double kUnknownScale = 0.5;  // of a recording: the size of its scene 
 // unknown scale only their ratio matters.
 constexpr double kAccelerationPerDepth = 0.625;
 
+constexpr int kProvingMatches = 5;
+
 struct TrackSettings {
   vo::Params params;
   PriorSettings prior{PriorSettings::Start::origin, 0.5, 0.5};
@@ -51,6 +53,7 @@ TrackSettings ReadSettings(const TrackOptions& options) {
   settings::Section odometry = document.root().Child("odometry");
   if (!odometry.Has("target")) out.params.landmark.scale_sigma = kUnknownScale;  // which has the scale
   out.params.motion.adaptive = true;
+  out.params.landmark.proving_matches = kProvingMatches;
   out.params.calibration.estimate = true;
   const bool position_noise_given = odometry.Child("motion").Has("position_noise");
   ReadOdometry(odometry, out.params);
