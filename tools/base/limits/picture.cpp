@@ -209,6 +209,38 @@ bool IsAsLongAsItsType(const std::string& type, Cursor value, std::int32_t size)
   return true;
 }
 
+std::string PngEndProblem(Bytes file) {
+  for (std::size_t at = 8;;) {  // length, type, data, checksum
+    if (at + 12 > file.size()) return "truncated PNG: the end chunk is missing";
+    const auto length = static_cast<std::size_t>(Number(file, at, 4, false));
+    if (length > file.size() - at - 12) return "truncated PNG: a chunk is cut off";
+    if (Begins(file, "IEND", at + 4)) return "";
+    at += length + 12;
+  }
+}
+
+std::string JpegEndProblem(Bytes file) {
+  constexpr std::uint8_t kStartOfScan = 0xda, kEndOfImage = 0xd9;
+  const char* const truncated = "truncated JPEG: the end marker is missing";
+  bool in_scan = false;
+  for (std::size_t at = 2;;) {
+    if (in_scan) {  // entropy-coded data goes on until a marker that is neither a stuffed zero nor a restart
+      while (at + 1 < file.size() &&
+             (file[at] != 0xff || file[at + 1] == 0x00 || (file[at + 1] >= 0xd0 && file[at + 1] <= 0xd7))) {
+        ++at;
+      }
+    }
+    while (at + 1 < file.size() && file[at] == 0xff && file[at + 1] == 0xff) ++at;  // fill bytes
+    if (at + 2 > file.size()) return truncated;
+    if (file[at] != 0xff) return "damaged JPEG: no marker at byte " + std::to_string(at);
+    const std::uint8_t marker = file[at + 1];
+    if (marker == kEndOfImage) return "";
+    if (at + 4 > file.size()) return truncated;
+    at += 2 + static_cast<std::size_t>(Number(file, at + 2, 2, false));
+    in_scan = marker == kStartOfScan;
+  }
+}
+
 }  // namespace
 
 std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::size_t bytes) {
@@ -230,6 +262,11 @@ std::string PictureProblem(Bytes file) {
   const std::optional<Size> size = SizeOf(file);
   if (!size) return "not a picture that is read here (PNG, JPEG, BMP, TIFF, WebP, PNM, HDR)";
   return PictureSizeProblem(size->width, size->height, file.size());
+}
+
+std::string PictureEndProblem(Bytes file) {
+  if (Begins(file, "\x89PNG\r\n\x1a\n")) return PngEndProblem(file);
+  return Begins(file, "\xff\xd8") ? JpegEndProblem(file) : "";
 }
 
 std::string ExrProblem(Bytes file) {

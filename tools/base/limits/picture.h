@@ -22,6 +22,10 @@ std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::siz
 // file reaches a decoder that is not needed.
 std::string PictureProblem(std::span<const std::uint8_t> file);
 
+// What is missing at the end of a PNG or JPEG file, which decoders complete with grey; empty: nothing, and for other
+// kinds. What follows the end is not looked at: cameras pad their files.
+std::string PictureEndProblem(std::span<const std::uint8_t> file);
+
 // What is wrong with an OpenEXR file, all of it, by its header; empty: nothing. The library (3.1) makes room for an
 // attribute of any size that the header states, and for tables of a picture of any height.
 std::string ExrProblem(std::span<const std::uint8_t> file);
