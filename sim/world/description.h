@@ -16,7 +16,7 @@ namespace sim {
 
 // A mesh file set into the world: X_W = position + R(orientation) * scale * X_file.
 struct MeshDescription {
-  std::filesystem::path file;  // glTF, GLB, OBJ, PLY, FBX and whatever else assimp reads
+  std::filesystem::path file;  // glTF, GLB, OBJ, PLY, and whatever else assimp reads
   glm::dvec3 position{0.0};    // [m]
   glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
   double scale = 1.0;  // metres per unit of the file, > 0
@@ -24,7 +24,7 @@ struct MeshDescription {
 // But for the file.
 template <class V>
 void Visit(V& v, MeshDescription& p) {
-  v("position", p.position, {Unit::length, kOfPlaces, "of the file's origin in W"});
+  v("position", p.position, {Unit::length, settings::Range{-1e8, 1e8}, "of the file's origin in W"});
   v("orientation", p.orientation, {"of the file in W: x, y, z, w"});
   v("scale", p.scale, {Range{1e-9, 1e9}, "metres per unit of the file"});
 }
@@ -37,6 +37,8 @@ struct ObjectDescription {
 };
 
 struct WorldDescription {
+  std::vector<std::filesystem::path>
+      folders;  // that meshes may read from, beside their own: of the scenario, of textures
   std::vector<MeshDescription> meshes;
   std::vector<ObjectDescription> objects;
   std::vector<Light> lights;

@@ -70,4 +70,19 @@ DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
   return image;
 }
 
+void SetAlpha(const DecodedImage& mask, DecodedImage& image) {
+  const auto view = [&](const std::vector<std::uint8_t>& bytes, int type) {
+    return cv::Mat(mask.height, mask.width, type, const_cast<std::uint8_t*>(bytes.data()));
+  };
+  cv::Mat alpha;
+  if (mask.alpha.empty()) {
+    cv::cvtColor(view(mask.rgb, CV_8UC3), alpha, cv::COLOR_RGB2GRAY);
+  } else {
+    alpha = view(mask.alpha, CV_8UC1);
+  }
+  cv::Mat fitting;
+  cv::resize(alpha, fitting, cv::Size(image.width, image.height), 0, 0, cv::INTER_LINEAR);
+  image.alpha.assign(fitting.begin<std::uint8_t>(), fitting.end<std::uint8_t>());
+}
+
 }  // namespace sim

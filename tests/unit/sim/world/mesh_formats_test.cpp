@@ -132,12 +132,13 @@ aiScene* TriangleForExport() {
   return scene;
 }
 
-void ExpectTriangle(const Scene& loaded, const std::string& name, bool has_material) {
+// unit: of the file [m].
+void ExpectTriangle(const Scene& loaded, const std::string& name, bool has_material, float unit = 1) {
   ASSERT_THAT(loaded.meshes, SizeIs(1)) << name;
   ASSERT_THAT(loaded.meshes[0].positions, SizeIs(3)) << name;
   for (const glm::vec3& p : {glm::vec3(11, 2, 3), glm::vec3(12, 2, 3), glm::vec3(11, 3, 3)}) {
     bool found = false;
-    for (const glm::vec3& q : loaded.meshes[0].positions) found = found || glm::distance(p, q) < 1e-5f;
+    for (const glm::vec3& q : loaded.meshes[0].positions) found = found || glm::distance(unit * p, q) < 1e-5f * unit;
     EXPECT_TRUE(found) << name << ": " << p.x << " " << p.y << " " << p.z;
   }
   if (!has_material) return;
@@ -154,7 +155,8 @@ TEST(MeshFormats, AsAssimpWritesThem) {
     Assimp::Exporter exporter;
     const std::string file = (folder.path() / name).string();
     ASSERT_EQ(exporter.Export(scene.get(), format, file), AI_SUCCESS) << exporter.GetErrorString();
-    ExpectTriangle(LoadScene(WorldOf(file)), name, std::string(format) != "ply");
+    // assimp's FBX says that its unit is a centimetre
+    ExpectTriangle(LoadScene(WorldOf(file)), name, std::string(format) != "ply", format[0] == 'f' ? 0.01f : 1.0f);
   }
 }
 
@@ -249,7 +251,7 @@ TEST(MeshFormats, BinaryFbx) {
   for (const Record& record : records) AppendRecord(record, file);
   file.append(13, '\0');
   const Folder folder;
-  ExpectTriangle(LoadScene(WorldOf(folder.Write("binary.fbx", file))), "binary.fbx", true);
+  ExpectTriangle(LoadScene(WorldOf(folder.Write("binary.fbx", file))), "binary.fbx", true, 0.01f);
 }
 
 // Cut off anywhere, a file is refused or is a smaller world (a PLY or OBJ that lost its end may be whole): it never
