@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <string_view>
 
 #include "tools/base/limits/picture.h"
 
@@ -21,6 +22,8 @@ std::uint32_t BigEndian32(Bytes b) {
   return (std::uint32_t{b[0]} << 24) | (std::uint32_t{b[1]} << 16) | (std::uint32_t{b[2]} << 8) | b[3];
 }
 
+std::string_view AsChars(Bytes bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+
 // Of a PNG that has its end.
 void CheckSums(Bytes bytes) {
   for (std::size_t at = kPngSignature.size(); at + 12 <= bytes.size();) {  // length, type, data, checksum
@@ -30,9 +33,77 @@ void CheckSums(Bytes bytes) {
         BigEndian32(bytes.subspan(at + 8 + length))) {
       throw std::runtime_error("damaged PNG: wrong checksum in the chunk at byte " + std::to_string(at));
     }
-    if (type_and_data[1] == 'E' && type_and_data[0] == 'I') return;
+    if (AsChars(type_and_data) == "IEND") return;
     at += length + 12;
   }
+}
+
+// Pixels of a TGA: grey, 15 to 32 bits of colour, or a palette of these; perhaps in run lengths, from any corner.
+DecodedImage DecodeTga(Bytes file, bool with_alpha) {
+  const auto word = [&](std::size_t at) { return static_cast<std::size_t>(file[at] | file[at + 1] << 8); };
+  const int type = file[2] & ~8, width = static_cast<int>(word(12)), height = static_cast<int>(word(14));
+  const bool runs = (file[2] & 8) != 0, palette = type == 1;
+  const std::size_t bits = file[16], entry = (palette ? file[7] : bits) / 8 + (file[palette ? 7 : 16] == 15 ? 1u : 0u);
+  const std::size_t size = palette ? 1 : entry, colors = 18 + file[0], first_color = word(3),
+                    color_count = file[1] ? word(5) : 0;
+  std::size_t at = colors + color_count * (file[1] != 0 ? (file[7] + 7u) / 8 : 0);
+  DecodedImage image{width,
+                     height,
+                     std::vector<std::uint8_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3),
+                     {}};
+  const std::size_t pixels = image.rgb.size() / 3;
+  const bool has_alpha = with_alpha && entry == 4 && type != 3;
+  if (has_alpha) image.alpha.resize(pixels);
+  const auto need = [&](std::size_t from, std::size_t count) {
+    if (from > file.size() || count > file.size() - from) throw std::runtime_error("truncated TGA");
+  };
+  std::size_t left = 0, repeated = 0;  // of the packet
+  for (std::size_t i = 0; i < pixels; ++i) {
+    if (runs && left == 0) {
+      need(at, 1);
+      left = (file[at] & 127u) + 1;
+      repeated = file[at++] >> 7;
+    }
+    need(at, size);
+    std::size_t from = at;
+    if (palette) {
+      const std::size_t index = file[at];
+      if (index < first_color || index - first_color >= color_count)
+        throw std::runtime_error("damaged TGA: no such colour");
+      from = colors + (index - first_color) * entry;
+      need(from, entry);
+    }
+    const auto column = i % static_cast<std::size_t>(width), row = i / static_cast<std::size_t>(width);
+    const std::size_t x = (file[17] & 16) != 0 ? static_cast<std::size_t>(width) - 1 - column : column;
+    const std::size_t y = (file[17] & 32) != 0 ? row : static_cast<std::size_t>(height) - 1 - row;
+    const std::size_t to = y * static_cast<std::size_t>(width) + x;
+    std::uint8_t* const rgb = &image.rgb[3 * to];
+    if (type == 3) {
+      rgb[0] = rgb[1] = rgb[2] = file[from];
+    } else if (entry == 2) {
+      const std::size_t five = word(from);
+      for (std::size_t c = 0; c < 3; ++c) rgb[c] = static_cast<std::uint8_t>(((five >> (10 - 5 * c)) & 31u) * 255 / 31);
+    } else {
+      for (std::size_t c = 0; c < 3; ++c) rgb[c] = file[from + 2 - c];
+      if (has_alpha) image.alpha[to] = file[from + 3];
+    }
+    if (runs) --left;
+    if (!runs || repeated == 0 || left == 0) at += size;
+  }
+  return image;
+}
+
+// Without colour profiles, which are not applied: libpng complains of common ones on the terminal.
+std::vector<std::uint8_t> WithoutProfile(Bytes png) {
+  std::vector<std::uint8_t> out(png.begin(), png.begin() + kPngSignature.size());
+  for (std::size_t at = kPngSignature.size(); at + 12 <= png.size();) {
+    const std::size_t size = std::size_t{BigEndian32(png.subspan(at))} + 12;
+    const Bytes chunk = png.subspan(at, size);
+    if (AsChars(chunk.subspan(4, 4)) != "iCCP") out.insert(out.end(), chunk.begin(), chunk.end());
+    if (AsChars(chunk.subspan(4, 4)) == "IEND") break;
+    at += size;
+  }
+  return out;
 }
 
 }  // namespace
@@ -49,14 +120,9 @@ cv::Mat DecodeMatrix(Bytes bytes, int flags) {
   return picture;
 }
 
-DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
-  if (bytes.empty()) throw std::runtime_error("the file is empty");
-  for (const std::string& problem : {limits::PictureProblem(bytes), limits::PictureEndProblem(bytes)}) {
-    if (!problem.empty()) throw std::runtime_error(problem);
-  }
-  if (bytes.size() >= kPngSignature.size() && std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin())) {
-    CheckSums(bytes);
-  }
+namespace {
+
+DecodedImage DecodeByOpenCv(Bytes bytes, bool with_alpha) {
   const cv::Mat bgr = DecodeMatrix(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION),
                 all = with_alpha ? DecodeMatrix(bytes, cv::IMREAD_UNCHANGED) : cv::Mat();
   DecodedImage image{bgr.cols, bgr.rows, std::vector<std::uint8_t>(bgr.total() * 3), {}};
@@ -68,6 +134,23 @@ DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
   }
   cv::cvtColor(bgr, cv::Mat(bgr.size(), CV_8UC3, image.rgb.data()), cv::COLOR_BGR2RGB);
   return image;
+}
+
+}  // namespace
+
+DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
+  if (bytes.empty()) throw std::runtime_error("the file is empty");
+  for (const std::string& problem : {limits::PictureProblem(bytes), limits::PictureEndProblem(bytes)}) {
+    if (!problem.empty()) throw std::runtime_error(problem);
+  }
+  if (bytes.size() >= kPngSignature.size() && std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin())) {
+    CheckSums(bytes);
+    if (AsChars(bytes).find("iCCP") != std::string_view::npos) {
+      const std::vector<std::uint8_t> plain = WithoutProfile(bytes);
+      return DecodeByOpenCv(plain, with_alpha);
+    }
+  }
+  return limits::IsTga(bytes) ? DecodeTga(bytes, with_alpha) : DecodeByOpenCv(bytes, with_alpha);
 }
 
 void SetAlpha(const DecodedImage& mask, DecodedImage& image) {

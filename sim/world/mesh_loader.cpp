@@ -186,8 +186,9 @@ class FileReader {
 
   void AppendUvs(const aiMesh& in, const UvChoice& choice, const std::string& label, Mesh& out) {
     const Material& material = file_.scene.materials[static_cast<std::size_t>(out.material)];
-    const int texture =
-        std::max({material.texture, material.emission_texture, material.normal_map, material.gloss_texture});
+    const int texture = material.texture >= 0
+                            ? material.texture
+                            : std::max({material.emission_texture, material.normal_map, material.gloss_texture});
     if (texture < 0) return;
     const unsigned channel =
         !in.HasTextureCoords(choice.channel) && !file_.is_gltf && in.GetNumUVChannels() == 1 ? 0 : choice.channel;
@@ -208,6 +209,12 @@ class FileReader {
       }
       out.uvs.emplace_back(choice.transform *
                            glm::dvec3(uv.x, 1.0 - static_cast<double>(uv.y), 1.0));  // assimp has v up in all formats
+    }
+    const Texture& picture = file_.scene.textures[static_cast<std::size_t>(texture)];
+    for (const int axis : {0, 1}) {
+      if (!WrapUvs(out, axis, choice.wrap[static_cast<std::size_t>(axis)],
+                   axis == 0 ? picture.width() : picture.height()))
+        file_.Warn(label, "a mirrored texture comes more than 100 times: it is repeated as it is");
     }
   }
 

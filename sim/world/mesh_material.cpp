@@ -107,8 +107,6 @@ MeshMaterial MeshMaterialReader::Read(const aiMaterial& in) {
   MeshMaterial result;
   result.index = static_cast<int>(file_.scene.materials.size());
   if (!uvs.empty()) result.uv = uvs.front();
-  result.uv.texture =
-      std::max({material.texture, material.emission_texture, material.normal_map, material.gloss_texture});
   file_.scene.materials.push_back(std::move(material));
   return result;
 }
@@ -158,11 +156,12 @@ UvChoice MeshMaterialReader::ReadUvChoice(const aiMaterial& in, aiTextureType ty
   int channel = 0;
   in.Get(AI_MATKEY_UVWSRC(type, 0), channel);
   choice.channel = static_cast<unsigned>(std::max(channel, 0));
-  int wrap[2] = {};
-  if (in.Get(AI_MATKEY_MAPPINGMODE_U(type, 0), wrap[0]) == AI_SUCCESS)
-    choice.wrap[0] = static_cast<aiTextureMapMode>(wrap[0]);
-  if (in.Get(AI_MATKEY_MAPPINGMODE_V(type, 0), wrap[1]) == AI_SUCCESS)
-    choice.wrap[1] = static_cast<aiTextureMapMode>(wrap[1]);
+  for (const std::size_t axis : {0u, 1u}) {
+    int mode = aiTextureMapMode_Wrap;
+    in.Get(axis == 0 ? "$tex.mapmodeu" : "$tex.mapmodev", type, 0, mode);
+    if (mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal) choice.wrap[axis] = UvWrap::clamp;
+    if (mode == aiTextureMapMode_Mirror) choice.wrap[axis] = UvWrap::mirror;
+  }
   float own[6] = {};
   unsigned count = 6;
   if (in.Get(kUvTransformKey, type, 0, own, &count) == AI_SUCCESS && count == 6) {

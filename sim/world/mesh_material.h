@@ -15,6 +15,7 @@
 #include "sim/world/image_file.h"
 #include "sim/world/mesh_loader.h"
 #include "sim/world/scene.h"
+#include "sim/world/uv_wrap.h"
 
 namespace sim {
 
@@ -37,9 +38,8 @@ struct MeshFile {
 // uv' = transform * (u, v, 1).
 struct UvChoice {
   unsigned channel = 0;
-  glm::dmat3x2 transform{1, 0, 0, 1, 0, 0};  // columns: of u, of v, and of 1
-  std::array<aiTextureMapMode, 2> wrap = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};  // along u and v
-  int texture = -1;                                                                       // that is wrapped
+  glm::dmat3x2 transform{1, 0, 0, 1, 0, 0};                       // columns: of u, of v, and of 1
+  std::array<UvWrap, 2> wrap = {UvWrap::repeat, UvWrap::repeat};  // along u and v
   bool IsSamePlace(const UvChoice& other) const { return channel == other.channel && transform == other.transform; }
 };
 
