@@ -142,6 +142,7 @@ GltfFile::GltfFile(MeshFiles& files) : files_(files) {
     const auto word = [&](std::size_t at) {
       return static_cast<std::uint32_t>(Component(kUnsignedInt, Part(all, at, 4, "a chunk").data()));
     };
+    if (word(4) == 1) throw OlderGltf();
     if (word(4) != 2) Fail("is binary glTF of version " + std::to_string(word(4)) + ": only 2 is read");
     constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
     text.clear();
@@ -155,8 +156,9 @@ GltfFile::GltfFile(MeshFiles& files) : files_(files) {
   if (const std::string problem = limits::JsonProblem(text); !problem.empty()) Fail("is " + problem);
   document_ = json::parse(text);
   if (!document_.is_object()) Fail("is not a JSON object");
-  const std::string version = Child(document_, "asset").value("version", "");
-  if (!version.starts_with("2.")) Fail("is glTF of version '" + version + "': only 2 is read");
+  const json& version = Child(Child(document_, "asset"), "version");
+  if (version.is_number() || (version.is_string() && version.get<std::string>().starts_with("1."))) throw OlderGltf();
+  if (!version.is_string() || !version.get<std::string>().starts_with("2.")) Fail("is glTF of no version: 2 is read");
 }
 
 const json& GltfFile::Child(const json& object, const char* key) {

@@ -21,7 +21,10 @@ struct GltfTable {
   float at(std::size_t row, std::size_t column) const { return values[row * columns + column]; }
 };
 
-// Whatever is wrong throws std::runtime_error or nlohmann::json::exception.
+// glTF 1.0, which assimp reads.
+struct OlderGltf {};
+
+// Whatever is wrong throws std::runtime_error or nlohmann::json::exception; OlderGltf.
 class GltfFile {
  public:
   explicit GltfFile(MeshFiles& files);

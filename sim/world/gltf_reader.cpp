@@ -456,7 +456,9 @@ void ReadGltf(MeshFiles& files, MeshImport& import) {
     throw;
   } catch (const std::exception& error) {
     import.scene = nullptr;
-    const std::string what = error.what();
+    std::string what = error.what();
+    if (dynamic_cast<const json::exception*>(&error) != nullptr)
+      what = "is not glTF as its schema has it: " + what.substr(std::min(what.find("] ") + 2, what.size()));
     import.problem = what.starts_with("requires ") ? what : "cannot be read: " + what;
   }
 }

@@ -140,11 +140,12 @@ std::vector<std::array<unsigned, 3>> Triangulate(std::span<const glm::dvec3> cor
   std::vector<std::array<unsigned, 3>> triangles;
   while (left.size() > 3) {
     std::size_t ear = left.size();
-    for (std::size_t i = 0; i < left.size() && ear == left.size(); ++i) {
+    for (std::size_t k = 1; k <= left.size() && ear == left.size(); ++k) {  // so that a convex one is a fan
+      const std::size_t i = k % left.size();
       const unsigned a = left[(i + left.size() - 1) % left.size()], b = left[i], c = left[(i + 1) % left.size()];
       if (!(Cross(flat[a], flat[b], flat[c]) > 0)) continue;
-      const bool is_empty = std::ranges::none_of(left, [&](unsigned k) {
-        const glm::dvec2& p = flat[k];
+      const bool is_empty = std::ranges::none_of(left, [&](unsigned other) {
+        const glm::dvec2& p = flat[other];
         return p != flat[a] && p != flat[b] && p != flat[c] && Cross(flat[a], flat[b], p) >= 0 &&
                Cross(flat[b], flat[c], p) >= 0 && Cross(flat[c], flat[a], p) >= 0;
       });

@@ -22,6 +22,7 @@
 #include <system_error>
 #include <vector>
 
+#include "sim/world/gltf_file.h"
 #include "sim/world/gltf_reader.h"
 #include "sim/world/mesh_serialization.h"
 #include "sim/world/obj_reader.h"
@@ -191,6 +192,8 @@ std::vector<std::uint8_t> Import(const fs::path& file, const std::vector<fs::pat
   try {
     (read == readers.end() ? ImportByAssimp : read->second)(files, import);
     if (import.problem.empty() && import.scene != nullptr) import.problem = MeshCountProblem(*import.scene);
+  } catch (const OlderGltf&) {
+    ImportByAssimp(files, import);
   } catch (const std::bad_alloc&) {
     import.problem = "cannot be read: it wants more memory than a file of this size may";
   }

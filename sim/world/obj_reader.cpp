@@ -147,7 +147,7 @@ class ObjReader {
   }
 
   void Build() {
-    if (!known_) return Fail("cannot be read: has no statement of an OBJ file");
+    if (!known_) return Fail("cannot be read: has no statement of an OBJ file (in ASCII or UTF-8)");
     import_.origin = OriginFor(pools_.positions);
     if (!pools_.colors.empty()) pools_.colors.resize(pools_.positions.size(), aiColor4D(1, 1, 1, 1));
     if (largest_color_ > 1) {
