@@ -1,6 +1,7 @@
 #include "sim/world/mesh_import.h"
 
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/postprocess.h>
 #include <fcntl.h>
 #include <string.h>
@@ -95,6 +96,13 @@ class BoundedStream : public Assimp::IOStream {
   int empty_reads_ = 0;
 };
 
+std::string LowerExtension(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
 // Importers quietly do without a side file that cannot be opened.
 class ImporterFiles : public Assimp::DefaultIOSystem {
  public:
@@ -108,10 +116,24 @@ class ImporterFiles : public Assimp::DefaultIOSystem {
       return nullptr;
     }
     files_.Opened(file, stream->FileSize());
+    if (LowerExtension(file) == ".dae") return WithoutBlanks(file);
     return new BoundedStream(std::move(stream));  // Close() deletes it
   }
 
  private:
+  // Blanks at the beginning of an element's text, which assimp (5.2) takes for the end of its numbers.
+  static Assimp::IOStream* WithoutBlanks(const fs::path& file) {
+    const std::string text = base::ReadFile(file).value_or("");
+    auto* bytes = new std::uint8_t[text.size() + 1];
+    std::size_t size = 0;
+    bool skips = false;
+    for (const char c : text) {
+      skips = c == '>' || (skips && std::isspace(static_cast<unsigned char>(c)) != 0);
+      if (!skips || c == '>') bytes[size++] = static_cast<std::uint8_t>(c);
+    }
+    return new Assimp::MemoryIOStream(bytes, size, true);  // owns them
+  }
+
   MeshFiles& files_;
 };
 
@@ -149,13 +171,6 @@ void ApplyFbxSettings(aiScene& scene) {
   }
   if (scene.mRootNode != nullptr && unit > 0)
     scene.mRootNode->mTransformation = to_metres * scene.mRootNode->mTransformation;
-}
-
-std::string LowerExtension(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
 }
 
 void ImportByAssimp(MeshFiles& files, MeshImport& import) {
