@@ -82,7 +82,12 @@ void SetMap(aiMaterial& material, const LibraryMap& map, aiTextureType type) {
 void ForEachStatement(std::string_view text,
                       const std::function<void(std::string_view word, std::string_view rest, int line)>& call) {
   text = base::WithoutMark(text);
-  std::string joined;
+  std::string joined, lines;
+  if (text.find('\n') == std::string_view::npos && text.find('\r') != std::string_view::npos) {
+    lines = text;
+    std::ranges::replace(lines, '\r', '\n');
+    text = lines;
+  }
   for (int line = 1; !text.empty(); ++line) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view statement = text.substr(0, end);

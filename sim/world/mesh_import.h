@@ -38,6 +38,7 @@ class MeshFiles {
   MeshFiles(std::filesystem::path mesh, const std::vector<std::filesystem::path>& folders, MeshImport& import);
 
   const std::filesystem::path& mesh() const { return mesh_; }
+  const std::vector<std::filesystem::path>& folders() const { return folders_; }
   bool MayOpen(const std::filesystem::path& file) const;
   // None where it may not, or cannot be opened.
   std::optional<std::string> Read(const std::filesystem::path& file);

@@ -8,6 +8,7 @@
 
 #include "sim/world/material_library.h"
 #include "sim/world/mesh_builder.h"
+#include "sim/world/texture_file.h"
 
 namespace sim {
 namespace {
@@ -137,11 +138,13 @@ class ObjReader {
     }
   }
   bool ReadLibrary(std::string_view name) {
-    std::string path(name);
-    std::replace(path.begin(), path.end(), '\\', '/');
-    const std::optional<std::string> text = files_.Read(files_.mesh().parent_path() / path);
+    const fs::path folder = files_.mesh().parent_path();
+    const TextureFile found = FindTexture(std::string(name), files_.mesh(), "", files_.folders());
+    const std::optional<std::string> text = found.problem.empty() ? files_.Read(found.file) : std::nullopt;
     if (!text) return false;
-    ReadMaterialLibrary(*text, fs::path(path).parent_path().string(), materials_);
+    if (found.is_elsewhere) import_.warnings.push_back("takes " + found.file.string() + " for " + std::string(name));
+    ReadMaterialLibrary(*text, found.file.parent_path().lexically_relative(folder.empty() ? "." : folder).string(),
+                        materials_);
     any_library_ = true;
     return true;
   }

@@ -1,4 +1,4 @@
-// The file of a texture, from what a mesh calls it: paths of any system, in any folder that may be read. Private to
+// The file of a texture, or of a material library, from what a mesh calls it: paths of any system, in any folder that may be read. Private to
 // sim/world.
 #pragma once
 
