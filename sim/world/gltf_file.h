@@ -2,6 +2,7 @@
 // Source: Khronos, "glTF 2.0 Specification", 3.6 (binary data), 4 (GLB); EXT_meshopt_compression.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -34,6 +35,12 @@ class GltfFile {
   const nlohmann::json& At(const char* list, std::size_t index) const;
   // An item's list or object; an empty one where it is absent.
   static const nlohmann::json& Child(const nlohmann::json& object, const char* key);
+  static std::size_t Index(const nlohmann::json& object, const char* key) { return object.at(key).get<std::size_t>(); }
+  template <std::size_t n>
+  static std::array<double, n> Numbers(const nlohmann::json& object, const char* key, std::array<double, n> otherwise) {
+    const auto found = object.find(key);
+    return found == object.end() ? otherwise : found->get<std::array<double, n>>();
+  }
   // An extension of an object; null: it has not.
   static const nlohmann::json* Extension(const nlohmann::json& object, const char* name);
 

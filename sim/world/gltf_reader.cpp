@@ -1,7 +1,5 @@
 #include "sim/world/gltf_reader.h"
 
-#include <assimp/GltfMaterial.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -17,6 +15,7 @@
 
 #include "sim/world/gltf_draco.h"
 #include "sim/world/gltf_file.h"
+#include "sim/world/gltf_material.h"
 #include "sim/world/mesh_builder.h"
 
 namespace sim {
@@ -52,20 +51,9 @@ constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
     {"KHR_materials_variants", "the default variant is rendered"},
 };
 
-constexpr const char* kBasis =
-    "KHR_texture_basisu: Basis textures (KTX2) are not read: convert them to PNG, JPEG or WebP";
-
-std::size_t Index(const json& object, const char* key) { return object.at(key).get<std::size_t>(); }
-
-template <std::size_t n>
-std::array<double, n> Numbers(const json& object, const char* key, std::array<double, n> otherwise) {
-  const auto found = object.find(key);
-  return found == object.end() ? otherwise : found->get<std::array<double, n>>();
-}
-
 class GltfReader {
  public:
-  GltfReader(MeshFiles& files, MeshImport& import) : file_(files), import_(import) {}
+  GltfReader(MeshFiles& files, MeshImport& import) : file_(files), import_(import), materials_(file_, import) {}
 
   void Read() {
     CheckExtensions();
@@ -77,17 +65,15 @@ class GltfReader {
     for (const json& mesh : GltfFile::Child(file_.document(), "meshes")) ReadMesh(mesh);
     auto scene = std::make_unique<aiScene>();
     SetList(scene->mMeshes, scene->mNumMeshes, ai_meshes_);
-    SetList(scene->mTextures, scene->mNumTextures, textures_);
+    SetList(scene->mTextures, scene->mNumTextures, materials_.textures());
     import_.scene = std::move(scene);
     scene_ = import_.scene.get();
-    SetList(scene_->mMaterials, scene_->mNumMaterials, materials_);
+    SetList(scene_->mMaterials, scene_->mNumMaterials, materials_.materials());
     ReadNodes();
   }
 
  private:
-  void Warn(const std::string& what) {
-    if (warned_.insert(what).second) import_.warnings.push_back(what);
-  }
+  void Warn(const std::string& what) { WarnOnce(import_, what); }
 
   void CheckExtensions() {
     const auto names = [&](const char* key) {
@@ -111,125 +97,6 @@ class GltfReader {
     }
   }
 
-  // ------------------------------------------------------------------------------------------------- materials
-
-  // What a texture's image is called: its file, or "*N" of the scene. Empty: none.
-  std::string ImageOf(const json& texture) {
-    const json *webp = GltfFile::Extension(texture, "EXT_texture_webp"),
-               *basis = GltfFile::Extension(texture, "KHR_texture_basisu");
-    const json& from = webp != nullptr && webp->contains("source") ? *webp : texture;
-    if (!from.contains("source")) {
-      if (basis != nullptr) throw std::runtime_error(kBasis);
-      Warn("a texture has no picture of a known kind: it is left out");
-      return "";
-    }
-    const std::size_t index = Index(from, "source");
-    const auto [name, is_new] = images_.try_emplace(index);
-    if (!is_new) return name->second;
-    const json& image = file_.At("images", index);
-    if (image.value("mimeType", "") == "image/ktx2") throw std::runtime_error(kBasis);
-    if (image.contains("bufferView")) {
-      const auto view = file_.View(Index(image, "bufferView"));
-      return name->second = Embed({reinterpret_cast<const char*>(view.data()), view.size()});
-    }
-    const std::string uri = image.at("uri").get<std::string>();
-    if (const std::optional<std::string> data = GltfFile::DataOf(uri)) return name->second = Embed(*data);
-    return name->second = uri;
-  }
-
-  std::string Embed(std::string_view bytes) {
-    auto* texture = new aiTexture;  // a file of mWidth bytes
-    textures_.push_back(texture);
-    texture->mWidth = static_cast<unsigned>(bytes.size());
-    texture->pcData = new aiTexel[bytes.size() / sizeof(aiTexel) + 1];
-    std::memcpy(static_cast<void*>(texture->pcData), bytes.data(), bytes.size());
-    return "*" + std::to_string(textures_.size() - 1);
-  }
-
-  void SetTexture(aiMaterial& material, const json& object, const char* key, aiTextureType type) {
-    const auto info = object.find(key);
-    if (info == object.end()) return;
-    const json& texture = file_.At("textures", Index(*info, "index"));
-    const std::string image = ImageOf(texture);
-    if (image.empty()) return;
-    SetText(material, image, AI_MATKEY_TEXTURE(type, 0));
-    int set = info->value("texCoord", 0);
-    if (const json* t = GltfFile::Extension(*info, "KHR_texture_transform")) {
-      // uv' = offset + rotation * scale * uv, where v points down.
-      const auto offset = Numbers<2>(*t, "offset", {0, 0}), scale = Numbers<2>(*t, "scale", {1, 1});
-      const double angle = t->value("rotation", 0.0), c = std::cos(angle), s = std::sin(angle);
-      set = t->value("texCoord", set);
-      SetUvTransform(material, type,
-                     glm::dmat3x2(c * scale[0], -s * scale[0], s * scale[1], c * scale[1], offset[0], offset[1]));
-    } else {
-      SetUvTransform(material, type, glm::dmat3x2(1, 0, 0, 1, 0, 0));
-    }
-    material.AddProperty(&set, 1, AI_MATKEY_UVWSRC(type, 0));
-    if (!texture.contains("sampler")) return;
-    const json& sampler = file_.At("samplers", Index(texture, "sampler"));
-    constexpr int kClamp = 33071, kMirror = 33648, kNearest = 9728;
-    for (const bool v : {false, true}) {
-      const int wrap = sampler.value(v ? "wrapT" : "wrapS", 0);
-      const int mode = wrap == kClamp    ? aiTextureMapMode_Clamp
-                       : wrap == kMirror ? aiTextureMapMode_Mirror
-                                         : aiTextureMapMode_Wrap;
-      material.AddProperty(&mode, 1, v ? "$tex.mapmodev" : "$tex.mapmodeu", type, 0);
-    }
-    if (sampler.value("magFilter", 0) == kNearest) Warn("a sampler asks for the nearest texel: it is interpolated");
-  }
-
-  aiMaterial* ReadMaterial(const json& in) {
-    auto* out = new aiMaterial;
-    materials_.push_back(out);
-    SetText(*out, in.value("name", ""), AI_MATKEY_NAME);
-    const json& plain = GltfFile::Child(in, "pbrMetallicRoughness");
-    const json* gloss = GltfFile::Extension(in, "KHR_materials_pbrSpecularGlossiness");
-    const auto number = [&](double value, const char* key, unsigned type, unsigned index) {
-      const auto single = static_cast<float>(value);
-      out->AddProperty(&single, 1, key, type, index);
-    };
-    auto color = Numbers<4>(gloss ? *gloss : plain, gloss ? "diffuseFactor" : "baseColorFactor", {1, 1, 1, 1});
-    SetTexture(*out, gloss ? *gloss : plain, gloss ? "diffuseTexture" : "baseColorTexture", aiTextureType_BASE_COLOR);
-    if (gloss != nullptr) {
-      number(0, AI_MATKEY_METALLIC_FACTOR);
-      number(1 - gloss->value("glossinessFactor", 1.0), AI_MATKEY_ROUGHNESS_FACTOR);
-      if (gloss->contains("specularGlossinessTexture"))
-        Warn("specular-glossiness textures are not used: their factors are");
-    } else {
-      number(plain.value("metallicFactor", 1.0), AI_MATKEY_METALLIC_FACTOR);
-      number(plain.value("roughnessFactor", 1.0), AI_MATKEY_ROUGHNESS_FACTOR);
-      SetTexture(*out, plain, "metallicRoughnessTexture", aiTextureType_UNKNOWN);
-    }
-    const std::string mode = in.value("alphaMode", "OPAQUE");
-    if (mode == "OPAQUE") color[3] = 1;
-    SetText(*out, mode, AI_MATKEY_GLTF_ALPHAMODE);
-    number(in.value("alphaCutoff", 0.5), AI_MATKEY_GLTF_ALPHACUTOFF);
-    const aiColor4D base(static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2]),
-                         static_cast<float>(color[3]));
-    out->AddProperty(&base, 1, AI_MATKEY_BASE_COLOR);
-    auto glow = Numbers<3>(in, "emissiveFactor", {0, 0, 0});
-    if (const json* strength = GltfFile::Extension(in, "KHR_materials_emissive_strength"))
-      for (double& c : glow) c *= strength->value("emissiveStrength", 1.0);
-    const aiColor3D emission(static_cast<float>(glow[0]), static_cast<float>(glow[1]), static_cast<float>(glow[2]));
-    out->AddProperty(&emission, 1, AI_MATKEY_COLOR_EMISSIVE);
-    SetTexture(*out, in, "emissiveTexture", aiTextureType_EMISSIVE);
-    SetTexture(*out, in, "normalTexture", aiTextureType_NORMALS);
-    number(GltfFile::Child(in, "normalTexture").value("scale", 1.0),
-           AI_MATKEY_GLTF_TEXTURE_SCALE(aiTextureType_NORMALS, 0));
-    const int unlit = GltfFile::Extension(in, "KHR_materials_unlit") != nullptr;
-    out->AddProperty(&unlit, 1, kUnlitKey, 0, 0);
-    return out;
-  }
-
-  // Of a primitive; without one: glTF's default.
-  unsigned MaterialOf(const json& primitive) {
-    const std::optional<std::size_t> index =
-        primitive.contains("material") ? std::optional(Index(primitive, "material")) : std::nullopt;
-    const auto [at, is_new] = material_of_.try_emplace(index, static_cast<unsigned>(materials_.size()));
-    if (is_new) ReadMaterial(index ? file_.At("materials", *index) : json::object());
-    return at->second;
-  }
-
   // ---------------------------------------------------------------------------------------------------- meshes
 
   void ReadMesh(const json& mesh) {
@@ -246,7 +113,7 @@ class GltfReader {
       }
       BuiltMesh built;
       built.name = mesh.value("name", "meshes[" + std::to_string(meshes_.size() - 1) + "]");
-      built.material = MaterialOf(primitive);
+      built.material = materials_.MaterialOf(primitive);
       ReadPrimitive(primitive, mode, built);
       if (built.positions.empty()) continue;
       parts.push_back(static_cast<unsigned>(ai_meshes_.size()));
@@ -260,18 +127,18 @@ class GltfReader {
     if (const json* how = GltfFile::Extension(primitive, "KHR_draco_mesh_compression")) {
       std::map<std::string, DracoAttribute> wanted;
       for (const auto& [name, id] : GltfFile::Child(*how, "attributes").items()) {
-        const json& accessor = file_.At("accessors", Index(attributes, name.c_str()));
+        const json& accessor = file_.At("accessors", GltfFile::Index(attributes, name.c_str()));
         wanted[name] = {id.get<std::uint32_t>(), accessor.value("componentType", 0),
                         accessor.value("normalized", false)};
       }
-      draco = DecodeDraco(file_.View(Index(*how, "bufferView")), wanted);
+      draco = DecodeDraco(file_.View(GltfFile::Index(*how, "bufferView")), wanted);
     }
     const auto table = [&](const std::string& name, std::size_t least) -> std::optional<GltfTable> {
       std::optional<GltfTable> read;
       if (draco && draco->attributes.contains(name)) {
         read = draco->attributes[name];
       } else if (attributes.contains(name)) {
-        read = file_.ReadTable(Index(attributes, name.c_str()));
+        read = file_.ReadTable(GltfFile::Index(attributes, name.c_str()));
       }
       if (read && (read->columns < least || (!mesh.positions.empty() && read->count != mesh.positions.size())))
         throw std::runtime_error("the attribute " + name + " does not fit its mesh");
@@ -301,7 +168,7 @@ class GltfReader {
       indices = std::move(draco->indices);
       mode = 4;
     } else if (primitive.contains("indices")) {
-      indices = file_.ReadIndices(Index(primitive, "indices"));
+      indices = file_.ReadIndices(GltfFile::Index(primitive, "indices"));
     } else {
       indices.resize(mesh.positions.size());
       for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<std::uint32_t>(i);
@@ -336,8 +203,9 @@ class GltfReader {
       const auto m = node["matrix"].get<std::array<double, 16>>();
       return {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11], m[12], m[13], m[14], m[15]};
     }
-    const auto t = Numbers<3>(node, "translation", {0, 0, 0}), s = Numbers<3>(node, "scale", {1, 1, 1});
-    const auto q = Numbers<4>(node, "rotation", {0, 0, 0, 1});
+    const auto t = GltfFile::Numbers<3>(node, "translation", {0, 0, 0}),
+               s = GltfFile::Numbers<3>(node, "scale", {1, 1, 1});
+    const auto q = GltfFile::Numbers<4>(node, "rotation", {0, 0, 0, 1});
     return FromTrs({t[0], t[1], t[2]}, {q[3], q[0], q[1], q[2]}, {s[0], s[1], s[2]});
   }
 
@@ -351,7 +219,7 @@ class GltfReader {
   }
 
   void AppendInstances(const json& node, const glm::dmat4& transform) {
-    const std::size_t mesh = Index(node, "mesh");
+    const std::size_t mesh = GltfFile::Index(node, "mesh");
     if (mesh >= meshes_.size())
       throw std::runtime_error("names meshes[" + std::to_string(mesh) + "], which does not exist");
     const json* instancing = GltfFile::Extension(node, "EXT_mesh_gpu_instancing");
@@ -362,7 +230,7 @@ class GltfReader {
       std::map<std::string, GltfTable> tables;
       for (const auto& [name, columns] : {std::pair{"TRANSLATION", 3u}, {"ROTATION", 4u}, {"SCALE", 3u}}) {
         if (!attributes.contains(name)) continue;
-        tables[name] = file_.ReadTable(Index(attributes, name));
+        tables[name] = file_.ReadTable(GltfFile::Index(attributes, name));
         if (tables[name].columns != columns || tables[name].count != tables.begin()->second.count)
           throw std::runtime_error(std::string("EXT_mesh_gpu_instancing: ") + name + " does not fit");
       }
@@ -389,7 +257,7 @@ class GltfReader {
   std::vector<std::size_t> Roots() const {
     const json& document = file_.document();
     if (document.contains("scene") || !GltfFile::Child(document, "scenes").empty()) {
-      const json& scene = file_.At("scenes", document.contains("scene") ? Index(document, "scene") : 0);
+      const json& scene = file_.At("scenes", document.contains("scene") ? GltfFile::Index(document, "scene") : 0);
       return GltfFile::Child(scene, "nodes").empty() ? std::vector<std::size_t>{}
                                                      : scene["nodes"].get<std::vector<std::size_t>>();
     }
@@ -435,11 +303,7 @@ class GltfReader {
 
   GltfFile file_;
   MeshImport& import_;
-  std::set<std::string> warned_;
-  std::map<std::size_t, std::string> images_;
-  std::map<std::optional<std::size_t>, unsigned> material_of_;
-  std::vector<aiTexture*> textures_;
-  std::vector<aiMaterial*> materials_;
+  GltfMaterials materials_;
   std::vector<aiMesh*> ai_meshes_;
   std::vector<std::vector<unsigned>> meshes_;  // by the file's mesh: of ai_meshes_
   std::vector<Instance> instances_;
