@@ -36,9 +36,13 @@ struct ObjectDescription {
   MotionDescription motion;  // T_WO
 };
 
+// What a texture that is not there is: an error, or grey (a warning).
+enum class MissingTextures { error, grey };
+
 struct WorldDescription {
   std::vector<std::filesystem::path>
       folders;  // that meshes may read from, beside their own: of the scenario, of textures
+  MissingTextures missing_textures = MissingTextures::error;
   std::vector<MeshDescription> meshes;
   std::vector<ObjectDescription> objects;
   std::vector<Light> lights;
@@ -49,6 +53,8 @@ struct WorldDescription {
 template <class V>
 void Visit(V& v, WorldDescription& p) {
   v("background", p.background, {kOfLight, "radiance where nothing is and there is no sky"});
+  v("missing_textures", p.missing_textures, {{"error", MissingTextures::error}, {"grey", MissingTextures::grey}},
+    "what a texture that is not there is");
 }
 
 }  // namespace sim

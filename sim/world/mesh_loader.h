@@ -33,6 +33,7 @@ class WarningList {
 struct WorldLoading {
   Scene& scene;
   const std::vector<std::filesystem::path>& folders;  // WorldDescription::folders
+  MissingTextures missing_textures;
   TextureCache textures{};
   std::vector<std::string> problems{};
   WarningList warnings{};

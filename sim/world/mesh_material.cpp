@@ -196,6 +196,10 @@ std::optional<DecodedImage> MeshMaterialReader::Decode(const std::string& name, 
       file_.Problem("material '" + material + "': the texture path '" + name + "' " + found.problem);
       return std::nullopt;
     }
+    if (!found.problem.empty() && file_.loading.missing_textures == MissingTextures::grey) {
+      file_.Warn("material '" + material + "': '" + name + "': ", "a texture that is not there is grey");
+      return DecodedImage{1, 1, {128, 128, 128}, {}};
+    }
     if (!found.problem.empty()) return bad(found.problem);
     if (found.is_elsewhere)
       file_.Warn("material '" + material + "': " + found.file.string() + " for '" + name + "': ",

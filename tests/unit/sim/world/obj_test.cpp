@@ -184,6 +184,18 @@ TEST_F(Obj, TexturesWhereTheyAre) {
   }
 }
 
+TEST_F(Obj, MissingTexturesAreGreyWhereThatIsAskedFor) {
+  folder_.Write("m.mtl", "newmtl a\nmap_Kd gone.png\nnewmtl b\nmap_Kd lost.png\n");
+  const std::string text = std::string("mtllib m.mtl\n") + kFace + "usemtl b\nf 1/1 2/2 3/3\n";
+  EXPECT_THAT(Problems(text), AllOf(HasSubstr("gone.png: texture of material 'a'"), HasSubstr("no such file")));
+  WorldDescription world;
+  world.missing_textures = MissingTextures::grey;
+  world.meshes.push_back({folder_.Write("m.obj", text), {}, {1, 0, 0, 0}, 1});
+  const Scene scene = LoadScene(world);
+  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("2 ×"), HasSubstr("gone.png"), HasSubstr("is grey"))));
+  EXPECT_NEAR(scene.textures.at(0).Texel(0, 0, 0).x, SrgbToLinear(128 / 255.0), 1e-3);
+}
+
 // Warnings of a kind are one, with how often.
 TEST_F(Obj, WarningsAreSummed) {
   std::string library, text = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
