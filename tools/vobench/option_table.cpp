@@ -210,7 +210,6 @@ void AddRun(OptionTable& table) {
   AddView(command, run.view);
   AddMap(command, run.map);
   AddEngine(command, run.overrides);
-  AddMissingTextures(command, run.overrides);
   AddJobs(command, run.jobs, "Threads; the results do not depend on it");
   AddSet(command, run.overrides, "odometry.filter.particles=16");
 }

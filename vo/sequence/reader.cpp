@@ -130,7 +130,9 @@ SequenceReader::SequenceReader(const fs::path& folder) {
     const std::string stamp(words[0].text);
     const auto stamp_ns = format.stamp(stamp);
     if (!stamp_ns) {
-      complain("'" + stamp + "' is not " + format.not_a_stamp);
+      const std::string unit = format.stamp == StampInSeconds ? base::UnitOfStamp(stamp) : "";
+      complain("'" + stamp + "' is not " + format.not_a_stamp + unit);
+      if (!unit.empty()) break;  // so are all
       continue;
     }
     if (words.size() != format.words) {

@@ -151,6 +151,13 @@ TEST_F(Reader, ListsFiftyProblemsAtMost) {
   EXPECT_NE(error.find("... and 20 more problems"), std::string::npos);
 }
 
+TEST_F(Reader, StampsInNanosecondsAreAskedBackInOneSentence) {
+  List("1403636579763555584 rgb/a.png\n1403636579813555584 rgb/b.png\n");
+  const std::string error = ErrorOfOpening();
+  EXPECT_NE(error.find("nanoseconds: divide the times by 1e9"), std::string::npos) << error;
+  EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+}
+
 TEST_F(Reader, NamesATruncatedImage) {
   const fs::path file = folder_ / "rgb/a.png";
   cv::Mat noise(60, 60, CV_8UC1);

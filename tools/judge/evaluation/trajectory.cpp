@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -71,8 +72,17 @@ Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading) {
   bool first = true, of_euroc = false;
   Lines lines(file);
   for (const Line& line : lines) {
+    // A first line of names, as spreadsheets and pandas write it.
+    const auto is_name = [](const Token& token) {
+      return token.text.empty() || std::isalpha(static_cast<unsigned char>(token.text[0])) != 0;
+    };
+    if (first && line.tokens.size() >= kPose && std::ranges::all_of(line.tokens, is_name) &&
+        std::ranges::none_of(line.tokens, [](const Token& token) { return token.text == "nan"; })) {
+      of_euroc = std::ranges::any_of(line.tokens, [](const Token& t) { return t.text.starts_with("q_RS_w"); });
+      continue;
+    }
     if (first) {
-      of_euroc = reading == Reading::euroc || line.tokens.size() == kEuroc ||
+      of_euroc = of_euroc || reading == Reading::euroc || line.tokens.size() == kEuroc ||
                  lines.comment().find("q_RS_w") != std::string::npos;
     }
     const Line row = PoseRow(line, of_euroc);

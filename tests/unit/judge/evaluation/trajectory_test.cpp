@@ -79,6 +79,7 @@ TEST(ReadTrajectory, OfOtherPrograms) {
   const TemporaryFolder folder;
   for (const std::string text :
        {"\xef\xbb\xbf# t x y z qx qy qz qw\n1.5 1 2 3 0 0 0.6 0.8\n2.5 4 5 6 0 0 0 1\n",
+        "timestamp,tx,ty,tz,qx,qy,qz,qw\n1.5,1,2,3,0,0,0.6,0.8\n2.5,4,5,6,0,0,0,1\n",
         "1.5,1,2,3,0,0,0.6,0.8\r\n2.5, 4, 5, 6, 0, 0, 0, 1\r\n", "1.5;1;2;3;0;0;0.6;0.8\n2.5\t4\t5\t6\t0\t0\t0\t1\n",
         "1.5 1 2 3 0 0 0.6 0.8 1 0 0 1 0 1 1 0 0 1 0 1\n2.5 4 5 6 0 0 0 1 1 0 0 1 0 1 1 0 0 1 0 1\n",
         "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []\n"
