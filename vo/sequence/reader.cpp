@@ -1,5 +1,6 @@
 #include "vo/sequence/reader.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -73,7 +74,9 @@ bool IsDepth(const fs::path& file) {
 // first or last. Empty: both are.
 fs::path ImageOf(const std::vector<base::Word>& words, const fs::path& folder) {
   for (std::size_t i = words.size() - 1;; i -= 2) {
-    const fs::path image = folder / words[i].text;
+    std::string name(words[i].text);
+    std::ranges::replace(name, '\\', '/');  // as lists made on Windows have it
+    const fs::path image = folder / name;
     if (words.size() < 4 || !IsDepth(image)) return image;
     if (i == 1) return {};
   }

@@ -117,7 +117,7 @@ TEST_F(Reader, ReadsEveryColourTypeAndPaddedFiles) {
     cv::imwrite((folder_ / name).string(), cv::Mat(4, 6, CV_8UC3, cv::Scalar(10, 20, 30)));
     std::ofstream(folder_ / name, std::ios::app | std::ios::binary) << std::string(3, '\0');
   }
-  List("1 rgb/rgba.png\n2 rgb/deep.png\n3 rgb/a.jpg\n4 rgb/padded.png\n");
+  List("\xef\xbb\xbf# list\n1,rgb\\rgba.png\n2 rgb/deep.png\n3 rgb/a.jpg\n4 rgb/padded.png\n");
   vo::SequenceReader reader(folder_);
   for (int i = 0; i < 4; ++i) {
     const auto frame = reader.Next();
