@@ -1,5 +1,6 @@
 #include "sim/motion/recorded.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -51,16 +52,26 @@ std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file) {
   };
   std::vector<KeyPose> keys;
   std::int64_t first_ns = 0, last_ns = 0;
+  bool of_euroc = false;  // its tables: nanoseconds, the quaternion's w first
   int last_line = 0, number = 0;
   for (std::string line; problems.size() <= kMostProblems && std::getline(stream, line);) {
     ++number;
-    const std::vector<base::Word> words = base::SplitWords(number == 1 ? base::WithoutMark(line) : line);
-    if (words.empty() || words[0].text.front() == '#') continue;
+    std::vector<base::Word> words = base::SplitWords(number == 1 ? base::WithoutMark(line) : line);
+    if (words.empty()) continue;
+    if (words[0].text.front() == '#') {
+      of_euroc = of_euroc || line.find("q_RS_w") != std::string::npos;
+      continue;
+    }
+    of_euroc = of_euroc || (keys.empty() && words.size() == 17);
+    if (of_euroc ? words.size() > 8 : words.size() == 20)
+      words.resize(8);  // velocities and biases; OpenVINS' covariances
     if (words.size() != 8) {
       add(number, 1, "expected timestamp tx ty tz qx qy qz qw, not " + std::to_string(words.size()) + " words");
       continue;
     }
-    const std::optional<std::int64_t> stamp = base::ParseSeconds(words[0].text);
+    if (of_euroc) std::rotate(words.begin() + 4, words.begin() + 5, words.end());  // qw comes first
+    const bool in_ns = of_euroc && base::ParseWhole(words[0].text);
+    const std::optional<std::int64_t> stamp = base::ParseSeconds(std::string(words[0].text) + (in_ns ? "e-9" : ""));
     bool good = stamp.has_value();
     if (!good) {
       const std::string unit = base::UnitOfStamp(words[0].text);

@@ -55,6 +55,15 @@ TEST(TumTrajectory, AsOtherProgramsWriteIt) {
   ASSERT_EQ(keys.size(), 2u);
   EXPECT_EQ(keys[0].pose.p_WC, glm::dvec3(1, 2, 3));
   EXPECT_DOUBLE_EQ(keys[1].t_s, 0.25);
+  const std::vector<KeyPose> euroc = ReadTumTrajectory(
+      folder.Write("data.csv",
+                   "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []\n"
+                   "1403636580000000000, 1, 2, 3, 0.8, 0, 0, 0.6\n1403636580250000000,4,5,6,1,0,0,0,9,9,9\n"));
+  ASSERT_EQ(euroc.size(), 2u);
+  EXPECT_DOUBLE_EQ(euroc[1].t_s, 0.25);
+  EXPECT_EQ(euroc[1].pose.p_WC, glm::dvec3(4, 5, 6));
+  EXPECT_DOUBLE_EQ(euroc[0].pose.q_WC.w, 0.8);
+  EXPECT_DOUBLE_EQ(euroc[0].pose.q_WC.z, 0.6);
   EXPECT_THAT(Message([&] { ReadTumTrajectory(folder.Write("b.txt", "1 0 0 0 0 0 0 1\n1 0.02 0 0 0 0 0 1\n")); }),
               HasSubstr("b.txt:2:1: time 1 is not after that of line 1"));
   EXPECT_THAT(Message([&] {
