@@ -72,7 +72,7 @@ MeshMaterial MeshMaterialReader::Read(const aiMaterial& in) {
   }
   material.base_color = {color.r, color.g, color.b};
   material.emission = {emission.r, emission.g, emission.b};
-  material.alpha = color.a;
+  material.alpha = file_.is_gltf ? color.a : 1.0f;  // elsewhere transparency is not rendered
   ReadAlpha(in, material);
 
   std::vector<UvChoice> uvs;
@@ -234,6 +234,8 @@ int MeshMaterialReader::TextureIndex(const std::string& name, const std::string&
   }
   const bool is_cut = std::ranges::any_of(image->alpha, [](std::uint8_t a) { return a < 255; });
   if (!is_cut) image->alpha.clear();
+  if (is_cut && std::ranges::none_of(image->alpha, [](std::uint8_t a) { return a > 127; }))
+    file_.Warn("material '" + material + "': ", "the alpha of its picture is below 0.5 everywhere: it is not seen");
   try {
     file_.scene.textures.emplace_back(file.string(), image->width, image->height, image->rgb, image->alpha,
                                       use.content);
