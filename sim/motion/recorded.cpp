@@ -1,5 +1,6 @@
 #include "sim/motion/recorded.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -17,22 +18,6 @@
 namespace sim {
 namespace {
 
-struct Word {
-  std::string_view text;
-  int column;
-};
-
-std::vector<Word> Split(std::string_view line) {
-  constexpr std::string_view kBlank = " \t\r";
-  std::vector<Word> words;
-  for (std::size_t at = line.find_first_not_of(kBlank); at != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(kBlank, at), line.size());
-    words.push_back({line.substr(at, end - at), static_cast<int>(at) + 1});
-    at = line.find_first_not_of(kBlank, end);
-  }
-  return words;
-}
-
 constexpr std::size_t kMostProblems = 20;  // enough to see what a file is
 
 void ThrowIfAny(std::vector<settings::Problem> problems, const std::filesystem::path& file) {
@@ -41,6 +26,13 @@ void ThrowIfAny(std::vector<settings::Problem> problems, const std::filesystem::
     problems.push_back({file.string(), 0, 0, "further problems are not listed", {}});
   }
   if (!problems.empty()) throw settings::Error(std::move(problems));
+}
+
+// Within 1 cm and 1 degree: motion capture that is rounded to 0.1 ms has stamps twice.
+bool IsSamePose(const Pose& a, const Pose& b) {
+  constexpr double kSamePosition = 0.01, kSameHalfAngle = 0.5 * 0.017453292519943;
+  return glm::distance(a.p_WC, b.p_WC) <= kSamePosition &&
+         std::abs(glm::dot(a.q_WC, b.q_WC)) >= std::cos(kSameHalfAngle);
 }
 
 [[noreturn]] void Fail(const std::filesystem::path& file, const std::string& message) {
@@ -60,18 +52,32 @@ std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file) {
   };
   std::vector<KeyPose> keys;
   std::int64_t first_ns = 0, last_ns = 0;
+  bool of_euroc = false;  // its tables: nanoseconds, the quaternion's w first
   int last_line = 0, number = 0;
   for (std::string line; problems.size() <= kMostProblems && std::getline(stream, line);) {
     ++number;
-    const std::vector<Word> words = Split(line);
-    if (words.empty() || words[0].text.front() == '#') continue;
+    std::vector<base::Word> words = base::SplitWords(number == 1 ? base::WithoutMark(line) : line);
+    if (words.empty()) continue;
+    if (words[0].text.front() == '#') {
+      of_euroc = of_euroc || line.find("q_RS_w") != std::string::npos;
+      continue;
+    }
+    of_euroc = of_euroc || (keys.empty() && words.size() == 17);
+    if (of_euroc ? words.size() > 8 : words.size() == 20)
+      words.resize(8);  // velocities and biases; OpenVINS' covariances
     if (words.size() != 8) {
       add(number, 1, "expected timestamp tx ty tz qx qy qz qw, not " + std::to_string(words.size()) + " words");
       continue;
     }
-    const std::optional<std::int64_t> stamp = base::ParseStamp(words[0].text);
+    if (of_euroc) std::rotate(words.begin() + 4, words.begin() + 5, words.end());  // qw comes first
+    const bool in_ns = of_euroc && base::ParseWhole(words[0].text);
+    const std::optional<std::int64_t> stamp = base::ParseSeconds(std::string(words[0].text) + (in_ns ? "e-9" : ""));
     bool good = stamp.has_value();
-    if (!good) add(number, words[0].column, "'" + std::string(words[0].text) + "' is not a timestamp in seconds");
+    if (!good) {
+      const std::string unit = base::UnitOfStamp(words[0].text);
+      add(number, words[0].column, "'" + std::string(words[0].text) + "' is not a timestamp in seconds" + unit);
+      if (!unit.empty()) break;  // so are all
+    }
     double v[7] = {};
     for (std::size_t i = 0; i < 7; ++i) {
       std::string problem;
@@ -85,6 +91,7 @@ std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file) {
       add(number, words[4].column, "the quaternion's length is " + settings::FormatNumber(glm::length(q)) + ", not 1");
     }
     const std::int64_t stamp_ns = *stamp;
+    if (last_line > 0 && stamp_ns == last_ns && IsSamePose({{v[0], v[1], v[2]}, q}, keys.back().pose)) continue;
     if (last_line > 0 && stamp_ns <= last_ns) {
       add(number, words[0].column,
           "time " + std::string(words[0].text) + " is not after that of line " + std::to_string(last_line));

@@ -94,6 +94,10 @@ ObjectDescription ReadObject(Section& section, const std::filesystem::path& fold
 }  // namespace
 
 void ReadWorld(Section section, const std::filesystem::path& folder, double duration_s, WorldDescription& world) {
+  world.folders.push_back(folder);
+  std::vector<std::string> texture_folders;
+  if (section.Read("texture_folders", texture_folders))
+    for (const std::string& each : texture_folders) world.folders.push_back(folder / each);
   for (Section& mesh : section.List("meshes")) world.meshes.push_back(ReadMesh(mesh, folder));
   if (world.meshes.empty()) section.Reject("meshes", "'world.meshes': the world is empty");
   section.Allow("objects");

@@ -16,7 +16,7 @@ namespace sim {
 
 // A mesh file set into the world: X_W = position + R(orientation) * scale * X_file.
 struct MeshDescription {
-  std::filesystem::path file;  // glTF, GLB, OBJ, PLY, FBX and whatever else assimp reads
+  std::filesystem::path file;  // glTF, GLB, OBJ, PLY, and whatever else assimp reads
   glm::dvec3 position{0.0};    // [m]
   glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
   double scale = 1.0;  // metres per unit of the file, > 0
@@ -24,7 +24,7 @@ struct MeshDescription {
 // But for the file.
 template <class V>
 void Visit(V& v, MeshDescription& p) {
-  v("position", p.position, {Unit::length, kOfPlaces, "of the file's origin in W"});
+  v("position", p.position, {Unit::length, settings::Range{-1e8, 1e8}, "of the file's origin in W"});
   v("orientation", p.orientation, {"of the file in W: x, y, z, w"});
   v("scale", p.scale, {Range{1e-9, 1e9}, "metres per unit of the file"});
 }
@@ -36,7 +36,13 @@ struct ObjectDescription {
   MotionDescription motion;  // T_WO
 };
 
+// What a texture that is not there is: an error, or grey (a warning).
+enum class MissingTextures { error, grey };
+
 struct WorldDescription {
+  std::vector<std::filesystem::path>
+      folders;  // that meshes may read from, beside their own: of the scenario, of textures
+  MissingTextures missing_textures = MissingTextures::error;
   std::vector<MeshDescription> meshes;
   std::vector<ObjectDescription> objects;
   std::vector<Light> lights;
@@ -47,6 +53,8 @@ struct WorldDescription {
 template <class V>
 void Visit(V& v, WorldDescription& p) {
   v("background", p.background, {kOfLight, "radiance where nothing is and there is no sky"});
+  v("missing_textures", p.missing_textures, {{"error", MissingTextures::error}, {"grey", MissingTextures::grey}},
+    "what a texture that is not there is");
 }
 
 }  // namespace sim

@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <string_view>
 
 #include "tools/base/limits/picture.h"
 
@@ -21,44 +22,88 @@ std::uint32_t BigEndian32(Bytes b) {
   return (std::uint32_t{b[0]} << 24) | (std::uint32_t{b[1]} << 16) | (std::uint32_t{b[2]} << 8) | b[3];
 }
 
-void CheckPng(Bytes bytes) {
-  std::size_t at = kPngSignature.size();
-  for (;;) {  // length, type, data, checksum
-    if (at + 12 > bytes.size()) throw std::runtime_error("truncated PNG: the end chunk is missing");
+std::string_view AsChars(Bytes bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+
+// Of a PNG that has its end.
+void CheckSums(Bytes bytes) {
+  for (std::size_t at = kPngSignature.size(); at + 12 <= bytes.size();) {  // length, type, data, checksum
     const std::size_t length = BigEndian32(bytes.subspan(at));
-    if (length > bytes.size() - at - 12) throw std::runtime_error("truncated PNG: a chunk is cut off");
     const Bytes type_and_data = bytes.subspan(at + 4, length + 4);
     if (libdeflate_crc32(0, type_and_data.data(), type_and_data.size()) !=
         BigEndian32(bytes.subspan(at + 8 + length))) {
       throw std::runtime_error("damaged PNG: wrong checksum in the chunk at byte " + std::to_string(at));
     }
-    const std::array<std::uint8_t, 4> end{'I', 'E', 'N', 'D'};
-    if (std::equal(end.begin(), end.end(), type_and_data.begin())) return;
+    if (AsChars(type_and_data) == "IEND") return;
     at += length + 12;
   }
 }
 
-void CheckJpeg(Bytes bytes) {
-  constexpr std::uint8_t kStartOfScan = 0xda, kEndOfImage = 0xd9;
-  const auto truncated = [] { return std::runtime_error("truncated JPEG: the end marker is missing"); };
-  std::size_t at = 2;
-  bool in_scan = false;
-  for (;;) {
-    if (in_scan) {  // entropy-coded data goes on until a marker that is neither a stuffed zero nor a restart
-      while (at + 1 < bytes.size() &&
-             (bytes[at] != 0xff || bytes[at + 1] == 0x00 || (bytes[at + 1] >= 0xd0 && bytes[at + 1] <= 0xd7))) {
-        ++at;
-      }
+// Pixels of a TGA: grey, 15 to 32 bits of colour, or a palette of these; perhaps in run lengths, from any corner.
+DecodedImage DecodeTga(Bytes file, bool with_alpha) {
+  const auto word = [&](std::size_t at) { return static_cast<std::size_t>(file[at] | file[at + 1] << 8); };
+  const int type = file[2] & ~8, width = static_cast<int>(word(12)), height = static_cast<int>(word(14));
+  const bool runs = (file[2] & 8) != 0, palette = type == 1;
+  const std::size_t bits = file[16], entry = (palette ? file[7] : bits) / 8 + (file[palette ? 7 : 16] == 15 ? 1u : 0u);
+  const std::size_t size = palette ? 1 : entry, colors = 18 + file[0], first_color = word(3),
+                    color_count = file[1] ? word(5) : 0;
+  std::size_t at = colors + color_count * (file[1] != 0 ? (file[7] + 7u) / 8 : 0);
+  DecodedImage image{width,
+                     height,
+                     std::vector<std::uint8_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3),
+                     {}};
+  const std::size_t pixels = image.rgb.size() / 3;
+  const bool has_alpha = with_alpha && entry == 4 && type != 3;
+  if (has_alpha) image.alpha.resize(pixels);
+  const auto need = [&](std::size_t from, std::size_t count) {
+    if (from > file.size() || count > file.size() - from) throw std::runtime_error("truncated TGA");
+  };
+  std::size_t left = 0, repeated = 0;  // of the packet
+  for (std::size_t i = 0; i < pixels; ++i) {
+    if (runs && left == 0) {
+      need(at, 1);
+      left = (file[at] & 127u) + 1;
+      repeated = file[at++] >> 7;
     }
-    while (at + 1 < bytes.size() && bytes[at] == 0xff && bytes[at + 1] == 0xff) ++at;  // fill bytes
-    if (at + 2 > bytes.size()) throw truncated();
-    if (bytes[at] != 0xff) throw std::runtime_error("damaged JPEG: no marker at byte " + std::to_string(at));
-    const std::uint8_t marker = bytes[at + 1];
-    if (marker == kEndOfImage) return;
-    if (at + 4 > bytes.size()) throw truncated();
-    at += 2 + ((std::size_t{bytes[at + 2]} << 8) | bytes[at + 3]);
-    in_scan = marker == kStartOfScan;
+    need(at, size);
+    std::size_t from = at;
+    if (palette) {
+      const std::size_t index = file[at];
+      if (index < first_color || index - first_color >= color_count)
+        throw std::runtime_error("damaged TGA: no such colour");
+      from = colors + (index - first_color) * entry;
+      need(from, entry);
+    }
+    const auto column = i % static_cast<std::size_t>(width), row = i / static_cast<std::size_t>(width);
+    const std::size_t x = (file[17] & 16) != 0 ? static_cast<std::size_t>(width) - 1 - column : column;
+    const std::size_t y = (file[17] & 32) != 0 ? row : static_cast<std::size_t>(height) - 1 - row;
+    const std::size_t to = y * static_cast<std::size_t>(width) + x;
+    std::uint8_t* const rgb = &image.rgb[3 * to];
+    if (type == 3) {
+      rgb[0] = rgb[1] = rgb[2] = file[from];
+    } else if (entry == 2) {
+      const std::size_t five = word(from);
+      for (std::size_t c = 0; c < 3; ++c) rgb[c] = static_cast<std::uint8_t>(((five >> (10 - 5 * c)) & 31u) * 255 / 31);
+    } else {
+      for (std::size_t c = 0; c < 3; ++c) rgb[c] = file[from + 2 - c];
+      if (has_alpha) image.alpha[to] = file[from + 3];
+    }
+    if (runs) --left;
+    if (!runs || repeated == 0 || left == 0) at += size;
   }
+  return image;
+}
+
+// Without colour profiles, which are not applied: libpng complains of common ones on the terminal.
+std::vector<std::uint8_t> WithoutProfile(Bytes png) {
+  std::vector<std::uint8_t> out(png.begin(), png.begin() + kPngSignature.size());
+  for (std::size_t at = kPngSignature.size(); at + 12 <= png.size();) {
+    const std::size_t size = std::size_t{BigEndian32(png.subspan(at))} + 12;
+    const Bytes chunk = png.subspan(at, size);
+    if (AsChars(chunk.subspan(4, 4)) != "iCCP") out.insert(out.end(), chunk.begin(), chunk.end());
+    if (AsChars(chunk.subspan(4, 4)) == "IEND") break;
+    at += size;
+  }
+  return out;
 }
 
 }  // namespace
@@ -75,14 +120,9 @@ cv::Mat DecodeMatrix(Bytes bytes, int flags) {
   return picture;
 }
 
-DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
-  if (bytes.empty()) throw std::runtime_error("the file is empty");
-  if (const std::string problem = limits::PictureProblem(bytes); !problem.empty()) throw std::runtime_error(problem);
-  if (bytes.size() >= kPngSignature.size() && std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin())) {
-    CheckPng(bytes);
-  } else if (bytes.size() >= 2 && bytes[0] == 0xff && bytes[1] == 0xd8) {
-    CheckJpeg(bytes);
-  }
+namespace {
+
+DecodedImage DecodeByOpenCv(Bytes bytes, bool with_alpha) {
   const cv::Mat bgr = DecodeMatrix(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION),
                 all = with_alpha ? DecodeMatrix(bytes, cv::IMREAD_UNCHANGED) : cv::Mat();
   DecodedImage image{bgr.cols, bgr.rows, std::vector<std::uint8_t>(bgr.total() * 3), {}};
@@ -94,6 +134,38 @@ DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
   }
   cv::cvtColor(bgr, cv::Mat(bgr.size(), CV_8UC3, image.rgb.data()), cv::COLOR_BGR2RGB);
   return image;
+}
+
+}  // namespace
+
+DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
+  if (bytes.empty()) throw std::runtime_error("the file is empty");
+  for (const std::string& problem : {limits::PictureProblem(bytes), limits::PictureEndProblem(bytes)}) {
+    if (!problem.empty()) throw std::runtime_error(problem);
+  }
+  if (bytes.size() >= kPngSignature.size() && std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin())) {
+    CheckSums(bytes);
+    if (AsChars(bytes).find("iCCP") != std::string_view::npos) {
+      const std::vector<std::uint8_t> plain = WithoutProfile(bytes);
+      return DecodeByOpenCv(plain, with_alpha);
+    }
+  }
+  return limits::IsTga(bytes) ? DecodeTga(bytes, with_alpha) : DecodeByOpenCv(bytes, with_alpha);
+}
+
+void SetAlpha(const DecodedImage& mask, DecodedImage& image) {
+  const auto view = [&](const std::vector<std::uint8_t>& bytes, int type) {
+    return cv::Mat(mask.height, mask.width, type, const_cast<std::uint8_t*>(bytes.data()));
+  };
+  cv::Mat alpha;
+  if (mask.alpha.empty()) {
+    cv::cvtColor(view(mask.rgb, CV_8UC3), alpha, cv::COLOR_RGB2GRAY);
+  } else {
+    alpha = view(mask.alpha, CV_8UC1);
+  }
+  cv::Mat fitting;
+  cv::resize(alpha, fitting, cv::Size(image.width, image.height), 0, 0, cv::INTER_LINEAR);
+  image.alpha.assign(fitting.begin<std::uint8_t>(), fitting.end<std::uint8_t>());
 }
 
 }  // namespace sim

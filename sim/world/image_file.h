@@ -23,6 +23,9 @@ struct DecodedImage {
 // saying what is wrong, without a file name.
 DecodedImage DecodeImage(std::span<const std::uint8_t> bytes, bool with_alpha = false);
 
+// Alpha of `image`: the mask's own, or its brightness where it has none; of the image's size.
+void SetAlpha(const DecodedImage& mask, DecodedImage& image);
+
 // What OpenCV makes of it, with its flags IMREAD_...; nothing is checked before. Throws as DecodeImage.
 cv::Mat DecodeMatrix(std::span<const std::uint8_t> bytes, int flags);
 

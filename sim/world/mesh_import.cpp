@@ -1,6 +1,7 @@
 #include "sim/world/mesh_import.h"
 
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/postprocess.h>
 #include <fcntl.h>
 #include <string.h>
@@ -10,16 +11,25 @@
 #include <algorithm>
 #include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <map>
+#include <new>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
+#include "sim/world/gltf_file.h"
+#include "sim/world/gltf_reader.h"
 #include "sim/world/mesh_serialization.h"
+#include "sim/world/obj_reader.h"
+#include "sim/world/ply_reader.h"
 #include "tools/base/child_process.h"
+#include "tools/base/files.h"
 
 // The address and the thread sanitizer reserve terabytes.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -86,39 +96,45 @@ class BoundedStream : public Assimp::IOStream {
   int empty_reads_ = 0;
 };
 
-// Opens regular files below the mesh's folder, and nothing else; importers quietly do without a side file (an OBJ's
-// materials, say) that cannot be opened. From the first one on, the calling process has the limits of ImportMesh; each
-// file that is opened widens them.
+std::string LowerExtension(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+// Importers quietly do without a side file that cannot be opened.
 class ImporterFiles : public Assimp::DefaultIOSystem {
  public:
-  // import: gets the files that are looked for, and those that are missing.
-  ImporterFiles(const fs::path& mesh, MeshImport& import) : mesh_(mesh), import_(import), taken_(AddressSpace()) {
-    LimitProcess(0, taken_);
-  }
-  bool Exists(const char* file) const override { return MayOpen(file); }
+  explicit ImporterFiles(MeshFiles& files) : files_(files) {}
+  bool Exists(const char* file) const override { return files_.MayOpen(file); }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
-    const bool is_new = import_.files.insert(file).second;
-    std::unique_ptr<Assimp::IOStream> stream(mode[0] == 'r' && MayOpen(file) ? DefaultIOSystem::Open(file, mode)
-                                                                             : nullptr);
+    std::unique_ptr<Assimp::IOStream> stream(mode[0] == 'r' && files_.MayOpen(file) ? DefaultIOSystem::Open(file, mode)
+                                                                                    : nullptr);
     if (stream == nullptr) {
-      import_.missing.insert(fs::path(file).filename().string());
+      files_.Missing(file);
       return nullptr;
     }
-    if (is_new) bytes_ += stream->FileSize();
-    LimitProcess(bytes_, taken_);
+    files_.Opened(file, stream->FileSize());
+    if (LowerExtension(file) == ".dae") return WithoutBlanks(file);
     return new BoundedStream(std::move(stream));  // Close() deletes it
   }
 
  private:
-  bool MayOpen(const fs::path& file) const {
-    std::error_code error;
-    return fs::is_regular_file(file, error) && (file == mesh_ || LiesBeside(mesh_, file));
+  // Blanks at the beginning of an element's text, which assimp (5.2) takes for the end of its numbers.
+  static Assimp::IOStream* WithoutBlanks(const fs::path& file) {
+    const std::string text = base::ReadFile(file).value_or("");
+    auto* bytes = new std::uint8_t[text.size() + 1];
+    std::size_t size = 0;
+    bool skips = false;
+    for (const char c : text) {
+      skips = c == '>' || (skips && std::isspace(static_cast<unsigned char>(c)) != 0);
+      if (!skips || c == '>') bytes[size++] = static_cast<std::uint8_t>(c);
+    }
+    return new Assimp::MemoryIOStream(bytes, size, true);  // owns them
   }
 
-  fs::path mesh_;
-  MeshImport& import_;
-  std::uint64_t bytes_ = 0;  // of all files that were opened
-  rlim_t taken_;             // of the address space, before the first one [bytes]
+  MeshFiles& files_;
 };
 
 // No output, no core file.
@@ -130,12 +146,38 @@ void SilenceProcess() {
 
 constexpr std::chrono::seconds kPatience(600);  // of whoever waits: an importer that sleeps uses no processor
 
-std::vector<std::uint8_t> Import(const fs::path& file) {
-  MeshImport import;
+// FBX states its unit in centimetres and its axes; assimp (5.2) leaves both to whoever reads.
+void ApplyFbxSettings(aiScene& scene) {
+  double unit = 1;
+  int axis[3] = {0, 1, 2}, sign[3] = {1, 1, 1};  // of what becomes x, y, z
+  if (scene.mMetaData != nullptr) {
+    float single = 1;
+    if (!scene.mMetaData->Get("UnitScaleFactor", unit) && scene.mMetaData->Get("UnitScaleFactor", single))
+      unit = single;
+    constexpr const char* kNames[] = {"CoordAxis", "UpAxis", "FrontAxis"};
+    for (int i = 0; i < 3; ++i) {
+      scene.mMetaData->Get(kNames[i], axis[i]);
+      scene.mMetaData->Get(std::string(kNames[i]) + "Sign", sign[i]);
+    }
+  }
+  const bool is_permutation = std::set<int>(axis, axis + 3) == std::set<int>{0, 1, 2};
+  aiMatrix4x4 to_metres;
+  for (unsigned row = 0; row < 3; ++row) {
+    for (unsigned column = 0; column < 3; ++column) {
+      const bool here = is_permutation ? axis[row] == static_cast<int>(column) : row == column;
+      to_metres[row][column] =
+          here ? static_cast<float>(0.01 * unit * (is_permutation && sign[row] < 0 ? -1 : 1)) : 0.0f;
+    }
+  }
+  if (scene.mRootNode != nullptr && unit > 0)
+    scene.mRootNode->mTransformation = to_metres * scene.mRootNode->mTransformation;
+}
+
+void ImportByAssimp(MeshFiles& files, MeshImport& import) {
   Assimp::Importer importer;
-  importer.SetIOHandler(new ImporterFiles(file, import));  // the importer owns it
+  importer.SetIOHandler(new ImporterFiles(files));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
+  const aiScene* scene = importer.ReadFile(files.mesh().string(), aiProcess_ValidateDataStructure);
   if (scene != nullptr) import.problem = MeshCountProblem(*scene);  // what is too large is not worked on
   if (scene != nullptr && import.problem.empty()) {
     scene =
@@ -150,24 +192,43 @@ std::vector<std::uint8_t> Import(const fs::path& file) {
                      : too_much ? "cannot be read: the importer (assimp) wants more memory than a file of this size may"
                                 : "cannot be read: " + reason;
   }
-  if (import.problem.empty()) import.scene.reset(importer.GetOrphanedScene());
+  if (!import.problem.empty()) return;
+  import.scene.reset(importer.GetOrphanedScene());
+  if (LowerExtension(files.mesh()) == ".fbx") ApplyFbxSettings(*import.scene);
+}
+
+std::vector<std::uint8_t> Import(const fs::path& file, const std::vector<fs::path>& folders) {
+  MeshImport import;
+  MeshFiles files(file, folders, import);
+  const std::string extension = LowerExtension(file);
+  const std::map<std::string_view, void (*)(MeshFiles&, MeshImport&)> readers = {
+      {".obj", ReadObj}, {".ply", ReadPly}, {".gltf", ReadGltf}, {".glb", ReadGltf}};
+  const auto read = readers.find(extension);
+  try {
+    (read == readers.end() ? ImportByAssimp : read->second)(files, import);
+    if (import.problem.empty() && import.scene != nullptr) import.problem = MeshCountProblem(*import.scene);
+  } catch (const OlderGltf&) {
+    ImportByAssimp(files, import);
+  } catch (const std::bad_alloc&) {
+    import.problem = "cannot be read: it wants more memory than a file of this size may";
+  }
   return ToBytes(import);
 }
 
 std::string WhyItEnded(const base::ExitStatus& end, bool in_time) {
-  if (!in_time) return "the importer (assimp) took longer than " + std::to_string(kPatience.count()) + " s";
-  if (end.signal == SIGXCPU) return "the importer (assimp) took longer than a file of this size may";
+  if (!in_time) return "the importer took longer than " + std::to_string(kPatience.count()) + " s";
+  if (end.signal == SIGXCPU) return "the importer took longer than a file of this size may";
   if (end.signal != 0)
-    return std::string("the importer (assimp) crashed on it: ") + strsignal(end.signal) +
+    return std::string("the importer crashed on it: ") + strsignal(end.signal) +
            "; the file is damaged, or of a kind that it cannot read";
-  return "the importer (assimp) gave up on it";
+  return "the importer gave up on it";
 }
 
-base::ChildProcess StartImporter(const fs::path& file) {
+base::ChildProcess StartImporter(const fs::path& file, const std::vector<fs::path>& folders) {
   try {
     return base::ChildProcess([&](int answer) {
       SilenceProcess();
-      return base::WriteAll(answer, base::AsText(Import(file)));
+      return base::WriteAll(answer, base::AsText(Import(file, folders)));
     });
   } catch (const std::system_error& error) {
     throw std::runtime_error(file.string() + ": no importer: " + error.what());
@@ -185,13 +246,44 @@ bool IsBelow(const fs::path& folder, const fs::path& file) {
 
 }  // namespace
 
-bool LiesBeside(const fs::path& mesh, const fs::path& file) {
+bool IsAllowed(const fs::path& mesh, const std::vector<fs::path>& folders, const fs::path& file) {
   std::error_code error;
-  return IsBelow(mesh.parent_path(), file) || IsBelow(fs::weakly_canonical(mesh, error).parent_path(), file);
+  return IsBelow(mesh.parent_path(), file) || IsBelow(fs::weakly_canonical(mesh, error).parent_path(), file) ||
+         std::ranges::any_of(folders, [&](const fs::path& folder) { return IsBelow(folder, file); });
 }
 
-MeshImport ImportMesh(const fs::path& file) {
-  const base::ChildProcess importer = StartImporter(file);
+MeshFiles::MeshFiles(fs::path mesh, const std::vector<fs::path>& folders, MeshImport& import)
+    : mesh_(std::move(mesh)), folders_(folders), import_(import), taken_(AddressSpace()) {
+  LimitProcess(0, taken_);
+}
+
+bool MeshFiles::MayOpen(const fs::path& file) const {
+  std::error_code error;
+  return fs::is_regular_file(file, error) && (file == mesh_ || IsAllowed(mesh_, folders_, file));
+}
+
+std::optional<std::string> MeshFiles::Read(const fs::path& file) {
+  if (!MayOpen(file)) {
+    import_.files.insert(file);
+    return std::nullopt;
+  }
+  std::error_code error;
+  Opened(file, fs::file_size(file, error));
+  return base::ReadFile(file);
+}
+
+void MeshFiles::Opened(const fs::path& file, std::uint64_t bytes) {
+  if (import_.files.insert(file).second) bytes_ += bytes;
+  LimitProcess(bytes_, taken_);
+}
+
+void MeshFiles::Missing(const fs::path& file) {
+  import_.files.insert(file);
+  import_.missing.insert(file.filename().string());
+}
+
+MeshImport ImportMesh(const fs::path& file, const std::vector<fs::path>& folders) {
+  const base::ChildProcess importer = StartImporter(file, folders);
   const std::optional<std::string> answer = importer.ReadAnswer(std::chrono::steady_clock::now() + kPatience);
   if (!answer) importer.Kill();
   const base::ExitStatus end = importer.Wait();

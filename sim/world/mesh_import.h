@@ -1,14 +1,18 @@
-// Import of a mesh file by assimp in a child process: limits on time, memory and counts, no files outside the folder of
-// the mesh. Private to sim/world.
+// Import of a mesh file in a child process, by a reader made for its format or by assimp: limits on time, memory and
+// counts, no files outside the allowed folders. Private to sim/world.
 // Source: docs/reliability.md, "Hostile input".
 #pragma once
 
 #include <assimp/scene.h>
 
+#include <cstdint>
 #include <filesystem>
+#include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace sim {
 
@@ -17,15 +21,41 @@ struct MeshImport {
   std::string problem;                    // why there is none
   std::set<std::filesystem::path> files;  // that the importer looked for
   std::set<std::string> missing;          // those that could not be opened, without their folder
+  std::vector<std::string> warnings;
+  glm::dvec3 origin{0.0};  // of the scene's coordinates, in the file's
 };
 
-// Whether `file`, links followed, lies in the mesh's folder or deeper. A mesh that is itself a link has two: where it
-// is named, and where it leads.
-bool LiesBeside(const std::filesystem::path& mesh, const std::filesystem::path& file);
+// Whether `file`, links followed, lies in the mesh's folder, in one of `folders`, or deeper. A mesh that is itself a
+// link has two folders: where it is named, and where it leads.
+bool IsAllowed(const std::filesystem::path& mesh, const std::vector<std::filesystem::path>& folders,
+               const std::filesystem::path& file);
+
+// The files of a mesh as its reader may open them: regular files in the allowed folders, and nothing else. The calling
+// process has the limits of ImportMesh; each file that is opened widens them.
+class MeshFiles {
+ public:
+  // import: gets the files that are looked for, and those that are missing.
+  MeshFiles(std::filesystem::path mesh, const std::vector<std::filesystem::path>& folders, MeshImport& import);
+
+  const std::filesystem::path& mesh() const { return mesh_; }
+  const std::vector<std::filesystem::path>& folders() const { return folders_; }
+  bool MayOpen(const std::filesystem::path& file) const;
+  // None where it may not, or cannot be opened.
+  std::optional<std::string> Read(const std::filesystem::path& file);
+  void Opened(const std::filesystem::path& file, std::uint64_t bytes);
+  void Missing(const std::filesystem::path& file);
+
+ private:
+  std::filesystem::path mesh_;
+  const std::vector<std::filesystem::path>& folders_;
+  MeshImport& import_;
+  std::uint64_t bytes_ = 0;  // of all files that were opened
+  std::uint64_t taken_;      // of the address space, before the first one [bytes]
+};
 
 // Time is the processor's: five seconds, and ten more for each MB of the files that are opened. Memory: 512 MiB, and 64
 // bytes for each of theirs. An importer that crashes or runs into a limit is a problem with the file like any other.
 // Throws std::runtime_error where no process can be started.
-MeshImport ImportMesh(const std::filesystem::path& file);
+MeshImport ImportMesh(const std::filesystem::path& file, const std::vector<std::filesystem::path>& folders);
 
 }  // namespace sim

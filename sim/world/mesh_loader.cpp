@@ -14,7 +14,6 @@
 #include <sstream>
 #include <utility>
 
-#include "sim/world/gltf_features.h"
 #include "sim/world/mesh_import.h"
 #include "sim/world/mesh_material.h"
 
@@ -23,11 +22,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool IsGltf(const fs::path& file) {
+std::string LowerExtension(const fs::path& file) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".gltf" || extension == ".glb";
+  return extension;
 }
 
 glm::dmat4 ToGlm(const aiMatrix4x4& m) {  // assimp is row-major, GLM column-major
@@ -63,24 +62,18 @@ class FileReader {
     if (!fs::exists(file_.path, error)) return file_.Problem("no such file");
     if (!fs::is_regular_file(file_.path, error)) return file_.Problem("not a file");
 
-    GltfFeatures features;
-    if (file_.is_gltf) {
-      features = ReadGltfFeatures(file_.path);
-      for (const std::string& what : features.impossible) file_.Problem(what);
-      if (!features.impossible.empty()) return;
-      for (const std::string& what : features.not_rendered) file_.Warn(what);
-    }
-
-    MeshImport import = ImportMesh(file_.path);
+    MeshImport import = ImportMesh(file_.path, file_.loading.folders);
     file_.scene.files.insert(import.files.begin(), import.files.end());
     if (import.scene == nullptr) return file_.Problem(import.problem);
     ai_ = import.scene.get();
-    for (const std::string& missing : import.missing) file_.Warn("names " + missing + ", which cannot be opened");
+    world_from_file_[3] += world_from_file_ * glm::dvec4(import.origin, 0.0);
+    for (const std::string& missing : import.missing) file_.Warn("names " + missing + ", ", "which cannot be opened");
+    for (const std::string& warning : import.warnings) file_.Warn("", warning);
 
-    materials_ = std::make_unique<MeshMaterialReader>(file_, *ai_, features.emission_strengths);
-    const std::size_t problems_before = file_.problems.size(), meshes_before = file_.scene.meshes.size();
+    materials_ = std::make_unique<MeshMaterialReader>(file_, *ai_);
+    const std::size_t problems_before = file_.loading.problems.size(), meshes_before = file_.scene.meshes.size();
     if (ai_->mRootNode != nullptr) AppendNode(*ai_->mRootNode, world_from_file_);
-    if (file_.problems.size() == problems_before && file_.scene.meshes.size() == meshes_before)
+    if (file_.loading.problems.size() == problems_before && file_.scene.meshes.size() == meshes_before)
       file_.Problem("has no triangles");
   }
 
@@ -124,7 +117,7 @@ class FileReader {
         }
         any_alpha = any_alpha || c.a != in.mColors[0][0].a;  // where a file has none, assimp makes up one
       }
-      if (any_alpha) file_.Warn(label + "the alpha of its vertex colours is not used");
+      if (any_alpha) file_.Warn(label, "the alpha of its vertex colours is not used");
     }
     std::size_t degenerate = 0;
     out.triangles.reserve(in.mNumFaces);
@@ -143,8 +136,8 @@ class FileReader {
       out.triangles.push_back(t);
     }
     if (degenerate > 0) {
-      file_.Warn(label + std::to_string(degenerate) + " of " + std::to_string(in.mNumFaces) +
-                 " triangles without area are left out");
+      file_.Warn(label + std::to_string(degenerate) + " of " + std::to_string(in.mNumFaces) + " ",
+                 "triangles without area are left out");
     }
     if (out.triangles.empty()) return;
     if (!CheckRounding(label, out.positions)) return;
@@ -171,7 +164,7 @@ class FileReader {
       file_.Problem(text.str());
       return false;
     }
-    file_.Warn(text.str());
+    file_.Warn(text.str(), "");
     return true;
   }
 
@@ -182,8 +175,8 @@ class FileReader {
       const glm::dvec3 n = transform * glm::dvec3(v.x, v.y, v.z);
       const double length = glm::length(n);
       if (!(length > 0) || !std::isfinite(length)) {
-        file_.Warn(label + "the normal of vertex " + std::to_string(i) + " is " + ToText(v) +
-                   "; flat normals are used");
+        file_.Warn(label + "the normal of vertex " + std::to_string(i) + " is " + ToText(v) + "; ",
+                   "flat normals are used");
         out.normals.clear();
         return;
       }
@@ -193,12 +186,15 @@ class FileReader {
 
   void AppendUvs(const aiMesh& in, const UvChoice& choice, const std::string& label, Mesh& out) {
     const Material& material = file_.scene.materials[static_cast<std::size_t>(out.material)];
-    const int texture =
-        std::max({material.texture, material.emission_texture, material.normal_map, material.gloss_texture});
+    const int texture = material.texture >= 0
+                            ? material.texture
+                            : std::max({material.emission_texture, material.normal_map, material.gloss_texture});
     if (texture < 0) return;
-    if (!in.HasTextureCoords(choice.channel)) {
+    const unsigned channel =
+        !in.HasTextureCoords(choice.channel) && !file_.is_gltf && in.GetNumUVChannels() == 1 ? 0 : choice.channel;
+    if (!in.HasTextureCoords(channel)) {
       const std::string& name = file_.scene.textures[static_cast<std::size_t>(texture)].name();
-      file_.Warn(label + "no texture coordinates for texture " + name + "; the base colour is used");
+      file_.Warn(label + "no texture coordinates for texture " + name + "; ", "the base colour is used");
       Material plain = material;
       plain.texture = plain.emission_texture = plain.normal_map = plain.gloss_texture = -1;
       out.material = static_cast<int>(file_.scene.materials.size());
@@ -206,13 +202,19 @@ class FileReader {
       return;
     }
     for (unsigned i = 0; i < in.mNumVertices; ++i) {
-      const aiVector3D& uv = in.mTextureCoords[choice.channel][i];
+      const aiVector3D& uv = in.mTextureCoords[channel][i];
       if (!IsFinite(uv.x, uv.y, uv.z)) {
         return file_.Problem(label + "the texture coordinate of vertex " + std::to_string(i) +
                              " is not finite: " + ToText(uv));
       }
       out.uvs.emplace_back(choice.transform *
                            glm::dvec3(uv.x, 1.0 - static_cast<double>(uv.y), 1.0));  // assimp has v up in all formats
+    }
+    const Texture& picture = file_.scene.textures[static_cast<std::size_t>(texture)];
+    for (const int axis : {0, 1}) {
+      if (!WrapUvs(out, axis, choice.wrap[static_cast<std::size_t>(axis)],
+                   axis == 0 ? picture.width() : picture.height()))
+        file_.Warn(label, "a mirrored texture comes more than 100 times: it is repeated as it is");
     }
   }
 
@@ -224,9 +226,28 @@ class FileReader {
 
 }  // namespace
 
-void AppendMeshFile(const MeshDescription& description, Scene& scene, TextureCache& textures,
-                    std::vector<std::string>& problems) {
-  const MeshFile file{description.file, IsGltf(description.file), scene, textures, problems};
+void WarningList::Add(const std::string& who, const std::string& what) {
+  const auto known = std::ranges::find(kinds_, what, &Kind::what);
+  if (known == kinds_.end() || what.empty()) {
+    kinds_.push_back({what, who, 1});
+  } else {
+    ++known->count;
+  }
+}
+
+std::vector<std::string> WarningList::Summed() const {
+  std::vector<std::string> texts;
+  for (const Kind& kind : kinds_) {
+    texts.push_back(kind.count == 1
+                        ? kind.first + kind.what
+                        : std::to_string(kind.count) + " × " + kind.what + " (first: " + kind.first + "...)");
+  }
+  return texts;
+}
+
+void AppendMeshFile(const MeshDescription& description, WorldLoading& loading) {
+  const std::string extension = LowerExtension(description.file);
+  const MeshFile file{description.file, extension, extension == ".gltf" || extension == ".glb", loading.scene, loading};
   FileReader(file, description).Read();
 }
 

@@ -1,6 +1,7 @@
 // Loader of a mesh file into a scene.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -12,10 +13,34 @@ namespace sim {
 // Indices of textures in the scene, by file (embedded ones: by file and their name in it); -1: unreadable.
 using TextureCache = std::map<std::string, int>;
 
-// Appends the file's meshes (with the transforms of its nodes and of `description`), the materials and textures that
-// they use, and warnings, to `scene`; appends what is wrong to `problems`, each naming its file. The scene is of use
-// only when there was no problem.
-void AppendMeshFile(const MeshDescription& description, Scene& scene, TextureCache& textures,
-                    std::vector<std::string>& problems);
+// Warnings, each kind of them once with how often it occurred.
+class WarningList {
+ public:
+  // who: whatever differs; what: the same words for all of a kind.
+  void Add(const std::string& who, const std::string& what);
+  // "who what", or "108 x what (first: who)", in order of their first occurrence.
+  std::vector<std::string> Summed() const;
+
+ private:
+  struct Kind {
+    std::string what, first;
+    std::size_t count;
+  };
+  std::vector<Kind> kinds_;
+};
+
+// What all files of a world share.
+struct WorldLoading {
+  Scene& scene;
+  const std::vector<std::filesystem::path>& folders;  // WorldDescription::folders
+  MissingTextures missing_textures;
+  TextureCache textures{};
+  std::vector<std::string> problems{};
+  WarningList warnings{};
+};
+
+// Appends the file's meshes (with the transforms of its nodes and of `description`), and the materials and textures that
+// they use, to the scene; notes what is wrong, each problem with its file. The scene is of use only when there was none.
+void AppendMeshFile(const MeshDescription& description, WorldLoading& loading);
 
 }  // namespace sim

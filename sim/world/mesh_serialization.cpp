@@ -209,14 +209,14 @@ void PassScene(Io& io, aiScene& scene) {
   if (has_root != 0) PassNode(io, *scene.mRootNode, scene.mNumMeshes, 0);
 }
 
-template <class Io, class T>
-void PassTexts(Io& io, std::set<T>& texts) {
+template <class Io, class Texts>
+void PassTexts(Io& io, Texts& texts) {
   auto count = static_cast<unsigned>(texts.size());
   io.Count(count);
   if constexpr (Io::kReads) {
-    for (std::string text; count > 0; --count) io.Text(text), texts.insert(text);
+    for (std::string text; count > 0; --count) io.Text(text), texts.insert(texts.end(), text);
   } else {
-    for (const T& each : texts) {
+    for (const auto& each : texts) {
       const std::string text = each;
       io.Text(text);
     }
@@ -228,6 +228,8 @@ void PassImport(Io& io, MeshImport& import) {
   io.Text(import.problem);
   PassTexts(io, import.files);
   PassTexts(io, import.missing);
+  PassTexts(io, import.warnings);
+  io.Value(import.origin);
   if (!import.problem.empty()) return;
   if (Io::kReads) import.scene = std::make_unique<aiScene>();
   PassScene(io, *import.scene);

@@ -45,7 +45,8 @@ SceneError::SceneError(std::vector<std::string> problems)
 
 Scene LoadScene(const WorldDescription& description) {
   Scene scene;
-  std::vector<std::string> problems;
+  WorldLoading loading{scene, description.folders, description.missing_textures};
+  std::vector<std::string>& problems = loading.problems;
   for (std::size_t i = 0; i < description.lights.size(); ++i) {
     const std::string problem = std::visit(LightProblem{}, description.lights[i]);
     if (!problem.empty()) problems.push_back("world.lights[" + std::to_string(i) + "]: " + problem);
@@ -61,7 +62,6 @@ Scene LoadScene(const WorldDescription& description) {
     }
   }
 
-  TextureCache textures;
   const auto append = [&](const MeshDescription& mesh) {
     const glm::dquat& q = mesh.orientation;
     if (!IsFinite(mesh.position) || !(mesh.scale > 0) || !std::isfinite(mesh.scale) ||
@@ -70,7 +70,7 @@ Scene LoadScene(const WorldDescription& description) {
                          ": its position, orientation (unit) or scale (> 0) in the world is unusable");
       return;
     }
-    AppendMeshFile(mesh, scene, textures, problems);
+    AppendMeshFile(mesh, loading);
   };
   for (const MeshDescription& mesh : description.meshes) append(mesh);
   for (const ObjectDescription& object : description.objects) {
@@ -82,6 +82,7 @@ Scene LoadScene(const WorldDescription& description) {
     scene.meshes.erase(begin, scene.meshes.end());
   }
   if (!problems.empty()) throw SceneError(std::move(problems));
+  scene.warnings = loading.warnings.Summed();
   scene.lights = description.lights;
   scene.background = description.background;
   return scene;

@@ -134,6 +134,25 @@ TEST_F(ErrorsTest, NanInATrajectory) {
   Fails({"check", TinyScenario().string(), "--set", recorded, "--set", "time.duration=0.1 s"}, 2, "bad.txt:2");
 }
 
+// No figure where any estimate would have it: two pairs determine no alignment, a truth that stands no scale.
+TEST_F(ErrorsTest, FiguresWithoutABasis) {
+  std::string moving, still;
+  for (int i = 0; i < 5; ++i) {
+    moving += std::to_string(i) + " " + std::to_string(i * i) + " " + std::to_string(i) + " 0 0 0 0 1\n";
+    still += std::to_string(i) + " 1 2 3 0 0 0 1\n";
+  }
+  here_.Write("moving.txt", moving);
+  here_.Write("still.txt", still);
+  here_.Write("two.txt", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n");
+  Fails({"evaluate", "two.txt", "--truth", "moving.txt", "--align", "se3"}, 2, "fewer than three");
+  Fails({"evaluate", "moving.txt", "--truth", "still.txt", "--align", "sim3"}, 2, "do not move");
+  here_.Write("one.txt", "0 0 0 0 0 0 0 1\n");
+  Fails({"evaluate", "one.txt", "--truth", "moving.txt", "--compat", "tum ate"}, 2, "two matching pairs");
+  Fails({"evaluate", "two.txt", "--truth", "moving.txt", "--compat", "rpg"}, 2, "fewer than three");
+  const Outcome line = RunVobench({"evaluate", "two.txt", "--truth", "two.txt", "--align", "none"}, here_.path());
+  EXPECT_EQ(line.status, 0) << line.err;
+}
+
 TEST_F(ErrorsTest, EveryMistakeInAScenarioIsNamedWithItsPlace) {
   const fs::path scenes = CopyScenes();
   WriteFile(scenes / "tiny.yaml",

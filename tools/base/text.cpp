@@ -1,5 +1,6 @@
 #include "tools/base/text.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <system_error>
@@ -22,6 +23,17 @@ std::string Join(const std::vector<std::string>& parts, std::string_view separat
     text += part;
   }
   return text;
+}
+
+std::vector<Word> SplitWords(std::string_view line) {
+  constexpr std::string_view kBetween = " \t\r,;";
+  std::vector<Word> words;
+  for (std::size_t at = line.find_first_not_of(kBetween); at != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(kBetween, at), line.size());
+    words.push_back({line.substr(at, end - at), static_cast<int>(at) + 1});
+    at = line.find_first_not_of(kBetween, end);
+  }
+  return words;
 }
 
 std::string Fixed(double value, int decimals) { return Printed("%.*f", decimals, value); }
@@ -76,8 +88,21 @@ std::optional<std::int64_t> ParseSeconds(std::string_view text) {
   return negative ? -static_cast<std::int64_t>(value) : static_cast<std::int64_t>(value);
 }
 
-std::optional<std::int64_t> ParseStamp(std::string_view text) {
-  return text.find_first_not_of("0123456789.") == std::string_view::npos ? ParseSeconds(text) : std::nullopt;
+std::string UnitOfStamp(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value > 1e-9 * kLatest_ns)) return "";
+  constexpr double kMilliseconds = 1e11, kMicroseconds = 1e14, kNanoseconds = 1e17;  // of the years from 1973 on
+  if (value < kMilliseconds) return ", 4e9 at most";
+  const bool nano = value >= kNanoseconds, micro = value >= kMicroseconds;
+  return std::string(", but looks like one in ") +
+         (nano    ? "nano"
+          : micro ? "micro"
+                  : "milli") +
+         "seconds: divide the times by " +
+         (nano    ? "1e9"
+          : micro ? "1e6"
+                  : "1e3");
 }
 
 std::string FormatSeconds(std::int64_t stamp_ns) {

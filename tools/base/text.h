@@ -11,6 +11,20 @@ namespace base {
 
 std::string Join(const std::vector<std::string>& parts, std::string_view separator);
 
+// A part of a line, and where it begins (1: the first character).
+struct Word {
+  std::string_view text;
+  int column = 1;
+};
+// Of a line of numbers or names, as programs write tables: separated by blanks, tabs, commas or semicolons.
+std::vector<Word> SplitWords(std::string_view line);
+
+// Without the byte-order mark of UTF-8 at its beginning, which editors on Windows write.
+inline std::string_view WithoutMark(std::string_view text) {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
 // "%.*f": a fixed number of decimals.
 std::string Fixed(double value, int decimals);
 // "%.*g": a number of significant digits, without trailing zeros.
@@ -25,8 +39,9 @@ constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;
 // Decimal seconds to nanoseconds, exact: no double between, a tenth decimal is rounded. Signs and exponents are
 // understood. None for other text and beyond kLatest_ns.
 std::optional<std::int64_t> ParseSeconds(std::string_view text);
-// The same of digits and a point only, as lists of frames and recorded motion write it.
-std::optional<std::int64_t> ParseStamp(std::string_view text);
+// Whether a number beyond kLatest_ns counts milli-, micro- or nanoseconds, in words that follow "is not a time in
+// seconds"; empty for other text.
+std::string UnitOfStamp(std::string_view text);
 
 // Nanoseconds as seconds with nine decimals.
 std::string FormatSeconds(std::int64_t stamp_ns);

@@ -72,6 +72,14 @@ void AddEngine(CLI::App& command, Overrides& overrides) {
       ->type_name("NAME");
 }
 
+void AddMissingTextures(CLI::App& command, Overrides& overrides) {
+  const auto set = [&overrides](const std::string& what) { overrides.emplace_back("world.missing_textures", what); };
+  command
+      .add_option_function<std::string>("--missing-textures", set, "A texture that is not there is an error, or grey")
+      ->check(CLI::IsMember({"error", "grey"}))
+      ->type_name("WHAT");
+}
+
 void AddView(CLI::App& command, bool& view) {
   command.add_flag("--view", view, "The report in a browser while it runs; its address is printed");
 }
@@ -120,6 +128,7 @@ void AddRender(OptionTable& table) {
       "flow, flow_backward, occlusion, surface_id, landmarks, acceleration, imu, moving (docs/truth.md)");
   AddSeed(command, render.seed, "Seed instead of the scenario's");
   AddEngine(command, render.overrides);
+  AddMissingTextures(command, render.overrides);
   AddJobs(command, render.jobs, "Threads; the results do not depend on it");
   AddSet(command, render.overrides, "camera.width=320");
 }
@@ -248,6 +257,7 @@ void AddCheck(OptionTable& table) {
       AddCommand<CheckOptions>(table, "check", "Read a scenario and all it names, and say what is wrong with it",
                                "vobench check scenes/room.yaml");
   Add(command, "SCENARIO", check.scenario, "Scenario file (scenes/*.yaml)")->required();
+  AddMissingTextures(command, check.overrides);
   AddSet(command, check.overrides, "camera.width=320");
 }
 

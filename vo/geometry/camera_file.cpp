@@ -10,34 +10,17 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
+#include "tools/base/files.h"
 #include "tools/base/limits/structured_text.h"
 #include "tools/base/settings/settings.h"
+#include "tools/base/text.h"
+#include "vo/geometry/foreign_camera.h"
 
 namespace vo {
 namespace {
-
-// Calibration coefficients in the common order of OpenCV, ROS, EuRoC and Kalibr: k1 k2 p1 p2 [k3], or k1 k2 k3 k4 for a
-// fisheye lens (camera.lens); further ones must be zero. Returns the problem, worded to follow the name of the
-// coefficients; empty: none.
-std::string SetLens(std::span<const double> coefficients, Camera& camera) {
-  const std::size_t most = camera.lens == Lens::fisheye ? 4 : 5;
-  if (coefficients.size() < 4)
-    return "must be k1, k2, p1, p2 and perhaps k3, or k1 ... k4 of an equidistant lens; there are " +
-           std::to_string(coefficients.size()) + " numbers";
-  for (std::size_t i = most; i < coefficients.size(); ++i) {
-    if (coefficients[i] != 0)
-      return "has more than " + std::to_string(most) + " coefficients that are not zero: that lens is not known here";
-  }
-  camera.k1 = coefficients[0];
-  camera.k2 = coefficients[1];
-  const bool fisheye = camera.lens == Lens::fisheye;
-  (fisheye ? camera.k3 : camera.p1) = coefficients[2];
-  (fisheye ? camera.k4 : camera.p2) = coefficients[3];
-  if (!fisheye && coefficients.size() > 4) camera.k3 = coefficients[4];
-  return "";
-}
 
 // Camera matrix K, 3 x 3, row by row. Returns its problems.
 std::vector<std::string> SetMatrix(std::span<const double> matrix, Camera& camera) {
@@ -65,11 +48,14 @@ void ReadEuroc(settings::Section section, const std::string& coefficients, Camer
   std::array<double, 2> size{};
   std::array<double, 4> intrinsics{};
   section.RequireChoice("camera_model", model, {{"pinhole", Model::pinhole}});
-  section.RequireChoice("distortion_model", camera.lens,
-                        {{"radial-tangential", Lens::radial_tangential},
-                         {"radtan", Lens::radial_tangential},
-                         {"none", Lens::radial_tangential},
-                         {"equidistant", Lens::fisheye}});
+  enum class Distortion { radtan, none, equidistant } distortion = Distortion::radtan;
+  section.RequireChoice("distortion_model", distortion,
+                        {{"radtan", Distortion::radtan},
+                         {"radial-tangential", Distortion::radtan},
+                         {"plumb_bob", Distortion::radtan},
+                         {"none", Distortion::none},
+                         {"equidistant", Distortion::equidistant}});
+  if (distortion == Distortion::equidistant) camera.lens = Lens::fisheye;
   constexpr settings::Range kPixels{1, std::numeric_limits<int>::max()};
   if (section.Require("resolution", size, settings::Unit::none, kPixels)) {
     camera.width = static_cast<int>(size[0]);
@@ -84,7 +70,7 @@ void ReadEuroc(settings::Section section, const std::string& coefficients, Camer
     camera.cy = intrinsics[3];
     if (!(camera.fx > 0 && camera.fy > 0)) section.Reject("intrinsics", "'intrinsics': fu and fv must be positive");
   }
-  RequireLens(section, coefficients, coefficients, camera);
+  if (distortion != Distortion::none) RequireLens(section, coefficients, coefficients, camera);
   section.IgnoreRest();
 }
 
@@ -243,34 +229,70 @@ Camera ReadOpenCvXml(const std::filesystem::path& file) try {
   throw settings::Error({{file.string(), 0, 0, std::string("OpenCV cannot read it: ") + error.what()}});
 }
 
-std::string FirstLine(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  return line;
+// What begins the first line that is no comment.
+std::string_view FirstData(std::string_view text) {
+  while (text.starts_with('#') || text.starts_with('\n') || text.starts_with('\r')) {
+    const std::size_t end = text.find('\n');
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  return text;
+}
+
+bool HasLine(std::string_view text, std::string_view begin) {
+  return text.starts_with(begin) || text.find("\n" + std::string(begin)) != std::string_view::npos;
 }
 
 }  // namespace
 
+std::string SetLens(std::span<const double> coefficients, Camera& camera) {
+  const std::size_t most = camera.lens == Lens::fisheye ? 4 : 5;
+  if (coefficients.size() < 4)
+    return "must be k1, k2, p1, p2 and perhaps k3, or k1 ... k4 of an equidistant lens; there are " +
+           std::to_string(coefficients.size()) + " numbers";
+  for (std::size_t i = most; i < coefficients.size(); ++i) {
+    if (coefficients[i] != 0)
+      return "has more than " + std::to_string(most) + " coefficients that are not zero: that lens is not known here";
+  }
+  camera.k1 = coefficients[0];
+  camera.k2 = coefficients[1];
+  const bool fisheye = camera.lens == Lens::fisheye;
+  (fisheye ? camera.k3 : camera.p1) = coefficients[2];
+  (fisheye ? camera.k4 : camera.p2) = coefficients[3];
+  if (!fisheye && coefficients.size() > 4) camera.k3 = coefficients[4];
+  return "";
+}
+
 Camera ReadCamera(const std::filesystem::path& file) {
-  const std::string first_line = FirstLine(file);
-  if (first_line.starts_with("<?xml")) return ReadOpenCvXml(file);
+  const std::string content = base::ReadFile(file).value_or("");
+  const std::string_view text = base::WithoutMark(content);
+  if (text.starts_with("<?xml")) return ReadOpenCvXml(file);
+  if (std::optional<Camera> camera = ReadTextCamera(FirstData(text), file)) return *camera;
   Camera camera;
   camera.readout_s = std::nullopt;
-  const bool of_opencv = first_line.starts_with("%YAML:");
+  // Ours knows no tags, and is one document.
   settings::Document document =
-      settings::Document::FromFile(file, of_opencv ? settings::Dialect::opencv : settings::Dialect::ours);
+      settings::Document::FromFile(file, HasLine(text, "fx:") ? settings::Dialect::ours : settings::Dialect::opencv);
   settings::Section root = document.root();
-  if (of_opencv) {
-    ReadOpenCvYaml(root, camera);
-  } else if (root.Has("intrinsics")) {
-    ReadEuroc(root, "distortion_coefficients", camera);
-  } else if (root.Has("cam0")) {
+  if (root.Has("cam0")) {
     ReadEuroc(root.Child("cam0"), "distortion_coeffs", camera);
     root.IgnoreRest();  // other cameras
-  } else if (root.Has("camera_matrix")) {
+  } else if (root.Has("intrinsics")) {
+    ReadEuroc(root, "distortion_coefficients", camera);
+  } else if (root.Has("camera_matrix") && root.Has("distortion_model")) {
     ReadRos(root, camera);
+  } else if (ReadSlamCamera(root, camera)) {
+    // has read it
+  } else if (root.Has("camera_matrix") || root.Has("Camera_Matrix") || root.Has("image_width")) {
+    ReadOpenCvYaml(root, camera);
   } else {
+    constexpr const char* kOwn[] = {"width", "height", "fx", "fy", "cx", "cy", "distortion", "rolling_shutter"};
+    if (std::ranges::none_of(kOwn, [&](const char* key) { return root.Has(key); })) {
+      root.IgnoreRest();
+      document.ThrowIfBad();
+      throw settings::Error({{file.string(), 0, 0,
+                              "is no calibration of a kind that is known here: docs/conventions.md, "
+                              "\"Camera files\", has a list"}});
+    }
     ReadOwn(root, camera);
   }
   document.ThrowIfBad();

@@ -1,11 +1,11 @@
 #include "vo/sequence/reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <opencv2/imgcodecs.hpp>
-#include <sstream>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -18,10 +18,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMostProblems = 50;
+
 // ICL-NUIM numbers its frames at 30 Hz.
 std::optional<std::int64_t> StampOfIndex(std::string_view text) {
   const auto index = text.size() <= 9 ? base::ParseWhole(text) : std::nullopt;
   return index && *index >= 0 ? std::optional((*index * 1'000'000'000 + 15) / 30) : std::nullopt;
+}
+
+// TUM's lists have seconds; no camera works before 0.
+std::optional<std::int64_t> StampInSeconds(std::string_view text) {
+  const auto stamp_ns = base::ParseSeconds(text);
+  return stamp_ns && *stamp_ns >= 0 ? stamp_ns : std::nullopt;
 }
 
 // EuRoC counts nanoseconds.
@@ -30,7 +38,7 @@ std::optional<std::int64_t> StampInNanoseconds(std::string_view text) {
   return stamp_ns && *stamp_ns >= 0 ? stamp_ns : std::nullopt;
 }
 
-// List of frames, one per line: the first word is the stamp, the last one the image.
+// List of frames, one per line: the first word is the stamp.
 struct ListFormat {
   fs::path list, images;  // file names are relative to `images`
   std::size_t words;
@@ -41,31 +49,37 @@ struct ListFormat {
 ListFormat FormatOf(const fs::path& folder) {
   if (!fs::exists(folder / "rgb.txt")) {
     if (fs::exists(folder / "associations.txt"))
-      return {folder / "associations.txt",        folder, 4, StampOfIndex, "the number of a frame",
-              "index depth-file index image-file"};
+      return {folder / "associations.txt",
+              folder,
+              4,
+              StampOfIndex,
+              "the number of a frame",
+              "index depth-file index image-file, or index image-file index depth-file"};
     if (fs::exists(folder / "mav0"))
       return {folder / "mav0/cam0/data.csv", folder / "mav0/cam0/data", 2, StampInNanoseconds,
               "a time stamp in nanoseconds", "timestamp,filename"};
   }
-  return {folder / "rgb.txt", folder, 2, base::ParseStamp, "a time stamp in seconds", "timestamp filename"};
+  return {folder / "rgb.txt", folder, 2, StampInSeconds, "a time stamp in seconds", "timestamp filename"};
 }
 
-// Words separated by blanks or commas.
-std::vector<std::string> Words(std::string line) {
-  std::replace(line.begin(), line.end(), ',', ' ');
-  std::istringstream in(line);
-  return {std::istream_iterator<std::string>(in), std::istream_iterator<std::string>()};
+// A 16-bit grey PNG: depth, where it stands beside another picture.
+bool IsDepth(const fs::path& file) {
+  std::array<char, 26> head{};
+  std::ifstream(file, std::ios::binary).read(head.data(), head.size());
+  constexpr int kBits = 24, kColour = 25;
+  return std::string_view(head.data(), 4) == "\x89PNG" && head[kBits] == 16 && head[kColour] == 0;
 }
 
-// Whether a PNG or JPEG has its end marker: OpenCV decodes a truncated file, and fills the rest with grey.
-bool IsComplete(const std::vector<std::uint8_t>& bytes) {
-  static constexpr std::uint8_t png[] = {0x89, 'P', 'N', 'G'};
-  static constexpr std::uint8_t iend[] = {'I', 'E', 'N', 'D', 0xAE, 0x42, 0x60, 0x82};
-  if (bytes.size() < 12) return false;
-  if (std::equal(std::begin(png), std::end(png), bytes.begin()))
-    return std::search(bytes.end() - 12, bytes.end(), std::begin(iend), std::end(iend)) != bytes.end();
-  if (bytes[0] == 0xFF && bytes[1] == 0xD8) return bytes[bytes.size() - 2] == 0xFF && bytes[bytes.size() - 1] == 0xD9;
-  return true;
+// The image of a line: its last word; of a list of associations the picture that is no depth, which programs write
+// first or last. Empty: both are.
+fs::path ImageOf(const std::vector<base::Word>& words, const fs::path& folder) {
+  for (std::size_t i = words.size() - 1;; i -= 2) {
+    std::string name(words[i].text);
+    std::ranges::replace(name, '\\', '/');  // as lists made on Windows have it
+    const fs::path image = folder / name;
+    if (words.size() < 4 || !IsDepth(image)) return image;
+    if (i == 1) return {};
+  }
 }
 
 cv::Mat Decode(const std::vector<std::uint8_t>& bytes, const fs::path& file) {
@@ -82,13 +96,14 @@ cv::Mat ReadImage(const fs::path& file) {
   in.seekg(0);
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!in || bytes.empty()) throw std::runtime_error(file.string() + ": cannot be read, or is empty");
-  if (!IsComplete(bytes)) throw std::runtime_error(file.string() + ": image breaks off before its end");
-  if (const std::string problem = limits::PictureProblem(bytes); !problem.empty())
-    throw std::runtime_error(file.string() + ": " + problem);
-  const cv::Mat image = Decode(bytes, file);
+  for (const std::string& problem : {limits::PictureProblem(bytes), limits::PictureEndProblem(bytes)}) {
+    if (!problem.empty()) throw std::runtime_error(file.string() + ": " + problem);
+  }
+  cv::Mat image = Decode(bytes, file);
   if (image.empty()) throw std::runtime_error(file.string() + ": not an image that can be decoded");
-  if ((image.depth() != CV_8U && image.depth() != CV_16U) || (image.channels() != 1 && image.channels() != 3))
-    throw std::runtime_error(file.string() + ": expected a grey or colour image of 8 or 16 bits");
+  if (image.depth() != CV_8U && image.depth() != CV_16U)
+    throw std::runtime_error(file.string() + ": expected an image of 8 or 16 bits");
+  if (image.channels() == 4) cv::cvtColor(image, image, cv::COLOR_BGRA2BGR);  // alpha is of no use
   if (image.depth() == CV_8U) return image;
   cv::Mat eight_bits;
   image.convertTo(eight_bits, CV_8U, 255.0 / 65535);
@@ -113,11 +128,14 @@ SequenceReader::SequenceReader(const fs::path& folder) {
     const auto complain = [&](const std::string& text) {
       problems.push_back(list.string() + ":" + std::to_string(number) + ": " + text);
     };
-    const std::vector<std::string> words = Words(line);
-    if (words.empty() || words[0][0] == '#') continue;
-    const auto stamp_ns = format.stamp(words[0]);
+    const std::vector<base::Word> words = base::SplitWords(number == 1 ? base::WithoutMark(line) : line);
+    if (words.empty() || words[0].text[0] == '#') continue;
+    const std::string stamp(words[0].text);
+    const auto stamp_ns = format.stamp(stamp);
     if (!stamp_ns) {
-      complain("'" + words[0] + "' is not " + format.not_a_stamp);
+      const std::string unit = format.stamp == StampInSeconds ? base::UnitOfStamp(stamp) : "";
+      complain("'" + stamp + "' is not " + format.not_a_stamp + unit);
+      if (!unit.empty()) break;  // so are all
       continue;
     }
     if (words.size() != format.words) {
@@ -125,21 +143,39 @@ SequenceReader::SequenceReader(const fs::path& folder) {
       continue;
     }
     if (!entries_.empty() && *stamp_ns <= entries_.back().stamp_ns)
-      complain("time stamp " + words[0] + " does not increase over line " + std::to_string(last_number));
-    const fs::path image = format.images / words.back();
+      complain("time stamp " + stamp + " does not increase over line " + std::to_string(last_number));
+    const fs::path image = ImageOf(words, format.images);
     std::error_code error;  // a name that is too long is reported like other problems
-    if (!fs::is_regular_file(image, error)) complain("image " + image.string() + " is not there");
+    if (image.empty()) {
+      complain("both pictures are depth (grey of 16 bits)");
+    } else if (!fs::is_regular_file(image, error)) {
+      complain("image " + image.string() + " is not there");
+    }
     entries_.push_back({*stamp_ns, image});
     last_number = number;
   }
   if (problems.empty() && entries_.empty()) problems.push_back(list.string() + ": no frames");
+  if (problems.size() > kMostProblems) {
+    const std::size_t more = problems.size() - kMostProblems;
+    problems.resize(kMostProblems);
+    problems.push_back("... and " + std::to_string(more) + " more problems");
+  }
   if (!problems.empty()) throw std::runtime_error(base::Join(problems, "\n"));
 }
 
 std::optional<Frame> SequenceReader::Next() {
   if (next_ == entries_.size()) return std::nullopt;
   const Entry& entry = entries_[next_++];
-  return Frame{entry.stamp_ns, ReadImage(entry.image)};
+  Frame frame{entry.stamp_ns, ReadImage(entry.image)};
+  if (size_.empty()) size_ = frame.image.size();
+  if (frame.image.size() != size_) {
+    const auto text = [](const cv::Size& size) {
+      return std::to_string(size.width) + " x " + std::to_string(size.height);
+    };
+    throw std::runtime_error(entry.image.string() + ": is " + text(frame.image.size()) +
+                             " pixels, but the first image is " + text(size_));
+  }
+  return frame;
 }
 
 }  // namespace vo

@@ -1,5 +1,6 @@
 // Reader of image sequences: TUM RGB-D layout (docs/sequence_format.md); ICL-NUIM's original layout (associations.txt,
-// `index depth-file index image-file`, stamp = index / 30 s); EuRoC (mav0/cam0/data.csv, `stamp in ns,filename`).
+// `index file index file`, the depth first or last, stamp = index / 30 s); EuRoC (mav0/cam0/data.csv, `stamp in
+// ns,filename`).
 #pragma once
 
 #include <cstddef>
@@ -27,6 +28,7 @@ class SequenceReader : public FrameSource {
   };
   std::vector<Entry> entries_;
   std::size_t next_ = 0;
+  cv::Size size_;  // of the first image
 };
 
 }  // namespace vo

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace base {
 namespace {
@@ -20,11 +22,28 @@ TEST(ParseWhole, TakesAllOfTheTextOrNothing) {
     EXPECT_EQ(ParseWhole(text), std::nullopt) << text;
 }
 
-TEST(ParseStamp, TakesDigitsAndAPointOnly) {
-  EXPECT_EQ(ParseStamp("1305031102.175304"), 1305031102'175304000);
-  EXPECT_EQ(ParseStamp("12"), 12'000'000'000);
-  for (const char* text : {"", ".", "-1", "+1", "1e3", "1.2.3", "4000000001"})
-    EXPECT_EQ(ParseStamp(text), std::nullopt) << text;
+TEST(SplitWords, BetweenBlanksTabsCommasAndSemicolons) {
+  const std::vector<Word> words = SplitWords(" 1.5,\t2; 3 ,4\r");
+  ASSERT_EQ(words.size(), 4u);
+  EXPECT_EQ(words[0].text, "1.5");
+  EXPECT_EQ(words[0].column, 2);
+  EXPECT_EQ(words[3].text, "4");
+  EXPECT_EQ(words[3].column, 13);
+  EXPECT_TRUE(SplitWords(" ,;\t").empty());
+}
+
+TEST(WithoutMark, LeavesOutOneMark) {
+  EXPECT_EQ(WithoutMark("\xef\xbb\xbf# a"), "# a");
+  EXPECT_EQ(WithoutMark("# \xef\xbb\xbf"), "# \xef\xbb\xbf");
+}
+
+TEST(UnitOfStamp, NamesWhatAStampOfTheseYearsCounts) {
+  EXPECT_EQ(UnitOfStamp("4000000000"), "");
+  EXPECT_NE(UnitOfStamp("1403636579763.5").find("milliseconds: divide the times by 1e3"), std::string::npos);
+  EXPECT_NE(UnitOfStamp("1403636579763555").find("microseconds: divide the times by 1e6"), std::string::npos);
+  EXPECT_NE(UnitOfStamp("1.403636579763555584e+18").find("nanoseconds: divide the times by 1e9"), std::string::npos);
+  EXPECT_EQ(UnitOfStamp("4000000001"), ", 4e9 at most");
+  EXPECT_EQ(UnitOfStamp("word"), "");
 }
 
 TEST(Fixed, HasAllDigitsOfTheLongestDouble) {

@@ -228,14 +228,15 @@ TEST(EurocLayout, TruthIsOfTheCameraNotOfTheBody) {
   EXPECT_LT((truth->poses[0].p_WC - Eigen::Vector3d(0, 1, 5)).norm(), 1e-12);
   EXPECT_LT(truth->poses[0].q_WC.angularDistance(Eigen::Quaterniond(0, 0, 0, 1)), 1e-12) << "180 degrees about z";
   EXPECT_FALSE(truth->velocities);
-  folder.Write("mav0/state_groundtruth_estimate0/data.csv", "1,0,0,5,1,0,0,0\n1,0,0,x,2,0,0,0\n");
+  folder.Write("mav0/state_groundtruth_estimate0/data.csv",
+               "2,0,0,5,1,0,0,0\n1,0,0,5,1,0,0,0\n3,0,0,x,1,0,0,0\n4,0,0,5,2,0,0,0\n");
   try {
     ReadSequenceTruth(folder.path());
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("data.csv:2:1: time does not increase"));
-    EXPECT_THAT(error.what(), testing::HasSubstr("'x' is not a number"));
-    EXPECT_THAT(error.what(), testing::HasSubstr("norm is not 1"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("data.csv:2:1: time 1 lies before 0.000000002"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("data.csv:3:7: 'x' is not a finite number"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("norm is 2"));
   }
 }
 

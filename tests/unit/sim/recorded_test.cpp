@@ -44,6 +44,35 @@ TEST(TumTrajectory, ReadsCommentsBlanksAndLargeStamps) {
   EXPECT_DOUBLE_EQ(keys[1].pose.q_WC.w, 0.8);
 }
 
+// As evaluate reads it: mark, commas, exponents, and motion capture's equal stamps, of which the first counts.
+TEST(TumTrajectory, AsOtherProgramsWriteIt) {
+  const TemporaryFolder folder;
+  const std::vector<KeyPose> keys = ReadTumTrajectory(folder.Write("a.txt",
+                                                                   "\xef\xbb\xbf# header\n"
+                                                                   "1.403636580000000000e+09,1,2,3,0,0,0,1\n"
+                                                                   "1.403636580000000000e+09,1.005,2,3,0,0,0,1\n"
+                                                                   "1.403636580250000000e+09,4,5,6,0,0,0,1\n"));
+  ASSERT_EQ(keys.size(), 2u);
+  EXPECT_EQ(keys[0].pose.p_WC, glm::dvec3(1, 2, 3));
+  EXPECT_DOUBLE_EQ(keys[1].t_s, 0.25);
+  const std::vector<KeyPose> euroc = ReadTumTrajectory(
+      folder.Write("data.csv",
+                   "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []\n"
+                   "1403636580000000000, 1, 2, 3, 0.8, 0, 0, 0.6\n1403636580250000000,4,5,6,1,0,0,0,9,9,9\n"));
+  ASSERT_EQ(euroc.size(), 2u);
+  EXPECT_DOUBLE_EQ(euroc[1].t_s, 0.25);
+  EXPECT_EQ(euroc[1].pose.p_WC, glm::dvec3(4, 5, 6));
+  EXPECT_DOUBLE_EQ(euroc[0].pose.q_WC.w, 0.8);
+  EXPECT_DOUBLE_EQ(euroc[0].pose.q_WC.z, 0.6);
+  EXPECT_THAT(Message([&] { ReadTumTrajectory(folder.Write("b.txt", "1 0 0 0 0 0 0 1\n1 0.02 0 0 0 0 0 1\n")); }),
+              HasSubstr("b.txt:2:1: time 1 is not after that of line 1"));
+  EXPECT_THAT(Message([&] {
+                ReadTumTrajectory(
+                    folder.Write("c.txt", "1403636579763555584 0 0 0 0 0 0 1\n1403636579813555584 0 0 0 0 0 0 1\n"));
+              }),
+              testing::AllOf(HasSubstr("nanoseconds: divide the times by 1e9"), testing::Not(HasSubstr("\n"))));
+}
+
 TEST(TumTrajectory, EveryProblemHasItsLine) {
   const TemporaryFolder folder;
   const std::string file = folder
@@ -52,7 +81,7 @@ TEST(TumTrajectory, EveryProblemHasItsLine) {
                                       "1.0 0 0 0 0 0 0 1\n"
                                       "1.1 nan 0 0 0 0 0 1\n"
                                       "1.2 0 0 0 0 0 0\n"
-                                      "1.0 0 0 0 0 0 0 1\n"
+                                      "0.9 0 0 0 0 0 0 1\n"
                                       "1.4 0 0 0 0 0 0 2\n"
                                       "x1.5 0 zero 0 0 0 0 1\n"
                                       "-1 0 0 0 0 0 0 1\n")
@@ -60,10 +89,10 @@ TEST(TumTrajectory, EveryProblemHasItsLine) {
   EXPECT_EQ(Message([&] { ReadTumTrajectory(file); }),
             file + ":3:5: 'nan' is not a finite number\n" + file +
                 ":4:1: expected timestamp tx ty tz qx qy qz qw, not 7 words\n" + file +
-                ":5:1: time 1.0 is not after that of line 2\n" + file + ":6:11: the quaternion's length is 2, not 1\n" +
+                ":5:1: time 0.9 is not after that of line 2\n" + file + ":6:11: the quaternion's length is 2, not 1\n" +
                 file + ":7:1: 'x1.5' is not a timestamp in seconds\n" + file +
                 ":7:8: 'zero' is not a number: expected a bare number\n" + file +
-                ":8:1: '-1' is not a timestamp in seconds");
+                ":8:1: time -1 is not after that of line 6");
 }
 
 TEST(TumTrajectory, FilesThatAreNone) {

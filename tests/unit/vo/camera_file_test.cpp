@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/calib3d.hpp>
@@ -174,6 +175,150 @@ TEST_F(CameraFile, OfEurocWhoseSizeIsNone) {
                              "distortion_coefficients: [0, 0, 0, 0]\n";
     EXPECT_THAT(ErrorOf(Write("sensor.yaml", text)), HasSubstr("sensor.yaml:2:")) << width;
   }
+}
+
+// As a plumb bob with these coefficients, whatever the file's format.
+void ExpectRadtan(const vo::Camera& c, double k1) {
+  EXPECT_EQ(c.width, 752);
+  EXPECT_EQ(c.height, 480);
+  EXPECT_EQ(c.lens, vo::Lens::radial_tangential);
+  EXPECT_NEAR(c.fx, 458.5, 1e-9);
+  EXPECT_NEAR(c.fy, 457.25, 1e-9);
+  EXPECT_NEAR(c.cx, 367.25, 1e-9);
+  EXPECT_NEAR(c.cy, 248.375, 1e-9);
+  EXPECT_EQ(c.k1, k1);
+  EXPECT_EQ(c.readout_s, std::nullopt);
+}
+
+TEST_F(CameraFile, OfColmap) {
+  const std::string head = "# Camera list\n#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n";
+  ExpectRadtan(
+      vo::ReadCamera(Write("c.txt", head + "3 OPENCV 752 480 458.5 457.25 367.75 248.875 -0.25 0.07 1e-4 2e-5")),
+      -0.25);
+  ExpectRadtan(vo::ReadCamera(Write("c.txt", head + "1 PINHOLE 752 480 458.5 457.25 367.75 248.875\r\n")), 0);
+  ExpectFisheye(vo::ReadCamera(
+      Write("c.txt", head + "1 OPENCV_FISHEYE 752 480 458.5 457.25 367.75 248.875 -0.0127 0.0114 -0.0071 0.0023\n")));
+  const vo::Camera simple = vo::ReadCamera(Write("c.txt", "1 SIMPLE_RADIAL 640 480 500 320 240 0.1\n"));
+  EXPECT_EQ(simple.fy, 500);
+  EXPECT_EQ(simple.cx, 319.5);
+  EXPECT_EQ(simple.k1, 0.1);
+  EXPECT_THAT(ErrorOf(Write("c.txt", "1 THIN_PRISM_FISHEYE 640 480 1 1 1 1 0 0 0 0 0 0 0 0\n")),
+              HasSubstr("COLMAP's model THIN_PRISM_FISHEYE is not known"));
+  EXPECT_THAT(ErrorOf(Write("c.txt", "1 OPENCV 640 480 500 500 320 240\n")), HasSubstr("has 8 parameters, not 4"));
+  EXPECT_THAT(ErrorOf(Write("c.txt", "1 SIMPLE_PINHOLE 640 480 500 320 240\n2 SIMPLE_PINHOLE 64 48 50 32 24\n")),
+              HasSubstr("more than one camera"));
+}
+
+TEST_F(CameraFile, OfDso) {
+  ExpectRadtan(
+      vo::ReadCamera(Write("camera.txt", "RadTan 458.5 457.25 367.25 248.375 -0.25 0.07 1e-4 2e-5\n752 480\n")), -0.25);
+  const vo::Camera relative =
+      vo::ReadCamera(Write("camera.txt", "Pinhole 0.5 0.75 0.5 0.5 0\n640 480\ncrop\n640 480\n"));
+  EXPECT_EQ(relative.fx, 320);
+  EXPECT_EQ(relative.cy, 239.5);
+  const std::string refused =
+      ErrorOf(Write("camera.txt",
+                    "0.535719308086809 0.669566858850269 0.493248545285398 0.500408664348414 0.897966\n"
+                    "1280 1024\ncrop\n640 480\n"));
+  EXPECT_THAT(refused, HasSubstr("field-of-view lens"));
+  EXPECT_EQ(std::count(refused.begin(), refused.end(), '\n'), 0);
+}
+
+TEST_F(CameraFile, OfOpenCvWithOtherFirstLines) {
+  const std::string rest =
+      "image_width: 752\nimage_height: 480\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: "
+      "[ "
+      "458.5, 0., 367.25, 0., 457.25, 248.375, 0., 0., 1. ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 1\n   "
+      "cols: 4\n   dt: d\n   data: [ -0.25, 0.07, 0.0001, 2e-05 ]\n";
+  for (const std::string first : {"%YAML:1.0\n---\n", "%YAML 1.0\n---\n", "\xef\xbb\xbf%YAML:1.0\n", "---\n", ""})
+    ExpectRadtan(vo::ReadCamera(Write("c.yaml", first + rest)), -0.25);
+}
+
+TEST_F(CameraFile, OfKalibrAndOpenVins) {
+  const std::string cam =
+      "cam0:\n  camera_model: pinhole\n  intrinsics: [458.5, 457.25, 367.25, 248.375]\n  resolution: [752, 480]\n";
+  ExpectRadtan(vo::ReadCamera(Write("c.yaml", cam + "  distortion_model: none\n  distortion_coeffs: []\n")), 0);
+  ExpectRadtan(vo::ReadCamera(Write("c.yaml", cam + "  distortion_model: none\n")), 0);
+  ExpectRadtan(
+      vo::ReadCamera(Write(
+          "c.yaml", "%YAML:1.0\n\n" + cam + "  distortion_model: radtan\n  distortion_coeffs: [-0.25, 0, 0, 0]\n")),
+      -0.25);
+  EXPECT_THAT(
+      ErrorOf(Write("c.yaml", "%YAML:1.0\nverbosity: INFO\nrelative_config_imucam: kalibr_imucam_chain.yaml\n")),
+      HasSubstr("give the file that relative_config_imucam names"));
+}
+
+TEST_F(CameraFile, OfOrbSlam) {
+  const std::string size = "Camera.width: 752\nCamera.height: 480\nORBextractor.nFeatures: 1000\n";
+  for (const std::string prefix : {"Camera.", "Camera1."}) {
+    const auto key = [&](const std::string& name, const std::string& value) {
+      return prefix + name + ": " + value + "\n";
+    };
+    const std::string pinhole =
+        key("fx", "458.5") + key("fy", "457.25") + key("cx", "367.25") + key("cy", "248.375") + size;
+    ExpectRadtan(
+        vo::ReadCamera(Write("o.yaml", "%YAML:1.0\n\nCamera.type: \"PinHole\"\n" + pinhole + key("k1", "-0.25") +
+                                           key("k2", "0.07") + key("p1", "0.0001") + key("p2", "2e-5"))),
+        -0.25);
+    ExpectRadtan(vo::ReadCamera(Write("o.yaml", "%YAML:1.0\nCamera.type: \"Rectified\"\n" + pinhole)), 0);
+    ExpectFisheye(
+        vo::ReadCamera(Write("o.yaml", "%YAML:1.0\nCamera.type: \"KannalaBrandt8\"\n" + pinhole + key("k1", "-0.0127") +
+                                           key("k2", "0.0114") + key("k3", "-0.0071") + key("k4", "0.0023"))));
+  }
+}
+
+TEST_F(CameraFile, OfCamodocalAndVins) {
+  const std::string size = "%YAML:1.0\n---\ncamera_name: camera\nimage_width: 752\nimage_height: 480\n";
+  ExpectRadtan(vo::ReadCamera(Write(
+                   "c.yaml", size + "model_type: PINHOLE\ndistortion_parameters:\n   k1: -2.5e-01\n   k2: 0\n   p1: "
+                                    "0\n   p2: 0\nprojection_parameters:\n   fx: 4.585e+02\n   fy: 4.5725e+02\n"
+                                    "   cx: 3.6725e+02\n   cy: 2.48375e+02\n")),
+               -0.25);
+  ExpectFisheye(vo::ReadCamera(
+      Write("c.yaml",
+            size + "model_type: KANNALA_BRANDT\nprojection_parameters:\n   k2: -0.0127\n   k3: 0.0114\n   k4: -0.0071\n"
+                   "   k5: 0.0023\n   mu: 458.5\n   mv: 457.25\n   u0: 367.25\n   v0: 248.375\n")));
+  const std::string mei = ErrorOf(Write("c.yaml", size + "model_type: MEI\nmirror_parameters:\n   xi: 1.9\n"));
+  EXPECT_THAT(mei, HasSubstr("MEI"));
+  EXPECT_EQ(std::count(mei.begin(), mei.end(), '\n'), 0) << mei;
+  EXPECT_THAT(ErrorOf(Write("c.yaml", "%YAML:1.0\nimu: 1\ncam0_calib: \"cam0_mei.yaml\"\n")),
+              HasSubstr("give the file that cam0_calib names"));
+}
+
+TEST_F(CameraFile, OfBasalt) {
+  const std::string
+      head = R"({"value0": {"T_imu_cam": [{"px": 0}], "intrinsics": [{"camera_type": )",
+      tail = R"(}, {"camera_type": "ds", "intrinsics": {"xi": 0}}], "resolution": [[752, 480], [752, 480]]}})";
+  ExpectFisheye(vo::ReadCamera(Write(
+      "calib.json", head +
+                        R"("kb4", "intrinsics": {"fx": 458.5, "fy": 457.25, "cx": 367.25, "cy": 248.375, "k1": -0.0127,
+                             "k2": 0.0114, "k3": -0.0071, "k4": 0.0023})" +
+                        tail)));
+  ExpectRadtan(
+      vo::ReadCamera(
+          Write("calib.json",
+                head + R"("pinhole", "intrinsics": {"fx": 458.5, "fy": 457.25, "cx": 367.25, "cy": 248.375})" + tail)),
+      0);
+  EXPECT_THAT(ErrorOf(Write("calib.json", head + R"("ds", "intrinsics": {"fx": 1, "xi": 0})" + tail)),
+              HasSubstr("'ds'"));
+}
+
+// As `rostopic echo` and `ros2 topic echo` print a message.
+TEST_F(CameraFile, OfRosTopics) {
+  for (const bool capitals : {true, false}) {
+    const std::string k = capitals ? "K" : "k", d = capitals ? "D" : "d";
+    const std::string text =
+        "header:\n  seq: 1\n  frame_id: \"cam\"\nheight: 480\nwidth: 752\ndistortion_model: \"plumb_bob\"\n" + d +
+        ": [-0.25, 0.07, 0.0001, 2e-05, 0.0]\n" + k +
+        ": [458.5, 0.0, 367.25, 0.0, 457.25, 248.375, 0.0, 0.0, 1.0]\n---\n";
+    ExpectRadtan(vo::ReadCamera(Write("info.yaml", text + text)), -0.25);
+  }
+}
+
+TEST_F(CameraFile, OfNoKnownKindIsOneSentence) {
+  const std::string error = ErrorOf(Write("other.yaml", "name: x\nfocal: 3\nvalues: [1, 2]\n"));
+  EXPECT_THAT(error, HasSubstr("is no calibration of a kind that is known here"));
+  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 0) << error;
 }
 
 }  // namespace

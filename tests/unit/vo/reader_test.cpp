@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
@@ -91,6 +92,70 @@ TEST_F(Reader, RefusesFoldersWithoutFrames) {
   EXPECT_NE(ErrorOfOpening().find("no frames"), std::string::npos);
   fs::remove_all(folder_);
   EXPECT_NE(ErrorOfOpening().find("no such folder"), std::string::npos);
+}
+
+// As associate.py of TUM RGB-D prints its lists, in either order: the depth is the grey picture of 16 bits.
+TEST_F(Reader, TakesThePictureThatIsNoDepth) {
+  fs::create_directories(folder_ / "depth");
+  cv::imwrite((folder_ / "depth/a.png").string(), cv::Mat(4, 6, CV_16UC1, cv::Scalar(5000)));
+  for (const char* line : {"3 rgb/a.png 3 depth/a.png\n", "3 depth/a.png 3 rgb/a.png\n"}) {
+    std::ofstream(folder_ / "associations.txt") << line;
+    vo::SequenceReader reader(folder_);
+    const auto frame = reader.Next();
+    EXPECT_EQ(frame->stamp_ns, 100000000);
+    EXPECT_EQ(frame->image.at<cv::Vec3b>(1, 1), cv::Vec3b(10, 20, 30));
+  }
+  std::ofstream(folder_ / "associations.txt") << "3 depth/a.png 3 depth/a.png\n";
+  EXPECT_NE(ErrorOfOpening().find("associations.txt:1: both pictures are depth"), std::string::npos);
+}
+
+// Alpha is left out, 16 bits become 8, and what follows a picture's end does no harm.
+TEST_F(Reader, ReadsEveryColourTypeAndPaddedFiles) {
+  cv::imwrite((folder_ / "rgb/rgba.png").string(), cv::Mat(4, 6, CV_8UC4, cv::Scalar(10, 20, 30, 255)));
+  cv::imwrite((folder_ / "rgb/deep.png").string(), cv::Mat(4, 6, CV_16UC4, cv::Scalar(2570, 5140, 7710, 65535)));
+  for (const char* name : {"rgb/a.jpg", "rgb/padded.png"}) {
+    cv::imwrite((folder_ / name).string(), cv::Mat(4, 6, CV_8UC3, cv::Scalar(10, 20, 30)));
+    std::ofstream(folder_ / name, std::ios::app | std::ios::binary) << std::string(3, '\0');
+  }
+  List("\xef\xbb\xbf# list\n1,rgb\\rgba.png\n2 rgb/deep.png\n3 rgb/a.jpg\n4 rgb/padded.png\n");
+  vo::SequenceReader reader(folder_);
+  for (int i = 0; i < 4; ++i) {
+    const auto frame = reader.Next();
+    ASSERT_EQ(frame->image.type(), CV_8UC3) << i;
+    const cv::Vec3b pixel = frame->image.at<cv::Vec3b>(1, 1);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c], 10 * (c + 1), i == 2 ? 3 : 0) << i;
+  }
+}
+
+TEST_F(Reader, NamesTheImageOfAnotherSize) {
+  cv::imwrite((folder_ / "rgb/b.png").string(), cv::Mat(5, 6, CV_8UC1));
+  List("1 rgb/a.png\n2 rgb/b.png\n");
+  vo::SequenceReader reader(folder_);
+  reader.Next();
+  try {
+    reader.Next();
+    FAIL() << "nothing was thrown";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("rgb/b.png: is 6 x 5 pixels, but the first image is 6 x 4"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(Reader, ListsFiftyProblemsAtMost) {
+  std::string list;
+  for (int i = 1; i <= 70; ++i) list += std::to_string(i) + " rgb/none.png\n";
+  List(list);
+  const std::string error = ErrorOfOpening();
+  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 50);
+  EXPECT_NE(error.find("... and 20 more problems"), std::string::npos);
+}
+
+TEST_F(Reader, StampsInNanosecondsAreAskedBackInOneSentence) {
+  List("1403636579763555584 rgb/a.png\n1403636579813555584 rgb/b.png\n");
+  const std::string error = ErrorOfOpening();
+  EXPECT_NE(error.find("nanoseconds: divide the times by 1e9"), std::string::npos) << error;
+  EXPECT_EQ(error.find('\n'), std::string::npos) << error;
 }
 
 TEST_F(Reader, NamesATruncatedImage) {

@@ -124,6 +124,21 @@ Size OfHdr(Bytes file) {
   return {Digits(file, at).value_or(0), height};
 }
 
+Size OfTga(Bytes file) { return {Number(file, 12, 2, true), Number(file, 14, 2, true)}; }
+
+// Other kinds that scenes come with, by name.
+std::string_view KnownKind(Bytes file) {
+  if (Begins(file, "DDS ")) return "DDS";
+  if (Begins(file, "\x01\xda")) return "SGI (.rgb)";
+  if (Begins(file, "\xabKTX")) return "KTX (Basis)";
+  if (Begins(file, "sB")) return "Basis";
+  if (Begins(file, "GIF8")) return "GIF";
+  if (Begins(file, "8BPS")) return "Photoshop";
+  if (Begins(file, "ftypavif", 4)) return "AVIF";
+  if (Begins(file, std::string_view("\0\0\0\x0cjP", 6))) return "JPEG 2000";
+  return "";
+}
+
 std::optional<Size> SizeOf(Bytes file) {
   if (Begins(file, "\x89PNG\r\n\x1a\n")) return OfPng(file);
   if (Begins(file, "\xff\xd8")) return OfJpeg(file);
@@ -133,6 +148,7 @@ std::optional<Size> SizeOf(Bytes file) {
   if (Begins(file, "RIFF") && Begins(file, "WEBP", 8)) return OfWebp(file);
   if (file.size() > 2 && file[0] == 'P' && file[1] >= '1' && file[1] <= '6') return OfPnm(file);
   if (Begins(file, "#?RGBE") || Begins(file, "#?RADIANCE")) return OfHdr(file);
+  if (IsTga(file)) return OfTga(file);
   return std::nullopt;
 }
 
@@ -209,6 +225,38 @@ bool IsAsLongAsItsType(const std::string& type, Cursor value, std::int32_t size)
   return true;
 }
 
+std::string PngEndProblem(Bytes file) {
+  for (std::size_t at = 8;;) {  // length, type, data, checksum
+    if (at + 12 > file.size()) return "truncated PNG: the end chunk is missing";
+    const auto length = static_cast<std::size_t>(Number(file, at, 4, false));
+    if (length > file.size() - at - 12) return "truncated PNG: a chunk is cut off";
+    if (Begins(file, "IEND", at + 4)) return "";
+    at += length + 12;
+  }
+}
+
+std::string JpegEndProblem(Bytes file) {
+  constexpr std::uint8_t kStartOfScan = 0xda, kEndOfImage = 0xd9;
+  const char* const truncated = "truncated JPEG: the end marker is missing";
+  bool in_scan = false;
+  for (std::size_t at = 2;;) {
+    if (in_scan) {  // entropy-coded data goes on until a marker that is neither a stuffed zero nor a restart
+      while (at + 1 < file.size() &&
+             (file[at] != 0xff || file[at + 1] == 0x00 || (file[at + 1] >= 0xd0 && file[at + 1] <= 0xd7))) {
+        ++at;
+      }
+    }
+    while (at + 1 < file.size() && file[at] == 0xff && file[at + 1] == 0xff) ++at;  // fill bytes
+    if (at + 2 > file.size()) return truncated;
+    if (file[at] != 0xff) return "damaged JPEG: no marker at byte " + std::to_string(at);
+    const std::uint8_t marker = file[at + 1];
+    if (marker == kEndOfImage) return "";
+    if (at + 4 > file.size()) return truncated;
+    at += 2 + static_cast<std::size_t>(Number(file, at + 2, 2, false));
+    in_scan = marker == kStartOfScan;
+  }
+}
+
 }  // namespace
 
 std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::size_t bytes) {
@@ -228,8 +276,24 @@ std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::siz
 std::string PictureProblem(Bytes file) {
   if (file.size() > std::size_t{1} << 30) return "larger than 1 GiB";
   const std::optional<Size> size = SizeOf(file);
-  if (!size) return "not a picture that is read here (PNG, JPEG, BMP, TIFF, WebP, PNM, HDR)";
+  if (const std::string_view kind = KnownKind(file); !kind.empty())
+    return "a picture of the kind " + std::string(kind) + ", which is not read: convert it to PNG";
+  if (!size) return "not a picture that is read here (PNG, JPEG, BMP, TIFF, TGA, WebP, PNM, HDR): convert it to PNG";
   return PictureSizeProblem(size->width, size->height, file.size());
+}
+
+bool IsTga(Bytes file) {
+  if (file.size() < 18 || file[1] > 1) return false;
+  const int type = file[2] & ~8, bits = file[16];  // 8: run lengths
+  const bool grey = type == 3 && (bits == 8 || bits == 16),
+             color = type == 2 && (bits == 15 || bits == 16 || bits == 24 || bits == 32);
+  const bool indexed = type == 1 && file[1] == 1 && bits == 8 && file[7] >= 15 && file[7] <= 32;
+  return (file[2] & ~11) == 0 && (grey || color || indexed);
+}
+
+std::string PictureEndProblem(Bytes file) {
+  if (Begins(file, "\x89PNG\r\n\x1a\n")) return PngEndProblem(file);
+  return Begins(file, "\xff\xd8") ? JpegEndProblem(file) : "";
 }
 
 std::string ExrProblem(Bytes file) {

@@ -18,9 +18,17 @@ constexpr std::int64_t kPixelsPerByte = 128;        // and to so many more for e
 // What is wrong with a size for a file of so many bytes; empty: nothing.
 std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::size_t bytes);
 
-// The same of a whole file. PNG, JPEG, BMP, TIFF, WebP, PNM and Radiance HDR pass; other kinds are not read, so that no
+// The same of a whole file. PNG, JPEG, BMP, TIFF, TGA, WebP, PNM and Radiance HDR pass; other kinds are not read, so that no
 // file reaches a decoder that is not needed.
 std::string PictureProblem(std::span<const std::uint8_t> file);
+
+// Whether it is a TGA, which has no mark at its beginning: by its header's fields.
+// Source: Truevision, "TGA File Format Specification", version 2.0.
+bool IsTga(std::span<const std::uint8_t> file);
+
+// What is missing at the end of a PNG or JPEG file, which decoders complete with grey; empty: nothing, and for other
+// kinds. What follows the end is not looked at: cameras pad their files.
+std::string PictureEndProblem(std::span<const std::uint8_t> file);
 
 // What is wrong with an OpenEXR file, all of it, by its header; empty: nothing. The library (3.1) makes room for an
 // attribute of any size that the header states, and for tables of a picture of any height.

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "tools/base/settings/state.h"
+#include "tools/base/text.h"
 
 namespace settings {
 namespace {
@@ -54,8 +55,10 @@ class Builder : public YAML::EventHandler {
 
   Element TakeRoot() { return std::move(root_); }
 
-  // What cv::FileStorage has appended to a file is one document more: its keys, where both are maps.
+  // What cv::FileStorage has appended to a file is one document more: its keys, where both are maps. ROS ends each of
+  // its messages with the beginning of another.
   bool Join(Builder& next) {
+    if (next.root_.kind == Element::Kind::null) return true;
     if (root_.kind != Element::Kind::map || next.root_.kind != Element::Kind::map) return false;
     for (Entry& entry : next.root_.entries) {
       if (!root_.Find(entry.key)) root_.entries.push_back(std::move(entry));
@@ -184,7 +187,9 @@ Element ParseYaml(const std::string& text, const Place& from, std::vector<Proble
     problems.push_back(builder.PlaceOf(mark).AsProblem(message));
   };
   try {
-    std::istringstream stream(dialect == Dialect::opencv && text.starts_with('%') ? "#" + text.substr(1) : text);
+    const std::string unmarked(base::WithoutMark(text));
+    const bool directive = dialect == Dialect::opencv && unmarked.starts_with('%');
+    std::istringstream stream(directive ? "#" + unmarked.substr(1) : unmarked);
     YAML::Parser parser(stream);
     bool more = parser.HandleNextDocument(builder);
     while (more) {

@@ -53,7 +53,11 @@ evaluation::Trajectory ReadTruth(const fs::path& path, evaluation::Reading readi
   const fs::path file = path / "groundtruth.txt";
   if (reading != evaluation::Reading::strict && fs::exists(file)) return evaluation::ReadTrajectory(file, reading);
   const std::optional<Truth> truth = ReadSequenceTruth(path);
-  if (!truth) throw BadInput(fmt::format("{}: no groundtruth.txt in it", path.string()));
+  if (!truth)
+    throw BadInput(
+        fmt::format("{}: no groundtruth.txt in it, nor mav0/state_groundtruth_estimate0/data.csv, "
+                    "mav0/mocap0/data.csv or *.gt.freiburg",
+                    path.string()));
   return truth->poses;
 }
 
@@ -107,6 +111,28 @@ void Print(const evaluation::Metrics& metrics, evaluation::Alignment alignment) 
   }
 }
 
+// A best fit says nothing of an estimate where any estimate fits.
+void CheckBasis(const evaluation::TrajectoryErrors& errors, const evaluation::Metrics& metrics,
+                evaluation::Alignment alignment) {
+  const auto warn = [](std::string_view what) { fmt::print(stderr, "vobench: warning: {}\n", what); };
+  const bool fitted = alignment == evaluation::Alignment::se3 || alignment == evaluation::Alignment::sim3;
+  if (errors.pairs < 3 && alignment != evaluation::Alignment::none) {
+    throw BadInput(fmt::format(
+        "{} of the poses have a true one within {:.0f} ms: fewer than three determine no alignment; are the stamps of "
+        "both in seconds of one clock?",
+        errors.pairs, static_cast<double>(metrics.options.association.gap_ns) * 1e-6));
+  }
+  if (!fitted) return;
+  const evaluation::Ate& ate = errors.Aligned(alignment);
+  if (alignment == evaluation::Alignment::sim3 && !ate.similarity.scale_determined)
+    throw BadInput("the true or the estimated positions do not move: --align sim3 has no scale; use se3 or first");
+  if (!ate.similarity.rotation_determined)
+    warn("the positions lie on one line or point: the rotation about it is not determined, nor are orientation errors");
+  if (alignment == evaluation::Alignment::sim3 &&
+      ate.position.rmse > 0.9 * metrics.constant_pose.Aligned(alignment).position.rmse)
+    warn("the estimate explains none of the true motion: the best scale shrinks it to nearly a point");
+}
+
 }  // namespace
 
 void Evaluate(const EvaluateOptions& options) {
@@ -126,7 +152,10 @@ void Evaluate(const EvaluateOptions& options) {
   if (!world_is_known) estimate.beliefs.clear();
   auto how = recorded.value_or(evaluation::JudgeOptions{});
   if (fs::is_directory(options.truth)) how.frame_stamps_ns = Input([&] { return ReadFrameStamps(options.truth); });
-  Print(Input([&] { return evaluation::Judge(estimate, truth, std::nullopt, how); }), AlignmentOf(options.align));
+  const evaluation::Metrics metrics = Input([&] { return evaluation::Judge(estimate, truth, std::nullopt, how); });
+  const evaluation::Alignment alignment = AlignmentOf(options.align);
+  CheckBasis(metrics.errors, metrics, alignment);
+  Print(metrics, alignment);
   if (!world_is_known) {
     fmt::print("{:<28} none: without the metrics.json of this run nothing says whether it began in the truth's world\n",
                kNees);

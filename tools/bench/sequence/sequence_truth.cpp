@@ -67,38 +67,15 @@ Eigen::Isometry3d ReadExtrinsic(const fs::path& file) {
   return T;
 }
 
-// timestamp, p_RS_R, q_RS (w first), velocity, biases: of the body. The camera's pose is T_RB T_BC.
+// The table's poses are the body's. The camera's is T_RB T_BC.
 evaluation::Trajectory ReadEurocTruth(const fs::path& file, const fs::path& camera) {
   const Eigen::Isometry3d T_BC = ReadExtrinsic(camera);
-  evaluation::Trajectory poses;
-  evaluation::Problems problems;
-  for (const evaluation::Line& line : evaluation::Lines(file, ',')) {
-    if (line.tokens.size() < 8) {
-      problems.Add(file, line.number, 1, "expected timestamp, position, quaternion (w x y z), ...");
-      continue;
-    }
-    const auto stamp_ns = ParseNanoseconds(line.tokens[0].text);
-    if (!stamp_ns)
-      problems.Add(file, line.number, 1, "'" + line.tokens[0].text + "' is not a time in nanoseconds, 4e18 at most");
-    if (stamp_ns && !poses.empty() && *stamp_ns <= poses.back().stamp_ns) {
-      problems.Add(file, line.number, 1, "time does not increase");
-    }
-    double v[7] = {};
-    for (std::size_t i = 0; i < 7; ++i) {
-      const auto number = evaluation::ParseNumber(line.tokens[i + 1].text);
-      if (!number) {
-        problems.Add(file, line.number, line.tokens[i + 1].column, "'" + line.tokens[i + 1].text + "' is not a number");
-      }
-      v[i] = number.value_or(0.0);
-    }
-    const Eigen::Quaterniond q_RB(v[3], v[4], v[5], v[6]);
-    if (std::abs(q_RB.norm() - 1) > 1e-3) problems.Add(file, line.number, 1, "the quaternion's norm is not 1");
-    const Eigen::Isometry3d T_RB = Eigen::Translation3d(v[0], v[1], v[2]) * q_RB.normalized();
-    const Eigen::Isometry3d T_RC = T_RB * T_BC;
-    poses.push_back({stamp_ns.value_or(0), T_RC.translation(), Eigen::Quaterniond(T_RC.linear())});
+  evaluation::Trajectory poses = evaluation::ReadTrajectory(file, evaluation::Reading::euroc);
+  for (evaluation::StampedPose& pose : poses) {
+    const Eigen::Isometry3d T_RC = Eigen::Translation3d(pose.p_WC) * pose.q_WC * T_BC;
+    pose.p_WC = T_RC.translation();
+    pose.q_WC = Eigen::Quaterniond(T_RC.linear());
   }
-  if (poses.empty()) problems.Add(file, "has no poses");
-  problems.ThrowIfAny();
   return poses;
 }
 
@@ -121,8 +98,10 @@ std::optional<Truth> ReadSequenceTruth(const fs::path& sequence) {
     return truth;
   }
   if (!fs::is_directory(sequence)) return std::nullopt;
-  if (const fs::path euroc = sequence / "mav0/state_groundtruth_estimate0/data.csv"; fs::exists(euroc)) {
-    truth.poses = ReadEurocTruth(euroc, sequence / "mav0/cam0/sensor.yaml");
+  for (const char* sensor : {"state_groundtruth_estimate0", "mocap0"}) {  // of EuRoC, of TUM VI
+    const fs::path table = sequence / "mav0" / sensor / "data.csv";
+    if (!fs::exists(table)) continue;
+    truth.poses = ReadEurocTruth(table, sequence / "mav0/cam0/sensor.yaml");
     return truth;
   }
   const std::optional<fs::path> icl_nuim = IclNuimTruth(sequence);

@@ -19,7 +19,7 @@ DEBIAN_NAMES = {
     "BSD-2-Clause": ("BSD-2-clause", "BSD-2"),
     "BSD-3-Clause": ("BSD-3-clause", "BSD-3-Clause", "BSD-C3", "BSD-3-Clause+CLA", "openexr", "Neither the name of the NumPy Developers"),
     "BSL-1.0": ("BSL-1.0",),
-    "Apache-2.0": ("Apache-2.0",),
+    "Apache-2.0": ("Apache-2.0", "Apache-2"),
     "Apache-2.0 WITH LLVM-exception": ("APACHE-2-LLVM-EXCEPTIONS",),
     "MPL-2.0": ("MPL-2",),
     "ISC": ("ISC",),

@@ -43,7 +43,10 @@ Similarity Umeyama(const MatchedTrajectories& matched, bool with_scale) {
 
   Similarity result;
   // Positions that do not move but for rounding (their size squared, times epsilon squared) have no extent.
-  result.scale_determined = x_variance > 1e-28 * (1 + x_mean.squaredNorm());
+  const auto moves = [](double variance, const Eigen::Vector3d& mean) {
+    return variance > 1e-28 * (1 + mean.squaredNorm());
+  };
+  result.scale_determined = moves(x_variance, x_mean) && moves(y_variance, y_mean);
   result.rotation_determined =
       result.scale_determined && svd.singularValues()[1] > kRankTolerance * std::sqrt(x_variance * y_variance);
   if (result.scale_determined) {

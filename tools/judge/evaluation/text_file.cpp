@@ -1,8 +1,10 @@
 #include "tools/judge/evaluation/text_file.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <memory>
+#include <string_view>
 
 #include "tools/base/text.h"
 
@@ -20,21 +22,24 @@ std::string Join(std::vector<std::string> problems) {
   return base::Join(problems, "\n");
 }
 
-// Into tokens that are there already, so that their memory serves the next line.
-void Split(const std::string& line, char separator, std::vector<Token>& tokens) {
-  const bool blanks = separator == ' ';
+// Into tokens that are there already, so that their memory serves the next line. Blanks about a field are no part of it.
+void Split(std::string_view line, char separator, std::vector<Token>& tokens) {
   std::size_t count = 0;
-  for (std::size_t begin = 0;;) {
-    if (blanks) begin = line.find_first_not_of(" \t", begin);
-    if (begin == std::string::npos) break;
-    std::size_t end = blanks ? line.find_first_of(" \t", begin) : line.find(separator, begin);
-    if (end == std::string::npos) end = line.size();
+  const auto add = [&](std::string_view text, int column) {
     if (count == tokens.size()) tokens.emplace_back();
-    tokens[count].text.assign(line, begin, end - begin);
-    tokens[count].column = static_cast<int>(begin) + 1;
-    ++count;
-    if (end == line.size()) break;
-    begin = end + 1;
+    tokens[count].text.assign(text);
+    tokens[count++].column = column;
+  };
+  if (separator == ' ') {
+    for (const base::Word& word : base::SplitWords(line)) add(word.text, word.column);
+  } else {
+    for (std::size_t begin = 0; begin <= line.size();) {
+      const std::size_t end = std::min(line.find(separator, begin), line.size());
+      const std::size_t first = std::min(line.find_first_not_of(" \t", begin), end);
+      const std::size_t last = line.find_last_not_of(" \t", end == 0 ? 0 : end - 1);
+      add(first == end ? std::string_view() : line.substr(first, last - first + 1), static_cast<int>(first) + 1);
+      begin = end + 1;
+    }
   }
   tokens.resize(count);
 }
@@ -66,8 +71,13 @@ void Lines::Advance() {
   while (std::getline(stream_, text_)) {
     ++line_.number;
     if (!text_.empty() && text_.back() == '\r') text_.pop_back();
+    if (line_.number == 1) text_ = base::WithoutMark(text_);
     const std::size_t first = text_.find_first_not_of(" \t");
-    if (first == std::string::npos || text_[first] == '#') continue;
+    if (first == std::string::npos) continue;
+    if (text_[first] == '#') {
+      comment_ = text_;
+      continue;
+    }
     Split(text_, separator_, line_.tokens);
     return;
   }
@@ -96,7 +106,11 @@ std::optional<std::int64_t> ParseRow(const std::filesystem::path& file, const Li
   }
   bool good = true;
   const auto stamp = base::ParseSeconds(line.tokens[0].text);
-  if (!stamp) bad(line.tokens[0], "'" + line.tokens[0].text + "' is not a time in seconds, 4e9 at most");
+  if (!stamp) {
+    const std::string unit = base::UnitOfStamp(line.tokens[0].text);
+    bad(line.tokens[0],
+        "'" + line.tokens[0].text + "' is not a time in seconds" + (unit.empty() ? ", 4e9 at most" : unit));
+  }
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const Token& token = line.tokens[i + 1];
     const auto number = ParseNumber(token.text);

@@ -33,10 +33,13 @@ std::array<double, 6> NumbersOf(const StampedVelocity& velocity);
 
 using Velocities = std::vector<StampedVelocity>;
 
-// as_written: quaternions keep their norm and of equal stamps all lines are kept, for tools that read so.
-enum class Reading { strict, as_written };
+// as_written: quaternions keep their norm and of equal stamps all lines are kept, for tools that read so. euroc: the
+// table is EuRoC's, whatever its header says.
+enum class Reading { strict, as_written, euroc };
 
-// Reads `timestamp tx ty tz qx qy qz qw`. Quaternions are normalised; a norm that differs from 1 by more than 1e-3 is
+// Reads `timestamp tx ty tz qx qy qz qw`, separated by blanks, tabs, commas or semicolons, perhaps with OpenVINS' twelve
+// numbers of covariance behind; or EuRoC's table of poses (nanoseconds, qw first; by its header or its 17 columns), as
+// it stands: of the body. Quaternions are normalised; a norm that differs from 1 by more than 1e-3 is
 // an error (recorded truth is rounded to four digits, which leaves up to 1e-4). Time must not go back. Of lines with
 // equal stamps the first is kept: motion-capture truth rounded to 0.1 ms has such lines; a second one that differs by
 // more than 1 cm or 1 degree from the first is an error. Throws InputError with every problem as file:line:column, and

@@ -9,6 +9,7 @@
 namespace limits {
 namespace {
 
+using testing::AnyOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -86,7 +87,8 @@ TEST(Picture, OtherKindsAreNotRead) {
   for (const std::string& file :
        {std::string("GIF89a") + std::string(20, 'x'), std::string("\x59\xa6\x6a\x95") + std::string(40, '\0'),
         std::string("\0\0\0\x0cjP  \r\n", 10) + std::string(40, '\0'), std::string("<VRTDataset>"), std::string()}) {
-    EXPECT_THAT(Problem(file), HasSubstr("not a picture that is read here")) << file;
+    EXPECT_THAT(Problem(file), AnyOf(HasSubstr("not a picture that is read here"), HasSubstr("which is not read")))
+        << file;
   }
 }
 

@@ -94,6 +94,11 @@ TEST(Align, Undetermined) {
   for (const StampedPose& pose : truth) variance += (pose.p_WC - mean).squaredNorm() / 50;
   EXPECT_NEAR(still.position.rmse, std::sqrt(variance), 1e-12);
 
+  // A truth that stands has no scale either: a factor of 0 would fit whatever the estimate does.
+  const Ate still_truth = ComputeAte({truth, standing.estimate}, Alignment::sim3);
+  EXPECT_FALSE(still_truth.similarity.scale_determined);
+  EXPECT_NEAR(still_truth.position.rmse, std::sqrt(variance), 1e-12);
+
   const StampedVelocity velocity{0, random.Normals(3), random.Normals(3)};
   const auto straight = MatchedTrajectories{ConstantVelocity(StampsOf(truth), truth[0], velocity), truth};
   const Ate line = ComputeAte(straight, Alignment::sim3);

@@ -2,6 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "tests/unit/judge/evaluation/complaint.h"
 #include "tests/unit/judge/evaluation/random.h"
 #include "tests/unit/judge/evaluation/temporary_folder.h"
@@ -67,6 +72,38 @@ TEST(ReadTrajectory, NormalisesUnlessAskedForWhatIsThere) {
   EXPECT_EQ(ReadTrajectory(file)[0].q_WC.w(), 1);
   ASSERT_EQ(ReadTrajectory(file, Reading::as_written).size(), 2u);
   EXPECT_EQ(ReadTrajectory(file, Reading::as_written)[0].q_WC.w(), 1.0005);
+}
+
+// The same two poses as other programs write them.
+TEST(ReadTrajectory, OfOtherPrograms) {
+  const TemporaryFolder folder;
+  for (const std::string text :
+       {"\xef\xbb\xbf# t x y z qx qy qz qw\n1.5 1 2 3 0 0 0.6 0.8\n2.5 4 5 6 0 0 0 1\n",
+        "timestamp,tx,ty,tz,qx,qy,qz,qw\n1.5,1,2,3,0,0,0.6,0.8\n2.5,4,5,6,0,0,0,1\n",
+        "1.5,1,2,3,0,0,0.6,0.8\r\n2.5, 4, 5, 6, 0, 0, 0, 1\r\n", "1.5;1;2;3;0;0;0.6;0.8\n2.5\t4\t5\t6\t0\t0\t0\t1\n",
+        "1.5 1 2 3 0 0 0.6 0.8 1 0 0 1 0 1 1 0 0 1 0 1\n2.5 4 5 6 0 0 0 1 1 0 0 1 0 1 1 0 0 1 0 1\n",
+        "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []\n"
+        "1500000000, 1, 2, 3, 0.8, 0, 0, 0.6\n2500000000,4,5,6,1,0,0,0\n",
+        "1500000000,1,2,3,0.8,0,0,0.6,0,0,0,0,0,0,0,0,0\n2500000000,4,5,6,1,0,0,0,0,0,0,0,0,0,0,0,0\n"}) {
+    const Trajectory read = ReadTrajectory(folder.Write("t.txt", text));
+    ASSERT_EQ(read.size(), 2u) << text;
+    EXPECT_EQ(read[0].stamp_ns, 1'500'000'000) << text;
+    EXPECT_EQ(read[1].p_WC, Eigen::Vector3d(4, 5, 6)) << text;
+    EXPECT_NEAR(read[0].q_WC.z(), 0.6, 1e-15) << text;
+    EXPECT_NEAR(read[0].q_WC.w(), 0.8, 1e-15) << text;
+  }
+}
+
+TEST(ReadTrajectory, OtherKindsAreRefusedInOneSentence) {
+  const std::string pose = " 0 0 0 0 0 0 1\n";
+  for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
+           {"1403636579763555584" + pose + "1403636579813555456" + pose, "nanoseconds: divide the times by 1e9"},
+           {"1403636579763" + pose + "1403636579813" + pose, "milliseconds"},
+           {"1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n", "KITTI"}}) {
+    const std::string said = Complaint(text);
+    EXPECT_THAT(said, HasSubstr(words));
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 0) << said;
+  }
 }
 
 TEST(ReadTrajectory, RefusesAnEmptyFile) { EXPECT_THAT(Complaint("# nothing\n"), HasSubstr("holds no pose")); }

@@ -9,7 +9,6 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "sim/simulator.h"
-#include "sim/world/gltf_features.h"
 #include "sim/world/scene.h"
 #include "tests/unit/sim/world/files.h"
 
@@ -243,18 +242,96 @@ TEST(Gltf, WhatIsNotRenderedIsNamed) {
   EXPECT_THAT(warnings, SizeIs(2));
   EXPECT_THAT(warnings, Contains(HasSubstr("KHR_materials_clearcoat: clear coats")));
   EXPECT_THAT(warnings, Contains(HasSubstr("MAKER_something")));
+  parts.material = R"("doubleSided": true)";
   parts.more = R"(, "animations": [{}], "skins": [{}])";
-  EXPECT_THAT(ReadGltfFeatures(folder.Write("moves.gltf", Gltf(parts))).not_rendered,
-              ElementsAre(HasSubstr("animations"), HasSubstr("skins")));
+  EXPECT_THAT(Load(folder, parts).warnings, ElementsAre(HasSubstr("animations"), HasSubstr("skins")));
 }
 
 TEST(Gltf, WhatCannotBeReadIsAnError) {
   const Folder folder;
-  for (const std::string name : {"KHR_draco_mesh_compression", "KHR_texture_basisu"}) {
+  for (const std::string name : {"MAKER_geometry", "KHR_future"}) {
     Parts parts;
     parts.more = R"(, "extensionsUsed": [")" + name + R"("], "extensionsRequired": [")" + name + R"("])";
     EXPECT_THAT(Problems(folder, parts), testing::AllOf(HasSubstr("flag.gltf"), HasSubstr(name)));
   }
+}
+
+TEST(Gltf, MaterialExtensions) {
+  const Folder folder;
+  Parts parts;
+  parts.material = R"("extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [1, 0.5, 0.25, 1],
+    "diffuseTexture": {"index": 0}, "glossinessFactor": 0.25}})";
+  parts.more = R"(, "extensionsRequired": ["KHR_materials_pbrSpecularGlossiness"])";
+  Material material = Load(folder, parts).materials.at(0);
+  EXPECT_EQ(material.base_color, glm::vec3(1, 0.5, 0.25));
+  EXPECT_GE(material.texture, 0);
+  EXPECT_EQ(material.metallic, 0.0f);
+  EXPECT_EQ(material.roughness, 0.75f);
+
+  parts.material =
+      R"("emissiveFactor": [0.5, 0, 0], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 8}})";
+  parts.more = R"(, "extensionsRequired": ["KHR_materials_emissive_strength"])";
+  material = Load(folder, parts).materials.at(0);
+  EXPECT_EQ(material.emission, glm::vec3(4, 0, 0));
+  EXPECT_EQ(material.metallic, 1.0f) << "glTF's default";
+
+  // Radiance is the base colour times its picture, and nothing is reflected.
+  parts.material = R"("extensions": {"KHR_materials_unlit": {}},
+    "pbrMetallicRoughness": {"baseColorFactor": [0.5, 1, 1, 1], "baseColorTexture": {"index": 0}})";
+  parts.more = R"(, "extensionsRequired": ["KHR_materials_unlit"])";
+  material = Load(folder, parts).materials.at(0);
+  EXPECT_EQ(material.base_color, glm::vec3(0));
+  EXPECT_EQ(material.emission, glm::vec3(0.5, 1, 1));
+  EXPECT_EQ(material.emission_texture, material.texture);
+  EXPECT_FALSE(material.Mirrors());
+}
+
+// The transform's set takes the place of the texture's.
+TEST(Gltf, TextureTransformNamesASet) {
+  const Folder folder;
+  Parts parts;
+  parts.attributes = R"(, "TEXCOORD_1": 1)";
+  parts.material = R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 5,
+    "extensions": {"KHR_texture_transform": {"texCoord": 1}}}})";
+  const Scene scene = Load(folder, parts);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_THAT(scene.meshes.at(0).uvs, SizeIs(3));
+}
+
+TEST(Gltf, VersionsOfAPicture) {
+  const Folder folder;
+  folder.Write("x.webp", EncodeColor(".webp", 200, 100, 0));
+  Parts parts;
+  const auto with = [&](const std::string& texture) {
+    std::string text = Gltf(parts);
+    text.replace(text.find(R"([{"source": 0})"), 14, "[" + texture);
+    text.replace(text.find(R"({"uri": "other.png"})"), 20, R"({"uri": "x.webp"})");
+    Load(folder, parts);  // writes the other files
+    WorldDescription world;
+    world.meshes.push_back({folder.Write("flag.gltf", text), {}, {1, 0, 0, 0}, 1.0});
+    return LoadScene(world);
+  };
+  const Scene webp = with(R"({"source": 0, "extensions": {"EXT_texture_webp": {"source": 1}}})");
+  EXPECT_THAT(webp.textures.at(0).name(), HasSubstr("x.webp"));
+  EXPECT_THAT(with(R"({"source": 0, "extensions": {"KHR_texture_basisu": {"source": 1}}})").textures.at(0).name(),
+              HasSubstr("picture.png"));
+  try {
+    with(R"({"extensions": {"KHR_texture_basisu": {"source": 1}}})");
+    FAIL() << "nothing was thrown";
+  } catch (const SceneError& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("KHR_texture_basisu"), HasSubstr("convert them to PNG")));
+  }
+}
+
+// Instances of a node, of which only the places are given.
+TEST(Gltf, GpuInstancing) {
+  const Folder folder;
+  Parts parts;
+  parts.node = R"(, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}})";
+  const Scene scene = Load(folder, parts);
+  ASSERT_THAT(scene.meshes, SizeIs(3));
+  EXPECT_EQ(scene.meshes[1].positions.at(0), glm::vec3(1, 0, 0));
+  EXPECT_EQ(scene.meshes[2].positions.at(1), glm::vec3(1, 1, 0));
 }
 
 }  // namespace

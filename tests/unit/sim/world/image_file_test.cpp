@@ -2,6 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "tests/unit/sim/world/files.h"
 
 namespace sim::test {
@@ -71,6 +77,67 @@ TEST(ImageFile, NotAPicture) {
   EXPECT_EQ(Complaint(""), "the file is empty");
   EXPECT_NE(Complaint("this is no picture"), "none");
   EXPECT_NE(Complaint(std::string(1000, '\0')), "none");
+}
+
+// A TGA of 3 x 2 pixels, red to blue, by its header's type, bits and descriptor, with the pixels in the file's order.
+std::vector<std::uint8_t> Tga(std::uint8_t type, std::uint8_t bits, std::uint8_t descriptor,
+                              const std::vector<std::uint8_t>& rest, std::uint8_t colors = 0) {
+  std::vector<std::uint8_t> file = {2,    static_cast<std::uint8_t>(colors > 0),
+                                    type, 0,
+                                    0,    colors,
+                                    0,    24,
+                                    0,    0,
+                                    0,    0,
+                                    3,    0,
+                                    2,    0,
+                                    bits, descriptor,
+                                    'i',  'd'};
+  std::ranges::copy(rest, std::back_inserter(file));
+  return file;
+}
+
+TEST(ImageFile, TgaOfEveryKind) {
+  const std::vector<std::uint8_t> rgb = {255, 0, 0, 0, 255, 0, 0,   0,   255,
+                                         9,   9, 9, 0, 0,   0, 255, 255, 255};  // rows from the top
+  const std::vector<std::uint8_t> from_top = {0, 0, 255, 0, 255, 0, 255, 0, 0, 9, 9, 9, 0, 0, 0, 255, 255, 255};
+  const std::vector<std::uint8_t> from_below = {9, 9, 9, 0, 0, 0, 255, 255, 255, 0, 0, 255, 0, 255, 0, 255, 0, 0};
+  const std::vector<std::uint8_t> from_right = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255, 0, 0, 0, 9, 9, 9};
+  EXPECT_EQ(DecodeImage(Tga(2, 24, 32, from_top)).rgb, rgb);
+  EXPECT_EQ(DecodeImage(Tga(2, 24, 0, from_below)).rgb, rgb);
+  EXPECT_EQ(DecodeImage(Tga(2, 24, 48, from_right)).rgb, rgb);
+  // A packet of three as they are, one of one, one of two equal ones.
+  const std::vector<std::uint8_t> packets = {2, 0, 0, 255, 0, 255, 0, 255, 0, 0, 0, 9, 9, 9, 0x81, 7, 7, 7};
+  const DecodedImage runs = DecodeImage(Tga(10, 24, 32, packets));
+  EXPECT_EQ(runs.rgb, (std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 9, 9, 9, 7, 7, 7, 7, 7, 7}));
+  EXPECT_THROW(DecodeImage(Tga(10, 24, 32, {packets.begin(), packets.end() - 1})), std::runtime_error);
+  const DecodedImage alpha = DecodeImage(
+      Tga(2, 32, 40, {0, 0, 255, 1, 0, 255, 0, 2, 255, 0, 0, 3, 9, 9, 9, 4, 0, 0, 0, 5, 255, 255, 255, 6}), true);
+  EXPECT_EQ(alpha.rgb, rgb);
+  EXPECT_EQ(alpha.alpha, (std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(DecodeImage(Tga(3, 8, 32, {1, 2, 3, 4, 5, 6})).rgb,
+            (std::vector<std::uint8_t>{1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4, 5, 5, 5, 6, 6, 6}));
+  const std::vector<std::uint8_t> palette = {0, 0, 255, 0, 255, 0, 0, 1, 0, 1, 1, 0};
+  EXPECT_EQ(DecodeImage(Tga(1, 8, 32, palette, 2)).rgb,
+            (std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 255, 0, 0, 0, 255, 0, 0, 255, 0, 255, 0, 0}));
+  EXPECT_THROW(DecodeImage(Tga(1, 8, 32, {0, 0, 255, 0, 255, 0, 0, 1, 2, 1, 1, 0}, 2)), std::runtime_error);
+  const DecodedImage five = DecodeImage(Tga(2, 16, 32, {0, 0x7c, 0xe0, 3, 0x1f, 0, 0, 0, 0, 0, 0xff, 0x7f}));
+  EXPECT_EQ(std::vector<std::uint8_t>(five.rgb.begin(), five.rgb.begin() + 9),
+            (std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255}));
+}
+
+TEST(ImageFile, OtherKindsAreNamed) {
+  for (const auto& [bytes, kind] : {std::pair<std::string, std::string>{"DDS |", "DDS"},
+                                    {"\x01\xda\x01\x01", "SGI"},
+                                    {"\xabKTX 20", "KTX"},
+                                    {"GIF89a", "GIF"}}) {
+    try {
+      DecodeImage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+      FAIL() << kind;
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find(kind), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("convert it to PNG"), std::string::npos);
+    }
+  }
 }
 
 }  // namespace

@@ -132,12 +132,13 @@ aiScene* TriangleForExport() {
   return scene;
 }
 
-void ExpectTriangle(const Scene& loaded, const std::string& name, bool has_material) {
+// unit: of the file [m].
+void ExpectTriangle(const Scene& loaded, const std::string& name, bool has_material, float unit = 1) {
   ASSERT_THAT(loaded.meshes, SizeIs(1)) << name;
   ASSERT_THAT(loaded.meshes[0].positions, SizeIs(3)) << name;
   for (const glm::vec3& p : {glm::vec3(11, 2, 3), glm::vec3(12, 2, 3), glm::vec3(11, 3, 3)}) {
     bool found = false;
-    for (const glm::vec3& q : loaded.meshes[0].positions) found = found || glm::distance(p, q) < 1e-5f;
+    for (const glm::vec3& q : loaded.meshes[0].positions) found = found || glm::distance(unit * p, q) < 1e-5f * unit;
     EXPECT_TRUE(found) << name << ": " << p.x << " " << p.y << " " << p.z;
   }
   if (!has_material) return;
@@ -154,7 +155,8 @@ TEST(MeshFormats, AsAssimpWritesThem) {
     Assimp::Exporter exporter;
     const std::string file = (folder.path() / name).string();
     ASSERT_EQ(exporter.Export(scene.get(), format, file), AI_SUCCESS) << exporter.GetErrorString();
-    ExpectTriangle(LoadScene(WorldOf(file)), name, std::string(format) != "ply");
+    // assimp's FBX says that its unit is a centimetre
+    ExpectTriangle(LoadScene(WorldOf(file)), name, std::string(format) != "ply", format[0] == 'f' ? 0.01f : 1.0f);
   }
 }
 
@@ -213,11 +215,16 @@ Record Vector(const std::string& name, double x, double y, double z) {
   return {"P", {Text(name), Text("Vector3D"), Text(""), Text("A"), Real(x), Real(y), Real(z)}, {}};
 }
 
-TEST(MeshFormats, BinaryFbx) {
+// What FBX says of itself: a unit in centimetres, and which of its axes points up and to the front.
+Record Setting(const std::string& name, int value) {
+  return {"P", {Text(name), Text("int"), Text("Integer"), Text(""), Int(value)}, {}};
+}
+
+std::string FbxTriangle(const std::vector<Record>& settings) {
   const std::string separator("\0\1", 2);
   const std::vector<Record> records = {
       {"FBXHeaderExtension", {}, {{"FBXVersion", {Int(7400)}, {}}}},
-      {"GlobalSettings", {}, {{"Properties70", {}, {Vector("Unused", 0, 0, 0)}}}},
+      {"GlobalSettings", {}, {{"Properties70", {}, settings}}},
       {"Objects",
        {},
        {{"Geometry",
@@ -248,8 +255,60 @@ TEST(MeshFormats, BinaryFbx) {
   Append<std::uint32_t>(file, {7400});
   for (const Record& record : records) AppendRecord(record, file);
   file.append(13, '\0');
+  return file;
+}
+
+TEST(MeshFormats, BinaryFbx) {
   const Folder folder;
-  ExpectTriangle(LoadScene(WorldOf(folder.Write("binary.fbx", file))), "binary.fbx", true);
+  const auto load = [&](const std::vector<Record>& settings) {
+    return LoadScene(WorldOf(folder.Write("binary.fbx", FbxTriangle(settings))));
+  };
+  ExpectTriangle(load({Vector("Unused", 0, 0, 0)}), "binary.fbx", true, 0.01f);
+  const Record metre{"P", {Text("UnitScaleFactor"), Text("double"), Text("Number"), Text(""), Real(100)}, {}};
+  ExpectTriangle(load({metre}), "binary.fbx", true);
+  // z up, the front towards -y: (x, y, z) becomes (x, z, -y).
+  const Scene z_up = load({metre, Setting("UpAxis", 2), Setting("UpAxisSign", 1), Setting("FrontAxis", 1),
+                           Setting("FrontAxisSign", -1), Setting("CoordAxis", 0), Setting("CoordAxisSign", 1)});
+  EXPECT_THAT(z_up.meshes.at(0).positions, testing::Contains(glm::vec3(11, 3, -2)));
+}
+
+// As 3ds Max writes COLLADA: a set of coordinates by a name that is bound nowhere, and blanks before numbers.
+TEST(MeshFormats, ColladaOfOtherPrograms) {
+  const Folder folder;
+  folder.Write("paint.png", EncodeNoise(".png", 8, 4));
+  const std::string text = R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="inch" meter="0.5"/><up_axis>Y_UP</up_axis></asset>
+<library_images><image id="i"><init_from> paint.png </init_from></image></library_images>
+<library_effects><effect id="e"><profile_COMMON>
+  <newparam sid="s"><surface type="2D"><init_from>i</init_from></surface></newparam>
+  <newparam sid="p"><sampler2D><source>s</source></sampler2D></newparam>
+  <technique sid="common"><lambert><emission><color> 0.25 0 0 1</color></emission>
+  <diffuse><texture texture="p" texcoord="CHANNEL1"/></diffuse></lambert></technique>
+</profile_COMMON></effect></library_effects>
+<library_materials><material id="m"><instance_effect url="#e"/></material></library_materials>
+<library_geometries><geometry id="g"><mesh>
+  <source id="x"><float_array id="xa" count="9"> 0 0 0 2 0 0 0 2 0</float_array><technique_common>
+    <accessor source="#xa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+  <source id="t"><float_array id="ta" count="6">0 0 1 0 0 1</float_array><technique_common>
+    <accessor source="#ta" count="3" stride="2"><param name="S" type="float"/><param name="T" type="float"/></accessor></technique_common></source>
+  <vertices id="v"><input semantic="POSITION" source="#x"/></vertices>
+  <triangles material="m" count="1"><input semantic="VERTEX" source="#v" offset="0"/>
+    <input semantic="TEXCOORD" source="#t" offset="1" set="0"/><p>0 0 1 1 2 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="w"><node id="n"><instance_geometry url="#g"><bind_material><technique_common>
+  <instance_material symbol="m" target="#m"/></technique_common></bind_material></instance_geometry></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#w"/></scene></COLLADA>
+)";
+  const Scene scene = LoadScene(WorldOf(folder.Write("model.dae", text)));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  ASSERT_THAT(scene.meshes, SizeIs(1));
+  EXPECT_THAT(scene.meshes[0].positions, testing::Contains(glm::vec3(1, 0, 0))) << "half a metre a unit";
+  EXPECT_THAT(scene.meshes[0].uvs, SizeIs(3));
+  const Material& material = scene.materials.at(static_cast<std::size_t>(scene.meshes[0].material));
+  EXPECT_GE(material.texture, 0);
+  EXPECT_EQ(material.base_color, glm::vec3(1));
+  EXPECT_FLOAT_EQ(material.emission.x, 0.25f);
 }
 
 // Cut off anywhere, a file is refused or is a smaller world (a PLY or OBJ that lost its end may be whole): it never

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tools/judge/evaluation/rpe.h"
+#include "tools/judge/evaluation/text_file.h"
 
 namespace evaluation::compat {
 namespace {
@@ -47,6 +48,8 @@ std::vector<NamedStatistics> Relative(const MatchedTrajectories& matched, double
 RpgResult ComputeRpg(const Trajectory& estimate, const Trajectory& truth, RpgAlignment alignment,
                      std::vector<double> lengths_m) {
   const MatchedTrajectories matched = MatchTrajectories(estimate, truth, {.rule = AssociationRule::tum});
+  if (matched.estimate.size() < 3 && alignment != RpgAlignment::none)
+    throw InputError({"rpg: fewer than three pairs of poses determine no alignment"});
   RpgResult result;
   result.similarity = AlignmentOf(matched, alignment);
   const PoseErrors absolute = ErrorsAfter(result.similarity, matched);

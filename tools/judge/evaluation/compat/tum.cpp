@@ -122,7 +122,9 @@ std::string Compared(std::size_t pairs) { return "compared_pose_pairs " + std::t
 Ate ComputeTumAte(const Trajectory& estimate, const Trajectory& truth, const TumAteOptions& options) {
   const Trajectory moved = Shifted(estimate, options.offset_ns, options.scale);
   const AssociationOptions association{AssociationRule::tum, options.max_difference_ns};
-  return ComputeAte(MatchTrajectories(moved, truth, association), Alignment::se3);
+  const MatchedTrajectories matched = MatchTrajectories(moved, truth, association);
+  if (matched.estimate.size() < 2) throw InputError({"TUM's ATE: couldn't find two matching pairs of stamps"});
+  return ComputeAte(matched, Alignment::se3);
 }
 
 Rpe ComputeTumRpe(const Trajectory& estimate, const Trajectory& truth, const TumRpeOptions& options) {

@@ -1,0 +1,292 @@
+#include "sim/world/gltf_file.h"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+#include "sim/world/texture_file.h"
+#include "tools/base/files.h"
+#include "tools/base/limits/structured_text.h"
+#include "tools/base/text.h"
+
+namespace sim {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125,
+              kFloat = 5126;
+
+[[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
+
+std::size_t BytesOf(int component_type) {
+  switch (component_type) {
+    case kByte:
+    case kUnsignedByte:
+      return 1;
+    case kShort:
+    case kUnsignedShort:
+      return 2;
+    case kUnsignedInt:
+    case kFloat:
+      return 4;
+    default:
+      Fail("an accessor's componentType " + std::to_string(component_type) + " is none of glTF's");
+  }
+}
+
+std::size_t ColumnsOf(const std::string& type) {
+  for (const auto& [name, columns] : {std::pair{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}}) {
+    if (type == name) return static_cast<std::size_t>(columns);
+  }
+  Fail("an accessor's type '" + type + "' is not used here");
+}
+
+template <class T>
+double Load(const std::uint8_t* from) {
+  T value{};
+  std::memcpy(&value, from, sizeof value);
+  return static_cast<double>(value);
+}
+
+double Component(int type, const std::uint8_t* from) {
+  switch (type) {
+    case kByte:
+      return Load<std::int8_t>(from);
+    case kUnsignedByte:
+      return Load<std::uint8_t>(from);
+    case kShort:
+      return Load<std::int16_t>(from);
+    case kUnsignedShort:
+      return Load<std::uint16_t>(from);
+    case kUnsignedInt:
+      return Load<std::uint32_t>(from);
+    default:
+      return Load<float>(from);
+  }
+}
+
+std::size_t Whole(const json& object, const char* key, std::size_t otherwise) {
+  const auto found = object.find(key);
+  if (found == object.end()) return otherwise;
+  const auto value = limits::WholeNumber<std::size_t>(*found);
+  if (!value) Fail(std::string("'") + key + "' is not a whole number");
+  return *value;
+}
+std::size_t Whole(const json& object, const char* key) {
+  if (!object.contains(key)) Fail(std::string("'") + key + "' is missing");
+  return Whole(object, key, 0);
+}
+
+// `size` bytes from `offset` of what has `all`; nothing may overflow.
+std::span<const std::uint8_t> Part(std::span<const std::uint8_t> all, std::size_t offset, std::size_t size,
+                                   const char* what) {
+  if (offset > all.size() || size > all.size() - offset) Fail(std::string(what) + " goes beyond its buffer's end");
+  return all.subspan(offset, size);
+}
+
+std::string FromBase64(std::string_view text) {
+  std::string bytes;
+  std::uint32_t group = 0;
+  int bits = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    const bool upper = c >= 'A' && c <= 'Z', lower = c >= 'a' && c <= 'z', digit = c >= '0' && c <= '9';
+    if (!upper && !lower && !digit && c != '+' && c != '/') Fail("a data URI is not base64");
+    const int value = upper ? c - 'A' : lower ? c - 'a' + 26 : digit ? c - '0' + 52 : c == '+' ? 62 : 63;
+    group = group << 6 | static_cast<std::uint32_t>(value);
+    bits += 6;
+    if (bits < 8) continue;
+    bits -= 8;
+    bytes += static_cast<char>((group >> bits) & 255u);
+  }
+  return bytes;
+}
+
+std::vector<std::uint8_t> Decompress(const json& how, std::span<const std::uint8_t> from) {
+  const std::size_t count = Whole(how, "count"), stride = Whole(how, "byteStride");
+  const std::string mode = how.value("mode", ""), filter = how.value("filter", "NONE");
+  const bool attributes = mode == "ATTRIBUTES";
+  if (attributes ? stride == 0 || stride > 256 || stride % 4 != 0 : stride != 2 && stride != 4)
+    Fail("EXT_meshopt_compression: a byteStride of " + std::to_string(stride));
+  if (count > (std::size_t{1} << 27)) Fail("EXT_meshopt_compression: a count of " + std::to_string(count));
+  std::vector<std::uint8_t> to(count * stride);
+  const int error =
+      attributes ? meshopt_decodeVertexBuffer(to.data(), count, stride, from.data(), from.size())
+      : mode == "TRIANGLES"
+          ? (count % 3 != 0 ? -1 : meshopt_decodeIndexBuffer(to.data(), count, stride, from.data(), from.size()))
+      : mode == "INDICES" ? meshopt_decodeIndexSequence(to.data(), count, stride, from.data(), from.size())
+                          : -1;
+  if (error != 0) Fail("EXT_meshopt_compression: a buffer view is damaged");
+  if (filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) {
+    meshopt_decodeFilterOct(to.data(), count, stride);
+  } else if (filter == "QUATERNION" && stride == 8) {
+    meshopt_decodeFilterQuat(to.data(), count, stride);
+  } else if (filter == "EXPONENTIAL") {
+    meshopt_decodeFilterExp(to.data(), count, stride);
+  } else if (filter != "NONE") {
+    Fail("EXT_meshopt_compression: the filter '" + filter + "'");
+  }
+  return to;
+}
+
+}  // namespace
+
+GltfFile::GltfFile(MeshFiles& files) : files_(files) {
+  const std::string bytes = files.Read(files.mesh()).value_or("");
+  std::string text(base::WithoutMark(bytes));
+  if (bytes.starts_with("glTF")) {
+    const std::span<const std::uint8_t> all = base::AsBytes(bytes);
+    const auto word = [&](std::size_t at) {
+      return static_cast<std::uint32_t>(Component(kUnsignedInt, Part(all, at, 4, "a chunk").data()));
+    };
+    if (word(4) == 1) throw OlderGltf();
+    if (word(4) != 2) Fail("is binary glTF of version " + std::to_string(word(4)) + ": only 2 is read");
+    constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
+    text.clear();
+    for (std::size_t at = 12; at + 8 <= all.size();) {  // length, type, content
+      const std::span<const std::uint8_t> chunk = Part(all, at + 8, word(at), "a chunk");
+      if (word(at + 4) == kJson && text.empty()) text = base::AsText(chunk);
+      if (word(at + 4) == kBinary && !binary_) binary_ = base::AsText(chunk);
+      at += 8 + chunk.size();
+    }
+  }
+  if (const std::string problem = limits::JsonProblem(text); !problem.empty()) Fail("is " + problem);
+  document_ = json::parse(text);
+  if (!document_.is_object()) Fail("is not a JSON object");
+  const json& version = Child(Child(document_, "asset"), "version");
+  if (version.is_number() || (version.is_string() && version.get<std::string>().starts_with("1."))) throw OlderGltf();
+  if (!version.is_string() || !version.get<std::string>().starts_with("2.")) Fail("is glTF of no version: 2 is read");
+}
+
+const json& GltfFile::Child(const json& object, const char* key) {
+  static const json none = json::object();
+  const auto found = object.find(key);
+  return found == object.end() ? none : *found;
+}
+
+const json* GltfFile::Extension(const json& object, const char* name) {
+  const json& extensions = Child(object, "extensions");
+  const auto found = extensions.find(name);
+  return found == extensions.end() || !found->is_object() ? nullptr : &*found;
+}
+
+const json& GltfFile::At(const char* list, std::size_t index) const {
+  const json& items = Child(document_, list);
+  if (!items.is_array() || index >= items.size() || !items[index].is_object())
+    Fail(std::string("names ") + list + "[" + std::to_string(index) + "], which does not exist");
+  return items[index];
+}
+
+std::optional<std::string> GltfFile::DataOf(const std::string& uri) {
+  if (!uri.starts_with("data:")) return std::nullopt;
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string::npos) Fail("a data URI without data");
+  const std::string_view head = std::string_view(uri).substr(0, comma), data = std::string_view(uri).substr(comma + 1);
+  return head.ends_with(";base64") ? FromBase64(data) : DecodePercent(std::string(data));
+}
+
+const std::string& GltfFile::Buffer(std::size_t index) {
+  const auto [at, is_new] = buffers_.try_emplace(index);
+  if (!is_new) return at->second;
+  const json& buffer = At("buffers", index);
+  const std::string uri = buffer.value("uri", "");
+  if (uri.empty()) {
+    if (!binary_ || index != 0) Fail("buffers[" + std::to_string(index) + "] has no data");
+    at->second = *binary_;
+  } else if (std::optional<std::string> data = DataOf(uri)) {
+    at->second = std::move(*data);
+  } else {
+    std::optional<std::string> bytes;
+    for (const std::string& name : {uri, DecodePercent(uri)}) {
+      if (!bytes) bytes = files_.Read(files_.mesh().parent_path() / name);
+    }
+    if (!bytes) Fail("the buffer '" + uri + "' cannot be opened");
+    at->second = std::move(*bytes);
+  }
+  if (at->second.size() < Whole(buffer, "byteLength"))
+    Fail("buffers[" + std::to_string(index) + "] is shorter than its byteLength");
+  return at->second;
+}
+
+std::span<const std::uint8_t> GltfFile::View(std::size_t index) {
+  const json& view = At("bufferViews", index);
+  const json* how = Extension(view, "EXT_meshopt_compression");
+  if (how == nullptr) how = Extension(view, "KHR_meshopt_compression");
+  const json& where = how != nullptr ? *how : view;
+  const auto known = decompressed_.find(index);
+  if (known != decompressed_.end()) return known->second;
+  const std::span<const std::uint8_t> bytes =
+      Part(base::AsBytes(Buffer(Whole(where, "buffer"))), Whole(where, "byteOffset", 0), Whole(where, "byteLength"),
+           "a buffer view");
+  return how == nullptr ? bytes : decompressed_[index] = Decompress(*how, bytes);
+}
+
+float GltfFile::Normalised(double value, int type, bool normalised) {
+  if (!normalised || type == kFloat) return static_cast<float>(value);
+  const double most = type == kByte            ? 127
+                      : type == kUnsignedByte  ? 255
+                      : type == kShort         ? 32767
+                      : type == kUnsignedShort ? 65535
+                                               : 4294967295.0;
+  return static_cast<float>(std::max(value / most, -1.0));
+}
+
+// store(row, column, value) for all components, in order; those of a sparse accessor's own rows come again.
+template <class Store>
+void GltfFile::ReadComponents(std::size_t index, const Store& store) {
+  const json& accessor = At("accessors", index);
+  const int type = static_cast<int>(Whole(accessor, "componentType"));
+  const std::size_t count = Whole(accessor, "count"), columns = ColumnsOf(accessor.at("type").get<std::string>());
+  const auto rows = [&](const json& where, std::size_t n, int component, std::size_t width, const auto& take) {
+    if (n == 0) return;
+    const std::size_t view = Whole(where, "bufferView"), row = BytesOf(component) * width;
+    const std::size_t stride = Whole(At("bufferViews", view), "byteStride", row), first = Whole(where, "byteOffset", 0);
+    const std::span<const std::uint8_t> bytes = View(view);
+    if (stride > 1 << 16 || n > (std::size_t{1} << 40)) Fail("accessors[" + std::to_string(index) + "] is too large");
+    const std::span<const std::uint8_t> used = Part(bytes, first, (n - 1) * stride + row, "an accessor");
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t c = 0; c < width; ++c)
+        take(i, c, Component(component, used.data() + i * stride + c * BytesOf(component)));
+    }
+  };
+  if (accessor.contains("bufferView")) rows(accessor, count, type, columns, store);
+  const json& sparse = Child(accessor, "sparse");
+  if (sparse.empty()) return;
+  std::vector<std::size_t> changed(Whole(sparse, "count") > count ? 0 : Whole(sparse, "count"));
+  const json& indices = sparse.at("indices");
+  rows(indices, changed.size(), static_cast<int>(Whole(indices, "componentType")), 1,
+       [&](std::size_t i, std::size_t, double at) {
+         changed[i] = static_cast<std::size_t>(at);
+         if (changed[i] >= count) Fail("a sparse accessor names a row that does not exist");
+       });
+  rows(sparse.at("values"), changed.size(), type, columns,
+       [&](std::size_t i, std::size_t c, double value) { store(changed[i], c, value); });
+}
+
+GltfTable GltfFile::ReadTable(std::size_t index) {
+  const json& accessor = At("accessors", index);
+  GltfTable table{Whole(accessor, "count"), ColumnsOf(accessor.at("type").get<std::string>()), {}};
+  if (table.count > (std::size_t{1} << 27)) Fail("accessors[" + std::to_string(index) + "] is too large");
+  const int type = static_cast<int>(Whole(accessor, "componentType"));
+  const bool normalised = accessor.value("normalized", false);
+  table.values.resize(table.count * table.columns);
+  ReadComponents(index, [&](std::size_t row, std::size_t column, double value) {
+    table.values[row * table.columns + column] = Normalised(value, type, normalised);
+  });
+  return table;
+}
+
+std::vector<std::uint32_t> GltfFile::ReadIndices(std::size_t index) {
+  const std::size_t count = Whole(At("accessors", index), "count");
+  if (count > (std::size_t{1} << 27)) Fail("accessors[" + std::to_string(index) + "] is too large");
+  std::vector<std::uint32_t> indices(count);
+  ReadComponents(index, [&](std::size_t row, std::size_t, double value) {
+    indices[row] = value >= 0 && value < 4294967295.0 ? static_cast<std::uint32_t>(value) : 0xffffffffu;
+  });
+  return indices;
+}
+
+}  // namespace sim

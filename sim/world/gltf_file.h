@@ -1,0 +1,68 @@
+// A glTF 2.0 file: its document, buffers and accessors. Private to sim/world.
+// Source: Khronos, "glTF 2.0 Specification", 3.6 (binary data), 4 (GLB); EXT_meshopt_compression.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/world/mesh_import.h"
+
+namespace sim {
+
+// A table of numbers: `columns` in each of `count` rows. Normalised integers are in [0, 1] or [-1, 1].
+struct GltfTable {
+  std::size_t count = 0, columns = 0;
+  std::vector<float> values;
+  float at(std::size_t row, std::size_t column) const { return values[row * columns + column]; }
+};
+
+// glTF 1.0, which assimp reads.
+struct OlderGltf {};
+
+// Whatever is wrong throws std::runtime_error or nlohmann::json::exception; OlderGltf.
+class GltfFile {
+ public:
+  explicit GltfFile(MeshFiles& files);
+
+  const nlohmann::json& document() const { return document_; }
+  // The item of a list of the document.
+  const nlohmann::json& At(const char* list, std::size_t index) const;
+  // An item's list or object; an empty one where it is absent.
+  static const nlohmann::json& Child(const nlohmann::json& object, const char* key);
+  static std::size_t Index(const nlohmann::json& object, const char* key) { return object.at(key).get<std::size_t>(); }
+  template <std::size_t n>
+  static std::array<double, n> Numbers(const nlohmann::json& object, const char* key, std::array<double, n> otherwise) {
+    const auto found = object.find(key);
+    return found == object.end() ? otherwise : found->get<std::array<double, n>>();
+  }
+  // An extension of an object; null: it has not.
+  static const nlohmann::json* Extension(const nlohmann::json& object, const char* name);
+
+  GltfTable ReadTable(std::size_t accessor);
+  std::vector<std::uint32_t> ReadIndices(std::size_t accessor);
+  std::span<const std::uint8_t> View(std::size_t buffer_view);
+  // The bytes of a "data:" URI; none for others.
+  static std::optional<std::string> DataOf(const std::string& uri);
+
+  // The value of a component as glTF's normalised integers are meant.
+  static float Normalised(double value, int component_type, bool normalised);
+
+ private:
+  const std::string& Buffer(std::size_t index);
+  template <class Store>
+  void ReadComponents(std::size_t accessor, const Store& store);
+
+  MeshFiles& files_;
+  nlohmann::json document_;
+  std::optional<std::string> binary_;  // the second chunk of a GLB
+  std::map<std::size_t, std::string> buffers_;
+  std::map<std::size_t, std::vector<std::uint8_t>> decompressed_;  // by buffer view
+};
+
+}  // namespace sim

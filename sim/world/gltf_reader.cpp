@@ -1,0 +1,330 @@
+#include "sim/world/gltf_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <iterator>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "sim/world/gltf_draco.h"
+#include "sim/world/gltf_file.h"
+#include "sim/world/gltf_material.h"
+#include "sim/world/mesh_builder.h"
+
+namespace sim {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kDeepestNode = 1000;
+constexpr std::size_t kMostInstances = 1 << 20;
+
+// What is seen instead of an extension that is not applied; empty: it is applied.
+constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
+    {"KHR_texture_transform", ""},
+    {"KHR_materials_emissive_strength", ""},
+    {"KHR_mesh_quantization", ""},
+    {"KHR_materials_pbrSpecularGlossiness", ""},
+    {"KHR_materials_unlit", ""},
+    {"KHR_draco_mesh_compression", ""},
+    {"EXT_meshopt_compression", ""},
+    {"KHR_meshopt_compression", ""},
+    {"EXT_texture_webp", ""},
+    {"EXT_mesh_gpu_instancing", ""},
+    {"KHR_texture_basisu", ""},  // a picture that has no other version is refused
+    {"KHR_lights_punctual", "the file's own lights are not used: lights are the scenario's"},
+    {"KHR_materials_clearcoat", "clear coats are not rendered: the surface below is"},
+    {"KHR_materials_transmission", "transmission is not rendered: the surface is opaque"},
+    {"KHR_materials_volume", "volumes are not rendered: the surface is opaque"},
+    {"KHR_materials_sheen", "sheen is not rendered"},
+    {"KHR_materials_specular", "reflections are not rendered"},
+    {"KHR_materials_ior", "refraction is not rendered"},
+    {"KHR_materials_iridescence", "iridescence is not rendered"},
+    {"KHR_materials_anisotropy", "reflections are not rendered"},
+    {"KHR_materials_variants", "the default variant is rendered"},
+};
+
+class GltfReader {
+ public:
+  GltfReader(MeshFiles& files, MeshImport& import) : file_(files), import_(import), materials_(file_, import) {}
+
+  void Read() {
+    CheckExtensions();
+    for (const auto& [list, what] :
+         {std::pair{"animations", "has animations: the scene is rendered as it stands without them"},
+          {"skins", "has skins: their meshes are rendered as modelled, not as posed"}}) {
+      if (!GltfFile::Child(file_.document(), list).empty()) Warn(what);
+    }
+    for (const json& mesh : GltfFile::Child(file_.document(), "meshes")) ReadMesh(mesh);
+    auto scene = std::make_unique<aiScene>();
+    SetList(scene->mMeshes, scene->mNumMeshes, ai_meshes_);
+    SetList(scene->mTextures, scene->mNumTextures, materials_.textures());
+    import_.scene = std::move(scene);
+    scene_ = import_.scene.get();
+    SetList(scene_->mMaterials, scene_->mNumMaterials, materials_.materials());
+    ReadNodes();
+  }
+
+ private:
+  void Warn(const std::string& what) { WarnOnce(import_, what); }
+
+  void CheckExtensions() {
+    const auto names = [&](const char* key) {
+      const json& list = GltfFile::Child(file_.document(), key);
+      return list.is_array() ? list.get<std::set<std::string>>() : std::set<std::string>{};
+    };
+    const std::set<std::string> required = names("extensionsRequired"), used = names("extensionsUsed");
+    std::string refused;
+    const auto known = [](const std::string& name) {
+      return std::find_if(std::begin(kExtensions), std::end(kExtensions), [&](auto& e) { return e.first == name; });
+    };
+    for (const std::string& name : required) {
+      if (known(name) == std::end(kExtensions)) refused += (refused.empty() ? "" : ", ") + name;
+    }
+    if (!refused.empty())
+      throw std::runtime_error("requires " + refused + ", which is not supported: convert the file without it");
+    for (const std::string& name : used) {
+      const auto* at = known(name);
+      const std::string instead(at != std::end(kExtensions) ? at->second : "it is left out");
+      if (!instead.empty()) Warn("uses " + name + ": " + instead);
+    }
+  }
+
+  // ---------------------------------------------------------------------------------------------------- meshes
+
+  void ReadMesh(const json& mesh) {
+    std::vector<unsigned>& parts = meshes_.emplace_back();
+    const json& weights = GltfFile::Child(mesh, "weights");
+    const bool morphs = std::any_of(weights.begin(), weights.end(), [](const json& w) { return w != 0.0; });
+    for (const json& primitive : GltfFile::Child(mesh, "primitives")) {
+      if (morphs && primitive.contains("targets")) Warn("has morph targets: the meshes are rendered without them");
+      constexpr int kTriangles = 4, kFan = 6;
+      const int mode = primitive.value("mode", kTriangles);
+      if (mode < kTriangles || mode > kFan) {
+        Warn("has points or lines: they are left out");
+        continue;
+      }
+      BuiltMesh built;
+      built.name = mesh.value("name", "meshes[" + std::to_string(meshes_.size() - 1) + "]");
+      built.material = materials_.MaterialOf(primitive);
+      ReadPrimitive(primitive, mode, built);
+      if (built.positions.empty()) continue;
+      parts.push_back(static_cast<unsigned>(ai_meshes_.size()));
+      ai_meshes_.push_back(ToAssimp(built));
+    }
+  }
+
+  void ReadPrimitive(const json& primitive, int mode, BuiltMesh& mesh) {
+    const json& attributes = GltfFile::Child(primitive, "attributes");
+    std::optional<DracoMesh> draco;
+    if (const json* how = GltfFile::Extension(primitive, "KHR_draco_mesh_compression")) {
+      std::map<std::string, DracoAttribute> wanted;
+      for (const auto& [name, id] : GltfFile::Child(*how, "attributes").items()) {
+        const json& accessor = file_.At("accessors", GltfFile::Index(attributes, name.c_str()));
+        wanted[name] = {id.get<std::uint32_t>(), accessor.value("componentType", 0),
+                        accessor.value("normalized", false)};
+      }
+      draco = DecodeDraco(file_.View(GltfFile::Index(*how, "bufferView")), wanted);
+    }
+    const auto table = [&](const std::string& name, std::size_t least) -> std::optional<GltfTable> {
+      std::optional<GltfTable> read;
+      if (draco && draco->attributes.contains(name)) {
+        read = draco->attributes[name];
+      } else if (attributes.contains(name)) {
+        read = file_.ReadTable(GltfFile::Index(attributes, name.c_str()));
+      }
+      if (read && (read->columns < least || (!mesh.positions.empty() && read->count != mesh.positions.size())))
+        throw std::runtime_error("the attribute " + name + " does not fit its mesh");
+      return read;
+    };
+    const auto positions = table("POSITION", 3);
+    if (!positions) return;
+    for (std::size_t i = 0; i < positions->count; ++i)
+      mesh.positions.emplace_back(positions->at(i, 0), positions->at(i, 1), positions->at(i, 2));
+    if (const auto normals = table("NORMAL", 3)) {
+      for (std::size_t i = 0; i < normals->count; ++i)
+        mesh.normals.emplace_back(normals->at(i, 0), normals->at(i, 1), normals->at(i, 2));
+    }
+    if (const auto colors = table("COLOR_0", 3)) {
+      for (std::size_t i = 0; i < colors->count; ++i)
+        mesh.colors.emplace_back(colors->at(i, 0), colors->at(i, 1), colors->at(i, 2),
+                                 colors->columns > 3 ? colors->at(i, 3) : 1.0f);
+    }
+    for (std::size_t set = 0; set < AI_MAX_NUMBER_OF_TEXTURECOORDS; ++set) {
+      const auto uvs = table("TEXCOORD_" + std::to_string(set), 2);
+      if (!uvs) continue;
+      mesh.uvs.resize(set + 1);
+      for (std::size_t i = 0; i < uvs->count; ++i) mesh.uvs[set].emplace_back(uvs->at(i, 0), 1 - uvs->at(i, 1), 0.0f);
+    }
+    std::vector<std::uint32_t> indices;
+    if (draco) {
+      indices = std::move(draco->indices);
+      mode = 4;
+    } else if (primitive.contains("indices")) {
+      indices = file_.ReadIndices(GltfFile::Index(primitive, "indices"));
+    } else {
+      indices.resize(mesh.positions.size());
+      for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<std::uint32_t>(i);
+    }
+    constexpr int kStrip = 5, kFan = 6;
+    const std::size_t n = indices.size(), step = mode == 4 ? 3 : 1;
+    for (std::size_t i = 0; i + 2 < n; i += step) {
+      if (mode == kFan) {
+        mesh.triangles.push_back({indices[0], indices[i + 1], indices[i + 2]});
+      } else {
+        const bool odd = mode == kStrip && i % 2 == 1;
+        mesh.triangles.push_back({indices[i], indices[i + (odd ? 2 : 1)], indices[i + (odd ? 1 : 2)]});
+      }
+    }
+  }
+
+  // ----------------------------------------------------------------------------------------------------- nodes
+
+  struct Instance {
+    glm::dmat4 transform;
+    std::size_t mesh;
+  };
+
+  static glm::dmat4 FromTrs(const glm::dvec3& t, const glm::dquat& r, const glm::dvec3& s) {
+    glm::dmat4 m = glm::mat4_cast(glm::normalize(r));
+    for (int c = 0; c < 3; ++c) m[c] *= s[c];
+    m[3] = glm::dvec4(t, 1);
+    return m;
+  }
+  static glm::dmat4 TransformOf(const json& node) {
+    if (node.contains("matrix")) {
+      const auto m = node["matrix"].get<std::array<double, 16>>();
+      return {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11], m[12], m[13], m[14], m[15]};
+    }
+    const auto t = GltfFile::Numbers<3>(node, "translation", {0, 0, 0}),
+               s = GltfFile::Numbers<3>(node, "scale", {1, 1, 1});
+    const auto q = GltfFile::Numbers<4>(node, "rotation", {0, 0, 0, 1});
+    return FromTrs({t[0], t[1], t[2]}, {q[3], q[0], q[1], q[2]}, {s[0], s[1], s[2]});
+  }
+
+  void ReadNode(std::size_t index, const glm::dmat4& parent, int depth) {
+    if (depth > kDeepestNode) throw std::runtime_error("has nodes more than 1000 deep, or in a circle");
+    const json& node = file_.At("nodes", index);
+    const glm::dmat4 transform = parent * TransformOf(node);
+    if (node.contains("mesh")) AppendInstances(node, transform);
+    for (const json& child : GltfFile::Child(node, "children"))
+      ReadNode(child.get<std::size_t>(), transform, depth + 1);
+  }
+
+  void AppendInstances(const json& node, const glm::dmat4& transform) {
+    const std::size_t mesh = GltfFile::Index(node, "mesh");
+    if (mesh >= meshes_.size())
+      throw std::runtime_error("names meshes[" + std::to_string(mesh) + "], which does not exist");
+    const json* instancing = GltfFile::Extension(node, "EXT_mesh_gpu_instancing");
+    if (instancing == nullptr) {
+      instances_.push_back({transform, mesh});
+    } else {
+      const json& attributes = GltfFile::Child(*instancing, "attributes");
+      std::map<std::string, GltfTable> tables;
+      for (const auto& [name, columns] : {std::pair{"TRANSLATION", 3u}, {"ROTATION", 4u}, {"SCALE", 3u}}) {
+        if (!attributes.contains(name)) continue;
+        tables[name] = file_.ReadTable(GltfFile::Index(attributes, name));
+        if (tables[name].columns != columns || tables[name].count != tables.begin()->second.count)
+          throw std::runtime_error(std::string("EXT_mesh_gpu_instancing: ") + name + " does not fit");
+      }
+      for (std::size_t i = 0; !tables.empty() && i < tables.begin()->second.count; ++i) {
+        const auto row = [&](const char* name, const glm::dvec4& otherwise) {
+          const auto at = tables.find(name);
+          if (at == tables.end()) return otherwise;
+          glm::dvec4 values(0);
+          for (std::size_t c = 0; c < at->second.columns; ++c) values[static_cast<int>(c)] = at->second.at(i, c);
+          return values;
+        };
+        const glm::dvec4 q = row("ROTATION", {0, 0, 0, 1});
+        instances_.push_back(
+            {transform * FromTrs(row("TRANSLATION", glm::dvec4(0)), {q.w, q.x, q.y, q.z}, row("SCALE", glm::dvec4(1))),
+             mesh});
+        if (instances_.size() > kMostInstances) break;
+      }
+    }
+    if (instances_.size() > kMostInstances)
+      throw std::runtime_error("has more placed meshes than are read: " + std::to_string(kMostInstances));
+  }
+
+  // The default scene, or all nodes that are no children.
+  std::vector<std::size_t> Roots() const {
+    const json& document = file_.document();
+    if (document.contains("scene") || !GltfFile::Child(document, "scenes").empty()) {
+      const json& scene = file_.At("scenes", document.contains("scene") ? GltfFile::Index(document, "scene") : 0);
+      return GltfFile::Child(scene, "nodes").empty() ? std::vector<std::size_t>{}
+                                                     : scene["nodes"].get<std::vector<std::size_t>>();
+    }
+    const json& nodes = GltfFile::Child(document, "nodes");
+    std::vector<bool> is_child(nodes.size());
+    for (const json& node : nodes) {
+      for (const json& child : GltfFile::Child(node, "children")) {
+        if (child.get<std::size_t>() < is_child.size()) is_child[child.get<std::size_t>()] = true;
+      }
+    }
+    std::vector<std::size_t> roots;
+    for (std::size_t i = 0; i < is_child.size(); ++i) {
+      if (!is_child[i]) roots.push_back(i);
+    }
+    return roots;
+  }
+
+  void ReadNodes() {
+    for (const std::size_t root : Roots()) ReadNode(root, glm::dmat4(1), 0);
+    std::vector<glm::dvec3> places;
+    for (const Instance& instance : instances_) places.emplace_back(instance.transform[3]);
+    constexpr double kFar = 1e4;
+    if (std::ranges::any_of(places, [](const glm::dvec3& x) { return glm::length(x) > kFar; }))
+      import_.origin = OriginFor(places);
+    std::vector<aiNode*> children;
+    for (Instance& instance : instances_) {
+      glm::dmat4& m = instance.transform;
+      m[3] -= glm::dvec4(import_.origin, 0);
+      auto* node = new aiNode;
+      children.push_back(node);
+      for (unsigned row = 0; row < 4; ++row) {
+        for (unsigned column = 0; column < 4; ++column)
+          node->mTransformation[row][column] = static_cast<float>(m[static_cast<int>(column)][static_cast<int>(row)]);
+      }
+      const std::vector<unsigned>& parts = meshes_[instance.mesh];
+      node->mNumMeshes = static_cast<unsigned>(parts.size());
+      node->mMeshes = new unsigned[parts.size()];
+      std::ranges::copy(parts, node->mMeshes);
+    }
+    scene_->mRootNode = new aiNode;
+    SetList(scene_->mRootNode->mChildren, scene_->mRootNode->mNumChildren, children);
+  }
+
+  GltfFile file_;
+  MeshImport& import_;
+  GltfMaterials materials_;
+  std::vector<aiMesh*> ai_meshes_;
+  std::vector<std::vector<unsigned>> meshes_;  // by the file's mesh: of ai_meshes_
+  std::vector<Instance> instances_;
+  aiScene* scene_ = nullptr;
+};
+
+}  // namespace
+
+void ReadGltf(MeshFiles& files, MeshImport& import) {
+  try {
+    GltfReader(files, import).Read();
+    if (import.scene->mNumMeshes == 0) import.problem = "has no triangles";
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    import.scene = nullptr;
+    std::string what = error.what();
+    if (dynamic_cast<const json::exception*>(&error) != nullptr)
+      what = "is not glTF as its schema has it: " + what.substr(std::min(what.find("] ") + 2, what.size()));
+    import.problem = what.starts_with("requires ") ? what : "cannot be read: " + what;
+  }
+}
+
+}  // namespace sim

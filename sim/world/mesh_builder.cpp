@@ -1,0 +1,172 @@
+#include "sim/world/mesh_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <numeric>
+#include <unordered_map>
+
+namespace sim {
+namespace {
+
+template <class T>
+T* Copied(const std::vector<T>& values) {
+  if (values.empty()) return nullptr;
+  T* copy = new T[values.size()];
+  std::copy(values.begin(), values.end(), copy);
+  return copy;
+}
+
+// Twice the signed area.
+double Cross(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+struct HashCorner {
+  std::size_t operator()(const Corner& c) const {
+    std::uint64_t hash = 0;
+    for (const std::int32_t i : c) hash = (hash ^ static_cast<std::uint32_t>(i)) * 0x9e3779b97f4a7c15u;
+    return hash ^ (hash >> 29);
+  }
+};
+
+}  // namespace
+
+std::string IndexProblem(const Polygons& polygons, const PolygonPools& pools) {
+  const std::array<std::size_t, 4> counts = {pools.positions.size(), pools.uvs.size(), pools.normals.size(),
+                                             pools.colors.size()};
+  constexpr const char* kNames[] = {"vertex ", "texture coordinate ", "normal ", "colour "};
+  for (const Corner& corner : polygons.corners) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (corner[i] >= static_cast<std::int64_t>(counts[i]) || corner[i] < (i == 0 ? 0 : -1))
+        return "a face names " + std::string(kNames[i]) + std::to_string(std::int64_t{corner[i]} + 1) + " of " +
+               std::to_string(counts[i]);
+    }
+  }
+  return "";
+}
+
+void AppendPolygons(const Polygons& polygons, const PolygonPools& pools, const glm::dvec3& origin, BuiltMesh& mesh) {
+  std::unordered_map<Corner, unsigned, HashCorner> vertex_of;
+  vertex_of.reserve(polygons.corners.size());
+  const Corner has = polygons.corners.empty() ? Corner{} : polygons.corners[0];
+  if (has[1] >= 0) mesh.uvs.resize(1);
+  std::vector<glm::dvec3> outline;
+  std::vector<unsigned> vertices;
+  std::size_t first = 0;
+  for (const std::uint32_t size : polygons.sizes) {
+    outline.clear();
+    vertices.clear();
+    for (std::size_t i = first; i < first + size; ++i) {
+      const Corner& corner = polygons.corners[i];
+      const auto of = [&](std::size_t pool) { return static_cast<std::size_t>(std::max(corner[pool], 0)); };
+      const auto [vertex, is_new] = vertex_of.try_emplace(corner, static_cast<unsigned>(mesh.positions.size()));
+      outline.push_back(pools.positions[of(0)]);
+      vertices.push_back(vertex->second);
+      if (!is_new) continue;
+      const glm::vec3 x(pools.positions[of(0)] - origin);
+      mesh.positions.emplace_back(x.x, x.y, x.z);
+      if (has[1] >= 0) mesh.uvs[0].push_back(pools.uvs[of(1)]);
+      if (has[2] >= 0) mesh.normals.push_back(pools.normals[of(2)]);
+      if (has[3] >= 0) mesh.colors.push_back(pools.colors[of(3)]);
+    }
+    for (const auto& [a, b, c] : Triangulate(outline))
+      mesh.triangles.push_back({vertices[a], vertices[b], vertices[c]});
+    first += size;
+  }
+}
+
+aiMesh* ToAssimp(const BuiltMesh& mesh) {
+  auto* out = new aiMesh;
+  out->mName.Set(mesh.name);
+  out->mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
+  out->mMaterialIndex = mesh.material;
+  out->mNumVertices = static_cast<unsigned>(mesh.positions.size());
+  out->mVertices = Copied(mesh.positions);
+  out->mNormals = Copied(mesh.normals);
+  out->mColors[0] = Copied(mesh.colors);
+  for (std::size_t i = 0; i < std::min<std::size_t>(mesh.uvs.size(), AI_MAX_NUMBER_OF_TEXTURECOORDS); ++i)
+    out->mTextureCoords[i] = Copied(mesh.uvs[i]);
+  out->mNumFaces = static_cast<unsigned>(mesh.triangles.size());
+  out->mFaces = mesh.triangles.empty() ? nullptr : new aiFace[mesh.triangles.size()];
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    out->mFaces[i].mNumIndices = 3;
+    out->mFaces[i].mIndices = new unsigned[3]{mesh.triangles[i][0], mesh.triangles[i][1], mesh.triangles[i][2]};
+  }
+  return out;
+}
+
+std::unique_ptr<aiScene> SceneOf(std::span<const BuiltMesh> meshes, const std::vector<aiMaterial*>& materials) {
+  auto scene = std::make_unique<aiScene>();
+  std::vector<aiMesh*> converted;
+  for (const BuiltMesh& mesh : meshes) converted.push_back(ToAssimp(mesh));
+  SetList(scene->mMeshes, scene->mNumMeshes, converted);
+  SetList(scene->mMaterials, scene->mNumMaterials, materials);
+  scene->mRootNode = new aiNode;
+  scene->mRootNode->mNumMeshes = scene->mNumMeshes;
+  scene->mRootNode->mMeshes = new unsigned[meshes.size()];
+  std::iota(scene->mRootNode->mMeshes, scene->mRootNode->mMeshes + meshes.size(), 0u);
+  return scene;
+}
+
+void SetText(aiMaterial& material, const std::string& text, const char* key, unsigned type, unsigned index) {
+  const aiString value(text.substr(0, MAXLEN - 1));
+  material.AddProperty(&value, key, type, index);
+}
+
+void SetUvTransform(aiMaterial& material, aiTextureType type, const glm::dmat3x2& t) {
+  const std::array<float, 6> numbers = {static_cast<float>(t[0].x), static_cast<float>(t[0].y),
+                                        static_cast<float>(t[1].x), static_cast<float>(t[1].y),
+                                        static_cast<float>(t[2].x), static_cast<float>(t[2].y)};
+  material.AddProperty(numbers.data(), 6, kUvTransformKey, type, 0);
+}
+
+std::vector<std::array<unsigned, 3>> Triangulate(std::span<const glm::dvec3> corners) {
+  const auto n = static_cast<unsigned>(corners.size());
+  if (n < 3) return {};
+  if (n == 3) return {{0, 1, 2}};
+  glm::dvec3 area(0);
+  for (unsigned i = 1; i + 1 < n; ++i) area += glm::cross(corners[i] - corners[0], corners[i + 1] - corners[0]);
+  const glm::dvec3 size = glm::abs(area);
+  const int drop = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+  const int u = (drop + 1) % 3, v = (drop + 2) % 3;
+  const double side = area[drop] < 0 ? -1 : 1;
+  std::vector<glm::dvec2> flat;
+  for (const glm::dvec3& x : corners) flat.emplace_back(x[u], side * x[v]);  // counter-clockwise
+  std::vector<unsigned> left(n);
+  std::iota(left.begin(), left.end(), 0u);
+  std::vector<std::array<unsigned, 3>> triangles;
+  while (left.size() > 3) {
+    std::size_t ear = left.size();
+    for (std::size_t k = 1; k <= left.size() && ear == left.size(); ++k) {  // so that a convex one is a fan
+      const std::size_t i = k % left.size();
+      const unsigned a = left[(i + left.size() - 1) % left.size()], b = left[i], c = left[(i + 1) % left.size()];
+      if (!(Cross(flat[a], flat[b], flat[c]) > 0)) continue;
+      const bool is_empty = std::ranges::none_of(left, [&](unsigned other) {
+        const glm::dvec2& p = flat[other];
+        return p != flat[a] && p != flat[b] && p != flat[c] && Cross(flat[a], flat[b], p) >= 0 &&
+               Cross(flat[b], flat[c], p) >= 0 && Cross(flat[c], flat[a], p) >= 0;
+      });
+      if (is_empty) ear = i;
+    }
+    if (ear == left.size()) ear = 1;  // it crosses itself or has no area: as a fan
+    triangles.push_back({left[(ear + left.size() - 1) % left.size()], left[ear], left[(ear + 1) % left.size()]});
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
+  }
+  triangles.push_back({left[0], left[1], left[2]});
+  return triangles;
+}
+
+glm::dvec3 OriginFor(std::span<const glm::dvec3> positions) {
+  if (positions.empty()) return glm::dvec3(0);
+  glm::dvec3 low = positions[0], high = low;
+  for (const glm::dvec3& x : positions) low = glm::min(low, x), high = glm::max(high, x);
+  const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high)), middle = 0.5 * (low + high);
+  const double largest = std::max({far.x, far.y, far.z});
+  const bool is_fine = !(0x1p-24 * largest > 1e-6 * glm::length(high - low)) || !std::isfinite(largest);
+  return is_fine ? glm::dvec3(0) : glm::round(middle);
+}
+
+}  // namespace sim

@@ -1,0 +1,197 @@
+#include "sim/world/obj_reader.h"
+
+#include <charconv>
+#include <cstdint>
+#include <map>
+#include <string_view>
+#include <tuple>
+
+#include "sim/world/material_library.h"
+#include "sim/world/mesh_builder.h"
+#include "sim/world/texture_file.h"
+
+namespace sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Part {
+  std::string name, material;
+  Polygons polygons{};
+};
+
+class ObjReader {
+ public:
+  ObjReader(MeshFiles& files, MeshImport& import) : files_(files), import_(import) {}
+
+  void Read() {
+    const std::optional<std::string> text = files_.Read(files_.mesh());
+    if (!text) return Fail("cannot be opened");
+    ForEachStatement(*text, [&](std::string_view word, std::string_view rest, int line) {
+      line_ = line;
+      Statement(word, rest);
+    });
+    for (const Part& part : parts_) {  // forward references are allowed
+      if (problems_.empty()) problems_ = IndexProblem(part.polygons, pools_);
+    }
+    if (!problems_.empty()) return Fail("cannot be read: " + problems_);
+    Build();
+  }
+
+ private:
+  void Fail(const std::string& what) { import_.problem = what; }
+  void Problem(const std::string& what) {
+    constexpr int kMostProblems = 5;
+    if (++problem_count_ > kMostProblems) return;
+    problems_ += (problems_.empty() ? "line " : "; line ") + std::to_string(line_) + ": " + what;
+  }
+
+  // Numbers of the rest of the line, as many as there are.
+  std::size_t Numbers(std::string_view rest, std::span<double> numbers) {
+    std::size_t count = 0;
+    for (std::string_view word = NextWord(rest); !word.empty() && count < numbers.size(); word = NextWord(rest)) {
+      if (word[0] == '#') break;
+      const std::optional<double> number = ToNumber(word);
+      if (!number) {
+        Problem("'" + std::string(word) + "' is not a number");
+        break;
+      }
+      numbers[count++] = *number;
+    }
+    return count;
+  }
+
+  void Statement(std::string_view word, std::string_view rest) {
+    std::array<double, 8> n{};
+    if (word == "v") {
+      const std::size_t count = Numbers(rest, n);
+      if (count < 3) return Problem("a vertex has three coordinates");
+      pools_.positions.emplace_back(n[0], n[1], n[2]);
+      if (count < 6) return;
+      pools_.colors.resize(pools_.positions.size(), aiColor4D(1, 1, 1, 1));
+      pools_.colors.back() = aiColor4D(static_cast<float>(n[3]), static_cast<float>(n[4]), static_cast<float>(n[5]), 1);
+      for (int c = 3; c < 6; ++c) largest_color_ = std::max(largest_color_, n[static_cast<std::size_t>(c)]);
+    } else if (word == "vt") {
+      if (Numbers(rest, n) < 1) return Problem("a texture coordinate has a number");
+      pools_.uvs.emplace_back(static_cast<float>(n[0]), static_cast<float>(n[1]), 0.0f);
+    } else if (word == "vn") {
+      if (Numbers(rest, n) < 3) return Problem("a normal has three coordinates");
+      pools_.normals.emplace_back(static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2]));
+    } else if (word == "f" || word == "fo") {
+      Face(rest);
+    } else if (word == "usemtl") {
+      material_ = rest;
+    } else if (word == "o" || word == "g") {
+      name_ = rest;
+    } else if (word == "mtllib") {
+      Library(rest);
+    } else {
+      known_ = known_ || word == "l" || word == "p";
+      return;
+    }
+    known_ = true;
+  }
+
+  void Face(std::string_view rest) {
+    std::vector<Corner> corners;
+    bool has_uv = true, has_normal = true;
+    for (std::string_view word = NextWord(rest); !word.empty() && word[0] != '#'; word = NextWord(rest)) {
+      Corner corner{-1, -1, -1, -1};
+      const std::array<std::size_t, 3> counts = {pools_.positions.size(), pools_.uvs.size(), pools_.normals.size()};
+      for (std::size_t i = 0; i < 3 && !word.empty(); ++i) {
+        const std::size_t end = std::min(word.find('/'), word.size());
+        if (end > 0) {
+          std::int32_t index = 0;
+          const auto [stop, error] = std::from_chars(word.data(), word.data() + end, index);
+          if (error != std::errc() || stop != word.data() + end || index == 0)
+            return Problem("'" + std::string(word.substr(0, end)) + "' is not an index");
+          corner[i] = index > 0 ? index - 1 : static_cast<std::int32_t>(counts[i]) + index;
+          if (corner[i] < 0) return Problem(std::to_string(index) + " names a vertex that does not exist");
+        }
+        word.remove_prefix(std::min(end + 1, word.size()));
+      }
+      if (corner[0] < 0) return Problem("a corner without a vertex");
+      has_uv = has_uv && corner[1] >= 0;
+      has_normal = has_normal && corner[2] >= 0;
+      corners.push_back(corner);
+    }
+    if (corners.size() < 3) return;
+    for (Corner& corner : corners) {
+      if (!has_uv) corner[1] = -1;
+      if (!has_normal) corner[2] = -1;
+    }
+    const auto [at, is_new] = part_of_.try_emplace({name_, material_, has_uv, has_normal}, parts_.size());
+    if (is_new) parts_.push_back({name_, material_});
+    Polygons& polygons = parts_[at->second].polygons;
+    polygons.sizes.push_back(static_cast<std::uint32_t>(corners.size()));
+    polygons.corners.insert(polygons.corners.end(), corners.begin(), corners.end());
+  }
+
+  // One name, which may have blanks, or several without.
+  void Library(std::string_view rest) {
+    if (ReadLibrary(rest)) return;
+    std::string_view words = rest;
+    const std::string_view first = NextWord(words);
+    if (words.empty()) return files_.Missing(std::string(rest));
+    for (std::string_view name = first; !name.empty(); name = NextWord(words)) {
+      if (!ReadLibrary(name)) files_.Missing(std::string(name));
+    }
+  }
+  bool ReadLibrary(std::string_view name) {
+    const fs::path folder = files_.mesh().parent_path();
+    const TextureFile found = FindTexture(std::string(name), files_.mesh(), "", files_.folders());
+    const std::optional<std::string> text = found.problem.empty() ? files_.Read(found.file) : std::nullopt;
+    if (!text) return false;
+    if (found.is_elsewhere) import_.warnings.push_back("takes " + found.file.string() + " for " + std::string(name));
+    ReadMaterialLibrary(*text, found.file.parent_path().lexically_relative(folder.empty() ? "." : folder).string(),
+                        materials_);
+    any_library_ = true;
+    return true;
+  }
+
+  void Build() {
+    if (!known_) return Fail("cannot be read: has no statement of an OBJ file (in ASCII or UTF-8)");
+    import_.origin = OriginFor(pools_.positions);
+    if (!pools_.colors.empty()) pools_.colors.resize(pools_.positions.size(), aiColor4D(1, 1, 1, 1));
+    if (largest_color_ > 1) {
+      import_.warnings.push_back("vertex colours go beyond 1: they are taken as 0 ... 255");
+      for (aiColor4D& c : pools_.colors) c = aiColor4D(c.r / 255, c.g / 255, c.b / 255, 1);
+    }
+    std::vector<BuiltMesh> meshes;
+    std::vector<aiMaterial*> materials;
+    std::map<std::string, unsigned> index_of;
+    for (Part& part : parts_) {
+      for (Corner& corner : part.polygons.corners) corner[3] = pools_.colors.empty() ? -1 : corner[0];
+      BuiltMesh& mesh = meshes.emplace_back();
+      mesh.name = part.name;
+      const auto [at, is_new] = index_of.try_emplace(part.material, static_cast<unsigned>(materials.size()));
+      if (is_new) {
+        const auto known = materials_.find(part.material);
+        if (known == materials_.end() && any_library_ && !part.material.empty())
+          import_.warnings.push_back("names the material '" + part.material + "', which its library does not have");
+        materials.push_back(ToAssimp(known == materials_.end() ? LibraryMaterial{part.material} : known->second));
+      }
+      mesh.material = at->second;
+      AppendPolygons(part.polygons, pools_, import_.origin, mesh);
+    }
+    import_.scene = SceneOf(meshes, materials);
+  }
+
+  MeshFiles& files_;
+  MeshImport& import_;
+  int line_ = 0, problem_count_ = 0;
+  std::string problems_;
+  bool known_ = false, any_library_ = false;
+  PolygonPools pools_;
+  double largest_color_ = 0;
+  std::string name_, material_;
+  std::vector<Part> parts_;
+  std::map<std::tuple<std::string, std::string, bool, bool>, std::size_t> part_of_;
+  std::map<std::string, LibraryMaterial> materials_;
+};
+
+}  // namespace
+
+void ReadObj(MeshFiles& files, MeshImport& import) { ObjReader(files, import).Read(); }
+
+}  // namespace sim

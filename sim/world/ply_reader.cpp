@@ -1,0 +1,317 @@
+#include "sim/world/ply_reader.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <map>
+#include <new>
+#include <stdexcept>
+#include <string_view>
+
+#include "sim/world/material_library.h"
+#include "sim/world/mesh_builder.h"
+
+namespace sim {
+namespace {
+
+enum class Type { i8, u8, i16, u16, i32, u32, f32, f64 };
+constexpr std::size_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+constexpr std::size_t kMostValues = 1 << 27;
+
+Type TypeOf(std::string_view name) {
+  static const std::map<std::string_view, Type> types = {
+      {"char", Type::i8},   {"int8", Type::i8},     {"uchar", Type::u8},   {"uint8", Type::u8},
+      {"short", Type::i16}, {"int16", Type::i16},   {"ushort", Type::u16}, {"uint16", Type::u16},
+      {"int", Type::i32},   {"int32", Type::i32},   {"uint", Type::u32},   {"uint32", Type::u32},
+      {"float", Type::f32}, {"float32", Type::f32}, {"double", Type::f64}, {"float64", Type::f64}};
+  const auto found = types.find(name);
+  if (found == types.end()) throw std::runtime_error("'" + std::string(name) + "' is no type");
+  return found->second;
+}
+
+// What 1 is written as, in a colour.
+double WhiteOf(Type type) { return type == Type::u8 || type == Type::i8 ? 255 : type == Type::u16 ? 65535 : 1; }
+
+struct Property {
+  std::string name;
+  Type type;
+  std::optional<Type> count;  // of a list
+};
+
+struct Element {
+  std::string name;
+  std::size_t count;
+  std::vector<Property> properties;
+  // The place of the first property that has one of these names; -1: none.
+  int Find(std::initializer_list<std::string_view> names) const {
+    for (const std::string_view wanted : names) {
+      for (std::size_t i = 0; i < properties.size(); ++i) {
+        if (properties[i].name == wanted) return static_cast<int>(i);
+      }
+    }
+    return -1;
+  }
+};
+
+// The values of one row, by property; a list's are as many as it has.
+using Row = std::vector<std::vector<double>>;
+
+class PlyReader {
+ public:
+  PlyReader(MeshFiles& files, MeshImport& import)
+      : import_(import), text_(files.Read(files.mesh()).value_or("")), rest_(text_) {}
+
+  void Read() {
+    ReadHeader();
+    for (const Element& element : elements_) {
+      if (element.properties.empty()) continue;
+      if (element.count > rest_.size()) throw std::runtime_error("the file ends too early");
+      if (element.name == "vertex") {
+        ReadVertices(element);
+      } else if (element.name == "face") {
+        ReadFaces(element);
+      } else if (element.name == "tristrips") {
+        ForEachRow(element, [&](const Row& row) { AppendStrips(row.at(0)); });
+      } else {
+        ForEachRow(element, [](const Row&) {});
+      }
+    }
+    Build();
+  }
+
+ private:
+  void ReadHeader() {
+    bool ended = false, known = false;
+    while (!ended && !rest_.empty()) {
+      const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+      std::string_view line = rest_.substr(0, end);
+      rest_.remove_prefix(std::min(end + 1, rest_.size()));
+      const std::string_view word = NextWord(line);
+      if (word == "format") {
+        const std::string_view format = NextWord(line);
+        is_text_ = format == "ascii";
+        is_big_ = format == "binary_big_endian";
+        known = is_text_ || is_big_ || format == "binary_little_endian";
+      } else if (word == "element") {
+        const std::string_view name = NextWord(line);
+        const std::optional<double> count = ToNumber(NextWord(line));
+        if (!count || !(*count >= 0 && *count <= 1e15)) throw std::runtime_error("an element without a count");
+        elements_.push_back({std::string(name), static_cast<std::size_t>(*count), {}});
+      } else if (word == "property" && !elements_.empty()) {
+        std::string_view type = NextWord(line);
+        std::optional<Type> count;
+        if (type == "list") {
+          count = TypeOf(NextWord(line));
+          type = NextWord(line);
+        }
+        const Type of = TypeOf(type);
+        elements_.back().properties.push_back({std::string(line), of, count});
+      } else if (word == "comment" || word == "obj_info") {
+        if (NextWord(line) == "TextureFile") textures_.emplace_back(line);
+      }
+      ended = word == "end_header";
+    }
+    if (!ended || !known) throw std::runtime_error("its header breaks off, or names no format");
+  }
+
+  double Value(Type type) {
+    if (is_text_) {
+      const std::size_t begin = std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size());
+      const std::size_t end = std::min(rest_.find_first_of(" \t\r\n", begin), rest_.size());
+      const std::string_view word = rest_.substr(begin, end - begin);
+      rest_.remove_prefix(end);
+      if (word.empty()) throw std::runtime_error("the file ends too early");
+      const std::optional<double> number = ToNumber(word);
+      if (!number) throw std::runtime_error("'" + std::string(word) + "' is not a number");
+      return *number;
+    }
+    const std::size_t size = kSizes[static_cast<std::size_t>(type)];
+    if (rest_.size() < size) throw std::runtime_error("the file ends too early");
+    std::array<char, 8> bytes{};
+    std::copy_n(rest_.begin(), size, bytes.begin());
+    if (is_big_) std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    rest_.remove_prefix(size);
+    const auto as = [&]<class T>(T value) {
+      std::memcpy(&value, bytes.data(), sizeof value);
+      return static_cast<double>(value);
+    };
+    switch (type) {
+      case Type::i8:
+        return as(std::int8_t{});
+      case Type::u8:
+        return as(std::uint8_t{});
+      case Type::i16:
+        return as(std::int16_t{});
+      case Type::u16:
+        return as(std::uint16_t{});
+      case Type::i32:
+        return as(std::int32_t{});
+      case Type::u32:
+        return as(std::uint32_t{});
+      case Type::f32:
+        return as(float{});
+      default:
+        return as(double{});
+    }
+  }
+
+  template <class Call>
+  void ForEachRow(const Element& element, const Call& call) {
+    Row row(element.properties.size());
+    for (std::size_t n = 0; n < element.count; ++n) {
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        const Property& property = element.properties[i];
+        const double count = property.count ? Value(*property.count) : 1;
+        if (!(count >= 0 && count <= static_cast<double>(rest_.size() + 1)) || count > kMostValues)
+          throw std::runtime_error("a list has more entries than the file");
+        row[i].resize(static_cast<std::size_t>(count));
+        for (double& value : row[i]) value = Value(property.type);
+      }
+      call(row);
+    }
+  }
+
+  // The places of properties, all or none.
+  template <std::size_t n>
+  static std::optional<std::array<std::size_t, n>> Places(const std::array<int, n>& found) {
+    std::array<std::size_t, n> places{};
+    for (std::size_t i = 0; i < n; ++i) {
+      if (found[i] < 0) return std::nullopt;
+      places[i] = static_cast<std::size_t>(found[i]);
+    }
+    return places;
+  }
+  static std::optional<std::array<std::size_t, 3>> ColorPlaces(const Element& e) {
+    return Places<3>({e.Find({"red", "r", "diffuse_red"}), e.Find({"green", "g", "diffuse_green"}),
+                      e.Find({"blue", "b", "diffuse_blue"})});
+  }
+  void AppendColor(const Element& element, const std::array<std::size_t, 3>& at, const Row& row) {
+    const double white = WhiteOf(element.properties[at[0]].type);
+    const auto channel = [&](std::size_t i) {
+      return row[at[i]].empty() ? 0.0f : static_cast<float>(row[at[i]][0] / white);
+    };
+    pools_.colors.emplace_back(channel(0), channel(1), channel(2), 1.0f);
+  }
+
+  void ReadVertices(const Element& e) {
+    const auto xyz = Places<3>({e.Find({"x"}), e.Find({"y"}), e.Find({"z"})});
+    const auto normal = Places<3>({e.Find({"nx", "normal_x"}), e.Find({"ny", "normal_y"}), e.Find({"nz", "normal_z"})});
+    const auto uv = Places<2>(
+        {e.Find({"s", "u", "texture_u", "texture_s", "tu"}), e.Find({"t", "v", "texture_v", "texture_t", "tv"})});
+    const auto color = ColorPlaces(e);
+    if (!xyz) throw std::runtime_error("its vertices have no x, y, z");
+    has_uvs_ = uv.has_value(), has_normals_ = normal.has_value(), has_colors_ = color.has_value();
+    const auto single = [](const Row& row, std::size_t at) {
+      if (row[at].size() != 1) throw std::runtime_error("a coordinate is a list");
+      return row[at][0];
+    };
+    ForEachRow(e, [&](const Row& row) {
+      pools_.positions.emplace_back(single(row, (*xyz)[0]), single(row, (*xyz)[1]), single(row, (*xyz)[2]));
+      if (normal) {
+        pools_.normals.emplace_back(static_cast<float>(single(row, (*normal)[0])),
+                                    static_cast<float>(single(row, (*normal)[1])),
+                                    static_cast<float>(single(row, (*normal)[2])));
+      }
+      if (uv)
+        pools_.uvs.emplace_back(static_cast<float>(single(row, (*uv)[0])), static_cast<float>(single(row, (*uv)[1])),
+                                0.0f);
+      if (color) AppendColor(e, *color, row);
+    });
+  }
+
+  // A corner at a vertex.
+  Corner At(double vertex) const {
+    if (!(vertex >= 0 && vertex < 2147483647.0))
+      throw std::runtime_error("a face names vertex " + std::to_string(vertex));
+    const auto i = static_cast<std::int32_t>(vertex);
+    return {i, has_uvs_ ? i : -1, has_normals_ ? i : -1, has_colors_ ? i : -1};
+  }
+
+  void ReadFaces(const Element& e) {
+    const int list = e.Find({"vertex_indices", "vertex_index"}), wedge = e.Find({"texcoord"}),
+              number = e.Find({"texnumber"});
+    const auto color = has_colors_ ? std::nullopt : ColorPlaces(e);
+    if (list < 0) return ForEachRow(e, [](const Row&) {});
+    ForEachRow(e, [&](const Row& row) {
+      const std::vector<double>& vertices = row[static_cast<std::size_t>(list)];
+      if (vertices.size() < 3) return;
+      const std::vector<double> none, &uvs = wedge < 0 ? none : row[static_cast<std::size_t>(wedge)];
+      const bool has_wedge = uvs.size() >= 2 * vertices.size();
+      const std::vector<double>& texture = number < 0 ? none : row[static_cast<std::size_t>(number)];
+      if (color) AppendColor(e, *color, row);
+      // Faces with and without coordinates of their own are parts, as are those of different textures.
+      Polygons& part =
+          parts_[{texture.empty() ? 0 : static_cast<int>(std::clamp(texture[0], 0.0, 1e6)), wedge >= 0 && !has_wedge}];
+      part.sizes.push_back(static_cast<std::uint32_t>(vertices.size()));
+      for (std::size_t i = 0; i < vertices.size(); ++i) {
+        Corner& corner = part.corners.emplace_back(At(vertices[i]));
+        if (has_wedge) {
+          corner[1] = UvIndex(static_cast<float>(uvs[2 * i]), static_cast<float>(uvs[2 * i + 1]));
+        }
+        if (color) corner[3] = static_cast<std::int32_t>(pools_.colors.size()) - 1;
+      }
+    });
+  }
+
+  // Equal coordinates of corners share an index, so that their vertices are shared.
+  std::int32_t UvIndex(float u, float v) {
+    const auto [at, is_new] = uv_index_.try_emplace({u, v}, static_cast<std::int32_t>(pools_.uvs.size()));
+    if (is_new) pools_.uvs.emplace_back(u, v, 0.0f);
+    return at->second;
+  }
+
+  // Strips, each of which -1 ends.
+  void AppendStrips(const std::vector<double>& indices) {
+    Polygons& part = parts_[{0, false}];
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+      if (indices[i] < 0) {
+        first = i + 1;
+      } else if (i >= first + 2) {
+        const bool odd = (i - first) % 2 == 1;
+        for (const std::size_t k : {i - 2, odd ? i : i - 1, odd ? i - 1 : i}) part.corners.push_back(At(indices[k]));
+        part.sizes.push_back(3);
+      }
+    }
+  }
+
+  void Build() {
+    import_.origin = OriginFor(pools_.positions);
+    std::vector<BuiltMesh> meshes;
+    std::vector<aiMaterial*> materials;
+    for (const auto& [key, part] : parts_) {
+      if (const std::string problem = IndexProblem(part, pools_); !problem.empty()) throw std::runtime_error(problem);
+      BuiltMesh& mesh = meshes.emplace_back();
+      const auto texture = static_cast<std::size_t>(key.first);
+      LibraryMaterial material{texture < textures_.size() ? textures_[texture] : ""};
+      if (!part.corners.empty() && part.corners[0][1] >= 0) material.color_map.file = material.name;
+      mesh.material = static_cast<unsigned>(materials.size());
+      materials.push_back(ToAssimp(material));
+      AppendPolygons(part, pools_, import_.origin, mesh);
+    }
+    import_.scene = SceneOf(meshes, materials);
+  }
+
+  MeshImport& import_;
+  std::string text_;
+  std::string_view rest_;  // what has not been read
+  bool is_text_ = false, is_big_ = false;
+  std::vector<Element> elements_;
+  std::vector<std::string> textures_;
+  PolygonPools pools_;
+  bool has_uvs_ = false, has_normals_ = false, has_colors_ = false;  // of the vertices
+  std::map<std::pair<float, float>, std::int32_t> uv_index_;
+  std::map<std::pair<int, bool>, Polygons> parts_;  // by texture, and whether corners lack coordinates
+};
+
+}  // namespace
+
+void ReadPly(MeshFiles& files, MeshImport& import) {
+  try {
+    PlyReader(files, import).Read();
+  } catch (const std::runtime_error& error) {
+    import.problem = std::string("cannot be read: ") + error.what();
+  }
+}
+
+}  // namespace sim

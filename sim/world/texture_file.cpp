@@ -1,0 +1,86 @@
+#include "sim/world/texture_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <system_error>
+
+#include "sim/world/mesh_import.h"
+
+namespace sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string Plain(std::string text) {
+  std::replace(text.begin(), text.end(), '\\', '/');
+  for (const char* prefix : {"file:///", "file://"}) {
+    if (text.starts_with(prefix)) text = text.substr(std::string(prefix).size() - (prefix[7] == '/' ? 1 : 0));
+  }
+  const std::size_t last = text.find_last_not_of(" \t\r\n");
+  return text.substr(0, last == std::string::npos ? 0 : last + 1);
+}
+
+std::string Lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+// The file, or one beside it whose name differs in capitals only.
+std::optional<fs::path> Existing(const fs::path& file) {
+  std::error_code error;
+  if (fs::exists(file, error)) return file;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (Lower(entry->path().filename().string()) == Lower(file.filename().string()))
+      return file.parent_path() / entry->path().filename();
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string DecodePercent(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto digit = [&](std::size_t at) {
+      return at < text.size() && std::isxdigit(static_cast<unsigned char>(text[at]));
+    };
+    if (text[i] == '%' && digit(i + 1) && digit(i + 2)) {
+      out += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
+      i += 2;
+    } else {
+      out += text[i];
+    }
+  }
+  return out;
+}
+
+TextureFile FindTexture(const std::string& name, const fs::path& mesh, const std::string& folder,
+                        const std::vector<fs::path>& folders) {
+  std::vector<std::string> texts = {Plain(name)};
+  if (const std::string decoded = DecodePercent(texts[0]); decoded != texts[0]) texts.push_back(decoded);
+  std::vector<fs::path> bases = {mesh.parent_path() / folder, mesh.parent_path()};
+  bases.insert(bases.end(), folders.begin(), folders.end());
+  bool is_outside = false;
+  for (const std::string& text : texts) {
+    const bool has_drive = text.size() > 1 && text[1] == ':';
+    for (const fs::path& base : bases) {
+      const auto found = has_drive ? std::nullopt : Existing((base / text).lexically_normal());
+      if (found && IsAllowed(mesh, folders, *found))
+        return {*found, found->filename() != fs::path(text).filename(), ""};
+      is_outside = is_outside || found || has_drive || fs::path(text).is_absolute();
+    }
+  }
+  for (const std::string& text : texts) {
+    for (const fs::path& base : bases) {
+      const auto found = Existing((base / fs::path(text).filename()).lexically_normal());
+      if (found && found->has_filename() && IsAllowed(mesh, folders, *found)) return {*found, true, ""};
+    }
+  }
+  const fs::path file = (bases[0] / texts.back()).lexically_normal();
+  if (is_outside) return {file, false, "must stay inside the folder of the mesh or of the scenario"};
+  return {file, false, "no such file"};
+}
+
+}  // namespace sim

@@ -1,0 +1,212 @@
+// OBJ and MTL as programs write them: what the format allows, and what it means.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/world/scene.h"
+#include "tests/unit/sim/world/files.h"
+
+namespace sim::test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+// A triangle of material a.
+constexpr const char* kFace = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n";
+
+class Obj : public testing::Test {
+ protected:
+  Scene Load(const std::string& text, const std::string& name = "m.obj") {
+    WorldDescription world;
+    world.folders = {folder_.path()};
+    world.meshes.push_back({folder_.Write(name, text), position_, {1, 0, 0, 0}, 1});
+    return LoadScene(world);
+  }
+  std::string Problems(const std::string& text) {
+    try {
+      Load(text);
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  static const Material& MaterialOf(const Scene& scene) {
+    return scene.materials.at(static_cast<std::size_t>(scene.meshes.at(0).material));
+  }
+  // Of the first mesh, where its second corner lies, in what its material shows.
+  static std::string Picture(const Scene& scene) {
+    return std::filesystem::path(scene.textures.at(static_cast<std::size_t>(MaterialOf(scene).texture)).name())
+        .filename()
+        .string();
+  }
+
+  Folder folder_;
+  glm::dvec3 position_{0};
+};
+
+TEST_F(Obj, MarksContinuationsAndNumbers) {
+  const Scene scene =
+      Load("\xef\xbb\xbfv 0 0 0 # the first\nv +1. 0 \\\n .0\n  v\t0 1e0   -.0  \r\nf 1 2 3\nf -3 -2 -1\n");
+  ASSERT_THAT(scene.meshes, SizeIs(1));
+  EXPECT_THAT(scene.meshes[0].triangles, SizeIs(2));
+  EXPECT_EQ(scene.meshes[0].positions[1], glm::vec3(1, 0, 0));
+  EXPECT_EQ(MaterialOf(scene).base_color, glm::vec3(1)) << "white where no material is named";
+}
+
+TEST_F(Obj, ProblemsHaveTheirLines) {
+  EXPECT_THAT(Problems("v 0 0 0\nv 1 x 0\nv 0 1\nf 1 2 3\nf 1 2 0\n"),
+              AllOf(HasSubstr("line 2: 'x' is not a number"), HasSubstr("line 3: a vertex has three"),
+                    HasSubstr("line 5: '0' is not an index")));
+  EXPECT_THAT(Problems("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n"), HasSubstr("names texture coordinate 1 of 0"));
+  EXPECT_THAT(Problems("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n"), HasSubstr("line 4: -4 names a vertex"));
+}
+
+// A polygon of an L: its triangles cover three quarters of the square, whatever corner it begins with.
+TEST_F(Obj, ConcavePolygons) {
+  const std::vector<std::string> corners = {"0 0 0", "1 0 0", "1 0.5 0", "0.5 0.5 0", "0.5 1 0", "0 1 0"};
+  for (std::size_t first = 0; first < corners.size(); ++first) {
+    for (const bool turned : {false, true}) {
+      std::string text;
+      for (std::size_t i = 0; i < 6; ++i) text += "v " + corners[(turned ? 12 + first - i : first + i) % 6] + "\n";
+      const Scene scene = Load(text + "f 1 2 3 4 5 6\n");
+      double area = 0;
+      for (const glm::uvec3& t : scene.meshes.at(0).triangles) {
+        const auto& p = scene.meshes[0].positions;
+        const glm::dvec3 cross = glm::cross(glm::dvec3(p[t.y] - p[t.x]), glm::dvec3(p[t.z] - p[t.x]));
+        EXPECT_EQ(cross.z > 0, !turned) << "faces as the polygon does";
+        area += 0.5 * std::abs(cross.z);
+      }
+      EXPECT_NEAR(area, 0.75, 1e-9) << first;
+    }
+  }
+}
+
+// Survey coordinates are moved by the position in double, before they are rounded.
+TEST_F(Obj, CoordinatesOfASurvey) {
+  position_ = {-691608.25, -5335808.5, -520};
+  const Scene scene =
+      Load("v 691608.25 5335808.5 520\nv 691609.35 5335808.5 520\nv 691608.25 5335809.7 520\nf 1 2 3\n");
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_NEAR(scene.meshes.at(0).positions[1].x, 1.1, 1e-7);
+  EXPECT_NEAR(scene.meshes[0].positions[2].y, 1.2, 1e-7);
+}
+
+TEST_F(Obj, VertexColours) {
+  const Scene scene = Load("v 0 0 0 0.5 0.5 0.5\nv 1 0 0 0.5 0.5 0.5\nv 0 1 0 1 1 1\nf 1 2 3\n");
+  EXPECT_NEAR(scene.meshes.at(0).colors.at(0).x, SrgbToLinear(0.5), 1e-6);
+  EXPECT_EQ(MaterialOf(scene).base_color, glm::vec3(1));
+  const Scene bytes = Load("v 0 0 0 128 0 0\nv 1 0 0 128 0 0\nv 0 1 0 255 255 255\nf 1 2 3\n");
+  EXPECT_NEAR(bytes.meshes.at(0).colors.at(0).x, SrgbToLinear(128 / 255.0), 1e-6);
+  EXPECT_THAT(bytes.warnings, ElementsAre(HasSubstr("0 ... 255")));
+}
+
+TEST_F(Obj, PicturesWithoutAColourAreLeftAsTheyAre) {
+  folder_.Write("grey.png", EncodeColor(".png", 128, 128, 128));
+  folder_.Write("m.mtl", "newmtl a\nmap_Kd grey.png\nnewmtl b\nKd 0.25 0.5 0.75\nmap_Kd grey.png\n");
+  EXPECT_EQ(MaterialOf(Load(std::string("mtllib m.mtl\n") + kFace)).base_color, glm::vec3(1));
+  const Scene scene = Load(std::string("mtllib m.mtl\n") + kFace + "usemtl b\nf 1/1 2/2 3/3\n");
+  ASSERT_THAT(scene.meshes, SizeIs(2));
+  EXPECT_EQ(scene.materials.at(static_cast<std::size_t>(scene.meshes[1].material)).base_color,
+            glm::vec3(0.25, 0.5, 0.75));
+}
+
+// uv' = scale uv + offset where v points up.
+TEST_F(Obj, OptionsOfMaps) {
+  folder_.Write("my picture.png", EncodeColor(".png", 1, 2, 3));
+  for (const auto& [options, u, v] :
+       std::vector<std::tuple<std::string, float, float>>{{"", 1, 1},
+                                                          {"-s 2 3 1 ", 2, 3},
+                                                          {"-o 0.25 0.5 0 -s 2 1 1 ", 2.25, 1.5},
+                                                          {"-s 2 ", 2, 1},
+                                                          {"-bm 0.5 -blendu on -o 0.5 ", 1.5, 1}}) {
+    folder_.Write("m.mtl", "newmtl a\n\tmap_Kd  " + options + "my picture.png \t\r\n");
+    const Scene scene = Load(std::string("mtllib m.mtl\n") + kFace);
+    EXPECT_EQ(Picture(scene), "my picture.png") << options;
+    EXPECT_NEAR(scene.meshes[0].uvs[1].x, u, 1e-6) << options;
+    EXPECT_NEAR(1 - scene.meshes[0].uvs[2].y, v, 1e-6) << options;
+  }
+}
+
+TEST_F(Obj, OpacityAndEmission) {
+  folder_.Write("grey.png", EncodeColor(".png", 128, 128, 128));
+  folder_.Write("black.png", EncodeColor(".png", 0, 0, 0));
+  folder_.Write("m.mtl", "newmtl a\nmap_Kd grey.png\nmap_d black.png\nmap_Ke grey.png\nTr 1.0\n");
+  const Scene scene = Load(std::string("mtllib m.mtl\n") + kFace);
+  const Material& material = MaterialOf(scene);
+  EXPECT_TRUE(IsCutOut(scene, material));
+  EXPECT_EQ(scene.textures.at(static_cast<std::size_t>(material.texture)).Alpha({0.5f, 0.5f}), 0.0f);
+  EXPECT_EQ(material.emission, glm::vec3(1));
+  EXPECT_GE(material.emission_texture, 0);
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("below 0.5 everywhere"))) << "MeshLab's Tr 1.0 is opaque";
+  folder_.Write("m.mtl", "newmtl a\nd 0.5\n");
+  EXPECT_THAT(Load(std::string("mtllib m.mtl\n") + kFace).warnings,
+              ElementsAre(HasSubstr("transparency is not rendered")));
+}
+
+TEST_F(Obj, AlphaOfThePictureCutsOut) {
+  cv::Mat picture(4, 4, CV_8UC4, cv::Scalar(10, 20, 30, 0));
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", picture, bytes);
+  folder_.Write("leaf.png", {bytes.begin(), bytes.end()});
+  folder_.Write("m.mtl", "newmtl a\nmap_Kd leaf.png\n");
+  const Scene scene = Load(std::string("mtllib m.mtl\n") + kFace);
+  EXPECT_TRUE(IsCutOut(scene, MaterialOf(scene)));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("below 0.5 everywhere")));
+}
+
+// A library in a folder of its own names its pictures from there; then from the OBJ's; then by their last part.
+TEST_F(Obj, TexturesWhereTheyAre) {
+  folder_.Write("models/mats/m.mtl", "newmtl a\nmap_Kd wood.png\n");
+  const std::string text = std::string("mtllib mats/m.mtl\n") + kFace;
+  const auto loads = [&] { return Load(text, "models/m.obj"); };
+  for (const char* place : {"pictures/wood.png", "models/wood.png", "models/mats/wood.png"}) {
+    folder_.Write(place, EncodeColor(".png", 1, 2, 3));
+    if (std::string(place).starts_with("pictures")) continue;  // in no folder that is looked into
+    const Scene scene = loads();
+    EXPECT_THAT(scene.warnings, IsEmpty()) << place;
+    EXPECT_EQ(scene.textures.at(0).name(), (folder_.path() / place).string());
+  }
+  for (const char* name : {"C:\\\\Users\\\\me\\\\wood.png", "/home/me/wood.png", "nowhere/WOOD.PNG", "Wood.png"}) {
+    folder_.Write("models/mats/m.mtl", std::string("newmtl a\nmap_Kd ") + name + "\n");
+    const Scene scene = loads();
+    EXPECT_EQ(Picture(scene), "wood.png") << name;
+    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("taken from where one of its name lies"))) << name;
+  }
+  for (const char* name : {"../pictures/wood.png", "..\\..\\pictures\\wood.png"}) {
+    folder_.Write("models/mats/m.mtl", std::string("newmtl a\nmap_Kd ") + name + "\n");
+    EXPECT_EQ(loads().textures.at(0).name(), (folder_.path() / "pictures/wood.png").string()) << name;
+  }
+}
+
+TEST_F(Obj, MissingTexturesAreGreyWhereThatIsAskedFor) {
+  folder_.Write("m.mtl", "newmtl a\nmap_Kd gone.png\nnewmtl b\nmap_Kd lost.png\n");
+  const std::string text = std::string("mtllib m.mtl\n") + kFace + "usemtl b\nf 1/1 2/2 3/3\n";
+  EXPECT_THAT(Problems(text), AllOf(HasSubstr("gone.png: texture of material 'a'"), HasSubstr("no such file")));
+  WorldDescription world;
+  world.missing_textures = MissingTextures::grey;
+  world.meshes.push_back({folder_.Write("m.obj", text), {}, {1, 0, 0, 0}, 1});
+  const Scene scene = LoadScene(world);
+  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("2 ×"), HasSubstr("gone.png"), HasSubstr("is grey"))));
+  EXPECT_NEAR(scene.textures.at(0).Texel(0, 0, 0).x, SrgbToLinear(128 / 255.0), 1e-3);
+}
+
+// Warnings of a kind are one, with how often.
+TEST_F(Obj, WarningsAreSummed) {
+  std::string library, text = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (const char* name : {"a", "b", "c"}) {
+    library += std::string("newmtl ") + name + "\nd 0.5\n";
+    text += std::string("usemtl ") + name + "\nf 1 2 3\n";
+  }
+  folder_.Write("m.mtl", library);
+  EXPECT_THAT(Load(text).warnings, ElementsAre(AllOf(HasSubstr("3 × transparency"), HasSubstr("material 'a'"))));
+}
+
+}  // namespace
+}  // namespace sim::test

@@ -1,0 +1,30 @@
+// Calibrations as programs of SLAM and of structure from motion keep them. Private to vo/geometry.
+// Source: the programs' own documentation and readers: COLMAP (cameras.txt), DSO and TUM's monocular dataset
+//         (camera.txt), ORB-SLAM2 and 3, camodocal (VINS), Basalt (JSON), sensor_msgs/CameraInfo of ROS as `topic echo`
+//         prints it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "tools/base/settings/settings.h"
+#include "vo/geometry/camera.h"
+
+namespace vo {
+
+// Coefficients in the common order of OpenCV, ROS, EuRoC and Kalibr: k1 k2 p1 p2 [k3], or k1 k2 k3 k4 for a fisheye lens
+// (camera.lens); further ones must be zero. Returns the problem, worded to follow the name of the coefficients; empty:
+// none.
+std::string SetLens(std::span<const double> coefficients, Camera& camera);
+
+// COLMAP's and DSO's text, from its first line that is no comment. None where it is neither; throws settings::Error for
+// a lens or a number of cameras that is not read.
+std::optional<Camera> ReadTextCamera(std::string_view text, const std::filesystem::path& file);
+
+// The programs that write YAML or JSON. False where it is of none of them, and nothing has been read.
+bool ReadSlamCamera(settings::Section root, Camera& camera);
+
+}  // namespace vo
