@@ -121,9 +121,12 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
   if (std::ranges::any_of(association.matches, [&](const Match& m) { return records_[m.landmark].lost; }))
     pose_before_loss_.setZero();
   if (!association.matches.empty()) known_before_loss_ = pose_before_loss_;
+  const Eigen::Vector3d previous = filter_.belief().pose.p_WC;
   Update(association.matches);  // lines 4-11: (15)-(17), (37)-(43)
   start_.Add(frame.frame.stamp_ns, filter_.answer(), scale_);
   UpdateScores(association, params_.score, records_);  // section 6: (44)-(49)
+  path_length_ += (filter_.belief().pose.p_WC - previous).norm();
+  for (const Match& match : association.matches) records_[match.landmark].path_length = path_length_;
   diagnostics.searched = static_cast<int>(association.searched.size());
   diagnostics.matched = static_cast<int>(association.matches.size());
   diagnostics.nis = association.nis;
@@ -181,6 +184,7 @@ std::optional<PathCorrection> Tracker::Relocalise(const PreparedFrame& frame, co
                                                   bool failed) const {
   constexpr int kEvery = 3;            // [frames]
   constexpr double kOlder = 0.1;       // of the matches: they tie the path to the part of the map that was recognised
+  constexpr double kDrift = 0.1;       // most of the path since then, where the prediction has not failed
   constexpr double kDisplaced_px = 4;  // median, below which the ordinary search finds them
   if (filter_.answer().initialising || params_.filter.lag > 0) return std::nullopt;
   if (!failed && frames_ % kEvery != 0) return std::nullopt;
@@ -198,7 +202,12 @@ std::optional<PathCorrection> Tracker::Relocalise(const PreparedFrame& frame, co
   const auto older = std::ranges::count_if(association.matches, [&](const Match& m) { return m.landmark < first; });
   if (!failed && static_cast<double>(older) > kOlder * static_cast<double>(association.matches.size()))
     return std::nullopt;
-  const Pose predicted = Inverse(filter_.Reference().prediction.mean);
+  const Pose prediction = filter_.Reference().prediction.mean;
+  double last_seen = 0;  // path length
+  for (const int i : found->inliers)
+    last_seen = std::max(last_seen, records_[landmark_of[static_cast<std::size_t>(i)]].path_length);
+  if (!failed && (found->pose.p_WC - prediction.p_WC).norm() > kDrift * (path_length_ - last_seen)) return std::nullopt;
+  const Pose predicted = Inverse(prediction);
   std::vector<double> displacements;  // on the plane z = 1
   for (const int i : found->inliers) {
     const Eigen::Vector3d& X_W = points[static_cast<std::size_t>(i)].X_W;
@@ -274,6 +283,7 @@ FirstView Tracker::AddRecord(const NewFeature& feature, const PreparedFrame& fra
   record.appearance = {frame.brisk.Describe(feature.pixel, first_sampler_), CutPatch(frame.smooth, feature.pixel)};
   record.id = next_id_++;
   record.score = params_.score.initial;
+  record.path_length = path_length_;
   record.searched = true;
   records_.push_back(record);
   views_.push_back(

@@ -85,6 +85,7 @@ class Tracker {
   Relocaliser relocaliser_;
   std::optional<KnownDepth> typical_depth_;
   int frames_ = 0;
+  double path_length_ = 0;                    // [m] of all answers
   int first_id_ = 0, next_id_ = 0;            // of the landmarks since this start; of the next one
   std::optional<PreparedFrame> first_frame_;  // with a rolling shutter, until the second frame
 };

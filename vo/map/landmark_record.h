@@ -46,6 +46,7 @@ struct LandmarkRecord {
   double score = 0;           // existence (44)-(49)
   int age = 0;                // frames since it was first seen
   int frames_unmatched = 0;   // in a row
+  double path_length = 0;     // [m] of the camera, until the last match
   int inliers = 0;            // matches that agreed with the robust pose
   int frames_unsearched = 0;  // in a row; a blind frame searches for nothing
   bool searched = false;      // in the last frame, blind or not, or begun in it
