@@ -137,7 +137,7 @@ prior: {{start: origin, velocity_sigma: 0.5 m/s, angular_rate_sigma: 0.5 rad/s}}
 
 odometry:
   motion: {{position_noise: 2.5, adaptive: true}}
-  landmark: {{scale_sigma: 0.5}}
+  landmark: {{scale_sigma: 0.5, proving_matches: 5}}
 """)
 
 

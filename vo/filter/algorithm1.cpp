@@ -56,13 +56,13 @@ const FilterAnswer& Algorithm1::Update(std::span<const Match> z) { return z.empt
 const FilterAnswer& Algorithm1::SampleStep(std::span<const Match> matches) {
   const FilterParams& params = settings_.filter;
   answer_.mixture.clear();
-  acting_.clear();
-  provisional_.clear();
-  std::ranges::partition_copy(matches, std::back_inserter(provisional_), std::back_inserter(acting_),
+  matches_.acting.clear();
+  matches_.provisional.clear();
+  std::ranges::partition_copy(matches, std::back_inserter(matches_.provisional), std::back_inserter(matches_.acting),
                               &Match::provisional);
-  const std::span<const Match> z(acting_);
+  const std::span<const Match> z(matches_.acting);
   batch_.SetMatches(z);
-  provisional_batch_.SetMatches(provisional_);
+  provisional_batch_.SetMatches(matches_.provisional);
   VelocityFilter::Gain gain = step_.ConditionCovariance(particles_[0].velocity.covariance);
   for (std::size_t i = 0; i < particles_.size(); ++i) {  // line 1
     Particle& particle = particles_[i];
@@ -131,9 +131,9 @@ double Algorithm1::UpdateLandmarks(std::size_t particle, const Pose& sampled, st
 
 void Algorithm1::UpdateProvisional(std::size_t particle, const Pose& sampled) {
   const FilterParams& params = settings_.filter;
-  if (provisional_.empty()) return;
+  if (matches_.provisional.empty()) return;
   if (params.proposal == Proposal::ukf) {
-    UpdateLandmarks(particle, sampled, provisional_);
+    UpdateLandmarks(particle, sampled, matches_.provisional);
     return;
   }
   provisional_batch_.Load(MapOf(particle));

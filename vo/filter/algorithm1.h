@@ -43,12 +43,16 @@ class Algorithm1 final : public ParticlePhase {
   // The same of provisional_, to which the proposal is blind.
   void UpdateProvisional(std::size_t particle, const Pose& sampled);
 
+  struct FrameMatches {
+    std::vector<Match> acting, provisional;
+  };
+
   double since_sampled_ = 0;  // [s]; 0 when the present pose is sampled
   VelocityFilter step_;       // from the last sampled pose to the present
   std::vector<PoseGaussian> predictions_;
-  Correction correction_;                    // of this frame's prediction
-  std::vector<Match> acting_, provisional_;  // a frame's matches
-  MatchBatch batch_, provisional_batch_;     // these, and one particle in turn
+  Correction correction_;  // of this frame's prediction
+  FrameMatches matches_;
+  MatchBatch batch_, provisional_batch_;  // these, and one particle in turn
 };
 
 }  // namespace vo

@@ -186,7 +186,7 @@ std::vector<FaultCommand> FaultCommands() {
   all.push_back({.name = "export", .words = {"export", "../inputs/seq", "--bag", "out.bag"}, .by_stdio = true});
   all.push_back({.name = "report", .words = {"report", "out"}, .prepare = {"run"}});
   all.push_back({.name = "evaluate",
-                 .words = {"evaluate", "../inputs/run/estimate.txt", "--truth", "../inputs/seq"},
+                 .words = {"evaluate", "../inputs/run/estimate.txt", "--truth", "../inputs/seq", "--align", "none"},
                  .by_stdio = true,
                  .prints_into_file = true});
 #ifndef VOBENCH_ROSBAG
