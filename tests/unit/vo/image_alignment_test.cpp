@@ -35,8 +35,8 @@ double Angle(const Eigen::Quaterniond& q) { return vo::Log(q).norm(); }
 TEST(AlignRotation, FindsTheRotation) {
   for (const vo::Camera& camera : {vo::Camera{}, vo::CameraPreset("freiburg1")}) {
     const std::vector<cv::Mat> then = vo::Thumbnails(Image(camera, Eigen::Quaterniond::Identity()));
-    for (const Eigen::Vector3d& turn :
-         {Eigen::Vector3d(0.03, -0.1, 0.02), Eigen::Vector3d(-0.08, 0.05, 0.15), Eigen::Vector3d(0, 0.17, 0), Eigen::Vector3d(0.1, -0.42, 0.03)}) {
+    for (const Eigen::Vector3d& turn : {Eigen::Vector3d(0.03, -0.1, 0.02), Eigen::Vector3d(-0.08, 0.05, 0.15),
+                                        Eigen::Vector3d(0, 0.17, 0), Eigen::Vector3d(0.1, -0.42, 0.03)}) {
       const Eigen::Quaterniond q = vo::Exp(turn);  // q_then_now
       const auto R = vo::AlignRotation(camera, then, vo::Thumbnails(Image(camera, q, 15)));
       ASSERT_TRUE(R.has_value());
