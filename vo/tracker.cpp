@@ -188,24 +188,25 @@ std::optional<PathCorrection> Tracker::Relocalise(const PreparedFrame& frame, co
   constexpr double kDisplaced_px = 4;  // median, below which the ordinary search finds them
   if (filter_.answer().initialising || params_.filter.lag > 0) return std::nullopt;
   if (!failed && frames_ % kEvery != 0) return std::nullopt;
-  std::vector<KnownPoint> points;
-  std::vector<int> landmark_of;
+  std::vector<int> unseen;
+  for (std::size_t n = 0; n < records_.size(); ++n)
+    if (records_[n].unseen()) unseen.push_back(static_cast<int>(n));
+  if (unseen.size() < Relocaliser::kLeastInliers) return std::nullopt;
+  const auto tied = [&](int first) {
+    const auto older = std::ranges::count_if(association.matches, [&](const Match& m) { return m.landmark < first; });
+    return static_cast<double>(older) > kOlder * static_cast<double>(association.matches.size());
+  };
+  if (!failed && tied(unseen[Relocaliser::kLeastInliers - 1] + 1)) return std::nullopt;  // whichever the inliers are
   const std::vector<Filter::LandmarkBelief> beliefs = filter_.LandmarkBeliefs();
-  for (std::size_t n = 0; n < records_.size(); ++n) {
-    if (!records_[n].unseen()) continue;
-    points.push_back({&records_[n].appearance.descriptor, beliefs[n].X_W});
-    landmark_of.push_back(static_cast<int>(n));
-  }
+  std::vector<KnownPoint> points;
+  for (const int n : unseen) points.push_back({&records_[n].appearance.descriptor, beliefs[n].X_W});
   const std::optional<Relocalisation> found = relocaliser_.Find(frame, points);
   if (!found) return std::nullopt;
-  const int first = landmark_of[static_cast<std::size_t>(found->inliers.back())] + 1;
-  const auto older = std::ranges::count_if(association.matches, [&](const Match& m) { return m.landmark < first; });
-  if (!failed && static_cast<double>(older) > kOlder * static_cast<double>(association.matches.size()))
-    return std::nullopt;
+  const int first = unseen[found->inliers.back()] + 1;
+  if (!failed && tied(first)) return std::nullopt;
   const Pose prediction = filter_.Reference().prediction.mean;
   double last_seen = 0;  // path length
-  for (const int i : found->inliers)
-    last_seen = std::max(last_seen, records_[landmark_of[static_cast<std::size_t>(i)]].path_length);
+  for (const int i : found->inliers) last_seen = std::max(last_seen, records_[unseen[i]].path_length);
   if (!failed && (found->pose.p_WC - prediction.p_WC).norm() > kDrift * (path_length_ - last_seen)) return std::nullopt;
   const Pose predicted = Inverse(prediction);
   std::vector<double> displacements;  // on the plane z = 1
