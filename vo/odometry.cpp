@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
-#include <span>
-#include <stdexcept>
 #include <utility>
 
 #include "vo/base/stopwatch.h"

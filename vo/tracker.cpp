@@ -17,6 +17,7 @@ namespace vo {
 namespace {
 
 constexpr std::size_t kEnoughToBegin = 20;  // features, where no landmark is found
+constexpr double kKnown = 0.3;              // relative sigma of a depth that is known
 
 }  // namespace
 
@@ -236,7 +237,7 @@ void Tracker::Update(std::span<const Match> matches) {
 // Prior of new landmarks: the median depth of those in view, whose map may have any scale. Kept where too few are
 // known.
 void Tracker::UpdateTypicalDepth(std::span<const Match> matches, std::span<const Filter::LandmarkBelief> beliefs) {
-  constexpr double kKnown = 0.3, kRelativeSigma = 1.4;
+  constexpr double kRelativeSigma = 1.4;
   constexpr std::size_t kEnough = 8;
   const Pose& pose = filter_.belief().pose;
   std::vector<double> depths;
@@ -260,7 +261,6 @@ std::vector<NewFeature> Tracker::DetectFeatures(const PreparedFrame& frame) {
 
 // Deletes landmarks, also to make room for `wanted` new ones; those searched for in this frame are kept.
 void Tracker::Forget(std::size_t wanted, std::span<const Filter::LandmarkBelief> beliefs) {
-  constexpr double kKnown = 0.3;
   for (std::size_t n = 0; n < records_.size(); ++n) {
     records_[n].permanent = beliefs[n].relative_sigma() < params_.landmark.permanent_ratio;
     records_[n].known = beliefs[n].relative_sigma() < kKnown;

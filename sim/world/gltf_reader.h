@@ -8,7 +8,8 @@
 
 namespace sim {
 
-// Throws OlderGltf for glTF 1.0. An extension that the file requires and that is not known here is import.problem; one that it uses is a warning.
+// Throws OlderGltf for glTF 1.0. An extension that the file requires and that is not known here is import.problem; one
+// that it uses is a warning.
 void ReadGltf(MeshFiles& files, MeshImport& import);
 
 }  // namespace sim

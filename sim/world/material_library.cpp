@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cstdlib>
 #include <vector>
 
 #include "sim/world/mesh_builder.h"
+#include "sim/world/texture_file.h"
 #include "tools/base/text.h"
 
 namespace sim {
@@ -128,8 +128,7 @@ void ReadMaterialLibrary(std::string_view text, const std::string& folder,
                          std::map<std::string, LibraryMaterial>& materials) {
   LibraryMaterial* m = nullptr;
   ForEachStatement(text, [&](std::string_view word, std::string_view rest, int) {
-    std::string key(word);
-    std::transform(key.begin(), key.end(), key.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string key = Lower(std::string(word));
     const auto number = [&] {
       std::string_view words = rest;
       return ToNumber(NextWord(words));

@@ -28,6 +28,7 @@
 #include "sim/world/mesh_serialization.h"
 #include "sim/world/obj_reader.h"
 #include "sim/world/ply_reader.h"
+#include "sim/world/texture_file.h"
 #include "tools/base/child_process.h"
 #include "tools/base/files.h"
 
@@ -95,13 +96,6 @@ class BoundedStream : public Assimp::IOStream {
   std::unique_ptr<Assimp::IOStream> stream_;
   int empty_reads_ = 0;
 };
-
-std::string LowerExtension(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 // Importers quietly do without a side file that cannot be opened.
 class ImporterFiles : public Assimp::DefaultIOSystem {

@@ -16,18 +16,12 @@
 
 #include "sim/world/mesh_import.h"
 #include "sim/world/mesh_material.h"
+#include "sim/world/texture_file.h"
 
 namespace sim {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string LowerExtension(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 glm::dmat4 ToGlm(const aiMatrix4x4& m) {  // assimp is row-major, GLM column-major
   return {m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4};

@@ -21,11 +21,6 @@ std::string Plain(std::string text) {
   return text.substr(0, last == std::string::npos ? 0 : last + 1);
 }
 
-std::string Lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 // The file, or one beside it whose name differs in capitals only.
 std::optional<fs::path> Existing(const fs::path& file) {
   std::error_code error;
@@ -39,6 +34,14 @@ std::optional<fs::path> Existing(const fs::path& file) {
 }
 
 }  // namespace
+
+std::string Lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::string LowerExtension(const fs::path& file) { return Lower(file.extension().string()); }
 
 std::string DecodePercent(const std::string& text) {
   std::string out;

@@ -1,5 +1,5 @@
-// The file of a texture, or of a material library, from what a mesh calls it: paths of any system, in any folder that may be read. Private to
-// sim/world.
+// The file of a texture, or of a material library, from what a mesh calls it: paths of any system, in any folder that
+// may be read. Private to sim/world.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +8,9 @@
 
 namespace sim {
 
+// ASCII letters in lower case, and ".obj" of "ROOM.OBJ".
+std::string Lower(std::string text);
+std::string LowerExtension(const std::filesystem::path& file);
 // "%20" and the like, of URIs.
 std::string DecodePercent(const std::string& text);
 

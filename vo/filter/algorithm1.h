@@ -40,7 +40,7 @@ class Algorithm1 final : public ParticlePhase {
   PoseProposal ProposePose(std::size_t particle, std::span<const Match> z);
   // Of the same particle, at its sampled pose. Returns the sum of log p(z | pose) (3).
   double UpdateLandmarks(std::size_t particle, const Pose& sampled, std::span<const Match> z);
-  // The same of provisional_, to which the proposal is blind.
+  // The same of provisional matches, to which the proposal is blind.
   void UpdateProvisional(std::size_t particle, const Pose& sampled);
 
   struct FrameMatches {

@@ -8,8 +8,7 @@
 namespace vo {
 namespace {
 
-constexpr double kFailedRatio = 4;        // innovation ratio of a failed prediction
-constexpr double kFailedAgreement = 0.4;  // fewer of the searched agree
+constexpr double kFailedRatio = 4;  // innovation ratio of a failed prediction
 constexpr int kWidenings = 2;
 constexpr double kAlignedNoise = 4;       // factor on the densities about an aligned rotation
 constexpr double kRelocalisedNoise = 16;  // the same about the pose from recognised landmarks
@@ -27,7 +26,7 @@ bool Failed(const Association& association) {
   const InnovationRatios ratios = RatiosOf(association);
   return std::max(ratios.position, ratios.orientation) > kFailedRatio ||
          static_cast<double>(association.matches.size()) <
-             kFailedAgreement * static_cast<double>(association.searched.size());
+             FrameDiagnostics::kTrackedAgreement * static_cast<double>(association.searched.size());
 }
 
 // The whole map follows from the first matches: at the start more of the searched have to agree.

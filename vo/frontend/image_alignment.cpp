@@ -37,6 +37,8 @@ Eigen::Vector2d Enlarged(double x, double y, double scale) {
 }
 Eigen::Vector2d Reduced(const Eigen::Vector2d& pixel, double scale) { return (pixel.array() + 0.5) / scale - 0.5; }
 
+double ScaleOf(const Camera& camera, const cv::Mat& level) { return static_cast<double>(camera.width) / level.cols; }
+
 // Pixel of the earlier image.
 struct TemplatePixel {
   Eigen::Vector3d ray;
@@ -44,7 +46,8 @@ struct TemplatePixel {
   Eigen::Vector3d J;  // d grey / d phi at Exp(phi) ray
 };
 
-std::vector<TemplatePixel> TemplateOf(const Camera& camera, const cv::Mat& level, double scale) {
+std::vector<TemplatePixel> TemplateOf(const Camera& camera, const cv::Mat& level) {
+  const double scale = ScaleOf(camera, level);
   std::vector<TemplatePixel> pixels;
   for (int y = 1; y + 1 < level.rows; ++y) {
     for (int x = 1; x + 1 < level.cols; ++x) {
@@ -70,7 +73,7 @@ struct Residuals {
   // False where the images overlap too little.
   bool Set(const Camera& camera, std::span<const TemplatePixel> earlier, const cv::Mat& now,
            const Eigen::Quaterniond& R) {
-    const double scale = static_cast<double>(camera.width) / now.cols;
+    const double scale = ScaleOf(camera, now);
     pixels.clear();
     differences.clear();
     double sum = 0;
@@ -95,7 +98,7 @@ struct Residuals {
 
 // The best of a grid of rotations, on the coarsest level.
 Eigen::Quaterniond BestOfGrid(const Camera& camera, const cv::Mat& then, const cv::Mat& now) {
-  const std::vector<TemplatePixel> pixels = TemplateOf(camera, then, static_cast<double>(camera.width) / then.cols);
+  const std::vector<TemplatePixel> pixels = TemplateOf(camera, then);
   std::vector<Eigen::Quaterniond> rotations{Eigen::Quaterniond::Identity()};
   for (int x = -kGridX; x <= kGridX; ++x)
     for (int y = -kGridY; y <= kGridY; ++y) rotations.push_back(Exp(kGridStep * Eigen::Vector3d(x, y, 0)));
@@ -112,8 +115,8 @@ Eigen::Quaterniond BestOfGrid(const Camera& camera, const cv::Mat& then, const c
 
 // One level, from `R`; false where the images do not determine the rotation.
 bool AlignLevel(const Camera& camera, const cv::Mat& then, const cv::Mat& now, Eigen::Quaterniond& R) {
-  const double scale = static_cast<double>(camera.width) / now.cols;
-  const std::vector<TemplatePixel> pixels = TemplateOf(camera, then, scale);
+  const double scale = ScaleOf(camera, now);
+  const std::vector<TemplatePixel> pixels = TemplateOf(camera, then);
   Residuals residuals;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     if (!residuals.Set(camera, pixels, now, R)) return false;
@@ -136,7 +139,7 @@ bool AlignLevel(const Camera& camera, const cv::Mat& then, const cv::Mat& now, E
 
 // Whether the later image is the earlier one, turned: a part of what varies in it is the same.
 bool Explains(const Camera& camera, const cv::Mat& then, const cv::Mat& now, const Eigen::Quaterniond& R) {
-  const std::vector<TemplatePixel> pixels = TemplateOf(camera, then, static_cast<double>(camera.width) / now.cols);
+  const std::vector<TemplatePixel> pixels = TemplateOf(camera, then);
   Residuals residuals;
   if (!residuals.Set(camera, pixels, now, R)) return false;
   double mean = 0, deviation = 0;
