@@ -37,10 +37,8 @@ Place PlaceSeenFrom(const vo::Pose& pose, const vo_test::Texture& texture) {
   Place place;
   for (const Eigen::Vector2i& corner : vo::DetectCorners(frame.grey, {}, kBorder_px, params)) {
     const Eigen::Vector3d ray = pose.q_WC * kCamera.Undistort(corner.cast<double>()).homogeneous();
-    Eigen::Vector3d X = pose.p_WC + ray * (2 - pose.p_WC.z()) / ray.z();
-    if (X.x() > 0) X = pose.p_WC + ray * (2 + 0.5 * pose.p_WC.x() - pose.p_WC.z()) / (ray.z() - 0.5 * ray.x());
     place.descriptors.push_back(frame.brisk.Describe(corner, vo::FirstSampler(params)));
-    place.points.push_back(X);
+    place.points.push_back(vo_test::OnTheWalls(pose, ray));
   }
   return place;
 }

@@ -22,7 +22,14 @@ inline vo::Pose TruthAt(double k) {
           vo::Exp({0.05 * std::sin(1.7 * t), 0.08 * std::sin(1.1 * t), 0.04 * std::sin(2.1 * t)})};
 }
 
-// Walls z = 2 for x < 0 and z = 2 + x / 2 beyond. pose_of(y): of the camera when it takes row y.
+// Where a ray in W from the camera meets the walls: z = 2 for x < 0 and z = 2 + x / 2 beyond.
+inline Eigen::Vector3d OnTheWalls(const vo::Pose& pose, const Eigen::Vector3d& ray) {
+  const Eigen::Vector3d X = pose.p_WC + ray * (2 - pose.p_WC.z()) / ray.z();
+  if (X.x() <= 0) return X;
+  return pose.p_WC + ray * (2 + 0.5 * pose.p_WC.x() - pose.p_WC.z()) / (ray.z() - 0.5 * ray.x());
+}
+
+// The walls. pose_of(y): of the camera when it takes row y.
 template <class PoseOf>
 cv::Mat ViewByRows(const PoseOf& pose_of, const Texture& texture) {
   cv::Mat image(kCamera.height, kCamera.width, CV_8UC1);
@@ -31,9 +38,7 @@ cv::Mat ViewByRows(const PoseOf& pose_of, const Texture& texture) {
     const Eigen::Matrix3d R = pose.q_WC.toRotationMatrix();
     for (int x = 0; x < kCamera.width; ++x) {
       const Eigen::Vector3d ray = R * Eigen::Vector3d((x - kCamera.cx) / kCamera.fx, (y - kCamera.cy) / kCamera.fy, 1);
-      Eigen::Vector3d X = pose.p_WC + ray * (2 - pose.p_WC.z()) / ray.z();
-      if (X.x() > 0) X = pose.p_WC + ray * (2 + 0.5 * pose.p_WC.x() - pose.p_WC.z()) / (ray.z() - 0.5 * ray.x());
-      image.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(texture.At(X.head<2>()));
+      image.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(texture.At(OnTheWalls(pose, ray).head<2>()));
     }
   }
   return image;
