@@ -183,7 +183,7 @@ void Tracker::RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& d
 // Correction of the path where landmarks that were not matched for a while are recognised.
 std::optional<PathCorrection> Tracker::Relocalise(const PreparedFrame& frame, const Association& association,
                                                   bool failed) const {
-  constexpr int kEvery = 3;            // [frames]
+  constexpr int kEvery = 6;            // [frames]
   constexpr double kOlder = 0.1;       // of the matches: they tie the path to the part of the map that was recognised
   constexpr double kDrift = 0.1;       // most of the path since then, where the prediction has not failed
   constexpr double kDisplaced_px = 4;  // median, below which the ordinary search finds them

@@ -16,7 +16,7 @@ constexpr int kMoreCorners = 2;      // per cell, for a landmark's corner to be 
 constexpr float kMostHamming = 112;  // of 512 bits: the corner is found a pixel aside, and seen from elsewhere
 constexpr float kRatio = 0.85F;      // of the nearest neighbour's distance to the second nearest's
 constexpr double kThreshold_px = 4;
-constexpr int kIterations = 300;
+constexpr int kIterations = 110;  // enough where half of the matches are inliers: ln(1 - kConfidence) / ln(1 - 0.5^4)
 constexpr double kConfidence = 0.999;
 
 cv::Mat Row(const Descriptor& descriptor) {
@@ -32,28 +32,31 @@ Relocaliser::Relocaliser(const Camera& camera, const FeatureParams& params, int 
 
 std::optional<Relocalisation> Relocaliser::Find(const PreparedFrame& frame, std::span<const KnownPoint> points) const {
   if (points.size() < kLeastInliers) return std::nullopt;
+  const std::vector<Eigen::Vector2i> corners = DetectCorners(frame.grey, {}, border_px_, params_);
+  if (corners.size() < kLeastInliers) return std::nullopt;
   cv::Mat seen, known;
-  std::vector<cv::Point2d> pixels;
-  for (const Eigen::Vector2i& corner : DetectCorners(frame.grey, {}, border_px_, params_)) {
-    if (!camera_.IsUsable(corner.cast<double>())) continue;
-    const Eigen::Vector2d z = camera_.Undistort(corner.cast<double>());
-    pixels.emplace_back(z.x(), z.y());
-    seen.push_back(Row(frame.brisk.Describe(corner, sampler_)));
-  }
-  if (pixels.size() < kLeastInliers) return std::nullopt;
+  for (const Eigen::Vector2i& corner : corners) seen.push_back(Row(frame.brisk.Describe(corner, sampler_)));
   for (const KnownPoint& point : points) known.push_back(Row(*point.descriptor));
 
   std::vector<std::vector<cv::DMatch>> neighbours;
   cv::BFMatcher(cv::NORM_HAMMING).knnMatch(known, seen, neighbours, 2);
+  std::vector<const cv::DMatch*> of_corner(corners.size(), nullptr);  // the nearest of the landmarks
+  for (const std::vector<cv::DMatch>& nearest : neighbours) {
+    if (nearest.size() < 2 || nearest[0].distance > std::min(kMostHamming, kRatio * nearest[1].distance)) continue;
+    const cv::DMatch*& best = of_corner[static_cast<std::size_t>(nearest[0].trainIdx)];
+    if (best == nullptr || nearest[0].distance < best->distance) best = nearest.data();
+  }
   std::vector<int> matched;
   std::vector<cv::Point3d> X;
   std::vector<cv::Point2d> z;
-  for (const std::vector<cv::DMatch>& nearest : neighbours) {
-    if (nearest.size() < 2 || nearest[0].distance > std::min(kMostHamming, kRatio * nearest[1].distance)) continue;
-    const Eigen::Vector3d& X_W = points[static_cast<std::size_t>(nearest[0].queryIdx)].X_W;
-    matched.push_back(nearest[0].queryIdx);
+  for (const cv::DMatch* match : of_corner) {
+    if (match == nullptr) continue;
+    const auto ray = camera_.TryUnproject(corners[static_cast<std::size_t>(match->trainIdx)].cast<double>());
+    if (!ray) continue;
+    const Eigen::Vector3d& X_W = points[static_cast<std::size_t>(match->queryIdx)].X_W;
+    matched.push_back(match->queryIdx);
     X.emplace_back(X_W.x(), X_W.y(), X_W.z());
-    z.push_back(pixels[static_cast<std::size_t>(nearest[0].trainIdx)]);
+    z.emplace_back(ray->x(), ray->y());
   }
   if (matched.size() < kLeastInliers) return std::nullopt;
 
