@@ -239,12 +239,7 @@ Frame Simulator::Render(std::int64_t index) const {
 }
 
 std::vector<float> Simulator::Depth(std::int64_t index) const {
-  std::vector<SurfacePoint> points;
-  surfaces().Trace(parts_->optics.camera, ViewAt(index), points);
-  std::vector<float> depth(points.size());
-  std::transform(points.begin(), points.end(), depth.begin(),
-                 [](const SurfacePoint& point) { return static_cast<float>(point.depth); });
-  return depth;
+  return surfaces().Depth(parts_->optics.camera, ViewAt(index));
 }
 
 std::optional<Frame> Simulator::Next() {

@@ -51,20 +51,35 @@ struct Snapshot {
     return scene.Triangle(hit.instID[0][i], hit.geomID[i], hit.primID[i]);
   }
 
+  // Plane of a triangle through which rays of one origin go, in the frame of the triangle's object.
+  struct Plane {
+    std::uint32_t triangle = kNoTriangle;
+    std::int32_t object = kWorld;
+    glm::dquat q_OW{1, 0, 0, 0};
+    glm::dvec3 normal{0};
+    double offset = 0;  // of the origin, along the normal
+  };
   // Where ray i meets its triangle's plane, in double: Embree's own distance is a float's. At a grazing angle its is
-  // kept.
-  double PlaneDistance(const Packet& packet, int i, glm::dvec3 origin, glm::dvec3 direction) const {
+  // kept. `plane`: of the ray before, kept while the triangle is the same.
+  double PlaneDistance(const Packet& packet, int i, const glm::dvec3& origin, const glm::dvec3& direction,
+                       Plane& plane) const {
     const std::uint32_t triangle = Triangle(packet, i);
     const std::int32_t object = Object(packet, i);
-    if (object != kWorld) {
-      const Pose& pose = T_WO[static_cast<std::size_t>(object)];
-      const glm::dquat q_OW = glm::conjugate(pose.q_WC);
-      origin = q_OW * (origin - pose.p_WC);
-      direction = q_OW * direction;
+    if (triangle != plane.triangle || object != plane.object) {
+      glm::dvec3 origin_O = origin;
+      if (object != kWorld) {
+        const Pose& pose = T_WO[static_cast<std::size_t>(object)];
+        plane.q_OW = glm::conjugate(pose.q_WC);
+        origin_O = plane.q_OW * (origin - pose.p_WC);
+      }
+      plane.triangle = triangle;
+      plane.object = object;
+      plane.normal = scene.AreaNormal(triangle);
+      plane.offset = glm::dot(plane.normal, glm::dvec3(scene.Corner(triangle, 0)) - origin_O);
     }
     const double embree = packet.rays.ray.tfar[i];
-    const glm::dvec3 normal = scene.AreaNormal(triangle), corner(scene.Corner(triangle, 0));
-    const double distance = glm::dot(normal, corner - origin) / glm::dot(normal, direction);
+    const double distance =
+        plane.offset / glm::dot(plane.normal, object == kWorld ? direction : plane.q_OW * direction);
     return std::abs(distance - embree) <= 1e-4 * embree ? distance : embree;
   }
 
@@ -82,25 +97,14 @@ void ForEachPacket(int jobs, std::size_t count, const Function& function) {
 
 }  // namespace
 
-glm::dvec3 ExactRay(const Camera& camera, int x, int y) {
-  constexpr double kExact_px = 1e-6;
-  const auto u = static_cast<float>(x), v = static_cast<float>(y);
-  const glm::dvec2 pixel(x, y);
-  const glm::dvec3 ray(camera.Ray(u, v));
-  const glm::dvec3 du(camera.Ray(u + 0.5f, v) - camera.Ray(u - 0.5f, v)),
-      dv(camera.Ray(u, v + 0.5f) - camera.Ray(u, v - 0.5f));
-  const glm::dvec2 miss = pixel - camera.Project(ray);
-  const glm::dvec3 better = ray + miss.x * du + miss.y * dv;
-  return glm::distance(camera.Project(better), pixel) < kExact_px ? better : camera.Direction(pixel);
-}
-
-void SurfaceTracer::Trace(const Camera& camera, const View& view, std::vector<SurfacePoint>& out) const {
+// function(snapshot, packet, lane, pixel, X_C) where the ray through the centre of `pixel` meets the world.
+template <class Function>
+void SurfaceTracer::ForEachHit(const Camera& camera, const View& view, const Function& function) const {
   const Pose& pose = view.pose;
   const Snapshot snapshot(scene_, view, ObjectPoses(view.t_s));
   const int width = camera.width(), blocks_x = (width + kBlockSide - 1) / kBlockSide,
             blocks_y = (camera.height() + kBlockSide - 1) / kBlockSide;
   const glm::dmat3 rotation = glm::mat3_cast(pose.q_WC);
-  out.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(camera.height()), {});
   const std::size_t lanes = static_cast<std::size_t>(blocks_x) * static_cast<std::size_t>(blocks_y) * kLanes;
   ForEachPacket(jobs_, lanes, [&](std::size_t block) {
     const int x0 = static_cast<int>(block % static_cast<std::size_t>(blocks_x)) * kBlockSide,
@@ -110,23 +114,36 @@ void SurfaceTracer::Trace(const Camera& camera, const View& view, std::vector<Su
     for (int i = 0; i < kLanes; ++i) {
       const int x = x0 + i % kBlockSide, y = y0 + i / kBlockSide;
       if (x >= width || y >= camera.height()) continue;
-      ray[i] = ExactRay(camera, x, y);
+      ray[i] = camera.PixelRay(x, y);
       direction[i] = rotation * ray[i];
       packet.Set(i, pose.p_WC, direction[i]);
     }
     snapshot.Meet(packet);
+    Snapshot::Plane plane;
     for (int i = 0; i < kLanes; ++i) {
       if (!packet.Met(i)) continue;
       const auto x = static_cast<std::size_t>(x0 + i % kBlockSide), y = static_cast<std::size_t>(y0 + i / kBlockSide);
-      SurfacePoint& point = out[y * static_cast<std::size_t>(width) + x];
-      point.triangle = snapshot.Triangle(packet, i);
-      point.object = snapshot.Object(packet, i);
-      point.u = packet.rays.hit.u[i];
-      point.v = packet.rays.hit.v[i];
-      point.X_C = snapshot.PlaneDistance(packet, i, pose.p_WC, direction[i]) * ray[i];
-      point.depth = point.X_C.z;
+      function(snapshot, packet, i, y * static_cast<std::size_t>(width) + x,
+               snapshot.PlaneDistance(packet, i, pose.p_WC, direction[i], plane) * ray[i]);
     }
   });
+}
+
+void SurfaceTracer::Trace(const Camera& camera, const View& view, std::vector<SurfacePoint>& out) const {
+  out.assign(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height()), {});
+  ForEachHit(camera, view,
+             [&](const Snapshot& at, const Packet& packet, int i, std::size_t pixel, const glm::dvec3& X_C) {
+               const auto& hit = packet.rays.hit;
+               out[pixel] = {at.Triangle(packet, i), hit.u[i], hit.v[i], at.Object(packet, i), X_C.z, X_C};
+             });
+}
+
+std::vector<float> SurfaceTracer::Depth(const Camera& camera, const View& view) const {
+  std::vector<float> depth(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height()));
+  ForEachHit(camera, view, [&](const Snapshot&, const Packet&, int, std::size_t pixel, const glm::dvec3& X_C) {
+    depth[pixel] = static_cast<float>(X_C.z);
+  });
+  return depth;
 }
 
 void SurfaceTracer::Visible(const View& view, std::span<const glm::dvec3> points_W,
@@ -141,10 +158,11 @@ void SurfaceTracer::Visible(const View& view, std::span<const glm::dvec3> points
     Packet packet;
     for (int i = 0; i < count; ++i) packet.Set(i, eye_W, points_W[first + static_cast<std::size_t>(i)] - eye_W);
     snapshot.Meet(packet);
+    Snapshot::Plane plane;
     for (int i = 0; i < count; ++i) {
       if (!packet.Met(i)) continue;  // the ray slipped by at an edge: nothing is before the point
       const std::size_t at = first + static_cast<std::size_t>(i);
-      out[at] = snapshot.PlaneDistance(packet, i, eye_W, points_W[at] - eye_W) >= 1 - kOwnSurface;
+      out[at] = snapshot.PlaneDistance(packet, i, eye_W, points_W[at] - eye_W, plane) >= 1 - kOwnSurface;
     }
   });
 }

@@ -14,11 +14,7 @@
 #include <new>
 #include <stdexcept>
 
-#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__)  // which crashes where the choice is made, before it is loaded
-#define VOBENCH_FOR_AVX2_TOO __attribute__((target_clones("default", "avx2")))
-#else
-#define VOBENCH_FOR_AVX2_TOO
-#endif
+#include "sim/random/avx2_too.h"
 
 namespace sim {
 namespace {

@@ -143,16 +143,23 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
   std::vector<SurfacePoint> points;
   FlowImage flow[2];  // to the next frame, to the one before
   std::vector<StreamFile> files;
+  constexpr TruthStream kDepths[] = {TruthStream::depth, TruthStream::depth_exr, TruthStream::depth_kinect};
+  const bool depth_alone = std::ranges::none_of(kImageStreams, [&](const ImageStream& of) {
+    return streams.contains(of.stream) && std::ranges::find(kDepths, of.stream) == std::end(kDepths);
+  });
+  const auto depth = [&] {
+    return depth_alone ? simulator.Depth(index)
+                       : Each<float>(points, [](const SurfacePoint& point) { return point.depth; });
+  };
   for (const ImageStream& of : kImageStreams) {
     if (!streams.contains(of.stream) || !HasFrame(simulator, index + of.frame_step)) continue;
-    if (points.empty()) surfaces.Trace(camera, view, points);
+    if (points.empty() && !depth_alone) surfaces.Trace(camera, view, points);
     FlowImage& to = flow[of.frame_step < 0];
     if (of.frame_step != 0 && to.uv.empty()) {
       to = FlowBetween(surfaces, camera, points, view, simulator.ViewAt(index + of.frame_step));
     }
     StreamFile& file = files.emplace_back();
     file.path = PathIn(of, base::FormatSeconds(simulator.StampNs(index)));
-    const auto depth = [&] { return Each<float>(points, [](const SurfacePoint& point) { return point.depth; }); };
     const auto distance = [](const SurfacePoint& point) { return glm::length(point.X_C); };
     const auto moves = [](const SurfacePoint& point) { return point.object != kWorld ? 255 : 0; };
     const auto surface_id = [&](const SurfacePoint& point) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/render/surface_tracer.h"
+#include "sim/sensor/camera.h"
 
 namespace sim {
 namespace {
@@ -39,7 +39,7 @@ TEST(PixelRay, HoldsInPicturesOfAnySize) {
     double worst_px = 0;
     for (int y = 0; y < params.height; ++y) {
       for (int x = 0; x < params.width; ++x) {
-        worst_px = std::max(worst_px, glm::distance(camera.Project(ExactRay(camera, x, y)), glm::dvec2(x, y)));
+        worst_px = std::max(worst_px, glm::distance(camera.Project(camera.PixelRay(x, y)), glm::dvec2(x, y)));
       }
     }
     EXPECT_LT(worst_px, 1e-6) << name;
