@@ -31,7 +31,8 @@ enum class Stream : std::uint32_t {
   imu_noise = 40,
   imu_walk = 41,
   landmark_place = 42,  // through which pixels the tracked surface points are seen first
-  object_motion = 43    // the seed of each moving object's own motion
+  object_motion = 43,   // the seed of each moving object's own motion
+  scenario = 44         // values that the scenario gives as distributions
 };
 
 using Words = std::array<std::uint32_t, 4>;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "sim/light/cache.h"
+#include "sim/random/random.h"
 #include "sim/scenario/motion_reader.h"
 #include "sim/scenario/world_reader.h"
 #include "sim/sensor/sensor.h"
@@ -141,9 +142,17 @@ Scenario LoadScenario(const std::filesystem::path& path,
                       const std::vector<std::pair<std::string, std::string>>& overrides) {
   settings::Document document = settings::Document::FromFile(path);
   for (const auto& [key, value] : overrides) document.Override(key, value);
+  Scenario scenario;
+  const std::uint64_t seed = document.Peek("seed").value_or(scenario.seed);
+  scenario.drawn = document.Draw([&](std::string_view key) {
+    std::uint64_t hash = 14695981039346656037u;  // FNV-1a
+    for (const char c : key) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+    const Words words = RandomWords(seed, Stream::scenario, static_cast<std::uint32_t>(hash),
+                                    static_cast<std::uint32_t>(hash >> 32), 0);
+    return Uniform(words[0], words[1]);
+  });
   const std::filesystem::path folder = path.parent_path();
   Section root = document.root();
-  Scenario scenario;
   scenario.name = path.stem().string();
   root.Read("name", scenario.name);
   root.Read("seed", scenario.seed);

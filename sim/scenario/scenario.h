@@ -191,6 +191,7 @@ struct Scenario {
   TimeParams time;
   MotionDescription motion;
   TruthParams truth;
+  std::vector<std::pair<std::string, std::string>> drawn;  // keys that the file gives as distributions, and the values
   std::string resolved;  // all settings of the above with defaults filled in, as JSON; LoadScenario reads it again
 };
 

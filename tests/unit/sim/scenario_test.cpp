@@ -366,5 +366,44 @@ TEST(LookAt, AxesByHand) {
       << "the upper edge is towards +z";
 }
 
+// Kolmogorov and Smirnov's distance of n numbers to a uniform distribution on [0, 1] is above 1.95 / sqrt(n) in 0.1 %
+// of all cases; the seeds are fixed.
+TEST(Scenario, DistributionsAreDrawnBySeedAndKey) {
+  const TemporaryFolder folder;
+  const auto file = folder.Write("s.yaml", R"(
+world: {meshes: [{file: a.obj}]}
+camera: {width: 320, height: 240, fx: 260, fy: 261, cx: 159.5, cy: 119.5}
+sensor: {white: {uniform: [1, 2]}, quantum_efficiency: {log_uniform: [0.1, 1]}}
+time: {rate: 20 Hz, duration: 1 s}
+trajectory: {type: sampled, start: {position: [0, 0, 0], look_at: [0, 0, 1]}, position_noise: 0, orientation_noise: 0}
+)");
+  constexpr int kSeeds = 1000;
+  std::vector<double> uniform, logarithmic;
+  double product = 0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const Scenario s = LoadScenario(file, {{"seed", std::to_string(seed)}});
+    uniform.push_back(s.sensor.white - 1);
+    logarithmic.push_back((s.sensor.quantum_efficiency - 0.1) / 0.9);
+    product += (uniform.back() - 0.5) * (1 + std::log10(s.sensor.quantum_efficiency) - 0.5);
+  }
+  const auto distance = [](std::vector<double> x) {
+    std::ranges::sort(x);
+    double worst = 0;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      worst = std::max({worst, std::abs(x[i] - static_cast<double>(i) / kSeeds),
+                        std::abs(x[i] - static_cast<double>(i + 1) / kSeeds)});
+    return worst * std::sqrt(kSeeds);
+  };
+  EXPECT_LT(distance(uniform), 1.95);
+  EXPECT_GT(distance(logarithmic), 1.95);                                // the control
+  EXPECT_LT(std::abs(product) / kSeeds, 3.29 / 12 / std::sqrt(kSeeds));  // independent: 0.1 %
+
+  const Scenario once = LoadScenario(file), again = LoadScenario(folder.Write("r.yaml", once.resolved));
+  EXPECT_EQ(once.sensor.white, again.sensor.white);
+  ASSERT_EQ(once.drawn.size(), 2u);
+  EXPECT_EQ(once.drawn[0].first, "sensor.white");
+  EXPECT_EQ(LoadScenario(file, {{"sensor.exposure", "3 ms"}}).sensor.white, once.sensor.white);
+}
+
 }  // namespace
 }  // namespace sim

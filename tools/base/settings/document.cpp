@@ -153,6 +153,15 @@ void Document::Override(const std::string& key, const std::string& value) {
   *element = ParseYaml(value, place, state_->problems);
 }
 
+std::optional<std::uint64_t> Document::Peek(const std::string& key) const {
+  const Element* element = state_->root.Find(key);
+  std::uint64_t value = 0;
+  std::string problem;
+  const bool good =
+      element && element->kind == Element::Kind::scalar && ParseInteger(element->text, {}, value, problem);
+  return good ? std::optional(value) : std::nullopt;
+}
+
 Section Document::root() {
   if (!state_->reading) {
     state_->reading = true;

@@ -111,6 +111,14 @@ bool ParseQuantity(std::string_view text, Unit unit, const Range& range, double&
   return true;
 }
 
+bool SplitQuantity(std::string_view text, double& number, std::string& unit) {
+  const std::string_view digits = WithoutPlus(Trim(text));
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  const std::string_view suffix = Trim(digits.substr(static_cast<std::size_t>(end - digits.data())));
+  unit = suffix.empty() ? "" : " " + std::string(suffix);
+  return error == std::errc() && std::isfinite(number);
+}
+
 template <class T>
 bool ParseInteger(std::string_view text, const Range& range, T& value, std::string& problem) {
   const auto fail = [&](const std::string& what) {

@@ -13,6 +13,9 @@ namespace settings {
 // independently of the locale; nan, infinity and what overflows are refused; so is what is outside `range`.
 bool ParseQuantity(std::string_view text, Unit unit, const Range& range, double& value, std::string& problem);
 
+// "8 ms" as 8 and " ms"; whether it begins with a finite number.
+bool SplitQuantity(std::string_view text, double& number, std::string& unit);
+
 // A whole number, in decimal digits with an optional sign. T: int, std::int64_t, std::uint64_t.
 template <class T>
 bool ParseInteger(std::string_view text, const Range& range, T& value, std::string& problem);

@@ -14,9 +14,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -142,6 +145,13 @@ class Document {
   // Sets one value (YAML: "3", "8 ms", "[1, 2]", "{a: 1}") by its dotted key; numbers are indices of lists
   // ("keys.0.time"). Problems with it name "--set a.b.c". Before the first root(); throws std::logic_error afterwards.
   void Override(const std::string& key, const std::string& value);
+
+  // Draws each value that is written as a distribution, {uniform: [3 ms, 20 ms]}, {log_uniform: [1, 100]} or
+  // {one_of: [a, b, c]}, of what may stand there. `uniform`: a number in (0, 1) that is a function of the value's dotted
+  // key. Returns keys and values. Before the first root().
+  std::vector<std::pair<std::string, std::string>> Draw(const std::function<double(std::string_view path)>& uniform);
+  // Whole number of the file's first level, for what has to be known before; none where it is not there, or bad.
+  std::optional<std::uint64_t> Peek(const std::string& key) const;
 
   Section root();
 

@@ -20,6 +20,7 @@ void PrintFrames(const CheckOptions& options, const sim::Scenario& scenario, con
   fmt::print("{}: good\n", options.scenario.string());
   fmt::print("  {} frames of {} x {} at {} Hz, fx {} fy {} cx {} cy {} px\n", truth.poses.size(), camera.width,
              camera.height, scenario.time.rate_hz, camera.fx, camera.fy, camera.cx, camera.cy);
+  for (const auto& [key, value] : scenario.drawn) fmt::print("  drawn: {} = {}\n", key, value);
 }
 
 void CheckPoints(const CheckOptions& options, const sim::Scenario& scenario) {

@@ -220,5 +220,53 @@ TEST(Settings, ADefaultWithoutANameIsOurBug) {
   EXPECT_THROW(document.root().ReadChoice("c", choice, {{"one", 1}, {"two", 2}}), std::logic_error);
 }
 
+TEST(Settings, DistributionsAreDrawnByTheirKeys) {
+  Document document = Document::FromText(R"(
+a: {uniform: [10 ms, 20 ms]}
+list: [{b: {log_uniform: [1, 100]}}, {b: {one_of: [x, y, {one_of: [z]}, w]}}]
+section: {one_of: [{c: 1}, {c: 2}]}
+other: {uniform: 3, more: 4}
+)",
+                                         "draw.yaml");
+  std::vector<std::string> asked;
+  const auto drawn = document.Draw([&](std::string_view path) {
+    asked.emplace_back(path);
+    return path == "a" ? 0.25 : 0.5;
+  });
+  EXPECT_THAT(asked, ElementsAre("a", "list.0.b", "list.1.b", "list.1.b", "section"));
+  Section root = document.root();
+  double a = 0, b = 0;
+  std::string z;
+  int c = 0;
+  root.Read("a", a, Unit::time);
+  std::vector<Section> list = root.List("list");
+  list[0].Read("b", b);
+  list[1].Read("b", z);
+  root.Child("section").Read("c", c);
+  root.Ignore("other");
+  EXPECT_EQ(Problems(document), "");
+  EXPECT_DOUBLE_EQ(a, 0.0125);
+  EXPECT_DOUBLE_EQ(b, 10);
+  EXPECT_EQ(z, "z");
+  EXPECT_EQ(c, 2);
+  ASSERT_EQ(drawn.size(), 5u);
+  EXPECT_EQ(drawn[0], (std::pair<std::string, std::string>("a", "12.5 ms")));
+}
+
+TEST(Settings, BadDistributionsAreNamed) {
+  for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
+           {"a: {uniform: [1 s, 2 ms]}", "expected two numbers of one unit, the smaller first"},
+           {"a: {uniform: [2, 1]}", "expected two numbers of one unit, the smaller first"},
+           {"a: {uniform: 3}", "expected a list"},
+           {"a: {log_uniform: [0, 1]}", "expected bounds above 0"},
+           {"a: {one_of: []}", "expected a list"}}) {
+    Document document = Document::FromText(text, "draw.yaml");
+    document.Draw([](std::string_view) { return 0.5; });
+    document.root().Ignore("a");
+    EXPECT_THAT(Problems(document), HasSubstr("draw.yaml:1:4: 'a': ")) << text;
+    EXPECT_THAT(Problems(document), HasSubstr(message)) << text;
+  }
+}
+
 }  // namespace
 }  // namespace settings
