@@ -1,5 +1,5 @@
 // Materials, textures and pictures of a glTF file. Private to sim/world.
-// Source: Khronos, "glTF 2.0 Specification", 3.8 and 3.9; the extensions of gltf_reader.h.
+// Source: Khronos, "glTF 2.0 Specification", 3.8 and 3.9; the extensions of mesh_readers.h.
 #pragma once
 
 #include <assimp/scene.h>
