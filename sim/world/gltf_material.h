@@ -20,8 +20,7 @@ class GltfMaterials {
  public:
   GltfMaterials(GltfFile& file, MeshImport& import) : file_(file), import_(import) {}
 
-  // The index in materials() of a primitive's material, which is read when it is asked for first; without one: glTF's
-  // default.
+  // The index in materials() of a primitive's material, read when first asked for; without one: glTF's default.
   unsigned MaterialOf(const nlohmann::json& primitive);
   // Whoever takes them owns them.
   const std::vector<aiMaterial*>& materials() const { return materials_; }

@@ -1,5 +1,4 @@
-// Meshes of triangles and materials as assimp keeps them, from the readers of this project to the loader. Private to
-// sim/world.
+// Meshes of triangles and materials as assimp keeps them, from the readers here to the loader. Private to sim/world.
 #pragma once
 
 #include <assimp/material.h>

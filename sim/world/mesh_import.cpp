@@ -17,11 +17,9 @@
 #include <fstream>
 #include <map>
 #include <new>
-#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 #include "sim/world/gltf_file.h"
 #include "sim/world/mesh_readers.h"

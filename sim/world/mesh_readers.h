@@ -1,5 +1,5 @@
-// Readers of OBJ, PLY and glTF files; all other formats are assimp's. What is wrong with a file is import.problem.
-// Private to sim/world.
+// Readers of OBJ, PLY and glTF; all other formats are assimp's. What is wrong with a file: import.problem. Private to
+// sim/world.
 #pragma once
 
 #include <cstring>
@@ -8,7 +8,7 @@
 
 namespace sim {
 
-// Wavefront OBJ with its material libraries. Polygons of any number of corners; lines, points and curves are left out.
+// Wavefront OBJ with its material libraries. Polygons of any number of corners; lines, points, curves are left out.
 // Problems have lines.
 // Source: "Object Files (.obj)" and "MTL Material Format", Alias|Wavefront Advanced Visualizer, appendix B; vertex
 // colours (x y z r g b) as MeshLab and Blender write them; Pm, Pr, norm of Exocortex' extension.
