@@ -8,13 +8,10 @@
 #include <stdexcept>
 
 #include "sim/light/cache.h"
-#include "sim/motion/trajectory.h"
 #include "sim/random/random.h"
 #include "sim/render/rasteriser.h"
 #include "sim/render/ray_tracer.h"
 #include "sim/render/surface_tracer.h"
-#include "sim/scenario/scenario.h"
-#include "sim/sensor/exposure.h"
 #include "sim/sensor/sensor.h"
 #include "sim/sensor/vignetting.h"
 #include "sim/world/scene.h"
@@ -127,8 +124,7 @@ struct Simulator::Parts {
     if (s.sensor.auto_exposure.on) Meter();
   }
 
-  // The settings of all frames, each metered on a picture of the frame before it at 1/8 of the resolution, one ray per
-  // pixel.
+  // The settings of all frames, each metered on the frame before it at 1/8 of the resolution, one ray per pixel.
   void Meter() {
     const Optics small(Binned(scenario.camera, 8), scenario.sensor.optics);
     AutoExposure control(scenario.sensor);

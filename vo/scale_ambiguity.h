@@ -15,13 +15,11 @@ namespace vo {
 
 class ScaleAmbiguity {
  public:
-  // `sigma`: s, LandmarkParams::scale_sigma; 0: the scale is known, and nothing changes. `start`: first camera
-  // position.
+  // `sigma`: s, LandmarkParams::scale_sigma; 0: the scale is known, nothing changes. `start`: first camera position.
   ScaleAmbiguity(double sigma, const Eigen::Vector3d& start);
 
   bool known() const { return square_ == 1; }
-  // The filter has re-estimated its path with all lengths times `factor`. The answer keeps its scale, unless it is
-  // known.
+  // The filter has re-estimated its path, all lengths times `factor`. The answer keeps its scale, unless it is known.
   void AbsorbChange(double factor);
   Pose ToAnswer(const Pose& pose) const;
   Vector6 ToAnswer(const Vector6& velocity) const;

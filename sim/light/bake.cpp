@@ -10,7 +10,6 @@
 #include <glm/vector_relational.hpp>
 #include <sstream>
 #include <stdexcept>
-#include <string>
 #include <unordered_map>
 #include <utility>
 
@@ -249,8 +248,7 @@ class Baker {
   }
 
   // The lattice of twice the resolution. A new sample lies in the middle of a side of the old cells: `compute` (i, j,
-  // the two ends and the corners opposite to them, out: by layer) returns true when it has computed it; else it is the
-  // mean of the ends.
+  // both ends, the corners opposite to them, out: by layer) returns whether it computed it; else it is their mean.
   template <class Function>
   SideLight Finer(const SideLight& old, const Function& compute) const {
     const std::size_t r = std::size_t{1} << old.log2, n = LatticeSize(r), fine_n = LatticeSize(2 * r);

@@ -2,8 +2,7 @@
 //
 // A file's name is the hash of all that its content depends on: geometry, materials, pictures, lights, sky, settings
 // and the version of the computation. Inside: the word "vobench baked light", that hash, sizes, data, and a checksum of
-// all that. It is written under a temporary name and renamed: there are no half files, also when several programs write
-// the same.
+// all that. Written under a temporary name and renamed: no half files, also when several programs write the same.
 #pragma once
 
 #include <array>

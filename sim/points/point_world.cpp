@@ -6,12 +6,9 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 #include <stdexcept>
-#include <string>
 
-#include "sim/motion/trajectory.h"
 #include "sim/points/point_measurement.h"
 #include "sim/random/random.h"
-#include "sim/scenario/scenario.h"
 
 namespace sim {
 namespace {

@@ -8,7 +8,6 @@
 #include <array>
 #include <stdexcept>
 #include <string_view>
-#include <vector>
 
 #include "sim/render/rasteriser.h"
 #include "tools/base/text.h"

@@ -23,8 +23,8 @@ struct alignas(64) LaneInts {
   std::int32_t v[kLanes];
 };
 
-// value(u, v) = value_0 + u (value_1 - value_0) + v (value_2 - value_0): the value at corner 0 and the differences of
-// corners 1 and 2 to it.
+// value(u, v) = value_0 + u (value_1 - value_0) + v (value_2 - value_0): corner 0, and the differences of corners 1 and
+// 2 to it.
 template <int kSize>
 struct OverTriangle {
   float first[kSize], du[kSize], dv[kSize];
@@ -151,8 +151,7 @@ struct PixelBlock {
   LaneInts scramble_u, scramble_v;  // random bits by pixel, exclusive-ored to the pattern
 };
 
-// Adds up the radiance of the block's pixels over `samples`. share: the side of a ray's part of the pixel, 0 < share
-// <= 1.
+// Adds up the radiance of the block's pixels over `samples`. 0 < share <= 1: the side of a ray's part of the pixel.
 using ExposeBlockFunction = void (*)(const PacketScene& scene, const RaySample* samples, int count, bool jitter,
                                      float share, const PixelBlock& block, Lanes sum[3]);
 

@@ -33,8 +33,7 @@ class ShadowMaps {
 
   // Draws what is not there. lights: of sample 0 ... n - 1. For worlds that stand still.
   void Draw(const RasterScene& scene, const Program& triangles, const std::vector<std::vector<RasterLight>>& lights);
-  // Draws all of one sample, of a world as it is at the moment; replaces what was there; its rectangles' maps are
-  // of_sample(0).
+  // Draws all of one sample, of a world as it is then; replaces what was there; its rectangles' maps are of_sample(0).
   void DrawSample(const RasterScene& scene, const Program& triangles, const std::vector<RasterLight>& lights);
 
   GLuint lasting() const { return lasting_.id(); }  // of suns and points

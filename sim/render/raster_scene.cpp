@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
-#include <glm/vec4.hpp>
 #include <limits>
 
 #include "sim/render/ray_scene.h"

@@ -28,8 +28,8 @@ class RasterScene {
   // tables, std::runtime_error when it runs out of memory.
   RasterScene(const GlApi& gl, const Scene& scene);
 
-  // Draws all triangles into the target's first `size` pixels, by depth, which is cleared before. clip: of positions
-  // less `origin`.
+  // Draws all triangles into the target's first `size` pixels, by depth, cleared first. clip: of positions less
+  // `origin`.
   void Draw(const Program& triangles, const GlObject& target, const glm::ivec2& size, const glm::vec3& origin,
             const glm::mat4& clip) const;
 

@@ -37,8 +37,7 @@ struct RasteriserOptions {
 // - What is nearer than 1 cm (Z; with a lens wider than 50 degrees aside: along the largest component) is not seen.
 // A lens that would need too large a picture is refused by Expose with std::invalid_argument.
 // The bytes are the same on one machine with one OpenGL; another one's differ, in edges and by rounding. One call works
-// at a time, others wait. What of the scene is not rendered is named in sentences appended to `warnings`, where there
-// are any.
+// at a time, others wait. What of the scene is not rendered is named in sentences appended to `warnings`.
 // Throws std::invalid_argument for options out of range and a scene whose indices are, or that is too large;
 // std::runtime_error when there is no OpenGL 4.5 without a display, saying why.
 std::unique_ptr<Renderer> MakeRasteriser(const Scene& scene, const RasteriserOptions& options = {},

@@ -76,8 +76,7 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  // From now on hits have this light instead of ambient light. Throws std::invalid_argument when it is not this
-  // scene's.
+  // From now on hits have this light instead of ambient light. Throws std::invalid_argument when it is another scene's.
   void SetLight(const BakedLight& light);
   bool lamps_are_baked() const { return lamps_are_baked_; }
   // From now on metal and gloss mirror (Material::Mirrors).

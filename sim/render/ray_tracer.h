@@ -11,8 +11,7 @@ namespace sim {
 class RayScene;
 
 struct RayTracerOptions {
-  // Rays per pixel and time sample. More than one pays only where there are few time samples: each has its own point in
-  // the pixel.
+  // Rays per pixel and time sample. More than one pays only with few time samples: each has its own point in the pixel.
   int rays_per_time_sample = 1;
   bool jitter = true;        // false: every ray goes through the pixel's centre (for comparisons with closed forms)
   int jobs = 0;              // threads; 0: as many as the machine has. Never changes the result

@@ -1,5 +1,3 @@
-#include "sim/scenario/motion_reader.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include "sim/motion/path.h"
 #include "sim/motion/so3.h"
 #include "sim/motion/spline.h"
+#include "sim/scenario/readers.h"
 #include "tools/base/settings/field_reader.h"
 
 namespace sim {
@@ -17,8 +16,7 @@ namespace {
 
 using settings::Section;
 
-// `position`, and either `look_at` (a point in W) with an optional `roll`, or `orientation`. False when anything is
-// wrong.
+// `position`, and either `look_at` (a point in W) with an optional `roll`, or `orientation`. False: it is wrong.
 bool ReadPose(Section& section, Pose& pose) {
   const Range place{-1e6, 1e6};
   settings::FieldReader fields(section);

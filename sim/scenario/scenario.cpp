@@ -6,8 +6,7 @@
 
 #include "sim/light/cache.h"
 #include "sim/random/random.h"
-#include "sim/scenario/motion_reader.h"
-#include "sim/scenario/world_reader.h"
+#include "sim/scenario/readers.h"
 #include "sim/sensor/sensor.h"
 #include "tools/base/settings/field_reader.h"
 

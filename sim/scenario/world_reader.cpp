@@ -1,11 +1,9 @@
-#include "sim/scenario/world_reader.h"
-
 #include <glm/geometric.hpp>
 #include <string>
 #include <type_traits>
 #include <vector>
 
-#include "sim/scenario/motion_reader.h"
+#include "sim/scenario/readers.h"
 #include "tools/base/settings/field_reader.h"
 
 namespace sim {

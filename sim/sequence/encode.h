@@ -35,8 +35,7 @@ std::vector<std::uint8_t> EncodeDepthPng(std::span<const float> depth_m, int wid
 
 // Rows of PNG as vector code (AVX2 where available); integers, so with equal results.
 // filtered[i] = row[i] - whichever of left, above and upper left is nearest to left + above - upper left, for the
-// `size` bytes of a row; `above` is the row before, zeros for the first. `pixel`: bytes per pixel, the distance to the
-// left.
+// `size` bytes of a row; `above`: the row before, zeros for the first. `pixel`: bytes per pixel, the step to the left.
 void PaethFilter(const std::uint8_t* row, const std::uint8_t* above, std::size_t size, std::size_t pixel,
                  std::uint8_t* filtered);
 

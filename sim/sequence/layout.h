@@ -35,8 +35,7 @@ struct StampedTruth {
   Truth truth;
   glm::dvec3 gyroscope_bias{0.0}, accelerometer_bias{0.0};  // of the IMU, in I
 };
-// Lists of frames and truth, with a line for each of `frames`, which are in order of time; and the sensor files
-// of the layout.
+// Lists of frames and truth, with a line for each of `frames`, in order of time; and the sensor files.
 std::vector<StreamFile> Lists(Layout layout, const Scenario& scenario, std::span<const StampedTruth> frames);
 
 // Twelve decimals: beyond any use, so that rounding is never a question; a negative zero loses its sign.

@@ -8,7 +8,6 @@
 
 #include "sim/render/surface_tracer.h"
 #include "sim/sensor/depth_noise.h"
-#include "sim/sequence/encode.h"
 #include "sim/sequence/flow.h"
 #include "sim/sequence/landmarks.h"
 #include "sim/sequence/layout.h"

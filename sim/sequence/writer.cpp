@@ -8,9 +8,6 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "sim/sequence/content.h"
-#include "tools/base/files.h"
-
 namespace sim {
 namespace fs = std::filesystem;
 namespace {

@@ -3,9 +3,10 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
-#include <cstring>
+#include <iterator>
 #include <stdexcept>
 
+#include "sim/world/mesh_readers.h"
 #include "sim/world/texture_file.h"
 #include "tools/base/files.h"
 #include "tools/base/limits/structured_text.h"
@@ -16,25 +17,26 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125,
-              kFloat = 5126;
-
 [[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
 
-std::size_t BytesOf(int component_type) {
-  switch (component_type) {
-    case kByte:
-    case kUnsignedByte:
-      return 1;
-    case kShort:
-    case kUnsignedShort:
-      return 2;
-    case kUnsignedInt:
-    case kFloat:
-      return 4;
-    default:
-      Fail("an accessor's componentType " + std::to_string(component_type) + " is none of glTF's");
-  }
+// Types of components, and what 1 is written as where integers are normalised.
+struct ComponentType {
+  int code;
+  std::size_t bytes;
+  double (*number_at)(const void*);
+  double one;
+};
+constexpr ComponentType kTypes[] = {{5120, 1, NumberAt<std::int8_t>, 127},
+                                    {5121, 1, NumberAt<std::uint8_t>, 255},
+                                    {5122, 2, NumberAt<std::int16_t>, 32767},
+                                    {5123, 2, NumberAt<std::uint16_t>, 65535},
+                                    {5125, 4, NumberAt<std::uint32_t>, 4294967295.0},
+                                    {5126, 4, NumberAt<float>, 0}};
+
+const ComponentType& TypeOf(int code) {
+  const auto* type = std::ranges::find(kTypes, code, &ComponentType::code);
+  if (type == std::end(kTypes)) Fail("an accessor's componentType " + std::to_string(code) + " is none of glTF's");
+  return *type;
 }
 
 std::size_t ColumnsOf(const std::string& type) {
@@ -42,30 +44,6 @@ std::size_t ColumnsOf(const std::string& type) {
     if (type == name) return static_cast<std::size_t>(columns);
   }
   Fail("an accessor's type '" + type + "' is not used here");
-}
-
-template <class T>
-double Load(const std::uint8_t* from) {
-  T value{};
-  std::memcpy(&value, from, sizeof value);
-  return static_cast<double>(value);
-}
-
-double Component(int type, const std::uint8_t* from) {
-  switch (type) {
-    case kByte:
-      return Load<std::int8_t>(from);
-    case kUnsignedByte:
-      return Load<std::uint8_t>(from);
-    case kShort:
-      return Load<std::int16_t>(from);
-    case kUnsignedShort:
-      return Load<std::uint16_t>(from);
-    case kUnsignedInt:
-      return Load<std::uint32_t>(from);
-    default:
-      return Load<float>(from);
-  }
 }
 
 std::size_t Whole(const json& object, const char* key, std::size_t otherwise) {
@@ -140,7 +118,7 @@ GltfFile::GltfFile(MeshFiles& files) : files_(files) {
   if (bytes.starts_with("glTF")) {
     const std::span<const std::uint8_t> all = base::AsBytes(bytes);
     const auto word = [&](std::size_t at) {
-      return static_cast<std::uint32_t>(Component(kUnsignedInt, Part(all, at, 4, "a chunk").data()));
+      return static_cast<std::uint32_t>(NumberAt<std::uint32_t>(Part(all, at, 4, "a chunk").data()));
     };
     if (word(4) == 1) throw OlderGltf();
     if (word(4) != 2) Fail("is binary glTF of version " + std::to_string(word(4)) + ": only 2 is read");
@@ -225,13 +203,9 @@ std::span<const std::uint8_t> GltfFile::View(std::size_t index) {
 }
 
 float GltfFile::Normalised(double value, int type, bool normalised) {
-  if (!normalised || type == kFloat) return static_cast<float>(value);
-  const double most = type == kByte            ? 127
-                      : type == kUnsignedByte  ? 255
-                      : type == kShort         ? 32767
-                      : type == kUnsignedShort ? 65535
-                                               : 4294967295.0;
-  return static_cast<float>(std::max(value / most, -1.0));
+  const auto* known = std::ranges::find(kTypes, type, &ComponentType::code);
+  const double one = known == std::end(kTypes) ? 4294967295.0 : known->one;
+  return static_cast<float>(!normalised || one == 0 ? value : std::max(value / one, -1.0));
 }
 
 // store(row, column, value) for all components, in order; those of a sparse accessor's own rows come again.
@@ -240,16 +214,17 @@ void GltfFile::ReadComponents(std::size_t index, const Store& store) {
   const json& accessor = At("accessors", index);
   const int type = static_cast<int>(Whole(accessor, "componentType"));
   const std::size_t count = Whole(accessor, "count"), columns = ColumnsOf(accessor.at("type").get<std::string>());
-  const auto rows = [&](const json& where, std::size_t n, int component, std::size_t width, const auto& take) {
+  const auto rows = [&](const json& where, std::size_t n, int code, std::size_t width, const auto& take) {
     if (n == 0) return;
-    const std::size_t view = Whole(where, "bufferView"), row = BytesOf(component) * width;
+    const std::size_t view = Whole(where, "bufferView");
+    const auto [ignored, size, number_at, one] = TypeOf(code);
+    const std::size_t row = size * width;
     const std::size_t stride = Whole(At("bufferViews", view), "byteStride", row), first = Whole(where, "byteOffset", 0);
     const std::span<const std::uint8_t> bytes = View(view);
     if (stride > 1 << 16 || n > (std::size_t{1} << 40)) Fail("accessors[" + std::to_string(index) + "] is too large");
     const std::span<const std::uint8_t> used = Part(bytes, first, (n - 1) * stride + row, "an accessor");
     for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t c = 0; c < width; ++c)
-        take(i, c, Component(component, used.data() + i * stride + c * BytesOf(component)));
+      for (std::size_t c = 0; c < width; ++c) take(i, c, number_at(used.data() + i * stride + c * size));
     }
   };
   if (accessor.contains("bufferView")) rows(accessor, count, type, columns, store);

@@ -1,5 +1,5 @@
 // Materials, textures and pictures of a glTF file. Private to sim/world.
-// Source: Khronos, "glTF 2.0 Specification", 3.8 and 3.9; the extensions of gltf_reader.h.
+// Source: Khronos, "glTF 2.0 Specification", 3.8 and 3.9; the extensions of mesh_readers.h.
 #pragma once
 
 #include <assimp/scene.h>
@@ -20,8 +20,7 @@ class GltfMaterials {
  public:
   GltfMaterials(GltfFile& file, MeshImport& import) : file_(file), import_(import) {}
 
-  // The index in materials() of a primitive's material, which is read when it is asked for first; without one: glTF's
-  // default.
+  // The index in materials() of a primitive's material, read when first asked for; without one: glTF's default.
   unsigned MaterialOf(const nlohmann::json& primitive);
   // Whoever takes them owns them.
   const std::vector<aiMaterial*>& materials() const { return materials_; }

@@ -1,13 +1,11 @@
-#include "sim/world/gltf_reader.h"
-
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -17,6 +15,7 @@
 #include "sim/world/gltf_file.h"
 #include "sim/world/gltf_material.h"
 #include "sim/world/mesh_builder.h"
+#include "sim/world/mesh_readers.h"
 
 namespace sim {
 namespace {
@@ -24,6 +23,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kDeepestNode = 1000;
+constexpr int kTriangles = 4, kStrip = 5, kFan = 6;  // modes of a primitive
 constexpr std::size_t kMostInstances = 1 << 20;
 
 // What is seen instead of an extension that is not applied; empty: it is applied.
@@ -49,6 +49,11 @@ constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
     {"KHR_materials_iridescence", "iridescence is not rendered"},
     {"KHR_materials_anisotropy", "reflections are not rendered"},
     {"KHR_materials_variants", "the default variant is rendered"},
+};
+
+// An extension that the file requires.
+struct Unsupported : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 class GltfReader {
@@ -89,7 +94,7 @@ class GltfReader {
       if (known(name) == std::end(kExtensions)) refused += (refused.empty() ? "" : ", ") + name;
     }
     if (!refused.empty())
-      throw std::runtime_error("requires " + refused + ", which is not supported: convert the file without it");
+      throw Unsupported("requires " + refused + ", which is not supported: convert the file without it");
     for (const std::string& name : used) {
       const auto* at = known(name);
       const std::string instead(at != std::end(kExtensions) ? at->second : "it is left out");
@@ -105,7 +110,6 @@ class GltfReader {
     const bool morphs = std::any_of(weights.begin(), weights.end(), [](const json& w) { return w != 0.0; });
     for (const json& primitive : GltfFile::Child(mesh, "primitives")) {
       if (morphs && primitive.contains("targets")) Warn("has morph targets: the meshes are rendered without them");
-      constexpr int kTriangles = 4, kFan = 6;
       const int mode = primitive.value("mode", kTriangles);
       if (mode < kTriangles || mode > kFan) {
         Warn("has points or lines: they are left out");
@@ -146,12 +150,11 @@ class GltfReader {
     };
     const auto positions = table("POSITION", 3);
     if (!positions) return;
-    for (std::size_t i = 0; i < positions->count; ++i)
-      mesh.positions.emplace_back(positions->at(i, 0), positions->at(i, 1), positions->at(i, 2));
-    if (const auto normals = table("NORMAL", 3)) {
-      for (std::size_t i = 0; i < normals->count; ++i)
-        mesh.normals.emplace_back(normals->at(i, 0), normals->at(i, 1), normals->at(i, 2));
-    }
+    const auto append = [](const GltfTable& from, std::vector<aiVector3D>& to) {
+      for (std::size_t i = 0; i < from.count; ++i) to.emplace_back(from.at(i, 0), from.at(i, 1), from.at(i, 2));
+    };
+    append(*positions, mesh.positions);
+    if (const auto normals = table("NORMAL", 3)) append(*normals, mesh.normals);
     if (const auto colors = table("COLOR_0", 3)) {
       for (std::size_t i = 0; i < colors->count; ++i)
         mesh.colors.emplace_back(colors->at(i, 0), colors->at(i, 1), colors->at(i, 2),
@@ -166,15 +169,14 @@ class GltfReader {
     std::vector<std::uint32_t> indices;
     if (draco) {
       indices = std::move(draco->indices);
-      mode = 4;
+      mode = kTriangles;
     } else if (primitive.contains("indices")) {
       indices = file_.ReadIndices(GltfFile::Index(primitive, "indices"));
     } else {
       indices.resize(mesh.positions.size());
-      for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<std::uint32_t>(i);
+      std::iota(indices.begin(), indices.end(), 0u);
     }
-    constexpr int kStrip = 5, kFan = 6;
-    const std::size_t n = indices.size(), step = mode == 4 ? 3 : 1;
+    const std::size_t n = indices.size(), step = mode == kTriangles ? 3 : 1;
     for (std::size_t i = 0; i + 2 < n; i += step) {
       if (mode == kFan) {
         mesh.triangles.push_back({indices[0], indices[i + 1], indices[i + 2]});
@@ -313,17 +315,23 @@ class GltfReader {
 }  // namespace
 
 void ReadGltf(MeshFiles& files, MeshImport& import) {
+  const auto fail = [&](const std::string& problem) {
+    import.scene = nullptr;
+    import.problem = problem;
+  };
   try {
     GltfReader(files, import).Read();
     if (import.scene->mNumMeshes == 0) import.problem = "has no triangles";
   } catch (const std::bad_alloc&) {
     throw;
+  } catch (const Unsupported& error) {
+    fail(error.what());
+  } catch (const json::exception& error) {
+    const std::string what = error.what();
+    fail("cannot be read: is not glTF as its schema has it: " +
+         what.substr(std::min(what.find("] ") + 2, what.size())));
   } catch (const std::exception& error) {
-    import.scene = nullptr;
-    std::string what = error.what();
-    if (dynamic_cast<const json::exception*>(&error) != nullptr)
-      what = "is not glTF as its schema has it: " + what.substr(std::min(what.find("] ") + 2, what.size()));
-    import.problem = what.starts_with("requires ") ? what : "cannot be read: " + what;
+    fail(std::string("cannot be read: ") + error.what());
   }
 }
 

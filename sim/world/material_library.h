@@ -13,8 +13,8 @@
 
 namespace sim {
 
-// Calls with the first word, the rest without blanks about it, and the line's number; a line that ends in '\' goes on in
-// the next. Empty lines and comments are left out, as is a byte-order mark.
+// Calls with the first word, the rest without blanks about it, and the line's number; a line that ends in '\' goes on
+// in the next. Empty lines and comments are left out, as is a byte-order mark.
 void ForEachStatement(std::string_view text,
                       const std::function<void(std::string_view word, std::string_view rest, int line)>& call);
 // The next word, which is taken off `rest`; empty: none.

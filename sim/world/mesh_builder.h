@@ -1,5 +1,4 @@
-// What the readers of this project hand to the loader: meshes of triangles, and materials, as assimp keeps them. Private
-// to sim/world.
+// Meshes of triangles and materials as assimp keeps them, from the readers here to the loader. Private to sim/world.
 #pragma once
 
 #include <assimp/material.h>
@@ -16,8 +15,8 @@
 
 namespace sim {
 
-// Keys of a material that assimp has none for: the transform of texture coordinates (six numbers, glm::mat3x2, v down),
-// the folder that its textures are named from (relative to the mesh's), and whether it is unlit.
+// Keys of a material that assimp has none for: the transform of texture coordinates (six numbers, glm::mat3x2, v
+// down), the folder that its textures are named from (relative to the mesh's), and whether it is unlit.
 constexpr const char* kUvTransformKey = "$vobench.uv";
 constexpr const char* kFolderKey = "$vobench.folder";
 constexpr const char* kUnlitKey = "$vobench.unlit";

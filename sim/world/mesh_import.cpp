@@ -17,17 +17,13 @@
 #include <fstream>
 #include <map>
 #include <new>
-#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 #include "sim/world/gltf_file.h"
-#include "sim/world/gltf_reader.h"
+#include "sim/world/mesh_readers.h"
 #include "sim/world/mesh_serialization.h"
-#include "sim/world/obj_reader.h"
-#include "sim/world/ply_reader.h"
 #include "sim/world/texture_file.h"
 #include "tools/base/child_process.h"
 #include "tools/base/files.h"

@@ -39,8 +39,8 @@ struct WorldLoading {
   WarningList warnings{};
 };
 
-// Appends the file's meshes (with the transforms of its nodes and of `description`), and the materials and textures that
-// they use, to the scene; notes what is wrong, each problem with its file. The scene is of use only when there was none.
+// Appends the file's meshes (with the transforms of its nodes and of `description`), and the materials and textures
+// that they use, to the scene; notes what is wrong, each problem with its file. The scene is of use only without one.
 void AppendMeshFile(const MeshDescription& description, WorldLoading& loading);
 
 }  // namespace sim

@@ -1,5 +1,3 @@
-#include "sim/world/obj_reader.h"
-
 #include <charconv>
 #include <cstdint>
 #include <map>
@@ -8,6 +6,7 @@
 
 #include "sim/world/material_library.h"
 #include "sim/world/mesh_builder.h"
+#include "sim/world/mesh_readers.h"
 #include "sim/world/texture_file.h"
 
 namespace sim {

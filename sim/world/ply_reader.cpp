@@ -1,8 +1,6 @@
-#include "sim/world/ply_reader.h"
-
 #include <algorithm>
 #include <bit>
-#include <cstring>
+#include <iterator>
 #include <map>
 #include <new>
 #include <stdexcept>
@@ -10,32 +8,36 @@
 
 #include "sim/world/material_library.h"
 #include "sim/world/mesh_builder.h"
+#include "sim/world/mesh_readers.h"
 
 namespace sim {
 namespace {
 
-enum class Type { i8, u8, i16, u16, i32, u32, f32, f64 };
-constexpr std::size_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
 constexpr std::size_t kMostValues = 1 << 27;
 
-Type TypeOf(std::string_view name) {
-  static const std::map<std::string_view, Type> types = {
-      {"char", Type::i8},   {"int8", Type::i8},     {"uchar", Type::u8},   {"uint8", Type::u8},
-      {"short", Type::i16}, {"int16", Type::i16},   {"ushort", Type::u16}, {"uint16", Type::u16},
-      {"int", Type::i32},   {"int32", Type::i32},   {"uint", Type::u32},   {"uint32", Type::u32},
-      {"float", Type::f32}, {"float32", Type::f32}, {"double", Type::f64}, {"float64", Type::f64}};
-  const auto found = types.find(name);
-  if (found == types.end()) throw std::runtime_error("'" + std::string(name) + "' is no type");
-  return found->second;
-}
+// Types of numbers by both names, and what 1 is written as in a colour.
+struct Type {
+  std::string_view name, sized_name;
+  std::size_t bytes;
+  double white;
+  double (*number_at)(const void*);
+};
+constexpr Type kTypes[] = {
+    {"char", "int8", 1, 255, NumberAt<std::int8_t>},  {"uchar", "uint8", 1, 255, NumberAt<std::uint8_t>},
+    {"short", "int16", 2, 1, NumberAt<std::int16_t>}, {"ushort", "uint16", 2, 65535, NumberAt<std::uint16_t>},
+    {"int", "int32", 4, 1, NumberAt<std::int32_t>},   {"uint", "uint32", 4, 1, NumberAt<std::uint32_t>},
+    {"float", "float32", 4, 1, NumberAt<float>},      {"double", "float64", 8, 1, NumberAt<double>}};
 
-// What 1 is written as, in a colour.
-double WhiteOf(Type type) { return type == Type::u8 || type == Type::i8 ? 255 : type == Type::u16 ? 65535 : 1; }
+const Type& TypeOf(std::string_view name) {
+  const auto* type = std::ranges::find_if(kTypes, [&](auto& t) { return t.name == name || t.sized_name == name; });
+  if (type == std::end(kTypes)) throw std::runtime_error("'" + std::string(name) + "' is no type");
+  return *type;
+}
 
 struct Property {
   std::string name;
-  Type type;
-  std::optional<Type> count;  // of a list
+  const Type* type;
+  const Type* count;  // of a list; null: none
 };
 
 struct Element {
@@ -99,13 +101,13 @@ class PlyReader {
         elements_.push_back({std::string(name), static_cast<std::size_t>(*count), {}});
       } else if (word == "property" && !elements_.empty()) {
         std::string_view type = NextWord(line);
-        std::optional<Type> count;
+        const Type* count = nullptr;
         if (type == "list") {
-          count = TypeOf(NextWord(line));
+          count = &TypeOf(NextWord(line));
           type = NextWord(line);
         }
-        const Type of = TypeOf(type);
-        elements_.back().properties.push_back({std::string(line), of, count});
+        const Type& of = TypeOf(type);
+        elements_.back().properties.push_back({std::string(line), &of, count});
       } else if (word == "comment" || word == "obj_info") {
         if (NextWord(line) == "TextureFile") textures_.emplace_back(line);
       }
@@ -114,7 +116,7 @@ class PlyReader {
     if (!ended || !known) throw std::runtime_error("its header breaks off, or names no format");
   }
 
-  double Value(Type type) {
+  double Value(const Type& type) {
     if (is_text_) {
       const std::size_t begin = std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size());
       const std::size_t end = std::min(rest_.find_first_of(" \t\r\n", begin), rest_.size());
@@ -125,34 +127,12 @@ class PlyReader {
       if (!number) throw std::runtime_error("'" + std::string(word) + "' is not a number");
       return *number;
     }
-    const std::size_t size = kSizes[static_cast<std::size_t>(type)];
-    if (rest_.size() < size) throw std::runtime_error("the file ends too early");
+    if (rest_.size() < type.bytes) throw std::runtime_error("the file ends too early");
     std::array<char, 8> bytes{};
-    std::copy_n(rest_.begin(), size, bytes.begin());
-    if (is_big_) std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-    rest_.remove_prefix(size);
-    const auto as = [&]<class T>(T value) {
-      std::memcpy(&value, bytes.data(), sizeof value);
-      return static_cast<double>(value);
-    };
-    switch (type) {
-      case Type::i8:
-        return as(std::int8_t{});
-      case Type::u8:
-        return as(std::uint8_t{});
-      case Type::i16:
-        return as(std::int16_t{});
-      case Type::u16:
-        return as(std::uint16_t{});
-      case Type::i32:
-        return as(std::int32_t{});
-      case Type::u32:
-        return as(std::uint32_t{});
-      case Type::f32:
-        return as(float{});
-      default:
-        return as(double{});
-    }
+    std::copy_n(rest_.begin(), type.bytes, bytes.begin());
+    if (is_big_) std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(type.bytes));
+    rest_.remove_prefix(type.bytes);
+    return type.number_at(bytes.data());
   }
 
   template <class Call>
@@ -165,7 +145,7 @@ class PlyReader {
         if (!(count >= 0 && count <= static_cast<double>(rest_.size() + 1)) || count > kMostValues)
           throw std::runtime_error("a list has more entries than the file");
         row[i].resize(static_cast<std::size_t>(count));
-        for (double& value : row[i]) value = Value(property.type);
+        for (double& value : row[i]) value = Value(*property.type);
       }
       call(row);
     }
@@ -186,7 +166,7 @@ class PlyReader {
                       e.Find({"blue", "b", "diffuse_blue"})});
   }
   void AppendColor(const Element& element, const std::array<std::size_t, 3>& at, const Row& row) {
-    const double white = WhiteOf(element.properties[at[0]].type);
+    const double white = element.properties[at[0]].type->white;
     const auto channel = [&](std::size_t i) {
       return row[at[i]].empty() ? 0.0f : static_cast<float>(row[at[i]][0] / white);
     };
@@ -201,20 +181,15 @@ class PlyReader {
     const auto color = ColorPlaces(e);
     if (!xyz) throw std::runtime_error("its vertices have no x, y, z");
     has_uvs_ = uv.has_value(), has_normals_ = normal.has_value(), has_colors_ = color.has_value();
-    const auto single = [](const Row& row, std::size_t at) {
-      if (row[at].size() != 1) throw std::runtime_error("a coordinate is a list");
-      return row[at][0];
-    };
     ForEachRow(e, [&](const Row& row) {
-      pools_.positions.emplace_back(single(row, (*xyz)[0]), single(row, (*xyz)[1]), single(row, (*xyz)[2]));
-      if (normal) {
-        pools_.normals.emplace_back(static_cast<float>(single(row, (*normal)[0])),
-                                    static_cast<float>(single(row, (*normal)[1])),
-                                    static_cast<float>(single(row, (*normal)[2])));
-      }
-      if (uv)
-        pools_.uvs.emplace_back(static_cast<float>(single(row, (*uv)[0])), static_cast<float>(single(row, (*uv)[1])),
-                                0.0f);
+      const auto number = [&](std::size_t at) {
+        if (row[at].size() != 1) throw std::runtime_error("a coordinate is a list");
+        return row[at][0];
+      };
+      const auto single = [&](std::size_t at) { return static_cast<float>(number(at)); };
+      pools_.positions.emplace_back(number((*xyz)[0]), number((*xyz)[1]), number((*xyz)[2]));
+      if (normal) pools_.normals.emplace_back(single((*normal)[0]), single((*normal)[1]), single((*normal)[2]));
+      if (uv) pools_.uvs.emplace_back(single((*uv)[0]), single((*uv)[1]), 0.0f);
       if (color) AppendColor(e, *color, row);
     });
   }

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
-#include <numbers>
 #include <opencv2/imgcodecs.hpp>
 #include <span>
 #include <stdexcept>

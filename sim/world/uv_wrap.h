@@ -10,8 +10,8 @@ namespace sim {
 
 enum class UvWrap { repeat, clamp, mirror };
 
-// axis: 0 (u) or 1 (v); texels: of the picture along it. False, and nothing is done, where a mirrored picture would come
-// more than 100 times.
+// axis: 0 (u) or 1 (v); texels: of the picture along it. False, and nothing is done, where a mirrored picture would
+// come more than 100 times.
 bool WrapUvs(Mesh& mesh, int axis, UvWrap wrap, int texels);
 
 }  // namespace sim

@@ -14,6 +14,14 @@ std::string Printed(const char* format, int precision, double value) {
   return text;
 }
 
+template <class T>
+std::optional<T> Parsed(std::string_view text) {
+  T value{};
+  const char* const all = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), all, value);
+  return error == std::errc() && end == all ? std::optional(value) : std::nullopt;
+}
+
 }  // namespace
 
 std::string Join(const std::vector<std::string>& parts, std::string_view separator) {
@@ -40,12 +48,9 @@ std::string Fixed(double value, int decimals) { return Printed("%.*f", decimals,
 
 std::string Significant(double value, int digits) { return Printed("%.*g", digits, value); }
 
-std::optional<std::int64_t> ParseWhole(std::string_view text) {
-  std::int64_t value = 0;
-  const char* const all = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), all, value);
-  return error == std::errc() && end == all ? std::optional(value) : std::nullopt;
-}
+std::optional<std::int64_t> ParseWhole(std::string_view text) { return Parsed<std::int64_t>(text); }
+
+std::optional<double> ParseNumber(std::string_view text) { return Parsed<double>(text); }
 
 std::optional<std::int64_t> ParseSeconds(std::string_view text) {
   std::size_t i = 0;
@@ -89,9 +94,8 @@ std::optional<std::int64_t> ParseSeconds(std::string_view text) {
 }
 
 std::string UnitOfStamp(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value > 1e-9 * kLatest_ns)) return "";
+  const double value = ParseNumber(text).value_or(0);
+  if (!(value > 1e-9 * kLatest_ns)) return "";
   constexpr double kMilliseconds = 1e11, kMicroseconds = 1e14, kNanoseconds = 1e17;  // of the years from 1973 on
   if (value < kMilliseconds) return ", 4e9 at most";
   const bool nano = value >= kNanoseconds, micro = value >= kMicroseconds;

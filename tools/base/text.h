@@ -30,8 +30,9 @@ std::string Fixed(double value, int decimals);
 // "%.*g": a number of significant digits, without trailing zeros.
 std::string Significant(double value, int digits);
 
-// A decimal integer that is all of the text.
+// A decimal integer, or number ("inf" and "nan" are some, "1e999" is none), that is all of the text. No plus sign.
 std::optional<std::int64_t> ParseWhole(std::string_view text);
+std::optional<double> ParseNumber(std::string_view text);
 
 // Bound on a stamp's distance from zero: sums and differences of two stamps fit into 64 bits.
 constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;

@@ -25,8 +25,7 @@ struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// "PATH: why", which the standard library writes the other way round and with its own function's name; else the error's
-// words.
+// "PATH: why", which the standard library writes the other way round, with its function's name; else the error's words.
 inline std::string WordsOf(const std::exception& error) {
   const auto* of_file = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
   if (of_file == nullptr) return error.what();

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
 
 #include "tools/base/text.h"
 
@@ -43,15 +42,14 @@ std::string DisplayName(const std::string& system) {
   return found == names.end() ? system : found->second;
 }
 
+std::string Count(std::size_t n, const std::string& noun) {
+  return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
+}
+
 std::string Escape(const std::string& text) {
   static const std::map<char, const char*> entities = {
       {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
-  std::string escaped;
-  for (const char c : text) {
-    const auto entity = entities.find(c);
-    entity == entities.end() ? escaped += c : escaped += entity->second;
-  }
-  return escaped;
+  return Replaced(text, entities);
 }
 
 std::string AlignedTable(const std::vector<std::vector<std::string>>& rows) {
@@ -90,9 +88,11 @@ std::string Replaced(const std::string& text, const std::map<char, const char*>&
   std::string out;
   for (const char c : text) {
     const auto found = replacements.find(c);
-    out += found == replacements.end() ? std::string(1, c) : found->second;
+    found == replacements.end() ? out += c : out += found->second;
   }
   return out;
 }
+
+std::string QuotedForShell(const std::string& text) { return "'" + Replaced(text, {{'\'', "'\\''"}}) + "'"; }
 
 }  // namespace vobench

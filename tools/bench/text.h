@@ -22,6 +22,9 @@ std::string Percent(double share, int decimals = 1);
 // How the system is called in writing: "rb2pf" is RB²-PF. Unknown names as they are.
 std::string DisplayName(const std::string& system);
 
+// "1 run", "3 runs".
+std::string Count(std::size_t n, const std::string& noun);
+
 // As text inside HTML or an attribute.
 std::string Escape(const std::string& text);
 
@@ -31,6 +34,9 @@ std::string AlignedTable(const std::vector<std::vector<std::string>>& rows);
 
 // With a text in the place of each of these characters.
 std::string Replaced(const std::string& text, const std::map<char, const char*>& replacements);
+
+// One word for sh.
+std::string QuotedForShell(const std::string& text);
 
 std::string Base64(const std::string& bytes);
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tools/bench/systems/systems.h"
+#include "tools/bench/text.h"
 #include "tools/vobench/help_text.h"
 
 namespace vobench {
@@ -295,9 +296,7 @@ std::string CommandLine(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     const bool plain = !argument.empty() && argument.find_first_of(" \t\n'\"\\$`*?;&|<>(){}[]~#!") == std::string::npos;
-    std::string quoted;
-    for (const char c : argument) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    line += " " + (plain ? argument : "'" + quoted + "'");
+    line += " " + (plain ? argument : QuotedForShell(argument));
   }
   return line;
 }

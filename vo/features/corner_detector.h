@@ -1,5 +1,4 @@
-// Corners spread over the image by bucketing: in every cell of a grid the FAST threshold is lowered until enough are
-// found.
+// Corners spread over the image by bucketing: in each cell of a grid the FAST threshold falls until enough are found.
 // Source:  docs/algorithm.md, section 7; FAST-9 of OpenCV (Rosten & Drummond).
 // Units:   pixels.
 #pragma once

@@ -99,8 +99,7 @@ class StructureTensor {
   // Gradient variance per pixel of smoothed white noise in both images: 0.27 of the residual variance, 0.17 of the
   // ripple. Twice that covers the spread over patches; the smaller of both is used, since model error adds to each.
   static constexpr double kOfResidual = 0.5, kOfRipple = 0.34;
-  // Noise of neighbouring pixels is correlated after smoothing: its variance at low spatial frequency over that per
-  // pixel.
+  // Noise of neighbouring pixels is correlated after smoothing: variance at low spatial frequency over that per pixel.
   static constexpr double kCorrelated = 2.5;
 
   double Information(int axis, double residual_variance) const {

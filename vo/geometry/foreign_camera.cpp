@@ -1,7 +1,6 @@
 #include "vo/geometry/foreign_camera.h"
 
 #include <array>
-#include <charconv>
 #include <map>
 #include <vector>
 
@@ -30,13 +29,6 @@ const std::map<std::string_view, Model>& Models() {
 
 using Words = std::vector<base::Word>;
 
-std::optional<double> Number(std::string_view text) {
-  double value = 0;
-  const char* const all = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), all, value);
-  return error == std::errc() && end == all ? std::optional(value) : std::nullopt;
-}
-
 // The lines that are no comments, as words.
 std::vector<Words> DataLines(std::string_view text) {
   std::vector<Words> lines;
@@ -53,7 +45,7 @@ std::vector<Words> DataLines(std::string_view text) {
 std::string SetParameters(const Model& model, std::span<const base::Word> words, Camera& camera) {
   std::vector<double> p;
   for (const base::Word& word : words) {
-    const std::optional<double> number = Number(word.text);
+    const std::optional<double> number = base::ParseNumber(word.text);
     if (!number) return "'" + std::string(word.text) + "' is not a number";
     p.push_back(*number);
   }
@@ -200,7 +192,8 @@ std::optional<Camera> ReadTextCamera(std::string_view text, const std::filesyste
   Camera camera;
   camera.readout_s = std::nullopt;
   const Words& first = lines[0];
-  if (first.size() > 4 && SetSize(std::span(first).subspan(2, 2), camera) && !Number(first[1].text)) {  // COLMAP
+  if (first.size() > 4 && SetSize(std::span(first).subspan(2, 2), camera) &&
+      !base::ParseNumber(first[1].text)) {  // COLMAP
     const auto model = Models().find(first[1].text);
     if (model == Models().end()) return fail("COLMAP's model " + std::string(first[1].text) + " is not known here");
     if (lines.size() > 1) return fail("holds more than one camera: keep the line of one");
@@ -213,7 +206,7 @@ std::optional<Camera> ReadTextCamera(std::string_view text, const std::filesyste
   if (lines.size() < 2 || lines[1].size() != 2 || !SetSize(lines[1], camera)) return std::nullopt;
   const auto model = Models().find(first[0].text);  // DSO: parameters, then the size
   if (model == Models().end()) {
-    if (first[0].text != "FOV" && (first.size() != 5 || !Number(first[0].text))) return std::nullopt;
+    if (first[0].text != "FOV" && (first.size() != 5 || !base::ParseNumber(first[0].text))) return std::nullopt;
     return fail(
         "the field-of-view lens of TUM's monocular dataset and DSO is not known here: calibrate a "
         "radial-tangential or equidistant one, or rectify the images");

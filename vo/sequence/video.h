@@ -13,8 +13,7 @@
 
 namespace vo {
 
-// Every frame of a file, stamped with its presentation time, or 1 / rate after the last frame where that does not
-// increase.
+// Every frame of a file, stamped with its presentation time, or 1 / rate after the last where that does not increase.
 class VideoFile : public FrameSource {
  public:
   // Throws std::runtime_error when it cannot be opened.

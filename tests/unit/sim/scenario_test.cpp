@@ -6,7 +6,7 @@
 #include <string>
 
 #include "sim/motion/so3.h"
-#include "sim/scenario/motion_reader.h"
+#include "sim/scenario/readers.h"
 #include "tests/unit/sim/small_world.h"
 #include "tools/base/settings/settings.h"
 

@@ -18,8 +18,8 @@ constexpr std::int64_t kPixelsPerByte = 128;        // and to so many more for e
 // What is wrong with a size for a file of so many bytes; empty: nothing.
 std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::size_t bytes);
 
-// The same of a whole file. PNG, JPEG, BMP, TIFF, TGA, WebP, PNM and Radiance HDR pass; other kinds are not read, so that no
-// file reaches a decoder that is not needed.
+// The same of a whole file. PNG, JPEG, BMP, TIFF, TGA, WebP, PNM and Radiance HDR pass; other kinds are not read, so
+// that no file reaches a decoder that is not needed.
 std::string PictureProblem(std::span<const std::uint8_t> file);
 
 // Whether it is a TGA, which has no mark at its beginning: by its header's fields.

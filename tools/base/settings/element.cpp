@@ -15,8 +15,7 @@
 namespace settings {
 namespace {
 
-// Builds the tree from the parser's events. Aliases are refused: they are no use here, and expanding them can take
-// exponential space.
+// Builds the tree from the parser's events. Aliases are refused: expanding them can take exponential space.
 class Builder : public YAML::EventHandler {
  public:
   Builder(Place from, Dialect dialect, std::vector<Problem>& problems)

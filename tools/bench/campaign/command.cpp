@@ -12,7 +12,6 @@
 #include <system_error>
 
 #include "tools/base/child_process.h"
-#include "tools/bench/text.h"
 
 namespace vobench::campaign {
 namespace {
@@ -104,7 +103,5 @@ CommandEnd RunCommand(const std::string& command, const std::filesystem::path& f
   if (end.status > kEndedBySignal && end.status < kEndedBySignal + NSIG) end.signal = end.status - kEndedBySignal;
   return end;
 }
-
-std::string QuotedForShell(const std::string& text) { return "'" + Replaced(text, {{'\'', "'\\''"}}) + "'"; }
 
 }  // namespace vobench::campaign

@@ -18,7 +18,4 @@ struct CommandEnd {
 CommandEnd RunCommand(const std::string& command, const std::filesystem::path& folder, const std::filesystem::path& log,
                       double timeout_s);
 
-// One word for sh.
-std::string QuotedForShell(const std::string& text);
-
 }  // namespace vobench::campaign

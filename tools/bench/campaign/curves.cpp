@@ -80,17 +80,7 @@ std::string EndField(const Crossing& crossing) {
   return crossing.kind == Crossing::Kind::inside ? Field(crossing.dose) : "";
 }
 
-std::string NameOf(Crossing::Kind kind) {
-  switch (kind) {
-    case Crossing::Kind::at_the_first:
-      return "at_the_first";
-    case Crossing::Kind::inside:
-      return "inside";
-    case Crossing::Kind::not_reached:
-      return "not_reached";
-  }
-  return "";
-}
+constexpr const char* kKinds[] = {"at_the_first", "inside", "not_reached"};  // by Crossing::Kind
 
 std::string CellText(const DoseEstimate& estimate) {
   if (estimate.runs == 0) return "-";
@@ -129,7 +119,8 @@ std::string CurvesCsv(const std::vector<Curve>& curves) {
       add("broken_share", line.broken);
       if (!line.breaks) continue;
       csv += fmt::format("{},,breaking_point,,,{},{},{},{}\n", start, EndField(line.breaks->at),
-                         EndField(line.breaks->low), EndField(line.breaks->high), NameOf(line.breaks->at.kind));
+                         EndField(line.breaks->low), EndField(line.breaks->high),
+                         kKinds[static_cast<std::size_t>(line.breaks->at.kind)]);
     }
   }
   return csv;
@@ -158,10 +149,8 @@ std::string CurvesMarkdown(const std::vector<Curve>& curves) {
         "Share of runs broken", fmt::format("Broken: {}. [95 % bootstrap interval]", BrokenMeans(curve.spec)),
         [](const CurveLine& line) -> const auto& { return line.broken; });
     text += "\nHalf of the runs have broken at";
-    const char* between = " ";
     for (const CurveLine& line : curve.lines) {
-      text += between + OneLine(line.system) + ": ";
-      between = "; ";
+      text += (&line == &curve.lines.front() ? " " : "; ") + OneLine(line.system) + ": ";
       text += line.breaks ? fmt::format("{} [{}, {}]", DoseText(curve, line.breaks->at),
                                         DoseText(curve, line.breaks->low), DoseText(curve, line.breaks->high))
                           : "-";
@@ -174,15 +163,9 @@ std::string CurvesMarkdown(const std::vector<Curve>& curves) {
 std::string DoseText(const Curve& curve, const Crossing& crossing) {
   const CurveSpec& spec = curve.spec;
   const bool rises = spec.doses.back() > spec.doses.front();
-  switch (crossing.kind) {
-    case Crossing::Kind::at_the_first:
-      return (rises ? "<= " : ">= ") + curve.levels.front();
-    case Crossing::Kind::inside:
-      return fmt::format("{:.3g}{}{}", crossing.dose / spec.unit_in_si, spec.unit.empty() ? "" : " ", spec.unit);
-    case Crossing::Kind::not_reached:
-      return (rises ? "> " : "< ") + curve.levels.back();
-  }
-  return "";
+  if (crossing.kind == Crossing::Kind::at_the_first) return (rises ? "<= " : ">= ") + curve.levels.front();
+  if (crossing.kind == Crossing::Kind::not_reached) return (rises ? "> " : "< ") + curve.levels.back();
+  return fmt::format("{:.3g}{}{}", crossing.dose / spec.unit_in_si, spec.unit.empty() ? "" : " ", spec.unit);
 }
 
 std::string BrokenMeans(const CurveSpec& spec) {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "tools/base/settings/settings.h"
-#include "tools/bench/campaign/command.h"
+#include "tools/bench/text.h"
 
 namespace vobench::campaign {
 namespace {

@@ -31,8 +31,7 @@ struct ExternalSystem {
   double timeout_s = 3600;
 };
 
-// The entries, in order. Throws settings::Error with every problem: a name that is there twice, a placeholder that
-// stands for nothing.
+// The entries, in order. Throws settings::Error with every problem: a repeated name, an unknown placeholder.
 std::vector<ExternalSystem> ReadExternalSystems(const std::filesystem::path& file);
 
 // What a placeholder stands for is put in its place, quoted for sh.

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "tools/bench/campaign/page.h"
-#include "tools/bench/text.h"
 
 namespace vobench::campaign {
 namespace {
@@ -16,7 +15,6 @@ using report::Axis;
 using report::Draw;
 using report::Figure;
 using report::Numbers;
-using report::Role;
 using report::Series;
 
 // Doses in the unit of the file, harder to the right.
@@ -37,21 +35,14 @@ Numbers Doses(const Curve& curve) {
 }
 
 Series Of(const CurveLine& line, std::size_t system, Draw draw) {
-  Series series;
-  series.name = DisplayName(line.system);
-  series.system = system;
+  Series series = report::LineOf(line.system, system, {}, {});
   series.draw = draw;
   return series;
 }
 
 // Level and ideal: a straight dashed line over all doses.
 Series Level(const Curve& curve, const std::string& name, double value) {
-  Series series;
-  series.name = name;
-  series.role = Role::context;
-  series.x = Doses(curve);
-  series.y.assign(series.x.size(), value);
-  return series;
+  return report::LineAs(report::Role::context, name, Doses(curve), Numbers(curve.spec.doses.size(), value));
 }
 
 bool ComparedWithOne(const std::string& metric) {

@@ -51,8 +51,7 @@ class TaskFolder {
   bool committed_ = false;
 };
 
-// Tasks that have a folder, in order. Folders are listed and no file is opened: a hundredth of the time that a million
-// of those takes.
+// Tasks that have a folder, in order. Folders are listed, no file is opened: a hundredth of the time for a million.
 std::vector<std::int64_t> PresentTasks(const std::filesystem::path& out);
 
 struct OutputState {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "tools/base/text.h"
 #include "tools/bench/campaign/table.h"
 #include "tools/bench/provenance.h"
 #include "tools/bench/report/html.h"
@@ -39,21 +40,17 @@ double MedianOf(const std::vector<TaskRecord>& records, const std::string& syste
 }
 
 std::string What(const Campaign& campaign, const std::vector<TaskRecord>& records) {
-  std::string text = fmt::format("{} scenario{}", campaign.scenarios.size(), campaign.scenarios.size() == 1 ? "" : "s");
+  std::string text = Count(campaign.scenarios.size(), "scenario");
   for (const Factor& factor : campaign.factors) {
     text += fmt::format(" × {} {}", factor.levels.size(), Escape(factor.name));
   }
-  text += fmt::format(" × {} system{} × {} seed{} = <b>{} tasks</b>: ", campaign.systems.size(),
-                      campaign.systems.size() == 1 ? "" : "s", campaign.seeds.size(),
-                      campaign.seeds.size() == 1 ? "" : "s", records.size());
+  text += fmt::format(" × {} × {} = <b>{} tasks</b>: ", Count(campaign.systems.size(), "system"),
+                      Count(campaign.seeds.size(), "seed"), records.size());
   std::map<std::string, std::size_t> counts;
   for (const TaskRecord& record : records) ++counts[Name(record.status)];
-  const char* between = "";
-  for (const auto& [status, count] : counts) {
-    text += fmt::format("{}{} {}", between, count, status);
-    between = ", ";
-  }
-  return "<p>" + text + ".</p>\n";
+  std::vector<std::string> parts;
+  for (const auto& [status, count] : counts) parts.push_back(fmt::format("{} {}", count, status));
+  return "<p>" + text + base::Join(parts, ", ") + ".</p>\n";
 }
 
 // Breaking point of each system, in a sentence for each curve.
@@ -98,10 +95,6 @@ std::string SystemTiles(const Campaign& campaign, const std::vector<TaskRecord>&
                             "time mean per degree of freedom, not aligned"}});
   }
   return html;
-}
-
-std::string TableHtml(const Table& table) {
-  return "<h3>" + Escape(table.spec.title) + "</h3>" + report::Table(Caption(table), Escaped(Texts(table, "X")));
 }
 
 std::string TaskTable(const Campaign& campaign, const std::vector<TaskRecord>& records) {
@@ -150,7 +143,9 @@ std::string CampaignPage(const Campaign& campaign, const Merged& merged) {
          CurveFigures(curve)});
   }
   std::string tables;
-  for (const Table& table : merged.tables) tables += TableHtml(table);
+  for (const Table& table : merged.tables) {
+    tables += "<h3>" + Escape(table.spec.title) + "</h3>" + report::Table(Caption(table), Escaped(Texts(table, "X")));
+  }
   page.sections.push_back({"Tables", "", {}, tables});
   page.sections.push_back({"Tasks", "", {}, TaskTable(campaign, merged.records)});
   page.sections.push_back({"How this was made", "", {}, Record(campaign)});

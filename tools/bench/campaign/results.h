@@ -34,8 +34,8 @@ struct TaskRecord {
   LevelValues levels;
   std::uint64_t seed = 0;
   Status status = Status::failed;
-  std::string reason;                          // of what is neither ok nor lost; ToJson makes it one line
-  std::vector<std::optional<double>> metrics;  // in the order of MetricNames; none at all where nothing was judged
+  std::string reason{};                          // of what is neither ok nor lost; ToJson makes it one line
+  std::vector<std::optional<double>> metrics{};  // in the order of MetricNames; none at all where nothing was judged
 
   std::optional<double> metric(std::size_t index) const {
     return index < metrics.size() ? metrics[index] : std::nullopt;

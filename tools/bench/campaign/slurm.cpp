@@ -16,6 +16,7 @@
 #include "tools/bench/campaign/output.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/progress.h"
+#include "tools/bench/text.h"
 
 namespace vobench::campaign {
 namespace fs = std::filesystem;

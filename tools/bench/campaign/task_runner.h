@@ -41,8 +41,7 @@ class TaskRunner {
                       const std::string& sequence, int threads) const = 0;
 
   // Plays or tracks, judges, and writes what campaign.keep asks for into `folder`, with times.json. Sets status, reason
-  // and metrics of `record`. The sequence must be in the cache. One thread. Throws std::runtime_error: nothing was
-  // found out.
+  // and metrics of `record`. The sequence must be in the cache. One thread. Throws std::runtime_error: no result.
   virtual void Run(const Campaign& campaign, const TaskChoice& choice, const SequenceCache& cache,
                    const std::string& sequence, const std::filesystem::path& folder, TaskRecord& record) const = 0;
 };

@@ -140,14 +140,12 @@ std::string CampaignWork::KeyOf(const TaskChoice& choice) const {
 
 TaskRecord CampaignWork::BlankRecord(std::int64_t task) const {
   const TaskChoice choice = ChoiceOf(campaign_, task);
-  TaskRecord record;
-  record.key = KeyOf(choice);
-  record.task = task;
-  record.scenario = campaign_.scenarios[choice.scenario].name;
-  record.system = campaign_.systems[choice.system].name;
-  record.levels = points_[choice.point].levels;
-  record.seed = campaign_.seeds[choice.seed];
-  return record;
+  return {KeyOf(choice),
+          task,
+          campaign_.scenarios[choice.scenario].name,
+          campaign_.systems[choice.system].name,
+          points_[choice.point].levels,
+          campaign_.seeds[choice.seed]};
 }
 
 }  // namespace vobench::campaign

@@ -83,6 +83,28 @@ Json Of(const Figure& figure, const std::string& id, Columns& columns) {
 
 }  // namespace
 
+Series LineOf(const std::string& system, std::size_t number, Numbers x, Numbers y) {
+  Series line = LineAs(Role::system, DisplayName(system), std::move(x), std::move(y));
+  line.system = number;
+  return line;
+}
+
+Series LineAs(Role role, const std::string& name, Numbers x, Numbers y) {
+  return {name, Draw::line, role, 0, false, std::move(x), std::move(y)};
+}
+
+Series Band(const std::string& name, Numbers x, Numbers low, Numbers high) {
+  Series band = LineAs(Role::expected, name, std::move(x), std::move(low));
+  band.draw = Draw::band;
+  band.high = std::move(high);
+  return band;
+}
+
+Series Faint(Series series) {
+  series.faint = true;
+  return series;
+}
+
 std::string FiguresJson(const std::vector<std::string>& systems, const std::vector<Figure>& figures, const Json& more) {
   Columns columns;
   Json json = {{"format", kFormat}, {"systems", systems}, {"figures", Json::array()}};

@@ -1,5 +1,4 @@
-// Figure of a report as values: axes with units, and series of numbers; and as JSON, from which tools/bench/report/web
-// draws.
+// Figure of a report as values: axes with units, series of numbers; and as JSON, which tools/bench/report/web draws.
 // Source: docs/report_data.md.
 #pragma once
 
@@ -50,6 +49,12 @@ struct Series {
   Numbers z = {}, t = {};               // in space; seconds, shown with a point of a path
   std::vector<std::string> notes = {};  // shown with each point
 };
+
+// A system's line; one in another role, with its name; what a consistent filter would show; one of many runs.
+Series LineOf(const std::string& system, std::size_t number, Numbers x, Numbers y);
+Series LineAs(Role role, const std::string& name, Numbers x, Numbers y);
+Series Band(const std::string& name, Numbers x, Numbers low, Numbers high);
+Series Faint(Series series);
 
 struct Figure {
   enum class Kind {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "tools/bench/text.h"
-
 namespace vobench::report {
 
 namespace ev = evaluation;
@@ -49,33 +47,6 @@ Figure InTime(const std::string& title, const std::string& description, const Ax
   figure.x.label = "time [s]";
   figure.y = y;
   return figure;
-}
-
-Series LineOf(const std::string& system, std::size_t number, Numbers x, Numbers y) {
-  Series line = LineAs(Role::system, DisplayName(system), std::move(x), std::move(y));
-  line.system = number;
-  return line;
-}
-
-Series LineAs(Role role, const std::string& name, Numbers x, Numbers y) {
-  Series line;
-  line.name = name;
-  line.role = role;
-  line.x = std::move(x);
-  line.y = std::move(y);
-  return line;
-}
-
-Series Band(const std::string& name, Numbers x, Numbers low, Numbers high) {
-  Series band = LineAs(Role::expected, name, std::move(x), std::move(low));
-  band.draw = Draw::band;
-  band.high = std::move(high);
-  return band;
-}
-
-Series Faint(Series series) {
-  series.faint = true;
-  return series;
 }
 
 }  // namespace vobench::report

@@ -1,4 +1,4 @@
-// Figures of a run's report; and the steps that they share: runs that are drawn, their time axis, lines and bands.
+// Figures of a run's report; and the steps that they share: runs that are drawn, and their time axis.
 // Source: docs/report.md.
 #pragma once
 
@@ -51,14 +51,5 @@ const evaluation::Trajectory& Drawn(const RunData& run);
 
 // A figure along that time, without series.
 Figure InTime(const std::string& title, const std::string& description, const Axis& y);
-
-// A system's line.
-Series LineOf(const std::string& system, std::size_t number, Numbers x, Numbers y);
-// A line in another role, with its name.
-Series LineAs(Role role, const std::string& name, Numbers x, Numbers y);
-// What a consistent filter would show.
-Series Band(const std::string& name, Numbers x, Numbers low, Numbers high);
-// One of many runs.
-Series Faint(Series series);
 
 }  // namespace vobench::report

@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tools/bench/report/figure.h"
 #include "tools/bench/report/thin.h"
 #include "tools/bench/report/web.h"
 #include "tools/bench/text.h"

@@ -13,10 +13,6 @@ namespace {
 
 namespace ev = evaluation;
 
-std::string Count(std::size_t n, const std::string& noun) {
-  return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
-}
-
 // Consistency in words from the mean NEES per degree of freedom, with and without the error of scale.
 std::string ConsistencyPhrase(const SystemSummary& s) {
   const double nees = s.nees_pose_per_dof;

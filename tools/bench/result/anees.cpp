@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
-#include <numeric>
-
 #include "tools/bench/text.h"
 #include "tools/judge/evaluation/anees_test.h"
 
@@ -21,16 +18,6 @@ std::vector<std::vector<double>> OfBlock(const SystemRuns& runs, std::size_t blo
     for (std::size_t k = 1; k < run.size(); ++k) nees.push_back(run[k][block]);
   }
   return all;
-}
-
-// ANEES by frame, whose number stands for its stamp.
-std::vector<evaluation::AneesPoint> ByFrame(const std::vector<std::vector<double>>& nees, int dof) {
-  std::vector<std::vector<std::int64_t>> frames;
-  for (const std::vector<double>& run : nees) {
-    std::vector<std::int64_t>& numbers = frames.emplace_back(run.size());
-    std::iota(numbers.begin(), numbers.end(), 1);
-  }
-  return evaluation::Anees(frames, nees, dof);
 }
 
 template <class Value>
@@ -64,7 +51,7 @@ std::string AneesTable(const std::vector<SystemRuns>& systems) {
                             dof);
         continue;
       }
-      const evaluation::AneesPoint last = ByFrame(nees, dof).back();
+      const evaluation::AneesPoint last = evaluation::AneesByFrame(nees, dof, 1).back();
       text += fmt::format("{:<18}{:>4}{:>12}{:>12}  {:<16}{:>8.1f} %{:>7.1f} %{:>7.1f} %\n", kStateBlocks[b].name, dof,
                           Readable(share.mean), Readable(last.anees / dof),
                           fmt::format("{:.2f} ... {:.2f}", band.low / dof, band.high / dof), 100 * share.share,
@@ -90,7 +77,7 @@ std::string AneesCsv(const std::vector<SystemRuns>& systems) {
   for (const SystemRuns& runs : systems) {
     for (std::size_t b = 0; b < kStateBlocks.size(); ++b) {
       const int dof = kStateBlocks[b].size;
-      for (const evaluation::AneesPoint& point : ByFrame(OfBlock(runs, b), dof)) {
+      for (const evaluation::AneesPoint& point : evaluation::AneesByFrame(OfBlock(runs, b), dof, 1)) {
         text += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{:.6g}\n", runs.system, kStateBlocks[b].name, dof,
                             point.stamp_ns, point.runs, point.anees / dof, point.band.low / dof, point.band.high / dof);
       }

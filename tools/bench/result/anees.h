@@ -21,9 +21,8 @@ struct SystemRuns {
   std::optional<evaluation::BoundRatio> bound;
 };
 
-// Per system, for a terminal: ATE by alignment, and ANEES per degree of freedom by block, with the band that the
-// average of that number of consistent runs falls in with probability 95 % at one frame. The first frame, whose pose is
-// given, is left out.
+// Per system, for a terminal: ATE by alignment, and ANEES per degree of freedom by block, with the band of the average
+// of as many consistent runs at one frame (95 %). The first frame, whose pose is given, is left out.
 std::string AneesTable(const std::vector<SystemRuns>& systems);
 
 // anees.csv, the same frame by frame: system,block,dof,frame,runs,anees_per_dof,low,high.

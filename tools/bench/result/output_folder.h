@@ -1,5 +1,4 @@
-// Output folder written under a temporary name beside its final one and renamed when complete; removed if the work
-// stops before.
+// Output folder written under a temporary name beside its final one and renamed when complete, or removed.
 #pragma once
 
 #include <filesystem>

@@ -33,20 +33,14 @@ std::vector<Landmark> ReadLandmarks(const fs::path& run_folder) {
   std::vector<Landmark> landmarks;
   bool header = true;
   for (const ev::Line& line : ev::Lines(file, ',')) {
-    if (line.tokens.size() != 7) {
-      problems.Add(file, line.number, 1, std::to_string(line.tokens.size()) + " columns where 7 are expected");
-      continue;
-    }
+    if (!ev::HasColumns(file, line, 7, problems)) continue;
     if (std::exchange(header, false)) {
       if (line.tokens[0].text == "id") continue;
       problems.Add(file, line.number, 1, "no header line");
     }
     Landmark landmark;
-    for (int k = 0; k < 3; ++k) {
-      const ev::Token& token = line.tokens[static_cast<std::size_t>(k) + 1];
-      const auto value = ev::ParseNumber(token.text);
-      if (!value) problems.Add(file, line.number, token.column, "'" + token.text + "' is not a finite number");
-      landmark.X_W[k] = value.value_or(0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      landmark.X_W[static_cast<int>(k)] = ev::NumberIn(file, line.number, line.tokens[k + 1], problems);
     }
     const ev::Token& last = line.tokens[6];
     landmark.permanent = last.text == "1";

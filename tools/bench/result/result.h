@@ -65,8 +65,7 @@ void WriteRun(const std::filesystem::path& out, const RunData& run);
 // truth.txt and, where they are known, truth_velocity.txt of a run. Throws std::runtime_error.
 void WriteTruth(const std::filesystem::path& run_folder, const evaluation::Trajectory& poses,
                 const std::optional<evaluation::Velocities>& velocities);
-// Files at the top: run.json; metrics.json, verdict.csv and ranks.csv where there is something in them. Throws
-// std::runtime_error.
+// Files at the top: run.json; metrics.json, verdict.csv, ranks.csv where not empty. Throws std::runtime_error.
 void WriteTop(const std::filesystem::path& out, const ResultData& data);
 
 // All of it, judged again with the options recorded in metrics.json. Throws evaluation::InputError with every problem

@@ -23,16 +23,16 @@ struct RunEntry {
 };
 
 struct RunDescription {
-  std::string title;                            // for people: the scenario's or the sequence's name
-  std::string input;                            // scenario file or sequence folder, as given
-  std::string command;                          // the command line
-  std::string started_utc;                      // ISO 8601, "2026-01-31T12:00:00Z"
-  double seconds = 0;                           // wall time of everything
-  std::string settings;                         // all of them, resolved, as YAML
-  std::map<std::string, std::string> versions;  // program and libraries, by name
-  std::vector<std::string> notes;               // for the reader: warnings, coasted gaps
-  std::vector<std::string> verdicts;            // in a sentence each, where they were asked for (--verdict)
-  std::vector<RunEntry> runs;
+  std::string title;                                 // for people: the scenario's or the sequence's name
+  std::string input;                                 // scenario file or sequence folder, as given
+  std::string command;                               // the command line
+  std::string started_utc;                           // ISO 8601, "2026-01-31T12:00:00Z"
+  double seconds = 0;                                // wall time of everything
+  std::string settings = {};                         // all of them, resolved, as YAML
+  std::map<std::string, std::string> versions = {};  // program and libraries, by name
+  std::vector<std::string> notes = {};               // for the reader: warnings, coasted gaps
+  std::vector<std::string> verdicts = {};            // in a sentence each, where they were asked for (--verdict)
+  std::vector<RunEntry> runs = {};
 };
 
 // Writes OUT/run.json whole or not at all; throws std::runtime_error when it cannot.

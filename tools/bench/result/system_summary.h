@@ -1,5 +1,4 @@
-// Summary of each system over its seeds, comparison of two systems, and the tables for a terminal: of accuracy and of
-// time.
+// Summary of each system over its seeds, comparison of two systems, and tables of accuracy and time for a terminal.
 #pragma once
 
 #include <limits>

@@ -57,13 +57,6 @@ bool IsRow(const std::vector<ev::Token>& fields) {
          (fields[5].text == "pass" || fields[5].text == "fail");
 }
 
-// A finite number; 0, and a problem, for anything else.
-double NumberIn(const ev::Token& token, const std::filesystem::path& file, int line, ev::Problems& problems) {
-  const auto value = ev::ParseNumber(token.text);
-  if (!value) problems.Add(file, line, token.column, "'" + token.text + "' is not a finite number");
-  return value.value_or(0);
-}
-
 }  // namespace
 
 std::string VerdictSentence(const SystemVerdict& v) {
@@ -136,7 +129,7 @@ std::vector<VerdictRow> ReadVerdict(const std::filesystem::path& out) {
       problems.Add(file, number, 1, "not system,\"check\",value,relation,threshold,pass,false_alarm");
       continue;
     }
-    const auto value = [&](std::size_t k) { return NumberIn(fields[k], file, number, problems); };
+    const auto value = [&](std::size_t k) { return ev::NumberIn(file, number, fields[k], problems); };
     rows.push_back({fields[0].text,
                     {fields[1].text, value(2), value(4), fields[3].text == ">=", fields[5].text == "pass", value(6)}});
   }
@@ -192,11 +185,8 @@ std::vector<RankTable> ReadRanks(const std::filesystem::path& out) {
   bool header = true;
   for (const ev::Line& line : ev::Lines(file, ',')) {
     if (std::exchange(header, false)) continue;
-    if (line.tokens.size() != 8) {
-      problems.Add(file, line.number, 1, std::to_string(line.tokens.size()) + " columns where 8 are expected");
-      continue;
-    }
-    const auto number = [&](std::size_t column) { return NumberIn(line.tokens[column], file, line.number, problems); };
+    if (!ev::HasColumns(file, line, 8, problems)) continue;
+    const auto number = [&](std::size_t k) { return ev::NumberIn(file, line.number, line.tokens[k], problems); };
     const double frame = number(1);
     if (!(frame >= 0 && frame < 1e9)) problems.Add(file, line.number, line.tokens[1].column, "no frame's number");
     const std::string &system = line.tokens[0].text, &dimension = line.tokens[2].text;

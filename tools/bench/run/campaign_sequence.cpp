@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <optional>
 #include <stdexcept>
 #include <vector>
 
-#include "sim/scenario/scenario.h"
 #include "sim/sequence/journal.h"
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"

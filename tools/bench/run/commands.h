@@ -101,8 +101,7 @@ struct ReportOptions {
 };
 void Report(const ReportOptions& options);
 
-// The streams of a sequence are held against each other. Throws std::runtime_error after printing when they
-// disagree.
+// The streams of a sequence are held against each other. Throws std::runtime_error after printing when they disagree.
 struct VerifyOptions {
   std::filesystem::path sequence;
 };

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <string.h>
 
-#include "sim/scenario/scenario.h"
 #include "sim/sequence/layout.h"
 #include "sim/simulator.h"
 #include "tools/base/files.h"
@@ -29,8 +28,7 @@ fs::path WriteCalibrationFile(const campaign::ExternalSystem& system, const sim:
   return file;
 }
 
-// The sequence in another layout, made of links to the pictures in the cache; itself for TUM's. Made where it is not
-// there.
+// The sequence in another layout, links to the pictures in the cache; itself for TUM's. Made where it is missing.
 fs::path InLayout(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario,
                   campaign::SequenceLayout layout) {
   const fs::path sequence = cache.PathOf(key);

@@ -20,8 +20,7 @@ namespace vobench {
 namespace fs = std::filesystem;
 namespace {
 
-// What a sequence of any layout may have at its top level; and while it is written: a killed run leaves what it had
-// just begun.
+// What a sequence of any layout may have at its top level; also while written: a killed run leaves what it had begun.
 std::set<std::string> SequenceNames(bool unfinished) {
   std::set<std::string> names = sim::StreamNames();
   names.insert({"camera.yaml", "exposure.txt", sim::kManifestName, sim::kJournalName});

@@ -19,16 +19,8 @@ Folder MakeFolder(const RunOptions& options) {
 
 RunDescription Describe(const RunOptions& options, const Experiment& experiment, const std::vector<std::string>& notes,
                         const Clock& clock) {
-  RunDescription description;
-  description.title = experiment.scenario.name;
-  description.input = options.scenario.string();
-  description.command = options.command_line;
-  description.started_utc = clock.started_utc();
-  description.seconds = clock.seconds();
-  description.settings = experiment.resolved;
-  description.versions = Versions();
-  description.notes = notes;
-  return description;
+  return {experiment.scenario.name, options.scenario.string(), options.command_line, clock.started_utc(),
+          clock.seconds(),          experiment.resolved,       Versions(),           notes};
 }
 
 void Conclude(OutputFolder& folder, ResultData& result) {

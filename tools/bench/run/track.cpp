@@ -105,13 +105,6 @@ std::string Record(const vo::Camera& c, const std::string& resolved) {
   return all.dump(2);
 }
 
-// A trajectory that starts at the origin is judged in its own world.
-evaluation::JudgeOptions StartedAtTheOrigin() {
-  evaluation::JudgeOptions options;
-  options.gauge = evaluation::Gauge::first_pose;
-  return options;
-}
-
 }  // namespace
 
 void Track(const TrackOptions& options) {
@@ -133,13 +126,11 @@ void Track(const TrackOptions& options) {
 
   Tracker tracker({options.system, options.seed, settings.params, PriorAtOrigin(settings.prior)}, camera,
                   frames.value_or(kFramesOfACamera), out.path(), ".");
-  RunDescription description;
-  description.title = fs::weakly_canonical(options.sequence).filename().string();
-  description.input = options.sequence.string();
-  description.command = options.command_line;
-  description.started_utc = clock.started_utc();
+  RunDescription description{fs::weakly_canonical(options.sequence).filename().string(), options.sequence.string(),
+                             options.command_line, clock.started_utc()};
   std::optional<LiveView> view;
   if (options.view) view.emplace(description);
+  const evaluation::JudgeOptions how = JudgeOptionsOf(settings.prior);
   const Truth shown = view && truth ? *truth : Truth{};
   const Clock tracking;
   std::exception_ptr end;  // by a fault in a stream, which cannot be had again: what came before is the result
@@ -167,13 +158,13 @@ void Track(const TrackOptions& options) {
         break;
       }
       if (match_errors) match_errors->Add(frame->frame.stamp_ns, tracker.features());
-      if (view && view->Asked(frame->frame)) view->Show({&tracker, 1}, shown, StartedAtTheOrigin());
+      if (view && view->Asked(frame->frame)) view->Show({&tracker, 1}, shown, how);
       progress.Step();
       if (!frames && InterruptPending()) break;
     }
   }
   const double elapsed_s = tracking.seconds();
-  if (view && !end) view->Show({&tracker, 1}, shown, StartedAtTheOrigin());
+  if (view && !end) view->Show({&tracker, 1}, shown, how);
   const std::vector<vo::MapPoint> map = end ? std::vector<vo::MapPoint>{} : tracker.map();
   ResultData result;
   RunData& run = result.runs.emplace_back(tracker.Result(map));
@@ -183,7 +174,7 @@ void Track(const TrackOptions& options) {
 
   if (truth) {
     try {
-      run.judged = evaluation::JudgeSeries(run.run, truth->poses, truth->velocities, StartedAtTheOrigin());
+      run.judged = evaluation::JudgeSeries(run.run, truth->poses, truth->velocities, how);
       WriteTruth(out.path(), truth->poses, truth->velocities);
     } catch (const evaluation::InputError& error) {  // of another time: the estimate is worth keeping all the same
       description.notes.push_back(fmt::format("Not judged: {}", error.what()));

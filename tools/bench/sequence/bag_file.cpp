@@ -7,7 +7,6 @@
 #include <sensor_msgs/Imu.h>
 
 #include <cerrno>
-#include <memory>
 #include <stdexcept>
 #include <system_error>
 #include <utility>

@@ -1,5 +1,4 @@
-// ROS 1 bag, written message by message with Debian's rosbag storage library, whose headers are not C++20: this is
-// compiled as C++17.
+// ROS 1 bag, written message by message with Debian's rosbag storage library, whose headers need C++17.
 // Source: ROS bag format 2.0; sensor_msgs, geometry_msgs; REP 103 (units, optical frames), 104 (camera_info), 118.
 #pragma once
 

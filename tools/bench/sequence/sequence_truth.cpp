@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <string_view>
-#include <vector>
 
 #include "tools/base/settings/settings.h"
 #include "tools/base/text.h"

@@ -5,22 +5,12 @@
 #include <opencv2/imgproc.hpp>
 
 namespace vobench {
+
 vo::Camera ToOdometry(const sim::CameraParams& camera) {
-  vo::Camera out;
-  out.width = camera.width;
-  out.height = camera.height;
-  out.fx = camera.fx;
-  out.fy = camera.fy;
-  out.cx = camera.cx;
-  out.cy = camera.cy;
-  out.k1 = camera.k1;
-  out.k2 = camera.k2;
-  out.p1 = camera.p1;
-  out.p2 = camera.p2;
-  out.k3 = camera.k3;
-  out.k4 = camera.k4;
-  out.lens = camera.lens == sim::Lens::fisheye ? vo::Lens::fisheye : vo::Lens::radial_tangential;
-  return out;
+  const auto& [width, height, fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, lens] = camera;
+  const bool fisheye = lens == sim::Lens::fisheye;
+  return {
+      width, height, fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, fisheye ? vo::Lens::fisheye : vo::Lens::radial_tangential};
 }
 
 vo::Camera CameraOf(const sim::Scenario& scenario) {
@@ -40,19 +30,13 @@ vo::Frame ToOdometry(const sim::Frame& frame) {
                        const_cast<std::uint16_t*>(image.wide.data()));
     wide.convertTo(pixels, CV_8U, 255.0 / 65535 * (1 << (16 - image.bits)));  // as the file's 16 bits are read
   }
-  vo::Frame out;
-  out.stamp_ns = frame.stamp_ns;
-  if (image.channels == 1) {
-    out.image = pixels.clone();
-  } else {
-    cv::cvtColor(pixels, out.image, cv::COLOR_RGB2BGR);
-  }
+  vo::Frame out{frame.stamp_ns, {}};
+  image.channels == 1 ? pixels.copyTo(out.image) : cv::cvtColor(pixels, out.image, cv::COLOR_RGB2BGR);
   return out;
 }
 
 vo::PointFrame ToOdometry(const sim::PointFrame& frame) {
-  vo::PointFrame out;
-  out.stamp_ns = frame.stamp_ns;
+  vo::PointFrame out{frame.stamp_ns, {}};
   for (const sim::PointObservation& o : frame.observations) out.observations.push_back({o.id, {o.x_px, o.y_px}});
   return out;
 }

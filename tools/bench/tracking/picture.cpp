@@ -4,7 +4,6 @@
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <string>
 #include <vector>
 
 #include "tools/base/files.h"

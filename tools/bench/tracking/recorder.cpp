@@ -14,23 +14,21 @@ constexpr std::int64_t kPictures = 24;
 
 evaluation::FrameRecord RecordOf(const vo::Estimate& estimate) {
   const vo::FrameDiagnostics& d = estimate.diagnostics;
-  evaluation::FrameRecord record;
-  record.stamp_ns = estimate.stamp_ns;
-  record.searched = d.searched;
-  record.matched = d.matched;
-  record.landmarks = d.landmarks;
-  record.permanent = d.permanent;
-  record.nis = d.nis;
-  record.nis_dof = d.nis_dof;
-  record.effective_particles = d.effective_particles;
-  record.ms_features = d.ms_features;
-  record.ms_matching = d.ms_matching;
-  record.ms_filter = d.ms_filter;
-  record.tracked = d.tracked();
-  record.events = {d.events.not_converged, d.events.behind_camera, d.events.not_positive_definite,
-                   d.events.non_finite_weight};
-  record.repeated = d.repeated;
-  return record;
+  const auto& [not_converged, behind_camera, not_positive_definite, non_finite_weight] = d.events;
+  return {estimate.stamp_ns,
+          d.searched,
+          d.matched,
+          d.landmarks,
+          d.permanent,
+          d.nis,
+          d.nis_dof,
+          d.effective_particles,
+          d.ms_features,
+          d.ms_matching,
+          d.ms_filter,
+          d.tracked(),
+          {{not_converged, behind_camera, not_positive_definite, non_finite_weight}},
+          d.repeated};
 }
 
 }  // namespace

@@ -15,15 +15,12 @@ std::optional<std::filesystem::path> Within(const std::optional<std::filesystem:
   return (*out / folder).lexically_normal();
 }
 
-CalibrationRecord RecordOf(const vo::CalibrationEstimate& estimate, double focal_px) {
-  CalibrationRecord record;
-  if (estimate.readout_s) record.readout_s = {estimate.readout_s->value, estimate.readout_s->sigma};
-  record.readout_used_s = estimate.readout_used_s;
-  record.focal_px = focal_px;
-  if (estimate.focal_factor) record.focal_factor = {estimate.focal_factor->value, estimate.focal_factor->sigma};
-  record.pattern_px = estimate.pattern_px;
-  record.focal_is_wrong = estimate.focal_is_wrong();
-  return record;
+CalibrationRecord RecordOf(const vo::CalibrationEstimate& e, double focal_px) {
+  const auto measured = [](const auto& of) {
+    return of ? std::optional(CalibrationRecord::Measured{of->value, of->sigma}) : std::nullopt;
+  };
+  return {measured(e.readout_s),    e.readout_used_s, focal_px,
+          measured(e.focal_factor), e.pattern_px,     e.focal_is_wrong()};
 }
 
 }  // namespace

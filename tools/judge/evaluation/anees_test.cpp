@@ -158,13 +158,8 @@ ExactAnees ExactAneesOfPool(const std::vector<std::vector<double>>& nees, int do
 }
 
 AneesShare ShareInBand(const std::vector<std::vector<double>>& nees, int dof) {
-  std::vector<std::vector<std::int64_t>> frames;  // numbers in place of stamps
-  for (const auto& run : nees) {
-    std::vector<std::int64_t>& numbers = frames.emplace_back(run.size());
-    std::iota(numbers.begin(), numbers.end(), 0);
-  }
   AneesShare share;
-  for (const AneesPoint& point : Anees(frames, nees, dof)) {
+  for (const AneesPoint& point : AneesByFrame(nees, dof)) {
     ++share.frames;
     share.mean += point.anees / dof;
     share.above += point.anees > point.band.high;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 
 #include "tools/judge/evaluation/association.h"
@@ -136,6 +136,15 @@ std::vector<AneesPoint> Anees(const std::vector<std::vector<std::int64_t>>& stam
     points.push_back({stamp, count, sum / count, bands[count]});
   }
   return points;
+}
+
+std::vector<AneesPoint> AneesByFrame(const std::vector<std::vector<double>>& values, int dof, std::int64_t first) {
+  std::vector<std::vector<std::int64_t>> frames;
+  for (const auto& run : values) {
+    std::vector<std::int64_t>& numbers = frames.emplace_back(run.size());
+    std::iota(numbers.begin(), numbers.end(), first);
+  }
+  return Anees(frames, values, dof);
 }
 
 }  // namespace evaluation

@@ -70,8 +70,7 @@ struct NeesSummary {
 
 NeesSummary SummariseNees(const std::vector<double>& nees, int dof);
 
-// Average NEES over runs at one frame, with the band that the average of M consistent runs falls in with probability 95
-// %.
+// Average NEES over runs at one frame, and the band of the average of M consistent runs (probability 95 %).
 struct AneesPoint {
   std::int64_t stamp_ns = 0;
   int runs = 0;  // with a value at this frame
@@ -83,5 +82,7 @@ struct AneesPoint {
 // value are left out.
 std::vector<AneesPoint> Anees(const std::vector<std::vector<std::int64_t>>& stamps,
                               const std::vector<std::vector<double>>& values, int dof);
+// The same with numbers of frames, from `first` on, in place of stamps.
+std::vector<AneesPoint> AneesByFrame(const std::vector<std::vector<double>>& values, int dof, std::int64_t first = 0);
 
 }  // namespace evaluation

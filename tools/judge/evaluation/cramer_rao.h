@@ -1,9 +1,7 @@
-// Posterior Cramer-Rao bound of pose and velocity from points seen by a moving camera, given the measurements up to
-// each frame.
+// Posterior Cramer-Rao bound of pose and velocity from points that a moving camera has seen up to each frame.
 // Source: P. Tichavsky, C. Muravchik, A. Nehorai, "Posterior Cramer-Rao bounds for discrete-time nonlinear filtering",
-// IEEE Trans. Signal Processing 1998. Jacobians are taken at one true trajectory, as in M. Taylor 1979: the
-// covariance of the exact Kalman filter of the world linearised at the truth. docs/metrics.md says what this
-// bounds and what not.
+// IEEE Trans. Signal Processing 1998. Jacobians are taken at one true trajectory, as in M. Taylor 1979: the covariance
+// of the exact Kalman filter of the world linearised at the truth. docs/metrics.md says what this bounds and what not.
 #pragma once
 
 #include <array>

@@ -1,7 +1,6 @@
 #include "tools/judge/evaluation/estimate_run.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -82,9 +81,7 @@ std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems&
   for (const Line& line : Lines(file, ',')) {
     for (const std::size_t fewer : {kStatus + 1, kRepeated})
       if (header && line.tokens.size() == fewer) columns = fewer;
-    if (line.tokens.size() != columns) {
-      problems.Add(file, line.number, 1,
-                   std::to_string(line.tokens.size()) + " columns where " + std::to_string(columns) + " are expected");
+    if (!HasColumns(file, line, columns, problems)) {
       header = false;
       continue;
     }

@@ -1,5 +1,4 @@
-// Scores of a belief that is a mixture of Gaussians, given the truth: valid also where it is far from Gaussian, unlike
-// NEES.
+// Scores of a belief that is a mixture of Gaussians, given the truth: unlike NEES valid far from Gaussian, too.
 // Source: Gneiting & Raftery, "Strictly proper scoring rules", JASA 2007 (energy score); Talts et al.,
 // "Validating Bayesian inference algorithms with simulation-based calibration", 2018 (ranks).
 //

@@ -1,6 +1,5 @@
 // Point world as an estimation problem: parameters, and Jacobians of motion and measurement at the truth.
-// Source: docs/metrics.md, "The Cramer-Rao bound". Written for the judge alone, tested against finite
-// differences.
+// Source: docs/metrics.md, "The Cramer-Rao bound". Written for the judge alone, tested against finite differences.
 //
 // Model: p, v and (delta, w) per axis nearly constant velocity, q_t = q_t-1 Exp(delta); a point anchored where it was
 // first seen, with ray (x, y, 1) and inverse depth rho, is at X_C ~ R_CW (rho (p_a - p) + R_Wa ray), seen at X_C / Z
@@ -48,8 +47,7 @@ MotionJacobian LinearisedMotion(const StampedPose& from, const StampedPose& to, 
                                 double orientation_noise);
 
 // A point as the homogeneous (X, rho), X = rho p_a + R_a ray, of which only the direction shows: it is seen along R_CW
-// (X
-// - rho p). All that measurements see of its error are the three components across the true direction; expressed in
+// (X - rho p). All that measurements see of its error are the three components across the true direction; expressed in
 // these the point no longer needs its anchor's pose, and rho = 0 is nothing special.
 struct HomogeneousPoint {
   Eigen::Vector4d direction;           // (X, rho), true

@@ -1,9 +1,7 @@
 #include "tools/judge/evaluation/text_file.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <memory>
 #include <string_view>
 
 #include "tools/base/text.h"
@@ -86,12 +84,22 @@ void Lines::Advance() {
 }
 
 std::optional<double> ParseNumber(const std::string& text) {
-  double value{};
-  const char *begin = text.c_str(), *const all = std::to_address(text.end());
-  if (*begin == '+' && !text.starts_with("+-")) ++begin;  // from_chars knows no plus
-  const auto [end, error] = std::from_chars(begin, all, value);
-  if (error != std::errc() || end != all || !std::isfinite(value)) return std::nullopt;
-  return value;
+  const bool plus = text.starts_with('+') && !text.starts_with("+-");
+  const std::optional<double> value = base::ParseNumber(std::string_view(text).substr(plus ? 1 : 0));
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+double NumberIn(const std::filesystem::path& file, int line, const Token& token, Problems& problems) {
+  const auto value = ParseNumber(token.text);
+  if (!value) problems.Add(file, line, token.column, "'" + token.text + "' is not a finite number");
+  return value.value_or(0);
+}
+
+bool HasColumns(const std::filesystem::path& file, const Line& line, std::size_t count, Problems& problems) {
+  if (line.tokens.size() == count) return true;
+  problems.Add(file, line.number, 1,
+               std::to_string(line.tokens.size()) + " columns where " + std::to_string(count) + " are expected");
+  return false;
 }
 
 std::optional<std::int64_t> ParseRow(const std::filesystem::path& file, const Line& line, const char* columns,

@@ -41,8 +41,7 @@ struct Line {
   std::vector<Token> tokens;
 };
 
-// The lines of a file that carry data: no empty ones, none that starts with '#'. Read one at a time as they are asked
-// for, once:
+// The lines of a file that carry data: no empty ones, none that starts with '#'. Read one at a time, once:
 //   for (const Line& line : Lines(file)) ...
 // A line is good until the next one is asked for.
 class Lines {
@@ -86,6 +85,10 @@ class Lines {
 
 // The whole text as a finite number; nothing when it is anything else ("nan", "1.2x", "").
 std::optional<double> ParseNumber(const std::string& text);
+// That of a token; 0, with a problem noted, when it is anything else.
+double NumberIn(const std::filesystem::path& file, int line, const Token& token, Problems& problems);
+// Whether a line has `count` columns; a problem is noted when not.
+bool HasColumns(const std::filesystem::path& file, const Line& line, std::size_t count, Problems& problems);
 
 // The stamp of a line `timestamp numbers`, and its numbers; nothing, with the problems noted, when any is bad. columns:
 // their names.

@@ -1,7 +1,6 @@
 #include "tools/judge/evaluation/trajectory.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <stdexcept>

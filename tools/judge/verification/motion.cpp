@@ -81,8 +81,7 @@ void CheckVelocities(const Sequence& s, Check& position, Check& orientation) {
     const double rule = kSafety * dt * dt * dt / 12, root = std::sqrt(3 * dt * dt * dt / 12);
     const Vector3d moved = b.p_WC - a.p_WC - dt / 2 * (v[k].value + v[k + 1].value);
     position.Add(moved.norm(), rule * Bend(v, k) + kSigmas * root * s.roughness.position + kText, steps[k].where);
-    // Magnus' second term: body rates that change direction turn a little more; the next is below |w|^2 dt^2 of the
-    // rule.
+    // Magnus' second term: body rates that change direction turn more; the next is below |w|^2 dt^2 of the rule.
     const Vector3d turned = vo::Log(a.q_WC.conjugate() * b.q_WC) - dt / 2 * (w[k].value + w[k + 1].value) -
                             dt * dt / 12 * w[k].value.cross(w[k + 1].value);
     const double noise = s.roughness.orientation * (1 + dt * w[k].value.norm());
@@ -193,9 +192,8 @@ void CheckImu(const Sequence& s, Check& velocity, Check& orientation) {
     const State end = state(steps[k].frame + 1, v[k + 1]);
     double first[2] = {}, second[2] = {};
     if (!Reckon(s.imu, v[k].stamp_ns, v[k + 1].stamp_ns, x, first, second)) continue;
-    // Straight lines between readings miss period^2 / 8 of the second derivative at most; a mean that is used for part
-    // of its period, at either end, may be off by what neighbours differ by. The path's own roughness between its
-    // readings.
+    // Straight lines between readings miss period^2 / 8 of the second derivative at most; a mean used for part of its
+    // period, at either end, by what neighbours differ by. The path's own roughness between readings.
     const double t = static_cast<double>(v[k + 1].stamp_ns) * 1e-9;
     const auto bound = [&](std::size_t c, double noise, double walk, double density) {
       const double rule = s.imu.mean ? 2 * period * first[c] + dt * second[c] / 8 : kSafety * dt * second[c] / 8;

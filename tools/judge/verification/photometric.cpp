@@ -19,6 +19,13 @@ constexpr double kBlur = 1.5;  // of Frames::Smooth [px]
 constexpr double kInterpolation = 0.03;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
+// The upper of the middle two.
+double Median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 // A pixel of this frame, where its surface point is in the partner's picture, and what is there.
 struct Sample {
   int x, y;
@@ -89,10 +96,7 @@ Pair Match(Frames& frames, std::size_t frame, std::size_t partner) {
       if (sample.here < 250 && sample.there < 250) pair.samples.push_back(sample);
     }
   }
-  if (!bends.empty()) {
-    std::nth_element(bends.begin(), bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2), bends.end());
-    pair.bend = bends[bends.size() / 2];
-  }
+  if (!bends.empty()) pair.bend = Median(bends);
   return pair;
 }
 
@@ -118,8 +122,7 @@ Offset Fit(const std::vector<Sample>& samples) {
       sizes.push_back(size);
     }
     x = H.ldlt().solve(b);
-    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
-    scale = std::max(1.4826 * sizes[sizes.size() / 2], 1e-3);
+    scale = std::max(1.4826 * Median(sizes), 1e-3);
   }
   // Differences within the blur are not independent: one of so many samples counts (every other pixel is one).
   const double together = 4 * std::numbers::pi * kBlur * kBlur / 2;
@@ -152,9 +155,7 @@ double Motion(Frames& frames, std::size_t from, std::size_t to) {
       if (Z > 0 && X.z() > 0) sizes.push_back((frames.sequence().camera.Project(X) - Vector2d(x, y)).norm());
     }
   }
-  if (sizes.empty()) return 0;
-  std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
-  return sizes[sizes.size() / 2];
+  return sizes.empty() ? 0 : Median(sizes);
 }
 
 }  // namespace

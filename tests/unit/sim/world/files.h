@@ -1,12 +1,15 @@
-// Small pictures, and the folder of the tests that read meshes.
+// Small pictures, and the folder and the problems of the tests that read meshes.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
+#include "sim/world/scene.h"
 #include "tests/temporary_folder.h"
+#include "tools/base/text.h"
 
 namespace sim::test {
 
@@ -27,6 +30,29 @@ inline std::string EncodeColor(const std::string& extension, int red, int green,
   std::vector<std::uint8_t> bytes;
   cv::imencode(extension, cv::Mat(4, 4, CV_8UC3, cv::Scalar(blue, green, red)), bytes);
   return {bytes.begin(), bytes.end()};
+}
+
+inline WorldDescription WorldOf(const std::filesystem::path& file) {
+  WorldDescription world;
+  world.meshes.push_back({file, glm::dvec3(0), {1, 0, 0, 0}, 1});
+  return world;
+}
+
+// Of the SceneError of `load`; empty where it throws none.
+template <class Load>
+std::vector<std::string> ProblemsOf(const Load& load) {
+  try {
+    load();
+  } catch (const SceneError& error) {
+    return error.problems();
+  }
+  return {};
+}
+
+// As one text.
+template <class Load>
+std::string ProblemTextOf(const Load& load) {
+  return base::Join(ProblemsOf(load), "\n");
 }
 
 }  // namespace sim::test

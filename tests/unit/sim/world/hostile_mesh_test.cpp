@@ -18,19 +18,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-WorldDescription WorldOf(const fs::path& file) {
-  WorldDescription world;
-  world.meshes.push_back({file, glm::dvec3(0), {1, 0, 0, 0}, 1});
-  return world;
-}
-
 std::vector<std::string> Problems(const fs::path& file) {
-  try {
-    LoadScene(WorldOf(file));
-  } catch (const SceneError& error) {
-    return error.problems();
-  }
-  return {};
+  return ProblemsOf([&] { LoadScene(WorldOf(file)); });
 }
 
 std::string Triangle(const std::string& library) {

@@ -25,19 +25,8 @@ constexpr const char* kSquare =
 constexpr const char* kSquareWithoutUv = "mtllib square.mtl\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
 constexpr const char* kPlain = "newmtl paint\nKd 0.5 0.25 0.125\nKe 1 2 3\n";
 
-WorldDescription WorldOf(const std::filesystem::path& file) {
-  WorldDescription world;
-  world.meshes.push_back({file, glm::dvec3(0), {1, 0, 0, 0}, 1});
-  return world;
-}
-
 std::vector<std::string> Problems(const WorldDescription& world) {
-  try {
-    LoadScene(world);
-  } catch (const SceneError& error) {
-    return error.problems();
-  }
-  return {};
+  return ProblemsOf([&] { LoadScene(world); });
 }
 
 std::string Textured(const std::string& texture) { return "newmtl paint\nKd 0.5 0.25 0.125\nmap_Kd " + texture + "\n"; }

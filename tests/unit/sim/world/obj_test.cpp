@@ -30,12 +30,7 @@ class Obj : public testing::Test {
     return LoadScene(world);
   }
   std::string Problems(const std::string& text) {
-    try {
-      Load(text);
-    } catch (const SceneError& error) {
-      return error.what();
-    }
-    return "";
+    return ProblemTextOf([&] { Load(text); });
   }
   static const Material& MaterialOf(const Scene& scene) {
     return scene.materials.at(static_cast<std::size_t>(scene.meshes.at(0).material));

@@ -23,12 +23,7 @@ class Ply : public testing::Test {
     return LoadScene(world);
   }
   std::string Problems(const std::string& text) {
-    try {
-      Load(text);
-    } catch (const SceneError& error) {
-      return error.what();
-    }
-    return "";
+    return ProblemTextOf([&] { Load(text); });
   }
   Folder folder_;
 };

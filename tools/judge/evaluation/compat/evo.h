@@ -43,8 +43,7 @@ struct EvoResult {
   Statistics statistics;
 };
 
-// Throw InputError where estimate and truth do not overlap, where the alignment is not determined, and where no pair is
-// left.
+// Throw InputError where estimate and truth do not overlap, the alignment is not determined, or no pair is left.
 EvoResult ComputeEvoApe(const Trajectory& estimate, const Trajectory& truth, const EvoOptions& options);
 EvoResult ComputeEvoRpe(const Trajectory& estimate, const Trajectory& truth, const EvoRpeOptions& options);
 

@@ -1,10 +1,11 @@
-// Purpose: a motion of any kind, the camera's or an object's, as scenarios write it: docs/scenario.md has the keys.
+// Parts of a scenario as its file writes them: docs/scenario.md has the keys. Private to sim/scenario and its tests.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
 #include "sim/motion/description.h"
+#include "sim/world/description.h"
 #include "tools/base/settings/settings.h"
 
 namespace sim {
@@ -12,7 +13,12 @@ namespace sim {
 // A file named in a scenario, which lies in `folder`. Whether it is there is said when it is opened.
 std::filesystem::path ReadFile(settings::Section& section, const std::string& key, const std::filesystem::path& folder);
 
+// A motion of any kind, the camera's or an object's.
 MotionDescription ReadMotion(settings::Section& section, const std::filesystem::path& folder);
+
+// Meshes, moving objects, lights and sky. duration_s: of the scenario, which scripts of objects must last for.
+void ReadWorld(settings::Section section, const std::filesystem::path& folder, double duration_s,
+               WorldDescription& world);
 
 // The camera at `eye` that looks at `target`, upright in a world whose up is +y, then turned by roll_rad about its own
 // z axis (to the right, clockwise as the camera sees it, when positive). Straight up, the camera's upper edge is

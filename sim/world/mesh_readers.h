@@ -1,0 +1,38 @@
+// Readers of OBJ, PLY and glTF; all other formats are assimp's. What is wrong with a file: import.problem. Private to
+// sim/world.
+#pragma once
+
+#include <cstring>
+
+#include "sim/world/mesh_import.h"
+
+namespace sim {
+
+// Wavefront OBJ with its material libraries. Polygons of any number of corners; lines, points, curves are left out.
+// Problems have lines.
+// Source: "Object Files (.obj)" and "MTL Material Format", Alias|Wavefront Advanced Visualizer, appendix B; vertex
+// colours (x y z r g b) as MeshLab and Blender write them; Pm, Pr, norm of Exocortex' extension.
+void ReadObj(MeshFiles& files, MeshImport& import);
+
+// PLY, ASCII and binary of both byte orders. Polygons and triangle strips; texture coordinates and colours of vertices,
+// of corners (texcoord) and of faces.
+// Source: G. Turk, "The PLY Polygon File Format", 1994; texture coordinates of corners and `comment TextureFile` as
+// MeshLab (VCGlib) writes them, names of properties as MeshLab, Blender, Open3D and CloudCompare do.
+void ReadPly(MeshFiles& files, MeshImport& import);
+
+// glTF 2.0 (.gltf, .glb): the default scene as it stands, without animations. Throws OlderGltf for glTF 1.0. An
+// extension that the file requires and that is not known here is import.problem; one that it uses is a warning.
+// Source: Khronos, "glTF 2.0 Specification"; KHR_texture_transform, KHR_materials_unlit,
+// KHR_materials_emissive_strength, KHR_materials_pbrSpecularGlossiness, KHR_mesh_quantization,
+// KHR_draco_mesh_compression, EXT_meshopt_compression, EXT_texture_webp, EXT_mesh_gpu_instancing.
+void ReadGltf(MeshFiles& files, MeshImport& import);
+
+// The number of type T that lies there.
+template <class T>
+double NumberAt(const void* from) {
+  T value{};
+  std::memcpy(&value, from, sizeof value);
+  return static_cast<double>(value);
+}
+
+}  // namespace sim
