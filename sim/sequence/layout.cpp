@@ -21,11 +21,12 @@ std::string Distortion(const CameraParams& c) {
   return "{" + radial + ", p1: " + number(c.p1) + ", p2: " + number(c.p2) + ", k3: " + number(c.k3) + "}";
 }
 
-// ---- TUM RGB-D; the lists of depth and other truth are with their streams (sim/sequence/streams.h)
+// ---- TUM RGB-D; the lists of depth and other truth are with their streams (sim/sequence/streams.h). rgb.txt begins
+// with three comments, as TUM's does: readers skip so many lines, whatever they hold.
 
 std::vector<StreamFile> TumLists(Frames frames) {
-  std::string rgb = "# timestamp filename\n", truth = "# timestamp tx ty tz qx qy qz qw\n",
-              velocity = "# timestamp vx vy vz wx wy wz\n";
+  std::string rgb = "# color images\n# made by vobench\n# timestamp filename\n",
+              truth = "# timestamp tx ty tz qx qy qz qw\n", velocity = "# timestamp vx vy vz wx wy wz\n";
   for (const StampedTruth& frame : frames) {
     const std::string stamp = base::FormatSeconds(frame.stamp_ns);
     const FrameNames names = NamesOf(Layout::tum, frame.index, frame.stamp_ns);

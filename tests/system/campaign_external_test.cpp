@@ -9,6 +9,7 @@
 #include <sstream>
 #include <thread>
 
+#include "source_dir.h"
 #include "tests/system/campaign.h"
 
 namespace vobench::system_test {
@@ -104,13 +105,126 @@ TEST_F(CampaignTest, ExternalOutcomesAreResults) {
   EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000006/log.txt"), "no calibration\n");
   EXPECT_THAT(ReadFile(here_ / "out/tasks/00/000003/log.txt"), HasSubstr("000001 0.033333333 10\n"));
   EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000003/calibration.txt"),
-            "Pinhole 0.8203125 1.09375 0.5 0.5 0\n160 120\nnone\n160 120\n");
+            "Pinhole 0.8203125 1.09375 0.5 0.5 0\n160 120\ncrop\n160 112\n")
+      << "sides that it can halve";
   EXPECT_FALSE(fs::exists(here_ / "out/tasks/00/000001/work"));
   // The same again, and by itself.
   const auto all = Lasting("out");
   EXPECT_THAT(Run(text, "out", {"--task", "1"}).out, HasSubstr("the same as before, byte for byte"));
   MustRun(text, "again", {"--jobs", "1", "--cache", "out/cache"});
   EXPECT_TRUE(Lasting("again") == all);
+}
+
+// What programs of other people do that is no crash: each is named, and judged where it can be.
+TEST_F(CampaignTest, PeculiarProgramsAreJudgedAsWhatTheyAre) {
+  const std::string poses = "awk '/^[^#]/ {print $1, NR, 0, 0, 0, 0, 0, 1}' {sequence}/rgb.txt";
+  WriteFile(here_ / "systems.yaml",
+            "systems:\n"
+            "  - {name: key, writes: keyframes, command: \"" +
+                poses +
+                " | sed -n '1p;6p;11p' > {trajectory}\"}\n"
+                "  - {name: few, command: \"" +
+                poses +
+                " | sed -n '1p;6p;11p' > {trajectory}\"}\n"
+                "  - {name: nan, command: \"" +
+                poses +
+                " | sed '3s/ 0 / nan /' > {trajectory}\"}\n"
+                "  - {name: ns, command: \"" +
+                poses +
+                " | sed 's/[.]//' > {trajectory}\"}\n"
+                "  - {name: ends, command: \"" +
+                poses +
+                " | head -9 > {trajectory}\"}\n"
+                "  - {name: at_exit, command: \"" +
+                poses +
+                " > {trajectory}; exit 139\"}\n"
+                "  - {name: forgiven, accept_exit: any, command: \"" +
+                poses +
+                " > {trajectory}; exit 139\"}\n"
+                "  - {name: skips_three, command: \"tail -n +4 {sequence}/rgb.txt | wc -l; " +
+                poses + " > {trajectory}\"}\n");
+  MustRun(CampaignOf("[key, few, nan, ns, ends, at_exit, forgiven, skips_three]") + "keep: all\n", "out");
+  auto rows = BySystem(Results("out"));
+  EXPECT_EQ(rows["key"]["status"], "ok") << "judged at its stamps";
+  EXPECT_EQ(rows["key"]["pose_coverage"], "0.25") << "and this is said";
+  EXPECT_EQ(rows["few"]["status"], "lost");
+  EXPECT_THAT(rows["few"]["reason"], HasSubstr("a pose in 25.0 % of the frames"));
+  EXPECT_EQ(rows["nan"]["status"], "ok");
+  EXPECT_EQ(rows["nan"]["reason"], "1 lines without a finite pose were left out");
+  EXPECT_EQ(rows["ns"]["status"], "no_answer");
+  EXPECT_EQ(rows["ends"]["status"], "ok");
+  EXPECT_EQ(rows["ends"]["reason"], "no pose after frame 8 of 12");
+  EXPECT_EQ(rows["at_exit"]["status"], "crashed");
+  EXPECT_EQ(rows["forgiven"]["status"], "ok");
+  EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000007/log.txt"), "12\n") << "three comments, as TUM's lists have";
+  EXPECT_TRUE(fs::exists(here_ / "out/tasks/00/000000/work/trajectory.txt"));
+  EXPECT_TRUE(fs::exists(here_ / "out/tasks/00/000005/work/trajectory.txt"));
+  const std::string tables = ReadFile(here_ / "out/tables.md");
+  EXPECT_THAT(tables, HasSubstr("key (key frames)"));
+  EXPECT_THAT(tables, HasSubstr("| few | 1 | lost | a pose in 25.0 % of the frames"));
+  EXPECT_THAT(ReadFile(here_ / "out/times.csv"), HasSubstr(",,,\n")) << "no times of frames that nobody measured";
+}
+
+// The whole way of a program that is not ours, from pictures and calibration to the table: below a hundredth of the path.
+TEST_F(CampaignTest, TheOdometryOfAnotherKindFindsItsWay) {
+  if (std::system("/usr/bin/python3 -c 'import cv2' 2> /dev/null") != 0) GTEST_SKIP() << "no python3-opencv";
+  const std::string scenes = VOBENCH_SOURCE_DIR "/scenes/";
+  MustRun("scenarios: [{file: " + scenes +
+              "room.yaml, set: {time.duration: 1.5 s, render.light: direct}}]\nexternal: " + scenes +
+              "systems.yaml\nsystems: [flow]\n",
+          "out");
+  auto row = BySystem(Results("out"))["flow"];
+  EXPECT_EQ(row["status"], "ok") << row["reason"];
+  EXPECT_EQ(row["pose_coverage"], "1");
+  EXPECT_LT(std::stod(row["ate_share_of_path"]), 0.01);
+  EXPECT_GT(std::stod(row["ate_share_of_path"]), 0);
+}
+
+TEST_F(CampaignTest, AProgramThatIsNotThereIsNoResult) {
+  WriteFile(here_ / "systems.yaml", "systems:\n  - {name: gone, command: \"/nowhere/slam {sequence}\"}\n");
+  WriteFile(here_ / "c.yaml", CampaignOf("[gone]"));
+  const Outcome dry = RunVobench({"campaign", "c.yaml", "-o", "dry", "--dry-run"}, here_.path());
+  EXPECT_EQ(dry.status, 2);
+  EXPECT_THAT(dry.err, HasSubstr("gone: '/nowhere/slam' is not there, or cannot be executed"));
+  const Outcome outcome = Run(CampaignOf("[gone]"), "out");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("gone: cannot be started (status 127)"));
+  EXPECT_EQ(BySystem(Results("out"))["gone"]["status"], "failed");
+}
+
+TEST_F(CampaignTest, AProgramThatIsBuiltAnewIsRunAnew) {
+  const fs::path program = here_ / "mine.sh";
+  const auto build = [&](const std::string& x) {
+    WriteFile(program, "#!/bin/sh\nawk '/^[^#]/ {print $1, " + x + ", 0, 0, 0, 0, 0, 1}' $1/rgb.txt > $2\n");
+    fs::permissions(program, fs::perms::owner_all);
+  };
+  WriteFile(here_ / "systems.yaml",
+            "systems:\n"
+            "  - {name: mine, command: \"" +
+                program.string() +
+                " {sequence} {trajectory}\"}\n"
+                "  - {name: other, command: \"awk '/^[^#]/ {print $1, 0, NR, 0, 0, 0, 0, 1}' {sequence}/rgb.txt > "
+                "{trajectory}\"}\n");
+  const auto written = [&](int task) {
+    return fs::last_write_time(here_ / ("out/tasks/00/00000" + std::to_string(task)) / "task.json");
+  };
+  build("NR");
+  MustRun(CampaignOf("[mine]"), "out");
+  const auto mine = written(0);
+  MustRun(CampaignOf("[other, mine]"), "out");  // tasks have other numbers: what is done stays
+  EXPECT_GE(written(0), mine);
+  EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000001/task.json").find("\"system\": \"other\""), std::string::npos);
+  const auto other = written(0);
+  build("NR * NR");
+  const Outcome stale = Run(CampaignOf("[other, mine]"), "out");
+  EXPECT_EQ(stale.status, 2);
+  EXPECT_THAT(stale.err, HasSubstr("1 results there are not what"));
+  const std::string before = BySystem(Results("out"))["mine"]["ate_m"];
+  MustRun(CampaignOf("[other, mine]"), "out", {"--update"});
+  EXPECT_NE(BySystem(Results("out"))["mine"]["ate_m"], before);
+  EXPECT_EQ(written(0), other);
+  MustRun(CampaignOf("[other, mine]"), "out", {"--redo", "other"});
+  EXPECT_GT(written(0), other);
 }
 
 TEST_F(CampaignTest, AnotherProgramIsJudgedAsOursIs) {

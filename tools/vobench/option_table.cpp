@@ -233,6 +233,7 @@ void AddCampaign(OptionTable& table) {
   Add(command, "--timeout S", campaign.timeout_s, "Seconds that a task may take (default: as long as it likes)")
       ->check(Plain(CLI::PositiveNumber));
   Add(command, "--cache DIR", campaign.cache, "Where rendered sequences are kept (default: OUT/cache)");
+  command.add_option("--redo", campaign.redo, "Results of this system go, and are done anew")->type_name("SYSTEM");
   command.add_flag("--update", campaign.update,
                    "Results that the file as it is now would not give may go; else an error");
   CLI::Option* task =

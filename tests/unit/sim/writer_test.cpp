@@ -99,9 +99,9 @@ TEST(SequenceWriter, WritesTheFormat) {
 
   const auto tree = Tree(folder);
   EXPECT_EQ(tree.size(), 2u + 6u + 2 * 9u);
-  EXPECT_THAT(
-      tree.at("rgb.txt"),
-      testing::StartsWith("# timestamp filename\n0.000000000 rgb/0.000000000.png\n0.033333333 rgb/0.033333333.png\n"));
+  EXPECT_THAT(tree.at("rgb.txt"),
+              testing::StartsWith("# color images\n# made by vobench\n# timestamp filename\n0.000000000 "
+                                  "rgb/0.000000000.png\n0.033333333 rgb/0.033333333.png\n"));
   std::istringstream truth(tree.at("groundtruth.txt")), velocity(tree.at("velocity.txt"));
   std::string line;
   std::getline(truth, line);

@@ -143,6 +143,7 @@ void CampaignFile::ReadSystems(const std::filesystem::path& folder) {
       entry.system = system;
     } else if (found != external.end()) {
       entry.external = *found;
+      entry.external.programs = DigestOfPrograms(entry.external);
       if (!entry.set.empty()) section.Reject("set", "'set': what is not ours is set in its command");
     } else {
       section.Reject(

@@ -1,11 +1,15 @@
 #include "tools/bench/campaign/external_system.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
+#include <sstream>
 
 #include "tools/base/settings/settings.h"
+#include "tools/bench/campaign/sequence_cache.h"
 #include "tools/bench/text.h"
 
 namespace vobench::campaign {
@@ -13,6 +17,8 @@ namespace {
 
 const std::vector<std::pair<std::string, SequenceLayout>> kLayouts = {
     {"tum", SequenceLayout::tum}, {"euroc", SequenceLayout::euroc}, {"images", SequenceLayout::images}};
+
+constexpr const char* kHere = "here";  // the variable that every entry has: the folder of its file
 
 const std::vector<std::pair<std::string, CalibrationFormat>> kFormats = {
     {"none", CalibrationFormat::none},
@@ -65,6 +71,39 @@ void CheckPlaceholders(settings::Section& section, const ExternalSystem& system)
   }
 }
 
+// Of a command for sh, without their quotes; all up to a space or one of `;|&`.
+std::vector<std::string> Words(const std::string& command) {
+  std::vector<std::string> words;
+  bool open = false;
+  char quote = 0;
+  for (const char c : command) {
+    if (quote == 0 && std::string_view(" \t\n;|&").find(c) != std::string_view::npos) {
+      open = false;
+    } else if (quote == 0 ? c == '\'' || c == '"' : c == quote) {
+      quote = quote == 0 ? c : 0;
+    } else {
+      if (!open) words.emplace_back();
+      open = true;
+      words.back() += c;
+    }
+  }
+  return words;
+}
+
+bool IsExecutable(const std::filesystem::path& file) {
+  return std::filesystem::is_regular_file(file) && access(file.c_str(), X_OK) == 0;
+}
+
+// As sh finds it; empty where it does not.
+std::filesystem::path PathOfProgram(const std::string& word) {
+  if (word.find('/') != std::string::npos) return std::filesystem::path(IsExecutable(word) ? word : "");
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (IsExecutable(std::filesystem::path(folder) / word)) return std::filesystem::path(folder) / word;
+  return {};
+}
+
 }  // namespace
 
 std::string Name(SequenceLayout layout) { return NameIn(kLayouts, layout); }
@@ -86,10 +125,21 @@ std::vector<ExternalSystem> ReadExternalSystems(const std::filesystem::path& fil
       variables.Read(name, value);
       system.variables.emplace_back(name, value);
     }
+    system.variables.emplace_back(kHere, std::filesystem::absolute(file.parent_path()).lexically_normal().string());
     section.ReadChoice("layout", system.layout, kLayouts);
     section.ReadChoice("calibration", system.calibration, kFormats);
     section.Read("trajectory", system.trajectory);
     section.Read("timeout", system.timeout_s, settings::Unit::time, settings::Range::Positive());
+    section.ReadChoice("writes", system.keyframes, {{"frames", false}, {"keyframes", true}});
+    section.ReadChoice("accept_exit", system.accepts_any_exit, {{"zero", false}, {"any", true}});
+    section.Read("threads", system.threads, settings::Range::AtLeast(1));
+    std::vector<std::string> files;
+    section.Read("files", files);
+    for (const std::string& each : files) {
+      system.files.push_back(file.parent_path() / each);
+      if (!std::filesystem::exists(system.files.back()))
+        section.Reject("files", "'files': " + system.files.back().string() + " is not there");
+    }
     if (!names.insert(system.name).second) section.Reject("name", "there is a system '" + system.name + "' already");
     CheckPlaceholders(section, system);
   }
@@ -106,10 +156,35 @@ std::string FillIn(const std::string& command, const std::vector<std::pair<std::
   return text;
 }
 
+std::string Label(const ExternalSystem& system, const std::string& name) {
+  return system.keyframes ? name + " (key frames)" : name;
+}
+
+std::string StartProblem(const ExternalSystem& system) {
+  const std::vector<std::string> words = Words(FillIn(system.command, system.variables));
+  if (words.empty() || words[0].find_first_of("$`(){}=<>!") != std::string::npos) return "";  // sh's own
+  const std::string found = "command -v " + QuotedForShell(words[0]) + " > /dev/null 2>&1";
+  return std::system(found.c_str()) == 0 ? "" : "'" + words[0] + "' is not there, or cannot be executed";
+}
+
+std::string DigestOfPrograms(const ExternalSystem& system) {
+  std::vector<std::filesystem::path> files = system.files;
+  for (const std::string& word : Words(FillIn(system.command, system.variables))) {
+    const std::filesystem::path program = PathOfProgram(word);
+    if (!program.empty() || std::filesystem::is_regular_file(word))
+      files.push_back(program.empty() ? std::filesystem::path(word) : program);
+  }
+  std::string text;
+  for (const std::filesystem::path& file : files) text += file.filename().string() + " " + DigestOfFile(file) + "\n";
+  return Digest(text);
+}
+
 std::string Description(const ExternalSystem& system) {
   std::string text = fmt::format("{}\n{}\n{}\n{}\n{}\n", system.command, Name(system.layout), Name(system.calibration),
                                  system.trajectory, system.timeout_s);
-  for (const auto& [name, value] : system.variables) text += name + "=" + value + "\n";
+  text += fmt::format("{}{}\n{}\n", system.keyframes, system.accepts_any_exit, system.programs);
+  for (const auto& [name, value] : system.variables)
+    if (name != kHere) text += name + "=" + value + "\n";  // of what lies there the bytes count
   return text;
 }
 

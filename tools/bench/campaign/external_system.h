@@ -21,14 +21,19 @@ std::string Name(CalibrationFormat format);
 
 struct ExternalSystem {
   std::string name;
-  // For sh, in an empty folder of its own. {sequence}, {calibration}, {trajectory}, {seed} and the variables stand for
-  // what they say, quoted.
+  // For sh, in an empty folder of its own. {sequence}, {calibration}, {trajectory}, {seed}, {here} (the
+  // folder of systems.yaml) and the variables stand for what they say, quoted.
   std::string command;
   std::vector<std::pair<std::string, std::string>> variables;
   SequenceLayout layout = SequenceLayout::tum;
   CalibrationFormat calibration = CalibrationFormat::none;
   std::string trajectory = "trajectory.txt";  // that it writes, in TUM format: T_WC; relative to its folder
   double timeout_s = 3600;
+  bool keyframes = false;                    // it writes these alone: judged at their stamps, and named so in tables
+  bool accepts_any_exit = false;             // a trajectory counts whatever the exit status is
+  int threads = 1;                           // that it keeps busy, of those of `--jobs`
+  std::vector<std::filesystem::path> files;  // whose bytes are part of it, beside those that the command names
+  std::string programs;                      // DigestOfPrograms
 };
 
 // The entries, in order. Throws settings::Error with every problem: a repeated name, an unknown placeholder.
@@ -37,6 +42,14 @@ std::vector<ExternalSystem> ReadExternalSystems(const std::filesystem::path& fil
 // What a placeholder stands for is put in its place, quoted for sh.
 std::string FillIn(const std::string& command, const std::vector<std::pair<std::string, std::string>>& values);
 
+// "name", or "name (key frames)": in tables.
+std::string Label(const ExternalSystem& system, const std::string& name);
+
+// Why sh could not start the command here; empty where it can, or where that cannot be known before.
+std::string StartProblem(const ExternalSystem& system);
+
+// Of the bytes of `files` and of each file that the command names.
+std::string DigestOfPrograms(const ExternalSystem& system);
 // All that an answer depends on, as one text.
 std::string Description(const ExternalSystem& system);
 

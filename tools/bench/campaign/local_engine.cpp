@@ -71,8 +71,11 @@ class LocalRun {
     }
     if (ready_.empty()) return false;
     const std::int64_t task = ready_.front();
+    const ExternalSystem& system = work_.campaign().systems[ChoiceOf(work_.campaign(), task).system].external;
+    const int threads = std::min(system.threads, share_.processes);
+    if (free < threads) return false;
     ready_.pop_front();
-    Start(task, 1, share_.limits, [&] { work_.Run(out_, task); });
+    Start(task, threads, share_.limits, [&] { work_.Run(out_, task); });
     return true;
   }
 

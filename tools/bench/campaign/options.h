@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace vobench {
 
@@ -20,6 +21,7 @@ struct CampaignOptions {
   double timeout_s = 0;                        // of a task; 0: none
   bool dry_run = false;                        // tasks are listed only
   bool update = false;                         // results of other settings may go
+  std::vector<std::string> redo;               // systems whose results go
   std::optional<std::int64_t> task;            // that one alone, again
   std::optional<std::filesystem::path> list;   // those in line `part` of this file
   int part = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -140,6 +141,36 @@ OutputState Inspect(const fs::path& out, const std::vector<std::string>& keys) {
   return state;
 }
 
+void Renumber(const fs::path& out, const std::vector<std::string>& keys) {
+  const fs::path moved = out / "tasks" / ".moved";
+  std::map<std::string, std::int64_t> wanted;
+  for (std::size_t k = 0; k < keys.size(); ++k) wanted[keys[k]] = static_cast<std::int64_t>(k);
+  for (const std::int64_t task : PresentTasks(out)) {
+    const std::optional<TaskRecord> record = ReadRecord(out, task);
+    const auto at = record ? wanted.find(record->key) : wanted.end();
+    if (at == wanted.end() || at->second == task || record->status == Status::failed) continue;
+    fs::create_directories(moved);
+    std::error_code taken;  // the same result, from a start that was cut short
+    fs::rename(TaskPath(out, task), moved / record->key, taken);
+  }
+  if (!fs::exists(moved)) return;
+  const std::vector<fs::directory_entry> entries(fs::directory_iterator(moved), {});
+  for (const fs::directory_entry& entry : entries) {
+    const auto at = wanted.find(entry.path().filename().string());
+    std::optional<std::string> text = base::ReadFile(entry.path() / "task.json");
+    if (at == wanted.end() || !text) continue;
+    const fs::path place = TaskPath(out, at->second);
+    if (const auto there = ReadRecord(out, at->second); there && there->key == at->first) continue;
+    TaskRecord record = RecordFromJson(*text);
+    record.task = at->second;
+    base::WriteFile(entry.path() / "task.json", ToJson(record));
+    fs::remove_all(place);  // stale, or failed
+    fs::create_directories(place.parent_path());
+    fs::rename(entry.path(), place);
+  }
+  fs::remove_all(moved);
+}
+
 void RemoveFailed(const fs::path& out, const std::vector<std::int64_t>& tasks) {
   for (const std::int64_t task : tasks) {
     const std::optional<TaskRecord> record = ReadRecord(out, task);
@@ -155,9 +186,14 @@ Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, c
   for (std::int64_t task = 0; task < Tasks(campaign); ++task) {
     std::optional<TaskRecord> record = ReadRecord(out, task);
     if (!record) throw std::runtime_error(fmt::format("{}: task {} is not there", out.string(), task));
-    if (record->status == Status::ok && IsLost(*record, campaign.lost)) record->status = Status::lost;
     // Names and levels may have changed since the task ran: its result is the same.
     const TaskChoice choice = ChoiceOf(campaign, task);
+    LostRule rule = campaign.lost;
+    if (campaign.systems[choice.system].external.keyframes) rule.pose_coverage = 0;
+    if (const std::string why = record->status == Status::ok ? WhyLost(*record, rule) : ""; !why.empty()) {
+      record->status = Status::lost;
+      record->reason = why + (record->reason.empty() ? "" : "; " + record->reason);
+    }
     record->scenario = campaign.scenarios[choice.scenario].name;
     record->levels = levels.at(choice.point);
     record->system = campaign.systems[choice.system].name;
@@ -168,7 +204,9 @@ Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, c
   merged.curves = MakeCurves(campaign, merged.records);
   base::WriteFile(out / "results.csv", ResultsCsv(campaign, merged.records), base::Writers::many);
   base::WriteFile(out / "times.csv", times, base::Writers::many);
-  base::WriteFile(out / "tables.md", Markdown(merged.tables) + CurvesMarkdown(merged.curves), base::Writers::many);
+  base::WriteFile(out / "tables.md",
+                  Markdown(merged.tables) + StatusMarkdown(campaign, merged.records) + CurvesMarkdown(merged.curves),
+                  base::Writers::many);
   base::WriteFile(out / "tables.tex", Latex(merged.tables), base::Writers::many);
   if (merged.curves.empty()) {
     fs::remove(out / "curves.csv");  // of a file that asked for some

@@ -59,6 +59,10 @@ struct OutputState {
   std::vector<std::int64_t> stale;    // of other settings, another program, or beyond the last task
 };
 
+// Results of these keys that lie at other tasks' numbers, as after a system was added, go to theirs. For who has the
+// folder alone. What is cut short is completed by the next call.
+void Renumber(const std::filesystem::path& out, const std::vector<std::string>& keys);
+
 // keys[k]: what task k's result must depend on.
 OutputState Inspect(const std::filesystem::path& out, const std::vector<std::string>& keys);
 

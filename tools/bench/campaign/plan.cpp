@@ -59,7 +59,10 @@ std::vector<std::string> LevelsOf(const Campaign& campaign, const std::vector<st
   std::vector<std::string> levels;
   for (const std::string& name : names) {
     if (name == "scenario") levels.push_back(campaign.scenarios[choice.scenario].name);
-    if (name == "system") levels.push_back(campaign.systems[choice.system].name);
+    if (name == "system") {
+      const SystemEntry& system = campaign.systems[choice.system];
+      levels.push_back(Label(system.external, system.name));
+    }
     for (std::size_t i = 0; i < campaign.factors.size(); ++i) {
       if (campaign.factors[i].name == name) levels.push_back(campaign.factors[i].levels[choice.levels[i]].name);
     }

@@ -142,7 +142,11 @@ double ValueOf(const TaskRecord& record, std::size_t metric) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (record.status == Status::failed) return kNone;
-  if (record.status != Status::ok) return LargerIsBetter(MetricNames().at(metric)) ? -kInfinity : kInfinity;
+  const std::string& name = MetricNames().at(metric);
+  if (name == "pose_coverage" || name == "tracked_coverage") {  // what says why a run is lost
+    return record.status == Status::ok || record.status == Status::lost ? record.metric(metric).value_or(kNone) : 0;
+  }
+  if (record.status != Status::ok) return LargerIsBetter(name) ? -kInfinity : kInfinity;
   return record.metric(metric).value_or(kNone);
 }
 
@@ -151,11 +155,14 @@ std::size_t MetricIndex(const std::string& metric) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), metric) - names.begin());
 }
 
-bool IsLost(const TaskRecord& record, const LostRule& rule) {
+std::string WhyLost(const TaskRecord& record, const LostRule& rule) {
   const auto value = [&](const char* name) { return record.metric(MetricIndex(name)); };
   const Value pose = value("pose_coverage"), tracked = value("tracked_coverage"), error = value("ate_m");
-  if ((pose && *pose < rule.pose_coverage) || (tracked && *tracked < rule.tracked_coverage)) return true;
-  return rule.error_m > 0 && !(error && *error <= rule.error_m);
+  if (pose && *pose < rule.pose_coverage) return fmt::format("a pose in {:.1f} % of the frames", 100 * *pose);
+  if (tracked && *tracked < rule.tracked_coverage)
+    return fmt::format("tracked in {:.1f} % of the frames", 100 * *tracked);
+  if (rule.error_m > 0 && !(error && *error <= rule.error_m)) return fmt::format("an ATE above {:g} m", rule.error_m);
+  return "";
 }
 
 std::string ToJson(const TaskRecord& record) {

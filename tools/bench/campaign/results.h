@@ -34,7 +34,7 @@ struct TaskRecord {
   LevelValues levels;
   std::uint64_t seed = 0;
   Status status = Status::failed;
-  std::string reason{};                          // of what is neither ok nor lost; ToJson makes it one line
+  std::string reason{};                          // of what is not ok, or a remark; ToJson makes it one line
   std::vector<std::optional<double>> metrics{};  // in the order of MetricNames; none at all where nothing was judged
 
   std::optional<double> metric(std::size_t index) const {
@@ -52,13 +52,13 @@ bool LargerIsBetter(const std::string& metric);
 std::string UnitOf(const std::string& metric);
 
 // A run's value of a metric, by its place among MetricNames: worse than any number (infinite) where it is lost or has
-// no answer, NaN where there is none, or the task failed.
+// no answer, NaN where there is none, or the task failed. Coverage is what it is, and 0 without an answer.
 double ValueOf(const TaskRecord& record, std::size_t metric);
 // The place; their number where there is no such metric.
 std::size_t MetricIndex(const std::string& metric);
 
-// Whether a task that was judged counts as lost.
-bool IsLost(const TaskRecord& record, const LostRule& rule);
+// Why a task that was judged counts as lost; empty where it does not.
+std::string WhyLost(const TaskRecord& record, const LostRule& rule);
 
 // task.json. Reading throws std::invalid_argument where the text is not one.
 std::string ToJson(const TaskRecord& record);

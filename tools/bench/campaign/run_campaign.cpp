@@ -54,12 +54,18 @@ std::vector<std::size_t> PointsOf(const Campaign& campaign, const std::vector<st
 
 void List(const CampaignWork& work) {
   const Campaign& campaign = work.campaign();
+  std::string problems;
+  for (const SystemEntry& system : campaign.systems) {
+    const std::string problem = system.system.empty() ? StartProblem(system.external) : "";
+    if (!problem.empty()) problems += (problems.empty() ? "" : "\n") + system.name + ": " + problem;
+  }
   fmt::print("{}: {} scenarios", campaign.name, campaign.scenarios.size());
   for (const Factor& factor : campaign.factors) fmt::print(" x {} {}", factor.levels.size(), factor.name);
   fmt::print(" x {} systems x {} seeds = {} tasks\n", campaign.systems.size(), campaign.seeds.size(), Tasks(campaign));
   for (std::int64_t task = 0; task < Tasks(campaign); ++task) {
     fmt::print("{:6}  {}\n", task, Describe(campaign, ChoiceOf(campaign, task)));
   }
+  if (!problems.empty()) throw BadInput(problems);
 }
 
 // All that a result consists of, but for the times.
@@ -152,6 +158,17 @@ void Conclude(const CampaignWork& work, const CampaignOptions& options) {
   }
 }
 
+void RemoveSystems(const Campaign& campaign, const CampaignOptions& options) {
+  for (const std::string& name : options.redo) {
+    if (std::ranges::find(campaign.systems, name, &SystemEntry::name) == campaign.systems.end())
+      throw BadInput(fmt::format("--redo: the campaign has no system '{}'", name));
+  }
+  for (std::int64_t task = 0; task < Tasks(campaign); ++task) {
+    if (std::ranges::count(options.redo, campaign.systems[ChoiceOf(campaign, task).system].name) > 0)
+      fs::remove_all(TaskPath(options.output, task));
+  }
+}
+
 void RunAll(CampaignWork& work, const CampaignOptions& options) {
   const bool slurm = options.engine == "slurm";
   const FileLock lock = LockOutput(options.output, slurm ? FileLock::Kind::shared : FileLock::Kind::exclusive);
@@ -164,6 +181,8 @@ void RunAll(CampaignWork& work, const CampaignOptions& options) {
   for (std::int64_t task = 0; task < tasks; ++task) {
     keys.push_back(work.KeyOf(ChoiceOf(work.campaign(), task)));
   }
+  if (!slurm) Renumber(options.output, keys);
+  RemoveSystems(work.campaign(), options);
   OutputState state = Inspect(options.output, keys);
   RefuseStale(options, state, tasks);
   base::WriteFile(options.output / "campaign.json", Record(work.campaign()), base::Writers::many);

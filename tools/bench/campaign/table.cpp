@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 
 #include "tools/base/text.h"
 #include "tools/bench/text.h"
@@ -158,6 +159,25 @@ std::string Latex(const std::vector<Table>& tables) {
     text += "\\hline\n\\end{tabular}\n";
   }
   return text;
+}
+
+std::string StatusMarkdown(const Campaign& campaign, const std::vector<TaskRecord>& records) {
+  std::map<std::tuple<std::size_t, Status>, std::pair<std::size_t, std::string>>
+      ends;  // by system: how many, first why
+  bool all_ok = true;
+  for (const TaskRecord& record : records) {
+    auto& [count, reason] = ends[{ChoiceOf(campaign, record.task).system, record.status}];
+    if (count++ == 0) reason = record.reason;
+    all_ok = all_ok && record.status == Status::ok;
+  }
+  if (all_ok) return "";
+  std::vector<TextRow> rows = {{"system", "runs", "ended", "the first: why"}};
+  for (const auto& [at, what] : ends) {
+    const SystemEntry& system = campaign.systems[std::get<0>(at)];
+    rows.push_back({Label(system.external, system.name), fmt::format("{}", what.first), Name(std::get<1>(at)),
+                    what.second.empty() ? "-" : what.second});
+  }
+  return "\n### How the runs ended\n\n" + MarkdownRows(rows, 1);
 }
 
 }  // namespace vobench::campaign

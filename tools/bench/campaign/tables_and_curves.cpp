@@ -42,7 +42,7 @@ Names LevelNames(const Campaign& campaign, const std::string& name) {
   if (name == "scenario") {
     for (const ScenarioEntry& scenario : campaign.scenarios) names.push_back(scenario.name);
   } else if (name == "system") {
-    for (const SystemEntry& system : campaign.systems) names.push_back(system.name);
+    for (const SystemEntry& system : campaign.systems) names.push_back(Label(system.external, system.name));
   }
   for (const Factor& factor : campaign.factors) {
     if (factor.name != name) continue;

@@ -10,6 +10,8 @@ namespace {
 using campaign::CalibrationFormat;
 using sim::CameraParams;
 
+constexpr int kMultiple = 16;  // of the sides of images that are halved four times
+
 bool IsFisheye(const CameraParams& c) { return c.lens == sim::Lens::fisheye; }
 
 bool Distorted(const CameraParams& c) {
@@ -71,11 +73,13 @@ std::string Orb(const CameraParams& c, double rate_hz, CalibrationFormat format)
 }
 
 // Four lines: the camera in shares of the size, the size, how to rectify, the size after it. Rectified images are
-// cropped; those without distortion stay as they are.
+// cropped, and those whose sides are no multiples of 16, which are halved four times; others stay as they are.
 std::string Lines(const CameraParams& c, const std::string& model, double offset, const std::string& lens) {
+  const int width = c.width / kMultiple * kMultiple, height = c.height / kMultiple * kMultiple;
+  const bool whole = width == c.width && height == c.height;
   return fmt::format("{}{} {} {} {}{}\n{} {}\n{}\n{} {}\n", model, c.fx / c.width, c.fy / c.height,
                      (c.cx + offset) / c.width, (c.cy + offset) / c.height, lens, c.width, c.height,
-                     Distorted(c) || IsFisheye(c) ? "crop" : "none", c.width, c.height);
+                     Distorted(c) || IsFisheye(c) || !whole ? "crop" : "none", width, height);
 }
 
 std::string Dso(const CameraParams& c) {
@@ -96,6 +100,8 @@ std::string LsdSlam(const CameraParams& c) {
 std::string Svo(const CameraParams& c) {
   Refuse(IsFisheye(c), CalibrationFormat::svo, "a fisheye lens");
   Refuse(c.k3 != 0, CalibrationFormat::svo, "k3");
+  Refuse(c.width % kMultiple != 0 || c.height % kMultiple != 0, CalibrationFormat::svo,
+         "sides that are no multiples of 16: render in another size");
   return fmt::format(
       "cam_model: Pinhole\ncam_width: {}\ncam_height: {}\ncam_fx: {}\ncam_fy: {}\ncam_cx: {}\ncam_cy: {}\n"
       "cam_d0: {}\ncam_d1: {}\ncam_d2: {}\ncam_d3: {}\n",

@@ -14,6 +14,7 @@
 #include "sim/scenario/scenario.h"
 #include "sim/simulator.h"
 #include "tools/base/files.h"
+#include "tools/base/text.h"
 #include "tools/bench/campaign/options.h"
 #include "tools/bench/campaign/task_runner.h"
 #include "tools/bench/errors.h"
@@ -87,35 +88,37 @@ TaskOutput PlayImages(const Experiment& experiment, const fs::path& sequence, co
   return output;
 }
 
-// Times differ from run to run: they are kept apart.
-evaluation::Timing TakeTimes(TaskOutput& output) {
-  evaluation::Timing timing;
+// Times differ from run to run: they are kept apart. None of a program that does not say them.
+std::optional<evaluation::Timing> TakeTimes(TaskOutput& output) {
   std::vector<double> features, matching, filter;
   for (evaluation::FrameRecord& frame : output.run.frames) {
     features.push_back(std::exchange(frame.ms_features, 0));
     matching.push_back(std::exchange(frame.ms_matching, 0));
     filter.push_back(std::exchange(frame.ms_filter, 0));
   }
-  if (output.run.frames.empty()) return timing;
-  return {evaluation::Median(features), evaluation::Median(matching), evaluation::Median(filter)};
+  if (output.run.frames.empty()) return std::nullopt;
+  return evaluation::Timing{evaluation::Median(features), evaluation::Median(matching), evaluation::Median(filter)};
 }
 
-void WriteTimes(const fs::path& folder, const Clock& clock, double tracking_s, const evaluation::Timing& frame) {
+void WriteTimes(const fs::path& folder, const Clock& clock, double tracking_s,
+                const std::optional<evaluation::Timing>& frame) {
   rusage used{}, children{};
   getrusage(RUSAGE_SELF, &used);
   getrusage(RUSAGE_CHILDREN, &children);
   const auto seconds = [](const timeval& t) {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
-  const nlohmann::ordered_json json = {
+  nlohmann::ordered_json json = {
       {"wall_s", clock.seconds()},
       {"cpu_s",
        seconds(used.ru_utime) + seconds(used.ru_stime) + seconds(children.ru_utime) + seconds(children.ru_stime)},
       {"tracking_s", tracking_s},
-      {"peak_memory_mb", 1.024e-3 * static_cast<double>(std::max(used.ru_maxrss, children.ru_maxrss))},
-      {"frame_features_ms", frame.ms_features},
-      {"frame_matching_ms", frame.ms_matching},
-      {"frame_filter_ms", frame.ms_filter}};
+      {"peak_memory_mb", 1.024e-3 * static_cast<double>(std::max(used.ru_maxrss, children.ru_maxrss))}};
+  if (frame) {
+    json["frame_features_ms"] = frame->ms_features;
+    json["frame_matching_ms"] = frame->ms_matching;
+    json["frame_filter_ms"] = frame->ms_filter;
+  }
   base::WriteFile(folder / "times.json", json.dump(1) + "\n");
 }
 
@@ -173,6 +176,30 @@ void RefusePoints(const Campaign& campaign, const TaskChoice& choice, const camp
   if (system.system.empty()) refuse("", "a world of points has no pictures for '" + system.name + "'");
 }
 
+// A stamp in another unit, or from another clock, may fit one frame by chance; and what comes last.
+void CheckStamps(const TaskOutput& output, TaskRecord& record) {
+  if (record.status != campaign::Status::ok || output.run.trajectory.empty()) return;
+  constexpr std::int64_t kSame_ns = 20'000'000;
+  const std::vector<std::int64_t>& frames = *output.how.frame_stamps_ns;
+  std::size_t known = 0, last = 0;
+  for (const evaluation::StampedPose& pose : output.run.trajectory) {
+    const auto after = std::ranges::lower_bound(frames, pose.stamp_ns - kSame_ns);
+    if (after == frames.end() || *after > pose.stamp_ns + kSame_ns) continue;
+    ++known;
+    last = static_cast<std::size_t>(after - frames.begin());
+  }
+  const std::size_t all = output.run.trajectory.size();
+  if (2 * known < all) {
+    record.status = campaign::Status::no_answer;
+    record.reason =
+        fmt::format("of its {} time stamps {} are those of frames; the first is {} s, that of frame 0 {} s", all, known,
+                    base::FormatSeconds(output.run.trajectory.front().stamp_ns), base::FormatSeconds(frames.front()));
+  } else if (last + 2 < frames.size()) {
+    record.reason +=
+        fmt::format("{}no pose after frame {} of {}", record.reason.empty() ? "" : "; ", last, frames.size());
+  }
+}
+
 class CampaignTasks : public campaign::TaskRunner {
  public:
   std::vector<std::string> Systems() const override { return SystemNames(); }
@@ -218,16 +245,18 @@ class CampaignTasks : public campaign::TaskRunner {
     TaskOutput output;
     if (system.system.empty()) {
       const Clock tracking;
-      output.run.trajectory = RunExternal(system.external, cache, sequence, experiment.scenario, folder, record);
+      output.run.trajectory = RunExternal(system.external, cache, sequence, experiment.scenario, folder,
+                                          campaign.keep == campaign::Keep::all, record);
       output.seconds = tracking.seconds();
       output.truth = TruthOfAllFrames(experiment.scenario);
       output.how.frame_stamps_ns = evaluation::StampsOf(output.truth.poses);
+      CheckStamps(output, record);
     } else {
       output = experiment.scenario.points ? PlayPoints(experiment, system.system, record.seed)
                                           : PlayImages(experiment, cache.PathOf(sequence), system.system, record.seed);
       output.how = JudgeOptionsOf(experiment.prior);
     }
-    const evaluation::Timing frame = TakeTimes(output);
+    const std::optional<evaluation::Timing> frame = TakeTimes(output);
     if (record.status == campaign::Status::ok) {
       try {
         WriteJudged(folder, campaign, output, record);

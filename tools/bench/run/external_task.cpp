@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 #include <string.h>
 
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
 #include "sim/sequence/layout.h"
 #include "sim/simulator.h"
 #include "tools/base/files.h"
@@ -66,11 +70,48 @@ fs::path InLayout(const campaign::SequenceCache& cache, const std::string& key, 
   return folder;
 }
 
+std::string LastLine(const fs::path& file, const std::string& before) {
+  std::istringstream lines(base::ReadFile(file).value_or(""));
+  std::string last;
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty()) last = line;
+  return last.empty() ? "" : before + last;
+}
+
+// The first lines of a text, and how many more there are.
+std::string ShortenedTo(std::size_t count, const std::string& text) {
+  std::istringstream lines(text);
+  std::string kept;
+  std::size_t all = 0;
+  for (std::string line; std::getline(lines, line);)
+    if (all++ < count) kept += (all > 1 ? "\n" : "") + line;
+  return all > count ? kept + fmt::format("\nand {} more", all - count) : kept;
+}
+
+// Lines of a trajectory with a number that is not finite go; how many.
+std::size_t RemoveNotFinite(const fs::path& file) {
+  const std::optional<std::string> text = base::ReadFile(file);
+  if (!text) return 0;
+  std::istringstream lines(*text);
+  std::string kept;
+  std::size_t removed = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::vector<base::Word> words = base::SplitWords(line);
+    const bool bad = !line.starts_with('#') && std::ranges::any_of(words, [](const base::Word& word) {
+      const auto number = base::ParseNumber(word.text);
+      return number && !std::isfinite(*number);
+    });
+    bad ? static_cast<void>(++removed) : static_cast<void>(kept += line + "\n");
+  }
+  if (removed > 0) base::WriteFile(file, kept);
+  return removed;
+}
+
 }  // namespace
 
 evaluation::Trajectory RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
                                    const std::string& key, const sim::Scenario& scenario, const fs::path& folder,
-                                   campaign::TaskRecord& record) {
+                                   bool keep_work, campaign::TaskRecord& record) {
   const fs::path sequence = fs::absolute(InLayout(cache, key, scenario, system.layout));
   const fs::path at_work = fs::absolute(folder) / "work", trajectory = at_work / system.trajectory;
   fs::create_directories(at_work);
@@ -89,23 +130,28 @@ evaluation::Trajectory RunExternal(const campaign::ExternalSystem& system, const
   evaluation::Trajectory estimate;
   if (end.timed_out) {
     lost(campaign::Status::timed_out, fmt::format("took longer than {:g} s", system.timeout_s));
-  } else if (end.signal != 0) {
-    lost(campaign::Status::crashed, fmt::format("ended by signal {} ({})", end.signal, strsignal(end.signal)));
-  } else if (end.status != 0) {
-    lost(campaign::Status::crashed, fmt::format("ended with status {}", end.status));
+  } else if (end.status == 126 || end.status == 127) {  // as sh says that it cannot start a program
+    throw BadInput(fmt::format("{}: cannot be started (status {}){}", system.name, end.status,
+                               LastLine(folder / "log.txt", ": ")));
+  } else if ((end.signal != 0 || end.status != 0) && !(system.accepts_any_exit && fs::exists(trajectory))) {
+    lost(campaign::Status::crashed, end.signal != 0
+                                        ? fmt::format("ended by signal {} ({})", end.signal, strsignal(end.signal))
+                                        : fmt::format("ended with status {}", end.status));
   } else {
     try {
+      const std::size_t left_out = RemoveNotFinite(trajectory);
       estimate = evaluation::ReadTrajectory(trajectory);
+      if (left_out > 0) record.reason = fmt::format("{} lines without a finite pose were left out", left_out);
     } catch (const evaluation::InputError& error) {
       // Where the task lies does not belong into a table that is the same everywhere.
       std::string reason = error.what();
       for (std::size_t at = 0; (at = reason.find(trajectory.string(), at)) != std::string::npos;) {
         reason.replace(at, trajectory.string().size(), system.trajectory);
       }
-      lost(campaign::Status::no_answer, reason);
+      lost(campaign::Status::no_answer, ShortenedTo(3, reason));
     }
   }
-  fs::remove_all(at_work);
+  if (!keep_work && record.status != campaign::Status::crashed) fs::remove_all(at_work);
   return estimate;
 }
 

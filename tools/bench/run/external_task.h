@@ -13,10 +13,11 @@
 namespace vobench {
 
 // The trajectory, with record.seed; where there is none, status (crashed, timed_out, no_answer) and reason of `record`
-// say why. Leaves in `folder` what the program printed (log.txt) and its calibration. Throws std::runtime_error and
-// BadInput where it could not be started as its entry says.
+// say why. Leaves in `folder` what the program printed (log.txt), its calibration and, after a crash or with keep_work,
+// the folder `work` that it ran in. Throws std::runtime_error and BadInput where it could not be started as its entry
+// says.
 evaluation::Trajectory RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
                                    const std::string& sequence, const sim::Scenario& scenario,
-                                   const std::filesystem::path& folder, campaign::TaskRecord& record);
+                                   const std::filesystem::path& folder, bool keep_work, campaign::TaskRecord& record);
 
 }  // namespace vobench

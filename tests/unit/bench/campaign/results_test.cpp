@@ -169,18 +169,18 @@ TEST(Results, CsvIsTidyAndQuoted) {
 
 TEST(Results, LostIsByTheRule) {
   TaskRecord record = Sample(0, Status::ok, 0.2);
-  EXPECT_FALSE(IsLost(record, {}));
-  EXPECT_TRUE(IsLost(record, {0.5, 0.5, 0.1}));
-  EXPECT_FALSE(IsLost(record, {0.5, 0.5, 0.2})) << "not larger";
+  EXPECT_EQ(WhyLost(record, {}), "");
+  EXPECT_NE(WhyLost(record, {0.5, 0.5, 0.1}), "");
+  EXPECT_EQ(WhyLost(record, {0.5, 0.5, 0.2}), "") << "not larger";
   const auto set = [&](const std::string& name, double value) {
     record.metrics[static_cast<std::size_t>(std::find(MetricNames().begin(), MetricNames().end(), name) -
                                             MetricNames().begin())] = value;
   };
   set("tracked_coverage", 0.49);
-  EXPECT_TRUE(IsLost(record, {}));
-  EXPECT_FALSE(IsLost(record, {0.5, 0.4, 0}));
+  EXPECT_NE(WhyLost(record, {}), "");
+  EXPECT_EQ(WhyLost(record, {0.5, 0.4, 0}), "");
   set("pose_coverage", 0.3);
-  EXPECT_TRUE(IsLost(record, {0.5, 0.4, 0}));
+  EXPECT_NE(WhyLost(record, {0.5, 0.4, 0}), "");
 }
 
 TEST(Table, QuartilesCountLostRunsAsWorseThanAnyNumber) {
