@@ -1,0 +1,38 @@
+// Where a path lies in a world: free places, surfaces that it passes through, places that it returns to.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/motion/surroundings.h"
+#include "sim/motion/trajectory.h"
+
+namespace sim {
+
+std::string FormatPlace(const glm::dvec3& p);  // "(1.2, 0.8, -3) m"
+
+// Of 2000 random places the one with no surface within `room`, 0.5 to 2.5 m above what is below, that is most enclosed
+// and has most to see; it looks there. Throws std::invalid_argument when there is none.
+Pose FreePlace(const Surroundings& around, double room, std::uint64_t seed);
+
+// The pose of the path's start for which the path, moved rigidly, keeps `clearance`: of 20 000 random places and
+// headings the one, among the first 24 that are free, from which most is seen. That axis of the path's own frame that is
+// nearest to the camera's mean upward direction becomes +y. Throws std::invalid_argument when none is free.
+Pose FreePlaceOf(const Trajectory& path, double end_s, double clearance, const Surroundings& around,
+                 std::uint64_t seed);
+
+// Throws std::invalid_argument that names time, place and mesh of the first surface that the path over [0, end_s]
+// passes through: straight ways between instants 1/240 s apart are asked about, further apart in paths of more than an
+// hour.
+void RequireFree(const Trajectory& path, double end_s, const Surroundings& around);
+
+// From t_s on the camera is within 0.5 m and 30 degrees of where it was at earlier_s, having been more than 1 m or 60
+// degrees away in between; asked every 0.5 s.
+struct Revisit {
+  double t_s = 0, earlier_s = 0;
+};
+std::vector<Revisit> Revisits(const Trajectory& path, double end_s);
+
+}  // namespace sim

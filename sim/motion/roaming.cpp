@@ -1,0 +1,265 @@
+#include "sim/motion/roaming.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <stdexcept>
+
+#include "sim/motion/gait.h"
+#include "sim/motion/path.h"
+#include "sim/motion/placement.h"
+#include "sim/motion/so3.h"
+#include "sim/motion/spline.h"
+#include "sim/random/random.h"
+#include "tools/base/settings/quantity.h"
+
+namespace sim {
+namespace {
+
+constexpr double kStep = kGaitStep_s, kDegree = std::numbers::pi / 180;
+constexpr double kMeanOverRms = 0.92;  // of the length of a normal vector with three equal components
+
+std::size_t KeysUntil(double end_s) { return static_cast<std::size_t>(std::ceil(end_s / kStep)) + 3; }
+
+// Rates of the course: white noise through y1' = w (n - y1), y2' = w (y1 - y2); y2 has variance 1.
+struct LowPass {
+  glm::dvec3 drive{0.0}, rate{0.0};
+  void Step(double corner_hz, const glm::dvec3& normal) {
+    const double w = 2 * std::numbers::pi * corner_hz * kStep;
+    drive += -w * drive + 2 * std::sqrt(w) * normal;  // variance 2, of which the second stage leaves half
+    rate += w * (drive - rate);
+  }
+};
+
+// What steers: a wanted rate, through two stages of 60 ms so that the acceleration stays bounded.
+struct Steering {
+  glm::dvec3 first{0.0}, rate{0.0};
+  void Step(const glm::dvec3& wanted) {
+    constexpr double kGain = kStep / 0.06;
+    first += kGain * (wanted - first);
+    rate += kGain * (first - rate);
+  }
+};
+
+double YawOf(const glm::dvec3& way) { return std::atan2(-way.x, -way.z); }
+double PitchOf(const glm::dvec3& way) { return std::atan2(way.y, std::hypot(way.x, way.z)); }
+double Wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
+// What lies beyond +-width.
+double Beyond(double x, double width) { return x - std::clamp(x, -width, width); }
+
+glm::dquat Turned(const glm::dquat& start, const glm::dvec3& pitch_yaw_roll) {
+  return glm::normalize(Exp({0, pitch_yaw_roll.y, 0}) * start * Exp({pitch_yaw_roll.x, 0, 0}) *
+                        Exp({0, 0, pitch_yaw_roll.z}));
+}
+
+class Roamer {
+ public:
+  Roamer(const RoamingMotion& motion, const Gait& gait, const Pose& start, const Surroundings* around,
+         std::uint64_t seed)
+      : m_(motion), gait_(gait), start_(start), around_(around), seed_(seed) {
+    const auto rest = [](double mean, double offsets) {  // what the course has to add to the offsets
+      const double all = mean / kMeanOverRms;
+      return std::sqrt(std::max(all * all - offsets * offsets, 0.04 * all * all));
+    };
+    speed_ = rest(gait.speed(), gait.offset_speed());
+    turn_rate_ = rest(gait.turn_rate(), gait.offset_turn_rate());
+    margin_ = std::max(0.15, 0.8 * gait.speed());
+    const glm::dvec3 way = start.q_WC * glm::dvec3(0, 0, 1);
+    yaw_0_ = YawOf(way), pitch_0_ = PitchOf(way);
+    target_ = {pitch_0_, yaw_0_};
+  }
+
+  // Keys, and how far the nearest surface comes to the clearance (below 0: too near) and when.
+  struct Path {
+    std::vector<KeyPose> keys;
+    double spare = 1e9, spare_s = 0;
+    glm::dvec3 place{0.0};
+  };
+
+  Path Draw(std::size_t count) {
+    const std::vector<Offset> offsets = gait_.Draw(seed_, count);
+    const auto early = static_cast<std::size_t>(2 / (gait_.table().course_hz * kStep));
+    for (std::size_t k = 0; k < early; ++k) StepCourse(k);
+    Path path;
+    glm::dvec3 course(0.0), angles(0.0), last = start_.p_WC;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double t_s = kStep * static_cast<double>(k);
+      const glm::dvec3 p = start_.p_WC + course + offsets[k].move - offsets[0].move;
+      const glm::dvec3 turn = angles + offsets[k].turn - offsets[0].turn;
+      path.keys.push_back({t_s, {p, Turned(start_.q_WC, turn)}});
+      Avoid(p, glm::distance(p, last), t_s, path);
+      Gaze(path.keys.back().pose, turn, t_s);
+      last = p;
+      StepCourse(early + k);
+      course += kStep * (Velocity() + away_.rate);
+      angles += kStep * (turn_rate_ / std::sqrt(1 + 0.3) * glm::dvec3(std::sqrt(0.3) * turns_.rate.x, turns_.rate.y, 0) +
+                         gaze_.rate);
+    }
+    return path;
+  }
+
+ private:
+  void StepCourse(std::size_t k) {
+    const auto [a, b] = NormalVectors(seed_, Stream::gait_course, static_cast<std::uint32_t>(k), 0);
+    moves_.Step(gait_.table().course_hz, a);
+    turns_.Step(gait_.table().course_hz, b);
+  }
+
+  glm::dvec3 Velocity() const {
+    constexpr double kLevel = 0.35;  // of the vertical
+    const glm::dvec3 u = moves_.rate * glm::dvec3(1, kLevel, 1) / std::sqrt(2 + kLevel * kLevel);
+    const double e = gait_.table().evenness;
+    return speed_ * std::sqrt((1 + e) / (e + glm::dot(u, u))) * u;
+  }
+
+  void Avoid(const glm::dvec3& p, double step, double t_s, Path& path) {
+    const double high = Beyond(p.y - start_.p_WC.y, gait_.table().climb);
+    glm::dvec3 wanted(0, -high, 0);
+    if (around_ == nullptr) return away_.Step(wanted);
+    const auto nearest = around_->Nearest(p, m_.clearance + step + margin_);
+    if (nearest) {
+      const double distance = glm::distance(p, *nearest), spare = distance - m_.clearance - step;
+      if (spare < path.spare) path.spare = spare, path.spare_s = t_s, path.place = p;
+      const glm::dvec3 out = (p - *nearest) / std::max(distance, 1e-9);
+      const double close = std::clamp(1 - spare / margin_, 0.0, 1.5);
+      wanted += 2.5 * std::max(gait_.speed(), 0.1) * close * close * out;
+      for (glm::dvec3* u : {&moves_.drive, &moves_.rate}) {
+        *u -= std::min(1.0, 4 * kStep * close) * std::min(0.0, glm::dot(*u, out)) * out;
+      }
+    }
+    away_.Step(wanted);
+  }
+
+  // turn: pitch, yaw, roll against the start.
+  void Gaze(const Pose& pose, const glm::dvec3& turn, double t_s) {
+    if (m_.look_at) {
+      const glm::dvec3 way = *m_.look_at - pose.p_WC;
+      target_ = {PitchOf(way), YawOf(way)};
+    } else if (around_ == nullptr) {
+      target_.y = yaw_0_ + turn.y;
+    } else if (t_s >= next_look_s_) {
+      Choose(pose, yaw_0_ + turn.y);
+      next_look_s_ += 2;
+    }
+    const double wide = std::clamp(1.2 * gait_.turn_rate(), 0.2, 0.9);  // [rad]
+    const double pitch = Beyond(pitch_0_ + turn.x - target_.x, 0.5 * wide),
+                 yaw = Beyond(Wrapped(yaw_0_ + turn.y - target_.y), wide);
+    const double most = 1.5 * gait_.turn_rate();
+    gaze_.Step({std::clamp(-pitch, -most, most), std::clamp(-yaw, -most, most), 0});
+  }
+
+  void Choose(const Pose& pose, double yaw) {
+    const auto time = static_cast<std::uint32_t>(std::lround(next_look_s_));
+    double best = -1;
+    for (std::uint32_t i = 0; i < 27; ++i) {
+      const double to = yaw + 22.5 * kDegree * (static_cast<int>(i % 9) - 4),
+                   up = kDegree * (17.0 * static_cast<int>(i / 9) - 29);  // -29, -12, 5
+      const glm::dquat look = Turned(start_.q_WC, {up - pitch_0_, to - yaw_0_, 0});
+      const double luck = Uniform(RandomWords(seed_, Stream::gait_gaze, time, i, 0)[0]);
+      const double score = around_->Interest({pose.p_WC, look}) * (0.5 + luck);
+      if (score > best) best = score, target_ = {up, to};
+    }
+  }
+
+  const RoamingMotion& m_;
+  const Gait& gait_;
+  const Pose start_;
+  const Surroundings* around_;
+  const std::uint64_t seed_;
+  double speed_, turn_rate_, margin_, yaw_0_, pitch_0_, next_look_s_ = 0;
+  glm::dvec2 target_{0.0};  // pitch and yaw in W
+  LowPass moves_, turns_;
+  Steering away_, gaze_;
+};
+
+std::uint64_t Attempt(std::uint64_t seed, std::uint32_t attempt) {
+  const Words words = RandomWords(seed, Stream::gait_attempt, attempt, 0, 0);
+  return (std::uint64_t{words[0]} << 32) | words[1];
+}
+
+}  // namespace
+
+std::unique_ptr<Trajectory> MakeRoaming(const RoamingMotion& m, std::uint64_t scenario_seed, double end_s,
+                                        const Surroundings* around) {
+  constexpr std::uint32_t kAttempts = 32;
+  const std::uint64_t seed = m.gait.seed.value_or(scenario_seed);
+  const Gait gait(m.gait, 0);
+  const double room = m.clearance + std::max(0.15, 0.8 * gait.speed());
+  const Pose start = m.start ? *m.start : around != nullptr ? FreePlace(*around, room, seed) : Pose{};
+  Roamer::Path best;
+  best.spare = -1e9;
+  for (std::uint32_t attempt = 0; attempt < kAttempts && best.spare < 0; ++attempt) {
+    Roamer::Path path = Roamer(m, gait, start, around, Attempt(seed, attempt)).Draw(KeysUntil(end_s));
+    if (path.spare > best.spare) best = std::move(path);
+  }
+  if (best.spare >= 0) return std::make_unique<SplineTrajectory>(best.keys);
+  using settings::FormatNumber;
+  throw std::invalid_argument("trajectory: none of " + std::to_string(kAttempts) + " paths keeps the clearance of " +
+                              FormatNumber(m.clearance) + " m; the best is at " + FormatPlace(best.place) + " after " +
+                              FormatNumber(best.spare_s) + " s, " + FormatNumber(-best.spare) +
+                              " m too near to a surface: state a smaller clearance or speed, or another start");
+}
+
+std::unique_ptr<Trajectory> Shaken(const Trajectory& path, GaitParams shake, std::uint64_t seed, double end_s) {
+  constexpr double kFrom_hz = 0.69;
+  constexpr int kSamples = 4096;
+  if (!shake.speed) shake.speed = MeanSpeed(path, end_s);
+  if (!shake.turn_rate) {
+    shake.turn_rate = 0;
+    for (int i = 0; i < kSamples; ++i) {
+      *shake.turn_rate += glm::length(path.At(end_s * (i + 0.5) / kSamples).w_WC_C) / kSamples;
+    }
+  }
+  const std::vector<Offset> offsets = Gait(shake, kFrom_hz).Draw(shake.seed.value_or(seed), KeysUntil(end_s));
+  std::vector<KeyPose> keys;
+  for (std::size_t k = 0; k < offsets.size(); ++k) {
+    const double t_s = kStep * static_cast<double>(k);
+    const Pose pose = path.At(t_s).pose;
+    const glm::dvec3& turn = offsets[k].turn;
+    keys.push_back({t_s,
+                    {pose.p_WC + offsets[k].move, glm::normalize(pose.q_WC * Exp({0, turn.y, 0}) * Exp({turn.x, 0, 0}) *
+                                                                 Exp({0, 0, turn.z}))}});
+  }
+  return std::make_unique<SplineTrajectory>(keys);
+}
+
+std::unique_ptr<Trajectory> MakeVehicle(const VehicleMotion& m, std::uint64_t seed, double end_s,
+                                        const Surroundings* around) {
+  constexpr double kSpeed_hz = 0.1, kCurve_hz = 0.15;
+  const std::uint64_t key = m.seed.value_or(seed);
+  const double yaw_0 = YawOf(m.start.q_WC * glm::dvec3(0, 0, 1));
+  const auto ahead = [](double yaw) { return glm::dvec3(-std::sin(yaw), 0, -std::cos(yaw)); };
+  LowPass speeds, curves;
+  Steering steering;
+  glm::dvec3 p = m.start.p_WC;
+  double yaw = yaw_0;
+  std::vector<KeyPose> keys;
+  for (std::size_t k = 0; k < KeysUntil(end_s); ++k) {
+    keys.push_back({kStep * static_cast<double>(k), {p, Turned(m.start.q_WC, {0, yaw - yaw_0, 0})}});
+    const auto [a, b] = NormalVectors(key, Stream::gait_course, static_cast<std::uint32_t>(k), 1);
+    speeds.Step(kSpeed_hz, a);
+    curves.Step(kCurve_hz, b);
+    double speed = m.speed * std::clamp(1 + 0.25 * speeds.rate.x, 0.0, 2.0);
+    double curvature = std::clamp(0.3 * curves.rate.x, -1.0, 1.0) / m.turning_radius;
+    if (around != nullptr) {
+      // The way that is free to the left, ahead and to the right, up to where it would be stopped within 2 s.
+      const double far = m.clearance + 2 * m.speed + m.turning_radius;
+      double free[3];
+      for (int i = 0; i < 3; ++i) {
+        const auto hit = around->Between(p, p + far * ahead(yaw + (1 - i) * 30 * kDegree));
+        free[i] = hit ? glm::distance(p, hit->point) : far;
+      }
+      const double closeness = std::clamp(1.5 - 1.5 * *std::min_element(free, free + 3) / far, 0.0, 1.0);
+      curvature += closeness * ((free[0] > free[2] ? 1.0 : -1.0) / m.turning_radius - curvature);
+      speed = std::min(speed, std::max(0.0, (free[1] - m.clearance) / 1.0));
+    }
+    steering.Step({speed, curvature, 0});
+    yaw += kStep * steering.rate.x * std::clamp(steering.rate.y, -1 / m.turning_radius, 1 / m.turning_radius);
+    p += kStep * steering.rate.x * ahead(yaw);
+  }
+  return std::make_unique<SplineTrajectory>(keys);
+}
+
+}  // namespace sim

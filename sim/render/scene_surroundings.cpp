@@ -1,0 +1,149 @@
+#include "sim/render/scene_surroundings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <limits>
+
+#include "sim/render/ray_scene.h"
+
+namespace sim {
+namespace {
+
+// Of a triangle. Source: Ericson 2005, "Real-time collision detection", section 5.1.5.
+glm::dvec3 ClosestPoint(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 ab = b - a, ac = c - a;
+  const double d1 = glm::dot(ab, p - a), d2 = glm::dot(ac, p - a);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const double d3 = glm::dot(ab, p - b), d4 = glm::dot(ac, p - b);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  const double d5 = glm::dot(ab, p - c), d6 = glm::dot(ac, p - c);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 >= d3 && d5 >= d6) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+  return a + (vb * ab + vc * ac) / (va + vb + vc);
+}
+
+struct Query {
+  const RayScene& rays;
+  glm::dvec3 p, nearest{0.0};
+  double distance;
+  bool found = false;
+};
+
+// Called by Embree for each triangle that may be nearer.
+bool Consider(RTCPointQueryFunctionArguments* arguments) {
+  auto& query = *static_cast<Query*>(arguments->userPtr);
+  const std::uint32_t t = query.rays.Triangle(RTC_INVALID_GEOMETRY_ID, arguments->geomID, arguments->primID);
+  const glm::dvec3 point =
+      ClosestPoint(query.p, glm::dvec3(query.rays.Corner(t, 0)), glm::dvec3(query.rays.Corner(t, 1)),
+                   glm::dvec3(query.rays.Corner(t, 2)));
+  const double distance = glm::distance(query.p, point);
+  if (!(distance < query.distance)) return false;
+  query.distance = distance;
+  query.nearest = point;
+  query.found = true;
+  arguments->query->radius = std::nextafter(static_cast<float>(distance), std::numeric_limits<float>::infinity());
+  return true;
+}
+
+RTCRayHit RayFrom(const glm::dvec3& origin, const glm::dvec3& direction, double near, double far) {
+  RTCRayHit ray{};
+  const glm::vec3 o(origin), d(direction);
+  ray.ray.org_x = o.x, ray.ray.org_y = o.y, ray.ray.org_z = o.z;
+  ray.ray.dir_x = d.x, ray.ray.dir_y = d.y, ray.ray.dir_z = d.z;
+  ray.ray.tnear = static_cast<float>(near);
+  ray.ray.tfar = static_cast<float>(far);
+  ray.ray.mask = 0xffffffffu;
+  ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return ray;
+}
+
+}  // namespace
+
+SceneSurroundings::SceneSurroundings(const Scene& scene, const SurfaceTracer& surfaces)
+    : scene_(scene), rays_(surfaces.rays()) {
+  RTCBounds box;
+  rtcGetSceneBounds(rays_.embree(), &box);
+  if (!(box.lower_x <= box.upper_x)) return;  // without triangles
+  low_ = {box.lower_x, box.lower_y, box.lower_z};
+  high_ = {box.upper_x, box.upper_y, box.upper_z};
+}
+
+std::optional<glm::dvec3> SceneSurroundings::Nearest(const glm::dvec3& p, double radius) const {
+  Query query{.rays = rays_, .p = p, .distance = radius};
+  RTCPointQuery sphere{};
+  sphere.x = static_cast<float>(p.x), sphere.y = static_cast<float>(p.y), sphere.z = static_cast<float>(p.z);
+  // Embree's own sphere is about the rounded point.
+  sphere.radius = static_cast<float>(radius + 1e-6 * (radius + glm::length(p)));
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(rays_.embree(), &sphere, &context, Consider, &query);
+  if (!query.found) return std::nullopt;
+  return query.nearest;
+}
+
+std::optional<Surroundings::Hit> SceneSurroundings::Between(const glm::dvec3& a, const glm::dvec3& b) const {
+  constexpr std::uint32_t kSolid = 0;  // the geometry of what is there everywhere
+  constexpr double kPast = 1e-5;
+  for (double from = 0; from <= 1;) {
+    RTCRayHit ray = RayFrom(a, b - a, from, 1);
+    Intersect1(rays_.embree(), &ray);
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    const double at = ray.ray.tfar;
+    if (ray.hit.geomID == kSolid) {
+      const std::uint32_t triangle = rays_.Triangle(RTC_INVALID_GEOMETRY_ID, kSolid, ray.hit.primID);
+      return Hit{a + at * (b - a), scene_.meshes[rays_.MeshOf(triangle)].name};
+    }
+    from = at + kPast;
+  }
+  return std::nullopt;
+}
+
+double SceneSurroundings::Luminance(std::uint32_t triangle, float u, float v) const {
+  const auto index = static_cast<std::size_t>(rays_.MaterialIndex(triangle));
+  if (index >= scene_.materials.size()) return 1;  // a lamp
+  const Material& material = scene_.materials[index];
+  glm::vec3 color = material.base_color * rays_.VertexColor(triangle, u, v);
+  if (material.texture >= 0) {
+    const Texture& texture = scene_.textures[static_cast<std::size_t>(material.texture)];
+    const glm::vec2 uv = glm::fract(rays_.TextureCoordinates(triangle, u, v));
+    const auto texel = [](float x, int size) { return std::min(static_cast<int>(x * static_cast<float>(size)), size - 1); };
+    color *= texture.Texel(0, texel(uv.x, texture.width()), texel(uv.y, texture.height()));
+  }
+  return glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f));
+}
+
+double SceneSurroundings::Interest(const Pose& view) const {
+  constexpr int kSide = 5;
+  constexpr double kWide = 0.577, kHigh = 0.404;  // tan 30, tan 22 degrees
+  constexpr float kDark = 0.02f;                  // differences of what is darker do not count
+  double seen[kSide][kSide];                      // logarithm; NaN: nothing
+  for (int j = 0; j < kSide; ++j) {
+    for (int i = 0; i < kSide; ++i) {
+      const glm::dvec3 way = view.q_WC * glm::dvec3(kWide * (i - 2) / 2, kHigh * (j - 2) / 2, 1);
+      RTCRayHit ray = RayFrom(view.p_WC, way, 0, std::numeric_limits<double>::infinity());
+      Intersect1(rays_.embree(), &ray);
+      seen[j][i] = std::numeric_limits<double>::quiet_NaN();
+      if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
+      const std::uint32_t triangle = rays_.Triangle(RTC_INVALID_GEOMETRY_ID, ray.hit.geomID, ray.hit.primID);
+      seen[j][i] = std::log(kDark + Luminance(triangle, ray.hit.u, ray.hit.v));
+    }
+  }
+  double sum = 0;
+  const auto add = [&](double a, double b) {
+    if (std::isfinite(a) && std::isfinite(b)) sum += std::abs(a - b);
+  };
+  for (int j = 0; j < kSide; ++j) {
+    for (int i = 0; i + 1 < kSide; ++i) add(seen[j][i], seen[j][i + 1]), add(seen[i][j], seen[i + 1][j]);
+  }
+  return sum / (2 * kSide * (kSide - 1));
+}
+
+}  // namespace sim
