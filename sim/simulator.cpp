@@ -129,7 +129,7 @@ struct Simulator::Parts {
     {
       const SceneSurroundings around(scene, *exact->surfaces());
       trajectory = MakeMotion(s, s.motion, s.seed, &around);
-      RequireFree(*trajectory, LastStamp(s), around);
+      RequireFree(*trajectory, LastStamp(s), around, [&s](double t_s) { return s.sensor.IsCovered(t_s); });
     }
     renderer = MakeRenderer(scene, s.render, Threads(jobs), warnings);
     if (renderer->surfaces() != nullptr) exact.reset();

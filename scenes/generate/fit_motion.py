@@ -9,8 +9,9 @@ from scipy.optimize import least_squares
 
 from motion_spectra import RECORDINGS, acceleration, centres, in_bands, rates, read, recordings, steps
 
-STEP, DAMPING, CORNER = 0.01, 0.3, {"handheld": 0.1, "drone": 0.1}  # [s], [1], of the course [Hz]: sim/motion/gait.h
-BURST, EVENNESS, CLIMB = 1.0, {"handheld": 0.5, "drone": 2.0}, {"handheld": 0.2, "drone": 0.8}  # [s], [1], [m]: set by hand
+STEP, DAMPING, CORNER = 0.01, 0.3, {"handheld": 0.07, "drone": 0.07}  # [s], [1], of the course [Hz]: sim/motion/gait.h
+# Set by hand so that percentiles of speed and turn rate agree (check_motion.py): [s], [1], [Hz], [1], [m].
+BURST, EFFORT, EFFORT_HZ, EVENNESS, CLIMB = 1.0, {"handheld": 0.2, "drone": 0.35}, 0.03, {"handheld": 0.15, "drone": 3.0}, {"handheld": 0.2, "drone": 0.8}
 COMPONENTS = 0.175 * 2 ** (np.arange(13) / 2)  # [Hz]
 
 
@@ -75,12 +76,18 @@ def fit(data, kind):
     error = model(x) - levels
     amplitude = np.exp(x[:size].reshape(2, 2, m))
     v, b = np.exp(x[size:size + n] - x[size:size + n].mean()), np.exp(x[size + n:] - x[size + n:].mean())
+    keys = {file.name: (speed[i], turn[i], v[i], b[i]) for i, file in enumerate(files)}
     for i, file in enumerate(files):
         print("%-45s speed %.3f m/s turn_rate %5.1f deg/s vehemence %.2f tremor %.2f  within 3 dB: %.2f %.2f" % (file.name, speed[i], np.degrees(turn[i]), v[i], b[i], *(np.abs(error[i]) < 3).mean(1)), file=sys.stderr)
     print("all within 3 dB: %.3f, kurtosis" % (np.abs(error) < 3).mean(), np.round(tails, 1).tolist(), "shares", np.round(np.mean(share, 0), 2).tolist(), file=sys.stderr)
     measured = COMPONENTS <= 1.2 * highest
     burst = np.sqrt(np.log(max(np.median(tails) / 3, 1)) / 4)  # kurtosis is 3 e^(4 s^2)
-    return amplitude * measured, np.median(speed), np.median(turn), burst
+    return amplitude * measured, np.median(speed), np.median(turn), burst, keys
+
+
+def keys_of(data, kind):
+    """Of each recording: speed, turn_rate, vehemence, tremor."""
+    return fit(data, kind)[4]
 
 
 def row(values):
@@ -90,8 +97,8 @@ def row(values):
 if __name__ == "__main__":
     print("// Made by scenes/generate/fit_motion.py from recordings; sim/motion/gait.h has the model. Do not edit.")
     for kind, name in (("handheld", "kHandheld"), ("drone", "kDrone")):
-        a, speed, turn, burst = fit(sys.argv[1], kind)
+        a, speed, turn, burst, _ = fit(sys.argv[1], kind)
         print(f"constexpr GaitTable {name} = {{\n    .speed = {speed:.3g},\n    .turn_rate = {turn:.3g},")
         for key, values in zip(("linear", "linear_tremor", "angular", "angular_tremor"), a.reshape(4, -1)):
             print(f"    .{key} = {row(values)},")
-        print(f"    .burst = {burst:.2g},\n    .burst_s = {BURST},\n    .course_hz = {CORNER[kind]},\n    .evenness = {EVENNESS[kind]},\n    .climb = {CLIMB[kind]}}};")
+        print(f"    .burst = {burst:.2g},\n    .burst_s = {BURST},\n    .effort = {EFFORT[kind]},\n    .effort_hz = {EFFORT_HZ},\n    .course_hz = {CORNER[kind]},\n    .evenness = {EVENNESS[kind]},\n    .climb = {CLIMB[kind]}}};")

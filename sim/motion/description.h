@@ -69,8 +69,8 @@ enum class GaitModel { handheld, drone };
 // Random motion fitted to recordings: sim/motion/gait.h.
 struct GaitParams {
   GaitModel model = GaitModel::handheld;
-  std::optional<std::uint64_t> seed;        // none: the scenario's
-  std::optional<double> speed, turn_rate;   // mean [m/s], [rad/s]; none: the recordings' medians, a shaken path's own
+  std::optional<std::uint64_t> seed;       // none: the scenario's
+  std::optional<double> speed, turn_rate;  // mean [m/s], [rad/s]; none: the recordings' medians, a shaken path's own
   double vehemence = 1, tremor = 1;
 };
 template <class V>
@@ -204,6 +204,7 @@ void Visit(V& v, PathKind kind, PathMotion& p) {
   }
 }
 
-using MotionDescription = std::variant<SampledMotion, ScriptedMotion, RecordedMotion, PathMotion, RoamingMotion, VehicleMotion>;
+using MotionDescription =
+    std::variant<SampledMotion, ScriptedMotion, RecordedMotion, PathMotion, RoamingMotion, VehicleMotion>;
 
 }  // namespace sim

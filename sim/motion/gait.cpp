@@ -1,5 +1,6 @@
 #include "sim/motion/gait.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -44,6 +45,22 @@ struct Filter {
   double first = 0, second = 0;
 };
 
+// Makes the components below 0.3 Hz small enough, and returns what is left of the mean rate.
+double Share(double mean, double effort, std::array<double, kGaitComponents>& accelerations) {
+  constexpr std::size_t kLow = 2;        // components
+  constexpr double kMeanOverRms = 0.92;  // of the length of a normal vector with three equal components
+  const double all = mean / (kMeanOverRms * std::exp(-0.5 * effort * effort));
+  double low = 0, high = 0;
+  for (std::size_t j = 0; j < accelerations.size(); ++j) {
+    const double rate = accelerations[j] / (2 * std::numbers::pi * FrequencyOf(static_cast<int>(j)));
+    (j < kLow ? low : high) += rate * rate;
+  }
+  const double rest = std::max(all * all - high, 0.04 * all * all),
+               part = std::min(1.0, 0.5 * rest / std::max(low, 1e-30));
+  for (std::size_t j = 0; j < kLow; ++j) accelerations[j] *= std::sqrt(part);
+  return std::sqrt(rest - part * low);
+}
+
 double Total(double of_motion, double scale, double of_tremor, double tremor) {
   return std::hypot(of_motion * scale, of_tremor * tremor);
 }
@@ -61,35 +78,41 @@ Gait::Gait(const GaitParams& p, double from_hz)
     const auto i = static_cast<std::size_t>(j);
     linear_[i] = Total(table_.linear[i], speed_ * p.vehemence, table_.linear_tremor[i], p.tremor);
     angular_[i] = Total(table_.angular[i], turn_rate_ * p.vehemence, table_.angular_tremor[i], p.tremor);
-    offset_speed_ = std::hypot(offset_speed_, linear_[i] / (2 * std::numbers::pi * FrequencyOf(j)));
-    offset_turn_rate_ = std::hypot(offset_turn_rate_, angular_[i] / (2 * std::numbers::pi * FrequencyOf(j)));
   }
+  course_speed_ = Share(speed_, table_.effort, linear_);
+  course_turn_rate_ = Share(turn_rate_, table_.effort, angular_);
 }
 
 std::vector<Offset> Gait::Draw(std::uint64_t seed, std::size_t count) const {
   // The filters begin at rest, early enough to have forgotten it.
   constexpr double kForgotten = 5;  // e-folds
-  const auto early = static_cast<std::size_t>(
-      kForgotten / (kGaitDamping * 2 * std::numbers::pi * kGaitLowest_hz * kGaitStep_s));
-  std::vector<double> burst(early + count);
-  const double keep = std::exp(-kGaitStep_s / table_.burst_s), gain = std::sqrt(1 - keep * keep);
-  double level = 0;
-  for (std::size_t k = 0; k < burst.size(); ++k) {
-    level = keep * level + gain * Normals(RandomWords(seed, Stream::gait_burst, static_cast<std::uint32_t>(k), 0, 0))[0];
-    burst[k] = std::exp(table_.burst * level - table_.burst * table_.burst);
-  }
+  const auto early =
+      static_cast<std::size_t>(kForgotten / (kGaitDamping * 2 * std::numbers::pi * kGaitLowest_hz * kGaitStep_s));
+  std::vector<double> drive(early + count);
   std::vector<Offset> offsets(count);
+  const double keep = std::exp(-kGaitStep_s / table_.burst_s), gain = std::sqrt(1 - keep * keep);
+  const auto factor = [](double s, double level) { return std::exp(s * level - s * s); };  // its square has mean 1
+  double burst = 0;
+  LowPass<double> effort;
+  for (std::size_t k = 0; k < drive.size(); ++k) {
+    const auto [a, b] = Normals(RandomWords(seed, Stream::gait_burst, static_cast<std::uint32_t>(k), 0, 0));
+    burst = keep * burst + gain * a;
+    effort.Step(table_.effort_hz, b);
+    const double lasting = factor(table_.effort, effort.rate);
+    drive[k] = lasting * factor(table_.burst, burst);
+    if (k >= early) offsets[k - early].effort = lasting;
+  }
   for (int j = 0; j < kGaitComponents; ++j) {
     const auto i = static_cast<std::size_t>(j);
     if (!(linear_[i] > 0 || angular_[i] > 0)) continue;
     const Filter filter(FrequencyOf(j));
     const double unit = 1 / (std::sqrt(3.0) * filter.AccelerationRms(FrequencyOf(j)));
     Filter::State<glm::dvec3> move, turn;
-    for (std::size_t k = 0; k < burst.size(); ++k) {
+    for (std::size_t k = 0; k < drive.size(); ++k) {
       const auto [a, b] =
           NormalVectors(seed, Stream::gait, static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(j));
-      const glm::dvec3 p = filter.Step(move, unit * linear_[i] * burst[k] * a),
-                       r = filter.Step(turn, unit * angular_[i] * burst[k] * b);
+      const glm::dvec3 p = filter.Step(move, unit * linear_[i] * drive[k] * a),
+                       r = filter.Step(turn, unit * angular_[i] * drive[k] * b);
       if (k < early) continue;
       offsets[k - early].move += p;
       offsets[k - early].turn += r;

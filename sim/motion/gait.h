@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <numbers>
 #include <vector>
 
 #include "sim/motion/description.h"
@@ -20,26 +22,40 @@ struct GaitTable {
   double speed, turn_rate;  // medians of the recordings' means [m/s], [rad/s]
   // With the motion, of 1 m/s and 1 rad/s of mean speed and turn rate at vehemence 1; tremor [m/s^2], [rad/s^2].
   std::array<double, kGaitComponents> linear, linear_tremor, angular, angular_tremor;
-  double burst, burst_s;    // standard deviation of the logarithm of the drive, and how long it lasts
-  double course_hz;         // corner of the course's rates
-  double evenness;          // of the course's speed: 0 constant, large as of a normal vector
-  double climb;             // [m] to both sides of the start's height
+  double burst, burst_s;     // standard deviation of the logarithm of the drive, and how long it lasts
+  double effort, effort_hz;  // the same of pauses and busy times, of course and drive, and their corner
+  double course_hz;          // corner of the course's rates
+  double evenness;           // of the course's speed: 0 constant, large as of a normal vector
+  double climb;              // [m] to both sides of the start's height
 };
 const GaitTable& TableOf(GaitModel model);
 
 // Of the position in W and of pitch, yaw (about +y) and roll.
 struct Offset {
   glm::dvec3 move{0.0}, turn{0.0};
+  double effort = 1;  // of its drive; the course's velocities take it too
+};
+
+// White noise through y1' = w (n - y1), y2' = w (y1 - y2); `rate`, y2, has variance 1.
+template <class T>
+struct LowPass {
+  T drive{0.0}, rate{0.0};
+  void Step(double corner_hz, const T& normal) {
+    const double w = 2 * std::numbers::pi * corner_hz * kGaitStep_s;
+    drive += -w * drive + 2 * std::sqrt(w) * normal;  // variance 2, of which the second stage leaves half
+    rate += w * (drive - rate);
+  }
 };
 
 // Sum over components of
 //   x_j = two equal resonators in a row, each x'' + 2 zeta w_j x' + w_j^2 x = its input,
 //
-// driven by white noise times a burst exp(s g(t) - s^2), g of first order and standard deviation 1, per axis. Amplitudes
+// driven by white noise times a burst exp(s g(t) - s^2), g of first order and standard deviation 1, and an effort of the
+// same form with g a LowPass. Amplitudes
 // are set so that each component's acceleration has the table's root mean square, `linear`^2 * (speed * vehemence)^2 +
 // `linear_tremor`^2 * tremor^2, a third of it on each axis, and likewise the angles'. So the power spectral density of
 // acceleration of one is u^4 / ((1 - u^2)^2 + (2 zeta u)^2)^2, u = f / f_j, and its rate has the root mean square of
-// its acceleration over 2 pi f_j.
+// its acceleration over 2 pi f_j. Components below 0.3 Hz are made smaller where the rates would exceed what is stated.
 class Gait {
  public:
   // from_hz: components below are left out.
@@ -48,16 +64,16 @@ class Gait {
   const GaitTable& table() const { return table_; }
   double speed() const { return speed_; }          // of all that moves, mean [m/s]
   double turn_rate() const { return turn_rate_; }  // [rad/s]
-  // Root mean square of the offsets' rates.
-  double offset_speed() const { return offset_speed_; }
-  double offset_turn_rate() const { return offset_turn_rate_; }
+  // What is left to a course, root mean square.
+  double course_speed() const { return course_speed_; }
+  double course_turn_rate() const { return course_turn_rate_; }
 
   // At k * kGaitStep_s, k = 0 ... count - 1; numbers keyed by (seed, k, component).
   std::vector<Offset> Draw(std::uint64_t seed, std::size_t count) const;
 
  private:
   const GaitTable& table_;
-  double speed_, turn_rate_, offset_speed_ = 0, offset_turn_rate_ = 0;
+  double speed_, turn_rate_, course_speed_, course_turn_rate_;
   std::array<double, kGaitComponents> linear_{}, angular_{};  // root mean squares of acceleration
 };
 

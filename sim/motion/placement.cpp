@@ -32,8 +32,8 @@ Candidate RandomCandidate(const Surroundings& around, std::uint64_t seed, std::u
 double Enclosed(const Surroundings& around, const glm::dvec3& p) {
   const double far = glm::distance(around.low(), around.high());
   int hits = 0;
-  for (const glm::dvec3& way : {glm::dvec3(0, 1, 0), glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1),
-                                glm::dvec3(0, 0, -1)}) {
+  for (const glm::dvec3& way :
+       {glm::dvec3(0, 1, 0), glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1)}) {
     hits += around.Between(p, p + far * way) ? 1 : 0;
   }
   return hits / 5.0;
@@ -114,12 +114,14 @@ Pose FreePlaceOf(const Trajectory& path, double end_s, double clearance, const S
                               FormatPlace(around.high() - around.low()));
 }
 
-void RequireFree(const Trajectory& path, double end_s, const Surroundings& around) {
+void RequireFree(const Trajectory& path, double end_s, const Surroundings& around,
+                 const std::function<bool(double t_s)>& blind) {
   const double steps = std::clamp(std::ceil(240 * end_s), 1.0, 864000.0);
   glm::dvec3 last = path.At(0).pose.p_WC;
   for (double k = 1; k <= steps; ++k) {
     const glm::dvec3 next = path.At(end_s * k / steps).pose.p_WC;
-    if (const auto hit = around.Between(last, next)) {
+    const auto hit = around.Between(last, next);
+    if (hit && !(blind && blind(end_s * k / steps))) {
       const double part = glm::distance(last, hit->point) / std::max(glm::distance(last, next), 1e-12);
       const double t_s = end_s * (k - 1 + part) / steps;
       throw std::invalid_argument("trajectory: passes through a surface of '" + hit->mesh + "' at " +

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,8 +26,9 @@ Pose FreePlaceOf(const Trajectory& path, double end_s, double clearance, const S
 
 // Throws std::invalid_argument that names time, place and mesh of the first surface that the path over [0, end_s]
 // passes through: straight ways between instants 1/240 s apart are asked about, further apart in paths of more than an
-// hour.
-void RequireFree(const Trajectory& path, double end_s, const Surroundings& around);
+// hour. Not while `blind`: a camera whose lens is covered may be carried anywhere.
+void RequireFree(const Trajectory& path, double end_s, const Surroundings& around,
+                 const std::function<bool(double t_s)>& blind = {});
 
 // From t_s on the camera is within 0.5 m and 30 degrees of where it was at earlier_s, having been more than 1 m or 60
 // degrees away in between; asked every 0.5 s.

@@ -19,27 +19,17 @@ namespace sim {
 namespace {
 
 constexpr double kStep = kGaitStep_s, kDegree = std::numbers::pi / 180;
-constexpr double kMeanOverRms = 0.92;  // of the length of a normal vector with three equal components
 
 std::size_t KeysUntil(double end_s) { return static_cast<std::size_t>(std::ceil(end_s / kStep)) + 3; }
 
-// Rates of the course: white noise through y1' = w (n - y1), y2' = w (y1 - y2); y2 has variance 1.
-struct LowPass {
-  glm::dvec3 drive{0.0}, rate{0.0};
-  void Step(double corner_hz, const glm::dvec3& normal) {
-    const double w = 2 * std::numbers::pi * corner_hz * kStep;
-    drive += -w * drive + 2 * std::sqrt(w) * normal;  // variance 2, of which the second stage leaves half
-    rate += w * (drive - rate);
-  }
-};
-
-// What steers: a wanted rate, through two stages of 60 ms so that the acceleration stays bounded.
+// What steers: a wanted rate, through two stages so that the acceleration stays bounded.
 struct Steering {
+  double delay_s;
   glm::dvec3 first{0.0}, rate{0.0};
   void Step(const glm::dvec3& wanted) {
-    constexpr double kGain = kStep / 0.06;
-    first += kGain * (wanted - first);
-    rate += kGain * (first - rate);
+    const double gain = kStep / delay_s;
+    first += gain * (wanted - first);
+    rate += gain * (first - rate);
   }
 };
 
@@ -54,18 +44,15 @@ glm::dquat Turned(const glm::dquat& start, const glm::dvec3& pitch_yaw_roll) {
                         Exp({0, 0, pitch_yaw_roll.z}));
 }
 
+// Where surfaces begin to push [m].
+double MarginOf(const Gait& gait) { return std::max(0.15, 1.2 * gait.speed()); }
+
 class Roamer {
  public:
   Roamer(const RoamingMotion& motion, const Gait& gait, const Pose& start, const Surroundings* around,
          std::uint64_t seed)
       : m_(motion), gait_(gait), start_(start), around_(around), seed_(seed) {
-    const auto rest = [](double mean, double offsets) {  // what the course has to add to the offsets
-      const double all = mean / kMeanOverRms;
-      return std::sqrt(std::max(all * all - offsets * offsets, 0.04 * all * all));
-    };
-    speed_ = rest(gait.speed(), gait.offset_speed());
-    turn_rate_ = rest(gait.turn_rate(), gait.offset_turn_rate());
-    margin_ = std::max(0.15, 0.8 * gait.speed());
+    margin_ = MarginOf(gait);
     const glm::dvec3 way = start.q_WC * glm::dvec3(0, 0, 1);
     yaw_0_ = YawOf(way), pitch_0_ = PitchOf(way);
     target_ = {pitch_0_, yaw_0_};
@@ -93,9 +80,8 @@ class Roamer {
       Gaze(path.keys.back().pose, turn, t_s);
       last = p;
       StepCourse(early + k);
-      course += kStep * (Velocity() + away_.rate);
-      angles += kStep * (turn_rate_ / std::sqrt(1 + 0.3) * glm::dvec3(std::sqrt(0.3) * turns_.rate.x, turns_.rate.y, 0) +
-                         gaze_.rate);
+      course += kStep * (offsets[k].effort * Velocity() + away_.rate);
+      angles += kStep * (std::pow(offsets[k].effort, 1.5) * TurnRate() + gaze_.rate);
     }
     return path;
   }
@@ -111,7 +97,13 @@ class Roamer {
     constexpr double kLevel = 0.35;  // of the vertical
     const glm::dvec3 u = moves_.rate * glm::dvec3(1, kLevel, 1) / std::sqrt(2 + kLevel * kLevel);
     const double e = gait_.table().evenness;
-    return speed_ * std::sqrt((1 + e) / (e + glm::dot(u, u))) * u;
+    return gait_.course_speed() * std::sqrt((1 + e) / (e + glm::dot(u, u))) * u;
+  }
+
+  glm::dvec3 TurnRate() const {
+    constexpr double kPitch = 0.5;  // of the yaw
+    return gait_.course_turn_rate() / std::sqrt(1 + kPitch * kPitch) *
+           glm::dvec3(kPitch * turns_.rate.x, turns_.rate.y, 0);
   }
 
   void Avoid(const glm::dvec3& p, double step, double t_s, Path& path) {
@@ -123,10 +115,12 @@ class Roamer {
       const double distance = glm::distance(p, *nearest), spare = distance - m_.clearance - step;
       if (spare < path.spare) path.spare = spare, path.spare_s = t_s, path.place = p;
       const glm::dvec3 out = (p - *nearest) / std::max(distance, 1e-9);
-      const double close = std::clamp(1 - spare / margin_, 0.0, 1.5);
-      wanted += 2.5 * std::max(gait_.speed(), 0.1) * close * close * out;
+      const double close = std::clamp(1 - spare / margin_, 0.0, 1.25);
+      wanted += 2 * std::max(gait_.speed(), 0.1) * close * close * out;
       for (glm::dvec3* u : {&moves_.drive, &moves_.rate}) {
+        const double size = glm::length(*u);
         *u -= std::min(1.0, 4 * kStep * close) * std::min(0.0, glm::dot(*u, out)) * out;
+        *u *= std::min(1.02, size / std::max(glm::length(*u), 1e-9));  // it turns rather than stops
       }
     }
     away_.Step(wanted);
@@ -141,12 +135,12 @@ class Roamer {
       target_.y = yaw_0_ + turn.y;
     } else if (t_s >= next_look_s_) {
       Choose(pose, yaw_0_ + turn.y);
-      next_look_s_ += 2;
+      next_look_s_ += std::max(2.0, 0.7 / std::max(gait_.turn_rate(), 0.05));
     }
-    const double wide = std::clamp(1.2 * gait_.turn_rate(), 0.2, 0.9);  // [rad]
+    const double wide = std::clamp(1.2 * gait_.turn_rate(), 0.35, 0.9);  // [rad]
     const double pitch = Beyond(pitch_0_ + turn.x - target_.x, 0.5 * wide),
                  yaw = Beyond(Wrapped(yaw_0_ + turn.y - target_.y), wide);
-    const double most = 1.5 * gait_.turn_rate();
+    const double most = 0.7 * gait_.turn_rate();
     gaze_.Step({std::clamp(-pitch, -most, most), std::clamp(-yaw, -most, most), 0});
   }
 
@@ -168,10 +162,10 @@ class Roamer {
   const Pose start_;
   const Surroundings* around_;
   const std::uint64_t seed_;
-  double speed_, turn_rate_, margin_, yaw_0_, pitch_0_, next_look_s_ = 0;
+  double margin_, yaw_0_, pitch_0_, next_look_s_ = 0;
   glm::dvec2 target_{0.0};  // pitch and yaw in W
-  LowPass moves_, turns_;
-  Steering away_, gaze_;
+  LowPass<glm::dvec3> moves_, turns_;
+  Steering away_{0.06}, gaze_{0.3};
 };
 
 std::uint64_t Attempt(std::uint64_t seed, std::uint32_t attempt) {
@@ -186,7 +180,7 @@ std::unique_ptr<Trajectory> MakeRoaming(const RoamingMotion& m, std::uint64_t sc
   constexpr std::uint32_t kAttempts = 32;
   const std::uint64_t seed = m.gait.seed.value_or(scenario_seed);
   const Gait gait(m.gait, 0);
-  const double room = m.clearance + std::max(0.15, 0.8 * gait.speed());
+  const double room = m.clearance + MarginOf(gait);
   const Pose start = m.start ? *m.start : around != nullptr ? FreePlace(*around, room, seed) : Pose{};
   Roamer::Path best;
   best.spare = -1e9;
@@ -219,8 +213,8 @@ std::unique_ptr<Trajectory> Shaken(const Trajectory& path, GaitParams shake, std
     const Pose pose = path.At(t_s).pose;
     const glm::dvec3& turn = offsets[k].turn;
     keys.push_back({t_s,
-                    {pose.p_WC + offsets[k].move, glm::normalize(pose.q_WC * Exp({0, turn.y, 0}) * Exp({turn.x, 0, 0}) *
-                                                                 Exp({0, 0, turn.z}))}});
+                    {pose.p_WC + offsets[k].move,
+                     glm::normalize(pose.q_WC * Exp({0, turn.y, 0}) * Exp({turn.x, 0, 0}) * Exp({0, 0, turn.z}))}});
   }
   return std::make_unique<SplineTrajectory>(keys);
 }
@@ -231,8 +225,8 @@ std::unique_ptr<Trajectory> MakeVehicle(const VehicleMotion& m, std::uint64_t se
   const std::uint64_t key = m.seed.value_or(seed);
   const double yaw_0 = YawOf(m.start.q_WC * glm::dvec3(0, 0, 1));
   const auto ahead = [](double yaw) { return glm::dvec3(-std::sin(yaw), 0, -std::cos(yaw)); };
-  LowPass speeds, curves;
-  Steering steering;
+  LowPass<glm::dvec3> speeds, curves;
+  Steering steering{0.06};
   glm::dvec3 p = m.start.p_WC;
   double yaw = yaw_0;
   std::vector<KeyPose> keys;

@@ -41,9 +41,8 @@ struct Query {
 bool Consider(RTCPointQueryFunctionArguments* arguments) {
   auto& query = *static_cast<Query*>(arguments->userPtr);
   const std::uint32_t t = query.rays.Triangle(RTC_INVALID_GEOMETRY_ID, arguments->geomID, arguments->primID);
-  const glm::dvec3 point =
-      ClosestPoint(query.p, glm::dvec3(query.rays.Corner(t, 0)), glm::dvec3(query.rays.Corner(t, 1)),
-                   glm::dvec3(query.rays.Corner(t, 2)));
+  const glm::dvec3 point = ClosestPoint(query.p, glm::dvec3(query.rays.Corner(t, 0)),
+                                        glm::dvec3(query.rays.Corner(t, 1)), glm::dvec3(query.rays.Corner(t, 2)));
   const double distance = glm::distance(query.p, point);
   if (!(distance < query.distance)) return false;
   query.distance = distance;
@@ -114,7 +113,9 @@ double SceneSurroundings::Luminance(std::uint32_t triangle, float u, float v) co
   if (material.texture >= 0) {
     const Texture& texture = scene_.textures[static_cast<std::size_t>(material.texture)];
     const glm::vec2 uv = glm::fract(rays_.TextureCoordinates(triangle, u, v));
-    const auto texel = [](float x, int size) { return std::min(static_cast<int>(x * static_cast<float>(size)), size - 1); };
+    const auto texel = [](float x, int size) {
+      return std::min(static_cast<int>(x * static_cast<float>(size)), size - 1);
+    };
     color *= texture.Texel(0, texel(uv.x, texture.width()), texel(uv.y, texture.height()));
   }
   return glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f));

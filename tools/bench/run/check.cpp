@@ -61,7 +61,8 @@ void PrintRevisits(const sim::Simulator& simulator) {
   for (std::size_t i = 0; i < std::min(kMost, revisits.size()); ++i) {
     text += fmt::format("{} at {:.1f} s ({:.1f} s)", i == 0 ? ":" : ",", revisits[i].t_s, revisits[i].earlier_s);
   }
-  fmt::print("  returns {} times to an earlier view{}{}\n", revisits.size(), text, revisits.size() > kMost ? ", ..." : "");
+  fmt::print("  returns {} times to an earlier view{}{}\n", revisits.size(), text,
+             revisits.size() > kMost ? ", ..." : "");
 }
 
 // Every 10 ms, in TUM's format.
