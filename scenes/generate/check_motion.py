@@ -20,10 +20,11 @@ SCENES = Path(__file__).resolve().parent.parent
 WORLD = {"handheld": "office.yaml", "drone": "hall.yaml"}
 
 
-def fly(vobench, kind, keys, duration, seed, folder):
+def fly(vobench, kind, name, keys, duration, seed, folder):
     file = Path(folder) / f"{seed}.txt"
     motion = "{type: %s, speed: %.4f, turn_rate: %.4f, vehemence: %.3f, tremor: %.3f}" % (kind, *keys)
-    sets = [f"trajectory={motion}", f"time.duration={duration:.2f}", f"seed={seed}", "render.light=direct"]
+    mesh = "world.meshes.0.scale=%d" % (2 if "MH" in name else 1)  # their hall is larger than ours
+    sets = [mesh, f"trajectory={motion}", f"time.duration={duration:.2f}", f"seed={seed}", "render.light=direct"]
     subprocess.run([vobench, "check", str(SCENES / WORLD[kind]), "--path", str(file)] + [x for s in sets for x in ("--set", s)],
                    check=True, stdout=subprocess.DEVNULL)
     return read(file)
@@ -39,7 +40,7 @@ def main(data, vobench, seeds):
             spectra = [acceleration(x, dt) for x in recorded]
             levels = np.array([10 * np.log10(in_bands(f, s, c).sum(1)) for f, s, _ in spectra])
             with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
-                paths = list(pool.map(lambda seed: fly(vobench, kind, values[file.name], t[-1], seed, folder), range(1, seeds + 1)))
+                paths = list(pool.map(lambda seed: fly(vobench, kind, file.name, values[file.name], t[-1], seed, folder), range(1, seeds + 1)))
             power, rows = 0, []
             for seed, path in enumerate(paths):
                 _, *flown = steps(*path, dt)

@@ -10,8 +10,8 @@ from scipy.optimize import least_squares
 from motion_spectra import RECORDINGS, acceleration, centres, in_bands, rates, read, recordings, steps
 
 STEP, DAMPING, CORNER = 0.01, 0.3, {"handheld": 0.07, "drone": 0.07}  # [s], [1], of the course [Hz]: sim/motion/gait.h
-# Set by hand so that percentiles of speed and turn rate agree (check_motion.py): [s], [1], [Hz], [1], [m].
-BURST, EFFORT, EFFORT_HZ, EVENNESS, CLIMB = 1.0, {"handheld": 0.2, "drone": 0.35}, 0.03, {"handheld": 0.15, "drone": 3.0}, {"handheld": 0.2, "drone": 0.8}
+# Set by hand so that percentiles of speed and turn rate agree (check_motion.py): [s], [1], [Hz], [1], [m], [s].
+BURST, EFFORT, EFFORT_HZ, EVENNESS, CLIMB, AHEAD = 1.0, {"handheld": 0.2, "drone": 0.25}, 0.03, {"handheld": 0.1, "drone": 3.0}, {"handheld": 0.2, "drone": 0.8}, {"handheld": 1.5, "drone": 2.0}
 COMPONENTS = 0.175 * 2 ** (np.arange(13) / 2)  # [Hz]
 
 
@@ -101,4 +101,4 @@ if __name__ == "__main__":
         print(f"constexpr GaitTable {name} = {{\n    .speed = {speed:.3g},\n    .turn_rate = {turn:.3g},")
         for key, values in zip(("linear", "linear_tremor", "angular", "angular_tremor"), a.reshape(4, -1)):
             print(f"    .{key} = {row(values)},")
-        print(f"    .burst = {burst:.2g},\n    .burst_s = {BURST},\n    .effort = {EFFORT[kind]},\n    .effort_hz = {EFFORT_HZ},\n    .course_hz = {CORNER[kind]},\n    .evenness = {EVENNESS[kind]},\n    .climb = {CLIMB[kind]}}};")
+        print(f"    .burst = {burst:.2g},\n    .burst_s = {BURST},\n    .effort = {EFFORT[kind]},\n    .effort_hz = {EFFORT_HZ},\n    .course_hz = {CORNER[kind]},\n    .evenness = {EVENNESS[kind]},\n    .climb = {CLIMB[kind]},\n    .ahead_s = {AHEAD[kind]}}};")

@@ -45,8 +45,9 @@ struct Filter {
   double first = 0, second = 0;
 };
 
-// Makes the components below 0.3 Hz small enough, and returns what is left of the mean rate.
-double Share(double mean, double effort, std::array<double, kGaitComponents>& accelerations) {
+// Makes the components below 0.3 Hz no more than the share `most` of what the others leave of the mean rate, and returns
+// what is left for the course.
+double Share(double mean, double effort, double most, std::array<double, kGaitComponents>& accelerations) {
   constexpr std::size_t kLow = 2;        // components
   constexpr double kMeanOverRms = 0.92;  // of the length of a normal vector with three equal components
   const double all = mean / (kMeanOverRms * std::exp(-0.5 * effort * effort));
@@ -56,7 +57,7 @@ double Share(double mean, double effort, std::array<double, kGaitComponents>& ac
     (j < kLow ? low : high) += rate * rate;
   }
   const double rest = std::max(all * all - high, 0.04 * all * all),
-               part = std::min(1.0, 0.5 * rest / std::max(low, 1e-30));
+               part = std::min(1.0, most * rest / std::max(low, 1e-30));
   for (std::size_t j = 0; j < kLow; ++j) accelerations[j] *= std::sqrt(part);
   return std::sqrt(rest - part * low);
 }
@@ -79,8 +80,8 @@ Gait::Gait(const GaitParams& p, double from_hz)
     linear_[i] = Total(table_.linear[i], speed_ * p.vehemence, table_.linear_tremor[i], p.tremor);
     angular_[i] = Total(table_.angular[i], turn_rate_ * p.vehemence, table_.angular_tremor[i], p.tremor);
   }
-  course_speed_ = Share(speed_, table_.effort, linear_);
-  course_turn_rate_ = Share(turn_rate_, table_.effort, angular_);
+  course_speed_ = Share(speed_, table_.effort, 0.2, linear_);
+  course_turn_rate_ = Share(turn_rate_, table_.effort, 0.5, angular_);
 }
 
 std::vector<Offset> Gait::Draw(std::uint64_t seed, std::size_t count) const {

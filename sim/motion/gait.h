@@ -27,6 +27,7 @@ struct GaitTable {
   double course_hz;          // corner of the course's rates
   double evenness;           // of the course's speed: 0 constant, large as of a normal vector
   double climb;              // [m] to both sides of the start's height
+  double ahead_s;            // how long before it would be there it begins to turn away from a surface
 };
 const GaitTable& TableOf(GaitModel model);
 

@@ -58,19 +58,22 @@ std::string FormatPlace(const glm::dvec3& p) {
   return "(" + text(p.x) + ", " + text(p.y) + ", " + text(p.z) + ") m";
 }
 
-Pose FreePlace(const Surroundings& around, double room, std::uint64_t seed) {
+Pose FreePlace(const Surroundings& around, double clearance, double margin, std::uint64_t seed) {
   Pose best;
   double most = -1;
-  for (std::uint32_t i = 0; i < 2000; ++i) {
-    const auto [p, yaw] = RandomCandidate(around, seed, i);
-    const auto floor = around.Between(p - glm::dvec3(0, 0.5, 0), p - glm::dvec3(0, 2.5, 0));
-    if (!floor || around.Nearest(p, room)) continue;
-    const glm::dquat look = Exp({0, yaw, 0}) * glm::dquat(0, 1, 0, 0) * Exp({-0.2, 0, 0});  // level, a little down
-    const double score = (0.1 + Enclosed(around, p)) * (0.01 + around.Interest({p, look}));
-    if (score > most) most = score, best = {p, glm::normalize(look)};
+  for (const double room : {clearance + margin, clearance + 0.5 * margin}) {
+    for (std::uint32_t i = 0; i < 2000; ++i) {
+      const auto [p, yaw] = RandomCandidate(around, seed, i);
+      const auto floor = around.Between(p - glm::dvec3(0, 0.5, 0), p - glm::dvec3(0, 2.5, 0));
+      if (!floor || around.Nearest(p, room)) continue;
+      const glm::dquat look = Exp({0, yaw, 0}) * glm::dquat(0, 1, 0, 0) * Exp({-0.2, 0, 0});  // level, a little down
+      const double score = (0.1 + Enclosed(around, p)) * (0.01 + around.Interest({p, look}));
+      if (score > most) most = score, best = {p, glm::normalize(look)};
+    }
+    if (most >= 0) return best;
   }
-  if (most >= 0) return best;
-  throw std::invalid_argument("trajectory: found no place to start with " + settings::FormatNumber(room) +
+  throw std::invalid_argument("trajectory: found no place to start with " +
+                              settings::FormatNumber(clearance + 0.5 * margin) +
                               " m around it, 0.5 to 2.5 m above a surface: state 'start', or a smaller clearance");
 }
 

@@ -14,9 +14,9 @@ namespace sim {
 
 std::string FormatPlace(const glm::dvec3& p);  // "(1.2, 0.8, -3) m"
 
-// Of 2000 random places the one with no surface within `room`, 0.5 to 2.5 m above what is below, that is most enclosed
-// and has most to see; it looks there. Throws std::invalid_argument when there is none.
-Pose FreePlace(const Surroundings& around, double room, std::uint64_t seed);
+// Of 2000 random places the one with no surface within `clearance` and the margin, or half of it, 0.5 to 2.5 m above what
+// is below, that is most enclosed and has most to see; it looks there. Throws std::invalid_argument when there is none.
+Pose FreePlace(const Surroundings& around, double clearance, double margin, std::uint64_t seed);
 
 // The pose of the path's start for which the path, moved rigidly, keeps `clearance`: of 20 000 random places and
 // headings the one, among the first 24 that are free, from which most is seen. That axis of the path's own frame that is

@@ -45,14 +45,19 @@ glm::dquat Turned(const glm::dquat& start, const glm::dvec3& pitch_yaw_roll) {
 }
 
 // Where surfaces begin to push [m].
-double MarginOf(const Gait& gait) { return std::max(0.15, 1.2 * gait.speed()); }
+double MarginOf(const Gait& gait) { return std::max(0.15, gait.table().ahead_s * gait.speed()); }
 
 class Roamer {
  public:
   Roamer(const RoamingMotion& motion, const Gait& gait, const Pose& start, const Surroundings* around,
          std::uint64_t seed)
-      : m_(motion), gait_(gait), start_(start), around_(around), seed_(seed) {
-    margin_ = MarginOf(gait);
+      : m_(motion),
+        gait_(gait),
+        start_(start),
+        around_(around),
+        seed_(seed),
+        margin_(MarginOf(gait)),
+        away_{0.05 * gait.table().ahead_s} {
     const glm::dvec3 way = start.q_WC * glm::dvec3(0, 0, 1);
     yaw_0_ = YawOf(way), pitch_0_ = PitchOf(way);
     target_ = {pitch_0_, yaw_0_};
@@ -81,7 +86,7 @@ class Roamer {
       last = p;
       StepCourse(early + k);
       course += kStep * (offsets[k].effort * Velocity() + away_.rate);
-      angles += kStep * (std::pow(offsets[k].effort, 1.5) * TurnRate() + gaze_.rate);
+      angles += kStep * (offsets[k].effort * offsets[k].effort * TurnRate() + gaze_.rate);
     }
     return path;
   }
@@ -116,10 +121,10 @@ class Roamer {
       if (spare < path.spare) path.spare = spare, path.spare_s = t_s, path.place = p;
       const glm::dvec3 out = (p - *nearest) / std::max(distance, 1e-9);
       const double close = std::clamp(1 - spare / margin_, 0.0, 1.25);
-      wanted += 2 * std::max(gait_.speed(), 0.1) * close * close * out;
+      wanted += 2 * std::max(gait_.speed(), 0.1) * close * close * close * out;
       for (glm::dvec3* u : {&moves_.drive, &moves_.rate}) {
         const double size = glm::length(*u);
-        *u -= std::min(1.0, 4 * kStep * close) * std::min(0.0, glm::dot(*u, out)) * out;
+        *u -= std::min(1.0, 5 / gait_.table().ahead_s * kStep * close * close) * std::min(0.0, glm::dot(*u, out)) * out;
         *u *= std::min(1.02, size / std::max(glm::length(*u), 1e-9));  // it turns rather than stops
       }
     }
@@ -149,7 +154,7 @@ class Roamer {
     double best = -1;
     for (std::uint32_t i = 0; i < 27; ++i) {
       const double to = yaw + 22.5 * kDegree * (static_cast<int>(i % 9) - 4),
-                   up = kDegree * (17.0 * static_cast<int>(i / 9) - 29);  // -29, -12, 5
+                   up = kDegree * (12.0 * static_cast<int>(i / 9) - 20);  // -20, -8, 4
       const glm::dquat look = Turned(start_.q_WC, {up - pitch_0_, to - yaw_0_, 0});
       const double luck = Uniform(RandomWords(seed_, Stream::gait_gaze, time, i, 0)[0]);
       const double score = around_->Interest({pose.p_WC, look}) * (0.5 + luck);
@@ -162,10 +167,11 @@ class Roamer {
   const Pose start_;
   const Surroundings* around_;
   const std::uint64_t seed_;
-  double margin_, yaw_0_, pitch_0_, next_look_s_ = 0;
+  const double margin_;
+  double yaw_0_, pitch_0_, next_look_s_ = 0;
   glm::dvec2 target_{0.0};  // pitch and yaw in W
   LowPass<glm::dvec3> moves_, turns_;
-  Steering away_{0.06}, gaze_{0.3};
+  Steering away_, gaze_{0.3};
 };
 
 std::uint64_t Attempt(std::uint64_t seed, std::uint32_t attempt) {
@@ -180,8 +186,9 @@ std::unique_ptr<Trajectory> MakeRoaming(const RoamingMotion& m, std::uint64_t sc
   constexpr std::uint32_t kAttempts = 32;
   const std::uint64_t seed = m.gait.seed.value_or(scenario_seed);
   const Gait gait(m.gait, 0);
-  const double room = m.clearance + MarginOf(gait);
-  const Pose start = m.start ? *m.start : around != nullptr ? FreePlace(*around, room, seed) : Pose{};
+  const Pose start = m.start             ? *m.start
+                     : around != nullptr ? FreePlace(*around, m.clearance, MarginOf(gait), seed)
+                                         : Pose{};
   Roamer::Path best;
   best.spare = -1e9;
   for (std::uint32_t attempt = 0; attempt < kAttempts && best.spare < 0; ++attempt) {

@@ -17,7 +17,8 @@ namespace sim {
 // with the offsets of sim/motion/gait.h and a course whose rates are normal numbers through a low-pass of second order.
 // Its velocity u counts as speed * u sqrt((1 + e) / (e + |u|^2)), e the table's evenness, so that the whole has the mean
 // speed and turn rate stated. Near a surface the course's way inwards is damped and the camera is pushed outwards, with
-// a speed that grows with the square of how far it is within a margin of 1.2 s at its speed. The gaze drifts about
+// a speed that grows with the cube of how far it is within a margin of 1.5 s
+// (drones: 2 s) at its speed. The gaze drifts about
 // what, among 27 directions ahead and to the sides, has most to see (Surroundings::Interest) times a random number,
 // chosen anew every 2 s; or about `look_at`. Paths that come too near all the same are drawn again, 32 times at most.
 //

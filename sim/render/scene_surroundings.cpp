@@ -124,7 +124,7 @@ double SceneSurroundings::Luminance(std::uint32_t triangle, float u, float v) co
 double SceneSurroundings::Interest(const Pose& view) const {
   constexpr int kSide = 5;
   constexpr double kWide = 0.577, kHigh = 0.404;  // tan 30, tan 22 degrees
-  constexpr float kDark = 0.02f;                  // differences of what is darker do not count
+  constexpr float kDark = 0.1f;                   // differences of what is darker do not count
   double seen[kSide][kSide];                      // logarithm; NaN: nothing
   for (int j = 0; j < kSide; ++j) {
     for (int i = 0; i < kSide; ++i) {
