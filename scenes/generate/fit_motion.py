@@ -11,7 +11,7 @@ from motion_spectra import RECORDINGS, acceleration, centres, in_bands, rates, r
 
 STEP, DAMPING, CORNER = 0.01, 0.3, {"handheld": 0.07, "drone": 0.07}  # [s], [1], of the course [Hz]: sim/motion/gait.h
 # Set by hand so that percentiles of speed and turn rate agree (check_motion.py): [s], [1], [Hz], [1], [m], [s].
-BURST, EFFORT, EFFORT_HZ, EVENNESS, CLIMB, AHEAD = 1.0, {"handheld": 0.2, "drone": 0.25}, 0.03, {"handheld": 0.1, "drone": 3.0}, {"handheld": 0.2, "drone": 0.8}, {"handheld": 1.5, "drone": 2.0}
+BURST, EFFORT, EFFORT_HZ, EVENNESS, CLIMB, AHEAD = 1.0, {"handheld": 0.18, "drone": 0.33}, 0.03, {"handheld": 0.1, "drone": 3.0}, {"handheld": 0.2, "drone": 0.8}, {"handheld": 1.5, "drone": 2.0}
 COMPONENTS = 0.175 * 2 ** (np.arange(13) / 2)  # [Hz]
 
 

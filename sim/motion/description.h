@@ -76,7 +76,8 @@ struct GaitParams {
 template <class V>
 void Visit(V& v, GaitParams& p) {
   v("seed", p.seed, {Range{0, 1e15}, "handheld, drone, vehicle, shake: of the path; none: the scenario's"});
-  v("speed", p.speed, {Unit::speed, Range{0, 100}, "mean; none: the recordings' median, a shaken path's own, or 3 m/s of a vehicle"});
+  v("speed", p.speed,
+    {Unit::speed, Range{0, 100}, "mean; none: the recordings' median, a shaken path's own, or 3 m/s of a vehicle"});
   v("turn_rate", p.turn_rate, {Unit::angular_rate, Range{0, 20}, "the same of turns"});
   v("vehemence", p.vehemence, {Range{0, 10}, "of accelerations from 0.2 Hz on; 1: the recordings' mean at this speed"});
   v("tremor", p.tremor, {Range{0, 10}, "of those that do not depend on speed, mostly above 2 Hz; 1: the mean"});

@@ -45,12 +45,11 @@ struct Filter {
   double first = 0, second = 0;
 };
 
-// Makes the components below 0.3 Hz no more than the share `most` of what the others leave of the mean rate, and returns
-// what is left for the course.
-double Share(double mean, double effort, double most, std::array<double, kGaitComponents>& accelerations) {
-  constexpr std::size_t kLow = 2;        // components
-  constexpr double kMeanOverRms = 0.92;  // of the length of a normal vector with three equal components
-  const double all = mean / (kMeanOverRms * std::exp(-0.5 * effort * effort));
+// Makes the components below 0.3 Hz no more than the share `most` of what the others leave of the rate, and returns what is
+// left for the course.
+double Share(double rms, double effort, double most, std::array<double, kGaitComponents>& accelerations) {
+  constexpr std::size_t kLow = 2;  // components
+  const double all = rms * std::exp(0.5 * effort * effort);
   double low = 0, high = 0;
   for (std::size_t j = 0; j < accelerations.size(); ++j) {
     const double rate = accelerations[j] / (2 * std::numbers::pi * FrequencyOf(static_cast<int>(j)));
@@ -80,8 +79,10 @@ Gait::Gait(const GaitParams& p, double from_hz)
     linear_[i] = Total(table_.linear[i], speed_ * p.vehemence, table_.linear_tremor[i], p.tremor);
     angular_[i] = Total(table_.angular[i], turn_rate_ * p.vehemence, table_.angular_tremor[i], p.tremor);
   }
-  course_speed_ = Share(speed_, table_.effort, 0.2, linear_);
-  course_turn_rate_ = Share(turn_rate_, table_.effort, 0.5, angular_);
+  // The mean length of a normal vector with three equal components; surfaces take 4 % of the speed.
+  constexpr double kMeanOverRms = 0.92, kMeanSpeedOverRms = 0.88;
+  course_speed_ = Share(speed_ / kMeanSpeedOverRms, table_.effort, 0.2, linear_);
+  course_turn_rate_ = Share(turn_rate_ / kMeanOverRms, table_.effort, 0.5, angular_);
 }
 
 std::vector<Offset> Gait::Draw(std::uint64_t seed, std::size_t count) const {

@@ -95,7 +95,7 @@ Pose FreePlaceOf(const Trajectory& path, double end_s, double clearance, const S
   for (std::uint32_t i = 0, found = 0; i < 20000 && found < kEnough; ++i) {
     const auto [place, yaw] = RandomCandidate(around, seed, i);
     const glm::dquat turn = Exp({0, yaw, 0});
-    const glm::dvec3 to = place;
+    const glm::dvec3 to = place;  // clang 14 captures no structured binding
     const auto moved = [&](const Pose& pose) {
       return Pose{to + turn * (pose.p_WC - middle), glm::normalize(turn * pose.q_WC)};
     };
@@ -108,7 +108,8 @@ Pose FreePlaceOf(const Trajectory& path, double end_s, double clearance, const S
     ++found;
     double score = 0;
     for (int k = 0; k < kSamples; k += 10) score += around.Interest(at(k));
-    score *= 0.1 + Enclosed(around, at(0).p_WC);
+    const bool aloft = !around.Between(place, place - glm::dvec3(0, 2.5, 0));
+    score *= (0.1 + Enclosed(around, at(0).p_WC)) * (aloft ? 0.3 : 1);
     if (score > most) most = score, best = at(0);
   }
   if (most >= 0) return best;

@@ -19,7 +19,8 @@ std::string FormatPlace(const glm::dvec3& p);  // "(1.2, 0.8, -3) m"
 Pose FreePlace(const Surroundings& around, double clearance, double margin, std::uint64_t seed);
 
 // The pose of the path's start for which the path, moved rigidly, keeps `clearance`: of 20 000 random places and
-// headings the one, among the first 24 that are free, from which most is seen. That axis of the path's own frame that is
+// headings the one, among the first 24 that are free, from which most is seen, a surface within 2.5 m below the path's
+// middle counting threefold. That axis of the path's own frame that is
 // nearest to the camera's mean upward direction becomes +y. Throws std::invalid_argument when none is free.
 Pose FreePlaceOf(const Trajectory& path, double end_s, double clearance, const Surroundings& around,
                  std::uint64_t seed);

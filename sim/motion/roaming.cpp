@@ -57,7 +57,7 @@ class Roamer {
         around_(around),
         seed_(seed),
         margin_(MarginOf(gait)),
-        away_{0.05 * gait.table().ahead_s} {
+        away_{0.1 * gait.table().ahead_s} {
     const glm::dvec3 way = start.q_WC * glm::dvec3(0, 0, 1);
     yaw_0_ = YawOf(way), pitch_0_ = PitchOf(way);
     target_ = {pitch_0_, yaw_0_};
@@ -121,7 +121,7 @@ class Roamer {
       if (spare < path.spare) path.spare = spare, path.spare_s = t_s, path.place = p;
       const glm::dvec3 out = (p - *nearest) / std::max(distance, 1e-9);
       const double close = std::clamp(1 - spare / margin_, 0.0, 1.25);
-      wanted += 2 * std::max(gait_.speed(), 0.1) * close * close * close * out;
+      wanted += 3 * std::max(gait_.speed(), 0.1) * close * close * close * out;
       for (glm::dvec3* u : {&moves_.drive, &moves_.rate}) {
         const double size = glm::length(*u);
         *u -= std::min(1.0, 5 / gait_.table().ahead_s * kStep * close * close) * std::min(0.0, glm::dot(*u, out)) * out;
