@@ -98,7 +98,8 @@ if __name__ == "__main__":
     print("// Made by scenes/generate/fit_motion.py from recordings; sim/motion/gait.h has the model. Do not edit.")
     for kind, name in (("handheld", "kHandheld"), ("drone", "kDrone")):
         a, speed, turn, burst, _ = fit(sys.argv[1], kind)
-        print(f"constexpr GaitTable {name} = {{\n    .speed = {speed:.3g},\n    .turn_rate = {turn:.3g},")
+        print(f"constexpr GaitTable {name} = {{\n    .speed = {speed:.3g}, .turn_rate = {turn:.3g},")
         for key, values in zip(("linear", "linear_tremor", "angular", "angular_tremor"), a.reshape(4, -1)):
             print(f"    .{key} = {row(values)},")
-        print(f"    .burst = {burst:.2g},\n    .burst_s = {BURST},\n    .effort = {EFFORT[kind]},\n    .effort_hz = {EFFORT_HZ},\n    .course_hz = {CORNER[kind]},\n    .evenness = {EVENNESS[kind]},\n    .climb = {CLIMB[kind]},\n    .ahead_s = {AHEAD[kind]}}};")
+        print(f"    .burst = {burst:.2g}, .burst_s = {BURST}, .effort = {EFFORT[kind]}, .effort_hz = {EFFORT_HZ}, .course_hz = {CORNER[kind]},")
+        print(f"    .evenness = {EVENNESS[kind]}, .climb = {CLIMB[kind]}, .ahead_s = {AHEAD[kind]}}};")

@@ -64,9 +64,9 @@ void Visit(V& v, SampledMotion& p) {
 // Ranges, and rules between several values. Keys are those of a trajectory.
 std::vector<settings::FieldProblem> Problems(SampledMotion motion);
 
-enum class GaitModel { handheld, drone };
+enum class GaitModel { handheld, drone, vehicle };
 
-// Random motion fitted to recordings: sim/motion/gait.h.
+// Random motion, of hands and drones fitted to recordings: sim/motion/gait.h.
 struct GaitParams {
   GaitModel model = GaitModel::handheld;
   std::optional<std::uint64_t> seed;       // none: the scenario's
@@ -77,7 +77,8 @@ template <class V>
 void Visit(V& v, GaitParams& p) {
   v("seed", p.seed, {Range{0, 1e15}, "handheld, drone, vehicle, shake: of the path; none: the scenario's"});
   v("speed", p.speed,
-    {Unit::speed, Range{0, 100}, "mean; none: the recordings' median, a shaken path's own, or 3 m/s of a vehicle"});
+    {Unit::speed, Range{0, 100}, "mean; none: recordings' median, a shaken path's own, vehicle 3 m/s"});
+  if (p.model == GaitModel::vehicle) return;
   v("turn_rate", p.turn_rate, {Unit::angular_rate, Range{0, 20}, "the same of turns"});
   v("vehemence", p.vehemence, {Range{0, 10}, "of accelerations from 0.2 Hz on; 1: the recordings' mean at this speed"});
   v("tremor", p.tremor, {Range{0, 10}, "of those that do not depend on speed, mostly above 2 Hz; 1: the mean"});
@@ -86,8 +87,8 @@ void Visit(V& v, GaitParams& p) {
 // A camera carried through a world: sim/motion/roaming.h.
 struct RoamingMotion {
   GaitParams gait;
-  std::optional<Pose> start;  // none: a free place is found
-  double clearance = 0.25;    // [m]
+  std::optional<Pose> start;                    // none: a free place is found
+  double clearance = 0.25, turning_radius = 5;  // [m]
   std::optional<glm::dvec3> look_at;
 };
 // But for the start.
@@ -95,22 +96,9 @@ template <class V>
 void Visit(V& v, RoamingMotion& p) {
   Visit(v, p.gait);
   v("clearance", p.clearance, {Unit::length, Range{0, 1e3}, "handheld, drone, vehicle, placing: auto: from surfaces"});
+  if (p.gait.model == GaitModel::vehicle)
+    return v("turning_radius", p.turning_radius, {Unit::length, Range::Positive(), "vehicle: the smallest"});
   v("look_at", p.look_at, {Unit::length, Range{-1e6, 1e6}, "handheld, drone: instead of where there is most to see"});
-}
-
-// sim/motion/roaming.h.
-struct VehicleMotion {
-  Pose start;
-  std::optional<std::uint64_t> seed;
-  double speed = 3, turning_radius = 5, clearance = 0.25;  // [m/s], [m], [m]
-};
-// But for the start.
-template <class V>
-void Visit(V& v, VehicleMotion& p) {
-  v("seed", p.seed, {Range{0, 1e15}, "handheld, drone, vehicle, shake: of the path; none: the scenario's"});
-  v("speed", p.speed, {Unit::speed, Range::Positive(), "vehicle: where the way ahead is free"});
-  v("turning_radius", p.turning_radius, {Unit::length, Range::Positive(), "vehicle: the smallest"});
-  v("clearance", p.clearance, {Unit::length, Range{0, 1e3}, "handheld, drone, vehicle, placing: auto: from surfaces"});
 }
 
 struct KeyPose {
@@ -205,7 +193,6 @@ void Visit(V& v, PathKind kind, PathMotion& p) {
   }
 }
 
-using MotionDescription =
-    std::variant<SampledMotion, ScriptedMotion, RecordedMotion, PathMotion, RoamingMotion, VehicleMotion>;
+using MotionDescription = std::variant<SampledMotion, ScriptedMotion, RecordedMotion, PathMotion, RoamingMotion>;
 
 }  // namespace sim

@@ -14,8 +14,7 @@
 namespace sim {
 
 constexpr double kGaitStep_s = 0.01;
-constexpr int kGaitComponents = 13;
-constexpr double kGaitLowest_hz = 0.175, kGaitDamping = 0.3;  // component j is at lowest * 2^(j/2)
+constexpr std::size_t kGaitComponents = 13;
 
 // What was fitted. Accelerations are root mean squares of components, all three axes together.
 struct GaitTable {
@@ -23,50 +22,52 @@ struct GaitTable {
   // With the motion, of 1 m/s and 1 rad/s of mean speed and turn rate at vehemence 1; tremor [m/s^2], [rad/s^2].
   std::array<double, kGaitComponents> linear, linear_tremor, angular, angular_tremor;
   double burst, burst_s;     // standard deviation of the logarithm of the drive, and how long it lasts
-  double effort, effort_hz;  // the same of pauses and busy times, of course and drive, and their corner
+  double effort, effort_hz;  // the same of calm and busy times, of course and drive, and their corner
   double course_hz;          // corner of the course's rates
   double evenness;           // of the course's speed: 0 constant, large as of a normal vector
-  double climb;              // [m] to both sides of the start's height
-  double ahead_s;            // how long before it would be there it begins to turn away from a surface
+  double climb, ahead_s;     // to both sides of the start's height [m]; turns away from surfaces so long before
 };
 const GaitTable& TableOf(GaitModel model);
 
-// Of the position in W and of pitch, yaw (about +y) and roll.
+// Of the position in W and of pitch, yaw (about +y) and roll; effort: of its drive, and of the course.
 struct Offset {
   glm::dvec3 move{0.0}, turn{0.0};
-  double effort = 1;  // of its drive; the course's velocities take it too
+  double effort = 1;
 };
 
-// White noise through y1' = w (n - y1), y2' = w (y1 - y2); `rate`, y2, has variance 1.
+// y1' = w (x - y1), y2' = w (y1 - y2).
 template <class T>
 struct LowPass {
-  T drive{0.0}, rate{0.0};
-  void Step(double corner_hz, const T& normal) {
-    const double w = 2 * std::numbers::pi * corner_hz * kGaitStep_s;
-    drive += -w * drive + 2 * std::sqrt(w) * normal;  // variance 2, of which the second stage leaves half
-    rate += w * (drive - rate);
+  T first{0.0}, rate{0.0};
+  void Step(double w, const T& x) {
+    first += w * kGaitStep_s * (x - first);
+    rate += w * kGaitStep_s * (first - rate);
+  }
+  // So that `rate` has variance 1 from normal numbers.
+  void Draw(double corner_hz, const T& normal) {
+    const double w = 2 * std::numbers::pi * corner_hz;
+    Step(w, 2 / std::sqrt(w * kGaitStep_s) * normal);
   }
 };
 
-// Sum over components of
-//   x_j = two equal resonators in a row, each x'' + 2 zeta w_j x' + w_j^2 x = its input,
+// Sum over components, half an octave apart from 0.175 Hz on, of
+//   x_j = two equal resonators in a row, each x'' + 2 zeta w_j x' + w_j^2 x = its input,   zeta = 0.3
 //
 // driven by white noise times a burst exp(s g(t) - s^2), g of first order and standard deviation 1, and an effort of the
-// same form with g a LowPass. Amplitudes
-// are set so that each component's acceleration has the table's root mean square, `linear`^2 * (speed * vehemence)^2 +
-// `linear_tremor`^2 * tremor^2, a third of it on each axis, and likewise the angles'. So the power spectral density of
-// acceleration of one is u^4 / ((1 - u^2)^2 + (2 zeta u)^2)^2, u = f / f_j, and its rate has the root mean square of
-// its acceleration over 2 pi f_j. Components below 0.3 Hz are made smaller where the rates would exceed what is stated.
+// same form with g a LowPass. Amplitudes are set so that each component's acceleration has the table's root mean square,
+// `linear`^2 * (speed * vehemence)^2 + `linear_tremor`^2 * tremor^2, a third of it on each axis, and likewise the
+// angles'. So the power spectral density of acceleration of one is u^4 / ((1 - u^2)^2 + (2 zeta u)^2)^2, u = f / f_j,
+// and its rate has the root mean square of its acceleration over 2 pi f_j. Components below 0.3 Hz are made smaller
+// where the rates would exceed what is stated.
 class Gait {
  public:
   // from_hz: components below are left out.
   Gait(const GaitParams& params, double from_hz);
 
   const GaitTable& table() const { return table_; }
-  double speed() const { return speed_; }          // of all that moves, mean [m/s]
-  double turn_rate() const { return turn_rate_; }  // [rad/s]
-  // What is left to a course, root mean square.
-  double course_speed() const { return course_speed_; }
+  double speed() const { return speed_; }                // of all that moves, mean [m/s]
+  double turn_rate() const { return turn_rate_; }        // [rad/s]
+  double course_speed() const { return course_speed_; }  // what is left to a course, root mean square
   double course_turn_rate() const { return course_turn_rate_; }
 
   // At k * kGaitStep_s, k = 0 ... count - 1; numbers keyed by (seed, k, component).

@@ -17,17 +17,6 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-// Uniform in the box, and a heading.
-struct Candidate {
-  glm::dvec3 place;
-  double yaw;
-};
-Candidate RandomCandidate(const Surroundings& around, std::uint64_t seed, std::uint32_t i) {
-  const Words words = RandomWords(seed, Stream::gait_place, i, 0, 0);
-  const glm::dvec3 share(Uniform(words[0]), Uniform(words[1]), Uniform(words[2]));
-  return {around.low() + share * (around.high() - around.low()), kTurn * Uniform(words[3])};
-}
-
 // The share of upward and level ways that end at a surface.
 double Enclosed(const Surroundings& around, const glm::dvec3& p) {
   const double far = glm::distance(around.low(), around.high());
@@ -39,16 +28,15 @@ double Enclosed(const Surroundings& around, const glm::dvec3& p) {
   return hits / 5.0;
 }
 
-// That takes an axis of the path's frame, the nearest to the camera's mean upward direction, to +y.
-glm::dquat Upright(const Trajectory& path, double end_s) {
+// That takes an axis of the poses' frame, the nearest to their mean upward direction, to +y.
+glm::dquat Upright(const std::vector<Pose>& poses) {
   glm::dvec3 up(0.0), axis(0.0);
-  for (int i = 0; i < 100; ++i) up += path.At(end_s * i / 99).pose.q_WC * glm::dvec3(0, -1, 0);
+  for (const Pose& pose : poses) up += pose.q_WC * glm::dvec3(0, -1, 0);
   const glm::dvec3 size = glm::abs(up);
   const int most = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
   axis[most] = up[most] < 0 ? -1 : 1;
-  const glm::dvec3 y(0, 1, 0), turn = glm::cross(axis, y);
-  if (glm::length(turn) < 0.5) return axis.y > 0 ? glm::dquat(1, 0, 0, 0) : glm::dquat(0, 1, 0, 0);
-  return Exp(0.5 * std::numbers::pi * turn);
+  if (most == 1) return axis.y > 0 ? glm::dquat(1, 0, 0, 0) : glm::dquat(0, 1, 0, 0);
+  return Exp(kTurn / 4 * glm::cross(axis, glm::dvec3(0, 1, 0)));
 }
 
 }  // namespace
@@ -58,58 +46,36 @@ std::string FormatPlace(const glm::dvec3& p) {
   return "(" + text(p.x) + ", " + text(p.y) + ", " + text(p.z) + ") m";
 }
 
-Pose FreePlace(const Surroundings& around, double clearance, double margin, std::uint64_t seed) {
-  Pose best;
-  double most = -1;
-  for (const double room : {clearance + margin, clearance + 0.5 * margin}) {
-    for (std::uint32_t i = 0; i < 2000; ++i) {
-      const auto [p, yaw] = RandomCandidate(around, seed, i);
-      const auto floor = around.Between(p - glm::dvec3(0, 0.5, 0), p - glm::dvec3(0, 2.5, 0));
-      if (!floor || around.Nearest(p, room)) continue;
-      const glm::dquat look = Exp({0, yaw, 0}) * glm::dquat(0, 1, 0, 0) * Exp({-0.2, 0, 0});  // level, a little down
-      const double score = (0.1 + Enclosed(around, p)) * (0.01 + around.Interest({p, look}));
-      if (score > most) most = score, best = {p, glm::normalize(look)};
-    }
-    if (most >= 0) return best;
-  }
-  throw std::invalid_argument("trajectory: found no place to start with " +
-                              settings::FormatNumber(clearance + 0.5 * margin) +
-                              " m around it, 0.5 to 2.5 m above a surface: state 'start', or a smaller clearance");
-}
-
-Pose FreePlaceOf(const Trajectory& path, double end_s, double clearance, const Surroundings& around,
-                 std::uint64_t seed) {
-  constexpr int kSamples = 120, kEnough = 24;
-  const glm::dquat upright = Upright(path, end_s);
-  std::vector<Pose> poses;
+Pose FreePlaceOf(std::vector<Pose> poses, double clearance, const Surroundings& around, std::uint64_t seed) {
+  const glm::dquat upright = Upright(poses);
   glm::dvec3 low(1e9), high(-1e9);
-  for (int i = 0; i < kSamples; ++i) {
-    Pose pose = path.At(end_s * i / (kSamples - 1)).pose;
+  for (Pose& pose : poses) {
     pose = {upright * pose.p_WC, glm::normalize(upright * pose.q_WC)};
     low = glm::min(low, pose.p_WC), high = glm::max(high, pose.p_WC);
-    poses.push_back(pose);
   }
-  const glm::dvec3 middle = 0.5 * (low + high);
+  const std::size_t count = poses.size();
   Pose best;
   double most = -1;
-  for (std::uint32_t i = 0, found = 0; i < 20000 && found < kEnough; ++i) {
-    const auto [place, yaw] = RandomCandidate(around, seed, i);
-    const glm::dquat turn = Exp({0, yaw, 0});
-    const glm::dvec3 to = place;  // clang 14 captures no structured binding
-    const auto moved = [&](const Pose& pose) {
-      return Pose{to + turn * (pose.p_WC - middle), glm::normalize(turn * pose.q_WC)};
+  for (std::uint32_t i = 0, found = 0; i < 20000 && found < 40; ++i) {
+    const Words words = RandomWords(seed, Stream::gait_place, i, 0, 0);
+    const glm::dvec3 share(Uniform(words[0]), Uniform(words[1]), Uniform(words[2]));
+    const glm::dvec3 place = around.low() + share * (around.high() - around.low());
+    const glm::dquat turn = Exp({0, kTurn * Uniform(words[3]), 0});
+    const auto at = [&](std::size_t k) {
+      const Pose& pose = poses[k];
+      return Pose{place + turn * (pose.p_WC - 0.5 * (low + high)), glm::normalize(turn * pose.q_WC)};
     };
-    const auto at = [&](int k) { return moved(poses[static_cast<std::size_t>(k)]); };
-    // Samples far apart come first: most candidates are in a wall.
     bool free = true;
-    for (int k = 0; free && k < kSamples; ++k) free = !around.Nearest(at(k * 37 % kSamples).p_WC, clearance);
-    for (int k = 1; free && k < kSamples; ++k) free = !around.Between(at(k - 1).p_WC, at(k).p_WC);
+    for (std::size_t k = 0; free && k < count; ++k) {
+      const glm::dvec3 p = at(k * 37 % count).p_WC;  // those far apart first: most candidates are in a wall
+      free = !around.Nearest(p, clearance) && !(k > 0 && around.Between(at(k - 1).p_WC, at(k).p_WC));
+    }
     if (!free) continue;
-    ++found;
-    double score = 0;
-    for (int k = 0; k < kSamples; k += 10) score += around.Interest(at(k));
-    const bool aloft = !around.Between(place, place - glm::dvec3(0, 2.5, 0));
-    score *= (0.1 + Enclosed(around, at(0).p_WC)) * (aloft ? 0.3 : 1);
+    const double enclosed = Enclosed(around, place);
+    if (enclosed > 0.5) ++found;
+    double score = 0.01;
+    for (std::size_t k = 0; k < count; k += 10) score += around.Interest(at(k));
+    score *= (0.05 + enclosed) * (around.Between(place, place - glm::dvec3(0, 2.5, 0)) ? 1 : 0.3);
     if (score > most) most = score, best = at(0);
   }
   if (most >= 0) return best;

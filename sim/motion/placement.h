@@ -14,16 +14,11 @@ namespace sim {
 
 std::string FormatPlace(const glm::dvec3& p);  // "(1.2, 0.8, -3) m"
 
-// Of 2000 random places the one with no surface within `clearance` and the margin, or half of it, 0.5 to 2.5 m above what
-// is below, that is most enclosed and has most to see; it looks there. Throws std::invalid_argument when there is none.
-Pose FreePlace(const Surroundings& around, double clearance, double margin, std::uint64_t seed);
-
-// The pose of the path's start for which the path, moved rigidly, keeps `clearance`: of 20 000 random places and
-// headings the one, among the first 24 that are free, from which most is seen, a surface within 2.5 m below the path's
-// middle counting threefold. That axis of the path's own frame that is
-// nearest to the camera's mean upward direction becomes +y. Throws std::invalid_argument when none is free.
-Pose FreePlaceOf(const Trajectory& path, double end_s, double clearance, const Surroundings& around,
-                 std::uint64_t seed);
+// Where the first of some poses lies when all are moved rigidly to where they keep `clearance`, in this order: of 20 000
+// random places and headings the one, among the first 40 that are free and indoors, from which most is seen; enclosed, and with
+// a surface within 2.5 m below the middle. That axis of the poses' own frame that is nearest to the cameras' mean upward
+// direction becomes +y. Throws std::invalid_argument when none is free.
+Pose FreePlaceOf(std::vector<Pose> poses, double clearance, const Surroundings& around, std::uint64_t seed);
 
 // Throws std::invalid_argument that names time, place and mesh of the first surface that the path over [0, end_s]
 // passes through: straight ways between instants 1/240 s apart are asked about, further apart in paths of more than an

@@ -152,7 +152,9 @@ std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion,
   if (motion.placing == RecordedMotion::Placing::automatic) {
     if (around == nullptr) Fail(motion.file, "'placing: auto' needs a world of meshes");
     try {
-      start = FreePlaceOf(*trajectory, end_s, motion.clearance, *around, seed);
+      std::vector<Pose> poses;  // as many as not to be divided by the 37 of FreePlaceOf
+      for (int k = 0; k < 120; ++k) poses.push_back(trajectory->At(end_s * k / 119).pose);
+      start = FreePlaceOf(std::move(poses), motion.clearance, *around, seed);
     } catch (const std::invalid_argument& error) {
       Fail(motion.file, error.what());
     }

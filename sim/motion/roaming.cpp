@@ -22,17 +22,6 @@ constexpr double kStep = kGaitStep_s, kDegree = std::numbers::pi / 180;
 
 std::size_t KeysUntil(double end_s) { return static_cast<std::size_t>(std::ceil(end_s / kStep)) + 3; }
 
-// What steers: a wanted rate, through two stages so that the acceleration stays bounded.
-struct Steering {
-  double delay_s;
-  glm::dvec3 first{0.0}, rate{0.0};
-  void Step(const glm::dvec3& wanted) {
-    const double gain = kStep / delay_s;
-    first += gain * (wanted - first);
-    rate += gain * (first - rate);
-  }
-};
-
 double YawOf(const glm::dvec3& way) { return std::atan2(-way.x, -way.z); }
 double PitchOf(const glm::dvec3& way) { return std::atan2(way.y, std::hypot(way.x, way.z)); }
 double Wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
@@ -44,6 +33,9 @@ glm::dquat Turned(const glm::dquat& start, const glm::dvec3& pitch_yaw_roll) {
                         Exp({0, 0, pitch_yaw_roll.z}));
 }
 
+// Level, a little down.
+Pose Level() { return {glm::dvec3(0), glm::dquat(0, 1, 0, 0) * Exp({-0.2, 0, 0})}; }
+
 // Where surfaces begin to push [m].
 double MarginOf(const Gait& gait) { return std::max(0.15, gait.table().ahead_s * gait.speed()); }
 
@@ -51,13 +43,7 @@ class Roamer {
  public:
   Roamer(const RoamingMotion& motion, const Gait& gait, const Pose& start, const Surroundings* around,
          std::uint64_t seed)
-      : m_(motion),
-        gait_(gait),
-        start_(start),
-        around_(around),
-        seed_(seed),
-        margin_(MarginOf(gait)),
-        away_{0.1 * gait.table().ahead_s} {
+      : m_(motion), gait_(gait), start_(start), around_(around), seed_(seed), margin_(MarginOf(gait)) {
     const glm::dvec3 way = start.q_WC * glm::dvec3(0, 0, 1);
     yaw_0_ = YawOf(way), pitch_0_ = PitchOf(way);
     target_ = {pitch_0_, yaw_0_};
@@ -94,41 +80,34 @@ class Roamer {
  private:
   void StepCourse(std::size_t k) {
     const auto [a, b] = NormalVectors(seed_, Stream::gait_course, static_cast<std::uint32_t>(k), 0);
-    moves_.Step(gait_.table().course_hz, a);
-    turns_.Step(gait_.table().course_hz, b);
+    moves_.Draw(gait_.table().course_hz, a);
+    turns_.Draw(gait_.table().course_hz, b);
   }
 
   glm::dvec3 Velocity() const {
-    constexpr double kLevel = 0.35;  // of the vertical
-    const glm::dvec3 u = moves_.rate * glm::dvec3(1, kLevel, 1) / std::sqrt(2 + kLevel * kLevel);
+    const glm::dvec3 u = moves_.rate * glm::dvec3(0.686, 0.24, 0.686);  // the vertical is 0.35 of the others
     const double e = gait_.table().evenness;
     return gait_.course_speed() * std::sqrt((1 + e) / (e + glm::dot(u, u))) * u;
   }
-
-  glm::dvec3 TurnRate() const {
-    constexpr double kPitch = 0.5;  // of the yaw
-    return gait_.course_turn_rate() / std::sqrt(1 + kPitch * kPitch) *
-           glm::dvec3(kPitch * turns_.rate.x, turns_.rate.y, 0);
-  }
+  // The pitch's is half of the yaw's.
+  glm::dvec3 TurnRate() const { return gait_.course_turn_rate() * turns_.rate * glm::dvec3(0.447, 0.894, 0); }
 
   void Avoid(const glm::dvec3& p, double step, double t_s, Path& path) {
-    const double high = Beyond(p.y - start_.p_WC.y, gait_.table().climb);
-    glm::dvec3 wanted(0, -high, 0);
-    if (around_ == nullptr) return away_.Step(wanted);
-    const auto nearest = around_->Nearest(p, m_.clearance + step + margin_);
+    glm::dvec3 wanted(0, -Beyond(p.y - start_.p_WC.y, gait_.table().climb), 0);
+    const auto nearest = around_ ? around_->Nearest(p, m_.clearance + step + margin_) : std::nullopt;
     if (nearest) {
       const double distance = glm::distance(p, *nearest), spare = distance - m_.clearance - step;
       if (spare < path.spare) path.spare = spare, path.spare_s = t_s, path.place = p;
       const glm::dvec3 out = (p - *nearest) / std::max(distance, 1e-9);
       const double close = std::clamp(1 - spare / margin_, 0.0, 1.25);
       wanted += 3 * std::max(gait_.speed(), 0.1) * close * close * close * out;
-      for (glm::dvec3* u : {&moves_.drive, &moves_.rate}) {
+      for (glm::dvec3* u : {&moves_.first, &moves_.rate}) {
         const double size = glm::length(*u);
         *u -= std::min(1.0, 5 / gait_.table().ahead_s * kStep * close * close) * std::min(0.0, glm::dot(*u, out)) * out;
         *u *= std::min(1.02, size / std::max(glm::length(*u), 1e-9));  // it turns rather than stops
       }
     }
-    away_.Step(wanted);
+    away_.Step(10 / gait_.table().ahead_s, wanted);
   }
 
   // turn: pitch, yaw, roll against the start.
@@ -146,7 +125,7 @@ class Roamer {
     const double pitch = Beyond(pitch_0_ + turn.x - target_.x, 0.5 * wide),
                  yaw = Beyond(Wrapped(yaw_0_ + turn.y - target_.y), wide);
     const double most = 0.7 * gait_.turn_rate();
-    gaze_.Step({std::clamp(-pitch, -most, most), std::clamp(-yaw, -most, most), 0});
+    gaze_.Step(3.3, {std::clamp(-pitch, -most, most), std::clamp(-yaw, -most, most), 0});
   }
 
   void Choose(const Pose& pose, double yaw) {
@@ -169,10 +148,42 @@ class Roamer {
   const std::uint64_t seed_;
   const double margin_;
   double yaw_0_, pitch_0_, next_look_s_ = 0;
-  glm::dvec2 target_{0.0};  // pitch and yaw in W
-  LowPass<glm::dvec3> moves_, turns_;
-  Steering away_, gaze_{0.3};
+  glm::dvec2 target_{0.0};                           // pitch and yaw in W
+  LowPass<glm::dvec3> moves_, turns_, away_, gaze_;  // the last two so that the acceleration stays bounded
 };
+
+// A car's: level, along its own axis, with a speed and a curvature of low-passed noise, slower and turning away where
+// the way ahead is short. Not fitted to anything.
+std::vector<KeyPose> Drive(const RoamingMotion& m, const Pose& start, std::uint64_t seed, double end_s,
+                           const Surroundings* around) {
+  const double most = m.gait.speed.value_or(3), yaw_0 = YawOf(start.q_WC * glm::dvec3(0, 0, 1));
+  const double far = m.clearance + 2 * most + m.turning_radius;
+  const auto ahead = [](double yaw) { return glm::dvec3(-std::sin(yaw), 0, -std::cos(yaw)); };
+  LowPass<glm::dvec3> noise, state;
+  glm::dvec3 p = start.p_WC;
+  double yaw = yaw_0;
+  std::vector<KeyPose> keys;
+  for (std::size_t k = 0; k < KeysUntil(end_s); ++k) {
+    keys.push_back({kStep * static_cast<double>(k), {p, Turned(start.q_WC, {0, yaw - yaw_0, 0})}});
+    noise.Draw(0.12, NormalVectors(seed, Stream::gait_course, static_cast<std::uint32_t>(k), 1)[0]);
+    double speed = most * std::clamp(1 + 0.25 * noise.rate.x, 0.0, 2.0);
+    double curvature = std::clamp(0.3 * noise.rate.y, -1.0, 1.0) / m.turning_radius;
+    if (around != nullptr) {
+      double free[3];  // to the left, ahead, to the right
+      for (int i = 0; i < 3; ++i) {
+        const auto hit = around->Between(p, p + far * ahead(yaw + (1 - i) * 30 * kDegree));
+        free[i] = hit ? glm::distance(p, hit->point) : far;
+      }
+      const double closeness = std::clamp(1.5 - 1.5 * *std::min_element(free, free + 3) / far, 0.0, 1.0);
+      curvature += closeness * ((free[0] > free[2] ? 1.0 : -1.0) / m.turning_radius - curvature);
+      speed = std::min(speed, std::max(0.0, free[1] - m.clearance));  // within a second
+    }
+    state.Step(17, {speed, curvature, 0});
+    yaw += kStep * state.rate.x * state.rate.y;
+    p += kStep * state.rate.x * ahead(yaw);
+  }
+  return keys;
+}
 
 std::uint64_t Attempt(std::uint64_t seed, std::uint32_t attempt) {
   const Words words = RandomWords(seed, Stream::gait_attempt, attempt, 0, 0);
@@ -187,8 +198,10 @@ std::unique_ptr<Trajectory> MakeRoaming(const RoamingMotion& m, std::uint64_t sc
   const std::uint64_t seed = m.gait.seed.value_or(scenario_seed);
   const Gait gait(m.gait, 0);
   const Pose start = m.start             ? *m.start
-                     : around != nullptr ? FreePlace(*around, m.clearance, MarginOf(gait), seed)
+                     : around != nullptr ? FreePlaceOf({Level()}, m.clearance + 0.5 * MarginOf(gait), *around, seed)
                                          : Pose{};
+  if (m.gait.model == GaitModel::vehicle)
+    return std::make_unique<SplineTrajectory>(Drive(m, start, seed, end_s, around));
   Roamer::Path best;
   best.spare = -1e9;
   for (std::uint32_t attempt = 0; attempt < kAttempts && best.spare < 0; ++attempt) {
@@ -222,43 +235,6 @@ std::unique_ptr<Trajectory> Shaken(const Trajectory& path, GaitParams shake, std
     keys.push_back({t_s,
                     {pose.p_WC + offsets[k].move,
                      glm::normalize(pose.q_WC * Exp({0, turn.y, 0}) * Exp({turn.x, 0, 0}) * Exp({0, 0, turn.z}))}});
-  }
-  return std::make_unique<SplineTrajectory>(keys);
-}
-
-std::unique_ptr<Trajectory> MakeVehicle(const VehicleMotion& m, std::uint64_t seed, double end_s,
-                                        const Surroundings* around) {
-  constexpr double kSpeed_hz = 0.1, kCurve_hz = 0.15;
-  const std::uint64_t key = m.seed.value_or(seed);
-  const double yaw_0 = YawOf(m.start.q_WC * glm::dvec3(0, 0, 1));
-  const auto ahead = [](double yaw) { return glm::dvec3(-std::sin(yaw), 0, -std::cos(yaw)); };
-  LowPass<glm::dvec3> speeds, curves;
-  Steering steering{0.06};
-  glm::dvec3 p = m.start.p_WC;
-  double yaw = yaw_0;
-  std::vector<KeyPose> keys;
-  for (std::size_t k = 0; k < KeysUntil(end_s); ++k) {
-    keys.push_back({kStep * static_cast<double>(k), {p, Turned(m.start.q_WC, {0, yaw - yaw_0, 0})}});
-    const auto [a, b] = NormalVectors(key, Stream::gait_course, static_cast<std::uint32_t>(k), 1);
-    speeds.Step(kSpeed_hz, a);
-    curves.Step(kCurve_hz, b);
-    double speed = m.speed * std::clamp(1 + 0.25 * speeds.rate.x, 0.0, 2.0);
-    double curvature = std::clamp(0.3 * curves.rate.x, -1.0, 1.0) / m.turning_radius;
-    if (around != nullptr) {
-      // The way that is free to the left, ahead and to the right, up to where it would be stopped within 2 s.
-      const double far = m.clearance + 2 * m.speed + m.turning_radius;
-      double free[3];
-      for (int i = 0; i < 3; ++i) {
-        const auto hit = around->Between(p, p + far * ahead(yaw + (1 - i) * 30 * kDegree));
-        free[i] = hit ? glm::distance(p, hit->point) : far;
-      }
-      const double closeness = std::clamp(1.5 - 1.5 * *std::min_element(free, free + 3) / far, 0.0, 1.0);
-      curvature += closeness * ((free[0] > free[2] ? 1.0 : -1.0) / m.turning_radius - curvature);
-      speed = std::min(speed, std::max(0.0, (free[1] - m.clearance) / 1.0));
-    }
-    steering.Step({speed, curvature, 0});
-    yaw += kStep * steering.rate.x * std::clamp(steering.rate.y, -1 / m.turning_radius, 1 / m.turning_radius);
-    p += kStep * steering.rate.x * ahead(yaw);
   }
   return std::make_unique<SplineTrajectory>(keys);
 }

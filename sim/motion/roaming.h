@@ -22,6 +22,9 @@ namespace sim {
 // what, among 27 directions ahead and to the sides, has most to see (Surroundings::Interest) times a random number,
 // chosen anew every 2 s; or about `look_at`. Paths that come too near all the same are drawn again, 32 times at most.
 //
+// A vehicle moves level and along its own axis, with a speed and a curvature of low-passed noise, slower and turning away
+// where the way ahead is short; it is not fitted to anything.
+//
 // Without surroundings (worlds of points, objects) the camera roams and looks freely. Throws std::invalid_argument that
 // says where and when the clearance cannot be kept, or that there is no place to start.
 std::unique_ptr<Trajectory> MakeRoaming(const RoamingMotion& motion, std::uint64_t seed, double end_s,
@@ -30,10 +33,5 @@ std::unique_ptr<Trajectory> MakeRoaming(const RoamingMotion& motion, std::uint64
 // The path with the offsets of a gait from 0.7 Hz on: p + offset, q R_y R_x R_z. Speeds that `shake` does not state are
 // the path's own means.
 std::unique_ptr<Trajectory> Shaken(const Trajectory& path, GaitParams shake, std::uint64_t seed, double end_s);
-
-// A car's: level, along its own axis, with a speed and a curvature of low-passed noise, slower and turning away where
-// the way ahead is short. The camera keeps its place and direction in the car. Not fitted to anything.
-std::unique_ptr<Trajectory> MakeVehicle(const VehicleMotion& motion, std::uint64_t seed, double end_s,
-                                        const Surroundings* around);
 
 }  // namespace sim

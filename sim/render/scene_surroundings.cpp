@@ -52,18 +52,6 @@ bool Consider(RTCPointQueryFunctionArguments* arguments) {
   return true;
 }
 
-RTCRayHit RayFrom(const glm::dvec3& origin, const glm::dvec3& direction, double near, double far) {
-  RTCRayHit ray{};
-  const glm::vec3 o(origin), d(direction);
-  ray.ray.org_x = o.x, ray.ray.org_y = o.y, ray.ray.org_z = o.z;
-  ray.ray.dir_x = d.x, ray.ray.dir_y = d.y, ray.ray.dir_z = d.z;
-  ray.ray.tnear = static_cast<float>(near);
-  ray.ray.tfar = static_cast<float>(far);
-  ray.ray.mask = 0xffffffffu;
-  ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  return ray;
-}
-
 }  // namespace
 
 SceneSurroundings::SceneSurroundings(const Scene& scene, const SurfaceTracer& surfaces)
@@ -92,8 +80,7 @@ std::optional<Surroundings::Hit> SceneSurroundings::Between(const glm::dvec3& a,
   constexpr std::uint32_t kSolid = 0;  // the geometry of what is there everywhere
   constexpr double kPast = 1e-5;
   for (double from = 0; from <= 1;) {
-    RTCRayHit ray = RayFrom(a, b - a, from, 1);
-    Intersect1(rays_.embree(), &ray);
+    const RTCRayHit ray = Cast(rays_.embree(), a, b - a, 1, static_cast<float>(from));
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     const double at = ray.ray.tfar;
     if (ray.hit.geomID == kSolid) {
@@ -123,26 +110,18 @@ double SceneSurroundings::Luminance(std::uint32_t triangle, float u, float v) co
 
 double SceneSurroundings::Interest(const Pose& view) const {
   constexpr int kSide = 5;
-  constexpr double kWide = 0.577, kHigh = 0.404;  // tan 30, tan 22 degrees
-  constexpr float kDark = 0.1f;                   // differences of what is darker do not count
-  double seen[kSide][kSide];                      // logarithm; NaN: nothing
+  constexpr double kDark = 0.1;        // differences of what is darker do not count
+  double seen[kSide][kSide], sum = 0;  // logarithm; NaN: nothing
   for (int j = 0; j < kSide; ++j) {
     for (int i = 0; i < kSide; ++i) {
-      const glm::dvec3 way = view.q_WC * glm::dvec3(kWide * (i - 2) / 2, kHigh * (j - 2) / 2, 1);
-      RTCRayHit ray = RayFrom(view.p_WC, way, 0, std::numeric_limits<double>::infinity());
-      Intersect1(rays_.embree(), &ray);
-      seen[j][i] = std::numeric_limits<double>::quiet_NaN();
-      if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-      const std::uint32_t triangle = rays_.Triangle(RTC_INVALID_GEOMETRY_ID, ray.hit.geomID, ray.hit.primID);
-      seen[j][i] = std::log(kDark + Luminance(triangle, ray.hit.u, ray.hit.v));
+      const glm::dvec3 way(0.2885 * (i - 2), 0.202 * (j - 2), 1);  // to tan 30 and tan 22 degrees
+      const RTCRayHit ray = Cast(rays_.embree(), view.p_WC, view.q_WC * way);
+      const bool met = ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+      const std::uint32_t triangle = met ? rays_.Triangle(RTC_INVALID_GEOMETRY_ID, ray.hit.geomID, ray.hit.primID) : 0;
+      seen[j][i] = met ? std::log(kDark + Luminance(triangle, ray.hit.u, ray.hit.v)) : std::nan("");
+      for (const double other : {i > 0 ? seen[j][i - 1] : std::nan(""), j > 0 ? seen[j - 1][i] : std::nan("")})
+        if (met && std::isfinite(other)) sum += std::abs(seen[j][i] - other);
     }
-  }
-  double sum = 0;
-  const auto add = [&](double a, double b) {
-    if (std::isfinite(a) && std::isfinite(b)) sum += std::abs(a - b);
-  };
-  for (int j = 0; j < kSide; ++j) {
-    for (int i = 0; i + 1 < kSide; ++i) add(seen[j][i], seen[j][i + 1]), add(seen[i][j], seen[i + 1][j]);
   }
   return sum / (2 * kSide * (kSide - 1));
 }

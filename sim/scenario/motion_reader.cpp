@@ -80,15 +80,6 @@ MotionDescription ReadRoaming(Section& section, const std::filesystem::path& /*f
   return motion;
 }
 
-MotionDescription ReadVehicle(Section& section, const std::filesystem::path& /*folder*/) {
-  VehicleMotion motion;
-  section.RequirePresent("start");
-  Section start = section.Child("start");
-  ReadPose(start, motion.start);
-  ReadFields(section, motion);
-  return motion;
-}
-
 MotionDescription ReadSampled(Section& section, const std::filesystem::path& /*folder*/) {
   SampledMotion motion;
   Section start = section.Child("start");
@@ -197,7 +188,7 @@ MotionDescription ReadMotion(Section& section, const std::filesystem::path& fold
                                             {"dolly", ReadPath<PathKind::dolly>},
                                             {"handheld", ReadRoaming<GaitModel::handheld>},
                                             {"drone", ReadRoaming<GaitModel::drone>},
-                                            {"vehicle", ReadVehicle}});
+                                            {"vehicle", ReadRoaming<GaitModel::vehicle>}});
   if (known) return read(section, folder);
   section.IgnoreRest();
   return SampledMotion{};

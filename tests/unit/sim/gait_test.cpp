@@ -106,10 +106,10 @@ TEST(Gait, AShakeIsAddedToThePath) {
 
 // Along its own axis, level; keys hold this, the spline between them to its curvature.
 TEST(Vehicle, DoesNotSlip) {
-  VehicleMotion motion;
-  motion.start.p_WC = {1, 1.5, 2};
-  motion.start.q_WC = {0, 1, 0, 0};  // level, towards -z
-  const auto path = MakeVehicle(motion, 4, 20, nullptr);
+  RoamingMotion motion;
+  motion.gait.model = GaitModel::vehicle;
+  motion.start = {{1, 1.5, 2}, {0, 1, 0, 0}};  // level, towards -z
+  const auto path = MakeRoaming(motion, 4, 20, nullptr);
   double fastest = 0;
   for (int k = 10; k < 1990; ++k) {
     const Motion at = path->At(0.01 * k);

@@ -5,7 +5,6 @@
 #include "sim/motion/placement.h"
 #include "sim/sensor/sensor.h"
 #include "sim/simulator.h"
-#include "tools/base/files.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/run/commands.h"
 #include "tools/bench/systems/bridge.h"
@@ -50,32 +49,14 @@ void PrintSensor(const sim::SensorParams& sensor) {
       20 * std::log10(emva.snr_max), 20 * std::log10(emva.dynamic_range), emva.prnu_percent, emva.dsnu_e);
 }
 
-double LastStamp(const sim::Simulator& simulator) {
-  return sim::Seconds(simulator.StampNs(simulator.frame_count() - 1));
-}
-
 void PrintRevisits(const sim::Simulator& simulator) {
   constexpr std::size_t kMost = 5;
-  const std::vector<sim::Revisit> revisits = sim::Revisits(simulator.trajectory(), LastStamp(simulator));
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kMost, revisits.size()); ++i) {
-    text += fmt::format("{} at {:.1f} s ({:.1f} s)", i == 0 ? ":" : ",", revisits[i].t_s, revisits[i].earlier_s);
-  }
-  fmt::print("  returns {} times to an earlier view{}{}\n", revisits.size(), text,
-             revisits.size() > kMost ? ", ..." : "");
-}
-
-// Every 10 ms, in TUM's format.
-void WritePath(const std::filesystem::path& file, const sim::Simulator& simulator) {
-  constexpr std::int64_t kStep_ns = 10'000'000;
-  std::string text = "# timestamp tx ty tz qx qy qz qw\n";
-  const std::int64_t last_ns = simulator.StampNs(simulator.frame_count() - 1);
-  for (std::int64_t t_ns = 0; t_ns <= last_ns; t_ns += kStep_ns) {
-    const sim::Truth at = sim::TruthAt(simulator.trajectory(), sim::Seconds(t_ns));
-    text += fmt::format("{:.2f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", sim::Seconds(t_ns), at.p_WC.x,
-                        at.p_WC.y, at.p_WC.z, at.q_WC.x, at.q_WC.y, at.q_WC.z, at.q_WC.w);
-  }
-  base::WriteFileAndFolders(file, text);
+  const auto revisits =
+      sim::Revisits(simulator.trajectory(), sim::Seconds(simulator.StampNs(simulator.frame_count() - 1)));
+  fmt::print("  returns {} times to an earlier view", revisits.size());
+  for (std::size_t i = 0; i < std::min(kMost, revisits.size()); ++i)
+    fmt::print("{} at {:.1f} s ({:.1f} s)", i == 0 ? ":" : ",", revisits[i].t_s, revisits[i].earlier_s);
+  fmt::print("{}\n", revisits.size() > kMost ? ", ..." : "");
 }
 
 }  // namespace
@@ -92,7 +73,11 @@ void Check(const CheckOptions& options) {
              scenario.world.meshes.size(), scenario.world.lights.size(), scenario.seed);
   PrintRevisits(simulator);
   PrintSensor(scenario.sensor);
-  if (options.path) WritePath(*options.path, simulator);
+  if (!options.path) return;
+  Truth path;
+  for (std::int64_t t_ns = 0; t_ns <= simulator.StampNs(simulator.frame_count() - 1); t_ns += 10'000'000)
+    Append(t_ns, sim::TruthAt(simulator.trajectory(), sim::Seconds(t_ns)), path);
+  evaluation::WriteTrajectory(*options.path, path.poses);
 }
 
 }  // namespace vobench
