@@ -107,8 +107,7 @@ std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& s) {
   Scene scene = LoadScene(s.world);
   scene.objects.clear();  // they are not asked about
   const auto rays = MakeRayTracer(scene, {.jobs = 1});
-  const SceneSurroundings around(scene, *rays->surfaces());
-  return MakeMotion(s, s.motion, s.seed, &around);
+  return MakeMotion(s, s.motion, s.seed, SurroundingsOf(scene, *rays->surfaces()).get());
 }
 
 struct Simulator::Parts {
@@ -126,11 +125,9 @@ struct Simulator::Parts {
     }
     warnings = scene.warnings;
     exact = MakeRayTracer(scene, {.jobs = Threads(jobs)});
-    {
-      const SceneSurroundings around(scene, *exact->surfaces());
-      trajectory = MakeMotion(s, s.motion, s.seed, &around);
-      RequireFree(*trajectory, LastStamp(s), around, [&s](double t_s) { return s.sensor.IsCovered(t_s); });
-    }
+    const auto around = SurroundingsOf(scene, *exact->surfaces());
+    trajectory = MakeMotion(s, s.motion, s.seed, around.get());
+    RequireFree(*trajectory, LastStamp(s), *around, [&s](double t_s) { return s.sensor.IsCovered(t_s); });
     renderer = MakeRenderer(scene, s.render, Threads(jobs), warnings);
     if (renderer->surfaces() != nullptr) exact.reset();
     for (const Mesh& mesh : scene.meshes) mesh_names.push_back(mesh.name);

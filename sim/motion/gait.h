@@ -53,12 +53,11 @@ struct LowPass {
 // Sum over components, half an octave apart from 0.175 Hz on, of
 //   x_j = two equal resonators in a row, each x'' + 2 zeta w_j x' + w_j^2 x = its input,   zeta = 0.3
 //
-// driven by white noise times a burst exp(s g(t) - s^2), g of first order and standard deviation 1, and an effort of the
-// same form with g a LowPass. Amplitudes are set so that each component's acceleration has the table's root mean square,
-// `linear`^2 * (speed * vehemence)^2 + `linear_tremor`^2 * tremor^2, a third of it on each axis, and likewise the
-// angles'. So the power spectral density of acceleration of one is u^4 / ((1 - u^2)^2 + (2 zeta u)^2)^2, u = f / f_j,
-// and its rate has the root mean square of its acceleration over 2 pi f_j. Components below 0.3 Hz are made smaller
-// where the rates would exceed what is stated.
+// driven by white noise times a burst exp(s g(t) - s^2), g of first order with standard deviation 1, and an effort, the
+// same with g a LowPass. The acceleration of each has the table's root mean square: `linear`^2 (speed vehemence)^2 +
+// `linear_tremor`^2 tremor^2, a third of it on each axis; likewise the angles. Its power spectral density is u^4 /
+// ((1 - u^2)^2 + (2 zeta u)^2)^2, u = f / f_j; its rate's root mean square is the acceleration's over 2 pi f_j.
+// Components below 0.3 Hz are made smaller where the rates would exceed what is stated.
 class Gait {
  public:
   // from_hz: components below are left out.

@@ -74,7 +74,8 @@ TEST_F(Room, DistancesAndWaysAreThoseOfTheBoxes) {
   const Scenario scenario = Load("{type: handheld}", 1);
   const Scene scene = LoadScene(scenario.world);
   const auto rays = MakeRayTracer(scene, {.jobs = 1});
-  const SceneSurroundings around(scene, *rays->surfaces());
+  const auto surroundings = SurroundingsOf(scene, *rays->surfaces());
+  const Surroundings& around = *surroundings;
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> share(0, 1);
   for (int i = 0; i < 1000; ++i) {
