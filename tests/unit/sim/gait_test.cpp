@@ -69,7 +69,7 @@ double DeviationOfTremor(double tremor, double stated) {
   const Gait gait(params, 0.69);
   double expected = 0, sum = 0, squares = 0;
   for (std::size_t j = 4; j < kGaitComponents; ++j) expected += std::pow(stated * gait.table().linear_tremor[j], 2);
-  constexpr int kSeeds = 400;
+  constexpr int kSeeds = 200;
   for (int seed = 0; seed < kSeeds; ++seed) {
     const auto x = gait.Draw(static_cast<std::uint64_t>(seed), 3);
     const glm::dvec3 a = (x[0].move - 2.0 * x[1].move + x[2].move) / (kGaitStep_s * kGaitStep_s);

@@ -95,6 +95,32 @@ TEST_F(Room, DistancesAndWaysAreThoseOfTheBoxes) {
   EXPECT_FALSE(around.Between({1, 1, 1}, {7, 1, 1}));
 }
 
+TEST_F(Room, InterestIsWhereAlbedosDiffer) {
+  const Scenario scenario = Load("{type: handheld}", 1);
+  const Scene scene = LoadScene(scenario.world);
+  const auto rays = MakeRayTracer(scene, {.jobs = 1});
+  const auto around = SurroundingsOf(scene, *rays->surfaces());
+  EXPECT_GT(around->Interest({{1, 1.5, 4}, glm::dquat(std::sqrt(0.5), 0, std::sqrt(0.5), 0)}), 0.01) << "the pillar";
+  EXPECT_EQ(around->Interest({{4, 1.5, 20}, glm::dquat(1, 0, 0, 0)}), 0) << "away from everything";
+}
+
+// The share of instants at which a point in a corner is within 45 degrees of the camera's axis.
+double ShareTowardsCorner(const Trajectory& path) {
+  int seen = 0;
+  for (int k = 0; k < 590; ++k) {
+    const Pose pose = path.At(0.1 * k).pose;
+    const glm::dvec3 way = glm::normalize(glm::dvec3(0.1, 1.5, 0.1) - pose.p_WC);
+    seen += glm::dot(way, pose.q_WC * glm::dvec3(0, 0, 1)) > std::sqrt(0.5);
+  }
+  return seen / 590.0;
+}
+
+TEST_F(Room, LooksWhereItIsTold) {
+  const std::string type = "{type: handheld, start: {position: [6, 1.5, 6], look_at: [0.1, 1.5, 0.1]}";
+  EXPECT_GT(ShareTowardsCorner(*TrajectoryOf(Load(type + ", look_at: [0.1, 1.5, 0.1]}", 60))), 0.9);
+  EXPECT_LT(ShareTowardsCorner(*TrajectoryOf(Load(type + ", look_at: [8, 1.5, 8]}", 60))), 0.5);
+}
+
 TEST_F(Room, CarriedCamerasKeepTheirClearance) {
   std::mt19937_64 random(2);
   for (const std::string type : {"handheld, speed: 0.4 m/s, clearance: 0.3 m", "drone, clearance: 0.4 m"}) {
