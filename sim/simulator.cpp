@@ -125,11 +125,13 @@ struct Simulator::Parts {
     }
     warnings = scene.warnings;
     exact = MakeRayTracer(scene, {.jobs = Threads(jobs)});
-    const auto around = SurroundingsOf(scene, *exact->surfaces());
-    trajectory = MakeMotion(s, s.motion, s.seed, around.get());
-    RequireFree(*trajectory, LastStamp(s), *around, [&s](double t_s) { return s.sensor.IsCovered(t_s); });
+    {
+      const auto around = SurroundingsOf(scene, *exact->surfaces());
+      trajectory = MakeMotion(s, s.motion, s.seed, around.get());
+      RequireFree(*trajectory, LastStamp(s), *around, [&s](double t_s) { return s.sensor.IsCovered(t_s); });
+    }
+    if (s.render.engine == Engine::ray_tracer) exact.reset();  // the renderer has its own
     renderer = MakeRenderer(scene, s.render, Threads(jobs), warnings);
-    if (renderer->surfaces() != nullptr) exact.reset();
     for (const Mesh& mesh : scene.meshes) mesh_names.push_back(mesh.name);
     for (const Light& light : scene.lights) {
       const auto* rect = std::get_if<RectLight>(&light);
