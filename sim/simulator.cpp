@@ -8,9 +8,12 @@
 #include <stdexcept>
 
 #include "sim/light/cache.h"
+#include "sim/motion/placement.h"
+#include "sim/motion/trajectory.h"
 #include "sim/random/random.h"
 #include "sim/render/rasteriser.h"
 #include "sim/render/ray_tracer.h"
+#include "sim/render/scene_surroundings.h"
 #include "sim/render/surface_tracer.h"
 #include "sim/sensor/sensor.h"
 #include "sim/sensor/vignetting.h"
@@ -70,10 +73,13 @@ std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& p
       {.rays_per_time_sample = params.rays_per_time_sample, .jobs = jobs, .reflections = params.reflections});
 }
 
+double LastStamp(const Scenario& s) { return Seconds(StampNs(CountFrames(s.time) - 1, s.time)); }
+
 // Long enough for all frames.
-std::unique_ptr<Trajectory> MakeMotion(const Scenario& s, const MotionDescription& motion, std::uint64_t seed) {
-  return MakeTrajectory(motion, seed, Seconds(StampNs(CountFrames(s.time) - 1, s.time)),
-                        0.5 * (LongestExposure(s.sensor) + std::abs(s.sensor.readout_s)));
+std::unique_ptr<Trajectory> MakeMotion(const Scenario& s, const MotionDescription& motion, std::uint64_t seed,
+                                       const Surroundings* around = nullptr) {
+  return MakeTrajectory(motion, seed, LastStamp(s), 0.5 * (LongestExposure(s.sensor) + std::abs(s.sensor.readout_s)),
+                        around);
 }
 
 std::unique_ptr<Trajectory> MakeObjectMotion(const Scenario& s, std::size_t object) {
@@ -94,7 +100,13 @@ struct Optics {
 
 }  // namespace
 
-std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& s) { return MakeMotion(s, s.motion, s.seed); }
+std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& s) {
+  if (s.points || !NeedsSurroundings(s.motion)) return MakeMotion(s, s.motion, s.seed);
+  Scene scene = LoadScene(s.world);
+  scene.objects.clear();  // they are not asked about
+  const auto rays = MakeRayTracer(scene, {.jobs = 1});
+  return MakeMotion(s, s.motion, s.seed, SurroundingsOf(scene, *rays->surfaces()).get());
+}
 
 struct Simulator::Parts {
   Parts(const Scenario& s, int jobs)
@@ -102,7 +114,6 @@ struct Simulator::Parts {
         frames(CountFrames(s.time)),
         optics(s.camera, s.sensor.optics),
         sensor(s.sensor, s.seed, s.camera.width, s.camera.height),
-        trajectory(TrajectoryOf(s)),
         arena(Threads(jobs)) {
     Scene scene = LoadScene(s.world);
     for (std::size_t k = 0; k < scene.objects.size(); ++k) {
@@ -111,8 +122,14 @@ struct Simulator::Parts {
       object_names.push_back(scene.objects[k].name);
     }
     warnings = scene.warnings;
+    exact = MakeRayTracer(scene, {.jobs = Threads(jobs)});
+    {
+      const auto around = SurroundingsOf(scene, *exact->surfaces());
+      trajectory = MakeMotion(s, s.motion, s.seed, around.get());
+      RequireFree(*trajectory, LastStamp(s), *around, [&s](double t_s) { return s.sensor.IsCovered(t_s); });
+    }
+    if (s.render.engine == Engine::ray_tracer) exact.reset();  // the renderer has its own
     renderer = MakeRenderer(scene, s.render, Threads(jobs), warnings);
-    if (renderer->surfaces() == nullptr) exact = MakeRayTracer(scene, {.jobs = Threads(jobs)});
     for (const Mesh& mesh : scene.meshes) mesh_names.push_back(mesh.name);
     for (const Light& light : scene.lights) {
       const auto* rect = std::get_if<RectLight>(&light);

@@ -29,16 +29,6 @@ glm::dvec3 CosineDirection(const glm::dvec3& n, double u, double v) {
   return radius * std::cos(angle) * t + radius * std::sin(angle) * s + std::sqrt(std::max(0.0, 1.0 - u)) * n;
 }
 
-RTCRay MakeRay(const glm::dvec3& origin, const glm::dvec3& direction, float reach) {
-  const glm::vec3 o(origin), d(direction);
-  RTCRay ray{};
-  ray.org_x = o.x, ray.org_y = o.y, ray.org_z = o.z;
-  ray.dir_x = d.x, ray.dir_y = d.y, ray.dir_z = d.z;
-  ray.tfar = reach;
-  ray.mask = 0xffffffffu;
-  return ray;
-}
-
 double Strength(const glm::dvec3& color) { return color.x + color.y + color.z; }
 
 }  // namespace
@@ -105,10 +95,7 @@ bool PathTracer::SeeEachOther(const LightPoint& a, const LightPoint& b) const {
 
 bool PathTracer::Trace(const LightPoint& from, const glm::dvec3& direction, Met& met) const {
   const glm::dvec3 origin = Origin(from);
-  RTCRayHit ray{};
-  ray.ray = MakeRay(origin, direction, std::numeric_limits<float>::infinity());
-  ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  Intersect1(rays_.embree(), &ray);
+  const RTCRayHit ray = Cast(rays_.embree(), origin, direction);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   met.triangle = rays_.Triangle(ray.hit.instID[0], ray.hit.geomID, ray.hit.primID);
   met.u = ray.hit.u, met.v = ray.hit.v;

@@ -1,6 +1,7 @@
 // Parameters of a motion. No file has been read yet.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <numbers>
@@ -63,6 +64,43 @@ void Visit(V& v, SampledMotion& p) {
 // Ranges, and rules between several values. Keys are those of a trajectory.
 std::vector<settings::FieldProblem> Problems(SampledMotion motion);
 
+enum class GaitModel { handheld, drone, vehicle };
+
+// Random motion, of hands and drones fitted to recordings: sim/motion/gait.h.
+struct GaitParams {
+  GaitModel model = GaitModel::handheld;
+  std::optional<std::uint64_t> seed;       // none: the scenario's
+  std::optional<double> speed, turn_rate;  // mean [m/s], [rad/s]; none: the recordings' medians, a shaken path's own
+  double vehemence = 1, tremor = 1;
+};
+template <class V>
+void Visit(V& v, GaitParams& p) {
+  v("seed", p.seed, {Range{0, 1e15}, "handheld, drone, vehicle, shake: of the path; none: the scenario's"});
+  v("speed", p.speed,
+    {Unit::speed, Range{0, 100}, "mean; none: recordings' median, a shaken path's own, vehicle 3 m/s"});
+  if (p.model == GaitModel::vehicle) return;
+  v("turn_rate", p.turn_rate, {Unit::angular_rate, Range{0, 20}, "the same of turns"});
+  v("vehemence", p.vehemence, {Range{0, 10}, "of accelerations from 0.2 Hz on; 1: the recordings' mean at this speed"});
+  v("tremor", p.tremor, {Range{0, 10}, "of those that do not depend on speed, mostly above 2 Hz; 1: the mean"});
+}
+
+// A camera carried through a world: sim/motion/roaming.h.
+struct RoamingMotion {
+  GaitParams gait;
+  std::optional<Pose> start;                    // none: a free place is found
+  double clearance = 0.25, turning_radius = 5;  // [m]
+  std::optional<glm::dvec3> look_at;
+};
+// But for the start.
+template <class V>
+void Visit(V& v, RoamingMotion& p) {
+  Visit(v, p.gait);
+  v("clearance", p.clearance, {Unit::length, Range{0, 1e3}, "handheld, drone, vehicle, placing: auto: from surfaces"});
+  if (p.gait.model == GaitModel::vehicle)
+    return v("turning_radius", p.turning_radius, {Unit::length, Range::Positive(), "vehicle: the smallest"});
+  v("look_at", p.look_at, {Unit::length, Range{-1e6, 1e6}, "handheld, drone: instead of where there is most to see"});
+}
+
 struct KeyPose {
   double t_s = 0.0;
   Pose pose;
@@ -71,6 +109,7 @@ struct KeyPose {
 // A spline through key poses: sim/motion/spline.h.
 struct ScriptedMotion {
   std::vector<KeyPose> keys;  // at least two, times increasing, the first at 0
+  std::optional<GaitParams> shake;
 };
 
 // A recorded trajectory: sim/motion/recorded.h.
@@ -78,6 +117,8 @@ struct RecordedMotion {
   std::filesystem::path file;  // TUM: timestamp tx ty tz qx qy qz qw
   double start_time_s = 0.0;
   double averaging_time_s = 0.030;
+  enum class Placing { as_recorded, automatic } placing = Placing::as_recorded;
+  double clearance = 0.25;         // of a path that is placed automatically [m]
   std::optional<Pose> start_pose;  // the whole motion is moved rigidly so that it starts here; without: as recorded
 };
 
@@ -89,6 +130,10 @@ void Visit(V& v, RecordedMotion& p) {
   v.Renamed("place", "start_pose");
   v("start_time", p.start_time_s, {Unit::time, Range::AtLeast(0), "recorded: t = 0 after the file's first stamp"});
   v("averaging_time", p.averaging_time_s, {Unit::time, Range{0, 0.5}, "recorded: poses within it count as their mean"});
+  using Placing = RecordedMotion::Placing;
+  v("placing", p.placing, {{"as_recorded", Placing::as_recorded}, {"auto", Placing::automatic}},
+    "recorded: where it lies; auto: where it passes through nothing and there is most to see");
+  v("clearance", p.clearance, {Unit::length, Range{0, 1e3}, "handheld, drone, vehicle, placing: auto: from surfaces"});
 }
 
 // A number that changes with time.
@@ -110,6 +155,7 @@ struct PathMotion {
   Swing azimuth, elevation, yaw, pitch, roll;
   glm::dvec3 move{0.0};  // [m]
   Swing along;           // how much of it
+  std::optional<GaitParams> shake;
 };
 
 enum class PathKind { orbit, half_sphere, rpy, dolly };
@@ -147,6 +193,6 @@ void Visit(V& v, PathKind kind, PathMotion& p) {
   }
 }
 
-using MotionDescription = std::variant<SampledMotion, ScriptedMotion, RecordedMotion, PathMotion>;
+using MotionDescription = std::variant<SampledMotion, ScriptedMotion, RecordedMotion, PathMotion, RoamingMotion>;
 
 }  // namespace sim

@@ -7,9 +7,11 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "sim/motion/placement.h"
 #include "sim/motion/spline.h"
 #include "tools/base/settings/problem.h"
 #include "tools/base/settings/quantity.h"
@@ -126,7 +128,8 @@ std::vector<KeyPose> Average(const std::vector<KeyPose>& keys, double average_s)
   return means;
 }
 
-std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion, double end_s) {
+std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion, double end_s, std::uint64_t seed,
+                                                   const Surroundings* around) {
   std::vector<KeyPose> keys = ReadTumTrajectory(motion.file);
   const double length_s = keys.back().t_s;
   constexpr double kRounding_s = 0.5e-9;  // stamps are whole nanoseconds
@@ -145,12 +148,23 @@ std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion,
     }
   };
   std::unique_ptr<Trajectory> trajectory = make();
-  if (!motion.start_pose) return trajectory;
+  std::optional<Pose> start = motion.start_pose;
+  if (motion.placing == RecordedMotion::Placing::automatic) {
+    if (around == nullptr) Fail(motion.file, "'placing: auto' needs a world of meshes");
+    try {
+      std::vector<Pose> poses;  // as many as not to be divided by the 37 of FreePlaceOf
+      for (int k = 0; k < 120; ++k) poses.push_back(trajectory->At(end_s * k / 119).pose);
+      start = FreePlaceOf(std::move(poses), motion.clearance, *around, seed);
+    } catch (const std::invalid_argument& error) {
+      Fail(motion.file, error.what());
+    }
+  }
+  if (!start) return trajectory;
   // T = place * first^-1, applied from the left: the path keeps its shape.
   const Pose first = trajectory->At(0).pose;
-  const glm::dquat turn = glm::normalize(motion.start_pose->q_WC) * glm::conjugate(first.q_WC);
+  const glm::dquat turn = glm::normalize(start->q_WC) * glm::conjugate(first.q_WC);
   for (KeyPose& key : keys) {
-    key.pose = {motion.start_pose->p_WC + turn * (key.pose.p_WC - first.p_WC), glm::normalize(turn * key.pose.q_WC)};
+    key.pose = {start->p_WC + turn * (key.pose.p_WC - first.p_WC), glm::normalize(turn * key.pose.q_WC)};
   }
   return make();
 }

@@ -7,25 +7,36 @@
 
 #include "sim/motion/path.h"
 #include "sim/motion/recorded.h"
+#include "sim/motion/roaming.h"
 #include "sim/motion/sampled.h"
 #include "sim/motion/spline.h"
 
 namespace sim {
 
 std::unique_ptr<Trajectory> MakeTrajectory(const MotionDescription& motion, std::uint64_t seed, double last_stamp_s,
-                                           double margin_s) {
-  if (const auto* sampled = std::get_if<SampledMotion>(&motion)) {
-    return std::make_unique<SampledTrajectory>(*sampled, seed, last_stamp_s + margin_s);
-  }
-  if (const auto* path = std::get_if<PathMotion>(&motion)) return std::make_unique<PathTrajectory>(*path);
+                                           double margin_s, const Surroundings* around) {
+  const double end_s = last_stamp_s + margin_s;
+  const auto with = [&](const std::optional<GaitParams>& shake, std::unique_ptr<Trajectory> path) {
+    return shake ? Shaken(*path, *shake, seed, end_s) : std::move(path);
+  };
+  if (const auto* sampled = std::get_if<SampledMotion>(&motion))
+    return std::make_unique<SampledTrajectory>(*sampled, seed, end_s);
+  if (const auto* path = std::get_if<PathMotion>(&motion))
+    return with(path->shake, std::make_unique<PathTrajectory>(*path));
   if (const auto* recorded = std::get_if<RecordedMotion>(&motion))
-    return MakeRecordedTrajectory(*recorded, last_stamp_s);
-  auto trajectory = std::make_unique<SplineTrajectory>(std::get<ScriptedMotion>(motion).keys);
-  if (trajectory->end_s() < last_stamp_s) {
-    throw std::invalid_argument("the last key pose is at " + std::to_string(trajectory->end_s()) +
-                                " s, before the last frame at " + std::to_string(last_stamp_s) + " s");
-  }
-  return trajectory;
+    return MakeRecordedTrajectory(*recorded, last_stamp_s, seed, around);
+  if (const auto* roaming = std::get_if<RoamingMotion>(&motion)) return MakeRoaming(*roaming, seed, end_s, around);
+  const auto& scripted = std::get<ScriptedMotion>(motion);
+  auto trajectory = std::make_unique<SplineTrajectory>(scripted.keys);
+  if (trajectory->end_s() >= last_stamp_s) return with(scripted.shake, std::move(trajectory));
+  throw std::invalid_argument("the last key pose is at " + std::to_string(trajectory->end_s()) +
+                              " s, before the last frame at " + std::to_string(last_stamp_s) + " s");
+}
+
+bool NeedsSurroundings(const MotionDescription& motion) {
+  const auto* recorded = std::get_if<RecordedMotion>(&motion);
+  return std::holds_alternative<RoamingMotion>(motion) ||
+         (recorded != nullptr && recorded->placing == RecordedMotion::Placing::automatic);
 }
 
 Truth TruthAt(const Trajectory& trajectory, double t_s) {

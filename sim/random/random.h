@@ -22,6 +22,12 @@ enum class Stream : std::uint32_t {
   light_path = 5,
   fixed_pattern = 8,
   depth_noise = 9,
+  gait = 10,          // offsets of a carried camera,
+  gait_burst = 11,    // how strongly they are driven,
+  gait_course = 12,   // its course,
+  gait_gaze = 13,     // where it looks,
+  gait_attempt = 14,  // the seeds of further attempts,
+  gait_place = 15,    // and where it may lie
   start_velocity = 16,
   point_place = 17,    // landmarks without images: where they are,
   point_noise = 18,    // the noise of their views,

@@ -1,6 +1,9 @@
 // Ray queries of Embree 3 (Debian 12) or 4. Private to sim/render and sim/light.
 #pragma once
 
+#include <glm/vec3.hpp>
+#include <limits>
+
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else
@@ -50,5 +53,23 @@ static inline void Occluded1(RTCScene scene, RTCRay* ray) {
   rtcOccluded1(scene, &context, ray);
 }
 #endif
+
+static inline RTCRay MakeRay(const glm::dvec3& origin, const glm::dvec3& direction, float far, float near = 0) {
+  const glm::vec3 o(origin), d(direction);
+  RTCRay ray{};
+  ray.org_x = o.x, ray.org_y = o.y, ray.org_z = o.z;
+  ray.dir_x = d.x, ray.dir_y = d.y, ray.dir_z = d.z;
+  ray.tnear = near, ray.tfar = far;
+  ray.mask = 0xffffffffu;
+  return ray;
+}
+static inline RTCRayHit Cast(RTCScene scene, const glm::dvec3& origin, const glm::dvec3& direction,
+                             float far = std::numeric_limits<float>::infinity(), float near = 0) {
+  RTCRayHit ray{};
+  ray.ray = MakeRay(origin, direction, far, near);
+  ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  Intersect1(scene, &ray);
+  return ray;
+}
 
 }  // namespace sim

@@ -14,6 +14,7 @@ target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/ray_scene_tables.cpp
   ${CMAKE_CURRENT_LIST_DIR}/ray_tracer.cpp
   ${CMAKE_CURRENT_LIST_DIR}/sample_pattern.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/scene_surroundings.cpp
   ${CMAKE_CURRENT_LIST_DIR}/surface_tracer.cpp)
 # The inner loop, once per instruction set; PacketKernel() picks at run time. The two maths flags change no result that we
 # use: they say that nobody reads errno or the floating-point exception flags, without which sqrt cannot be vector code.

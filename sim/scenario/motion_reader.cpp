@@ -56,6 +56,28 @@ double ReadPace(Section& section, const Trajectory& path, double end_s) {
   return 1;
 }
 
+void ReadShake(Section& section, std::optional<GaitParams>& shake) {
+  section.Allow("shake");
+  if (!section.Has("shake")) return;
+  Section keys = section.Child("shake");
+  shake.emplace();
+  keys.RequireChoice("type", shake->model, {{"handheld", GaitModel::handheld}, {"drone", GaitModel::drone}});
+  ReadFields(keys, *shake);
+}
+
+template <GaitModel model>
+MotionDescription ReadRoaming(Section& section, const std::filesystem::path& /*folder*/) {
+  RoamingMotion motion;
+  motion.gait.model = model;
+  section.Allow("start");
+  if (section.Has("start")) {
+    Section start = section.Child("start");
+    ReadPose(start, motion.start.emplace());
+  }
+  ReadFields(section, motion);
+  return motion;
+}
+
 MotionDescription ReadSampled(Section& section, const std::filesystem::path& /*folder*/) {
   SampledMotion motion;
   Section start = section.Child("start");
@@ -86,6 +108,7 @@ MotionDescription ReadScripted(Section& section, const std::filesystem::path& /*
     good = ReadPose(item, key.pose) && has_time && good;
     motion.keys.push_back(key);
   }
+  ReadShake(section, motion.shake);
   if (motion.keys.size() < 2) reject(section, "keys", "'trajectory.keys': two key poses are needed at least");
   if (!good) return motion;
   try {
@@ -106,6 +129,8 @@ MotionDescription ReadRecorded(Section& section, const std::filesystem::path& fo
   if (section.Has("start_pose")) {
     Section place = section.Child("start_pose");
     ReadPose(place, motion.start_pose.emplace());
+    if (motion.placing == RecordedMotion::Placing::automatic)
+      section.Reject("placing", "'placing: auto' and 'start_pose' exclude each other");
   }
   return motion;
 }
@@ -118,6 +143,7 @@ MotionDescription ReadPath(Section& section, const std::filesystem::path& /*fold
   const bool good = ReadPose(start, motion.start);
   settings::FieldReader fields(section);
   Visit(fields, kind, motion);
+  ReadShake(section, motion.shake);
   if (!good) return motion;
   try {
     const PathTrajectory path(motion);
@@ -157,7 +183,10 @@ MotionDescription ReadMotion(Section& section, const std::filesystem::path& fold
                                             {"orbit", ReadPath<PathKind::orbit>},
                                             {"half_sphere", ReadPath<PathKind::half_sphere>},
                                             {"rpy", ReadPath<PathKind::rpy>},
-                                            {"dolly", ReadPath<PathKind::dolly>}});
+                                            {"dolly", ReadPath<PathKind::dolly>},
+                                            {"handheld", ReadRoaming<GaitModel::handheld>},
+                                            {"drone", ReadRoaming<GaitModel::drone>},
+                                            {"vehicle", ReadRoaming<GaitModel::vehicle>}});
   if (known) return read(section, folder);
   section.IgnoreRest();
   return SampledMotion{};

@@ -165,8 +165,8 @@ TEST_F(CampaignTest, PeculiarProgramsAreJudgedAsWhatTheyAre) {
   EXPECT_THAT(ReadFile(here_ / "out/times.csv"), HasSubstr(",,,\n")) << "no times of frames that nobody measured";
 }
 
-// The whole way of a program that is not ours, from pictures and calibration to the table: clearly better than a
-// camera that goes straight on.
+// The whole way of a program that is not ours, from pictures and calibration to the table: an ATE below 5 % of the
+// path; at rest it is 29 %, the standard deviation of a uniform distribution.
 TEST_F(CampaignTest, TheOdometryOfAnotherKindFindsItsWay) {
   if (std::system("/usr/bin/python3 -c 'import cv2' 2> /dev/null") != 0) GTEST_SKIP() << "no python3-opencv";
   const std::string scenes = VOBENCH_SOURCE_DIR "/scenes/";
@@ -177,8 +177,8 @@ TEST_F(CampaignTest, TheOdometryOfAnotherKindFindsItsWay) {
   auto row = BySystem(Results("out"))["flow"];
   EXPECT_EQ(row["status"], "ok") << row["reason"];
   EXPECT_EQ(row["pose_coverage"], "1");
-  EXPECT_GT(std::stod(row["ate_m"]), 0);
-  EXPECT_LT(std::stod(row["ate_m"]), 0.3 * std::stod(row["constant_velocity_ate_m"]));
+  EXPECT_GT(std::stod(row["ate_share_of_path"]), 0);
+  EXPECT_LT(std::stod(row["ate_share_of_path"]), 0.05);
 }
 
 TEST_F(CampaignTest, AProgramThatIsNotThereIsNoResult) {

@@ -259,6 +259,7 @@ void AddCheck(OptionTable& table) {
       AddCommand<CheckOptions>(table, "check", "Read a scenario and all it names, and say what is wrong with it",
                                "vobench check scenes/room.yaml");
   Add(command, "SCENARIO", check.scenario, "Scenario file (scenes/*.yaml)")->required();
+  Add(command, "--path FILE", check.path, "Also write the camera's path, every 10 ms, in TUM's format");
   AddMissingTextures(command, check.overrides);
   AddSet(command, check.overrides, "camera.width=320");
 }

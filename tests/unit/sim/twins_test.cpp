@@ -3,11 +3,10 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <glm/geometric.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "sim/render/surface_tracer.h"
 #include "sim/simulator.h"
 #include "source_dir.h"
 #include "tests/temporary_folder.h"
@@ -17,25 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// How many pieces of the path, 1/120 s each, meet a surface.
-int Crossings(const fs::path& scenario, const std::string& path, const std::string& start_pose = "") {
+// What making a simulator says of the path: that it passes through a surface, or nothing.
+std::string Complaint(const fs::path& scenario, const std::string& path, const std::string& start_pose = "") {
   std::vector<std::pair<std::string, std::string>> changes = {{"trajectory.file", "'" + path + "'"},
                                                               {"render.light", "direct"}};
   if (!start_pose.empty()) changes.emplace_back("trajectory.start_pose", start_pose);
-  const Simulator simulator(LoadScenario(scenario, changes), 1);
-  const double end_s = Seconds(simulator.StampNs(simulator.frame_count() - 1));
-  int crossings = 0;
-  std::vector<std::uint8_t> visible;
-  glm::dvec3 last = simulator.trajectory().At(0).pose.p_WC;
-  for (double t = 1.0 / 120; t <= end_s; t += 1.0 / 120) {
-    const glm::dvec3 here = simulator.trajectory().At(t).pose.p_WC;
-    // Long enough that a surface is not taken for the end's own.
-    const glm::dvec3 ahead = here + 1e-3 * glm::normalize(here - last + glm::dvec3(1e-12));
-    simulator.surfaces().Visible(View({last, {}}, t), std::vector{ahead}, visible);
-    crossings += visible[0] == 0;
-    last = here;
+  try {
+    Simulator(LoadScenario(scenario, changes), 1);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
   }
-  return crossings;
+  return "";
 }
 
 class Twins : public testing::Test {
@@ -57,7 +48,7 @@ TEST_F(Twins, CrossNoSurface) {
   for (const fs::directory_entry& entry : fs::directory_iterator(scenes_)) {
     if (entry.path().extension() != ".yaml") continue;
     const std::string name = entry.path().stem().string();
-    EXPECT_EQ(Crossings(entry.path(), (paths_ / (name + ".txt")).string()), 0) << name;
+    EXPECT_EQ(Complaint(entry.path(), (paths_ / (name + ".txt")).string()), "") << name;
     ++count;
   }
   EXPECT_EQ(count, 14);
@@ -65,7 +56,7 @@ TEST_F(Twins, CrossNoSurface) {
 
 TEST_F(Twins, ACrossingIsSeen) {
   const std::string path = (paths_ / "euroc_mh03.txt").string();
-  EXPECT_GT(Crossings(scenes_ / "euroc_mh03.yaml", path, "{position: [15, 1.5, 13]}"), 0);
+  EXPECT_NE(Complaint(scenes_ / "euroc_mh03.yaml", path, "{position: [15, 1.5, 13]}"), "");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sim/motion/placement.h"
 #include "sim/sensor/sensor.h"
 #include "sim/simulator.h"
 #include "tools/bench/errors.h"
@@ -49,6 +50,16 @@ void PrintSensor(const sim::SensorParams& sensor) {
       20 * std::log10(emva.snr_max), 20 * std::log10(emva.dynamic_range), emva.prnu_percent, emva.dsnu_e);
 }
 
+void PrintRevisits(const sim::Simulator& simulator) {
+  constexpr std::size_t kMost = 5;
+  const auto revisits =
+      sim::Revisits(simulator.trajectory(), sim::Seconds(simulator.StampNs(simulator.frame_count() - 1)));
+  fmt::print("  returns {} times to an earlier view", revisits.size());
+  for (std::size_t i = 0; i < std::min(kMost, revisits.size()); ++i)
+    fmt::print("{} at {:.1f} s ({:.1f} s)", i == 0 ? ":" : ",", revisits[i].t_s, revisits[i].earlier_s);
+  fmt::print("{}\n", revisits.size() > kMost ? ", ..." : "");
+}
+
 }  // namespace
 
 void Check(const CheckOptions& options) {
@@ -61,7 +72,13 @@ void Check(const CheckOptions& options) {
   PrintFrames(options, scenario, truth);
   fmt::print("  {:.2f} m of path, {} meshes, {} lights, seed {}\n", evaluation::PathLength(truth.poses),
              scenario.world.meshes.size(), scenario.world.lights.size(), scenario.seed);
+  PrintRevisits(simulator);
   PrintSensor(scenario.sensor);
+  if (!options.path) return;
+  Truth path;
+  for (std::int64_t t_ns = 0; t_ns <= simulator.StampNs(simulator.frame_count() - 1); t_ns += 10'000'000)
+    Append(t_ns, sim::TruthAt(simulator.trajectory(), sim::Seconds(t_ns)), path);
+  evaluation::WriteTrajectory(*options.path, path.poses);
 }
 
 }  // namespace vobench

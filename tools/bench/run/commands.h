@@ -84,6 +84,7 @@ void Run(const RunOptions& options);
 // A scenario is read, its world loaded, and what it says is summed up.
 struct CheckOptions {
   std::filesystem::path scenario;
+  std::optional<std::filesystem::path> path;  // a TUM file of the camera's path, too; of worlds of meshes
   Overrides overrides;
 };
 void Check(const CheckOptions& options);

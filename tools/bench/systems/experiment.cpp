@@ -80,6 +80,10 @@ std::vector<settings::FieldRow> SettingsTable() {
   table.Child("trajectory", sampled);
   sim::RecordedMotion recorded;
   table.Child("trajectory", recorded);
+  sim::RoamingMotion roaming, vehicle;
+  table.Child("trajectory", roaming);
+  vehicle.gait.model = sim::GaitModel::vehicle;
+  table.Child("trajectory", vehicle);
   for (const sim::PathKind kind :
        {sim::PathKind::orbit, sim::PathKind::half_sphere, sim::PathKind::rpy, sim::PathKind::dolly}) {
     sim::PathMotion path;

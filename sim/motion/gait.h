@@ -1,0 +1,81 @@
+// Random motion of a carried camera, fitted to recordings: what hands and drones add to a course.
+// Source: scenes/generate/fit_motion.py, which makes gait_table.inc; docs/motion.md.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <numbers>
+#include <vector>
+
+#include "sim/motion/description.h"
+
+namespace sim {
+
+constexpr double kGaitStep_s = 0.01;
+constexpr std::size_t kGaitComponents = 13;
+
+// What was fitted. Accelerations are root mean squares of components, all three axes together.
+struct GaitTable {
+  double speed, turn_rate;  // medians of the recordings' means [m/s], [rad/s]
+  // With the motion, of 1 m/s and 1 rad/s of mean speed and turn rate at vehemence 1; tremor [m/s^2], [rad/s^2].
+  std::array<double, kGaitComponents> linear, linear_tremor, angular, angular_tremor;
+  double burst, burst_s;     // standard deviation of the logarithm of the drive, and how long it lasts
+  double effort, effort_hz;  // the same of calm and busy times, of course and drive, and their corner
+  double course_hz;          // corner of the course's rates
+  double evenness;           // of the course's speed: 0 constant, large as of a normal vector
+  double climb, ahead_s;     // to both sides of the start's height [m]; turns away from surfaces so long before
+};
+const GaitTable& TableOf(GaitModel model);
+
+// Of the position in W and of pitch, yaw (about +y) and roll; effort: of its drive, and of the course.
+struct Offset {
+  glm::dvec3 move{0.0}, turn{0.0};
+  double effort = 1;
+};
+
+// y1' = w (x - y1), y2' = w (y1 - y2).
+template <class T>
+struct LowPass {
+  T first{0.0}, rate{0.0};
+  void Step(double w, const T& x) {
+    first += w * kGaitStep_s * (x - first);
+    rate += w * kGaitStep_s * (first - rate);
+  }
+  // So that `rate` has variance 1 from normal numbers.
+  void Draw(double corner_hz, const T& normal) {
+    const double w = 2 * std::numbers::pi * corner_hz;
+    Step(w, 2 / std::sqrt(w * kGaitStep_s) * normal);
+  }
+};
+
+// Sum over components, half an octave apart from 0.175 Hz on, of
+//   x_j = two equal resonators in a row, each x'' + 2 zeta w_j x' + w_j^2 x = its input,   zeta = 0.3
+//
+// driven by white noise times a burst exp(s g(t) - s^2), g of first order with standard deviation 1, and an effort, the
+// same with g a LowPass. The acceleration of each has the table's root mean square: `linear`^2 (speed vehemence)^2 +
+// `linear_tremor`^2 tremor^2, a third of it on each axis; likewise the angles. Its power spectral density is u^4 /
+// ((1 - u^2)^2 + (2 zeta u)^2)^2, u = f / f_j; its rate's root mean square is the acceleration's over 2 pi f_j.
+// Components below 0.3 Hz are made smaller where the rates would exceed what is stated.
+class Gait {
+ public:
+  // from_hz: components below are left out.
+  Gait(const GaitParams& params, double from_hz);
+
+  const GaitTable& table() const { return table_; }
+  double speed() const { return speed_; }                // of all that moves, mean [m/s]
+  double turn_rate() const { return turn_rate_; }        // [rad/s]
+  double course_speed() const { return course_speed_; }  // what is left to a course, root mean square
+  double course_turn_rate() const { return course_turn_rate_; }
+
+  // At k * kGaitStep_s, k = 0 ... count - 1; numbers keyed by (seed, k, component).
+  std::vector<Offset> Draw(std::uint64_t seed, std::size_t count) const;
+
+ private:
+  const GaitTable& table_;
+  double speed_, turn_rate_, course_speed_, course_turn_rate_;
+  std::array<double, kGaitComponents> linear_{}, angular_{};  // root mean squares of acceleration
+};
+
+}  // namespace sim

@@ -1,0 +1,15 @@
+// Surroundings of a path, by distance and ray queries of the ray tracer's scene.
+#pragma once
+
+#include <memory>
+
+#include "sim/motion/surroundings.h"
+#include "sim/render/surface_tracer.h"
+#include "sim/world/scene.h"
+
+namespace sim {
+
+// Both must outlive it; the tracer is of this scene.
+std::unique_ptr<Surroundings> SurroundingsOf(const Scene& scene, const SurfaceTracer& surfaces);
+
+}  // namespace sim
