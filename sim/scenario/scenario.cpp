@@ -7,6 +7,7 @@
 #include "sim/light/cache.h"
 #include "sim/scenario/motion_reader.h"
 #include "sim/scenario/world_reader.h"
+#include "sim/sensor/presets.h"
 #include "sim/sensor/sensor.h"
 #include "tools/base/settings/field_reader.h"
 
@@ -39,34 +40,21 @@ void ReadMotionAndTime(Section root, const std::filesystem::path& folder, Scenar
   time.Reject(check.problems);
 }
 
-enum class Preset { none, kinect, icl_nuim };
-
-// Defaults of the other keys; sources of the numbers: docs/sensor.md.
-void Apply(Preset preset, SensorParams& sensor) {
-  if (preset == Preset::kinect) {
-    sensor.exposure_s = 0.020;
-    sensor.readout_s = 0.026;
-    sensor.mosaic = Mosaic::demosaiced;
-    sensor.full_well_e = 6000;
-    sensor.read_noise_e = 12;
-  }
-  if (preset == Preset::icl_nuim) {
-    sensor.exposure_s = 0;
-    sensor.time_samples = 1;
-    sensor.full_well_e = 4000;
-    sensor.read_noise_e = 10;
-  }
-}
-
 // rate_hz: of the frames, within which an exposure and the shutter must end.
-void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
+void ReadSensor(Section section, const std::filesystem::path& folder, double rate_hz, SensorParams& sensor) {
   section.Allow("preset");
   if (section.Has("preset")) {  // resolved only where given
-    Preset preset = Preset::none;
-    section.ReadChoice("preset", preset,
-                       {{"none", Preset::none}, {"kinect", Preset::kinect}, {"icl_nuim", Preset::icl_nuim}});
-    Apply(preset, sensor);
+    const auto presets = SensorPresets();
+    settings::Choices<std::size_t> names;
+    for (const auto& [name, params] : presets) names.emplace_back(name, names.size());
+    std::size_t preset = 0;
+    section.ReadChoice("preset", preset, names);
+    sensor = presets[preset].second;
   }
+  Section processing = section.Child("processing");
+  processing.Allow("tone_curve");
+  if (processing.Has("tone_curve"))  // resolved only where given
+    sensor.processing.tone_curve = ReadFile(processing, "tone_curve", folder).string();
   section.Allow("covered");
   if (section.Has("covered")) {  // resolved only where given
     for (Section& item : section.List("covered")) {
@@ -156,7 +144,7 @@ Scenario LoadScenario(const std::filesystem::path& path,
     scenario.points = ReadPoints(root, world, scenario.camera);
   } else {
     ReadWorld(world, folder, scenario.time.duration_s, scenario.world);
-    ReadSensor(root.Child("sensor"), scenario.time.rate_hz, scenario.sensor);
+    ReadSensor(root.Child("sensor"), folder, scenario.time.rate_hz, scenario.sensor);
     ReadRender(root.Child("render"), folder, scenario.render);
     ReadFields(root, scenario.truth);
   }

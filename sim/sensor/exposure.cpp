@@ -1,6 +1,7 @@
 #include "sim/sensor/exposure.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "sim/sensor/sensor.h"
@@ -20,14 +21,20 @@ std::vector<std::string> Problems(const Exposure& exposure) {
   return problems;
 }
 
-AutoExposure::AutoExposure(const SensorParams& sensor) : sensor_(sensor), setting_{sensor.exposure_s, sensor.gain} {
+AutoExposure::AutoExposure(const SensorParams& sensor)
+    : sensor_(sensor), tone_(sensor), setting_{sensor.exposure_s, sensor.gain} {
   ThrowIfAny(Problems(sensor), "auto exposure");
 }
 
 double AutoExposure::Brightness(const RadianceImage& frame, double signal) const {
   const double dark = sensor_.black_level + signal * sensor_.dark_current_e_s / sensor_.full_well_e;
   const double scale = signal / (sensor_.white * sensor_.exposure_s);
-  const auto shown = [&](float light) { return EncodeResponse(sensor_.response, std::min(1.0, dark + scale * light)); };
+  const ProcessingParams& processing = sensor_.processing;
+  const auto signal_of = [&](float light) { return std::min(1.0, dark + scale * light); };
+  const auto encoded = [&](double x) {
+    return processing.on() ? double{tone_(static_cast<float>(x))} : EncodeResponse(sensor_.response, x);
+  };
+  const auto shown = [&](float light) { return encoded(signal_of(light)); };
   double sum = 0;
   for (std::size_t i = 0; i < frame.rgb.size(); i += 3) {
     const float* rgb = &frame.rgb[i];
@@ -35,6 +42,11 @@ double AutoExposure::Brightness(const RadianceImage& frame, double signal) const
       sum += shown(Luminance(rgb));
     } else if (sensor_.mosaic == Mosaic::raw) {
       sum += (shown(rgb[0]) + 2 * shown(rgb[1]) + shown(rgb[2])) / 4;
+    } else if (processing.HasColor()) {
+      std::array<float, 3> x{};
+      std::transform(rgb, rgb + 3, x.begin(), [&](float light) { return static_cast<float>(signal_of(light)); });
+      CorrectColor(processing, x);
+      sum += (encoded(double{x[0]}) + encoded(double{x[1]}) + encoded(double{x[2]})) / 3;
     } else {
       sum += (shown(rgb[0]) + shown(rgb[1]) + shown(rgb[2])) / 3;
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "sim/random/random.h"
 
@@ -42,6 +43,7 @@ std::vector<settings::FieldProblem> Problems(SensorParams p) {
   }
   check.Require(p.auto_exposure.longest_s >= p.auto_exposure.shortest_s, "auto_exposure.longest",
                 p.auto_exposure.longest_s, "must not be below shortest");
+  CheckProcessing(p, check);
   for (const Covered& c : p.covered) {
     check.Require(c.from_s >= 0, "covered.from", c.from_s, "must not be negative");
     check.Require(c.until_s > c.from_s, "covered.until", c.until_s, "must be above from");
@@ -80,7 +82,7 @@ FixedPattern MakeFixedPattern(const SensorParams& params, std::uint64_t seed, in
 }
 
 Sensor::Sensor(const SensorParams& params, std::uint64_t seed, int width, int height)
-    : params_(params), seed_(seed), response_(params.response) {
+    : params_(params), seed_(seed), response_(params.response), tone_(params) {
   ThrowIfAny(Problems(params), "sensor");
   pattern_ = MakeFixedPattern(params, seed, width, height, static_cast<int>(channels()));
 }
@@ -136,15 +138,42 @@ void Sensor::ExpectLight(const RadianceImage& radiance, std::size_t y, double pe
   for (float& expected_e : electrons) expected_e = std::min(expected_e, most);
 }
 
+Image Sensor::Process(std::vector<float> signal, int width, int height) const {
+  const ProcessingParams& p = params_.processing;
+  int count = static_cast<int>(channels());
+  if (params_.mosaic == Mosaic::demosaiced) {
+    Image raw{width, height, 1, {}, 16, std::vector<std::uint16_t>(signal.size())};
+    for (std::size_t i = 0; i < signal.size(); ++i)
+      raw.wide[i] = static_cast<std::uint16_t>(std::lround(65535.0F * std::clamp(signal[i], 0.0F, 1.0F)));
+    const Image rgb = Demosaic(raw, Interpolation::edge_aware);
+    count = 3;
+    signal.resize(rgb.wide.size());
+    for (std::size_t i = 0; i < signal.size(); ++i) signal[i] = static_cast<float>(rgb.wide[i]) / 65535.0F;
+  }
+  if (p.HasColor()) CorrectColor(p, signal);
+  for (float& x : signal) x = tone_(x);
+  Denoise(p, width, height, count, signal);
+  Sharpen(p, width, height, count, signal);
+  Image image{width, height, count, {}, params_.bit_depth, {}};
+  const auto highest = static_cast<float>(std::pow(2.0, image.bits) - 1);
+  for (const float code : signal) {
+    if (image.bits == 8) image.data.push_back(static_cast<std::uint8_t>(std::lround(highest * code)));
+    if (image.bits > 8) image.wide.push_back(static_cast<std::uint16_t>(std::lround(highest * code)));
+  }
+  return image;
+}
+
 Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame,
                       const std::optional<ExposureSetting>& of_frame) const {
   const ExposureSetting setting = of_frame.value_or(ExposureSetting{params_.exposure_s, params_.gain});
   const std::size_t width = static_cast<std::size_t>(radiance.width),
                     height = static_cast<std::size_t>(radiance.height), row_size = width * channels();
   Image image{radiance.width, radiance.height, static_cast<int>(channels()), {}, params_.bit_depth, {}};
-  if (image.bits == 8) {
+  const bool processed = params_.processing.on();
+  std::vector<float> signal(processed ? height * row_size : 0);
+  if (!processed && image.bits == 8) {
     image.data.resize(height * row_size);
-  } else {
+  } else if (!processed) {
     image.wide.resize(height * row_size);
   }
   const auto fits = [&](const std::vector<float>& fixed) { return fixed.empty() || fixed.size() == height * row_size; };
@@ -167,7 +196,9 @@ Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame,
       }
       if (noisy) AddNoise(static_cast<std::uint32_t>(frame), static_cast<std::uint32_t>(y * width), electrons);
       for (std::size_t i = 0; i < row_size; ++i) electrons[i] = black + electrons[i] / full_scale;
-      if (image.bits == 8) {
+      if (processed) {
+        std::ranges::copy(electrons, signal.begin() + static_cast<std::ptrdiff_t>(y * row_size));
+      } else if (image.bits == 8) {
         for (std::size_t i = 0; i < row_size; ++i) image.data[y * row_size + i] = response_.Encode(electrons[i]);
       } else {
         for (std::size_t i = 0; i < row_size; ++i) {
@@ -178,7 +209,11 @@ Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame,
       }
     }
   });
-  if (params_.mosaic == Mosaic::demosaiced) image = Demosaic(image);
+  if (processed) {
+    image = Process(std::move(signal), radiance.width, radiance.height);
+  } else if (params_.mosaic == Mosaic::demosaiced) {
+    image = Demosaic(image);
+  }
   return params_.jpeg_quality > 0 ? ThroughJpeg(image, params_.jpeg_quality) : image;
 }
 

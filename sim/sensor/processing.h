@@ -1,0 +1,47 @@
+// Image processing of a camera, in its order: white balance and colour matrix in linear light, tone curve, denoising,
+// sharpening. Each step maps fractions of the scale, 0 ... 1, to the same.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/sensor/description.h"
+
+namespace sim {
+
+// Rules between the values of a sensor's processing and the rest of it.
+void CheckProcessing(const SensorParams& params, settings::FieldCheck& check);
+
+// rgb' = M diag(white_balance) rgb, clipped to 0 ... 1; M has the rows color_red, color_green, color_blue.
+void CorrectColor(const ProcessingParams& params, std::span<float> rgb);
+
+// C(x) = T(R(x)), from linear light to the code, R: the response; with e = contrast (R(x) - black_clip) in 0 ... 1:
+//   T = e^toe / (e^toe + (1 - e)^shoulder),
+// slope (toe + shoulder) / 2 at e = 1/2, exponents toe at black and shoulder at white. Or a file of lines `x C`, with x
+// from 0 to 1 increasing and C in 0 ... 1 not decreasing, linear in between: it stands for R and T together.
+class ToneCurve {
+ public:
+  // Throws std::invalid_argument naming the file and each bad line.
+  explicit ToneCurve(const SensorParams& params);
+
+  // From a table of 2^14 cells, linear in between. x is clipped to 0 ... 1.
+  float operator()(float x) const {
+    const float cell = kCells * (x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f);
+    const auto i = static_cast<std::size_t>(cell < kCells - 1 ? cell : kCells - 1);
+    return table_[i] + (cell - static_cast<float>(i)) * (table_[i + 1] - table_[i]);
+  }
+
+ private:
+  static constexpr float kCells = 1 << 14;
+  std::vector<float> table_;
+};
+
+// Edge-preserving mean of the pixels at d within 2 denoise_sigma along each axis, by channel, of the weights
+//   exp(-|d|^2 / (2 denoise_sigma^2)) / (1 + ((v(p + d) - v(p)) / denoise_range)^2),
+// a bilateral filter with the conductance of Perona and Malik 1990.
+void Denoise(const ProcessingParams& params, int width, int height, int channels, std::span<float> picture);
+
+// Unsharp masking: v + sharpen (v - G v), G the discrete Gaussian of sharpen_sigma; clipped to 0 ... 1.
+void Sharpen(const ProcessingParams& params, int width, int height, int channels, std::span<float> picture);
+
+}  // namespace sim
