@@ -45,14 +45,15 @@ struct ProcessingParams {
   double black_clip = 0.0, contrast = 1.0, toe = 1.0, shoulder = 1.0;
   std::string tone_curve;  // file; empty: none
   double denoise_sigma_px = 0.0, denoise_range = 0.02;
-  double sharpen = 0.0, sharpen_sigma_px = 1.0;
+  double sharpen_bright = 0.0, sharpen_dark = 0.0, sharpen_sigma_px = 1.0;
 
   bool HasColor() const {
     return white_balance != glm::dvec3(1.0) || color_red != glm::dvec3(1, 0, 0) || color_green != glm::dvec3(0, 1, 0) ||
            color_blue != glm::dvec3(0, 0, 1);
   }
   bool HasTone() const { return black_clip != 0 || contrast != 1 || toe != 1 || shoulder != 1 || !tone_curve.empty(); }
-  bool on() const { return HasColor() || HasTone() || denoise_sigma_px > 0 || sharpen > 0; }
+  bool HasSharpening() const { return sharpen_bright > 0 || sharpen_dark > 0; }
+  bool on() const { return HasColor() || HasTone() || denoise_sigma_px > 0 || HasSharpening(); }
 };
 
 template <class V>
@@ -70,7 +71,8 @@ void Visit(V& v, ProcessingParams& p) {
   v("denoise_sigma", p.denoise_sigma_px, {Unit::pixel, Range{0, 3}, "of the spatial weights of denoising; 0: none"});
   v("denoise_range", p.denoise_range,
     {Range{.min = 0, .max = 1, .above_min = true}, "differences well above it stay, as a fraction of the scale"});
-  v("sharpen", p.sharpen, {Range{0, 5}, "amount of unsharp masking; 0: none"});
+  v("sharpen_bright", p.sharpen_bright, {Range{0, 5}, "amount of unsharp masking where it brightens; 0: none"});
+  v("sharpen_dark", p.sharpen_dark, {Range{0, 5}, "the same where it darkens"});
   v("sharpen_sigma", p.sharpen_sigma_px, {Unit::pixel, Range{0.3, 5}, "of the Gaussian that it subtracts"});
 }
 

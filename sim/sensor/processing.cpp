@@ -54,7 +54,7 @@ void CheckProcessing(const SensorParams& params, settings::FieldCheck& check) {
                 "leaves no light above black");
   const bool has_color = params.color && params.mosaic != Mosaic::raw;
   if (p.HasColor() && !has_color) check.Refuse("processing.white_balance", "and the colour matrix need three channels");
-  if (params.mosaic == Mosaic::raw && (p.denoise_sigma_px > 0 || p.sharpen > 0))
+  if (params.mosaic == Mosaic::raw && (p.denoise_sigma_px > 0 || p.HasSharpening()))
     check.Refuse("processing.denoise_sigma", "and sharpen do not go with a raw mosaic");
 }
 
@@ -119,13 +119,15 @@ void Denoise(const ProcessingParams& p, int width, int height, int channels, std
 }
 
 void Sharpen(const ProcessingParams& p, int width, int height, int channels, std::span<float> picture) {
-  if (p.sharpen == 0) return;
+  if (!p.HasSharpening()) return;
   std::vector<float> smooth(picture.begin(), picture.end());
   const std::vector<float> kernel = DiscreteGaussian(p.sharpen_sigma_px);
   Convolve(smooth, width, height, channels, {&kernel, 1});
-  const auto amount = static_cast<float>(p.sharpen);
-  for (std::size_t i = 0; i < picture.size(); ++i)
-    picture[i] = std::clamp(picture[i] + amount * (picture[i] - smooth[i]), 0.0f, 1.0f);
+  const auto bright = static_cast<float>(p.sharpen_bright), dark = static_cast<float>(p.sharpen_dark);
+  for (std::size_t i = 0; i < picture.size(); ++i) {
+    const float d = picture[i] - smooth[i];
+    picture[i] = std::clamp(picture[i] + (d > 0 ? bright : dark) * d, 0.0f, 1.0f);
+  }
 }
 
 }  // namespace sim

@@ -41,7 +41,8 @@ class ToneCurve {
 // a bilateral filter with the conductance of Perona and Malik 1990.
 void Denoise(const ProcessingParams& params, int width, int height, int channels, std::span<float> picture);
 
-// Unsharp masking: v + sharpen (v - G v), G the discrete Gaussian of sharpen_sigma; clipped to 0 ... 1.
+// Unsharp masking with halos controlled apart: d = v - G v, G the discrete Gaussian of sharpen_sigma;
+//   v + sharpen_bright d where d > 0, v + sharpen_dark d elsewhere, clipped to 0 ... 1.
 void Sharpen(const ProcessingParams& params, int width, int height, int channels, std::span<float> picture);
 
 }  // namespace sim
