@@ -15,7 +15,7 @@
 #include "sim/render/surface_tracer.h"
 #include "sim/scenario/scenario.h"
 #include "sim/sensor/exposure.h"
-#include "sim/sensor/point_spread.h"
+#include "sim/sensor/processing.h"
 #include "sim/sensor/sensor.h"
 #include "sim/sensor/vignetting.h"
 #include "sim/world/scene.h"
@@ -105,7 +105,6 @@ struct Simulator::Parts {
       : scenario(WithImages(s)),
         frames(CountFrames(s.time)),
         optics(s.camera, s.sensor.optics),
-        lens(s.sensor.optics, s.camera.width, s.camera.height, s.camera.cx, s.camera.cy),
         sensor(s.sensor, s.seed, s.camera.width, s.camera.height),
         trajectory(TrajectoryOf(s)),
         arena(Threads(jobs)) {
@@ -174,7 +173,6 @@ struct Simulator::Parts {
   Scenario scenario;
   std::int64_t frames;
   Optics optics;
-  PointSpread lens;
   Sensor sensor;
   std::unique_ptr<Trajectory> trajectory;
   std::vector<std::string> warnings;
@@ -237,7 +235,7 @@ Frame Simulator::Render(std::int64_t index) const {
   exposure.focus_m = sensor.optics.focus_m;
   RadianceImage radiance;
   parts.Expose(parts.optics, exposure, index, radiance);
-  parts.lens.Apply(radiance);
+  SpreadPoints(sensor.optics, parts.scenario.camera, radiance);
   parts.arena.execute([&] { frame.image = parts.sensor.Capture(radiance, index, frame.setting); });
   return frame;
 }

@@ -7,7 +7,6 @@
 #include "sim/light/cache.h"
 #include "sim/scenario/motion_reader.h"
 #include "sim/scenario/world_reader.h"
-#include "sim/sensor/presets.h"
 #include "sim/sensor/sensor.h"
 #include "tools/base/settings/field_reader.h"
 
@@ -40,8 +39,18 @@ void ReadMotionAndTime(Section root, const std::filesystem::path& folder, Scenar
   time.Reject(check.problems);
 }
 
+// Defaults of the other keys; what they are fitted to: docs/sensor.md.
+std::vector<std::pair<std::string, SensorParams>> SensorPresets() {
+  SensorParams kinect, icl_nuim, phone, machine_vision, euroc;
+  kinect.exposure_s = 0.013, kinect.readout_s = 0.026, kinect.mosaic = Mosaic::demosaiced;
+  icl_nuim.exposure_s = 0, icl_nuim.time_samples = 1, icl_nuim.full_well_e = 4000, icl_nuim.read_noise_e = 10;
+  return {
+      {"none", {}},    {"kinect", kinect}, {"icl_nuim", icl_nuim}, {"phone", phone}, {"machine_vision", machine_vision},
+      {"euroc", euroc}};
+}
+
 // rate_hz: of the frames, within which an exposure and the shutter must end.
-void ReadSensor(Section section, const std::filesystem::path& folder, double rate_hz, SensorParams& sensor) {
+void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
   section.Allow("preset");
   if (section.Has("preset")) {  // resolved only where given
     const auto presets = SensorPresets();
@@ -51,10 +60,6 @@ void ReadSensor(Section section, const std::filesystem::path& folder, double rat
     section.ReadChoice("preset", preset, names);
     sensor = presets[preset].second;
   }
-  Section processing = section.Child("processing");
-  processing.Allow("tone_curve");
-  if (processing.Has("tone_curve"))  // resolved only where given
-    sensor.processing.tone_curve = ReadFile(processing, "tone_curve", folder).string();
   section.Allow("covered");
   if (section.Has("covered")) {  // resolved only where given
     for (Section& item : section.List("covered")) {
@@ -144,7 +149,7 @@ Scenario LoadScenario(const std::filesystem::path& path,
     scenario.points = ReadPoints(root, world, scenario.camera);
   } else {
     ReadWorld(world, folder, scenario.time.duration_s, scenario.world);
-    ReadSensor(root.Child("sensor"), folder, scenario.time.rate_hz, scenario.sensor);
+    ReadSensor(root.Child("sensor"), scenario.time.rate_hz, scenario.sensor);
     ReadRender(root.Child("render"), folder, scenario.render);
     ReadFields(root, scenario.truth);
   }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <glm/vec3.hpp>
-#include <string>
 #include <vector>
 
 #include "tools/base/settings/fields.h"
@@ -21,7 +20,7 @@ struct OpticsParams {
   double focus_m = 2.0;
   bool natural_vignetting = false;
   double vignetting_2 = 0.0, vignetting_4 = 0.0, vignetting_6 = 0.0;
-  double psf_sigma_px = 0.0, psf_growth_px = 0.0;
+  double psf_sigma_px = 0.0, psf_corner_px = 0.0;
 };
 
 template <class V>
@@ -32,9 +31,8 @@ void Visit(V& v, OpticsParams& p) {
   v("vignetting_2", p.vignetting_2, {"and 1 + v2 r^2 + v4 r^4 + v6 r^6,"});
   v("vignetting_4", p.vignetting_4, {"r: distance from the principal point"});
   v("vignetting_6", p.vignetting_6, {"in half diagonals of the image"});
-  const Range width{0, 5};
-  v("psf_sigma", p.psf_sigma_px, {Unit::pixel, width, "of the lens's Gaussian point-spread function at the middle,"});
-  v("psf_growth", p.psf_growth_px, {Unit::pixel, width, "plus so much times r^2, r in half diagonals"});
+  v("psf_sigma", p.psf_sigma_px, {Unit::pixel, Range{0, 5}, "of the lens's Gaussian point-spread function"});
+  v("psf_corner", p.psf_corner_px, {Unit::pixel, Range{0, 5}, "the same half a diagonal from the axis; 0: as there"});
 }
 
 // Image processing between the sensor's linear signal and the file: sim/sensor/processing.h has the equations. As it
@@ -43,7 +41,6 @@ struct ProcessingParams {
   glm::dvec3 white_balance{1.0};
   glm::dvec3 color_red{1, 0, 0}, color_green{0, 1, 0}, color_blue{0, 0, 1};
   double black_clip = 0.0, contrast = 1.0, toe = 1.0, shoulder = 1.0;
-  std::string tone_curve;  // file; empty: none
   double denoise_sigma_px = 0.0, denoise_range = 0.02;
   double sharpen_bright = 0.0, sharpen_dark = 0.0, sharpen_sigma_px = 1.0;
 
@@ -51,9 +48,11 @@ struct ProcessingParams {
     return white_balance != glm::dvec3(1.0) || color_red != glm::dvec3(1, 0, 0) || color_green != glm::dvec3(0, 1, 0) ||
            color_blue != glm::dvec3(0, 0, 1);
   }
-  bool HasTone() const { return black_clip != 0 || contrast != 1 || toe != 1 || shoulder != 1 || !tone_curve.empty(); }
   bool HasSharpening() const { return sharpen_bright > 0 || sharpen_dark > 0; }
-  bool on() const { return HasColor() || HasTone() || denoise_sigma_px > 0 || HasSharpening(); }
+  bool on() const {
+    return HasColor() || black_clip != 0 || contrast != 1 || toe != 1 || shoulder != 1 || denoise_sigma_px > 0 ||
+           HasSharpening();
+  }
 };
 
 template <class V>

@@ -2,54 +2,60 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <glm/geometric.hpp>
-#include <iterator>
-#include <sstream>
-#include <stdexcept>
+#include <opencv2/imgproc.hpp>
 
 #include "sim/sensor/develop.h"
-#include "sim/sensor/point_spread.h"
 
 namespace sim {
-namespace {
-
-struct Point {
-  double x, code;
-};
-
-std::vector<Point> ReadCurve(const std::string& file) {
-  std::ifstream stream(file);
-  std::string problems, line;
-  std::vector<Point> points;
-  if (!stream) problems += "\n" + file + ": cannot be read";
-  for (int number = 1; std::getline(stream, line); ++number) {
-    if (line.empty() || line[0] == '#') continue;
-    std::istringstream words(line);
-    Point p{};
-    std::string rest;
-    const bool two = (words >> p.x >> p.code) && !(words >> rest);
-    const bool in_order = two && p.x >= 0 && p.x <= 1 && p.code >= 0 && p.code <= 1 &&
-                          (points.empty() ? p.x == 0 : p.x > points.back().x && p.code >= points.back().code);
-    if (in_order) {
-      points.push_back(p);
-    } else {
-      problems += "\n" + file + ":" + std::to_string(number) + ": '" + line +
-                  "' is not `x code` in 0 ... 1, x from 0 on increasing, code not decreasing";
-    }
+std::vector<float> GaussianBlur(const std::vector<float>& picture, int width, int height, int channels, double sigma) {
+  const double variance = sigma * sigma;
+  std::vector<double> kernel = {std::exp(-variance) * std::cyl_bessel_i(0.0, variance)};
+  double sum = kernel[0];
+  for (double n = 1; 1 - sum > 1e-5; ++n) {
+    kernel.push_back(std::exp(-variance) * std::cyl_bessel_i(n, variance));
+    sum += 2 * kernel.back();
   }
-  if (problems.empty() && (points.size() < 2 || points.back().x != 1))
-    problems += "\n" + file + ": does not end at x = 1";
-  if (!problems.empty()) throw std::invalid_argument("tone curve:" + problems);
-  return points;
+  // A shift by n pixels along a line, that stays within the picture; rows of floats at a time, as vector code.
+  const auto pass = [&](const std::vector<float>& in, bool down) {
+    std::vector<float> out(in.size());
+    const int reach = static_cast<int>(kernel.size()) - 1, row = width * channels, side = down ? 0 : reach * channels;
+    std::vector<float> line(static_cast<std::size_t>(row + 2 * side));
+    for (int y = 0; y < height; ++y) {
+      for (int n = -reach; n <= reach; ++n) {
+        if (down || n == -reach) {
+          const float* from = &in[static_cast<std::size_t>(std::clamp(down ? y + n : y, 0, height - 1) * row)];
+          std::copy_n(from, row, line.begin() + side);
+          for (int i = 0; i < side; ++i)
+            line[i] = from[i % channels], line[side + row + i] = from[row - channels + i % channels];
+        }
+        const auto weight = static_cast<float>(kernel[static_cast<std::size_t>(std::abs(n))] / sum);
+        const float* shifted = line.data() + (down ? 0 : (reach + n) * channels);
+        float* to = &out[static_cast<std::size_t>(y * row)];
+        for (int i = 0; i < row; ++i) to[i] += weight * shifted[i];
+      }
+    }
+    return out;
+  };
+  return pass(pass(picture, false), true);
 }
 
-}  // namespace
+void SpreadPoints(const OpticsParams& optics, const CameraParams& c, RadianceImage& image) {
+  const bool grows = optics.psf_corner_px > 0;
+  if (optics.psf_sigma_px == 0 && !grows) return;
+  const std::vector<float> corner =
+      grows ? GaussianBlur(image.rgb, c.width, c.height, 3, optics.psf_corner_px) : std::vector<float>{};
+  image.rgb = GaussianBlur(image.rgb, c.width, c.height, 3, optics.psf_sigma_px);
+  for (std::size_t i = 0; i < corner.size(); ++i) {
+    const auto pixel = static_cast<int>(i / 3);
+    const double u = pixel % c.width - c.cx, v = pixel / c.width - c.cy, size2 = std::hypot(c.width, c.height) / 2;
+    const auto share = static_cast<float>(std::min(1.0, (u * u + v * v) / (size2 * size2)));
+    image.rgb[i] += share * (corner[i] - image.rgb[i]);
+  }
+}
 
 void CheckProcessing(const SensorParams& params, settings::FieldCheck& check) {
   const ProcessingParams& p = params.processing;
-  if (!p.tone_curve.empty() && (p.black_clip != 0 || p.contrast != 1 || p.toe != 1 || p.shoulder != 1))
-    check.Refuse("processing.tone_curve", "stands for black_clip, contrast, toe and shoulder: leave them out");
   check.Require(p.contrast * (1 - p.black_clip) > 0.05, "processing.contrast", p.contrast,
                 "leaves no light above black");
   const bool has_color = params.color && params.mosaic != Mosaic::raw;
@@ -69,60 +75,44 @@ void CorrectColor(const ProcessingParams& p, std::span<float> rgb) {
 
 ToneCurve::ToneCurve(const SensorParams& params) {
   const ProcessingParams& p = params.processing;
-  const std::vector<Point> points = p.tone_curve.empty() ? std::vector<Point>{} : ReadCurve(p.tone_curve);
   const auto code = [&](double x) {
-    if (!points.empty()) {
-      const auto above = std::ranges::lower_bound(points, std::max(x, 1e-300), {}, &Point::x), below = std::prev(above);
-      return below->code + (x - below->x) / (above->x - below->x) * (above->code - below->code);
-    }
     const double e = std::clamp(p.contrast * (EncodeResponse(params.response, x) - p.black_clip), 0.0, 1.0);
-    const double low = std::pow(e, p.toe), high = std::pow(1 - e, p.shoulder);
-    return low / (low + high);
+    const double low = std::pow(e, p.toe);
+    return low / (low + std::pow(1 - e, p.shoulder));
   };
   for (int i = 0; i <= static_cast<int>(kCells); ++i) table_.push_back(static_cast<float>(code(i / double{kCells})));
 }
 
-void Denoise(const ProcessingParams& p, int width, int height, int channels, std::span<float> picture) {
+void Denoise(const ProcessingParams& p, int width, int height, int channels, std::vector<float>& picture) {
   if (p.denoise_sigma_px == 0) return;
   const int reach = std::max(1, static_cast<int>(2 * p.denoise_sigma_px)), size = width * channels;
-  const std::vector<float> in(picture.begin(), picture.end());
+  cv::Mat padded;
+  cv::copyMakeBorder(cv::Mat(height, width, CV_32FC(channels), picture.data()), padded, reach, reach, reach, reach,
+                     cv::BORDER_REPLICATE);
   const auto inverse_range = static_cast<float>(1 / p.denoise_range);
-  std::vector<float> line(static_cast<std::size_t>(size + 2 * reach * channels)), sum(static_cast<std::size_t>(size)),
-      weights(sum);
+  std::vector<float> weights(static_cast<std::size_t>(size));
   for (int y = 0; y < height; ++y) {
-    const float* here = &in[static_cast<std::size_t>(y) * static_cast<std::size_t>(size)];
-    std::copy_n(here, size, sum.begin());
+    const float* here = padded.ptr<float>(y + reach) + reach * channels;
+    float* sum = &picture[static_cast<std::size_t>(y * size)];
     std::ranges::fill(weights, 1.0f);
     for (int dy = -reach; dy <= reach; ++dy) {
-      const auto row = static_cast<std::size_t>(std::clamp(y + dy, 0, height - 1));
-      for (int i = 0; i < size + 2 * reach * channels; ++i) {
-        const int x = std::clamp(i / channels - reach, 0, width - 1);
-        line[static_cast<std::size_t>(i)] =
-            in[row * static_cast<std::size_t>(size) + static_cast<std::size_t>(x * channels + i % channels)];
-      }
       for (int dx = -reach; dx <= reach; ++dx) {
         if (dx == 0 && dy == 0) continue;
-        const auto near =
-            static_cast<float>(std::exp(-0.5 * (dx * dx + dy * dy) / (p.denoise_sigma_px * p.denoise_sigma_px)));
-        const float* there = &line[static_cast<std::size_t>((reach + dx) * channels)];
+        const auto near = static_cast<float>(std::exp(-0.5 * (dx * dx + dy * dy) / std::pow(p.denoise_sigma_px, 2)));
+        const float* there = padded.ptr<float>(y + reach + dy) + (reach + dx) * channels;
         for (int i = 0; i < size; ++i) {
           const float difference = (there[i] - here[i]) * inverse_range, weight = near / (1 + difference * difference);
-          sum[static_cast<std::size_t>(i)] += weight * there[i];
-          weights[static_cast<std::size_t>(i)] += weight;
+          sum[i] += weight * there[i], weights[static_cast<std::size_t>(i)] += weight;
         }
       }
     }
-    for (int i = 0; i < size; ++i)
-      picture[static_cast<std::size_t>(y * size + i)] =
-          sum[static_cast<std::size_t>(i)] / weights[static_cast<std::size_t>(i)];
+    for (int i = 0; i < size; ++i) sum[i] /= weights[static_cast<std::size_t>(i)];
   }
 }
 
-void Sharpen(const ProcessingParams& p, int width, int height, int channels, std::span<float> picture) {
+void Sharpen(const ProcessingParams& p, int width, int height, int channels, std::vector<float>& picture) {
   if (!p.HasSharpening()) return;
-  std::vector<float> smooth(picture.begin(), picture.end());
-  const std::vector<float> kernel = DiscreteGaussian(p.sharpen_sigma_px);
-  Convolve(smooth, width, height, channels, {&kernel, 1});
+  const std::vector<float> smooth = GaussianBlur(picture, width, height, channels, p.sharpen_sigma_px);
   const auto bright = static_cast<float>(p.sharpen_bright), dark = static_cast<float>(p.sharpen_dark);
   for (std::size_t i = 0; i < picture.size(); ++i) {
     const float d = picture[i] - smooth[i];

@@ -1,13 +1,26 @@
-// Image processing of a camera, in its order: white balance and colour matrix in linear light, tone curve, denoising,
-// sharpening. Each step maps fractions of the scale, 0 ... 1, to the same.
+// What a camera does beside counting light: the point-spread function of its lens, before the sensor; and the image
+// processing behind it, in its order: white balance and colour matrix in linear light, tone curve, denoising, sharpening.
+// Each step of the latter maps fractions of the scale, 0 ... 1, to the same.
+// Source: Lindeberg 1990, "Scale-space for discrete signals", equation (7): the discrete Gaussian, whose variance is
+//   exactly sigma^2 at any width: T(n) = exp(-sigma^2) I_n(sigma^2), I_n the modified Bessel function.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "sim/sensor/camera.h"
 #include "sim/sensor/description.h"
+#include "sim/sensor/image.h"
 
 namespace sim {
+
+// Rows, then columns, of interleaved channels are convolved with the discrete Gaussian of `sigma` px, cut off where less
+// than 1e-5 is left; beyond the border its pixels are repeated.
+std::vector<float> GaussianBlur(const std::vector<float>& picture, int width, int height, int channels, double sigma);
+
+// The irradiance behind the lens. A pixel r half diagonals from the principal point has the mixture of the Gaussians of
+// psf_sigma and psf_corner whose variance is psf_sigma^2 + min(r^2, 1) (psf_corner^2 - psf_sigma^2).
+void SpreadPoints(const OpticsParams& optics, const CameraParams& camera, RadianceImage& image);
 
 // Rules between the values of a sensor's processing and the rest of it.
 void CheckProcessing(const SensorParams& params, settings::FieldCheck& check);
@@ -17,11 +30,9 @@ void CorrectColor(const ProcessingParams& params, std::span<float> rgb);
 
 // C(x) = T(R(x)), from linear light to the code, R: the response; with e = contrast (R(x) - black_clip) in 0 ... 1:
 //   T = e^toe / (e^toe + (1 - e)^shoulder),
-// slope (toe + shoulder) / 2 at e = 1/2, exponents toe at black and shoulder at white. Or a file of lines `x C`, with x
-// from 0 to 1 increasing and C in 0 ... 1 not decreasing, linear in between: it stands for R and T together.
+// slope (toe + shoulder) / 2 at e = 1/2, exponents toe at black and shoulder at white.
 class ToneCurve {
  public:
-  // Throws std::invalid_argument naming the file and each bad line.
   explicit ToneCurve(const SensorParams& params);
 
   // From a table of 2^14 cells, linear in between. x is clipped to 0 ... 1.
@@ -36,13 +47,13 @@ class ToneCurve {
   std::vector<float> table_;
 };
 
-// Edge-preserving mean of the pixels at d within 2 denoise_sigma along each axis, by channel, of the weights
+// Edge-preserving mean of the pixels at d within max(1, 2 denoise_sigma) along each axis, by channel, of the weights
 //   exp(-|d|^2 / (2 denoise_sigma^2)) / (1 + ((v(p + d) - v(p)) / denoise_range)^2),
 // a bilateral filter with the conductance of Perona and Malik 1990.
-void Denoise(const ProcessingParams& params, int width, int height, int channels, std::span<float> picture);
+void Denoise(const ProcessingParams& params, int width, int height, int channels, std::vector<float>& picture);
 
 // Unsharp masking with halos controlled apart: d = v - G v, G the discrete Gaussian of sharpen_sigma;
 //   v + sharpen_bright d where d > 0, v + sharpen_dark d elsewhere, clipped to 0 ... 1.
-void Sharpen(const ProcessingParams& params, int width, int height, int channels, std::span<float> picture);
+void Sharpen(const ProcessingParams& params, int width, int height, int channels, std::vector<float>& picture);
 
 }  // namespace sim

@@ -1,13 +1,11 @@
-#include "tools/bench/camera_fit/fit.h"
-
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
+#include <functional>
 
-#include "sim/sensor/point_spread.h"
 #include "sim/sensor/sensor.h"
+#include "tools/bench/camera_fit/camera_fit.h"
 
 namespace vobench {
 namespace {
@@ -27,8 +25,9 @@ std::vector<double> LinearOf(const sim::SensorParams& sensor) {
 }
 
 cv::Mat Capture(const sim::SensorParams& sensor, sim::RadianceImage radiance, std::int64_t frame) {
-  sim::PointSpread(sensor.optics, radiance.width, radiance.height, 0.5 * radiance.width, 0.5 * radiance.height)
-      .Apply(radiance);
+  sim::CameraParams camera;
+  camera.width = radiance.width, camera.height = radiance.height;
+  sim::SpreadPoints(sensor.optics, camera, radiance);
   const sim::Image image = sim::Sensor(sensor, 1).Capture(radiance, frame);
   cv::Mat picture(image.height, image.width, CV_8UC(image.channels), const_cast<std::uint8_t*>(image.data.data()));
   return picture.clone();  // the order of the colours does not matter: the chart is grey
@@ -46,27 +45,21 @@ NoiseStatistics FlatAt(const sim::SensorParams& sensor, double code) {
   return MeasureNoise({&pair, 1});
 }
 
-// Edges of slopes up to 1/4, each pixel the mean over its square.
-EdgeStatistics EdgesOf(const sim::SensorParams& sensor, const EdgeStatistics& like) {
+// Edges of slopes up to 1/8 between codes 45 and 190, each pixel the mean over its square.
+EdgeStatistics EdgesOf(const sim::SensorParams& sensor) {
   const std::vector<double> linear = LinearOf(sensor);
-  const double low = linear[static_cast<std::size_t>(like.low)], high = linear[static_cast<std::size_t>(like.high)];
   std::vector<Edge> edges;
   for (int chart = 0; chart < 3; ++chart) {
-    sim::RadianceImage radiance{kWidth, kHeight, std::vector<float>(std::size_t{3} * kWidth * kHeight)};
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        const double place = std::remainder(x - (0.02 + 0.1 * chart) * y, 64.0);  // edges at 0 and 32
-        const double share = std::clamp(16.5 - std::abs(place), 0.0, 1.0), light = low + share * (high - low);
-        std::fill_n(radiance.rgb.begin() + 3 * (y * kWidth + x), 3, static_cast<float>(light));
-      }
+    sim::RadianceImage radiance{kWidth, kHeight, {}};
+    for (int i = 0; i < kWidth * kHeight; ++i) {
+      const double place = std::remainder(i % kWidth - (0.02 + 0.05 * chart) * (i / kWidth), 64.0);  // 0 and 32
+      const double light = std::lerp(linear[45], linear[190], std::clamp(16.5 - std::abs(place), 0.0, 1.0));
+      radiance.rgb.insert(radiance.rgb.end(), 3, static_cast<float>(light));
     }
-    for (const Edge& edge : FindEdges(Capture(sensor, std::move(radiance), chart))) {
-      if (!edge.in_column) edges.push_back(edge);
-    }
+    const std::vector<Edge> found = FindEdges(Capture(sensor, std::move(radiance), chart));
+    edges.insert(edges.end(), found.begin(), found.end());
   }
-  EdgeStatistics shown = Summarise(edges);
-  shown.low = like.low, shown.high = like.high;
-  return shown;
+  return Summarise(edges);
 }
 
 // Shot and read noise by linear least squares: with v the variance of a level over the squared slope of its code by light,
@@ -147,11 +140,6 @@ CameraFit FitCamera(const Recording& recording) {
   p.sharpen_sigma_px = 1.5, p.denoise_range = 0.1;
   fit.noise = MeasureNoise(recording.pairs);
   std::erase_if(fit.noise.levels, [](const NoiseLevel& level) { return level.code < 10 || level.code > 245; });
-  for (const Pair& pair : recording.pairs) {
-    const double share = 1.0 / static_cast<double>(pair.picture.total() * recording.pairs.size());
-    fit.black += share * cv::countNonZero(Grey(pair.picture) <= 4);
-    fit.white += share * cv::countNonZero(Grey(pair.picture) >= 251);
-  }
   s.color = recording.pairs.front().picture.channels() == 3;
   if (s.color && std::abs(std::log(fit.noise.lattice)) > 0.2) s.mosaic = sim::Mosaic::demosaiced;
   fit.exposure_s = FitExposure(recording, fit.edges);
@@ -167,10 +155,10 @@ CameraFit FitCamera(const Recording& recording) {
       if (denoised) Solve(p.denoise_sigma_px, 2, Correlation(fit.noise), [&] { return Correlation(FlatAt(s, 128)); });
     }
     if (fit.edges_known) {
-      Solve(s.optics.psf_sigma_px, 2, fit.edges.width, [&] { return EdgesOf(s, fit.edges).width; });
-      if (round == 0) sharpened = Halo(fit.edges) - Halo(EdgesOf(s, fit.edges)) > kHalo;
-      if (sharpened) Solve(p.sharpen_bright, 4, fit.edges.bright, [&] { return EdgesOf(s, fit.edges).bright; });
-      if (sharpened) Solve(p.sharpen_dark, 4, fit.edges.dark, [&] { return EdgesOf(s, fit.edges).dark; });
+      Solve(s.optics.psf_sigma_px, 2, fit.edges.width, [&] { return EdgesOf(s).width; });
+      if (round == 0) sharpened = Halo(fit.edges) - Halo(EdgesOf(s)) > kHalo;
+      if (sharpened) Solve(p.sharpen_bright, 4, fit.edges.bright, [&] { return EdgesOf(s).bright; });
+      if (sharpened) Solve(p.sharpen_dark, 4, fit.edges.dark, [&] { return EdgesOf(s).dark; });
     }
     sim::SensorParams plain = s;
     plain.mosaic = sim::Mosaic::none;

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "tools/bench/camera_fit/fit.h"
+#include "tools/bench/camera_fit/camera_fit.h"
 
 namespace vobench {
 namespace {
@@ -31,28 +31,6 @@ double BlurredWidth(double sigma, double L) {
 }
 
 }  // namespace
-
-EdgeStatistics Summarise(std::vector<Edge> edges) {
-  const auto quantile = [&](double Edge::*member, double p) {
-    std::vector<double> values;
-    for (const Edge& edge : edges) values.push_back(edge.*member);
-    return Quantile(values, p);
-  };
-  const std::size_t count = edges.size();
-  const double median = quantile(&Edge::width, 0.5);
-  std::erase_if(edges, [&](const Edge& edge) { return edge.width > median; });
-  EdgeStatistics out{count,
-                     0,
-                     quantile(&Edge::bright, 0.5),
-                     quantile(&Edge::dark, 0.5),
-                     quantile(&Edge::low, 0.5),
-                     quantile(&Edge::high, 0.5)};
-  std::erase_if(edges, [&](const Edge& edge) {
-    return std::abs(edge.bright - out.bright) > 0.06 || std::abs(edge.dark - out.dark) > 0.06;
-  });
-  out.width = quantile(&Edge::width, 0.5);
-  return out;
-}
 
 std::optional<Measure> FitExposure(const Recording& recording, EdgeStatistics& at_rest) {
   std::vector<std::pair<double, Edge>> edges;  // with the speed [px / frame] along the row
@@ -100,91 +78,83 @@ std::optional<Measure> FitExposure(const Recording& recording, EdgeStatistics& a
 
 std::optional<Measure> FitVignetting(const Recording& recording, const std::vector<double>& linear,
                                      sim::OpticsParams& optics) {
-  cv::Mat table(1, 256, CV_32F);
-  for (int c = 0; c < 256; ++c) table.at<float>(c) = static_cast<float>(linear[static_cast<std::size_t>(c)]);
+  const cv::Mat table(1, 256, CV_64F, const_cast<double*>(linear.data()));
   struct Sight {
-    double r2, log_light;
-    std::size_t track, frame;
+    double r2_first, r2, log_ratio;
   };
-  std::vector<Sight> sights;
-  std::size_t tracks = 0, frames = 0;
+  std::vector<std::vector<Sight>> frames;  // what was seen before, in the first frame of its run
   for (const std::vector<cv::Mat>& run : recording.runs) {
-    std::vector<std::pair<std::size_t, cv::Point2f>> places;  // of what is followed
-    for (std::size_t k = 0; k < run.size(); ++k, ++frames) {
+    struct Place {
+      cv::Point2f at;
+      double r2_first = 0, log_first = 0;
+    };
+    std::vector<Place> places;
+    for (int y = 16; y < run.front().rows; y += 32) {
+      for (int x = 16; x < run.front().cols; x += 32) places.push_back({cv::Point2f(cv::Point(x, y))});
+    }
+    for (std::size_t k = 0; k < run.size(); ++k) {
       const cv::Mat grey = Grey(run[k]);
-      const cv::Point2f middle(0.5F * static_cast<float>(grey.cols - 1), 0.5F * static_cast<float>(grey.rows - 1));
-      if (k % 20 == 0) {
-        places.clear();
-        for (float y = 40; y < static_cast<float>(grey.rows - 40); y += 32) {
-          for (float x = 40; x < static_cast<float>(grey.cols - 40); x += 32)
-            places.emplace_back(tracks++, cv::Point2f(x, y));
-        }
-      }
-      const Pair pair{{}, {}, k + 1 < run.size() ? MeasureMotion(run[k], run[k + 1]) : std::vector<Motion>{}};
-      std::erase_if(places, [&](auto& place) {
-        auto& [track, at] = place;
-        const cv::Rect patch(cvRound(at.x) - 8, cvRound(at.y) - 8, 17, 17);
-        double least = 0, most = 0;
+      const cv::Point2f middle = 0.5 * cv::Point2f(cv::Point(grey.size()));
+      const Pair pair = k + 1 < run.size() ? MakePair(run[k], run[k + 1]) : Pair{};
+      frames.emplace_back();
+      std::erase_if(places, [&](Place& place) {
+        const cv::Rect patch(cvRound(place.at.x) - 8, cvRound(place.at.y) - 8, 17, 17);
+        if ((patch & cv::Rect({}, grey.size())) != patch) return true;
+        double most = 0;
         cv::Mat light;
-        cv::minMaxLoc(grey(patch), &least, &most);
+        cv::minMaxLoc(grey(patch), nullptr, &most);
         cv::LUT(grey(patch), table, light);
-        const double mean = cv::mean(light)[0];
+        const double mean = cv::mean(light)[0], r2 = std::pow(cv::norm(place.at - middle) / cv::norm(middle), 2);
         if (most > 250 || mean < 0.01) return true;
-        const cv::Point2f from = at - middle;
-        sights.push_back({from.dot(from) / middle.dot(middle), std::log(mean), track, frames});
-        const Motion* nearest = pair.Nearest(at, 45);
-        if (nearest == nullptr) return true;
-        at += nearest->by;
-        return at.x < 16 || at.y < 16 || at.x > static_cast<float>(grey.cols - 17) ||
-               at.y > static_cast<float>(grey.rows - 17);
+        if (k == 0) place.r2_first = r2, place.log_first = std::log(mean);
+        if (k > 0) frames.back().push_back({place.r2_first, r2, std::log(mean) - place.log_first});
+        const Motion* nearest = pair.Nearest(place.at, 45);
+        if (nearest != nullptr) place.at += nearest->by;
+        return nearest == nullptr;
       });
     }
   }
-  double v2 = 0, v4 = 0;
-  Eigen::Matrix2d H;
-  std::vector<double> of_frame(frames, 0.0);
-  double scale = 1e9, used = 0;
-  const auto mean_of = [&](std::size_t groups, const auto& key, const auto& value) {
-    std::vector<double> sum(groups), count(groups);
-    for (const Sight& s : sights) sum[key(s)] += value(s), count[key(s)] += 1;
-    for (std::size_t i = 0; i < groups; ++i) sum[i] /= std::max(1.0, count[i]);
-    return sum;
+  // Gauss-Newton, large residuals weighted down (Huber); v4 is 0 +- 0.1 before. Sights of one track are not independent:
+  // ten count as one.
+  struct Fit {
+    Eigen::Vector2d v = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d H = Eigen::Matrix2d::Identity();
+    double scale = 1e9, variance = 0;
   };
-  const auto of_track = [](const Sight& s) { return s.track; };
-  const auto in_frame = [](const Sight& s) { return s.frame; };
-  for (int round = 0; round < 8; ++round) {  // Gauss-Newton; tracks' and frames' own brightness by means in turn
-    const auto factor = [&](const Sight& s) { return 1 + s.r2 * (v2 + s.r2 * v4); };
-    const auto rest = [&](const Sight& s) { return s.log_light - std::log(factor(s)) - of_frame[s.frame]; };
-    const std::vector<double> track_rest = mean_of(tracks, of_track, rest);
-    const std::vector<double> track_2 = mean_of(tracks, of_track, [&](const Sight& s) { return s.r2 / factor(s); });
-    const std::vector<double> track_4 =
-        mean_of(tracks, of_track, [&](const Sight& s) { return s.r2 * s.r2 / factor(s); });
-    H.setZero();
-    Eigen::Vector2d b = Eigen::Vector2d::Zero();
-    std::vector<double> sizes;
-    for (const Sight& s : sights) {
-      const Eigen::Vector2d J(s.r2 / factor(s) - track_2[s.track], s.r2 * s.r2 / factor(s) - track_4[s.track]);
-      const double r = rest(s) - track_rest[s.track], weight = std::abs(r) > scale ? scale / std::abs(r) : 1;
-      H += weight * J * J.transpose(), b += weight * r * J;
-      sizes.push_back(std::abs(r));
+  const auto solve = [&](bool exposures_differ) {
+    Fit fit;
+    for (int round = 0; round < 8; ++round) {
+      const auto factor = [&](double r2) { return std::max(0.05, 1 + r2 * (fit.v(0) + r2 * fit.v(1))); };
+      Eigen::Vector2d b = Eigen::Vector2d::Zero();
+      std::vector<double> sizes;
+      fit.H.setZero();
+      for (const std::vector<Sight>& frame : frames) {
+        Eigen::MatrixX3d rows(frame.size(), 3);  // Jacobian and residual
+        for (std::size_t i = 0; i < frame.size(); ++i) {
+          const double r2 = frame[i].r2, r2_first = frame[i].r2_first, f = factor(r2), f_first = factor(r2_first);
+          rows.row(static_cast<Eigen::Index>(i)) << r2 / f - r2_first / f_first,
+              r2 * r2 / f - r2_first * r2_first / f_first, frame[i].log_ratio - std::log(f / f_first);
+        }
+        if (exposures_differ && !frame.empty()) rows.rowwise() -= rows.colwise().mean().eval();
+        for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+          const double size = std::abs(rows(i, 2)), weight = size > fit.scale ? fit.scale / size : 1;
+          const Eigen::Vector2d J(rows(i, 0), rows(i, 1));
+          fit.H += weight * J * J.transpose(), b += weight * rows(i, 2) * J;
+          sizes.push_back(size);
+        }
+      }
+      fit.scale = std::max(1e-4, 2 * Quantile(sizes, 0.5));
+      fit.variance = 10 * std::pow(0.74 * fit.scale, 2);
+      fit.H += Eigen::Vector2d(1e-9, 100 * fit.variance).asDiagonal(), b(1) -= 100 * fit.variance * fit.v(1);
+      fit.v += fit.H.ldlt().solve(b);
     }
-    used = H(0, 0);
-    scale = std::max(1e-4, 2 * Quantile(sizes, 0.5));
-    // v4 is 0 +- 0.1 before. Sights of one track are not independent: ten of them count as one.
-    const double variance = 10 * std::pow(0.74 * scale, 2);
-    H(0, 0) += 1e-9, H(1, 1) += variance / 0.01, b(1) -= v4 * variance / 0.01;
-    const Eigen::Vector2d step = H.ldlt().solve(b);
-    v2 += step(0), v4 += step(1);
-    if (1 + v2 + v4 < 0.05) return std::nullopt;
-    const std::vector<double> rows =
-        mean_of(frames, in_frame, [&](const Sight& s) { return rest(s) - track_rest[s.track]; });
-    for (std::size_t i = 0; i < frames; ++i) of_frame[i] += rows[i];
-  }
-  if (sights.size() < 500 || used < 1) return std::nullopt;
-  const double sigma = std::sqrt((H.inverse() * 10 * std::pow(0.74 * scale, 2)).sum());
-  optics.vignetting_2 = v2, optics.vignetting_4 = v4;
-  if (sigma > 0.05) return std::nullopt;
-  return Measure{1 + v2 + v4, sigma};
+    return fit;
+  };
+  const Fit same = solve(false), differ = solve(true), &fit = differ.scale < 0.7 * same.scale ? differ : same;
+  const Measure corner{1 + fit.v.sum(), std::sqrt(fit.variance * fit.H.inverse().sum())};
+  if (!(corner.sigma < 0.05) || corner.value < 0.06) return std::nullopt;
+  optics.vignetting_2 = fit.v(0), optics.vignetting_4 = fit.v(1);
+  return corner;
 }
 
 }  // namespace vobench

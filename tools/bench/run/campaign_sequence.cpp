@@ -35,7 +35,6 @@ std::vector<fs::path> NamedFiles(const sim::Scenario& scenario) {
   }
   if (scenario.world.sky && !scenario.world.sky->file.empty()) files.push_back(scenario.world.sky->file);
   add_motion(scenario.motion);
-  if (!scenario.sensor.processing.tone_curve.empty()) files.emplace_back(scenario.sensor.processing.tone_curve);
   for (fs::path& file : files) file = fs::absolute(file);
   return files;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-#include "tools/bench/camera_fit/fit.h"
+#include "tools/bench/camera_fit/camera_fit.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/progress.h"
 #include "tools/bench/run/commands.h"
@@ -21,7 +21,6 @@ Recording Read(const std::filesystem::path& sequence) {
     throw std::runtime_error(
         fmt::format("{}: has {} frames; a camera is fitted to 3 at least", sequence.string(), count));
   Recording recording;
-  recording.frames = static_cast<std::int64_t>(count);
   Progress progress("reading", static_cast<std::int64_t>(count));
   std::vector<double> periods;
   vo::Frame before;
@@ -29,7 +28,7 @@ Recording Read(const std::filesystem::path& sequence) {
     std::optional<vo::Frame> frame = reader.Next();
     if (k > 0) periods.push_back(static_cast<double>(frame->stamp_ns - before.stamp_ns) * 1e-9);
     if (k > 0 && ((k - 1) * kPairs / count != k * kPairs / count || count <= kPairs))
-      recording.pairs.push_back({before.image, frame->image, MeasureMotion(before.image, frame->image)});
+      recording.pairs.push_back(MakePair(before.image, frame->image));
     const std::size_t run_step = std::max(2 * kRunLength, count / kRuns);
     if (k % run_step == 0) recording.runs.emplace_back();
     if (k % run_step < 2 * kRunLength && k % 2 == 0) recording.runs.back().push_back(frame->image);
@@ -43,50 +42,44 @@ Recording Read(const std::filesystem::path& sequence) {
   return recording;
 }
 
-void PrintFound(const CameraFit& fit) {
+void Print(const CameraFit& fit) {
+  const auto missing = [](const char* what, const char* why) { fmt::print("# not determined: {}: {}\n", what, why); };
   fmt::print("# code      noise   of flat blocks\n");
-  for (const NoiseLevel& level : fit.noise.levels)
-    fmt::print("# {:4.0f} {:10.2f} {:12}\n", level.code, level.sigma, level.blocks);
+  for (const NoiseLevel& l : fit.noise.levels) fmt::print("# {:4.0f} {:10.2f} {:12}\n", l.code, l.sigma, l.blocks);
   fmt::print("# correlation of neighbours {:.2f} in rows, {:.2f} in columns; lattice of a mosaic {:.2f}\n",
              fit.noise.correlation[0], fit.noise.correlation[1], fit.noise.lattice);
-  fmt::print(
-      "# {} edges: 10-90 % width {:.2f} px at rest, overshoot {:.3f} bright, {:.3f} dark; black {:.1f} %, white {:.1f} "
-      "%\n",
-      fit.edges.count, fit.edges.width, fit.edges.bright, fit.edges.dark, 100 * fit.black, 100 * fit.white);
-  const auto missing = [](const char* what, const char* why) { fmt::print("# not determined: {}: {}\n", what, why); };
+  fmt::print("# {} edges at rest: 10-90 % width {:.2f} px, halo {:.3f} bright, {:.3f} dark\n", fit.edges.count,
+             fit.edges.width, fit.edges.bright, fit.edges.dark);
+  if (fit.noise_known) fmt::print("# noise explained to {:.0f} %\n", 100 * fit.noise_misfit);
   if (fit.exposure_s)
     fmt::print("# exposure {:.1f} +- {:.1f} ms\n", 1e3 * fit.exposure_s->value, 1e3 * fit.exposure_s->sigma);
+  if (fit.corner) fmt::print("# vignetting: {:.3f} +- {:.3f} in the corners\n", fit.corner->value, fit.corner->sigma);
+  if (!fit.noise_known) missing("full_well, read_noise, toe, shoulder, denoise_sigma", "too few flat places");
   if (!fit.exposure_s) missing("exposure", "no edges that motion blurs visibly");
-  if (fit.corner) fmt::print("# vignetting: {:.3f} +- {:.3f} at the corners\n", fit.corner->value, fit.corner->sigma);
   if (!fit.corner) missing("vignetting", "too little moves through the picture");
-  if (!fit.noise_known) missing("full_well, read_noise, denoise_sigma", "too few flat places");
-  if (fit.noise_known) fmt::print("# noise explained to {:.0f} %\n", 100 * fit.noise_misfit);
-  if (!fit.edges_known) missing("psf_sigma, sharpen", "fewer than 200 edges between flat sides");
+  if (!fit.edges_known) missing("psf_sigma, sharpen", "too few edges at rest between flat sides");
   missing("white_balance, colour matrix, white, gain", "they need a chart of known colours");
   missing("rolling_shutter", "`vobench track` estimates it");
+  const sim::SensorParams& s = fit.sensor;
+  const sim::ProcessingParams& p = s.processing;
+  fmt::print("sensor:\n  color: {}\n", s.color);
+  if (s.color) fmt::print("  mosaic: {}\n", s.mosaic == sim::Mosaic::demosaiced ? "demosaiced" : "none");
+  if (fit.exposure_s) fmt::print("  exposure: {:.2f} ms\n", 1e3 * s.exposure_s);
+  if (fit.noise_known)
+    fmt::print("  full_well: {:.0f} e\n  read_noise: {:.2f} e\n  response: {}\n", s.full_well_e, s.read_noise_e,
+               s.response == sim::Response::srgb ? "srgb" : "linear");
+  fmt::print("  optics: {{psf_sigma: {:.3f} px, vignetting_2: {:.4f}, vignetting_4: {:.4f}}}\n", s.optics.psf_sigma_px,
+             s.optics.vignetting_2, s.optics.vignetting_4);
+  fmt::print("  processing: {{toe: {:.3f}, shoulder: {:.3f}, denoise_sigma: {:.3f} px, denoise_range: {},\n", p.toe,
+             p.shoulder, p.denoise_sigma_px, p.denoise_range);
+  fmt::print("    sharpen_bright: {:.3f}, sharpen_dark: {:.3f}, sharpen_sigma: {} px}}\n", p.sharpen_bright,
+             p.sharpen_dark, p.sharpen_sigma_px);
 }
 
 }  // namespace
 
 void FitCamera(const FitCameraOptions& options) {
-  const Recording recording = Input([&] { return Read(options.sequence); });
-  const CameraFit fit = FitCamera(recording);
-  PrintFound(fit);
-  const sim::SensorParams& s = fit.sensor;
-  fmt::print("sensor:\n");
-  if (fit.exposure_s) fmt::print("  exposure: {:.2f} ms\n", 1e3 * s.exposure_s);
-  if (fit.noise_known)
-    fmt::print("  full_well: {:.0f} e\n  read_noise: {:.2f} e\n  response: {}\n", s.full_well_e, s.read_noise_e,
-               s.response == sim::Response::srgb ? "srgb" : "linear");
-  fmt::print("  color: {}\n  mosaic: {}\n", s.color, s.mosaic == sim::Mosaic::demosaiced ? "demosaiced" : "none");
-  fmt::print("  optics: {{psf_sigma: {:.3f} px, vignetting_2: {:.4f}, vignetting_4: {:.4f}}}\n", s.optics.psf_sigma_px,
-             s.optics.vignetting_2, s.optics.vignetting_4);
-  fmt::print(
-      "  processing: {{toe: {:.3f}, shoulder: {:.3f}, denoise_sigma: {:.3f} px, denoise_range: {}, sharpen_bright: "
-      "{:.3f}, "
-      "sharpen_dark: {:.3f}, sharpen_sigma: {} px}}\n",
-      s.processing.toe, s.processing.shoulder, s.processing.denoise_sigma_px, s.processing.denoise_range,
-      s.processing.sharpen_bright, s.processing.sharpen_dark, s.processing.sharpen_sigma_px);
+  Print(FitCamera(Input([&] { return Read(options.sequence); })));
 }
 
 }  // namespace vobench
