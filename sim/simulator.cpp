@@ -235,7 +235,7 @@ Frame Simulator::Render(std::int64_t index) const {
   exposure.focus_m = sensor.optics.focus_m;
   RadianceImage radiance;
   parts.Expose(parts.optics, exposure, index, radiance);
-  SpreadPoints(sensor.optics, parts.scenario.camera, radiance);
+  SpreadPoints(sensor.optics, radiance);
   parts.arena.execute([&] { frame.image = parts.sensor.Capture(radiance, index, frame.setting); });
   return frame;
 }

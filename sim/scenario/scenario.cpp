@@ -1,6 +1,7 @@
 #include "sim/scenario/scenario.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -40,25 +41,30 @@ void ReadMotionAndTime(Section root, const std::filesystem::path& folder, Scenar
 }
 
 // Defaults of the other keys; what they are fitted to: docs/sensor.md.
-std::vector<std::pair<std::string, SensorParams>> SensorPresets() {
-  SensorParams kinect, icl_nuim, phone, machine_vision, euroc;
-  kinect.exposure_s = 0.013, kinect.readout_s = 0.026, kinect.mosaic = Mosaic::demosaiced;
-  icl_nuim.exposure_s = 0, icl_nuim.time_samples = 1, icl_nuim.full_well_e = 4000, icl_nuim.read_noise_e = 10;
-  return {
-      {"none", {}},    {"kinect", kinect}, {"icl_nuim", icl_nuim}, {"phone", phone}, {"machine_vision", machine_vision},
-      {"euroc", euroc}};
-}
+constexpr std::array<std::pair<const char*, const char*>, 6> kPresets = {
+    {{"none", "{}"},
+     {"kinect", R"({exposure: 13 ms, rolling_shutter: 26 ms, mosaic: demosaiced, full_well: 12800 e, read_noise: 3 e,
+         optics: {psf_sigma: 0.82 px}, processing: {black_clip: 0.04, contrast: 1.12, toe: 1.2, shoulder: 1.17,
+         denoise_sigma: 0.52, denoise_range: 0.1, sharpen_bright: 0.6, sharpen_dark: 1.5, sharpen_sigma: 1.5}})"},
+     {"icl_nuim", "{exposure: 0 s, time_samples: 1, full_well: 4000 e, read_noise: 10 e}"},
+     {"phone", R"({exposure: 8 ms, rolling_shutter: 20 ms, mosaic: demosaiced, full_well: 5000 e, read_noise: 3 e,
+         optics: {psf_sigma: 0.6 px, vignetting_2: -0.2}, jpeg_quality: 92, processing: {color_red: [1.5, -0.4, -0.1],
+         color_green: [-0.2, 1.4, -0.2], color_blue: [0, -0.5, 1.5], toe: 1.3, shoulder: 1.1, denoise_sigma: 1,
+         denoise_range: 0.03, sharpen_bright: 0.8, sharpen_dark: 0.8}})"},
+     {"machine_vision", R"({exposure: 5 ms, response: linear, color: false, full_well: 10500 e, read_noise: 7 e,
+         optics: {psf_sigma: 0.5 px}})"},
+     {"euroc", R"({exposure: 13.5 ms, response: linear, color: false, full_well: 7000 e, read_noise: 25 e,
+         optics: {psf_sigma: 0.7 px}})"}}};
 
 // rate_hz: of the frames, within which an exposure and the shutter must end.
 void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
   section.Allow("preset");
   if (section.Has("preset")) {  // resolved only where given
-    const auto presets = SensorPresets();
     settings::Choices<std::size_t> names;
-    for (const auto& [name, params] : presets) names.emplace_back(name, names.size());
+    for (const auto& [name, text] : kPresets) names.emplace_back(name, names.size());
     std::size_t preset = 0;
     section.ReadChoice("preset", preset, names);
-    sensor = presets[preset].second;
+    ReadFields(settings::Document::FromText(kPresets[preset].second, "preset").root(), sensor);
   }
   section.Allow("covered");
   if (section.Has("covered")) {  // resolved only where given

@@ -20,7 +20,7 @@ struct OpticsParams {
   double focus_m = 2.0;
   bool natural_vignetting = false;
   double vignetting_2 = 0.0, vignetting_4 = 0.0, vignetting_6 = 0.0;
-  double psf_sigma_px = 0.0, psf_corner_px = 0.0;
+  double psf_sigma_px = 0.0;
 };
 
 template <class V>
@@ -32,7 +32,6 @@ void Visit(V& v, OpticsParams& p) {
   v("vignetting_4", p.vignetting_4, {"r: distance from the principal point"});
   v("vignetting_6", p.vignetting_6, {"in half diagonals of the image"});
   v("psf_sigma", p.psf_sigma_px, {Unit::pixel, Range{0, 5}, "of the lens's Gaussian point-spread function"});
-  v("psf_corner", p.psf_corner_px, {Unit::pixel, Range{0, 5}, "the same half a diagonal from the axis; 0: as there"});
 }
 
 // Image processing between the sensor's linear signal and the file: sim/sensor/processing.h has the equations. As it
@@ -50,8 +49,8 @@ struct ProcessingParams {
   }
   bool HasSharpening() const { return sharpen_bright > 0 || sharpen_dark > 0; }
   bool on() const {
-    return HasColor() || black_clip != 0 || contrast != 1 || toe != 1 || shoulder != 1 || denoise_sigma_px > 0 ||
-           HasSharpening();
+    const bool tone = black_clip != 0 || contrast != 1 || toe != 1 || shoulder != 1;
+    return HasColor() || tone || denoise_sigma_px > 0 || HasSharpening();
   }
 };
 

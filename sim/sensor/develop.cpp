@@ -52,8 +52,7 @@ ResponseCurve::ResponseCurve(Response response) {
   }
 }
 
-Image Demosaic(const Image& mosaic, Interpolation interpolation) {
-  const bool edge_aware = interpolation == Interpolation::edge_aware || mosaic.bits == 8;
+Image Demosaic(const Image& mosaic, bool edge_aware) {
   // OpenCV leaves what is narrower than 3 pixels black. Mirrored about its first and last pixels it keeps the pattern.
   const int margin = std::min(mosaic.width, mosaic.height) < 3 ? 2 : 0;
   cv::Mat wide = View(mosaic), rgb;

@@ -40,8 +40,7 @@ class ResponseCurve {
 inline int BayerChannel(int x, int y) { return (x & 1) + (y & 1); }
 
 // Colour from a picture behind a Bayer filter, by OpenCV's edge-aware interpolation or its bilinear one. In a picture of one pixel a side a colour that has no pixel is that of the pixels that are there.
-enum class Interpolation { by_depth, edge_aware };  // by_depth: edge-aware in 8 bits, else bilinear
-Image Demosaic(const Image& mosaic, Interpolation interpolation = Interpolation::by_depth);
+Image Demosaic(const Image& mosaic, bool edge_aware);
 
 // The picture as it comes back from a JPEG file of this quality (1 ... 100), chroma at half resolution. 8 bits.
 Image ThroughJpeg(const Image& image, int quality);

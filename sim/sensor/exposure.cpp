@@ -29,12 +29,11 @@ AutoExposure::AutoExposure(const SensorParams& sensor)
 double AutoExposure::Brightness(const RadianceImage& frame, double signal) const {
   const double dark = sensor_.black_level + signal * sensor_.dark_current_e_s / sensor_.full_well_e;
   const double scale = signal / (sensor_.white * sensor_.exposure_s);
-  const ProcessingParams& processing = sensor_.processing;
-  const auto signal_of = [&](float light) { return std::min(1.0, dark + scale * light); };
+  const bool processed = sensor_.processing.on();
   const auto encoded = [&](double x) {
-    return processing.on() ? double{tone_(static_cast<float>(x))} : EncodeResponse(sensor_.response, x);
+    return processed ? double{tone_(static_cast<float>(x))} : EncodeResponse(sensor_.response, x);
   };
-  const auto shown = [&](float light) { return encoded(signal_of(light)); };
+  const auto shown = [&](float light) { return encoded(std::min(1.0, dark + scale * light)); };
   double sum = 0;
   for (std::size_t i = 0; i < frame.rgb.size(); i += 3) {
     const float* rgb = &frame.rgb[i];
@@ -42,11 +41,11 @@ double AutoExposure::Brightness(const RadianceImage& frame, double signal) const
       sum += shown(Luminance(rgb));
     } else if (sensor_.mosaic == Mosaic::raw) {
       sum += (shown(rgb[0]) + 2 * shown(rgb[1]) + shown(rgb[2])) / 4;
-    } else if (processing.HasColor()) {
+    } else if (sensor_.processing.HasColor()) {
       std::array<float, 3> x{};
-      std::transform(rgb, rgb + 3, x.begin(), [&](float light) { return static_cast<float>(signal_of(light)); });
-      CorrectColor(processing, x);
-      sum += (encoded(double{x[0]}) + encoded(double{x[1]}) + encoded(double{x[2]})) / 3;
+      for (std::size_t c = 0; c < 3; ++c) x[c] = static_cast<float>(std::min(1.0, dark + scale * rgb[c]));
+      CorrectColor(sensor_.processing, x);
+      for (const float balanced : x) sum += encoded(double{balanced}) / 3;
     } else {
       sum += (shown(rgb[0]) + shown(rgb[1]) + shown(rgb[2])) / 3;
     }

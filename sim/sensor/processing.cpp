@@ -40,28 +40,8 @@ std::vector<float> GaussianBlur(const std::vector<float>& picture, int width, in
   return pass(pass(picture, false), true);
 }
 
-void SpreadPoints(const OpticsParams& optics, const CameraParams& c, RadianceImage& image) {
-  const bool grows = optics.psf_corner_px > 0;
-  if (optics.psf_sigma_px == 0 && !grows) return;
-  const std::vector<float> corner =
-      grows ? GaussianBlur(image.rgb, c.width, c.height, 3, optics.psf_corner_px) : std::vector<float>{};
-  image.rgb = GaussianBlur(image.rgb, c.width, c.height, 3, optics.psf_sigma_px);
-  for (std::size_t i = 0; i < corner.size(); ++i) {
-    const auto pixel = static_cast<int>(i / 3);
-    const double u = pixel % c.width - c.cx, v = pixel / c.width - c.cy, size2 = std::hypot(c.width, c.height) / 2;
-    const auto share = static_cast<float>(std::min(1.0, (u * u + v * v) / (size2 * size2)));
-    image.rgb[i] += share * (corner[i] - image.rgb[i]);
-  }
-}
-
-void CheckProcessing(const SensorParams& params, settings::FieldCheck& check) {
-  const ProcessingParams& p = params.processing;
-  check.Require(p.contrast * (1 - p.black_clip) > 0.05, "processing.contrast", p.contrast,
-                "leaves no light above black");
-  const bool has_color = params.color && params.mosaic != Mosaic::raw;
-  if (p.HasColor() && !has_color) check.Refuse("processing.white_balance", "and the colour matrix need three channels");
-  if (params.mosaic == Mosaic::raw && (p.denoise_sigma_px > 0 || p.HasSharpening()))
-    check.Refuse("processing.denoise_sigma", "and sharpen do not go with a raw mosaic");
+void SpreadPoints(const OpticsParams& optics, RadianceImage& image) {
+  if (optics.psf_sigma_px > 0) image.rgb = GaussianBlur(image.rgb, image.width, image.height, 3, optics.psf_sigma_px);
 }
 
 void CorrectColor(const ProcessingParams& p, std::span<float> rgb) {

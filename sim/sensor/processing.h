@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "sim/sensor/camera.h"
 #include "sim/sensor/description.h"
 #include "sim/sensor/image.h"
 
@@ -18,12 +17,8 @@ namespace sim {
 // than 1e-5 is left; beyond the border its pixels are repeated.
 std::vector<float> GaussianBlur(const std::vector<float>& picture, int width, int height, int channels, double sigma);
 
-// The irradiance behind the lens. A pixel r half diagonals from the principal point has the mixture of the Gaussians of
-// psf_sigma and psf_corner whose variance is psf_sigma^2 + min(r^2, 1) (psf_corner^2 - psf_sigma^2).
-void SpreadPoints(const OpticsParams& optics, const CameraParams& camera, RadianceImage& image);
-
-// Rules between the values of a sensor's processing and the rest of it.
-void CheckProcessing(const SensorParams& params, settings::FieldCheck& check);
+// The irradiance behind a lens whose point-spread function is the Gaussian of psf_sigma.
+void SpreadPoints(const OpticsParams& optics, RadianceImage& image);
 
 // rgb' = M diag(white_balance) rgb, clipped to 0 ... 1; M has the rows color_red, color_green, color_blue.
 void CorrectColor(const ProcessingParams& params, std::span<float> rgb);

@@ -43,7 +43,13 @@ std::vector<settings::FieldProblem> Problems(SensorParams p) {
   }
   check.Require(p.auto_exposure.longest_s >= p.auto_exposure.shortest_s, "auto_exposure.longest",
                 p.auto_exposure.longest_s, "must not be below shortest");
-  CheckProcessing(p, check);
+  const ProcessingParams& processing = p.processing;
+  check.Require(processing.contrast * (1 - processing.black_clip) > 0.05, "processing.contrast", processing.contrast,
+                "leaves no light above black_clip");
+  if (processing.HasColor() && (!p.color || p.mosaic == Mosaic::raw))
+    check.Refuse("processing.white_balance", "and the colour matrix need three channels");
+  if (p.mosaic == Mosaic::raw && (processing.denoise_sigma_px > 0 || processing.HasSharpening()))
+    check.Refuse("processing.denoise_sigma", "and sharpening do not go with a raw mosaic");
   for (const Covered& c : p.covered) {
     check.Require(c.from_s >= 0, "covered.from", c.from_s, "must not be negative");
     check.Require(c.until_s > c.from_s, "covered.until", c.until_s, "must be above from");
@@ -145,7 +151,7 @@ Image Sensor::Process(std::vector<float> signal, int width, int height) const {
     Image raw{width, height, 1, {}, 16, std::vector<std::uint16_t>(signal.size())};
     for (std::size_t i = 0; i < signal.size(); ++i)
       raw.wide[i] = static_cast<std::uint16_t>(std::lround(65535.0F * std::clamp(signal[i], 0.0F, 1.0F)));
-    const Image rgb = Demosaic(raw, Interpolation::edge_aware);
+    const Image rgb = Demosaic(raw, true);
     count = 3;
     signal.resize(rgb.wide.size());
     for (std::size_t i = 0; i < signal.size(); ++i) signal[i] = static_cast<float>(rgb.wide[i]) / 65535.0F;
@@ -156,10 +162,8 @@ Image Sensor::Process(std::vector<float> signal, int width, int height) const {
   Sharpen(p, width, height, count, signal);
   Image image{width, height, count, {}, params_.bit_depth, {}};
   const auto highest = static_cast<float>(std::pow(2.0, image.bits) - 1);
-  for (const float code : signal) {
-    if (image.bits == 8) image.data.push_back(static_cast<std::uint8_t>(std::lround(highest * code)));
-    if (image.bits > 8) image.wide.push_back(static_cast<std::uint16_t>(std::lround(highest * code)));
-  }
+  for (const float code : signal) image.wide.push_back(static_cast<std::uint16_t>(std::lround(highest * code)));
+  if (image.bits == 8) image.data.assign(image.wide.begin(), image.wide.end()), image.wide.clear();
   return image;
 }
 
@@ -212,7 +216,7 @@ Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame,
   if (processed) {
     image = Process(std::move(signal), radiance.width, radiance.height);
   } else if (params_.mosaic == Mosaic::demosaiced) {
-    image = Demosaic(image);
+    image = Demosaic(image, image.bits == 8);
   }
   return params_.jpeg_quality > 0 ? ThroughJpeg(image, params_.jpeg_quality) : image;
 }

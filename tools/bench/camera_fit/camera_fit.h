@@ -72,20 +72,19 @@ struct Measure {
   double value = 0, sigma = 0;
 };
 
-// From the width of edges against their motion: with L = |v| exposure that of a Gaussian convolved with a box of L.
+// From the width of edges against their motion, that convolves them with a box of L = |v| exposure.
 // `at_rest`: of the slowest eighth. None where the motion does not tell it.
 std::optional<Measure> FitExposure(const Recording& recording, EdgeStatistics& at_rest);
 
-// 1 + v2 r^2 + v4 r^4, r in half diagonals, from the brightness of what moves through the picture, with the light of each
-// code. Returns the factor at r = 1; none where too little moves.
-std::optional<Measure> FitVignetting(const Recording& recording, const std::vector<double>& light_of_code,
-                                     sim::OpticsParams& optics);
+// v2 of 1 + v2 r^2, r in half diagonals, from the brightness of what moves through the picture at a constant exposure;
+// its standard deviation from that over the runs. None where too little moves.
+std::optional<Measure> FitVignetting(const Recording& recording, const std::vector<double>& light_of_code);
 
 struct CameraFit {
   NoiseStatistics noise;
   EdgeStatistics edges;
   double noise_misfit = 0;  // rms of the log of the noise's ratio to the model
-  std::optional<Measure> exposure_s, corner;
+  std::optional<Measure> exposure_s, vignetting_2;
   bool noise_known = false, edges_known = false;
   sim::SensorParams sensor;
 };

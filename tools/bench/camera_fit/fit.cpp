@@ -25,12 +25,9 @@ std::vector<double> LinearOf(const sim::SensorParams& sensor) {
 }
 
 cv::Mat Capture(const sim::SensorParams& sensor, sim::RadianceImage radiance, std::int64_t frame) {
-  sim::CameraParams camera;
-  camera.width = radiance.width, camera.height = radiance.height;
-  sim::SpreadPoints(sensor.optics, camera, radiance);
-  const sim::Image image = sim::Sensor(sensor, 1).Capture(radiance, frame);
-  cv::Mat picture(image.height, image.width, CV_8UC(image.channels), const_cast<std::uint8_t*>(image.data.data()));
-  return picture.clone();  // the order of the colours does not matter: the chart is grey
+  sim::SpreadPoints(sensor.optics, radiance);
+  sim::Image image = sim::Sensor(sensor, 1).Capture(radiance, frame);
+  return cv::Mat(kHeight, kWidth, CV_8UC(image.channels), image.data.data()).clone();  // grey: red and blue are alike
 }
 
 // Of a flat at the code, after it came through the sensor.
@@ -69,8 +66,7 @@ double FitNoise(const std::vector<NoiseLevel>& levels, sim::SensorParams& sensor
   Eigen::MatrixX2d A(levels.size(), 2);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const auto code = static_cast<std::size_t>(std::clamp(levels[i].code, 3.0, 252.0));
-    const double light_by_code = std::max(1e-6, linear[code + 3] - linear[code - 3]) / 6,
-                 v = std::pow(levels[i].sigma * light_by_code, 2);
+    const double v = std::pow(levels[i].sigma * std::max(1e-6, linear[code + 3] - linear[code - 3]) / 6, 2);
     A.row(static_cast<Eigen::Index>(i)) << linear[code] / v, 1 / v;
   }
   // Textures add to the noise: what is far above the model is left out, as long as half of it remains.
@@ -99,15 +95,13 @@ double FitResponse(const std::vector<NoiseLevel>& levels, sim::SensorParams& sen
     sim::SensorParams tried = sensor;
     tried.response = response, tried.processing.toe = toe, tried.processing.shoulder = shoulder;
     const double misfit = FitNoise(levels, tried);
-    if (misfit < enough) best = misfit, sensor = tried;
+    if (misfit < std::min(best, enough)) best = misfit, sensor = tried;
   };
   attempt(sim::Response::srgb, 1, 1, best);
   if (best > kGood) attempt(sim::Response::linear, 1, 1, kGood);
   const double needed = kClearly * best;
-  for (double toe = 0.6; best > kGood && levels.size() > 5 && toe < 2.5; toe *= 1.1) {
-    for (double shoulder = 0.6; shoulder < 2.5; shoulder *= 1.1)
-      attempt(sim::Response::srgb, toe, shoulder, std::min(best, needed));
-  }
+  for (int i = 0; best > kGood && levels.size() > 5 && i < 15 * 15; ++i)
+    attempt(sim::Response::srgb, 0.6 * std::pow(1.1, i / 15), 0.6 * std::pow(1.1, i % 15), needed);
   return best;
 }
 
@@ -122,7 +116,6 @@ void Solve(double& setting, double most, double measured, const std::function<do
 }
 
 double Correlation(const NoiseStatistics& noise) { return 0.5 * (noise.correlation[0] + noise.correlation[1]); }
-double Halo(const EdgeStatistics& edges) { return 0.5 * (edges.bright + edges.dark); }
 
 // Noise at a code, as NoiseLevel::sigma; 0 where too much of it is clipped.
 double SigmaAt(const sim::SensorParams& sensor, double code) {
@@ -156,7 +149,7 @@ CameraFit FitCamera(const Recording& recording) {
     }
     if (fit.edges_known) {
       Solve(s.optics.psf_sigma_px, 2, fit.edges.width, [&] { return EdgesOf(s).width; });
-      if (round == 0) sharpened = Halo(fit.edges) - Halo(EdgesOf(s)) > kHalo;
+      if (round == 0) sharpened = fit.edges.bright + fit.edges.dark - EdgesOf(s).bright - EdgesOf(s).dark > 2 * kHalo;
       if (sharpened) Solve(p.sharpen_bright, 4, fit.edges.bright, [&] { return EdgesOf(s).bright; });
       if (sharpened) Solve(p.sharpen_dark, 4, fit.edges.dark, [&] { return EdgesOf(s).dark; });
     }
@@ -168,8 +161,13 @@ CameraFit FitCamera(const Recording& recording) {
       if (shown > 0 && unprocessed > 0) before[i].sigma = fit.noise.levels[i].sigma * unprocessed / shown;
     }
   }
-  fit.corner = FitVignetting(recording, LinearOf(s), s.optics);
-  if (!fit.corner) s.optics.vignetting_2 = s.optics.vignetting_4 = 0;
+  if (fit.noise_misfit > 0.25 || p.denoise_sigma_px > 1.9) {  // other noise than the model's, as of compressed pictures
+    fit.noise_known = false;
+    s.processing = {.sharpen_bright = p.sharpen_bright, .sharpen_dark = p.sharpen_dark, .sharpen_sigma_px = 1.5};
+    s.response = sim::Response::srgb;
+  }
+  fit.vignetting_2 = FitVignetting(recording, LinearOf(s));
+  if (fit.vignetting_2) s.optics.vignetting_2 = fit.vignetting_2->value;
   return fit;
 }
 

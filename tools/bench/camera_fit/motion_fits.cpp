@@ -1,37 +1,13 @@
 // Exposure time and vignetting: what only motion tells.
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <opencv2/imgproc.hpp>
 
 #include "tools/bench/camera_fit/camera_fit.h"
 
 namespace vobench {
-namespace {
-
-constexpr double kGaussianWidth = 2.5631;  // 10 ... 90 % of a Gaussian of sigma 1
-
-// 10 ... 90 % width of a Gaussian of `sigma` convolved with a box of length L.
-double BlurredWidth(double sigma, double L) {
-  if (L < 1e-3) return kGaussianWidth * sigma;
-  const auto integral = [&](double x) {  // of the normal distribution function
-    const double z = x / sigma;
-    return x * 0.5 * std::erfc(-z / std::numbers::sqrt2) +
-           sigma * std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
-  };
-  double low = 0, high = 4 * sigma + L;
-  for (int i = 0; i < 50; ++i) {
-    const double x = 0.5 * (low + high);
-    ((integral(x + L / 2) - integral(x - L / 2)) / L < 0.9 ? low : high) = x;
-  }
-  return low + high;
-}
-
-}  // namespace
-
 std::optional<Measure> FitExposure(const Recording& recording, EdgeStatistics& at_rest) {
   std::vector<std::pair<double, Edge>> edges;  // with the speed [px / frame] along the row
   for (const Pair& pair : recording.pairs) {
@@ -48,113 +24,73 @@ std::optional<Measure> FitExposure(const Recording& recording, EdgeStatistics& a
   std::vector<Edge> slow;
   for (std::size_t i = 0; i < std::max<std::size_t>(100, edges.size() / 8); ++i) slow.push_back(edges[i].second);
   at_rest = Summarise(slow);
+  // width^2 = at rest^2 + k L^2, by relative least squares over bins of speed; k: 0.547 of a Gaussian that is blurred a
+  // little, 0.64 of a box alone.
   constexpr std::size_t kBins = 12;
-  std::vector<double> speeds, widths;
+  constexpr double kBlur = 0.59;
+  Eigen::MatrixX2d A(kBins, 2);
+  double fastest = 0;
   for (std::size_t b = 0; b < kBins; ++b) {
     std::vector<double> speed, width;
     for (std::size_t i = b * edges.size() / kBins; i < (b + 1) * edges.size() / kBins; ++i)
       speed.push_back(edges[i].first), width.push_back(edges[i].second.width);
-    speeds.push_back(Quantile(speed, 0.5)), widths.push_back(Quantile(width, 0.25));
+    fastest = Quantile(speed, 0.5);
+    A.row(static_cast<Eigen::Index>(b)) = Eigen::RowVector2d(1, fastest * fastest) / std::pow(Quantile(width, 0.25), 2);
   }
-  double share = 0, best = 1e9;
-  std::vector<double> least;  // mean square of the log of the modelled width over the measured, by share
-  for (double tried = 0.005; tried <= 1; tried += 0.005) {
-    least.push_back(1e9);
-    for (double sigma = 0.2; sigma < 3; sigma *= 1.03) {
-      double sum = 0;
-      for (std::size_t b = 0; b < kBins; ++b)
-        sum += std::pow(std::log(BlurredWidth(sigma, tried * speeds[b]) / widths[b]), 2) / kBins;
-      least.back() = std::min(least.back(), sum);
-    }
-    if (least.back() < best) best = least.back(), share = tried;
-  }
-  // Shares at which the sum of squares is one variance (of 10 degrees of freedom) larger: one standard deviation.
-  const auto near = std::ranges::count_if(least, [&](double size) { return size < best * (1 + 1.0 / (kBins - 2)); });
-  const Measure measured{share * recording.period_s, 0.0025 * static_cast<double>(near) * recording.period_s};
-  const bool blurs = share * speeds.back() > at_rest.width;  // the fastest edges, visibly
-  if (!blurs || measured.sigma > std::max(0.002, 0.1 * measured.value) || share > 0.99) return std::nullopt;
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(kBins);
+  const Eigen::Matrix2d inverse = (A.transpose() * A).inverse();
+  const Eigen::Vector2d x = inverse * A.transpose() * ones;
+  const double share = std::sqrt(std::max(0.0, x(1)) / kBlur),
+               sigma = std::sqrt(inverse(1, 1) / (kBins - 2)) * (A * x - ones).norm();
+  const Measure measured{share * recording.period_s, recording.period_s * sigma / (2 * kBlur * std::max(1e-9, share))};
+  if (share * fastest < at_rest.width) return std::nullopt;  // not even the fastest edges are blurred visibly
+  if (measured.sigma > std::max(0.002, 0.1 * measured.value) || share > 1) return std::nullopt;
   return measured;
 }
 
-std::optional<Measure> FitVignetting(const Recording& recording, const std::vector<double>& linear,
-                                     sim::OpticsParams& optics) {
-  const cv::Mat table(1, 256, CV_64F, const_cast<double*>(linear.data()));
-  struct Sight {
-    double r2_first, r2, log_ratio;
-  };
-  std::vector<std::vector<Sight>> frames;  // what was seen before, in the first frame of its run
+std::optional<Measure> FitVignetting(const Recording& recording, const std::vector<double>& light_of_code) {
+  const cv::Mat table(1, 256, CV_64F, const_cast<double*>(light_of_code.data()));
+  std::vector<double> found;  // v2 of each run
   for (const std::vector<cv::Mat>& run : recording.runs) {
-    struct Place {
-      cv::Point2f at;
-      double r2_first = 0, log_first = 0;
-    };
-    std::vector<Place> places;
-    for (int y = 16; y < run.front().rows; y += 32) {
-      for (int x = 16; x < run.front().cols; x += 32) places.push_back({cv::Point2f(cv::Point(x, y))});
-    }
+    std::vector<std::array<double, 3>> sights, firsts;  // r^2, r^2 in the first frame, log of the ratio to there
+    std::vector<cv::Point2f> places;                    // of what is followed
+    for (int i = 0; i < run.front().rows / 32 * 64; ++i)
+      places.emplace_back(cv::Point(16 + i % 64 * 32, 16 + i / 64 * 32));
     for (std::size_t k = 0; k < run.size(); ++k) {
       const cv::Mat grey = Grey(run[k]);
       const cv::Point2f middle = 0.5 * cv::Point2f(cv::Point(grey.size()));
       const Pair pair = k + 1 < run.size() ? MakePair(run[k], run[k + 1]) : Pair{};
-      frames.emplace_back();
-      std::erase_if(places, [&](Place& place) {
-        const cv::Rect patch(cvRound(place.at.x) - 8, cvRound(place.at.y) - 8, 17, 17);
-        if ((patch & cv::Rect({}, grey.size())) != patch) return true;
-        double most = 0;
-        cv::Mat light;
-        cv::minMaxLoc(grey(patch), nullptr, &most);
-        cv::LUT(grey(patch), table, light);
-        const double mean = cv::mean(light)[0], r2 = std::pow(cv::norm(place.at - middle) / cv::norm(middle), 2);
-        if (most > 250 || mean < 0.01) return true;
-        if (k == 0) place.r2_first = r2, place.log_first = std::log(mean);
-        if (k > 0) frames.back().push_back({place.r2_first, r2, std::log(mean) - place.log_first});
-        const Motion* nearest = pair.Nearest(place.at, 45);
-        if (nearest != nullptr) place.at += nearest->by;
-        return nearest == nullptr;
-      });
-    }
-  }
-  // Gauss-Newton, large residuals weighted down (Huber); v4 is 0 +- 0.1 before. Sights of one track are not independent:
-  // ten count as one.
-  struct Fit {
-    Eigen::Vector2d v = Eigen::Vector2d::Zero();
-    Eigen::Matrix2d H = Eigen::Matrix2d::Identity();
-    double scale = 1e9, variance = 0;
-  };
-  const auto solve = [&](bool exposures_differ) {
-    Fit fit;
-    for (int round = 0; round < 8; ++round) {
-      const auto factor = [&](double r2) { return std::max(0.05, 1 + r2 * (fit.v(0) + r2 * fit.v(1))); };
-      Eigen::Vector2d b = Eigen::Vector2d::Zero();
-      std::vector<double> sizes;
-      fit.H.setZero();
-      for (const std::vector<Sight>& frame : frames) {
-        Eigen::MatrixX3d rows(frame.size(), 3);  // Jacobian and residual
-        for (std::size_t i = 0; i < frame.size(); ++i) {
-          const double r2 = frame[i].r2, r2_first = frame[i].r2_first, f = factor(r2), f_first = factor(r2_first);
-          rows.row(static_cast<Eigen::Index>(i)) << r2 / f - r2_first / f_first,
-              r2 * r2 / f - r2_first * r2_first / f_first, frame[i].log_ratio - std::log(f / f_first);
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const cv::Rect patch = cv::Rect(cv::Point(places[i]) - cv::Point(8, 8), cv::Size(17, 17));
+        const Motion* nearest = pair.Nearest(places[i], 45);
+        std::array<double, 3> seen{-1, 0, 0};
+        if (places[i].x > 0 && (patch & cv::Rect({}, grey.size())) == patch) {
+          cv::Mat light;
+          cv::LUT(grey(patch), table, light);
+          const double mean = cv::mean(light)[0], share = cv::norm(places[i] - middle) / cv::norm(middle);
+          if (mean > 0.01 && cv::norm(grey(patch), cv::NORM_INF) < 250) seen = {share * share, 0, std::log(mean)};
         }
-        if (exposures_differ && !frame.empty()) rows.rowwise() -= rows.colwise().mean().eval();
-        for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-          const double size = std::abs(rows(i, 2)), weight = size > fit.scale ? fit.scale / size : 1;
-          const Eigen::Vector2d J(rows(i, 0), rows(i, 1));
-          fit.H += weight * J * J.transpose(), b += weight * rows(i, 2) * J;
-          sizes.push_back(size);
-        }
+        if (k == 0) firsts.push_back(seen);
+        const bool good = seen[0] >= 0 && firsts[i][0] >= 0;
+        if (good && k > 0) sights.push_back({seen[0], firsts[i][0], seen[2] - firsts[i][2]});
+        places[i] = good && nearest != nullptr ? places[i] + nearest->by : cv::Point2f(-99, -99);
       }
-      fit.scale = std::max(1e-4, 2 * Quantile(sizes, 0.5));
-      fit.variance = 10 * std::pow(0.74 * fit.scale, 2);
-      fit.H += Eigen::Vector2d(1e-9, 100 * fit.variance).asDiagonal(), b(1) -= 100 * fit.variance * fit.v(1);
-      fit.v += fit.H.ldlt().solve(b);
     }
-    return fit;
-  };
-  const Fit same = solve(false), differ = solve(true), &fit = differ.scale < 0.7 * same.scale ? differ : same;
-  const Measure corner{1 + fit.v.sum(), std::sqrt(fit.variance * fit.H.inverse().sum())};
-  if (!(corner.sigma < 0.05) || corner.value < 0.06) return std::nullopt;
-  optics.vignetting_2 = fit.v(0), optics.vignetting_4 = fit.v(1);
-  return corner;
+    double spread = 0, best = 1e9, v2 = 0;
+    for (const auto& s : sights) spread += std::abs(s[0] - s[1]);
+    if (spread < 50) continue;
+    for (double tried = -0.95; tried < 0.5; tried += 0.005) {  // least absolute differences
+      double sum = 0;
+      for (const auto& s : sights) sum += std::abs(s[2] - std::log((1 + tried * s[0]) / (1 + tried * s[1])));
+      if (sum < best) best = sum, v2 = tried;
+    }
+    found.push_back(v2);
+  }
+  if (found.size() < 2) return std::nullopt;
+  cv::Scalar mean, sigma;
+  cv::meanStdDev(found, mean, sigma);
+  const Measure v2{mean[0], sigma[0] / std::sqrt(static_cast<double>(found.size() - 1))};
+  return v2.sigma < 0.05 ? std::optional(v2) : std::nullopt;
 }
 
 }  // namespace vobench

@@ -23,15 +23,16 @@ std::vector<Block> Flattest(std::vector<Block> blocks, std::size_t one_of) {
   return blocks;
 }
 
-double Median(const std::vector<Block>& blocks, double Block::*member) {
+template <class T>
+double Median(const std::vector<T>& items, double T::*member) {
   std::vector<double> values;
-  for (const Block& block : blocks) values.push_back(block.*member);
+  for (const T& item : items) values.push_back(item.*member);
   return Quantile(values, 0.5);
 }
 
 cv::Mat GreenAsFloat(const cv::Mat& picture) {
-  cv::Mat green = picture;
-  if (picture.channels() == 3) cv::extractChannel(picture, green, 1);
+  cv::Mat green;
+  cv::extractChannel(picture, green, picture.channels() / 2);
   green.convertTo(green, CV_32F);
   return green;
 }
@@ -201,18 +202,13 @@ std::vector<Edge> FindEdges(const cv::Mat& picture) {
 }
 
 EdgeStatistics Summarise(std::vector<Edge> edges) {
-  const auto median = [&](double Edge::*member) {
-    std::vector<double> values;
-    for (const Edge& edge : edges) values.push_back(edge.*member);
-    return Quantile(values, 0.5);
-  };
-  EdgeStatistics out{edges.size(), median(&Edge::width), 0, 0};
+  EdgeStatistics out{edges.size(), Median(edges, &Edge::width), 0, 0};
   std::erase_if(edges, [&](const Edge& edge) { return edge.width > out.width; });
-  out.bright = median(&Edge::bright), out.dark = median(&Edge::dark);
+  out.bright = Median(edges, &Edge::bright), out.dark = Median(edges, &Edge::dark);
   std::erase_if(edges, [&](const Edge& edge) {
-    return std::abs(edge.bright - out.bright) > 0.06 || std::abs(edge.dark - out.dark) > 0.06;
+    return std::max(std::abs(edge.bright - out.bright), std::abs(edge.dark - out.dark)) > 0.06;
   });
-  out.width = median(&Edge::width);
+  out.width = Median(edges, &Edge::width);
   return out;
 }
 

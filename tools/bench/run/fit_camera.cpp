@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <opencv2/imgproc.hpp>
 
 #include "tools/bench/camera_fit/camera_fit.h"
 #include "tools/bench/errors.h"
@@ -14,38 +13,33 @@ namespace {
 
 // 40 pairs, and 4 runs of 20 frames, each second one, all over the sequence.
 Recording Read(const std::filesystem::path& sequence) {
-  constexpr std::size_t kPairs = 40, kRuns = 4, kRunLength = 20;
+  constexpr std::size_t kPairs = 40, kRuns = 4, kRunLength = 40;
   vo::SequenceReader reader(sequence);
-  const std::size_t count = reader.size();
-  if (count < 3)
-    throw std::runtime_error(
-        fmt::format("{}: has {} frames; a camera is fitted to 3 at least", sequence.string(), count));
+  const std::size_t count = reader.size(), run_step = std::max(kRunLength, count / kRuns);
+  if (count < 3) throw std::runtime_error(fmt::format("{}: has {} frames, fewer than 3", sequence.string(), count));
   Recording recording;
   Progress progress("reading", static_cast<std::int64_t>(count));
   std::vector<double> periods;
   vo::Frame before;
-  for (std::size_t k = 0; k < count; ++k) {
-    std::optional<vo::Frame> frame = reader.Next();
+  for (std::size_t k = 0; const std::optional<vo::Frame> frame = reader.Next(); ++k) {
+    if (frame->image.cols < 160 || frame->image.rows < 160)
+      throw std::runtime_error(sequence.string() + ": its pictures are smaller than 160 x 160 pixels");
     if (k > 0) periods.push_back(static_cast<double>(frame->stamp_ns - before.stamp_ns) * 1e-9);
-    if (k > 0 && ((k - 1) * kPairs / count != k * kPairs / count || count <= kPairs))
+    if (k > 0 && (k - 1) * std::min(kPairs, count) / count != k * std::min(kPairs, count) / count)
       recording.pairs.push_back(MakePair(before.image, frame->image));
-    const std::size_t run_step = std::max(2 * kRunLength, count / kRuns);
     if (k % run_step == 0) recording.runs.emplace_back();
-    if (k % run_step < 2 * kRunLength && k % 2 == 0) recording.runs.back().push_back(frame->image);
-    before = std::move(*frame);
+    if (k % run_step < kRunLength && k % 2 == 0) recording.runs.back().push_back(frame->image);
+    before = *frame;
     progress.Step();
   }
   recording.period_s = Quantile(periods, 0.5);
-  if (before.image.cols < 160 || before.image.rows < 160)
-    throw std::runtime_error(fmt::format("{}: its pictures are {} x {}; a camera is fitted to 160 x 160 at least",
-                                         sequence.string(), before.image.cols, before.image.rows));
   return recording;
 }
 
 void Print(const CameraFit& fit) {
   const auto missing = [](const char* what, const char* why) { fmt::print("# not determined: {}: {}\n", what, why); };
-  fmt::print("# code      noise   of flat blocks\n");
-  for (const NoiseLevel& l : fit.noise.levels) fmt::print("# {:4.0f} {:10.2f} {:12}\n", l.code, l.sigma, l.blocks);
+  for (const NoiseLevel& l : fit.noise.levels)
+    fmt::print("# code {:3.0f}: noise {:.2f}, of {} flat blocks\n", l.code, l.sigma, l.blocks);
   fmt::print("# correlation of neighbours {:.2f} in rows, {:.2f} in columns; lattice of a mosaic {:.2f}\n",
              fit.noise.correlation[0], fit.noise.correlation[1], fit.noise.lattice);
   fmt::print("# {} edges at rest: 10-90 % width {:.2f} px, halo {:.3f} bright, {:.3f} dark\n", fit.edges.count,
@@ -53,27 +47,30 @@ void Print(const CameraFit& fit) {
   if (fit.noise_known) fmt::print("# noise explained to {:.0f} %\n", 100 * fit.noise_misfit);
   if (fit.exposure_s)
     fmt::print("# exposure {:.1f} +- {:.1f} ms\n", 1e3 * fit.exposure_s->value, 1e3 * fit.exposure_s->sigma);
-  if (fit.corner) fmt::print("# vignetting: {:.3f} +- {:.3f} in the corners\n", fit.corner->value, fit.corner->sigma);
-  if (!fit.noise_known) missing("full_well, read_noise, toe, shoulder, denoise_sigma", "too few flat places");
+  if (fit.vignetting_2)
+    fmt::print("# vignetting_2 {:.3f} +- {:.3f}\n", fit.vignetting_2->value, fit.vignetting_2->sigma);
+  if (!fit.noise_known)
+    missing("full_well, read_noise, toe, shoulder, denoise_sigma",
+            "too few flat places, or other noise than of light and reading (JPEG?)");
   if (!fit.exposure_s) missing("exposure", "no edges that motion blurs visibly");
-  if (!fit.corner) missing("vignetting", "too little moves through the picture");
+  if (!fit.vignetting_2) missing("vignetting", "too little moves through the picture");
   if (!fit.edges_known) missing("psf_sigma, sharpen", "too few edges at rest between flat sides");
   missing("white_balance, colour matrix, white, gain", "they need a chart of known colours");
   missing("rolling_shutter", "`vobench track` estimates it");
   const sim::SensorParams& s = fit.sensor;
-  const sim::ProcessingParams& p = s.processing;
   fmt::print("sensor:\n  color: {}\n", s.color);
-  if (s.color) fmt::print("  mosaic: {}\n", s.mosaic == sim::Mosaic::demosaiced ? "demosaiced" : "none");
+  if (s.mosaic == sim::Mosaic::demosaiced) fmt::print("  mosaic: demosaiced\n");
   if (fit.exposure_s) fmt::print("  exposure: {:.2f} ms\n", 1e3 * s.exposure_s);
   if (fit.noise_known)
     fmt::print("  full_well: {:.0f} e\n  read_noise: {:.2f} e\n  response: {}\n", s.full_well_e, s.read_noise_e,
                s.response == sim::Response::srgb ? "srgb" : "linear");
-  fmt::print("  optics: {{psf_sigma: {:.3f} px, vignetting_2: {:.4f}, vignetting_4: {:.4f}}}\n", s.optics.psf_sigma_px,
-             s.optics.vignetting_2, s.optics.vignetting_4);
-  fmt::print("  processing: {{toe: {:.3f}, shoulder: {:.3f}, denoise_sigma: {:.3f} px, denoise_range: {},\n", p.toe,
-             p.shoulder, p.denoise_sigma_px, p.denoise_range);
-  fmt::print("    sharpen_bright: {:.3f}, sharpen_dark: {:.3f}, sharpen_sigma: {} px}}\n", p.sharpen_bright,
-             p.sharpen_dark, p.sharpen_sigma_px);
+  const sim::ProcessingParams& p = s.processing;
+  fmt::print(
+      "  optics: {{psf_sigma: {:.3f} px, vignetting_2: {:.3f}}}\n"
+      "  processing: {{toe: {:.3f}, shoulder: {:.3f}, denoise_sigma: {:.3f} px, denoise_range: {}, "
+      "sharpen_bright: {:.3f}, sharpen_dark: {:.3f}, sharpen_sigma: {} px}}\n",
+      s.optics.psf_sigma_px, s.optics.vignetting_2, p.toe, p.shoulder, p.denoise_sigma_px, p.denoise_range,
+      p.sharpen_bright, p.sharpen_dark, p.sharpen_sigma_px);
 }
 
 }  // namespace
