@@ -235,7 +235,8 @@ Frame Simulator::Render(std::int64_t index) const {
   exposure.focus_m = sensor.optics.focus_m;
   RadianceImage radiance;
   parts.Expose(parts.optics, exposure, index, radiance);
-  SpreadPoints(sensor.optics, radiance);
+  if (const double sigma = sensor.optics.psf_sigma_px; sigma > 0)
+    radiance.rgb = GaussianBlur(radiance.rgb, radiance.width, radiance.height, 3, sigma);
   parts.arena.execute([&] { frame.image = parts.sensor.Capture(radiance, index, frame.setting); });
   return frame;
 }

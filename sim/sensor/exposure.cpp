@@ -1,7 +1,6 @@
 #include "sim/sensor/exposure.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "sim/sensor/sensor.h"
@@ -41,11 +40,6 @@ double AutoExposure::Brightness(const RadianceImage& frame, double signal) const
       sum += shown(Luminance(rgb));
     } else if (sensor_.mosaic == Mosaic::raw) {
       sum += (shown(rgb[0]) + 2 * shown(rgb[1]) + shown(rgb[2])) / 4;
-    } else if (sensor_.processing.HasColor()) {
-      std::array<float, 3> x{};
-      for (std::size_t c = 0; c < 3; ++c) x[c] = static_cast<float>(std::min(1.0, dark + scale * rgb[c]));
-      CorrectColor(sensor_.processing, x);
-      for (const float balanced : x) sum += encoded(double{balanced}) / 3;
     } else {
       sum += (shown(rgb[0]) + shown(rgb[1]) + shown(rgb[2])) / 3;
     }

@@ -35,7 +35,7 @@ struct ExposureSetting {
 
 // Exposure time and gain from the mean brightness of the previous frame. The signal of frame k is proportional to
 // s = exposure_s * gain. With m(s) the mean of the picture that it makes, over its pixels and channels, with dark
-// current and black level, after white balance, colour matrix and tone curve (or the response alone), the next frame gets
+// current and black level, after the response and tone curve, the next frame gets
 //   log s' = log s + speed (log s* - log s),   m(s*) = target,
 // within the limits; the exposure time grows before the gain does. The first frame has the sensor's own settings.
 class AutoExposure {

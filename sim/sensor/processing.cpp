@@ -16,32 +16,22 @@ std::vector<float> GaussianBlur(const std::vector<float>& picture, int width, in
     kernel.push_back(std::exp(-variance) * std::cyl_bessel_i(n, variance));
     sum += 2 * kernel.back();
   }
-  // A shift by n pixels along a line, that stays within the picture; rows of floats at a time, as vector code.
-  const auto pass = [&](const std::vector<float>& in, bool down) {
-    std::vector<float> out(in.size());
-    const int reach = static_cast<int>(kernel.size()) - 1, row = width * channels, side = down ? 0 : reach * channels;
-    std::vector<float> line(static_cast<std::size_t>(row + 2 * side));
-    for (int y = 0; y < height; ++y) {
-      for (int n = -reach; n <= reach; ++n) {
-        if (down || n == -reach) {
-          const float* from = &in[static_cast<std::size_t>(std::clamp(down ? y + n : y, 0, height - 1) * row)];
-          std::copy_n(from, row, line.begin() + side);
-          for (int i = 0; i < side; ++i)
-            line[i] = from[i % channels], line[side + row + i] = from[row - channels + i % channels];
-        }
-        const auto weight = static_cast<float>(kernel[static_cast<std::size_t>(std::abs(n))] / sum);
-        const float* shifted = line.data() + (down ? 0 : (reach + n) * channels);
-        float* to = &out[static_cast<std::size_t>(y * row)];
-        for (int i = 0; i < row; ++i) to[i] += weight * shifted[i];
-      }
+  const int reach = static_cast<int>(kernel.size()) - 1;
+  const auto pass = [&](const cv::Mat& in, int dx, int dy) {
+    cv::Mat padded, out = cv::Mat::zeros(in.size(), in.type());
+    cv::copyMakeBorder(in, padded, dy * reach, dy * reach, dx * reach, dx * reach, cv::BORDER_REPLICATE);
+    for (int i = 0; i < height * (2 * reach + 1); ++i) {  // row by row, as vector code
+      const int y = i / (2 * reach + 1), n = i % (2 * reach + 1);
+      const auto weight = static_cast<float>(kernel[static_cast<std::size_t>(std::abs(n - reach))] / sum);
+      const float* from = padded.ptr<float>(y + dy * n) + dx * n * channels;
+      float* to = out.ptr<float>(y);
+      for (int x = 0; x < width * channels; ++x) to[x] += weight * from[x];
     }
     return out;
   };
-  return pass(pass(picture, false), true);
-}
-
-void SpreadPoints(const OpticsParams& optics, RadianceImage& image) {
-  if (optics.psf_sigma_px > 0) image.rgb = GaussianBlur(image.rgb, image.width, image.height, 3, optics.psf_sigma_px);
+  const cv::Mat in(height, width, CV_32FC(channels), const_cast<float*>(picture.data())),
+      out = pass(pass(in, 1, 0), 0, 1);
+  return {out.ptr<float>(), out.ptr<float>() + picture.size()};
 }
 
 void CorrectColor(const ProcessingParams& p, std::span<float> rgb) {

@@ -9,16 +9,12 @@
 #include <vector>
 
 #include "sim/sensor/description.h"
-#include "sim/sensor/image.h"
 
 namespace sim {
 
 // Rows, then columns, of interleaved channels are convolved with the discrete Gaussian of `sigma` px, cut off where less
 // than 1e-5 is left; beyond the border its pixels are repeated.
 std::vector<float> GaussianBlur(const std::vector<float>& picture, int width, int height, int channels, double sigma);
-
-// The irradiance behind a lens whose point-spread function is the Gaussian of psf_sigma.
-void SpreadPoints(const OpticsParams& optics, RadianceImage& image);
 
 // rgb' = M diag(white_balance) rgb, clipped to 0 ... 1; M has the rows color_red, color_green, color_blue.
 void CorrectColor(const ProcessingParams& params, std::span<float> rgb);

@@ -44,8 +44,6 @@ std::vector<settings::FieldProblem> Problems(SensorParams p) {
   check.Require(p.auto_exposure.longest_s >= p.auto_exposure.shortest_s, "auto_exposure.longest",
                 p.auto_exposure.longest_s, "must not be below shortest");
   const ProcessingParams& processing = p.processing;
-  check.Require(processing.contrast * (1 - processing.black_clip) > 0.05, "processing.contrast", processing.contrast,
-                "leaves no light above black_clip");
   if (processing.HasColor() && (!p.color || p.mosaic == Mosaic::raw))
     check.Refuse("processing.white_balance", "and the colour matrix need three channels");
   if (p.mosaic == Mosaic::raw && (processing.denoise_sigma_px > 0 || processing.HasSharpening()))
@@ -148,13 +146,13 @@ Image Sensor::Process(std::vector<float> signal, int width, int height) const {
   const ProcessingParams& p = params_.processing;
   int count = static_cast<int>(channels());
   if (params_.mosaic == Mosaic::demosaiced) {
-    Image raw{width, height, 1, {}, 16, std::vector<std::uint16_t>(signal.size())};
-    for (std::size_t i = 0; i < signal.size(); ++i)
-      raw.wide[i] = static_cast<std::uint16_t>(std::lround(65535.0F * std::clamp(signal[i], 0.0F, 1.0F)));
+    Image raw{width, height, 1, {}, 16, {}};
+    for (const float x : signal)
+      raw.wide.push_back(static_cast<std::uint16_t>(std::lround(65535.0F * std::clamp(x, 0.0F, 1.0F))));
     const Image rgb = Demosaic(raw, true);
     count = 3;
-    signal.resize(rgb.wide.size());
-    for (std::size_t i = 0; i < signal.size(); ++i) signal[i] = static_cast<float>(rgb.wide[i]) / 65535.0F;
+    signal.assign(rgb.wide.begin(), rgb.wide.end());
+    for (float& x : signal) x /= 65535.0F;
   }
   if (p.HasColor()) CorrectColor(p, signal);
   for (float& x : signal) x = tone_(x);

@@ -277,9 +277,7 @@ void AddVerify(OptionTable& table) {
 
 void AddFitCamera(OptionTable& table) {
   const auto [command, fit] = AddCommand<FitCameraOptions>(
-      table, "fit-camera",
-      "Fit the simulated camera to a recording: print a `sensor:` section, and what is not determined",
-      "vobench fit-camera rgbd_dataset_freiburg1_xyz");
+      table, "fit-camera", "Fit the simulated sensor to a recording", "vobench fit-camera rgbd_dataset_freiburg1_xyz");
   Add(command, "SEQ", fit.sequence, "Sequence folder")->required();
 }
 

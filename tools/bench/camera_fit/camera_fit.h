@@ -2,8 +2,8 @@
 // Source: indirect inference (Gourieroux, Monfort and Renault 1993): a chart of flats and slanted edges goes through the
 //   simulated sensor, and its settings are adjusted until the same statistics come out of it as of the recording;
 //   EMVA 1288 (photon transfer), ISO 12233 (edges), Popescu and Farid 2005 (lattice of a mosaic).
-// Assumed: a scene at rest; shot and read noise; denoising and sharpening of the same strength at all levels.
-// Units: codes 0 ... 255 of the green or grey channel, px. Pictures: CV_8UC1 or CV_8UC3 (BGR).
+// Assumed: a scene at rest; shot and read noise; denoising and sharpening of the same strength at all levels. Units:
+// codes 0 ... 255 of the green or grey channel, px. Pictures: CV_8UC1 or CV_8UC3 (BGR).
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct Pair {
 Pair MakePair(const cv::Mat& picture, const cv::Mat& next);
 
 // By range of 20 codes, from 16 x 16 blocks: the flattest twentieth (20 at least) by the gradient of the blurred picture,
-// which hardly knows of the noise; or a quarter of those that move by whole pixels (to 1/8), in the difference of both
+// which hardly knows of the noise; or a quarter of those that move by whole pixels (to 0.15), in the difference of both
 // pictures, which holds no texture: the smaller of both.
 struct NoiseLevel {
   double code = 0;

@@ -25,7 +25,7 @@ std::vector<double> LinearOf(const sim::SensorParams& sensor) {
 }
 
 cv::Mat Capture(const sim::SensorParams& sensor, sim::RadianceImage radiance, std::int64_t frame) {
-  sim::SpreadPoints(sensor.optics, radiance);
+  radiance.rgb = sim::GaussianBlur(radiance.rgb, kWidth, kHeight, 3, sensor.optics.psf_sigma_px);
   sim::Image image = sim::Sensor(sensor, 1).Capture(radiance, frame);
   return cv::Mat(kHeight, kWidth, CV_8UC(image.channels), image.data.data()).clone();  // grey: red and blue are alike
 }
@@ -89,8 +89,7 @@ double FitNoise(const std::vector<NoiseLevel>& levels, sim::SensorParams& sensor
 
 // sRGB; or linear, where that alone explains the noise; or sRGB with toe and shoulder, where they do so clearly better.
 double FitResponse(const std::vector<NoiseLevel>& levels, sim::SensorParams& sensor) {
-  constexpr double kGood = 0.08, kClearly = 0.7;
-  double best = 1e9;
+  double best = 1e9, good = 0.08;
   const auto attempt = [&](sim::Response response, double toe, double shoulder, double enough) {
     sim::SensorParams tried = sensor;
     tried.response = response, tried.processing.toe = toe, tried.processing.shoulder = shoulder;
@@ -98,10 +97,10 @@ double FitResponse(const std::vector<NoiseLevel>& levels, sim::SensorParams& sen
     if (misfit < std::min(best, enough)) best = misfit, sensor = tried;
   };
   attempt(sim::Response::srgb, 1, 1, best);
-  if (best > kGood) attempt(sim::Response::linear, 1, 1, kGood);
-  const double needed = kClearly * best;
-  for (int i = 0; best > kGood && levels.size() > 5 && i < 15 * 15; ++i)
-    attempt(sim::Response::srgb, 0.6 * std::pow(1.1, i / 15), 0.6 * std::pow(1.1, i % 15), needed);
+  if (best > good) attempt(sim::Response::linear, 1, 1, good);
+  const double clearly = 0.7 * best;
+  for (int i = 0; best > good && levels.size() > 5 && i < 15 * 15; ++i)
+    attempt(sim::Response::srgb, 0.6 * std::pow(1.1, i / 15), 0.6 * std::pow(1.1, i % 15), clearly);
   return best;
 }
 

@@ -78,19 +78,17 @@ std::optional<Measure> FitVignetting(const Recording& recording, const std::vect
     }
     double spread = 0, best = 1e9, v2 = 0;
     for (const auto& s : sights) spread += std::abs(s[0] - s[1]);
-    if (spread < 50) continue;
     for (double tried = -0.95; tried < 0.5; tried += 0.005) {  // least absolute differences
       double sum = 0;
       for (const auto& s : sights) sum += std::abs(s[2] - std::log((1 + tried * s[0]) / (1 + tried * s[1])));
       if (sum < best) best = sum, v2 = tried;
     }
-    found.push_back(v2);
+    if (spread > 50) found.push_back(v2);
   }
-  if (found.size() < 2) return std::nullopt;
   cv::Scalar mean, sigma;
   cv::meanStdDev(found, mean, sigma);
-  const Measure v2{mean[0], sigma[0] / std::sqrt(static_cast<double>(found.size() - 1))};
-  return v2.sigma < 0.05 ? std::optional(v2) : std::nullopt;
+  const Measure v2{mean[0], sigma[0] / std::sqrt(static_cast<double>(found.size()) - 1)};
+  return found.size() > 1 && v2.sigma < 0.05 ? std::optional(v2) : std::nullopt;
 }
 
 }  // namespace vobench

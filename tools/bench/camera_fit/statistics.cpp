@@ -75,7 +75,6 @@ void FindInRow(const cv::Mat& grey, int y, bool in_column, std::vector<Edge>& ed
     if (left_sigma[0] > 2.5 || right_sigma[0] > 2.5 || low < 15 || high > 235 || high - low < 60) continue;
     Profile p{}, rising{};
     for (int i = 0; i < 17; ++i) p[static_cast<std::size_t>(i)] = (row[x - 8 + i] - left[0]) / (right[0] - left[0]);
-    if (*std::ranges::max_element(p) > 1.6 || *std::ranges::min_element(p) < -0.6) continue;
     for (std::size_t i = 0; i < 17; ++i) rising[i] = std::max(p[i], i > 0 ? rising[i - 1] : p[i]);
     const double middle = Crossing(rising, 0.5), gy = grey.at<std::uint8_t>(y + 1, x) - grey.at<std::uint8_t>(y - 1, x);
     Edge edge{cv::Point2f(cv::Point(x, y)), in_column, gy / (row[x + 1] - row[x - 1]), 0, 0, 0};
@@ -116,9 +115,6 @@ Pair MakePair(const cv::Mat& picture, const cv::Mat& next) {
   for (int y = kMost; y + kMost < from.rows; y += 40) {
     for (int x = kMost; x + kMost < from.cols; x += 40) {
       const cv::Mat patch = from(cv::Rect(x - kHalf, y - kHalf, 2 * kHalf + 1, 2 * kHalf + 1));
-      cv::Scalar mean, sigma;
-      cv::meanStdDev(patch, mean, sigma);
-      if (sigma[0] < 8) continue;
       cv::Mat score;
       cv::matchTemplate(to(cv::Rect(x - kMost, y - kMost, 2 * kMost + 1, 2 * kMost + 1)), patch, score,
                         cv::TM_CCOEFF_NORMED);
@@ -147,18 +143,15 @@ NoiseStatistics MeasureNoise(std::span<const Pair> pairs) {
     for (int y = kBlock; y + 2 * kBlock <= green.rows; y += kBlock) {
       for (int x = kBlock; x + 2 * kBlock <= green.cols; x += kBlock) {
         const cv::Rect place(x - kMargin, y - kMargin, kBlock + 2 * kMargin, kBlock + 2 * kMargin);
-        double least = 0, most = 0;
-        cv::minMaxLoc(pair.picture(place).reshape(1), &least, &most);
-        if (least < 2 || most > 253) continue;
+        if (!cv::checkRange(pair.picture(place), true, nullptr, 2, 254)) continue;  // clipped
         const double code = cv::mean(green(place))[0], structure = cv::norm(gx(place)) + cv::norm(gy(place));
         const auto bin = static_cast<std::size_t>(code / kBinWidth);
         singles[bin].push_back(MakeBlock(green(place), code, structure));
         const Motion* motion = pair.Nearest(cv::Point2f(place.tl() + place.br()) * 0.5F, 40);
         if (motion == nullptr) continue;
         const cv::Point by(motion->by);
-        const cv::Point2f part = motion->by - cv::Point2f(by);
-        if (std::abs(part.x) > 0.125F || std::abs(part.y) > 0.125F) continue;
-        if (((place + by) & cv::Rect({}, green.size())) != place + by) continue;
+        const bool whole = cv::norm(motion->by - cv::Point2f(by)) < 0.15;
+        if (!whole || ((place + by) & cv::Rect({}, green.size())) != place + by) continue;
         aligneds[bin].push_back(MakeBlock((green(place) - next(place + by)) / std::sqrt(2.0), code, structure));
       }
     }
@@ -173,11 +166,10 @@ NoiseStatistics MeasureNoise(std::span<const Pair> pairs) {
     out.levels.push_back({Median(single, &Block::mean), std::min(alone, both), single.size() + aligned.size()});
     if (out.levels.back().code < 40) continue;
     for (const Block& block : single) {
-      for (int i = 0; i < kBlock * kBlock; ++i) {
-        const double r = double{block.residual.at<float>(i / kBlock, i % kBlock)};
+      const double squares = std::max(0.05, block.residual.dot(block.residual));
+      for (int i = 0; i < kBlock * kBlock; ++i)
         parity[static_cast<std::size_t>(i / kBlock + i) % 2] +=
-            r * r / std::max(0.05, block.residual.dot(block.residual));
-      }
+            std::pow(block.residual.at<float>(i / kBlock, i % kBlock), 2) / squares;
     }
     for (const Block& block : aligned) {  // each counts the same
       const cv::Mat& r = block.residual;

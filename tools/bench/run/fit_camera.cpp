@@ -22,8 +22,6 @@ Recording Read(const std::filesystem::path& sequence) {
   std::vector<double> periods;
   vo::Frame before;
   for (std::size_t k = 0; const std::optional<vo::Frame> frame = reader.Next(); ++k) {
-    if (frame->image.cols < 160 || frame->image.rows < 160)
-      throw std::runtime_error(sequence.string() + ": its pictures are smaller than 160 x 160 pixels");
     if (k > 0) periods.push_back(static_cast<double>(frame->stamp_ns - before.stamp_ns) * 1e-9);
     if (k > 0 && (k - 1) * std::min(kPairs, count) / count != k * std::min(kPairs, count) / count)
       recording.pairs.push_back(MakePair(before.image, frame->image));
@@ -37,40 +35,40 @@ Recording Read(const std::filesystem::path& sequence) {
 }
 
 void Print(const CameraFit& fit) {
-  const auto missing = [](const char* what, const char* why) { fmt::print("# not determined: {}: {}\n", what, why); };
+  const sim::SensorParams& s = fit.sensor;
+  const sim::ProcessingParams& p = s.processing;
   for (const NoiseLevel& l : fit.noise.levels)
     fmt::print("# code {:3.0f}: noise {:.2f}, of {} flat blocks\n", l.code, l.sigma, l.blocks);
-  fmt::print("# correlation of neighbours {:.2f} in rows, {:.2f} in columns; lattice of a mosaic {:.2f}\n",
-             fit.noise.correlation[0], fit.noise.correlation[1], fit.noise.lattice);
-  fmt::print("# {} edges at rest: 10-90 % width {:.2f} px, halo {:.3f} bright, {:.3f} dark\n", fit.edges.count,
-             fit.edges.width, fit.edges.bright, fit.edges.dark);
-  if (fit.noise_known) fmt::print("# noise explained to {:.0f} %\n", 100 * fit.noise_misfit);
-  if (fit.exposure_s)
-    fmt::print("# exposure {:.1f} +- {:.1f} ms\n", 1e3 * fit.exposure_s->value, 1e3 * fit.exposure_s->sigma);
-  if (fit.vignetting_2)
-    fmt::print("# vignetting_2 {:.3f} +- {:.3f}\n", fit.vignetting_2->value, fit.vignetting_2->sigma);
-  if (!fit.noise_known)
-    missing("full_well, read_noise, toe, shoulder, denoise_sigma",
-            "too few flat places, or other noise than of light and reading (JPEG?)");
-  if (!fit.exposure_s) missing("exposure", "no edges that motion blurs visibly");
-  if (!fit.vignetting_2) missing("vignetting", "too little moves through the picture");
-  if (!fit.edges_known) missing("psf_sigma, sharpen", "too few edges at rest between flat sides");
-  missing("white_balance, colour matrix, white, gain", "they need a chart of known colours");
-  missing("rolling_shutter", "`vobench track` estimates it");
-  const sim::SensorParams& s = fit.sensor;
+  fmt::print(
+      "# correlation of neighbours {:.2f} in rows, {:.2f} in columns; lattice of a mosaic {:.2f}\n"
+      "# {} edges at rest: 10-90 % width {:.2f} px, halo {:.3f} bright, {:.3f} dark\n",
+      fit.noise.correlation[0], fit.noise.correlation[1], fit.noise.lattice, fit.edges.count, fit.edges.width,
+      fit.edges.bright, fit.edges.dark);
+  for (const auto& [known, what] :
+       {std::pair(fit.noise_known,
+                  "full_well, read_noise, toe, shoulder, denoise_sigma: too few flat places, or not the "
+                  "noise of light and reading (compressed pictures?)"),
+        {fit.exposure_s.has_value(), "exposure: no edges that motion blurs visibly"},
+        {fit.vignetting_2.has_value(), "vignetting_2: too little moves through the picture"},
+        {fit.edges_known, "psf_sigma, sharpen_bright, sharpen_dark: too few edges at rest between flat sides"},
+        {false, "white_balance, colour matrix, white, gain: they need a chart of known colours"},
+        {false, "rolling_shutter: `vobench track` estimates it"}}) {
+    if (!known) fmt::print("# not determined: {}\n", what);
+  }
   fmt::print("sensor:\n  color: {}\n", s.color);
   if (s.mosaic == sim::Mosaic::demosaiced) fmt::print("  mosaic: demosaiced\n");
-  if (fit.exposure_s) fmt::print("  exposure: {:.2f} ms\n", 1e3 * s.exposure_s);
+  if (fit.exposure_s)
+    fmt::print("  exposure: {:.2f} ms # +- {:.1f}\n", 1e3 * s.exposure_s, 1e3 * fit.exposure_s->sigma);
   if (fit.noise_known)
-    fmt::print("  full_well: {:.0f} e\n  read_noise: {:.2f} e\n  response: {}\n", s.full_well_e, s.read_noise_e,
+    fmt::print("  full_well: {:.0f} e # the noise is explained to {:.0f} %\n  read_noise: {:.2f} e\n  response: {}\n",
+               s.full_well_e, 100 * fit.noise_misfit, s.read_noise_e,
                s.response == sim::Response::srgb ? "srgb" : "linear");
-  const sim::ProcessingParams& p = s.processing;
   fmt::print(
-      "  optics: {{psf_sigma: {:.3f} px, vignetting_2: {:.3f}}}\n"
+      "  optics: {{psf_sigma: {:.3f} px, vignetting_2: {:.3f}}} # +- {:.3f}\n"
       "  processing: {{toe: {:.3f}, shoulder: {:.3f}, denoise_sigma: {:.3f} px, denoise_range: {}, "
       "sharpen_bright: {:.3f}, sharpen_dark: {:.3f}, sharpen_sigma: {} px}}\n",
-      s.optics.psf_sigma_px, s.optics.vignetting_2, p.toe, p.shoulder, p.denoise_sigma_px, p.denoise_range,
-      p.sharpen_bright, p.sharpen_dark, p.sharpen_sigma_px);
+      s.optics.psf_sigma_px, s.optics.vignetting_2, fit.vignetting_2.value_or(Measure{}).sigma, p.toe, p.shoulder,
+      p.denoise_sigma_px, p.denoise_range, p.sharpen_bright, p.sharpen_dark, p.sharpen_sigma_px);
 }
 
 }  // namespace
