@@ -1,6 +1,5 @@
 // What a camera does beside counting light: the point-spread function of its lens, before the sensor; and the image
-// processing behind it, in its order: white balance and colour matrix in linear light, tone curve, denoising, sharpening.
-// Each step of the latter maps fractions of the scale, 0 ... 1, to the same.
+// processing behind it, in its order, of fractions of the scale: 0 ... 1.
 // Source: Lindeberg 1990, "Scale-space for discrete signals", equation (7): the discrete Gaussian, whose variance is
 //   exactly sigma^2 at any width: T(n) = exp(-sigma^2) I_n(sigma^2), I_n the modified Bessel function.
 #pragma once
@@ -12,8 +11,8 @@
 
 namespace sim {
 
-// Rows, then columns, of interleaved channels are convolved with the discrete Gaussian of `sigma` px, cut off where less
-// than 1e-5 is left; beyond the border its pixels are repeated.
+// Rows, then columns, of interleaved channels are convolved with the discrete Gaussian of `sigma` px, cut off where
+// less than 1e-5 is left; beyond the border its pixels are repeated.
 std::vector<float> GaussianBlur(const std::vector<float>& picture, int width, int height, int channels, double sigma);
 
 // rgb' = M diag(white_balance) rgb, clipped to 0 ... 1; M has the rows color_red, color_green, color_blue.

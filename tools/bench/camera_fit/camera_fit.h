@@ -1,7 +1,6 @@
 // Settings of a simulated sensor whose pictures have the statistics of recorded ones.
-// Source: indirect inference (Gourieroux, Monfort and Renault 1993): a chart of flats and slanted edges goes through the
-//   simulated sensor, and its settings are adjusted until the same statistics come out of it as of the recording;
-//   EMVA 1288 (photon transfer), ISO 12233 (edges), Popescu and Farid 2005 (lattice of a mosaic).
+// Source: indirect inference (Gourieroux, Monfort and Renault 1993): flats and slanted edges go through the simulated
+//   sensor until the same statistics come out as of the recording; EMVA 1288 (photon transfer), ISO 12233 (edges).
 // Assumed: a scene at rest; shot and read noise; denoising and sharpening of the same strength at all levels. Units:
 // codes 0 ... 255 of the green or grey channel, px. Pictures: CV_8UC1 or CV_8UC3 (BGR).
 #pragma once
@@ -27,9 +26,8 @@ struct Pair {
 };
 Pair MakePair(const cv::Mat& picture, const cv::Mat& next);
 
-// By range of 20 codes, from 16 x 16 blocks: the flattest twentieth (20 at least) by the gradient of the blurred picture,
-// which hardly knows of the noise; or a quarter of those that move by whole pixels (to 0.15), in the difference of both
-// pictures, which holds no texture: the smaller of both.
+// By range of 20 codes, from the flattest 16 x 16 blocks by the gradient of the blurred picture: a twentieth of them,
+// or a quarter of those that move by whole pixels (to 0.15), in the difference of both pictures: the smaller.
 struct NoiseLevel {
   double code = 0;
   double sigma = 0;  // median over blocks, after (1, -2, 1) x (1, -2, 1) / 6, which keeps that of white noise
@@ -72,8 +70,9 @@ struct Measure {
   double value = 0, sigma = 0;
 };
 
-// From the width of edges against their motion, that convolves them with a box of L = |v| exposure.
-// `at_rest`: of the slowest eighth. None where the motion does not tell it.
+// From edges in motion: width^2 = that at rest^2 + kBlur (|v| exposure)^2; kBlur: from 0.547, of a Gaussian blurred a
+// little, to 0.64, of a box alone. `at_rest`: of the slowest eighth. None where the motion does not tell it.
+constexpr double kBlur = 0.59;
 std::optional<Measure> FitExposure(const Recording& recording, EdgeStatistics& at_rest);
 
 // v2 of 1 + v2 r^2, r in half diagonals, from the brightness of what moves through the picture at a constant exposure;

@@ -42,16 +42,18 @@ NoiseStatistics FlatAt(const sim::SensorParams& sensor, double code) {
   return MeasureNoise({&pair, 1});
 }
 
-// Edges of slopes up to 1/8 between codes 45 and 190, each pixel the mean over its square.
-EdgeStatistics EdgesOf(const sim::SensorParams& sensor) {
+// Edges of slopes up to 1/8 between codes 45 and 190, each pixel the mean over its square, blurred by `blur` px.
+EdgeStatistics EdgesOf(const sim::SensorParams& sensor, double blur = 0) {
   const std::vector<double> linear = LinearOf(sensor);
   std::vector<Edge> edges;
   for (int chart = 0; chart < 3; ++chart) {
     sim::RadianceImage radiance{kWidth, kHeight, {}};
     for (int i = 0; i < kWidth * kHeight; ++i) {
       const double place = std::remainder(i % kWidth - (0.02 + 0.05 * chart) * (i / kWidth), 64.0);  // 0 and 32
-      const double light = std::lerp(linear[45], linear[190], std::clamp(16.5 - std::abs(place), 0.0, 1.0));
-      radiance.rgb.insert(radiance.rgb.end(), 3, static_cast<float>(light));
+      double share = 0;
+      for (const double part : {-3.5, -2.5, -1.5, -0.5, 0.5, 1.5, 2.5, 3.5})
+        share += std::clamp(16.5 - std::abs(place) + blur * part / 8, 0.0, 1.0) / 8;
+      radiance.rgb.insert(radiance.rgb.end(), 3, static_cast<float>(std::lerp(linear[45], linear[190], share)));
     }
     const std::vector<Edge> found = FindEdges(Capture(sensor, std::move(radiance), chart));
     edges.insert(edges.end(), found.begin(), found.end());
@@ -59,7 +61,7 @@ EdgeStatistics EdgesOf(const sim::SensorParams& sensor) {
   return Summarise(edges);
 }
 
-// Shot and read noise by linear least squares: with v the variance of a level over the squared slope of its code by light,
+// Shot and read noise by linear least squares: with v the variance of a level over the squared slope of code by light,
 // (light / full_well + (read_noise / full_well)^2) / v = 1. Returns the rms of half the log of the left side.
 double FitNoise(const std::vector<NoiseLevel>& levels, sim::SensorParams& sensor) {
   const std::vector<double> linear = LinearOf(sensor);
@@ -135,7 +137,6 @@ CameraFit FitCamera(const Recording& recording) {
   s.color = recording.pairs.front().picture.channels() == 3;
   if (s.color && std::abs(std::log(fit.noise.lattice)) > 0.2) s.mosaic = sim::Mosaic::demosaiced;
   fit.exposure_s = FitExposure(recording, fit.edges);
-  if (fit.exposure_s) s.exposure_s = fit.exposure_s->value;
   fit.noise_known = fit.noise.levels.size() >= 3 && fit.noise.blocks >= 60;
   fit.edges_known = fit.edges.count >= 200;
   std::vector<NoiseLevel> before = fit.noise.levels;  // mosaic, denoising and sharpening
@@ -164,6 +165,10 @@ CameraFit FitCamera(const Recording& recording) {
     fit.noise_known = false;
     s.processing = {.sharpen_bright = p.sharpen_bright, .sharpen_dark = p.sharpen_dark, .sharpen_sigma_px = 1.5};
     s.response = sim::Response::srgb;
+  }
+  if (fit.exposure_s && fit.edges_known) {  // what the chart's edges gain in width by a blur, beside the fit's kBlur
+    const double L = fit.edges.width, gain = std::pow(EdgesOf(s, L).width, 2) - std::pow(EdgesOf(s).width, 2);
+    fit.exposure_s->value *= L * std::sqrt(kBlur / gain);
   }
   fit.vignetting_2 = FitVignetting(recording, LinearOf(s));
   if (fit.vignetting_2) s.optics.vignetting_2 = fit.vignetting_2->value;

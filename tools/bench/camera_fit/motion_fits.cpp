@@ -24,10 +24,7 @@ std::optional<Measure> FitExposure(const Recording& recording, EdgeStatistics& a
   std::vector<Edge> slow;
   for (std::size_t i = 0; i < std::max<std::size_t>(100, edges.size() / 8); ++i) slow.push_back(edges[i].second);
   at_rest = Summarise(slow);
-  // width^2 = at rest^2 + k L^2, by relative least squares over bins of speed; k: 0.547 of a Gaussian that is blurred a
-  // little, 0.64 of a box alone.
   constexpr std::size_t kBins = 12;
-  constexpr double kBlur = 0.59;
   Eigen::MatrixX2d A(kBins, 2);
   double fastest = 0;
   for (std::size_t b = 0; b < kBins; ++b) {
@@ -43,9 +40,8 @@ std::optional<Measure> FitExposure(const Recording& recording, EdgeStatistics& a
   const double share = std::sqrt(std::max(0.0, x(1)) / kBlur),
                sigma = std::sqrt(inverse(1, 1) / (kBins - 2)) * (A * x - ones).norm();
   const Measure measured{share * recording.period_s, recording.period_s * sigma / (2 * kBlur * std::max(1e-9, share))};
-  if (share * fastest < at_rest.width) return std::nullopt;  // not even the fastest edges are blurred visibly
-  if (measured.sigma > std::max(0.002, 0.1 * measured.value) || share > 1) return std::nullopt;
-  return measured;
+  const bool visible = share * fastest > at_rest.width && share <= 1;
+  return visible && measured.sigma < std::max(0.002, 0.1 * measured.value) ? std::optional(measured) : std::nullopt;
 }
 
 std::optional<Measure> FitVignetting(const Recording& recording, const std::vector<double>& light_of_code) {

@@ -75,6 +75,7 @@ void FindInRow(const cv::Mat& grey, int y, bool in_column, std::vector<Edge>& ed
     if (left_sigma[0] > 2.5 || right_sigma[0] > 2.5 || low < 15 || high > 235 || high - low < 60) continue;
     Profile p{}, rising{};
     for (int i = 0; i < 17; ++i) p[static_cast<std::size_t>(i)] = (row[x - 8 + i] - left[0]) / (right[0] - left[0]);
+    if (*std::ranges::max_element(p) > 1.6 || *std::ranges::min_element(p) < -0.6) continue;
     for (std::size_t i = 0; i < 17; ++i) rising[i] = std::max(p[i], i > 0 ? rising[i - 1] : p[i]);
     const double middle = Crossing(rising, 0.5), gy = grey.at<std::uint8_t>(y + 1, x) - grey.at<std::uint8_t>(y - 1, x);
     Edge edge{cv::Point2f(cv::Point(x, y)), in_column, gy / (row[x + 1] - row[x - 1]), 0, 0, 0};
@@ -114,10 +115,9 @@ Pair MakePair(const cv::Mat& picture, const cv::Mat& next) {
   Pair pair{picture, next, {}};
   for (int y = kMost; y + kMost < from.rows; y += 40) {
     for (int x = kMost; x + kMost < from.cols; x += 40) {
-      const cv::Mat patch = from(cv::Rect(x - kHalf, y - kHalf, 2 * kHalf + 1, 2 * kHalf + 1));
+      const auto around = [&](const cv::Mat& m, int r) { return m(cv::Rect(x - r, y - r, 2 * r + 1, 2 * r + 1)); };
       cv::Mat score;
-      cv::matchTemplate(to(cv::Rect(x - kMost, y - kMost, 2 * kMost + 1, 2 * kMost + 1)), patch, score,
-                        cv::TM_CCOEFF_NORMED);
+      cv::matchTemplate(around(to, kMost), around(from, kHalf), score, cv::TM_CCOEFF_NORMED);
       cv::Point best;
       double peak = 0;
       cv::minMaxLoc(score, nullptr, &peak, nullptr, &best);

@@ -58,7 +58,7 @@ void Print(const CameraFit& fit) {
   fmt::print("sensor:\n  color: {}\n", s.color);
   if (s.mosaic == sim::Mosaic::demosaiced) fmt::print("  mosaic: demosaiced\n");
   if (fit.exposure_s)
-    fmt::print("  exposure: {:.2f} ms # +- {:.1f}\n", 1e3 * s.exposure_s, 1e3 * fit.exposure_s->sigma);
+    fmt::print("  exposure: {:.2f} ms # +- {:.1f}\n", 1e3 * fit.exposure_s->value, 1e3 * fit.exposure_s->sigma);
   if (fit.noise_known)
     fmt::print("  full_well: {:.0f} e # the noise is explained to {:.0f} %\n  read_noise: {:.2f} e\n  response: {}\n",
                s.full_well_e, 100 * fit.noise_misfit, s.read_noise_e,
