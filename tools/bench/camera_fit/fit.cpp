@@ -36,9 +36,7 @@ NoiseStatistics FlatAt(const sim::SensorParams& sensor, double code) {
   const sim::RadianceImage flat{kWidth, kHeight, std::vector<float>(std::size_t{3} * kWidth * kHeight, light)};
   const std::int64_t frame = 2 * std::lround(code);
   Pair pair{Capture(sensor, flat, frame), Capture(sensor, flat, frame + 1), {}};
-  for (float x = 0; x < kWidth; x += 40) {
-    for (float y = 0; y < kHeight; y += 40) pair.motions.push_back({{x, y}, {}});
-  }
+  for (int i = 0; i < 56; ++i) pair.motions.push_back({cv::Point2f(cv::Point(i % 8, i / 8) * 40), {}});
   return MeasureNoise({&pair, 1});
 }
 

@@ -81,10 +81,11 @@ std::optional<Measure> FitVignetting(const Recording& recording, const std::vect
     }
     if (spread > 50) found.push_back(v2);
   }
+  if (found.size() < 2) return std::nullopt;
   cv::Scalar mean, sigma;
   cv::meanStdDev(found, mean, sigma);
   const Measure v2{mean[0], sigma[0] / std::sqrt(static_cast<double>(found.size()) - 1)};
-  return found.size() > 1 && v2.sigma < 0.05 ? std::optional(v2) : std::nullopt;
+  return v2.sigma < 0.05 ? std::optional(v2) : std::nullopt;
 }
 
 }  // namespace vobench
