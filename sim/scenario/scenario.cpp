@@ -43,8 +43,8 @@ void ReadMotionAndTime(Section root, const std::filesystem::path& folder, Scenar
 // Defaults of the other keys; what they are fitted to: docs/sensor.md.
 constexpr std::array<std::pair<const char*, const char*>, 6> kPresets = {
     {{"none", "{}"},
-     {"kinect", R"({exposure: 13 ms, rolling_shutter: 26 ms, mosaic: demosaiced, full_well: 12800 e, read_noise: 3 e,
-         optics: {psf_sigma: 0.82 px}, processing: {black_clip: 0.045, contrast: 1.05, toe: 1.25, shoulder: 1.1,
+     {"kinect", R"({exposure: 15 ms, rolling_shutter: 26 ms, mosaic: demosaiced, full_well: 13000 e, read_noise: 4 e,
+         optics: {psf_sigma: 0.8 px}, processing: {black_clip: 0.045, contrast: 1.05, toe: 1.25, shoulder: 1.1,
          denoise_sigma: 0.52, denoise_range: 0.1, sharpen_bright: 0.6, sharpen_dark: 1.5, sharpen_sigma: 1.5}})"},
      {"icl_nuim", "{exposure: 0 s, time_samples: 1, full_well: 4000 e, read_noise: 10 e}"},
      {"phone", R"({exposure: 8 ms, rolling_shutter: 20 ms, mosaic: demosaiced, full_well: 5000 e, read_noise: 3 e,
