@@ -15,6 +15,7 @@
 #include "sim/render/ray_tracer.h"
 #include "sim/render/scene_surroundings.h"
 #include "sim/render/surface_tracer.h"
+#include "sim/sensor/processing.h"
 #include "sim/sensor/sensor.h"
 #include "sim/sensor/vignetting.h"
 #include "sim/world/scene.h"
@@ -247,6 +248,8 @@ Frame Simulator::Render(std::int64_t index) const {
   exposure.focus_m = sensor.optics.focus_m;
   RadianceImage radiance;
   parts.Expose(parts.optics, exposure, index, radiance);
+  if (const double sigma = sensor.optics.psf_sigma_px; sigma > 0)
+    radiance.rgb = GaussianBlur(radiance.rgb, radiance.width, radiance.height, 3, sigma);
   parts.arena.execute([&] { frame.image = parts.sensor.Capture(radiance, index, frame.setting); });
   return frame;
 }

@@ -1,6 +1,7 @@
 #include "sim/scenario/scenario.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -39,33 +40,31 @@ void ReadMotionAndTime(Section root, const std::filesystem::path& folder, Scenar
   time.Reject(check.problems);
 }
 
-enum class Preset { none, kinect, icl_nuim };
-
-// Defaults of the other keys; sources of the numbers: docs/sensor.md.
-void Apply(Preset preset, SensorParams& sensor) {
-  if (preset == Preset::kinect) {
-    sensor.exposure_s = 0.020;
-    sensor.readout_s = 0.026;
-    sensor.mosaic = Mosaic::demosaiced;
-    sensor.full_well_e = 6000;
-    sensor.read_noise_e = 12;
-  }
-  if (preset == Preset::icl_nuim) {
-    sensor.exposure_s = 0;
-    sensor.time_samples = 1;
-    sensor.full_well_e = 4000;
-    sensor.read_noise_e = 10;
-  }
-}
+// Defaults of the other keys; what they are fitted to: docs/sensor.md.
+constexpr std::array<std::pair<const char*, const char*>, 6> kPresets = {
+    {{"none", "{}"},
+     {"kinect", R"({exposure: 15 ms, rolling_shutter: 26 ms, mosaic: demosaiced, full_well: 13000 e, read_noise: 4 e,
+         optics: {psf_sigma: 0.8 px}, processing: {black_clip: 0.045, contrast: 1.05, toe: 1.25, shoulder: 1.1,
+         denoise_sigma: 0.52, denoise_range: 0.1, sharpen_bright: 0.6, sharpen_dark: 1.5, sharpen_sigma: 1.5}})"},
+     {"icl_nuim", "{exposure: 0 s, time_samples: 1, full_well: 4000 e, read_noise: 10 e}"},
+     {"phone", R"({exposure: 8 ms, rolling_shutter: 20 ms, mosaic: demosaiced, full_well: 5000 e, read_noise: 3 e,
+         optics: {psf_sigma: 0.6 px, vignetting_2: -0.2}, jpeg_quality: 92, processing: {color_red: [1.5, -0.4, -0.1],
+         color_green: [-0.2, 1.4, -0.2], color_blue: [0, -0.5, 1.5], toe: 1.3, shoulder: 1.1, denoise_sigma: 1,
+         denoise_range: 0.03, sharpen_bright: 0.8, sharpen_dark: 0.8}})"},
+     {"machine_vision", R"({exposure: 5 ms, response: linear, color: false, full_well: 10500 e, read_noise: 7 e,
+         optics: {psf_sigma: 0.5 px}})"},
+     {"euroc", R"({exposure: 13.5 ms, response: linear, color: false, full_well: 7000 e, read_noise: 25 e,
+         optics: {psf_sigma: 0.7 px}})"}}};
 
 // rate_hz: of the frames, within which an exposure and the shutter must end.
 void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
   section.Allow("preset");
   if (section.Has("preset")) {  // resolved only where given
-    Preset preset = Preset::none;
-    section.ReadChoice("preset", preset,
-                       {{"none", Preset::none}, {"kinect", Preset::kinect}, {"icl_nuim", Preset::icl_nuim}});
-    Apply(preset, sensor);
+    settings::Choices<std::size_t> names;
+    for (const auto& [name, text] : kPresets) names.emplace_back(name, names.size());
+    std::size_t preset = 0;
+    section.ReadChoice("preset", preset, names);
+    ReadFields(settings::Document::FromText(kPresets[preset].second, "preset").root(), sensor);
   }
   section.Allow("covered");
   if (section.Has("covered")) {  // resolved only where given

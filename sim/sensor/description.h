@@ -1,6 +1,7 @@
 // Parameters of optics and sensor, in the order of the signal path.
 #pragma once
 
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "tools/base/settings/fields.h"
@@ -19,6 +20,7 @@ struct OpticsParams {
   double focus_m = 2.0;
   bool natural_vignetting = false;
   double vignetting_2 = 0.0, vignetting_4 = 0.0, vignetting_6 = 0.0;
+  double psf_sigma_px = 0.0;
 };
 
 template <class V>
@@ -29,6 +31,47 @@ void Visit(V& v, OpticsParams& p) {
   v("vignetting_2", p.vignetting_2, {"and 1 + v2 r^2 + v4 r^4 + v6 r^6,"});
   v("vignetting_4", p.vignetting_4, {"r: distance from the principal point"});
   v("vignetting_6", p.vignetting_6, {"in half diagonals of the image"});
+  v("psf_sigma", p.psf_sigma_px, {Unit::pixel, Range{0, 5}, "of the lens's Gaussian point-spread function"});
+}
+
+// Image processing between the sensor's linear signal and the file: sim/sensor/processing.h has the equations. As it
+// is by default, it does nothing.
+struct ProcessingParams {
+  glm::dvec3 white_balance{1.0};
+  glm::dvec3 color_red{1, 0, 0}, color_green{0, 1, 0}, color_blue{0, 0, 1};
+  double black_clip = 0.0, contrast = 1.0, toe = 1.0, shoulder = 1.0;
+  double denoise_sigma_px = 0.0, denoise_range = 0.02;
+  double sharpen_bright = 0.0, sharpen_dark = 0.0, sharpen_sigma_px = 1.0;
+
+  bool HasColor() const {
+    return white_balance != glm::dvec3(1.0) || color_red != glm::dvec3(1, 0, 0) || color_green != glm::dvec3(0, 1, 0) ||
+           color_blue != glm::dvec3(0, 0, 1);
+  }
+  bool HasSharpening() const { return sharpen_bright > 0 || sharpen_dark > 0; }
+  bool on() const {
+    const bool tone = black_clip != 0 || contrast != 1 || toe != 1 || shoulder != 1;
+    return HasColor() || tone || denoise_sigma_px > 0 || HasSharpening();
+  }
+};
+
+template <class V>
+void Visit(V& v, ProcessingParams& p) {
+  const Range coefficient{-8, 8}, exponent{0.2, 5};
+  v("white_balance", p.white_balance, {Range{0.1, 10}, "factors of red, green and blue, in linear light"});
+  v("color_red", p.color_red, {coefficient, "rows of the colour matrix, in linear light: red,"});
+  v("color_green", p.color_green, {coefficient, "green,"});
+  v("color_blue", p.color_blue, {coefficient, "blue of the balanced red, green, blue"});
+  v("black_clip", p.black_clip,
+    {Range{.min = 0, .max = 1, .below_max = true}, "code after the response that is black"});
+  v("contrast", p.contrast, {Range{0.1, 10}, "slope of the tone curve above it, up to white"});
+  v("toe", p.toe, {exponent, "exponent of the tone curve at black; above 1: darker shadows, with less noise"});
+  v("shoulder", p.shoulder, {exponent, "the same at white; above 1: lights are compressed"});
+  v("denoise_sigma", p.denoise_sigma_px, {Unit::pixel, Range{0, 3}, "of the spatial weights of denoising; 0: none"});
+  v("denoise_range", p.denoise_range,
+    {Range{.min = 0, .max = 1, .above_min = true}, "differences well above it stay, as a fraction of the scale"});
+  v("sharpen_bright", p.sharpen_bright, {Range{0, 5}, "amount of unsharp masking where it brightens; 0: none"});
+  v("sharpen_dark", p.sharpen_dark, {Range{0, 5}, "the same where it darkens"});
+  v("sharpen_sigma", p.sharpen_sigma_px, {Unit::pixel, Range{0.3, 5}, "of the Gaussian that it subtracts"});
 }
 
 // Exposure time and gain of each frame from the brightness of the one before: sim/sensor/exposure.h.
@@ -78,6 +121,7 @@ struct SensorParams {
   int bit_depth = 8;
   bool color = true;
   Mosaic mosaic = Mosaic::none;
+  ProcessingParams processing;
   int jpeg_quality = 0;
 
   bool IsCovered(double t_s) const;  // at the middle of an exposure
@@ -110,6 +154,7 @@ void Visit(V& v, SensorParams& p) {
   v("color", p.color, {"false: one channel of luminance"});
   v("mosaic", p.mosaic, {{"none", Mosaic::none}, {"raw", Mosaic::raw}, {"demosaiced", Mosaic::demosaiced}},
     "Bayer filter (RGGB): none; one raw channel; interpolated to three");
+  v.Child("processing", p.processing);
   v("jpeg_quality", p.jpeg_quality, {Range{0, 100}, "compressed to JPEG and back; 0: not"});
 }
 

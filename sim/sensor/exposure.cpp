@@ -20,14 +20,19 @@ std::vector<std::string> Problems(const Exposure& exposure) {
   return problems;
 }
 
-AutoExposure::AutoExposure(const SensorParams& sensor) : sensor_(sensor), setting_{sensor.exposure_s, sensor.gain} {
+AutoExposure::AutoExposure(const SensorParams& sensor)
+    : sensor_(sensor), tone_(sensor), setting_{sensor.exposure_s, sensor.gain} {
   ThrowIfAny(Problems(sensor), "auto exposure");
 }
 
 double AutoExposure::Brightness(const RadianceImage& frame, double signal) const {
   const double dark = sensor_.black_level + signal * sensor_.dark_current_e_s / sensor_.full_well_e;
   const double scale = signal / (sensor_.white * sensor_.exposure_s);
-  const auto shown = [&](float light) { return EncodeResponse(sensor_.response, std::min(1.0, dark + scale * light)); };
+  const bool processed = sensor_.processing.on();
+  const auto encoded = [&](double x) {
+    return processed ? double{tone_(static_cast<float>(x))} : EncodeResponse(sensor_.response, x);
+  };
+  const auto shown = [&](float light) { return encoded(std::min(1.0, dark + scale * light)); };
   double sum = 0;
   for (std::size_t i = 0; i < frame.rgb.size(); i += 3) {
     const float* rgb = &frame.rgb[i];

@@ -6,6 +6,7 @@
 
 #include "sim/sensor/description.h"
 #include "sim/sensor/image.h"
+#include "sim/sensor/processing.h"
 
 namespace sim {
 
@@ -34,7 +35,7 @@ struct ExposureSetting {
 
 // Exposure time and gain from the mean brightness of the previous frame. The signal of frame k is proportional to
 // s = exposure_s * gain. With m(s) the mean of the picture that it makes, over its pixels and channels, with dark
-// current and black level, after the response, the next frame gets
+// current and black level, after the response and tone curve, the next frame gets
 //   log s' = log s + speed (log s* - log s),   m(s*) = target,
 // within the limits; the exposure time grows before the gain does. The first frame has the sensor's own settings.
 class AutoExposure {
@@ -50,6 +51,7 @@ class AutoExposure {
   double Brightness(const RadianceImage& frame, double signal) const;
 
   SensorParams sensor_;
+  ToneCurve tone_;
   ExposureSetting setting_;
 };
 

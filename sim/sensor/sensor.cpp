@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "sim/random/avx2_too.h"
 #include "sim/random/random.h"
@@ -88,6 +89,11 @@ std::vector<settings::FieldProblem> Problems(SensorParams p) {
   }
   check.Require(p.auto_exposure.longest_s >= p.auto_exposure.shortest_s, "auto_exposure.longest",
                 p.auto_exposure.longest_s, "must not be below shortest");
+  const ProcessingParams& processing = p.processing;
+  if (processing.HasColor() && (!p.color || p.mosaic == Mosaic::raw))
+    check.Refuse("processing.white_balance", "and the colour matrix need three channels");
+  if (p.mosaic == Mosaic::raw && (processing.denoise_sigma_px > 0 || processing.HasSharpening()))
+    check.Refuse("processing.denoise_sigma", "and sharpening do not go with a raw mosaic");
   for (const Covered& c : p.covered) {
     check.Require(c.from_s >= 0, "covered.from", c.from_s, "must not be negative");
     check.Require(c.until_s > c.from_s, "covered.until", c.until_s, "must be above from");
@@ -126,7 +132,7 @@ FixedPattern MakeFixedPattern(const SensorParams& params, std::uint64_t seed, in
 }
 
 Sensor::Sensor(const SensorParams& params, std::uint64_t seed, int width, int height)
-    : params_(params), seed_(seed), response_(params.response) {
+    : params_(params), seed_(seed), response_(params.response), tone_(params) {
   ThrowIfAny(Problems(params), "sensor");
   pattern_ = MakeFixedPattern(params, seed, width, height, static_cast<int>(channels()));
 }
@@ -173,15 +179,40 @@ void Sensor::ExpectLight(const RadianceImage& radiance, std::size_t y, double pe
   for (float& expected_e : electrons) expected_e = std::min(expected_e, most);
 }
 
+Image Sensor::Process(std::vector<float> signal, int width, int height) const {
+  const ProcessingParams& p = params_.processing;
+  int count = static_cast<int>(channels());
+  if (params_.mosaic == Mosaic::demosaiced) {
+    Image raw{width, height, 1, {}, 16, {}};
+    for (const float x : signal)
+      raw.wide.push_back(static_cast<std::uint16_t>(std::lround(65535.0F * std::clamp(x, 0.0F, 1.0F))));
+    const Image rgb = Demosaic(raw, true);
+    count = 3;
+    signal.assign(rgb.wide.begin(), rgb.wide.end());
+    for (float& x : signal) x /= 65535.0F;
+  }
+  if (p.HasColor()) CorrectColor(p, signal);
+  for (float& x : signal) x = tone_(x);
+  Denoise(p, width, height, count, signal);
+  Sharpen(p, width, height, count, signal);
+  Image image{width, height, count, {}, params_.bit_depth, {}};
+  const auto highest = static_cast<float>(std::pow(2.0, image.bits) - 1);
+  for (const float code : signal) image.wide.push_back(static_cast<std::uint16_t>(std::lround(highest * code)));
+  if (image.bits == 8) image.data.assign(image.wide.begin(), image.wide.end()), image.wide.clear();
+  return image;
+}
+
 Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame,
                       const std::optional<ExposureSetting>& of_frame) const {
   const ExposureSetting setting = of_frame.value_or(ExposureSetting{params_.exposure_s, params_.gain});
   const std::size_t width = static_cast<std::size_t>(radiance.width),
                     height = static_cast<std::size_t>(radiance.height), row_size = width * channels();
   Image image{radiance.width, radiance.height, static_cast<int>(channels()), {}, params_.bit_depth, {}};
-  if (image.bits == 8) {
+  const bool processed = params_.processing.on();
+  std::vector<float> signal(processed ? height * row_size : 0);
+  if (!processed && image.bits == 8) {
     image.data.resize(height * row_size);
-  } else {
+  } else if (!processed) {
     image.wide.resize(height * row_size);
   }
   const auto fits = [&](const std::vector<float>& fixed) { return fixed.empty() || fixed.size() == height * row_size; };
@@ -204,7 +235,9 @@ Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame,
       }
       if (noisy) AddNoise(static_cast<std::uint32_t>(frame), static_cast<std::uint32_t>(y * width), electrons);
       for (std::size_t i = 0; i < row_size; ++i) electrons[i] = black + electrons[i] / full_scale;
-      if (image.bits == 8) {
+      if (processed) {
+        std::ranges::copy(electrons, signal.begin() + static_cast<std::ptrdiff_t>(y * row_size));
+      } else if (image.bits == 8) {
         for (std::size_t i = 0; i < row_size; ++i) image.data[y * row_size + i] = response_.Encode(electrons[i]);
       } else {
         for (std::size_t i = 0; i < row_size; ++i) {
@@ -215,7 +248,11 @@ Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame,
       }
     }
   });
-  if (params_.mosaic == Mosaic::demosaiced) image = Demosaic(image);
+  if (processed) {
+    image = Process(std::move(signal), radiance.width, radiance.height);
+  } else if (params_.mosaic == Mosaic::demosaiced) {
+    image = Demosaic(image, image.bits == 8);
+  }
   return params_.jpeg_quality > 0 ? ThroughJpeg(image, params_.jpeg_quality) : image;
 }
 

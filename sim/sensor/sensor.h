@@ -11,6 +11,7 @@
 
 #include "sim/sensor/develop.h"
 #include "sim/sensor/exposure.h"
+#include "sim/sensor/processing.h"
 
 namespace sim {
 
@@ -34,6 +35,8 @@ FixedPattern MakeFixedPattern(const SensorParams& params, std::uint64_t seed, in
 //   gain, black level    x = black_level + gain n / full_well, clipped to 0 ... 1 (saturation)
 //   response, bit depth  code = round((2^bit_depth - 1) R(x))
 //   development          colour from the mosaic; JPEG
+// With processing (sim/sensor/processing.h) the last two are: colour from the mosaic (in x), white balance and colour
+// matrix, tone curve C(x) in place of R(x), denoising, sharpening, bit depth, JPEG.
 // Three channels have their full resolution unless there is a mosaic; grey is the luminance 0.2126 R + 0.7152 G +
 // 0.0722 B, with one pixel's noise. z of different pixels, channels and (but for the fixed ones) frames are
 // independent.
@@ -57,9 +60,13 @@ class Sensor {
   // Expected electrons of row y from light, four times full_well at most.
   void ExpectLight(const RadianceImage& radiance, std::size_t y, double per_radiance, std::span<float> electrons) const;
 
+  // The image of the signal x, rows from the top.
+  Image Process(std::vector<float> signal, int width, int height) const;
+
   SensorParams params_;
   std::uint64_t seed_;
   ResponseCurve response_;
+  ToneCurve tone_;
   FixedPattern pattern_;
 };
 

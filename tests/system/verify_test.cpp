@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <sstream>
 #include <string>
 
 #include "tests/system/program.h"
@@ -42,6 +43,39 @@ TEST(Verify, DepthAloneIsTheDefaultAndTruthCanBeLeftOut) {
     EXPECT_EQ(fs::exists(here / ("seq" + truth) / "depth.txt"), truth.empty());
     EXPECT_EQ(RunVobench({"verify", "seq" + truth}, here.path()).status, 0);
   }
+}
+
+// What a camera's processing does to the pictures leaves them where they are; another frame's picture is still noticed.
+TEST(Verify, PicturesOfAPhone) {
+  const TemporaryFolder here;
+  const Outcome rendered = RunVobench({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:6", "--set",
+                                       "sensor={preset: phone, rolling_shutter: 0 s, time_samples: 4}"},
+                                      here.path());
+  ASSERT_EQ(rendered.status, 0) << rendered.err;
+  const Outcome good = RunVobench({"verify", "seq"}, here.path());
+  EXPECT_EQ(good.status, 0) << good.out;
+  EXPECT_THAT(good.out, testing::ContainsRegex("pictures against neighbours: offset .*pass"));
+  fs::copy_file(here / "seq/rgb/0.166666667.png", here / "seq/rgb/0.000000000.png",
+                fs::copy_options::overwrite_existing);
+  EXPECT_EQ(RunVobench({"verify", "seq"}, here.path()).status, 1);
+}
+
+TEST(FitCamera, ItsSectionIsAccepted) {
+  const TemporaryFolder here;
+  ASSERT_EQ(RunVobench({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:6"}, here.path()).status, 0);
+  const Outcome fit = RunVobench({"fit-camera", "seq"}, here.path());
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  EXPECT_THAT(fit.out, HasSubstr("# not determined: exposure"));
+  std::string section;  // in one line
+  std::istringstream lines(fit.out.substr(fit.out.find("sensor:\n") + 8));
+  for (std::string line; std::getline(lines, line);)
+    section += (section.empty() ? "" : ", ") + line.substr(0, line.find(" #"));
+  const Outcome check =
+      RunVobench({"check", TinyScenario().string(), "--set", "sensor={" + section + "}"}, here.path());
+  EXPECT_EQ(check.status, 0) << section << check.err;
+  const Outcome none = RunVobench({"fit-camera", "nothing"}, here.path());
+  EXPECT_EQ(none.status, 2);
+  EXPECT_EQ(none.err, "vobench: nothing: no such folder\n");
 }
 
 TEST(Verify, NoSequenceOrNoSuchStream) {

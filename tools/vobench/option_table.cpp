@@ -278,6 +278,12 @@ void AddVerify(OptionTable& table) {
   Add(command, "SEQ", verify.sequence, "Sequence folder")->required();
 }
 
+void AddFitCamera(OptionTable& table) {
+  const auto [command, fit] = AddCommand<FitCameraOptions>(
+      table, "fit-camera", "Fit the simulated sensor to a recording", "vobench fit-camera rgbd_dataset_freiburg1_xyz");
+  Add(command, "SEQ", fit.sequence, "Sequence folder")->required();
+}
+
 void AddExport(OptionTable& table) {
   const auto [command, exported] = AddCommand<ExportOptions>(
       table, "export", "Write a sequence in another form: a ROS 1 bag (docs/sequence_format.md)",
@@ -315,7 +321,7 @@ OptionTable::OptionTable()
       "`vobench COMMAND --help` tells more. Exit status: 0 done, 1 the work failed or `verify` found a disagreement, "
       "2 bad usage or input, 3 not consistent though `run --require-consistent` asked for it.");
   for (const auto add : {AddRender, AddTrack, AddEvaluate, AddRun, AddCampaign, AddCheck, AddSettings, AddVerify,
-                         AddExport, AddReport}) {
+                         AddExport, AddReport, AddFitCamera}) {
     add(*this);
   }
 }

@@ -163,7 +163,8 @@ TEST(Scenario, APresetIsWhatTheOtherKeysBeginWith) {
   const SmallWorld world;
   const Scenario kinect = LoadScenario(world.scenario(), {{"sensor", "{preset: kinect, read_noise: 3 e}"}});
   EXPECT_EQ(kinect.sensor.readout_s, 0.026);
-  EXPECT_EQ(kinect.sensor.exposure_s, 0.020);
+  EXPECT_EQ(kinect.sensor.exposure_s, 0.015);
+  EXPECT_EQ(kinect.sensor.processing.denoise_range, 0.1);
   EXPECT_EQ(kinect.sensor.mosaic, Mosaic::demosaiced);
   EXPECT_EQ(kinect.sensor.read_noise_e, 3) << "set beside it";
   const Scenario icl = LoadScenario(world.scenario(), {{"sensor", "{preset: icl_nuim}"}});

@@ -108,6 +108,12 @@ struct VerifyOptions {
 };
 void Verify(const VerifyOptions& options);
 
+// The sensor section of a scenario whose pictures look like the recorded ones (docs/sensor.md).
+struct FitCameraOptions {
+  std::filesystem::path sequence;
+};
+void FitCamera(const FitCameraOptions& options);
+
 // A sequence is written in another form.
 struct ExportOptions {
   std::filesystem::path sequence;
