@@ -125,7 +125,7 @@ std::vector<ExternalSystem> ReadExternalSystems(const std::filesystem::path& fil
       variables.Read(name, value);
       system.variables.emplace_back(name, value);
     }
-    system.variables.emplace_back(kHere, std::filesystem::absolute(file.parent_path()).lexically_normal().string());
+    system.variables.emplace_back(kHere, std::filesystem::absolute(file).parent_path().lexically_normal().string());
     section.ReadChoice("layout", system.layout, kLayouts);
     section.ReadChoice("calibration", system.calibration, kFormats);
     section.Read("trajectory", system.trajectory);
