@@ -32,16 +32,18 @@ struct Odometry::Impl {
   }
 
   Estimate Process(const PreparedFrame& frame) {
-    constexpr double kClearly = 1.15;
+    constexpr double kClearly = 1.15;   // in each frame
+    constexpr double kAtTheEnd = 1.06;  // in the last one
     std::vector<Estimate> estimates;
     for (Tracker& tracker : trackers) estimates.push_back(tracker.Process(frame));
     const auto score = [](const Tracker& tracker) { return tracker.answer().start_score; };
-    if (trackers.size() > 1 && score(trackers[1]) > kClearly * score(trackers[0])) {
+    const bool end =
+        std::ranges::any_of(trackers, [](const Tracker& tracker) { return !tracker.answer().initialising; });
+    if (trackers.size() > 1 && score(trackers[1]) > (end ? kAtTheEnd : kClearly) * score(trackers[0])) {
       std::swap(trackers[0], trackers[1]);
       std::swap(estimates[0], estimates[1]);
     }
-    const auto ended = [](const Tracker& tracker) { return !tracker.answer().initialising; };
-    if (std::ranges::any_of(trackers, ended)) trackers.erase(trackers.begin() + 1, trackers.end());
+    if (end) trackers.erase(trackers.begin() + 1, trackers.end());
     FrameDiagnostics& diagnostics = estimates[0].diagnostics;
     for (std::size_t i = 1; i < estimates.size(); ++i) {  // the frame is prepared once
       diagnostics.ms_features += estimates[i].diagnostics.ms_features - frame.ms;
