@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <stdexcept>
 
 #include "sim/light/cache.h"
@@ -76,6 +77,20 @@ std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& p
 
 double LastStamp(const Scenario& s) { return Seconds(StampNs(CountFrames(s.time) - 1, s.time)); }
 
+WorldExtent ExtentOf(const Scene& scene) {
+  WorldExtent extent;
+  for (const Mesh& mesh : scene.meshes) {
+    extent.triangles += mesh.triangles.size();
+    for (const glm::vec3& p : mesh.positions) {
+      extent.low = glm::min(extent.low, glm::dvec3(p));
+      extent.high = glm::max(extent.high, glm::dvec3(p));
+    }
+  }
+  for (const Texture& texture : scene.textures)
+    extent.texture_bytes += 4 * texture.texels().size() + texture.alpha().size();
+  return extent;
+}
+
 // Long enough for all frames.
 std::unique_ptr<Trajectory> MakeMotion(const Scenario& s, const MotionDescription& motion, std::uint64_t seed,
                                        const Surroundings* around = nullptr) {
@@ -123,14 +138,20 @@ struct Simulator::Parts {
       object_names.push_back(scene.objects[k].name);
     }
     warnings = scene.warnings;
-    exact = MakeRayTracer(scene, {.jobs = Threads(jobs)});
+    extent = ExtentOf(scene);
+    // A path that cannot be is refused before light is baked.
+    const bool bakes = s.render.engine == Engine::ray_tracer && s.render.light != LightMode::direct;
+    if (!bakes) renderer = MakeRenderer(scene, s.render, Threads(jobs), warnings);
+    if (bakes || renderer->surfaces() == nullptr) exact = MakeRayTracer(scene, {.jobs = Threads(jobs)});
     {
-      const auto around = SurroundingsOf(scene, *exact->surfaces());
+      const auto around = SurroundingsOf(scene, surfaces());
       trajectory = MakeMotion(s, s.motion, s.seed, around.get());
       RequireFree(*trajectory, LastStamp(s), *around, [&s](double t_s) { return s.sensor.IsCovered(t_s); });
     }
-    if (s.render.engine == Engine::ray_tracer) exact.reset();  // the renderer has its own
-    renderer = MakeRenderer(scene, s.render, Threads(jobs), warnings);
+    if (bakes) {
+      exact.reset();  // the renderer has its own
+      renderer = MakeRenderer(scene, s.render, Threads(jobs), warnings);
+    }
     for (const Mesh& mesh : scene.meshes) mesh_names.push_back(mesh.name);
     for (const Light& light : scene.lights) {
       const auto* rect = std::get_if<RectLight>(&light);
@@ -141,6 +162,8 @@ struct Simulator::Parts {
     }
     if (s.sensor.auto_exposure.on) Meter();
   }
+
+  const SurfaceTracer& surfaces() const { return *(exact ? exact : renderer)->surfaces(); }
 
   // The settings of all frames, each metered on the frame before it at 1/8 of the resolution, one ray per pixel.
   void Meter() {
@@ -189,6 +212,7 @@ struct Simulator::Parts {
   Sensor sensor;
   std::unique_ptr<Trajectory> trajectory;
   std::vector<std::string> warnings;
+  WorldExtent extent;
   std::unique_ptr<Renderer> renderer;
   std::vector<ExposureSetting> settings;  // by frame; empty: always the scenario's
   std::unique_ptr<Renderer> exact;        // where the renderer cannot be asked what a pixel sees
@@ -207,9 +231,8 @@ const Camera& Simulator::camera() const { return parts_->optics.camera; }
 const Scenario& Simulator::scenario() const { return parts_->scenario; }
 const std::vector<std::string>& Simulator::warnings() const { return parts_->warnings; }
 const Trajectory& Simulator::trajectory() const { return *parts_->trajectory; }
-const SurfaceTracer& Simulator::surfaces() const {
-  return *(parts_->exact ? parts_->exact : parts_->renderer)->surfaces();
-}
+const SurfaceTracer& Simulator::surfaces() const { return parts_->surfaces(); }
+const WorldExtent& Simulator::extent() const { return parts_->extent; }
 const std::vector<std::string>& Simulator::mesh_names() const { return parts_->mesh_names; }
 
 std::int64_t Simulator::StampNs(std::int64_t index) const { return sim::StampNs(index, parts_->scenario.time); }

@@ -1,7 +1,10 @@
 // Simulator: renders the frames of a scenario with exact truth.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <glm/vec3.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,6 +32,12 @@ struct Frame {
 // Trajectory of the camera of a scenario, without a simulator: meshes are read only where it keeps clear of them. Throws
 // as MakeTrajectory and LoadScene do.
 std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& scenario);
+
+// Bounding box of what stands still, in W [m]; triangles; textures in memory.
+struct WorldExtent {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+  std::size_t triangles = 0, texture_bytes = 0;
+};
 
 class Simulator {
  public:
@@ -61,6 +70,7 @@ class Simulator {
   // Camera trajectory, and the surface points that pixels see. Both live as long as the simulator.
   const Trajectory& trajectory() const;
   const SurfaceTracer& surfaces() const;
+  const WorldExtent& extent() const;
   // Of the world's meshes, as SurfaceTracer::MeshOf counts them; of an object's "OBJECT/MESH".
   const std::vector<std::string>& mesh_names() const;
   // Moving objects, and their state at a frame's stamp: O in the place of C.

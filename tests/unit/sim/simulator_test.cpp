@@ -236,6 +236,15 @@ TEST(Simulator, AHandBeforeTheLensLeavesTheNoiseAndTheTruth) {
   }
 }
 
+TEST(Simulator, ExtentIsThatOfTheWall) {
+  const SmallWorld world;
+  const Simulator simulator(LoadScenario(world.scenario()), 1);
+  EXPECT_EQ(simulator.extent().low, glm::dvec3(-2, -1.5, -2));
+  EXPECT_EQ(simulator.extent().high, glm::dvec3(2, 1.5, -2));
+  EXPECT_EQ(simulator.extent().triangles, 2u * 16 * 12);
+  EXPECT_EQ(simulator.extent().texture_bytes, 0u);
+}
+
 TEST(Simulator, FaultsOfTheInputAreNamed) {
   const SmallWorld world;
   std::filesystem::remove(world.folder.path() / "wall.ply");

@@ -46,8 +46,10 @@ bool ReadRange(const std::string& text, SeedRange& range, std::string& problem) 
 
 }  // namespace
 
-CampaignFile::CampaignFile(const std::filesystem::path& file, std::vector<std::string> systems)
-    : document_(settings::Document::FromFile(file)), our_systems_(std::move(systems)) {
+CampaignFile::CampaignFile(const std::filesystem::path& file, std::vector<std::string> systems, Changes images_alone)
+    : document_(settings::Document::FromFile(file)),
+      our_systems_(std::move(systems)),
+      images_alone_(std::move(images_alone)) {
   const std::filesystem::path folder = file.parent_path();
   campaign_.name = file.stem().string();
   document_.root().Read("name", campaign_.name);
@@ -152,6 +154,7 @@ void CampaignFile::ReadSystems(const std::filesystem::path& folder) {
                       external.empty() ? " (others with 'external: systems.yaml')" : " and those of " + file));
     }
   }
+  AddImagesAlone();
   for (std::size_t i = 0; i < scenarios_.size(); ++i) {
     Section special = scenarios_[i].Child("for_system");
     for (const SystemEntry& system : campaign_.systems) {
@@ -160,6 +163,35 @@ void CampaignFile::ReadSystems(const std::filesystem::path& folder) {
       RequireOdometry(special, system.name, changes);
     }
   }
+}
+
+// Beside other people's systems each of ours that is given its scenario's settings has a twin that knows what they do,
+// before it. Not where the entry says itself what it knows.
+void CampaignFile::AddImagesAlone() {
+  const auto others = [](const SystemEntry& entry) { return entry.system.empty(); };
+  const bool beside_others = std::ranges::any_of(campaign_.systems, others);
+  std::vector<SystemEntry> entries;
+  std::vector<Section> sections;
+  for (std::size_t i = 0; i < systems_.size(); ++i) {
+    const SystemEntry& entry = campaign_.systems[i];
+    enum class Knows { both, images, scenario } knows = Knows::scenario;
+    if (beside_others && !others(entry) && entry.set.empty()) knows = Knows::both;
+    systems_[i].ReadChoice("knows", knows,
+                           {{"both", Knows::both}, {"images", Knows::images}, {"scenario", Knows::scenario}});
+    if (knows != Knows::scenario && others(entry))
+      systems_[i].Reject("knows", "'knows': what is not ours knows what its command is given");
+    if (knows != Knows::scenario) {
+      SystemEntry& alone = entries.emplace_back(entry);
+      if (knows == Knows::both) alone.name += " (images alone)";
+      alone.set.insert(alone.set.begin(), images_alone_.begin(), images_alone_.end());
+      sections.push_back(systems_[i]);
+    }
+    if (knows == Knows::images) continue;
+    entries.push_back(entry);
+    sections.push_back(systems_[i]);
+  }
+  campaign_.systems = std::move(entries);
+  systems_ = std::move(sections);
 }
 
 void CampaignFile::ReadSeeds() {

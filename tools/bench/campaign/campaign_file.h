@@ -19,9 +19,10 @@ std::vector<CurveSpec> ReadCurves(settings::Section root, const Campaign& campai
 
 class CampaignFile {
  public:
-  // Files named in it are relative to its folder; `systems` are the names of ours. Throws settings::Error only where it
-  // cannot be read as YAML at all; other problems wait for ThrowIfBad.
-  CampaignFile(const std::filesystem::path& file, std::vector<std::string> systems);
+  // Files named in it are relative to its folder; `systems` are the names of ours, `images_alone` what sets one of ours
+  // that knows no more than others. Throws settings::Error only where it cannot be read as YAML at all; other problems
+  // wait for ThrowIfBad.
+  CampaignFile(const std::filesystem::path& file, std::vector<std::string> systems, Changes images_alone = {});
 
   const Campaign& campaign() const { return campaign_; }
   // Whether enough of it is good that its points can be asked for.
@@ -38,12 +39,14 @@ class CampaignFile {
   void ReadScenarios(const std::filesystem::path& folder);
   void ReadFactors();
   void ReadSystems(const std::filesystem::path& folder);
+  void AddImagesAlone();
   void ReadSeeds();
   void ReadJudge();
   void RejectDoubles();
 
   settings::Document document_;
   std::vector<std::string> our_systems_;
+  Changes images_alone_;
   Campaign campaign_;
   std::vector<settings::Section> scenarios_, factors_, systems_;
   std::set<std::tuple<const settings::Section*, std::string, std::string>> rejected_;  // section, key, message

@@ -27,6 +27,8 @@ class TaskRunner {
 
   // Our systems, by name.
   virtual std::vector<std::string> Systems() const = 0;
+  // What sets one of them that knows images and calibration alone.
+  virtual Changes ImagesAlone() const = 0;
   // Read anew. `refuse` is called with a key and what is wrong with it in a campaign. Throws settings::Error.
   using Refuse = std::function<void(const std::string& key, const std::string& message)>;
   virtual TaskSettings Settings(const Campaign& campaign, const TaskChoice& choice, const Refuse& refuse) const = 0;

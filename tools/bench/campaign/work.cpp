@@ -40,7 +40,7 @@ CampaignWork::CampaignWork(const fs::path& file, fs::path cache, const TaskRunne
 }
 
 void CampaignWork::Resolve(const fs::path& path) {
-  CampaignFile file(path, runner_.Systems());
+  CampaignFile file(path, runner_.Systems(), runner_.ImagesAlone());
   campaign_ = file.campaign();
   const std::size_t points = file.complete() ? Points(campaign_) : 0;
   for (std::size_t p = 0; p < points; ++p) {

@@ -203,6 +203,7 @@ void CheckStamps(const TaskOutput& output, TaskRecord& record) {
 class CampaignTasks : public campaign::TaskRunner {
  public:
   std::vector<std::string> Systems() const override { return SystemNames(); }
+  campaign::Changes ImagesAlone() const override { return SettingsOfImagesAlone(); }
 
   campaign::TaskSettings Settings(const Campaign& campaign, const TaskChoice& choice,
                                   const Refuse& refuse) const override {

@@ -50,6 +50,22 @@ void PrintSensor(const sim::SensorParams& sensor) {
       20 * std::log10(emva.snr_max), 20 * std::log10(emva.dynamic_range), emva.prnu_percent, emva.dsnu_e);
 }
 
+void PrintWorld(const sim::Simulator& simulator) {
+  const sim::WorldExtent& world = simulator.extent();
+  const auto& [low, high] = std::pair(world.low, world.high);
+  fmt::print(
+      "  world from ({:.2f}, {:.2f}, {:.2f}) to ({:.2f}, {:.2f}, {:.2f}) m, {} triangles, {:.0f} MB of textures\n",
+      low.x, low.y, low.z, high.x, high.y, high.z, world.triangles, 1e-6 * static_cast<double>(world.texture_bytes));
+  const sim::Image image = simulator.Render(0).image;
+  double sum = 0;
+  for (const std::uint8_t v : image.data) sum += v;
+  for (const std::uint16_t v : image.wide) sum += v;
+  const double most = std::ldexp(1.0, image.bits) - 1,
+               count = static_cast<double>(image.data.size() + image.wide.size());
+  fmt::print("  the first frame's mean is {:.0f} % of white, by direct and ambient light alone\n",
+             100 * sum / count / most);
+}
+
 void PrintRevisits(const sim::Simulator& simulator) {
   constexpr std::size_t kMost = 5;
   const auto revisits =
@@ -65,13 +81,16 @@ void PrintRevisits(const sim::Simulator& simulator) {
 void Check(const CheckOptions& options) {
   const Experiment experiment = ReadExperiment(options.scenario, options.overrides);
   if (experiment.scenario.points) return CheckPoints(options, experiment.scenario);
-  const sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, 1); });
+  sim::Scenario direct = experiment.scenario;  // light that is baked is not needed here
+  direct.render.light = sim::LightMode::direct;
+  const sim::Simulator simulator = Input([&] { return sim::Simulator(direct, 1); });
   PrintWarnings(simulator.warnings());
   const Truth truth = TruthOf(simulator, 0, simulator.frame_count());
   const sim::Scenario& scenario = experiment.scenario;
   PrintFrames(options, scenario, truth);
   fmt::print("  {:.2f} m of path, {} meshes, {} lights, seed {}\n", evaluation::PathLength(truth.poses),
              scenario.world.meshes.size(), scenario.world.lights.size(), scenario.seed);
+  PrintWorld(simulator);
   PrintRevisits(simulator);
   PrintSensor(scenario.sensor);
   if (!options.path) return;

@@ -33,8 +33,22 @@ void ReadOdometry(settings::Section section, vo::Params& params) {
 
 void ReadPrior(settings::Section section, PriorSettings& prior) { settings::ReadFields(section, prior); }
 
+const Overrides& SettingsOfImagesAlone() {
+  static const Overrides settings = {{"prior",
+                                      "{start: origin, velocity_sigma: 0.5, angular_rate_sigma: 0.5, "
+                                      "focal_error: 0, shutter_known: false}"},
+                                     {"odometry.motion", "{position_noise: 2.5, orientation_noise: 1, adaptive: true}"},
+                                     {"odometry.landmark.inverse_depth", "0.25"},
+                                     {"odometry.landmark.inverse_depth_sigma", "0.15"},
+                                     {"odometry.landmark.scale_sigma", "0.5"},
+                                     {"odometry.landmark.proving_matches", "5"},
+                                     {"odometry.calibration.estimate", "true"}};
+  return settings;
+}
+
 vo::Camera CameraForOdometry(const Experiment& experiment) {
   vo::Camera camera = CameraOf(experiment.scenario);
+  if (!experiment.prior.shutter_known) camera.readout_s = std::nullopt;
   camera.fx *= 1 + experiment.prior.focal_error;
   camera.fy *= 1 + experiment.prior.focal_error;
   return camera;

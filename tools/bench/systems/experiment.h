@@ -24,6 +24,7 @@ struct PriorSettings {
   double velocity_sigma = 0.1;      // [m/s]
   double angular_rate_sigma = 0.1;  // [rad/s]
   double focal_error = 0;
+  bool shutter_known = true;
 };
 
 template <class V>
@@ -36,6 +37,7 @@ void Visit(V& v, PriorSettings& p) {
     {settings::Unit::angular_rate, Range::Positive(), "of the angular velocity, per axis"});
   v("focal_error", p.focal_error,
     {Range{-0.9, 9}, "relative error of fx and fy of the camera that the odometry is given"});
+  v("shutter_known", p.shutter_known, {"whether the odometry is given the rolling shutter's time"});
 }
 
 // Sections `odometry` and `prior`. What is given is read, the rest stays. Problems go to the section's document.
@@ -49,7 +51,12 @@ struct Experiment {
   std::string resolved;  // all of it, defaults included: JSON, which is a scenario again
 };
 
-// The camera that the odometry is given: the scenario's with its rolling shutter, but for prior.focal_error.
+// Settings of ours that know images and calibration alone, as `track` does: no start, no noise that suits the motion, no
+// shutter.
+const Overrides& SettingsOfImagesAlone();
+
+// The camera that the odometry is given: the scenario's with its rolling shutter, but for prior.focal_error and
+// prior.shutter_known.
 vo::Camera CameraForOdometry(const Experiment& experiment);
 
 // Throws BadInput with every problem of all three parts.

@@ -160,6 +160,26 @@ TEST_F(CampaignFileTest, AnIntervalIsNotJudged) {
   EXPECT_THAT(Problems(std::string(kFull) + "judge: {omit: {from: 3 s}}\n"), HasSubstr("judge.omit.until"));
 }
 
+TEST_F(CampaignFileTest, BesideOthersOursKnowsWhatTheyDo) {
+  here_.Write("systems.yaml", "systems: [{name: mine, command: x}]\n");
+  const auto read = [&](const std::string& systems) {
+    CampaignFile file(here_.Write("c.yaml", "scenarios: [a.yaml]\nexternal: systems.yaml\nsystems: " + systems + "\n"),
+                      kSystems, {{"prior.start", "origin"}});
+    file.ThrowIfBad();
+    std::vector<std::pair<std::string, std::size_t>> names;  // and how many settings
+    for (const SystemEntry& entry : file.campaign().systems) names.emplace_back(entry.name, entry.set.size());
+    return names;
+  };
+  EXPECT_THAT(read("[rb2pf, rbpf]"), ElementsAre(Pair("rb2pf", 0), Pair("rbpf", 0))) << "nobody else is there";
+  EXPECT_THAT(read("[rb2pf, mine]"), ElementsAre(Pair("rb2pf (images alone)", 1), Pair("rb2pf", 0), Pair("mine", 0)));
+  EXPECT_THAT(read("[{name: rb2pf, knows: images}, {name: rbpf, knows: scenario}, mine]"),
+              ElementsAre(Pair("rb2pf", 1), Pair("rbpf", 0), Pair("mine", 0)));
+  EXPECT_THAT(read("[{name: rb2pf, set: {odometry.filter.particles: 4}}, mine]"),
+              ElementsAre(Pair("rb2pf", 1), Pair("mine", 0)))
+      << "it says itself what is set";
+  EXPECT_THROW(read("[{name: mine, knows: images}]"), settings::Error);
+}
+
 TEST_F(CampaignFileTest, SettingProblemsOnceAndInPlace) {
   CampaignFile file(here_.Write("c.yaml", kFull), kSystems);
   for (std::int64_t k = 0; k < Tasks(file.campaign()); ++k) {
