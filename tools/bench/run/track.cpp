@@ -32,16 +32,9 @@ namespace {
 
 constexpr std::int64_t kFramesOfACamera = 3000;  // not known: pictures are kept at every 300th frame
 
-constexpr double kUnknownScale = 0.5;  // of a recording: the size of its scene is not known
-// Root of the power spectral density of acceleration over the prior depth [1/s^1.5], until both are estimated: with an
-// unknown scale only their ratio matters.
-constexpr double kAccelerationPerDepth = 0.625;
-
-constexpr int kProvingMatches = 5;
-
 struct TrackSettings {
   vo::Params params;
-  PriorSettings prior{PriorSettings::Start::origin, 0.5, 0.5};
+  PriorSettings prior = kPriorOfImagesAlone;
   std::string resolved;
 };
 

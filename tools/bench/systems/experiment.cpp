@@ -34,15 +34,21 @@ void ReadOdometry(settings::Section section, vo::Params& params) {
 void ReadPrior(settings::Section section, PriorSettings& prior) { settings::ReadFields(section, prior); }
 
 const Overrides& SettingsOfImagesAlone() {
-  static const Overrides settings = {{"prior",
-                                      "{start: origin, velocity_sigma: 0.5, angular_rate_sigma: 0.5, "
-                                      "focal_error: 0, shutter_known: false}"},
-                                     {"odometry.motion", "{position_noise: 2.5, orientation_noise: 1, adaptive: true}"},
-                                     {"odometry.landmark.inverse_depth", "0.25"},
-                                     {"odometry.landmark.inverse_depth_sigma", "0.15"},
-                                     {"odometry.landmark.scale_sigma", "0.5"},
-                                     {"odometry.landmark.proving_matches", "5"},
-                                     {"odometry.calibration.estimate", "true"}};
+  static const Overrides settings = [] {
+    const vo::Params defaults;
+    const double inverse_depth = defaults.landmark.inverse_depth;
+    return Overrides{
+        {"prior", fmt::format("{{start: origin, velocity_sigma: {}, angular_rate_sigma: {}, focal_error: 0, "
+                              "shutter_known: false}}",
+                              kPriorOfImagesAlone.velocity_sigma, kPriorOfImagesAlone.angular_rate_sigma)},
+        {"odometry.motion", fmt::format("{{position_noise: {}, orientation_noise: {}, adaptive: true}}",
+                                        kAccelerationPerDepth / inverse_depth, defaults.motion.orientation_noise)},
+        {"odometry.landmark.inverse_depth", fmt::format("{}", inverse_depth)},
+        {"odometry.landmark.inverse_depth_sigma", fmt::format("{}", defaults.landmark.inverse_depth_sigma)},
+        {"odometry.landmark.scale_sigma", fmt::format("{}", kUnknownScale)},
+        {"odometry.landmark.proving_matches", fmt::format("{}", kProvingMatches)},
+        {"odometry.calibration.estimate", "true"}};
+  }();
   return settings;
 }
 

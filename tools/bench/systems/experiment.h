@@ -51,8 +51,16 @@ struct Experiment {
   std::string resolved;  // all of it, defaults included: JSON, which is a scenario again
 };
 
-// Settings of ours that know images and calibration alone, as `track` does: no start, no noise that suits the motion, no
-// shutter.
+// What ours starts from where it knows images alone, as in `track`.
+inline constexpr PriorSettings kPriorOfImagesAlone{PriorSettings::Start::origin, 0.5, 0.5};
+inline constexpr double kUnknownScale = 0.5;  // of a recording: the size of its scene is not known
+// Root of the power spectral density of acceleration over the prior depth [1/s^1.5], until both are estimated: with an
+// unknown scale only their ratio matters.
+inline constexpr double kAccelerationPerDepth = 0.625;
+inline constexpr int kProvingMatches = 5;
+
+// Settings of ours that know images and calibration alone, as `track` does: no start, no noise that suits the motion,
+// no shutter.
 const Overrides& SettingsOfImagesAlone();
 
 // The camera that the odometry is given: the scenario's with its rolling shutter, but for prior.focal_error and
