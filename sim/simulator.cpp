@@ -13,6 +13,7 @@
 #include "sim/motion/trajectory.h"
 #include "sim/random/random.h"
 #include "sim/render/rasteriser.h"
+#include "sim/render/ray_scene.h"
 #include "sim/render/ray_tracer.h"
 #include "sim/render/scene_surroundings.h"
 #include "sim/render/surface_tracer.h"
@@ -41,8 +42,7 @@ double LongestExposure(const SensorParams& s) {
 
 // What an object is sampled with, where its motion is sampled: no other object's noise, nor the camera's.
 std::uint64_t ObjectSeed(std::uint64_t seed, std::size_t object) {
-  const Words words = RandomWords(seed, Stream::object_motion, static_cast<std::uint32_t>(object), 0, 0);
-  return (std::uint64_t{words[0]} << 32) | words[1];
+  return SeedOf(RandomWords(seed, Stream::object_motion, static_cast<std::uint32_t>(object), 0, 0));
 }
 
 // What shines by mirroring and is shown as if it did not.
@@ -58,8 +58,9 @@ void WarnOfGloss(const Scene& scene, const RenderParams& params, std::vector<std
       std::string(": metal and gloss are Lambert surfaces of their base colour: ") + names);
 }
 
+// `rays` are of this scene; the rasteriser leaves them.
 std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& params, int jobs,
-                                       std::vector<std::string>& warnings) {
+                                       std::unique_ptr<RayScene>& rays, std::vector<std::string>& warnings) {
   WarnOfGloss(scene, params, warnings);
   if (params.engine == Engine::rasteriser) {
     auto renderer = MakeRasteriser(scene, {.rays_per_time_sample = params.rays_per_time_sample}, &warnings);
@@ -68,8 +69,8 @@ std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& p
           "rasteriser: there is no baked light: render.light is taken as direct, with ambient light for what bounces");
     return renderer;
   }
-  auto rays = tbb::task_arena(jobs).execute(
-      [&] { return LitScene(scene, params.light, params.bake, params.light_folders, warnings); });
+  tbb::task_arena(jobs).execute(
+      [&] { AddLight(scene, params.light, params.bake, params.light_folders, *rays, warnings); });
   return MakeRayTracer(
       scene, std::move(rays),
       {.rays_per_time_sample = params.rays_per_time_sample, .jobs = jobs, .reflections = params.reflections});
@@ -120,8 +121,7 @@ std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& s) {
   if (s.points || !NeedsSurroundings(s.motion)) return MakeMotion(s, s.motion, s.seed);
   Scene scene = LoadScene(s.world);
   scene.objects.clear();  // they are not asked about
-  const auto rays = MakeRayTracer(scene, {.jobs = 1});
-  return MakeMotion(s, s.motion, s.seed, SurroundingsOf(scene, *rays->surfaces()).get());
+  return MakeMotion(s, s.motion, s.seed, SurroundingsOf(scene, RayScene(scene)).get());
 }
 
 struct Simulator::Parts {
@@ -139,19 +139,12 @@ struct Simulator::Parts {
     }
     warnings = scene.warnings;
     extent = ExtentOf(scene);
-    // A path that cannot be is refused before light is baked.
-    const bool bakes = s.render.engine == Engine::ray_tracer && s.render.light != LightMode::direct;
-    if (!bakes) renderer = MakeRenderer(scene, s.render, Threads(jobs), warnings);
-    if (bakes || renderer->surfaces() == nullptr) exact = MakeRayTracer(scene, {.jobs = Threads(jobs)});
-    {
-      const auto around = SurroundingsOf(scene, surfaces());
-      trajectory = MakeMotion(s, s.motion, s.seed, around.get());
-      RequireFree(*trajectory, LastStamp(s), *around, [&s](double t_s) { return s.sensor.IsCovered(t_s); });
-    }
-    if (bakes) {
-      exact.reset();  // the renderer has its own
-      renderer = MakeRenderer(scene, s.render, Threads(jobs), warnings);
-    }
+    auto rays = arena.execute([&] { return std::make_unique<RayScene>(scene); });
+    const auto around = SurroundingsOf(scene, *rays);
+    trajectory = MakeMotion(s, s.motion, s.seed, around.get());
+    RequireFree(*trajectory, LastStamp(s), *around, [&s](double t_s) { return s.sensor.IsCovered(t_s); });
+    renderer = MakeRenderer(scene, s.render, Threads(jobs), rays, warnings);
+    if (rays) exact = MakeRayTracer(scene, std::move(rays), {.jobs = Threads(jobs)});
     for (const Mesh& mesh : scene.meshes) mesh_names.push_back(mesh.name);
     for (const Light& light : scene.lights) {
       const auto* rect = std::get_if<RectLight>(&light);
@@ -162,8 +155,6 @@ struct Simulator::Parts {
     }
     if (s.sensor.auto_exposure.on) Meter();
   }
-
-  const SurfaceTracer& surfaces() const { return *(exact ? exact : renderer)->surfaces(); }
 
   // The settings of all frames, each metered on the frame before it at 1/8 of the resolution, one ray per pixel.
   void Meter() {
@@ -202,8 +193,7 @@ struct Simulator::Parts {
   }
 
   std::uint64_t FrameKey(std::int64_t index) const {
-    const Words words = RandomWords(scenario.seed, Stream::ray_jitter, static_cast<std::uint32_t>(index), 0, 0);
-    return (std::uint64_t{words[0]} << 32) | words[1];
+    return SeedOf(RandomWords(scenario.seed, Stream::ray_jitter, static_cast<std::uint32_t>(index), 0, 0));
   }
 
   Scenario scenario;
@@ -231,7 +221,9 @@ const Camera& Simulator::camera() const { return parts_->optics.camera; }
 const Scenario& Simulator::scenario() const { return parts_->scenario; }
 const std::vector<std::string>& Simulator::warnings() const { return parts_->warnings; }
 const Trajectory& Simulator::trajectory() const { return *parts_->trajectory; }
-const SurfaceTracer& Simulator::surfaces() const { return parts_->surfaces(); }
+const SurfaceTracer& Simulator::surfaces() const {
+  return *(parts_->exact ? parts_->exact : parts_->renderer)->surfaces();
+}
 const WorldExtent& Simulator::extent() const { return parts_->extent; }
 const std::vector<std::string>& Simulator::mesh_names() const { return parts_->mesh_names; }
 

@@ -210,12 +210,17 @@ BakedLight CachedLight(const Scene& scene, const RayScene& rays, LightMode mode,
   return light;
 }
 
+void AddLight(const Scene& scene, LightMode mode, const BakeParams& params, const std::vector<fs::path>& folders,
+              RayScene& rays, std::vector<std::string>& warnings) {
+  if (mode == LightMode::direct) return;
+  rays.SetLight(CachedLight(scene, rays, mode, params, folders, warnings));
+  for (std::string& warning : BakeWarnings(scene, rays, mode, params)) warnings.push_back(std::move(warning));
+}
+
 std::unique_ptr<RayScene> LitScene(const Scene& scene, LightMode mode, const BakeParams& params,
                                    const std::vector<fs::path>& folders, std::vector<std::string>& warnings) {
   auto rays = std::make_unique<RayScene>(scene);
-  if (mode == LightMode::direct) return rays;
-  rays->SetLight(CachedLight(scene, *rays, mode, params, folders, warnings));
-  for (std::string& warning : BakeWarnings(scene, *rays, mode, params)) warnings.push_back(std::move(warning));
+  AddLight(scene, mode, params, folders, *rays, warnings);
   return rays;
 }
 

@@ -32,8 +32,11 @@ BakedLight ReadLight(const std::filesystem::path& file, const LightHash& hash);
 BakedLight CachedLight(const Scene& scene, const RayScene& rays, LightMode mode, const BakeParams& params,
                        const std::vector<std::filesystem::path>& folders, std::vector<std::string>& warnings);
 
-// Scene tables of the ray tracer with the light of CachedLight; without, where `mode` is direct. Appends BakeWarnings
+// Gives the ray tracer's tables of the scene the light of CachedLight; none, where `mode` is direct. Appends BakeWarnings
 // too. Parallel in the caller's task arena.
+void AddLight(const Scene& scene, LightMode mode, const BakeParams& params,
+              const std::vector<std::filesystem::path>& folders, RayScene& rays, std::vector<std::string>& warnings);
+// New tables with it.
 std::unique_ptr<RayScene> LitScene(const Scene& scene, LightMode mode, const BakeParams& params,
                                    const std::vector<std::filesystem::path>& folders,
                                    std::vector<std::string>& warnings);

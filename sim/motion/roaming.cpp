@@ -186,8 +186,7 @@ std::vector<KeyPose> Drive(const RoamingMotion& m, const Pose& start, std::uint6
 }
 
 std::uint64_t Attempt(std::uint64_t seed, std::uint32_t attempt) {
-  const Words words = RandomWords(seed, Stream::gait_attempt, attempt, 0, 0);
-  return (std::uint64_t{words[0]} << 32) | words[1];
+  return SeedOf(RandomWords(seed, Stream::gait_attempt, attempt, 0, 0));
 }
 
 }  // namespace

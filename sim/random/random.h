@@ -51,6 +51,9 @@ inline Words RandomWords(std::uint64_t seed, Stream stream, std::uint32_t frame,
   return {words[0], words[1], words[2], words[3]};
 }
 
+// A seed for what is drawn apart.
+inline std::uint64_t SeedOf(const Words& words) { return (std::uint64_t{words[0]} << 32) | words[1]; }
+
 // In (0, 1), never 0 or 1, with 32 bits.
 inline double Uniform(std::uint32_t word) { return (word + 0.5) * 0x1p-32; }
 // The same with 53 bits.

@@ -133,8 +133,8 @@ class SceneSurroundings : public Surroundings {
 
 }  // namespace
 
-std::unique_ptr<Surroundings> SurroundingsOf(const Scene& scene, const SurfaceTracer& surfaces) {
-  return std::make_unique<SceneSurroundings>(scene, surfaces.rays());
+std::unique_ptr<Surroundings> SurroundingsOf(const Scene& scene, const RayScene& rays) {
+  return std::make_unique<SceneSurroundings>(scene, rays);
 }
 
 }  // namespace sim

@@ -4,12 +4,12 @@
 #include <memory>
 
 #include "sim/motion/surroundings.h"
-#include "sim/render/surface_tracer.h"
+#include "sim/render/ray_scene.h"
 #include "sim/world/scene.h"
 
 namespace sim {
 
-// Both must outlive it; the tracer is of this scene.
-std::unique_ptr<Surroundings> SurroundingsOf(const Scene& scene, const SurfaceTracer& surfaces);
+// Both must outlive it; `rays` are of this scene.
+std::unique_ptr<Surroundings> SurroundingsOf(const Scene& scene, const RayScene& rays);
 
 }  // namespace sim

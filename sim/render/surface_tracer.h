@@ -47,7 +47,6 @@ class SurfaceTracer {
   glm::dvec3 Normal(std::uint32_t triangle) const;
   // Index of the triangle's mesh in Scene::meshes; lamps and then objects' meshes count on behind them.
   std::uint32_t MeshOf(std::uint32_t triangle) const;
-  const RayScene& rays() const { return scene_; }
 
  private:
   template <class Function>

@@ -10,7 +10,6 @@
 #include <random>
 
 #include "sim/motion/path.h"
-#include "sim/render/ray_tracer.h"
 #include "sim/render/scene_surroundings.h"
 #include "sim/simulator.h"
 #include "tests/unit/sim/temporary_folder.h"
@@ -73,8 +72,8 @@ class Room : public testing::Test {
 TEST_F(Room, DistancesAndWaysAreThoseOfTheBoxes) {
   const Scenario scenario = Load("{type: handheld}", 1);
   const Scene scene = LoadScene(scenario.world);
-  const auto rays = MakeRayTracer(scene, {.jobs = 1});
-  const auto surroundings = SurroundingsOf(scene, *rays->surfaces());
+  const RayScene rays(scene);
+  const auto surroundings = SurroundingsOf(scene, rays);
   const Surroundings& around = *surroundings;
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> share(0, 1);
@@ -98,8 +97,8 @@ TEST_F(Room, DistancesAndWaysAreThoseOfTheBoxes) {
 TEST_F(Room, InterestIsWhereAlbedosDiffer) {
   const Scenario scenario = Load("{type: handheld}", 1);
   const Scene scene = LoadScene(scenario.world);
-  const auto rays = MakeRayTracer(scene, {.jobs = 1});
-  const auto around = SurroundingsOf(scene, *rays->surfaces());
+  const RayScene rays(scene);
+  const auto around = SurroundingsOf(scene, rays);
   EXPECT_GT(around->Interest({{1, 1.5, 4}, glm::dquat(std::sqrt(0.5), 0, std::sqrt(0.5), 0)}), 0.01) << "the pillar";
   EXPECT_EQ(around->Interest({{4, 1.5, 20}, glm::dquat(1, 0, 0, 0)}), 0) << "away from everything";
 }
