@@ -29,8 +29,8 @@ struct Frame {
   Truth truth;
 };
 
-// Trajectory of the camera of a scenario, without a simulator: meshes are read only where it keeps clear of them. Throws
-// as MakeTrajectory and LoadScene do.
+// Trajectory of the camera of a scenario, without a simulator: meshes are read only where it keeps clear of them.
+// Throws as MakeTrajectory and LoadScene do.
 std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& scenario);
 
 // Bounding box of what stands still, in W [m]; triangles; textures in memory.
@@ -43,8 +43,8 @@ class Simulator {
  public:
   // Loads the world and the trajectory. At most `jobs` threads work in one call; their number never changes a result.
   // Throws SceneError, settings::Error or std::runtime_error naming the files at fault; std::invalid_argument for a
-  // scenario whose values contradict each other (one from LoadScenario has been checked), for a camera that passes through
-  // a surface (sim/motion/placement.h), and for jobs < 1.
+  // scenario whose values contradict each other (one from LoadScenario has been checked), for a camera that passes
+  // through a surface (sim/motion/placement.h), and for jobs < 1.
   Simulator(const Scenario& scenario, int jobs);
   ~Simulator();
   Simulator(Simulator&&) noexcept;

@@ -14,9 +14,9 @@ namespace sim {
 
 std::string FormatPlace(const glm::dvec3& p);  // "(1.2, 0.8, -3) m"
 
-// Where the first of some poses lies when all are moved rigidly to where they keep `clearance`, in this order: of 20 000
-// random places and headings the one, among the first 40 that are free and indoors, from which most is seen; enclosed, and with
-// a surface within 2.5 m below the middle. That axis of the poses' own frame that is nearest to the cameras' mean upward
+// Where the first of some poses lies when all are moved rigidly to where they keep `clearance`: of 20 000 random places
+// and headings the one, among the first 40 that are free and indoors, from which most is seen; enclosed, and with a
+// surface within 2.5 m below the middle. That axis of the poses' own frame that is nearest to the cameras' mean upward
 // direction becomes +y. Throws std::invalid_argument when none is free.
 Pose FreePlaceOf(std::vector<Pose> poses, double clearance, const Surroundings& around, std::uint64_t seed);
 

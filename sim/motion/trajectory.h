@@ -33,8 +33,8 @@ class Trajectory {
 // A trajectory for stamps from 0 to last_stamp_s, each with `margin_s` around it. Within the margin of the first and
 // last stamp a scripted or recorded motion may be extrapolated at constant velocity; a sampled one before the first
 // only, so that a longer scenario begins with the same frames. `around` is asked by motions that keep clear of surfaces
-// (sim/motion/roaming.h) or are placed in a world; null: there are none. Throws std::invalid_argument and settings::Error, as the
-// constructors of the trajectories do.
+// (sim/motion/roaming.h) or are placed in a world; null: there are none. Throws std::invalid_argument and
+// settings::Error, as the constructors of the trajectories do.
 std::unique_ptr<Trajectory> MakeTrajectory(const MotionDescription& motion, std::uint64_t seed, double last_stamp_s,
                                            double margin_s, const Surroundings* around = nullptr);
 // Whether it asks.

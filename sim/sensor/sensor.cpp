@@ -30,8 +30,8 @@ float Poisson(float mean, double u) {
   return static_cast<float>(count);
 }
 
-// RandomWords of samples in a row, one after the other in pixels of `per_pixel` samples, in passes of which the compiler
-// makes vector code.
+// RandomWords of samples in a row, one after the other in pixels of `per_pixel` samples, in passes of which the
+// compiler makes vector code.
 struct NoiseWords {
   static constexpr std::size_t kCount = 256;
   alignas(64) std::array<std::array<std::uint32_t, kCount>, 4> word;

@@ -21,8 +21,8 @@ std::string Distortion(const CameraParams& c) {
   return "{" + radial + ", p1: " + number(c.p1) + ", p2: " + number(c.p2) + ", k3: " + number(c.k3) + "}";
 }
 
-// ---- TUM RGB-D; the lists of depth and other truth are with their streams (sim/sequence/streams.h). rgb.txt begins
-// with three comments, as TUM's does: readers skip so many lines, whatever they hold.
+// ---- TUM RGB-D; the lists of depth and other truth are with their streams (sim/sequence/streams.h). rgb.txt has a
+// header of three lines, as TUM's: ORB-SLAM's mono_tum skips three lines without reading them.
 
 std::vector<StreamFile> TumLists(Frames frames) {
   std::string rgb = "# color images\n# made by vobench\n# timestamp filename\n",

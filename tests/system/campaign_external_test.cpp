@@ -76,8 +76,9 @@ std::map<std::string, Row> BySystem(const std::string& csv) {
 
 TEST_F(CampaignTest, ExternalOutcomesAreResults) {
   WriteFile(here_ / "systems.yaml", Systems());
-  const std::string text =
-      CampaignOf("[{name: rb2pf, knows: scenario}, ours, euroc, images, frames_lost, crashes, gives_up, hangs, silent, nonsense, elsewhere]");
+  const std::string text = CampaignOf(
+      "[{name: rb2pf, knows: scenario}, ours, euroc, images, frames_lost, crashes, gives_up, hangs, "
+      "silent, nonsense, elsewhere]");
   const Outcome outcome = Run(text, "out");
   ASSERT_EQ(outcome.status, 0) << "nothing of that is an error\n" << outcome.err;
   auto rows = BySystem(Results("out"));

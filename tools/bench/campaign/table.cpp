@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <tuple>
 
 #include "tools/base/text.h"
 #include "tools/bench/text.h"
@@ -162,8 +161,8 @@ std::string Latex(const std::vector<Table>& tables) {
 }
 
 std::string StatusMarkdown(const Campaign& campaign, const std::vector<TaskRecord>& records) {
-  std::map<std::tuple<std::size_t, Status>, std::pair<std::size_t, std::string>>
-      ends;  // by system: how many, first why
+  // By system and status: how many, and the first reason.
+  std::map<std::pair<std::size_t, Status>, std::pair<std::size_t, std::string>> ends;
   bool all_ok = true;
   for (const TaskRecord& record : records) {
     auto& [count, reason] = ends[{ChoiceOf(campaign, record.task).system, record.status}];
@@ -173,8 +172,8 @@ std::string StatusMarkdown(const Campaign& campaign, const std::vector<TaskRecor
   if (all_ok) return "";
   std::vector<TextRow> rows = {{"system", "runs", "ended", "the first: why"}};
   for (const auto& [at, what] : ends) {
-    const SystemEntry& system = campaign.systems[std::get<0>(at)];
-    rows.push_back({Label(system.external, system.name), fmt::format("{}", what.first), Name(std::get<1>(at)),
+    const SystemEntry& system = campaign.systems[at.first];
+    rows.push_back({Label(system.external, system.name), fmt::format("{}", what.first), Name(at.second),
                     what.second.empty() ? "-" : what.second});
   }
   return "\n### How the runs ended\n\n" + MarkdownRows(rows, 1);
