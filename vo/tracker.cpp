@@ -103,7 +103,8 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
   ++frames_;
   const auto associate = [&](const MotionInput& input) {
     since_update_.input = input;
-    return Associate(filter_, records_, camera_, frame, border_px_, since_update_, params_);  // line 3: section 7
+    return Associate(filter_, records_, camera_, frame, border_px_, since_update_, params_,
+                     noise_level_.value());  // line 3: section 7
   };
   Association association;
   if (params_.motion.adaptive) {
@@ -126,6 +127,7 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
   Update(association.matches);  // lines 4-11: (15)-(17), (37)-(43)
   start_.Add(frame.frame.stamp_ns, filter_.answer(), scale_);
   UpdateScores(association, params_.score, records_);  // section 6: (44)-(49)
+  noise_level_.Learn(association);
   path_length_ += (filter_.belief().pose.p_WC - previous).norm();
   for (const Match& match : association.matches) records_[match.landmark].path_length = path_length_;
   diagnostics.searched = static_cast<int>(association.searched.size());
@@ -187,7 +189,7 @@ std::optional<PathCorrection> Tracker::Relocalise(const PreparedFrame& frame, co
   constexpr double kOlder = 0.1;       // of the matches: they tie the path to the part of the map that was recognised
   constexpr double kDrift = 0.1;       // most of the path since then, where the prediction has not failed
   constexpr double kDisplaced_px = 4;  // median, below which the ordinary search finds them
-  if (filter_.answer().initialising || params_.filter.lag > 0) return std::nullopt;
+  if (filter_.answer().initialising) return std::nullopt;
   if (!failed && frames_ % kEvery != 0) return std::nullopt;
   std::vector<int> unseen;
   for (std::size_t n = 0; n < records_.size(); ++n)
@@ -290,11 +292,10 @@ FirstView Tracker::AddRecord(const NewFeature& feature, const PreparedFrame& fra
   views_.push_back(
       {record.id, pixel, pixel, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
   FirstView view = FirstSeen(shutter_.Row(pixel), filter_.belief().pose, velocity);
-  // Later views are registered to the patch of the first, which thus defines the landmark: only the floor of the
-  // noise is left.
-  const double sigma_px =
-      params_.features.noise != MatchNoise::constant ? params_.features.sigma_floor_px : params_.features.sigma_px;
-  view.R = PixelNoise(camera_.LensJacobian(view.ray), sigma_px);
+  // Later views are registered to the patch of the first: its error is that of the point that the patch follows.
+  const FeatureParams& features = params_.features;
+  view.R = PixelNoise(camera_.LensJacobian(view.ray),
+                      features.noise != MatchNoise::constant ? features.first_view_px : features.sigma_px);
   view.depth = feature.depth ? feature.depth : typical_depth_;
   return view;
 }

@@ -81,6 +81,7 @@ class Tracker {
   Matrix6 pose_before_loss_ = Matrix6::Zero(), known_before_loss_ = Matrix6::Zero();
   std::optional<std::int64_t> last_stamp_ns_;
   SinceUpdate since_update_;
+  NoiseLevel noise_level_;
   AdaptiveAssociation adaptive_;
   Relocaliser relocaliser_;
   std::optional<KnownDepth> typical_depth_;

@@ -157,14 +157,16 @@ enum class BriskWarp {
 enum class MatchNoise {
   constant,    // sigma_px for all
   registered,  // of a registered match: sigma_floor_px, and the registration's least-squares covariance * noise_inflation
-  adaptive,    // the same times a factor from each landmark's own residuals
+  adaptive,    // the same and a random walk, times a factor from each landmark's own residuals
 };
 
 struct FeatureParams {
   double sigma_px = 0.7;  // the paper, to whole pixels: 2
   MatchNoise noise = MatchNoise::adaptive;
-  double sigma_floor_px = 0.2;
-  double noise_inflation = 4;
+  double first_view_px = 0.2;
+  double sigma_floor_px = 0.05;
+  double noise_inflation = 1;
+  double wander_px = 0.02;
   int grid_columns = 8, grid_rows = 6;
   int per_cell = 3;
   int fast_threshold_start = 60;  // grey levels
@@ -193,8 +195,12 @@ void Visit(V& v, FeatureParams& p) {
   v("noise", p.noise,
     {{"constant", MatchNoise::constant}, {"registered", MatchNoise::registered}, {"adaptive", MatchNoise::adaptive}},
     "covariance of a match: `sigma`; from its registration; that times a factor from the landmark's residuals");
-  v("sigma_floor", p.sigma_floor_px, {Unit::pixel, Range::Positive(), "of a first view; least of a registered match"});
+  v("first_view_sigma", p.first_view_px,
+    {Unit::pixel, Range::Positive(), "of a landmark's place in its first view, where matches are registered to it"});
+  v("sigma_floor", p.sigma_floor_px, {Unit::pixel, Range::Positive(), "least of a registered match"});
   v("noise_inflation", p.noise_inflation, {Range::AtLeast(0), "factor on the registration's covariance"});
+  v("wander", p.wander_px,
+    {Unit::pixel, Range::AtLeast(0), "random walk, from match to match, of what a patch follows; `adaptive` alone"});
   v("grid_columns", p.grid_columns, {Range::AtLeast(1), "cells of the grid on which corners are detected"});
   v("grid_rows", p.grid_rows, {Range::AtLeast(1), "the same"});
   v("per_cell", p.per_cell, {Range::AtLeast(1), "corners wanted in each cell"});

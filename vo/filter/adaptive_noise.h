@@ -9,9 +9,11 @@
 
 namespace vo {
 
-// r of position and of orientation.
+// r of position and of orientation, and the share K = tr(P_predicted - P) / tr P_predicted of the prediction's variance
+// that the frame has taken away.
 struct InnovationRatios {
   double position = 0, orientation = 0;
+  double position_gain = 1, orientation_gain = 1;
 };
 InnovationRatios RatiosOf(const PoseGaussian& predicted, const PoseGaussian& updated);
 
@@ -20,14 +22,17 @@ class AdaptiveNoise {
   AdaptiveNoise();
   // What a prediction takes: the estimates times a margin.
   MotionInput Input() const;
-  // Slow mean of what the frames show, bounded below by the noise of MotionParams; `used`: the input of the prediction.
+  // Mean of what the frames show, slow after the first ones; `used`: the input of the prediction.
   void Learn(const InnovationRatios& ratios, const MotionInput& used);
 
  private:
   double position_, orientation_;
+  int frames_ = 0;
 };
 
-// The input of a failed prediction with its noise multiplied by what the frame shows.
+// The input of a failed prediction with its noise, at least that of MotionParams, multiplied by what the frame shows.
 MotionInput Widened(const MotionInput& used, const InnovationRatios& ratios);
+// The input of a prediction whose noise the frame shows to be too small, multiplied by what it shows; none elsewhere.
+std::optional<MotionInput> AsShown(const MotionInput& used, const InnovationRatios& ratios);
 
 }  // namespace vo

@@ -83,6 +83,8 @@ const FilterAnswer& Algorithm1::SampleStep(std::span<const Match> matches) {
                            Matrix6::Zero()};
     const double log_likelihood = UpdateLandmarks(i, s, z);  // 9, (3)
     UpdateProvisional(i, s);
+    for (const Match& match : matches)
+      particle.landmarks[match.landmark].covariance.topLeftCorner<2, 2>() += match.wander;
     particle.log_weight += params.weight == Weight::evidence  // 8
                                ? proposal.log_evidence
                                : predicted.LogDensity(s) + log_likelihood - proposal.pose.LogDensity(s);  // (17)

@@ -1,35 +1,52 @@
 #include "vo/filter/fixed_lag.h"
 
+#include <tuple>
+#include <utility>
+
 namespace vo {
 
 void FixedLag::Predict(double dt, const MotionInput& input) {
   BeginFrame();
+  uncorrected_.reset();
   ExtendPaths(dt, input);
-  extended_.resize(particles_.size());
-  for (std::size_t i = 0; i < particles_.size(); ++i) extended_[i] = particles_[i].solution;
-  SolveAgain();
+  SetReference();
 }
 
 void FixedLag::PredictAgain(const MotionInput& input) {
-  for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].solution = extended_[i];
+  if (uncorrected_) {
+    std::tie(window_, particles_) = std::move(*uncorrected_);
+    uncorrected_.reset();
+    prior_.reset();
+  }
   ExtendPaths(0, input);
-  SolveAgain();
+  if (input.correction) Correct(*input.correction);
+  SetReference();
 }
 
-void FixedLag::SolveAgain() {
-  if (!answer_.initialising)  // the poses sampled since have changed the rest
-    for (std::size_t i = 0; i < particles_.size(); ++i) Solve(i, Options(false));
-  SetReferenceLandmarks();
+// The window moves as a whole. What it has seen of landmarks that stay where they are no longer fits.
+void FixedLag::Correct(const PathCorrection& correction) {
+  uncorrected_.emplace(window_, particles_);
+  Correction motion{{}, correction.first_landmark};
+  for (const Particle& particle : particles_.particles())
+    motion.motions.push_back(correction.pose * Inverse(particle.solution.path.mean.back()));
+  Move(motion);
+  for (std::size_t i = 0; i < particles_.size(); ++i) vo::Move(motion.motions[i], particles_[i].solution.path);
+  window_.KeepMatchesOf(MovingAnchors(correction.first_landmark), table_);
+  SetPrior();
+  SolveAll();
 }
 
 const FilterAnswer& FixedLag::Update(std::span<const Match> z) {
   if (!z.empty()) {
     window_.SetMatches(z, table_);
     AddEvidence(-1);
-    for (std::size_t i = 0; i < particles_.size(); ++i) Solve(i, Options(answer_.initialising));
-    if (answer_.initialising)
+    if (!answer_.initialising) {
+      SolveAll();
+    } else {
+      for (std::size_t i = 0; i < particles_.size(); ++i) Solve(i, Options(true));
       for (std::size_t i = 0; i < particles_.size(); ++i)
         Challenge(i, static_cast<std::uint32_t>(i) + frame_, Options(true));
+    }
     AddEvidence(1);
     for (const Particle& particle : particles_) answer_.events += particle.solution.path.events;
   }
@@ -37,7 +54,16 @@ const FilterAnswer& FixedLag::Update(std::span<const Match> z) {
   const int count = window_.size() - settings_.filter.lag;
   if (count > 0) answer_.initialising = false;
   SampleOldest(count);
+  if (!answer_.initialising && window_.size() > 0) SolveRest();
   return answer_;
+}
+
+// The poses sampled have changed the rest. Landmarks that are alike have followed them, evidence has not.
+void FixedLag::SolveRest() {
+  SetPrior();
+  if (alike_.empty()) return SolveAll();
+  for (std::size_t i = 0; i < alike_.size(); ++i)
+    if (!alike_[i]) Solve(i, Options(false));
 }
 
 }  // namespace vo

@@ -11,7 +11,7 @@ class FixedLag final : public WindowPhase {
  public:
   FixedLag(const ParticleFilterSettings& settings, const FilterPrior& prior) : WindowPhase(settings, prior) {}
   // Goes on with the window and the solutions of a finished initialisation.
-  explicit FixedLag(WindowPhase&& finished) : WindowPhase(std::move(finished)) {}
+  explicit FixedLag(WindowPhase&& finished) : WindowPhase(std::move(finished)) { SolveRest(); }
 
   void Predict(double dt, const MotionInput& input = {}) override;
   void PredictAgain(const MotionInput& input) override;
@@ -21,9 +21,10 @@ class FixedLag final : public WindowPhase {
   std::span<const double> SolutionWeights() const override { return particles_.weights(); }
 
  private:
-  void SolveAgain();
+  void Correct(const PathCorrection& correction);
+  void SolveRest();
 
-  std::vector<PathSolution> extended_;  // by the last prediction, before it was solved again
+  std::optional<std::pair<Window, ParticleSet>> uncorrected_;  // to undo a correction until the update
 };
 
 }  // namespace vo

@@ -7,7 +7,6 @@
 
 #include "vo/filter/algorithm1.h"
 #include "vo/filter/fixed_lag.h"
-#include "vo/geometry/covariance.h"
 
 namespace vo {
 namespace {
@@ -18,30 +17,18 @@ constexpr double kObjectiveSettled = 0.1;  // change of -2 log p
 constexpr double kStartToleranceSigma = 0.1;
 constexpr double kGatePerMeasurement = 9.21 / 2;  // 99 % of chi-squared with two degrees of freedom
 
-// The solution as seen from another start.
-void Transform(const Pose& from, const Pose& to, PathGaussian& path) {
-  const Eigen::Quaterniond turn = to.q_WC * from.q_WC.conjugate();
-  for (Pose& pose : path.mean) pose = {to.p_WC + turn * (pose.p_WC - from.p_WC), (turn * pose.q_WC).normalized()};
-  const Eigen::Matrix3d R = turn.toRotationMatrix();
-  for (Eigen::Index k = 0; k < path.covariance.rows(); k += kPoseSize) {  // of each pose, dp is in W
-    path.covariance.middleRows<3>(k) = (R * path.covariance.middleRows<3>(k)).eval();
-    path.covariance.middleCols<3>(k) = (path.covariance.middleCols<3>(k) * R.transpose()).eval();
-  }
-  Symmetrise(path.covariance);
-}
-
 }  // namespace
 
 void Initialisation::Predict(double dt, const MotionInput& input) {
   BeginFrame();
   ExtendPaths(dt, input);
   if (static_cast<int>(answered_.size()) == window_.size()) answered_.pop_back();  // its pose was integrated out
-  SetReferenceLandmarks();
+  SetReference();
 }
 
 void Initialisation::PredictAgain(const MotionInput& input) {
   ExtendPaths(0, input);
-  SetReferenceLandmarks();
+  SetReference();
 }
 
 const FilterAnswer& Initialisation::Update(std::span<const Match> z) {
@@ -140,7 +127,7 @@ void Initialisation::ChallengeInTurn() {
 void Initialisation::ShareSolution() {
   for (std::size_t i = 1; i < particles_.size(); ++i) {
     particles_[i].solution = particles_[0].solution;
-    Transform(particles_[0].pose, particles_[i].pose, particles_[i].solution.path);
+    vo::Move(particles_[i].pose * Inverse(particles_[0].pose), particles_[i].solution.path);
     particles_[i].landmarks = particles_[0].landmarks;
     window_.PlaceAnchors(particles_[i].solution.path, particles_[i].anchors);
   }

@@ -46,11 +46,16 @@ std::vector<int> ParticlePhase::CompactLandmarks(const std::vector<bool>& keep) 
   return table_.Keep(keep);
 }
 
-void ParticlePhase::Move(const Correction& correction) {
-  const int first = correction.first_landmark;
+std::vector<bool> ParticlePhase::MovingAnchors(int first_landmark) const {
   std::vector<bool> moves(static_cast<std::size_t>(table_.anchor_count()), false);
-  for (int n = first; n < table_.size(); ++n)
-    if (first == 0 || table_.anchor_of(n) != table_.anchor_of(first - 1)) moves[table_.anchor_of(n)] = true;
+  for (int n = first_landmark; n < table_.size(); ++n)
+    if (first_landmark == 0 || table_.anchor_of(n) != table_.anchor_of(first_landmark - 1))
+      moves[table_.anchor_of(n)] = true;
+  return moves;
+}
+
+void ParticlePhase::Move(const Correction& correction) {
+  const std::vector<bool> moves = MovingAnchors(correction.first_landmark);
   const Eigen::Matrix3d R = correction.motions[particles_.Heaviest()].q_WC.toRotationMatrix();
   Matrix6 P = particles_[0].velocity.covariance;  // v is in W, w in C
   P.topRows<3>() = R * P.topRows<3>();

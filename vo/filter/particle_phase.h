@@ -60,6 +60,7 @@ class ParticlePhase : public Filter {
     int first_landmark = 0;
   };
   void Move(const Correction& correction);
+  std::vector<bool> MovingAnchors(int first_landmark) const;
   void Resample() { particles_.Resample(Uniform(Key(Stream::resampling, 0), 0)); }
   // Counts replaced particles, and copies their components of the mixture.
   void Record(const ParticleSet::Replacement& replaced);

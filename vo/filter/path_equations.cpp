@@ -1,6 +1,7 @@
 #include "vo/filter/path_equations.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -16,49 +17,61 @@ using Matrix62 = Eigen::Matrix<double, 6, 2>;
 
 }  // namespace
 
+double SetPriorGradient(const PathPrior& prior, const WindowInput& in, const PathGaussian& path,
+                        const Eigen::MatrixXd& J, Eigen::VectorXd& b) {
+  const int m = prior.size();
+  Eigen::VectorXd r(J.rows()), d(J.rows());
+  for (int k = 0; k < m; ++k) r.segment<6>(kPoseSize * k) = StepTo(k, path, in.start) - prior.MeanStep(k, in.velocity);
+  d.noalias() = prior.precision() * r;
+  b.setZero(J.rows());
+  for (int k = 0; k < m; ++k) {
+    const auto J_k = J.middleRows<6>(kPoseSize * k);
+    const auto d_k = d.segment<6>(kPoseSize * k);
+    if (k > 0) b.segment<6>(kPoseSize * (k - 1)).noalias() -= J_k.leftCols<6>().transpose() * d_k;
+    b.segment<6>(kPoseSize * k).noalias() -= J_k.rightCols<6>().transpose() * d_k;
+  }
+  return r.dot(d);
+}
+
 void PathEquations::Begin(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks) {
   const Eigen::Index size = kPoseSize * prior.size(), count = static_cast<Eigen::Index>(tracks.size());
   A_.resize(size, size);
   b_.resize(size);
-  Y_.resize(size, 6 * count);
+  linear_.Y.resize(size, 6 * count);
   Z_.resize(size, count);
   y_.resize(3 * count);
-  eliminated_.resize(tracks.size());
+  linear_.acting = 3 * std::ranges::count(tracks, false, &Track::provisional);
+  linear_.landmarks.resize(tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i)
-    eliminated_[i].L = SemidefiniteRoot<3>(in.landmarks[tracks[i].landmark].covariance);
+    linear_.landmarks[i].L = SemidefiniteRoot<3>(in.landmarks[tracks[i].landmark].covariance);
 }
 
 void PathEquations::AddPrior(const PathPrior& prior, const WindowInput& in, const PathGaussian& path) {
   const int m = prior.size();
-  Eigen::VectorXd r(b_.size());
-  Eigen::MatrixXd J(b_.size(), 12);  // of the steps u: du_k / d(pose k-1), du_k / d(pose k), per step 6 x 12
+  Eigen::MatrixXd& J = linear_.J;
+  J.setZero(b_.size(), 12);
   log_det_ = -prior.log_det_precision();
   for (int k = 0; k < m; ++k) {
-    const Vector6 u = StepTo(k, path, in.start);
-    r.segment<6>(kPoseSize * k) = u - prior.MeanStep(k, in.velocity);
+    const Eigen::Vector3d turn = StepTo(k, path, in.start).tail<3>();
     auto J_k = J.middleRows<6>(kPoseSize * k);
-    J_k.setZero();
     J_k.topLeftCorner<3, 3>() = -Eigen::Matrix3d::Identity();
-    J_k.block<3, 3>(3, 3) = -InverseRightJacobian(-u.tail<3>());
+    J_k.block<3, 3>(3, 3) = -InverseRightJacobian(-turn);
     J_k.block<3, 3>(0, 6).setIdentity();
-    J_k.block<3, 3>(3, 9) = InverseRightJacobian(u.tail<3>());
-    log_det_ += 2 * LogVolume(u.tail<3>());
+    J_k.block<3, 3>(3, 9) = InverseRightJacobian(turn);
+    log_det_ += 2 * LogVolume(turn);
   }
-  const Eigen::MatrixXd& W = prior.precision();
-  Eigen::VectorXd d(b_.size());
-  d.noalias() = W * r;
-  cost_ = r.dot(d);
+  linear_.views.clear();
+  cost_ = SetPriorGradient(prior, in, path, J, b_);
   behind_camera_ = 0;
-  y_columns_ = y_.size();
+  const Eigen::MatrixXd& W = prior.precision();
   z_columns_ = 0;
-  b_.setZero();
+  marginal_columns_ = 0;
   A_.setZero();
   for (int k = 0; k < m; ++k) {
     const auto J_k = J.middleRows<6>(kPoseSize * k);
     for (int a = k == 0 ? 1 : 0; a < 2; ++a) {  // pose k - 1 (not for the sampled start), pose k
       const int i = k - 1 + a;
       const auto J_a = J_k.middleCols<6>(kPoseSize * a);
-      b_.segment<6>(kPoseSize * i).noalias() -= J_a.transpose() * d.segment<6>(kPoseSize * k);
       for (int l = 0; l < m; ++l) {
         const Matrix6 JW = J_a.transpose() * W.block<6, 6>(kPoseSize * k, kPoseSize * l);
         if (l > 0) A_.block<6, 6>(kPoseSize * i, kPoseSize * (l - 1)).noalias() += JW * J.block<6, 6>(kPoseSize * l, 0);
@@ -71,11 +84,11 @@ void PathEquations::AddPrior(const PathPrior& prior, const WindowInput& in, cons
 void PathEquations::AddTrack(std::size_t index, const WindowInput& in, const Track& track, const PathGaussian& path,
                              const Eigen::Vector3d& theta, bool marginal) {
   const Eigen::Index rows = 3 * static_cast<Eigen::Index>(index);
-  Eliminated& landmark = eliminated_[index];
+  PathLinearisation::Eliminated& landmark = linear_.landmarks[index];
   const Eigen::Matrix3d& L = landmark.L;
   const Pose& anchor = AnchorOn(path, in, track);
   const Eigen::Vector3d off = in.landmarks[track.landmark].mean - theta;
-  auto E = Y_.middleCols<3>(rows);  // coupling of the poses with u
+  auto E = linear_.Y.middleCols<3>(rows);  // coupling of the poses with u
   seen_.clear();
   E.setZero();
   Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
@@ -83,6 +96,7 @@ void PathEquations::AddTrack(std::size_t index, const WindowInput& in, const Tra
   landmark.used = false;
   for (const Track::View& view : track.views) {
     const Projection h = Project(AnchorView(path.mean[view.slot], anchor).ShiftedBy(view.centre_offset_W), theta);
+    PathLinearisation::View& linear = linear_.views.emplace_back();
     if (!h.in_front) {
       ++behind_camera_;
       continue;
@@ -93,22 +107,29 @@ void PathEquations::AddTrack(std::size_t index, const WindowInput& in, const Tra
     const Matrix23 M = h.J_landmark * L;
     const Matrix23 WM = view.R_inverse * M;
     const Matrix62 JtW = h.J_pose.transpose() * view.R_inverse;
-    const Eigen::Index i = kPoseSize * view.slot;
-    A_.block<6, 6>(i, i).noalias() += JtW * h.J_pose;
-    b_.segment<6>(i).noalias() += JtW * e;
+    linear.used = true;
+    linear.J_landmark = h.J_landmark;
+    linear.WM = WM;
+    linear.JtW = JtW;
+    const Eigen::Index i = kPoseSize * view.slot, j = kPoseSize * track.anchor_slot;
     E.middleRows<6>(i).noalias() += JtW * M;
-    if (track.anchor_slot >= 0) {
-      const Matrix26 J_anchor = AnchorJacobian(h, theta);
-      const Matrix62 AtW = J_anchor.transpose() * view.R_inverse;
-      const Eigen::Index j = kPoseSize * track.anchor_slot;
-      A_.block<6, 6>(j, j).noalias() += AtW * J_anchor;
-      A_.block<6, 6>(i, j).noalias() += JtW * J_anchor;
-      A_.block<6, 6>(j, i).noalias() += AtW * h.J_pose;
-      b_.segment<6>(j).noalias() += AtW * e;
-      E.middleRows<6>(j).noalias() += AtW * M;
-    }
     G.noalias() += M.transpose() * WM;
     g.noalias() += WM.transpose() * e;
+    Matrix26 J_anchor;
+    if (j >= 0) {
+      J_anchor = AnchorJacobian(h, theta);
+      linear.AtW = J_anchor.transpose() * view.R_inverse;
+      E.middleRows<6>(j).noalias() += linear.AtW * M;
+    }
+    if (track.provisional) continue;
+    A_.block<6, 6>(i, i).noalias() += JtW * h.J_pose;
+    b_.segment<6>(i).noalias() += JtW * e;
+    if (j >= 0) {
+      A_.block<6, 6>(j, j).noalias() += linear.AtW * J_anchor;
+      A_.block<6, 6>(i, j).noalias() += JtW * J_anchor;
+      A_.block<6, 6>(j, i).noalias() += linear.AtW * h.J_pose;
+      b_.segment<6>(j).noalias() += linear.AtW * e;
+    }
     cost_ += e.dot(We);
     if (marginal) seen_.push_back({view.slot, h.J_shift, WM, view.R_inverse});
     log_det_ += view.log_det_R + 2 * std::log(2 * std::numbers::pi);
@@ -116,9 +137,9 @@ void PathEquations::AddTrack(std::size_t index, const WindowInput& in, const Tra
   landmark.G.compute(G);
   landmark.U_inverse = landmark.G.matrixU().solve(Eigen::Matrix3d::Identity());
   const Eigen::Vector3d whitened = landmark.G.matrixL().solve(g);
-  cost_ -= whitened.squaredNorm();
-  log_det_ += 2 * std::log(landmark.G.matrixLLT().diagonal().prod());
-  if (marginal && landmark.used) AddMarginal(track, landmark, theta.z());
+  if (!track.provisional) cost_ -= whitened.squaredNorm();
+  if (!track.provisional) log_det_ += 2 * std::log(landmark.G.matrixLLT().diagonal().prod());
+  if (marginal && landmark.used && !track.provisional) AddMarginal(track, landmark, theta.z());
   y_.segment<3>(rows) = whitened;
   E = E.lazyProduct(landmark.U_inverse).eval();
 }
@@ -126,12 +147,12 @@ void PathEquations::AddTrack(std::size_t index, const WindowInput& in, const Tra
 // Gradient and Fisher information of -1/2 log|S|, S = J P J' + R of all views of one landmark, through dz/drho =
 // J_shift (p_A - p). With q = J P e_3: gradient J_shift' S^-1 q, information (q'S^-1 q) J_shift' S^-1 J_shift +
 // gradient gradient'.
-void PathEquations::AddMarginal(const Track& track, const Eliminated& landmark, double rho) {
+void PathEquations::AddMarginal(const Track& track, const PathLinearisation::Eliminated& landmark, double rho) {
   const Eigen::Vector3d a = landmark.L.row(2);
   const Eigen::Vector3d alpha = landmark.G.solve(a);
   const double explained = a.dot(a - alpha);  // of the variance of rho
   const bool matters = explained > kNegligible * rho * rho;
-  auto C = Y_.middleCols<3>(y_columns_);
+  auto C = linear_.Y.middleCols<3>(y_.size() + marginal_columns_);
   auto gradient = Z_.col(z_columns_);
   if (matters) {
     C.setZero();
@@ -157,23 +178,26 @@ void PathEquations::AddMarginal(const Track& track, const Eliminated& landmark, 
   }
   if (!matters) return;
   C = C.lazyProduct(std::sqrt(explained) * landmark.U_inverse).eval();
-  y_columns_ += 3;
+  marginal_columns_ += 3;
   z_columns_ += 1;
 }
 
-void PathEquations::ReduceGradient() { b_.noalias() -= Y_.leftCols(y_.size()) * y_; }
+void PathEquations::ReduceGradient() { b_.noalias() -= linear_.Y.leftCols(linear_.acting) * y_.head(linear_.acting); }
 
 void PathEquations::ReduceInformation() {
-  if (y_columns_ > 0)  // Eigen divides by it
-    A_.selfadjointView<Eigen::Lower>().rankUpdate(Y_.leftCols(y_columns_), -1.0);
+  const auto take_out = [this](const auto& columns) {
+    if (columns.cols() > 0) A_.selfadjointView<Eigen::Lower>().rankUpdate(columns, -1.0);  // Eigen divides by it
+  };
+  take_out(linear_.Y.leftCols(linear_.acting));
+  take_out(linear_.Y.middleCols(y_.size(), marginal_columns_));
   if (z_columns_ > 0) A_.selfadjointView<Eigen::Lower>().rankUpdate(Z_.leftCols(z_columns_), 1.0);
 }
 
 void PathEquations::MoveLandmarks(const Eigen::VectorXd& step, const WindowInput& in, std::span<const Track> tracks,
                                   std::vector<Eigen::Vector3d>& theta) {
-  y_.noalias() -= Y_.leftCols(y_.size()).transpose() * step;
+  y_.noalias() -= linear_.Y.leftCols(y_.size()).transpose() * step;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    const Eliminated& landmark = eliminated_[i];
+    const PathLinearisation::Eliminated& landmark = linear_.landmarks[i];
     if (!landmark.used) continue;
     const Eigen::Vector3d u =
         landmark.G.matrixU().solve(Eigen::Vector3d(y_.segment<3>(3 * static_cast<Eigen::Index>(i))));

@@ -28,6 +28,8 @@ struct Track {
   int anchor = 0;        // index of the anchor pose
   int anchor_slot = -1;  // its slot, or -1: it has been sampled
   std::vector<View> views;
+  Eigen::Matrix2d wander = Eigen::Matrix2d::Zero();  // per view; R contains it from the first view of the window on
+  bool provisional = false;  // the landmark follows the poses and does not act on them; behind all others
 };
 
 // Sampled state of one particle, from which its window begins.
@@ -43,6 +45,30 @@ inline const Pose& AnchorOn(const PathGaussian& path, const WindowInput& in, con
   return track.anchor_slot < 0 ? in.anchors[track.anchor] : path.mean[track.anchor_slot];
 }
 
+// A window linearised at one particle's path, each landmark as a standard normal u with theta = mean + L u.
+struct PathLinearisation {
+  struct View {
+    bool used = false;  // in front
+    Matrix23 J_landmark, WM;
+    Eigen::Matrix<double, 6, 2> JtW, AtW;
+  };
+  struct Eliminated {
+    Eigen::Matrix3d L;
+    Eigen::LLT<Eigen::Matrix3d> G;  // information of u given the poses
+    Eigen::Matrix3d U_inverse;      // of its upper factor
+    bool used = false;
+  };
+  Eigen::MatrixXd J;                  // of the steps u: du_k / d(pose k-1), du_k / d(pose k), per step 6 x 12
+  std::vector<View> views;            // in the order of the tracks
+  std::vector<Eliminated> landmarks;  // per track
+  Eigen::MatrixXd Y;                  // whitened couplings of poses and landmarks, 3 columns per track
+  Eigen::Index acting = 0;            // columns of the tracks that act on the poses, the first
+};
+
+// The prior's share of b, and of the cost, which is returned; `J` of the steps.
+double SetPriorGradient(const PathPrior& prior, const WindowInput& in, const PathGaussian& path,
+                        const Eigen::MatrixXd& J, Eigen::VectorXd& b);
+
 class PathEquations {
  public:
   // A window, then its linearisations: the prior alone, then each track in turn.
@@ -54,6 +80,7 @@ class PathEquations {
   void ReduceGradient();
   void ReduceInformation();
 
+  const PathLinearisation& linearisation() const { return linear_; }
   const Eigen::MatrixXd& A() const { return A_; }  // lower triangle, when reduced
   const Eigen::VectorXd& b() const { return b_; }
   double cost() const { return cost_; }  // constant part of -2 log of the evidence's exponent
@@ -65,28 +92,20 @@ class PathEquations {
                      std::vector<Eigen::Vector3d>& theta);
 
  private:
-  // One landmark at the present linearisation, as a standard normal u with theta = mean + L u.
-  struct Eliminated {
-    Eigen::Matrix3d L;
-    Eigen::LLT<Eigen::Matrix3d> G;  // information of u given the poses
-    Eigen::Matrix3d U_inverse;      // of its upper factor
-    bool used = false;
-  };
   struct Seen {
     int slot = 0;
     Matrix23 J_shift, WM;
     Eigen::Matrix2d R_inverse;
   };
-  void AddMarginal(const Track& track, const Eliminated& landmark, double rho);
+  void AddMarginal(const Track& track, const PathLinearisation::Eliminated& landmark, double rho);
 
+  PathLinearisation linear_;
   Eigen::MatrixXd A_;
   Eigen::VectorXd b_;
-  Eigen::MatrixXd Y_;
   Eigen::VectorXd y_;
   Eigen::MatrixXd Z_;
-  Eigen::Index y_columns_ = 0, z_columns_ = 0;  // in use
-  std::vector<Eliminated> eliminated_;          // per track
-  std::vector<Seen> seen_;                      // of the present track
+  Eigen::Index marginal_columns_ = 0, z_columns_ = 0;  // in use; those of Y behind the tracks'
+  std::vector<Seen> seen_;                             // of the present track
   double cost_ = 0, log_det_ = 0;
   int behind_camera_ = 0;
 };

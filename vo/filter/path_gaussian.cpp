@@ -102,6 +102,16 @@ void Extend(const PathPrior& prior, const MotionModel& step, const Pose& start, 
   path.turns.push_back(u.tail<3>());
 }
 
+void Move(const Pose& motion, PathGaussian& path) {
+  for (Pose& pose : path.mean) pose = motion * pose;
+  const Eigen::Matrix3d R = motion.q_WC.toRotationMatrix();
+  for (Eigen::Index k = 0; k < path.covariance.rows(); k += kPoseSize) {  // of each pose, dp is in W
+    path.covariance.middleRows<3>(k) = (R * path.covariance.middleRows<3>(k)).eval();
+    path.covariance.middleCols<3>(k) = (path.covariance.middleCols<3>(k) * R.transpose()).eval();
+  }
+  Symmetrise(path.covariance);
+}
+
 void DropLast(PathGaussian& path) {
   path.mean.pop_back();
   path.turns.pop_back();

@@ -74,6 +74,8 @@ BeliefComponent ComponentAtTheEnd(const PathPrior& prior, const Pose& start, con
 // seen changes no other.
 void Extend(const PathPrior& prior, const MotionModel& step, const Pose& start, const Vector6& velocity,
             PathGaussian& path);
+// All poses moved in W, T_WC -> motion T_WC.
+void Move(const Pose& motion, PathGaussian& path);
 // The last pose integrated out.
 void DropLast(PathGaussian& path);
 

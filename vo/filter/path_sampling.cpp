@@ -37,12 +37,14 @@ std::vector<Pose> SamplePoses(const ParticleSet& particles, int slot, bool exact
   return drawn;
 }
 
-void UpdateGivenPose(const VelocityFilter& step, std::span<const Match> matches, const LandmarkTable& table, int slot,
-                     Particle& particle) {
+void UpdateGivenPose(const VelocityFilter& step, const Window& window, const LandmarkTable& table, int slot,
+                     std::vector<LandmarkGain>& gains, Particle& particle) {
   const Pose& s = particle.solution.path.mean[slot];
+  const std::vector<Match>& matches = window.frames()[slot].matches;
   particle.velocity = VelocityGivenPose(step.Condition(PathState(particle.pose), particle.velocity), particle.pose, s,
                                         particle.solution.path.turns[slot]);
-  UpdateLandmarks(matches, table, s, particle.anchors, particle.solution.modes, particle.landmarks);
+  if (gains.empty()) gains = GainsOf(matches, table, s, particle.anchors, particle.solution.modes, particle.landmarks);
+  UpdateLandmarks(matches, gains, table, s, particle.anchors, particle.solution.modes, particle.landmarks);
   particle.pose = s;
 }
 

@@ -29,8 +29,8 @@ std::vector<Pose> SamplePoses(const ParticleSet& particles, int slot, bool exact
                               const std::function<RandomKey(std::size_t)>& key);
 
 // The particle given the sampled pose at `slot` of its path: velocity (37)-(43), then landmarks. Its pose becomes that
-// one.
-void UpdateGivenPose(const VelocityFilter& step, std::span<const Match> matches, const LandmarkTable& table, int slot,
-                     Particle& particle);
+// one. `gains`: of the slot's matches, of a particle that is alike; empty: set to its own.
+void UpdateGivenPose(const VelocityFilter& step, const Window& window, const LandmarkTable& table, int slot,
+                     std::vector<LandmarkGain>& gains, Particle& particle);
 
 }  // namespace vo

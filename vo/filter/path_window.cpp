@@ -19,11 +19,11 @@ struct PathProblem {
   bool marginal;
   PathGaussian& path;
   std::vector<Eigen::Vector3d>& theta;
+  Eigen::LLT<Eigen::MatrixXd>& llt;
   Eigen::VectorXd step = {};
   std::vector<Pose> accepted_poses = {};
   std::vector<Eigen::Vector3d> accepted_theta = {};
   double predicted_decrease = 0;
-  Eigen::LLT<Eigen::MatrixXd> llt = {};
 
   double Linearise() {
     equations.AddPrior(prior, in, path);
@@ -80,21 +80,21 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
                        const WindowOptions& options, PathGaussian& path, std::vector<Eigen::Vector3d>& theta) {
   path.events = {};
   equations_.Begin(prior, in, tracks);
-  PathProblem problem{equations_, prior, in, tracks, options.marginal, path, theta};
+  PathProblem problem{equations_, prior, in, tracks, options.marginal, path, theta, llt_};
   problem.step.setZero(kPoseSize * prior.size());
   Descent descent(options.max_iterations, options.tolerance_sigma, options.stop_if_above);
   MinimiseToMode(problem, descent);
   path.covariance.setIdentity(kPoseSize * prior.size(), kPoseSize * prior.size());
-  problem.llt.solveInPlace(path.covariance);
+  llt_.solveInPlace(path.covariance);
   Symmetrise(path.covariance);
   path.events.not_converged = !descent.converged();
-  if (problem.llt.info() != Eigen::Success) {
+  if (llt_.info() != Eigen::Success) {
     path.events.not_positive_definite = 1;
     path.log_evidence = path.objective = std::numeric_limits<double>::quiet_NaN();
   }
 }
 
-LandmarkOnPath::Conditional LandmarkOnPath::Condition() const {
+LandmarkOnPath::Conditional LandmarkOnPath::GivenPath() const {
   const Eigen::Matrix3d L = SemidefiniteRoot<3>(in_.landmarks[track_.landmark].covariance);
   const Pose& anchor = AnchorOn(path_, in_, track_);
   Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
@@ -111,11 +111,13 @@ LandmarkOnPath::Conditional LandmarkOnPath::Condition() const {
       E.middleCols<6>(kPoseSize * track_.anchor_slot).noalias() += MtW * AnchorJacobian(h, theta_);
   }
   const Eigen::Matrix3d LG = L * G.inverse();
-  return {LG * L.transpose(), LG.lazyProduct(E)};
+  Conditional landmark{LG * L.transpose(), LG.lazyProduct(E)};
+  landmark.P.topLeftCorner<2, 2>() += static_cast<double>(track_.views.size()) * track_.wander;
+  return landmark;
 }
 
 Eigen::Matrix<double, 9, 9> LandmarkOnPath::WithAnchor() const {
-  const Conditional landmark = Condition();
+  const Conditional landmark = GivenPath();
   const Eigen::Matrix<double, Eigen::Dynamic, 3> cross = path_.covariance.lazyProduct(landmark.D.transpose());
   Eigen::Matrix<double, 9, 9> P = Eigen::Matrix<double, 9, 9>::Zero();
   P.bottomRightCorner<3, 3>() = landmark.P + landmark.D.lazyProduct(cross);
@@ -135,22 +137,13 @@ Eigen::Matrix3d LandmarkOnPath::PointCovariance() const {
   return Symmetrised(J * WithAnchor() * J.transpose());
 }
 
-ImagePrediction LandmarkOnPath::Image() const {
+Projection LandmarkOnPath::Image(const Conditional& landmark, Eigen::Ref<Eigen::MatrixXd> J) const {
   const Projection h = Project({path_.mean.back(), AnchorOn(path_, in_, track_)}, theta_);
-  if (!h.in_front) return {};
-  if (track_.views.empty() && track_.anchor_slot < 0) {  // the window does not see it
-    const auto last = path_.covariance.bottomRightCorner<6, 6>();
-    const Eigen::Matrix3d& P = in_.landmarks[track_.landmark].covariance;
-    return {true, h.z,
-            Symmetrised(h.J_pose * last * h.J_pose.transpose() + h.J_landmark * P * h.J_landmark.transpose())};
-  }
-  const Conditional landmark = Condition();
-  Eigen::Matrix<double, 2, Eigen::Dynamic> J = -h.J_landmark.lazyProduct(landmark.D);
+  if (!h.in_front) return h;
+  if (!track_.views.empty()) J = -h.J_landmark.lazyProduct(landmark.D);
   J.rightCols<6>() += h.J_pose;
   if (track_.anchor_slot >= 0) J.middleCols<6>(kPoseSize * track_.anchor_slot) += AnchorJacobian(h, theta_);
-  // Thin: a blocked product is slower
-  const Eigen::Matrix<double, Eigen::Dynamic, 2> PJt = path_.covariance.lazyProduct(J.transpose());
-  return {true, h.z, Symmetrised(J.lazyProduct(PJt) + h.J_landmark * landmark.P * h.J_landmark.transpose())};
+  return h;
 }
 
 }  // namespace vo

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "vo/filter/chord_solver.h"
 #include "vo/filter/gauss_newton.h"
 #include "vo/filter/path_equations.h"
 #include "vo/map/moments.h"
@@ -29,8 +30,17 @@ class PathWindow {
   void Solve(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks, const WindowOptions& options,
              PathGaussian& path, std::vector<Eigen::Vector3d>& theta);
 
+  // The same for another particle with nearly the path and the landmarks of the one that was solved last, `solved`.
+  bool SolveAlike(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks,
+                  const PathGaussian& solved, PathGaussian& path, std::vector<Eigen::Vector3d>& theta) {
+    return chord_.Solve(prior, in, tracks, equations_.linearisation(), llt_, solved, path, theta);
+  }
+  const PathLinearisation& linearisation() const { return equations_.linearisation(); }
+
  private:
   PathEquations equations_;  // workspace, so that repeated calls allocate little
+  Eigen::LLT<Eigen::MatrixXd> llt_;
+  ChordSolver chord_;
 };
 
 // Landmark of a window that was solved, or extended since: its Gaussian given the poses, with the anchor's pose, and
@@ -40,22 +50,21 @@ class LandmarkOnPath {
   LandmarkOnPath(const WindowInput& in, const Track& track, const PathGaussian& path, const Eigen::Vector3d& theta)
       : in_(in), track_(track), path_(path), theta_(theta) {}
 
-  Landmark GivenPath() const { return {theta_, Condition().P}; }
+  // Covariance P and gain D of the landmark given the poses.
+  struct Conditional {
+    Eigen::Matrix3d P;
+    Eigen::Matrix<double, 3, Eigen::Dynamic> D;
+  };
+  Conditional GivenPath() const;
   // Covariance of the anchor's pose (dp in W, dphi in C; 0 where it has been sampled) and, behind it, the landmark, the
   // poses integrated out.
   Eigen::Matrix<double, 9, 9> WithAnchor() const;
   // Covariance of the landmark's place in W.
   Eigen::Matrix3d PointCovariance() const;
-  // Image from the last pose, poses and landmark integrated out.
-  ImagePrediction Image() const;
+  // Image from the last pose, and its Jacobian by all poses (2 x 6m, zero until now) with the landmark following them.
+  Projection Image(const Conditional& landmark, Eigen::Ref<Eigen::MatrixXd> J) const;
 
  private:
-  struct Conditional {
-    Eigen::Matrix3d P;
-    Eigen::Matrix<double, 3, Eigen::Dynamic> D;
-  };
-  Conditional Condition() const;
-
   WindowInput in_;
   const Track& track_;
   const PathGaussian& path_;

@@ -3,7 +3,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "vo/geometry/covariance.h"
 #include "vo/geometry/so3.h"
 
 namespace vo {
@@ -26,6 +28,16 @@ void Window::Append(double dt, std::uint32_t number, const MotionInput& input, c
 
 void Window::SetMatches(std::span<const Match> matches, const LandmarkTable& table) {
   frames_.back().matches.assign(matches.begin(), matches.end());
+  std::vector<double> inflation(static_cast<std::size_t>(table.size()), 0);
+  for (const Match& match : matches) inflation[match.landmark] = match.inflation;
+  for (Frame& frame : frames_) {
+    for (Match& match : frame.matches) {
+      if (inflation[match.landmark] == 0) continue;
+      const double change = inflation[match.landmark] / std::exchange(match.inflation, inflation[match.landmark]);
+      match.R *= change;
+      match.wander *= change;
+    }
+  }
   BuildTracks(table);
 }
 
@@ -61,6 +73,12 @@ void Window::Keep(const std::vector<int>& index, const LandmarkTable& table) {
   BuildTracks(table);
 }
 
+void Window::KeepMatchesOf(const std::vector<bool>& anchors, const LandmarkTable& table) {
+  for (Frame& frame : frames_)
+    std::erase_if(frame.matches, [&](const Match& match) { return !anchors[table.anchor_of(match.landmark)]; });
+  BuildTracks(table);
+}
+
 void Window::PlaceAnchors(const PathGaussian& path, std::vector<Pose>& anchors) const {
   for (std::size_t a = 0; a < anchors.size(); ++a)
     if (anchor_slot_[a] >= 0) anchors[a] = path.mean[anchor_slot_[a]];
@@ -77,20 +95,51 @@ void Window::BuildTracks(const LandmarkTable& table) {
         const int anchor = table.anchor_of(match.landmark);
         tracks_.push_back({match.landmark, anchor, anchor_slot_[anchor], {}});
       }
-      tracks_[index].views.push_back(
-          {slot, match.z, match.R.inverse(), std::log(match.R.determinant()), match.centre_offset_W});
+      Track& track = tracks_[index];
+      track.provisional = match.provisional;
+      track.wander = match.wander;
+      const Eigen::Matrix2d R = match.R + static_cast<double>(track.views.size()) * match.wander;
+      track.views.push_back({slot, match.z, R.inverse(), std::log(R.determinant()), match.centre_offset_W});
     }
   }
+  std::ranges::stable_partition(tracks_, [](const Track& track) { return !track.provisional; });
+  for (std::size_t i = 0; i < tracks_.size(); ++i) track_of_[tracks_[i].landmark] = static_cast<int>(i);
 }
 
-void UpdateLandmarks(std::span<const Match> matches, const LandmarkTable& table, const Pose& pose,
-                     std::span<const Pose> anchors, std::span<const Eigen::Vector3d> modes,
-                     std::vector<Landmark>& landmarks) {
-  const std::vector<AnchorView> views = ViewsOf(anchors, pose);
+std::vector<LandmarkGain> GainsOf(std::span<const Match> matches, const LandmarkTable& table, const Pose& pose,
+                                  std::span<const Pose> anchors, std::span<const Eigen::Vector3d> modes,
+                                  std::span<const Landmark> landmarks) {
+  std::vector<LandmarkGain> gains;
   for (const Match& match : matches) {
-    const AnchorView view = views[table.anchor_of(match.landmark)].ShiftedBy(match.centre_offset_W);
-    Landmark& landmark = landmarks[match.landmark];
-    landmark = UpdateLandmark(landmark, modes[match.landmark], view, match, 1).landmark;
+    LandmarkGain& gain = gains.emplace_back();
+    const Pose& anchor = anchors[table.anchor_of(match.landmark)];
+    const Projection h = Project(AnchorView(pose, anchor).ShiftedBy(match.centre_offset_W), modes[match.landmark]);
+    gain.in_front = h.in_front;
+    if (!h.in_front) continue;
+    const Eigen::Matrix3d& P = landmarks[match.landmark].covariance;
+    const Eigen::Matrix<double, 3, 2> PJt = P * h.J_landmark.transpose();
+    const Eigen::Matrix2d S = h.J_landmark * PJt + match.R;
+    gain.J = h.J_landmark;
+    gain.K = PJt * S.inverse();
+    gain.P = Symmetrised(P - gain.K * PJt.transpose());
+    gain.P.topLeftCorner<2, 2>() += match.wander;
+  }
+  return gains;
+}
+
+void UpdateLandmarks(std::span<const Match> matches, std::span<const LandmarkGain> gains, const LandmarkTable& table,
+                     const Pose& pose, std::span<const Pose> anchors, std::span<const Eigen::Vector3d> modes,
+                     std::vector<Landmark>& landmarks) {
+  const Eigen::Matrix3d R_CW = pose.q_WC.conjugate().toRotationMatrix();
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (!gains[i].in_front) continue;
+    const int n = matches[i].landmark;
+    const Eigen::Vector3d X =
+        ScaledPoint(R_CW, pose.p_WC + matches[i].centre_offset_W, anchors[table.anchor_of(n)], modes[n]);
+    if (X.z() <= kMinDepth) continue;
+    const Eigen::Vector2d e = matches[i].z - X.head<2>() / X.z() - gains[i].J * (landmarks[n].mean - modes[n]);
+    landmarks[n].mean += gains[i].K * e;
+    landmarks[n].covariance = gains[i].P;
   }
 }
 
@@ -126,8 +175,12 @@ std::vector<Eigen::Vector3d> Triangulate(const Window& window, const LandmarkTab
   std::vector<Eigen::Vector3d> modes = solution.modes;
   for (int round = 0; round < kTriangulations; ++round) {
     std::vector<Landmark> landmarks(in.landmarks.begin(), in.landmarks.end());
-    for (int k = 0; k < window.size(); ++k)
-      UpdateLandmarks(window.frames()[k].matches, table, solution.path.mean[k], anchors, modes, landmarks);
+    for (int k = 0; k < window.size(); ++k) {
+      const std::vector<Match>& matches = window.frames()[k].matches;
+      const Pose& pose = solution.path.mean[k];
+      UpdateLandmarks(matches, GainsOf(matches, table, pose, anchors, modes, landmarks), table, pose, anchors, modes,
+                      landmarks);
+    }
     for (const Track& track : window.tracks()) modes[track.landmark] = landmarks[track.landmark].mean;
   }
   return modes;

@@ -35,6 +35,8 @@ class Window {
   // The anchor of landmarks that were added in the last frame, or before the first.
   void AddAnchor(int anchor, const LandmarkTable& table);
   void Keep(const std::vector<int>& index, const LandmarkTable& table);  // of the table's Keep
+  // Drops the matches of landmarks of other anchors.
+  void KeepMatchesOf(const std::vector<bool>& anchors, const LandmarkTable& table);
   // The same window with f(slot, match) in the place of each match.
   template <class Function>
   Window WithMatches(const Function& f, const LandmarkTable& table) const {
@@ -57,9 +59,20 @@ class Window {
   std::vector<int> track_of_;     // per landmark: index into tracks_ or -1
 };
 
+// Kalman gain of a match given the pose, and the landmark's covariance after it, for all particles that are alike.
+struct LandmarkGain {
+  bool in_front = false;
+  Matrix23 J;                     // of the match by the landmark
+  Eigen::Matrix<double, 3, 2> K;  // P J' S^-1
+  Eigen::Matrix3d P;
+};
+// Of one particle, one for each match.
+std::vector<LandmarkGain> GainsOf(std::span<const Match> matches, const LandmarkTable& table, const Pose& pose,
+                                  std::span<const Pose> anchors, std::span<const Eigen::Vector3d> modes,
+                                  std::span<const Landmark> landmarks);
 // Landmarks given one sampled pose and its matches, linearised at the modes.
-void UpdateLandmarks(std::span<const Match> matches, const LandmarkTable& table, const Pose& pose,
-                     std::span<const Pose> anchors, std::span<const Eigen::Vector3d> modes,
+void UpdateLandmarks(std::span<const Match> matches, std::span<const LandmarkGain> gains, const LandmarkTable& table,
+                     const Pose& pose, std::span<const Pose> anchors, std::span<const Eigen::Vector3d> modes,
                      std::vector<Landmark>& landmarks);
 
 // Challenge of a solution: a first guess for another mode of the same images, to be solved and compared by its

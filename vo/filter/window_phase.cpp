@@ -23,18 +23,13 @@ WindowPhase::WindowPhase(const ParticleFilterSettings& settings, const FilterPri
 }
 
 void WindowPhase::ExtendPaths(double dt, const MotionInput& input) {
+  alike_.clear();
   if (window_.LastIsUnused()) {
     prior_.reset();
     dt += window_.DropLast(table_);
     for (Particle& particle : particles_) DropLast(particle.solution.path);
   }
-  const auto prior = [this] {
-    std::vector<MotionModel> models;
-    for (const Window::Frame& frame : window_.frames())
-      models.push_back(NearlyConstantVelocity(settings_.motion, frame.dt, frame.input));
-    return PathPrior(models, particles_[0].velocity.covariance);
-  };
-  if (!prior_) prior_.emplace(prior());
+  if (!prior_) SetPrior();
   const MotionModel step = NearlyConstantVelocity(settings_.motion, dt, input);
   for (Particle& particle : particles_) {
     std::vector<Pose>& path = particle.solution.path.mean;
@@ -43,14 +38,14 @@ void WindowPhase::ExtendPaths(double dt, const MotionInput& input) {
     if (input.turn) path.back().q_WC = (last.q_WC * *input.turn).normalized();
   }
   window_.Append(dt, frame_, input, table_);
-  prior_.emplace(prior());
+  SetPrior();
 }
 
-void WindowPhase::SetReferenceLandmarks() {
-  const std::size_t heaviest = particles_.Heaviest();
-  reference_landmarks_ = particles_[heaviest].landmarks;
-  for (const Track& track : window_.tracks())
-    reference_landmarks_[track.landmark] = OnPath(heaviest, track).GivenPath();
+void WindowPhase::SetPrior() {
+  std::vector<MotionModel> models;
+  for (const Window::Frame& frame : window_.frames())
+    models.push_back(NearlyConstantVelocity(settings_.motion, frame.dt, frame.input));
+  prior_.emplace(models, particles_[0].velocity.covariance);
 }
 
 WindowOptions WindowPhase::Options(bool initialising) const {
@@ -70,6 +65,35 @@ void WindowPhase::Solve(const Window& window, const WindowInput& in, const Windo
 void WindowPhase::Solve(std::size_t particle, const WindowOptions& options) {
   Solve(window_, InputOf(particle), options, particles_[particle].solution);
   window_.PlaceAnchors(particles_[particle].solution.path, particles_[particle].anchors);
+}
+
+// Evidence needs each particle's own determinants: with weights by evidence nothing is shared.
+void WindowPhase::SolveAll() {
+  const WindowOptions options = Options(false);
+  alike_.clear();
+  if (settings_.filter.weight != Weight::uniform || options.marginal || options.max_iterations == 1) {
+    for (std::size_t i = 0; i < particles_.size(); ++i) Solve(i, options);
+    return;
+  }
+  const std::size_t heaviest = particles_.Heaviest();
+  Solve(heaviest, options);
+  const PathGaussian& solved = particles_[heaviest].solution.path;
+  const std::span<const Track> tracks = window_.tracks();
+  std::vector<bool> alike(particles_.size(), std::isfinite(solved.log_evidence));
+  std::vector<Eigen::Vector3d> theta(tracks.size());
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    if (i == heaviest || !alike[i]) continue;
+    PathSolution& solution = particles_[i].solution;
+    for (std::size_t k = 0; k < theta.size(); ++k) theta[k] = solution.modes[tracks[k].landmark];
+    alike[i] = solver_.SolveAlike(*prior_, InputOf(i), tracks, solved, solution.path, theta);
+    for (std::size_t k = 0; k < theta.size(); ++k) solution.modes[tracks[k].landmark] = theta[k];
+    window_.PlaceAnchors(solution.path, particles_[i].anchors);
+  }
+  alike_ = alike;
+  if (std::ranges::count(alike, false) == 0) return;
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    if (!alike[i]) Solve(i, options);
+  Solve(heaviest, options);  // the linearisation of those that are alike
 }
 
 void WindowPhase::Challenge(std::size_t i, std::uint32_t guess, WindowOptions options) {
@@ -119,7 +143,10 @@ void WindowPhase::SampleOldest(int count) {
   const FilterParams& params = settings_.filter;
   const bool uniform = params.weight == Weight::uniform;
   // Uniform weights: rejected particles are replaced before the draw, so that the copies differ by it.
-  if (uniform && count > 0 && particles_.AnyRejected()) Resample();
+  if (uniform && count > 0 && particles_.AnyRejected()) {
+    Resample();
+    alike_.clear();
+  }
   if (count > 0) Commit(count);
   if (!uniform && answer_.effective_particles < params.resample_below * params.particles) Resample();
 }
@@ -131,7 +158,11 @@ void WindowPhase::Commit(int count) {
         SamplePoses(particles_, k, settings_.filter.weight == Weight::uniform, [&](std::size_t i) {
           return RandomKey{settings_.seed, Stream::pose, window_.frames()[k].number, static_cast<std::uint32_t>(i)};
         });
-    for (std::size_t i = 0; i < particles_.size(); ++i) ConditionOn(k, drawn[i], particles_[i].solution.path);
+    for (std::size_t i = 0; i < particles_.size(); ++i) {
+      const std::vector<Pose> solved = particles_[i].solution.path.mean;
+      ConditionOn(k, drawn[i], particles_[i].solution.path);
+      if (IsAlike(i)) Follow(solved, particles_[i].solution);
+    }
   }
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     window_.PlaceAnchors(particles_[i].solution.path, particles_[i].anchors);
@@ -140,8 +171,11 @@ void WindowPhase::Commit(int count) {
   }
   for (int k = 0; k < count; ++k) {
     const VelocityFilter step(settings_.motion, window_.frames()[k].dt, window_.frames()[k].input);
-    for (std::size_t i = 0; i < particles_.size(); ++i)
-      UpdateGivenPose(step, window_.frames()[k].matches, table_, k, particles_[i]);
+    std::vector<LandmarkGain> of_all;
+    for (std::size_t i = 0; i < particles_.size(); ++i) {
+      std::vector<LandmarkGain> own;
+      UpdateGivenPose(step, window_, table_, k, IsAlike(i) ? of_all : own, particles_[i]);
+    }
   }
   for (Particle& particle : particles_) {
     PathGaussian& path = particle.solution.path;
@@ -150,6 +184,18 @@ void WindowPhase::Commit(int count) {
   }
   window_.DropOldest(count, table_);
   prior_.reset();
+}
+
+// The landmarks of a particle whose poses have moved from `solved`.
+void WindowPhase::Follow(const std::vector<Pose>& solved, PathSolution& solution) {
+  Eigen::VectorXd d(kPoseSize * static_cast<Eigen::Index>(solved.size()));
+  for (std::size_t k = 0; k < solved.size(); ++k)
+    d.segment<6>(kPoseSize * static_cast<Eigen::Index>(k)) = Minus(solution.path.mean[k], solved[k]);
+  const std::span<const Track> tracks = window_.tracks();
+  std::vector<Eigen::Vector3d> theta;
+  for (const Track& track : tracks) theta.push_back(solution.modes[track.landmark]);
+  FollowPoses(solver_.linearisation(), d, theta);
+  for (std::size_t k = 0; k < theta.size(); ++k) solution.modes[tracks[k].landmark] = theta[k];
 }
 
 void WindowPhase::AddLandmarks(std::span<const FirstView> views) {
@@ -166,54 +212,6 @@ void WindowPhase::AddLandmarks(std::span<const FirstView> views) {
 void WindowPhase::KeepLandmarks(const std::vector<bool>& keep) {
   window_.Keep(CompactLandmarks(keep), table_);
   for (Particle& particle : particles_) Compact(keep, particle.solution.modes);
-}
-
-std::vector<ImagePrediction> WindowPhase::PredictImages(std::span<const int> landmarks) const {
-  const std::span<const double> weights = SolutionWeights();
-  std::vector<ImagePrediction> predictions;
-  for (const int landmark : landmarks) {
-    const Track track = window_.TrackOf(landmark, table_);
-    ImageMoments moments;
-    for (std::size_t i = 0; i < weights.size(); ++i) moments.Add(weights[i], OnPath(i, track).Image());
-    predictions.push_back(moments.Prediction());
-  }
-  return predictions;
-}
-
-ReferencePath WindowPhase::Reference() const {
-  const std::size_t heaviest = particles_.Heaviest();
-  const PathSolution& solution = particles_[heaviest].solution;
-  LocalMap map = MapOf(heaviest);
-  map.landmarks = reference_landmarks_;
-  return {{solution.path.mean.back(), solution.path.covariance.bottomRightCorner<6, 6>()}, map, solution.modes};
-}
-
-std::vector<Filter::LandmarkSpread> WindowPhase::LandmarkSpreads() const {
-  const std::span<const double> weights = SolutionWeights();
-  std::vector<LandmarkSpread> spreads = ParticlePhase::LandmarkSpreads();
-  for (int n = 0; n < table_.size(); ++n) {
-    const Track track = window_.TrackOf(n, table_);
-    double mean = 0, square = 0;  // about the first particle's
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      if (weights[i] == 0) continue;
-      const double off = particles_[i].solution.modes[n].z() - particles_[0].solution.modes[n].z();
-      mean += weights[i] * off;
-      square += weights[i] * (OnPath(i, track).WithAnchor()(8, 8) + off * off);
-    }
-    spreads[n].inverse_depth_sigma = std::sqrt(square - mean * mean);
-  }
-  return spreads;
-}
-
-Eigen::Matrix3d WindowPhase::PointCovariance(std::size_t particle, int landmark) const {
-  return OnPath(particle, window_.TrackOf(landmark, table_)).PointCovariance();
-}
-
-std::vector<Eigen::Matrix3d> WindowPhase::PointCovariances(int landmark) const {
-  std::vector<Eigen::Matrix3d> covariances(particles_.size(), Eigen::Matrix3d::Zero());
-  for (std::size_t i = 0; i < particles_.size(); ++i)
-    if (particles_.weights()[i] != 0) covariances[i] = PointCovariance(i, landmark);
-  return covariances;
 }
 
 }  // namespace vo

@@ -40,12 +40,15 @@ class WindowPhase : public ParticlePhase {
 
   // One more pose, dt [s] after the last, which is integrated out if nothing refers to it. dt = 0: in its place.
   void ExtendPaths(double dt, const MotionInput& input);
-  // The landmarks of the heaviest particle, for the outlier test.
-  void SetReferenceLandmarks();
+  void SetPrior();  // of the window's steps
+  // The landmarks of the heaviest particle given its path.
+  void SetReference();
   // Options of a solution; `initialising`: from a first guess that may be far off.
   WindowOptions Options(bool initialising) const;
   void Solve(const Window& window, const WindowInput& in, const WindowOptions& options, PathSolution& solution);
   void Solve(std::size_t particle, const WindowOptions& options);
+  // All particles, from first guesses near their modes: the heaviest, and the others by its linearisation.
+  void SolveAll();
   // Replaces the solution by another mode where that is better: from first guess number `guess`, taken in turn.
   void Challenge(std::size_t particle, std::uint32_t guess, WindowOptions options);
   virtual void SolveOther(std::size_t particle, const WindowOptions& options, PathSolution& other) {
@@ -63,9 +66,17 @@ class WindowPhase : public ParticlePhase {
   Window window_;
   std::optional<PathPrior> prior_;  // of the window's steps; all particles share it
   PathWindow solver_;
-  std::vector<Landmark> reference_landmarks_;
+  struct ReferenceLandmarks {  // of the heaviest particle, given its path
+    std::vector<LandmarkOnPath::Conditional> given_path;
+    std::vector<Landmark> landmarks;  // the same, with the modes
+  };
+  ReferenceLandmarks reference_;
+  // Particles with the linearisation of the heaviest, in the last solution of all; empty: the window has changed since.
+  std::vector<bool> alike_;
 
  private:
+  bool IsAlike(std::size_t particle) const { return !alike_.empty() && alike_[particle]; }
+  void Follow(const std::vector<Pose>& solved, PathSolution& solution);
   void Commit(int count);
 };
 

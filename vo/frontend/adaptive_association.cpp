@@ -8,7 +8,7 @@
 namespace vo {
 namespace {
 
-constexpr double kFailedRatio = 4;  // innovation ratio of a failed prediction
+constexpr double kFailedRatio = 11;  // innovation ratio of a failed prediction
 constexpr int kWidenings = 2;
 constexpr double kAlignedNoise = 4;       // factor on the densities about an aligned rotation
 constexpr double kRelocalisedNoise = 16;  // the same about the pose from recognised landmarks
@@ -107,10 +107,13 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
     if (trial.Repeat(moved, ShowsThePlace)) ++trial.repeated;
   }
   trial.association.repeated = trial.repeated;
-  if (trial.HasMatches())
-    noise_.Learn(RatiosOf(trial.association), trial.input);
-  else
+  if (!trial.HasMatches()) {
     trial.association.RejectAll();
+    return std::move(trial.association);
+  }
+  const InnovationRatios shown = RatiosOf(trial.association);
+  noise_.Learn(shown, trial.input);
+  if (const auto more = AsShown(trial.input, shown)) filter.PredictAgain(*more);
   return std::move(trial.association);
 }
 

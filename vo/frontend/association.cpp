@@ -16,6 +16,8 @@ namespace {
 // Fixed-point iterations between the rolling-shutter correction of the matches and the velocity that follows from them.
 constexpr int kShutterRounds = 3;
 
+constexpr double kNearly = 2;  // times the gate: what rejected residuals tell of the noise
+
 using Results = std::vector<SearchResult>;  // by request
 
 // Guided matching without matches at pixels that are not invertible.
@@ -30,7 +32,12 @@ Match MatchOf(const AssociationContext& in, const Candidate& candidate, const Fo
               const Vector6& velocity) {
   const RowView row = in.shutter.Row(found.pixel);
   const auto [z, centre_offset_W] = row.RotationCompensated(velocity);
-  return {candidate.landmark, z, PixelNoise(candidate.lens, candidate.inflation * found.noise), centre_offset_W, row};
+  const double wander_px = std::sqrt(candidate.inflation) * in.params.features.wander_px;
+  const bool wanders =
+      in.params.features.noise == MatchNoise::adaptive && in.params.landmark.bearing == Bearing::estimated;
+  return {candidate.landmark, z,   PixelNoise(candidate.lens, candidate.inflation * found.noise),
+          centre_offset_W,    row, wanders ? PixelNoise(candidate.lens, wander_px) : Eigen::Matrix2d::Zero(),
+          candidate.inflation};
 }
 
 // Residual of an inlier at the robust pose (`map`), relative to R without inflation.
@@ -126,8 +133,8 @@ Consensus RobustPose(const AssociationContext& in, std::span<const Candidate> ca
 }  // namespace
 
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
-                      const PreparedFrame& frame, int border_px, const SinceUpdate& since_update,
-                      const Params& params) {
+                      const PreparedFrame& frame, int border_px, const SinceUpdate& since_update, const Params& params,
+                      double noise_level) {
   const AssociationContext in{filter,
                               records,
                               camera,
@@ -135,7 +142,8 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
                               params,
                               since_update,
                               RollingShutter(camera, params.features),
-                              filter.Reference()};
+                              filter.Reference(),
+                              noise_level};
   Association result;
   std::vector<Candidate> candidates = FindCandidates(in, border_px);
   result.left_out = LimitToBudget(candidates, in);
@@ -169,6 +177,9 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
         result.nis += *searched.mahalanobis_sq;
         result.matches.push_back(match);
         if (records[c.landmark].unseen()) ++result.unseen_matched;
+      } else {
+        searched.residual = ResidualOf(c, match, map);
+        if (searched.residual.ratio > c.inflation * kNearly * params.score.gate) searched.residual = {};
       }
       ++m;
     }
@@ -210,6 +221,18 @@ void UpdateScores(const Association& association, const ScoreParams& params, std
     }
     record.frames_unsearched = 0;
   }
+}
+
+void NoiseLevel::Learn(const Association& association) {
+  constexpr double kEnough = 10, kRate = 0.1, kLeast = 1, kMost = 20;
+  double weight = 0, sum = 0;
+  for (const Searched& one : association.searched) {
+    weight += one.residual.weight;
+    sum += one.residual.weight * one.residual.ratio;
+  }
+  if (weight < kEnough) return;
+  const double rate = std::max(kRate, 1.0 / (3 + frames_++));
+  value_ = std::clamp(value_ + rate * (sum / weight - value_), kLeast, kMost);
 }
 
 }  // namespace vo

@@ -22,7 +22,7 @@ struct Searched {
   int landmark = 0;
   // nu' S^-1 nu of its match under the prediction, before sampling; none: not found, or an outlier
   std::optional<double> mahalanobis_sq;
-  Residual residual;  // of an inlier at the robust pose, relative to R from this image alone
+  Residual residual;  // of an inlier, or nearly one, at the robust pose, relative to R from this image alone
 };
 
 struct Association {
@@ -41,10 +41,24 @@ struct Association {
 
 // After filter.Predict(). `records` are in the order of the filter's landmarks.
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
-                      const PreparedFrame& frame, int border_px, const SinceUpdate& since_update, const Params& params);
+                      const PreparedFrame& frame, int border_px, const SinceUpdate& since_update, const Params& params,
+                      double noise_level);
 
 // Existence scores (44)-(49), ages and residual histories after the association. Where fewer than min_found_ratio of
 // the landmarks searched for are matched, the frame is blind (blur, darkness), and only (44) is applied.
 void UpdateScores(const Association& association, const ScoreParams& params, std::span<LandmarkRecord> records);
+
+// Level of the noise of a sequence: mean ratio of the squared residuals of matches to R as one image gives it, of
+// registration alone. What all landmarks share: blur, compression, a wrong calibration. The prior of each landmark's
+// own ratio.
+class NoiseLevel {
+ public:
+  double value() const { return value_; }
+  void Learn(const Association& association);
+
+ private:
+  double value_ = 2;
+  int frames_ = 0;
+};
 
 }  // namespace vo

@@ -81,7 +81,7 @@ NewFeatureDetector::NewFeatureDetector(const Camera& camera, const Params& param
 std::vector<NewFeature> NewFeatureDetector::Detect(const PreparedFrame& frame, std::vector<Eigen::Vector2d> occupied) {
   std::vector<NewFeature> found;
   if (target_frames_ > 0) {
-    found = FindTarget(frame.grey, camera_, target_, features_.sigma_floor_px);
+    found = FindTarget(frame.grey, camera_, target_, features_.first_view_px);
     target_frames_ = found.empty() ? target_frames_ - 1 : 0;
     std::erase_if(found, [&](const NewFeature& f) { return !camera_.IsUsable(f.pixel.cast<double>(), border_px_); });
   }

@@ -69,7 +69,7 @@ std::vector<Candidate> FindCandidates(const AssociationContext& in, int border_p
     if (!in.camera.IsUsable(pixel, border_px)) continue;
     candidates.push_back(
         {n, prediction, pixel, in.camera.LensJacobian(prediction.z),
-         in.params.features.noise == MatchNoise::adaptive ? in.records[n].residuals.Inflation() : 1.0});
+         in.params.features.noise == MatchNoise::adaptive ? in.records[n].residuals.Inflation(in.noise_level) : 1.0});
   }
   return candidates;
 }

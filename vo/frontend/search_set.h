@@ -31,6 +31,7 @@ struct AssociationContext {
   SinceUpdate since_update;
   RollingShutter shutter;
   ReferencePath reference;
+  double noise_level;
 
   const PoseGaussian& prediction() const { return reference.prediction; }
   bool relocalising() const { return since_update.input.correction.has_value(); }

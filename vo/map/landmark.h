@@ -43,6 +43,9 @@ struct Match {
   Eigen::Vector3d centre_offset_W =
       Eigen::Vector3d::Zero();  // [m] of the centre that z is seen from, from the one at the stamp
   RowView row = {};
+  // Covariance, per match, of the random walk of what the patch follows about the landmark's ray.
+  Eigen::Matrix2d wander = Eigen::Matrix2d::Zero();
+  double inflation = 1;      // factor in R and wander that the landmark's residuals show
   bool provisional = false;  // it tells of the landmark and not of the pose (Algorithm 1 and consensus)
 };
 
@@ -82,6 +85,13 @@ struct Projection {
 };
 
 Projection Project(const AnchorView& view, const Eigen::Vector3d& landmark);
+
+// X_C of a landmark, scaled by rho: its image is X.hnormalized() where X.z() > kMinDepth.
+inline Eigen::Vector3d ScaledPoint(const Eigen::Matrix3d& R_CW, const Eigen::Vector3d& centre_W, const Pose& anchor,
+                                   const Eigen::Vector3d& landmark) {
+  return R_CW *
+         (anchor.q_WC * Eigen::Vector3d(landmark.x(), landmark.y(), 1) + landmark.z() * (anchor.p_WC - centre_W));
+}
 
 // The match of a landmark at `theta` as seen from the camera's centre at the stamp; unchanged where it lies behind one
 // of the two.

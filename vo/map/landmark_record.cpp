@@ -8,9 +8,8 @@
 namespace vo {
 namespace {
 
-constexpr double kHonestMatches = 8;  // that a new landmark is taken to have behind it
-constexpr double kKept = 0.98;        // of the past, from match to match: fifty of them count
-constexpr double kAlike = 2;          // how many frames' errors say as much as one alone would
+constexpr double kPriorMatches = 3;  // that the level counts for
+constexpr double kKept = 0.98;       // of the past, from match to match: fifty of them count
 
 // Drops `count` of `landmarks`, one after the other: that between whose neighbours the fewest landmarks were begun.
 void Thin(std::span<const LandmarkRecord> records, std::size_t count, std::vector<std::size_t>& landmarks,
@@ -32,9 +31,9 @@ void Thin(std::span<const LandmarkRecord> records, std::size_t count, std::vecto
 }  // namespace
 
 Residual Residual::Of(const Eigen::Vector2d& r, const Eigen::Matrix2d& of_landmark, const Eigen::Matrix2d& R) {
-  const Eigen::Matrix2d information = R.inverse();
-  const double expected = 1 + 0.5 * (information * of_landmark).trace();
-  return {0.5 * r.dot(information * r) / expected, 1 / (expected * expected)};
+  const Eigen::Matrix2d information = (of_landmark + R).inverse();
+  const Eigen::Matrix2d share = information * R;
+  return {r.dot(share * information * r) / share.trace(), 0.5 * (share * share).trace()};
 }
 
 void ResidualHistory::Add(const Residual& residual) {
@@ -42,8 +41,8 @@ void ResidualHistory::Add(const Residual& residual) {
   sum_ = kKept * sum_ + residual.weight * residual.ratio;
 }
 
-double ResidualHistory::Inflation() const {
-  return std::clamp(kAlike * (kHonestMatches + sum_) / (kHonestMatches + weight_), 1.0, kMost);
+double ResidualHistory::Inflation(double level) const {
+  return std::clamp((kPriorMatches * level + sum_) / (kPriorMatches + weight_), kLeast, kMost);
 }
 
 double PredictScore(double score, const ScoreParams& params) {

@@ -18,8 +18,8 @@ namespace vo {
 
 // Normalised residual of one match.
 struct Residual {
-  double ratio = 1;   // squared error over R; 1 on average where R is right
-  double weight = 0;  // 0 ... 1: little where the landmark itself is known less well than it is seen
+  double ratio = 1;   // r'S^-1 R S^-1 r / tr(S^-1 R), S = R + the landmark's: 1 on average where R is right
+  double weight = 0;  // tr((S^-1 R)^2) / 2, 0 ... 1: little where the landmark is known less well than it is seen
 
   // r: match less prediction; of the landmark: its own covariance in the image.
   static Residual Of(const Eigen::Vector2d& r, const Eigen::Matrix2d& of_landmark, const Eigen::Matrix2d& R);
@@ -30,11 +30,11 @@ struct Residual {
 class ResidualHistory {
  public:
   void Add(const Residual& residual);
-  // By what to multiply R from now on: twice the mean of the ratios, since errors of neighbouring frames are alike; no
-  // less than 1, for the same reason, and no more than kMost. 2 for a landmark that has not been seen again.
-  double Inflation() const;
+  // By what to multiply R, kLeast to kMost: the mean of the ratios and, with the weight of three matches, `level`, the
+  // mean of all landmarks.
+  double Inflation(double level) const;
 
-  static constexpr double kMost = 16;
+  static constexpr double kLeast = 0.1, kMost = 64;
 
  private:
   double weight_ = 0, sum_ = 0;

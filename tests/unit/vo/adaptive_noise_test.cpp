@@ -11,7 +11,7 @@ namespace {
 // the ratios are `claimed` times those of a Kalman filter.
 vo::MotionInput MeanInput(const vo::MotionInput& truth, double claimed) {
   constexpr int kFrames = 6000, kSettled = 1000;
-  constexpr double kNoise = 1e-6;  // variance of the measured pose
+  constexpr double kNoise = 1e-7;  // variance of the measured pose
   vo::Matrix6 model = vo::Matrix6::Identity() * 1e-4, measured = vo::Matrix6::Identity() * kNoise;
   model.bottomRightCorner<3, 3>() *= 0.1;
   vo::Matrix6 actual = model;
@@ -44,16 +44,23 @@ vo::MotionInput MeanInput(const vo::MotionInput& truth, double claimed) {
 // The estimate is an average over 20 independent frames, the mean over 5000 frames one over 250 of these: its standard
 // deviation is 1.2 %. False alarm rate 2e-4: two limits of four standard deviations and the measured pose's share.
 TEST(AdaptiveNoise, MeanIsTheTrueDensityTimesTheMargin) {
-  const vo::MotionInput mean = MeanInput({16, 9}, 1);
-  EXPECT_NEAR(mean.position_noise / (4 * 16), 1, 0.06);
-  EXPECT_NEAR(mean.orientation_noise / (4 * 9), 1, 0.06);
-  EXPECT_GT(std::abs(MeanInput({16, 9}, 0.5).position_noise / (4 * 16) - 1), 0.5) << "halved covariances are seen";
+  constexpr double kMargin = 1.4;
+  for (const double density : {16.0, 0.01}) {
+    const vo::MotionInput mean = MeanInput({density, density / 2}, 1);
+    EXPECT_NEAR(mean.position_noise / (kMargin * density), 1, 0.06);
+    EXPECT_NEAR(mean.orientation_noise / (kMargin * density / 2), 1, 0.06);
+  }
+  EXPECT_GT(std::abs(MeanInput({16, 9}, 0.5).position_noise / (kMargin * 16) - 1), 0.5)
+      << "halved covariances are seen";
 }
 
-TEST(AdaptiveNoise, NeverBelowTheModel) {
-  const vo::MotionInput mean = MeanInput({0.01, 0.01}, 1);
-  EXPECT_NEAR(mean.position_noise, 1, 0.05);
-  EXPECT_NEAR(mean.orientation_noise, 1, 0.05);
+TEST(AdaptiveNoise, NoiseThatWasUnderstatedIsReplaced) {
+  const vo::MotionInput used{0.5, 3};
+  EXPECT_FALSE(vo::AsShown(used, {1.9, 0.2}));
+  const auto shown = vo::AsShown(used, {1.9, 7});
+  ASSERT_TRUE(shown);
+  EXPECT_EQ(shown->position_noise, 0.5);
+  EXPECT_EQ(shown->orientation_noise, 21);
 }
 
 TEST(AdaptiveNoise, FailedPredictionIsWidenedByWhatItShows) {
@@ -63,6 +70,7 @@ TEST(AdaptiveNoise, FailedPredictionIsWidenedByWhatItShows) {
   EXPECT_EQ(wide.orientation_noise, 60);
   EXPECT_EQ(wide.turn->coeffs(), used.turn->coeffs());
   EXPECT_EQ(wide.coasting_s, 0.5);
+  EXPECT_EQ(vo::Widened({0.01, 0.01}, {6, 6}).position_noise, 6) << "no less than the settings";
 }
 
 }  // namespace

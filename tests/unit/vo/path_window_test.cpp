@@ -319,7 +319,12 @@ TEST(PathWindow, PredictsImagesAfterDrift) {
   for (std::size_t i = 0; i < scene.tracks.size(); ++i) {
     const vo::Track& track = scene.tracks[i];
     const auto S_of = [&](const vo::PathGaussian& of) {
-      return vo::LandmarkOnPath(scene.input(), track, of, theta[i]).Image().covariance;
+      const vo::LandmarkOnPath landmark(scene.input(), track, of, theta[i]);
+      Eigen::MatrixXd J = Eigen::MatrixXd::Zero(2, 24);
+      const vo::LandmarkOnPath::Conditional given_path = landmark.GivenPath();
+      const vo::Projection h = landmark.Image(given_path, J);
+      Eigen::Matrix2d S = J * of.covariance * J.transpose() + h.J_landmark * given_path.P * h.J_landmark.transpose();
+      return Eigen::Matrix2d(0.5 * (S + S.transpose()));
     };
     EXPECT_EQ(S_of(drifted)(0, 1), S_of(drifted)(1, 0));
     if (track.anchor_slot < 0) continue;

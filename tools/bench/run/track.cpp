@@ -47,8 +47,13 @@ TrackSettings ReadSettings(const TrackOptions& options) {
   if (!odometry.Has("target")) out.params.landmark.scale_sigma = kUnknownScale;  // which has the scale
   out.params.motion.adaptive = true;
   out.params.landmark.proving_matches = kProvingMatches;
+  out.params.filter.lag = kLag;
+  out.params.filter.weight = vo::Weight::uniform;
+  out.params.filter.particles = kParticles;
   out.params.calibration.estimate = true;
   const bool position_noise_given = odometry.Child("motion").Has("position_noise");
+  if (odometry.Child("filter").Has("lag") && !odometry.Child("filter").Has("weight"))  // without one, none is uniform
+    out.params.filter.weight = vo::Weight::evidence;
   ReadOdometry(odometry, out.params);
   if (!position_noise_given)
     out.params.motion.position_noise = kAccelerationPerDepth / out.params.landmark.inverse_depth;

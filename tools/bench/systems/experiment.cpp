@@ -47,6 +47,9 @@ const Overrides& SettingsOfImagesAlone() {
         {"odometry.landmark.inverse_depth_sigma", fmt::format("{}", defaults.landmark.inverse_depth_sigma)},
         {"odometry.landmark.scale_sigma", fmt::format("{}", kUnknownScale)},
         {"odometry.landmark.proving_matches", fmt::format("{}", kProvingMatches)},
+        {"odometry.filter.lag", fmt::format("{}", kLag)},
+        {"odometry.filter.weight", "uniform"},
+        {"odometry.filter.particles", fmt::format("{}", kParticles)},
         {"odometry.calibration.estimate", "true"}};
   }();
   return settings;

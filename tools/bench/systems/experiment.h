@@ -58,6 +58,7 @@ inline constexpr double kUnknownScale = 0.5;  // of a recording: the size of its
 // unknown scale only their ratio matters.
 inline constexpr double kAccelerationPerDepth = 0.625;
 inline constexpr int kProvingMatches = 5;
+inline constexpr int kLag = 5, kParticles = 16;
 
 // Settings of ours that know images and calibration alone, as `track` does: no start, no noise that suits the motion,
 // no shutter.
