@@ -23,6 +23,7 @@
 #include "tools/bench/result/result.h"
 #include "tools/bench/run/campaign_sequence.h"
 #include "tools/bench/run/external_task.h"
+#include "tools/bench/run/recorded_sequence.h"
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/experiment.h"
 #include "tools/bench/systems/prior.h"
@@ -45,6 +46,7 @@ struct TaskOutput {
   evaluation::EstimateRun run;
   Truth truth;
   evaluation::JudgeOptions how;
+  std::int64_t begin_ns = 0;  // what the campaign counts its times from
   double seconds = 0;
 };
 
@@ -74,14 +76,51 @@ Truth TruthOfAllFrames(const sim::Scenario& scenario) {
   return truth;
 }
 
-TaskOutput PlayImages(const Experiment& experiment, const fs::path& sequence, const std::string& system,
+// What a task with pictures knows, and is judged by.
+struct SeenSequence {
+  vo::Camera camera;  // that ours is given
+  vo::Params odometry;
+  PriorSettings prior;
+  vo::Prior start;
+  Truth truth;
+  std::vector<std::int64_t> stamps_ns;  // of all frames
+  PicturesOfSequence pictures;
+};
+
+SeenSequence Seen(const Experiment& experiment, std::uint64_t seed) {
+  const sim::Scenario& scenario = experiment.scenario;
+  Truth truth = TruthOfAllFrames(scenario);
+  const std::vector<std::int64_t> stamps_ns = evaluation::StampsOf(truth.poses);
+  return {CameraForOdometry(experiment),
+          experiment.odometry,
+          experiment.prior,
+          PriorOf(experiment.prior, scenario.motion, truth, seed),
+          std::move(truth),
+          stamps_ns,
+          {scenario.camera, scenario.time.rate_hz, scenario.sensor}};
+}
+
+SeenSequence Seen(const Recording& recording) {
+  const PriorSettings& prior = recording.settings.prior;
+  std::vector<std::int64_t> stamps_ns;
+  for (const vo::SequenceReader::Entry& frame : recording.frames) stamps_ns.push_back(frame.stamp_ns);
+  const double seconds = 1e-9 * static_cast<double>(stamps_ns.back() - stamps_ns.front());
+  const double rate_hz = stamps_ns.size() > 1 ? static_cast<double>(stamps_ns.size() - 1) / seconds : 30;
+  return {ForOdometry(recording.camera, prior),
+          recording.settings.params,
+          prior,
+          PriorAtOrigin(prior),
+          recording.truth,
+          stamps_ns,
+          {ToSimulator(recording.camera), rate_hz, std::nullopt}};
+}
+
+TaskOutput PlayImages(const SeenSequence& seen, const fs::path& sequence, const std::string& system,
                       std::uint64_t seed) {
   vo::SequenceReader reader = Input([&] { return vo::SequenceReader(sequence); });
   TaskOutput output;
-  output.truth = TruthOfAllFrames(experiment.scenario);
-  Tracker tracker(
-      {system, seed, experiment.odometry, PriorOf(experiment.prior, experiment.scenario.motion, output.truth, seed)},
-      CameraForOdometry(experiment), static_cast<std::int64_t>(reader.size()), std::nullopt, "");
+  Tracker tracker({system, seed, seen.odometry, seen.start}, seen.camera, static_cast<std::int64_t>(reader.size()),
+                  std::nullopt, "");
   while (const std::optional<vo::Frame> frame = Input([&] { return reader.Next(); })) tracker.Track(*frame);
   output.run = tracker.Estimates();
   output.seconds = tracker.entry().seconds;
@@ -124,7 +163,8 @@ void WriteTimes(const fs::path& folder, const Clock& clock, double tracking_s,
 
 // Without the frames that the campaign does not judge.
 evaluation::Metrics JudgeOutside(const campaign::Omitted& omit, const TaskOutput& output) {
-  const std::int64_t from_ns = std::llround(1e9 * omit.from_s), until_ns = std::llround(1e9 * omit.until_s);
+  const std::int64_t from_ns = output.begin_ns + std::llround(1e9 * omit.from_s);
+  const std::int64_t until_ns = output.begin_ns + std::llround(1e9 * omit.until_s);
   evaluation::JudgeOptions how = output.how;
   if (how.frame_stamps_ns)
     std::erase_if(*how.frame_stamps_ns, [&](std::int64_t at_ns) { return at_ns >= from_ns && at_ns < until_ns; });
@@ -144,6 +184,12 @@ void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& o
   } else {
     evaluation::WriteEstimateRun(folder, {output.run.trajectory, output.run.live, {}, {}});
   }
+}
+
+std::optional<Recording> LoadRecording(const Campaign& campaign, const TaskChoice& choice) {
+  const campaign::ScenarioEntry& entry = campaign.scenarios[choice.scenario];
+  if (!entry.recorded) return std::nullopt;
+  return Input([&] { return ReadRecording(entry, campaign::ChangesAt(campaign, choice)); });
 }
 
 Experiment Load(const Campaign& campaign, const TaskChoice& choice) {
@@ -176,6 +222,14 @@ void RefusePoints(const Campaign& campaign, const TaskChoice& choice, const camp
   if (system.system.empty()) refuse("", "a world of points has no pictures for '" + system.name + "'");
 }
 
+// It would not reach a system that is not ours, and must not look as if it did.
+void RefuseFocalError(const Campaign& campaign, const TaskChoice& choice, const PriorSettings& prior,
+                      const campaign::TaskRunner::Refuse& refuse) {
+  const campaign::SystemEntry& system = campaign.systems[choice.system];
+  if (!system.system.empty() || prior.focal_error == 0) return;
+  refuse("prior.focal_error", "'" + system.name + "' is not ours: it is given the camera as it is");
+}
+
 // A stamp in another unit, or from another clock, may fit one frame by chance; and what comes last.
 void CheckStamps(const TaskOutput& output, TaskRecord& record) {
   if (record.status != campaign::Status::ok || output.run.trajectory.empty()) return;
@@ -200,6 +254,26 @@ void CheckStamps(const TaskOutput& output, TaskRecord& record) {
   }
 }
 
+TaskOutput RunOnPictures(const Campaign& campaign, const campaign::SystemEntry& system, const SeenSequence& seen,
+                         const SequenceCache& cache, const std::string& sequence, const fs::path& folder,
+                         TaskRecord& record) {
+  TaskOutput output;
+  if (system.system.empty()) {
+    const ExternalAnswer answer = RunExternal(system.external, cache, sequence, seen.pictures, folder,
+                                              campaign.keep == campaign::Keep::all, record);
+    output.run.trajectory = answer.trajectory;
+    output.seconds = answer.seconds;
+    output.how.frame_stamps_ns = seen.stamps_ns;
+    CheckStamps(output, record);
+  } else {
+    output = PlayImages(seen, cache.PathOf(sequence), system.system, record.seed);
+    output.how = JudgeOptionsOf(seen.prior);
+  }
+  output.truth = seen.truth;
+  output.begin_ns = seen.stamps_ns.front();
+  return output;
+}
+
 class CampaignTasks : public campaign::TaskRunner {
  public:
   std::vector<std::string> Systems() const override { return SystemNames(); }
@@ -207,19 +281,22 @@ class CampaignTasks : public campaign::TaskRunner {
 
   campaign::TaskSettings Settings(const Campaign& campaign, const TaskChoice& choice,
                                   const Refuse& refuse) const override {
+    const campaign::ScenarioEntry& entry = campaign.scenarios[choice.scenario];
+    if (entry.recorded) {
+      const Recording recording = ReadRecording(entry, campaign::ChangesAt(campaign, choice));
+      RefuseFocalError(campaign, choice, recording.settings.prior, refuse);
+      return {true, recording.resolved, campaign::Digest(recording.resolved)};
+    }
     const Experiment experiment = Load(campaign, choice);
     const bool images = !experiment.scenario.points;
     if (!images) RefusePoints(campaign, choice, refuse);
-    const campaign::SystemEntry& system = campaign.systems[choice.system];
-    if (system.system.empty() && experiment.prior.focal_error != 0) {
-      // It would not reach the system, and must not look as if it did.
-      refuse("prior.focal_error", "'" + system.name + "' is not ours: it is given the camera as it is");
-    }
+    RefuseFocalError(campaign, choice, experiment.prior, refuse);
     return {images, experiment.resolved, DigestOfSettings(experiment)};
   }
 
   std::optional<std::string> SequenceName(const Campaign& campaign, const TaskChoice& choice,
                                           SequenceCache& cache) const override {
+    if (const auto recording = LoadRecording(campaign, choice)) return KeyOf(*recording, cache);
     return SequenceKey(Input([&] { return Load(campaign, choice); }).scenario, cache);
   }
 
@@ -233,6 +310,7 @@ class CampaignTasks : public campaign::TaskRunner {
 
   void Render(const Campaign& campaign, const TaskChoice& choice, const SequenceCache& cache,
               const std::string& sequence, int threads) const override {
+    if (const auto recording = LoadRecording(campaign, choice)) return LinkInto(cache, sequence, *recording);
     RenderInto(cache, sequence, Input([&] { return Load(campaign, choice); }).scenario, threads);
   }
 
@@ -242,20 +320,18 @@ class CampaignTasks : public campaign::TaskRunner {
     cv::setNumThreads(1);
     const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
     const campaign::SystemEntry& system = campaign.systems[choice.system];
-    const Experiment experiment = Input([&] { return Load(campaign, choice); });
     TaskOutput output;
-    if (system.system.empty()) {
-      const Clock tracking;
-      output.run.trajectory = RunExternal(system.external, cache, sequence, experiment.scenario, folder,
-                                          campaign.keep == campaign::Keep::all, record);
-      output.seconds = tracking.seconds();
-      output.truth = TruthOfAllFrames(experiment.scenario);
-      output.how.frame_stamps_ns = evaluation::StampsOf(output.truth.poses);
-      CheckStamps(output, record);
+    if (const auto recording = LoadRecording(campaign, choice)) {
+      LinkInto(cache, sequence, *recording);  // which may lie elsewhere by now
+      output = RunOnPictures(campaign, system, Seen(*recording), cache, sequence, folder, record);
     } else {
-      output = experiment.scenario.points ? PlayPoints(experiment, system.system, record.seed)
-                                          : PlayImages(experiment, cache.PathOf(sequence), system.system, record.seed);
-      output.how = JudgeOptionsOf(experiment.prior);
+      const Experiment experiment = Input([&] { return Load(campaign, choice); });
+      if (experiment.scenario.points) {
+        output = PlayPoints(experiment, system.system, record.seed);
+        output.how = JudgeOptionsOf(experiment.prior);
+      } else {
+        output = RunOnPictures(campaign, system, Seen(experiment, record.seed), cache, sequence, folder, record);
+      }
     }
     const std::optional<evaluation::Timing> frame = TakeTimes(output);
     if (record.status == campaign::Status::ok) {

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <exception>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "tools/bench/result/result.h"
 #include "tools/bench/result/system_summary.h"
 #include "tools/bench/run/commands.h"
+#include "tools/bench/run/recorded_sequence.h"
 #include "tools/bench/run/run_common.h"
 #include "tools/bench/sequence/sequence_truth.h"
 #include "tools/bench/systems/experiment.h"
@@ -23,7 +23,6 @@
 #include "tools/bench/tracking/tracker.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "vo/filter/watched_filter.h"
-#include "vo/geometry/camera_file.h"
 #include "vo/sequence/read_ahead.h"
 
 namespace vobench {
@@ -32,70 +31,11 @@ namespace {
 
 constexpr std::int64_t kFramesOfACamera = 3000;  // not known: pictures are kept at every 300th frame
 
-struct TrackSettings {
-  vo::Params params;
-  PriorSettings prior = kPriorOfImagesAlone;
-  std::string resolved;
-};
-
 TrackSettings ReadSettings(const TrackOptions& options) {
   settings::Document document =
       options.settings ? settings::Document::FromFile(*options.settings) : settings::Document::FromText("", "--set");
   for (const auto& [key, value] : options.overrides) document.Override(key, value);
-  TrackSettings out;
-  settings::Section odometry = document.root().Child("odometry");
-  if (!odometry.Has("target")) out.params.landmark.scale_sigma = kUnknownScale;  // which has the scale
-  out.params.motion.adaptive = true;
-  out.params.landmark.proving_matches = kProvingMatches;
-  out.params.calibration.estimate = true;
-  const bool position_noise_given = odometry.Child("motion").Has("position_noise");
-  ReadOdometry(odometry, out.params);
-  if (!position_noise_given)
-    out.params.motion.position_noise = kAccelerationPerDepth / out.params.landmark.inverse_depth;
-  settings::Section prior = document.root().Child("prior");
-  ReadPrior(prior, out.prior);
-  if (out.prior.start == PriorSettings::Start::truth) {
-    prior.Reject("start", "'truth' is for `vobench run`: this command tells the odometry nothing of the truth");
-  }
-  document.ThrowIfBad();
-  out.resolved = document.Resolved();
-  return out;
-}
-
-vo::Camera ReadCamera(const TrackOptions& options) {
-  if (options.camera) return vo::CameraFrom(*options.camera);
-  if (!fs::is_directory(options.sequence)) {
-    throw BadInput(fmt::format("{}: a video says nothing of its camera; say which one with --camera PRESET|FILE",
-                               options.sequence.string()));
-  }
-  const fs::path file = options.sequence / "camera.yaml";
-  const fs::path euroc = options.sequence / "mav0/cam0/sensor.yaml";
-  if (!fs::exists(file) && fs::exists(euroc)) return vo::ReadCamera(euroc);
-  if (!fs::exists(file)) {
-    throw BadInput(fmt::format("{}: is not there; say which camera with --camera PRESET|FILE", file.string()));
-  }
-  return vo::ReadCamera(file);
-}
-
-std::string Record(const vo::Camera& c, const std::string& resolved) {
-  nlohmann::ordered_json all;
-  all["camera"] = {{"width", c.width},
-                   {"height", c.height},
-                   {"fx", c.fx},
-                   {"fy", c.fy},
-                   {"cx", c.cx},
-                   {"cy", c.cy},
-                   {"distortion",
-                    {{"model", c.lens == vo::Lens::fisheye ? "fisheye" : "radial_tangential"},
-                     {"k1", c.k1},
-                     {"k2", c.k2},
-                     {"p1", c.p1},
-                     {"p2", c.p2},
-                     {"k3", c.k3},
-                     {"k4", c.k4}}},
-                   {"rolling_shutter_s", c.readout_s ? nlohmann::ordered_json(*c.readout_s) : nullptr}};
-  all.update(nlohmann::ordered_json::parse(resolved));
-  return all.dump(2);
+  return ReadTrackSettings(document);
 }
 
 }  // namespace
@@ -104,7 +44,7 @@ void Track(const TrackOptions& options) {
   const Clock clock;
   if (options.map) RequireMapPath(*options.map, options.output);
   const std::unique_ptr<vo::FrameSource> source = Input([&] { return vo::OpenFrames(options.sequence.string()); });
-  vo::Camera camera = Input([&] { return ReadCamera(options); });
+  vo::Camera camera = Input([&] { return CameraOfSequence(options.sequence, options.camera); });
   const TrackSettings settings = Input([&] { return ReadSettings(options); });
   const std::optional<Truth> truth = Input([&] { return ReadSequenceTruth(options.sequence); });
   std::optional<MatchErrors> match_errors;
@@ -112,8 +52,7 @@ void Track(const TrackOptions& options) {
     if (!truth) throw BadInput(fmt::format("{}: has no truth for --truth", options.sequence.string()));
     Input([&] { return &match_errors.emplace(options.sequence, camera, *truth); });
   }
-  camera.fx *= 1 + settings.prior.focal_error;
-  camera.fy *= 1 + settings.prior.focal_error;
+  camera = ForOdometry(camera, settings.prior);
   const std::optional<std::int64_t> frames = source->Count();
   OutputFolder out(options.output, kResultMarker, ResultNames(SystemNames()));
 
@@ -177,7 +116,7 @@ void Track(const TrackOptions& options) {
   const std::string warning = run.entry.calibration ? CalibrationWarning(*run.entry.calibration) : "";
   if (!warning.empty()) description.notes.push_back("Warning: " + warning);
   description.seconds = clock.seconds();
-  description.settings = Record(camera, settings.resolved);
+  description.settings = RecordOfTracking(camera, settings.resolved);
   description.versions = Versions();
   result.description = std::move(description);
   if (options.map && !end) WriteMap(*options.map, map);

@@ -13,6 +13,24 @@ vo::Camera ToOdometry(const sim::CameraParams& camera) {
       width, height, fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, fisheye ? vo::Lens::fisheye : vo::Lens::radial_tangential};
 }
 
+sim::CameraParams ToSimulator(const vo::Camera& camera) {
+  const auto& [width, height, fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, lens, readout_s] = camera;
+  const bool fisheye = lens == vo::Lens::fisheye;
+  return {width,
+          height,
+          fx,
+          fy,
+          cx,
+          cy,
+          k1,
+          k2,
+          p1,
+          p2,
+          k3,
+          k4,
+          fisheye ? sim::Lens::fisheye : sim::Lens::radial_tangential};
+}
+
 vo::Camera CameraOf(const sim::Scenario& scenario) {
   vo::Camera camera = ToOdometry(scenario.camera);
   camera.readout_s = scenario.sensor.readout_s;

@@ -33,6 +33,27 @@ void ReadOdometry(settings::Section section, vo::Params& params) {
 
 void ReadPrior(settings::Section section, PriorSettings& prior) { settings::ReadFields(section, prior); }
 
+TrackSettings ReadTrackSettings(settings::Document document) {
+  TrackSettings out;
+  settings::Section odometry = document.root().Child("odometry");
+  if (!odometry.Has("target")) out.params.landmark.scale_sigma = kUnknownScale;  // which has the scale
+  out.params.motion.adaptive = true;
+  out.params.landmark.proving_matches = kProvingMatches;
+  out.params.calibration.estimate = true;
+  const bool position_noise_given = odometry.Child("motion").Has("position_noise");
+  ReadOdometry(odometry, out.params);
+  if (!position_noise_given)
+    out.params.motion.position_noise = kAccelerationPerDepth / out.params.landmark.inverse_depth;
+  settings::Section prior = document.root().Child("prior");
+  ReadPrior(prior, out.prior);
+  if (out.prior.start == PriorSettings::Start::truth) {
+    prior.Reject("start", "'truth' is for `vobench run`: this command tells the odometry nothing of the truth");
+  }
+  document.ThrowIfBad();
+  out.resolved = document.Resolved();
+  return out;
+}
+
 const Overrides& SettingsOfImagesAlone() {
   static const Overrides settings = [] {
     const vo::Params defaults;
@@ -52,12 +73,15 @@ const Overrides& SettingsOfImagesAlone() {
   return settings;
 }
 
-vo::Camera CameraForOdometry(const Experiment& experiment) {
-  vo::Camera camera = CameraOf(experiment.scenario);
-  if (!experiment.prior.shutter_known) camera.readout_s = std::nullopt;
-  camera.fx *= 1 + experiment.prior.focal_error;
-  camera.fy *= 1 + experiment.prior.focal_error;
+vo::Camera ForOdometry(vo::Camera camera, const PriorSettings& prior) {
+  if (!prior.shutter_known) camera.readout_s = std::nullopt;
+  camera.fx *= 1 + prior.focal_error;
+  camera.fy *= 1 + prior.focal_error;
   return camera;
+}
+
+vo::Camera CameraForOdometry(const Experiment& experiment) {
+  return ForOdometry(CameraOf(experiment.scenario), experiment.prior);
 }
 
 Experiment LoadExperiment(const std::filesystem::path& scenario, const Overrides& overrides) {

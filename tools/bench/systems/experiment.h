@@ -59,6 +59,15 @@ inline constexpr double kUnknownScale = 0.5;  // of a recording: the size of its
 inline constexpr double kAccelerationPerDepth = 0.625;
 inline constexpr int kProvingMatches = 5;
 
+// What `track` starts from: these, unless the document's sections `odometry` and `prior` say otherwise. Throws
+// settings::Error.
+struct TrackSettings {
+  vo::Params params;
+  PriorSettings prior = kPriorOfImagesAlone;
+  std::string resolved;  // both sections, as JSON
+};
+TrackSettings ReadTrackSettings(settings::Document document);
+
 // Settings of ours that know images and calibration alone, as `track` does: no start, no noise that suits the motion,
 // no shutter.
 const Overrides& SettingsOfImagesAlone();
@@ -66,6 +75,7 @@ const Overrides& SettingsOfImagesAlone();
 // The camera that the odometry is given: the scenario's with its rolling shutter, but for prior.focal_error and
 // prior.shutter_known.
 vo::Camera CameraForOdometry(const Experiment& experiment);
+vo::Camera ForOdometry(vo::Camera camera, const PriorSettings& prior);
 
 // Throws BadInput with every problem of all three parts.
 Experiment ReadExperiment(const std::filesystem::path& scenario, const Overrides& overrides);
