@@ -114,7 +114,6 @@ void CampaignFile::ReadSequences(const std::filesystem::path& folder) {
     std::int64_t count = 0;
     if (section.Read("frames", count, Range::AtLeast(1))) frames.count = count;
     section.ReadRaw("set", entry.set);
-    RequireOdometry(section, "set", entry.set);
     scenarios_.push_back(section);
   }
 }

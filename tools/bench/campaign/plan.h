@@ -30,9 +30,9 @@ struct RecordedFrames {
 struct ScenarioEntry {
   std::string name;
   std::filesystem::path file;                 // of a recorded sequence its folder
-  std::optional<RecordedFrames> recorded;     // of one
   Changes set;                                // of a recorded sequence: of odometry and prior
   std::map<std::string, Changes> for_system;  // by the system's name: of odometry and prior
+  std::optional<RecordedFrames> recorded = {};
 };
 
 // One value of something that is varied.
