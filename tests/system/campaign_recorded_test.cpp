@@ -148,8 +148,8 @@ TEST_F(CampaignRecordedTest, ProblemsAreListedBeforeAnythingRuns) {
   EXPECT_EQ(outcome.status, 2);
   for (const char* expected :
        {"c.yaml:2:12: 'path': gone: no such folder", "c.yaml:3:12: 'path': no_truth: has no truth",
-        "c.yaml:4:34: 'camera': ", "c.yaml:5:12: 'camera': a preset or a calibration file is needed",
-        "c.yaml:6:34: 'camera': rec/rgb/0.000000000.png: is 160 x 120 pixels, the camera's pictures 640 x 480",
+        "c.yaml:4:34: 'camera': ", "c.yaml:5:12: 'camera': rec/camera.yaml: is not there",
+        "c.yaml:6:12: 'path': its pictures are 160 x 120 pixels, those of the camera 640 x 480",
         "c.yaml:7:59: 'first': it has 12 frames", "c.yaml:8:70: 'frames': it has 12 frames",
         "c.yaml:9:57: 'prior.start': ", "c.yaml:10:57: 'sensor.gain'",
         "c.yaml:11:12: 'path': the environment has no VOBENCH_NOWHERE",

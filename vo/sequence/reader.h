@@ -13,9 +13,10 @@ namespace vo {
 
 class SequenceReader : public FrameSource {
  public:
+  enum class Images { needed, not_asked_for };
   // Reads and checks the list of frames. Throws std::runtime_error naming file and lines: folder or list missing, no
   // frames, a malformed line, stamps that do not increase (both lines named), missing image files.
-  explicit SequenceReader(const std::filesystem::path& folder);
+  explicit SequenceReader(const std::filesystem::path& folder, Images images = Images::needed);
 
   struct Entry {
     std::int64_t stamp_ns;

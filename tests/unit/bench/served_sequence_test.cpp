@@ -46,7 +46,7 @@ class ServedSequenceTest : public testing::Test {
     system.rectified = rectified;
     system.layout = layout;
     RenderInto(cache_, "key", scenario, 2);
-    return Serve(cache_, "key", {scenario.camera, scenario.time.rate_hz, scenario.sensor}, system);
+    return Serve(cache_, "key", scenario, true, system);
   }
   campaign::Folder here_;
   campaign::SequenceCache cache_{here_.path()};

@@ -110,9 +110,9 @@ void CampaignFile::ReadSequences(const std::filesystem::path& folder) {
       const std::filesystem::path file = folder / WithEnvironment(section, "camera", camera);
       frames.camera = std::filesystem::exists(file) ? file.string() : camera;
     }
-    section.Read("first", frames.first, Range::AtLeast(0));
+    section.Read("first", frames.first, Range{0, 1e9});
     std::int64_t count = 0;
-    if (section.Read("frames", count, Range::AtLeast(1))) frames.count = count;
+    if (section.Read("frames", count, Range{1, 1e9})) frames.count = count;
     section.ReadRaw("set", entry.set);
     scenarios_.push_back(section);
   }

@@ -76,55 +76,15 @@ Truth TruthOfAllFrames(const sim::Scenario& scenario) {
   return truth;
 }
 
-// What a task with pictures knows, and is judged by.
-struct SeenSequence {
-  vo::Camera camera;  // that ours is given
-  vo::Params odometry;
-  PriorSettings prior;
-  vo::Prior start;
-  Truth truth;
-  std::vector<std::int64_t> stamps_ns;  // of all frames
-  PicturesOfSequence pictures;
-};
-
-SeenSequence Seen(const Experiment& experiment, std::uint64_t seed) {
-  const sim::Scenario& scenario = experiment.scenario;
-  Truth truth = TruthOfAllFrames(scenario);
-  const std::vector<std::int64_t> stamps_ns = evaluation::StampsOf(truth.poses);
-  return {CameraForOdometry(experiment),
-          experiment.odometry,
-          experiment.prior,
-          PriorOf(experiment.prior, scenario.motion, truth, seed),
-          std::move(truth),
-          stamps_ns,
-          {scenario.camera, scenario.time.rate_hz, scenario.sensor}};
-}
-
-SeenSequence Seen(const Recording& recording) {
-  const PriorSettings& prior = recording.settings.prior;
-  std::vector<std::int64_t> stamps_ns;
-  for (const vo::SequenceReader::Entry& frame : recording.frames) stamps_ns.push_back(frame.stamp_ns);
-  const double seconds = 1e-9 * static_cast<double>(stamps_ns.back() - stamps_ns.front());
-  const double rate_hz = stamps_ns.size() > 1 ? static_cast<double>(stamps_ns.size() - 1) / seconds : 30;
-  return {ForOdometry(recording.camera, prior),
-          recording.settings.params,
-          prior,
-          PriorAtOrigin(prior),
-          recording.truth,
-          stamps_ns,
-          {ToSimulator(recording.camera), rate_hz, std::nullopt}};
-}
-
-TaskOutput PlayImages(const SeenSequence& seen, const fs::path& sequence, const std::string& system,
-                      std::uint64_t seed) {
+void PlayImages(const Experiment& experiment, const fs::path& sequence, const std::string& system, std::uint64_t seed,
+                TaskOutput& output) {
   vo::SequenceReader reader = Input([&] { return vo::SequenceReader(sequence); });
-  TaskOutput output;
-  Tracker tracker({system, seed, seen.odometry, seen.start}, seen.camera, static_cast<std::int64_t>(reader.size()),
-                  std::nullopt, "");
+  Tracker tracker(
+      {system, seed, experiment.odometry, PriorOf(experiment.prior, experiment.scenario.motion, output.truth, seed)},
+      CameraForOdometry(experiment), static_cast<std::int64_t>(reader.size()), std::nullopt, "");
   while (const std::optional<vo::Frame> frame = Input([&] { return reader.Next(); })) tracker.Track(*frame);
   output.run = tracker.Estimates();
   output.seconds = tracker.entry().seconds;
-  return output;
 }
 
 // Times differ from run to run: they are kept apart. None of a program that does not say them.
@@ -186,17 +146,22 @@ void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& o
   }
 }
 
-std::optional<Recording> LoadRecording(const Campaign& campaign, const TaskChoice& choice) {
-  const campaign::ScenarioEntry& entry = campaign.scenarios[choice.scenario];
-  if (!entry.recorded) return std::nullopt;
-  return Input([&] { return ReadRecording(entry, campaign::ChangesAt(campaign, choice)); });
-}
+// What is rendered or played, or was recorded.
+struct Task {
+  Experiment experiment;
+  std::optional<Recording> recording;
+};
 
-Experiment Load(const Campaign& campaign, const TaskChoice& choice) {
+Task Load(const Campaign& campaign, const TaskChoice& choice) {
+  const campaign::ScenarioEntry& entry = campaign.scenarios[choice.scenario];
   const campaign::Changes changes = campaign::ChangesAt(campaign, choice);
-  Experiment experiment = LoadExperiment(campaign.scenarios[choice.scenario].file, changes);
+  if (entry.recorded) {
+    const Recording recording(entry, changes);
+    return {recording.experiment, recording};
+  }
+  Experiment experiment = LoadExperiment(entry.file, changes);
   const auto asks = [](const auto& change) { return change.first == "truth"; };
-  if (experiment.scenario.points || std::any_of(changes.begin(), changes.end(), asks)) return experiment;
+  if (experiment.scenario.points || std::any_of(changes.begin(), changes.end(), asks)) return {experiment, {}};
   // No truth beside poses and velocities unless the campaign asks for it: it would not be read here.
   experiment.scenario.truth.streams.clear();
   for (std::string* resolved : {&experiment.scenario.resolved, &experiment.resolved}) {
@@ -204,7 +169,7 @@ Experiment Load(const Campaign& campaign, const TaskChoice& choice) {
     json["truth"] = nlohmann::ordered_json::array();
     *resolved = json.dump(2);
   }
-  return experiment;
+  return {experiment, {}};
 }
 
 // Of pictures the key says which files they were made from.
@@ -220,14 +185,6 @@ void RefusePoints(const Campaign& campaign, const TaskChoice& choice, const camp
   }
   const campaign::SystemEntry& system = campaign.systems[choice.system];
   if (system.system.empty()) refuse("", "a world of points has no pictures for '" + system.name + "'");
-}
-
-// It would not reach a system that is not ours, and must not look as if it did.
-void RefuseFocalError(const Campaign& campaign, const TaskChoice& choice, const PriorSettings& prior,
-                      const campaign::TaskRunner::Refuse& refuse) {
-  const campaign::SystemEntry& system = campaign.systems[choice.system];
-  if (!system.system.empty() || prior.focal_error == 0) return;
-  refuse("prior.focal_error", "'" + system.name + "' is not ours: it is given the camera as it is");
 }
 
 // A stamp in another unit, or from another clock, may fit one frame by chance; and what comes last.
@@ -254,26 +211,6 @@ void CheckStamps(const TaskOutput& output, TaskRecord& record) {
   }
 }
 
-TaskOutput RunOnPictures(const Campaign& campaign, const campaign::SystemEntry& system, const SeenSequence& seen,
-                         const SequenceCache& cache, const std::string& sequence, const fs::path& folder,
-                         TaskRecord& record) {
-  TaskOutput output;
-  if (system.system.empty()) {
-    const ExternalAnswer answer = RunExternal(system.external, cache, sequence, seen.pictures, folder,
-                                              campaign.keep == campaign::Keep::all, record);
-    output.run.trajectory = answer.trajectory;
-    output.seconds = answer.seconds;
-    output.how.frame_stamps_ns = seen.stamps_ns;
-    CheckStamps(output, record);
-  } else {
-    output = PlayImages(seen, cache.PathOf(sequence), system.system, record.seed);
-    output.how = JudgeOptionsOf(seen.prior);
-  }
-  output.truth = seen.truth;
-  output.begin_ns = seen.stamps_ns.front();
-  return output;
-}
-
 class CampaignTasks : public campaign::TaskRunner {
  public:
   std::vector<std::string> Systems() const override { return SystemNames(); }
@@ -281,28 +218,26 @@ class CampaignTasks : public campaign::TaskRunner {
 
   campaign::TaskSettings Settings(const Campaign& campaign, const TaskChoice& choice,
                                   const Refuse& refuse) const override {
-    const campaign::ScenarioEntry& entry = campaign.scenarios[choice.scenario];
-    if (entry.recorded) {
-      const Recording recording = ReadRecording(entry, campaign::ChangesAt(campaign, choice));
-      RefuseFocalError(campaign, choice, recording.settings.prior, refuse);
-      return {true, recording.resolved, campaign::Digest(recording.resolved)};
-    }
-    const Experiment experiment = Load(campaign, choice);
+    const Experiment experiment = Load(campaign, choice).experiment;
     const bool images = !experiment.scenario.points;
     if (!images) RefusePoints(campaign, choice, refuse);
-    RefuseFocalError(campaign, choice, experiment.prior, refuse);
+    const campaign::SystemEntry& system = campaign.systems[choice.system];
+    if (system.system.empty() && experiment.prior.focal_error != 0) {
+      // It would not reach the system, and must not look as if it did.
+      refuse("prior.focal_error", "'" + system.name + "' is not ours: it is given the camera as it is");
+    }
     return {images, experiment.resolved, DigestOfSettings(experiment)};
   }
 
   std::optional<std::string> SequenceName(const Campaign& campaign, const TaskChoice& choice,
                                           SequenceCache& cache) const override {
-    if (const auto recording = LoadRecording(campaign, choice)) return KeyOf(*recording, cache);
-    return SequenceKey(Input([&] { return Load(campaign, choice); }).scenario, cache);
+    const Task task = Input([&] { return Load(campaign, choice); });
+    return task.recording ? KeyOf(*task.recording, cache) : SequenceKey(task.experiment.scenario, cache);
   }
 
   void ReadWorld(const Campaign& campaign, const TaskChoice& choice, SequenceCache& cache) const override {
     try {
-      FindWorld(Load(campaign, choice).scenario, cache);
+      FindWorld(Load(campaign, choice).experiment.scenario, cache);
     } catch (const BadInput& error) {
       throw std::invalid_argument(error.what());
     }
@@ -310,8 +245,9 @@ class CampaignTasks : public campaign::TaskRunner {
 
   void Render(const Campaign& campaign, const TaskChoice& choice, const SequenceCache& cache,
               const std::string& sequence, int threads) const override {
-    if (const auto recording = LoadRecording(campaign, choice)) return LinkInto(cache, sequence, *recording);
-    RenderInto(cache, sequence, Input([&] { return Load(campaign, choice); }).scenario, threads);
+    const Task task = Input([&] { return Load(campaign, choice); });
+    task.recording ? LinkInto(cache, sequence, *task.recording)
+                   : RenderInto(cache, sequence, task.experiment.scenario, threads);
   }
 
   void Run(const Campaign& campaign, const TaskChoice& choice, const SequenceCache& cache, const std::string& sequence,
@@ -320,18 +256,26 @@ class CampaignTasks : public campaign::TaskRunner {
     cv::setNumThreads(1);
     const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
     const campaign::SystemEntry& system = campaign.systems[choice.system];
+    const auto [experiment, recording] = Input([&] { return Load(campaign, choice); });
     TaskOutput output;
-    if (const auto recording = LoadRecording(campaign, choice)) {
-      LinkInto(cache, sequence, *recording);  // which may lie elsewhere by now
-      output = RunOnPictures(campaign, system, Seen(*recording), cache, sequence, folder, record);
+    if (experiment.scenario.points) {
+      output = PlayPoints(experiment, system.system, record.seed);
     } else {
-      const Experiment experiment = Input([&] { return Load(campaign, choice); });
-      if (experiment.scenario.points) {
-        output = PlayPoints(experiment, system.system, record.seed);
-        output.how = JudgeOptionsOf(experiment.prior);
-      } else {
-        output = RunOnPictures(campaign, system, Seen(experiment, record.seed), cache, sequence, folder, record);
-      }
+      if (recording) LinkInto(cache, sequence, *recording);  // it may lie elsewhere by now
+      output.truth = recording ? recording->truth : TruthOfAllFrames(experiment.scenario);
+      output.begin_ns = recording ? recording->frames.front().stamp_ns : 0;
+    }
+    if (system.system.empty()) {
+      const ExternalAnswer answer = RunExternal(system.external, cache, sequence, experiment.scenario, !recording,
+                                                folder, campaign.keep == campaign::Keep::all, record);
+      output.run.trajectory = answer.trajectory;
+      output.seconds = answer.seconds;
+      output.how.frame_stamps_ns = answer.frame_stamps_ns;
+      CheckStamps(output, record);
+    } else {
+      if (!experiment.scenario.points)
+        PlayImages(experiment, cache.PathOf(sequence), system.system, record.seed, output);
+      output.how = JudgeOptionsOf(experiment.prior);
     }
     const std::optional<evaluation::Timing> frame = TakeTimes(output);
     if (record.status == campaign::Status::ok) {

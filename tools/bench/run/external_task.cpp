@@ -70,12 +70,12 @@ std::size_t RemoveNotFinite(const fs::path& file) {
 }  // namespace
 
 ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
-                           const std::string& key, const PicturesOfSequence& pictures, const fs::path& folder,
+                           const std::string& key, const sim::Scenario& scenario, bool rendered, const fs::path& folder,
                            bool keep_work, campaign::TaskRecord& record) {
-  const ServedSequence sequence = Input([&] { return Serve(cache, key, pictures, system); });
+  const ServedSequence sequence = Input([&] { return Serve(cache, key, scenario, rendered, system); });
   const fs::path at_work = fs::absolute(folder) / "work", trajectory = at_work / system.trajectory;
   fs::create_directories(at_work);
-  const fs::path calibration = WriteCalibrationFile(system, sequence, pictures.rate_hz, fs::absolute(folder));
+  const fs::path calibration = WriteCalibrationFile(system, sequence, scenario.time.rate_hz, fs::absolute(folder));
   std::vector<std::pair<std::string, std::string>> values = system.variables;
   values.insert(values.end(), {{"sequence", sequence.folder.string()},
                                {"calibration", calibration.string()},
@@ -88,7 +88,7 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
     record.status = status;
     record.reason = reason;
   };
-  ExternalAnswer answer{{}, clock.seconds()};
+  ExternalAnswer answer{{}, sequence.stamps_ns, clock.seconds()};
   if (end.timed_out) {
     lost(campaign::Status::timed_out, fmt::format("took longer than {:g} s", system.timeout_s));
   } else if (end.status == 126 || end.status == 127) {  // as sh says that it cannot start a program

@@ -14,6 +14,7 @@ namespace vobench {
 
 struct ExternalAnswer {
   evaluation::Trajectory trajectory;
+  std::vector<std::int64_t> frame_stamps_ns;
   double seconds = 0;  // that the program took
 };
 
@@ -22,7 +23,7 @@ struct ExternalAnswer {
 // the folder `work` that it ran in. Throws std::runtime_error and BadInput where it could not be started as its entry
 // says.
 ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
-                           const std::string& sequence, const PicturesOfSequence& pictures,
+                           const std::string& sequence, const sim::Scenario& scenario, bool rendered,
                            const std::filesystem::path& folder, bool keep_work, campaign::TaskRecord& record);
 
 }  // namespace vobench

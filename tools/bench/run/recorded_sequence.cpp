@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <functional>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "sim/sequence/layout.h"
 #include "tools/base/files.h"
@@ -19,45 +16,12 @@ namespace vobench {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::int64_t kFewest = 3;  // frames with a truth: what an alignment needs
-
 settings::Problem ProblemOf(const std::string& key, const std::string& message) { return {"", 0, 0, message, key}; }
 
-// All that changes what the odometry does; pictures are as they are.
-TrackSettings SettingsOf(const campaign::Changes& changes, std::vector<settings::Problem>& problems) {
-  settings::Document document = settings::Document::FromText("", "set");
-  for (const auto& [key, value] : changes) {
-    const std::string section = key.substr(0, key.find('.'));
-    if (section == "odometry" || section == "prior") {
-      document.Override(key, value);
-    } else {
-      problems.push_back(ProblemOf(key, "a recorded sequence is as it is: only odometry and prior change"));
-    }
-  }
-  return ReadTrackSettings(std::move(document));
-}
-
-void CheckTruth(const fs::path& sequence, const Recording& recording) {
-  const evaluation::Trajectory& poses = recording.truth.poses;
-  if (poses.empty())
-    throw BadInput(sequence.string() + ": has no truth (groundtruth.txt, or EuRoC's or ICL-NUIM's) to judge by");
-  const std::int64_t gap_ns = evaluation::AssociationOptions{}.gap_ns;
-  const auto known = std::ranges::count_if(recording.frames, [&](const vo::SequenceReader::Entry& frame) {
-    return frame.stamp_ns >= poses.front().stamp_ns - gap_ns && frame.stamp_ns <= poses.back().stamp_ns + gap_ns;
-  });
-  if (known < kFewest)
-    throw BadInput(fmt::format("{}: {} of {} frames are within the time of the truth", sequence.string(), known,
-                               recording.frames.size()));
-}
-
-// A calibration of another size would reach other people's systems unseen.
-void CheckSize(const Recording& recording) {
-  const fs::path& file = recording.frames.front().image;
-  const cv::Mat image = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
-  if (image.empty()) throw BadInput(file.string() + ": not an image that can be decoded");
-  if (image.cols != recording.camera.width || image.rows != recording.camera.height)
-    throw BadInput(fmt::format("{}: is {} x {} pixels, the camera's pictures {} x {}", file.string(), image.cols,
-                               image.rows, recording.camera.width, recording.camera.height));
+static_assert(sizeof(evaluation::StampedPose) == 64 && sizeof(evaluation::StampedVelocity) == 56);  // no padding
+template <class T>
+std::string DigestOf(const std::vector<T>& values) {
+  return campaign::Digest({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
 }
 
 }  // namespace
@@ -71,94 +35,88 @@ vo::Camera CameraOfSequence(const fs::path& sequence, const std::optional<std::s
   const fs::path file = sequence / "camera.yaml", euroc = sequence / "mav0/cam0/sensor.yaml";
   if (!fs::exists(file) && fs::exists(euroc)) return vo::ReadCamera(euroc);
   if (!fs::exists(file)) {
-    throw BadInput(fmt::format("{}: is not there; say which camera with --camera PRESET|FILE", file.string()));
+    throw BadInput(fmt::format(
+        "{}: is not there; say which camera with --camera PRESET|FILE, or `camera` of a campaign", file.string()));
   }
   return vo::ReadCamera(file);
 }
 
 std::string RecordOfTracking(const vo::Camera& c, const std::string& resolved) {
-  nlohmann::ordered_json all;
-  all["camera"] = {{"width", c.width},
-                   {"height", c.height},
-                   {"fx", c.fx},
-                   {"fy", c.fy},
-                   {"cx", c.cx},
-                   {"cy", c.cy},
-                   {"distortion",
-                    {{"model", c.lens == vo::Lens::fisheye ? "fisheye" : "radial_tangential"},
-                     {"k1", c.k1},
-                     {"k2", c.k2},
-                     {"p1", c.p1},
-                     {"p2", c.p2},
-                     {"k3", c.k3},
-                     {"k4", c.k4}}},
-                   {"rolling_shutter_s", c.readout_s ? nlohmann::ordered_json(*c.readout_s) : nullptr}};
+  nlohmann::ordered_json all, distortion{{"model", c.lens == vo::Lens::fisheye ? "fisheye" : "radial_tangential"}};
+  for (const auto& [key, k] : std::initializer_list<std::pair<const char*, double>>{
+           {"k1", c.k1}, {"k2", c.k2}, {"p1", c.p1}, {"p2", c.p2}, {"k3", c.k3}, {"k4", c.k4}})
+    distortion[key] = k;
+  all["camera"] = {{"width", c.width}, {"height", c.height}, {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy}};
+  all["camera"]["distortion"] = distortion;
+  all["camera"]["rolling_shutter_s"] = c.readout_s ? nlohmann::ordered_json(*c.readout_s) : nullptr;
   all.update(nlohmann::ordered_json::parse(resolved));
   return all.dump(2);
 }
 
-Recording ReadRecording(const campaign::ScenarioEntry& entry, const campaign::Changes& changes) {
-  Recording recording;
+Recording::Recording(const campaign::ScenarioEntry& entry, const campaign::Changes& changes) {
+  const fs::path& folder = entry.file;
+  const auto& [named, first, count] = *entry.recorded;
+  if (!fs::is_directory(folder)) throw settings::Error({ProblemOf("path", folder.string() + ": no such folder")});
   std::vector<settings::Problem> problems;
-  const auto read = [&](const char* key, const std::function<void()>& reader) {
-    const std::size_t before = problems.size();
+  const auto read = [&](const std::string& key, const auto& reader) {
     try {
       reader();
-    } catch (const settings::Error& error) {  // of a calibration file it names the place, of settings the key
-      for (settings::Problem problem : error.problems()) {
-        if (*key != 0) problem = ProblemOf(key, settings::ToString(problem));
-        problems.push_back(problem);
-      }
+    } catch (const settings::Error& error) {  // of settings, which have their own keys, or in a camera's file
+      for (const settings::Problem& problem : error.problems())
+        problems.push_back(key.empty() ? problem : ProblemOf(key, settings::ToString(problem)));
     } catch (const std::exception& error) {
       problems.push_back(ProblemOf(key, WordsOf(error)));
     }
-    return problems.size() == before;
   };
-  const campaign::RecordedFrames& wanted = *entry.recorded;
-  if (!fs::is_directory(entry.file))
-    throw settings::Error({ProblemOf("path", entry.file.string() + ": no such folder")});
-  const bool has_camera = read("camera", [&] {
-    if (!wanted.camera && !fs::exists(entry.file / "camera.yaml") && !fs::exists(entry.file / "mav0/cam0/sensor.yaml"))
-      throw BadInput("a preset or a calibration file is needed: " + entry.file.string() + " has no camera.yaml");
-    recording.camera = CameraOfSequence(entry.file, wanted.camera);
-  });
-  read("", [&] { recording.settings = SettingsOf(changes, problems); });
-  const bool has_frames = read("path", [&] { recording.frames = vo::SequenceReader(entry.file).entries(); });
-  if (has_frames) {
-    const auto all = static_cast<std::int64_t>(recording.frames.size());
-    const std::int64_t until = wanted.count ? wanted.first + *wanted.count : all;
-    if (wanted.first >= all || until > all) {
-      problems.push_back(ProblemOf(wanted.first >= all ? "first" : "frames", fmt::format("it has {} frames", all)));
-      recording.frames.clear();
+  std::optional<vo::Camera> camera;
+  read("camera", [&] { camera = CameraOfSequence(folder, named); });
+  TrackSettings settings;
+  settings::Document document = settings::Document::FromText("", "set");
+  for (const auto& [key, value] : changes) {
+    if (key.starts_with("odometry") || key.starts_with("prior")) {
+      document.Override(key, value);
     } else {
-      recording.frames = {recording.frames.begin() + wanted.first, recording.frames.begin() + until};
-      read("path", [&] {
-        recording.truth = ReadSequenceTruth(entry.file).value_or(Truth{});
-        CheckTruth(entry.file, recording);
-      });
-      if (has_camera) read("camera", [&] { CheckSize(recording); });
+      problems.push_back(ProblemOf(key, "a recorded sequence is as it is: only odometry and prior change"));
     }
   }
+  read("", [&] { settings = ReadTrackSettings(document); });
+  read("path", [&] {
+    vo::SequenceReader reader(folder);
+    frames = reader.entries();
+    // A calibration of another size would reach other people's systems unseen.
+    const cv::Size size = reader.Next()->image.size();
+    if (camera && size != cv::Size(camera->width, camera->height))
+      throw BadInput(fmt::format("its pictures are {} x {} pixels, those of the camera {} x {}", size.width,
+                                 size.height, camera->width, camera->height));
+    truth = ReadSequenceTruth(folder).value_or(Truth{});
+    if (truth.poses.empty())
+      throw BadInput(folder.string() + ": has no truth (groundtruth.txt, or EuRoC's or ICL-NUIM's) to judge by");
+  });
+  const auto all = static_cast<std::int64_t>(frames.size());
+  const std::int64_t until = count ? first + *count : all;
+  if (all > 0 && (first >= all || until > all))
+    problems.push_back(ProblemOf(first >= all ? "first" : "frames", fmt::format("it has {} frames", all)));
   if (!problems.empty()) throw settings::Error(problems);
-  recording.resolved = RecordOfTracking(recording.camera, recording.settings.resolved);
-  return recording;
+
+  frames = {frames.begin() + first, frames.begin() + until};
+  const auto seconds = 1e-9 * static_cast<double>(frames.back().stamp_ns - frames.front().stamp_ns);
+  sim::Scenario& scenario = experiment.scenario;
+  if (frames.size() > 1) scenario.time.rate_hz = static_cast<double>(frames.size() - 1) / seconds;
+  scenario.camera = ToSimulator(*camera);
+  scenario.sensor.readout_s = camera->readout_s.value_or(0);
+  experiment.odometry = settings.params;
+  experiment.prior = settings.prior;
+  if (!camera->readout_s) experiment.prior.shutter_known = false;
+  experiment.resolved = RecordOfTracking(*camera, settings.resolved);
 }
 
 std::string KeyOf(const Recording& recording, campaign::SequenceCache& cache) {
-  std::string text = "recorded 1\n" + RecordOfTracking(recording.camera, "{}") + "\n";
+  const Experiment& experiment = recording.experiment;
+  std::string text = "recorded 1\n" + sim::CameraYaml(experiment.scenario.camera, experiment.scenario.sensor.readout_s);
   for (const vo::SequenceReader::Entry& frame : recording.frames)
     text += fmt::format("{} {}\n", frame.stamp_ns, cache.DigestNow(frame.image));
-  for (const evaluation::StampedPose& pose : recording.truth.poses) {
-    const Eigen::Vector3d& p = pose.p_WC;
-    const Eigen::Quaterniond& q = pose.q_WC;
-    text += fmt::format("{} {} {} {} {} {} {} {}\n", pose.stamp_ns, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
-  }
-  if (recording.truth.velocities) {
-    for (const evaluation::StampedVelocity& velocity : *recording.truth.velocities) {
-      const Eigen::Vector3d &v = velocity.v_WC, &w = velocity.w_WC_C;
-      text += fmt::format("{} {} {} {} {} {} {}\n", velocity.stamp_ns, v.x(), v.y(), v.z(), w.x(), w.y(), w.z());
-    }
-  }
+  text += DigestOf(recording.truth.poses);
+  if (recording.truth.velocities) text += DigestOf(*recording.truth.velocities);
   return campaign::Digest(text);
 }
 
@@ -178,9 +136,9 @@ void LinkInto(const campaign::SequenceCache& cache, const std::string& key, cons
     fs::create_symlink(fs::canonical(frame.image), partial / name(frame));
     list += base::FormatSeconds(frame.stamp_ns) + " " + name(frame) + "\n";
   }
-  const auto readout_s = recording.camera.readout_s;
-  std::string camera = sim::CameraYaml(ToSimulator(recording.camera), readout_s.value_or(0));
-  if (!readout_s) camera.erase(camera.find("rolling_shutter"));  // nobody says so
+  const sim::Scenario& scenario = recording.experiment.scenario;
+  std::string camera = sim::CameraYaml(scenario.camera, scenario.sensor.readout_s);
+  if (scenario.sensor.readout_s == 0) camera.erase(camera.find("rolling_shutter"));  // none, or nobody knows
   base::WriteFile(partial / "rgb.txt", list);
   base::WriteFile(partial / "camera.yaml", camera);
   base::ReplaceFolder(partial, folder);

@@ -21,17 +21,15 @@ vo::Camera CameraOfSequence(const std::filesystem::path& sequence, const std::op
 // Camera and settings of a tracked sequence, as JSON.
 std::string RecordOfTracking(const vo::Camera& camera, const std::string& settings);
 
-struct Recording {
-  vo::Camera camera;
-  TrackSettings settings;
-  std::vector<vo::SequenceReader::Entry> frames;
-  Truth truth;
-  std::string resolved;  // RecordOfTracking
-};
-
 // Throws settings::Error with every problem; keys are those of the campaign's entry (path, camera, first, frames) and
 // of settings.
-Recording ReadRecording(const campaign::ScenarioEntry& entry, const campaign::Changes& changes);
+struct Recording {
+  Recording(const campaign::ScenarioEntry& entry, const campaign::Changes& changes);
+
+  Experiment experiment;  // of its scenario camera, readout and rate alone
+  std::vector<vo::SequenceReader::Entry> frames;
+  Truth truth;
+};
 
 // The name of its frames in the cache: by the bytes of the pictures, their stamps, the truth, and the camera.
 std::string KeyOf(const Recording& recording, campaign::SequenceCache& cache);

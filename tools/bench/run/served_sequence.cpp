@@ -58,29 +58,40 @@ void WriteRectified(const fs::path& sequence, const fs::path& folder, const sim:
   base::WriteFile(folder / "rgb.txt", list);
 }
 
-// Exposure of each frame [ms]; with automatic exposure times the gain, as the program knows no other. Empty: not known.
-std::map<std::int64_t, double> Exposures_ms(const fs::path& sequence, const Frames& frames,
-                                            const std::optional<sim::SensorParams>& sensor) {
-  std::map<std::int64_t, double> exposures;
-  if (!sensor) return exposures;
-  for (const vo::SequenceReader::Entry& frame : frames) exposures[frame.stamp_ns] = 1e3 * sensor->exposure_s;
-  std::istringstream lines(base::ReadFile(sequence / "exposure.txt").value_or(""));
+// As the monocular dataset of DSO has it. With automatic exposure the time times the gain: it has no other word for it.
+void WriteTimes(const fs::path& file, const Frames& frames, const fs::path& exposures,
+                const sim::SensorParams* sensor) {
+  std::map<std::int64_t, double> chosen;
+  std::istringstream lines(base::ReadFile(exposures).value_or(""));
   for (std::string line; std::getline(lines, line);) {
     const std::vector<base::Word> words = base::SplitWords(line);
-    if (words.size() != 3 || words[0].text.starts_with('#')) continue;
-    exposures[base::ParseSeconds(words[0].text).value()] =
-        1e3 * base::ParseNumber(words[1].text).value() * base::ParseNumber(words[2].text).value();
+    if (words.size() != 3 || line.starts_with('#')) continue;
+    chosen[base::ParseSeconds(words[0].text).value()] =
+        base::ParseNumber(words[1].text).value() * base::ParseNumber(words[2].text).value();
   }
-  return exposures;
+  std::string times;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    times += fmt::format("{:06} {}", i, base::FormatSeconds(frames[i].stamp_ns));
+    const auto at = chosen.find(frames[i].stamp_ns);
+    if (sensor) times += fmt::format(" {:.9g}", 1e3 * (at == chosen.end() ? sensor->exposure_s : at->second));
+    times += "\n";
+  }
+  base::WriteFile(file, times);
 }
 
-// 16 bits, the largest factor is 65535.
-void WriteVignette(const fs::path& file, const sim::SensorParams& sensor, const sim::CameraParams& rendered,
-                   const sim::CameraParams& served) {
-  const sim::Camera camera(rendered);
-  const sim::Vignetting vignetting(sensor.optics, camera);
+// pcalib.txt: the irradiance, 0 to 255, of each code of 8 bits; vignette.png: 16 bits, the largest factor is 65535. Not
+// where pictures are processed after the response.
+void WritePhotometricCalibration(const fs::path& folder, const sim::Scenario& scenario,
+                                 const sim::CameraParams& served) {
+  if (scenario.sensor.processing.on()) return;
+  std::string response;
+  for (int code = 0; code < 256; ++code)
+    response += fmt::format("{:.9g} ", 255 * sim::ResponseCurve::Decode(scenario.sensor.response, code / 255.0));
+  base::WriteFile(folder / "pcalib.txt", response + "\n");
+  const sim::Camera camera(scenario.camera);
+  const sim::Vignetting vignetting(scenario.sensor.optics, camera);
+  const bool same = served.fx == scenario.camera.fx && served.cx == scenario.camera.cx;  // not rectified
   cv::Mat factor(served.height, served.width, CV_64F), picture;
-  const bool same = served.width == rendered.width && served.fx == rendered.fx && served.cx == rendered.cx;
   for (int y = 0; y < served.height; ++y) {
     for (int x = 0; x < served.width; ++x) {
       const glm::dvec2 at = same ? glm::dvec2(x, y) : SamePoint(served, x, y, camera);
@@ -90,29 +101,13 @@ void WriteVignette(const fs::path& file, const sim::SensorParams& sensor, const 
   double largest = 0;
   cv::minMaxIdx(factor, nullptr, &largest);
   factor.convertTo(picture, CV_16U, 65535 / largest);
-  if (!cv::imwrite(file.string(), picture)) throw std::runtime_error(file.string() + ": cannot be written");
+  if (!cv::imwrite((folder / "vignette.png").string(), picture))
+    throw std::runtime_error((folder / "vignette.png").string() + ": cannot be written");
 }
 
-void WriteImages(const fs::path& sequence, const fs::path& folder, const Frames& frames,
-                 const PicturesOfSequence& pictures, const sim::CameraParams& served) {
-  const auto exposures = Exposures_ms(sequence, frames, pictures.sensor);
-  std::string times;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    times += fmt::format("{:06} {}", i, base::FormatSeconds(frames[i].stamp_ns));
-    times += exposures.empty() ? "\n" : fmt::format(" {:.9g}\n", exposures.at(frames[i].stamp_ns));
-  }
-  base::WriteFile(folder / "times.txt", times);
-  const std::string response = pictures.sensor ? InverseResponse(*pictures.sensor) : "";
-  if (response.empty()) return;
-  base::WriteFile(folder / "pcalib.txt", response);
-  WriteVignette(folder / "vignette.png", *pictures.sensor, pictures.camera, served);
-}
-
-void WriteEuroc(const fs::path& folder, const Frames& frames, const PicturesOfSequence& pictures,
-                const sim::CameraParams& served) {
-  sim::Scenario scenario;
+void WriteEurocLists(const fs::path& folder, const Frames& frames, sim::Scenario scenario,
+                     const sim::CameraParams& served) {
   scenario.camera = served;
-  scenario.time.rate_hz = pictures.rate_hz;
   const std::vector<std::string> problems = sim::Problems(sim::Layout::euroc, scenario);
   if (!problems.empty()) throw BadInput(fmt::format("{}", fmt::join(problems, "; ")));
   std::vector<sim::StampedTruth> stamps;
@@ -155,45 +150,42 @@ sim::CameraParams RectifiedCamera(const sim::CameraParams& c) {
   return {width, height, fx, fy, -low.x * fx, -low.y * fy};
 }
 
-std::string InverseResponse(const sim::SensorParams& sensor) {
-  if (sensor.processing.on()) return "";
-  std::string line;
-  for (int code = 0; code < 256; ++code)
-    line +=
-        fmt::format("{}{:.9g}", code > 0 ? " " : "", 255 * sim::ResponseCurve::Decode(sensor.response, code / 255.0));
-  return line + "\n";
-}
-
-ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& key, const PicturesOfSequence& pictures,
-                     const campaign::ExternalSystem& system) {
-  ServedSequence served{fs::absolute(cache.PathOf(key)), pictures.camera};
-  const sim::CameraParams rectified = system.rectified ? RectifiedCamera(pictures.camera) : pictures.camera;
-  if (system.rectified && (IsDistorted(pictures.camera) || rectified.width != pictures.camera.width ||
-                           rectified.height != pictures.camera.height)) {
-    const fs::path from = served.folder;
-    served = {from.string() + ".rectified", rectified};
+ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario,
+                     bool rendered, const campaign::ExternalSystem& system) {
+  const fs::path original = fs::absolute(cache.PathOf(key));
+  const sim::CameraParams& camera = scenario.camera;
+  ServedSequence served{original, system.rectified ? RectifiedCamera(camera) : camera, {}};
+  if (system.rectified &&
+      (IsDistorted(camera) || served.camera.width != camera.width || served.camera.height != camera.height)) {
+    served.folder += ".rectified";
     MakeOnce(cache, key, served.folder, [&](const fs::path& partial) {
-      WriteRectified(from, partial, pictures.camera, rectified);
-      std::string camera = sim::CameraYaml(rectified, 0);
-      base::WriteFile(partial / "camera.yaml", camera.erase(camera.find("rolling_shutter")));  // each row another time
+      WriteRectified(original, partial, camera, served.camera);
+      std::string text = sim::CameraYaml(served.camera, 0);
+      base::WriteFile(partial / "camera.yaml", text.erase(text.find("rolling_shutter")));  // its rows are others
     });
   }
+  const vo::SequenceReader reader(served.folder);
+  const Frames& frames = reader.entries();
+  for (const vo::SequenceReader::Entry& frame : frames) served.stamps_ns.push_back(frame.stamp_ns);
   if (system.layout == SequenceLayout::tum) return served;
-  const ServedSequence tum = served;
+  const fs::path tum = served.folder;
   served.folder += "." + campaign::Name(system.layout);
   MakeOnce(cache, key, served.folder, [&](const fs::path& partial) {
-    const Frames frames = vo::SequenceReader(tum.folder).entries();
     const bool euroc = system.layout == SequenceLayout::euroc;
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const fs::path link = partial / (euroc ? sim::NamesOf(sim::Layout::euroc, 0, frames[i].stamp_ns).image
                                              : fmt::format("images/{:06}.png", i));
       fs::create_directories(link.parent_path());
-      fs::create_symlink(fs::relative(frames[i].image.parent_path(), link.parent_path()) / frames[i].image.filename(),
-                         link);
+      const fs::path& image = frames[i].image;
+      fs::create_symlink(fs::relative(image.parent_path(), link.parent_path()) / image.filename(), link);
     }
-    euroc ? WriteEuroc(partial, frames, pictures, served.camera)
-          : WriteImages(tum.folder, partial, frames, pictures, served.camera);
-    fs::copy_file(tum.folder / "camera.yaml", partial / "camera.yaml");
+    if (euroc) {
+      WriteEurocLists(partial, frames, scenario, served.camera);
+    } else {
+      WriteTimes(partial / "times.txt", frames, original / "exposure.txt", rendered ? &scenario.sensor : nullptr);
+      if (rendered) WritePhotometricCalibration(partial, scenario, served.camera);
+    }
+    fs::copy_file(tum / "camera.yaml", partial / "camera.yaml");
   });
   return served;
 }

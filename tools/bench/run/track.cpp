@@ -52,7 +52,9 @@ void Track(const TrackOptions& options) {
     if (!truth) throw BadInput(fmt::format("{}: has no truth for --truth", options.sequence.string()));
     Input([&] { return &match_errors.emplace(options.sequence, camera, *truth); });
   }
-  camera = ForOdometry(camera, settings.prior);
+  if (!settings.prior.shutter_known) camera.readout_s.reset();
+  camera.fx *= 1 + settings.prior.focal_error;
+  camera.fy *= 1 + settings.prior.focal_error;
   const std::optional<std::int64_t> frames = source->Count();
   OutputFolder out(options.output, kResultMarker, ResultNames(SystemNames()));
 

@@ -73,15 +73,12 @@ const Overrides& SettingsOfImagesAlone() {
   return settings;
 }
 
-vo::Camera ForOdometry(vo::Camera camera, const PriorSettings& prior) {
-  if (!prior.shutter_known) camera.readout_s = std::nullopt;
-  camera.fx *= 1 + prior.focal_error;
-  camera.fy *= 1 + prior.focal_error;
-  return camera;
-}
-
 vo::Camera CameraForOdometry(const Experiment& experiment) {
-  return ForOdometry(CameraOf(experiment.scenario), experiment.prior);
+  vo::Camera camera = CameraOf(experiment.scenario);
+  if (!experiment.prior.shutter_known) camera.readout_s = std::nullopt;
+  camera.fx *= 1 + experiment.prior.focal_error;
+  camera.fy *= 1 + experiment.prior.focal_error;
+  return camera;
 }
 
 Experiment LoadExperiment(const std::filesystem::path& scenario, const Overrides& overrides) {

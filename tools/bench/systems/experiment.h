@@ -75,7 +75,6 @@ const Overrides& SettingsOfImagesAlone();
 // The camera that the odometry is given: the scenario's with its rolling shutter, but for prior.focal_error and
 // prior.shutter_known.
 vo::Camera CameraForOdometry(const Experiment& experiment);
-vo::Camera ForOdometry(vo::Camera camera, const PriorSettings& prior);
 
 // Throws BadInput with every problem of all three parts.
 Experiment ReadExperiment(const std::filesystem::path& scenario, const Overrides& overrides);
