@@ -148,7 +148,7 @@ TEST_F(CampaignRecordedTest, ProblemsAreListedBeforeAnythingRuns) {
   EXPECT_EQ(outcome.status, 2);
   for (const char* expected :
        {"c.yaml:2:12: 'path': gone: no such folder", "c.yaml:3:12: 'path': no_truth: has no truth",
-        "c.yaml:4:34: 'camera': ", "c.yaml:5:12: 'camera': rec/camera.yaml: is not there",
+        "c.yaml:4:34: 'camera': ", "c.yaml:5:12: 'camera': rec: no camera.yaml in it",
         "c.yaml:6:12: 'path': its pictures are 160 x 120 pixels, those of the camera 640 x 480",
         "c.yaml:7:59: 'first': it has 12 frames", "c.yaml:8:70: 'frames': it has 12 frames",
         "c.yaml:9:57: 'prior.start': ", "c.yaml:10:57: 'sensor.gain'",

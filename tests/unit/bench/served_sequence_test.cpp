@@ -45,7 +45,9 @@ class ServedSequenceTest : public testing::Test {
     campaign::ExternalSystem system;
     system.rectified = rectified;
     system.layout = layout;
-    RenderInto(cache_, "key", scenario, 2);
+    SeenSequence seen;
+    seen.experiment.scenario = scenario;
+    MakeIn(cache_, "key", seen, 2);
     return Serve(cache_, "key", scenario, true, system);
   }
   campaign::Folder here_;

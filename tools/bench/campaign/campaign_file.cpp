@@ -65,8 +65,6 @@ CampaignFile::CampaignFile(const std::filesystem::path& file, std::vector<std::s
   campaign_.name = file.stem().string();
   document_.root().Read("name", campaign_.name);
   ReadScenarios(folder);
-  ReadSequences(folder);
-  if (scenarios_.empty()) document_.root().Reject("scenarios", "'scenarios' or 'sequences': at least one is needed");
   ReadFactors();
   ReadSystems(folder);
   ReadSeeds();
@@ -94,10 +92,7 @@ void CampaignFile::ReadScenarios(const std::filesystem::path& folder) {
     section.Read("name", entry.name);
     section.ReadRaw("set", entry.set);
   }
-}
-
-void CampaignFile::ReadSequences(const std::filesystem::path& folder) {
-  for (Section& section : document_.root().List("sequences", "path")) {
+  for (Section& section : root.List("sequences", "path")) {
     ScenarioEntry& entry = campaign_.scenarios.emplace_back();
     RecordedFrames& frames = entry.recorded.emplace();
     std::string path, camera;
@@ -116,6 +111,7 @@ void CampaignFile::ReadSequences(const std::filesystem::path& folder) {
     section.ReadRaw("set", entry.set);
     scenarios_.push_back(section);
   }
+  if (scenarios_.empty()) root.Reject("scenarios", "'scenarios' or 'sequences': at least one is needed");
 }
 
 void CampaignFile::ReadFactors() {

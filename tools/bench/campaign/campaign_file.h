@@ -37,7 +37,6 @@ class CampaignFile {
 
  private:
   void ReadScenarios(const std::filesystem::path& folder);
-  void ReadSequences(const std::filesystem::path& folder);
   void ReadFactors();
   void ReadSystems(const std::filesystem::path& folder);
   void AddImagesAlone();

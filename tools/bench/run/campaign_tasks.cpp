@@ -23,7 +23,6 @@
 #include "tools/bench/result/result.h"
 #include "tools/bench/run/campaign_sequence.h"
 #include "tools/bench/run/external_task.h"
-#include "tools/bench/run/recorded_sequence.h"
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/experiment.h"
 #include "tools/bench/systems/prior.h"
@@ -146,22 +145,13 @@ void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& o
   }
 }
 
-// What is rendered or played, or was recorded.
-struct Task {
-  Experiment experiment;
-  std::optional<Recording> recording;
-};
-
-Task Load(const Campaign& campaign, const TaskChoice& choice) {
+SeenSequence Load(const Campaign& campaign, const TaskChoice& choice) {
   const campaign::ScenarioEntry& entry = campaign.scenarios[choice.scenario];
   const campaign::Changes changes = campaign::ChangesAt(campaign, choice);
-  if (entry.recorded) {
-    const Recording recording(entry, changes);
-    return {recording.experiment, recording};
-  }
+  if (entry.recorded) return ReadRecording(entry, changes);
   Experiment experiment = LoadExperiment(entry.file, changes);
   const auto asks = [](const auto& change) { return change.first == "truth"; };
-  if (experiment.scenario.points || std::any_of(changes.begin(), changes.end(), asks)) return {experiment, {}};
+  if (experiment.scenario.points || std::any_of(changes.begin(), changes.end(), asks)) return {experiment, {}, {}};
   // No truth beside poses and velocities unless the campaign asks for it: it would not be read here.
   experiment.scenario.truth.streams.clear();
   for (std::string* resolved : {&experiment.scenario.resolved, &experiment.resolved}) {
@@ -169,7 +159,7 @@ Task Load(const Campaign& campaign, const TaskChoice& choice) {
     json["truth"] = nlohmann::ordered_json::array();
     *resolved = json.dump(2);
   }
-  return {experiment, {}};
+  return {experiment, {}, {}};
 }
 
 // Of pictures the key says which files they were made from.
@@ -231,8 +221,7 @@ class CampaignTasks : public campaign::TaskRunner {
 
   std::optional<std::string> SequenceName(const Campaign& campaign, const TaskChoice& choice,
                                           SequenceCache& cache) const override {
-    const Task task = Input([&] { return Load(campaign, choice); });
-    return task.recording ? KeyOf(*task.recording, cache) : SequenceKey(task.experiment.scenario, cache);
+    return SequenceKey(Input([&] { return Load(campaign, choice); }), cache);
   }
 
   void ReadWorld(const Campaign& campaign, const TaskChoice& choice, SequenceCache& cache) const override {
@@ -245,9 +234,7 @@ class CampaignTasks : public campaign::TaskRunner {
 
   void Render(const Campaign& campaign, const TaskChoice& choice, const SequenceCache& cache,
               const std::string& sequence, int threads) const override {
-    const Task task = Input([&] { return Load(campaign, choice); });
-    task.recording ? LinkInto(cache, sequence, *task.recording)
-                   : RenderInto(cache, sequence, task.experiment.scenario, threads);
+    MakeIn(cache, sequence, Input([&] { return Load(campaign, choice); }), threads);
   }
 
   void Run(const Campaign& campaign, const TaskChoice& choice, const SequenceCache& cache, const std::string& sequence,
@@ -256,17 +243,18 @@ class CampaignTasks : public campaign::TaskRunner {
     cv::setNumThreads(1);
     const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
     const campaign::SystemEntry& system = campaign.systems[choice.system];
-    const auto [experiment, recording] = Input([&] { return Load(campaign, choice); });
+    const SeenSequence seen = Input([&] { return Load(campaign, choice); });
+    const Experiment& experiment = seen.experiment;
     TaskOutput output;
     if (experiment.scenario.points) {
       output = PlayPoints(experiment, system.system, record.seed);
     } else {
-      if (recording) LinkInto(cache, sequence, *recording);  // it may lie elsewhere by now
-      output.truth = recording ? recording->truth : TruthOfAllFrames(experiment.scenario);
-      output.begin_ns = recording ? recording->frames.front().stamp_ns : 0;
+      MakeIn(cache, sequence, seen, 1);  // what was recorded may lie elsewhere by now
+      output.truth = seen.recorded() ? seen.truth : TruthOfAllFrames(experiment.scenario);
+      output.begin_ns = seen.recorded() ? seen.frames.front().stamp_ns : 0;
     }
     if (system.system.empty()) {
-      const ExternalAnswer answer = RunExternal(system.external, cache, sequence, experiment.scenario, !recording,
+      const ExternalAnswer answer = RunExternal(system.external, cache, sequence, experiment.scenario, !seen.recorded(),
                                                 folder, campaign.keep == campaign::Keep::all, record);
       output.run.trajectory = answer.trajectory;
       output.seconds = answer.seconds;

@@ -8,7 +8,6 @@
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <sstream>
 
 #include "sim/sensor/develop.h"
 #include "sim/sensor/vignetting.h"
@@ -17,6 +16,7 @@
 #include "tools/base/text.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/run/calibration.h"
+#include "tools/judge/evaluation/text_file.h"
 #include "vo/sequence/reader.h"
 
 namespace vobench {
@@ -25,6 +25,28 @@ namespace {
 
 using campaign::SequenceLayout;
 using Frames = std::vector<vo::SequenceReader::Entry>;
+
+// Pinhole of the largest upright rectangle of rays that this camera's picture holds, without a black border; its sides
+// are multiples of 16. Of a pinhole the middle of its picture. Throws std::invalid_argument where it looks behind itself.
+sim::CameraParams RectifiedCamera(const sim::CameraParams& c) {
+  const int width = c.width / kSideMultiple * kSideMultiple, height = c.height / kSideMultiple * kSideMultiple;
+  if (!IsDistorted(c)) {
+    const int x = (c.width - width) / 2, y = (c.height - height) / 2;
+    return {width, height, c.fx, c.fy, c.cx - x, c.cy - y};
+  }
+  const sim::Camera camera(c);
+  glm::dvec2 low(-HUGE_VAL), high(HUGE_VAL);
+  for (int v = 0; v < c.height; ++v) {
+    low.x = std::max(low.x, camera.Undistort({0, v}).x);
+    high.x = std::min(high.x, camera.Undistort({c.width - 1, v}).x);
+  }
+  for (int u = 0; u < c.width; ++u) {
+    low.y = std::max(low.y, camera.Undistort({u, 0}).y);
+    high.y = std::min(high.y, camera.Undistort({u, c.height - 1}).y);
+  }
+  const double fx = (width - 1) / (high.x - low.x), fy = (height - 1) / (high.y - low.y);
+  return {width, height, fx, fy, -low.x * fx, -low.y * fy};
+}
 
 // The pixel of `from` that shows what (x, y) of `to`, a pinhole, does.
 glm::dvec2 SamePoint(const sim::CameraParams& to, int x, int y, const sim::Camera& from) {
@@ -62,12 +84,10 @@ void WriteRectified(const fs::path& sequence, const fs::path& folder, const sim:
 void WriteTimes(const fs::path& file, const Frames& frames, const fs::path& exposures,
                 const sim::SensorParams* sensor) {
   std::map<std::int64_t, double> chosen;
-  std::istringstream lines(base::ReadFile(exposures).value_or(""));
-  for (std::string line; std::getline(lines, line);) {
-    const std::vector<base::Word> words = base::SplitWords(line);
-    if (words.size() != 3 || line.starts_with('#')) continue;
-    chosen[base::ParseSeconds(words[0].text).value()] =
-        base::ParseNumber(words[1].text).value() * base::ParseNumber(words[2].text).value();
+  if (fs::exists(exposures)) {
+    for (const evaluation::Line& line : evaluation::Lines(exposures, ' '))
+      chosen[base::ParseSeconds(line.tokens.at(0).text).value()] =
+          base::ParseNumber(line.tokens.at(1).text).value() * base::ParseNumber(line.tokens.at(2).text).value();
   }
   std::string times;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -129,26 +149,6 @@ void MakeOnce(const campaign::SequenceCache& cache, const std::string& key, cons
 }
 
 }  // namespace
-
-sim::CameraParams RectifiedCamera(const sim::CameraParams& c) {
-  const int width = c.width / kSideMultiple * kSideMultiple, height = c.height / kSideMultiple * kSideMultiple;
-  if (!IsDistorted(c)) {
-    const int x = (c.width - width) / 2, y = (c.height - height) / 2;
-    return {width, height, c.fx, c.fy, c.cx - x, c.cy - y};
-  }
-  const sim::Camera camera(c);
-  glm::dvec2 low(-HUGE_VAL), high(HUGE_VAL);
-  for (int v = 0; v < c.height; ++v) {
-    low.x = std::max(low.x, camera.Undistort({0, v}).x);
-    high.x = std::min(high.x, camera.Undistort({c.width - 1, v}).x);
-  }
-  for (int u = 0; u < c.width; ++u) {
-    low.y = std::max(low.y, camera.Undistort({u, 0}).y);
-    high.y = std::min(high.y, camera.Undistort({u, c.height - 1}).y);
-  }
-  const double fx = (width - 1) / (high.x - low.x), fy = (height - 1) / (high.y - low.y);
-  return {width, height, fx, fy, -low.x * fx, -low.y * fy};
-}
 
 ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario,
                      bool rendered, const campaign::ExternalSystem& system) {

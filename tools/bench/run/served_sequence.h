@@ -14,11 +14,6 @@
 
 namespace vobench {
 
-// Pinhole of the largest upright rectangle of rays that this camera's picture holds, without a black border; its sides
-// are multiples of 16. Of a pinhole the middle of its picture. Throws std::invalid_argument where the lens looks
-// behind it.
-sim::CameraParams RectifiedCamera(const sim::CameraParams& camera);
-
 struct ServedSequence {
   std::filesystem::path folder;
   sim::CameraParams camera;

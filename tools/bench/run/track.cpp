@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <exception>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -12,7 +13,6 @@
 #include "tools/bench/result/result.h"
 #include "tools/bench/result/system_summary.h"
 #include "tools/bench/run/commands.h"
-#include "tools/bench/run/recorded_sequence.h"
 #include "tools/bench/run/run_common.h"
 #include "tools/bench/sequence/sequence_truth.h"
 #include "tools/bench/systems/experiment.h"
@@ -23,6 +23,7 @@
 #include "tools/bench/tracking/tracker.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "vo/filter/watched_filter.h"
+#include "vo/geometry/camera_file.h"
 #include "vo/sequence/read_ahead.h"
 
 namespace vobench {
@@ -31,7 +32,7 @@ namespace {
 
 constexpr std::int64_t kFramesOfACamera = 3000;  // not known: pictures are kept at every 300th frame
 
-TrackSettings ReadSettings(const TrackOptions& options) {
+Experiment ReadSettings(const TrackOptions& options) {
   settings::Document document =
       options.settings ? settings::Document::FromFile(*options.settings) : settings::Document::FromText("", "--set");
   for (const auto& [key, value] : options.overrides) document.Override(key, value);
@@ -40,12 +41,32 @@ TrackSettings ReadSettings(const TrackOptions& options) {
 
 }  // namespace
 
+vo::Camera CameraOfSequence(const fs::path& sequence, const std::optional<std::string>& camera) {
+  if (camera) return vo::CameraFrom(*camera);
+  for (const char* file : {"camera.yaml", "mav0/cam0/sensor.yaml"})
+    if (fs::exists(sequence / file)) return vo::ReadCamera(sequence / file);
+  throw BadInput(sequence.string() +
+                 ": no camera.yaml in it; say which camera with --camera PRESET|FILE (`camera` in a campaign)");
+}
+
+std::string RecordOfTracking(const vo::Camera& c, const std::string& resolved) {
+  nlohmann::ordered_json all, distortion{{"model", c.lens == vo::Lens::fisheye ? "fisheye" : "radial_tangential"}};
+  for (const auto& [key, k] : std::initializer_list<std::pair<const char*, double>>{
+           {"k1", c.k1}, {"k2", c.k2}, {"p1", c.p1}, {"p2", c.p2}, {"k3", c.k3}, {"k4", c.k4}})
+    distortion[key] = k;
+  all["camera"] = {{"width", c.width}, {"height", c.height}, {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy}};
+  all["camera"]["distortion"] = distortion;
+  all["camera"]["rolling_shutter_s"] = c.readout_s ? nlohmann::ordered_json(*c.readout_s) : nullptr;
+  all.update(nlohmann::ordered_json::parse(resolved));
+  return all.dump(2);
+}
+
 void Track(const TrackOptions& options) {
   const Clock clock;
   if (options.map) RequireMapPath(*options.map, options.output);
   const std::unique_ptr<vo::FrameSource> source = Input([&] { return vo::OpenFrames(options.sequence.string()); });
   vo::Camera camera = Input([&] { return CameraOfSequence(options.sequence, options.camera); });
-  const TrackSettings settings = Input([&] { return ReadSettings(options); });
+  const Experiment settings = Input([&] { return ReadSettings(options); });
   const std::optional<Truth> truth = Input([&] { return ReadSequenceTruth(options.sequence); });
   std::optional<MatchErrors> match_errors;
   if (options.truth) {
@@ -58,7 +79,7 @@ void Track(const TrackOptions& options) {
   const std::optional<std::int64_t> frames = source->Count();
   OutputFolder out(options.output, kResultMarker, ResultNames(SystemNames()));
 
-  Tracker tracker({options.system, options.seed, settings.params, PriorAtOrigin(settings.prior)}, camera,
+  Tracker tracker({options.system, options.seed, settings.odometry, PriorAtOrigin(settings.prior)}, camera,
                   frames.value_or(kFramesOfACamera), out.path(), ".");
   RunDescription description{fs::weakly_canonical(options.sequence).filename().string(), options.sequence.string(),
                              options.command_line, clock.started_utc()};

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <string_view>
 
 #include "tools/base/settings/settings.h"
 #include "tools/base/text.h"

@@ -33,17 +33,17 @@ void ReadOdometry(settings::Section section, vo::Params& params) {
 
 void ReadPrior(settings::Section section, PriorSettings& prior) { settings::ReadFields(section, prior); }
 
-TrackSettings ReadTrackSettings(settings::Document document) {
-  TrackSettings out;
+Experiment ReadTrackSettings(settings::Document document) {
+  Experiment out{{}, {}, kPriorOfImagesAlone, {}};
   settings::Section odometry = document.root().Child("odometry");
-  if (!odometry.Has("target")) out.params.landmark.scale_sigma = kUnknownScale;  // which has the scale
-  out.params.motion.adaptive = true;
-  out.params.landmark.proving_matches = kProvingMatches;
-  out.params.calibration.estimate = true;
+  if (!odometry.Has("target")) out.odometry.landmark.scale_sigma = kUnknownScale;  // which has the scale
+  out.odometry.motion.adaptive = true;
+  out.odometry.landmark.proving_matches = kProvingMatches;
+  out.odometry.calibration.estimate = true;
   const bool position_noise_given = odometry.Child("motion").Has("position_noise");
-  ReadOdometry(odometry, out.params);
+  ReadOdometry(odometry, out.odometry);
   if (!position_noise_given)
-    out.params.motion.position_noise = kAccelerationPerDepth / out.params.landmark.inverse_depth;
+    out.odometry.motion.position_noise = kAccelerationPerDepth / out.odometry.landmark.inverse_depth;
   settings::Section prior = document.root().Child("prior");
   ReadPrior(prior, out.prior);
   if (out.prior.start == PriorSettings::Start::truth) {

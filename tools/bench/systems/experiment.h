@@ -59,14 +59,9 @@ inline constexpr double kUnknownScale = 0.5;  // of a recording: the size of its
 inline constexpr double kAccelerationPerDepth = 0.625;
 inline constexpr int kProvingMatches = 5;
 
-// What `track` starts from: these, unless the document's sections `odometry` and `prior` say otherwise. Throws
-// settings::Error.
-struct TrackSettings {
-  vo::Params params;
-  PriorSettings prior = kPriorOfImagesAlone;
-  std::string resolved;  // both sections, as JSON
-};
-TrackSettings ReadTrackSettings(settings::Document document);
+// What `track` starts from unless the document's sections `odometry` and `prior` say otherwise; its scenario is none.
+// Throws settings::Error.
+Experiment ReadTrackSettings(settings::Document document);
 
 // Settings of ours that know images and calibration alone, as `track` does: no start, no noise that suits the motion,
 // no shutter.
