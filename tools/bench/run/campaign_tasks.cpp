@@ -192,9 +192,9 @@ void CheckStamps(const TaskOutput& output, TaskRecord& record) {
   const std::size_t all = output.run.trajectory.size();
   if (2 * known < all) {
     record.status = campaign::Status::no_answer;
-    record.reason =
-        fmt::format("of its {} time stamps {} are those of frames; the first is {} s, that of frame 0 {} s", all, known,
-                    base::FormatSeconds(output.run.trajectory.front().stamp_ns), base::FormatSeconds(frames.front()));
+    record.reason = fmt::format(
+        "of its {} time stamps {} are those of frames; the last is {} s, that of the last frame {} s", all, known,
+        base::FormatSeconds(output.run.trajectory.back().stamp_ns), base::FormatSeconds(frames.back()));
   } else if (last + 2 < frames.size()) {
     record.reason +=
         fmt::format("{}no pose after frame {} of {}", record.reason.empty() ? "" : "; ", last, frames.size());

@@ -102,7 +102,7 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
     try {
       const std::size_t left_out = RemoveNotFinite(trajectory);
       answer.trajectory = evaluation::ReadTrajectory(trajectory);
-      if (left_out > 0) record.reason = fmt::format("{} lines without a finite pose were left out", left_out);
+      if (left_out > 0) record.reason = fmt::format("lines without a finite pose, left out: {}", left_out);
     } catch (const evaluation::InputError& error) {
       // Where the task lies does not belong into a table that is the same everywhere.
       std::string reason = error.what();
