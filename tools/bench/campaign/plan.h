@@ -26,7 +26,6 @@ struct RecordedFrames {
   std::optional<std::int64_t> count;  // none: all that follow
 };
 
-// What a system sees: a scenario, or a recorded sequence.
 struct ScenarioEntry {
   std::string name;
   std::filesystem::path file;                 // of a recorded sequence its folder

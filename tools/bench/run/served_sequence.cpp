@@ -25,6 +25,7 @@ namespace {
 
 using campaign::SequenceLayout;
 using Frames = std::vector<vo::SequenceReader::Entry>;
+constexpr const char* kVersion = "2";  // another one, other folders: of what is served
 
 // Pinhole of the largest upright rectangle of rays that this camera's picture holds, without a black border; its sides
 // are multiples of 16. Of a pinhole the middle of its picture. Throws std::invalid_argument where it looks behind itself.
@@ -157,7 +158,7 @@ ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& ke
   ServedSequence served{original, system.rectified ? RectifiedCamera(camera) : camera, {}};
   if (system.rectified &&
       (IsDistorted(camera) || served.camera.width != camera.width || served.camera.height != camera.height)) {
-    served.folder += ".rectified";
+    served.folder += std::string(".rectified") + kVersion;
     MakeOnce(cache, key, served.folder, [&](const fs::path& partial) {
       WriteRectified(original, partial, camera, served.camera);
       std::string text = sim::CameraYaml(served.camera, 0);
@@ -169,7 +170,7 @@ ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& ke
   for (const vo::SequenceReader::Entry& frame : frames) served.stamps_ns.push_back(frame.stamp_ns);
   if (system.layout == SequenceLayout::tum) return served;
   const fs::path tum = served.folder;
-  served.folder += "." + campaign::Name(system.layout);
+  served.folder += "." + campaign::Name(system.layout) + kVersion;
   MakeOnce(cache, key, served.folder, [&](const fs::path& partial) {
     const bool euroc = system.layout == SequenceLayout::euroc;
     for (std::size_t i = 0; i < frames.size(); ++i) {

@@ -1,6 +1,5 @@
 // Sequence in the cache as an external program wants it: rectified, and in its layout.
-// Source: docs/campaign.md, "External systems"; Engel, Usenko and Cremers 2016, "A photometrically calibrated benchmark
-//   for monocular visual odometry", for times.txt, pcalib.txt and vignette.png.
+// Source: docs/campaign.md; Engel, Usenko and Cremers 2016, arXiv:1607.02555: times.txt, pcalib.txt, vignette.png.
 #pragma once
 
 #include <cstdint>
