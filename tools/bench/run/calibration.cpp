@@ -14,7 +14,8 @@ bool IsFisheye(const CameraParams& c) { return c.lens == sim::Lens::fisheye; }
 
 void Refuse(bool impossible, CalibrationFormat format, const char* why) {
   if (impossible) {
-    throw std::invalid_argument(fmt::format("a calibration for {} has no place for {}", Name(format), why));
+    throw std::invalid_argument(
+        fmt::format("a calibration for {} has no place for {} (`images: rectified`)", Name(format), why));
   }
 }
 
@@ -95,7 +96,7 @@ std::string Svo(const CameraParams& c) {
   Refuse(IsFisheye(c), CalibrationFormat::svo, "a fisheye lens");
   Refuse(c.k3 != 0, CalibrationFormat::svo, "k3");
   Refuse(c.width % kSideMultiple != 0 || c.height % kSideMultiple != 0, CalibrationFormat::svo,
-         "sides that are no multiples of 16: render in another size");
+         "sides that are no multiples of 16");
   return fmt::format(
       "cam_model: Pinhole\ncam_width: {}\ncam_height: {}\ncam_fx: {}\ncam_fy: {}\ncam_cx: {}\ncam_cy: {}\n"
       "cam_d0: {}\ncam_d1: {}\ncam_d2: {}\ncam_d3: {}\n",

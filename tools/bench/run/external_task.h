@@ -20,8 +20,7 @@ struct ExternalAnswer {
 
 // The answer, with record.seed; where there is none, status (crashed, timed_out, no_answer) and reason of `record`
 // say why. Leaves in `folder` what the program printed (log.txt), its calibration and, after a crash or with keep_work,
-// the folder `work` that it ran in. Throws std::runtime_error and BadInput where it could not be started as its entry
-// says.
+// the folder `work` that it ran in. Throws std::runtime_error and BadInput where it cannot start as its entry says.
 ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
                            const std::string& sequence, const sim::Scenario& scenario, bool rendered,
                            const std::filesystem::path& folder, bool keep_work, campaign::TaskRecord& record);

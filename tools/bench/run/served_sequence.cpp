@@ -130,7 +130,7 @@ void WriteEurocLists(const fs::path& folder, const Frames& frames, sim::Scenario
                      const sim::CameraParams& served) {
   scenario.camera = served;
   const std::vector<std::string> problems = sim::Problems(sim::Layout::euroc, scenario);
-  if (!problems.empty()) throw BadInput(fmt::format("{}", fmt::join(problems, "; ")));
+  if (!problems.empty()) throw BadInput(base::Join(problems, "; ") + " (`images: rectified`)");
   std::vector<sim::StampedTruth> stamps;
   for (const vo::SequenceReader::Entry& frame : frames) stamps.push_back({0, frame.stamp_ns, {}});
   for (const sim::StreamFile& file : sim::Lists(sim::Layout::euroc, scenario, stamps))
