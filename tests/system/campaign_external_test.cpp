@@ -151,7 +151,7 @@ TEST_F(CampaignTest, PeculiarProgramsAreJudgedAsWhatTheyAre) {
   EXPECT_EQ(rows["few"]["status"], "lost");
   EXPECT_THAT(rows["few"]["reason"], HasSubstr("a pose in 25.0 % of the frames"));
   EXPECT_EQ(rows["nan"]["status"], "ok");
-  EXPECT_EQ(rows["nan"]["reason"], "1 lines without a finite pose were left out");
+  EXPECT_EQ(rows["nan"]["reason"], "lines without a finite pose, left out: 1");
   EXPECT_EQ(rows["ns"]["status"], "no_answer");
   EXPECT_EQ(rows["ends"]["status"], "ok");
   EXPECT_EQ(rows["ends"]["reason"], "no pose after frame 8 of 12");
@@ -162,7 +162,7 @@ TEST_F(CampaignTest, PeculiarProgramsAreJudgedAsWhatTheyAre) {
   EXPECT_TRUE(fs::exists(here_ / "out/tasks/00/000005/work/trajectory.txt"));
   const std::string tables = ReadFile(here_ / "out/tables.md");
   EXPECT_THAT(tables, HasSubstr("key (key frames)"));
-  EXPECT_THAT(tables, HasSubstr("| few | 1 | lost | a pose in 25.0 % of the frames"));
+  EXPECT_THAT(tables, HasSubstr("| few | 1 | lost | 25 % | a pose in 25.0 % of the frames"));
   EXPECT_THAT(ReadFile(here_ / "out/times.csv"), HasSubstr(",,,\n")) << "no times of frames that nobody measured";
 }
 

@@ -35,7 +35,7 @@ std::optional<std::int64_t> StampInSeconds(std::string_view text) {
 // EuRoC counts nanoseconds.
 std::optional<std::int64_t> StampInNanoseconds(std::string_view text) {
   const auto stamp_ns = base::ParseWhole(text);
-  return stamp_ns && *stamp_ns >= 0 ? stamp_ns : std::nullopt;
+  return stamp_ns && *stamp_ns >= 0 && *stamp_ns <= base::kLatest_ns ? stamp_ns : std::nullopt;
 }
 
 // List of frames, one per line: the first word is the stamp.
@@ -112,7 +112,7 @@ cv::Mat ReadImage(const fs::path& file) {
 
 }  // namespace
 
-SequenceReader::SequenceReader(const fs::path& folder) {
+SequenceReader::SequenceReader(const fs::path& folder, Images images) {
   if (!fs::is_directory(folder)) throw std::runtime_error(folder.string() + ": no such folder");
   const ListFormat format = FormatOf(folder);
   const fs::path& list = format.list;
@@ -148,7 +148,7 @@ SequenceReader::SequenceReader(const fs::path& folder) {
     std::error_code error;  // a name that is too long is reported like other problems
     if (image.empty()) {
       complain("both pictures are depth (grey of 16 bits)");
-    } else if (!fs::is_regular_file(image, error)) {
+    } else if (images == Images::needed && !fs::is_regular_file(image, error)) {
       complain("image " + image.string() + " is not there");
     }
     entries_.push_back({*stamp_ns, image});

@@ -13,19 +13,21 @@ namespace vo {
 
 class SequenceReader : public FrameSource {
  public:
+  enum class Images { needed, not_asked_for };
   // Reads and checks the list of frames. Throws std::runtime_error naming file and lines: folder or list missing, no
   // frames, a malformed line, stamps that do not increase (both lines named), missing image files.
-  explicit SequenceReader(const std::filesystem::path& folder);
+  explicit SequenceReader(const std::filesystem::path& folder, Images images = Images::needed);
 
+  struct Entry {
+    std::int64_t stamp_ns;
+    std::filesystem::path image;
+  };
+  const std::vector<Entry>& entries() const { return entries_; }
   std::size_t size() const { return entries_.size(); }
   std::optional<std::int64_t> Count() const override { return static_cast<std::int64_t>(size()); }
   std::optional<Frame> Next() override;
 
  private:
-  struct Entry {
-    std::int64_t stamp_ns;
-    std::filesystem::path image;
-  };
   std::vector<Entry> entries_;
   std::size_t next_ = 0;
   cv::Size size_;  // of the first image

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "tools/bench/campaign/results.h"
 
@@ -24,6 +25,16 @@ void RequireOdometry(Section& section, const std::string& where, const Changes& 
                                       "sees the same pictures",
                                       key));
   }
+}
+
+// "$NAME/rest" with the environment's NAME. Empty where there is none: a problem.
+std::filesystem::path WithEnvironment(Section& section, const std::string& key, const std::string& path) {
+  if (!path.starts_with('$')) return path;
+  const std::string name = path.substr(1, path.find('/') - 1);
+  const char* value = std::getenv(name.c_str());
+  if (value != nullptr) return value + path.substr(1 + name.size());
+  section.Reject(key, fmt::format("'{}': the environment has no {}", key, name));
+  return {};
 }
 
 struct SeedRange {
@@ -72,7 +83,6 @@ bool CampaignFile::complete() const {
 void CampaignFile::ReadScenarios(const std::filesystem::path& folder) {
   Section root = document_.root();
   scenarios_ = root.List("scenarios", "file");
-  if (scenarios_.empty()) root.Reject("scenarios", "'scenarios': at least one scenario file is needed");
   for (Section& section : scenarios_) {
     ScenarioEntry& entry = campaign_.scenarios.emplace_back();
     std::string file;
@@ -82,6 +92,26 @@ void CampaignFile::ReadScenarios(const std::filesystem::path& folder) {
     section.Read("name", entry.name);
     section.ReadRaw("set", entry.set);
   }
+  for (Section& section : root.List("sequences", "path")) {
+    ScenarioEntry& entry = campaign_.scenarios.emplace_back();
+    RecordedFrames& frames = entry.recorded.emplace();
+    std::string path, camera;
+    section.Require("path", path);
+    const std::filesystem::path place = WithEnvironment(section, "path", path);
+    if (!place.empty()) entry.file = (folder / place).lexically_normal();
+    entry.name = (entry.file.has_filename() ? entry.file : entry.file.parent_path()).filename().string();
+    section.Read("name", entry.name);
+    if (section.Read("camera", camera)) {
+      const std::filesystem::path file = folder / WithEnvironment(section, "camera", camera);
+      frames.camera = std::filesystem::exists(file) ? file.string() : camera;
+    }
+    section.Read("first", frames.first, Range{0, 1e9});
+    std::int64_t count = 0;
+    if (section.Read("frames", count, Range{1, 1e9})) frames.count = count;
+    section.ReadRaw("set", entry.set);
+    scenarios_.push_back(section);
+  }
+  if (scenarios_.empty()) root.Reject("scenarios", "'scenarios' or 'sequences': at least one is needed");
 }
 
 void CampaignFile::ReadFactors() {
@@ -273,6 +303,7 @@ void CampaignFile::Reject(const TaskChoice& choice, const std::string& key, cons
   };
   const SystemEntry& system = campaign_.systems[choice.system];
   const ScenarioEntry& scenario = campaign_.scenarios[choice.scenario];
+  if (scenario.file.empty()) return;  // that has been said
   const std::string text = key.empty() || message.starts_with("'" + key) ? message : "'" + key + "': " + message;
   const auto tell = [&](Section& section, const std::string& where) {
     if (rejected_.emplace(&section, where, text).second) section.Reject(where, text);
@@ -286,7 +317,9 @@ void CampaignFile::Reject(const TaskChoice& choice, const std::string& key, cons
     if (!sets(campaign_.factors[i].levels[choice.levels[i]].set)) continue;
     return tell(factors_[i], factors_[i].Has("values") ? "values" : "variants");
   }
-  tell(scenarios_[choice.scenario], sets(scenario.set) ? "set" : "file");
+  Section& section = scenarios_[choice.scenario];
+  if (!scenario.recorded) return tell(section, sets(scenario.set) ? "set" : "file");
+  tell(section, sets(scenario.set) ? "set" : section.Has(key) ? key : "path");
 }
 
 }  // namespace vobench::campaign

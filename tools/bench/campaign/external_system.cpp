@@ -128,6 +128,7 @@ std::vector<ExternalSystem> ReadExternalSystems(const std::filesystem::path& fil
     system.variables.emplace_back(kHere, std::filesystem::absolute(file).parent_path().lexically_normal().string());
     section.ReadChoice("layout", system.layout, kLayouts);
     section.ReadChoice("calibration", system.calibration, kFormats);
+    section.ReadChoice("images", system.rectified, {{"original", false}, {"rectified", true}});
     section.Read("trajectory", system.trajectory);
     section.Read("timeout", system.timeout_s, settings::Unit::time, settings::Range::Positive());
     section.ReadChoice("writes", system.keyframes, {{"frames", false}, {"keyframes", true}});
@@ -182,7 +183,7 @@ std::string DigestOfPrograms(const ExternalSystem& system) {
 std::string Description(const ExternalSystem& system) {
   std::string text = fmt::format("{}\n{}\n{}\n{}\n{}\n", system.command, Name(system.layout), Name(system.calibration),
                                  system.trajectory, system.timeout_s);
-  text += fmt::format("{}{}\n{}\n", system.keyframes, system.accepts_any_exit, system.programs);
+  text += fmt::format("{}{}{}\n{}\n", system.rectified, system.keyframes, system.accepts_any_exit, system.programs);
   for (const auto& [name, value] : system.variables)
     if (name != kHere) text += name + "=" + value + "\n";  // of what lies there the bytes count
   return text;

@@ -27,6 +27,7 @@ struct ExternalSystem {
   std::vector<std::pair<std::string, std::string>> variables;
   SequenceLayout layout = SequenceLayout::tum;
   CalibrationFormat calibration = CalibrationFormat::none;
+  bool rectified = false;                     // pictures and calibration of a pinhole
   std::string trajectory = "trajectory.txt";  // that it writes, in TUM format: T_WC; relative to its folder
   double timeout_s = 3600;
   bool keyframes = false;                    // it writes these alone: judged at their stamps, and named so in tables

@@ -42,7 +42,7 @@ class LocalRun {
 
   void Run() {
     const auto sequences = static_cast<std::int64_t>(renderings_.size());
-    if (sequences > 0) fmt::print(stderr, "{} sequences to render, then {} tasks\n", sequences, tasks_);
+    if (sequences > 0) fmt::print(stderr, "{} sequences to prepare, then {} tasks\n", sequences, tasks_);
     progress_.emplace("campaign", sequences + tasks_, 0, sequences > 0 ? "steps" : "tasks");
     while (next_rendering_ < renderings_.size() || !ready_.empty() || pool_.running() > 0) {
       while (StartOne()) {

@@ -148,7 +148,9 @@ void Renumber(const fs::path& out, const std::vector<std::string>& keys) {
   for (const std::int64_t task : PresentTasks(out)) {
     const std::optional<TaskRecord> record = ReadRecord(out, task);
     const auto at = record ? wanted.find(record->key) : wanted.end();
-    if (at == wanted.end() || at->second == task || record->status == Status::failed) continue;
+    const bool right =
+        static_cast<std::size_t>(task) < keys.size() && record && keys[static_cast<std::size_t>(task)] == record->key;
+    if (at == wanted.end() || right || record->status == Status::failed) continue;
     fs::create_directories(moved);
     std::error_code taken;  // the same result, from a start that was cut short
     fs::rename(TaskPath(out, task), moved / record->key, taken);

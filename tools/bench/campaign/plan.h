@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,11 +19,19 @@ namespace vobench::campaign {
 // Dotted keys with their values as YAML, a later one wins: what `--set` takes.
 using Changes = std::vector<std::pair<std::string, std::string>>;
 
+// Frames of a sequence that was recorded.
+struct RecordedFrames {
+  std::optional<std::string> camera;  // a preset, or a file; none: the sequence says
+  std::int64_t first = 0;
+  std::optional<std::int64_t> count;  // none: all that follow
+};
+
 struct ScenarioEntry {
   std::string name;
-  std::filesystem::path file;
-  Changes set;
+  std::filesystem::path file;                 // of a recorded sequence its folder
+  Changes set;                                // of a recorded sequence: of odometry and prior
   std::map<std::string, Changes> for_system;  // by the system's name: of odometry and prior
+  std::optional<RecordedFrames> recorded = {};
 };
 
 // One value of something that is varied.

@@ -80,7 +80,7 @@ std::uint64_t SequenceCache::Bytes() const {
   std::error_code error;
   for (fs::recursive_directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
     std::error_code gone;
-    const auto size = entry->is_regular_file(gone) ? entry->file_size(gone) : 0;
+    const auto size = entry->symlink_status(gone).type() == fs::file_type::regular ? entry->file_size(gone) : 0;
     if (!gone) bytes += size;
   }
   return bytes;

@@ -39,15 +39,17 @@ class SequenceCache {
   // They have been found by reading it. Throws std::runtime_error.
   void Remember(const std::string& world, const std::set<std::filesystem::path>& files);
 
+  // Of a file, which is read once.
+  const std::string& DigestNow(const std::filesystem::path& file);
+
   // Of all files in it.
   std::uint64_t Bytes() const;
 
  private:
-  const std::string& DigestNow(const std::filesystem::path& file);
   std::filesystem::path InputsFile(const std::string& world) const;
 
   std::filesystem::path folder_;
-  std::map<std::filesystem::path, std::string> digests_;  // a file is read once
+  std::map<std::filesystem::path, std::string> digests_;
 };
 
 }  // namespace vobench::campaign

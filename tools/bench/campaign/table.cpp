@@ -161,20 +161,28 @@ std::string Latex(const std::vector<Table>& tables) {
 }
 
 std::string StatusMarkdown(const Campaign& campaign, const std::vector<TaskRecord>& records) {
-  // By system and status: how many, and the first reason.
-  std::map<std::pair<std::size_t, Status>, std::pair<std::size_t, std::string>> ends;
-  bool all_ok = true;
+  struct Ends {
+    std::vector<double> coverages;
+    std::size_t count = 0;
+    std::string reason;  // of the first
+  };
+  std::map<std::pair<std::size_t, Status>, Ends> all;
+  bool told = false;
   for (const TaskRecord& record : records) {
-    auto& [count, reason] = ends[{ChoiceOf(campaign, record.task).system, record.status}];
-    if (count++ == 0) reason = record.reason;
-    all_ok = all_ok && record.status == Status::ok;
+    const std::size_t system = ChoiceOf(campaign, record.task).system;
+    Ends& ends = all[{system, record.status}];
+    if (ends.count++ == 0) ends.reason = record.reason;
+    if (const auto share = record.metric(MetricIndex("pose_coverage"))) ends.coverages.push_back(100 * *share);
+    told = told || record.status != Status::ok || campaign.systems[system].system.empty();
   }
-  if (all_ok) return "";
-  std::vector<TextRow> rows = {{"system", "runs", "ended", "the first: why"}};
-  for (const auto& [at, what] : ends) {
+  if (!told) return "";
+  std::vector<TextRow> rows = {{"system", "runs", "ended", "frames with a pose", "the first: why"}};
+  for (auto& [at, ends] : all) {
     const SystemEntry& system = campaign.systems[at.first];
-    rows.push_back({Label(system.external, system.name), fmt::format("{}", what.first), Name(at.second),
-                    what.second.empty() ? "-" : what.second});
+    std::ranges::sort(ends.coverages);
+    rows.push_back({Label(system.external, system.name), fmt::format("{}", ends.count), Name(at.second),
+                    ends.coverages.empty() ? "-" : fmt::format("{:.3g} %", evaluation::Quantile(ends.coverages, 0.5)),
+                    ends.reason.empty() ? "-" : ends.reason});
   }
   return "\n### How the runs ended\n\n" + MarkdownRows(rows, 1);
 }

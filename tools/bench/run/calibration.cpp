@@ -10,17 +10,12 @@ namespace {
 using campaign::CalibrationFormat;
 using sim::CameraParams;
 
-constexpr int kMultiple = 16;  // of the sides of images that are halved four times
-
 bool IsFisheye(const CameraParams& c) { return c.lens == sim::Lens::fisheye; }
-
-bool Distorted(const CameraParams& c) {
-  return c.k1 != 0 || c.k2 != 0 || c.p1 != 0 || c.p2 != 0 || c.k3 != 0 || c.k4 != 0;
-}
 
 void Refuse(bool impossible, CalibrationFormat format, const char* why) {
   if (impossible) {
-    throw std::invalid_argument(fmt::format("a calibration for {} has no place for {}", Name(format), why));
+    throw std::invalid_argument(
+        fmt::format("a calibration for {} has no place for {} (`images: rectified`)", Name(format), why));
   }
 }
 
@@ -75,17 +70,17 @@ std::string Orb(const CameraParams& c, double rate_hz, CalibrationFormat format)
 // Four lines: the camera in shares of the size, the size, how to rectify, the size after it. Rectified images are
 // cropped, and those whose sides are no multiples of 16, which are halved four times; others stay as they are.
 std::string Lines(const CameraParams& c, const std::string& model, double offset, const std::string& lens) {
-  const int width = c.width / kMultiple * kMultiple, height = c.height / kMultiple * kMultiple;
+  const int width = c.width / kSideMultiple * kSideMultiple, height = c.height / kSideMultiple * kSideMultiple;
   const bool whole = width == c.width && height == c.height;
   return fmt::format("{}{} {} {} {}{}\n{} {}\n{}\n{} {}\n", model, c.fx / c.width, c.fy / c.height,
                      (c.cx + offset) / c.width, (c.cy + offset) / c.height, lens, c.width, c.height,
-                     Distorted(c) || IsFisheye(c) || !whole ? "crop" : "none", width, height);
+                     IsDistorted(c) || !whole ? "crop" : "none", width, height);
 }
 
 std::string Dso(const CameraParams& c) {
   if (IsFisheye(c)) return Lines(c, "EquiDistant ", 0.5, fmt::format(" {} {} {} {}", c.k1, c.k2, c.k3, c.k4));
   Refuse(c.k3 != 0, CalibrationFormat::dso, "k3");
-  if (!Distorted(c)) return Lines(c, "Pinhole ", 0.5, " 0");
+  if (!IsDistorted(c)) return Lines(c, "Pinhole ", 0.5, " 0");
   return Lines(c, "RadTan ", 0.5, fmt::format(" {} {} {} {}", c.k1, c.k2, c.p1, c.p2));
 }
 
@@ -93,15 +88,15 @@ std::string Dso(const CameraParams& c) {
 std::string LsdSlam(const CameraParams& c) {
   Refuse(IsFisheye(c), CalibrationFormat::lsd_slam, "a fisheye lens");
   Refuse(c.k3 != 0, CalibrationFormat::lsd_slam, "k3");
-  if (!Distorted(c)) return Lines(c, "", 0.5, " 0");
+  if (!IsDistorted(c)) return Lines(c, "", 0.5, " 0");
   return Lines(c, "", 0, fmt::format(" {} {} {} {}", c.k1, c.k2, c.p1, c.p2));
 }
 
 std::string Svo(const CameraParams& c) {
   Refuse(IsFisheye(c), CalibrationFormat::svo, "a fisheye lens");
   Refuse(c.k3 != 0, CalibrationFormat::svo, "k3");
-  Refuse(c.width % kMultiple != 0 || c.height % kMultiple != 0, CalibrationFormat::svo,
-         "sides that are no multiples of 16: render in another size");
+  Refuse(c.width % kSideMultiple != 0 || c.height % kSideMultiple != 0, CalibrationFormat::svo,
+         "sides that are no multiples of 16");
   return fmt::format(
       "cam_model: Pinhole\ncam_width: {}\ncam_height: {}\ncam_fx: {}\ncam_fy: {}\ncam_cx: {}\ncam_cy: {}\n"
       "cam_d0: {}\ncam_d1: {}\ncam_d2: {}\ncam_d3: {}\n",
@@ -110,6 +105,10 @@ std::string Svo(const CameraParams& c) {
 }
 
 }  // namespace
+
+bool IsDistorted(const CameraParams& c) {
+  return IsFisheye(c) || c.k1 != 0 || c.k2 != 0 || c.p1 != 0 || c.p2 != 0 || c.k3 != 0 || c.k4 != 0;
+}
 
 std::string WriteCalibration(const CameraParams& camera, double rate_hz, CalibrationFormat format) {
   switch (format) {

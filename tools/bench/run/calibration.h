@@ -11,6 +11,11 @@
 
 namespace vobench {
 
+inline constexpr int kSideMultiple = 16;  // of the sides of images that are halved four times
+
+// Not a pinhole.
+bool IsDistorted(const sim::CameraParams& camera);
+
 // The text of the file; empty for formats without a file of their own. Throws std::invalid_argument where the format
 // has no place for this lens.
 std::string WriteCalibration(const sim::CameraParams& camera, double rate_hz, campaign::CalibrationFormat format);

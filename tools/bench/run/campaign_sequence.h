@@ -1,11 +1,15 @@
-// Sequences of a campaign in the cache: name by content, rendering.
+// Sequences of a campaign in the cache: name by content, rendering; recorded ones, read where they lie.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "sim/scenario/scenario.h"
+#include "tools/bench/campaign/plan.h"
 #include "tools/bench/campaign/sequence_cache.h"
+#include "tools/bench/points/truth.h"
+#include "tools/bench/systems/experiment.h"
+#include "vo/sequence/reader.h"
 
 namespace vobench {
 
@@ -15,12 +19,26 @@ std::string DigestOfPointFiles(const sim::Scenario& scenario);
 // Reads the world of a scenario and gives the cache the names of its files. Throws BadInput where one cannot be read.
 void FindWorld(const sim::Scenario& scenario, campaign::SequenceCache& cache);
 
-// Of all that the pictures depend on: settings, contents of files, version of the program. None where the files of the
-// world have changed or were never found.
-std::optional<std::string> SequenceKey(const sim::Scenario& scenario, campaign::SequenceCache& cache);
+// What a task sees. Without frames here: what its scenario renders.
+struct SeenSequence {
+  Experiment experiment;  // of a recorded sequence's scenario camera, readout and rate alone
+  std::vector<vo::SequenceReader::Entry> frames;
+  Truth truth;
+  bool recorded() const { return !frames.empty(); }
+};
+
+// Throws settings::Error with every problem; keys are those of the campaign's entry (path, camera, first, frames) and
+// of settings.
+SeenSequence ReadRecording(const campaign::ScenarioEntry& entry, const campaign::Changes& changes);
+
+// Of all that the pictures depend on: settings, contents of files, version of the program; of a recorded sequence the
+// bytes of its pictures, their stamps, the truth and the camera. None where the files of the world have changed or were
+// never found.
+std::optional<std::string> SequenceKey(const SeenSequence& sequence, campaign::SequenceCache& cache);
 
 // Renders the sequence unless it is there, going on with what a killed process left. Waits where another one is at it.
-// Throws BadInput, std::runtime_error.
-void RenderInto(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario, int jobs);
+// Of a recorded one a folder in TUM's layout: lists, camera.yaml, and links to its pictures, made anew where these lie
+// elsewhere by now. Throws BadInput, std::runtime_error.
+void MakeIn(const campaign::SequenceCache& cache, const std::string& key, const SeenSequence& sequence, int jobs);
 
 }  // namespace vobench

@@ -45,6 +45,7 @@ struct TaskOutput {
   evaluation::EstimateRun run;
   Truth truth;
   evaluation::JudgeOptions how;
+  std::int64_t begin_ns = 0;  // what the campaign counts its times from
   double seconds = 0;
 };
 
@@ -74,18 +75,15 @@ Truth TruthOfAllFrames(const sim::Scenario& scenario) {
   return truth;
 }
 
-TaskOutput PlayImages(const Experiment& experiment, const fs::path& sequence, const std::string& system,
-                      std::uint64_t seed) {
+void PlayImages(const Experiment& experiment, const fs::path& sequence, const std::string& system, std::uint64_t seed,
+                TaskOutput& output) {
   vo::SequenceReader reader = Input([&] { return vo::SequenceReader(sequence); });
-  TaskOutput output;
-  output.truth = TruthOfAllFrames(experiment.scenario);
   Tracker tracker(
       {system, seed, experiment.odometry, PriorOf(experiment.prior, experiment.scenario.motion, output.truth, seed)},
       CameraForOdometry(experiment), static_cast<std::int64_t>(reader.size()), std::nullopt, "");
   while (const std::optional<vo::Frame> frame = Input([&] { return reader.Next(); })) tracker.Track(*frame);
   output.run = tracker.Estimates();
   output.seconds = tracker.entry().seconds;
-  return output;
 }
 
 // Times differ from run to run: they are kept apart. None of a program that does not say them.
@@ -124,7 +122,8 @@ void WriteTimes(const fs::path& folder, const Clock& clock, double tracking_s,
 
 // Without the frames that the campaign does not judge.
 evaluation::Metrics JudgeOutside(const campaign::Omitted& omit, const TaskOutput& output) {
-  const std::int64_t from_ns = std::llround(1e9 * omit.from_s), until_ns = std::llround(1e9 * omit.until_s);
+  const std::int64_t from_ns = output.begin_ns + std::llround(1e9 * omit.from_s);
+  const std::int64_t until_ns = output.begin_ns + std::llround(1e9 * omit.until_s);
   evaluation::JudgeOptions how = output.how;
   if (how.frame_stamps_ns)
     std::erase_if(*how.frame_stamps_ns, [&](std::int64_t at_ns) { return at_ns >= from_ns && at_ns < until_ns; });
@@ -146,11 +145,13 @@ void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& o
   }
 }
 
-Experiment Load(const Campaign& campaign, const TaskChoice& choice) {
+SeenSequence Load(const Campaign& campaign, const TaskChoice& choice) {
+  const campaign::ScenarioEntry& entry = campaign.scenarios[choice.scenario];
   const campaign::Changes changes = campaign::ChangesAt(campaign, choice);
-  Experiment experiment = LoadExperiment(campaign.scenarios[choice.scenario].file, changes);
+  if (entry.recorded) return ReadRecording(entry, changes);
+  Experiment experiment = LoadExperiment(entry.file, changes);
   const auto asks = [](const auto& change) { return change.first == "truth"; };
-  if (experiment.scenario.points || std::any_of(changes.begin(), changes.end(), asks)) return experiment;
+  if (experiment.scenario.points || std::any_of(changes.begin(), changes.end(), asks)) return {experiment, {}, {}};
   // No truth beside poses and velocities unless the campaign asks for it: it would not be read here.
   experiment.scenario.truth.streams.clear();
   for (std::string* resolved : {&experiment.scenario.resolved, &experiment.resolved}) {
@@ -158,7 +159,7 @@ Experiment Load(const Campaign& campaign, const TaskChoice& choice) {
     json["truth"] = nlohmann::ordered_json::array();
     *resolved = json.dump(2);
   }
-  return experiment;
+  return {experiment, {}, {}};
 }
 
 // Of pictures the key says which files they were made from.
@@ -191,9 +192,9 @@ void CheckStamps(const TaskOutput& output, TaskRecord& record) {
   const std::size_t all = output.run.trajectory.size();
   if (2 * known < all) {
     record.status = campaign::Status::no_answer;
-    record.reason =
-        fmt::format("of its {} time stamps {} are those of frames; the first is {} s, that of frame 0 {} s", all, known,
-                    base::FormatSeconds(output.run.trajectory.front().stamp_ns), base::FormatSeconds(frames.front()));
+    record.reason = fmt::format(
+        "of its {} time stamps {} are those of frames; the last is {} s, that of the last frame {} s", all, known,
+        base::FormatSeconds(output.run.trajectory.back().stamp_ns), base::FormatSeconds(frames.back()));
   } else if (last + 2 < frames.size()) {
     record.reason +=
         fmt::format("{}no pose after frame {} of {}", record.reason.empty() ? "" : "; ", last, frames.size());
@@ -207,7 +208,7 @@ class CampaignTasks : public campaign::TaskRunner {
 
   campaign::TaskSettings Settings(const Campaign& campaign, const TaskChoice& choice,
                                   const Refuse& refuse) const override {
-    const Experiment experiment = Load(campaign, choice);
+    const Experiment experiment = Load(campaign, choice).experiment;
     const bool images = !experiment.scenario.points;
     if (!images) RefusePoints(campaign, choice, refuse);
     const campaign::SystemEntry& system = campaign.systems[choice.system];
@@ -220,12 +221,12 @@ class CampaignTasks : public campaign::TaskRunner {
 
   std::optional<std::string> SequenceName(const Campaign& campaign, const TaskChoice& choice,
                                           SequenceCache& cache) const override {
-    return SequenceKey(Input([&] { return Load(campaign, choice); }).scenario, cache);
+    return SequenceKey(Input([&] { return Load(campaign, choice); }), cache);
   }
 
   void ReadWorld(const Campaign& campaign, const TaskChoice& choice, SequenceCache& cache) const override {
     try {
-      FindWorld(Load(campaign, choice).scenario, cache);
+      FindWorld(Load(campaign, choice).experiment.scenario, cache);
     } catch (const BadInput& error) {
       throw std::invalid_argument(error.what());
     }
@@ -233,7 +234,7 @@ class CampaignTasks : public campaign::TaskRunner {
 
   void Render(const Campaign& campaign, const TaskChoice& choice, const SequenceCache& cache,
               const std::string& sequence, int threads) const override {
-    RenderInto(cache, sequence, Input([&] { return Load(campaign, choice); }).scenario, threads);
+    MakeIn(cache, sequence, Input([&] { return Load(campaign, choice); }), threads);
   }
 
   void Run(const Campaign& campaign, const TaskChoice& choice, const SequenceCache& cache, const std::string& sequence,
@@ -242,19 +243,26 @@ class CampaignTasks : public campaign::TaskRunner {
     cv::setNumThreads(1);
     const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
     const campaign::SystemEntry& system = campaign.systems[choice.system];
-    const Experiment experiment = Input([&] { return Load(campaign, choice); });
+    const SeenSequence seen = Input([&] { return Load(campaign, choice); });
+    const Experiment& experiment = seen.experiment;
     TaskOutput output;
+    if (experiment.scenario.points) {
+      output = PlayPoints(experiment, system.system, record.seed);
+    } else {
+      MakeIn(cache, sequence, seen, 1);  // what was recorded may lie elsewhere by now
+      output.truth = seen.recorded() ? seen.truth : TruthOfAllFrames(experiment.scenario);
+      output.begin_ns = seen.recorded() ? seen.frames.front().stamp_ns : 0;
+    }
     if (system.system.empty()) {
-      const Clock tracking;
-      output.run.trajectory = RunExternal(system.external, cache, sequence, experiment.scenario, folder,
-                                          campaign.keep == campaign::Keep::all, record);
-      output.seconds = tracking.seconds();
-      output.truth = TruthOfAllFrames(experiment.scenario);
-      output.how.frame_stamps_ns = evaluation::StampsOf(output.truth.poses);
+      const ExternalAnswer answer = RunExternal(system.external, cache, sequence, experiment.scenario, !seen.recorded(),
+                                                folder, campaign.keep == campaign::Keep::all, record);
+      output.run.trajectory = answer.trajectory;
+      output.seconds = answer.seconds;
+      output.how.frame_stamps_ns = answer.frame_stamps_ns;
       CheckStamps(output, record);
     } else {
-      output = experiment.scenario.points ? PlayPoints(experiment, system.system, record.seed)
-                                          : PlayImages(experiment, cache.PathOf(sequence), system.system, record.seed);
+      if (!experiment.scenario.points)
+        PlayImages(experiment, cache.PathOf(sequence), system.system, record.seed, output);
       output.how = JudgeOptionsOf(experiment.prior);
     }
     const std::optional<evaluation::Timing> frame = TakeTimes(output);

@@ -7,12 +7,11 @@
 #include <cmath>
 #include <sstream>
 
-#include "sim/sequence/layout.h"
-#include "sim/simulator.h"
 #include "tools/base/files.h"
 #include "tools/base/text.h"
 #include "tools/bench/campaign/command.h"
 #include "tools/bench/errors.h"
+#include "tools/bench/provenance.h"
 #include "tools/bench/run/calibration.h"
 #include "tools/judge/evaluation/text_file.h"
 
@@ -20,54 +19,15 @@ namespace vobench {
 namespace fs = std::filesystem;
 namespace {
 
-fs::path WriteCalibrationFile(const campaign::ExternalSystem& system, const sim::Scenario& scenario,
-                              const fs::path& sequence, const fs::path& folder) {
+fs::path WriteCalibrationFile(const campaign::ExternalSystem& system, const ServedSequence& sequence, double rate_hz,
+                              const fs::path& folder) {
   if (system.calibration == campaign::CalibrationFormat::none) return {};
-  if (system.calibration == campaign::CalibrationFormat::camera_yaml) return sequence / "camera.yaml";
+  if (system.calibration == campaign::CalibrationFormat::camera_yaml) return sequence.folder / "camera.yaml";
   const bool yaml = system.calibration != campaign::CalibrationFormat::dso &&
                     system.calibration != campaign::CalibrationFormat::lsd_slam;
   const fs::path file = folder / (yaml ? "calibration.yaml" : "calibration.txt");
-  base::WriteFile(file,
-                  Input([&] { return WriteCalibration(scenario.camera, scenario.time.rate_hz, system.calibration); }));
+  base::WriteFile(file, Input([&] { return WriteCalibration(sequence.camera, rate_hz, system.calibration); }));
   return file;
-}
-
-// The sequence in another layout, links to the pictures in the cache; itself for TUM's. Made where it is missing.
-fs::path InLayout(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario,
-                  campaign::SequenceLayout layout) {
-  const fs::path sequence = cache.PathOf(key);
-  if (layout == campaign::SequenceLayout::tum) return sequence;
-  const fs::path folder = sequence.string() + "." + campaign::Name(layout);
-  const campaign::FileLock lock = cache.Take(key);
-  if (fs::exists(folder)) return folder;
-  const fs::path partial = folder.string() + ".partial";
-  fs::remove_all(partial);
-  const std::unique_ptr<sim::Trajectory> trajectory = sim::TrajectoryOf(scenario);
-  std::vector<sim::StampedTruth> frames;
-  std::string times;
-  for (std::int64_t index = 0; index < sim::CountFrames(scenario.time); ++index) {
-    const std::int64_t stamp_ns = sim::StampNs(index, scenario.time);
-    frames.push_back({index, stamp_ns, sim::TruthAt(*trajectory, sim::Seconds(stamp_ns))});
-    const std::string number = fmt::format("{:06}", index);
-    const fs::path link =
-        partial / (layout == campaign::SequenceLayout::euroc ? sim::NamesOf(sim::Layout::euroc, index, stamp_ns).image
-                                                             : "images/" + number + ".png");
-    fs::create_directories(link.parent_path());
-    fs::create_hard_link(sequence / sim::NamesOf(sim::Layout::tum, index, stamp_ns).image, link);
-    times += fmt::format("{} {} {:.9g}\n", number, base::FormatSeconds(stamp_ns), 1e3 * scenario.sensor.exposure_s);
-  }
-  if (layout == campaign::SequenceLayout::euroc) {
-    const std::vector<std::string> problems = sim::Problems(sim::Layout::euroc, scenario);
-    if (!problems.empty()) throw BadInput(fmt::format("{}", fmt::join(problems, "; ")));
-    for (const sim::StreamFile& file : sim::Lists(sim::Layout::euroc, scenario, frames)) {
-      base::WriteFileAndFolders(partial / file.path, base::AsText(file.bytes));
-    }
-  } else {
-    base::WriteFile(partial / "times.txt", times);
-  }
-  base::WriteFile(partial / "camera.yaml", sim::CameraYaml(scenario.camera, scenario.sensor.readout_s));
-  base::ReplaceFolder(partial, folder);
-  return folder;
 }
 
 std::string LastLine(const fs::path& file, const std::string& before) {
@@ -109,25 +69,26 @@ std::size_t RemoveNotFinite(const fs::path& file) {
 
 }  // namespace
 
-evaluation::Trajectory RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
-                                   const std::string& key, const sim::Scenario& scenario, const fs::path& folder,
-                                   bool keep_work, campaign::TaskRecord& record) {
-  const fs::path sequence = fs::absolute(InLayout(cache, key, scenario, system.layout));
+ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
+                           const std::string& key, const sim::Scenario& scenario, bool rendered, const fs::path& folder,
+                           bool keep_work, campaign::TaskRecord& record) {
+  const ServedSequence sequence = Input([&] { return Serve(cache, key, scenario, rendered, system); });
   const fs::path at_work = fs::absolute(folder) / "work", trajectory = at_work / system.trajectory;
   fs::create_directories(at_work);
-  const fs::path calibration = WriteCalibrationFile(system, scenario, sequence, fs::absolute(folder));
+  const fs::path calibration = WriteCalibrationFile(system, sequence, scenario.time.rate_hz, fs::absolute(folder));
   std::vector<std::pair<std::string, std::string>> values = system.variables;
-  values.insert(values.end(), {{"sequence", sequence.string()},
+  values.insert(values.end(), {{"sequence", sequence.folder.string()},
                                {"calibration", calibration.string()},
                                {"trajectory", trajectory.string()},
                                {"seed", std::to_string(record.seed)}});
+  const Clock clock;
   const campaign::CommandEnd end =
       campaign::RunCommand(campaign::FillIn(system.command, values), at_work, folder / "log.txt", system.timeout_s);
   const auto lost = [&](campaign::Status status, const std::string& reason) {
     record.status = status;
     record.reason = reason;
   };
-  evaluation::Trajectory estimate;
+  ExternalAnswer answer{{}, sequence.stamps_ns, clock.seconds()};
   if (end.timed_out) {
     lost(campaign::Status::timed_out, fmt::format("took longer than {:g} s", system.timeout_s));
   } else if (end.status == 126 || end.status == 127) {  // as sh says that it cannot start a program
@@ -140,8 +101,8 @@ evaluation::Trajectory RunExternal(const campaign::ExternalSystem& system, const
   } else {
     try {
       const std::size_t left_out = RemoveNotFinite(trajectory);
-      estimate = evaluation::ReadTrajectory(trajectory);
-      if (left_out > 0) record.reason = fmt::format("{} lines without a finite pose were left out", left_out);
+      answer.trajectory = evaluation::ReadTrajectory(trajectory);
+      if (left_out > 0) record.reason = fmt::format("lines without a finite pose, left out: {}", left_out);
     } catch (const evaluation::InputError& error) {
       // Where the task lies does not belong into a table that is the same everywhere.
       std::string reason = error.what();
@@ -152,7 +113,7 @@ evaluation::Trajectory RunExternal(const campaign::ExternalSystem& system, const
     }
   }
   if (!keep_work && record.status != campaign::Status::crashed) fs::remove_all(at_work);
-  return estimate;
+  return answer;
 }
 
 }  // namespace vobench

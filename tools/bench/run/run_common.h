@@ -30,6 +30,12 @@ void Conclude(OutputFolder& folder, ResultData& result);
 // the first exception of a task.
 void ForEach(std::size_t count, int jobs, const std::function<void(std::size_t)>& task);
 
+// A preset or a file; or else the sequence's own camera.yaml, or EuRoC's sensor.yaml. Throws BadInput, settings::Error,
+// std::invalid_argument.
+vo::Camera CameraOfSequence(const std::filesystem::path& sequence, const std::optional<std::string>& camera);
+// Camera and settings of a tracked sequence, as JSON.
+std::string RecordOfTracking(const vo::Camera& camera, const std::string& settings);
+
 // Each run has a world of points of its own, seeded like its filter. Called by Run.
 void RunOnPoints(const RunOptions& options, const Experiment& experiment, const Clock& clock);
 

@@ -32,97 +32,54 @@ namespace {
 
 constexpr std::int64_t kFramesOfACamera = 3000;  // not known: pictures are kept at every 300th frame
 
-struct TrackSettings {
-  vo::Params params;
-  PriorSettings prior = kPriorOfImagesAlone;
-  std::string resolved;
-};
-
-TrackSettings ReadSettings(const TrackOptions& options) {
+Experiment ReadSettings(const TrackOptions& options) {
   settings::Document document =
       options.settings ? settings::Document::FromFile(*options.settings) : settings::Document::FromText("", "--set");
   for (const auto& [key, value] : options.overrides) document.Override(key, value);
-  TrackSettings out;
-  settings::Section odometry = document.root().Child("odometry");
-  if (!odometry.Has("target")) out.params.landmark.scale_sigma = kUnknownScale;  // which has the scale
-  out.params.motion.adaptive = true;
-  out.params.landmark.proving_matches = kProvingMatches;
-  out.params.filter.lag = kLag;
-  out.params.filter.weight = vo::Weight::uniform;
-  out.params.filter.particles = kParticles;
-  out.params.calibration.estimate = true;
-  const bool position_noise_given = odometry.Child("motion").Has("position_noise");
-  if (odometry.Child("filter").Has("lag") && !odometry.Child("filter").Has("weight"))  // without one, none is uniform
-    out.params.filter.weight = vo::Weight::evidence;
-  ReadOdometry(odometry, out.params);
-  if (!position_noise_given)
-    out.params.motion.position_noise = kAccelerationPerDepth / out.params.landmark.inverse_depth;
-  settings::Section prior = document.root().Child("prior");
-  ReadPrior(prior, out.prior);
-  if (out.prior.start == PriorSettings::Start::truth) {
-    prior.Reject("start", "'truth' is for `vobench run`: this command tells the odometry nothing of the truth");
-  }
-  document.ThrowIfBad();
-  out.resolved = document.Resolved();
-  return out;
-}
-
-vo::Camera ReadCamera(const TrackOptions& options) {
-  if (options.camera) return vo::CameraFrom(*options.camera);
-  if (!fs::is_directory(options.sequence)) {
-    throw BadInput(fmt::format("{}: a video says nothing of its camera; say which one with --camera PRESET|FILE",
-                               options.sequence.string()));
-  }
-  const fs::path file = options.sequence / "camera.yaml";
-  const fs::path euroc = options.sequence / "mav0/cam0/sensor.yaml";
-  if (!fs::exists(file) && fs::exists(euroc)) return vo::ReadCamera(euroc);
-  if (!fs::exists(file)) {
-    throw BadInput(fmt::format("{}: is not there; say which camera with --camera PRESET|FILE", file.string()));
-  }
-  return vo::ReadCamera(file);
-}
-
-std::string Record(const vo::Camera& c, const std::string& resolved) {
-  nlohmann::ordered_json all;
-  all["camera"] = {{"width", c.width},
-                   {"height", c.height},
-                   {"fx", c.fx},
-                   {"fy", c.fy},
-                   {"cx", c.cx},
-                   {"cy", c.cy},
-                   {"distortion",
-                    {{"model", c.lens == vo::Lens::fisheye ? "fisheye" : "radial_tangential"},
-                     {"k1", c.k1},
-                     {"k2", c.k2},
-                     {"p1", c.p1},
-                     {"p2", c.p2},
-                     {"k3", c.k3},
-                     {"k4", c.k4}}},
-                   {"rolling_shutter_s", c.readout_s ? nlohmann::ordered_json(*c.readout_s) : nullptr}};
-  all.update(nlohmann::ordered_json::parse(resolved));
-  return all.dump(2);
+  return ReadTrackSettings(document);
 }
 
 }  // namespace
+
+vo::Camera CameraOfSequence(const fs::path& sequence, const std::optional<std::string>& camera) {
+  if (camera) return vo::CameraFrom(*camera);
+  for (const char* file : {"camera.yaml", "mav0/cam0/sensor.yaml"})
+    if (fs::exists(sequence / file)) return vo::ReadCamera(sequence / file);
+  throw BadInput(sequence.string() +
+                 ": no camera.yaml in it; say which camera with --camera PRESET|FILE (`camera` in a campaign)");
+}
+
+std::string RecordOfTracking(const vo::Camera& c, const std::string& resolved) {
+  nlohmann::ordered_json all, distortion{{"model", c.lens == vo::Lens::fisheye ? "fisheye" : "radial_tangential"}};
+  for (const auto& [key, k] : std::initializer_list<std::pair<const char*, double>>{
+           {"k1", c.k1}, {"k2", c.k2}, {"p1", c.p1}, {"p2", c.p2}, {"k3", c.k3}, {"k4", c.k4}})
+    distortion[key] = k;
+  all["camera"] = {{"width", c.width}, {"height", c.height}, {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy}};
+  all["camera"]["distortion"] = distortion;
+  all["camera"]["rolling_shutter_s"] = c.readout_s ? nlohmann::ordered_json(*c.readout_s) : nullptr;
+  all.update(nlohmann::ordered_json::parse(resolved));
+  return all.dump(2);
+}
 
 void Track(const TrackOptions& options) {
   const Clock clock;
   if (options.map) RequireMapPath(*options.map, options.output);
   const std::unique_ptr<vo::FrameSource> source = Input([&] { return vo::OpenFrames(options.sequence.string()); });
-  vo::Camera camera = Input([&] { return ReadCamera(options); });
-  const TrackSettings settings = Input([&] { return ReadSettings(options); });
+  vo::Camera camera = Input([&] { return CameraOfSequence(options.sequence, options.camera); });
+  const Experiment settings = Input([&] { return ReadSettings(options); });
   const std::optional<Truth> truth = Input([&] { return ReadSequenceTruth(options.sequence); });
   std::optional<MatchErrors> match_errors;
   if (options.truth) {
     if (!truth) throw BadInput(fmt::format("{}: has no truth for --truth", options.sequence.string()));
     Input([&] { return &match_errors.emplace(options.sequence, camera, *truth); });
   }
+  if (!settings.prior.shutter_known) camera.readout_s.reset();
   camera.fx *= 1 + settings.prior.focal_error;
   camera.fy *= 1 + settings.prior.focal_error;
   const std::optional<std::int64_t> frames = source->Count();
   OutputFolder out(options.output, kResultMarker, ResultNames(SystemNames()));
 
-  Tracker tracker({options.system, options.seed, settings.params, PriorAtOrigin(settings.prior)}, camera,
+  Tracker tracker({options.system, options.seed, settings.odometry, PriorAtOrigin(settings.prior)}, camera,
                   frames.value_or(kFramesOfACamera), out.path(), ".");
   RunDescription description{fs::weakly_canonical(options.sequence).filename().string(), options.sequence.string(),
                              options.command_line, clock.started_utc()};
@@ -182,7 +139,7 @@ void Track(const TrackOptions& options) {
   const std::string warning = run.entry.calibration ? CalibrationWarning(*run.entry.calibration) : "";
   if (!warning.empty()) description.notes.push_back("Warning: " + warning);
   description.seconds = clock.seconds();
-  description.settings = Record(camera, settings.resolved);
+  description.settings = RecordOfTracking(camera, settings.resolved);
   description.versions = Versions();
   result.description = std::move(description);
   if (options.map && !end) WriteMap(*options.map, map);

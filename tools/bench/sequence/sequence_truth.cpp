@@ -7,11 +7,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <string_view>
 
 #include "tools/base/settings/settings.h"
 #include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"
+#include "vo/sequence/reader.h"
 
 namespace vobench {
 namespace fs = std::filesystem;
@@ -26,31 +26,8 @@ std::optional<fs::path> IclNuimTruth(const fs::path& sequence) {
   return files.empty() ? std::nullopt : std::optional(files.front());
 }
 
-// Nanoseconds as decimal digits.
-std::optional<std::int64_t> ParseNanoseconds(std::string_view text) {
-  const auto stamp_ns = base::ParseWhole(text);
-  return stamp_ns && *stamp_ns >= -base::kLatest_ns && *stamp_ns <= base::kLatest_ns ? stamp_ns : std::nullopt;
-}
-
 // ICL-NUIM's time is index / 30 s. indices_ns: the index read as seconds.
 std::int64_t IclNuimStamp(std::int64_t indices_ns) { return (indices_ns + 15) / 30; }
-
-std::optional<std::int64_t> ParseIclNuimIndex(std::string_view text) {
-  const auto indices_ns = base::ParseSeconds(text);
-  return indices_ns ? std::optional(IclNuimStamp(*indices_ns)) : std::nullopt;
-}
-
-// Where a sequence lists its pictures, a line each that begins with its time. The first one there is says.
-struct FrameList {
-  const char* name;
-  char separator;
-  std::optional<std::int64_t> (*stamp)(std::string_view text);
-  const char* what;
-};
-constexpr FrameList kFrameLists[] = {
-    {"rgb.txt", ' ', base::ParseSeconds, "a time in seconds, 4e9 at most"},
-    {"associations.txt", ' ', ParseIclNuimIndex, "the number of a frame"},
-    {"mav0/cam0/data.csv", ',', ParseNanoseconds, "a time in nanoseconds, 4e18 at most"}};
 
 // T_BS of a sensor: from the sensor's frame to the body's.
 Eigen::Isometry3d ReadExtrinsic(const fs::path& file) {
@@ -113,21 +90,11 @@ std::optional<Truth> ReadSequenceTruth(const fs::path& sequence) {
 }
 
 std::optional<std::vector<std::int64_t>> ReadFrameStamps(const fs::path& sequence) {
-  const auto format = std::find_if(std::begin(kFrameLists), std::end(kFrameLists),
-                                   [&](const FrameList& list) { return fs::exists(sequence / list.name); });
-  if (format == std::end(kFrameLists)) return std::nullopt;
-  const fs::path list = sequence / format->name;
+  const auto there = [&](const char* list) { return fs::exists(sequence / list); };
+  if (!there("rgb.txt") && !there("associations.txt") && !there("mav0/cam0/data.csv")) return std::nullopt;
+  const vo::SequenceReader reader(sequence, vo::SequenceReader::Images::not_asked_for);
   std::vector<std::int64_t> stamps;
-  evaluation::Problems problems;
-  for (const evaluation::Line& line : evaluation::Lines(list, format->separator)) {
-    const std::string& text = line.tokens[0].text;
-    const auto stamp_ns = format->stamp(text);
-    if (!stamp_ns) problems.Add(list, line.number, line.tokens[0].column, "'" + text + "' is not " + format->what);
-    if (stamp_ns && !stamps.empty() && *stamp_ns <= stamps.back())
-      problems.Add(list, line.number, line.tokens[0].column, "time does not increase");
-    stamps.push_back(stamp_ns.value_or(0));
-  }
-  problems.ThrowIfAny();
+  for (const vo::SequenceReader::Entry& frame : reader.entries()) stamps.push_back(frame.stamp_ns);
   return stamps;
 }
 

@@ -17,7 +17,7 @@ namespace vobench {
 std::optional<Truth> ReadSequenceTruth(const std::filesystem::path& sequence);
 
 // When the pictures were taken that the sequence lists: in rgb.txt, ICL-NUIM's associations.txt (index / 30 s) or
-// EuRoC's mav0/cam0/data.csv. None where it has no list. Throws evaluation::InputError.
+// EuRoC's mav0/cam0/data.csv. None where it has no list. Throws std::runtime_error.
 std::optional<std::vector<std::int64_t>> ReadFrameStamps(const std::filesystem::path& sequence);
 
 // S T S: the same trajectory as seen by a camera whose image is the right way up.

@@ -13,6 +13,12 @@ vo::Camera ToOdometry(const sim::CameraParams& camera) {
       width, height, fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, fisheye ? vo::Lens::fisheye : vo::Lens::radial_tangential};
 }
 
+sim::CameraParams ToSimulator(const vo::Camera& c) {
+  sim::CameraParams to{c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3, c.k4};
+  if (c.lens == vo::Lens::fisheye) to.lens = sim::Lens::fisheye;
+  return to;
+}
+
 vo::Camera CameraOf(const sim::Scenario& scenario) {
   vo::Camera camera = ToOdometry(scenario.camera);
   camera.readout_s = scenario.sensor.readout_s;

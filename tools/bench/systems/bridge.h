@@ -15,7 +15,9 @@
 namespace vobench {
 
 vo::Camera ToOdometry(const sim::CameraParams& camera);
-// The same with the rolling shutter of its sensor.
+// Its rolling shutter is the sensor's, and not in it.
+sim::CameraParams ToSimulator(const vo::Camera& camera);
+// The same as ToOdometry, with the rolling shutter of its sensor.
 vo::Camera CameraOf(const sim::Scenario& scenario);
 // A copy of the pixels, in OpenCV's order of colours.
 vo::Frame ToOdometry(const sim::Frame& frame);

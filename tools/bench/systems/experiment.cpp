@@ -33,6 +33,32 @@ void ReadOdometry(settings::Section section, vo::Params& params) {
 
 void ReadPrior(settings::Section section, PriorSettings& prior) { settings::ReadFields(section, prior); }
 
+Experiment ReadTrackSettings(settings::Document document) {
+  Experiment out{{}, {}, kPriorOfImagesAlone, {}};
+  settings::Section odometry = document.root().Child("odometry");
+  if (!odometry.Has("target")) out.odometry.landmark.scale_sigma = kUnknownScale;  // which has the scale
+  out.odometry.motion.adaptive = true;
+  out.odometry.landmark.proving_matches = kProvingMatches;
+  out.odometry.filter.lag = kLag;
+  // Without a lag, weights cannot be uniform.
+  const bool own_lag = odometry.Child("filter").Has("lag") && !odometry.Child("filter").Has("weight");
+  if (!own_lag) out.odometry.filter.weight = vo::Weight::uniform;
+  out.odometry.filter.particles = kParticles;
+  out.odometry.calibration.estimate = true;
+  const bool position_noise_given = odometry.Child("motion").Has("position_noise");
+  ReadOdometry(odometry, out.odometry);
+  if (!position_noise_given)
+    out.odometry.motion.position_noise = kAccelerationPerDepth / out.odometry.landmark.inverse_depth;
+  settings::Section prior = document.root().Child("prior");
+  ReadPrior(prior, out.prior);
+  if (out.prior.start == PriorSettings::Start::truth) {
+    prior.Reject("start", "'truth' is for `vobench run`: this command tells the odometry nothing of the truth");
+  }
+  document.ThrowIfBad();
+  out.resolved = document.Resolved();
+  return out;
+}
+
 const Overrides& SettingsOfImagesAlone() {
   static const Overrides settings = [] {
     const vo::Params defaults;

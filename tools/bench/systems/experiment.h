@@ -60,6 +60,10 @@ inline constexpr double kAccelerationPerDepth = 0.625;
 inline constexpr int kProvingMatches = 5;
 inline constexpr int kLag = 5, kParticles = 16;
 
+// What `track` starts from unless the document's sections `odometry` and `prior` say otherwise; its scenario is none.
+// Throws settings::Error.
+Experiment ReadTrackSettings(settings::Document document);
+
 // Settings of ours that know images and calibration alone, as `track` does: no start, no noise that suits the motion,
 // no shutter.
 const Overrides& SettingsOfImagesAlone();

@@ -58,6 +58,30 @@ TEST_F(CampaignFileTest, ReadsAllOfIt) {
   EXPECT_THAT(c.tables[0].rows, ElementsAre("scenario", "exposure", "light"));
 }
 
+TEST_F(CampaignFileTest, RecordedSequencesStandBesideScenarios) {
+  setenv("RECORDINGS", "/of/mine", 1);
+  here_.Write("camera.yaml", "");
+  const Campaign c = Read(R"(scenarios: [a.yaml]
+sequences:
+  - sub/b/
+  - {path: $RECORDINGS/c, name: sea, camera: camera.yaml, first: 5, frames: 20, set: {odometry.filter.lag: 3}}
+  - {path: /d, camera: freiburg1}
+systems: [rb2pf]
+)");
+  ASSERT_EQ(c.scenarios.size(), 4u);
+  EXPECT_FALSE(c.scenarios[0].recorded);
+  EXPECT_EQ(c.scenarios[1].name, "b");
+  EXPECT_FALSE(c.scenarios[1].recorded->camera);
+  EXPECT_EQ(c.scenarios[2].name, "sea");
+  EXPECT_EQ(c.scenarios[2].file, "/of/mine/c");
+  EXPECT_EQ(c.scenarios[2].recorded->camera, (here_ / "camera.yaml").string());
+  EXPECT_EQ(c.scenarios[2].recorded->first, 5);
+  EXPECT_EQ(c.scenarios[2].recorded->count, 20);
+  EXPECT_THAT(c.scenarios[2].set, ElementsAre(Pair("odometry.filter.lag", "\"3\"")));
+  EXPECT_EQ(c.scenarios[3].recorded->camera, "freiburg1") << "a preset, where there is no such file";
+  EXPECT_EQ(c.scenarios[3].recorded->count, std::nullopt);
+}
+
 TEST_F(CampaignFileTest, NumbersOfOthersAreTakenAsTheyAreWritten) {
   const Campaign c = Read(std::string(kFull) +
                           "tables: [{metric: ate_m, unit: cm, rows: [scenario], beside: [{name: the paper, values: "
@@ -146,8 +170,8 @@ tabels: []
         "unknown key 'tabels'; did you mean 'tables'?"}) {
     EXPECT_THAT(said, HasSubstr(expected));
   }
-  EXPECT_THAT(Problems("name: x\n"),
-              testing::AllOf(HasSubstr("'scenarios': at least one"), HasSubstr("'systems': at least one")));
+  EXPECT_THAT(Problems("name: x\n"), testing::AllOf(HasSubstr("'scenarios' or 'sequences': at least one"),
+                                                    HasSubstr("'systems': at least one")));
 }
 
 TEST_F(CampaignFileTest, AnIntervalIsNotJudged) {

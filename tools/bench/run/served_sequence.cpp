@@ -1,0 +1,194 @@
+#include "tools/bench/run/served_sequence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "sim/sensor/develop.h"
+#include "sim/sensor/vignetting.h"
+#include "sim/sequence/layout.h"
+#include "tools/base/files.h"
+#include "tools/base/text.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/run/calibration.h"
+#include "tools/judge/evaluation/text_file.h"
+#include "vo/sequence/reader.h"
+
+namespace vobench {
+namespace fs = std::filesystem;
+namespace {
+
+using campaign::SequenceLayout;
+using Frames = std::vector<vo::SequenceReader::Entry>;
+constexpr const char* kVersion = "2";  // another one, other folders: of what is served
+
+// Pinhole of the largest upright rectangle of rays that this camera's picture holds, without a black border; its sides
+// are multiples of 16. Of a pinhole the middle of its picture. Throws std::invalid_argument where it looks behind itself.
+sim::CameraParams RectifiedCamera(const sim::CameraParams& c) {
+  const int width = c.width / kSideMultiple * kSideMultiple, height = c.height / kSideMultiple * kSideMultiple;
+  if (!IsDistorted(c)) {
+    const int x = (c.width - width) / 2, y = (c.height - height) / 2;
+    return {width, height, c.fx, c.fy, c.cx - x, c.cy - y};
+  }
+  const sim::Camera camera(c);
+  glm::dvec2 low(-HUGE_VAL), high(HUGE_VAL);
+  for (int v = 0; v < c.height; ++v) {
+    low.x = std::max(low.x, camera.Undistort({0, v}).x);
+    high.x = std::min(high.x, camera.Undistort({c.width - 1, v}).x);
+  }
+  for (int u = 0; u < c.width; ++u) {
+    low.y = std::max(low.y, camera.Undistort({u, 0}).y);
+    high.y = std::min(high.y, camera.Undistort({u, c.height - 1}).y);
+  }
+  const double fx = (width - 1) / (high.x - low.x), fy = (height - 1) / (high.y - low.y);
+  return {width, height, fx, fy, -low.x * fx, -low.y * fy};
+}
+
+// The pixel of `from` that shows what (x, y) of `to`, a pinhole, does.
+glm::dvec2 SamePoint(const sim::CameraParams& to, int x, int y, const sim::Camera& from) {
+  return from.Project({(x - to.cx) / to.fx, (y - to.cy) / to.fy, 1});
+}
+
+// Whole pixels are copied, others interpolated by cubic convolution.
+void WriteRectified(const fs::path& sequence, const fs::path& folder, const sim::CameraParams& from,
+                    const sim::CameraParams& to) {
+  const sim::Camera camera(from);
+  cv::Mat map(to.height, to.width, CV_32FC2);
+  for (int y = 0; y < to.height; ++y) {
+    for (int x = 0; x < to.width; ++x) {
+      const glm::dvec2 pixel = SamePoint(to, x, y, camera);
+      map.at<cv::Vec2f>(y, x) = {static_cast<float>(pixel.x), static_cast<float>(pixel.y)};
+    }
+  }
+  std::string list = "# rectified frames\n# seconds, and the file\n# timestamp filename\n";
+  fs::create_directories(folder / "rgb");
+  const vo::SequenceReader reader(sequence);
+  for (const vo::SequenceReader::Entry& frame : reader.entries()) {
+    const std::string name = "rgb/" + base::FormatSeconds(frame.stamp_ns) + ".png";
+    const cv::Mat image = cv::imread(frame.image.string(), cv::IMREAD_UNCHANGED);
+    if (image.empty()) throw BadInput(frame.image.string() + ": not an image that can be decoded");
+    cv::Mat rectified;
+    cv::remap(image, rectified, map, {}, cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+    if (!cv::imwrite((folder / name).string(), rectified, {cv::IMWRITE_PNG_COMPRESSION, 1}))
+      throw std::runtime_error((folder / name).string() + ": cannot be written");
+    list += base::FormatSeconds(frame.stamp_ns) + " " + name + "\n";
+  }
+  base::WriteFile(folder / "rgb.txt", list);
+}
+
+// As the monocular dataset of DSO has it. With automatic exposure the time times the gain: it has no other word for it.
+void WriteTimes(const fs::path& file, const Frames& frames, const fs::path& exposures,
+                const sim::SensorParams* sensor) {
+  std::map<std::int64_t, double> chosen;
+  if (fs::exists(exposures)) {
+    for (const evaluation::Line& line : evaluation::Lines(exposures, ' '))
+      chosen[base::ParseSeconds(line.tokens.at(0).text).value()] =
+          base::ParseNumber(line.tokens.at(1).text).value() * base::ParseNumber(line.tokens.at(2).text).value();
+  }
+  std::string times;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    times += fmt::format("{:06} {}", i, base::FormatSeconds(frames[i].stamp_ns));
+    const auto at = chosen.find(frames[i].stamp_ns);
+    if (sensor) times += fmt::format(" {:.9g}", 1e3 * (at == chosen.end() ? sensor->exposure_s : at->second));
+    times += "\n";
+  }
+  base::WriteFile(file, times);
+}
+
+// pcalib.txt: the irradiance, 0 to 255, of each code of 8 bits; vignette.png: 16 bits, the largest factor is 65535. Not
+// where pictures are processed after the response.
+void WritePhotometricCalibration(const fs::path& folder, const sim::Scenario& scenario,
+                                 const sim::CameraParams& served) {
+  if (scenario.sensor.processing.on()) return;
+  std::string response;
+  for (int code = 0; code < 256; ++code)
+    response += fmt::format("{:.9g} ", 255 * sim::ResponseCurve::Decode(scenario.sensor.response, code / 255.0));
+  base::WriteFile(folder / "pcalib.txt", response + "\n");
+  const sim::Camera camera(scenario.camera);
+  const sim::Vignetting vignetting(scenario.sensor.optics, camera);
+  const bool same = served.fx == scenario.camera.fx && served.cx == scenario.camera.cx;  // not rectified
+  cv::Mat factor(served.height, served.width, CV_64F), picture;
+  for (int y = 0; y < served.height; ++y) {
+    for (int x = 0; x < served.width; ++x) {
+      const glm::dvec2 at = same ? glm::dvec2(x, y) : SamePoint(served, x, y, camera);
+      factor.at<double>(y, x) = vignetting.Factor(at.x, at.y);
+    }
+  }
+  double largest = 0;
+  cv::minMaxIdx(factor, nullptr, &largest);
+  factor.convertTo(picture, CV_16U, 65535 / largest);
+  if (!cv::imwrite((folder / "vignette.png").string(), picture))
+    throw std::runtime_error((folder / "vignette.png").string() + ": cannot be written");
+}
+
+void WriteEurocLists(const fs::path& folder, const Frames& frames, sim::Scenario scenario,
+                     const sim::CameraParams& served) {
+  scenario.camera = served;
+  const std::vector<std::string> problems = sim::Problems(sim::Layout::euroc, scenario);
+  if (!problems.empty()) throw BadInput(base::Join(problems, "; ") + " (`images: rectified`)");
+  std::vector<sim::StampedTruth> stamps;
+  for (const vo::SequenceReader::Entry& frame : frames) stamps.push_back({0, frame.stamp_ns, {}});
+  for (const sim::StreamFile& file : sim::Lists(sim::Layout::euroc, scenario, stamps))
+    if (file.path.starts_with("mav0/cam0")) base::WriteFileAndFolders(folder / file.path, base::AsText(file.bytes));
+}
+
+// Makes `folder` where it is not there.
+void MakeOnce(const campaign::SequenceCache& cache, const std::string& key, const fs::path& folder,
+              const std::function<void(const fs::path& partial)>& make) {
+  const campaign::FileLock lock = cache.Take(key);
+  if (fs::exists(folder)) return;
+  const fs::path partial = folder.string() + ".partial";
+  fs::remove_all(partial);
+  fs::create_directories(partial);
+  make(partial);
+  base::ReplaceFolder(partial, folder);
+}
+
+}  // namespace
+
+ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario,
+                     bool rendered, const campaign::ExternalSystem& system) {
+  const fs::path original = fs::absolute(cache.PathOf(key));
+  const sim::CameraParams& camera = scenario.camera;
+  ServedSequence served{original, system.rectified ? RectifiedCamera(camera) : camera, {}};
+  if (system.rectified &&
+      (IsDistorted(camera) || served.camera.width != camera.width || served.camera.height != camera.height)) {
+    served.folder += std::string(".rectified") + kVersion;
+    MakeOnce(cache, key, served.folder, [&](const fs::path& partial) {
+      WriteRectified(original, partial, camera, served.camera);
+      std::string text = sim::CameraYaml(served.camera, 0);
+      base::WriteFile(partial / "camera.yaml", text.erase(text.find("rolling_shutter")));  // its rows are others
+    });
+  }
+  const vo::SequenceReader reader(served.folder);
+  const Frames& frames = reader.entries();
+  for (const vo::SequenceReader::Entry& frame : frames) served.stamps_ns.push_back(frame.stamp_ns);
+  if (system.layout == SequenceLayout::tum) return served;
+  const fs::path tum = served.folder;
+  served.folder += "." + campaign::Name(system.layout) + kVersion;
+  MakeOnce(cache, key, served.folder, [&](const fs::path& partial) {
+    const bool euroc = system.layout == SequenceLayout::euroc;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const fs::path link = partial / (euroc ? sim::NamesOf(sim::Layout::euroc, 0, frames[i].stamp_ns).image
+                                             : fmt::format("images/{:06}.png", i));
+      fs::create_directories(link.parent_path());
+      const fs::path& image = frames[i].image;
+      fs::create_symlink(fs::relative(image.parent_path(), link.parent_path()) / image.filename(), link);
+    }
+    if (euroc) {
+      WriteEurocLists(partial, frames, scenario, served.camera);
+    } else {
+      WriteTimes(partial / "times.txt", frames, original / "exposure.txt", rendered ? &scenario.sensor : nullptr);
+      if (rendered) WritePhotometricCalibration(partial, scenario, served.camera);
+    }
+    fs::copy_file(tum / "camera.yaml", partial / "camera.yaml");
+  });
+  return served;
+}
+
+}  // namespace vobench

@@ -1,0 +1,27 @@
+// Sequence in the cache as an external program wants it: rectified, and in its layout.
+// Source: docs/campaign.md; Engel, Usenko and Cremers 2016, arXiv:1607.02555: times.txt, pcalib.txt, vignette.png.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/scenario/scenario.h"
+#include "tools/bench/campaign/external_system.h"
+#include "tools/bench/campaign/sequence_cache.h"
+
+namespace vobench {
+
+struct ServedSequence {
+  std::filesystem::path folder;
+  sim::CameraParams camera;
+  std::vector<std::int64_t> stamps_ns;  // of its frames
+};
+
+// Links to the pictures in the cache, or rectified ones; made where they are missing. `rendered`: with exposures and
+// photometric calibration, which nobody knows of others. Throws BadInput, std::runtime_error.
+ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario,
+                     bool rendered, const campaign::ExternalSystem& system);
+
+}  // namespace vobench
