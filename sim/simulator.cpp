@@ -20,6 +20,7 @@
 #include "sim/sensor/processing.h"
 #include "sim/sensor/sensor.h"
 #include "sim/sensor/vignetting.h"
+#include "sim/world/labels.h"
 #include "sim/world/scene.h"
 
 namespace sim {
@@ -104,7 +105,7 @@ std::unique_ptr<Trajectory> MakeObjectMotion(const Scenario& s, std::size_t obje
   try {
     return MakeMotion(s, description.motion, ObjectSeed(s.seed, object));
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("object " + description.name + ": " + error.what());
+    throw std::invalid_argument("object " + description.mesh.name + ": " + error.what());
   }
 }
 
@@ -145,6 +146,7 @@ struct Simulator::Parts {
     RequireFree(*trajectory, LastStamp(s), *around, [&s](double t_s) { return s.sensor.IsCovered(t_s); });
     renderer = MakeRenderer(scene, s.render, Threads(jobs), rays, warnings);
     if (rays) exact = MakeRayTracer(scene, std::move(rays), {.jobs = Threads(jobs)});
+    labels = LabelsOf(scene, s.world);
     for (const Mesh& mesh : scene.meshes) mesh_names.push_back(mesh.name);
     for (const Light& light : scene.lights) {
       const auto* rect = std::get_if<RectLight>(&light);
@@ -207,6 +209,7 @@ struct Simulator::Parts {
   std::vector<ExposureSetting> settings;  // by frame; empty: always the scenario's
   std::unique_ptr<Renderer> exact;        // where the renderer cannot be asked what a pixel sees
   std::vector<std::string> mesh_names, object_names;
+  Labels labels;
   std::vector<std::shared_ptr<const Trajectory>> object_motions;
   mutable tbb::task_arena arena;
 };
@@ -226,6 +229,7 @@ const SurfaceTracer& Simulator::surfaces() const {
 }
 const WorldExtent& Simulator::extent() const { return parts_->extent; }
 const std::vector<std::string>& Simulator::mesh_names() const { return parts_->mesh_names; }
+const Labels& Simulator::labels() const { return parts_->labels; }
 
 std::int64_t Simulator::StampNs(std::int64_t index) const { return sim::StampNs(index, parts_->scenario.time); }
 

@@ -18,6 +18,7 @@
 
 namespace sim {
 
+struct Labels;
 class SurfaceTracer;
 class Trajectory;
 
@@ -73,6 +74,7 @@ class Simulator {
   const WorldExtent& extent() const;
   // Of the world's meshes, as SurfaceTracer::MeshOf counts them; of an object's "OBJECT/MESH".
   const std::vector<std::string>& mesh_names() const;
+  const Labels& labels() const;
   // Moving objects, and their state at a frame's stamp: O in the place of C.
   const std::vector<std::string>& object_names() const;
   Truth ObjectTruthAt(std::size_t object, std::int64_t index) const;

@@ -145,6 +145,9 @@ enum class TruthStream {
   occlusion,      // what of each flow cannot be seen in the other frame
   surface_id,
   moving,  // which pixels see an object that moves
+  instance,
+  semantic,
+  boxes,  // of each instance that is seen, in the picture and in space
   landmarks,
   acceleration,
   imu
@@ -170,6 +173,9 @@ void Visit(V& v, TruthParams& p) {
      {"occlusion", S::occlusion},
      {"surface_id", S::surface_id},
      {"moving", S::moving},
+     {"instance", S::instance},
+     {"semantic", S::semantic},
+     {"boxes", S::boxes},
      {"landmarks", S::landmarks},
      {"acceleration", S::acceleration},
      {"imu", S::imu}},

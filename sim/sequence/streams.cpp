@@ -9,8 +9,10 @@
 #include "sim/render/surface_tracer.h"
 #include "sim/sensor/depth_noise.h"
 #include "sim/sequence/flow.h"
+#include "sim/sequence/label_streams.h"
 #include "sim/sequence/landmarks.h"
 #include "sim/sequence/layout.h"
+#include "sim/world/labels.h"
 #include "tools/base/settings/quantity.h"
 #include "tools/base/text.h"
 
@@ -34,6 +36,9 @@ constexpr ImageStream kImageStreams[] = {{TruthStream::depth, "depth", ".png", 0
                                          {TruthStream::normals, "normals", ".exr", 0},
                                          {TruthStream::surface_id, "surface_id", ".png", 0},
                                          {TruthStream::moving, "moving", ".png", 0},
+                                         {TruthStream::instance, "instance", ".png", 0},
+                                         {TruthStream::semantic, "semantic", ".png", 0},
+                                         {TruthStream::boxes, "boxes", ".csv", 0},
                                          {TruthStream::flow, "flow", ".flo", 1},
                                          {TruthStream::flow_backward, "flow_backward", ".flo", -1},
                                          {TruthStream::occlusion, "occlusion", ".png", 1},
@@ -51,6 +56,10 @@ std::vector<T> Each(const std::vector<P>& pixels, const Function& value) {
   std::vector<T> values(pixels.size());
   for (std::size_t i = 0; i < pixels.size(); ++i) values[i] = static_cast<T>(value(pixels[i]));
   return values;
+}
+
+void RequireIds(const std::string& stream, std::size_t count, std::size_t most) {
+  if (count > most) throw std::runtime_error(stream + ": the world has more than " + std::to_string(most));
 }
 
 // Unit, in C, of the triangle's plane, towards the camera; zero where nothing is seen.
@@ -162,9 +171,10 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
     const auto distance = [](const SurfacePoint& point) { return glm::length(point.X_C); };
     const auto moves = [](const SurfacePoint& point) { return point.object != kWorld ? 255 : 0; };
     const auto surface_id = [&](const SurfacePoint& point) {
-      const std::uint32_t id = point.triangle == kNoTriangle ? 0 : surfaces.MeshOf(point.triangle) + 1;
-      if (id > 65535) throw std::runtime_error("surface_id: the world has more than 65535 meshes");
-      return id;
+      return point.triangle == kNoTriangle ? 0 : surfaces.MeshOf(point.triangle) + 1;
+    };
+    const auto class_id = [&](std::uint32_t id) {
+      return id == 0 ? 0 : simulator.labels().ClassId(simulator.labels().instances[id - 1]);
     };
     switch (of.stream) {
       case TruthStream::depth:
@@ -184,7 +194,18 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
         file.bytes = EncodeExr(Normals(surfaces, view, points), width, height, 3, true);
         break;
       case TruthStream::surface_id:
+        RequireIds("surface_id", simulator.mesh_names().size(), 65535);
         file.bytes = EncodePng(width, height, 1, Each<std::uint16_t>(points, surface_id));
+        break;
+      case TruthStream::instance:
+        file.bytes = EncodePng(width, height, 1, InstanceIds(simulator, points));
+        break;
+      case TruthStream::semantic:
+        RequireIds("semantic", simulator.labels().classes.size(), 255);
+        file.bytes = EncodePng(width, height, 1, Each<std::uint8_t>(InstanceIds(simulator, points), class_id));
+        break;
+      case TruthStream::boxes:
+        file = TextFile(file.path, Boxes(simulator, view, InstanceIds(simulator, points)));
         break;
       case TruthStream::flow:
       case TruthStream::flow_backward:
@@ -232,6 +253,9 @@ std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t
     }
     files.push_back(TextFile("surfaces.txt", legend));
   }
+  if (streams.contains(TruthStream::instance) || streams.contains(TruthStream::semantic) ||
+      streams.contains(TruthStream::boxes))
+    files.push_back(TextFile("labels.json", LabelsJson(simulator.labels())));
   if (streams.contains(TruthStream::acceleration)) {
     append("acceleration.txt", "# timestamp ax ay az alphax alphay alphaz\n",
            [&](std::int64_t index) { return AccelerationLine(simulator.StampNs(index), simulator.TruthAt(index)); });
@@ -242,8 +266,8 @@ std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t
 }
 
 std::set<std::string> StreamNames() {
-  std::set<std::string> names = {"surfaces.txt", "acceleration.txt", "landmarks.txt", "landmark_tracks.txt",
-                                 "imu0",         kObjectFolder};
+  std::set<std::string> names = {"surfaces.txt",        "labels.json", "acceleration.txt", "landmarks.txt",
+                                 "landmark_tracks.txt", "imu0",        kObjectFolder};
   for (const ImageStream& stream : kImageStreams) {
     names.insert(stream.folder);
     names.insert(std::string(stream.folder) + ".txt");

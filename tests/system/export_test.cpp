@@ -1,7 +1,12 @@
-// A sequence as a ROS 1 bag, read back with the library and, where it is installed, with ROS's own rosbag.
+// A sequence in other forms: a ROS 1 bag, read back with the library and, where it is installed, with ROS's own rosbag;
+// COCO's file.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
 #include <sstream>
 
 #include "tests/system/program.h"
@@ -117,6 +122,65 @@ TEST_F(ExportTest, MissingInputs) {
   EXPECT_THAT(outcome.err, HasSubstr("librosbag-storage-dev"));
 }
 #endif
+
+// COCO's file, read as its description says: instances by their run lengths, against the pictures and their boxes.
+TEST_F(ExportTest, CocoIsReadBack) {
+  const std::string scenario = (TinyScenario().parent_path() / "moving.yaml").string();
+  ASSERT_EQ(Run({"render", scenario, "-o", "seq", "--frames", "9:12", "--truth", "instance", "--set",
+                 "camera={width: 160, height: 120, fx: 131, fy: 131, cx: 79.5, cy: 59.5}"})
+                .status,
+            0);
+  ASSERT_EQ(Run({"export", "seq", "--coco", "labels.json"}).status, 0);
+  const auto coco = nlohmann::json::parse(ReadFile(here_ / "labels.json"));
+  std::map<int, std::string> classes;
+  for (const auto& category : coco.at("categories")) classes[category.at("id")] = category.at("name");
+  EXPECT_THAT(classes,
+              testing::ElementsAre(testing::Pair(1, "ball"), testing::Pair(2, "parcel"), testing::Pair(3, "room")));
+  ASSERT_EQ(coco.at("images").size(), 3u);
+  std::map<int, cv::Mat> masks;  // by image: instances, put together from the annotations
+  for (const auto& image : coco.at("images")) {
+    EXPECT_TRUE(std::filesystem::exists(here_ / "seq" / image.at("file_name").get<std::string>()));
+    masks[image.at("id")] = cv::Mat::zeros(image.at("height"), image.at("width"), CV_16UC1);
+  }
+  std::set<int> ids;
+  for (const auto& annotation : coco.at("annotations")) {
+    EXPECT_TRUE(ids.insert(annotation.at("id").get<int>()).second);
+    EXPECT_TRUE(classes.contains(annotation.at("category_id")));
+    EXPECT_EQ(annotation.at("iscrowd"), 0);
+    cv::Mat& mask = masks.at(annotation.at("image_id"));
+    const auto& rle = annotation.at("segmentation");
+    ASSERT_EQ(rle.at("size"), nlohmann::json({mask.rows, mask.cols}));
+    int at = 0, area = 0;
+    bool inside = false;
+    cv::Rect box;
+    for (const int count : rle.at("counts")) {
+      for (int i = 0; i < count; ++i, ++at) {
+        if (!inside) continue;
+        const cv::Rect pixel(at / mask.rows, at % mask.rows, 1, 1);  // down the columns
+        mask.at<std::uint16_t>(pixel.y, pixel.x) = annotation.at("instance");
+        box = area++ == 0 ? pixel : box | pixel;
+      }
+      inside = !inside;
+    }
+    EXPECT_EQ(at, mask.rows * mask.cols);
+    EXPECT_EQ(annotation.at("area"), area);
+    EXPECT_EQ(annotation.at("bbox"), nlohmann::json({box.x, box.y, box.width, box.height}));
+  }
+  EXPECT_EQ(ids.size(), 9u);
+  for (const auto& image : coco.at("images")) {
+    const std::string name = image.at("file_name").get<std::string>().substr(4);
+    const cv::Mat seen = cv::imread((here_ / "seq/instance" / name).string(), cv::IMREAD_UNCHANGED);
+    EXPECT_EQ(cv::norm(seen, masks.at(image.at("id")), cv::NORM_INF), 0) << name;
+  }
+}
+
+TEST_F(ExportTest, CocoWithoutLabels) {
+  ASSERT_EQ(Run({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:1"}).status, 0);
+  const Outcome outcome = Run({"export", "seq", "--coco", "labels.json"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("labels.json: is not there; render with --truth instance"));
+  EXPECT_EQ(Run({"export", "seq"}).status, 2);
+}
 
 }  // namespace
 }  // namespace vobench::system_test

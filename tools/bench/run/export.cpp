@@ -1,4 +1,4 @@
-// A sequence, of any layout that `track` reads, as a ROS 1 bag.
+// A sequence, of any layout that `track` reads, as a ROS 1 bag; its labels as COCO's file.
 #include <fmt/format.h>
 
 #include <Eigen/Core>
@@ -12,6 +12,7 @@
 #include "tools/bench/errors.h"
 #include "tools/bench/progress.h"
 #include "tools/bench/run/commands.h"
+#include "tools/bench/sequence/coco.h"
 #include "tools/bench/sequence/sequence_truth.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "tools/judge/verification/files.h"
@@ -141,15 +142,6 @@ void Write(BagFile& bag, vo::SequenceReader& frames, const Streams& streams, std
   until(std::numeric_limits<std::int64_t>::max());
 }
 
-void RequireFree(const fs::path& bag) {
-  if (fs::exists(bag)) {
-    throw BadInput(fmt::format("--bag {}: is there already; remove it or choose another name", bag.string()));
-  }
-  if (const fs::path folder = fs::absolute(bag).parent_path(); !fs::is_directory(folder)) {
-    throw BadInput(fmt::format("--bag {}: there is no folder {}; make it first", bag.string(), folder.string()));
-  }
-}
-
 // A bag has no time 0, and none before it.
 std::int64_t OffsetOf(const fs::path& sequence, const Streams& streams) {
   std::int64_t first = vo::SequenceReader(sequence).Next()->stamp_ns;
@@ -160,28 +152,58 @@ std::int64_t OffsetOf(const fs::path& sequence, const Streams& streams) {
   return first > 0 ? 0 : (-first / kSecond + 1) * kSecond;
 }
 
-}  // namespace
-
-void Export(const ExportOptions& options) {
-  RequireFree(options.bag);
-  vo::SequenceReader frames = Input([&] { return vo::SequenceReader(options.sequence); });
-  const Streams streams = Input([&] { return ReadStreams(options.sequence); });
-  const std::int64_t offset_ns = Input([&] { return OffsetOf(options.sequence, streams); });
-  base::AtomicPath path(options.bag);
-  BagFile bag(path.path().string(), options.bag.string());
+void ExportBag(const fs::path& sequence, const fs::path& file) {
+  vo::SequenceReader frames = Input([&] { return vo::SequenceReader(sequence); });
+  const Streams streams = Input([&] { return ReadStreams(sequence); });
+  const std::int64_t offset_ns = Input([&] { return OffsetOf(sequence, streams); });
+  base::AtomicPath path(file);
+  BagFile bag(path.path().string(), file.string());
   Write(bag, frames, streams, offset_ns);
   bag.Close();
   path.Commit();
-  fmt::print("{}: {} images{}, {} depth images, {} IMU readings, {} true poses\n", options.bag.string(), frames.size(),
+  fmt::print("{}: {} images{}, {} depth images, {} IMU readings, {} true poses\n", file.string(), frames.size(),
              streams.camera ? " with the camera" : "", streams.depth.size(), streams.imu.size(), streams.truth.size());
   if (offset_ns != 0) fmt::print("A bag has no time 0: all times are {} s later\n", offset_ns / 1'000'000'000);
 }
+
+}  // namespace
 #else
-void Export(const ExportOptions&) {
+namespace {
+namespace fs = std::filesystem;
+
+void ExportBag(const fs::path&, const fs::path&) {
   throw BadInput(
       "this program was built without rosbag: install librosbag-storage-dev, libsensor-msgs-dev and "
       "libgeometry-msgs-dev, and build again");
 }
+
+}  // namespace
 #endif
+
+namespace {
+
+void RequireFree(const char* option, const std::optional<fs::path>& file) {
+  if (!file) return;
+  if (fs::exists(*file)) {
+    throw BadInput(fmt::format("{} {}: is there already; remove it or choose another name", option, file->string()));
+  }
+  if (const fs::path folder = fs::absolute(*file).parent_path(); !fs::is_directory(folder)) {
+    throw BadInput(fmt::format("{} {}: there is no folder {}; make it first", option, file->string(), folder.string()));
+  }
+}
+
+}  // namespace
+
+void Export(const ExportOptions& options) {
+  if (!options.bag && !options.coco) throw BadInput("export: say what to make: --bag FILE.bag or --coco FILE.json");
+  RequireFree("--bag", options.bag);
+  RequireFree("--coco", options.coco);
+  if (options.coco) {
+    const std::string text = Input([&] { return CocoJson(options.sequence); });
+    base::WriteFile(*options.coco, text);
+    fmt::print("{}: labels of {}\n", options.coco->string(), options.sequence.string());
+  }
+  if (options.bag) ExportBag(options.sequence, *options.bag);
+}
 
 }  // namespace vobench

@@ -20,4 +20,8 @@ void ComparePictures(Frames& frames, std::size_t frame, std::vector<Check>& chec
 std::vector<Check> SurfaceChecks(const Sequence& sequence);
 void CompareSurfaces(Frames& frames, std::size_t frame, std::vector<Check>& checks);
 
+// Instances, classes and boxes, against each other, the legend and depth. None without a legend.
+std::vector<Check> LabelChecks(const Sequence& sequence);
+void CompareLabels(Frames& frames, std::size_t frame, std::vector<Check>& checks);
+
 }  // namespace verification

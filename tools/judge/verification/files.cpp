@@ -231,7 +231,7 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
   }
   s.camera = vo::ReadCamera(folder / "camera.yaml");
   for (const char* name : {"rgb", "depth", "depth_exr", "distance", "normals", "surface_id", "flow", "flow_backward",
-                           "occlusion", "occlusion_backward", "moving"}) {
+                           "occlusion", "occlusion_backward", "moving", "instance", "semantic", "boxes"}) {
     const fs::path list = folder / (std::string(name) + ".txt");
     if (fs::exists(list)) s.images[name] = ReadTable(list, 0, true, true, ' ', files);
   }
@@ -250,6 +250,11 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
   if (fs::exists(folder / "manifest.json")) ReadManifest(folder / "manifest.json", s, files);
   if (fs::exists(folder / "surfaces.txt")) {
     for ([[maybe_unused]] const evaluation::Line& line : evaluation::Lines(folder / "surfaces.txt")) ++s.surfaces;
+  }
+  try {
+    if (fs::exists(folder / "labels.json")) s.classes = ReadLegend(folder / "labels.json");
+  } catch (const std::exception& error) {
+    files.Fail(error.what());
   }
   if (fs::exists(folder / "landmarks.txt"))
     s.landmarks = ReadTable(folder / "landmarks.txt", 5, false, false, ' ', files);

@@ -20,7 +20,9 @@ const std::map<std::string, std::vector<int>>& Types() {
                                                                 {"flow_backward", {CV_32FC2}},
                                                                 {"occlusion", {CV_8UC1}},
                                                                 {"occlusion_backward", {CV_8UC1}},
-                                                                {"moving", {CV_8UC1}}};
+                                                                {"moving", {CV_8UC1}},
+                                                                {"instance", {CV_16UC1}},
+                                                                {"semantic", {CV_8UC1}}};
   return types;
 }
 

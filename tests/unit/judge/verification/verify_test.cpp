@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <opencv2/core.hpp>
 
 #include "sim/sequence/encode.h"
@@ -298,6 +299,43 @@ void RenderMoving(const fs::path& folder, const std::string& truth) {
          8, "moving.yaml");
 }
 std::string AllAndMoving() { return std::string(kAll).replace(0, 1, "[moving, "); }
+
+// Each kind of a wrong label, on the scene with objects.
+TEST_F(VerifyTest, Labels) {
+  const fs::path good = here_.path() / "labels";
+  RenderMoving(good, "[depth, instance, semantic, boxes]");
+  for (const Check& check : Verify(good)) EXPECT_THAT(check.failures(), IsEmpty()) << check.name();
+  const auto spoilt = [&](const std::string& stream, const std::function<void(const fs::path&)>& spoil) {
+    const fs::path bad = here_.path() / "bad";
+    fs::remove_all(bad);
+    fs::copy(good, bad, fs::copy_options::recursive);
+    spoil(bad / stream / (Stamp(2) + (stream == "boxes" ? ".csv" : ".png")));
+    return Failures(bad);
+  };
+  const auto with_pixel = [&](const std::string& stream, const auto& change) {
+    return spoilt(stream, [&](const fs::path& file) {
+      cv::Mat picture = ReadPicture(file);
+      change(picture);
+      WriteBytes(file, picture.depth() == CV_8U
+                           ? sim::EncodePng(picture.cols, picture.rows, 1, std::span(picture.data, picture.total()))
+                           : sim::EncodePng(picture.cols, picture.rows, 1,
+                                            std::span(picture.ptr<std::uint16_t>(), picture.total())));
+    });
+  };
+  // One pixel of another instance; the same in both pictures, where the legend has nothing to say.
+  EXPECT_THAT(with_pixel("instance", [](cv::Mat& ids) { ids.at<std::uint16_t>(0, 0) = 2; }),
+              Contains(HasSubstr("boxes against the instances: boxes/" + Stamp(2) + ".csv instance 2")));
+  EXPECT_THAT(with_pixel("instance", [](cv::Mat& ids) { ids.at<std::uint16_t>(0, 0) = 9; }),
+              Contains(HasSubstr("as the legend: instance " + Stamp(2))));
+  EXPECT_THAT(with_pixel("semantic", [](cv::Mat& classes) { classes.at<std::uint8_t>(5, 5) ^= 1; }),
+              Contains(HasSubstr("as the legend: instance " + Stamp(2))));
+  EXPECT_THAT(spoilt("boxes", [](const fs::path& file) { Alter(file, 2, 4, 1, ','); }),
+              Contains(HasSubstr("boxes against the instances: boxes/" + Stamp(2) + ".csv instance 2")));
+  EXPECT_THAT(spoilt("boxes", [](const fs::path& file) { Alter(file, 2, 9, 0.3, ','); }),
+              Contains(HasSubstr("lies in its instance's box: boxes/" + Stamp(2))));
+  EXPECT_THAT(spoilt("boxes", [](const fs::path& file) { fs::remove(file); }),
+              Contains(HasSubstr("boxes against the instances")));
+}
 
 TEST_F(VerifyTest, MovingObjectsPass) {
   RenderMoving(here_.path() / "moving", AllAndMoving());

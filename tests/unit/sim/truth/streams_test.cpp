@@ -65,10 +65,10 @@ TEST(TruthStreams, FilesOfAFrame) {
   const Simulator simulator(LoadScenario(world.scenario()), 1), parallel(LoadScenario(world.scenario()), 3);
   const auto first = ByName(FrameStreams(simulator, 0, All())), middle = ByName(FrameStreams(simulator, 4, All())),
              last = ByName(FrameStreams(simulator, 8, All()));
-  EXPECT_EQ(middle.size(), 11u);
-  EXPECT_EQ(first.size(), 9u);
+  EXPECT_EQ(middle.size(), 14u);
+  EXPECT_EQ(first.size(), 12u);
   EXPECT_FALSE(first.contains("flow_backward/0.000000000.flo"));
-  EXPECT_EQ(last.size(), 9u);
+  EXPECT_EQ(last.size(), 12u);
   EXPECT_FALSE(last.contains("flow/0.266666667.flo"));
   EXPECT_TRUE(middle == ByName(FrameStreams(parallel, 4, All())));
   EXPECT_EQ(FrameStreams(simulator, 4, {TruthStream::normals, TruthStream::imu}).size(), 1u);
