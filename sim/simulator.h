@@ -48,12 +48,17 @@ class Simulator {
   // through a surface (sim/motion/placement.h), and for jobs < 1.
   Simulator(const Scenario& scenario, int jobs);
   ~Simulator();
-  Simulator(Simulator&&) noexcept;
-  Simulator& operator=(Simulator&&) noexcept;
+  Simulator(const Simulator&);  // the world is shared
+  Simulator& operator=(const Simulator&);
 
   std::int64_t frame_count() const;
   const Camera& camera() const;
   const Scenario& scenario() const;
+  // The cameras of a rig, of which this is the first; their world is loaded and baked once. Each is as a simulator of
+  // its own: with the camera's frames, stamps, truth, and seed.
+  std::size_t camera_count() const;
+  Simulator OfCamera(std::size_t camera) const;
+  std::size_t camera_index() const;
   // Contents of the world that are readable but probably unintended.
   const std::vector<std::string>& warnings() const;
 
@@ -70,6 +75,7 @@ class Simulator {
 
   // Camera trajectory, and the surface points that pixels see. Both live as long as the simulator.
   const Trajectory& trajectory() const;
+  std::shared_ptr<const Trajectory> body() const;  // of a rig; else the camera's
   const SurfaceTracer& surfaces() const;
   const WorldExtent& extent() const;
   // Of the world's meshes, as SurfaceTracer::MeshOf counts them; of an object's "OBJECT/MESH".
@@ -83,8 +89,11 @@ class Simulator {
   std::optional<Frame> Next();
 
  private:
+  struct World;
   struct Parts;
-  std::unique_ptr<const Parts> parts_;
+  explicit Simulator(std::shared_ptr<const Parts> parts);
+
+  std::shared_ptr<const Parts> parts_;
   std::int64_t next_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <stdexcept>
+#include <string_view>
 
 #include "sim/render/surface_tracer.h"
 #include "sim/sensor/depth_noise.h"
@@ -39,6 +40,8 @@ constexpr ImageStream kImageStreams[] = {{TruthStream::depth, "depth", ".png", 0
                                          {TruthStream::instance, "instance", ".png", 0},
                                          {TruthStream::semantic, "semantic", ".png", 0},
                                          {TruthStream::boxes, "boxes", ".csv", 0},
+                                         {TruthStream::disparity, "disparity", ".exr", 0},
+                                         {TruthStream::disparity, "disparity_occlusion", ".png", 0},
                                          {TruthStream::flow, "flow", ".flo", 1},
                                          {TruthStream::flow_backward, "flow_backward", ".flo", -1},
                                          {TruthStream::occlusion, "occlusion", ".png", 1},
@@ -50,12 +53,24 @@ std::string PathIn(const ImageStream& of, const std::string& stamp) {
 
 bool HasFrame(const Simulator& simulator, std::int64_t index) { return index >= 0 && index < simulator.frame_count(); }
 
+// Disparity is the first camera's, to the second.
+bool IsWanted(const Simulator& simulator, const ImageStream& of, const Streams& streams) {
+  return streams.contains(of.stream) && (of.stream != TruthStream::disparity || simulator.camera_index() == 0);
+}
+
 // value(p) of each pixel's p.
 template <class T, class P, class Function>
 std::vector<T> Each(const std::vector<P>& pixels, const Function& value) {
   std::vector<T> values(pixels.size());
   for (std::size_t i = 0; i < pixels.size(); ++i) values[i] = static_cast<T>(value(pixels[i]));
   return values;
+}
+
+// To the left in the other picture; 0: nothing is seen.
+std::vector<float> Disparity(const std::vector<float>& uv) {
+  std::vector<float> disparity(uv.size() / 2);
+  for (std::size_t i = 0; i < disparity.size(); ++i) disparity[i] = uv[2 * i] == kUnknownFlow ? 0 : -uv[2 * i];
+  return disparity;
 }
 
 void RequireIds(const std::string& stream, std::size_t count, std::size_t most) {
@@ -99,28 +114,6 @@ std::string ImuYaml(const ImuParams& imu) {
          "\n";
 }
 
-void AppendImu(const Simulator& simulator, std::int64_t first, std::int64_t last, std::vector<StreamFile>& files) {
-  const ImuParams& imu = simulator.scenario().truth.imu;
-  std::string data =
-      "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2],a_RS_S_y [m "
-      "s^-2],a_RS_S_z [m s^-2]\n";
-  std::string bias =
-      "#timestamp [ns],b_w_RS_S_x [rad s^-1],b_w_RS_S_y [rad s^-1],b_w_RS_S_z [rad s^-1],b_a_RS_S_x [m "
-      "s^-2],b_a_RS_S_y [m s^-2],b_a_RS_S_z [m s^-2]\n";
-  const std::int64_t first_ns = simulator.StampNs(first),
-                     last_ns = last > first ? simulator.StampNs(last - 1) : first_ns - 1;  // of no frame, no reading
-  for (const ImuSample& sample :
-       ImuReadings(simulator.trajectory(), imu, simulator.scenario().seed, first_ns, last_ns)) {
-    const std::string stamp = std::to_string(sample.stamp_ns);
-    constexpr const char* kFormat = ",%.12f,%.12f,%.12f";
-    data += stamp + Numbers(kFormat, sample.w_I) + Numbers(kFormat, sample.f_I) + "\n";
-    bias += stamp + Numbers(kFormat, sample.gyroscope_bias) + Numbers(kFormat, sample.accelerometer_bias) + "\n";
-  }
-  files.push_back(TextFile("imu0/data.csv", data));
-  files.push_back(TextFile("imu0/bias.csv", bias));
-  files.push_back(TextFile(kImuYaml, ImuYaml(imu)));
-}
-
 void AppendLandmarks(const Simulator& simulator, std::int64_t first, std::int64_t last,
                      std::vector<StreamFile>& files) {
   const std::vector<SurfaceLandmark> landmarks = SpreadLandmarks(simulator, simulator.scenario().truth.landmarks);
@@ -149,7 +142,7 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
   const int width = camera.width(), height = camera.height();
   const View view = simulator.ViewAt(index);
   std::vector<SurfacePoint> points;
-  FlowImage flow[2];  // to the next frame, to the one before
+  FlowImage flow[2], across;  // to the next frame, to the one before; to the second camera
   std::vector<StreamFile> files;
   constexpr TruthStream kDepths[] = {TruthStream::depth, TruthStream::depth_exr, TruthStream::depth_kinect};
   const bool depth_alone = std::ranges::none_of(kImageStreams, [&](const ImageStream& of) {
@@ -160,16 +153,19 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
                        : Each<float>(points, [](const SurfacePoint& point) { return point.depth; });
   };
   for (const ImageStream& of : kImageStreams) {
-    if (!streams.contains(of.stream) || !HasFrame(simulator, index + of.frame_step)) continue;
+    if (!IsWanted(simulator, of, streams) || !HasFrame(simulator, index + of.frame_step)) continue;
     if (points.empty() && !depth_alone) surfaces.Trace(camera, view, points);
     FlowImage& to = flow[of.frame_step < 0];
     if (of.frame_step != 0 && to.uv.empty()) {
       to = FlowBetween(surfaces, camera, points, view, simulator.ViewAt(index + of.frame_step));
     }
+    if (of.stream == TruthStream::disparity && across.uv.empty())
+      across = FlowBetween(surfaces, camera, points, view, simulator.OfCamera(1).ViewAt(index));
     StreamFile& file = files.emplace_back();
     file.path = PathIn(of, base::FormatSeconds(simulator.StampNs(index)));
     const auto distance = [](const SurfacePoint& point) { return glm::length(point.X_C); };
     const auto moves = [](const SurfacePoint& point) { return point.object != kWorld ? 255 : 0; };
+    const auto white = [](int is) { return is != 0 ? 255 : 0; };
     const auto surface_id = [&](const SurfacePoint& point) {
       return point.triangle == kNoTriangle ? 0 : surfaces.MeshOf(point.triangle) + 1;
     };
@@ -215,8 +211,12 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
         file.bytes = EncodePng(width, height, 1, Each<std::uint8_t>(points, moves));
         break;
       case TruthStream::occlusion:
-        file.bytes =
-            EncodePng(width, height, 1, Each<std::uint8_t>(to.occluded, [](int is) { return is != 0 ? 255 : 0; }));
+        file.bytes = EncodePng(width, height, 1, Each<std::uint8_t>(to.occluded, white));
+        break;
+      case TruthStream::disparity:
+        file.bytes = of.extension == std::string_view(".exr")
+                         ? EncodeExr(Disparity(across.uv), width, height, 1, false)
+                         : EncodePng(width, height, 1, Each<std::uint8_t>(across.occluded, white));
         break;
       case TruthStream::landmarks:
       case TruthStream::acceleration:
@@ -236,7 +236,7 @@ std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t
     files.push_back(TextFile(path, text));
   };
   for (const ImageStream& of : kImageStreams) {
-    if (!streams.contains(of.stream)) continue;
+    if (!IsWanted(simulator, of, streams)) continue;
     append(std::string(of.folder) + ".txt", "# timestamp filename\n", [&](std::int64_t index) {
       const std::string stamp = base::FormatSeconds(simulator.StampNs(index));
       return HasFrame(simulator, index + of.frame_step) ? stamp + " " + PathIn(of, stamp) + "\n" : "";
@@ -261,8 +261,29 @@ std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t
            [&](std::int64_t index) { return AccelerationLine(simulator.StampNs(index), simulator.TruthAt(index)); });
   }
   if (streams.contains(TruthStream::landmarks)) AppendLandmarks(simulator, first, last, files);
-  if (streams.contains(TruthStream::imu)) AppendImu(simulator, first, last, files);
+  if (streams.contains(TruthStream::imu)) {
+    for (StreamFile& file : ImuStreams(simulator, simulator.StampNs(first),
+                                       last > first ? simulator.StampNs(last - 1) : -1))  // of no frame, no reading
+      files.push_back(std::move(file));
+  }
   return files;
+}
+
+std::vector<StreamFile> ImuStreams(const Simulator& simulator, std::int64_t first_ns, std::int64_t last_ns) {
+  const ImuParams& imu = simulator.scenario().truth.imu;
+  std::string data =
+      "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2],a_RS_S_y [m "
+      "s^-2],a_RS_S_z [m s^-2]\n";
+  std::string bias =
+      "#timestamp [ns],b_w_RS_S_x [rad s^-1],b_w_RS_S_y [rad s^-1],b_w_RS_S_z [rad s^-1],b_a_RS_S_x [m "
+      "s^-2],b_a_RS_S_y [m s^-2],b_a_RS_S_z [m s^-2]\n";
+  for (const ImuSample& sample : ImuReadings(*simulator.body(), imu, simulator.scenario().seed, first_ns, last_ns)) {
+    const std::string stamp = std::to_string(sample.stamp_ns);
+    constexpr const char* kFormat = ",%.12f,%.12f,%.12f";
+    data += stamp + Numbers(kFormat, sample.w_I) + Numbers(kFormat, sample.f_I) + "\n";
+    bias += stamp + Numbers(kFormat, sample.gyroscope_bias) + Numbers(kFormat, sample.accelerometer_bias) + "\n";
+  }
+  return {TextFile("imu0/data.csv", data), TextFile("imu0/bias.csv", bias), TextFile(kImuYaml, ImuYaml(imu))};
 }
 
 std::set<std::string> StreamNames() {

@@ -22,6 +22,9 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
 std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t first, std::int64_t last,
                                         const std::set<TruthStream>& streams);
 
+// The IMU's files, with the readings that are not outside of the stamps.
+std::vector<StreamFile> ImuStreams(const Simulator& simulator, std::int64_t first_ns, std::int64_t last_ns);
+
 // Calibration file of the IMU.
 inline constexpr const char* kImuYaml = "imu0/sensor.yaml";
 

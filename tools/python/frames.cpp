@@ -125,6 +125,15 @@ void AddSimulator(py::module_& m) {
       .def_property_readonly(
           "warnings", [](const Simulator& s) { return s.simulator.warnings(); },
           Doc("sim/simulator.h:Simulator::warnings"))
+      .def_property_readonly(
+          "cameras",
+          [](const Simulator& s) {
+            std::vector<Simulator> cameras;
+            for (std::size_t k = 0; k < s.simulator.camera_count(); ++k)
+              cameras.push_back({s.scenario, s.simulator.OfCamera(k)});
+            return cameras;
+          },
+          Doc("sim/simulator.h:Simulator::camera_count"))
       .def("__len__", [](const Simulator& s) { return s.simulator.frame_count(); })
       .def(
           "__iter__",

@@ -126,7 +126,7 @@ void AddRender(OptionTable& table) {
   command.add_flag("--preview", render.preview, "Also preview.mp4 and contact.jpg, for the eye");
   Add(command, "--truth NAME,...", render.truth,
       "Truth beside poses and velocities, separated by commas: depth, depth_exr, depth_kinect, distance, normals, "
-      "flow, flow_backward, occlusion, surface_id, landmarks, acceleration, imu, moving, instance, semantic, boxes (docs/truth.md)");
+      "flow, flow_backward, occlusion, surface_id, landmarks, acceleration, imu, moving, instance, semantic, boxes, disparity (docs/truth.md)");
   AddSeed(command, render.seed, "Seed instead of the scenario's");
   AddEngine(command, render.overrides);
   AddMissingTextures(command, render.overrides);

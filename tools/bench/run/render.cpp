@@ -21,12 +21,13 @@ namespace fs = std::filesystem;
 namespace {
 
 // What a sequence of any layout may have at its top level; also while written: a killed run leaves what it had begun.
-std::set<std::string> SequenceNames(bool unfinished) {
+std::set<std::string> SequenceNames(const sim::Scenario& scenario, bool unfinished) {
   std::set<std::string> names = sim::StreamNames();
+  for (const sim::RigCamera& camera : scenario.cameras) names.insert(camera.name);
   names.insert({"camera.yaml", "exposure.txt", sim::kManifestName, sim::kJournalName});
-  names.insert({"rgb", "rgb.txt", "depth", "depth.txt", "groundtruth.txt", "velocity.txt"});  // TUM RGB-D
-  names.insert({"mav0", "truth"});                                                            // EuRoC
-  names.insert({"associations.txt", "traj.gt.freiburg"});                                     // ICL-NUIM
+  names.insert({"rgb", "rgb.txt", "depth", "depth.txt", "groundtruth.txt", "velocity.txt", "rig.yaml"});  // TUM RGB-D
+  names.insert({"mav0", "truth"});                                                                        // EuRoC
+  names.insert({"associations.txt", "traj.gt.freiburg"});                                                 // ICL-NUIM
   names.insert({"preview.mp4", "unfinished-preview.mp4", "contact.jpg"});
   if (!unfinished) return names;
   for (const std::string& name : std::set(names)) names.insert(base::UnfinishedName(name));
@@ -53,8 +54,9 @@ sim::SequenceContent Content(const RenderOptions& options, const sim::Simulator&
 }
 
 // Nothing of another hand's may be in the way, and without --resume nothing of an earlier run's that is not whole.
-void RequireRoom(const RenderOptions& options, const fs::path& folder, const fs::path& partial) {
-  RequireReplaceable(folder, sim::kManifestName, SequenceNames(false));
+void RequireRoom(const RenderOptions& options, const sim::Scenario& scenario, const fs::path& folder,
+                 const fs::path& partial) {
+  RequireReplaceable(folder, sim::kManifestName, SequenceNames(scenario, false));
   if (!fs::exists(fs::symlink_status(partial))) return;
   if (!options.resume) {
     throw BadInput(
@@ -62,7 +64,8 @@ void RequireRoom(const RenderOptions& options, const fs::path& folder, const fs:
                     "it, or remove it",
                     partial.string()));
   }
-  if (fs::exists(partial / sim::kManifestName)) RequireReplaceable(partial, sim::kManifestName, SequenceNames(true));
+  if (fs::exists(partial / sim::kManifestName))
+    RequireReplaceable(partial, sim::kManifestName, SequenceNames(scenario, true));
 }
 
 // The sequence of this content is there under its last name. Throws BadInput if another one is.
@@ -81,7 +84,7 @@ void Preview(const fs::path& folder, const sim::Simulator& simulator, const sim:
   std::vector<PreviewFrame> frames;
   for (std::int64_t index = content.first; index < content.last; ++index) {
     const std::int64_t stamp_ns = simulator.StampNs(index);
-    frames.push_back({index, stamp_ns, folder / sim::NamesOf(content.layout, index, stamp_ns).image});
+    frames.push_back({index, stamp_ns, folder / sim::ImagePath(simulator, content, index)});
   }
   WritePreview(folder, frames, simulator.scenario().time.rate_hz);
 }
@@ -97,7 +100,7 @@ std::string Kept(std::int64_t whole, const fs::path& partial) {
 void Render(const RenderOptions& options) {
   const Experiment experiment = ReadExperiment(options.scenario, With(options.overrides, options));
   const fs::path folder = CleanPath(options.output), partial = folder.string() + ".partial";
-  RequireRoom(options, folder, partial);
+  RequireRoom(options, experiment.scenario, folder, partial);
   const sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, options.jobs); });
   PrintWarnings(simulator.warnings());
   const sim::SequenceContent content = Content(options, simulator);

@@ -92,6 +92,8 @@ std::vector<settings::FieldRow> SettingsTable() {
   table.Child("camera", scenario.camera);
   scenario.camera.lens = sim::Lens::fisheye;
   table.Child("camera", scenario.camera);
+  sim::RigCamera of_rig;
+  table.Child("cameras.N", of_rig);
   table.Child("sensor", scenario.sensor);
   table.Child("render", scenario.render);
   table.Child("time", scenario.time);

@@ -140,7 +140,7 @@ void ReadManifest(const fs::path& file, Sequence& s, Check& files) {
   try {
     const nlohmann::json& scenario = manifest["scenario"];
     const nlohmann::json sensor = scenario.value("sensor", nlohmann::json::object());
-    s.rolling_shutter = sensor.is_object() && sensor.value("rolling_shutter", 0.0) != 0;
+    s.rolling_shutter |= sensor.is_object() && sensor.value("rolling_shutter", 0.0) != 0;
     const nlohmann::json trajectory = scenario.value("trajectory", nlohmann::json::object());
     if (!trajectory.is_object() || trajectory.value("type", "") != "sampled") return;
     s.roughness = {true, trajectory.value("position_noise", 0.0), trajectory.value("orientation_noise", 0.0),
@@ -222,7 +222,7 @@ std::string Sequence::FileAt(const std::string& stream, std::size_t frame) const
   return at != list->second.end() && at->stamp_ns == stamps[frame] ? at->file : "";
 }
 
-Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
+Sequence ReadSequence(const fs::path& folder, const fs::path& manifest, Check& files, Check& stamps) {
   Sequence s;
   s.folder = folder;
   for (const char* needed : {"rgb.txt", "groundtruth.txt", "camera.yaml"}) {
@@ -230,8 +230,10 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
       throw std::runtime_error((folder / needed).string() + ": is not there, and is needed");
   }
   s.camera = vo::ReadCamera(folder / "camera.yaml");
-  for (const char* name : {"rgb", "depth", "depth_exr", "distance", "normals", "surface_id", "flow", "flow_backward",
-                           "occlusion", "occlusion_backward", "moving", "instance", "semantic", "boxes"}) {
+  s.rolling_shutter = s.camera.readout_s.value_or(0) != 0;
+  for (const char* name :
+       {"rgb", "depth", "depth_exr", "distance", "normals", "surface_id", "flow", "flow_backward", "occlusion",
+        "occlusion_backward", "moving", "instance", "semantic", "boxes", "disparity", "disparity_occlusion"}) {
     const fs::path list = folder / (std::string(name) + ".txt");
     if (fs::exists(list)) s.images[name] = ReadTable(list, 0, true, true, ' ', files);
   }
@@ -247,7 +249,7 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
   CompareStamps(s, stamps);
   PlacePoses(s, "groundtruth", s.poses, s.has_pose, files);
   for (Object& object : s.objects) PlacePoses(s, "objects/" + object.name, object.poses, object.has_pose, files);
-  if (fs::exists(folder / "manifest.json")) ReadManifest(folder / "manifest.json", s, files);
+  if (fs::exists(manifest / "manifest.json")) ReadManifest(manifest / "manifest.json", s, files);
   if (fs::exists(folder / "surfaces.txt")) {
     for ([[maybe_unused]] const evaluation::Line& line : evaluation::Lines(folder / "surfaces.txt")) ++s.surfaces;
   }
@@ -263,6 +265,35 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
   }
   if (fs::exists(folder / "imu0" / "data.csv")) ReadImu(folder / "imu0", s, files);
   return s;
+}
+
+Sequence ReadBody(const fs::path& folder, Check& files) {
+  Sequence s;
+  s.texts["groundtruth"] = ReadTable(folder / "groundtruth.txt", 7, true, true, ' ', files);
+  s.texts["velocity"] = ReadTable(folder / "velocity.txt", 6, true, true, ' ', files);
+  s.stamps = Stamps(s.texts["groundtruth"]);
+  PlacePoses(s, "groundtruth", s.poses, s.has_pose, files);
+  if (fs::exists(folder / "manifest.json")) ReadManifest(folder / "manifest.json", s, files);
+  if (fs::exists(folder / "imu0" / "data.csv")) ReadImu(folder / "imu0", s, files);
+  return s;
+}
+
+std::vector<RigCamera> ReadRig(const fs::path& folder) {
+  std::vector<RigCamera> cameras;
+  if (!fs::exists(folder / "rig.yaml")) return cameras;
+  settings::Document document = settings::Document::FromFile(folder / "rig.yaml");
+  for (settings::Section& item : document.root().List("cameras")) {
+    RigCamera& camera = cameras.emplace_back();
+    std::array<double, 3> p{0, 0, 0};
+    std::array<double, 4> q{0, 0, 0, 1};
+    item.Require("name", camera.name);
+    item.Require("position", p);
+    item.Require("orientation", q);
+    item.Require("trigger_offset", camera.trigger_offset_s, settings::Unit::time);
+    camera.T_BC = {{p[0], p[1], p[2]}, Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized()};
+  }
+  document.ThrowIfBad();
+  return cameras;
 }
 
 cv::Mat ReadPicture(const fs::path& file) {

@@ -67,10 +67,24 @@ struct Sequence {
   std::string FileAt(const std::string& stream, std::size_t frame) const;
 };
 
+// A camera of a rig, by rig.yaml. T_BC maps points from C to the body B.
+struct RigCamera {
+  std::string name;
+  vo::Pose T_BC;
+  double trigger_offset_s = 0;
+};
+
+// None where the folder has no rig.yaml. Throws std::runtime_error for a bad one.
+std::vector<RigCamera> ReadRig(const std::filesystem::path& folder);
+
 // Reads all that is text. What is malformed is a failure of `files`, lists that disagree in their stamps one of
 // `stamps`, both with file and line. Throws std::runtime_error where there is no sequence at all: no folder, no
 // rgb.txt, no groundtruth.txt, no camera.yaml, or a camera of more pixels than a picture may have.
-Sequence ReadSequence(const std::filesystem::path& folder, Check& files, Check& stamps);
+// `manifest`: the folder that has it.
+Sequence ReadSequence(const std::filesystem::path& folder, const std::filesystem::path& manifest, Check& files,
+                      Check& stamps);
+// Poses, velocities and IMU of a rig's body, as a sequence without pictures.
+Sequence ReadBody(const std::filesystem::path& folder, Check& files);
 
 // The class of each instance by labels.json, 0 of instance 0. Throws std::runtime_error.
 std::vector<int> ReadLegend(const std::filesystem::path& file);

@@ -22,7 +22,9 @@ const std::map<std::string, std::vector<int>>& Types() {
                                                                 {"occlusion_backward", {CV_8UC1}},
                                                                 {"moving", {CV_8UC1}},
                                                                 {"instance", {CV_16UC1}},
-                                                                {"semantic", {CV_8UC1}}};
+                                                                {"semantic", {CV_8UC1}},
+                                                                {"disparity", {CV_32FC1}},
+                                                                {"disparity_occlusion", {CV_8UC1}}};
   return types;
 }
 
