@@ -9,6 +9,7 @@
 
 #include "sim/motion/mounted.h"
 #include "sim/sequence/streams.h"
+#include "sim/sequence/vio_files.h"
 #include "tools/base/limits/structured_text.h"
 #include "tools/base/text.h"
 
@@ -202,6 +203,7 @@ std::vector<StreamFile> WholeFiles(const Simulator& simulator, const SequenceCon
     const bool rig = IsRig(simulator, content);
     append(rig && content.layout == Layout::tum, Lists(content.layout, camera.scenario(), frames, k));
     append(rig, std::move(own));
+    if (content.layout == Layout::euroc && k == 0) append(false, VioFiles(scenario, frames));
     append(true, SequenceStreams(camera, content.first, last, WithoutImu(streams)));
   }
   if (streams.contains(TruthStream::imu) && (content.rig || scenario.cameras.empty())) {
