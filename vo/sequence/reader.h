@@ -15,7 +15,8 @@ class SequenceReader : public FrameSource {
  public:
   // Reads and checks the list of frames. Throws std::runtime_error naming file and lines: folder or list missing, no
   // frames, a malformed line, stamps that do not increase (both lines named), missing image files.
-  explicit SequenceReader(const std::filesystem::path& folder);
+  // camera: of EuRoC, 1: mav0/cam1.
+  explicit SequenceReader(const std::filesystem::path& folder, int camera = 0);
 
   std::size_t size() const { return entries_.size(); }
   std::optional<std::int64_t> Count() const override { return static_cast<std::int64_t>(size()); }

@@ -1,4 +1,4 @@
-// A sequence, of any layout that `track` reads, as a ROS 1 bag; its labels as COCO's file.
+// A sequence, of any layout that `track` reads, as a ROS 1 bag or MCAP; its labels as COCO's file.
 #include <fmt/format.h>
 
 #include <Eigen/Core>
@@ -13,18 +13,14 @@
 #include "tools/bench/progress.h"
 #include "tools/bench/run/commands.h"
 #include "tools/bench/sequence/coco.h"
+#include "tools/bench/sequence/message_file.h"
 #include "tools/bench/sequence/sequence_truth.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "tools/judge/verification/files.h"
 #include "vo/geometry/camera_file.h"
 #include "vo/sequence/reader.h"
 
-#ifdef VOBENCH_ROSBAG
-#include "tools/bench/sequence/bag_file.h"
-#endif
-
 namespace vobench {
-#ifdef VOBENCH_ROSBAG
 namespace {
 namespace fs = std::filesystem;
 
@@ -38,12 +34,20 @@ struct ImuReading {
   Eigen::Vector3d angular_rate, specific_force;
 };
 
-// What there is beside the images.
-struct Streams {
+struct CameraStreams {
+  std::string name;  // of its topics and its frame
+  vo::SequenceReader frames;
   std::optional<vo::Camera> camera;
   std::vector<DepthFile> depth;
+  std::optional<vo::Frame> next;
+  std::size_t next_depth = 0;
+};
+
+struct Streams {
+  std::vector<CameraStreams> cameras;
+  std::string imu_topic = "/imu";
   std::vector<ImuReading> imu;
-  evaluation::Trajectory truth;
+  evaluation::Trajectory truth;  // of the first camera
 };
 
 std::optional<fs::path> First(const fs::path& sequence, std::initializer_list<const char*> names) {
@@ -93,15 +97,35 @@ std::vector<ImuReading> ReadImu(const fs::path& table) {
   return readings;
 }
 
+// k: EuRoC's number.
+CameraStreams ReadCameraStreams(const fs::path& folder, const std::string& name, int k) {
+  const std::string euroc = "mav0/cam" + std::to_string(k), depth = "mav0/depth" + std::to_string(k) + "/data.csv";
+  CameraStreams camera{name, vo::SequenceReader(folder, k), {}, {}, {}, 0};
+  if (const auto file = First(folder, {"camera.yaml", (euroc + "/sensor.yaml").c_str()}))
+    camera.camera = vo::ReadCamera(*file);
+  if (const auto list = First(folder, {"depth.txt"})) camera.depth = ReadDepthList(*list, ' ');
+  if (const auto list = First(folder, {depth.c_str()})) camera.depth = ReadDepthList(*list, ',');
+  return camera;
+}
+
+// Of a rig, topics are those of its configuration files: /cam0, /cam1, /imu0.
 Streams ReadStreams(const fs::path& sequence) {
   Streams streams;
-  if (const auto file = First(sequence, {"camera.yaml", "mav0/cam0/sensor.yaml"}))
-    streams.camera = vo::ReadCamera(*file);
-  if (const auto list = First(sequence, {"depth.txt"})) streams.depth = ReadDepthList(*list, ' ');
-  if (const auto list = First(sequence, {"mav0/depth0/data.csv"})) streams.depth = ReadDepthList(*list, ',');
+  const std::vector<verification::RigCamera> rig = verification::ReadRig(sequence);
+  const bool several = !rig.empty() || fs::exists(sequence / "mav0/cam1/data.csv");
+  if (several) streams.imu_topic = "/imu0";
+  const auto add = [&](const fs::path& folder, std::size_t k) {
+    const std::string name = several ? "cam" + std::to_string(k) : "camera";
+    streams.cameras.push_back(ReadCameraStreams(folder, name, rig.empty() ? static_cast<int>(k) : 0));
+  };
+  for (std::size_t k = 0; k < rig.size(); ++k) add(sequence / rig[k].name, k);
+  for (std::size_t k = 0;
+       rig.empty() && (k == 0 || fs::exists(sequence / ("mav0/cam" + std::to_string(k)) / "data.csv")); ++k)
+    add(sequence, k);
   if (const auto table = First(sequence, {"imu0/data.csv", "mav0/imu0/data.csv", "truth/imu0/data.csv"}))
     streams.imu = ReadImu(*table);
-  if (const auto truth = ReadSequenceTruth(sequence)) streams.truth = truth->poses;
+  if (const auto truth = ReadSequenceTruth(rig.empty() ? sequence : sequence / rig[0].name))
+    streams.truth = truth->poses;
   return streams;
 }
 
@@ -115,72 +139,75 @@ cv::Mat ReadDepth(const fs::path& file) {
   return metres;
 }
 
+void Advance(CameraStreams& of) {
+  of.next = Input([&] { return of.frames.Next(); });
+}
+
 // All of it, in order of time, which is moved by `offset_ns`.
-void Write(BagFile& bag, vo::SequenceReader& frames, const Streams& streams, std::int64_t offset_ns) {
-  std::size_t depth = 0, imu = 0, pose = 0;
+void Write(MessageFile& out, Streams& streams, std::int64_t offset_ns) {
+  std::size_t imu = 0, pose = 0, all = 0;
   const auto until = [&](std::int64_t stamp_ns) {
     for (; imu < streams.imu.size() && streams.imu[imu].stamp_ns <= stamp_ns; ++imu) {
       const ImuReading& reading = streams.imu[imu];
-      bag.Imu("/imu", reading.stamp_ns + offset_ns, reading.angular_rate, reading.specific_force);
+      out.Imu(streams.imu_topic, reading.stamp_ns + offset_ns, reading.angular_rate, reading.specific_force);
     }
     for (; pose < streams.truth.size() && streams.truth[pose].stamp_ns <= stamp_ns; ++pose) {
-      bag.Pose("/ground_truth/pose", streams.truth[pose].stamp_ns + offset_ns, streams.truth[pose]);
+      out.Pose("/ground_truth/pose", streams.truth[pose].stamp_ns + offset_ns, streams.truth[pose]);
     }
-    for (; depth < streams.depth.size() && streams.depth[depth].stamp_ns <= stamp_ns; ++depth) {
-      bag.Image("/camera/depth/image_raw", streams.depth[depth].stamp_ns + offset_ns,
-                ReadDepth(streams.depth[depth].file), "32FC1");
+    for (CameraStreams& of : streams.cameras) {
+      for (; of.next_depth < of.depth.size() && of.depth[of.next_depth].stamp_ns <= stamp_ns; ++of.next_depth) {
+        const auto& [depth_ns, file] = of.depth[of.next_depth];
+        out.Image("/" + of.name + "/depth/image_raw", of.name, depth_ns + offset_ns, ReadDepth(file), "32FC1");
+      }
     }
   };
-  Progress progress("exporting", static_cast<std::int64_t>(frames.size()));
-  while (const std::optional<vo::Frame> frame = Input([&] { return frames.Next(); })) {
-    until(frame->stamp_ns);
-    bag.Image("/camera/image_raw", frame->stamp_ns + offset_ns, frame->image,
-              frame->image.channels() == 3 ? "bgr8" : "mono8");
-    if (streams.camera) bag.CameraInfo("/camera/camera_info", frame->stamp_ns + offset_ns, *streams.camera);
+  for (const CameraStreams& of : streams.cameras) all += of.frames.size();
+  Progress progress("exporting", static_cast<std::int64_t>(all));
+  const auto time = [](const CameraStreams& of) {
+    return of.next ? of.next->stamp_ns : std::numeric_limits<std::int64_t>::max();
+  };
+  for (;;) {
+    CameraStreams& of = *std::ranges::min_element(streams.cameras, {}, time);
+    until(time(of));
+    if (!of.next) return;
+    const auto& [stamp_ns, image] = *of.next;
+    out.Image("/" + of.name + "/image_raw", of.name, stamp_ns + offset_ns, image,
+              image.channels() == 3 ? "bgr8" : "mono8");
+    if (of.camera) out.CameraInfo("/" + of.name + "/camera_info", of.name, stamp_ns + offset_ns, *of.camera);
     progress.Step();
+    Advance(of);
   }
-  until(std::numeric_limits<std::int64_t>::max());
 }
 
 // A bag has no time 0, and none before it.
-std::int64_t OffsetOf(const fs::path& sequence, const Streams& streams) {
-  std::int64_t first = vo::SequenceReader(sequence).Next()->stamp_ns;
-  if (!streams.imu.empty()) first = std::min(first, streams.imu.front().stamp_ns);
-  if (!streams.truth.empty()) first = std::min(first, streams.truth.front().stamp_ns);
-  if (!streams.depth.empty()) first = std::min(first, streams.depth.front().stamp_ns);
+std::int64_t OffsetOf(const Streams& streams) {
+  std::int64_t first = std::numeric_limits<std::int64_t>::max();
+  const auto take = [&](const auto& stamped) {
+    if (!stamped.empty()) first = std::min(first, stamped.front().stamp_ns);
+  };
+  take(streams.imu);
+  take(streams.truth);
+  for (const CameraStreams& of : streams.cameras) {
+    take(of.depth);
+    if (of.next) first = std::min(first, of.next->stamp_ns);
+  }
   constexpr std::int64_t kSecond = 1'000'000'000;
   return first > 0 ? 0 : (-first / kSecond + 1) * kSecond;
 }
 
-void ExportBag(const fs::path& sequence, const fs::path& file) {
-  vo::SequenceReader frames = Input([&] { return vo::SequenceReader(sequence); });
-  const Streams streams = Input([&] { return ReadStreams(sequence); });
-  const std::int64_t offset_ns = Input([&] { return OffsetOf(sequence, streams); });
-  base::AtomicPath path(file);
-  BagFile bag(path.path().string(), file.string());
-  Write(bag, frames, streams, offset_ns);
-  bag.Close();
-  path.Commit();
-  fmt::print("{}: {} images{}, {} depth images, {} IMU readings, {} true poses\n", file.string(), frames.size(),
-             streams.camera ? " with the camera" : "", streams.depth.size(), streams.imu.size(), streams.truth.size());
+void ExportMessages(const fs::path& sequence, const fs::path& file, bool mcap) {
+  Streams streams = Input([&] { return ReadStreams(sequence); });
+  for (CameraStreams& of : streams.cameras) Advance(of);
+  const std::int64_t offset_ns = mcap ? 0 : OffsetOf(streams);
+  const std::unique_ptr<MessageFile> out = mcap ? MakeMcap(file) : MakeBag(file);
+  Write(*out, streams, offset_ns);
+  out->Close();
+  std::size_t images = 0, depth = 0;
+  for (const CameraStreams& of : streams.cameras) images += of.frames.size(), depth += of.depth.size();
+  fmt::print("{}: {} images{}, {} depth images, {} IMU readings, {} true poses\n", file.string(), images,
+             streams.cameras[0].camera ? " with the camera" : "", depth, streams.imu.size(), streams.truth.size());
   if (offset_ns != 0) fmt::print("A bag has no time 0: all times are {} s later\n", offset_ns / 1'000'000'000);
 }
-
-}  // namespace
-#else
-namespace {
-namespace fs = std::filesystem;
-
-void ExportBag(const fs::path&, const fs::path&) {
-  throw BadInput(
-      "this program was built without rosbag: install librosbag-storage-dev, libsensor-msgs-dev and "
-      "libgeometry-msgs-dev, and build again");
-}
-
-}  // namespace
-#endif
-
-namespace {
 
 void RequireFree(const char* option, const std::optional<fs::path>& file) {
   if (!file) return;
@@ -195,15 +222,18 @@ void RequireFree(const char* option, const std::optional<fs::path>& file) {
 }  // namespace
 
 void Export(const ExportOptions& options) {
-  if (!options.bag && !options.coco) throw BadInput("export: say what to make: --bag FILE.bag or --coco FILE.json");
+  if (!options.bag && !options.mcap && !options.coco)
+    throw BadInput("export: say what to make: --bag FILE.bag, --mcap FILE.mcap or --coco FILE.json");
   RequireFree("--bag", options.bag);
+  RequireFree("--mcap", options.mcap);
   RequireFree("--coco", options.coco);
   if (options.coco) {
     const std::string text = Input([&] { return CocoJson(options.sequence); });
     base::WriteFile(*options.coco, text);
     fmt::print("{}: labels of {}\n", options.coco->string(), options.sequence.string());
   }
-  if (options.bag) ExportBag(options.sequence, *options.bag);
+  if (options.bag) ExportMessages(options.sequence, *options.bag, false);
+  if (options.mcap) ExportMessages(options.sequence, *options.mcap, true);
 }
 
 }  // namespace vobench
