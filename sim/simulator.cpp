@@ -78,20 +78,16 @@ std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& p
       {.rays_per_time_sample = params.rays_per_time_sample, .jobs = jobs, .reflections = params.reflections});
 }
 
-// Of all cameras.
+// Of all cameras; and what an exposure reaches beyond a stamp.
 double LastStamp(const Scenario& s) {
   double offset_s = 0;
   for (const RigCamera& camera : s.cameras) offset_s = std::max(offset_s, camera.trigger_offset_s);
   return Seconds(StampNs(CountFrames(s.time) - 1, s.time)) + offset_s;
 }
-
-// What an exposure of any camera reaches beyond its stamp.
 double Reach(const Scenario& s) {
-  const auto of = [](const SensorParams& sensor) {
-    return 0.5 * (LongestExposure(sensor) + std::abs(sensor.readout_s));
-  };
-  double reach_s = of(s.sensor);
-  for (const RigCamera& camera : s.cameras) reach_s = std::max(reach_s, of(camera.sensor));
+  double reach_s = 0;
+  for (const auto& [name, camera, sensor, T_BC, offset_s] : AllCameras(s))
+    reach_s = std::max(reach_s, 0.5 * (LongestExposure(sensor) + std::abs(sensor.readout_s)));
   return reach_s;
 }
 
@@ -154,11 +150,9 @@ struct Simulator::World {
     auto rays = arena.execute([&] { return std::make_unique<RayScene>(scene); });
     const auto around = SurroundingsOf(scene, *rays);
     body = MakeMotion(s, s.motion, s.seed, around.get());
-    if (s.cameras.empty()) cameras.push_back(body);
-    for (const RigCamera& camera : s.cameras) cameras.push_back(std::make_shared<Mounted>(body, camera.T_BC));
-    for (std::size_t k = 0; k < cameras.size(); ++k) {
-      const SensorParams& sensor = s.cameras.empty() ? s.sensor : s.cameras[k].sensor;
-      RequireFree(*cameras[k], LastStamp(s), *around, [&](double t_s) { return sensor.IsCovered(t_s); });
+    for (const RigCamera& of : AllCameras(s)) {
+      cameras.push_back(s.cameras.empty() ? body : std::make_shared<Mounted>(body, of.T_BC));
+      RequireFree(*cameras.back(), LastStamp(s), *around, [&](double t_s) { return of.sensor.IsCovered(t_s); });
     }
     renderer = MakeRenderer(scene, s.render, Threads(jobs), rays, warnings);
     if (rays) exact = MakeRayTracer(scene, std::move(rays), {.jobs = Threads(jobs)});
@@ -185,26 +179,22 @@ struct Simulator::World {
   std::vector<std::shared_ptr<const Trajectory>> object_motions;
 };
 
-namespace {
-
-// A camera of a rig as if it were the only one, with noise of its own.
-Scenario ScenarioOf(Scenario s, std::size_t k) {
-  if (k == 0) return s;
-  s.camera = s.cameras[k].camera;
-  s.sensor = s.cameras[k].sensor;
-  s.seed = SeedOf(RandomWords(s.seed, Stream::rig_camera, static_cast<std::uint32_t>(k), 0, 0));
-  return s;
-}
-
-}  // namespace
-
 // One camera.
 struct Simulator::Parts {
+  // The first camera has the scenario's seed, each other noise of its own.
+  static Scenario Of(Scenario s, std::size_t k) {
+    const RigCamera camera = AllCameras(s)[k];
+    s.camera = camera.camera;
+    s.sensor = camera.sensor;
+    if (k > 0) s.seed = SeedOf(RandomWords(s.seed, Stream::rig_camera, static_cast<std::uint32_t>(k), 0, 0));
+    return s;
+  }
+
   Parts(const Scenario& s, std::shared_ptr<const World> in, std::size_t k)
-      : scenario(ScenarioOf(s, k)),
+      : scenario(Of(s, k)),
         index(k),
         frames(CountFrames(s.time)),
-        offset_ns(s.cameras.empty() ? 0 : std::llround(1e9 * s.cameras[k].trigger_offset_s)),
+        offset_ns(std::llround(1e9 * AllCameras(s)[k].trigger_offset_s)),
         optics(scenario.camera, scenario.sensor.optics),
         sensor(scenario.sensor, scenario.seed, scenario.camera.width, scenario.camera.height),
         world(std::move(in)),
@@ -278,8 +268,11 @@ Simulator& Simulator::operator=(const Simulator&) = default;
 std::int64_t Simulator::frame_count() const { return parts_->frames; }
 const Camera& Simulator::camera() const { return parts_->optics.camera; }
 const Scenario& Simulator::scenario() const { return parts_->scenario; }
-std::size_t Simulator::camera_count() const { return 1 + parts_->others.size(); }
-Simulator Simulator::OfCamera(std::size_t camera) const { return camera == 0 ? *this : parts_->others.at(camera - 1); }
+std::vector<Simulator> Simulator::Cameras() const {
+  std::vector<Simulator> cameras{*this};
+  cameras.insert(cameras.end(), parts_->others.begin(), parts_->others.end());
+  return cameras;
+}
 std::size_t Simulator::camera_index() const { return parts_->index; }
 const std::vector<std::string>& Simulator::warnings() const { return parts_->world->warnings; }
 const Trajectory& Simulator::trajectory() const { return *parts_->trajectory; }

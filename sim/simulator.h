@@ -54,10 +54,9 @@ class Simulator {
   std::int64_t frame_count() const;
   const Camera& camera() const;
   const Scenario& scenario() const;
-  // The cameras of a rig, of which this is the first; their world is loaded and baked once. Each is as a simulator of
-  // its own: with the camera's frames, stamps, truth, and seed.
-  std::size_t camera_count() const;
-  Simulator OfCamera(std::size_t camera) const;
+  // Of a rig, of which this is the first camera, a simulator for each: with its frames, stamps, truth and seed. Their
+  // world is loaded and baked once.
+  std::vector<Simulator> Cameras() const;
   std::size_t camera_index() const;
   // Contents of the world that are readable but probably unintended.
   const std::vector<std::string>& warnings() const;

@@ -100,8 +100,8 @@ void ReadRig(Section root, Scenario& scenario) {
     constexpr const char* kGood = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
     if (camera.name.find_first_not_of(kGood) != std::string::npos || camera.name == "imu0" || camera.name == "mav0" ||
         camera.name == "truth")
-      item.Reject("name", "'name': a camera's name is a folder's too: letters, digits, '_' and '-', none that other " +
-                              ("files of a sequence have, not '" + camera.name + "'"));
+      item.Reject("name",
+                  "'name': a camera's name is a folder's: letters, digits, '_' and '-', not '" + camera.name + "'");
     if (std::ranges::count(scenario.cameras, camera.name, &RigCamera::name) > 0)
       item.Reject("name", "'name': another camera is called '" + camera.name + "' already");
     ReadCamera(item, camera.camera);
@@ -173,19 +173,22 @@ std::string RectifiedProblem(const std::vector<RigCamera>& cameras) {
   if (cameras.size() < 2) return "it takes two cameras";
   const RigCamera &a = cameras[0], &b = cameras[1];
   const CameraParams &p = a.camera, &q = b.camera;
-  if (p.lens != Lens::radial_tangential || q.lens != p.lens) return "a fisheye lens is not rectified";
-  for (const CameraParams& c : {p, q}) {
-    if (c.k1 != 0 || c.k2 != 0 || c.p1 != 0 || c.p2 != 0 || c.k3 != 0) return "the lens is distorted";
-  }
+  const auto straight = [](const CameraParams& c) {
+    return c.lens == Lens::radial_tangential && c.k1 == 0 && c.k2 == 0 && c.p1 == 0 && c.p2 == 0 && c.k3 == 0;
+  };
+  if (!straight(p) || !straight(q)) return "the lens is distorted";
   if (p.width != q.width || p.height != q.height || p.fx != q.fx || p.fy != q.fy || p.cx != q.cx || p.cy != q.cy)
     return "the two cameras are not equal";
   if (a.trigger_offset_s != b.trigger_offset_s) return "the two cameras have different trigger offsets";
-  const glm::dvec3 base = glm::conjugate(a.T_BC.q_WC) * (b.T_BC.p_WC - a.T_BC.p_WC);
-  const glm::dquat turn = glm::conjugate(a.T_BC.q_WC) * b.T_BC.q_WC;
+  const glm::dquat q_CB = glm::conjugate(a.T_BC.q_WC), turn = q_CB * b.T_BC.q_WC;
+  const glm::dvec3 base = q_CB * (b.T_BC.p_WC - a.T_BC.p_WC);
   if (glm::length(glm::dvec3(turn.x, turn.y, turn.z)) > 1e-12) return "the second camera is turned against the first";
-  if (!(base.x > 0) || std::hypot(base.y, base.z) > 1e-9 * base.x)
-    return "the second camera is not straight to the right of the first";
-  return "";
+  const bool beside = base.x > 0 && std::hypot(base.y, base.z) <= 1e-9 * base.x;
+  return beside ? "" : "the second camera is not straight to the right of the first";
+}
+
+std::vector<RigCamera> AllCameras(const Scenario& s) {
+  return s.cameras.empty() ? std::vector{RigCamera{"", s.camera, s.sensor, {}, 0}} : s.cameras;
 }
 
 Scenario LoadScenario(const std::filesystem::path& path,

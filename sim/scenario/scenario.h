@@ -224,6 +224,9 @@ struct Scenario {
   std::string resolved;  // all settings of the above with defaults filled in, as JSON; LoadScenario reads it again
 };
 
+// The cameras of a rig, or the one.
+std::vector<RigCamera> AllCameras(const Scenario& scenario);
+
 // Overrides are (dotted key, YAML value), later ones win; "seed" is a key like any other. File names in a scenario are
 // relative to the scenario's folder and are resolved here. The sections `odometry` and `prior` belong to other readers
 // and are ignored. Throws settings::Error with all problems at once. Mesh, texture and trajectory files are not opened

@@ -9,7 +9,6 @@
 
 #include "sim/motion/mounted.h"
 #include "sim/sequence/streams.h"
-#include "sim/sequence/vio_files.h"
 #include "tools/base/limits/structured_text.h"
 #include "tools/base/text.h"
 
@@ -25,6 +24,9 @@ std::set<TruthStream> StreamsOf(const SequenceContent& content, const Simulator&
 
 bool IsRig(const Simulator& simulator, const SequenceContent& content) {
   return content.rig && !simulator.scenario().cameras.empty();
+}
+std::vector<Simulator> CamerasOf(const Simulator& simulator, const SequenceContent& content) {
+  return content.rig ? simulator.Cameras() : std::vector{simulator};
 }
 
 // To where a camera's files are: what EuRoC and ICL-NUIM have no place for is in truth/; of a rig, each camera has a
@@ -62,8 +64,7 @@ void AddBiases(const Simulator& simulator, std::vector<StampedTruth>& frames) {
 // Of the body, or of EuRoC's, at the stamps of all cameras.
 std::vector<StampedTruth> BodyTruth(const Simulator& simulator, const SequenceContent& content, std::int64_t whole) {
   std::set<std::int64_t> stamps;
-  for (std::size_t k = 0; k < (content.rig ? simulator.camera_count() : 1); ++k) {
-    const Simulator camera = simulator.OfCamera(k);
+  for (const Simulator& camera : CamerasOf(simulator, content)) {
     for (std::int64_t index = content.first; index < content.first + whole; ++index)
       stamps.insert(camera.StampNs(index));
   }
@@ -74,22 +75,14 @@ std::vector<StampedTruth> BodyTruth(const Simulator& simulator, const SequenceCo
   for (const std::int64_t stamp_ns : stamps) {
     Truth truth = TruthAt(body, Seconds(stamp_ns));
     if (content.layout == Layout::euroc) {
-      truth.p_WC = euroc.q_RW * truth.p_WC;
-      truth.v_WC = euroc.q_RW * truth.v_WC;
-      truth.q_WC = euroc.q_RW * truth.q_WC;
-      if (truth.q_WC.w < 0) truth.q_WC = -truth.q_WC;
+      const glm::dquat q = euroc.q_RW * truth.q_WC;
+      truth = {euroc.q_RW * truth.p_WC, q.w < 0 ? -q : q, euroc.q_RW * truth.v_WC};
     }
     frames.push_back({0, stamp_ns, truth});
   }
   if (content.layout == Layout::euroc && scenario.truth.streams.contains(TruthStream::imu))
     AddBiases(simulator, frames);
   return frames;
-}
-
-// Written with each camera.
-std::set<TruthStream> WithoutImu(std::set<TruthStream> streams) {
-  streams.erase(TruthStream::imu);
-  return streams;
 }
 
 using Json = nlohmann::ordered_json;
@@ -163,12 +156,11 @@ std::string ImagePath(const Simulator& camera, const SequenceContent& content, s
 
 std::vector<StreamFile> FrameFiles(const Simulator& simulator, const SequenceContent& content, std::int64_t index) {
   std::vector<StreamFile> files;
-  for (std::size_t k = 0; k < (content.rig ? simulator.camera_count() : 1); ++k) {
-    const Simulator camera = simulator.OfCamera(k);
+  for (const Simulator& camera : CamerasOf(simulator, content)) {
     const Frame frame = camera.Render(index);
     files.push_back({ImagePath(camera, content, index), EncodePng(frame.image)});
     if (content.layout != Layout::tum) {
-      files.push_back({NamesOf(content.layout, index, frame.stamp_ns, k).depth,
+      files.push_back({NamesOf(content.layout, index, frame.stamp_ns, camera.camera_index()).depth,
                        EncodeDepthPng(camera.Depth(index), frame.image.width, frame.image.height)});
     }
     const std::set<TruthStream> streams = StreamsOf(content, camera);
@@ -178,14 +170,15 @@ std::vector<StreamFile> FrameFiles(const Simulator& simulator, const SequenceCon
 }
 
 std::vector<StreamFile> WholeFiles(const Simulator& simulator, const SequenceContent& content, std::int64_t whole) {
-  const std::set<TruthStream> streams = StreamsOf(content, simulator);
+  std::set<TruthStream> streams = StreamsOf(content, simulator);
+  const bool imu = streams.erase(TruthStream::imu) > 0, rig = IsRig(simulator, content);  // it is the body's
   const Scenario& scenario = simulator.scenario();
   const std::int64_t last = content.first + whole;
   const std::vector<StampedTruth> body = BodyTruth(simulator, content, whole);
   std::vector<StreamFile> files;
   if (content.rig || content.layout != Layout::tum) files = BodyLists(content.layout, scenario, body);
-  for (std::size_t k = 0; k < (content.rig ? simulator.camera_count() : 1); ++k) {
-    const Simulator camera = simulator.OfCamera(k);
+  for (const Simulator& camera : CamerasOf(simulator, content)) {
+    const std::size_t k = camera.camera_index();
     std::vector<StampedTruth> frames;
     for (std::int64_t index = content.first; index < last; ++index)
       frames.push_back({index, camera.StampNs(index), camera.TruthAt(index)});
@@ -200,13 +193,12 @@ std::vector<StreamFile> WholeFiles(const Simulator& simulator, const SequenceCon
       if (place) return Place(camera, content, std::move(from), files);
       std::ranges::move(from, std::back_inserter(files));
     };
-    const bool rig = IsRig(simulator, content);
     append(rig && content.layout == Layout::tum, Lists(content.layout, camera.scenario(), frames, k));
     append(rig, std::move(own));
     if (content.layout == Layout::euroc && k == 0) append(false, VioFiles(scenario, frames));
-    append(true, SequenceStreams(camera, content.first, last, WithoutImu(streams)));
+    append(true, SequenceStreams(camera, content.first, last, streams));
   }
-  if (streams.contains(TruthStream::imu) && (content.rig || scenario.cameras.empty())) {
+  if (imu && (rig || scenario.cameras.empty())) {
     const std::int64_t first_ns = whole > 0 ? body.front().stamp_ns : 0,
                        last_ns = whole > 0 ? body.back().stamp_ns : -1;
     Place(simulator, content, ImuStreams(simulator, first_ns, last_ns), files);

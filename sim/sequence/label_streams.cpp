@@ -1,11 +1,11 @@
-#include "sim/sequence/label_streams.h"
-
+// Truth streams of labels: instances, boxes, and their legend.
 #include <algorithm>
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "sim/sequence/layout.h"
+#include "sim/sequence/streams.h"
 
 namespace sim {
 

@@ -50,16 +50,12 @@ std::vector<StreamFile> TumLists(Frames frames) {
 }
 
 std::string RigYaml(const Scenario& scenario) {
-  const auto number = settings::FormatNumber;
   std::string text =
       "# X_B = R(orientation) X_C + position; orientation x y z w. Frame k is at k / rate + "
       "trigger_offset.\ncameras:\n";
   for (const RigCamera& camera : scenario.cameras) {
-    const glm::dvec3& p = camera.T_BC.p_WC;
-    const glm::dquat& q = camera.T_BC.q_WC;
-    text += "  - {name: " + camera.name + ", position: [" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) +
-            "], orientation: [" + number(q.x) + ", " + number(q.y) + ", " + number(q.z) + ", " + number(q.w) +
-            "], trigger_offset: " + number(camera.trigger_offset_s) + " s}\n";
+    text += "  - {name: " + camera.name + ", " + PlaceYaml(camera.T_BC, ", ") +
+            ", trigger_offset: " + settings::FormatNumber(camera.trigger_offset_s) + " s}\n";
   }
   return text;
 }
@@ -175,6 +171,13 @@ std::string FormatDecimal(double number) {
   return text == "-0.000000000000" ? text.substr(1) : text;
 }
 
+std::string PlaceYaml(const Pose& T, const std::string& between) {
+  const auto number = settings::FormatNumber;
+  const auto& [p, q] = T;
+  return "position: [" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) + "]" + between + "orientation: [" +
+         number(q.x) + ", " + number(q.y) + ", " + number(q.z) + ", " + number(q.w) + "]";
+}
+
 std::string TruthLine(std::int64_t stamp_ns, const Truth& t) {
   return Line(base::FormatSeconds(stamp_ns), ' ',
               {t.p_WC.x, t.p_WC.y, t.p_WC.z, t.q_WC.x, t.q_WC.y, t.q_WC.z, t.q_WC.w});
@@ -205,13 +208,11 @@ std::string ToString(Layout layout) {
 }
 
 std::vector<std::string> Problems(Layout layout, const Scenario& scenario) {
-  std::vector<CameraParams> cameras{scenario.camera};
-  for (const RigCamera& camera : scenario.cameras) cameras.push_back(camera.camera);
-  for (const CameraParams& camera : cameras) {
-    if (layout == Layout::euroc && camera.lens == Lens::radial_tangential && camera.k3 != 0)
-      return {"the euroc layout has no place for the camera's k3 = " + settings::FormatNumber(camera.k3)};
+  for (const RigCamera& of : AllCameras(scenario)) {
+    if (layout == Layout::euroc && of.camera.lens == Lens::radial_tangential && of.camera.k3 != 0)
+      return {"the euroc layout has no place for the camera's k3 = " + settings::FormatNumber(of.camera.k3)};
   }
-  if (layout == Layout::icl && cameras.size() > 2) return {"the icl layout has one camera"};
+  if (layout == Layout::icl && scenario.cameras.size() > 1) return {"the icl layout has one camera"};
   if (layout == Layout::icl && scenario.time.rate_hz != 30) {
     return {"the icl layout has no time stamps, its frames are 1/30 s apart: time.rate = " +
             settings::FormatNumber(scenario.time.rate_hz) + " Hz must be 30 Hz"};
@@ -236,7 +237,7 @@ EurocBody::EurocBody(const Scenario& scenario) {
 }
 
 Pose EurocBody::OfCamera(const Scenario& scenario, std::size_t camera) const {
-  const Pose T_BC = scenario.cameras.empty() ? Pose{} : scenario.cameras[camera].T_BC;
+  const Pose T_BC = AllCameras(scenario)[camera].T_BC;
   const glm::dquat q_SB = glm::conjugate(T_BS.q_WC);
   return {q_SB * (T_BC.p_WC - T_BS.p_WC), q_SB * T_BC.q_WC};
 }

@@ -7,13 +7,10 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "sim/render/surface_tracer.h"
 #include "sim/sensor/depth_noise.h"
 #include "sim/sequence/flow.h"
-#include "sim/sequence/label_streams.h"
 #include "sim/sequence/landmarks.h"
 #include "sim/sequence/layout.h"
-#include "sim/world/labels.h"
 #include "tools/base/settings/quantity.h"
 #include "tools/base/text.h"
 
@@ -100,13 +97,10 @@ std::string Numbers(const char* format, const glm::dvec3& v) {
 
 std::string ImuYaml(const ImuParams& imu) {
   const auto number = settings::FormatNumber;
-  const glm::dvec3 &p = imu.T_CI.p_WC, &g = imu.gravity_W;
-  const glm::dquat& q = imu.T_CI.q_WC;
+  const glm::dvec3& g = imu.gravity_W;
   return "# X_C = R(orientation) X_I + position; orientation x y z w. Gravity in W [m/s^2].\nrate: " +
-         number(imu.rate_hz) + "\nposition: [" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) +
-         "]\norientation: [" + number(q.x) + ", " + number(q.y) + ", " + number(q.z) + ", " + number(q.w) +
-         "]\ngravity: [" + number(g.x) + ", " + number(g.y) + ", " + number(g.z) +
-         "]\nreading: " + (imu.reading == ImuReading::mean ? "mean" : "instant") +
+         number(imu.rate_hz) + "\n" + PlaceYaml(imu.T_CI, "\n") + "\ngravity: [" + number(g.x) + ", " + number(g.y) +
+         ", " + number(g.z) + "]\nreading: " + (imu.reading == ImuReading::mean ? "mean" : "instant") +
          "\n# Continuous-time densities: rad/s/sqrt(Hz), m/s^2/sqrt(Hz), rad/s^2/sqrt(Hz), m/s^3/sqrt(Hz)\n" +
          "gyroscope_noise: " + number(imu.gyroscope_noise) +
          "\naccelerometer_noise: " + number(imu.accelerometer_noise) +
@@ -160,7 +154,7 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
       to = FlowBetween(surfaces, camera, points, view, simulator.ViewAt(index + of.frame_step));
     }
     if (of.stream == TruthStream::disparity && across.uv.empty())
-      across = FlowBetween(surfaces, camera, points, view, simulator.OfCamera(1).ViewAt(index));
+      across = FlowBetween(surfaces, camera, points, view, simulator.Cameras()[1].ViewAt(index));
     StreamFile& file = files.emplace_back();
     file.path = PathIn(of, base::FormatSeconds(simulator.StampNs(index)));
     const auto distance = [](const SurfacePoint& point) { return glm::length(point.X_C); };

@@ -4,36 +4,9 @@
 #include <glm/common.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
-#include <set>
 #include <span>
 
 namespace sim {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// The box along the axes q of points that are added one by one.
-struct Extent {
-  glm::dquat q{1, 0, 0, 0};
-  glm::dvec3 low{kInfinity}, high{-kInfinity};
-
-  void Add(const glm::dvec3& X) {
-    const glm::dvec3 along = glm::conjugate(q) * X;
-    low = glm::min(low, along);
-    high = glm::max(high, along);
-  }
-  void Add(const Mesh& mesh) {
-    for (const glm::uvec3& triangle : mesh.triangles) {
-      for (int corner = 0; corner < 3; ++corner) Add(mesh.positions[triangle[corner]]);
-    }
-  }
-  void Into(Instance& instance) const {
-    instance.box = {q * (0.5 * (low + high)), q};
-    instance.size = high - low;
-  }
-};
-
-}  // namespace
 
 std::uint32_t Labels::ClassId(const Instance& instance) const {
   return static_cast<std::uint32_t>(std::ranges::lower_bound(classes, instance.category) - classes.begin()) + 1;
@@ -41,40 +14,46 @@ std::uint32_t Labels::ClassId(const Instance& instance) const {
 
 Labels LabelsOf(const Scene& scene, const WorldDescription& description) {
   Labels labels;
-  const auto add = [&](std::string name, std::string category, const std::string& list, std::size_t k, int object,
-                       const Extent& extent, std::size_t meshes) {
-    labels.of_mesh.resize(labels.of_mesh.size() + meshes, static_cast<std::uint32_t>(labels.instances.size()));
-    Instance& instance = labels.instances.emplace_back();
-    instance = {std::move(name), std::move(category), "world." + list + "." + std::to_string(k), object, {}, {}};
-    extent.Into(instance);
+  const auto add = [&](const MeshDescription& of, const std::string& entry, int object, std::span<const Mesh> meshes) {
+    labels.of_mesh.resize(labels.of_mesh.size() + meshes.size(), static_cast<std::uint32_t>(labels.instances.size()));
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+    for (const Mesh& mesh : meshes) {
+      for (const glm::uvec3& triangle : mesh.triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+          const glm::dvec3 X = glm::conjugate(of.orientation) * glm::dvec3(mesh.positions[triangle[corner]]);
+          low = glm::min(low, X);
+          high = glm::max(high, X);
+        }
+      }
+    }
+    const Pose box{of.orientation * (0.5 * (low + high)), of.orientation};
+    labels.instances.push_back({of.name, of.category, entry, object, box, high - low});
+    labels.classes.push_back(of.category);
   };
-  std::size_t mesh = 0;
   for (std::size_t k = 0; k < description.meshes.size(); ++k) {
-    const MeshDescription& of = description.meshes[k];
-    Extent extent{of.orientation};
-    const std::size_t first = mesh;
-    for (; mesh < scene.meshes.size() && scene.mesh_entries[mesh] == k; ++mesh) extent.Add(scene.meshes[mesh]);
-    add(of.name, of.category, "meshes", k, -1, extent, mesh - first);
+    const auto [first, last] = std::ranges::equal_range(scene.mesh_entries, k);
+    add(description.meshes[k], "world.meshes." + std::to_string(k), -1,
+        std::span(scene.meshes)
+            .subspan(static_cast<std::size_t>(first - scene.mesh_entries.begin()),
+                     static_cast<std::size_t>(last - first)));
   }
-  std::size_t lamps = 0;
-  for (std::size_t k = 0; k < scene.lights.size(); ++k) {
+  for (std::size_t k = 0, lamps = 0; k < scene.lights.size(); ++k) {
     const auto* lamp = std::get_if<RectLight>(&scene.lights[k]);
     if (lamp == nullptr || !lamp->visible) continue;
-    Extent extent;
+    MeshDescription of;
+    of.category = "lamp";
+    of.name = ++lamps > 1 ? "lamp_" + std::to_string(lamps) : "lamp";
+    Mesh mesh;
     for (const glm::dvec3& side : {glm::dvec3(0), lamp->side_u, lamp->side_v, lamp->side_u + lamp->side_v})
-      extent.Add(lamp->corner + side);
-    const std::string number = ++lamps > 1 ? "_" + std::to_string(lamps) : "";
-    add("lamp" + number, "lamp", "lights", k, -1, extent, 1);
+      mesh.positions.emplace_back(lamp->corner + side);
+    mesh.triangles = {{0, 1, 2}, {1, 2, 3}};
+    add(of, "world.lights." + std::to_string(k), -1, {&mesh, 1});
   }
-  for (std::size_t k = 0; k < scene.objects.size(); ++k) {
-    const MeshDescription& of = description.objects[k].mesh;
-    Extent extent{of.orientation};
-    for (const Mesh& part : scene.objects[k].meshes) extent.Add(part);
-    add(of.name, of.category, "objects", k, static_cast<int>(k), extent, scene.objects[k].meshes.size());
-  }
-  std::set<std::string> classes;
-  for (const Instance& instance : labels.instances) classes.insert(instance.category);
-  labels.classes = {classes.begin(), classes.end()};
+  for (std::size_t k = 0; k < scene.objects.size(); ++k)
+    add(description.objects[k].mesh, "world.objects." + std::to_string(k), static_cast<int>(k),
+        scene.objects[k].meshes);
+  std::ranges::sort(labels.classes);
+  labels.classes.erase(std::ranges::unique(labels.classes).begin(), labels.classes.end());
   return labels;
 }
 

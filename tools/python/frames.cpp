@@ -129,11 +129,10 @@ void AddSimulator(py::module_& m) {
           "cameras",
           [](const Simulator& s) {
             std::vector<Simulator> cameras;
-            for (std::size_t k = 0; k < s.simulator.camera_count(); ++k)
-              cameras.push_back({s.scenario, s.simulator.OfCamera(k)});
+            for (const sim::Simulator& camera : s.simulator.Cameras()) cameras.push_back({s.scenario, camera});
             return cameras;
           },
-          Doc("sim/simulator.h:Simulator::camera_count"))
+          Doc("sim/simulator.h:Simulator::Cameras"))
       .def("__len__", [](const Simulator& s) { return s.simulator.frame_count(); })
       .def(
           "__iter__",

@@ -105,11 +105,11 @@ TEST(Rig, ACameraAtTheBodyIsAsIfAlone) {
       LoadScenario(world.scenario(),
                    {{"world.meshes", "[{file: wall.ply}, {file: wall.ply, scale: 0.25, position: [0.1, 0, -0.6]}]"}});
   const Simulator two(rig, 2), one(alone, 2);
-  EXPECT_EQ(two.camera_count(), 2u);
-  EXPECT_EQ(one.camera_count(), 1u);
+  EXPECT_EQ(two.Cameras().size(), 2u);
+  EXPECT_EQ(one.Cameras().size(), 1u);
   EXPECT_EQ(two.Render(4).image.data, one.Render(4).image.data);
-  EXPECT_EQ(two.OfCamera(1).Depth(4), one.Depth(4));
-  EXPECT_NE(two.OfCamera(1).Render(4).image.data, one.Render(4).image.data) << "its noise is its own";
+  EXPECT_EQ(two.Cameras()[1].Depth(4), one.Depth(4));
+  EXPECT_NE(two.Cameras()[1].Render(4).image.data, one.Render(4).image.data) << "its noise is its own";
 }
 
 TEST(Rig, FilesDependNeitherOnThreadsNorOnTheRange) {
@@ -146,7 +146,7 @@ TEST(Rig, FilesDependNeitherOnThreadsNorOnTheRange) {
 TEST(Rig, DisparityAgainstTheSecondCamerasDepth) {
   const SmallWorld world;
   const Scenario rig = Rig(world, "position: [0.1, 0, 0]", {{"truth", "[disparity]"}});
-  const Simulator left(rig, 2), right = left.OfCamera(1);
+  const Simulator left(rig, 2), right = left.Cameras()[1];
   int seen = 0, hidden = 0;
   for (const std::int64_t index : {0, 4, 8}) {
     const std::vector<StreamFile> files = FrameFiles(left, {Layout::tum, 0, 9, "test"}, index);

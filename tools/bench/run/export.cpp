@@ -1,21 +1,18 @@
 // A sequence, of any layout that `track` reads, as a ROS 1 bag or MCAP; its labels as COCO's file.
 #include <fmt/format.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <initializer_list>
 #include <limits>
 #include <optional>
 
 #include "tools/base/files.h"
-#include "tools/base/text.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/progress.h"
 #include "tools/bench/run/commands.h"
 #include "tools/bench/sequence/coco.h"
 #include "tools/bench/sequence/message_file.h"
 #include "tools/bench/sequence/sequence_truth.h"
-#include "tools/judge/evaluation/text_file.h"
 #include "tools/judge/verification/files.h"
 #include "vo/geometry/camera_file.h"
 #include "vo/sequence/reader.h"
@@ -23,22 +20,13 @@
 namespace vobench {
 namespace {
 namespace fs = std::filesystem;
-
-struct DepthFile {
-  std::int64_t stamp_ns = 0;
-  fs::path file;
-};
-
-struct ImuReading {
-  std::int64_t stamp_ns = 0;
-  Eigen::Vector3d angular_rate, specific_force;
-};
+using verification::Entry;
 
 struct CameraStreams {
   std::string name;  // of its topics and its frame
   vo::SequenceReader frames;
   std::optional<vo::Camera> camera;
-  std::vector<DepthFile> depth;
+  std::vector<Entry> depth;
   std::optional<vo::Frame> next;
   std::size_t next_depth = 0;
 };
@@ -46,7 +34,7 @@ struct CameraStreams {
 struct Streams {
   std::vector<CameraStreams> cameras;
   std::string imu_topic = "/imu";
-  std::vector<ImuReading> imu;
+  std::vector<Entry> imu;        // w, f
   evaluation::Trajectory truth;  // of the first camera
 };
 
@@ -57,44 +45,13 @@ std::optional<fs::path> First(const fs::path& sequence, std::initializer_list<co
   return std::nullopt;
 }
 
-std::vector<DepthFile> ReadDepthList(const fs::path& list, char separator) {
-  std::vector<DepthFile> files;
-  evaluation::Problems problems;
-  for (const evaluation::Line& line : evaluation::Lines(list, separator)) {
-    // Seconds in TUM's list, nanoseconds in EuRoC's.
-    const std::string stamp = line.tokens[0].text + (separator == ',' ? "e-9" : "");
-    const auto stamp_ns = base::ParseSeconds(stamp);
-    if (!stamp_ns || line.tokens.size() < 2) {
-      problems.Add(list, line.number, 1, "expected a stamp and the name of a file");
-      continue;
-    }
-    const fs::path folder = separator == ',' ? list.parent_path() / "data" : list.parent_path();
-    files.push_back({*stamp_ns, folder / line.tokens[1].text});
-  }
-  problems.ThrowIfAny();
-  return files;
-}
-
-std::vector<ImuReading> ReadImu(const fs::path& table) {
-  std::vector<ImuReading> readings;
-  evaluation::Problems problems;
-  for (const evaluation::Line& line : evaluation::Lines(table, ',')) {
-    const auto stamp_ns = base::ParseSeconds(line.tokens[0].text + "e-9");
-    Eigen::Matrix<double, 6, 1> values = Eigen::Matrix<double, 6, 1>::Zero();
-    bool good = stamp_ns.has_value() && line.tokens.size() >= 7;
-    for (std::size_t i = 1; good && i < 7; ++i) {
-      const auto number = evaluation::ParseNumber(line.tokens[i].text);
-      good = number.has_value();
-      values[static_cast<Eigen::Index>(i) - 1] = number.value_or(0);
-    }
-    if (!good) {
-      problems.Add(table, line.number, 1, "expected timestamp [ns], angular rate and specific force: seven numbers");
-      continue;
-    }
-    readings.push_back({*stamp_ns, values.head<3>(), values.tail<3>()});
-  }
-  problems.ThrowIfAny();
-  return readings;
+// numbers: of each line; 0: it names a file, relative to `folder`.
+std::vector<Entry> Read(const fs::path& table, std::size_t numbers, char separator, const fs::path& folder = {}) {
+  verification::Check files("", "");
+  std::vector<Entry> entries = verification::ReadTable(table, numbers, true, true, separator, files);
+  if (files.failed()) throw std::runtime_error((table.parent_path() / files.failures().front()).string());
+  for (Entry& entry : entries) entry.file = (folder / entry.file).string();
+  return entries;
 }
 
 // k: EuRoC's number.
@@ -103,8 +60,9 @@ CameraStreams ReadCameraStreams(const fs::path& folder, const std::string& name,
   CameraStreams camera{name, vo::SequenceReader(folder, k), {}, {}, {}, 0};
   if (const auto file = First(folder, {"camera.yaml", (euroc + "/sensor.yaml").c_str()}))
     camera.camera = vo::ReadCamera(*file);
-  if (const auto list = First(folder, {"depth.txt"})) camera.depth = ReadDepthList(*list, ' ');
-  if (const auto list = First(folder, {depth.c_str()})) camera.depth = ReadDepthList(*list, ',');
+  if (const auto list = First(folder, {"depth.txt"})) camera.depth = Read(*list, 0, ' ', folder);
+  if (const auto list = First(folder, {depth.c_str()}))
+    camera.depth = Read(*list, 0, ',', list->parent_path() / "data");
   return camera;
 }
 
@@ -123,16 +81,16 @@ Streams ReadStreams(const fs::path& sequence) {
        rig.empty() && (k == 0 || fs::exists(sequence / ("mav0/cam" + std::to_string(k)) / "data.csv")); ++k)
     add(sequence, k);
   if (const auto table = First(sequence, {"imu0/data.csv", "mav0/imu0/data.csv", "truth/imu0/data.csv"}))
-    streams.imu = ReadImu(*table);
+    streams.imu = Read(*table, 6, ',');
   if (const auto truth = ReadSequenceTruth(rig.empty() ? sequence : sequence / rig[0].name))
     streams.truth = truth->poses;
   return streams;
 }
 
-cv::Mat ReadDepth(const fs::path& file) {
+cv::Mat ReadDepth(const std::string& file) {
   const cv::Mat stored = Input([&] { return verification::ReadPicture(file); });
   if (stored.type() != CV_16UC1) {
-    throw BadInput(fmt::format("{}: is not a 16-bit PNG of depth in metres x 5000", file.string()));
+    throw BadInput(fmt::format("{}: is not a 16-bit PNG of depth in metres x 5000", file));
   }
   cv::Mat metres;
   stored.convertTo(metres, CV_32F, 1.0 / 5000);
@@ -148,16 +106,15 @@ void Write(MessageFile& out, Streams& streams, std::int64_t offset_ns) {
   std::size_t imu = 0, pose = 0, all = 0;
   const auto until = [&](std::int64_t stamp_ns) {
     for (; imu < streams.imu.size() && streams.imu[imu].stamp_ns <= stamp_ns; ++imu) {
-      const ImuReading& reading = streams.imu[imu];
-      out.Imu(streams.imu_topic, reading.stamp_ns + offset_ns, reading.angular_rate, reading.specific_force);
+      out.Imu(streams.imu_topic, streams.imu[imu].stamp_ns + offset_ns, streams.imu[imu].numbers);
     }
     for (; pose < streams.truth.size() && streams.truth[pose].stamp_ns <= stamp_ns; ++pose) {
       out.Pose("/ground_truth/pose", streams.truth[pose].stamp_ns + offset_ns, streams.truth[pose]);
     }
     for (CameraStreams& of : streams.cameras) {
       for (; of.next_depth < of.depth.size() && of.depth[of.next_depth].stamp_ns <= stamp_ns; ++of.next_depth) {
-        const auto& [depth_ns, file] = of.depth[of.next_depth];
-        out.Image("/" + of.name + "/depth/image_raw", of.name, depth_ns + offset_ns, ReadDepth(file), "32FC1");
+        const Entry& depth = of.depth[of.next_depth];
+        out.Image("/" + of.name + "/depth/image_raw", depth.stamp_ns + offset_ns, ReadDepth(depth.file), "32FC1");
       }
     }
   };
@@ -171,9 +128,8 @@ void Write(MessageFile& out, Streams& streams, std::int64_t offset_ns) {
     until(time(of));
     if (!of.next) return;
     const auto& [stamp_ns, image] = *of.next;
-    out.Image("/" + of.name + "/image_raw", of.name, stamp_ns + offset_ns, image,
-              image.channels() == 3 ? "bgr8" : "mono8");
-    if (of.camera) out.CameraInfo("/" + of.name + "/camera_info", of.name, stamp_ns + offset_ns, *of.camera);
+    out.Image("/" + of.name + "/image_raw", stamp_ns + offset_ns, image, image.channels() == 3 ? "bgr8" : "mono8");
+    if (of.camera) out.CameraInfo("/" + of.name + "/camera_info", stamp_ns + offset_ns, *of.camera);
     progress.Step();
     Advance(of);
   }

@@ -47,10 +47,11 @@ class BagFile : public MessageFile {
 
   std::string ConnectionRecord(Number channel) const override {
     const auto& [topic, type, count] = channels_[channel];
-    return Record(
-        7, {{"conn", Bytes(channel)}, {"topic", topic}},
-        Header(
-            {{"topic", topic}, {"type", type->name}, {"md5sum", type->md5}, {"message_definition", type->definition}}));
+    return Record(7, {{"conn", Bytes(channel)}, {"topic", topic}},
+                  Header({{"topic", topic},
+                          {"type", std::string(type->package) + "/" + type->name},
+                          {"md5sum", type->md5},
+                          {"message_definition", type->definition}}));
   }
   std::string MessageRecord(Number channel, std::int64_t stamp_ns, const std::string& message) const override {
     return Record(2, {{"conn", Bytes(channel)}, {"time", Time(stamp_ns)}}, message);

@@ -1,9 +1,7 @@
 #include "tools/bench/sequence/coco.h"
 
-#include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <vector>
 
@@ -26,55 +24,50 @@ std::vector<std::string> Listed(const fs::path& list, char separator, const std:
   return files;
 }
 
-struct Mask {
-  std::vector<int> counts{0};  // of background and instance in turn, down the columns
-  int left = 1 << 30, top = 1 << 30, right = -1, bottom = -1, area = 0;
-  std::size_t end = 0;  // of the last run
+// Lengths of background and instance in turn, down the columns.
+std::vector<int> RunLengths(const cv::Mat& mask) {
+  std::vector<int> lengths{0};
+  const cv::Mat_<std::uint8_t> columns(cv::Mat(mask.t()));
+  for (const std::uint8_t is : columns) {
+    if ((lengths.size() % 2 == 0) != (is != 0)) lengths.push_back(0);
+    ++lengths.back();
+  }
+  return lengths;
+}
 
-  void Add(int x, int y, std::size_t at) {
-    if (counts.size() % 2 == 1 || at > end) {  // the first pixel of a run
-      if (counts.size() % 2 == 0) counts.push_back(0);
-      counts.back() += static_cast<int>(at - end);
-      counts.push_back(0);
-    }
-    ++counts.back();
-    end = at + 1;
-    left = std::min(left, x), top = std::min(top, y), right = std::max(right, x), bottom = std::max(bottom, y), ++area;
+Json AnnotationsOf(const cv::Mat& ids, std::size_t image, const Json& instances, std::size_t first) {
+  Json annotations = Json::array();
+  for (const Json& instance : instances) {
+    const cv::Mat mask = ids == instance.at("id").get<int>();
+    const cv::Rect box = cv::boundingRect(mask);
+    if (box.empty()) continue;
+    annotations.push_back({{"id", first + annotations.size()},
+                           {"image_id", image},
+                           {"category_id", instance.at("class_id")},
+                           {"instance", instance.at("id")},
+                           {"name", instance.at("name")},
+                           {"iscrowd", 0},
+                           {"area", cv::countNonZero(mask)},
+                           {"bbox", {box.x, box.y, box.width, box.height}},
+                           {"segmentation", {{"size", {ids.rows, ids.cols}}, {"counts", RunLengths(mask)}}}});
   }
-};
-
-std::map<int, Mask> MasksOf(const cv::Mat& ids) {
-  std::map<int, Mask> masks;
-  std::size_t at = 0;
-  for (int x = 0; x < ids.cols; ++x) {
-    for (int y = 0; y < ids.rows; ++y, ++at) {
-      if (const int id = ids.at<std::uint16_t>(y, x); id != 0) masks[id].Add(x, y, at);
-    }
-  }
-  for (auto& [id, mask] : masks) {
-    if (at > mask.end) mask.counts.push_back(static_cast<int>(at - mask.end));
-  }
-  return masks;
+  return annotations;
 }
 
 }  // namespace
 
 std::string CocoJson(const fs::path& sequence) {
   const fs::path truth = fs::exists(sequence / "labels.json") ? sequence : sequence / "truth",
-                 legend = truth / "labels.json";
-  const fs::path list = truth / "instance.txt";
+                 legend = truth / "labels.json", list = truth / "instance.txt";
   for (const fs::path& needed : {legend, list}) {
-    if (!fs::exists(needed)) {
-      throw std::runtime_error(needed.string() +
-                               ": is not there; render with --truth instance to have what COCO's file is made of");
-    }
+    if (fs::exists(needed)) continue;
+    throw std::runtime_error(needed.string() +
+                             ": is not there; render with --truth instance to have what COCO's file is made of");
   }
   const bool euroc = fs::exists(sequence / "mav0/cam0/data.csv");
-  const std::vector<std::string> pictures =
-                                     euroc ? Listed(sequence / "mav0/cam0/data.csv", ',', "mav0/cam0/data/")
-                                           : Listed(sequence / (fs::exists(sequence / "rgb.txt") ? "rgb.txt"
-                                                                                                 : "associations.txt"),
-                                                    ' ', ""),
+  const char* pictures_list = fs::exists(sequence / "rgb.txt") ? "rgb.txt" : "associations.txt";
+  const std::vector<std::string> pictures = euroc ? Listed(sequence / "mav0/cam0/data.csv", ',', "mav0/cam0/data/")
+                                                  : Listed(sequence / pictures_list, ' ', ""),
                                  instances = Listed(list, ' ', "");
   if (pictures.size() != instances.size())
     throw std::runtime_error(list.string() + ": has not as many frames as the sequence");
@@ -83,29 +76,18 @@ std::string CocoJson(const fs::path& sequence) {
     throw std::runtime_error(legend.string() + ": " + problem);
   try {
     const Json labels = Json::parse(text);
-    Json coco = {{"info", {{"description", "made by vobench"}}},
-                 {"images", Json::array()},
-                 {"annotations", Json::array()},
-                 {"categories", Json::array()}};
-    for (const Json& of : labels.at("classes"))
-      coco["categories"].push_back({{"id", of.at("id")}, {"name", of.at("name")}, {"supercategory", ""}});
+    Json images = Json::array(), annotations = Json::array(), categories = labels.at("classes");
     for (std::size_t k = 0; k < pictures.size(); ++k) {
       const cv::Mat ids = verification::ReadPicture(truth / instances[k]);
       if (ids.type() != CV_16UC1) throw std::runtime_error((truth / instances[k]).string() + ": is not of 16 bits");
-      coco["images"].push_back({{"id", k + 1}, {"width", ids.cols}, {"height", ids.rows}, {"file_name", pictures[k]}});
-      for (const auto& [id, m] : MasksOf(ids)) {
-        const Json& instance = labels.at("instances").at(static_cast<std::size_t>(id - 1));
-        coco["annotations"].push_back({{"id", coco["annotations"].size() + 1},
-                                       {"image_id", k + 1},
-                                       {"category_id", instance.at("class_id")},
-                                       {"instance", id},
-                                       {"name", instance.at("name")},
-                                       {"iscrowd", 0},
-                                       {"area", m.area},
-                                       {"bbox", {m.left, m.top, m.right - m.left + 1, m.bottom - m.top + 1}},
-                                       {"segmentation", {{"size", {ids.rows, ids.cols}}, {"counts", m.counts}}}});
-      }
+      images.push_back({{"id", k + 1}, {"width", ids.cols}, {"height", ids.rows}, {"file_name", pictures[k]}});
+      const Json of_image = AnnotationsOf(ids, k + 1, labels.at("instances"), annotations.size() + 1);
+      annotations.insert(annotations.end(), of_image.begin(), of_image.end());
     }
+    const Json coco = {{"info", {{"description", "made by vobench"}}},
+                       {"images", images},
+                       {"annotations", annotations},
+                       {"categories", categories}};
     return coco.dump() + "\n";
   } catch (const Json::exception& error) {
     throw std::runtime_error(legend.string() + ": " + error.what());

@@ -25,7 +25,8 @@ class McapFile : public MessageFile {
   std::string ConnectionRecord(std::uint32_t channel) const override {
     const auto& [topic, type, count] = channels_[channel];
     const std::string id = Bytes(static_cast<Id>(channel + 1));
-    return Record(3, id + Sized(type->name2) + Sized("ros2msg") + Sized(type->definition2)) +
+    return Record(3, id + Sized(std::string(type->package) + "/msg/" + type->name) + Sized("ros2msg") +
+                         Sized(type->definition2)) +
            Record(4, id + id + Sized(topic) + Sized("cdr") + Sized(""));
   }
   std::string MessageRecord(std::uint32_t channel, std::int64_t stamp_ns, const std::string& message) const override {

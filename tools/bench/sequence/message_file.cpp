@@ -11,61 +11,57 @@ namespace {
 
 constexpr std::size_t kChunkBytes = 1 << 22;
 
-constexpr RosType kImage = {"sensor_msgs/Image", "sensor_msgs/msg/Image", "060021388200f6f0f447d0fcd9c64743", kImage1,
-                            kImage2};
-constexpr RosType kInfo = {"sensor_msgs/CameraInfo", "sensor_msgs/msg/CameraInfo", "c9a58c1b0b154e0e6da7578cb991d214",
-                           kCameraInfo1, kCameraInfo2};
-constexpr RosType kImu = {"sensor_msgs/Imu", "sensor_msgs/msg/Imu", "6a62c6daae103f4ff57a132d6f95cec2", kImu1, kImu2};
-constexpr RosType kPose = {"geometry_msgs/PoseStamped", "geometry_msgs/msg/PoseStamped",
-                           "d3812c3cbc69362b77dc0b19b345f8f5", kPoseStamped1, kPoseStamped2};
+constexpr RosType kImage = {"sensor_msgs", "Image", "060021388200f6f0f447d0fcd9c64743", kImage1, kImage2};
+constexpr RosType kInfo = {"sensor_msgs", "CameraInfo", "c9a58c1b0b154e0e6da7578cb991d214", kCameraInfo1, kCameraInfo2};
+constexpr RosType kImu = {"sensor_msgs", "Imu", "6a62c6daae103f4ff57a132d6f95cec2", kImu1, kImu2};
+constexpr RosType kPose = {"geometry_msgs", "PoseStamped", "d3812c3cbc69362b77dc0b19b345f8f5", kPoseStamped1,
+                           kPoseStamped2};
 
-std::uint32_t Whole(std::size_t number) { return static_cast<std::uint32_t>(number); }
+std::string FrameOf(const std::string& topic) { return topic.substr(1, topic.find('/', 1) - 1); }
 
 }  // namespace
 
-void MessageFile::Image(const std::string& topic, const std::string& frame, std::int64_t stamp_ns, const cv::Mat& image,
-                        const char* encoding) {
-  RosMessage m(ros2_, stamp_ns, frame);
-  m.Put(Whole(static_cast<std::size_t>(image.rows)));
-  m.Put(Whole(static_cast<std::size_t>(image.cols)));
-  m.Put(std::string(encoding));
-  m.Put(std::uint8_t{0});  // little-endian
+RosMessage MessageFile::Begin(const std::string& frame, std::int64_t stamp_ns) const {
+  RosMessage m(ros2_);
+  if (!ros2_) m.Put(std::uint32_t{0});  // the number of the message
+  m.Put(static_cast<std::uint32_t>(stamp_ns / 1'000'000'000), static_cast<std::uint32_t>(stamp_ns % 1'000'000'000),
+        frame);
+  return m;
+}
+
+void MessageFile::Image(const std::string& topic, std::int64_t stamp_ns, const cv::Mat& image, const char* encoding) {
+  RosMessage m = Begin(FrameOf(topic), stamp_ns);
   const std::size_t step = static_cast<std::size_t>(image.cols) * image.elemSize();
-  m.Put(Whole(step));
-  m.PutBytes(std::string_view(reinterpret_cast<const char*>(image.data), step * static_cast<std::size_t>(image.rows)));
+  m.Put(image.rows, image.cols, encoding, std::uint8_t{0}, static_cast<std::uint32_t>(step));  // 0: little-endian
+  m.PutData({reinterpret_cast<const char*>(image.data), step * static_cast<std::size_t>(image.rows)});
   Add(topic, kImage, stamp_ns, m);
 }
 
-void MessageFile::CameraInfo(const std::string& topic, const std::string& frame, std::int64_t stamp_ns,
-                             const vo::Camera& c) {
+void MessageFile::CameraInfo(const std::string& topic, std::int64_t stamp_ns, const vo::Camera& c) {
   const bool fisheye = c.lens == vo::Lens::fisheye;
-  RosMessage m(ros2_, stamp_ns, frame);
-  m.Put(Whole(static_cast<std::size_t>(c.height)));
-  m.Put(Whole(static_cast<std::size_t>(c.width)));
-  m.Put(std::string(fisheye ? "equidistant" : "plumb_bob"));
-  m.Put(std::uint32_t{fisheye ? 4U : 5U});
-  fisheye ? m.Put({c.k1, c.k2, c.k3, c.k4}) : m.Put({c.k1, c.k2, c.p1, c.p2, c.k3});
-  m.Put({c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1});
-  m.Put({1, 0, 0, 0, 1, 0, 0, 0, 1});
-  m.Put({c.fx, 0, c.cx, 0, 0, c.fy, c.cy, 0, 0, 0, 1, 0});
-  for (int binning_and_region = 0; binning_and_region < 6; ++binning_and_region) m.Put(std::uint32_t{0});
-  m.Put(std::uint8_t{0});
+  RosMessage m = Begin(FrameOf(topic), stamp_ns);
+  m.Put(c.height, c.width, fisheye ? "equidistant" : "plumb_bob", std::uint32_t{fisheye ? 4U : 5U});
+  m.Put(c.k1, c.k2, fisheye ? c.k3 : c.p1, fisheye ? c.k4 : c.p2);
+  if (!fisheye) m.Put(c.k3);
+  m.PutNumbers({c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1});
+  m.PutNumbers({1, 0, 0, 0, 1, 0, 0, 0, 1});
+  m.PutNumbers({c.fx, 0, c.cx, 0, 0, c.fy, c.cy, 0, 0, 0, 1, 0});
+  m.Put(0, 0, 0, 0, 0, 0, std::uint8_t{0});  // binning, region
   Add(topic, kInfo, stamp_ns, m);
 }
 
-void MessageFile::Imu(const std::string& topic, std::int64_t stamp_ns, const Eigen::Vector3d& w,
-                      const Eigen::Vector3d& f) {
-  RosMessage m(ros2_, stamp_ns, "imu");
-  m.Put({0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0, 0, 0});  // no orientation: its covariance begins with -1
-  m.Put({w.x(), w.y(), w.z(), 0, 0, 0, 0, 0, 0, 0, 0, 0});
-  m.Put({f.x(), f.y(), f.z(), 0, 0, 0, 0, 0, 0, 0, 0, 0});
+void MessageFile::Imu(const std::string& topic, std::int64_t stamp_ns, const std::vector<double>& x) {
+  RosMessage m = Begin("imu", stamp_ns);
+  m.PutNumbers({0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0, 0, 0});  // no orientation: its covariance begins with -1
+  m.PutNumbers({x[0], x[1], x[2], 0, 0, 0, 0, 0, 0, 0, 0, 0});
+  m.PutNumbers({x[3], x[4], x[5], 0, 0, 0, 0, 0, 0, 0, 0, 0});
   Add(topic, kImu, stamp_ns, m);
 }
 
 void MessageFile::Pose(const std::string& topic, std::int64_t stamp_ns, const evaluation::StampedPose& T_WC) {
-  RosMessage m(ros2_, stamp_ns, "world");
-  m.Put({T_WC.p_WC.x(), T_WC.p_WC.y(), T_WC.p_WC.z()});
-  m.Put({T_WC.q_WC.x(), T_WC.q_WC.y(), T_WC.q_WC.z(), T_WC.q_WC.w()});
+  RosMessage m = Begin("world", stamp_ns);
+  const auto& [p, q] = std::pair(T_WC.p_WC, T_WC.q_WC);
+  m.Put(p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
   Add(topic, kPose, stamp_ns, m);
 }
 
@@ -85,7 +81,7 @@ void MessageFile::Add(const std::string& topic, const RosType& type, std::int64_
   if (chunk_.index.empty()) chunk_.first_ns = stamp_ns;
   chunk_.last_ns = stamp_ns;
   chunk_.index[channel].push_back({stamp_ns, chunk_.records.size()});
-  chunk_.records += MessageRecord(channel, stamp_ns, message.bytes());
+  chunk_.records += MessageRecord(channel, stamp_ns, message.bytes);
   if (chunk_.records.size() > kChunkBytes) Write(std::exchange(chunk_, {}));
 }
 

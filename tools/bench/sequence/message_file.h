@@ -3,7 +3,6 @@
 //   messages are CDR (OMG DDS-RTPS 2.2); REP 103 (units, optical frames), 104 (camera_info), 118 (depth).
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -26,12 +25,10 @@ class MessageFile {
  public:
   virtual ~MessageFile() = default;
 
-  // frame: of the header. encoding: bgr8, mono8, 32FC1.
-  void Image(const std::string& topic, const std::string& frame, std::int64_t stamp_ns, const cv::Mat& image,
-             const char* encoding);
-  void CameraInfo(const std::string& topic, const std::string& frame, std::int64_t stamp_ns, const vo::Camera& camera);
-  void Imu(const std::string& topic, std::int64_t stamp_ns, const Eigen::Vector3d& angular_rate,
-           const Eigen::Vector3d& specific_force);
+  // The first part of a topic is the frame of its header. encoding: bgr8, mono8, 32FC1.
+  void Image(const std::string& topic, std::int64_t stamp_ns, const cv::Mat& image, const char* encoding);
+  void CameraInfo(const std::string& topic, std::int64_t stamp_ns, const vo::Camera& camera);
+  void Imu(const std::string& topic, std::int64_t stamp_ns, const std::vector<double>& rate_and_force);
   void Pose(const std::string& topic, std::int64_t stamp_ns, const evaluation::StampedPose& T_WC);
   void Close();
 
@@ -63,6 +60,7 @@ class MessageFile {
   std::vector<Channel> channels_;
 
  private:
+  RosMessage Begin(const std::string& frame, std::int64_t stamp_ns) const;
   void Add(const std::string& topic, const RosType& type, std::int64_t stamp_ns, const RosMessage& message);
 
   bool ros2_;

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,8 +37,16 @@ void MatchDepths(Frames& from, std::size_t frame, Frames& to, std::size_t to_fra
 void CompareHidden(Frames& from, std::size_t frame, const std::string& stream, Frames& to, std::size_t to_frame,
                    const Motions& motions, Check& check);
 
+// A camera's sequence with its pictures. arm_m: from the body of the rig, whose roughness the manifest has.
+struct Part {
+  Part(const std::filesystem::path& folder, const std::filesystem::path& manifest, double arm_m = 0);
+  Check files{"files: present, readable, of one size", ""}, stamps{"stamps: increasing, the same in all lists", ""};
+  Sequence sequence;
+  Frames frames;
+};
 // A rig: its cameras against each other, the body and the IMU.
-std::vector<Check> CheckRig(const std::filesystem::path& folder, const std::vector<RigCamera>& rig);
+std::vector<Check> CheckRig(const std::filesystem::path& folder, const std::vector<RigCamera>& rig,
+                            const std::vector<std::unique_ptr<Part>>& parts);
 
 // Instances, classes and boxes, against each other, the legend and depth. None without a legend.
 std::vector<Check> LabelChecks(const Sequence& sequence);

@@ -25,42 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// `timestamp` and so many numbers, or a file name (numbers = 0), on each line. separator ',': stamps in nanoseconds.
-std::vector<Entry> ReadTable(const fs::path& file, std::size_t numbers, bool stamped, bool increasing, char separator,
-                             Check& files) {
-  std::vector<Entry> entries;
-  for (const evaluation::Line& line : evaluation::Lines(file, separator)) {
-    bool good = true;
-    const auto fail = [&](const std::string& what) {
-      files.Fail(file.filename().string() + ":" + std::to_string(line.number) + ": " + what);
-      good = false;
-    };
-    const std::size_t first = stamped ? 1 : 0, words = first + std::max<std::size_t>(numbers, 1);
-    if (line.tokens.size() != words) {
-      fail(std::to_string(line.tokens.size()) + " words, not " + std::to_string(words));
-      continue;
-    }
-    Entry entry;
-    if (stamped) {
-      const std::string& text = line.tokens[0].text;
-      auto stamp = separator == ' ' ? base::ParseSeconds(text) : base::ParseWhole(text);
-      if (separator != ' ' && (text.size() > 18 || text.starts_with('-'))) stamp.reset();
-      if (!stamp) fail("'" + text + "' is not a time stamp");
-      entry.stamp_ns = stamp.value_or(0);
-    }
-    if (numbers == 0) entry.file = line.tokens[1].text;
-    for (std::size_t i = first; i < first + numbers; ++i) {
-      const auto number = evaluation::ParseNumber(line.tokens[i].text);
-      if (!number) fail("'" + line.tokens[i].text + "' is not a number");
-      entry.numbers.push_back(number.value_or(0));
-    }
-    if (!good) continue;
-    if (increasing && !entries.empty() && entry.stamp_ns <= entries.back().stamp_ns) fail("time does not increase");
-    entries.push_back(std::move(entry));
-  }
-  return entries;
-}
-
 std::vector<std::int64_t> Stamps(const std::vector<Entry>& entries) {
   std::vector<std::int64_t> stamps;
   for (const Entry& entry : entries) stamps.push_back(entry.stamp_ns);
@@ -214,6 +178,41 @@ void RequirePossibleSize(const Sequence& s) {
 }
 
 }  // namespace
+
+std::vector<Entry> ReadTable(const fs::path& file, std::size_t numbers, bool stamped, bool increasing, char separator,
+                             Check& files) {
+  std::vector<Entry> entries;
+  for (const evaluation::Line& line : evaluation::Lines(file, separator)) {
+    bool good = true;
+    const auto fail = [&](const std::string& what) {
+      files.Fail(file.filename().string() + ":" + std::to_string(line.number) + ": " + what);
+      good = false;
+    };
+    const std::size_t first = stamped ? 1 : 0, words = first + std::max<std::size_t>(numbers, 1);
+    if (line.tokens.size() != words) {
+      fail(std::to_string(line.tokens.size()) + " words, not " + std::to_string(words));
+      continue;
+    }
+    Entry entry;
+    if (stamped) {
+      const std::string& text = line.tokens[0].text;
+      auto stamp = separator == ' ' ? base::ParseSeconds(text) : base::ParseWhole(text);
+      if (separator != ' ' && (text.size() > 18 || text.starts_with('-'))) stamp.reset();
+      if (!stamp) fail("'" + text + "' is not a time stamp");
+      entry.stamp_ns = stamp.value_or(0);
+    }
+    if (numbers == 0) entry.file = line.tokens[1].text;
+    for (std::size_t i = first; i < first + numbers; ++i) {
+      const auto number = evaluation::ParseNumber(line.tokens[i].text);
+      if (!number) fail("'" + line.tokens[i].text + "' is not a number");
+      entry.numbers.push_back(number.value_or(0));
+    }
+    if (!good) continue;
+    if (increasing && !entries.empty() && entry.stamp_ns <= entries.back().stamp_ns) fail("time does not increase");
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
 
 std::string Sequence::FileAt(const std::string& stream, std::size_t frame) const {
   const auto list = images.find(stream);

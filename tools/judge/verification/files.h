@@ -77,6 +77,10 @@ struct RigCamera {
 // None where the folder has no rig.yaml. Throws std::runtime_error for a bad one.
 std::vector<RigCamera> ReadRig(const std::filesystem::path& folder);
 
+// `timestamp` and so many numbers, or a file name (numbers = 0), on each line. separator ',': stamps in nanoseconds.
+std::vector<Entry> ReadTable(const std::filesystem::path& file, std::size_t numbers, bool stamped, bool increasing,
+                             char separator, Check& files);
+
 // Reads all that is text. What is malformed is a failure of `files`, lists that disagree in their stamps one of
 // `stamps`, both with file and line. Throws std::runtime_error where there is no sequence at all: no folder, no
 // rgb.txt, no groundtruth.txt, no camera.yaml, or a camera of more pixels than a picture may have.

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "tools/base/text.h"
 #include "tools/judge/verification/comparisons.h"
@@ -13,14 +12,7 @@ using Eigen::Vector3d;
 
 constexpr double kText = 2e-11;  // rounding of the texts' twelve decimals, and of the products here
 
-enum Row { kPoses, kOffsets, kDepth, kDisparity, kHidden };
-
-// A camera's sequence with its pictures.
-struct Part {
-  Sequence sequence;
-  Check files{"files", ""}, stamps{"stamps", ""};  // reported by the camera's own checks
-  std::unique_ptr<Frames> frames;
-};
+enum Row { kPoses, kOffsets, kDepth, kDisparity, kHidden, kBody };
 
 // From C of one camera to C of another.
 Relative BetweenPoses(const vo::Pose& a, const vo::Pose& b) {
@@ -46,12 +38,12 @@ void ComparePoses(const Sequence& body, const RigCamera& camera, const Sequence&
 // What both see of the world that stands still is in one place.
 void CompareDepths(Part& a, Part& b, std::size_t k, const std::string& where, Check& check) {
   if (!a.sequence.has_pose[k] || !b.sequence.has_pose[k]) return;
-  const cv::Mat moving = a.frames->Picture("moving", k);
+  const cv::Mat moving = a.frames.Picture("moving", k);
   if (!a.sequence.objects.empty() && moving.empty()) return;
   const Relative move = BetweenPoses(a.sequence.poses[k], b.sequence.poses[k]);
   std::vector<double> ratios;
   MatchDepths(
-      *a.frames, k, *b.frames, k,
+      a.frames, k, b.frames, k,
       [&](std::size_t i) { return std::span(&move, moving.empty() || moving.data[i] == 0 ? 1 : 0); },
       [&](std::size_t, double ratio) { ratios.push_back(ratio); });
   if (ratios.size() < 100) return;
@@ -61,7 +53,7 @@ void CompareDepths(Part& a, Part& b, std::size_t k, const std::string& where, Ch
 }
 
 void CompareDisparity(Part& a, Part& b, const std::vector<RigCamera>& rig, std::size_t k, std::vector<Check>& checks) {
-  const cv::Mat disparity = a.frames->Picture("disparity", k), depth = a.frames->Depth(k);
+  const cv::Mat disparity = a.frames.Picture("disparity", k), depth = a.frames.Depth(k);
   if (disparity.empty() || depth.empty()) return;
   const Relative move = BetweenPoses(rig[0].T_BC, rig[1].T_BC);
   const double fb = -a.sequence.camera.fx * move.t.x();
@@ -69,31 +61,29 @@ void CompareDisparity(Part& a, Part& b, const std::vector<RigCamera>& rig, std::
   for (std::size_t i = 0; i < depth.total(); ++i) {
     const double Z = static_cast<double>(reinterpret_cast<const float*>(depth.data)[i]),
                  d = static_cast<double>(reinterpret_cast<const float*>(disparity.data)[i]);
-    if (Z > 0) worst.Add(std::abs(d - fb / Z), 1.1 * fb / (Z * Z) * a.frames->DepthError(Z) + 2e-6 + 1e-6 * fb / Z);
+    if (Z > 0) worst.Add(std::abs(d - fb / Z), 1.1 * fb / (Z * Z) * a.frames.DepthError(Z) + 2e-6 + 1e-6 * fb / Z);
   }
-  checks[kDisparity].Add(worst, "disparity " + a.frames->Stamp(k));
+  checks[kDisparity].Add(worst, "disparity " + a.frames.Stamp(k));
   CompareHidden(
-      *a.frames, k, "disparity_occlusion", *b.frames, k, [&](std::size_t) { return std::span(&move, 1); },
+      a.frames, k, "disparity_occlusion", b.frames, k, [&](std::size_t) { return std::span(&move, 1); },
       checks[kHidden]);
 }
 
 }  // namespace
 
-std::vector<Check> CheckRig(const std::filesystem::path& folder, const std::vector<RigCamera>& rig) {
-  std::vector<Check> checks = {{"cameras' poses against the body's", "m, rad"},
-                               {"stamps less the trigger offsets", "s"},
-                               {"depth in the first camera: median", "of bound"},
-                               {"disparity against depth and the base", "px"},
-                               {"disparity_occlusion against depth: share", ""}};
-  Check files("files of the body", "");
-  const Sequence body = ReadBody(folder, files);
-  std::vector<std::unique_ptr<Part>> parts;
-  for (const RigCamera& camera : rig) {
-    Part& part = *parts.emplace_back(std::make_unique<Part>());
-    part.sequence = ReadSequence(folder / camera.name, folder, part.files, part.stamps);
-    part.frames = std::make_unique<Frames>(part.sequence, part.files);
-    ComparePoses(body, camera, part.sequence, checks[kPoses]);
-  }
+Part::Part(const std::filesystem::path& folder, const std::filesystem::path& manifest, double arm_m)
+    : sequence(ReadSequence(folder, manifest, files, stamps)), frames(sequence, files) {
+  sequence.roughness.position = std::hypot(sequence.roughness.position, arm_m * sequence.roughness.orientation);
+}
+
+std::vector<Check> CheckRig(const std::filesystem::path& folder, const std::vector<RigCamera>& rig,
+                            const std::vector<std::unique_ptr<Part>>& parts) {
+  std::vector<Check> checks = {
+      {"cameras' poses against the body's", "m, rad"},   {"stamps less the trigger offsets", "s"},
+      {"depth in the first camera: median", "of bound"}, {"disparity against depth and the base", "px"},
+      {"disparity_occlusion against depth: share", ""},  {"files of the body", ""}};
+  const Sequence body = ReadBody(folder, checks[kBody]);
+  for (std::size_t c = 0; c < parts.size(); ++c) ComparePoses(body, rig[c], parts[c]->sequence, checks[kPoses]);
   for (std::size_t c = 1; c < parts.size(); ++c) {
     Part &first = *parts[0], &other = *parts[c];
     const std::size_t count = first.sequence.stamps.size();
@@ -103,20 +93,18 @@ std::vector<Check> CheckRig(const std::filesystem::path& folder, const std::vect
     }
     const double offset_s = rig[c].trigger_offset_s - rig[0].trigger_offset_s;
     for (std::size_t k = 0; k < count; ++k) {
-      const std::string where = rig[c].name + " " + other.frames->Stamp(k);
+      const std::string where = rig[c].name + " " + other.frames.Stamp(k);
       const double later_s = static_cast<double>(other.sequence.stamps[k] - first.sequence.stamps[k]) * 1e-9;
       checks[kOffsets].Add(std::abs(later_s - offset_s), 2.5e-9, where);
       CompareDepths(other, first, k, where, checks[kDepth]);
       if (c == 1) CompareDisparity(first, other, rig, k, checks);
     }
   }
-  std::vector<Check> all = {files};
-  for (Check& check : checks) all.push_back(std::move(check));
   for (Check& check : CheckMotion(body)) {
     check.Prefix("body");
-    all.push_back(std::move(check));
+    checks.push_back(std::move(check));
   }
-  return all;
+  return checks;
 }
 
 }  // namespace verification

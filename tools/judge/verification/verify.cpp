@@ -1,6 +1,6 @@
 #include "tools/judge/verification/verify.h"
 
-#include <cmath>
+#include <memory>
 
 #include "tools/judge/verification/comparisons.h"
 
@@ -9,13 +9,9 @@ namespace {
 
 using Progress = std::function<void(std::size_t, std::size_t)>;
 
-// arm_m: of the camera from the body, whose roughness the manifest has.
-std::vector<Check> VerifyCamera(const std::filesystem::path& folder, const std::filesystem::path& manifest,
-                                double arm_m, const Progress& progress) {
-  Check files("files: present, readable, of one size", ""), stamps("stamps: increasing, the same in all lists", "");
-  Sequence sequence = ReadSequence(folder, manifest, files, stamps);
-  sequence.roughness.position = std::hypot(sequence.roughness.position, arm_m * sequence.roughness.orientation);
-  Frames frames(sequence, files);
+std::vector<Check> VerifyCamera(Part& part, const Progress& progress) {
+  const Sequence& sequence = part.sequence;
+  Frames& frames = part.frames;
   std::vector<Check> pictures = PhotometricChecks(), surfaces = SurfaceChecks(sequence), labels = LabelChecks(sequence);
   for (std::size_t frame = 0; frame < frames.count(); ++frame) {
     for (const auto& [stream, list] : sequence.images) {
@@ -26,9 +22,9 @@ std::vector<Check> VerifyCamera(const std::filesystem::path& folder, const std::
     CompareLabels(frames, frame, labels);
     if (progress) progress(frame + 1, frames.count());
   }
-  std::vector<Check> checks = {files, stamps};
-  for (const auto& part : {CheckMotion(sequence), pictures, surfaces, labels}) {
-    checks.insert(checks.end(), part.begin(), part.end());
+  std::vector<Check> checks = {part.files, part.stamps};
+  for (const auto& of : {CheckMotion(sequence), pictures, surfaces, labels}) {
+    checks.insert(checks.end(), of.begin(), of.end());
   }
   return checks;
 }
@@ -37,18 +33,20 @@ std::vector<Check> VerifyCamera(const std::filesystem::path& folder, const std::
 
 std::vector<Check> Verify(const std::filesystem::path& folder, const Progress& progress) {
   const std::vector<RigCamera> rig = ReadRig(folder);
-  if (rig.empty()) return VerifyCamera(folder, folder, 0, progress);
+  if (rig.empty()) return VerifyCamera(*std::make_unique<Part>(folder, folder), progress);
   std::vector<Check> all;
+  std::vector<std::unique_ptr<Part>> parts;
   for (std::size_t c = 0; c < rig.size(); ++c) {
-    const auto part = [&](std::size_t done, std::size_t count) {
+    Part& part = *parts.emplace_back(std::make_unique<Part>(folder / rig[c].name, folder, rig[c].T_BC.p_WC.norm()));
+    const auto of_all = [&](std::size_t done, std::size_t count) {
       if (progress) progress(c * count + done, rig.size() * count);
     };
-    for (Check& check : VerifyCamera(folder / rig[c].name, folder, rig[c].T_BC.p_WC.norm(), part)) {
+    for (Check& check : VerifyCamera(part, of_all)) {
       check.Prefix(rig[c].name);
       if (check.count() > 0) all.push_back(std::move(check));
     }
   }
-  for (Check& check : CheckRig(folder, rig)) all.push_back(std::move(check));
+  for (Check& check : CheckRig(folder, rig, parts)) all.push_back(std::move(check));
   return all;
 }
 
