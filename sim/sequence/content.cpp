@@ -195,7 +195,6 @@ std::vector<StreamFile> WholeFiles(const Simulator& simulator, const SequenceCon
     };
     append(rig && content.layout == Layout::tum, Lists(content.layout, camera.scenario(), frames, k));
     append(rig, std::move(own));
-    if (content.layout == Layout::euroc && k == 0) append(false, VioFiles(scenario, frames));
     append(true, SequenceStreams(camera, content.first, last, streams));
   }
   if (imu && (rig || scenario.cameras.empty())) {

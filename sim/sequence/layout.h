@@ -50,10 +50,6 @@ std::vector<StreamFile> Lists(Layout layout, const Scenario& scenario, std::span
 // The truth of the body, in EuRoC's form (of S, in R), or TUM's, which only a rig has; and what else there is once.
 std::vector<StreamFile> BodyLists(Layout layout, const Scenario& scenario, std::span<const StampedTruth> body);
 
-// Configuration files of visual-inertial programs for EuRoC's layout, where there is an IMU: Kalibr, OpenVINS,
-// VINS-Fusion, ORB-SLAM3, Basalt. Their texts, with places to fill: sim/sequence/vio/*.in. first: the first camera's.
-std::vector<StreamFile> VioFiles(const Scenario& scenario, std::span<const StampedTruth> first);
-
 // Twelve decimals: beyond any use, so that rounding is never a question; a negative zero loses its sign.
 std::string FormatDecimal(double number);
 // "stamp tx ty tz qx qy qz qw" and "stamp vx vy vz wx wy wz", with the newline.

@@ -26,7 +26,7 @@ std::set<std::string> SequenceNames(const sim::Scenario& scenario, bool unfinish
   for (const sim::RigCamera& camera : scenario.cameras) names.insert(camera.name);
   names.insert({"camera.yaml", "exposure.txt", sim::kManifestName, sim::kJournalName});
   names.insert({"rgb", "rgb.txt", "depth", "depth.txt", "groundtruth.txt", "velocity.txt", "rig.yaml"});  // TUM RGB-D
-  names.insert({"mav0", "truth", "configs"});                                                             // EuRoC
+  names.insert({"mav0", "truth"});                                                                        // EuRoC
   names.insert({"associations.txt", "traj.gt.freiburg"});                                                 // ICL-NUIM
   names.insert({"preview.mp4", "unfinished-preview.mp4", "contact.jpg"});
   if (!unfinished) return names;
