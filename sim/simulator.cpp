@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "sim/light/cache.h"
-#include "sim/motion/mounted.h"
 #include "sim/motion/placement.h"
 #include "sim/motion/trajectory.h"
 #include "sim/random/random.h"
@@ -151,7 +150,7 @@ struct Simulator::World {
     const auto around = SurroundingsOf(scene, *rays);
     body = MakeMotion(s, s.motion, s.seed, around.get());
     for (const RigCamera& of : AllCameras(s)) {
-      cameras.push_back(s.cameras.empty() ? body : std::make_shared<Mounted>(body, of.T_BC));
+      cameras.push_back(s.cameras.empty() ? body : Mounted(body, of.T_BC));
       RequireFree(*cameras.back(), LastStamp(s), *around, [&](double t_s) { return of.sensor.IsCovered(t_s); });
     }
     renderer = MakeRenderer(scene, s.render, Threads(jobs), rays, warnings);

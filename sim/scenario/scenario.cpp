@@ -97,9 +97,7 @@ void ReadRig(Section root, Scenario& scenario) {
   for (Section& item : root.List("cameras")) {
     RigCamera camera{"cam" + std::to_string(scenario.cameras.size()), {}, scenario.sensor, {}, 0};
     item.Read("name", camera.name);
-    constexpr const char* kGood = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-    if (camera.name.find_first_not_of(kGood) != std::string::npos || camera.name == "imu0" || camera.name == "mav0" ||
-        camera.name == "truth")
+    if (!IsPlainName(camera.name) || camera.name == "imu0" || camera.name == "mav0" || camera.name == "truth")
       item.Reject("name",
                   "'name': a camera's name is a folder's: letters, digits, '_' and '-', not '" + camera.name + "'");
     if (std::ranges::count(scenario.cameras, camera.name, &RigCamera::name) > 0)

@@ -78,8 +78,7 @@ ObjectDescription ReadObject(Section& section, const std::filesystem::path& fold
   object.mesh = ReadMesh(section, folder);
   std::string& name = object.mesh.name = object.mesh.file.stem().string();
   const char* at = section.Read("name", name) ? "name" : "file";
-  constexpr const char* kGood = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-  if (name.find_first_not_of(kGood) != std::string::npos) {
+  if (!IsPlainName(name)) {
     section.Reject(at, "'name': an object's name is a file's too: letters, digits, '_' and '-', not '" + name + "'");
   }
   RejectDoubled(section, at, name, names);
@@ -96,6 +95,11 @@ ObjectDescription ReadObject(Section& section, const std::filesystem::path& fold
 }
 
 }  // namespace
+
+bool IsPlainName(const std::string& name) {
+  return name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+         std::string::npos;
+}
 
 void ReadWorld(Section section, const std::filesystem::path& folder, double duration_s, WorldDescription& world) {
   world.folders.push_back(folder);

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/motion/mounted.h"
 #include "sim/sequence/streams.h"
 #include "tools/base/limits/structured_text.h"
 #include "tools/base/text.h"
@@ -70,10 +69,10 @@ std::vector<StampedTruth> BodyTruth(const Simulator& simulator, const SequenceCo
   }
   const Scenario& scenario = simulator.scenario();
   const EurocBody euroc(scenario);
-  const Mounted body(simulator.body(), content.layout == Layout::euroc ? euroc.T_BS : Pose{});
+  const auto body = Mounted(simulator.body(), content.layout == Layout::euroc ? euroc.T_BS : Pose{});
   std::vector<StampedTruth> frames;
   for (const std::int64_t stamp_ns : stamps) {
-    Truth truth = TruthAt(body, Seconds(stamp_ns));
+    Truth truth = TruthAt(*body, Seconds(stamp_ns));
     if (content.layout == Layout::euroc) {
       const glm::dquat q = euroc.q_RW * truth.q_WC;
       truth = {euroc.q_RW * truth.p_WC, q.w < 0 ? -q : q, euroc.q_RW * truth.v_WC};
@@ -103,17 +102,21 @@ Json Distortion(const CameraParams& c) {
 
 std::string Manifest(const Simulator& simulator, const SequenceContent& content, std::int64_t whole) {
   const Scenario& scenario = simulator.scenario();
-  const auto camera = [](const CameraParams& c) {
-    return Json{{"width", c.width}, {"height", c.height},         {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx},
-                {"cy", c.cy},       {"distortion", Distortion(c)}};
-  };
-  Json manifest = {{"program", content.program},
-                   {"layout", ToString(content.layout)},
-                   {"seed", scenario.seed},
-                   {"frame_range", {content.first, content.last}},
-                   {"frames", whole},
-                   {"camera", camera(scenario.camera)},
-                   {"scenario", scenario.resolved.empty() ? Json() : Json::parse(scenario.resolved)}};
+  const CameraParams& camera = simulator.camera().params();
+  const Json manifest = {{"program", content.program},
+                         {"layout", ToString(content.layout)},
+                         {"seed", scenario.seed},
+                         {"frame_range", {content.first, content.last}},
+                         {"frames", whole},
+                         {"camera",
+                          {{"width", camera.width},
+                           {"height", camera.height},
+                           {"fx", camera.fx},
+                           {"fy", camera.fy},
+                           {"cx", camera.cx},
+                           {"cy", camera.cy},
+                           {"distortion", Distortion(camera)}}},
+                         {"scenario", scenario.resolved.empty() ? Json() : Json::parse(scenario.resolved)}};
   return manifest.dump(2) + "\n";
 }
 

@@ -1,7 +1,8 @@
 // Truth streams of labels: instances, boxes, and their legend.
-#include <algorithm>
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "sim/sequence/layout.h"
@@ -21,30 +22,24 @@ std::vector<std::uint16_t> InstanceIds(const Simulator& simulator, const std::ve
 }
 
 std::string Boxes(const Simulator& simulator, const View& view, const std::vector<std::uint16_t>& ids) {
-  struct Seen {
-    int left = 1 << 30, top = 1 << 30, right = -1, bottom = -1, pixels = 0;
-  };
   const std::vector<Instance>& instances = simulator.labels().instances;
-  std::vector<Seen> seen(instances.size());
-  const int width = simulator.camera().width();
-  for (int i = 0; i < static_cast<int>(ids.size()); ++i) {
-    if (ids[static_cast<std::size_t>(i)] == 0) continue;
-    Seen& of = seen[ids[static_cast<std::size_t>(i)] - 1U];
-    const int x = i % width, y = i / width;
-    of = {std::min(of.left, x), std::min(of.top, y), std::max(of.right, x), y, of.pixels + 1};
-  }
+  const Camera& camera = simulator.camera();
+  const cv::Mat picture(camera.height(), camera.width(), CV_16UC1,
+                        const_cast<std::uint16_t*>(ids.data()));  // only read
   const std::vector<Pose> objects = simulator.surfaces().ObjectPoses(view.t_s);
   std::string text =
       "#instance,class,u_min [px],v_min [px],u_max [px],v_max [px],pixels,x [m],y [m],z [m],qx [],qy [],qz [],qw [],"
       "size_x [m],size_y [m],size_z [m]\n";
   for (std::size_t k = 0; k < instances.size(); ++k) {
-    if (seen[k].pixels == 0) continue;
+    const cv::Mat mask = picture == static_cast<double>(k + 1);
+    const cv::Rect seen = cv::boundingRect(mask);
+    if (seen.empty()) continue;
     const Instance& of = instances[k];
     const Pose T_WO = of.object < 0 ? Pose{} : objects[static_cast<std::size_t>(of.object)];
     const glm::dquat q_CW = glm::conjugate(view.pose.q_WC), q = q_CW * T_WO.q_WC * of.box.q_WC;
     const glm::dvec3 p = q_CW * (T_WO.p_WC + T_WO.q_WC * of.box.p_WC - view.pose.p_WC);
     text += std::to_string(k + 1) + "," + std::to_string(simulator.labels().ClassId(of));
-    for (const int whole : {seen[k].left, seen[k].top, seen[k].right, seen[k].bottom, seen[k].pixels})
+    for (const int whole : {seen.x, seen.y, seen.br().x - 1, seen.br().y - 1, cv::countNonZero(mask)})
       text += "," + std::to_string(whole);
     for (const double number : {p.x, p.y, p.z, q.x, q.y, q.z, q.w, of.size.x, of.size.y, of.size.z})
       text += "," + FormatDecimal(number);

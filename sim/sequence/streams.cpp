@@ -70,10 +70,6 @@ std::vector<float> Disparity(const std::vector<float>& uv) {
   return disparity;
 }
 
-void RequireIds(const std::string& stream, std::size_t count, std::size_t most) {
-  if (count > most) throw std::runtime_error(stream + ": the world has more than " + std::to_string(most));
-}
-
 // Unit, in C, of the triangle's plane, towards the camera; zero where nothing is seen.
 std::vector<float> Normals(const SurfaceTracer& surfaces, const View& view, const std::vector<SurfacePoint>& points) {
   std::vector<float> normals(3 * points.size(), 0.0f);
@@ -184,14 +180,14 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
         file.bytes = EncodeExr(Normals(surfaces, view, points), width, height, 3, true);
         break;
       case TruthStream::surface_id:
-        RequireIds("surface_id", simulator.mesh_names().size(), 65535);
+        if (simulator.mesh_names().size() > 65535) throw std::runtime_error("surface_id: more than 65535 meshes");
         file.bytes = EncodePng(width, height, 1, Each<std::uint16_t>(points, surface_id));
         break;
       case TruthStream::instance:
         file.bytes = EncodePng(width, height, 1, InstanceIds(simulator, points));
         break;
       case TruthStream::semantic:
-        RequireIds("semantic", simulator.labels().classes.size(), 255);
+        if (simulator.labels().classes.size() > 255) throw std::runtime_error("semantic: more than 255 classes");
         file.bytes = EncodePng(width, height, 1, Each<std::uint8_t>(InstanceIds(simulator, points), class_id));
         break;
       case TruthStream::boxes:
@@ -247,8 +243,8 @@ std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t
     }
     files.push_back(TextFile("surfaces.txt", legend));
   }
-  if (streams.contains(TruthStream::instance) || streams.contains(TruthStream::semantic) ||
-      streams.contains(TruthStream::boxes))
+  using enum TruthStream;
+  if (streams.contains(instance) || streams.contains(semantic) || streams.contains(boxes))
     files.push_back(TextFile("labels.json", LabelsJson(simulator.labels())));
   if (streams.contains(TruthStream::acceleration)) {
     append("acceleration.txt", "# timestamp ax ay az alphax alphay alphaz\n",

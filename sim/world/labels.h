@@ -15,10 +15,10 @@ namespace sim {
 // An entry of world.meshes, world.objects, or a lamp that is seen.
 struct Instance {
   std::string name, category;
-  std::string entry;   // in the scenario: "world.meshes.0"
-  int object = -1;     // in Scene::objects; -1: it stands still
-  Pose box;            // middle and axes, those of the entry's file, of its box: in W, or in O
-  glm::dvec3 size{0};  // of the box, along its axes [m]: the smallest one of these axes that holds all triangles
+  std::string entry;  // in the scenario: "world.meshes.0"
+  int object = -1;    // in Scene::objects; -1: it stands still
+  Pose box;           // the smallest along the axes of the entry's file that holds all triangles: its middle, in W or O
+  glm::dvec3 size{0};  // of it, along its axes [m]
 };
 
 struct Labels {

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 
-#include "sim/motion/mounted.h"
+#include "sim/motion/trajectory.h"
 #include "sim/sequence/content.h"
 #include "sim/sequence/writer.h"
 #include "sim/simulator.h"
@@ -79,18 +79,18 @@ TEST(Rig, AMountedFrameMovesAsTheBodySays) {
                           "{type: rpy, start: {position: [0, 0, 0], look_at: [0, 0, -2]}, angles: [0.4, 0.3, 0.5], "
                           "periods: [1 s, 1.3 s, 0.7 s]}"}});
   const Pose T_BC{{0.3, -0.2, 0.5}, glm::normalize(glm::dquat(0.7, 0.1, -0.5, 0.3))};
-  const Mounted mounted(TrajectoryOf(s), T_BC);
+  const std::shared_ptr<const Trajectory> mounted = Mounted(TrajectoryOf(s), T_BC);
   constexpr double kStep = 1e-3, kTime = 0.13;
   const auto slope = [&](const auto& value) {
     return (8.0 * (value(kTime + kStep) - value(kTime - kStep)) -
             (value(kTime + 2 * kStep) - value(kTime - 2 * kStep))) /
            (12 * kStep);
   };
-  const Motion m = mounted.At(kTime);
-  const glm::dvec3 v = slope([&](double t) { return mounted.At(t).pose.p_WC; }),
-                   a = slope([&](double t) { return mounted.At(t).v_WC; }),
-                   alpha = slope([&](double t) { return mounted.At(t).w_WC_C; });
-  const glm::dquat turn = glm::conjugate(m.pose.q_WC) * slope([&](double t) { return mounted.At(t).pose.q_WC; });
+  const Motion m = mounted->At(kTime);
+  const glm::dvec3 v = slope([&](double t) { return mounted->At(t).pose.p_WC; }),
+                   a = slope([&](double t) { return mounted->At(t).v_WC; }),
+                   alpha = slope([&](double t) { return mounted->At(t).w_WC_C; });
+  const glm::dquat turn = glm::conjugate(m.pose.q_WC) * slope([&](double t) { return mounted->At(t).pose.q_WC; });
   EXPECT_LT(glm::length(v - m.v_WC), 1e-8);
   EXPECT_LT(glm::length(a - m.a_WC), 1e-7);
   EXPECT_LT(glm::length(alpha - m.alpha_WC_C), 1e-7);

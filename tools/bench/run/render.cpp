@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <map>
 #include <set>
 
@@ -89,6 +92,20 @@ void Preview(const fs::path& folder, const sim::Simulator& simulator, const sim:
   WritePreview(folder, frames, simulator.scenario().time.rate_hz);
 }
 
+// Depth of 16 bits may end before the world does.
+void WarnOfDepthRange(const sim::Simulator& simulator) {
+  const sim::WorldExtent& world = simulator.extent();
+  double farthest_m = 0;
+  for (std::int64_t k = 0; k < simulator.frame_count(); ++k) {
+    const glm::dvec3 p = simulator.TruthAt(k).p_WC;
+    farthest_m = std::max(farthest_m, glm::length(glm::max(glm::abs(world.low - p), glm::abs(world.high - p))));
+  }
+  if (farthest_m < sim::kDepthRange_m) return;
+  PrintWarnings({fmt::format(
+      "depth of 16 bits ends at {:.1f} m (0 beyond), the world is up to {:.1f} m away; truth depth_exr has no end",
+      sim::kDepthRange_m, farthest_m)});
+}
+
 // What a stopped run leaves, for its last words.
 std::string Kept(std::int64_t whole, const fs::path& partial) {
   if (whole == 0) return "no frame was finished, nothing was kept";
@@ -103,6 +120,9 @@ void Render(const RenderOptions& options) {
   RequireRoom(options, experiment.scenario, folder, partial);
   const sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, options.jobs); });
   PrintWarnings(simulator.warnings());
+  const std::set<sim::TruthStream>& truth = experiment.scenario.truth.streams;
+  if (truth.contains(sim::TruthStream::depth) && !truth.contains(sim::TruthStream::depth_exr))
+    WarnOfDepthRange(simulator);
   const sim::SequenceContent content = Content(options, simulator);
 
   if (options.resume && !fs::exists(partial) && IsWhole(folder, simulator, content)) {

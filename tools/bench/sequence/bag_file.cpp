@@ -2,8 +2,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "tools/bench/sequence/message_file.h"
-#include "tools/bench/sequence/ros_message.h"
+#include "tools/bench/sequence/export_files.h"
 
 namespace vobench {
 namespace {

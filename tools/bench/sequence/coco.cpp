@@ -1,5 +1,3 @@
-#include "tools/bench/sequence/coco.h"
-
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -7,6 +5,7 @@
 
 #include "tools/base/files.h"
 #include "tools/base/limits/structured_text.h"
+#include "tools/bench/sequence/export_files.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "tools/judge/verification/files.h"
 
@@ -35,25 +34,6 @@ std::vector<int> RunLengths(const cv::Mat& mask) {
   return lengths;
 }
 
-Json AnnotationsOf(const cv::Mat& ids, std::size_t image, const Json& instances, std::size_t first) {
-  Json annotations = Json::array();
-  for (const Json& instance : instances) {
-    const cv::Mat mask = ids == instance.at("id").get<int>();
-    const cv::Rect box = cv::boundingRect(mask);
-    if (box.empty()) continue;
-    annotations.push_back({{"id", first + annotations.size()},
-                           {"image_id", image},
-                           {"category_id", instance.at("class_id")},
-                           {"instance", instance.at("id")},
-                           {"name", instance.at("name")},
-                           {"iscrowd", 0},
-                           {"area", cv::countNonZero(mask)},
-                           {"bbox", {box.x, box.y, box.width, box.height}},
-                           {"segmentation", {{"size", {ids.rows, ids.cols}}, {"counts", RunLengths(mask)}}}});
-  }
-  return annotations;
-}
-
 }  // namespace
 
 std::string CocoJson(const fs::path& sequence) {
@@ -76,19 +56,32 @@ std::string CocoJson(const fs::path& sequence) {
     throw std::runtime_error(legend.string() + ": " + problem);
   try {
     const Json labels = Json::parse(text);
-    Json images = Json::array(), annotations = Json::array(), categories = labels.at("classes");
+    Json images = Json::array(), annotations = Json::array();
     for (std::size_t k = 0; k < pictures.size(); ++k) {
       const cv::Mat ids = verification::ReadPicture(truth / instances[k]);
       if (ids.type() != CV_16UC1) throw std::runtime_error((truth / instances[k]).string() + ": is not of 16 bits");
       images.push_back({{"id", k + 1}, {"width", ids.cols}, {"height", ids.rows}, {"file_name", pictures[k]}});
-      const Json of_image = AnnotationsOf(ids, k + 1, labels.at("instances"), annotations.size() + 1);
-      annotations.insert(annotations.end(), of_image.begin(), of_image.end());
+      for (const Json& instance : labels.at("instances")) {
+        const cv::Mat mask = ids == instance.at("id").get<int>();
+        const cv::Rect box = cv::boundingRect(mask);
+        if (box.empty()) continue;
+        annotations.push_back({{"id", annotations.size() + 1},
+                               {"image_id", k + 1},
+                               {"category_id", instance.at("class_id")},
+                               {"instance", instance.at("id")},
+                               {"name", instance.at("name")},
+                               {"iscrowd", 0},
+                               {"area", cv::countNonZero(mask)},
+                               {"bbox", {box.x, box.y, box.width, box.height}},
+                               {"segmentation", {{"size", {ids.rows, ids.cols}}, {"counts", RunLengths(mask)}}}});
+      }
     }
-    const Json coco = {{"info", {{"description", "made by vobench"}}},
-                       {"images", images},
-                       {"annotations", annotations},
-                       {"categories", categories}};
-    return coco.dump() + "\n";
+    return Json({{"info", {{"description", "made by vobench"}}},
+                 {"images", images},
+                 {"annotations", annotations},
+                 {"categories", labels.at("classes")}})
+               .dump() +
+           "\n";
   } catch (const Json::exception& error) {
     throw std::runtime_error(legend.string() + ": " + error.what());
   }

@@ -1,6 +1,5 @@
 // MCAP format 0: a record is its number, the length of its content as 64 bits, and the content.
-#include "tools/bench/sequence/message_file.h"
-#include "tools/bench/sequence/ros_message.h"
+#include "tools/bench/sequence/export_files.h"
 
 namespace vobench {
 namespace {

@@ -114,16 +114,22 @@ void ReadManifest(const fs::path& file, Sequence& s, Check& files) {
   }
 }
 
+vo::Pose ReadPlace(settings::Section& section) {
+  std::array<double, 3> p{0, 0, 0};
+  std::array<double, 4> q{0, 0, 0, 1};
+  section.Read("position", p);
+  section.Read("orientation", q);
+  return {{p[0], p[1], p[2]}, Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized()};
+}
+
 void ReadImu(const fs::path& folder, Sequence& s, Check& files) {
   s.has_imu = true;
   s.imu.readings = ReadTable(folder / "data.csv", 6, true, true, ',', files);
   settings::Document document = settings::Document::FromFile(folder / "sensor.yaml");
   settings::Section root = document.root();
-  std::array<double, 3> p{0, 0, 0}, g{0, -9.81, 0};
-  std::array<double, 4> q{0, 0, 0, 1};
+  std::array<double, 3> g{0, -9.81, 0};
   root.Require("rate", s.imu.rate_hz, settings::Range::Positive());
-  root.Read("position", p);
-  root.Read("orientation", q);
+  s.imu.T_CI = ReadPlace(root);
   root.Read("gravity", g);
   root.ReadChoice("reading", s.imu.mean, {{"mean", true}, {"instant", false}});
   root.Read("gyroscope_noise", s.imu.gyroscope_noise);
@@ -131,7 +137,6 @@ void ReadImu(const fs::path& folder, Sequence& s, Check& files) {
   root.Read("gyroscope_walk", s.imu.gyroscope_walk);
   root.Read("accelerometer_walk", s.imu.accelerometer_walk);
   document.ThrowIfBad();
-  s.imu.T_CI = {{p[0], p[1], p[2]}, Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized()};
   s.imu.gravity_W = {g[0], g[1], g[2]};
 }
 
@@ -283,13 +288,9 @@ std::vector<RigCamera> ReadRig(const fs::path& folder) {
   settings::Document document = settings::Document::FromFile(folder / "rig.yaml");
   for (settings::Section& item : document.root().List("cameras")) {
     RigCamera& camera = cameras.emplace_back();
-    std::array<double, 3> p{0, 0, 0};
-    std::array<double, 4> q{0, 0, 0, 1};
     item.Require("name", camera.name);
-    item.Require("position", p);
-    item.Require("orientation", q);
+    camera.T_BC = ReadPlace(item);
     item.Require("trigger_offset", camera.trigger_offset_s, settings::Unit::time);
-    camera.T_BC = {{p[0], p[1], p[2]}, Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized()};
   }
   document.ThrowIfBad();
   return cameras;

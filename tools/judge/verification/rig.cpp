@@ -14,11 +14,6 @@ constexpr double kText = 2e-11;  // rounding of the texts' twelve decimals, and 
 
 enum Row { kPoses, kOffsets, kDepth, kDisparity, kHidden, kBody };
 
-// From C of one camera to C of another.
-Relative BetweenPoses(const vo::Pose& a, const vo::Pose& b) {
-  return {(b.q_WC.conjugate() * a.q_WC).toRotationMatrix(), b.q_WC.conjugate() * (a.p_WC - b.p_WC)};
-}
-
 void ComparePoses(const Sequence& body, const RigCamera& camera, const Sequence& s, Check& check) {
   for (std::size_t k = 0; k < s.stamps.size(); ++k) {
     const auto at = std::ranges::lower_bound(body.stamps, s.stamps[k]);
@@ -40,7 +35,7 @@ void CompareDepths(Part& a, Part& b, std::size_t k, const std::string& where, Ch
   if (!a.sequence.has_pose[k] || !b.sequence.has_pose[k]) return;
   const cv::Mat moving = a.frames.Picture("moving", k);
   if (!a.sequence.objects.empty() && moving.empty()) return;
-  const Relative move = BetweenPoses(a.sequence.poses[k], b.sequence.poses[k]);
+  const Relative move = Between(a.sequence.poses[k], b.sequence.poses[k]);
   std::vector<double> ratios;
   MatchDepths(
       a.frames, k, b.frames, k,
@@ -55,7 +50,7 @@ void CompareDepths(Part& a, Part& b, std::size_t k, const std::string& where, Ch
 void CompareDisparity(Part& a, Part& b, const std::vector<RigCamera>& rig, std::size_t k, std::vector<Check>& checks) {
   const cv::Mat disparity = a.frames.Picture("disparity", k), depth = a.frames.Depth(k);
   if (disparity.empty() || depth.empty()) return;
-  const Relative move = BetweenPoses(rig[0].T_BC, rig[1].T_BC);
+  const Relative move = Between(rig[0].T_BC, rig[1].T_BC);
   const double fb = -a.sequence.camera.fx * move.t.x();
   Worst worst;
   for (std::size_t i = 0; i < depth.total(); ++i) {

@@ -1,14 +1,16 @@
-// Recordings of ROS messages, written message by message: ROS 1 bags, and MCAP with the messages of ROS 2.
-// Source: ROS bag format 2.0; MCAP format 0 (mcap.dev/spec); sensor_msgs, geometry_msgs of ROS 1 and of ROS 2, whose
-//   messages are CDR (OMG DDS-RTPS 2.2); REP 103 (units, optical frames), 104 (camera_info), 118 (depth).
+// What `vobench export` makes of a sequence: ROS 1 bags, MCAP with the messages of ROS 2, COCO's file of instances.
+// Source: ROS bag format 2.0; MCAP format 0 (mcap.dev/spec); sensor_msgs, geometry_msgs; CDR (OMG DDS-RTPS 2.2); REP 103,
+//   104, 118; COCO data format (cocodataset.org/#format-data).
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/base/files.h"
@@ -17,10 +19,20 @@
 
 namespace vobench {
 
-struct RosType;
-class RosMessage;
+static_assert(std::endian::native == std::endian::little, "numbers are written as the machine has them");
 
-// The file appears with Close. Messages are added in order of time. Throws std::runtime_error naming the file.
+template <class T>
+std::string Bytes(T number) {
+  return {reinterpret_cast<const char*>(&number), sizeof number};
+}
+// With its length before it.
+inline std::string Sized(std::string_view text) { return Bytes(static_cast<std::uint32_t>(text.size())).append(text); }
+
+struct RosType {
+  const char *package, *name, *md5, *definition, *definition2;  // definition2: of ROS 2
+};
+
+// A recording of messages. The file appears with Close. Messages are added in order of time. Throws std::runtime_error naming the file.
 class MessageFile {
  public:
   virtual ~MessageFile() = default;
@@ -60,8 +72,7 @@ class MessageFile {
   std::vector<Channel> channels_;
 
  private:
-  RosMessage Begin(const std::string& frame, std::int64_t stamp_ns) const;
-  void Add(const std::string& topic, const RosType& type, std::int64_t stamp_ns, const RosMessage& message);
+  void Add(const std::string& topic, const RosType& type, std::int64_t stamp_ns, const std::string& message);
 
   bool ros2_;
   Chunk chunk_;
@@ -70,5 +81,10 @@ class MessageFile {
 // Stamps at least 1 ns: a bag has no time 0.
 std::unique_ptr<MessageFile> MakeBag(const std::filesystem::path& file);
 std::unique_ptr<MessageFile> MakeMcap(const std::filesystem::path& file);
+
+// The text of COCO's file of object detection: boxes [x, y, width, height], masks as run lengths down the columns. Each
+// frame is an image, each instance that is seen in it an annotation; ids are those of labels.json. Throws
+// std::runtime_error where the sequence has no instances, or a file is unreadable.
+std::string CocoJson(const std::filesystem::path& sequence);
 
 }  // namespace vobench
