@@ -112,6 +112,18 @@ TEST(Rig, ACameraAtTheBodyIsAsIfAlone) {
   EXPECT_NE(two.Cameras()[1].Render(4).image.data, one.Render(4).image.data) << "its noise is its own";
 }
 
+// What campaigns render: the first camera's files, as a scenario with one has them.
+TEST(Rig, TheFirstCameraAlone) {
+  const SmallWorld world;
+  const Simulator two(Rig(world), 2);
+  std::vector<std::string> alone, rig;
+  for (const StreamFile& file : FrameFiles(two, {Layout::tum, 0, 9, "test", false}, 4)) alone.push_back(file.path);
+  for (const StreamFile& file : FrameFiles(two, {Layout::tum, 0, 9, "test"}, 4)) rig.push_back(file.path);
+  EXPECT_THAT(alone, testing::ElementsAre("rgb/0.133333333.png", "depth/0.133333333.png"));
+  EXPECT_THAT(rig, testing::ElementsAre("left/rgb/0.133333333.png", "left/depth/0.133333333.png",
+                                        "right/rgb/0.133333333.png", "right/depth/0.133333333.png"));
+}
+
 TEST(Rig, FilesDependNeitherOnThreadsNorOnTheRange) {
   const SmallWorld world;
   const Settings truth = {{"truth", "[depth, flow, disparity, imu, instance]"}, {"imu.rate", "1 kHz"}};
