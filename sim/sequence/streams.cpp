@@ -91,12 +91,14 @@ std::string Numbers(const char* format, const glm::dvec3& v) {
   return text;
 }
 
-std::string ImuYaml(const ImuParams& imu) {
+std::string ImuYaml(const Scenario& scenario) {
+  const ImuParams& imu = scenario.truth.imu;
   const auto number = settings::FormatNumber;
   const glm::dvec3& g = imu.gravity_W;
-  return "# X_C = R(orientation) X_I + position; orientation x y z w. Gravity in W [m/s^2].\nrate: " +
-         number(imu.rate_hz) + "\n" + PlaceYaml(imu.T_CI, "\n") + "\ngravity: [" + number(g.x) + ", " + number(g.y) +
-         ", " + number(g.z) + "]\nreading: " + (imu.reading == ImuReading::mean ? "mean" : "instant") +
+  return "# X_" + std::string(1, scenario.cameras.empty() ? 'C' : 'B') +
+         " = R(orientation) X_I + position; orientation x y z w. Gravity in W [m/s^2].\nrate: " + number(imu.rate_hz) +
+         "\n" + PlaceYaml(imu.T_CI, "\n") + "\ngravity: [" + number(g.x) + ", " + number(g.y) + ", " + number(g.z) +
+         "]\nreading: " + (imu.reading == ImuReading::mean ? "mean" : "instant") +
          "\n# Continuous-time densities: rad/s/sqrt(Hz), m/s^2/sqrt(Hz), rad/s^2/sqrt(Hz), m/s^3/sqrt(Hz)\n" +
          "gyroscope_noise: " + number(imu.gyroscope_noise) +
          "\naccelerometer_noise: " + number(imu.accelerometer_noise) +
@@ -273,7 +275,8 @@ std::vector<StreamFile> ImuStreams(const Simulator& simulator, std::int64_t firs
     data += stamp + Numbers(kFormat, sample.w_I) + Numbers(kFormat, sample.f_I) + "\n";
     bias += stamp + Numbers(kFormat, sample.gyroscope_bias) + Numbers(kFormat, sample.accelerometer_bias) + "\n";
   }
-  return {TextFile("imu0/data.csv", data), TextFile("imu0/bias.csv", bias), TextFile(kImuYaml, ImuYaml(imu))};
+  return {TextFile("imu0/data.csv", data), TextFile("imu0/bias.csv", bias),
+          TextFile(kImuYaml, ImuYaml(simulator.scenario()))};
 }
 
 std::set<std::string> StreamNames() {

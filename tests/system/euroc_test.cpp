@@ -185,6 +185,7 @@ TEST_F(EurocTest, ExtrinsicsAndWorld) {
     const std::vector<double> lens = Numbers(ReadFile(here_ / "euroc/mav0" / camera / "sensor.yaml"), "intrinsics");
     EXPECT_EQ(lens, (std::vector<double>{26.25, 26.5, 15.5, 11.5}));
   }
+  EXPECT_THAT(RunVobench({"check", "rig.yaml"}, here_.path()).out, testing::HasSubstr("camera cam1: 32 x 24"));
   // Without an IMU the body is the rig's, in the scenario's world.
   const Outcome outcome =
       RunVobench({"render", "rig.yaml", "-o", "plain", "--format", "euroc", "--truth", "depth"}, here_.path());

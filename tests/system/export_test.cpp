@@ -96,6 +96,7 @@ TEST_F(ExportTest, NothingIsLeftOfAFailure) {
   ASSERT_EQ(Run({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:3"}).status, 0);
   WriteFile(here_ / "seq" / "depth.txt", "0.0 depth/gone.png\n");
   const auto spoiled = Tree(here_.path());
+  EXPECT_EQ(Run({"export", "seq", "--mcap", "x.mcap"}).status, 2);
   const Outcome outcome = Run({"export", "seq", "--bag", "x.bag"});
   EXPECT_EQ(outcome.status, 2) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("gone.png"));

@@ -31,8 +31,7 @@ class BagFile : public MessageFile {
   struct Written {
     std::uint64_t position;
     std::int64_t first_ns, last_ns;
-    std::string counts;  // by connection
-    Number connections;
+    std::string counts;  // by connection, of eight bytes each
   };
 
   // Always 13 + 4096 bytes: it is written once more at the end.
@@ -57,7 +56,7 @@ class BagFile : public MessageFile {
   }
 
   void Write(const Chunk& chunk) override {
-    Written& written = chunks_.emplace_back(Written{position_, chunk.first_ns, chunk.last_ns, "", 0});
+    Written& written = chunks_.emplace_back(Written{position_, chunk.first_ns, chunk.last_ns, ""});
     Append(Record(5, {{"compression", "none"}, {"size", Bytes(static_cast<Number>(chunk.records.size()))}},
                   chunk.records));
     for (const auto& [channel, messages] : chunk.index) {
@@ -66,7 +65,6 @@ class BagFile : public MessageFile {
       for (const auto& [stamp_ns, offset] : messages) places += Time(stamp_ns) + Bytes(static_cast<Number>(offset));
       Append(Record(4, {{"ver", Bytes(Number{1})}, {"conn", Bytes(channel)}, {"count", count}}, places));
       written.counts += Bytes(channel) + count;
-      ++written.connections;
     }
   }
 
@@ -79,7 +77,7 @@ class BagFile : public MessageFile {
                      {"chunk_pos", Bytes(chunk.position)},
                      {"start_time", Time(chunk.first_ns)},
                      {"end_time", Time(chunk.last_ns)},
-                     {"count", Bytes(chunk.connections)}},
+                     {"count", Bytes(static_cast<Number>(chunk.counts.size() / 8))}},
                     chunk.counts));
     }
     file_.Overwrite(Beginning(index));

@@ -23,9 +23,8 @@ std::vector<Check> VerifyCamera(Part& part, const Progress& progress) {
     if (progress) progress(frame + 1, frames.count());
   }
   std::vector<Check> checks = {part.files, part.stamps};
-  for (const auto& of : {CheckMotion(sequence), pictures, surfaces, labels}) {
+  for (const auto& of : {CheckMotion(sequence), pictures, surfaces, labels})
     checks.insert(checks.end(), of.begin(), of.end());
-  }
   return checks;
 }
 
