@@ -54,6 +54,7 @@ TEST(Rig, ItsFile) {
   EXPECT_EQ(s.cameras[1].sensor.time_samples, 4) << "the common one's";
   EXPECT_EQ(s.cameras[0].sensor.exposure_s, 0.010);
   EXPECT_EQ(s.camera.fx, 52) << "the first one's";
+  EXPECT_EQ(LoadScenario(world.folder.Write("again.yaml", s.resolved)).resolved, s.resolved);
   const auto rejected = [&](const std::string& second, const Settings& settings = {}) {
     return Problem([&] { Rig(world, second, settings); });
   };

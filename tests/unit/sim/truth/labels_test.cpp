@@ -31,6 +31,8 @@ Scenario Labelled(const SmallWorld& world) {
 TEST(Labels, NamesClassesAndBoxesOfEntries) {
   const SmallWorld world;
   const Simulator simulator(Labelled(world), 1);
+  const std::string& resolved = simulator.scenario().resolved;
+  EXPECT_EQ(LoadScenario(world.folder.Write("again.yaml", resolved)).resolved, resolved);
   const Labels& labels = simulator.labels();
   ASSERT_EQ(labels.instances.size(), 4u);
   const auto texts = [](const Instance& i) { return i.name + " " + i.category + " " + i.entry; };
