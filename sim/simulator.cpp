@@ -20,6 +20,7 @@
 #include "sim/sensor/processing.h"
 #include "sim/sensor/sensor.h"
 #include "sim/sensor/vignetting.h"
+#include "sim/world/labels.h"
 #include "sim/world/scene.h"
 
 namespace sim {
@@ -76,7 +77,18 @@ std::unique_ptr<Renderer> MakeRenderer(const Scene& scene, const RenderParams& p
       {.rays_per_time_sample = params.rays_per_time_sample, .jobs = jobs, .reflections = params.reflections});
 }
 
-double LastStamp(const Scenario& s) { return Seconds(StampNs(CountFrames(s.time) - 1, s.time)); }
+// Of all cameras; and what an exposure reaches beyond a stamp.
+double LastStamp(const Scenario& s) {
+  double offset_s = 0;
+  for (const RigCamera& camera : s.cameras) offset_s = std::max(offset_s, camera.trigger_offset_s);
+  return Seconds(StampNs(CountFrames(s.time) - 1, s.time)) + offset_s;
+}
+double Reach(const Scenario& s) {
+  double reach_s = 0;
+  for (const auto& [name, camera, sensor, T_BC, offset_s] : AllCameras(s))
+    reach_s = std::max(reach_s, 0.5 * (LongestExposure(sensor) + std::abs(sensor.readout_s)));
+  return reach_s;
+}
 
 WorldExtent ExtentOf(const Scene& scene) {
   WorldExtent extent;
@@ -95,8 +107,7 @@ WorldExtent ExtentOf(const Scene& scene) {
 // Long enough for all frames.
 std::unique_ptr<Trajectory> MakeMotion(const Scenario& s, const MotionDescription& motion, std::uint64_t seed,
                                        const Surroundings* around = nullptr) {
-  return MakeTrajectory(motion, seed, LastStamp(s), 0.5 * (LongestExposure(s.sensor) + std::abs(s.sensor.readout_s)),
-                        around);
+  return MakeTrajectory(motion, seed, LastStamp(s), Reach(s), around);
 }
 
 std::unique_ptr<Trajectory> MakeObjectMotion(const Scenario& s, std::size_t object) {
@@ -104,7 +115,7 @@ std::unique_ptr<Trajectory> MakeObjectMotion(const Scenario& s, std::size_t obje
   try {
     return MakeMotion(s, description.motion, ObjectSeed(s.seed, object));
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("object " + description.name + ": " + error.what());
+    throw std::invalid_argument("object " + description.mesh.name + ": " + error.what());
   }
 }
 
@@ -124,13 +135,9 @@ std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& s) {
   return MakeMotion(s, s.motion, s.seed, SurroundingsOf(scene, RayScene(scene)).get());
 }
 
-struct Simulator::Parts {
-  Parts(const Scenario& s, int jobs)
-      : scenario(WithImages(s)),
-        frames(CountFrames(s.time)),
-        optics(s.camera, s.sensor.optics),
-        sensor(s.sensor, s.seed, s.camera.width, s.camera.height),
-        arena(Threads(jobs)) {
+// What the cameras of a rig have in common: made once.
+struct Simulator::World {
+  World(const Scenario& s, int jobs) : arena(Threads(jobs)) {
     Scene scene = LoadScene(s.world);
     for (std::size_t k = 0; k < scene.objects.size(); ++k) {
       scene.objects[k].motion = MakeObjectMotion(s, k);
@@ -141,10 +148,14 @@ struct Simulator::Parts {
     extent = ExtentOf(scene);
     auto rays = arena.execute([&] { return std::make_unique<RayScene>(scene); });
     const auto around = SurroundingsOf(scene, *rays);
-    trajectory = MakeMotion(s, s.motion, s.seed, around.get());
-    RequireFree(*trajectory, LastStamp(s), *around, [&s](double t_s) { return s.sensor.IsCovered(t_s); });
+    body = MakeMotion(s, s.motion, s.seed, around.get());
+    for (const RigCamera& of : AllCameras(s)) {
+      cameras.push_back(s.cameras.empty() ? body : Mounted(body, of.T_BC));
+      RequireFree(*cameras.back(), LastStamp(s), *around, [&](double t_s) { return of.sensor.IsCovered(t_s); });
+    }
     renderer = MakeRenderer(scene, s.render, Threads(jobs), rays, warnings);
     if (rays) exact = MakeRayTracer(scene, std::move(rays), {.jobs = Threads(jobs)});
+    labels = LabelsOf(scene, s.world);
     for (const Mesh& mesh : scene.meshes) mesh_names.push_back(mesh.name);
     for (const Light& light : scene.lights) {
       const auto* rect = std::get_if<RectLight>(&light);
@@ -153,8 +164,46 @@ struct Simulator::Parts {
     for (const MovingObject& object : scene.objects) {
       for (const Mesh& mesh : object.meshes) mesh_names.push_back(object.name + "/" + mesh.name);
     }
-    if (s.sensor.auto_exposure.on) Meter();
   }
+
+  mutable tbb::task_arena arena;
+  std::shared_ptr<const Trajectory> body;
+  std::vector<std::shared_ptr<const Trajectory>> cameras;
+  std::vector<std::string> warnings;
+  WorldExtent extent;
+  std::unique_ptr<Renderer> renderer;
+  std::unique_ptr<Renderer> exact;  // where the renderer cannot be asked what a pixel sees
+  std::vector<std::string> mesh_names, object_names;
+  Labels labels;
+  std::vector<std::shared_ptr<const Trajectory>> object_motions;
+};
+
+// One camera.
+struct Simulator::Parts {
+  // The first camera has the scenario's seed, each other noise of its own.
+  static Scenario Of(Scenario s, std::size_t k) {
+    const RigCamera camera = AllCameras(s)[k];
+    s.camera = camera.camera;
+    s.sensor = camera.sensor;
+    if (k > 0) s.seed = SeedOf(RandomWords(s.seed, Stream::rig_camera, static_cast<std::uint32_t>(k), 0, 0));
+    return s;
+  }
+
+  Parts(const Scenario& s, std::shared_ptr<const World> in, std::size_t k)
+      : scenario(Of(s, k)),
+        index(k),
+        frames(CountFrames(s.time)),
+        offset_ns(std::llround(1e9 * AllCameras(s)[k].trigger_offset_s)),
+        optics(scenario.camera, scenario.sensor.optics),
+        sensor(scenario.sensor, scenario.seed, scenario.camera.width, scenario.camera.height),
+        world(std::move(in)),
+        trajectory(world->cameras[k]) {
+    if (scenario.sensor.auto_exposure.on) Meter();
+    for (std::size_t other = 1; k == 0 && other < s.cameras.size(); ++other)
+      others.push_back(Simulator(std::make_shared<const Parts>(s, world, other)));
+  }
+
+  std::int64_t StampNs(std::int64_t frame) const { return sim::StampNs(frame, scenario.time) + offset_ns; }
 
   // The settings of all frames, each metered on the frame before it at 1/8 of the resolution, one ray per pixel.
   void Meter() {
@@ -168,66 +217,73 @@ struct Simulator::Parts {
     }
   }
 
-  ExposureSetting Setting(std::int64_t index) const {
+  ExposureSetting Setting(std::int64_t frame) const {
     const SensorParams& s = scenario.sensor;
-    return settings.empty() ? ExposureSetting{s.exposure_s, s.gain} : settings[static_cast<std::size_t>(index)];
+    return settings.empty() ? ExposureSetting{s.exposure_s, s.gain} : settings[static_cast<std::size_t>(frame)];
   }
 
   // Of one time sample, through a pinhole.
-  Exposure MakeExposure(const Optics& to, std::int64_t index) const {
-    return {.middle_s = Seconds(sim::StampNs(index, scenario.time)),
-            .exposure_s = Setting(index).exposure_s,
+  Exposure MakeExposure(const Optics& to, std::int64_t frame) const {
+    return {.middle_s = Seconds(StampNs(frame)),
+            .exposure_s = Setting(frame).exposure_s,
             .row_delay_s = scenario.sensor.RowDelay(to.camera.height())};
   }
 
   // The light that an exposure collects on the sensor.
-  void Expose(const Optics& to, const Exposure& exposure, std::int64_t index, RadianceImage& radiance) const {
+  void Expose(const Optics& to, const Exposure& exposure, std::int64_t frame, RadianceImage& radiance) const {
     if (scenario.sensor.IsCovered(exposure.middle_s)) {
       const int width = to.camera.width(), height = to.camera.height();
       const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
       radiance = {width, height, std::vector<float>(3 * pixels, 0.0F)};
       return;
     }
-    renderer->Expose(to.camera, *trajectory, exposure, FrameKey(index), radiance);
+    world->renderer->Expose(to.camera, *trajectory, exposure, FrameKey(frame), radiance);
     to.vignetting.Apply(radiance);
   }
 
-  std::uint64_t FrameKey(std::int64_t index) const {
-    return SeedOf(RandomWords(scenario.seed, Stream::ray_jitter, static_cast<std::uint32_t>(index), 0, 0));
+  std::uint64_t FrameKey(std::int64_t frame) const {
+    return SeedOf(RandomWords(scenario.seed, Stream::ray_jitter, static_cast<std::uint32_t>(frame), 0, 0));
   }
 
   Scenario scenario;
+  std::size_t index;  // in the rig
   std::int64_t frames;
+  std::int64_t offset_ns;  // of its stamps
   Optics optics;
   Sensor sensor;
-  std::unique_ptr<Trajectory> trajectory;
-  std::vector<std::string> warnings;
-  WorldExtent extent;
-  std::unique_ptr<Renderer> renderer;
+  std::shared_ptr<const World> world;
+  std::shared_ptr<const Trajectory> trajectory;
   std::vector<ExposureSetting> settings;  // by frame; empty: always the scenario's
-  std::unique_ptr<Renderer> exact;        // where the renderer cannot be asked what a pixel sees
-  std::vector<std::string> mesh_names, object_names;
-  std::vector<std::shared_ptr<const Trajectory>> object_motions;
-  mutable tbb::task_arena arena;
+  std::vector<Simulator> others;          // of the first camera of a rig
 };
 
-Simulator::Simulator(const Scenario& scenario, int jobs) : parts_(std::make_unique<const Parts>(scenario, jobs)) {}
+Simulator::Simulator(const Scenario& scenario, int jobs)
+    : parts_(std::make_shared<const Parts>(scenario, std::make_shared<const World>(WithImages(scenario), jobs), 0)) {}
+Simulator::Simulator(std::shared_ptr<const Parts> parts) : parts_(std::move(parts)) {}
 Simulator::~Simulator() = default;
-Simulator::Simulator(Simulator&&) noexcept = default;
-Simulator& Simulator::operator=(Simulator&&) noexcept = default;
+Simulator::Simulator(const Simulator&) = default;
+Simulator& Simulator::operator=(const Simulator&) = default;
 
 std::int64_t Simulator::frame_count() const { return parts_->frames; }
 const Camera& Simulator::camera() const { return parts_->optics.camera; }
 const Scenario& Simulator::scenario() const { return parts_->scenario; }
-const std::vector<std::string>& Simulator::warnings() const { return parts_->warnings; }
-const Trajectory& Simulator::trajectory() const { return *parts_->trajectory; }
-const SurfaceTracer& Simulator::surfaces() const {
-  return *(parts_->exact ? parts_->exact : parts_->renderer)->surfaces();
+std::vector<Simulator> Simulator::Cameras() const {
+  std::vector<Simulator> cameras{*this};
+  cameras.insert(cameras.end(), parts_->others.begin(), parts_->others.end());
+  return cameras;
 }
-const WorldExtent& Simulator::extent() const { return parts_->extent; }
-const std::vector<std::string>& Simulator::mesh_names() const { return parts_->mesh_names; }
+std::size_t Simulator::camera_index() const { return parts_->index; }
+const std::vector<std::string>& Simulator::warnings() const { return parts_->world->warnings; }
+const Trajectory& Simulator::trajectory() const { return *parts_->trajectory; }
+std::shared_ptr<const Trajectory> Simulator::body() const { return parts_->world->body; }
+const SurfaceTracer& Simulator::surfaces() const {
+  return *(parts_->world->exact ? parts_->world->exact : parts_->world->renderer)->surfaces();
+}
+const WorldExtent& Simulator::extent() const { return parts_->world->extent; }
+const std::vector<std::string>& Simulator::mesh_names() const { return parts_->world->mesh_names; }
+const Labels& Simulator::labels() const { return parts_->world->labels; }
 
-std::int64_t Simulator::StampNs(std::int64_t index) const { return sim::StampNs(index, parts_->scenario.time); }
+std::int64_t Simulator::StampNs(std::int64_t index) const { return parts_->StampNs(index); }
 
 Truth Simulator::TruthAt(std::int64_t index) const {
   return sim::TruthAt(*parts_->trajectory, Seconds(StampNs(index)));
@@ -238,10 +294,10 @@ View Simulator::ViewAt(std::int64_t index) const {
   return {parts_->trajectory->At(t_s).pose, t_s};
 }
 
-const std::vector<std::string>& Simulator::object_names() const { return parts_->object_names; }
+const std::vector<std::string>& Simulator::object_names() const { return parts_->world->object_names; }
 
 Truth Simulator::ObjectTruthAt(std::size_t object, std::int64_t index) const {
-  return sim::TruthAt(*parts_->object_motions.at(object), Seconds(StampNs(index)));
+  return sim::TruthAt(*parts_->world->object_motions.at(object), Seconds(StampNs(index)));
 }
 
 ExposureSetting Simulator::SettingOf(std::int64_t index) const {
@@ -265,7 +321,7 @@ Frame Simulator::Render(std::int64_t index) const {
   parts.Expose(parts.optics, exposure, index, radiance);
   if (const double sigma = sensor.optics.psf_sigma_px; sigma > 0)
     radiance.rgb = GaussianBlur(radiance.rgb, radiance.width, radiance.height, 3, sigma);
-  parts.arena.execute([&] { frame.image = parts.sensor.Capture(radiance, index, frame.setting); });
+  parts.world->arena.execute([&] { frame.image = parts.sensor.Capture(radiance, index, frame.setting); });
   return frame;
 }
 

@@ -18,6 +18,7 @@
 
 namespace sim {
 
+struct Labels;
 class SurfaceTracer;
 class Trajectory;
 
@@ -47,12 +48,16 @@ class Simulator {
   // through a surface (sim/motion/placement.h), and for jobs < 1.
   Simulator(const Scenario& scenario, int jobs);
   ~Simulator();
-  Simulator(Simulator&&) noexcept;
-  Simulator& operator=(Simulator&&) noexcept;
+  Simulator(const Simulator&);  // the world is shared
+  Simulator& operator=(const Simulator&);
 
   std::int64_t frame_count() const;
   const Camera& camera() const;
   const Scenario& scenario() const;
+  // Of a rig, of which this is the first camera, a simulator for each: with its frames, stamps, truth and seed. Their
+  // world is loaded and baked once.
+  std::vector<Simulator> Cameras() const;
+  std::size_t camera_index() const;
   // Contents of the world that are readable but probably unintended.
   const std::vector<std::string>& warnings() const;
 
@@ -69,10 +74,12 @@ class Simulator {
 
   // Camera trajectory, and the surface points that pixels see. Both live as long as the simulator.
   const Trajectory& trajectory() const;
+  std::shared_ptr<const Trajectory> body() const;  // of a rig; else the camera's
   const SurfaceTracer& surfaces() const;
   const WorldExtent& extent() const;
   // Of the world's meshes, as SurfaceTracer::MeshOf counts them; of an object's "OBJECT/MESH".
   const std::vector<std::string>& mesh_names() const;
+  const Labels& labels() const;
   // Moving objects, and their state at a frame's stamp: O in the place of C.
   const std::vector<std::string>& object_names() const;
   Truth ObjectTruthAt(std::size_t object, std::int64_t index) const;
@@ -81,8 +88,11 @@ class Simulator {
   std::optional<Frame> Next();
 
  private:
+  struct World;
   struct Parts;
-  std::unique_ptr<const Parts> parts_;
+  explicit Simulator(std::shared_ptr<const Parts> parts);
+
+  std::shared_ptr<const Parts> parts_;
   std::int64_t next_ = 0;
 };
 

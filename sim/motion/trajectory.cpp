@@ -39,6 +39,28 @@ bool NeedsSurroundings(const MotionDescription& motion) {
          (recorded != nullptr && recorded->placing == RecordedMotion::Placing::automatic);
 }
 
+std::shared_ptr<const Trajectory> Mounted(std::shared_ptr<const Trajectory> body, const Pose& T_BC) {
+  struct OnBody : Trajectory {
+    std::shared_ptr<const Trajectory> body;
+    Pose T_BC;
+    Motion At(double t_s) const override {
+      const Motion b = body->At(t_s);
+      const glm::dvec3 &r = T_BC.p_WC, &w = b.w_WC_C;
+      const glm::dquat &q_WB = b.pose.q_WC, q_CB = glm::conjugate(T_BC.q_WC);
+      const glm::dvec3 a_B = glm::cross(b.alpha_WC_C, r) + glm::cross(w, glm::cross(w, r));
+      return {{b.pose.p_WC + q_WB * r, q_WB * T_BC.q_WC},
+              b.v_WC + q_WB * glm::cross(w, r),
+              q_CB * w,
+              b.a_WC + q_WB * a_B,
+              q_CB * b.alpha_WC_C};
+    }
+  };
+  auto mounted = std::make_shared<OnBody>();
+  mounted->body = std::move(body);
+  mounted->T_BC = T_BC;
+  return mounted;
+}
+
 Truth TruthAt(const Trajectory& trajectory, double t_s) {
   const Motion motion = trajectory.At(t_s);
   const glm::dquat q = motion.pose.q_WC.w < 0 ? -motion.pose.q_WC : motion.pose.q_WC;

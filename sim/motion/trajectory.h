@@ -40,6 +40,9 @@ std::unique_ptr<Trajectory> MakeTrajectory(const MotionDescription& motion, std:
 // Whether it asks.
 bool NeedsSurroundings(const MotionDescription& motion);
 
+// Of a frame C that is fixed to a moving body, such as a camera of a rig: X_B = R(q) X_C + p.
+std::shared_ptr<const Trajectory> Mounted(std::shared_ptr<const Trajectory> body, const Pose& T_BC);
+
 // At the stamp; conventions as in docs/conventions.md.
 struct Truth {
   glm::dvec3 p_WC{0.0};                 // [m]

@@ -38,7 +38,8 @@ enum class Stream : std::uint32_t {
   imu_walk = 41,
   landmark_place = 42,  // through which pixels the tracked surface points are seen first
   object_motion = 43,   // the seed of each moving object's own motion
-  scenario = 44         // values that the scenario gives as distributions
+  scenario = 44,        // values that the scenario gives as distributions
+  rig_camera = 45       // the seed of each further camera of a rig
 };
 
 using Words = std::array<std::uint32_t, 4>;

@@ -13,6 +13,9 @@ namespace sim {
 // A file named in a scenario, which lies in `folder`. Whether it is there is said when it is opened.
 std::filesystem::path ReadFile(settings::Section& section, const std::string& key, const std::filesystem::path& folder);
 
+// Whether it is of letters, digits, '_' and '-', as a name that a file or folder gets.
+bool IsPlainName(const std::string& name);
+
 // A motion of any kind, the camera's or an object's.
 MotionDescription ReadMotion(settings::Section& section, const std::filesystem::path& folder);
 

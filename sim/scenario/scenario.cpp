@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <stdexcept>
 
 #include "sim/light/cache.h"
@@ -86,6 +88,35 @@ void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
   section.Reject(check.problems);
 }
 
+void ReadCamera(Section section, CameraParams& camera) {
+  if (ReadFields(section, camera)) section.Reject(Problems(camera));
+}
+
+// What all cameras have in common is read before.
+void ReadRig(Section root, Scenario& scenario) {
+  for (Section& item : root.List("cameras")) {
+    RigCamera camera{"cam" + std::to_string(scenario.cameras.size()), {}, scenario.sensor, {}, 0};
+    item.Read("name", camera.name);
+    if (!IsPlainName(camera.name) || camera.name == "imu0" || camera.name == "mav0" || camera.name == "truth")
+      item.Reject("name",
+                  "'name': a camera's name is a folder's: letters, digits, '_' and '-', not '" + camera.name + "'");
+    if (std::ranges::count(scenario.cameras, camera.name, &RigCamera::name) > 0)
+      item.Reject("name", "'name': another camera is called '" + camera.name + "' already");
+    ReadCamera(item, camera.camera);
+    ReadFields(item, camera);
+    item.Allow("sensor");
+    if (item.Has("sensor")) ReadSensor(item.Child("sensor"), scenario.time.rate_hz, camera.sensor);
+    settings::FieldCheck check;
+    check.Require(camera.trigger_offset_s * scenario.time.rate_hz < 1, "trigger_offset", camera.trigger_offset_s,
+                  "s is not shorter than the time between two frames");
+    item.Reject(check.problems);
+    scenario.cameras.push_back(camera);
+  }
+  if (scenario.cameras.empty()) return root.Reject("cameras", "'cameras': there is none");
+  scenario.camera = scenario.cameras[0].camera;
+  scenario.sensor = scenario.cameras[0].sensor;
+}
+
 void Refuse(Section& section, const std::string& path, const std::string& key) {
   if (!section.Has(key)) return;
   section.Allow(key);
@@ -96,7 +127,7 @@ void Refuse(Section& section, const std::string& path, const std::string& key) {
 // `world.points`. What belongs to rendering is refused beside it.
 PointDescription ReadPoints(Section& root, Section& world, const CameraParams& camera) {
   for (const char* key : {"meshes", "objects", "lights", "background"}) Refuse(world, "world.", key);
-  for (const char* key : {"sensor", "render", "truth", "landmarks", "imu"}) Refuse(root, "", key);
+  for (const char* key : {"cameras", "sensor", "render", "truth", "landmarks", "imu"}) Refuse(root, "", key);
   Section section = world.Child("points");
   PointDescription points;
   const bool good = ReadFields(section, points);
@@ -136,6 +167,28 @@ std::vector<settings::FieldProblem> Problems(PointDescription p, const CameraPar
   return check.problems;
 }
 
+std::string RectifiedProblem(const std::vector<RigCamera>& cameras) {
+  if (cameras.size() < 2) return "it takes two cameras";
+  const RigCamera &a = cameras[0], &b = cameras[1];
+  const CameraParams &p = a.camera, &q = b.camera;
+  const auto straight = [](const CameraParams& c) {
+    return c.lens == Lens::radial_tangential && c.k1 == 0 && c.k2 == 0 && c.p1 == 0 && c.p2 == 0 && c.k3 == 0;
+  };
+  if (!straight(p) || !straight(q)) return "the lens is distorted";
+  if (p.width != q.width || p.height != q.height || p.fx != q.fx || p.fy != q.fy || p.cx != q.cx || p.cy != q.cy)
+    return "the two cameras are not equal";
+  if (a.trigger_offset_s != b.trigger_offset_s) return "the two cameras have different trigger offsets";
+  const glm::dquat q_CB = glm::conjugate(a.T_BC.q_WC), turn = q_CB * b.T_BC.q_WC;
+  const glm::dvec3 base = q_CB * (b.T_BC.p_WC - a.T_BC.p_WC);
+  if (glm::length(glm::dvec3(turn.x, turn.y, turn.z)) > 1e-12) return "the second camera is turned against the first";
+  const bool beside = base.x > 0 && std::hypot(base.y, base.z) <= 1e-9 * base.x;
+  return beside ? "" : "the second camera is not straight to the right of the first";
+}
+
+std::vector<RigCamera> AllCameras(const Scenario& s) {
+  return s.cameras.empty() ? std::vector{RigCamera{"", s.camera, s.sensor, {}, 0}} : s.cameras;
+}
+
 Scenario LoadScenario(const std::filesystem::path& path,
                       const std::vector<std::pair<std::string, std::string>>& overrides) {
   settings::Document document = settings::Document::FromFile(path);
@@ -154,8 +207,10 @@ Scenario LoadScenario(const std::filesystem::path& path,
   scenario.name = path.stem().string();
   root.Read("name", scenario.name);
   root.Read("seed", scenario.seed);
-  Section camera = root.Child("camera");
-  if (ReadFields(camera, scenario.camera)) camera.Reject(Problems(scenario.camera));
+  root.Allow("cameras");
+  const bool rig = root.Has("cameras");
+  if (rig && root.Has("camera")) root.Reject("cameras", "'cameras': there is 'camera' already");
+  if (!rig) ReadCamera(root.Child("camera"), scenario.camera);
   ReadMotionAndTime(root, folder, scenario);
   Section world = root.Child("world");
   world.Allow("points");
@@ -164,8 +219,12 @@ Scenario LoadScenario(const std::filesystem::path& path,
   } else {
     ReadWorld(world, folder, scenario.time.duration_s, scenario.world);
     ReadSensor(root.Child("sensor"), scenario.time.rate_hz, scenario.sensor);
+    if (rig) ReadRig(root, scenario);
     ReadRender(root.Child("render"), folder, scenario.render);
     ReadFields(root, scenario.truth);
+    const std::string problem = RectifiedProblem(scenario.cameras);
+    if (scenario.truth.streams.contains(TruthStream::disparity) && !problem.empty())
+      root.Reject("truth", "'truth': there is no disparity: " + problem);
   }
   root.Ignore("odometry");
   root.Ignore("prior");

@@ -145,6 +145,10 @@ enum class TruthStream {
   occlusion,      // what of each flow cannot be seen in the other frame
   surface_id,
   moving,  // which pixels see an object that moves
+  instance,
+  semantic,
+  boxes,      // of each instance that is seen, in the picture and in space
+  disparity,  // of the first two cameras of a rig, and what is hidden from the second
   landmarks,
   acceleration,
   imu
@@ -170,6 +174,10 @@ void Visit(V& v, TruthParams& p) {
      {"occlusion", S::occlusion},
      {"surface_id", S::surface_id},
      {"moving", S::moving},
+     {"instance", S::instance},
+     {"semantic", S::semantic},
+     {"boxes", S::boxes},
+     {"disparity", S::disparity},
      {"landmarks", S::landmarks},
      {"acceleration", S::acceleration},
      {"imu", S::imu}},
@@ -180,13 +188,34 @@ void Visit(V& v, TruthParams& p) {
   v.Child("imu", p.imu);
 }
 
+// A camera of a rig. T_BC maps points from C to the rig's body B; frame k is at k / rate + trigger_offset.
+struct RigCamera {
+  std::string name;  // of its folder
+  CameraParams camera;
+  SensorParams sensor;
+  Pose T_BC;
+  double trigger_offset_s = 0;
+};
+// But for name, camera and sensor.
+template <class V>
+void Visit(V& v, RigCamera& p) {
+  v("position", p.T_BC.p_WC, {Unit::length, Range{-1e6, 1e6}, "of C in the body B, whose path is the trajectory"});
+  v("orientation", p.T_BC.q_WC, {"of C in B: x, y, z, w"});
+  v("trigger_offset", p.trigger_offset_s, {Unit::time, Range{0, 100}, "of its stamps; less than 1 / rate"});
+}
+
+// The first two cameras are a rectified pair: equal pinholes side by side, along x, at the same times. What they are
+// not, or nothing.
+std::string RectifiedProblem(const std::vector<RigCamera>& cameras);
+
 struct Scenario {
   std::string name;
   std::uint64_t seed = 1;
   WorldDescription world;                  // to be rendered: empty where there are points
   std::optional<PointDescription> points;  // landmarks without images
-  CameraParams camera;
-  SensorParams sensor;
+  CameraParams camera;                     // the first one of a rig
+  SensorParams sensor;                     // the same
+  std::vector<RigCamera> cameras;          // of a rig; empty: one camera, which is the body
   RenderParams render;
   TimeParams time;
   MotionDescription motion;
@@ -194,6 +223,9 @@ struct Scenario {
   std::vector<std::pair<std::string, std::string>> drawn;  // keys that the file gives as distributions, and the values
   std::string resolved;  // all settings of the above with defaults filled in, as JSON; LoadScenario reads it again
 };
+
+// The cameras of a rig, or the one.
+std::vector<RigCamera> AllCameras(const Scenario& scenario);
 
 // Overrides are (dotted key, YAML value), later ones win; "seed" is a key like any other. File names in a scenario are
 // relative to the scenario's folder and are resolved here. The sections `odometry` and `prior` belong to other readers

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <glm/geometric.hpp>
 #include <string>
 #include <type_traits>
@@ -58,26 +59,30 @@ MeshDescription ReadMesh(Section& section, const std::filesystem::path& folder) 
   MeshDescription mesh;
   mesh.file = ReadFile(section, "file", folder);
   ReadFields(section, mesh);
+  mesh.category = mesh.file.stem().string();
+  section.Allow("class");
+  if (section.Has("class")) section.Read("class", mesh.category);  // resolved only where given
   return mesh;
 }
 
-// duration_s: of the scenario; an object's script must not end before.
+// The name is another's, too.
+void RejectDoubled(Section& section, const char* at, const std::string& name, const std::vector<std::string>& others) {
+  if (!name.empty() && std::ranges::count(others, name) > 0)
+    section.Reject(at, "'name': another entry is called '" + name + "' already");
+}
+
+// duration_s: of the scenario; an object's script must not end before. `names`: of what was read before.
 ObjectDescription ReadObject(Section& section, const std::filesystem::path& folder, double duration_s,
-                             const std::vector<ObjectDescription>& others) {
+                             std::vector<std::string>& names) {
   ObjectDescription object;
   object.mesh = ReadMesh(section, folder);
-  object.name = object.mesh.file.stem().string();
-  const bool named = section.Read("name", object.name);
-  const char* at = named ? "name" : "file";
-  constexpr const char* kGood = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-  if (object.name.find_first_not_of(kGood) != std::string::npos) {
-    section.Reject(at,
-                   "'name': an object's name is a file's too: letters, digits, '_' and '-', not '" + object.name + "'");
+  std::string& name = object.mesh.name = object.mesh.file.stem().string();
+  const char* at = section.Read("name", name) ? "name" : "file";
+  if (!IsPlainName(name)) {
+    section.Reject(at, "'name': an object's name is a file's too: letters, digits, '_' and '-', not '" + name + "'");
   }
-  for (const ObjectDescription& other : others) {
-    if (other.name != object.name || object.name.empty()) continue;
-    section.Reject(at, "'name': another object is called '" + object.name + "' already");
-  }
+  RejectDoubled(section, at, name, names);
+  names.push_back(name);
   Section trajectory = section.Child("trajectory");
   object.motion = ReadMotion(trajectory, folder);
   const auto* script = std::get_if<ScriptedMotion>(&object.motion);
@@ -91,18 +96,40 @@ ObjectDescription ReadObject(Section& section, const std::filesystem::path& fold
 
 }  // namespace
 
+bool IsPlainName(const std::string& name) {
+  return name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+         std::string::npos;
+}
+
 void ReadWorld(Section section, const std::filesystem::path& folder, double duration_s, WorldDescription& world) {
   world.folders.push_back(folder);
   std::vector<std::string> texture_folders;
   if (section.Read("texture_folders", texture_folders))
     for (const std::string& each : texture_folders) world.folders.push_back(folder / each);
-  for (Section& mesh : section.List("meshes")) world.meshes.push_back(ReadMesh(mesh, folder));
+  std::vector<std::string> names;
+  for (Section& mesh : section.List("meshes")) {
+    MeshDescription& read = world.meshes.emplace_back(ReadMesh(mesh, folder));
+    mesh.Allow("name");
+    if (!mesh.Has("name")) continue;
+    mesh.Read("name", read.name);  // resolved only where given
+    RejectDoubled(mesh, "name", read.name, names);
+    names.push_back(read.name);
+  }
   if (world.meshes.empty()) section.Reject("meshes", "'world.meshes': the world is empty");
   section.Allow("objects");
   if (section.Has("objects")) {  // resolved only where given
     for (Section& object : section.List("objects")) {
-      world.objects.push_back(ReadObject(object, folder, duration_s, world.objects));
+      world.objects.push_back(ReadObject(object, folder, duration_s, names));
     }
+  }
+  // A mesh without a name has its file's, with a number where another has that already.
+  for (MeshDescription& mesh : world.meshes) {
+    const std::string stem = mesh.file.stem().string();
+    for (int number = 1; mesh.name.empty(); ++number) {
+      const std::string name = number == 1 ? stem : stem + "_" + std::to_string(number);
+      if (std::ranges::count(names, name) == 0) mesh.name = name;
+    }
+    names.push_back(mesh.name);
   }
   for (Section& light : section.List("lights")) {
     Light (*read)(Section&) = ReadLight<AmbientLight>;  // null: a sky

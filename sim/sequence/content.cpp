@@ -1,9 +1,11 @@
 #include "sim/sequence/content.h"
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "sim/sequence/streams.h"
 #include "tools/base/limits/structured_text.h"
@@ -19,13 +21,24 @@ std::set<TruthStream> StreamsOf(const SequenceContent& content, const Simulator&
   return streams;
 }
 
-// To where the layout has a stream's files: those that EuRoC and ICL-NUIM have no place for are in truth/.
-void Place(Layout layout, std::vector<StreamFile>&& streams, std::vector<StreamFile>& files) {
-  for (StreamFile& file : streams) {
+bool IsRig(const Simulator& simulator, const SequenceContent& content) {
+  return content.rig && !simulator.scenario().cameras.empty();
+}
+std::vector<Simulator> CamerasOf(const Simulator& simulator, const SequenceContent& content) {
+  return content.rig ? simulator.Cameras() : std::vector{simulator};
+}
+
+// To where a camera's files are: what EuRoC and ICL-NUIM have no place for is in truth/; of a rig, each camera has a
+// folder.
+void Place(const Simulator& camera, const SequenceContent& content, std::vector<StreamFile>&& from,
+           std::vector<StreamFile>& files) {
+  for (StreamFile& file : from) {
     const bool imu = file.path.starts_with("imu0/");
-    if (layout == Layout::euroc && file.path == kImuYaml) continue;  // has its own, of the layout
-    if (layout == Layout::euroc && imu) file.path = "mav0/" + file.path;
-    if (layout == Layout::icl || (layout == Layout::euroc && !imu)) file.path = "truth/" + file.path;
+    if (content.layout == Layout::euroc && file.path == kImuYaml) continue;  // has its own, of the layout
+    if (IsRig(camera, content) && !imu)
+      file.path = camera.scenario().cameras[camera.camera_index()].name + "/" + file.path;
+    if (content.layout == Layout::euroc && imu) file.path = "mav0/" + file.path;
+    if (content.layout == Layout::icl || (content.layout == Layout::euroc && !imu)) file.path = "truth/" + file.path;
     files.push_back(std::move(file));
   }
 }
@@ -36,7 +49,7 @@ void AddBiases(const Simulator& simulator, std::vector<StampedTruth>& frames) {
   const ImuParams& imu = simulator.scenario().truth.imu;
   const auto period_ns = static_cast<std::int64_t>(1e9 / imu.rate_hz) + 1;
   const std::vector<ImuSample> readings =
-      ImuReadings(simulator.trajectory(), imu, simulator.scenario().seed,
+      ImuReadings(*simulator.body(), imu, simulator.scenario().seed,
                   std::max<std::int64_t>(0, frames.front().stamp_ns - period_ns), frames.back().stamp_ns);
   std::size_t next = 0;
   for (StampedTruth& frame : frames) {
@@ -45,6 +58,30 @@ void AddBiases(const Simulator& simulator, std::vector<StampedTruth>& frames) {
     frame.gyroscope_bias = readings[next - 1].gyroscope_bias;
     frame.accelerometer_bias = readings[next - 1].accelerometer_bias;
   }
+}
+
+// Of the body, or of EuRoC's, at the stamps of all cameras.
+std::vector<StampedTruth> BodyTruth(const Simulator& simulator, const SequenceContent& content, std::int64_t whole) {
+  std::set<std::int64_t> stamps;
+  for (const Simulator& camera : CamerasOf(simulator, content)) {
+    for (std::int64_t index = content.first; index < content.first + whole; ++index)
+      stamps.insert(camera.StampNs(index));
+  }
+  const Scenario& scenario = simulator.scenario();
+  const EurocBody euroc(scenario);
+  const auto body = Mounted(simulator.body(), content.layout == Layout::euroc ? euroc.T_BS : Pose{});
+  std::vector<StampedTruth> frames;
+  for (const std::int64_t stamp_ns : stamps) {
+    Truth truth = TruthAt(*body, Seconds(stamp_ns));
+    if (content.layout == Layout::euroc) {
+      const glm::dquat q = euroc.q_RW * truth.q_WC;
+      truth = {euroc.q_RW * truth.p_WC, q.w < 0 ? -q : q, euroc.q_RW * truth.v_WC};
+    }
+    frames.push_back({0, stamp_ns, truth});
+  }
+  if (content.layout == Layout::euroc && scenario.truth.streams.contains(TruthStream::imu))
+    AddBiases(simulator, frames);
+  return frames;
 }
 
 using Json = nlohmann::ordered_json;
@@ -113,35 +150,61 @@ void Validate(const SequenceContent& content, const Simulator& simulator) {
   if (!problems.empty()) throw std::invalid_argument(base::Join(problems, "\n"));
 }
 
+std::string ImagePath(const Simulator& camera, const SequenceContent& content, std::int64_t index) {
+  const std::size_t k = camera.camera_index();
+  const std::string image = NamesOf(content.layout, index, camera.StampNs(index), k).image;
+  return IsRig(camera, content) && content.layout == Layout::tum ? camera.scenario().cameras[k].name + "/" + image
+                                                                 : image;
+}
+
 std::vector<StreamFile> FrameFiles(const Simulator& simulator, const SequenceContent& content, std::int64_t index) {
-  const Frame frame = simulator.Render(index);
-  const FrameNames names = NamesOf(content.layout, index, frame.stamp_ns);
   std::vector<StreamFile> files;
-  files.push_back({names.image, EncodePng(frame.image)});
-  if (content.layout != Layout::tum) {
-    files.push_back({names.depth, EncodeDepthPng(simulator.Depth(index), frame.image.width, frame.image.height)});
+  for (const Simulator& camera : CamerasOf(simulator, content)) {
+    const Frame frame = camera.Render(index);
+    files.push_back({ImagePath(camera, content, index), EncodePng(frame.image)});
+    if (content.layout != Layout::tum) {
+      files.push_back({NamesOf(content.layout, index, frame.stamp_ns, camera.camera_index()).depth,
+                       EncodeDepthPng(camera.Depth(index), frame.image.width, frame.image.height)});
+    }
+    const std::set<TruthStream> streams = StreamsOf(content, camera);
+    if (!streams.empty()) Place(camera, content, FrameStreams(camera, index, streams), files);
   }
-  const std::set<TruthStream> streams = StreamsOf(content, simulator);
-  if (!streams.empty()) Place(content.layout, FrameStreams(simulator, index, streams), files);
   return files;
 }
 
 std::vector<StreamFile> WholeFiles(const Simulator& simulator, const SequenceContent& content, std::int64_t whole) {
-  std::vector<StampedTruth> frames;
-  for (std::int64_t index = content.first; index < content.first + whole; ++index) {
-    frames.push_back({index, simulator.StampNs(index), simulator.TruthAt(index)});
+  std::set<TruthStream> streams = StreamsOf(content, simulator);
+  const bool imu = streams.erase(TruthStream::imu) > 0, rig = IsRig(simulator, content);  // it is the body's
+  const Scenario& scenario = simulator.scenario();
+  const std::int64_t last = content.first + whole;
+  const std::vector<StampedTruth> body = BodyTruth(simulator, content, whole);
+  std::vector<StreamFile> files;
+  if (content.rig || content.layout != Layout::tum) files = BodyLists(content.layout, scenario, body);
+  for (const Simulator& camera : CamerasOf(simulator, content)) {
+    const std::size_t k = camera.camera_index();
+    std::vector<StampedTruth> frames;
+    for (std::int64_t index = content.first; index < last; ++index)
+      frames.push_back({index, camera.StampNs(index), camera.TruthAt(index)});
+    std::vector<StreamFile> own = {
+        TextFile("camera.yaml", CameraYaml(camera.camera().params(), camera.scenario().sensor.readout_s))};
+    if (camera.scenario().sensor.auto_exposure.on) {
+      std::string lines = "# timestamp exposure gain\n";
+      for (const StampedTruth& frame : frames) lines += ExposureLine(frame.stamp_ns, camera.SettingOf(frame.index));
+      own.push_back(TextFile("exposure.txt", lines));
+    }
+    const auto append = [&](bool place, std::vector<StreamFile>&& from) {
+      if (place) return Place(camera, content, std::move(from), files);
+      std::ranges::move(from, std::back_inserter(files));
+    };
+    append(rig && content.layout == Layout::tum, Lists(content.layout, camera.scenario(), frames, k));
+    append(rig, std::move(own));
+    append(true, SequenceStreams(camera, content.first, last, streams));
   }
-  const std::set<TruthStream> streams = StreamsOf(content, simulator);
-  if (content.layout == Layout::euroc && streams.contains(TruthStream::imu)) AddBiases(simulator, frames);
-  std::vector<StreamFile> files = Lists(content.layout, simulator.scenario(), frames);
-  Place(content.layout, SequenceStreams(simulator, content.first, content.first + whole, streams), files);
-  if (simulator.scenario().sensor.auto_exposure.on) {
-    std::string lines = "# timestamp exposure gain\n";
-    for (const StampedTruth& frame : frames) lines += ExposureLine(frame.stamp_ns, simulator.SettingOf(frame.index));
-    files.push_back(TextFile("exposure.txt", lines));
+  if (imu && (rig || scenario.cameras.empty())) {
+    const std::int64_t first_ns = whole > 0 ? body.front().stamp_ns : 0,
+                       last_ns = whole > 0 ? body.back().stamp_ns : -1;
+    Place(simulator, content, ImuStreams(simulator, first_ns, last_ns), files);
   }
-  files.push_back(
-      TextFile("camera.yaml", CameraYaml(simulator.camera().params(), simulator.scenario().sensor.readout_s)));
   files.push_back(TextFile(kManifestName, Manifest(simulator, content, whole)));
   return files;
 }

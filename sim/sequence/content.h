@@ -14,10 +14,14 @@ struct SequenceContent {
   Layout layout = Layout::tum;
   std::int64_t first = 0, last = 0;  // frames [first, last)
   std::string program;               // name and version, for the record
+  bool rig = true;                   // all cameras of a rig; false: the first, as if it were the only one
 };
 
 // Throws std::invalid_argument for frames that the simulator does not have, and for what the layout has no place for.
 void Validate(const SequenceContent& content, const Simulator& simulator);
+
+// The picture of a frame, relative to the sequence's folder.
+std::string ImagePath(const Simulator& camera, const SequenceContent& content, std::int64_t index);
 
 // Everything that is a frame's own, rendered and encoded: a pure function of its index, whatever else is written.
 std::vector<StreamFile> FrameFiles(const Simulator& simulator, const SequenceContent& content, std::int64_t index);

@@ -60,8 +60,8 @@ Buffer Compress(std::span<const std::uint8_t> content) {
 
 // `row_bytes(y, out)` gives row y as PNG has it: most significant byte first.
 template <class RowBytes>
-Bytes Encode(int width, int height, int channels, int bytes_per_sample, std::size_t samples,
-             const RowBytes& row_bytes) {
+Bytes Encode(int width, int height, int channels, int bytes_per_sample, std::size_t samples, const RowBytes& row_bytes,
+             const std::string& comment = "") {
   if (width < 1 || height < 1 || (channels != 1 && channels != 3) ||
       static_cast<double>(samples) != static_cast<double>(width) * height * channels) {
     throw std::invalid_argument("PNG: " + std::to_string(width) + " x " + std::to_string(height) + " pixels of " +
@@ -92,6 +92,8 @@ Bytes Encode(int width, int height, int channels, int bytes_per_sample, std::siz
   Bytes file{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
   file.reserve(compressed.size + 64);
   AppendChunk(file, "IHDR", header);
+  const std::string text = std::string("Comment") + '\0' + comment;
+  if (!comment.empty()) AppendChunk(file, "tEXt", {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   AppendChunk(file, "IDAT", compressed.bytes());
   AppendChunk(file, "IEND", {});
   return file;
@@ -131,10 +133,12 @@ Bytes EncodePng(int width, int height, int channels, std::span<const std::uint8_
   });
 }
 
-Bytes EncodePng(int width, int height, int channels, std::span<const std::uint16_t> samples) {
-  return Encode(width, height, channels, 2, samples.size(), [&](std::size_t y, Bytes& row) {
+Bytes EncodePng(int width, int height, int channels, std::span<const std::uint16_t> samples,
+                const std::string& comment) {
+  const auto row_bytes = [&](std::size_t y, Bytes& row) {
     MostSignificantFirst(samples.data() + y * (row.size() / 2), row.size() / 2, row.data());
-  });
+  };
+  return Encode(width, height, channels, 2, samples.size(), row_bytes, comment);
 }
 
 Bytes EncodePng(const Image& image) {
@@ -155,7 +159,11 @@ Bytes EncodeDepthPng(std::span<const float> depth_m, int width, int height) {
     const int rounded = below + static_cast<int>(kept - static_cast<float>(below) >= 0.5f);
     fifths_of_millimetres[i] = static_cast<std::uint16_t>(rounded);
   }
-  return EncodePng(width, height, 1, fifths_of_millimetres);
+  const auto beyond = std::ranges::count_if(depth_m, [](float Z) { return 5000.0f * Z >= 65535.5f; });
+  return EncodePng(
+      width, height, 1, fifths_of_millimetres,
+      beyond == 0 ? ""
+                  : "value / 5000 m; 0: nothing, or one of " + std::to_string(beyond) + " pixels beyond 13.1071 m");
 }
 
 Bytes EncodeExr(std::span<const float> pixels, int width, int height, int channels, bool packed) {

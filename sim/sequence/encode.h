@@ -28,9 +28,12 @@ inline StreamFile TextFile(std::string path, std::string_view text) {
 // libdeflate at level 1 (docs/performance.md); the bytes depend on the pixels and libdeflate's version alone. Throws
 // std::invalid_argument when width, height and channels are not those of `samples`, or the file would exceed 2 GB.
 std::vector<std::uint8_t> EncodePng(int width, int height, int channels, std::span<const std::uint8_t> samples);
-std::vector<std::uint8_t> EncodePng(int width, int height, int channels, std::span<const std::uint16_t> samples);
+std::vector<std::uint8_t> EncodePng(int width, int height, int channels, std::span<const std::uint16_t> samples,
+                                    const std::string& comment = "");
 std::vector<std::uint8_t> EncodePng(const Image& image);
-// Depth: 16 bits, round(5000 Z), 0 for what is 0 or does not fit.
+// Depth: 16 bits, round(5000 Z), 0 for what is 0 or does not fit, beyond kDepthRange_m. A picture with such pixels says
+// how many, in a comment (tEXt).
+constexpr double kDepthRange_m = 65535.5 / 5000;
 std::vector<std::uint8_t> EncodeDepthPng(std::span<const float> depth_m, int width, int height);
 
 // Rows of PNG as vector code (AVX2 where available); integers, so with equal results.

@@ -1,5 +1,9 @@
 #include "sim/sequence/layout.h"
 
+#include <glm/geometric.hpp>
+#include <glm/gtx/quaternion.hpp>
+#include <utility>
+
 #include "tools/base/settings/quantity.h"
 #include "tools/base/text.h"
 
@@ -24,20 +28,39 @@ std::string Distortion(const CameraParams& c) {
 // ---- TUM RGB-D; the lists of depth and other truth are with their streams (sim/sequence/streams.h). rgb.txt has a
 // header of three lines, as TUM's: ORB-SLAM's mono_tum skips three lines without reading them.
 
-std::vector<StreamFile> TumLists(Frames frames) {
-  std::string rgb = "# color images\n# made by vobench\n# timestamp filename\n",
-              truth = "# timestamp tx ty tz qx qy qz qw\n", velocity = "# timestamp vx vy vz wx wy wz\n";
+// Truth and velocity; of a camera, or of a rig's body.
+std::vector<StreamFile> TumTruth(Frames frames) {
+  std::string truth = "# timestamp tx ty tz qx qy qz qw\n", velocity = "# timestamp vx vy vz wx wy wz\n";
   for (const StampedTruth& frame : frames) {
-    const std::string stamp = base::FormatSeconds(frame.stamp_ns);
-    const FrameNames names = NamesOf(Layout::tum, frame.index, frame.stamp_ns);
-    rgb.append(stamp).append(" ").append(names.image).append("\n");
     truth += TruthLine(frame.stamp_ns, frame.truth);
     velocity += VelocityLine(frame.stamp_ns, frame.truth);
   }
-  return {TextFile("rgb.txt", rgb), TextFile("groundtruth.txt", truth), TextFile("velocity.txt", velocity)};
+  return {TextFile("groundtruth.txt", truth), TextFile("velocity.txt", velocity)};
 }
 
-// ---- EuRoC: the body B is the camera, so T_BS is one, and the truth is of the camera.
+std::vector<StreamFile> TumLists(Frames frames) {
+  std::string rgb = "# color images\n# made by vobench\n# timestamp filename\n";
+  for (const StampedTruth& frame : frames) {
+    rgb.append(base::FormatSeconds(frame.stamp_ns)).append(" ");
+    rgb.append(NamesOf(Layout::tum, frame.index, frame.stamp_ns).image).append("\n");
+  }
+  std::vector<StreamFile> files = {TextFile("rgb.txt", rgb)};
+  for (StreamFile& file : TumTruth(frames)) files.push_back(std::move(file));
+  return files;
+}
+
+std::string RigYaml(const Scenario& scenario) {
+  std::string text =
+      "# X_B = R(orientation) X_C + position; orientation x y z w. Frame k is at k / rate + "
+      "trigger_offset.\ncameras:\n";
+  for (const RigCamera& camera : scenario.cameras) {
+    text += "  - {name: " + camera.name + ", " + PlaceYaml(camera.T_BC, ", ") +
+            ", trigger_offset: " + settings::FormatNumber(camera.trigger_offset_s) + " s}\n";
+  }
+  return text;
+}
+
+// ---- EuRoC
 
 std::string EurocPlace(const Pose& T_BS) {
   const glm::dmat3 R = glm::mat3_cast(T_BS.q_WC);
@@ -58,18 +81,19 @@ std::string EurocLens(const CameraParams& c) {
          ", " + number(fisheye ? c.k4 : c.p2) + "]\n";
 }
 
-std::string EurocCamera(const std::string& comment, const Scenario& scenario) {
+std::string EurocCamera(const std::string& comment, const Scenario& scenario, std::size_t camera) {
   const auto number = settings::FormatNumber;
   const CameraParams& c = scenario.camera;
-  return "sensor_type: camera\ncomment: " + comment + "\n" + EurocPlace({}) +
-         "rate_hz: " + number(scenario.time.rate_hz) + "\nresolution: [" + std::to_string(c.width) + ", " +
-         std::to_string(c.height) + "]\ncamera_model: pinhole\nintrinsics: [" + number(c.fx) + ", " + number(c.fy) +
-         ", " + number(c.cx) + ", " + number(c.cy) + "]  # fu, fv, cu, cv\n" + EurocLens(c);
+  return "sensor_type: camera\ncomment: " + comment + "\n" +
+         EurocPlace(EurocBody(scenario).OfCamera(scenario, camera)) + "rate_hz: " + number(scenario.time.rate_hz) +
+         "\nresolution: [" + std::to_string(c.width) + ", " + std::to_string(c.height) +
+         "]\ncamera_model: pinhole\nintrinsics: [" + number(c.fx) + ", " + number(c.fy) + ", " + number(c.cx) + ", " +
+         number(c.cy) + "]  # fu, fv, cu, cv\n" + EurocLens(c);
 }
 
 std::string EurocImu(const ImuParams& imu) {
   const auto number = settings::FormatNumber;
-  return "sensor_type: imu\ncomment: simulated\n" + EurocPlace(imu.T_CI) + "rate_hz: " + number(imu.rate_hz) +
+  return "sensor_type: imu\ncomment: simulated\n" + EurocPlace({}) + "rate_hz: " + number(imu.rate_hz) +
          "\ngyroscope_noise_density: " + number(imu.gyroscope_noise) +
          "  # rad/s/sqrt(Hz)\ngyroscope_random_walk: " + number(imu.gyroscope_walk) +
          "  # rad/s^2/sqrt(Hz)\naccelerometer_noise_density: " + number(imu.accelerometer_noise) +
@@ -84,32 +108,37 @@ std::string EurocTruthLine(const StampedTruth& frame) {
                w.y, w.z, a.x, a.y, a.z});
 }
 
-std::vector<StreamFile> EurocLists(const Scenario& scenario, Frames frames) {
+std::vector<StreamFile> EurocLists(const Scenario& scenario, Frames frames, std::size_t camera) {
   std::string images = "#timestamp [ns],filename\n";
+  for (const StampedTruth& frame : frames) {
+    const std::string stamp = std::to_string(frame.stamp_ns);
+    images.append(stamp).append(",").append(stamp).append(".png\n");
+  }
+  const std::string k = std::to_string(camera);
+  return {
+      TextFile("mav0/cam" + k + "/data.csv", images),
+      TextFile("mav0/cam" + k + "/sensor.yaml", EurocCamera("simulated camera", scenario, camera)),
+      TextFile("mav0/depth" + k + "/data.csv", images),
+      TextFile("mav0/depth" + k + "/sensor.yaml",
+               EurocCamera("depth of cam" + k + "'s pixels along its optical axis, 16 bits, metres x 5000, 0 = none",
+                           scenario, camera))};
+}
+
+std::vector<StreamFile> EurocBodyLists(const Scenario& scenario, Frames body) {
+  const bool imu = scenario.truth.streams.contains(TruthStream::imu);
   std::string truth =
       "#timestamp,p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z [],v_RS_R_x [m s^-1],"
       "v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],b_w_RS_S_x [rad s^-1],b_w_RS_S_y [rad s^-1],b_w_RS_S_z [rad s^-1],"
       "b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],b_a_RS_S_z [m s^-2]\n";
-  for (const StampedTruth& frame : frames) {
-    const std::string stamp = std::to_string(frame.stamp_ns);
-    images.append(stamp).append(",").append(stamp).append(".png\n");
-    truth += EurocTruthLine(frame);
-  }
+  for (const StampedTruth& frame : body) truth += EurocTruthLine(frame);
+  const std::string frame = imu ? "the IMU" : scenario.cameras.empty() ? "that of cam0" : "that of the rig";
   std::vector<StreamFile> files = {
-      TextFile("mav0/body.yaml", "comment: The body frame is that of cam0.\n"),
-      TextFile("mav0/cam0/data.csv", images),
-      TextFile("mav0/cam0/sensor.yaml", EurocCamera("simulated camera", scenario)),
-      TextFile("mav0/depth0/data.csv", images),
-      TextFile(
-          "mav0/depth0/sensor.yaml",
-          EurocCamera("depth of cam0's pixels along its optical axis, 16 bits, metres x 5000, 0 = none", scenario)),
+      TextFile("mav0/body.yaml", "comment: The body frame is " + frame + ".\n"),
       TextFile("mav0/state_groundtruth_estimate0/data.csv", truth),
       TextFile("mav0/state_groundtruth_estimate0/sensor.yaml",
-               std::string("sensor_type: visual-inertial\ncomment: exact; its world has gravity along -y\n") +
-                   EurocPlace({}))};
-  if (scenario.truth.streams.contains(TruthStream::imu)) {
-    files.push_back(TextFile("mav0/imu0/sensor.yaml", EurocImu(scenario.truth.imu)));
-  }
+               std::string("sensor_type: visual-inertial\ncomment: exact; its world has gravity along -") +
+                   (imu ? "z" : "y") + "\n" + EurocPlace({}))};
+  if (imu) files.push_back(TextFile("mav0/imu0/sensor.yaml", EurocImu(scenario.truth.imu)));
   return files;
 }
 
@@ -142,6 +171,13 @@ std::string FormatDecimal(double number) {
   return text == "-0.000000000000" ? text.substr(1) : text;
 }
 
+std::string PlaceYaml(const Pose& T, const std::string& between) {
+  const auto number = settings::FormatNumber;
+  const auto& [p, q] = T;
+  return "position: [" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) + "]" + between + "orientation: [" +
+         number(q.x) + ", " + number(q.y) + ", " + number(q.z) + ", " + number(q.w) + "]";
+}
+
 std::string TruthLine(std::int64_t stamp_ns, const Truth& t) {
   return Line(base::FormatSeconds(stamp_ns), ' ',
               {t.p_WC.x, t.p_WC.y, t.p_WC.z, t.q_WC.x, t.q_WC.y, t.q_WC.z, t.q_WC.w});
@@ -172,9 +208,11 @@ std::string ToString(Layout layout) {
 }
 
 std::vector<std::string> Problems(Layout layout, const Scenario& scenario) {
-  if (layout == Layout::euroc && scenario.camera.lens == Lens::radial_tangential && scenario.camera.k3 != 0) {
-    return {"the euroc layout has no place for the camera's k3 = " + settings::FormatNumber(scenario.camera.k3)};
+  for (const RigCamera& of : AllCameras(scenario)) {
+    if (layout == Layout::euroc && of.camera.lens == Lens::radial_tangential && of.camera.k3 != 0)
+      return {"the euroc layout has no place for the camera's k3 = " + settings::FormatNumber(of.camera.k3)};
   }
+  if (layout == Layout::icl && scenario.cameras.size() > 1) return {"the icl layout has one camera"};
   if (layout == Layout::icl && scenario.time.rate_hz != 30) {
     return {"the icl layout has no time stamps, its frames are 1/30 s apart: time.rate = " +
             settings::FormatNumber(scenario.time.rate_hz) + " Hz must be 30 Hz"};
@@ -182,18 +220,39 @@ std::vector<std::string> Problems(Layout layout, const Scenario& scenario) {
   return {};
 }
 
-FrameNames NamesOf(Layout layout, std::int64_t index, std::int64_t stamp_ns) {
+FrameNames NamesOf(Layout layout, std::int64_t index, std::int64_t stamp_ns, std::size_t camera) {
   if (layout == Layout::euroc) {
-    const std::string name = std::to_string(stamp_ns) + ".png";
-    return {"mav0/cam0/data/" + name, "mav0/depth0/data/" + name};
+    const std::string k = std::to_string(camera), name = "/data/" + std::to_string(stamp_ns) + ".png";
+    return {"mav0/cam" + k + name, "mav0/depth" + k + name};
   }
   const std::string name = (layout == Layout::tum ? base::FormatSeconds(stamp_ns) : std::to_string(index)) + ".png";
   return {"rgb/" + name, "depth/" + name};
 }
 
-std::vector<StreamFile> Lists(Layout layout, const Scenario& scenario, Frames frames) {
+EurocBody::EurocBody(const Scenario& scenario) {
+  if (!scenario.truth.streams.contains(TruthStream::imu)) return;
+  T_BS = scenario.truth.imu.T_CI;
+  const glm::dvec3& g = scenario.truth.imu.gravity_W;
+  if (glm::length(g) > 0) q_RW = glm::rotation(glm::normalize(g), glm::dvec3(0, 0, -1));
+}
+
+Pose EurocBody::OfCamera(const Scenario& scenario, std::size_t camera) const {
+  const Pose T_BC = AllCameras(scenario)[camera].T_BC;
+  const glm::dquat q_SB = glm::conjugate(T_BS.q_WC);
+  return {q_SB * (T_BC.p_WC - T_BS.p_WC), q_SB * T_BC.q_WC};
+}
+
+std::vector<StreamFile> Lists(Layout layout, const Scenario& scenario, Frames frames, std::size_t camera) {
   if (layout == Layout::tum) return TumLists(frames);
-  return layout == Layout::euroc ? EurocLists(scenario, frames) : IclLists(frames);
+  return layout == Layout::euroc ? EurocLists(scenario, frames, camera) : IclLists(frames);
+}
+
+std::vector<StreamFile> BodyLists(Layout layout, const Scenario& scenario, Frames body) {
+  if (layout == Layout::euroc) return EurocBodyLists(scenario, body);
+  if (layout == Layout::icl || scenario.cameras.empty()) return {};
+  std::vector<StreamFile> files = TumTruth(body);
+  files.push_back(TextFile("rig.yaml", RigYaml(scenario)));
+  return files;
 }
 
 }  // namespace sim

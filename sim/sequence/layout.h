@@ -27,7 +27,7 @@ std::vector<std::string> Problems(Layout layout, const Scenario& scenario);
 struct FrameNames {
   std::string image, depth;
 };
-FrameNames NamesOf(Layout layout, std::int64_t index, std::int64_t stamp_ns);
+FrameNames NamesOf(Layout layout, std::int64_t index, std::int64_t stamp_ns, std::size_t camera = 0);
 
 struct StampedTruth {
   std::int64_t index = 0;
@@ -35,8 +35,20 @@ struct StampedTruth {
   Truth truth;
   glm::dvec3 gyroscope_bias{0.0}, accelerometer_bias{0.0};  // of the IMU, in I
 };
-// Lists of frames and truth, with a line for each of `frames`, in order of time; and the sensor files.
-std::vector<StreamFile> Lists(Layout layout, const Scenario& scenario, std::span<const StampedTruth> frames);
+// EuRoC's body frame S and its world R. With an IMU, S is the IMU and gravity is along -z; without, S is the camera (of
+// a rig, the body) and R the scenario's world.
+struct EurocBody {
+  explicit EurocBody(const Scenario& scenario);
+  Pose T_BS;  // maps points from S to the scenario's body
+  glm::dquat q_RW{1.0, 0.0, 0.0, 0.0};
+  Pose OfCamera(const Scenario& scenario, std::size_t camera) const;  // T_SC
+};
+
+// Lists of a camera's frames and truth, with a line for each of `frames`, in order of time; and its sensor files.
+std::vector<StreamFile> Lists(Layout layout, const Scenario& scenario, std::span<const StampedTruth> frames,
+                              std::size_t camera = 0);
+// The truth of the body, in EuRoC's form (of S, in R), or TUM's, which only a rig has; and what else there is once.
+std::vector<StreamFile> BodyLists(Layout layout, const Scenario& scenario, std::span<const StampedTruth> body);
 
 // Twelve decimals: beyond any use, so that rounding is never a question; a negative zero loses its sign.
 std::string FormatDecimal(double number);
@@ -47,6 +59,8 @@ std::string VelocityLine(std::int64_t stamp_ns, const Truth& truth);
 std::string AccelerationLine(std::int64_t stamp_ns, const Truth& truth);
 // "stamp exposure gain", the time in seconds.
 std::string ExposureLine(std::int64_t stamp_ns, const ExposureSetting& setting);
+// "position: [x, y, z]" and "orientation: [x, y, z, w]".
+std::string PlaceYaml(const Pose& pose, const std::string& between);
 // readout_s: of the rolling shutter, 0: none.
 std::string CameraYaml(const CameraParams& camera, double readout_s);
 

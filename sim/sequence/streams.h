@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "sim/render/surface_tracer.h"
 #include "sim/scenario/scenario.h"
 #include "sim/sequence/encode.h"
 #include "sim/simulator.h"
+#include "sim/world/labels.h"
 
 namespace sim {
 
@@ -21,6 +23,16 @@ std::vector<StreamFile> FrameStreams(const Simulator& simulator, std::int64_t in
 // streams are, where each object is.
 std::vector<StreamFile> SequenceStreams(const Simulator& simulator, std::int64_t first, std::int64_t last,
                                         const std::set<TruthStream>& streams);
+
+// The IMU's files, with the readings that are not outside of the stamps.
+std::vector<StreamFile> ImuStreams(const Simulator& simulator, std::int64_t first_ns, std::int64_t last_ns);
+
+// Instance of what each pixel sees: 1, 2, ...; 0: nothing. Throws std::runtime_error above 65535 instances.
+std::vector<std::uint16_t> InstanceIds(const Simulator& simulator, const std::vector<SurfacePoint>& points);
+// CSV, a line for each instance that a pixel sees: its outermost pixels, its number of pixels, its box in C.
+std::string Boxes(const Simulator& simulator, const View& view, const std::vector<std::uint16_t>& ids);
+// JSON: instances with name, class and entry in the scenario; classes.
+std::string LabelsJson(const Labels& labels);
 
 // Calibration file of the IMU.
 inline constexpr const char* kImuYaml = "imu0/sensor.yaml";

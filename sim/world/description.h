@@ -16,12 +16,14 @@ namespace sim {
 
 // A mesh file set into the world: X_W = position + R(orientation) * scale * X_file.
 struct MeshDescription {
+  std::string name;            // no other mesh or object of the world has it
+  std::string category;        // `class` of a scenario
   std::filesystem::path file;  // glTF, GLB, OBJ, PLY, and whatever else assimp reads
   glm::dvec3 position{0.0};    // [m]
   glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
   double scale = 1.0;  // metres per unit of the file, > 0
 };
-// But for the file.
+// But for file, name and class.
 template <class V>
 void Visit(V& v, MeshDescription& p) {
   v("position", p.position, {Unit::length, settings::Range{-1e8, 1e8}, "of the file's origin in W"});
@@ -31,8 +33,7 @@ void Visit(V& v, MeshDescription& p) {
 
 // A mesh file that moves as a rigid body. It is set into the object's own frame O as a mesh is set into the world.
 struct ObjectDescription {
-  std::string name;  // of its file of poses; no other object has it
-  MeshDescription mesh;
+  MeshDescription mesh;      // its name is that of the object's file of poses
   MotionDescription motion;  // T_WO
 };
 

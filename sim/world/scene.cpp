@@ -72,13 +72,16 @@ Scene LoadScene(const WorldDescription& description) {
     }
     AppendMeshFile(mesh, loading);
   };
-  for (const MeshDescription& mesh : description.meshes) append(mesh);
+  for (std::size_t k = 0; k < description.meshes.size(); ++k) {
+    append(description.meshes[k]);
+    scene.mesh_entries.resize(scene.meshes.size(), k);
+  }
   for (const ObjectDescription& object : description.objects) {
     const auto first = static_cast<std::ptrdiff_t>(scene.meshes.size());
     append(object.mesh);
     const auto begin = scene.meshes.begin() + first;
     scene.objects.push_back(
-        {object.name, {std::move_iterator(begin), std::move_iterator(scene.meshes.end())}, nullptr});
+        {object.mesh.name, {std::move_iterator(begin), std::move_iterator(scene.meshes.end())}, nullptr});
     scene.meshes.erase(begin, scene.meshes.end());
   }
   if (!problems.empty()) throw SceneError(std::move(problems));

@@ -56,7 +56,8 @@ struct MovingObject {
 };
 
 struct Scene {
-  std::vector<Mesh> meshes;  // that stand still
+  std::vector<Mesh> meshes;               // that stand still
+  std::vector<std::size_t> mesh_entries;  // of each: which of WorldDescription::meshes it is of
   std::vector<MovingObject> objects;
   std::vector<Material> materials;
   std::vector<Texture> textures;

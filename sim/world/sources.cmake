@@ -4,6 +4,7 @@ target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/gltf_material.cpp
   ${CMAKE_CURRENT_LIST_DIR}/gltf_reader.cpp
   ${CMAKE_CURRENT_LIST_DIR}/image_file.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/labels.cpp
   ${CMAKE_CURRENT_LIST_DIR}/light.cpp
   ${CMAKE_CURRENT_LIST_DIR}/material_library.cpp
   ${CMAKE_CURRENT_LIST_DIR}/mesh_builder.cpp

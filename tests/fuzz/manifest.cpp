@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   });
   fuzz::Hold(file.path().string(), [] {
     verification::Check files("files", "1"), stamps("stamps", "1");
-    verification::ReadSequence(fuzz::Folder(), files, stamps);
+    verification::ReadSequence(fuzz::Folder(), fuzz::Folder(), files, stamps);
   });
   return 0;
 }

@@ -21,7 +21,8 @@ constexpr std::array kTables = {Table{"truth", "groundtruth.txt", kPose},
                                 Table{"objects", "objects/cup.txt", ""},
                                 Table{"landmarks", "landmarks.txt", ""},
                                 Table{"tracks", "landmark_tracks.txt", ""},
-                                Table{"imu", "imu0/data.csv", ""}};
+                                Table{"imu", "imu0/data.csv", ""},
+                                Table{"labels", "labels.json", ""}};
 
 }  // namespace
 
@@ -44,7 +45,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::filesystem::path folder = fuzz::Folder() / kTables[chosen].folder;
   fuzz::Hold(folder.string(), [&] {
     verification::Check problems("files", "1"), stamps("stamps", "1");
-    verification::ReadSequence(folder, problems, stamps);
+    verification::ReadSequence(folder, folder, problems, stamps);
   });
   for (fuzz::InputFile* file : {&ranks, &verdict}) file->Write({data, size});
   fuzz::Hold(ranks.path().string(), [] { vobench::ReadRanks(ranks.path().parent_path()); });

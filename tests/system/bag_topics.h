@@ -9,4 +9,7 @@ namespace vobench::system_test {
 // Message counts by topic, "TOPIC TYPE COUNT" each.
 std::vector<std::string> BagTopics(const std::string& file);
 
+// Each message, in order of time: "SECONDS TOPIC CONTENT", the content by the library's own types.
+std::vector<std::string> BagMessages(const std::string& file);
+
 }  // namespace vobench::system_test

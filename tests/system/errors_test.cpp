@@ -72,7 +72,7 @@ TEST_F(ErrorsTest, MissingFiles) {
 TEST_F(ErrorsTest, NamesThatAreTooLong) {
   const std::string name(300, 'n'), too_long = ": File name too long\n";
   Fails({"track", name, "-o", "out", "--camera", "icl"}, 2, "vobench: " + name + too_long);
-  Fails({"verify", name}, 2, "vobench: " + name + "/rgb.txt" + too_long);
+  Fails({"verify", name}, 2, "vobench: " + name + "/rig.yaml" + too_long);
   Fails({"render", TinyScenario().string(), "-o", name}, 1, "/" + name + too_long);
 }
 

@@ -1,7 +1,12 @@
-// A sequence as a ROS 1 bag, read back with the library and, where it is installed, with ROS's own rosbag.
+// A sequence in other forms: a ROS 1 bag, read back with the library where it is installed; COCO's file. MCAP:
+// mcap_read.mjs.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
 #include <sstream>
 
 #include "tests/system/program.h"
@@ -44,47 +49,45 @@ TEST_F(ExportTest, EveryLayoutGivesTheSameMessages) {
   EXPECT_EQ(BagTopics((here_ / "tum.bag").string()), BagTopics((here_ / "euroc.bag").string()));
 }
 
-// The numbers, by another program: Debian's python3-rosbag.
-TEST_F(ExportTest, IsReadByRosbag) {
-  const std::string python = "/usr/bin/python3";  // the one that Debian's packages belong to
-  if (std::system((python + " -c 'import rosbag' > /dev/null 2>&1").c_str()) != 0) {
-    GTEST_SKIP() << "no python3-rosbag";
-  }
-  ASSERT_EQ(Run({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:3"}).status, 0);
+// More than one chunk, by the types of ROS.
+TEST_F(ExportTest, MessagesOfABag) {
+  ASSERT_EQ(Run({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:4", "--truth", "depth,imu", "--set",
+                 "camera={width: 640, height: 480, fx: 525, fy: 520, cx: 319.5, cy: 239.5}"})
+                .status,
+            0);
   ASSERT_EQ(Run({"export", "seq", "--bag", "seq.bag"}).status, 0);
-  WriteFile(here_ / "read.py", R"(
-import rosbag, struct
-for topic, m, t in rosbag.Bag('seq.bag').read_messages():
-    assert abs((t - m.header.stamp).to_sec()) == 0
-    if topic == '/camera/image_raw': print('image', m.width, m.height, m.encoding, m.step, len(m.data), '%.9f' % t.to_sec())
-    if topic == '/camera/depth/image_raw': print('depth', m.encoding, round(struct.unpack('<f', m.data[:4])[0] * 5000))
-    if topic == '/camera/camera_info': print('K', *m.K)
-    if topic == '/ground_truth/pose': print('pose %.12g %.12g' % (m.pose.position.x, m.pose.orientation.w))
-)");
-  ASSERT_EQ(
-      std::system(("cd " + Quoted(here_.path().string()) + " && " + python + " read.py > read.txt 2> err.txt").c_str()),
-      0)
-      << ReadFile(here_ / "err.txt");
-  const std::string read = ReadFile(here_ / "read.txt");
-  EXPECT_THAT(read, HasSubstr("image 160 120 bgr8 480 57600 1.000000000\n"));
-  EXPECT_THAT(read, HasSubstr("image 160 120 bgr8 480 57600 1.033333333\n"));
-  EXPECT_THAT(read, HasSubstr("K 131.25 0.0 79.5 0.0 131.25 59.5 0.0 0.0 1.0\n"));
-  EXPECT_THAT(read, HasSubstr("depth 32FC1 "));
-  std::istringstream truth(ReadFile(here_ / "seq" / "groundtruth.txt"));
-  std::string line;
-  int poses = 0;
-  while (std::getline(truth, line)) {
-    if (line.starts_with('#')) continue;
-    std::istringstream words(line);
-    double values[8];
-    for (double& value : values) words >> value;
-    char expected[80];
-    std::snprintf(expected, sizeof expected, "pose %.12g %.12g\n", values[1], values[7]);
-    EXPECT_THAT(read, HasSubstr(expected));
-    ++poses;
+  const std::vector<std::string> messages = BagMessages((here_ / "seq.bag").string());
+  for (const char* text : {"1.000000000 /camera/image_raw 640 480 bgr8 1920 921600 0.0000",
+                           "1.033333333 /camera/image_raw 640 480 bgr8 1920 921600 0.0000",
+                           "1.100000000 /camera/camera_info 640 480 plumb_bob 5 525 319.5 239.5 1"})
+    EXPECT_THAT(messages, testing::Contains(text));
+  EXPECT_THAT(messages, testing::Contains(testing::ContainsRegex(
+                            "^1.066666667 /camera/depth/image_raw 640 480 32FC1 2560 1228800 [1-9].[0-9]+$")));
+  const auto numbers = [&](const std::string& file, char separator) {
+    std::istringstream lines(ReadFile(here_ / "seq" / file));
+    std::vector<std::vector<double>> rows;
+    for (std::string line, word; std::getline(lines, line);) {
+      if (line.starts_with('#')) continue;
+      std::istringstream words(line);
+      rows.emplace_back();
+      while (std::getline(words, word, separator)) rows.back().push_back(std::stod(word));
+    }
+    return rows;
+  };
+  char expected[160];
+  for (const std::vector<double>& row : numbers("groundtruth.txt", ' ')) {
+    std::snprintf(expected, sizeof expected, "%.9f /ground_truth/pose %.12f %.12f", row[0] + 1, row[1], row[7]);
+    EXPECT_THAT(messages, testing::Contains(expected));
   }
-  EXPECT_EQ(poses, 3);
+  const auto imu = numbers("imu0/data.csv", ',');
+  EXPECT_GT(imu.size(), 15u);
+  for (const std::vector<double>& row : imu) {
+    std::snprintf(expected, sizeof expected, "%.9f /imu %.12f %.12f -1", row[0] * 1e-9 + 1, row[1], row[6]);
+    EXPECT_THAT(messages, testing::Contains(expected));
+  }
+  EXPECT_EQ(messages.size(), 4u * 4u + imu.size());
 }
+#endif
 
 TEST_F(ExportTest, NothingIsLeftOfAFailure) {
   const auto before = Tree(here_.path());
@@ -93,6 +96,7 @@ TEST_F(ExportTest, NothingIsLeftOfAFailure) {
   ASSERT_EQ(Run({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:3"}).status, 0);
   WriteFile(here_ / "seq" / "depth.txt", "0.0 depth/gone.png\n");
   const auto spoiled = Tree(here_.path());
+  EXPECT_EQ(Run({"export", "seq", "--mcap", "x.mcap"}).status, 2);
   const Outcome outcome = Run({"export", "seq", "--bag", "x.bag"});
   EXPECT_EQ(outcome.status, 2) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("gone.png"));
@@ -110,13 +114,65 @@ TEST_F(ExportTest, DepthOfAnySizeIsRefused) {
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, HasSubstr("0.000000000.png: 30000 x 30000 pixels: a picture may have"));
 }
-#else
-TEST_F(ExportTest, MissingInputs) {
-  const Outcome outcome = Run({"export", "seq", "--bag", "x.bag"});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("librosbag-storage-dev"));
+
+// COCO's file, read as its description says: instances by their run lengths, against the pictures and their boxes.
+TEST_F(ExportTest, CocoIsReadBack) {
+  const std::string scenario = (TinyScenario().parent_path() / "moving.yaml").string();
+  ASSERT_EQ(Run({"render", scenario, "-o", "seq", "--frames", "9:12", "--truth", "instance", "--set",
+                 "camera={width: 160, height: 120, fx: 131, fy: 131, cx: 79.5, cy: 59.5}"})
+                .status,
+            0);
+  ASSERT_EQ(Run({"export", "seq", "--coco", "labels.json"}).status, 0);
+  const auto coco = nlohmann::json::parse(ReadFile(here_ / "labels.json"));
+  std::map<int, std::string> classes;
+  for (const auto& category : coco.at("categories")) classes[category.at("id")] = category.at("name");
+  EXPECT_THAT(classes,
+              testing::ElementsAre(testing::Pair(1, "ball"), testing::Pair(2, "parcel"), testing::Pair(3, "room")));
+  ASSERT_EQ(coco.at("images").size(), 3u);
+  std::map<int, cv::Mat> masks;  // by image: instances, put together from the annotations
+  for (const auto& image : coco.at("images")) {
+    EXPECT_TRUE(std::filesystem::exists(here_ / "seq" / image.at("file_name").get<std::string>()));
+    masks[image.at("id")] = cv::Mat::zeros(image.at("height"), image.at("width"), CV_16UC1);
+  }
+  std::set<int> ids;
+  for (const auto& annotation : coco.at("annotations")) {
+    EXPECT_TRUE(ids.insert(annotation.at("id").get<int>()).second);
+    EXPECT_TRUE(classes.contains(annotation.at("category_id")));
+    EXPECT_EQ(annotation.at("iscrowd"), 0);
+    cv::Mat& mask = masks.at(annotation.at("image_id"));
+    const auto& rle = annotation.at("segmentation");
+    ASSERT_EQ(rle.at("size"), nlohmann::json({mask.rows, mask.cols}));
+    int at = 0, area = 0;
+    bool inside = false;
+    cv::Rect box;
+    for (const int count : rle.at("counts")) {
+      for (int i = 0; i < count; ++i, ++at) {
+        if (!inside) continue;
+        const cv::Rect pixel(at / mask.rows, at % mask.rows, 1, 1);  // down the columns
+        mask.at<std::uint16_t>(pixel.y, pixel.x) = annotation.at("instance");
+        box = area++ == 0 ? pixel : box | pixel;
+      }
+      inside = !inside;
+    }
+    EXPECT_EQ(at, mask.rows * mask.cols);
+    EXPECT_EQ(annotation.at("area"), area);
+    EXPECT_EQ(annotation.at("bbox"), nlohmann::json({box.x, box.y, box.width, box.height}));
+  }
+  EXPECT_EQ(ids.size(), 9u);
+  for (const auto& image : coco.at("images")) {
+    const std::string name = image.at("file_name").get<std::string>().substr(4);
+    const cv::Mat seen = cv::imread((here_ / "seq/instance" / name).string(), cv::IMREAD_UNCHANGED);
+    EXPECT_EQ(cv::norm(seen, masks.at(image.at("id")), cv::NORM_INF), 0) << name;
+  }
 }
-#endif
+
+TEST_F(ExportTest, CocoWithoutLabels) {
+  ASSERT_EQ(Run({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:1"}).status, 0);
+  const Outcome outcome = Run({"export", "seq", "--coco", "labels.json"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("labels.json: is not there; render with --truth instance"));
+  EXPECT_EQ(Run({"export", "seq"}).status, 2);
+}
 
 }  // namespace
 }  // namespace vobench::system_test

@@ -81,6 +81,29 @@ TEST_F(LayoutsTest, OneSequenceInEachLayoutGivesOneEstimate) {
   EXPECT_THAT(ReadFile(here_ / "tum.ply"), testing::StartsWith("ply\nformat ascii 1.0\n"));
 }
 
+TEST_F(LayoutsTest, DepthSaysWhereItsRangeEnds) {
+  const std::vector<std::string> render = {
+      "render",
+      TinyScenario().string(),
+      "--frames",
+      "0:1",
+      "--set",
+      "world.meshes.0.scale=20",
+      "--set",
+      "trajectory={type: dolly, start: {position: [40, 28, 51], look_at: [47, 22, 0]}, move: [0, 0, -1], period: 2 s}",
+      "-o"};
+  const auto warned = [&](const std::string& folder, const std::string& truth) {
+    std::vector<std::string> words = render;
+    words.insert(words.end(), {folder, "--truth", truth});
+    return Run(words).err.find("depth of 16 bits ends at 13.1 m") != std::string::npos;
+  };
+  EXPECT_TRUE(warned("far", "depth"));
+  EXPECT_FALSE(warned("both", "depth,depth_exr"));
+  EXPECT_THAT(ReadFile(here_ / "far/depth/0.000000000.png"), testing::HasSubstr("pixels beyond 13.1071 m"));
+  const std::string err = Run({"render", TinyScenario().string(), "--frames", "0:1", "-o", "near"}).err;
+  EXPECT_THAT(err, testing::Not(testing::HasSubstr("depth of 16 bits")));
+}
+
 TEST_F(LayoutsTest, EveryRunLeavesTrajectoriesAndAMap) {
   const std::string points = (TinyScenario().parent_path() / "points.yaml").string();
   Run({"run", points, "-o", "out", "--runs", "2", "--map", "map.ply", "--set", "time.duration=0.3 s"});

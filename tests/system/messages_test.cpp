@@ -234,15 +234,9 @@ const std::vector<Message>& Messages() {
        {"--set odometry.filter.particles", "'-2'", "1 ... "}},
       {"tools/bench/run/run_common.cpp", {"report", "nowhere"}, {"nowhere/run.json", "cannot be opened"}},
       {"tools/judge/verification/files.cpp", {"verify", "nowhere"}, {"nowhere/rgb.txt", "is not there, and is needed"}},
-#ifdef VOBENCH_ROSBAG
       {"tools/bench/run/export.cpp",
        {"export", "nowhere", "--bag", "one.txt"},
        {"--bag one.txt", "choose another name"}},
-#else
-      {"tools/bench/run/export.cpp",
-       {"export", "nowhere", "--bag", "b.bag"},
-       {"this program was built without rosbag: install librosbag-storage-dev"}},
-#endif
       // Campaigns.
       {"tools/bench/campaign/plan.cpp",
        {"campaign", "campaign.yaml", "-o", "o"},

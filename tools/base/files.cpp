@@ -97,6 +97,11 @@ void AtomicFile::Flush() {
   buffer_.clear();
 }
 
+void AtomicFile::Overwrite(std::string_view bytes) {
+  Flush();
+  RequireWritten(path_.file(), lseek(*descriptor_, 0, SEEK_SET) != 0 ? errno : WriteAll(*descriptor_, bytes));
+}
+
 void AtomicFile::Commit() {
   Flush();
   RequireWritten(path_.file(), descriptor_.Close());

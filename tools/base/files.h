@@ -90,6 +90,8 @@ class AtomicFile {
   explicit AtomicFile(std::filesystem::path file, Writers writers = Writers::one);
 
   void Append(std::string_view bytes);
+  // At the file's beginning, in place of as many bytes: the last thing before Commit.
+  void Overwrite(std::string_view bytes);
   void Commit();
 
  private:

@@ -33,3 +33,17 @@ function(vobench_public_library target)
     endif()
   endwhile()
 endfunction()
+
+# vobench_embed(HEADER NAMESPACE NAME=FILE...): HEADER, below the build's folder `embedded` and this folder's path in the project, has
+# the text of each file as the constant kNAME.
+function(vobench_embed header namespace)
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  set(text "// Made by the build; do not edit.\n#pragma once\n\nnamespace ${namespace} {\n")
+  foreach(pair IN LISTS ARGN)
+    string(REGEX MATCH "^([^=]+)=(.+)$" _ ${pair})
+    file(READ ${CMAKE_MATCH_2} content)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_MATCH_2})
+    string(APPEND text "inline constexpr char k${CMAKE_MATCH_1}[] = R\"embedded(${content})embedded\";\n")
+  endforeach()
+  file(GENERATE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/embedded/${folder}/${header} CONTENT "${text}}  // namespace ${namespace}\n")
+endfunction()

@@ -125,6 +125,14 @@ void AddSimulator(py::module_& m) {
       .def_property_readonly(
           "warnings", [](const Simulator& s) { return s.simulator.warnings(); },
           Doc("sim/simulator.h:Simulator::warnings"))
+      .def_property_readonly(
+          "cameras",
+          [](const Simulator& s) {
+            std::vector<Simulator> cameras;
+            for (const sim::Simulator& camera : s.simulator.Cameras()) cameras.push_back({s.scenario, camera});
+            return cameras;
+          },
+          Doc("sim/simulator.h:Simulator::Cameras"))
       .def("__len__", [](const Simulator& s) { return s.simulator.frame_count(); })
       .def(
           "__iter__",

@@ -126,7 +126,8 @@ void AddRender(OptionTable& table) {
   command.add_flag("--preview", render.preview, "Also preview.mp4 and contact.jpg, for the eye");
   Add(command, "--truth NAME,...", render.truth,
       "Truth beside poses and velocities, separated by commas: depth, depth_exr, depth_kinect, distance, normals, "
-      "flow, flow_backward, occlusion, surface_id, landmarks, acceleration, imu, moving (docs/truth.md)");
+      "flow, flow_backward, occlusion, surface_id, landmarks, acceleration, imu, moving, instance, semantic, boxes, "
+      "disparity (docs/truth.md)");
   AddSeed(command, render.seed, "Seed instead of the scenario's");
   AddEngine(command, render.overrides);
   AddMissingTextures(command, render.overrides);
@@ -286,10 +287,12 @@ void AddFitCamera(OptionTable& table) {
 
 void AddExport(OptionTable& table) {
   const auto [command, exported] = AddCommand<ExportOptions>(
-      table, "export", "Write a sequence in another form: a ROS 1 bag (docs/sequence_format.md)",
+      table, "export", "Write a sequence in another form: a ROS 1 bag, MCAP, COCO's labels (docs/sequence_format.md)",
       "vobench export room --bag room.bag");
   Add(command, "SEQ", exported.sequence, "Sequence folder")->required();
-  Add(command, "--bag FILE.bag", exported.bag, "ROS 1 bag to make")->required();
+  Add(command, "--bag FILE.bag", exported.bag, "ROS 1 bag to make");
+  Add(command, "--mcap FILE.mcap", exported.mcap, "The same as MCAP, with the messages of ROS 2");
+  Add(command, "--coco FILE.json", exported.coco, "File of COCO's object detection to make, of the stream `instance`");
 }
 
 void AddReport(OptionTable& table) {

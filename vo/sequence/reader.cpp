@@ -46,7 +46,7 @@ struct ListFormat {
   std::string not_a_stamp, expected;
 };
 
-ListFormat FormatOf(const fs::path& folder) {
+ListFormat FormatOf(const fs::path& folder, int camera) {
   if (!fs::exists(folder / "rgb.txt")) {
     if (fs::exists(folder / "associations.txt"))
       return {folder / "associations.txt",
@@ -55,9 +55,10 @@ ListFormat FormatOf(const fs::path& folder) {
               StampOfIndex,
               "the number of a frame",
               "index depth-file index image-file, or index image-file index depth-file"};
-    if (fs::exists(folder / "mav0"))
-      return {folder / "mav0/cam0/data.csv", folder / "mav0/cam0/data", 2, StampInNanoseconds,
-              "a time stamp in nanoseconds", "timestamp,filename"};
+    if (fs::exists(folder / "mav0")) {
+      const fs::path of = folder / ("mav0/cam" + std::to_string(camera));
+      return {of / "data.csv", of / "data", 2, StampInNanoseconds, "a time stamp in nanoseconds", "timestamp,filename"};
+    }
   }
   return {folder / "rgb.txt", folder, 2, StampInSeconds, "a time stamp in seconds", "timestamp filename"};
 }
@@ -112,9 +113,9 @@ cv::Mat ReadImage(const fs::path& file) {
 
 }  // namespace
 
-SequenceReader::SequenceReader(const fs::path& folder, Images images) {
+SequenceReader::SequenceReader(const fs::path& folder, Images images, int camera) {
   if (!fs::is_directory(folder)) throw std::runtime_error(folder.string() + ": no such folder");
-  const ListFormat format = FormatOf(folder);
+  const ListFormat format = FormatOf(folder, camera);
   const fs::path& list = format.list;
   std::ifstream in(list);
   if (!in)

@@ -16,7 +16,8 @@ class SequenceReader : public FrameSource {
   enum class Images { needed, not_asked_for };
   // Reads and checks the list of frames. Throws std::runtime_error naming file and lines: folder or list missing, no
   // frames, a malformed line, stamps that do not increase (both lines named), missing image files.
-  explicit SequenceReader(const std::filesystem::path& folder, Images images = Images::needed);
+  // camera: of EuRoC, 1: mav0/cam1.
+  explicit SequenceReader(const std::filesystem::path& folder, Images images = Images::needed, int camera = 0);
 
   struct Entry {
     std::int64_t stamp_ns;

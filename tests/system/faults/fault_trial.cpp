@@ -183,15 +183,13 @@ std::vector<FaultCommand> FaultCommands() {
                  .words = {"campaign", "../inputs/c.yaml", "-o", "out", "--jobs", "1"},
                  .volatile_files = {"times.json", "times.csv", "log.txt", "report.html"},
                  .leaves_partial = true});
-  all.push_back({.name = "export", .words = {"export", "../inputs/seq", "--bag", "out.bag"}, .by_stdio = true});
+  all.push_back({.name = "export", .words = {"export", "../inputs/seq", "--bag", "out.bag"}});
+  all.push_back({.name = "export_mcap", .words = {"export", "../inputs/seq", "--mcap", "out.mcap"}});
   all.push_back({.name = "report", .words = {"report", "out"}, .prepare = {"run"}});
   all.push_back({.name = "evaluate",
                  .words = {"evaluate", "../inputs/run/estimate.txt", "--truth", "../inputs/seq", "--align", "none"},
                  .by_stdio = true,
                  .prints_into_file = true});
-#ifndef VOBENCH_ROSBAG
-  std::erase_if(all, [](const FaultCommand& command) { return command.name == "export"; });
-#endif
   return all;
 }
 

@@ -139,19 +139,26 @@ TEST(EurocLayout, TruthByHand) {
   frame.truth.p_WC = {1, 2, 3};
   frame.truth.q_WC = {0.8, 0.2, -0.4, 0.4};  // w x y z
   frame.truth.v_WC = {4, 5, 6};
-  for (const sim::StreamFile& file : sim::Lists(sim::Layout::euroc, scenario, std::span(&frame, 1))) {
+  std::vector<sim::StreamFile> files = sim::Lists(sim::Layout::euroc, scenario, std::span(&frame, 1));
+  for (sim::StreamFile& file : sim::BodyLists(sim::Layout::euroc, scenario, std::span(&frame, 1)))
+    files.push_back(std::move(file));
+  int found = 0;
+  for (const sim::StreamFile& file : files) {
     const std::string text(file.bytes.begin(), file.bytes.end());
     const std::string last = text.substr(text.rfind('\n', text.size() - 2) + 1);
     if (file.path == "mav0/cam0/data.csv") {
       EXPECT_EQ(last, "33333333,33333333.png\n");
+      ++found;
     }
     if (file.path == "mav0/state_groundtruth_estimate0/data.csv") {
       EXPECT_EQ(last,
                 "33333333,1.000000000000,2.000000000000,3.000000000000,0.800000000000,0.200000000000,-0.400000000000,"
                 "0.400000000000,4.000000000000,5.000000000000,6.000000000000,0.000000000000,0.000000000000,"
                 "0.000000000000,0.000000000000,0.000000000000,0.000000000000\n");
+      ++found;
     }
   }
+  EXPECT_EQ(found, 2);
 }
 
 // An IMU 0.1 m to the right of the camera and turned by 90 degrees about its x; streams that EuRoC has no place for.
@@ -173,8 +180,12 @@ TEST(EurocLayout, HasTheImuWithItsPlaceAndItsBiases) {
     return std::string(std::istreambuf_iterator<char>(stream), {});
   };
   const YAML::Node imu = YAML::Load(text("mav0/imu0/sensor.yaml"));
-  const double T_BS[16] = {1, 0, 0, 0.1, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
-  for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(imu["T_BS"]["data"][i].as<double>(), T_BS[i], 1e-12) << i;
+  const YAML::Node camera = YAML::Load(text("mav0/cam0/sensor.yaml"));
+  const double T_BS[16] = {1, 0, 0, -0.1, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};  // the body is the IMU
+  for (std::size_t i = 0; i < 16; ++i) {
+    EXPECT_NEAR(camera["T_BS"]["data"][i].as<double>(), T_BS[i], 1e-12) << i;
+    EXPECT_EQ(imu["T_BS"]["data"][i].as<double>(), i % 5 == 0 ? 1 : 0) << i;
+  }
   EXPECT_EQ(imu["gyroscope_noise_density"].as<double>(), 0.001);
   EXPECT_EQ(imu["accelerometer_random_walk"].as<double>(), 0.1);
   EXPECT_EQ(imu["rate_hz"].as<double>(), 200);

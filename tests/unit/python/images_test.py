@@ -40,6 +40,22 @@ class Images(unittest.TestCase):
         np.testing.assert_array_equal(image, kept)
         self.assertGreater(image.std(), 10)  # it shows something
 
+    def test_cameras_of_a_rig_share_a_body(self):
+        text = (SOURCE / "scenes/tiny.yaml").read_text().replace("file: room", f"file: {SOURCE}/scenes/room")
+        lens = "width: 160, height: 120, fx: 131.25, fy: 131.25, cx: 79.5, cy: 59.5"
+        camera = next(line for line in text.splitlines() if line.startswith("camera:"))
+        rig = f"cameras: [{{{lens}}}, {{{lens}, position: [0.1, 0, 0], trigger_offset: 5 ms}}]"
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "rig.yaml"
+            file.write_text(text.replace(camera, rig))
+            simulator = vobench.Simulator(vobench.Scenario(file, {"time.duration": "0.3 s"}), jobs=2)
+        first, second = simulator.cameras
+        self.assertEqual(second.truth(3).stamp_ns - first.truth(3).stamp_ns, 5_000_000)
+        base = np.linalg.inv(first.truth(3).T_WC) @ second.truth(3).T_WC
+        np.testing.assert_allclose(base[:3, 3], [0.1, 0, 0], atol=0.01)
+        np.testing.assert_array_equal(simulator.render(1).image, first.render(1).image)
+        self.assertEqual(len(self.simulator.cameras), 1)
+
     def test_depth_is_where_the_truth_says(self):
         depth, camera, truth = self.simulator.depth(2), self.simulator.camera, self.simulator.truth(2)
         self.assertEqual((depth.shape, depth.dtype), ((120, 160), np.float32))

@@ -114,6 +114,18 @@ TEST(Png, BytesAreKnown) {
   EXPECT_EQ(sum(EncodePng(640, 480, 1, Samples<std::uint16_t>(Picture::ramp, 640 * 480))), 5950079257380155211u);
 }
 
+// A depth picture says where its range ends, if some of it is beyond.
+TEST(Png, DepthBeyondItsRange) {
+  const std::vector<float> near = {0.5F, 13.107F, 0.0F, 2.0F}, far = {0.5F, 13.1072F, 90.0F, 2.0F};
+  const std::vector<std::uint8_t> of_near = EncodeDepthPng(near, 2, 2), of_far = EncodeDepthPng(far, 2, 2);
+  EXPECT_EQ(Decoded<std::uint16_t>(of_near, 2, 2, 1), (std::vector<std::uint16_t>{2500, 65535, 0, 10000}));
+  EXPECT_EQ(Decoded<std::uint16_t>(of_far, 2, 2, 1), (std::vector<std::uint16_t>{2500, 0, 0, 10000}));
+  const std::string text(of_far.begin(), of_far.end());
+  EXPECT_NE(text.find(std::string("tEXtComment\0value / 5000 m; 0: nothing, or one of 2 pixels beyond 13.1071 m", 75)),
+            std::string::npos);
+  EXPECT_EQ(std::string(of_near.begin(), of_near.end()).find("tEXt"), std::string::npos);
+}
+
 TEST(Png, RefusesWhatIsNoPicture) {
   const std::vector<std::uint8_t> six(6);
   EXPECT_THROW(EncodePng(0, 6, 1, six), std::invalid_argument);

@@ -277,13 +277,13 @@ TEST(Scenario, ObjectsAreMeshesOnPaths) {
     {file: thing.obj, trajectory: {type: rpy, start: {position: [0, 0, 0]}, angles: [0, 1, 0], periods: [1, 1, 1]}}])"}});
   ASSERT_EQ(scenario.world.objects.size(), 2u);
   const ObjectDescription& box = scenario.world.objects[0];
-  EXPECT_EQ(box.name, "box");
+  EXPECT_EQ(box.mesh.name, "box");
   EXPECT_EQ(box.mesh.file, world.folder.path() / "a/thing.obj");
   EXPECT_EQ(box.mesh.position, glm::dvec3(0.01, 0, 0));
   EXPECT_EQ(box.mesh.scale, 2);
   EXPECT_EQ(std::get<ScriptedMotion>(box.motion).keys[1].pose.p_WC, glm::dvec3(1, 1, 0));
   EXPECT_NEAR(std::get<ScriptedMotion>(box.motion).keys[1].pose.q_WC.y, 0.6, 1e-15);
-  EXPECT_EQ(scenario.world.objects[1].name, "thing");
+  EXPECT_EQ(scenario.world.objects[1].mesh.name, "thing");
   EXPECT_TRUE(std::holds_alternative<PathMotion>(scenario.world.objects[1].motion));
   EXPECT_THAT(scenario.resolved, HasSubstr("\"objects\""));
   EXPECT_THAT(LoadScenario(world.scenario()).resolved, testing::Not(HasSubstr("objects")));
@@ -304,7 +304,7 @@ TEST(Scenario, WhatIsWrongWithObjects) {
            ":7:28: 'world.objects.1.scale': '0' must",
            ":7:31: unknown key 'speed'",
            ":7:76: 'trajectory.keys': the last key pose is at 0.2 s, but the scenario lasts 0.3 s",
-           ":8:14: 'name': another object is called 'y' already",
+           ":8:14: 'name': another entry is called 'y' already",
            ": missing key 'world.objects.2.trajectory.type'",
            ": missing key 'world.objects.3.file'",
            ":9:36: 'world.objects.3.trajectory.type': 'rolls' is not known",

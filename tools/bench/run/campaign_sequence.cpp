@@ -61,7 +61,7 @@ void Render(const campaign::SequenceCache& cache, const std::string& key, const 
   const campaign::FileLock lock = cache.Take(key);
   if (cache.Has(key)) return;  // the one that was waited for has made it
   const sim::Simulator simulator = Input([&] { return sim::Simulator(scenario, jobs); });
-  const sim::SequenceContent content{sim::Layout::tum, 0, simulator.frame_count(), "vobench " VOBENCH_VERSION};
+  const sim::SequenceContent content{sim::Layout::tum, 0, simulator.frame_count(), "vobench " VOBENCH_VERSION, false};
   const fs::path folder = cache.PathOf(key), partial = folder.string() + ".partial";
   std::optional<sim::SequenceWriter> writer;
   try {

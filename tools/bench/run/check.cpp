@@ -21,6 +21,9 @@ void PrintFrames(const CheckOptions& options, const sim::Scenario& scenario, con
   fmt::print("{}: good\n", options.scenario.string());
   fmt::print("  {} frames of {} x {} at {} Hz, fx {} fy {} cx {} cy {} px\n", truth.poses.size(), camera.width,
              camera.height, scenario.time.rate_hz, camera.fx, camera.fy, camera.cx, camera.cy);
+  for (const sim::RigCamera& of : scenario.cameras)
+    fmt::print("  camera {}: {} x {}, fx {} px, at ({}, {}, {}) m of the body, {} s late\n", of.name, of.camera.width,
+               of.camera.height, of.camera.fx, of.T_BC.p_WC.x, of.T_BC.p_WC.y, of.T_BC.p_WC.z, of.trigger_offset_s);
   for (const auto& [key, value] : scenario.drawn) fmt::print("  drawn: {} = {}\n", key, value);
 }
 

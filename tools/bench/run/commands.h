@@ -117,7 +117,9 @@ void FitCamera(const FitCameraOptions& options);
 // A sequence is written in another form.
 struct ExportOptions {
   std::filesystem::path sequence;
-  std::filesystem::path bag;  // a ROS 1 bag
+  std::optional<std::filesystem::path> bag;   // a ROS 1 bag
+  std::optional<std::filesystem::path> mcap;  // the same as MCAP
+  std::optional<std::filesystem::path> coco;  // COCO's file of instances; one of them at least
 };
 void Export(const ExportOptions& options);
 

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <map>
 #include <set>
 
@@ -21,12 +24,13 @@ namespace fs = std::filesystem;
 namespace {
 
 // What a sequence of any layout may have at its top level; also while written: a killed run leaves what it had begun.
-std::set<std::string> SequenceNames(bool unfinished) {
+std::set<std::string> SequenceNames(const sim::Scenario& scenario, bool unfinished) {
   std::set<std::string> names = sim::StreamNames();
+  for (const sim::RigCamera& camera : scenario.cameras) names.insert(camera.name);
   names.insert({"camera.yaml", "exposure.txt", sim::kManifestName, sim::kJournalName});
-  names.insert({"rgb", "rgb.txt", "depth", "depth.txt", "groundtruth.txt", "velocity.txt"});  // TUM RGB-D
-  names.insert({"mav0", "truth"});                                                            // EuRoC
-  names.insert({"associations.txt", "traj.gt.freiburg"});                                     // ICL-NUIM
+  names.insert({"rgb", "rgb.txt", "depth", "depth.txt", "groundtruth.txt", "velocity.txt", "rig.yaml"});  // TUM RGB-D
+  names.insert({"mav0", "truth"});                                                                        // EuRoC
+  names.insert({"associations.txt", "traj.gt.freiburg"});                                                 // ICL-NUIM
   names.insert({"preview.mp4", "unfinished-preview.mp4", "contact.jpg"});
   if (!unfinished) return names;
   for (const std::string& name : std::set(names)) names.insert(base::UnfinishedName(name));
@@ -53,8 +57,9 @@ sim::SequenceContent Content(const RenderOptions& options, const sim::Simulator&
 }
 
 // Nothing of another hand's may be in the way, and without --resume nothing of an earlier run's that is not whole.
-void RequireRoom(const RenderOptions& options, const fs::path& folder, const fs::path& partial) {
-  RequireReplaceable(folder, sim::kManifestName, SequenceNames(false));
+void RequireRoom(const RenderOptions& options, const sim::Scenario& scenario, const fs::path& folder,
+                 const fs::path& partial) {
+  RequireReplaceable(folder, sim::kManifestName, SequenceNames(scenario, false));
   if (!fs::exists(fs::symlink_status(partial))) return;
   if (!options.resume) {
     throw BadInput(
@@ -62,7 +67,8 @@ void RequireRoom(const RenderOptions& options, const fs::path& folder, const fs:
                     "it, or remove it",
                     partial.string()));
   }
-  if (fs::exists(partial / sim::kManifestName)) RequireReplaceable(partial, sim::kManifestName, SequenceNames(true));
+  if (fs::exists(partial / sim::kManifestName))
+    RequireReplaceable(partial, sim::kManifestName, SequenceNames(scenario, true));
 }
 
 // The sequence of this content is there under its last name. Throws BadInput if another one is.
@@ -81,9 +87,23 @@ void Preview(const fs::path& folder, const sim::Simulator& simulator, const sim:
   std::vector<PreviewFrame> frames;
   for (std::int64_t index = content.first; index < content.last; ++index) {
     const std::int64_t stamp_ns = simulator.StampNs(index);
-    frames.push_back({index, stamp_ns, folder / sim::NamesOf(content.layout, index, stamp_ns).image});
+    frames.push_back({index, stamp_ns, folder / sim::ImagePath(simulator, content, index)});
   }
   WritePreview(folder, frames, simulator.scenario().time.rate_hz);
+}
+
+// Depth of 16 bits may end before the world does.
+void WarnOfDepthRange(const sim::Simulator& simulator) {
+  const sim::WorldExtent& world = simulator.extent();
+  double farthest_m = 0;
+  for (std::int64_t k = 0; k < simulator.frame_count(); ++k) {
+    const glm::dvec3 p = simulator.TruthAt(k).p_WC;
+    farthest_m = std::max(farthest_m, glm::length(glm::max(glm::abs(world.low - p), glm::abs(world.high - p))));
+  }
+  if (farthest_m < sim::kDepthRange_m) return;
+  PrintWarnings({fmt::format(
+      "depth of 16 bits ends at {:.1f} m (0 beyond), the world is up to {:.1f} m away; truth depth_exr has no end",
+      sim::kDepthRange_m, farthest_m)});
 }
 
 // What a stopped run leaves, for its last words.
@@ -97,9 +117,12 @@ std::string Kept(std::int64_t whole, const fs::path& partial) {
 void Render(const RenderOptions& options) {
   const Experiment experiment = ReadExperiment(options.scenario, With(options.overrides, options));
   const fs::path folder = CleanPath(options.output), partial = folder.string() + ".partial";
-  RequireRoom(options, folder, partial);
+  RequireRoom(options, experiment.scenario, folder, partial);
   const sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, options.jobs); });
   PrintWarnings(simulator.warnings());
+  const std::set<sim::TruthStream>& truth = experiment.scenario.truth.streams;
+  if (truth.contains(sim::TruthStream::depth) && !truth.contains(sim::TruthStream::depth_exr))
+    WarnOfDepthRange(simulator);
   const sim::SequenceContent content = Content(options, simulator);
 
   if (options.resume && !fs::exists(partial) && IsWhole(folder, simulator, content)) {

@@ -1,130 +1,93 @@
-#include "tools/bench/sequence/bag_file.h"
-
-#include <geometry_msgs/PoseStamped.h>
-#include <rosbag/bag.h>
-#include <sensor_msgs/CameraInfo.h>
-#include <sensor_msgs/Image.h>
-#include <sensor_msgs/Imu.h>
-
-#include <cerrno>
-#include <stdexcept>
-#include <system_error>
+// ROS bag format 2.0: a record is a header of fields "name=value" and data, each with its length before it.
+#include <initializer_list>
 #include <utility>
-#include <vector>
+
+#include "tools/bench/sequence/export_files.h"
 
 namespace vobench {
 namespace {
 
-ros::Time TimeOf(std::int64_t stamp_ns) {
-  return {static_cast<std::uint32_t>(stamp_ns / 1000000000), static_cast<std::uint32_t>(stamp_ns % 1000000000)};
+using Fields = std::initializer_list<std::pair<const char*, std::string>>;
+using Number = std::uint32_t;
+
+std::string Header(const Fields& fields) {
+  std::string header;
+  for (const auto& [name, value] : fields) header += Sized(std::string(name) + "=" + value);
+  return header;
+}
+std::string Record(char op, const Fields& fields, const std::string& data) {
+  return Sized(Header(fields) + Header({{"op", std::string(1, op)}})) + Sized(data);
 }
 
-template <class Message>
-Message Stamped(std::int64_t stamp_ns, const char* frame) {
-  Message message;
-  message.header.stamp = TimeOf(stamp_ns);
-  message.header.frame_id = frame;
-  return message;
+std::string Time(std::int64_t stamp_ns) {
+  return Bytes(static_cast<Number>(stamp_ns / 1'000'000'000)) + Bytes(static_cast<Number>(stamp_ns % 1'000'000'000));
 }
 
-template <class From, class To>
-void Set(const From& from, To& to) {
-  to.x = from.x();
-  to.y = from.y();
-  to.z = from.z();
-}
+class BagFile : public MessageFile {
+ public:
+  explicit BagFile(const std::filesystem::path& file) : MessageFile(file, false) { Append(Beginning(0)); }
 
-// Rosbag says that a write failed, not why: the system does.
-template <class Work>
-void Written(const std::string& file, Work&& work) {
-  errno = 0;
-  try {
-    work();
-  } catch (const std::exception& error) {
-    const int why = errno;
-    throw std::runtime_error(file + ": cannot be written: " + error.what() +
-                             (why != 0 ? ": " + std::generic_category().message(why) : ""));
+ private:
+  struct Written {
+    std::uint64_t position;
+    std::int64_t first_ns, last_ns;
+    std::string counts;  // by connection, of eight bytes each
+  };
+
+  // Always 13 + 4096 bytes: it is written once more at the end.
+  std::string Beginning(std::uint64_t index) const {
+    const std::string fields = Header({{"index_pos", Bytes(index)},
+                                       {"conn_count", Bytes(static_cast<Number>(channels_.size()))},
+                                       {"chunk_count", Bytes(static_cast<Number>(chunks_.size()))},
+                                       {"op", "\3"}});
+    return "#ROSBAG V2.0\n" + Sized(fields) + Sized(std::string(4096 - 8 - fields.size(), ' '));
   }
-}
+
+  std::string ConnectionRecord(Number channel) const override {
+    const auto& [topic, type, count] = channels_[channel];
+    return Record(7, {{"conn", Bytes(channel)}, {"topic", topic}},
+                  Header({{"topic", topic},
+                          {"type", std::string(type->package) + "/" + type->name},
+                          {"md5sum", type->md5},
+                          {"message_definition", type->definition}}));
+  }
+  std::string MessageRecord(Number channel, std::int64_t stamp_ns, const std::string& message) const override {
+    return Record(2, {{"conn", Bytes(channel)}, {"time", Time(stamp_ns)}}, message);
+  }
+
+  void Write(const Chunk& chunk) override {
+    Written& written = chunks_.emplace_back(Written{position_, chunk.first_ns, chunk.last_ns, ""});
+    Append(Record(5, {{"compression", "none"}, {"size", Bytes(static_cast<Number>(chunk.records.size()))}},
+                  chunk.records));
+    for (const auto& [channel, messages] : chunk.index) {
+      const std::string count = Bytes(static_cast<Number>(messages.size()));
+      std::string places;
+      for (const auto& [stamp_ns, offset] : messages) places += Time(stamp_ns) + Bytes(static_cast<Number>(offset));
+      Append(Record(4, {{"ver", Bytes(Number{1})}, {"conn", Bytes(channel)}, {"count", count}}, places));
+      written.counts += Bytes(channel) + count;
+    }
+  }
+
+  void WriteEnd() override {
+    const std::uint64_t index = position_;
+    for (Number channel = 0; channel < channels_.size(); ++channel) Append(ConnectionRecord(channel));
+    for (const Written& chunk : chunks_) {
+      Append(Record(6,
+                    {{"ver", Bytes(Number{1})},
+                     {"chunk_pos", Bytes(chunk.position)},
+                     {"start_time", Time(chunk.first_ns)},
+                     {"end_time", Time(chunk.last_ns)},
+                     {"count", Bytes(static_cast<Number>(chunk.counts.size() / 8))}},
+                    chunk.counts));
+    }
+    file_.Overwrite(Beginning(index));
+  }
+
+  std::vector<Written> chunks_;
+};
 
 }  // namespace
 
-struct BagFile::Impl {
-  std::string name;  // in errors
-  std::unique_ptr<rosbag::Bag> bag = std::make_unique<rosbag::Bag>();
-
-  explicit Impl(std::string shown) : name(std::move(shown)) {}
-  ~Impl() {
-    try {
-      Close();
-    } catch (const std::exception&) {
-    }
-  }
-
-  // A bag whose close failed is given up, not destroyed: it would close its file once more, and throw.
-  void Close() {
-    try {
-      if (bag) bag->close();
-    } catch (const std::exception&) {
-      static_cast<void>(bag.release());
-      throw;
-    }
-  }
-
-  template <class Message>
-  void Write(const std::string& topic, std::int64_t stamp_ns, const Message& message) {
-    Written(name, [&] { bag->write(topic, TimeOf(stamp_ns), message); });
-  }
-};
-
-BagFile::BagFile(const std::string& file, const std::string& name) : impl_(std::make_unique<Impl>(name)) {
-  Written(name, [&] { impl_->bag->open(file, rosbag::bagmode::Write); });
-}
-
-BagFile::~BagFile() = default;
-
-void BagFile::Image(const std::string& topic, std::int64_t stamp_ns, const cv::Mat& image, const char* encoding) {
-  auto message = Stamped<sensor_msgs::Image>(stamp_ns, "camera");
-  message.width = static_cast<std::uint32_t>(image.cols);
-  message.height = static_cast<std::uint32_t>(image.rows);
-  message.encoding = encoding;
-  message.step = message.width * static_cast<std::uint32_t>(image.elemSize());
-  message.data.assign(image.data, image.data + std::size_t{message.step} * message.height);
-  impl_->Write(topic, stamp_ns, message);
-}
-
-void BagFile::CameraInfo(const std::string& topic, std::int64_t stamp_ns, const vo::Camera& c) {
-  const bool fisheye = c.lens == vo::Lens::fisheye;
-  auto message = Stamped<sensor_msgs::CameraInfo>(stamp_ns, "camera");
-  message.width = static_cast<std::uint32_t>(c.width);
-  message.height = static_cast<std::uint32_t>(c.height);
-  message.distortion_model = fisheye ? "equidistant" : "plumb_bob";
-  message.D = fisheye ? std::vector{c.k1, c.k2, c.k3, c.k4} : std::vector{c.k1, c.k2, c.p1, c.p2, c.k3};
-  message.K = {c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1};
-  message.R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  message.P = {c.fx, 0, c.cx, 0, 0, c.fy, c.cy, 0, 0, 0, 1, 0};
-  impl_->Write(topic, stamp_ns, message);
-}
-
-void BagFile::Imu(const std::string& topic, std::int64_t stamp_ns, const Eigen::Vector3d& angular_rate,
-                  const Eigen::Vector3d& specific_force) {
-  auto message = Stamped<sensor_msgs::Imu>(stamp_ns, "imu");
-  message.orientation_covariance[0] = -1;  // no orientation in it
-  Set(angular_rate, message.angular_velocity);
-  Set(specific_force, message.linear_acceleration);
-  impl_->Write(topic, stamp_ns, message);
-}
-
-void BagFile::Pose(const std::string& topic, std::int64_t stamp_ns, const evaluation::StampedPose& T_WC) {
-  auto message = Stamped<geometry_msgs::PoseStamped>(stamp_ns, "world");
-  Set(T_WC.p_WC, message.pose.position);
-  Set(T_WC.q_WC, message.pose.orientation);
-  message.pose.orientation.w = T_WC.q_WC.w();
-  impl_->Write(topic, stamp_ns, message);
-}
-
-void BagFile::Close() {
-  Written(impl_->name, [&] { impl_->Close(); });
-}
+std::unique_ptr<MessageFile> MakeBag(const std::filesystem::path& file) { return std::make_unique<BagFile>(file); }
 
 }  // namespace vobench

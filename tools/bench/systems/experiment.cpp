@@ -40,9 +40,8 @@ Experiment ReadTrackSettings(settings::Document document) {
   out.odometry.motion.adaptive = true;
   out.odometry.landmark.proving_matches = kProvingMatches;
   out.odometry.filter.lag = kLag;
-  // Without a lag, weights cannot be uniform.
-  const bool own_lag = odometry.Child("filter").Has("lag") && !odometry.Child("filter").Has("weight");
-  if (!own_lag) out.odometry.filter.weight = vo::Weight::uniform;
+  odometry.Child("filter").Read("lag", out.odometry.filter.lag);
+  if (out.odometry.filter.lag > 0) out.odometry.filter.weight = vo::Weight::uniform;
   out.odometry.filter.particles = kParticles;
   out.odometry.calibration.estimate = true;
   const bool position_noise_given = odometry.Child("motion").Has("position_noise");
@@ -121,6 +120,8 @@ std::vector<settings::FieldRow> SettingsTable() {
   table.Child("camera", scenario.camera);
   scenario.camera.lens = sim::Lens::fisheye;
   table.Child("camera", scenario.camera);
+  sim::RigCamera of_rig;
+  table.Child("cameras.N", of_rig);
   table.Child("sensor", scenario.sensor);
   table.Child("render", scenario.render);
   table.Child("time", scenario.time);

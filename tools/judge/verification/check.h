@@ -44,6 +44,9 @@ class Check {
     worst_.ratio = worst_.value = kInfinity;
   }
 
+  // Of one part of what is checked.
+  void Prefix(const std::string& part) { name_ = part + ": " + name_; }
+
   const std::string& name() const { return name_; }
   const std::string& unit() const { return unit_; }
   std::size_t count() const { return worst_.count; }

@@ -25,42 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// `timestamp` and so many numbers, or a file name (numbers = 0), on each line. separator ',': stamps in nanoseconds.
-std::vector<Entry> ReadTable(const fs::path& file, std::size_t numbers, bool stamped, bool increasing, char separator,
-                             Check& files) {
-  std::vector<Entry> entries;
-  for (const evaluation::Line& line : evaluation::Lines(file, separator)) {
-    bool good = true;
-    const auto fail = [&](const std::string& what) {
-      files.Fail(file.filename().string() + ":" + std::to_string(line.number) + ": " + what);
-      good = false;
-    };
-    const std::size_t first = stamped ? 1 : 0, words = first + std::max<std::size_t>(numbers, 1);
-    if (line.tokens.size() != words) {
-      fail(std::to_string(line.tokens.size()) + " words, not " + std::to_string(words));
-      continue;
-    }
-    Entry entry;
-    if (stamped) {
-      const std::string& text = line.tokens[0].text;
-      auto stamp = separator == ' ' ? base::ParseSeconds(text) : base::ParseWhole(text);
-      if (separator != ' ' && (text.size() > 18 || text.starts_with('-'))) stamp.reset();
-      if (!stamp) fail("'" + text + "' is not a time stamp");
-      entry.stamp_ns = stamp.value_or(0);
-    }
-    if (numbers == 0) entry.file = line.tokens[1].text;
-    for (std::size_t i = first; i < first + numbers; ++i) {
-      const auto number = evaluation::ParseNumber(line.tokens[i].text);
-      if (!number) fail("'" + line.tokens[i].text + "' is not a number");
-      entry.numbers.push_back(number.value_or(0));
-    }
-    if (!good) continue;
-    if (increasing && !entries.empty() && entry.stamp_ns <= entries.back().stamp_ns) fail("time does not increase");
-    entries.push_back(std::move(entry));
-  }
-  return entries;
-}
-
 std::vector<std::int64_t> Stamps(const std::vector<Entry>& entries) {
   std::vector<std::int64_t> stamps;
   for (const Entry& entry : entries) stamps.push_back(entry.stamp_ns);
@@ -140,7 +104,7 @@ void ReadManifest(const fs::path& file, Sequence& s, Check& files) {
   try {
     const nlohmann::json& scenario = manifest["scenario"];
     const nlohmann::json sensor = scenario.value("sensor", nlohmann::json::object());
-    s.rolling_shutter = sensor.is_object() && sensor.value("rolling_shutter", 0.0) != 0;
+    s.rolling_shutter |= sensor.is_object() && sensor.value("rolling_shutter", 0.0) != 0;
     const nlohmann::json trajectory = scenario.value("trajectory", nlohmann::json::object());
     if (!trajectory.is_object() || trajectory.value("type", "") != "sampled") return;
     s.roughness = {true, trajectory.value("position_noise", 0.0), trajectory.value("orientation_noise", 0.0),
@@ -150,16 +114,22 @@ void ReadManifest(const fs::path& file, Sequence& s, Check& files) {
   }
 }
 
+vo::Pose ReadPlace(settings::Section& section) {
+  std::array<double, 3> p{0, 0, 0};
+  std::array<double, 4> q{0, 0, 0, 1};
+  section.Read("position", p);
+  section.Read("orientation", q);
+  return {{p[0], p[1], p[2]}, Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized()};
+}
+
 void ReadImu(const fs::path& folder, Sequence& s, Check& files) {
   s.has_imu = true;
   s.imu.readings = ReadTable(folder / "data.csv", 6, true, true, ',', files);
   settings::Document document = settings::Document::FromFile(folder / "sensor.yaml");
   settings::Section root = document.root();
-  std::array<double, 3> p{0, 0, 0}, g{0, -9.81, 0};
-  std::array<double, 4> q{0, 0, 0, 1};
+  std::array<double, 3> g{0, -9.81, 0};
   root.Require("rate", s.imu.rate_hz, settings::Range::Positive());
-  root.Read("position", p);
-  root.Read("orientation", q);
+  s.imu.T_CI = ReadPlace(root);
   root.Read("gravity", g);
   root.ReadChoice("reading", s.imu.mean, {{"mean", true}, {"instant", false}});
   root.Read("gyroscope_noise", s.imu.gyroscope_noise);
@@ -167,7 +137,6 @@ void ReadImu(const fs::path& folder, Sequence& s, Check& files) {
   root.Read("gyroscope_walk", s.imu.gyroscope_walk);
   root.Read("accelerometer_walk", s.imu.accelerometer_walk);
   document.ThrowIfBad();
-  s.imu.T_CI = {{p[0], p[1], p[2]}, Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized()};
   s.imu.gravity_W = {g[0], g[1], g[2]};
 }
 
@@ -215,6 +184,41 @@ void RequirePossibleSize(const Sequence& s) {
 
 }  // namespace
 
+std::vector<Entry> ReadTable(const fs::path& file, std::size_t numbers, bool stamped, bool increasing, char separator,
+                             Check& files) {
+  std::vector<Entry> entries;
+  for (const evaluation::Line& line : evaluation::Lines(file, separator)) {
+    bool good = true;
+    const auto fail = [&](const std::string& what) {
+      files.Fail(file.filename().string() + ":" + std::to_string(line.number) + ": " + what);
+      good = false;
+    };
+    const std::size_t first = stamped ? 1 : 0, words = first + std::max<std::size_t>(numbers, 1);
+    if (line.tokens.size() != words) {
+      fail(std::to_string(line.tokens.size()) + " words, not " + std::to_string(words));
+      continue;
+    }
+    Entry entry;
+    if (stamped) {
+      const std::string& text = line.tokens[0].text;
+      auto stamp = separator == ' ' ? base::ParseSeconds(text) : base::ParseWhole(text);
+      if (separator != ' ' && (text.size() > 18 || text.starts_with('-'))) stamp.reset();
+      if (!stamp) fail("'" + text + "' is not a time stamp");
+      entry.stamp_ns = stamp.value_or(0);
+    }
+    if (numbers == 0) entry.file = line.tokens[1].text;
+    for (std::size_t i = first; i < first + numbers; ++i) {
+      const auto number = evaluation::ParseNumber(line.tokens[i].text);
+      if (!number) fail("'" + line.tokens[i].text + "' is not a number");
+      entry.numbers.push_back(number.value_or(0));
+    }
+    if (!good) continue;
+    if (increasing && !entries.empty() && entry.stamp_ns <= entries.back().stamp_ns) fail("time does not increase");
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
 std::string Sequence::FileAt(const std::string& stream, std::size_t frame) const {
   const auto list = images.find(stream);
   if (list == images.end()) return "";
@@ -222,7 +226,7 @@ std::string Sequence::FileAt(const std::string& stream, std::size_t frame) const
   return at != list->second.end() && at->stamp_ns == stamps[frame] ? at->file : "";
 }
 
-Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
+Sequence ReadSequence(const fs::path& folder, const fs::path& manifest, Check& files, Check& stamps) {
   Sequence s;
   s.folder = folder;
   for (const char* needed : {"rgb.txt", "groundtruth.txt", "camera.yaml"}) {
@@ -230,8 +234,10 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
       throw std::runtime_error((folder / needed).string() + ": is not there, and is needed");
   }
   s.camera = vo::ReadCamera(folder / "camera.yaml");
-  for (const char* name : {"rgb", "depth", "depth_exr", "distance", "normals", "surface_id", "flow", "flow_backward",
-                           "occlusion", "occlusion_backward", "moving"}) {
+  s.rolling_shutter = s.camera.readout_s.value_or(0) != 0;
+  for (const char* name :
+       {"rgb", "depth", "depth_exr", "distance", "normals", "surface_id", "flow", "flow_backward", "occlusion",
+        "occlusion_backward", "moving", "instance", "semantic", "boxes", "disparity", "disparity_occlusion"}) {
     const fs::path list = folder / (std::string(name) + ".txt");
     if (fs::exists(list)) s.images[name] = ReadTable(list, 0, true, true, ' ', files);
   }
@@ -247,9 +253,14 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
   CompareStamps(s, stamps);
   PlacePoses(s, "groundtruth", s.poses, s.has_pose, files);
   for (Object& object : s.objects) PlacePoses(s, "objects/" + object.name, object.poses, object.has_pose, files);
-  if (fs::exists(folder / "manifest.json")) ReadManifest(folder / "manifest.json", s, files);
+  if (fs::exists(manifest / "manifest.json")) ReadManifest(manifest / "manifest.json", s, files);
   if (fs::exists(folder / "surfaces.txt")) {
     for ([[maybe_unused]] const evaluation::Line& line : evaluation::Lines(folder / "surfaces.txt")) ++s.surfaces;
+  }
+  try {
+    if (fs::exists(folder / "labels.json")) s.classes = ReadLegend(folder / "labels.json");
+  } catch (const std::exception& error) {
+    files.Fail(error.what());
   }
   if (fs::exists(folder / "landmarks.txt"))
     s.landmarks = ReadTable(folder / "landmarks.txt", 5, false, false, ' ', files);
@@ -258,6 +269,31 @@ Sequence ReadSequence(const fs::path& folder, Check& files, Check& stamps) {
   }
   if (fs::exists(folder / "imu0" / "data.csv")) ReadImu(folder / "imu0", s, files);
   return s;
+}
+
+Sequence ReadBody(const fs::path& folder, Check& files) {
+  Sequence s;
+  s.texts["groundtruth"] = ReadTable(folder / "groundtruth.txt", 7, true, true, ' ', files);
+  s.texts["velocity"] = ReadTable(folder / "velocity.txt", 6, true, true, ' ', files);
+  s.stamps = Stamps(s.texts["groundtruth"]);
+  PlacePoses(s, "groundtruth", s.poses, s.has_pose, files);
+  if (fs::exists(folder / "manifest.json")) ReadManifest(folder / "manifest.json", s, files);
+  if (fs::exists(folder / "imu0" / "data.csv")) ReadImu(folder / "imu0", s, files);
+  return s;
+}
+
+std::vector<RigCamera> ReadRig(const fs::path& folder) {
+  std::vector<RigCamera> cameras;
+  if (!fs::exists(folder / "rig.yaml")) return cameras;
+  settings::Document document = settings::Document::FromFile(folder / "rig.yaml");
+  for (settings::Section& item : document.root().List("cameras")) {
+    RigCamera& camera = cameras.emplace_back();
+    item.Require("name", camera.name);
+    camera.T_BC = ReadPlace(item);
+    item.Require("trigger_offset", camera.trigger_offset_s, settings::Unit::time);
+  }
+  document.ThrowIfBad();
+  return cameras;
 }
 
 cv::Mat ReadPicture(const fs::path& file) {

@@ -20,7 +20,11 @@ const std::map<std::string, std::vector<int>>& Types() {
                                                                 {"flow_backward", {CV_32FC2}},
                                                                 {"occlusion", {CV_8UC1}},
                                                                 {"occlusion_backward", {CV_8UC1}},
-                                                                {"moving", {CV_8UC1}}};
+                                                                {"moving", {CV_8UC1}},
+                                                                {"instance", {CV_16UC1}},
+                                                                {"semantic", {CV_8UC1}},
+                                                                {"disparity", {CV_32FC1}},
+                                                                {"disparity_occlusion", {CV_8UC1}}};
   return types;
 }
 
@@ -81,10 +85,13 @@ cv::Mat Frames::Smooth(std::size_t frame) {
   return at->second;
 }
 
+Relative Between(const vo::Pose& a, const vo::Pose& b) {
+  return {(b.q_WC.conjugate() * a.q_WC).toRotationMatrix(), b.q_WC.conjugate() * (a.p_WC - b.p_WC)};
+}
+
 std::optional<Relative> Between(const Sequence& s, std::size_t from, std::size_t to) {
   if (!s.has_pose[from] || !s.has_pose[to]) return std::nullopt;
-  const vo::Pose &a = s.poses[from], &b = s.poses[to];
-  return Relative{(b.q_WC.conjugate() * a.q_WC).toRotationMatrix(), b.q_WC.conjugate() * (a.p_WC - b.p_WC)};
+  return Between(s.poses[from], s.poses[to]);
 }
 
 PixelMotions::PixelMotions(Frames& frames, std::size_t from, std::size_t to) : mask_(frames.Picture("moving", from)) {

@@ -47,6 +47,7 @@ struct Relative {
   Eigen::Matrix3d R;
   Eigen::Vector3d t;
 };
+Relative Between(const vo::Pose& from, const vo::Pose& to);
 std::optional<Relative> Between(const Sequence& sequence, std::size_t from, std::size_t to);
 
 // From C of one frame to C of another, for each pixel of the one: with the world that stands still or, where the mask

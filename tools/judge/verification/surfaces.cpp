@@ -197,33 +197,14 @@ void SurfaceIds(Frames& frames, std::size_t frame, Check& check) {
 // A point that is seen here lies, in a neighbouring frame, on what is seen there: the inverse depth of a plane is
 // linear in the picture. Half of the samples must be within what rounding explains; the others may be hidden there.
 void DepthInNeighbours(Frames& frames, std::size_t frame, Check& check) {
-  const cv::Mat here = frames.Depth(frame);
-  if (here.empty() || !frames.sequence().has_pose[frame]) return;
   double best[2] = {kNone, kNone};  // of the world, of objects
   for (const std::size_t partner : Partners(frame, frames.count())) {
-    const cv::Mat there = frames.Depth(partner);
     const PixelMotions motions(frames, frame, partner);
-    if (there.empty() || !motions.known()) continue;
+    if (!motions.known()) continue;
     std::vector<double> ratios[2];
-    for (int y = 1; y < here.rows; y += 3) {
-      for (int x = 1; x < here.cols; x += 3) {
-        const std::size_t i =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(here.cols) + static_cast<std::size_t>(x);
-        const double Z = At(here, i);
-        if (Z == 0) continue;
-        double ratio = kNone;
-        for (const Relative& move : motions.Of(i)) {
-          const Vector3d ray = move.R * frames.rays()[i], X = Z * ray + move.t;
-          if (X.z() <= 0) continue;
-          const Vector2d pixel = frames.sequence().camera.Project(X);
-          const auto c = CornersAt(there, pixel.x(), pixel.y());
-          if (!c) continue;
-          if (const auto match = MatchAt(frames, there, *c, Z, ray, X))
-            ratio = std::min(ratio, match->difference / (match->bound + match->bend / 4));
-        }
-        if (ratio < kNone) ratios[motions.IsMoving(i)].push_back(ratio);
-      }
-    }
+    MatchDepths(
+        frames, frame, frames, partner, [&](std::size_t i) { return motions.Of(i); },
+        [&](std::size_t i, double ratio) { ratios[motions.IsMoving(i)].push_back(ratio); });
     for (std::size_t kind = 0; kind < 2; ++kind) {
       // An object is small: more of it than half may be hidden in a neighbour, but not three quarters in both.
       const std::size_t middle = ratios[kind].size() / (kind == 0 ? 2 : 4);
@@ -333,35 +314,10 @@ void FlowThereAndBack(Frames& frames, std::size_t frame, Check& check) {
 }
 
 void Occlusion(Frames& frames, std::size_t frame, const std::string& stream, std::size_t to, Check& check) {
-  const cv::Mat hidden = frames.Picture(stream, frame), here = frames.Depth(frame), there = frames.Depth(to);
   const PixelMotions motions(frames, frame, to);
-  if (hidden.empty() || here.empty() || there.empty() || !motions.known()) return;
-  Share share;
-  for (std::size_t i = 0; i < here.total(); ++i) {
-    const double Z = At(here, i);
-    const bool is_hidden = hidden.at<std::uint8_t>(static_cast<int>(i)) != 0;
-    if (Z == 0) continue;
-    // Whether the mask of what is hidden is right, if the pixel moves so; none: at the picture's border.
-    const auto is_right = [&](const Relative& move) -> std::optional<bool> {
-      const Vector3d ray = move.R * frames.rays()[i], X = Z * ray + move.t;
-      const Vector2d pixel = X.z() > 0 ? frames.sequence().camera.Project(X) : Vector2d(-9, -9);
-      if (!frames.sequence().camera.IsUsable(pixel, -0.001)) return is_hidden;
-      if (!frames.sequence().camera.IsUsable(pixel, 0.001)) return std::nullopt;
-      const double error = 2 * frames.DepthError(X.z()) + 1e-5 * X.z();
-      if (!is_hidden) return IsSeen(RangeAround(there, pixel.x(), pixel.y(), 1), X.z(), error);
-      // It is not hidden where just this point is seen, on an even surface.
-      const auto c = CornersAt(there, pixel.x(), pixel.y());
-      const auto match = c ? MatchAt(frames, there, *c, Z, ray, X) : std::nullopt;
-      return !match || match->bend > 2 * match->bound || match->difference > match->bound;
-    };
-    std::optional<bool> right;
-    for (const Relative& move : motions.Of(i)) {
-      const std::optional<bool> answer = is_right(move);
-      if (answer) right = right.value_or(false) || *answer;
-    }
-    if (right) share.Add(*right);
-  }
-  share.Into(check, stream + " " + frames.Stamp(frame));
+  if (motions.known())
+    CompareHidden(
+        frames, frame, stream, frames, to, [&](std::size_t i) { return motions.Of(i); }, check);
 }
 
 void Landmarks(Frames& frames, std::size_t frame, std::vector<Check>& checks) {
@@ -394,6 +350,64 @@ void Landmarks(Frames& frames, std::size_t frame, std::vector<Check>& checks) {
 }
 
 }  // namespace
+
+void MatchDepths(Frames& from, std::size_t frame, Frames& to, std::size_t to_frame, const Motions& motions,
+                 const std::function<void(std::size_t, double)>& add) {
+  const cv::Mat here = from.Depth(frame), there = to.Depth(to_frame);
+  if (here.empty() || there.empty()) return;
+  for (int y = 1; y < here.rows; y += 3) {
+    for (int x = 1; x < here.cols; x += 3) {
+      const std::size_t i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(here.cols) + static_cast<std::size_t>(x);
+      const double Z = At(here, i);
+      if (Z == 0) continue;
+      double ratio = kNone;
+      for (const Relative& move : motions(i)) {
+        const Vector3d ray = move.R * from.rays()[i], X = Z * ray + move.t;
+        if (X.z() <= 0) continue;
+        const Vector2d pixel = to.sequence().camera.Project(X);
+        const auto c = CornersAt(there, pixel.x(), pixel.y());
+        if (!c) continue;
+        if (const auto match = MatchAt(to, there, *c, Z, ray, X))
+          ratio = std::min(ratio, match->difference / (match->bound + match->bend / 4));
+      }
+      if (ratio < kNone) add(i, ratio);
+    }
+  }
+}
+
+void CompareHidden(Frames& from, std::size_t frame, const std::string& stream, Frames& to, std::size_t to_frame,
+                   const Motions& motions, Check& check) {
+  const cv::Mat hidden = from.Picture(stream, frame), here = from.Depth(frame), there = to.Depth(to_frame);
+  if (hidden.empty() || here.empty() || there.empty()) return;
+  const vo::Camera& camera = to.sequence().camera;
+  Share share;
+  for (std::size_t i = 0; i < here.total(); ++i) {
+    const double Z = At(here, i);
+    const bool is_hidden = hidden.at<std::uint8_t>(static_cast<int>(i)) != 0;
+    if (Z == 0) continue;
+    // Whether the mask of what is hidden is right, if the pixel moves so; none: at the picture's border.
+    const auto is_right = [&](const Relative& move) -> std::optional<bool> {
+      const Vector3d ray = move.R * from.rays()[i], X = Z * ray + move.t;
+      const Vector2d pixel = X.z() > 0 ? camera.Project(X) : Vector2d(-9, -9);
+      if (!camera.IsUsable(pixel, -0.001)) return is_hidden;
+      if (!camera.IsUsable(pixel, 0.001)) return std::nullopt;
+      const double error = 2 * to.DepthError(X.z()) + 1e-5 * X.z();
+      if (!is_hidden) return IsSeen(RangeAround(there, pixel.x(), pixel.y(), 1), X.z(), error);
+      // It is not hidden where just this point is seen, on an even surface.
+      const auto c = CornersAt(there, pixel.x(), pixel.y());
+      const auto match = c ? MatchAt(to, there, *c, Z, ray, X) : std::nullopt;
+      return !match || match->bend > 2 * match->bound || match->difference > match->bound;
+    };
+    std::optional<bool> right;
+    for (const Relative& move : motions(i)) {
+      const std::optional<bool> answer = is_right(move);
+      if (answer) right = right.value_or(false) || *answer;
+    }
+    if (right) share.Add(*right);
+  }
+  share.Into(check, stream + " " + from.Stamp(frame));
+}
 
 std::vector<Check> SurfaceChecks(const Sequence& sequence) {
   std::vector<Check> checks = {{"depth.png against depth_exr", "m"},

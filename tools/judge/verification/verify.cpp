@@ -1,26 +1,52 @@
 #include "tools/judge/verification/verify.h"
 
+#include <memory>
+
 #include "tools/judge/verification/comparisons.h"
 
 namespace verification {
+namespace {
 
-std::vector<Check> Verify(const std::filesystem::path& folder,
-                          const std::function<void(std::size_t, std::size_t)>& progress) {
-  Check files("files: present, readable, of one size", ""), stamps("stamps: increasing, the same in all lists", "");
-  const Sequence sequence = ReadSequence(folder, files, stamps);
-  Frames frames(sequence, files);
-  std::vector<Check> pictures = PhotometricChecks(), surfaces = SurfaceChecks(sequence);
+using Progress = std::function<void(std::size_t, std::size_t)>;
+
+std::vector<Check> VerifyCamera(Part& part, const Progress& progress) {
+  const Sequence& sequence = part.sequence;
+  Frames& frames = part.frames;
+  std::vector<Check> pictures = PhotometricChecks(), surfaces = SurfaceChecks(sequence), labels = LabelChecks(sequence);
   for (std::size_t frame = 0; frame < frames.count(); ++frame) {
-    for (const auto& [stream, list] : sequence.images) frames.Picture(stream, frame);
+    for (const auto& [stream, list] : sequence.images) {
+      if (stream != "boxes") frames.Picture(stream, frame);
+    }
     ComparePictures(frames, frame, pictures);
     CompareSurfaces(frames, frame, surfaces);
+    CompareLabels(frames, frame, labels);
     if (progress) progress(frame + 1, frames.count());
   }
-  std::vector<Check> checks = {files, stamps};
-  for (const auto& part : {CheckMotion(sequence), pictures, surfaces}) {
-    checks.insert(checks.end(), part.begin(), part.end());
-  }
+  std::vector<Check> checks = {part.files, part.stamps};
+  for (const auto& of : {CheckMotion(sequence), pictures, surfaces, labels})
+    checks.insert(checks.end(), of.begin(), of.end());
   return checks;
+}
+
+}  // namespace
+
+std::vector<Check> Verify(const std::filesystem::path& folder, const Progress& progress) {
+  const std::vector<RigCamera> rig = ReadRig(folder);
+  if (rig.empty()) return VerifyCamera(*std::make_unique<Part>(folder, folder), progress);
+  std::vector<Check> all;
+  std::vector<std::unique_ptr<Part>> parts;
+  for (std::size_t c = 0; c < rig.size(); ++c) {
+    Part& part = *parts.emplace_back(std::make_unique<Part>(folder / rig[c].name, folder, rig[c].T_BC.p_WC.norm()));
+    const auto of_all = [&](std::size_t done, std::size_t count) {
+      if (progress) progress(c * count + done, rig.size() * count);
+    };
+    for (Check& check : VerifyCamera(part, of_all)) {
+      check.Prefix(rig[c].name);
+      if (check.count() > 0) all.push_back(std::move(check));
+    }
+  }
+  for (Check& check : CheckRig(folder, rig, parts)) all.push_back(std::move(check));
+  return all;
 }
 
 }  // namespace verification

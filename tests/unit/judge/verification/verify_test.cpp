@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <opencv2/core.hpp>
 
 #include "sim/sequence/encode.h"
@@ -27,7 +28,8 @@ constexpr const char* kAll =
 
 void Render(const fs::path& folder, std::vector<std::pair<std::string, std::string>> settings, std::int64_t frames,
             const std::string& scenario = "tiny.yaml") {
-  const sim::Simulator simulator(sim::LoadScenario(fs::path(VOBENCH_SOURCE_DIR) / "scenes" / scenario, settings), 2);
+  const fs::path file = fs::path(VOBENCH_SOURCE_DIR) / "scenes" / scenario;  // or `scenario`, where that is absolute
+  const sim::Simulator simulator(sim::LoadScenario(file, settings), 2);
   const sim::SequenceContent content{sim::Layout::tum, 0, frames, "test"};
   sim::SequenceWriter writer(simulator, folder, content, 2, sim::SequenceWriter::Start::fresh);
   while (writer.Wait() > 0) {
@@ -299,6 +301,43 @@ void RenderMoving(const fs::path& folder, const std::string& truth) {
 }
 std::string AllAndMoving() { return std::string(kAll).replace(0, 1, "[moving, "); }
 
+// Each kind of a wrong label, on the scene with objects.
+TEST_F(VerifyTest, Labels) {
+  const fs::path good = here_.path() / "labels";
+  RenderMoving(good, "[depth, instance, semantic, boxes]");
+  for (const Check& check : Verify(good)) EXPECT_THAT(check.failures(), IsEmpty()) << check.name();
+  const auto spoilt = [&](const std::string& stream, const std::function<void(const fs::path&)>& spoil) {
+    const fs::path bad = here_.path() / "bad";
+    fs::remove_all(bad);
+    fs::copy(good, bad, fs::copy_options::recursive);
+    spoil(bad / stream / (Stamp(2) + (stream == "boxes" ? ".csv" : ".png")));
+    return Failures(bad);
+  };
+  const auto with_pixel = [&](const std::string& stream, const auto& change) {
+    return spoilt(stream, [&](const fs::path& file) {
+      cv::Mat picture = ReadPicture(file);
+      change(picture);
+      WriteBytes(file, picture.depth() == CV_8U
+                           ? sim::EncodePng(picture.cols, picture.rows, 1, std::span(picture.data, picture.total()))
+                           : sim::EncodePng(picture.cols, picture.rows, 1,
+                                            std::span(picture.ptr<std::uint16_t>(), picture.total())));
+    });
+  };
+  // One pixel of another instance; the same in both pictures, where the legend has nothing to say.
+  EXPECT_THAT(with_pixel("instance", [](cv::Mat& ids) { ids.at<std::uint16_t>(0, 0) = 2; }),
+              Contains(HasSubstr("boxes against the instances: boxes/" + Stamp(2) + ".csv instance 2")));
+  EXPECT_THAT(with_pixel("instance", [](cv::Mat& ids) { ids.at<std::uint16_t>(0, 0) = 9; }),
+              Contains(HasSubstr("as the legend: instance " + Stamp(2))));
+  EXPECT_THAT(with_pixel("semantic", [](cv::Mat& classes) { classes.at<std::uint8_t>(5, 5) ^= 1; }),
+              Contains(HasSubstr("as the legend: instance " + Stamp(2))));
+  EXPECT_THAT(spoilt("boxes", [](const fs::path& file) { Alter(file, 2, 4, 1, ','); }),
+              Contains(HasSubstr("boxes against the instances: boxes/" + Stamp(2) + ".csv instance 2")));
+  EXPECT_THAT(spoilt("boxes", [](const fs::path& file) { Alter(file, 2, 9, 0.3, ','); }),
+              Contains(HasSubstr("lies in its instance's box: boxes/" + Stamp(2))));
+  EXPECT_THAT(spoilt("boxes", [](const fs::path& file) { fs::remove(file); }),
+              Contains(HasSubstr("boxes against the instances")));
+}
+
 TEST_F(VerifyTest, MovingObjectsPass) {
   RenderMoving(here_.path() / "moving", AllAndMoving());
   for (const Check& check : Verify(here_.path() / "moving")) {
@@ -395,6 +434,117 @@ TEST_F(VerifyTest, ACameraOfAnySizeIsRefused) {
       EXPECT_THAT(error.what(), HasSubstr(said));
     }
   }
+}
+
+// Two cameras side by side before a smooth path, with an IMU off the body.
+void RenderRig(const fs::path& folder, const std::vector<std::pair<std::string, std::string>>& more = {}) {
+  const std::string lens = "width: 160, height: 120, fx: 131.25, fy: 131.25, cx: 79.5, cy: 59.5, ";
+  std::vector<std::pair<std::string, std::string>> settings = {
+      {"cameras", "[{" + lens + "position: [-0.06, 0, 0.02]}, {" + lens + "position: [0.06, 0, 0.02]}]"},
+      {"truth", "[depth, depth_exr, disparity, imu, instance, boxes]"},
+      {"imu.rate", "1 kHz"},
+      {"imu.position", "[0.02, -0.01, 0.03]"},
+      {"imu.orientation", "[0.5, 0.5, 0.5, 0.5]"}};
+  settings.insert(settings.end(), more.begin(), more.end());
+  std::string text = Read(fs::path(VOBENCH_SOURCE_DIR) / "scenes/tiny.yaml");
+  const std::size_t camera = text.find("\ncamera:");
+  text.erase(camera, text.find('\n', camera + 1) - camera);
+  const fs::path scenario = folder.parent_path() / "rig.yaml";
+  for (std::size_t at = 0; (at = text.find("file: room/", at)) != std::string::npos; at += 6)
+    text.insert(at + 6, std::string(VOBENCH_SOURCE_DIR) + "/scenes/");
+  Write(scenario, text);
+  Render(folder, settings, 6, scenario);
+}
+
+void Replace(const fs::path& file, const std::string& from, const std::string& to) {
+  std::string text = Read(file);
+  ASSERT_NE(text.find(from), std::string::npos) << file << ": " << from;
+  Write(file, text.replace(text.find(from), from.size(), to));
+}
+
+TEST_F(VerifyTest, ARigAndEachFaultOfOne) {
+  const fs::path good = here_.path() / "rig", bad = here_.path() / "bad";
+  RenderRig(good);
+  std::size_t made = 0;
+  for (const Check& check : Verify(good)) {
+    EXPECT_THAT(check.failures(), IsEmpty()) << check.name() << ": " << check.value() << " > " << check.bound();
+    made += check.count() > 0;
+  }
+  EXPECT_GE(made, 30u);
+  const auto spoilt = [&](const std::function<void()>& spoil) {
+    fs::remove_all(bad);
+    fs::copy(good, bad, fs::copy_options::recursive);
+    spoil();
+    return Failures(bad);
+  };
+  const std::string left = "position: [-0.06, 0, 0.02]", right = "position: [0.06, 0, 0.02]";
+  // T_BC of the other camera, and T_CB in its place.
+  EXPECT_THAT(spoilt([&] {
+                Replace(bad / "rig.yaml", left, "the left");
+                Replace(bad / "rig.yaml", right, left);
+                Replace(bad / "rig.yaml", "the left", right);
+              }),
+              Contains(HasSubstr("cameras' poses against the body's: cam0/groundtruth.txt")));
+  EXPECT_THAT(spoilt([&] { Replace(bad / "rig.yaml", right, "position: [-0.06, 0, -0.02]"); }),
+              Contains(HasSubstr("cameras' poses against the body's: cam1/groundtruth.txt")));
+  // The pictures of one camera in the other's folder, all poses as they should be.
+  EXPECT_THAT(spoilt([&] {
+                fs::remove_all(bad / "cam1/depth_exr");
+                fs::copy(bad / "cam0/depth_exr", bad / "cam1/depth_exr");
+              }),
+              Contains(HasSubstr("depth in the first camera: median: cam1")));
+  // The lens.
+  EXPECT_THAT(spoilt([&] { Replace(bad / "cam1/camera.yaml", "fx: 131.25", "fx: 132.5"); }),
+              Contains(HasSubstr("depth in the first camera: median: cam1")));
+  EXPECT_THAT(spoilt([&] { Replace(bad / "cam1/camera.yaml", "k1: 0", "k1: 0.02"); }),
+              Contains(HasSubstr("depth in the first camera: median: cam1")));
+  // An instance; the base of the pair; the IMU's place.
+  EXPECT_THAT(spoilt([&] {
+                const fs::path file = bad / "cam1/instance" / (Stamp(2) + ".png");
+                cv::Mat ids = ReadPicture(file);
+                ids.at<std::uint16_t>(60, 80) = 0;
+                WriteBytes(file,
+                           sim::EncodePng(ids.cols, ids.rows, 1, std::span(ids.ptr<std::uint16_t>(), ids.total())));
+              }),
+              Contains(HasSubstr("cam1: labels: where there is depth, as the legend")));
+  EXPECT_THAT(spoilt([&] { Swap(bad / "cam0", "disparity", ".exr", 2, 3); }),
+              Contains(HasSubstr("disparity against depth and the base: disparity " + Stamp(2))));
+  EXPECT_THAT(spoilt([&] { Replace(bad / "imu0/sensor.yaml", "[0.5, 0.5, 0.5, 0.5]", "[0.5, -0.5, 0.5, 0.5]"); }),
+              Contains(HasSubstr("body: IMU against poses")));
+}
+
+TEST_F(VerifyTest, TheSignOfATriggerOffset) {
+  const fs::path good = here_.path() / "rig";
+  RenderRig(good, {{"cameras.1.trigger_offset", "4 ms"}, {"truth", "[depth, depth_exr, imu]"}});
+  EXPECT_THAT(Failures(good), IsEmpty());
+  Replace(good / "rig.yaml", "trigger_offset: 0.004 s", "trigger_offset: -0.004 s");
+  EXPECT_THAT(Failures(good), Contains(HasSubstr("stamps less the trigger offsets: cam1")));
+}
+
+// Pictures taken before their stamps, on a rig whose files agree.
+TEST_F(VerifyTest, PicturesOfAnotherTriggerOffset) {
+  const fs::path good = here_.path() / "rig", other = here_.path() / "other/rig";
+  fs::create_directories(other.parent_path());
+  RenderRig(good, {{"cameras.1.trigger_offset", "8 ms"}, {"truth", "[depth, depth_exr]"}});
+  RenderRig(other, {{"truth", "[depth, depth_exr]"}});
+  for (const fs::directory_entry& entry : fs::directory_iterator(other / "cam1/depth_exr")) {
+    char stamp[32];
+    std::snprintf(stamp, sizeof stamp, "%.9f.exr", std::stod(entry.path().stem()) + 0.008);
+    ASSERT_TRUE(fs::copy_file(entry.path(), good / "cam1/depth_exr" / stamp, fs::copy_options::overwrite_existing));
+  }
+  EXPECT_THAT(Failures(good), Contains(HasSubstr("depth in the first camera: median: cam1")));
+}
+
+// Where the path is rough, a camera's arm takes the body's turns.
+TEST_F(VerifyTest, ARigOnASampledPath) {
+  const fs::path folder = here_.path() / "rig";
+  RenderRig(folder,
+            {{"truth", "[depth, imu]"},
+             {"imu.reading", "mean"},
+             {"trajectory",
+              "{type: sampled, start: {position: [2.0, 1.41, 2.55], look_at: [2.35, 1.1, 0.0]}, position_noise: "
+              "0.05, orientation_noise: 2}"}});
+  EXPECT_THAT(Failures(folder), IsEmpty());
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ using Streams = std::set<TruthStream>;
 Streams All() {
   Streams all;
   for (int i = 0; i <= static_cast<int>(TruthStream::imu); ++i) all.insert(static_cast<TruthStream>(i));
+  all.erase(TruthStream::disparity);  // of rigs
   return all;
 }
 
@@ -54,6 +55,7 @@ std::vector<float> ReadExr(const std::filesystem::path& path, const std::vector<
 TEST(TruthStreams, EachHasAName) {
   TruthParams truth;
   truth.streams = All();
+  truth.streams.insert(TruthStream::disparity);
   settings::FieldRows table;
   Visit(table, truth);
   EXPECT_EQ(table.rows.at(0).value, table.rows.at(0).range);
@@ -65,10 +67,10 @@ TEST(TruthStreams, FilesOfAFrame) {
   const Simulator simulator(LoadScenario(world.scenario()), 1), parallel(LoadScenario(world.scenario()), 3);
   const auto first = ByName(FrameStreams(simulator, 0, All())), middle = ByName(FrameStreams(simulator, 4, All())),
              last = ByName(FrameStreams(simulator, 8, All()));
-  EXPECT_EQ(middle.size(), 11u);
-  EXPECT_EQ(first.size(), 9u);
+  EXPECT_EQ(middle.size(), 14u);
+  EXPECT_EQ(first.size(), 12u);
   EXPECT_FALSE(first.contains("flow_backward/0.000000000.flo"));
-  EXPECT_EQ(last.size(), 9u);
+  EXPECT_EQ(last.size(), 12u);
   EXPECT_FALSE(last.contains("flow/0.266666667.flo"));
   EXPECT_TRUE(middle == ByName(FrameStreams(parallel, 4, All())));
   EXPECT_EQ(FrameStreams(simulator, 4, {TruthStream::normals, TruthStream::imu}).size(), 1u);
