@@ -16,12 +16,12 @@ namespace sim {
 
 // A mesh file set into the world: X_W = position + R(orientation) * scale * X_file.
 struct MeshDescription {
-  std::string name;            // no other mesh or object of the world has it
-  std::string category;        // `class` of a scenario
   std::filesystem::path file;  // glTF, GLB, OBJ, PLY, and whatever else assimp reads
   glm::dvec3 position{0.0};    // [m]
   glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
-  double scale = 1.0;  // metres per unit of the file, > 0
+  double scale = 1.0;    // metres per unit of the file, > 0
+  std::string name;      // no other mesh or object of the world has it
+  std::string category;  // `class` of a scenario
 };
 // But for file, name and class.
 template <class V>

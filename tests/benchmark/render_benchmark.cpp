@@ -318,7 +318,7 @@ void FirstFrame(benchmark::State& state, LightMode mode) {
   std::filesystem::create_directories(folder);
   WriteGltf(TheWorld().scene, folder);
   WorldDescription world;
-  world.meshes.push_back({folder / "hall.gltf"});
+  world.meshes.emplace_back().file = folder / "hall.gltf";
   world.lights = TheWorld().scene.lights;
   std::vector<std::string> warnings;
   const auto make = [&](const Scene& scene) {

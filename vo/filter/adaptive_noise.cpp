@@ -17,14 +17,8 @@ double Ratio(const Eigen::Vector3d& change, const Eigen::Matrix3d& gained) {
   return change.squaredNorm() / std::max(gained.trace(), std::numeric_limits<double>::min());
 }
 
-double Gain(const Eigen::Matrix3d& gained, const Eigen::Matrix3d& predicted) {
-  constexpr double kLeastGain = 0.2;
-  return std::clamp(gained.trace() / std::max(predicted.trace(), std::numeric_limits<double>::min()), kLeastGain, 1.0);
-}
-
-// r - 1 = K (f / f_used - 1) on average.
-void LearnOne(double ratio, double gain, double used, double rate, double& estimate) {
-  const double shown = std::clamp(used * (1 + (ratio - 1) / gain) / estimate, -kMostOfOne, kMostOfOne);
+void LearnOne(double ratio, double used, double rate, double& estimate) {
+  const double shown = std::min(used * ratio / estimate, kMostOfOne);
   estimate = std::max(kLeast, estimate * (1 + rate * (shown - 1)));
 }
 
@@ -33,11 +27,8 @@ void LearnOne(double ratio, double gain, double used, double rate, double& estim
 InnovationRatios RatiosOf(const PoseGaussian& predicted, const PoseGaussian& updated) {
   const Vector6 change = Minus(updated.mean, predicted.mean);
   const Matrix6 gained = predicted.covariance - updated.covariance;
-  const Matrix6& P = predicted.covariance;
   return {Ratio(change.head<3>(), gained.topLeftCorner<3, 3>()),
-          Ratio(change.tail<3>(), gained.bottomRightCorner<3, 3>()),
-          Gain(gained.topLeftCorner<3, 3>(), P.topLeftCorner<3, 3>()),
-          Gain(gained.bottomRightCorner<3, 3>(), P.bottomRightCorner<3, 3>())};
+          Ratio(change.tail<3>(), gained.bottomRightCorner<3, 3>())};
 }
 
 AdaptiveNoise::AdaptiveNoise() : position_(1 / kMargin), orientation_(1 / kMargin) {}
@@ -46,8 +37,8 @@ MotionInput AdaptiveNoise::Input() const { return {kMargin * position_, kMargin 
 
 void AdaptiveNoise::Learn(const InnovationRatios& ratios, const MotionInput& used) {
   const double rate = std::max(kRate, 1.0 / (2 + frames_++));
-  LearnOne(ratios.position, ratios.position_gain, used.position_noise, rate, position_);
-  LearnOne(ratios.orientation, ratios.orientation_gain, used.orientation_noise, rate, orientation_);
+  LearnOne(ratios.position, used.position_noise, rate, position_);
+  LearnOne(ratios.orientation, used.orientation_noise, rate, orientation_);
 }
 
 MotionInput Widened(const MotionInput& used, const InnovationRatios& ratios) {

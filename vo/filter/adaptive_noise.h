@@ -9,11 +9,9 @@
 
 namespace vo {
 
-// r of position and of orientation, and the share K = tr(P_predicted - P) / tr P_predicted of the prediction's variance
-// that the frame has taken away.
+// r of position and of orientation.
 struct InnovationRatios {
   double position = 0, orientation = 0;
-  double position_gain = 1, orientation_gain = 1;
 };
 InnovationRatios RatiosOf(const PoseGaussian& predicted, const PoseGaussian& updated);
 

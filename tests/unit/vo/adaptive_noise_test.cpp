@@ -11,7 +11,7 @@ namespace {
 // the ratios are `claimed` times those of a Kalman filter.
 vo::MotionInput MeanInput(const vo::MotionInput& truth, double claimed) {
   constexpr int kFrames = 6000, kSettled = 1000;
-  constexpr double kNoise = 1e-7;  // variance of the measured pose
+  constexpr double kNoise = 1e-9;  // variance of the measured pose
   vo::Matrix6 model = vo::Matrix6::Identity() * 1e-4, measured = vo::Matrix6::Identity() * kNoise;
   model.bottomRightCorner<3, 3>() *= 0.1;
   vo::Matrix6 actual = model;

@@ -34,7 +34,7 @@ inline std::string EncodeColor(const std::string& extension, int red, int green,
 
 inline WorldDescription WorldOf(const std::filesystem::path& file) {
   WorldDescription world;
-  world.meshes.push_back({file, glm::dvec3(0), {1, 0, 0, 0}, 1});
+  world.meshes.push_back({file, glm::dvec3(0), {1, 0, 0, 0}, 1, {}, {}});
   return world;
 }
 

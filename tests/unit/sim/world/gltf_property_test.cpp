@@ -338,7 +338,7 @@ TEST(GltfProperty, RandomFilesAreWhatTheyDescribe) {
       const std::string name = std::to_string(k);
       folder.Write(name + "/a picture.png", EncodeColor(".png", 10, 20, 30));
       folder.Write(name + "/data.bin", maker.data);
-      world.meshes.push_back({folder.Write(name + "/m.gltf", maker.file), {}, {1, 0, 0, 0}, 1.0});
+      world.meshes.push_back({folder.Write(name + "/m.gltf", maker.file), {}, {1, 0, 0, 0}, 1.0, {}, {}});
       expected.push_back(maker.triangles);
       made.push_back(choices);
     }

@@ -62,7 +62,7 @@ Scene Load(const Folder& folder, const Parts& parts) {
   }
   folder.Write("data.bin", {reinterpret_cast<const char*>(data.data()), data.size() * sizeof(float)});
   WorldDescription world;
-  world.meshes.push_back({folder.Write("flag.gltf", Gltf(parts)), {}, {1, 0, 0, 0}, 1.0});
+  world.meshes.push_back({folder.Write("flag.gltf", Gltf(parts)), {}, {1, 0, 0, 0}, 1.0, {}, {}});
   return LoadScene(world);
 }
 
@@ -222,7 +222,7 @@ TEST(Gltf, HugeCoordinates) {
   // Moved back near the origin, in double, all is well.
   parts.node = R"(, "translation": [0, 0, 4194304])";
   WorldDescription world;
-  world.meshes.push_back({folder.Write("far.gltf", Gltf(parts)), {0, 0, -4194304.0}, {1, 0, 0, 0}, 1.0});
+  world.meshes.push_back({folder.Write("far.gltf", Gltf(parts)), {0, 0, -4194304.0}, {1, 0, 0, 0}, 1.0, {}, {}});
   const Scene scene = LoadScene(world);
   EXPECT_THAT(scene.warnings, IsEmpty());
   for (const glm::vec3& x : scene.meshes.at(0).positions) EXPECT_NEAR(x.z, 0.0, 1e-6);
@@ -303,7 +303,7 @@ TEST(Gltf, VersionsOfAPicture) {
     text.replace(text.find(R"({"uri": "other.png"})"), 20, R"({"uri": "x.webp"})");
     Load(folder, parts);  // writes the other files
     WorldDescription world;
-    world.meshes.push_back({folder.Write("flag.gltf", text), {}, {1, 0, 0, 0}, 1.0});
+    world.meshes.push_back({folder.Write("flag.gltf", text), {}, {1, 0, 0, 0}, 1.0, {}, {}});
     return LoadScene(world);
   };
   const Scene webp = with(R"({"source": 0, "extensions": {"EXT_texture_webp": {"source": 1}}})");

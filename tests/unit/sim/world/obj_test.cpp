@@ -26,7 +26,7 @@ class Obj : public testing::Test {
   Scene Load(const std::string& text, const std::string& name = "m.obj") {
     WorldDescription world;
     world.folders = {folder_.path()};
-    world.meshes.push_back({folder_.Write(name, text), position_, {1, 0, 0, 0}, 1});
+    world.meshes.push_back({folder_.Write(name, text), position_, {1, 0, 0, 0}, 1, {}, {}});
     return LoadScene(world);
   }
   std::string Problems(const std::string& text) {
@@ -186,7 +186,7 @@ TEST_F(Obj, MissingTexturesAreGreyWhereThatIsAskedFor) {
   EXPECT_THAT(Problems(text), AllOf(HasSubstr("gone.png: texture of material 'a'"), HasSubstr("no such file")));
   WorldDescription world;
   world.missing_textures = MissingTextures::grey;
-  world.meshes.push_back({folder_.Write("m.obj", text), {}, {1, 0, 0, 0}, 1});
+  world.meshes.push_back({folder_.Write("m.obj", text), {}, {1, 0, 0, 0}, 1, {}, {}});
   const Scene scene = LoadScene(world);
   EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("2 ×"), HasSubstr("gone.png"), HasSubstr("is grey"))));
   EXPECT_NEAR(scene.textures.at(0).Texel(0, 0, 0).x, SrgbToLinear(128 / 255.0), 1e-3);

@@ -19,7 +19,7 @@ class Ply : public testing::Test {
  protected:
   Scene Load(const std::string& text) {
     WorldDescription world;
-    world.meshes.push_back({folder_.Write("m.ply", text), {}, {1, 0, 0, 0}, 1});
+    world.meshes.push_back({folder_.Write("m.ply", text), {}, {1, 0, 0, 0}, 1, {}, {}});
     return LoadScene(world);
   }
   std::string Problems(const std::string& text) {
