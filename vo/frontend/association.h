@@ -57,7 +57,7 @@ class NoiseLevel {
   void Learn(const Association& association);
 
  private:
-  double value_ = 2;
+  double value_ = 20;
   int frames_ = 0;
 };
 
