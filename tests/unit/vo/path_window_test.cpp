@@ -306,6 +306,59 @@ TEST(PathWindow, EliminatingLandmarksIsTheJointSolution) {
   ExpectTheJointSolution(MakeScene(5, 4, 24, 0.05, 1.0 / 525), vo::kToleranceSigma);
 }
 
+// Another particle: its start, its landmarks and the anchors are `spread` times the landmarks' deviations and 3 mm away.
+Scene Displaced(const Scene& scene, double spread) {
+  Draws draws(11);
+  Scene other = scene;
+  other.start.p_WC += 3e-3 * spread * draws.Normals<3>();
+  other.anchors[0] = other.start;
+  for (vo::Landmark& landmark : other.landmarks)
+    landmark.mean += 0.3 * spread * landmark.covariance.diagonal().cwiseSqrt().cwiseProduct(draws.Normals<3>());
+  return other;
+}
+
+// Greatest distance of the chord's path from the particle's own solution [standard deviations], and what is between the
+// solution that was linearised and the own one.
+std::pair<double, double> ChordError(double spread) {
+  const Scene scene = MakeScene(5, 4, 24, 0.05, 1.0 / 525, 0), other = Displaced(scene, spread);
+  vo::PathWindow window;
+  vo::PathGaussian solved;
+  solved.mean.assign(4, scene.start);
+  solved.turns.assign(4, Vector3d::Zero());
+  std::vector<Vector3d> theta;
+  for (const vo::Track& track : scene.tracks) theta.push_back(scene.landmarks[track.landmark].mean);
+  window.Solve(scene.prior(), scene.input(), scene.tracks, {50, false, 1e-6}, solved, theta);
+  vo::PathGaussian own = solved;
+  std::vector<Vector3d> own_theta = theta;
+  vo::PathWindow().Solve(other.prior(), other.input(), other.tracks, {50, false, 1e-6}, own, own_theta);
+  vo::PathGaussian chord;
+  chord.mean = solved.mean;
+  chord.turns = solved.turns;
+  EXPECT_TRUE(window.SolveAlike(other.prior(), other.input(), other.tracks, solved, chord, theta));
+  EXPECT_NEAR(chord.log_evidence, own.log_evidence, spread);
+  std::pair<double, double> error{0, 0};
+  for (int k = 0; k < 4; ++k) {
+    const Matrix6 P = own.covariance.block<6, 6>(6 * k, 6 * k);
+    error.first = std::max(error.first, Distance(chord.mean[k], own.mean[k], P));
+    error.second = std::max(error.second, Distance(solved.mean[k], own.mean[k], P));
+  }
+  return error;
+}
+
+// The chord method ends where the kept Jacobians, not the particle's own, are orthogonal to the residuals: off its own
+// solution by the change of the Jacobians times the residuals, a fraction of a standard deviation that falls with the
+// distance of the particles.
+TEST(ChordSolver, NearsTheOwnSolution) {
+  double before = 0.3;
+  for (const double spread : {1.0, 0.25, 0.0625}) {
+    const auto [error, between] = ChordError(spread);
+    std::printf("spread %.4f: %.4f of %.4f standard deviations\n", spread, error, between);
+    EXPECT_LT(error, before);
+    EXPECT_LT(error, between / 2);
+    before = error / 3;
+  }
+}
+
 // A track's image is told by its anchor in the window: how far all of the window may have drifted does not matter, and the rounding of what is
 // taken away again must not show as two covariances of its coordinates.
 TEST(PathWindow, PredictsImagesAfterDrift) {
