@@ -1,10 +1,27 @@
-// Landmarks of a window phase: the reference of the outlier test, predicted images, spreads over the particles.
+// Landmarks of a window phase: new and dropped ones, the reference of the outlier test, predicted images, spreads over
+// the particles.
 #include <cmath>
 
 #include "vo/filter/window_phase.h"
 #include "vo/geometry/covariance.h"
 
 namespace vo {
+
+void WindowPhase::AddLandmarks(std::span<const FirstView> views) {
+  if (views.empty()) return;
+  const int anchor = AppendLandmarks(views);
+  for (Particle& particle : particles_) {
+    particle.anchors[anchor] = window_.size() == 0 ? particle.pose : particle.solution.path.mean.back();
+    for (std::size_t n = particle.landmarks.size() - views.size(); n < particle.landmarks.size(); ++n)
+      particle.solution.modes.push_back(particle.landmarks[n].mean);
+  }
+  window_.AddAnchor(anchor, table_);
+}
+
+void WindowPhase::KeepLandmarks(const std::vector<bool>& keep) {
+  window_.Keep(CompactLandmarks(keep), table_);
+  for (Particle& particle : particles_) Compact(keep, particle.solution.modes);
+}
 
 void WindowPhase::SetReference() {
   const std::size_t heaviest = particles_.Heaviest();

@@ -15,6 +15,17 @@ constexpr double kLogBayesRejection = 50;
 
 constexpr int kStartIterations = 50;
 
+// Modes of the tracks' landmarks, in their order; and back.
+std::vector<Eigen::Vector3d> ModesOfTracks(std::span<const Track> tracks, const PathSolution& solution) {
+  std::vector<Eigen::Vector3d> theta;
+  for (const Track& track : tracks) theta.push_back(solution.modes[track.landmark]);
+  return theta;
+}
+
+void SetModes(std::span<const Track> tracks, const std::vector<Eigen::Vector3d>& theta, PathSolution& solution) {
+  for (std::size_t i = 0; i < theta.size(); ++i) solution.modes[tracks[i].landmark] = theta[i];
+}
+
 }  // namespace
 
 WindowPhase::WindowPhase(const ParticleFilterSettings& settings, const FilterPrior& prior)
@@ -56,10 +67,9 @@ WindowOptions WindowPhase::Options(bool initialising) const {
 
 void WindowPhase::Solve(const Window& window, const WindowInput& in, const WindowOptions& options,
                         PathSolution& solution) {
-  std::vector<Eigen::Vector3d> theta;
-  for (const Track& track : window.tracks()) theta.push_back(solution.modes[track.landmark]);
+  std::vector<Eigen::Vector3d> theta = ModesOfTracks(window.tracks(), solution);
   solver_.Solve(*prior_, in, window.tracks(), options, solution.path, theta);
-  for (std::size_t i = 0; i < theta.size(); ++i) solution.modes[window.tracks()[i].landmark] = theta[i];
+  SetModes(window.tracks(), theta, solution);
 }
 
 void WindowPhase::Solve(std::size_t particle, const WindowOptions& options) {
@@ -80,13 +90,12 @@ void WindowPhase::SolveAll() {
   const PathGaussian& solved = particles_[heaviest].solution.path;
   const std::span<const Track> tracks = window_.tracks();
   std::vector<bool> alike(particles_.size(), std::isfinite(solved.log_evidence));
-  std::vector<Eigen::Vector3d> theta(tracks.size());
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     if (i == heaviest || !alike[i]) continue;
     PathSolution& solution = particles_[i].solution;
-    for (std::size_t k = 0; k < theta.size(); ++k) theta[k] = solution.modes[tracks[k].landmark];
+    std::vector<Eigen::Vector3d> theta = ModesOfTracks(tracks, solution);
     alike[i] = solver_.SolveAlike(*prior_, InputOf(i), tracks, solved, solution.path, theta);
-    for (std::size_t k = 0; k < theta.size(); ++k) solution.modes[tracks[k].landmark] = theta[k];
+    SetModes(tracks, theta, solution);
     window_.PlaceAnchors(solution.path, particles_[i].anchors);
   }
   alike_ = alike;
@@ -191,27 +200,9 @@ void WindowPhase::Follow(const std::vector<Pose>& solved, PathSolution& solution
   Eigen::VectorXd d(kPoseSize * static_cast<Eigen::Index>(solved.size()));
   for (std::size_t k = 0; k < solved.size(); ++k)
     d.segment<6>(kPoseSize * static_cast<Eigen::Index>(k)) = Minus(solution.path.mean[k], solved[k]);
-  const std::span<const Track> tracks = window_.tracks();
-  std::vector<Eigen::Vector3d> theta;
-  for (const Track& track : tracks) theta.push_back(solution.modes[track.landmark]);
+  std::vector<Eigen::Vector3d> theta = ModesOfTracks(window_.tracks(), solution);
   FollowPoses(solver_.linearisation(), d, theta);
-  for (std::size_t k = 0; k < theta.size(); ++k) solution.modes[tracks[k].landmark] = theta[k];
-}
-
-void WindowPhase::AddLandmarks(std::span<const FirstView> views) {
-  if (views.empty()) return;
-  const int anchor = AppendLandmarks(views);
-  for (Particle& particle : particles_) {
-    particle.anchors[anchor] = window_.size() == 0 ? particle.pose : particle.solution.path.mean.back();
-    for (std::size_t n = particle.landmarks.size() - views.size(); n < particle.landmarks.size(); ++n)
-      particle.solution.modes.push_back(particle.landmarks[n].mean);
-  }
-  window_.AddAnchor(anchor, table_);
-}
-
-void WindowPhase::KeepLandmarks(const std::vector<bool>& keep) {
-  window_.Keep(CompactLandmarks(keep), table_);
-  for (Particle& particle : particles_) Compact(keep, particle.solution.modes);
+  SetModes(window_.tracks(), theta, solution);
 }
 
 }  // namespace vo
