@@ -13,6 +13,7 @@
 #include "tools/bench/errors.h"
 #include "tools/bench/provenance.h"
 #include "tools/bench/run/calibration.h"
+#include "tools/bench/run/euroc_folder.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace vobench {
@@ -67,6 +68,26 @@ std::size_t RemoveNotFinite(const fs::path& file) {
   return removed;
 }
 
+// What the entry's command `configs` writes, before the program is started.
+void WriteConfigs(const campaign::ExternalSystem& system,
+                  const std::vector<std::pair<std::string, std::string>>& values, const fs::path& folder) {
+  fs::create_directories(folder);
+  const fs::path log = folder / "log.txt";
+  const campaign::CommandEnd end =
+      campaign::RunCommand(campaign::FillIn(system.configs, values), folder, log, system.timeout_s);
+  if (end.timed_out || end.signal != 0 || end.status != 0)
+    throw BadInput(fmt::format("{}: its configuration files cannot be made (status {}){}", system.name, end.status,
+                               LastLine(log, ": ")));
+}
+
+// Of T_WI those of the first camera.
+void MoveToCamera(evaluation::Trajectory& trajectory, const Eigen::Isometry3d& T_IC) {
+  for (evaluation::StampedPose& pose : trajectory) {
+    pose.p_WC += pose.q_WC * T_IC.translation();
+    pose.q_WC = (pose.q_WC * Eigen::Quaterniond(T_IC.linear())).normalized();
+  }
+}
+
 }  // namespace
 
 ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
@@ -79,8 +100,10 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
   std::vector<std::pair<std::string, std::string>> values = system.variables;
   values.insert(values.end(), {{"sequence", sequence.folder.string()},
                                {"calibration", calibration.string()},
+                               {"configs", (fs::absolute(folder) / "configs").string()},
                                {"trajectory", trajectory.string()},
                                {"seed", std::to_string(record.seed)}});
+  if (!system.configs.empty()) WriteConfigs(system, values, fs::absolute(folder) / "configs");
   const Clock clock;
   const campaign::CommandEnd end =
       campaign::RunCommand(campaign::FillIn(system.command, values), at_work, folder / "log.txt", system.timeout_s);
@@ -102,6 +125,7 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
     try {
       const std::size_t left_out = RemoveNotFinite(trajectory);
       answer.trajectory = evaluation::ReadTrajectory(trajectory);
+      if (system.poses_of_imu) MoveToCamera(answer.trajectory, CameraInImu(sequence.folder));
       if (left_out > 0) record.reason = fmt::format("lines without a finite pose, left out: {}", left_out);
     } catch (const evaluation::InputError& error) {
       // Where the task lies does not belong into a table that is the same everywhere.

@@ -57,11 +57,35 @@ Similarity Umeyama(const MatchedTrajectories& matched, bool with_scale) {
   return result;
 }
 
+Similarity AlignYaw(const MatchedTrajectories& matched) {
+  const auto [x_mean, y_mean] = Centroids(matched);
+  Eigen::Matrix3d C = Eigen::Matrix3d::Zero();
+  double x_square = 0, y_square = 0;  // of what is level
+  for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
+    const Eigen::Vector3d x = matched.estimate[i].p_WC - x_mean, y = matched.truth[i].p_WC - y_mean;
+    C += x * y.transpose();
+    x_square += x.head<2>().squaredNorm();
+    y_square += y.head<2>().squaredNorm();
+  }
+  Similarity result;
+  result.R = BestYaw(C);
+  result.t = y_mean - result.R * x_mean;
+  result.rotation_determined =
+      std::hypot(C(0, 1) - C(1, 0), C(0, 0) + C(1, 1)) > kRankTolerance * std::sqrt(x_square * y_square);
+  return result;
+}
+
 }  // namespace
 
 std::string Name(Alignment alignment) {
-  constexpr std::array kNames = {"none", "se3", "sim3", "first"};
+  constexpr std::array kNames = {"none", "se3", "sim3", "first", "yaw"};
   return kNames.at(static_cast<std::size_t>(alignment));
+}
+
+Alignment AlignmentNamed(const std::string& name) {
+  for (const Alignment alignment : kAlignments)
+    if (Name(alignment) == name) return alignment;
+  throw std::invalid_argument("align = " + name + " is none of none, se3, sim3, first, yaw");
 }
 
 Similarity Align(const MatchedTrajectories& matched, Alignment alignment) {
@@ -69,6 +93,7 @@ Similarity Align(const MatchedTrajectories& matched, Alignment alignment) {
     throw std::logic_error("Align: needs matched trajectories of at least one pose");
   }
   if (alignment == Alignment::none) return {};
+  if (alignment == Alignment::yaw) return AlignYaw(matched);
   if (alignment != Alignment::first) return Umeyama(matched, alignment == Alignment::sim3);
   Similarity result;
   result.R = (matched.truth[0].q_WC * matched.estimate[0].q_WC.conjugate()).toRotationMatrix();
@@ -79,18 +104,6 @@ Similarity Align(const MatchedTrajectories& matched, Alignment alignment) {
 Eigen::Matrix3d BestYaw(const Eigen::Matrix3d& C) {
   const double theta = std::atan2(C(0, 1) - C(1, 0), C(0, 0) + C(1, 1));
   return Eigen::AngleAxisd(theta, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-}
-
-Similarity AlignYaw(const MatchedTrajectories& matched) {
-  const auto [x_mean, y_mean] = Centroids(matched);
-  Eigen::Matrix3d C = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
-    C += (matched.estimate[i].p_WC - x_mean) * (matched.truth[i].p_WC - y_mean).transpose();
-  }
-  Similarity result;
-  result.R = BestYaw(C);
-  result.t = y_mean - result.R * x_mean;
-  return result;
 }
 
 StampedPose Apply(const Similarity& similarity, const StampedPose& pose) {

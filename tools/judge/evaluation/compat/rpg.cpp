@@ -10,7 +10,7 @@ namespace {
 
 Similarity AlignmentOf(const MatchedTrajectories& matched, RpgAlignment alignment) {
   if (alignment == RpgAlignment::none) return {};
-  if (alignment == RpgAlignment::posyaw) return AlignYaw(matched);
+  if (alignment == RpgAlignment::posyaw) return Align(matched, Alignment::yaw);
   return Align(matched, alignment == RpgAlignment::sim3 ? Alignment::sim3 : Alignment::se3);
 }
 
