@@ -135,12 +135,12 @@ Reproduction Evo(const std::string& program, const std::vector<std::string>& arg
 }
 
 Reproduction Rpg(const std::vector<std::string>& arguments) {
-  RpgAlignment alignment = RpgAlignment::sim3;
+  evaluation::Alignment alignment = evaluation::Alignment::sim3;
   std::vector<double> lengths;
-  const std::map<std::string, RpgAlignment> alignments = {{"sim3", RpgAlignment::sim3},
-                                                          {"se3", RpgAlignment::se3},
-                                                          {"posyaw", RpgAlignment::posyaw},
-                                                          {"none", RpgAlignment::none}};
+  const std::map<std::string, evaluation::Alignment> alignments = {{"sim3", evaluation::Alignment::sim3},
+                                                                   {"se3", evaluation::Alignment::se3},
+                                                                   {"posyaw", evaluation::Alignment::yaw},
+                                                                   {"none", evaluation::Alignment::none}};
   CLI::App app("", "rpg");
   app.add_option("--align_type", alignment)->transform(CLI::CheckedTransformer(alignments));
   app.add_option("--lengths", lengths)->delimiter(',')->check(CLI::PositiveNumber);

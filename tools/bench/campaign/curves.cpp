@@ -101,11 +101,9 @@ std::vector<Curve> MakeCurves(const Campaign& campaign, const std::vector<TaskRe
   std::vector<Curve> curves;
   const std::vector<evaluation::Alignment> alignments = AlignmentsOf(campaign);
   for (const CurveSpec& spec : campaign.curves) {
-    if (alignments.size() == 1) MakeCurvesOf(campaign, spec, records, "", curves);
-    for (const evaluation::Alignment alignment : alignments) {  // none has lines of two
-      if (alignments.size() > 1)
-        MakeCurvesOf(campaign, spec, Aligned(campaign, records, alignment), evaluation::Name(alignment), curves);
-    }
+    for (const evaluation::Alignment alignment : alignments)  // none has lines of two
+      MakeCurvesOf(campaign, spec, Aligned(campaign, records, alignment),
+                   alignments.size() > 1 ? evaluation::Name(alignment) : "", curves);
   }
   return curves;
 }

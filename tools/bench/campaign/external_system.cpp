@@ -87,7 +87,8 @@ void ReadSensors(settings::Section& section, ExternalSystem& system) {
   if (sensors.metric()) system.align = sensors.imu ? Alignment::yaw : Alignment::se3;
   if (sensors.metric()) section.ReadChoice("align", system.align, {{"se3", Alignment::se3}, {"yaw", Alignment::yaw}});
   if (sensors.metric() && (system.layout != SequenceLayout::euroc || system.rectified))
-    section.Reject("sensors", "'sensors': more than one camera needs 'layout: euroc', with original images");
+    section.Reject("sensors",
+                   "'sensors': more than the pictures of one camera needs 'layout: euroc', with original images");
   if (system.align == Alignment::yaw && !sensors.imu)
     section.Reject("align", "'align': yaw needs an IMU, which knows gravity");
   if (system.poses_of_imu && !sensors.imu) section.Reject("poses_of", "'poses_of': it takes no IMU");

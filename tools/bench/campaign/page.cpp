@@ -86,15 +86,14 @@ std::string SystemTiles(const Campaign& campaign, const std::vector<TaskRecord>&
       lost += record.status != Status::ok;
     }
     const double nees = MedianOf(records, system, "nees_pose_per_dof"), ate = MedianOf(records, system, "ate_m");
+    const std::string how = evaluation::Name(AlignmentOf(campaign, campaign.systems[s]));
     html += "<h2 class=\"system\">" + report::Key(s) + Escape(DisplayName(system)) + "</h2>" +
-            report::Tiles(
-                {{std::isinf(ate) ? "lost" : Fixed(100 * ate, 2) + " cm", "ATE, median of all tasks",
-                  "position RMSE after alignment " + evaluation::Name(AlignmentOf(campaign, campaign.systems[s])) +
-                      "; a lost run counts as worse than any number"},
-                 {fmt::format("{} of {}", lost, runs), "runs lost",
-                  "by the rule of the campaign; failed tasks are no runs"},
-                 {NumberOrLost(nees), "NEES of the pose, median of all tasks; 1 is ideal",
-                  "time mean per degree of freedom, not aligned"}});
+            report::Tiles({{std::isinf(ate) ? "lost" : Fixed(100 * ate, 2) + " cm", "ATE, median of all tasks",
+                            "position RMSE after alignment " + how + "; a lost run counts as worse than any number"},
+                           {fmt::format("{} of {}", lost, runs), "runs lost",
+                            "by the rule of the campaign; failed tasks are no runs"},
+                           {NumberOrLost(nees), "NEES of the pose, median of all tasks; 1 is ideal",
+                            "time mean per degree of freedom, not aligned"}});
   }
   return html;
 }

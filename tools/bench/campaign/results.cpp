@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <stdexcept>
 
 #include "tools/base/limits/structured_text.h"
@@ -139,14 +138,8 @@ bool LargerIsBetter(const std::string& metric) {
 }
 
 bool IsAligned(const std::string& metric) {
-  static const std::set<std::string> kAligned = {"ate_m",
-                                                 "ate_live_m",
-                                                 "ate_orientation_rad",
-                                                 "ate_share_of_path",
-                                                 "rpe_m",
-                                                 "constant_velocity_ate_m",
-                                                 "constant_velocity_rpe_m"};
-  return kAligned.contains(metric);
+  constexpr const char* kOthers[] = {"ate_m", "ate_live_m", "ate_orientation_rad", "ate_share_of_path", "rpe_m"};
+  return metric.starts_with("constant_velocity_") || std::ranges::count(kOthers, metric) > 0;
 }
 
 std::vector<TaskRecord> Aligned(const Campaign& campaign, const std::vector<TaskRecord>& records,

@@ -196,7 +196,8 @@ std::optional<std::string> SequenceKey(const SeenSequence& sequence, campaign::S
     text += fmt::format("{} {}\n", frame.stamp_ns, cache.DigestNow(frame.image));
   for (const vo::SequenceReader::Entry& frame : sequence.beside_first.second)
     text += fmt::format("cam1 {} {}\n", frame.stamp_ns, cache.DigestNow(frame.image));
-  for (const fs::path& file : FilesOf(sequence.beside_first)) text += cache.DigestNow(file) + "\n";
+  for (const std::string& file : sequence.beside_first.files())
+    text += cache.DigestNow(sequence.beside_first.mav / file) + "\n";
   text += DigestOf(sequence.truth.poses);
   if (sequence.truth.velocities) text += DigestOf(*sequence.truth.velocities);
   return campaign::Digest(text);

@@ -66,11 +66,14 @@ TaskOutput PlayPoints(const Experiment& experiment, const std::string& system, s
   return output;
 }
 
+// Of the first camera.
 Truth TruthOfAllFrames(const sim::Scenario& scenario) {
-  const std::unique_ptr<sim::Trajectory> trajectory = Input([&] { return sim::TrajectoryOf(scenario); });
+  const sim::RigCamera camera = sim::AllCameras(scenario).front();
+  std::shared_ptr<const sim::Trajectory> trajectory = Input([&] { return sim::TrajectoryOf(scenario); });
+  if (!scenario.cameras.empty()) trajectory = sim::Mounted(trajectory, camera.T_BC);
   Truth truth;
   for (std::int64_t index = 0; index < sim::CountFrames(scenario.time); ++index) {
-    const std::int64_t stamp_ns = sim::StampNs(index, scenario.time);
+    const std::int64_t stamp_ns = sim::StampNs(index, scenario.time) + std::llround(1e9 * camera.trigger_offset_s);
     Append(stamp_ns, sim::TruthAt(*trajectory, sim::Seconds(stamp_ns)), truth);
   }
   return truth;

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <glm/geometric.hpp>
-#include <sstream>
 
 #include "sim/sequence/layout.h"
 #include "tools/base/files.h"
@@ -35,12 +33,6 @@ void WriteThose(const fs::path& folder, const std::vector<sim::StreamFile>& file
     if (file.path.starts_with(beginning)) base::WriteFileAndFolders(folder / file.path, base::AsText(file.bytes));
 }
 
-std::vector<sim::StampedTruth> StampsOf(const SequenceFrames& frames) {
-  std::vector<sim::StampedTruth> stamps;
-  for (const vo::SequenceReader::Entry& frame : frames) stamps.push_back({0, frame.stamp_ns, {}});
-  return stamps;
-}
-
 }  // namespace
 
 void WriteEurocCamera(const fs::path& folder, const sim::Scenario& scenario, const SequenceFrames& frames,
@@ -48,7 +40,9 @@ void WriteEurocCamera(const fs::path& folder, const sim::Scenario& scenario, con
   const std::vector<std::string> problems = sim::Problems(sim::Layout::euroc, scenario);
   if (!problems.empty()) throw BadInput(base::Join(problems, "; ") + " (`images: rectified`)");
   LinkPictures(folder, frames, k, To::neighbours);
-  WriteThose(folder, sim::Lists(sim::Layout::euroc, scenario, StampsOf(frames), k), CameraFolder(k).string());
+  std::vector<sim::StampedTruth> stamps;
+  for (const vo::SequenceReader::Entry& frame : frames) stamps.push_back({0, frame.stamp_ns, {}});
+  WriteThose(folder, sim::Lists(sim::Layout::euroc, scenario, stamps, k), CameraFolder(k).string());
 }
 
 void AddRendered(const fs::path& folder, const sim::Simulator& simulator, campaign::Sensors sensors) {
@@ -72,7 +66,7 @@ void AddRendered(const fs::path& folder, const sim::Simulator& simulator, campai
 }
 
 RecordedSensors ReadSensors(const fs::path& sequence, const SequenceFrames& frames, campaign::Sensors wanted) {
-  RecordedSensors found{sequence / "mav0", {}, {}};
+  RecordedSensors found{sequence / "mav0", {}};
   const std::int64_t first_ns = frames.front().stamp_ns, last_ns = frames.back().stamp_ns;
   const auto has = [&](const char* sensor) {
     return fs::exists(found.mav / sensor / "data.csv") && fs::exists(found.mav / sensor / "sensor.yaml");
@@ -85,31 +79,15 @@ RecordedSensors ReadSensors(const fs::path& sequence, const SequenceFrames& fram
       return frame.stamp_ns < first_ns - half_ns || frame.stamp_ns > last_ns + half_ns;
     });
   }
-  if (!wanted.imu || !has("imu0")) return found;
-  const fs::path file = found.mav / "imu0/data.csv";
-  std::istringstream lines(base::ReadFile(file).value_or(""));
-  std::size_t number = 0;
-  bool after = false;
-  for (std::string line; !after && std::getline(lines, line);) {
-    ++number;
-    if (line.empty() || line[0] == '#') continue;
-    const auto stamp_ns = base::ParseWhole(line.substr(0, line.find(',')));
-    if (!stamp_ns)
-      throw BadInput(fmt::format("{}:{}: '{}' does not begin with nanoseconds", file.string(), number, line));
-    if (*stamp_ns <= first_ns) found.imu_lines.clear();
-    found.imu_lines.push_back(line);
-    after = *stamp_ns > last_ns;
-  }
+  found.imu = wanted.imu && has("imu0");
   return found;
 }
 
-std::vector<fs::path> FilesOf(const RecordedSensors& sensors) {
-  std::vector<fs::path> files;
-  if (sensors.has().metric()) files.push_back(sensors.mav / "cam0/sensor.yaml");
-  if (sensors.has().stereo) files.push_back(sensors.mav / "cam1/sensor.yaml");
-  for (const char* file : {"imu0/sensor.yaml", "imu0/data.csv"})
-    if (sensors.has().imu) files.push_back(sensors.mav / file);
-  return files;
+std::vector<std::string> RecordedSensors::files() const {
+  std::vector<std::string> files = {"cam0/sensor.yaml"};
+  if (has().stereo) files.push_back("cam1/sensor.yaml");
+  if (imu) files.insert(files.end(), {"imu0/sensor.yaml", "imu0/data.csv"});
+  return has().metric() ? files : std::vector<std::string>{};
 }
 
 void AddRecorded(const fs::path& folder, const SequenceFrames& frames, const RecordedSensors& sensors) {
@@ -121,15 +99,10 @@ void AddRecorded(const fs::path& folder, const SequenceFrames& frames, const Rec
     for (const vo::SequenceReader::Entry& frame : *of) list += fmt::format("{0},{0}.png\n", frame.stamp_ns);
     base::WriteFile(folder / CameraFolder(k) / "data.csv", list);
   }
-  if (sensors.has().imu) {
-    fs::create_directories(folder / "mav0/imu0");
-    const std::string head =
-        "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2],a_RS_S_y [m "
-        "s^-2],a_RS_S_z [m s^-2]\n";
-    base::WriteFile(folder / "mav0/imu0/data.csv", head + base::Join(sensors.imu_lines, "\n") + "\n");
+  for (const std::string& file : sensors.files()) {
+    fs::create_directories((folder / "mav0" / file).parent_path());
+    fs::copy_file(sensors.mav / file, folder / "mav0" / file);
   }
-  for (const fs::path& file : FilesOf(sensors))
-    if (file.filename() == "sensor.yaml") fs::copy_file(file, folder / "mav0" / fs::relative(file, sensors.mav));
 }
 
 Eigen::Isometry3d CameraInImu(const fs::path& folder) {

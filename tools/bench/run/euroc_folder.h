@@ -27,16 +27,16 @@ void AddRendered(const std::filesystem::path& folder, const sim::Simulator& simu
 
 // What a recorded sequence has beside its first camera.
 struct RecordedSensors {
-  std::filesystem::path mav;           // mav0/ of the recording
-  SequenceFrames second;               // of cam1, as long as the first camera's are used
-  std::vector<std::string> imu_lines;  // of imu0/data.csv: from the last before the first frame to the first after all
-  campaign::Sensors has() const { return {!second.empty(), !imu_lines.empty()}; }
+  std::filesystem::path mav;  // mav0/ of the recording
+  SequenceFrames second;      // of cam1, as long as the first camera's are used
+  bool imu = false;           // all readings of imu0
+  campaign::Sensors has() const { return {!second.empty(), imu}; }
+  // In `mav`, all but the pictures.
+  std::vector<std::string> files() const;
 };
-// Of those that are wanted. Throws BadInput, std::runtime_error where a list cannot be read.
+// Of those that are wanted. Throws std::runtime_error where a list cannot be read.
 RecordedSensors ReadSensors(const std::filesystem::path& sequence, const SequenceFrames& frames,
                             campaign::Sensors wanted);
-// All files of these that are not pictures.
-std::vector<std::filesystem::path> FilesOf(const RecordedSensors& sensors);
 // mav0/ of cam0 with these frames, and of the others, with the recording's own sensor.yaml files.
 void AddRecorded(const std::filesystem::path& folder, const SequenceFrames& frames, const RecordedSensors& sensors);
 

@@ -68,18 +68,6 @@ std::size_t RemoveNotFinite(const fs::path& file) {
   return removed;
 }
 
-// What the entry's command `configs` writes, before the program is started.
-void WriteConfigs(const campaign::ExternalSystem& system,
-                  const std::vector<std::pair<std::string, std::string>>& values, const fs::path& folder) {
-  fs::create_directories(folder);
-  const fs::path log = folder / "log.txt";
-  const campaign::CommandEnd end =
-      campaign::RunCommand(campaign::FillIn(system.configs, values), folder, log, system.timeout_s);
-  if (end.timed_out || end.signal != 0 || end.status != 0)
-    throw BadInput(fmt::format("{}: its configuration files cannot be made (status {}){}", system.name, end.status,
-                               LastLine(log, ": ")));
-}
-
 // Of T_WI those of the first camera.
 void MoveToCamera(evaluation::Trajectory& trajectory, const Eigen::Isometry3d& T_IC) {
   for (evaluation::StampedPose& pose : trajectory) {
@@ -103,10 +91,10 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
                                {"configs", (fs::absolute(folder) / "configs").string()},
                                {"trajectory", trajectory.string()},
                                {"seed", std::to_string(record.seed)}});
-  if (!system.configs.empty()) WriteConfigs(system, values, fs::absolute(folder) / "configs");
+  const std::string before = system.configs.empty() ? "" : "( " + system.configs + " ) || exit 127\n";
   const Clock clock;
-  const campaign::CommandEnd end =
-      campaign::RunCommand(campaign::FillIn(system.command, values), at_work, folder / "log.txt", system.timeout_s);
+  const campaign::CommandEnd end = campaign::RunCommand(campaign::FillIn(before + system.command, values), at_work,
+                                                        folder / "log.txt", system.timeout_s);
   const auto lost = [&](campaign::Status status, const std::string& reason) {
     record.status = status;
     record.reason = reason;

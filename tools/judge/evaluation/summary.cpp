@@ -21,14 +21,15 @@ TrajectoryErrors ErrorsOf(const MatchedTrajectories& matched, std::size_t pairs_
   const auto ate = [&](Alignment alignment) { return ComputeAte(matched, alignment); };
   const Ate sim3 = ate(Alignment::sim3);
   const auto pairs = PairsByTime(matched.truth, options.rpe_delta_ns, options.rpe_tolerance_ns);
+  const Rpe rpe = ComputeRpe(matched, pairs, sim3.similarity.scale), unscaled = ComputeRpe(matched, pairs);
   return {matched.estimate.size(),
           ate(Alignment::none),
           ate(Alignment::se3),
           sim3,
           ate(Alignment::first),
           ate(Alignment::yaw),
-          ComputeRpe(matched, pairs, sim3.similarity.scale),
-          ComputeRpe(matched, pairs),
+          rpe,
+          unscaled,
           pairs_offered};
 }
 
