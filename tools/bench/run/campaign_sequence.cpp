@@ -56,14 +56,13 @@ std::string DigestOf(const std::vector<T>& values) {
   return campaign::Digest({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
 }
 
-void Render(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario,
-            campaign::Sensors sensors, int jobs) {
+void Render(const campaign::SequenceCache& cache, const std::string& key, const SeenSequence& seen, int jobs) {
   if (cache.Has(key)) return;
   const campaign::FileLock lock = cache.Take(key);
   if (cache.Has(key)) return;  // the one that was waited for has made it
-  const sim::Simulator simulator = Input([&] { return sim::Simulator(scenario, jobs); });
+  const sim::Simulator simulator = Input([&] { return sim::Simulator(seen.experiment.scenario, jobs); });
   const sim::SequenceContent content{sim::Layout::tum, 0, simulator.frame_count(), "vobench " VOBENCH_VERSION,
-                                     sensors.stereo};
+                                     seen.sensors.stereo};
   const fs::path folder = cache.PathOf(key), partial = folder.string() + ".partial";
   std::optional<sim::SequenceWriter> writer;
   try {
@@ -76,7 +75,7 @@ void Render(const campaign::SequenceCache& cache, const std::string& key, const 
   }
   writer->Finish();
   fs::remove(partial / sim::kJournalName);
-  if (sensors.metric()) AddRendered(partial, simulator, sensors);
+  if (seen.sensors.metric()) AddRendered(partial, simulator, seen.sensors);
   base::ReplaceFolder(partial, folder);
 }
 
@@ -204,8 +203,7 @@ std::optional<std::string> SequenceKey(const SeenSequence& sequence, campaign::S
 }
 
 void MakeIn(const campaign::SequenceCache& cache, const std::string& key, const SeenSequence& sequence, int jobs) {
-  if (sequence.recorded()) return Link(cache, key, sequence);
-  Render(cache, key, sequence.experiment.scenario, sequence.sensors, jobs);
+  sequence.recorded() ? Link(cache, key, sequence) : Render(cache, key, sequence, jobs);
 }
 
 }  // namespace vobench

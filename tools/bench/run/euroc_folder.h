@@ -1,5 +1,4 @@
-// mav0/ of a sequence as EuRoC has it, of links to pictures that lie elsewhere, and without the truth: what programs
-// with more than one camera, or an IMU, are served.
+// mav0/ of a sequence as EuRoC has it, of links to pictures that lie elsewhere, and without the truth.
 // Source: Burri et al., "The EuRoC micro aerial vehicle datasets", IJRR 2016.
 #pragma once
 
@@ -21,8 +20,7 @@ void WriteEurocCamera(const std::filesystem::path& folder, const sim::Scenario& 
                       std::size_t k);
 
 // Of a sequence in TUM's layout that was rendered into `folder`, a rig's with stereo: mav0/ beside it and, of a rig,
-// the first camera's rgb.txt, rgb, camera.yaml and exposure.txt where one camera has them. imu0/sensor.yaml says how
-// large gravity is, too.
+// the first camera's files where one camera has them. imu0/sensor.yaml says how large gravity is, too.
 void AddRendered(const std::filesystem::path& folder, const sim::Simulator& simulator, campaign::Sensors sensors);
 
 // What a recorded sequence has beside its first camera.
@@ -31,8 +29,7 @@ struct RecordedSensors {
   SequenceFrames second;      // of cam1, as long as the first camera's are used
   bool imu = false;           // all readings of imu0
   campaign::Sensors has() const { return {!second.empty(), imu}; }
-  // In `mav`, all but the pictures.
-  std::vector<std::string> files() const;
+  std::vector<std::string> files() const;  // in `mav`, all but the pictures
 };
 // Of those that are wanted. Throws std::runtime_error where a list cannot be read.
 RecordedSensors ReadSensors(const std::filesystem::path& sequence, const SequenceFrames& frames,

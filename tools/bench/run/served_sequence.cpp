@@ -171,8 +171,8 @@ ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& ke
       if (sensors.stereo) link("mav0/cam1");
       if (sensors.imu) link("mav0/imu0");
     } else if (system.layout == SequenceLayout::euroc) {
-      sim::Scenario one = scenario;
-      one.cameras.clear();
+      sim::Scenario one;  // a camera alone
+      one.time = scenario.time;
       one.camera = served.camera;
       WriteEurocCamera(partial, one, frames, 0);
     } else if (system.layout == SequenceLayout::tum) {  // without the truth
