@@ -129,8 +129,8 @@ TEST_F(CampaignRecordedTest, ResultsDependOnTheBytesAndNotOnThePlace) {
 // that has one camera alone is refused.
 TEST_F(CampaignRecordedTest, EurocIsServedWithAllItsSensors) {
   const std::string camera = "width: 160, height: 120, fx: 110, fy: 110, cx: 79.5, cy: 59.5";
-  ASSERT_EQ(RunVobench({"render", VOBENCH_SOURCE_DIR "/scenes/stereo.yaml", "-o", "rig", "--format", "euroc", "--set",
-                        "time.duration=0.6 s", "--set", "truth=[imu]", "--set",
+  ASSERT_EQ(RunVobench({"render", std::string(VOBENCH_SOURCE_DIR) + "/scenes/stereo.yaml", "-o", "rig", "--format",
+                        "euroc", "--set", "time.duration=0.6 s", "--set", "truth=[imu]", "--set",
                         "cameras=[{name: a, " + camera + "}, {name: b, " + camera + ", position: [0.1, 0, 0]}]"},
                        here_.path())
                 .status,

@@ -70,9 +70,9 @@ TEST_F(CampaignTest, StereoFindsItsWayInMetres) {
   // `turned` is what a perfect visual-inertial odometry says: the truth of the IMU in EuRoC's own form, of a world that
   // is turned about gravity.
   const std::string tiny = "width: 16, height: 12, fx: 9, fy: 9, cx: 7.5, cy: 5.5";
-  ASSERT_EQ(RunVobench({"render", VOBENCH_SOURCE_DIR "/scenes/stereo.yaml", "-o", "truth", "--format", "euroc", "--set",
-                        "time.duration=2 s", "--set", "truth=[imu]", "--set",
-                        "cameras=[{name: a, " + tiny + "}, {name: b, " + tiny + "}]"},
+  const std::string cameras = "cameras=[{name: a, " + tiny + "}, {name: b, " + tiny + "}]";
+  ASSERT_EQ(RunVobench({"render", std::string(VOBENCH_SOURCE_DIR) + "/scenes/stereo.yaml", "-o", "truth", "--format",
+                        "euroc", "--set", "time.duration=2 s", "--set", "truth=[imu]", "--set", cameras},
                        here_.path())
                 .status,
             0);

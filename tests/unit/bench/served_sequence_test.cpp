@@ -152,6 +152,9 @@ TEST_F(ServedSequenceTest, ARigIsServedAsEuroc) {
                           "trigger_offset: 5 ms}]"}});
   seen.sensors = {true, true};
   MakeIn(cache_, "key", seen, 2);
+  fs::rename(cache_.PathOf("key"),
+             cache_.PathOf("key").string() + ".partial");  // as a kill before the last step has it
+  MakeIn(cache_, "key", seen, 2);
   campaign::ExternalSystem system;
   const auto files = [&](campaign::Sensors sensors) {
     system.layout = sensors.metric() ? campaign::SequenceLayout::euroc : campaign::SequenceLayout::tum;

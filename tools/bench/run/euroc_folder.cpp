@@ -47,14 +47,16 @@ void WriteEurocCamera(const fs::path& folder, const sim::Scenario& scenario, con
 
 void AddRendered(const fs::path& folder, const sim::Simulator& simulator, campaign::Sensors sensors) {
   const sim::Scenario& scenario = simulator.scenario();
+  fs::remove_all(folder / "mav0");  // of a call that was cut short
   for (const sim::Simulator& camera : sensors.stereo ? simulator.Cameras() : std::vector{simulator}) {
     const std::size_t k = camera.camera_index();
     const fs::path own = sensors.stereo ? folder / scenario.cameras[k].name : folder;
     WriteEurocCamera(folder, camera.scenario(), vo::SequenceReader(own).entries(), k);
     if (k > 0 || !sensors.stereo) continue;
+    fs::remove(folder / "rgb");
     fs::create_directory_symlink(scenario.cameras[k].name + "/rgb", folder / "rgb");
     for (const char* file : {"rgb.txt", "camera.yaml", "exposure.txt"})
-      if (fs::exists(own / file)) fs::copy_file(own / file, folder / file);
+      if (fs::exists(own / file)) fs::copy_file(own / file, folder / file, fs::copy_options::overwrite_existing);
   }
   if (!sensors.imu) return;
   WriteThose(folder, sim::BodyLists(sim::Layout::euroc, scenario, {}), "mav0/imu0");

@@ -18,19 +18,13 @@ Stamps FrameStamps(const EstimateRun& run, const JudgeOptions& options) {
 }
 
 TrajectoryErrors ErrorsOf(const MatchedTrajectories& matched, std::size_t pairs_offered, const JudgeOptions& options) {
+  using enum Alignment;
   const auto ate = [&](Alignment alignment) { return ComputeAte(matched, alignment); };
-  const Ate sim3 = ate(Alignment::sim3);
+  const Ate scaled = ate(sim3);
   const auto pairs = PairsByTime(matched.truth, options.rpe_delta_ns, options.rpe_tolerance_ns);
-  const Rpe rpe = ComputeRpe(matched, pairs, sim3.similarity.scale), unscaled = ComputeRpe(matched, pairs);
-  return {matched.estimate.size(),
-          ate(Alignment::none),
-          ate(Alignment::se3),
-          sim3,
-          ate(Alignment::first),
-          ate(Alignment::yaw),
-          rpe,
-          unscaled,
-          pairs_offered};
+  const Rpe rpe = ComputeRpe(matched, pairs, scaled.similarity.scale), unscaled = ComputeRpe(matched, pairs);
+  const std::size_t n = matched.estimate.size();
+  return {n, ate(none), ate(se3), scaled, ate(first), ate(yaw), rpe, unscaled, pairs_offered};
 }
 
 std::optional<Coverage> CoverageOf(const EstimateRun& run, const JudgeOptions& options, const Stamps& frames) {
