@@ -36,6 +36,13 @@ Matrix6 Scaled(Matrix6 S, double position, double orientation) {
 
 double MeanOfBlock(const Matrix6& S, int block) { return S.block<3, 3>(3 * block, 3 * block).trace() / 3; }
 
+Matrix6 Isotropic(const Matrix6& S) {
+  Matrix6 mean = Matrix6::Zero();
+  mean.diagonal().head<3>().setConstant(MeanOfBlock(S, 0));
+  mean.diagonal().tail<3>().setConstant(MeanOfBlock(S, 1));
+  return mean;
+}
+
 }  // namespace
 
 InnovationRatios RatiosOf(const PoseGaussian& predicted, const PoseGaussian& updated) {
@@ -57,7 +64,8 @@ MotionInput AdaptiveNoise::Input(const Eigen::Quaterniond& q_WC) const {
   return input;
 }
 
-void AdaptiveNoise::Learn(const PoseGaussian& predicted, const PoseGaussian& updated, const MotionInput& used) {
+void AdaptiveNoise::Learn(const PoseGaussian& predicted, const PoseGaussian& updated, const MotionInput& used,
+                          bool failed) {
   const Matrix6 R = IntoCamera(predicted.mean.q_WC);
   const Matrix6 S = R * Scaled(used.shape, used.position_noise, used.orientation_noise) * R.transpose();
   const Matrix6 P = R * predicted.covariance * R.transpose();
@@ -65,6 +73,7 @@ void AdaptiveNoise::Learn(const PoseGaussian& predicted, const PoseGaussian& upd
   const Vector6 d = R * Minus(updated.mean, predicted.mean);
   const Matrix6 T = Matrix6(S.llt().matrixL()) * Matrix6(P.llt().matrixL()).inverse();  // T P T' = S
   Matrix6 shown = S + T * (d * d.transpose() - gained) * T.transpose();
+  if (failed) shown = Isotropic(shown);  // one burst has a size, but one direction alone
   const double position = std::min(1.0, kMostOfOne * MeanOfBlock(density_, 0) / MeanOfBlock(shown, 0));
   const double orientation = std::min(1.0, kMostOfOne * MeanOfBlock(density_, 1) / MeanOfBlock(shown, 1));
   shown = Scaled(shown, position, orientation);

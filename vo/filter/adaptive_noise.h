@@ -23,7 +23,8 @@ class AdaptiveNoise {
   MotionInput Input(const Eigen::Quaterniond& q_WC) const;
   // Mean of what the frames show, slow after the first ones: S + T (d d' - (P_predicted - P)) T' with d = x -
   // x_predicted, where T P_predicted T' = S is the density of `used`, the input of the prediction.
-  void Learn(const PoseGaussian& predicted, const PoseGaussian& updated, const MotionInput& used);
+  // `failed`: the first prediction had, and the traces of S_k alone count.
+  void Learn(const PoseGaussian& predicted, const PoseGaussian& updated, const MotionInput& used, bool failed);
 
  private:
   Matrix6 density_;  // of (p, delta), both in C

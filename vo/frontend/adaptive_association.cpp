@@ -112,7 +112,7 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
     return std::move(trial.association);
   }
   const InnovationRatios shown = RatiosOf(trial.association);
-  noise_.Learn(trial.association.predicted, trial.association.agreed, trial.input);
+  noise_.Learn(trial.association.predicted, trial.association.agreed, trial.input, trial.repeated > 0);
   if (const auto more = AsShown(trial.input, shown)) filter.PredictAgain(*more);
   return std::move(trial.association);
 }

@@ -224,7 +224,7 @@ void UpdateScores(const Association& association, const ScoreParams& params, std
 }
 
 void NoiseLevel::Learn(const Association& association) {
-  constexpr double kEnough = 10, kRate = 0.1, kLeast = 0.1, kMost = 20;
+  constexpr double kEnough = 10, kRate = 0.1, kLeast = 0.3, kMost = 20;
   double weight = 0, sum = 0;
   for (const Searched& one : association.searched) {
     weight += one.residual.weight;

@@ -13,7 +13,7 @@ const Eigen::Quaterniond kOrientation(0.8, 0.36, -0.48, 0);
 
 // Mean input over the last frames, of steps that are white with `truth` times the model's density in the camera; the
 // covariances of the poses are `claimed` times those of a Kalman filter.
-vo::MotionInput MeanInput(const vo::Matrix6& truth, double claimed) {
+vo::MotionInput MeanInput(const vo::Matrix6& truth, double claimed, bool failed = false) {
   constexpr int kFrames = 6000, kSettled = 1000;
   constexpr double kNoise = 1e-9;  // variance of the measured pose
   const vo::Matrix6 measured = vo::Matrix6::Identity() * kNoise;
@@ -40,7 +40,7 @@ vo::MotionInput MeanInput(const vo::Matrix6& truth, double claimed) {
     updated.covariance -= gain * predicted.covariance;
     predicted.covariance *= claimed;
     updated.covariance *= claimed;
-    noise.Learn(predicted, updated, used);
+    noise.Learn(predicted, updated, used, failed);
     if (frame < kSettled) continue;
     const vo::MotionInput input = noise.Input(kOrientation);
     mean.position_noise += input.position_noise / (kFrames - kSettled);
@@ -76,6 +76,8 @@ TEST(AdaptiveNoise, ShapeIsThatOfTheMotionInTheCamera) {
   const vo::Matrix6 expected = 0.8 * truth + 0.2 * vo::Matrix6::Identity();
   EXPECT_LT((shape - expected).cwiseAbs().maxCoeff(), 0.16) << shape;
   EXPECT_GT((shape - vo::Matrix6::Identity()).cwiseAbs().maxCoeff(), 1) << "no shape at all is seen";
+  const vo::Matrix6 of_failed = MeanInput(truth, 1, true).shape;
+  EXPECT_LT((of_failed - vo::Matrix6::Identity()).cwiseAbs().maxCoeff(), 1e-9) << "of failed predictions it is none";
 }
 
 TEST(AdaptiveNoise, NoiseThatWasUnderstatedIsReplaced) {
