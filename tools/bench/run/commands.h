@@ -41,17 +41,16 @@ struct TrackOptions {
   std::optional<std::filesystem::path> settings;
   std::uint64_t seed = 1;
   bool truth = false;                        // also matches and landmarks against the truth
-  bool view = false;                         // the report in a browser, while it runs
   std::optional<std::filesystem::path> map;  // a PLY file of the landmarks, too
   Overrides overrides;
   std::string command_line;  // for the record
 };
 void Track(const TrackOptions& options);
 
-// Another tool's numbers: how it reads trajectories, and its output. Throws evaluation::InputError.
+// Another tool's output, and how it reads trajectories. Throws evaluation::InputError.
 struct Reproduction {
-  evaluation::Reading reading = evaluation::Reading::strict;
   std::function<std::string(const evaluation::Trajectory& estimate, const evaluation::Trajectory& truth)> Run;
+  evaluation::Reading reading = evaluation::Reading::strict;
 };
 
 // An estimated trajectory is held against the truth.
@@ -59,7 +58,7 @@ struct EvaluateOptions {
   std::filesystem::path estimate;  // TUM file or a run folder
   std::filesystem::path truth;     // TUM file or a sequence
   std::string align = "sim3";
-  std::optional<Reproduction> compat;  // printed instead (docs/metrics.md)
+  Reproduction compat;  // printed instead, if any (docs/metrics.md)
 };
 void Evaluate(const EvaluateOptions& options);
 
@@ -73,7 +72,6 @@ struct RunOptions {
   std::uint64_t seed = 1;           // of the first run; the others count up from it
   bool bound = false;               // the Cramer-Rao bound too, of worlds of points
   bool verdict = false;             // and whether the systems are consistent, as pass or fail
-  bool view = false;                // the report in a browser, while it runs; not of worlds of points
   bool require_consistent = false;  // NotConsistent is thrown where one is not, after all is printed and written
   int jobs = 1;
   Overrides overrides;

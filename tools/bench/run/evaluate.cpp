@@ -136,8 +136,7 @@ void CheckBasis(const evaluation::TrajectoryErrors& errors, const evaluation::Me
 }  // namespace
 
 void Evaluate(const EvaluateOptions& options) {
-  if (options.compat) {
-    const Reproduction& tool = *options.compat;
+  if (const Reproduction& tool = options.compat; tool.Run) {
     fmt::print("{}", Input([&] {
                  return tool.Run(ReadEstimatedPoses(options.estimate, tool.reading),
                                  ReadTruth(options.truth, tool.reading));
