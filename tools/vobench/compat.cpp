@@ -10,6 +10,7 @@
 #include "tools/bench/errors.h"
 #include "tools/judge/evaluation/compat/evo.h"
 #include "tools/judge/evaluation/compat/openvins.h"
+#include "tools/judge/evaluation/compat/rpg.h"
 #include "tools/judge/evaluation/compat/tum.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "tools/vobench/arguments.h"
@@ -21,7 +22,7 @@ using namespace evaluation::compat;  // NOLINT(google-build-using-namespace): al
 using evaluation::Trajectory;
 
 constexpr const char* kTools =
-    "--compat is one of: tum [ate|rpe], evo ape|rpe, ov MODE, and that tool's own options (docs/metrics.md)";
+    "--compat is one of: tum [ate|rpe], evo ape|rpe, rpg, ov MODE, and that tool's own options (docs/metrics.md)";
 
 std::int64_t Nanoseconds(const char* option, double seconds) {
   const auto ns = evaluation::Nanoseconds(seconds);
@@ -54,36 +55,43 @@ Reproduction TumAte(const std::vector<std::string>& arguments, bool verbose) {
   Parse(app, arguments);
   options.max_difference_ns = Nanoseconds("--max_difference", gap);
   options.offset_ns = Nanoseconds("--offset", offset);
-  return {[options](const Trajectory& estimate, const Trajectory& truth) {
-    return Print(ComputeTumAte(estimate, truth, options), options);
-  }};
+  return {evaluation::Reading::strict, [options](const Trajectory& estimate, const Trajectory& truth) {
+            return Print(ComputeTumAte(estimate, truth, options), options);
+          }};
 }
 
 Reproduction TumRpe(const std::vector<std::string>& arguments, bool verbose) {
   TumRpeOptions options;
   options.verbose = verbose;
   double offset = 0;
-  const std::map<std::string, TumDeltaUnit> units = {{"s", TumDeltaUnit::seconds}, {"f", TumDeltaUnit::frames}};
+  const std::map<std::string, TumDeltaUnit> units = {{"s", TumDeltaUnit::seconds},
+                                                     {"f", TumDeltaUnit::frames},
+                                                     {"m", TumDeltaUnit::metres},
+                                                     {"rad", TumDeltaUnit::radians},
+                                                     {"deg", TumDeltaUnit::degrees}};
   CLI::App app("", "tum rpe");
   app.add_flag("--fixed_delta", options.fixed_delta);
   app.add_option("--delta", options.delta)->check(CLI::PositiveNumber);
   app.add_option("--delta_unit", options.unit)->transform(CLI::CheckedTransformer(units));
+  app.add_option("--max_pairs", options.max_pairs);
   app.add_option("--offset", offset);
   app.add_option("--scale", options.scale);
+  app.add_option("--seed", options.seed);
   app.add_flag("--verbose", options.verbose);
   Parse(app, arguments);
   options.offset_ns = Nanoseconds("--offset", offset);
   if (options.unit == TumDeltaUnit::seconds) Nanoseconds("--delta", options.delta);
-  return {[options](const Trajectory& estimate, const Trajectory& truth) {
-    return Print(ComputeTumRpe(estimate, truth, options), options);
-  }};
+  return {evaluation::Reading::strict, [options](const Trajectory& estimate, const Trajectory& truth) {
+            return Print(ComputeTumRpe(estimate, truth, options), options);
+          }};
 }
 
 // Both scripts, as they are with --verbose.
 Reproduction TumBoth() {
-  return {[ate = TumAte({}, true), rpe = TumRpe({}, true)](const Trajectory& estimate, const Trajectory& truth) {
-    return ate.Run(estimate, truth) + rpe.Run(estimate, truth);
-  }};
+  const Reproduction ate = TumAte({}, true), rpe = TumRpe({}, true);
+  return {ate.reading, [ate, rpe](const Trajectory& estimate, const Trajectory& truth) {
+            return ate.Run(estimate, truth) + rpe.Run(estimate, truth);
+          }};
 }
 
 Reproduction Evo(const std::string& program, const std::vector<std::string>& arguments) {
@@ -120,24 +128,42 @@ Reproduction Evo(const std::string& program, const std::vector<std::string>& arg
   common.t_offset_ns = Nanoseconds("--t_offset", offset);
   common.n_to_align = n_to_align < 0 ? 0 : static_cast<std::size_t>(n_to_align);
   const bool absolute = program == "ape";
-  return {[options, absolute](const Trajectory& estimate, const Trajectory& truth) {
-    return Print(absolute ? ComputeEvoApe(estimate, truth, options.common) : ComputeEvoRpe(estimate, truth, options));
-  }};
+  return {evaluation::Reading::strict, [options, absolute](const Trajectory& estimate, const Trajectory& truth) {
+            return Print(absolute ? ComputeEvoApe(estimate, truth, options.common)
+                                  : ComputeEvoRpe(estimate, truth, options));
+          }};
+}
+
+Reproduction Rpg(const std::vector<std::string>& arguments) {
+  RpgAlignment alignment = RpgAlignment::sim3;
+  std::vector<double> lengths;
+  const std::map<std::string, RpgAlignment> alignments = {{"sim3", RpgAlignment::sim3},
+                                                          {"se3", RpgAlignment::se3},
+                                                          {"posyaw", RpgAlignment::posyaw},
+                                                          {"none", RpgAlignment::none}};
+  CLI::App app("", "rpg");
+  app.add_option("--align_type", alignment)->transform(CLI::CheckedTransformer(alignments));
+  app.add_option("--lengths", lengths)->delimiter(',')->check(CLI::PositiveNumber);
+  Parse(app, arguments);
+  return {evaluation::Reading::strict, [alignment, lengths](const Trajectory& estimate, const Trajectory& truth) {
+            return Print(ComputeRpg(estimate, truth, alignment, lengths).errors);
+          }};
 }
 
 Reproduction Ov(const std::vector<std::string>& arguments) {
   OvAlignment alignment = OvAlignment::none;
-  const std::map<std::string, OvAlignment> alignments = {{"posyaw", OvAlignment::posyaw},
-                                                         {"se3", OvAlignment::se3},
-                                                         {"sim3", OvAlignment::sim3},
-                                                         {"none", OvAlignment::none}};
+  std::vector<double> segments = {8, 16, 24, 32, 40};
+  const std::map<std::string, OvAlignment> alignments = {
+      {"posyaw", OvAlignment::posyaw}, {"posyawsingle", OvAlignment::posyawsingle},
+      {"se3", OvAlignment::se3},       {"se3single", OvAlignment::se3single},
+      {"sim3", OvAlignment::sim3},     {"none", OvAlignment::none}};
   CLI::App app("", "ov");
   app.add_option("MODE", alignment)->required()->transform(CLI::CheckedTransformer(alignments));
+  app.add_option("--segments", segments)->delimiter(',')->check(CLI::PositiveNumber);
   Parse(app, arguments);
-  return {[alignment](const Trajectory& estimate, const Trajectory& truth) {
-            return PrintOv(ComputeOv(estimate, truth, alignment));
-          },
-          evaluation::Reading::as_written};
+  return {evaluation::Reading::as_written, [alignment, segments](const Trajectory& estimate, const Trajectory& truth) {
+            return Print(ComputeOv(estimate, truth, alignment, segments));
+          }};
 }
 
 }  // namespace
@@ -152,6 +178,7 @@ Reproduction ParseCompat(const std::string& request) {
   };
   const std::string tool = take();
   if (tool == "tum" && words.empty()) return TumBoth();
+  if (tool == "rpg") return Rpg(words);
   if (tool == "ov") return Ov(words);
   const std::string program = take();
   if (tool == "tum" && program == "ate") return TumAte(words, false);

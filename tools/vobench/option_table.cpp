@@ -165,7 +165,7 @@ void AddEvaluate(OptionTable& table) {
   command
       .add_option_function<std::string>(
           "--compat", [&compat = evaluate.compat](const std::string& request) { compat = ParseCompat(request); },
-          "Print what another tool prints: tum, evo or ov, and its own options in the same quotes, such as 'evo "
+          "Print what another tool prints: tum, evo, rpg or ov, and its own options in the same quotes, such as 'evo "
           "ape -as': docs/metrics.md")
       ->type_name("TOOL")
       ->excludes(align);

@@ -47,10 +47,10 @@ struct TrackOptions {
 };
 void Track(const TrackOptions& options);
 
-// Another tool's output, and how it reads trajectories. Throws evaluation::InputError.
+// Another tool's numbers: how it reads trajectories, and its output. Throws evaluation::InputError.
 struct Reproduction {
-  std::function<std::string(const evaluation::Trajectory& estimate, const evaluation::Trajectory& truth)> Run;
   evaluation::Reading reading = evaluation::Reading::strict;
+  std::function<std::string(const evaluation::Trajectory& estimate, const evaluation::Trajectory& truth)> Run;
 };
 
 // An estimated trajectory is held against the truth.
@@ -58,7 +58,7 @@ struct EvaluateOptions {
   std::filesystem::path estimate;  // TUM file or a run folder
   std::filesystem::path truth;     // TUM file or a sequence
   std::string align = "sim3";
-  Reproduction compat;  // printed instead, if any (docs/metrics.md)
+  std::optional<Reproduction> compat;  // printed instead (docs/metrics.md)
 };
 void Evaluate(const EvaluateOptions& options);
 

@@ -136,7 +136,8 @@ void CheckBasis(const evaluation::TrajectoryErrors& errors, const evaluation::Me
 }  // namespace
 
 void Evaluate(const EvaluateOptions& options) {
-  if (const Reproduction& tool = options.compat; tool.Run) {
+  if (options.compat) {
+    const Reproduction& tool = *options.compat;
     fmt::print("{}", Input([&] {
                  return tool.Run(ReadEstimatedPoses(options.estimate, tool.reading),
                                  ReadTruth(options.truth, tool.reading));

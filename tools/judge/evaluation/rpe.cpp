@@ -89,4 +89,24 @@ std::vector<IndexPair> PairsByPath(const Trajectory& trajectory, double delta_m,
   return pairs;
 }
 
+std::vector<IndexPair> PairsByLength(const std::vector<double>& way, double length_m, double tolerance_m) {
+  std::vector<IndexPair> pairs;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const double target = way[i] + length_m;
+    const auto begin = way.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto after = std::lower_bound(begin, way.end(), target);
+    double best = tolerance_m;
+    std::size_t end = way.size();
+    const auto offer = [&](std::vector<double>::const_iterator k) {
+      if (!(std::abs(*k - target) < best)) return;
+      best = std::abs(*k - target);
+      end = static_cast<std::size_t>(k - way.begin());
+    };
+    if (after != begin) offer(std::lower_bound(begin, after, *(after - 1)));  // the first that far
+    if (after != way.end()) offer(after);
+    if (end < way.size()) pairs.emplace_back(i, end);
+  }
+  return pairs;
+}
+
 }  // namespace evaluation

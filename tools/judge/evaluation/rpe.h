@@ -45,4 +45,9 @@ std::vector<IndexPair> PairsByFrames(std::size_t poses, std::size_t delta, PairS
 std::vector<IndexPair> PairsByPath(const Trajectory& trajectory, double delta_m, PairSelection selection,
                                    double tolerance = 0.1);
 
+// rpg's and ov_eval's sub-trajectories: from every pose the one whose distance along the way is nearest to length
+// further, if nearer than the tolerance; the earliest of equally near. Starts without such an end are left out. way:
+// not decreasing [m].
+std::vector<IndexPair> PairsByLength(const std::vector<double>& way, double length_m, double tolerance_m);
+
 }  // namespace evaluation

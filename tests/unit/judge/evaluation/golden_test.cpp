@@ -1,5 +1,5 @@
-// Figures of the reference tools in the file of golden values, digit for digit: TUM's ATE and RPE scripts, evo and
-// ov_eval's positions on the TUM RGB-D trajectories beside it.
+// Every figure of the reference tools in the file of golden values, digit for digit: TUM's ATE and RPE scripts, evo,
+// rpg_trajectory_evaluation and ov_eval on the TUM RGB-D trajectories beside it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include "tools/judge/evaluation/compat/evo.h"
 #include "tools/judge/evaluation/compat/format.h"
 #include "tools/judge/evaluation/compat/openvins.h"
+#include "tools/judge/evaluation/compat/rpg.h"
 #include "tools/judge/evaluation/compat/tum.h"
 
 namespace evaluation::compat {
@@ -32,6 +33,10 @@ std::string OneLine(const std::string& text) {
   std::string line;
   for (const char c : text.substr(0, text.size() - 1)) line += c == '\n' ? std::string(" | ") : std::string(1, c);
   return line;
+}
+
+const Statistics& Find(const std::vector<NamedStatistics>& errors, const std::string& name) {
+  return std::ranges::find(errors, name, &NamedStatistics::name)->statistics;
 }
 
 class Golden : public testing::Test {
@@ -85,7 +90,8 @@ class Golden : public testing::Test {
 
   const Trajectory& Load(const std::string& name) {
     const auto found = loaded_.find(name);
-    return found != loaded_.end() ? found->second : loaded_.emplace(name, ReadTrajectory(folder_ / name, reading_)).first->second;
+    return found != loaded_.end() ? found->second
+                                  : loaded_.emplace(name, ReadTrajectory(folder_ / name, reading_)).first->second;
   }
 
   std::filesystem::path folder_;
@@ -134,23 +140,74 @@ TEST_F(Golden, TumAte) {
   EXPECT_EQ(figures_, 2);
 }
 
+TEST_F(Golden, RpgAbsoluteErrors) {
+  const std::pair<const char*, RpgAlignment> modes[] = {{" none s=", RpgAlignment::none},
+                                                        {" se3 s=", RpgAlignment::se3},
+                                                        {" sim3 s=", RpgAlignment::sim3},
+                                                        {" posyaw s=", RpgAlignment::posyaw}};
+  for (const auto& [mode, alignment] : modes) {
+    ForEach(mode,
+            [&, chosen = alignment](const std::string& line, const Trajectory& estimate, const Trajectory& truth) {
+              const RpgResult rpg = ComputeRpg(estimate, truth, chosen, {1});
+              Expect(line, " s=", rpg.similarity.scale);
+              Expect(line, "rmse=", Find(rpg.errors, "trans").rmse);
+              Expect(line, "mean=", Find(rpg.errors, "trans").mean);
+            });
+  }
+  EXPECT_EQ(figures_, 4 * 2 * 3);
+}
+
+TEST_F(Golden, RpgLengthsOfSubTrajectories) {
+  for (const std::string prefix : {" length 8.016619671585246", " length 18.858236113214986"}) {
+    ForEach(prefix, [&](const std::string& line, const Trajectory& estimate, const Trajectory& truth) {
+      std::string ours = "[";
+      for (const NamedStatistics& errors : ComputeRpg(estimate, truth, RpgAlignment::none).errors) {
+        if (errors.name.ends_with("m_trans"))
+          ours += (ours.size() > 1 ? ", " : "") + Significant(std::stod(errors.name), 12);
+      }
+      EXPECT_EQ(line.substr(line.find('[')), ours + "]");
+      ++figures_;
+    });
+  }
+  EXPECT_EQ(figures_, 2);
+}
+
+// A block of the file begins with a mode's ATE; lines of RPE follow, without the mode's name.
 TEST_F(Golden, OpenVins) {
   reading_ = Reading::as_written;
-  const std::pair<const char*, OvAlignment> modes[] = {{"none ", OvAlignment::none},
-                                                       {"se3 ", OvAlignment::se3},
-                                                       {"sim3 ", OvAlignment::sim3},
-                                                       {"posyaw ", OvAlignment::posyaw}};
+  const std::pair<const char*, OvAlignment> modes[] = {
+      {"none ", OvAlignment::none},           {"se3 ", OvAlignment::se3},
+      {"sim3 ", OvAlignment::sim3},           {"posyaw ", OvAlignment::posyaw},
+      {"se3single ", OvAlignment::se3single}, {"posyawsingle ", OvAlignment::posyawsingle}};
+  std::vector<NamedStatistics> ov;
   ForEach("", [&](const std::string& line, const Trajectory& estimate, const Trajectory& truth) {
+    if (line.find("RPE ") != std::string::npos && line.starts_with("   ")) {
+      const std::string over = Fixed(std::stod(line.substr(line.find("RPE ") + 4)), 2) + "m_";
+      if (std::ranges::find(ov, over + "pos", &NamedStatistics::name) != ov.end()) {
+        const Statistics &pos = Find(ov, over + "pos"), &turn = Find(ov, over + "ori");
+        Expect(line, "n=", static_cast<double>(pos.count));
+        Expect(line, "pos median=", pos.median);
+        Expect(line, "mean=", pos.mean);
+        Expect(line, "rmse=", pos.rmse);
+        const std::string ori = line.substr(line.find(" ori "));
+        Expect(ori, "median=", turn.median);
+        Expect(ori, "mean=", turn.mean);
+      }
+    }
     for (const auto& [mode, alignment] : modes) {
       if (!line.starts_with(mode) || line.find(" ATE n=") == std::string::npos) continue;
-      const Statistics position = ComputeOv(estimate, truth, alignment);
-      Expect(line, "n=", static_cast<double>(position.count));
-      Expect(line, "pos rmse=", position.rmse);
-      Expect(line, "mean=", position.mean);
-      Expect(line, "std=", position.std);
+      ov = ComputeOv(estimate, truth, alignment, {1, 2, 4});
+      const Statistics &pos = Find(ov, "pos"), &turn = Find(ov, "ori");
+      Expect(line, "n=", static_cast<double>(pos.count));
+      Expect(line, "pos rmse=", pos.rmse);
+      Expect(line, "mean=", pos.mean);
+      Expect(line, "std=", pos.std);
+      const std::string ori = line.substr(line.find(" ori "));
+      Expect(ori, "rmse=", turn.rmse);
+      Expect(ori, "mean=", turn.mean);
     }
   });
-  EXPECT_EQ(figures_, 4 * 2 * 4);
+  EXPECT_EQ(figures_, 6 * 2 * (6 + 3 * 6));
 }
 
 TEST_F(Golden, EvoRpe) {
@@ -184,16 +241,17 @@ TEST_F(Golden, EvoRpe) {
   EXPECT_EQ(figures_, 2 * 7 * 5);
 }
 
-// Whole lines.
+// Whole lines, the pairs that the script draws at random included: Python's generator is reproduced.
 TEST_F(Golden, TumRpe) {
-  const TumRpeOptions fixed{.fixed_delta = true, .verbose = true};
+  TumRpeOptions fixed{.fixed_delta = true, .verbose = true};
   TumRpeOptions frame = fixed, ten = fixed;
   frame.unit = ten.unit = TumDeltaUnit::frames;
   ten.delta = 10;
   const std::pair<std::string, TumRpeOptions> modes[] = {
       {"['--fixed_delta', '--delta', '1', '--delta_unit', 's']", fixed},
       {"['--fixed_delta', '--delta', '1', '--delta_unit', 'f']", frame},
-      {"['--fixed_delta', '--delta', '10', '--delta_unit', 'f']", ten}};
+      {"['--fixed_delta', '--delta', '10', '--delta_unit', 'f']", ten},
+      {"[]", {.verbose = true}}};
   for (const auto& [mode, wanted] : modes) {
     const std::string prefix = "TUM rpe " + mode + " ";
     ForEach(prefix,
@@ -202,7 +260,7 @@ TEST_F(Golden, TumRpe) {
               ++figures_;
             });
   }
-  EXPECT_EQ(figures_, 3 * 2);
+  EXPECT_EQ(figures_, 4 * 2);
 }
 
 }  // namespace

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <random>
 
 #include "tools/judge/evaluation/compat/format.h"
+#include "tools/judge/evaluation/compat/python_random.h"
 #include "tools/judge/evaluation/so3.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace evaluation::compat {
 namespace {
-
-constexpr std::size_t kMostPairs = 10'000;  // the script's --max_pairs
 
 // from^-1 to.
 Eigen::Isometry3d Motion(const StampedPose& from, const StampedPose& to) {
@@ -53,28 +51,59 @@ Rpe Errors(const Trajectory& estimate, const Trajectory& truth, const std::vecto
   return rpe;
 }
 
-// Every ordered pair, a pose with itself included; or as many drawn, with replacement.
-std::vector<IndexPair> AnyPairs(std::size_t n, std::size_t most) {
-  std::vector<IndexPair> pairs;
-  if (n * n > most) {
-    std::mt19937_64 random;
-    while (pairs.size() < most) pairs.emplace_back(random() % n, random() % n);
-    return pairs;
+// Where each pose is on the axis that delta is measured on, but for seconds: frames, or the way or the turn so far.
+std::vector<double> Axis(const Trajectory& estimate, const TumRpeOptions& options) {
+  std::vector<double> axis{0};
+  for (std::size_t i = 1; i < estimate.size(); ++i) {
+    double step = 1;
+    if (options.unit == TumDeltaUnit::metres) step = (estimate[i].p_WC - estimate[i - 1].p_WC).norm();
+    if (options.unit == TumDeltaUnit::radians) step = AngleBetween(estimate[i - 1].q_WC, estimate[i].q_WC);
+    if (options.unit == TumDeltaUnit::degrees) step = AngleBetween(estimate[i - 1].q_WC, estimate[i].q_WC) * 180 / M_PI;
+    axis.push_back(axis.back() + step);
   }
-  for (std::size_t k = 0; k < n * n; ++k) pairs.emplace_back(k / n, k % n);
-  return pairs;
+  return axis;
+}
+
+// Index of the value nearest to x, the earlier of two equally near.
+std::size_t Nearest(const std::vector<double>& ascending, double x) {
+  const auto after = std::lower_bound(ascending.begin(), ascending.end(), x);
+  if (after == ascending.begin()) return 0;
+  const auto index = static_cast<std::size_t>(after - ascending.begin());
+  if (after == ascending.end() || x - ascending[index - 1] <= ascending[index] - x) return index - 1;
+  return index;
 }
 
 std::vector<IndexPair> FixedPairs(const Trajectory& estimate, const TumRpeOptions& options) {
   std::vector<IndexPair> pairs;
+  const bool by_time = options.unit == TumDeltaUnit::seconds;
   const std::vector<std::int64_t> stamps_ns = StampsOf(estimate);
-  const std::size_t last = estimate.size() - 1;
-  for (std::size_t i = 0; i < last; ++i) {
+  const std::vector<double> axis = by_time ? std::vector<double>{} : Axis(estimate, options);
+  const auto delta_ns = by_time ? static_cast<std::int64_t>(std::llround(options.delta * 1e9)) : 0;
+  for (std::size_t i = 0; i < estimate.size(); ++i) {
     const std::size_t j =
-        options.unit == TumDeltaUnit::seconds
-            ? NearestIndex(stamps_ns, stamps_ns[i] + std::llround(options.delta * 1e9))
-            : i + static_cast<std::size_t>(std::ceil(std::min(options.delta, static_cast<double>(last)) - 0.5));
-    if (j < last) pairs.emplace_back(i, j);
+        by_time ? NearestIndex(stamps_ns, stamps_ns[i] + delta_ns) : Nearest(axis, axis[i] + options.delta);
+    if (j + 1 != estimate.size()) pairs.emplace_back(i, j);
+  }
+  if (options.max_pairs == 0 || pairs.size() <= options.max_pairs) return pairs;
+  PythonRandom random(options.seed);
+  std::vector<IndexPair> drawn;
+  for (const std::size_t k : random.Sample(pairs.size(), options.max_pairs)) drawn.push_back(pairs[k]);
+  return drawn;
+}
+
+// Every ordered pair, a pose with itself included; or as many drawn, with replacement.
+std::vector<IndexPair> AnyPairs(std::size_t n, const TumRpeOptions& options) {
+  std::vector<IndexPair> pairs;
+  if (options.max_pairs == 0 || static_cast<double>(n) < std::sqrt(static_cast<double>(options.max_pairs))) {
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) pairs.emplace_back(i, j);
+    }
+    return pairs;
+  }
+  PythonRandom random(options.seed);
+  while (pairs.size() < options.max_pairs) {
+    const std::size_t i = random.Below(n);
+    pairs.emplace_back(i, random.Below(n));
   }
   return pairs;
 }
@@ -101,8 +130,8 @@ Ate ComputeTumAte(const Trajectory& estimate, const Trajectory& truth, const Tum
 Rpe ComputeTumRpe(const Trajectory& estimate, const Trajectory& truth, const TumRpeOptions& options) {
   Rpe rpe;
   if (estimate.size() >= 2 && truth.size() >= 2) {
-    const auto pairs = options.fixed_delta ? FixedPairs(estimate, options) : AnyPairs(estimate.size(), kMostPairs);
-    rpe = Errors(estimate, truth, pairs, options);
+    const auto candidates = options.fixed_delta ? FixedPairs(estimate, options) : AnyPairs(estimate.size(), options);
+    rpe = Errors(estimate, truth, candidates, options);
   }
   if (rpe.pairs.empty()) {
     throw InputError(
