@@ -128,6 +128,7 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
   start_.Add(frame.frame.stamp_ns, filter_.answer(), scale_);
   UpdateScores(association, params_.score, records_);  // section 6: (44)-(49)
   noise_level_.Learn(association);
+  if (association.matches.empty()) noise_level_ = {};  // the next match is after a gap
   path_length_ += (filter_.belief().pose.p_WC - previous).norm();
   for (const Match& match : association.matches) records_[match.landmark].path_length = path_length_;
   diagnostics.searched = static_cast<int>(association.searched.size());

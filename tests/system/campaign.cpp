@@ -1,9 +1,33 @@
 #include "tests/system/campaign.h"
 
 #include <algorithm>
+#include <sstream>
 
 namespace vobench::system_test {
 namespace fs = std::filesystem;
+
+std::map<std::string, Row> BySystem(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::vector<std::string> header;
+  std::map<std::string, Row> rows;
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> fields(1);
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"') quoted = !quoted;
+      if (c == ',' && !quoted) fields.emplace_back();
+      if (c != '"' && (c != ',' || quoted)) fields.back() += c;
+    }
+    if (header.empty()) {
+      header = fields;
+      continue;
+    }
+    Row row;
+    for (std::size_t i = 0; i < header.size() && i < fields.size(); ++i) row[header[i]] = fields[i];
+    rows[row.at("system")] = row;
+  }
+  return rows;
+}
 
 std::string CampaignTest::Points(const std::string& seeds) {
   const std::string scenario = (TinyScenario().parent_path() / "points.yaml").string();

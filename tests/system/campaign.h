@@ -12,6 +12,10 @@
 
 namespace vobench::system_test {
 
+// Lines of results.csv by their system, fields by their column.
+using Row = std::map<std::string, std::string>;
+std::map<std::string, Row> BySystem(const std::string& csv);
+
 class CampaignTest : public testing::Test {
  protected:
   // 3 x 2 x 5 tasks on points, each some tens of milliseconds.

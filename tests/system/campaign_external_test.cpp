@@ -4,9 +4,7 @@
 
 #include <chrono>
 #include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <thread>
 
 #include "source_dir.h"
@@ -47,31 +45,6 @@ std::string CampaignOf(const std::string& systems, const std::string& exposures 
   return "scenarios: [{file: " + TinyScenario().string() + ", set: {time.duration: 0.4 s}}]\n" +
          "vary: [{name: exposure, key: sensor.exposure, values: " + exposures +
          "}]\nexternal: systems.yaml\nsystems: " + systems + "\n";
-}
-
-using Row = std::map<std::string, std::string>;
-
-std::map<std::string, Row> BySystem(const std::string& csv) {
-  std::istringstream lines(csv);
-  std::vector<std::string> header;
-  std::map<std::string, Row> rows;
-  for (std::string line; std::getline(lines, line);) {
-    std::vector<std::string> fields(1);
-    bool quoted = false;
-    for (const char c : line) {
-      if (c == '"') quoted = !quoted;
-      if (c == ',' && !quoted) fields.emplace_back();
-      if (c != '"' && (c != ',' || quoted)) fields.back() += c;
-    }
-    if (header.empty()) {
-      header = fields;
-      continue;
-    }
-    Row row;
-    for (std::size_t i = 0; i < header.size() && i < fields.size(); ++i) row[header[i]] = fields[i];
-    rows[row.at("system")] = row;
-  }
-  return rows;
 }
 
 TEST_F(CampaignTest, ExternalOutcomesAreResults) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "source_dir.h"
 #include "tests/system/campaign.h"
 #include "tests/system/recorded.h"
 #include "tests/system/slurm_cluster.h"
@@ -122,6 +123,41 @@ TEST_F(CampaignRecordedTest, ResultsDependOnTheBytesAndNotOnThePlace) {
   fs::copy_file(here_ / "elsewhere/rgb/0.000000000.png", here_ / "elsewhere/rgb/0.033333333.png",
                 fs::copy_options::overwrite_existing);
   EXPECT_EQ(Run(moved, "out").status, 2) << "another picture";
+}
+
+// EuRoC's layout with both cameras and the IMU: a part of it is served with the recording's own sensor.yaml files; one
+// that has one camera alone is refused.
+TEST_F(CampaignRecordedTest, EurocIsServedWithAllItsSensors) {
+  const std::string camera = "width: 160, height: 120, fx: 110, fy: 110, cx: 79.5, cy: 59.5";
+  ASSERT_EQ(RunVobench({"render", std::string(VOBENCH_SOURCE_DIR) + "/scenes/stereo.yaml", "-o", "rig", "--format",
+                        "euroc", "--set", "time.duration=0.6 s", "--set", "truth=[imu]", "--set",
+                        "cameras=[{name: a, " + camera + "}, {name: b, " + camera + ", position: [0.1, 0, 0]}]"},
+                       here_.path())
+                .status,
+            0);
+  WriteFile(
+      here_ / "systems.yaml",
+      "systems:\n  - {name: vio, sensors: stereo_imu, layout: euroc, command: \"cd {sequence}; find -L . -name "
+      "'*.*' | sort; cat mav0/cam1/sensor.yaml; head -3 mav0/cam1/data.csv; awk -F, '{ printf \\\"%.9f %f 0 0 0 0 0 "
+      "1\\\\n\\\", $1 / 1e9, NR }' mav0/cam0/data.csv | tail -n +2 > {trajectory}\"}\n");
+  const std::string systems = "external: systems.yaml\nsystems: [vio, rb2pf]\n";
+  MustRun("sequences: [{path: rig, camera: rig/mav0/cam0/sensor.yaml, first: 2, frames: 9}]\n" + systems, "out");
+  const std::string log = ReadFile(here_ / "out/tasks/00/000000/log.txt");
+  const auto stamp = [](int k) { return std::to_string(k * 50'000'000L); };
+  for (const char* k : {"0", "1"}) {
+    EXPECT_THAT(log, HasSubstr("mav0/cam" + std::string(k) + "/data/" + stamp(2) + ".png"));
+    EXPECT_THAT(log, HasSubstr("mav0/cam" + std::string(k) + "/data/" + stamp(10) + ".png"));
+  }
+  for (const std::string& no :
+       {"/" + stamp(1) + ".png", "/" + stamp(11) + ".png", std::string("groundtruth"), std::string("bias")})
+    EXPECT_THAT(log, Not(HasSubstr(no)));
+  EXPECT_THAT(log, AllOf(HasSubstr("./mav0/imu0/data.csv"), HasSubstr(ReadFile(here_ / "rig/mav0/cam1/sensor.yaml")),
+                         HasSubstr("#timestamp [ns],filename\n" + stamp(2) + "," + stamp(2) + ".png\n")));
+  EXPECT_THAT(Results("out"), HasSubstr("vio,1,ok,yaw,"));
+  fs::rename(here_ / "rig/mav0/cam1", here_ / "elsewhere");
+  const Outcome refused = Run("sequences: [rig]\n" + systems, "one", {"--dry-run"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("c.yaml:1:13: 'vio' takes two cameras: there is one"));
 }
 
 TEST_F(CampaignRecordedTest, ProblemsAreListedBeforeAnythingRuns) {

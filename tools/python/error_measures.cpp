@@ -51,14 +51,6 @@ py::array Column(const py::object& self) {
   return py::array(py::dtype::of<T>(), shape, strides, poses.empty() ? nullptr : First(poses.front()), self);
 }
 
-evaluation::Alignment AlignmentOf(const std::string& name) {
-  using enum evaluation::Alignment;
-  for (const evaluation::Alignment alignment : {none, se3, sim3, first}) {
-    if (Name(alignment) == name) return alignment;
-  }
-  throw std::invalid_argument("align = " + name + " is none of none, se3, sim3, first");
-}
-
 std::int64_t Nanoseconds(const std::string& name, double seconds) {
   const auto ns = evaluation::Nanoseconds(seconds);
   if (!ns) throw std::invalid_argument(name + " = " + std::to_string(seconds) + " is not a time of 1e9 s at most");
@@ -72,7 +64,7 @@ evaluation::MatchedTrajectories Match(const Trajectory& estimate, const Trajecto
 }
 
 evaluation::Ate AteOf(const Trajectory& estimate, const Trajectory& truth, const std::string& align, double gap_s) {
-  return evaluation::ComputeAte(Match(estimate, truth, gap_s), AlignmentOf(align));
+  return evaluation::ComputeAte(Match(estimate, truth, gap_s), evaluation::AlignmentNamed(align));
 }
 
 evaluation::Rpe RpeOf(const Trajectory& estimate, const Trajectory& truth, double delta_s, double scale, double gap_s) {

@@ -135,14 +135,12 @@ Reproduction Evo(const std::string& program, const std::vector<std::string>& arg
 }
 
 Reproduction Rpg(const std::vector<std::string>& arguments) {
-  RpgAlignment alignment = RpgAlignment::sim3;
+  using A = evaluation::Alignment;
+  A alignment = A::sim3;
   std::vector<double> lengths;
-  const std::map<std::string, RpgAlignment> alignments = {{"sim3", RpgAlignment::sim3},
-                                                          {"se3", RpgAlignment::se3},
-                                                          {"posyaw", RpgAlignment::posyaw},
-                                                          {"none", RpgAlignment::none}};
+  const std::map<std::string, A> names = {{"sim3", A::sim3}, {"se3", A::se3}, {"posyaw", A::yaw}, {"none", A::none}};
   CLI::App app("", "rpg");
-  app.add_option("--align_type", alignment)->transform(CLI::CheckedTransformer(alignments));
+  app.add_option("--align_type", alignment)->transform(CLI::CheckedTransformer(names));
   app.add_option("--lengths", lengths)->delimiter(',')->check(CLI::PositiveNumber);
   Parse(app, arguments);
   return {evaluation::Reading::strict, [alignment, lengths](const Trajectory& estimate, const Trajectory& truth) {

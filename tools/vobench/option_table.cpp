@@ -158,10 +158,10 @@ void AddEvaluate(OptionTable& table) {
                                   "vobench evaluate out/xyz/estimate.txt --truth room --align sim3");
   Add(command, "ESTIMATE", evaluate.estimate, "Trajectory in TUM format, or a run folder")->required();
   Add(command, "--truth SEQ|FILE", evaluate.truth, "Trajectory in TUM format, or a sequence folder")->required();
-  CLI::Option* align =
-      Add(command, "--align NAME", evaluate.align, "What the estimate may be moved by before: none, se3, sim3 or first")
-          ->check(CLI::IsMember({"none", "se3", "sim3", "first"}))
-          ->capture_default_str();
+  CLI::Option* align = Add(command, "--align NAME", evaluate.align,
+                           "What the estimate may be moved by before: none, se3, sim3, first or yaw")
+                           ->check(CLI::IsMember({"none", "se3", "sim3", "first", "yaw"}))
+                           ->capture_default_str();
   command
       .add_option_function<std::string>(
           "--compat", [&compat = evaluate.compat](const std::string& request) { compat = ParseCompat(request); },

@@ -6,10 +6,12 @@
 namespace vo {
 namespace {
 
-constexpr double kMargin = 1.4;  // on the densities
-constexpr double kLeast = 1e-4;
-constexpr double kRate = 0.1;      // of the mean, per frame; more in the first frames
-constexpr double kMostOfOne = 20;  // that one frame counts for
+// Of the mean: most of it is shown by few frames, which are predicted again.
+constexpr double kTypical = 0.7;
+constexpr double kLeast = 1e-7;     // added in each frame
+constexpr double kIsotropic = 0.2;  // share of the shape: the rest has 21 unknowns and some 20 frames
+constexpr double kRate = 0.1;       // of the mean, per frame; more in the first frames
+constexpr double kMostOfOne = 20;   // that one frame counts for
 constexpr double kLeastWidening = 4;
 constexpr double kUnderstated = 2;  // innovation ratio of a frame that shows more noise than was assumed
 
@@ -17,10 +19,22 @@ double Ratio(const Eigen::Vector3d& change, const Eigen::Matrix3d& gained) {
   return change.squaredNorm() / std::max(gained.trace(), std::numeric_limits<double>::min());
 }
 
-void LearnOne(double ratio, double used, double rate, double& estimate) {
-  const double shown = std::min(used * ratio / estimate, kMostOfOne);
-  estimate = std::max(kLeast, estimate * (1 + rate * (shown - 1)));
+// Of (dp in W, dphi in C), into C both.
+Matrix6 IntoCamera(const Eigen::Quaterniond& q_WC) {
+  Matrix6 R = Matrix6::Identity();
+  R.topLeftCorner<3, 3>() = q_WC.toRotationMatrix().transpose();
+  return R;
 }
+
+Matrix6 Scaled(Matrix6 S, double position, double orientation) {
+  S.topRows<3>() *= std::sqrt(position);
+  S.leftCols<3>() *= std::sqrt(position);
+  S.bottomRows<3>() *= std::sqrt(orientation);
+  S.rightCols<3>() *= std::sqrt(orientation);
+  return S;
+}
+
+double MeanOfBlock(const Matrix6& S, int block) { return S.block<3, 3>(3 * block, 3 * block).trace() / 3; }
 
 }  // namespace
 
@@ -31,18 +45,35 @@ InnovationRatios RatiosOf(const PoseGaussian& predicted, const PoseGaussian& upd
           Ratio(change.tail<3>(), gained.bottomRightCorner<3, 3>())};
 }
 
-AdaptiveNoise::AdaptiveNoise() : position_(1 / kMargin), orientation_(1 / kMargin) {}
+AdaptiveNoise::AdaptiveNoise() : density_(Matrix6::Identity() / kTypical) {}
 
-MotionInput AdaptiveNoise::Input() const { return {kMargin * position_, kMargin * orientation_}; }
+MotionInput AdaptiveNoise::Input(const Eigen::Quaterniond& q_WC) const {
+  const double position = MeanOfBlock(density_, 0), orientation = MeanOfBlock(density_, 1);
+  MotionInput input{kTypical * position, kTypical * orientation};
+  const Matrix6 R = IntoCamera(q_WC);
+  const Matrix6 shape =
+      (1 - kIsotropic) * Scaled(density_, 1 / position, 1 / orientation) + kIsotropic * Matrix6::Identity();
+  input.shape = R.transpose() * shape * R;
+  return input;
+}
 
-void AdaptiveNoise::Learn(const InnovationRatios& ratios, const MotionInput& used) {
-  const double rate = std::max(kRate, 1.0 / (2 + frames_++));
-  LearnOne(ratios.position, used.position_noise, rate, position_);
-  LearnOne(ratios.orientation, used.orientation_noise, rate, orientation_);
+void AdaptiveNoise::Learn(const PoseGaussian& predicted, const PoseGaussian& updated, const MotionInput& used) {
+  const Matrix6 R = IntoCamera(predicted.mean.q_WC);
+  const Matrix6 S = R * Scaled(used.shape, used.position_noise, used.orientation_noise) * R.transpose();
+  const Matrix6 P = R * predicted.covariance * R.transpose();
+  const Matrix6 gained = R * (predicted.covariance - updated.covariance) * R.transpose();
+  const Vector6 d = R * Minus(updated.mean, predicted.mean);
+  const Matrix6 T = Matrix6(S.llt().matrixL()) * Matrix6(P.llt().matrixL()).inverse();  // T P T' = S
+  Matrix6 shown = S + T * (d * d.transpose() - gained) * T.transpose();
+  const double position = std::min(1.0, kMostOfOne * MeanOfBlock(density_, 0) / MeanOfBlock(shown, 0));
+  const double orientation = std::min(1.0, kMostOfOne * MeanOfBlock(density_, 1) / MeanOfBlock(shown, 1));
+  shown = Scaled(shown, position, orientation);
+  density_ += std::max(kRate, 1.0 / ++frames_) * (shown - density_) + kLeast * Matrix6::Identity();
 }
 
 MotionInput Widened(const MotionInput& used, const InnovationRatios& ratios) {
   MotionInput wide = used;
+  wide.shape.setIdentity();
   wide.position_noise = std::max(used.position_noise, 1.0) * std::clamp(ratios.position, kLeastWidening, kMostOfOne);
   wide.orientation_noise =
       std::max(used.orientation_noise, 1.0) * std::clamp(ratios.orientation, kLeastWidening, kMostOfOne);

@@ -1,4 +1,5 @@
-// Process noise estimated on line: factors on the power spectral densities of position and orientation.
+// Process noise estimated on line: density of acceleration and angular acceleration in the camera, 6 x 6, relative to
+// the power spectral densities of MotionParams. A hand turns and moves at once, and more about one axis than another.
 // Source:  innovation-based estimation (Mehra, "On the identification of variances and adaptive Kalman filtering", IEEE
 //          Trans. Automatic Control 15, 1970), with r = |x - x_predicted|^2 / tr(P_predicted - P), which is 1 on
 //          average where the model's noise is right; docs/algorithm.md, section 2.1.
@@ -18,13 +19,14 @@ InnovationRatios RatiosOf(const PoseGaussian& predicted, const PoseGaussian& upd
 class AdaptiveNoise {
  public:
   AdaptiveNoise();
-  // What a prediction takes: the estimates times a margin.
-  MotionInput Input() const;
-  // Mean of what the frames show, slow after the first ones; `used`: the input of the prediction.
-  void Learn(const InnovationRatios& ratios, const MotionInput& used);
+  // What a prediction takes, from the camera's orientation at the last pose.
+  MotionInput Input(const Eigen::Quaterniond& q_WC) const;
+  // Mean of what the frames show, slow after the first ones: S + T (d d' - (P_predicted - P)) T' with d = x -
+  // x_predicted, where T P_predicted T' = S is the density of `used`, the input of the prediction.
+  void Learn(const PoseGaussian& predicted, const PoseGaussian& updated, const MotionInput& used);
 
  private:
-  double position_, orientation_;
+  Matrix6 density_;  // of (p, delta), both in C
   int frames_ = 0;
 };
 

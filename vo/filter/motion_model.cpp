@@ -13,10 +13,15 @@ MotionModel NearlyConstantVelocity(const MotionParams& params, double dt, const 
   Vector6 psd;  // sigma^2
   psd.head<3>().setConstant(input.position_noise * (params.position_noise * params.position_noise));
   psd.tail<3>().setConstant(input.orientation_noise * (params.orientation_noise * params.orientation_noise));
-  model.Q.topLeftCorner<6, 6>().diagonal() = psd * (dt * dt * dt / 3.0);  // (9)
-  model.Q.topRightCorner<6, 6>().diagonal() = psd * (dt * dt / 2.0);
-  model.Q.bottomLeftCorner<6, 6>().diagonal() = psd * (dt * dt / 2.0);
-  model.Q.bottomRightCorner<6, 6>().diagonal() = psd * dt;
+  Matrix6 S = input.shape;
+  S.topLeftCorner<3, 3>() *= psd[0];
+  S.bottomRightCorner<3, 3>() *= psd[5];
+  S.topRightCorner<3, 3>() *= std::sqrt(psd[0] * psd[5]);
+  S.bottomLeftCorner<3, 3>() = S.topRightCorner<3, 3>().transpose();
+  model.Q.topLeftCorner<6, 6>() = S * (dt * dt * dt / 3.0);  // (9)
+  model.Q.topRightCorner<6, 6>() = S * (dt * dt / 2.0);
+  model.Q.bottomLeftCorner<6, 6>() = S * (dt * dt / 2.0);
+  model.Q.bottomRightCorner<6, 6>() = S * dt;
   return model;
 }
 

@@ -27,6 +27,9 @@ struct PathCorrection {
 struct MotionInput {
   // Factors on the power spectral densities of MotionParams.
   double position_noise = 1, orientation_noise = 1;
+  // Correlation of the accelerations: their density is D shape D, D the square roots of the densities above. Of
+  // (p in W, delta in C); the trace of each 3 x 3 block on the diagonal is 3.
+  Matrix6 shape = Matrix6::Identity();
   // Rotation from the last sampled (or window's last) camera to the present one, in place of the predicted one: as
   // measured by direct alignment of the images. The covariance stays that of the model.
   std::optional<Eigen::Quaterniond> turn = std::nullopt;

@@ -76,7 +76,7 @@ struct Trial {
 Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, double coasting_s, const cv::Mat& grey,
                                                      const std::function<Association(const MotionInput&)>& associate,
                                                      const Relocalise& relocalise) {
-  MotionInput first = noise_.Input();
+  MotionInput first = noise_.Input(filter.answer().belief.pose.q_WC);
   first.coasting_s = coasting_s;
   filter.Predict(dt, first);
   Trial trial{filter, associate, first, associate(first)};
@@ -112,7 +112,7 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
     return std::move(trial.association);
   }
   const InnovationRatios shown = RatiosOf(trial.association);
-  noise_.Learn(shown, trial.input);
+  noise_.Learn(trial.association.predicted, trial.association.agreed, trial.input);
   if (const auto more = AsShown(trial.input, shown)) filter.PredictAgain(*more);
   return std::move(trial.association);
 }

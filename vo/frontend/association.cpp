@@ -224,14 +224,14 @@ void UpdateScores(const Association& association, const ScoreParams& params, std
 }
 
 void NoiseLevel::Learn(const Association& association) {
-  constexpr double kEnough = 10, kRate = 0.1, kLeast = 1, kMost = 20;
+  constexpr double kEnough = 10, kRate = 0.1, kLeast = 0.1, kMost = 20;
   double weight = 0, sum = 0;
   for (const Searched& one : association.searched) {
     weight += one.residual.weight;
     sum += one.residual.weight * one.residual.ratio;
   }
   if (weight < kEnough) return;
-  const double rate = std::max(kRate, 1.0 / (3 + frames_++));
+  const double rate = std::max(kRate, 1.0 / ++frames_);
   value_ = std::clamp(value_ + rate * (sum / weight - value_), kLeast, kMost);
 }
 

@@ -5,6 +5,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <set>
 #include <sstream>
 
 #include "sim/sensor/develop.h"
@@ -12,6 +13,7 @@
 #include "source_dir.h"
 #include "tests/unit/bench/campaign/folder.h"
 #include "tools/bench/run/campaign_sequence.h"
+#include "tools/bench/run/euroc_folder.h"
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/experiment.h"
 #include "vo/geometry/camera_file.h"
@@ -125,7 +127,90 @@ TEST_F(ServedSequenceTest, OfAPinholeTheMiddleIsCutOut) {
 
 TEST_F(ServedSequenceTest, PicturesThatNeedNothingAreServedAsTheyAre) {
   const sim::Scenario scenario = With({{{"camera.width", "320"}, {"camera.height", "240"}}});
-  EXPECT_EQ(Served(scenario, true, campaign::SequenceLayout::tum).folder, fs::absolute(cache_.PathOf("key")));
+  const fs::path folder = Served(scenario, true, campaign::SequenceLayout::tum).folder;
+  EXPECT_TRUE(fs::equivalent(folder / "rgb", cache_.PathOf("key") / "rgb"));
+  // And nothing that says where the camera was: neither the truth, nor the scenario.
+  std::set<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename());
+  EXPECT_THAT(names, testing::ElementsAre("camera.yaml", "rgb", "rgb.txt"));
+  EXPECT_TRUE(fs::exists(cache_.PathOf("key") / "groundtruth.txt")) << "control: it is there to be given away";
+}
+
+// A rig with an IMU in EuRoC's layout, to each what it takes; a scenario without them as ever.
+TEST_F(ServedSequenceTest, ARigIsServedAsEuroc) {
+  SeenSequence seen;
+  seen.experiment.scenario =
+      sim::LoadScenario(VOBENCH_SOURCE_DIR "/scenes/stereo.yaml",
+                        {{"time.duration", "0.15 s"},
+                         {"truth", "[imu]"},
+                         {"imu.position", "[0, 0.02, 0]"},
+                         {"imu.orientation", "[0, 0, 0, 1]"},
+                         {"imu.gravity", "[0, -9.7, 0]"},
+                         {"cameras",
+                          "[{name: left, width: 40, height: 30, fx: 40, fy: 40, cx: 19.5, cy: 14.5}, {name: right, "
+                          "width: 40, height: 30, fx: 40, fy: 40, cx: 19.5, cy: 14.5, position: [0.1, 0, 0], "
+                          "trigger_offset: 5 ms}]"}});
+  seen.sensors = {true, true};
+  MakeIn(cache_, "key", seen, 2);
+  fs::rename(cache_.PathOf("key"),
+             cache_.PathOf("key").string() + ".partial");  // as a kill before the last step has it
+  MakeIn(cache_, "key", seen, 2);
+  campaign::ExternalSystem system;
+  const auto files = [&](campaign::Sensors sensors) {
+    system.layout = sensors.metric() ? campaign::SequenceLayout::euroc : campaign::SequenceLayout::tum;
+    system.sensors = sensors;
+    const ServedSequence served = Serve(cache_, "key", seen.experiment.scenario, true, system);
+    EXPECT_EQ(served.stamps_ns.size(), 3u);
+    std::set<std::string> names;
+    for (const auto& entry :
+         fs::recursive_directory_iterator(served.folder, fs::directory_options::follow_directory_symlink))
+      if (entry.is_regular_file())
+        names.insert(fs::relative(entry.path().parent_path(), served.folder).string() + "/" +
+                     entry.path().filename().string());
+    return std::pair(served.folder, names);
+  };
+  const auto [folder, all] = files({true, true});
+  for (const char* file :
+       {"mav0/cam0/sensor.yaml", "mav0/cam1/sensor.yaml", "mav0/imu0/data.csv", "mav0/imu0/sensor.yaml"})
+    EXPECT_TRUE(fs::exists(folder / file)) << file;
+  // Each picture is listed, and the one of its camera; the stamps of cam1 have its offset.
+  for (const int k : {0, 1}) {
+    const vo::SequenceReader reader(folder, vo::SequenceReader::Images::needed, k);
+    ASSERT_EQ(reader.size(), 3u);
+    EXPECT_EQ(reader.entries()[1].stamp_ns, 50000000 + 5000000 * k);
+    const fs::path own = cache_.PathOf("key") / (k == 0 ? "left" : "right");
+    EXPECT_TRUE(fs::equivalent(reader.entries()[1].image, vo::SequenceReader(own).entries()[1].image));
+  }
+  const Eigen::Isometry3d T_IC = CameraInImu(folder);
+  EXPECT_LT((T_IC.translation() - Eigen::Vector3d(0, -0.02, 0)).norm(), 1e-12);
+  EXPECT_THAT(campaign::Folder::TemporaryFolder::Read(folder / "mav0/imu0/sensor.yaml"),
+              testing::HasSubstr("\ngravity: 9.7 "));
+  EXPECT_TRUE(fs::exists(files({true, false}).first / "mav0/cam1"));
+  EXPECT_FALSE(fs::exists(files({true, false}).first / "mav0/imu0"));
+  EXPECT_FALSE(fs::exists(files({false, true}).first / "mav0/cam1"));
+  EXPECT_TRUE(fs::exists(files({false, true}).first / "mav0/imu0/data.csv"));
+  EXPECT_TRUE(fs::exists(files({false, false}).first / "rgb/0.050000000.png"));
+  for (const campaign::Sensors sensors :
+       {campaign::Sensors{true, true}, {true, false}, {false, true}, {false, false}}) {
+    for (const std::string& name : files(sensors).second)
+      for (const char* truth : {"truth", "velocity", "bias", "rig.yaml", "manifest"})
+        EXPECT_EQ(name.find(truth), std::string::npos) << name;
+  }
+}
+
+// The names of what is in the cache already.
+TEST_F(ServedSequenceTest, OnlyWhatHasMoreSensorsHasAnotherKey) {
+  SeenSequence seen;
+  seen.experiment.scenario = With({});
+  FindWorld(seen.experiment.scenario, cache_);
+  const auto one = SequenceKey(seen, cache_);
+  ASSERT_TRUE(one);
+  for (const campaign::Sensors sensors : {campaign::Sensors{true, false}, {false, true}, {true, true}}) {
+    seen.sensors = sensors;
+    EXPECT_NE(SequenceKey(seen, cache_), one);
+  }
+  seen.sensors = {};
+  EXPECT_EQ(SequenceKey(seen, cache_), one);
 }
 
 // G(code) / V is the linear picture without vignetting, to the steps of the codes: an sRGB code's half step is 1.2 of

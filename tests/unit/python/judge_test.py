@@ -65,7 +65,7 @@ class Errors(unittest.TestCase):
         aligned = ate.scale * moved.positions @ ate.R.T + ate.t
         np.testing.assert_allclose(np.linalg.norm(aligned - positions, axis=1), ate.position_errors, atol=1e-12)
         self.assertGreater(vobench.ate(moved, truth, align="none").position.rmse, 3)
-        with self.assertRaisesRegex(ValueError, "align = sim4 is none of none, se3, sim3, first"):
+        with self.assertRaisesRegex(ValueError, "align = sim4 is none of none, se3, sim3, first, yaw"):
             vobench.ate(moved, truth, align="sim4")
 
     def test_rpe(self):

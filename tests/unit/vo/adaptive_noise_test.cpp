@@ -3,28 +3,35 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/unit/vo/draws.h"
 
 namespace {
 
-// Mean factors over the last frames, of steps that are white with `truth` times the model's density; the covariances of
-// the ratios are `claimed` times those of a Kalman filter.
-vo::MotionInput MeanInput(const vo::MotionInput& truth, double claimed) {
+const Eigen::Quaterniond kOrientation(0.8, 0.36, -0.48, 0);
+
+// Mean input over the last frames, of steps that are white with `truth` times the model's density in the camera; the
+// covariances of the poses are `claimed` times those of a Kalman filter.
+vo::MotionInput MeanInput(const vo::Matrix6& truth, double claimed) {
   constexpr int kFrames = 6000, kSettled = 1000;
   constexpr double kNoise = 1e-9;  // variance of the measured pose
-  vo::Matrix6 model = vo::Matrix6::Identity() * 1e-4, measured = vo::Matrix6::Identity() * kNoise;
-  model.bottomRightCorner<3, 3>() *= 0.1;
-  vo::Matrix6 actual = model;
-  actual.topLeftCorner<3, 3>() *= truth.position_noise;
-  actual.bottomRightCorner<3, 3>() *= truth.orientation_noise;
+  const vo::Matrix6 measured = vo::Matrix6::Identity() * kNoise;
+  vo::Vector6 model = vo::Vector6::Constant(1e-2);  // standard deviations of a step
+  model.tail<3>() *= 0.3;
+  vo::Matrix6 R = vo::Matrix6::Identity();  // (p in C, delta) to (p in W, delta)
+  R.topLeftCorner<3, 3>() = kOrientation.toRotationMatrix();
+  const vo::Matrix6 actual = model.asDiagonal() * R * truth * R.transpose() * model.asDiagonal();
   vo::AdaptiveNoise noise;
   vo::MotionInput mean{0, 0};
+  mean.shape.setZero();
   for (int frame = 0; frame < kFrames; ++frame) {
-    const vo::MotionInput used = noise.Input();
-    vo::PoseGaussian predicted;
-    predicted.covariance = model;
-    predicted.covariance.topLeftCorner<3, 3>() *= used.position_noise;
-    predicted.covariance.bottomRightCorner<3, 3>() *= used.orientation_noise;
+    const vo::MotionInput used = noise.Input(kOrientation);
+    vo::Vector6 scale = model;
+    scale.head<3>() *= std::sqrt(used.position_noise);
+    scale.tail<3>() *= std::sqrt(used.orientation_noise);
+    vo::PoseGaussian predicted{{Eigen::Vector3d::Zero(), kOrientation},
+                               scale.asDiagonal() * used.shape * scale.asDiagonal()};
     const vo::Vector6 change = vo::SampleNormal(vo::Vector6::Zero(), actual + measured,
                                                 {1, vo::Stream::pose, static_cast<std::uint32_t>(frame), 0});
     const vo::Matrix6 gain = predicted.covariance * (predicted.covariance + measured).inverse();
@@ -33,25 +40,42 @@ vo::MotionInput MeanInput(const vo::MotionInput& truth, double claimed) {
     updated.covariance -= gain * predicted.covariance;
     predicted.covariance *= claimed;
     updated.covariance *= claimed;
-    noise.Learn(vo::RatiosOf(predicted, updated), used);
+    noise.Learn(predicted, updated, used);
     if (frame < kSettled) continue;
-    mean.position_noise += noise.Input().position_noise / (kFrames - kSettled);
-    mean.orientation_noise += noise.Input().orientation_noise / (kFrames - kSettled);
+    const vo::MotionInput input = noise.Input(kOrientation);
+    mean.position_noise += input.position_noise / (kFrames - kSettled);
+    mean.orientation_noise += input.orientation_noise / (kFrames - kSettled);
+    mean.shape += R.transpose() * input.shape * R / (kFrames - kSettled);
   }
   return mean;
 }
 
+constexpr double kTypical = 0.7;  // share of the mean that a prediction takes
+
 // The estimate is an average over 20 independent frames, the mean over 5000 frames one over 250 of these: its standard
-// deviation is 1.2 %. False alarm rate 2e-4: two limits of four standard deviations and the measured pose's share.
-TEST(AdaptiveNoise, MeanIsTheTrueDensityTimesTheMargin) {
-  constexpr double kMargin = 1.4;
+// deviation is 1.2 %, of one axis 2 %. False alarm rate 2e-4: two limits of four standard deviations and the measured
+// pose's share.
+TEST(AdaptiveNoise, MeanIsTheTypicalShareOfTheTrueDensity) {
   for (const double density : {16.0, 0.01}) {
-    const vo::MotionInput mean = MeanInput({density, density / 2}, 1);
-    EXPECT_NEAR(mean.position_noise / (kMargin * density), 1, 0.06);
-    EXPECT_NEAR(mean.orientation_noise / (kMargin * density / 2), 1, 0.06);
+    vo::Vector6 truth = vo::Vector6::Constant(density);
+    truth.tail<3>() /= 2;
+    const vo::MotionInput mean = MeanInput(truth.asDiagonal(), 1);
+    EXPECT_NEAR(mean.position_noise / (kTypical * density), 1, 0.06);
+    EXPECT_NEAR(mean.orientation_noise / (kTypical * density / 2), 1, 0.06);
   }
-  EXPECT_GT(std::abs(MeanInput({16, 9}, 0.5).position_noise / (kMargin * 16) - 1), 0.5)
+  EXPECT_GT(std::abs(MeanInput(vo::Matrix6::Identity() * 16, 0.5).position_noise / (kTypical * 16) - 1), 0.5)
       << "halved covariances are seen";
+}
+
+// Shape of a camera that pitches as it rises: 0.8 of the true one, 0.2 of none. An axis' mean is within 0.03 of it (four
+// standard deviations of 2 % of an axis' share, at most 1.6, and of a ratio's bias over 20 frames).
+TEST(AdaptiveNoise, ShapeIsThatOfTheMotionInTheCamera) {
+  vo::Matrix6 truth = vo::Vector6(0.5, 2, 0.5, 1.6, 1.2, 0.2).asDiagonal();
+  truth(1, 3) = truth(3, 1) = 1.6;
+  const vo::Matrix6 shape = MeanInput(truth, 1).shape;
+  const vo::Matrix6 expected = 0.8 * truth + 0.2 * vo::Matrix6::Identity();
+  EXPECT_LT((shape - expected).cwiseAbs().maxCoeff(), 0.16) << shape;
+  EXPECT_GT((shape - vo::Matrix6::Identity()).cwiseAbs().maxCoeff(), 1) << "no shape at all is seen";
 }
 
 TEST(AdaptiveNoise, NoiseThatWasUnderstatedIsReplaced) {
@@ -64,8 +88,9 @@ TEST(AdaptiveNoise, NoiseThatWasUnderstatedIsReplaced) {
 }
 
 TEST(AdaptiveNoise, FailedPredictionIsWidenedByWhatItShows) {
-  const vo::MotionInput used{2, 3, Eigen::Quaterniond(0, 1, 0, 0), 0.5};
+  vo::MotionInput used{2, 3, 2 * vo::Matrix6::Identity(), Eigen::Quaterniond(0, 1, 0, 0), 0.5};
   const vo::MotionInput wide = vo::Widened(used, {6, 100});
+  EXPECT_EQ(wide.shape, vo::Matrix6::Identity());
   EXPECT_EQ(wide.position_noise, 12);
   EXPECT_EQ(wide.orientation_noise, 60);
   EXPECT_EQ(wide.turn->coeffs(), used.turn->coeffs());

@@ -87,7 +87,8 @@ TEST(Algorithm1, IsTheFilterOfThePaper) {
 
 // A prediction made again is the prediction with that input, bit for bit, in every phase.
 TEST(FilterPhases, PredictAgainLeavesNoTrace) {
-  const vo::MotionInput wide{20, 9}, turned{4, 4, vo::Exp(Eigen::Vector3d(0.01, -0.02, 0.005)), 0.01};
+  const vo::MotionInput wide{20, 9},
+      turned{4, 4, vo::Matrix6::Identity(), vo::Exp(Eigen::Vector3d(0.01, -0.02, 0.005)), 0.01};
   for (const auto& [lag, start_window] : {std::pair(0, 0), std::pair(0, 3), std::pair(2, 0), std::pair(2, 3)}) {
     vo::ParticleFilter once = MakeFilter(lag, start_window), twice = MakeFilter(lag, start_window);
     for (int frame = 1; frame <= 7; ++frame) {
@@ -143,7 +144,7 @@ TEST(Algorithm1, CoastsToRest) {
   prior.velocity << 1, 0, 0, 0, 0.5, 0;
   vo::Algorithm1 algorithm(Settings(0, 0), prior);
   for (int frame = 0; frame < 60; ++frame) {
-    algorithm.Predict(kDt, {1, 1, std::nullopt, frame * kDt});
+    algorithm.Predict(kDt, {1, 1, vo::Matrix6::Identity(), std::nullopt, frame * kDt});
     algorithm.Update({});
   }
   const double way = kDt + vo::kCoastingTime;

@@ -143,7 +143,7 @@ void CampaignFile::ReadFactors() {
         section.Reject(section.Has("values") ? "values" : "variants", fmt::format("'{}' is there twice", level.name));
       }
     }
-    const std::vector<std::string> taken = {"task", "scenario", "system", "seed", "status", "reason"};
+    const std::vector<std::string> taken = {"task", "scenario", "system", "seed", "status", "alignment", "reason"};
     if (std::ranges::count(taken, factor.name) > 0 || std::ranges::count(MetricNames(), factor.name) > 0) {
       section.Reject("name", "'" + factor.name + "': the results have such a column already");
     }

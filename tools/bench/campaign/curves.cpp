@@ -41,8 +41,9 @@ CurveLine MakeLine(const CurveSpec& spec, const std::string& system,
   return line;
 }
 
+// `alignment`: what the groups are named by, too.
 void MakeCurvesOf(const Campaign& campaign, const CurveSpec& spec, const std::vector<TaskRecord>& records,
-                  std::vector<Curve>& curves) {
+                  const std::string& alignment, std::vector<Curve>& curves) {
   const auto along = static_cast<std::size_t>(std::ranges::find(campaign.factors, spec.along, &Factor::name) -
                                               campaign.factors.begin());
   // By group in the order of the tasks, then by system.
@@ -51,7 +52,9 @@ void MakeCurvesOf(const Campaign& campaign, const CurveSpec& spec, const std::ve
   std::vector<std::vector<std::vector<std::pair<const TaskRecord*, DoseRun>>>> runs;
   for (const TaskRecord& record : records) {
     const TaskChoice choice = ChoiceOf(campaign, record.task);
-    const std::string group = fmt::format("{}", fmt::join(LevelsOf(campaign, spec.by, choice), ", "));
+    std::vector<std::string> levels = LevelsOf(campaign, spec.by, choice);
+    if (!alignment.empty()) levels.push_back(alignment);
+    const std::string group = fmt::format("{}", fmt::join(levels, ", "));
     const auto [at, is_new] = numbers.try_emplace(group, groups.size());
     const std::size_t g = at->second;
     if (is_new) {
@@ -96,7 +99,12 @@ std::string TitleOf(const Curve& curve, const std::string& what) {
 
 std::vector<Curve> MakeCurves(const Campaign& campaign, const std::vector<TaskRecord>& records) {
   std::vector<Curve> curves;
-  for (const CurveSpec& spec : campaign.curves) MakeCurvesOf(campaign, spec, records, curves);
+  const std::vector<evaluation::Alignment> alignments = AlignmentsOf(campaign);
+  for (const CurveSpec& spec : campaign.curves) {
+    for (const evaluation::Alignment alignment : alignments)  // none has lines of two
+      MakeCurvesOf(campaign, spec, Aligned(campaign, records, alignment),
+                   alignments.size() > 1 ? evaluation::Name(alignment) : "", curves);
+  }
   return curves;
 }
 

@@ -18,6 +18,9 @@ namespace {
 const std::vector<std::pair<std::string, SequenceLayout>> kLayouts = {
     {"tum", SequenceLayout::tum}, {"euroc", SequenceLayout::euroc}, {"images", SequenceLayout::images}};
 
+const std::vector<std::pair<std::string, Sensors>> kSensors = {
+    {"mono", {false, false}}, {"stereo", {true, false}}, {"mono_imu", {false, true}}, {"stereo_imu", {true, true}}};
+
 constexpr const char* kHere = "here";  // the variable that every entry has: the folder of its file
 
 const std::vector<std::pair<std::string, CalibrationFormat>> kFormats = {
@@ -56,19 +59,39 @@ std::vector<Piece> Pieces(const std::string& command) {
   return pieces;
 }
 
-void CheckPlaceholders(settings::Section& section, const ExternalSystem& system) {
-  std::set<std::string> known = {"sequence", "calibration", "trajectory", "seed"};
+void CheckPlaceholders(settings::Section& section, const ExternalSystem& system, const std::string& key,
+                       const std::string& command) {
+  std::set<std::string> known = {"sequence", "calibration", "configs", "trajectory", "seed"};
   for (const auto& [name, value] : system.variables) known.insert(name);
-  for (const auto& [word, is_placeholder] : Pieces(system.command)) {
+  for (const auto& [word, is_placeholder] : Pieces(command)) {
     if (!is_placeholder) continue;
     if (!known.contains(word)) {
-      section.Reject("command", fmt::format("'command': {{{}}} stands for nothing; there are {{{}}}", word,
-                                            fmt::join(known, "}, {")));
+      section.Reject(
+          key, fmt::format("'{}': {{{}}} stands for nothing; there are {{{}}}", key, word, fmt::join(known, "}, {")));
     }
     if (word == "calibration" && system.calibration == CalibrationFormat::none) {
-      section.Reject("command", "'command': {calibration} needs the key 'calibration', which says in what format");
+      section.Reject(key, "'" + key + "': {calibration} needs the key 'calibration', which says in what format");
     }
+    if (word == "configs" && system.configs.empty())
+      section.Reject(key, "'" + key + "': {configs} needs the key 'configs', the command that writes what is in it");
   }
+}
+
+// What it takes, and how it is judged: a metric one never by Sim(3).
+void ReadSensors(settings::Section& section, ExternalSystem& system) {
+  using evaluation::Alignment;
+  const Sensors& sensors = system.sensors;
+  section.ReadChoice("sensors", system.sensors, kSensors);
+  section.Read("configs", system.configs);
+  section.ReadChoice("poses_of", system.poses_of_imu, {{"camera", false}, {"imu", true}});
+  if (sensors.metric()) system.align = sensors.imu ? Alignment::yaw : Alignment::se3;
+  if (sensors.metric()) section.ReadChoice("align", system.align, {{"se3", Alignment::se3}, {"yaw", Alignment::yaw}});
+  if (sensors.metric() && (system.layout != SequenceLayout::euroc || system.rectified))
+    section.Reject("sensors",
+                   "'sensors': more than the pictures of one camera needs 'layout: euroc', with original images");
+  if (system.align == Alignment::yaw && !sensors.imu)
+    section.Reject("align", "'align': yaw needs an IMU, which knows gravity");
+  if (system.poses_of_imu && !sensors.imu) section.Reject("poses_of", "'poses_of': it takes no IMU");
 }
 
 // Of a command for sh, without their quotes; all up to a space or one of `;|&`.
@@ -108,6 +131,7 @@ std::filesystem::path PathOfProgram(const std::string& word) {
 
 std::string Name(SequenceLayout layout) { return NameIn(kLayouts, layout); }
 std::string Name(CalibrationFormat format) { return NameIn(kFormats, format); }
+std::string Name(const Sensors& sensors) { return NameIn(kSensors, sensors); }
 
 std::vector<ExternalSystem> ReadExternalSystems(const std::filesystem::path& file) {
   settings::Document document = settings::Document::FromFile(file);
@@ -142,7 +166,9 @@ std::vector<ExternalSystem> ReadExternalSystems(const std::filesystem::path& fil
         section.Reject("files", "'files': " + system.files.back().string() + " is not there");
     }
     if (!names.insert(system.name).second) section.Reject("name", "there is a system '" + system.name + "' already");
-    CheckPlaceholders(section, system);
+    ReadSensors(section, system);
+    CheckPlaceholders(section, system, "command", system.command);
+    CheckPlaceholders(section, system, "configs", system.configs);
   }
   document.ThrowIfBad();
   return systems;
@@ -170,7 +196,7 @@ std::string StartProblem(const ExternalSystem& system) {
 
 std::string DigestOfPrograms(const ExternalSystem& system) {
   std::vector<std::filesystem::path> files = system.files;
-  for (const std::string& word : Words(FillIn(system.command, system.variables))) {
+  for (const std::string& word : Words(FillIn(system.command + " " + system.configs, system.variables))) {
     const std::filesystem::path program = PathOfProgram(word);
     if (!program.empty() || std::filesystem::is_regular_file(word))
       files.push_back(program.empty() ? std::filesystem::path(word) : program);
@@ -184,6 +210,8 @@ std::string Description(const ExternalSystem& system) {
   std::string text = fmt::format("{}\n{}\n{}\n{}\n{}\n", system.command, Name(system.layout), Name(system.calibration),
                                  system.trajectory, system.timeout_s);
   text += fmt::format("{}{}{}\n{}\n", system.rectified, system.keyframes, system.accepts_any_exit, system.programs);
+  if (system.sensors.metric() || !system.configs.empty())
+    text += fmt::format("{}\n{}\n{}\n", Name(system.sensors), system.configs, system.poses_of_imu);
   for (const auto& [name, value] : system.variables)
     if (name != kHere) text += name + "=" + value + "\n";  // of what lies there the bytes count
   return text;

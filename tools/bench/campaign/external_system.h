@@ -6,29 +6,44 @@
 #include <utility>
 #include <vector>
 
+#include "tools/judge/evaluation/ate.h"
+
 namespace vobench::campaign {
 
 enum class SequenceLayout {
   tum,     // rgb.txt and rgb/
-  euroc,   // mav0/cam0/
+  euroc,   // mav0/cam0/, and of those who take more mav0/cam1/, mav0/imu0/
   images,  // images/000000.png, ... and times.txt: `000000 timestamp exposure`
 };
 
 enum class CalibrationFormat { none, camera_yaml, orb_slam2, orb_slam3, dso, svo, lsd_slam };
 
+// What is given beside the pictures of the first camera.
+struct Sensors {
+  bool stereo = false, imu = false;
+  bool metric() const { return stereo || imu; }  // the scale is known
+  bool operator==(const Sensors&) const = default;
+};
+
 std::string Name(SequenceLayout layout);
+// "mono", "stereo", "mono_imu", "stereo_imu".
+std::string Name(const Sensors& sensors);
 std::string Name(CalibrationFormat format);
 
 struct ExternalSystem {
   std::string name;
-  // For sh, in an empty folder of its own. {sequence}, {calibration}, {trajectory}, {seed}, {here} (the
+  // For sh, in an empty folder of its own. {sequence}, {calibration}, {configs}, {trajectory}, {seed}, {here} (the
   // folder of systems.yaml) and the variables stand for what they say, quoted.
   std::string command;
   std::vector<std::pair<std::string, std::string>> variables;
+  Sensors sensors;
+  std::string configs;  // a command alike that writes configuration files into {configs} before; empty: none
   SequenceLayout layout = SequenceLayout::tum;
   CalibrationFormat calibration = CalibrationFormat::none;
   bool rectified = false;                     // pictures and calibration of a pinhole
   std::string trajectory = "trajectory.txt";  // that it writes, in TUM format: T_WC; relative to its folder
+  bool poses_of_imu = false;                  // T_WI instead
+  evaluation::Alignment align = evaluation::Alignment::sim3;  // of a metric one: se3, or yaw where z is up in its world
   double timeout_s = 3600;
   bool keyframes = false;                    // it writes these alone: judged at their stamps, and named so in tables
   bool accepts_any_exit = false;             // a trajectory counts whatever the exit status is

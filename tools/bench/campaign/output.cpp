@@ -202,7 +202,9 @@ Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, c
     times += TimesLine(out, task);
     merged.records.push_back(std::move(*record));
   }
-  for (const TableSpec& spec : campaign.tables) merged.tables.push_back(MakeTable(campaign, spec, merged.records));
+  for (const TableSpec& spec : campaign.tables) {
+    for (Table& table : MakeTables(campaign, spec, merged.records)) merged.tables.push_back(std::move(table));
+  }
   merged.curves = MakeCurves(campaign, merged.records);
   base::WriteFile(out / "results.csv", ResultsCsv(campaign, merged.records), base::Writers::many);
   base::WriteFile(out / "times.csv", times, base::Writers::many);

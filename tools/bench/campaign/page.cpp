@@ -86,9 +86,10 @@ std::string SystemTiles(const Campaign& campaign, const std::vector<TaskRecord>&
       lost += record.status != Status::ok;
     }
     const double nees = MedianOf(records, system, "nees_pose_per_dof"), ate = MedianOf(records, system, "ate_m");
+    const std::string how = evaluation::Name(AlignmentOf(campaign, campaign.systems[s]));
     html += "<h2 class=\"system\">" + report::Key(s) + Escape(DisplayName(system)) + "</h2>" +
             report::Tiles({{std::isinf(ate) ? "lost" : Fixed(100 * ate, 2) + " cm", "ATE, median of all tasks",
-                            "position RMSE after the campaign's alignment; a lost run counts as worse than any number"},
+                            "position RMSE after alignment " + how + "; a lost run counts as worse than any number"},
                            {fmt::format("{} of {}", lost, runs), "runs lost",
                             "by the rule of the campaign; failed tasks are no runs"},
                            {NumberOrLost(nees), "NEES of the pose, median of all tasks; 1 is ideal",
@@ -103,14 +104,16 @@ std::string TaskTable(const Campaign& campaign, const std::vector<TaskRecord>& r
                                           "nis_per_dof"};
   TextRow head = varied;
   head.insert(head.begin(), "task");
-  head.insert(head.end(), {"system", "seed", "status"});
+  head.insert(head.end(), {"system", "seed", "status", "alignment"});
   head.insert(head.end(), shown.begin(), shown.end());
   std::vector<TextRow> rows = {head};
   for (std::size_t i = 0; i < std::min(kRows, records.size()); ++i) {
     const TaskRecord& record = records[i];
-    TextRow& row = rows.emplace_back(LevelsOf(campaign, varied, ChoiceOf(campaign, record.task)));
+    const TaskChoice choice = ChoiceOf(campaign, record.task);
+    TextRow& row = rows.emplace_back(LevelsOf(campaign, varied, choice));
     row.insert(row.begin(), std::to_string(record.task));
-    row.insert(row.end(), {DisplayName(record.system), std::to_string(record.seed), Name(record.status)});
+    row.insert(row.end(), {DisplayName(record.system), std::to_string(record.seed), Name(record.status),
+                           evaluation::Name(AlignmentOf(campaign, campaign.systems[choice.system]))});
     for (const std::string& metric : shown) {
       const std::optional<double> value = record.metric(MetricIndex(metric));
       row.push_back(value ? Readable(*value) : "–");

@@ -2,9 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace vobench::campaign {
+
+evaluation::Alignment AlignmentOf(const Campaign& campaign, const SystemEntry& system) {
+  const bool own = campaign.align == evaluation::Alignment::sim3 && system.external.sensors.metric();
+  return own ? system.external.align : campaign.align;
+}
+
+std::vector<evaluation::Alignment> AlignmentsOf(const Campaign& campaign) {
+  std::vector<evaluation::Alignment> all;
+  for (const SystemEntry& system : campaign.systems) {
+    const evaluation::Alignment one = AlignmentOf(campaign, system);
+    if (std::ranges::count(all, one) == 0) all.push_back(one);
+  }
+  return all;
+}
 
 std::size_t Points(const Campaign& campaign) {
   std::size_t points = campaign.scenarios.size();

@@ -102,7 +102,7 @@ struct Campaign {
   std::vector<Factor> factors;
   std::vector<SystemEntry> systems;
   std::vector<std::uint64_t> seeds;
-  evaluation::Alignment align = evaluation::Alignment::sim3;
+  evaluation::Alignment align = evaluation::Alignment::sim3;  // but AlignmentOf a system
   Omitted omit;
   LostRule lost;
   std::vector<TableSpec> tables;
@@ -110,6 +110,11 @@ struct Campaign {
   Keep keep = Keep::estimate;
   std::string resolved;  // all of it, defaults included, as JSON
 };
+
+// By which the errors of a system are taken: the campaign's, but of a metric one its own in the place of Sim(3).
+evaluation::Alignment AlignmentOf(const Campaign& campaign, const SystemEntry& system);
+// Of its systems, each once, in their order.
+std::vector<evaluation::Alignment> AlignmentsOf(const Campaign& campaign);
 
 // What task k does.
 struct TaskChoice {

@@ -36,6 +36,12 @@ Value Rmse(const evaluation::Statistics& statistics) {
 using evaluation::NeesSummary;
 using Consistency = evaluation::ConsistencySummary;
 
+// Translations times the scale of the alignment.
+Value RpeRmse(const evaluation::TrajectoryErrors& errors, evaluation::Alignment align) {
+  const bool scaled = align == evaluation::Alignment::sim3;
+  return Rmse((scaled ? errors.rpe : errors.rpe_unscaled).position_statistics);
+}
+
 // Mean or median of the NEES of a part of the state.
 template <class Part>
 Value NeesPerDof(const Metrics& m, Part Consistency::*part, double NeesSummary::*statistic) {
@@ -61,10 +67,11 @@ constexpr Column kColumns[] = {
     {"ate_se3_m", false, [](const Metrics& m, A) { return Rmse(m.errors.se3.position); }},
     {"ate_sim3_m", false, [](const Metrics& m, A) { return Rmse(m.errors.sim3.position); }},
     {"ate_first_m", false, [](const Metrics& m, A) { return Rmse(m.errors.first.position); }},
+    {"ate_yaw_m", false, [](const Metrics& m, A) { return Rmse(m.errors.yaw.position); }},
     {"ate_orientation_rad", false, [](const Metrics& m, A align) { return Rmse(m.errors.Aligned(align).orientation); }},
     {"ate_share_of_path", false,
      [](const Metrics& m, A align) { return Per(m.errors.Aligned(align).position.rmse, m.path_length_m); }},
-    {"rpe_m", false, [](const Metrics& m, A) { return Rmse(m.errors.rpe.position_statistics); }},
+    {"rpe_m", false, [](const Metrics& m, A align) { return RpeRmse(m.errors, align); }},
     {"rpe_unscaled_m", false, [](const Metrics& m, A) { return Rmse(m.errors.rpe_unscaled.position_statistics); }},
     {"rpe_orientation_rad", false, [](const Metrics& m, A) { return Rmse(m.errors.rpe.orientation_statistics); }},
     {"rpe_pairs_share", true,
@@ -91,8 +98,7 @@ constexpr Column kColumns[] = {
     {"duration_s", false, [](const Metrics& m, A) { return Value(m.duration_s); }},
     {"constant_velocity_ate_m", false,
      [](const Metrics& m, A align) { return Rmse(m.constant_velocity.Aligned(align).position); }},
-    {"constant_velocity_rpe_m", false,
-     [](const Metrics& m, A) { return Rmse(m.constant_velocity.rpe.position_statistics); }},
+    {"constant_velocity_rpe_m", false, [](const Metrics& m, A align) { return RpeRmse(m.constant_velocity, align); }},
 };
 
 template <class Number>
@@ -129,6 +135,20 @@ std::vector<Value> MetricValues(const Metrics& metrics, evaluation::Alignment al
 bool LargerIsBetter(const std::string& metric) {
   const std::size_t index = MetricIndex(metric);
   return index < std::size(kColumns) && kColumns[index].larger_is_better;
+}
+
+bool IsAligned(const std::string& metric) {
+  constexpr const char* kOthers[] = {"ate_m", "ate_live_m", "ate_orientation_rad", "ate_share_of_path", "rpe_m"};
+  return metric.starts_with("constant_velocity_") || std::ranges::count(kOthers, metric) > 0;
+}
+
+std::vector<TaskRecord> Aligned(const Campaign& campaign, const std::vector<TaskRecord>& records,
+                                evaluation::Alignment alignment) {
+  std::vector<TaskRecord> some = records;
+  std::erase_if(some, [&](const TaskRecord& record) {
+    return AlignmentOf(campaign, campaign.systems[ChoiceOf(campaign, record.task).system]) != alignment;
+  });
+  return some;
 }
 
 std::string UnitOf(const std::string& metric) {
@@ -222,13 +242,15 @@ std::string CsvField(const std::string& text) {
 std::string ResultsCsv(const Campaign& campaign, const std::vector<TaskRecord>& records) {
   std::string csv = "task,scenario";
   for (const Factor& factor : campaign.factors) csv += "," + CsvField(factor.name);
-  csv += ",system,seed,status";
+  csv += ",system,seed,status,alignment";
   for (const std::string& name : MetricNames()) csv += "," + name;
   csv += ",reason\n";
   for (const TaskRecord& record : records) {
     csv += fmt::format("{},{}", record.task, CsvField(record.scenario));
     for (const auto& [name, value] : record.levels) csv += "," + CsvField(value);
-    csv += fmt::format(",{},{},{}", CsvField(record.system), record.seed, Name(record.status));
+    const SystemEntry& system = campaign.systems[ChoiceOf(campaign, record.task).system];
+    csv += fmt::format(",{},{},{},{}", CsvField(record.system), record.seed, Name(record.status),
+                       evaluation::Name(AlignmentOf(campaign, system)));
     for (std::size_t i = 0; i < MetricNames().size(); ++i) {
       csv += ",";
       if (const Value value = record.metric(i)) csv += fmt::format("{}", *value);

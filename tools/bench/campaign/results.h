@@ -48,6 +48,8 @@ std::vector<std::optional<double>> MetricValues(const evaluation::Metrics& metri
 
 // Of shares of what was answered; of everything else a smaller value is better.
 bool LargerIsBetter(const std::string& metric);
+// Whether it depends on the alignment of a system: "ate_m", but not "ate_se3_m".
+bool IsAligned(const std::string& metric);
 // "m", "rad" or "s", with which the name ends; else "1".
 std::string UnitOf(const std::string& metric);
 
@@ -63,6 +65,10 @@ std::string WhyLost(const TaskRecord& record, const LostRule& rule);
 // task.json. Reading throws std::invalid_argument where the text is not one.
 std::string ToJson(const TaskRecord& record);
 TaskRecord RecordFromJson(const std::string& text);
+
+// Those whose system is judged after this alignment.
+std::vector<TaskRecord> Aligned(const Campaign& campaign, const std::vector<TaskRecord>& records,
+                                evaluation::Alignment alignment);
 
 // results.csv: a header, and a line for each record in their order.
 std::string ResultsCsv(const Campaign& campaign, const std::vector<TaskRecord>& records);

@@ -60,8 +60,6 @@ std::string EscapeLatex(const std::string& text) {
                                   {'}', "\\}"}});
 }
 
-}  // namespace
-
 Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vector<TaskRecord>& records) {
   const std::size_t metric = MetricIndex(spec.metric);
   Table table;
@@ -91,6 +89,22 @@ Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vect
   return table;
 }
 
+}  // namespace
+
+std::vector<Table> MakeTables(const Campaign& campaign, const TableSpec& spec, const std::vector<TaskRecord>& records) {
+  if (!IsAligned(spec.metric)) return {MakeTable(campaign, spec, records)};
+  const std::vector<evaluation::Alignment> alignments = AlignmentsOf(campaign);
+  std::vector<Table> tables;
+  for (const evaluation::Alignment alignment : alignments) {
+    TableSpec one = spec;
+    if (alignments.size() > 1) one.title += ", " + evaluation::Name(alignment);
+    if (alignment != campaign.align) one.beside.clear();  // what was printed elsewhere is after that
+    tables.push_back(MakeTable(campaign, one, Aligned(campaign, records, alignment)));
+    tables.back().alignment = alignment;
+  }
+  return tables;
+}
+
 std::string NumberText(double value, double unit, const std::string& lost) {
   if (std::isnan(value)) return "-";
   return std::isinf(value) ? lost : fmt::format("{:.3g}", value / unit);
@@ -114,7 +128,9 @@ std::string Caption(const Table& table) {
     for (const Cell& cell : row) least = std::min(least, cell.runs), most = std::max(most, cell.runs);
   }
   const std::string runs = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
-  return fmt::format("Median [quartiles] over {} runs a cell; X: lost, which counts as worse than any number.", runs);
+  const std::string how = table.alignment ? "after alignment " + evaluation::Name(*table.alignment) + ", " : "";
+  return fmt::format("Median [quartiles] {}over {} runs a cell; X: lost, which counts as worse than any number.", how,
+                     runs);
 }
 
 std::string MarkdownRows(const std::vector<TextRow>& rows, std::size_t left) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,17 +19,19 @@ struct Cell {
 
 struct Table {
   TableSpec spec;
+  std::optional<evaluation::Alignment> alignment;       // of all its numbers, where they depend on one
   std::vector<std::vector<std::string>> rows, columns;  // the levels of each, in the order of the campaign
   std::vector<std::vector<Cell>> cells;                 // [row][column]
 };
 
-Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vector<TaskRecord>& records);
+// One; or where its numbers would be of several alignments, one for each.
+std::vector<Table> MakeTables(const Campaign& campaign, const TableSpec& spec, const std::vector<TaskRecord>& records);
 
 // Head and rows as texts: the levels of the row, then our numbers, "0.0123 [0.0101, 0.0150]", and those of others.
 // `lost` stands for what falls on a lost run, "-" for no runs.
 using TextRow = std::vector<std::string>;
 std::vector<TextRow> Texts(const Table& table, const std::string& lost);
-// What a cell is, and over how many runs.
+// What a cell is, after which alignment, and over how many runs.
 std::string Caption(const Table& table);
 // "-" for NaN, `lost` for infinity.
 std::string NumberText(double value, double unit, const std::string& lost);

@@ -134,7 +134,7 @@ std::string CampaignWork::KeyOf(const TaskChoice& choice) const {
   const Omitted& omit = campaign_.omit;
   return Digest(fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{} {}", program_, point.settings[choice.system],
                             point.sequence, system.system, system.system.empty() ? Description(system.external) : "",
-                            campaign_.seeds[choice.seed], evaluation::Name(campaign_.align),
+                            campaign_.seeds[choice.seed], evaluation::Name(AlignmentOf(campaign_, system)),
                             static_cast<int>(campaign_.keep), omit.from_s, omit.until_s));
 }
 

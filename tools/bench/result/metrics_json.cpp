@@ -68,8 +68,7 @@ Json Of(const ev::Rpe& rpe, const ev::JudgeOptions& options, const char* scale) 
 
 Json Of(const ev::TrajectoryErrors& errors, const ev::JudgeOptions& options) {
   Json json;
-  for (const ev::Alignment alignment :
-       {ev::Alignment::none, ev::Alignment::se3, ev::Alignment::sim3, ev::Alignment::first}) {
+  for (const ev::Alignment alignment : ev::kAlignments) {
     json["ate"][ev::Name(alignment)] = Of(errors.Aligned(alignment), options);
   }
   json["rpe"]["sim3_scale"] = Of(errors.rpe, options, "the scale of the sim3 alignment");

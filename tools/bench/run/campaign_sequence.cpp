@@ -56,12 +56,13 @@ std::string DigestOf(const std::vector<T>& values) {
   return campaign::Digest({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
 }
 
-void Render(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario, int jobs) {
+void Render(const campaign::SequenceCache& cache, const std::string& key, const SeenSequence& seen, int jobs) {
   if (cache.Has(key)) return;
   const campaign::FileLock lock = cache.Take(key);
   if (cache.Has(key)) return;  // the one that was waited for has made it
-  const sim::Simulator simulator = Input([&] { return sim::Simulator(scenario, jobs); });
-  const sim::SequenceContent content{sim::Layout::tum, 0, simulator.frame_count(), "vobench " VOBENCH_VERSION, false};
+  const sim::Simulator simulator = Input([&] { return sim::Simulator(seen.experiment.scenario, jobs); });
+  const sim::SequenceContent content{sim::Layout::tum, 0, simulator.frame_count(), "vobench " VOBENCH_VERSION,
+                                     seen.sensors.stereo};
   const fs::path folder = cache.PathOf(key), partial = folder.string() + ".partial";
   std::optional<sim::SequenceWriter> writer;
   try {
@@ -74,6 +75,7 @@ void Render(const campaign::SequenceCache& cache, const std::string& key, const 
   }
   writer->Finish();
   fs::remove(partial / sim::kJournalName);
+  if (seen.sensors.metric()) AddRendered(partial, simulator, seen.sensors);
   base::ReplaceFolder(partial, folder);
 }
 
@@ -98,6 +100,7 @@ void Link(const campaign::SequenceCache& cache, const std::string& key, const Se
   if (scenario.sensor.readout_s == 0) camera.erase(camera.find("rolling_shutter"));  // none, or nobody knows
   base::WriteFile(partial / "rgb.txt", list);
   base::WriteFile(partial / "camera.yaml", camera);
+  if (recording.sensors.metric()) AddRecorded(partial, recording.frames, recording.beside_first);
   base::ReplaceFolder(partial, folder);
 }
 
@@ -118,9 +121,10 @@ void FindWorld(const sim::Scenario& scenario, campaign::SequenceCache& cache) {
   cache.Remember(NameOfWorld(scenario), files);
 }
 
-SeenSequence ReadRecording(const campaign::ScenarioEntry& entry, const campaign::Changes& changes) {
+SeenSequence ReadRecording(const campaign::ScenarioEntry& entry, const campaign::Changes& changes,
+                           campaign::Sensors wanted) {
   SeenSequence recording;
-  auto& [experiment, frames, truth] = recording;
+  auto& [experiment, frames, truth, sensors, beside_first] = recording;
   const fs::path& folder = entry.file;
   const auto& [named, first, count] = *entry.recorded;
   if (!fs::is_directory(folder)) throw settings::Error({ProblemOf("path", folder.string() + ": no such folder")});
@@ -162,9 +166,12 @@ SeenSequence ReadRecording(const campaign::ScenarioEntry& entry, const campaign:
   const std::int64_t until = count ? first + *count : all;
   if (all > 0 && (first >= all || until > all))
     problems.push_back(ProblemOf(first >= all ? "first" : "frames", fmt::format("it has {} frames", all)));
+  if (problems.empty()) {
+    frames = {frames.begin() + first, frames.begin() + until};
+    read("path", [&] { beside_first = ReadSensors(folder, frames, wanted); });
+  }
   if (!problems.empty()) throw settings::Error(problems);
-
-  frames = {frames.begin() + first, frames.begin() + until};
+  sensors = beside_first.has();
   const auto seconds = 1e-9 * static_cast<double>(frames.back().stamp_ns - frames.front().stamp_ns);
   sim::Scenario& scenario = experiment.scenario;
   if (frames.size() > 1) scenario.time.rate_hz = static_cast<double>(frames.size() - 1) / seconds;
@@ -180,18 +187,23 @@ std::optional<std::string> SequenceKey(const SeenSequence& sequence, campaign::S
   if (!sequence.recorded()) {
     const std::optional<std::string> inputs = cache.Inputs(NameOfWorld(scenario));
     if (!inputs) return std::nullopt;
-    return campaign::Digest(fmt::format("{}\n{}\n{}", kVersion, scenario.resolved, *inputs));
+    const std::string rig = sequence.sensors.metric() ? "\n1 " + campaign::Name(sequence.sensors) : "";
+    return campaign::Digest(fmt::format("{}\n{}\n{}{}", kVersion, scenario.resolved, *inputs, rig));
   }
   std::string text = "recorded 1\n" + sim::CameraYaml(scenario.camera, scenario.sensor.readout_s);
   for (const vo::SequenceReader::Entry& frame : sequence.frames)
     text += fmt::format("{} {}\n", frame.stamp_ns, cache.DigestNow(frame.image));
+  for (const vo::SequenceReader::Entry& frame : sequence.beside_first.second)
+    text += fmt::format("cam1 {} {}\n", frame.stamp_ns, cache.DigestNow(frame.image));
+  for (const std::string& file : sequence.beside_first.files())
+    text += cache.DigestNow(sequence.beside_first.mav / file) + "\n";
   text += DigestOf(sequence.truth.poses);
   if (sequence.truth.velocities) text += DigestOf(*sequence.truth.velocities);
   return campaign::Digest(text);
 }
 
 void MakeIn(const campaign::SequenceCache& cache, const std::string& key, const SeenSequence& sequence, int jobs) {
-  sequence.recorded() ? Link(cache, key, sequence) : Render(cache, key, sequence.experiment.scenario, jobs);
+  sequence.recorded() ? Link(cache, key, sequence) : Render(cache, key, sequence, jobs);
 }
 
 }  // namespace vobench

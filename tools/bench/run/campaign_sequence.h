@@ -8,6 +8,7 @@
 #include "tools/bench/campaign/plan.h"
 #include "tools/bench/campaign/sequence_cache.h"
 #include "tools/bench/points/truth.h"
+#include "tools/bench/run/euroc_folder.h"
 #include "tools/bench/systems/experiment.h"
 #include "vo/sequence/reader.h"
 
@@ -22,21 +23,25 @@ void FindWorld(const sim::Scenario& scenario, campaign::SequenceCache& cache);
 // What a task sees. Without frames here: what its scenario renders.
 struct SeenSequence {
   Experiment experiment;  // of a recorded sequence's scenario camera, readout and rate alone
-  std::vector<vo::SequenceReader::Entry> frames;
+  SequenceFrames frames;
   Truth truth;
+  campaign::Sensors sensors = {};     // that it has, of those that the campaign's systems take
+  RecordedSensors beside_first = {};  // of a recorded one
   bool recorded() const { return !frames.empty(); }
 };
 
 // Throws settings::Error with every problem; keys are those of the campaign's entry (path, camera, first, frames) and
 // of settings.
-SeenSequence ReadRecording(const campaign::ScenarioEntry& entry, const campaign::Changes& changes);
+SeenSequence ReadRecording(const campaign::ScenarioEntry& entry, const campaign::Changes& changes,
+                           campaign::Sensors wanted);
 
 // Of all that the pictures depend on: settings, contents of files, version of the program; of a recorded sequence the
 // bytes of its pictures, their stamps, the truth and the camera. None where the files of the world have changed or were
 // never found.
 std::optional<std::string> SequenceKey(const SeenSequence& sequence, campaign::SequenceCache& cache);
 
-// Renders the sequence unless it is there, going on with what a killed process left. Waits where another one is at it.
+// Renders the sequence, with `sensors` all cameras and mav0/ of euroc_folder.h, unless it is there, going on with what a
+// killed process left. Waits where another one is at it.
 // Of a recorded one a folder in TUM's layout: lists, camera.yaml, and links to its pictures, made anew where these lie
 // elsewhere by now. Throws BadInput, std::runtime_error.
 void MakeIn(const campaign::SequenceCache& cache, const std::string& key, const SeenSequence& sequence, int jobs);

@@ -12,6 +12,7 @@
 
 #include "sim/points/point_world.h"
 #include "sim/scenario/scenario.h"
+#include "sim/sequence/layout.h"
 #include "sim/simulator.h"
 #include "tools/base/files.h"
 #include "tools/base/text.h"
@@ -65,11 +66,14 @@ TaskOutput PlayPoints(const Experiment& experiment, const std::string& system, s
   return output;
 }
 
+// Of the first camera.
 Truth TruthOfAllFrames(const sim::Scenario& scenario) {
-  const std::unique_ptr<sim::Trajectory> trajectory = Input([&] { return sim::TrajectoryOf(scenario); });
+  const sim::RigCamera camera = sim::AllCameras(scenario).front();
+  std::shared_ptr<const sim::Trajectory> trajectory = Input([&] { return sim::TrajectoryOf(scenario); });
+  if (!scenario.cameras.empty()) trajectory = sim::Mounted(trajectory, camera.T_BC);
   Truth truth;
   for (std::int64_t index = 0; index < sim::CountFrames(scenario.time); ++index) {
-    const std::int64_t stamp_ns = sim::StampNs(index, scenario.time);
+    const std::int64_t stamp_ns = sim::StampNs(index, scenario.time) + std::llround(1e9 * camera.trigger_offset_s);
     Append(stamp_ns, sim::TruthAt(*trajectory, sim::Seconds(stamp_ns)), truth);
   }
   return truth;
@@ -134,7 +138,12 @@ evaluation::Metrics JudgeOutside(const campaign::Omitted& omit, const TaskOutput
 void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& output, TaskRecord& record) {
   evaluation::Metrics metrics = JudgeOutside(campaign.omit, output);
   metrics.timing.reset();
-  record.metrics = campaign::MetricValues(metrics, campaign.align);
+  const campaign::SystemEntry& system = campaign.systems[campaign::ChoiceOf(campaign, record.task).system];
+  const evaluation::Alignment align = campaign::AlignmentOf(campaign, system);
+  record.metrics = campaign::MetricValues(metrics, align);
+  if (system.external.sensors.metric()) record.metrics[campaign::MetricIndex("ate_sim3_m")].reset();  // never
+  if (align == evaluation::Alignment::yaw && evaluation::TiltsZ(metrics.errors))
+    record.reason += std::string(record.reason.empty() ? "" : "; ") + "z of its world is not up";
   if (campaign.keep == campaign::Keep::numbers) return;
   WriteMetricsJson(folder, {{{record.system, record.seed, ".", 0}, metrics}});
   if (campaign.keep == campaign::Keep::all) {
@@ -145,21 +154,46 @@ void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& o
   }
 }
 
+// What the systems of the campaign take, all together: they see the same sequence.
+campaign::Sensors Wanted(const Campaign& campaign) {
+  campaign::Sensors all;
+  for (const campaign::SystemEntry& system : campaign.systems) {
+    all.stereo = all.stereo || system.external.sensors.stereo;
+    all.imu = all.imu || system.external.sensors.imu;
+  }
+  return all;
+}
+
+// Turned so that gravity is along -z, as visual-inertial programs and EuRoC's truth have it.
+void TurnUpright(const sim::Scenario& scenario, Truth& truth) {
+  const glm::dquat q = sim::EurocBody(scenario).q_RW;
+  const Eigen::Quaterniond q_RW(q.w, q.x, q.y, q.z);
+  for (evaluation::StampedPose& pose : truth.poses) pose = {pose.stamp_ns, q_RW * pose.p_WC, q_RW * pose.q_WC};
+  for (evaluation::StampedVelocity& velocity : *truth.velocities) velocity.v_WC = q_RW * velocity.v_WC;
+}
+
 SeenSequence Load(const Campaign& campaign, const TaskChoice& choice) {
   const campaign::ScenarioEntry& entry = campaign.scenarios[choice.scenario];
   const campaign::Changes changes = campaign::ChangesAt(campaign, choice);
-  if (entry.recorded) return ReadRecording(entry, changes);
+  campaign::Sensors sensors = Wanted(campaign);
+  if (entry.recorded) return ReadRecording(entry, changes, sensors);
   Experiment experiment = LoadExperiment(entry.file, changes);
+  auto& streams = experiment.scenario.truth.streams;
+  sensors.stereo = sensors.stereo && experiment.scenario.cameras.size() > 1;
+  sensors.imu = sensors.imu && streams.contains(sim::TruthStream::imu);
   const auto asks = [](const auto& change) { return change.first == "truth"; };
-  if (experiment.scenario.points || std::any_of(changes.begin(), changes.end(), asks)) return {experiment, {}, {}};
+  if (experiment.scenario.points || std::any_of(changes.begin(), changes.end(), asks))
+    return {experiment, {}, {}, sensors};
   // No truth beside poses and velocities unless the campaign asks for it: it would not be read here.
-  experiment.scenario.truth.streams.clear();
+  streams.clear();
+  if (sensors.imu) streams.insert(sim::TruthStream::imu);
   for (std::string* resolved : {&experiment.scenario.resolved, &experiment.resolved}) {
     auto json = nlohmann::ordered_json::parse(*resolved);
     json["truth"] = nlohmann::ordered_json::array();
+    if (sensors.imu) json["truth"].push_back("imu");
     *resolved = json.dump(2);
   }
-  return {experiment, {}, {}};
+  return {experiment, {}, {}, sensors};
 }
 
 // Of pictures the key says which files they were made from.
@@ -175,6 +209,20 @@ void RefusePoints(const Campaign& campaign, const TaskChoice& choice, const camp
   }
   const campaign::SystemEntry& system = campaign.systems[choice.system];
   if (system.system.empty()) refuse("", "a world of points has no pictures for '" + system.name + "'");
+}
+
+// Sensors that a system takes and the sequence does not have, and lenses that it cannot be told of.
+void RefuseMissing(const campaign::SystemEntry& system, const SeenSequence& seen,
+                   const campaign::TaskRunner::Refuse& refuse) {
+  const campaign::Sensors& takes = system.external.sensors;
+  const std::string who = "'" + system.name + "' takes ";
+  if (takes.stereo && !seen.sensors.stereo)
+    refuse("", who + "two cameras: there is one (`cameras:` of a scenario, mav0/cam1 of a recorded sequence)");
+  if (takes.imu && !seen.sensors.imu)
+    refuse("", who + "an IMU: there is none (`truth: [imu]` of a scenario, mav0/imu0 of a recorded sequence)");
+  if (!takes.metric() || seen.recorded()) return;
+  for (const std::string& problem : sim::Problems(sim::Layout::euroc, seen.experiment.scenario))
+    refuse("", who + "EuRoC's layout: " + problem);
 }
 
 // A stamp in another unit, or from another clock, may fit one frame by chance; and what comes last.
@@ -208,7 +256,8 @@ class CampaignTasks : public campaign::TaskRunner {
 
   campaign::TaskSettings Settings(const Campaign& campaign, const TaskChoice& choice,
                                   const Refuse& refuse) const override {
-    const Experiment experiment = Load(campaign, choice).experiment;
+    const SeenSequence seen = Load(campaign, choice);
+    const Experiment& experiment = seen.experiment;
     const bool images = !experiment.scenario.points;
     if (!images) RefusePoints(campaign, choice, refuse);
     const campaign::SystemEntry& system = campaign.systems[choice.system];
@@ -216,6 +265,7 @@ class CampaignTasks : public campaign::TaskRunner {
       // It would not reach the system, and must not look as if it did.
       refuse("prior.focal_error", "'" + system.name + "' is not ours: it is given the camera as it is");
     }
+    if (images) RefuseMissing(system, seen, refuse);
     return {images, experiment.resolved, DigestOfSettings(experiment)};
   }
 
@@ -251,6 +301,8 @@ class CampaignTasks : public campaign::TaskRunner {
     } else {
       MakeIn(cache, sequence, seen, 1);  // what was recorded may lie elsewhere by now
       output.truth = seen.recorded() ? seen.truth : TruthOfAllFrames(experiment.scenario);
+      if (campaign::AlignmentOf(campaign, system) == evaluation::Alignment::yaw && !seen.recorded())
+        TurnUpright(experiment.scenario, output.truth);
       output.begin_ns = seen.recorded() ? seen.frames.front().stamp_ns : 0;
     }
     if (system.system.empty()) {

@@ -18,14 +18,6 @@ using evaluation::Statistics;
 
 constexpr const char* kNees = "NEES of the pose, per dof";
 
-evaluation::Alignment AlignmentOf(const std::string& name) {
-  using evaluation::Alignment;
-  for (const Alignment alignment : {Alignment::none, Alignment::se3, Alignment::sim3, Alignment::first}) {
-    if (evaluation::Name(alignment) == name) return alignment;
-  }
-  throw BadInput("no alignment " + name);
-}
-
 // A run folder with all that it has, or a trajectory alone.
 evaluation::EstimateRun ReadEstimate(const fs::path& path) {
   if (fs::is_directory(path)) return evaluation::ReadEstimateRun(path);
@@ -115,7 +107,7 @@ void Print(const evaluation::Metrics& metrics, evaluation::Alignment alignment) 
 void CheckBasis(const evaluation::TrajectoryErrors& errors, const evaluation::Metrics& metrics,
                 evaluation::Alignment alignment) {
   const auto warn = [](std::string_view what) { fmt::print(stderr, "vobench: warning: {}\n", what); };
-  const bool fitted = alignment == evaluation::Alignment::se3 || alignment == evaluation::Alignment::sim3;
+  const bool fitted = alignment != evaluation::Alignment::none && alignment != evaluation::Alignment::first;
   if (errors.pairs < 3 && alignment != evaluation::Alignment::none) {
     throw BadInput(fmt::format(
         "{} of the poses have a true one within {:.0f} ms: fewer than three determine no alignment; are the stamps of "
@@ -126,6 +118,8 @@ void CheckBasis(const evaluation::TrajectoryErrors& errors, const evaluation::Me
   const evaluation::Ate& ate = errors.Aligned(alignment);
   if (alignment == evaluation::Alignment::sim3 && !ate.similarity.scale_determined)
     throw BadInput("the true or the estimated positions do not move: --align sim3 has no scale; use se3 or first");
+  if (alignment == evaluation::Alignment::yaw && evaluation::TiltsZ(errors))
+    warn("a rotation that fits turns z by more than 45 degrees: --align yaw is for worlds whose z is up in both");
   if (!ate.similarity.rotation_determined)
     warn("the positions lie on one line or point: the rotation about it is not determined, nor are orientation errors");
   if (alignment == evaluation::Alignment::sim3 &&
@@ -153,7 +147,7 @@ void Evaluate(const EvaluateOptions& options) {
   auto how = recorded.value_or(evaluation::JudgeOptions{});
   if (fs::is_directory(options.truth)) how.frame_stamps_ns = Input([&] { return ReadFrameStamps(options.truth); });
   const evaluation::Metrics metrics = Input([&] { return evaluation::Judge(estimate, truth, std::nullopt, how); });
-  const evaluation::Alignment alignment = AlignmentOf(options.align);
+  const evaluation::Alignment alignment = evaluation::AlignmentNamed(options.align);
   CheckBasis(metrics.errors, metrics, alignment);
   Print(metrics, alignment);
   if (!world_is_known) {

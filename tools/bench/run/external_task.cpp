@@ -13,6 +13,7 @@
 #include "tools/bench/errors.h"
 #include "tools/bench/provenance.h"
 #include "tools/bench/run/calibration.h"
+#include "tools/bench/run/euroc_folder.h"
 #include "tools/judge/evaluation/text_file.h"
 
 namespace vobench {
@@ -67,6 +68,14 @@ std::size_t RemoveNotFinite(const fs::path& file) {
   return removed;
 }
 
+// Of T_WI those of the first camera.
+void MoveToCamera(evaluation::Trajectory& trajectory, const Eigen::Isometry3d& T_IC) {
+  for (evaluation::StampedPose& pose : trajectory) {
+    pose.p_WC += pose.q_WC * T_IC.translation();
+    pose.q_WC = (pose.q_WC * Eigen::Quaterniond(T_IC.linear())).normalized();
+  }
+}
+
 }  // namespace
 
 ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
@@ -79,11 +88,13 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
   std::vector<std::pair<std::string, std::string>> values = system.variables;
   values.insert(values.end(), {{"sequence", sequence.folder.string()},
                                {"calibration", calibration.string()},
+                               {"configs", (fs::absolute(folder) / "configs").string()},
                                {"trajectory", trajectory.string()},
                                {"seed", std::to_string(record.seed)}});
+  const std::string before = system.configs.empty() ? "" : "( " + system.configs + " ) || exit 127\n";
   const Clock clock;
-  const campaign::CommandEnd end =
-      campaign::RunCommand(campaign::FillIn(system.command, values), at_work, folder / "log.txt", system.timeout_s);
+  const campaign::CommandEnd end = campaign::RunCommand(campaign::FillIn(before + system.command, values), at_work,
+                                                        folder / "log.txt", system.timeout_s);
   const auto lost = [&](campaign::Status status, const std::string& reason) {
     record.status = status;
     record.reason = reason;
@@ -102,6 +113,7 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
     try {
       const std::size_t left_out = RemoveNotFinite(trajectory);
       answer.trajectory = evaluation::ReadTrajectory(trajectory);
+      if (system.poses_of_imu) MoveToCamera(answer.trajectory, CameraInImu(sequence.folder));
       if (left_out > 0) record.reason = fmt::format("lines without a finite pose, left out: {}", left_out);
     } catch (const evaluation::InputError& error) {
       // Where the task lies does not belong into a table that is the same everywhere.

@@ -16,6 +16,7 @@
 #include "tools/base/text.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/run/calibration.h"
+#include "tools/bench/run/euroc_folder.h"
 #include "tools/judge/evaluation/text_file.h"
 #include "vo/sequence/reader.h"
 
@@ -24,8 +25,7 @@ namespace fs = std::filesystem;
 namespace {
 
 using campaign::SequenceLayout;
-using Frames = std::vector<vo::SequenceReader::Entry>;
-constexpr const char* kVersion = "2";  // another one, other folders: of what is served
+constexpr const char* kVersion = "3";  // another one, other folders: of what is served
 
 // Pinhole of the largest upright rectangle of rays that this camera's picture holds, without a black border; its sides
 // are multiples of 16. Of a pinhole the middle of its picture. Throws std::invalid_argument where it looks behind itself.
@@ -82,7 +82,7 @@ void WriteRectified(const fs::path& sequence, const fs::path& folder, const sim:
 }
 
 // As the monocular dataset of DSO has it. With automatic exposure the time times the gain: it has no other word for it.
-void WriteTimes(const fs::path& file, const Frames& frames, const fs::path& exposures,
+void WriteTimes(const fs::path& file, const SequenceFrames& frames, const fs::path& exposures,
                 const sim::SensorParams* sensor) {
   std::map<std::int64_t, double> chosen;
   if (fs::exists(exposures)) {
@@ -126,17 +126,6 @@ void WritePhotometricCalibration(const fs::path& folder, const sim::Scenario& sc
     throw std::runtime_error((folder / "vignette.png").string() + ": cannot be written");
 }
 
-void WriteEurocLists(const fs::path& folder, const Frames& frames, sim::Scenario scenario,
-                     const sim::CameraParams& served) {
-  scenario.camera = served;
-  const std::vector<std::string> problems = sim::Problems(sim::Layout::euroc, scenario);
-  if (!problems.empty()) throw BadInput(base::Join(problems, "; ") + " (`images: rectified`)");
-  std::vector<sim::StampedTruth> stamps;
-  for (const vo::SequenceReader::Entry& frame : frames) stamps.push_back({0, frame.stamp_ns, {}});
-  for (const sim::StreamFile& file : sim::Lists(sim::Layout::euroc, scenario, stamps))
-    if (file.path.starts_with("mav0/cam0")) base::WriteFileAndFolders(folder / file.path, base::AsText(file.bytes));
-}
-
 // Makes `folder` where it is not there.
 void MakeOnce(const campaign::SequenceCache& cache, const std::string& key, const fs::path& folder,
               const std::function<void(const fs::path& partial)>& make) {
@@ -166,23 +155,37 @@ ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& ke
     });
   }
   const vo::SequenceReader reader(served.folder);
-  const Frames& frames = reader.entries();
+  const SequenceFrames& frames = reader.entries();
   for (const vo::SequenceReader::Entry& frame : frames) served.stamps_ns.push_back(frame.stamp_ns);
-  if (system.layout == SequenceLayout::tum) return served;
   const fs::path tum = served.folder;
-  served.folder += "." + campaign::Name(system.layout) + kVersion;
+  const campaign::Sensors& sensors = system.sensors;
+  served.folder +=
+      "." + campaign::Name(system.layout) + (sensors.metric() ? "_" + campaign::Name(sensors) : "") + kVersion;
   MakeOnce(cache, key, served.folder, [&](const fs::path& partial) {
-    const bool euroc = system.layout == SequenceLayout::euroc;
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      const fs::path link = partial / (euroc ? sim::NamesOf(sim::Layout::euroc, 0, frames[i].stamp_ns).image
-                                             : fmt::format("images/{:06}.png", i));
-      fs::create_directories(link.parent_path());
-      const fs::path& image = frames[i].image;
-      fs::create_symlink(fs::relative(image.parent_path(), link.parent_path()) / image.filename(), link);
-    }
-    if (euroc) {
-      WriteEurocLists(partial, frames, scenario, served.camera);
+    const auto link = [&](const fs::path& what) {  // a folder, to where it is there
+      fs::create_directories((partial / what).parent_path());
+      fs::create_directory_symlink(fs::relative(tum / what, (partial / what).parent_path()), partial / what);
+    };
+    if (sensors.metric()) {
+      link("mav0/cam0");
+      if (sensors.stereo) link("mav0/cam1");
+      if (sensors.imu) link("mav0/imu0");
+    } else if (system.layout == SequenceLayout::euroc) {
+      sim::Scenario one;  // a camera alone
+      one.time = scenario.time;
+      one.camera = served.camera;
+      WriteEurocCamera(partial, one, frames, 0);
+    } else if (system.layout == SequenceLayout::tum) {  // without the truth
+      link("rgb");
+      for (const char* file : {"rgb.txt", "exposure.txt"})
+        if (fs::exists(tum / file)) fs::copy_file(tum / file, partial / file);
     } else {
+      fs::create_directory(partial / "images");
+      for (std::size_t i = 0; i < frames.size(); ++i) {
+        const fs::path& image = frames[i].image;
+        fs::create_symlink(fs::relative(image.parent_path(), partial / "images") / image.filename(),
+                           partial / fmt::format("images/{:06}.png", i));
+      }
       WriteTimes(partial / "times.txt", frames, original / "exposure.txt", rendered ? &scenario.sensor : nullptr);
       if (rendered) WritePhotometricCalibration(partial, scenario, served.camera);
     }

@@ -19,7 +19,7 @@ struct ServedSequence {
   std::vector<std::int64_t> stamps_ns;  // of its frames
 };
 
-// Links to the pictures in the cache, or rectified ones; made where they are missing. `rendered`: with exposures and
+// Links to the pictures in the cache, or rectified ones, without the truth; made where they are missing. `rendered`: with exposures and
 // photometric calibration, which nobody knows of others. Throws BadInput, std::runtime_error.
 ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario,
                      bool rendered, const campaign::ExternalSystem& system);

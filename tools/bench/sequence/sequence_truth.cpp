@@ -29,20 +29,6 @@ std::optional<fs::path> IclNuimTruth(const fs::path& sequence) {
 // ICL-NUIM's time is index / 30 s. indices_ns: the index read as seconds.
 std::int64_t IclNuimStamp(std::int64_t indices_ns) { return (indices_ns + 15) / 30; }
 
-// T_BS of a sensor: from the sensor's frame to the body's.
-Eigen::Isometry3d ReadExtrinsic(const fs::path& file) {
-  std::array<double, 16> data{};
-  settings::Document document = settings::Document::FromFile(file);
-  settings::Section root = document.root(), T_BS = root.Child("T_BS");
-  T_BS.Require("data", data);
-  T_BS.IgnoreRest();
-  root.IgnoreRest();
-  document.ThrowIfBad();
-  Eigen::Isometry3d T;
-  T.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(data.data());
-  return T;
-}
-
 // The table's poses are the body's. The camera's is T_RB T_BC.
 evaluation::Trajectory ReadEurocTruth(const fs::path& file, const fs::path& camera) {
   const Eigen::Isometry3d T_BC = ReadExtrinsic(camera);
@@ -56,6 +42,19 @@ evaluation::Trajectory ReadEurocTruth(const fs::path& file, const fs::path& came
 }
 
 }  // namespace
+
+Eigen::Isometry3d ReadExtrinsic(const fs::path& file) {
+  std::array<double, 16> data{};
+  settings::Document document = settings::Document::FromFile(file);
+  settings::Section root = document.root(), T_BS = root.Child("T_BS");
+  T_BS.Require("data", data);
+  T_BS.IgnoreRest();
+  root.IgnoreRest();
+  document.ThrowIfBad();
+  Eigen::Isometry3d T;
+  T.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(data.data());
+  return T;
+}
 
 evaluation::Trajectory MirroredInY(evaluation::Trajectory trajectory) {
   for (evaluation::StampedPose& pose : trajectory) {

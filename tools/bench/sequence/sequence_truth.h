@@ -1,6 +1,7 @@
 // Ground truth and frame stamps of a sequence on disk, for the judge alone.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -19,6 +20,9 @@ std::optional<Truth> ReadSequenceTruth(const std::filesystem::path& sequence);
 // When the pictures were taken that the sequence lists: in rgb.txt, ICL-NUIM's associations.txt (index / 30 s) or
 // EuRoC's mav0/cam0/data.csv. None where it has no list. Throws std::runtime_error.
 std::optional<std::vector<std::int64_t>> ReadFrameStamps(const std::filesystem::path& sequence);
+
+// T_BS of a EuRoC sensor.yaml: maps points from the sensor's frame to the body's. Throws settings::Error.
+Eigen::Isometry3d ReadExtrinsic(const std::filesystem::path& file);
 
 // S T S: the same trajectory as seen by a camera whose image is the right way up.
 evaluation::Trajectory MirroredInY(evaluation::Trajectory trajectory);

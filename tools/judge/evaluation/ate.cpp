@@ -15,20 +15,13 @@ namespace {
 // Singular values below this fraction of what the point sets' sizes allow count as zero.
 constexpr double kRankTolerance = 1e-12;
 
-// Of the estimate and of the truth.
-std::pair<Eigen::Vector3d, Eigen::Vector3d> Centroids(const MatchedTrajectories& matched) {
+Similarity Fit(const MatchedTrajectories& matched, Alignment alignment) {
   const double n = static_cast<double>(matched.estimate.size());
   Eigen::Vector3d x_mean = Eigen::Vector3d::Zero(), y_mean = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
     x_mean += matched.estimate[i].p_WC / n;
     y_mean += matched.truth[i].p_WC / n;
   }
-  return {x_mean, y_mean};
-}
-
-Similarity Umeyama(const MatchedTrajectories& matched, bool with_scale) {
-  const double n = static_cast<double>(matched.estimate.size());
-  const auto [x_mean, y_mean] = Centroids(matched);
   Eigen::Matrix3d C = Eigen::Matrix3d::Zero();
   double x_variance = 0, y_variance = 0;
   for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
@@ -37,11 +30,18 @@ Similarity Umeyama(const MatchedTrajectories& matched, bool with_scale) {
     x_variance += x.squaredNorm() / n;
     y_variance += y.squaredNorm() / n;
   }
+  Similarity result;
+  if (alignment == Alignment::yaw) {
+    result.R = BestYaw(C.transpose());
+    result.t = y_mean - result.R * x_mean;
+    const double level = std::hypot(C(1, 0) - C(0, 1), C(0, 0) + C(1, 1));
+    result.rotation_determined = level > kRankTolerance * std::sqrt(x_variance * y_variance);
+    return result;
+  }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(C, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Vector3d S = Eigen::Vector3d::Ones();
   if ((svd.matrixU() * svd.matrixV()).determinant() < 0) S.z() = -1;
 
-  Similarity result;
   // Positions that do not move but for rounding (their size squared, times epsilon squared) have no extent.
   const auto moves = [](double variance, const Eigen::Vector3d& mean) {
     return variance > 1e-28 * (1 + mean.squaredNorm());
@@ -51,7 +51,7 @@ Similarity Umeyama(const MatchedTrajectories& matched, bool with_scale) {
       result.scale_determined && svd.singularValues()[1] > kRankTolerance * std::sqrt(x_variance * y_variance);
   if (result.scale_determined) {
     result.R = svd.matrixU() * S.asDiagonal() * svd.matrixV().transpose();
-    if (with_scale) result.scale = svd.singularValues().dot(S) / x_variance;
+    if (alignment == Alignment::sim3) result.scale = svd.singularValues().dot(S) / x_variance;
   }
   result.t = y_mean - result.scale * result.R * x_mean;
   return result;
@@ -60,8 +60,14 @@ Similarity Umeyama(const MatchedTrajectories& matched, bool with_scale) {
 }  // namespace
 
 std::string Name(Alignment alignment) {
-  constexpr std::array kNames = {"none", "se3", "sim3", "first"};
+  constexpr std::array kNames = {"none", "se3", "sim3", "first", "yaw"};
   return kNames.at(static_cast<std::size_t>(alignment));
+}
+
+Alignment AlignmentNamed(const std::string& name) {
+  for (const Alignment alignment : kAlignments)
+    if (Name(alignment) == name) return alignment;
+  throw std::invalid_argument("align = " + name + " is none of none, se3, sim3, first, yaw");
 }
 
 Similarity Align(const MatchedTrajectories& matched, Alignment alignment) {
@@ -69,7 +75,7 @@ Similarity Align(const MatchedTrajectories& matched, Alignment alignment) {
     throw std::logic_error("Align: needs matched trajectories of at least one pose");
   }
   if (alignment == Alignment::none) return {};
-  if (alignment != Alignment::first) return Umeyama(matched, alignment == Alignment::sim3);
+  if (alignment != Alignment::first) return Fit(matched, alignment);
   Similarity result;
   result.R = (matched.truth[0].q_WC * matched.estimate[0].q_WC.conjugate()).toRotationMatrix();
   result.t = matched.truth[0].p_WC - result.R * matched.estimate[0].p_WC;
@@ -79,18 +85,6 @@ Similarity Align(const MatchedTrajectories& matched, Alignment alignment) {
 Eigen::Matrix3d BestYaw(const Eigen::Matrix3d& C) {
   const double theta = std::atan2(C(0, 1) - C(1, 0), C(0, 0) + C(1, 1));
   return Eigen::AngleAxisd(theta, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-}
-
-Similarity AlignYaw(const MatchedTrajectories& matched) {
-  const auto [x_mean, y_mean] = Centroids(matched);
-  Eigen::Matrix3d C = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
-    C += (matched.estimate[i].p_WC - x_mean) * (matched.truth[i].p_WC - y_mean).transpose();
-  }
-  Similarity result;
-  result.R = BestYaw(C);
-  result.t = y_mean - result.R * x_mean;
-  return result;
 }
 
 StampedPose Apply(const Similarity& similarity, const StampedPose& pose) {

@@ -1,9 +1,11 @@
 // Absolute trajectory error (ATE): distance of each estimated pose from the true one after a named alignment.
 // Source: Sturm et al., "A benchmark for the evaluation of RGB-D SLAM systems", IROS 2012; alignment: S. Umeyama,
-// "Least-squares estimation of transformation parameters between two point patterns", PAMI 1991.
+// "Least-squares estimation of transformation parameters between two point patterns", PAMI 1991; yaw: Zhang and
+// Scaramuzza, "A tutorial on quantitative trajectory evaluation for visual(-inertial) odometry", IROS 2018.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -18,10 +20,15 @@ enum class Alignment {
   se3,    // rotation and translation that minimise the squared position errors
   sim3,   // and scale: for monocular estimates
   first,  // the first pair of poses made equal
+  yaw,    // rotation about z and translation, alike: for estimates that know gravity; z is up in both worlds
 };
+inline constexpr std::array kAlignments = {Alignment::none, Alignment::se3, Alignment::sim3, Alignment::first,
+                                           Alignment::yaw};
 
-// "none", "se3", "sim3", "first".
+// "none", "se3", "sim3", "first", "yaw".
 std::string Name(Alignment alignment);
+// std::invalid_argument where there is none of that name.
+Alignment AlignmentNamed(const std::string& name);
 
 // X_truth ~ scale * R * X_estimate + t.
 struct Similarity {
@@ -36,11 +43,6 @@ struct Similarity {
 
 // Uses positions only, except `first`. At least one pair (a precondition: std::logic_error).
 Similarity Align(const MatchedTrajectories& matched, Alignment alignment);
-
-// Rotation about z and translation that minimise the squared position errors.
-// Source: Zhang and Scaramuzza, "A tutorial on quantitative trajectory evaluation for visual(-inertial) odometry",
-// IROS 2018.
-Similarity AlignYaw(const MatchedTrajectories& matched);
 
 // The rotation about z that brings C = sum x y' (x estimate, y truth) closest: argmax tr(Rz C).
 Eigen::Matrix3d BestYaw(const Eigen::Matrix3d& C);

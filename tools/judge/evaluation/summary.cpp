@@ -1,5 +1,6 @@
 #include "tools/judge/evaluation/summary.h"
 
+#include <cmath>
 #include <utility>
 
 #include "tools/judge/evaluation/so3.h"
@@ -17,13 +18,13 @@ Stamps FrameStamps(const EstimateRun& run, const JudgeOptions& options) {
 }
 
 TrajectoryErrors ErrorsOf(const MatchedTrajectories& matched, std::size_t pairs_offered, const JudgeOptions& options) {
+  using enum Alignment;
   const auto ate = [&](Alignment alignment) { return ComputeAte(matched, alignment); };
-  const Ate sim3 = ate(Alignment::sim3);
+  const Ate scaled = ate(sim3);
   const auto pairs = PairsByTime(matched.truth, options.rpe_delta_ns, options.rpe_tolerance_ns);
-  return {matched.estimate.size(),    ate(Alignment::none),
-          ate(Alignment::se3),        sim3,
-          ate(Alignment::first),      ComputeRpe(matched, pairs, sim3.similarity.scale),
-          ComputeRpe(matched, pairs), pairs_offered};
+  const Rpe rpe = ComputeRpe(matched, pairs, scaled.similarity.scale), unscaled = ComputeRpe(matched, pairs);
+  const std::size_t n = matched.estimate.size();
+  return {n, ate(none), ate(se3), scaled, ate(first), ate(yaw), rpe, unscaled, pairs_offered};
 }
 
 std::optional<Coverage> CoverageOf(const EstimateRun& run, const JudgeOptions& options, const Stamps& frames) {
@@ -108,8 +109,12 @@ StampedVelocity StartVelocity(const Trajectory& trajectory) {
 }
 
 const Ate& TrajectoryErrors::Aligned(Alignment alignment) const {
-  const std::array all = {&none, &se3, &sim3, &first};
+  const std::array all = {&none, &se3, &sim3, &first, &yaw};
   return *all.at(static_cast<std::size_t>(alignment));
+}
+
+bool TiltsZ(const TrajectoryErrors& errors) {
+  return errors.se3.similarity.rotation_determined && errors.se3.similarity.R(2, 2) < std::sqrt(0.5);
 }
 
 double Coverage::pose_coverage() const {

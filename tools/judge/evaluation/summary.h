@@ -34,14 +34,17 @@ struct JudgeOptions {
 
 // A trajectory against the truth.
 struct TrajectoryErrors {
-  std::size_t pairs = 0;       // associated
-  Ate none, se3, sim3, first;  // by alignment
-  Rpe rpe;                     // estimate's translations times sim3's scale
-  Rpe rpe_unscaled;            // as they are
+  std::size_t pairs = 0;            // associated
+  Ate none, se3, sim3, first, yaw;  // by alignment
+  Rpe rpe;                          // estimate's translations times sim3's scale
+  Rpe rpe_unscaled;                 // as they are
   // How many pairs the truth offers on the frames of the sequence; rpe.pairs has those answered
   std::size_t rpe_pairs_offered = 0;
   const Ate& Aligned(Alignment alignment) const;
 };
+
+// Whether the best rotation turns the estimate's z by more than 45 degrees: `yaw` then asks for what is not there.
+bool TiltsZ(const TrajectoryErrors& errors);
 
 struct Coverage {
   std::size_t frames = 0;

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Configuration files of Kalibr, OpenVINS, VINS-Fusion, ORB-SLAM3 and Basalt for a sequence in EuRoC's layout with an IMU, ours or another's.
+"""Configuration files of Kalibr, OpenVINS, VINS-Fusion, ORB-SLAM3 and Basalt for a sequence in EuRoC's layout, ours or another's.
 
     python3 tools/python/examples/vio_configs.py SEQ [OUT]
 
-reads SEQ/mav0/*/sensor.yaml and writes OUT, SEQ/configs unless told. The texts are those of vio/*.in: @name@ is replaced, what is between
+reads SEQ/mav0/*/sensor.yaml and writes OUT, SEQ/configs unless told; without an IMU those of VINS-Fusion, ORB-SLAM3 and Basalt alone. The texts are those of vio/*.in: @name@ is replaced, what is between
 "@for A B@" and "@end@" is there for each of the cameras A ... B - 1. Densities of 0, which no filter takes, become those of EuRoC's IMU.
 """
 import json
@@ -85,25 +85,27 @@ def filled(text, values, cameras=()):
 def main(sequence, out=None):
     mav, out = pathlib.Path(sequence) / "mav0", pathlib.Path(out or pathlib.Path(sequence) / "configs")
     sensors = [sensor(folder) for folder in sorted(mav.glob("cam[0-9]"))]
-    cameras, imu = [camera_values(sensors, k) for k in range(len(sensors))], sensor(mav / "imu0")
-    manifest = pathlib.Path(sequence) / "manifest.json"  # ours has another gravity, perhaps
-    gravity = json.loads(manifest.read_text())["scenario"]["imu"]["gravity"] if manifest.exists() else [9.81]
+    cameras, has_imu = [camera_values(sensors, k) for k in range(len(sensors))], (mav / "imu0").exists()
+    imu = sensor(mav / "imu0") if has_imu else {"rate_hz": 200.0}
+    manifest = pathlib.Path(sequence) / "manifest.json"  # ours has another gravity, perhaps; a campaign's in sensor.yaml
+    gravity = json.loads(manifest.read_text())["scenario"]["imu"]["gravity"] if manifest.exists() else [imu.get("gravity", 9.81)]
     densities = {"gyr_noise": ("gyroscope_noise_density", 1.6968e-4), "gyr_walk": ("gyroscope_random_walk", 1.9393e-5),
                  "acc_noise": ("accelerometer_noise_density", 2e-3), "acc_walk": ("accelerometer_random_walk", 3e-3)}
     rate = sensors[0]["rate_hz"]
-    values = {**cameras[0], **{name: number(imu[key] or usual) for name, (key, usual) in densities.items()},
+    values = {**cameras[0], **{name: number(imu.get(key) or usual) for name, (key, usual) in densities.items()},
               "imu_rate": number(imu["rate_hz"]), "gravity": number(sum(g * g for g in gravity) ** 0.5), "track_rate": number(rate + 1),
-              "whole_rate": round(rate), "cameras": len(cameras), "pair": min(len(cameras), 2), "stereo": "true" if len(cameras) > 1 else "false"}
+              "imu": int(has_imu), "whole_rate": round(rate), "cameras": len(cameras), "pair": min(len(cameras), 2), "stereo": "true" if len(cameras) > 1 else "false"}
 
     def write(path, template, with_values=values, before=""):
         (out / path).parent.mkdir(parents=True, exist_ok=True)
         text = (pathlib.Path(__file__).parent / "vio" / f"{template}.in").read_text()
         (out / path).write_text(before + filled(text, with_values, cameras))
 
-    write("kalibr/camchain-imucam.yaml", "kalibr_imucam_chain.yaml")
-    write("openvins/kalibr_imucam_chain.yaml", "kalibr_imucam_chain.yaml", before="%YAML:1.0\n\n")
-    write("openvins/kalibr_imu_chain.yaml", "kalibr_imu_chain.yaml")
-    write("openvins/estimator_config.yaml", "estimator_config.yaml")
+    if has_imu:
+        write("kalibr/camchain-imucam.yaml", "kalibr_imucam_chain.yaml")
+        write("openvins/kalibr_imucam_chain.yaml", "kalibr_imucam_chain.yaml", before="%YAML:1.0\n\n")
+        write("openvins/kalibr_imu_chain.yaml", "kalibr_imu_chain.yaml")
+        write("openvins/estimator_config.yaml", "estimator_config.yaml")
     write("vins_fusion/config.yaml", "vins_config.yaml")
     for k, camera in enumerate(cameras[:2]):
         write(f"vins_fusion/cam{k}.yaml", "vins_pinhole.yaml" if camera["orb_lens"] == "PinHole" else "vins_fisheye.yaml", camera)

@@ -20,9 +20,16 @@ TEST(ExternalSystem, TheShippedEntriesAreGood) {
   std::vector<std::string> names;
   for (const ExternalSystem& system : systems) {
     names.push_back(system.name);
-    EXPECT_EQ(system.command.find("{calibration}") == std::string::npos, system.name == "flow");
+    if (system.sensors.metric()) {
+      EXPECT_EQ(system.layout, SequenceLayout::euroc) << system.name;
+      EXPECT_EQ(system.command.find("{configs}") == std::string::npos, system.name == "stereo_flow") << system.name;
+      EXPECT_NE(system.align, evaluation::Alignment::sim3) << system.name;
+    } else {
+      EXPECT_EQ(system.command.find("{calibration}") == std::string::npos, system.name == "flow");
+    }
   }
-  EXPECT_THAT(names, ElementsAre("flow", "orb_slam2", "orb_slam3", "dso", "svo", "lsd_slam"));
+  EXPECT_THAT(names, ElementsAre("flow", "orb_slam2", "orb_slam3", "dso", "svo", "lsd_slam", "stereo_flow",
+                                 "orb_slam3_stereo", "orb_slam3_stereo_imu", "openvins", "vins_fusion", "basalt"));
 }
 
 TEST(ExternalSystem, PlaceholdersAreFilledInQuoted) {
@@ -37,13 +44,20 @@ TEST(ExternalSystem, EveryProblemIsListed) {
     ReadExternalSystems(here.Write("s.yaml", R"(systems:
   - {name: a, command: "x {calibration} {sequenze}", timeout: 0 s}
   - {name: a, layout: tom, variables: {v: [1]}}
+  - {name: b, sensors: stereo, command: "x {configs}", align: yaw, poses_of: imu}
+  - {name: c, sensors: stereo_imu, layout: euroc, images: rectified, command: "x", align: sim3}
+  - {name: d, command: "x", align: se3}
 )"));
     FAIL() << "nothing was thrown";
   } catch (const settings::Error& error) {
     for (const char* expected :
          {"{calibration} needs the key 'calibration'", "{sequenze} stands for nothing; there are {calibration}",
           "'systems.0.timeout'", "there is a system 'a' already", "missing key 'systems.1.command'",
-          "'systems.1.layout': 'tom' is not known", "'systems.1.variables.v'"}) {
+          "'systems.1.layout': 'tom' is not known",
+          "s.yaml:4:24: 'sensors': more than the pictures of one camera needs 'layout: euroc'",
+          "{configs} needs the key 'configs'", "'align': yaw needs an IMU", "'poses_of': it takes no IMU",
+          "s.yaml:5:24: 'sensors': more than", "'systems.3.align': 'sim3' is not known",
+          "s.yaml:6:29: unknown key 'align'", "'systems.1.variables.v'"}) {
       EXPECT_THAT(error.what(), HasSubstr(expected));
     }
   }

@@ -63,6 +63,7 @@ TEST(Columns, Values) {
   set(m.errors.se3, 2, 2.5);
   set(m.errors.sim3, 3, 3.5);
   set(m.errors.first, 4, 4.5);
+  set(m.errors.yaw, 7, 7.5);
   m.errors.sim3.similarity.scale = 5;
   set(m.live.emplace().se3, 6, 6.5);
   m.path_length_m = 8;
@@ -77,7 +78,7 @@ TEST(Columns, Values) {
   m.errors.rpe_pairs_offered = 4;
   m.coverage = {20, 10, 15};
   set(m.constant_velocity.se3, 14, 14.5);
-  set_rpe(m.constant_velocity.rpe, 15, 16);
+  set_rpe(m.constant_velocity.rpe_unscaled, 15, 16);
   const auto nees = [](int dof, double mean, double median) {
     evaluation::NeesSummary summary;
     summary.dof = dof, summary.frames = 1, summary.mean = mean, summary.median = median;
@@ -91,9 +92,10 @@ TEST(Columns, Values) {
                                                   {"ate_se3_m", 2},
                                                   {"ate_sim3_m", 3},
                                                   {"ate_first_m", 4},
+                                                  {"ate_yaw_m", 7},
                                                   {"ate_orientation_rad", 2.5},
                                                   {"ate_share_of_path", 0.25},
-                                                  {"rpe_m", 10},
+                                                  {"rpe_m", 12},
                                                   {"rpe_unscaled_m", 12},
                                                   {"rpe_orientation_rad", 11},
                                                   {"rpe_pairs_share", 0.25},
@@ -121,6 +123,10 @@ TEST(Columns, Values) {
     EXPECT_EQ(values[i], expected.at(name)) << name;
     EXPECT_THAT(docs, HasSubstr("`" + name + "`"));
   }
+  const std::size_t ate = MetricIndex("ate_m"), rpe = MetricIndex("rpe_m");
+  EXPECT_EQ(MetricValues(m, evaluation::Alignment::yaw)[ate], 7);
+  EXPECT_EQ(MetricValues(m, evaluation::Alignment::sim3)[ate], 3);
+  EXPECT_EQ(MetricValues(m, evaluation::Alignment::sim3)[rpe], 10) << "times the scale";
 }
 
 TEST(Results, ARecordIsReadAsItWasWritten) {
@@ -160,11 +166,11 @@ TEST(Results, AReasonIsOneLine) {
 
 TEST(Results, CsvIsTidyAndQuoted) {
   const std::string csv = ResultsCsv(Small(), {Sample(0, Status::ok, 0.25)});
-  EXPECT_THAT(csv, testing::StartsWith("task,scenario,blur,system,seed,status,ate_m,"));
-  EXPECT_THAT(csv, HasSubstr("\n0,\"a, \"\"b\"\"\",0.004,rbpf,18446744073709551615,ok,0.25,"));
+  EXPECT_THAT(csv, testing::StartsWith("task,scenario,blur,system,seed,status,alignment,ate_m,"));
+  EXPECT_THAT(csv, HasSubstr("\n0,\"a, \"\"b\"\"\",0.004,rbpf,18446744073709551615,ok,sim3,0.25,"));
   const std::size_t header = csv.find('\n');
   EXPECT_EQ(std::count(csv.begin(), csv.begin() + static_cast<std::ptrdiff_t>(header), ','),
-            static_cast<std::ptrdiff_t>(6 + MetricNames().size()));
+            static_cast<std::ptrdiff_t>(7 + MetricNames().size()));
 }
 
 TEST(Results, LostIsByTheRule) {
@@ -189,7 +195,7 @@ TEST(Table, QuartilesCountLostRunsAsWorseThanAnyNumber) {
   const std::vector<TaskRecord> records = {Sample(0, Status::ok, 4), Sample(1, Status::lost, 0.1),
                                            Sample(2, Status::ok, 1), Sample(3, Status::ok, 3),
                                            Sample(4, Status::ok, 2), Sample(5, Status::crashed, 0)};
-  const Table table = MakeTable(c, {"ate_m", "ATE", {"blur"}, {"system"}}, records);
+  const Table table = MakeTables(c, {"ate_m", "ATE", {"blur"}, {"system"}}, records).front();
   ASSERT_EQ(table.cells.size(), 2u);
   EXPECT_EQ(table.cells[0][0].median, 2);
   EXPECT_EQ(table.cells[0][0].low, 1.5);
@@ -206,7 +212,7 @@ TEST(Table, HasItsUnitAndTheNumbersOfOthers) {
   TableSpec spec{"ate_m", "ATE [cm]", {"blur"}, {"system"}};
   spec.unit_in_si = 0.01;
   spec.beside = {{"paper", {{"0 ms", "5.59"}, {"4_ms", "X"}}}, {"other", {{"4_ms", "7"}}}};
-  const Table table = MakeTable(Small(), spec, records);
+  const Table table = MakeTables(Small(), spec, records).front();
   EXPECT_THAT(Markdown({table}), HasSubstr("| blur | rbpf | paper | other |\n|---|---:|---:|---:|\n"
                                            "| 0 ms | 4 | 5.59 | - |\n| 4_ms | X | X | 7 |\n"));
   EXPECT_THAT(Latex({table}), HasSubstr("4\\_ms & $\\times$ & $\\times$ & 7 \\\\\n"));
@@ -219,7 +225,7 @@ TEST(Table, TextsAreEscaped) {
   c.systems[0].name = "x\ny|z";
   TableSpec spec{"ate_m", "ATE\nof | all", {"blur"}, {"system"}};
   spec.beside = {{"pa|per", {{"a|b\n^~", "5 % & |x|_1"}, {"4_ms", "X"}}}};
-  const Table table = MakeTable(c, spec, {Sample(0, Status::ok, 4), Sample(1, Status::ok, 3)});
+  const Table table = MakeTables(c, spec, {Sample(0, Status::ok, 4), Sample(1, Status::ok, 3)}).front();
   EXPECT_THAT(Markdown({table}), testing::StartsWith("### ATE of | all\n\nMedian"));
   EXPECT_THAT(Markdown({table}), HasSubstr("\n\n| blur | x y\\|z | pa\\|per |\n|---|---:|---:|\n"
                                            "| a\\|b ^~ | 4 | 5 % & \\|x\\|_1 |\n| 4_ms | 3 | X |\n"));
@@ -229,19 +235,46 @@ TEST(Table, TextsAreEscaped) {
                                         "4\\_ms & 3 & $\\times$ \\\\\n"));
 }
 
+// Metric systems are never judged by Sim(3), and never beside what is.
+TEST(Table, NoneMixesAlignments) {
+  Campaign c = Small();
+  c.systems.push_back({"stereo", "", {}, {}});
+  c.systems.back().external.sensors = {true, false};
+  c.systems.back().external.align = evaluation::Alignment::se3;
+  std::vector<TaskRecord> records;
+  for (int k = 0; k < 4; ++k) records.push_back(Sample(k, Status::ok, k + 1));  // of rbpf, stereo, rbpf, stereo
+  TableSpec spec{"ate_m", "ATE", {"blur"}, {"system"}};
+  spec.beside = {{"paper", {{"0 ms", "5.59"}}}};
+  const std::string text = Markdown(MakeTables(c, spec, records));
+  EXPECT_THAT(text, HasSubstr("### ATE, sim3\n\nMedian [quartiles] after alignment sim3, over 1 runs"));
+  EXPECT_THAT(text, HasSubstr("| blur | rbpf | paper |\n|---|---:|---:|\n| 0 ms | 1 | 5.59 |\n| 4_ms | 3 | - |\n"));
+  EXPECT_THAT(text, HasSubstr("### ATE, se3\n\nMedian [quartiles] after alignment se3, over 1 runs"));
+  EXPECT_THAT(text, HasSubstr("| blur | stereo |\n|---|---:|\n| 0 ms | 2 |\n| 4_ms | 4 |\n"));
+  // Pooled over systems it would mix them, too.
+  EXPECT_EQ(MakeTables(c, {"ate_m", "ATE", {"blur"}, {}}, records).size(), 2u);
+  // What no alignment changes is side by side.
+  EXPECT_THAT(Markdown(MakeTables(c, {"pose_coverage", "pose", {"blur"}, {"system"}}, records)),
+              testing::AllOf(HasSubstr("| blur | rbpf | stereo |"), testing::Not(HasSubstr("alignment"))));
+  const std::string csv = ResultsCsv(c, records);
+  EXPECT_THAT(csv, HasSubstr(",ok,sim3,1,"));
+  EXPECT_THAT(csv, HasSubstr(",ok,se3,2,"));
+  c.align = evaluation::Alignment::none;  // as the campaign asks
+  EXPECT_EQ(MakeTables(c, spec, records).size(), 1u);
+}
+
 TEST(Table, FailedTasksAreNoRunsAndAreCounted) {
   const Campaign c = Small();
   const std::vector<TaskRecord> records = {Sample(0, Status::ok, 4),     Sample(1, Status::failed, 0),
                                            Sample(2, Status::failed, 1), Sample(3, Status::failed, 3),
                                            Sample(4, Status::ok, 2),     Sample(5, Status::failed, 0)};
-  const std::string text = Markdown({MakeTable(c, {"ate_m", "ATE", {"blur"}, {"system"}}, records)});
+  const std::string text = Markdown(MakeTables(c, {"ate_m", "ATE", {"blur"}, {"system"}}, records));
   EXPECT_THAT(text, HasSubstr("| 0 ms | 3 [2.5, 3.5] (1 failed) |\n| 4_ms | - (3 failed) |\n"));
 }
 
 TEST(Table, WhatIsInNeitherRowsNorColumnsIsPooled) {
   std::vector<TaskRecord> records;
   for (int k = 0; k < 6; ++k) records.push_back(Sample(k, Status::ok, k));
-  const Table table = MakeTable(Small(), {"ate_m", "ATE", {"scenario"}, {"system"}}, records);
+  const Table table = MakeTables(Small(), {"ate_m", "ATE", {"scenario"}, {"system"}}, records).front();
   ASSERT_EQ(table.cells.size(), 1u);
   EXPECT_EQ(table.cells[0][0].runs, 6u);
   EXPECT_EQ(table.cells[0][0].median, 2.5);

@@ -204,7 +204,55 @@ TEST(Ate, MoreFreedomNeverHurts) {
     EXPECT_LE(rmse(Alignment::sim3), rmse(Alignment::se3));
     EXPECT_LE(rmse(Alignment::se3), rmse(Alignment::none));
     EXPECT_LE(rmse(Alignment::se3), rmse(Alignment::first));
+    EXPECT_LE(rmse(Alignment::se3), rmse(Alignment::yaw));
+    EXPECT_LE(rmse(Alignment::yaw), rmse(Alignment::none));
   }
+}
+
+// The closed form against a search: for every angle the best translation is that of the means; the angle by a grid of
+// 0.1 degrees and golden sections. Estimates are turned about z, tilted a little, and noisy.
+TEST(Align, YawIsWhatASearchFinds) {
+  TestRandom random(11);
+  for (int trial = 0; trial < 20; ++trial) {
+    MatchedTrajectories matched = NoisyPair(random, 40);
+    const Similarity applied{1, (Exp({0, 0, 3 * random.Normal()}) * Exp(0.05 * random.Normals(3))).toRotationMatrix(),
+                             3 * random.Normals(3)};
+    matched.estimate = Apply(applied, matched.estimate);
+    const auto cost = [&](double angle) {
+      const Eigen::Matrix3d R = Exp({0, 0, angle}).toRotationMatrix();
+      Eigen::Vector3d t = Eigen::Vector3d::Zero();
+      const auto n = static_cast<double>(matched.truth.size());
+      for (std::size_t i = 0; i < matched.truth.size(); ++i)
+        t += (matched.truth[i].p_WC - R * matched.estimate[i].p_WC) / n;
+      double sum = 0;
+      for (std::size_t i = 0; i < matched.truth.size(); ++i)
+        sum += (R * matched.estimate[i].p_WC + t - matched.truth[i].p_WC).squaredNorm();
+      return std::sqrt(sum / n);
+    };
+    constexpr double kStep = M_PI / 1800;
+    double best = 0;
+    for (int k = 1; k < 3600; ++k) best = cost(k * kStep) < cost(best) ? k * kStep : best;
+    double low = best - kStep, high = best + kStep;
+    for (int k = 0; k < 60; ++k) {
+      const double third = (high - low) / 3;
+      cost(low + third) < cost(high - third) ? high -= third : low += third;
+    }
+    const Similarity found = Align(matched, Alignment::yaw);
+    EXPECT_NEAR(ComputeAte(matched, Alignment::yaw).position.rmse, cost(low), 1e-12);
+    EXPECT_LT((found.R - Exp({0, 0, low}).toRotationMatrix()).norm(), 1e-6);
+    EXPECT_TRUE(found.rotation_determined);
+    EXPECT_EQ(found.scale, 1);
+  }
+}
+
+// What only rises has no yaw.
+TEST(Align, YawOfAVerticalLineIsNotDetermined) {
+  MatchedTrajectories matched;
+  for (int k = 0; k < 5; ++k) matched.truth.push_back({k, Eigen::Vector3d(1, 2, k), Eigen::Quaterniond::Identity()});
+  matched.estimate = matched.truth;
+  EXPECT_FALSE(Align(matched, Alignment::yaw).rotation_determined);
+  matched.estimate[2].p_WC.x() += 0.1, matched.truth[2].p_WC.x() += 0.1;
+  EXPECT_TRUE(Align(matched, Alignment::yaw).rotation_determined);
 }
 
 }  // namespace

@@ -141,10 +141,10 @@ TEST_F(Golden, TumAte) {
 }
 
 TEST_F(Golden, RpgAbsoluteErrors) {
-  const std::pair<const char*, RpgAlignment> modes[] = {{" none s=", RpgAlignment::none},
-                                                        {" se3 s=", RpgAlignment::se3},
-                                                        {" sim3 s=", RpgAlignment::sim3},
-                                                        {" posyaw s=", RpgAlignment::posyaw}};
+  const std::pair<const char*, evaluation::Alignment> modes[] = {{" none s=", evaluation::Alignment::none},
+                                                                 {" se3 s=", evaluation::Alignment::se3},
+                                                                 {" sim3 s=", evaluation::Alignment::sim3},
+                                                                 {" posyaw s=", evaluation::Alignment::yaw}};
   for (const auto& [mode, alignment] : modes) {
     ForEach(mode,
             [&, chosen = alignment](const std::string& line, const Trajectory& estimate, const Trajectory& truth) {
@@ -161,7 +161,7 @@ TEST_F(Golden, RpgLengthsOfSubTrajectories) {
   for (const std::string prefix : {" length 8.016619671585246", " length 18.858236113214986"}) {
     ForEach(prefix, [&](const std::string& line, const Trajectory& estimate, const Trajectory& truth) {
       std::string ours = "[";
-      for (const NamedStatistics& errors : ComputeRpg(estimate, truth, RpgAlignment::none).errors) {
+      for (const NamedStatistics& errors : ComputeRpg(estimate, truth, evaluation::Alignment::none).errors) {
         if (errors.name.ends_with("m_trans"))
           ours += (ours.size() > 1 ? ", " : "") + Significant(std::stod(errors.name), 12);
       }

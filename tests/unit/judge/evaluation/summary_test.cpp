@@ -26,7 +26,7 @@ TEST(Judge, APerfectEstimateHasNoError) {
   const Trajectory truth = random.Walk(90);
   const Metrics metrics = Judge(RunOf(truth, StampsOf(truth), 81), truth, std::nullopt);
   EXPECT_EQ(metrics.errors.pairs, 90u);
-  for (const Alignment alignment : {Alignment::none, Alignment::se3, Alignment::sim3, Alignment::first}) {
+  for (const Alignment alignment : kAlignments) {
     EXPECT_LT(metrics.errors.Aligned(alignment).position.max, 1e-12);
     EXPECT_EQ(metrics.errors.Aligned(alignment).alignment, alignment);
   }

@@ -63,7 +63,7 @@ Similarity AlignmentOf(const MatchedTrajectories& matched, OvAlignment alignment
   if (alignment == OvAlignment::none) return {};
   if (alignment == OvAlignment::se3) return Align(matched, Alignment::se3);
   if (alignment == OvAlignment::sim3) return Align(matched, Alignment::sim3);
-  if (alignment == OvAlignment::posyaw) return AlignYaw(matched);
+  if (alignment == OvAlignment::posyaw) return Align(matched, Alignment::yaw);
   const Eigen::Matrix3d estimate = Rotation(matched.estimate[0].q_WC), truth = Rotation(matched.truth[0].q_WC);
   Similarity first;
   first.R = alignment == OvAlignment::posyawsingle ? BestYaw(estimate * truth.transpose())

@@ -8,12 +8,6 @@
 namespace evaluation::compat {
 namespace {
 
-Similarity AlignmentOf(const MatchedTrajectories& matched, RpgAlignment alignment) {
-  if (alignment == RpgAlignment::none) return {};
-  if (alignment == RpgAlignment::posyaw) return AlignYaw(matched);
-  return Align(matched, alignment == RpgAlignment::sim3 ? Alignment::sim3 : Alignment::se3);
-}
-
 std::vector<double> Times(std::vector<double> values, double factor) {
   for (double& value : values) value *= factor;
   return values;
@@ -45,13 +39,13 @@ std::vector<NamedStatistics> Relative(const MatchedTrajectories& matched, double
 
 }  // namespace
 
-RpgResult ComputeRpg(const Trajectory& estimate, const Trajectory& truth, RpgAlignment alignment,
+RpgResult ComputeRpg(const Trajectory& estimate, const Trajectory& truth, Alignment alignment,
                      std::vector<double> lengths_m) {
   const MatchedTrajectories matched = MatchTrajectories(estimate, truth, {.rule = AssociationRule::tum});
-  if (matched.estimate.size() < 3 && alignment != RpgAlignment::none)
+  if (matched.estimate.size() < 3 && alignment != Alignment::none)
     throw InputError({"rpg: fewer than three pairs of poses determine no alignment"});
   RpgResult result;
-  result.similarity = AlignmentOf(matched, alignment);
+  result.similarity = Align(matched, alignment);
   const PoseErrors absolute = ErrorsAfter(result.similarity, matched);
   result.errors = {{"trans", Summarise(absolute.position), "m"},
                    {"rot", Summarise(Times(absolute.orientation, kDegrees)), "deg"}};

@@ -11,8 +11,6 @@
 
 namespace evaluation::compat {
 
-enum class RpgAlignment { sim3, se3, posyaw, none };  // align_type, over all frames
-
 struct RpgResult {
   Similarity similarity;  // that was applied to the estimate
   // trans and rot, then trans, trans_perc, rot, rot_deg_per_m, yaw and gravity of each length that has at least two
@@ -22,8 +20,8 @@ struct RpgResult {
 
 // Sub-trajectories of 10, 20, 30, 40 and 50 % of the length of the truth through the associated poses, cut to
 // centimetres, unless lengths are given.
-// Throws InputError where estimate and truth do not overlap in time.
-RpgResult ComputeRpg(const Trajectory& estimate, const Trajectory& truth, RpgAlignment alignment,
+// Alignment over all frames: its align_type none, se3, sim3 or posyaw (yaw). Throws InputError where estimate and truth do not overlap in time.
+RpgResult ComputeRpg(const Trajectory& estimate, const Trajectory& truth, Alignment alignment,
                      std::vector<double> lengths_m = {});
 
 }  // namespace evaluation::compat

@@ -1,0 +1,43 @@
+// mav0/ of a sequence as EuRoC has it, of links to pictures that lie elsewhere, and without the truth.
+// Source: Burri et al., "The EuRoC micro aerial vehicle datasets", IJRR 2016.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <vector>
+
+#include "sim/simulator.h"
+#include "tools/bench/campaign/external_system.h"
+#include "vo/sequence/reader.h"
+
+namespace vobench {
+
+using SequenceFrames = std::vector<vo::SequenceReader::Entry>;
+
+// FOLDER/mav0/camK: data.csv, sensor.yaml of scenario.camera, and links in data/. Throws BadInput for a lens that has
+// no place in it.
+void WriteEurocCamera(const std::filesystem::path& folder, const sim::Scenario& scenario, const SequenceFrames& frames,
+                      std::size_t k);
+
+// Of a sequence in TUM's layout that was rendered into `folder`, a rig's with stereo: mav0/ beside it and, of a rig,
+// the first camera's files where one camera has them. imu0/sensor.yaml says how large gravity is, too.
+void AddRendered(const std::filesystem::path& folder, const sim::Simulator& simulator, campaign::Sensors sensors);
+
+// What a recorded sequence has beside its first camera.
+struct RecordedSensors {
+  std::filesystem::path mav;  // mav0/ of the recording
+  SequenceFrames second;      // of cam1, as long as the first camera's are used
+  bool imu = false;           // all readings of imu0
+  campaign::Sensors has() const { return {!second.empty(), imu}; }
+  std::vector<std::string> files() const;  // in `mav`, all but the pictures
+};
+// Of those that are wanted. Throws std::runtime_error where a list cannot be read.
+RecordedSensors ReadSensors(const std::filesystem::path& sequence, const SequenceFrames& frames,
+                            campaign::Sensors wanted);
+// mav0/ of cam0 with these frames, and of the others, with the recording's own sensor.yaml files.
+void AddRecorded(const std::filesystem::path& folder, const SequenceFrames& frames, const RecordedSensors& sensors);
+
+// T_IC of cam0 in a folder with mav0/: maps points from C to the IMU. Throws settings::Error.
+Eigen::Isometry3d CameraInImu(const std::filesystem::path& folder);
+
+}  // namespace vobench
