@@ -1,5 +1,6 @@
 // A glTF 2.0 file: its document, buffers and accessors. Private to sim/world.
-// Source: Khronos, "glTF 2.0 Specification", 3.6 (binary data), 4 (GLB); EXT_meshopt_compression.
+// Source: Khronos, "glTF 2.0 Specification", 3.6 (binary data), 4 (GLB); EXT_meshopt_compression;
+// KHR_draco_mesh_compression, google.github.io/draco/spec.
 #pragma once
 
 #include <array>
@@ -64,5 +65,20 @@ class GltfFile {
   std::map<std::size_t, std::string> buffers_;
   std::map<std::size_t, std::vector<std::uint8_t>> decompressed_;  // by buffer view
 };
+
+// A mesh compressed by Draco (KHR_draco_mesh_compression).
+struct DracoMesh {
+  std::vector<std::uint32_t> indices;           // of triangles
+  std::map<std::string, GltfTable> attributes;  // by glTF's name
+};
+
+struct DracoAttribute {
+  std::uint32_t id;
+  int component_type;  // of the accessor that it stands for
+  bool normalised;
+};
+
+// Throws std::runtime_error for damaged data, and for an attribute that is not in it.
+DracoMesh DecodeDraco(std::span<const std::uint8_t> bytes, const std::map<std::string, DracoAttribute>& attributes);
 
 }  // namespace sim

@@ -1,13 +1,8 @@
 #include "sim/world/gltf_material.h"
 
-#include <assimp/GltfMaterial.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
-
-#include "sim/world/mesh_builder.h"
 
 namespace sim {
 namespace {
@@ -23,14 +18,14 @@ void WarnOnce(MeshImport& import, const std::string& what) {
   if (std::ranges::find(import.warnings, what) == import.warnings.end()) import.warnings.push_back(what);
 }
 
-std::string GltfMaterials::ImageOf(const json& texture) {
+ImportedMap GltfMaterials::ImageOf(const json& texture) {
   const json *webp = GltfFile::Extension(texture, "EXT_texture_webp"),
              *basis = GltfFile::Extension(texture, "KHR_texture_basisu");
   const json& from = webp != nullptr && webp->contains("source") ? *webp : texture;
   if (!from.contains("source")) {
     if (basis != nullptr) throw std::runtime_error(kBasis);
     WarnOnce(import_, "a texture has no picture of a known kind: it is left out");
-    return "";
+    return {};
   }
   const std::size_t index = GltfFile::Index(from, "source");
   const auto [name, is_new] = images_.try_emplace(index);
@@ -43,98 +38,78 @@ std::string GltfMaterials::ImageOf(const json& texture) {
   }
   const std::string uri = image.at("uri").get<std::string>();
   if (const std::optional<std::string> data = GltfFile::DataOf(uri)) return name->second = Embed(*data);
-  return name->second = uri;
+  return name->second = ImportedMap{uri};
 }
 
-std::string GltfMaterials::Embed(std::string_view bytes) {
-  auto* texture = new aiTexture;  // a file of mWidth bytes
-  textures_.push_back(texture);
-  texture->mWidth = static_cast<unsigned>(bytes.size());
-  texture->pcData = new aiTexel[bytes.size() / sizeof(aiTexel) + 1];
-  std::memcpy(static_cast<void*>(texture->pcData), bytes.data(), bytes.size());
-  return "*" + std::to_string(textures_.size() - 1);
+ImportedMap GltfMaterials::Embed(std::string_view bytes) {
+  std::vector<ImportedPicture>& pictures = import_.scene.pictures;
+  const std::size_t index = pictures.size();
+  pictures.push_back({0, 0, {bytes.begin(), bytes.end()}});
+  return {"*" + std::to_string(index), static_cast<int>(index)};
 }
 
-void GltfMaterials::SetTexture(aiMaterial& material, const json& object, const char* key, aiTextureType type) {
+ImportedMap GltfMaterials::MapOf(const json& object, const char* key) {
   const auto info = object.find(key);
-  if (info == object.end()) return;
+  if (info == object.end()) return {};
   const json& texture = file_.At("textures", GltfFile::Index(*info, "index"));
-  const std::string image = ImageOf(texture);
-  if (image.empty()) return;
-  SetText(material, image, AI_MATKEY_TEXTURE(type, 0));
-  int set = info->value("texCoord", 0);
+  ImportedMap map = ImageOf(texture);
+  if (map.picture.empty()) return map;
+  map.uv.channel = static_cast<unsigned>(std::max(info->value("texCoord", 0), 0));
   if (const json* t = GltfFile::Extension(*info, "KHR_texture_transform")) {
     // uv' = offset + rotation * scale * uv, where v points down.
     const auto offset = GltfFile::Numbers<2>(*t, "offset", {0, 0}), scale = GltfFile::Numbers<2>(*t, "scale", {1, 1});
     const double angle = t->value("rotation", 0.0), c = std::cos(angle), s = std::sin(angle);
-    set = t->value("texCoord", set);
-    SetUvTransform(material, type,
-                   glm::dmat3x2(c * scale[0], -s * scale[0], s * scale[1], c * scale[1], offset[0], offset[1]));
-  } else {
-    SetUvTransform(material, type, glm::dmat3x2(1, 0, 0, 1, 0, 0));
+    map.uv.channel = static_cast<unsigned>(std::max(t->value("texCoord", static_cast<int>(map.uv.channel)), 0));
+    map.uv.transform = glm::mat3x2(c * scale[0], -s * scale[0], s * scale[1], c * scale[1], offset[0], offset[1]);
   }
-  material.AddProperty(&set, 1, AI_MATKEY_UVWSRC(type, 0));
-  if (!texture.contains("sampler")) return;
+  if (!texture.contains("sampler")) return map;
   const json& sampler = file_.At("samplers", GltfFile::Index(texture, "sampler"));
   constexpr int kClamp = 33071, kMirror = 33648, kNearest = 9728;
-  for (const bool v : {false, true}) {
-    const int wrap = sampler.value(v ? "wrapT" : "wrapS", 0);
-    const int mode = wrap == kClamp    ? aiTextureMapMode_Clamp
-                     : wrap == kMirror ? aiTextureMapMode_Mirror
-                                       : aiTextureMapMode_Wrap;
-    material.AddProperty(&mode, 1, v ? "$tex.mapmodev" : "$tex.mapmodeu", type, 0);
+  for (const std::size_t axis : {0u, 1u}) {
+    const int wrap = sampler.value(axis == 0 ? "wrapS" : "wrapT", 0);
+    map.uv.wrap[axis] = wrap == kClamp ? UvWrap::clamp : wrap == kMirror ? UvWrap::mirror : UvWrap::repeat;
   }
   if (sampler.value("magFilter", 0) == kNearest)
     WarnOnce(import_, "a sampler asks for the nearest texel: it is interpolated");
+  return map;
 }
 
-void GltfMaterials::ReadMaterial(const json& in) {
-  auto* out = new aiMaterial;
-  materials_.push_back(out);
-  SetText(*out, in.value("name", ""), AI_MATKEY_NAME);
+ImportedMaterial GltfMaterials::Read(const json& in) {
+  ImportedMaterial out{in.value("name", "")};
   const json& plain = GltfFile::Child(in, "pbrMetallicRoughness");
   const json* gloss = GltfFile::Extension(in, "KHR_materials_pbrSpecularGlossiness");
-  const auto number = [&](double value, const char* key, unsigned type, unsigned index) {
-    const auto single = static_cast<float>(value);
-    out->AddProperty(&single, 1, key, type, index);
-  };
   auto color = GltfFile::Numbers<4>(gloss ? *gloss : plain, gloss ? "diffuseFactor" : "baseColorFactor", {1, 1, 1, 1});
-  SetTexture(*out, gloss ? *gloss : plain, gloss ? "diffuseTexture" : "baseColorTexture", aiTextureType_BASE_COLOR);
+  out.color_map = MapOf(gloss ? *gloss : plain, gloss ? "diffuseTexture" : "baseColorTexture");
   if (gloss != nullptr) {
-    number(0, AI_MATKEY_METALLIC_FACTOR);
-    number(1 - gloss->value("glossinessFactor", 1.0), AI_MATKEY_ROUGHNESS_FACTOR);
+    out.roughness = static_cast<float>(1 - gloss->value("glossinessFactor", 1.0));
     if (gloss->contains("specularGlossinessTexture"))
       WarnOnce(import_, "specular-glossiness textures are not used: their factors are");
   } else {
-    number(plain.value("metallicFactor", 1.0), AI_MATKEY_METALLIC_FACTOR);
-    number(plain.value("roughnessFactor", 1.0), AI_MATKEY_ROUGHNESS_FACTOR);
-    SetTexture(*out, plain, "metallicRoughnessTexture", aiTextureType_UNKNOWN);
+    out.metallic = static_cast<float>(plain.value("metallicFactor", 1.0));
+    out.roughness = static_cast<float>(plain.value("roughnessFactor", 1.0));
+    out.gloss_map = MapOf(plain, "metallicRoughnessTexture");
   }
-  const std::string mode = in.value("alphaMode", "OPAQUE");
-  if (mode == "OPAQUE") color[3] = 1;
-  SetText(*out, mode, AI_MATKEY_GLTF_ALPHAMODE);
-  number(in.value("alphaCutoff", 0.5), AI_MATKEY_GLTF_ALPHACUTOFF);
-  const aiColor4D base(static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2]),
-                       static_cast<float>(color[3]));
-  out->AddProperty(&base, 1, AI_MATKEY_BASE_COLOR);
+  out.alpha_mode = in.value("alphaMode", "OPAQUE");
+  if (out.alpha_mode == "OPAQUE") color[3] = 1;
+  out.alpha_cutoff = static_cast<float>(in.value("alphaCutoff", 0.5));
+  out.base_color = glm::vec4(color[0], color[1], color[2], color[3]);
   auto glow = GltfFile::Numbers<3>(in, "emissiveFactor", {0, 0, 0});
   if (const json* strength = GltfFile::Extension(in, "KHR_materials_emissive_strength"))
     for (double& c : glow) c *= strength->value("emissiveStrength", 1.0);
-  const aiColor3D emission(static_cast<float>(glow[0]), static_cast<float>(glow[1]), static_cast<float>(glow[2]));
-  out->AddProperty(&emission, 1, AI_MATKEY_COLOR_EMISSIVE);
-  SetTexture(*out, in, "emissiveTexture", aiTextureType_EMISSIVE);
-  SetTexture(*out, in, "normalTexture", aiTextureType_NORMALS);
-  number(GltfFile::Child(in, "normalTexture").value("scale", 1.0),
-         AI_MATKEY_GLTF_TEXTURE_SCALE(aiTextureType_NORMALS, 0));
-  const int unlit = GltfFile::Extension(in, "KHR_materials_unlit") != nullptr;
-  out->AddProperty(&unlit, 1, kUnlitKey, 0, 0);
+  out.emission = glm::vec3(glow[0], glow[1], glow[2]);
+  out.emission_map = MapOf(in, "emissiveTexture");
+  out.normal_map = MapOf(in, "normalTexture");
+  out.normal_scale = static_cast<float>(GltfFile::Child(in, "normalTexture").value("scale", 1.0));
+  out.unlit = GltfFile::Extension(in, "KHR_materials_unlit") != nullptr;
+  return out;
 }
 
 unsigned GltfMaterials::MaterialOf(const json& primitive) {
   const std::optional<std::size_t> index =
       primitive.contains("material") ? std::optional(GltfFile::Index(primitive, "material")) : std::nullopt;
-  const auto [at, is_new] = material_of_.try_emplace(index, static_cast<unsigned>(materials_.size()));
-  if (is_new) ReadMaterial(index ? file_.At("materials", *index) : json::object());
+  std::vector<ImportedMaterial>& materials = import_.scene.materials;
+  const auto [at, is_new] = material_of_.try_emplace(index, static_cast<unsigned>(materials.size()));
+  if (is_new) materials.push_back(Read(index ? file_.At("materials", *index) : json::object()));
   return at->second;
 }
 

@@ -11,7 +11,6 @@
 #include <string_view>
 #include <utility>
 
-#include "sim/world/gltf_draco.h"
 #include "sim/world/gltf_file.h"
 #include "sim/world/gltf_material.h"
 #include "sim/world/mesh_builder.h"
@@ -24,7 +23,7 @@ using nlohmann::json;
 
 constexpr int kDeepestNode = 1000;
 constexpr int kTriangles = 4, kStrip = 5, kFan = 6;  // modes of a primitive
-constexpr std::size_t kMostInstances = 1 << 20;
+constexpr std::size_t kMostInstances = 1 << 20, kMostUvSets = 8;
 
 // What is seen instead of an extension that is not applied; empty: it is applied.
 constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
@@ -68,12 +67,6 @@ class GltfReader {
       if (!GltfFile::Child(file_.document(), list).empty()) Warn(what);
     }
     for (const json& mesh : GltfFile::Child(file_.document(), "meshes")) ReadMesh(mesh);
-    auto scene = std::make_unique<aiScene>();
-    SetList(scene->mMeshes, scene->mNumMeshes, ai_meshes_);
-    SetList(scene->mTextures, scene->mNumTextures, materials_.textures());
-    import_.scene = std::move(scene);
-    scene_ = import_.scene.get();
-    SetList(scene_->mMaterials, scene_->mNumMaterials, materials_.materials());
     ReadNodes();
   }
 
@@ -115,17 +108,17 @@ class GltfReader {
         Warn("has points or lines: they are left out");
         continue;
       }
-      BuiltMesh built;
+      ImportedMesh built;
       built.name = mesh.value("name", "meshes[" + std::to_string(meshes_.size() - 1) + "]");
       built.material = materials_.MaterialOf(primitive);
       ReadPrimitive(primitive, mode, built);
       if (built.positions.empty()) continue;
-      parts.push_back(static_cast<unsigned>(ai_meshes_.size()));
-      ai_meshes_.push_back(ToAssimp(built));
+      parts.push_back(static_cast<unsigned>(import_.scene.meshes.size()));
+      import_.scene.meshes.push_back(std::move(built));
     }
   }
 
-  void ReadPrimitive(const json& primitive, int mode, BuiltMesh& mesh) {
+  void ReadPrimitive(const json& primitive, int mode, ImportedMesh& mesh) {
     const json& attributes = GltfFile::Child(primitive, "attributes");
     std::optional<DracoMesh> draco;
     if (const json* how = GltfFile::Extension(primitive, "KHR_draco_mesh_compression")) {
@@ -150,7 +143,7 @@ class GltfReader {
     };
     const auto positions = table("POSITION", 3);
     if (!positions) return;
-    const auto append = [](const GltfTable& from, std::vector<aiVector3D>& to) {
+    const auto append = [](const GltfTable& from, std::vector<glm::vec3>& to) {
       for (std::size_t i = 0; i < from.count; ++i) to.emplace_back(from.at(i, 0), from.at(i, 1), from.at(i, 2));
     };
     append(*positions, mesh.positions);
@@ -160,11 +153,11 @@ class GltfReader {
         mesh.colors.emplace_back(colors->at(i, 0), colors->at(i, 1), colors->at(i, 2),
                                  colors->columns > 3 ? colors->at(i, 3) : 1.0f);
     }
-    for (std::size_t set = 0; set < AI_MAX_NUMBER_OF_TEXTURECOORDS; ++set) {
+    for (std::size_t set = 0; set < kMostUvSets; ++set) {
       const auto uvs = table("TEXCOORD_" + std::to_string(set), 2);
       if (!uvs) continue;
       mesh.uvs.resize(set + 1);
-      for (std::size_t i = 0; i < uvs->count; ++i) mesh.uvs[set].emplace_back(uvs->at(i, 0), 1 - uvs->at(i, 1), 0.0f);
+      for (std::size_t i = 0; i < uvs->count; ++i) mesh.uvs[set].emplace_back(uvs->at(i, 0), 1 - uvs->at(i, 1));
     }
     std::vector<std::uint32_t> indices;
     if (draco) {
@@ -179,10 +172,10 @@ class GltfReader {
     const std::size_t n = indices.size(), step = mode == kTriangles ? 3 : 1;
     for (std::size_t i = 0; i + 2 < n; i += step) {
       if (mode == kFan) {
-        mesh.triangles.push_back({indices[0], indices[i + 1], indices[i + 2]});
+        mesh.triangles.emplace_back(indices[0], indices[i + 1], indices[i + 2]);
       } else {
         const bool odd = mode == kStrip && i % 2 == 1;
-        mesh.triangles.push_back({indices[i], indices[i + (odd ? 2 : 1)], indices[i + (odd ? 1 : 2)]});
+        mesh.triangles.emplace_back(indices[i], indices[i + (odd ? 2 : 1)], indices[i + (odd ? 1 : 2)]);
       }
     }
   }
@@ -284,44 +277,26 @@ class GltfReader {
     constexpr double kFar = 1e4;
     if (std::ranges::any_of(places, [](const glm::dvec3& x) { return glm::length(x) > kFar; }))
       import_.origin = OriginFor(places);
-    std::vector<aiNode*> children;
     for (Instance& instance : instances_) {
-      glm::dmat4& m = instance.transform;
-      m[3] -= glm::dvec4(import_.origin, 0);
-      auto* node = new aiNode;
-      children.push_back(node);
-      for (unsigned row = 0; row < 4; ++row) {
-        for (unsigned column = 0; column < 4; ++column)
-          node->mTransformation[row][column] = static_cast<float>(m[static_cast<int>(column)][static_cast<int>(row)]);
-      }
-      const std::vector<unsigned>& parts = meshes_[instance.mesh];
-      node->mNumMeshes = static_cast<unsigned>(parts.size());
-      node->mMeshes = new unsigned[parts.size()];
-      std::ranges::copy(parts, node->mMeshes);
+      instance.transform[3] -= glm::dvec4(import_.origin, 0);
+      import_.scene.nodes.push_back({-1, glm::mat4(instance.transform), meshes_[instance.mesh]});
     }
-    scene_->mRootNode = new aiNode;
-    SetList(scene_->mRootNode->mChildren, scene_->mRootNode->mNumChildren, children);
   }
 
   GltfFile file_;
   MeshImport& import_;
   GltfMaterials materials_;
-  std::vector<aiMesh*> ai_meshes_;
-  std::vector<std::vector<unsigned>> meshes_;  // by the file's mesh: of ai_meshes_
+  std::vector<std::vector<unsigned>> meshes_;  // by the file's mesh: of the scene's
   std::vector<Instance> instances_;
-  aiScene* scene_ = nullptr;
 };
 
 }  // namespace
 
 void ReadGltf(MeshFiles& files, MeshImport& import) {
-  const auto fail = [&](const std::string& problem) {
-    import.scene = nullptr;
-    import.problem = problem;
-  };
+  const auto fail = [&](const std::string& problem) { import.problem = problem; };
   try {
     GltfReader(files, import).Read();
-    if (import.scene->mNumMeshes == 0) import.problem = "has no triangles";
+    if (import.scene.meshes.empty()) import.problem = "has no triangles";
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const Unsupported& error) {

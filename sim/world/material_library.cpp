@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <vector>
 
-#include "sim/world/mesh_builder.h"
 #include "sim/world/texture_file.h"
 #include "tools/base/text.h"
 
@@ -35,8 +34,8 @@ std::array<double, 3> UpToThree(std::string_view& rest, double otherwise) {
 }
 
 // `[-option values] ... file name`
-LibraryMap ReadMap(std::string_view rest) {
-  LibraryMap map;
+ImportedMap ReadMap(std::string_view rest) {
+  ImportedMap map;
   std::array<double, 3> scale = {1, 1, 1}, offset = {0, 0, 0};
   while (rest.starts_with('-')) {
     std::string_view after = rest;
@@ -49,10 +48,9 @@ LibraryMap ReadMap(std::string_view rest) {
     } else if (option == "-t") {
       UpToThree(after, 0);  // turbulence
     } else if (option == "-mm") {
-      const std::optional<double> base = ToNumber(NextWord(after)), gain = ToNumber(NextWord(after));
-      map.own_range = base != 0.0 || gain != 1.0;
+      NextWord(after), NextWord(after);  // base and gain
     } else if (option == "-clamp") {
-      map.clamp = NextWord(after) == "on";
+      map.uv.wrap.fill(NextWord(after) == "on" ? UvWrap::clamp : UvWrap::repeat);
     } else if (option == "-blendu" || option == "-blendv" || option == "-bm" || option == "-boost" ||
                option == "-imfchan" || option == "-texres" || option == "-type" || option == "-cc") {
       NextWord(after);
@@ -62,19 +60,10 @@ LibraryMap ReadMap(std::string_view rest) {
     rest = after;
   }
   if (rest.size() > 1 && rest.front() == '"' && rest.back() == '"') rest = rest.substr(1, rest.size() - 2);
-  map.file = rest;
+  map.picture = rest;
   // uv' = scale uv + offset where v points up.
-  map.transform = glm::dmat3x2(scale[0], 0, 0, scale[1], offset[0], 1 - scale[1] - offset[1]);
+  map.uv.transform = glm::mat3x2(scale[0], 0, 0, scale[1], offset[0], 1 - scale[1] - offset[1]);
   return map;
-}
-
-void SetMap(aiMaterial& material, const LibraryMap& map, aiTextureType type) {
-  if (map.file.empty()) return;
-  SetText(material, map.file, AI_MATKEY_TEXTURE(type, 0));
-  SetUvTransform(material, type, map.transform);
-  const int mode = map.clamp ? aiTextureMapMode_Clamp : aiTextureMapMode_Wrap;
-  material.AddProperty(&mode, 1, AI_MATKEY_MAPPINGMODE_U(type, 0));
-  material.AddProperty(&mode, 1, AI_MATKEY_MAPPINGMODE_V(type, 0));
 }
 
 }  // namespace
@@ -125,62 +114,42 @@ std::optional<double> ToNumber(std::string_view text) {
 }
 
 void ReadMaterialLibrary(std::string_view text, const std::string& folder,
-                         std::map<std::string, LibraryMaterial>& materials) {
-  LibraryMaterial* m = nullptr;
+                         std::map<std::string, ImportedMaterial>& materials) {
+  ImportedMaterial* m = nullptr;
   ForEachStatement(text, [&](std::string_view word, std::string_view rest, int) {
     const std::string key = Lower(std::string(word));
-    const auto number = [&] {
+    const auto number = [&](double otherwise) {
       std::string_view words = rest;
-      return ToNumber(NextWord(words));
+      return ToNumber(NextWord(words)).value_or(otherwise);
     };
-    const auto color = [&](glm::vec3& value) {
+    const auto color = [&](auto& value) {
       std::string_view words = rest;
       const auto r = ToNumber(NextWord(words)), g = ToNumber(NextWord(words)), b = ToNumber(NextWord(words));
-      if (r) value = g && b ? glm::vec3(*r, *g, *b) : glm::vec3(static_cast<float>(*r));
+      if (!r) return;
+      value.r = static_cast<float>(*r);
+      value.g = static_cast<float>(g && b ? *g : *r);
+      value.b = static_cast<float>(g && b ? *b : *r);
     };
     if (key == "newmtl") {
-      m = &materials.insert_or_assign(std::string(rest), LibraryMaterial{std::string(rest), folder}).first->second;
+      m = &materials.insert_or_assign(std::string(rest), ImportedMaterial{std::string(rest), folder}).first->second;
       return;
     }
     if (m == nullptr) return;
-    if (key == "kd") color(m->color);
-    if (key == "ke") color(m->emission.emplace(0.0f));
+    if (key == "kd") color(m->base_color);
+    if (key == "ke") m->emission = glm::vec3(0), color(m->emission);
     if (key == "d")
-      m->opacity = ToNumber(rest.substr(rest.starts_with("-halo") ? 5 : 0)).value_or(number().value_or(1));
+      m->opacity = static_cast<float>(ToNumber(rest.substr(rest.starts_with("-halo") ? 5 : 0)).value_or(number(1)));
     if (key == "tr") {  // MeshLab writes 1 for what is opaque
-      const double transparency = number().value_or(0);
-      if (transparency > 0 && transparency < 1) m->opacity = 1 - transparency;
+      const double transparency = number(0);
+      if (transparency > 0 && transparency < 1) m->opacity = static_cast<float>(1 - transparency);
     }
-    if (key == "pr") m->roughness = number().value_or(1);
-    if (key == "pm") m->metallic = number().value_or(0);
+    if (key == "pr") m->roughness = static_cast<float>(number(1));
+    if (key == "pm") m->metallic = static_cast<float>(number(0));
     if (key == "map_kd") m->color_map = ReadMap(rest);
     if (key == "map_d") m->opacity_map = ReadMap(rest);
     if (key == "map_ke") m->emission_map = ReadMap(rest);
     if (key == "norm") m->normal_map = ReadMap(rest);
   });
-}
-
-aiMaterial* ToAssimp(const LibraryMaterial& from) {
-  auto* to = new aiMaterial;
-  SetText(*to, from.name, AI_MATKEY_NAME);
-  SetText(*to, from.folder, kFolderKey);
-  const aiColor4D color(from.color.r, from.color.g, from.color.b, 1);
-  const glm::vec3 glow = from.emission.value_or(glm::vec3(from.emission_map.file.empty() ? 0.0f : 1.0f));
-  const aiColor3D emission(glow.r, glow.g, glow.b);
-  to->AddProperty(&color, 1, AI_MATKEY_BASE_COLOR);
-  to->AddProperty(&emission, 1, AI_MATKEY_COLOR_EMISSIVE);
-  const auto number = [&](double value, const char* key, unsigned type, unsigned index) {
-    const auto single = static_cast<float>(value);
-    to->AddProperty(&single, 1, key, type, index);
-  };
-  number(from.opacity, AI_MATKEY_OPACITY);
-  number(from.roughness, AI_MATKEY_ROUGHNESS_FACTOR);
-  number(from.metallic, AI_MATKEY_METALLIC_FACTOR);
-  SetMap(*to, from.color_map, aiTextureType_BASE_COLOR);
-  SetMap(*to, from.opacity_map, aiTextureType_OPACITY);
-  SetMap(*to, from.emission_map, aiTextureType_EMISSIVE);
-  SetMap(*to, from.normal_map, aiTextureType_NORMALS);
-  return to;
 }
 
 }  // namespace sim

@@ -11,14 +11,6 @@
 namespace sim {
 namespace {
 
-template <class T>
-T* Copied(const std::vector<T>& values) {
-  if (values.empty()) return nullptr;
-  T* copy = new T[values.size()];
-  std::copy(values.begin(), values.end(), copy);
-  return copy;
-}
-
 // Twice the signed area.
 double Cross(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -48,7 +40,7 @@ std::string IndexProblem(const Polygons& polygons, const PolygonPools& pools) {
   return "";
 }
 
-void AppendPolygons(const Polygons& polygons, const PolygonPools& pools, const glm::dvec3& origin, BuiltMesh& mesh) {
+void AppendPolygons(const Polygons& polygons, const PolygonPools& pools, const glm::dvec3& origin, ImportedMesh& mesh) {
   std::unordered_map<Corner, unsigned, HashCorner> vertex_of;
   vertex_of.reserve(polygons.corners.size());
   const Corner has = polygons.corners.empty() ? Corner{} : polygons.corners[0];
@@ -66,61 +58,22 @@ void AppendPolygons(const Polygons& polygons, const PolygonPools& pools, const g
       outline.push_back(pools.positions[of(0)]);
       vertices.push_back(vertex->second);
       if (!is_new) continue;
-      const glm::vec3 x(pools.positions[of(0)] - origin);
-      mesh.positions.emplace_back(x.x, x.y, x.z);
+      mesh.positions.emplace_back(pools.positions[of(0)] - origin);
       if (has[1] >= 0) mesh.uvs[0].push_back(pools.uvs[of(1)]);
       if (has[2] >= 0) mesh.normals.push_back(pools.normals[of(2)]);
       if (has[3] >= 0) mesh.colors.push_back(pools.colors[of(3)]);
     }
     for (const auto& [a, b, c] : Triangulate(outline))
-      mesh.triangles.push_back({vertices[a], vertices[b], vertices[c]});
+      mesh.triangles.emplace_back(vertices[a], vertices[b], vertices[c]);
     first += size;
   }
 }
 
-aiMesh* ToAssimp(const BuiltMesh& mesh) {
-  auto* out = new aiMesh;
-  out->mName.Set(mesh.name);
-  out->mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
-  out->mMaterialIndex = mesh.material;
-  out->mNumVertices = static_cast<unsigned>(mesh.positions.size());
-  out->mVertices = Copied(mesh.positions);
-  out->mNormals = Copied(mesh.normals);
-  out->mColors[0] = Copied(mesh.colors);
-  for (std::size_t i = 0; i < std::min<std::size_t>(mesh.uvs.size(), AI_MAX_NUMBER_OF_TEXTURECOORDS); ++i)
-    out->mTextureCoords[i] = Copied(mesh.uvs[i]);
-  out->mNumFaces = static_cast<unsigned>(mesh.triangles.size());
-  out->mFaces = mesh.triangles.empty() ? nullptr : new aiFace[mesh.triangles.size()];
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    out->mFaces[i].mNumIndices = 3;
-    out->mFaces[i].mIndices = new unsigned[3]{mesh.triangles[i][0], mesh.triangles[i][1], mesh.triangles[i][2]};
-  }
-  return out;
-}
-
-std::unique_ptr<aiScene> SceneOf(std::span<const BuiltMesh> meshes, const std::vector<aiMaterial*>& materials) {
-  auto scene = std::make_unique<aiScene>();
-  std::vector<aiMesh*> converted;
-  for (const BuiltMesh& mesh : meshes) converted.push_back(ToAssimp(mesh));
-  SetList(scene->mMeshes, scene->mNumMeshes, converted);
-  SetList(scene->mMaterials, scene->mNumMaterials, materials);
-  scene->mRootNode = new aiNode;
-  scene->mRootNode->mNumMeshes = scene->mNumMeshes;
-  scene->mRootNode->mMeshes = new unsigned[meshes.size()];
-  std::iota(scene->mRootNode->mMeshes, scene->mRootNode->mMeshes + meshes.size(), 0u);
-  return scene;
-}
-
-void SetText(aiMaterial& material, const std::string& text, const char* key, unsigned type, unsigned index) {
-  const aiString value(text.substr(0, MAXLEN - 1));
-  material.AddProperty(&value, key, type, index);
-}
-
-void SetUvTransform(aiMaterial& material, aiTextureType type, const glm::dmat3x2& t) {
-  const std::array<float, 6> numbers = {static_cast<float>(t[0].x), static_cast<float>(t[0].y),
-                                        static_cast<float>(t[1].x), static_cast<float>(t[1].y),
-                                        static_cast<float>(t[2].x), static_cast<float>(t[2].y)};
-  material.AddProperty(numbers.data(), 6, kUvTransformKey, type, 0);
+ImportedNode NodeOfAll(const std::vector<ImportedMesh>& meshes) {
+  ImportedNode node;
+  node.meshes.resize(meshes.size());
+  std::iota(node.meshes.begin(), node.meshes.end(), 0u);
+  return node;
 }
 
 std::vector<std::array<unsigned, 3>> Triangulate(std::span<const glm::dvec3> corners) {

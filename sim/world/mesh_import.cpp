@@ -1,17 +1,11 @@
 #include "sim/world/mesh_import.h"
 
-#include <assimp/DefaultIOSystem.h>
-#include <assimp/MemoryIOWrapper.h>
-#include <assimp/postprocess.h>
 #include <fcntl.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <assimp/IOStream.hpp>
-#include <assimp/Importer.hpp>
-#include <cctype>
 #include <chrono>
 #include <csignal>
 #include <fstream>
@@ -23,7 +17,6 @@
 
 #include "sim/world/gltf_file.h"
 #include "sim/world/mesh_readers.h"
-#include "sim/world/mesh_serialization.h"
 #include "sim/world/texture_file.h"
 #include "tools/base/child_process.h"
 #include "tools/base/files.h"
@@ -71,62 +64,6 @@ void LimitProcess(std::uint64_t bytes, rlim_t taken) {
   if (kLimitMemory) Limit(RLIMIT_AS, taken + kMemory + kMemoryPerByte * bytes);
 }
 
-// A file that cannot be read past its end for ever: assimp's PLY importer (5.2) does so when a header is cut off.
-class BoundedStream : public Assimp::IOStream {
- public:
-  explicit BoundedStream(std::unique_ptr<Assimp::IOStream> stream) : stream_(std::move(stream)) {}
-
-  std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
-    const std::size_t read = stream_->Read(buffer, size, count);
-    constexpr int kPatience = 1000;
-    if (read == 0 && ++empty_reads_ > kPatience) throw std::runtime_error("the file ends too early");
-    return read;
-  }
-  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
-  aiReturn Seek(std::size_t offset, aiOrigin origin) override { return stream_->Seek(offset, origin); }
-  std::size_t Tell() const override { return stream_->Tell(); }
-  std::size_t FileSize() const override { return stream_->FileSize(); }
-  void Flush() override {}
-
- private:
-  std::unique_ptr<Assimp::IOStream> stream_;
-  int empty_reads_ = 0;
-};
-
-// Importers quietly do without a side file that cannot be opened.
-class ImporterFiles : public Assimp::DefaultIOSystem {
- public:
-  explicit ImporterFiles(MeshFiles& files) : files_(files) {}
-  bool Exists(const char* file) const override { return files_.MayOpen(file); }
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
-    std::unique_ptr<Assimp::IOStream> stream(mode[0] == 'r' && files_.MayOpen(file) ? DefaultIOSystem::Open(file, mode)
-                                                                                    : nullptr);
-    if (stream == nullptr) {
-      files_.Missing(file);
-      return nullptr;
-    }
-    files_.Opened(file, stream->FileSize());
-    if (LowerExtension(file) == ".dae") return WithoutBlanks(file);
-    return new BoundedStream(std::move(stream));  // Close() deletes it
-  }
-
- private:
-  // Blanks at the beginning of an element's text, which assimp (5.2) takes for the end of its numbers.
-  static Assimp::IOStream* WithoutBlanks(const fs::path& file) {
-    const std::string text = base::ReadFile(file).value_or("");
-    auto* bytes = new std::uint8_t[text.size() + 1];
-    std::size_t size = 0;
-    bool skips = false;
-    for (const char c : text) {
-      skips = c == '>' || (skips && std::isspace(static_cast<unsigned char>(c)) != 0);
-      if (!skips || c == '>') bytes[size++] = static_cast<std::uint8_t>(c);
-    }
-    return new Assimp::MemoryIOStream(bytes, size, true);  // owns them
-  }
-
-  MeshFiles& files_;
-};
-
 // No output, no core file.
 void SilenceProcess() {
   const int nowhere = open("/dev/null", O_RDWR);
@@ -136,57 +73,6 @@ void SilenceProcess() {
 
 constexpr std::chrono::seconds kPatience(600);  // of whoever waits: an importer that sleeps uses no processor
 
-// FBX states its unit in centimetres and its axes; assimp (5.2) leaves both to whoever reads.
-void ApplyFbxSettings(aiScene& scene) {
-  double unit = 1;
-  int axis[3] = {0, 1, 2}, sign[3] = {1, 1, 1};  // of what becomes x, y, z
-  if (scene.mMetaData != nullptr) {
-    float single = 1;
-    if (!scene.mMetaData->Get("UnitScaleFactor", unit) && scene.mMetaData->Get("UnitScaleFactor", single))
-      unit = single;
-    constexpr const char* kNames[] = {"CoordAxis", "UpAxis", "FrontAxis"};
-    for (int i = 0; i < 3; ++i) {
-      scene.mMetaData->Get(kNames[i], axis[i]);
-      scene.mMetaData->Get(std::string(kNames[i]) + "Sign", sign[i]);
-    }
-  }
-  const bool is_permutation = std::set<int>(axis, axis + 3) == std::set<int>{0, 1, 2};
-  aiMatrix4x4 to_metres;
-  for (unsigned row = 0; row < 3; ++row) {
-    for (unsigned column = 0; column < 3; ++column) {
-      const bool here = is_permutation ? axis[row] == static_cast<int>(column) : row == column;
-      to_metres[row][column] =
-          here ? static_cast<float>(0.01 * unit * (is_permutation && sign[row] < 0 ? -1 : 1)) : 0.0f;
-    }
-  }
-  if (scene.mRootNode != nullptr && unit > 0)
-    scene.mRootNode->mTransformation = to_metres * scene.mRootNode->mTransformation;
-}
-
-void ImportByAssimp(MeshFiles& files, MeshImport& import) {
-  Assimp::Importer importer;
-  importer.SetIOHandler(new ImporterFiles(files));  // the importer owns it
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene = importer.ReadFile(files.mesh().string(), aiProcess_ValidateDataStructure);
-  if (scene != nullptr) import.problem = MeshCountProblem(*scene);  // what is too large is not worked on
-  if (scene != nullptr && import.problem.empty()) {
-    scene =
-        importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
-    if (scene != nullptr) import.problem = MeshCountProblem(*scene);
-  }
-  if (scene == nullptr) {
-    const std::string reason = importer.GetErrorString();
-    const bool only_lines = reason.find("No meshes remaining") != std::string::npos;  // the importer's words for it
-    const bool too_much = reason.find("bad_alloc") != std::string::npos;              // the library's
-    import.problem = only_lines ? "has no triangles"
-                     : too_much ? "cannot be read: the importer (assimp) wants more memory than a file of this size may"
-                                : "cannot be read: " + reason;
-  }
-  if (!import.problem.empty()) return;
-  import.scene.reset(importer.GetOrphanedScene());
-  if (LowerExtension(files.mesh()) == ".fbx") ApplyFbxSettings(*import.scene);
-}
-
 std::vector<std::uint8_t> Import(const fs::path& file, const std::vector<fs::path>& folders) {
   MeshImport import;
   MeshFiles files(file, folders, import);
@@ -195,13 +81,14 @@ std::vector<std::uint8_t> Import(const fs::path& file, const std::vector<fs::pat
       {".obj", ReadObj}, {".ply", ReadPly}, {".gltf", ReadGltf}, {".glb", ReadGltf}};
   const auto read = readers.find(extension);
   try {
-    (read == readers.end() ? ImportByAssimp : read->second)(files, import);
-    if (import.problem.empty() && import.scene != nullptr) import.problem = MeshCountProblem(*import.scene);
+    (read == readers.end() ? ReadByAssimp : read->second)(files, import);
+    if (import.problem.empty()) import.problem = CountsOf(import.scene).Problem();
   } catch (const OlderGltf&) {
-    ImportByAssimp(files, import);
+    ReadByAssimp(files, import);
   } catch (const std::bad_alloc&) {
     import.problem = "cannot be read: it wants more memory than a file of this size may";
   }
+  if (!import.problem.empty()) import.scene = {};
   return ToBytes(import);
 }
 

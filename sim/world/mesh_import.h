@@ -3,27 +3,15 @@
 // Source: docs/reliability.md, "Hostile input".
 #pragma once
 
-#include <assimp/scene.h>
-
 #include <cstdint>
 #include <filesystem>
-#include <glm/vec3.hpp>
-#include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
-namespace sim {
+#include "sim/world/imported_scene.h"
 
-struct MeshImport {
-  std::unique_ptr<aiScene> scene;         // triangles only; null: see problem
-  std::string problem;                    // why there is none
-  std::set<std::filesystem::path> files;  // that the importer looked for
-  std::set<std::string> missing;          // those that could not be opened, without their folder
-  std::vector<std::string> warnings;
-  glm::dvec3 origin{0.0};  // of the scene's coordinates, in the file's
-};
+namespace sim {
 
 // Whether `file`, links followed, lies in the mesh's folder, in one of `folders`, or deeper. A mesh that is itself a
 // link has two folders: where it is named, and where it leads.

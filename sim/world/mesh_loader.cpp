@@ -1,7 +1,5 @@
 #include "sim/world/mesh_loader.h"
 
-#include <assimp/scene.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -9,8 +7,9 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
+#include <glm/vector_relational.hpp>
 #include <iterator>
-#include <memory>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -23,10 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-glm::dmat4 ToGlm(const aiMatrix4x4& m) {  // assimp is row-major, GLM column-major
-  return {m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4};
-}
-
 // Whether three corners lie on a line, within the rounding of floats.
 bool IsDegenerate(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   const glm::dvec3 ab = glm::dvec3(b) - glm::dvec3(a), ac = glm::dvec3(c) - glm::dvec3(a),
@@ -35,12 +30,16 @@ bool IsDegenerate(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   return !(glm::length(glm::cross(ab, ac)) > 1e-10 * longest2);
 }
 
-bool IsFinite(float x, float y, float z) { return std::isfinite(x) && std::isfinite(y) && std::isfinite(z); }
+template <int n>
+bool IsFinite(const glm::vec<n, float>& v) {
+  return !glm::any(glm::isnan(v)) && !glm::any(glm::isinf(v));
+}
 
-std::string ToText(const aiVector3D& v) {
+template <int n>
+std::string ToText(const glm::vec<n, float>& v) {
   std::ostringstream text;
-  text << "(" << v.x << ", " << v.y << ", " << v.z << ")";
-  return text.str();
+  for (int i = 0; i < n; ++i) text << (i == 0 ? "(" : ", ") << v[i];
+  return text.str() + ")";
 }
 
 class FileReader {
@@ -58,30 +57,30 @@ class FileReader {
 
     MeshImport import = ImportMesh(file_.path, file_.loading.folders);
     file_.scene.files.insert(import.files.begin(), import.files.end());
-    if (import.scene == nullptr) return file_.Problem(import.problem);
-    ai_ = import.scene.get();
+    if (!import.problem.empty()) return file_.Problem(import.problem);
+    const ImportedScene& from = import.scene;
     world_from_file_[3] += world_from_file_ * glm::dvec4(import.origin, 0.0);
     for (const std::string& missing : import.missing) file_.Warn("names " + missing + ", ", "which cannot be opened");
     for (const std::string& warning : import.warnings) file_.Warn("", warning);
 
-    materials_ = std::make_unique<MeshMaterialReader>(file_, *ai_);
+    materials_.emplace(file_, from);
     const std::size_t problems_before = file_.loading.problems.size(), meshes_before = file_.scene.meshes.size();
-    if (ai_->mRootNode != nullptr) AppendNode(*ai_->mRootNode, world_from_file_);
+    std::vector<glm::dmat4> world_from_node;
+    for (const ImportedNode& node : from.nodes) {
+      const glm::dmat4& parent =
+          node.parent < 0 ? world_from_file_ : world_from_node[static_cast<std::size_t>(node.parent)];
+      world_from_node.push_back(parent * glm::dmat4(node.transform));
+      for (const unsigned mesh : node.meshes) AppendMesh(from.meshes[mesh], world_from_node.back());
+    }
     if (file_.loading.problems.size() == problems_before && file_.scene.meshes.size() == meshes_before)
       file_.Problem("has no triangles");
   }
 
  private:
-  void AppendNode(const aiNode& node, const glm::dmat4& world_from_parent) {
-    const glm::dmat4 world_from_node = world_from_parent * ToGlm(node.mTransformation);
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) AppendMesh(*ai_->mMeshes[node.mMeshes[i]], world_from_node);
-    for (unsigned i = 0; i < node.mNumChildren; ++i) AppendNode(*node.mChildren[i], world_from_node);
-  }
-
-  void AppendMesh(const aiMesh& in, const glm::dmat4& world_from_node) {
-    if ((in.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) return;
+  void AppendMesh(const ImportedMesh& in, const glm::dmat4& world_from_node) {
+    if (in.positions.empty()) return;
     Mesh out;
-    out.name = in.mName.length > 0 ? in.mName.C_Str() : "mesh " + std::to_string(file_.scene.meshes.size());
+    out.name = in.name.empty() ? "mesh " + std::to_string(file_.scene.meshes.size()) : in.name;
     const std::string label = "mesh '" + out.name + "': ";
     const glm::dmat3 linear(world_from_node);
     const glm::dmat3 normal_transform = glm::transpose(glm::inverse(linear));
@@ -90,36 +89,33 @@ class FileReader {
 
     const bool mirrored = glm::determinant(linear) < 0;  // the front stays in front
 
-    out.positions.reserve(in.mNumVertices);
-    for (unsigned i = 0; i < in.mNumVertices; ++i) {
-      const aiVector3D& v = in.mVertices[i];
-      const glm::vec3 x(world_from_node * glm::dvec4(v.x, v.y, v.z, 1.0));
-      if (!IsFinite(x.x, x.y, x.z)) {
+    out.positions.reserve(in.positions.size());
+    for (const glm::vec3& v : in.positions) {
+      const std::size_t i = out.positions.size();
+      const glm::vec3 x(world_from_node * glm::dvec4(v, 1.0));
+      if (!IsFinite(x)) {
         return file_.Problem(label + "vertex " + std::to_string(i) + " is not finite: " + ToText(v));
       }
       out.positions.push_back(x);
     }
     AppendNormals(in, normal_transform, label, out);
-    if (in.HasVertexColors(0)) {
+    if (!in.colors.empty()) {
       const auto linear_of = [&](float c) { return file_.is_gltf ? c : static_cast<float>(SrgbToLinear(c)); };
       bool any_alpha = false;
-      for (unsigned i = 0; i < in.mNumVertices; ++i) {
-        const aiColor4D& c = in.mColors[0][i];
-        out.colors.emplace_back(linear_of(c.r), linear_of(c.g), linear_of(c.b));
-        if (!IsFinite(c.r, c.g, c.b)) {
-          return file_.Problem(label + "the colour of vertex " + std::to_string(i) + " is not finite");
+      for (const glm::vec4& c : in.colors) {
+        if (!IsFinite(glm::vec3(c))) {
+          return file_.Problem(label + "the colour of vertex " + std::to_string(out.colors.size()) + " is not finite");
         }
-        any_alpha = any_alpha || c.a != in.mColors[0][0].a;  // where a file has none, assimp makes up one
+        out.colors.emplace_back(linear_of(c.r), linear_of(c.g), linear_of(c.b));
+        any_alpha = any_alpha || c.a != in.colors[0].a;  // where a file has none, assimp makes up one
       }
       if (any_alpha) file_.Warn(label, "the alpha of its vertex colours is not used");
     }
     std::size_t degenerate = 0;
-    out.triangles.reserve(in.mNumFaces);
-    for (unsigned i = 0; i < in.mNumFaces; ++i) {
-      const aiFace& face = in.mFaces[i];
-      if (face.mNumIndices != 3) continue;
-      glm::uvec3 t(face.mIndices[0], face.mIndices[1], face.mIndices[2]);
-      if (std::max({t.x, t.y, t.z}) >= in.mNumVertices) {
+    out.triangles.reserve(in.triangles.size());
+    for (glm::uvec3 t : in.triangles) {
+      if (std::max({t.x, t.y, t.z}) >= in.positions.size()) {
+        const std::size_t i = out.triangles.size() + degenerate;
         return file_.Problem(label + "triangle " + std::to_string(i) + " names a vertex that does not exist");
       }
       if (IsDegenerate(out.positions[t.x], out.positions[t.y], out.positions[t.z])) {
@@ -130,12 +126,12 @@ class FileReader {
       out.triangles.push_back(t);
     }
     if (degenerate > 0) {
-      file_.Warn(label + std::to_string(degenerate) + " of " + std::to_string(in.mNumFaces) + " ",
+      file_.Warn(label + std::to_string(degenerate) + " of " + std::to_string(in.triangles.size()) + " ",
                  "triangles without area are left out");
     }
     if (out.triangles.empty()) return;
     if (!CheckRounding(label, out.positions)) return;
-    const MeshMaterial& material = materials_->Material(in.mMaterialIndex);
+    const MeshMaterial& material = materials_->Material(in.material);
     out.material = material.index;
     AppendUvs(in, material.uv, label, out);
     file_.scene.meshes.push_back(std::move(out));
@@ -162,14 +158,12 @@ class FileReader {
     return true;
   }
 
-  void AppendNormals(const aiMesh& in, const glm::dmat3& transform, const std::string& label, Mesh& out) {
-    if (!in.HasNormals()) return;
-    for (unsigned i = 0; i < in.mNumVertices; ++i) {
-      const aiVector3D& v = in.mNormals[i];
-      const glm::dvec3 n = transform * glm::dvec3(v.x, v.y, v.z);
+  void AppendNormals(const ImportedMesh& in, const glm::dmat3& transform, const std::string& label, Mesh& out) {
+    for (const glm::vec3& v : in.normals) {
+      const glm::dvec3 n = transform * glm::dvec3(v);
       const double length = glm::length(n);
       if (!(length > 0) || !std::isfinite(length)) {
-        file_.Warn(label + "the normal of vertex " + std::to_string(i) + " is " + ToText(v) + "; ",
+        file_.Warn(label + "the normal of vertex " + std::to_string(out.normals.size()) + " is " + ToText(v) + "; ",
                    "flat normals are used");
         out.normals.clear();
         return;
@@ -178,15 +172,15 @@ class FileReader {
     }
   }
 
-  void AppendUvs(const aiMesh& in, const UvChoice& choice, const std::string& label, Mesh& out) {
+  void AppendUvs(const ImportedMesh& in, const UvChoice& choice, const std::string& label, Mesh& out) {
     const Material& material = file_.scene.materials[static_cast<std::size_t>(out.material)];
     const int texture = material.texture >= 0
                             ? material.texture
                             : std::max({material.emission_texture, material.normal_map, material.gloss_texture});
     if (texture < 0) return;
-    const unsigned channel =
-        !in.HasTextureCoords(choice.channel) && !file_.is_gltf && in.GetNumUVChannels() == 1 ? 0 : choice.channel;
-    if (!in.HasTextureCoords(channel)) {
+    const auto has = [&](std::size_t set) { return set < in.uvs.size() && !in.uvs[set].empty(); };
+    const std::size_t set = !has(choice.channel) && !file_.is_gltf && in.uvs.size() == 1 ? 0 : choice.channel;
+    if (!has(set)) {
       const std::string& name = file_.scene.textures[static_cast<std::size_t>(texture)].name();
       file_.Warn(label + "no texture coordinates for texture " + name + "; ", "the base colour is used");
       Material plain = material;
@@ -195,14 +189,12 @@ class FileReader {
       file_.scene.materials.push_back(std::move(plain));
       return;
     }
-    for (unsigned i = 0; i < in.mNumVertices; ++i) {
-      const aiVector3D& uv = in.mTextureCoords[channel][i];
-      if (!IsFinite(uv.x, uv.y, uv.z)) {
-        return file_.Problem(label + "the texture coordinate of vertex " + std::to_string(i) +
+    for (const glm::vec2& uv : in.uvs[set]) {
+      if (!IsFinite(uv)) {
+        return file_.Problem(label + "the texture coordinate of vertex " + std::to_string(out.uvs.size()) +
                              " is not finite: " + ToText(uv));
       }
-      out.uvs.emplace_back(choice.transform *
-                           glm::dvec3(uv.x, 1.0 - static_cast<double>(uv.y), 1.0));  // assimp has v up in all formats
+      out.uvs.emplace_back(choice.transform * glm::dvec3(uv.x, 1.0 - static_cast<double>(uv.y), 1.0));  // v down
     }
     const Texture& picture = file_.scene.textures[static_cast<std::size_t>(texture)];
     for (const int axis : {0, 1}) {
@@ -214,8 +206,7 @@ class FileReader {
 
   const MeshFile& file_;
   glm::dmat4 world_from_file_{1.0};
-  const aiScene* ai_ = nullptr;
-  std::unique_ptr<MeshMaterialReader> materials_;
+  std::optional<MeshMaterialReader> materials_;
 };
 
 }  // namespace

@@ -1,5 +1,4 @@
-// Readers of OBJ, PLY and glTF; all other formats are assimp's. What is wrong with a file: import.problem. Private to
-// sim/world.
+// Readers of mesh files. What is wrong with a file: import.problem. Private to sim/world.
 #pragma once
 
 #include <cstring>
@@ -26,6 +25,9 @@ void ReadPly(MeshFiles& files, MeshImport& import);
 // KHR_materials_emissive_strength, KHR_materials_pbrSpecularGlossiness, KHR_mesh_quantization,
 // KHR_draco_mesh_compression, EXT_meshopt_compression, EXT_texture_webp, EXT_mesh_gpu_instancing.
 void ReadGltf(MeshFiles& files, MeshImport& import);
+
+// All other formats. FBX is in its unit and its axes, which assimp (5.2) leaves to whoever reads.
+void ReadByAssimp(MeshFiles& files, MeshImport& import);
 
 // The number of type T that lies there.
 template <class T>

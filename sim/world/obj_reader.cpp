@@ -67,15 +67,15 @@ class ObjReader {
       if (count < 3) return Problem("a vertex has three coordinates");
       pools_.positions.emplace_back(n[0], n[1], n[2]);
       if (count < 6) return;
-      pools_.colors.resize(pools_.positions.size(), aiColor4D(1, 1, 1, 1));
-      pools_.colors.back() = aiColor4D(static_cast<float>(n[3]), static_cast<float>(n[4]), static_cast<float>(n[5]), 1);
+      pools_.colors.resize(pools_.positions.size(), glm::vec4(1.0f));
+      pools_.colors.back() = glm::vec4(n[3], n[4], n[5], 1);
       for (int c = 3; c < 6; ++c) largest_color_ = std::max(largest_color_, n[static_cast<std::size_t>(c)]);
     } else if (word == "vt") {
       if (Numbers(rest, n) < 1) return Problem("a texture coordinate has a number");
-      pools_.uvs.emplace_back(static_cast<float>(n[0]), static_cast<float>(n[1]), 0.0f);
+      pools_.uvs.emplace_back(n[0], n[1]);
     } else if (word == "vn") {
       if (Numbers(rest, n) < 3) return Problem("a normal has three coordinates");
-      pools_.normals.emplace_back(static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2]));
+      pools_.normals.emplace_back(n[0], n[1], n[2]);
     } else if (word == "f" || word == "fo") {
       Face(rest);
     } else if (word == "usemtl") {
@@ -151,29 +151,28 @@ class ObjReader {
   void Build() {
     if (!known_) return Fail("cannot be read: has no statement of an OBJ file (in ASCII or UTF-8)");
     import_.origin = OriginFor(pools_.positions);
-    if (!pools_.colors.empty()) pools_.colors.resize(pools_.positions.size(), aiColor4D(1, 1, 1, 1));
+    if (!pools_.colors.empty()) pools_.colors.resize(pools_.positions.size(), glm::vec4(1.0f));
     if (largest_color_ > 1) {
       import_.warnings.push_back("vertex colours go beyond 1: they are taken as 0 ... 255");
-      for (aiColor4D& c : pools_.colors) c = aiColor4D(c.r / 255, c.g / 255, c.b / 255, 1);
+      for (glm::vec4& c : pools_.colors) c = glm::vec4(c.r / 255, c.g / 255, c.b / 255, 1);
     }
-    std::vector<BuiltMesh> meshes;
-    std::vector<aiMaterial*> materials;
+    auto& [nodes, meshes, materials, pictures] = import_.scene;
     std::map<std::string, unsigned> index_of;
     for (Part& part : parts_) {
       for (Corner& corner : part.polygons.corners) corner[3] = pools_.colors.empty() ? -1 : corner[0];
-      BuiltMesh& mesh = meshes.emplace_back();
+      ImportedMesh& mesh = meshes.emplace_back();
       mesh.name = part.name;
       const auto [at, is_new] = index_of.try_emplace(part.material, static_cast<unsigned>(materials.size()));
       if (is_new) {
         const auto known = materials_.find(part.material);
         if (known == materials_.end() && any_library_ && !part.material.empty())
           import_.warnings.push_back("names the material '" + part.material + "', which its library does not have");
-        materials.push_back(ToAssimp(known == materials_.end() ? LibraryMaterial{part.material} : known->second));
+        materials.push_back(known == materials_.end() ? ImportedMaterial{part.material} : known->second);
       }
       mesh.material = at->second;
       AppendPolygons(part.polygons, pools_, import_.origin, mesh);
     }
-    import_.scene = SceneOf(meshes, materials);
+    nodes.push_back(NodeOfAll(meshes));
   }
 
   MeshFiles& files_;
@@ -186,7 +185,7 @@ class ObjReader {
   std::string name_, material_;
   std::vector<Part> parts_;
   std::map<std::tuple<std::string, std::string, bool, bool>, std::size_t> part_of_;
-  std::map<std::string, LibraryMaterial> materials_;
+  std::map<std::string, ImportedMaterial> materials_;
 };
 
 }  // namespace

@@ -189,7 +189,7 @@ class PlyReader {
       const auto single = [&](std::size_t at) { return static_cast<float>(number(at)); };
       pools_.positions.emplace_back(number((*xyz)[0]), number((*xyz)[1]), number((*xyz)[2]));
       if (normal) pools_.normals.emplace_back(single((*normal)[0]), single((*normal)[1]), single((*normal)[2]));
-      if (uv) pools_.uvs.emplace_back(single((*uv)[0]), single((*uv)[1]), 0.0f);
+      if (uv) pools_.uvs.emplace_back(single((*uv)[0]), single((*uv)[1]));
       if (color) AppendColor(e, *color, row);
     });
   }
@@ -231,7 +231,7 @@ class PlyReader {
   // Equal coordinates of corners share an index, so that their vertices are shared.
   std::int32_t UvIndex(float u, float v) {
     const auto [at, is_new] = uv_index_.try_emplace({u, v}, static_cast<std::int32_t>(pools_.uvs.size()));
-    if (is_new) pools_.uvs.emplace_back(u, v, 0.0f);
+    if (is_new) pools_.uvs.emplace_back(u, v);
     return at->second;
   }
 
@@ -252,19 +252,18 @@ class PlyReader {
 
   void Build() {
     import_.origin = OriginFor(pools_.positions);
-    std::vector<BuiltMesh> meshes;
-    std::vector<aiMaterial*> materials;
+    auto& [nodes, meshes, materials, pictures] = import_.scene;
     for (const auto& [key, part] : parts_) {
       if (const std::string problem = IndexProblem(part, pools_); !problem.empty()) throw std::runtime_error(problem);
-      BuiltMesh& mesh = meshes.emplace_back();
+      ImportedMesh& mesh = meshes.emplace_back();
       const auto texture = static_cast<std::size_t>(key.first);
-      LibraryMaterial material{texture < textures_.size() ? textures_[texture] : ""};
-      if (!part.corners.empty() && part.corners[0][1] >= 0) material.color_map.file = material.name;
       mesh.material = static_cast<unsigned>(materials.size());
-      materials.push_back(ToAssimp(material));
+      ImportedMaterial& material =
+          materials.emplace_back(ImportedMaterial{texture < textures_.size() ? textures_[texture] : ""});
+      if (!part.corners.empty() && part.corners[0][1] >= 0) material.color_map.picture = material.name;
       AppendPolygons(part, pools_, import_.origin, mesh);
     }
-    import_.scene = SceneOf(meshes, materials);
+    nodes.push_back(NodeOfAll(meshes));
   }
 
   MeshImport& import_;

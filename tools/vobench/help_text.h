@@ -1,5 +1,5 @@
-// Texts made of the option table: --help for a terminal of 24 lines and 100 columns, the man page, bash's completion
-// (docs/install.md).
+// --help of the option table, for a terminal of 24 lines and 100 columns. The man page and bash's completion are made of
+// it (docs/install.md).
 #pragma once
 
 #include <string>
@@ -12,13 +12,11 @@ class App;
 namespace vobench {
 
 struct OptionRow {
-  std::vector<std::string> names;    // "-o", "--output"; of a positional "SCENARIO"
-  std::string argument;              // "SEQ"; empty: a flag, or a positional
-  std::string text;                  // "Sequence folder to make (required)", "... [tum]"
-  std::vector<std::string> choices;  // where there are some
+  std::vector<std::string> names;  // "-o", "--output"; of a positional "SCENARIO"
+  std::string argument;            // "SEQ"; empty: a flag, or a positional
+  std::string text;                // "Sequence folder to make (required)", "... [tum]"
   bool positional = false;
   bool required = false;
-  bool path = false;             // a file or a folder
   std::string Synopsis() const;  // "-o, --output SEQ"
 };
 
@@ -29,11 +27,5 @@ std::vector<const CLI::App*> CommandsOf(const CLI::App& app);
 std::string Usage(const CLI::App& command);
 
 std::string HelpText(const CLI::App& command);
-
-// Of section 1, in roff.
-std::string ManPage(const CLI::App& app, const std::string& version);
-
-// Commands, options, choices, and files where an option takes one.
-std::string BashCompletion(const CLI::App& app);
 
 }  // namespace vobench

@@ -81,9 +81,6 @@ void AddMissingTextures(CLI::App& command, Overrides& overrides) {
       ->type_name("WHAT");
 }
 
-void AddView(CLI::App& command, bool& view) {
-  command.add_flag("--view", view, "The report in a browser while it runs; its address is printed");
-}
 
 void AddMap(CLI::App& command, std::optional<fs::path>& map) {
   Add(command, "--map FILE.ply", map, "Also the landmarks with their covariance: docs/result_folder.md");
@@ -150,7 +147,6 @@ void AddTrack(OptionTable& table) {
   Add(command, "--settings FILE", track.settings, "YAML file with an `odometry:` and perhaps a `prior:` section");
   command.add_flag("--truth", track.truth,
                    "Also errors of matches and predictions, and lives of landmarks: docs/match_errors.md");
-  AddView(command, track.view);
   AddMap(command, track.map);
   AddSeed(command, track.seed, "Seed of the filter")->capture_default_str();
   AddSet(command, track.overrides, "odometry.filter.particles=16");
@@ -209,7 +205,6 @@ void AddRun(OptionTable& table) {
   command.add_flag_callback(
       "--require-consistent", [&run = run] { run.verdict = run.require_consistent = true; },
       "As --verdict, and exit status 3 where a system is not");
-  AddView(command, run.view);
   AddMap(command, run.map);
   AddEngine(command, run.overrides);
   AddJobs(command, run.jobs, "Threads; the results do not depend on it");

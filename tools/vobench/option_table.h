@@ -1,5 +1,5 @@
-// Command line: every sub-command with its options, once. What is parsed, what --help, the man page and bash's
-// completion say of it. Defaults are those of the option structs.
+// Command line: every sub-command with its options, once: what is parsed, and what --help says of it. Defaults are those
+// of the option structs.
 #pragma once
 
 #include <CLI/CLI.hpp>

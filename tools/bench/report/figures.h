@@ -15,8 +15,6 @@ namespace vobench::report {
 // Paths in space with the permanent landmarks of the final maps, from above and from the side. In the truth's world
 // where there is one, aligned by Sim(3). "Above" is the world axis nearest to where the images' upper edges point.
 std::vector<Figure> PathFigures(const ResultData& data);
-// Position and orientation in time, of each system's typical run.
-std::vector<Figure> PoseFigures(const ResultData& data);
 // Distance from the truth in time, aligned by Sim(3).
 std::vector<Figure> AlignedErrorFigures(const ResultData& data);
 // Errors with the three sigma that the filters claim, not aligned; each system's typical run. Pose, or velocity.

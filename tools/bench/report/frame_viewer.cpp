@@ -1,8 +1,6 @@
 #include "tools/bench/report/frame_viewer.h"
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -83,19 +81,6 @@ FrameViewer MakeFrameViewer(const fs::path& out, const ResultData& data, std::si
   for (auto& [stamp, frame] : frames) all.push_back(std::move(frame));
   viewer.frames = Fitting(std::move(all), bytes);
   return viewer;
-}
-
-FrameViewer NewestFrame(const ResultData& data, std::int64_t stamp_ns, const Eigen::Vector2i& size, std::string picture,
-                        std::span<const std::vector<FeatureMark>> features) {
-  ViewedFrame frame;
-  frame.t_s = Seconds(data, stamp_ns);
-  frame.picture = std::move(picture);
-  for (const std::string& system : data.Systems()) {
-    std::vector<FeatureMark>& marks = frame.features.emplace_back();
-    std::ranges::copy_if(features[static_cast<std::size_t>(&data.Typical(system) - data.runs.data())],
-                         std::back_inserter(marks), IsDrawable);
-  }
-  return {size.x(), size.y(), {}, {std::move(frame)}};
 }
 
 Json ToJson(const FrameViewer& viewer) {

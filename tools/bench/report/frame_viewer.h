@@ -2,10 +2,7 @@
 // Source: docs/report_data.md.
 #pragma once
 
-#include <Eigen/Core>
-#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -29,10 +26,6 @@ struct FrameViewer {
 // Of each system's typical run; systems see the same pictures, so one of each stamp is kept. Evenly fewer where all
 // would take more than `bytes`. Throws evaluation::InputError where a picture cannot be read.
 FrameViewer MakeFrameViewer(const std::filesystem::path& out, const ResultData& data, std::size_t bytes);
-
-// Of runs that are not done yet: the frame that they have just seen, features by run, in the order of data.runs.
-FrameViewer NewestFrame(const ResultData& data, std::int64_t stamp_ns, const Eigen::Vector2i& size, std::string picture,
-                        std::span<const std::vector<FeatureMark>> features);
 
 nlohmann::ordered_json ToJson(const FrameViewer& viewer);
 

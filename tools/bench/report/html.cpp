@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/bench/report/thin.h"
-#include "tools/bench/report/web.h"
 #include "tools/bench/text.h"
 
 namespace vobench::report {
@@ -12,7 +11,7 @@ namespace {
 constexpr std::size_t kNumbers = 150'000;  // 5.3 bytes each
 constexpr std::size_t kColours = 5;
 
-// Nothing but what is in the file: no address is asked for anything. (A live page asks where it came from.)
+// Nothing but what is in the file: no address is asked for anything.
 constexpr const char* kPolicy =
     "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'; base-uri 'none'; "
     "form-action 'none'";
@@ -54,28 +53,27 @@ std::string FramesSection(const FrameViewer& viewer) {
          "found.</p>\n<div id=\"frames\"></div></section>\n";
 }
 
-}  // namespace
-
+// What the page's script draws.
 std::string DataJson(const Page& page) {
   nlohmann::ordered_json more = nlohmann::ordered_json::object();
   if (page.frames) more["frames"] = ToJson(*page.frames);
-  if (page.live) more["summary"] = page.summary;
   return FiguresJson(page.systems, ThinTo(FiguresOf(page), kNumbers), more);
 }
+
+}  // namespace
 
 std::string Html(const Page& page) {
   std::string html =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"" +
-      std::string(kPolicy) + (page.live ? "; connect-src 'self'" : "") +
-      "\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>" + Escape(page.title) +
-      " – vobench</title><style>" + Style() + "</style></head><body><main>\n<h1>" + Escape(page.title) +
-      "</h1>\n<div id=\"summary\">" + page.summary +
+      std::string(kPolicy) + "\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>" +
+      Escape(page.title) + " – vobench</title><style>" + Style() + "</style></head><body><main>\n<h1>" +
+      Escape(page.title) + "</h1>\n<div id=\"summary\">" + page.summary +
       "</div>\n<p class=\"hint unscripted\">Diagrams need scripts, which this browser does not run here. Words and "
       "tables are complete.</p>\n";
   std::size_t number = 0;
   for (std::size_t i = 0; i < page.sections.size(); ++i) {
-    if (page.frames && i == (page.live ? 0 : page.sections.size() - 1)) html += FramesSection(*page.frames);
+    if (page.frames && i + 1 == page.sections.size()) html += FramesSection(*page.frames);
     html += Of(page.sections[i], number);
   }
   return html + "</main><script type=\"application/json\" id=\"data\">" + DataJson(page) + "</script>\n<script>" +

@@ -24,16 +24,12 @@ struct Page {
   std::string summary;                     // HTML, above all sections
   std::vector<std::string> systems;        // as written in legends
   std::vector<Section> sections;           // those without figures, frames and body are left out
-  std::optional<FrameViewer> frames = {};  // before the last section, of a live page before the first
-  bool live = false;                       // it asks for "data" beside it every second: DataJson, made anew
+  std::optional<FrameViewer> frames = {};  // before the last section
 };
 
 // Page and data stay below 3 MB: figures are thinned to 150 000 numbers. A browser without scripts shows words and
 // tables, and says so.
 std::string Html(const Page& page);
-
-// What the page's script draws; of a live page its summary as well.
-std::string DataJson(const Page& page);
 
 // A table that a script can sort and copy. Cells are HTML; the first row is the head, the first column names the rows.
 std::string Table(const std::string& caption, const std::vector<std::vector<std::string>>& rows);
@@ -46,5 +42,9 @@ std::string Tiles(const std::vector<Tile>& tiles);
 
 // The colour of a system in words: a small square.
 std::string Key(std::size_t system);
+
+// Style and script of the page, embedded by the build from tools/bench/report/web/.
+const std::string& Style();
+const std::string& Script();
 
 }  // namespace vobench::report

@@ -1,10 +1,9 @@
-// Paths in space and in time.
+// Paths in space.
 #include <algorithm>
 #include <cmath>
 
 #include "tools/bench/report/figures.h"
 #include "tools/bench/text.h"
-#include "tools/judge/evaluation/so3.h"
 
 namespace vobench::report {
 namespace {
@@ -126,22 +125,6 @@ Figure Projected(const Figure& space, const std::string& title, const std::strin
   return figure;
 }
 
-// Rotation vectors since the first pose, without jumps of a full turn [deg].
-Points RotationsSince(const Eigen::Quaterniond& start, const ev::Trajectory& trajectory) {
-  Points rotations;
-  for (const ev::StampedPose& pose : trajectory) {
-    Eigen::Vector3d phi = ev::Log(start.conjugate() * pose.q_WC);
-    if (!rotations.empty() && phi.norm() > 0) {
-      const Eigen::Vector3d& before = rotations.back();
-      const Eigen::Vector3d other = phi - 2 * M_PI * phi.normalized();
-      if ((other - before).norm() < (phi - before).norm()) phi = other;
-    }
-    rotations.push_back(phi);
-  }
-  for (Eigen::Vector3d& phi : rotations) phi *= kDegrees;
-  return rotations;
-}
-
 }  // namespace
 
 std::vector<Figure> PathFigures(const ResultData& data) {
@@ -154,32 +137,6 @@ std::vector<Figure> PathFigures(const ResultData& data) {
   // right x forward = up, seen from above.
   return {space, Projected(space, "From above", described, right, up.cross(right)),
           Projected(space, "From the side", described, right, up)};
-}
-
-std::vector<Figure> PoseFigures(const ResultData& data) {
-  const std::vector<std::string> systems = data.Systems();
-  const Eigen::Quaterniond start = Reference(data).front().q_WC;
-  std::vector<Figure> figures;
-  for (const bool rotation : {false, true}) {
-    const auto values = [&](const ev::Trajectory& trajectory) {
-      return rotation ? RotationsSince(start, trajectory) : Positions(trajectory);
-    };
-    for (int k = 0; k < 3; ++k) {
-      const std::string name(1, "xyz"[k]);
-      Figure& figure = figures.emplace_back(InTime(
-          rotation ? "Rotation about camera " + name + " since the start" : "Position " + name,
-          "Truth and the typical run of each system, aligned, in time.", {rotation ? "rotation [°]" : name + " [m]"}));
-      if (AnyJudged(data)) {
-        figure.series.push_back(
-            LineAs(Role::truth, "truth", Times(data, Reference(data)), Component(values(Reference(data)), k)));
-      }
-      for (std::size_t s = 0; s < systems.size(); ++s) {
-        const ev::Trajectory& drawn = Drawn(data.Typical(systems[s]));
-        figure.series.push_back(LineOf(systems[s], s, Times(data, drawn), Component(values(drawn), k)));
-      }
-    }
-  }
-  return figures;
 }
 
 }  // namespace vobench::report

@@ -4,6 +4,7 @@
 
 #include "tools/base/files.h"
 #include "tools/bench/report/figures.h"
+#include "tools/bench/report/html.h"
 #include "tools/bench/report/summary.h"
 #include "tools/bench/text.h"
 
@@ -48,8 +49,7 @@ std::string ShownSeeds(const ResultData& data) {
   return text;
 }
 
-// All but the frames.
-Page PageOf(const ResultData& data) {
+Page PageOf(const std::filesystem::path& out, const ResultData& data) {
   const std::vector<RunMetrics> judged = data.Metrics();
   Page page;
   page.title = data.description.title.empty() ? "vobench report" : data.description.title;
@@ -92,29 +92,19 @@ Page PageOf(const ResultData& data) {
        PoseErrorFigures(data)},
       {"Velocity and what it should be", "The same of linear and angular velocity.", VelocityErrorFigures(data), "",
        "Velocity"},
-      {"Pose in time", judged.empty() ? "" : "Aligned by Sim(3).", PoseFigures(data)},
       {"Features and time", "", FrameFigures(data), EventTable(judged)},
       {"How this was made", "", {}, Record(data.description)},
   };
+  page.frames = MakeFrameViewer(out, data, kPictureBytes);
   return page;
 }
 
 }  // namespace
 
 void WriteReport(const std::filesystem::path& out, const ResultData& data) {
-  Page page = PageOf(data);
-  page.frames = MakeFrameViewer(out, data, kPictureBytes);
-  base::WriteFile(out / "report.html", Html(page));
+  base::WriteFile(out / "report.html", Html(PageOf(out, data)));
 }
 
 void WriteReport(const std::filesystem::path& out) { WriteReport(out, ReadResult(out)); }
-
-Page LivePage(const ResultData& data, FrameViewer newest) {
-  Page page = PageOf(data);
-  page.frames = std::move(newest);
-  page.live = true;
-  for (Section& section : page.sections) section.body.clear();
-  return page;
-}
 
 }  // namespace vobench::report

@@ -1,10 +1,9 @@
-// Page of a run: report.html, one self-contained file from a result folder, and the page of the live view.
+// Page of a run: report.html, one self-contained file from a result folder.
 // Source: docs/result_folder.md for the files, docs/report.md for what the page shows.
 #pragma once
 
 #include <filesystem>
 
-#include "tools/bench/report/html.h"
 #include "tools/bench/result/result.h"
 
 namespace vobench::report {
@@ -16,8 +15,5 @@ void WriteReport(const std::filesystem::path& out, const ResultData& data);
 // Of ReadResult(out): errors are computed anew from estimate and truth with the options recorded in metrics.json;
 // should they differ from what is recorded there, the page says so.
 void WriteReport(const std::filesystem::path& out);
-
-// Of runs that are not done yet: words, figures and their newest frame.
-Page LivePage(const ResultData& data, FrameViewer newest);
 
 }  // namespace vobench::report

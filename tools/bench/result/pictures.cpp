@@ -40,12 +40,12 @@ FeatureMark MarkFrom(const Json& json) {
   return mark;
 }
 
-}  // namespace
-
 bool IsDrawable(const FeatureMark& mark) {
   const auto below = [](const auto& values, double most) { return (values.array().abs() < most).all(); };
   return below(mark.pixel, 1e5) && below(mark.predicted, 1e5) && below(mark.covariance, 1e8);
 }
+
+}  // namespace
 
 fs::path PicturePath(std::int64_t stamp_ns) { return fs::path("frames") / (base::FormatSeconds(stamp_ns) + ".jpg"); }
 

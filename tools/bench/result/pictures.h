@@ -18,9 +18,6 @@ struct FeatureMark {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  // of the innovation [px^2]; 0: none
 };
 
-// Neither no number nor far outside of anything.
-bool IsDrawable(const FeatureMark& mark);
-
 struct KeptPicture {
   std::int64_t stamp_ns = 0;
   std::vector<FeatureMark> features;
@@ -34,7 +31,7 @@ struct KeptPictures {
 // Where the picture of a frame is, beside pictures.json.
 std::filesystem::path PicturePath(std::int64_t stamp_ns);
 
-// Features that are not drawable are left out. Throws std::runtime_error.
+// Features that are no number, or far outside of anything, are left out. Throws std::runtime_error.
 void WritePictures(const std::filesystem::path& run_folder, const KeptPictures& pictures);
 
 // None where there is no pictures.json. Throws evaluation::InputError naming the file.

@@ -41,7 +41,6 @@ struct TrackOptions {
   std::optional<std::filesystem::path> settings;
   std::uint64_t seed = 1;
   bool truth = false;                        // also matches and landmarks against the truth
-  bool view = false;                         // the report in a browser, while it runs
   std::optional<std::filesystem::path> map;  // a PLY file of the landmarks, too
   Overrides overrides;
   std::string command_line;  // for the record
@@ -73,7 +72,6 @@ struct RunOptions {
   std::uint64_t seed = 1;           // of the first run; the others count up from it
   bool bound = false;               // the Cramer-Rao bound too, of worlds of points
   bool verdict = false;             // and whether the systems are consistent, as pass or fail
-  bool view = false;                // the report in a browser, while it runs; not of worlds of points
   bool require_consistent = false;  // NotConsistent is thrown where one is not, after all is printed and written
   int jobs = 1;
   Overrides overrides;

@@ -166,7 +166,6 @@ void RunOnPoints(const RunOptions& options, const Experiment& experiment, const 
   for (const auto& [key, value] : options.overrides) {
     if (key == "seed") throw BadInput("--set seed=" + value + ": each run has a world of its own; say --seed " + value);
   }
-  if (options.view) throw BadInput("--view is for runs on images: worlds of points are done in seconds");
   if (options.verdict && options.runs < 10) {
     throw BadInput(fmt::format("--verdict needs 10 runs or more, not {}: say --runs 100", options.runs));
   }

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "tools/bench/errors.h"
-#include "tools/bench/live/live_view.h"
 #include "tools/bench/progress.h"
 #include "tools/bench/result/output_folder.h"
 #include "tools/bench/result/result.h"
@@ -83,10 +82,6 @@ void Track(const TrackOptions& options) {
                   frames.value_or(kFramesOfACamera), out.path(), ".");
   RunDescription description{fs::weakly_canonical(options.sequence).filename().string(), options.sequence.string(),
                              options.command_line, clock.started_utc()};
-  std::optional<LiveView> view;
-  if (options.view) view.emplace(description);
-  const evaluation::JudgeOptions how = JudgeOptionsOf(settings.prior);
-  const Truth shown = view && truth ? *truth : Truth{};
   const Clock tracking;
   std::exception_ptr end;  // by a fault in a stream, which cannot be had again: what came before is the result
   {
@@ -113,13 +108,11 @@ void Track(const TrackOptions& options) {
         break;
       }
       if (match_errors) match_errors->Add(frame->frame.stamp_ns, tracker.features());
-      if (view && view->Asked(frame->frame)) view->Show({&tracker, 1}, shown, how);
       progress.Step();
       if (!frames && InterruptPending()) break;
     }
   }
   const double elapsed_s = tracking.seconds();
-  if (view && !end) view->Show({&tracker, 1}, shown, how);
   const std::vector<vo::MapPoint> map = end ? std::vector<vo::MapPoint>{} : tracker.map();
   ResultData result;
   RunData& run = result.runs.emplace_back(tracker.Result(map));
@@ -129,7 +122,7 @@ void Track(const TrackOptions& options) {
 
   if (truth) {
     try {
-      run.judged = evaluation::JudgeSeries(run.run, truth->poses, truth->velocities, how);
+      run.judged = evaluation::JudgeSeries(run.run, truth->poses, truth->velocities, JudgeOptionsOf(settings.prior));
       WriteTruth(out.path(), truth->poses, truth->velocities);
     } catch (const evaluation::InputError& error) {  // of another time: the estimate is worth keeping all the same
       description.notes.push_back(fmt::format("Not judged: {}", error.what()));

@@ -14,11 +14,24 @@
 #include <unordered_map>
 #include <vector>
 
-#include "tools/bench/tracking/true_motion.h"
+#include "tools/bench/points/truth.h"
 #include "vo/base/result.h"
 #include "vo/geometry/camera.h"
 
 namespace vobench {
+
+// True pose T_WC of the camera at any time, from the truth of a sequence.
+class TrueMotion {
+ public:
+  explicit TrueMotion(Truth truth) : truth_(std::move(truth)) {}
+
+  // Between two poses of the truth: cubic Hermite in position and rotation vector where both have a velocity, else
+  // linear; beyond the ends at constant velocity. None in gaps of more than 0.25 s, and beyond half of that after an end.
+  std::optional<vo::Pose> At(std::int64_t stamp_ns) const;
+
+ private:
+  Truth truth_;
+};
 
 class MatchErrors {
  public:

@@ -10,7 +10,7 @@
 
 namespace vobench {
 
-std::string Jpeg(const cv::Mat& image) {
+void WritePicture(const std::filesystem::path& file, const cv::Mat& image) {
   constexpr int kWidest = 480, kQuality = 80;
   cv::Mat small = image;
   if (image.cols > kWidest) {
@@ -22,10 +22,8 @@ std::string Jpeg(const cv::Mat& image) {
   if (!cv::imencode(".jpg", small, jpeg, {cv::IMWRITE_JPEG_QUALITY, kQuality})) {
     throw std::runtime_error("a picture cannot be encoded as JPEG");
   }
-  return {jpeg.begin(), jpeg.end()};
+  base::WriteFile(file, {reinterpret_cast<const char*>(jpeg.data()), jpeg.size()});
 }
-
-void WritePicture(const std::filesystem::path& file, const cv::Mat& image) { base::WriteFile(file, Jpeg(image)); }
 
 cv::Mat DepthColours(const cv::Mat& depth, double nearest, double farthest) {
   cv::Mat levels(depth.size(), CV_8UC1), colours;

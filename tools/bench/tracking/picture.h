@@ -3,13 +3,11 @@
 
 #include <filesystem>
 #include <opencv2/core.hpp>
-#include <string>
 
 namespace vobench {
 
-// As JPEG, no wider than 480 pixels (quality 80: about 25 kB). 8 bits, grey or colour (BGR). Throws std::runtime_error.
-std::string Jpeg(const cv::Mat& image);
-// Throws std::runtime_error, naming a file that cannot be written.
+// As JPEG, no wider than 480 pixels (quality 80: about 25 kB). 8 bits, grey or colour (BGR). Throws std::runtime_error,
+// naming a file that cannot be written.
 void WritePicture(const std::filesystem::path& file, const cv::Mat& image);
 
 // Depth [m], 32-bit floats, 0: nothing there; in colours from `nearest` (yellow) to `farthest` (violet), evenly in the

@@ -31,8 +31,6 @@ evaluation::FrameRecord RecordOf(const vo::Estimate& estimate) {
           d.repeated};
 }
 
-}  // namespace
-
 std::vector<FeatureMark> MarksOf(const std::vector<vo::FeatureView>& features) {
   std::vector<FeatureMark> marks;
   for (const vo::FeatureView& f : features) {  // the statuses are the same, in the same order
@@ -40,6 +38,8 @@ std::vector<FeatureMark> MarksOf(const std::vector<vo::FeatureView>& features) {
   }
   return marks;
 }
+
+}  // namespace
 
 // The middle frame of each stretch: the very first has nothing tracked to show.
 bool IsKept(std::int64_t index, std::int64_t frames) {

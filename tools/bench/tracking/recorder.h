@@ -19,8 +19,6 @@ namespace vobench {
 // Whether frame `index` of so many is kept as a picture: some two dozen, evenly spread.
 bool IsKept(std::int64_t index, std::int64_t frames);
 
-std::vector<FeatureMark> MarksOf(const std::vector<vo::FeatureView>& features);
-
 class Recorder {
  public:
   // With a folder, those of `frames` frames that IsKept are kept there as pictures; the folder is made. Without one,

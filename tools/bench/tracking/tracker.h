@@ -57,7 +57,6 @@ class Tracker : public RecordedOdometry<vo::Odometry> {
   RunData Result(const std::vector<vo::MapPoint>& map) const;
   // Of the last frame.
   const std::vector<vo::FeatureView>& features() const { return odometry_.Features(); }
-  std::vector<FeatureMark> marks() const { return MarksOf(features()); }
 
  private:
   double focal_px_;  // as stated

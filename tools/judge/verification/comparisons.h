@@ -4,14 +4,86 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "tools/judge/verification/frames.h"
+#include "tools/judge/verification/files.h"
 
 namespace verification {
+
+// Pictures of a sequence, decoded on demand, and the geometry between two frames.
+class Frames {
+ public:
+  // Failures (a file that is missing, unreadable, of another size or type) go to `files`, each file once.
+  Frames(const Sequence& sequence, Check& files);
+
+  const Sequence& sequence() const { return sequence_; }
+  std::size_t count() const { return sequence_.stamps.size(); }
+  std::string Stamp(std::size_t frame) const;
+
+  // Empty when the frame has none, or a bad one. The last few frames are kept.
+  cv::Mat Picture(const std::string& stream, std::size_t frame);
+  // Z [m], CV_32FC1, from depth_exr where there is one, else from depth. Empty when there is neither.
+  cv::Mat Depth(std::size_t frame);
+  // Grey, 0 ... 255, a little blurred, CV_32FC1: for comparing pictures.
+  cv::Mat Smooth(std::size_t frame);
+  // What a depth may be wrong by: half a step of the 16-bit picture, or of a float.
+  double DepthError(double Z) const { return Z * 1.2e-7 + (exact_ ? 0 : 1.0001e-4); }
+
+  // (x, y, 1) of each pixel's centre, row by row.
+  const std::vector<Eigen::Vector3d>& rays() const { return rays_; }
+
+ private:
+  const Sequence& sequence_;
+  Check& files_;
+  bool exact_;
+  std::vector<Eigen::Vector3d> rays_;
+  std::map<std::size_t, std::map<std::string, cv::Mat>> pictures_;  // by frame, by stream
+  std::set<std::string> complained_;
+};
+
+// From C of one frame to C of another: X' = R X + t.
+struct Relative {
+  Eigen::Matrix3d R;
+  Eigen::Vector3d t;
+};
+Relative Between(const vo::Pose& from, const vo::Pose& to);
+std::optional<Relative> Between(const Sequence& sequence, std::size_t from, std::size_t to);
+
+// From C of one frame to C of another, for each pixel of the one: with the world that stands still or, where the mask
+// `moving` says so, with one of the objects; it does not say with which. Without a mask a pixel may see any of them.
+class PixelMotions {
+ public:
+  PixelMotions(Frames& frames, std::size_t from, std::size_t to);
+
+  bool known() const { return !motions_.empty(); }  // false: a frame has no pose
+  bool IsMoving(std::size_t pixel) const { return !mask_.empty() && mask_.data[pixel] != 0; }
+  std::span<const Relative> Of(std::size_t pixel) const;
+  // What the mask says that it is not.
+  std::span<const Relative> Others(std::size_t pixel) const;
+
+ private:
+  cv::Mat mask_;
+  std::vector<Relative> motions_;  // the world's, then the objects'
+};
+
+// Bilinear, where all four pixels around (x, y) are in the picture.
+struct Corners {
+  int x, y;    // of the upper left
+  float a, b;  // the place between: 0 ... 1
+};
+std::optional<Corners> CornersAt(const cv::Mat& picture, double x, double y);
+inline float Mix(const Corners& c, float p00, float p10, float p01, float p11) {
+  return (1 - c.b) * ((1 - c.a) * p00 + c.a * p10) + c.b * ((1 - c.a) * p01 + c.a * p11);
+}
+
+// The pictures that a frame is compared with: its neighbours, and at the ends the two on one side.
+std::vector<std::size_t> Partners(std::size_t frame, std::size_t count);
 
 // Poses, velocities, accelerations and inertial readings. velocity.txt: position and orientation from stamp to stamp;
 // acceleration.txt: velocities; imu0: all three.

@@ -1,10 +1,9 @@
-#include "tools/judge/verification/frames.h"
-
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "tools/base/text.h"
 #include "tools/judge/evaluation/text_file.h"
+#include "tools/judge/verification/comparisons.h"
 
 namespace verification {
 namespace {

@@ -85,8 +85,7 @@ TEST(WriteReport, ShowsWhatWasFound) {
   for (const char* title :
        {"In space", "From above", "From the side", "Position error", "Orientation error", "NEES of the pose",
         "NEES of the pose, blind to scale", "NEES of the velocity", "NIS of RB-PF", "Features of RB²-PF",
-        "Time of RB-PF", "Map of RB-PF", "Error of position x", "Error of angular velocity about camera z",
-        "Position y", "Rotation about camera z since the start"}) {
+        "Time of RB-PF", "Map of RB-PF", "Error of position x", "Error of angular velocity about camera z"}) {
     EXPECT_FALSE(FigureOf(data, title).is_null()) << title;
   }
   EXPECT_EQ(CountOf(html, "<figure class=\"figure\" id=\"f"), data.at("figures").size());
@@ -283,33 +282,6 @@ TEST(WriteReport, ListsTheProblemsOfAllRunsAndWritesNothing) {
 
 // Three minutes at 30 Hz, six seeds of two systems, pictures of a usual size: the page stays below 3 MB, pictures are
 // left, and the largest error with them.
-// While it runs: the newest frame comes first, each system's features are those of its typical run.
-TEST(LivePage, ShowsTheNewestFrame) {
-  const TemporaryFolder folder;
-  WriteFakeResult(folder.path(), {.frames = 30, .seeds = 3, .pictures = false});
-  const ResultData data = ReadResult(folder.path());
-  const std::int64_t stamp = data.runs[0].run.trajectory.back().stamp_ns;
-  std::vector<std::vector<FeatureMark>> features(data.runs.size());
-  const FeatureMark no_number{FeatureMark::Status::missed, {NAN, 0}, {0, 0}, Eigen::Matrix2d::Zero()};
-  for (std::size_t run = 0; run < features.size(); ++run) {
-    const Eigen::Vector2d at(static_cast<double>(run), 7);
-    features[run] = {no_number, {FeatureMark::Status::matched, at, at, Eigen::Matrix2d::Identity()}};
-  }
-  const Page page = LivePage(data, NewestFrame(data, stamp, {640, 480}, "picture", features));
-  const nlohmann::json shown = nlohmann::json::parse(DataJson(page)).at("frames");
-  ASSERT_EQ(shown.at("frames").size(), 1u);
-  const nlohmann::json& frame = shown.at("frames")[0];
-  EXPECT_NEAR(frame.at("t").get<double>(), 1e-9 * static_cast<double>(stamp - data.runs[0].run.trajectory[0].stamp_ns),
-              1e-6);
-  for (std::size_t s = 0; s < data.Systems().size(); ++s) {
-    const auto typical = &data.Typical(data.Systems()[s]) - data.runs.data();
-    EXPECT_EQ(frame.at("features")[s].size(), 1u);
-    EXPECT_EQ(frame.at("features")[s][0][1], typical);
-  }
-  const std::string html = Html(page);
-  EXPECT_LT(html.find("<h2>Frames"), html.find("<h2>Path"));
-}
-
 TEST(WriteReport, StaysSmall) {
   const TemporaryFolder folder;
   FakeOptions options;

@@ -209,14 +209,6 @@ class Chart {
     }
   }
 
-  /** Other numbers in the same series. @param {Figure} figure */
-  update(figure) {
-    this.figure = figure;
-    this.measure();
-    this.draw();
-  }
-  measure() {}
-
   // The drawing as a file, in the light colours.
   svgText() {
     const copy = /** @type {SVGElement} */ (this.svg.cloneNode(true));

@@ -12,9 +12,8 @@
  *  @typedef {[number, number, number, number, number, number, number, number]} Feature */
 /** @typedef {{t: number, picture: string, depth?: string, flow?: string, features: Feature[][]}} Frame */
 /** @typedef {{width: number, height: number, depth_m?: [number, number], flow_px?: number, frames: Frame[]}} Frames */
-/** Series of `figures` have numbers of `columns` in the place of their arrays; `summary` is HTML, of a live page only.
- *  @typedef {{format: string, systems: string[], figures: any[], columns: string[], frames?: Frames,
- *             summary?: string}} PageData */
+/** Series of `figures` have numbers of `columns` in the place of their arrays.
+ *  @typedef {{format: string, systems: string[], figures: any[], columns: string[], frames?: Frames}} PageData */
 
 const kFormat = "vobench figures 1";
 

@@ -31,8 +31,7 @@ function featureOf(feature, ellipses) {
   return makeSvg("g", { class: kind }, ...(ellipses ? ellipseOf(feature) : []), makeSvg("path", { d }), ...found);
 }
 
-/** Returns what shows other frames in their place, for a live page.
- *  @param {HTMLElement} holder @param {Frames} data @param {string[]} systems */
+/** @param {HTMLElement} holder @param {Frames} data @param {string[]} systems */
 function showFrames(holder, data, systems) {
   const seen = [...systems.keys()].filter((s) => data.frames.some((frame) => frame.features[s]?.length > 0));
   /** @type {{index: number, layer: "picture" | "depth" | "flow", system: number}} */
@@ -116,9 +115,4 @@ function showFrames(holder, data, systems) {
     make("figure", { class: "viewer" }, make("div", { class: "stack" }, picture, overlay), slider, caption),
   );
   update();
-  return (/** @type {Frames} */ next) => {
-    data = next;
-    state.index = Math.min(state.index, next.frames.length - 1);
-    update();
-  };
 }

@@ -10,7 +10,7 @@ class PageView {
     /** The zoomed range of time, of all charts in time. @type {{range?: Interval}} */
     this.time = {};
     const frames = document.getElementById("frames");
-    this.showFrames = frames && data.frames && showFrames(frames, data.frames, data.systems);
+    if (frames && data.frames) showFrames(frames, data.frames, data.systems);
     for (const table of document.querySelectorAll(".table")) enhance(table);
 
     const near = new IntersectionObserver(
@@ -20,7 +20,6 @@ class PageView {
     this.holders = [...document.querySelectorAll("figure.figure")];
     for (const holder of this.holders) near.observe(holder);
     window.addEventListener("beforeprint", () => this.drawAll());
-    if (data.summary !== undefined) follow((next) => this.update(next));
   }
 
   /** @param {Element} holder */
@@ -35,22 +34,6 @@ class PageView {
   drawAll() {
     for (const details of document.querySelectorAll("details.figures")) details.setAttribute("open", "");
     for (const holder of this.holders) this.drawFigure(holder);
-  }
-
-  /** New data of a live page. Other figures or other series need another page. @param {PageData} data */
-  update(data) {
-    const figures = figuresOf(data);
-    /** @type {(figures: Figure[]) => string} */
-    const shape = (all) => JSON.stringify(all.map((f) => [f.id, f.title, [...new Set(f.series.map((s) => s.name))]]));
-    if (shape(figures) !== shape(this.figures)) {
-      location.reload();
-      return;
-    }
-    this.figures = figures;
-    const summary = document.getElementById("summary");
-    if (summary && data.summary !== undefined) summary.innerHTML = data.summary;
-    if (data.frames) this.showFrames?.(data.frames);
-    for (const figure of figures) this.charts.get(figure.id)?.update(figure);
   }
 }
 

@@ -1,0 +1,286 @@
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/GltfMaterial.h>
+#include <assimp/MemoryIOWrapper.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/IOStream.hpp>
+#include <assimp/Importer.hpp>
+#include <cctype>
+#include <cmath>
+#include <glm/mat3x3.hpp>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "sim/world/mesh_readers.h"
+#include "sim/world/texture_file.h"
+#include "tools/base/files.h"
+
+namespace sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file that cannot be read past its end for ever: assimp's PLY importer (5.2) does so when a header is cut off.
+class BoundedStream : public Assimp::IOStream {
+ public:
+  explicit BoundedStream(std::unique_ptr<Assimp::IOStream> stream) : stream_(std::move(stream)) {}
+
+  std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
+    const std::size_t read = stream_->Read(buffer, size, count);
+    constexpr int kPatience = 1000;
+    if (read == 0 && ++empty_reads_ > kPatience) throw std::runtime_error("the file ends too early");
+    return read;
+  }
+  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+  aiReturn Seek(std::size_t offset, aiOrigin origin) override { return stream_->Seek(offset, origin); }
+  std::size_t Tell() const override { return stream_->Tell(); }
+  std::size_t FileSize() const override { return stream_->FileSize(); }
+  void Flush() override {}
+
+ private:
+  std::unique_ptr<Assimp::IOStream> stream_;
+  int empty_reads_ = 0;
+};
+
+// Importers quietly do without a side file that cannot be opened.
+class ImporterFiles : public Assimp::DefaultIOSystem {
+ public:
+  explicit ImporterFiles(MeshFiles& files) : files_(files) {}
+  bool Exists(const char* file) const override { return files_.MayOpen(file); }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    std::unique_ptr<Assimp::IOStream> stream(mode[0] == 'r' && files_.MayOpen(file) ? DefaultIOSystem::Open(file, mode)
+                                                                                    : nullptr);
+    if (stream == nullptr) {
+      files_.Missing(file);
+      return nullptr;
+    }
+    files_.Opened(file, stream->FileSize());
+    if (LowerExtension(file) == ".dae") return WithoutBlanks(file);
+    return new BoundedStream(std::move(stream));  // Close() deletes it
+  }
+
+ private:
+  // Blanks at the beginning of an element's text, which assimp (5.2) takes for the end of its numbers.
+  static Assimp::IOStream* WithoutBlanks(const fs::path& file) {
+    const std::string text = base::ReadFile(file).value_or("");
+    auto* bytes = new std::uint8_t[text.size() + 1];
+    std::size_t size = 0;
+    bool skips = false;
+    for (const char c : text) {
+      skips = c == '>' || (skips && std::isspace(static_cast<unsigned char>(c)) != 0);
+      if (!skips || c == '>') bytes[size++] = static_cast<std::uint8_t>(c);
+    }
+    return new Assimp::MemoryIOStream(bytes, size, true);  // owns them
+  }
+
+  MeshFiles& files_;
+};
+
+// FBX states its unit in centimetres and its axes; assimp (5.2) leaves both to whoever reads.
+aiMatrix4x4 FbxToMetres(const aiScene& scene) {
+  double unit = 1;
+  int axis[3] = {0, 1, 2}, sign[3] = {1, 1, 1};  // of what becomes x, y, z
+  if (scene.mMetaData != nullptr) {
+    float single = 1;
+    if (!scene.mMetaData->Get("UnitScaleFactor", unit) && scene.mMetaData->Get("UnitScaleFactor", single))
+      unit = single;
+    constexpr const char* kNames[] = {"CoordAxis", "UpAxis", "FrontAxis"};
+    for (int i = 0; i < 3; ++i) {
+      scene.mMetaData->Get(kNames[i], axis[i]);
+      scene.mMetaData->Get(std::string(kNames[i]) + "Sign", sign[i]);
+    }
+  }
+  const bool is_permutation = std::set<int>(axis, axis + 3) == std::set<int>{0, 1, 2};
+  aiMatrix4x4 to_metres;
+  for (unsigned row = 0; row < 3; ++row) {
+    for (unsigned column = 0; column < 3; ++column) {
+      const bool here = is_permutation ? axis[row] == static_cast<int>(column) : row == column;
+      to_metres[row][column] =
+          here ? static_cast<float>(0.01 * unit * (is_permutation && sign[row] < 0 ? -1 : 1)) : 0.0f;
+    }
+  }
+  return unit > 0 ? to_metres : aiMatrix4x4();
+}
+
+constexpr int kDeepestNode = 1000;
+
+std::size_t BytesOf(const aiTexture& texture) {
+  return texture.mHeight == 0 ? texture.mWidth : sizeof(aiTexel) * texture.mWidth * texture.mHeight;
+}
+
+// Nodes below and with this one; false where they go too deep.
+bool CountNodes(const aiNode& node, int depth, std::uint64_t& nodes) {
+  ++nodes;
+  for (unsigned i = 0; depth <= kDeepestNode && i < node.mNumChildren; ++i)
+    if (!CountNodes(*node.mChildren[i], depth + 1, nodes)) return false;
+  return depth <= kDeepestNode;
+}
+
+std::string CountProblem(const aiScene& scene) {
+  MeshCounts counts;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    counts.vertices += scene.mMeshes[i]->mNumVertices;
+    for (unsigned f = 0; f < scene.mMeshes[i]->mNumFaces; ++f)
+      counts.corners += scene.mMeshes[i]->mFaces[f].mNumIndices;
+  }
+  for (unsigned i = 0; i < scene.mNumTextures; ++i) counts.picture_bytes += BytesOf(*scene.mTextures[i]);
+  counts.meshes = scene.mNumMeshes, counts.materials = scene.mNumMaterials;
+  const bool deep = scene.mRootNode != nullptr && !CountNodes(*scene.mRootNode, 0, counts.nodes);
+  return deep ? "has nodes more than " + std::to_string(kDeepestNode) + " deep" : counts.Problem();
+}
+
+// An array that may be missing.
+template <class To, class From>
+std::vector<To> Copied(const From* values, unsigned count) {
+  std::vector<To> copy;
+  for (unsigned i = 0; values != nullptr && i < count; ++i) {
+    To& to = copy.emplace_back();
+    for (int k = 0; k < To::length(); ++k) to[k] = values[i][static_cast<unsigned>(k)];
+  }
+  return copy;
+}
+
+class Converter {
+ public:
+  Converter(const aiScene& from, std::string extension, ImportedScene& to)
+      : from_(from), extension_(std::move(extension)), to_(to) {}
+
+  void Convert() {
+    for (unsigned i = 0; i < from_.mNumMaterials; ++i) AppendMaterial(*from_.mMaterials[i]);
+    for (unsigned i = 0; i < from_.mNumTextures; ++i) {
+      const aiTexture& texture = *from_.mTextures[i];
+      const auto* bytes = reinterpret_cast<const std::uint8_t*>(texture.pcData);
+      to_.pictures.push_back({texture.mWidth, texture.mHeight, {bytes, bytes + BytesOf(texture)}});
+    }
+    for (unsigned i = 0; i < from_.mNumMeshes; ++i) AppendMesh(*from_.mMeshes[i]);
+    if (from_.mRootNode == nullptr) return;
+    AppendNode(*from_.mRootNode, -1);
+    if (extension_ == ".fbx") {
+      glm::mat4& root = to_.nodes[0].transform;
+      root = ToGlm(FbxToMetres(from_) * from_.mRootNode->mTransformation);
+    }
+  }
+
+ private:
+  static glm::mat4 ToGlm(const aiMatrix4x4& m) {  // assimp is row-major, GLM column-major
+    return {m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4};
+  }
+
+  void AppendNode(const aiNode& node, int parent) {
+    const auto index = static_cast<int>(to_.nodes.size());
+    to_.nodes.push_back({parent, ToGlm(node.mTransformation), {node.mMeshes, node.mMeshes + node.mNumMeshes}});
+    for (unsigned i = 0; i < node.mNumChildren; ++i) AppendNode(*node.mChildren[i], index);
+  }
+
+  void AppendMesh(const aiMesh& in) {
+    ImportedMesh& out = to_.meshes.emplace_back();
+    out.material = in.mMaterialIndex;
+    if ((in.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) return;
+    out.name = in.mName.C_Str();
+    out.positions = Copied<glm::vec3>(in.mVertices, in.mNumVertices);
+    out.normals = Copied<glm::vec3>(in.mNormals, in.mNumVertices);
+    out.colors = Copied<glm::vec4>(in.mColors[0], in.mNumVertices);
+    for (unsigned set = 0; set < AI_MAX_NUMBER_OF_TEXTURECOORDS; ++set) {
+      if (!in.HasTextureCoords(set)) continue;
+      out.uvs.resize(set + 1);
+      out.uvs[set] = Copied<glm::vec2>(in.mTextureCoords[set], in.mNumVertices);
+    }
+    for (unsigned i = 0; i < in.mNumFaces; ++i) {
+      const aiFace& face = in.mFaces[i];
+      if (face.mNumIndices == 3) out.triangles.emplace_back(face.mIndices[0], face.mIndices[1], face.mIndices[2]);
+    }
+  }
+
+  void AppendMaterial(const aiMaterial& in) {
+    ImportedMaterial& out = to_.materials.emplace_back();
+    out.name = in.GetName().C_Str();
+    const auto has = [&](aiTextureType type) { return in.GetTextureCount(type) > 0; };
+    const aiTextureType base = has(aiTextureType_BASE_COLOR) ? aiTextureType_BASE_COLOR : aiTextureType_DIFFUSE;
+    const aiTextureType glow =
+        has(aiTextureType_EMISSION_COLOR) ? aiTextureType_EMISSION_COLOR : aiTextureType_EMISSIVE;
+    aiColor4D color(1, 1, 1, 1);
+    if (in.Get(AI_MATKEY_BASE_COLOR, color) != AI_SUCCESS) {
+      aiColor3D diffuse(1, 1, 1);
+      const bool is_replaced = extension_ == ".fbx" && has(base);  // FBX: a texture takes the colour's place
+      if (!is_replaced) in.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse);
+      color = {diffuse.r, diffuse.g, diffuse.b, 1};
+    }
+    out.base_color = {color.r, color.g, color.b, color.a};
+    aiColor3D emission(0, 0, 0);
+    in.Get(AI_MATKEY_COLOR_EMISSIVE, emission);
+    out.emission = {emission.r, emission.g, emission.b};
+    in.Get(AI_MATKEY_OPACITY, out.opacity);
+    aiString mode;
+    if (in.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == AI_SUCCESS) out.alpha_mode = mode.C_Str();
+    in.Get(AI_MATKEY_GLTF_ALPHACUTOFF, out.alpha_cutoff);
+    in.Get(AI_MATKEY_GLTF_TEXTURE_SCALE(aiTextureType_NORMALS, 0), out.normal_scale);
+    in.Get(AI_MATKEY_METALLIC_FACTOR, out.metallic);
+    in.Get(AI_MATKEY_ROUGHNESS_FACTOR, out.roughness);
+    out.color_map = MapOf(in, base);
+    out.opacity_map = MapOf(in, aiTextureType_OPACITY);
+    out.emission_map = MapOf(in, glow);
+    out.normal_map = MapOf(in, aiTextureType_NORMALS);
+    out.gloss_map = MapOf(in, aiTextureType_UNKNOWN);
+  }
+
+  ImportedMap MapOf(const aiMaterial& in, aiTextureType type) const {
+    ImportedMap map;
+    aiString path;
+    if (in.Get(AI_MATKEY_TEXTURE(type, 0), path) != AI_SUCCESS) return map;
+    map.picture = path.C_Str();
+    map.embedded = from_.GetEmbeddedTextureAndIndex(path.C_Str()).second;
+    int channel = 0;
+    in.Get(AI_MATKEY_UVWSRC(type, 0), channel);
+    map.uv.channel = static_cast<unsigned>(std::max(channel, 0));
+    for (const std::size_t axis : {0u, 1u}) {
+      int mode = aiTextureMapMode_Wrap;
+      in.Get(axis == 0 ? "$tex.mapmodeu" : "$tex.mapmodev", type, 0, mode);
+      if (mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal) map.uv.wrap[axis] = UvWrap::clamp;
+      if (mode == aiTextureMapMode_Mirror) map.uv.wrap[axis] = UvWrap::mirror;
+    }
+    aiUVTransform t;
+    if (in.Get(AI_MATKEY_UVTRANSFORM(type, 0), t) != AI_SUCCESS) return map;
+    // assimp's: v up; scaled, then turned about (0.5, 0.5), then moved.
+    const double c = std::cos(t.mRotation), s = std::sin(t.mRotation);
+    const glm::dmat3 flip(1, 0, 0, 0, -1, 0, 0, 1, 1), scale(t.mScaling.x, 0, 0, 0, t.mScaling.y, 0, 0, 0, 1),
+        turn(c, s, 0, -s, c, 0, 0.5 - 0.5 * c + 0.5 * s, 0.5 - 0.5 * s - 0.5 * c, 1),
+        move(1, 0, 0, 0, 1, 0, t.mTranslation.x, t.mTranslation.y, 1);
+    map.uv.transform = glm::dmat3x2(flip * move * turn * scale * flip);
+    return map;
+  }
+
+  const aiScene& from_;
+  const std::string extension_;
+  ImportedScene& to_;
+};
+
+}  // namespace
+
+void ReadByAssimp(MeshFiles& files, MeshImport& import) {
+  Assimp::Importer importer;
+  importer.SetIOHandler(new ImporterFiles(files));  // the importer owns it
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = importer.ReadFile(files.mesh().string(), aiProcess_ValidateDataStructure);
+  if (scene != nullptr) import.problem = CountProblem(*scene);  // what is too large is not worked on
+  if (scene != nullptr && import.problem.empty()) {
+    scene =
+        importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+    if (scene != nullptr) import.problem = CountProblem(*scene);
+  }
+  if (scene == nullptr) {
+    const std::string reason = importer.GetErrorString();
+    const bool only_lines = reason.find("No meshes remaining") != std::string::npos;  // the importer's words for it
+    const bool too_much = reason.find("bad_alloc") != std::string::npos;              // the library's
+    import.problem = only_lines ? "has no triangles"
+                     : too_much ? "cannot be read: the importer (assimp) wants more memory than a file of this size may"
+                                : "cannot be read: " + reason;
+  }
+  if (!import.problem.empty()) return;
+  Converter(*scene, LowerExtension(files.mesh()), import.scene).Convert();
+}
+
+}  // namespace sim
