@@ -108,25 +108,6 @@ TEST(Equations, FunctionsAndTestsExist) {
   EXPECT_GT(names, 20);
 }
 
-// "`Suite.Test`": a test of this name is there.
-TEST(Security, EveryLineHasATest) {
-  std::string tests;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(ProjectRoot() / "tests")) {
-    if (entry.path().extension() == ".cpp") tests += ReadFile(entry.path());
-  }
-  const std::regex named("`([A-Za-z]+)\\.([A-Z][A-Za-z]+)` \\|");
-  int names = 0;
-  for (const std::string& row : Rows("SECURITY.md")) {
-    for (std::sregex_iterator at(row.begin(), row.end(), named), end; at != end; ++at, ++names) {
-      const std::string suite = (*at)[1], test = (*at)[2];
-      const bool is_there = tests.find("TEST(" + suite + ", " + test + ")") != std::string::npos ||
-                            tests.find("TEST_F(" + suite + ", " + test + ")") != std::string::npos;
-      EXPECT_TRUE(is_there) << suite << "." << test;
-    }
-  }
-  EXPECT_GT(names, 10);
-}
-
 // All sources in one text, string literals that go on in the next line joined.
 std::string Sources() {
   std::string all;
