@@ -148,6 +148,7 @@ TEST_F(ErrorsTest, FiguresWithoutABasis) {
   Fails({"evaluate", "moving.txt", "--truth", "still.txt", "--align", "sim3"}, 2, "do not move");
   here_.Write("one.txt", "0 0 0 0 0 0 0 1\n");
   Fails({"evaluate", "one.txt", "--truth", "moving.txt", "--compat", "tum ate"}, 2, "two matching pairs");
+  Fails({"evaluate", "two.txt", "--truth", "moving.txt", "--compat", "rpg"}, 2, "fewer than three");
   const Outcome line = RunVobench({"evaluate", "two.txt", "--truth", "two.txt", "--align", "none"}, here_.path());
   EXPECT_EQ(line.status, 0) << line.err;
 }

@@ -179,6 +179,26 @@ TEST_F(LayoutsTest, EvaluateTakesNoEstimateForTheTruth) {
   }
 }
 
+// ov_eval does not normalise quaternions, whether their file is named or its folder.
+TEST_F(LayoutsTest, ASequencesTruthIsReadAsTheToolReadsIt) {
+  fs::create_directories(here_ / "seq");
+  std::ofstream truth(here_ / "seq/groundtruth.txt"), estimate(here_ / "estimate.txt");
+  for (int k = 0; k < 100; ++k) {
+    const double w = k % 2 == 0 ? 1.0009 : 0.9991;
+    truth << 0.1 * k << " " << 0.05 * k << " 0 0 0 0 0 " << w << "\n";
+    estimate << 0.1 * k << " " << 0.05 * k << " 0.01 0 0 0 0 1\n";
+  }
+  truth.close(), estimate.close();
+  const std::string of_file =
+      Run({"evaluate", "estimate.txt", "--truth", "seq/groundtruth.txt", "--compat", "ov se3 --segments 1"}).out;
+  EXPECT_EQ(Run({"evaluate", "estimate.txt", "--truth", "seq", "--compat", "ov se3 --segments 1"}).out, of_file);
+  std::ofstream normalised(here_ / "normalised.txt");
+  for (int k = 0; k < 100; ++k) normalised << 0.1 * k << " " << 0.05 * k << " 0 0 0 0 0 1\n";
+  normalised.close();
+  EXPECT_NE(Run({"evaluate", "estimate.txt", "--truth", "normalised.txt", "--compat", "ov se3 --segments 1"}).out,
+            of_file);
+}
+
 // A start that is known exactly, and a filter that sees nothing: no covariance is positive definite, nothing is matched.
 TEST_F(LayoutsTest, EvaluateGivesNoNumberWhereThereIsNone) {
   const std::string points = (TinyScenario().parent_path() / "points.yaml").string();

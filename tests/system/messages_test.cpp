@@ -191,7 +191,7 @@ const std::vector<Message>& Messages() {
        {"no pair of poses is left"}},
       {"tools/vobench/compat.cpp",
        {"evaluate", "one.txt", "--truth", "one.txt", "--compat", "kitti"},
-       {"'kitti'", "tum [ate|rpe], evo ape|rpe, ov MODE"}},
+       {"'kitti'", "tum [ate|rpe], evo ape|rpe, rpg, ov MODE"}},
       {"tools/vobench/compat.cpp",
        {"evaluate", "line.txt", "--truth", "line.txt", "--compat", "evo rpe --delta 1.5"},
        {"--delta 1.5", "frames are counted whole"}},
