@@ -94,10 +94,11 @@ Estimate Odometry::Calibrated(const PreparedFrame& frame, const Estimate& estima
     first_frames_.push_back({frame.frame.stamp_ns, frame.grey.clone()});  // the memory is the caller's
     first_places_.push_back(estimate.pose.p_WC);
   }
-  if (!calibration_->Add(estimate.stamp_ns, estimate.pose, impl_->tracker().views())) return estimate;
-  const bool changed = ChangeReadout();
-  Estimate out = changed && starting ? TrackFirstFramesAgain() : estimate;
-  if (!calibration_->starting()) first_frames_.clear();
+  Estimate out = estimate;
+  if (calibration_->Add(estimate.stamp_ns, estimate.pose, impl_->tracker().views())) {
+    if (ChangeReadout() && starting) out = TrackFirstFramesAgain();
+    if (!calibration_->starting()) first_frames_.clear();
+  }
   out.diagnostics.ms_filter += watch.Lap();
   return out;
 }

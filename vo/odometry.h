@@ -46,7 +46,7 @@ class Odometry {
   Estimate TrackFirstFramesAgain();
 
   std::unique_ptr<Impl> impl_;
-  std::optional<SelfCalibration> calibration_;
+  mutable std::optional<SelfCalibration> calibration_;  // its answer ends its fit
   std::vector<StampedPose> reissued_;
   std::vector<Frame> first_frames_;            // as long as they may be tracked again
   std::vector<Eigen::Vector3d> first_places_;  // answered in them

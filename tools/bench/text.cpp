@@ -36,8 +36,12 @@ std::string Percent(double share, int decimals) {
 }
 
 std::string DisplayName(const std::string& system) {
-  static const std::map<std::string, std::string> names = {
-      {"rb2pf", "RB²-PF"}, {"rbpf", "RB-PF"}, {"fastslam1", "FastSLAM 1.0"}, {"ekfslam", "EKF-SLAM"}};
+  static const std::map<std::string, std::string> names = {{"rb2pf", "RB²-PF"},
+                                                           {"rbpf", "RB-PF"},
+                                                           {"fastslam1", "FastSLAM 1.0"},
+                                                           {"ekfslam", "EKF-SLAM"},
+                                                           {"rb2pf_paper", "RB²-PF, paper"},
+                                                           {"rbpf_paper", "RB-PF, paper"}};
   const auto found = names.find(system);
   return found == names.end() ? system : found->second;
 }

@@ -46,18 +46,31 @@ Measured RandomEffectsMean(std::span<const Measured> measured) {
 }
 
 bool SelfCalibration::Add(std::int64_t stamp_ns, const Pose& pose, std::span<const FeatureView> features) {
-  if (windows_ == kMostWindows || std::max(readouts_.size(), log_focals_.size()) == kEnough) return false;
+  bool completed = fitting_ && !fitting_->Round() && EndFit();
+  if (windows_ == kMostWindows || std::max(readouts_.size(), log_focals_.size()) == kEnough) return completed;
   TrackedFrame frame{stamp_ns, pose, {}};
   for (const FeatureView& view : features) {
     if (view.status == FeatureView::Status::matched || view.status == FeatureView::Status::fresh)
       frame.sightings.push_back({view.id, view.pixel, view.R});
   }
   frames_.push_back(std::move(frame));
-  if (frames_.size() < kWindowFrames) return false;
+  if (frames_.size() < kWindowFrames) return completed;
+  completed |= EndFit();
+  const bool at_once = starting();
   ++windows_;
   period_s_ = static_cast<double>(stamp_ns - frames_.front().stamp_ns) * 1e-9 / (kWindowFrames - 1);
-  const std::optional<WindowFit> fit = FitWindow(frames_, camera_, readout_s_, !stated_);
+  fitting_.emplace(frames_, camera_, readout_s_, !stated_);
   frames_.clear();
+  if (at_once) completed |= EndFit();
+  return completed;
+}
+
+// Whether there was one.
+bool SelfCalibration::EndFit() {
+  if (!fitting_) return false;
+  while (fitting_->Round()) {
+  }
+  const std::optional<WindowFit> fit = std::exchange(fitting_, std::nullopt)->result();
   if (fit && !stated_ && fit->readout_s.sigma < kWideReadout) readouts_.push_back(fit->readout_s);
   if (fit && fit->log_focal.sigma < kWideFocal) {
     log_focals_.push_back(fit->log_focal);
@@ -79,12 +92,14 @@ std::optional<double> SelfCalibration::ChangeReadout() {
 void SelfCalibration::Restart() {
   windows_ = 0;
   frames_.clear();
+  fitting_.reset();
   readouts_.clear();
   log_focals_.clear();
   px_of_focal_ = 0;
 }
 
-CalibrationEstimate SelfCalibration::Estimate() const {
+CalibrationEstimate SelfCalibration::Estimate() {
+  EndFit();
   CalibrationEstimate out;
   out.readout_used_s = readout_s_;
   if (!readouts_.empty()) out.readout_s = RandomEffectsMean(readouts_);

@@ -39,16 +39,18 @@ class SelfCalibration {
 
   // Whether the frames so far may have to be tracked again: the readout time is not known yet.
   bool starting() const { return !stated_ && readouts_.empty() && windows_ < kStartWindows; }
-  // A frame and its answer. True where it completes a window.
+  // A frame and its answer. True where it completes the fit of a window: at once while starting, else a round a frame.
   bool Add(std::int64_t stamp_ns, const Pose& pose, std::span<const FeatureView> features);
   // The readout time from now on, where it differs significantly from that in use.
   std::optional<double> ChangeReadout();
   // All frames are added again.
   void Restart();
 
-  CalibrationEstimate Estimate() const;
+  CalibrationEstimate Estimate();  // ends the fit
 
  private:
+  bool EndFit();
+
   static constexpr std::size_t kWindowFrames = 30;
   static constexpr int kStartWindows = 3, kMostWindows = 40;
   static constexpr std::size_t kEnough = 8;  // windows that determine what is looked for
@@ -58,7 +60,8 @@ class SelfCalibration {
   double readout_s_;
   double period_s_ = 0;  // between frames, mean of the last window
   int windows_ = 0;
-  std::vector<TrackedFrame> frames_;  // of the present window
+  std::vector<TrackedFrame> frames_;      // of the present window
+  std::optional<WindowFitting> fitting_;  // of the one before
   std::vector<Measured> readouts_, log_focals_;
   double px_of_focal_ = 0;  // sum over log_focals_
 };

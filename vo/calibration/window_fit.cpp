@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <utility>
 
 #include "vo/base/median.h"
@@ -70,7 +71,9 @@ struct PointBlock {
   Matrix23 H_shared;
 };
 
-class Bundle {
+}  // namespace
+
+class WindowFitting::Bundle {
  public:
   Bundle(std::span<const TrackedFrame> frames, const Camera& camera, double readout_s, bool estimate_readout)
       : camera_(camera), motion_(RegularTimes(TimesOf(frames))) {
@@ -103,30 +106,30 @@ class Bundle {
   std::size_t points() const { return points_.size(); }
   const Vector2& shared() const { return state_.shared; }
 
-  // Levenberg-Marquardt with re-weighting. False where it did not converge.
-  bool Solve() {
-    double damping = 1e-3;
+  enum class Progress { going_on, converged, failed };
+  // One round of Levenberg-Marquardt with re-weighting.
+  Progress Round() {
+    if (linear_.empty()) Linearise();
+    const double before = Cost();
+    BuildEquations(damping_);
+    State kept = state_;
+    std::vector<Linear> linear = linear_;
+    const Vector2 moved = Step();
     Linearise();
-    for (int round = 0; round < kMaxRounds; ++round) {
-      const double before = Cost();
-      BuildEquations(damping);
-      State kept = state_;
-      std::vector<Linear> linear = linear_;
-      const Vector2 moved = Step();
-      Linearise();
-      if (Cost() < before) {
-        damping = std::max(1e-6, 0.1 * damping);
-        scale_sq_ = ScaleSquare();
-        if (std::abs(moved[0]) < kSettledReadout && std::abs(moved[1]) < kSettledFocal && round > 2) return true;
-      } else {
-        damping *= 10;
-        state_ = std::move(kept);
-        linear_ = std::move(linear);
-        SetDisplacements();
-        if (damping > 1e3) return false;
-      }
+    ++rounds_;
+    if (Cost() < before) {
+      damping_ = std::max(1e-6, 0.1 * damping_);
+      scale_sq_ = ScaleSquare();
+      if (std::abs(moved[0]) < kSettledReadout && std::abs(moved[1]) < kSettledFocal && rounds_ > 3)
+        return Progress::converged;
+    } else {
+      damping_ *= 10;
+      state_ = std::move(kept);
+      linear_ = std::move(linear);
+      SetDisplacements();
+      if (damping_ > 1e3) return Progress::failed;
     }
-    return false;
+    return rounds_ < kMaxRounds ? Progress::going_on : Progress::failed;
   }
 
   WindowFit Result() {
@@ -324,27 +327,46 @@ class Bundle {
     return step.tail<2>();
   }
 
-  const Camera& camera_;
+  const Camera camera_;
   FrameMotion motion_;
   Vector2 prior_mean_, prior_;  // of the shared unknowns; precision
   std::vector<Point> points_;
   State state_;
   std::vector<Eigen::Matrix<double, 6, FrameMotion::kPoses>> displacements_;
   std::vector<Linear> linear_;  // of all views, in order
-  double scale_sq_ = 0;
+  double scale_sq_ = 0, damping_ = 1e-3;
+  int rounds_ = 0;
   Eigen::MatrixXd S_;
   Eigen::VectorXd g_;
   std::vector<PointBlock> blocks_;
 };
 
-}  // namespace
+WindowFitting::WindowFitting(std::span<const TrackedFrame> frames, const Camera& camera, double readout_s,
+                             bool estimate_readout) {
+  if (frames.size() < FrameMotion::kPoses) return;
+  bundle_ = std::make_unique<Bundle>(frames, camera, readout_s, estimate_readout);
+  if (bundle_->points() < kMinLandmarks) bundle_ = nullptr;
+}
+
+WindowFitting::WindowFitting(WindowFitting&&) noexcept = default;
+WindowFitting& WindowFitting::operator=(WindowFitting&&) noexcept = default;
+WindowFitting::~WindowFitting() = default;
+
+bool WindowFitting::Round() {
+  if (!bundle_) return false;
+  const Bundle::Progress progress = bundle_->Round();
+  if (progress == Bundle::Progress::going_on) return true;
+  if (progress == Bundle::Progress::converged) result_ = bundle_->Result();
+  bundle_ = nullptr;
+  return false;
+}
 
 std::optional<WindowFit> FitWindow(std::span<const TrackedFrame> frames, const Camera& camera, double readout_s,
                                    bool estimate_readout) {
-  if (frames.size() < FrameMotion::kPoses) return std::nullopt;
-  Bundle bundle(frames, camera, readout_s, estimate_readout);
-  if (bundle.points() < kMinLandmarks || !bundle.Solve()) return std::nullopt;
-  return bundle.Result();
+  WindowFitting fitting(frames, camera, readout_s, estimate_readout);
+  while (fitting.Round()) {
+  }
+  return fitting.result();
 }
 
 }  // namespace vo

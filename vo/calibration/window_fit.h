@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -39,8 +40,26 @@ struct WindowFit {
   double px_of_focal;  // rms over the matches, per unit of log_focal: what neither poses nor landmarks absorb
 };
 
-// `readout_s`: first guess; `estimate_readout` false: known. None where the window has too few frames or landmarks, or
-// does not converge.
+// A fit in rounds, so that a frame need not wait for all of them.
+class WindowFitting {
+ public:
+  // `readout_s`: first guess; `estimate_readout` false: known.
+  WindowFitting(std::span<const TrackedFrame> frames, const Camera& camera, double readout_s, bool estimate_readout);
+  WindowFitting(WindowFitting&&) noexcept;
+  WindowFitting& operator=(WindowFitting&&) noexcept;
+  ~WindowFitting();
+
+  bool Round();  // false: it was the last
+  // None until then, and where the window has too few frames or landmarks, or does not converge.
+  const std::optional<WindowFit>& result() const { return result_; }
+
+ private:
+  class Bundle;
+  std::unique_ptr<Bundle> bundle_;
+  std::optional<WindowFit> result_;
+};
+
+// All rounds.
 std::optional<WindowFit> FitWindow(std::span<const TrackedFrame> frames, const Camera& camera, double readout_s,
                                    bool estimate_readout);
 

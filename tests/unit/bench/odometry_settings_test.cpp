@@ -2,8 +2,10 @@
 
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "tools/bench/systems/experiment.h"
+#include "tools/bench/systems/systems.h"
 
 namespace vobench {
 namespace {
@@ -133,6 +135,31 @@ TEST(OdometrySettingsTest, RangeIsOneForFilesAndStructs) {
 
 TEST(OdometrySettingsTest, RuleBetweenValuesAtItsKey) {
   EXPECT_THAT(Complaint("filter:\n  proposal: ukf\n  lag: 5\n"), AllOf(HasSubstr("test.yaml:3:8: filter.lag = 5 ")));
+}
+
+std::vector<std::string> Values(vo::Params params) {
+  settings::FieldRows table;
+  Visit(table, params);
+  std::vector<std::string> values;
+  for (const settings::FieldRow& row : table.rows) values.push_back(row.key + " = " + row.value);
+  return values;
+}
+
+TEST(OdometrySettingsTest, PapersSystemsAreItsSettings) {
+  const std::string camera = "motion: {position_noise: 0.6}, features: {fast_threshold_min: 4";
+  const vo::Params tuned = Read(
+      "{filter: {lag: 5, weight: uniform, particles: 16}, landmark: {proving_matches: 5}, calibration: {estimate: "
+      "true}, " +
+      camera + ", sigma: 0.25 px}}");
+  const vo::Params paper = Read(
+      "{filter: {particles: 8, proposal: ukf, weight: importance}, landmark: {bearing: fixed}, " + camera +
+      ", sigma: 2 px, subpixel: false, noise: constant, rolling_shutter: 0 s, search_first: 1, coarse_features: 0}, "
+      "score: {min_found_ratio: 0}}");
+  for (const std::string system : {"rb2pf", "rbpf"}) {
+    EXPECT_EQ(Values(ForSystem(system + "_paper", tuned)), Values(ForSystem(system, paper)));
+    EXPECT_EQ(ForSystem(system + "_paper", tuned).filter.sampled, ForSystem(system, paper).filter.sampled);
+    EXPECT_NE(Values(ForSystem(system, tuned)), Values(ForSystem(system, paper)));
+  }
 }
 
 TEST(OdometrySettingsTest, PriorHasUnits) {
