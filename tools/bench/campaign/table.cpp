@@ -35,6 +35,7 @@ std::string Text(const Cell& cell, double unit, const std::string& lost) {
   if (cell.runs > 1 && !std::isnan(cell.median)) {
     text += fmt::format(" [{}, {}]", NumberText(cell.low, unit, lost), NumberText(cell.high, unit, lost));
   }
+  if (cell.few_poses()) text += fmt::format(" @ {:.3g} %", 100 * cell.coverage);
   if (cell.failed > 0) text += fmt::format(" ({} failed)", cell.failed);
   return text;
 }
@@ -61,10 +62,12 @@ std::string EscapeLatex(const std::string& text) {
 }
 
 Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vector<TaskRecord>& records) {
-  const std::size_t metric = MetricIndex(spec.metric);
+  const std::size_t metric = MetricIndex(spec.metric), coverage = MetricIndex("pose_coverage");
+  const bool is_error =
+      !LargerIsBetter(spec.metric) && (spec.metric.starts_with("ate") || spec.metric.starts_with("rpe"));
   Table table;
   table.spec = spec;
-  std::map<std::pair<std::size_t, std::size_t>, std::vector<double>> values;
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<double>> values, coverages;
   std::map<std::pair<std::size_t, std::size_t>, Cell> cells;
   Numbered row(table.rows), column(table.columns);
   for (const TaskRecord& record : records) {
@@ -76,7 +79,11 @@ Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vect
       continue;
     }
     ++cell.runs;
-    if (const double value = ValueOf(record, metric); !std::isnan(value)) values[at].push_back(value);
+    const double value = ValueOf(record, metric);
+    if (!std::isnan(value)) values[at].push_back(value);
+    if (is_error && std::isfinite(value) && record.metric(coverage) &&
+        !campaign.systems[choice.system].external.keyframes)
+      coverages[at].push_back(*record.metric(coverage));
   }
   table.cells.assign(table.rows.size(), std::vector<Cell>(table.columns.size()));
   for (auto& [at, cell] : cells) {
@@ -84,6 +91,7 @@ Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vect
     std::sort(sorted.begin(), sorted.end());
     cell.low = evaluation::Quantile(sorted, 0.25), cell.median = evaluation::Quantile(sorted, 0.5),
     cell.high = evaluation::Quantile(sorted, 0.75);
+    cell.coverage = evaluation::Median(coverages[at]);
     table.cells[at.first][at.second] = cell;
   }
   return table;
@@ -124,13 +132,15 @@ std::vector<TextRow> Texts(const Table& table, const std::string& lost) {
 
 std::string Caption(const Table& table) {
   std::size_t least = std::numeric_limits<std::size_t>::max(), most = 0;
+  bool few = false;
   for (const auto& row : table.cells) {
     for (const Cell& cell : row) least = std::min(least, cell.runs), most = std::max(most, cell.runs);
+    few = few || std::ranges::any_of(row, &Cell::few_poses);
   }
   const std::string runs = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
   const std::string how = table.alignment ? "after alignment " + evaluation::Name(*table.alignment) + ", " : "";
-  return fmt::format("Median [quartiles] {}over {} runs a cell; X: lost, which counts as worse than any number.", how,
-                     runs);
+  return fmt::format("Median [quartiles] {}over {} runs a cell; X: lost, which counts as worse than any number{}.", how,
+                     runs, few ? "; @: frames with a pose, where they are below 95 %" : "");
 }
 
 std::string MarkdownRows(const std::vector<TextRow>& rows, std::size_t left) {
@@ -167,7 +177,7 @@ std::string Latex(const std::vector<Table>& tables) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       for (std::size_t c = 0; c < rows[r].size(); ++c) {
         const bool is_number = r > 0 && c >= left && (c < others || rows[r][c] == lost);  // others: anything
-        if (!is_number) rows[r][c] = EscapeLatex(rows[r][c]);
+        rows[r][c] = is_number ? Replaced(rows[r][c], {{'%', "\\%"}}) : EscapeLatex(rows[r][c]);
       }
       text += base::Join(rows[r], " & ") + " \\\\\n" + (r == 0 ? "\\hline\n" : "");
     }
