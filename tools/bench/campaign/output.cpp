@@ -196,6 +196,8 @@ Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, c
       record->status = Status::lost;
       record->reason = why + (record->reason.empty() ? "" : "; " + record->reason);
     }
+    if (record->status == Status::crashed)
+      record->reason += fmt::format(" ({})", (TaskPath("", task) / "log.txt").string());
     record->scenario = campaign.scenarios[choice.scenario].name;
     record->levels = levels.at(choice.point);
     record->system = campaign.systems[choice.system].name;

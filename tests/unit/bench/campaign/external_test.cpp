@@ -38,6 +38,23 @@ TEST(ExternalSystem, PlaceholdersAreFilledInQuoted) {
             "'/a b'/x 'it'\\''s' ${HOME} { echo; } {other} '3'");
 }
 
+TEST(ExternalSystem, AScriptThatIsNotThereIsSaid) {
+  const Folder here;
+  const std::string folder = here.Write("there.py", "").parent_path().string();
+  const auto problem = [&](const std::string& command) {
+    ExternalSystem system;
+    system.command = command;
+    system.variables = {{"here", folder}};
+    return StartProblem(system);
+  };
+  for (const std::string script : {"{here}/gone.py", "/nowhere/gone", "./there.py"})
+    EXPECT_EQ(problem("/bin/sh " + script + " {sequence}"), "'" + script + "', which the command names, is not there");
+  EXPECT_EQ(problem("X=1 python3 {here}/gone.py"), "'{here}/gone.py', which the command names, is not there");
+  for (const char* good : {"/bin/sh {here}/there.py {here}/gone.txt", "/bin/sh -c ./gone.sh", "cd /tmp && sh ./gone.sh",
+                           "/bin/sh {trajectory}/x.sh", "/bin/sh x", "/bin/echo {here}/gone.py"})
+    EXPECT_EQ(problem(good), "") << good;
+}
+
 TEST(ExternalSystem, EveryProblemIsListed) {
   const Folder here;
   try {
