@@ -14,20 +14,12 @@
 namespace vobench::campaign {
 namespace {
 
-// Numbers each in the order in which they are first asked for.
-class Numbered {
- public:
-  explicit Numbered(std::vector<std::vector<std::string>>& all) : all_(all) {}
-  std::size_t operator()(const std::vector<std::string>& one) {
-    const auto [at, is_new] = numbers_.try_emplace(one, all_.size());
-    if (is_new) all_.push_back(one);
-    return at->second;
-  }
-
- private:
-  std::vector<std::vector<std::string>>& all_;
-  std::map<std::vector<std::string>, std::size_t> numbers_;
-};
+// Its place in `all`, at whose end it is put where it is new.
+std::size_t PlaceOf(const TextRow& one, std::vector<TextRow>& all, std::map<TextRow, std::size_t>& places) {
+  const auto [at, is_new] = places.try_emplace(one, all.size());
+  if (is_new) all.push_back(one);
+  return at->second;
+}
 
 std::string Text(const Cell& cell, double unit, const std::string& lost) {
   if (cell.runs == 0) return cell.failed == 0 ? "-" : fmt::format("- ({} failed)", cell.failed);
@@ -69,10 +61,11 @@ Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vect
   table.spec = spec;
   std::map<std::pair<std::size_t, std::size_t>, std::vector<double>> values, coverages;
   std::map<std::pair<std::size_t, std::size_t>, Cell> cells;
-  Numbered row(table.rows), column(table.columns);
+  std::map<TextRow, std::size_t> rows, columns;
   for (const TaskRecord& record : records) {
     const TaskChoice choice = ChoiceOf(campaign, record.task);
-    const std::pair at(row(LevelsOf(campaign, spec.rows, choice)), column(LevelsOf(campaign, spec.columns, choice)));
+    const std::pair at(PlaceOf(LevelsOf(campaign, spec.rows, choice), table.rows, rows),
+                       PlaceOf(LevelsOf(campaign, spec.columns, choice), table.columns, columns));
     Cell& cell = cells[at];
     if (record.status == Status::failed) {
       ++cell.failed;
@@ -186,7 +179,7 @@ std::string Latex(const std::vector<Table>& tables) {
   return text;
 }
 
-std::string StatusMarkdown(const Campaign& campaign, const std::vector<TaskRecord>& records) {
+std::vector<TextRow> EndRows(const Campaign& campaign, const std::vector<TaskRecord>& records) {
   struct Ends {
     std::vector<double> coverages;
     std::size_t count = 0;
@@ -201,7 +194,7 @@ std::string StatusMarkdown(const Campaign& campaign, const std::vector<TaskRecor
     if (const auto share = record.metric(MetricIndex("pose_coverage"))) ends.coverages.push_back(100 * *share);
     told = told || record.status != Status::ok || campaign.systems[system].system.empty();
   }
-  if (!told) return "";
+  if (!told) return {};
   std::vector<TextRow> rows = {{"system", "runs", "ended", "frames with a pose", "the first: why"}};
   for (auto& [at, ends] : all) {
     const SystemEntry& system = campaign.systems[at.first];
@@ -210,7 +203,7 @@ std::string StatusMarkdown(const Campaign& campaign, const std::vector<TaskRecor
                     ends.coverages.empty() ? "-" : fmt::format("{:.3g} %", evaluation::Quantile(ends.coverages, 0.5)),
                     ends.reason.empty() ? "-" : ends.reason});
   }
-  return "\n### How the runs ended\n\n" + MarkdownRows(rows, 1);
+  return rows;
 }
 
 }  // namespace vobench::campaign

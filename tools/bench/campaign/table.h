@@ -47,7 +47,8 @@ std::string MarkdownRows(const std::vector<TextRow>& rows, std::size_t left);
 // All tables of the campaign.
 std::string Markdown(const std::vector<Table>& tables);
 std::string Latex(const std::vector<Table>& tables);
-// How many runs of each system ended how, with pose coverage and the first reason; empty where all are ours and ok.
-std::string StatusMarkdown(const Campaign& campaign, const std::vector<TaskRecord>& records);
+// How many runs of each system ended how, with pose coverage and the first reason: head and rows; empty where all are
+// ours and ok.
+std::vector<TextRow> EndRows(const Campaign& campaign, const std::vector<TaskRecord>& records);
 
 }  // namespace vobench::campaign

@@ -38,7 +38,7 @@ std::string Without(std::string text, const std::string& part) {
   return text;
 }
 
-// What a program printed last, cut at 120 characters, behind ": ", without these folders' names; empty where nothing.
+// What a program printed last, cut at 120 bytes, behind ": ", without these folders' names; empty where nothing.
 std::string LastLine(const fs::path& log, const std::vector<fs::path>& folders) {
   constexpr std::size_t kMost = 120;
   constexpr std::uintmax_t kTail = 4096;
@@ -50,11 +50,7 @@ std::string LastLine(const fs::path& log, const std::vector<fs::path>& folders) 
   while (!text.empty() && blank(text.back())) text.pop_back();
   text.erase(0, text.find_last_of("\r\n") + 1);
   std::ranges::replace_if(text, blank, ' ');
-  std::size_t end = 0;
-  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; };  // in UTF-8
-  for (std::size_t count = 0; end < text.size() && (count < kMost || continues(text[end])); ++end)
-    count += !continues(text[end]);
-  return text.empty() ? "" : ": " + text.substr(0, end);
+  return text.empty() ? "" : ": " + text.substr(0, kMost);
 }
 
 // The first lines of a text, and how many more there are.
