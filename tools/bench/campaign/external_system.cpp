@@ -90,6 +90,8 @@ void ReadSensors(settings::Section& section, ExternalSystem& system) {
   if (sensors.metric() && (system.layout != SequenceLayout::euroc || system.rectified))
     section.Reject("sensors",
                    "'sensors': more than the pictures of one camera needs 'layout: euroc', with original images");
+  if (!sensors.metric() && section.Has("align"))
+    section.Reject("align", "'align': of one camera `judge.align` of the campaign counts");
   if (system.align == Alignment::yaw && !sensors.imu)
     section.Reject("align", "'align': yaw needs an IMU, which knows gravity");
   if (system.poses_of_imu && !sensors.imu) section.Reject("poses_of", "'poses_of': it takes no IMU");
@@ -160,6 +162,9 @@ std::vector<ExternalSystem> ReadExternalSystems(const std::filesystem::path& fil
   std::set<std::string> names;
   for (settings::Section& section : document.root().List("systems")) {
     ExternalSystem& system = systems.emplace_back();
+    for (const char* key : {"accept_exit", "align", "calibration", "command", "configs", "files", "images", "layout",
+                            "name", "poses_of", "sensors", "threads", "timeout", "trajectory", "variables", "writes"})
+      section.Allow(key);
     section.Require("name", system.name);
     section.Require("command", system.command);
     settings::Section variables = section.Child("variables");
