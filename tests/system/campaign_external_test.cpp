@@ -270,7 +270,7 @@ TEST_F(CampaignTest, EntriesAreCheckedBeforeAnythingRuns) {
   const Outcome bad = Run(CampaignOf("[a, b]"), "out");
   EXPECT_EQ(bad.status, 2);
   EXPECT_THAT(bad.err, HasSubstr("systems.yaml:2:24: 'command': {vocabulary}"));
-  EXPECT_THAT(bad.err, HasSubstr("there is no system 'b'"));
+  EXPECT_EQ(bad.err.find("there is no system"), std::string::npos) << "nobody knows that before it can be read";
   EXPECT_FALSE(fs::exists(here_ / "out"));
   // A lens that the calibration cannot say: the task fails, with the reason.
   WriteFile(here_ / "systems.yaml", "systems:\n  - {name: a, calibration: svo, command: \"x {calibration}\"}\n");

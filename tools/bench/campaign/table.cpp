@@ -132,8 +132,9 @@ std::string Caption(const Table& table) {
   }
   const std::string runs = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
   const std::string how = table.alignment ? "after alignment " + evaluation::Name(*table.alignment) + ", " : "";
-  return fmt::format("Median [quartiles] {}over {} runs a cell; X: lost, which counts as worse than any number{}.", how,
-                     runs, few ? "; @: frames with a pose, where they are below 95 %" : "");
+  return fmt::format(
+      "Median [quartiles] {}over {} runs a cell; X: no usable answer (how: below), worse than any number{}.", how, runs,
+      few ? "; @: frames with a pose, where they are below 95 %" : "");
 }
 
 std::string MarkdownRows(const std::vector<TextRow>& rows, std::size_t left) {

@@ -40,8 +40,7 @@ std::string Without(std::string text, const std::string& part) {
 
 // What a program printed last, cut at 120 bytes, behind ": ", without these folders' names; empty where nothing.
 std::string LastLine(const fs::path& log, const std::vector<fs::path>& folders) {
-  constexpr std::size_t kMost = 120;
-  constexpr std::uintmax_t kTail = 4096;
+  constexpr std::size_t kMost = 120, kTail = 4096;
   std::ifstream stream(log, std::ios::binary);
   stream.seekg(static_cast<std::streamoff>(fs::file_size(log) - std::min(fs::file_size(log), kTail)));
   std::string text(std::istreambuf_iterator<char>(stream), {});
