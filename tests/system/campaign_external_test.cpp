@@ -131,10 +131,12 @@ TEST_F(CampaignTest, PeculiarProgramsAreJudgedAsWhatTheyAre) {
   EXPECT_EQ(rows["ends"]["reason"], "no pose after the first 9 of 12 frames");
   EXPECT_EQ(rows["at_exit"]["status"], "crashed");
   EXPECT_EQ(rows["at_exit"]["reason"],
-            "ended with status 139; a trajectory with all 12 frames is there (`accept_exit: any` counts it) "
+            "ended by signal 11 (Segmentation fault); a trajectory with all 12 frames is there (`accept_exit: any` "
+            "counts it) "
             "(tasks/00/000005/log.txt)");
   EXPECT_EQ(rows["forgiven"]["status"], "ok");
-  EXPECT_EQ(rows["forgiven"]["reason"], "ended with status 139, accepted; no pose after the first 9 of 12 frames");
+  EXPECT_EQ(rows["forgiven"]["reason"],
+            "ended by signal 11 (Segmentation fault), accepted; no pose after the first 9 of 12 frames");
   EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000007/log.txt"), "12\n") << "three comments, as TUM's lists have";
   EXPECT_TRUE(fs::exists(here_ / "out/tasks/00/000000/work/trajectory.txt"));
   EXPECT_TRUE(fs::exists(here_ / "out/tasks/00/000005/work/trajectory.txt"));
