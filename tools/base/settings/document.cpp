@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "tools/base/settings/state.h"
-#include "tools/base/text.h"
 
 namespace settings {
 namespace {
@@ -83,9 +82,10 @@ std::string Suggest(const std::string& given, const std::vector<std::string>& kn
   const auto& [distance, best] = nearest.front();
   if (distance <= std::max<std::size_t>(2, best.size() / 3) && distance < best.size())
     return "; did you mean '" + best + "'?";
-  std::vector<std::string> sorted = known;
-  std::ranges::sort(sorted);
-  return "; known: " + base::Join(sorted, ", ");
+  std::ranges::sort(nearest, {}, &std::pair<std::size_t, std::string>::second);
+  std::string text = "; known: ";
+  for (const auto& [d, candidate] : nearest) text += (&candidate != &nearest.front().second ? ", " : "") + candidate;
+  return text;
 }
 
 Document Document::FromFile(const std::filesystem::path& path, Dialect dialect) {
