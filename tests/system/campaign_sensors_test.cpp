@@ -99,13 +99,13 @@ TEST_F(CampaignTest, StereoFindsItsWayInMetres) {
   EXPECT_EQ(rows["misread"]["reason"], "");
   EXPECT_EQ(rows["tilted"]["reason"], "z of its world is not up");
   EXPECT_EQ(rows["flow"]["alignment"], "sim3");
-  EXPECT_EQ(rows["rb2pf"]["status"], "ok");
+  EXPECT_EQ(rows["rb2pf (images alone)"]["status"], "ok");
   const double before = std::stod(BySystem(Results("out"))["stereo"]["ate_m"]);
   EXPECT_NEAR(number("stereo", "ate_m"), before, 1e-9) << "the same pictures, with other files beside";
   const std::string tables = ReadFile(here_ / "imu/tables.md");
-  for (const char* table : {"### ate_m, yaw", "### ate_m, sim3", "### ate_m, se3"})
+  for (const char* table : {"### ATE [m], yaw", "### ATE [m], sim3", "### ATE [m], se3"})
     EXPECT_THAT(tables, HasSubstr(table));
-  EXPECT_THAT(tables, HasSubstr("| scenario | flow | rb2pf |"));
+  EXPECT_THAT(tables, HasSubstr("| scenario | flow | rb2pf (images alone) |"));
   const std::string log = ReadFile(here_ / "imu/tasks/00/000000/log.txt");
   for (const char* file : {"kalibr/camchain-imucam.yaml", "openvins/estimator_config.yaml", "vins_fusion/config.yaml",
                            "orb_slam3/settings.yaml", "basalt/calibration.json"})

@@ -82,6 +82,7 @@ std::string Suggest(const std::string& given, const std::vector<std::string>& kn
   const auto& [distance, best] = nearest.front();
   if (distance <= std::max<std::size_t>(2, best.size() / 3) && distance < best.size())
     return "; did you mean '" + best + "'?";
+  std::ranges::sort(nearest, {}, &std::pair<std::size_t, std::string>::second);
   std::string text = "; known: ";
   for (const auto& [d, candidate] : nearest) text += (&candidate != &nearest.front().second ? ", " : "") + candidate;
   return text;

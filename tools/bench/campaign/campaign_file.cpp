@@ -154,10 +154,12 @@ void CampaignFile::ReadSystems(const std::filesystem::path& folder) {
   Section root = document_.root();
   std::vector<ExternalSystem> external;
   std::string file;
+  bool unread = false;  // what is wrong there has been said
   if (root.Read("external", file)) {
     try {
       external = ReadExternalSystems(folder / file);
     } catch (const settings::Error& error) {
+      unread = true;
       for (const settings::Problem& problem : error.problems()) root.Reject("external", settings::ToString(problem));
     }
   }
@@ -177,7 +179,7 @@ void CampaignFile::ReadSystems(const std::filesystem::path& folder) {
       entry.external = *found;
       entry.external.programs = DigestOfPrograms(entry.external);
       if (!entry.set.empty()) section.Reject("set", "'set': what is not ours is set in its command");
-    } else {
+    } else if (!unread) {
       section.Reject(
           section.Has("system") ? "system" : "name",
           fmt::format("there is no system '{}'; there are {}{}", system, fmt::join(our_systems_, ", "),
@@ -212,7 +214,7 @@ void CampaignFile::AddImagesAlone() {
       systems_[i].Reject("knows", "'knows': what is not ours knows what its command is given");
     if (knows != Knows::scenario) {
       SystemEntry& alone = entries.emplace_back(entry);
-      if (knows == Knows::both) alone.name += " (images alone)";
+      if (!alone.name.ends_with(" (images alone)")) alone.name += " (images alone)";
       alone.set.insert(alone.set.begin(), images_alone_.begin(), images_alone_.end());
       sections.push_back(systems_[i]);
     }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -89,6 +90,8 @@ void ReadSensors(settings::Section& section, ExternalSystem& system) {
   if (sensors.metric() && (system.layout != SequenceLayout::euroc || system.rectified))
     section.Reject("sensors",
                    "'sensors': more than the pictures of one camera needs 'layout: euroc', with original images");
+  if (!sensors.metric() && section.Has("align"))
+    section.Reject("align", "'align': of one camera `judge.align` of the campaign counts");
   if (system.align == Alignment::yaw && !sensors.imu)
     section.Reject("align", "'align': yaw needs an IMU, which knows gravity");
   if (system.poses_of_imu && !sensors.imu) section.Reject("poses_of", "'poses_of': it takes no IMU");
@@ -127,6 +130,26 @@ std::filesystem::path PathOfProgram(const std::string& word) {
   return {};
 }
 
+constexpr const char* kOfShell = "$`(){}=<>!";  // a word with one of these is sh's own
+
+// The script that an interpreter is given, as the command writes it, where it is a path to no file. A relative one
+// counts from the empty folder of the run; not behind `cd`.
+std::string MissingScript(const ExternalSystem& system) {
+  static const std::regex interpreter("(.*/)?(python|perl|ruby|node|julia|Rscript|octave|(ba|da|z)?sh)[0-9.]*");
+  static const std::regex script(".*/.*[.](py|sh|pl|rb|js|mjs|jl|R|m)");
+  const std::vector<std::string> words = Words(system.command);
+  const bool moves = std::ranges::count(words, "cd") > 0;
+  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+    const std::string& word = words[i + 1];
+    const std::vector<std::string> filled = Words(FillIn(word, system.variables));
+    if (!std::regex_match(words[i], interpreter) || filled.size() != 1) continue;
+    if (filled[0].find_first_of(kOfShell) != std::string::npos) continue;
+    const bool is_path = filled[0].starts_with('/') || (!moves && std::regex_match(filled[0], script));
+    if (is_path && (!filled[0].starts_with('/') || !std::filesystem::exists(filled[0]))) return word;
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string Name(SequenceLayout layout) { return NameIn(kLayouts, layout); }
@@ -139,6 +162,9 @@ std::vector<ExternalSystem> ReadExternalSystems(const std::filesystem::path& fil
   std::set<std::string> names;
   for (settings::Section& section : document.root().List("systems")) {
     ExternalSystem& system = systems.emplace_back();
+    for (const char* key : {"accept_exit", "align", "calibration", "command", "configs", "files", "images", "layout",
+                            "name", "poses_of", "sensors", "threads", "timeout", "trajectory", "variables", "writes"})
+      section.Allow(key);
     section.Require("name", system.name);
     section.Require("command", system.command);
     settings::Section variables = section.Child("variables");
@@ -189,7 +215,9 @@ std::string Label(const ExternalSystem& system, const std::string& name) {
 
 std::string StartProblem(const ExternalSystem& system) {
   const std::vector<std::string> words = Words(FillIn(system.command, system.variables));
-  if (words.empty() || words[0].find_first_of("$`(){}=<>!") != std::string::npos) return "";  // sh's own
+  if (const std::string script = MissingScript(system); !script.empty())
+    return "'" + script + "', which the command names, is not there";
+  if (words.empty() || words[0].find_first_of(kOfShell) != std::string::npos) return "";
   const std::string found = "command -v " + QuotedForShell(words[0]) + " > /dev/null 2>&1";
   return std::system(found.c_str()) == 0 ? "" : "'" + words[0] + "' is not there, or cannot be executed";
 }

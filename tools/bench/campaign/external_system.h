@@ -61,7 +61,8 @@ std::string FillIn(const std::string& command, const std::vector<std::pair<std::
 // "name", or "name (key frames)": in tables.
 std::string Label(const ExternalSystem& system, const std::string& name);
 
-// Why sh could not start the command here; empty where it can, or where that cannot be known before.
+// Why sh could not start the command here, or its interpreter not find the script; empty where they can, or where that
+// cannot be known before.
 std::string StartProblem(const ExternalSystem& system);
 
 // Of the bytes of `files` and of each file that the command names.

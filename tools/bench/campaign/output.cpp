@@ -196,6 +196,8 @@ Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, c
       record->status = Status::lost;
       record->reason = why + (record->reason.empty() ? "" : "; " + record->reason);
     }
+    if (record->status == Status::crashed)
+      record->reason += fmt::format(" ({})", (TaskPath("", task) / "log.txt").string());
     record->scenario = campaign.scenarios[choice.scenario].name;
     record->levels = levels.at(choice.point);
     record->system = campaign.systems[choice.system].name;
@@ -208,8 +210,9 @@ Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, c
   merged.curves = MakeCurves(campaign, merged.records);
   base::WriteFile(out / "results.csv", ResultsCsv(campaign, merged.records), base::Writers::many);
   base::WriteFile(out / "times.csv", times, base::Writers::many);
-  base::WriteFile(out / "tables.md",
-                  Markdown(merged.tables) + StatusMarkdown(campaign, merged.records) + CurvesMarkdown(merged.curves),
+  const std::vector<TextRow> ends = EndRows(campaign, merged.records);
+  const std::string how = ends.empty() ? "" : "\n### How the runs ended\n\n" + MarkdownRows(ends, 1);
+  base::WriteFile(out / "tables.md", Markdown(merged.tables) + how + CurvesMarkdown(merged.curves),
                   base::Writers::many);
   base::WriteFile(out / "tables.tex", Latex(merged.tables), base::Writers::many);
   if (merged.curves.empty()) {

@@ -79,20 +79,25 @@ std::string SystemTiles(const Campaign& campaign, const std::vector<TaskRecord>&
   std::string html;
   for (std::size_t s = 0; s < campaign.systems.size(); ++s) {
     const std::string& system = campaign.systems[s].name;
+    const bool ours = !campaign.systems[s].system.empty();
     std::size_t runs = 0, lost = 0;
+    std::string ends;  // of those without an answer: "crashed, timed out"
     for (const TaskRecord& record : records) {
       if (record.system != system || record.status == Status::failed) continue;
       ++runs;
       lost += record.status != Status::ok;
+      const std::string end = Replaced(Name(record.status), {{'_', " "}});
+      if (record.status != Status::ok && ends.find(end) == std::string::npos) ends += (ends.empty() ? "" : ", ") + end;
     }
     const double nees = MedianOf(records, system, "nees_pose_per_dof"), ate = MedianOf(records, system, "ate_m");
     const std::string how = evaluation::Name(AlignmentOf(campaign, campaign.systems[s]));
-    html += "<h2 class=\"system\">" + report::Key(s) + Escape(DisplayName(system)) + "</h2>" +
-            report::Tiles({{std::isinf(ate) ? "lost" : Fixed(100 * ate, 2) + " cm", "ATE, median of all tasks",
+    html += "<h2 class=\"system\">" + report::Key(s) +
+            Escape(Label(campaign.systems[s].external, DisplayName(system))) + "</h2>" +
+            report::Tiles({{std::isinf(ate) ? ends : Fixed(100 * ate, 2) + " cm", "ATE, median of all tasks",
                             "position RMSE after alignment " + how + "; a lost run counts as worse than any number"},
-                           {fmt::format("{} of {}", lost, runs), "runs lost",
+                           {fmt::format("{} of {}", lost, runs), "runs " + (lost == 0 ? "lost" : ends),
                             "by the rule of the campaign; failed tasks are no runs"},
-                           {NumberOrLost(nees), "NEES of the pose, median of all tasks; 1 is ideal",
+                           {ours ? NumberOrLost(nees) : "–", "NEES of the pose, median of all tasks; 1 is ideal",
                             "time mean per degree of freedom, not aligned"}});
   }
   return html;
@@ -150,6 +155,8 @@ std::string CampaignPage(const Campaign& campaign, const Merged& merged) {
     tables += "<h3>" + Escape(table.spec.title) + "</h3>" + report::Table(Caption(table), Escaped(Texts(table, "X")));
   }
   page.sections.push_back({"Tables", "", {}, tables});
+  if (const std::vector<TextRow> ends = EndRows(campaign, merged.records); !ends.empty())
+    page.sections.push_back({"How the runs ended", "", {}, report::Table("By system", Escaped(ends))});
   page.sections.push_back({"Tasks", "", {}, TaskTable(campaign, merged.records)});
   page.sections.push_back({"How this was made", "", {}, Record(campaign)});
   return report::Html(page);

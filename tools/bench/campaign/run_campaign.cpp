@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tools/base/files.h"
+#include "tools/base/text.h"
 #include "tools/bench/campaign/options.h"
 #include "tools/bench/campaign/output.h"
 #include "tools/bench/campaign/page.h"
@@ -52,20 +53,26 @@ std::vector<std::size_t> PointsOf(const Campaign& campaign, const std::vector<st
   return {points.begin(), points.end()};
 }
 
-void List(const CampaignWork& work) {
-  const Campaign& campaign = work.campaign();
-  std::string problems;
+// What will not go well of other people's systems, a line each.
+std::vector<std::string> Foreseen(const Campaign& campaign) {
+  std::vector<std::string> problems;
   for (const SystemEntry& system : campaign.systems) {
     const std::string problem = system.system.empty() ? StartProblem(system.external) : "";
-    if (!problem.empty()) problems += (problems.empty() ? "" : "\n") + system.name + ": " + problem;
+    if (!problem.empty()) problems.push_back(system.name + ": " + problem);
   }
+  return problems;
+}
+
+void List(const CampaignWork& work) {
+  const Campaign& campaign = work.campaign();
   fmt::print("{}: {} scenarios", campaign.name, campaign.scenarios.size());
   for (const Factor& factor : campaign.factors) fmt::print(" x {} {}", factor.levels.size(), factor.name);
   fmt::print(" x {} systems x {} seeds = {} tasks\n", campaign.systems.size(), campaign.seeds.size(), Tasks(campaign));
   for (std::int64_t task = 0; task < Tasks(campaign); ++task) {
     fmt::print("{:6}  {}\n", task, Describe(campaign, ChoiceOf(campaign, task)));
   }
-  if (!problems.empty()) throw BadInput(problems);
+  const std::vector<std::string> problems = Foreseen(campaign);
+  if (!problems.empty()) throw BadInput(base::Join(problems, "\n"));
 }
 
 // All that a result consists of, but for the times.
@@ -185,6 +192,7 @@ void RunAll(CampaignWork& work, const CampaignOptions& options) {
   RemoveSystems(work.campaign(), options);
   OutputState state = Inspect(options.output, keys);
   RefuseStale(options, state, tasks);
+  for (const std::string& problem : Foreseen(work.campaign())) fmt::print(stderr, "vobench: {}\n", problem);
   base::WriteFile(options.output / "campaign.json", Record(work.campaign()), base::Writers::many);
   if (!state.stale.empty()) {
     for (const std::int64_t task : state.stale) fs::remove_all(TaskPath(options.output, task));

@@ -14,20 +14,12 @@
 namespace vobench::campaign {
 namespace {
 
-// Numbers each in the order in which they are first asked for.
-class Numbered {
- public:
-  explicit Numbered(std::vector<std::vector<std::string>>& all) : all_(all) {}
-  std::size_t operator()(const std::vector<std::string>& one) {
-    const auto [at, is_new] = numbers_.try_emplace(one, all_.size());
-    if (is_new) all_.push_back(one);
-    return at->second;
-  }
-
- private:
-  std::vector<std::vector<std::string>>& all_;
-  std::map<std::vector<std::string>, std::size_t> numbers_;
-};
+// Its place in `all`, at whose end it is put where it is new.
+std::size_t PlaceOf(const TextRow& one, std::vector<TextRow>& all, std::map<TextRow, std::size_t>& places) {
+  const auto [at, is_new] = places.try_emplace(one, all.size());
+  if (is_new) all.push_back(one);
+  return at->second;
+}
 
 std::string Text(const Cell& cell, double unit, const std::string& lost) {
   if (cell.runs == 0) return cell.failed == 0 ? "-" : fmt::format("- ({} failed)", cell.failed);
@@ -35,6 +27,7 @@ std::string Text(const Cell& cell, double unit, const std::string& lost) {
   if (cell.runs > 1 && !std::isnan(cell.median)) {
     text += fmt::format(" [{}, {}]", NumberText(cell.low, unit, lost), NumberText(cell.high, unit, lost));
   }
+  if (cell.few_poses()) text += fmt::format(" @ {:.3g} %", 100 * cell.coverage);
   if (cell.failed > 0) text += fmt::format(" ({} failed)", cell.failed);
   return text;
 }
@@ -61,22 +54,29 @@ std::string EscapeLatex(const std::string& text) {
 }
 
 Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vector<TaskRecord>& records) {
-  const std::size_t metric = MetricIndex(spec.metric);
+  const std::size_t metric = MetricIndex(spec.metric), coverage = MetricIndex("pose_coverage");
+  const bool is_error =
+      !LargerIsBetter(spec.metric) && (spec.metric.starts_with("ate") || spec.metric.starts_with("rpe"));
   Table table;
   table.spec = spec;
-  std::map<std::pair<std::size_t, std::size_t>, std::vector<double>> values;
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<double>> values, coverages;
   std::map<std::pair<std::size_t, std::size_t>, Cell> cells;
-  Numbered row(table.rows), column(table.columns);
+  std::map<TextRow, std::size_t> rows, columns;
   for (const TaskRecord& record : records) {
     const TaskChoice choice = ChoiceOf(campaign, record.task);
-    const std::pair at(row(LevelsOf(campaign, spec.rows, choice)), column(LevelsOf(campaign, spec.columns, choice)));
+    const std::pair at(PlaceOf(LevelsOf(campaign, spec.rows, choice), table.rows, rows),
+                       PlaceOf(LevelsOf(campaign, spec.columns, choice), table.columns, columns));
     Cell& cell = cells[at];
     if (record.status == Status::failed) {
       ++cell.failed;
       continue;
     }
     ++cell.runs;
-    if (const double value = ValueOf(record, metric); !std::isnan(value)) values[at].push_back(value);
+    const double value = ValueOf(record, metric);
+    if (!std::isnan(value)) values[at].push_back(value);
+    if (is_error && std::isfinite(value) && record.metric(coverage) &&
+        !campaign.systems[choice.system].external.keyframes)
+      coverages[at].push_back(*record.metric(coverage));
   }
   table.cells.assign(table.rows.size(), std::vector<Cell>(table.columns.size()));
   for (auto& [at, cell] : cells) {
@@ -84,6 +84,7 @@ Table MakeTable(const Campaign& campaign, const TableSpec& spec, const std::vect
     std::sort(sorted.begin(), sorted.end());
     cell.low = evaluation::Quantile(sorted, 0.25), cell.median = evaluation::Quantile(sorted, 0.5),
     cell.high = evaluation::Quantile(sorted, 0.75);
+    cell.coverage = evaluation::Median(coverages[at]);
     table.cells[at.first][at.second] = cell;
   }
   return table;
@@ -124,13 +125,16 @@ std::vector<TextRow> Texts(const Table& table, const std::string& lost) {
 
 std::string Caption(const Table& table) {
   std::size_t least = std::numeric_limits<std::size_t>::max(), most = 0;
+  bool few = false;
   for (const auto& row : table.cells) {
     for (const Cell& cell : row) least = std::min(least, cell.runs), most = std::max(most, cell.runs);
+    few = few || std::ranges::any_of(row, &Cell::few_poses);
   }
   const std::string runs = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
   const std::string how = table.alignment ? "after alignment " + evaluation::Name(*table.alignment) + ", " : "";
-  return fmt::format("Median [quartiles] {}over {} runs a cell; X: lost, which counts as worse than any number.", how,
-                     runs);
+  return fmt::format(
+      "Median [quartiles] {}over {} runs a cell; X: no usable answer (how: below), worse than any number{}.", how, runs,
+      few ? "; @: frames with a pose, where they are below 95 %" : "");
 }
 
 std::string MarkdownRows(const std::vector<TextRow>& rows, std::size_t left) {
@@ -167,7 +171,7 @@ std::string Latex(const std::vector<Table>& tables) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       for (std::size_t c = 0; c < rows[r].size(); ++c) {
         const bool is_number = r > 0 && c >= left && (c < others || rows[r][c] == lost);  // others: anything
-        if (!is_number) rows[r][c] = EscapeLatex(rows[r][c]);
+        rows[r][c] = is_number ? Replaced(rows[r][c], {{'%', "\\%"}}) : EscapeLatex(rows[r][c]);
       }
       text += base::Join(rows[r], " & ") + " \\\\\n" + (r == 0 ? "\\hline\n" : "");
     }
@@ -176,7 +180,7 @@ std::string Latex(const std::vector<Table>& tables) {
   return text;
 }
 
-std::string StatusMarkdown(const Campaign& campaign, const std::vector<TaskRecord>& records) {
+std::vector<TextRow> EndRows(const Campaign& campaign, const std::vector<TaskRecord>& records) {
   struct Ends {
     std::vector<double> coverages;
     std::size_t count = 0;
@@ -191,7 +195,7 @@ std::string StatusMarkdown(const Campaign& campaign, const std::vector<TaskRecor
     if (const auto share = record.metric(MetricIndex("pose_coverage"))) ends.coverages.push_back(100 * *share);
     told = told || record.status != Status::ok || campaign.systems[system].system.empty();
   }
-  if (!told) return "";
+  if (!told) return {};
   std::vector<TextRow> rows = {{"system", "runs", "ended", "frames with a pose", "the first: why"}};
   for (auto& [at, ends] : all) {
     const SystemEntry& system = campaign.systems[at.first];
@@ -200,7 +204,7 @@ std::string StatusMarkdown(const Campaign& campaign, const std::vector<TaskRecor
                     ends.coverages.empty() ? "-" : fmt::format("{:.3g} %", evaluation::Quantile(ends.coverages, 0.5)),
                     ends.reason.empty() ? "-" : ends.reason});
   }
-  return "\n### How the runs ended\n\n" + MarkdownRows(rows, 1);
+  return rows;
 }
 
 }  // namespace vobench::campaign

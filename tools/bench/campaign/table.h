@@ -1,7 +1,9 @@
 // Tables over results: medians and quartiles by what was varied, as Markdown and LaTeX.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +17,9 @@ namespace vobench::campaign {
 struct Cell {
   std::size_t runs = 0, failed = 0;      // runs: all but the failed
   double low = 0, median = 0, high = 0;  // infinite where it falls on a lost run; NaN without runs
+  // Median pose coverage behind an error, of systems that write all frames; NaN where there is none.
+  double coverage = std::numeric_limits<double>::quiet_NaN();
+  bool few_poses() const { return coverage < 0.95 && std::isfinite(median); }  // said beside the number
 };
 
 struct Table {
@@ -27,7 +32,8 @@ struct Table {
 // One; or where its numbers would be of several alignments, one for each.
 std::vector<Table> MakeTables(const Campaign& campaign, const TableSpec& spec, const std::vector<TaskRecord>& records);
 
-// Head and rows as texts: the levels of the row, then our numbers, "0.0123 [0.0101, 0.0150]", and those of others.
+// Head and rows as texts: the levels of the row, then our numbers, "0.0123 [0.0101, 0.0150] @ 50 %", and those of
+// others.
 // `lost` stands for what falls on a lost run, "-" for no runs.
 using TextRow = std::vector<std::string>;
 std::vector<TextRow> Texts(const Table& table, const std::string& lost);
@@ -41,7 +47,8 @@ std::string MarkdownRows(const std::vector<TextRow>& rows, std::size_t left);
 // All tables of the campaign.
 std::string Markdown(const std::vector<Table>& tables);
 std::string Latex(const std::vector<Table>& tables);
-// How many runs of each system ended how, with pose coverage and the first reason; empty where all are ours and ok.
-std::string StatusMarkdown(const Campaign& campaign, const std::vector<TaskRecord>& records);
+// How many runs of each system ended how, with pose coverage and the first reason: head and rows; empty where all are
+// ours and ok.
+std::vector<TextRow> EndRows(const Campaign& campaign, const std::vector<TaskRecord>& records);
 
 }  // namespace vobench::campaign

@@ -128,6 +128,14 @@ void ReadDoses(Section& section, const Campaign& campaign, CurveSpec& curve) {
   }
 }
 
+// "ATE [m]"; without a unit that is 1.
+std::string DefaultTitle(const std::string& metric, double unit_in_si) {
+  const std::string si = UnitOf(metric);
+  if (si == "1") return metric;
+  const char* unit = unit_in_si == 1 ? si.c_str() : unit_in_si == 1e-2 ? "cm" : unit_in_si == 1e-3 ? "mm" : "deg";
+  return (metric == "ate_m" ? "ATE" : metric.substr(0, metric.size() - si.size() - 1)) + " [" + unit + "]";
+}
+
 }  // namespace
 
 std::vector<TableSpec> ReadTables(Section root, const Campaign& campaign) {
@@ -151,10 +159,10 @@ std::vector<TableSpec> ReadTables(Section root, const Campaign& campaign) {
       section.Reject("unit", fmt::format("'{}' is in {}, not in {}", table.metric, UnitOf(table.metric), fits));
     }
     ReadBeside(section, campaign, table);
-    table.title = table.metric;
+    table.title = DefaultTitle(table.metric, table.unit_in_si);
     section.Read("title", table.title);
   }
-  if (tables.empty()) tables.push_back({"ate_m", "ate_m", factors, {"system"}});
+  if (tables.empty()) tables.push_back({"ate_m", DefaultTitle("ate_m", 1), factors, {"system"}});
   return tables;
 }
 

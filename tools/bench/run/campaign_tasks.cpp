@@ -228,24 +228,20 @@ void RefuseMissing(const campaign::SystemEntry& system, const SeenSequence& seen
 // A stamp in another unit, or from another clock, may fit one frame by chance; and what comes last.
 void CheckStamps(const TaskOutput& output, TaskRecord& record) {
   if (record.status != campaign::Status::ok || output.run.trajectory.empty()) return;
-  constexpr std::int64_t kSame_ns = 20'000'000;
   const std::vector<std::int64_t>& frames = *output.how.frame_stamps_ns;
-  std::size_t known = 0, last = 0;
-  for (const evaluation::StampedPose& pose : output.run.trajectory) {
-    const auto after = std::ranges::lower_bound(frames, pose.stamp_ns - kSame_ns);
-    if (after == frames.end() || *after > pose.stamp_ns + kSame_ns) continue;
-    ++known;
-    last = static_cast<std::size_t>(after - frames.begin());
-  }
+  const FramesAnswered answered = CountAnswered(output.run.trajectory, frames);
   const std::size_t all = output.run.trajectory.size();
-  if (2 * known < all) {
+  if (2 * answered.poses < all) {
     record.status = campaign::Status::no_answer;
     record.reason = fmt::format(
-        "of its {} time stamps {} are those of frames; the last is {} s, that of the last frame {} s", all, known,
-        base::FormatSeconds(output.run.trajectory.back().stamp_ns), base::FormatSeconds(frames.back()));
-  } else if (last + 2 < frames.size()) {
-    record.reason +=
-        fmt::format("{}no pose after frame {} of {}", record.reason.empty() ? "" : "; ", last, frames.size());
+        "of its {} time stamps {} are those of frames; the last is {} s, that of the last frame {} s", all,
+        answered.poses, base::FormatSeconds(output.run.trajectory.back().stamp_ns), base::FormatSeconds(frames.back()));
+    for (const auto& [factor, text] : {std::pair(1000, "1e3"), std::pair(1000000, "1e6"), std::pair(1000000000, "1e9")})
+      if (2 * CountAnswered(output.run.trajectory, frames, factor).poses >= all)
+        record.reason += std::string(": divide the times by ") + text;
+  } else if (answered.until + 1 < frames.size()) {
+    record.reason += fmt::format("{}no pose after the first {} of {} frames", record.reason.empty() ? "" : "; ",
+                                 answered.until, frames.size());
   }
 }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "tools/base/files.h"
@@ -31,12 +33,23 @@ fs::path WriteCalibrationFile(const campaign::ExternalSystem& system, const Serv
   return file;
 }
 
-std::string LastLine(const fs::path& file, const std::string& before) {
-  std::istringstream lines(base::ReadFile(file).value_or(""));
-  std::string last;
-  for (std::string line; std::getline(lines, line);)
-    if (!line.empty()) last = line;
-  return last.empty() ? "" : before + last;
+std::string Without(std::string text, const std::string& part) {
+  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos;) text.erase(at, part.size());
+  return text;
+}
+
+// What a program printed last, cut at 120 bytes, behind ": ", without these folders' names; empty where nothing.
+std::string LastLine(const fs::path& log, const std::vector<fs::path>& folders) {
+  constexpr std::size_t kMost = 120, kTail = 4096;
+  std::ifstream stream(log, std::ios::binary);
+  stream.seekg(static_cast<std::streamoff>(fs::file_size(log) - std::min(fs::file_size(log), kTail)));
+  std::string text(std::istreambuf_iterator<char>(stream), {});
+  for (const fs::path& folder : folders) text = Without(text, folder.string() + "/");
+  const auto blank = [](char c) { return static_cast<unsigned char>(c) <= ' '; };
+  while (!text.empty() && blank(text.back())) text.pop_back();
+  text.erase(0, text.find_last_of("\r\n") + 1);
+  std::ranges::replace_if(text, blank, ' ');
+  return text.empty() ? "" : ": " + text.substr(0, kMost);
 }
 
 // The first lines of a text, and how many more there are.
@@ -76,13 +89,40 @@ void MoveToCamera(evaluation::Trajectory& trajectory, const Eigen::Isometry3d& T
   }
 }
 
+// "; a trajectory with all 45 frames is there ..." of a program that was not accepted; empty where it is not.
+std::string ToldOfWhole(const fs::path& trajectory, const std::vector<std::int64_t>& stamps_ns) {
+  try {
+    if (CountAnswered(evaluation::ReadTrajectory(trajectory), stamps_ns).frames < stamps_ns.size()) return "";
+    return fmt::format("; a trajectory with all {} frames is there (`accept_exit: any` counts it)", stamps_ns.size());
+  } catch (const evaluation::InputError&) {
+    return "";
+  }
+}
+
 }  // namespace
+
+FramesAnswered CountAnswered(const evaluation::Trajectory& trajectory, const std::vector<std::int64_t>& frame_stamps_ns,
+                             std::int64_t factor) {
+  constexpr std::int64_t kSame_ns = 20'000'000;
+  FramesAnswered answered;
+  for (const evaluation::StampedPose& pose : trajectory) {
+    const std::int64_t stamp_ns = pose.stamp_ns / factor;
+    const auto after = std::ranges::lower_bound(frame_stamps_ns, stamp_ns - kSame_ns);
+    if (after == frame_stamps_ns.end() || *after > stamp_ns + kSame_ns) continue;
+    const auto number = static_cast<std::size_t>(after - frame_stamps_ns.begin()) + 1;
+    ++answered.poses;
+    answered.frames += number > answered.until;
+    answered.until = std::max(answered.until, number);
+  }
+  return answered;
+}
 
 ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
                            const std::string& key, const sim::Scenario& scenario, bool rendered, const fs::path& folder,
                            bool keep_work, campaign::TaskRecord& record) {
   const ServedSequence sequence = Input([&] { return Serve(cache, key, scenario, rendered, system); });
   const fs::path at_work = fs::absolute(folder) / "work", trajectory = at_work / system.trajectory;
+  const std::vector<fs::path> places = {at_work, fs::absolute(folder), sequence.folder};
   fs::create_directories(at_work);
   const fs::path calibration = WriteCalibrationFile(system, sequence, scenario.time.rate_hz, fs::absolute(folder));
   std::vector<std::pair<std::string, std::string>> values = system.variables;
@@ -99,29 +139,33 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
     record.status = status;
     record.reason = reason;
   };
+  std::string how;  // it ended, where that is not with status 0
+  if (end.signal != 0)
+    how = fmt::format("ended by signal {} ({})", end.signal, strsignal(end.signal));
+  else if (end.status != 0)
+    how = fmt::format("ended with status {}{}", end.status, LastLine(folder / "log.txt", places));
   ExternalAnswer answer{{}, sequence.stamps_ns, clock.seconds()};
   if (end.timed_out) {
     lost(campaign::Status::timed_out, fmt::format("took longer than {:g} s", system.timeout_s));
   } else if (end.status == 126 || end.status == 127) {  // as sh says that it cannot start a program
     throw BadInput(fmt::format("{}: cannot be started (status {}){}", system.name, end.status,
-                               LastLine(folder / "log.txt", ": ")));
+                               LastLine(folder / "log.txt", places)));
   } else if ((end.signal != 0 || end.status != 0) && !(system.accepts_any_exit && fs::exists(trajectory))) {
-    lost(campaign::Status::crashed, end.signal != 0
-                                        ? fmt::format("ended by signal {} ({})", end.signal, strsignal(end.signal))
-                                        : fmt::format("ended with status {}", end.status));
+    lost(campaign::Status::crashed, how + ToldOfWhole(trajectory, sequence.stamps_ns));
+  } else if (!fs::exists(trajectory)) {
+    lost(campaign::Status::no_answer,
+         fmt::format("the program wrote no {} (`trajectory:` names it)", system.trajectory));
   } else {
+    if (!how.empty()) record.reason = how + ", accepted";
     try {
       const std::size_t left_out = RemoveNotFinite(trajectory);
       answer.trajectory = evaluation::ReadTrajectory(trajectory);
       if (system.poses_of_imu) MoveToCamera(answer.trajectory, CameraInImu(sequence.folder));
-      if (left_out > 0) record.reason = fmt::format("lines without a finite pose, left out: {}", left_out);
+      if (left_out > 0)
+        record.reason += fmt::format("{}lines without a finite pose, left out: {}", how.empty() ? "" : "; ", left_out);
     } catch (const evaluation::InputError& error) {
       // Where the task lies does not belong into a table that is the same everywhere.
-      std::string reason = error.what();
-      for (std::size_t at = 0; (at = reason.find(trajectory.string(), at)) != std::string::npos;) {
-        reason.replace(at, trajectory.string().size(), system.trajectory);
-      }
-      lost(campaign::Status::no_answer, ShortenedTo(3, reason));
+      lost(campaign::Status::no_answer, ShortenedTo(3, Without(error.what(), at_work.string() + "/")));
     }
   }
   if (!keep_work && record.status != campaign::Status::crashed) fs::remove_all(at_work);

@@ -12,6 +12,17 @@
 
 namespace vobench {
 
+// How a trajectory fits the frames of its sequence, each within 20 ms.
+struct FramesAnswered {
+  std::size_t poses = 0;   // that are those of a frame
+  std::size_t frames = 0;  // with a pose
+  std::size_t until = 0;   // the number of the last of them, counted from 1
+};
+
+// Of stamps that are `factor` times too large.
+FramesAnswered CountAnswered(const evaluation::Trajectory& trajectory, const std::vector<std::int64_t>& frame_stamps_ns,
+                             std::int64_t factor = 1);
+
 struct ExternalAnswer {
   evaluation::Trajectory trajectory;
   std::vector<std::int64_t> frame_stamps_ns;

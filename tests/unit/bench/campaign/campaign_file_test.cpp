@@ -88,6 +88,8 @@ TEST_F(CampaignFileTest, NumbersOfOthersAreTakenAsTheyAreWritten) {
                           "{a: 5.50, bee: \"0.25 (lost)\"}}]}]\n");
   ASSERT_EQ(c.tables.size(), 1u);
   EXPECT_EQ(c.tables[0].unit_in_si, 0.01);
+  EXPECT_EQ(c.tables[0].title, "ATE [cm]");
+  EXPECT_EQ(Read(kFull).tables.at(0).title, "ATE [m]");
   ASSERT_EQ(c.tables[0].beside.size(), 1u);
   EXPECT_EQ(c.tables[0].beside[0].name, "the paper");
   EXPECT_EQ(c.tables[0].beside[0].values.at("a"), "5.50");
@@ -197,7 +199,7 @@ TEST_F(CampaignFileTest, BesideOthersOursKnowsWhatTheyDo) {
   EXPECT_THAT(read("[rb2pf, rbpf]"), ElementsAre(Pair("rb2pf", 0), Pair("rbpf", 0))) << "nobody else is there";
   EXPECT_THAT(read("[rb2pf, mine]"), ElementsAre(Pair("rb2pf (images alone)", 1), Pair("rb2pf", 0), Pair("mine", 0)));
   EXPECT_THAT(read("[{name: rb2pf, knows: images}, {name: rbpf, knows: scenario}, mine]"),
-              ElementsAre(Pair("rb2pf", 1), Pair("rbpf", 0), Pair("mine", 0)));
+              ElementsAre(Pair("rb2pf (images alone)", 1), Pair("rbpf", 0), Pair("mine", 0)));
   EXPECT_THAT(read("[{name: rb2pf, set: {odometry.filter.particles: 4}}, mine]"),
               ElementsAre(Pair("rb2pf", 1), Pair("mine", 0)))
       << "it says itself what is set";

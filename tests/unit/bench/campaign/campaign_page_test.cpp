@@ -110,5 +110,34 @@ TEST(CampaignPage, BreakingPointsAndEscapedNames) {
   EXPECT_THAT(html, HasSubstr("<b>RB-PF</b> breaks at <b>2 ms</b>"));
 }
 
+// A program of somebody else: how it ended, and no NEES, which it does not say.
+TEST(CampaignPage, ExternalRunsSayHowTheyEnded) {
+  campaign::Campaign campaign;
+  campaign.seeds = {1, 2};
+  campaign.scenarios = {{"a", "a.yaml", {}, {}}};
+  campaign.systems = {{"key", "", {}, {}}, {"breaks", "", {}, {}}};
+  campaign.systems[0].external.keyframes = true;
+  campaign.resolved = "{}";
+  campaign::Merged merged;
+  for (int task = 0; task < 4; ++task) {
+    campaign::TaskRecord& record = merged.records.emplace_back();
+    record.task = task;
+    record.system = campaign.systems[static_cast<std::size_t>(task % 2)].name;
+    record.status = task % 2 == 0 ? campaign::Status::ok : campaign::Status::crashed;
+    record.reason = task % 2 == 0 ? "" : "ended by <11>";
+    record.metrics.assign(campaign::MetricNames().size(), std::nullopt);
+    if (task % 2 == 0) record.metrics[campaign::MetricIndex("ate_m")] = 0.01;
+  }
+  const std::string html = CampaignPage(campaign, merged);
+  EXPECT_THAT(html, HasSubstr("key (key frames)</h2>"));
+  EXPECT_THAT(html, HasSubstr("How the runs ended"));
+  EXPECT_THAT(html, HasSubstr("ended by &lt;11&gt;"));
+  const std::string tiles = html.substr(html.find("breaks</h2>"), 1500);
+  const std::size_t end = tiles.find("1 is ideal");
+  ASSERT_NE(end, std::string::npos);
+  EXPECT_THAT(tiles.substr(0, end), testing::AllOf(HasSubstr("crashed"), HasSubstr("2 of 2"), HasSubstr("runs crashed"),
+                                                   HasSubstr("–"), testing::Not(HasSubstr("lost</"))));
+}
+
 }  // namespace
 }  // namespace vobench

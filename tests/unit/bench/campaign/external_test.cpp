@@ -38,6 +38,23 @@ TEST(ExternalSystem, PlaceholdersAreFilledInQuoted) {
             "'/a b'/x 'it'\\''s' ${HOME} { echo; } {other} '3'");
 }
 
+TEST(ExternalSystem, AScriptThatIsNotThereIsSaid) {
+  const Folder here;
+  const std::string folder = here.Write("there.py", "").parent_path().string();
+  const auto problem = [&](const std::string& command) {
+    ExternalSystem system;
+    system.command = command;
+    system.variables = {{"here", folder}};
+    return StartProblem(system);
+  };
+  for (const std::string script : {"{here}/gone.py", "/nowhere/gone", "./there.py"})
+    EXPECT_EQ(problem("/bin/sh " + script + " {sequence}"), "'" + script + "', which the command names, is not there");
+  EXPECT_EQ(problem("X=1 python3 {here}/gone.py"), "'{here}/gone.py', which the command names, is not there");
+  for (const char* good : {"/bin/sh {here}/there.py {here}/gone.txt", "/bin/sh -c ./gone.sh", "cd /tmp && sh ./gone.sh",
+                           "/bin/sh {trajectory}/x.sh", "/bin/sh x", "/bin/echo {here}/gone.py"})
+    EXPECT_EQ(problem(good), "") << good;
+}
+
 TEST(ExternalSystem, EveryProblemIsListed) {
   const Folder here;
   try {
@@ -57,8 +74,26 @@ TEST(ExternalSystem, EveryProblemIsListed) {
           "s.yaml:4:24: 'sensors': more than the pictures of one camera needs 'layout: euroc'",
           "{configs} needs the key 'configs'", "'align': yaw needs an IMU", "'poses_of': it takes no IMU",
           "s.yaml:5:24: 'sensors': more than", "'systems.3.align': 'sim3' is not known",
-          "s.yaml:6:29: unknown key 'align'", "'systems.1.variables.v'"}) {
+          "s.yaml:6:36: 'align': of one camera", "'systems.1.variables.v'"}) {
       EXPECT_THAT(error.what(), HasSubstr(expected));
+    }
+  }
+}
+
+TEST(ExternalSystem, AllKeysAreNamedInOrder) {
+  const Folder here;
+  try {
+    ReadExternalSystems(here.Write("s.yaml", "systems: [{name: a, command: x, xyzzyplugh: 1}]\n"));
+    FAIL() << "nothing was thrown";
+  } catch (const settings::Error& error) {
+    const std::string said = error.what();
+    std::size_t last = said.find("known: ");
+    ASSERT_NE(last, std::string::npos) << said;
+    for (const char* key : {"accept_exit", "align", "calibration", "command", "configs", "files", "images", "layout",
+                            "name", "poses_of", "sensors", "threads", "timeout", "trajectory", "variables", "writes"}) {
+      const std::size_t at = said.find(key, last);
+      ASSERT_NE(at, std::string::npos) << key << " is not behind the one before: " << said;
+      last = at;
     }
   }
 }

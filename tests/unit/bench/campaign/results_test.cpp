@@ -271,6 +271,27 @@ TEST(Table, FailedTasksAreNoRunsAndAreCounted) {
   EXPECT_THAT(text, HasSubstr("| 0 ms | 3 [2.5, 3.5] (1 failed) |\n| 4_ms | - (3 failed) |\n"));
 }
 
+// An error of half of the frames is not that of all.
+TEST(Table, FewPosesAreSaidBesideAnError) {
+  Campaign c = Small();
+  std::vector<TaskRecord> records;
+  for (int k = 0; k < 6; ++k) {
+    records.push_back(Sample(k, Status::ok, k));
+    records.back().metrics[MetricIndex("pose_coverage")] = k % 2 == 0 ? 0.96 : 0.5 + 0.01 * k;
+  }
+  const TableSpec spec{"ate_m", "ATE", {"blur"}, {"system"}};
+  const std::vector<Table> tables = MakeTables(c, spec, records);
+  EXPECT_THAT(Markdown(tables), HasSubstr("| 0 ms | 2 [1, 3] |\n| 4_ms | 3 [2, 4] @ 53 % |\n"));
+  EXPECT_THAT(Markdown(tables), HasSubstr("@: frames with a pose, where they are below 95 %."));
+  EXPECT_THAT(Latex(tables), HasSubstr("4\\_ms & 3 [2, 4] @ 53 \\% \\\\\n"));
+  const auto said = [&](const TableSpec& one) {
+    return Markdown(MakeTables(c, one, records)).find('@') != std::string::npos;
+  };
+  EXPECT_FALSE(said({"pose_coverage", "pose", {"blur"}, {"system"}}));
+  c.systems[0].external.keyframes = true;  // it says so itself
+  EXPECT_FALSE(said(spec));
+}
+
 TEST(Table, WhatIsInNeitherRowsNorColumnsIsPooled) {
   std::vector<TaskRecord> records;
   for (int k = 0; k < 6; ++k) records.push_back(Sample(k, Status::ok, k));
