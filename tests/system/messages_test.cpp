@@ -33,7 +33,7 @@ const std::vector<Message>& Messages() {
        {"--set camera.widht", "did you mean 'width'"}},
       {"tools/base/settings/settings.cpp",
        {"check", "TINY", "--set", "prior.start=here"},
-       {"--set prior.start", "'here'", "known: truth, origin"}},
+       {"--set prior.start", "'here'", "known: origin, truth"}},
       {"tools/base/settings/settings.cpp",
        {"track", "pictures", "-o", "o", "--camera", "half.yaml"},
        {"half.yaml", "missing key 'height'", "missing key 'cy'"}},
