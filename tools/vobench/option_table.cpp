@@ -81,7 +81,6 @@ void AddMissingTextures(CLI::App& command, Overrides& overrides) {
       ->type_name("WHAT");
 }
 
-
 void AddMap(CLI::App& command, std::optional<fs::path>& map) {
   Add(command, "--map FILE.ply", map, "Also the landmarks with their covariance: docs/result_folder.md");
 }
