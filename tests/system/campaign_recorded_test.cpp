@@ -76,7 +76,7 @@ TEST_F(CampaignRecordedTest, IsTrackedAndJudgedAsByTheSingleCommands) {
   EXPECT_EQ(Task("out", 1).at("errors"), tracked.at("errors")) << "to the last digit";
   EXPECT_EQ(Task("out", 1).at("coverage"), tracked.at("coverage"));
   EXPECT_NE(Ate(Task("out", 0)), Ate(tracked)) << "images alone: not how long the shutter rolls";
-  // The same as somebody else's program, from links and camera.yaml; in EuRoC's layout, which knows no shutter, as alone.
+  // The same as an external program, from links and camera.yaml; in EuRoC's layout, which has no shutter, as alone.
   EXPECT_NEAR(Ate(Task("out", 2)), Ate(tracked), 1e-10);
   EXPECT_EQ(Task("out", 2).at("coverage").at("pose_coverage").at("value"), 1);
   EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000004/log.txt").substr(0, 29), "000000 1305031102.000000000\n0")

@@ -114,8 +114,8 @@ TEST_F(CampaignTest, StereoFindsItsWayInMetres) {
   EXPECT_EQ(ReadFile(here_ / "imu/tasks/00/000001/log.txt"), "camera.yaml\nrgb\nrgb.txt\n");
 }
 
-// The shipped entries of programs that are not here, with stand-ins that write what their own documentation says: shell,
-// configuration files, times and quaternions arrive. Each says that it moved along x of the IMU by half a metre.
+// The shipped entries of programs that are not here, with stand-ins that write what their own documentation says:
+// shell, configuration files, times and quaternions arrive. Each says that it moved along x of the IMU by half a metre.
 TEST_F(CampaignTest, TheShippedEntriesOfOthersAreGoodShell) {
   const auto program = [&](const std::string& name, const std::string& text) {
     fs::create_directories((here_ / name).parent_path());

@@ -68,9 +68,7 @@ bool SelfCalibration::Add(std::int64_t stamp_ns, const Pose& pose, std::span<con
 // Whether there was one.
 bool SelfCalibration::EndFit() {
   if (!fitting_) return false;
-  while (fitting_->Round()) {
-  }
-  const std::optional<WindowFit> fit = std::exchange(fitting_, std::nullopt)->result();
+  const std::optional<WindowFit> fit = std::exchange(fitting_, std::nullopt)->AllRounds();
   if (fit && !stated_ && fit->readout_s.sigma < kWideReadout) readouts_.push_back(fit->readout_s);
   if (fit && fit->log_focal.sigma < kWideFocal) {
     log_focals_.push_back(fit->log_focal);

@@ -361,12 +361,10 @@ bool WindowFitting::Round() {
   return false;
 }
 
-std::optional<WindowFit> FitWindow(std::span<const TrackedFrame> frames, const Camera& camera, double readout_s,
-                                   bool estimate_readout) {
-  WindowFitting fitting(frames, camera, readout_s, estimate_readout);
-  while (fitting.Round()) {
+const std::optional<WindowFit>& WindowFitting::AllRounds() {
+  while (Round()) {
   }
-  return fitting.result();
+  return result_;
 }
 
 }  // namespace vo

@@ -50,17 +50,13 @@ class WindowFitting {
   ~WindowFitting();
 
   bool Round();  // false: it was the last
-  // None until then, and where the window has too few frames or landmarks, or does not converge.
-  const std::optional<WindowFit>& result() const { return result_; }
+  // None where the window has too few frames or landmarks, or does not converge.
+  const std::optional<WindowFit>& AllRounds();
 
  private:
   class Bundle;
   std::unique_ptr<Bundle> bundle_;
   std::optional<WindowFit> result_;
 };
-
-// All rounds.
-std::optional<WindowFit> FitWindow(std::span<const TrackedFrame> frames, const Camera& camera, double readout_s,
-                                   bool estimate_readout);
 
 }  // namespace vo

@@ -67,8 +67,8 @@ TEST(AdaptiveNoise, MeanIsTheTypicalShareOfTheTrueDensity) {
       << "halved covariances are seen";
 }
 
-// Shape of a camera that pitches as it rises: 0.8 of the true one, 0.2 of none. An axis' mean is within 0.03 of it (four
-// standard deviations of 2 % of an axis' share, at most 1.6, and of a ratio's bias over 20 frames).
+// Shape of a camera that pitches as it rises: 0.8 of the true one, 0.2 of none. The mean of an entry has a standard
+// deviation of 2 % of at most 1.8. False alarm rate 2e-3: 36 limits of four standard deviations, and a ratio's bias.
 TEST(AdaptiveNoise, ShapeIsThatOfTheMotionInTheCamera) {
   vo::Matrix6 truth = vo::Vector6(0.5, 2, 0.5, 1.6, 1.2, 0.2).asDiagonal();
   truth(1, 3) = truth(3, 1) = 1.6;

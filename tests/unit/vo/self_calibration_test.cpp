@@ -117,7 +117,7 @@ TEST(WindowFit, IsExactWithoutNoise) {
   Draws draws(1);
   for (const double readout : {0.0, 0.013, 0.026, -0.026}) {
     const auto frames = Film(draws, readout, 30, {});
-    const auto fit = vo::FitWindow(frames, WithFocalTimes(1 / 1.05), 0, true);
+    const auto fit = vo::WindowFitting(frames, WithFocalTimes(1 / 1.05), 0, true).AllRounds();
     ASSERT_TRUE(fit);
     EXPECT_NEAR(fit->readout_s.value, readout, 2e-4);
     EXPECT_NEAR(fit->log_focal.value, std::log(1.05), 2e-3);
@@ -132,7 +132,7 @@ TEST(WindowFit, ItsIntervalsHold) {
   int outside = 0, outside_narrow = 0, count = 0;
   for (int world = 0; world < 15; ++world) {
     for (const double readout : {0.0, 0.013, 0.026, -0.026}) {
-      const auto fit = vo::FitWindow(Film(draws, readout, 30, kMatches), kCamera, 0, true);
+      const auto fit = vo::WindowFitting(Film(draws, readout, 30, kMatches), kCamera, 0, true).AllRounds();
       ASSERT_TRUE(fit);
       const double off = std::abs(fit->readout_s.value - readout);
       EXPECT_LT(off, 0.002);
@@ -148,7 +148,7 @@ TEST(WindowFit, ItsIntervalsHold) {
 
 TEST(WindowFit, KeepsAReadoutThatIsStated) {
   Draws draws(3);
-  const auto fit = vo::FitWindow(Film(draws, 0.026, 30, kMatches), kCamera, 0.02, false);
+  const auto fit = vo::WindowFitting(Film(draws, 0.026, 30, kMatches), kCamera, 0.02, false).AllRounds();
   ASSERT_TRUE(fit);
   EXPECT_NEAR(fit->readout_s.value, 0.02, 1e-9);
   EXPECT_EQ(fit->readout_s.sigma, 0);
@@ -157,10 +157,10 @@ TEST(WindowFit, KeepsAReadoutThatIsStated) {
 TEST(WindowFit, NeedsLandmarksAndFrames) {
   Draws draws(4);
   auto frames = Film(draws, 0, 30, kMatches);
-  EXPECT_FALSE(vo::FitWindow(std::span(frames).first(4), kCamera, 0, true));
+  EXPECT_FALSE(vo::WindowFitting(std::span(frames).first(4), kCamera, 0, true).AllRounds());
   for (vo::TrackedFrame& frame : frames)
     std::erase_if(frame.sightings, [](const vo::Sighting& sighting) { return sighting.landmark >= 19; });
-  EXPECT_FALSE(vo::FitWindow(frames, kCamera, 0, true));
+  EXPECT_FALSE(vo::WindowFitting(frames, kCamera, 0, true).AllRounds());
 }
 
 TEST(RandomEffects, MeanOfWhatAgreesAndOfWhatDoesNot) {
