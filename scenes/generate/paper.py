@@ -28,8 +28,6 @@ sensor: {exposure: 0 ms, time_samples: 8, full_well: 4000 e, read_noise: 10 e} #
 """
 ODOMETRY = """prior: {velocity_sigma: 0.1 m/s, angular_rate_sigma: 0.1 rad/s}
 
-odometry: # one setting for all eight; the paper's own ones are in docs/scenes.md
-  motion: {position_noise: 0.6, orientation_noise: 1}
 """
 
 

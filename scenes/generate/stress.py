@@ -18,11 +18,7 @@ CAMERA = """camera: {width: 640, height: 480, fx: 525, fy: 525, cx: 319.5, cy: 2
 
 sensor: {exposure: 2 ms, time_samples: 6, full_well: 10000 e, read_noise: 8 e%s}
 """
-ODOMETRY = """prior: {start: origin, velocity_sigma: 0.5 m/s, angular_rate_sigma: 0.5 rad/s} # as of `vobench track`, like these
-
-odometry:
-  motion: {position_noise: 2.5, adaptive: true}
-  landmark: {scale_sigma: 0.5, proving_matches: 5}
+ODOMETRY = """prior: {start: origin, velocity_sigma: 0.5 m/s, angular_rate_sigma: 0.5 rad/s} # as of `vobench track`
 """
 
 

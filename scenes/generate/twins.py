@@ -133,11 +133,7 @@ trajectory: {{type: recorded, file: paths/{name}.txt, averaging_time: {1000 / ra
 
 truth: [depth]
 
-prior: {{start: origin, velocity_sigma: 0.5 m/s, angular_rate_sigma: 0.5 rad/s}} # as of `vobench track`, like these
-
-odometry:
-  motion: {{position_noise: 2.5, adaptive: true}}
-  landmark: {{scale_sigma: 0.5, proving_matches: 5}}
+prior: {{start: origin, velocity_sigma: 0.5 m/s, angular_rate_sigma: 0.5 rad/s}} # as of `vobench track`
 """)
 
 

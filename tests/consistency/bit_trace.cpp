@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "source_dir.h"
+#include "tests/unit/vo/at_once.h"
 #include "vo/base/instruction_set.h"
 #include "vo/filter/consensus.h"
 #include "vo/filter/ekf_slam.h"
@@ -122,7 +123,7 @@ vo::Pose TruePose(double t) {
 class Player {
  public:
   Player(const Setting& setting, Trace& trace) : setting_(setting), trace_(trace), scale_(0.5, {0, 0, 0}) {
-    vo::LandmarkParams landmark;
+    vo::LandmarkParams landmark{.scale_sigma = 0};
     landmark.bearing = setting.bearing;
     vo::FilterPrior prior;
     prior.velocity << 0.2, 0.1, 0.05, 0.1, -0.1, 0.1;
@@ -310,7 +311,7 @@ std::vector<Setting> Settings() {
   using vo::Bearing;
   using vo::Sampled;
   const auto params = [](vo::Proposal proposal, vo::Weight weight, int lag, int start_window) {
-    vo::FilterParams p;
+    vo::FilterParams p = vo_test::SampledAtOnce();
     p.proposal = proposal;
     p.weight = weight;
     p.lag = lag;

@@ -27,6 +27,7 @@ Overrides Setting(const Overrides& more) {
                    {"odometry.motion.orientation_noise", "0.4"},
                    {"odometry.filter.particles", "128"},
                    {"odometry.filter.lag", "3"},
+                   {"odometry.filter.weight", "evidence"},
                    {"odometry.filter.marginal_mode", "true"}};
   all.insert(all.end(), more.begin(), more.end());
   return all;

@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "tests/unit/vo/at_once.h"
 #include "vo/filter/motion_model.h"
 
 namespace {
@@ -19,6 +20,7 @@ constexpr int kRuns = 5;
 
 vo::Params OnePixel() {
   vo::Params params;
+  params.filter = vo_test::SampledAtOnce();
   params.features.sigma_px = 1;
   params.filter.start_window = 0;  // the filter itself
   return params;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "tests/unit/vo/at_once.h"
 #include "tests/unit/vo/draws.h"
 #include "vo/filter/motion_model.h"
 #include "vo/filter/particle_filter.h"
@@ -26,7 +27,7 @@ Scores Play(unsigned world) {
   constexpr int kFrames = 15, kCount = 40;
   constexpr double kSigma = 0.25 / 525;
   vo_test::Draws draws(world);
-  vo::FilterParams params;
+  vo::FilterParams params = vo_test::SampledAtOnce();
   params.particles = 1;
   params.marginal_mode = true;  // the joint mode's depths are biased
   const vo::LandmarkParams prior_of_depths{.inverse_depth = 0.25, .inverse_depth_sigma = 0.0125};
@@ -101,6 +102,8 @@ TEST(WindowMap, CovarianceShrinks) {
   }
   for (const int lag : {0, 5}) {
     vo::Params params;
+    params.filter = vo_test::SampledAtOnce();
+    params.landmark.scale_sigma = 0;
     params.filter.lag = lag;
     vo::PointOdometry odometry(camera, params, vo::Prior{}, 1);
     double before = params.landmark.inverse_depth_sigma;

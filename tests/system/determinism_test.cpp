@@ -130,9 +130,7 @@ TEST_F(DeterminismTest, ThroughTheDiskOrInMemoryIsTheSame) {
   Succeeds({"render", "-o", "seq", "--set", duration});
   Vobench({"track", "seq", "-o", "disk", "--seed", "3"});
   Succeeds({"run", "-o", "memory", "--seed", "3", "--set", duration, "--set",
-            "prior={start: origin, velocity_sigma: 0.5, angular_rate_sigma: 0.5}", "--set",
-            "odometry={landmark: {scale_sigma: 0.5}, motion: {adaptive: true}, filter: {lag: 5, weight: uniform, "
-            "particles: 16}}"});
+            "prior={start: origin, velocity_sigma: 0.5, angular_rate_sigma: 0.5}"});
   for (const std::string file : {"estimate.txt", "live.txt", "covariance.txt", "landmarks.csv"}) {
     EXPECT_TRUE(Read("disk/" + file) == Read("memory/rb2pf/seed_3/" + file)) << file;
   }

@@ -25,10 +25,6 @@ std::vector<Eigen::Vector3d> Track(const std::filesystem::path& sequence, const 
                                    const Lengths& lengths) {
   const double s = lengths.factor;
   vo::Params params;
-  params.motion.adaptive = true;
-  params.calibration.estimate = true;
-  params.landmark.proving_matches = 5;
-  params.landmark.scale_sigma = 0.5;
   if (lengths.noise_too) params.motion.position_noise *= s;
   params.landmark.inverse_depth /= s;
   params.landmark.inverse_depth_sigma /= s;

@@ -1,5 +1,5 @@
 // Settings of the odometry: one struct per component, with its field table (key in `odometry:`, unit, range, meaning).
-// Defaults are the paper's (Section V-A) unless the table says otherwise.
+// Defaults are those of docs/algorithm.md, section 10; the paper's (Section V-A) are systems rb2pf_paper and rbpf_paper.
 #pragma once
 
 #include <numbers>
@@ -17,7 +17,7 @@ using settings::Unit;
 struct MotionParams {
   double position_noise = 2.5;     // [m/s^1.5]
   double orientation_noise = 1.0;  // [rad/s^1.5]
-  bool adaptive = false;
+  bool adaptive = true;
 };
 
 template <class V>
@@ -27,7 +27,7 @@ void Visit(V& v, MotionParams& p) {
   v("orientation_noise", p.orientation_noise,
     {Unit::angular_acceleration_density, Range::Positive(), "the same of white angular acceleration"});
   v("adaptive", p.adaptive,
-    {"on images: estimate both on line, at least as above, and repeat failed predictions; `vobench track`: true"});
+    {"on images: estimate both on line, from the values above on, and repeat failed predictions"});
 }
 
 enum class Sampled {
@@ -57,12 +57,12 @@ enum class Weight {
 struct FilterParams {
   Sampled sampled = Sampled::pose;  // no key: it is what tells the systems apart
   Proposal proposal = Proposal::iterated;
-  int particles = 8;
+  int particles = 16;
   double resample_below = 0.5;
   int max_iterations = 10;
   int joint_iterations = 1;
-  Weight weight = Weight::evidence;
-  int lag = 0;
+  Weight weight = Weight::uniform;
+  int lag = 5;
   int start_window = 30;
   bool marginal_mode = false;
   bool reject_outliers = true;
@@ -81,8 +81,11 @@ void Visit(V& v, FilterParams& p) {
   v.Renamed("weight", "equal", "uniform");
   v("weight", p.weight,
     {{"importance", Weight::importance}, {"evidence", Weight::evidence}, {"uniform", Weight::uniform}},
-    "(17) at the sample (the paper); p(z_t given the path) by Laplace's approximation; all alike (with a lag)");
-  v("lag", p.lag, {Range{0, 100}, "poses that stay Gaussian before the oldest is sampled; 0: the paper"});
+    "(17) at the sample (the paper); p(z_t given the path) by Laplace's approximation (lag 0); all alike (with a lag)");
+  v("lag", p.lag,
+    {Range{0, 100},
+     "poses that stay Gaussian before the oldest is sampled; 0: the paper, and without a window (ukf, bootstrap, "
+     "importance)"});
   v("start_window", p.start_window, {Range{0, 100}, "first poses, solved as one window; 0: the paper"});
   v("marginal_mode", p.marginal_mode, {"propose at the mode of the poses' marginal, unbiased in scale"});
   v("reject_outliers", p.reject_outliers, {"leave out matches that contradict the others"});
@@ -95,9 +98,9 @@ struct LandmarkParams {
   Bearing bearing = Bearing::estimated;
   double inverse_depth = 0.25;        // [1/m]
   double inverse_depth_sigma = 0.15;  // [1/m]
-  double scale_sigma = 0;
+  double scale_sigma = 0.5;
   double permanent_ratio = 0.05;  // our choice; the paper gives no number
-  int proving_matches = 0;
+  int proving_matches = 5;
   int forget_after = 90;
   int max_landmarks = 1000;
 };
@@ -108,11 +111,11 @@ void Visit(V& v, LandmarkParams& p) {
     "state of a landmark: inverse depth alone (the paper); or ray and inverse depth");
   v("inverse_depth", p.inverse_depth, {Range::Positive(), "prior mean of a new landmark [1/m]"});
   v("inverse_depth_sigma", p.inverse_depth_sigma, {Range::Positive(), "its standard deviation [1/m]"});
-  v("scale_sigma", p.scale_sigma, {Range{0, 3}, "prior standard deviation of the log of the scale of all lengths"});
+  v("scale_sigma", p.scale_sigma,
+    {Range{0, 3}, "prior standard deviation of the log of the scale of all lengths; 0 with a target"});
   v("permanent_ratio", p.permanent_ratio, {Range::Positive(), "permanent when sigma_rho < ratio * rho"});
   v("proving_matches", p.proving_matches,
-    {Range::AtLeast(0),
-     "on images, Algorithm 1: matches that agree until a new one acts on the pose; `vobench track`: 5"});
+    {Range::AtLeast(0), "on images: matches that agree until a new one acts on the pose"});
   v("forget_after", p.forget_after, {Range::AtLeast(1), "frames without a search until one not permanent is deleted"});
   v("max_landmarks", p.max_landmarks, {Range::AtLeast(10), "on images: new ones replace those longest out of view"});
 }
@@ -253,14 +256,13 @@ void Visit(V& v, TargetParams& p) {
 
 // What is estimated of the camera itself.
 struct CalibrationParams {
-  bool estimate = false;
+  bool estimate = true;
 };
 
 template <class V>
 void Visit(V& v, CalibrationParams& p) {
   v("estimate", p.estimate,
-    {"on images: the shutter's readout time where it is not stated, and a check of the focal length; `vobench track`: "
-     "true"});
+    {"on images: the shutter's readout time where it is not stated, and a check of the focal length"});
 }
 
 struct Params {

@@ -18,9 +18,9 @@ struct MyFilter {
   static vo::Params Params() {
     vo::Params params;
     params.motion = {0.5, 0.3};
-    params.filter.sampled = vo::Sampled::nothing;
+    params.filter = {.sampled = vo::Sampled::nothing, .weight = vo::Weight::evidence, .lag = 0};
     params.filter.reject_outliers = false;
-    params.landmark = {.inverse_depth = 0.25, .inverse_depth_sigma = 0.0125, .forget_after = 30};
+    params.landmark = {.inverse_depth = 0.25, .inverse_depth_sigma = 0.0125, .scale_sigma = 0, .forget_after = 30};
     params.features.sigma_px = 1;
     return params;
   }

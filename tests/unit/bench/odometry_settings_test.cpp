@@ -137,6 +137,21 @@ TEST(OdometrySettingsTest, RuleBetweenValuesAtItsKey) {
   EXPECT_THAT(Complaint("filter:\n  proposal: ukf\n  lag: 5\n"), AllOf(HasSubstr("test.yaml:3:8: filter.lag = 5 ")));
 }
 
+TEST(OdometrySettingsTest, LagAndWeightFollowFromWhatIsGiven) {
+  using enum vo::Weight;
+  const auto is = [](const std::string& given, int lag, vo::Weight weight) {
+    const vo::FilterParams params = Read("filter: {" + given + "}").filter;
+    EXPECT_EQ(params.lag, lag) << given;
+    EXPECT_EQ(params.weight, weight) << given;
+  };
+  is("particles: 4", 5, uniform);
+  is("lag: 0", 0, evidence);
+  is("proposal: ukf", 0, evidence);
+  is("proposal: bootstrap", 0, importance);
+  is("weight: importance", 0, importance);
+  is("weight: evidence", 5, evidence);
+}
+
 std::vector<std::string> Values(vo::Params params) {
   settings::FieldRows table;
   Visit(table, params);
@@ -146,13 +161,15 @@ std::vector<std::string> Values(vo::Params params) {
 }
 
 TEST(OdometrySettingsTest, PapersSystemsAreItsSettings) {
-  const std::string camera = "motion: {position_noise: 0.6}, features: {fast_threshold_min: 4";
-  const vo::Params tuned = Read(
-      "{filter: {lag: 5, weight: uniform, particles: 16}, landmark: {proving_matches: 5}, calibration: {estimate: "
-      "true}, " +
-      camera + ", sigma: 0.25 px}}");
+  const std::string camera = "features: {fast_threshold_min: 4";
+  const vo::Params tuned =
+      Read("{filter: {lag: 3, particles: 30}, landmark: {proving_matches: 4}, motion: {position_noise: 0.6}, " +
+           camera + ", sigma: 0.25 px}}");
   const vo::Params paper = Read(
-      "{filter: {particles: 8, proposal: ukf, weight: importance}, landmark: {bearing: fixed}, " + camera +
+      "{filter: {particles: 8, proposal: ukf, weight: importance}, landmark: {bearing: fixed, scale_sigma: 0, "
+      "proving_matches: 0}, "
+      "motion: {position_noise: 0.6, adaptive: false}, calibration: {estimate: false}, " +
+      camera +
       ", sigma: 2 px, subpixel: false, noise: constant, rolling_shutter: 0 s, search_first: 1, coarse_features: 0}, "
       "score: {min_found_ratio: 0}}");
   for (const std::string system : {"rb2pf", "rbpf"}) {

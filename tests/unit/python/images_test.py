@@ -25,7 +25,7 @@ class Images(unittest.TestCase):
 
     def test_settings_are_listed(self):
         rows = {key: (value, choices) for key, value, choices, _ in vobench.SETTINGS}
-        self.assertEqual(rows["odometry.filter.particles"], ("8", "1 ... 100000"))
+        self.assertEqual(rows["odometry.filter.particles"], ("16", "1 ... 100000"))
         self.assertEqual(rows["sensor.exposure"][0], "0.01 s")
 
     def test_frames_are_views_that_keep_what_they_show(self):

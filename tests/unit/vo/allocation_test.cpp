@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "tests/unit/vo/at_once.h"
 #include "vo/filter/particle_filter.h"
 #include "vo/geometry/so3.h"
 
@@ -90,7 +91,7 @@ int AllocationsOfALoop(const vo::FilterParams& params, int frames) {
 TEST(Allocation, TheLoopHasNone) {
 #if VOBENCH_OWN_MALLOC
   for (const vo::Sampled sampled : {vo::Sampled::pose, vo::Sampled::pose_and_velocity}) {
-    vo::FilterParams params;
+    vo::FilterParams params = vo_test::SampledAtOnce();
     params.sampled = sampled;
     params.resample_below = 1;
     params.start_window = 0;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/unit/vo/at_once.h"
 #include "vo/filter/ekf_slam.h"
 #include "vo/filter/particle_filter.h"
 #include "vo/geometry/so3.h"
@@ -104,7 +105,7 @@ TEST(Family, RowPositions) {
 // The bootstrap filter samples the motion model, so with importance weights each weight is the product of the landmark
 // likelihoods at the sample, and nothing else.
 TEST(Bootstrap, WeightIsTheLikelihoodAtTheSample) {
-  vo::FilterParams params;
+  vo::FilterParams params = vo_test::SampledAtOnce();
   params.proposal = vo::Proposal::bootstrap;
   params.weight = vo::Weight::importance;
   params.particles = 50;
@@ -137,7 +138,7 @@ TEST(Bootstrap, WeightIsTheLikelihoodAtTheSample) {
 TEST(Bootstrap, AgreesWithTheOptimalProposalInTheLimit) {
   const TwoViews views = Look({Vector3d(0.01, -0.01, 0.005), vo::Exp({0.01, 0.005, 0})}, 4, 30 * kSigma);
   const auto answer = [&](vo::Proposal proposal, vo::Weight weight) {
-    vo::FilterParams params;
+    vo::FilterParams params = vo_test::SampledAtOnce();
     params.proposal = proposal;
     params.weight = weight;
     params.particles = 4000;
@@ -165,7 +166,7 @@ TEST(Unscented, ProposalTracksAStepAndStaysSymmetric) {
   const vo::Pose truth{Vector3d(0.01, -0.004, 0.006), vo::Exp({0.004, 0.006, -0.003})};
   const TwoViews views = Look(truth, 60);
   for (const vo::Sampled sampled : {vo::Sampled::pose, vo::Sampled::pose_and_velocity}) {
-    vo::FilterParams params;
+    vo::FilterParams params = vo_test::SampledAtOnce();
     params.proposal = vo::Proposal::ukf;
     params.weight = vo::Weight::importance;
     params.sampled = sampled;
@@ -192,6 +193,7 @@ TEST(Problems, RefuseWhatCannotBe) {
   using testing::Field;
   using testing::HasSubstr;
   vo::Params params;
+  params.filter = vo_test::SampledAtOnce();
   params.filter.proposal = vo::Proposal::ukf;
   EXPECT_TRUE(vo::Problems(params).empty());
   params.filter.lag = 5;

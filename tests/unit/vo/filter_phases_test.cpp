@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/unit/vo/at_once.h"
 #include "tests/unit/vo/draws.h"
 #include "tests/unit/vo/wall.h"
 #include "vo/filter/algorithm1.h"
@@ -28,6 +29,7 @@ vo::FilterPrior Prior() {
 
 vo::ParticleFilterSettings Settings(int lag, int start_window) {
   vo::ParticleFilterSettings settings;
+  settings.filter = vo_test::SampledAtOnce();
   settings.filter.lag = lag;
   settings.filter.start_window = start_window;
   settings.seed = 4;

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "tests/unit/vo/at_once.h"
 #include "tests/unit/vo/draws.h"
 #include "vo/filter/particle_filter.h"
 #include "vo/geometry/pose.h"
@@ -47,7 +48,7 @@ struct LandmarkField {
 
 // One particle with the default motion noise, at rest up to 0.1 m/s and rad/s.
 inline vo::ParticleFilter StartingFilter(unsigned seed) {
-  vo::FilterParams params;
+  vo::FilterParams params = vo_test::SampledAtOnce();
   params.particles = 1;
   vo::FilterPrior prior;
   prior.velocity_covariance = 0.01 * vo::Matrix6::Identity();

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/unit/vo/at_once.h"
 #include "tests/unit/vo/draws.h"
 #include "vo/geometry/so3.h"
 #include "vo/point_odometry.h"
@@ -17,6 +18,7 @@ using Eigen::Vector3d;
 
 std::vector<std::pair<std::string, vo::FilterParams>> Members() {
   std::vector<std::pair<std::string, vo::FilterParams>> members(6);
+  for (std::size_t n = 1; n < members.size(); ++n) members[n].second = vo_test::SampledAtOnce();
   members[0].first = "default";
   members[1].first = "sampled at once";
   members[1].second.start_window = 0;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/unit/vo/at_once.h"
 #include "tests/unit/vo/texture.h"
 #include "tests/unit/vo/two_walls.h"
 #include "tests/unit/vo/wall.h"
@@ -52,6 +53,7 @@ constexpr int kLandmarks = 30, kProvisional = 10;
 
 vo::Algorithm1 MakeFilter(vo::Proposal proposal) {
   vo::ParticleFilterSettings settings;
+  settings.filter = vo_test::SampledAtOnce();
   settings.filter.proposal = proposal;
   settings.seed = 4;
   vo::FilterPrior prior;

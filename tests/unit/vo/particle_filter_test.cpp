@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "tests/unit/vo/at_once.h"
 #include "tests/unit/vo/wall.h"
 #include "vo/base/random.h"
 #include "vo/filter/particle_set.h"
@@ -31,7 +32,7 @@ void Step(vo::ParticleFilter& filter, int frame) {
 
 TEST(ParticleFilter, ChildrenAreTheirAncestors) {
   for (const int particles : {1, 2, 9, 64}) {
-    vo::FilterParams params;
+    vo::FilterParams params = vo_test::SampledAtOnce();
     params.particles = particles;
     params.sampled = vo::Sampled::pose_and_velocity;  // so that their weights differ from the first frame on
     params.resample_below = 0;
@@ -60,7 +61,7 @@ TEST(ParticleFilter, ChildrenAreTheirAncestors) {
 TEST(ParticleFilter, VelocityCovarianceIsAlikeInAllParticles) {
   for (const vo::Sampled sampled : {vo::Sampled::pose, vo::Sampled::pose_and_velocity}) {
     for (const int lag : {0, 2}) {
-      vo::FilterParams params;
+      vo::FilterParams params = vo_test::SampledAtOnce();
       params.sampled = sampled;
       params.lag = lag;
       params.start_window = 4;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "tests/unit/vo/at_once.h"
 #include "tests/unit/vo/draws.h"
 #include "vo/point_odometry.h"
 
@@ -99,6 +100,7 @@ TEST(ScaleAmbiguity, KnownChangesNoBit) {
 TEST(ScaleAmbiguity, TheMixturesMomentsAreTheEstimate) {
   const vo::Camera camera;
   vo::Params params;
+  params.filter = vo_test::SampledAtOnce();
   params.landmark.scale_sigma = 0.5;
   params.filter.start_window = 0;
   for (const int particles : {1, 8}) {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "tests/unit/vo/at_once.h"
 #include "tests/unit/vo/draws.h"
 #include "tests/unit/vo/landmark_field.h"
 #include "vo/filter/particle_filter.h"
@@ -11,7 +12,7 @@
 namespace {
 
 vo::ParticleFilter FilterFrom(const vo::PoseGaussian& start, int particles) {
-  vo::FilterParams params;
+  vo::FilterParams params = vo_test::SampledAtOnce();
   params.particles = particles;
   vo::FilterPrior prior;
   prior.pose = start;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 
+#include "tests/unit/vo/at_once.h"
 #include "tests/unit/vo/texture.h"
 #include "vo/geometry/camera.h"
 #include "vo/geometry/so3.h"
@@ -55,7 +56,7 @@ cv::Mat RolledView(const PoseAt& pose_at, int k, double readout, const Texture& 
 }
 
 inline vo::Params SmallImageParams() {
-  vo::Params params;
+  vo::Params params = ConstantNoise();
   params.features.grid_columns = 6;
   params.features.grid_rows = 4;
   params.features.per_cell = 2;

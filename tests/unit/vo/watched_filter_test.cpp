@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/unit/vo/at_once.h"
 #include "tests/unit/vo/wall.h"
 #include "vo/filter/algorithm1.h"
 #include "vo/filter/ekf_slam.h"
@@ -38,11 +39,8 @@ vo::FilterPrior Prior() {
 }
 
 vo::FilterParams Plain() {
-  vo::FilterParams params;
-  params.particles = 8;
-  params.lag = 0;
+  vo::FilterParams params = vo_test::SampledAtOnce();
   params.start_window = 0;
-  params.weight = vo::Weight::evidence;
   return params;
 }
 
@@ -308,7 +306,7 @@ TEST(WatchedFilter, GoesOnWithAnEmptyMap) {
 // A filter whose answers are spoilt one at a time.
 class Broken final : public vo::Filter {
  public:
-  vo::EkfSlam good{vo::MotionParams{}, vo::FilterParams{}, vo::LandmarkParams{}, Prior()};
+  vo::EkfSlam good{vo::MotionParams{}, vo_test::SampledAtOnce(), vo::LandmarkParams{}, Prior()};
   std::function<void(vo::PoseGaussian&)> spoil_prediction = [](auto&) {};
   std::function<void(vo::ImagePrediction&)> spoil_image = [](auto&) {};
   std::function<void(vo::Belief&)> spoil_belief = [](auto&) {};

@@ -48,6 +48,7 @@ struct TaskOutput {
   evaluation::JudgeOptions how;
   std::int64_t begin_ns = 0;  // what the campaign counts its times from
   double seconds = 0;
+  std::optional<CalibrationRecord> calibration;
 };
 
 TaskOutput PlayPoints(const Experiment& experiment, const std::string& system, std::uint64_t seed) {
@@ -88,6 +89,7 @@ void PlayImages(const Experiment& experiment, const fs::path& sequence, const st
   while (const std::optional<vo::Frame> frame = Input([&] { return reader.Next(); })) tracker.Track(*frame);
   output.run = tracker.Estimates();
   output.seconds = tracker.entry().seconds;
+  output.calibration = tracker.entry().calibration;
 }
 
 // Times differ from run to run: they are kept apart. None of a program that does not say them.
@@ -145,7 +147,7 @@ void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& o
   if (align == evaluation::Alignment::yaw && evaluation::TiltsZ(metrics.errors))
     record.reason += std::string(record.reason.empty() ? "" : "; ") + "z of its world is not up";
   if (campaign.keep == campaign::Keep::numbers) return;
-  WriteMetricsJson(folder, {{{record.system, record.seed, ".", 0}, metrics}});
+  WriteMetricsJson(folder, {{{record.system, record.seed, ".", 0, output.calibration}, metrics}});
   if (campaign.keep == campaign::Keep::all) {
     evaluation::WriteEstimateRun(folder, output.run);
     WriteTruth(folder, output.truth.poses, output.truth.velocities);

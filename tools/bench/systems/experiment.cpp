@@ -24,9 +24,25 @@ void ReadOthers(const std::filesystem::path& file, const Overrides& overrides, E
   experiment.resolved = document.Resolved();
 }
 
+std::string Given(settings::Section& section, const std::string& key) {
+  std::vector<settings::RawYaml> values;
+  return section.Has(key) && section.ReadRaw(key, values) && !values.empty() ? values.front().text : "";
+}
+
+// What is not given, by what is: no window where proposal or weight know none, and a weight that suits the lag.
+void SetDependentDefaults(settings::Section filter, vo::FilterParams& params) {
+  const std::string proposal = Given(filter, "proposal"), weight = Given(filter, "weight");
+  if (proposal == "bootstrap" || proposal == "ukf" || weight == "importance") params.lag = 0;
+  if (filter.Has("lag")) filter.Read("lag", params.lag);
+  if (params.lag == 0 && params.weight == vo::Weight::uniform)
+    params.weight = proposal == "bootstrap" ? vo::Weight::importance : vo::Weight::evidence;
+}
+
 }  // namespace
 
 void ReadOdometry(settings::Section section, vo::Params& params) {
+  if (section.Has("target")) params.landmark.scale_sigma = 0;  // which has the scale
+  SetDependentDefaults(section.Child("filter"), params.filter);
   settings::ReadFields(section, params);
   section.Reject(vo::Problems(params));
 }
@@ -36,14 +52,6 @@ void ReadPrior(settings::Section section, PriorSettings& prior) { settings::Read
 Experiment ReadTrackSettings(settings::Document document) {
   Experiment out{{}, {}, kPriorOfImagesAlone, {}};
   settings::Section odometry = document.root().Child("odometry");
-  if (!odometry.Has("target")) out.odometry.landmark.scale_sigma = kUnknownScale;  // which has the scale
-  out.odometry.motion.adaptive = true;
-  out.odometry.landmark.proving_matches = kProvingMatches;
-  out.odometry.filter.lag = kLag;
-  odometry.Child("filter").Read("lag", out.odometry.filter.lag);
-  if (out.odometry.filter.lag > 0) out.odometry.filter.weight = vo::Weight::uniform;
-  out.odometry.filter.particles = kParticles;
-  out.odometry.calibration.estimate = true;
   const bool position_noise_given = odometry.Child("motion").Has("position_noise");
   ReadOdometry(odometry, out.odometry);
   if (!position_noise_given)
@@ -70,11 +78,11 @@ const Overrides& SettingsOfImagesAlone() {
                                         kAccelerationPerDepth / inverse_depth, defaults.motion.orientation_noise)},
         {"odometry.landmark.inverse_depth", fmt::format("{}", inverse_depth)},
         {"odometry.landmark.inverse_depth_sigma", fmt::format("{}", defaults.landmark.inverse_depth_sigma)},
-        {"odometry.landmark.scale_sigma", fmt::format("{}", kUnknownScale)},
-        {"odometry.landmark.proving_matches", fmt::format("{}", kProvingMatches)},
-        {"odometry.filter.lag", fmt::format("{}", kLag)},
+        {"odometry.landmark.scale_sigma", fmt::format("{}", defaults.landmark.scale_sigma)},
+        {"odometry.landmark.proving_matches", fmt::format("{}", defaults.landmark.proving_matches)},
+        {"odometry.filter.lag", fmt::format("{}", defaults.filter.lag)},
         {"odometry.filter.weight", "uniform"},
-        {"odometry.filter.particles", fmt::format("{}", kParticles)},
+        {"odometry.filter.particles", fmt::format("{}", defaults.filter.particles)},
         {"odometry.calibration.estimate", "true"}};
   }();
   return settings;

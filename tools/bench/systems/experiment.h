@@ -53,12 +53,9 @@ struct Experiment {
 
 // What ours starts from where it knows images alone, as in `track`.
 inline constexpr PriorSettings kPriorOfImagesAlone{PriorSettings::Start::origin, 0.5, 0.5};
-inline constexpr double kUnknownScale = 0.5;  // of a recording: the size of its scene is not known
 // Root of the power spectral density of acceleration over the prior depth [1/s^1.5], until both are estimated: with an
 // unknown scale only their ratio matters.
 inline constexpr double kAccelerationPerDepth = 0.625;
-inline constexpr int kProvingMatches = 5;
-inline constexpr int kLag = 5, kParticles = 16;
 
 // What `track` starts from unless the document's sections `odometry` and `prior` say otherwise; its scenario is none.
 // Throws settings::Error.

@@ -16,6 +16,7 @@ vo::Params AsInThePaper(vo::Params params) {
   params.filter.lag = 0;
   params.filter.marginal_mode = false;
   params.landmark.bearing = vo::Bearing::fixed;
+  params.landmark.scale_sigma = 0;
   params.landmark.proving_matches = 0;
   params.features.noise = vo::MatchNoise::constant;
   params.features.sigma_px = 2;

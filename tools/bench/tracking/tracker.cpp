@@ -49,12 +49,7 @@ void Tracker::Track(const vo::PreparedFrame& prepared) {
   entry_.seconds += 1e-3 * prepared.ms + clock.seconds();
   recorder_.Add(prepared.frame, estimate, odometry_.Features());
   recorder_.Reissue(odometry_.Reissued());
-}
-
-RunData Tracker::Result(const std::vector<vo::MapPoint>& map) const {
-  RunData data = RecordedOdometry::Result(map);
-  if (const auto calibration = odometry_.Calibration()) data.entry.calibration = RecordOf(*calibration, focal_px_);
-  return data;
+  if (const auto calibration = odometry_.Calibration()) entry_.calibration = RecordOf(*calibration, focal_px_);
 }
 
 PointTracker::PointTracker(const TrackerSetup& setup, const vo::Camera& camera,

@@ -54,7 +54,6 @@ class Tracker : public RecordedOdometry<vo::Odometry> {
   void Track(const vo::Frame& frame) { Track(vo::PreparedFrame(frame)); }
   void Track(const vo::PreparedFrame& prepared);
 
-  RunData Result(const std::vector<vo::MapPoint>& map) const;
   // Of the last frame.
   const std::vector<vo::FeatureView>& features() const { return odometry_.Features(); }
 
