@@ -209,8 +209,8 @@ TEST_F(ErrorsTest, BadUsage) {
 
 TEST_F(ErrorsTest, HelpAndVersionSucceed) {
   EXPECT_EQ(RunVobench({"--version"}, here_.path()).status, 0);
-  for (const std::string command :
-       {"render", "track", "evaluate", "run", "check", "settings", "verify", "campaign", "report", "fit-camera"}) {
+  for (const std::string command : {"render", "track", "evaluate", "run", "check", "settings", "verify", "campaign",
+                                    "report", "fit-camera", "import"}) {
     const Outcome outcome = RunVobench({command, "--help"}, here_.path());
     EXPECT_EQ(outcome.status, 0);
     EXPECT_THAT(outcome.out, HasSubstr("\nExample: vobench " + command));
