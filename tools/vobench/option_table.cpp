@@ -291,9 +291,6 @@ void AddImport(OptionTable& table) {
   Add(command, "--models DIR", from.models,
       "Folder where model:// is looked for (beside GAZEBO_MODEL_PATH and the like)")
       ->allow_extra_args(false);
-  Add(command, "--missing-textures WHAT", from.missing_textures, "A texture that is not there is an error, or grey")
-      ->check(CLI::IsMember({"error", "grey"}))
-      ->capture_default_str();
 }
 
 void AddExport(OptionTable& table) {

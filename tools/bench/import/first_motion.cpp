@@ -18,8 +18,7 @@
 namespace vobench {
 namespace {
 
-// Mean over the path of what is seen; a surface that is all alike counts little, the void not at all. 0 where the path
-// is not free or there is none.
+// Mean over the path of what is seen (a surface that is all alike counts little); 0 where the path is not free.
 double Seen(const sim::MotionDescription& motion, double end_s, const sim::Surroundings& around, bool indoors) try {
   constexpr int kViews = 8;
   const auto path = sim::MakeTrajectory(motion, 1, end_s, 0.1, &around);
@@ -39,15 +38,15 @@ double Seen(const sim::MotionDescription& motion, double end_s, const sim::Surro
 }  // namespace
 
 std::string FirstMotion(const ImportedWorld& imported, double fov_rad, double duration_s) {
-  const std::vector<sim::MeshDescription>& entries = imported.world.meshes;
+  const auto& entries = imported.world.meshes;
   const sim::Scene scene = sim::LoadScene(imported.world);
   const sim::RayScene rays(scene);
   const auto around = sim::SurroundingsOf(scene, rays);
   if (Seen(sim::RoamingMotion{}, duration_s, *around, true) > 1e-3) return "{type: handheld}";
   glm::dvec3 low(1e30), high(-1e30);
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    if (imported.planes.size() < entries.size() && imported.planes.contains(entries[scene.mesh_entries[i]].name))
-      continue;
+    const bool is_plane = imported.planes.contains(entries[scene.mesh_entries[i]].name);
+    if (is_plane && imported.planes.size() < entries.size()) continue;
     for (const glm::vec3& p : scene.meshes[i].positions)
       low = glm::min(low, glm::dvec3(p)), high = glm::max(high, glm::dvec3(p));
   }
@@ -66,10 +65,8 @@ std::string FirstMotion(const ImportedWorld& imported, double fov_rad, double du
     const double seen = Seen(motion, duration_s, *around, false);
     if (seen <= most) continue;
     most = seen;
-    best = fmt::format(
-        "{{type: orbit, start: {{position: [{0:.9g}, {1:.9g}, {2:.9g}], look_at: [{3:.9g}, {4:.9g}, {5:.9g}]}},\n"
-        "             center: [{3:.9g}, {4:.9g}, {5:.9g}], sweep: 60 deg, period: {6:g} s}}",
-        from.x, from.y, from.z, middle.x, middle.y, middle.z, 2 * duration_s);
+    best = "{type: orbit, start: {position: " + ListText(from) + ", look_at: " + ListText(middle) + "},\n" +
+           fmt::format("             center: {}, sweep: 60 deg, period: {:g} s}}", ListText(middle), 2 * duration_s);
   }
   if (best.empty()) throw std::runtime_error("no free path that sees something was found");
   return best;

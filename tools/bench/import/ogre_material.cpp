@@ -32,8 +32,7 @@ std::optional<OgreMaterial> FindIn(const fs::path& script, const std::string& na
   for (std::string word; words >> word;) {
     if (word != "material" || !(words >> word) || word != name) continue;
     OgreMaterial material;
-    for (int depth = 0; words >> word && !(word == "}" && --depth == 0);
-         words.clear()) {  // "diffuse vertexcolour" fails
+    for (int depth = 0; words >> word && !(word == "}" && --depth == 0); words.clear()) {
       depth += word == "{" ? 1 : 0;
       glm::dvec3 c(0.0);
       if (word == "texture" && material.texture.empty()) words >> material.texture;

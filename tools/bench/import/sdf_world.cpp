@@ -192,8 +192,6 @@ class Reader {
       shape("box.obj", Vector(box->Size()));
     } else if (const auto* sphere = geometry.SphereShape()) {
       shape("sphere.obj", glm::dvec3(sphere->Radius()));
-    } else if (const auto* ellipsoid = geometry.EllipsoidShape()) {
-      shape("sphere.obj", Vector(ellipsoid->Radii()));
     } else if (const auto* cylinder = geometry.CylinderShape()) {
       shape("cylinder.obj", {cylinder->Radius(), cylinder->Radius(), cylinder->Length()});
     } else if (const auto* plane = geometry.PlaneShape()) {
@@ -211,7 +209,7 @@ class Reader {
       const fs::path folder = mesh.file.parent_path();  // MODEL/meshes
       result_.world.folders.push_back(folder.filename() == "meshes" ? folder.parent_path() : folder);
     } else {
-      return warnings_.Add(who, "a shape that is none of box, sphere, ellipsoid, cylinder, plane and mesh is left out");
+      return warnings_.Add(who, "a shape that is none of box, sphere, cylinder, plane and mesh is left out");
     }
     if (const sdf::Material* material = visual.Material()) ReadMaterial(*material, who, mesh);
     if (!mesh.texture.empty()) result_.world.folders.push_back(mesh.texture.parent_path());

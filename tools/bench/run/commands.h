@@ -92,7 +92,6 @@ struct ImportOptions {
   std::filesystem::path from;  // SDF, URDF, a mesh file, or a folder of one model or of meshes
   std::filesystem::path output;
   std::vector<std::filesystem::path> models;  // folders that model:// is looked for in
-  std::string missing_textures = "error";     // or grey
 };
 void Import(const ImportOptions& options);
 

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <glm/common.hpp>
 #include <nlohmann/json.hpp>
 
-#include "sim/scenario/scenario.h"
+#include "sim/world/texture_file.h"
 #include "tools/base/files.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/run/commands.h"
@@ -22,15 +21,11 @@ namespace fs = std::filesystem;
 
 constexpr double kDuration_s = 6, kHeight = 480, kFocal = 525;
 
-bool HasExtension(const fs::path& file, const std::set<std::string>& of) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  return of.contains(extension);
+bool IsOneOf(const fs::path& file, const std::set<std::string>& extensions) {
+  return extensions.contains(sim::LowerExtension(file));
 }
-bool IsDescription(const fs::path& file) { return HasExtension(file, {".sdf", ".world", ".urdf"}); }
-bool IsMesh(const fs::path& file) {
-  return HasExtension(file, {".gltf", ".glb", ".obj", ".ply", ".dae", ".fbx", ".stl", ".3ds", ".md3", ".ac", ".off"});
-}
+bool IsDescription(const fs::path& file) { return IsOneOf(file, {".sdf", ".world", ".urdf"}); }
+const std::set<std::string> kMeshes = {".gltf", ".glb", ".obj", ".ply", ".dae", ".fbx", ".stl", ".3ds", ".md3"};
 
 // Of a folder: its one description, or all its mesh files.
 ImportedWorld WorldOf(const ImportOptions& options, const fs::path& shapes) {
@@ -47,7 +42,7 @@ ImportedWorld WorldOf(const ImportOptions& options, const fs::path& shapes) {
     return Input([&] { return ReadSdf(files[0], options.models, shapes); });
   ImportedWorld result;
   for (const fs::path& file : files) {
-    if (file != options.from && !IsMesh(file)) continue;
+    if (file != options.from && !IsOneOf(file, kMeshes)) continue;
     sim::MeshDescription& mesh = result.world.meshes.emplace_back();
     mesh.file = file;
     mesh.name = file.filename().string();
@@ -87,13 +82,13 @@ std::string ScenarioText(const ImportedWorld& from, const ImportOptions& options
   for (const fs::path& folder : world.folders) folders.insert(Named(folder, options.output));
   return fmt::format(
       "# Made by `vobench import` from {}.\n"
-      "world:\n  meshes:\n{}  texture_folders: {}\n  missing_textures: {}\n  lights:\n{}  background: {}\n"
+      "world:\n  meshes:\n{}  texture_folders: [{}]\n  lights:\n{}  background: {}\n"
       "camera: {{width: 640, height: {}, fx: {}, fy: {}, cx: 319.5, cy: 239.5}}\n"
       "sensor: {{auto_exposure: {{on: true}}}}\n"
       "time: {{rate: 30 Hz, duration: {} s}}\n"
       "trajectory: {}\n",
-      options.from.filename().string(), meshes, fmt::format("[{}]", fmt::join(folders, ", ")), options.missing_textures,
-      lights, ListText(from.background), kHeight, kFocal, kFocal, kDuration_s, motion);
+      options.from.filename().string(), meshes, fmt::join(folders, ", "), lights, ListText(from.background), kHeight,
+      kFocal, kFocal, kDuration_s, motion);
 }
 
 }  // namespace
@@ -109,10 +104,7 @@ void Import(const ImportOptions& options) {
     if (fs::exists(made)) throw BadInput(made.string() + ": is there already");
   }
   ImportedWorld from = WorldOf(options, shapes);
-  if (options.missing_textures == "grey") from.world.missing_textures = sim::MissingTextures::grey;
-  if (from.lights.empty())
-    from.lights = {"{type: ambient, radiance: [0.35, 0.35, 0.35]}",
-                   "{type: sun, direction: [0.3, -1, -0.4], irradiance: [2, 2, 2]}"};
+  from.world.missing_textures = sim::MissingTextures::grey;  // who renders says what they are
   try {
     for (const auto& [name, text] :
          {std::pair{"box.obj", kBox}, {"plane.obj", kPlane}, {"cylinder.obj", kCylinder}, {"sphere.obj", kSphere}})
@@ -120,7 +112,6 @@ void Import(const ImportOptions& options) {
     const double fov_rad = 2 * std::atan(0.5 * kHeight / kFocal);
     const std::string motion = Input([&] { return FirstMotion(from, fov_rad, kDuration_s); });
     base::WriteFile(options.output, ScenarioText(from, options, motion));
-    Input([&] { return sim::LoadScenario(options.output); });
   } catch (...) {
     fs::remove(options.output);
     fs::remove_all(shapes);
