@@ -286,5 +286,18 @@ TEST_F(ErrorsTest, AnInterruptedRunLeavesNothing) {
   EXPECT_TRUE(Tree(here_.path()) == before);
 }
 
+TEST_F(ErrorsTest, BakingEndsWhenItIsAskedTo) {
+  const auto before = Tree(here_.path());
+  for (const std::string signal : {"INT", "TERM"}) {
+    // Baked for minutes; timeout would kill it 2 s after the signal, and say so by its status.
+    const Outcome outcome = RunVobench({"render", TinyScenario().string(), "-o", "out", "--set", "render.light=baked",
+                                        "--set", "render.bake.paths=1048576"},
+                                       here_.path(), "exec timeout --preserve-status -k 2 -s " + signal + " 1 \\");
+    EXPECT_EQ(outcome.status, 1) << signal;
+    EXPECT_THAT(outcome.err, HasSubstr("loading was interrupted")) << signal;
+    EXPECT_TRUE(Tree(here_.path()) == before) << signal;
+  }
+}
+
 }  // namespace
 }  // namespace vobench::system_test
