@@ -138,7 +138,7 @@ std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& s) {
 // What the cameras of a rig have in common: made once.
 struct Simulator::World {
   World(const Scenario& s, int jobs) : arena(Threads(jobs)) {
-    Scene scene = LoadScene(s.world);
+    Scene scene = arena.execute([&] { return LoadScene(s.world); });
     for (std::size_t k = 0; k < scene.objects.size(); ++k) {
       scene.objects[k].motion = MakeObjectMotion(s, k);
       object_motions.push_back(scene.objects[k].motion);

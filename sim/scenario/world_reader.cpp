@@ -59,6 +59,8 @@ MeshDescription ReadMesh(Section& section, const std::filesystem::path& folder) 
   MeshDescription mesh;
   mesh.file = ReadFile(section, "file", folder);
   ReadFields(section, mesh);
+  section.Allow("texture");
+  if (section.Has("texture")) mesh.texture = ReadFile(section, "texture", folder);  // resolved only where given
   mesh.category = mesh.file.stem().string();
   section.Allow("class");
   if (section.Has("class")) section.Read("class", mesh.category);  // resolved only where given

@@ -14,7 +14,7 @@
 
 namespace sim {
 
-// A mesh file set into the world: X_W = position + R(orientation) * scale * X_file.
+// A mesh file set into the world: X_W = position + R(orientation) * scale * diag(stretch) * X_file.
 struct MeshDescription {
   std::filesystem::path file;  // glTF, GLB, OBJ, PLY, and whatever else assimp reads
   glm::dvec3 position{0.0};    // [m]
@@ -22,13 +22,18 @@ struct MeshDescription {
   double scale = 1.0;    // metres per unit of the file, > 0
   std::string name;      // no other mesh or object of the world has it
   std::string category;  // `class` of a scenario
+  glm::dvec3 stretch{1.0};
+  std::optional<glm::dvec3> color{};  // linear; with it or a texture, one material stands for all of the file's
+  std::filesystem::path texture{};    // times the colour; empty: none
 };
-// But for file, name and class.
+// But for files, name and class.
 template <class V>
 void Visit(V& v, MeshDescription& p) {
   v("position", p.position, {Unit::length, settings::Range{-1e8, 1e8}, "of the file's origin in W"});
   v("orientation", p.orientation, {"of the file in W: x, y, z, w"});
   v("scale", p.scale, {Range{1e-9, 1e9}, "metres per unit of the file"});
+  v("stretch", p.stretch, {Range{-1e9, 1e9}, "factors along the file's axes, beside the scale"});
+  v("color", p.color, {kOfLight, "albedo (linear) instead of the file's materials; with texture: a factor on it"});
 }
 
 // A mesh file that moves as a rigid body. It is set into the object's own frame O as a mesh is set into the world.

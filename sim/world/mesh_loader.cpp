@@ -44,9 +44,9 @@ std::string ToText(const glm::vec<n, float>& v) {
 
 class FileReader {
  public:
-  FileReader(const MeshFile& file, const MeshDescription& description) : file_(file) {
+  FileReader(const MeshFile& file, const MeshDescription& description) : file_(file), description_(description) {
     world_from_file_ = glm::mat4_cast(description.orientation);
-    for (int c = 0; c < 3; ++c) world_from_file_[c] *= description.scale;
+    for (int c = 0; c < 3; ++c) world_from_file_[c] *= description.scale * description.stretch[c];
     world_from_file_[3] = glm::dvec4(description.position, 1.0);
   }
 
@@ -58,7 +58,8 @@ class FileReader {
     MeshImport import = ImportMesh(file_.path, file_.loading.folders);
     file_.scene.files.insert(import.files.begin(), import.files.end());
     if (!import.problem.empty()) return file_.Problem(import.problem);
-    const ImportedScene& from = import.scene;
+    ImportedScene& from = import.scene;
+    if (description_.color || !description_.texture.empty()) ReplaceMaterials(from);
     world_from_file_[3] += world_from_file_ * glm::dvec4(import.origin, 0.0);
     for (const std::string& missing : import.missing) file_.Warn("names " + missing + ", ", "which cannot be opened");
     for (const std::string& warning : import.warnings) file_.Warn("", warning);
@@ -77,6 +78,16 @@ class FileReader {
   }
 
  private:
+  // One material, of the scenario.
+  void ReplaceMaterials(ImportedScene& scene) const {
+    ImportedMaterial material;
+    material.name = description_.name;
+    material.base_color = glm::vec4(description_.color.value_or(glm::dvec3(1)), 1);
+    if (!description_.texture.empty()) material.color_map.picture = fs::absolute(description_.texture).string();
+    std::ranges::fill(scene.materials, material);
+    for (ImportedMesh& mesh : scene.meshes) mesh.colors.clear();
+  }
+
   void AppendMesh(const ImportedMesh& in, const glm::dmat4& world_from_node) {
     if (in.positions.empty()) return;
     Mesh out;
@@ -205,6 +216,7 @@ class FileReader {
   }
 
   const MeshFile& file_;
+  const MeshDescription& description_;
   glm::dmat4 world_from_file_{1.0};
   std::optional<MeshMaterialReader> materials_;
 };

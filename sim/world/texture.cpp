@@ -1,5 +1,7 @@
 #include "sim/world/texture.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -10,13 +12,9 @@ namespace {
 
 constexpr float kTexelMax = 1023.0f;
 
-std::uint32_t Encode(const float* linear, bool roots) {
-  std::uint32_t bits = 0;
-  for (int c = 0; c < 3; ++c) {
-    const float clipped = std::clamp(linear[c], 0.0f, 1.0f);
-    bits |= static_cast<std::uint32_t>(std::lround((roots ? std::sqrt(clipped) : clipped) * kTexelMax)) << (10 * c);
-  }
-  return bits;
+std::uint32_t Encode(float linear, bool roots) {
+  const float clipped = std::clamp(linear, 0.0f, 1.0f);
+  return static_cast<std::uint32_t>(std::lround((roots ? std::sqrt(clipped) : clipped) * kTexelMax));
 }
 
 glm::vec3 Decode(std::uint32_t bits, bool roots) {
@@ -47,21 +45,25 @@ std::vector<Shrink> ShrinkWeights(int n, int m) {
   return result;
 }
 
-// Of an array [outer][n][inner] along its middle axis, to [outer][m][inner].
-std::vector<float> ShrinkAxis(const std::vector<float>& in, std::size_t outer, int n, int m, std::size_t inner) {
-  const std::size_t from_stride = static_cast<std::size_t>(n) * inner;
-  std::vector<float> out(outer * static_cast<std::size_t>(m) * inner);
-  const std::vector<Shrink> weights = ShrinkWeights(n, m);
-  float* to = out.data();
-  for (std::size_t o = 0; o < outer; ++o) {
-    for (const Shrink& s : weights) {
-      for (int k = 0; k < 4; ++k) {
-        const float* from = &in[o * from_stride + static_cast<std::size_t>(std::min(s.first + k, n - 1)) * inner];
-        for (std::size_t i = 0; i < inner; ++i) to[i] += s.weight[static_cast<std::size_t>(k)] * from[i];
+// Along x and then along y. at(i): value i, of rows of red, green, blue. Parallel in the caller's task arena.
+template <class Values>
+std::vector<float> Shrunk(const Values& at, int width, int height, int to_width, int to_height) {
+  const std::vector<Shrink> columns = ShrinkWeights(width, to_width), rows = ShrinkWeights(height, to_height);
+  std::vector<float> out(3 * columns.size() * rows.size());
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
+    for (std::size_t k = 0; k < 4 && rows[y].weight[k] > 0; ++k) {
+      const std::size_t row = (static_cast<std::size_t>(rows[y].first) + k) * static_cast<std::size_t>(width);
+      float* to = &out[3 * columns.size() * y];
+      for (const auto& [first, weight] : columns) {
+        const std::size_t from = 3 * (row + static_cast<std::size_t>(first));
+        for (std::size_t c = 0; c < 3; ++c, ++to) {
+          float sum = 0;
+          for (std::size_t j = 0; j < 4 && weight[j] > 0; ++j) sum += weight[j] * at(from + 3 * j + c);
+          *to += rows[y].weight[k] * sum;
+        }
       }
-      to += inner;
     }
-  }
+  });
   return out;
 }
 
@@ -84,24 +86,26 @@ Texture::Texture(std::string name, int width, int height, std::span<const std::u
   }
   const bool roots = content == Content::color;
   std::array<float, 256> linear_of_code{};
-  for (int i = 0; i < 256; ++i) {
-    linear_of_code[static_cast<std::size_t>(i)] = static_cast<float>(roots ? SrgbToLinear(i / 255.0) : i / 255.0);
+  std::array<std::uint32_t, 256> texel_of_code{};
+  for (std::size_t i = 0; i < 256; ++i) {
+    const double code = static_cast<double>(i) / 255.0;
+    linear_of_code[i] = static_cast<float>(roots ? SrgbToLinear(code) : code);
+    texel_of_code[i] = Encode(linear_of_code[i], roots);
   }
-  std::vector<float> linear(rgb.size());
-  std::transform(rgb.begin(), rgb.end(), linear.begin(), [&](std::uint8_t code) { return linear_of_code[code]; });
-  texels_.reserve(linear.size() / 3 * 3 / 2 + 64);  // 4/3 for a square picture, more for a narrow one
-
+  std::vector<float> linear;             // of the level; of the first one `rgb`
+  texels_.reserve(rgb.size() / 2 + 64);  // 4/3 for a square picture, more for a narrow one
   for (;;) {
     const std::size_t first = texels_.size();
     levels_.push_back({width, height, static_cast<std::uint32_t>(first)});
-    texels_.resize(first + linear.size() / 3);
-    for (std::size_t i = 0; 3 * i < linear.size(); ++i) texels_[first + i] = Encode(&linear[3 * i], roots);
+    texels_.resize(first + static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    const auto value = [&](std::size_t i) { return first > 0 ? linear[i] : linear_of_code[rgb[i]]; };
+    const auto texel = [&](std::size_t i) { return first > 0 ? Encode(linear[i], roots) : texel_of_code[rgb[i]]; };
+    for (std::size_t i = 0; first + i < texels_.size(); ++i)
+      texels_[first + i] = texel(3 * i) | texel(3 * i + 1) << 10 | texel(3 * i + 2) << 20;
     if (width == 1 && height == 1) break;
     const int half_width = std::max(1, width / 2), half_height = std::max(1, height / 2);
-    linear = ShrinkAxis(linear, static_cast<std::size_t>(height), width, half_width, 3);
-    linear = ShrinkAxis(linear, 1, height, half_height, 3 * static_cast<std::size_t>(half_width));
-    width = half_width;
-    height = half_height;
+    linear = Shrunk(value, width, height, half_width, half_height);
+    width = half_width, height = half_height;
   }
 }
 

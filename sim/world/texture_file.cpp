@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <optional>
+#include <string_view>
 #include <system_error>
 
 #include "sim/world/mesh_import.h"
@@ -11,6 +12,8 @@ namespace sim {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view kPictures[] = {".tga", ".jpg", ".jpeg", ".png", ".bmp", ".webp", ".tif", ".tiff"};
 
 std::string Plain(std::string text) {
   std::replace(text.begin(), text.end(), '\\', '/');
@@ -21,13 +24,19 @@ std::string Plain(std::string text) {
   return text.substr(0, last == std::string::npos ? 0 : last + 1);
 }
 
-// The file, or one beside it whose name differs in capitals only.
-std::optional<fs::path> Existing(const fs::path& file) {
+// The file, or one beside it whose name differs in capitals only; of any kind: a picture of another format will do, as
+// Quake's engines have it.
+std::optional<fs::path> Existing(const fs::path& file, bool of_any_kind = false) {
   std::error_code error;
   if (fs::exists(file, error)) return file;
+  const std::string wanted = Lower(file.filename().string()), stem = Lower(file.stem().string());
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    if (Lower(entry->path().filename().string()) == Lower(file.filename().string()))
+    const fs::path& found = entry->path();
+    const std::string extension = LowerExtension(found);
+    const bool is_picture = std::ranges::count(kPictures, extension) > 0;
+    if (Lower(found.filename().string()) == wanted ||
+        (of_any_kind && is_picture && Lower(found.stem().string()) == stem))
       return file.parent_path() / entry->path().filename();
   }
   return std::nullopt;
@@ -63,7 +72,8 @@ TextureFile FindTexture(const std::string& name, const fs::path& mesh, const std
                         const std::vector<fs::path>& folders) {
   std::vector<std::string> texts = {Plain(name)};
   if (const std::string decoded = DecodePercent(texts[0]); decoded != texts[0]) texts.push_back(decoded);
-  std::vector<fs::path> bases = {mesh.parent_path() / folder, mesh.parent_path()};
+  std::vector<fs::path> bases = {mesh.parent_path() / folder, mesh.parent_path(),
+                                 (mesh.parent_path() / "../materials/textures").lexically_normal()};  // Gazebo's layout
   bases.insert(bases.end(), folders.begin(), folders.end());
   bool is_outside = false;
   for (const std::string& text : texts) {
@@ -77,7 +87,7 @@ TextureFile FindTexture(const std::string& name, const fs::path& mesh, const std
   }
   for (const std::string& text : texts) {
     for (const fs::path& base : bases) {
-      const auto found = Existing((base / fs::path(text).filename()).lexically_normal());
+      const auto found = Existing((base / fs::path(text).filename()).lexically_normal(), true);
       if (found && found->has_filename() && IsAllowed(mesh, folders, *found)) return {*found, true, ""};
     }
   }

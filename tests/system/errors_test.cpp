@@ -209,8 +209,8 @@ TEST_F(ErrorsTest, BadUsage) {
 
 TEST_F(ErrorsTest, HelpAndVersionSucceed) {
   EXPECT_EQ(RunVobench({"--version"}, here_.path()).status, 0);
-  for (const std::string command :
-       {"render", "track", "evaluate", "run", "check", "settings", "verify", "campaign", "report", "fit-camera"}) {
+  for (const std::string command : {"render", "track", "evaluate", "run", "check", "settings", "verify", "campaign",
+                                    "report", "fit-camera", "import"}) {
     const Outcome outcome = RunVobench({command, "--help"}, here_.path());
     EXPECT_EQ(outcome.status, 0);
     EXPECT_THAT(outcome.out, HasSubstr("\nExample: vobench " + command));
@@ -284,6 +284,19 @@ TEST_F(ErrorsTest, AnInterruptedRunLeavesNothing) {
                  here_.path(), "exec timeout -s INT 1.5 \\");
   EXPECT_THAT(outcome.err, HasSubstr("interrupted"));
   EXPECT_TRUE(Tree(here_.path()) == before);
+}
+
+TEST_F(ErrorsTest, BakingEndsWhenItIsAskedTo) {
+  const auto before = Tree(here_.path());
+  for (const std::string signal : {"INT", "TERM"}) {
+    // Baked for minutes; timeout would kill it 2 s after the signal, and say so by its status.
+    const Outcome outcome = RunVobench({"render", TinyScenario().string(), "-o", "out", "--set", "render.light=baked",
+                                        "--set", "render.bake.paths=1048576"},
+                                       here_.path(), "exec timeout --preserve-status -k 2 -s " + signal + " 1 \\");
+    EXPECT_EQ(outcome.status, 1) << signal;
+    EXPECT_THAT(outcome.err, HasSubstr("loading was interrupted")) << signal;
+    EXPECT_TRUE(Tree(here_.path()) == before) << signal;
+  }
 }
 
 }  // namespace

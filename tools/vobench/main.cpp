@@ -26,6 +26,7 @@ void Execute(const VerifyOptions& options) { Verify(options); }
 void Execute(const CampaignOptions& options) { RunCampaign(options); }
 void Execute(const ExportOptions& options) { Export(options); }
 void Execute(const FitCameraOptions& options) { FitCamera(options); }
+void Execute(const ImportOptions& options) { Import(options); }
 void Execute(const SettingsOptions& options) { Settings(options); }
 
 int Fail(int status, const std::string& reason) {

@@ -279,6 +279,20 @@ void AddFitCamera(OptionTable& table) {
   Add(command, "SEQ", fit.sequence, "Sequence folder")->required();
 }
 
+void AddImport(OptionTable& table) {
+  const auto [command, from] = AddCommand<ImportOptions>(
+      table, "import",
+      "Make a scenario, with a first path, of a Gazebo world, a model, or mesh files (docs/your_scene.md)",
+      "vobench import warehouse.sdf -o warehouse.yaml");
+  Add(command, "WORLD|FOLDER", from.from, "SDF or URDF file, mesh file, or a folder with a model or with mesh files")
+      ->required();
+  Add(command, "-o,--output SCENARIO", from.output, "Scenario file to make; shapes go to a folder beside it")
+      ->required();
+  Add(command, "--models DIR", from.models,
+      "Folder where model:// is looked for (beside GAZEBO_MODEL_PATH and the like)")
+      ->allow_extra_args(false);
+}
+
 void AddExport(OptionTable& table) {
   const auto [command, exported] = AddCommand<ExportOptions>(
       table, "export", "Write a sequence in another form: a ROS 1 bag, MCAP, COCO's labels (docs/sequence_format.md)",
@@ -318,7 +332,7 @@ OptionTable::OptionTable()
       "`vobench COMMAND --help` tells more. Exit status: 0 done, 1 the work failed or `verify` found a disagreement, "
       "2 bad usage or input, 3 not consistent though `run --require-consistent` asked for it.");
   for (const auto add : {AddRender, AddTrack, AddEvaluate, AddRun, AddCampaign, AddCheck, AddSettings, AddVerify,
-                         AddExport, AddReport, AddFitCamera}) {
+                         AddExport, AddReport, AddFitCamera, AddImport}) {
     add(*this);
   }
 }

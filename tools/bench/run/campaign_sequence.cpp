@@ -60,7 +60,7 @@ void Render(const campaign::SequenceCache& cache, const std::string& key, const 
   if (cache.Has(key)) return;
   const campaign::FileLock lock = cache.Take(key);
   if (cache.Has(key)) return;  // the one that was waited for has made it
-  const sim::Simulator simulator = Input([&] { return sim::Simulator(seen.experiment.scenario, jobs); });
+  const sim::Simulator simulator = LoadSimulator(seen.experiment.scenario, jobs);
   const sim::SequenceContent content{sim::Layout::tum, 0, simulator.frame_count(), "vobench " VOBENCH_VERSION,
                                      seen.sensors.stereo};
   const fs::path folder = cache.PathOf(key), partial = folder.string() + ".partial";

@@ -4,15 +4,13 @@
 
 #include "sim/motion/placement.h"
 #include "sim/sensor/sensor.h"
-#include "sim/simulator.h"
 #include "tools/bench/errors.h"
-#include "tools/bench/run/commands.h"
+#include "tools/bench/run/run_common.h"
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/experiment.h"
 #include "tools/judge/evaluation/trajectory.h"
 
 namespace vobench {
-
 namespace {
 
 // The first lines, the same for all worlds.
@@ -86,7 +84,7 @@ void Check(const CheckOptions& options) {
   if (experiment.scenario.points) return CheckPoints(options, experiment.scenario);
   sim::Scenario direct = experiment.scenario;  // light that is baked is not needed here
   direct.render.light = sim::LightMode::direct;
-  const sim::Simulator simulator = Input([&] { return sim::Simulator(direct, 1); });
+  const sim::Simulator simulator = LoadSimulator(direct, 1);
   PrintWarnings(simulator.warnings());
   const Truth truth = TruthOf(simulator, 0, simulator.frame_count());
   const sim::Scenario& scenario = experiment.scenario;

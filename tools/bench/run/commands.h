@@ -87,6 +87,14 @@ struct CheckOptions {
 };
 void Check(const CheckOptions& options);
 
+// What other programs describe becomes a scenario (docs/your_scene.md).
+struct ImportOptions {
+  std::filesystem::path from;  // SDF, URDF, a mesh file, or a folder of one model or of meshes
+  std::filesystem::path output;
+  std::vector<std::filesystem::path> models;  // folders that model:// is looked for in
+};
+void Import(const ImportOptions& options);
+
 // All settings with defaults, ranges and meanings.
 struct SettingsOptions {
   std::string prefix;  // only keys that begin so

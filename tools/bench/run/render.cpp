@@ -9,12 +9,11 @@
 #include "sim/sequence/content.h"
 #include "sim/sequence/streams.h"
 #include "sim/sequence/writer.h"
-#include "sim/simulator.h"
 #include "tools/base/files.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/progress.h"
 #include "tools/bench/result/output_folder.h"
-#include "tools/bench/run/commands.h"
+#include "tools/bench/run/run_common.h"
 #include "tools/bench/sequence/preview.h"
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/experiment.h"
@@ -118,7 +117,7 @@ void Render(const RenderOptions& options) {
   const Experiment experiment = ReadExperiment(options.scenario, With(options.overrides, options));
   const fs::path folder = CleanPath(options.output), partial = folder.string() + ".partial";
   RequireRoom(options, experiment.scenario, folder, partial);
-  const sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, options.jobs); });
+  const sim::Simulator simulator = LoadSimulator(experiment.scenario, options.jobs);
   PrintWarnings(simulator.warnings());
   const std::set<sim::TruthStream>& truth = experiment.scenario.truth.streams;
   if (truth.contains(sim::TruthStream::depth) && !truth.contains(sim::TruthStream::depth_exr))

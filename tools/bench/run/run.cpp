@@ -137,7 +137,7 @@ void Run(const RunOptions& options) {
   if (options.verdict)
     throw BadInput("--verdict is for worlds of points: " + options.scenario.string() + " has images");
   const Folder folder = MakeFolder(options);
-  sim::Simulator simulator = Input([&] { return sim::Simulator(experiment.scenario, options.jobs); });
+  sim::Simulator simulator = LoadSimulator(experiment.scenario, options.jobs);
   PrintWarnings(simulator.warnings());
   std::vector<Tracker> odometries = MakeTrackers(options, experiment, simulator, folder);
   const evaluation::JudgeOptions how = JudgeOptionsOf(experiment.prior);

@@ -3,14 +3,29 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 
 #include "tools/bench/errors.h"
+#include "tools/bench/progress.h"
 #include "tools/bench/report/report.h"
 #include "tools/bench/systems/systems.h"
 
 namespace vobench {
+
+sim::Simulator LoadSimulator(const sim::Scenario& scenario, int jobs) {
+  const std::jthread watch([](const std::stop_token& stop) {
+    for (; !stop.stop_requested(); std::this_thread::sleep_for(std::chrono::milliseconds(10))) {
+      if (!InterruptPending()) continue;
+      fmt::print(stderr, "vobench: loading was interrupted; nothing was kept\n");
+      _exit(1);
+    }
+  });
+  return Input([&] { return sim::Simulator(scenario, jobs); });
+}
 
 Folder MakeFolder(const RunOptions& options) {
   return options.output ? std::make_unique<OutputFolder>(*options.output, kResultMarker, ResultNames(SystemNames()))

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/simulator.h"
 #include "tools/bench/provenance.h"
 #include "tools/bench/result/output_folder.h"
 #include "tools/bench/result/result.h"
@@ -18,6 +19,10 @@ namespace vobench {
 using Folder = std::unique_ptr<OutputFolder>;  // none: nothing is kept
 
 Folder MakeFolder(const RunOptions& options);
+
+// Its world loaded and baked. A signal that HoldInterrupts holds ends the program meanwhile, with exit status 1: nothing
+// is kept yet. Throws BadInput.
+sim::Simulator LoadSimulator(const sim::Scenario& scenario, int jobs);
 
 // All of run.json but the runs.
 RunDescription Describe(const RunOptions& options, const Experiment& experiment, const std::vector<std::string>& notes,

@@ -23,6 +23,7 @@ DEBIAN_NAMES = {
     "Apache-2.0 WITH LLVM-exception": ("APACHE-2-LLVM-EXCEPTIONS",),
     "MPL-2.0": ("MPL-2",),
     "ISC": ("ISC",),
+    "Zlib": ("zlib/libpng",),
     "HPND": ("Custom-MIT-like",),
     "PSF-2.0": ("Python Software Foundation",),
     "Artistic-2.0": ("Artistic-2.0",),

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>
@@ -222,6 +223,10 @@ class FileMaker {
         {"count", rows.size()},
         {"type", columns == 3 ? "VEC3" : "VEC2"}};
     if (normalised) accessor["normalized"] = true;
+    for (std::size_t c = 0; columns == 3 && c < 3; ++c) {  // positions must have their bounds
+      const auto [low, high] = std::ranges::minmax(rows, {}, [&](const std::vector<float>& row) { return row[c]; });
+      accessor["min"].push_back(low[c]), accessor["max"].push_back(high[c]);
+    }
     if (sparse) {
       std::string indices, values;
       std::size_t count = 0;
@@ -275,6 +280,9 @@ class FileMaker {
       return mesh.attribute(id)->unique_id();
     };
     const auto position_id = add(draco::GeometryAttribute::POSITION, positions, position_type, normalised);
+    std::vector<std::uint32_t> other_ids;  // of the sets below the one that is used
+    for (int set = 0; set < c_.uv_set(); ++set)
+      other_ids.push_back(add(draco::GeometryAttribute::TEX_COORD, {uvs.size(), {0, 0}}, uv_type, uv_type != kFloat));
     const auto uv_id = add(draco::GeometryAttribute::TEX_COORD, uvs, uv_type, uv_type != kFloat);
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
       mesh.AddFace(
@@ -285,6 +293,7 @@ class FileMaker {
     extensions_.insert("KHR_draco_mesh_compression");
     json ids = {{"POSITION", position_id}};
     ids["TEXCOORD_" + std::to_string(c_.uv_set())] = uv_id;
+    for (std::size_t set = 0; set < other_ids.size(); ++set) ids["TEXCOORD_" + std::to_string(set)] = other_ids[set];
     primitive["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", View({buffer.data(), buffer.size()}, 0)},
                                                              {"attributes", ids}};
     // What is not compressed would not fit the points that Draco makes.
@@ -335,7 +344,7 @@ TEST(GltfProperty, RandomFilesAreWhatTheyDescribe) {
       }
       FileMaker maker(choices, random);
       maker.Make();
-      const std::string name = std::to_string(k);
+      const std::string name = std::to_string(done + k);
       folder.Write(name + "/a picture.png", EncodeColor(".png", 10, 20, 30));
       folder.Write(name + "/data.bin", maker.data);
       world.meshes.push_back({folder.Write(name + "/m.gltf", maker.file), {}, {1, 0, 0, 0}, 1.0, {}, {}});
@@ -358,6 +367,8 @@ TEST(GltfProperty, RandomFilesAreWhatTheyDescribe) {
       }
     }
   }
+  if (const char* keep = std::getenv("VOBENCH_KEEP_GLTF"))  // for tools/dev/validate-gltf
+    std::filesystem::copy(folder.path(), keep, std::filesystem::copy_options::recursive);
   std::size_t all = 0;
   for (std::size_t i = 0; i < Choices::kCounts.size(); ++i) {
     for (std::size_t j = i + 1; j < Choices::kCounts.size(); ++j)

@@ -1,0 +1,211 @@
+// Worlds of Gazebo become scenarios: places held against poses worked out by hand, in SDF's axes.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+
+#include "sim/scenario/scenario.h"
+#include "sim/world/scene.h"
+#include "tests/temporary_folder.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/run/commands.h"
+
+namespace vobench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using Folder = vobench_test::TemporaryFolder;
+
+std::string World(const std::string& content) {
+  return "<?xml version='1.0'?>\n<sdf version='1.7'><world name='w'>\n" + content + "\n</world></sdf>\n";
+}
+std::string Model(const std::string& name, const std::string& pose, const std::string& visual) {
+  return "<model name='" + name + "'><pose>" + pose + "</pose><link name='link'>" + visual + "</link></model>";
+}
+std::string Visual(const std::string& geometry, const std::string& more = "") {
+  return "<visual name='v'><geometry>" + geometry + "</geometry>" + more + "</visual>";
+}
+
+struct Loaded {
+  sim::Scenario scenario;
+  sim::Scene scene;
+  // Corners of the box about a mesh of the scenario, in SDF's axes.
+  std::pair<glm::dvec3, glm::dvec3> BoxOf(const std::string& name) const {
+    glm::dvec3 low(1e9), high(-1e9);
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+      if (scenario.world.meshes[scene.mesh_entries[i]].name != name) continue;
+      for (const glm::vec3& p : scene.meshes[i].positions) {
+        const glm::dvec3 raw(p.x, -p.z, p.y);
+        low = glm::min(low, raw), high = glm::max(high, raw);
+      }
+    }
+    return {low, high};
+  }
+  void ExpectBox(const std::string& name, const glm::dvec3& low, const glm::dvec3& high) const {
+    const auto [got_low, got_high] = BoxOf(name);
+    EXPECT_LT(glm::distance(got_low, low) + glm::distance(got_high, high), 1e-5)
+        << name << ": (" << got_low.x << ", " << got_low.y << ", " << got_low.z << ") to (" << got_high.x << ", "
+        << got_high.y << ", " << got_high.z << ")";
+  }
+};
+
+Loaded Imported(const Folder& folder, const fs::path& from) {
+  Import({.from = from, .output = folder / "made.yaml", .models = {}});
+  Loaded loaded{sim::LoadScenario(folder / "made.yaml"), {}};
+  loaded.scene = sim::LoadScene(loaded.scenario.world);
+  return loaded;
+}
+
+std::string ErrorOf(const Folder& folder, const std::string& world) {
+  try {
+    Imported(folder, folder.Write("world.sdf", world));
+  } catch (const BadInput& error) {
+    EXPECT_FALSE(fs::exists(folder / "made.yaml"));
+    EXPECT_FALSE(fs::exists(folder / "made_shapes"));
+    return error.what();
+  }
+  return "";
+}
+
+constexpr char kTriangle[] = "v 0 0 0\nv 1 0 0\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+
+std::string Collada(const std::string& up) {
+  return "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'><asset>"
+         "<up_axis>" +
+         up +
+         "</up_axis></asset><library_geometries><geometry id='g'><mesh><source id='s'><float_array id='a' count='9'>"
+         "0 0 0 1 0 0 0 1 1</float_array><technique_common><accessor source='#a' count='3' stride='3'><param name='X' "
+         "type='float'/><param name='Y' type='float'/><param name='Z' type='float'/></accessor></technique_common>"
+         "</source><vertices id='v'><input semantic='POSITION' source='#s'/></vertices><triangles count='1'><input "
+         "semantic='VERTEX' source='#v' offset='0'/><p>0 1 2</p></triangles></mesh></geometry></library_geometries>"
+         "<library_visual_scenes><visual_scene id='w'><node><instance_geometry url='#g'/></node></visual_scene>"
+         "</library_visual_scenes><scene><instance_visual_scene url='#w'/></scene></COLLADA>";
+}
+
+TEST(ImportTest, PosesOfNestedModelsAndFramesAreComposed) {
+  const Folder folder;
+  const Loaded world = Imported(
+      folder,
+      folder.Write(
+          "world.sdf",
+          World("<model name='box'><pose>1 2 0 0 0 1.5707963267948966</pose><link name='l'><pose>0 0 1 0 0 0"
+                "</pose><visual name='v'><pose>1 0 0 0 0 0</pose><geometry><box><size>2 1 0.5</size></box>"
+                "</geometry></visual></link></model>"
+                "<model name='outer'><pose>0 5 0 0 0 0</pose><frame name='f'><pose>0 0 2 0 0 0</pose></frame>"
+                "<link name='l'/><model name='k'><pose relative_to='f'>1 0 0 0 0 0</pose><link name='l'>" +
+                Visual("<sphere><radius>0.5</radius></sphere>") + "</link></model></model>" +
+                Model("pole", "3 0 0 1.5707963267948966 0 0",
+                      Visual("<cylinder><radius>0.25</radius><length>4</length></cylinder>")) +
+                Model("ground", "0 0 -1 0 0 0", Visual("<plane><normal>0 0 1</normal><size>30 20</size></plane>")) +
+                Model("wall", "0 9 0 0 0 0", Visual("<plane><normal>0 -1 0</normal><size>4 6</size></plane>")))));
+  world.ExpectBox("box/v", {0.5, 2, 0.75}, {1.5, 4, 1.25});
+  world.ExpectBox("outer/v", {0.5, 4.5, 1.5}, {1.5, 5.5, 2.5});
+  world.ExpectBox("pole/v", {2.75, -2, -0.25}, {3.25, 2, 0.25});
+  world.ExpectBox("ground/v", {-15, -10, -1}, {15, 10, -1});
+  world.ExpectBox("wall/v", {-2, 9, -3}, {2, 9, 3});
+}
+
+TEST(ImportTest, ModelWithScaleScriptAndTextureIsFound) {
+  const Folder folder;
+  folder.Write("models/thing/model.config",
+               "<?xml version='1.0'?><model><name>thing</name><sdf version='1.6'>model.sdf</sdf></model>");
+  folder.Write("models/thing/model.sdf",
+               "<?xml version='1.0'?><sdf version='1.6'>" +
+                   Model("thing", "0 0 0 0 0 0",
+                         Visual("<mesh><uri>model://thing/meshes/t.obj</uri><scale>1 2 3</scale></mesh>",
+                                "<material><script><uri>model://thing/materials/scripts</uri><uri>model://thing/"
+                                "materials/textures</uri><name>Thing/Red</name></script></material>")) +
+                   "</sdf>");
+  folder.Write("models/thing/meshes/t.obj", kTriangle);
+  folder.Write(
+      "models/thing/materials/scripts/a.material",
+      "// material Thing/Red { texture no.png }\nmaterial Thing/Blue { technique { pass { texture_unit { texture "
+      "no.png } } } }\nmaterial Thing/Red\n{\n technique\n {\n pass { diffuse 1 1 1 1\n texture_unit{\ntexture "
+      "red.png\n}}}}\n");
+  fs::create_directories(folder / "models/thing/materials/textures");
+  cv::imwrite((folder / "models/thing/materials/textures/red.png").string(),
+              cv::Mat(4, 4, CV_8UC3, cv::Scalar(0, 0, 255)));
+  const Loaded world = Imported(
+      folder,
+      folder.Write("world.sdf", World("<include><uri>model://thing</uri><name>a_1</name><pose>10 0 0 0 0 0</pose>"
+                                      "</include><include><uri>model://thing</uri><name>a_2</name></include>")));
+  world.ExpectBox("a_1/v", {10, 0, 0}, {11, 2, 3});
+  world.ExpectBox("a_2/v", {0, 0, 0}, {1, 2, 3});
+  EXPECT_EQ(world.scenario.world.meshes[0].category, "a");
+  const sim::Material& material = world.scene.materials[static_cast<std::size_t>(world.scene.meshes[0].material)];
+  ASSERT_GE(material.texture, 0);
+  EXPECT_LT(glm::distance(world.scene.textures[static_cast<std::size_t>(material.texture)].Texel(0, 1, 1), {1, 0, 0}),
+            1e-6);
+  EXPECT_EQ(material.base_color, glm::vec3(1));
+}
+
+TEST(ImportTest, ColladaIsTakenInItsOwnAxes) {
+  for (const char* up : {"X_UP", "Y_UP", "Z_UP"}) {
+    const Folder folder;
+    folder.Write("t.dae", Collada(up));
+    const Loaded world = Imported(
+        folder, folder.Write("world.sdf", World(Model("m", "0 0 0 0 0 0",
+                                                      Visual("<mesh><uri>t.dae</uri><scale>1 2 -3</scale></mesh>")))));
+    SCOPED_TRACE(up);
+    world.ExpectBox("m/v", {0, 0, -3}, {1, 2, 0});
+  }
+}
+
+TEST(ImportTest, LightsShineAsTheyAreSetUp) {
+  const Folder folder;
+  const Loaded world = Imported(
+      folder,
+      folder.Write(
+          "world.sdf",
+          World("<scene><ambient>1 0 0 1</ambient><background>0 0 1 1</background></scene><light "
+                "type='directional' name='sun'><pose>0 0 9 0 0 1.5707963267948966</pose><diffuse>1 1 1 1</diffuse>"
+                "<direction>1 0 -1</direction></light><light type='point' name='p'><pose>1 2 3 0 0 0</pose>"
+                "<diffuse>1 1 1 1</diffuse><attenuation><range>9</range><constant>0</constant><linear>0</linear>"
+                "<quadratic>1</quadratic></attenuation></light>" +
+                Model("m", "0 0 0 0 0 0", Visual("<box><size>1 1 1</size></box>")))));
+  const std::vector<sim::Light>& lights = world.scenario.world.lights;
+  ASSERT_EQ(lights.size(), 3u);
+  EXPECT_EQ(std::get<sim::AmbientLight>(lights[0]).radiance, glm::dvec3(1, 0, 0));
+  const auto& sun = std::get<sim::SunLight>(lights[1]);
+  EXPECT_LT(glm::distance(sun.direction, {0, -1, -1}), 1e-9);
+  EXPECT_NEAR(sun.irradiance.g, 3.141592654, 1e-8);
+  const auto& lamp = std::get<sim::PointLight>(lights[2]);
+  EXPECT_LT(glm::distance(lamp.position, {1, 3, -2}), 1e-9);
+  EXPECT_NEAR(lamp.intensity.g, 3.141592654, 1e-8);
+  EXPECT_EQ(world.scenario.world.background, glm::dvec3(0, 0, 1));
+}
+
+TEST(ImportTest, BadInputIsNamedWithFileAndLine) {
+  const Folder folder;
+  const std::string box = Visual("<box><size>1 1 1</size></box>");
+  const std::string missing =
+      ErrorOf(folder, World("<include><uri>model://nowhere</uri></include>\n" + Model("m", "a b", box)));
+  EXPECT_THAT(missing, HasSubstr("world.sdf:3: Unable to find uri[model://nowhere]"));
+  EXPECT_THAT(missing, HasSubstr("world.sdf:4: Error reading element <pose>"));
+  EXPECT_THAT(missing, testing::Not(HasSubstr("<world>")));
+  EXPECT_THAT(ErrorOf(folder, "<sdf version='1.7'>\n<world name='w'>\n<model nam\n"),
+              HasSubstr("world.sdf:3: is not XML"));
+  EXPECT_THAT(ErrorOf(folder, "<html/>"), HasSubstr("is neither SDF nor URDF"));
+  EXPECT_THAT(ErrorOf(folder, World("\n" + Model("m", "0 0 0 0 0 0", Visual("<mesh><uri>no.obj</uri></mesh>")))),
+              HasSubstr("world.sdf:4: no.obj: no such file"));
+  EXPECT_THAT(ErrorOf(folder, World(Model("m", "0 0 0 0 0 0", ""))), HasSubstr("has no visuals"));
+  folder.Write("bad.obj", "f 1 2 3\n");
+  EXPECT_THAT(ErrorOf(folder, World(Model("m", "0 0 0 0 0 0", Visual("<mesh><uri>bad.obj</uri></mesh>")))),
+              HasSubstr("bad.obj"));
+}
+
+TEST(ImportTest, FolderOfMeshesIsOneWorld) {
+  const Folder folder;
+  folder.Write("set/a.obj", kTriangle);
+  folder.Write("set/b.obj", kTriangle);
+  folder.Write("set/readme.txt", "");
+  EXPECT_EQ(Imported(folder, folder / "set").scene.meshes.size(), 2u);
+  EXPECT_THROW(Imported(folder, folder / "set"), BadInput);  // made.yaml is there
+}
+
+}  // namespace
+}  // namespace vobench

@@ -1,0 +1,265 @@
+#include <console_bridge/console.h>
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "sim/world/mesh_loader.h"
+#include "sim/world/texture.h"
+#include "tools/base/files.h"
+#include "tools/base/text.h"
+#include "tools/bench/import/import.h"
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpedantic"
+#include <sdf/sdf.hh>
+#pragma GCC diagnostic pop
+
+namespace vobench {
+namespace {
+
+namespace fs = std::filesystem;
+using Pose = ignition::math::Pose3d;
+
+constexpr double kHalf = std::numbers::sqrt2 / 2;  // of quarter turns
+const glm::dquat kYUp(kHalf, -kHalf, 0, 0);        // W from SDF's z up
+
+glm::dvec3 Vector(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
+glm::dquat Quaternion(const ignition::math::Quaterniond& q) { return {q.W(), q.X(), q.Y(), q.Z()}; }
+glm::dvec3 Linear(const glm::dvec3& srgb) {
+  const glm::dvec3 c = glm::clamp(srgb, 0.0, 1.0);
+  return {sim::SrgbToLinear(c.r), sim::SrgbToLinear(c.g), sim::SrgbToLinear(c.b)};
+}
+glm::dvec3 Linear(const ignition::math::Color& c) { return Linear(glm::dvec3(c.R(), c.G(), c.B())); }
+
+// Raw coordinates of a COLLADA file, which are SDF's, from those with y up, as it is loaded.
+glm::dquat RawFromYUp(const fs::path& file) {
+  if (file.extension() != ".dae" && file.extension() != ".DAE") return {1, 0, 0, 0};
+  const std::string text = base::ReadFile(file).value_or("");
+  if (text.find("<up_axis>Z_UP<") != std::string::npos) return {kHalf, kHalf, 0, 0};
+  return text.find("<up_axis>X_UP<") != std::string::npos ? glm::dquat(kHalf, 0, 0, -kHalf) : glm::dquat(1, 0, 0, 0);
+}
+
+class Reader {
+ public:
+  Reader(const fs::path& file, const std::vector<fs::path>& folders, fs::path shapes)
+      : file_(fs::absolute(file)), shapes_(std::move(shapes)), folders_(folders) {
+    const fs::path here = file_.parent_path(), above = here.parent_path();
+    folders_.insert(folders_.end(), {here, here / "models", above, above / "models"});
+    for (const char* name : {"GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH"}) {
+      const char* value = std::getenv(name);
+      std::istringstream list(value == nullptr ? "" : value);
+      for (std::string folder; std::getline(list, folder, ':');) folders_.emplace_back(folder);
+    }
+    if (const char* home = std::getenv("HOME")) folders_.push_back(fs::path(home) / ".gazebo/models");
+  }
+
+  ImportedWorld Read() {
+    RequireXml();
+    sdf::Console::Instance()->SetQuiet(true);
+    sdf::ParserConfig config;
+    config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
+    config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
+    config.SetFindCallback([this](const std::string& uri) { return Find(uri, file_).string(); });
+    sdf::Root root;
+    console_bridge::noOutputHandler();  // what is no good SDF is tried as URDF, whose reader prints its problems
+    Note(root.Load(file_.string(), config));
+    if (problems_.empty() && root.WorldCount() > 0) ReadWorld(*root.WorldByIndex(0));
+    if (problems_.empty() && root.Model() != nullptr) ReadModel(*root.Model(), Pose::Zero, root.Model()->Name());
+    if (!problems_.empty()) throw std::runtime_error(base::Join({problems_.begin(), problems_.end()}, "\n"));
+    if (result_.world.meshes.empty()) throw std::runtime_error(file_.string() + ": has no visuals");
+    result_.warnings = warnings_.Summed();
+    return std::move(result_);
+  }
+
+ private:
+  // libsdformat says of what is not XML only that it cannot be read.
+  void RequireXml() const {
+    tinyxml2::XMLDocument xml;
+    if (xml.LoadFile(file_.c_str()) != tinyxml2::XML_SUCCESS)
+      throw std::runtime_error(
+          fmt::format("{}:{}: is not XML: {}", file_.string(), xml.ErrorLineNum(), xml.ErrorName()));
+    const std::string name = xml.RootElement()->Name();
+    if (name != "sdf" && name != "gazebo" && name != "robot")
+      throw std::runtime_error(file_.string() + ": is neither SDF nor URDF: its element is <" + name + ">");
+  }
+
+  void Reject(const std::string& file, std::optional<int> line, const std::string& what) {
+    problems_.insert((file.empty() ? file_.string() : file) + (line ? ":" + std::to_string(*line) : "") + ": " + what);
+  }
+  // All but those that repeat of an outer element, or of the file, that it cannot be read either.
+  void Note(const sdf::Errors& errors) {
+    bool repeats = false;
+    for (const sdf::Error& error : errors) {
+      const std::string what = error.Message();
+      const bool is_outer = what.starts_with("Error reading element") || what.starts_with("Unable to read file");
+      if (!(is_outer && repeats)) Reject(error.FilePath().value_or(""), error.LineNumber(), what);
+      repeats = is_outer;
+    }
+  }
+
+  // The file or folder of a URI that stands in the file `from`; empty: it is not there.
+  fs::path Find(const std::string& uri, const fs::path& from) const {
+    const std::size_t scheme = uri.find("://");
+    const std::string name = scheme == std::string::npos ? uri : uri.substr(scheme + 3);
+    std::error_code error;
+    if (uri.starts_with("http") || name.empty()) return {};
+    const fs::path beside = (from.empty() ? file_ : from).parent_path() / name;
+    if (!uri.starts_with("model:") && fs::exists(beside, error)) return beside;
+    for (const fs::path& folder : folders_) {
+      if (fs::exists(folder / name, error)) return (folder / name).lexically_normal();
+    }
+    return {};
+  }
+  fs::path Require(const std::string& uri, const std::string& from, const sdf::ElementPtr& at) {
+    const fs::path found = Find(uri, from);
+    if (found.empty())
+      Reject(at->FilePath(), at->LineNumber(),
+             uri + ": no such file; --models names folders of models, fetched before");
+    return found;
+  }
+
+  template <class Part>
+  Pose Resolved(const Part& part, const Pose& parent) {
+    Pose pose;
+    Note(part.SemanticPose().Resolve(pose));
+    return parent * pose;
+  }
+
+  // Gazebo shades with power * cos, so that a white surface under power 1 is white: an irradiance of pi.
+  void ReadWorld(const sdf::World& in) {
+    const sdf::Scene scene = in.Scene() == nullptr ? sdf::Scene() : *in.Scene();
+    result_.lights = {"{type: ambient, radiance: " + ListText(Linear(scene.Ambient())) + "}"};
+    if (scene.Sky() != nullptr)
+      result_.lights.emplace_back("{type: sky, zenith: [0.2, 0.35, 0.8], horizon: [0.7, 0.75, 0.9]}");
+    result_.background = Linear(scene.Background());
+    for (std::uint64_t i = 0; i < in.ModelCount(); ++i)
+      ReadModel(*in.ModelByIndex(i), Pose::Zero, in.ModelByIndex(i)->Name());
+    for (std::uint64_t i = 0; i < in.LightCount(); ++i) ReadLight(*in.LightByIndex(i), Pose::Zero);
+    for (std::uint64_t i = 0; i < in.ActorCount(); ++i)
+      warnings_.Add("'" + in.ActorByIndex(i)->Name() + "': ", "actors are left out");
+  }
+
+  // model: the outermost one that it belongs to.
+  void ReadModel(const sdf::Model& in, const Pose& parent, const std::string& model) {
+    const Pose pose = Resolved(in, parent);
+    for (std::uint64_t i = 0; i < in.ModelCount(); ++i) ReadModel(*in.ModelByIndex(i), pose, model);
+    for (std::uint64_t i = 0; i < in.LinkCount(); ++i) {
+      const sdf::Link& link = *in.LinkByIndex(i);
+      const Pose of_link = Resolved(link, pose);
+      for (std::uint64_t k = 0; k < link.VisualCount(); ++k) ReadVisual(*link.VisualByIndex(k), of_link, model);
+      for (std::uint64_t k = 0; k < link.LightCount(); ++k) ReadLight(*link.LightByIndex(k), of_link);
+    }
+  }
+
+  void ReadLight(const sdf::Light& in, const Pose& parent) {
+    const Pose pose = Resolved(in, parent);
+    const glm::dvec3 power = std::numbers::pi * in.Intensity() * Linear(in.Diffuse());
+    const glm::dvec3 way = kYUp * Vector(pose.Rot().RotateVector(in.Direction())), place = kYUp * Vector(pose.Pos());
+    constexpr double kAt = 3;  // [m], where a lamp is as bright as Gazebo's
+    const double fade = in.ConstantAttenuationFactor() + kAt * in.LinearAttenuationFactor() +
+                        kAt * kAt * in.QuadraticAttenuationFactor();
+    if (in.Type() == sdf::LightType::DIRECTIONAL) {
+      const std::string irradiance = ListText(power);
+      return result_.lights.push_back("{type: sun, direction: " + ListText(way) + ", irradiance: " + irradiance + "}");
+    }
+    const std::string intensity = ListText(kAt * kAt / std::max(fade, 0.01) * power);
+    result_.lights.push_back("{type: point, position: " + ListText(place) + ", intensity: " + intensity + "}");
+    const std::string who = "light '" + in.Name() + "': ";
+    warnings_.Add(who, "attenuation is that of the squared distance, equally bright at 3 m");
+    if (in.Type() == sdf::LightType::SPOT) warnings_.Add(who, "a spot light shines to all sides");
+  }
+
+  void ReadVisual(const sdf::Visual& visual, const Pose& parent, const std::string& model) {
+    sim::MeshDescription mesh;
+    const std::string who = "model '" + model + "', visual '" + visual.Name() + "': ";
+    const sdf::Geometry& geometry = *visual.Geom();
+    const Pose pose = Resolved(visual, parent);
+    glm::dquat turn(1, 0, 0, 0);  // before the pose
+    mesh.name = model + "/" + visual.Name();
+    while (!names_.insert(mesh.name).second) mesh.name += "_";
+    mesh.category = model.substr(0, std::max<std::size_t>(1, model.find_last_not_of("0123456789_ ") + 1));
+    const auto shape = [&](const char* name, const glm::dvec3& size) {
+      mesh.file = shapes_ / name, mesh.stretch = size, mesh.color = Linear(glm::dvec3(0.7));
+    };
+    if (const auto* box = geometry.BoxShape()) {
+      shape("box.obj", Vector(box->Size()));
+    } else if (const auto* sphere = geometry.SphereShape()) {
+      shape("sphere.obj", glm::dvec3(sphere->Radius()));
+    } else if (const auto* cylinder = geometry.CylinderShape()) {
+      shape("cylinder.obj", {cylinder->Radius(), cylinder->Radius(), cylinder->Length()});
+    } else if (const auto* plane = geometry.PlaneShape()) {
+      shape("plane.obj", {plane->Size().X(), plane->Size().Y(), 1});
+      ignition::math::Quaterniond to_normal;
+      to_normal.From2Axes(ignition::math::Vector3d::UnitZ, plane->Normal());
+      turn = Quaternion(to_normal);
+      result_.planes.insert(mesh.name);
+    } else if (const auto* from = geometry.MeshShape()) {
+      mesh.file = Require(from->Uri(), from->FilePath(), from->Element());
+      turn = RawFromYUp(mesh.file);
+      const glm::dmat3 turned = glm::mat3_cast(turn);  // by a quarter or not: its squares swap the factors
+      mesh.stretch = glm::transpose(glm::matrixCompMult(turned, turned)) * Vector(from->Scale());
+      if (!from->Submesh().empty()) warnings_.Add(who, "a submesh is not picked out: the whole file is taken");
+      const fs::path folder = mesh.file.parent_path();  // MODEL/meshes
+      result_.world.folders.push_back(folder.filename() == "meshes" ? folder.parent_path() : folder);
+    } else {
+      return warnings_.Add(who, "a shape that is none of box, sphere, cylinder, plane and mesh is left out");
+    }
+    if (const sdf::Material* material = visual.Material()) ReadMaterial(*material, who, mesh);
+    if (!mesh.texture.empty()) result_.world.folders.push_back(mesh.texture.parent_path());
+    if (visual.Transparency() > 0) warnings_.Add(who, "transparency is not rendered: it is opaque");
+    mesh.position = kYUp * Vector(pose.Pos());
+    mesh.orientation = glm::normalize(kYUp * Quaternion(pose.Rot()) * turn);
+    result_.world.meshes.push_back(mesh);
+  }
+
+  void ReadMaterial(const sdf::Material& in, const std::string& who, sim::MeshDescription& mesh) {
+    if (in.Element()->HasElement("diffuse")) mesh.color = Linear(in.Diffuse());
+    for (const auto type : {sdf::PbrWorkflowType::METAL, sdf::PbrWorkflowType::SPECULAR}) {
+      const auto* flow = in.PbrMaterial() == nullptr ? nullptr : in.PbrMaterial()->Workflow(type);
+      if (flow == nullptr || flow->AlbedoMap().empty()) continue;
+      mesh.texture = Require(flow->AlbedoMap(), in.FilePath(), in.Element());
+      if (!in.Element()->HasElement("diffuse")) mesh.color = glm::dvec3(1);
+    }
+    if (!in.ScriptName().empty()) ReadScript(in, who, mesh);
+  }
+
+  void ReadScript(const sdf::Material& in, const std::string& who, sim::MeshDescription& mesh) {
+    std::vector<fs::path> scripts, pictures;
+    for (auto uri = in.Element()->GetElement("script")->GetElement("uri"); uri; uri = uri->GetNextElement("uri")) {
+      scripts.push_back(Find(uri->Get<std::string>(), in.FilePath()));
+      const fs::path folder = fs::is_directory(scripts.back()) ? scripts.back() : scripts.back().parent_path();
+      pictures.insert(pictures.end(), {folder, folder.parent_path() / "textures"});
+    }
+    const auto material = FindOgreMaterial(in.ScriptName(), scripts);
+    if (!material)
+      return warnings_.Add(who + "'" + in.ScriptName() + "': ", "a material that is in no script is left out");
+    mesh.color = material->diffuse ? Linear(*material->diffuse) : glm::dvec3(1);
+    if (material->texture.empty()) return;
+    const auto has = [&](const fs::path& folder) { return fs::is_regular_file(folder / material->texture); };
+    const auto folder = std::ranges::find_if(pictures, has);
+    if (folder != pictures.end()) return void(mesh.texture = *folder / material->texture);
+    Reject(in.FilePath(), in.Element()->LineNumber(),
+           "no texture " + material->texture + " for '" + in.ScriptName() + "'");
+  }
+
+  fs::path file_, shapes_;
+  std::vector<fs::path> folders_;  // of models
+  ImportedWorld result_;
+  sim::WarningList warnings_;
+  std::set<std::string> problems_, names_;
+};
+
+}  // namespace
+
+ImportedWorld ReadSdf(const fs::path& file, const std::vector<fs::path>& folders, const fs::path& shapes) {
+  return Reader(file, folders, shapes).Read();
+}
+
+}  // namespace vobench
