@@ -4,13 +4,14 @@
 #include <string>
 #include <variant>
 
+#include "tools/bench/breaking/options.h"
 #include "tools/bench/campaign/options.h"
 #include "tools/bench/run/commands.h"
 
 namespace vobench {
 
 using Command = std::variant<RenderOptions, TrackOptions, EvaluateOptions, RunOptions, CheckOptions, ReportOptions,
-                             VerifyOptions, CampaignOptions, ExportOptions, SettingsOptions, FitCameraOptions>;
+                             VerifyOptions, CampaignOptions, BenchOptions, ExportOptions, SettingsOptions, FitCameraOptions>;
 
 // The command, or the exit status where there is none to run: 0 after --help and --version, 2 for a line that makes no
 // sense (the reason is on stderr). Throws BadInput for what --compat cannot be.

@@ -1,0 +1,42 @@
+// A step of the bench: some scenarios with settings and one system, as a campaign of its own in OUT.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/bench/breaking/bench_file.h"
+#include "tools/bench/breaking/options.h"
+#include "tools/bench/campaign/results.h"
+
+namespace vobench::breaking {
+
+// One scenario of a step.
+struct Cell {
+  std::string name;
+  std::filesystem::path file;
+  campaign::Changes set;
+};
+
+class Steps {
+ public:
+  // Finds the system. Throws BadInput where there is none of that name.
+  Steps(const BenchOptions& options, const BenchFile& bench);
+
+  const std::string& system() const { return name_; }  // as tables have it
+
+  // Writes OUT/NAME.yaml, runs the campaign into OUT/NAME, and reads its results in the order of cells, then seeds. What
+  // was done by an earlier start is not done again. Throws as RunCampaign.
+  std::vector<campaign::TaskRecord> Run(const std::string& name, const std::vector<Cell>& cells, int seeds) const;
+
+  bool IsBroken(const campaign::TaskRecord& record) const;
+
+ private:
+  const BenchOptions& options_;
+  const BenchFile& bench_;
+  std::string name_, entry_;  // entry_: of the campaign's `systems`
+  std::filesystem::path external_;
+  bool keyframes_ = false;
+};
+
+}  // namespace vobench::breaking
