@@ -62,12 +62,14 @@ std::string Text(const StressResult& stress, double share) {
 std::string BreakingText(const StressResult& stress) {
   const auto& b = stress.breaking;
   if (!b) return "not measured";
-  if (b->end == End::at_the_mildest) return "broken at the mildest, " + Text(stress, 0);
+  if (b->end == End::at_the_mildest) return "broken at " + Text(stress, 0) + ", the mildest";
   if (b->end == End::not_reached) {
     const bool physical = !stress.limit.empty();
     return fmt::format("not broken at {}{}", Text(stress, 1), physical ? ", its limit: " + stress.limit : "");
   }
-  return fmt::format("{} [{} to {}]", Text(stress, b->at), Text(stress, b->low), Text(stress, b->high));
+  const std::string low = Text(stress, b->low);
+  const std::string number = low.substr(0, low.size() - (stress.unit.empty() ? 0 : stress.unit.size() + 1));
+  return fmt::format("{} [{} to {}]", Text(stress, b->at), number, Text(stress, b->high));
 }
 
 std::string ToJson(const Card& card) {

@@ -41,7 +41,7 @@ struct Card {
   std::optional<Cost> cost;
 };
 
-// The value at a share of the way, and the breaking point in words: "12 ms [10, 15]", "broken at 1 ms already", "not broken
+// The value at a share of the way, and the breaking point in words: "12 ms [10 to 15 ms]", "broken at 1 ms, the mildest", "not broken
 // at 33 ms (read-out = frame interval)".
 std::string Text(const StressResult& stress, double share);
 std::string BreakingText(const StressResult& stress);

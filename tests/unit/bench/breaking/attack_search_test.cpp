@@ -61,7 +61,8 @@ TEST(AttackSearch, FindsThePlantedTwoOfEight) {
       EXPECT_LE(result.norm, mildest * 1.1);
       EXPECT_TRUE(surface.exceeded(result.at[static_cast<std::size_t>(i)], result.at[static_cast<std::size_t>(k)]));
       for (int other = 0; other < static_cast<int>(kParameters); ++other) {
-        if (other != i && other != k) EXPECT_EQ(result.at[static_cast<std::size_t>(other)], 0) << other;
+        if (other == i || other == k) continue;
+        EXPECT_EQ(result.at[static_cast<std::size_t>(other)], 0) << other;
       }
     }
   }

@@ -76,7 +76,9 @@ TEST(LogisticDose, TheIntervalHoldsTheTruth) {
     }
     RecordProperty("misses_at_" + std::to_string(m), static_cast<int>(misses));
     EXPECT_LE(misses, limit) << m << " " << k;
-    if (k < 20) EXPECT_GT(misses_of_control, limit) << m << " " << k;
+    if (k < 20) {
+      EXPECT_GT(misses_of_control, limit) << m << " " << k;
+    }
   }
 }
 
