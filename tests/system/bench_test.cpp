@@ -63,7 +63,7 @@ TEST_F(BenchTest, FindsThePlantedBreakingPointAndEndsAlikeAfterKills) {
   EXPECT_EQ(bench["stresses"][1]["breaking"]["end"], "not_reached");
   EXPECT_EQ(bench["left_out"][0], "x");
   EXPECT_EQ(bench["accuracy"][0]["runs"], 2);
-  EXPECT_THAT(whole.out, testing::AllOf(HasSubstr("told"), HasSubstr("not broken at 9 e, its limit: none")));
+  EXPECT_THAT(whole.out, testing::AllOf(HasSubstr("told"), HasSubstr("not broken at 9.00 e, its limit: none")));
   EXPECT_THAT(ReadFile(here_ / "whole/card.svg"), HasSubstr("</svg>"));
   EXPECT_THAT(ReadFile(here_ / "whole/card.html"), HasSubstr("broken of runs, by dose"));
   int kills = 0;

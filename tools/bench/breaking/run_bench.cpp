@@ -81,6 +81,7 @@ class Run {
     for (const Stress& s : bench.stresses) {
       card_.stresses.push_back({s.name, s.unit, s.limit, s.mild, s.severe, s.logarithmic, {}, {}});
     }
+    ReadOthers();
   }
 
   void All() {
@@ -89,16 +90,7 @@ class Run {
     }
     for (StressResult& stress : card_.stresses) stress.breaking = FindBreaking(stress.done, bench_.steps);
     std::vector<Card> cards = {card_};
-    for (const fs::path& file : bench_.references) {
-      const auto text = base::ReadFile(file);
-      if (!text) throw BadInput(file.string() + ": cannot be read");
-      try {
-        Card other = CardFromJson(*text);
-        if (other.system != card_.system && other.mode == card_.mode) cards.push_back(std::move(other));
-      } catch (const std::invalid_argument& error) {
-        throw BadInput(file.string() + ": " + error.what());
-      }
-    }
+    cards.insert(cards.end(), others_.begin(), others_.end());
     base::WriteFile(options_.output / "results.csv",
                     "what,dose,seed,status,broken,ate_share_of_path,ate_m,rpe_m,pose_coverage,nees_pose_per_dof,"
                     "nis_per_dof,reason\n" +
@@ -112,6 +104,20 @@ class Run {
   }
 
  private:
+  // Cards of other systems, of the same mode.
+  void ReadOthers() {
+    for (const fs::path& file : bench_.references) {
+      const auto text = base::ReadFile(file);
+      if (!text) throw BadInput(file.string() + ": cannot be read");
+      try {
+        Card other = CardFromJson(*text);
+        if (other.system != card_.system && other.mode == card_.mode) others_.push_back(std::move(other));
+      } catch (const std::invalid_argument& error) {
+        throw BadInput(file.string() + ": " + error.what());
+      }
+    }
+  }
+
   void Accuracy() {
     std::vector<Cell> cells;
     for (const AccuracyScenario& one : bench_.accuracy) {
@@ -172,6 +178,7 @@ class Run {
   const BenchFile& bench_;
   Steps steps_;
   Card card_;
+  std::vector<Card> others_;
   std::optional<Cost> cost_;
   std::string csv_;
 };
