@@ -4,7 +4,6 @@
 #include <string>
 #include <variant>
 
-#include "tools/bench/breaking/options.h"
 #include "tools/bench/campaign/options.h"
 #include "tools/bench/run/commands.h"
 

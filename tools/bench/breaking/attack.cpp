@@ -1,5 +1,3 @@
-#include "tools/bench/breaking/attack.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +10,6 @@
 #include "tools/bench/errors.h"
 
 namespace vobench::breaking {
-namespace fs = std::filesystem;
 namespace {
 
 constexpr int kConfirming = 10, kBroken = 9, kFirstConfirming = 1001;  // worlds
@@ -26,13 +23,11 @@ class Attack {
     }
   }
 
-  // Parameters that are at their mildest are set to that: the scenario is that of the range.
   Cell At(const Combination& x, int world) const {
     Cell cell{fmt::format("world {}", world), bench_.attack.front().file, bench_.attack.front().base};
     for (std::size_t i = 0; i < x.size(); ++i) {
-      const campaign::Changes all = bench_.attack[i].SettingsAt(bench_.attack[i].At(x[i]));
-      cell.set.insert(cell.set.end(), all.begin() + static_cast<std::ptrdiff_t>(bench_.attack[i].base.size()),
-                      all.end());
+      const campaign::Changes set = bench_.attack[i].SettingsAt(bench_.attack[i].At(x[i]));
+      cell.set.insert(cell.set.end(), set.begin(), set.end());
     }
     cell.set.emplace_back("seed", std::to_string(world));
     return cell;
@@ -87,8 +82,10 @@ void RunAttack(const BenchOptions& options, const BenchFile& bench) {
   // More severe by a twentieth until it is broken nearly always.
   Combination x = result.at;
   int broken = 0;
+  std::string last;
   for (int more = 0;; ++more) {
-    broken = attack.Broken(fmt::format("confirmed/{:02}", more), x, kFirstConfirming, kConfirming);
+    last = fmt::format("confirmed/{:02}", more);
+    broken = attack.Broken(last, x, kFirstConfirming, kConfirming);
     if (broken >= kBroken || std::ranges::all_of(x, [](double value) { return value == 0 || value == 1; })) break;
     for (double& value : x) value = std::min(1.0, 1.05 * value);
   }
@@ -110,10 +107,7 @@ void RunAttack(const BenchOptions& options, const BenchFile& bench) {
     flags += fmt::format(" --set {}='{}'", key, value);
   scenario += fmt::format("# {} of {} worlds break {}: `vobench campaign` runs them.\n", broken, kConfirming,
                           attack.steps().system());
-  fs::path last;
-  for (int more = 0; fs::exists(options.output / fmt::format("confirmed/{:02}.yaml", more)); ++more)
-    last = options.output / fmt::format("confirmed/{:02}.yaml", more);
-  scenario += base::ReadFile(last).value_or("");
+  scenario += base::ReadFile(options.output / (last + ".yaml")).value_or("");
   base::WriteFile(options.output / "attack.yaml", scenario);
   fmt::print(
       "broken by {}\nnorm {:.3f} of ranges of 1 each, {} of {} parameters changed, {} trials; {} of {} other worlds "

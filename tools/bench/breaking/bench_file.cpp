@@ -102,17 +102,17 @@ void RequireDistinct(Section root, const std::string& key, const std::vector<Str
 
 }  // namespace
 
-double Stress::At(double share) const {
+double Scale::At(double share) const {
   return logarithmic ? mild * std::pow(severe / mild, share) : mild + share * (severe - mild);
 }
 
 Changes Stress::SettingsAt(double value) const {
-  Changes all = base;
+  Changes all;
   for (const auto& [key, text] : set) all.emplace_back(key, HasDose(text) ? Fill(text, value).value() : text);
   return all;
 }
 
-std::string Stress::Text(double value) const { return Readable(value) + (unit.empty() ? "" : " " + unit); }
+std::string Scale::Text(double value) const { return Readable(value) + (unit.empty() ? "" : " " + unit); }
 
 BenchFile ReadBenchFile(const fs::path& path, const std::string& mode) {
   settings::Document document = settings::Document::FromFile(path);

@@ -11,22 +11,24 @@
 
 namespace vobench::breaking {
 
-// One number that makes a scenario harder. `set` are settings with "$x", or "$(A op x)" with one of + - * /, for it.
-struct Stress {
+// Doses from mild to severe.
+struct Scale {
   std::string name, unit;
-  std::filesystem::path file;  // of its scenario
-  campaign::Changes base;      // that the scenario begins with
-  campaign::Changes set;
   double mild = 0, severe = 1;
   bool logarithmic = false;
   std::string limit;  // why it cannot be more severe; empty: the range ends for no such reason
 
-  // At a share of the way from mild to severe.
+  // At a share of the way; and as text: "12.3 ms".
   double At(double share) const;
-  // The scenario's settings at a value.
-  campaign::Changes SettingsAt(double value) const;
-  // "12.3 ms"
   std::string Text(double value) const;
+};
+
+// A number that makes a scenario harder. `set` are settings with "$x", or "$(A op x)" with one of + - * /, for it.
+struct Stress : Scale {
+  std::filesystem::path file;  // of its scenario
+  campaign::Changes base;      // that the scenario begins with
+  campaign::Changes set;
+  campaign::Changes SettingsAt(double value) const;  // after `base`
 };
 
 struct AccuracyScenario {

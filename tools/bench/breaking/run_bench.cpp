@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/base/files.h"
-#include "tools/bench/breaking/attack.h"
 #include "tools/bench/breaking/card.h"
 #include "tools/bench/breaking/step.h"
 #include "tools/bench/campaign/output.h"
@@ -78,9 +77,7 @@ class Run {
     card_.mode = options.full ? "full" : "quick";
     card_.steps = bench.steps;
     card_.seeds = bench.seeds;
-    for (const Stress& s : bench.stresses) {
-      card_.stresses.push_back({s.name, s.unit, s.limit, s.mild, s.severe, s.logarithmic, {}, {}});
-    }
+    for (const Stress& stress : bench.stresses) card_.stresses.push_back({stress, {}, {}});
     ReadOthers();
   }
 
@@ -135,6 +132,7 @@ class Run {
       card_.accuracy.push_back(Summary(steps_, cells[c].name, runs));
       for (const TaskRecord& run : runs) csv_ += CsvRow(steps_, cells[c].name, "", std::to_string(run.seed), run);
     }
+    card_.accuracy.push_back(Summary(steps_, "all", records));
     if (!records.empty()) cost_ = CostOf(options_.output / "accuracy", records.size());
   }
 
@@ -152,8 +150,9 @@ class Run {
         const double dose = stress.At(1.0 * step / bench_.steps);
         // Each dose has worlds of its own, so that all runs are independent.
         for (int seed = step * bench_.seeds + 1; seed <= (step + 1) * bench_.seeds; ++seed) {
-          Cell cell{fmt::format("{}, {}, {}", stress.name, stress.Text(dose), seed), stress.file,
-                    stress.SettingsAt(dose)};
+          Cell cell{fmt::format("{}, {}, {}", stress.name, stress.Text(dose), seed), stress.file, stress.base};
+          const campaign::Changes set = stress.SettingsAt(dose);
+          cell.set.insert(cell.set.end(), set.begin(), set.end());
           cell.set.emplace_back("seed", std::to_string(seed));
           cells.push_back(std::move(cell));
           places.push_back({s, step, seed});

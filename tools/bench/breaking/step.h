@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "tools/bench/breaking/bench_file.h"
-#include "tools/bench/breaking/options.h"
 #include "tools/bench/campaign/results.h"
+#include "tools/bench/run/commands.h"
 
 namespace vobench::breaking {
 
@@ -38,5 +38,10 @@ class Steps {
   std::filesystem::path external_;
   bool keyframes_ = false;
 };
+
+// `vobench bench --attack`: the search of attack_search.h, each evaluation a campaign OUT/trials/..., whose majority of
+// worlds says whether a combination breaks the system. What is found is run in ten other worlds, and made more severe until
+// nine of them are broken. Prints it, and writes attack.yaml, a campaign that reproduces it, and attack.json.
+void RunAttack(const BenchOptions& options, const BenchFile& bench);
 
 }  // namespace vobench::breaking
