@@ -76,7 +76,16 @@ std::vector<campaign::TaskRecord> Steps::Run(const std::string& name, const std:
   campaign.cache = options_.cache.value_or(options_.output / "cache");
   campaign.quiet = true;
   base::WriteFile(campaign.file, text);
-  RunCampaign(campaign);
+  try {
+    RunCampaign(campaign);
+  } catch (const BadInput&) {
+    throw;
+  } catch (const std::runtime_error&) {  // all that could be done is done
+    for (std::size_t task = 0; task < cells.size() * static_cast<std::size_t>(seeds); ++task) {
+      const auto record = campaign::ReadRecord(folder, static_cast<std::int64_t>(task));
+      if (!record || (record->status == campaign::Status::failed && !record->reason.starts_with("frame "))) throw;
+    }
+  }
   std::vector<campaign::TaskRecord> records;
   for (std::size_t c = 0; c < cells.size(); ++c) {
     for (int seed = 0; seed < seeds; ++seed) {  // of a campaign the seed changes last

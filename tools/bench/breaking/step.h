@@ -26,7 +26,8 @@ class Steps {
   const std::string& system() const { return name_; }  // as tables have it
 
   // Writes OUT/NAME.yaml, runs the campaign into OUT/NAME, and reads its results in the order of cells, then seeds. What
-  // was done by an earlier start is not done again. Throws as RunCampaign.
+  // was done by an earlier start is not done again. Throws as RunCampaign, but for failures of our own odometry at a frame:
+  // these are broken runs, as others' crashes are.
   std::vector<campaign::TaskRecord> Run(const std::string& name, const std::vector<Cell>& cells, int seeds) const;
 
   bool IsBroken(const campaign::TaskRecord& record) const;
