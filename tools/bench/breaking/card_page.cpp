@@ -85,7 +85,8 @@ std::vector<std::vector<std::string>> OverviewRows(const std::vector<Card>& card
     const AccuracyResult all = card.accuracy.empty() ? AccuracyResult{} : card.accuracy.back();
     rows.push_back({DisplayName(card.system), Shown(all.ate_share_of_path, 100), Shown(all.drift, 100),
                     fmt::format("{} of {}", all.lost, all.runs), Shown(all.nees), Shown(all.nis),
-                    card.cost ? Readable(card.cost->tracking_s) : "–", card.cost ? Fixed(card.cost->memory_mb, 0) : "–"});
+                    card.cost ? Readable(card.cost->tracking_s) : "–",
+                    card.cost ? Fixed(card.cost->memory_mb, 0) : "–"});
   }
   return rows;
 }
