@@ -78,9 +78,8 @@ std::string Shown(const std::optional<double>& value, double factor = 1) {
 }
 
 std::vector<std::vector<std::string>> OverviewRows(const std::vector<Card>& cards) {
-  std::vector<std::vector<std::string>> rows = {{"system", "ATE [% of path]", "drift [% of path, over 1 s]",
-                                                 "lost runs", "NEES of the pose", "NIS", "tracking [s a run]",
-                                                 "memory [MB]"}};
+  std::vector<std::vector<std::string>> rows = {{"system", "ATE [% of path]", "drift [% of path]", "lost runs",
+                                                 "NEES of the pose", "NIS", "tracking [s a run]", "memory [MB]"}};
   for (const Card& card : cards) {
     const AccuracyResult all = card.accuracy.empty() ? AccuracyResult{} : card.accuracy.back();
     rows.push_back({DisplayName(card.system), Shown(all.ate_share_of_path, 100), Shown(all.drift, 100),
