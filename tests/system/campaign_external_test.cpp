@@ -288,10 +288,24 @@ TEST_F(CampaignTest, EntriesAreCheckedBeforeAnythingRuns) {
   EXPECT_THAT(Run("external: systems.yaml\n" + points, "points").err,
               HasSubstr("a world of points has no pictures for 'a'"));
   // What would not reach it is refused.
+  WriteFile(here_ / "systems.yaml", "systems:\n  - {name: a, command: \"x\", sensors: mono_imu, layout: euroc}\n");
   text = CampaignOf("[a]");
   text.replace(text.find("time.duration"), 0, "prior.focal_error: 0.02, ");
   const std::string column = std::to_string(text.find("{prior.focal_error") + 1);
-  EXPECT_THAT(Run(text, "unequal").err, HasSubstr("c.yaml:1:" + column + ": 'prior.focal_error': 'a' is not ours"));
+  EXPECT_THAT(Run(text, "unequal").err,
+              HasSubstr("c.yaml:1:" + column + ": 'prior.focal_error': 'a' is given the cameras"));
+}
+
+// A wrong calibration is what other people's programs are given, too: of a focal length of 131.25 px.
+TEST_F(CampaignTest, AWrongFocalLengthReachesIt) {
+  WriteFile(here_ / "systems.yaml",
+            "systems:\n  - {name: a, calibration: orb_slam2, command: \"cat {calibration} {sequence}/camera.yaml; exit "
+            "1\"}\n");
+  std::string text = CampaignOf("[a]");
+  text.replace(text.find("time.duration"), 0, "prior.focal_error: 0.2, ");
+  Run(text, "out");
+  const std::string log = ReadFile(here_ / "out/tasks/00/000000/log.txt");
+  EXPECT_THAT(log, testing::AllOf(HasSubstr("Camera.fx: 157.5"), HasSubstr("\nfx: 157.5\nfy: 157.5\n")));
 }
 
 }  // namespace

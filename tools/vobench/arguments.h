@@ -11,7 +11,7 @@ namespace vobench {
 
 using Command =
     std::variant<RenderOptions, TrackOptions, EvaluateOptions, RunOptions, CheckOptions, ReportOptions, VerifyOptions,
-                 CampaignOptions, ExportOptions, SettingsOptions, FitCameraOptions, ImportOptions>;
+                 CampaignOptions, BenchOptions, ExportOptions, SettingsOptions, FitCameraOptions, ImportOptions>;
 
 // The command, or the exit status where there is none to run: 0 after --help and --version, 2 for a line that makes no
 // sense (the reason is on stderr). Throws BadInput for what --compat cannot be.

@@ -24,6 +24,7 @@ void Execute(const CheckOptions& options) { Check(options); }
 void Execute(const ReportOptions& options) { Report(options); }
 void Execute(const VerifyOptions& options) { Verify(options); }
 void Execute(const CampaignOptions& options) { RunCampaign(options); }
+void Execute(const BenchOptions& options) { Bench(options); }
 void Execute(const ExportOptions& options) { Export(options); }
 void Execute(const FitCameraOptions& options) { FitCamera(options); }
 void Execute(const ImportOptions& options) { Import(options); }

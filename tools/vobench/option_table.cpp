@@ -210,14 +210,8 @@ void AddRun(OptionTable& table) {
   AddSet(command, run.overrides, "odometry.filter.particles=16");
 }
 
-void AddCampaign(OptionTable& table) {
-  const auto [command, campaign] = AddCommand<CampaignOptions>(
-      table, "campaign", "Scenarios x varied settings x systems x seeds, on this machine or a cluster",
-      "vobench campaign scenes/campaign_points.yaml -o out/points --jobs 2");
-  Add(command, "FILE", campaign.file, "Campaign file (docs/campaign.md)")->required();
-  Add(command, "-o,--output OUT", campaign.output, "Folder of its results; what is done there is not done again")
-      ->required();
-  command.add_flag("--dry-run", campaign.dry_run, "Check everything and list the tasks, no more");
+// Where the tasks of a campaign run, and what they may use. Returns --engine.
+CLI::Option* AddPlace(CLI::App& command, CampaignOptions& campaign) {
   CLI::Option* where = Add(command, "--engine NAME", campaign.engine, "Where tasks run: local or slurm")
                            ->check(CLI::IsMember({"local", "slurm"}))
                            ->capture_default_str();
@@ -227,6 +221,23 @@ void AddCampaign(OptionTable& table) {
       ->transform(Plain(CLI::AsSizeValue(false)));
   Add(command, "--timeout S", campaign.timeout_s, "Seconds that a task may take (default: as long as it likes)")
       ->check(Plain(CLI::PositiveNumber));
+  Add(command, "--partition NAME", campaign.partition, "Of Slurm");
+  Add(command, "--time TIME", campaign.time, "Of one job of Slurm, such as 2:00:00");
+  Add(command, "--tasks-per-job N", campaign.tasks_per_job, "Of Slurm: tasks that one element of the array does")
+      ->check(Plain(CLI::Range(1, 1000000)))
+      ->capture_default_str();
+  return where;
+}
+
+void AddCampaign(OptionTable& table) {
+  const auto [command, campaign] = AddCommand<CampaignOptions>(
+      table, "campaign", "Scenarios x varied settings x systems x seeds, on this machine or a cluster",
+      "vobench campaign scenes/campaign_points.yaml -o out/points --jobs 2");
+  Add(command, "FILE", campaign.file, "Campaign file (docs/campaign.md)")->required();
+  Add(command, "-o,--output OUT", campaign.output, "Folder of its results; what is done there is not done again")
+      ->required();
+  command.add_flag("--dry-run", campaign.dry_run, "Check everything and list the tasks, no more");
+  CLI::Option* where = AddPlace(command, campaign);
   Add(command, "--cache DIR", campaign.cache, "Where rendered sequences are kept (default: OUT/cache)");
   command.add_option("--redo", campaign.redo, "Results of this system go, and are done anew")->type_name("SYSTEM");
   command.add_flag("--update", campaign.update,
@@ -242,11 +253,28 @@ void AddCampaign(OptionTable& table) {
   Add(command, "--part N", campaign.part, "A line of --list; the first is 0")
       ->check(Plain(CLI::NonNegativeNumber))
       ->needs(list);
-  Add(command, "--partition NAME", campaign.partition, "Of Slurm");
-  Add(command, "--time TIME", campaign.time, "Of one job of Slurm, such as 2:00:00");
-  Add(command, "--tasks-per-job N", campaign.tasks_per_job, "Of Slurm: tasks that one element of the array does")
-      ->check(Plain(CLI::Range(1, 1000000)))
-      ->capture_default_str();
+}
+
+void AddBench(OptionTable& table) {
+  const auto [command, bench] = AddCommand<BenchOptions>(
+      table, "bench", "Breaking points, accuracy, consistency and time of a system on one card; or what breaks it",
+      "vobench bench rb2pf -o out/card --jobs 2");
+  Add(command, "SYSTEM|COMMAND", bench.system,
+      "One of " + SystemList() + ", of the file's external systems, or a command with {sequence} and {trajectory}")
+      ->required();
+  Add(command, "-o,--output OUT", bench.output, "Folder of its results; what is done there is not done again")
+      ->required();
+  Add(command, "--file FILE", bench.file, "Stresses and scenarios (docs/bench.md)")->capture_default_str();
+  CLI::Option* full = command.add_flag("--full", bench.full, "More doses, seeds and pixels: for a cluster");
+  command
+      .add_flag_callback(
+          "--quick", [&full = bench.full] { full = false; }, "Small pictures, a few seconds: the default")
+      ->excludes(full);
+  command.add_flag("--attack", bench.attack, "Instead the mildest combination of stresses that breaks it");
+  AddPlace(command, bench.campaign);
+  Add(command, "--cache DIR", bench.cache, "Where rendered sequences are kept (default: OUT/cache)");
+  command.add_flag("--update", bench.campaign.update,
+                   "Results that the file as it is now would not give may go; else an error");
 }
 
 void AddCheck(OptionTable& table) {
@@ -331,8 +359,8 @@ OptionTable::OptionTable()
   app.footer(
       "`vobench COMMAND --help` tells more. Exit status: 0 done, 1 the work failed or `verify` found a disagreement, "
       "2 bad usage or input, 3 not consistent though `run --require-consistent` asked for it.");
-  for (const auto add : {AddRender, AddTrack, AddEvaluate, AddRun, AddCampaign, AddCheck, AddSettings, AddVerify,
-                         AddExport, AddReport, AddFitCamera, AddImport}) {
+  for (const auto add : {AddRender, AddTrack, AddEvaluate, AddRun, AddCampaign, AddBench, AddCheck, AddSettings,
+                         AddVerify, AddExport, AddReport, AddFitCamera, AddImport}) {
     add(*this);
   }
 }

@@ -27,6 +27,7 @@ struct CampaignOptions {
   int part = 0;
   std::string partition, time;  // of Slurm's jobs
   int tasks_per_job = 10;
+  bool quiet = false;  // tables are written, not printed
 };
 void RunCampaign(const CampaignOptions& options);
 

@@ -147,12 +147,14 @@ void Conclude(const CampaignWork& work, const CampaignOptions& options) {
   for (const CampaignPoint& point : work.points()) levels.push_back(point.levels);
   const Merged merged = Merge(work.campaign(), levels, options.output);
   base::WriteFile(options.output / "report.html", CampaignPage(work.campaign(), merged), base::Writers::many);
-  fmt::print("{}\n", base::ReadFile(options.output / "tables.md").value_or(""));
-  if (const std::uint64_t bytes = work.cache().Bytes(); bytes > 0) {
-    fmt::print("{:.1f} MB of sequences in {}\n", static_cast<double>(bytes) * 1e-6, work.cache().folder().string());
+  if (!options.quiet) {
+    fmt::print("{}\n", base::ReadFile(options.output / "tables.md").value_or(""));
+    if (const std::uint64_t bytes = work.cache().Bytes(); bytes > 0) {
+      fmt::print("{:.1f} MB of sequences in {}\n", static_cast<double>(bytes) * 1e-6, work.cache().folder().string());
+    }
+    fmt::print("{} tasks in {}\nThe report is in {}\n", merged.records.size(),
+               (options.output / "results.csv").string(), (options.output / "report.html").string());
   }
-  fmt::print("{} tasks in {}\nThe report is in {}\n", merged.records.size(), (options.output / "results.csv").string(),
-             (options.output / "report.html").string());
   std::size_t failed = 0;
   std::string first;
   for (const TaskRecord& record : merged.records) {

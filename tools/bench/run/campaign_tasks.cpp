@@ -259,9 +259,9 @@ class CampaignTasks : public campaign::TaskRunner {
     const bool images = !experiment.scenario.points;
     if (!images) RefusePoints(campaign, choice, refuse);
     const campaign::SystemEntry& system = campaign.systems[choice.system];
-    if (system.system.empty() && experiment.prior.focal_error != 0) {
+    if (system.external.sensors.metric() && experiment.prior.focal_error != 0) {
       // It would not reach the system, and must not look as if it did.
-      refuse("prior.focal_error", "'" + system.name + "' is not ours: it is given the camera as it is");
+      refuse("prior.focal_error", "'" + system.name + "' is given the cameras of mav0 as they are");
     }
     if (images) RefuseMissing(system, seen, refuse);
     return {images, experiment.resolved, DigestOfSettings(experiment)};
@@ -304,8 +304,9 @@ class CampaignTasks : public campaign::TaskRunner {
       output.begin_ns = seen.recorded() ? seen.frames.front().stamp_ns : 0;
     }
     if (system.system.empty()) {
-      const ExternalAnswer answer = RunExternal(system.external, cache, sequence, experiment.scenario, !seen.recorded(),
-                                                folder, campaign.keep == campaign::Keep::all, record);
+      const ExternalAnswer answer =
+          RunExternal(system.external, cache, sequence, experiment.scenario, !seen.recorded(), folder,
+                      campaign.keep == campaign::Keep::all, experiment.prior.focal_error, record);
       output.run.trajectory = answer.trajectory;
       output.seconds = answer.seconds;
       output.how.frame_stamps_ns = answer.frame_stamps_ns;

@@ -11,11 +11,24 @@
 #include <vector>
 
 #include "tools/base/settings/settings.h"
+#include "tools/bench/campaign/options.h"
 #include "tools/judge/evaluation/trajectory.h"
 
 namespace vobench {
 
 using settings::Overrides;
+
+// A card of a system, or with `attack` the search for trouble (docs/bench.md). Steps are campaigns in OUT, with the engine
+// and limits of `campaign`, whose own file, output and cache are not used. Throws as RunCampaign.
+struct BenchOptions {
+  std::string system;  // one of ours, one of the file's external systems, or a command with {sequence} and {trajectory}
+  std::filesystem::path output;
+  std::filesystem::path file = "scenes/bench.yaml";
+  bool full = false, attack = false;
+  std::optional<std::filesystem::path> cache;  // of sequences; OUT/cache unless given
+  CampaignOptions campaign;
+};
+void Bench(const BenchOptions& options);
 
 // A scenario is rendered into a sequence on disk (docs/sequence_format.md).
 struct RenderOptions {

@@ -119,8 +119,8 @@ FramesAnswered CountAnswered(const evaluation::Trajectory& trajectory, const std
 
 ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
                            const std::string& key, const sim::Scenario& scenario, bool rendered, const fs::path& folder,
-                           bool keep_work, campaign::TaskRecord& record) {
-  const ServedSequence sequence = Input([&] { return Serve(cache, key, scenario, rendered, system); });
+                           bool keep_work, double focal_error, campaign::TaskRecord& record) {
+  const ServedSequence sequence = Input([&] { return Serve(cache, key, scenario, rendered, system, focal_error); });
   const fs::path at_work = fs::absolute(folder) / "work", trajectory = at_work / system.trajectory;
   const std::vector<fs::path> places = {at_work, fs::absolute(folder), sequence.folder};
   fs::create_directories(at_work);

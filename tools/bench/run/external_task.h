@@ -34,6 +34,7 @@ struct ExternalAnswer {
 // the folder `work` that it ran in. Throws std::runtime_error and BadInput where it cannot start as its entry says.
 ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
                            const std::string& sequence, const sim::Scenario& scenario, bool rendered,
-                           const std::filesystem::path& folder, bool keep_work, campaign::TaskRecord& record);
+                           const std::filesystem::path& folder, bool keep_work, double focal_error,
+                           campaign::TaskRecord& record);
 
 }  // namespace vobench

@@ -141,7 +141,7 @@ void MakeOnce(const campaign::SequenceCache& cache, const std::string& key, cons
 }  // namespace
 
 ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario,
-                     bool rendered, const campaign::ExternalSystem& system) {
+                     bool rendered, const campaign::ExternalSystem& system, double focal_error) {
   const fs::path original = fs::absolute(cache.PathOf(key));
   const sim::CameraParams& camera = scenario.camera;
   ServedSequence served{original, system.rectified ? RectifiedCamera(camera) : camera, {}};
@@ -158,9 +158,12 @@ ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& ke
   const SequenceFrames& frames = reader.entries();
   for (const vo::SequenceReader::Entry& frame : frames) served.stamps_ns.push_back(frame.stamp_ns);
   const fs::path tum = served.folder;
+  const sim::CameraParams exact = served.camera;
+  served.camera.fx *= 1 + focal_error;
+  served.camera.fy *= 1 + focal_error;
   const campaign::Sensors& sensors = system.sensors;
-  served.folder +=
-      "." + campaign::Name(system.layout) + (sensors.metric() ? "_" + campaign::Name(sensors) : "") + kVersion;
+  served.folder += "." + campaign::Name(system.layout) + (sensors.metric() ? "_" + campaign::Name(sensors) : "") +
+                   kVersion + (focal_error != 0 ? fmt::format(".focal{:+}", focal_error) : "");
   MakeOnce(cache, key, served.folder, [&](const fs::path& partial) {
     const auto link = [&](const fs::path& what) {  // a folder, to where it is there
       fs::create_directories((partial / what).parent_path());
@@ -187,9 +190,15 @@ ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& ke
                            partial / fmt::format("images/{:06}.png", i));
       }
       WriteTimes(partial / "times.txt", frames, original / "exposure.txt", rendered ? &scenario.sensor : nullptr);
-      if (rendered) WritePhotometricCalibration(partial, scenario, served.camera);
+      if (rendered) WritePhotometricCalibration(partial, scenario, exact);
     }
     fs::copy_file(tum / "camera.yaml", partial / "camera.yaml");
+    if (focal_error == 0) return;
+    const bool with_shutter =
+        base::ReadFile(tum / "camera.yaml").value_or("").find("rolling_shutter") != std::string::npos;
+    std::string text = sim::CameraYaml(served.camera, scenario.sensor.readout_s);
+    if (!with_shutter) text.erase(text.find("rolling_shutter"));
+    base::WriteFile(partial / "camera.yaml", text);
   });
   return served;
 }
