@@ -37,7 +37,7 @@ std::vector<Shrink> ShrinkWeights(int n, int m) {
     Shrink& out = result[static_cast<std::size_t>(i)];
     const double begin = i * ratio, end = (i + 1) * ratio;
     out.first = static_cast<int>(std::floor(begin));
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < 4 && out.first + k < n; ++k) {  // rounded, the end may lie beyond n
       const double overlap = std::min(end, out.first + k + 1.0) - std::max(begin, out.first + static_cast<double>(k));
       out.weight[static_cast<std::size_t>(k)] = static_cast<float>(std::max(0.0, overlap) / ratio);
     }

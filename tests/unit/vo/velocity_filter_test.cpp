@@ -166,6 +166,21 @@ TEST(VelocityFilter, CorrelationIsNotDropped) {
   for (unsigned seed = 1; seed <= 10; ++seed) EXPECT_GT((WorstDifference<6, 6>(seed, without_cross)), 1e-2);
 }
 
+// A lens covered for many coasting times: one long step whose velocity has all but decayed, which (22) divides by.
+TEST(VelocityFilter, HoldsAfterALongGap) {
+  for (const double dt : {0.5, 2.0, 10.0, 60.0}) {
+    const vo::MotionModel model = vo::NearlyConstantVelocity({}, dt, {.coasting_s = dt});
+    const VectorXd s0 = VectorXd::Zero(6), s1 = VectorXd::LinSpaced(6, 0.4, -0.3);
+    VectorXd mean = VectorXd::LinSpaced(6, -1, 1);
+    MatrixXd S = 0.3 * MatrixXd::Identity(6, 6);
+    JointFilter joint(s0, mean, S);
+    joint.Advance({model.F, model.Q}, s1);
+    OurUpdate({model.F, model.Q}, s0, s1, mean, S);
+    EXPECT_LT((mean - joint.mean()).norm(), 1e-7 * joint.mean().norm()) << dt << " s";
+    EXPECT_LT((S - joint.covariance()).norm(), 1e-7 * joint.covariance().norm()) << dt << " s";
+  }
+}
+
 // (6)-(9) against the matrix exponential of the continuous model: Van Loan's method.
 TEST(MotionModel, IsTheExactDiscretisation) {
   const double dt = 0.04;

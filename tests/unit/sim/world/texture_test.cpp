@@ -85,6 +85,20 @@ TEST(Texture, LevelsAverageByPlace) {
   EXPECT_NEAR(texture.Texel(1, 2, 0).x, 1 / (7 / 3.0), 0.001);
 }
 
+// Of any size: weights at the last column and row end with the picture.
+TEST(Texture, LevelsOfOneColourHaveIt) {
+  for (int width = 1; width <= 70; ++width) {
+    const int height = 71 - width;
+    const Texture texture("grey", width, height,
+                          std::vector<std::uint8_t>(static_cast<std::size_t>(3 * width * height), 128));
+    for (int level = 0; level < static_cast<int>(texture.levels().size()); ++level) {
+      const TextureLevel& size = texture.levels()[static_cast<std::size_t>(level)];
+      EXPECT_NEAR(texture.Texel(level, size.width - 1, size.height - 1).x, SrgbToLinear(128 / 255.0), 1e-3)
+          << width << " x " << height << ", level " << level;
+    }
+  }
+}
+
 TEST(Texture, WrongSizeIsRefused) {
   EXPECT_THROW(Texture("bad", 2, 2, std::vector<std::uint8_t>(11)), std::invalid_argument);
   EXPECT_THROW(Texture("bad", 0, 2, {}), std::invalid_argument);
