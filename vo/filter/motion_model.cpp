@@ -4,16 +4,11 @@
 #include <cmath>
 
 namespace vo {
-namespace {
-
-constexpr double kLeastDecay = 1e-3;  // (22) divides by it
-
-}  // namespace
 
 MotionModel NearlyConstantVelocity(const MotionParams& params, double dt, const MotionInput& input) {
   MotionModel model;
   const double coasting = std::min(input.coasting_s, dt);
-  const double decay = std::max(kLeastDecay, std::exp(-coasting / kCoastingTime));
+  const double decay = std::exp(-coasting / kCoastingTime);
   model.F.topRightCorner<6, 6>().diagonal().setConstant(dt - coasting + kCoastingTime * (1 - decay));  // (8)
   model.F.bottomRightCorner<6, 6>().diagonal().setConstant(decay);
   Vector6 psd;  // sigma^2

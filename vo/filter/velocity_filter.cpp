@@ -7,6 +7,11 @@
 #include "vo/geometry/so3.h"
 
 namespace vo {
+namespace {
+
+constexpr double kLeastFactor = 1e-3;  // of F22, which (22) divides by
+
+}  // namespace
 
 VelocityFilter::VelocityFilter(const MotionModel& step)
     : F11_(step.F.topLeftCorner<6, 6>()),
@@ -21,6 +26,8 @@ VelocityFilter::VelocityFilter(const MotionModel& step)
   Lambda_ = Q12 * Matrix6(Gamma_.inverse()).transpose() - H_ * Gamma_;  // (22)
   Psi_Psi_ = Q11_ - Q12 * Q22.llt().solve(Q12.transpose());             // (19), as its square
   m_previous_ = H_ * F21_ - F11_;                                       // (26)
+  has_decayed_ = Phi_.diagonal().minCoeff() < kLeastFactor;
+  Q12_ = Q12;
 }
 
 Vector6 VelocityFilter::PredictedMean(const Vector6& s_pf, const State& s_kf) const {
@@ -39,7 +46,13 @@ VelocityFilter::Gain VelocityFilter::Condition(const Vector6& s_pf_previous, con
 
 VelocityFilter::Gain VelocityFilter::ConditionCovariance(const Matrix6& covariance) const {
   const Matrix6 S = Phi_ * covariance * Phi_.transpose() + Gamma_ * Gamma_.transpose();  // (38)
-  const Matrix6 P_vm = S * H_.transpose() + Gamma_ * Lambda_.transpose();                // (40)
+  if (has_decayed_) {
+    const Matrix6 P_vs = Phi_ * covariance * F12_.transpose() + Q12_.transpose();  // (40), with (22) inserted
+    const Matrix6 P_ss = F12_ * covariance * F12_.transpose() + Q11_;              // (41), likewise
+    const Matrix6 gain = P_ss.llt().solve(P_vs.transpose()).transpose();
+    return {Vector6::Zero(), gain, Symmetrised(S - gain * P_vs.transpose())};
+  }
+  const Matrix6 P_vm = S * H_.transpose() + Gamma_ * Lambda_.transpose();  // (40)
   const Matrix6 cross = H_ * Gamma_ * Lambda_.transpose();
   const Matrix6 P_mm =
       H_ * S * H_.transpose() + Psi_Psi_ + Lambda_ * Lambda_.transpose() + cross + cross.transpose();  // (41)
@@ -52,6 +65,7 @@ VelocityFilter::Gain VelocityFilter::ConditionCovariance(const Matrix6& covarian
 void VelocityFilter::ConditionMean(const Vector6& s_pf_previous, const Vector6& mean, Gain& gain) const {
   const Vector6 predicted = Phi_ * mean + F21_ * s_pf_previous;                          // (37)
   gain.mean = predicted + gain.matrix * (m_previous_ * s_pf_previous - H_ * predicted);  // (39)(42)
+  if (has_decayed_) gain.mean = predicted - gain.matrix * (F11_ * s_pf_previous + F12_ * mean);
 }
 
 Vector6 PathState(const Pose& sampled) {

@@ -44,7 +44,8 @@ class VelocityFilter {
   void ConditionMean(const Vector6& s_pf_previous, const Vector6& mean, Gain& gain) const;
 
  private:
-  Matrix6 F11_, F12_, F21_, Phi_, Q11_, Gamma_, H_, Lambda_, Psi_Psi_, m_previous_;
+  Matrix6 F11_, F12_, F21_, Phi_, Q11_, Q12_, Gamma_, H_, Lambda_, Psi_Psi_, m_previous_;
+  bool has_decayed_;  // then the same without F22's inverse
 };
 
 // s_pf of a pose that was sampled: delta = 0.
