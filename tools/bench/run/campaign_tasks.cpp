@@ -89,7 +89,7 @@ void PlayImages(const Experiment& experiment, const fs::path& sequence, const st
   while (const std::optional<vo::Frame> frame = Input([&] { return reader.Next(); })) tracker.Track(*frame);
   output.run = tracker.Estimates();
   output.seconds = tracker.entry().seconds;
-  output.calibration = tracker.entry().calibration;
+  output.calibration = tracker.calibration();
 }
 
 // Times differ from run to run: they are kept apart. None of a program that does not say them.

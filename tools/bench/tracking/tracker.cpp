@@ -49,7 +49,17 @@ void Tracker::Track(const vo::PreparedFrame& prepared) {
   entry_.seconds += 1e-3 * prepared.ms + clock.seconds();
   recorder_.Add(prepared.frame, estimate, odometry_.Features());
   recorder_.Reissue(odometry_.Reissued());
-  if (const auto calibration = odometry_.Calibration()) entry_.calibration = RecordOf(*calibration, focal_px_);
+}
+
+std::optional<CalibrationRecord> Tracker::calibration() const {
+  const auto calibration = odometry_.Calibration();
+  return calibration ? std::optional(RecordOf(*calibration, focal_px_)) : std::nullopt;
+}
+
+RunData Tracker::Result(const std::vector<vo::MapPoint>& map) const {
+  RunData data = RecordedOdometry::Result(map);
+  data.entry.calibration = calibration();
+  return data;
 }
 
 PointTracker::PointTracker(const TrackerSetup& setup, const vo::Camera& camera,

@@ -54,6 +54,9 @@ class Tracker : public RecordedOdometry<vo::Odometry> {
   void Track(const vo::Frame& frame) { Track(vo::PreparedFrame(frame)); }
   void Track(const vo::PreparedFrame& prepared);
 
+  RunData Result(const std::vector<vo::MapPoint>& map) const;
+  // Of all frames; none where it is not estimated. Ends the fit of a window, which is else spread over frames.
+  std::optional<CalibrationRecord> calibration() const;
   // Of the last frame.
   const std::vector<vo::FeatureView>& features() const { return odometry_.Features(); }
 
