@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 
 #include "tools/base/text.h"
 
@@ -96,6 +97,8 @@ std::string Replaced(const std::string& text, const std::map<char, const char*>&
   }
   return out;
 }
+
+std::string QuotedForYaml(const std::string& text) { return nlohmann::json(text).dump(); }
 
 std::string QuotedForShell(const std::string& text) { return "'" + Replaced(text, {{'\'', "'\\''"}}) + "'"; }
 

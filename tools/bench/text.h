@@ -38,6 +38,9 @@ std::string Replaced(const std::string& text, const std::map<char, const char*>&
 // One word for sh.
 std::string QuotedForShell(const std::string& text);
 
+// A string of YAML: one of JSON.
+std::string QuotedForYaml(const std::string& text);
+
 std::string Base64(const std::string& bytes);
 
 }  // namespace vobench

@@ -63,9 +63,12 @@ VelocityFilter::Gain VelocityFilter::ConditionCovariance(const Matrix6& covarian
 }
 
 void VelocityFilter::ConditionMean(const Vector6& s_pf_previous, const Vector6& mean, Gain& gain) const {
-  const Vector6 predicted = Phi_ * mean + F21_ * s_pf_previous;                          // (37)
+  const Vector6 predicted = Phi_ * mean + F21_ * s_pf_previous;  // (37)
+  if (has_decayed_) {
+    gain.mean = predicted - gain.matrix * (F11_ * s_pf_previous + F12_ * mean);
+    return;
+  }
   gain.mean = predicted + gain.matrix * (m_previous_ * s_pf_previous - H_ * predicted);  // (39)(42)
-  if (has_decayed_) gain.mean = predicted - gain.matrix * (F11_ * s_pf_previous + F12_ * mean);
 }
 
 Vector6 PathState(const Pose& sampled) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "tools/base/files.h"
 #include "tools/base/text.h"
@@ -11,15 +10,10 @@
 #include "tools/bench/campaign/output.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/systems/systems.h"
+#include "tools/bench/text.h"
 
 namespace vobench::breaking {
 namespace fs = std::filesystem;
-namespace {
-
-std::string Quoted(const std::string& text) { return nlohmann::json(text).dump(); }  // a string of JSON is one of YAML
-
-}  // namespace
-
 Steps::Steps(const BenchOptions& options, const BenchFile& bench) : options_(options), bench_(bench) {
   const std::string& system = options.system;
   if (std::ranges::count(SystemNames(), system) > 0) {
@@ -31,7 +25,7 @@ Steps::Steps(const BenchOptions& options, const BenchFile& bench) : options_(opt
   if (is_command) {
     external_ = options.output / "systems.yaml";
     fs::create_directories(options.output);
-    base::WriteFile(external_, "systems:\n  - {name: command, command: " + Quoted(system) + "}\n");
+    base::WriteFile(external_, "systems:\n  - {name: command, command: " + QuotedForYaml(system) + "}\n");
   } else {
     external_ = bench.external;
   }
@@ -47,7 +41,7 @@ Steps::Steps(const BenchOptions& options, const BenchFile& bench) : options_(opt
                     base::Join(names, ", ")));
   }
   keyframes_ = found->keyframes;
-  entry_ = Quoted(name_);
+  entry_ = QuotedForYaml(name_);
 }
 
 std::vector<campaign::TaskRecord> Steps::Run(const std::string& name, const std::vector<Cell>& cells, int seeds) const {
@@ -61,10 +55,10 @@ std::vector<campaign::TaskRecord> Steps::Run(const std::string& name, const std:
       std::erase_if(set, [&](const std::string& one) { return one.starts_with(key + ": "); });
       set.push_back(key + ": " + value);
     }
-    text += fmt::format("  - {{name: {}, file: {}, set: {{{}}}}}\n", Quoted(cell.name),
-                        Quoted(fs::absolute(cell.file).string()), base::Join(set, ", "));
+    text += fmt::format("  - {{name: {}, file: {}, set: {{{}}}}}\n", QuotedForYaml(cell.name),
+                        QuotedForYaml(fs::absolute(cell.file).string()), base::Join(set, ", "));
   }
-  if (!external_.empty()) text += "external: " + Quoted(fs::absolute(external_).string()) + "\n";
+  if (!external_.empty()) text += "external: " + QuotedForYaml(fs::absolute(external_).string()) + "\n";
   text += fmt::format(
       "systems: [{}]\nseeds: 1..{}\njudge: {{lost: {{pose_coverage: {}, tracked_coverage: 0}}}}\n"
       "keep: numbers\ntables: [{{metric: ate_share_of_path, rows: [scenario]}}]\n",

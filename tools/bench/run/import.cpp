@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
-#include <nlohmann/json.hpp>
 
 #include "sim/world/texture_file.h"
 #include "tools/base/files.h"
@@ -13,6 +12,7 @@
 #include "tools/bench/run/commands.h"
 #include "tools/bench/shapes.h"
 #include "tools/bench/systems/bridge.h"
+#include "tools/bench/text.h"
 
 namespace vobench {
 namespace {
@@ -53,14 +53,11 @@ ImportedWorld WorldOf(const ImportOptions& options, const fs::path& shapes) {
   return result;
 }
 
-// JSON, which is YAML.
-std::string Quoted(const std::string& text) { return nlohmann::json(text).dump(); }
-
 // Relative where it lies below the scenario.
 std::string Named(const fs::path& file, const fs::path& scenario) {
   const fs::path whole = fs::weakly_canonical(fs::absolute(file)),
                  relative = whole.lexically_relative(fs::weakly_canonical(fs::absolute(scenario).parent_path()));
-  return Quoted((relative.empty() || *relative.begin() == ".." ? whole : relative).string());
+  return QuotedForYaml((relative.empty() || *relative.begin() == ".." ? whole : relative).string());
 }
 
 std::string ScenarioText(const ImportedWorld& from, const ImportOptions& options, const std::string& motion) {
@@ -68,8 +65,8 @@ std::string ScenarioText(const ImportedWorld& from, const ImportOptions& options
   std::string meshes, lights;
   for (const sim::MeshDescription& mesh : world.meshes) {
     const glm::dquat& q = mesh.orientation;
-    meshes += fmt::format("    - {{file: {}, name: {}, class: {}", Named(mesh.file, options.output), Quoted(mesh.name),
-                          Quoted(mesh.category));
+    meshes += fmt::format("    - {{file: {}, name: {}, class: {}", Named(mesh.file, options.output),
+                          QuotedForYaml(mesh.name), QuotedForYaml(mesh.category));
     if (mesh.position != glm::dvec3(0)) meshes += ", position: " + ListText(mesh.position);
     if (q != glm::dquat(1, 0, 0, 0)) meshes += fmt::format(", orientation: [{}, {}, {}, {}]", q.x, q.y, q.z, q.w);
     if (mesh.stretch != glm::dvec3(1)) meshes += ", stretch: " + ListText(mesh.stretch);
