@@ -61,6 +61,16 @@ MeshDescription ReadMesh(Section& section, const std::filesystem::path& folder) 
   ReadFields(section, mesh);
   section.Allow("texture");
   if (section.Has("texture")) mesh.texture = ReadFile(section, "texture", folder);  // resolved only where given
+  section.Allow("materials");
+  if (section.Has("materials")) {  // resolved only where given
+    for (Section& each : section.List("materials")) {
+      MaterialDescription& material = mesh.materials.emplace_back();
+      ReadFields(each, material);
+      each.Read("name", material.name);
+      each.Allow("texture");
+      if (each.Has("texture")) material.texture = ReadFile(each, "texture", folder);
+    }
+  }
   mesh.category = mesh.file.stem().string();
   section.Allow("class");
   if (section.Has("class")) section.Read("class", mesh.category);  // resolved only where given

@@ -14,6 +14,18 @@
 
 namespace sim {
 
+// What a surface has in the place of the file's material.
+struct MaterialDescription {
+  std::string name;                   // of the file's material
+  std::optional<glm::dvec3> color{};  // linear
+  std::filesystem::path texture{};    // times the colour; empty: none
+};
+// But for name and file.
+template <class V>
+void Visit(V& v, MaterialDescription& p) {
+  v("color", p.color, {kOfLight, "albedo (linear) in its place; with texture: a factor on it"});
+}
+
 // A mesh file set into the world: X_W = position + R(orientation) * scale * diag(stretch) * X_file.
 struct MeshDescription {
   std::filesystem::path file;  // glTF, GLB, OBJ, PLY, and whatever else assimp reads
@@ -25,8 +37,9 @@ struct MeshDescription {
   glm::dvec3 stretch{1.0};
   std::optional<glm::dvec3> color{};  // linear; with it or a texture, one material stands for all of the file's
   std::filesystem::path texture{};    // times the colour; empty: none
+  std::vector<MaterialDescription> materials{};
 };
-// But for files, name and class.
+// But for files, name, class and materials.
 template <class V>
 void Visit(V& v, MeshDescription& p) {
   v("position", p.position, {Unit::length, settings::Range{-1e8, 1e8}, "of the file's origin in W"});

@@ -59,7 +59,7 @@ class FileReader {
     file_.scene.files.insert(import.files.begin(), import.files.end());
     if (!import.problem.empty()) return file_.Problem(import.problem);
     ImportedScene& from = import.scene;
-    if (description_.color || !description_.texture.empty()) ReplaceMaterials(from);
+    ReplaceMaterials(from);
     world_from_file_[3] += world_from_file_ * glm::dvec4(import.origin, 0.0);
     for (const std::string& missing : import.missing) file_.Warn("names " + missing + ", ", "which cannot be opened");
     for (const std::string& warning : import.warnings) file_.Warn("", warning);
@@ -78,14 +78,29 @@ class FileReader {
   }
 
  private:
-  // One material, of the scenario.
-  void ReplaceMaterials(ImportedScene& scene) const {
-    ImportedMaterial material;
-    material.name = description_.name;
-    material.base_color = glm::vec4(description_.color.value_or(glm::dvec3(1)), 1);
-    if (!description_.texture.empty()) material.color_map.picture = fs::absolute(description_.texture).string();
-    std::ranges::fill(scene.materials, material);
-    for (ImportedMesh& mesh : scene.meshes) mesh.colors.clear();
+  // By the scenario's: one for all, or some by name.
+  void ReplaceMaterials(ImportedScene& scene) {
+    const auto replace = [&](const MaterialDescription& by, const auto& is_replaced) {
+      ImportedMaterial material;
+      material.name = by.name;
+      material.base_color = glm::vec4(by.color.value_or(glm::dvec3(1)), 1);
+      if (!by.texture.empty()) material.color_map.picture = fs::absolute(by.texture).string();
+      for (ImportedMesh& mesh : scene.meshes)
+        if (is_replaced(scene.materials[mesh.material])) mesh.colors.clear();
+      return std::ranges::count_if(scene.materials, [&](ImportedMaterial& each) {
+        const bool replaced = is_replaced(each);
+        if (replaced) each = material;
+        return replaced;
+      });
+    };
+    if (description_.color || !description_.texture.empty())
+      replace({description_.name, description_.color, description_.texture}, [](const auto&) { return true; });
+    std::string names;
+    for (const ImportedMaterial& material : scene.materials)
+      names += (names.empty() ? "'" : ", '") + material.name + "'";
+    for (const MaterialDescription& by : description_.materials)
+      if (replace(by, [&](const ImportedMaterial& material) { return material.name == by.name; }) == 0)
+        file_.Problem("has no material '" + by.name + "', which the scenario replaces; it has " + names);
   }
 
   void AppendMesh(const ImportedMesh& in, const glm::dmat4& world_from_node) {

@@ -26,7 +26,7 @@ class BenchTest : public CampaignTest {
  protected:
   void SetUp() override {
     WriteFile(here_ / "bench.yaml",
-              "broken: {error_share_of_path: 1e6, pose_coverage: 0.5}\n"
+              "broken: {error_share_of_spread: 1e6, pose_coverage: 0.5}\n"
               "quick: {seeds: 2, steps: 8, accuracy_seeds: 2}\n"
               "base: {scenario: " +
                   TinyScenario().string() +

@@ -126,7 +126,7 @@ BenchFile ReadBenchFile(const fs::path& path, const std::string& mode) {
   root.Read("references", references);
   for (const std::string& reference : references) bench.references.push_back(folder / reference);
   Section broken = root.Child("broken");
-  broken.Read("error_share_of_path", bench.error_share_of_path, Range::Positive());
+  broken.Read("error_share_of_spread", bench.error_share_of_spread, Range::Positive());
   broken.Read("pose_coverage", bench.pose_coverage, Range{0, 1});
   Changes accuracy, set;
   for (const std::string name : {"quick", "full"}) {

@@ -41,7 +41,7 @@ struct AccuracyScenario {
 struct BenchFile {
   std::filesystem::path file, external;
   std::vector<std::filesystem::path> references;  // cards of other systems
-  double error_share_of_path = 0.1;               // a run with a larger ATE is broken,
+  double error_share_of_spread = 0.5;             // a run with a larger ATE is broken,
   double pose_coverage = 0.5;                     // and one with fewer poses
   int seeds = 8, steps = 32, accuracy_seeds = 3;
   std::vector<AccuracyScenario> accuracy;

@@ -22,8 +22,8 @@ std::string CsvRow(const Steps& steps, const std::string& what, const std::strin
                    const TaskRecord& record) {
   std::string row = fmt::format("{},{},{},{},{}", campaign::CsvField(what), dose, seed, campaign::Name(record.status),
                                 steps.IsBroken(record) ? 1 : 0);
-  for (const char* metric :
-       {"ate_share_of_path", "ate_m", "rpe_m", "pose_coverage", "nees_pose_per_dof", "nis_per_dof"}) {
+  for (const char* metric : {"ate_share_of_spread", "ate_share_of_path", "ate_m", "rpe_m", "pose_coverage",
+                             "nees_pose_per_dof", "nis_per_dof"}) {
     const auto value = record.metric(campaign::MetricIndex(metric));
     row += value ? fmt::format(",{}", *value) : ",";
   }
@@ -89,7 +89,8 @@ class Run {
     std::vector<Card> cards = {card_};
     cards.insert(cards.end(), others_.begin(), others_.end());
     base::WriteFile(options_.output / "results.csv",
-                    "what,dose,seed,status,broken,ate_share_of_path,ate_m,rpe_m,pose_coverage,nees_pose_per_dof,"
+                    "what,dose,seed,status,broken,ate_share_of_spread,ate_share_of_path,ate_m,rpe_m,pose_coverage,nees_"
+                    "pose_per_dof,"
                     "nis_per_dof,reason\n" +
                         csv_);
     base::WriteFile(options_.output / "bench.json", ToJson(card_));

@@ -96,8 +96,8 @@ bool Steps::IsBroken(const campaign::TaskRecord& record) const {
   campaign::LostRule rule;
   rule.pose_coverage = keyframes_ ? 0 : bench_.pose_coverage;
   rule.tracked_coverage = 0;
-  const auto error = record.metric(campaign::MetricIndex("ate_share_of_path"));
-  return !campaign::WhyLost(record, rule).empty() || !error || !(*error <= bench_.error_share_of_path);
+  const auto error = record.metric(campaign::MetricIndex("ate_share_of_spread"));
+  return !campaign::WhyLost(record, rule).empty() || !error || !(*error <= bench_.error_share_of_spread);
 }
 
 }  // namespace vobench::breaking

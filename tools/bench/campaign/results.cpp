@@ -71,6 +71,8 @@ constexpr Column kColumns[] = {
     {"ate_orientation_rad", false, [](const Metrics& m, A align) { return Rmse(m.errors.Aligned(align).orientation); }},
     {"ate_share_of_path", false,
      [](const Metrics& m, A align) { return Per(m.errors.Aligned(align).position.rmse, m.path_length_m); }},
+    {"ate_share_of_spread", false,
+     [](const Metrics& m, A align) { return Per(m.errors.Aligned(align).position.rmse, m.spread_m); }},
     {"rpe_m", false, [](const Metrics& m, A align) { return RpeRmse(m.errors, align); }},
     {"rpe_unscaled_m", false, [](const Metrics& m, A) { return Rmse(m.errors.rpe_unscaled.position_statistics); }},
     {"rpe_orientation_rad", false, [](const Metrics& m, A) { return Rmse(m.errors.rpe.orientation_statistics); }},

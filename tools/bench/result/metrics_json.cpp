@@ -107,7 +107,10 @@ Json Of(const ev::Metrics& metrics) {
                {"duration", Number(metrics.duration_s, "s", "between the first and the last frame that has truth")},
                {"errors", Of(metrics.errors, options)},
                {"ate_share_of_path", Number(metrics.errors.sim3.position.rmse / metrics.path_length_m, "1",
-                                            "position RMSE after sim3 alignment / path length")}};
+                                            "position RMSE after sim3 alignment / path length")},
+               {"ate_share_of_spread",
+                Number(metrics.errors.sim3.position.rmse / metrics.spread_m, "1",
+                       "position RMSE after sim3 alignment / RMS distance of the true positions from their mean")}};
   if (metrics.live) json["live_errors"] = Of(*metrics.live, options);
   if (metrics.coverage) {
     json["coverage"] = {

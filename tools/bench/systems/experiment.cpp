@@ -71,9 +71,10 @@ const Overrides& SettingsOfImagesAlone() {
     const vo::Params defaults;
     const double inverse_depth = defaults.landmark.inverse_depth;
     return Overrides{
-        {"prior", fmt::format("{{start: origin, velocity_sigma: {}, angular_rate_sigma: {}, focal_error: 0, "
-                              "shutter_known: false}}",
-                              kPriorOfImagesAlone.velocity_sigma, kPriorOfImagesAlone.angular_rate_sigma)},
+        {"prior.start", "origin"},
+        {"prior.velocity_sigma", fmt::format("{}", kPriorOfImagesAlone.velocity_sigma)},
+        {"prior.angular_rate_sigma", fmt::format("{}", kPriorOfImagesAlone.angular_rate_sigma)},
+        {"prior.shutter_known", "false"},
         {"odometry.motion", fmt::format("{{position_noise: {}, orientation_noise: {}, adaptive: true}}",
                                         kAccelerationPerDepth / inverse_depth, defaults.motion.orientation_noise)},
         {"odometry.landmark.inverse_depth", fmt::format("{}", inverse_depth)},
@@ -155,6 +156,8 @@ std::vector<settings::FieldRow> SettingsTable() {
   }
   sim::MeshDescription mesh;
   table.Child("world.meshes.N", mesh);
+  sim::MaterialDescription material;
+  table.Child("world.meshes.N.materials.N", material);
   std::tuple<sim::AmbientLight, sim::SunLight, sim::PointLight, sim::RectLight, sim::SkyDescription> lights;
   std::apply([&](auto&... light) { (table.Child("world.lights.N", light), ...); }, lights);
   sim::SkyDescription sky;

@@ -147,6 +147,7 @@ JudgedSeries JudgeSeries(const EstimateRun& run, const Trajectory& truth,
   series.aligned = Apply(metrics.errors.sim3.similarity, matched.estimate);
   series.truth = std::move(matched.truth);
   metrics.path_length_m = PathLength(offered.truth);
+  metrics.spread_m = Spread(offered.truth);
   metrics.duration_s = static_cast<double>(offered.truth.back().stamp_ns - offered.truth.front().stamp_ns) * 1e-9;
 
   const StampedPose& start = offered.truth.front();

@@ -73,6 +73,7 @@ using EventSummary = std::array<EventCount, kNumericalEvents.size()>;
 struct Metrics {
   JudgeOptions options;
   double path_length_m = 0;                           // of the truth at the frames of the sequence
+  double spread_m = 0;                                // RMS distance of these positions from their mean
   double duration_s = 0;                              // between the first and the last of these
   TrajectoryErrors errors;                            // of the trajectory
   std::optional<TrajectoryErrors> live;               // of the answers as they were given, where the run has them apart

@@ -175,4 +175,12 @@ double PathLength(const Trajectory& trajectory) {
   return trajectory.empty() ? 0 : CumulativePathLength(trajectory).back();
 }
 
+double Spread(const Trajectory& trajectory) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const StampedPose& pose : trajectory) mean += pose.p_WC / static_cast<double>(trajectory.size());
+  double squares = 0;
+  for (const StampedPose& pose : trajectory) squares += (pose.p_WC - mean).squaredNorm();
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(trajectory.size(), 1)));
+}
+
 }  // namespace evaluation

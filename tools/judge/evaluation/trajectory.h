@@ -64,4 +64,7 @@ std::vector<double> CumulativePathLength(const Trajectory& trajectory);
 // Length of the way through all positions [m].
 double PathLength(const Trajectory& trajectory);
 
+// RMS distance of the positions from their mean [m]; 0 of none.
+double Spread(const Trajectory& trajectory);
+
 }  // namespace evaluation

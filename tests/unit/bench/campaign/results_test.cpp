@@ -67,6 +67,7 @@ TEST(Columns, Values) {
   m.errors.sim3.similarity.scale = 5;
   set(m.live.emplace().se3, 6, 6.5);
   m.path_length_m = 8;
+  m.spread_m = 0.5;
   m.duration_s = 9;
   const auto set_rpe = [](evaluation::Rpe& rpe, double position, double orientation) {
     rpe.position_statistics.rmse = position, rpe.orientation_statistics.rmse = orientation;
@@ -95,6 +96,7 @@ TEST(Columns, Values) {
                                                   {"ate_yaw_m", 7},
                                                   {"ate_orientation_rad", 2.5},
                                                   {"ate_share_of_path", 0.25},
+                                                  {"ate_share_of_spread", 4},
                                                   {"rpe_m", 12},
                                                   {"rpe_unscaled_m", 12},
                                                   {"rpe_orientation_rad", 11},

@@ -33,6 +33,7 @@ TEST(Judge, APerfectEstimateHasNoError) {
   EXPECT_LT(metrics.errors.rpe.position_statistics.max, 1e-12);
   EXPECT_EQ(metrics.errors.rpe.pairs.size(), metrics.errors.rpe_pairs_offered);
   EXPECT_NEAR(metrics.path_length_m, PathLength(truth), 1e-12);
+  EXPECT_NEAR(metrics.spread_m, metrics.constant_pose.se3.position.rmse, 1e-12);
   EXPECT_NEAR(metrics.duration_s, 89 * 0.033333333, 1e-6);
   ASSERT_TRUE(metrics.coverage);
   EXPECT_EQ(metrics.coverage->pose_coverage(), 1);

@@ -55,6 +55,27 @@ TEST_F(Obj, MarksContinuationsAndNumbers) {
   EXPECT_EQ(MaterialOf(scene).base_color, glm::vec3(1)) << "white where no material is named";
 }
 
+TEST_F(Obj, TheScenarioReplacesMaterialsByName) {
+  folder_.Write("m.mtl", "newmtl a\nKd 0.5 0.5 0.5\nnewmtl b\nKd 0.25 0.25 0.25\n");
+  WorldDescription world;
+  world.folders = {folder_.path()};
+  const std::string text = "mtllib m.mtl\n" + std::string(kFace) + "usemtl b\nf 1/1 2/2 3/3\n";
+  world.meshes.push_back({folder_.Write("m.obj", text), position_, {1, 0, 0, 0}, 1, {}, {}});
+  world.meshes[0].materials = {{"a", glm::dvec3(0.75, 0.5, 0.25), {}}};
+  const Scene scene = LoadScene(world);
+  ASSERT_THAT(scene.meshes, SizeIs(2));
+  const auto color = [&](int mesh) {
+    return scene.materials.at(static_cast<std::size_t>(scene.meshes[static_cast<std::size_t>(mesh)].material))
+        .base_color;
+  };
+  EXPECT_EQ(color(0), glm::vec3(0.75, 0.5, 0.25));
+  EXPECT_NE(color(1), color(0));
+
+  world.meshes[0].materials = {{"c", glm::dvec3(1), {}}};
+  EXPECT_THAT(ProblemTextOf([&] { LoadScene(world); }),
+              HasSubstr("has no material 'c', which the scenario replaces; it has 'a', 'b'"));
+}
+
 TEST_F(Obj, ProblemsHaveTheirLines) {
   EXPECT_THAT(Problems("v 0 0 0\nv 1 x 0\nv 0 1\nf 1 2 3\nf 1 2 0\n"),
               AllOf(HasSubstr("line 2: 'x' is not a number"), HasSubstr("line 3: a vertex has three"),
