@@ -25,6 +25,14 @@ inline std::string_view WithoutMark(std::string_view text) {
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
 
+// Why the beginning of a file is no text in lines that can be read here (UTF-16, other bytes than text's, lines that end
+// in CR alone); empty: it is one.
+std::string TextProblem(std::string_view head);
+// A line that holds no data: '#', '%' or '//' begin it.
+inline bool IsComment(std::string_view first_word) {
+  return first_word.starts_with('#') || first_word.starts_with('%') || first_word.starts_with("//");
+}
+
 // "%.*f": a fixed number of decimals.
 std::string Fixed(double value, int decimals);
 // "%.*g": a number of significant digits, without trailing zeros.

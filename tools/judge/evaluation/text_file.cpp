@@ -69,10 +69,14 @@ void Lines::Advance() {
   while (std::getline(stream_, text_)) {
     ++line_.number;
     if (!text_.empty() && text_.back() == '\r') text_.pop_back();
-    if (line_.number == 1) text_ = base::WithoutMark(text_);
+    if (line_.number == 1) {
+      if (const std::string problem = base::TextProblem(text_); !problem.empty())
+        throw InputError({file_.string() + ": " + problem});
+      text_ = base::WithoutMark(text_);
+    }
     const std::size_t first = text_.find_first_not_of(" \t");
     if (first == std::string::npos) continue;
-    if (text_[first] == '#') {
+    if (separator_ != '\n' && base::IsComment(std::string_view(text_).substr(first))) {
       comment_ = text_;
       continue;
     }

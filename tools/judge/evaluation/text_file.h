@@ -61,7 +61,7 @@ class Lines {
   };
 
   // separator ' ' stands for any run of spaces, tabs, commas and semicolons; with any other, fields may be empty, and
-  // blanks about them are left out. Throws InputError when the file cannot be read, as begin and ++ do.
+  // blanks about them are left out. '\n': each line is one token, comments too. Throws InputError when the file cannot be read, as begin and ++ do.
   explicit Lines(const std::filesystem::path& file, char separator = ' ');
 
   Iterator begin() {
