@@ -20,7 +20,10 @@ namespace vo {
 // none.
 std::string SetLens(std::span<const double> coefficients, Camera& camera);
 
-// COLMAP's and DSO's text, from its first line that is no comment. None where it is neither; throws settings::Error for
+// Width and height by these keys; one problem where both are missing.
+void RequireSize(settings::Section& section, const std::string& width, const std::string& height, Camera& camera);
+
+// COLMAP's, DSO's and LSD-SLAM's text, from its first line that is no comment. None where it is neither; throws settings::Error for
 // a lens or a number of cameras that is not read.
 std::optional<Camera> ReadTextCamera(std::string_view text, const std::filesystem::path& file);
 
