@@ -59,12 +59,11 @@ std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file) {
   int last_line = 0, number = 0;
   for (std::string line; problems.size() <= kMostProblems && std::getline(stream, line);) {
     ++number;
-    std::vector<base::Word> words;
-    try {
-      if (const std::string problem = number == 1 ? base::TextProblem(line) : ""; !problem.empty()) Fail(file, problem);
-      words = table.Row(number == 1 ? base::WithoutMark(line) : line);
-    } catch (const std::invalid_argument& other_kind) {
-      add(number, 1, other_kind.what());
+    if (const std::string problem = number == 1 ? base::TextProblem(line) : ""; !problem.empty()) Fail(file, problem);
+    std::string other_kind;
+    const std::vector<base::Word> words = table.Row(number == 1 ? base::WithoutMark(line) : line, other_kind);
+    if (!other_kind.empty()) {
+      add(number, 1, other_kind);
       break;
     }
     if (words.empty()) continue;

@@ -141,7 +141,10 @@ class FileReader {
                  "triangles without area are left out");
     }
     if (out.triangles.empty()) return;
-    if (!CheckRounding(label, in.positions, out.positions)) return;
+    const bool is_moved = description_.position != glm::dvec3(0);  // what is coarse in the file stays so
+    if ((is_moved && !CheckRounding(label, in.positions, "convert it to OBJ or PLY, which are read in double")) ||
+        !CheckRounding(label, out.positions, "move it near the origin with 'position'"))
+      return;
     const MeshMaterial& material = materials_->Material(in.material);
     out.material = material.index;
     AppendUvs(in, material.uv, label, out);
@@ -156,32 +159,24 @@ class FileReader {
     file_.scene.meshes.push_back(std::move(out));
   }
 
-  // Coordinates are floats: far from the origin, in the file or in the world, they are coarse. Says so when the rounding
-  // is 1e-5 of the mesh's size, and refuses it at 1e-3.
-  bool CheckRounding(const std::string& label, const std::vector<glm::vec3>& of_file,
-                     const std::vector<glm::vec3>& of_world) {
-    for (const bool in_file : {true, false}) {
-      const std::vector<glm::vec3>& positions = in_file ? of_file : of_world;
-      glm::vec3 low = positions[0], high = low;
-      for (const glm::vec3& x : positions) low = glm::min(low, x), high = glm::max(high, x);
-      const glm::vec3 far = glm::max(glm::abs(low), glm::abs(high));
-      const double rounding = 0x1p-24 * std::max({far.x, far.y, far.z}),
-                   size = glm::length(glm::dvec3(high) - glm::dvec3(low));
-      if (rounding <= 1e-5 * size) continue;
-      const glm::dvec3 middle = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
-      std::ostringstream text;
-      text << label << "it lies near (" << middle.x << ", " << middle.y << ", " << middle.z << ") "
-           << (in_file ? "in its file" : "m") << ", where numbers are " << rounding << " coarse, but is only " << size
-           << " large: "
-           << (in_file ? "convert it to OBJ or PLY, which are read in double"
-                       : "move it near the origin with 'position'");
-      if (rounding > 1e-3 * size) {
-        file_.Problem(text.str());
-        return false;
-      }
-      file_.Warn(text.str(), "");
-      return true;
+  // Coordinates are floats: far from the origin they are coarse. Says so when the rounding is 1e-5 of the mesh's size,
+  // and refuses it at 1e-3.
+  bool CheckRounding(const std::string& label, const std::vector<glm::vec3>& positions, const char* remedy) {
+    glm::vec3 low = positions[0], high = low;
+    for (const glm::vec3& x : positions) low = glm::min(low, x), high = glm::max(high, x);
+    const glm::vec3 far = glm::max(glm::abs(low), glm::abs(high));
+    const double rounding = 0x1p-24 * std::max({far.x, far.y, far.z}),
+                 size = glm::length(glm::dvec3(high) - glm::dvec3(low));
+    if (rounding <= 1e-5 * size) return true;
+    const glm::dvec3 middle = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
+    std::ostringstream text;
+    text << label << "it lies near (" << middle.x << ", " << middle.y << ", " << middle.z << "), where numbers are "
+         << rounding << " coarse, but is only " << size << " large: " << remedy;
+    if (rounding > 1e-3 * size) {
+      file_.Problem(text.str());
+      return false;
     }
+    file_.Warn(text.str(), "");
     return true;
   }
 

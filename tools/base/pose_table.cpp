@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <stdexcept>
 
 namespace base {
 namespace {
@@ -15,20 +14,12 @@ bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; 
 
 // The names of a header's columns in lower case, without units and quotes.
 std::vector<std::string> Names(std::string_view line) {
-  const char* const between = line.find(',') != std::string_view::npos   ? ","
-                              : line.find(';') != std::string_view::npos ? ";"
-                                                                         : " \t";
   std::vector<std::string> names;
-  for (std::size_t at = 0; at <= line.size();) {
-    const std::size_t end = std::min(line.find_first_of(between, at), line.size());
-    const std::string_view field = line.substr(at, end - at);
-    std::string name;
-    for (const char c : field.substr(0, field.find_first_of("[("))) {
-      if (IsLetter(c) || IsDigit(c) || c == '_' || c == '.')
-        name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
+  for (const Word& word : SplitWords(line)) {
+    std::string name(word.text.substr(0, word.text.find_first_of("[(")));
+    std::erase_if(name, [](char c) { return !IsLetter(c) && !IsDigit(c) && c != '_' && c != '.'; });
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (!name.empty()) names.push_back(name);
-    at = end + 1;
   }
   return names;
 }
@@ -71,7 +62,7 @@ std::string OtherKind(std::string_view line, const std::vector<Word>& words, con
 
 }  // namespace
 
-std::vector<Word> PoseTable::Row(std::string_view line) {
+std::vector<Word> PoseTable::Row(std::string_view line, std::string& problem) {
   std::vector<Word> words = SplitWords(line.substr(0, line.find('\x1a')));  // which ends a text of DOS
   if (words.empty()) return {};
   const std::string_view first = words[0].text;
@@ -95,10 +86,7 @@ std::vector<Word> PoseTable::Row(std::string_view line) {
   } else if (words.size() == kOpenVins) {
     words.resize(kPose);
   }
-  if (is_first_) {
-    if (const std::string problem = OtherKind(line, words, Stamp(words[0])); !problem.empty())
-      throw std::invalid_argument(problem);
-  }
+  if (is_first_) problem = OtherKind(line, words, Stamp(words[0]));
   is_first_ = false;
   return words;
 }

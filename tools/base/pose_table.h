@@ -19,9 +19,8 @@ class PoseTable {
   explicit PoseTable(bool is_euroc = false) : is_euroc_(is_euroc) {}
 
   // The words `timestamp tx ty tz qx qy qz qw` of the next line, in this order; none of a line without a pose (empty, a
-  // comment, a header). A row of another length comes as it is. Throws std::invalid_argument, without the file's name,
-  // where the first row shows a file of another kind.
-  std::vector<Word> Row(std::string_view line);
+  // comment, a header). A row of another length comes as it is. problem: where the first row shows another kind of file.
+  std::vector<Word> Row(std::string_view line, std::string& problem);
   // Of a row's first word, in seconds.
   std::string Stamp(const Word& word) const;
 

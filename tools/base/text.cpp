@@ -33,6 +33,15 @@ std::string Join(const std::vector<std::string>& parts, std::string_view separat
   return text;
 }
 
+std::string JoinProblems(std::vector<std::string> problems) {
+  constexpr std::size_t kMost = 50;
+  if (problems.size() > kMost) {
+    problems[kMost] = "... and " + std::to_string(problems.size() - kMost) + " more problems";
+    problems.resize(kMost + 1);
+  }
+  return Join(problems, "\n");
+}
+
 std::vector<Word> SplitWords(std::string_view line) {
   constexpr std::string_view kBetween = " \t\r,;";
   std::vector<Word> words;

@@ -11,6 +11,9 @@ namespace base {
 
 std::string Join(const std::vector<std::string>& parts, std::string_view separator);
 
+// Of the problems of a file the first 50, one a line, and how many more there are.
+std::string JoinProblems(std::vector<std::string> problems);
+
 // A part of a line, and where it begins (1: the first character).
 struct Word {
   std::string_view text;

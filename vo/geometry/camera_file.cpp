@@ -20,19 +20,6 @@
 namespace vo {
 namespace {
 
-// Camera matrix K, 3 x 3, row by row. Returns its problems.
-std::vector<std::string> SetMatrix(std::span<const double> matrix, Camera& camera) {
-  if (matrix.size() != 9) return {"'camera_matrix' must have 3 x 3 numbers"};
-  std::vector<std::string> problems;
-  camera.fx = matrix[0];
-  camera.cx = matrix[2];
-  camera.fy = matrix[4];
-  camera.cy = matrix[5];
-  if (!(camera.fx > 0 && camera.fy > 0)) problems.emplace_back("'camera_matrix': fx and fy must be positive");
-  if (matrix[1] != 0) problems.emplace_back("'camera_matrix': skew is not known here");
-  return problems;
-}
-
 void RequireLens(settings::Section& section, const std::string& key, const std::string& name, Camera& camera) {
   std::vector<double> coefficients;
   if (!section.Require(key, coefficients) || coefficients.empty()) return;
@@ -70,23 +57,6 @@ void ReadEuroc(settings::Section section, const std::string& coefficients, Camer
   }
   if (distortion != Distortion::none) RequireLens(section, coefficients, coefficients, camera);
   section.IgnoreRest();
-}
-
-void ReadRos(settings::Section root, Camera& camera) {
-  std::array<double, 9> matrix{};
-  RequireSize(root, "image_width", "image_height", camera);
-  root.RequireChoice("distortion_model", camera.lens,
-                     {{"plumb_bob", Lens::radial_tangential},
-                      {"rational_polynomial", Lens::radial_tangential},
-                      {"equidistant", Lens::fisheye}});
-  settings::Section of_matrix = root.Child("camera_matrix"), of_lens = root.Child("distortion_coefficients");
-  if (of_matrix.Require("data", matrix)) {
-    for (const std::string& problem : SetMatrix(matrix, camera)) of_matrix.Reject("data", problem);
-  }
-  RequireLens(of_lens, "data", "distortion_coefficients", camera);
-  of_matrix.IgnoreRest();
-  of_lens.IgnoreRest();
-  root.IgnoreRest();
 }
 
 void ReadOwn(settings::Section root, Camera& camera) {
@@ -274,8 +244,6 @@ Camera ReadCamera(const std::filesystem::path& file) {
     root.IgnoreRest();  // other cameras
   } else if (root.Has("intrinsics")) {
     ReadEuroc(root, "distortion_coefficients", camera);
-  } else if (count({"camera_matrix", "image_width", "distortion_model"}) == 3) {
-    ReadRos(root, camera);
   } else if (ReadSlamCamera(root, camera)) {
     // has read it
   } else if (count({"camera_matrix", "Camera_Matrix", "image_width"}) > 0) {

@@ -166,32 +166,33 @@ void ReadBasalt(settings::Section value, Camera& camera) {
   numbers.IgnoreRest();
 }
 
-// sensor_msgs/CameraInfo; of ROS 1 with capitals.
-void ReadCameraInfo(settings::Section root, bool capitals, Camera& camera) {
+// sensor_msgs/CameraInfo: the calibrator's file, or a message, of ROS 1 with capitals.
+void ReadCameraInfo(settings::Section root, Camera& camera) {
+  const bool is_file = root.Has("camera_matrix"), capitals = root.Has("K");
+  settings::Section of_matrix = is_file ? root.Child("camera_matrix") : root,
+                    of_lens = is_file ? root.Child("distortion_coefficients") : root, roi = root.Child("roi");
+  const std::string k = is_file ? "data" : capitals ? "K" : "k", d = is_file ? "data" : capitals ? "D" : "d";
   std::array<double, 9> matrix{};
   std::vector<double> coefficients;
-  RequireSize(root, "width", "height", camera);
-  if (root.Require(capitals ? "D" : "d", coefficients) && coefficients.empty()) {
-    root.Allow("distortion_model");  // which may be empty then
-  } else {
+  RequireSize(root, is_file ? "image_width" : "width", is_file ? "image_height" : "height", camera);
+  const bool has_lens = of_lens.Require(d, coefficients) && !coefficients.empty();
+  root.Allow("distortion_model");  // which may be empty where there is none
+  if (has_lens) {
     root.RequireChoice("distortion_model", camera.lens,
                        {{"plumb_bob", kPlain}, {"rational_polynomial", kPlain}, {"equidistant", kFisheye}});
+    if (const std::string problem = SetLens(coefficients, camera); !problem.empty())
+      of_lens.Reject(d, "'distortion_coefficients' " + problem);
   }
-  if (root.Require(capitals ? "K" : "k", matrix)) {
-    camera.fx = matrix[0], camera.cx = matrix[2], camera.fy = matrix[4], camera.cy = matrix[5];
-    if (!(camera.fx > 0 && camera.fy > 0)) root.Reject(capitals ? "K" : "k", "K: fx and fy must be positive");
+  if (of_matrix.Require(k, matrix)) {
+    for (const std::string& problem : SetMatrix(matrix, camera)) of_matrix.Reject(k, problem);
   }
   int binning = 0, left = 0, top = 0;
-  settings::Section roi = root.Child("roi");
   for (const char* key : {"binning_x", "binning_y"}) {
     if (root.Read(key, binning) && binning > 1) root.Reject(key, "the images are binned: calibrate them as they are");
   }
   if ((roi.Read("x_offset", left) && left != 0) || (roi.Read("y_offset", top) && top != 0))
     root.Reject("roi", "the images are a region of the sensor (roi): calibrate them as they are");
-  roi.IgnoreRest();
-  if (coefficients.empty()) return;
-  if (const std::string problem = SetLens(coefficients, camera); !problem.empty())
-    root.Reject(capitals ? "D" : "d", "the lens " + problem);
+  for (settings::Section* section : {&of_matrix, &of_lens, &roi}) section->IgnoreRest();
 }
 
 }  // namespace
@@ -201,6 +202,18 @@ void RequireSize(settings::Section& section, const std::string& width, const std
     return section.Reject(width, "has no '" + width + "' and '" + height + "': add the size of the images");
   section.Require(width, camera.width, settings::Range::Positive());
   section.Require(height, camera.height, settings::Range::Positive());
+}
+
+std::vector<std::string> SetMatrix(std::span<const double> matrix, Camera& camera) {
+  if (matrix.size() != 9) return {"'camera_matrix' must have 3 x 3 numbers"};
+  std::vector<std::string> problems;
+  camera.fx = matrix[0];
+  camera.cx = matrix[2];
+  camera.fy = matrix[4];
+  camera.cy = matrix[5];
+  if (!(camera.fx > 0 && camera.fy > 0)) problems.emplace_back("'camera_matrix': fx and fy must be positive");
+  if (matrix[1] != 0) problems.emplace_back("'camera_matrix': skew is not known here");
+  return problems;
 }
 
 std::optional<Camera> ReadTextCamera(std::string_view text, const std::filesystem::path& file) {
@@ -254,8 +267,9 @@ bool ReadSlamCamera(settings::Section root, Camera& camera) {
     ReadCamodocal(root, camera);
   } else if (root.Has("value0")) {
     ReadBasalt(root.Child("value0"), camera);
-  } else if (root.Has("width") && (root.Has("K") || (root.Has("k") && root.Has("d")))) {
-    ReadCameraInfo(root, root.Has("K"), camera);
+  } else if ((root.Has("camera_matrix") && root.Has("image_width") && root.Has("distortion_model")) ||
+             (root.Has("width") && (root.Has("K") || (root.Has("k") && root.Has("d"))))) {
+    ReadCameraInfo(root, camera);
   } else if (root.Has("cam0_calib")) {
     refuse("cam0_calib", "settings of VINS-Fusion have no calibration: give the file that cam0_calib names");
   } else if (root.Has("relative_config_imucam")) {

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tools/base/settings/settings.h"
 #include "vo/geometry/camera.h"
@@ -19,6 +20,9 @@ namespace vo {
 // (camera.lens); further ones must be zero. Returns the problem, worded to follow the name of the coefficients; empty:
 // none.
 std::string SetLens(std::span<const double> coefficients, Camera& camera);
+
+// Camera matrix K, 3 x 3, row by row. Returns its problems.
+std::vector<std::string> SetMatrix(std::span<const double> matrix, Camera& camera);
 
 // Width and height by these keys; one problem where both are missing.
 void RequireSize(settings::Section& section, const std::string& width, const std::string& height, Camera& camera);

@@ -18,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostProblems = 50;
-
 // TUM's lists have seconds; no camera works before 0.
 std::optional<std::int64_t> StampInSeconds(std::string_view text) {
   const auto stamp_ns = base::ParseSeconds(text);
@@ -171,12 +169,7 @@ SequenceReader::SequenceReader(const fs::path& folder, Images images, int camera
     last_number = number;
   }
   if (problems.empty() && entries_.empty()) problems.push_back(list.string() + ": no frames");
-  if (problems.size() > kMostProblems) {
-    const std::size_t more = problems.size() - kMostProblems;
-    problems.resize(kMostProblems);
-    problems.push_back("... and " + std::to_string(more) + " more problems");
-  }
-  if (!problems.empty()) throw std::runtime_error(base::Join(problems, "\n"));
+  if (!problems.empty()) throw std::runtime_error(base::JoinProblems(problems));
 }
 
 std::optional<Frame> SequenceReader::Next() {

@@ -69,8 +69,6 @@ class Lines {
     return Iterator(this);
   }
   static std::default_sentinel_t end() { return std::default_sentinel; }
-  // The last line with '#' before the current one.
-  const std::string& comment() const { return comment_; }
 
  private:
   void Advance();
@@ -78,7 +76,7 @@ class Lines {
   std::filesystem::path file_;
   char separator_;
   std::ifstream stream_;
-  std::string text_, comment_;
+  std::string text_;
   Line line_{0, {}};
   bool at_end_ = false;
 };

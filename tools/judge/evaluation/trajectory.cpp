@@ -45,13 +45,12 @@ Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading) {
   base::PoseTable table(reading == Reading::euroc);
   for (const Line& text : Lines(file, '\n')) {
     Line line{text.number, {}};
-    try {
-      for (const base::Word& word : table.Row(text.tokens[0].text))
-        line.tokens.push_back({line.tokens.empty() ? table.Stamp(word) : std::string(word.text),
-                               word.column + text.tokens[0].column - 1});
-    } catch (const std::invalid_argument& other_kind) {
-      throw InputError({file.string() + ":" + std::to_string(text.number) + ":1: " + other_kind.what()});
-    }
+    std::string other_kind;
+    for (const base::Word& word : table.Row(text.tokens[0].text, other_kind))
+      line.tokens.push_back(
+          {line.tokens.empty() ? table.Stamp(word) : std::string(word.text), word.column + text.tokens[0].column - 1});
+    if (!other_kind.empty())
+      throw InputError({file.string() + ":" + std::to_string(line.number) + ":1: " + other_kind});
     if (line.tokens.empty()) continue;
     std::array<double, 7> n{};
     const auto parsed = ParseRow(file, line, "timestamp tx ty tz qx qy qz qw", n, problems);

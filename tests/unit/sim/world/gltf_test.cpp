@@ -233,8 +233,10 @@ TEST(Gltf, HugeCoordinatesOfVertices) {
   const Folder folder;
   Parts parts;
   parts.positions = {0, 0, 4194304, 1, 0, 4194304, 0, 1, 4194304};
-  parts.node = R"(, "translation": [0, 0, -4194304])";
-  EXPECT_THAT(Problems(folder, parts), testing::AllOf(HasSubstr("4.1943e+06) in its file"), HasSubstr("OBJ or PLY")));
+  EXPECT_THAT(Problems(folder, parts), HasSubstr("move it near the origin"));
+  WorldDescription world;
+  world.meshes.push_back({folder.path() / "flag.gltf", {0, 0, -4194304.0}, {1, 0, 0, 0}, 1.0, {}, {}});
+  EXPECT_THAT(ProblemTextOf([&] { LoadScene(world); }), HasSubstr("4.1943e+06), where numbers are 0.25 coarse"));
 }
 
 TEST(Gltf, WantsAReaderOfAnotherVersion) {
