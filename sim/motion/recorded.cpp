@@ -13,6 +13,7 @@
 
 #include "sim/motion/placement.h"
 #include "sim/motion/spline.h"
+#include "tools/base/pose_table.h"
 #include "tools/base/settings/problem.h"
 #include "tools/base/settings/quantity.h"
 #include "tools/base/text.h"
@@ -54,32 +55,25 @@ std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file) {
   };
   std::vector<KeyPose> keys;
   std::int64_t first_ns = 0, last_ns = 0;
-  bool of_euroc = false;  // its tables: nanoseconds, the quaternion's w first
+  base::PoseTable table;
   int last_line = 0, number = 0;
   for (std::string line; problems.size() <= kMostProblems && std::getline(stream, line);) {
     ++number;
-    std::vector<base::Word> words = base::SplitWords(number == 1 ? base::WithoutMark(line) : line);
-    if (words.empty()) continue;
-    if (words[0].text.front() == '#') {
-      of_euroc = of_euroc || line.find("q_RS_w") != std::string::npos;
-      continue;
+    if (const std::string problem = number == 1 ? base::TextProblem(line) : ""; !problem.empty()) Fail(file, problem);
+    std::string other_kind;
+    const std::vector<base::Word> words = table.Row(number == 1 ? base::WithoutMark(line) : line, other_kind);
+    if (!other_kind.empty()) {
+      add(number, 1, other_kind);
+      break;
     }
-    of_euroc = of_euroc || (keys.empty() && words.size() == 17);
-    if (of_euroc ? words.size() > 8 : words.size() == 20)
-      words.resize(8);  // velocities and biases; OpenVINS' covariances
+    if (words.empty()) continue;
     if (words.size() != 8) {
       add(number, 1, "expected timestamp tx ty tz qx qy qz qw, not " + std::to_string(words.size()) + " words");
       continue;
     }
-    if (of_euroc) std::rotate(words.begin() + 4, words.begin() + 5, words.end());  // qw comes first
-    const bool in_ns = of_euroc && base::ParseWhole(words[0].text);
-    const std::optional<std::int64_t> stamp = base::ParseSeconds(std::string(words[0].text) + (in_ns ? "e-9" : ""));
+    const std::optional<std::int64_t> stamp = base::ParseSeconds(table.Stamp(words[0]));
     bool good = stamp.has_value();
-    if (!good) {
-      const std::string unit = base::UnitOfStamp(words[0].text);
-      add(number, words[0].column, "'" + std::string(words[0].text) + "' is not a timestamp in seconds" + unit);
-      if (!unit.empty()) break;  // so are all
-    }
+    if (!good) add(number, words[0].column, "'" + std::string(words[0].text) + "' is not a timestamp in seconds");
     double v[7] = {};
     for (std::size_t i = 0; i < 7; ++i) {
       std::string problem;

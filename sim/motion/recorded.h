@@ -10,11 +10,10 @@
 
 namespace sim {
 
-// The poses of a TUM trajectory file, "timestamp tx ty tz qx qy qz qw", '#' starting comments, perhaps with OpenVINS'
-// covariances, or of EuRoC's table (the body's path, by its header or its 17 columns); times are counted from
-// the first stamp. Throws settings::Error with all problems, file:line each (the first 20): a line without eight finite
-// numbers, times that do not increase (but for a second line of the same pose), a quaternion whose length is not 1
-// within 1e-3 (it is normalised), fewer than two poses, an unreadable file.
+// The poses of a table (tools/base/pose_table.h), of EuRoC's the body's path; times are counted from the first stamp.
+// Throws settings::Error with all problems, file:line each (the first 20): a line without eight finite numbers, times
+// that do not increase (but for a second line of the same pose), a quaternion whose length is not 1 within 1e-3 (it is
+// normalised), fewer than two poses, an unreadable file.
 std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file);
 
 // The mean stamp, position and orientation of the poses in each interval [k average_s, (k + 1) average_s) that has any.

@@ -137,9 +137,11 @@ GltfFile::GltfFile(MeshFiles& files) : files_(files) {
   if (const std::string problem = limits::JsonProblem(text); !problem.empty()) Fail("is " + problem);
   document_ = json::parse(text);
   if (!document_.is_object()) Fail("is not a JSON object");
-  const json& version = Child(Child(document_, "asset"), "version");
+  const json &asset = Child(document_, "asset"), &version = Child(asset, "version"),
+             &least = Child(asset, "minVersion");
   if (version.is_number() || (version.is_string() && version.get<std::string>().starts_with("1."))) throw OlderGltf();
   if (!version.is_string() || !version.get<std::string>().starts_with("2.")) Fail("is glTF of no version: 2 is read");
+  if (least.is_string() && least != "2.0") Fail("wants a reader of glTF " + least.get<std::string>() + ": 2.0 is read");
 }
 
 const json& GltfFile::Child(const json& object, const char* key) {

@@ -30,6 +30,9 @@ std::string IndexProblem(const Polygons& polygons, const PolygonPools& pools);
 // colours those that the first corner has. Indices are good.
 void AppendPolygons(const Polygons& polygons, const PolygonPools& pools, const glm::dvec3& origin, ImportedMesh& mesh);
 
+// Colours beyond 1 are taken as 0 ... 255, or as 0 ... 65535 where they go beyond that, with a warning.
+void ScaleColors(PolygonPools& pools, std::vector<std::string>& warnings);
+
 // One node that has all meshes.
 ImportedNode NodeOfAll(const std::vector<ImportedMesh>& meshes);
 

@@ -156,16 +156,27 @@ class FileReader {
                  "triangles without area are left out");
     }
     if (out.triangles.empty()) return;
-    if (!CheckRounding(label, out.positions)) return;
+    const bool is_moved = description_.position != glm::dvec3(0);  // what is coarse in the file stays so
+    if ((is_moved && !CheckRounding(label, in.positions, "convert it to OBJ or PLY, which are read in double")) ||
+        !CheckRounding(label, out.positions, "move it near the origin with 'position'"))
+      return;
     const MeshMaterial& material = materials_->Material(in.material);
     out.material = material.index;
     AppendUvs(in, material.uv, label, out);
+    const bool has_picture = !file_.is_gltf &&
+                             file_.scene.materials[static_cast<std::size_t>(out.material)].texture >= 0 &&
+                             !out.uvs.empty();
+    const auto is_white = [](const glm::vec3& color) { return color == glm::vec3(1); };
+    if (has_picture && !std::ranges::all_of(out.colors, is_white)) {
+      file_.Warn(label, "a picture takes the place of vertex colours");
+      out.colors.clear();
+    }
     file_.scene.meshes.push_back(std::move(out));
   }
 
   // Coordinates are floats: far from the origin they are coarse. Says so when the rounding is 1e-5 of the mesh's size,
   // and refuses it at 1e-3.
-  bool CheckRounding(const std::string& label, const std::vector<glm::vec3>& positions) {
+  bool CheckRounding(const std::string& label, const std::vector<glm::vec3>& positions, const char* remedy) {
     glm::vec3 low = positions[0], high = low;
     for (const glm::vec3& x : positions) low = glm::min(low, x), high = glm::max(high, x);
     const glm::vec3 far = glm::max(glm::abs(low), glm::abs(high));
@@ -174,8 +185,8 @@ class FileReader {
     if (rounding <= 1e-5 * size) return true;
     const glm::dvec3 middle = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
     std::ostringstream text;
-    text << label << "it lies near (" << middle.x << ", " << middle.y << ", " << middle.z << ") m, where numbers are "
-         << rounding << " m coarse, but is only " << size << " m large: move it near the origin with 'position'";
+    text << label << "it lies near (" << middle.x << ", " << middle.y << ", " << middle.z << "), where numbers are "
+         << rounding << " coarse, but is only " << size << " large: " << remedy;
     if (rounding > 1e-3 * size) {
       file_.Problem(text.str());
       return false;

@@ -63,6 +63,8 @@ MeshMaterial MeshMaterialReader::Read(const ImportedMaterial& in) {
     material.emission_texture = ReadTexture(in, {in.emission_map, "emission "}, uvs);
     if (file_.extension == ".ac") material.emission_texture = material.texture;  // AC3D: the texture is on all light
   }
+  if (!file_.is_gltf && material.texture >= 0 && material.base_color == glm::vec3(0))
+    file_.Warn("material '" + material.name + "': ", "a colour of 0 makes its picture black");
   material.normal_map = ReadTexture(in, {in.normal_map, "normal ", Content::numbers}, uvs);
   material.normal_scale = in.normal_scale;
   material.metallic = std::clamp(in.metallic, 0.0f, 1.0f);

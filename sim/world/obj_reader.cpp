@@ -66,10 +66,10 @@ class ObjReader {
       const std::size_t count = Numbers(rest, n);
       if (count < 3) return Problem("a vertex has three coordinates");
       pools_.positions.emplace_back(n[0], n[1], n[2]);
+      known_ = true;
       if (count < 6) return;
       pools_.colors.resize(pools_.positions.size(), glm::vec4(1.0f));
       pools_.colors.back() = glm::vec4(n[3], n[4], n[5], 1);
-      for (int c = 3; c < 6; ++c) largest_color_ = std::max(largest_color_, n[static_cast<std::size_t>(c)]);
     } else if (word == "vt") {
       if (Numbers(rest, n) < 1) return Problem("a texture coordinate has a number");
       pools_.uvs.emplace_back(n[0], n[1]);
@@ -128,6 +128,7 @@ class ObjReader {
 
   // One name, which may have blanks, or several without.
   void Library(std::string_view rest) {
+    if (rest.size() > 1 && rest.front() == '"' && rest.back() == '"') rest = rest.substr(1, rest.size() - 2);
     if (ReadLibrary(rest)) return;
     std::string_view words = rest;
     const std::string_view first = NextWord(words);
@@ -152,10 +153,7 @@ class ObjReader {
     if (!known_) return Fail("cannot be read: has no statement of an OBJ file (in ASCII or UTF-8)");
     import_.origin = OriginFor(pools_.positions);
     if (!pools_.colors.empty()) pools_.colors.resize(pools_.positions.size(), glm::vec4(1.0f));
-    if (largest_color_ > 1) {
-      import_.warnings.push_back("vertex colours go beyond 1: they are taken as 0 ... 255");
-      for (glm::vec4& c : pools_.colors) c = glm::vec4(c.r / 255, c.g / 255, c.b / 255, 1);
-    }
+    ScaleColors(pools_, import_.warnings);
     auto& [nodes, meshes, materials, pictures] = import_.scene;
     std::map<std::string, unsigned> index_of;
     for (Part& part : parts_) {
@@ -165,8 +163,9 @@ class ObjReader {
       const auto [at, is_new] = index_of.try_emplace(part.material, static_cast<unsigned>(materials.size()));
       if (is_new) {
         const auto known = materials_.find(part.material);
-        if (known == materials_.end() && any_library_ && !part.material.empty())
-          import_.warnings.push_back("names the material '" + part.material + "', which its library does not have");
+        if (known == materials_.end() && !part.material.empty() && (any_library_ || import_.missing.empty()))
+          import_.warnings.push_back("names the material '" + part.material + "', which " +
+                                     (any_library_ ? "its library does not have" : "no library (mtllib) tells of"));
         materials.push_back(known == materials_.end() ? ImportedMaterial{part.material} : known->second);
       }
       mesh.material = at->second;
@@ -181,7 +180,6 @@ class ObjReader {
   std::string problems_;
   bool known_ = false, any_library_ = false;
   PolygonPools pools_;
-  double largest_color_ = 0;
   std::string name_, material_;
   std::vector<Part> parts_;
   std::map<std::tuple<std::string, std::string, bool, bool>, std::size_t> part_of_;

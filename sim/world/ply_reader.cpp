@@ -9,6 +9,7 @@
 #include "sim/world/material_library.h"
 #include "sim/world/mesh_builder.h"
 #include "sim/world/mesh_readers.h"
+#include "sim/world/texture_file.h"
 
 namespace sim {
 namespace {
@@ -24,7 +25,7 @@ struct Type {
 };
 constexpr Type kTypes[] = {
     {"char", "int8", 1, 255, NumberAt<std::int8_t>},  {"uchar", "uint8", 1, 255, NumberAt<std::uint8_t>},
-    {"short", "int16", 2, 1, NumberAt<std::int16_t>}, {"ushort", "uint16", 2, 65535, NumberAt<std::uint16_t>},
+    {"short", "int16", 2, 1, NumberAt<std::int16_t>}, {"ushort", "uint16", 2, 1, NumberAt<std::uint16_t>},
     {"int", "int32", 4, 1, NumberAt<std::int32_t>},   {"uint", "uint32", 4, 1, NumberAt<std::uint32_t>},
     {"float", "float32", 4, 1, NumberAt<float>},      {"double", "float64", 8, 1, NumberAt<double>}};
 
@@ -65,6 +66,9 @@ class PlyReader {
 
   void Read() {
     ReadHeader();
+    for (const Element& element : elements_) {  // vertices may come after faces
+      if (element.name == "vertex") vertex_ = PlacesOf(element);
+    }
     for (const Element& element : elements_) {
       if (element.properties.empty()) continue;
       if (element.count > rest_.size()) throw std::runtime_error("the file ends too early");
@@ -83,9 +87,10 @@ class PlyReader {
 
  private:
   void ReadHeader() {
+    const char ending = rest_.starts_with("ply\r") && !rest_.starts_with("ply\r\n") ? '\r' : '\n';
     bool ended = false, known = false;
     while (!ended && !rest_.empty()) {
-      const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+      const std::size_t end = std::min(rest_.find(ending), rest_.size());
       std::string_view line = rest_.substr(0, end);
       rest_.remove_prefix(std::min(end + 1, rest_.size()));
       const std::string_view word = NextWord(line);
@@ -109,7 +114,7 @@ class PlyReader {
         const Type& of = TypeOf(type);
         elements_.back().properties.push_back({std::string(line), &of, count});
       } else if (word == "comment" || word == "obj_info") {
-        if (NextWord(line) == "TextureFile") textures_.emplace_back(line);
+        if (Lower(std::string(NextWord(line))) == "texturefile") textures_.emplace_back(line);
       }
       ended = word == "end_header";
     }
@@ -173,14 +178,22 @@ class PlyReader {
     pools_.colors.emplace_back(channel(0), channel(1), channel(2), 1.0f);
   }
 
+  // Of a vertex' properties.
+  struct Vertex {
+    std::optional<std::array<std::size_t, 3>> xyz, normal, color;
+    std::optional<std::array<std::size_t, 2>> uv;
+  };
+  static Vertex PlacesOf(const Element& e) {
+    return {Places<3>({e.Find({"x"}), e.Find({"y"}), e.Find({"z"})}),
+            Places<3>({e.Find({"nx", "normal_x"}), e.Find({"ny", "normal_y"}), e.Find({"nz", "normal_z"})}),
+            ColorPlaces(e),
+            Places<2>({e.Find({"s", "u", "texture_u", "texture_s", "tu"}),
+                       e.Find({"t", "v", "texture_v", "texture_t", "tv"})})};
+  }
+
   void ReadVertices(const Element& e) {
-    const auto xyz = Places<3>({e.Find({"x"}), e.Find({"y"}), e.Find({"z"})});
-    const auto normal = Places<3>({e.Find({"nx", "normal_x"}), e.Find({"ny", "normal_y"}), e.Find({"nz", "normal_z"})});
-    const auto uv = Places<2>(
-        {e.Find({"s", "u", "texture_u", "texture_s", "tu"}), e.Find({"t", "v", "texture_v", "texture_t", "tv"})});
-    const auto color = ColorPlaces(e);
+    const auto& [xyz, normal, color, uv] = vertex_;
     if (!xyz) throw std::runtime_error("its vertices have no x, y, z");
-    has_uvs_ = uv.has_value(), has_normals_ = normal.has_value(), has_colors_ = color.has_value();
     ForEachRow(e, [&](const Row& row) {
       const auto number = [&](std::size_t at) {
         if (row[at].size() != 1) throw std::runtime_error("a coordinate is a list");
@@ -199,13 +212,13 @@ class PlyReader {
     if (!(vertex >= 0 && vertex < 2147483647.0))
       throw std::runtime_error("a face names vertex " + std::to_string(vertex));
     const auto i = static_cast<std::int32_t>(vertex);
-    return {i, has_uvs_ ? i : -1, has_normals_ ? i : -1, has_colors_ ? i : -1};
+    return {i, vertex_.uv ? i : -1, vertex_.normal ? i : -1, vertex_.color ? i : -1};
   }
 
   void ReadFaces(const Element& e) {
     const int list = e.Find({"vertex_indices", "vertex_index"}), wedge = e.Find({"texcoord"}),
               number = e.Find({"texnumber"});
-    const auto color = has_colors_ ? std::nullopt : ColorPlaces(e);
+    const auto color = vertex_.color ? std::nullopt : ColorPlaces(e);
     if (list < 0) return ForEachRow(e, [](const Row&) {});
     ForEachRow(e, [&](const Row& row) {
       const std::vector<double>& vertices = row[static_cast<std::size_t>(list)];
@@ -252,6 +265,7 @@ class PlyReader {
 
   void Build() {
     import_.origin = OriginFor(pools_.positions);
+    ScaleColors(pools_, import_.warnings);
     auto& [nodes, meshes, materials, pictures] = import_.scene;
     for (const auto& [key, part] : parts_) {
       if (const std::string problem = IndexProblem(part, pools_); !problem.empty()) throw std::runtime_error(problem);
@@ -273,7 +287,7 @@ class PlyReader {
   std::vector<Element> elements_;
   std::vector<std::string> textures_;
   PolygonPools pools_;
-  bool has_uvs_ = false, has_normals_ = false, has_colors_ = false;  // of the vertices
+  Vertex vertex_;
   std::map<std::pair<float, float>, std::int32_t> uv_index_;
   std::map<std::pair<int, bool>, Polygons> parts_;  // by texture, and whether corners lack coordinates
 };

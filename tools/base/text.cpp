@@ -33,6 +33,15 @@ std::string Join(const std::vector<std::string>& parts, std::string_view separat
   return text;
 }
 
+std::string JoinProblems(std::vector<std::string> problems) {
+  constexpr std::size_t kMost = 50;
+  if (problems.size() > kMost) {
+    problems[kMost] = "... and " + std::to_string(problems.size() - kMost) + " more problems";
+    problems.resize(kMost + 1);
+  }
+  return Join(problems, "\n");
+}
+
 std::vector<Word> SplitWords(std::string_view line) {
   constexpr std::string_view kBetween = " \t\r,;";
   std::vector<Word> words;
@@ -42,6 +51,17 @@ std::vector<Word> SplitWords(std::string_view line) {
     at = line.find_first_not_of(kBetween, end);
   }
   return words;
+}
+
+std::string TextProblem(std::string_view head) {
+  if (head.starts_with("\xff\xfe") || head.starts_with("\xfe\xff")) return "is a text in UTF-16: save it in UTF-8";
+  const auto is_control = [](char c) {
+    return static_cast<unsigned char>(c) < ' ' && c != '\x1a' && !(c >= '\t' && c <= '\r');
+  };
+  if (std::ranges::any_of(head, is_control)) return "is no text: it has bytes that no text has";
+  const std::size_t end = head.find('\r');
+  const bool is_mac = end < head.size() - 1 && head[end + 1] != '\n' && head.find('\n') == std::string_view::npos;
+  return is_mac ? "has lines that end in CR alone: save it with LF" : "";
 }
 
 std::string Fixed(double value, int decimals) { return Printed("%.*f", decimals, value); }

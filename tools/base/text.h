@@ -11,6 +11,9 @@ namespace base {
 
 std::string Join(const std::vector<std::string>& parts, std::string_view separator);
 
+// Of the problems of a file the first 50, one a line, and how many more there are.
+std::string JoinProblems(std::vector<std::string> problems);
+
 // A part of a line, and where it begins (1: the first character).
 struct Word {
   std::string_view text;
@@ -23,6 +26,14 @@ std::vector<Word> SplitWords(std::string_view line);
 inline std::string_view WithoutMark(std::string_view text) {
   constexpr std::string_view kMark = "\xef\xbb\xbf";
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
+// Why the beginning of a file is no text in lines that can be read here (UTF-16, other bytes than text's, lines that end
+// in CR alone); empty: it is one.
+std::string TextProblem(std::string_view head);
+// A line that holds no data: '#', '%' or '//' begin it.
+inline bool IsComment(std::string_view first_word) {
+  return first_word.starts_with('#') || first_word.starts_with('%') || first_word.starts_with("//");
 }
 
 // "%.*f": a fixed number of decimals.

@@ -1,5 +1,6 @@
 // The program. Exit status: 0 done, 1 the work failed, 2 bad usage or bad input, 3 not consistent
 // though that was required.
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
@@ -30,7 +31,9 @@ void Execute(const FitCameraOptions& options) { FitCamera(options); }
 void Execute(const ImportOptions& options) { Import(options); }
 void Execute(const SettingsOptions& options) { Settings(options); }
 
-int Fail(int status, const std::string& reason) {
+int Fail(int status, std::string reason) {
+  std::ranges::replace_if(
+      reason, [](unsigned char c) { return (c < ' ' && c != '\n') || c == 0x7f; }, '?');
   std::fflush(stdout);
   std::fprintf(stderr, "vobench: %s\n", reason.c_str());
   return status;

@@ -2,19 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cctype>
 #include <cstdint>
-#include <fstream>
 #include <limits>
-#include <opencv2/core.hpp>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tools/base/files.h"
-#include "tools/base/limits/structured_text.h"
 #include "tools/base/settings/settings.h"
 #include "tools/base/text.h"
 #include "vo/geometry/foreign_camera.h"
@@ -22,22 +20,9 @@
 namespace vo {
 namespace {
 
-// Camera matrix K, 3 x 3, row by row. Returns its problems.
-std::vector<std::string> SetMatrix(std::span<const double> matrix, Camera& camera) {
-  if (matrix.size() != 9) return {"'camera_matrix' must have 3 x 3 numbers"};
-  std::vector<std::string> problems;
-  camera.fx = matrix[0];
-  camera.cx = matrix[2];
-  camera.fy = matrix[4];
-  camera.cy = matrix[5];
-  if (!(camera.fx > 0 && camera.fy > 0)) problems.emplace_back("'camera_matrix': fx and fy must be positive");
-  if (matrix[1] != 0) problems.emplace_back("'camera_matrix': skew is not known here");
-  return problems;
-}
-
 void RequireLens(settings::Section& section, const std::string& key, const std::string& name, Camera& camera) {
   std::vector<double> coefficients;
-  if (!section.Require(key, coefficients)) return;
+  if (!section.Require(key, coefficients) || coefficients.empty()) return;
   const std::string problem = SetLens(coefficients, camera);
   if (!problem.empty()) section.Reject(key, "'" + name + "' " + problem);
 }
@@ -74,24 +59,6 @@ void ReadEuroc(settings::Section section, const std::string& coefficients, Camer
   section.IgnoreRest();
 }
 
-void ReadRos(settings::Section root, Camera& camera) {
-  std::array<double, 9> matrix{};
-  root.Require("image_width", camera.width, settings::Range::Positive());
-  root.Require("image_height", camera.height, settings::Range::Positive());
-  root.RequireChoice("distortion_model", camera.lens,
-                     {{"plumb_bob", Lens::radial_tangential},
-                      {"rational_polynomial", Lens::radial_tangential},
-                      {"equidistant", Lens::fisheye}});
-  settings::Section of_matrix = root.Child("camera_matrix"), of_lens = root.Child("distortion_coefficients");
-  if (of_matrix.Require("data", matrix)) {
-    for (const std::string& problem : SetMatrix(matrix, camera)) of_matrix.Reject("data", problem);
-  }
-  RequireLens(of_lens, "data", "distortion_coefficients", camera);
-  of_matrix.IgnoreRest();
-  of_lens.IgnoreRest();
-  root.IgnoreRest();
-}
-
 void ReadOwn(settings::Section root, Camera& camera) {
   root.Require("width", camera.width, settings::Range::Positive());
   root.Require("height", camera.height, settings::Range::Positive());
@@ -120,6 +87,10 @@ void ReadOwn(settings::Section root, Camera& camera) {
 std::vector<double> OpenCvMatrix(settings::Section section, const std::string& name) {
   int rows = 0, columns = 0;
   std::vector<double> values;
+  if (!section.Has("rows") && !section.Has("data")) {
+    section.Reject("data", "'" + name + "' must be a matrix: rows, cols and data");
+    return {};
+  }
   const bool has_rows = section.Require("rows", rows, settings::Range::Positive());
   const bool has_columns = section.Require("cols", columns, settings::Range::Positive());
   const bool has_data = section.Require("data", values);
@@ -133,14 +104,13 @@ std::vector<double> OpenCvMatrix(settings::Section section, const std::string& n
   return {};
 }
 
-// Without cv::FileStorage, whose YAML reader crashes, or does not terminate, on slightly malformed files (OpenCV 4.6).
-void ReadOpenCvYaml(settings::Section root, Camera& camera) {
+// Without cv::FileStorage, which crashes, or does not terminate, on slightly malformed files (OpenCV 4.6).
+void ReadOpenCv(settings::Section root, Camera& camera) {
   // The key that is present, of the two spellings of OpenCV's programs.
   const auto either = [&](const char* name, const char* other) {
     return std::string(root.Has(name) || !root.Has(other) ? name : other);
   };
-  root.Require(either("image_width", "image_Width"), camera.width, settings::Range::Positive());
-  root.Require(either("image_height", "image_Height"), camera.height, settings::Range::Positive());
+  RequireSize(root, either("image_width", "image_Width"), either("image_height", "image_Height"), camera);
   int fisheye = 0;
   if (root.Read("fisheye_model", fisheye) && fisheye != 0) camera.lens = Lens::fisheye;
   const std::string matrix_key = either("camera_matrix", "Camera_Matrix");
@@ -155,78 +125,56 @@ void ReadOpenCvYaml(settings::Section root, Camera& camera) {
   root.IgnoreRest();
 }
 
-// Entries of a matrix of OpenCV's XML, row by row; empty where it is none. Without cv::Mat's reader, which allocates as
-// many rows and columns as the file states.
-std::vector<double> Numbers(const cv::FileNode& matrix) {
-  if (!matrix.isMap()) return {};
-  const cv::FileNode rows = matrix["rows"], columns = matrix["cols"], data = matrix["data"];
-  if (!rows.isInt() || !columns.isInt() || !data.isSeq()) return {};
-  const std::int64_t count = static_cast<std::int64_t>(static_cast<int>(rows)) * static_cast<int>(columns);
-  if (count < 1 || static_cast<std::size_t>(count) != data.size()) return {};
-  std::vector<double> values;
-  for (const cv::FileNode& value : data) {
-    if (!value.isInt() && !value.isReal()) return {};
-    values.push_back(static_cast<double>(value));
-  }
-  return values;
+// The characters of names and numbers.
+std::string Plain(std::string_view text) {
+  std::string plain(text);
+  std::erase_if(plain,
+                [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '.' && c != '+' && c != '-'; });
+  return plain;
 }
 
-cv::FileStorage OpenXml(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string text;
-  for (std::array<char, 4096> block; stream && text.size() <= limits::kMostStorageBytes;) {
-    stream.read(block.data(), block.size());
-    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+// OpenCV's XML (cv::FileStorage) as YAML, line for line: elements of words, and those in them, as matrices have. Without
+// OpenCV's own reader (4.6), which ends the program on slightly malformed files.
+std::string YamlOfXml(std::string_view xml, const std::filesystem::path& file) {
+  const auto fail = [&](const char* what) { throw settings::Error({{file.string(), 0, 0, what}}); };
+  if (xml.find("<opencv_storage") == std::string_view::npos)
+    fail("is XML, but not of cv::FileStorage: docs/conventions.md, \"Camera files\", has a list");
+  std::string yaml = "{";
+  int depth = 0;         // 1: in <opencv_storage>
+  bool is_open = false;  // an element with others in it, at depth 2
+  for (std::size_t at = xml.find('<'), next = 0; at < xml.size(); at = next) {
+    const std::size_t end = xml.find(xml.substr(at).starts_with("<!--") ? "-->" : ">", at);
+    if (end == std::string_view::npos) fail("is cut off in an element");
+    next = std::min(xml.find('<', end), xml.size());
+    const std::string_view tag = xml.substr(at + 1, end - at - 1), text = xml.substr(end + 1, next - end - 1);
+    const bool begins = std::string_view("/?!").find(tag.substr(0, 1)) == std::string_view::npos && !tag.ends_with('/');
+    if (begins && (++depth == 2 || (depth == 3 && is_open))) {
+      std::string words;
+      for (const base::Word& word : base::SplitWords(text)) words += (words.empty() ? "" : ", ") + Plain(word.text);
+      const std::string name = Plain(tag.substr(0, tag.find_first_of(" \t\r\n")));
+      if (depth == 2) is_open = words.empty();
+      yaml += name + ": " + (depth == 2 && is_open ? "{" : name == "data" ? "[" + words + "]," : words + ",");
+    } else if (tag.starts_with('/') && --depth == 1 && std::exchange(is_open, false)) {
+      yaml += "},";
+    }
+    yaml.append(static_cast<std::size_t>(std::ranges::count(xml.substr(at, next - at), '\n')), '\n');
   }
-  if (const std::string problem = limits::OpenCvStorageProblem(text); !problem.empty())
-    throw settings::Error({{file.string(), 0, 0, "OpenCV cannot read it: it is " + problem}});
-  cv::FileStorage storage(file.string(), cv::FileStorage::READ);
-  if (!storage.isOpened()) throw settings::Error({{file.string(), 0, 0, "OpenCV cannot read it"}});
-  return storage;
+  if (depth != 0) fail("is cut off: its elements do not all end");
+  return yaml + "}";
 }
 
-// OpenCV's XML (cv::FileStorage). Problems have no lines.
-Camera ReadOpenCvXml(const std::filesystem::path& file) try {
-  const cv::FileStorage storage = OpenXml(file);
-  std::vector<settings::Problem> problems;
-  const auto complain = [&](const std::string& message) { problems.push_back({file.string(), 0, 0, message}); };
-  // The key that is present, of the two spellings.
-  const auto find = [&](const char* name, const char* other) {
-    const cv::FileNode node = storage[name];
-    return node.empty() ? storage[other] : node;
-  };
-  const auto size = [&](const char* name, const char* other) {
-    const cv::FileNode node = find(name, other);
-    const int value = node.isInt() ? static_cast<int>(node) : 0;
-    if (value <= 0) complain(std::string("'") + name + "' must be there, a positive whole number");
-    return value;
-  };
-  const auto matrix = [&](const char* name, const char* other) {
-    std::vector<double> values = Numbers(find(name, other));
-    if (values.empty()) complain(std::string("'") + name + "' must be there, a matrix of numbers");
-    if (std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); })) return values;
-    complain(std::string("'") + name + "' has a number that is none");
-    return std::vector<double>();
-  };
-  Camera camera;
-  camera.readout_s = std::nullopt;
-  camera.width = size("image_width", "image_Width");
-  camera.height = size("image_height", "image_Height");
-  if (const std::vector<double> values = matrix("camera_matrix", "Camera_Matrix"); !values.empty())
-    for (const std::string& problem : SetMatrix(values, camera)) complain(problem);
-  const cv::FileNode fisheye = storage["fisheye_model"];
-  if (fisheye.isInt() && static_cast<int>(fisheye) != 0) camera.lens = Lens::fisheye;
-  if (const std::vector<double> values = matrix("distortion_coefficients", "Distortion_Coefficients"); !values.empty())
-    if (const std::string problem = SetLens(values, camera); !problem.empty())
-      complain("'distortion_coefficients' " + problem);
-  if (!problems.empty()) throw settings::Error(problems);
-  return camera;
-} catch (const settings::Error&) {
-  throw;
-} catch (const cv::Exception& error) {
-  throw settings::Error({{file.string(), 0, 0, "OpenCV cannot read it: " + error.err}});
-} catch (const std::exception& error) {  // the parser passes on those of the standard library
-  throw settings::Error({{file.string(), 0, 0, std::string("OpenCV cannot read it: ") + error.what()}});
+// A blank behind the colon of a key, which cv::FileStorage does not need.
+std::string WithBlanks(std::string_view yaml) {
+  std::string out;
+  bool is_key = true;
+  for (std::size_t i = 0; i < yaml.size(); ++i) {
+    const char c = yaml[i];
+    out += c;
+    if (is_key && c == ':' && i + 1 < yaml.size() && std::isspace(static_cast<unsigned char>(yaml[i + 1])) == 0)
+      out += ' ';
+    is_key = c == '\n' || (is_key && (c == ' ' || Plain({&c, 1}) != ""));
+  }
+  return out;
 }
 
 // What begins the first line that is no comment.
@@ -263,37 +211,49 @@ std::string SetLens(std::span<const double> coefficients, Camera& camera) {
 }
 
 Camera ReadCamera(const std::filesystem::path& file) {
-  const std::string content = base::ReadFile(file).value_or("");
-  const std::string_view text = base::WithoutMark(content);
-  if (text.starts_with("<?xml")) return ReadOpenCvXml(file);
+  const std::optional<std::string> content = base::ReadFile(file);
+  if (!content) settings::Document::FromFile(file);  // says why
+  const std::string_view text = base::WithoutMark(*content);
+  const auto refuse = [&](const std::string& what) { throw settings::Error({{file.string(), 0, 0, what}}); };
+  const std::string unknown =
+      "is no calibration of a kind that is known here: docs/conventions.md, \"Camera files\", has a list";
+  if (const std::string problem = base::TextProblem(content->substr(0, 1024)); !problem.empty()) refuse(problem);
   if (std::optional<Camera> camera = ReadTextCamera(FirstData(text), file)) return *camera;
+  const bool is_xml = FirstData(text).starts_with('<'), is_ours = !is_xml && HasLine(text, "fx:");
+  const std::string extension = file.extension().string();
+  std::optional<settings::Document> read;
+  try {
+    // Ours knows no tags, and is one document.
+    read = settings::Document::FromText(is_xml    ? YamlOfXml(text, file)
+                                        : is_ours ? std::string(text)
+                                                  : WithBlanks(text),
+                                        file.string(), is_ours ? settings::Dialect::ours : settings::Dialect::opencv);
+  } catch (const settings::Error&) {
+    if (extension == ".txt" || extension == ".cfg" || extension == ".m" || extension == ".csv") refuse(unknown);
+    throw;
+  }
+  settings::Document& document = *read;
   Camera camera;
   camera.readout_s = std::nullopt;
-  // Ours knows no tags, and is one document.
-  settings::Document document =
-      settings::Document::FromFile(file, HasLine(text, "fx:") ? settings::Dialect::ours : settings::Dialect::opencv);
   settings::Section root = document.root();
+  const auto count = [&](std::initializer_list<const char*> keys) {
+    return std::ranges::count_if(keys, [&](const char* key) { return root.Has(key); });
+  };
   if (root.Has("cam0")) {
     ReadEuroc(root.Child("cam0"), "distortion_coeffs", camera);
     root.IgnoreRest();  // other cameras
   } else if (root.Has("intrinsics")) {
     ReadEuroc(root, "distortion_coefficients", camera);
-  } else if (root.Has("camera_matrix") && root.Has("distortion_model")) {
-    ReadRos(root, camera);
   } else if (ReadSlamCamera(root, camera)) {
     // has read it
-  } else if (root.Has("camera_matrix") || root.Has("Camera_Matrix") || root.Has("image_width")) {
-    ReadOpenCvYaml(root, camera);
-  } else {
-    constexpr const char* kOwn[] = {"width", "height", "fx", "fy", "cx", "cy", "distortion", "rolling_shutter"};
-    if (std::ranges::none_of(kOwn, [&](const char* key) { return root.Has(key); })) {
-      root.IgnoreRest();
-      document.ThrowIfBad();
-      throw settings::Error({{file.string(), 0, 0,
-                              "is no calibration of a kind that is known here: docs/conventions.md, "
-                              "\"Camera files\", has a list"}});
-    }
+  } else if (count({"camera_matrix", "Camera_Matrix", "image_width"}) > 0) {
+    ReadOpenCv(root, camera);
+  } else if (count({"width", "height", "fx", "fy", "cx", "cy"}) > 2) {
     ReadOwn(root, camera);
+  } else {
+    root.IgnoreRest();
+    document.ThrowIfBad();
+    refuse(unknown);
   }
   document.ThrowIfBad();
   return camera;

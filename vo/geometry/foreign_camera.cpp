@@ -23,7 +23,8 @@ const std::map<std::string_view, Model>& Models() {
       {"OPENCV", {2, 4, kPlain}},           {"FULL_OPENCV", {2, 8, kPlain}},
       {"OPENCV_FISHEYE", {2, 4, kFisheye}}, {"SIMPLE_RADIAL_FISHEYE", {1, 1, kFisheye}},
       {"RADIAL_FISHEYE", {1, 2, kFisheye}}, {"Pinhole", {2, 1, kPlain}},
-      {"RadTan", {2, 4, kPlain}},           {"EquiDistant", {2, 4, kFisheye}}};
+      {"RadTan", {2, 4, kPlain}},           {"EquiDistant", {2, 4, kFisheye}},
+      {"KannalaBrandt", {2, 4, kFisheye}}};
   return models;
 }
 
@@ -96,11 +97,6 @@ void ReadCoefficients(settings::Section& section, const std::string& prefix, Cam
     section.Reject(prefix + "k4", "the lens " + problem);
 }
 
-void RequireSize(settings::Section& section, const std::string& width, const std::string& height, Camera& camera) {
-  section.Require(width, camera.width, settings::Range::Positive());
-  section.Require(height, camera.height, settings::Range::Positive());
-}
-
 void ReadOrbSlam(settings::Section root, const std::string& prefix, Camera& camera) {
   enum class Type { pinhole, fisheye, rectified } type = Type::pinhole;
   root.ReadChoice("Camera.type", type,
@@ -112,6 +108,10 @@ void ReadOrbSlam(settings::Section root, const std::string& prefix, Camera& came
   RequirePinhole(root, prefix, camera);
   if (type == Type::fisheye) camera.lens = Lens::fisheye;
   if (type != Type::rectified) ReadCoefficients(root, prefix, camera);
+  if (root.Has("LEFT.K"))
+    root.Reject("LEFT.K",
+                "'Camera.fx' and so on are of the images that ORB-SLAM rectifies by LEFT.K: where yours are, leave out "
+                "LEFT.* and RIGHT.*; else give the calibration of one camera");
 }
 
 void ReadCamodocal(settings::Section root, Camera& camera) {
@@ -166,24 +166,55 @@ void ReadBasalt(settings::Section value, Camera& camera) {
   numbers.IgnoreRest();
 }
 
-// sensor_msgs/CameraInfo; of ROS 1 with capitals.
-void ReadCameraInfo(settings::Section root, bool capitals, Camera& camera) {
+// sensor_msgs/CameraInfo: the calibrator's file, or a message, of ROS 1 with capitals.
+void ReadCameraInfo(settings::Section root, Camera& camera) {
+  const bool is_file = root.Has("camera_matrix"), capitals = root.Has("K");
+  settings::Section of_matrix = is_file ? root.Child("camera_matrix") : root,
+                    of_lens = is_file ? root.Child("distortion_coefficients") : root, roi = root.Child("roi");
+  const std::string k = is_file ? "data" : capitals ? "K" : "k", d = is_file ? "data" : capitals ? "D" : "d";
   std::array<double, 9> matrix{};
   std::vector<double> coefficients;
-  RequireSize(root, "width", "height", camera);
-  root.RequireChoice("distortion_model", camera.lens,
-                     {{"plumb_bob", kPlain}, {"rational_polynomial", kPlain}, {"equidistant", kFisheye}});
-  if (root.Require(capitals ? "K" : "k", matrix)) {
-    camera.fx = matrix[0], camera.cx = matrix[2], camera.fy = matrix[4], camera.cy = matrix[5];
-    if (!(camera.fx > 0 && camera.fy > 0)) root.Reject(capitals ? "K" : "k", "K: fx and fy must be positive");
+  RequireSize(root, is_file ? "image_width" : "width", is_file ? "image_height" : "height", camera);
+  const bool has_lens = of_lens.Require(d, coefficients) && !coefficients.empty();
+  root.Allow("distortion_model");  // which may be empty where there is none
+  if (has_lens) {
+    root.RequireChoice("distortion_model", camera.lens,
+                       {{"plumb_bob", kPlain}, {"rational_polynomial", kPlain}, {"equidistant", kFisheye}});
+    if (const std::string problem = SetLens(coefficients, camera); !problem.empty())
+      of_lens.Reject(d, "'distortion_coefficients' " + problem);
   }
-  root.Require(capitals ? "D" : "d", coefficients);
-  if (coefficients.empty()) return;  // without distortion
-  if (const std::string problem = SetLens(coefficients, camera); !problem.empty())
-    root.Reject(capitals ? "D" : "d", "the lens " + problem);
+  if (of_matrix.Require(k, matrix)) {
+    for (const std::string& problem : SetMatrix(matrix, camera)) of_matrix.Reject(k, problem);
+  }
+  int binning = 0, left = 0, top = 0;
+  for (const char* key : {"binning_x", "binning_y"}) {
+    if (root.Read(key, binning) && binning > 1) root.Reject(key, "the images are binned: calibrate them as they are");
+  }
+  if ((roi.Read("x_offset", left) && left != 0) || (roi.Read("y_offset", top) && top != 0))
+    root.Reject("roi", "the images are a region of the sensor (roi): calibrate them as they are");
+  for (settings::Section* section : {&of_matrix, &of_lens, &roi}) section->IgnoreRest();
 }
 
 }  // namespace
+
+void RequireSize(settings::Section& section, const std::string& width, const std::string& height, Camera& camera) {
+  if (!section.Has(width) && !section.Has(height))
+    return section.Reject(width, "has no '" + width + "' and '" + height + "': add the size of the images");
+  section.Require(width, camera.width, settings::Range::Positive());
+  section.Require(height, camera.height, settings::Range::Positive());
+}
+
+std::vector<std::string> SetMatrix(std::span<const double> matrix, Camera& camera) {
+  if (matrix.size() != 9) return {"'camera_matrix' must have 3 x 3 numbers"};
+  std::vector<std::string> problems;
+  camera.fx = matrix[0];
+  camera.cx = matrix[2];
+  camera.fy = matrix[4];
+  camera.cy = matrix[5];
+  if (!(camera.fx > 0 && camera.fy > 0)) problems.emplace_back("'camera_matrix': fx and fy must be positive");
+  if (matrix[1] != 0) problems.emplace_back("'camera_matrix': skew is not known here");
+  return problems;
+}
 
 std::optional<Camera> ReadTextCamera(std::string_view text, const std::filesystem::path& file) {
   const std::vector<Words> lines = DataLines(text);
@@ -195,7 +226,9 @@ std::optional<Camera> ReadTextCamera(std::string_view text, const std::filesyste
   if (first.size() > 4 && SetSize(std::span(first).subspan(2, 2), camera) &&
       !base::ParseNumber(first[1].text)) {  // COLMAP
     const auto model = Models().find(first[1].text);
-    if (model == Models().end()) return fail("COLMAP's model " + std::string(first[1].text) + " is not known here");
+    if (model == Models().end())
+      return fail("COLMAP's model " + std::string(first[1].text) +
+                  " is not known here: refine OPENCV or OPENCV_FISHEYE, or undistort the images");
     if (lines.size() > 1) return fail("holds more than one camera: keep the line of one");
     if (const std::string problem = SetParameters(model->second, std::span(first).subspan(4), camera); !problem.empty())
       return fail(problem);
@@ -204,14 +237,18 @@ std::optional<Camera> ReadTextCamera(std::string_view text, const std::filesyste
     return camera;
   }
   if (lines.size() < 2 || lines[1].size() != 2 || !SetSize(lines[1], camera)) return std::nullopt;
-  const auto model = Models().find(first[0].text);  // DSO: parameters, then the size
-  if (model == Models().end()) {
-    if (first[0].text != "FOV" && (first.size() != 5 || !base::ParseNumber(first[0].text))) return std::nullopt;
+  // DSO, LSD-SLAM: parameters, perhaps after a name, then the size. A lens without its angle is a pinhole.
+  const bool has_name = !base::ParseNumber(first[0].text);
+  std::string_view name = has_name ? first[0].text : first.size() == 8 ? "RadTan" : first.size() == 5 ? "FOV" : "";
+  if (name == "FOV" && base::ParseNumber(first.back().text) == 0) name = "Pinhole";
+  const auto model = Models().find(name);
+  if (name == "FOV")
     return fail(
         "the field-of-view lens of TUM's monocular dataset and DSO is not known here: calibrate a "
         "radial-tangential or equidistant one, or rectify the images");
-  }
-  if (const std::string problem = SetParameters(model->second, std::span(first).subspan(1), camera); !problem.empty())
+  if (model == Models().end()) return std::nullopt;
+  if (const std::string problem = SetParameters(model->second, std::span(first).subspan(has_name ? 1 : 0), camera);
+      !problem.empty())
     return fail(problem);
   if (camera.cx < 1 && camera.cy < 1) {  // in parts of the image, from its corner
     camera.fx *= camera.width, camera.fy *= camera.height;
@@ -230,8 +267,9 @@ bool ReadSlamCamera(settings::Section root, Camera& camera) {
     ReadCamodocal(root, camera);
   } else if (root.Has("value0")) {
     ReadBasalt(root.Child("value0"), camera);
-  } else if (root.Has("K") || (root.Has("k") && root.Has("d"))) {
-    ReadCameraInfo(root, root.Has("K"), camera);
+  } else if ((root.Has("camera_matrix") && root.Has("image_width") && root.Has("distortion_model")) ||
+             (root.Has("width") && (root.Has("K") || (root.Has("k") && root.Has("d"))))) {
+    ReadCameraInfo(root, camera);
   } else if (root.Has("cam0_calib")) {
     refuse("cam0_calib", "settings of VINS-Fusion have no calibration: give the file that cam0_calib names");
   } else if (root.Has("relative_config_imucam")) {

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tools/base/settings/settings.h"
 #include "vo/geometry/camera.h"
@@ -20,7 +21,13 @@ namespace vo {
 // none.
 std::string SetLens(std::span<const double> coefficients, Camera& camera);
 
-// COLMAP's and DSO's text, from its first line that is no comment. None where it is neither; throws settings::Error for
+// Camera matrix K, 3 x 3, row by row. Returns its problems.
+std::vector<std::string> SetMatrix(std::span<const double> matrix, Camera& camera);
+
+// Width and height by these keys; one problem where both are missing.
+void RequireSize(settings::Section& section, const std::string& width, const std::string& height, Camera& camera);
+
+// COLMAP's, DSO's and LSD-SLAM's text, from its first line that is no comment. None where it is neither; throws settings::Error for
 // a lens or a number of cameras that is not read.
 std::optional<Camera> ReadTextCamera(std::string_view text, const std::filesystem::path& file);
 

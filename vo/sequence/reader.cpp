@@ -18,18 +18,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostProblems = 50;
-
-// ICL-NUIM numbers its frames at 30 Hz.
-std::optional<std::int64_t> StampOfIndex(std::string_view text) {
-  const auto index = text.size() <= 9 ? base::ParseWhole(text) : std::nullopt;
-  return index && *index >= 0 ? std::optional((*index * 1'000'000'000 + 15) / 30) : std::nullopt;
-}
-
 // TUM's lists have seconds; no camera works before 0.
 std::optional<std::int64_t> StampInSeconds(std::string_view text) {
   const auto stamp_ns = base::ParseSeconds(text);
   return stamp_ns && *stamp_ns >= 0 ? stamp_ns : std::nullopt;
+}
+
+// Associations: TUM's have seconds; ICL-NUIM numbers its frames at 30 Hz.
+std::optional<std::int64_t> StampInSecondsOrFrames(std::string_view text) {
+  if (text.find('.') != std::string_view::npos) return StampInSeconds(text);
+  const auto index = text.size() <= 9 ? base::ParseWhole(text) : std::nullopt;
+  return index && *index >= 0 ? std::optional((*index * 1'000'000'000 + 15) / 30) : std::nullopt;
 }
 
 // EuRoC counts nanoseconds.
@@ -48,13 +47,15 @@ struct ListFormat {
 
 ListFormat FormatOf(const fs::path& folder, int camera) {
   if (!fs::exists(folder / "rgb.txt")) {
-    if (fs::exists(folder / "associations.txt"))
-      return {folder / "associations.txt",
-              folder,
-              4,
-              StampOfIndex,
-              "the number of a frame",
-              "index depth-file index image-file, or index image-file index depth-file"};
+    for (const char* name : {"associations.txt", "association.txt", "associate.txt"}) {
+      if (fs::exists(folder / name))
+        return {folder / name,
+                folder,
+                4,
+                StampInSecondsOrFrames,
+                "a time stamp in seconds or the number of a frame",
+                "stamp depth-file stamp image-file, or stamp image-file stamp depth-file"};
+    }
     if (fs::exists(folder / "mav0")) {
       const fs::path of = folder / ("mav0/cam" + std::to_string(camera));
       return {of / "data.csv", of / "data", 2, StampInNanoseconds, "a time stamp in nanoseconds", "timestamp,filename"};
@@ -71,16 +72,24 @@ bool IsDepth(const fs::path& file) {
   return std::string_view(head.data(), 4) == "\x89PNG" && head[kBits] == 16 && head[kColour] == 0;
 }
 
-// The image of a line: its last word; of a list of associations the picture that is no depth, which programs write
-// first or last. Empty: both are.
-fs::path ImageOf(const std::vector<base::Word>& words, const fs::path& folder) {
-  for (std::size_t i = words.size() - 1;; i -= 2) {
-    std::string name(words[i].text);
-    std::ranges::replace(name, '\\', '/');  // as lists made on Windows have it
-    const fs::path image = folder / name;
-    if (words.size() < 4 || !IsDepth(image)) return image;
-    if (i == 1) return {};
+// A file's name as lists have it, those made on Windows too.
+std::string NameOf(const base::Word& word) {
+  std::string name(word.text);
+  std::ranges::replace(name, '\\', '/');
+  std::erase(name, '"');
+  return name;
+}
+
+// Which word names the image: the last; of a list of associations the picture that is no depth, which programs write
+// first or last. 0: both are.
+std::size_t ImageWord(const std::vector<base::Word>& words, const fs::path& folder) {
+  const std::size_t last = words.size() - 1;
+  if (words.size() < 4) return last;
+  const auto is_called = [&](std::size_t i) { return words[i].text.find("depth") != std::string_view::npos; };
+  for (const std::size_t i : {last, last - 2}) {
+    if (!IsDepth(folder / NameOf(words[i])) && !(is_called(i) && !is_called(i == last ? last - 2 : last))) return i;
   }
+  return 0;
 }
 
 cv::Mat Decode(const std::vector<std::uint8_t>& bytes, const fs::path& file) {
@@ -129,9 +138,13 @@ SequenceReader::SequenceReader(const fs::path& folder, Images images, int camera
     const auto complain = [&](const std::string& text) {
       problems.push_back(list.string() + ":" + std::to_string(number) + ": " + text);
     };
+    if (const std::string problem = number == 1 ? base::TextProblem(line) : ""; !problem.empty())
+      throw std::runtime_error(list.string() + ": " + problem);
     const std::vector<base::Word> words = base::SplitWords(number == 1 ? base::WithoutMark(line) : line);
-    if (words.empty() || words[0].text[0] == '#') continue;
-    const std::string stamp(words[0].text);
+    if (words.empty() || base::IsComment(words[0].text)) continue;
+    if (entries_.empty() && problems.empty() && words[0].text.starts_with("time")) continue;  // names of columns
+    const std::size_t of_image = words.size() == format.words ? ImageWord(words, format.images) : 0;
+    const std::string stamp(words[of_image == 0 ? 0 : of_image - 1].text);
     const auto stamp_ns = format.stamp(stamp);
     if (!stamp_ns) {
       const std::string unit = format.stamp == StampInSeconds ? base::UnitOfStamp(stamp) : "";
@@ -145,9 +158,9 @@ SequenceReader::SequenceReader(const fs::path& folder, Images images, int camera
     }
     if (!entries_.empty() && *stamp_ns <= entries_.back().stamp_ns)
       complain("time stamp " + stamp + " does not increase over line " + std::to_string(last_number));
-    const fs::path image = ImageOf(words, format.images);
+    const fs::path image = format.images / NameOf(words[of_image]);
     std::error_code error;  // a name that is too long is reported like other problems
-    if (image.empty()) {
+    if (of_image == 0) {
       complain("both pictures are depth (grey of 16 bits)");
     } else if (images == Images::needed && !fs::is_regular_file(image, error)) {
       complain("image " + image.string() + " is not there");
@@ -156,12 +169,7 @@ SequenceReader::SequenceReader(const fs::path& folder, Images images, int camera
     last_number = number;
   }
   if (problems.empty() && entries_.empty()) problems.push_back(list.string() + ": no frames");
-  if (problems.size() > kMostProblems) {
-    const std::size_t more = problems.size() - kMostProblems;
-    problems.resize(kMostProblems);
-    problems.push_back("... and " + std::to_string(more) + " more problems");
-  }
-  if (!problems.empty()) throw std::runtime_error(base::Join(problems, "\n"));
+  if (!problems.empty()) throw std::runtime_error(base::JoinProblems(problems));
 }
 
 std::optional<Frame> SequenceReader::Next() {

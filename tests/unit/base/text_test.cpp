@@ -37,6 +37,16 @@ TEST(WithoutMark, LeavesOutOneMark) {
   EXPECT_EQ(WithoutMark("# \xef\xbb\xbf"), "# \xef\xbb\xbf");
 }
 
+TEST(TextProblem, OfWhatIsNoTextInLines) {
+  for (const char* text : {"", "# a", "1 2\r", "1\r\n2\r\n", "1\n2\x1a", "\xef\xbb\xbf\xc3\xbc\t"})
+    EXPECT_EQ(TextProblem(text), "");
+  EXPECT_EQ(TextProblem(std::string_view("\xff\xfe#\0", 4)), "is a text in UTF-16: save it in UTF-8");
+  EXPECT_EQ(TextProblem(std::string_view("\xfe\xff\0#", 4)), "is a text in UTF-16: save it in UTF-8");
+  for (const std::string_view bytes : {std::string_view("a\0b", 3), std::string_view("\x1f\x8b\x08")})
+    EXPECT_NE(TextProblem(bytes), "");
+  EXPECT_EQ(TextProblem("1 2\r3 4\r"), "has lines that end in CR alone: save it with LF");
+}
+
 TEST(UnitOfStamp, NamesWhatAStampOfTheseYearsCounts) {
   EXPECT_EQ(UnitOfStamp("4000000000"), "");
   EXPECT_NE(UnitOfStamp("1403636579763.5").find("milliseconds: divide the times by 1e3"), std::string::npos);

@@ -92,9 +92,9 @@ TEST_F(CameraFile, OfOpenCvThatIsNotUnderstood) {
   EXPECT_THAT(ErrorOf(file), HasSubstr(file.string() + ":6:16: 'camera_matrix' must have 3 x 3 numbers"));
   EXPECT_THAT(ErrorOf(file), HasSubstr("'distortion_coefficients'"));
   EXPECT_THAT(ErrorOf(Write("c.xml", "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>-3</image_width>")),
-              HasSubstr("OpenCV cannot read it"));
+              HasSubstr("c.xml: is cut off"));
   EXPECT_THAT(ErrorOf(WriteByOpenCv("c.xml", cv::Mat(matrix_).rowRange(0, 2), cv::Mat(rational))),
-              HasSubstr("c.xml: 'camera_matrix' must have 3 x 3 numbers"));
+              HasSubstr("c.xml:6:16: 'camera_matrix' must have 3 x 3 numbers"));
   // As many numbers as it says, whatever it says; 4.6's own reader never ends on the second.
   const std::string short_matrix =
       "%YAML:1.0\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   data: [1, 2]\n";
@@ -212,6 +212,13 @@ TEST_F(CameraFile, OfColmap) {
 TEST_F(CameraFile, OfDso) {
   ExpectRadtan(
       vo::ReadCamera(Write("camera.txt", "RadTan 458.5 457.25 367.25 248.375 -0.25 0.07 1e-4 2e-5\n752 480\n")), -0.25);
+  ExpectFisheye(vo::ReadCamera(
+      Write("camera.txt", "KannalaBrandt 458.5 457.25 367.25 248.375 -0.0127 0.0114 -0.0071 0.0023\n752 480\n")));
+  // Of LSD-SLAM, without a name.
+  ExpectRadtan(
+      vo::ReadCamera(Write("camera.cfg", "458.5 457.25 367.25 248.375 -0.25 0.07 1e-4 2e-5\n752 480\ncrop\n640 480\n")),
+      -0.25);
+  ExpectRadtan(vo::ReadCamera(Write("camera.cfg", "458.5 457.25 367.25 248.375 0\n752 480\n")), 0);
   const vo::Camera relative =
       vo::ReadCamera(Write("camera.txt", "Pinhole 0.5 0.75 0.5 0.5 0\n640 480\ncrop\n640 480\n"));
   EXPECT_EQ(relative.fx, 320);
@@ -315,7 +322,45 @@ TEST_F(CameraFile, OfRosTopics) {
   }
 }
 
+// Without distortion the model may have no name. Pixels that are not the sensor's have another calibration.
+TEST_F(CameraFile, OfRosWithoutDistortionBinnedAndCut) {
+  const std::string text =
+      "height: 480\nwidth: 752\ndistortion_model: ''\nD: []\nK: [458.5, 0, 367.25, 0, 457.25, 248.375, 0, 0, 1]\n";
+  ExpectRadtan(vo::ReadCamera(Write("info.yaml", text + "binning_x: 1\nroi: {x_offset: 0, y_offset: 0}\n")), 0);
+  EXPECT_THAT(ErrorOf(Write("info.yaml", text + "binning_x: 2\n")), HasSubstr("info.yaml:6:12: the images are binned"));
+  EXPECT_THAT(ErrorOf(Write("info.yaml", text + "roi: {x_offset: 0, y_offset: 8}\n")),
+              HasSubstr("a region of the sensor"));
+}
+
+// cv::FileStorage needs no blank behind a colon. What ORB-SLAM rectifies is of other images.
+TEST_F(CameraFile, OfOrbSlamAsItIsWritten) {
+  const std::string text = "%YAML:1.0\nCamera.fx:458.5\nCamera.fy: 457.25\nCamera.cx: 367.25\nCamera.cy: 248.375\n",
+                    size = "Camera.width:752\nCamera.height:480\n";
+  ExpectRadtan(vo::ReadCamera(Write("o.yaml", text + size)), 0);
+  EXPECT_EQ(ErrorOf(Write("o.yaml", text)),
+            (folder_ / "o.yaml").string() + ": has no 'Camera.width' and 'Camera.height': add the size of the images");
+  EXPECT_THAT(ErrorOf(Write("o.yaml", text + size + "LEFT.K: !!opencv-matrix\n   rows: 1\n   cols: 1\n   data:[1]\n")),
+              HasSubstr("images that ORB-SLAM rectifies"));
+}
+
 TEST_F(CameraFile, OfNoKnownKindIsOneSentence) {
+  for (const auto& [name, text, words] : std::vector<std::tuple<std::string, std::string, std::string>>{
+           {"ost.txt", "# oST version 5.0 parameters\n[image]\n\nwidth\n640\n", "no calibration of a kind"},
+           {"k.txt", "458.5 457.25 367.25 248.375\n", "no calibration of a kind"},
+           {"transforms.json", "{\"fl_x\": 458.5, \"cx\": 367.25, \"cy\": 248.375}", "no calibration of a kind"},
+           {"k.yaml", "%YAML:1.0\nK: !!opencv-matrix\n   rows: 1\n   cols: 1\n   data: [1]\n",
+            "no calibration of a kind"},
+           {"c.xml", "<?xml version=\"1.0\"?><calibration><f>1</f></calibration>", "XML, but not of cv::FileStorage"},
+           {"c.yaml",
+            std::string("\xff\xfe"
+                        "w\0",
+                        4),
+            "UTF-16"},
+           {"cameras.bin", std::string("\1\0\0\0", 4), "no text"}}) {
+    const std::string error = ErrorOf(Write(name, text));
+    EXPECT_THAT(error, HasSubstr(words));
+    EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 0) << error;
+  }
   const std::string error = ErrorOf(Write("other.yaml", "name: x\nfocal: 3\nvalues: [1, 2]\n"));
   EXPECT_THAT(error, HasSubstr("is no calibration of a kind that is known here"));
   EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 0) << error;

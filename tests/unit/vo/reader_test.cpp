@@ -109,6 +109,25 @@ TEST_F(Reader, TakesThePictureThatIsNoDepth) {
   EXPECT_NE(ErrorOfOpening().find("associations.txt:1: both pictures are depth"), std::string::npos);
 }
 
+// Stamps in seconds are the picture's own; depth that is no PNG of 16 bits is known by its name.
+TEST_F(Reader, ReadsAssociationsInSeconds) {
+  fs::create_directories(folder_ / "depth");
+  cv::imwrite((folder_ / "depth/a.png").string(), cv::Mat(4, 6, CV_8UC1, cv::Scalar(50)));
+  for (const char* line :
+       {"3.5,\"rgb/a.png\",3.25,\"depth/a.png\"\n", "% depth rgb\n3.25 depth/a.png 3.5 rgb/a.png\n"}) {
+    std::ofstream(folder_ / "associate.txt") << line;
+    vo::SequenceReader reader(folder_);
+    const auto frame = reader.Next();
+    EXPECT_EQ(frame->stamp_ns, 3'500'000'000);
+    EXPECT_EQ(frame->image.at<cv::Vec3b>(1, 1), cv::Vec3b(10, 20, 30));
+  }
+  std::ofstream(folder_ / "associate.txt") << std::string(
+      "\xff\xfe"
+      "3\0",
+      4);
+  EXPECT_NE(ErrorOfOpening().find("associate.txt: is a text in UTF-16"), std::string::npos);
+}
+
 // Alpha is left out, 16 bits become 8, and what follows a picture's end does no harm.
 TEST_F(Reader, ReadsEveryColourTypeAndPaddedFiles) {
   cv::imwrite((folder_ / "rgb/rgba.png").string(), cv::Mat(4, 6, CV_8UC4, cv::Scalar(10, 20, 30, 255)));

@@ -1,4 +1,4 @@
-// Limits of JSON and XML texts from elsewhere: what may be given to a parser that works by recursion, so that the depth
+// Limits of JSON texts from elsewhere: what may be given to a parser that works by recursion, so that the depth
 // of its input is the stack's.
 #pragma once
 
@@ -13,16 +13,10 @@
 namespace limits {
 
 constexpr int kDeepestJson = 100;  // of lists and objects in each other; ours go to ten
-constexpr std::size_t kMostStorageBytes = 1 << 20;
-constexpr int kDeepestStorage = 100;  // elements in each other
 
 // What is wrong with a text for nlohmann-json, which copies and prints values by recursion; empty: nothing. Whether it
 // is JSON at all is left to the parser.
 std::string JsonProblem(std::string_view text);
-
-// What is wrong with an XML text for OpenCV's cv::FileStorage; empty: nothing. Without a bound (4.6) a few 10 kB of
-// "<a><a><a>" end the program. (Its YAML is read by tools/base/settings.)
-std::string OpenCvStorageProblem(std::string_view text);
 
 // The whole number of a JSON value; none where it is no whole number, or one that Whole does not hold. nlohmann-json's
 // get<int>() casts: a number too large for the type becomes another one, and a number with a point may be one that no

@@ -55,9 +55,10 @@ class Builder : public YAML::EventHandler {
   Element TakeRoot() { return std::move(root_); }
 
   // What cv::FileStorage has appended to a file is one document more: its keys, where both are maps. ROS ends each of
-  // its messages with the beginning of another.
+  // its messages with the beginning of another, which is empty: once, as yaml-cpp (0.7) finds empty ones for ever in
+  // some malformed texts.
   bool Join(Builder& next) {
-    if (next.root_.kind == Element::Kind::null) return true;
+    if (next.root_.kind == Element::Kind::null) return !std::exchange(has_empty_, true);
     if (root_.kind != Element::Kind::map || next.root_.kind != Element::Kind::map) return false;
     for (Entry& entry : next.root_.entries) {
       if (!root_.Find(entry.key)) root_.entries.push_back(std::move(entry));
@@ -120,6 +121,7 @@ class Builder : public YAML::EventHandler {
   std::vector<Problem>& problems_;
   std::vector<Open> open_;
   Element root_;
+  bool has_empty_ = false;  // an empty document after the first
 };
 
 }  // namespace

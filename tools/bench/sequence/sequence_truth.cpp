@@ -89,8 +89,9 @@ std::optional<Truth> ReadSequenceTruth(const fs::path& sequence) {
 }
 
 std::optional<std::vector<std::int64_t>> ReadFrameStamps(const fs::path& sequence) {
-  const auto there = [&](const char* list) { return fs::exists(sequence / list); };
-  if (!there("rgb.txt") && !there("associations.txt") && !there("mav0/cam0/data.csv")) return std::nullopt;
+  constexpr const char* kLists[] = {"rgb.txt", "associations.txt", "association.txt", "associate.txt",
+                                    "mav0/cam0/data.csv"};
+  if (std::ranges::none_of(kLists, [&](const char* list) { return fs::exists(sequence / list); })) return std::nullopt;
   const vo::SequenceReader reader(sequence, vo::SequenceReader::Images::not_asked_for);
   std::vector<std::int64_t> stamps;
   for (const vo::SequenceReader::Entry& frame : reader.entries()) stamps.push_back(frame.stamp_ns);

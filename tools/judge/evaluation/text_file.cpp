@@ -9,17 +9,6 @@
 namespace evaluation {
 namespace {
 
-constexpr std::size_t kMostProblems = 50;
-
-std::string Join(std::vector<std::string> problems) {
-  if (problems.size() > kMostProblems) {
-    const std::string more = "... and " + std::to_string(problems.size() - kMostProblems) + " more problems";
-    problems.resize(kMostProblems);
-    problems.push_back(more);
-  }
-  return base::Join(problems, "\n");
-}
-
 // Into tokens that are there already, so that their memory serves the next line. Blanks about a field are no part of it.
 void Split(std::string_view line, char separator, std::vector<Token>& tokens) {
   std::size_t count = 0;
@@ -44,7 +33,8 @@ void Split(std::string_view line, char separator, std::vector<Token>& tokens) {
 
 }  // namespace
 
-InputError::InputError(const std::vector<std::string>& problems) : std::invalid_argument(Join(problems)) {}
+InputError::InputError(const std::vector<std::string>& problems)
+    : std::invalid_argument(base::JoinProblems(problems)) {}
 
 void Problems::Add(const std::filesystem::path& file, const std::string& message) {
   problems_.push_back(file.string() + ": " + message);
@@ -69,13 +59,14 @@ void Lines::Advance() {
   while (std::getline(stream_, text_)) {
     ++line_.number;
     if (!text_.empty() && text_.back() == '\r') text_.pop_back();
-    if (line_.number == 1) text_ = base::WithoutMark(text_);
+    if (line_.number == 1) {
+      if (const std::string problem = base::TextProblem(text_); !problem.empty())
+        throw InputError({file_.string() + ": " + problem});
+      text_ = base::WithoutMark(text_);
+    }
     const std::size_t first = text_.find_first_not_of(" \t");
     if (first == std::string::npos) continue;
-    if (text_[first] == '#') {
-      comment_ = text_;
-      continue;
-    }
+    if (separator_ != '\n' && base::IsComment(std::string_view(text_).substr(first))) continue;
     Split(text_, separator_, line_.tokens);
     return;
   }

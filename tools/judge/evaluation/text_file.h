@@ -61,7 +61,7 @@ class Lines {
   };
 
   // separator ' ' stands for any run of spaces, tabs, commas and semicolons; with any other, fields may be empty, and
-  // blanks about them are left out. Throws InputError when the file cannot be read, as begin and ++ do.
+  // blanks about them are left out. '\n': each line is one token, comments too. Throws InputError when the file cannot be read, as begin and ++ do.
   explicit Lines(const std::filesystem::path& file, char separator = ' ');
 
   Iterator begin() {
@@ -69,8 +69,6 @@ class Lines {
     return Iterator(this);
   }
   static std::default_sentinel_t end() { return std::default_sentinel; }
-  // The last line with '#' before the current one.
-  const std::string& comment() const { return comment_; }
 
  private:
   void Advance();
@@ -78,7 +76,7 @@ class Lines {
   std::filesystem::path file_;
   char separator_;
   std::ifstream stream_;
-  std::string text_, comment_;
+  std::string text_;
   Line line_{0, {}};
   bool at_end_ = false;
 };

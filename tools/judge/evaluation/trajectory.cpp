@@ -1,13 +1,12 @@
 #include "tools/judge/evaluation/trajectory.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "tools/base/files.h"
+#include "tools/base/pose_table.h"
 #include "tools/base/text.h"
 #include "tools/judge/evaluation/so3.h"
 #include "tools/judge/evaluation/text_file.h"
@@ -38,56 +37,23 @@ void Write(const std::filesystem::path& file, const char* header, const Entries&
   out.Commit();
 }
 
-// What other programs add to a pose: OpenVINS the upper triangles of two covariances; EuRoC velocity and biases.
-constexpr std::size_t kPose = 8, kOpenVins = 20, kEuroc = 17, kKitti = 12;
-
-// A row `timestamp tx ty tz qx qy qz qw` of what a line holds: of EuRoC's tables nanoseconds, and qw first.
-Line PoseRow(const Line& line, bool of_euroc) {
-  Line row = line;
-  if (of_euroc ? row.tokens.size() < kPose : row.tokens.size() != kOpenVins && row.tokens.size() != kPose) return row;
-  row.tokens.resize(kPose);
-  if (!of_euroc) return row;
-  if (base::ParseWhole(row.tokens[0].text)) row.tokens[0].text += "e-9";
-  std::rotate(row.tokens.begin() + 4, row.tokens.begin() + 5, row.tokens.end());
-  return row;
-}
-
-// What the first row shows about all of them: a file of another kind is refused in one sentence.
-void RefuseOtherKinds(const std::filesystem::path& file, const Line& row) {
-  const std::string place = file.string() + ":" + std::to_string(row.number) + ": ";
-  if (row.tokens.size() == kKitti)
-    throw InputError(
-        {place + "twelve numbers a line are KITTI's poses, which have no times: add them, and quaternions"});
-  if (row.tokens.size() != kPose) return;
-  if (const std::string unit = base::UnitOfStamp(row.tokens[0].text); !unit.empty())
-    throw InputError({place + "'" + row.tokens[0].text + "' is not a time in seconds" + unit});
-}
-
 }  // namespace
 
 Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading) {
   Problems problems;
   Trajectory trajectory;
-  bool first = true, of_euroc = false;
-  Lines lines(file);
-  for (const Line& line : lines) {
-    // A first line of names, as spreadsheets and pandas write it.
-    const auto is_name = [](const Token& token) {
-      return token.text.empty() || std::isalpha(static_cast<unsigned char>(token.text[0])) != 0;
-    };
-    if (first && line.tokens.size() >= kPose && std::ranges::all_of(line.tokens, is_name) &&
-        std::ranges::none_of(line.tokens, [](const Token& token) { return token.text == "nan"; })) {
-      of_euroc = std::ranges::any_of(line.tokens, [](const Token& t) { return t.text.starts_with("q_RS_w"); });
-      continue;
-    }
-    if (first) {
-      of_euroc = of_euroc || reading == Reading::euroc || line.tokens.size() == kEuroc ||
-                 lines.comment().find("q_RS_w") != std::string::npos;
-    }
-    const Line row = PoseRow(line, of_euroc);
-    if (std::exchange(first, false)) RefuseOtherKinds(file, row);
+  base::PoseTable table(reading == Reading::euroc);
+  for (const Line& text : Lines(file, '\n')) {
+    Line line{text.number, {}};
+    std::string other_kind;
+    for (const base::Word& word : table.Row(text.tokens[0].text, other_kind))
+      line.tokens.push_back(
+          {line.tokens.empty() ? table.Stamp(word) : std::string(word.text), word.column + text.tokens[0].column - 1});
+    if (!other_kind.empty())
+      throw InputError({file.string() + ":" + std::to_string(line.number) + ":1: " + other_kind});
+    if (line.tokens.empty()) continue;
     std::array<double, 7> n{};
-    const auto parsed = ParseRow(file, row, "timestamp tx ty tz qx qy qz qw", n, problems);
+    const auto parsed = ParseRow(file, line, "timestamp tx ty tz qx qy qz qw", n, problems);
     if (!parsed) continue;
     const std::int64_t stamp = *parsed;
     StampedPose pose{stamp, {n[0], n[1], n[2]}, Eigen::Quaterniond(n[6], n[3], n[4], n[5])};

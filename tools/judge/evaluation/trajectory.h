@@ -37,13 +37,11 @@ using Velocities = std::vector<StampedVelocity>;
 // table is EuRoC's, whatever its header says.
 enum class Reading { strict, as_written, euroc };
 
-// Reads `timestamp tx ty tz qx qy qz qw`, separated by blanks, tabs, commas or semicolons, perhaps with OpenVINS' twelve
-// numbers of covariance behind; or EuRoC's table of poses (nanoseconds, qw first; by its header or its 17 columns), as
-// it stands: of the body. Quaternions are normalised; a norm that differs from 1 by more than 1e-3 is
-// an error (recorded truth is rounded to four digits, which leaves up to 1e-4). Time must not go back. Of lines with
-// equal stamps the first is kept: motion-capture truth rounded to 0.1 ms has such lines; a second one that differs by
-// more than 1 cm or 1 degree from the first is an error. Throws InputError with every problem as file:line:column, and
-// when no pose is left.
+// Reads a table of poses (tools/base/pose_table.h), EuRoC's as it stands: of the body. Quaternions are normalised; a
+// norm that differs from 1 by more than 1e-3 is an error (recorded truth is rounded to four digits, which leaves up to
+// 1e-4). Time must not go back. Of lines with equal stamps the first is kept: motion-capture truth rounded to 0.1 ms
+// has such lines; a second one that differs by more than 1 cm or 1 degree from the first is an error. Throws InputError
+// with every problem as file:line:column, and when no pose is left.
 Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading = Reading::strict);
 
 // Writes the same: stamps with nine decimals, twelve significant digits, qw >= 0. Throws std::invalid_argument naming

@@ -99,7 +99,9 @@ TEST(ReadTrajectory, OtherKindsAreRefusedInOneSentence) {
   for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
            {"1403636579763555584" + pose + "1403636579813555456" + pose, "nanoseconds: divide the times by 1e9"},
            {"1403636579763" + pose + "1403636579813" + pose, "milliseconds"},
-           {"1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n", "KITTI"}}) {
+           {"1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n", "t.txt:1:1: twelve numbers a line are KITTI"},
+           {"1,2,3\n4,5,6\n", "t.txt:1:1: 3 columns where 8 are expected"},
+           {std::string("\xff\xfe#\0\n\0", 6), "t.txt: is a text in UTF-16"}}) {
     const std::string said = Complaint(text);
     EXPECT_THAT(said, HasSubstr(words));
     EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 0) << said;

@@ -228,6 +228,25 @@ TEST(Gltf, HugeCoordinates) {
   for (const glm::vec3& x : scene.meshes.at(0).positions) EXPECT_NEAR(x.z, 0.0, 1e-6);
 }
 
+// What is coarse in the file stays so, wherever it is moved.
+TEST(Gltf, HugeCoordinatesOfVertices) {
+  const Folder folder;
+  Parts parts;
+  parts.positions = {0, 0, 4194304, 1, 0, 4194304, 0, 1, 4194304};
+  EXPECT_THAT(Problems(folder, parts), HasSubstr("move it near the origin"));
+  WorldDescription world;
+  world.meshes.push_back({folder.path() / "flag.gltf", {0, 0, -4194304.0}, {1, 0, 0, 0}, 1.0, {}, {}});
+  EXPECT_THAT(ProblemTextOf([&] { LoadScene(world); }), HasSubstr("4.1943e+06), where numbers are 0.25 coarse"));
+}
+
+TEST(Gltf, WantsAReaderOfAnotherVersion) {
+  const Folder folder;
+  std::string text = Gltf({});
+  text.replace(text.find("\"2.0\""), 5, R"("2.1", "minVersion": "2.1")");
+  const auto file = folder.Write("flag.gltf", text);
+  EXPECT_THAT(ProblemTextOf([&] { LoadScene(WorldOf(file)); }), HasSubstr("wants a reader of glTF 2.1"));
+}
+
 TEST(Gltf, WhatIsNotRenderedIsNamed) {
   const Folder folder;
   Parts parts;

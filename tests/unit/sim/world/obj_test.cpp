@@ -123,6 +123,27 @@ TEST_F(Obj, VertexColours) {
   EXPECT_THAT(bytes.warnings, ElementsAre(HasSubstr("0 ... 255")));
 }
 
+// A picture takes the place of vertex colours, which photogrammetry writes beside it; said where it is seen.
+TEST_F(Obj, PictureInPlaceOfVertexColours) {
+  folder_.Write("grey.png", EncodeColor(".png", 128, 128, 128));
+  folder_.Write("m.mtl", "newmtl a\nmap_Kd grey.png\nnewmtl black\nKd 0 0 0\nmap_Kd grey.png\n");
+  const auto wall = [](const std::string& material, const std::string& color) {
+    return "mtllib \"m.mtl\"\nusemtl " + material + "\nv 0 0 0" + color + "\nv 1 0 0" + color + "\nv 0 1 0" + color +
+           "\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+  };
+  const Scene scene = Load(wall("a", " 0.5 0.5 0.5"));
+  EXPECT_THAT(scene.meshes.at(0).colors, IsEmpty());
+  EXPECT_GE(MaterialOf(scene).texture, 0);
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("takes the place of vertex colours")));
+  EXPECT_THAT(Load(wall("a", " 1 1 1")).warnings, IsEmpty());
+  EXPECT_THAT(Load(wall("black", "")).warnings, ElementsAre(HasSubstr("a colour of 0 makes its picture black")));
+}
+
+TEST_F(Obj, SaysWhatIsMissing) {
+  EXPECT_THAT(Load("usemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").warnings,
+              ElementsAre(HasSubstr("names the material 'a', which no library (mtllib) tells of")));
+}
+
 TEST_F(Obj, PicturesWithoutAColourAreLeftAsTheyAre) {
   folder_.Write("grey.png", EncodeColor(".png", 128, 128, 128));
   folder_.Write("m.mtl", "newmtl a\nmap_Kd grey.png\nnewmtl b\nKd 0.25 0.5 0.75\nmap_Kd grey.png\n");

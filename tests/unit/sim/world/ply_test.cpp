@@ -108,6 +108,24 @@ TEST_F(Ply, TexturesByNumberStripsAndColoursOfFaces) {
   EXPECT_EQ(faces.meshes[0].colors.at(faces.meshes[0].triangles[1].x), glm::vec3(0, 1, 0));
 }
 
+// Faces before vertices, lines that end in CR, colours of 0 ... 255 (or 65535) in wider types.
+TEST_F(Ply, AsOtherProgramsWriteIt) {
+  for (const auto& [type, white] : std::vector<std::pair<std::string, double>>{
+           {"uchar", 255}, {"int", 255}, {"float", 255}, {"ushort", 255}, {"ushort", 65535}, {"float", 1}}) {
+    std::string text =
+        "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\n";
+    for (const char* axis : {"x", "y", "z"}) text += std::string("property float ") + axis + "\n";
+    for (const char* channel : {"red", "green", "blue"}) text += "property " + type + " " + channel + "\n";
+    text += "end_header\n3 0 1 2\n";
+    const std::string color = std::to_string(white) + " 0 0\n";
+    text += "0 0 0 " + color + "1 0 0 " + color + "0 1 0 " + color;
+    std::ranges::replace(text, '\n', '\r');
+    const Scene scene = Load(text);
+    EXPECT_EQ(scene.meshes.at(0).colors.at(1), glm::vec3(1, 0, 0)) << type << white;
+    EXPECT_EQ(scene.warnings.size(), type == "uchar" || white == 1 ? 0 : 1) << type << white;
+  }
+}
+
 TEST_F(Ply, BrokenOnesAreRefused) {
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"

@@ -1,0 +1,78 @@
+#include "tools/base/pose_table.h"
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+namespace base {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// The last line's words in order, the stamp in seconds, or why there are none.
+std::vector<std::string> LastOf(const std::string& text, bool is_euroc = false) {
+  PoseTable table(is_euroc);
+  std::vector<std::string> last;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    last.clear();
+    std::string problem;
+    const std::vector<Word> row = table.Row(line, problem);
+    if (!problem.empty()) return {problem};
+    for (const Word& word : row) last.push_back(last.empty() ? table.Stamp(word) : std::string(word.text));
+  }
+  return last;
+}
+
+// The same pose, whatever order of columns a header tells.
+TEST(PoseTable, TakesTheOrderOfItsHeader) {
+  for (const std::string text :
+       {"# timestamp tx ty tz qx qy qz qw\n7.5 1 2 3 4 5 6 9", "% timestamp tx ty tz qw qx qy qz\n7.5 1 2 3 9 4 5 6",
+        "// made by x: position, time t\n# t x y z qw qx qy qz\n7.5 1 2 3 9 4 5 6",
+        "\"timestamp\",\"frame\",\"rot_x\",\"rot_y\",\"rot_z\",\"rot_w\",\"pos_x\",\"pos_y\",\"pos_z\"\n"
+        "7.5,11,4,5,6,9,1,2,3",
+        "Time,header.stamp.secs,header.frame_id,pose.position.x,pose.position.y,pose.position.z,pose.orientation.x,"
+        "pose.orientation.y,pose.orientation.z,pose.orientation.w,twist.linear.x\n7.5,6,map,1,2,3,4,5,6,9,8",
+        "time; px [m]; py [m]; pz [m]; qx; qy; qz; qw; vx\n7.5;1;2;3;4;5;6;9;8\x1a",
+        "# timestamp(s) tx ty tz qx qy qz qw Pr11\n7.5 1 2 3 4 5 6 9 0 0 0 0 0 0 0 0 0 0 0 0"}) {
+    EXPECT_THAT(LastOf(text), ElementsAre("7.5", "1", "2", "3", "4", "5", "6", "9")) << text;
+  }
+}
+
+// Of EuRoC's, VINS' and ROS' tables whole stamps count nanoseconds; the stamp is not the time of its arrival.
+TEST(PoseTable, NanosecondsWhereTheTableHasThem) {
+  for (const std::string text :
+       {"#timestamp [ns],x,y,z,qw,qx,qy,qz\n75,1,2,3,9,4,5,6,",
+        "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []\n"
+        "75,1,2,3,9,4,5,6,0,0,0",
+        "%time,field.header.seq,field.header.stamp,field.header.frame_id,field.pose.position.x,field.pose.position.y,"
+        "field.pose.position.z,field.pose.orientation.x,field.pose.orientation.y,field.pose.orientation.z,"
+        "field.pose.orientation.w\n80,1,75,map,1,2,3,4,5,6,9",
+        "75,1,2,3,9,4,5,6,0,0,0,0,0,0,0,0,0"}) {
+    EXPECT_THAT(LastOf(text), ElementsAre("75e-9", "1", "2", "3", "4", "5", "6", "9")) << text;
+  }
+  EXPECT_THAT(LastOf("75 1 2 3 9 4 5 6", true), ElementsAre("75e-9", "1", "2", "3", "4", "5", "6", "9"));
+}
+
+TEST(PoseTable, RefusesOtherKindsByTheFirstRow) {
+  for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
+           {"1 0 0 0 0 1 0 0 0 0 1 0", "KITTI"},
+           {"1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "matrices"},
+           {"1403636579763555584,1,2,3,1,0,0,0,0.1,0.2,0.3,",
+            "nanoseconds: divide the times by 1e9; where qw comes first"},
+           {"1403636579763 1 2 3 1 0 0 0", "milliseconds: divide the times by 1e3"},
+           {"0,5;1,5;2,5;3,5;0,5;0,5;0,5;0,5", "decimal commas"},
+           {"VERTEX_SE3:QUAT 0 1 2 3 0 0 0 1", "g2o"},
+           {"# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n1 1 0 0 0 1 2 3 1 a.png", "COLMAP"},
+           {"2014-06-24T19:03:00 1 2 3 0 0 0 1", "is not a time in seconds"},
+           {"1403636579763555584,1,2,3", "4 columns where 8 are expected"}}) {
+    const std::vector<std::string> said = LastOf(text);
+    ASSERT_EQ(said.size(), 1u) << text;
+    EXPECT_THAT(said[0], HasSubstr(words));
+  }
+  EXPECT_EQ(LastOf("1 1 2 3 0 0 0 1\n2 1 2 3").size(), 4u) << "a later row comes as it is";
+}
+
+}  // namespace
+}  // namespace base
