@@ -104,12 +104,16 @@ void Pass(Io& io, ImportedMesh& mesh) {
   PassAll(io, mesh.name, mesh.material, mesh.positions, mesh.normals, mesh.colors, mesh.uvs, mesh.triangles);
 }
 template <class Io>
+void Pass(Io& io, ImportedCamera& camera) {
+  PassAll(io, camera.name, camera.transform, camera.yfov_rad, camera.aspect);
+}
+template <class Io>
 void Pass(Io& io, ImportedNode& node) {
   PassAll(io, node.parent, node.transform, node.meshes);
 }
 template <class Io>
 void Pass(Io& io, MeshImport& import) {
-  PassAll(io, import.problem, import.files, import.missing, import.warnings, import.origin);
+  PassAll(io, import.problem, import.files, import.missing, import.warnings, import.origin, import.cameras);
   ImportedScene& scene = import.scene;
   PassAll(io, scene.nodes, scene.meshes, scene.materials, scene.pictures);
 }

@@ -67,6 +67,13 @@ struct ImportedNode {
   std::vector<unsigned> meshes;
 };
 
+struct ImportedCamera {
+  std::string name;           // of its node; else its own
+  glm::dmat4 transform{1.0};  // file from camera: x right, y up, -z forward
+  double yfov_rad = 0;        // 0: it is orthographic
+  double aspect = 0;          // width / height; 0: not stated
+};
+
 struct ImportedScene {
   std::vector<ImportedNode> nodes;
   std::vector<ImportedMesh> meshes;
@@ -81,6 +88,7 @@ struct MeshImport {
   std::set<std::string> missing;          // those that could not be opened, without their folder
   std::vector<std::string> warnings;
   glm::dvec3 origin{0.0};  // of the scene's coordinates, in the file's
+  std::vector<ImportedCamera> cameras{};
 };
 
 // Counts of a whole file, and their limits.

@@ -73,18 +73,23 @@ void SilenceProcess() {
 
 constexpr std::chrono::seconds kPatience(600);  // of whoever waits: an importer that sleeps uses no processor
 
-std::vector<std::uint8_t> Import(const fs::path& file, const std::vector<fs::path>& folders) {
+using MeshReader = void (*)(MeshFiles&, MeshImport&);
+
+MeshReader ReaderFor(const fs::path& file) {
+  const std::map<std::string_view, MeshReader> readers = {
+      {".obj", ReadObj}, {".ply", ReadPly}, {".gltf", ReadGltf}, {".glb", ReadGltf}};
+  const auto read = readers.find(LowerExtension(file));
+  return read == readers.end() ? ReadByAssimp : read->second;
+}
+
+std::vector<std::uint8_t> Import(const fs::path& file, const std::vector<fs::path>& folders, MeshReader read) {
   MeshImport import;
   MeshFiles files(file, folders, import);
-  const std::string extension = LowerExtension(file);
-  const std::map<std::string_view, void (*)(MeshFiles&, MeshImport&)> readers = {
-      {".obj", ReadObj}, {".ply", ReadPly}, {".gltf", ReadGltf}, {".glb", ReadGltf}};
-  const auto read = readers.find(extension);
   try {
-    (read == readers.end() ? ReadByAssimp : read->second)(files, import);
+    read(files, import);
     if (import.problem.empty()) import.problem = CountsOf(import.scene).Problem();
   } catch (const OlderGltf&) {
-    ReadByAssimp(files, import);
+    if (read == ReadGltf) ReadByAssimp(files, import);
   } catch (const std::bad_alloc&) {
     import.problem = "cannot be read: it wants more memory than a file of this size may";
   }
@@ -101,11 +106,11 @@ std::string WhyItEnded(const base::ExitStatus& end, bool in_time) {
   return "the importer gave up on it";
 }
 
-base::ChildProcess StartImporter(const fs::path& file, const std::vector<fs::path>& folders) {
+base::ChildProcess StartImporter(const fs::path& file, const std::vector<fs::path>& folders, MeshReader read) {
   try {
     return base::ChildProcess([&](int answer) {
       SilenceProcess();
-      return base::WriteAll(answer, base::AsText(Import(file, folders)));
+      return base::WriteAll(answer, base::AsText(Import(file, folders, read)));
     });
   } catch (const std::system_error& error) {
     throw std::runtime_error(file.string() + ": no importer: " + error.what());
@@ -119,6 +124,25 @@ bool IsBelow(const fs::path& folder, const fs::path& file) {
                  real = fs::weakly_canonical(file, error);
   if (error) return false;
   return std::mismatch(top.begin(), top.end(), real.begin(), real.end()).first == top.end();
+}
+
+MeshImport ImportBy(MeshReader read, const fs::path& file, const std::vector<fs::path>& folders) {
+  const base::ChildProcess importer = StartImporter(file, folders, read);
+  const std::optional<std::string> answer = importer.ReadAnswer(std::chrono::steady_clock::now() + kPatience);
+  if (!answer) importer.Kill();
+  const base::ExitStatus end = importer.Wait();
+  MeshImport import;
+  if (answer && end.signal == 0 && end.status == 0) {
+    try {
+      return ImportFromBytes(base::AsBytes(*answer));
+    } catch (const std::runtime_error& error) {
+      import.problem = error.what();
+    }
+  } else {
+    import.problem = "cannot be read: " + WhyItEnded(end, answer.has_value());
+  }
+  import.files.insert(file);
+  return import;
 }
 
 }  // namespace
@@ -160,22 +184,11 @@ void MeshFiles::Missing(const fs::path& file) {
 }
 
 MeshImport ImportMesh(const fs::path& file, const std::vector<fs::path>& folders) {
-  const base::ChildProcess importer = StartImporter(file, folders);
-  const std::optional<std::string> answer = importer.ReadAnswer(std::chrono::steady_clock::now() + kPatience);
-  if (!answer) importer.Kill();
-  const base::ExitStatus end = importer.Wait();
-  MeshImport import;
-  if (answer && end.signal == 0 && end.status == 0) {
-    try {
-      return ImportFromBytes(base::AsBytes(*answer));
-    } catch (const std::runtime_error& error) {
-      import.problem = error.what();
-    }
-  } else {
-    import.problem = "cannot be read: " + WhyItEnded(end, answer.has_value());
-  }
-  import.files.insert(file);
-  return import;
+  return ImportBy(ReaderFor(file), file, folders);
+}
+
+MeshImport ImportCameras(const fs::path& file, const std::vector<fs::path>& folders) {
+  return ReaderFor(file) == ReadGltf ? ImportBy(ReadGltfCameras, file, folders) : MeshImport{};
 }
 
 }  // namespace sim

@@ -45,5 +45,7 @@ class MeshFiles {
 // bytes for each of theirs. An importer that crashes or runs into a limit is a problem with the file like any other.
 // Throws std::runtime_error where no process can be started.
 MeshImport ImportMesh(const std::filesystem::path& file, const std::vector<std::filesystem::path>& folders);
+// Only the cameras of a glTF file; of another format none.
+MeshImport ImportCameras(const std::filesystem::path& file, const std::vector<std::filesystem::path>& folders);
 
 }  // namespace sim
