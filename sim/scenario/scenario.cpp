@@ -102,22 +102,19 @@ void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
   section.Reject(check.problems);
 }
 
-// `from`, a camera of a mesh file, gives defaults of the other keys.
+// `from`, a camera of a mesh file, gives defaults of the other keys but the width.
 void ReadCamera(Section section, FileCameras& cameras, CameraParams& camera) {
   section.Allow("from");
   const bool has_file = section.Has("from");  // resolved only where given
-  if (has_file) {
-    std::string name;
-    camera.width = camera.height = 0;
-    section.Read("width", camera.width, Range::AtLeast(1));
-    section.Read("height", camera.height, Range::AtLeast(1));
-    try {
-      if (section.Read("from", name)) SetIntrinsics(cameras.At(name), camera);
+  if (has_file) try {
+      std::string name;
+      camera.height = 0;
+      section.Read("height", camera.height);
+      if (section.Require("width", camera.width) && section.Read("from", name)) SetIntrinsics(cameras.At(name), camera);
     } catch (const std::runtime_error& error) {
       section.Reject("from", "'from': " + std::string(error.what()));
       return section.IgnoreRest();
     }
-  }
   settings::FieldReader reader(section, has_file);
   Visit(reader, camera);
   if (reader.good()) section.Reject(Problems(camera));

@@ -73,23 +73,19 @@ void SilenceProcess() {
 
 constexpr std::chrono::seconds kPatience(600);  // of whoever waits: an importer that sleeps uses no processor
 
-using MeshReader = void (*)(MeshFiles&, MeshImport&);
-
-MeshReader ReaderFor(const fs::path& file) {
-  const std::map<std::string_view, MeshReader> readers = {
-      {".obj", ReadObj}, {".ply", ReadPly}, {".gltf", ReadGltf}, {".glb", ReadGltf}};
-  const auto read = readers.find(LowerExtension(file));
-  return read == readers.end() ? ReadByAssimp : read->second;
-}
-
-std::vector<std::uint8_t> Import(const fs::path& file, const std::vector<fs::path>& folders, MeshReader read) {
+std::vector<std::uint8_t> Import(const fs::path& file, const std::vector<fs::path>& folders, bool only_cameras) {
   MeshImport import;
   MeshFiles files(file, folders, import);
+  const std::string extension = LowerExtension(file);
+  const auto gltf = only_cameras ? ReadGltfCameras : ReadGltf;
+  const std::map<std::string_view, void (*)(MeshFiles&, MeshImport&)> readers = {
+      {".obj", ReadObj}, {".ply", ReadPly}, {".gltf", gltf}, {".glb", gltf}};
+  const auto read = readers.find(extension);
   try {
-    read(files, import);
+    (read == readers.end() ? ReadByAssimp : read->second)(files, import);
     if (import.problem.empty()) import.problem = CountsOf(import.scene).Problem();
   } catch (const OlderGltf&) {
-    if (read == ReadGltf) ReadByAssimp(files, import);
+    ReadByAssimp(files, import);
   } catch (const std::bad_alloc&) {
     import.problem = "cannot be read: it wants more memory than a file of this size may";
   }
@@ -106,11 +102,11 @@ std::string WhyItEnded(const base::ExitStatus& end, bool in_time) {
   return "the importer gave up on it";
 }
 
-base::ChildProcess StartImporter(const fs::path& file, const std::vector<fs::path>& folders, MeshReader read) {
+base::ChildProcess StartImporter(const fs::path& file, const std::vector<fs::path>& folders, bool only_cameras) {
   try {
     return base::ChildProcess([&](int answer) {
       SilenceProcess();
-      return base::WriteAll(answer, base::AsText(Import(file, folders, read)));
+      return base::WriteAll(answer, base::AsText(Import(file, folders, only_cameras)));
     });
   } catch (const std::system_error& error) {
     throw std::runtime_error(file.string() + ": no importer: " + error.what());
@@ -124,25 +120,6 @@ bool IsBelow(const fs::path& folder, const fs::path& file) {
                  real = fs::weakly_canonical(file, error);
   if (error) return false;
   return std::mismatch(top.begin(), top.end(), real.begin(), real.end()).first == top.end();
-}
-
-MeshImport ImportBy(MeshReader read, const fs::path& file, const std::vector<fs::path>& folders) {
-  const base::ChildProcess importer = StartImporter(file, folders, read);
-  const std::optional<std::string> answer = importer.ReadAnswer(std::chrono::steady_clock::now() + kPatience);
-  if (!answer) importer.Kill();
-  const base::ExitStatus end = importer.Wait();
-  MeshImport import;
-  if (answer && end.signal == 0 && end.status == 0) {
-    try {
-      return ImportFromBytes(base::AsBytes(*answer));
-    } catch (const std::runtime_error& error) {
-      import.problem = error.what();
-    }
-  } else {
-    import.problem = "cannot be read: " + WhyItEnded(end, answer.has_value());
-  }
-  import.files.insert(file);
-  return import;
 }
 
 }  // namespace
@@ -183,12 +160,23 @@ void MeshFiles::Missing(const fs::path& file) {
   import_.missing.insert(file.filename().string());
 }
 
-MeshImport ImportMesh(const fs::path& file, const std::vector<fs::path>& folders) {
-  return ImportBy(ReaderFor(file), file, folders);
-}
-
-MeshImport ImportCameras(const fs::path& file, const std::vector<fs::path>& folders) {
-  return ReaderFor(file) == ReadGltf ? ImportBy(ReadGltfCameras, file, folders) : MeshImport{};
+MeshImport ImportMesh(const fs::path& file, const std::vector<fs::path>& folders, bool only_cameras) {
+  const base::ChildProcess importer = StartImporter(file, folders, only_cameras);
+  const std::optional<std::string> answer = importer.ReadAnswer(std::chrono::steady_clock::now() + kPatience);
+  if (!answer) importer.Kill();
+  const base::ExitStatus end = importer.Wait();
+  MeshImport import;
+  if (answer && end.signal == 0 && end.status == 0) {
+    try {
+      return ImportFromBytes(base::AsBytes(*answer));
+    } catch (const std::runtime_error& error) {
+      import.problem = error.what();
+    }
+  } else {
+    import.problem = "cannot be read: " + WhyItEnded(end, answer.has_value());
+  }
+  import.files.insert(file);
+  return import;
 }
 
 }  // namespace sim

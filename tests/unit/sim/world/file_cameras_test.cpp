@@ -97,8 +97,8 @@ TEST(FileCameras, FocalLengthsAreThoseOfTheAngles) {
   EXPECT_NEAR(wide.fy, 400, 1e-9);
   EXPECT_EQ(wide.cx, 299.5);
   EXPECT_EQ(wide.cy, 199.5);
-  const CameraParams by_height = Load(folder, {.camera = "{from: hall/door, height: 400}"}).camera;
-  EXPECT_EQ(by_height.width, 600);
+  const CameraParams both = Load(folder, {.camera = "{from: hall/door, width: 600, height: 400}"}).camera;
+  EXPECT_EQ(both.fy, wide.fy);
   // 601 / 1.5 = 400.67 rows are 401: pixels are not quite square.
   const CameraParams odd = Load(folder, {.camera = "{from: door, width: 601, distortion: {k1: 0.1}}"}).camera;
   EXPECT_NEAR(odd.fx, 601 / 1.5, 1e-9);
@@ -135,7 +135,7 @@ TEST(FileCameras, WrongNameListsThoseThatAre) {
               AllOf(HasSubstr("s.yaml:4:"), HasSubstr("'camera': there is no camera 'dor'; there are hall/door, "
                                                       "hall/own, hall/top, hall/twice, hall/twice")));
   EXPECT_THAT(Problem({.camera = "{from: dor, width: 60}"}), HasSubstr("'from': there is no camera 'dor'; there are"));
-  EXPECT_THAT(Problem({.start = "{camera: twice}"}), HasSubstr("more than one camera is called 'twice'"));
+  EXPECT_THAT(Problem({.start = "{camera: twice}"}), HasSubstr("there is more than one camera 'twice'"));
   EXPECT_THAT(Problem({.start = "{camera: door, look_at: [0, 0, 0]}"}),
               HasSubstr("'camera' and 'look_at' exclude each other"));
   const Folder folder;
@@ -144,17 +144,17 @@ TEST(FileCameras, WrongNameListsThoseThatAre) {
     Load(folder, {.mesh = "{file: flat.obj}"});
     FAIL();
   } catch (const settings::Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("no glTF file of 'world.meshes' has a camera"));
+    EXPECT_THAT(error.what(), HasSubstr("there are none in glTF files of 'world.meshes'"));
   }
 }
 
 TEST(FileCameras, IntrinsicsThatCannotBeAreRefused) {
   EXPECT_THAT(Problem({.camera = "{from: top, width: 600}"}),
-              HasSubstr("'top' is orthographic, which is not rendered"));
+              HasSubstr("hall/top is orthographic, which is not rendered"));
   EXPECT_THAT(Problem({.camera = "{from: door, width: 640, height: 480}"}),
-              HasSubstr("has the aspectRatio 1.500000: 640 x 427 fits, not 640 x 480"));
-  EXPECT_THAT(Problem({.camera = "{from: own, width: 640}"}), HasSubstr("it needs 'width' and 'height'"));
-  EXPECT_THAT(Problem({.camera = "{from: door}"}), HasSubstr("needs 'width' or 'height'"));
+              HasSubstr("has 427 rows for a width of 640"));
+  EXPECT_THAT(Problem({.camera = "{from: own, width: 640}"}), HasSubstr("'height' is missing"));
+  EXPECT_THAT(Problem({.camera = "{from: door}"}), HasSubstr("missing key 'camera.width'"));
 }
 
 TEST(FileCameras, AnimationIsSaid) {
