@@ -41,7 +41,7 @@ struct ImportedMaterial {
   float metallic = 0.0f, roughness = 1.0f, normal_scale = 1.0f, opacity = 1.0f;
   std::string alpha_mode{};  // glTF's; empty: the file has none
   float alpha_cutoff = 0.5f;
-  int unlit = 0;
+  int unlit = 0, has_bumps = 0;
   ImportedMap color_map{}, opacity_map{}, emission_map{}, normal_map{}, gloss_map{};
 };
 

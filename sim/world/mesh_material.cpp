@@ -69,6 +69,8 @@ MeshMaterial MeshMaterialReader::Read(const ImportedMaterial& in) {
   material.roughness = std::clamp(in.roughness, 0.0f, 1.0f);
   if (file_.is_gltf)
     material.gloss_texture = ReadTexture(in, {in.gloss_map, "metallic-roughness ", Content::numbers}, uvs);
+  material.lacks_gloss_map = !file_.is_gltf && !in.gloss_map.picture.empty();
+  if (in.has_bumps != 0) file_.Warn("material '" + in.name + "': ", "bump maps (heights) are not rendered");
   if (in.unlit != 0) {  // radiance is the base colour, whatever shines on it
     material.emission = std::exchange(material.base_color, glm::vec3(0));
     material.emission_texture = material.texture;
