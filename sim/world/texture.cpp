@@ -1,6 +1,8 @@
 #include "sim/world/texture.h"
 
+#include <sys/mman.h>
 #include <tbb/parallel_for.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -10,11 +12,21 @@
 namespace sim {
 namespace {
 
+// In large pages where the system has them: 4 KiB each take longer to get than to fill.
+template <class T>
+void ReserveLarge(std::vector<T>& values, std::size_t count) {
+  values.reserve(count);
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const std::uintptr_t begin = (reinterpret_cast<std::uintptr_t>(values.data()) + page - 1) / page * page,
+                       end = reinterpret_cast<std::uintptr_t>(values.data() + values.capacity());
+  if (end > begin) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+}
+
 constexpr float kTexelMax = 1023.0f;
 
 std::uint32_t Encode(float linear, bool roots) {
   const float clipped = std::clamp(linear, 0.0f, 1.0f);
-  return static_cast<std::uint32_t>(std::lround((roots ? std::sqrt(clipped) : clipped) * kTexelMax));
+  return static_cast<std::uint32_t>(0.5 + static_cast<double>((roots ? std::sqrt(clipped) : clipped) * kTexelMax));
 }
 
 glm::vec3 Decode(std::uint32_t bits, bool roots) {
@@ -49,7 +61,9 @@ std::vector<Shrink> ShrinkWeights(int n, int m) {
 template <class Values>
 std::vector<float> Shrunk(const Values& at, int width, int height, int to_width, int to_height) {
   const std::vector<Shrink> columns = ShrinkWeights(width, to_width), rows = ShrinkWeights(height, to_height);
-  std::vector<float> out(3 * columns.size() * rows.size());
+  std::vector<float> out;
+  ReserveLarge(out, 3 * columns.size() * rows.size());
+  out.resize(3 * columns.size() * rows.size());
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
     for (std::size_t k = 0; k < 4 && rows[y].weight[k] > 0; ++k) {
       const std::size_t row = (static_cast<std::size_t>(rows[y].first) + k) * static_cast<std::size_t>(width);
@@ -76,7 +90,9 @@ int Wrap(int i, int n) {
 
 Texture::Texture(std::string name, int width, int height, std::span<const std::uint8_t> rgb,
                  std::span<const std::uint8_t> alpha, Content content)
-    : name_(std::move(name)), alpha_(alpha.begin(), alpha.end()), content_(content) {
+    : name_(std::move(name)),
+      alpha_(std::make_shared<std::vector<std::uint8_t>>(alpha.begin(), alpha.end())),
+      content_(content) {
   constexpr int kMaxSide = 1 << 15;
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
       rgb.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3 ||
@@ -92,32 +108,37 @@ Texture::Texture(std::string name, int width, int height, std::span<const std::u
     linear_of_code[i] = static_cast<float>(roots ? SrgbToLinear(code) : code);
     texel_of_code[i] = Encode(linear_of_code[i], roots);
   }
-  std::vector<float> linear;             // of the level; of the first one `rgb`
-  texels_.reserve(rgb.size() / 2 + 64);  // 4/3 for a square picture, more for a narrow one
+  std::vector<float> linear;  // of the level; of the first one `rgb`
+  const auto texels = std::make_shared<std::vector<std::uint32_t>>();
+  ReserveLarge(*texels, rgb.size() / 2 + rgb.size() / static_cast<std::size_t>(width) + 64);  // 4/3, narrow ones more
   for (;;) {
-    const std::size_t first = texels_.size();
-    levels_.push_back({width, height, static_cast<std::uint32_t>(first)});
-    texels_.resize(first + static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    const auto value = [&](std::size_t i) { return first > 0 ? linear[i] : linear_of_code[rgb[i]]; };
-    const auto texel = [&](std::size_t i) { return first > 0 ? Encode(linear[i], roots) : texel_of_code[rgb[i]]; };
-    for (std::size_t i = 0; first + i < texels_.size(); ++i)
-      texels_[first + i] = texel(3 * i) | texel(3 * i + 1) << 10 | texel(3 * i + 2) << 20;
+    levels_.push_back({width, height, static_cast<std::uint32_t>(texels->size())});
+    const bool first = levels_.size() == 1;
+    const auto value = [&](std::size_t i) { return first ? linear_of_code[rgb[i]] : linear[i]; };
+    const auto texel = [&](std::size_t i) { return first ? texel_of_code[rgb[i]] : Encode(linear[i], roots); };
+    texels->resize(levels_.back().RowBegin(height));
+    tbb::parallel_for(0, height, [&](int y) {
+      std::uint32_t* const row = texels->data() + levels_.back().RowBegin(y);
+      std::size_t i = 3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+      for (int x = 0; x < width; ++x, i += 3) row[x] = texel(i) | texel(i + 1) << 10 | texel(i + 2) << 20;
+      row[width] = row[0];
+    });
     if (width == 1 && height == 1) break;
     const int half_width = std::max(1, width / 2), half_height = std::max(1, height / 2);
     linear = Shrunk(value, width, height, half_width, half_height);
     width = half_width, height = half_height;
   }
+  texels_ = texels;
 }
 
 glm::vec3 Texture::Texel(int level, int x, int y) const {
   const TextureLevel& l = levels_.at(static_cast<std::size_t>(level));
-  return Decode(texels_[l.first + static_cast<std::size_t>(Wrap(y, l.height)) * static_cast<std::size_t>(l.width) +
-                        static_cast<std::size_t>(Wrap(x, l.width))],
+  return Decode((*texels_)[l.RowBegin(Wrap(y, l.height)) + static_cast<std::size_t>(Wrap(x, l.width))],
                 content_ == Content::color);
 }
 
 float Texture::Alpha(glm::vec2 uv) const {
-  if (alpha_.empty()) return 1.0f;
+  if (!has_alpha()) return 1.0f;
   const TextureLevel& size = levels_[0];
   const float x = (uv.x - std::floor(uv.x)) * static_cast<float>(size.width) - 0.5f;
   const float y = (uv.y - std::floor(uv.y)) * static_cast<float>(size.height) - 0.5f;
@@ -125,8 +146,8 @@ float Texture::Alpha(glm::vec2 uv) const {
   const float fx = x - static_cast<float>(i), fy = y - static_cast<float>(j);
   const auto at = [&](int column, int row) {
     return static_cast<float>(
-        alpha_[static_cast<std::size_t>(Wrap(row, size.height)) * static_cast<std::size_t>(size.width) +
-               static_cast<std::size_t>(Wrap(column, size.width))]);
+        (*alpha_)[static_cast<std::size_t>(Wrap(row, size.height)) * static_cast<std::size_t>(size.width) +
+                  static_cast<std::size_t>(Wrap(column, size.width))]);
   };
   return ((1 - fy) * ((1 - fx) * at(i, j) + fx * at(i + 1, j)) +
           fy * ((1 - fx) * at(i, j + 1) + fx * at(i + 1, j + 1))) /
