@@ -123,7 +123,8 @@ LightHash HashOfLight(const Scene& scene, LightMode mode, const BakeParams& para
       for (int y = 0; y < l.height; ++y)
         hasher.Bytes(&t.texels()[l.RowBegin(y)], 4 * static_cast<std::size_t>(l.width));
     }
-    hasher.Array(t.alpha());
+    hasher.Value(t.alpha().size());
+    hasher.Bytes(t.alpha().data(), t.alpha().size());
   }
   for (const Light& light : scene.lights) {
     hasher.Value(light.index());

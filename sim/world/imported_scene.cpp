@@ -93,7 +93,8 @@ void Pass(Io& io, ImportedMap& map) {
 template <class Io>
 void Pass(Io& io, ImportedMaterial& m) {
   PassAll(io, m.name, m.folder, m.base_color, m.emission, m.metallic, m.roughness, m.normal_scale, m.opacity,
-          m.alpha_mode, m.alpha_cutoff, m.unlit, m.has_bumps, m.color_map, m.opacity_map, m.emission_map, m.normal_map, m.gloss_map);
+          m.alpha_mode, m.alpha_cutoff, m.unlit, m.has_bumps, m.color_map, m.opacity_map, m.emission_map, m.normal_map,
+          m.gloss_map);
 }
 template <class Io>
 void Pass(Io& io, ImportedPicture& picture) {

@@ -12,14 +12,25 @@
 namespace sim {
 namespace {
 
-// In large pages where the system has them: 4 KiB each take longer to get than to fill.
+// Not initialised, and in large pages where the system has them: 4 KiB each take longer to get than to fill.
 template <class T>
-void ReserveLarge(std::vector<T>& values, std::size_t count) {
-  values.reserve(count);
+std::shared_ptr<T[]> LargeArray(std::size_t count) {
+  std::shared_ptr<T[]> values = std::make_shared_for_overwrite<T[]>(count);
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  const std::uintptr_t begin = (reinterpret_cast<std::uintptr_t>(values.data()) + page - 1) / page * page,
-                       end = reinterpret_cast<std::uintptr_t>(values.data() + values.capacity());
+  const std::uintptr_t begin = (reinterpret_cast<std::uintptr_t>(values.get()) + page - 1) / page * page,
+                       end = reinterpret_cast<std::uintptr_t>(values.get() + count);
   if (end > begin) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+  return values;
+}
+
+std::vector<TextureLevel> LevelsOf(int width, int height) {
+  std::vector<TextureLevel> levels{{width, height, 0}};
+  while (width > 1 || height > 1) {
+    const auto first = static_cast<std::uint32_t>(levels.back().RowBegin(height));
+    width = std::max(1, width / 2), height = std::max(1, height / 2);
+    levels.push_back({width, height, first});
+  }
+  return levels;
 }
 
 constexpr float kTexelMax = 1023.0f;
@@ -59,11 +70,9 @@ std::vector<Shrink> ShrinkWeights(int n, int m) {
 
 // Along x and then along y. at(i): value i, of rows of red, green, blue. Parallel in the caller's task arena.
 template <class Values>
-std::vector<float> Shrunk(const Values& at, int width, int height, int to_width, int to_height) {
+std::shared_ptr<float[]> Shrunk(const Values& at, int width, int height, int to_width, int to_height) {
   const std::vector<Shrink> columns = ShrinkWeights(width, to_width), rows = ShrinkWeights(height, to_height);
-  std::vector<float> out;
-  ReserveLarge(out, 3 * columns.size() * rows.size());
-  out.resize(3 * columns.size() * rows.size());
+  const std::shared_ptr<float[]> out = LargeArray<float>(3 * columns.size() * rows.size());
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
     for (std::size_t k = 0; k < 4 && rows[y].weight[k] > 0; ++k) {
       const std::size_t row = (static_cast<std::size_t>(rows[y].first) + k) * static_cast<std::size_t>(width);
@@ -73,7 +82,7 @@ std::vector<float> Shrunk(const Values& at, int width, int height, int to_width,
         for (std::size_t c = 0; c < 3; ++c, ++to) {
           float sum = 0;
           for (std::size_t j = 0; j < 4 && weight[j] > 0; ++j) sum += weight[j] * at(from + 3 * j + c);
-          *to += rows[y].weight[k] * sum;
+          *to = (k == 0 ? 0 : *to) + rows[y].weight[k] * sum;
         }
       }
     }
@@ -90,9 +99,7 @@ int Wrap(int i, int n) {
 
 Texture::Texture(std::string name, int width, int height, std::span<const std::uint8_t> rgb,
                  std::span<const std::uint8_t> alpha, Content content)
-    : name_(std::move(name)),
-      alpha_(std::make_shared<std::vector<std::uint8_t>>(alpha.begin(), alpha.end())),
-      content_(content) {
+    : name_(std::move(name)), content_(content) {
   constexpr int kMaxSide = 1 << 15;
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
       rgb.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3 ||
@@ -108,32 +115,31 @@ Texture::Texture(std::string name, int width, int height, std::span<const std::u
     linear_of_code[i] = static_cast<float>(roots ? SrgbToLinear(code) : code);
     texel_of_code[i] = Encode(linear_of_code[i], roots);
   }
-  std::vector<float> linear;  // of the level; of the first one `rgb`
-  const auto texels = std::make_shared<std::vector<std::uint32_t>>();
-  ReserveLarge(*texels, rgb.size() / 2 + rgb.size() / static_cast<std::size_t>(width) + 64);  // 4/3, narrow ones more
-  for (;;) {
-    levels_.push_back({width, height, static_cast<std::uint32_t>(texels->size())});
-    const bool first = levels_.size() == 1;
-    const auto value = [&](std::size_t i) { return first ? linear_of_code[rgb[i]] : linear[i]; };
-    const auto texel = [&](std::size_t i) { return first ? texel_of_code[rgb[i]] : Encode(linear[i], roots); };
-    texels->resize(levels_.back().RowBegin(height));
-    tbb::parallel_for(0, height, [&](int y) {
-      std::uint32_t* const row = texels->data() + levels_.back().RowBegin(y);
-      std::size_t i = 3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
-      for (int x = 0; x < width; ++x, i += 3) row[x] = texel(i) | texel(i + 1) << 10 | texel(i + 2) << 20;
-      row[width] = row[0];
+  levels_ = LevelsOf(width, height);
+  const std::size_t count = levels_.back().RowBegin(1);
+  const std::shared_ptr<std::uint32_t[]> texels = LargeArray<std::uint32_t>(count + (alpha.size() + 3) / 4);
+  std::shared_ptr<float[]> linear;  // of the level; of the first one `rgb`
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    const TextureLevel& level = levels_[l];
+    const auto value = [&](std::size_t i) { return l == 0 ? linear_of_code[rgb[i]] : linear[i]; };
+    const auto texel = [&](std::size_t i) { return l == 0 ? texel_of_code[rgb[i]] : Encode(linear[i], roots); };
+    tbb::parallel_for(0, level.height, [&](int y) {
+      std::uint32_t* const row = &texels[level.RowBegin(y)];
+      std::size_t i = 3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width);
+      for (int x = 0; x < level.width; ++x, i += 3) row[x] = texel(i) | texel(i + 1) << 10 | texel(i + 2) << 20;
+      row[level.width] = row[0];
     });
-    if (width == 1 && height == 1) break;
-    const int half_width = std::max(1, width / 2), half_height = std::max(1, height / 2);
-    linear = Shrunk(value, width, height, half_width, half_height);
-    width = half_width, height = half_height;
+    if (l + 1 == levels_.size()) break;
+    linear = Shrunk(value, level.width, level.height, levels_[l + 1].width, levels_[l + 1].height);
   }
-  texels_ = texels;
+  auto* const kept = reinterpret_cast<std::uint8_t*>(texels.get() + count);
+  std::ranges::copy(alpha, kept);
+  owner_ = texels, texels_ = {texels.get(), count}, alpha_ = {kept, alpha.size()};
 }
 
 glm::vec3 Texture::Texel(int level, int x, int y) const {
   const TextureLevel& l = levels_.at(static_cast<std::size_t>(level));
-  return Decode((*texels_)[l.RowBegin(Wrap(y, l.height)) + static_cast<std::size_t>(Wrap(x, l.width))],
+  return Decode(texels_[l.RowBegin(Wrap(y, l.height)) + static_cast<std::size_t>(Wrap(x, l.width))],
                 content_ == Content::color);
 }
 
@@ -146,8 +152,8 @@ float Texture::Alpha(glm::vec2 uv) const {
   const float fx = x - static_cast<float>(i), fy = y - static_cast<float>(j);
   const auto at = [&](int column, int row) {
     return static_cast<float>(
-        (*alpha_)[static_cast<std::size_t>(Wrap(row, size.height)) * static_cast<std::size_t>(size.width) +
-                  static_cast<std::size_t>(Wrap(column, size.width))]);
+        alpha_[static_cast<std::size_t>(Wrap(row, size.height)) * static_cast<std::size_t>(size.width) +
+               static_cast<std::size_t>(Wrap(column, size.width))]);
   };
   return ((1 - fy) * ((1 - fx) * at(i, j) + fx * at(i + 1, j)) +
           fy * ((1 - fx) * at(i, j + 1) + fx * at(i + 1, j + 1))) /

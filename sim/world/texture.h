@@ -46,8 +46,8 @@ class Texture {
 
   // Bilinear at level 0, in [0, 1]; 1 where there is no alpha.
   float Alpha(glm::vec2 uv) const;
-  bool has_alpha() const { return !alpha_->empty(); }
-  const std::vector<std::uint8_t>& alpha() const { return *alpha_; }
+  bool has_alpha() const { return !alpha_.empty(); }
+  std::span<const std::uint8_t> alpha() const { return alpha_; }
   Content content() const { return content_; }
 
   // The stored value of a texel, linear.
@@ -57,13 +57,14 @@ class Texture {
   int width() const { return levels_[0].width; }
   int height() const { return levels_[0].height; }
   const std::vector<TextureLevel>& levels() const { return levels_; }
-  const std::vector<std::uint32_t>& texels() const { return *texels_; }
+  std::span<const std::uint32_t> texels() const { return texels_; }
 
  private:
   std::string name_;
   std::vector<TextureLevel> levels_;
-  std::shared_ptr<const std::vector<std::uint32_t>> texels_;
-  std::shared_ptr<const std::vector<std::uint8_t>> alpha_;
+  std::shared_ptr<const void> owner_;
+  std::span<const std::uint32_t> texels_;
+  std::span<const std::uint8_t> alpha_;
   Content content_;
 };
 
