@@ -21,6 +21,7 @@
 #include "sim/sensor/sensor.h"
 #include "sim/sensor/vignetting.h"
 #include "sim/world/labels.h"
+#include "sim/world/mesh_loader.h"
 #include "sim/world/scene.h"
 
 namespace sim {
@@ -48,15 +49,22 @@ std::uint64_t ObjectSeed(std::uint64_t seed, std::size_t object) {
 
 // What shines by mirroring and is shown as if it did not.
 void WarnOfGloss(const Scene& scene, const RenderParams& params, std::vector<std::string>& warnings) {
-  if (params.reflections && params.engine == Engine::ray_tracer) return;
-  std::string names;
+  const bool mirrors = params.reflections && params.engine == Engine::ray_tracer;
+  WarningList list;
   for (const Material& m : scene.materials) {
-    if (m.metallic >= 0.5f || m.roughness <= 0.5f) names += (names.empty() ? "" : ", ") + m.name;
+    const std::string who = "material '" + m.name + "': ";
+    glm::vec3 mean(1);  // roughness and metallic are its green and blue
+    if (m.gloss_texture >= 0) {
+      const Texture& texture = scene.textures[static_cast<std::size_t>(m.gloss_texture)];
+      mean = texture.Texel(static_cast<int>(texture.levels().size()) - 1, 0, 0);
+    }
+    if (mirrors && m.lacks_gloss_map) list.Add(who, "roughness and metalness maps are read of glTF alone");
+    if (mirrors || (m.metallic * mean.b < 0.5f && m.roughness * mean.g > 0.5f)) continue;
+    list.Add(who, std::string(params.reflections ? "the rasteriser does not render reflections"
+                                                 : "render.reflections is false") +
+                      ": metal and gloss are Lambert surfaces of their base colour");
   }
-  if (names.empty()) return;
-  warnings.push_back(
-      (params.reflections ? "the rasteriser does not render reflections" : "render.reflections is false") +
-      std::string(": metal and gloss are Lambert surfaces of their base colour: ") + names);
+  for (std::string& warning : list.Summed()) warnings.push_back(std::move(warning));
 }
 
 // `rays` are of this scene; the rasteriser leaves them.

@@ -115,7 +115,16 @@ LightHash HashOfLight(const Scene& scene, LightMode mode, const BakeParams& para
   }
   for (const Texture& t : scene.textures) {
     hasher.Values(t.width(), t.height(), t.content());
-    hasher.Array(t.texels()), hasher.Array(t.alpha());
+    std::size_t count = 0;
+    for (const TextureLevel& l : t.levels())
+      count += static_cast<std::size_t>(l.width) * static_cast<std::size_t>(l.height);
+    hasher.Value(count);
+    for (const TextureLevel& l : t.levels()) {
+      for (int y = 0; y < l.height; ++y)
+        hasher.Bytes(&t.texels()[l.RowBegin(y)], 4 * static_cast<std::size_t>(l.width));
+    }
+    hasher.Value(t.alpha().size());
+    hasher.Bytes(t.alpha().data(), t.alpha().size());
   }
   for (const Light& light : scene.lights) {
     hasher.Value(light.index());

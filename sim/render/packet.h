@@ -65,8 +65,8 @@ struct LampShading {
   std::int32_t layer;  // of RaySample::layer_factors
 };
 struct LevelShading {
-  std::uint32_t size;        // width | height << 16
-  std::int32_t first_texel;  // in PacketScene::texels; rows are width + 1 long: the first texel again at the end
+  std::uint32_t size;           // width | height << 16
+  const std::uint32_t* texels;  // sim/world/texture.h's coding; rows are width + 1 long
 };
 
 // What a ray meets that meets nothing. With a picture: of all directions, sim/world/sky.h.
@@ -86,7 +86,6 @@ struct PacketScene {
   const TriangleTangents* tangents;  // by triangle; null: no normal maps anywhere
   const MaterialShading* materials;
   const LevelShading* levels;
-  const std::uint32_t* texels;  // sim/world/texture.h's coding
   const std::uint32_t*
       light;  // baked, as PackShared (sim/render/baked_light.h) does, layer after layer; null: ambient light
   std::int32_t light_layers, light_stride;

@@ -66,9 +66,12 @@ void RasterScene::AppendTextures(const Scene& scene) {
   for (const Texture& texture : scene.textures) {
     first_level.push_back(static_cast<int>(levels.size()));
     for (const TextureLevel& level : texture.levels()) {
-      levels.emplace_back(level.width, level.height, static_cast<int>(texels.size() + level.first), 0);
+      levels.emplace_back(level.width, level.height, static_cast<int>(texels.size()), 0);
+      for (int y = 0; y < level.height; ++y) {
+        const std::uint32_t* row = &texture.texels()[level.RowBegin(y)];
+        texels.insert(texels.end(), row, row + level.width);
+      }
     }
-    texels.insert(texels.end(), texture.texels().begin(), texture.texels().end());
   }
   std::vector<glm::vec4> materials;
   for (const Material& m : scene.materials) {

@@ -17,6 +17,7 @@
 #include "sim/render/raster_shaders.h"
 #include "sim/render/raster_view.h"
 #include "sim/render/sample_pattern.h"
+#include "sim/world/mesh_loader.h"
 #include "tools/base/text.h"
 
 namespace sim {
@@ -37,18 +38,16 @@ void Check(const RasteriserOptions& o) {
 
 // What of the scene is not rendered, a sentence for each kind.
 std::vector<std::string> UnsupportedFeatures(const Scene& scene) {
-  std::vector<std::string> features;
-  const auto materials = [&](const std::string& sentence, const auto& needs_it) {
-    std::vector<std::string> names;
-    for (const Material& m : scene.materials) {
-      if (needs_it(m)) names.push_back(m.name);
-    }
-    if (!names.empty()) features.push_back(sentence + "; materials: " + base::Join(names, ", "));
-  };
-  materials("normal maps are not rendered", [](const Material& m) { return m.normal_map >= 0; });
-  materials("of pictures that shine only the mean is rendered",
-            [](const Material& m) { return m.emission_texture >= 0; });
-  materials("nothing is cut out of surfaces", [](const Material& m) { return m.alpha_cutoff > 0; });
+  WarningList materials;
+  const auto is_ambient = [](const Light& light) { return std::holds_alternative<AmbientLight>(light); };
+  const bool has_direction = !std::ranges::all_of(scene.lights, is_ambient);
+  for (const Material& m : scene.materials) {
+    const std::string who = "material '" + m.name + "': ";
+    if (m.normal_map >= 0 && has_direction) materials.Add(who, "normal maps are not rendered");
+    if (m.emission_texture >= 0) materials.Add(who, "of pictures that shine only the mean is rendered");
+    if (IsCutOut(scene, m)) materials.Add(who, "nothing is cut out of surfaces");
+  }
+  std::vector<std::string> features = materials.Summed();
   bool has_flicker = false, has_visible = false;
   for (const Light& lamp : scene.lights) {
     const auto* rect = std::get_if<RectLight>(&lamp);

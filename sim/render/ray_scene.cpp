@@ -79,9 +79,7 @@ void CheckScene(const Scene& scene) {
 RayScene::RayScene(const Scene& scene) {
   CheckScene(scene);
   AppendTextures(scene);
-  std::size_t mesh_count = 0;
   const auto take_in = [&](const std::vector<Mesh>& meshes) {
-    mesh_count += meshes.size();
     for (const Mesh& mesh : meshes) {
       any_normals_ = any_normals_ || !mesh.normals.empty();
       any_colors_ = any_colors_ || !mesh.colors.empty();
@@ -90,7 +88,6 @@ RayScene::RayScene(const Scene& scene) {
   };
   take_in(scene.meshes);
   for (const MovingObject& object : scene.objects) take_in(object.meshes);
-  alpha_textures_.reserve(mesh_count);  // filters point at them
   filtered_first_ = AppendMeshes(scene, scene.meshes, 0)[1];
   AppendLamps(scene);
   still_triangles_ = static_cast<std::uint32_t>(triangles_.size());
@@ -113,7 +110,6 @@ RayScene::RayScene(const Scene& scene) {
   p.tangents = any_tangents_ ? tangents_.data() : nullptr;
   p.materials = materials_.data();
   p.levels = levels_.data();
-  p.texels = texels_.data();
   for (const MaterialShading& m : materials_) {
     const bool emits = m.emission[0] > 0 || m.emission[1] > 0 || m.emission[2] > 0;
     p.any_emission = p.any_emission || emits;

@@ -139,7 +139,7 @@ class RayScene {
   std::uint32_t filtered_first_ = 0, still_triangles_ = 0;
   std::vector<std::int32_t> first_triangles_;  // of each object: of its two geometries
   std::vector<Filter> filters_;
-  std::vector<Texture> alpha_textures_;  // copies of those that filters look at
+  std::vector<Texture> textures_;  // the scene's
   std::vector<TriangleShading> shading_;
   std::vector<OverTriangle<3>> normals_;    // or none
   std::vector<OverTriangle<3>> colors_;     // or none
@@ -150,7 +150,7 @@ class RayScene {
   std::vector<LampShading> lamps_;
   std::vector<PictureShading> pictures_;  // by texture
   std::vector<LevelShading> levels_;
-  std::vector<std::uint32_t> texels_, light_;
+  std::vector<std::uint32_t> light_;
   std::vector<float> sky_picture_;
   EmbreeDevice device_;
   EmbreeScene scene_;

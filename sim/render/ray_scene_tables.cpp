@@ -23,31 +23,17 @@ OverTriangle<3> ColorsOver(const Mesh& mesh, const glm::uvec3& t) {
 // Level 0 is a white texel and level 1 a flat normal: what a material without texture looks up, so that the inner loop
 // need not ask.
 void RayScene::AppendTextures(const Scene& scene) {
-  constexpr std::uint32_t kWhiteTexel = 0x3fffffff, kFlatNormalTexel = 512u | (512u << 10) | (1023u << 20);
-  const auto append = [&](int width, int height, const std::uint32_t* from) {
-    levels_.push_back({static_cast<std::uint32_t>(width) | (static_cast<std::uint32_t>(height) << 16),
-                       static_cast<std::int32_t>(texels_.size())});
-    for (int y = 0; y < height; ++y, from += width) {
-      texels_.insert(texels_.end(), from, from + width);
-      texels_.push_back(*from);
-    }
-  };
-  std::size_t count = 4;
-  for (const Texture& texture : scene.textures) {
-    for (const TextureLevel& level : texture.levels())
-      count += static_cast<std::size_t>(level.width + 1) * static_cast<std::size_t>(level.height);
-  }
-  if (count > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-    throw std::invalid_argument("scene: more than 2^31 texels in all textures");
-  }
-  texels_.reserve(count);
-  append(1, 1, &kWhiteTexel);
-  append(1, 1, &kFlatNormalTexel);
-  for (const Texture& texture : scene.textures) {
+  static constexpr std::uint32_t kWhite = 0x3fffffff, kFlatNormal = 512u | (512u << 10) | (1023u << 20);
+  static constexpr std::uint32_t kPlain[2][2] = {{kWhite, kWhite}, {kFlatNormal, kFlatNormal}};
+  for (const auto& row : kPlain) levels_.push_back({1u | 1u << 16, row});
+  textures_ = scene.textures;
+  for (const Texture& texture : textures_) {
     pictures_.push_back(
         {static_cast<std::int32_t>(levels_.size()), static_cast<std::int32_t>(texture.levels().size())});
-    for (const TextureLevel& level : texture.levels())
-      append(level.width, level.height, texture.texels().data() + level.first);
+    for (const TextureLevel& level : texture.levels()) {
+      levels_.push_back({static_cast<std::uint32_t>(level.width) | (static_cast<std::uint32_t>(level.height) << 16),
+                         &texture.texels()[level.first]});
+    }
   }
   const auto picture = [&](int texture, std::int32_t otherwise) {
     return texture < 0 ? PictureShading{otherwise, 1} : pictures_[static_cast<std::size_t>(texture)];
@@ -85,12 +71,8 @@ void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& 
   positions_.insert(positions_.end(), mesh.positions.begin(), mesh.positions.end());
   const bool cut_out = !lamp && IsCutOut(scene, material);
   const Texture* alpha = nullptr;
-  if (cut_out && material.texture >= 0 && scene.textures[static_cast<std::size_t>(material.texture)].has_alpha()) {
-    const Texture& texture = scene.textures[static_cast<std::size_t>(material.texture)];
-    const auto known = std::find_if(alpha_textures_.begin(), alpha_textures_.end(),
-                                    [&](const Texture& t) { return t.name() == texture.name(); });
-    alpha = known != alpha_textures_.end() ? &*known : &alpha_textures_.emplace_back(texture);
-  }
+  if (cut_out && material.texture >= 0 && textures_[static_cast<std::size_t>(material.texture)].has_alpha())
+    alpha = &textures_[static_cast<std::size_t>(material.texture)];
   const bool textured = material.HasPicture();
   for (const glm::uvec3& t : mesh.triangles) {
     triangles_.emplace_back(first + t);

@@ -16,9 +16,28 @@ namespace {
 
 using settings::Section;
 
-// `position`, and either `look_at` (a point in W) with an optional `roll`, or `orientation`. False: it is wrong.
-bool ReadPose(Section& section, Pose& pose) {
+bool ReadCameraPose(Section& section, FileCameras& cameras, Pose& pose) {
+  std::string name;
+  if (!section.Read("camera", name)) return false;
+  for (const char* key : {"position", "look_at", "roll", "orientation"}) {
+    section.Allow(key);
+    if (section.Has(key)) section.Reject(key, "'camera' and '" + std::string(key) + "' exclude each other");
+  }
+  try {
+    pose = cameras.At(name).T_WC;
+    return true;
+  } catch (const std::runtime_error& error) {
+    section.Reject("camera", "'camera': " + std::string(error.what()));
+    return false;
+  }
+}
+
+// `camera`, one of a mesh file; or `position`, and either `look_at` (a point in W) with an optional `roll`, or
+// `orientation`. False: it is wrong.
+bool ReadPose(Section& section, const MotionNames& names, Pose& pose) {
   const Range place{-1e6, 1e6};
+  if (names.cameras != nullptr) section.Allow("camera");
+  if (names.cameras != nullptr && section.Has("camera")) return ReadCameraPose(section, *names.cameras, pose);
   settings::FieldReader fields(section);
   fields.Required("position", pose.p_WC, {Unit::length, place, "in W"});
   for (const char* key : {"look_at", "roll", "orientation"}) section.Allow(key);
@@ -66,29 +85,29 @@ void ReadShake(Section& section, std::optional<GaitParams>& shake) {
 }
 
 template <GaitModel model>
-MotionDescription ReadRoaming(Section& section, const std::filesystem::path& /*folder*/) {
+MotionDescription ReadRoaming(Section& section, const MotionNames& names) {
   RoamingMotion motion;
   motion.gait.model = model;
   section.Allow("start");
   if (section.Has("start")) {
     Section start = section.Child("start");
-    ReadPose(start, motion.start.emplace());
+    ReadPose(start, names, motion.start.emplace());
   }
   ReadFields(section, motion);
   return motion;
 }
 
-MotionDescription ReadSampled(Section& section, const std::filesystem::path& /*folder*/) {
+MotionDescription ReadSampled(Section& section, const MotionNames& names) {
   SampledMotion motion;
   Section start = section.Child("start");
-  ReadPose(start, motion.start);
+  ReadPose(start, names, motion.start);
   section.Allow("walls");
   if (section.Has("walls")) motion.walls.emplace();
   if (ReadFields(section, motion)) section.Reject(Problems(motion));
   return motion;
 }
 
-MotionDescription ReadScripted(Section& section, const std::filesystem::path& /*folder*/) {
+MotionDescription ReadScripted(Section& section, const MotionNames& names) {
   ScriptedMotion motion;
   bool good = true;
   const auto reject = [&](Section& where, const std::string& key, const std::string& message) {
@@ -105,7 +124,7 @@ MotionDescription ReadScripted(Section& section, const std::filesystem::path& /*
              "'time': the times of key poses must increase, but " + settings::FormatNumber(key.t_s) +
                  " s comes after " + settings::FormatNumber(motion.keys.back().t_s) + " s");
     }
-    good = ReadPose(item, key.pose) && has_time && good;
+    good = ReadPose(item, names, key.pose) && has_time && good;
     motion.keys.push_back(key);
   }
   ReadShake(section, motion.shake);
@@ -121,14 +140,14 @@ MotionDescription ReadScripted(Section& section, const std::filesystem::path& /*
   return motion;
 }
 
-MotionDescription ReadRecorded(Section& section, const std::filesystem::path& folder) {
+MotionDescription ReadRecorded(Section& section, const MotionNames& names) {
   RecordedMotion motion;
-  motion.file = ReadFile(section, "file", folder);
+  motion.file = ReadFile(section, "file", names.folder);
   ReadFields(section, motion);
   section.Allow("start_pose");
   if (section.Has("start_pose")) {
     Section place = section.Child("start_pose");
-    ReadPose(place, motion.start_pose.emplace());
+    ReadPose(place, names, motion.start_pose.emplace());
     if (motion.placing == RecordedMotion::Placing::automatic)
       section.Reject("placing", "'placing: auto' and 'start_pose' exclude each other");
   }
@@ -136,11 +155,11 @@ MotionDescription ReadRecorded(Section& section, const std::filesystem::path& fo
 }
 
 template <PathKind kind>
-MotionDescription ReadPath(Section& section, const std::filesystem::path& /*folder*/) {
+MotionDescription ReadPath(Section& section, const MotionNames& names) {
   PathMotion motion;
   section.RequirePresent("start");
   Section start = section.Child("start");
-  const bool good = ReadPose(start, motion.start);
+  const bool good = ReadPose(start, names, motion.start);
   settings::FieldReader fields(section);
   Visit(fields, kind, motion);
   ReadShake(section, motion.shake);
@@ -174,8 +193,8 @@ std::filesystem::path ReadFile(Section& section, const std::string& key, const s
   return section.Require(key, name) ? folder / name : std::filesystem::path();
 }
 
-MotionDescription ReadMotion(Section& section, const std::filesystem::path& folder) {
-  MotionDescription (*read)(Section&, const std::filesystem::path&) = ReadSampled;
+MotionDescription ReadMotion(Section& section, const MotionNames& names) {
+  MotionDescription (*read)(Section&, const MotionNames&) = ReadSampled;
   const bool known = section.RequireChoice("type", read,
                                            {{"sampled", ReadSampled},
                                             {"scripted", ReadScripted},
@@ -187,7 +206,7 @@ MotionDescription ReadMotion(Section& section, const std::filesystem::path& fold
                                             {"handheld", ReadRoaming<GaitModel::handheld>},
                                             {"drone", ReadRoaming<GaitModel::drone>},
                                             {"vehicle", ReadRoaming<GaitModel::vehicle>}});
-  if (known) return read(section, folder);
+  if (known) return read(section, names);
   section.IgnoreRest();
   return SampledMotion{};
 }

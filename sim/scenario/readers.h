@@ -6,6 +6,7 @@
 
 #include "sim/motion/description.h"
 #include "sim/world/description.h"
+#include "sim/world/file_cameras.h"
 #include "tools/base/settings/settings.h"
 
 namespace sim {
@@ -16,12 +17,17 @@ std::filesystem::path ReadFile(settings::Section& section, const std::string& ke
 // Whether it is of letters, digits, '_' and '-', as a name that a file or folder gets.
 bool IsPlainName(const std::string& name);
 
-// A motion of any kind, the camera's or an object's.
-MotionDescription ReadMotion(settings::Section& section, const std::filesystem::path& folder);
+// What a motion may name.
+struct MotionNames {
+  const std::filesystem::path& folder;
+  FileCameras* cameras = nullptr;  // none: of objects
+};
 
-// Meshes, moving objects, lights and sky. duration_s: of the scenario, which scripts of objects must last for.
-void ReadWorld(settings::Section section, const std::filesystem::path& folder, double duration_s,
-               WorldDescription& world);
+// A motion of any kind, the camera's or an object's.
+MotionDescription ReadMotion(settings::Section& section, const MotionNames& names);
+
+// Meshes, moving objects, lights and sky.
+void ReadWorld(settings::Section section, const std::filesystem::path& folder, WorldDescription& world);
 
 // The camera at `eye` that looks at `target`, upright in a world whose up is +y, then turned by roll_rad about its own
 // z axis (to the right, clockwise as the camera sees it, when positive). Straight up, the camera's upper edge is

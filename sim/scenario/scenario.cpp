@@ -24,9 +24,9 @@ void ReadRender(Section section, const std::filesystem::path& folder, RenderPara
   render.light_folders = LightFolders(folder);
 }
 
-void ReadMotionAndTime(Section root, const std::filesystem::path& folder, Scenario& scenario) {
+void ReadMotionAndTime(Section root, const MotionNames& names, Scenario& scenario) {
   Section section = root.Child("trajectory");
-  scenario.motion = ReadMotion(section, folder);
+  scenario.motion = ReadMotion(section, names);
 
   Section time = root.Child("time");
   const auto* script = std::get_if<ScriptedMotion>(&scenario.motion);
@@ -40,6 +40,20 @@ void ReadMotionAndTime(Section root, const std::filesystem::path& folder, Scenar
   check.Require(std::round(frames) >= 1, "duration", duration_s, "s: there is not one frame in it");
   check.Require(frames <= 1e7, "duration", duration_s, "s: more than ten million frames");
   time.Reject(check.problems);
+}
+
+// An object's script must not end before the scenario.
+void CheckScripts(Section world, const Scenario& scenario) {
+  for (std::size_t k = 0; k < scenario.world.objects.size(); ++k) {
+    const auto* script = std::get_if<ScriptedMotion>(&scenario.world.objects[k].motion);
+    const double duration_s = scenario.time.duration_s;
+    if (script == nullptr || script->keys.empty() || script->keys.back().t_s >= duration_s) continue;
+    world.List("objects")[k]
+        .Child("trajectory")
+        .Reject("keys", "'trajectory.keys': the last key pose is at " +
+                            settings::FormatNumber(script->keys.back().t_s) + " s, but the scenario lasts " +
+                            settings::FormatNumber(duration_s) + " s");
+  }
 }
 
 // Defaults of the other keys; what they are fitted to: docs/sensor.md.
@@ -88,12 +102,26 @@ void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
   section.Reject(check.problems);
 }
 
-void ReadCamera(Section section, CameraParams& camera) {
-  if (ReadFields(section, camera)) section.Reject(Problems(camera));
+// `from`, a camera of a mesh file, gives defaults of the other keys but the width.
+void ReadCamera(Section section, FileCameras& cameras, CameraParams& camera) {
+  section.Allow("from");
+  const bool has_file = section.Has("from");  // resolved only where given
+  if (has_file) try {
+      std::string name;
+      camera.height = 0;
+      section.Read("height", camera.height);
+      if (section.Require("width", camera.width) && section.Read("from", name)) SetIntrinsics(cameras.At(name), camera);
+    } catch (const std::runtime_error& error) {
+      section.Reject("from", "'from': " + std::string(error.what()));
+      return section.IgnoreRest();
+    }
+  settings::FieldReader reader(section, has_file);
+  Visit(reader, camera);
+  if (reader.good()) section.Reject(Problems(camera));
 }
 
 // What all cameras have in common is read before.
-void ReadRig(Section root, Scenario& scenario) {
+void ReadRig(Section root, FileCameras& cameras, Scenario& scenario) {
   for (Section& item : root.List("cameras")) {
     RigCamera camera{"cam" + std::to_string(scenario.cameras.size()), {}, scenario.sensor, {}, 0};
     item.Read("name", camera.name);
@@ -102,7 +130,7 @@ void ReadRig(Section root, Scenario& scenario) {
                   "'name': a camera's name is a folder's: letters, digits, '_' and '-', not '" + camera.name + "'");
     if (std::ranges::count(scenario.cameras, camera.name, &RigCamera::name) > 0)
       item.Reject("name", "'name': another camera is called '" + camera.name + "' already");
-    ReadCamera(item, camera.camera);
+    ReadCamera(item, cameras, camera.camera);
     ReadFields(item, camera);
     item.Allow("sensor");
     if (item.Has("sensor")) ReadSensor(item.Child("sensor"), scenario.time.rate_hz, camera.sensor);
@@ -210,16 +238,18 @@ Scenario LoadScenario(const std::filesystem::path& path,
   root.Allow("cameras");
   const bool rig = root.Has("cameras");
   if (rig && root.Has("camera")) root.Reject("cameras", "'cameras': there is 'camera' already");
-  if (!rig) ReadCamera(root.Child("camera"), scenario.camera);
-  ReadMotionAndTime(root, folder, scenario);
   Section world = root.Child("world");
   world.Allow("points");
+  if (!world.Has("points")) ReadWorld(world, folder, scenario.world);
+  FileCameras cameras(scenario.world);
+  if (!rig) ReadCamera(root.Child("camera"), cameras, scenario.camera);
+  ReadMotionAndTime(root, {folder, &cameras}, scenario);
   if (world.Has("points")) {
     scenario.points = ReadPoints(root, world, scenario.camera);
   } else {
-    ReadWorld(world, folder, scenario.time.duration_s, scenario.world);
+    CheckScripts(world, scenario);
     ReadSensor(root.Child("sensor"), scenario.time.rate_hz, scenario.sensor);
-    if (rig) ReadRig(root, scenario);
+    if (rig) ReadRig(root, cameras, scenario);
     ReadRender(root.Child("render"), folder, scenario.render);
     ReadFields(root, scenario.truth);
     const std::string problem = RectifiedProblem(scenario.cameras);

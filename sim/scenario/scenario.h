@@ -230,7 +230,7 @@ std::vector<RigCamera> AllCameras(const Scenario& scenario);
 // Overrides are (dotted key, YAML value), later ones win; "seed" is a key like any other. File names in a scenario are
 // relative to the scenario's folder and are resolved here. The sections `odometry` and `prior` belong to other readers
 // and are ignored. Throws settings::Error with all problems at once. Mesh, texture and trajectory files are not opened
-// yet.
+// yet, but for glTF files where one of their cameras is named.
 Scenario LoadScenario(const std::filesystem::path& path,
                       const std::vector<std::pair<std::string, std::string>>& overrides = {});
 

@@ -83,9 +83,8 @@ void RejectDoubled(Section& section, const char* at, const std::string& name, co
     section.Reject(at, "'name': another entry is called '" + name + "' already");
 }
 
-// duration_s: of the scenario; an object's script must not end before. `names`: of what was read before.
-ObjectDescription ReadObject(Section& section, const std::filesystem::path& folder, double duration_s,
-                             std::vector<std::string>& names) {
+// `names`: of what was read before.
+ObjectDescription ReadObject(Section& section, const std::filesystem::path& folder, std::vector<std::string>& names) {
   ObjectDescription object;
   object.mesh = ReadMesh(section, folder);
   std::string& name = object.mesh.name = object.mesh.file.stem().string();
@@ -96,13 +95,7 @@ ObjectDescription ReadObject(Section& section, const std::filesystem::path& fold
   RejectDoubled(section, at, name, names);
   names.push_back(name);
   Section trajectory = section.Child("trajectory");
-  object.motion = ReadMotion(trajectory, folder);
-  const auto* script = std::get_if<ScriptedMotion>(&object.motion);
-  if (script != nullptr && !script->keys.empty() && script->keys.back().t_s < duration_s) {
-    trajectory.Reject("keys", "'trajectory.keys': the last key pose is at " +
-                                  settings::FormatNumber(script->keys.back().t_s) + " s, but the scenario lasts " +
-                                  settings::FormatNumber(duration_s) + " s");
-  }
+  object.motion = ReadMotion(trajectory, {folder});
   return object;
 }
 
@@ -113,7 +106,7 @@ bool IsPlainName(const std::string& name) {
          std::string::npos;
 }
 
-void ReadWorld(Section section, const std::filesystem::path& folder, double duration_s, WorldDescription& world) {
+void ReadWorld(Section section, const std::filesystem::path& folder, WorldDescription& world) {
   world.folders.push_back(folder);
   std::vector<std::string> texture_folders;
   if (section.Read("texture_folders", texture_folders))
@@ -131,7 +124,7 @@ void ReadWorld(Section section, const std::filesystem::path& folder, double dura
   section.Allow("objects");
   if (section.Has("objects")) {  // resolved only where given
     for (Section& object : section.List("objects")) {
-      world.objects.push_back(ReadObject(object, folder, duration_s, names));
+      world.objects.push_back(ReadObject(object, folder, names));
     }
   }
   // A mesh without a name has its file's, with a number where another has that already.

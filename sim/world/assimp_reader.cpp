@@ -224,7 +224,11 @@ class Converter {
     out.opacity_map = MapOf(in, aiTextureType_OPACITY);
     out.emission_map = MapOf(in, glow);
     out.normal_map = MapOf(in, aiTextureType_NORMALS);
-    out.gloss_map = MapOf(in, aiTextureType_UNKNOWN);
+    for (const aiTextureType gloss :
+         {aiTextureType_UNKNOWN, aiTextureType_DIFFUSE_ROUGHNESS, aiTextureType_METALNESS, aiTextureType_SHININESS}) {
+      if (has(gloss)) out.gloss_map = MapOf(in, gloss);
+    }
+    out.has_bumps = has(aiTextureType_HEIGHT) && !has(aiTextureType_NORMALS);
   }
 
   ImportedMap MapOf(const aiMaterial& in, aiTextureType type) const {

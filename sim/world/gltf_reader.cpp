@@ -70,6 +70,10 @@ class GltfReader {
     ReadNodes();
   }
 
+  void ReadCameras() {
+    for (const std::size_t root : Roots()) ReadNode(root, glm::dmat4(1), 0, &GltfReader::AppendCamera);
+  }
+
  private:
   void Warn(const std::string& what) { WarnOnce(import_, what); }
 
@@ -204,16 +208,31 @@ class GltfReader {
     return FromTrs({t[0], t[1], t[2]}, {q[3], q[0], q[1], q[2]}, {s[0], s[1], s[2]});
   }
 
-  void ReadNode(std::size_t index, const glm::dmat4& parent, int depth) {
+  // append(node, its transform), of all nodes.
+  void ReadNode(std::size_t index, const glm::dmat4& parent, int depth,
+                void (GltfReader::*append)(const json&, const glm::dmat4&)) {
     if (depth > kDeepestNode) throw std::runtime_error("has nodes more than 1000 deep, or in a circle");
     const json& node = file_.At("nodes", index);
     const glm::dmat4 transform = parent * TransformOf(node);
-    if (node.contains("mesh")) AppendInstances(node, transform);
+    (this->*append)(node, transform);
     for (const json& child : GltfFile::Child(node, "children"))
-      ReadNode(child.get<std::size_t>(), transform, depth + 1);
+      ReadNode(child.get<std::size_t>(), transform, depth + 1, append);
+  }
+
+  void AppendCamera(const json& node, const glm::dmat4& transform) {
+    if (!node.contains("camera")) return;
+    const std::size_t index = GltfFile::Index(node, "camera");
+    const json& camera = file_.At("cameras", index);
+    const std::string own = camera.value("name", "cameras[" + std::to_string(index) + "]");
+    const bool is_perspective = camera.at("type") == "perspective";
+    const json& lens = GltfFile::Child(camera, "perspective");
+    import_.cameras.push_back({node.value("name", own), transform, is_perspective ? lens.at("yfov").get<double>() : 0.0,
+                               lens.value("aspectRatio", 0.0)});
+    if (import_.cameras.size() > kMostInstances) throw std::runtime_error("has more cameras than are read");
   }
 
   void AppendInstances(const json& node, const glm::dmat4& transform) {
+    if (!node.contains("mesh")) return;
     const std::size_t mesh = GltfFile::Index(node, "mesh");
     if (mesh >= meshes_.size())
       throw std::runtime_error("names meshes[" + std::to_string(mesh) + "], which does not exist");
@@ -271,7 +290,7 @@ class GltfReader {
   }
 
   void ReadNodes() {
-    for (const std::size_t root : Roots()) ReadNode(root, glm::dmat4(1), 0);
+    for (const std::size_t root : Roots()) ReadNode(root, glm::dmat4(1), 0, &GltfReader::AppendInstances);
     std::vector<glm::dvec3> places;
     for (const Instance& instance : instances_) places.emplace_back(instance.transform[3]);
     constexpr double kFar = 1e4;
@@ -290,13 +309,10 @@ class GltfReader {
   std::vector<Instance> instances_;
 };
 
-}  // namespace
-
-void ReadGltf(MeshFiles& files, MeshImport& import) {
+void ReadBy(void (GltfReader::*read)(), MeshFiles& files, MeshImport& import) {
   const auto fail = [&](const std::string& problem) { import.problem = problem; };
   try {
-    GltfReader(files, import).Read();
-    if (import.scene.meshes.empty()) import.problem = "has no triangles";
+    (GltfReader(files, import).*read)();
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const Unsupported& error) {
@@ -309,5 +325,14 @@ void ReadGltf(MeshFiles& files, MeshImport& import) {
     fail(std::string("cannot be read: ") + error.what());
   }
 }
+
+}  // namespace
+
+void ReadGltf(MeshFiles& files, MeshImport& import) {
+  ReadBy(&GltfReader::Read, files, import);
+  if (import.problem.empty() && import.scene.meshes.empty()) import.problem = "has no triangles";
+}
+
+void ReadGltfCameras(MeshFiles& files, MeshImport& import) { ReadBy(&GltfReader::ReadCameras, files, import); }
 
 }  // namespace sim

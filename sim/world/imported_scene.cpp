@@ -93,7 +93,8 @@ void Pass(Io& io, ImportedMap& map) {
 template <class Io>
 void Pass(Io& io, ImportedMaterial& m) {
   PassAll(io, m.name, m.folder, m.base_color, m.emission, m.metallic, m.roughness, m.normal_scale, m.opacity,
-          m.alpha_mode, m.alpha_cutoff, m.unlit, m.color_map, m.opacity_map, m.emission_map, m.normal_map, m.gloss_map);
+          m.alpha_mode, m.alpha_cutoff, m.unlit, m.has_bumps, m.color_map, m.opacity_map, m.emission_map, m.normal_map,
+          m.gloss_map);
 }
 template <class Io>
 void Pass(Io& io, ImportedPicture& picture) {
@@ -104,12 +105,16 @@ void Pass(Io& io, ImportedMesh& mesh) {
   PassAll(io, mesh.name, mesh.material, mesh.positions, mesh.normals, mesh.colors, mesh.uvs, mesh.triangles);
 }
 template <class Io>
+void Pass(Io& io, ImportedCamera& camera) {
+  PassAll(io, camera.name, camera.transform, camera.yfov_rad, camera.aspect);
+}
+template <class Io>
 void Pass(Io& io, ImportedNode& node) {
   PassAll(io, node.parent, node.transform, node.meshes);
 }
 template <class Io>
 void Pass(Io& io, MeshImport& import) {
-  PassAll(io, import.problem, import.files, import.missing, import.warnings, import.origin);
+  PassAll(io, import.problem, import.files, import.missing, import.warnings, import.origin, import.cameras);
   ImportedScene& scene = import.scene;
   PassAll(io, scene.nodes, scene.meshes, scene.materials, scene.pictures);
 }

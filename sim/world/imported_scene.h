@@ -41,7 +41,7 @@ struct ImportedMaterial {
   float metallic = 0.0f, roughness = 1.0f, normal_scale = 1.0f, opacity = 1.0f;
   std::string alpha_mode{};  // glTF's; empty: the file has none
   float alpha_cutoff = 0.5f;
-  int unlit = 0;
+  int unlit = 0, has_bumps = 0;
   ImportedMap color_map{}, opacity_map{}, emission_map{}, normal_map{}, gloss_map{};
 };
 
@@ -67,6 +67,13 @@ struct ImportedNode {
   std::vector<unsigned> meshes;
 };
 
+struct ImportedCamera {
+  std::string name;           // of its node; else its own
+  glm::dmat4 transform{1.0};  // file from camera: x right, y up, -z forward
+  double yfov_rad = 0;        // 0: it is orthographic
+  double aspect = 0;          // width / height; 0: not stated
+};
+
 struct ImportedScene {
   std::vector<ImportedNode> nodes;
   std::vector<ImportedMesh> meshes;
@@ -81,6 +88,7 @@ struct MeshImport {
   std::set<std::string> missing;          // those that could not be opened, without their folder
   std::vector<std::string> warnings;
   glm::dvec3 origin{0.0};  // of the scene's coordinates, in the file's
+  std::vector<ImportedCamera> cameras{};
 };
 
 // Counts of a whole file, and their limits.

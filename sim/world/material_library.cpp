@@ -148,6 +148,7 @@ void ReadMaterialLibrary(std::string_view text, const std::string& folder,
     if (key == "map_kd") m->color_map = ReadMap(rest);
     if (key == "map_d") m->opacity_map = ReadMap(rest);
     if (key == "map_ke") m->emission_map = ReadMap(rest);
+    if (key == "bump" || key == "map_bump") m->has_bumps = 1;
     if (key == "norm") m->normal_map = ReadMap(rest);
   });
 }

@@ -73,12 +73,13 @@ void SilenceProcess() {
 
 constexpr std::chrono::seconds kPatience(600);  // of whoever waits: an importer that sleeps uses no processor
 
-std::vector<std::uint8_t> Import(const fs::path& file, const std::vector<fs::path>& folders) {
+std::vector<std::uint8_t> Import(const fs::path& file, const std::vector<fs::path>& folders, bool only_cameras) {
   MeshImport import;
   MeshFiles files(file, folders, import);
   const std::string extension = LowerExtension(file);
+  const auto gltf = only_cameras ? ReadGltfCameras : ReadGltf;
   const std::map<std::string_view, void (*)(MeshFiles&, MeshImport&)> readers = {
-      {".obj", ReadObj}, {".ply", ReadPly}, {".gltf", ReadGltf}, {".glb", ReadGltf}};
+      {".obj", ReadObj}, {".ply", ReadPly}, {".gltf", gltf}, {".glb", gltf}};
   const auto read = readers.find(extension);
   try {
     (read == readers.end() ? ReadByAssimp : read->second)(files, import);
@@ -101,11 +102,11 @@ std::string WhyItEnded(const base::ExitStatus& end, bool in_time) {
   return "the importer gave up on it";
 }
 
-base::ChildProcess StartImporter(const fs::path& file, const std::vector<fs::path>& folders) {
+base::ChildProcess StartImporter(const fs::path& file, const std::vector<fs::path>& folders, bool only_cameras) {
   try {
     return base::ChildProcess([&](int answer) {
       SilenceProcess();
-      return base::WriteAll(answer, base::AsText(Import(file, folders)));
+      return base::WriteAll(answer, base::AsText(Import(file, folders, only_cameras)));
     });
   } catch (const std::system_error& error) {
     throw std::runtime_error(file.string() + ": no importer: " + error.what());
@@ -159,8 +160,8 @@ void MeshFiles::Missing(const fs::path& file) {
   import_.missing.insert(file.filename().string());
 }
 
-MeshImport ImportMesh(const fs::path& file, const std::vector<fs::path>& folders) {
-  const base::ChildProcess importer = StartImporter(file, folders);
+MeshImport ImportMesh(const fs::path& file, const std::vector<fs::path>& folders, bool only_cameras) {
+  const base::ChildProcess importer = StartImporter(file, folders, only_cameras);
   const std::optional<std::string> answer = importer.ReadAnswer(std::chrono::steady_clock::now() + kPatience);
   if (!answer) importer.Kill();
   const base::ExitStatus end = importer.Wait();

@@ -44,6 +44,8 @@ class MeshFiles {
 // Time is the processor's: five seconds, and ten more for each MB of the files that are opened. Memory: 512 MiB, and 64
 // bytes for each of theirs. An importer that crashes or runs into a limit is a problem with the file like any other.
 // Throws std::runtime_error where no process can be started.
-MeshImport ImportMesh(const std::filesystem::path& file, const std::vector<std::filesystem::path>& folders);
+// only_cameras: no mesh of a glTF file is read.
+MeshImport ImportMesh(const std::filesystem::path& file, const std::vector<std::filesystem::path>& folders,
+                      bool only_cameras = false);
 
 }  // namespace sim

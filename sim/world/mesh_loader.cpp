@@ -233,6 +233,8 @@ class FileReader {
       }
       out.uvs.emplace_back(choice.transform * glm::dvec3(uv.x, 1.0 - static_cast<double>(uv.y), 1.0));  // v down
     }
+    if (choice.wrap[0] == UvWrap::repeat && choice.wrap[1] == UvWrap::repeat) return;
+    LoadPictures(file_.loading);  // its size counts
     const Texture& picture = file_.scene.textures[static_cast<std::size_t>(texture)];
     for (const int axis : {0, 1}) {
       if (!WrapUvs(out, axis, choice.wrap[static_cast<std::size_t>(axis)],

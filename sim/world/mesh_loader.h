@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -29,6 +30,13 @@ class WarningList {
   std::vector<Kind> kinds_;
 };
 
+// A texture of the scene that is still to be decoded.
+struct PictureJob {
+  int texture;                    // in Scene::textures
+  std::function<Texture()> load;  // throws std::exception
+  std::string problem, warning;   // what one of it begins with
+};
+
 // What all files of a world share.
 struct WorldLoading {
   Scene& scene;
@@ -37,7 +45,11 @@ struct WorldLoading {
   TextureCache textures{};
   std::vector<std::string> problems{};
   WarningList warnings{};
+  std::vector<PictureJob> pictures{};
 };
+
+// Decodes them; parallel in the caller's task arena.
+void LoadPictures(WorldLoading& loading);
 
 // Appends the file's meshes (with the transforms of its nodes and of `description`), and the materials and textures
 // that they use, to the scene; notes what is wrong, each problem with its file. The scene is of use only without one.

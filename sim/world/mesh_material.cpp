@@ -1,5 +1,7 @@
 #include "sim/world/mesh_material.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -14,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-DecodedImage DecodeEmbedded(const ImportedPicture& picture, bool with_alpha) {
+DecodedImage Decode(const ImportedPicture& picture, bool with_alpha) {
   if (picture.height == 0) return DecodeImage(picture.bytes, with_alpha);
   const std::size_t texels = picture.bytes.size() / 4;
   const std::string problem = limits::PictureSizeProblem(picture.width, picture.height, picture.bytes.size());
@@ -71,6 +73,8 @@ MeshMaterial MeshMaterialReader::Read(const ImportedMaterial& in) {
   material.roughness = std::clamp(in.roughness, 0.0f, 1.0f);
   if (file_.is_gltf)
     material.gloss_texture = ReadTexture(in, {in.gloss_map, "metallic-roughness ", Content::numbers}, uvs);
+  material.lacks_gloss_map = !file_.is_gltf && !in.gloss_map.picture.empty();
+  if (in.has_bumps != 0) file_.Warn("material '" + in.name + "': ", "bump maps (heights) are not rendered");
   if (in.unlit != 0) {  // radiance is the base colour, whatever shines on it
     material.emission = std::exchange(material.base_color, glm::vec3(0));
     material.emission_texture = material.texture;
@@ -113,38 +117,36 @@ int MeshMaterialReader::ReadTexture(const ImportedMaterial& in, const Use& use, 
   return TextureIndex(in, use);
 }
 
-std::optional<DecodedImage> MeshMaterialReader::Decode(const ImportedMaterial& in, const ImportedMap& map,
-                                                       bool with_alpha) {
-  TextureFile found{file_.path / map.picture};
+MeshMaterialReader::Source MeshMaterialReader::Find(const ImportedMaterial& in, const ImportedMap& map,
+                                                    std::string& problem) {
   const std::string who = "material '" + in.name + "': ";
-  const auto bad = [&](const std::string& what) {
-    file_.loading.problems.push_back(found.file.string() + ": texture of material '" + in.name + "' in " +
-                                     file_.path.string() + ": " + what);
-    return std::nullopt;
-  };
-  try {
-    if (map.embedded >= 0) return DecodeEmbedded(from_.pictures[static_cast<std::size_t>(map.embedded)], with_alpha);
-    found = FindTexture(map.picture, file_.path, in.folder, file_.loading.folders);
-    file_.scene.files.insert(found.file);
-    if (found.problem.starts_with("must")) {
-      file_.Problem(who + "the texture path '" + map.picture + "' " + found.problem);
-      return std::nullopt;
-    }
-    if (!found.problem.empty() && file_.loading.missing_textures == MissingTextures::grey) {
-      file_.Warn(who + "'" + map.picture + "': ", "a texture that is not there is grey");
-      return DecodedImage{1, 1, {128, 128, 128}, {}};
-    }
-    if (!found.problem.empty()) return bad(found.problem);
-    if (found.is_elsewhere)
-      file_.Warn(who + found.file.string() + " for '" + map.picture + "': ",
-                 "a texture is taken from where one of its name lies");
-    if (!fs::is_regular_file(found.file)) return bad("not a file");
-    const std::optional<std::string> bytes = base::ReadFile(found.file);
-    if (!bytes) return bad("cannot be opened");
-    return DecodeImage(base::AsBytes(*bytes), with_alpha);
-  } catch (const std::exception& problem) {
-    return bad(problem.what());
+  const bool embedded = map.embedded >= 0;
+  const TextureFile found = embedded ? TextureFile{file_.path / map.picture}
+                                     : FindTexture(map.picture, file_.path, in.folder, file_.loading.folders);
+  problem = found.file.string() + ": texture of material '" + in.name + "' in " + file_.path.string() + ": ";
+  if (embedded)
+    return [picture = from_.pictures[static_cast<std::size_t>(map.embedded)]](bool with_alpha) {
+      return Decode(picture, with_alpha);
+    };
+  file_.scene.files.insert(found.file);
+  if (found.problem.starts_with("must")) {
+    file_.Problem(who + "the texture path '" + map.picture + "' " + found.problem);
+    return {};
   }
+  if (!found.problem.empty() && file_.loading.missing_textures == MissingTextures::grey) {
+    file_.Warn(who + "'" + map.picture + "': ", "a texture that is not there is grey");
+    return [](bool) { return DecodedImage{1, 1, {128, 128, 128}, {}}; };
+  }
+  if (found.is_elsewhere)
+    file_.Warn(who + found.file.string() + " for '" + map.picture + "': ",
+               "a texture is taken from where one of its name lies");
+  return [found](bool with_alpha) {
+    if (!found.problem.empty()) throw std::runtime_error(found.problem);
+    if (!fs::is_regular_file(found.file)) throw std::runtime_error("not a file");
+    const std::optional<std::string> bytes = base::ReadFile(found.file);
+    if (!bytes) throw std::runtime_error("cannot be opened");
+    return DecodeImage(base::AsBytes(*bytes), with_alpha);
+  };
 }
 
 int MeshMaterialReader::TextureIndex(const ImportedMaterial& in, const Use& use) {
@@ -157,27 +159,48 @@ int MeshMaterialReader::TextureIndex(const ImportedMaterial& in, const Use& use)
   const std::string mask_of = use.mask == nullptr ? "" : " * " + in.folder + "/" + use.mask->picture;
   const auto [entry, is_new] = file_.loading.textures.try_emplace(file.string() + kind + mask_of, -1);
   if (!is_new) return entry->second;  // a bad one has been reported
-  std::optional<DecodedImage> image = Decode(in, use.map, use.with_alpha);
-  if (!image) return -1;
+  std::string problem;
+  const Source picture = Find(in, use.map, problem);
+  if (!picture) return -1;
   const bool is_mask = use.mask == &use.map;  // there is no picture but that of its opacity
-  if (use.mask != nullptr && (is_mask || use.mask->picture != name)) {
-    const std::optional<DecodedImage> mask = Decode(in, *use.mask, true);
-    if (!mask) return -1;
-    SetAlpha(*mask, *image);
-    if (is_mask) std::ranges::fill(image->rgb, std::uint8_t{255});
+  const bool has_mask = use.mask != nullptr && (is_mask || use.mask->picture != name);
+  const Source mask = has_mask ? Find(in, *use.mask, problem) : Source();
+  if (has_mask && !mask) return -1;
+  const auto load = [=, content = use.content, with_alpha = use.with_alpha] {
+    DecodedImage image = picture(with_alpha);
+    if (mask) SetAlpha(mask(true), image);
+    if (is_mask) std::ranges::fill(image.rgb, std::uint8_t{255});
+    if (std::ranges::none_of(image.alpha, [](std::uint8_t a) { return a < 255; })) image.alpha.clear();
+    return Texture(file.string(), image.width, image.height, image.rgb, image.alpha, content);
+  };
+  entry->second = static_cast<int>(file_.scene.textures.size());
+  file_.scene.textures.emplace_back(file.string(), 1, 1, std::vector<std::uint8_t>(3));  // until it is loaded
+  file_.loading.pictures.push_back(
+      {entry->second, load, problem, file_.path.string() + ": material '" + in.name + "': "});
+  return entry->second;
+}
+
+void LoadPictures(WorldLoading& loading) {
+  std::vector<PictureJob>& jobs = loading.pictures;
+  std::vector<std::string> problems(jobs.size());
+  tbb::parallel_for(
+      std::size_t{0}, jobs.size(),
+      [&](std::size_t i) {
+        try {
+          loading.scene.textures[static_cast<std::size_t>(jobs[i].texture)] = jobs[i].load();
+        } catch (const std::exception& problem) {
+          problems[i] = jobs[i].problem + problem.what();
+        }
+      },
+      tbb::simple_partitioner());
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const std::span<const std::uint8_t> alpha =
+        loading.scene.textures[static_cast<std::size_t>(jobs[i].texture)].alpha();
+    if (!problems[i].empty()) loading.problems.push_back(problems[i]);
+    if (!alpha.empty() && std::ranges::none_of(alpha, [](std::uint8_t a) { return a > 127; }))
+      loading.warnings.Add(jobs[i].warning, "the alpha of its picture is below 0.5 everywhere: it is not seen");
   }
-  const bool is_cut = std::ranges::any_of(image->alpha, [](std::uint8_t a) { return a < 255; });
-  if (!is_cut) image->alpha.clear();
-  if (is_cut && std::ranges::none_of(image->alpha, [](std::uint8_t a) { return a > 127; }))
-    file_.Warn("material '" + in.name + "': ", "the alpha of its picture is below 0.5 everywhere: it is not seen");
-  try {
-    file_.scene.textures.emplace_back(file.string(), image->width, image->height, image->rgb, image->alpha,
-                                      use.content);
-  } catch (const std::invalid_argument& problem) {
-    file_.Problem(problem.what());
-    return -1;
-  }
-  return entry->second = static_cast<int>(file_.scene.textures.size()) - 1;
+  jobs.clear();
 }
 
 }  // namespace sim

@@ -55,7 +55,9 @@ class MeshMaterialReader {
   void ReadAlpha(const ImportedMaterial& in, sim::Material& material);
   int ReadTexture(const ImportedMaterial& in, const Use& use, std::vector<UvChoice>& uvs);
   int TextureIndex(const ImportedMaterial& in, const Use& use);
-  std::optional<DecodedImage> Decode(const ImportedMaterial& in, const ImportedMap& map, bool with_alpha);
+  // What decodes a picture, and what a problem with it begins with; empty: it is bad.
+  using Source = std::function<DecodedImage(bool with_alpha)>;
+  Source Find(const ImportedMaterial& in, const ImportedMap& map, std::string& problem);
 
   const MeshFile& file_;
   const ImportedScene& from_;

@@ -25,6 +25,8 @@ void ReadPly(MeshFiles& files, MeshImport& import);
 // KHR_materials_emissive_strength, KHR_materials_pbrSpecularGlossiness, KHR_mesh_quantization,
 // KHR_draco_mesh_compression, EXT_meshopt_compression, EXT_texture_webp, EXT_mesh_gpu_instancing.
 void ReadGltf(MeshFiles& files, MeshImport& import);
+// Its cameras alone: no mesh is read.
+void ReadGltfCameras(MeshFiles& files, MeshImport& import);
 
 // All other formats. FBX is in its unit and its axes, which assimp (5.2) leaves to whoever reads.
 void ReadByAssimp(MeshFiles& files, MeshImport& import);

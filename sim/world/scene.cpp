@@ -84,6 +84,7 @@ Scene LoadScene(const WorldDescription& description) {
         {object.mesh.name, {std::move_iterator(begin), std::move_iterator(scene.meshes.end())}, nullptr});
     scene.meshes.erase(begin, scene.meshes.end());
   }
+  LoadPictures(loading);
   if (!problems.empty()) throw SceneError(std::move(problems));
   scene.warnings = loading.warnings.Summed();
   scene.lights = description.lights;

@@ -30,7 +30,8 @@ struct Material {
   int normal_map = -1;  // its content is Texture::Content::numbers
   float normal_scale = 1.0f;
   float metallic = 0.0f, roughness = 1.0f;
-  int gloss_texture = -1;  // roughness times its green, metallic times its blue; its content is numbers
+  int gloss_texture = -1;        // roughness times its green, metallic times its blue; its content is numbers
+  bool lacks_gloss_map = false;  // the file has one that is not read
   bool Mirrors() const { return metallic > 0 || roughness < 1; }
   bool HasPicture() const { return texture >= 0 || emission_texture >= 0 || normal_map >= 0 || gloss_texture >= 0; }
   // The surface is there only where alpha * the texture's alpha reaches the cutoff; 0: everywhere.

@@ -1,6 +1,8 @@
 #include "sim/world/texture.h"
 
+#include <sys/mman.h>
 #include <tbb/parallel_for.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -10,11 +12,32 @@
 namespace sim {
 namespace {
 
+// Not initialised, and in large pages where the system has them: 4 KiB each take longer to get than to fill.
+template <class T>
+std::shared_ptr<T[]> LargeArray(std::size_t count) {
+  std::shared_ptr<T[]> values = std::make_shared_for_overwrite<T[]>(count);
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const std::uintptr_t begin = (reinterpret_cast<std::uintptr_t>(values.get()) + page - 1) / page * page,
+                       end = reinterpret_cast<std::uintptr_t>(values.get() + count);
+  if (end > begin) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+  return values;
+}
+
+std::vector<TextureLevel> LevelsOf(int width, int height) {
+  std::vector<TextureLevel> levels{{width, height, 0}};
+  while (width > 1 || height > 1) {
+    const auto first = static_cast<std::uint32_t>(levels.back().RowBegin(height));
+    width = std::max(1, width / 2), height = std::max(1, height / 2);
+    levels.push_back({width, height, first});
+  }
+  return levels;
+}
+
 constexpr float kTexelMax = 1023.0f;
 
 std::uint32_t Encode(float linear, bool roots) {
   const float clipped = std::clamp(linear, 0.0f, 1.0f);
-  return static_cast<std::uint32_t>(std::lround((roots ? std::sqrt(clipped) : clipped) * kTexelMax));
+  return static_cast<std::uint32_t>(0.5 + static_cast<double>((roots ? std::sqrt(clipped) : clipped) * kTexelMax));
 }
 
 glm::vec3 Decode(std::uint32_t bits, bool roots) {
@@ -47,9 +70,9 @@ std::vector<Shrink> ShrinkWeights(int n, int m) {
 
 // Along x and then along y. at(i): value i, of rows of red, green, blue. Parallel in the caller's task arena.
 template <class Values>
-std::vector<float> Shrunk(const Values& at, int width, int height, int to_width, int to_height) {
+std::shared_ptr<float[]> Shrunk(const Values& at, int width, int height, int to_width, int to_height) {
   const std::vector<Shrink> columns = ShrinkWeights(width, to_width), rows = ShrinkWeights(height, to_height);
-  std::vector<float> out(3 * columns.size() * rows.size());
+  const std::shared_ptr<float[]> out = LargeArray<float>(3 * columns.size() * rows.size());
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
     for (std::size_t k = 0; k < 4 && rows[y].weight[k] > 0; ++k) {
       const std::size_t row = (static_cast<std::size_t>(rows[y].first) + k) * static_cast<std::size_t>(width);
@@ -59,7 +82,7 @@ std::vector<float> Shrunk(const Values& at, int width, int height, int to_width,
         for (std::size_t c = 0; c < 3; ++c, ++to) {
           float sum = 0;
           for (std::size_t j = 0; j < 4 && weight[j] > 0; ++j) sum += weight[j] * at(from + 3 * j + c);
-          *to += rows[y].weight[k] * sum;
+          *to = (k == 0 ? 0 : *to) + rows[y].weight[k] * sum;
         }
       }
     }
@@ -76,7 +99,7 @@ int Wrap(int i, int n) {
 
 Texture::Texture(std::string name, int width, int height, std::span<const std::uint8_t> rgb,
                  std::span<const std::uint8_t> alpha, Content content)
-    : name_(std::move(name)), alpha_(alpha.begin(), alpha.end()), content_(content) {
+    : name_(std::move(name)), content_(content) {
   constexpr int kMaxSide = 1 << 15;
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
       rgb.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3 ||
@@ -92,32 +115,36 @@ Texture::Texture(std::string name, int width, int height, std::span<const std::u
     linear_of_code[i] = static_cast<float>(roots ? SrgbToLinear(code) : code);
     texel_of_code[i] = Encode(linear_of_code[i], roots);
   }
-  std::vector<float> linear;             // of the level; of the first one `rgb`
-  texels_.reserve(rgb.size() / 2 + 64);  // 4/3 for a square picture, more for a narrow one
-  for (;;) {
-    const std::size_t first = texels_.size();
-    levels_.push_back({width, height, static_cast<std::uint32_t>(first)});
-    texels_.resize(first + static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    const auto value = [&](std::size_t i) { return first > 0 ? linear[i] : linear_of_code[rgb[i]]; };
-    const auto texel = [&](std::size_t i) { return first > 0 ? Encode(linear[i], roots) : texel_of_code[rgb[i]]; };
-    for (std::size_t i = 0; first + i < texels_.size(); ++i)
-      texels_[first + i] = texel(3 * i) | texel(3 * i + 1) << 10 | texel(3 * i + 2) << 20;
-    if (width == 1 && height == 1) break;
-    const int half_width = std::max(1, width / 2), half_height = std::max(1, height / 2);
-    linear = Shrunk(value, width, height, half_width, half_height);
-    width = half_width, height = half_height;
+  levels_ = LevelsOf(width, height);
+  const std::size_t count = levels_.back().RowBegin(1);
+  const std::shared_ptr<std::uint32_t[]> texels = LargeArray<std::uint32_t>(count + (alpha.size() + 3) / 4);
+  std::shared_ptr<float[]> linear;  // of the level; of the first one `rgb`
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    const TextureLevel& level = levels_[l];
+    const auto value = [&](std::size_t i) { return l == 0 ? linear_of_code[rgb[i]] : linear[i]; };
+    const auto texel = [&](std::size_t i) { return l == 0 ? texel_of_code[rgb[i]] : Encode(linear[i], roots); };
+    tbb::parallel_for(0, level.height, [&](int y) {
+      std::uint32_t* const row = &texels[level.RowBegin(y)];
+      std::size_t i = 3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width);
+      for (int x = 0; x < level.width; ++x, i += 3) row[x] = texel(i) | texel(i + 1) << 10 | texel(i + 2) << 20;
+      row[level.width] = row[0];
+    });
+    if (l + 1 == levels_.size()) break;
+    linear = Shrunk(value, level.width, level.height, levels_[l + 1].width, levels_[l + 1].height);
   }
+  auto* const kept = reinterpret_cast<std::uint8_t*>(texels.get() + count);
+  std::ranges::copy(alpha, kept);
+  owner_ = texels, texels_ = {texels.get(), count}, alpha_ = {kept, alpha.size()};
 }
 
 glm::vec3 Texture::Texel(int level, int x, int y) const {
   const TextureLevel& l = levels_.at(static_cast<std::size_t>(level));
-  return Decode(texels_[l.first + static_cast<std::size_t>(Wrap(y, l.height)) * static_cast<std::size_t>(l.width) +
-                        static_cast<std::size_t>(Wrap(x, l.width))],
+  return Decode(texels_[l.RowBegin(Wrap(y, l.height)) + static_cast<std::size_t>(Wrap(x, l.width))],
                 content_ == Content::color);
 }
 
 float Texture::Alpha(glm::vec2 uv) const {
-  if (alpha_.empty()) return 1.0f;
+  if (!has_alpha()) return 1.0f;
   const TextureLevel& size = levels_[0];
   const float x = (uv.x - std::floor(uv.x)) * static_cast<float>(size.width) - 0.5f;
   const float y = (uv.y - std::floor(uv.y)) * static_cast<float>(size.height) - 0.5f;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,11 +20,15 @@ inline double SrgbToLinear(double code) {
 // One level of the mip chain: level l has max(1, floor(size / 2^l)) texels a side.
 struct TextureLevel {
   int width = 0, height = 0;
-  std::uint32_t first = 0;  // index of its first texel in Texture::texels()
+  std::uint32_t first = 0;  // index of its first texel in Texture::texels(); a row's first one comes again at its end
+  std::size_t RowBegin(int y) const {
+    return first + static_cast<std::size_t>(y) * (static_cast<std::size_t>(width) + 1);
+  }
 };
 
 // Texels are kept as the square roots of linear red, green, blue in 10 bits each (red lowest): at most 1/1023 * sqrt(c)
 // from the truth, which is a ninth to a half of the step of the 8-bit sRGB picture that they come from, in 4 bytes.
+// Copies share them.
 // Texture coordinates: (0, 0) is the upper left corner of the picture, (1, 1) the lower right; the centre of texel (i,
 // j) is at ((i + 0.5) / width, (j + 0.5) / height). The picture repeats outside.
 //
@@ -42,7 +47,7 @@ class Texture {
   // Bilinear at level 0, in [0, 1]; 1 where there is no alpha.
   float Alpha(glm::vec2 uv) const;
   bool has_alpha() const { return !alpha_.empty(); }
-  const std::vector<std::uint8_t>& alpha() const { return alpha_; }
+  std::span<const std::uint8_t> alpha() const { return alpha_; }
   Content content() const { return content_; }
 
   // The stored value of a texel, linear.
@@ -52,13 +57,14 @@ class Texture {
   int width() const { return levels_[0].width; }
   int height() const { return levels_[0].height; }
   const std::vector<TextureLevel>& levels() const { return levels_; }
-  const std::vector<std::uint32_t>& texels() const { return texels_; }
+  std::span<const std::uint32_t> texels() const { return texels_; }
 
  private:
   std::string name_;
   std::vector<TextureLevel> levels_;
-  std::vector<std::uint32_t> texels_;
-  std::vector<std::uint8_t> alpha_;
+  std::shared_ptr<const void> owner_;
+  std::span<const std::uint32_t> texels_;
+  std::span<const std::uint8_t> alpha_;
   Content content_;
 };
 

@@ -18,7 +18,8 @@ namespace settings {
 
 class FieldReader {
  public:
-  explicit FieldReader(Section section) : section_(std::move(section)) {}
+  // have_all: every value has a default that is meant, even of keys that must be there otherwise.
+  explicit FieldReader(Section section, bool have_all = false) : section_(std::move(section)), have_all_(have_all) {}
 
   template <class T>
   void operator()(const char* key, T& value, const Field& field) {
@@ -58,6 +59,7 @@ class FieldReader {
   template <class T>
   void Required(const char* key, T& value, const Field& field) {
     (*this)(key, value, field);
+    if (have_all_) return;
     section_.RequirePresent(key);
     Note(section_.Has(key));
   }
@@ -118,6 +120,7 @@ class FieldReader {
   }
 
   Section section_;
+  bool have_all_;
   bool good_ = true, renamed_value_ = false;
 };
 

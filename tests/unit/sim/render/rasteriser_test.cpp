@@ -168,16 +168,16 @@ TEST_P(RasteriserTest, NamesWhatItDoesNotRender) {
   scene.materials[0].normal_map = scene.materials[1].normal_map = 1;
   scene.materials[0].emission_texture = 0;
   scene.materials[0].emission = glm::vec3(1.0f);
-  scene.materials[0].alpha_cutoff = 0.5f;
+  scene.materials[0].alpha_cutoff = 0.5f, scene.materials[0].alpha = 0.25f;
   for (Mesh& mesh : scene.meshes) mesh.uvs.resize(mesh.positions.size());
   std::get<RectLight>(scene.lights[3]).visible = true;
   std::get<PointLight>(scene.lights[1]).flicker = {100, 0.5, 0};
   scene.sky.emplace();
   MakeRasteriser(scene, On(GetParam()), &warnings);
   EXPECT_THAT(warnings,
-              testing::ElementsAre("rasteriser: normal maps are not rendered; materials: wall, ball",
-                                   "rasteriser: of pictures that shine only the mean is rendered; materials: wall",
-                                   "rasteriser: nothing is cut out of surfaces; materials: wall",
+              testing::ElementsAre("rasteriser: 2 × normal maps are not rendered (first: material 'wall': ...)",
+                                   "rasteriser: material 'wall': of pictures that shine only the mean is rendered",
+                                   "rasteriser: material 'wall': nothing is cut out of surfaces",
                                    "rasteriser: lamps do not flicker", "rasteriser: visible lamps are not seen",
                                    "rasteriser: the sky is not seen; world.background is"));
 }

@@ -186,9 +186,19 @@ trajectory: {type: rpy, start: {position: [0, 0, 3], look_at: [0, 0, 0]}, angles
 )");
   EXPECT_THAT(
       Simulator(LoadScenario(file), 1).warnings(),
-      testing::Contains(testing::AllOf(HasSubstr("render.reflections is false"), HasSubstr("base colour: cloth"))));
+      testing::Contains(testing::AllOf(HasSubstr("render.reflections is false"), HasSubstr("material 'cloth'"))));
   EXPECT_THAT(Simulator(LoadScenario(file, {{"render.reflections", "true"}}), 1).warnings(),
               testing::Not(testing::Contains(HasSubstr("reflections"))));
+  // What the picture says counts: roughness is its green, metallic its blue. other.png has 128 and 255.
+  for (const auto& [factors, is_said] : {std::pair{R"("metallicFactor": 0.4, "roughnessFactor": 1)", false},
+                                         {R"("metallicFactor": 1, "roughnessFactor": 1)", true},
+                                         {R"("metallicFactor": 0, "roughnessFactor": 0.9)", true}}) {
+    parts.material =
+        std::string(R"("pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 1}, )") + factors + "}";
+    Load(folder, parts);
+    const auto said = Contains(HasSubstr("render.reflections is false"));
+    EXPECT_EQ(testing::Matches(said)(Simulator(LoadScenario(file), 1).warnings()), is_said) << factors;
+  }
 }
 
 TEST(Gltf, PicturesWithOtherCoordinatesAreLeftOut) {

@@ -137,6 +137,19 @@ void ExpectTriangle(const Scene& loaded, const std::string& name, bool has_mater
   EXPECT_NEAR(color.z, 0.75f, 1e-5) << name;
 }
 
+// What would change the picture is said, once for each kind.
+TEST(MeshFormats, BumpMapsAreSaid) {
+  const Folder folder;
+  folder.Write("bumps.png", EncodeColor(".png", 9, 9, 9));
+  const std::unique_ptr<aiScene> scene(TriangleForExport());
+  const aiString picture("bumps.png");
+  scene->mMaterials[0]->AddProperty(&picture, AI_MATKEY_TEXTURE(aiTextureType_HEIGHT, 0));
+  Assimp::Exporter exporter;
+  const std::string file = (folder.path() / "t.fbx").string();
+  ASSERT_EQ(exporter.Export(scene.get(), "fbxa", file), AI_SUCCESS) << exporter.GetErrorString();
+  EXPECT_THAT(LoadScene(WorldOf(file)).warnings, ElementsAre(HasSubstr("bump maps (heights) are not rendered")));
+}
+
 TEST(MeshFormats, AsAssimpWritesThem) {
   const Folder folder;
   const std::unique_ptr<aiScene> scene(TriangleForExport());

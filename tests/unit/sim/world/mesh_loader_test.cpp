@@ -1,5 +1,6 @@
 // Loading a world: transforms, materials, texture coordinates, and every kind of bad file.
 #include <gmock/gmock.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -106,6 +107,30 @@ TEST(World, OneTextureForManyMeshesIsReadOnce) {
   WorldDescription world = WorldOf(folder.Write("square.obj", kSquare));
   world.meshes.push_back(world.meshes[0]);
   EXPECT_THAT(LoadScene(world).textures, SizeIs(1));
+}
+
+// Each in its place, however many threads decode; the renderer's copy has the same texels.
+TEST(World, ManyPicturesAreDecodedAtOnce) {
+  const Folder folder;
+  std::string library, mesh = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n";
+  for (int i = 0; i < 20; ++i) {
+    const std::string name = std::to_string(i);
+    folder.Write(name + ".png", EncodeColor(".png", 10 * i, 0, 0));
+    library += "newmtl " + name + "\nmap_Kd " + name + ".png\n";
+    mesh += "usemtl " + name + "\nf 1/1 2/2 3/3\n";
+  }
+  folder.Write("m.mtl", library);
+  const WorldDescription world = WorldOf(folder.Write("m.obj", mesh));
+  for (const int threads : {1, 4}) {
+    tbb::task_arena arena(threads);
+    const Scene scene = arena.execute([&] { return LoadScene(world); });
+    ASSERT_EQ(scene.textures.size(), 20u);
+    for (int i = 0; i < 20; ++i) {
+      const Texture& texture = scene.textures[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(texture.Texel(0, 0, 0).x, SrgbToLinear(10 * i / 255.0), 2e-3) << i << ", " << threads << " threads";
+      EXPECT_EQ(Texture(texture).texels().data(), texture.texels().data());
+    }
+  }
 }
 
 TEST(World, TextureWithoutCoordinatesIsOneWarning) {
@@ -228,8 +253,8 @@ TEST(BadWorld, AllProblemsAtOnce) {
   world.meshes.push_back(
       {folder.Write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), glm::dvec3(0), {1, 0, 0, 0}, 1, {}, {}});
   world.lights = {SunLight{{0, 0, 0}, {1, 1, 1}}};
-  EXPECT_THAT(Problems(world), ElementsAre(HasSubstr("lights[0]"), HasSubstr("none.ply"), HasSubstr("gone.png"),
-                                           HasSubstr("text.png"), HasSubstr("nan.obj")));
+  EXPECT_THAT(Problems(world), ElementsAre(HasSubstr("lights[0]"), HasSubstr("none.ply"), HasSubstr("nan.obj"),
+                                           HasSubstr("gone.png"), HasSubstr("text.png")));
   try {
     LoadScene(world);
     FAIL() << "nothing was thrown";

@@ -234,6 +234,12 @@ TEST_F(Obj, MissingTexturesAreGreyWhereThatIsAskedFor) {
   EXPECT_NEAR(scene.textures.at(0).Texel(0, 0, 0).x, SrgbToLinear(128 / 255.0), 1e-3);
 }
 
+TEST_F(Obj, BumpMapsAreSaid) {
+  folder_.Write("m.mtl", "newmtl a\nmap_Bump -bm 0.5 x.png\nnewmtl b\nbump x.png\n");
+  const Scene scene = Load("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 3 2\n");
+  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("2 ×"), HasSubstr("bump maps (heights) are not rendered"))));
+}
+
 // Warnings of a kind are one, with how often.
 TEST_F(Obj, WarningsAreSummed) {
   std::string library, text = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
