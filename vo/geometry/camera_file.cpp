@@ -248,7 +248,7 @@ Camera ReadCamera(const std::filesystem::path& file) {
     // has read it
   } else if (count({"camera_matrix", "Camera_Matrix", "image_width"}) > 0) {
     ReadOpenCv(root, camera);
-  } else if (count({"width", "height", "fx", "fy", "cx", "cy"}) > 2) {
+  } else if (count({"width", "height", "fx", "fy"}) > 1) {
     ReadOwn(root, camera);
   } else {
     root.IgnoreRest();

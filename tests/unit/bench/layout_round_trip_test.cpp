@@ -245,7 +245,7 @@ TEST(EurocLayout, TruthIsOfTheCameraNotOfTheBody) {
     ReadSequenceTruth(folder.path());
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("data.csv:2:1: time 1 lies before 0.000000002"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("data.csv:2:1: time 1e-9 lies before 0.000000002"));
     EXPECT_THAT(error.what(), testing::HasSubstr("data.csv:3:7: 'x' is not a finite number"));
     EXPECT_THAT(error.what(), testing::HasSubstr("norm is 2"));
   }
