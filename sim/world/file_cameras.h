@@ -32,8 +32,8 @@ class FileCameras {
   std::optional<std::vector<FileCamera>> cameras_;
 };
 
-// Focal lengths and principal point of a picture of params.width x params.height; a height of 0 is made to fit the file's
-// aspect ratio. Throws std::runtime_error for an orthographic camera and for a size that does not fit.
+// Focal lengths and principal point of a picture of params.width x params.height; a height of 0 is made to fit the
+// file's aspect ratio. Throws std::runtime_error for an orthographic camera and for a size that does not fit.
 void SetIntrinsics(const FileCamera& from, CameraParams& params);
 
 }  // namespace sim

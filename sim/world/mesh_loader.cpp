@@ -16,6 +16,7 @@
 #include "sim/world/mesh_import.h"
 #include "sim/world/mesh_material.h"
 #include "sim/world/texture_file.h"
+#include "tools/base/text.h"
 
 namespace sim {
 namespace {
@@ -95,12 +96,13 @@ class FileReader {
     };
     if (description_.color || !description_.texture.empty())
       replace({description_.name, description_.color, description_.texture}, [](const auto&) { return true; });
-    std::string names;
-    for (const ImportedMaterial& material : scene.materials)
-      names += (names.empty() ? "'" : ", '") + material.name + "'";
-    for (const MaterialDescription& by : description_.materials)
-      if (replace(by, [&](const ImportedMaterial& material) { return material.name == by.name; }) == 0)
-        file_.Problem("has no material '" + by.name + "', which the scenario replaces; it has " + names);
+    for (const MaterialDescription& by : description_.materials) {
+      if (replace(by, [&](const ImportedMaterial& material) { return material.name == by.name; }) > 0) continue;
+      std::vector<std::string> names;
+      for (const ImportedMaterial& material : scene.materials) names.push_back("'" + material.name + "'");
+      file_.Problem("has no material '" + by.name + "', which the scenario replaces; it has " +
+                    base::Join(names, ", "));
+    }
   }
 
   void AppendMesh(const ImportedMesh& in, const glm::dmat4& world_from_node) {

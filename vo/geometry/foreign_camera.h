@@ -27,8 +27,8 @@ std::vector<std::string> SetMatrix(std::span<const double> matrix, Camera& camer
 // Width and height by these keys; one problem where both are missing.
 void RequireSize(settings::Section& section, const std::string& width, const std::string& height, Camera& camera);
 
-// COLMAP's, DSO's and LSD-SLAM's text, from its first line that is no comment. None where it is neither; throws settings::Error for
-// a lens or a number of cameras that is not read.
+// COLMAP's, DSO's and LSD-SLAM's text, from its first line that is no comment. None where it is neither; throws
+// settings::Error for a lens or a number of cameras that is not read.
 std::optional<Camera> ReadTextCamera(std::string_view text, const std::filesystem::path& file);
 
 // The programs that write YAML or JSON. False where it is of none of them, and nothing has been read.
