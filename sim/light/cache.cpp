@@ -233,7 +233,7 @@ std::unique_ptr<RayScene> LitScene(const Scene& scene, LightMode mode, const Bak
   return rays;
 }
 
-std::vector<fs::path> LightFolders(const fs::path& scenario_folder) {
+std::vector<fs::path> CacheFolders(const fs::path& scenario_folder) {
   std::vector<fs::path> folders{scenario_folder / ".vobench-cache"};
   const char* cache = std::getenv("XDG_CACHE_HOME");
   const char* home = std::getenv("HOME");

@@ -43,6 +43,6 @@ std::unique_ptr<RayScene> LitScene(const Scene& scene, LightMode mode, const Bak
 
 // Cache folders of a scenario, best first: in `.vobench-cache` beside it, or in vobench/ of the user's cache folder
 // ($XDG_CACHE_HOME, or ~/.cache).
-std::vector<std::filesystem::path> LightFolders(const std::filesystem::path& scenario_folder);
+std::vector<std::filesystem::path> CacheFolders(const std::filesystem::path& scenario_folder);
 
 }  // namespace sim

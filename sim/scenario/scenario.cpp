@@ -21,7 +21,7 @@ using settings::Section;
 void ReadRender(Section section, const std::filesystem::path& folder, RenderParams& render) {
   ReadFields(section, render);
   section.Child("bake").Reject(Problems(render.bake));
-  render.light_folders = LightFolders(folder);
+  render.light_folders = CacheFolders(folder);
 }
 
 void ReadMotionAndTime(Section root, const MotionNames& names, Scenario& scenario) {
@@ -241,6 +241,7 @@ Scenario LoadScenario(const std::filesystem::path& path,
   Section world = root.Child("world");
   world.Allow("points");
   if (!world.Has("points")) ReadWorld(world, folder, scenario.world);
+  scenario.world.cache_folders = CacheFolders(folder);
   FileCameras cameras(scenario.world);
   if (!rig) ReadCamera(root.Child("camera"), cameras, scenario.camera);
   ReadMotionAndTime(root, {folder, &cameras}, scenario);

@@ -61,6 +61,7 @@ enum class MissingTextures { error, grey };
 struct WorldDescription {
   std::vector<std::filesystem::path>
       folders;  // that meshes may read from, beside their own: of the scenario, of textures
+  std::vector<std::filesystem::path> cache_folders;  // where decoded textures are kept; none: nowhere
   MissingTextures missing_textures = MissingTextures::error;
   std::vector<MeshDescription> meshes;
   std::vector<ObjectDescription> objects;

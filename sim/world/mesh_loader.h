@@ -12,7 +12,7 @@
 namespace sim {
 
 // Indices of textures in the scene, by file (embedded ones: by file and their name in it); -1: unreadable.
-using TextureCache = std::map<std::string, int>;
+using TextureIndices = std::map<std::string, int>;
 
 // Warnings, each kind of them once with how often it occurred.
 class WarningList {
@@ -40,9 +40,10 @@ struct PictureJob {
 // What all files of a world share.
 struct WorldLoading {
   Scene& scene;
-  const std::vector<std::filesystem::path>& folders;  // WorldDescription::folders
+  const std::vector<std::filesystem::path>& folders;        // WorldDescription::folders
+  const std::vector<std::filesystem::path>& cache_folders;  // and of it, too
   MissingTextures missing_textures;
-  TextureCache textures{};
+  TextureIndices textures{};
   std::vector<std::string> problems{};
   WarningList warnings{};
   std::vector<PictureJob> pictures{};

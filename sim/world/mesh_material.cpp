@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/world/texture_cache.h"
 #include "sim/world/texture_file.h"
 #include "tools/base/files.h"
 #include "tools/base/limits/picture.h"
@@ -124,10 +125,7 @@ MeshMaterialReader::Source MeshMaterialReader::Find(const ImportedMaterial& in, 
   const TextureFile found = embedded ? TextureFile{file_.path / map.picture}
                                      : FindTexture(map.picture, file_.path, in.folder, file_.loading.folders);
   problem = found.file.string() + ": texture of material '" + in.name + "' in " + file_.path.string() + ": ";
-  if (embedded)
-    return [picture = from_.pictures[static_cast<std::size_t>(map.embedded)]](bool with_alpha) {
-      return Decode(picture, with_alpha);
-    };
+  if (embedded) return [picture = from_.pictures[static_cast<std::size_t>(map.embedded)]] { return picture; };
   file_.scene.files.insert(found.file);
   if (found.problem.starts_with("must")) {
     file_.Problem(who + "the texture path '" + map.picture + "' " + found.problem);
@@ -135,17 +133,17 @@ MeshMaterialReader::Source MeshMaterialReader::Find(const ImportedMaterial& in, 
   }
   if (!found.problem.empty() && file_.loading.missing_textures == MissingTextures::grey) {
     file_.Warn(who + "'" + map.picture + "': ", "a texture that is not there is grey");
-    return [](bool) { return DecodedImage{1, 1, {128, 128, 128}, {}}; };
+    return [] { return ImportedPicture{1, 1, {128, 128, 128, 255}}; };
   }
   if (found.is_elsewhere)
     file_.Warn(who + found.file.string() + " for '" + map.picture + "': ",
                "a texture is taken from where one of its name lies");
-  return [found](bool with_alpha) {
+  return [found] {
     if (!found.problem.empty()) throw std::runtime_error(found.problem);
     if (!fs::is_regular_file(found.file)) throw std::runtime_error("not a file");
     const std::optional<std::string> bytes = base::ReadFile(found.file);
     if (!bytes) throw std::runtime_error("cannot be opened");
-    return DecodeImage(base::AsBytes(*bytes), with_alpha);
+    return ImportedPicture{0, 0, {bytes->begin(), bytes->end()}};
   };
 }
 
@@ -166,12 +164,17 @@ int MeshMaterialReader::TextureIndex(const ImportedMaterial& in, const Use& use)
   const bool has_mask = use.mask != nullptr && (is_mask || use.mask->picture != name);
   const Source mask = has_mask ? Find(in, *use.mask, problem) : Source();
   if (has_mask && !mask) return -1;
-  const auto load = [=, content = use.content, with_alpha = use.with_alpha] {
-    DecodedImage image = picture(with_alpha);
-    if (mask) SetAlpha(mask(true), image);
-    if (is_mask) std::ranges::fill(image.rgb, std::uint8_t{255});
-    if (std::ranges::none_of(image.alpha, [](std::uint8_t a) { return a < 255; })) image.alpha.clear();
-    return Texture(file.string(), image.width, image.height, image.rgb, image.alpha, content);
+  const auto load = [=, content = use.content, with_alpha = use.with_alpha, folders = file_.loading.cache_folders] {
+    std::vector<ImportedPicture> from = {picture()};
+    if (mask) from.push_back(mask());
+    const auto made_of = static_cast<std::uint64_t>(content) * 4 + with_alpha * 2U + is_mask;
+    return CachedTexture(file.string(), from, made_of, folders, [&] {
+      DecodedImage image = Decode(from[0], with_alpha);
+      if (mask) SetAlpha(Decode(from[1], true), image);
+      if (is_mask) std::ranges::fill(image.rgb, std::uint8_t{255});
+      if (std::ranges::none_of(image.alpha, [](std::uint8_t a) { return a < 255; })) image.alpha.clear();
+      return Texture(file.string(), image.width, image.height, image.rgb, image.alpha, content);
+    });
   };
   entry->second = static_cast<int>(file_.scene.textures.size());
   file_.scene.textures.emplace_back(file.string(), 1, 1, std::vector<std::uint8_t>(3));  // until it is loaded

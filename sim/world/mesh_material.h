@@ -55,8 +55,8 @@ class MeshMaterialReader {
   void ReadAlpha(const ImportedMaterial& in, sim::Material& material);
   int ReadTexture(const ImportedMaterial& in, const Use& use, std::vector<UvChoice>& uvs);
   int TextureIndex(const ImportedMaterial& in, const Use& use);
-  // What decodes a picture, and what a problem with it begins with; empty: it is bad.
-  using Source = std::function<DecodedImage(bool with_alpha)>;
+  // What reads a picture, and what a problem with it begins with; empty: it is bad.
+  using Source = std::function<ImportedPicture()>;
   Source Find(const ImportedMaterial& in, const ImportedMap& map, std::string& problem);
 
   const MeshFile& file_;

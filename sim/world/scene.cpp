@@ -45,7 +45,7 @@ SceneError::SceneError(std::vector<std::string> problems)
 
 Scene LoadScene(const WorldDescription& description) {
   Scene scene;
-  WorldLoading loading{scene, description.folders, description.missing_textures};
+  WorldLoading loading{scene, description.folders, description.cache_folders, description.missing_textures};
   std::vector<std::string>& problems = loading.problems;
   for (std::size_t i = 0; i < description.lights.size(); ++i) {
     const std::string problem = std::visit(LightProblem{}, description.lights[i]);

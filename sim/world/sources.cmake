@@ -18,5 +18,6 @@ target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/scene.cpp
   ${CMAKE_CURRENT_LIST_DIR}/sky.cpp
   ${CMAKE_CURRENT_LIST_DIR}/texture.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/texture_cache.cpp
   ${CMAKE_CURRENT_LIST_DIR}/texture_file.cpp
   ${CMAKE_CURRENT_LIST_DIR}/uv_wrap.cpp)

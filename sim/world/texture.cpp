@@ -100,13 +100,11 @@ int Wrap(int i, int n) {
 Texture::Texture(std::string name, int width, int height, std::span<const std::uint8_t> rgb,
                  std::span<const std::uint8_t> alpha, Content content)
     : name_(std::move(name)), content_(content) {
-  constexpr int kMaxSide = 1 << 15;
-  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
-      rgb.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3 ||
-      (!alpha.empty() && 3 * alpha.size() != rgb.size())) {
+  Allocate(width, height, alpha.size());
+  const std::size_t size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  if (rgb.size() != 3 * size || (!alpha.empty() && alpha.size() != size))
     throw std::invalid_argument("texture " + name_ + ": " + std::to_string(width) + " x " + std::to_string(height) +
                                 " with " + std::to_string(rgb.size()) + " bytes of RGB");
-  }
   const bool roots = content == Content::color;
   std::array<float, 256> linear_of_code{};
   std::array<std::uint32_t, 256> texel_of_code{};
@@ -115,9 +113,7 @@ Texture::Texture(std::string name, int width, int height, std::span<const std::u
     linear_of_code[i] = static_cast<float>(roots ? SrgbToLinear(code) : code);
     texel_of_code[i] = Encode(linear_of_code[i], roots);
   }
-  levels_ = LevelsOf(width, height);
-  const std::size_t count = levels_.back().RowBegin(1);
-  const std::shared_ptr<std::uint32_t[]> texels = LargeArray<std::uint32_t>(count + (alpha.size() + 3) / 4);
+  std::uint32_t* const texels = owner_.get();
   std::shared_ptr<float[]> linear;  // of the level; of the first one `rgb`
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     const TextureLevel& level = levels_[l];
@@ -132,9 +128,25 @@ Texture::Texture(std::string name, int width, int height, std::span<const std::u
     if (l + 1 == levels_.size()) break;
     linear = Shrunk(value, level.width, level.height, levels_[l + 1].width, levels_[l + 1].height);
   }
-  auto* const kept = reinterpret_cast<std::uint8_t*>(texels.get() + count);
-  std::ranges::copy(alpha, kept);
-  owner_ = texels, texels_ = {texels.get(), count}, alpha_ = {kept, alpha.size()};
+  std::ranges::copy(alpha, reinterpret_cast<std::uint8_t*>(texels + texels_.size()));
+}
+
+Texture::Texture(std::string name, int width, int height, Content content, bool has_alpha,
+                 const std::function<void(void* to, std::size_t size)>& read)
+    : name_(std::move(name)), content_(content) {
+  Allocate(width, height, has_alpha ? static_cast<std::size_t>(width) * static_cast<std::size_t>(height) : 0);
+  read(owner_.get(), texels_.size_bytes());
+  read(owner_.get() + texels_.size(), alpha_.size());
+}
+
+void Texture::Allocate(int width, int height, std::size_t alpha) {
+  constexpr int kMaxSide = 1 << 15;
+  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
+    throw std::invalid_argument("texture " + name_ + ": " + std::to_string(width) + " x " + std::to_string(height));
+  levels_ = LevelsOf(width, height);
+  const std::size_t count = levels_.back().RowBegin(1);
+  owner_ = LargeArray<std::uint32_t>(count + (alpha + 3) / 4);
+  texels_ = {owner_.get(), count}, alpha_ = {reinterpret_cast<const std::uint8_t*>(owner_.get() + count), alpha};
 }
 
 glm::vec3 Texture::Texel(int level, int x, int y) const {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -43,6 +44,9 @@ class Texture {
   // std::invalid_argument when a size is wrong.
   Texture(std::string name, int width, int height, std::span<const std::uint8_t> rgb,
           std::span<const std::uint8_t> alpha = {}, Content content = Content::color);
+  // As another one was kept: `read` fills the bytes of texels() and then those of alpha(), in two calls.
+  Texture(std::string name, int width, int height, Content content, bool has_alpha,
+          const std::function<void(void* to, std::size_t size)>& read);
 
   // Bilinear at level 0, in [0, 1]; 1 where there is no alpha.
   float Alpha(glm::vec2 uv) const;
@@ -60,9 +64,12 @@ class Texture {
   std::span<const std::uint32_t> texels() const { return texels_; }
 
  private:
+  // Levels, and room for all texels and so many bytes of alpha.
+  void Allocate(int width, int height, std::size_t alpha);
+
   std::string name_;
   std::vector<TextureLevel> levels_;
-  std::shared_ptr<const void> owner_;
+  std::shared_ptr<std::uint32_t[]> owner_;  // of the texels, and of alpha behind them
   std::span<const std::uint32_t> texels_;
   std::span<const std::uint8_t> alpha_;
   Content content_;

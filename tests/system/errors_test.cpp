@@ -113,6 +113,7 @@ TEST_F(ErrorsTest, CorruptMesh) {
 
 TEST_F(ErrorsTest, MissingTexture) {
   const fs::path scenes = CopyScenes();
+  ASSERT_EQ(RunVobench({"check", "scenes/tiny.yaml"}, here_.path()).status, 0);  // keeps decoded pictures
   const fs::path texture = FirstFile(scenes / "room", {".jpg", ".jpeg", ".png"});
   fs::resize_file(texture, fs::file_size(texture) / 2);
   Fails({"render", "scenes/tiny.yaml", "-o", "out"}, 2, texture.filename().string());
@@ -210,7 +211,7 @@ TEST_F(ErrorsTest, BadUsage) {
 TEST_F(ErrorsTest, HelpAndVersionSucceed) {
   EXPECT_EQ(RunVobench({"--version"}, here_.path()).status, 0);
   for (const std::string command : {"render", "track", "evaluate", "run", "check", "settings", "verify", "campaign",
-                                    "report", "fit-camera", "import"}) {
+                                    "report", "fit-camera", "import", "look"}) {
     const Outcome outcome = RunVobench({command, "--help"}, here_.path());
     EXPECT_EQ(outcome.status, 0);
     EXPECT_THAT(outcome.out, HasSubstr("\nExample: vobench " + command));

@@ -162,6 +162,8 @@ const std::vector<Message>& Messages() {
       {"vo/filter_adapter.cpp",
        {"run", "POINTS", "--set", "odometry.motion.position_noise=-1"},
        {"odometry.motion.position_noise", "-1"}},
+      {"tools/bench/run/look.cpp", {"look", "POINTS", "-o", "o.png"}, {"a world of points has no pictures"}},
+      {"tools/bench/run/look.cpp", {"look", "TINY", "-o", "o.txt"}, {"o.txt", "'.png'"}},
       {"tools/bench/run/track.cpp", {"track", "pictures", "-o", "o"}, {"camera.yaml", "--camera PRESET|FILE"}},
       // Trajectories.
       {"tools/judge/evaluation/text_file.cpp",

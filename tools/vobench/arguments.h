@@ -9,9 +9,9 @@
 
 namespace vobench {
 
-using Command =
-    std::variant<RenderOptions, TrackOptions, EvaluateOptions, RunOptions, CheckOptions, ReportOptions, VerifyOptions,
-                 CampaignOptions, BenchOptions, ExportOptions, SettingsOptions, FitCameraOptions, ImportOptions>;
+using Command = std::variant<RenderOptions, TrackOptions, EvaluateOptions, RunOptions, CheckOptions, ReportOptions,
+                             VerifyOptions, CampaignOptions, BenchOptions, ExportOptions, SettingsOptions,
+                             FitCameraOptions, ImportOptions, LookOptions>;
 
 // The command, or the exit status where there is none to run: 0 after --help and --version, 2 for a line that makes no
 // sense (the reason is on stderr). Throws BadInput for what --compat cannot be.

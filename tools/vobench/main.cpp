@@ -29,6 +29,7 @@ void Execute(const BenchOptions& options) { Bench(options); }
 void Execute(const ExportOptions& options) { Export(options); }
 void Execute(const FitCameraOptions& options) { FitCamera(options); }
 void Execute(const ImportOptions& options) { Import(options); }
+void Execute(const LookOptions& options) { Look(options); }
 void Execute(const SettingsOptions& options) { Settings(options); }
 
 int Fail(int status, std::string reason) {

@@ -321,10 +321,20 @@ void AddImport(OptionTable& table) {
       ->allow_extra_args(false);
 }
 
+void AddLook(OptionTable& table) {
+  const auto [command, look] =
+      AddCommand<LookOptions>(table, "look", "Draw a sheet of views of a scenario's world: path, inside, outside",
+                              "vobench look scenes/room.yaml -o room.png");
+  Add(command, "SCENARIO", look.scenario, "Scenario file")->required();
+  Add(command, "-o,--output SHEET.png", look.output, "Picture to make")->required();
+  AddMissingTextures(command, look.overrides);
+  AddSet(command, look.overrides, "world.meshes.0.color='[0.5, 0.5, 0.5]'");
+}
+
 void AddExport(OptionTable& table) {
-  const auto [command, exported] = AddCommand<ExportOptions>(
-      table, "export", "Write a sequence in another form: a ROS 1 bag, MCAP, COCO's labels (docs/sequence_format.md)",
-      "vobench export room --bag room.bag");
+  const auto [command, exported] =
+      AddCommand<ExportOptions>(table, "export", "Write a sequence in another form: a ROS 1 bag, MCAP, COCO's labels",
+                                "vobench export room --bag room.bag");
   Add(command, "SEQ", exported.sequence, "Sequence folder")->required();
   Add(command, "--bag FILE.bag", exported.bag, "ROS 1 bag to make");
   Add(command, "--mcap FILE.mcap", exported.mcap, "The same as MCAP, with the messages of ROS 2");
@@ -360,7 +370,7 @@ OptionTable::OptionTable()
       "`vobench COMMAND --help` tells more. Exit status: 0 done, 1 the work failed or `verify` found a disagreement, "
       "2 bad usage or input, 3 not consistent though `run --require-consistent` asked for it.");
   for (const auto add : {AddRender, AddTrack, AddEvaluate, AddRun, AddCampaign, AddBench, AddCheck, AddSettings,
-                         AddVerify, AddExport, AddReport, AddFitCamera, AddImport}) {
+                         AddVerify, AddExport, AddReport, AddFitCamera, AddImport, AddLook}) {
     add(*this);
   }
 }

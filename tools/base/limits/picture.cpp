@@ -85,6 +85,8 @@ Size OfWebp(Bytes file) {
   return {};
 }
 
+bool IsPnm(Bytes file) { return file.size() > 2 && file[0] == 'P' && file[1] >= '1' && file[1] <= '6'; }
+
 // Digits at `at`, which is moved behind them; nothing where there are none, or too many.
 std::optional<std::int64_t> Digits(Bytes file, std::size_t& at) {
   std::int64_t value = 0;
@@ -96,7 +98,11 @@ std::optional<std::int64_t> Digits(Bytes file, std::size_t& at) {
   return at > begin ? std::optional(value) : std::nullopt;
 }
 
-Size OfPnm(Bytes file) {
+struct PnmHeader : Size {
+  std::int64_t largest = 255;  // value of a pixel
+};
+
+PnmHeader OfPnm(Bytes file) {
   std::size_t at = 2;
   const auto next = [&] {
     while (at < file.size() && (std::isspace(file[at]) || file[at] == '#')) {
@@ -108,8 +114,9 @@ Size OfPnm(Bytes file) {
     }
     return Digits(file, at).value_or(0);
   };
-  const std::int64_t width = next();
-  return {width, next()};
+  const std::int64_t width = next(), height = next();
+  const bool of_bits = file[1] == '1' || file[1] == '4';
+  return {{width, height}, of_bits ? 255 : next()};
 }
 
 // "-Y height +X width" after an empty line.
@@ -146,7 +153,7 @@ std::optional<Size> SizeOf(Bytes file) {
   if (Begins(file, std::string_view("II*\0", 4))) return OfTiff(file, true);
   if (Begins(file, std::string_view("MM\0*", 4))) return OfTiff(file, false);
   if (Begins(file, "RIFF") && Begins(file, "WEBP", 8)) return OfWebp(file);
-  if (file.size() > 2 && file[0] == 'P' && file[1] >= '1' && file[1] <= '6') return OfPnm(file);
+  if (IsPnm(file)) return OfPnm(file);
   if (Begins(file, "#?RGBE") || Begins(file, "#?RADIANCE")) return OfHdr(file);
   if (IsTga(file)) return OfTga(file);
   return std::nullopt;
@@ -279,7 +286,11 @@ std::string PictureProblem(Bytes file) {
   if (const std::string_view kind = KnownKind(file); !kind.empty())
     return "a picture of the kind " + std::string(kind) + ", which is not read: convert it to PNG";
   if (!size) return "not a picture that is read here (PNG, JPEG, BMP, TIFF, TGA, WebP, PNM, HDR): convert it to PNG";
-  return PictureSizeProblem(size->width, size->height, file.size());
+  if (std::string problem = PictureSizeProblem(size->width, size->height, file.size()); !problem.empty())
+    return problem;
+  if (const std::int64_t largest = IsPnm(file) ? OfPnm(file).largest : 255; largest != 255 && largest != 65535)
+    return "a PNM picture whose largest value is " + std::to_string(largest) + ", not 255 or 65535: convert it to PNG";
+  return "";
 }
 
 bool IsTga(Bytes file) {

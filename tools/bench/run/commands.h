@@ -108,6 +108,14 @@ struct ImportOptions {
 };
 void Import(const ImportOptions& options);
 
+// A sheet of automatic views of a scenario's world: along the path, from within, and from outside (docs/your_scene.md).
+struct LookOptions {
+  std::filesystem::path scenario;
+  std::filesystem::path output;  // a PNG file
+  Overrides overrides;
+};
+void Look(const LookOptions& options);
+
 // All settings with defaults, ranges and meanings.
 struct SettingsOptions {
   std::string prefix;  // only keys that begin so

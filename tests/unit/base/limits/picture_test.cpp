@@ -74,6 +74,19 @@ TEST(Picture, CutOffHeadersTellNoSize) {
   }
 }
 
+// Decoders take the numbers of such a file as they are, so that it comes out dark.
+TEST(Picture, ScaleOfPnmIsThatOfWholeBytes) {
+  for (const char kind : {'2', '3', '5', '6'}) {
+    const std::string begin = std::string("P") + kind + " 4 4 ";
+    EXPECT_EQ(Problem(begin + "255\n"), "");
+    EXPECT_EQ(Problem(begin + "\n# 16 bits\n65535\n"), "");
+    EXPECT_EQ(Problem(begin + "127\n"),
+              "a PNM picture whose largest value is 127, not 255 or 65535: convert it to PNG");
+    EXPECT_THAT(Problem(begin + "1023\n"), HasSubstr("is 1023"));
+  }
+  for (const char kind : {'1', '4'}) EXPECT_EQ(Problem(std::string("P") + kind + "\n4 4\n7"), "");
+}
+
 TEST(Picture, TilesOfTiffCount) {
   const auto entry = [](int tag, std::uint64_t value) {
     return Little(static_cast<std::uint64_t>(tag), 2) + Little(4, 2) + Little(1, 4) + Little(value, 4);

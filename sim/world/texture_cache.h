@@ -1,0 +1,24 @@
+// Cache of decoded textures on disk, beside that of baked light. Private to sim/world.
+//
+// A file's name is the hash of the pictures' bytes and of what is made of them, so a changed picture has another name
+// whatever its stamp says. Inside: the word "vobench texture", that hash, sizes, texels and alpha, and a checksum of all
+// that. Written under a temporary name and renamed.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/world/imported_scene.h"
+#include "sim/world/texture.h"
+
+namespace sim {
+
+// Read from the first folder that has it; else made, and where it is large written to the first writable folder. Only
+// pictures that are files are kept. `use`: whatever else `make` depends on. A damaged or unwritable file is ignored.
+Texture CachedTexture(const std::string& name, std::span<const ImportedPicture> from, std::uint64_t use,
+                      const std::vector<std::filesystem::path>& folders, const std::function<Texture()>& make);
+
+}  // namespace sim
