@@ -19,17 +19,31 @@ UP = {"z": lambda v: (v[0], v[2], -v[1]), "y": lambda v: v, "-y": lambda v: (v[0
 TURN = {"z": (-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)), "y": (0.0, 0.0, 0.0, 1.0), "-y": (1.0, 0.0, 0.0, 0.0)}  # the same: x, y, z, w
 QUICKEST = 20.0  # s
 
+# The image pipelines are `vobench fit-camera`'s of the recordings: of tum_fr1_xyz, whose frames are not compressed, with its noise; of the
+# others what it determines. What a recording does not determine is that of tum_fr1_xyz, or is assumed: docs/scenes.md#twins-of-recordings.
+NOISE = "full_well: 13034 e, read_noise: 3.73 e"
+PIPELINE = "processing: {%s, denoise_sigma: 0.523 px, denoise_range: 0.1, %s, sharpen_sigma: 1.5 px}"
+
+
+def kinect(exposure, psf, shutter="26 ms", sharpen="sharpen_bright: 0.641, sharpen_dark: 1.641", white=1.25,
+           tone="black_clip: 0.06, contrast: 1.2"):
+    return (f"{{color: true, mosaic: demosaiced, exposure: {exposure} ms, time_samples: 12, rolling_shutter: {shutter}, white: {white}, {NOISE},\n"
+            f"         response: srgb, optics: {{psf_sigma: {psf} px}},\n         {PIPELINE % (tone, sharpen)}}}")
+
+
 FREIBURG1 = (30, "{width: 640, height: 480, fx: 517.306408, fy: 516.469215, cx: 318.643040, cy: 255.313989,\n"
              "         distortion: {k1: 0.262383, k2: -0.953104, p1: -0.005358, p2: 0.002628, k3: 1.163314}} # TUM's freiburg1",
-             "{exposure: 15 ms, time_samples: 12, rolling_shutter: 26 ms, full_well: 6000 e, read_noise: 12 e, mosaic: demosaiced}")
-FREIBURG3 = (30, "{width: 640, height: 480, fx: 535.4, fy: 539.2, cx: 320.1, cy: 247.6} # TUM's freiburg3, rectified",
-             "{exposure: 20 ms, time_samples: 12, rolling_shutter: 26 ms, full_well: 6000 e, read_noise: 12 e, mosaic: demosaiced}")
-KITCHEN = (30, "{width: 640, height: 480, fx: 525, fy: 525, cx: 319.5, cy: 239.5}", FREIBURG3[2])
+             kinect(15.4, 0.805))
+FREIBURG3 = (30, "{width: 640, height: 480, fx: 535.4, fy: 539.2, cx: 320.1, cy: 247.6} # TUM's freiburg3, rectified", kinect(20, 0.805))
+KITCHEN = (30, "{width: 640, height: 480, fx: 525, fy: 525, cx: 319.5, cy: 239.5}", kinect(14.7, 0.82, white=0.4, tone="black_clip: 0.02"))  # a bright, soft picture
 EUROC = (20, "{width: 752, height: 480, fx: 458.654, fy: 457.296, cx: 367.215, cy: 248.375,\n"
          "         distortion: {k1: -0.28340811, k2: 0.07395907, p1: 0.00019359, p2: 1.76187114e-05}} # EuRoC's left camera",
          "{exposure: %s, time_samples: 12, white: %s, full_well: 10000 e, read_noise: 20 e, color: false} # its shutter is global")
 HEADSET = (10, "{width: 540, height: 360, fx: 495.567757, fy: 495.4819626, cx: 269.5028972, cy: 169.1941121}",
-           "{exposure: 10 ms, time_samples: 12, rolling_shutter: 20 ms, full_well: 6000 e, read_noise: 12 e, mosaic: demosaiced}")
+           kinect(10, 0.96, "20 ms", "sharpen_bright: 1.3, sharpen_dark: 2.1", 1))
+
+# Colours in place of a world's own. Of desk: a white desk before plain grey walls, dark screens, a light pullover, as in tum_fr1_xyz.
+MATERIALS = {"desk": {"wood_light": (0.80, 0.79, 0.77), "plaster": (0.50, 0.49, 0.46), "knitted": (0.75,) * 3, "screens": (0.006,) * 3}}
 
 
 def euroc(exposure, white=1):
@@ -41,7 +55,7 @@ TWINS = {
     "tum_fr1_xyz": ("tum_fr1_xyz/groundtruth.txt", "z", False, 3.509, 5.3, "desk", 285, (3.3, 1.4, 3.1), FREIBURG1),
     "tum_fr1_rpy": ("tum_fr1_rpy/groundtruth.txt", "z", False, 0.096, 7.3, "desk", 270, (3.0, 1.4, 3.1), FREIBURG1),
     "seven_scenes": ("seven_scenes/groundtruth.txt", "-y", False, 0.0, 13.3, "desk", 0, (3.0, 1.4, 4.0), KITCHEN),
-    "euroc_mh05": ("euroc_mh05/groundtruth.txt", "z", False, 0.1, 12.0, "hall", 15, (7.7, 1.9, 5.5), euroc("12 ms", 2)),
+    "euroc_mh05": ("euroc_mh05/groundtruth.txt", "z", False, 0.1, 12.0, "hall", 15, (7.7, 1.9, 5.5), euroc("13.7 ms", 2)),
     "hololens": ("hololens/groundtruth.txt", "y", False, 0.0, 9.9, "office", 105, (3.1, 1.6, 2.9), HEADSET),
     "fr1_desk2": ("trajectories/tum_freiburg1_desk2.txt", "z", False, None, QUICKEST, "desk", 330, (2.8, 1.5, 3.1), FREIBURG1),
     "fr1_room": ("trajectories/tum_freiburg1_room.txt", "z", False, None, QUICKEST, "desk", 0, (3.0, 1.5, 3.4), FREIBURG1),
@@ -112,6 +126,17 @@ def write_path(name, data, folder):
     print(f"{out}: {len(lines)} poses from {cut[0][0] - poses[0][0]:.2f} s of the recording on")
 
 
+def world_of(name):
+    """Its section of scenes/NAME.yaml, with MATERIALS."""
+    text = section((SCENES / f"{name}.yaml").read_text(), "world").replace("file: ", "file: ../")
+    if name not in MATERIALS:
+        return text
+    colours = ", ".join(f"{{name: {material}, color: [{', '.join(map(str, rgb))}]}}" for material, rgb in MATERIALS[name].items())
+    mesh = f"- {{file: ../{name}.obj}}"
+    assert mesh in text, f"scenes/{name}.yaml has no line {mesh}"
+    return text.replace(mesh, f"- {{file: ../{name}.obj, materials: [{colours}]}}")
+
+
 def write_scenario(name):
     file, _, _, start, seconds, world, _, _, (rate, camera, sensor) = TWINS[name]
     scenario = (SCENES / f"{world}.yaml").read_text()
@@ -121,7 +146,7 @@ def write_scenario(name):
 name: {name}
 seed: 1
 
-{section(scenario, "world").replace("file: ", "file: ../")}
+{world_of(world)}
 camera: {camera}
 
 sensor: {sensor}
