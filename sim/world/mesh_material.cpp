@@ -118,14 +118,16 @@ int MeshMaterialReader::ReadTexture(const ImportedMaterial& in, const Use& use, 
   return TextureIndex(in, use);
 }
 
+TextureFile MeshMaterialReader::FileOf(const ImportedMaterial& in, const ImportedMap& map) const {
+  return map.embedded >= 0 ? TextureFile{file_.path / map.picture}
+                           : FindTexture(map.picture, file_.path, in.folder, file_.loading.folders);
+}
+
 MeshMaterialReader::Source MeshMaterialReader::Find(const ImportedMaterial& in, const ImportedMap& map,
-                                                    std::string& problem) {
+                                                    const TextureFile& found, std::string& problem) {
   const std::string who = "material '" + in.name + "': ";
-  const bool embedded = map.embedded >= 0;
-  const TextureFile found = embedded ? TextureFile{file_.path / map.picture}
-                                     : FindTexture(map.picture, file_.path, in.folder, file_.loading.folders);
   problem = found.file.string() + ": texture of material '" + in.name + "' in " + file_.path.string() + ": ";
-  if (embedded) return [picture = from_.pictures[static_cast<std::size_t>(map.embedded)]] { return picture; };
+  if (map.embedded >= 0) return [picture = from_.pictures[static_cast<std::size_t>(map.embedded)]] { return picture; };
   file_.scene.files.insert(found.file);
   if (found.problem.starts_with("must")) {
     file_.Problem(who + "the texture path '" + map.picture + "' " + found.problem);
@@ -149,8 +151,8 @@ MeshMaterialReader::Source MeshMaterialReader::Find(const ImportedMaterial& in, 
 
 int MeshMaterialReader::TextureIndex(const ImportedMaterial& in, const Use& use) {
   const std::string& name = use.map.picture;
-  const TextureFile found = FindTexture(name, file_.path, in.folder, file_.loading.folders);
-  const fs::path file = use.map.embedded >= 0 || !found.problem.empty() ? file_.path / name : found.file;
+  const TextureFile found = FileOf(in, use.map);
+  const fs::path file = found.problem.empty() ? found.file : file_.path / name;
   const std::string kind = use.content == Texture::Content::numbers ? " (numbers)"
                            : use.with_alpha                         ? " (with alpha)"
                                                                     : "";
@@ -158,11 +160,11 @@ int MeshMaterialReader::TextureIndex(const ImportedMaterial& in, const Use& use)
   const auto [entry, is_new] = file_.loading.textures.try_emplace(file.string() + kind + mask_of, -1);
   if (!is_new) return entry->second;  // a bad one has been reported
   std::string problem;
-  const Source picture = Find(in, use.map, problem);
+  const Source picture = Find(in, use.map, found, problem);
   if (!picture) return -1;
   const bool is_mask = use.mask == &use.map;  // there is no picture but that of its opacity
   const bool has_mask = use.mask != nullptr && (is_mask || use.mask->picture != name);
-  const Source mask = has_mask ? Find(in, *use.mask, problem) : Source();
+  const Source mask = has_mask ? Find(in, *use.mask, FileOf(in, *use.mask), problem) : Source();
   if (has_mask && !mask) return -1;
   const auto load = [=, content = use.content, with_alpha = use.with_alpha, folders = file_.loading.cache_folders] {
     std::vector<ImportedPicture> from = {picture()};

@@ -10,6 +10,7 @@
 #include "sim/world/imported_scene.h"
 #include "sim/world/mesh_loader.h"
 #include "sim/world/scene.h"
+#include "sim/world/texture_file.h"
 
 namespace sim {
 
@@ -55,9 +56,11 @@ class MeshMaterialReader {
   void ReadAlpha(const ImportedMaterial& in, sim::Material& material);
   int ReadTexture(const ImportedMaterial& in, const Use& use, std::vector<UvChoice>& uvs);
   int TextureIndex(const ImportedMaterial& in, const Use& use);
+  // Of a picture in the mesh file: the mesh's path and its name.
+  TextureFile FileOf(const ImportedMaterial& in, const ImportedMap& map) const;
   // What reads a picture, and what a problem with it begins with; empty: it is bad.
   using Source = std::function<ImportedPicture()>;
-  Source Find(const ImportedMaterial& in, const ImportedMap& map, std::string& problem);
+  Source Find(const ImportedMaterial& in, const ImportedMap& map, const TextureFile& found, std::string& problem);
 
   const MeshFile& file_;
   const ImportedScene& from_;

@@ -64,7 +64,7 @@ class Texture {
   std::span<const std::uint32_t> texels() const { return texels_; }
 
  private:
-  // Levels, and room for all texels and so many bytes of alpha.
+  // Makes the levels, and room for their texels and for `alpha` bytes of alpha.
   void Allocate(int width, int height, std::size_t alpha);
 
   std::string name_;

@@ -1,8 +1,8 @@
 // Cache of decoded textures on disk, beside that of baked light. Private to sim/world.
 //
-// A file's name is the hash of the pictures' bytes and of what is made of them, so a changed picture has another name
-// whatever its stamp says. Inside: the word "vobench texture", that hash, sizes, texels and alpha, and a checksum of all
-// that. Written under a temporary name and renamed.
+// A file's name is the hash of the pictures' bytes and of what is made of them: a changed picture has another name,
+// whatever its stamp says. Inside: the word "vobench texture", that hash, sizes, texels, alpha, and their checksum.
+// Written under a temporary name and renamed.
 #pragma once
 
 #include <filesystem>

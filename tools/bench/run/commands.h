@@ -18,8 +18,8 @@ namespace vobench {
 
 using settings::Overrides;
 
-// A card of a system, or with `attack` the search for trouble (docs/bench.md). Steps are campaigns in OUT, with the engine
-// and limits of `campaign`, whose own file, output and cache are not used. Throws as RunCampaign.
+// A card of a system, or with `attack` the search for trouble (docs/bench.md). Steps are campaigns in OUT, with the
+// engine and limits of `campaign`, whose own file, output and cache are not used. Throws as RunCampaign.
 struct BenchOptions {
   std::string system;  // one of ours, one of the file's external systems, or a command with {sequence} and {trajectory}
   std::filesystem::path output;

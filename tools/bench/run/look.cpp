@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <iterator>
+#include <memory>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -29,9 +31,10 @@ namespace {
 constexpr int kWidth = 480, kHeight = 360, kLabel = 22, kGap = 8, kColumns = 3;
 constexpr double kFocal = 394;  // 63 degrees across
 
-struct Labelled {
+struct LabelledView {
   sim::Pose pose;
   std::string label;
+  bool cut_away = false;
 };
 
 sim::Pose Towards(const glm::dvec3& from, const glm::dvec3& to) { return {from, sim::LookAt(from, to, 0)}; }
@@ -51,7 +54,7 @@ sim::Scene CutAway(sim::Scene scene, const glm::dvec3& from) {
 
 // Of 400 random places in the world's box, level, those from which most is seen, and not from too near; a fifth of the
 // box apart.
-std::vector<Labelled> Inside(const sim::Surroundings& around) {
+std::vector<LabelledView> Inside(const sim::Surroundings& around) {
   constexpr int kPlaces = 400;
   constexpr std::size_t kViews = 3;
   std::mt19937 random(1);
@@ -71,9 +74,9 @@ std::vector<Labelled> Inside(const sim::Surroundings& around) {
     found.emplace_back(around.Interest(view) * std::min(depth, 0.4 * extent), view);
   }
   std::ranges::sort(found, [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<Labelled> views;
+  std::vector<LabelledView> views;
   for (const auto& [worth, view] : found) {
-    const auto near = [&](const Labelled& of) { return glm::distance(of.pose.p_WC, view.p_WC) < 0.2 * extent; };
+    const auto near = [&](const LabelledView& of) { return glm::distance(of.pose.p_WC, view.p_WC) < 0.2 * extent; };
     if (views.size() < kViews && worth > 0 && std::ranges::none_of(views, near))
       views.push_back({view, "from " + sim::FormatPlace(view.p_WC)});
   }
@@ -121,14 +124,6 @@ cv::Mat Picture(const sim::RadianceImage& radiance) {
   return picture;
 }
 
-// For what baked light would give: shadows would be black.
-void AddAmbientLight(const sim::Pose& seen_from, sim::Scene& scene) {
-  const auto is_ambient = [](const sim::Light& light) { return std::holds_alternative<sim::AmbientLight>(light); };
-  if (std::ranges::any_of(scene.lights, is_ambient)) return;
-  const double mean = MeanLuminance(Radiance(*sim::MakeRayTracer(scene), seen_from));
-  scene.lights.push_back(sim::AmbientLight{glm::dvec3(0.5 * mean)});
-}
-
 }  // namespace
 
 void Look(const LookOptions& options) {
@@ -136,38 +131,43 @@ void Look(const LookOptions& options) {
   sim::Scenario scenario = ReadExperiment(options.scenario, options.overrides).scenario;
   if (scenario.points) throw BadInput(options.scenario.string() + ": a world of points has no pictures");
   sim::Scene scene = Input([&] { return sim::LoadScene(scenario.world); });
-  const sim::RayScene rays(scene);
-  const auto around = sim::SurroundingsOf(scene, rays);
+  auto rays = std::make_unique<sim::RayScene>(scene);
+  const auto around = sim::SurroundingsOf(scene, *rays);
   PrintWarnings(scene.warnings);
 
-  std::vector<std::pair<Labelled, bool>> views;  // and whether the world is cut away before it
+  std::vector<LabelledView> views;
   try {
     const double end_s = sim::Seconds(sim::StampNs(sim::CountFrames(scenario.time) - 1, scenario.time));
     const auto path = sim::MakeTrajectory(scenario.motion, scenario.seed, end_s, 0.1, around.get());
     for (const double t_s : {0.0, 0.5 * end_s, end_s})
-      views.push_back({{path->At(t_s).pose, fmt::format("the path at {:.2f} s", t_s)}, false});
+      views.push_back({path->At(t_s).pose, fmt::format("the path at {:.2f} s", t_s)});
     sim::RequireFree(*path, end_s, *around);
   } catch (const std::invalid_argument& error) {
     PrintWarnings({std::string("trajectory: ") + error.what()});
   }
-  for (const Labelled& view : Inside(*around)) views.push_back({view, false});
+  std::ranges::move(Inside(*around), std::back_inserter(views));
   const glm::dvec3 middle = 0.5 * (around->low() + around->high());
   const double away = 0.45 * glm::distance(around->low(), around->high()) / std::sin(std::atan(0.5 * kHeight / kFocal));
-  for (const glm::dvec3 side : {glm::dvec3(0.6, 0.75, 1), glm::dvec3(-1, 0.75, -0.6), glm::dvec3(0, 1, 1e-3)})
-    views.push_back({{Towards(middle + away * glm::normalize(side), middle),
-                      side.x == 0 ? "from above, cut away" : "from outside, cut away"},
-                     true});
+  for (const auto& [where, side] : {std::pair("from outside", glm::dvec3(0.6, 0.75, 1)),
+                                    {"from outside", {-1, 0.75, -0.6}},
+                                    {"from above", {0, 1, 1e-3}}})
+    views.push_back({Towards(middle + away * glm::normalize(side), middle), where + std::string(", cut away"), true});
 
   const int rows = (static_cast<int>(views.size()) + kColumns - 1) / kColumns;
   cv::Mat sheet(rows * (kHeight + kLabel + kGap) + kGap, kColumns * (kWidth + kGap) + kGap, CV_8UC3,
                 cv::Scalar(255, 255, 255));
-  AddAmbientLight(views.front().first.pose, scene);
-  const auto whole = sim::MakeRayTracer(scene);
-  for (int i = 0; const auto& [view, cut] : views) {
+  auto whole = sim::MakeRayTracer(scene, std::move(rays), {});
+  const auto is_ambient = [](const sim::Light& light) { return std::holds_alternative<sim::AmbientLight>(light); };
+  if (std::ranges::none_of(scene.lights, is_ambient)) {  // as baked light would give: shadows would be black
+    const double mean = MeanLuminance(Radiance(*whole, views.front().pose));
+    scene.lights.push_back(sim::AmbientLight{glm::dvec3(0.5 * mean)});
+    whole = sim::MakeRayTracer(scene);
+  }
+  for (int i = 0; const auto& [pose, label, cut] : views) {
     const int x = kGap + i % kColumns * (kWidth + kGap), y = kGap + i / kColumns * (kHeight + kLabel + kGap);
-    const auto part = cut ? sim::MakeRayTracer(CutAway(scene, view.pose.p_WC)) : nullptr;
-    Picture(Radiance(cut ? *part : *whole, view.pose)).copyTo(sheet({x, y, kWidth, kHeight}));
-    cv::putText(sheet, view.label, {x, y + kHeight + kLabel - 6}, cv::FONT_HERSHEY_SIMPLEX, 0.5, {60, 60, 60}, 1,
+    const auto part = cut ? sim::MakeRayTracer(CutAway(scene, pose.p_WC)) : nullptr;
+    Picture(Radiance(cut ? *part : *whole, pose)).copyTo(sheet({x, y, kWidth, kHeight}));
+    cv::putText(sheet, label, {x, y + kHeight + kLabel - 6}, cv::FONT_HERSHEY_SIMPLEX, 0.5, {60, 60, 60}, 1,
                 cv::LINE_AA);
     ++i;
   }
