@@ -30,7 +30,7 @@ Tracker::Tracker(const Camera& camera, const Params& params, const Prior& prior,
       scale_(params.landmark.scale_sigma, prior.pose.p_WC),
       shutter_(camera, params.features),
       first_sampler_(FirstSampler(params.features)),
-      border_px_(std::max(first_sampler_.margin(), Patch::kRadius + 1)),
+      border_px_(std::max(first_sampler_.margin(), Patch::kRadius)),
       detector_(camera, params, border_px_),
       adaptive_(camera),
       relocaliser_(camera, params.features, border_px_) {}
@@ -74,6 +74,7 @@ void Tracker::SetReadout(double readout_s) {
 Tracker Tracker::Restarted() const {
   Tracker again(camera_, params_, prior_, seed_);
   again.pose_before_start_ = pose_before_start_;
+  again.exposure_ = exposure_;
   again.first_id_ = again.next_id_ = first_id_;
   return again;
 }
@@ -103,8 +104,8 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
   ++frames_;
   const auto associate = [&](const MotionInput& input) {
     since_update_.input = input;
-    return Associate(filter_, records_, camera_, frame, border_px_, since_update_, params_,
-                     noise_level_.value());  // line 3: section 7
+    return Associate(filter_, records_, camera_, frame, border_px_, since_update_, params_, noise_level_.value(),
+                     exposure_.seconds());  // line 3: section 7
   };
   Association association;
   if (params_.motion.adaptive) {
@@ -115,6 +116,7 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
     filter_.Predict(dt);  // line 2: (6)-(9), (12), (13)
     association = associate({});
   }
+  if (params_.motion.adaptive && params_.features.subpixel) exposure_.Learn(association.moving, records_, frame.smooth);
   diagnostics.ms_matching += watch.Lap();
   if (params_.motion.adaptive && association.matches.empty() && filter_.answer().initialising && !has_matched_)
     return BeginAgain(frame, association, diagnostics);
@@ -125,6 +127,8 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
   if (!association.matches.empty()) known_before_loss_ = pose_before_loss_;
   const Eigen::Vector3d previous = filter_.belief().pose.p_WC;
   Update(association.matches);  // lines 4-11: (15)-(17), (37)-(43)
+  if (frames_ == 1)             // the prior does not have the velocity in the first frame; the second measures it
+    for (LandmarkRecord& record : records_) SetFirstVelocity(record, filter_.belief().velocity);
   start_.Add(frame.frame.stamp_ns, filter_.answer(), scale_);
   UpdateScores(association, params_.score, records_);  // section 6: (44)-(49)
   noise_level_.Learn(association);
@@ -281,11 +285,17 @@ void Tracker::AddLandmarks(std::vector<NewFeature> features, const PreparedFrame
   filter_.AddLandmarks(first_views);
 }
 
+void Tracker::SetFirstVelocity(LandmarkRecord& record, const Vector6& velocity) const {
+  record.first_v_C = filter_.belief().pose.q_WC.conjugate() * velocity.head<3>();
+  record.first_w_C = velocity.tail<3>();
+}
+
 FirstView Tracker::AddRecord(const NewFeature& feature, const PreparedFrame& frame, const Vector6& velocity) {
   const Eigen::Vector2d pixel = feature.pixel.cast<double>();
   LandmarkRecord record;
   record.appearance = {frame.brisk.Describe(feature.pixel, first_sampler_), CutPatch(frame.smooth, feature.pixel)};
   record.id = next_id_++;
+  SetFirstVelocity(record, velocity);
   record.score = params_.score.initial;
   record.path_length = path_length_;
   record.searched = true;

@@ -58,6 +58,7 @@ class Tracker {
   std::vector<NewFeature> DetectFeatures(const PreparedFrame& frame);
   void Forget(std::size_t wanted, std::span<const Filter::LandmarkBelief> beliefs);
   void AddLandmarks(std::vector<NewFeature> features, const PreparedFrame& frame, const Vector6& velocity);
+  void SetFirstVelocity(LandmarkRecord& record, const Vector6& velocity) const;
   FirstView AddRecord(const NewFeature& feature, const PreparedFrame& frame, const Vector6& velocity);
   Matrix6 VelocityCovariance() const;
 
@@ -82,6 +83,7 @@ class Tracker {
   std::optional<std::int64_t> last_stamp_ns_;
   SinceUpdate since_update_;
   NoiseLevel noise_level_;
+  ExposureEstimate exposure_;
   AdaptiveAssociation adaptive_;
   Relocaliser relocaliser_;
   std::optional<KnownDepth> typical_depth_;

@@ -12,6 +12,9 @@ constexpr double kMaxRefinementPx = 1.5;  // beyond it the registration has left
 constexpr double kMinCorrelation = 0.6;
 constexpr double kMaxZoom = 4;         // a larger predicted change of scale is ignored
 constexpr double kSearchSigmas = 2.5;  // half-width of the uncertainty ellipse that is searched
+constexpr double kDescribed_px = 2.5;  // streak that changes the descriptor
+constexpr double kOfStreak = 0.05;     // sigma along a streak, of its length
+constexpr double kLeastZoom = 0.1;     // determinant of a warp
 constexpr double kMaxPx = 1 << 16;     // no image is wider
 
 Eigen::Vector2i Rounded(const Eigen::Vector2d& p) {
@@ -58,6 +61,19 @@ void SearchRegion(const SearchRequest& request, int side, const FeatureParams& p
   }
 }
 
+// Descriptor of the first view, blurred.
+Descriptor Blurred(const Appearance& appearance, const Eigen::Vector2d& streak, const FeatureParams& params) {
+  const BriskSampler sampler = FirstSampler(params);
+  if (sampler.margin() > Patch::kRadius) return appearance.descriptor;
+  Patch patch = Blurred(appearance.patch, streak);
+  BriskImage image;
+  image.Set(cv::Mat(Patch::kSide, Patch::kSide, CV_8UC1, patch.grey.data()));
+  return image.Describe({Patch::kRadius, Patch::kRadius}, sampler);
+}
+
+// Covariance of a blurred match: its streak is neither uniform nor straight, and predicted.
+Eigen::Matrix2d OfBlur(const Eigen::Vector2d& streak) { return kOfStreak * kOfStreak * streak * streak.transpose(); }
+
 bool OnBorder(const Eigen::Vector2i& pixel, const Eigen::Vector2i& centre, int side) {
   return (pixel - centre).cwiseAbs().maxCoeff() == side / 2;
 }
@@ -74,7 +90,7 @@ BriskSampler FirstSampler(const FeatureParams& params) {
 }
 
 std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& smooth,
-                                       const BriskImage& brisk, const FeatureParams& params) {
+                                       const BriskImage& brisk, const FeatureParams& params, double exposure_s) {
   const int max_distance = static_cast<int>(std::lround(params.max_hamming * kBriskPairs));
   const Eigen::Matrix2d constant = params.sigma_px * params.sigma_px * Eigen::Matrix2d::Identity();
   const Eigen::Matrix2d floor = params.sigma_floor_px * params.sigma_floor_px * Eigen::Matrix2d::Identity();
@@ -85,6 +101,10 @@ std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& request
     std::optional<FoundFeature>& found = results[i].found;
     const BriskSampler sampler(PatternMap(request.warp, params));
     results[i].in_sight = brisk.Describable(Rounded(request.predicted), sampler);
+    const RelativeBlur blur = RelativeBlur::Of(exposure_s * request.first_rate, exposure_s * request.rate);
+    const bool blurred = blur.of_patch.norm() > kDescribed_px && std::abs(request.warp.determinant()) > kLeastZoom;
+    const Descriptor descriptor = blurred ? Blurred(*request.appearance, request.warp.inverse() * blur.of_patch, params)
+                                          : request.appearance->descriptor;
     int searched = 0;
     for (const int wanted :
          {params.search_first_px, params.search_normal_px, params.search_wide_px, LargestWindow(request, params)}) {
@@ -93,17 +113,20 @@ std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& request
       const bool quick = searched == 0 && side < params.search_normal_px;
       searched = side;
       SearchRegion(request, side, params, region);
-      const auto best = brisk.Nearest(request.appearance->descriptor, sampler, region);
+      const auto best = brisk.Nearest(descriptor, sampler, region);
       if (!best || best->distance >= max_distance || (quick && OnBorder(best->pixel, Rounded(request.predicted), side)))
         continue;
       found = {best->pixel.cast<double>(), constant};
       break;
     }
     if (!found || !params.subpixel) continue;
-    const auto refined = Register(request.appearance->patch, request.warp, smooth, found->pixel, kMaxRefinementPx);
+    const auto refined =
+        Register(request.appearance->patch, request.warp, smooth, found->pixel, kMaxRefinementPx, blur);
     if (!refined || refined->correlation <= kMinCorrelation) continue;
     found->pixel = refined->pixel;
-    if (params.noise != MatchNoise::constant) found->noise = floor + params.noise_inflation * refined->covariance;
+    if (params.noise == MatchNoise::constant) continue;
+    found->noise = floor + params.noise_inflation * refined->covariance + OfBlur(exposure_s * request.first_rate) +
+                   OfBlur(exposure_s * request.rate);
   }
   return results;
 }

@@ -21,10 +21,12 @@ struct Appearance {
 
 struct SearchRequest {
   const Appearance* appearance = nullptr;
-  Eigen::Vector2d predicted = Eigen::Vector2d::Zero();  // [px]
-  Eigen::Matrix2d S = Eigen::Matrix2d::Zero();          // innovation covariance [px^2]
-  Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();   // d(present pixel)/d(pixel of the first view)
-  std::optional<int> widest_px = std::nullopt;          // upper limit of the window's side; none: of the settings
+  Eigen::Vector2d predicted = Eigen::Vector2d::Zero();   // [px]
+  Eigen::Matrix2d S = Eigen::Matrix2d::Zero();           // innovation covariance [px^2]
+  Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();    // d(present pixel)/d(pixel of the first view)
+  Eigen::Vector2d first_rate = Eigen::Vector2d::Zero();  // of the first view, and now, in the present image [px/s]
+  Eigen::Vector2d rate = Eigen::Vector2d::Zero();
+  std::optional<int> widest_px = std::nullopt;  // upper limit of the window's side; none: of the settings
 };
 
 // Side of the search window for an innovation covariance S [px^2]: 2 ceil(2.5 sigma) + 1, sigma^2 = max(S_xx, S_yy).
@@ -44,7 +46,8 @@ struct SearchResult {
 };
 
 // One result per request, in the same order. `brisk` holds the image; `smooth`: the smoothed image, for registration.
+// `exposure_s`: first views and the image are compared at equal blur; 0: as they are.
 std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& requests, const cv::Mat& smooth,
-                                       const BriskImage& brisk, const FeatureParams& params);
+                                       const BriskImage& brisk, const FeatureParams& params, double exposure_s = 0);
 
 }  // namespace vo

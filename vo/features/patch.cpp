@@ -14,6 +14,7 @@ constexpr int kWindow = 2 * kWindowRadius + 1;
 constexpr int kPixels = kWindow * kWindow;
 constexpr int kIterations = 10;
 constexpr double kConvergedPx = 0.01;
+constexpr double kReachOfWarp = 10;  // [px] of the window in the patch: a stronger warp is not registered
 
 using Window = Eigen::Matrix<double, kPixels, 1>;
 using WideWindow = Eigen::Matrix<double, kWindow + 2, kWindow + 2>;
@@ -41,18 +42,41 @@ Window SampleWindow(const std::uint8_t* data, std::size_t stride, const Eigen::V
   return window;
 }
 
-// Patch warped to the present view, one pixel wider than the window for the gradient. False: it leaves the patch.
-bool WarpPatch(const Patch& patch, const Eigen::Matrix2d& warp, WideWindow& out) {
+// Samples whose mean is the blur along `streak`: one per pixel; a single one below 0.7 px.
+class BlurSamples {
+ public:
+  explicit BlurSamples(const Eigen::Vector2d& streak)
+      : streak_(streak), count_(std::clamp(static_cast<int>(std::ceil(streak.norm() + 0.3)), 1, kMost)) {}
+  int count() const { return count_; }
+  Eigen::Vector2d offset(int k) const { return ((k + 0.5) / count_ - 0.5) * streak_; }
+
+ private:
+  static constexpr int kMost = 32;
+  Eigen::Vector2d streak_;
+  int count_;
+};
+
+// Patch warped to the present view and blurred there, one pixel wider than the window for the gradient. False: it leaves
+// the patch.
+bool WarpPatch(const Patch& patch, const Eigen::Matrix2d& warp, const Eigen::Vector2d& streak, WideWindow& out) {
   constexpr int kReach = kWindowRadius + 1;
   const Eigen::Matrix2d to_first = warp.inverse();
   const Eigen::Vector2d farthest = kReach * to_first.cwiseAbs().rowwise().sum();  // over the four corners
-  if (!(Patch::kRadius - farthest.maxCoeff() >= 0 && Patch::kRadius + farthest.maxCoeff() < Patch::kSide - 1))
+  const Eigen::Vector2d blurred = to_first * streak;
+  if (!(farthest.maxCoeff() < kReachOfWarp && (farthest + blurred.cwiseAbs() / 2).maxCoeff() < Patch::kRadius))
     return false;
+  const BlurSamples samples(blurred);
   for (int v = -kReach; v <= kReach; ++v) {
     const Eigen::Vector2d row = v * to_first.col(1) + Eigen::Vector2d::Constant(Patch::kRadius);
-    for (int u = -kReach; u <= kReach; ++u)
-      out(v + kReach, u + kReach) =
-          Bilinear(patch.grey.data(), Patch::kSide, row.x() + u * to_first(0, 0), row.y() + u * to_first(1, 0));
+    for (int u = -kReach; u <= kReach; ++u) {
+      double sum = 0;
+      for (int k = 0; k < samples.count(); ++k) {
+        const Eigen::Vector2d offset = samples.offset(k);
+        sum += Bilinear(patch.grey.data(), Patch::kSide, row.x() + u * to_first(0, 0) + offset.x(),
+                        row.y() + u * to_first(1, 0) + offset.y());
+      }
+      out(v + kReach, u + kReach) = sum / samples.count();
+    }
   }
   return true;
 }
@@ -143,10 +167,36 @@ Patch CutPatch(const cv::Mat& smooth, const Eigen::Vector2i& centre) {
   return patch;
 }
 
+RelativeBlur RelativeBlur::Of(const Eigen::Vector2d& first, const Eigen::Vector2d& now) {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> moments;
+  moments.computeDirect(now * now.transpose() - first * first.transpose());
+  const Eigen::Vector2d streaks = moments.eigenvalues().cwiseAbs().cwiseSqrt();
+  return {streaks[1] * moments.eigenvectors().col(1), streaks[0] * moments.eigenvectors().col(0)};
+}
+
+Patch Blurred(const Patch& patch, const Eigen::Vector2d& streak) {
+  constexpr double kLast = Patch::kSide - 1.001;
+  const BlurSamples samples(streak);
+  Patch blurred;
+  for (int y = 0, i = 0; y < Patch::kSide; ++y)
+    for (int x = 0; x < Patch::kSide; ++x, ++i) {
+      double sum = 0;
+      for (int k = 0; k < samples.count(); ++k) {
+        const Eigen::Vector2d at = Eigen::Vector2d(x, y) + samples.offset(k);
+        sum +=
+            Bilinear(patch.grey.data(), Patch::kSide, std::clamp(at.x(), 0.0, kLast), std::clamp(at.y(), 0.0, kLast));
+      }
+      blurred.grey[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(std::lround(sum / samples.count()));
+    }
+  return blurred;
+}
+
 std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& warp, const cv::Mat& smooth,
-                                     const Eigen::Vector2d& start, double max_shift_px) {
+                                     const Eigen::Vector2d& start, double max_shift_px, const RelativeBlur& blur) {
   WideWindow wide;
-  if (!(std::abs(warp.determinant()) > 0.1) || !WarpPatch(patch, warp, wide)) return std::nullopt;
+  if (!(std::abs(warp.determinant()) > 0.1) || !WarpPatch(patch, warp, blur.of_patch, wide)) return std::nullopt;
+  const BlurSamples samples(blur.of_image);
+  const Eigen::Vector2d reach = blur.of_image.cwiseAbs() / 2 + Eigen::Vector2d::Constant(kWindowRadius);
 
   Window templ, gradient_x, gradient_y;
   for (int v = 0, i = 0; v < kWindow; ++v)
@@ -167,10 +217,13 @@ std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& 
   const auto iterate = [&]() -> std::optional<Registration> {
     Eigen::Vector2d x = start;
     for (int iteration = 0; iteration < kIterations; ++iteration) {
-      if (!(x.x() >= kWindowRadius && x.y() >= kWindowRadius && x.x() < smooth.cols - kWindowRadius - 1 &&
-            x.y() < smooth.rows - kWindowRadius - 1))
+      if (!(x.x() >= reach.x() && x.y() >= reach.y() && x.x() < smooth.cols - reach.x() - 1 &&
+            x.y() < smooth.rows - reach.y() - 1))
         return std::nullopt;
-      Window seen = SampleWindow(smooth.data, smooth.step[0], x);
+      Window seen = SampleWindow(smooth.data, smooth.step[0], x + samples.offset(0));
+      for (int k = 1; k < samples.count(); ++k)
+        seen += SampleWindow(smooth.data, smooth.step[0], x + samples.offset(k));
+      seen /= samples.count();
       seen.array() -= seen.mean();
       const double seen_norm = seen.norm();
       if (!(seen_norm > 1)) return std::nullopt;

@@ -22,7 +22,7 @@ using Results = std::vector<SearchResult>;  // by request
 
 // Guided matching without matches at pixels that are not invertible.
 Results SearchAll(const AssociationContext& in, const std::vector<SearchRequest>& requests) {
-  Results results = FindFeatures(requests, in.frame.smooth, in.frame.brisk, in.params.features);
+  Results results = FindFeatures(requests, in.frame.smooth, in.frame.brisk, in.params.features, in.exposure_s);
   for (SearchResult& result : results)
     if (result.found && !in.camera.IsInvertible(result.found->pixel)) result = {false, std::nullopt};
   return results;
@@ -56,12 +56,14 @@ Vector6 VelocityAt(const AssociationContext& in, const Pose& pose) {
 }
 
 // Request in a small window about the prediction of the landmark from the coarse pose.
-SearchRequest Refined(const AssociationContext& in, const PoseGaussian& pose, const ImageMotion& motion, int landmark,
-                      SearchRequest request) {
+SearchRequest Refined(const AssociationContext& in, const PoseGaussian& pose, const ImageMotion& motion,
+                      const Candidate& candidate, SearchRequest request) {
+  const int landmark = candidate.landmark;
   const auto prediction = PredictPixel(pose, motion.view(), landmark, in.camera, in.params.features.sigma_px);
   if (!prediction) return request;
   request.predicted =
       in.shutter.on() ? motion.InImage(landmark, in.camera.Undistort(prediction->pixel)) : prediction->pixel;
+  request.rate = candidate.lens * motion.Rate(landmark);
   request.S = prediction->covariance;
   request.widest_px = std::max(in.params.features.search_normal_px, WindowSide(prediction->covariance));
   return request;
@@ -96,7 +98,7 @@ Results SearchCoarseToFine(const AssociationContext& in, const std::vector<Candi
   std::vector<SearchRequest> fine;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (is_coarse[i]) continue;
-    fine.push_back(pose ? Refined(in, *pose, motion, candidates[i].landmark, requests[i]) : requests[i]);
+    fine.push_back(pose ? Refined(in, *pose, motion, candidates[i], requests[i]) : requests[i]);
   }
   const Results fine_results = SearchAll(in, fine);
   for (std::size_t i = 0, k = 0; i < candidates.size(); ++i)
@@ -134,7 +136,7 @@ Consensus RobustPose(const AssociationContext& in, std::span<const Candidate> ca
 
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
                       const PreparedFrame& frame, int border_px, const SinceUpdate& since_update, const Params& params,
-                      double noise_level) {
+                      double noise_level, double exposure_s) {
   const AssociationContext in{filter,
                               records,
                               camera,
@@ -143,7 +145,8 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
                               since_update,
                               RollingShutter(camera, params.features),
                               filter.Reference(),
-                              noise_level};
+                              noise_level,
+                              exposure_s};
   Association result;
   std::vector<Candidate> candidates = FindCandidates(in, border_px);
   result.left_out = LimitToBudget(candidates, in);
@@ -155,6 +158,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   const MapView map(in.reference.map, consensus.pose.mean);
   result.predicted = in.prediction();
   result.agreed = consensus.pose;
+  const ImageMotion motion(in.shutter, in.reference.map, consensus.pose.mean, VelocityAt(in, consensus.pose.mean));
 
   for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];
@@ -176,6 +180,8 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
         searched.residual = ResidualOf(c, match, map);
         result.nis += *searched.mahalanobis_sq;
         result.matches.push_back(match);
+        result.moving.push_back(
+            {c.landmark, requests[i].warp, found->pixel, requests[i].first_rate, c.lens * motion.Rate(c.landmark)});
         if (records[c.landmark].unseen()) ++result.unseen_matched;
       } else {
         searched.residual = ResidualOf(c, match, map);

@@ -10,6 +10,7 @@
 #include "vo/base/params.h"
 #include "vo/base/result.h"
 #include "vo/filter/filter.h"
+#include "vo/frontend/exposure_estimate.h"
 #include "vo/frontend/prepared_frame.h"
 #include "vo/frontend/rolling_shutter.h"
 #include "vo/geometry/camera.h"
@@ -28,6 +29,7 @@ struct Searched {
 struct Association {
   std::vector<Searched> searched;
   std::vector<Match> matches;             // inliers
+  std::vector<MovingMatch> moving;        // the same, for the exposure time
   std::vector<FeatureView> views;         // in the order of `searched`
   std::vector<Eigen::Vector2d> left_out;  // [px] predicted pixels of the landmarks beyond max_searched
   double nis = 0;                         // sum of mahalanobis_sq
@@ -39,10 +41,10 @@ struct Association {
   void RejectAll();
 };
 
-// After filter.Predict(). `records` are in the order of the filter's landmarks.
+// After filter.Predict(). `records` are in the order of the filter's landmarks; `exposure_s` is 0 where it is not known.
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
                       const PreparedFrame& frame, int border_px, const SinceUpdate& since_update, const Params& params,
-                      double noise_level);
+                      double noise_level, double exposure_s = 0);
 
 // Existence scores (44)-(49), ages and residual histories after the association. Where fewer than min_found_ratio of
 // the landmarks searched for are matched, the frame is blind (blur, darkness), and only (44) is applied.

@@ -17,7 +17,6 @@ Eigen::Vector2d RollingShutter::InImage(const Eigen::Vector2d& z, const Eigen::V
 }
 
 Eigen::Vector2d ImageMotion::Rate(int landmark) const {
-  if (!shutter_.on()) return Eigen::Vector2d::Zero();
   const Projection view = map_(landmark);
   return view.in_front ? Eigen::Vector2d(view.J_pose * velocity_) : Eigen::Vector2d::Zero();
 }

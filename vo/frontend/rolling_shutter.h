@@ -42,11 +42,10 @@ class ImageMotion {
 
   const MapView& view() const { return map_; }
   Eigen::Vector2d InImage(int landmark, const Eigen::Vector2d& z) const { return shutter_.InImage(z, Rate(landmark)); }
-
- private:
-  // dz/dt; zero with a global shutter and behind the camera.
+  // dz/dt at the stamp; zero behind the camera.
   Eigen::Vector2d Rate(int landmark) const;
 
+ private:
   const RollingShutter& shutter_;
   MapView map_;
   Vector6 velocity_;

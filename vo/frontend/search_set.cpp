@@ -68,7 +68,7 @@ std::vector<Candidate> FindCandidates(const AssociationContext& in, int border_p
     const Eigen::Vector2d pixel = motion.InImage(n, prediction.z);
     if (!in.camera.IsUsable(pixel, border_px)) continue;
     candidates.push_back(
-        {n, prediction, pixel, in.camera.LensJacobian(prediction.z),
+        {n, prediction, pixel, in.camera.LensJacobian(prediction.z), motion.Rate(n),
          in.params.features.noise == MatchNoise::adaptive ? in.records[n].residuals.Inflation(in.noise_level) : 1.0});
   }
   return candidates;
@@ -104,9 +104,14 @@ SearchRequest RequestFor(const AssociationContext& in, const Candidate& candidat
                         candidate.lens * candidate.prediction.covariance * candidate.lens.transpose() +
                             sigma_px * sigma_px * Eigen::Matrix2d::Identity(),
                         Eigen::Matrix2d::Identity()};
-  if (view.in_front)
-    request.warp =
-        candidate.lens * view.J_landmark.leftCols<2>() * in.camera.LensJacobian(estimate.head<2>()).inverse();
+  if (!view.in_front) return request;
+  const Eigen::Matrix2d from_first = candidate.lens * view.J_landmark.leftCols<2>();
+  request.warp = from_first * in.camera.LensJacobian(estimate.head<2>()).inverse();
+  const LandmarkRecord& record = in.records[candidate.landmark];
+  const Eigen::Vector3d ray(estimate.x(), estimate.y(), 1);
+  const Eigen::Vector3d moves = -estimate.z() * record.first_v_C - record.first_w_C.cross(ray);
+  request.first_rate = from_first * (moves.head<2>() - moves.z() * ray.head<2>());
+  request.rate = candidate.lens * candidate.rate;
   return request;
 }
 

@@ -32,6 +32,7 @@ struct AssociationContext {
   RollingShutter shutter;
   ReferencePath reference;
   double noise_level;
+  double exposure_s;
 
   const PoseGaussian& prediction() const { return reference.prediction; }
   bool relocalising() const { return since_update.input.correction.has_value(); }
@@ -43,6 +44,7 @@ struct Candidate {
   ImagePrediction prediction;  // on the plane z = 1
   Eigen::Vector2d pixel;       // the same in the image
   Eigen::Matrix2d lens;        // d pixel / d(plane z = 1)
+  Eigen::Vector2d rate;        // d prediction.z / dt [1/s]
   double inflation = 1;        // factor on a match's covariance, from the landmark's residual history
 };
 

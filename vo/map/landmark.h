@@ -132,9 +132,5 @@ struct LandmarkUpdate {
   Landmark landmark;
   double log_likelihood = 0;  // log p(z | pose): (3) for the EKF, Laplace's approximation at the mode else
 };
-// Linearised first at `guess`, then, up to max_iterations in all, at the mode (EKF: guess = prior.mean, max_iterations
-// = 1). A landmark behind the camera stays as it is.
-LandmarkUpdate UpdateLandmark(const Landmark& prior, const Eigen::Vector3d& guess, const AnchorView& view,
-                              const Match& match, int max_iterations);
 
 }  // namespace vo

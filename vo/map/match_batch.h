@@ -41,8 +41,7 @@ class MatchBatch {
   // From now on each landmark is linearised at its mode for the pose at linearised_at() (+) d, to first order.
   void Follow(const Vector6& d);
 
-  // What the matches say about the landmarks once the pose is known, as UpdateLandmark. Returns the sum of log p(z |
-  // pose).
+  // Landmarks given the pose: linearised at their mean, then at the mode. Returns the sum of log p(z | pose).
   double UpdateLandmarks(const Pose& camera, int max_iterations);
   void Store(std::span<Landmark> landmarks) const;
 

@@ -74,7 +74,7 @@ struct MatchKernel {
   void (*linearise[2])(const CameraView& camera, const double* step, MatchLanes* blocks, int count, PoseSums& sums);
   // Of the residuals with R_given, landmarks linearised at their means; infinite where one is not in front.
   void (*squared_distances)(const CameraView& camera, const MatchLanes* blocks, int count, Lanes* distances);
-  // Landmark given the pose, as vo::UpdateLandmark.
+  // Landmarks given the pose.
   void (*update_landmarks)(const CameraView& camera, const double* step, int max_iterations, MatchLanes* blocks,
                            int count, MatchSums& sums);
   // To each sum, where in front: where the landmark should appear, its covariance J P J' and that of the pose (6 x 6)

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/unit/vo/at_once.h"
+#include "tests/unit/vo/landmark_update.h"
 #include "vo/filter/ekf_slam.h"
 #include "vo/filter/particle_filter.h"
 #include "vo/geometry/so3.h"
@@ -122,9 +123,9 @@ TEST(Bootstrap, WeightIsTheLikelihoodAtTheSample) {
     double log_likelihood = 0;
     for (const vo::Match& match : views.matches)
       log_likelihood +=
-          vo::UpdateLandmark(before[i].landmarks[static_cast<std::size_t>(match.landmark)],
-                             before[i].landmarks[static_cast<std::size_t>(match.landmark)].mean,
-                             {filter.particles()[i].pose, before[i].anchors[0]}, match, params.max_iterations)
+          vo_test::UpdateLandmark(before[i].landmarks[static_cast<std::size_t>(match.landmark)],
+                                  before[i].landmarks[static_cast<std::size_t>(match.landmark)].mean,
+                                  {filter.particles()[i].pose, before[i].anchors[0]}, match, params.max_iterations)
               .log_likelihood;
     expected.push_back(log_likelihood);
     peak = std::max(peak, log_likelihood);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "tests/unit/vo/draws.h"
+#include "tests/unit/vo/landmark_update.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/geometry/so3.h"
 #include "vo/map/landmark_record.h"
@@ -103,10 +104,10 @@ TEST(Landmark, LaplaceWeightIsTheIntegral) {
     const double inverse_depth = 0.55 + 0.2 * draws.Uniform();
     match.z = vo::Project(view, {prior.mean.x(), prior.mean.y(), inverse_depth}).z + draws.Symmetrics<2>() / 500;
     const double truth = Quadrature(prior, view, match);
-    worst_iterated = std::max(worst_iterated,
-                              std::abs(vo::UpdateLandmark(prior, prior.mean, view, match, 10).log_likelihood - truth));
-    worst_prior =
-        std::max(worst_prior, std::abs(vo::UpdateLandmark(prior, prior.mean, view, match, 1).log_likelihood - truth));
+    worst_iterated = std::max(
+        worst_iterated, std::abs(vo_test::UpdateLandmark(prior, prior.mean, view, match, 10).log_likelihood - truth));
+    worst_prior = std::max(worst_prior,
+                           std::abs(vo_test::UpdateLandmark(prior, prior.mean, view, match, 1).log_likelihood - truth));
   }
   EXPECT_LT(worst_iterated, 0.05);
   EXPECT_GT(worst_prior, 1.0);
@@ -123,7 +124,7 @@ TEST(Landmark, LinearCaseIsExact) {
   match.R << 4e-6, 1e-6, 1e-6, 3e-6;
   match.z = vo::Project(view, {0.1, -0.2, 0.45}).z + Vector2d(0.001, -0.002);
   for (const int iterations : {1, 10}) {
-    const vo::LandmarkUpdate update = vo::UpdateLandmark(prior, prior.mean, view, match, iterations);
+    const vo_test::LandmarkUpdate update = vo_test::UpdateLandmark(prior, prior.mean, view, match, iterations);
     EXPECT_NEAR(update.log_likelihood, Quadrature(prior, view, match), 1e-8);
     const Vector2d J = vo::Project(view, prior.mean).J_landmark.col(2);
     const double information = 1 / prior.covariance(2, 2) + J.dot(match.R.inverse() * J);

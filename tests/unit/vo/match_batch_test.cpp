@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/unit/vo/draws.h"
+#include "tests/unit/vo/landmark_update.h"
 #include "vo/filter/pose_gaussian.h"
 #include "vo/geometry/so3.h"
 
@@ -205,7 +206,7 @@ TEST_P(EveryInstructionSet, LandmarksAreUpdatedAsOneByOne) {
       for (const vo::Match& match : scene.matches) {
         const vo::AnchorView view = vo::AnchorView(scene.camera, scene.anchors[scene.anchor_of[match.landmark]])
                                         .ShiftedBy(match.centre_offset_W);
-        const vo::LandmarkUpdate update = vo::UpdateLandmark(
+        const vo_test::LandmarkUpdate update = vo_test::UpdateLandmark(
             scene.landmarks[match.landmark], scene.landmarks[match.landmark].mean, view, match, iterations);
         expected[match.landmark] = update.landmark;
         sum += update.log_likelihood;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/unit/vo/draws.h"
+#include "tests/unit/vo/landmark_update.h"
 #include "tests/unit/vo/propose.h"
 #include "vo/filter/gauss_newton.h"
 #include "vo/filter/motion_model.h"
@@ -440,10 +441,11 @@ TEST(PathWindow, EvidenceOfTwoFramesFactors) {
       vo::Landmark& landmark = second.landmarks[track.landmark];
       for (const vo::Track::View& view : track.views)
         if (view.slot == 0)
-          landmark = vo::UpdateLandmark(landmark, landmark.mean,
-                                        vo::AnchorView(s, scene.anchors[track.anchor]).ShiftedBy(view.centre_offset_W),
-                                        {track.landmark, view.z, view.R_inverse.inverse()}, 10)
-                         .landmark;
+          landmark =
+              vo_test::UpdateLandmark(landmark, landmark.mean,
+                                      vo::AnchorView(s, scene.anchors[track.anchor]).ShiftedBy(view.centre_offset_W),
+                                      {track.landmark, view.z, view.R_inverse.inverse()}, 10)
+                  .landmark;
       std::erase_if(track.views, [](const vo::Track::View& view) { return view.slot == 0; });
       track.views[0].slot = 0;
       track.anchor_slot = -1;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/unit/vo/draws.h"
+#include "tests/unit/vo/landmark_update.h"
 #include "tests/unit/vo/propose.h"
 #include "vo/filter/consensus.h"
 #include "vo/filter/gauss_newton.h"
@@ -151,8 +152,8 @@ TEST(Proposal, EvidenceEqualsTheImportanceWeightWhenLinear) {
     const vo::Pose s = proposal.pose.Sample({.seed = 5, .particle = i});
     double log_weight = scene.prediction.LogDensity(s) - proposal.pose.LogDensity(s);
     for (const vo::Match& match : scene.matches)
-      log_weight += vo::UpdateLandmark(scene.landmarks[match.landmark], scene.landmarks[match.landmark].mean,
-                                       {s, scene.anchors[scene.anchor_of[match.landmark]]}, match, 10)
+      log_weight += vo_test::UpdateLandmark(scene.landmarks[match.landmark], scene.landmarks[match.landmark].mean,
+                                            {s, scene.anchors[scene.anchor_of[match.landmark]]}, match, 10)
                         .log_likelihood;
     EXPECT_NEAR(log_weight, proposal.log_evidence, 1e-4 * std::abs(proposal.log_evidence) * 1e-2) << i;
   }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "tests/unit/vo/landmark_update.h"
 #include "tests/unit/vo/propose.h"
 #include "vo/filter/unscented_proposal.h"
 #include "vo/geometry/so3.h"
@@ -131,7 +132,7 @@ TEST(UnscentedProposal, IsTheEkfWhereTheModelIsLinear) {
                                 scene.anchors[static_cast<std::size_t>(scene.anchor_of[match.landmark])]);
       const vo::Landmark& prior = scene.landmarks[static_cast<std::size_t>(match.landmark)];
       const auto a = vo::UpdateLandmarkUnscented(prior, view, match, {}),
-                 b = vo::UpdateLandmark(prior, prior.mean, view, match, 1);
+                 b = vo_test::UpdateLandmark(prior, prior.mean, view, match, 1);
       EXPECT_LT((a.landmark.mean - b.landmark.mean).norm(), 1e-9);
       EXPECT_LT((a.landmark.covariance - b.landmark.covariance).norm(), 1e-4 * b.landmark.covariance.norm());
       EXPECT_NEAR(a.log_likelihood, b.log_likelihood, 1e-4 * std::abs(b.log_likelihood));

@@ -1,0 +1,61 @@
+#include "vo/frontend/exposure_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vo {
+namespace {
+
+constexpr double kStep = 4e-3;      // of the candidates [s]
+constexpr double kShowing = 16e-3;  // exposure at which a match has to be blurred by ...
+constexpr double kLeast_px = 2, kMost_px = 12;
+constexpr std::size_t kPerFrame = 16;
+constexpr double kKept = 0.98;      // of the past, from frame to frame
+constexpr double kEnough = 30;      // matches
+constexpr double kSignificant = 3;  // standard errors
+constexpr double kMaxShift_px = 1.5;
+constexpr double kUnlike = 0.6;  // correlation of a patch that is not registered
+constexpr double kNoise = 0.02;  // of the correlation, by noise alone
+
+}  // namespace
+
+void ExposureEstimate::Learn(std::span<const MovingMatch> matches, std::span<const LandmarkRecord> records,
+                             const cv::Mat& smooth) {
+  std::vector<const MovingMatch*> showing;
+  for (const MovingMatch& match : matches) {
+    const RelativeBlur blur = RelativeBlur::Of(kShowing * match.first_rate, kShowing * match.rate);
+    const double px = std::max(blur.of_patch.norm(), blur.of_image.norm());
+    if (px > kLeast_px && px < kMost_px) showing.push_back(&match);
+  }
+  if (showing.empty()) return;
+  weight_ *= kKept;
+  for (double& sum : sum_) sum *= kKept;
+  for (double& square : squares_) square *= kKept;
+  const std::size_t stride = (showing.size() + kPerFrame - 1) / kPerFrame;
+  for (std::size_t i = 0; i < showing.size(); i += stride) {
+    const MovingMatch& match = *showing[i];
+    double of_none = 0;
+    for (int k = 0; k < kCandidates; ++k) {
+      const double exposure = k * kStep;
+      const auto registered =
+          Register(records[match.landmark].appearance.patch, match.warp, smooth, match.pixel, kMaxShift_px,
+                   RelativeBlur::Of(exposure * match.first_rate, exposure * match.rate));
+      const double correlation = registered ? std::max(kUnlike, registered->correlation) : kUnlike;
+      const double loss = std::log(1 + kNoise - correlation);
+      if (k == 0) of_none = loss;
+      sum_[k] += loss - of_none;
+      squares_[k] += (loss - of_none) * (loss - of_none);
+    }
+    ++weight_;
+  }
+  seconds_ = 0;
+  if (weight_ < kEnough) return;
+  const auto best = static_cast<int>(std::ranges::min_element(sum_) - sum_.begin());
+  if (-sum_[best] < kSignificant * std::sqrt(squares_[best])) return;
+  seconds_ = best * kStep;
+  if (best == 0 || best + 1 == kCandidates) return;
+  const double before = sum_[best - 1] - sum_[best], after = sum_[best + 1] - sum_[best];
+  seconds_ += 0.5 * kStep * (before - after) / (before + after);
+}
+
+}  // namespace vo
