@@ -127,7 +127,8 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
   if (!association.matches.empty()) known_before_loss_ = pose_before_loss_;
   const Eigen::Vector3d previous = filter_.belief().pose.p_WC;
   Update(association.matches);  // lines 4-11: (15)-(17), (37)-(43)
-  if (frames_ == 1)             // the prior does not have the velocity in the first frame; the second measures it
+  // The prior does not have the velocity in the first frame; the second measures it.
+  if (frames_ == 1)
     for (LandmarkRecord& record : records_) SetFirstVelocity(record, filter_.belief().velocity);
   start_.Add(frame.frame.stamp_ns, filter_.answer(), scale_);
   UpdateScores(association, params_.score, records_);  // section 6: (44)-(49)

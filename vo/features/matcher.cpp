@@ -62,8 +62,7 @@ void SearchRegion(const SearchRequest& request, int side, const FeatureParams& p
 }
 
 // Descriptor of the first view, blurred.
-Descriptor Blurred(const Appearance& appearance, const Eigen::Vector2d& streak, const FeatureParams& params) {
-  const BriskSampler sampler = FirstSampler(params);
+Descriptor Blurred(const Appearance& appearance, const Eigen::Vector2d& streak, const BriskSampler& sampler) {
   if (sampler.margin() > Patch::kRadius) return appearance.descriptor;
   Patch patch = Blurred(appearance.patch, streak);
   BriskImage image;
@@ -94,6 +93,7 @@ std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& request
   const int max_distance = static_cast<int>(std::lround(params.max_hamming * kBriskPairs));
   const Eigen::Matrix2d constant = params.sigma_px * params.sigma_px * Eigen::Matrix2d::Identity();
   const Eigen::Matrix2d floor = params.sigma_floor_px * params.sigma_floor_px * Eigen::Matrix2d::Identity();
+  const BriskSampler first = FirstSampler(params);
   std::vector<SearchResult> results(requests.size());
   std::vector<PixelRun> region;
   for (std::size_t i = 0; i < requests.size(); ++i) {
@@ -103,7 +103,7 @@ std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& request
     results[i].in_sight = brisk.Describable(Rounded(request.predicted), sampler);
     const RelativeBlur blur = RelativeBlur::Of(exposure_s * request.first_rate, exposure_s * request.rate);
     const bool blurred = blur.of_patch.norm() > kDescribed_px && std::abs(request.warp.determinant()) > kLeastZoom;
-    const Descriptor descriptor = blurred ? Blurred(*request.appearance, request.warp.inverse() * blur.of_patch, params)
+    const Descriptor descriptor = blurred ? Blurred(*request.appearance, request.warp.inverse() * blur.of_patch, first)
                                           : request.appearance->descriptor;
     int searched = 0;
     for (const int wanted :

@@ -56,8 +56,8 @@ class BlurSamples {
   int count_;
 };
 
-// Patch warped to the present view and blurred there, one pixel wider than the window for the gradient. False: it leaves
-// the patch.
+// Patch warped to the present view and blurred there, one pixel wider than the window for the gradient.
+// False: it leaves the patch.
 bool WarpPatch(const Patch& patch, const Eigen::Matrix2d& warp, const Eigen::Vector2d& streak, WideWindow& out) {
   constexpr int kReach = kWindowRadius + 1;
   const Eigen::Matrix2d to_first = warp.inverse();

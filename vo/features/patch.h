@@ -25,9 +25,10 @@ struct Patch {
 // `centre`: at least kRadius from the edge of the image.
 Patch CutPatch(const cv::Mat& smooth, const Eigen::Vector2i& centre);
 
-// Blur by motion in which two views differ. A streak s, the displacement in the image during the exposure, has the second
-// moments s s' / 12. Those of the present view less those of the first have one eigenvalue that is not negative, and one
-// that is not positive: their streaks. The first view blurred along the one, the present view along the other are alike.
+// Blur by motion in which two views differ. A streak s, the displacement in the image during the exposure, has the
+// second moments s s' / 12. Those of the present view less those of the first have one eigenvalue that is not negative,
+// and one that is not positive: their streaks. The first view blurred along the one, the present view along the other
+// are alike.
 struct RelativeBlur {
   Eigen::Vector2d of_patch = Eigen::Vector2d::Zero(), of_image = Eigen::Vector2d::Zero();  // [px] in the present image
 

@@ -61,9 +61,10 @@ SearchRequest Refined(const AssociationContext& in, const PoseGaussian& pose, co
   const int landmark = candidate.landmark;
   const auto prediction = PredictPixel(pose, motion.view(), landmark, in.camera, in.params.features.sigma_px);
   if (!prediction) return request;
+  const Eigen::Vector2d rate = motion.Rate(landmark);
   request.predicted =
-      in.shutter.on() ? motion.InImage(landmark, in.camera.Undistort(prediction->pixel)) : prediction->pixel;
-  request.rate = candidate.lens * motion.Rate(landmark);
+      in.shutter.on() ? in.shutter.InImage(in.camera.Undistort(prediction->pixel), rate) : prediction->pixel;
+  request.rate = candidate.lens * rate;
   request.S = prediction->covariance;
   request.widest_px = std::max(in.params.features.search_normal_px, WindowSide(prediction->covariance));
   return request;

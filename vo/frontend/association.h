@@ -41,7 +41,7 @@ struct Association {
   void RejectAll();
 };
 
-// After filter.Predict(). `records` are in the order of the filter's landmarks; `exposure_s` is 0 where it is not known.
+// After filter.Predict(). `records` are in the order of the filter's landmarks; `exposure_s` is 0 where it is unknown.
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
                       const PreparedFrame& frame, int border_px, const SinceUpdate& since_update, const Params& params,
                       double noise_level, double exposure_s = 0);

@@ -65,10 +65,10 @@ std::vector<Candidate> FindCandidates(const AssociationContext& in, int border_p
     const int n = predictable[i];
     const ImagePrediction& prediction = predictions[i];
     if (!prediction.in_front || !in.camera.IsInjective(prediction.z) || !IsSearchable(in, n, prediction)) continue;
-    const Eigen::Vector2d pixel = motion.InImage(n, prediction.z);
+    const Eigen::Vector2d rate = motion.Rate(n), pixel = in.shutter.InImage(prediction.z, rate);
     if (!in.camera.IsUsable(pixel, border_px)) continue;
     candidates.push_back(
-        {n, prediction, pixel, in.camera.LensJacobian(prediction.z), motion.Rate(n),
+        {n, prediction, pixel, in.camera.LensJacobian(prediction.z), rate,
          in.params.features.noise == MatchNoise::adaptive ? in.records[n].residuals.Inflation(in.noise_level) : 1.0});
   }
   return candidates;

@@ -43,8 +43,9 @@ class ResidualHistory {
 struct LandmarkRecord {
   int id = 0;
   Appearance appearance;
-  Eigen::Vector3d first_v_C = Eigen::Vector3d::Zero(), first_w_C = Eigen::Vector3d::Zero();  // in the first view
-  double score = 0;                                                                          // existence (44)-(49)
+  // Of the camera in the first view, in its frame [m/s, rad/s].
+  Eigen::Vector3d first_v_C = Eigen::Vector3d::Zero(), first_w_C = Eigen::Vector3d::Zero();
+  double score = 0;           // existence (44)-(49)
   int age = 0;                // frames since it was first seen
   int frames_unmatched = 0;   // in a row
   double path_length = 0;     // [m] of the camera, until the last match
