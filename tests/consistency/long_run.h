@@ -6,10 +6,11 @@
 
 namespace long_run {
 
-// Time: of the `window` frames from `early` on, when the map is full, and of the last ones the tenth that takes shortest, in this thread's own time. 10 % is
-// what is asked for; the machine's clock and caches are shared, so that a test which must not fail for them allows 25 %,
-// and the figure is printed. Memory: resident, from frame `early` on, never more than 1 % above what it is there (of a
-// short run, 2 %). An answer that is no number ends it (vo/filter/watched_filter.h).
+// Time:    CPU time of the thread, the tenth percentile of `window` frames: of those from `early` on, when the map is
+//          full, and of the last ones. Each is divided by the same percentile of a fixed calculation made after every
+//          frame, so that a machine which is slower at the end is not a frame that grows. Bound 25 %; printed.
+// Memory:  resident, from frame `early` on at most 1 % above that of frame `early` (of a short run, 2 %).
+// An answer that is no number ends it (vo/filter/watched_filter.h).
 struct Length {
   std::size_t frames = 0, early = 0, window = 0;
 };

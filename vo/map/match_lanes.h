@@ -1,6 +1,6 @@
 // Inner loop of the filter, eight matches at a time: matches linearised with the landmark's Gaussian integrated out,
 // their sums for the pose, and the landmarks' update. Private to vo/map: others use MatchBatch.
-// Source:  as LinearisedMatch. With the pose moved by d: z - h = e - j d + noise of covariance S = J P J' + R, and the
+// Source:  (3). With the pose moved by d: z - h = e - j d + noise of covariance S = J P J' + R, and the
 //          landmark's mode is mean + gain (e - j d).
 // Units:   the plane z = 1, as in landmark.h.
 //
