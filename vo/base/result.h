@@ -50,7 +50,7 @@ struct FrameDiagnostics {
   // Time of frame preparation and corner detection; of the search; of the rest
   double ms_features = 0, ms_matching = 0, ms_filter = 0;
   NumericalEvents events;  // where the filter did what its equations do not say
-  int repeated = 0;        // predictions made again in this frame, kept or not: the first one had failed
+  int repeated = 0;        // predictions made again in this frame and kept
   static constexpr int kTrackedMatches = 10;
   static constexpr double kTrackedAgreement = 0.4;
   // The frame shows what was predicted: enough landmarks match, enough of the searched do, at the first prediction.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "vo/filter/algorithm1.h"
+#include "vo/filter/first_guess.h"
 #include "vo/filter/fixed_lag.h"
 
 namespace vo {

@@ -1,5 +1,5 @@
 // Window of frames whose poses are not sampled, the same for all particles: their matches, the landmarks' tracks
-// through them, and first guesses of its solution.
+// through them.
 #pragma once
 
 #include <cstdint>
@@ -74,16 +74,6 @@ std::vector<LandmarkGain> GainsOf(std::span<const Match> matches, const Landmark
 void UpdateLandmarks(std::span<const Match> matches, std::span<const LandmarkGain> gains, const LandmarkTable& table,
                      const Pose& pose, std::span<const Pose> anchors, std::span<const Eigen::Vector3d> modes,
                      std::vector<Landmark>& landmarks);
-
-// Challenge of a solution: a first guess for another mode of the same images, to be solved and compared by its
-// objective. Sideways motion and rotation nearly explain each other as long as depths are unknown: several modes fit
-// nearly as well (depth reversal), and no later image undoes a wrong choice.
-constexpr std::uint32_t kGuesses = 6;
-
-// The path with another sideways motion: `guess` 0: none, 1: the opposite, 2 ... 5: along an axis of the first camera.
-// Rotated so that points at the mean depth keep their images; landmarks are triangulated from the new path.
-PathSolution PerturbTranslation(const Window& window, const LandmarkTable& table, const WindowInput& in,
-                                const PathSolution& solution, std::uint32_t guess);
 
 // Modes of the landmarks given the path, by Gauss-Newton from those of the solution: all views of a landmark linearised
 // together.

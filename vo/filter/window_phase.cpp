@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vo/filter/first_guess.h"
 #include "vo/filter/path_sampling.h"
 
 namespace vo {
@@ -14,6 +15,7 @@ namespace {
 constexpr double kLogBayesRejection = 50;
 
 constexpr int kStartIterations = 50;
+constexpr int kDescents = 5;
 
 // Modes of the tracks' landmarks, in their order; and back.
 std::vector<Eigen::Vector3d> ModesOfTracks(std::span<const Track> tracks, const PathSolution& solution) {
@@ -106,10 +108,19 @@ void WindowPhase::SolveAll() {
 }
 
 void WindowPhase::Challenge(std::size_t i, std::uint32_t guess, WindowOptions options) {
-  PathSolution other = PerturbTranslation(window_, table_, InputOf(i), particles_[i].solution, guess % kGuesses);
-  const double objective = particles_[i].solution.path.objective;
+  const PathSolution& present = particles_[i].solution;
+  const std::uint32_t number = guess % kGuesses;
+  std::optional<PathSolution> first = number < kPerturbations
+                                          ? PerturbTranslation(window_, table_, InputOf(i), present, number)
+                                          : EpipolarPath(window_, table_, InputOf(i), present);
+  if (!first) return;
+  PathSolution& other = *first;
+  const double objective = present.path.objective;
   options.stop_if_above = objective;
-  SolveOther(i, options, other);
+  for (int descent = 0; descent < kDescents; ++descent) {  // one that has not ended below the present solution goes on
+    SolveOther(i, options, other);
+    if (other.path.events.not_converged == 0 || !(other.path.objective < objective)) break;
+  }
   // By the density at the mode, not by evidence: evidence rewards depths that stay unknown, as if each had a prior of
   // its own, and prefers a deep scene with little parallax to a wall. Where the descent has not ended, the objective is
   // that of an expansion far from the mode; matches behind the camera are not part of it.

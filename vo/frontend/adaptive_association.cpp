@@ -8,7 +8,9 @@
 namespace vo {
 namespace {
 
-constexpr double kFailedRatio = 11;  // innovation ratio of a failed prediction
+// Innovation ratio of a failed prediction, and the least agreement of the searched. At the start false matches near a
+// wrong prediction may agree with it.
+constexpr double kFailedRatio = 11, kFailedAgreementAtTheStart = 0.65;
 constexpr int kWidenings = 2;
 constexpr double kAlignedNoise = 4;       // factor on the densities about an aligned rotation
 constexpr double kRelocalisedNoise = 16;  // the same about the pose from recognised landmarks
@@ -22,11 +24,11 @@ InnovationRatios RatiosOf(const Association& association) {
   return RatiosOf(association.predicted, association.agreed);
 }
 
-bool Failed(const Association& association) {
+bool Failed(const Association& association, bool initialising) {
   const InnovationRatios ratios = RatiosOf(association);
+  const double least = initialising ? kFailedAgreementAtTheStart : FrameDiagnostics::kTrackedAgreement;
   return std::max(ratios.position, ratios.orientation) > kFailedRatio ||
-         static_cast<double>(association.matches.size()) <
-             FrameDiagnostics::kTrackedAgreement * static_cast<double>(association.searched.size());
+         static_cast<double>(association.matches.size()) < least * static_cast<double>(association.searched.size());
 }
 
 // The whole map follows from the first matches: at the start more of the searched have to agree.
@@ -48,7 +50,7 @@ struct Trial {
   const std::function<Association(const MotionInput&)>& associate;
   MotionInput input;
   Association association;
-  int repeated = 0;
+  int repeated = 0;  // predictions kept after the first
 
   // The same with another prediction, which is kept where `better` than the present one.
   template <class Better>
@@ -56,6 +58,7 @@ struct Trial {
     filter.PredictAgain(other);
     Association again = associate(other);
     if (better(again)) {
+      ++repeated;
       input = other;
       association = std::move(again);
       return true;
@@ -80,19 +83,17 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
   first.coasting_s = coasting_s;
   filter.Predict(dt, first);
   Trial trial{filter, associate, first, associate(first)};
-  const auto failed = [&] { return Failed(trial.association); };
+  const auto failed = [&] { return Failed(trial.association, trial.initialising()); };
   const auto clearly_more = [&](const Association& again) { return trial.HasClearlyMore(again); };
-  for (int k = 0; k < kWidenings && failed(); ++k) {
-    ++trial.repeated;
+  const bool first_failed = failed();
+  for (int k = 0; k < kWidenings && failed(); ++k)
     if (!trial.Repeat(Widened(trial.input, RatiosOf(trial.association)), clearly_more)) break;
-  }
   if (failed() && !last_.empty()) {
     if (const auto R = AlignRotation(camera_, Thumbnails(last_), Thumbnails(grey))) {
       MotionInput aligned = trial.input;
       aligned.position_noise *= kAlignedNoise;
       aligned.orientation_noise *= kAlignedNoise;
       aligned.turn = R->conjugate();
-      ++trial.repeated;
       trial.Repeat(aligned, [&](const Association& again) {  // without matches it is the better prediction
         return trial.HasClearlyMore(again) || (!trial.initialising() && !trial.HasMatches() &&
                                                again.matches.size() >= trial.association.matches.size());
@@ -104,7 +105,7 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
     moved.position_noise *= kRelocalisedNoise;
     moved.orientation_noise *= kRelocalisedNoise;
     moved.correction = recognised;
-    if (trial.Repeat(moved, ShowsThePlace)) ++trial.repeated;
+    trial.Repeat(moved, ShowsThePlace);
   }
   trial.association.repeated = trial.repeated;
   if (!trial.HasMatches()) {
@@ -112,7 +113,7 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
     return std::move(trial.association);
   }
   const InnovationRatios shown = RatiosOf(trial.association);
-  noise_.Learn(trial.association.predicted, trial.association.agreed, trial.input, trial.repeated > 0);
+  noise_.Learn(trial.association.predicted, trial.association.agreed, trial.input, first_failed || trial.repeated > 0);
   if (const auto more = AsShown(trial.input, shown)) filter.PredictAgain(*more);
   return std::move(trial.association);
 }

@@ -18,6 +18,9 @@ constexpr int kShutterRounds = 3;
 
 constexpr double kNearly = 2;  // times the gate: what rejected residuals tell of the noise
 
+constexpr double kMoved_px = 1.5;    // of a predicted image, or a streak: what is searched again
+constexpr std::size_t kEnough = 10;  // matches that agree
+
 using Results = std::vector<SearchResult>;  // by request
 
 // Guided matching without matches at pixels that are not invertible.
@@ -133,6 +136,33 @@ Consensus RobustPose(const AssociationContext& in, std::span<const Candidate> ca
   return consensus;
 }
 
+// Second search of what the pose that agrees shows elsewhere: landmarks without a match that agrees, and those whose
+// streak is another. Returns whether there were any.
+bool SearchAgain(const AssociationContext& in, std::span<const Candidate> candidates, const Consensus& consensus,
+                 std::vector<SearchRequest>& requests, Results& results) {
+  const Pose& at = consensus.pose.mean;
+  const ImageMotion motion(in.shutter, in.reference.map, at, VelocityAt(in, at));
+  std::vector<std::size_t> chosen;
+  std::vector<SearchRequest> again;
+  for (std::size_t i = 0, m = 0; i < candidates.size(); ++i) {
+    const bool agrees = results[i].found && consensus.inlier[m];
+    if (results[i].found) ++m;
+    const SearchRequest request = Refined(in, consensus.pose, motion, candidates[i], requests[i]);
+    const double moved_px = (request.predicted - requests[i].predicted).norm();
+    const double streak_px = in.exposure_s * (request.rate - requests[i].rate).norm();
+    if ((agrees || moved_px < kMoved_px) && streak_px < kMoved_px) continue;
+    chosen.push_back(i);
+    again.push_back(request);
+  }
+  const Results found = SearchAll(in, again);
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    if (!found[k].found) continue;
+    requests[chosen[k]] = again[k];
+    results[chosen[k]] = found[k];
+  }
+  return !chosen.empty();
+}
+
 }  // namespace
 
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
@@ -153,9 +183,13 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   result.left_out = LimitToBudget(candidates, in);
   std::vector<SearchRequest> requests;
   for (const Candidate& c : candidates) requests.push_back(RequestFor(in, c));
-  const Results results = SearchCoarseToFine(in, candidates, requests);
+  Results results = SearchCoarseToFine(in, candidates, requests);
   std::vector<Match> matches;
-  const Consensus consensus = RobustPose(in, candidates, results, matches);
+  Consensus consensus = RobustPose(in, candidates, results, matches);
+  const auto agree = static_cast<std::size_t>(std::ranges::count(consensus.inlier, true));
+  if (params.motion.adaptive && !filter.answer().initialising && agree >= kEnough &&
+      SearchAgain(in, candidates, consensus, requests, results))
+    consensus = RobustPose(in, candidates, results, matches);
   const MapView map(in.reference.map, consensus.pose.mean);
   result.predicted = in.prediction();
   result.agreed = consensus.pose;

@@ -33,7 +33,7 @@ struct Association {
   std::vector<FeatureView> views;         // in the order of `searched`
   std::vector<Eigen::Vector2d> left_out;  // [px] predicted pixels of the landmarks beyond max_searched
   double nis = 0;                         // sum of mahalanobis_sq
-  int repeated = 0;                       // predictions made again for this frame
+  int repeated = 0;                       // predictions made again and kept
   int unseen = 0, unseen_matched = 0;     // searched landmarks that were not matched for a while
   PoseGaussian predicted, agreed;         // of the reference path: before the matches, and as the robust fit has it
 

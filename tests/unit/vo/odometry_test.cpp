@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 #include <set>
 #include <utility>
 #include <vector>
@@ -105,6 +106,34 @@ TEST(Odometry, TellsAFrameWhosePredictionFailed) {
       EXPECT_TRUE(d.tracked()) << k;
     }
   }
+}
+
+// A camera that is shaken, up to 12 px and more between two images, its images blurred over half of the time between them: what is not where, or not as blurred
+// as, it was predicted is searched again at the pose that the other matches show.
+TEST(Odometry, SearchesAgainAtThePoseThatMatchesShow) {
+  constexpr int kFrames = 60, kSettled = 20, kTimes = 8;
+  constexpr double kExposure = 0.5;  // of the time between images
+  const vo_test::Texture texture(4, 80.0, 24);
+  vo::Params params = SmallImageParams();
+  params.motion.adaptive = true;
+  vo::Odometry odometry(kCamera, params, KnownStart(), 1);
+  const auto pose_at = [](double k) {
+    vo::Pose pose = TruthAt(k);
+    pose.q_WC = pose.q_WC * vo::Exp({0.08 * std::sin(0.78 * k), 0.08 * std::sin(0.6 * k), 0});
+    return pose;
+  };
+  int matched = 0, searched = 0;
+  for (int k = 0; k < kFrames; ++k) {
+    cv::Mat sum = cv::Mat::zeros(kCamera.height, kCamera.width, CV_32F), image;
+    for (int i = 0; i < kTimes; ++i)
+      cv::accumulate(ViewFrom(pose_at(k + kExposure * ((i + 0.5) / kTimes - 0.5)), texture), sum);
+    sum.convertTo(image, CV_8U, 1.0 / kTimes);
+    const vo::FrameDiagnostics d = odometry.Track({k * kFrameNs, image}).diagnostics;
+    if (k < kSettled) continue;
+    matched += d.matched;
+    searched += d.searched;
+  }
+  EXPECT_GT(matched, 0.85 * searched);  // 0.80 with one search
 }
 
 // The first image shows something else: the start begins with the second. What the camera may have moved in between
