@@ -45,13 +45,13 @@ Window SampleWindow(const std::uint8_t* data, std::size_t stride, const Eigen::V
 // Samples whose mean is the blur along `streak`: one per pixel; a single one below 0.7 px.
 class BlurSamples {
  public:
+  static constexpr int kMost = 32;
   explicit BlurSamples(const Eigen::Vector2d& streak)
       : streak_(streak), count_(std::clamp(static_cast<int>(std::ceil(streak.norm() + 0.3)), 1, kMost)) {}
   int count() const { return count_; }
   Eigen::Vector2d offset(int k) const { return ((k + 0.5) / count_ - 0.5) * streak_; }
 
  private:
-  static constexpr int kMost = 32;
   Eigen::Vector2d streak_;
   int count_;
 };
@@ -175,19 +175,30 @@ RelativeBlur RelativeBlur::Of(const Eigen::Vector2d& first, const Eigen::Vector2
 }
 
 Patch Blurred(const Patch& patch, const Eigen::Vector2d& streak) {
-  constexpr double kLast = Patch::kSide - 1.001;
-  const BlurSamples samples(streak);
-  Patch blurred;
-  for (int y = 0, i = 0; y < Patch::kSide; ++y)
-    for (int x = 0; x < Patch::kSide; ++x, ++i) {
-      double sum = 0;
-      for (int k = 0; k < samples.count(); ++k) {
-        const Eigen::Vector2d at = Eigen::Vector2d(x, y) + samples.offset(k);
-        sum +=
-            Bilinear(patch.grey.data(), Patch::kSide, std::clamp(at.x(), 0.0, kLast), std::clamp(at.y(), 0.0, kLast));
-      }
-      blurred.grey[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(std::lround(sum / samples.count()));
+  constexpr int kBeyond = BlurSamples::kMost / 2 + 1, kWide = Patch::kSide + 2 * kBeyond;
+  float wide[kWide][kWide];  // the patch with its border repeated
+  for (int y = 0; y < kWide; ++y)
+    for (int x = 0; x < kWide; ++x)
+      wide[y][x] = patch.grey[static_cast<std::size_t>(std::clamp(y - kBeyond, 0, Patch::kSide - 1) * Patch::kSide +
+                                                       std::clamp(x - kBeyond, 0, Patch::kSide - 1))];
+  const BlurSamples samples(streak * std::min(1.0, BlurSamples::kMost / streak.norm()));
+  float sum[Patch::kSide][Patch::kSide] = {};
+  for (int k = 0; k < samples.count(); ++k) {  // bilinear: the same weights for all pixels
+    const Eigen::Vector2d at = samples.offset(k) + Eigen::Vector2d::Constant(kBeyond);
+    const int left = static_cast<int>(at.x()), top = static_cast<int>(at.y());
+    const float fx = static_cast<float>(at.x() - left), fy = static_cast<float>(at.y() - top);
+    for (int y = 0; y < Patch::kSide; ++y) {
+      const float *above = wide[top + y] + left, *below = wide[top + y + 1] + left;
+      for (int x = 0; x < Patch::kSide; ++x)
+        sum[y][x] +=
+            (1 - fy) * ((1 - fx) * above[x] + fx * above[x + 1]) + fy * ((1 - fx) * below[x] + fx * below[x + 1]);
     }
+  }
+  Patch blurred;
+  const float scale = 1.0F / static_cast<float>(samples.count());
+  for (int y = 0, i = 0; y < Patch::kSide; ++y)
+    for (int x = 0; x < Patch::kSide; ++x, ++i)
+      blurred.grey[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(sum[y][x] * scale + 0.5F);
   return blurred;
 }
 
