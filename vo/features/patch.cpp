@@ -175,21 +175,22 @@ RelativeBlur RelativeBlur::Of(const Eigen::Vector2d& first, const Eigen::Vector2
 }
 
 Patch Blurred(const Patch& patch, const Eigen::Vector2d& streak) {
-  constexpr int kBeyond = BlurSamples::kMost / 2 + 1, kWide = Patch::kSide + 2 * kBeyond;
-  float wide[kWide][kWide];  // the patch with its border repeated
+  constexpr int kBeyond = BlurSamples::kMost / 2 + 1, kWide = Patch::kSide + 2 * kBeyond + 2;
+  constexpr int kRow = (Patch::kSide + 7) / 8 * 8;  // whole vectors
+  float wide[kWide][kWide];                         // the patch with its border repeated
   for (int y = 0; y < kWide; ++y)
     for (int x = 0; x < kWide; ++x)
       wide[y][x] = patch.grey[static_cast<std::size_t>(std::clamp(y - kBeyond, 0, Patch::kSide - 1) * Patch::kSide +
                                                        std::clamp(x - kBeyond, 0, Patch::kSide - 1))];
   const BlurSamples samples(streak * std::min(1.0, BlurSamples::kMost / streak.norm()));
-  float sum[Patch::kSide][Patch::kSide] = {};
+  float sum[Patch::kSide][kRow] = {};
   for (int k = 0; k < samples.count(); ++k) {  // bilinear: the same weights for all pixels
     const Eigen::Vector2d at = samples.offset(k) + Eigen::Vector2d::Constant(kBeyond);
     const int left = static_cast<int>(at.x()), top = static_cast<int>(at.y());
     const float fx = static_cast<float>(at.x() - left), fy = static_cast<float>(at.y() - top);
     for (int y = 0; y < Patch::kSide; ++y) {
       const float *above = wide[top + y] + left, *below = wide[top + y + 1] + left;
-      for (int x = 0; x < Patch::kSide; ++x)
+      for (int x = 0; x < kRow; ++x)
         sum[y][x] +=
             (1 - fy) * ((1 - fx) * above[x] + fx * above[x + 1]) + fy * ((1 - fx) * below[x] + fx * below[x + 1]);
     }
