@@ -14,7 +14,6 @@ constexpr double kMaxZoom = 4;         // a larger predicted change of scale is 
 constexpr double kSearchSigmas = 2.5;  // half-width of the uncertainty ellipse that is searched
 constexpr double kDescribed_px = 2.5;  // streak that changes the descriptor
 constexpr double kOfStreak = 0.05;     // sigma along a streak, of its length
-constexpr double kLeastZoom = 0.1;     // determinant of a warp
 constexpr double kMaxPx = 1 << 16;     // no image is wider
 
 Eigen::Vector2i Rounded(const Eigen::Vector2d& p) {
@@ -102,7 +101,7 @@ std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& request
     const BriskSampler sampler(PatternMap(request.warp, params));
     results[i].in_sight = brisk.Describable(Rounded(request.predicted), sampler);
     const RelativeBlur blur = RelativeBlur::Of(exposure_s * request.first_rate, exposure_s * request.rate);
-    const bool blurred = blur.of_patch.norm() > kDescribed_px && std::abs(request.warp.determinant()) > kLeastZoom;
+    const bool blurred = blur.of_patch.norm() > kDescribed_px && std::abs(request.warp.determinant()) > kLeastWarp;
     const Descriptor descriptor = blurred ? Blurred(*request.appearance, request.warp.inverse() * blur.of_patch, first)
                                           : request.appearance->descriptor;
     int searched = 0;

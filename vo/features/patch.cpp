@@ -206,7 +206,7 @@ Patch Blurred(const Patch& patch, const Eigen::Vector2d& streak) {
 std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& warp, const cv::Mat& smooth,
                                      const Eigen::Vector2d& start, double max_shift_px, const RelativeBlur& blur) {
   WideWindow wide;
-  if (!(std::abs(warp.determinant()) > 0.1) || !WarpPatch(patch, warp, blur.of_patch, wide)) return std::nullopt;
+  if (!(std::abs(warp.determinant()) > kLeastWarp) || !WarpPatch(patch, warp, blur.of_patch, wide)) return std::nullopt;
   const BlurSamples samples(blur.of_image);
   const Eigen::Vector2d reach = blur.of_image.cwiseAbs() / 2 + Eigen::Vector2d::Constant(kWindowRadius);
 

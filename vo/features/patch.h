@@ -35,7 +35,7 @@ struct RelativeBlur {
   static RelativeBlur Of(const Eigen::Vector2d& first, const Eigen::Vector2d& now);
 };
 
-// `streak`: in pixels of the patch. Beyond its edge the patch is constant.
+// `streak`: in pixels of the patch, cut to 32. Beyond its edge the patch is constant.
 Patch Blurred(const Patch& patch, const Eigen::Vector2d& streak);
 
 struct Registration {
@@ -45,9 +45,12 @@ struct Registration {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
 };
 
+// Least determinant of a warp that is inverted.
+constexpr double kLeastWarp = 0.1;
+
 // `warp` = d(present pixel)/d(pixel of the first view). Along a straight edge (aperture problem) `start` is kept. None
-// when the window leaves the image or the patch, the patch has no texture, the iteration does not converge or moves beyond
-// `max_shift_px`.
+// when the window leaves the image or the patch, the patch has no texture, the iteration does not converge or moves
+// beyond `max_shift_px`.
 std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& warp, const cv::Mat& smooth,
                                      const Eigen::Vector2d& start, double max_shift_px, const RelativeBlur& blur = {});
 

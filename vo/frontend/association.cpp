@@ -18,8 +18,7 @@ constexpr int kShutterRounds = 3;
 
 constexpr double kNearly = 2;  // times the gate: what rejected residuals tell of the noise
 
-constexpr double kMoved_px = 1.5;    // of a predicted image, or a streak: what is searched again
-constexpr std::size_t kEnough = 10;  // matches that agree
+constexpr double kMoved_px = 1.5;  // of a predicted image, or a streak: what is searched again
 
 using Results = std::vector<SearchResult>;  // by request
 
@@ -186,8 +185,8 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   Results results = SearchCoarseToFine(in, candidates, requests);
   std::vector<Match> matches;
   Consensus consensus = RobustPose(in, candidates, results, matches);
-  const auto agree = static_cast<std::size_t>(std::ranges::count(consensus.inlier, true));
-  if (params.motion.adaptive && !filter.answer().initialising && agree >= kEnough &&
+  const auto agree = std::ranges::count(consensus.inlier, true);
+  if (params.motion.adaptive && !filter.answer().initialising && agree >= FrameDiagnostics::kTrackedMatches &&
       SearchAgain(in, candidates, consensus, requests, results))
     consensus = RobustPose(in, candidates, results, matches);
   const MapView map(in.reference.map, consensus.pose.mean);

@@ -108,8 +108,9 @@ TEST(Odometry, TellsAFrameWhosePredictionFailed) {
   }
 }
 
-// A camera that is shaken, up to 12 px and more between two images, its images blurred over half of the time between them: what is not where, or not as blurred
-// as, it was predicted is searched again at the pose that the other matches show.
+// A camera that is shaken, up to 12 px and more between two images, which are blurred over half of the time between
+// them: what is not where, or not as blurred as, it was predicted is searched again at the pose that the other matches
+// show.
 TEST(Odometry, SearchesAgainAtThePoseThatMatchesShow) {
   constexpr int kFrames = 60, kSettled = 20, kTimes = 8;
   constexpr double kExposure = 0.5;  // of the time between images
