@@ -99,8 +99,14 @@ void Tracker::Begin(const PreparedFrame& frame, const Vector6& velocity) {
 void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) {
   const double dt = static_cast<double>(frame.frame.stamp_ns - *last_stamp_ns_) * 1e-9;
   Stopwatch watch;
-  const double coasting_s = since_update_.dt_s;
   since_update_.dt_s += dt;
+  if (params_.motion.adaptive && adaptive_.IsRepeated(frame.grey)) {  // section 7.1
+    adaptive_.Predict(filter_, dt, coasting_s_);
+    Update({});
+    start_.Add(frame.frame.stamp_ns, filter_.answer(), scale_);
+    last_stamp_ns_ = frame.frame.stamp_ns;
+    return views_.clear();
+  }
   ++frames_;
   const auto associate = [&](const MotionInput& input) {
     since_update_.input = input;
@@ -110,7 +116,7 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
   Association association;
   if (params_.motion.adaptive) {
     association = adaptive_.PredictAndAssociate(
-        filter_, dt, coasting_s, frame.grey, associate,
+        filter_, dt, coasting_s_, frame.grey, associate,
         [&](const Association& now, bool failed) { return Relocalise(frame, now, failed); });
   } else {
     filter_.Predict(dt);  // line 2: (6)-(9), (12), (13)
@@ -127,6 +133,7 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
   if (!association.matches.empty()) known_before_loss_ = pose_before_loss_;
   const Eigen::Vector3d previous = filter_.belief().pose.p_WC;
   Update(association.matches);  // lines 4-11: (15)-(17), (37)-(43)
+  coasting_s_ = association.matches.empty() ? coasting_s_ + dt : 0;
   // The prior does not have the velocity in the first frame; the second measures it.
   if (frames_ == 1)
     for (LandmarkRecord& record : records_) SetFirstVelocity(record, filter_.belief().velocity);

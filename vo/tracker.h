@@ -82,6 +82,7 @@ class Tracker {
   Matrix6 pose_before_loss_ = Matrix6::Zero(), known_before_loss_ = Matrix6::Zero();
   std::optional<std::int64_t> last_stamp_ns_;
   SinceUpdate since_update_;
+  double coasting_s_ = 0;  // time from the first frame without matches to the last frame, repeated images left out
   NoiseLevel noise_level_;
   ExposureEstimate exposure_;
   AdaptiveAssociation adaptive_;

@@ -255,6 +255,14 @@ void BriskImage::Set(const cv::Mat& grey) {
   cv::integral(padded, integral_, CV_32S);
 }
 
+void BriskImage::Prefetch(const Eigen::Vector2i& pixel, int reach) const {
+  constexpr int kPerLine = 16;  // sums in a line of the cache
+  const int left = std::max(pixel.x() - reach, 0), right = std::min(pixel.x() + reach, width_);
+  const int bottom = std::min(pixel.y() + reach, height_);
+  for (int y = std::max(pixel.y() - reach, 0); y <= bottom; ++y)
+    for (int x = left; x <= right; x += kPerLine) __builtin_prefetch(SumsAt(integral_, x, y));
+}
+
 bool BriskImage::Describable(const Eigen::Vector2i& pixel, const BriskSampler& sampler) const {
   const int margin = sampler.margin();
   return pixel.x() >= margin && pixel.y() >= margin && pixel.x() < width_ - margin && pixel.y() < height_ - margin;

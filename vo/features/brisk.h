@@ -55,6 +55,8 @@ struct PixelRun {
 class BriskImage {
  public:
   void Set(const cv::Mat& grey);  // CV_8UC1, copied
+  // Starts to load what lies within `reach` [px] of a pixel into the cache.
+  void Prefetch(const Eigen::Vector2i& pixel, int reach) const;
   bool Describable(const Eigen::Vector2i& pixel, const BriskSampler& sampler) const;
   // Throws std::invalid_argument where the pixel is not describable.
   Descriptor Describe(const Eigen::Vector2i& pixel, const BriskSampler& sampler) const;

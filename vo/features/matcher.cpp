@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vo/features/motion_blur.h"
+
 namespace vo {
 namespace {
 
@@ -14,6 +16,7 @@ constexpr double kMaxZoom = 4;         // a larger predicted change of scale is 
 constexpr double kSearchSigmas = 2.5;  // half-width of the uncertainty ellipse that is searched
 constexpr double kDescribed_px = 2.5;  // streak that changes the descriptor
 constexpr double kOfStreak = 0.05;     // sigma along a streak, of its length
+constexpr int kPrefetched_px = 20;     // of the next search
 constexpr double kMaxPx = 1 << 16;     // no image is wider
 
 Eigen::Vector2i Rounded(const Eigen::Vector2d& p) {
@@ -60,13 +63,21 @@ void SearchRegion(const SearchRequest& request, int side, const FeatureParams& p
   }
 }
 
-// Descriptor of the first view, blurred.
-Descriptor Blurred(const Appearance& appearance, const Eigen::Vector2d& streak, const BriskSampler& sampler) {
-  if (sampler.margin() > Patch::kRadius) return appearance.descriptor;
-  Patch patch = Blurred(appearance.patch, streak);
+Descriptor DescriptorOf(Patch& patch, const BriskSampler& sampler) {
   BriskImage image;
   image.Set(cv::Mat(Patch::kSide, Patch::kSide, CV_8UC1, patch.grey.data()));
   return image.Describe({Patch::kRadius, Patch::kRadius}, sampler);
+}
+
+// First view at the blur of the present image along `streak` [px of the present image].
+Appearance AtBlur(const SearchRequest& request, const Eigen::Vector2d& streak, const BriskSampler& sampler) {
+  if (std::abs(request.warp.determinant()) <= kLeastWarp) return *request.appearance;
+  const Eigen::Vector2d in_patch = request.warp.inverse() * streak;
+  if (BlurSamples(in_patch).count() == 1) return *request.appearance;
+  Appearance blurred{request.appearance->descriptor, Blurred(request.appearance->patch, in_patch)};
+  if (streak.norm() > kDescribed_px && sampler.margin() <= Patch::kRadius)
+    blurred.descriptor = DescriptorOf(blurred.patch, sampler);
+  return blurred;
 }
 
 // Covariance of a blurred match: its streak is neither uniform nor straight, and predicted.
@@ -97,13 +108,12 @@ std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& request
   std::vector<PixelRun> region;
   for (std::size_t i = 0; i < requests.size(); ++i) {
     const SearchRequest& request = requests[i];
+    if (i + 1 < requests.size()) brisk.Prefetch(Rounded(requests[i + 1].predicted), kPrefetched_px);
     std::optional<FoundFeature>& found = results[i].found;
     const BriskSampler sampler(PatternMap(request.warp, params));
     results[i].in_sight = brisk.Describable(Rounded(request.predicted), sampler);
     const RelativeBlur blur = RelativeBlur::Of(exposure_s * request.first_rate, exposure_s * request.rate);
-    const bool blurred = blur.of_patch.norm() > kDescribed_px && std::abs(request.warp.determinant()) > kLeastWarp;
-    const Descriptor descriptor = blurred ? Blurred(*request.appearance, request.warp.inverse() * blur.of_patch, first)
-                                          : request.appearance->descriptor;
+    const Appearance view = AtBlur(request, blur.of_patch, first);
     int searched = 0;
     for (const int wanted :
          {params.search_first_px, params.search_normal_px, params.search_wide_px, LargestWindow(request, params)}) {
@@ -112,15 +122,14 @@ std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& request
       const bool quick = searched == 0 && side < params.search_normal_px;
       searched = side;
       SearchRegion(request, side, params, region);
-      const auto best = brisk.Nearest(descriptor, sampler, region);
+      const auto best = brisk.Nearest(view.descriptor, sampler, region);
       if (!best || best->distance >= max_distance || (quick && OnBorder(best->pixel, Rounded(request.predicted), side)))
         continue;
       found = {best->pixel.cast<double>(), constant};
       break;
     }
     if (!found || !params.subpixel) continue;
-    const auto refined =
-        Register(request.appearance->patch, request.warp, smooth, found->pixel, kMaxRefinementPx, blur);
+    const auto refined = Register(view.patch, request.warp, smooth, found->pixel, kMaxRefinementPx, blur.of_image);
     if (!refined || refined->correlation <= kMinCorrelation) continue;
     found->pixel = refined->pixel;
     if (params.noise == MatchNoise::constant) continue;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "vo/features/motion_blur.h"
+
 namespace vo {
 namespace {
 
@@ -42,41 +44,17 @@ Window SampleWindow(const std::uint8_t* data, std::size_t stride, const Eigen::V
   return window;
 }
 
-// Samples whose mean is the blur along `streak`: one per pixel; a single one below 0.7 px.
-class BlurSamples {
- public:
-  static constexpr int kMost = 32;
-  explicit BlurSamples(const Eigen::Vector2d& streak)
-      : streak_(streak), count_(std::clamp(static_cast<int>(std::ceil(streak.norm() + 0.3)), 1, kMost)) {}
-  int count() const { return count_; }
-  Eigen::Vector2d offset(int k) const { return ((k + 0.5) / count_ - 0.5) * streak_; }
-
- private:
-  Eigen::Vector2d streak_;
-  int count_;
-};
-
-// Patch warped to the present view and blurred there, one pixel wider than the window for the gradient.
-// False: it leaves the patch.
-bool WarpPatch(const Patch& patch, const Eigen::Matrix2d& warp, const Eigen::Vector2d& streak, WideWindow& out) {
+// Patch warped to the present view, one pixel wider than the window for the gradient. False: it leaves the patch.
+bool WarpPatch(const Patch& patch, const Eigen::Matrix2d& warp, WideWindow& out) {
   constexpr int kReach = kWindowRadius + 1;
   const Eigen::Matrix2d to_first = warp.inverse();
   const Eigen::Vector2d farthest = kReach * to_first.cwiseAbs().rowwise().sum();  // over the four corners
-  const Eigen::Vector2d blurred = to_first * streak;
-  if (!(farthest.maxCoeff() < kReachOfWarp && (farthest + blurred.cwiseAbs() / 2).maxCoeff() < Patch::kRadius))
-    return false;
-  const BlurSamples samples(blurred);
+  if (!(farthest.maxCoeff() < kReachOfWarp)) return false;
   for (int v = -kReach; v <= kReach; ++v) {
     const Eigen::Vector2d row = v * to_first.col(1) + Eigen::Vector2d::Constant(Patch::kRadius);
-    for (int u = -kReach; u <= kReach; ++u) {
-      double sum = 0;
-      for (int k = 0; k < samples.count(); ++k) {
-        const Eigen::Vector2d offset = samples.offset(k);
-        sum += Bilinear(patch.grey.data(), Patch::kSide, row.x() + u * to_first(0, 0) + offset.x(),
-                        row.y() + u * to_first(1, 0) + offset.y());
-      }
-      out(v + kReach, u + kReach) = sum / samples.count();
-    }
+    for (int u = -kReach; u <= kReach; ++u)
+      out(v + kReach, u + kReach) =
+          Bilinear(patch.grey.data(), Patch::kSide, row.x() + u * to_first(0, 0), row.y() + u * to_first(1, 0));
   }
   return true;
 }
@@ -167,48 +145,12 @@ Patch CutPatch(const cv::Mat& smooth, const Eigen::Vector2i& centre) {
   return patch;
 }
 
-RelativeBlur RelativeBlur::Of(const Eigen::Vector2d& first, const Eigen::Vector2d& now) {
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> moments;
-  moments.computeDirect(now * now.transpose() - first * first.transpose());
-  const Eigen::Vector2d streaks = moments.eigenvalues().cwiseAbs().cwiseSqrt();
-  return {streaks[1] * moments.eigenvectors().col(1), streaks[0] * moments.eigenvectors().col(0)};
-}
-
-Patch Blurred(const Patch& patch, const Eigen::Vector2d& streak) {
-  constexpr int kBeyond = BlurSamples::kMost / 2 + 1, kWide = Patch::kSide + 2 * kBeyond + 2;
-  constexpr int kRow = (Patch::kSide + 7) / 8 * 8;  // whole vectors
-  float wide[kWide][kWide];                         // the patch with its border repeated
-  for (int y = 0; y < kWide; ++y)
-    for (int x = 0; x < kWide; ++x)
-      wide[y][x] = patch.grey[static_cast<std::size_t>(std::clamp(y - kBeyond, 0, Patch::kSide - 1) * Patch::kSide +
-                                                       std::clamp(x - kBeyond, 0, Patch::kSide - 1))];
-  const BlurSamples samples(streak * std::min(1.0, BlurSamples::kMost / streak.norm()));
-  float sum[Patch::kSide][kRow] = {};
-  for (int k = 0; k < samples.count(); ++k) {  // bilinear: the same weights for all pixels
-    const Eigen::Vector2d at = samples.offset(k) + Eigen::Vector2d::Constant(kBeyond);
-    const int left = static_cast<int>(at.x()), top = static_cast<int>(at.y());
-    const float fx = static_cast<float>(at.x() - left), fy = static_cast<float>(at.y() - top);
-    for (int y = 0; y < Patch::kSide; ++y) {
-      const float *above = wide[top + y] + left, *below = wide[top + y + 1] + left;
-      for (int x = 0; x < kRow; ++x)
-        sum[y][x] +=
-            (1 - fy) * ((1 - fx) * above[x] + fx * above[x + 1]) + fy * ((1 - fx) * below[x] + fx * below[x + 1]);
-    }
-  }
-  Patch blurred;
-  const float scale = 1.0F / static_cast<float>(samples.count());
-  for (int y = 0, i = 0; y < Patch::kSide; ++y)
-    for (int x = 0; x < Patch::kSide; ++x, ++i)
-      blurred.grey[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(sum[y][x] * scale + 0.5F);
-  return blurred;
-}
-
 std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& warp, const cv::Mat& smooth,
-                                     const Eigen::Vector2d& start, double max_shift_px, const RelativeBlur& blur) {
+                                     const Eigen::Vector2d& start, double max_shift_px, const Eigen::Vector2d& streak) {
   WideWindow wide;
-  if (!(std::abs(warp.determinant()) > kLeastWarp) || !WarpPatch(patch, warp, blur.of_patch, wide)) return std::nullopt;
-  const BlurSamples samples(blur.of_image);
-  const Eigen::Vector2d reach = blur.of_image.cwiseAbs() / 2 + Eigen::Vector2d::Constant(kWindowRadius);
+  if (!(std::abs(warp.determinant()) > kLeastWarp) || !WarpPatch(patch, warp, wide)) return std::nullopt;
+  const BlurSamples samples(streak);
+  const Eigen::Vector2d reach = streak.cwiseAbs() / 2 + Eigen::Vector2d::Constant(kWindowRadius);
 
   Window templ, gradient_x, gradient_y;
   for (int v = 0, i = 0; v < kWindow; ++v)

@@ -25,19 +25,6 @@ struct Patch {
 // `centre`: at least kRadius from the edge of the image.
 Patch CutPatch(const cv::Mat& smooth, const Eigen::Vector2i& centre);
 
-// Blur by motion in which two views differ. A streak s, the displacement in the image during the exposure, has the
-// second moments s s' / 12. Those of the present view less those of the first have one eigenvalue that is not negative,
-// and one that is not positive: their streaks. The first view blurred along the one, the present view along the other
-// are alike.
-struct RelativeBlur {
-  Eigen::Vector2d of_patch = Eigen::Vector2d::Zero(), of_image = Eigen::Vector2d::Zero();  // [px] in the present image
-
-  static RelativeBlur Of(const Eigen::Vector2d& first, const Eigen::Vector2d& now);
-};
-
-// `streak`: in pixels of the patch, cut to 32. Beyond its edge the patch is constant.
-Patch Blurred(const Patch& patch, const Eigen::Vector2d& streak);
-
 struct Registration {
   Eigen::Vector2d pixel;
   double correlation = 0;  // normalised cross-correlation
@@ -50,8 +37,9 @@ constexpr double kLeastWarp = 0.1;
 
 // `warp` = d(present pixel)/d(pixel of the first view). Along a straight edge (aperture problem) `start` is kept. None
 // when the window leaves the image or the patch, the patch has no texture, the iteration does not converge or moves
-// beyond `max_shift_px`.
+// beyond `max_shift_px`. `streak`: along which the image is blurred first [px].
 std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& warp, const cv::Mat& smooth,
-                                     const Eigen::Vector2d& start, double max_shift_px, const RelativeBlur& blur = {});
+                                     const Eigen::Vector2d& start, double max_shift_px,
+                                     const Eigen::Vector2d& streak = Eigen::Vector2d::Zero());
 
 }  // namespace vo

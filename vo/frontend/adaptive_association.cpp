@@ -76,11 +76,27 @@ struct Trial {
 
 }  // namespace
 
+MotionInput AdaptiveAssociation::Input(const Filter& filter, double coasting_s) const {
+  MotionInput input = noise_.Input(filter.answer().belief.pose.q_WC);
+  input.coasting_s = coasting_s;
+  return input;
+}
+
+void AdaptiveAssociation::Predict(Filter& filter, double dt, double coasting_s) const {
+  filter.Predict(dt, Input(filter, coasting_s));
+}
+
+bool AdaptiveAssociation::IsRepeated(const cv::Mat& grey) {
+  constexpr int kMost = 2;  // in a row
+  const bool same = grey.size() == last_.size() && cv::norm(grey, last_, cv::NORM_INF) == 0;
+  repetitions_ = same ? repetitions_ + 1 : 0;
+  return same && repetitions_ <= kMost;
+}
+
 Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, double coasting_s, const cv::Mat& grey,
                                                      const std::function<Association(const MotionInput&)>& associate,
                                                      const Relocalise& relocalise) {
-  MotionInput first = noise_.Input(filter.answer().belief.pose.q_WC);
-  first.coasting_s = coasting_s;
+  const MotionInput first = Input(filter, coasting_s);
   filter.Predict(dt, first);
   Trial trial{filter, associate, first, associate(first)};
   const auto failed = [&] { return Failed(trial.association, trial.initialising()); };

@@ -25,13 +25,23 @@ class AdaptiveAssociation {
                                   const std::function<Association(const MotionInput&)>& associate,
                                   const Relocalise& relocalise);
 
+  // Prediction of a frame that is not associated.
+  void Predict(Filter& filter, double dt, double coasting_s) const;
+
+  // Whether `grey` is the image that was kept last, pixel by pixel: a camera or recording has repeated it, and it
+  // measures nothing. Not more than twice in a row: a camera that stands still, without noise, shows the same.
+  bool IsRepeated(const cv::Mat& grey);
+
   // `grey`: of a frame whose pose is not integrated out, being that of matches or of new landmarks.
   void Keep(const cv::Mat& grey) { grey.copyTo(last_); }  // the memory is the caller's
 
  private:
+  MotionInput Input(const Filter& filter, double coasting_s) const;
+
   Camera camera_;
   AdaptiveNoise noise_;
   cv::Mat last_;  // grey image of the last pose
+  int repetitions_ = 0;
 };
 
 }  // namespace vo

@@ -73,9 +73,9 @@ SearchRequest Refined(const AssociationContext& in, const PoseGaussian& pose, co
 }
 
 // Coarse-to-fine: the coarse features in wide windows about the prediction, the others in small ones about the coarse
-// pose.
+// pose. `requests` become those of the small windows.
 Results SearchCoarseToFine(const AssociationContext& in, const std::vector<Candidate>& candidates,
-                           const std::vector<SearchRequest>& requests) {
+                           std::vector<SearchRequest>& requests) {
   const std::vector<std::size_t> coarse = SelectCoarseFeatures(candidates, in.records, in.camera, in.params.features);
   if (coarse.empty()) return SearchAll(in, requests);
 
@@ -101,7 +101,8 @@ Results SearchCoarseToFine(const AssociationContext& in, const std::vector<Candi
   std::vector<SearchRequest> fine;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (is_coarse[i]) continue;
-    fine.push_back(pose ? Refined(in, *pose, motion, candidates[i], requests[i]) : requests[i]);
+    if (pose) requests[i] = Refined(in, *pose, motion, candidates[i], requests[i]);
+    fine.push_back(requests[i]);
   }
   const Results fine_results = SearchAll(in, fine);
   for (std::size_t i = 0, k = 0; i < candidates.size(); ++i)
@@ -202,7 +203,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
     FeatureView view{records[c.landmark].id,
                      c.pixel,
                      found ? found->pixel : c.pixel,
-                     requests[i].S,
+                     c.InnovationCovariance(params.features.sigma_px),
                      found ? Eigen::Matrix2d(c.inflation * found->noise) : Eigen::Matrix2d::Zero(),
                      FeatureView::Status::missed};
     if (found) {

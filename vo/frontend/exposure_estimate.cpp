@@ -1,7 +1,10 @@
 #include "vo/frontend/exposure_estimate.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "vo/features/motion_blur.h"
 
 namespace vo {
 namespace {
@@ -9,10 +12,10 @@ namespace {
 constexpr double kStep = 4e-3;      // of the candidates [s]
 constexpr double kShowing = 16e-3;  // exposure at which a match has to be blurred by ...
 constexpr double kLeast_px = 2, kMost_px = 12;
-constexpr std::size_t kPerFrame = 16;
-constexpr double kKept = 0.98;      // of the past, from frame to frame
-constexpr double kEnough = 30;      // matches
-constexpr double kSignificant = 3;  // standard errors
+constexpr std::size_t kPerFrame = 16, kPerFrameOnceKnown = 4;
+constexpr double kKept = 0.9985;              // of the past, from match to match
+constexpr double kEnough = 30, kKnown = 200;  // matches
+constexpr double kSignificant = 3;            // standard errors
 constexpr double kMaxShift_px = 1.5;
 constexpr double kUnlike = 0.6;  // correlation of a patch that is not registered
 constexpr double kNoise = 0.02;  // of the correlation, by noise alone
@@ -28,25 +31,23 @@ void ExposureEstimate::Learn(std::span<const MovingMatch> matches, std::span<con
     if (px > kLeast_px && px < kMost_px) showing.push_back(&match);
   }
   if (showing.empty()) return;
-  weight_ *= kKept;
-  for (double& sum : sum_) sum *= kKept;
-  for (double& square : squares_) square *= kKept;
-  const std::size_t stride = (showing.size() + kPerFrame - 1) / kPerFrame;
+  const std::size_t wanted = weight_ < kKnown ? kPerFrame : kPerFrameOnceKnown;
+  const std::size_t stride = (showing.size() + wanted - 1) / wanted;
   for (std::size_t i = 0; i < showing.size(); i += stride) {
     const MovingMatch& match = *showing[i];
     double of_none = 0;
     for (int k = 0; k < kCandidates; ++k) {
       const double exposure = k * kStep;
-      const auto registered =
-          Register(records[match.landmark].appearance.patch, match.warp, smooth, match.pixel, kMaxShift_px,
-                   RelativeBlur::Of(exposure * match.first_rate, exposure * match.rate));
+      const RelativeBlur blur = RelativeBlur::Of(exposure * match.first_rate, exposure * match.rate);
+      const Patch patch = Blurred(records[match.landmark].appearance.patch, match.warp.inverse() * blur.of_patch);
+      const auto registered = Register(patch, match.warp, smooth, match.pixel, kMaxShift_px, blur.of_image);
       const double correlation = registered ? std::max(kUnlike, registered->correlation) : kUnlike;
       const double loss = std::log(1 + kNoise - correlation);
       if (k == 0) of_none = loss;
-      sum_[k] += loss - of_none;
-      squares_[k] += (loss - of_none) * (loss - of_none);
+      sum_[k] = kKept * sum_[k] + loss - of_none;
+      squares_[k] = kKept * squares_[k] + (loss - of_none) * (loss - of_none);
     }
-    ++weight_;
+    weight_ = kKept * weight_ + 1;
   }
   seconds_ = 0;
   if (weight_ < kEnough) return;

@@ -99,11 +99,8 @@ std::vector<Eigen::Vector2d> LimitToBudget(std::vector<Candidate>& candidates, c
 SearchRequest RequestFor(const AssociationContext& in, const Candidate& candidate) {
   const Eigen::Vector3d estimate = in.reference.ModeOf(candidate.landmark);
   const Projection view = Project({in.prediction().mean, in.reference.AnchorOf(candidate.landmark)}, estimate);
-  const double sigma_px = in.params.features.sigma_px;
   SearchRequest request{&in.records[candidate.landmark].appearance, candidate.pixel,
-                        candidate.lens * candidate.prediction.covariance * candidate.lens.transpose() +
-                            sigma_px * sigma_px * Eigen::Matrix2d::Identity(),
-                        Eigen::Matrix2d::Identity()};
+                        candidate.InnovationCovariance(in.params.features.sigma_px), Eigen::Matrix2d::Identity()};
   if (!view.in_front) return request;
   const Eigen::Matrix2d from_first = candidate.lens * view.J_landmark.leftCols<2>();
   request.warp = from_first * in.camera.LensJacobian(estimate.head<2>()).inverse();

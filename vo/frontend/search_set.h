@@ -46,6 +46,11 @@ struct Candidate {
   Eigen::Matrix2d lens;        // d pixel / d(plane z = 1)
   Eigen::Vector2d rate;        // d prediction.z / dt [1/s]
   double inflation = 1;        // factor on a match's covariance, from the landmark's residual history
+
+  // Innovation covariance [px^2] of a match with `sigma_px`.
+  Eigen::Matrix2d InnovationCovariance(double sigma_px) const {
+    return lens * prediction.covariance * lens.transpose() + sigma_px * sigma_px * Eigen::Matrix2d::Identity();
+  }
 };
 
 // Landmarks whose score, viewing angle, baseline and predicted pixel (at least `border_px` from the edge) permit a

@@ -1,5 +1,7 @@
 // Patches at equal blur, and the exposure time that the blur of images shows.
 
+#include "vo/features/motion_blur.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +10,6 @@
 
 #include "tests/unit/vo/draws.h"
 #include "tests/unit/vo/texture.h"
-#include "vo/features/patch.h"
 #include "vo/frontend/exposure_estimate.h"
 
 namespace {
@@ -65,7 +66,9 @@ TEST(MotionBlur, PatchesAreRegisteredAtEqualBlur) {
     const Vector2d shift(draws.Symmetric() / 2, draws.Symmetric() / 2);
     const vo::Patch patch = vo::CutPatch(Exposed(texture, Vector2d::Zero(), first), middle.cast<int>());
     const cv::Mat image = Exposed(texture, -shift, now);
-    if (const auto at = vo::Register(patch, Matrix2d::Identity(), image, middle, 1.5, vo::RelativeBlur::Of(first, now)))
+    const vo::RelativeBlur blur = vo::RelativeBlur::Of(first, now);
+    if (const auto at =
+            vo::Register(Blurred(patch, blur.of_patch), Matrix2d::Identity(), image, middle, 1.5, blur.of_image))
       ++found, sum += (at->pixel - middle - shift).squaredNorm();
     if (const auto at = vo::Register(patch, Matrix2d::Identity(), image, middle, 1.5))
       ++found_as_they_are, sum_as_they_are += (at->pixel - middle - shift).squaredNorm();

@@ -249,8 +249,28 @@ TEST(Odometry, CoastsOverBlankFramesAndRecovers) {
   EXPECT_LT(outcome.rms, 0.3 * outcome.path_extent);
 }
 
-// A camera that turns on the spot, and takes 26 of 33 ms to read its rows, sees the walls bent, which looks like motion. With the true readout
-// time the estimate stays nearly where the camera is; with the opposite sign it goes farther off.
+// Image 35 shows what image 34 does: the camera has moved on as before. The third repetition in a row is measured.
+TEST(Odometry, PredictsWhereAnImageIsRepeated) {
+  constexpr int kRepeated = 35, kStill = 40, kFrames = 44;
+  const vo_test::Texture texture(4, 40.0, 24);
+  vo::Params params = SmallImageParams();
+  params.motion.adaptive = true;
+  vo::Odometry odometry(kCamera, params, KnownStart(), 1);
+  Vector3d last = KnownStart().pose.p_WC, last_step = Vector3d::Zero();
+  for (int k = 0; k < kFrames; ++k) {
+    const int shown = k == kRepeated ? k - 1 : std::min(k, kStill);
+    const vo::Estimate e = odometry.Track({k * kFrameNs, ViewFrom(TruthAt(shown), texture)});
+    if (k == 0) continue;
+    EXPECT_EQ(e.diagnostics.searched == 0, k == kRepeated || k == kStill + 1 || k == kStill + 2) << k;
+    const Vector3d step = e.pose.p_WC - last;
+    if (k >= kRepeated && k < kStill) {
+      EXPECT_LT((step - last_step).norm(), 0.5 * last_step.norm()) << k;  // 1 at the image as it is
+    }
+    last = e.pose.p_WC;
+    last_step = step;
+  }
+}
+
 // Half a second of darkness, in which the camera turns away and comes back by another way: the landmarks are recognised,
 // and one trajectory of one scale goes on.
 TEST(Odometry, FindsItsPlaceAgain) {
@@ -284,6 +304,8 @@ TEST(Odometry, FindsItsPlaceAgain) {
   EXPECT_LT(RmsAligned(x.leftCols(n), y.leftCols(n)), 0.01);
 }
 
+// A camera that turns on the spot, and takes 26 of 33 ms to read its rows, sees the walls bent, which looks like motion.
+// With the true readout time the estimate stays nearly where the camera is; with the opposite sign it goes farther off.
 TEST(Odometry, StraightensARollingShutter) {
   const auto turned = [](double k) {
     const double t = k / 30.0;
