@@ -1,4 +1,5 @@
-// The filter against a world of points drawn without its own code. Quick twins of the study's figures (docs/odometry.md).
+// The filter against a world of points drawn without its own code. Quick twins of the study's figures
+// (docs/odometry.md).
 
 #include "tests/consistency/point_world.h"
 
@@ -66,8 +67,9 @@ TEST(PointWorld, EqualSeedsGiveEqualBeliefsAndOthersDoNot) {
   EXPECT_NE(a.beliefs.back().pose.p_WC, c.beliefs.back().pose.p_WC);
 }
 
-// Consistency of one step, where everything is drawn from the filter's own prior: pose error and velocity error after the first
-// update, over independent worlds. NEES of 12 degrees of freedom; with N runs the sum is chi-square with 12 N.
+// Consistency of one step, where everything is drawn from the filter's own prior: pose error and velocity error after
+// the first update, over independent worlds. NEES of 12 degrees of freedom; with N runs the sum is chi-square with 12
+// N.
 struct Nees {
   double sum = 0;
   int runs = 0;
@@ -84,7 +86,8 @@ Nees FirstStepNees(int runs, double covariance_factor) {
                         d++);
     };
     auto draw = normal;
-    // Truth: velocity, motion and landmarks from the prior (landmarks well known, so that linear-Gaussian theory holds).
+    // Truth: velocity, motion and landmarks from the prior (landmarks well known, so that linear-Gaussian theory
+    // holds).
     vo::FilterPrior prior;
     prior.velocity_covariance = 0.04 * vo::Matrix6::Identity();
     vo::Vector6 velocity;
@@ -147,7 +150,8 @@ TEST(PointWorld, CoastsThroughABlackout) {
   EXPECT_LT(Ate(world, result), 0.03);
 }
 
-// RB2-PF keeps the velocity as a Gaussian; RB-PF samples it, and its answer carries the sampling noise of a few particles.
+// RB2-PF keeps the velocity as a Gaussian; RB-PF samples it, and its answer carries the sampling noise of a few
+// particles.
 TEST(PointWorld, FilteredVelocityBeatsSampled) {
   const auto angular_rate_error = [](vo::Sampled sampled) {  // RMS against the central difference of truth [rad/s]
     vo::Params params = OnePixel();

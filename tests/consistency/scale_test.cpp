@@ -1,4 +1,5 @@
-// The scale as an unknown: worlds whose inverse depths share a factor that the filter is told the spread of, and no more.
+// Scale as an unknown: worlds whose inverse depths share a factor of which the filter knows the standard deviation
+// alone.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -20,7 +21,7 @@ using namespace vobench;
 constexpr int kRuns = 30;
 constexpr std::size_t kPosition = 0;  // of evaluation::kStateBlocks
 
-// Mean over runs, at the last frame, of the position's NEES per degree of freedom. The factor's log has a spread of 0.3 in the world.
+// Mean NEES of the position per degree of freedom at the last frame. Standard deviation of the log factor: 0.3.
 double Anees(const char* told) {
   Experiment experiment =
       ReadExperiment(VOBENCH_SOURCE_DIR "/scenes/points.yaml", {{"time.duration", "0.6 s"},
@@ -46,8 +47,8 @@ double Anees(const char* told) {
   return evaluation::Summarise(nees).mean;
 }
 
-// False alarm 1e-3 as far as the errors are Gaussian: the mean over independent runs is chi-square. Those of a scale are log-normal; with a
-// spread of 0.3 the variance of a squared error is then a third larger, and the false alarm below 5e-3.
+// False alarm below 5e-3: 1e-3 for Gaussian errors, whose sum is chi-square. Errors of a scale are log-normal; with a
+// standard deviation of 0.3 the variance of their squares is a third larger.
 TEST(Scale, UnknownScaleIsPartOfTheCovariance) {
   const evaluation::Band band = evaluation::Chi2MeanBand(3, kRuns, 0.999);
   const double unknown = Anees("0.3"), known = Anees("0");

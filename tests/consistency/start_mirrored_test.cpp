@@ -1,4 +1,4 @@
-// A start of hardly known velocity: the window over the first frames finds the way that the camera went, and not its mirror image.
+// Start with an uncertain velocity: the solution of the window is the camera's path, not its mirror image.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kWorlds = 200, kStartFrames = 10;
 
-// A camera of hardly known velocity that circles what it looks at, for kStartFrames: where it went by the estimate, and in truth.
+// Position after kStartFrames of a camera with uncertain velocity that circles what it looks at.
 struct Start {
   Eigen::Vector3d estimate, truth;
 };
@@ -40,8 +40,8 @@ Start PlayStart(unsigned world, const vo::FilterParams& params, double noise_px,
   return {filter.belief().pose.p_WC, camera.p_WC};
 }
 
-// In the first frames, seen from afar, a scene and its mirror image (near and far exchanged, the camera going the other way) look alike. Counted
-// are the worlds in which the estimate went the other way.
+// Worlds in which the estimate has the opposite direction: over few frames, from afar, a scene and its mirror image
+// (near and far exchanged, opposite motion) have nearly the same views.
 int StartsMirrored(const vo::FilterParams& params) {
   int mirrored = 0;
   for (unsigned world = 1; world <= kWorlds; ++world) {
@@ -51,7 +51,7 @@ int StartsMirrored(const vo::FilterParams& params) {
   return mirrored;
 }
 
-// The lag's window and the start's look for the better solution alike; sampling from the first frame on has no way back.
+// The windows of the lag and of the start compare both solutions. Control: sampling from the first frame on.
 TEST(Start, IsNotMirrored) {
   vo::FilterParams params = vo_test::SampledAtOnce();
   params.particles = 1;
@@ -67,8 +67,8 @@ TEST(Start, IsNotMirrored) {
   EXPECT_GT(at_once, 2 * window);
 }
 
-// A wall seen face on: what explains it nearly as well is a deep scene with little parallax, whose depths stay unknown, and evidence pays for
-// that (with it 129 of these 200 went wrong; with 0.3 px of noise, and depths within 3 % of each other, 186, and 6 as it is).
+// Wall seen face on. The other explanation is a deep scene with little parallax and unknown depths, which the evidence
+// would prefer: with it 129 of these 200 worlds are wrong.
 TEST(Start, OfAWall) {
   vo::FilterParams params = vo_test::SampledAtOnce();
   params.particles = 1;

@@ -1,5 +1,5 @@
-// A rolling shutter in the first second: what rows have seen is told anew in every frame, by the velocities that the start has by then. Against
-// exact views of a camera that moves while it reads its rows.
+// Rolling shutter during the start: rows are corrected again in every frame, by the present velocities of the window.
+// Reference: exact views of a camera that moves while it reads its rows.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ vo::Pose PoseAt(double t) {
   return {{0.1 * t, 0.05 * std::sin(2 * t), 0.02 * t}, vo::Exp({0.15 * std::sin(3 * t), -0.2 * t, 0.1 * t})};
 }
 
-// Where a camera sees it that exposes the row at height y of its field of view kReadout y / kHeight after the stamp.
+// Image in a camera that exposes the row at height y of its field of view kReadout y / kHeight after the stamp.
 vo::RowView Seen(const Vector3d& point, double stamp) {
   vo::RowView row;
   for (int i = 0; i < 30; ++i) {
@@ -32,8 +32,8 @@ vo::RowView Seen(const Vector3d& point, double stamp) {
   return row;
 }
 
-// Of the orientation at the end of the start's window: squared error in standard deviations, as the filter has them. All is told as if the camera
-// stood still while it read its rows; `rows`: with what makes it possible to tell it anew.
+// NEES of the orientation at the end of the start's window, of matches as seen by a camera that stands still during
+// the readout; `rows`: with the row times, by which they are corrected.
 double Error(unsigned world, bool rows) {
   vo_test::Draws draws(world);
   vo::ParticleFilter filter = vo_test::StartingFilter(world);
@@ -64,8 +64,8 @@ double Error(unsigned world, bool rows) {
   return error.tail<3>().dot(P.inverse() * error.tail<3>());
 }
 
-// Three degrees of freedom: of 20 worlds of the filter's own model one is beyond 25 once in 3000 times. Without the times of the rows each of the
-// first five is beyond 1000.
+// Chi-square with three degrees of freedom: one of 20 worlds is beyond 25 with a probability of 1/3000. Control:
+// without row times each of the first five worlds is beyond 1000.
 TEST(StartRows, FollowTheVelocity) {
   for (unsigned world = 1; world <= kWorlds; ++world) {
     EXPECT_LT(Error(world, true), 25) << world;

@@ -1,5 +1,5 @@
-// The start's window finds its path anew in every frame, and with it its scale, which nothing but the priors of the depths tells. What the
-// filter says of that (FilterAnswer::scale_change) lets answers keep one scale.
+// Scale during the start: each solution of the window has a scale of its own, known by the priors of the depths alone.
+// FilterAnswer::scale_change brings all answers to one scale.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 constexpr int kFrames = 30, kWorlds = 10;
 constexpr double kSigma = 0.25 / 525;
 
-// From a frame of the start to its last: by how much (of its logarithm) the scale of the filter's path changed, and that of answers which keep theirs.
+// Change of the logarithm of scale from a frame of the start to its last: of the filter's path, and of the answers.
 struct Change {
   double filter = 0, answers = 0;
 };
@@ -66,7 +66,7 @@ Change Fly(double speed, double spread, int from) {
   return {Median(filter), Median(answers)};
 }
 
-// Once depths are known apart, the near ones weigh more in what the scale is than they did before: measured 0.029 and 0.184.
+// The weights of near depths in the scale grow as depths are told apart. Measured 0.029 and 0.184.
 TEST(StartScale, SpreadDepths) {
   for (const double speed : {1.0, 0.3}) {
     const Change change = Fly(speed, 0.2, 6);
@@ -75,14 +75,15 @@ TEST(StartScale, SpreadDepths) {
   }
 }
 
-// Lengths that noise has told are not kept as they are: past a wall it is the filter's next answers that are right. Measured 0.49 and 0.31.
+// Lengths that are known by noise alone are not kept: past a wall the filter's next answers are the better ones.
+// Measured 0.49 and 0.31.
 TEST(StartScale, PlaneWithLittleInformation) {
   const Change change = Fly(0.3, 0, 3);
   EXPECT_GT(change.filter, 0.2);
   EXPECT_GT(change.answers, 0.5 * change.filter);
 }
 
-// What the last frame of the window said is said once.
+// A change of scale is reported in one frame.
 TEST(StartScale, ConstantAfterTheStart) {
   vo_test::Draws draws(1);
   vo::ParticleFilter filter({}, vo::FilterParams{}, vo::LandmarkParams{}, vo::FilterPrior{}, 1);

@@ -1,4 +1,4 @@
-// How sure a map is while poses are not sampled yet: what the window's images say of a landmark counts, and so does what they leave open of the poses.
+// Uncertainty of the map in a window: it contains the measurements of the window and the covariance of its poses.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,10 +17,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The first landmark of a world of the filter's own prior, after half a second of a window: squared errors in standard deviations.
+// NEES of the first landmark of a world drawn from the filter's own prior, after half a second in a window.
 struct Scores {
   double inverse_depth = 0, place = 0;
-  double as_sampled = 0;  // of the inverse depth, by what the map said before: nothing is sampled yet
+  double as_sampled = 0;  // of the inverse depth, given the sampled poses: there are none
 };
 
 Scores Play(unsigned world) {
@@ -70,7 +70,7 @@ Scores Play(unsigned world) {
           std::pow(error / belief.inverse_depth_sigma, 2)};
 }
 
-// Sums over 200 worlds of one landmark each are chi-squared with 200 and 600 degrees of freedom: each is outside of its bounds once in 1000 times.
+// Sums over 200 worlds of one landmark each: chi-square with 200 and 600 degrees of freedom. False alarms: 1e-3 each.
 TEST(WindowMap, CovarianceMatchesErrors) {
   constexpr int kWorlds = 200;
   Scores sum;
@@ -89,9 +89,9 @@ TEST(WindowMap, CovarianceMatchesErrors) {
   EXPECT_LT(sum.as_sampled, 140.7) << "the prior of the depths must show";
 }
 
-// Sideways past sixty points: in every frame of the start's window the depths become surer (to a hundredth, by which a linearisation elsewhere may
-// differ), and not at a stroke when its poses are drawn. What all depths have in common is then the spread of eight draws: a third of what it should
-// be once in 500 times. It was the prior's 0.15 in all frames of the window, and a seventh of that behind it.
+// Sideways past sixty points: the standard deviation of depths falls in every frame of the start's window, within 1 %
+// for the change of linearisation, and not at once where its poses are sampled. The common part of the depths' error is
+// then the spread of eight draws, below a third of its value with a probability of 1/500.
 TEST(WindowMap, CovarianceShrinks) {
   const vo::Camera camera;
   vo_test::Draws draws(5);

@@ -45,8 +45,10 @@ class StreakFilter {
       weights[top + 1][left] += scale * fy * (1 - fx);
       weights[top + 1][left + 1] += scale * fy * fx;
     }
-    for (int y = -kReach; y <= kReach; ++y)
-      for (int x = -kReach; x <= kReach; ++x) {
+    const int reach_x = static_cast<int>(std::abs(streak.x()) / 2) + 1,
+              reach_y = static_cast<int>(std::abs(streak.y()) / 2) + 1;
+    for (int y = -reach_y; y <= reach_y; ++y)
+      for (int x = -reach_x; x <= reach_x; ++x) {
         const float weight = weights[static_cast<std::size_t>(y + kReach)][static_cast<std::size_t>(x + kReach)];
         if (weight > 0) taps_[static_cast<std::size_t>(count_++)] = {x, y, weight};
       }
