@@ -59,7 +59,7 @@ struct LandmarkRecord {
 
   // A landmark to relocalise by.
   bool unseen() const {
-    constexpr int kLong = 15;  // [frames]
+    constexpr int kLong = 5;  // [frames]
     return known && (lost || frames_unmatched >= kLong);
   }
 };
