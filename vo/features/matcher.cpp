@@ -69,12 +69,12 @@ Descriptor DescriptorOf(Patch& patch, const BriskSampler& sampler) {
   return image.Describe({Patch::kRadius, Patch::kRadius}, sampler);
 }
 
-// First view at the blur of the present image along `streak` [px of the present image].
-Appearance AtBlur(const SearchRequest& request, const Eigen::Vector2d& streak, const BriskSampler& sampler) {
-  if (std::abs(request.warp.determinant()) <= kLeastWarp) return *request.appearance;
-  const Eigen::Vector2d in_patch = request.warp.inverse() * streak;
-  if (BlurSamples(in_patch).count() == 1) return *request.appearance;
-  Appearance blurred{request.appearance->descriptor, Blurred(request.appearance->patch, in_patch)};
+// First view blurred along `streak` [px of the present image]; none where it serves as it is.
+std::optional<Appearance> AtBlur(const SearchRequest& request, const Eigen::Vector2d& streak,
+                                 const BriskSampler& sampler) {
+  const std::optional<Patch> patch = BlurredInView(request.appearance->patch, request.warp, streak);
+  if (!patch) return std::nullopt;
+  Appearance blurred{request.appearance->descriptor, *patch};
   if (streak.norm() > kDescribed_px && sampler.margin() <= Patch::kRadius)
     blurred.descriptor = DescriptorOf(blurred.patch, sampler);
   return blurred;
@@ -113,7 +113,8 @@ std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& request
     const BriskSampler sampler(PatternMap(request.warp, params));
     results[i].in_sight = brisk.Describable(Rounded(request.predicted), sampler);
     const RelativeBlur blur = RelativeBlur::Of(exposure_s * request.first_rate, exposure_s * request.rate);
-    const Appearance view = AtBlur(request, blur.of_patch, first);
+    const std::optional<Appearance> at_blur = AtBlur(request, blur.of_patch, first);
+    const Appearance& view = at_blur ? *at_blur : *request.appearance;
     int searched = 0;
     for (const int wanted :
          {params.search_first_px, params.search_normal_px, params.search_wide_px, LargestWindow(request, params)}) {

@@ -1,6 +1,7 @@
 #include "vo/features/motion_blur.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <array>
 #include <cstring>
 
@@ -114,6 +115,13 @@ Patch Blurred(const Patch& patch, const Eigen::Vector2d& streak) {
 #endif
   Filter(wide, filter, blurred);
   return blurred;
+}
+
+std::optional<Patch> BlurredInView(const Patch& patch, const Eigen::Matrix2d& warp, const Eigen::Vector2d& streak) {
+  if (!(std::abs(warp.determinant()) > kLeastWarp)) return std::nullopt;
+  const Eigen::Vector2d in_patch = warp.inverse() * streak;
+  if (BlurSamples(in_patch).count() == 1) return std::nullopt;
+  return Blurred(patch, in_patch);
 }
 
 }  // namespace vo

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "vo/features/patch.h"
 
@@ -37,5 +38,8 @@ class BlurSamples {
 
 // `streak`: in pixels of the patch, cut to 32. Beyond its edge the patch is constant.
 Patch Blurred(const Patch& patch, const Eigen::Vector2d& streak);
+// The same along a `streak` in the present image. `warp`: as of Register. None where the patch serves as it is: the
+// streak is a single sample, or the warp is not inverted.
+std::optional<Patch> BlurredInView(const Patch& patch, const Eigen::Matrix2d& warp, const Eigen::Vector2d& streak);
 
 }  // namespace vo

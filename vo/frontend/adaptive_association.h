@@ -17,7 +17,8 @@ class AdaptiveAssociation {
  public:
   explicit AdaptiveAssociation(const Camera& camera) : camera_(camera) {}
 
-  // Correction of the path where the frame shows landmarks that the association does not find; `failed`: its prediction.
+  // Correction of the path where the frame shows landmarks that the association does not find; `failed`: its
+  // prediction.
   using Relocalise = std::function<std::optional<PathCorrection>(const Association& association, bool failed)>;
   // `associate` is called after each prediction, with its input. `coasting_s`: time from the first frame without
   // matches to the last frame; 0 where that had matches.

@@ -1,6 +1,5 @@
 #include "vo/frontend/exposure_estimate.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -35,12 +34,14 @@ void ExposureEstimate::Learn(std::span<const MovingMatch> matches, std::span<con
   const std::size_t stride = (showing.size() + wanted - 1) / wanted;
   for (std::size_t i = 0; i < showing.size(); i += stride) {
     const MovingMatch& match = *showing[i];
+    const Patch& sharp = records[match.landmark].appearance.patch;
     double of_none = 0;
     for (int k = 0; k < kCandidates; ++k) {
       const double exposure = k * kStep;
       const RelativeBlur blur = RelativeBlur::Of(exposure * match.first_rate, exposure * match.rate);
-      const Patch patch = Blurred(records[match.landmark].appearance.patch, match.warp.inverse() * blur.of_patch);
-      const auto registered = Register(patch, match.warp, smooth, match.pixel, kMaxShift_px, blur.of_image);
+      const std::optional<Patch> blurred = BlurredInView(sharp, match.warp, blur.of_patch);
+      const auto registered =
+          Register(blurred ? *blurred : sharp, match.warp, smooth, match.pixel, kMaxShift_px, blur.of_image);
       const double correlation = registered ? std::max(kUnlike, registered->correlation) : kUnlike;
       const double loss = std::log(1 + kNoise - correlation);
       if (k == 0) of_none = loss;

@@ -75,7 +75,8 @@ double UpdateScore(double predicted_score, std::optional<double> mahalanobis_sq,
 // Kept are the permanent ones, and those that exist (lost ones: are known) and were searched for in the last
 // forget_after frames. Beyond max_landmarks, with the `wanted` that are to come, some go that the last frame did not
 // search for: of those that are not permanent the longest unsearched, of these the oldest (the first in `records`);
-// then permanent ones, so that the rest are spread evenly over the landmarks that were ever begun, and so over the path.
+// then permanent ones, so that the rest are spread evenly over the landmarks that were ever begun, and so over the
+// path.
 std::vector<bool> LandmarksToKeep(std::span<const LandmarkRecord> records, std::size_t wanted,
                                   const LandmarkParams& landmark, const ScoreParams& score);
 

@@ -197,8 +197,8 @@ double ScaledRms(const std::vector<Vector3d>& x) {
   return std::sqrt((yy - xy * xy / xx) / static_cast<double>(x.size()));
 }
 
-// The frame that ends the start gives all its poses anew, one for each frame whether its first frame was processed again
-// (rolling shutter) or not; no other frame does, and no other system has any.
+// The frame that ends the start gives all its poses anew, one for each frame whether its first frame was processed
+// again (rolling shutter) or not; no other frame does, and no other system has any.
 TEST(Odometry, ReissuesTheStart) {
   constexpr int kWindow = 12;
   const vo_test::Texture texture(3, 40.0, 24);
@@ -271,8 +271,8 @@ TEST(Odometry, PredictsWhereAnImageIsRepeated) {
   }
 }
 
-// Half a second of darkness, in which the camera turns away and comes back by another way: the landmarks are recognised,
-// and one trajectory of one scale goes on.
+// Half a second of darkness, in which the camera turns away and comes back by another way: the landmarks are
+// recognised, and one trajectory of one scale goes on.
 TEST(Odometry, FindsItsPlaceAgain) {
   constexpr int kDark = 30, kLight = 45, kFrames = 75;
   vo::Params params = SmallImageParams();
@@ -304,8 +304,9 @@ TEST(Odometry, FindsItsPlaceAgain) {
   EXPECT_LT(RmsAligned(x.leftCols(n), y.leftCols(n)), 0.01);
 }
 
-// A camera that turns on the spot, and takes 26 of 33 ms to read its rows, sees the walls bent, which looks like motion.
-// With the true readout time the estimate stays nearly where the camera is; with the opposite sign it goes farther off.
+// A camera that turns on the spot, and takes 26 of 33 ms to read its rows, sees the walls bent, which looks like
+// motion. With the true readout time the estimate stays nearly where the camera is; with the opposite sign it goes
+// farther off.
 TEST(Odometry, StraightensARollingShutter) {
   const auto turned = [](double k) {
     const double t = k / 30.0;
@@ -349,8 +350,8 @@ TEST(Odometry, StraightensARollingShutter) {
   EXPECT_GT(upwards, 1.5 * not_told);
 }
 
-// What the first frame's rows were passed over at only the second frame tells. A prior that knows nothing of the turn must not shear the map:
-// where the turn is about the vertical, that would be a roll for good.
+// What the first frame's rows were passed over at only the second frame tells. A prior that knows nothing of the turn
+// must not shear the map: where the turn is about the vertical, that would be a roll for good.
 TEST(Odometry, FindsOutHowFastItsFirstFrameWas) {
   const auto turned = [](double k) { return vo::Pose{Vector3d::Zero(), vo::Exp({0, 0.5 * k / 30, 0})}; };
   const double readout = 0.026;
@@ -506,8 +507,8 @@ TEST(Odometry, FullMapMakesRoom) {
   EXPECT_GE(tracked, 65);
 }
 
-// Before a wall that comes nearer all patterns grow, and those of landmarks near the edge reach out of the image: they are out of sight, long
-// before their corners are, and no landmark is judged by it.
+// Before a wall that comes nearer all patterns grow, and those of landmarks near the edge reach out of the image:
+// they are out of sight, long before their corners are, and no landmark is judged by it.
 TEST(Odometry, JudgesNoLandmarkThatReachesOutOfTheImage) {
   const vo_test::Texture texture(5, 40.0, 24);
   vo::Prior prior;
