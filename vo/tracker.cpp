@@ -32,6 +32,7 @@ Tracker::Tracker(const Camera& camera, const Params& params, const Prior& prior,
       first_sampler_(FirstSampler(params.features)),
       border_px_(std::max(first_sampler_.margin(), Patch::kRadius)),
       detector_(camera, params, border_px_),
+      budget_(params.features.max_searched),
       adaptive_(camera),
       relocaliser_(camera, params.features, border_px_) {}
 
@@ -111,7 +112,7 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
   const auto associate = [&](const MotionInput& input) {
     since_update_.input = input;
     return Associate(filter_, records_, camera_, frame, border_px_, since_update_, params_, noise_level_.value(),
-                     exposure_.seconds());  // line 3: section 7
+                     exposure_.seconds(), budget_);  // line 3: section 7
   };
   Association association;
   if (params_.motion.adaptive) {
@@ -150,6 +151,7 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
   diagnostics.repeated = association.repeated;
   views_ = std::move(association.views);
   left_out_ = std::move(association.left_out);
+  if (params_.motion.adaptive && !filter_.answer().initialising) budget_ = NextBudget(association, params_.features);
   diagnostics.ms_filter += watch.Lap();
   last_stamp_ns_ = frame.frame.stamp_ns;
 
@@ -268,7 +270,8 @@ void Tracker::UpdateTypicalDepth(std::span<const Match> matches, std::span<const
 
 // Away from found landmarks and from predicted ones that were not searched for.
 std::vector<NewFeature> Tracker::DetectFeatures(const PreparedFrame& frame) {
-  std::vector<Eigen::Vector2d> occupied = left_out_;
+  std::vector<Eigen::Vector2d> occupied;
+  for (const LeftOut& one : left_out_) occupied.push_back(one.pixel);
   for (const FeatureView& view : views_)
     if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
   return detector_.Detect(frame, std::move(occupied));

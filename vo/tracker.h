@@ -75,7 +75,8 @@ class Tracker {
   NewFeatureDetector detector_;
   std::vector<LandmarkRecord> records_;  // in the order of the filter's landmarks
   std::vector<FeatureView> views_;
-  std::vector<Eigen::Vector2d> left_out_;        // [px] predicted in this frame, beyond max_searched
+  std::vector<LeftOut> left_out_;                // of this frame
+  int budget_;                                   // landmarks to search for in the next
   bool has_matched_ = false;                     // some frame
   Matrix6 pose_before_start_ = Matrix6::Zero();  // covariance of the path from the first image to the start
   // Of the pose at which the landmarks since the last loss began; before the loss that lasts.

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <opencv2/imgproc.hpp>
 
 #include "vo/features/motion_blur.h"
@@ -16,45 +17,80 @@ constexpr int kWindow = 2 * kWindowRadius + 1;
 constexpr int kPixels = kWindow * kWindow;
 constexpr int kIterations = 10;
 constexpr double kConvergedPx = 0.01;
-constexpr double kReachOfWarp = 10;  // [px] of the window in the patch: a stronger warp is not registered
+constexpr float kReachOfWarp = 10;  // [px] of the window in the patch: a stronger warp is not registered
 
-using Window = Eigen::Matrix<double, kPixels, 1>;
-using WideWindow = Eigen::Matrix<double, kWindow + 2, kWindow + 2>;
+using Window = Eigen::Matrix<float, kPixels, 1>;
+using WideWindow = Eigen::Matrix<float, kWindow + 2, kWindow + 2>;
 
-inline double Bilinear(const std::uint8_t* data, std::size_t stride, double x, double y) {
+inline float Bilinear(const std::uint8_t* data, std::size_t stride, float x, float y) {
   const int ix = static_cast<int>(x), iy = static_cast<int>(y);
-  const double fx = x - ix, fy = y - iy;
+  const float fx = x - static_cast<float>(ix), fy = y - static_cast<float>(iy);
   const std::uint8_t* p = data + static_cast<std::size_t>(iy) * stride + ix;
   return (1 - fy) * ((1 - fx) * p[0] + fx * p[1]) + fy * ((1 - fx) * p[stride] + fx * p[stride + 1]);
 }
 
+// Row of a window, in vectors.
+struct Row {
+  static constexpr int kLanes = 4;
+  static_assert(kWindow == 2 * kLanes + 1);
+  typedef float Floats __attribute__((vector_size(4 * kLanes)));
+  typedef std::uint8_t Bytes __attribute__((vector_size(kLanes)));
+  Floats left, middle;
+  float last;
+
+  // fx: interpolated between each pixel and the next.
+  Row(const std::uint8_t* p, float fx)
+      : left(Between(Load(p), Load(p + 1), fx)),
+        middle(Between(Load(p + kLanes), Load(p + kLanes + 1), fx)),
+        last(Between<float>(p[2 * kLanes], p[2 * kLanes + 1], fx)) {}
+
+  void Interpolate(const Row& below, float fy, float* out) const {
+    const Floats a = Between(left, below.left, fy), b = Between(middle, below.middle, fy);
+    std::memcpy(out, &a, sizeof a);
+    std::memcpy(out + kLanes, &b, sizeof b);
+    out[2 * kLanes] = Between(last, below.last, fy);
+  }
+
+ private:
+  template <class T>
+  static T Between(T a, T b, float share) {
+    return a + share * (b - a);
+  }
+  static Floats Load(const std::uint8_t* p) {
+    Bytes bytes;
+    std::memcpy(&bytes, p, sizeof bytes);
+    return __builtin_convertvector(bytes, Floats);
+  }
+};
+
 // Window about a sub-pixel position, bilinear: the same weights for all pixels.
 Window SampleWindow(const std::uint8_t* data, std::size_t stride, const Eigen::Vector2d& centre) {
   const int ix = static_cast<int>(centre.x()), iy = static_cast<int>(centre.y());
-  const double fx = centre.x() - ix, fy = centre.y() - iy;
+  const auto fx = static_cast<float>(centre.x() - ix), fy = static_cast<float>(centre.y() - iy);
   const std::uint8_t* p = data + static_cast<std::size_t>(iy - kWindowRadius) * stride + ix - kWindowRadius;
-  double above[kWindow];
   Window window;
-  for (int v = 0; v <= kWindow; ++v, p += stride)
-    for (int u = 0; u < kWindow; ++u) {
-      const double here = (1 - fx) * p[u] + fx * p[u + 1];
-      if (v > 0) window[(v - 1) * kWindow + u] = (1 - fy) * above[u] + fy * here;
-      above[u] = here;
-    }
+  Row above(p, fx);
+  for (int v = 0; v < kWindow; ++v) {
+    p += stride;
+    const Row below(p, fx);
+    above.Interpolate(below, fy, window.data() + v * kWindow);
+    above = below;
+  }
   return window;
 }
 
 // Patch warped to the present view, one pixel wider than the window for the gradient. False: it leaves the patch.
 bool WarpPatch(const Patch& patch, const Eigen::Matrix2d& warp, WideWindow& out) {
   constexpr int kReach = kWindowRadius + 1;
-  const Eigen::Matrix2d to_first = warp.inverse();
-  const Eigen::Vector2d farthest = kReach * to_first.cwiseAbs().rowwise().sum();  // over the four corners
+  const Eigen::Matrix2f to_first = warp.inverse().cast<float>();
+  const Eigen::Vector2f farthest = kReach * to_first.cwiseAbs().rowwise().sum();  // over the four corners
   if (!(farthest.maxCoeff() < kReachOfWarp)) return false;
   for (int v = -kReach; v <= kReach; ++v) {
-    const Eigen::Vector2d row = v * to_first.col(1) + Eigen::Vector2d::Constant(Patch::kRadius);
-    for (int u = -kReach; u <= kReach; ++u)
-      out(v + kReach, u + kReach) =
-          Bilinear(patch.grey.data(), Patch::kSide, row.x() + u * to_first(0, 0), row.y() + u * to_first(1, 0));
+    const Eigen::Vector2f row = static_cast<float>(v) * to_first.col(1) + Eigen::Vector2f::Constant(Patch::kRadius);
+    for (int u = -kReach; u <= kReach; ++u) {
+      const Eigen::Vector2f at = row + static_cast<float>(u) * to_first.col(0);
+      out(v + kReach, u + kReach) = Bilinear(patch.grey.data(), Patch::kSide, at.x(), at.y());
+    }
   }
   return true;
 }
@@ -119,11 +155,11 @@ class StructureTensor {
 };
 
 double Ripple(const WideWindow& wide) {
-  double sum = 0;
+  float sum = 0;
   for (int v = 1; v <= kWindow; ++v)
     for (int u = 1; u <= kWindow; ++u) {
       const auto bend = [&](int row) { return wide(row, u - 1) - 2 * wide(row, u) + wide(row, u + 1); };
-      const double cross = bend(v - 1) - 2 * bend(v) + bend(v + 1);
+      const float cross = bend(v - 1) - 2 * bend(v) + bend(v + 1);
       sum += cross * cross;
     }
   return sum / kPixels;
@@ -156,11 +192,11 @@ std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& 
   for (int v = 0, i = 0; v < kWindow; ++v)
     for (int u = 0; u < kWindow; ++u, ++i) {
       templ[i] = wide(v + 1, u + 1);
-      gradient_x[i] = 0.5 * (wide(v + 1, u + 2) - wide(v + 1, u));
-      gradient_y[i] = 0.5 * (wide(v + 2, u + 1) - wide(v, u + 1));
+      gradient_x[i] = 0.5F * (wide(v + 1, u + 2) - wide(v + 1, u));
+      gradient_y[i] = 0.5F * (wide(v + 2, u + 1) - wide(v, u + 1));
     }
   for (Window* w : {&templ, &gradient_x, &gradient_y}) w->array() -= w->mean();
-  const double template_norm = templ.norm();
+  const float template_norm = templ.norm();
   Eigen::Matrix2d H;
   H(0, 0) = gradient_x.squaredNorm();
   H(0, 1) = H(1, 0) = gradient_x.dot(gradient_y);
@@ -177,15 +213,16 @@ std::optional<Registration> Register(const Patch& patch, const Eigen::Matrix2d& 
       Window seen = SampleWindow(smooth.data, smooth.step[0], x + samples.offset(0));
       for (int k = 1; k < samples.count(); ++k)
         seen += SampleWindow(smooth.data, smooth.step[0], x + samples.offset(k));
-      seen /= samples.count();
+      seen /= static_cast<float>(samples.count());
       seen.array() -= seen.mean();
-      const double seen_norm = seen.norm();
+      const float seen_norm = seen.norm();
       if (!(seen_norm > 1)) return std::nullopt;
       seen *= template_norm / seen_norm;  // gain
       const Window off = templ - seen;
       const Eigen::Vector2d slope(gradient_x.dot(off), gradient_y.dot(off));
       // Residual variance; gain, offset and two shifts are fitted.
-      const double variance = std::max(0.0, off.squaredNorm() - tensor.Explained(slope)) / (kPixels - 4);
+      const double variance =
+          std::max(0.0, static_cast<double>(off.squaredNorm()) - tensor.Explained(slope)) / (kPixels - 4);
       const Eigen::Matrix2d inverse = tensor.Inverse(variance);
       if (inverse.isZero(0)) return std::nullopt;
       const Eigen::Vector2d step = inverse * slope;

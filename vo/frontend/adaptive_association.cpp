@@ -74,6 +74,12 @@ struct Trial {
   }
 };
 
+bool HasSamePixels(const cv::Mat& a, const cv::Mat& b) {  // of one byte
+  bool same = a.size() == b.size();
+  for (int y = 0; same && y < a.rows; ++y) same = std::equal(a.ptr(y), a.ptr(y) + a.cols, b.ptr(y));
+  return same;
+}
+
 }  // namespace
 
 MotionInput AdaptiveAssociation::Input(const Filter& filter, double coasting_s) const {
@@ -88,7 +94,7 @@ void AdaptiveAssociation::Predict(Filter& filter, double dt, double coasting_s) 
 
 bool AdaptiveAssociation::IsRepeated(const cv::Mat& grey) {
   constexpr int kMost = 2;  // in a row
-  const bool same = grey.size() == last_.size() && cv::norm(grey, last_, cv::NORM_INF) == 0;
+  const bool same = HasSamePixels(grey, last_);
   repetitions_ = same ? repetitions_ + 1 : 0;
   return same && repetitions_ <= kMost;
 }

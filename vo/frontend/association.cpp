@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "vo/features/matcher.h"
@@ -167,7 +168,7 @@ bool SearchAgain(const AssociationContext& in, std::span<const Candidate> candid
 
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
                       const PreparedFrame& frame, int border_px, const SinceUpdate& since_update, const Params& params,
-                      double noise_level, double exposure_s) {
+                      double noise_level, double exposure_s, int budget) {
   const AssociationContext in{filter,
                               records,
                               camera,
@@ -180,7 +181,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
                               exposure_s};
   Association result;
   std::vector<Candidate> candidates = FindCandidates(in, border_px);
-  result.left_out = LimitToBudget(candidates, in);
+  result.left_out = LimitToBudget(candidates, in, budget);
   std::vector<SearchRequest> requests;
   for (const Candidate& c : candidates) requests.push_back(RequestFor(in, c));
   Results results = SearchCoarseToFine(in, candidates, requests);
@@ -231,6 +232,13 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   return result;
 }
 
+int NextBudget(const Association& association, const FeatureParams& params) {
+  const auto matches = static_cast<double>(association.matches.size());
+  if (association.repeated > 0 || matches < FrameDiagnostics::kTrackedMatches) return params.max_searched;
+  const double per_match = static_cast<double>(association.searched.size()) / matches;
+  return static_cast<int>(std::min<double>(std::ceil(params.enough_matches * per_match), params.max_searched));
+}
+
 void Association::RejectAll() {
   matches.clear();
   nis = 0;
@@ -247,6 +255,7 @@ void UpdateScores(const Association& association, const ScoreParams& params, std
     ++record.frames_unsearched;
     record.searched = false;
   }
+  for (const LeftOut& one : association.left_out) --records[one.landmark].frames_unmatched;
   for (const Searched& searched : association.searched) records[searched.landmark].searched = true;
   const auto expected = std::ranges::count_if(
       association.searched, [&](const Searched& s) { return s.mahalanobis_sq || !records[s.landmark].lost; });

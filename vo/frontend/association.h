@@ -26,25 +26,36 @@ struct Searched {
   Residual residual;  // of an inlier, or nearly one, at the robust pose, relative to R from this image alone
 };
 
+// A landmark that is predicted to be visible and not searched for, the frame's budget being spent.
+struct LeftOut {
+  int landmark = 0;
+  Eigen::Vector2d pixel;  // predicted
+};
+
 struct Association {
   std::vector<Searched> searched;
-  std::vector<Match> matches;             // inliers
-  std::vector<MovingMatch> moving;        // the same, for the exposure time
-  std::vector<FeatureView> views;         // in the order of `searched`
-  std::vector<Eigen::Vector2d> left_out;  // [px] predicted pixels of the landmarks beyond max_searched
-  double nis = 0;                         // sum of mahalanobis_sq
-  int repeated = 0;                       // predictions made again and kept
-  int unseen = 0, unseen_matched = 0;     // searched landmarks that were not matched for a while
-  PoseGaussian predicted, agreed;         // of the reference path: before the matches, and as the robust fit has it
+  std::vector<Match> matches;       // inliers
+  std::vector<MovingMatch> moving;  // the same, for the exposure time
+  std::vector<FeatureView> views;   // in the order of `searched`
+  std::vector<LeftOut> left_out;
+  double nis = 0;                      // sum of mahalanobis_sq
+  int repeated = 0;                    // predictions made again and kept
+  int unseen = 0, unseen_matched = 0;  // searched landmarks that were not matched for a while
+  PoseGaussian predicted, agreed;      // of the reference path: before the matches, and as the robust fit has it
 
   // No match is one: the frame is not localised.
   void RejectAll();
 };
 
-// After filter.Predict(). `records` are in the order of the filter's landmarks; `exposure_s` is 0 where it is unknown.
+// After filter.Predict(). `records` are in the order of the filter's landmarks; `exposure_s` is 0 where it is unknown;
+// `budget`: landmarks to search for at most.
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
                       const PreparedFrame& frame, int border_px, const SinceUpdate& since_update, const Params& params,
-                      double noise_level, double exposure_s = 0);
+                      double noise_level, double exposure_s, int budget);
+
+// Landmarks to search for in the next frame: as many as let expect enough_matches at the share that agrees in this one,
+// max_searched where its prediction failed.
+int NextBudget(const Association& association, const FeatureParams& params);
 
 // Existence scores (44)-(49), ages and residual histories after the association. Where fewer than min_found_ratio of
 // the landmarks searched for are matched, the frame is blind (blur, darkness), and only (44) is applied.

@@ -74,10 +74,10 @@ std::vector<Candidate> FindCandidates(const AssociationContext& in, int border_p
   return candidates;
 }
 
-std::vector<Eigen::Vector2d> LimitToBudget(std::vector<Candidate>& candidates, const AssociationContext& in) {
-  std::vector<Eigen::Vector2d> left_out;
+std::vector<LeftOut> LimitToBudget(std::vector<Candidate>& candidates, const AssociationContext& in, int most) {
+  std::vector<LeftOut> left_out;
   const FeatureParams& params = in.params.features;
-  const auto budget = static_cast<std::size_t>(params.max_searched);
+  const auto budget = static_cast<std::size_t>(most);
   if (candidates.size() <= budget) return left_out;
   const auto order_key = [&](const Candidate& c) {
     const LandmarkRecord& record = in.records[c.landmark];
@@ -91,7 +91,7 @@ std::vector<Eigen::Vector2d> LimitToBudget(std::vector<Candidate>& candidates, c
   std::vector<Candidate> chosen;
   for (std::size_t i = 0; i < budget; ++i) chosen.push_back(candidates[order[i]]);
   for (std::size_t i = budget; i < order.size(); ++i)
-    if (!in.records[candidates[order[i]].landmark].lost) left_out.push_back(pixels[order[i]]);
+    if (const int n = candidates[order[i]].landmark; !in.records[n].lost) left_out.push_back({n, pixels[order[i]]});
   candidates = std::move(chosen);
   return left_out;
 }

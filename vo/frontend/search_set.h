@@ -14,6 +14,7 @@
 #include "vo/base/params.h"
 #include "vo/features/matcher.h"
 #include "vo/filter/filter.h"
+#include "vo/frontend/association.h"
 #include "vo/frontend/prepared_frame.h"
 #include "vo/frontend/rolling_shutter.h"
 #include "vo/geometry/camera.h"
@@ -57,8 +58,8 @@ struct Candidate {
 // search.
 std::vector<Candidate> FindCandidates(const AssociationContext& in, int border_px);
 
-// Keeps max_searched candidates, of high score and spread over the image. Returns the predicted pixels of the others.
-std::vector<Eigen::Vector2d> LimitToBudget(std::vector<Candidate>& candidates, const AssociationContext& in);
+// Keeps at most `most` candidates, of high score and spread over the image. Returns the others.
+std::vector<LeftOut> LimitToBudget(std::vector<Candidate>& candidates, const AssociationContext& in, int most);
 
 SearchRequest RequestFor(const AssociationContext& in, const Candidate& candidate);
 

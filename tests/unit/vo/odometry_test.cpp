@@ -451,6 +451,28 @@ TEST(Odometry, SearchesAllOverTheImage) {
   }
 }
 
+// All landmarks in the start window and after a frame without matches, else those that let expect enough_matches.
+TEST(Odometry, SearchesForEnoughMatches) {
+  constexpr int kStart = 10, kDark = 20, kFrames = 30, kEnough = 24, kAll = 40;
+  vo::Params params = SmallImageParams();
+  params.motion.adaptive = true;
+  params.filter.start_window = kStart;
+  params.features.enough_matches = kEnough;
+  const vo_test::Texture texture(4, 40.0, 24);
+  vo::Odometry odometry(kCamera, params, KnownStart(), 1);
+  const cv::Mat dark(kCamera.height, kCamera.width, CV_8UC1, cv::Scalar(4));
+  for (int k = 0; k < kFrames; ++k) {
+    const vo::FrameDiagnostics d =
+        odometry.Track({k * kFrameNs, k == kDark ? dark : ViewFrom(TruthAt(k), texture)}).diagnostics;
+    if (k == 0 || k == kDark) continue;
+    const bool all = k < kStart + 2 || k == kDark + 1;
+    EXPECT_EQ(d.searched > kAll, all) << k << ": " << d.searched;
+    if (!all && k != kDark + 2) {
+      EXPECT_NEAR(d.matched, kEnough, 5) << k;
+    }
+  }
+}
+
 // Beyond the turn of a lens's radius a picture that is no lens's has corners all the same.
 TEST(Odometry, BeginsNoLandmarkWhereTheLensHasNoRay) {
   vo::Camera barrel = kCamera;
