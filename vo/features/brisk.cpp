@@ -3,12 +3,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-// Functions with vector arguments are always inlined: no ABI is involved.
-#pragma GCC diagnostic ignored "-Wpsabi"
+#include "vo/base/vectors.h"
 
 namespace vo {
 namespace {
@@ -16,25 +14,14 @@ namespace {
 constexpr int kLanes = 8;      // pixels of a row per vector, at the least
 constexpr int kMaxLanes = 16;  // columns per vector, at the most: a row is padded by as many, whose values are not used
 
-template <class T, int Bytes>
-struct VectorOf {
-  typedef T type __attribute__((vector_size(Bytes)));
-};
 template <int Lanes>
-using Ints = typename VectorOf<std::int32_t, 4 * Lanes>::type;
+using Ints = Vector<std::int32_t, Lanes>;
 template <int Lanes>
-using Sums = typename VectorOf<std::uint32_t, 4 * Lanes>::type;  // modulo 2^32; differences are exact
+using Sums = Vector<std::uint32_t, Lanes>;  // modulo 2^32; differences are exact
 template <int Lanes>
-using Floats = typename VectorOf<float, 4 * Lanes>::type;
+using Floats = Vector<float, Lanes>;
 template <int Width>
-using Words = typename VectorOf<std::int16_t, 2 * Width>::type;
-
-template <class Vector>
-[[gnu::always_inline]] inline Vector Load(const void* from) {
-  Vector v;
-  std::memcpy(&v, from, sizeof v);
-  return v;
-}
+using Words = Vector<std::int16_t, Width>;
 
 // Run of pixels of a row: address of the first in the integral image, offset of its samples.
 struct Row {
@@ -76,7 +63,7 @@ template <int Lanes>
     using V = Sums<Lanes>;
     const V s1 = Load<V>(r1 + c), s2 = Load<V>(r2 + c);
     const V down = ((s2 - s1) << 8) + in_top * (s1 - Load<V>(r0 + c)) + in_bottom * (Load<V>(r3 + c) - s2);
-    std::memcpy(columns + c, &down, sizeof down);
+    Store(down, columns + c);
   }
 }
 
@@ -116,11 +103,11 @@ template <int Lanes>
       int x = 0;
       for (; row.width - x > kLanes; x += Lanes) {
         const Words<Lanes> mean = Mean<Lanes>(box, columns + x);
-        std::memcpy(of_point + row.at + x, &mean, sizeof mean);
+        Store(mean, of_point + row.at + x);
       }
       if (x < row.width) {
         const Words<kLanes> mean = Mean<kLanes>(box, columns + x);
-        std::memcpy(of_point + row.at + x, &mean, sizeof mean);
+        Store(mean, of_point + row.at + x);
       }
       columns += Padded(ColumnCount(row, box));
     }
@@ -178,7 +165,7 @@ template <int Width>
   for (int at = 0; at < pixels; at += Width, samples += Width) {
     const Words<Width> count = CountGreater<Width>(samples, pairs.zeros.data(), pairs.zero_count) -
                                CountGreater<Width>(samples, pairs.ones.data(), pairs.one_count) + all_ones;
-    std::memcpy(distances + at, &count, sizeof count);
+    Store(count, distances + at);
   }
 }
 

@@ -3,12 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <array>
-#include <cstring>
 
 #include "vo/base/instruction_set.h"
-
-// Functions with vector arguments are always inlined: no ABI is involved.
-#pragma GCC diagnostic ignored "-Wpsabi"
+#include "vo/base/vectors.h"
 
 namespace vo {
 namespace {
@@ -20,7 +17,7 @@ constexpr int kVectors = (Patch::kSide + kLanes - 1) / kLanes;  // of a row
 constexpr int kWide = 2 * kReach + kVectors * kLanes;
 constexpr float kToInteger = 0.5F;  // rounds where the fraction is cut off
 
-typedef float Floats __attribute__((vector_size(sizeof(float) * kLanes)));
+using Floats = Vector<float, kLanes>;
 
 using WidePatch = std::array<std::array<float, kWide>, Patch::kSide>;  // its first and last column repeated
 
@@ -69,13 +66,11 @@ class StreakFilter {
       const float* row = wide[static_cast<std::size_t>(std::clamp(y + tap.y, 0, Patch::kSide - 1))].data();
 #pragma GCC unroll 5
       for (int v = 0; v < kVectors; ++v) {
-        Floats grey;
-        std::memcpy(&grey, row + kReach + tap.x + v * kLanes, sizeof grey);
-        sum[v] += tap.weight * grey;
+        sum[v] += tap.weight * Load<Floats>(row + kReach + tap.x + v * kLanes);
       }
     }
     std::array<float, std::size_t{kVectors} * kLanes> means;
-    std::memcpy(means.data(), sum, sizeof sum);
+    Store(sum, means.data());
     std::uint8_t* const out = blurred.grey.data() + std::ptrdiff_t{y} * Patch::kSide;
     for (int x = 0; x < Patch::kSide; ++x)
       out[x] = static_cast<std::uint8_t>(means[static_cast<std::size_t>(x)] + kToInteger);

@@ -4,9 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <opencv2/imgproc.hpp>
 
+#include "vo/base/vectors.h"
 #include "vo/features/motion_blur.h"
 
 namespace vo {
@@ -33,21 +33,20 @@ inline float Bilinear(const std::uint8_t* data, std::size_t stride, float x, flo
 struct Row {
   static constexpr int kLanes = 4;
   static_assert(kWindow == 2 * kLanes + 1);
-  typedef float Floats __attribute__((vector_size(4 * kLanes)));
-  typedef std::uint8_t Bytes __attribute__((vector_size(kLanes)));
+  using Floats = Vector<float, kLanes>;
   Floats left, middle;
   float last;
 
   // fx: interpolated between each pixel and the next.
   Row(const std::uint8_t* p, float fx)
-      : left(Between(Load(p), Load(p + 1), fx)),
-        middle(Between(Load(p + kLanes), Load(p + kLanes + 1), fx)),
+      : left(Between(Grey(p), Grey(p + 1), fx)),
+        middle(Between(Grey(p + kLanes), Grey(p + kLanes + 1), fx)),
         last(Between<float>(p[2 * kLanes], p[2 * kLanes + 1], fx)) {}
 
   void Interpolate(const Row& below, float fy, float* out) const {
     const Floats a = Between(left, below.left, fy), b = Between(middle, below.middle, fy);
-    std::memcpy(out, &a, sizeof a);
-    std::memcpy(out + kLanes, &b, sizeof b);
+    Store(a, out);
+    Store(b, out + kLanes);
     out[2 * kLanes] = Between(last, below.last, fy);
   }
 
@@ -56,10 +55,8 @@ struct Row {
   static T Between(T a, T b, float share) {
     return a + share * (b - a);
   }
-  static Floats Load(const std::uint8_t* p) {
-    Bytes bytes;
-    std::memcpy(&bytes, p, sizeof bytes);
-    return __builtin_convertvector(bytes, Floats);
+  static Floats Grey(const std::uint8_t* p) {
+    return __builtin_convertvector(Load<Vector<std::uint8_t, kLanes>>(p), Floats);
   }
 };
 
