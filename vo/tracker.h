@@ -76,7 +76,7 @@ class Tracker {
   std::vector<LandmarkRecord> records_;  // in the order of the filter's landmarks
   std::vector<FeatureView> views_;
   std::vector<LeftOut> left_out_;                // of this frame
-  int budget_;                                   // landmarks to search for in the next
+  int budget_;                                   // landmarks of known depth to search for in the next
   bool has_matched_ = false;                     // some frame
   Matrix6 pose_before_start_ = Matrix6::Zero();  // covariance of the path from the first image to the start
   // Of the pose at which the landmarks since the last loss began; before the loss that lasts.

@@ -187,7 +187,7 @@ struct FeatureParams {
   double max_view_angle = 45 * std::numbers::pi / 180;  // [rad]
   double max_baseline_ratio = 0.3;
   int max_searched = 200;
-  int enough_matches = 80;
+  int enough_matches = 100;
   std::optional<double> readout_s = std::nullopt;
   int coarse_features = 16;
 };
@@ -235,7 +235,8 @@ void Visit(V& v, FeatureParams& p) {
   v("max_baseline_ratio", p.max_baseline_ratio, {Range::Positive(), "distance from the first view / depth there"});
   v("max_searched", p.max_searched, {Range::AtLeast(1), "landmarks searched per frame"});
   v("enough_matches", p.enough_matches,
-    {Range::AtLeast(1), "with `motion.adaptive`: as many landmarks are searched as let expect so many matches"});
+    {Range::AtLeast(1),
+     "with `motion.adaptive`: of known landmarks as many are searched as let expect so many matches"});
   v("rolling_shutter", p.readout_s, {Unit::time, Range{-1, 1}, "readout time of all rows, instead of the camera's"});
   v.Renamed("pilots", "coarse_features");
   v("coarse_features", p.coarse_features,

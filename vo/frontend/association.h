@@ -48,12 +48,12 @@ struct Association {
 };
 
 // After filter.Predict(). `records` are in the order of the filter's landmarks; `exposure_s` is 0 where it is unknown;
-// `budget`: landmarks to search for at most.
+// `budget`: landmarks of known depth to search for at most.
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
                       const PreparedFrame& frame, int border_px, const SinceUpdate& since_update, const Params& params,
                       double noise_level, double exposure_s, int budget);
 
-// Landmarks to search for in the next frame: as many as let expect enough_matches at the share that agrees in this one,
+// Landmarks of known depth to search for in the next frame: as many as let expect enough_matches at the share that agrees in this one,
 // max_searched where its prediction failed.
 int NextBudget(const Association& association, const FeatureParams& params);
 

@@ -74,11 +74,10 @@ std::vector<Candidate> FindCandidates(const AssociationContext& in, int border_p
   return candidates;
 }
 
-std::vector<LeftOut> LimitToBudget(std::vector<Candidate>& candidates, const AssociationContext& in, int most) {
+std::vector<LeftOut> LimitToBudget(std::vector<Candidate>& candidates, const AssociationContext& in, int known_most) {
   std::vector<LeftOut> left_out;
   const FeatureParams& params = in.params.features;
-  const auto budget = static_cast<std::size_t>(most);
-  if (candidates.size() <= budget) return left_out;
+  if (static_cast<int>(candidates.size()) <= std::min(known_most, params.max_searched)) return left_out;
   const auto order_key = [&](const Candidate& c) {
     const LandmarkRecord& record = in.records[c.landmark];
     return std::tuple(!(in.relocalising() && record.unseen()), record.lost, -record.score);
@@ -89,9 +88,17 @@ std::vector<LeftOut> LimitToBudget(std::vector<Candidate>& candidates, const Ass
   const std::vector<std::size_t> order =
       BucketRoundRobin(pixels, params.grid_columns, params.grid_rows, in.camera.width, in.camera.height);
   std::vector<Candidate> chosen;
-  for (std::size_t i = 0; i < budget; ++i) chosen.push_back(candidates[order[i]]);
-  for (std::size_t i = budget; i < order.size(); ++i)
-    if (const int n = candidates[order[i]].landmark; !in.records[n].lost) left_out.push_back({n, pixels[order[i]]});
+  int known = 0;
+  for (const std::size_t i : order) {
+    const int n = candidates[i].landmark;
+    const LandmarkRecord& record = in.records[n];
+    if (static_cast<int>(chosen.size()) < params.max_searched && (!record.known || known < known_most)) {
+      chosen.push_back(candidates[i]);
+      if (record.known) ++known;
+    } else if (!record.lost) {
+      left_out.push_back({n, pixels[i]});
+    }
+  }
   candidates = std::move(chosen);
   return left_out;
 }

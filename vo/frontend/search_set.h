@@ -58,8 +58,9 @@ struct Candidate {
 // search.
 std::vector<Candidate> FindCandidates(const AssociationContext& in, int border_px);
 
-// Keeps at most `most` candidates, of high score and spread over the image. Returns the others.
-std::vector<LeftOut> LimitToBudget(std::vector<Candidate>& candidates, const AssociationContext& in, int most);
+// Keeps at most max_searched candidates, and `known_most` of those whose depth is known, of high score and spread over
+// the image. Returns the others.
+std::vector<LeftOut> LimitToBudget(std::vector<Candidate>& candidates, const AssociationContext& in, int known_most);
 
 SearchRequest RequestFor(const AssociationContext& in, const Candidate& candidate);
 
