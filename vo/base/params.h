@@ -236,7 +236,7 @@ void Visit(V& v, FeatureParams& p) {
   v("max_searched", p.max_searched, {Range::AtLeast(1), "landmarks searched per frame"});
   v("enough_matches", p.enough_matches,
     {Range::AtLeast(1),
-     "with `motion.adaptive`: of known landmarks as many are searched as let expect so many matches"});
+     "matches wanted per frame: it limits the landmarks of known depth that are searched; `motion.adaptive` alone"});
   v("rolling_shutter", p.readout_s, {Unit::time, Range{-1, 1}, "readout time of all rows, instead of the camera's"});
   v.Renamed("pilots", "coarse_features");
   v("coarse_features", p.coarse_features,

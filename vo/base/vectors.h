@@ -1,5 +1,5 @@
-// Vectors of numbers by the compiler's extension: one operator acts on all lanes. Functions that take or return them are
-// always inlined, so that no ABI is involved.
+// Vectors of numbers by the compiler's extension: one operator acts on all lanes. Functions that take or return them
+// are always inlined, so that no ABI is involved.
 #pragma once
 
 #include <cstring>

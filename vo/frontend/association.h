@@ -53,8 +53,8 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
                       const PreparedFrame& frame, int border_px, const SinceUpdate& since_update, const Params& params,
                       double noise_level, double exposure_s, int budget);
 
-// Landmarks of known depth to search for in the next frame: as many as let expect enough_matches at the share that agrees in this one,
-// max_searched where its prediction failed.
+// Landmarks of known depth to search for in the next frame: enough_matches over the share of the searched that agrees
+// in this one; max_searched where its prediction failed.
 int NextBudget(const Association& association, const FeatureParams& params);
 
 // Existence scores (44)-(49), ages and residual histories after the association. Where fewer than min_found_ratio of
