@@ -139,7 +139,7 @@ class Obj:
         across = np.gradient(wide, axis=1)
         across = across[:, 1:-1] if closed else across
         normal = np.cross(np.gradient(points, axis=0), across)
-        for row in (0, -1):  # a pole's neighbours tell its normal
+        for row in (0, -1):  # a pole's normal is that of its neighbours
             if np.ptp(points[row], axis=0).max() < 1e-9:
                 normal[row] = normal[1 if row == 0 else -2].sum(0)
         normal /= np.maximum(np.linalg.norm(normal, axis=2, keepdims=True), 1e-12)

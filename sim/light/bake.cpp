@@ -319,7 +319,7 @@ std::vector<std::string> BakeWarnings(const Scene& scene, const RayScene& rays, 
   std::vector<std::string> warnings;
   std::ostringstream text;
   text.precision(3);
-  const auto tell = [&](const char* light, const char* key, double asked_m, int most_log2) {
+  const auto report = [&](const char* light, const char* key, double asked_m, int most_log2) {
     const int steps = 1 << most_log2;
     double farthest_m = 0;
     std::uint32_t count = 0;
@@ -332,8 +332,8 @@ std::vector<std::string> BakeWarnings(const Scene& scene, const RayScene& rays, 
          << count << (count == 1 ? " triangle" : " triangles") << ", not render.bake." << key << " = " << asked_m
          << " m: a side is divided into " << steps << " at most";
   };
-  tell("samples", "spacing", params.spacing_m, kMaxLog2Coarse);
-  if (mode == LightMode::baked) tell("those of lamps", "min_spacing", params.min_spacing_m, kMaxLog2Resolution);
+  report("samples", "spacing", params.spacing_m, kMaxLog2Coarse);
+  if (mode == LightMode::baked) report("those of lamps", "min_spacing", params.min_spacing_m, kMaxLog2Resolution);
   if (text.tellp() > 0) warnings.push_back(text.str());
   const bool has_ambient = std::any_of(scene.lights.begin(), scene.lights.end(),
                                        [](const Light& l) { return std::holds_alternative<AmbientLight>(l); });

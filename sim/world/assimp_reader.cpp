@@ -280,7 +280,7 @@ void ReadByAssimp(MeshFiles& files, MeshImport& import) {
     const bool only_lines = reason.find("No meshes remaining") != std::string::npos;  // the importer's words for it
     const bool too_much = reason.find("bad_alloc") != std::string::npos;              // the library's
     import.problem = only_lines ? "has no triangles"
-                     : too_much ? "cannot be read: the importer (assimp) wants more memory than a file of this size may"
+                     : too_much ? "cannot be read: the importer (assimp) needs more memory than a file of this size may"
                                 : "cannot be read: " + reason;
   }
   if (!import.problem.empty()) return;

@@ -141,7 +141,7 @@ GltfFile::GltfFile(MeshFiles& files) : files_(files) {
              &least = Child(asset, "minVersion");
   if (version.is_number() || (version.is_string() && version.get<std::string>().starts_with("1."))) throw OlderGltf();
   if (!version.is_string() || !version.get<std::string>().starts_with("2.")) Fail("is glTF of no version: 2 is read");
-  if (least.is_string() && least != "2.0") Fail("wants a reader of glTF " + least.get<std::string>() + ": 2.0 is read");
+  if (least.is_string() && least != "2.0") Fail("needs a reader of glTF " + least.get<std::string>() + ": 2.0 is read");
 }
 
 const json& GltfFile::Child(const json& object, const char* key) {

@@ -38,13 +38,21 @@ constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
     {"EXT_texture_webp", ""},
     {"EXT_mesh_gpu_instancing", ""},
     {"KHR_texture_basisu", ""},  // a picture that has no other version is refused
+    {"KHR_node_visibility", ""},
+    {"FB_ngon_encoding", ""},  // of polygons: the triangles are the same
+    {"KHR_xmp_json_ld", ""},
+    {"EXT_structural_metadata", ""},
+    {"EXT_mesh_features", ""},
+    {"MSFT_lod", ""},  // the finest level is the node's own
     {"KHR_lights_punctual", "the file's own lights are not used: lights are the scenario's"},
     {"KHR_materials_clearcoat", "clear coats are not rendered: the surface below is"},
     {"KHR_materials_transmission", "transmission is not rendered: the surface is opaque"},
     {"KHR_materials_volume", "volumes are not rendered: the surface is opaque"},
     {"KHR_materials_sheen", "sheen is not rendered"},
     {"KHR_materials_specular", "reflections are not rendered"},
+    {"KHR_materials_diffuse_transmission", "transmission is not rendered: the surface is opaque"},
     {"KHR_materials_ior", "refraction is not rendered"},
+    {"KHR_materials_dispersion", "refraction is not rendered"},
     {"KHR_materials_iridescence", "iridescence is not rendered"},
     {"KHR_materials_anisotropy", "reflections are not rendered"},
     {"KHR_materials_variants", "the default variant is rendered"},
@@ -213,6 +221,8 @@ class GltfReader {
                 void (GltfReader::*append)(const json&, const glm::dmat4&)) {
     if (depth > kDeepestNode) throw std::runtime_error("has nodes more than 1000 deep, or in a circle");
     const json& node = file_.At("nodes", index);
+    const json* visibility = GltfFile::Extension(node, "KHR_node_visibility");
+    if (visibility != nullptr && !visibility->value("visible", true)) return;  // nor is what hangs on it
     const glm::dmat4 transform = parent * TransformOf(node);
     (this->*append)(node, transform);
     for (const json& child : GltfFile::Child(node, "children"))

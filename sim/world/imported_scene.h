@@ -18,7 +18,7 @@
 
 namespace sim {
 
-// Which texture coordinates a picture wants: a set of the mesh's, and what is applied to it (v down):
+// Texture coordinates of a picture: a set of the mesh's, and the transform applied to it (v down):
 // uv' = transform * (u, v, 1).
 struct UvChoice {
   unsigned channel = 0;

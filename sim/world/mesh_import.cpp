@@ -87,7 +87,7 @@ std::vector<std::uint8_t> Import(const fs::path& file, const std::vector<fs::pat
   } catch (const OlderGltf&) {
     ReadByAssimp(files, import);
   } catch (const std::bad_alloc&) {
-    import.problem = "cannot be read: it wants more memory than a file of this size may";
+    import.problem = "cannot be read: it needs more memory than a file of this size may";
   }
   if (!import.problem.empty()) import.scene = {};
   return ToBytes(import);

@@ -105,7 +105,7 @@ void MeshMaterialReader::ReadAlpha(const ImportedMaterial& in, sim::Material& ma
   }
 }
 
-// The picture of one use, or -1. Pictures of a material share one set of texture coordinates: one that wants another is
+// The picture of one use, or -1. Pictures of a material share one set of texture coordinates: one that needs another is
 // left out.
 int MeshMaterialReader::ReadTexture(const ImportedMaterial& in, const Use& use, std::vector<UvChoice>& uvs) {
   if (use.map.picture.empty()) return -1;

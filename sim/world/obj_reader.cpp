@@ -165,7 +165,7 @@ class ObjReader {
         const auto known = materials_.find(part.material);
         if (known == materials_.end() && !part.material.empty() && (any_library_ || import_.missing.empty()))
           import_.warnings.push_back("names the material '" + part.material + "', which " +
-                                     (any_library_ ? "its library does not have" : "no library (mtllib) tells of"));
+                                     (any_library_ ? "its library does not have" : "no library (mtllib) defines"));
         materials.push_back(known == materials_.end() ? ImportedMaterial{part.material} : known->second);
       }
       mesh.material = at->second;

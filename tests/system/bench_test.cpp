@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/system/campaign.h"
+#include "tests/system/slurm_cluster.h"
 
 namespace vobench::system_test {
 namespace {
@@ -75,6 +76,23 @@ TEST_F(BenchTest, FindsThePlantedBreakingPointAndEndsAlikeAfterKills) {
   EXPECT_GT(kills, 0);
   const Outcome again = RunVobench(Bench("out"), here_.path());
   ASSERT_EQ(again.status, 0) << again.err;
+  for (const char* file : {"bench.json", "results.csv"})
+    EXPECT_EQ(ReadFile(here_ / "out" / file), ReadFile(here_ / "whole" / file)) << file;
+}
+
+TEST_F(BenchTest, EndsAlikeThroughSlurmAfterTheNodeIsLost) {
+  const std::string why_not = SlurmCluster::WhyNot();
+  if (!why_not.empty()) GTEST_SKIP() << why_not;
+  const Outcome whole = RunVobench(Bench("whole"), here_.path());
+  ASSERT_EQ(whole.status, 0) << whole.err;
+  SlurmCluster cluster;
+  const std::vector<std::string> words = Bench("out", {"--engine", "slurm", "--tasks-per-job", "4"});
+  EXPECT_TRUE(KillVobench(words, here_.path(), [&] { return Done("out/round_01") >= 1; }));
+  cluster.KillNode();
+  EXPECT_FALSE(fs::exists(here_ / "out/bench.json")) << "nothing was left to be lost";
+  cluster.StartNode();
+  const Outcome outcome = RunVobench(words, here_.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.err << cluster.Log();
   for (const char* file : {"bench.json", "results.csv"})
     EXPECT_EQ(ReadFile(here_ / "out" / file), ReadFile(here_ / "whole" / file)) << file;
 }

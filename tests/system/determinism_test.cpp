@@ -124,7 +124,7 @@ TEST_F(DeterminismTest, RunsOnPointsDoNotDependOnThreads) {
   EXPECT_TRUE(Read("jobs1/rb2pf/seed_2/estimate.txt") == Read("alone/rb2pf/seed_2/estimate.txt"));
 }
 
-// `track` tells the odometry nothing of the truth; `run` told as little must come to the same.
+// `track` gives the odometry nothing of the truth; `run` without the truth must come to the same.
 TEST_F(DeterminismTest, ThroughTheDiskOrInMemoryIsTheSame) {
   const std::string duration = "time.duration=0.3 s";
   Succeeds({"render", "-o", "seq", "--set", duration});

@@ -236,7 +236,7 @@ void AddOdometry(py::module_& m) {
       .def_static("of",
                   py::overload_cast<const PointWorld&, const std::string&, std::optional<std::uint64_t>>(&OdometryOf),
                   py::arg("world"), py::arg("system") = "rb2pf", py::arg("seed") = py::none(),
-                  "With the scenario's settings and prior, as `vobench run` has it; with the world's seed unless told.")
+                  "With the scenario's settings and prior, as `vobench run` has it; with the world's seed by default.")
       .def(
           "track", [](vo::PointOdometry& self, const sim::PointFrame& frame) { return self.Track(ToOdometry(frame)); },
           py::arg("frame"), Unlocked(), Doc("vo/point_odometry.h:PointOdometry::Track"))

@@ -35,7 +35,7 @@ std::int64_t Nanoseconds(const char* option, double seconds) {
 // The options of one program, parsed from the words after its name.
 void Parse(CLI::App& app, std::vector<std::string> words) {
   app.set_help_flag();
-  std::reverse(words.begin(), words.end());  // as CLI11 wants them
+  std::reverse(words.begin(), words.end());  // as CLI11 takes them
   try {
     app.parse(words);
   } catch (const CLI::ParseError& error) {

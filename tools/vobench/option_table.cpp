@@ -142,7 +142,7 @@ void AddTrack(OptionTable& table) {
       ->capture_default_str();
   Add(command, "--camera PRESET|FILE", track.camera,
       "freiburg1, freiburg2, freiburg3, icl, or a calibration file (ours, OpenCV, ROS, Kalibr, EuRoC); the sequence's "
-      "own unless told");
+      "own by default");
   Add(command, "--settings FILE", track.settings, "YAML file with an `odometry:` and perhaps a `prior:` section");
   command.add_flag("--truth", track.truth,
                    "Also errors of matches and predictions, and lives of landmarks: docs/match_errors.md");
@@ -367,7 +367,7 @@ OptionTable::OptionTable()
   app.set_version_flag("--version", "vobench " VOBENCH_VERSION, "Which vobench this is");
   app.require_subcommand(1);
   app.footer(
-      "`vobench COMMAND --help` tells more. Exit status: 0 done, 1 the work failed or `verify` found a disagreement, "
+      "`vobench COMMAND --help` has more. Exit status: 0 done, 1 the work failed or `verify` found a disagreement, "
       "2 bad usage or input, 3 not consistent though `run --require-consistent` asked for it.");
   for (const auto add : {AddRender, AddTrack, AddEvaluate, AddRun, AddCampaign, AddBench, AddCheck, AddSettings,
                          AddVerify, AddExport, AddReport, AddFitCamera, AddImport, AddLook}) {

@@ -17,7 +17,7 @@ std::vector<settings::FieldProblem> Problems(Params params) {
   }
   if (filter.weight == Weight::uniform)
     check.Require(filter.lag > 0, "filter.lag", filter.lag,
-                  "must be above 0 for filter.weight uniform: only the window's images tell samples apart");
+                  "must be above 0 for filter.weight uniform: only the images of the window weight the samples");
   if (filter.lag > 0) {
     check.Require(filter.proposal == Proposal::ekf || filter.proposal == Proposal::iterated, "filter.lag", filter.lag,
                   "needs filter.proposal ekf or iterated: bootstrap and ukf have no window of poses");

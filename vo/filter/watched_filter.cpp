@@ -114,7 +114,7 @@ void WatchedFilter::AddLandmarks(std::span<const FirstView> views) {
 
 void WatchedFilter::KeepLandmarks(const std::vector<bool>& keep) {
   Require(static_cast<int>(keep.size()) == landmark_count(), "forgetting",
-          "another number of landmarks is told than there are");
+          "the number of landmarks given is not that of the map");
   filter_->KeepLandmarks(keep);
   Require(landmark_count() == std::count(keep.begin(), keep.end(), true), "forgetting",
           "the map has another number of landmarks");

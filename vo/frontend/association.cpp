@@ -17,7 +17,7 @@ namespace {
 // Fixed-point iterations between the rolling-shutter correction of the matches and the velocity that follows from them.
 constexpr int kShutterRounds = 3;
 
-constexpr double kNearly = 2;  // times the gate: what rejected residuals tell of the noise
+constexpr double kNearly = 2;  // times the gate: rejected residuals that count for the noise
 
 constexpr double kMoved_px = 1.5;  // of a predicted image, or a streak: what is searched again
 

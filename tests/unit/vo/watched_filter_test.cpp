@@ -278,7 +278,7 @@ TEST(WatchedFilter, RefusesWhatIsNoMeasurement) {
        }),
        "frame 0, new landmarks: a known depth is not positive"},
       {[](vo::Filter& f) { f.KeepLandmarks({true}); },
-       "frame 0, forgetting: another number of landmarks is told than there are"},
+       "frame 0, forgetting: the number of landmarks given is not that of the map"},
   };
   for (const auto& told : cases) {
     vo::WatchedFilter filter(MakeParticles(Plain()));

@@ -268,7 +268,7 @@ std::string JpegEndProblem(Bytes file) {
 
 std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::size_t bytes) {
   const std::string size = std::to_string(width) + " x " + std::to_string(height) + " pixels";
-  if (width < 1 || height < 1) return "its header tells no size";
+  if (width < 1 || height < 1) return "its header has no size";
   if (width > kLongestSide || height > kLongestSide)
     return size + ": a side may have " + std::to_string(kLongestSide) + " at most";
   if (width * height > kMostPixels) return size + ": a picture may have " + std::to_string(kMostPixels) + " at most";

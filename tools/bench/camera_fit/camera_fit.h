@@ -71,7 +71,7 @@ struct Measure {
 };
 
 // From edges in motion: width^2 = that at rest^2 + kBlur (|v| exposure)^2; kBlur: from 0.547, of a Gaussian blurred a
-// little, to 0.64, of a box alone. `at_rest`: of the slowest eighth. None where the motion does not tell it.
+// little, to 0.64, of a box alone. `at_rest`: of the slowest eighth. None where the motion does not determine it.
 constexpr double kBlur = 0.59;
 std::optional<Measure> FitExposure(const Recording& recording, EdgeStatistics& at_rest);
 

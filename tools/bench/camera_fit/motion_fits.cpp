@@ -1,4 +1,4 @@
-// Exposure time and vignetting: what only motion tells.
+// Exposure time and vignetting, which follow from motion alone.
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>

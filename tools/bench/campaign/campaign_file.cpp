@@ -307,21 +307,21 @@ void CampaignFile::Reject(const TaskChoice& choice, const std::string& key, cons
   const ScenarioEntry& scenario = campaign_.scenarios[choice.scenario];
   if (scenario.file.empty()) return;  // that has been said
   const std::string text = key.empty() || message.starts_with("'" + key) ? message : "'" + key + "': " + message;
-  const auto tell = [&](Section& section, const std::string& where) {
+  const auto reject = [&](Section& section, const std::string& where) {
     if (rejected_.emplace(&section, where, text).second) section.Reject(where, text);
   };
   const auto special = scenario.for_system.find(system.name);
   if (special != scenario.for_system.end() && sets(special->second)) {
-    return tell(scenarios_[choice.scenario], "for_system");
+    return reject(scenarios_[choice.scenario], "for_system");
   }
-  if (sets(system.set)) return tell(systems_[choice.system], "set");
+  if (sets(system.set)) return reject(systems_[choice.system], "set");
   for (std::size_t i = campaign_.factors.size(); i-- > 0;) {
     if (!sets(campaign_.factors[i].levels[choice.levels[i]].set)) continue;
-    return tell(factors_[i], factors_[i].Has("values") ? "values" : "variants");
+    return reject(factors_[i], factors_[i].Has("values") ? "values" : "variants");
   }
   Section& section = scenarios_[choice.scenario];
-  if (!scenario.recorded) return tell(section, sets(scenario.set) ? "set" : "file");
-  tell(section, sets(scenario.set) ? "set" : section.Has(key) ? key : "path");
+  if (!scenario.recorded) return reject(section, sets(scenario.set) ? "set" : "file");
+  reject(section, sets(scenario.set) ? "set" : section.Has(key) ? key : "path");
 }
 
 }  // namespace vobench::campaign

@@ -49,7 +49,7 @@ bool ComparedWithOne(const std::string& metric) {
   return (metric.starts_with("nees") || metric.starts_with("nis")) && metric.find("median") == std::string::npos;
 }
 
-std::string Told(const DoseEstimate& e, std::size_t lost) {
+std::string NoteOf(const DoseEstimate& e, std::size_t lost) {
   if (e.runs == 0) return "no runs";
   return fmt::format("{} [{}, {}], {} runs{}", NumberOrLost(e.value), NumberOrLost(e.low), NumberOrLost(e.high), e.runs,
                      lost > 0 ? fmt::format(", {} lost", lost) : "");
@@ -65,7 +65,7 @@ void AddEstimates(const Curve& curve, std::size_t system, const std::vector<Dose
     band.high.push_back(estimates[d].high);
     band.notes.push_back("95 % interval");
     middle.y.push_back(estimates[d].value);
-    middle.notes.push_back(Told(estimates[d], line.lost[d]));
+    middle.notes.push_back(NoteOf(estimates[d], line.lost[d]));
   }
   figure.series.push_back(band);
   figure.series.push_back(middle);
@@ -123,13 +123,13 @@ Figure BrokenFigure(const Curve& curve) {
     // One above the other, so that equal ones are distinct.
     const double y = 0.5 + 0.03 * (static_cast<double>(s) - 0.5 * static_cast<double>(curve.lines.size() - 1));
     Series bar = Of(line, s, Draw::interval), at = Of(line, s, Draw::dots);
-    const std::string told = fmt::format("half broken at {}, 95 %: {} to {}", DoseText(curve, line.breaks->at),
+    const std::string note = fmt::format("half broken at {}, 95 %: {} to {}", DoseText(curve, line.breaks->at),
                                          DoseText(curve, line.breaks->low), DoseText(curve, line.breaks->high));
     bar.x = {place(line.breaks->low)};
     bar.high = {place(line.breaks->high)};
     at.x = {place(line.breaks->at)};
     bar.y = at.y = {y};
-    at.notes = bar.notes = {told};
+    at.notes = bar.notes = {note};
     figure.series.push_back(bar);
     figure.series.push_back(at);
   }

@@ -187,15 +187,15 @@ std::vector<TextRow> EndRows(const Campaign& campaign, const std::vector<TaskRec
     std::string reason;  // of the first
   };
   std::map<std::pair<std::size_t, Status>, Ends> all;
-  bool told = false;
+  bool any = false;
   for (const TaskRecord& record : records) {
     const std::size_t system = ChoiceOf(campaign, record.task).system;
     Ends& ends = all[{system, record.status}];
     if (ends.count++ == 0) ends.reason = record.reason;
     if (const auto share = record.metric(MetricIndex("pose_coverage"))) ends.coverages.push_back(100 * *share);
-    told = told || record.status != Status::ok || campaign.systems[system].system.empty();
+    any = any || record.status != Status::ok || campaign.systems[system].system.empty();
   }
-  if (!told) return {};
+  if (!any) return {};
   std::vector<TextRow> rows = {{"system", "runs", "ended", "frames with a pose", "the first: why"}};
   for (auto& [at, ends] : all) {
     const SystemEntry& system = campaign.systems[at.first];

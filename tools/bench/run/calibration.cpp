@@ -19,7 +19,7 @@ void Refuse(bool impossible, CalibrationFormat format, const char* why) {
   }
 }
 
-// What both ORB-SLAMs want beside the camera: the values of their own samples for TUM RGB-D.
+// Settings of both ORB-SLAMs beside the camera: the values of their own samples for TUM RGB-D.
 constexpr const char* kOrb = R"(
 ORBextractor.nFeatures: 1000
 ORBextractor.scaleFactor: 1.2

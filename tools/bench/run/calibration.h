@@ -1,7 +1,7 @@
 // Calibration file of a camera as other systems read it.
 // Source: the sample files and readers of ORB-SLAM2 and 3 (Settings), DSO (README, "Geometric Calibration File"), SVO
 // (svo_ros/param/camera_pinhole.yaml), LSD-SLAM (Undistorter.cpp). What each counts from differs: with the
-// centre of the first pixel at (0, 0), as here, DSO and LSD-SLAM (without distortion) want (c + 0.5) / size.
+// centre of the first pixel at (0, 0), as here, DSO and LSD-SLAM (without distortion) take (c + 0.5) / size.
 #pragma once
 
 #include <string>

@@ -213,7 +213,7 @@ void RefusePoints(const Campaign& campaign, const TaskChoice& choice, const camp
   if (system.system.empty()) refuse("", "a world of points has no pictures for '" + system.name + "'");
 }
 
-// Sensors that a system takes and the sequence does not have, and lenses that it cannot be told of.
+// Sensors that a system takes and the sequence does not have, and lenses that it has no model of.
 void RefuseMissing(const campaign::SystemEntry& system, const SeenSequence& seen,
                    const campaign::TaskRunner::Refuse& refuse) {
   const campaign::Sensors& takes = system.external.sensors;

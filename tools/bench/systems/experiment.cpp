@@ -59,7 +59,7 @@ Experiment ReadTrackSettings(settings::Document document) {
   settings::Section prior = document.root().Child("prior");
   ReadPrior(prior, out.prior);
   if (out.prior.start == PriorSettings::Start::truth) {
-    prior.Reject("start", "'truth' is for `vobench run`: this command tells the odometry nothing of the truth");
+    prior.Reject("start", "'truth' is for `vobench run`: this command gives the odometry nothing of the truth");
   }
   document.ThrowIfBad();
   out.resolved = document.Resolved();

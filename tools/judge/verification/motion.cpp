@@ -12,8 +12,8 @@ using Eigen::Vector3d;
 
 constexpr double kSigmas = 6;        // of what is random: one line in 5 10^8 is beyond
 constexpr double kText = 1e-11;      // rounding of the texts' twelve decimals, and of the sums here
-constexpr std::ptrdiff_t kNear = 5;  // neighbours that tell how fast a rate bends
-constexpr double kSafety = 2;        // on what they tell; below 3, so that one wrong line cannot excuse itself
+constexpr std::ptrdiff_t kNear = 5;  // neighbours from which the curvature of a rate follows
+constexpr double kSafety = 2;        // on that curvature; below 3, so that one wrong line cannot excuse itself
 
 struct Rate {
   double t_s;

@@ -50,7 +50,7 @@ Pair Match(Frames& frames, std::size_t frame, std::size_t partner) {
                 there = frames.Smooth(partner);
   const auto move = Between(frames.sequence(), frame, partner);
   if (depth.empty() || other_depth.empty() || here.empty() || there.empty() || !move) return pair;
-  // Of what moves by itself, poses do not tell where it is; without a mask, nothing tells what moves.
+  // Moving objects are not placed by the camera's poses; without a mask they are not known.
   const cv::Mat moving = frames.Picture("moving", frame), moving_there = frames.Picture("moving", partner);
   const bool has_masks = !moving.empty() && !moving_there.empty();
   if (!frames.sequence().objects.empty() && !has_masks) return pair;

@@ -11,7 +11,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // Of the pixels that a check looks at, so many may be beyond their bound: where several surfaces meet within a pixel,
-// neighbours do not tell what is between them.
+// the surface between neighbours is not known.
 constexpr double kEdges = 1e-3;
 constexpr double kRayError = 2e-6;  // of the pixel through which a point is seen [px], and of a float's flow
 constexpr double kFloat = 1.2e-7;   // twice a float's rounding
@@ -219,7 +219,7 @@ void DepthInNeighbours(Frames& frames, std::size_t frame, Check& check) {
 }
 
 // A pixel fits where one of the motions that it may have explains its flow. One that fits those of the others alone
-// tells that the mask is wrong.
+// shows that the mask is wrong.
 void Flow(Frames& frames, std::size_t frame, const std::string& stream, std::size_t to, Check& check,
           std::vector<Check>& checks) {
   const cv::Mat flow = frames.Picture(stream, frame), depth = frames.Depth(frame);

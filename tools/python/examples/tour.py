@@ -3,7 +3,7 @@
 
     PYTHONPATH=build/release/tools/python python3 tools/python/examples/tour.py [SCENES [OUT]]
 
-SCENES is scenes/ of the checkout unless told (/usr/share/vobench/scenes of the package); plots go to OUT (out/tour). Needs matplotlib.
+SCENES is scenes/ of the checkout by default (/usr/share/vobench/scenes of the package); plots go to OUT (out/tour). Needs matplotlib.
 """
 # %%
 import pathlib

@@ -3,7 +3,7 @@
 
     python3 tools/python/examples/vio_configs.py SEQ [OUT]
 
-reads SEQ/mav0/*/sensor.yaml and writes OUT, SEQ/configs unless told; without an IMU those of VINS-Fusion, ORB-SLAM3 and Basalt alone. The texts are those of vio/*.in: @name@ is replaced, what is between
+reads SEQ/mav0/*/sensor.yaml and writes OUT, SEQ/configs by default; without an IMU those of VINS-Fusion, ORB-SLAM3 and Basalt alone. The texts are those of vio/*.in: @name@ is replaced, what is between
 "@for A B@" and "@end@" is there for each of the cameras A ... B - 1. Densities of 0, which no filter takes, become those of EuRoC's IMU.
 """
 import json

@@ -40,7 +40,7 @@ TEST(Exr, SizesAreBoundedInEveryPart) {
   EXPECT_THAT(Problem(Start() + Window(0, 0, 8191, 8191) + kEnd), HasSubstr("8192 x 8192 pixels in "));
   EXPECT_THAT(Problem(Start(true) + Window(0, 0, 7, 5) + kEnd + Window(0, 0, 40000, 5) + kEnd + kEnd),
               HasSubstr("40001 x 6"));
-  EXPECT_EQ(Problem(Start() + Window(3, 0, 2, 10) + kEnd), "its header tells no size");
+  EXPECT_EQ(Problem(Start() + Window(3, 0, 2, 10) + kEnd), "its header has no size");
   EXPECT_EQ(Problem(Start() + Window(-2147483648, 0, 2147483647, 0) + kEnd),
             "4294967296 x 1 pixels: a side may have 32768 at most");
   EXPECT_THAT(Problem(Start() + Attribute("tiles", "tiledesc", Number(1 << 20) + Number(64) + kEnd) + kEnd),

@@ -68,7 +68,7 @@ TEST(Picture, CutOffHeadersTellNoSize) {
   for (const auto& [kind, header] : Headers(640, 480)) {
     for (std::size_t length = 11; length < 18; ++length) {
       const std::string problem = Problem(header.substr(0, length));
-      EXPECT_TRUE(problem == "its header tells no size" || problem.starts_with("not a picture that"))
+      EXPECT_TRUE(problem == "its header has no size" || problem.starts_with("not a picture that"))
           << kind << " " << length << ": " << problem;
     }
   }

@@ -54,7 +54,7 @@ TEST_F(CampaignFileTest, ReadsAllOfIt) {
   EXPECT_EQ(c.factors[1].levels[1].name, "dusk");
   EXPECT_EQ(Points(c), 12u);
   EXPECT_EQ(Tasks(c), 96);
-  ASSERT_EQ(c.tables.size(), 1u) << "unless told: the error by everything";
+  ASSERT_EQ(c.tables.size(), 1u) << "by default: the error by everything";
   EXPECT_THAT(c.tables[0].rows, ElementsAre("scenario", "exposure", "light"));
 }
 

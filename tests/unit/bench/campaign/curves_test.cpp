@@ -76,7 +76,7 @@ TEST_F(CurvesTest, AreReadWithTheirDosesInSi) {
   EXPECT_THAT(c.curves[0].doses, ElementsAre(4e-3, 8e-3, 16e-3, 32e-3));
   EXPECT_EQ(c.curves[0].unit, "ms");
   EXPECT_DOUBLE_EQ(c.curves[0].unit_in_si, 1e-3);
-  EXPECT_THAT(c.curves[0].by, ElementsAre("scenario", "light", "steps")) << "unless told: by everything";
+  EXPECT_THAT(c.curves[0].by, ElementsAre("scenario", "light", "steps")) << "by default: by everything";
   EXPECT_EQ(c.curves[0].break_error_m, 0.05);
   EXPECT_THAT(c.curves[1].by, ElementsAre("light"));
   EXPECT_EQ(c.curves[1].break_error_m, 0);

@@ -227,7 +227,7 @@ TEST(Judge, SumsUpTimesAndEvents) {
   TestRandom random(57);
   const Trajectory truth = random.Walk(4);
   EstimateRun run = RunOf(truth, StampsOf(truth), 4);
-  EXPECT_FALSE(Judge(run, truth, std::nullopt).events) << "no frame tells of them";
+  EXPECT_FALSE(Judge(run, truth, std::nullopt).events) << "no frame has them";
   const int not_converged[] = {0, 3, 0, 1};
   for (std::size_t i = 0; i < 4; ++i) {
     run.frames[i].ms_features = 10 + static_cast<double>(i * i);

@@ -1,5 +1,6 @@
 // Random valid glTF files, held against their own description: each pair of the choices below occurs.
 #include <draco/compression/encode.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <meshoptimizer.h>
 
@@ -13,6 +14,7 @@
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <ranges>
 #include <set>
 #include <string>
 #include <vector>
@@ -348,6 +350,10 @@ TEST(GltfProperty, RandomFilesAreWhatTheyDescribe) {
       folder.Write(name + "/a picture.png", EncodeColor(".png", 10, 20, 30));
       folder.Write(name + "/data.bin", maker.data);
       world.meshes.push_back({folder.Write(name + "/m.gltf", maker.file), {}, {1, 0, 0, 0}, 1.0, {}, {}});
+      std::string description;  // for Blender's reader, in tools/dev/validate-gltf
+      for (const Corner& c : maker.triangles | std::views::join)
+        description += fmt::format("{} {} {} {} {}\n", c.position.x, c.position.y, c.position.z, c.uv.x, c.uv.y);
+      folder.Write(name + (choices.compression() == 0 ? "/triangles.txt" : "/compressed.txt"), description);
       expected.push_back(maker.triangles);
       made.push_back(choices);
     }

@@ -254,7 +254,7 @@ TEST(Gltf, WantsAReaderOfAnotherVersion) {
   std::string text = Gltf({});
   text.replace(text.find("\"2.0\""), 5, R"("2.1", "minVersion": "2.1")");
   const auto file = folder.Write("flag.gltf", text);
-  EXPECT_THAT(ProblemTextOf([&] { LoadScene(WorldOf(file)); }), HasSubstr("wants a reader of glTF 2.1"));
+  EXPECT_THAT(ProblemTextOf([&] { LoadScene(WorldOf(file)); }), HasSubstr("needs a reader of glTF 2.1"));
 }
 
 TEST(Gltf, WhatIsNotRenderedIsNamed) {
@@ -352,6 +352,16 @@ TEST(Gltf, GpuInstancing) {
   ASSERT_THAT(scene.meshes, SizeIs(3));
   EXPECT_EQ(scene.meshes[1].positions.at(0), glm::vec3(1, 0, 0));
   EXPECT_EQ(scene.meshes[2].positions.at(1), glm::vec3(1, 1, 0));
+}
+
+TEST(Gltf, InvisibleNodesAreNotRendered) {
+  const Folder folder;
+  Parts parts;
+  parts.more = R"(, "extensionsUsed": ["KHR_node_visibility"])";
+  parts.node = R"(, "extensions": {"KHR_node_visibility": {"visible": true}})";
+  EXPECT_THAT(Load(folder, parts).meshes, SizeIs(1));
+  parts.node = R"(, "extensions": {"KHR_node_visibility": {"visible": false}})";
+  EXPECT_THAT(Problems(folder, parts), HasSubstr("has no triangles"));
 }
 
 }  // namespace

@@ -141,7 +141,7 @@ TEST_F(Obj, PictureInPlaceOfVertexColours) {
 
 TEST_F(Obj, SaysWhatIsMissing) {
   EXPECT_THAT(Load("usemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").warnings,
-              ElementsAre(HasSubstr("names the material 'a', which no library (mtllib) tells of")));
+              ElementsAre(HasSubstr("names the material 'a', which no library (mtllib) defines")));
 }
 
 TEST_F(Obj, PicturesWithoutAColourAreLeftAsTheyAre) {
