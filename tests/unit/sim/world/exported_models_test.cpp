@@ -9,6 +9,7 @@
 
 #include "sim/render/ray_scene.h"
 #include "sim/scenario/readers.h"
+#include "source_dir.h"
 #include "tests/unit/sim/render/worlds.h"
 #include "tests/unit/sim/world/files.h"
 
