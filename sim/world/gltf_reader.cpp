@@ -222,7 +222,7 @@ class GltfReader {
     if (depth > kDeepestNode) throw std::runtime_error("has nodes more than 1000 deep, or in a circle");
     const json& node = file_.At("nodes", index);
     const json* visibility = GltfFile::Extension(node, "KHR_node_visibility");
-    if (visibility != nullptr && !visibility->value("visible", true)) return;  // nor is what hangs on it
+    if (visibility != nullptr && !visibility->value("visible", true)) return;  // with its children
     const glm::dmat4 transform = parent * TransformOf(node);
     (this->*append)(node, transform);
     for (const json& child : GltfFile::Child(node, "children"))

@@ -49,6 +49,10 @@ class BenchTest : public CampaignTest {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
+  void ExpectOutIsWhole() const {
+    for (const char* file : {"bench.json", "results.csv"})
+      EXPECT_EQ(ReadFile(here_ / "out" / file), ReadFile(here_ / "whole" / file)) << file;
+  }
 };
 
 TEST_F(BenchTest, FindsThePlantedBreakingPointAndEndsAlikeAfterKills) {
@@ -76,13 +80,11 @@ TEST_F(BenchTest, FindsThePlantedBreakingPointAndEndsAlikeAfterKills) {
   EXPECT_GT(kills, 0);
   const Outcome again = RunVobench(Bench("out"), here_.path());
   ASSERT_EQ(again.status, 0) << again.err;
-  for (const char* file : {"bench.json", "results.csv"})
-    EXPECT_EQ(ReadFile(here_ / "out" / file), ReadFile(here_ / "whole" / file)) << file;
+  ExpectOutIsWhole();
 }
 
 TEST_F(BenchTest, EndsAlikeThroughSlurmAfterTheNodeIsLost) {
-  const std::string why_not = SlurmCluster::WhyNot();
-  if (!why_not.empty()) GTEST_SKIP() << why_not;
+  if (const std::string why_not = SlurmCluster::WhyNot(); !why_not.empty()) GTEST_SKIP() << why_not;
   const Outcome whole = RunVobench(Bench("whole"), here_.path());
   ASSERT_EQ(whole.status, 0) << whole.err;
   SlurmCluster cluster;
@@ -93,8 +95,7 @@ TEST_F(BenchTest, EndsAlikeThroughSlurmAfterTheNodeIsLost) {
   cluster.StartNode();
   const Outcome outcome = RunVobench(words, here_.path());
   ASSERT_EQ(outcome.status, 0) << outcome.err << cluster.Log();
-  for (const char* file : {"bench.json", "results.csv"})
-    EXPECT_EQ(ReadFile(here_ / "out" / file), ReadFile(here_ / "whole" / file)) << file;
+  ExpectOutIsWhole();
 }
 
 TEST_F(BenchTest, AttackFindsTheTwoThatBreakIt) {

@@ -81,12 +81,6 @@ Values Coded(const RadianceImage& image) {
   return out;
 }
 
-double Psnr(const Values& a, const Values& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (double{a[i]} - b[i]) * (double{a[i]} - b[i]);
-  return -10 * std::log10(sum / static_cast<double>(a.size()));
-}
-
 // Every triangle has a colour of its own, which is its radiance: a picture says which one each pixel's centre sees.
 Scene Labelled(Scene scene) {
   for (Material& material : scene.materials) {

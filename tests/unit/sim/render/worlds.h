@@ -152,6 +152,13 @@ inline std::unique_ptr<Renderer> MakeBaked(const Scene& scene, LightMode mode, c
   return MakeRayTracer(scene, LitScene(scene, mode, bake, {}, warnings), options);
 }
 
+// [dB], of a peak of 1.
+inline double Psnr(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (double{a[i]} - b[i]) * (double{a[i]} - b[i]);
+  return -10 * std::log10(sum / static_cast<double>(a.size()));
+}
+
 inline RadianceImage Render(const Renderer& renderer, const Camera& camera, const Pose& pose) {
   RadianceImage image;
   renderer.Expose(camera, SteadyMotion(pose), Exposure{}, 1, image);
