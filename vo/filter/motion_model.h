@@ -30,8 +30,8 @@ struct MotionInput {
   // Correlation of the accelerations: their density is D shape D, D the square roots of the densities above. Of
   // (p in W, delta in C); the trace of each 3 x 3 block on the diagonal is 3.
   Matrix6 shape = Matrix6::Identity();
-  // Rotation from the last sampled (or window's last) camera to the present one, in place of the predicted one: as
-  // measured by direct alignment of the images. The covariance stays that of the model.
+  // Rotation from the last sampled (or window's last) camera to the present one, measured by direct alignment of the
+  // images: the mean in place of the model's. The covariance stays that of the model.
   std::optional<Eigen::Quaterniond> turn = std::nullopt;
   // The last seconds of the step, in which no image was matched: the velocity decays, with kCoastingTime.
   double coasting_s = 0;

@@ -22,6 +22,7 @@ double SetPriorGradient(const PathPrior& prior, const WindowInput& in, const Pat
   const int m = prior.size();
   Eigen::VectorXd r(J.rows()), d(J.rows());
   for (int k = 0; k < m; ++k) r.segment<6>(kPoseSize * k) = StepTo(k, path, in.start) - prior.MeanStep(k, in.velocity);
+  if (const Eigen::VectorXd shift = prior.ShiftBy(path.turns); shift.size() > 0) r -= shift;
   d.noalias() = prior.precision() * r;
   b.setZero(J.rows());
   for (int k = 0; k < m; ++k) {

@@ -1,6 +1,6 @@
 #include "vo/filter/path_gaussian.h"
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 
 #include "vo/geometry/covariance.h"
 #include "vo/geometry/so3.h"
@@ -56,11 +56,22 @@ PathPrior::PathPrior(const std::vector<MotionModel>& steps, const Matrix6& veloc
     with_velocity.middleCols<6>(kPoseSize * k) = F22 * V * F12.transpose() + Q21;
     V = (F22 * V * F22.transpose()).eval() + Q22;
   }
-  const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
-  precision_ = Symmetrised(llt.solve(Eigen::MatrixXd::Identity(kPoseSize * m, kPoseSize * m)));
-  log_det_precision_ = -2.0 * llt.matrixLLT().diagonal().array().log().sum();
-  gain_ = llt.solve(with_velocity.transpose()).transpose();
+  llt_.compute(covariance);
+  precision_ = Symmetrised(llt_.solve(Eigen::MatrixXd::Identity(kPoseSize * m, kPoseSize * m)));
+  log_det_precision_ = -2.0 * llt_.matrixLLT().diagonal().array().log().sum();
+  gain_ = llt_.solve(with_velocity.transpose()).transpose();
   last_covariance_ = Symmetrised(V - gain_ * with_velocity.transpose());
+}
+
+Eigen::VectorXd PathPrior::ShiftBy(const std::vector<StepTurn>& turns) const {
+  if (std::ranges::all_of(turns, [](const StepTurn& turn) { return turn.input.isZero(0); })) return {};
+  Eigen::VectorXd s = Eigen::VectorXd::Zero(precision_.rows());
+  for (Eigen::Index k = 0; k < size(); ++k) {
+    auto s_k = s.segment<6>(kPoseSize * k);
+    s_k.tail<3>() = turns[static_cast<std::size_t>(k)].input;
+    llt_.matrixLLT().block<6, 6>(kPoseSize * k, kPoseSize * k).triangularView<Eigen::Lower>().solveInPlace(s_k);
+  }
+  return llt_.matrixL() * s;
 }
 
 BeliefComponent ComponentAtTheEnd(const PathPrior& prior, const Pose& start, const Vector6& velocity,
@@ -79,11 +90,16 @@ BeliefComponent ComponentAtTheEnd(const PathPrior& prior, const Pose& start, con
 }
 
 void Extend(const PathPrior& prior, const MotionModel& step, const Pose& start, const Vector6& velocity,
-            PathGaussian& path) {
+            const std::optional<Eigen::Quaterniond>& turn, PathGaussian& path) {
   const Eigen::Index size = kPoseSize * prior.size();
   const LastVelocity last = VelocityAtTheEnd(prior, start, velocity, path);
   const Matrix6 F12 = step.F.topRightCorner<6, 6>();
-  const Vector6 u = F12 * last.mean;
+  Vector6 u = F12 * last.mean;
+  Eigen::Vector3d input = Eigen::Vector3d::Zero();
+  if (turn) {
+    input = LogNear(*turn, u.tail<3>()) - u.tail<3>();
+    u.tail<3>() += input;
+  }
   Matrix6 by_step = Matrix6::Identity();
   by_step.bottomRightCorner<3, 3>() = RightJacobian(u.tail<3>());
   Eigen::Matrix<double, 6, Eigen::Dynamic> by_pose = by_step * F12 * last.by_pose;
@@ -99,7 +115,7 @@ void Extend(const PathPrior& prior, const MotionModel& step, const Pose& start, 
   path.covariance.bottomRightCorner<6, 6>() =
       Symmetrised(cross * by_pose.transpose() + by_step * noise * by_step.transpose());
   path.mean.push_back(Plus(path.mean.empty() ? start : path.mean.back(), u));
-  path.turns.push_back(u.tail<3>());
+  path.turns.push_back({u.tail<3>(), input});
 }
 
 void Move(const Pose& motion, PathGaussian& path) {

@@ -6,7 +6,8 @@
 // Tangent: per pose (dp in W, dphi in C); slot 0 is the oldest pose that is not sampled.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Cholesky>
+#include <optional>
 #include <vector>
 
 #include "vo/base/result.h"
@@ -17,6 +18,12 @@
 namespace vo {
 
 constexpr Eigen::Index kPoseSize = 6;  // rows of a pose, or a step, in a vector of several
+
+// Rotation of a step as predicted [rad in C].
+struct StepTurn {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Vector3d input = Eigen::Vector3d::Zero();  // share of the mean: a measured turn less the motion model's
+};
 
 // Gaussian of the steps u with the velocities integrated out, and of the last velocity given the steps. The covariances
 // do not depend on the path: all particles share them.
@@ -29,6 +36,9 @@ class PathPrior {
   const Eigen::MatrixXd& precision() const { return precision_; }  // of u, 6m x 6m
   double log_det_precision() const { return log_det_precision_; }
   Vector6 MeanStep(int k, const Vector6& velocity) const { return mean_of_step_[k] * velocity; }
+  // Shift of the steps' means by the inputs c_k: u_k given the earlier steps has the mean of the motion model plus
+  // (0, c_k). With Cov(u) = L L' it is L s, s_k = L_kk^-1 (0, c_k). Empty where all inputs are 0.
+  Eigen::VectorXd ShiftBy(const std::vector<StepTurn>& turns) const;
 
   // Last velocity given the steps: mean = LastMean(v_0) + gain (u - mean of u), covariance.
   Vector6 LastMean(const Vector6& velocity) const { return last_of_first_ * velocity; }
@@ -39,6 +49,7 @@ class PathPrior {
   std::vector<Matrix6> mean_of_step_;  // of the first velocity
   Matrix6 last_of_first_;
   Eigen::MatrixXd precision_;
+  Eigen::LLT<Eigen::MatrixXd> llt_;  // of the covariance of u
   double log_det_precision_ = 0;
   Eigen::Matrix<double, 6, Eigen::Dynamic> gain_;
   Matrix6 last_covariance_;
@@ -46,9 +57,9 @@ class PathPrior {
 
 struct PathGaussian {
   std::vector<Pose> mean;
-  std::vector<Eigen::Vector3d> turns;  // [rad in C] of the step to each pose, as it was predicted
-  Eigen::MatrixXd covariance;          // 6m x 6m
-  double objective = 0;                // -2 log density at its mode, up to a constant that all first guesses share
+  std::vector<StepTurn> turns;  // of the step to each pose
+  Eigen::MatrixXd covariance;   // 6m x 6m
+  double objective = 0;         // -2 log density at its mode, up to a constant that all first guesses share
   // Laplace's approximation of log p(z in the window | sampled path); NaN: not positive definite
   double log_evidence = 0;
   NumericalEvents events;  // of the solution
@@ -62,7 +73,7 @@ struct PathSolution {
 
 // u: of the rotation vectors that turn the pose before into the pose at `slot`, the one nearest to the prediction.
 inline Vector6 StepTo(int slot, const PathGaussian& path, const Pose& start) {
-  return MinusNear(path.mean[slot], slot == 0 ? start : path.mean[slot - 1], path.turns[slot]);
+  return MinusNear(path.mean[slot], slot == 0 ? start : path.mean[slot - 1], path.turns[slot].mean);
 }
 
 // Last pose and velocity of the path: a component of the answer's mixture, its weight left open. `start`, `velocity`:
@@ -71,9 +82,9 @@ BeliefComponent ComponentAtTheEnd(const PathPrior& prior, const Pose& start, con
                                   const PathGaussian& path);
 
 // One pose more, a step after the end; `prior` is that of the path before. Nothing is solved: a pose that no image has
-// seen changes no other.
+// seen changes no other. `turn`: the rotation of the step, where it is measured.
 void Extend(const PathPrior& prior, const MotionModel& step, const Pose& start, const Vector6& velocity,
-            PathGaussian& path);
+            const std::optional<Eigen::Quaterniond>& turn, PathGaussian& path);
 // All poses moved in W, T_WC -> motion T_WC.
 void Move(const Pose& motion, PathGaussian& path);
 // The last pose integrated out.

@@ -42,7 +42,7 @@ void UpdateGivenPose(const VelocityFilter& step, const Window& window, const Lan
   const Pose& s = particle.solution.path.mean[slot];
   const std::vector<Match>& matches = window.frames()[slot].matches;
   particle.velocity = VelocityGivenPose(step.Condition(PathState(particle.pose), particle.velocity), particle.pose, s,
-                                        particle.solution.path.turns[slot]);
+                                        particle.solution.path.turns[slot].mean);
   if (gains.empty()) gains = GainsOf(matches, table, s, particle.anchors, particle.solution.modes, particle.landmarks);
   UpdateLandmarks(matches, gains, table, s, particle.anchors, particle.solution.modes, particle.landmarks);
   particle.pose = s;

@@ -44,12 +44,8 @@ void WindowPhase::ExtendPaths(double dt, const MotionInput& input) {
   }
   if (!prior_) SetPrior();
   const MotionModel step = NearlyConstantVelocity(settings_.motion, dt, input);
-  for (Particle& particle : particles_) {
-    std::vector<Pose>& path = particle.solution.path.mean;
-    const Pose last = path.empty() ? particle.pose : path.back();
-    Extend(*prior_, step, particle.pose, particle.velocity.mean, particle.solution.path);
-    if (input.turn) path.back().q_WC = (last.q_WC * *input.turn).normalized();
-  }
+  for (Particle& particle : particles_)
+    Extend(*prior_, step, particle.pose, particle.velocity.mean, input.turn, particle.solution.path);
   window_.Append(dt, frame_, input, table_);
   SetPrior();
 }

@@ -64,7 +64,7 @@ TEST(EpipolarPath, LeavesTheWrongMode) {
     window.Append(1.0 / 30, static_cast<std::uint32_t>(k), {}, table);
     window.SetMatches(field.SeenFrom(truth(k)), table);
     wrong.path.mean.push_back({Eigen::Vector3d(-0.005, 0.01, 0.03) * k, vo::Exp(Eigen::Vector3d(0.01, -0.02, 0) * k)});
-    wrong.path.turns.push_back(Eigen::Vector3d::Zero());
+    wrong.path.turns.emplace_back();
   }
   vo::Particle particle;
   for (const vo::FirstView& view : field.first_views) {

@@ -287,7 +287,7 @@ TEST(ShutterCorrection, IsAFunctionOfTheRowsAndThePath) {
   particle.anchors.resize(1);
   vo::PathSolution solution;
   solution.path.mean = {{{0.03, 0, 0}, vo::Exp({0, 0.02, 0})}};
-  solution.path.turns = {{0, 0.02, 0}};
+  solution.path.turns = {{.mean = {0, 0.02, 0}}};
   solution.modes = {{0.1, 0.2, 0.5}, {0.1, 0.2, 0.5}};
   const vo::WindowInput in{particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors};
   const auto correct = [&](const vo::Window& of, vo::ShutterReference reference) {

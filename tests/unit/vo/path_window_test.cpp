@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "tests/unit/vo/draws.h"
@@ -86,7 +88,7 @@ Scene MakeScene(unsigned seed, int frames, int count, double depth_sigma, double
 vo::PathGaussian Solve(const Scene& scene, bool marginal, std::vector<Vector3d>* modes = nullptr, int iterations = 50) {
   vo::PathGaussian path;
   path.mean.assign(scene.truth.size(), scene.start);
-  path.turns.assign(scene.truth.size(), Vector3d::Zero());
+  path.turns.assign(scene.truth.size(), {});
   std::vector<Vector3d> theta;
   for (const vo::Track& track : scene.tracks) theta.push_back(scene.landmarks[track.landmark].mean);
   vo::PathWindow().Solve(scene.prior(), scene.input(), scene.tracks, {iterations, marginal}, path, theta);
@@ -145,13 +147,50 @@ TEST(PathEnd, AStepMoreIsAsIfSolvedAgain) {
     scene.truth.pop_back();
     vo::PathGaussian path;
     if (frames > 0) path = Solve(scene, false);
-    vo::Extend(scene.prior(), step, scene.start, scene.velocity, path);
+    vo::Extend(scene.prior(), step, scene.start, scene.velocity, std::nullopt, path);
     ASSERT_EQ(path.mean.size(), again.mean.size());
     VectorXd off(again.covariance.rows());
     for (std::size_t k = 0; k < path.mean.size(); ++k)
       off.segment<6>(6 * static_cast<Eigen::Index>(k)) = vo::Minus(path.mean[k], again.mean[k]);
     EXPECT_LT(std::sqrt(off.dot(again.covariance.llt().solve(off))), 2 * vo::kToleranceSigma) << "seed " << seed;
     EXPECT_LT((path.covariance - again.covariance).norm(), 1e-3 * again.covariance.norm()) << "seed " << seed;
+  }
+}
+
+// Steps whose rotation is measured: their prior has the means that extension, step by step, gives. The control is the
+// motion model alone, which turns back.
+TEST(PathEnd, AMeasuredTurnIsTheMeanOfItsStep) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Scene scene = MakeScene(seed, 5, 0, 0, 0);
+    Draws draws(seed + 100);
+    Matrix6 root;
+    for (int column = 0; column < 6; ++column) root.col(column) = draws.Normals<6>();
+    const vo::MotionInput correlated{.shape = Matrix6::Identity() + 0.1 * root * root.transpose()};
+    scene.steps.clear();
+    vo::PathGaussian path;
+    for (int k = 0; k < 5; ++k) {
+      const vo::MotionModel step =
+          vo::NearlyConstantVelocity({.position_noise = 0.6, .orientation_noise = 0.4}, 1.0 / 30, correlated);
+      const Eigen::Quaterniond turn = vo::Exp(0.2 * draws.Normals<3>());
+      const bool measured = k % 2 == 1;
+      vo::Extend(scene.prior(), step, scene.start, scene.velocity, measured ? std::optional(turn) : std::nullopt, path);
+      scene.steps.push_back(step);
+      if (!measured) continue;
+      EXPECT_LT((path.mean[k - 1].q_WC * turn).angularDistance(path.mean[k].q_WC), 1e-12) << k;
+    }
+    const auto off = [&](std::vector<vo::StepTurn> turns) {
+      vo::PathGaussian solved;
+      solved.mean.assign(5, scene.start);
+      solved.turns = std::move(turns);
+      std::vector<Vector3d> theta;
+      vo::PathWindow().Solve(scene.prior(), scene.input(), {}, {50, false}, solved, theta);
+      double most = 0;  // standard deviations
+      for (int k = 0; k < 5; ++k)
+        most = std::max(most, Distance(solved.mean[k], path.mean[k], solved.covariance.block<6, 6>(6 * k, 6 * k)));
+      return most;
+    };
+    EXPECT_LT(off(path.turns), 2 * vo::kToleranceSigma) << "seed " << seed;
+    EXPECT_GT(off(std::vector<vo::StepTurn>(5)), 2) << "seed " << seed;
   }
 }
 
@@ -181,7 +220,7 @@ TEST(PathEnd, IsSymmetricAfterAGap) {
   vo::PathGaussian path = Solve(scene, false);
   for (const double dt : {1e-5, 4.0}) {
     const vo::MotionModel step = vo::NearlyConstantVelocity({.position_noise = 0.6, .orientation_noise = 0.4}, dt);
-    vo::Extend(scene.prior(), step, scene.start, scene.velocity, path);
+    vo::Extend(scene.prior(), step, scene.start, scene.velocity, std::nullopt, path);
     scene.steps.push_back(step);
   }
   EXPECT_EQ(path.covariance, path.covariance.transpose());
@@ -199,7 +238,7 @@ TEST(PathWindow, EvidenceOfAnUnseenStep) {
     vo::PathGaussian path;
     std::vector<Vector3d> theta;
     for (const vo::Track& track : scene.tracks) theta.push_back(scene.landmarks[track.landmark].mean);
-    path.turns.assign(scene.truth.size(), Vector3d::Zero());
+    path.turns.assign(scene.truth.size(), {});
     for (std::size_t k = 0; k < scene.truth.size(); ++k)
       path.mean.push_back(vo::Plus(scene.start, 0.1 * draws.Normals<6>()));
     for (const bool marginal : {false, true}) {
@@ -325,7 +364,7 @@ std::pair<double, double> ChordError(double spread) {
   vo::PathWindow window;
   vo::PathGaussian solved;
   solved.mean.assign(4, scene.start);
-  solved.turns.assign(4, Vector3d::Zero());
+  solved.turns.assign(4, {});
   std::vector<Vector3d> theta;
   for (const vo::Track& track : scene.tracks) theta.push_back(scene.landmarks[track.landmark].mean);
   window.Solve(scene.prior(), scene.input(), scene.tracks, {50, false, 1e-6}, solved, theta);
