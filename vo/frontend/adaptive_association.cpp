@@ -112,7 +112,7 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
     if (!trial.Repeat(Widened(trial.input, RatiosOf(trial.association)), clearly_more)) break;
   if (failed() && !last_.empty()) {
     if (const auto R = AlignRotation(camera_, Thumbnails(last_), Thumbnails(grey))) {
-      MotionInput aligned = trial.input;
+      MotionInput aligned = first;
       aligned.position_noise *= kAlignedNoise;
       aligned.orientation_noise *= kAlignedNoise;
       aligned.turn = R->conjugate();

@@ -67,7 +67,7 @@ Page PageOf(const std::filesystem::path& out, const ResultData& data) {
       {"Errors", "Distance from the truth, after the same alignment." + typical, AlignedErrorFigures(data)},
       {"Runs", "", {}, RunTable(judged)},
       {"Consistency with the truth",
-       "NEES compares errors, not aligned, with the covariance the filter claims: 1 is ideal, above the band it is "
+       "NEES compares errors, not aligned, with the filter's covariance: 1 is ideal, above the band it is "
        "over-confident, below it under-confident (conservative). Frames of one run depend on each other, so the band "
        "holds for each frame by "
        "itself. Scale: monocular odometry cannot see it; the second diagram does not count it." +

@@ -19,12 +19,12 @@ std::string ConsistencyPhrase(const SystemSummary& s) {
   if (!std::isfinite(nees)) return "its uncertainty was not judged";
   std::string text;
   if (nees > 1.5) {
-    text = "it is over-confident: errors are about " + Readable(std::sqrt(nees)) + " times what it claims";
+    text = "it is over-confident: errors are about " + Readable(std::sqrt(nees)) + " times its standard deviations";
   } else if (nees < 1 / 1.5) {
-    text =
-        "it is under-confident (conservative): errors are about " + Readable(std::sqrt(nees)) + " times what it claims";
+    text = "it is under-confident (conservative): errors are about " + Readable(std::sqrt(nees)) +
+           " times its standard deviations";
   } else {
-    text = "its errors are about as large as it claims";
+    text = "its errors are about as large as its standard deviations";
   }
   text += " (NEES " + Readable(nees) + " per degree of freedom, 1 is ideal";
   if (std::isfinite(s.nees_pose_scale_free_per_dof)) {
