@@ -25,4 +25,11 @@ PathSolution PerturbTranslation(const Window& window, const LandmarkTable& table
 std::optional<PathSolution> EpipolarPath(const Window& window, const LandmarkTable& table, const WindowInput& in,
                                          const PathSolution& solution);
 
+// Number `guess` of kGuesses: the perturbations, then the epipolar path.
+inline std::optional<PathSolution> FirstGuess(const Window& window, const LandmarkTable& table, const WindowInput& in,
+                                              const PathSolution& solution, std::uint32_t guess) {
+  if (guess < kPerturbations) return PerturbTranslation(window, table, in, solution, guess);
+  return EpipolarPath(window, table, in, solution);
+}
+
 }  // namespace vo

@@ -105,10 +105,7 @@ void WindowPhase::SolveAll() {
 
 void WindowPhase::Challenge(std::size_t i, std::uint32_t guess, WindowOptions options) {
   const PathSolution& present = particles_[i].solution;
-  const std::uint32_t number = guess % kGuesses;
-  std::optional<PathSolution> first = number < kPerturbations
-                                          ? PerturbTranslation(window_, table_, InputOf(i), present, number)
-                                          : EpipolarPath(window_, table_, InputOf(i), present);
+  std::optional<PathSolution> first = FirstGuess(window_, table_, InputOf(i), present, guess % kGuesses);
   if (!first) return;
   PathSolution& other = *first;
   const double objective = present.path.objective;
