@@ -158,7 +158,7 @@ TEST(PathEnd, AStepMoreIsAsIfSolvedAgain) {
 }
 
 // Steps whose rotation is measured: their prior has the means that extension, step by step, gives. The control is the
-// motion model alone, which turns back.
+// motion model alone, whose mean lies elsewhere.
 TEST(PathEnd, AMeasuredTurnIsTheMeanOfItsStep) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Scene scene = MakeScene(seed, 5, 0, 0, 0);
@@ -194,7 +194,6 @@ TEST(PathEnd, AMeasuredTurnIsTheMeanOfItsStep) {
   }
 }
 
-// Two images at once, then none for seconds: the velocity between the two is taken times a step of many thousand times their gap.
 // Against the projector M that takes the direction of the scale to a hundredth, M P M'.
 TEST(PathGaussian, GivenItsScale) {
   const Scene scene = MakeScene(5, 4, 0, 0.1, 1e-3);
@@ -215,6 +214,8 @@ TEST(PathGaussian, GivenItsScale) {
   EXPECT_NEAR(d.dot(path.covariance.inverse() * d) / d.dot(information), 1e4, 1e-3);
 }
 
+// Two images at once, then none for seconds: the velocity between the two is taken times a step of many thousand times
+// their gap.
 TEST(PathEnd, IsSymmetricAfterAGap) {
   Scene scene = MakeScene(5, 4, 24, 0.05, 1.0 / 525);
   vo::PathGaussian path = Solve(scene, false);
