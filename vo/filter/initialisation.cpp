@@ -159,11 +159,10 @@ void Initialisation::Finish() {
     ShareSolution();
   }
   answer_.initialising = false;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    particles_[i].log_weight -= log_evidence;
-    Solve(i, Options(false));
-    answer_.events += particles_[i].solution.path.events;
-    particles_[i].log_weight += particles_[i].solution.path.log_evidence;
+  SolveAll();
+  for (Particle& particle : particles_) {
+    answer_.events += particle.solution.path.events;
+    particle.log_weight += particle.solution.path.log_evidence - log_evidence;
   }
   Weigh();
   answer_.start = StartPath();

@@ -12,7 +12,7 @@ namespace vo {
 namespace {
 
 constexpr double kNegligible = 1e-4;  // of the information, through the unknown depth
-
+constexpr std::size_t kAtOnce = 12;   // tracks: those that follow each other begin at about the same pose
 using Matrix62 = Eigen::Matrix<double, 6, 2>;
 
 }  // namespace
@@ -43,8 +43,14 @@ void PathEquations::Begin(const PathPrior& prior, const WindowInput& in, std::sp
   y_.resize(3 * count);
   linear_.acting = 3 * std::ranges::count(tracks, false, &Track::provisional);
   linear_.landmarks.resize(tracks.size());
-  for (std::size_t i = 0; i < tracks.size(); ++i)
-    linear_.landmarks[i].L = SemidefiniteRoot<3>(in.landmarks[tracks[i].landmark].covariance);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const Track& track = tracks[i];
+    const bool seen = !track.views.empty();
+    const int first = seen ? track.views.front().slot : 0, end = seen ? track.views.back().slot + 1 : 0;
+    linear_.landmarks[i].L = SemidefiniteRoot<3>(in.landmarks[track.landmark].covariance);
+    linear_.landmarks[i].row = kPoseSize * (track.anchor_slot < 0 ? first : std::min(first, track.anchor_slot));
+    linear_.landmarks[i].end = kPoseSize * end;
+  }
 }
 
 void PathEquations::AddPrior(const PathPrior& prior, const WindowInput& in, const PathGaussian& path) {
@@ -62,11 +68,12 @@ void PathEquations::AddPrior(const PathPrior& prior, const WindowInput& in, cons
     log_det_ += 2 * LogVolume(turn);
   }
   linear_.views.clear();
+  rotations_.clear();
+  for (const Pose& pose : path.mean) rotations_.push_back(pose.q_WC.conjugate().toRotationMatrix());
   cost_ = SetPriorGradient(prior, in, path, J, b_);
   behind_camera_ = 0;
   const Eigen::MatrixXd& W = prior.precision();
   z_columns_ = 0;
-  marginal_columns_ = 0;
   A_.setZero();
   for (int k = 0; k < m; ++k) {
     const auto J_k = J.middleRows<6>(kPoseSize * k);
@@ -88,6 +95,7 @@ void PathEquations::AddTrack(std::size_t index, const WindowInput& in, const Tra
   PathLinearisation::Eliminated& landmark = linear_.landmarks[index];
   const Eigen::Matrix3d& L = landmark.L;
   const Pose& anchor = AnchorOn(path, in, track);
+  const Eigen::Matrix3d R_WA = anchor.q_WC.toRotationMatrix();
   const Eigen::Vector3d off = in.landmarks[track.landmark].mean - theta;
   auto E = linear_.Y.middleCols<3>(rows);  // coupling of the poses with u
   seen_.clear();
@@ -96,7 +104,7 @@ void PathEquations::AddTrack(std::size_t index, const WindowInput& in, const Tra
   Eigen::Vector3d g = Eigen::Vector3d::Zero();
   landmark.used = false;
   for (const Track::View& view : track.views) {
-    const Projection h = Project(AnchorView(path.mean[view.slot], anchor).ShiftedBy(view.centre_offset_W), theta);
+    const Projection h = Project(ViewOf(view, path, R_WA, anchor.p_WC), theta);
     PathLinearisation::View& linear = linear_.views.emplace_back();
     if (!h.in_front) {
       ++behind_camera_;
@@ -142,7 +150,8 @@ void PathEquations::AddTrack(std::size_t index, const WindowInput& in, const Tra
   if (!track.provisional) log_det_ += 2 * std::log(landmark.G.matrixLLT().diagonal().prod());
   if (marginal && landmark.used && !track.provisional) AddMarginal(track, landmark, theta.z());
   y_.segment<3>(rows) = whitened;
-  E = E.lazyProduct(landmark.U_inverse).eval();
+  auto seen = E.middleRows(landmark.row, landmark.end - landmark.row);
+  seen = seen.lazyProduct(landmark.U_inverse).eval();
 }
 
 // Gradient and Fisher information of -1/2 log|S|, S = J P J' + R of all views of one landmark, through dz/drho =
@@ -153,12 +162,10 @@ void PathEquations::AddMarginal(const Track& track, const PathLinearisation::Eli
   const Eigen::Vector3d alpha = landmark.G.solve(a);
   const double explained = a.dot(a - alpha);  // of the variance of rho
   const bool matters = explained > kNegligible * rho * rho;
-  auto C = linear_.Y.middleCols<3>(y_.size() + marginal_columns_);
+  auto C = linear_.Y.middleCols<3>(y_.size() + 3 * z_columns_);
   auto gradient = Z_.col(z_columns_);
-  if (matters) {
-    C.setZero();
-    gradient.setZero();
-  }
+  C.setZero();
+  gradient.setZero();
   for (const Seen& view : seen_) {
     const Eigen::Matrix3d c = view.J_shift.transpose() * view.WM;
     const Eigen::Vector3d g = c * alpha;
@@ -179,19 +186,23 @@ void PathEquations::AddMarginal(const Track& track, const PathLinearisation::Eli
   }
   if (!matters) return;
   C = C.lazyProduct(std::sqrt(explained) * landmark.U_inverse).eval();
-  marginal_columns_ += 3;
   z_columns_ += 1;
 }
 
 void PathEquations::ReduceGradient() { b_.noalias() -= linear_.Y.leftCols(linear_.acting) * y_.head(linear_.acting); }
 
 void PathEquations::ReduceInformation() {
-  const auto take_out = [this](const auto& columns) {
-    if (columns.cols() > 0) A_.selfadjointView<Eigen::Lower>().rankUpdate(columns, -1.0);  // Eigen divides by it
-  };
-  take_out(linear_.Y.leftCols(linear_.acting));
-  take_out(linear_.Y.middleCols(y_.size(), marginal_columns_));
-  if (z_columns_ > 0) A_.selfadjointView<Eigen::Lower>().rankUpdate(Z_.leftCols(z_columns_), 1.0);
+  const std::size_t acting = static_cast<std::size_t>(linear_.acting) / 3;
+  for (std::size_t i = 0; i < acting; i += kAtOnce) {
+    const auto tracks = std::span(linear_.landmarks).subspan(i, std::min(kAtOnce, acting - i));
+    const Eigen::Index row = std::ranges::min(tracks, {}, &PathLinearisation::Eliminated::row).row;
+    const Eigen::Index rows = std::ranges::max(tracks, {}, &PathLinearisation::Eliminated::end).end - row;
+    const auto Y = linear_.Y.block(row, 3 * static_cast<Eigen::Index>(i), rows, 3 * std::ssize(tracks));
+    A_.block(row, row, rows, rows).selfadjointView<Eigen::Lower>().rankUpdate(Y, -1.0);
+  }
+  if (z_columns_ == 0) return;
+  const auto C = linear_.Y.middleCols(y_.size(), 3 * z_columns_);
+  A_.selfadjointView<Eigen::Lower>().rankUpdate(C, -1.0).rankUpdate(Z_.leftCols(z_columns_), 1.0);
 }
 
 void PathEquations::MoveLandmarks(const Eigen::VectorXd& step, const WindowInput& in, std::span<const Track> tracks,

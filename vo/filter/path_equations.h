@@ -57,6 +57,7 @@ struct PathLinearisation {
     Eigen::LLT<Eigen::Matrix3d> G;  // information of u given the poses
     Eigen::Matrix3d U_inverse;      // of its upper factor
     bool used = false;
+    Eigen::Index row, end;  // of its columns of Y: the other rows are 0
   };
   Eigen::MatrixXd J;                  // of the steps u: du_k / d(pose k-1), du_k / d(pose k), per step 6 x 12
   std::vector<View> views;            // in the order of the tracks
@@ -80,6 +81,11 @@ class PathEquations {
   void ReduceGradient();
   void ReduceInformation();
 
+  // The anchor from the view's camera, by the rotations of AddPrior.
+  AnchorView ViewOf(const Track::View& view, const PathGaussian& path, const Eigen::Matrix3d& R_WA,
+                    const Eigen::Vector3d& anchor_W) const {
+    return {rotations_[view.slot], path.mean[view.slot].p_WC + view.centre_offset_W, R_WA, anchor_W};
+  }
   const PathLinearisation& linearisation() const { return linear_; }
   const Eigen::MatrixXd& A() const { return A_; }  // lower triangle, when reduced
   const Eigen::VectorXd& b() const { return b_; }
@@ -100,12 +106,13 @@ class PathEquations {
   void AddMarginal(const Track& track, const PathLinearisation::Eliminated& landmark, double rho);
 
   PathLinearisation linear_;
+  std::vector<Eigen::Matrix3d> rotations_;  // R_CW of the poses
   Eigen::MatrixXd A_;
   Eigen::VectorXd b_;
   Eigen::VectorXd y_;
   Eigen::MatrixXd Z_;
-  Eigen::Index marginal_columns_ = 0, z_columns_ = 0;  // in use; those of Y behind the tracks'
-  std::vector<Seen> seen_;                             // of the present track
+  Eigen::Index z_columns_ = 0;  // in use; three of Y for each, behind the tracks'
+  std::vector<Seen> seen_;      // of the present track
   double cost_ = 0, log_det_ = 0;
   int behind_camera_ = 0;
 };

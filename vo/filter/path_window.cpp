@@ -27,6 +27,7 @@ struct PathProblem {
 
   double Linearise() {
     equations.AddPrior(prior, in, path);
+    for (std::size_t i = 0; i < tracks.size() && !accepted_poses.empty(); ++i) StepLandmark(i);
     for (std::size_t i = 0; i < tracks.size(); ++i) equations.AddTrack(i, in, tracks[i], path, theta[i], marginal);
     return marginal ? equations.cost() + equations.log_det() : equations.cost();
   }
@@ -68,6 +69,28 @@ struct PathProblem {
     theta = accepted_theta;
     path.objective += predicted_decrease;
     path.log_evidence -= 0.5 * predicted_decrease;
+  }
+  // Gauss-Newton step of a landmark given the poses, which are linearised about its mode then. With landmarks one step
+  // behind the poses the iteration oscillates.
+  void StepLandmark(std::size_t i) {
+    const Eigen::Matrix3d& L = equations.linearisation().landmarks[i].L;
+    const Pose& anchor = AnchorOn(path, in, tracks[i]);
+    const Eigen::Matrix3d R_WA = anchor.q_WC.toRotationMatrix();
+    const Eigen::Vector3d& mean = in.landmarks[tracks[i].landmark].mean;
+    const Eigen::Vector3d off = mean - theta[i];
+    Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d g = Eigen::Vector3d::Zero();
+    bool used = false;
+    for (const Track::View& view : tracks[i].views) {
+      const Projection h = Project(equations.ViewOf(view, path, R_WA, anchor.p_WC), theta[i]);
+      if (!h.in_front) continue;
+      used = true;
+      const Matrix23 M = h.J_landmark * L;
+      const Matrix23 WM = view.R_inverse * M;
+      G.noalias() += M.transpose() * WM;
+      g.noalias() += WM.transpose() * (view.z - h.z - h.J_landmark * off);
+    }
+    if (used) theta[i] = mean + L * G.llt().solve(g);
   }
   void MovePoses(double share) {  // of the step
     for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], share * step.segment<6>(kPoseSize * k));

@@ -52,9 +52,11 @@ struct Match {
 // The anchor's camera A seen from the present camera C.
 struct AnchorView {
   AnchorView(const Pose& camera, const Pose& anchor)
-      : R_CW(camera.q_WC.conjugate().toRotationMatrix()),
-        R_CA(R_CW * anchor.q_WC.toRotationMatrix()),
-        t_C(R_CW * (anchor.p_WC - camera.p_WC)) {}
+      : AnchorView(camera.q_WC.conjugate().toRotationMatrix(), camera.p_WC, anchor.q_WC.toRotationMatrix(),
+                   anchor.p_WC) {}
+  AnchorView(const Eigen::Matrix3d& from_world, const Eigen::Vector3d& camera_W, const Eigen::Matrix3d& R_WA,
+             const Eigen::Vector3d& anchor_W)
+      : R_CW(from_world), R_CA(from_world * R_WA), t_C(from_world * (anchor_W - camera_W)) {}
   // From a camera whose centre is off by `offset_W` [m].
   AnchorView ShiftedBy(const Eigen::Vector3d& offset_W) const {
     AnchorView view = *this;
