@@ -60,23 +60,9 @@ std::unique_ptr<ParticlePhase> Initialisation::Next() {
   return std::make_unique<Algorithm1>(std::move(*this));
 }
 
-void Initialisation::AddLandmarks(std::span<const FirstView> views) {
-  WindowPhase::AddLandmarks(views);
-  first_views_.insert(first_views_.end(), views.begin(), views.end());
-}
-
-void Initialisation::KeepLandmarks(const std::vector<bool>& keep) {
-  WindowPhase::KeepLandmarks(keep);
-  Compact(keep, first_views_);
-}
-
 std::span<const double> Initialisation::SolutionWeights() const {
   static constexpr double kOne[] = {1.0};
   return kOne;
-}
-
-bool Initialisation::rolling() const {
-  return std::any_of(first_views_.begin(), first_views_.end(), [](const FirstView& v) { return v.row.time != 0; });
 }
 
 WindowOptions Initialisation::StartOptions() const {
@@ -86,7 +72,8 @@ WindowOptions Initialisation::StartOptions() const {
 }
 
 CorrectedWindow Initialisation::Corrected(const PathSolution& solution, ShutterReference reference) const {
-  return CorrectShutter(window_, table_, first_views_, InputOf(0), solution, reference, settings_.landmark);
+  return CorrectShutter(window_, table_, first_views_, InputOf(0), solution, {-1, window_.size() - 1}, reference,
+                        settings_.landmark);
 }
 
 void Initialisation::Take(CorrectedWindow&& corrected) {

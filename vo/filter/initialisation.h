@@ -4,7 +4,6 @@
 // Source:  docs/algorithm.md, section 9.
 #pragma once
 
-#include "vo/filter/shutter_correction.h"
 #include "vo/filter/window_phase.h"
 
 namespace vo {
@@ -16,8 +15,6 @@ class Initialisation final : public WindowPhase {
   void Predict(double dt, const MotionInput& input = {}) override;
   void PredictAgain(const MotionInput& input) override;
   const FilterAnswer& Update(std::span<const Match> z) override;
-  void AddLandmarks(std::span<const FirstView> views) override;
-  void KeepLandmarks(const std::vector<bool>& keep) override;
   // FixedLag or, for lag 0, Algorithm1, once the first poses are sampled.
   std::unique_ptr<ParticlePhase> Next() override;
 
@@ -28,7 +25,6 @@ class Initialisation final : public WindowPhase {
   void SolveOther(std::size_t i, const WindowOptions& options, PathSolution& other) override;
 
  private:
-  bool rolling() const;
   WindowOptions StartOptions() const;
   CorrectedWindow Corrected(const PathSolution& solution, ShutterReference reference) const;
   void Take(CorrectedWindow&& corrected);
@@ -39,8 +35,7 @@ class Initialisation final : public WindowPhase {
   void Finish();
   double ScaleChange() const;
 
-  std::vector<FirstView> first_views_;  // per landmark
-  std::vector<Pose> answered_;          // the path at the last answer
+  std::vector<Pose> answered_;  // the path at the last answer
 };
 
 }  // namespace vo

@@ -16,19 +16,30 @@ namespace vo {
 // the first guess and count as information on it.
 enum class ShutterReference { row_pose, frame_pose };
 
+// Slots from `first` to `last` of a window; -1: the sampled pose before it.
+struct SlotRange {
+  int first, last;
+  bool contains(int slot) const { return slot >= first && slot <= last; }
+};
+
 struct CorrectedWindow {
   Window window;
   std::vector<Landmark> landmarks;  // from their corrected first views
 };
 
-// Each row is corrected from what it measured, not from an earlier correction. `first_views`: per landmark; no update
-// has changed the landmarks yet.
+// Matches of these slots, and landmarks that were first seen there. Each row is corrected from what it measured, not
+// from an earlier correction. `first_views`: per landmark; no update has changed those of the slots yet.
 CorrectedWindow CorrectShutter(const Window& window, const LandmarkTable& table, std::span<const FirstView> first_views,
-                               const WindowInput& in, const PathSolution& solution, ShutterReference reference,
-                               const LandmarkParams& params);
+                               const WindowInput& in, const PathSolution& solution, SlotRange slots,
+                               ShutterReference reference, const LandmarkParams& params);
 
-// (v in W, w in C) at the start of the window and at each of its poses, by the parabola through three poses. Without
-// the prior, whose error would shear the map of the first frame for good.
-std::vector<Vector6> VelocitiesAlong(const Window& window, const Pose& start, const PathGaussian& path);
+// Parabola through three poses of a path: (v in W, w in C) at the middle one, and its derivative.
+struct PoseMotion {
+  Vector6 velocity, acceleration;
+  Vector6 MeanVelocity(double time) const { return velocity + time / 2 * acceleration; }  // until then
+};
+// At the start of the window and at each of its poses, without the prior, whose error would shear the map of the first
+// frame for good.
+std::vector<PoseMotion> MotionsAlong(const Window& window, const Pose& start, const PathGaussian& path);
 
 }  // namespace vo

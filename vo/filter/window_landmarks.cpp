@@ -1,5 +1,6 @@
 // Landmarks of a window phase: new and dropped ones, the reference of the outlier test, predicted images, spreads over
 // the particles.
+#include <algorithm>
 #include <cmath>
 
 #include "vo/filter/window_phase.h"
@@ -15,12 +16,18 @@ void WindowPhase::AddLandmarks(std::span<const FirstView> views) {
     for (std::size_t n = particle.landmarks.size() - views.size(); n < particle.landmarks.size(); ++n)
       particle.solution.modes.push_back(particle.landmarks[n].mean);
   }
+  first_views_.insert(first_views_.end(), views.begin(), views.end());
   window_.AddAnchor(anchor, table_);
 }
 
 void WindowPhase::KeepLandmarks(const std::vector<bool>& keep) {
   window_.Keep(CompactLandmarks(keep), table_);
+  Compact(keep, first_views_);
   for (Particle& particle : particles_) Compact(keep, particle.solution.modes);
+}
+
+bool WindowPhase::rolling() const {
+  return std::ranges::any_of(first_views_, [](const FirstView& view) { return view.row.time != 0; });
 }
 
 void WindowPhase::SetReference() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vo/filter/particle_phase.h"
+#include "vo/filter/shutter_correction.h"
 #include "vo/filter/window.h"
 
 namespace vo {
@@ -54,6 +55,8 @@ class WindowPhase : public ParticlePhase {
   virtual void SolveOther(std::size_t particle, const WindowOptions& options, PathSolution& other) {
     Solve(window_, InputOf(particle), options, other);
   }
+  // Whether the first views are rows of a rolling shutter.
+  bool rolling() const;
   // Image coordinates in the window.
   int Measurements() const;
   // To the log weights; -1 removes that of the last solution.
@@ -64,7 +67,8 @@ class WindowPhase : public ParticlePhase {
   void SampleOldest(int count);
 
   Window window_;
-  std::optional<PathPrior> prior_;  // of the window's steps; all particles share it
+  std::vector<FirstView> first_views_;  // per landmark
+  std::optional<PathPrior> prior_;      // of the window's steps; all particles share it
   PathWindow solver_;
   struct ReferenceLandmarks {  // of the heaviest particle, given its path
     std::vector<LandmarkOnPath::Conditional> given_path;

@@ -291,13 +291,13 @@ TEST(ShutterCorrection, IsAFunctionOfTheRowsAndThePath) {
   solution.modes = {{0.1, 0.2, 0.5}, {0.1, 0.2, 0.5}};
   const vo::WindowInput in{particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors};
   const auto correct = [&](const vo::Window& of, vo::ShutterReference reference) {
-    return vo::CorrectShutter(of, table, {}, in, solution, reference, vo::LandmarkParams{}).window;
+    return vo::CorrectShutter(of, table, {}, in, solution, {-1, of.size() - 1}, reference, vo::LandmarkParams{}).window;
   };
   const auto match = [](const vo::Window& of, std::size_t i) { return of.frames()[0].matches[i]; };
   const vo::Window row_pose = correct(window, vo::ShutterReference::row_pose);
   EXPECT_EQ(match(window, 0).z, row.z);
   EXPECT_EQ(match(row_pose, 1).z, still.z);
-  const vo::Vector6 velocity = vo::VelocitiesAlong(window, particle.pose, solution.path)[1];
+  const vo::Vector6 velocity = vo::MotionsAlong(window, particle.pose, solution.path)[1].MeanVelocity(row.row.time);
   EXPECT_EQ(match(row_pose, 0).z, row.row.RotationCompensated(velocity).z);
   EXPECT_NEAR(match(row_pose, 0).centre_offset_W.x(), 0.01 * 0.03 / kDt, 1e-12);
   const vo::Window frame_pose = correct(window, vo::ShutterReference::frame_pose);
