@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kNegligible = 1e-4;  // of the information, through the unknown depth
 constexpr std::size_t kAtOnce = 12;   // tracks: those that follow each other begin at about the same pose
+
 using Matrix62 = Eigen::Matrix<double, 6, 2>;
 
 }  // namespace
@@ -44,12 +45,9 @@ void PathEquations::Begin(const PathPrior& prior, const WindowInput& in, std::sp
   linear_.acting = 3 * std::ranges::count(tracks, false, &Track::provisional);
   linear_.landmarks.resize(tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    const Track& track = tracks[i];
-    const bool seen = !track.views.empty();
-    const int first = seen ? track.views.front().slot : 0, end = seen ? track.views.back().slot + 1 : 0;
-    linear_.landmarks[i].L = SemidefiniteRoot<3>(in.landmarks[track.landmark].covariance);
-    linear_.landmarks[i].row = kPoseSize * (track.anchor_slot < 0 ? first : std::min(first, track.anchor_slot));
-    linear_.landmarks[i].end = kPoseSize * end;
+    linear_.landmarks[i].L = SemidefiniteRoot<3>(in.landmarks[tracks[i].landmark].covariance);
+    linear_.landmarks[i].row = kPoseSize * tracks[i].first_slot();
+    linear_.landmarks[i].end = kPoseSize * tracks[i].end_slot();
   }
 }
 
@@ -197,6 +195,7 @@ void PathEquations::ReduceInformation() {
     const auto tracks = std::span(linear_.landmarks).subspan(i, std::min(kAtOnce, acting - i));
     const Eigen::Index row = std::ranges::min(tracks, {}, &PathLinearisation::Eliminated::row).row;
     const Eigen::Index rows = std::ranges::max(tracks, {}, &PathLinearisation::Eliminated::end).end - row;
+    if (rows == 0) continue;  // Eigen divides by it
     const auto Y = linear_.Y.block(row, 3 * static_cast<Eigen::Index>(i), rows, 3 * std::ssize(tracks));
     A_.block(row, row, rows, rows).selfadjointView<Eigen::Lower>().rankUpdate(Y, -1.0);
   }

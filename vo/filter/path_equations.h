@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,13 @@ struct Track {
   std::vector<View> views;
   Eigen::Matrix2d wander = Eigen::Matrix2d::Zero();  // per view; R contains it from the first view of the window on
   bool provisional = false;  // the landmark follows the poses and does not act on them; behind all others
+
+  // Slots of the poses that it couples: from the first view or the anchor to the last view. Empty without views.
+  int first_slot() const {
+    if (views.empty()) return 0;
+    return anchor_slot < 0 ? views.front().slot : std::min(anchor_slot, views.front().slot);
+  }
+  int end_slot() const { return views.empty() ? 0 : views.back().slot + 1; }
 };
 
 // Sampled state of one particle, from which its window begins.
