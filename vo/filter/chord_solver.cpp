@@ -9,7 +9,7 @@
 namespace vo {
 namespace {
 
-constexpr int kIterations = 6;
+constexpr int kIterations = 12;
 constexpr double kFirstRate = 0.1;  // of convergence, until two steps show it
 
 }  // namespace
@@ -18,6 +18,7 @@ bool ChordSolver::Solve(const PathPrior& prior, const WindowInput& in, std::span
                         const PathLinearisation& linear, const Eigen::LLT<Eigen::MatrixXd>& llt,
                         const PathGaussian& solved, PathGaussian& path, std::vector<Eigen::Vector3d>& theta) {
   const std::vector<Pose> first_poses = path.mean;
+  const std::vector<Eigen::Vector3d> first_rates = path.rates;
   const std::vector<Eigen::Vector3d> first_theta = theta;
   double before = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -26,13 +27,13 @@ bool ChordSolver::Solve(const PathPrior& prior, const WindowInput& in, std::span
     llt.solveInPlace(step_);
     const double decrement = b_.dot(step_);
     if (!(decrement < before)) break;
-    for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], step_.segment<6>(kPoseSize * k));
+    MoveBy(step_, linear, path);
     y_.noalias() -= linear.Y.leftCols(y_.size()).transpose() * step_;
     for (std::size_t i = 0; i < tracks.size(); ++i) {
       const PathLinearisation::Eliminated& landmark = linear.landmarks[i];
       if (!landmark.used) continue;
       const Eigen::Vector3d y = y_.segment<3>(3 * static_cast<Eigen::Index>(i));
-      theta[i] = in.landmarks[tracks[i].landmark].mean + landmark.L * (landmark.U_inverse * y);
+      theta[i] = linear.MeanOf(i, in, tracks[i], path) + landmark.L * (landmark.U_inverse * y);
     }
     const double rate = std::isfinite(before) ? std::sqrt(decrement / before) : kFirstRate;  // of a geometric series
     if (std::sqrt(decrement) * rate < kToleranceSigma * (1 - rate)) {
@@ -46,6 +47,7 @@ bool ChordSolver::Solve(const PathPrior& prior, const WindowInput& in, std::span
     before = decrement;
   }
   path.mean = first_poses;
+  path.rates = first_rates;
   theta = first_theta;
   return false;
 }
@@ -54,7 +56,8 @@ bool ChordSolver::Solve(const PathPrior& prior, const WindowInput& in, std::span
 void ChordSolver::SetResiduals(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks,
                                const PathLinearisation& linear, const PathGaussian& path,
                                std::span<const Eigen::Vector3d> theta) {
-  cost_ = SetPriorGradient(prior, in, path, linear.J, b_);
+  cost_ = SetPriorGradient(prior, in.start, in.velocity, path, linear, b_);
+  const Eigen::Index size = linear.slot_size;
   behind_camera_ = 0;
   y_.resize(3 * static_cast<Eigen::Index>(tracks.size()));
   rotations_.clear();
@@ -63,7 +66,7 @@ void ChordSolver::SetResiduals(const PathPrior& prior, const WindowInput& in, st
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const Track& track = tracks[i];
     const Pose& anchor = AnchorOn(path, in, track);
-    const Eigen::Vector3d off = in.landmarks[track.landmark].mean - theta[i];
+    const Eigen::Vector3d off = linear.MeanOf(i, in, track, path) - theta[i];
     Eigen::Vector3d g = Eigen::Vector3d::Zero();
     for (const Track::View& view : track.views) {
       const PathLinearisation::View& J = *next++;
@@ -74,11 +77,13 @@ void ChordSolver::SetResiduals(const PathPrior& prior, const WindowInput& in, st
         ++behind_camera_;
         continue;
       }
-      const Eigen::Vector2d e = view.z - X.head<2>() / X.z() - J.J_landmark * off;
+      Eigen::Vector2d e = view.z - X.head<2>() / X.z() - J.J_landmark * off;
+      if (size > kPoseSize) e -= view.ByRate() * path.rates[view.slot + 1];
       g.noalias() += J.WM.transpose() * e;
       if (track.provisional) continue;
-      b_.segment<6>(kPoseSize * view.slot).noalias() += J.JtW * e;
-      if (track.anchor_slot >= 0) b_.segment<6>(kPoseSize * track.anchor_slot).noalias() += J.AtW * e;
+      b_.segment(linear.Row(view.slot), size).noalias() += J.JtW.topRows(size) * e;
+      if (const Eigen::Index j = linear.landmarks[i].anchor_row; j >= 0)
+        b_.segment(j, size).noalias() += J.AtW.topRows(size) * e;
       cost_ += e.dot(view.R_inverse * e);
     }
     const Eigen::Vector3d whitened = linear.landmarks[i].G.matrixL().solve(g);

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "vo/filter/path_equations.h"
+#include "vo/filter/path_linearisation.h"
 
 namespace vo {
 

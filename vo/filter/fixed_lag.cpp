@@ -38,7 +38,7 @@ void FixedLag::Correct(const PathCorrection& correction) {
 
 const FilterAnswer& FixedLag::Update(std::span<const Match> z) {
   if (!z.empty()) {
-    if (!answer_.initialising && rolling()) CorrectRows();
+    if (!answer_.initialising && rolling()) CorrectRows({0, window_.size() - 3}, false);
     window_.SetMatches(z, table_);
     AddEvidence(-1);
     if (!answer_.initialising) {
@@ -53,23 +53,11 @@ const FilterAnswer& FixedLag::Update(std::span<const Match> z) {
   }
   Answer(!z.empty());
   const int count = window_.size() - settings_.filter.lag;
+  if (rolling() && count > 0) CorrectRows({answer_.initialising ? -1 : 0, count - 1}, true);
   if (count > 0) answer_.initialising = false;
   SampleOldest(count);
   if (!answer_.initialising && window_.size() > 0) SolveRest();
   return answer_;
-}
-
-// Rows referred to their frames' stamps anew, by the velocities through both neighbours, where images have seen these.
-void FixedLag::CorrectRows() {
-  const SlotRange slots{0, window_.size() - 3};
-  const std::size_t heaviest = particles_.Heaviest();
-  CorrectedWindow corrected =
-      CorrectShutter(window_, table_, first_views_, InputOf(heaviest), particles_[heaviest].solution, slots,
-                     ShutterReference::row_pose, settings_.landmark);
-  window_ = std::move(corrected.window);
-  for (int n = 0; n < table_.size(); ++n)
-    if (slots.contains(window_.anchor_slot(table_.anchor_of(n))))
-      for (Particle& particle : particles_) particle.landmarks[n] = corrected.landmarks[n];
 }
 
 // The poses sampled have changed the rest. Landmarks that are alike have followed them, evidence has not.

@@ -22,7 +22,6 @@ class FixedLag final : public WindowPhase {
 
  private:
   void Correct(const PathCorrection& correction);
-  void CorrectRows();
   void SolveRest();
 
   std::optional<std::pair<Window, ParticleSet>> uncorrected_;  // to undo a correction until the update

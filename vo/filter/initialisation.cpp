@@ -50,7 +50,9 @@ const FilterAnswer& Initialisation::Update(std::span<const Match> z) {
   answer_.start_score = kGatePerMeasurement * Measurements() - particles_[0].solution.path.objective;
   answered_ = particles_[0].solution.path.mean;
   if (window_.size() > settings_.filter.start_window) Finish();
-  SampleOldest(answer_.initialising ? 0 : window_.size() - settings_.filter.lag);
+  const int count = answer_.initialising ? 0 : window_.size() - settings_.filter.lag;
+  if (rolling() && count > 0) CorrectRows({-1, count - 1}, true);
+  SampleOldest(count);
   return answer_;
 }
 
@@ -72,7 +74,7 @@ WindowOptions Initialisation::StartOptions() const {
 }
 
 CorrectedWindow Initialisation::Corrected(const PathSolution& solution, ShutterReference reference) const {
-  return CorrectShutter(window_, table_, first_views_, InputOf(0), solution, {-1, window_.size() - 1}, reference,
+  return CorrectShutter(window_, table_, first_views_, InputOf(0), solution, {-1, window_.size() - 1}, reference, false,
                         settings_.landmark);
 }
 
@@ -141,12 +143,14 @@ std::vector<StartPose> Initialisation::StartPath() const {
 void Initialisation::Finish() {
   const double log_evidence = particles_[0].solution.path.log_evidence;
   if (rolling()) {
-    Take(Corrected(particles_[0].solution, ShutterReference::row_pose));
-    Solve(0, StartOptions());
+    for (int round = 0; round < kShutterRounds; ++round) {
+      Take(Corrected(particles_[0].solution, ShutterReference::row_pose));
+      Solve(0, Options(false));
+    }
     ShareSolution();
   }
-  answer_.initialising = false;
   SolveAll();
+  answer_.initialising = false;
   for (Particle& particle : particles_) {
     answer_.events += particle.solution.path.events;
     particle.log_weight += particle.solution.path.log_evidence - log_evidence;

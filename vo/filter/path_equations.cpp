@@ -14,29 +14,11 @@ namespace {
 constexpr double kNegligible = 1e-4;  // of the information, through the unknown depth
 constexpr std::size_t kAtOnce = 12;   // tracks: those that follow each other begin at about the same pose
 
-using Matrix62 = Eigen::Matrix<double, 6, 2>;
-
 }  // namespace
 
-double SetPriorGradient(const PathPrior& prior, const WindowInput& in, const PathGaussian& path,
-                        const Eigen::MatrixXd& J, Eigen::VectorXd& b) {
-  const int m = prior.size();
-  Eigen::VectorXd r(J.rows()), d(J.rows());
-  for (int k = 0; k < m; ++k) r.segment<6>(kPoseSize * k) = StepTo(k, path, in.start) - prior.MeanStep(k, in.velocity);
-  if (const Eigen::VectorXd shift = prior.ShiftBy(path.turns); shift.size() > 0) r -= shift;
-  d.noalias() = prior.precision() * r;
-  b.setZero(J.rows());
-  for (int k = 0; k < m; ++k) {
-    const auto J_k = J.middleRows<6>(kPoseSize * k);
-    const auto d_k = d.segment<6>(kPoseSize * k);
-    if (k > 0) b.segment<6>(kPoseSize * (k - 1)).noalias() -= J_k.leftCols<6>().transpose() * d_k;
-    b.segment<6>(kPoseSize * k).noalias() -= J_k.rightCols<6>().transpose() * d_k;
-  }
-  return r.dot(d);
-}
-
-void PathEquations::Begin(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks) {
-  const Eigen::Index size = kPoseSize * prior.size(), count = static_cast<Eigen::Index>(tracks.size());
+void PathEquations::Begin(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks, Rates rates) {
+  linear_.slot_size = rates == Rates::none ? kPoseSize : kRateSlotSize;
+  const Eigen::Index size = linear_.Row(prior.size()), count = static_cast<Eigen::Index>(tracks.size());
   A_.resize(size, size);
   b_.resize(size);
   linear_.Y.resize(size, 6 * count);
@@ -45,32 +27,23 @@ void PathEquations::Begin(const PathPrior& prior, const WindowInput& in, std::sp
   linear_.acting = 3 * std::ranges::count(tracks, false, &Track::provisional);
   linear_.landmarks.resize(tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    linear_.landmarks[i].L = SemidefiniteRoot<3>(in.landmarks[tracks[i].landmark].covariance);
-    linear_.landmarks[i].row = kPoseSize * tracks[i].first_slot();
-    linear_.landmarks[i].end = kPoseSize * tracks[i].end_slot();
+    PathLinearisation::Eliminated& landmark = linear_.landmarks[i];
+    const Track& track = tracks[i];
+    landmark.L = SemidefiniteRoot<3>(in.landmarks[track.landmark].covariance);
+    if (rates != Rates::none) landmark.ray_by_rate = RateJacobian(in.first_views[track.landmark].row);
+    linear_.SetRows(landmark, track, rates);
   }
 }
 
 void PathEquations::AddPrior(const PathPrior& prior, const WindowInput& in, const PathGaussian& path) {
   const int m = prior.size();
-  Eigen::MatrixXd& J = linear_.J;
-  J.setZero(b_.size(), 12);
-  log_det_ = -prior.log_det_precision();
-  for (int k = 0; k < m; ++k) {
-    const Eigen::Vector3d turn = StepTo(k, path, in.start).tail<3>();
-    auto J_k = J.middleRows<6>(kPoseSize * k);
-    J_k.topLeftCorner<3, 3>() = -Eigen::Matrix3d::Identity();
-    J_k.block<3, 3>(3, 3) = -InverseRightJacobian(-turn);
-    J_k.block<3, 3>(0, 6).setIdentity();
-    J_k.block<3, 3>(3, 9) = InverseRightJacobian(turn);
-    log_det_ += 2 * LogVolume(turn);
-  }
+  log_det_ = linear_.LineariseSteps(path, in.start) - prior.log_det_precision();
   linear_.views.clear();
   rotations_.clear();
   for (const Pose& pose : path.mean) rotations_.push_back(pose.q_WC.conjugate().toRotationMatrix());
-  cost_ = SetPriorGradient(prior, in, path, J, b_);
+  cost_ = SetPriorGradient(prior, in.start, in.velocity, path, linear_, b_);
   behind_camera_ = 0;
-  const Eigen::MatrixXd& W = prior.precision();
+  const Eigen::MatrixXd &J = linear_.J, &W = prior.precision();
   z_columns_ = 0;
   A_.setZero();
   for (int k = 0; k < m; ++k) {
@@ -80,21 +53,37 @@ void PathEquations::AddPrior(const PathPrior& prior, const WindowInput& in, cons
       const auto J_a = J_k.middleCols<6>(kPoseSize * a);
       for (int l = 0; l < m; ++l) {
         const Matrix6 JW = J_a.transpose() * W.block<6, 6>(kPoseSize * k, kPoseSize * l);
-        if (l > 0) A_.block<6, 6>(kPoseSize * i, kPoseSize * (l - 1)).noalias() += JW * J.block<6, 6>(kPoseSize * l, 0);
-        A_.block<6, 6>(kPoseSize * i, kPoseSize * l).noalias() += JW * J.block<6, 6>(kPoseSize * l, 6);
+        if (l > 0) A_.block<6, 6>(linear_.Row(i), linear_.Row(l - 1)).noalias() += JW * J.block<6, 6>(kPoseSize * l, 0);
+        A_.block<6, 6>(linear_.Row(i), linear_.Row(l)).noalias() += JW * J.block<6, 6>(kPoseSize * l, 6);
       }
     }
   }
+  if (linear_.slot_size == kPoseSize) return;
+  A_.topLeftCorner<6, 6>().setIdentity();
+  for (int k = 0; k <= m; ++k)
+    for (int l = 0; l <= m; ++l)
+      A_.block<3, 3>(linear_.Row(k - 1) + kPoseSize, linear_.Row(l - 1) + kPoseSize) =
+          prior.rate_precision().block<3, 3>(3 * k, 3 * l);
 }
 
 void PathEquations::AddTrack(std::size_t index, const WindowInput& in, const Track& track, const PathGaussian& path,
                              const Eigen::Vector3d& theta, bool marginal) {
+  if (linear_.slot_size == kPoseSize)
+    AddTrackOf<kPoseSize>(index, in, track, path, theta, marginal);
+  else
+    AddTrackOf<kRateSlotSize>(index, in, track, path, theta, marginal);
+}
+
+template <int kSize>
+void PathEquations::AddTrackOf(std::size_t index, const WindowInput& in, const Track& track, const PathGaussian& path,
+                               const Eigen::Vector3d& theta, bool marginal) {
+  using Jacobian = Eigen::Matrix<double, 2, kSize>;
   const Eigen::Index rows = 3 * static_cast<Eigen::Index>(index);
   PathLinearisation::Eliminated& landmark = linear_.landmarks[index];
   const Eigen::Matrix3d& L = landmark.L;
   const Pose& anchor = AnchorOn(path, in, track);
   const Eigen::Matrix3d R_WA = anchor.q_WC.toRotationMatrix();
-  const Eigen::Vector3d off = in.landmarks[track.landmark].mean - theta;
+  const Eigen::Vector3d off = linear_.MeanOf(index, in, track, path) - theta;
   auto E = linear_.Y.middleCols<3>(rows);  // coupling of the poses with u
   seen_.clear();
   E.setZero();
@@ -109,33 +98,42 @@ void PathEquations::AddTrack(std::size_t index, const WindowInput& in, const Tra
       continue;
     }
     landmark.used = true;
-    const Eigen::Vector2d e = view.z - h.z - h.J_landmark * off;
+    Jacobian J, J_anchor;
+    J.template leftCols<6>() = h.J_pose;
+    Eigen::Vector2d e = view.z - h.z - h.J_landmark * off;
+    if constexpr (kSize > kPoseSize) {
+      J.template rightCols<3>() = view.ByRate();
+      e -= J.template rightCols<3>() * path.rates[view.slot + 1];
+    }
     const Eigen::Vector2d We = view.R_inverse * e;
     const Matrix23 M = h.J_landmark * L;
     const Matrix23 WM = view.R_inverse * M;
-    const Matrix62 JtW = h.J_pose.transpose() * view.R_inverse;
+    auto JtW = linear.JtW.template topRows<kSize>();
+    auto AtW = linear.AtW.template topRows<kSize>();
+    JtW = J.transpose() * view.R_inverse;
     linear.used = true;
     linear.J_landmark = h.J_landmark;
     linear.WM = WM;
-    linear.JtW = JtW;
-    const Eigen::Index i = kPoseSize * view.slot, j = kPoseSize * track.anchor_slot;
-    E.middleRows<6>(i).noalias() += JtW * M;
+    const Eigen::Index i = linear_.Row(view.slot), j = landmark.anchor_row;
+    E.template middleRows<kSize>(i).noalias() += JtW * M;
     G.noalias() += M.transpose() * WM;
     g.noalias() += WM.transpose() * e;
-    Matrix26 J_anchor;
     if (j >= 0) {
-      J_anchor = AnchorJacobian(h, theta);
-      linear.AtW = J_anchor.transpose() * view.R_inverse;
-      E.middleRows<6>(j).noalias() += linear.AtW * M;
+      J_anchor.setZero();
+      if (track.anchor_slot >= 0) J_anchor.template leftCols<6>() = AnchorJacobian(h, theta);
+      if constexpr (kSize > kPoseSize)
+        J_anchor.template rightCols<3>() = -h.J_landmark.leftCols<2>() * landmark.ray_by_rate;
+      AtW = J_anchor.transpose() * view.R_inverse;
+      E.template middleRows<kSize>(j).noalias() += AtW * M;
     }
     if (track.provisional) continue;
-    A_.block<6, 6>(i, i).noalias() += JtW * h.J_pose;
-    b_.segment<6>(i).noalias() += JtW * e;
+    A_.block<kSize, kSize>(i, i).noalias() += JtW * J;
+    b_.segment<kSize>(i).noalias() += JtW * e;
     if (j >= 0) {
-      A_.block<6, 6>(j, j).noalias() += linear.AtW * J_anchor;
-      A_.block<6, 6>(i, j).noalias() += JtW * J_anchor;
-      A_.block<6, 6>(j, i).noalias() += linear.AtW * h.J_pose;
-      b_.segment<6>(j).noalias() += linear.AtW * e;
+      A_.block<kSize, kSize>(j, j).noalias() += AtW * J_anchor;
+      A_.block<kSize, kSize>(i, j).noalias() += JtW * J_anchor;
+      A_.block<kSize, kSize>(j, i).noalias() += AtW * J;
+      b_.segment<kSize>(j).noalias() += AtW * e;
     }
     cost_ += e.dot(We);
     if (marginal) seen_.push_back({view.slot, h.J_shift, WM, view.R_inverse});
@@ -167,7 +165,7 @@ void PathEquations::AddMarginal(const Track& track, const PathLinearisation::Eli
   for (const Seen& view : seen_) {
     const Eigen::Matrix3d c = view.J_shift.transpose() * view.WM;
     const Eigen::Vector3d g = c * alpha;
-    const Eigen::Index i = kPoseSize * view.slot, j = kPoseSize * track.anchor_slot;
+    const Eigen::Index i = linear_.Row(view.slot), j = track.anchor_slot < 0 ? -1 : linear_.Row(track.anchor_slot);
     b_.segment<3>(i) += g;
     if (j >= 0) b_.segment<3>(j) -= g;
     if (!matters) continue;
@@ -205,14 +203,14 @@ void PathEquations::ReduceInformation() {
 }
 
 void PathEquations::MoveLandmarks(const Eigen::VectorXd& step, const WindowInput& in, std::span<const Track> tracks,
-                                  std::vector<Eigen::Vector3d>& theta) {
+                                  const PathGaussian& path, std::vector<Eigen::Vector3d>& theta) {
   y_.noalias() -= linear_.Y.leftCols(y_.size()).transpose() * step;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const PathLinearisation::Eliminated& landmark = linear_.landmarks[i];
     if (!landmark.used) continue;
     const Eigen::Vector3d u =
         landmark.G.matrixU().solve(Eigen::Vector3d(y_.segment<3>(3 * static_cast<Eigen::Index>(i))));
-    theta[i] = in.landmarks[tracks[i].landmark].mean + landmark.L * u;
+    theta[i] = linear_.MeanOf(i, in, tracks[i], path) + landmark.L * u;
   }
 }
 

@@ -36,7 +36,11 @@ LastVelocity VelocityAtTheEnd(const PathPrior& prior, const Pose& start, const V
 
 }  // namespace
 
-PathPrior::PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance) {
+PathPrior::PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance)
+    : PathPrior(steps, velocity_covariance, steps) {}
+
+PathPrior::PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance,
+                     const std::vector<MotionModel>& of_rates) {
   const int m = static_cast<int>(steps.size());
   Eigen::MatrixXd covariance(kPoseSize * m, kPoseSize * m);                  // of u
   Eigen::Matrix<double, 6, Eigen::Dynamic> with_velocity(6, kPoseSize * m);  // Cov(v_k, u_1..k)
@@ -61,6 +65,26 @@ PathPrior::PathPrior(const std::vector<MotionModel>& steps, const Matrix6& veloc
   log_det_precision_ = -2.0 * llt_.matrixLLT().diagonal().array().log().sum();
   gain_ = llt_.solve(with_velocity.transpose()).transpose();
   last_covariance_ = Symmetrised(V - gain_ * with_velocity.transpose());
+  SetRates(of_rates);
+}
+
+void PathPrior::SetRates(const std::vector<MotionModel>& steps) {
+  if (steps.empty()) return;
+  const int m = size();
+  Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(3 * (m + 1), 3 * (m + 1));
+  const auto add = [&](int i, int j, double share, int step) {
+    rates.block<3, 3>(3 * i, 3 * j) += share * steps[step].Q.bottomRightCorner<3, 3>();
+  };
+  for (int k = 0; k < m; ++k) {
+    add(k, k, 1.0 / 12, k);
+    add(k + 1, k + 1, 1.0 / 12, k);
+    add(k, k + 1, -1.0 / 12, k);
+    add(k + 1, k, -1.0 / 12, k);
+  }
+  add(0, 0, 1.0 / 4, 0);
+  add(m, m, 1.0 / 4, m - 1);
+  if (m > 1) add(m - 1, m - 1, 1.0 / 4, m - 1);
+  rate_precision_ = Symmetrised(rates.llt().solve(Eigen::MatrixXd::Identity(rates.rows(), rates.cols())));
 }
 
 Eigen::VectorXd PathPrior::ShiftBy(const std::vector<StepTurn>& turns) const {
@@ -116,6 +140,7 @@ void Extend(const PathPrior& prior, const MotionModel& step, const Pose& start, 
       Symmetrised(cross * by_pose.transpose() + by_step * noise * by_step.transpose());
   path.mean.push_back(Plus(path.mean.empty() ? start : path.mean.back(), u));
   path.turns.push_back({u.tail<3>(), input});
+  path.rates.emplace_back(Eigen::Vector3d::Zero());
 }
 
 void Move(const Pose& motion, PathGaussian& path) {
@@ -131,6 +156,7 @@ void Move(const Pose& motion, PathGaussian& path) {
 void DropLast(PathGaussian& path) {
   path.mean.pop_back();
   path.turns.pop_back();
+  path.rates.pop_back();
   path.covariance.conservativeResize(path.covariance.rows() - kPoseSize, path.covariance.cols() - kPoseSize);
 }
 

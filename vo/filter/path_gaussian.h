@@ -31,6 +31,9 @@ class PathPrior {
  public:
   // Steps in order of time; covariance of the velocity at the start of the first.
   PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance);
+  // The same, with the noise of the rates of rows by other models of the steps; empty: without rates.
+  PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance,
+            const std::vector<MotionModel>& of_rates);
 
   int size() const { return static_cast<int>(mean_of_step_.size()); }
   const Eigen::MatrixXd& precision() const { return precision_; }  // of u, 6m x 6m
@@ -45,7 +48,14 @@ class PathPrior {
   const Eigen::Matrix<double, 6, Eigen::Dynamic>& gain() const { return gain_; }
   const Matrix6& last_covariance() const { return last_covariance_; }
 
+  // Of the rates of rows, 3 (m + 1). A rate less that of the parabola through three poses is n_k - n_k+1, n of each step
+  // with D / 12, D the noise of the turn rate in it: at the frame rate the motion is smooth. At the start's frame
+  // and the last two, whose reference is the mean velocity of one step, D / 4 comes on top.
+  const Eigen::MatrixXd& rate_precision() const { return rate_precision_; }
+
  private:
+  void SetRates(const std::vector<MotionModel>& steps);
+
   std::vector<Matrix6> mean_of_step_;  // of the first velocity
   Matrix6 last_of_first_;
   Eigen::MatrixXd precision_;
@@ -53,13 +63,17 @@ class PathPrior {
   double log_det_precision_ = 0;
   Eigen::Matrix<double, 6, Eigen::Dynamic> gain_;
   Matrix6 last_covariance_;
+  Eigen::MatrixXd rate_precision_;
 };
 
 struct PathGaussian {
   std::vector<Pose> mean;
   std::vector<StepTurn> turns;  // of the step to each pose
-  Eigen::MatrixXd covariance;   // 6m x 6m
-  double objective = 0;         // -2 log density at its mode, up to a constant that all first guesses share
+  // Turn rate of the rows of the start's frame and of each pose's, less that by which they are referred to the stamp
+  // [rad/s in C].
+  std::vector<Eigen::Vector3d> rates = {Eigen::Vector3d::Zero()};
+  Eigen::MatrixXd covariance;  // 6m x 6m
+  double objective = 0;        // -2 log density at its mode, up to a constant that all first guesses share
   // Laplace's approximation of log p(z in the window | sampled path); NaN: not positive definite
   double log_evidence = 0;
   NumericalEvents events;  // of the solution

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "vo/filter/pose_gaussian.h"
 #include "vo/geometry/covariance.h"
@@ -21,20 +22,23 @@ struct PathProblem {
   std::vector<Eigen::Vector3d>& theta;
   Eigen::LLT<Eigen::MatrixXd>& llt;
   Eigen::VectorXd step = {};
-  std::vector<Pose> accepted_poses = {};
-  std::vector<Eigen::Vector3d> accepted_theta = {};
+  struct Variables {
+    std::vector<Pose> poses;
+    std::vector<Eigen::Vector3d> rates, theta;
+  };
+  std::optional<Variables> accepted = {};
   double predicted_decrease = 0;
 
   double Linearise() {
     equations.AddPrior(prior, in, path);
-    for (std::size_t i = 0; i < tracks.size() && !accepted_poses.empty(); ++i) StepLandmark(i);
+    for (std::size_t i = 0; i < tracks.size() && accepted; ++i) StepLandmark(i);
     for (std::size_t i = 0; i < tracks.size(); ++i) equations.AddTrack(i, in, tracks[i], path, theta[i], marginal);
     return marginal ? equations.cost() + equations.log_det() : equations.cost();
   }
   void HalveStep() {
     step *= 0.5;
     MovePoses(-1);
-    for (std::size_t i = 0; i < theta.size(); ++i) theta[i] -= 0.5 * (theta[i] - accepted_theta[i]);
+    for (std::size_t i = 0; i < theta.size(); ++i) theta[i] -= 0.5 * (theta[i] - accepted->theta[i]);
   }
   double Slope() {
     equations.ReduceGradient();
@@ -52,8 +56,7 @@ struct PathProblem {
     return equations.b().dot(step);
   }
   void Accept(double objective, double decrease) {
-    accepted_poses = path.mean;
-    accepted_theta.assign(theta.begin(), theta.end());
+    accepted = {path.mean, path.rates, theta};
     predicted_decrease = decrease;
     path.events.behind_camera = equations.behind_camera();
     path.objective = objective - decrease;
@@ -62,11 +65,12 @@ struct PathProblem {
   }
   void Step() {
     MovePoses(1);
-    equations.MoveLandmarks(step, in, tracks, theta);
+    equations.MoveLandmarks(step, in, tracks, path, theta);
   }
   void Restore() {
-    path.mean = accepted_poses;
-    theta = accepted_theta;
+    path.mean = accepted->poses;
+    path.rates = accepted->rates;
+    theta = accepted->theta;
     path.objective += predicted_decrease;
     path.log_evidence -= 0.5 * predicted_decrease;
   }
@@ -76,7 +80,7 @@ struct PathProblem {
     const Eigen::Matrix3d& L = equations.linearisation().landmarks[i].L;
     const Pose& anchor = AnchorOn(path, in, tracks[i]);
     const Eigen::Matrix3d R_WA = anchor.q_WC.toRotationMatrix();
-    const Eigen::Vector3d& mean = in.landmarks[tracks[i].landmark].mean;
+    const Eigen::Vector3d mean = equations.linearisation().MeanOf(i, in, tracks[i], path);
     const Eigen::Vector3d off = mean - theta[i];
     Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
     Eigen::Vector3d g = Eigen::Vector3d::Zero();
@@ -88,13 +92,13 @@ struct PathProblem {
       const Matrix23 M = h.J_landmark * L;
       const Matrix23 WM = view.R_inverse * M;
       G.noalias() += M.transpose() * WM;
-      g.noalias() += WM.transpose() * (view.z - h.z - h.J_landmark * off);
+      Eigen::Vector2d e = view.z - h.z - h.J_landmark * off;
+      if (equations.linearisation().slot_size > kPoseSize) e -= view.ByRate() * path.rates[view.slot + 1];
+      g.noalias() += WM.transpose() * e;
     }
     if (used) theta[i] = mean + L * G.llt().solve(g);
   }
-  void MovePoses(double share) {  // of the step
-    for (int k = 0; k < prior.size(); ++k) path.mean[k] = Plus(path.mean[k], share * step.segment<6>(kPoseSize * k));
-  }
+  void MovePoses(double share) { MoveBy(share * step, equations.linearisation(), path); }
 };
 
 }  // namespace
@@ -102,19 +106,41 @@ struct PathProblem {
 void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks,
                        const WindowOptions& options, PathGaussian& path, std::vector<Eigen::Vector3d>& theta) {
   path.events = {};
-  equations_.Begin(prior, in, tracks);
+  equations_.Begin(prior, in, tracks, options.rates);
   PathProblem problem{equations_, prior, in, tracks, options.marginal, path, theta, llt_};
-  problem.step.setZero(kPoseSize * prior.size());
+  problem.step.setZero(equations_.linearisation().Row(prior.size()));
   Descent descent(options.max_iterations, options.tolerance_sigma, options.stop_if_above);
   MinimiseToMode(problem, descent);
-  path.covariance.setIdentity(kPoseSize * prior.size(), kPoseSize * prior.size());
-  llt_.solveInPlace(path.covariance);
-  Symmetrise(path.covariance);
+  SetCovariance(path);
   path.events.not_converged = !descent.converged();
   if (llt_.info() != Eigen::Success) {
     path.events.not_positive_definite = 1;
     path.log_evidence = path.objective = std::numeric_limits<double>::quiet_NaN();
   }
+}
+
+// Of the poses, the rates integrated out.
+void PathWindow::SetCovariance(PathGaussian& path) {
+  const PathLinearisation& linear = equations_.linearisation();
+  const int m = static_cast<int>(path.mean.size());
+  path.covariance.setIdentity(linear.Row(m), linear.Row(m));
+  llt_.solveInPlace(path.covariance);
+  for (int k = 0; linear.slot_size > kPoseSize && k < m; ++k) {
+    path.covariance.middleRows<6>(kPoseSize * k) = path.covariance.middleRows<6>(linear.Row(k)).eval();
+    path.covariance.middleCols<6>(kPoseSize * k) = path.covariance.middleCols<6>(linear.Row(k)).eval();
+  }
+  path.covariance.conservativeResize(kPoseSize * m, kPoseSize * m);
+  Symmetrise(path.covariance);
+}
+
+std::vector<Eigen::Vector3d> ModesOfTracks(std::span<const Track> tracks, const PathSolution& solution) {
+  std::vector<Eigen::Vector3d> theta;
+  for (const Track& track : tracks) theta.push_back(solution.modes[track.landmark]);
+  return theta;
+}
+
+void SetModes(std::span<const Track> tracks, const std::vector<Eigen::Vector3d>& theta, PathSolution& solution) {
+  for (std::size_t i = 0; i < theta.size(); ++i) solution.modes[tracks[i].landmark] = theta[i];
 }
 
 LandmarkOnPath::Conditional LandmarkOnPath::GivenPath() const {

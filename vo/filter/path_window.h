@@ -21,6 +21,7 @@ struct WindowOptions {
   bool marginal = false;  // the mode of the poses' marginal, not of poses and landmarks jointly
   double tolerance_sigma = kToleranceSigma;
   double stop_if_above = std::numeric_limits<double>::infinity();  // an objective, as in Descent
+  Rates rates = Rates::none;
 };
 
 class PathWindow {
@@ -38,10 +39,16 @@ class PathWindow {
   const PathLinearisation& linearisation() const { return equations_.linearisation(); }
 
  private:
+  void SetCovariance(PathGaussian& path);
+
   PathEquations equations_;  // workspace, so that repeated calls allocate little
   Eigen::LLT<Eigen::MatrixXd> llt_;
   ChordSolver chord_;
 };
+
+// Modes of the tracks' landmarks, in their order; and back.
+std::vector<Eigen::Vector3d> ModesOfTracks(std::span<const Track> tracks, const PathSolution& solution);
+void SetModes(std::span<const Track> tracks, const std::vector<Eigen::Vector3d>& theta, PathSolution& solution);
 
 // Landmark of a window that was solved, or extended since: its Gaussian given the poses, with the anchor's pose, and
 // its image from the last pose. Linearised at the mode theta: landmark = theta - D (poses - their means) + N(0, P).

@@ -16,14 +16,15 @@ std::vector<PoseMotion> MotionsAlong(const Window& window, const Pose& start, co
                   2 * (steps[k] - steps[k - 1]) / (before + after)};
   }
   motions.front() = {2 * steps.front() - motions[1].velocity, motions[1].acceleration};
-  motions.back() = {2 * steps.back() - motions[last - 1].velocity, motions[last - 1].acceleration};
+  motions.back() = {steps.back(), Vector6::Zero()};
   return motions;
 }
 
 CorrectedWindow CorrectShutter(const Window& window, const LandmarkTable& table, std::span<const FirstView> first_views,
                                const WindowInput& in, const PathSolution& solution, SlotRange slots,
-                               ShutterReference reference, const LandmarkParams& params) {
-  const std::vector<PoseMotion> motions = MotionsAlong(window, in.start, solution.path);
+                               ShutterReference reference, bool rates, const LandmarkParams& params) {
+  std::vector<PoseMotion> motions = MotionsAlong(window, in.start, solution.path);
+  for (std::size_t k = 0; rates && k < motions.size(); ++k) motions[k].velocity.tail<3>() += solution.path.rates[k];
   std::vector<Pose> anchors(in.anchors.begin(), in.anchors.end());
   window.PlaceAnchors(solution.path, anchors);
   std::vector<std::vector<AnchorView>> views;

@@ -28,10 +28,11 @@ struct CorrectedWindow {
 };
 
 // Matches of these slots, and landmarks that were first seen there. Each row is corrected from what it measured, not
-// from an earlier correction. `first_views`: per landmark; no update has changed those of the slots yet.
+// from an earlier correction. `first_views`: per landmark; no update has changed those of the slots yet. `rates`: with the path's
+// rates of rows.
 CorrectedWindow CorrectShutter(const Window& window, const LandmarkTable& table, std::span<const FirstView> first_views,
                                const WindowInput& in, const PathSolution& solution, SlotRange slots,
-                               ShutterReference reference, const LandmarkParams& params);
+                               ShutterReference reference, bool rates, const LandmarkParams& params);
 
 // Parabola through three poses of a path: (v in W, w in C) at the middle one, and its derivative.
 struct PoseMotion {
@@ -39,7 +40,8 @@ struct PoseMotion {
   Vector6 MeanVelocity(double time) const { return velocity + time / 2 * acceleration; }  // until then
 };
 // At the start of the window and at each of its poses, without the prior, whose error would shear the map of the first
-// frame for good.
+// frame for good. At the last pose the mean velocity of its step: with a parabola's weight of 3/2 on that pose the
+// corrections and the solution, which alternate, run away from each other.
 std::vector<PoseMotion> MotionsAlong(const Window& window, const Pose& start, const PathGaussian& path);
 
 }  // namespace vo

@@ -98,7 +98,8 @@ void Window::BuildTracks(const LandmarkTable& table) {
       track.provisional = match.provisional;
       track.wander = match.wander;
       const Eigen::Matrix2d R = match.R + static_cast<double>(track.views.size()) * match.wander;
-      track.views.push_back({slot, match.z, R.inverse(), std::log(R.determinant()), match.centre_offset_W});
+      track.views.push_back(
+          {slot, match.z, R.inverse(), std::log(R.determinant()), match.centre_offset_W, match.row.time});
     }
   }
   std::ranges::stable_partition(tracks_, [](const Track& track) { return !track.provisional; });

@@ -26,6 +26,18 @@ void WindowPhase::KeepLandmarks(const std::vector<bool>& keep) {
   for (Particle& particle : particles_) Compact(keep, particle.solution.modes);
 }
 
+// Rows referred to their frames' stamps anew, by the velocities through both neighbours, where images have seen these.
+void WindowPhase::CorrectRows(SlotRange slots, bool rates) {
+  const std::size_t heaviest = particles_.Heaviest();
+  CorrectedWindow corrected =
+      CorrectShutter(window_, table_, first_views_, InputOf(heaviest), particles_[heaviest].solution, slots,
+                     ShutterReference::row_pose, rates, settings_.landmark);
+  window_ = std::move(corrected.window);
+  for (int n = 0; n < table_.size(); ++n)
+    if (slots.contains(window_.anchor_slot(table_.anchor_of(n))))
+      for (Particle& particle : particles_) particle.landmarks[n] = corrected.landmarks[n];
+}
+
 bool WindowPhase::rolling() const {
   return std::ranges::any_of(first_views_, [](const FirstView& view) { return view.row.time != 0; });
 }

@@ -17,17 +17,6 @@ constexpr double kLogBayesRejection = 50;
 constexpr int kStartIterations = 50;
 constexpr int kDescents = 5;
 
-// Modes of the tracks' landmarks, in their order; and back.
-std::vector<Eigen::Vector3d> ModesOfTracks(std::span<const Track> tracks, const PathSolution& solution) {
-  std::vector<Eigen::Vector3d> theta;
-  for (const Track& track : tracks) theta.push_back(solution.modes[track.landmark]);
-  return theta;
-}
-
-void SetModes(std::span<const Track> tracks, const std::vector<Eigen::Vector3d>& theta, PathSolution& solution) {
-  for (std::size_t i = 0; i < theta.size(); ++i) solution.modes[tracks[i].landmark] = theta[i];
-}
-
 }  // namespace
 
 WindowPhase::WindowPhase(const ParticleFilterSettings& settings, const FilterPrior& prior)
@@ -51,16 +40,21 @@ void WindowPhase::ExtendPaths(double dt, const MotionInput& input) {
 }
 
 void WindowPhase::SetPrior() {
-  std::vector<MotionModel> models;
-  for (const Window::Frame& frame : window_.frames())
+  std::vector<MotionModel> models, of_rates;
+  for (const Window::Frame& frame : window_.frames()) {
     models.push_back(NearlyConstantVelocity(settings_.motion, frame.dt, frame.input));
-  prior_.emplace(models, particles_[0].velocity.covariance);
+    if (rolling())
+      of_rates.push_back(answer_.initialising ? NearlyConstantVelocity(settings_.motion, frame.dt) : models.back());
+  }
+  prior_.emplace(models, particles_[0].velocity.covariance, of_rates);
 }
 
 WindowOptions WindowPhase::Options(bool initialising) const {
   const FilterParams& params = settings_.filter;
   const int iterations = initialising ? std::max(params.max_iterations, kStartIterations) : params.max_iterations;
-  return {params.proposal == Proposal::ekf ? 1 : iterations, params.marginal_mode};
+  WindowOptions options{params.proposal == Proposal::ekf ? 1 : iterations, params.marginal_mode};
+  if (prior_->rate_precision().size() > 0) options.rates = answer_.initialising ? Rates::with_start : Rates::of_window;
+  return options;
 }
 
 void WindowPhase::Solve(const Window& window, const WindowInput& in, const WindowOptions& options,
@@ -73,34 +67,6 @@ void WindowPhase::Solve(const Window& window, const WindowInput& in, const Windo
 void WindowPhase::Solve(std::size_t particle, const WindowOptions& options) {
   Solve(window_, InputOf(particle), options, particles_[particle].solution);
   window_.PlaceAnchors(particles_[particle].solution.path, particles_[particle].anchors);
-}
-
-// Evidence needs each particle's own determinants: with weights by evidence nothing is shared.
-void WindowPhase::SolveAll() {
-  const WindowOptions options = Options(false);
-  alike_.clear();
-  if (settings_.filter.weight != Weight::uniform || options.marginal || options.max_iterations == 1) {
-    for (std::size_t i = 0; i < particles_.size(); ++i) Solve(i, options);
-    return;
-  }
-  const std::size_t heaviest = particles_.Heaviest();
-  Solve(heaviest, options);
-  const PathGaussian& solved = particles_[heaviest].solution.path;
-  const std::span<const Track> tracks = window_.tracks();
-  std::vector<bool> alike(particles_.size(), std::isfinite(solved.log_evidence));
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    if (i == heaviest || !alike[i]) continue;
-    PathSolution& solution = particles_[i].solution;
-    std::vector<Eigen::Vector3d> theta = ModesOfTracks(tracks, solution);
-    alike[i] = solver_.SolveAlike(*prior_, InputOf(i), tracks, solved, solution.path, theta);
-    SetModes(tracks, theta, solution);
-    window_.PlaceAnchors(solution.path, particles_[i].anchors);
-  }
-  alike_ = alike;
-  if (std::ranges::count(alike, false) == 0) return;
-  for (std::size_t i = 0; i < particles_.size(); ++i)
-    if (!alike[i]) Solve(i, options);
-  Solve(heaviest, options);  // the linearisation of those that are alike
 }
 
 void WindowPhase::Challenge(std::size_t i, std::uint32_t guess, WindowOptions options) {
@@ -194,19 +160,10 @@ void WindowPhase::Commit(int count) {
     PathGaussian& path = particle.solution.path;
     path.mean.erase(path.mean.begin(), path.mean.begin() + count);
     path.turns.erase(path.turns.begin(), path.turns.begin() + count);
+    path.rates.erase(path.rates.begin(), path.rates.begin() + count);
   }
   window_.DropOldest(count, table_);
   prior_.reset();
-}
-
-// The landmarks of a particle whose poses have moved from `solved`.
-void WindowPhase::Follow(const std::vector<Pose>& solved, PathSolution& solution) {
-  Eigen::VectorXd d(kPoseSize * static_cast<Eigen::Index>(solved.size()));
-  for (std::size_t k = 0; k < solved.size(); ++k)
-    d.segment<6>(kPoseSize * static_cast<Eigen::Index>(k)) = Minus(solution.path.mean[k], solved[k]);
-  std::vector<Eigen::Vector3d> theta = ModesOfTracks(window_.tracks(), solution);
-  FollowPoses(solver_.linearisation(), d, theta);
-  SetModes(window_.tracks(), theta, solution);
 }
 
 }  // namespace vo

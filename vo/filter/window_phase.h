@@ -32,7 +32,8 @@ class WindowPhase : public ParticlePhase {
   std::vector<Eigen::Matrix3d> PointCovariances(int landmark) const override;
   Eigen::Matrix3d PointCovariance(std::size_t particle, int landmark) const;
   WindowInput InputOf(std::size_t i) const {
-    return {particles_[i].pose, particles_[i].velocity.mean, particles_[i].landmarks, particles_[i].anchors};
+    return {particles_[i].pose, particles_[i].velocity.mean, particles_[i].landmarks, particles_[i].anchors,
+            first_views_};
   }
 
   LandmarkOnPath OnPath(std::size_t i, const Track& track) const {
@@ -64,6 +65,8 @@ class WindowPhase : public ParticlePhase {
   // Mixture and belief; the weights first, if the window has new matches.
   void Answer(bool updated);
   void Weigh();
+  // Rows of these slots referred to their stamps anew, from what they measured, by the heaviest particle's path.
+  void CorrectRows(SlotRange slots, bool rates);
   void SampleOldest(int count);
 
   Window window_;

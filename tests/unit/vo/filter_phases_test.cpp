@@ -291,7 +291,8 @@ TEST(ShutterCorrection, IsAFunctionOfTheRowsAndThePath) {
   solution.modes = {{0.1, 0.2, 0.5}, {0.1, 0.2, 0.5}};
   const vo::WindowInput in{particle.pose, particle.velocity.mean, particle.landmarks, particle.anchors};
   const auto correct = [&](const vo::Window& of, vo::ShutterReference reference) {
-    return vo::CorrectShutter(of, table, {}, in, solution, {-1, of.size() - 1}, reference, vo::LandmarkParams{}).window;
+    return vo::CorrectShutter(of, table, {}, in, solution, {-1, of.size() - 1}, reference, false, vo::LandmarkParams{})
+        .window;
   };
   const auto match = [](const vo::Window& of, std::size_t i) { return of.frames()[0].matches[i]; };
   const vo::Window row_pose = correct(window, vo::ShutterReference::row_pose);

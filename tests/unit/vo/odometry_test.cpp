@@ -357,7 +357,7 @@ TEST(Odometry, FindsOutHowFastItsFirstFrameWas) {
   const double readout = 0.026;
   const auto off = [&](const Vector3d& w_WC_C) {  // [mrad] after ten frames, mean over textures
     double sum = 0;
-    constexpr int kTextures = 3, kFrames = 10;
+    constexpr int kTextures = 12, kFrames = 10;
     for (unsigned seed = 1; seed <= kTextures; ++seed) {
       const vo_test::Texture texture(seed, 40.0, 24);
       vo::Params params = SmallImageParams();
