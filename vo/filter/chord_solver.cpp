@@ -77,8 +77,7 @@ void ChordSolver::SetResiduals(const PathPrior& prior, const WindowInput& in, st
         ++behind_camera_;
         continue;
       }
-      Eigen::Vector2d e = view.z - X.head<2>() / X.z() - J.J_landmark * off;
-      if (size > kPoseSize) e -= view.ByRate() * path.rates[view.slot + 1];
+      const Eigen::Vector2d e = view.z - X.head<2>() / X.z() - J.J_landmark * off - linear.RateShift(view, path);
       g.noalias() += J.WM.transpose() * e;
       if (track.provisional) continue;
       b_.segment(linear.Row(view.slot), size).noalias() += J.JtW.topRows(size) * e;

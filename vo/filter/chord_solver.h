@@ -1,7 +1,8 @@
-// A path window of one particle, solved by the linearisation of another that is nearly the same: chord method, Jacobians,
-// covariances of the landmarks and factorisation kept, so that an iteration costs no more than the residuals.
-// Source:  docs/algorithm.md, section 9.1; Kelley, "Iterative methods for linear and nonlinear equations" (1995), section
-//          5.4.1.
+// A path window of one particle, solved by the linearisation of another that is nearly the same: chord method,
+// Jacobians, covariances of the landmarks and factorisation kept, so that an iteration costs no more than the
+// residuals.
+// Source:  docs/algorithm.md, section 9.1; Kelley, "Iterative methods for linear and nonlinear equations" (1995),
+//          section 5.4.1.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -14,8 +15,8 @@ namespace vo {
 
 class ChordSolver {
  public:
-  // `path.mean` and `theta` as in PathWindow; `llt` of A, and the solution, of the particle that was linearised. Without
-  // the marginal mode. False: does not converge, and is left as it was.
+  // `path.mean` and `theta` as in PathWindow; `llt` of A, and the solution, of the particle that was linearised.
+  // Without the marginal mode. False: does not converge, and is left as it was.
   bool Solve(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks,
              const PathLinearisation& linear, const Eigen::LLT<Eigen::MatrixXd>& llt, const PathGaussian& solved,
              PathGaussian& path, std::vector<Eigen::Vector3d>& theta);

@@ -58,20 +58,19 @@ void PathEquations::AddPrior(const PathPrior& prior, const WindowInput& in, cons
       }
     }
   }
-  if (linear_.slot_size == kPoseSize) return;
+  if (!linear_.with_rates()) return;
   A_.topLeftCorner<6, 6>().setIdentity();
   for (int k = 0; k <= m; ++k)
     for (int l = 0; l <= m; ++l)
-      A_.block<3, 3>(linear_.Row(k - 1) + kPoseSize, linear_.Row(l - 1) + kPoseSize) =
-          prior.rate_precision().block<3, 3>(3 * k, 3 * l);
+      A_.block<3, 3>(linear_.RateRow(k - 1), linear_.RateRow(l - 1)) = prior.rate_precision().block<3, 3>(3 * k, 3 * l);
 }
 
 void PathEquations::AddTrack(std::size_t index, const WindowInput& in, const Track& track, const PathGaussian& path,
                              const Eigen::Vector3d& theta, bool marginal) {
-  if (linear_.slot_size == kPoseSize)
-    AddTrackOf<kPoseSize>(index, in, track, path, theta, marginal);
-  else
+  if (linear_.with_rates())
     AddTrackOf<kRateSlotSize>(index, in, track, path, theta, marginal);
+  else
+    AddTrackOf<kPoseSize>(index, in, track, path, theta, marginal);
 }
 
 template <int kSize>
@@ -119,7 +118,7 @@ void PathEquations::AddTrackOf(std::size_t index, const WindowInput& in, const T
     G.noalias() += M.transpose() * WM;
     g.noalias() += WM.transpose() * e;
     if (j >= 0) {
-      J_anchor.setZero();
+      J_anchor.template leftCols<6>().setZero();  // the start's pose stays
       if (track.anchor_slot >= 0) J_anchor.template leftCols<6>() = AnchorJacobian(h, theta);
       if constexpr (kSize > kPoseSize)
         J_anchor.template rightCols<3>() = -h.J_landmark.leftCols<2>() * landmark.ray_by_rate;
@@ -165,7 +164,7 @@ void PathEquations::AddMarginal(const Track& track, const PathLinearisation::Eli
   for (const Seen& view : seen_) {
     const Eigen::Matrix3d c = view.J_shift.transpose() * view.WM;
     const Eigen::Vector3d g = c * alpha;
-    const Eigen::Index i = linear_.Row(view.slot), j = track.anchor_slot < 0 ? -1 : linear_.Row(track.anchor_slot);
+    const Eigen::Index i = linear_.Row(view.slot), j = track.anchor_slot < 0 ? -1 : landmark.anchor_row;
     b_.segment<3>(i) += g;
     if (j >= 0) b_.segment<3>(j) -= g;
     if (!matters) continue;

@@ -1,7 +1,7 @@
 // Normal equations of a path window: information on the poses, each landmark eliminated by its Schur complement.
 // A d = b with A = sum J'WJ - Y Y' + Z Z', b = sum J'W e - Y y; Y: whitened couplings of the landmarks, Z: gradients of
 // the marginal mode.
-// Shapes:  6m x 6m for m poses, in the order of path_window.h.
+// Shapes:  6m x 6m for m poses, in the order of path_window.h; with rates of rows 9 (m + 1).
 #pragma once
 
 #include <Eigen/Core>

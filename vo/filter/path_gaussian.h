@@ -48,8 +48,8 @@ class PathPrior {
   const Eigen::Matrix<double, 6, Eigen::Dynamic>& gain() const { return gain_; }
   const Matrix6& last_covariance() const { return last_covariance_; }
 
-  // Of the rates of rows, 3 (m + 1). A rate less that of the parabola through three poses is n_k - n_k+1, n of each step
-  // with D / 12, D the noise of the turn rate in it: at the frame rate the motion is smooth. At the start's frame
+  // Of the rates of rows, 3 (m + 1). A rate less that of the parabola through three poses is n_k - n_k+1, n of each
+  // step with D / 12, D the noise of the turn rate in it: at the frame rate the motion is smooth. At the start's frame
   // and the last two, whose reference is the mean velocity of one step, D / 4 comes on top.
   const Eigen::MatrixXd& rate_precision() const { return rate_precision_; }
 

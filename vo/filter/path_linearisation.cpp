@@ -39,7 +39,7 @@ double PathLinearisation::LineariseSteps(const PathGaussian& path, const Pose& s
 Eigen::Vector3d PathLinearisation::MeanOf(std::size_t index, const WindowInput& in, const Track& track,
                                           const PathGaussian& path) const {
   Eigen::Vector3d mean = in.landmarks[track.landmark].mean;
-  if (slot_size > kPoseSize && landmarks[index].anchor_row >= 0)
+  if (with_rates() && landmarks[index].anchor_row >= 0)
     mean.head<2>() -= landmarks[index].ray_by_rate * path.rates[track.anchor_slot + 1];
   return mean;
 }
@@ -59,18 +59,17 @@ double SetPriorGradient(const PathPrior& prior, const Pose& start, const Vector6
     if (k > 0) b.segment<6>(linear.Row(k - 1)).noalias() -= J_k.leftCols<6>().transpose() * d_k;
     b.segment<6>(linear.Row(k)).noalias() -= J_k.rightCols<6>().transpose() * d_k;
   }
-  if (linear.slot_size == kPoseSize) return cost;
+  if (!linear.with_rates()) return cost;
   const Eigen::Map<const Eigen::VectorXd> rates(path.rates[0].data(), 3 * (m + 1));
   const Eigen::VectorXd gradient = prior.rate_precision() * rates;
-  for (int k = 0; k <= m; ++k) b.segment<3>(linear.Row(k - 1) + kPoseSize) = -gradient.segment<3>(3 * k);
+  for (int k = 0; k <= m; ++k) b.segment<3>(linear.RateRow(k - 1)) = -gradient.segment<3>(3 * k);
   return cost + rates.dot(gradient);
 }
 
 void MoveBy(const Eigen::VectorXd& step, const PathLinearisation& linear, PathGaussian& path) {
   const int m = static_cast<int>(path.mean.size());
   for (int k = 0; k < m; ++k) path.mean[k] = Plus(path.mean[k], step.segment<6>(linear.Row(k)));
-  for (int k = 0; linear.slot_size > kPoseSize && k <= m; ++k)
-    path.rates[k] += step.segment<3>(linear.Row(k - 1) + kPoseSize);
+  for (int k = 0; linear.with_rates() && k <= m; ++k) path.rates[k] += step.segment<3>(linear.RateRow(k - 1));
 }
 
 }  // namespace vo

@@ -75,8 +75,10 @@ struct PathLinearisation {
     Eigen::Index anchor_row;  // -1: the anchor has been sampled
   };
   Eigen::Index slot_size = kPoseSize;
-  // First row of a slot. With rates the start has one, -1, whose pose stays.
-  Eigen::Index Row(int slot) const { return slot_size * (slot_size > kPoseSize ? slot + 1 : slot); }
+  bool with_rates() const { return slot_size > kPoseSize; }
+  // First row of a slot, and of its rate. With rates the start has a slot, -1, whose pose stays.
+  Eigen::Index Row(int slot) const { return slot_size * (with_rates() ? slot + 1 : slot); }
+  Eigen::Index RateRow(int slot) const { return Row(slot) + kPoseSize; }
   Eigen::MatrixXd J;                  // of the steps u: du_k / d(pose k-1), du_k / d(pose k), per step 6 x 12
   std::vector<View> views;            // in the order of the tracks
   std::vector<Eliminated> landmarks;  // per track
@@ -87,6 +89,11 @@ struct PathLinearisation {
   void SetRows(Eliminated& landmark, const Track& track, Rates rates) const;
   // Sets J. Returns the log determinant of its volume change, squared.
   double LineariseSteps(const PathGaussian& path, const Pose& start);
+  // Shift of a view's image point by the rate of its frame; 0 without rates.
+  Eigen::Vector2d RateShift(const Track::View& view, const PathGaussian& path) const {
+    if (!with_rates()) return Eigen::Vector2d::Zero();
+    return view.ByRate() * path.rates[view.slot + 1];
+  }
   // A landmark's mean by its first view, at the rate of the anchor's rows.
   Eigen::Vector3d MeanOf(std::size_t index, const WindowInput& in, const Track& track, const PathGaussian& path) const;
 };

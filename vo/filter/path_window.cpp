@@ -92,8 +92,7 @@ struct PathProblem {
       const Matrix23 M = h.J_landmark * L;
       const Matrix23 WM = view.R_inverse * M;
       G.noalias() += M.transpose() * WM;
-      Eigen::Vector2d e = view.z - h.z - h.J_landmark * off;
-      if (equations.linearisation().slot_size > kPoseSize) e -= view.ByRate() * path.rates[view.slot + 1];
+      const Eigen::Vector2d e = view.z - h.z - h.J_landmark * off - equations.linearisation().RateShift(view, path);
       g.noalias() += WM.transpose() * e;
     }
     if (used) theta[i] = mean + L * G.llt().solve(g);
@@ -125,7 +124,7 @@ void PathWindow::SetCovariance(PathGaussian& path) {
   const int m = static_cast<int>(path.mean.size());
   path.covariance.setIdentity(linear.Row(m), linear.Row(m));
   llt_.solveInPlace(path.covariance);
-  for (int k = 0; linear.slot_size > kPoseSize && k < m; ++k) {
+  for (int k = 0; linear.with_rates() && k < m; ++k) {
     path.covariance.middleRows<6>(kPoseSize * k) = path.covariance.middleRows<6>(linear.Row(k)).eval();
     path.covariance.middleCols<6>(kPoseSize * k) = path.covariance.middleCols<6>(linear.Row(k)).eval();
   }

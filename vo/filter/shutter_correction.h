@@ -28,8 +28,8 @@ struct CorrectedWindow {
 };
 
 // Matches of these slots, and landmarks that were first seen there. Each row is corrected from what it measured, not
-// from an earlier correction. `first_views`: per landmark; no update has changed those of the slots yet. `rates`: with the path's
-// rates of rows.
+// from an earlier correction. `first_views`: per landmark; no update has changed those of the slots yet.
+// `rates`: with the path's rates of rows.
 CorrectedWindow CorrectShutter(const Window& window, const LandmarkTable& table, std::span<const FirstView> first_views,
                                const WindowInput& in, const PathSolution& solution, SlotRange slots,
                                ShutterReference reference, bool rates, const LandmarkParams& params);

@@ -41,9 +41,10 @@ void WindowPhase::ExtendPaths(double dt, const MotionInput& input) {
 
 void WindowPhase::SetPrior() {
   std::vector<MotionModel> models, of_rates;
+  const bool with_rates = rolling();
   for (const Window::Frame& frame : window_.frames()) {
     models.push_back(NearlyConstantVelocity(settings_.motion, frame.dt, frame.input));
-    if (rolling())
+    if (with_rates)
       of_rates.push_back(answer_.initialising ? NearlyConstantVelocity(settings_.motion, frame.dt) : models.back());
   }
   prior_.emplace(models, particles_[0].velocity.covariance, of_rates);

@@ -25,17 +25,18 @@ void WindowPhase::SolveAll() {
   }
   const std::size_t heaviest = particles_.Heaviest();
   const std::span<const Track> tracks = window_.tracks();
-  const PathSolution first = particles_[heaviest].solution;
+  const PathGaussian first = particles_[heaviest].solution.path;
+  const std::vector<Eigen::Vector3d> first_theta = ModesOfTracks(tracks, particles_[heaviest].solution);
   Solve(heaviest, options);
   const PathGaussian& solved = particles_[heaviest].solution.path;
   std::vector<Eigen::Vector3d> moved = ModesOfTracks(tracks, particles_[heaviest].solution);
-  for (std::size_t t = 0; t < moved.size(); ++t) moved[t] -= first.modes[tracks[t].landmark];
+  for (std::size_t t = 0; t < moved.size(); ++t) moved[t] -= first_theta[t];
   std::vector<bool> alike(particles_.size(), std::isfinite(solved.log_evidence));
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     if (i == heaviest || !alike[i]) continue;
     PathSolution& solution = particles_[i].solution;
     std::vector<Eigen::Vector3d> theta = ModesOfTracks(tracks, solution);
-    MoveAlike(first.path, solved, solution.path);
+    MoveAlike(first, solved, solution.path);
     for (std::size_t t = 0; t < theta.size(); ++t) theta[t] += moved[t];
     alike[i] = solver_.SolveAlike(*prior_, InputOf(i), tracks, solved, solution.path, theta);
     SetModes(tracks, theta, solution);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <cmath>
+#include <cstdio>
 #include <vector>
 
 #include "tests/unit/vo/draws.h"
