@@ -274,7 +274,8 @@ std::vector<NewFeature> Tracker::DetectFeatures(const PreparedFrame& frame) {
   for (const LeftOut& one : left_out_) occupied.push_back(one.pixel);
   for (const FeatureView& view : views_)
     if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
-  return detector_.Detect(frame, std::move(occupied));
+  const bool more = params_.motion.adaptive && !filter_.answer().initialising;
+  return detector_.Detect(frame, std::move(occupied), more ? params_.features.enough_matches : 0);
 }
 
 // Deletes landmarks, also to make room for `wanted` new ones; those searched for in this frame are kept.

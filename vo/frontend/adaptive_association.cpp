@@ -8,9 +8,9 @@
 namespace vo {
 namespace {
 
-// Innovation ratio of a failed prediction, and the least agreement of the searched. At the start false matches near a
-// wrong prediction may agree with it.
-constexpr double kFailedRatio = 11, kFailedAgreementAtTheStart = 0.65;
+// Innovation ratio of a failed prediction, and the least agreement of the searched. False matches near a wrong
+// prediction may agree with it, at the start most of all.
+constexpr double kFailedRatio = 11, kFailedAgreement = 0.5, kFailedAgreementAtTheStart = 0.65;
 constexpr int kWidenings = 2;
 constexpr double kAlignedNoise = 4;       // factor on the densities about an aligned rotation
 constexpr double kRelocalisedNoise = 16;  // the same about the pose from recognised landmarks
@@ -26,7 +26,7 @@ InnovationRatios RatiosOf(const Association& association) {
 
 bool Failed(const Association& association, bool initialising) {
   const InnovationRatios ratios = RatiosOf(association);
-  const double least = initialising ? kFailedAgreementAtTheStart : FrameDiagnostics::kTrackedAgreement;
+  const double least = initialising ? kFailedAgreementAtTheStart : kFailedAgreement;
   return std::max(ratios.position, ratios.orientation) > kFailedRatio ||
          static_cast<double>(association.matches.size()) < least * static_cast<double>(association.searched.size());
 }

@@ -78,7 +78,8 @@ NewFeatureDetector::NewFeatureDetector(const Camera& camera, const Params& param
       border_px_(border_px),
       target_frames_(target_.columns > 0 ? target_.frames : 0) {}
 
-std::vector<NewFeature> NewFeatureDetector::Detect(const PreparedFrame& frame, std::vector<Eigen::Vector2d> occupied) {
+std::vector<NewFeature> NewFeatureDetector::Detect(const PreparedFrame& frame, std::vector<Eigen::Vector2d> occupied,
+                                                   std::size_t enough) {
   std::vector<NewFeature> found;
   if (target_frames_ > 0) {
     found = FindTarget(frame.grey, camera_, target_, features_.first_view_px);
@@ -86,8 +87,16 @@ std::vector<NewFeature> NewFeatureDetector::Detect(const PreparedFrame& frame, s
     std::erase_if(found, [&](const NewFeature& f) { return !camera_.IsUsable(f.pixel.cast<double>(), border_px_); });
   }
   for (const NewFeature& feature : found) occupied.push_back(feature.pixel.cast<double>());
-  for (const Eigen::Vector2i& corner : DetectCorners(frame.grey, occupied, border_px_, features_))
-    if (camera_.IsUsable(corner.cast<double>())) found.push_back({corner, std::nullopt});
+  FeatureParams params = features_;
+  const auto detect = [&] {
+    for (const Eigen::Vector2i& corner : DetectCorners(frame.grey, occupied, border_px_, params)) {
+      occupied.push_back(corner.cast<double>());
+      if (camera_.IsUsable(occupied.back())) found.push_back({corner, std::nullopt});
+    }
+  };
+  detect();
+  params.per_cell *= 2;
+  if (occupied.size() < enough) detect();
   return found;
 }
 

@@ -34,8 +34,9 @@ class NewFeatureDetector {
   // Features are at least `border_px` from the edge of the image.
   NewFeatureDetector(const Camera& camera, const Params& params, int border_px);
 
-  // Features away from `occupied`, those of the target first.
-  std::vector<NewFeature> Detect(const PreparedFrame& frame, std::vector<Eigen::Vector2d> occupied);
+  // Features away from `occupied`, those of the target first. Twice as many per cell where they and `occupied` are
+  // fewer than `enough`: where most of the image has no texture, the rest of it is used more densely.
+  std::vector<NewFeature> Detect(const PreparedFrame& frame, std::vector<Eigen::Vector2d> occupied, std::size_t enough);
 
  private:
   Camera camera_;

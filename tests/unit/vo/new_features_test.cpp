@@ -1,4 +1,5 @@
-// Which of the detected features become landmarks where the map has little room.
+// Detection of new features where little of the image has texture, and which of them become landmarks where the map has
+// little room.
 #include "vo/frontend/new_features.h"
 
 #include <gtest/gtest.h>
@@ -7,9 +8,37 @@
 #include <utility>
 #include <vector>
 
+#include "tests/unit/vo/texture.h"
+
 namespace {
 
 const vo::Camera kCamera{640, 480, 500, 500, 319.5, 239.5};
+
+// Texture in the left quarter, two of the eight columns of cells.
+std::vector<vo::NewFeature> Detected(const std::vector<Eigen::Vector2d>& occupied, std::size_t enough) {
+  cv::Mat image(480, 640, CV_8UC1, cv::Scalar(90));
+  vo_test::Texture(1).Image(160, 480, {0, 0}).copyTo(image.colRange(0, 160));
+  return vo::NewFeatureDetector(kCamera, {}, 20).Detect(vo::PreparedFrame({0, image}), occupied, enough);
+}
+
+TEST(NewFeatureDetector, UsesTheTextureMoreDenselyWhereThereIsLittle) {
+  const std::size_t wanted = 12 * vo::FeatureParams().per_cell;
+  const std::vector<vo::NewFeature> few = Detected({}, 0), more = Detected({}, 100);
+  EXPECT_EQ(few.size(), wanted);
+  EXPECT_GT(more.size(), 1.5 * wanted);
+  EXPECT_LE(more.size(), 2 * wanted);
+  for (std::size_t i = 0; i < more.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_GE((more[i].pixel - more[j].pixel).cast<double>().norm(), vo::FeatureParams().min_distance_px);
+}
+
+TEST(NewFeatureDetector, LandmarksInViewCount) {
+  std::vector<Eigen::Vector2d> elsewhere;
+  for (int i = 0; i < 70; ++i) elsewhere.emplace_back(300 + 5 * (i % 10), 100 + 5 * (i / 10));
+  EXPECT_EQ(Detected(elsewhere, 100).size(), Detected(elsewhere, 0).size());
+  elsewhere.resize(20);
+  EXPECT_GT(Detected(elsewhere, 100).size(), Detected(elsewhere, 0).size());
+}
 
 // Eight features in the corner of each quadrant, quadrant by quadrant; the last one lies on the target.
 std::vector<vo::NewFeature> Clusters() {
