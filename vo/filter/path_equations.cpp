@@ -126,12 +126,12 @@ void PathEquations::AddTrackOf(std::size_t index, const WindowInput& in, const T
       E.template middleRows<kSize>(j).noalias() += AtW * M;
     }
     if (track.provisional) continue;
-    A_.block<kSize, kSize>(i, i).noalias() += JtW * J;
+    // Lazy products: those of 9 rows and columns would be blocked for the cache.
+    A_.block<kSize, kSize>(i, i) += JtW.lazyProduct(J);
     b_.segment<kSize>(i).noalias() += JtW * e;
     if (j >= 0) {
-      A_.block<kSize, kSize>(j, j).noalias() += AtW * J_anchor;
-      A_.block<kSize, kSize>(i, j).noalias() += JtW * J_anchor;
-      A_.block<kSize, kSize>(j, i).noalias() += AtW * J;
+      A_.block<kSize, kSize>(j, j) += AtW.lazyProduct(J_anchor);
+      A_.block<kSize, kSize>(i, j) += JtW.lazyProduct(J_anchor);  // the anchor comes first: the lower triangle
       b_.segment<kSize>(j).noalias() += AtW * e;
     }
     cost_ += e.dot(We);
