@@ -85,6 +85,43 @@ TEST(Texture, LevelsAverageByPlace) {
   EXPECT_NEAR(texture.Texel(1, 2, 0).x, 1 / (7 / 3.0), 0.001);
 }
 
+// Sides that are multiples of 64 are made in tiles: each texel is the mean of four of the level below it, in linear
+// light and single precision, and a row's first one comes again at its end.
+TEST(Texture, TiledLevelsAreMeansOfFour) {
+  constexpr int kWidth = 192, kHeight = 128;
+  std::vector<std::uint8_t> rgb;
+  std::vector<float> linear;
+  for (std::uint32_t i = 0; i < 3 * kWidth * kHeight; ++i) {
+    rgb.push_back(static_cast<std::uint8_t>(i * 2654435761u >> 24));
+    linear.push_back(static_cast<float>(SrgbToLinear(rgb.back() / 255.0)));
+  }
+  const Texture texture("random", kWidth, kHeight, rgb);
+  ASSERT_EQ(texture.levels().size(), 8u);
+  for (int l = 0; l < 8; ++l) {
+    const TextureLevel& level = texture.levels()[static_cast<std::size_t>(l)];
+    const auto at = [&](int x, int y, int c) {
+      return linear[static_cast<std::size_t>(3 * (y * level.width + x) + c)];
+    };
+    std::vector<float> means;
+    for (int y = 0; y < level.height; ++y) {
+      const std::size_t row = level.RowBegin(y);
+      EXPECT_EQ(texture.texels()[row + static_cast<std::size_t>(level.width)], texture.texels()[row]);
+      for (int x = 0; x < level.width; ++x) {
+        const std::uint32_t texel = texture.texels()[row + static_cast<std::size_t>(x)];
+        for (int c = 0; c < 3; ++c) {
+          ASSERT_EQ(texel >> 10 * c & 1023, static_cast<std::uint32_t>(0.5 + double{std::sqrt(at(x, y, c)) * 1023.0f}))
+              << "level " << l << " at " << x << ", " << y;
+          if (x % 2 == 0 && y % 2 == 0 && l < 6)
+            means.push_back(0.5f * (0.5f * at(x, y, c) + 0.5f * at(x + 1, y, c)) +
+                            0.5f * (0.5f * at(x, y + 1, c) + 0.5f * at(x + 1, y + 1, c)));
+        }
+      }
+    }
+    if (l >= 6) break;  // 3 x 2 into 1 x 1: not halves
+    linear = means;
+  }
+}
+
 // Of any size: weights at the last column and row end with the picture.
 TEST(Texture, LevelsOfOneColourHaveIt) {
   for (int width = 1; width <= 70; ++width) {
