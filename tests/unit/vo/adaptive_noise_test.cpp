@@ -11,7 +11,7 @@ namespace {
 
 const Eigen::Quaterniond kOrientation(0.8, 0.36, -0.48, 0);
 
-// Mean input over the last frames, of steps that are white with `truth` times the model's density in the camera; the
+// Mean input over the last frames. Steps are white with `truth` times the model's density in the camera frame; the
 // covariances of the poses are `claimed` times those of a Kalman filter.
 vo::MotionInput MeanInput(const vo::Matrix6& truth, double claimed, bool failed = false) {
   constexpr int kFrames = 6000, kSettled = 1000;
@@ -52,9 +52,9 @@ vo::MotionInput MeanInput(const vo::Matrix6& truth, double claimed, bool failed 
 
 constexpr double kTypical = 0.7;  // share of the mean that a prediction takes
 
-// The estimate is an average over 20 independent frames, the mean over 5000 frames one over 250 of these: its standard
-// deviation is 1.2 %, of one axis 2 %. False alarm rate 2e-4: two limits of four standard deviations and the measured
-// pose's share.
+// Mean of the estimated density, kTypical times the true one. One estimate averages 20 independent frames, the mean
+// over 5000 frames 250 estimates: its standard deviation is 1.2 %, that of one axis 2 %. False-alarm rate 2e-4: two
+// limits of four standard deviations and the measured pose's share.
 TEST(AdaptiveNoise, MeanIsTheTypicalShareOfTheTrueDensity) {
   for (const double density : {16.0, 0.01}) {
     vo::Vector6 truth = vo::Vector6::Constant(density);
@@ -67,8 +67,9 @@ TEST(AdaptiveNoise, MeanIsTheTypicalShareOfTheTrueDensity) {
       << "halved covariances are seen";
 }
 
-// Shape of a camera that pitches as it rises: 0.8 of the true one, 0.2 of none. The mean of an entry has a standard
-// deviation of 2 % of at most 1.8. False alarm rate 2e-3: 36 limits of four standard deviations, and a ratio's bias.
+// Shape 0.8 Q + 0.2 I of the process noise of a camera that pitches as it rises, Q the true one. The mean of an entry
+// has a standard deviation of 2 % of at most 1.8. False-alarm rate 2e-3: 36 limits of four standard deviations, and the
+// bias of a ratio.
 TEST(AdaptiveNoise, ShapeIsThatOfTheMotionInTheCamera) {
   vo::Matrix6 truth = vo::Vector6(0.5, 2, 0.5, 1.6, 1.2, 0.2).asDiagonal();
   truth(1, 3) = truth(3, 1) = 1.6;

@@ -1,5 +1,4 @@
-// The filter's loop takes no memory from the heap: every call of malloc is counted, Eigen's and the standard library's
-// alike.
+// Heap allocations of the filter's loop: none. Calls of malloc by Eigen and the standard library are counted alike.
 
 #include <gtest/gtest.h>
 
@@ -78,7 +77,7 @@ int AllocationsOfALoop(const vo::FilterParams& params, int frames) {
       matches[static_cast<std::size_t>(n)].z =
           X.hnormalized() + kSigma * Eigen::Vector2d(std::sin(17.0 * n * k), std::cos(23.0 * n * k));
     }
-    counting = k >= 10;  // the first frames make room
+    counting = k >= 10;  // buffers grow in the first frames
     filter.Predict(kDt);
     filter.Update(matches);
     counting = false;
@@ -87,7 +86,7 @@ int AllocationsOfALoop(const vo::FilterParams& params, int frames) {
 }
 #endif
 
-// Resampling is in it: all particles move into the memory of a former generation.
+// Predict and Update with resampling, which reuses the memory of the previous generation.
 TEST(Allocation, TheLoopHasNone) {
 #if VOBENCH_OWN_MALLOC
   for (const vo::Sampled sampled : {vo::Sampled::pose, vo::Sampled::pose_and_velocity}) {
@@ -102,7 +101,7 @@ TEST(Allocation, TheLoopHasNone) {
 #endif
 }
 
-// The counter counts: a new, what it holds, and an Eigen matrix.
+// Control: three allocations are counted, of an object, its contents and an Eigen matrix.
 TEST(Allocation, IsSeenWhereThereIsAny) {
 #if VOBENCH_OWN_MALLOC
   counting = true;

@@ -1,4 +1,4 @@
-// Calibration files of other tools: the numbers that they mean, and what is said of those that are not understood.
+// Calibration files of other tools: parameters read from them, and error messages for files that are refused.
 #include "vo/geometry/camera_file.h"
 
 #include <gmock/gmock.h>
@@ -51,7 +51,7 @@ class CameraFile : public testing::Test {
     return "";
   }
 
-  // Somebody's numbers, and where OpenCV itself draws a point with them.
+  // Parameters of a lens, and OpenCV's projection of a point with them.
   const cv::Matx33d matrix_{458.5, 0, 367.25, 0, 457.25, 248.375, 0, 0, 1};
   const std::vector<double> radtan_{-0.2834, 0.0739, 0.00019, 1.76e-05, 0.004};
   const std::vector<double> fisheye_{-0.0127, 0.0114, -0.0071, 0.0023};
@@ -95,7 +95,7 @@ TEST_F(CameraFile, OfOpenCvThatIsNotUnderstood) {
               HasSubstr("c.xml: is cut off"));
   EXPECT_THAT(ErrorOf(WriteByOpenCv("c.xml", cv::Mat(matrix_).rowRange(0, 2), cv::Mat(rational))),
               HasSubstr("c.xml:6:16: 'camera_matrix' must have 3 x 3 numbers"));
-  // As many numbers as it says, whatever it says; 4.6's own reader never ends on the second.
+  // Malformed files: fewer numbers than rows x cols; a second document, on which OpenCV 4.6's reader never ends.
   const std::string short_matrix =
       "%YAML:1.0\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   data: [1, 2]\n";
   EXPECT_THAT(ErrorOf(Write("e.yaml", short_matrix)),
@@ -107,7 +107,7 @@ TEST_F(CameraFile, OfOpenCvThatIsNotUnderstood) {
     EXPECT_THAT(nothing, HasSubstr(key));
 }
 
-// What older samples called them, and what an APPEND makes of a file: a document more.
+// Keys of OpenCV's older samples, in two YAML documents as written by cv::FileStorage::APPEND.
 TEST_F(CameraFile, OfOpenCvWithOlderNamesAndAppended) {
   const fs::path file = folder_ / "old.yaml";
   {
@@ -121,7 +121,7 @@ TEST_F(CameraFile, OfOpenCvWithOlderNamesAndAppended) {
   ExpectPlumbBob(vo::ReadCamera(file));
 }
 
-// A global shutter is one that is stated.
+// Readout time: 0 only where the file states it, else none.
 TEST_F(CameraFile, SaysWhetherTheShutterIsStated) {
   const std::string own = "width: 640\nheight: 480\nfx: 525\nfy: 525\ncx: 319.5\ncy: 239.5\n";
   EXPECT_EQ(vo::ReadCamera(Write("own.yaml", own)).readout_s, std::nullopt);
@@ -177,7 +177,7 @@ TEST_F(CameraFile, OfEurocWhoseSizeIsNone) {
   }
 }
 
-// As a plumb bob with these coefficients, whatever the file's format.
+// Radial-tangential camera of all file formats below.
 void ExpectRadtan(const vo::Camera& c, double k1) {
   EXPECT_EQ(c.width, 752);
   EXPECT_EQ(c.height, 480);
@@ -214,7 +214,7 @@ TEST_F(CameraFile, OfDso) {
       vo::ReadCamera(Write("camera.txt", "RadTan 458.5 457.25 367.25 248.375 -0.25 0.07 1e-4 2e-5\n752 480\n")), -0.25);
   ExpectFisheye(vo::ReadCamera(
       Write("camera.txt", "KannalaBrandt 458.5 457.25 367.25 248.375 -0.0127 0.0114 -0.0071 0.0023\n752 480\n")));
-  // Of LSD-SLAM, without a name.
+  // LSD-SLAM: no name of the model.
   ExpectRadtan(
       vo::ReadCamera(Write("camera.cfg", "458.5 457.25 367.25 248.375 -0.25 0.07 1e-4 2e-5\n752 480\ncrop\n640 480\n")),
       -0.25);
@@ -310,7 +310,7 @@ TEST_F(CameraFile, OfBasalt) {
               HasSubstr("'ds'"));
 }
 
-// As `rostopic echo` and `ros2 topic echo` print a message.
+// Messages as printed by `rostopic echo` and `ros2 topic echo`.
 TEST_F(CameraFile, OfRosTopics) {
   for (const bool capitals : {true, false}) {
     const std::string k = capitals ? "K" : "k", d = capitals ? "D" : "d";
@@ -322,7 +322,8 @@ TEST_F(CameraFile, OfRosTopics) {
   }
 }
 
-// Without distortion the model may have no name. Pixels that are not the sensor's have another calibration.
+// Messages without distortion, whose model may be unnamed. Binned and cropped images are refused: their calibration
+// differs from the sensor's.
 TEST_F(CameraFile, OfRosWithoutDistortionBinnedAndCut) {
   const std::string text =
       "height: 480\nwidth: 752\ndistortion_model: ''\nD: []\nK: [458.5, 0, 367.25, 0, 457.25, 248.375, 0, 0, 1]\n";
@@ -332,7 +333,8 @@ TEST_F(CameraFile, OfRosWithoutDistortionBinnedAndCut) {
               HasSubstr("a region of the sensor"));
 }
 
-// cv::FileStorage needs no blank behind a colon. What ORB-SLAM rectifies is of other images.
+// Keys without a blank after the colon, as cv::FileStorage accepts. Settings for ORB-SLAM's rectification are refused:
+// they describe other images.
 TEST_F(CameraFile, OfOrbSlamAsItIsWritten) {
   const std::string text = "%YAML:1.0\nCamera.fx:458.5\nCamera.fy: 457.25\nCamera.cx: 367.25\nCamera.cy: 248.375\n",
                     size = "Camera.width:752\nCamera.height:480\n";

@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 const vo::Camera kCamera{640, 480, 500, 500, 319.5, 239.5};
 
-// Known points 1 to 3 m in front of their anchor, and a camera that is not where it is predicted: 0.1 rad and 4 cm off.
+// Known points 1 to 3 m in front of their anchor; the prediction of the camera's pose is off by 0.1 rad and 4 cm.
 struct Scene {
   std::vector<vo::Landmark> landmarks;
   std::vector<int> anchor_of;
@@ -55,7 +55,7 @@ Scene MakeScene() {
   return scene;
 }
 
-// Largest distance [px] of the landmarks beyond the first `coarse` from their predictions.
+// Largest prediction error [px] of the landmarks beyond the first `coarse`.
 double Worst(const Scene& scene, const vo::PoseGaussian& pose, int coarse) {
   const vo::MapView view(scene.map(), pose.mean);
   double worst = 0;
@@ -72,7 +72,7 @@ TEST(CoarseFeatures, TellWhereAllOthersAre) {
   const Scene scene = MakeScene();
   const auto pose = vo::FitCoarsePose(scene.prediction, scene.map(), scene.Matches(16), {});
   ASSERT_TRUE(pose);
-  EXPECT_LT(Worst(scene, *pose, 16), 0.05);  // exact matches; the prior pulls, at a ten thousandth of their weight
+  EXPECT_LT(Worst(scene, *pose, 16), 0.05);  // exact matches; the prior has 1e-4 of their weight
   double plain = 0;
   for (int n = 16; n < 60; ++n) {
     const Vector2d z = vo::Project({scene.prediction.mean, scene.anchors[0]}, scene.landmarks[n].mean).z;
@@ -84,7 +84,7 @@ TEST(CoarseFeatures, TellWhereAllOthersAre) {
 TEST(CoarseFeatures, AreNotMovedByOutliers) {
   const Scene scene = MakeScene();
   std::vector<vo::Match> matches = scene.Matches(16);
-  for (int n = 0; n < 16; n += 4) matches[n].z += Vector2d(0.05, -0.03);  // 29 px, all the same way: a thing that moves
+  for (int n = 0; n < 16; n += 4) matches[n].z += Vector2d(0.05, -0.03);  // 29 px in one direction: a moving object
   const auto pose = vo::FitCoarsePose(scene.prediction, scene.map(), matches, {});
   ASSERT_TRUE(pose);
   EXPECT_LT(Worst(scene, *pose, 16), 0.7);
@@ -92,7 +92,7 @@ TEST(CoarseFeatures, AreNotMovedByOutliers) {
 
 TEST(CoarseFeatures, CovarianceMatchesErrors) {
   Scene scene = MakeScene();
-  scene.landmarks[40].covariance(2, 2) = 0.04;  // a depth hardly known
+  scene.landmarks[40].covariance(2, 2) = 0.04;  // a depth of large variance
   const auto pose = vo::FitCoarsePose(scene.prediction, scene.map(), scene.Matches(16), {});
   ASSERT_TRUE(pose);
   const vo::MapView view(scene.map(), pose->mean);
@@ -108,7 +108,7 @@ TEST(CoarseFeatures, SayNothingWhenFewOrAtOdds) {
   EXPECT_FALSE(vo::FitCoarsePose(scene.prediction, scene.map(), scene.Matches(5), {}));
   std::vector<vo::Match> matches = scene.Matches(16);
   for (int n = 0; n < 16; ++n)
-    matches[n].z += 0.1 * Vector2d(std::sin(7.0 * n), std::cos(11.0 * n));  // each its own way
+    matches[n].z += 0.1 * Vector2d(std::sin(7.0 * n), std::cos(11.0 * n));  // in different directions
   EXPECT_FALSE(vo::FitCoarsePose(scene.prediction, scene.map(), matches, {}));
 }
 
@@ -117,7 +117,7 @@ TEST(CoarseFeatures, AreSettledPreciseAndSpread) {
   std::vector<vo::Candidate> candidates(100);
   for (int n = 0; n < 100; ++n) {
     records[n].age = 30;
-    records[n].score = n < 50 ? 0.5 : 0.99;  // two at each place: one sure, one not
+    records[n].score = n < 50 ? 0.5 : 0.99;  // two at each pixel: one of high score, one of low
     candidates[n].landmark = n;
     candidates[n].pixel = Vector2d(32 + 64 * (n % 10), 48 + 96 * (n % 50 / 10));
   }
@@ -144,8 +144,8 @@ TEST(BucketRoundRobin, TakesOneOfEachCellBeforeASecond) {
   EXPECT_EQ(vo::BucketRoundRobin(pixels, 2, 2, 640, 480), (std::vector<std::size_t>{0, 3, 5, 1, 4, 2}));
 }
 
-// A camera before a textured wall 2 m away that is jolted in frame 12: it turns by 0.025 rad at once, 12 px that
-// nothing foretold.
+// Pose of a camera 2 m in front of a textured wall. In frame 12 it rotates by 0.025 rad (12 px), against the motion
+// model.
 vo::Pose JoltedAt(int k) { return {Vector3d(0.01 * k, 0.004 * k, 0), vo::Exp({0, k < 12 ? 0.0 : 0.025, 0})}; }
 
 cv::Mat ViewFrom(const vo::Pose& pose, const vo_test::Texture& texture) {
@@ -183,7 +183,7 @@ TEST(CoarseFeatures, FollowAJoltAndTooManyAreNone) {
   EXPECT_GE(with[12].diagnostics.matched, 0.8 * with[11].diagnostics.matched);
   EXPECT_GE(with[12].diagnostics.matched, without[12].diagnostics.matched);
   EXPECT_LT(vo::Log(with[12].pose.q_WC.conjugate() * JoltedAt(12).q_WC).norm(),
-            0.0125);  // half of it: blind to it, 0.025
+            0.0125);  // half of the rotation; 0.025 without any response
   bool differs = false;
   for (std::size_t k = 0; k < images.size(); ++k) {
     EXPECT_EQ(without[k].pose.p_WC, too_many[k].pose.p_WC) << k;
@@ -193,8 +193,8 @@ TEST(CoarseFeatures, FollowAJoltAndTooManyAreNone) {
   EXPECT_TRUE(differs) << "coarse features change the estimate";
 }
 
-// A third of a second in the dark, in which the camera turns by 0.12 rad, 58 px, that nothing foretold: how many of the
-// matches after it are of landmarks from before.
+// Share of the landmarks matched before a dark interval that are matched after it. The interval is a third of a second,
+// in which the camera rotates by 0.12 rad (58 px) against the motion model.
 double OldAfterTheDark(const std::vector<cv::Mat>& images, int search_relocalise_px) {
   vo::Params params;
   params.features.search_relocalise_px = search_relocalise_px;

@@ -1,5 +1,5 @@
-// Random numbers of the odometry's tests, the same with every compiler: std::mt19937_64 is defined to the bit, and a vector is
-// drawn element by element, because a language that leaves the order of arguments open would give another world per compiler.
+// Random numbers of the odometry's tests, equal for all compilers: std::mt19937_64 is specified bit by bit, and vectors
+// are drawn element by element, since C++ leaves the order in which arguments are evaluated unspecified.
 // Source: Box and Muller 1958.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Relative pose from images alone, and the first guess of a start that it makes.
+// Relative pose from two images, and the initial guess of the start's path made from it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace {
 
 constexpr double kSigma = 0.2 / 500;
-constexpr double kNear = 0.01;  // [rad] turn from which a descent ends in the true mode: 5 px at a focal length of 500
+constexpr double kNear = 0.01;  // [rad] within the true mode's basin of attraction: 5 px at a focal length of 500
 
 double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -26,7 +26,7 @@ std::vector<vo::RayPair> PairsOf(const vo_test::LandmarkField& field, const vo::
   return pairs;
 }
 
-// 60 points, a fifth of them matched elsewhere.
+// 60 points, a fifth of them outliers.
 TEST(RelativePose, OfNoisyPairsWithOutliers) {
   vo_test::Draws draws(4);
   const vo::Pose camera{{0.2, -0.1, 0.05}, vo::Exp({0.05, 0.15, -0.1})};
@@ -47,8 +47,9 @@ TEST(RelativePose, FewPairsHaveNone) {
   EXPECT_FALSE(vo::FindRelativePose(PairsOf(field, {{0.2, 0, 0}, Eigen::Quaterniond::Identity()})));
 }
 
-// A solution that takes the sideways motion for a rotation: the guess has the true rotation and direction, the
-// solution's length, and landmarks in front. The perturbations of the translation have not (control).
+// Epipolar guess from a solution in a wrong mode, where rotation accounts for the sideways translation. The guess has
+// the true rotation and direction of translation, the solution's length, and positive depths. Control: perturbations of
+// the translation keep the wrong rotation.
 TEST(EpipolarPath, LeavesTheWrongMode) {
   constexpr int kFrames = 6, kLandmarks = 80;
   vo_test::Draws draws(6);
@@ -85,7 +86,7 @@ TEST(EpipolarPath, LeavesTheWrongMode) {
   ASSERT_TRUE(guess);
   EXPECT_LT(turn_error(*guess), kNear);
   const Eigen::Vector3d end = guess->path.mean.back().p_WC;
-  EXPECT_LT(AngleBetween(end, truth(kFrames).p_WC), kNear / (0.25 * truth(kFrames).p_WC.norm()));  // as seen
+  EXPECT_LT(AngleBetween(end, truth(kFrames).p_WC), kNear / (0.25 * truth(kFrames).p_WC.norm()));  // at mean depth
   EXPECT_NEAR(end.norm(), wrong.path.mean.back().p_WC.norm(), 1e-12);
   for (const Eigen::Vector3d& mode : guess->modes) EXPECT_GT(mode.z(), 0);
 }

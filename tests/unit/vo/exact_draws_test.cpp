@@ -32,7 +32,7 @@ TEST(ExactDraws, AreIndependentFromFourteenParticlesOn) {
   }
 }
 
-// At the start all particles are in one place; later some directions may not differ.
+// Offsets without scatter: in all directions, as at the start, or in all but two.
 TEST(ExactDraws, TakeOffsetsWithoutScatter) {
   vo::ParticleColumns offsets = vo::ParticleColumns::Constant(6, 20, 0.3);
   for (const int directions : {0, 2}) {
@@ -44,9 +44,9 @@ TEST(ExactDraws, TakeOffsetsWithoutScatter) {
   }
 }
 
-// Each particle alone still draws from a law of mean 0 and covariance 1. Over R replicates sum z^2 of one coordinate
-// has variance at most 2 R (the draws' tails are lighter than a normal's): 4 standard deviations on 6 means and 6
-// variances are a false alarm in 1e-3 of seeds. Draws three per cent too wide are rejected.
+// Marginal distribution of one particle's draw: mean 0, covariance I. Over R replicates sum z^2 of one coordinate has a
+// variance of at most 2 R (the tails are lighter than a normal's). False-alarm rate 1e-3: 4 standard deviations on 6
+// means and 6 variances. Control: draws that are 3 % too wide are rejected.
 TEST(ExactDraws, OfOneParticleAreStandard) {
   constexpr int kReplicates = 40000;
   vo::Vector6 sum = vo::Vector6::Zero();

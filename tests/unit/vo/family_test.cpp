@@ -1,4 +1,4 @@
-// The members of the filter family that differ from RB2-PF in one step: bootstrap and unscented proposals.
+// Members of the filter family that differ from RB2-PF in one step: bootstrap and unscented proposals.
 
 #include <gmock/gmock.h>
 
@@ -24,7 +24,7 @@ using Eigen::Vector3d;
 
 constexpr double kSigma = 1.0 / 525;
 
-// Landmarks of a first view and their places in the second, from a camera that moved as told.
+// Landmarks of a first view, and their images in a second view from a given pose.
 struct TwoViews {
   std::vector<vo::FirstView> first;
   std::vector<vo::Match> matches;
@@ -48,7 +48,8 @@ vo::ParticleFilter Start(const vo::FilterParams& params, std::uint64_t seed) {
   return {vo::MotionParams{}, params, vo::LandmarkParams{}, prior, seed};
 }
 
-// Every landmark is seen from elsewhere, as through a rolling shutter: told so, all members find the camera; not told, they take it for the camera's way.
+// Landmarks seen each from its own camera centre, as through a rolling shutter. With the offsets given, all members
+// recover the camera's position; without them (control) the offsets appear as camera motion.
 TEST(Family, RowPositions) {
   constexpr double kFine = 0.05 * kSigma;
   const vo::Pose truth{Vector3d(0.01, -0.005, 0.008), vo::Exp({0.004, 0.005, -0.003})};
@@ -98,13 +99,13 @@ TEST(Family, RowPositions) {
       filter->Update(matches);
       return (filter->belief().pose.p_WC - truth.p_WC).norm();
     };
-    EXPECT_LT(off(told), 4e-4) << name;  // what one linearisation leaves of the way of 14 mm: 0.24
+    EXPECT_LT(off(told), 4e-4) << name;  // 0.24 mm of a translation of 14 mm remain after one linearisation
     EXPECT_GT(off(not_told), 5e-3) << name;
   }
 }
 
-// The bootstrap filter samples the motion model, so with importance weights each weight is the product of the landmark
-// likelihoods at the sample, and nothing else.
+// Importance weight of the bootstrap filter, whose proposal is the motion model: the product of the landmarks'
+// likelihoods at the sample.
 TEST(Bootstrap, WeightIsTheLikelihoodAtTheSample) {
   vo::FilterParams params = vo_test::SampledAtOnce();
   params.proposal = vo::Proposal::bootstrap;
@@ -134,8 +135,7 @@ TEST(Bootstrap, WeightIsTheLikelihoodAtTheSample) {
     EXPECT_NEAR(filter.particles()[i].log_weight, expected[i] - peak, 1e-9);
 }
 
-// With many particles and features that say little, the bootstrap filter's answer is that of the optimal proposal: two roads to the
-// same posterior.
+// Posteriors of the bootstrap, unscented and optimal proposals with many particles and weak measurements: they agree.
 TEST(Bootstrap, AgreesWithTheOptimalProposalInTheLimit) {
   const TwoViews views = Look({Vector3d(0.01, -0.01, 0.005), vo::Exp({0.01, 0.005, 0})}, 4, 30 * kSigma);
   const auto answer = [&](vo::Proposal proposal, vo::Weight weight) {
@@ -154,7 +154,8 @@ TEST(Bootstrap, AgreesWithTheOptimalProposalInTheLimit) {
   const vo::Belief bootstrap = answer(vo::Proposal::bootstrap, vo::Weight::importance);
   const vo::Belief ukf = answer(vo::Proposal::ukf, vo::Weight::importance);
   for (const vo::Belief& belief : {bootstrap, ukf}) {
-    // Errors in standard deviations of the posterior; a sampled mean is off by 1 / sqrt(4000) = 0.016 and more with uneven weights.
+    // Errors in standard deviations of the posterior; that of a sample mean is 1 / sqrt(4000) = 0.016, and more where
+    // the weights are uneven.
     Eigen::Matrix<double, 12, 1> d;
     d << vo::Minus(belief.pose, optimal.pose), belief.velocity - optimal.velocity;
     EXPECT_LT(d.cwiseQuotient(optimal.covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff(), 0.15);
@@ -171,7 +172,8 @@ TEST(Unscented, ProposalTracksAStepAndStaysSymmetric) {
     params.proposal = vo::Proposal::ukf;
     params.weight = vo::Weight::importance;
     params.sampled = sampled;
-    // Of 100 seeds' answers, each off by up to 0.0045 by its eight draws, the mean is off by 0.001; the prediction by 0.0078.
+    // Orientation error [rad]: up to 0.0045 for one seed of eight draws, 0.001 for the mean over 100 seeds; 0.0078 for
+    // the prediction.
     constexpr int kSeeds = 100;
     Vector3d mean = Vector3d::Zero();
     for (int seed = 0; seed < kSeeds; ++seed) {

@@ -49,14 +49,14 @@ TEST(CornerDetector, BlankAndFaintWalls) {
   EXPECT_TRUE(vo::DetectCorners(cv::Mat(480, 640, CV_8UC1, cv::Scalar(90)), {}, 20, {}).empty());
   cv::Mat faint(480, 640, CV_8UC1, cv::Scalar(90));
   cv::rectangle(faint, {300, 200}, {340, 240}, cv::Scalar(105), cv::FILLED);
-  cv::GaussianBlur(faint, faint, {5, 5}, 1.0);  // as a lens does; ideal corners tie and suppress each other
+  cv::GaussianBlur(faint, faint, {5, 5}, 1.0);  // blur of a lens; ideal corners tie and suppress each other
   vo::FeatureParams high;
   high.fast_threshold_min = high.fast_threshold_start = 30;
   EXPECT_TRUE(vo::DetectCorners(faint, {}, 20, high).empty());
   EXPECT_GE(vo::DetectCorners(faint, {}, 20, {}).size(), 2u);
 }
 
-// OpenCV's pattern at a rotation and scale of its tables: what it estimates from the image is handed to ours.
+// Rotation and scale of OpenCV's sampling pattern for a keypoint, quantised as in its tables.
 Matrix2d OpenCvMap(const cv::KeyPoint& keypoint) {
   const double step = std::log2(30.0) / 64;
   const int scale = std::max(static_cast<int>(std::log2(keypoint.size / 7.2) / step + 0.5), 0);
@@ -64,7 +64,7 @@ Matrix2d OpenCvMap(const cv::KeyPoint& keypoint) {
   return std::exp2(scale * step) * Eigen::Rotation2Dd(rotation * 2 * M_PI / 1024).toRotationMatrix();
 }
 
-// The mean grey over a square, in 1024ths: every pixel under it with the share that is.
+// Mean grey level over a square, in 1024ths; each pixel has the weight of its covered share.
 double MeanOverSquare(const cv::Mat& image, const Vector2d& centre, double half) {
   const auto share = [&](int pixel, double at) {
     return std::max(0.0, std::min(pixel + 0.5, at + half) - std::max(pixel - 0.5, at - half));
@@ -76,9 +76,9 @@ double MeanOverSquare(const cv::Mat& image, const Vector2d& centre, double half)
   return std::floor(1024 * sum / (4 * half * half) + 0.5);
 }
 
-// Where both define the same thing: the rotation and scale that OpenCV found. What is left is that OpenCV takes the two lower corners of
-// larger squares one pixel too far right and one too high ("ptr += dy * imagecols + 1"), and weights in single precision about the
-// image's corner; ours are about the pixel.
+// Descriptors at OpenCV's own rotation and scale. Two differences remain: OpenCV takes the two lower corners of larger
+// squares one pixel too far right and one too high ("ptr += dy * imagecols + 1"), and computes its weights in single
+// precision relative to the image's corner, where vo's are relative to the pixel.
 TEST(Brisk, IsBriskAndNearlyOpenCvs) {
   int compared = 0, theirs_off = 0, ours_off = 0, apart = 0;
   for (const unsigned seed : {2u, 3u}) {
@@ -177,9 +177,9 @@ TEST(Register, FindsAFractionOfAPixelDespiteGainAndOffset) {
   EXPECT_LT(worst, 0.05);  // 0.033 measured: bilinear interpolation of 8-bit grey
 }
 
-// White noise in both images. Normalised squared errors have a mean of 1.95 per axis, not 1: the gradients are noisy too, and interpolation
-// correlates what is left. NoiseLevel makes up for both. The mean over 400 registrations is within 0.3 of its own (3
-// standard deviations, a false alarm in 3e-3 of seeds).
+// Normalised squared errors of registration with white noise in both images. Their mean is 1.95 per axis, not 1: the
+// gradients are noisy too, and interpolation correlates the residuals; NoiseLevel compensates for both. Mean over 400
+// registrations within 0.3: 3 standard deviations, false-alarm rate 3e-3.
 TEST(Register, CovarianceMatchesErrors) {
   const Texture texture(7);
   const Vector2i centre(60, 50);
@@ -233,7 +233,8 @@ TEST(Register, RefusesABlankPatchAndTheBorder) {
   EXPECT_FALSE(vo::Register(vo::CutPatch(image, {60, 50}), Matrix2d::Identity(), image, {2, 50}, 2));
 }
 
-// Half a plane that is bright, or a quarter of it, as the mean over each pixel of an image of 120 x 100, with noise of three grey levels, smoothed.
+// Bright half-plane, or quarter-plane (`corner`), in an image of 120 x 100: integrated over each pixel, with noise of
+// three grey levels, smoothed.
 cv::Mat Edge(double angle, const Vector2d& through, double contrast, bool corner, std::uint64_t seed) {
   const Vector2d across(-std::sin(angle), std::cos(angle)), along(std::cos(angle), std::sin(angle));
   cv::Mat image(100, 120, CV_8UC1);
@@ -251,8 +252,9 @@ cv::Mat Edge(double angle, const Vector2d& through, double contrast, bool corner
   return vo::Smooth(image);
 }
 
-// The steps that pixels make of an edge, and noise, are no hold along it: a match that slid there for 30 pixels, half a pixel believed, turned the
-// start of a sequence by 7 mrad. What is across is told as well as ever, and a corner in both directions.
+// Covariance at an edge (aperture problem): no information along it, neither from pixel steps nor from noise; full
+// information across it, and in both directions at a corner. A match 30 px off along the edge with a standard deviation
+// of half a pixel rotates the start of a sequence by 7 mrad.
 TEST(Register, NoInformationAlongAnEdge) {
   const Vector2i centre(60, 50);
   cv::RNG random(5);
@@ -283,7 +285,7 @@ TEST(Register, NoInformationAlongAnEdge) {
   std::printf("along edges at least %.2f px, across at most %.3f; corners at most %.3f\n", least_along, most_across,
               most_of_a_corner);
   EXPECT_GT(least_along, 3.5);  // the window's half width is 4
-  EXPECT_LT(most_across, 0.3);  // a sharp edge's gradients are up to four degrees off
+  EXPECT_LT(most_across, 0.3);  // gradients of a sharp edge are up to four degrees off
   EXPECT_LT(most_of_a_corner, 0.1);
 }
 
@@ -311,9 +313,9 @@ TEST(Matcher, FindsShiftsThatFitTheWindowsAndNoOthers) {
   };
   EXPECT_GE(found_share({2.3, -1.6}, 1), 0.95);           // in 9 x 9
   EXPECT_GE(found_share({-7.4, 6.5}, 1), 0.80);           // in 17 x 17; half-pixel shifts cost BRISK some bits
-  EXPECT_EQ(found_share({15.0, -14.0}, 1), 0.0);          // outside both, and the prediction was sure
-  EXPECT_GE(found_share({15.0, -14.0}, 8), 0.90);         // unsure: the window grows
-  for (const double nothing_known : {1e9, 1e100, 1e160})  // after the longest gap
+  EXPECT_EQ(found_share({15.0, -14.0}, 1), 0.0);          // outside both windows, small covariance
+  EXPECT_GE(found_share({15.0, -14.0}, 8), 0.90);         // large covariance: larger window
+  for (const double nothing_known : {1e9, 1e100, 1e160})  // no information
     EXPECT_EQ(found_share({15.0, -14.0}, nothing_known), found_share({15.0, -14.0}, 80)) << nothing_known;
 }
 
@@ -336,7 +338,7 @@ TEST(Matcher, OutOfTheImageIsOutOfSight) {
   const auto results = vo::FindFeatures({as_it_was, nearer}, image, brisk, {});
   EXPECT_TRUE(results[0].in_sight && results[0].found);
   EXPECT_FALSE(results[1].in_sight || results[1].found);
-  nearer.predicted = {160, 120};  // in sight, and it is not there
+  nearer.predicted = {160, 120};  // inside the image, where the landmark is not
   const auto elsewhere = vo::FindFeatures({nearer}, image, brisk, {});
   EXPECT_TRUE(elsewhere[0].in_sight);
 }

@@ -1,4 +1,4 @@
-// Phases of the particle filter: which one runs when, what each samples, and that they hand over all they know.
+// Phases of the particle filter: their order, the poses that each one samples, and the state handed over.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -75,7 +75,7 @@ TEST(FilterPhases, FollowTheSettings) {
   }
 }
 
-// A particle filter is its phase, bit for bit.
+// Particle filter without start window and lag: equal to Algorithm 1, bit for bit.
 TEST(Algorithm1, IsTheFilterOfThePaper) {
   vo::ParticleFilter filter = MakeFilter(0, 0);
   vo::Algorithm1 algorithm(Settings(0, 0), Prior());
@@ -87,7 +87,7 @@ TEST(Algorithm1, IsTheFilterOfThePaper) {
   }
 }
 
-// A prediction made again is the prediction with that input, bit for bit, in every phase.
+// Repeated prediction in every phase: equal to a single one with the last input, bit for bit.
 TEST(FilterPhases, PredictAgainLeavesNoTrace) {
   const vo::MotionInput wide{20, 9},
       turned{4, 4, vo::Matrix6::Identity(), vo::Exp(Eigen::Vector3d(0.01, -0.02, 0.005)), 0.01};
@@ -109,9 +109,8 @@ TEST(FilterPhases, PredictAgainLeavesNoTrace) {
   }
 }
 
-// The velocity of a coasting filter decays: the camera comes to rest after kCoastingTime times its velocity.
-// The present pose is set, and what was first seen behind the given landmark moves along: its image stays. A prediction
-// made again without the correction is the first one.
+// Correction of the present pose. Landmarks from the given index on move with it, so that their images stay. A repeated
+// prediction without the correction restores the first one.
 TEST(Algorithm1, CorrectsThePath) {
   vo::ParticleFilter filter = MakeFilter(0, 0);
   for (int frame = 1; frame <= 4; ++frame) Step(filter, frame);
@@ -141,6 +140,7 @@ TEST(Algorithm1, CorrectsThePath) {
   EXPECT_LT((filter.Reference().prediction.covariance - predicted.covariance).norm(), 1e-12);
 }
 
+// Coasting: the velocity decays, and the camera comes to rest after kCoastingTime times its velocity.
 TEST(Algorithm1, CoastsToRest) {
   vo::FilterPrior prior = Prior();
   prior.velocity << 1, 0, 0, 0, 0.5, 0;
@@ -155,7 +155,7 @@ TEST(Algorithm1, CoastsToRest) {
   EXPECT_LT(algorithm.answer().belief.velocity.norm(), 1e-6);
 }
 
-// Two predictions without an update between them are one over both times.
+// Two predictions without measurements: equal to one over the sum of their times.
 TEST(Algorithm1, CoastsExactly) {
   vo::Algorithm1 once(Settings(0, 0), Prior()), twice(Settings(0, 0), Prior());
   once.Predict(2 * kDt);
@@ -168,7 +168,7 @@ TEST(Algorithm1, CoastsExactly) {
   EXPECT_EQ(once.particles()[0].pose.p_WC, Eigen::Vector3d::Zero()) << "sampled without an image";
 }
 
-// A new landmark needs a pose: the filter samples it, though no image has updated it.
+// Anchor of a new landmark while the filter coasts: the pose is sampled without an update.
 TEST(Algorithm1, SamplesWhereALandmarkBeginsWhileItCoasts) {
   vo::Algorithm1 algorithm(Settings(0, 0), Prior());
   algorithm.Predict(kDt);
@@ -178,7 +178,7 @@ TEST(Algorithm1, SamplesWhereALandmarkBeginsWhileItCoasts) {
   EXPECT_EQ(algorithm.particles()[0].anchors[0].p_WC, algorithm.particles()[0].pose.p_WC);
 }
 
-// One pose is sampled in each frame once the lag is full, the oldest one.
+// Fixed lag: each frame samples the oldest pose, once the window is full.
 TEST(FixedLag, SamplesTheOldestPose) {
   vo::FixedLag phase(Settings(3, 0), Prior());
   phase.AddLandmarks(vo_test::WallFirstViews(kLandmarks));
@@ -191,7 +191,7 @@ TEST(FixedLag, SamplesTheOldestPose) {
   }
 }
 
-// A frame that nothing refers to is integrated out: the path does not grow with the time without images.
+// Marginalisation of frames without measurements: the path does not grow with the time without images.
 TEST(FixedLag, IntegratesUnusedPosesOut) {
   vo::FixedLag phase(Settings(3, 0), Prior());
   phase.AddLandmarks(vo_test::WallFirstViews(kLandmarks));
@@ -203,7 +203,7 @@ TEST(FixedLag, IntegratesUnusedPosesOut) {
   }
 }
 
-// From another start pose the shared solution is the same relative to it.
+// Solution shared by all particles: equal relative to each one's start pose.
 TEST(Initialisation, SharesOneSolution) {
   vo::FilterPrior prior = Prior();
   prior.pose.covariance = 0.25 * vo::Matrix6::Identity();
@@ -221,8 +221,8 @@ TEST(Initialisation, SharesOneSolution) {
   }
 }
 
-// A camera that moves by equal steps. At the end of the start its poses are given by all images: nearer to equal steps
-// than the answers were, which knew less. A frame that no image refers to is left out.
+// Smoothed path at the end of the start, for a camera that moves by equal steps: it is more even than the filtered
+// poses. A frame without matches is left out.
 TEST(Initialisation, GivesItsPathAtItsEnd) {
   for (const int lag : {0, 2}) {
     vo::ParticleFilter filter = MakeFilter(lag, 6);
@@ -269,7 +269,8 @@ TEST(Initialisation, HandsItsStateOver) {
   }
 }
 
-// Rows are corrected from what they measured: a second correction along the same path changes nothing, and the window given stays as it is.
+// Correction of rows from the raw measurements: a second correction along the same path changes nothing, and the input
+// window is unchanged.
 TEST(ShutterCorrection, IsAFunctionOfTheRowsAndThePath) {
   vo::LandmarkTable table;
   table.Add(2);

@@ -1,4 +1,4 @@
-// Which landmarks the map keeps.
+// Selection of the landmarks that the map keeps.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,11 +47,11 @@ TEST(LandmarksToKeep, RoomForNewOnesIsMadeByWhatWasNotSearched) {
   EXPECT_THAT(vo::LandmarksToKeep(records, 2, landmark, {}), ElementsAre(true, true, true, false, true));
   EXPECT_THAT(vo::LandmarksToKeep(records, 3, landmark, {}), ElementsAre(true, false, true, false, true));
   EXPECT_THAT(vo::LandmarksToKeep(records, 100, landmark, {}), ElementsAre(true, false, false, false, true));
-  for (vo::LandmarkRecord& record : records) ++record.frames_unsearched;  // a blind frame
+  for (vo::LandmarkRecord& record : records) ++record.frames_unsearched;  // a frame without a search
   EXPECT_THAT(vo::LandmarksToKeep(records, 100, landmark, {}), ElementsAre(true, false, false, false, true));
 }
 
-// Of 200 permanent ones half are neighbours in birth, and of the others every tenth is left.
+// 200 permanent landmarks: half have consecutive ids, the others ids ten apart.
 TEST(LandmarksToKeep, PermanentOnesAreThinned) {
   vo::LandmarkParams landmark;
   landmark.max_landmarks = 60;
@@ -65,7 +65,7 @@ TEST(LandmarksToKeep, PermanentOnesAreThinned) {
   std::vector<int> kept;
   for (std::size_t i = 0; i < records.size(); ++i)
     if (keep[i]) kept.push_back(records[i].id);
-  // None of the sparse half goes as long as the dense half has closer ones.
+  // No landmark of the sparse half is removed while closer ones of the dense half remain.
   for (std::size_t i = 1; i + 1 < kept.size(); ++i) EXPECT_GE(kept[i + 1] - kept[i - 1], 20) << kept[i];
 }
 

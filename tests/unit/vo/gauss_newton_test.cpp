@@ -1,4 +1,4 @@
-// Damped Gauss-Newton: reaches the mode of a curved valley, and a wrong gradient does not pass for one.
+// Damped Gauss-Newton: convergence to the mode of a curved valley, and no convergence with a wrong gradient.
 #include "vo/filter/gauss_newton.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-// -2 log p = |r|^2, r = (x - 1, 10 (y - x^2)): the mode is (1, 1). `gradient`: factors of b, (1, 1) where it is right.
+// -2 log p = |r|^2, r = (x - 1, 10 (y - x^2)): the mode is (1, 1). `gradient`: factors on b, (1, 1) for the right one.
 struct Valley {
   explicit Valley(const Vector2d& start, const Vector2d& factors = {1, 1}) : at(start), gradient(factors) {}
 
@@ -76,7 +76,7 @@ TEST(GaussNewton, AWrongGradientIsFound) {
   EXPECT_FALSE(FindsTheMode({-1.2, 1}, {0.9, 1}));
 }
 
-// The last step is looked at: where it leads upwards, the variables are those that were accepted.
+// Last step of the iterations: where it increases the objective, the accepted variables are restored.
 TEST(GaussNewton, EndsAtTheBestPoint) {
   for (int iterations = 2; iterations < 10; ++iterations) {
     Valley valley({-1.2, 1});

@@ -17,7 +17,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Series of the matrix exponential: an oracle that shares nothing with Exp.
+// Series of the matrix exponential: a reference independent of Exp.
 Matrix3d MatrixExponential(const Matrix3d& A) {
   Matrix3d sum = Matrix3d::Identity(), power = Matrix3d::Identity();
   for (int k = 1; k < 60; ++k) {
@@ -27,7 +27,7 @@ Matrix3d MatrixExponential(const Matrix3d& A) {
   return sum;
 }
 
-// Three regimes: nothing, tiny, and anything below pi.
+// Three regimes: zero, tiny, and any angle below pi.
 std::vector<Vector3d> RotationVectors() {
   std::vector<Vector3d> vectors = {Vector3d::Zero()};
   vo_test::Draws draws(1);
@@ -52,14 +52,14 @@ TEST(So3, LogUndoesExp) {
   }
 }
 
-// Whatever the number of turns; where it is the shortest one, to the bit what Log says.
+// Rotation vector of a rotation next to a given one, for any number of turns; the shortest one equals Log bit for bit.
 TEST(So3, LogNearKnowsTheTurns) {
   constexpr double kTurn = 2 * std::numbers::pi;
   vo_test::Draws draws(2);
   for (const double size : {0.1, 1.0, 3.0, 3.3, 6.0, kTurn, 6.5, 9.5, 20.0, -4.0}) {
     for (int i = 0; i < 20; ++i) {
       const Vector3d axis = draws.Symmetrics<3>().normalized(), phi = size * axis;
-      const double off = std::abs(std::remainder(size, kTurn));  // at a full turn any axis is one
+      const double off = std::abs(std::remainder(size, kTurn));  // at a full turn the axis is undetermined
       EXPECT_LT((vo::LogNear(vo::Exp(phi), phi) - phi).norm(), 1e-13) << phi.transpose();
       const Vector3d near = phi + 0.05 * draws.Symmetrics<3>();
       if (off == 0) continue;
@@ -72,7 +72,8 @@ TEST(So3, LogNearKnowsTheTurns) {
   EXPECT_EQ(vo::LogNear(vo::Exp({0, 0, 3}), {0, 0, -1}).z(), 3 - kTurn) << "3 rad are farther away";
 }
 
-// At a full turn the rotation says nothing of two axes of three; taken beside it, the Jacobian and its inverse are one another's.
+// Right Jacobian at full turns, where it is singular in two of three axes. It is evaluated at a small offset, so that
+// it and its inverse remain each other's inverses.
 TEST(So3, JacobiansPassFullTurns) {
   vo_test::Draws draws(3);
   for (const double size : {3.2, 6.0, 6.2831, 2 * std::numbers::pi, 6.2833, 7.0, 4 * std::numbers::pi}) {
@@ -80,7 +81,7 @@ TEST(So3, JacobiansPassFullTurns) {
     const Matrix3d J = vo::RightJacobian(phi);
     EXPECT_LT((J * vo::InverseRightJacobian(phi) - Matrix3d::Identity()).norm(), 1e-9) << size;
     EXPECT_NEAR(vo::LogVolume(phi), std::log(J.determinant()), 1e-5) << size;
-    // J_r(phi) = integral of Exp(-s phi) over s from 0 to 1, to what a ten thousandth of a radian changes
+    // J_r(phi) = integral of Exp(-s phi) over s from 0 to 1, up to the effect of 1e-4 rad
     Matrix3d integral = Matrix3d::Zero();
     constexpr int kSteps = 2000;
     for (int i = 0; i < kSteps; ++i)
@@ -126,10 +127,11 @@ TEST(Camera, UndistortUndoesProject) {
       }
 }
 
-// Walking out along a ray's direction, the pixel goes back from some angle on: from there on it is another ray's.
+// Injectivity of the lens model along one direction: from the angle on where the pixel's radius falls, the pixel
+// belongs to another ray.
 TEST(Camera, DrawsARayAsLongAsThePixelIsItsOwn) {
   vo::Camera barrel{640, 480, 300, 300, 320, 240, -0.3, 0.02}, wave = barrel, cubic = barrel, plain = barrel;
-  wave.k1 = 0.9, wave.k2 = -0.9, wave.k3 = 0.2;  // goes back and then out again
+  wave.k1 = 0.9, wave.k2 = -0.9, wave.k3 = 0.2;  // the radius falls and rises again
   cubic.k1 = cubic.k2 = 0, cubic.k3 = -0.1;
   plain.k1 = plain.k2 = 0;
   for (const vo::Camera& camera : {barrel, wave, cubic, plain, vo::CameraPreset("freiburg1")}) {
@@ -164,7 +166,7 @@ TEST(Camera, APixelBeyondAFisheyesUsableAngleHasNoRay) {
   }
 }
 
-// The angle at which the radius ceases to grow, or the widest that is used, by walking out in small steps.
+// Angle up to which the radius grows, at most kMaxFisheyeAngle, by a search in small steps.
 double WidestByWalking(const vo::Camera& c) {
   const auto radius = [&](double t) {
     return t + c.k1 * std::pow(t, 3) + c.k2 * std::pow(t, 5) + c.k3 * std::pow(t, 7) + c.k4 * std::pow(t, 9);
@@ -179,7 +181,7 @@ TEST(Camera, AFisheyeIsUsedAsFarAsItsRadiusGrows) {
   vo::Camera late{640, 480, 460, 460, 320, 240, 0.3437, 0.1378, 0, 0, 0.3058, -0.2998, vo::Lens::fisheye};
   vo::Camera early{640, 480, 320, 320, 320, 240, -0.2, 0, 0, 0, 0, 0, vo::Lens::fisheye};
   vo::Camera wave = early, slow = early, plain = early;
-  wave.k1 = -0.8, wave.k2 = 0.2;                                  // goes back and then out again
+  wave.k1 = -0.8, wave.k2 = 0.2;                                  // the radius falls and rises again
   slow.k1 = -1.99 / 3 / 0.81, slow.k2 = 1.0 / 5 / (0.81 * 0.81);  // its slope is 0.01 at 0.9
   plain.k1 = 0.02;
   const std::pair<vo::Camera, double> cases[] = {{late, 66}, {early, 74}, {wave, 42}, {slow, 80}, {plain, 80}};
@@ -204,7 +206,8 @@ TEST(Camera, AFisheyeIsUsedAsFarAsItsRadiusGrows) {
   EXPECT_TRUE(late.IsUsable({0, 0})) << "45 degrees";
 }
 
-// Along each direction the pixels out to the farthest that is drawn have a ray, and no others; where Newton's method jumps over a turn, too.
+// Pixels with a ray: those within the largest radius of the lens model, also where Newton's method jumps over the
+// maximum.
 TEST(Camera, APixelBeyondTheTurnOfTheRadiusHasNoRay) {
   const vo::Camera barrel{640, 480, 320, 320, 320, 240, -0.15},
       wave{640, 480, 200, 200, 320, 240, 0.9, -0.9, 0, 0, 0.2},
@@ -241,7 +244,8 @@ TEST(Camera, APixelBeyondTheTurnOfTheRadiusHasNoRay) {
   }
 }
 
-// p1 and p2 bend the line where the picture folds: beyond it no ray is drawn, and none is found.
+// Tangential distortion p1, p2, which deforms the curve where the image folds: beyond it no ray has a pixel, and no
+// pixel a ray.
 TEST(Camera, ATangentialTermMovesTheTurn) {
   vo::Camera camera{640, 480, 320, 320, 320, 240, -0.15, 0, 0.02, -0.03};
   int drawn = 0, has_none = 0;
@@ -275,7 +279,7 @@ TEST(Camera, LensJacobianIsTheDerivative) {
 }
 
 TEST(Camera, UnknownPresetNamesThePresets) {
-  for (const std::string& name : {std::string("freiburg9"), std::string(300, 'n')}) {  // the second: no file's, either
+  for (const std::string& name : {std::string("freiburg9"), std::string(300, 'n')}) {  // 300: too long for a file
     try {
       vo::CameraFrom(name);
       FAIL();

@@ -17,7 +17,7 @@ double Grey(const Eigen::Vector3d& direction) {
   return 60 + 0.25 * (left.At(d.head<2>()) + right.At(d.tail<2>()));
 }
 
-// As a camera sees it that has turned by `q_WC`.
+// Image of a camera of orientation `q_WC`.
 cv::Mat Image(const vo::Camera& camera, const Eigen::Quaterniond& q_WC, double offset = 0) {
   cv::Mat image(camera.height, camera.width, CV_8UC1);
   for (int y = 0; y < camera.height; ++y) {
@@ -31,7 +31,7 @@ cv::Mat Image(const vo::Camera& camera, const Eigen::Quaterniond& q_WC, double o
 
 double Angle(const Eigen::Quaterniond& q) { return vo::Log(q).norm(); }
 
-// To 0.08 pixels of the finest level, 3e-4 rad here, with lens distortion and another exposure.
+// Accuracy of 0.08 px at the finest level, here 3e-4 rad, with lens distortion and another exposure.
 TEST(AlignRotation, FindsTheRotation) {
   for (const vo::Camera& camera : {vo::Camera{}, vo::CameraPreset("freiburg1")}) {
     const std::vector<cv::Mat> then = vo::Thumbnails(Image(camera, Eigen::Quaterniond::Identity()));

@@ -1,4 +1,4 @@
-// Landmarks in front of a camera at the origin, and what is seen of them from elsewhere, with noise: a start to be played.
+// Landmarks in front of a camera at the origin, and noisy measurements of them from other poses.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -13,15 +13,15 @@ namespace vo_test {
 
 struct FieldParams {
   int count = 0;
-  double width = 0, height = 0;  // of the field of view, in rays
-  double depth_spread = 0;       // [1/m] inverse depths are 0.25, give or take half of it
-  double sigma = 0;              // of what is seen, in rays
+  double width = 0, height = 0;  // of the field of view, at z = 1
+  double depth_spread = 0;       // [1/m] inverse depths are 0.25 +- half of it
+  double sigma = 0;              // of a measurement, at z = 1
 };
 
 struct LandmarkField {
   LandmarkField(const FieldParams& field, Draws& field_draws) : params(field), draws(field_draws) {
     for (int n = 0; n < params.count; ++n) {
-      const double x = params.width * (draws.Uniform() - 0.5);  // one after the other: the order of arguments is open
+      const double x = params.width * (draws.Uniform() - 0.5);  // own statements: the order of arguments is unspecified
       const double y = params.height * (draws.Uniform() - 0.5);
       const Eigen::Vector3d ray(x, y, 1);
       points.push_back(ray / (0.25 + params.depth_spread * (draws.Uniform() - 0.5)));

@@ -87,8 +87,8 @@ double Quadrature(const vo::Landmark& prior, const vo::AnchorView& view, const v
          0.5 * std::log(match.R.determinant());
 }
 
-// Laplace's weight against the integral, for a depth two to four standard deviations from its prior mean; the linearisation at the
-// prior (3) is off by far more: section 8's lesson.
+// Laplace's approximation of the weight against the integral, for a depth two to four standard deviations from its
+// prior mean. Control: the linearisation at the prior (3), whose error is far larger (section 8).
 TEST(Landmark, LaplaceWeightIsTheIntegral) {
   Draws draws(3);
   double worst_iterated = 0, worst_prior = 0;
@@ -113,7 +113,8 @@ TEST(Landmark, LaplaceWeightIsTheIntegral) {
   EXPECT_GT(worst_prior, 1.0);
 }
 
-// A sideways translation makes the measurement linear in rho: then (3) is the integral, and the update is Bayes' rule.
+// Linear case: with a sideways translation the measurement is linear in rho, (3) is the integral, and the update is
+// Bayes' rule.
 TEST(Landmark, LinearCaseIsExact) {
   const vo::Pose anchor, camera{Vector3d(0.3, -0.2, 0), Eigen::Quaterniond::Identity()};
   vo::Landmark prior;
@@ -133,7 +134,6 @@ TEST(Landmark, LinearCaseIsExact) {
   }
 }
 
-// Existence score.
 TEST(Existence, FollowsThePrintedFormulas) {
   const vo::ScoreParams p;
   EXPECT_NEAR(vo::PredictScore(0.8, p), 0.95 * 0.8 + 0.05 * 0.2, 1e-15);  // (44)

@@ -1,4 +1,4 @@
-// Update of one landmark at a known pose, in matrices: the witness of the eight at a time in vo/map/match_lanes.inc.
+// Update of one landmark at a known pose, in matrices: reference for the eight lanes of vo/map/match_lanes.inc.
 #pragma once
 
 #include <Eigen/LU>

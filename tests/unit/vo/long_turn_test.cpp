@@ -1,4 +1,4 @@
-// More than half a turn between two images: the turn that was made is not the shortest one that leads there.
+// Rotations of more than half a turn between two images, whose rotation vector is not the shortest one.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -39,7 +39,8 @@ vo::PointFrame Frame(double time, std::vector<vo::PointObservation> observations
   return {std::llround(time * 1e9), std::move(observations)};
 }
 
-// With nothing seen the velocity stays as it is, and its variance grows by the noise, through one, two and many half turns, and through whole ones.
+// Coasting through one, two and many half turns, and through whole ones: the velocity's mean is constant, and its
+// variance grows by the process noise.
 TEST(LongTurn, CoastingKeepsTheVelocity) {
   for (const auto& [name, filter] : Members()) {
     for (const Vector3d& w : {Vector3d(0, 1, 0), Vector3d(0, 0, 2 * std::numbers::pi), Vector3d(0.6, -1.1, 0.8)}) {
@@ -66,14 +67,15 @@ TEST(LongTurn, CoastingKeepsTheVelocity) {
   }
 }
 
-// A second among points all around, then in the dark for most of a turn: the points of the first second are ahead again, and the velocity is the
-// one that led there. Five standard deviations of an axis are passed once in two million.
+// One second of images of points all around, then none for most of a turn, until the points of the first second are in
+// view again: the velocity is that of the whole rotation. False-alarm rate of five standard deviations of an axis: 1 in
+// two million.
 TEST(LongTurn, IsTheOneThatLedToTheNextImage) {
   constexpr double kRate = 10, kTurn = 1;  // [1/s], [rad/s]
   constexpr int kLit = 10, kDark = 48;     // frames
   const vo::Camera camera;
   for (const auto& [name, filter] : Members()) {
-    if (filter.proposal == vo::Proposal::ukf) continue;  // over-confident anyway: docs/odometry.md
+    if (filter.proposal == vo::Proposal::ukf) continue;  // over-confident: docs/odometry.md
     vo_test::Draws draws(7);
     std::vector<Vector3d> points;
     for (int n = 0; n < 400; ++n) points.push_back((3 + 2 * draws.Uniform()) * draws.Normals<3>().normalized());

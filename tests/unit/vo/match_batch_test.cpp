@@ -50,7 +50,7 @@ Scene MakeScene(unsigned seed, int matches, bool some_behind = true) {
       for (int k = 0; k < 9; ++k) root(k / 3, k % 3) = (k >= 6 ? 0.1 : 0.002) * draws.Symmetric();
       landmark.covariance = root * root.transpose();
     }
-    if (some_behind && n % 5 == 0) landmark.mean.z() = -40;  // behind a camera that moved forward
+    if (some_behind && n % 5 == 0) landmark.mean.z() = -40;  // behind the camera
     scene.landmarks.push_back(landmark);
     scene.anchor_of.push_back(n % 3);
   }
@@ -68,7 +68,7 @@ Scene MakeScene(unsigned seed, int matches, bool some_behind = true) {
   return scene;
 }
 
-// The same by the formulas, match by match.
+// Reference: the formulas, match by match.
 struct Terms {
   bool in_front = false;
   Vector2d e = Vector2d::Zero();
@@ -107,7 +107,7 @@ vo::MatchBatch::Information Expected(const Scene& scene, const std::vector<Vecto
 
 void ExpectNear(const vo::MatchBatch::Information& a, const vo::MatchBatch::Information& b) {
   EXPECT_LE((a.A - b.A).norm(), 1e-12 * b.A.norm());
-  EXPECT_LE((a.b - b.b).norm(), 1e-11 * b.b.norm());  // a sum of both signs
+  EXPECT_LE((a.b - b.b).norm(), 1e-11 * b.b.norm());  // terms of both signs
   EXPECT_NEAR(a.cost, b.cost, 1e-11 * b.cost);
   EXPECT_NEAR(a.log_det, b.log_det, 1e-12 * std::abs(b.log_det) + 1e-12);
 }
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(MatchBatch, EveryInstructionSet, testing::ValuesIn(vo::
                          [](const auto& set) { return std::to_string(static_cast<int>(set.param)); });
 
 TEST_P(EveryInstructionSet, SumsAreThoseOfTheFormulas) {
-  vo::MatchBatch batch(GetParam());  // one for all, so that what an earlier scene left behind would be seen
+  vo::MatchBatch batch(GetParam());  // one for all scenes: a state left by an earlier one would show
   for (const int count : {1, 40, 7, 8, 9, 16, 23}) {
     for (const bool marginal : {false, true}) {
       SCOPED_TRACE(testing::Message() << count << " matches, marginal " << marginal);
@@ -129,7 +129,7 @@ TEST_P(EveryInstructionSet, SumsAreThoseOfTheFormulas) {
       batch.Load(scene.map());
       ExpectNear(batch.Linearise(scene.camera, marginal), Expected(scene, theta, marginal, terms));
 
-      // The landmarks follow the pose, those behind it stay.
+      // Landmarks follow the change of the pose, except those behind the camera.
       const vo::Vector6 d = (vo::Vector6() << 0.01, -0.02, 0.015, 0.004, -0.003, 0.002).finished();
       int behind = 0;
       for (std::size_t i = 0; i < theta.size(); ++i) {
@@ -145,7 +145,8 @@ TEST_P(EveryInstructionSet, SumsAreThoseOfTheFormulas) {
   }
 }
 
-// Wherever the landmarks are linearised by then, and whatever the covariances have become.
+// Squared Mahalanobis distances at the given landmarks and covariances, independent of later linearisation points and
+// of Inflate.
 TEST_P(EveryInstructionSet, DistancesAreThoseOfTheResidualsAsGiven) {
   for (const int count : {1, 8, 13, 40}) {
     SCOPED_TRACE(testing::Message() << count << " matches");
@@ -186,7 +187,7 @@ TEST_P(EveryInstructionSet, InflatedIsAsIfGivenSo) {
     match.R *= factors.emplace_back(1.0 + 0.5 * static_cast<double>(factors.size()));
   expected.SetMatches(scene.matches);
   expected.Load(scene.map());
-  batch.Inflate(std::vector<double>(factors.size(), 3.0));  // not on top of one another
+  batch.Inflate(std::vector<double>(factors.size(), 3.0));  // factors do not accumulate
   batch.Inflate(factors);
   ExpectNear(batch.Linearise(scene.camera, false), expected.Linearise(scene.camera, false));
 }
@@ -214,7 +215,7 @@ TEST_P(EveryInstructionSet, LandmarksAreUpdatedAsOneByOne) {
       EXPECT_NEAR(log_likelihood, sum, 1e-11 * std::abs(sum));
       for (std::size_t n = 0; n < landmarks.size(); ++n) {
         EXPECT_LT((landmarks[n].mean - expected[n].mean).norm(), 1e-12 * expected[n].mean.norm()) << n;
-        // What is left may be a hundred-thousandth of the prior.
+        // The posterior covariance may be 1e-5 of the prior one.
         EXPECT_LT((landmarks[n].covariance - expected[n].covariance).norm(),
                   1e-13 * scene.landmarks[n].covariance.norm())
             << n;
@@ -258,7 +259,7 @@ TEST_P(EveryInstructionSet, PredictionsAreMomentsOverParticles) {
   EXPECT_GT(behind, 0);
 }
 
-// A product of ten thousand determinants of 1e-11 is no number of the machine.
+// Product of ten thousand determinants of 1e-11, which is outside the range of double.
 TEST_P(EveryInstructionSet, LogDeterminantOfManyMatches) {
   Scene scene = MakeScene(2, 10);
   vo::MatchBatch batch(GetParam());
@@ -282,7 +283,7 @@ TEST_P(EveryInstructionSet, NoMatches) {
   EXPECT_EQ(batch.UpdateLandmarks({}, 10), 0);
 }
 
-// All that comes out, bit by bit.
+// Bits of all outputs.
 std::vector<std::uint64_t> Everything(vo::InstructionSet set, const Scene& scene, bool marginal) {
   std::vector<std::uint64_t> out;
   const auto add = [&](double x) { out.push_back(std::bit_cast<std::uint64_t>(x)); };

@@ -1,4 +1,5 @@
-// Points that may move on their own: when a match is provisional, what it does to filter and consensus, and a group that moves through images.
+// Points that may move on their own: the choice of provisional matches, their effect on filter and consensus, and a
+// group that moves through images.
 #include "vo/frontend/moving_points.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +30,7 @@ int CountProvisional(int proven, int others) {
   for (int n = 0; n < proven + others; ++n) {
     records[static_cast<std::size_t>(n)].inliers = n < proven ? kProvingMatches : kProvingMatches - 1;
     matches.push_back({.landmark = n});
-    matches.back().provisional = n % 2 == 0;  // of an earlier call
+    matches.back().provisional = n % 2 == 0;  // left by an earlier call
   }
   vo::MarkProvisional(records, kProvingMatches, matches);
   int count = 0;
@@ -63,14 +64,14 @@ vo::Algorithm1 MakeFilter(vo::Proposal proposal) {
   return filter;
 }
 
-// Frame 1; the last landmarks are seen where they would be had they moved by `moved`.
+// Matches of frame 1; those of the last kProvisional landmarks are displaced by `moved`.
 std::vector<vo::Match> MatchesOfAMovingGroup(const Vector2d& moved) {
   std::vector<vo::Match> matches = vo_test::WallMatches(kLandmarks, 1);
   for (int n = kLandmarks - kProvisional; n < kLandmarks; ++n) matches[static_cast<std::size_t>(n)].z += moved;
   return matches;
 }
 
-// To the last bit.
+// Provisional matches update their landmarks, but not the pose: equal to an update without them, bit for bit.
 TEST(MovingPoints, ProvisionalMatchesTellOfTheLandmarkAlone) {
   for (const vo::Proposal proposal : {vo::Proposal::iterated, vo::Proposal::ekf, vo::Proposal::ukf}) {
     const std::vector<vo::Match> matches = MatchesOfAMovingGroup({0.004, 0.003});
@@ -80,7 +81,7 @@ TEST(MovingPoints, ProvisionalMatchesTellOfTheLandmarkAlone) {
     acting.Update(matches);
     std::vector<vo::Match> marked = matches;
     for (int n = kLandmarks - kProvisional; n < kLandmarks; ++n) marked[static_cast<std::size_t>(n)].provisional = true;
-    std::reverse(marked.begin(), marked.end());  // their order does not matter
+    std::reverse(marked.begin(), marked.end());  // the order is irrelevant
     std::reverse(marked.begin() + kProvisional, marked.end());
     with.Update(marked);
     EXPECT_EQ(with.belief().pose.p_WC, without.belief().pose.p_WC);
@@ -95,7 +96,8 @@ TEST(MovingPoints, ProvisionalMatchesTellOfTheLandmarkAlone) {
   }
 }
 
-// Known points in front of a camera that stands still; a third of them has moved, all the same way, by half the gate.
+// Consensus on known points in front of a camera at rest. A third of them is displaced by (3, 2) kSigma, all in one
+// direction.
 TEST(MovingPoints, AGroupDoesNotMoveTheConsensus) {
   constexpr double kSigma = 0.002, kGate = 9.21;
   std::vector<vo::Landmark> landmarks;
@@ -132,8 +134,8 @@ TEST(MovingPoints, AGroupDoesNotMoveTheConsensus) {
   EXPECT_EQ(group(fit({0, 0}, true)), kProvisional) << "at rest they agree";
 }
 
-// Two walls, and from the start's end on a textured board that passes before them. Position error after the scale is fitted [m] of the frames
-// from then on, and the mean number of matches.
+// Two walls, in front of which a textured board passes from the end of the start on. RMS position error [m] of the
+// frames from then on, after the fit of a similarity, and the mean number of matches.
 struct Outcome {
   double rms = 0, matched = 0;
 };
@@ -143,13 +145,13 @@ Outcome PastABoard(int proving_matches, bool board) {
   const vo_test::Texture wall(1, 40.0, 24), print(2, 60.0, 24);
   vo::Params params = vo_test::SmallImageParams();
   params.landmark.proving_matches = proving_matches;
-  params.features.noise = vo::MatchNoise::registered;  // a landmark's residuals hold the board back as well
+  params.features.noise = vo::MatchNoise::registered;  // noise from residuals reduces the board's effect as well
   vo::Odometry odometry(vo_test::kCamera, params, vo_test::KnownStart(), 1);
   Eigen::Matrix3Xd x(3, kFrames), y(3, kFrames);
   Outcome outcome;
   for (int k = 0; k < kFrames; ++k) {
     cv::Mat image = vo_test::ViewFrom(vo_test::TruthAt(k), wall);
-    // In the image: 120 x 150 px, 1.5 px a frame to the right and 0.8 down.
+    // Board in the image: 120 x 150 px, moving by 1.5 px a frame to the right and 0.8 px down.
     const Vector2d corner(-60 + 1.5 * (k - kFirst), 10 + 0.8 * (k - kFirst));
     for (int v = 0; board && k >= kFirst && v < image.rows; ++v)
       for (int u = 0; u < image.cols; ++u) {
@@ -173,7 +175,7 @@ TEST(MovingPoints, AMovingBoardDoesNotCarryTheCameraAway) {
   EXPECT_LT(at_rest.rms, 0.004);
   EXPECT_LT(proven.rms, 0.004);
   EXPECT_GT(at_once.rms, 0.02) << "without proof the board takes part of the camera along";
-  EXPECT_GT(proven.matched, 50);  // of some ninety without the board, which hides a third of the image
+  EXPECT_GT(proven.matched, 50);  // about 90 without the board, which hides a third of the image
 }
 
 }  // namespace

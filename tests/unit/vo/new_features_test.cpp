@@ -1,5 +1,4 @@
-// Detection of new features where little of the image has texture, and which of them become landmarks where the map has
-// little room.
+// Detection of new features where little of the image has texture, and their selection where the map has little room.
 #include "vo/frontend/new_features.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +13,7 @@ namespace {
 
 const vo::Camera kCamera{640, 480, 500, 500, 319.5, 239.5};
 
-// Texture in the left quarter, two of the eight columns of cells.
+// Features of an image with texture in its left quarter, two of the eight columns of cells.
 std::vector<vo::NewFeature> Detected(const std::vector<Eigen::Vector2d>& occupied, std::size_t enough) {
   cv::Mat image(480, 640, CV_8UC1, cv::Scalar(90));
   vo_test::Texture(1).Image(160, 480, {0, 0}).copyTo(image.colRange(0, 160));

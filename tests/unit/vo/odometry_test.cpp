@@ -32,14 +32,14 @@ using vo_test::SmallImageParams;
 using vo_test::TruthAt;
 using vo_test::ViewFrom;
 
-// RMS of the columns' distances after x is moved onto y by a similarity [m].
+// RMS distance [m] of the columns after alignment of x with y by a similarity.
 double RmsAligned(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& y) {
   const Eigen::Matrix4d T = Eigen::umeyama(x, y, true);
   return std::sqrt((((T.topLeftCorner<3, 3>() * x).colwise() + Vector3d(T.topRightCorner<3, 1>())) - y).squaredNorm() /
                    static_cast<double>(x.cols()));
 }
 
-// Position error after the scale is fitted [m], and how many frames were tracked.
+// RMS position error [m] after alignment by a similarity, and number of tracked frames.
 struct Outcome {
   double rms = 0;
   double path_extent = 0;
@@ -86,8 +86,8 @@ TEST(FrameDiagnostics, WhatIsTracked) {
   EXPECT_FALSE(tracked(50, 50, 1)) << "not where they were predicted";
 }
 
-// A jerk of four degrees, 18 px, between two frames is found by a prediction that is made again: it has matches enough,
-// but does not count as tracked.
+// Jerk of four degrees (18 px) between two frames, found by a repeated prediction: the frame has enough matches, but
+// does not count as tracked.
 TEST(Odometry, TellsAFrameWhosePredictionFailed) {
   constexpr int kJerk = 20;
   const vo_test::Texture texture(4, 40.0, 24);
@@ -108,9 +108,8 @@ TEST(Odometry, TellsAFrameWhosePredictionFailed) {
   }
 }
 
-// A camera that is shaken, up to 12 px and more between two images, which are blurred over half of the time between
-// them: what is not where, or not as blurred as, it was predicted is searched again at the pose that the other matches
-// show.
+// Shaken camera: 12 px and more between two images, which are blurred over half of the time between them. Landmarks
+// that are not found with the predicted place and blur are searched again at the pose given by the other matches.
 TEST(Odometry, SearchesAgainAtThePoseThatMatchesShow) {
   constexpr int kFrames = 60, kSettled = 20, kTimes = 8;
   constexpr double kExposure = 0.5;  // of the time between images
@@ -137,8 +136,8 @@ TEST(Odometry, SearchesAgainAtThePoseThatMatchesShow) {
   EXPECT_GT(matched, 0.85 * searched);  // 0.80 with one search
 }
 
-// The first image shows something else: the start begins with the second. What the camera may have moved in between
-// stays in the covariance; it does not where the first image shows the scene.
+// First image of another scene: the start begins with the second one, and the covariance includes the motion between
+// the two. Control: it does not where the first image shows the scene.
 TEST(Odometry, BeginsAgainWhereNothingOfTheFirstImageIsFound) {
   const vo_test::Texture scene(4, 40.0, 24), other(9, 40.0, 24);
   vo::Params params = SmallImageParams();
@@ -164,7 +163,7 @@ TEST(Odometry, BeginsAgainWhereNothingOfTheFirstImageIsFound) {
   EXPECT_GT(begun_again - of_one_scene, 3 * dt * dt) << "three axes, the prior's sigma of 1 m/s or more";
 }
 
-// Landmarks keep their numbers through that, also where a rolling shutter has the first frame processed again.
+// Ids of landmarks after such a restart: unique, also where the first frame is processed twice (rolling shutter).
 TEST(Odometry, NumbersNoLandmarkTwiceWhereItBeginsAgain) {
   const vo_test::Texture scene(4, 40.0, 24), other(9, 40.0, 24);
   for (const double readout : {0.0, 5e-3}) {
@@ -187,7 +186,7 @@ TEST(Odometry, NumbersNoLandmarkTwiceWhereItBeginsAgain) {
   }
 }
 
-// Of points with one factor of length, fitted through the first one; turns are not fitted.
+// RMS position error [m] after the fit of a scale about the first point; rotations are not fitted.
 double ScaledRms(const std::vector<Vector3d>& x) {
   double xy = 0, xx = 0, yy = 0;
   for (std::size_t k = 0; k < x.size(); ++k) {
@@ -197,8 +196,8 @@ double ScaledRms(const std::vector<Vector3d>& x) {
   return std::sqrt((yy - xy * xy / xx) / static_cast<double>(x.size()));
 }
 
-// The frame that ends the start gives all its poses anew, one for each frame whether its first frame was processed
-// again (rolling shutter) or not; no other frame does, and no other system has any.
+// Poses reissued at the end of the start: one per frame, also where the first frame is processed twice (rolling
+// shutter), with a smaller error than the filtered ones. No other frame reissues poses, and EKF-SLAM none at all.
 TEST(Odometry, ReissuesTheStart) {
   constexpr int kWindow = 12;
   const vo_test::Texture texture(3, 40.0, 24);
@@ -249,8 +248,8 @@ TEST(Odometry, CoastsOverBlankFramesAndRecovers) {
   EXPECT_LT(outcome.rms, 0.3 * outcome.path_extent);
 }
 
-// Image 35 shows what image 34 does: the camera has moved on as before. The third repetition in a row is measured. The
-// steps' changes are means over four textures.
+// Repeated images. Image 35 repeats image 34 while the camera moves on: it is not measured, and the relative change of
+// the steps, a mean over four textures, remains below 0.5. The third repetition in a row is measured.
 TEST(Odometry, PredictsWhereAnImageIsRepeated) {
   constexpr int kRepeated = 35, kStill = 40, kFrames = 44;
   constexpr unsigned kTextures = 4;
@@ -272,11 +271,11 @@ TEST(Odometry, PredictsWhereAnImageIsRepeated) {
       last_step = step;
     }
   }
-  EXPECT_LT((change / kTextures).maxCoeff(), 0.5) << (change / kTextures).transpose();  // 1 at the image as it is
+  EXPECT_LT((change / kTextures).maxCoeff(), 0.5) << (change / kTextures).transpose();  // 1 if the image is measured
 }
 
-// Half a second of darkness, in which the camera turns away and comes back by another way: the landmarks are
-// recognised, and one trajectory of one scale goes on.
+// Relocalisation after half a second of darkness, in which the camera rotates: the landmarks are recognised, and the
+// trajectory continues at the same scale.
 TEST(Odometry, FindsItsPlaceAgain) {
   constexpr int kDark = 30, kLight = 45, kFrames = 75;
   vo::Params params = SmallImageParams();
@@ -287,7 +286,7 @@ TEST(Odometry, FindsItsPlaceAgain) {
   vo::Odometry odometry(kCamera, params, KnownStart(), 1);
   std::vector<vo::Estimate> estimates;
   const cv::Mat dark(kCamera.height, kCamera.width, CV_8UC1, cv::Scalar(4));
-  const auto pose_at = [](int k) {  // turned by 34 degrees, more than half of the field of view
+  const auto pose_at = [](int k) {  // rotation of 34 degrees, more than half of the field of view
     vo::Pose pose = TruthAt(k);
     if (k >= kLight) pose.q_WC = pose.q_WC * vo::Exp({0, 0.6, 0});
     return pose;
@@ -308,9 +307,9 @@ TEST(Odometry, FindsItsPlaceAgain) {
   EXPECT_LT(RmsAligned(x.leftCols(n), y.leftCols(n)), 0.01);
 }
 
-// A camera that turns on the spot, and takes 26 of 33 ms to read its rows, sees the walls bent, which looks like
-// motion. With the true readout time the estimate stays nearly where the camera is; with the opposite sign it goes
-// farther off.
+// Rolling shutter of a camera that rotates on the spot, readout 26 of 33 ms: the walls appear bent, which resembles
+// translation. With the true readout time little translation remains; with none (control) it is more than 9 times as
+// large, with the opposite sign larger still.
 TEST(Odometry, StraightensARollingShutter) {
   const auto turned = [](double k) {
     const double t = k / 30.0;
@@ -333,7 +332,7 @@ TEST(Odometry, StraightensARollingShutter) {
     for (unsigned texture = 0; texture < kTextures; ++texture) {
       vo::Params params = SmallImageParams();
       params.features.readout_s = told;
-      params.features.noise = vo::MatchNoise::registered;  // it is the rows that are compared, not their weights
+      params.features.noise = vo::MatchNoise::registered;  // the comparison is of rows, not of weights
       vo::Prior prior;
       prior.w_WC_C = vo::Log(turned(1).q_WC) * 30;
       prior.velocity_covariance = 1e-3 * vo::Matrix6::Identity();
@@ -350,12 +349,12 @@ TEST(Odometry, StraightensARollingShutter) {
                upwards = moved(rolled, -readout);
   std::printf("moved by [mm]: global shutter %.2f; rolling, told %.2f, not told %.2f, told the opposite %.2f\n",
               1e3 * global, 1e3 * told, 1e3 * not_told, 1e3 * upwards);
-  EXPECT_GT(not_told, 9 * told);  // what is left: the velocity changes within a step
+  EXPECT_GT(not_told, 9 * told);  // the rest is the velocity's change within a step
   EXPECT_GT(upwards, 1.5 * not_told);
 }
 
-// What the first frame's rows were passed over at only the second frame tells. A prior that knows nothing of the turn
-// must not shear the map: where the turn is about the vertical, that would be a roll for good.
+// Angular rate during the readout of the first frame, observable only from the second one on. Neither an unknown nor a
+// wrong prior rate may shear the map, which for a rotation about the vertical would be a permanent roll.
 TEST(Odometry, FindsOutHowFastItsFirstFrameWas) {
   const auto turned = [](double k) { return vo::Pose{Vector3d::Zero(), vo::Exp({0, 0.5 * k / 30, 0})}; };
   const double readout = 0.026;
@@ -382,10 +381,11 @@ TEST(Odometry, FindsOutHowFastItsFirstFrameWas) {
   EXPECT_LT(wrong, 1.5 * known + 0.5);
 }
 
-// What trembles weighs less than what stands still, each by its own residuals; with `registered` both weigh alike.
+// Measurement noise in a trembling part of the image over that of the rest: larger where it is estimated from each
+// landmark's residuals, equal with `registered`.
 TEST(Odometry, WeighsTremblingLandmarksLess) {
   const vo_test::Texture texture(5, 40.0, 24);
-  // Columns, in bands of 40 rows that go to and fro by 0.6 px, neighbours the opposite way
+  // Columns that oscillate by 0.6 px in bands of 40 rows, neighbouring bands in antiphase.
   constexpr int kTrembling = 100;
   constexpr int kFrames = 40;
   std::vector<cv::Mat> images;
@@ -401,7 +401,7 @@ TEST(Odometry, WeighsTremblingLandmarksLess) {
     images.push_back(seen);
   }
   const auto believed =
-      [&](vo::MatchNoise noise) {  // median standard deviation [px] where it trembles over that elsewhere
+      [&](vo::MatchNoise noise) {  // ratio of the median standard deviations, trembling part over the rest
         vo::Params params = SmallImageParams();
         params.features.noise = noise;
         vo::Odometry odometry(kCamera, params, KnownStart(), 1);
@@ -427,7 +427,7 @@ TEST(Odometry, WeighsTremblingLandmarksLess) {
   EXPECT_LT(registered, 1.2);
 }
 
-// Landmarks that there is no time to look for hold their place: no second one is put on the same corner.
+// Landmarks beyond max_searched: they keep their cells occupied, and no second landmark begins at the same corner.
 TEST(Odometry, SearchesAllOverTheImage) {
   const vo_test::Texture texture(4, 40.0, 24);
   vo::Params params = SmallImageParams();
@@ -449,13 +449,14 @@ TEST(Odometry, SearchesAllOverTheImage) {
   EXPECT_LE(with_landmarks, 30u);
   for (int k = 1; k < 12; ++k) {
     const vo::FrameDiagnostics d = odometry.Track({k * kFrameNs, image}).diagnostics;
-    EXPECT_LE(d.landmarks, landmarks + 2) << k;  // one near a cell's edge may cross it and make room
+    EXPECT_LE(d.landmarks, landmarks + 2) << k;  // one near a cell's edge may leave the cell
     EXPECT_EQ(d.searched, 30) << k;
     EXPECT_EQ(cells(), with_landmarks) << k;
   }
 }
 
-// All landmarks in the start window and after a frame without matches, else those that let expect enough_matches.
+// Searched landmarks: all in the start window and after a frame without matches, else as many as give enough_matches
+// expected matches.
 TEST(Odometry, SearchesForEnoughMatches) {
   constexpr int kStart = 10, kDark = 20, kFrames = 30, kEnough = 24, kAll = 40;
   vo::Params params = SmallImageParams();
@@ -477,10 +478,10 @@ TEST(Odometry, SearchesForEnoughMatches) {
   }
 }
 
-// Beyond the turn of a lens's radius a picture that is no lens's has corners all the same.
+// Corners beyond the largest radius of the lens model, in an image that no such lens has taken: no landmark begins.
 TEST(Odometry, BeginsNoLandmarkWhereTheLensHasNoRay) {
   vo::Camera barrel = kCamera;
-  barrel.k1 = -0.6;  // the radius turns 129 px from the middle
+  barrel.k1 = -0.6;  // largest radius: 129 px
   vo::Odometry odometry(barrel, SmallImageParams(), vo::Prior(), 1);
   odometry.Track({0, vo_test::Texture(7).Image(kCamera.width, kCamera.height, {0, 0})});
   double farthest = 0;
@@ -491,7 +492,7 @@ TEST(Odometry, BeginsNoLandmarkWhereTheLensHasNoRay) {
   EXPECT_GT(odometry.Features().size(), 30u);
 }
 
-// A map that is full begins nothing new as long as what it holds is in view; what a frame has found stays.
+// Full map: no landmark begins as long as the present ones are in view, and matched ones stay.
 TEST(Odometry, HoldsNoMoreLandmarksThanItMay) {
   const vo_test::Texture texture(1, 40.0, 24);
   vo::Params params = SmallImageParams();
@@ -514,7 +515,7 @@ TEST(Odometry, HoldsNoMoreLandmarksThanItMay) {
   EXPECT_GT(found, 15 * 29);
 }
 
-// Where the camera then looks at something else, the map makes room for it.
+// Full map as the view changes: new landmarks replace those out of view.
 TEST(Odometry, FullMapMakesRoom) {
   const vo_test::Texture texture(1, 40.0, 24);
   vo::Params params = SmallImageParams();
@@ -525,7 +526,7 @@ TEST(Odometry, FullMapMakesRoom) {
   prior.velocity_covariance = 1e-3 * vo::Matrix6::Identity();
   vo::Odometry odometry(kCamera, params, prior, 1);
   int tracked = 0;
-  for (int k = 0; k < 70; ++k) {  // what was seen at first leaves the view after some 60
+  for (int k = 0; k < 70; ++k) {  // the first landmarks leave the view after about 60
     const vo::Estimate estimate = odometry.Track({k * kFrameNs, ViewFrom(at(k), texture)});
     EXPECT_LE(estimate.diagnostics.landmarks, 40) << k;
     tracked += estimate.diagnostics.tracked();
@@ -533,8 +534,8 @@ TEST(Odometry, FullMapMakesRoom) {
   EXPECT_GE(tracked, 65);
 }
 
-// Before a wall that comes nearer all patterns grow, and those of landmarks near the edge reach out of the image:
-// they are out of sight, long before their corners are, and no landmark is judged by it.
+// Landmarks near the edge of the image, in front of an approaching wall. Their patterns extend beyond the image before
+// their corners leave it: they are out of sight, which does not count against them.
 TEST(Odometry, JudgesNoLandmarkThatReachesOutOfTheImage) {
   const vo_test::Texture texture(5, 40.0, 24);
   vo::Prior prior;
@@ -550,7 +551,7 @@ TEST(Odometry, JudgesNoLandmarkThatReachesOutOfTheImage) {
     odometry.Track({k * kFrameNs, view(k)});
     seen_at_last.clear();
     const double zoom =
-        2 / (2 - k / 30.0);  // of what is left of the middle; to the right of it the wall is farther away
+        2 / (2 - k / 30.0);  // in the left half of the image; the wall in its right half is farther away
     const int margin = vo::BriskSampler(zoom * SmallImageParams().features.brisk_size_px / vo::kBriskBasicDiameter *
                                         Eigen::Matrix2d::Identity())
                            .margin();

@@ -1,4 +1,4 @@
-// What the particle filter does to its particles, whatever the images say.
+// Resampling of the particle filter, and the covariance shared by its particles.
 #include "vo/filter/particle_filter.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ TEST(ParticleFilter, ChildrenAreTheirAncestors) {
   for (const int particles : {1, 2, 9, 64}) {
     vo::FilterParams params = vo_test::SampledAtOnce();
     params.particles = particles;
-    params.sampled = vo::Sampled::pose_and_velocity;  // so that their weights differ from the first frame on
+    params.sampled = vo::Sampled::pose_and_velocity;  // weights differ from the first frame on
     params.resample_below = 0;
     vo::ParticleFilter parents = MakeFilter(params);
     params.resample_below = 1.5;  // always
@@ -52,12 +52,12 @@ TEST(ParticleFilter, ChildrenAreTheirAncestors) {
       ASSERT_EQ(child.landmarks.size(), parent.landmarks.size());
       for (std::size_t n = 0; n < kLandmarks; ++n) EXPECT_EQ(child.landmarks[n].mean, parent.landmarks[n].mean);
     }
-    for (int frame = 2; frame < 6; ++frame) Step(filter, frame);  // in the memory of others
+    for (int frame = 2; frame < 6; ++frame) Step(filter, frame);  // in reused memory
     for (const vo::Particle& particle : filter.particles()) EXPECT_EQ(particle.landmarks.size(), kLandmarks);
   }
 }
 
-// What the filter computes once for all of them.
+// Velocity covariance, which the filter computes once for all particles.
 TEST(ParticleFilter, VelocityCovarianceIsAlikeInAllParticles) {
   for (const vo::Sampled sampled : {vo::Sampled::pose, vo::Sampled::pose_and_velocity}) {
     for (const int lag : {0, 2}) {

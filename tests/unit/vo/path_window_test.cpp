@@ -1,4 +1,4 @@
-// Delayed sampling's solver against oracles that share none of its algebra.
+// Solver of delayed sampling against references that share none of its algebra.
 
 #include "vo/filter/path_window.h"
 
@@ -33,7 +33,8 @@ using vo::Matrix6;
 using vo::Vector6;
 using vo_test::Draws;
 
-// A window of frames at 30 Hz: landmarks anchored at the sampled start and at the window's first pose, seen from every later pose.
+// Window of frames at 30 Hz: landmarks anchored at the sampled start and at the window's first pose, seen from every
+// later pose.
 struct Scene {
   vo::Pose start;
   Vector6 velocity = Vector6::Zero();
@@ -47,7 +48,7 @@ struct Scene {
   vo::WindowInput input() const { return {start, velocity, landmarks, anchors}; }
 };
 
-// way: 0, or each view is from some millimetres beside its pose, as through a rolling shutter.
+// way = 1: each view is from some millimetres beside its pose, as through a rolling shutter; 0: from the pose itself.
 Scene MakeScene(unsigned seed, int frames, int count, double depth_sigma, double noise, double way = 1) {
   Draws draws(seed);
   Scene scene;
@@ -101,8 +102,8 @@ double Distance(const vo::Pose& a, const vo::Pose& b, const Matrix6& covariance)
   return std::sqrt(d.dot(covariance.llt().solve(d)));
 }
 
-// Two ways to one mode, each of which may leave kToleranceSigma of the way. Their marginal modes weigh curvature at points that differ in second
-// order, which the covariance shows.
+// Path of one pose against the proposal: each converges to the mode within kToleranceSigma. Their marginal modes
+// evaluate curvature at points that differ in second order, and so do the covariances.
 TEST(PathWindow, OfOnePoseIsTheProposal) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     const bool marginal = seed % 2 == 0;
@@ -133,7 +134,7 @@ TEST(PathWindow, OfOnePoseIsTheProposal) {
   }
 }
 
-// A pose that no image has seen yet changes no other: what follows from the path before is what solving the longer one says.
+// Extension of a path by a pose without measurements: equal to the solution of the longer path.
 TEST(PathEnd, AStepMoreIsAsIfSolvedAgain) {
   for (unsigned seed = 1; seed <= 50; ++seed) {
     const int frames = static_cast<int>(seed % 6);
@@ -157,8 +158,8 @@ TEST(PathEnd, AStepMoreIsAsIfSolvedAgain) {
   }
 }
 
-// Steps whose rotation is measured: their prior has the means that extension, step by step, gives. The control is the
-// motion model alone, whose mean lies elsewhere.
+// Steps with measured rotation: the means of their prior are those of extension step by step. Control: the motion model
+// alone, whose mean differs.
 TEST(PathEnd, AMeasuredTurnIsTheMeanOfItsStep) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Scene scene = MakeScene(seed, 5, 0, 0, 0);
@@ -194,7 +195,7 @@ TEST(PathEnd, AMeasuredTurnIsTheMeanOfItsStep) {
   }
 }
 
-// Against the projector M that takes the direction of the scale to a hundredth, M P M'.
+// Conditioning on the scale: M P M', with the projector M that reduces the direction of the scale to a hundredth.
 TEST(PathGaussian, GivenItsScale) {
   const Scene scene = MakeScene(5, 4, 0, 0.1, 1e-3);
   Draws draws(6);
@@ -214,8 +215,8 @@ TEST(PathGaussian, GivenItsScale) {
   EXPECT_NEAR(d.dot(path.covariance.inverse() * d) / d.dot(information), 1e4, 1e-3);
 }
 
-// Two images at once, then none for seconds: the velocity between the two is taken times a step of many thousand times
-// their gap.
+// Two images at almost the same time, then none for seconds: the velocity between the two is multiplied by a step of
+// many thousand times their interval.
 TEST(PathEnd, IsSymmetricAfterAGap) {
   Scene scene = MakeScene(5, 4, 24, 0.05, 1.0 / 525);
   vo::PathGaussian path = Solve(scene, false);
@@ -228,8 +229,8 @@ TEST(PathEnd, IsSymmetricAfterAGap) {
   EXPECT_GT(path.covariance.diagonal().minCoeff(), 0);
 }
 
-// Iterations that end before they have settled: the last step is a guess, whose quadratic promise may be anything. Evidence that believed it
-// made a particle that had run astray outweigh all others.
+// Evidence after iterations that end before convergence. The quadratic model of the last step is unverified; evidence
+// that includes its predicted decrease would let a diverged particle outweigh all others.
 TEST(PathWindow, EvidenceOfAnUnseenStep) {
   double worst = -1e300;
   int unsettled = 0;
@@ -257,7 +258,7 @@ TEST(PathWindow, EvidenceOfAnUnseenStep) {
   EXPECT_LT(worst, 1);
 }
 
-// -2 log of the joint density of poses and landmarks, up to a constant, written out with numbers only.
+// Whitened residual r, |r|^2 = -2 log of the joint density of poses and landmarks up to a constant; scalar by scalar.
 VectorXd Residual(const Scene& scene, const std::vector<vo::Pose>& poses, const std::vector<Vector3d>& theta) {
   const int m = static_cast<int>(poses.size());
   VectorXd u(6 * m);
@@ -266,7 +267,7 @@ VectorXd Residual(const Scene& scene, const std::vector<vo::Pose>& poses, const 
     u.segment<3>(6 * k) = poses[k].p_WC - from.p_WC;
     u.segment<3>(6 * k + 3) = vo::Log(from.q_WC.conjugate() * poses[k].q_WC);
   }
-  // Covariance of the steps by running unit noises through the model.
+  // Covariance of the steps from unit noises propagated through the model.
   MatrixXd effect = MatrixXd::Zero(6 * m, 6 + 12 * m);  // of (v_0, noises)
   MatrixXd v = MatrixXd::Zero(6, 6 + 12 * m);
   v.leftCols<6>() = scene.velocity_covariance.llt().matrixL();
@@ -323,7 +324,7 @@ void ExpectTheJointSolution(const Scene& scene, double left) {
   for (int i = 0; i < size; ++i)
     EXPECT_LT(std::abs(step[i]), left * std::sqrt(covariance(i, i))) << "at the joint mode, " << i;
   EXPECT_LT((path.covariance - covariance.topLeftCorner(6 * m, 6 * m)).norm() / path.covariance.norm(), 5e-3);
-  // And each landmark's with its anchor's pose, in units of the standard deviations.
+  // Joint covariance of each landmark and its anchor's pose, in units of the standard deviations.
   for (std::size_t i = 0; i < theta.size(); ++i) {
     const vo::Track& track = scene.tracks[i];
     const int l = 6 * m + 3 * static_cast<int>(i), a = 6 * std::max(track.anchor_slot, 0);
@@ -341,13 +342,13 @@ void ExpectTheJointSolution(const Scene& scene, double left) {
   }
 }
 
-// Of images taken at once, and through a rolling shutter: as near as Settled promises.
+// Elimination of the landmarks with a global shutter, and with a rolling one to the tolerance of Settled.
 TEST(PathWindow, EliminatingLandmarksIsTheJointSolution) {
   ExpectTheJointSolution(MakeScene(5, 4, 24, 0.05, 1.0 / 525, 0), 5e-3);
   ExpectTheJointSolution(MakeScene(5, 4, 24, 0.05, 1.0 / 525), vo::kToleranceSigma);
 }
 
-// Another particle: its start, its landmarks and the anchors are `spread` times the landmarks' deviations and 3 mm away.
+// Another particle: start and anchor displaced by 3 mm, landmarks by 0.3 standard deviations, both times `spread`.
 Scene Displaced(const Scene& scene, double spread) {
   Draws draws(11);
   Scene other = scene;
@@ -358,8 +359,8 @@ Scene Displaced(const Scene& scene, double spread) {
   return other;
 }
 
-// Greatest distance of the chord's path from the particle's own solution [standard deviations], and what is between the
-// solution that was linearised and the own one.
+// Largest distances [standard deviations] from the particle's own solution: of the chord method's path, and of the
+// linearised solution.
 std::pair<double, double> ChordError(double spread) {
   const Scene scene = MakeScene(5, 4, 24, 0.05, 1.0 / 525, 0), other = Displaced(scene, spread);
   vo::PathWindow window;
@@ -386,8 +387,8 @@ std::pair<double, double> ChordError(double spread) {
   return error;
 }
 
-// The chord method ends where the kept Jacobians, not the particle's own, are orthogonal to the residuals: off its own
-// solution by the change of the Jacobians times the residuals, a fraction of a standard deviation that falls with the
+// Error of the chord method, which converges where the kept Jacobians, not the particle's own, are orthogonal to the
+// residuals: the change of the Jacobians times the residuals, a fraction of a standard deviation that falls with the
 // distance of the particles.
 TEST(ChordSolver, NearsTheOwnSolution) {
   double before = 0.3;
@@ -400,8 +401,8 @@ TEST(ChordSolver, NearsTheOwnSolution) {
   }
 }
 
-// A track's image is told by its anchor in the window: how far all of the window may have drifted does not matter, and the rounding of what is
-// taken away again must not show as two covariances of its coordinates.
+// Predicted image of a track that is anchored in the window: independent of a drift common to all of the window, and of
+// a symmetric covariance in spite of cancellation.
 TEST(PathWindow, PredictsImagesAfterDrift) {
   const Scene scene = MakeScene(5, 4, 24, 0.05, 1.0 / 525, 0);
   std::vector<Vector3d> theta;
@@ -428,7 +429,7 @@ TEST(PathWindow, PredictsImagesAfterDrift) {
   EXPECT_EQ(seen, 12);
 }
 
-// The prior of several steps says what the velocity's Kalman filter says one step after the other.
+// Prior of several steps against the velocity's Kalman filter, step by step: last velocity and log density.
 TEST(PathPrior, LastVelocityIsTheVelocityFilters) {
   Draws draws(7);
   Scene scene = MakeScene(7, 6, 0, 0.05, 1);
@@ -452,15 +453,15 @@ TEST(PathPrior, LastVelocityIsTheVelocityFilters) {
               1e-6 * std::abs(log_density));
 }
 
-// p(z_1, z_2) = p(z_1) p(z_2 | z_1): the window's evidence grows by what the next frame says, whichever way it is counted. With
-// small noise everything is linear, and Laplace's approximation exact.
+// p(z_1, z_2) = p(z_1) p(z_2 | z_1): factors of the window's evidence. With small noise the model is linear, and
+// Laplace's approximation exact.
 TEST(PathWindow, EvidenceOfTwoFramesFactors) {
   const Scene scene = MakeScene(9, 2, 30, 1e-4, 1e-5);
   Scene first = scene;
   for (vo::Track& track : first.tracks)
     std::erase_if(track.views, [](const vo::Track::View& view) { return view.slot == 1; });
   const vo::PathGaussian with = Solve(scene, false), without = Solve(first, false);
-  // p(z_2 | z_1) by drawing the first pose from p(s_1 | z_1, z_2): p(s_1|z_1) p(z_2|s_1,z_1) / p(s_1|z_1,z_2) is the same at any s_1.
+  // p(z_2 | z_1) = p(s_1 | z_1) p(z_2 | s_1, z_1) / p(s_1 | z_1, z_2) at any s_1, here drawn from p(s_1 | z_1, z_2).
   Draws draws(11);
   for (int draw = 0; draw < 3; ++draw) {
     const Matrix6 P = with.covariance.topLeftCorner<6, 6>();
@@ -497,7 +498,8 @@ TEST(PathWindow, EvidenceOfTwoFramesFactors) {
   }
 }
 
-// Many landmarks of unknown depth and a step that is short against the noise: the joint mode stretches the step, the marginal's does not.
+// Scale bias with many landmarks of unknown depth and a step that is short relative to the noise: the joint mode
+// stretches the step, the marginal mode does not.
 TEST(PathWindow, TheMarginalsModeIsNotBiasedInScale) {
   double joint = 0, marginal = 0, length = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {

@@ -42,8 +42,8 @@ TEST(PointMoments, MixtureWorkedByHand) {
   EXPECT_LT((moments.covariance - expected).norm(), 1e-9);
 }
 
-// A landmark of a fresh filter is the prior's: both members of the family say the same of it, and what is told of the
-// start pose is in the EKF's, which has no paths to condition on.
+// Moments of a new landmark: those of the prior in both members of the family. The EKF's include the covariance of the
+// start pose, since it does not condition on a path.
 TEST(PointMoments, FiltersAgreeOnANewLandmark) {
   FilterPrior prior;
   prior.pose.mean = kAnchor;

@@ -55,7 +55,7 @@ Scene MakeScene(unsigned seed, int count, double depth_sigma, double noise = 1.0
   return scene;
 }
 
-// The cost that the iterated proposal minimises, as one stacked residual over (pose, all landmarks): the oracle.
+// Cost of the iterated proposal as one stacked residual over (pose, all landmarks): the reference.
 VectorXd StackedResidual(const Scene& scene, const vo::Pose& pose, const VectorXd& landmarks) {
   const int n = static_cast<int>(scene.landmarks.size());
   VectorXd r(6 + 5 * n);
@@ -70,7 +70,7 @@ VectorXd StackedResidual(const Scene& scene, const vo::Pose& pose, const VectorX
   return r;
 }
 
-// Gauss-Newton on everything at once with numeric Jacobians.
+// Joint solution by Gauss-Newton on the pose and all landmarks, with numeric Jacobians.
 struct Joint {
   vo::Pose pose;
   vo::Matrix6 covariance;
@@ -99,7 +99,8 @@ Joint SolveJointly(const Scene& scene) {
   return {pose, covariance.topLeftCorner<6, 6>()};
 }
 
-// As near as Settled promises; one step alone is ten times farther away at least.
+// Schur complement against the joint solution, to the tolerance of Settled. Control: one step alone is more than ten
+// times farther away.
 TEST(Proposal, SchurEliminationIsTheJointSolution) {
   for (unsigned seed = 1; seed <= 50; ++seed) {
     const Scene scene = MakeScene(seed, 12, 0.15);
@@ -135,8 +136,8 @@ TEST(Proposal, NoMatchesIsThePrediction) {
   EXPECT_EQ(proposal.pose.covariance, scene.prediction.covariance);
 }
 
-// Where the model is linear and Gaussian in a small region the importance weight (17) is the same at every sample and equals the
-// evidence. Noise is made so small that curvature vanishes; what remains is rounding.
+// Importance weight (17) of a linear Gaussian model: equal at all samples, and equal to the evidence. The noise is so
+// small that curvature vanishes; rounding remains.
 TEST(Proposal, EvidenceEqualsTheImportanceWeightWhenLinear) {
   const double tiny = 1e-7;
   Scene scene = MakeScene(4, 10, 1e-6, tiny);
@@ -160,8 +161,8 @@ TEST(Proposal, EvidenceEqualsTheImportanceWeightWhenLinear) {
 }
 
 TEST(Consensus, ThrowsOutGrossErrorsAndKeepsTheRest) {
-  // A residual has about 1.6 px per axis, so the gate's radius is 4.8 px: an outlier of 12 px stays only by a 4.5 sigma accident
-  // (240 outliers: 1e-3).
+  // A residual has about 1.6 px per axis, so the gate's radius is 4.8 px. An outlier of 12 px passes only with a
+  // deviation of 4.5 sigma (240 outliers: 1e-3).
   int refused_inliers = 0, kept_outliers = 0, inliers = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Scene scene = MakeScene(seed, 60, 0.01);
@@ -195,7 +196,7 @@ TEST(Consensus, IsTheSameFromNearby) {
     EXPECT_EQ(warm.inlier, cold.inlier) << "seed " << seed;
     const vo::Vector6 d = vo::Minus(warm.pose.mean, cold.pose.mean);
     EXPECT_LT(std::sqrt(d.dot(cold.pose.covariance.llt().solve(d))), 0.1)
-        << "seed " << seed;  // where a round is called still
+        << "seed " << seed;  // tolerance of a round's convergence
   }
 }
 
@@ -211,7 +212,8 @@ TEST(PoseGaussian, DensityIntegratesAndSamplesHaveItsCovariance) {
     const vo::Vector6 d = vo::Minus(g.Sample({.seed = 3, .particle = i}), g.mean);
     second += d * d.transpose() / n;
   }
-  // Each whitened second moment is 1 +- sqrt(2/n), off-diagonal 0 +- 1/sqrt(n): 5 sigma, 21 entries: false alarms 1e-5.
+  // Each whitened second moment is 1 +- sqrt(2/n), off-diagonal 0 +- 1/sqrt(n): 5 sigma, 21 entries: false-alarm rate
+  // 1e-5.
   const vo::Matrix6 L = g.covariance.llt().matrixL();
   const vo::Matrix6 white = L.inverse() * second * L.inverse().transpose();
   for (int i = 0; i < 6; ++i)
@@ -220,7 +222,8 @@ TEST(PoseGaussian, DensityIntegratesAndSamplesHaveItsCovariance) {
               1e-9);
 }
 
-// What is known (here one axis of the place, and a turn about an axis that is none of the coordinates') has no spread, the rest all of its own.
+// Samples of a semidefinite covariance: no spread in the known directions (one axis of the position, and a rotation
+// about an oblique axis), the full covariance in all others.
 TEST(PoseGaussian, SamplesOfASemidefiniteCovarianceHaveIt) {
   vo::PoseGaussian g;
   g.mean = {Vector3d(1, 2, 3), vo::Exp({0.3, -0.2, 0.5})};
@@ -228,7 +231,7 @@ TEST(PoseGaussian, SamplesOfASemidefiniteCovarianceHaveIt) {
   for (const int row : {1, 2, 3, 4, 5})
     for (int k = 0; k < 4; ++k) root(row, k) = 0.03 * std::sin(1.7 * (4 * row + k + 1));
   g.covariance = root * root.transpose();
-  vo::Matrix6 spread = vo::Matrix6::Zero();  // of the samples: they are linear in the six normal numbers
+  vo::Matrix6 spread = vo::Matrix6::Zero();  // of the samples, which are linear in six normal numbers
   for (int i = 0; i < 6; ++i) {
     const vo::Vector6 d = vo::Minus(g.Displaced(vo::Vector6::Unit(i)), g.mean);
     spread += d * d.transpose();

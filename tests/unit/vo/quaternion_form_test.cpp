@@ -1,5 +1,5 @@
-// The paper filters orientation as (quaternion, Euler rates), 7 x 7 (27)-(33); the filter here in the tangent space, 6 x 6 (algorithm,
-// section 4). Pushing the second through dq/dphi gives the first, to first order in the time step.
+// Orientation as (quaternion, Euler rates), 7 x 7, in the paper (27)-(33), against the tangent space, 6 x 6, of vo
+// (algorithm, section 4). The map dq/dphi takes the second to the first, to first order in the time step.
 
 #include <gtest/gtest.h>
 
@@ -85,8 +85,8 @@ Case RandomCase(std::uint32_t i) {
   return c;
 }
 
-// Relative difference of the paper's matrices and the tangent space's: the transition's two blocks, the noise's three, and the whole
-// predicted covariance.
+// Relative difference of the paper's matrices and the tangent space's: two blocks of the transition, three of the
+// noise, and the whole predicted covariance.
 using Differences = std::array<double, 6>;
 
 Differences Compare(const Case& c, double dt, double angle_time) {
@@ -100,7 +100,7 @@ Differences Compare(const Case& c, double dt, double angle_time) {
   tau.bottomRightCorner<3, 3>().setIdentity();
   const Matrix7 Q_O = tau * WhiteAcceleration(dt) * tau.transpose();
 
-  // Here: phi' = Exp(delta)' phi + J_r(delta) (dt w + noise), pushed through dq/dphi before and after.
+  // vo: phi' = Exp(delta)' phi + J_r(delta) (dt w + noise), mapped by dq/dphi before and after.
   const Vector3d delta = c.w * dt;
   const Matrix3d J_r = vo::RightJacobian(delta);
   Matrix6 F = Matrix6::Identity(), turn = Matrix6::Identity();
@@ -142,7 +142,7 @@ TEST(QuaternionForm, TangentSpaceGivesThePapersMatrices) {
   }
 }
 
-// Control: with xi-hat taken at the rate times one second, as (33) is printed, nothing converges.
+// Control: xi-hat at the rate times one second, as printed in (33), does not converge.
 TEST(QuaternionForm, XiAtOneSecondIsAnotherModel) {
   int rejected = 0;
   for (std::uint32_t i = 0; i < 50; ++i) {

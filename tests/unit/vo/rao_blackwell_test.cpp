@@ -26,7 +26,7 @@ vo::Particle MakeParticle(unsigned seed) {
   return particle;
 }
 
-// Of (p, delta, v, w) one step later.
+// Joint Gaussian of (p, delta, v, w) after one step.
 struct Joint {
   Eigen::Matrix<double, 12, 1> mean;
   Matrix12 covariance;
@@ -56,7 +56,8 @@ TEST(RaoBlackwell, PredictionIsTheMarginalOfThePose) {
   EXPECT_LT((predicted.covariance - expected).norm(), 1e-12 * expected.norm());
 }
 
-// (37)-(43). Without the correlation of the process noise, which the paper is about, the answer is another.
+// (37)-(43): velocity conditional on the pose. Control: without the correlation of the process noise, the paper's
+// subject, the mean differs.
 TEST(RaoBlackwell, VelocityIsTheConditionalGivenThePose) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const vo::Particle particle = MakeParticle(seed);
@@ -83,7 +84,7 @@ TEST(RaoBlackwell, VelocityIsTheConditionalGivenThePose) {
   }
 }
 
-// A step of more than half a turn is read as the rotation vector next to the predicted one.
+// Step of more than half a turn, read as the rotation vector next to the predicted one.
 TEST(RaoBlackwell, VelocityFollowsARotationOfMoreThanHalfATurn) {
   vo::Particle particle;
   particle.velocity = {Vector6::Unit(5) * 4.0, 0.01 * Matrix6::Identity()};

@@ -1,4 +1,4 @@
-// Frames that are read ahead are the source's, in its order, and never more of them than was said.
+// Frames read ahead: those of the source, in its order, and at most the given number of them.
 #include "vo/sequence/read_ahead.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 
 namespace {
 
-// Frame k is of one colour; after `frames` of them it ends, or throws.
+// Source of frames of one colour each, which ends or throws after `frames` of them.
 class Colours : public vo::FrameSource {
  public:
   Colours(int frames, bool breaks) : frames_(frames), breaks_(breaks) {}

@@ -94,7 +94,7 @@ TEST_F(Reader, RefusesFoldersWithoutFrames) {
   EXPECT_NE(ErrorOfOpening().find("no such folder"), std::string::npos);
 }
 
-// As associate.py of TUM RGB-D prints its lists, in either order: the depth is the grey picture of 16 bits.
+// Lists as printed by associate.py of TUM RGB-D, in either order: the depth is the grey picture of 16 bits.
 TEST_F(Reader, TakesThePictureThatIsNoDepth) {
   fs::create_directories(folder_ / "depth");
   cv::imwrite((folder_ / "depth/a.png").string(), cv::Mat(4, 6, CV_16UC1, cv::Scalar(5000)));
@@ -109,7 +109,7 @@ TEST_F(Reader, TakesThePictureThatIsNoDepth) {
   EXPECT_NE(ErrorOfOpening().find("associations.txt:1: both pictures are depth"), std::string::npos);
 }
 
-// Stamps in seconds are the picture's own; depth that is no PNG of 16 bits is known by its name.
+// Stamps in seconds, taken from the colour picture; depth that is no PNG of 16 bits is recognised by its name.
 TEST_F(Reader, ReadsAssociationsInSeconds) {
   fs::create_directories(folder_ / "depth");
   cv::imwrite((folder_ / "depth/a.png").string(), cv::Mat(4, 6, CV_8UC1, cv::Scalar(50)));
@@ -128,7 +128,7 @@ TEST_F(Reader, ReadsAssociationsInSeconds) {
   EXPECT_NE(ErrorOfOpening().find("associate.txt: is a text in UTF-16"), std::string::npos);
 }
 
-// Alpha is left out, 16 bits become 8, and what follows a picture's end does no harm.
+// Colour types: alpha is dropped, 16 bits become 8, and bytes after a picture's end are ignored.
 TEST_F(Reader, ReadsEveryColourTypeAndPaddedFiles) {
   cv::imwrite((folder_ / "rgb/rgba.png").string(), cv::Mat(4, 6, CV_8UC4, cv::Scalar(10, 20, 30, 255)));
   cv::imwrite((folder_ / "rgb/deep.png").string(), cv::Mat(4, 6, CV_16UC4, cv::Scalar(2570, 5140, 7710, 65535)));

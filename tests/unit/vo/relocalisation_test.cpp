@@ -30,7 +30,7 @@ struct Place {
   }
 };
 
-// Corners of the walls as the camera at `pose` sees them.
+// Corners of the walls in the image of a camera at `pose`.
 Place PlaceSeenFrom(const vo::Pose& pose, const vo_test::Texture& texture) {
   const vo::FeatureParams params = vo_test::SmallImageParams().features;
   const vo::PreparedFrame frame({0, vo_test::ViewFrom(pose, texture)});
@@ -48,7 +48,7 @@ std::optional<vo::Relocalisation> Find(const Place& place, const vo::Pose& pose,
   return relocaliser.Find(vo::PreparedFrame({0, vo_test::ViewFrom(pose, texture)}), place.Known());
 }
 
-// The landmarks are predicted to 4 px, for the ordinary search to find them.
+// Accuracy of the pose: 4 px for all landmarks, within reach of the ordinary search.
 TEST(Relocaliser, FindsThePose) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const vo_test::Texture texture(seed, 40.0, 24);
@@ -66,7 +66,7 @@ TEST(Relocaliser, FindsThePose) {
   }
 }
 
-// Other walls: 100 attempts without one that succeeds bound the rate at 3 % (95 %).
+// False-alarm rate on other walls: 100 attempts without success bound it at 3 % (95 % confidence).
 TEST(Relocaliser, RecognisesNoOtherPlace) {
   const Place place = PlaceSeenFrom({}, vo_test::Texture(1, 40.0, 24));
   for (unsigned seed = 2; seed <= 101; ++seed) EXPECT_FALSE(Find(place, {}, vo_test::Texture(seed, 40.0, 24))) << seed;

@@ -1,4 +1,4 @@
-// What a landmark's residuals say of its noise, against draws whose variance is known.
+// Noise of a landmark estimated from its residuals, against draws of known variance.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -15,8 +15,8 @@ using Eigen::Vector2d;
 
 const Matrix2d kR = (Matrix2d() << 0.09, 0.02, 0.02, 0.04).finished();
 
-// After `count` matches whose errors have `times` the covariance that they are said to have, of a landmark with this
-// covariance in the image; at level 1.
+// Inflation after `count` matches whose errors have `times` their stated covariance, of a landmark with this covariance
+// in the image; at level 1.
 double Inflation(double times, int count, const Matrix2d& of_landmark, unsigned seed) {
   vo_test::Draws draws(seed);
   vo::ResidualHistory history;
@@ -35,8 +35,8 @@ double Mean(double times, int count, const Matrix2d& of_landmark) {
   return sum;
 }
 
-// The mean of 400 landmarks; of each some 50 matches of two degrees of freedom count, so one has a standard deviation
-// of a seventh, the mean of a hundred and fortieth: bounds are four of them (a false alarm in 16 000).
+// Mean over 400 landmarks. About 50 matches of two degrees of freedom count for each, so that one has a standard
+// deviation of 1/7, the mean of 1/140. Bounds of four standard deviations: false-alarm rate 1 in 16 000.
 TEST(ResidualHistory, LearnsTheVariance) {
   EXPECT_EQ(vo::ResidualHistory().Inflation(5), 5);
   EXPECT_NEAR(Mean(1, 400, Matrix2d::Zero()), 1, 4 * 1.0 / 140);
@@ -48,7 +48,8 @@ TEST(ResidualHistory, LearnsTheVariance) {
   EXPECT_NEAR(Mean(400, 400, Matrix2d::Zero()), vo::ResidualHistory::kMost, 1e-9);
 }
 
-// Where the landmark is known less well than it is seen, large residuals are no evidence of noise, and the level stays.
+// Landmarks of larger covariance in the image than the noise: large residuals are no evidence of noise, and the level
+// stays.
 TEST(ResidualHistory, LeavesOutWhatIsNotKnownOfTheLandmark) {
   EXPECT_NEAR(Mean(1, 400, kR), 1, 4 * 1.0 / 70);
   EXPECT_NEAR(Mean(1, 400, 25 * kR), 1, 4 * 1.0 / 70);
@@ -56,7 +57,7 @@ TEST(ResidualHistory, LeavesOutWhatIsNotKnownOfTheLandmark) {
   EXPECT_GT(Mean(3, 20, Matrix2d::Zero()), 2.2);
 }
 
-// A landmark whose depth is unknown is seen well across the epipolar line.
+// Landmark of unknown depth: residuals across the epipolar line are evidence of noise.
 TEST(ResidualHistory, UsesTheDirectionThatIsKnown) {
   const Matrix2d unknown_depth = Vector2d(1e4, 0).asDiagonal();
   EXPECT_GT(Mean(3, 20, unknown_depth), 2);

@@ -1,4 +1,4 @@
-// The time of a row taken out of an image, against exact views of a camera that moves while it reads its rows.
+// Compensation of the rows' times in an image, against exact views of a camera that moves while it reads its rows.
 #include "vo/frontend/rolling_shutter.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ vo::Pose PoseAt(double t) {
 }
 Vector3d InCamera(const vo::Pose& pose, const Vector3d& X_W) { return pose.q_WC.conjugate() * (X_W - pose.p_WC); }
 
-// The pixel of a point, in the row that is exposed just when the point is there.
+// Pixel of a point, in the row that is exposed when the point is there.
 Vector2d Seen(const vo::Camera& camera, const vo::RollingShutter& shutter, const Vector3d& X_W) {
   Vector2d pixel(0, 0.5 * camera.height);
   for (int i = 0; i < 50; ++i) pixel = camera.Project(InCamera(PoseAt(shutter.TimeOf(pixel.y())), X_W));
@@ -57,8 +57,8 @@ TEST(RollingShutter, RowsHaveTheirTimes) {
   EXPECT_FALSE(vo::RollingShutter(SomeCamera(), 0).on());
 }
 
-// At every depth, exactly: the turn is out of the point, and from where the row saw it the point is where it should be. Not straightened it is off by
-// pixels; with the turn alone, its way forgotten, by what the depth makes of it.
+// Point with the row's rotation compensated, seen from the row's camera centre: exact at every depth. Controls: errors
+// of pixels without compensation; with that of the rotation alone, an error that depends on depth.
 TEST(RollingShutter, ARowIsSeenByACameraThatStoodElsewhere) {
   const vo::Camera camera = SomeCamera();
   const vo::RollingShutter shutter(camera, 0.026);
@@ -83,7 +83,7 @@ TEST(RollingShutter, ImagesAtOnceStayAsTheyAre) {
   EXPECT_EQ(seen.centre_offset_W, Vector3d::Zero());
 }
 
-// Where to look for a landmark that is known exactly.
+// Predicted pixel of a landmark that is known exactly.
 TEST(RollingShutter, LandmarksArePredictedInTheirRows) {
   const vo::Camera camera = SomeCamera();
   const vo::RollingShutter shutter(camera, 0.026);
@@ -105,13 +105,12 @@ TEST(RollingShutter, InImageIsWhereTheRowsTimeTakesIt) {
     const Vector2d pixel = Vector2d(320, 240) + Vector2d(300, 220).cwiseProduct(draws.Symmetrics<2>()),
                    rate = draws.Symmetrics<2>();
     const Vector2d at_stamp = camera.Undistort(pixel) - shutter.TimeOf(pixel.y()) * rate;
-    // 15 px at most; which row it is is known thirty times better after each of three rounds.
+    // 15 px at most; each of three iterations reduces the row's error thirtyfold.
     EXPECT_LT((shutter.InImage(at_stamp, rate) - pixel).norm(), 15 * std::pow(1.0 / 30, 3));
   }
 }
 
-// Seen for the first time: with the depth, once it is known, the ray is right, whatever the depth, and exactly. Taken with another depth it is not:
-// that is what d_ray_d_rho is for.
+// ray + rho d_ray_d_rho of a first view: exact at every depth. Control: with another inverse depth the ray is off.
 TEST(RollingShutter, FirstViewsAreRightAtEveryDepth) {
   const vo::Camera camera = SomeCamera();
   const vo::RollingShutter shutter(camera, 0.026);
@@ -124,7 +123,7 @@ TEST(RollingShutter, FirstViewsAreRightAtEveryDepth) {
   EXPECT_GT(other_depth, 0.001) << "half a pixel";
 }
 
-// (ray + noise + d_ray_d_rho rho, rho) of independent noise and rho, with both written out.
+// (ray + noise + d_ray_d_rho rho, rho), noise and rho independent: mean and covariance written out.
 TEST(NewLandmark, RayDependsOnDepth) {
   vo::LandmarkParams usual;
   const vo::FirstView view{{0.2, -0.1}, 1e-6 * Eigen::Matrix2d::Identity(), {0.03, -0.02}};
@@ -138,7 +137,7 @@ TEST(NewLandmark, RayDependsOnDepth) {
     T.topRightCorner<2, 1>() = view.d_ray_d_rho;
     EXPECT_LT((landmark.covariance - T * independent * T.transpose()).norm(), 1e-15);
   }
-  usual.bearing = vo::Bearing::fixed;  // one dimension: the ray of the depth that is believed
+  usual.bearing = vo::Bearing::fixed;  // one dimension: the ray at the mean depth
   EXPECT_EQ(vo::NewLandmark(view, usual).covariance.topRows<2>().norm(), 0);
 }
 

@@ -1,4 +1,4 @@
-// Rates of rows in a window: what a camera sees whose turn rate differs from frame to frame.
+// Angular rates of rows in a window, for a camera whose rate differs from frame to frame.
 // Reference: exact images of landmarks, poses and rates drawn from the model.
 #include <gtest/gtest.h>
 
@@ -37,11 +37,11 @@ TEST(RowRates, JacobianIsThatOfTheCompensation) {
     Vector6 rate = Vector6::Zero();
     rate(3 + axis) = kStep;
     const Eigen::Vector2d slope = (row.RotationCompensated(rate).z - row.RotationCompensated(-rate).z) / (2 * kStep);
-    EXPECT_LT((slope + J.col(axis)).norm(), 1e-9) << axis;  // z is compensated, J is of what the row sees
+    EXPECT_LT((slope + J.col(axis)).norm(), 1e-9) << axis;  // J is of the raw measurement
   }
 }
 
-// NEES of the path per degree of freedom, landmarks first seen by the start and by the first pose, half each.
+// NEES of the path per degree of freedom; landmarks are first seen from the start and from the first pose, half each.
 double Nees(unsigned world, vo::Rates rates) {
   vo_test::Draws draws(world);
   const std::vector<vo::MotionModel> steps(
@@ -55,7 +55,7 @@ double Nees(unsigned world, vo::Rates rates) {
   for (int k = 0; k < kFrames; ++k)
     truth.push_back(
         vo::Plus(k == 0 ? start : truth.back(), prior.MeanStep(k, velocity) + noise.segment<6>(vo::kPoseSize * k)));
-  // Camera of a row in a frame; -1: the start's.
+  // Pose of the camera at a row's time in a frame; -1: the start.
   const auto camera = [&](int frame, double time) {
     vo::Pose pose = frame < 0 ? start : truth[frame];
     pose.q_WC = pose.q_WC * vo::Exp(time * rate.segment<3>(3 * (frame + 1)));
@@ -107,8 +107,8 @@ double Nees(unsigned world, vo::Rates rates) {
   return error.dot(path.covariance.llt().solve(error)) / (vo::kPoseSize * kFrames);
 }
 
-// Mean over 200 worlds of 24 degrees of freedom, whose standard deviation is 0.02: outside of 3.3 of these with a
-// probability of 1e-3. Controls: without rates; with those of the window, but not the start's.
+// Mean NEES over 200 worlds of 24 degrees of freedom: standard deviation 0.02, bounds of 3.3 of these, false-alarm rate
+// 1e-3. Controls: without rates; with those of the window, but not the start's.
 TEST(RowRates, LeaveThePathConsistent) {
   double with_start = 0, of_window = 0, none = 0;
   for (unsigned world = 1; world <= kWorlds; ++world) {

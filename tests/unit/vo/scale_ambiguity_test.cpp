@@ -1,4 +1,4 @@
-// Closed form against draws: a Gaussian whose lengths are multiplied by a log-normal factor.
+// Gaussian whose lengths are multiplied by a log-normal factor: closed form against draws.
 #include "vo/scale_ambiguity.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ TEST(ScaleAmbiguity, IsTheSecondMomentOfWhatItMayBe) {
   const Matrix12 wide = vo::ScaleAmbiguity(sigma, start).Covariance(pose, velocity, P);
 
   const Matrix12 L = P.llt().matrixL();
-  Vector12 at = Vector12::Zero();  // of lengths, seen from the start; angles are about their means
+  Vector12 at = Vector12::Zero();  // mean lengths, relative to the start; angles are about their means
   at.segment<3>(0) = pose.p_WC - start;
   at.segment<3>(6) = velocity.head<3>();
   Matrix12 sum = Matrix12::Zero();
@@ -50,7 +50,7 @@ TEST(ScaleAmbiguity, IsTheSecondMomentOfWhatItMayBe) {
   EXPECT_GT(Eigen::LLT<Matrix12>(wide).matrixL().determinant(), 0);
 }
 
-// A filter whose lengths became twice as long answers what it answered before; where the scale is known they are what they are.
+// Scale of the answers: unchanged where the filter's lengths double; the filter's own where the scale is known.
 TEST(ScaleAmbiguity, AnswersKeepTheirScale) {
   vo_test::Draws draws(2);
   Matrix12 A;
@@ -96,7 +96,7 @@ TEST(ScaleAmbiguity, KnownChangesNoBit) {
   EXPECT_EQ(known.InverseDepthSigma(0.3, 0.125), 0.125);
 }
 
-// Points before a camera that sets out: the mixture over particles, ranks and coverage are taken from, has the estimate's mean and covariance.
+// Moments of the mixture over particles, of which ranks and coverage are computed: mean and covariance of the estimate.
 TEST(ScaleAmbiguity, TheMixturesMomentsAreTheEstimate) {
   const vo::Camera camera;
   vo::Params params;

@@ -1,5 +1,5 @@
-// Readout time and focal length from tracks, in worlds of points whose camera moves while it reads its rows: exact without noise; with
-// noise, intervals that hold. False alarms are stated with each statistic.
+// Readout time and focal length from tracks, in worlds of points whose camera moves while it reads its rows: exact
+// without noise; with noise, coverage of the intervals. False-alarm rates are stated with each statistic.
 #include "vo/calibration/self_calibration.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ using vo_test::Draws;
 using vo_test::kCamera;
 using vo_test::kFrameNs;
 
-// A hand: three sines per axis, up to 2.5 Hz.
+// Motion of a hand: three sines per axis, up to 2.5 Hz.
 class Hand {
  public:
   explicit Hand(Draws& draws) {
@@ -53,7 +53,7 @@ struct Noise {
   double pixel = 0, landmark = 0;  // [px] of each match; the same in all matches of a landmark
 };
 
-// Frames of `count` / 30 s, their poses with the errors of a first guess.
+// Frames of `count` / 30 s; their poses have the errors of an initial guess.
 std::vector<vo::TrackedFrame> Film(Draws& draws, double readout_s, int count, const Noise& noise) {
   const Hand hand(draws);
   const auto guess = [&](const vo::Pose& pose) { return vo::Plus(pose, 0.002 * draws.Normals<6>()); };
@@ -125,8 +125,8 @@ TEST(WindowFit, IsExactWithoutNoise) {
   }
 }
 
-// 60 worlds. At a coverage of 95 % more than 9 are outside once in 1100 times. They are wide where the
-// motion is smooth; an eighth must be rejected.
+// Coverage of the 95 % intervals in 60 worlds; false-alarm rate of more than 9 outside: 1 in 1100. Control: an eighth
+// of their width is rejected (they are wide where the motion is smooth).
 TEST(WindowFit, ItsIntervalsHold) {
   Draws draws(2);
   int outside = 0, outside_narrow = 0, count = 0;
@@ -179,7 +179,7 @@ vo::CalibrationEstimate Calibrated(Draws& draws, double readout_s, const vo::Cam
                                    std::optional<double> stated) {
   vo::SelfCalibration calibration(camera, stated);
   for (const vo::TrackedFrame& frame : Film(draws, readout_s, 60, kMatches)) {
-    std::vector<vo::FeatureView> views(1);  // the first is missed
+    std::vector<vo::FeatureView> views(1);  // the first: no match
     for (const vo::Sighting& sighting : frame.sightings) {
       vo::FeatureView& view = views.emplace_back();
       view.id = sighting.landmark;
@@ -192,8 +192,8 @@ vo::CalibrationEstimate Calibrated(Draws& draws, double readout_s, const vo::Cam
   return calibration.Estimate();
 }
 
-// The warning is for an error above 2 % with 97.5 % confidence: at the right focal length false alarms are far rarer than 2.5 %; more
-// than one of 20 worlds once in a hundred million.
+// Warning of an error of the focal length above 2 % with 97.5 % confidence. At the right focal length its false-alarm
+// rate is far below 2.5 %; that of more than one of 20 worlds is 1e-8.
 TEST(SelfCalibration, WarnsOfAFocalLengthThatIsWrongAndOfNoOther) {
   Draws draws(5);
   int right = 0, too_short = 0, too_long = 0;
@@ -217,8 +217,8 @@ TEST(SelfCalibration, SaysNothingOfAReadoutThatIsStatedAndUsesOneThatIsNot) {
   EXPECT_NEAR(rolling.readout_used_s, -0.013, 0.002);
 }
 
-// Images: the first frames are tracked again with the readout time that they show, and the answers after them are as those of a
-// camera that states it.
+// Self-calibration on images: the first frames are tracked again with the estimated readout time, and the later errors
+// are as with a stated one.
 TEST(SelfCalibration, OfAnOdometryOnImages) {
   const auto moved = [](double k) {
     const double t = k / 30.0;

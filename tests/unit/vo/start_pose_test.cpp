@@ -1,4 +1,5 @@
-// A start whose pose is not known: the particles begin elsewhere, and in the start's window all have the first one's solution, as seen from there.
+// Start at an unknown pose: each particle begins at its own, and during the start window all have the first one's
+// solution relative to it.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -20,8 +21,8 @@ vo::ParticleFilter FilterFrom(const vo::PoseGaussian& start, int particles) {
   return {vo::MotionParams{}, params, vo::LandmarkParams{}, prior, 3};
 }
 
-// At rest up to a velocity that is as likely in all directions, nothing hangs on where the camera looks: each particle says what a filter says that
-// was told its start. The two round differently.
+// Particles against filters whose prior is each one's start pose. With an isotropic velocity of mean zero the estimate
+// relative to the start does not depend on its pose; only rounding differs.
 TEST(StartPose, EveryParticleIsAFilterFromThere) {
   constexpr double kSigma = 1.0 / 525;
   vo_test::Draws draws(2);
@@ -43,7 +44,7 @@ TEST(StartPose, EveryParticleIsAFilterFromThere) {
       const vo::BeliefComponent &one = filters[0].mixture()[i], &alone = filters[i + 1].mixture()[0];
       EXPECT_LT(vo::Minus(one.pose, alone.pose).norm(), 1e-6);
       EXPECT_LT((one.velocity - alone.velocity).norm(), 1e-6);
-      // In units of the standard deviations
+      // In units of the standard deviations.
       const Eigen::Matrix<double, 12, 1> scale = alone.covariance.diagonal().cwiseSqrt().cwiseInverse();
       EXPECT_LT((scale.asDiagonal() * (one.covariance - alone.covariance) * scale.asDiagonal()).norm(), 1e-6)
           << "frame " << frame << ", particle " << i;

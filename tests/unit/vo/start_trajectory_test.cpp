@@ -14,8 +14,8 @@ vo::FilterAnswer Answer(bool initialising) {
   return answer;
 }
 
-// Frames 2 and 3 have been integrated out: they lie on the way from frame 1 to frame 4, as far as they are in time. The
-// scale is that of the answers at the end.
+// Poses of the marginalised frames 2 and 3: interpolated in time between frames 1 and 4. The scale is that of the
+// answers at the end.
 TEST(StartTrajectory, IsReissuedOnceInTheScaleOfTheAnswers) {
   vo::ScaleAmbiguity scale(0.5, {1, 0, 0});
   vo::StartTrajectory start;

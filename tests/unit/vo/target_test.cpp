@@ -1,4 +1,4 @@
-// A chessboard that is drawn where a plane of known pose has it: the corners' depths come out as that plane has them, and as sure as they are.
+// Chessboard rendered on a plane of known pose: depths of its corners against the plane, and their standard deviations.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -31,7 +31,7 @@ BoardPose Facing(double distance, double tilt, double roll) {
   return {Vector3d(0, 0, distance) - axes * Vector3d(4 * 0.05, 2.5 * 0.05, 0), axes};
 }
 
-// Each pixel is the mean of 3 x 3 rays, with Gaussian noise of so many grey levels.
+// Image whose pixels are means of 3 x 3 rays, with Gaussian noise [grey levels].
 cv::Mat Picture(const BoardPose& board, const vo::Camera& camera, double noise, unsigned seed) {
   cv::Mat image(camera.height, camera.width, CV_8UC1);
   vo_test::Draws draws(seed);
@@ -62,7 +62,7 @@ TEST(Target, DepthsAreThoseOfTheBoard) {
     ASSERT_EQ(corners.size(), 54u) << distance;
     for (const vo::NewFeature& corner : corners) {
       const double truth = board.InverseDepth(camera.Undistort(corner.pixel.cast<double>()));
-      EXPECT_NEAR(corner.depth->inverse_depth / truth, 1, 2e-3);  // one part in 2000 is what comes out
+      EXPECT_NEAR(corner.depth->inverse_depth / truth, 1, 2e-3);  // measured: one part in 2000
       EXPECT_NEAR(corner.depth->inverse_depth, truth, 3 * corner.depth->sigma);
       EXPECT_LT(corner.depth->sigma / truth, 0.02);
     }
@@ -84,7 +84,7 @@ TEST(Target, IsNotFoundWhereTheLensHasNoRay) {
   const cv::Mat beside = Picture({Vector3d(0.02, 0, 0.8), Eigen::Matrix3d::Identity()}, pinhole, 3, 1);
   EXPECT_EQ(vo::FindTarget(beside, pinhole, kBoard, 0.2).size(), 54u);
   vo::Camera barrel = pinhole;
-  barrel.k1 = -0.5;  // the radius turns 286 px from the middle, the board reaches to 320
+  barrel.k1 = -0.5;  // largest radius: 286 px; the board extends to 320
   EXPECT_TRUE(vo::FindTarget(beside, barrel, kBoard, 0.2).empty());
 }
 

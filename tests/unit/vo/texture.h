@@ -22,7 +22,7 @@ class Texture {
       phase_[i] = static_cast<float>(6.2832 * draws.Uniform());
     }
   }
-  // In single precision, in which Eigen takes four sines at once: right to a thousandth of a grey level.
+  // Single precision, in which Eigen computes four sines at once: accurate to a thousandth of a grey level.
   double At(const Eigen::Vector2d& p) const {
     const Eigen::Vector2f at = p.cast<float>();
     return 128 + scale_ * (x_ * at.x() + y_ * at.y() + phase_).sin().sum();

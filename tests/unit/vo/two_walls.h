@@ -1,4 +1,5 @@
-// Images with exact geometry, without a renderer: a camera in the hand, in front of two textured walls that meet in an edge.
+// Images with exact geometry, without a renderer: a hand-held camera in front of two textured walls that meet in an
+// edge.
 // Units: m, rad, s; poses T_WC; times in frames of 1/30 s.
 #pragma once
 
@@ -23,14 +24,14 @@ inline vo::Pose TruthAt(double k) {
           vo::Exp({0.05 * std::sin(1.7 * t), 0.08 * std::sin(1.1 * t), 0.04 * std::sin(2.1 * t)})};
 }
 
-// Where a ray in W from the camera meets the walls: z = 2 for x < 0 and z = 2 + x / 2 beyond.
+// Intersection of a ray in W from the camera with the walls: z = 2 for x < 0 and z = 2 + x / 2 beyond.
 inline Eigen::Vector3d OnTheWalls(const vo::Pose& pose, const Eigen::Vector3d& ray) {
   const Eigen::Vector3d X = pose.p_WC + ray * (2 - pose.p_WC.z()) / ray.z();
   if (X.x() <= 0) return X;
   return pose.p_WC + ray * (2 + 0.5 * pose.p_WC.x() - pose.p_WC.z()) / (ray.z() - 0.5 * ray.x());
 }
 
-// The walls. pose_of(y): of the camera when it takes row y.
+// Image of the walls. pose_of(y): pose of the camera at the exposure of row y.
 template <class PoseOf>
 cv::Mat ViewByRows(const PoseOf& pose_of, const Texture& texture) {
   cv::Mat image(kCamera.height, kCamera.width, CV_8UC1);
@@ -49,7 +50,8 @@ inline cv::Mat ViewFrom(const vo::Pose& pose, const Texture& texture) {
   return ViewByRows([&](int) { return pose; }, texture);
 }
 
-// The same through a shutter that takes `readout` [s] for its rows; pose_at(k): of the frame's number, which may be broken.
+// The same through a rolling shutter of readout time `readout` [s]. pose_at(k): pose at frame k, which may be
+// fractional.
 template <class PoseAt>
 cv::Mat RolledView(const PoseAt& pose_at, int k, double readout, const Texture& texture) {
   return ViewByRows([&](int y) { return pose_at(k + 30 * readout * (y / (kCamera.height - 1.0) - 0.5)); }, texture);

@@ -40,8 +40,9 @@ TEST(Unscented, IsExactForALinearFunction) {
   }
 }
 
-// y = x^2, x ~ N(m, s^2): the mean m^2 + s^2 is exact for any spread; the variance of the transform is 4 m^2 s^2 + (alpha^2 kappa' - 1
-// + beta - alpha^2 + 1) s^4 with kappa' = n + kappa and n = 1, and the true 4 m^2 s^2 + 2 s^4 for the defaults.
+// y = x^2, x ~ N(m, s^2): the mean m^2 + s^2 is exact for any spread. The variance of the transform is 4 m^2 s^2 +
+// (alpha^2 kappa' - 1 + beta - alpha^2 + 1) s^4 with kappa' = n + kappa and n = 1, and the true 4 m^2 s^2 + 2 s^4 for
+// the defaults.
 TEST(Unscented, QuadraticHasTheKnownResult) {
   const double m = 1.3, s = 0.7;
   for (const vo::UnscentedParams& params : kSpreads) {
@@ -116,7 +117,8 @@ Scene MakeScene(std::uint64_t seed, int count, double pose_scale, double depth_s
   return scene;
 }
 
-// Where everything is nearly linear the unscented proposal is the EKF's; the difference falls with the square of the spread.
+// Unscented proposal of a nearly linear model: that of the EKF, up to a difference that falls with the square of the
+// spread.
 TEST(UnscentedProposal, IsTheEkfWhereTheModelIsLinear) {
   for (const bool fixed : {false, true}) {
     const Scene scene = MakeScene(3, 12, 1e-6, 1e-6, 1e-6, fixed);
@@ -140,7 +142,7 @@ TEST(UnscentedProposal, IsTheEkfWhereTheModelIsLinear) {
   }
 }
 
-// One feature: the statistical linearisation in information form is the textbook update with gain P_xz P_zz^-1.
+// Statistical linearisation in information form with one feature: the update with gain P_xz P_zz^-1.
 TEST(UnscentedProposal, OneFeatureIsTheTextbookUpdate) {
   const Scene scene = MakeScene(5, 1, 0.05, 0.1, 0.01, false);
   const vo::Landmark& landmark = scene.landmarks[0];
@@ -162,7 +164,7 @@ TEST(UnscentedProposal, OneFeatureIsTheTextbookUpdate) {
               1e-8);
 }
 
-// Far from linear the mean of the transform is closer to the truth (10^5 samples) than the projection of the mean is.
+// Mean of the transform far from linear: closer to the true mean (10^5 samples) than the projection of the mean.
 TEST(UnscentedProposal, MeanBeatsTheLinearisation) {
   vo::Landmark landmark;
   landmark.mean = Vector3d(0.2, -0.1, 0.25);

@@ -1,4 +1,4 @@
-// Velocity correction after a gap, by which the rows of a rolling shutter are corrected: it follows from the whole gap.
+// Velocity correction over the whole of a gap, applied to the rows of a rolling shutter.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,8 +11,8 @@
 
 namespace {
 
-// By hand: position and velocity of one axis after T, both from a velocity of variance V and white acceleration of density q, have the variance
-// V T^2 + q T^3 / 3 and the covariance V T + q T^2 / 2.
+// Gain (V T + q T^2 / 2) / (V T^2 + q T^3 / 3) of one axis: covariance of velocity and position after T over the
+// position's variance, with a velocity of variance V and white acceleration of density q.
 TEST(VelocityCorrection, IsOverTheWholeGap) {
   const vo::MotionParams motion{.position_noise = 2.5, .orientation_noise = 1};
   vo::SinceUpdate last;
@@ -35,7 +35,7 @@ TEST(VelocityCorrection, IsOverTheWholeGap) {
 
 constexpr double kReadout = 0.026;
 
-// Orientation error [rad] of the first image after so many dark ones.
+// Orientation error [rad] of the first image after `dark` dark ones.
 double ErrorAfter(int dark, int lag) {
   constexpr int kLit = 25;
   const vo_test::Texture texture(2, 40.0, 24);
@@ -54,8 +54,9 @@ double ErrorAfter(int dark, int lag) {
   return vo::Minus(estimate.pose, vo_test::TruthAt(kLit + dark)).tail<3>().norm();
 }
 
-// Given the pose after T, what nearly constant velocity leaves of the velocity's variance is q T / 4 at the least: so far, in half the readout, the
-// outermost rows may be off. With the gain of one frame's time it was 7 mrad after 5 dark frames, and 93 after 20.
+// Orientation error of the first image after a gap T. Given the pose after T, the velocity's variance under nearly
+// constant velocity is at least q T / 4; the bound is its standard deviation times half the readout, at the outermost
+// rows. With the gain of one frame's time the error is 7 mrad after 5 dark frames, and 93 after 20.
 TEST(VelocityCorrection, StraightensTheFirstImageAfterAGap) {
   for (const int lag : {0, 5}) {
     const double without = ErrorAfter(0, lag);

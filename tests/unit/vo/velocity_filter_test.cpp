@@ -1,5 +1,5 @@
-// The heart of the filter: conditional on any path s_pf, the velocity filter must equal one joint Kalman filter on (s_pf, s_kf)
-// that is told the path exactly.
+// Velocity filter conditional on any path s_pf: equal to one joint Kalman filter on (s_pf, s_kf) that observes the path
+// without noise.
 
 #include "vo/filter/velocity_filter.h"
 
@@ -24,7 +24,7 @@ struct Step {
   MatrixXd F, Q;
 };
 
-// General: F21 != 0, F22 invertible, every block of Q full; a matrix that depends on a varying time step.
+// General model of a step: F21 != 0, F22 invertible, every block of Q full, and a varying time step.
 template <int P, int K>
 Step RandomStep(Draws& draws) {
   const double dt = 0.02 + 0.08 * std::abs(draws.Symmetric());
@@ -34,7 +34,7 @@ Step RandomStep(Draws& draws) {
   return {F, dt * (root * root.transpose() + 0.1 * MatrixXd::Identity(P + K, P + K))};
 }
 
-// The reference: a textbook Kalman filter on the whole state, each step's s_pf then observed without noise.
+// Reference: Kalman filter on the whole state, with s_pf observed without noise after each step.
 class JointFilter {
  public:
   JointFilter(const VectorXd& s_pf, const VectorXd& s_kf, const MatrixXd& covariance_kf)
@@ -62,7 +62,7 @@ class JointFilter {
   MatrixXd S_;
 };
 
-// (37)-(43) once more, plainly, with the paper's misprints on request.
+// (37)-(43) in plain form, optionally with the paper's misprints.
 struct Print {
   bool psi_not_a_root = false;    // (18): Psi itself is Q11 - Q12 Q22^-1 Q21
   bool cross_transposed = false;  // (41): H Lambda Gamma' + Gamma Lambda' H'
@@ -143,8 +143,8 @@ TEST(VelocityFilter, EveryMisprintIsSeen) {
   }
 }
 
-// With nearly constant velocity all factors of (41) commute, so the transposed cross terms cannot show there: why the test above
-// uses a general F.
+// (41) with nearly constant velocity: all factors commute, so that transposed cross terms make no difference. The test
+// above therefore uses a general F.
 TEST(VelocityFilter, TransposedCrossTerms) {
   const vo::MotionModel model = vo::NearlyConstantVelocity({}, 1.0 / 30);
   const Step step{model.F, model.Q};
@@ -166,7 +166,7 @@ TEST(VelocityFilter, CorrelationIsNotDropped) {
   for (unsigned seed = 1; seed <= 10; ++seed) EXPECT_GT((WorstDifference<6, 6>(seed, without_cross)), 1e-2);
 }
 
-// A lens covered for many coasting times: one long step whose velocity has all but decayed, which (22) divides by.
+// Gap of many coasting times: one long step whose velocity has almost decayed, by which (22) divides.
 TEST(VelocityFilter, HoldsAfterALongGap) {
   for (const double dt : {0.5, 2.0, 10.0, 60.0, 600.0}) {
     const vo::MotionModel model = vo::NearlyConstantVelocity({}, dt, {.coasting_s = dt});

@@ -1,4 +1,4 @@
-// A video file gives all of its frames; a camera the newest one, here over HTTP as network cameras send them.
+// Frames of videos: all of a file's, and the newest one of a camera, here a network camera over HTTP.
 #include "vo/sequence/video.h"
 
 #include <arpa/inet.h>
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-// Frame k is of one brightness.
+// Frame k, of uniform brightness.
 cv::Mat Picture(int k) { return {48, 64, CV_8UC3, cv::Scalar::all(8 * (k % 30))}; }
 
 std::string ErrorOf(const std::string& what) {
@@ -57,7 +57,7 @@ TEST(VideoFile, WhatCannotBeOpenedIsNamed) {
   EXPECT_THAT(ErrorOf("camera:99"), HasSubstr("camera:99: no pictures come from there"));
 }
 
-// Sends motion JPEG, a picture each 10 ms, to one client on the loopback interface; ends after so many.
+// Motion JPEG server on the loopback interface: one client, a picture each 10 ms, `pictures` in all.
 class MotionJpegCamera {
  public:
   explicit MotionJpegCamera(int pictures) : pictures_(pictures) {
@@ -73,7 +73,7 @@ class MotionJpegCamera {
     sender_ = std::thread([this] { Send(); });
   }
   ~MotionJpegCamera() {
-    shutdown(socket_, SHUT_RDWR);  // if nobody came
+    shutdown(socket_, SHUT_RDWR);  // ends accept() without a client
     sender_.join();
     close(socket_);
   }

@@ -1,5 +1,5 @@
-// What a camera sees that flies sideways past a wall in front of it, without a renderer: for tests of what a filter does whatever
-// the images say.
+// Measurements of a camera that flies sideways past a wall in front of it, without a renderer: for tests that do not
+// depend on the images.
 // Units: the plane z = 1 of an undistorted camera.
 #pragma once
 

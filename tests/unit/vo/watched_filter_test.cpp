@@ -1,5 +1,5 @@
-// What is no number, or no covariance, put into every part of a filter's state, and into all that a filter is told or says: it never passes
-// for an answer.
+// Non-finite numbers and invalid covariances in every part of a filter's state, inputs and outputs: none passes for an
+// answer.
 #include "vo/filter/watched_filter.h"
 
 #include <gmock/gmock.h>
@@ -54,7 +54,7 @@ struct Seen {
   std::optional<vo::FilterFault> fault;
 };
 
-// All that an odometry asks of its filter, frame by frame; `before` is called ahead of each, `between` after the prediction.
+// Calls of an odometry to its filter, frame by frame; `before` is called ahead of each, `between` after the prediction.
 Seen Play(std::unique_ptr<vo::Filter> filter, const std::function<void(int)>& before,
           const std::function<void(int)>& between = {}) {
   Seen seen;
@@ -89,7 +89,7 @@ bool Same(const Seen& a, const Seen& b) {
   return true;
 }
 
-// The state of one particle, written to behind its owner's back: no image leads to what a test puts there.
+// Mutable state of one particle: no image leads to the values that a test sets.
 struct State {
   State(const vo::ParticleFilter& filter, std::size_t i) : particle(const_cast<vo::Particle&>(filter.particles()[i])) {
     if (dynamic_cast<const vo::WindowPhase*>(&filter.phase())) solution = &particle.solution;
@@ -163,8 +163,8 @@ std::vector<Member> Members() {
 
 class WatchedMember : public testing::TestWithParam<Member> {};
 
-// Into one particle or all, between frames or after the prediction. Then a fault names this frame or one soon after, or a guard counts
-// more than without, or the place was not used any more and every answer is the same: a number that is none changes no answer unseen.
+// Non-finite value in one particle or all, between frames or after the prediction. A fault names this frame or one of
+// the next four, or a guard's count differs, or the value is unused and every answer is the same.
 TEST_P(WatchedMember, NonFiniteStateIsCaught) {
   const Seen healthy = Play(MakeParticles(GetParam().params), {});
   ASSERT_FALSE(healthy.fault) << healthy.fault->what();
@@ -208,7 +208,7 @@ TEST_P(WatchedMember, NonFiniteStateIsCaught) {
 INSTANTIATE_TEST_SUITE_P(Family, WatchedMember, testing::ValuesIn(Members()),
                          [](const auto& member) { return std::string(member.param.name); });
 
-// One particle of eight that is impossible: it is replaced, the others go on, and one of them has its weight.
+// Impossible particle, one of eight: it is counted and replaced, and the others go on.
 TEST(WatchedFilter, AnImpossibleParticleIsReplacedAndCounted) {
   std::unique_ptr<vo::ParticleFilter> filter = MakeParticles(Plain());
   vo::ParticleFilter& particles = *filter;
@@ -221,7 +221,7 @@ TEST(WatchedFilter, AnImpossibleParticleIsReplacedAndCounted) {
   EXPECT_LT((seen.beliefs.back().pose.p_WC - healthy.beliefs.back().pose.p_WC).norm(), 0.05);
 }
 
-// All eight at once: they are counted once, and weighed again from then on.
+// All eight particles impossible at once: each is counted once, and the weights are finite from then on.
 TEST(WatchedFilter, WhereAllAreImpossibleTheWeightsBeginAgain) {
   for (const int window : {0, 3, 6}) {
     vo::FilterParams params = Plain();
@@ -241,7 +241,7 @@ TEST(WatchedFilter, WhereAllAreImpossibleTheWeightsBeginAgain) {
   }
 }
 
-// What the filter is told.
+// Invalid inputs of the filter.
 TEST(WatchedFilter, RefusesWhatIsNoMeasurement) {
   using Tell = std::function<void(vo::Filter&)>;
   const auto with_match = [](const std::function<void(vo::Match&)>& spoil) {
@@ -287,7 +287,7 @@ TEST(WatchedFilter, RefusesWhatIsNoMeasurement) {
   }
 }
 
-// An empty map is a state like others: the filter coasts, by whatever member, and takes up new landmarks.
+// Empty map: every member of the family coasts, and accepts new landmarks.
 TEST(WatchedFilter, GoesOnWithAnEmptyMap) {
   for (const Member& member : Members()) {
     vo::WatchedFilter filter(MakeParticles(member.params));
@@ -303,7 +303,7 @@ TEST(WatchedFilter, GoesOnWithAnEmptyMap) {
   }
 }
 
-// A filter whose answers are spoilt one at a time.
+// Filter whose outputs are corrupted one at a time.
 class Broken final : public vo::Filter {
  public:
   vo::EkfSlam good{vo::MotionParams{}, vo_test::SampledAtOnce(), vo::LandmarkParams{}, Prior()};
@@ -360,7 +360,7 @@ class Broken final : public vo::Filter {
   vo::FilterAnswer answer_;
 };
 
-// What the filter says, stage by stage.
+// Invalid outputs of the filter, stage by stage.
 TEST(WatchedFilter, RefusesWhatIsNoAnswer) {
   const std::pair<std::function<void(Broken&)>, const char*> cases[] = {
     {[](Broken& f) { f.spoil_prediction = [](auto& p) { p.mean.p_WC.x() = kNan; }; },
@@ -419,8 +419,7 @@ TEST(WatchedFilter, RefusesWhatIsNoAnswer) {
   EXPECT_FALSE(Play(std::make_unique<Broken>(), {}).fault) << "unspoilt";
 }
 
-// Bad input is refused before anything has changed.
-// A fisheye lens draws what lies farther than 80 degrees from its axis; on the plane z = 1 it has no place.
+// Points farther than 80 degrees from the axis of a fisheye lens: they have a pixel, but no place on the plane z = 1.
 TEST(PointOdometry, LeavesOutWhatAFisheyeSeesBesideIt) {
   const vo::Camera camera{.width = 640, .height = 480, .fx = 100, .fy = 100, .lens = vo::Lens::fisheye};
   vo::PointOdometry odometry(camera, vo::Params(), vo::Prior(), 1);
@@ -440,6 +439,7 @@ TEST(PointOdometry, AnIdIsAnyWholeNumber) {
   for (std::size_t n = 0; n < ids.size(); ++n) EXPECT_EQ(map[n].id, ids[n]);
 }
 
+// Invalid input: refused without a change of the state.
 TEST(PointOdometry, RefusesWhatIsNoPointAndNoPrior) {
   const vo::Camera camera{640, 480, 525, 525, 319.5, 239.5};
   vo::Prior prior;

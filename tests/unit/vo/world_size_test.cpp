@@ -1,5 +1,5 @@
-// The same images in a world of another size: 4096 times smaller (landmarks at a millimetre) and larger (at sixteen kilometres). All that a
-// filter knows of metres is told to it, so its answer is the same but for the size.
+// Same images in a world of another size: 4096 times smaller (landmarks at a millimetre) and larger (at sixteen
+// kilometres). All lengths are parameters of the filter, so that its answer is the same up to the size.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,8 @@ struct Member {
   vo::FilterParams params;
 };
 
-// Not among them: RB-PF, which draws velocities along the axes of their covariance. Size turns these: the same distribution, other draws.
+// Members of the family, except RB-PF: it draws velocities along the axes of their covariance, which rotate with the
+// size, so that the distribution is the same, but not the draws.
 std::vector<Member> Members() {
   vo::FilterParams plain;
   plain.particles = 8;
@@ -38,7 +39,7 @@ std::vector<Member> Members() {
   return members;
 }
 
-// A camera that flies an arc past a slope; answers in metres over `size`.
+// Posteriors of a camera on an arc past a slope, in metres over `size`.
 std::vector<vo::Belief> Fly(const vo::FilterParams& params, double size) {
   vo::MotionParams motion;
   motion.position_noise *= size;
@@ -111,7 +112,7 @@ TEST_P(WorldSize, ChangesNothingButTheSize) {
 INSTANTIATE_TEST_SUITE_P(Family, WorldSize, testing::ValuesIn(Members()),
                          [](const auto& member) { return std::string(member.param.name); });
 
-// Variances below the smallest normal number: a start that is as good as known, and no number that is none.
+// Denormal prior variances: in effect a known start, without non-finite numbers.
 TEST(WorldSize, DenormalVariancesAreVariances) {
   for (const Member& member : Members()) {
     vo::FilterPrior prior;
