@@ -1,5 +1,5 @@
-// Time to look for 200 landmarks at every pixel of their windows, against the window's side, for each instruction set
-// of this machine, and for OpenCV's BRISK (which estimates an orientation at each pixel as well). docs/performance.md.
+// Time to search the windows of 200 landmarks at every pixel, by window side and instruction set; and that of OpenCV's
+// BRISK, which estimates an orientation at each pixel as well. docs/performance.md.
 #include <benchmark/benchmark.h>
 
 #include <opencv2/features2d.hpp>

@@ -1,5 +1,4 @@
-// One frame of scenes/room.yaml, 640 x 480, by each renderer: what an exposure of 1 and of 16 time samples takes, wall
-// time.
+// Wall time of one exposure with 1 and with 16 time samples, by renderer: scenes/room.yaml, 640 x 480.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// Time of the filter per frame, against particles, features and lag: one Track in a point world that has run for a
-// while. docs/performance.md.
+// Time of the filter per frame, against particles, features and lag: one Track in a point world after a warm-up.
+// docs/performance.md.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ void TrackOneFrame(benchmark::State& state, const Setting& setting, std::int64_t
 }
 
 constexpr std::int64_t kWarm = 30, kMeasured = 60;
-// Big settings need fewer frames for the same certainty.
+// Number of measured frames: fewer for more particles.
 std::int64_t FramesFor(std::int64_t particles) { return std::clamp<std::int64_t>(4096 * 4 / particles, 8, kMeasured); }
 
 void Particles(benchmark::State& state) {

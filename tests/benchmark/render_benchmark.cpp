@@ -1,10 +1,10 @@
-// What a finished sample costs beside a bare ray of Embree, on the same rays, for each instruction set that this
-// machine has:
+// Cost of a shaded sample against that of a bare Embree ray, on the same rays, for each instruction set of this
+// machine:
 //
 //   render_benchmark --benchmark_repetitions=5
 //
-// The scene is a hall of columns made here: 300 000 triangles, 27 MB of pictures with their mip chains. One core but
-// for the last ones. ns: per ray.
+// The scene is a generated hall of columns: 300 000 triangles, 27 MB of textures with their mip levels. One core,
+// except for the last benchmarks. ns: per ray.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
@@ -80,8 +80,8 @@ void AddSheet(Scene& scene, int n_s, int n_t, int material, glm::vec2 repeats, c
   scene.meshes.push_back(std::move(mesh));
 }
 
-// detail: more triangles by its square.
-// 20 m x 8 m x 6 m, two rows of fluted columns, arches above them, an uneven floor.
+// Hall of 20 m x 8 m x 6 m: two rows of fluted columns, arches above them, an uneven floor. The number of triangles
+// grows with the square of `detail`.
 Scene Hall(double detail = 1) {
   Scene scene;
   const auto steps = [&](int n) { return std::max(2, static_cast<int>(std::lround(n * detail))); };
@@ -144,7 +144,7 @@ class Still : public Trajectory {
   Motion At(double) const override { return {HallPose()}; }
 };
 
-// Light that looks as if baked: what it says does not matter to its cost.
+// Synthetic baked light: the cost of a lookup does not depend on the values.
 BakedLight SomeLight(const RayScene& rays) {
   BakedLight light;
   light.layers.push_back({});
@@ -156,7 +156,7 @@ BakedLight SomeLight(const RayScene& rays) {
   return light;
 }
 
-// The rays of one picture, as blocks, with their sample.
+// Pixel blocks of one image and their ray sample.
 struct Frame {
   std::vector<PixelBlock> blocks;
   RaySample sample{};
@@ -203,7 +203,7 @@ void Rate(benchmark::State& state) {
                                             benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-// The rays alone: made, cast, and the distance looked at.
+// Bare rays: generated, traced, and one distance read.
 void Bare(benchmark::State& state) {
   const World& world = TheWorld();
   const RaySample& sample = world.frame.sample;
@@ -257,7 +257,7 @@ void Shaded(benchmark::State& state, ExposeBlockFunction expose, int lights, boo
   Rate(state);
 }
 
-// The hall as a glTF file with its pictures beside it, as somebody would have it.
+// The hall as a glTF file with its textures in files beside it.
 void WriteGltf(const Scene& scene, const std::filesystem::path& folder) {
   std::string data, views, accessors, meshes, nodes, materials, textures, images, roots;
   const auto add = [&](const void* from, std::size_t size, std::size_t count, const char* type, int component,
@@ -311,7 +311,8 @@ void WriteGltf(const Scene& scene, const std::filesystem::path& folder) {
                                       << "}],\"bufferViews\":[" << views << "],\"accessors\":[" << accessors << "]}";
 }
 
-// From a file to the first picture: reading, tables and tree, one frame; with baked light from its warm cache, too.
+// Time from the file to the first image: loading, acceleration structure and tables, one frame. Baked light comes from
+// a warm cache.
 void FirstFrame(benchmark::State& state, LightMode mode) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("vobench_hall_" + std::to_string(getpid()));
@@ -352,7 +353,7 @@ struct FrameSettings {
   double detail = 1;
 };
 
-// A walk along the hall, so that a rolling shutter has something to do.
+// A walk along the hall: camera motion for the rolling shutter.
 class Walk : public Trajectory {
  public:
   Motion At(double t_s) const override {
@@ -363,7 +364,7 @@ class Walk : public Trajectory {
   }
 };
 
-// Whole pictures by the renderer, with its threads.
+// Whole images by the renderer, with its threads.
 void WholeFrame(benchmark::State& state, const FrameSettings& settings) {
   RayTracerOptions options;
   options.jobs = static_cast<int>(state.range(0));
@@ -371,7 +372,7 @@ void WholeFrame(benchmark::State& state, const FrameSettings& settings) {
   const Scene detailed = other ? Hall(settings.detail) : Scene();
   const Scene& scene = other ? detailed : TheWorld().scene;
   std::vector<std::string> warnings;
-  const BakeParams quick{1.0, 1.0, 2, 1};  // its cost in a frame is the same
+  const BakeParams quick{1.0, 1.0, 2, 1};  // the cost of a frame does not depend on the paths
   const auto renderer = MakeRayTracer(scene, LitScene(scene, settings.light, quick, {}, warnings), options);
   CameraParams params = HallCamera();
   params.fx = params.fy *= static_cast<double>(settings.width) / kWidth;
@@ -424,8 +425,7 @@ int main(int argc, char** argv) {
     RegisterFrame("frame/baked/" + std::to_string(samples), {.time_samples = samples}, {1, 2});
   RegisterFrame("frame/rolling/1", {.row_delay_s = 0.03 / kHeight}, {1, 2});
   RegisterFrame("frame/rolling/16", {.time_samples = 16, .row_delay_s = 0.03 / kHeight}, {1, 2});
-  // How the time grows, with one core. Half a hundred thousand to five million triangles: without baked light, which
-  // would take its time.
+  // Scaling of the time on one core. 10 000 to 5 000 000 triangles, in direct light: no time for baking.
   for (const int samples : {2, 4, 8, 32})
     RegisterFrame("samples/" + std::to_string(samples), {.time_samples = samples}, {1});
   for (const int width : {320, 640, 1280, 2560}) {

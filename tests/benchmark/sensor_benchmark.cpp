@@ -1,5 +1,5 @@
 // CPU time of a frame at one sample a pixel, by stages, on one thread: rays of the image, sensor, rays of the depth,
-// and the two picture files. scenes/room.yaml, 640 x 480. docs/performance.md.
+// and the two image files. scenes/room.yaml, 640 x 480. docs/performance.md.
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 

@@ -1,6 +1,6 @@
-// CPU time to encode a frame, and its size, beside OpenCV's PNG encoder: a frame of the room with noise, and its depth.
-// Then the wall time of a second of the room at one ray per pixel, which is when writing weighs most: rendered only,
-// and written. docs/performance.md.
+// CPU time to encode a frame, and its size, against OpenCV's PNG encoder: a frame of the room with noise, and its
+// depth. Then the wall time of a second of the room at one ray per pixel, where writing has its largest share: rendered
+// only, and rendered and written. docs/performance.md.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
@@ -42,7 +42,7 @@ void Colour(benchmark::State& state) {
   Size(state, file.size());
 }
 
-// Red and blue must change places first.
+// Includes the conversion from RGB to OpenCV's BGR.
 void ColourOpenCv(benchmark::State& state) {
   const sim::Image& image = Room().image;
   const cv::Mat rgb(image.height, image.width, CV_8UC3, const_cast<std::uint8_t*>(image.data.data()));

@@ -19,7 +19,7 @@ SensorParams Linear() {
   return sensor;
 }
 
-// In a flat linear picture the wanted signal is target * white / radiance: the error's logarithm shrinks by 1 - speed.
+// log e_k+1 = (1 - speed) log e_k: a flat field of linear response, whose wanted signal is target * white / radiance.
 TEST(AutoExposure, MendsItsShareOfTheErrorEachFrame) {
   AutoExposure control(Linear());
   const double wanted = 0.004 * 0.4 / 0.2;
@@ -50,7 +50,7 @@ TEST(AutoExposure, LengthensTheExposureBeforeItAmplifies) {
   control.Meter(Flat(0.4f * 0.004f / 0.030f));
   EXPECT_NEAR(control.setting().exposure_s, 0.010, 1e-9);
   EXPECT_NEAR(control.setting().gain, 3, 1e-4);
-  control.Meter(Flat(0.0f));  // nothing to be seen: all there is
+  control.Meter(Flat(0.0f));  // black: both at their maxima
   EXPECT_NEAR(control.setting().exposure_s, 0.010, 1e-9);
   EXPECT_NEAR(control.setting().gain, 4, 1e-4);
   control.Meter(Flat(1e6f));
@@ -58,7 +58,7 @@ TEST(AutoExposure, LengthensTheExposureBeforeItAmplifies) {
   EXPECT_EQ(control.setting().gain, 1);
 }
 
-// Stripes of colours, some of which saturate: what counts is the picture that the sensor makes of them.
+// Mean of the image after control: coloured stripes, some saturated, metered through the sensor's response.
 TEST(AutoExposure, TheSettledPictureHasTheTargetAsItsMean) {
   RadianceImage frame{30, 20, {}};
   for (int i = 0; i < 30 * 20; ++i) {
@@ -83,7 +83,7 @@ TEST(AutoExposure, TheSettledPictureHasTheTargetAsItsMean) {
     const Image picture = Sensor(sensor, 1, frame.width, frame.height).Capture(frame, 0, control.setting());
     double sum = 0;
     for (const std::uint16_t code : picture.wide) sum += code / 65535.0;
-    // Between two stripes a mosaic's colours are interpolated before the curve's mean is taken.
+    // Demosaicing interpolates colours between two stripes ahead of the response curve: a wider bound.
     EXPECT_NEAR(sum / static_cast<double>(picture.wide.size()), 0.4, sensor.mosaic == Mosaic::demosaiced ? 0.01 : 1e-4)
         << "black level " << sensor.black_level << ", colour " << sensor.color << ", mosaic "
         << static_cast<int>(sensor.mosaic) << ", dark current " << sensor.dark_current_e_s;

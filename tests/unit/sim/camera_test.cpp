@@ -71,13 +71,13 @@ TEST(Camera, ALensThatFoldsOverInsideTheImageIsRefused) {
   params.k1 = -0.15;  // largest at r = 1.49, where it is 0.99
   EXPECT_THAT(Problems(params), IsEmpty());
   params.k1 = 0;
-  // Folds at r = 0.41, where r d(r) is 0.34, and grows again from r = 0.73: not one-to-one all the same.
+  // r d(r) has a maximum of 0.34 at r = 0.41 and grows again from r = 0.73: not one-to-one.
   params.k2 = -8;
   params.k3 = 10;
   EXPECT_THAT(Problems(params), testing::SizeIs(1));
 }
 
-// Between the middle and the corners d r'/d r falls to 0.13, and rises to 1.27: Newton's method fails in four steps.
+// dr'/dr falls to 0.13 between the centre and the corners and rises to 1.27: four steps of Newton's method fail.
 TEST(Camera, ALensThatIsOneToOneToTheCornersIsTaken) {
   const CameraParams params{640, 480, 410.116, 410.116, 319.5, 239.5, -0.54373, 0.17518, 0, 0, -0.01466};
   EXPECT_THAT(Problems(params), IsEmpty());
@@ -154,7 +154,7 @@ TEST(Camera, AFisheyeLensIsUndone) {
     }
   }
   EXPECT_LT(worst_px, 0.003);
-  EXPECT_GT(widest, 1.6);  // the corners look back
+  EXPECT_GT(widest, 1.6);  // the corners are beyond 90 degrees
   EXPECT_THROW(camera.Undistort({-0.5, -0.5}), std::invalid_argument);
   EXPECT_NEAR(camera.Undistort(camera.Project({0.3, -0.2, 1})).x, 0.3, 1e-12);
 }
@@ -167,7 +167,7 @@ TEST(Camera, AFisheyeLensHasItsOwnFaults) {
   params.k1 = -0.3;  // r(theta) is largest at 1.05
   EXPECT_THAT(Join(Problems(params), "; "), testing::StartsWith("distortion folds over inside the image"));
   params = TumVi();
-  params.fx = params.fy = 70;  // the corners would lie beyond straight back
+  params.fx = params.fy = 70;  // the corners would be beyond 180 degrees from the axis
   EXPECT_THAT(Problems(params), testing::SizeIs(1));
   params = WorkedByHand();
   params.k4 = 0.1;

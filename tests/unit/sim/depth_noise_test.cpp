@@ -11,16 +11,16 @@ constexpr int kWidth = 200, kHeight = 150;
 
 std::vector<float> Wall(double z) { return std::vector<float>(kWidth * kHeight, static_cast<float>(z)); }
 
-// On a wall at the disparity d = 351.3 m / Z the rounded disparity is d + k with the probability that d + n rounds to
-// it. Pearson's chi-squared of the three commonest and the rest; 3 degrees of freedom, beyond 30.66 with probability
-// 1e-6. Twice the disparity noise is rejected.
+// Distribution of round(d + n), d = 351.3 m / Z, on a wall of constant depth. Pearson's chi-squared over the three
+// commonest values and the rest, 3 degrees of freedom: beyond 30.66 with probability 1e-6. Control: twice the disparity
+// noise is rejected.
 TEST(DepthNoise, DisparitiesAreRoundedNoisyOnes) {
   const double disparity = 100.2, z = 351.30 / disparity;
   const std::vector<float> noisy = WithKinectNoise(Wall(z), kWidth, kHeight, 5, 0);
   double counts[3] = {}, n = 0;
   for (const float depth : noisy) {
     const double d = 351.30 / static_cast<double>(depth);
-    ASSERT_NEAR(d, std::round(d), 1e-4);  // whole
+    ASSERT_NEAR(d, std::round(d), 1e-4);
     const double k = std::round(d) - 99;
     if (k >= 0 && k < 3) counts[static_cast<int>(k)] += 1;
     n += 1;
@@ -40,8 +40,8 @@ TEST(DepthNoise, DisparitiesAreRoundedNoisyOnes) {
   EXPECT_GT(score(2.0 / 6), 30.66);
 }
 
-// Beside an edge pixels look across it by the shift, a normal number of half a pixel: the pixel at whose border the
-// edge lies sees the other side when its shift is beyond half a pixel. 150 of them, binomial; false alarms 1e-6 (4.9
+// Lateral noise at a depth edge: a normal shift of standard deviation 0.5 px. A pixel whose border is the edge has the
+// depth of the other side when its shift is beyond 0.5 px. 150 such pixels, binomial; false-alarm rate 1e-6 (4.9
 // sigma).
 TEST(DepthNoise, EdgesFray) {
   std::vector<float> depth = Wall(2);

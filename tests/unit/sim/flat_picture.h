@@ -1,4 +1,4 @@
-// Pictures of one radiance everywhere, and how far a statistic of them may stray.
+// Flat fields: images of uniform radiance, and the bound on a z-score of them.
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -20,8 +20,8 @@ RoamingMotion Free(GaitModel model) {
   return motion;
 }
 
-// Within a piece of the spline the position is a cubic, of which the fourth-order stencil leaves rounding alone: some
-// 1e-16 m / 1 ms. The orientation's fifth derivative is below 1e6 rad/s^5: h^4/30 of it, 3e-8.
+// Error of the fourth-order stencil with h = 1 ms. Position: a cubic on each segment of the spline, so rounding alone,
+// some 1e-16 m / 1 ms. Orientation: h^4/30 times a fifth derivative below 1e6 rad/s^5, 3e-8.
 TEST(Gait, VelocitiesAndAccelerationsAreTheDerivatives) {
   constexpr double kStep = 1e-3;
   for (const GaitModel model : {GaitModel::handheld, GaitModel::drone}) {
@@ -61,8 +61,8 @@ GaitParams With(double vehemence, double tremor) {
   return params;
 }
 
-// The mean of |a|^2 over independent seeds, in standard errors from what the table says. 4.5 of them: once in 150 000
-// times for each of the two kinds.
+// Mean of |a|^2 over independent seeds minus that of the table, in standard errors. False-alarm rate of 4.5: 1 in
+// 150 000.
 double DeviationOfTremor(double tremor, double stated) {
   GaitParams params = With(0, tremor);
   params.speed = params.turn_rate = 100;
@@ -104,7 +104,7 @@ TEST(Gait, AShakeIsAddedToThePath) {
   EXPECT_NEAR(rms(With(2, 2)) / rms({}), 2, 1e-3) << "the same numbers, twice as large";
 }
 
-// Along its own axis, level; keys hold this, the spline between them to its curvature.
+// Velocity along the vehicle's own axis, level: exact at the keys, and to the spline's curvature between them.
 TEST(Vehicle, DoesNotSlip) {
   RoamingMotion motion;
   motion.gait.model = GaitModel::vehicle;

@@ -10,8 +10,8 @@
 
 namespace sim {
 
-// The pose's numerical derivatives (fourth order, step h) minus the velocities that are claimed: of the position, of
-// the orientation; and those of the velocities minus the accelerations.
+// Numerical derivatives (fourth order, step h) of position, orientation, velocity and angular rate minus the
+// trajectory's own.
 struct RateErrors {
   double v = 0, w = 0, a = 0, alpha = 0;
 };

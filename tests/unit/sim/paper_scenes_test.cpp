@@ -1,4 +1,4 @@
-// The scenarios in scenes/paper move as fast as the paper's sequences do on average (its Table I), and last as long.
+// Mean speeds and durations of the scenarios in scenes/paper against the paper's sequences (its Table I).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,7 +46,7 @@ struct Row {
   double linear_cm_s, angular_deg_s;
   int frames;
 };
-// The first five: the paper's Table I. Of the living room it gives no speeds: docs/scenes.md has ours.
+// The first five: the paper's Table I, which has no speeds of the living room; those are from docs/scenes.md.
 constexpr Row kRows[] = {{"sit_halfsphere", 18.0, 19.1, 900}, {"str_tex_near", 14.1, 7.7, 900},
                          {"str_tex_far", 19.3, 4.3, 900},     {"str_notex_far", 16.6, 4.0, 900},
                          {"sit_rpy", 4.2, 23.8, 900},         {"lr_kt0", 12.6, 12.0, 900},
@@ -64,7 +64,7 @@ TEST(PaperScenes, MeanSpeedsAreThoseOfTableI) {
   }
 }
 
-// The integral sees a path that is 3 % too fast, and one that looks elsewhere at one key.
+// Controls: a path that is 3 % too fast, and one with another orientation at one key, are rejected.
 TEST(PaperScenes, WrongSpeedsAreSeen) {
   const MeanSpeeds fast = SpeedsOf("str_tex_near", {{"trajectory.speed", "0.1452 m/s"}, {"time.duration", "29.1 s"}});
   EXPECT_FALSE(Near(fast.linear_cm_s, 14.1));

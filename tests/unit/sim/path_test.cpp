@@ -52,7 +52,7 @@ TEST(Path, RatesAndAccelerationsAreTheDerivatives) {
   EXPECT_EQ(path.At(0).pose.p_WC, Everything().start.p_WC);
 }
 
-// A quarter of a turn about the y axis takes +z to +x; the middle of the picture stays on the centre all the way.
+// Orbit about the y axis: a quarter turn takes +z to +x; the centre stays on the optical axis.
 TEST(Path, OrbitByHand) {
   const PathTrajectory orbit(
       ReadPath("{type: orbit, start: {position: [0, 1, 3], look_at: [0, 1, 0]}, center: [0, 1, 0], period: 8 s}"));

@@ -1,4 +1,4 @@
-// Paths in a room of 8 x 3 x 8 m with a pillar, whose distances are known in closed form.
+// Paths in a room of 8 x 3 x 8 m with a pillar, with distances to surfaces in closed form.
 #include "sim/motion/placement.h"
 
 #include <gmock/gmock.h>
@@ -24,7 +24,7 @@ struct Box {
 };
 const Box kRoom{{0, 0, 0}, {8, 3, 8}}, kPillar{{3.5, 0, 3.5}, {4.5, 3, 4.5}};
 
-// From inside the room and outside the pillar.
+// Closed form inside the room and outside the pillar.
 double DistanceToSurface(const glm::dvec3& p) {
   const glm::dvec3 in = glm::min(p - kRoom.low, kRoom.high - p);
   const glm::dvec3 out = glm::max(glm::max(kPillar.low - p, p - kPillar.high), glm::dvec3(0));
@@ -143,7 +143,7 @@ TEST_F(Room, CarriedCamerasKeepTheirClearance) {
               HasSubstr("keeps the clearance of 1.49 m"));
 }
 
-// Two keys give a straight line at constant speed: 1 m to the pillar of 4.
+// A straight line of 4 m at constant speed between two keys, which meets the pillar after 1 m.
 TEST_F(Room, AWallThatIsPassedThroughIsNamedWithItsTime) {
   const auto through = [](const std::string& z) {
     return "{type: scripted, keys: [{time: 0 s, position: [2.5, 1, " + z + "]}, {time: 2 s, position: [6.5, 1, " + z +

@@ -1,4 +1,4 @@
-// PNG files hold what was put in: OpenCV (libpng) reads the same samples, pngcheck finds no fault.
+// Round trip of PNG files: OpenCV (libpng) decodes the same samples, pngcheck finds no fault.
 #include <gtest/gtest.h>
 #include <libdeflate.h>
 
@@ -33,7 +33,7 @@ std::vector<T> Samples(Picture picture, int count) {
   return samples;
 }
 
-// As OpenCV reads it: red first, samples in order.
+// Samples decoded by OpenCV, red first.
 template <class T>
 std::vector<T> Decoded(const std::vector<std::uint8_t>& png, int width, int height, int channels) {
   cv::Mat image = cv::imdecode(png, cv::IMREAD_UNCHANGED);
@@ -85,7 +85,7 @@ TEST(Png, OtherReadersFindNoFault) {
   }
 }
 
-// By the words of the standard, with ints: a second, slow way to the same.
+// Paeth filter against the definition of the standard, in integers.
 TEST(Png, PaethFilterIsThatOfTheStandard) {
   constexpr std::size_t kSize = 1000;
   const std::vector<std::uint8_t> row = Samples<std::uint8_t>(Picture::noise, kSize), above(row.rbegin(), row.rend());
@@ -102,7 +102,7 @@ TEST(Png, PaethFilterIsThatOfTheStandard) {
   }
 }
 
-// The same bytes on every processor, at any address: another version of libdeflate may write others.
+// Checksums of files: equal on every processor, at any address, for one version of libdeflate.
 TEST(Png, BytesAreKnown) {
   if (std::string(LIBDEFLATE_VERSION_STRING) != "1.14") GTEST_SKIP() << "known for libdeflate 1.14 only";
   const auto sum = [](const std::vector<std::uint8_t>& bytes) {  // FNV-1a
@@ -114,7 +114,7 @@ TEST(Png, BytesAreKnown) {
   EXPECT_EQ(sum(EncodePng(640, 480, 1, Samples<std::uint16_t>(Picture::ramp, 640 * 480))), 5950079257380155211u);
 }
 
-// A depth picture says where its range ends, if some of it is beyond.
+// Depth beyond the range of 16 bits: a sample of 0, and a text chunk with the range and the number of such pixels.
 TEST(Png, DepthBeyondItsRange) {
   const std::vector<float> near = {0.5F, 13.107F, 0.0F, 2.0F}, far = {0.5F, 13.1072F, 90.0F, 2.0F};
   const std::vector<std::uint8_t> of_near = EncodeDepthPng(near, 2, 2), of_far = EncodeDepthPng(far, 2, 2);

@@ -13,9 +13,9 @@ namespace sim {
 namespace {
 
 constexpr int kViews = 40000;
-constexpr double kZ = 5;  // standard deviations; beyond them once in 1.7 million
+constexpr double kZ = 5;  // standard deviations; false-alarm rate 1 in 1.7 million
 
-// Of kViews views of a landmark at the middle of the image: how many are missing, and how far the others are from it.
+// kViews measurements of a landmark at the middle of the image: the number of missing ones, the errors of the others.
 struct Views {
   double missing = 0;
   std::vector<glm::dvec2> errors;
@@ -33,7 +33,7 @@ Views Measured(const PointMeasurement& measurement, double moved_px = 0) {
   return views;
 }
 
-// Standard deviations between a count and what a probability makes of n.
+// z-score of a binomial count: (count - n p) / sqrt(n p (1 - p)).
 double Score(double count, double n, double probability) {
   return (count - n * probability) / std::sqrt(n * probability * (1 - probability));
 }
@@ -56,14 +56,14 @@ TEST(PointMeasurement, OutliersAreAsManyAsAskedForAndUniform) {
   double far = 0, inner = 0;
   for (const glm::dvec2& e : Measured(measurement).errors) {
     EXPECT_LE(glm::length(e), 40);
-    far += glm::length(e) > 8;  // noise reaches that far once in 8e13
+    far += glm::length(e) > 8;  // noise beyond 8 px: 1 in 8e13
     inner += glm::length(e) > 8 && glm::length(e) <= 24;
   }
   const double share = 1 - 64.0 / 1600;  // of the disc
   EXPECT_LT(std::abs(Score(far, kViews, 0.05 * share)), kZ);
   EXPECT_GT(std::abs(Score(far, kViews, 0.06 * share)), kZ);
   EXPECT_LT(std::abs(Score(inner, far, (576.0 - 64) / (1600 - 64))), kZ) << "by area";
-  // In the whole image: mean and corners.
+  // Uniform over the whole image: bounds, and the shares of the left and upper quarters.
   measurement.outlier_radius_px = 0;
   measurement.outlier_probability = 1;
   double left = 0, top = 0;
@@ -89,12 +89,12 @@ TEST(PointMeasurement, BlurLosesByItsLength) {
   const double missing = Measured(measurement, 6).missing, p = 81.0 / (256 + 81);
   EXPECT_LT(std::abs(Score(missing, kViews, p)), kZ);
   EXPECT_GT(std::abs(Score(missing, kViews, 1.1 * p)), kZ);
-  // Dropped or blurred: either is enough.
+  // Drops and blur are independent: 1 - (1 - 0.5)(1 - p).
   measurement.drop_probability = 0.5;
   EXPECT_LT(std::abs(Score(Measured(measurement, 6).missing, kViews, 1 - 0.5 * (1 - p))), kZ);
 }
 
-// A camera that turns about its y axis by w: a point at (x, y) on the plane z = 1 moves by (1 + x^2, x y) w per second.
+// Image velocity (1 + x^2, x y) w of a point at (x, y) on the plane z = 1: a camera that turns about its y axis at w.
 TEST(PointMeasurement, AWorldLosesWhatItsCameraBlurs) {
   Scenario scenario = PointScenario();
   scenario.time.duration_s = 4;
@@ -127,7 +127,7 @@ TEST(PointMeasurement, AWorldLosesWhatItsCameraBlurs) {
   EXPECT_GT(std::abs(in_view - seen - with_tenth_more) / std::sqrt(variance), kZ);
 }
 
-// It is what a landmark is known by: always there, never somewhere else.
+// First view of a landmark, which defines its appearance: never dropped, never an outlier.
 TEST(PointMeasurement, AFirstViewHasNoiseOnly) {
   Scenario scenario = MovingPointScenario();
   scenario.points->measurement.drop_probability = 0.5;

@@ -16,8 +16,8 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Looks along -z, upright in a world whose up is y: x right, y down = -y, z = -z. From (1, 2, 3), and after a second
-// from half a metre further to the right.
+// Camera along -z, upright in a world with y up: x right, y down = -y, z = -z. At (1, 2, 3), and a second later half a
+// metre further to the right.
 Scenario TwoFrames() {
   Scenario scenario = PointScenario();
   scenario.time = {1, 2};
@@ -35,7 +35,7 @@ TEST(PointWorld, ProjectsAsWorkedByHand) {
   EXPECT_NEAR(world.Project(point, 0)->x, 450.75, 1e-10);
   EXPECT_NEAR(world.Project(point, 0)->y, 305.125, 1e-10);
   EXPECT_NEAR(world.Project(point, 1)->x, 319.5, 1e-10);
-  // At infinity, X_C = (0.1, 0.2, 1): the camera's place does not matter.
+  // At infinity, X_C = (0.1, 0.2, 1) in both frames.
   const PointLandmark star{0, {0.1, -0.2, -1, 0}, 0};
   for (const std::int64_t frame : {0, 1}) {
     EXPECT_NEAR(world.Project(star, frame)->x, 372, 1e-10);
@@ -104,8 +104,8 @@ TEST(PointWorld, AFrameHasCountViewsInOrderAndItsTruth) {
     EXPECT_EQ(world.landmarks()[i].id, static_cast<std::int64_t>(i));
 }
 
-// Squares of the noise of all views over sigma^2: chi-square with 2 degrees of freedom each. Five standard deviations
-// are left once in 1.7 million.
+// Squared noise of all views over sigma^2: chi-squared with 2 degrees of freedom each. False-alarm rate at five
+// standard deviations: 1 in 1.7 million.
 TEST(PointWorld, NoiseIsGaussianWithTheSigmaAskedFor) {
   Scenario scenario = MovingPointScenario();
   scenario.time.duration_s = 10;
@@ -141,8 +141,8 @@ TEST(PointWorld, NoiseIsGaussianWithTheSigmaAskedFor) {
   EXPECT_LT(std::abs(in_time) / std::sqrt(pairs), 5);
 }
 
-// 20 000 landmarks of one frame. Bounds of five standard deviations each; the chi-square of 48 cells is below 105 with
-// probability 1 - 4e-6.
+// Prior of 20 000 landmarks of one frame. Bounds of five standard deviations each; the chi-squared of 48 cells is below
+// 105 with probability 1 - 4e-6.
 TEST(PointWorld, LandmarksAreDrawnFromThePrior) {
   Scenario scenario = PointScenario();
   scenario.time = {30, 1.0 / 30};
@@ -175,7 +175,7 @@ TEST(PointWorld, LandmarksAreDrawnFromThePrior) {
   EXPECT_LT(chi2, 105);
 }
 
-// As far aside as there is a depth: a corner of the margin is 89 degrees from the axis.
+// Widest field of view with positive depth: a corner of the margin is 89 degrees from the axis.
 TEST(PointWorld, LandmarksOfAWideFisheyeAreInView) {
   Scenario scenario = PointScenario();
   scenario.camera = {640, 480, 200, 200, 319.5, 239.5};
@@ -187,7 +187,7 @@ TEST(PointWorld, LandmarksOfAWideFisheyeAreInView) {
   for (const PointLandmark& landmark : world.landmarks()) EXPECT_TRUE(world.Project(landmark, 0));
 }
 
-// A landmark that is first seen later has its inverse depth in the camera of that frame.
+// Inverse depth of a landmark: that in the camera of its first frame.
 TEST(PointWorld, AnInverseDepthIsThatOfTheFirstView) {
   Scenario scenario = MovingPointScenario();
   scenario.points->inverse_depth_sigma = 0;
@@ -232,7 +232,7 @@ TEST(PointWorld, PointsLieWhereTheyShould) {
   }
 }
 
-// Looks away to the side and back within two seconds.
+// Landmark ids after the camera turns aside and back within two seconds.
 TEST(PointWorld, AForgottenLandmarkComesBackAsAnother) {
   const auto ids_at_start_and_end = [](int forget_after) {
     Scenario scenario = PointScenario(Landmarks::room);

@@ -43,7 +43,7 @@ TEST(GaussianBlur, LeavesAUniformPictureAndChannelsApart) {
 }
 
 TEST(GaussianBlur, OfAStepIsTheDistributionFunction) {
-  // T(0) = exp(-1) I_0(1) = 0.46576, T(1) = exp(-1) I_1(1) = 0.20791: beside the step (1 - T(0)) / 2 of the light arrive.
+  // T(0) = exp(-1) I_0(1) = 0.46576, T(1) = exp(-1) I_1(1) = 0.20791: (1 - T(0)) / 2 on the dark side of the step.
   std::vector<float> step(20, 0.0f);
   std::fill(step.begin() + 10, step.end(), 1.0f);
   const std::vector<float> blurred = GaussianBlur(step, 20, 1, 1, 1);
@@ -86,7 +86,7 @@ TEST(Denoise, WeighsByDistanceAndDifference) {
   std::vector<float> picture(25, 0.5f);
   picture[12] = 0.6f;
   Denoise(p, 5, 5, 1, picture);
-  // A range's difference halves the weights of the neighbours: four at distance 1, four at sqrt(2).
+  // A difference of denoise_range halves the weights of the neighbours: four at distance 1, four at sqrt(2).
   const double w1 = std::exp(-0.5 / 0.36) / 2, w2 = std::exp(-1 / 0.36) / 2;
   EXPECT_NEAR(picture[12], (0.6 + 0.5 * 4 * (w1 + w2)) / (1 + 4 * (w1 + w2)), 1e-6);
   std::vector<float> step(36, 0.1f);
@@ -110,7 +110,7 @@ TEST(Sharpen, ControlsBothHalos) {
   EXPECT_THAT(clipped, testing::ElementsAre(0, 0, 0, 1, 1, 1));
 }
 
-// The order: the matrix in linear light, then the curve; every channel of a flat without noise.
+// Order of the steps: the matrix in linear light, then the tone curve; every channel of a flat field without noise.
 TEST(Processing, OfAFlatIsTheCurveOfTheMatrix) {
   SensorParams p;
   p.shot_noise = false, p.read_noise_e = 0;

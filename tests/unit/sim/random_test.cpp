@@ -72,7 +72,7 @@ Moments MomentsOf(const std::vector<double>& x) {
   return m;
 }
 
-// The largest of four z-scores of a sample that should be standard normal. Above kZ with probability 4e-6 if it is.
+// Largest of four z-scores of a sample against the standard normal distribution: above kZ with probability 4e-6.
 double WorstScore(const std::vector<double>& x) {
   const double n = static_cast<double>(x.size());
   const Moments m = MomentsOf(x);

@@ -44,7 +44,7 @@ TEST(TumTrajectory, ReadsCommentsBlanksAndLargeStamps) {
   EXPECT_DOUBLE_EQ(keys[1].pose.q_WC.w, 0.8);
 }
 
-// As evaluate reads it: mark, commas, exponents, and motion capture's equal stamps, of which the first counts.
+// Variants of the TUM format: byte-order mark, commas, exponents, and equal stamps, of which the first counts.
 TEST(TumTrajectory, AsOtherProgramsWriteIt) {
   const TemporaryFolder folder;
   const std::vector<KeyPose> keys = ReadTumTrajectory(folder.Write("a.txt",
@@ -132,7 +132,7 @@ TEST(Recorded, FliesWhatWasRecorded) {
   motion.start_time_s = 0.5;
   motion.averaging_time_s = 0;
   const auto trajectory = MakeRecordedTrajectory(motion, 1.5);
-  for (double t = 0; t <= 1.2; t += 0.013) {  // up to the very end the curvature fades: a natural spline
+  for (double t = 0; t <= 1.2; t += 0.013) {  // not at the very end, where a natural spline has no curvature
     const Motion at = trajectory->At(t);
     const double a = t + 0.5;
     EXPECT_LT(glm::length(at.pose.p_WC - glm::dvec3(std::cos(a), std::sin(a), 0.5)), 1e-8);
@@ -153,7 +153,7 @@ TEST(Recorded, IsMovedRigidlyToItsPlace) {
   const Motion a0 = as_recorded->At(0), b0 = moved->At(0);
   for (double t = 0; t <= 2; t += 0.1) {
     const Motion a = as_recorded->At(t), b = moved->At(t);
-    // Seen from the first camera, both are the same.
+    // Equal relative to the first camera.
     EXPECT_LT(glm::length(glm::conjugate(a0.pose.q_WC) * (a.pose.p_WC - a0.pose.p_WC) -
                           glm::conjugate(b0.pose.q_WC) * (b.pose.p_WC - b0.pose.p_WC)),
               1e-13);
@@ -209,7 +209,7 @@ TEST(Recorded, HandHeldFlightOfARealCamera) {
   std::sort(distances.begin(), distances.end());
   EXPECT_LT(distances[distances.size() / 2], 0.0005);
   EXPECT_LT(distances.back(), 0.01);
-  // Without averaging two stamps 0.3 ms apart are a speed of several metres a second.
+  // Control: without averaging, two stamps 0.3 ms apart give a speed of several metres a second.
   motion.averaging_time_s = 0;
   const auto jerking = MakeRecordedTrajectory(motion, end_s);
   double fastest = 0;

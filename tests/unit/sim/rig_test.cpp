@@ -1,4 +1,4 @@
-// Rigs: what their file says, cameras on one body, frames that depend on nothing else, disparity.
+// Camera rigs: keys of the scenario, cameras on one body, reproducible files, disparity.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using Settings = std::vector<std::pair<std::string, std::string>>;
 constexpr char kLens[] = "width: 64, height: 48, fx: 52, fy: 52, cx: 31.5, cy: 23.5";
 
-// SmallWorld with two cameras in place of one, `second` added to the second's keys, and a board before the wall.
+// SmallWorld with two cameras in place of one, `second` added to the second's keys, and a board in front of the wall.
 Scenario Rig(const SmallWorld& world, const std::string& second = "position: [0.1, 0, 0]", Settings settings = {}) {
   std::string text = WallScenario();
   const std::size_t at = text.find("camera: "), end = text.find('\n', at);
@@ -72,7 +72,7 @@ TEST(Rig, ItsFile) {
     EXPECT_THAT(rejected(second, {{"truth", "[disparity]"}}), HasSubstr(why)) << second;
 }
 
-// The derivatives of a mounted frame, by central differences of its pose: of fourth order, h = 1 ms.
+// Derivatives of a mounted frame against central differences of its pose, of fourth order with h = 1 ms.
 TEST(Rig, AMountedFrameMovesAsTheBodySays) {
   const SmallWorld world;
   const Scenario s = LoadScenario(
@@ -98,7 +98,8 @@ TEST(Rig, AMountedFrameMovesAsTheBodySays) {
   EXPECT_LT(glm::length(2.0 * glm::dvec3(turn.x, turn.y, turn.z) - m.w_WC_C), 1e-8);
 }
 
-// A rig's first camera, at the body, is the camera of a scenario with one; the second is not the first.
+// A rig's first camera, at the body, gives the image of a scenario with one camera. The second camera at the same pose
+// has the same depth and other noise.
 TEST(Rig, ACameraAtTheBodyIsAsIfAlone) {
   const SmallWorld world;
   const Scenario rig = Rig(world, "");
@@ -113,7 +114,7 @@ TEST(Rig, ACameraAtTheBodyIsAsIfAlone) {
   EXPECT_NE(two.Cameras()[1].Render(4).image.data, one.Render(4).image.data) << "its noise is its own";
 }
 
-// What campaigns render: the first camera's files, as a scenario with one has them.
+// Files of the first camera alone, as for campaigns: those of a scenario with one camera.
 TEST(Rig, TheFirstCameraAlone) {
   const SmallWorld world;
   const Simulator two(Rig(world), 2);
@@ -154,8 +155,8 @@ TEST(Rig, FilesDependNeitherOnThreadsNorOnTheRange) {
   }
 }
 
-// Against cam1's own depth: what is seen by both is where the disparity says, to 1e-3 px; what is hidden has something
-// nearer there. Depth is inverse linear along a row of each of the two planes.
+// Disparity against cam1's depth: 52 px * 0.1 m / Z1 to 1e-3 px where the point is visible in both cameras, a nearer
+// surface in cam1 where it is occluded. 1 / Z is linear along a row of each of the two planes.
 TEST(Rig, DisparityAgainstTheSecondCamerasDepth) {
   const SmallWorld world;
   const Scenario rig = Rig(world, "position: [0.1, 0, 0]", {{"truth", "[disparity]"}});
@@ -172,7 +173,7 @@ TEST(Rig, DisparityAgainstTheSecondCamerasDepth) {
     }
     const cv::Mat mask = cv::imdecode(mask_file, cv::IMREAD_UNCHANGED);
     const std::vector<float> Z0 = left.Depth(index), Z1 = right.Depth(index);
-    // Uncompressed: the rows are the file's last bytes, each after its number and length.
+    // Uncompressed EXR: the rows are the file's last bytes, each after its number and length.
     std::vector<float> disparity(64 * 48);
     const std::size_t row = 8 + 64 * 4, start = exr.size() - 48 * row;
     for (std::size_t y = 0; y < 48; ++y) std::memcpy(&disparity[64 * y], exr.data() + start + y * row + 8, 64 * 4);

@@ -15,10 +15,10 @@ namespace {
 constexpr double kChi2Of3 = 30.665;  // beyond it: 1e-6
 constexpr double kZ = 4.8916;        // |z| beyond it: 1e-6, two-sided
 
-using Pair = std::array<double, 2>;  // of a position and a velocity, the noises of one axis over one step
+using Pair = std::array<double, 2>;  // noises of position and velocity of one axis over one step
 
-// Twice the logarithm of the likelihood ratio between the samples' own covariance and Q = [a b; b c]: chi-squared with
-// three degrees of freedom when the samples are from N(0, Q).
+// Twice the log-likelihood ratio of the samples' own covariance to Q = [a b; b c]: chi-squared with three degrees of
+// freedom for samples from N(0, Q).
 double CovarianceScore(const std::vector<Pair>& samples, double a, double b, double c) {
   double s11 = 0, s12 = 0, s22 = 0;
   const double n = static_cast<double>(samples.size());
@@ -47,7 +47,7 @@ SampledMotion Free(double position_noise, double orientation_noise) {
   return motion;
 }
 
-// The noises of the position between frames at 30 Hz (eight knots), through At: what an odometry's model must explain.
+// Process noise of the position between frames at 30 Hz (eight knots), through At.
 std::vector<Pair> FrameNoises(const Trajectory& trajectory, int frames, double dt) {
   std::vector<Pair> noises;
   for (int k = 0; k < frames; ++k) {
@@ -67,7 +67,7 @@ TEST(Sampled, PositionNoiseBetweenFrames) {
     const SampledTrajectory trajectory(Free(kSigma, 0.4), seed, 500);
     const std::vector<Pair> noises = FrameNoises(trajectory, 15000, kDt);
     EXPECT_LT(NcvScore(noises, kSigma, kDt), kChi2Of3) << seed;
-    // Rejected: the correlation left out, three per cent more noise, five more in the position.
+    // Controls: no correlation, three per cent more noise, five per cent more in the position are rejected.
     const double s2 = kSigma * kSigma;
     EXPECT_GT(CovarianceScore(noises, s2 * std::pow(kDt, 3) / 3, 0, s2 * kDt), kChi2Of3);
     EXPECT_GT(NcvScore(noises, 1.03 * kSigma, kDt), kChi2Of3);
@@ -94,7 +94,7 @@ TEST(Sampled, OrientationNoiseBetweenKnots) {
   }
 }
 
-// The control from the other side: a sampler that draws the two noises independently is noticed.
+// Control: independent noises of position and velocity are rejected.
 TEST(Sampled, UncorrelatedNoisesWouldBeNoticed) {
   constexpr double kDt = 1.0 / 30;
   std::vector<Pair> noises;
@@ -175,9 +175,9 @@ TEST(Sampled, AFunctionOfSeedAndTimeAlone) {
   EXPECT_GT(glm::length(a.At(2).pose.p_WC - other.At(2).pose.p_WC), 0.01);
 }
 
-// A long flight stays near its start as the header says: the standard deviations are sigma / (2 r^1.5), sigma / (2
-// r^0.5). With about 2 r T / 2 = 4000 independent values and 3 axes the standard deviation's own error is below 1.1 per
-// cent; the bound is five times that, plus one per cent for the pull that is held over a step (r h = 0.8 per cent).
+// sigma / (2 r^1.5) and sigma / (2 r^0.5): standard deviations of position and velocity on a long flight with return
+// rate r. With about 2 r T / 2 = 4000 independent values and 3 axes their relative error is below 1.1 per cent; the
+// bound is five times that, plus one per cent for a return that is constant over a step (r h = 0.8 per cent).
 TEST(Sampled, ReturnKeepsTheCameraNearItsStart) {
   SampledMotion motion = Free(1, 0.5);
   motion.velocity = motion.angular_rate = glm::dvec3(0);
@@ -200,8 +200,8 @@ TEST(Sampled, ReturnKeepsTheCameraNearItsStart) {
   EXPECT_NEAR(std::sqrt(w2) / (0.5 / (2 * std::pow(2, 0.5))), 1, kBound);
 }
 
-// The start velocities of many seeds have the mean and the deviation that is asked for. Chi-square with 6 * 2000
-// degrees of freedom: 12000, sigma 155; five of them, on either side, are left once in 1.7 million.
+// Mean and standard deviation of the start velocities over seeds. Chi-squared with 6 * 2000 degrees of freedom: 12000,
+// sigma 155; two-sided false-alarm rate at five sigma 1 in 1.7 million.
 TEST(Sampled, StartVelocitiesAreDrawnAboutTheGivenOnes) {
   SampledMotion motion = Free(1, 1);
   motion.velocity_sigma = 0.2;
@@ -219,14 +219,13 @@ TEST(Sampled, StartVelocitiesAreDrawnAboutTheGivenOnes) {
   EXPECT_NEAR(sum_of_squares(0.2, 0.05), 12000, 775);
   EXPECT_GT(std::abs(sum_of_squares(0.18, 0.05) - 12000), 775) << "ten per cent less in one of the two is rejected";
   EXPECT_GT(std::abs(sum_of_squares(0.2, 0.055) - 12000), 775);
-  // Without, it is the given one.
+  // Zero standard deviation: the given velocity.
   EXPECT_EQ(SampledTrajectory(Free(1, 1), 3, 0.01).knots().front().v_WC, Free(1, 1).velocity);
 }
 
-// Seen at 30 Hz, knots of 1/240 s give increments of the orientation that are not quite the sum that a filter's model
-// has: turns do not commute. With knots at the frames the increments are the model's, to rounding. The remainder of the
-// model, what w and the two noises of the knots do not explain, is measured against the standard deviation of the
-// model's own noise.
+// Log(R_1 ... R_n) - sum Log(R_i), the remainder of a filter's additive model of orientation between frames at 30 Hz,
+// in standard deviations of the model's noise. Rotations do not commute: knots of 1/240 s leave a small remainder;
+// knots at the frames leave rounding alone.
 TEST(Sampled, FinerKnotsAtFrames) {
   constexpr double kSigma = 0.5, kFrame = 1.0 / 30;
   const auto remainder = [&](int knots_per_frame) {
@@ -268,7 +267,8 @@ TEST(Sampled, BadSettingsAreAllNamed) {
   }
 }
 
-// A minute of motion that would leave the box by metres stays within it, and free of the walls it is what it was.
+// Soft walls: a minute of motion stays inside the box, which it leaves by metres without walls. The two motions are
+// equal until the first one reaches a wall's margin.
 TEST(Sampled, SoftWallsKeepItInABox) {
   SampledMotion motion;
   motion.position_noise = 0.3;

@@ -105,7 +105,7 @@ prior: 3
   EXPECT_EQ(imu.gyroscope_walk, 1e-5);
   EXPECT_EQ(imu.accelerometer_walk, 3e-3);
 
-  // What it resolves to, read again, is the same scenario.
+  // Round trip: the resolved text, read again, gives the same scenario.
   const Scenario again = LoadScenario(folder.Write("again.yaml", s.resolved));
   EXPECT_EQ(again.resolved, s.resolved);
   EXPECT_THAT(s.resolved, testing::Not(HasSubstr("odometry")));
@@ -356,7 +356,7 @@ TEST(LookAt, AxesByHand) {
   EXPECT_LT(glm::length(ahead[0] - glm::dvec3(1, 0, 0)), 1e-15);
   EXPECT_LT(glm::length(ahead[1] - glm::dvec3(0, -1, 0)), 1e-15);
   EXPECT_LT(glm::length(ahead[2] - glm::dvec3(0, 0, -1)), 1e-15);
-  // Along +x: what is to the right is +z.
+  // Along +x: right is +z.
   EXPECT_LT(glm::length(axes(LookAt({0, 0, 0}, {2, 0, 0}, 0))[0] - glm::dvec3(0, 0, 1)), 1e-15);
   // Rolled to the right by a quarter turn, the camera's right is the world's down.
   EXPECT_LT(glm::length(axes(LookAt({0, 1, 0}, {0, 1, -3}, std::acos(-1.0) / 2))[0] - glm::dvec3(0, -1, 0)), 1e-15);
@@ -367,8 +367,8 @@ TEST(LookAt, AxesByHand) {
       << "the upper edge is towards +z";
 }
 
-// Kolmogorov and Smirnov's distance of n numbers to a uniform distribution on [0, 1] is above 1.95 / sqrt(n) in 0.1 %
-// of all cases; the seeds are fixed.
+// Kolmogorov-Smirnov distance of n numbers to the uniform distribution on [0, 1]: above 1.95 / sqrt(n) with probability
+// 0.1 %. The seeds are fixed.
 TEST(Scenario, DistributionsAreDrawnBySeedAndKey) {
   const TemporaryFolder folder;
   const auto file = folder.Write("s.yaml", R"(

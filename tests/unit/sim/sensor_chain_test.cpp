@@ -1,4 +1,4 @@
-// The steps of the sensor one by one, in closed form, and the photon transfer of rendered flats.
+// Steps of the sensor model in closed form, and the photon transfer of rendered flat fields.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -55,10 +55,10 @@ TEST(SensorChain, TheFramesOwnExposureAndGain) {
   EXPECT_EQ(image.data[0], std::lround(255 * 0.2 * 0.5 * 3));
 }
 
-// The photon transfer line of EMVA 1288: the variance of the difference of two flats of the same light, halved, is
-// K mean + K^2 sigma_d^2 + 1/12, whatever the fixed pattern; its slope is the system gain. Flats are rendered: a wall
-// that glows. False alarms: 1e-6 at each of nine levels and for the slope. The gain 3 per cent off, read noise left
-// out, and the fixed pattern not taken out by the difference are rejected.
+// sigma^2 = K mean + K^2 sigma_d^2 + 1/12: photon transfer curve of EMVA 1288 from half the variance of the difference
+// of two flat fields, which cancels the fixed pattern; its slope is the system gain. The flat fields are renderings of
+// an emitting wall. False alarms: 1e-6 at each of nine levels and for the slope. Controls: a gain 3 per cent off, no
+// read noise, and the fixed pattern of a single flat field are rejected.
 TEST(SensorChain, PhotonTransferOfRenderedFlats) {
   SensorParams params = Silent();
   params.shot_noise = true;
@@ -127,8 +127,8 @@ TEST(SensorChain, EmvaFiguresByHand) {
   EXPECT_NEAR(f.dynamic_range, f.saturation_p / f.sensitivity_p, 1e-12);
 }
 
-// Fixed patterns stay from frame to frame, differ between cameras (seeds), and have the spread that was asked for:
-// variance of n normal numbers, false alarms 1e-6 each.
+// Fixed-pattern noise (PRNU, DSNU): equal in all frames, different between cameras (seeds), with the given standard
+// deviation. Variance of n normal numbers, false alarms 1e-6 each.
 TEST(SensorChain, FixedPatterns) {
   SensorParams params = Silent();
   params.bit_depth = 16;
@@ -156,7 +156,7 @@ TEST(SensorChain, FixedPatterns) {
   EXPECT_THROW(Sensor(params, 4, 10, 10).Capture(Flat(9, 10, glm::vec3(0.0f)), 0), std::invalid_argument);
 }
 
-// In light of 1000 times white only pixels of less than a thousandth of the mean's sensitivity are not white.
+// Saturation at 1000 times white: only pixels with less than a thousandth of the mean sensitivity are below white.
 TEST(SensorChain, InsensitivePixelsSaturateToo) {
   SensorParams params = Silent();
   params.photo_response_sigma = 0.3;
@@ -187,7 +187,7 @@ TEST(SensorChain, HotPixels) {
     count += code > 0 ? 1 : 0;
     sum += code / 65535.0 * 10000;
   }
-  // Those below half a code are dark: 0.076 e of 1000.
+  // Hot pixels below half a code count as dark: 0.076 e of 1000.
   EXPECT_NEAR(count, 1200, kZ * std::sqrt(1200 * 0.99));
   EXPECT_NEAR(sum / count, 1000, kZ * 1000 / std::sqrt(count));
 }
@@ -221,7 +221,7 @@ TEST(SensorChain, BehindABayerFilter) {
   }
 }
 
-// OpenCV alone leaves what is narrower than 3 pixels black.
+// Demosaicing of images narrower than 3 pixels, which OpenCV leaves black.
 TEST(SensorChain, TheSmallestPicturesBehindABayerFilter) {
   SensorParams params = Silent();
   params.color = true;
@@ -263,7 +263,7 @@ TEST(SensorChain, AsAJpegFile) {
     picture.rgb[i] *= 1 + 0.3f * std::sin(0.05f * static_cast<float>(i / 3));
   const Image plain = Sensor(params, 1).Capture(picture, 0);
   double last = 0;
-  for (const int quality : {95, 60, 10}) {  // the worse the further
+  for (const int quality : {95, 60, 10}) {  // the error grows
     params.jpeg_quality = quality;
     const Image jpeg = Sensor(params, 1).Capture(picture, 0);
     ASSERT_EQ(jpeg.data.size(), plain.data.size());

@@ -44,7 +44,7 @@ TEST(Exposure, TheStampIsTheMiddleOfTheMiddleRow) {
   EXPECT_THAT(Problems(Exposure{0, -1, NAN, 0}), testing::SizeIs(3));
 }
 
-// The sRGB curve, written out a second time from IEC 61966-2-1 in the other direction.
+// sRGB encoding by IEC 61966-2-1.
 double SrgbEncode(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
 
 TEST(ResponseCurve, RoundsTheCurveEverywhere) {
@@ -88,10 +88,9 @@ TEST(Sensor, WithoutNoiseTheCodeIsTheResponse) {
   EXPECT_EQ(grey.data[11], std::lround(255 * (0.2126 * 0.5 + 0.7152 * 1 + 0.0722 * 1.5) / 2));
 }
 
-// Mean and variance of the codes against the closed form: 255/full_well * N and (255/full_well)^2 (N + 1/18 + read^2) +
-// 1/12 (the rounding; the noise is above half a code everywhere, so that it is uniform). False alarms: 2e-6 at each of
-// 8 levels. At each the model without shot noise, without read noise and with 5 per cent more electrons per code must
-// be rejected.
+// K N and K^2 (N + 1/18 + read^2) + 1/12, K = 255/full_well: mean and variance of the codes. 1/12 is the quantisation
+// error, uniform since the noise is above half a code everywhere. False alarms: 2e-6 at each of 8 levels. Controls at
+// each: the models without shot noise, without read noise and with K 5 per cent larger are rejected.
 TEST(Sensor, PhotonTransfer) {
   constexpr double kFullWell = 800, kRead = 12;
   const Sensor sensor(Linear(kFullWell, kRead), 77);
@@ -112,8 +111,9 @@ TEST(Sensor, PhotonTransfer) {
   }
 }
 
-// Few electrons, one per code and no read noise: the codes are Poisson numbers. Pearson's chi-squared over 0 ... 11 and
-// "more" has 12 degrees of freedom; beyond 50.83 with probability 1e-6. Three per cent more light must be rejected.
+// Poisson distribution of the codes with few electrons, one per code, and no read noise. Pearson's chi-squared over
+// 0 ... 11 and "more", 12 degrees of freedom: beyond 50.83 with probability 1e-6. Control: three per cent more light is
+// rejected.
 TEST(Sensor, FewElectronsArePoissonNumbers) {
   const Sensor sensor(Linear(255, 0), 3);
   constexpr double kMean = 4;

@@ -47,7 +47,7 @@ TEST(Simulator, FramesAndTruthAtMidExposure) {
   EXPECT_THROW(simulator.TruthAt(-1), std::out_of_range);
 }
 
-// A wall at z = -2 seen from the truth's pose: Z of each pixel's centre in closed form.
+// Z of each pixel's centre in closed form: a wall at z = -2 from the true pose.
 TEST(Simulator, DepthIsThatOfTheTruthsPose) {
   const SmallWorld world;
   const Simulator simulator(LoadScenario(world.scenario()), 1);
@@ -69,7 +69,7 @@ TEST(Simulator, DepthIsThatOfTheTruthsPose) {
   EXPECT_GT(seen, 1000);
 }
 
-// Of triangles that meet at an edge the rasteriser may see the other one, past the wall's edge something for nothing.
+// Depth with the rasteriser as engine is traced by rays: equal at the edges of triangles and of the wall too.
 TEST(Simulator, DepthIsOfRays) {
   const SmallWorld world;
   const std::vector<std::pair<std::string, std::string>> wide = {
@@ -116,8 +116,8 @@ TEST(Simulator, ADurationChangesNoFrame) {
   for (std::int64_t k = 0; k < 3; ++k) EXPECT_EQ(part.Render(k).image.data, whole.Render(k).image.data) << k;
 }
 
-// Motion blur in closed form: the camera moves sideways along a step edge between black and white, at constant speed.
-// In linear response without noise the blurred edge is a ramp, as wide as the path of the edge's image during the
+// Motion blur in closed form: the camera moves sideways past a step edge between black and white, at constant speed.
+// With a linear response and no noise the blurred edge is a ramp, as wide as the path of the edge's image during the
 // exposure.
 TEST(Simulator, BlurIsARampOfTheRightWidthAndPlace) {
   const TemporaryFolder folder;
@@ -182,14 +182,14 @@ TEST(Simulator, AutomaticExposureBringsADarkWallToItsTarget) {
   EXPECT_LT(Mean(first.image), 0.33);
   EXPECT_EQ(last.setting.exposure_s, 0.020);
   EXPECT_GT(last.setting.gain, 1);
-  EXPECT_NEAR(Mean(last.image), 0.4, 0.02);  // what is metered is an eighth as wide
+  EXPECT_NEAR(Mean(last.image), 0.4, 0.02);  // the metered image is an eighth as wide
   EXPECT_EQ(simulator.SettingOf(8).gain, last.setting.gain);
   EXPECT_EQ(again.Render(8).image.data, last.image.data);
   EXPECT_THROW(simulator.SettingOf(9), std::out_of_range);
 }
 
-// Under a lamp that flickers frames are as bright as is asked where each sees whole periods: in its exposure, or from its
-// first row to its last. What a lamp shines at the stamp itself says nothing of this.
+// Automatic exposure under a flickering lamp: the target where each frame spans whole periods, in its exposure or from
+// its first row to its last. The radiance at the stamp alone is not metered.
 TEST(Simulator, AutomaticExposureMetersTheWholeOfAnExposure) {
   const SmallWorld world;
   for (const auto& [exposure, readout] : {std::pair<std::string, std::string>{"10 ms", "0 ms"}, {"1 ms", "20 ms"}}) {
@@ -216,14 +216,14 @@ TEST(Simulator, AHandBeforeTheLensLeavesTheNoiseAndTheTruth) {
                      1);
   };
   const Simulator open = with("[]"),
-                  covered = with("[{from: 60 ms, until: 0.1 s}]");  // frames 2 (at 66.7 ms) and none else
+                  covered = with("[{from: 60 ms, until: 0.1 s}]");  // frame 2 alone (66.7 ms)
   for (std::int64_t k = 0; k < 5; ++k) {
     const Frame a = open.Render(k), b = covered.Render(k);
     EXPECT_EQ(a.image.data == b.image.data, k != 2) << k;
     EXPECT_EQ(open.Depth(k), covered.Depth(k));
   }
   const Image dark = covered.Render(2).image;
-  // Half of the noise is below 0 and black; the rest is read noise: 0.008 of the scale, 20 of 255 after the sRGB curve.
+  // Half of the read noise is below 0 and black; the rest is 0.008 of the scale, 20 of 255 after the sRGB curve.
   const auto black = std::ranges::count(dark.data, 0);
   EXPECT_NEAR(static_cast<double>(black) / static_cast<double>(dark.data.size()), 0.5, 0.05);
   EXPECT_GT(*std::ranges::max_element(dark.data), 20);

@@ -9,7 +9,7 @@
 namespace sim {
 namespace {
 
-// The oracle: the exponential of the cross product's matrix by its power series, with scaling and squaring.
+// exp([phi]x) by its power series, with scaling and squaring: the reference.
 glm::dmat3 MatrixExponential(const glm::dvec3& phi) {
   const glm::dmat3 cross(0, phi.z, -phi.y, -phi.z, 0, phi.x, phi.y, -phi.x, 0);  // column by column
   const glm::dmat3 small = cross / 1024.0;
@@ -35,7 +35,7 @@ glm::dvec3 Direction() {
   return glm::normalize(v);
 }
 
-// Of every size that matters: tiny, where series are used, at their borders, and up to the half turn.
+// Angles: tiny ones, where series are used, at the borders of these, and up to the half turn.
 double Angle() {
   return *rc::gen::element(0.0, 1e-12, 1e-8, 9.9e-5, 1.1e-4, 9e-4, 1.1e-3, 9e-3, 1.1e-2, 0.3, 1.0, 2.0, 3.0, 3.1);
 }
@@ -64,7 +64,7 @@ TEST(So3, RightJacobianIsTheDerivative) {
     const auto from_phi = [&](double s) { return Log(glm::conjugate(Exp(phi)) * Exp(phi + s * d)); };
     const glm::dvec3 numeric = (from_phi(kStep) - from_phi(-kStep)) / (2 * kStep);
     RC_ASSERT(glm::length(RightJacobianTimes(phi, d) - numeric) < 1e-9);
-    // Seen to fail: the left Jacobian, whose sign of the first term is the other.
+    // Control: the left Jacobian, whose first term has the opposite sign.
     if (glm::length(phi) > 0.1 && glm::length(glm::cross(phi, d)) > 0.05) {
       RC_ASSERT(glm::length(RightJacobianTimes(-phi, d) - numeric) > 1e-3);
     }
@@ -78,9 +78,9 @@ TEST(So3, TheRateOfTheRightJacobian) {
     constexpr double kStep = 1e-4;  // fourth order: 1e-15 / kStep of rounding
     const auto J_d = [&](double s) { return RightJacobianTimes(phi + s * rate, d); };
     const glm::dvec3 numeric = (8.0 * (J_d(kStep) - J_d(-kStep)) - (J_d(2 * kStep) - J_d(-2 * kStep))) / (12 * kStep);
-    // RightJacobianTimes itself loses digits near 1e-3, where it leaves its series.
+    // RightJacobianTimes loses digits near 1e-3, at the border of its series.
     RC_ASSERT(glm::length(RightJacobianRateTimes(phi, rate, d) - numeric) < (glm::length(phi) < 0.05 ? 1e-5 : 1e-9));
-    // Seen to fail: as if phi did not turn.
+    // Control: a rate of zero, as of a constant phi.
     if (glm::length(glm::cross(rate, d)) > 0.1 && glm::length(phi) < 0.1) RC_ASSERT(glm::length(numeric) > 1e-2);
   }));
 }

@@ -45,7 +45,7 @@ TEST(Spline, VelocitiesAreTheDerivativesOfThePose) {
     EXPECT_LT(errors.a, 1e-9) << t;
     EXPECT_LT(errors.alpha, 1e-8) << t;
   }
-  // Beyond the ends, where the numbers go on along straight lines, the normalised quaternion's rate still changes.
+  // Linear extrapolation beyond the ends: the rate of the normalised quaternion still changes.
   for (const double t : {-0.05, 3.05}) {
     const RateErrors errors = RateErrorsAt(spline, t, 1e-3);
     EXPECT_LT(errors.a, 1e-9) << t;
@@ -75,8 +75,7 @@ TEST(Spline, StraightMotionStaysStraight) {
   }
 }
 
-// Three keys, worked by hand: y = 0, 1, 0 at 0, 1, 2 has the second derivative -3 in the middle; y(1/2) = 11/16, y'(0)
-// = 3/2.
+// y'' = -3 in the middle, y(1/2) = 11/16, y'(0) = 3/2: the natural cubic through y = 0, 1, 0 at 0, 1, 2.
 TEST(Spline, NaturalCubicByHand) {
   const SplineTrajectory spline(
       {{0, {{0, 0, 0}, {1, 0, 0, 0}}}, {1, {{0, 1, 0}, {1, 0, 0, 0}}}, {2, {{0, 0, 0}, {1, 0, 0, 0}}}});

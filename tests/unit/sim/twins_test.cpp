@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What making a simulator says of the path: that it passes through a surface, or nothing.
+// Simulator's refusal of a path that passes through a surface; empty if it is accepted.
 std::string Complaint(const fs::path& scenario, const std::string& path, const std::string& start_pose = "") {
   std::vector<std::pair<std::string, std::string>> changes = {{"trajectory.file", "'" + path + "'"},
                                                               {"render.light", "direct"}};

@@ -14,7 +14,7 @@ TEST(Vignetting, NaturalIsTheFourthPowerOfTheCosine) {
   const Camera camera({640, 480, 500, 400, 320, 240});
   const Vignetting vignetting(optics, camera);
   EXPECT_EQ(vignetting.Factor(320, 240), 1);
-  // x = 0.5, y = -0.25: cos^2 = 1 / (1 + 0.3125)
+  // cos^2 = 1 / (1 + 0.3125) at x = 0.5, y = -0.25.
   EXPECT_NEAR(vignetting.Factor(570, 140), 1 / (1.3125 * 1.3125), 1e-12);
   CameraParams fisheye{640, 480, 200, 200, 319.5, 239.5};
   fisheye.lens = Lens::fisheye;

@@ -77,7 +77,7 @@ TEST(Format, DepthIsInFifthsOfAMillimetre) {
   EXPECT_EQ(decoded.at<std::uint16_t>(1, 2), 0);
 }
 
-// 12 bits are the highest of 16.
+// 12-bit samples as the highest bits of 16.
 TEST(Format, WideImagesKeepTheirWhite) {
   Image image;
   image.width = 2;
@@ -170,8 +170,8 @@ TEST(SequenceWriter, AFrameIsAFunctionOfItsIndex) {
   for (std::int64_t k = 8; k >= 0; --k) EXPECT_TRUE(Summed(FrameFiles(backward, Frames(3, 9), k)) == sums[k]) << k;
 }
 
-// Writing fails in the middle: a limit on the size of files, between that of the lists and that of the images, stands
-// for a full disk. One message that names a file; without a frame there is nothing worth keeping.
+// Failure in the middle of writing: a limit on the size of files, between that of the lists and that of the images, in
+// place of a full disk. One message with the name of a file; without a complete frame no file is left.
 TEST(SequenceWriter, WithoutAFrameNothingIsLeft) {
   const SmallWorld world;
   const Simulator simulator(LoadScenario(world.scenario()), 1);
@@ -222,7 +222,7 @@ TEST(SequenceWriter, IsNotFinishedWhileFramesAreLeft) {
   EXPECT_THROW(writer.Finish(), std::logic_error);
 }
 
-// A folder that is stopped names exactly its frames, can be read, and grows to the same bytes.
+// Stopped sequence: lists exactly its frames, and after resuming has the same bytes as one written in one go.
 TEST(SequenceWriter, StopsAndResumes) {
   const SmallWorld world;
   const Simulator simulator(LoadScenario(world.scenario()), 2);
@@ -254,8 +254,8 @@ TEST(SequenceWriter, StopsAndResumes) {
   }
 }
 
-// What a kill or a loss of power can leave: a truncated frame, one with wrong bytes, a missing one, strays, a journal
-// whose last line breaks off, lists that name too much or nothing.
+// Damage after a kill or a loss of power: truncated, wrong and missing frames, unfinished files, a truncated or missing
+// journal, truncated or missing lists.
 TEST(SequenceWriter, ResumesFromDamage) {
   const SmallWorld world;
   const Simulator simulator(LoadScenario(world.scenario()), 2);
@@ -327,7 +327,7 @@ TEST(SequenceWriter, ResumesOnlyTheSame) {
               HasSubstr("program is \"test 1\" there, not \"test 2\""));
   EXPECT_THAT(Refusal(simulator, folder, Frames(0, 9, Layout::icl)), HasSubstr("layout is \"tum\" there"));
   EXPECT_TRUE(Tree(folder) == before) << "a refusal touches nothing";
-  // The wall gets other colours: its name in the scenario is the same.
+  // Other colours of the wall under the same file name.
   std::string ply = WallPly();
   ply.replace(ply.rfind(" -2 ") + 4, 2, "77");
   for (std::size_t at = 0; (at = ply.find(" -2 1", at)) != std::string::npos; at += 5) ply[at + 4] = '2';

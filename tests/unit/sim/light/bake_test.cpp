@@ -1,4 +1,4 @@
-// Samples of light on triangles: how many, where, the same for neighbours and for any number of threads.
+// Samples of baked light on triangles: number, places, equality along shared edges and for any number of threads.
 #include "sim/light/bake.h"
 
 #include <gmock/gmock.h>
@@ -43,7 +43,8 @@ TEST(Bake, SpacingSetsTheResolution) {
   EXPECT_EQ(light.samples.size(), 4 * LatticeSize(16));
 }
 
-// Two triangles whose longest sides are 100 m: 0.39 m where a side is divided into 256, 0.049 m into 2048; two of 5.66 m.
+// Spacing by the limit of 256 steps a side (2048 for lamps): 0.39 m (0.049 m) on two triangles with a longest side of
+// 100 m; two more triangles with one of 5.66 m.
 TEST(Bake, WarnsWhereSamplesAreFartherApartThanAsked) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.5f));
@@ -69,7 +70,7 @@ TEST(Bake, WarnsWhereSamplesAreFartherApartThanAsked) {
               testing::ElementsAre(testing::HasSubstr("0.391 m apart on 4 triangles, not")));
 }
 
-// The light itself is so coarse, and the warning is given once.
+// The baked light has the spacing of the warning, which appears once.
 TEST(Bake, LongTrianglesAreCoarse) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.5f));
@@ -101,7 +102,7 @@ TEST(Bake, NeighboursShareTheirSamples) {
     EXPECT_EQ(first[LatticeIndex(r, 0, k)], second[LatticeIndex(r, k, 0)]) << k;
     different.insert(first[LatticeIndex(r, 0, k)]);
   }
-  EXPECT_GT(different.size(), 2u);  // of 16 paths each: not just equal everywhere
+  EXPECT_GT(different.size(), 2u);  // control: estimates of 16 paths each differ from place to place
 }
 
 TEST(Bake, ThreadsDoNotMatter) {
@@ -114,7 +115,8 @@ TEST(Bake, ThreadsDoNotMatter) {
   EXPECT_GT(one.samples.size(), 1000u);
 }
 
-// The outside of the room is dark: corners suffice. The floor has the edge of the table's shadow: finest.
+// Adaptive resolution: corners only on the dark outside of the room, the finest at the edge of the table's shadow on
+// the floor.
 TEST(Bake, FineWhereAnEdgeIs) {
   const Scene scene = Room();
   const RayScene rays(scene);

@@ -1,4 +1,4 @@
-// Baked light as pictures show it.
+// Baked light in rendered images.
 #include <gmock/gmock.h>
 
 #include <string>
@@ -13,7 +13,8 @@ BakeParams Every(double spacing_m = 0.2, double min_spacing_m = 0.02, int paths 
   return {spacing_m, min_spacing_m, paths};
 }
 
-// Light that is linear in place is looked up exactly, on both sides, at any resolution, by every kernel.
+// Linear interpolation on the lattice: light that is linear in position, on both sides, at several resolutions, by
+// every kernel.
 TEST(BakedPicture, LatticeIsInterpolatedLinearly) {
   Scene scene;
   AddMaterial(scene, glm::vec3(1.0f));
@@ -67,7 +68,7 @@ TEST(BakedPicture, LatticeIsInterpolatedLinearly) {
   }
 }
 
-// The furnace as a picture: e + a e / (1 - a).
+// White furnace as an image: e + a e / (1 - a).
 TEST(BakedPicture, WhiteFurnace) {
   Scene scene;
   AddMaterial(scene, {0.5f, 0.8f, 0.25f}, {1.0f, 0.2f, 3.0f});
@@ -79,14 +80,14 @@ TEST(BakedPicture, WhiteFurnace) {
   for (int i = 0; i < n; ++i) {
     for (int c = 0; c < 3; ++c) mean[c] += static_cast<double>(image.rgb[static_cast<std::size_t>(3 * i + c)]) / n;
   }
-  // One path's number of hits has the variance a / (1 - a)^2 with a = 0.8 at the worst: 256 paths at each of about 30
-  // samples in sight: 0.05 of e = 0.2 in the green, in a sum of 1.
+  // Variance of a path's number of hits: a / (1 - a)^2, a = 0.8 at the worst. With 256 paths at each of about 30
+  // visible samples: 0.05 of e = 0.2 in the green, of a sum of 1.
   EXPECT_NEAR(mean.x / 2.0, 1, 0.02);
   EXPECT_NEAR(mean.y / 1.0, 1, 0.04);
   EXPECT_NEAR(mean.z / 4.0, 1, 0.02);
 }
 
-// A plate between a bulb and a floor: where no edge is near, all three modes agree; they differ by what is baked.
+// Shadow of a plate between a point light and a floor: the three light modes agree away from its edge.
 TEST(BakedPicture, ShadowsAreWhereTheyShouldBe) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.5f));
@@ -108,10 +109,10 @@ TEST(BakedPicture, ShadowsAreWhereTheyShouldBe) {
   EXPECT_GT(dark, 1000);
   // The shadow's edge is about 240 pixels long; samples are 0.012 m apart, a quarter of a pixel.
   EXPECT_LT(differ, 240);
-  EXPECT_GT(differ, 10);  // they are not the same computation
+  EXPECT_GT(differ, 10);  // control: the baked shadow is not the traced one
 }
 
-// Two rooms with a wall between them without thickness: the light of one does not leak into the other.
+// Light leaks: radiance in a dark room beside a lit one, with a wall of zero thickness between them.
 TEST(BakedPicture, NothingLeaksThroughAWall) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.7f));
@@ -128,7 +129,7 @@ TEST(BakedPicture, NothingLeaksThroughAWall) {
   }
 }
 
-// An open box under a uniform sky with black walls: the floor's middle sees the opening's form factor.
+// Form factor of an opening: the middle of the floor of an open box with black walls, under a uniform sky.
 TEST(BakedPicture, SkyThroughAnOpening) {
   Scene scene;
   AddMaterial(scene, glm::vec3(1.0f));
@@ -145,8 +146,7 @@ TEST(BakedPicture, SkyThroughAnOpening) {
   narrow.fx = narrow.fy = 100;
   const RadianceImage image =
       Render(*MakeBaked(scene, LightMode::baked, Every(0.5, 0.02, 4096)), Camera(narrow), above);
-  // The middle of one unit square seen from another two above, four quarters: F = 2/pi (A atan(B) / .. ) with X = Y =
-  // 1/2.
+  // F = 4 * 1/(2 pi) * 2 A atan(A), A = X / sqrt(1 + X^2): four quarters of the opening, each with X = Y = 1/2.
   const double x = 0.5, a = x / std::sqrt(1 + x * x),
                factor = 4 / (2 * std::numbers::pi) * 2 * a * std::atan(x / std::sqrt(1 + x * x));
   EXPECT_NEAR(image.pixel(2, 2)[0] / (2 * factor), 1.0, 0.02);  // 4096 stratified paths: 1 %

@@ -1,4 +1,4 @@
-// Kept light: found again, never trusted when damaged, never another world's.
+// Cache of baked light: reuse, detection of damage, and keys that differ for different worlds.
 #include "sim/light/cache.h"
 
 #include <gmock/gmock.h>
@@ -52,7 +52,7 @@ TEST(LightCache, KeepsAndFindsTheSame) {
   const BakedLight second = Light(scene, {folder.path() / "kept"}, warnings);
   EXPECT_EQ(first.samples, second.samples);
   EXPECT_THAT(warnings, testing::IsEmpty());
-  // It is the file that is read, and not the light computed again: another valid file in its place shows.
+  // Control: the light of another valid file in its place is returned, so the file is read.
   BakedLight other = first;
   other.samples[5] ^= 1u;
   WriteLight(file, HashOfLight(scene, LightMode::baked, Quick()), other);
@@ -121,14 +121,14 @@ TEST(LightCache, AnythingThatMattersIsAnotherWorld) {
     EXPECT_NE(base, HashOfLight(SmallRoom(), LightMode::baked, params));
   }
   Scene scene = SmallRoom();
-  scene.lights[1] = AmbientLight{{9, 9, 9}};  // is left out of baked light
+  scene.lights[1] = AmbientLight{{9, 9, 9}};  // no part of baked light
   EXPECT_EQ(base, HashOfLight(scene, LightMode::baked, Quick()));
 }
 
 TEST(LightCache, GoesWhereItCanBeWritten) {
   const TemporaryFolder folder;
   const Scene scene = SmallRoom();
-  std::ofstream(folder.path() / "file") << "in the way";  // no folder can be made here, whoever runs the test
+  std::ofstream(folder.path() / "file") << "in the way";  // a file in place of the folder: for root too
   const fs::path blocked = folder.path() / "file" / "cache", open = folder.path() / "open";
   std::vector<std::string> warnings;
   Light(scene, {blocked, open}, warnings);

@@ -1,5 +1,5 @@
-// The path tracer against closed forms. Each comparison states the standard deviation of its estimate and allows four
-// of them (one false alarm in 16 000); the controls show that a cosine or an albedo left out is told apart.
+// The path tracer against closed forms. Bounds are four standard deviations of the estimate (false-alarm rate 1 in
+// 16 000). Controls: a missing cosine and a missing albedo are rejected.
 #include "sim/light/path_tracer.h"
 
 #include <gtest/gtest.h>
@@ -53,14 +53,14 @@ Scene FloorWorld(glm::vec3 albedo) {
   return scene;
 }
 
-// In a closed box whose walls emit e and reflect a, radiance is e + a e + a^2 e + ... = e / (1 - a) everywhere.
+// L = e + a e + a^2 e + ... = e / (1 - a) everywhere in a closed box of emission e and albedo a.
 TEST(PathTracer, WhiteFurnace) {
   Scene scene;
   const glm::dvec3 albedo(0.7, 0.5, 0.2), emission(0.3, 1.0, 2.0);
   AddMaterial(scene, glm::vec3(albedo), glm::vec3(emission));
   AddBox(scene, {-1, 0, -3}, {2, 2, 3}, 0);
   AddSphere(scene, {0.9, 0.8, 1.5}, 0.5, 12, 0);
-  scene.background = glm::vec3(100.0f);  // what a path that slips out would bring home
+  scene.background = glm::vec3(100.0f);  // radiance of a path that leaks out
   const Estimate e = Indirect(scene, Floor(), 256, 64);
   const glm::dvec3 expected = emission / (1.0 - albedo);
   for (int c = 0; c < 3; ++c) {
@@ -75,7 +75,7 @@ TEST(PathTracer, WhiteFurnace) {
 TEST(PathTracer, UniformSkyIsExact) {
   Scene scene = FloorWorld(glm::vec3(0.5f));
   scene.sky = Sky{{2, 3, 4}, {2, 3, 4}, {2, 3, 4}, 0, 0, {}, 0.0};
-  const Estimate e = Indirect(scene, Floor(), 16, 4);  // each path sees the same
+  const Estimate e = Indirect(scene, Floor(), 16, 4);  // zero variance
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(e.mean[c], 2.0 + c, 1e-12);
 }
 
@@ -114,7 +114,7 @@ TEST(PathTracer, LampsOnAFloor) {
   EXPECT_EQ(Direct(scene, at), glm::dvec3(0.0)) << "shines up";
 }
 
-// A point under a plate that emits: radiance times the form factor, in Lambert's closed form.
+// Radiance times form factor: a point under an emitting plate, in Lambert's closed form.
 TEST(PathTracer, FacingPlates) {
   Scene scene = FloorWorld(glm::vec3(0.0f));
   AddMaterial(scene, glm::vec3(0.0f), {3, 2, 1});
@@ -129,8 +129,8 @@ TEST(PathTracer, FacingPlates) {
   }
 }
 
-// Inside a sphere of radius r and albedo a with a bulb of intensity I in its middle: I / (pi r^2) straight, and a / (1
-// - a) of that by bounces. The facets of a sphere of 64 rings lie up to 0.12 % inside: 0.25 % in the light.
+// Interreflection in a sphere of radius r and albedo a around a point light of intensity I: I / (pi r^2) directly, and
+// a / (1 - a) of that by bounces. The facets of a sphere of 64 rings lie up to 0.12 % inside: 0.25 % in the light.
 TEST(PathTracer, BouncesInASphere) {
   Scene scene;
   const glm::dvec3 albedo(0.6, 0.3, 0.9);
@@ -149,7 +149,7 @@ TEST(PathTracer, BouncesInASphere) {
   }
 }
 
-// One of two lamps is chosen at each bounce: the mean is that of both.
+// Light sampling: one of two lamps is chosen at each bounce; the mean is the sum over both.
 TEST(PathTracer, LampsAddUp) {
   Scene scene = FloorWorld(glm::vec3(0.8f));
   AddQuad(scene, {-3, 0, -1.5}, {6, 0, 0}, {0, 3, 0}, 0);
@@ -165,7 +165,7 @@ TEST(PathTracer, LampsAddUp) {
   }
 }
 
-// Light of each flicker is kept apart, and layers add up to the whole.
+// One layer of light per flicker; the layers add up to the total.
 TEST(PathTracer, FlickersAreLayers) {
   Scene scene = FloorWorld(glm::vec3(0.8f));
   const Flicker mains{100, 0.3, 0.0};

@@ -1,4 +1,4 @@
-// Packed light keeps what it promises.
+// Shared-exponent coding of baked light: rounding error, exact values, range; and the order of the lattice.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The same test for every renderer: ray tracer, rasteriser on EGL, rasteriser on OSMesa.
+// Tests parameterised by renderer: ray tracer, rasteriser on EGL, rasteriser on OSMesa.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ constexpr EngineUnderTest kOsmesa{"osmesa", true, GlPlatform::osmesa};
 
 inline std::string EngineName(const testing::TestParamInfo<EngineUnderTest>& info) { return info.param.name; }
 
-// Why this machine has no such OpenGL; empty where it has.
+// Reason for the lack of the renderer's OpenGL platform; empty where it is available.
 inline std::string Missing(const EngineUnderTest& engine) {
   try {
     if (engine.is_rasteriser) MakeGlContext(engine.platform);

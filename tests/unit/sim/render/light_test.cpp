@@ -1,4 +1,4 @@
-// The light of closed-form worlds, with every renderer: plane under each kind of light, white furnace, shadow boundary.
+// Radiance in closed form, by every renderer: plane under each kind of light, white furnace, shadow boundary.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ class Light : public EngineTest {
     EXPECT_LT(worst, relative);
   }
 
-  // What a shadow map cannot resolve; a ray tracer's shadows are exact.
+  // Bound on the error of shadows: `map` for a shadow map of finite resolution, `exact` for the ray tracer.
   double ShadowError(double map, double exact) const { return GetParam().is_rasteriser ? map : exact; }
 };
 
@@ -56,7 +56,7 @@ TEST_P(Light, PointLightOnPlane) {
     const double r = glm::length(l);
     return light.intensity * glm::dot(n, l) / (r * r * r);
   };
-  // The lens table is good to 0.003 px, which moves x by 1e-4 m here: 1e-4 in the light. Straight lenses: below.
+  // Error of the lens table: 0.003 px, here 1e-4 m in x and 1e-4 in the light. A lens without distortion: below.
   ExpectPlane(scene, at, n, 3e-4, irradiance);
 
   const Camera camera(SmallCamera());
@@ -112,7 +112,7 @@ TEST_P(Light, RectLightOnPlaneAgainstLambertsFormula) {
   const RectLight light{{-0.5, -0.4, 1.0}, {1.2, 0, 0}, {0, 0.7, 0}, {3, 2, 1}};
   scene.lights.push_back(light);
   RayTracerOptions options = Centred();
-  options.rays_per_time_sample = 1024;  // the pattern on the light; the pixel's centre all the time
+  options.rays_per_time_sample = 1024;  // samples on the light, all through the pixel's centre
   const Camera camera(SmallCamera(16, 12));
   const RadianceImage image = Render(scene, camera, Pose{}, options);
   const std::vector<glm::dvec3> corners = {light.corner, light.corner + light.side_u,
@@ -127,8 +127,8 @@ TEST_P(Light, RectLightOnPlaneAgainstLambertsFormula) {
   }
 }
 
-// The light of a lamp that stands upright beside the wall grows with the height of its points: their mean must be the
-// lamp's middle whatever their number.
+// Mean of the sample points on an area light: its middle, for any number of samples. The light of a lamp that stands
+// upright on the wall grows with the height of the sample point.
 TEST_P(Light, RectLightIsCentredWithAnyNumberOfRays) {
   const glm::dvec3 n(0, 0, -1);
   Scene scene = PlaneWorld({0, 0, 3}, n);
@@ -157,12 +157,12 @@ TEST_P(Light, WhiteFurnace) {
   AddBox(scene, {-1, -2, -3}, {2, 2, 3}, 0);
   AddSphere(scene, {0.4, 0.3, 1.5}, 0.5, 12, 0);
   scene.lights.push_back(AmbientLight{{1, 1, 1}});
-  scene.background = glm::vec3(100.0f);  // what a ray that slips through between two triangles would bring home
+  scene.background = glm::vec3(100.0f);  // radiance of a ray that leaks between two triangles
   RayTracerOptions options;
   options.rays_per_time_sample = 16;
   const Camera camera(SmallCamera(160, 120));
   EXPECT_THAT(Render(scene, camera, TiltedPose(), options).rgb, testing::Each(testing::FloatNear(1.0f, 1e-6f)));
-  // A box with a hole is seen not to be one.
+  // Control: a box with a hole shows the background.
   scene.meshes[3].triangles.pop_back();
   EXPECT_THAT(Render(scene, camera, TiltedPose(), options).rgb, testing::Contains(testing::Gt(50.0f)));
 }
@@ -182,7 +182,7 @@ TEST_P(Light, SmoothNormalsOfASphere) {
     for (int u = 0; u < camera.width(); ++u) {
       const glm::dvec3 d = glm::normalize(RayInWorld(camera, Pose{}, u, v));
       const double along = glm::dot(d, center), miss = std::sqrt(glm::dot(center, center) - along * along);
-      if (miss > 0.9) continue;  // not at the rim, where a chord's error is magnified
+      if (miss > 0.9) continue;  // the rim, where the facets' error is magnified
       const glm::dvec3 n = glm::normalize(d * (along - std::sqrt(1 - miss * miss)) - center);
       const double cosine = glm::dot(n, towards);
       if (cosine < 0.05) continue;
@@ -210,8 +210,7 @@ TEST_P(Light, ShadowBoundary) {
   for (int v = 0; v < camera.height(); ++v) {
     for (int u = 0; u < camera.width(); ++u) {
       const double x = 1.5 + 0.8 * RayInWorld(camera, pose, u, v).x;
-      // A pixel is 0.011 m wide; so is what a texel of the shadow map covers at 3 m from the light, and shadows are
-      // off by two.
+      // A pixel and a texel of the shadow map at 3 m from the light are 0.011 m wide; the map's error is two texels.
       if (std::abs(x - boundary) < ShadowError(0.02, 1e-4)) continue;
       const bool is_lit = image.pixel(u, v)[0] > 0;
       (is_lit ? lit : dark) += 1;
@@ -222,7 +221,7 @@ TEST_P(Light, ShadowBoundary) {
   EXPECT_GT(dark, 1000);
 }
 
-// At the point from which exactly half of the light is hidden, half of its irradiance comes through.
+// Half of the irradiance at the point from which half of the light is occluded.
 TEST_P(Light, PenumbraOfRectLight) {
   Scene scene = PlaneWorld({0, 0, 3}, {0, 0, -1});
   AddMaterial(scene, glm::vec3(0.0f));

@@ -1,4 +1,4 @@
-// Objects that move: closed forms, the same world standing still, what exposures of them consist of. For all renderers.
+// Moving objects: closed forms, the same world at rest, exposures. For all renderers.
 #include <gmock/gmock.h>
 
 #include <thread>
@@ -32,8 +32,8 @@ RadianceImage Expose(const Renderer& renderer, const Camera& camera, const Traje
   return image;
 }
 
-// A bar of 0.2 m that shines, 2 m away, goes 1 m/s to the right for 0.1 s: each of its edges is spread over
-// fx v T / Z = 3.5 px, and each pixel shows for which part of the time it was covered.
+// fx v T / Z = 3.5 px: blur of each edge of an emitting bar of 0.2 m at Z = 2 m that moves at 1 m/s to the right for
+// 0.1 s. A pixel's radiance is its coverage averaged over the exposure.
 TEST_P(Moving, BlurOfABarIsItsWay) {
   const auto bar = [](double speed) {
     Scene scene;
@@ -68,7 +68,7 @@ TEST_P(Moving, BlurOfABarIsItsWay) {
       first = mean > 0 ? std::min(first, x) : first, last = mean > 0 ? std::max(last, x) : last;
     }
     EXPECT_NEAR(length, 0.2 * 35, 0.1) << "its light is what it is";
-    // From the first pixel that it touches to the last.
+    // Extent of the blurred bar in pixels.
     const double left = params.cx + 35 * (speed * (0.02 - 0.05) - 0.1),
                  right = params.cx + 35 * (speed * (0.02 + 0.05) + 0.1);
     EXPECT_NEAR(last - first, std::floor(right + 0.5) - std::floor(left + 0.5), 1.0) << "the bar and its way";
@@ -78,7 +78,7 @@ TEST_P(Moving, BlurOfABarIsItsWay) {
   EXPECT_GT(worst(0.85), 0.05) << "the control";
 }
 
-// Nothing but ambient light: then only the motion between camera and object counts.
+// Exchange of object and camera motion: in ambient light only the relative motion matters.
 TEST_P(Moving, ObjectAndCameraChangePlaces) {
   Scene still = CarriedThings();
   still.lights = {AmbientLight{{1, 1, 1}}};
@@ -91,7 +91,7 @@ TEST_P(Moving, ObjectAndCameraChangePlaces) {
   const Camera camera(DistortedCamera());
   const auto a = MakeEngine(GetParam(), moving, {}), b = MakeEngine(GetParam(), still, {});
   for (const double t_s : {0.0, 0.3}) {
-    if (GetParam().is_rasteriser) break;  // has no depth but its picture's
+    if (GetParam().is_rasteriser) break;  // no traced depth
     const std::vector<float> depth_a = DepthOf(*a, camera, View(camera_pose, t_s)),
                              depth_b = DepthOf(*b, camera, relative.At(t_s).pose);
     int differ = 0;
@@ -109,7 +109,7 @@ TEST_P(Moving, ObjectAndCameraChangePlaces) {
   }
 }
 
-// With lamps, shadows, normals, textures and colours: an object's triangles are lit as those of a world that stands there.
+// Shading of a moving object against a static world at its pose: lamps, shadows, normals, textures and vertex colours.
 TEST_P(Moving, IsLitAsIfItStoodThere) {
   const Scene scene = CarriedThings();
   const auto moving = MakeEngine(GetParam(), scene);
@@ -123,7 +123,7 @@ TEST_P(Moving, IsLitAsIfItStoodThere) {
   }
 }
 
-// Each ray, and its shadow rays, has its own moment: a row of a rolling shutter sees the world as it is in that row's middle.
+// Time of each ray and its shadow rays: a row of a rolling shutter shows the world at the middle of the row's exposure.
 TEST(MovingRays, ARowSeesTheWorldAtItsMoment) {
   Scene scene = CarriedThings();
   Texture bumps("bumps", 2, 2, std::vector<std::uint8_t>{128, 128, 255, 200, 128, 220, 128, 200, 220, 60, 100, 220}, {},
@@ -145,7 +145,7 @@ TEST(MovingRays, ARowSeesTheWorldAtItsMoment) {
   }
 }
 
-// The exact pose against Embree's between its times, at 1 m/s and 2 rad/s over 35 ms, half a metre from the object's middle.
+// Embree's interpolated pose against the exact one: 1 m/s and 2 rad/s over 35 ms, at a corner of a cube of 1 m.
 TEST(MovingRays, PathsAreFollowedClosely) {
   Scene scene;
   AddMaterial(scene, glm::vec3(1.0f));
@@ -167,7 +167,7 @@ TEST(MovingRays, PathsAreFollowedClosely) {
     worst = std::max(worst, glm::length(X_W - exact(t_s)));
     straight = std::max(straight, glm::length(glm::mix(exact(1.0), exact(1.035), i / 1000.0) - exact(t_s)));
   }
-  EXPECT_LT(worst, 2e-6);     // 1e-6 and the rounding of floats at 4 m; asked: 1e-5
+  EXPECT_LT(worst, 2e-6);     // 1e-6 and the rounding of floats at 4 m; required: 1e-5
   EXPECT_GT(straight, 1e-4);  // the control: one straight piece
   RecordProperty("worst", std::to_string(worst));
   RecordProperty("steps", placed.packet().steps);
@@ -199,7 +199,8 @@ TEST(MovingRays, TheSameBytesFromAnyThreads) {
   for (std::size_t i = 0; i < same.size(); ++i) ASSERT_EQ(points[i].X_C, same[i].X_C);
 }
 
-// Objects are not in baked light: they have lamps and ambient light as in `direct`, and what is baked does not.
+// Moving objects in a world with baked light: lamps and ambient light as in `direct`. Baked surfaces have no ambient
+// light.
 TEST(MovingRays, AreLitWhereLightIsBaked) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.5f));

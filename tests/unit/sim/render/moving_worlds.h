@@ -1,4 +1,4 @@
-// Worlds in which something moves, and the same worlds standing still.
+// Worlds with moving objects, and the same worlds at rest.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace sim::test {
 
-// The meshes from `first` on become an object, with O where W was.
+// Turns the meshes from `first` on into an object; their coordinates in W become those in O.
 inline void MakeObject(Scene& scene, std::size_t first, std::shared_ptr<const Trajectory> motion) {
   const auto begin = scene.meshes.begin() + static_cast<std::ptrdiff_t>(first);
   scene.objects.push_back(
@@ -15,7 +15,7 @@ inline void MakeObject(Scene& scene, std::size_t first, std::shared_ptr<const Tr
   scene.meshes.erase(begin, scene.meshes.end());
 }
 
-// The world at a moment: its objects' meshes, moved to where they are, stand still.
+// Static world of time t_s, with the objects' meshes at their poses.
 inline Scene StoppedAt(Scene scene, double t_s) {
   for (const MovingObject& object : scene.objects) {
     const Pose pose = object.motion->At(t_s).pose;
@@ -29,7 +29,7 @@ inline Scene StoppedAt(Scene scene, double t_s) {
   return scene;
 }
 
-// T_OC: how a camera moves as an object sees it. Poses alone.
+// T_OC of a camera at rest and a moving object. Poses alone.
 class SeenFrom : public Trajectory {
  public:
   SeenFrom(std::shared_ptr<const Trajectory> object, const Pose& camera)
@@ -47,13 +47,14 @@ class SeenFrom : public Trajectory {
   Pose camera_;
 };
 
-// Walks and turns as a thing in the hand does.
+// Constant velocities of the size of a hand-held object's.
 inline std::shared_ptr<const Trajectory> Carried() {
   return std::make_shared<SteadyMotion>(Pose{{0.1, -0.05, 0.2}, glm::normalize(glm::dquat(0.98, 0.1, -0.15, 0.05))},
                                         glm::dvec3(0.8, 0.5, -0.3), glm::dvec3(0.9, -1.4, 1.1));
 }
 
-// A wall, and before it a textured box with colours and a smooth ball with bumps that are carried past lamps.
+// BusyWorld's wall and lights, and a moving object in front of the wall: a smooth sphere with texture coordinates and a
+// textured box with vertex colours.
 inline Scene CarriedThings() {
   Scene scene = BusyWorld();
   const std::size_t first = 1;  // the ball

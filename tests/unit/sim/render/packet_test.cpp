@@ -1,4 +1,4 @@
-// The inner loop for each instruction set that this machine has gives the same picture, up to rounding.
+// Agreement of the inner loop's images between the instruction sets of this machine, up to rounding.
 #include "sim/render/packet.h"
 
 #include <gtest/gtest.h>

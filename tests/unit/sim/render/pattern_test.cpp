@@ -30,7 +30,7 @@ TEST(Pattern, IsANetInEveryAlignedRun) {
   }
 }
 
-// However many, they are neither to one side of the light nor beyond its edge, at which some of 35 and more stay.
+// Mean of n sample points on a light: its middle. None is beyond its edge, at which some of 35 and more are clamped.
 TEST(Pattern, PointsOnALightHaveItsMiddleAsTheirMean) {
   for (int n = 1; n <= 256; ++n) {
     glm::dvec2 mean(0.0);
@@ -59,7 +59,7 @@ TEST(Pattern, PixelBitsAreAFunctionOfTheKeyAndThePixel) {
       }
     }
   }
-  EXPECT_EQ(seen.size(), 600u);  // 600 of 2^32: two alike with probability 4e-5, once and for all: the bits are fixed
+  EXPECT_EQ(seen.size(), 600u);  // 600 of 2^32: two equal with probability 4e-5; the bits are fixed
 }
 
 TEST(Pattern, UnitNumbersStayInside) {

@@ -20,7 +20,7 @@ CameraParams Fisheye(CameraParams params) {
   return params;
 }
 
-// The first to third are so small that one step from the table of rays does not get to 1e-6 px.
+// Lenses; in the first three images, which are small, one step from the table of rays does not reach 1e-6 px.
 std::vector<Case> Lenses() {
   return {
       {"80x60", {80, 60, 45, 45, 39.5, 29.5, -0.28, 0.07}},

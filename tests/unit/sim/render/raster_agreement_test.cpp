@@ -1,4 +1,4 @@
-// The rasteriser against the ray tracer, by their pictures.
+// Images of the rasteriser against those of the ray tracer.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace sim::test {
 namespace {
 
-// The demo's room, of which every part has its texture.
+// The demo's room, with textures on all surfaces.
 const Scenario& Room() {
   static const Scenario room = LoadScenario(std::filesystem::path(VOBENCH_SOURCE_DIR) / "scenes/room.yaml");
   return room;
@@ -31,7 +31,7 @@ Scene Moved(Scene scene, const glm::vec3& by) {
   return scene;
 }
 
-// Two places in the room, so that near and far, flat and round, are seen.
+// Two poses in the room, with near and far, flat and curved surfaces in view.
 const std::array<Pose, 2> kPoses = {Pose{{2.0, 1.4, 2.6}, glm::normalize(glm::dquat(0.02, 1.0, 0.03, -0.12))},
                                     Pose{{3.4, 1.5, 2.9}, glm::normalize(glm::dquat(-0.1, 1.0, -0.35, -0.2))}};
 
@@ -47,7 +47,7 @@ CameraParams Distorted() {
   params.k1 = -0.28, params.k2 = 0.09, params.p1 = 0.001, params.p2 = -0.0007;
   return params;
 }
-// 92 degrees aside in its corners: beyond what one pinhole picture can hold.
+// 92 degrees from the axis in the corners: beyond one pinhole image.
 CameraParams FisheyeParams() {
   CameraParams params = Pinhole();
   params.lens = Lens::fisheye;
@@ -58,7 +58,7 @@ CameraParams FisheyeParams() {
 
 using Values = std::vector<float>;
 
-// Where a failed test leaves its pictures: white is `white`.
+// Writes an image of a failed test; `white` is the value of white.
 void Write(const std::string& name, int width, int height, int channels, const Values& values, double white) {
   cv::Mat picture(height, width, channels == 3 ? CV_8UC3 : CV_8UC1);
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -71,7 +71,7 @@ void Write(const std::string& name, int width, int height, int channels, const V
   ADD_FAILURE() << "see " << folder / (name + ".png");
 }
 
-// As a file would have it: sRGB.
+// sRGB encoding, as in a file.
 Values Coded(const RadianceImage& image) {
   Values out;
   for (const float value : image.rgb) {
@@ -81,7 +81,7 @@ Values Coded(const RadianceImage& image) {
   return out;
 }
 
-// Every triangle has a colour of its own, which is its radiance: a picture says which one each pixel's centre sees.
+// Scene with a different radiance for each triangle, which labels the triangle at each pixel's centre.
 Scene Labelled(Scene scene) {
   for (Material& material : scene.materials) {
     material = Material();
@@ -108,7 +108,7 @@ Scene Labelled(Scene scene) {
 
 class RasterAgreement : public EngineTest {
  protected:
-  // The share of pixels that see another triangle is below `most`, and three times that when all is 2 mm further back.
+  // Share of pixels with another triangle: below `most`. Control: more than three times that with the scene 2 mm aside.
   void ExpectTriangles(const CameraParams& params, double most) {
     const Camera camera(params);
     const Scene labelled = Labelled(RoomScene());
@@ -141,7 +141,7 @@ class RasterAgreement : public EngineTest {
     const double psnr = PictureDistance(RoomScene(), camera, still, Exposure{}, Centred(), "sharp", least);
     EXPECT_GT(psnr, least);
     RecordProperty("psnr", std::to_string(psnr));
-    // Controls: everything 2 mm aside; the pictures upside down.
+    // Controls: everything 2 mm aside; the textures upside down.
     const double aside =
         PictureDistance(Moved(RoomScene(), {0.002f, 0, 0}), camera, still, Exposure{}, Centred(), "", 0);
     EXPECT_LT(aside, least - 2);
@@ -153,7 +153,7 @@ class RasterAgreement : public EngineTest {
     EXPECT_LT(PictureDistance(flipped, camera, still, Exposure{}, Centred(), "", 0), 30);
   }
 
-  // The picture of `exposure` along `motion`, both ways, and how far apart they are [dB].
+  // PSNR [dB] between the ray tracer's and the engine's images of `exposure` along `motion`.
   double PictureDistance(const Scene& scene, const Camera& camera, const Trajectory& motion, const Exposure& exposure,
                          const RayTracerOptions& options, const std::string& name, double least) {
     RadianceImage a, b;
@@ -179,12 +179,12 @@ TEST_P(RasterAgreement, TrianglesThroughAPinhole) { ExpectTriangles(Pinhole(), 1
 TEST_P(RasterAgreement, TrianglesThroughADistortedLens) { ExpectTriangles(Distorted(), 6e-3); }
 TEST_P(RasterAgreement, TrianglesThroughAFisheye) { ExpectTriangles(FisheyeParams(), 5e-3); }
 
-// One ray through the middle of each pixel: nothing but shadows and what lies on an edge may differ.
+// One ray through the middle of each pixel: differences at shadows and edges only.
 TEST_P(RasterAgreement, SharpPicture) { ExpectPicture(Pinhole(), 42); }
 TEST_P(RasterAgreement, SharpPictureThroughADistortedLens) { ExpectPicture(Distorted(), 35); }
 TEST_P(RasterAgreement, SharpPictureThroughAFisheye) { ExpectPicture(FisheyeParams(), 35); }
 
-// Blur by motion, defocus and a rolling shutter, with samples enough that the ray tracer's grain does not count.
+// Motion blur, defocus and rolling shutter, with samples enough for negligible noise of the ray tracer.
 TEST_P(RasterAgreement, BlurredPicture) {
   CameraParams params = Pinhole();
   params.width = 112, params.height = 84;
@@ -205,7 +205,7 @@ TEST_P(RasterAgreement, BlurredPicture) {
     EXPECT_GT(psnr, least) << name;
     RecordProperty(name, std::to_string(psnr));
   }
-  // The control: the exposure a tenth of its length late, in a picture of one renderer and of itself.
+  // Control: one renderer, with the exposure a tenth of its length late.
   Exposure late = blur;
   late.middle_s = 0.003;
   const auto engine = MakeEngine(GetParam(), RoomScene(), {});

@@ -1,4 +1,4 @@
-// What is the rasteriser's own: threads, strips, lenses, what it refuses.
+// Rasteriser: threads, strips of rows, lenses, refusals.
 #include <gmock/gmock.h>
 
 #include <thread>
@@ -25,8 +25,8 @@ RadianceImage Expose(const Renderer& renderer, const Camera& camera, const Traje
 class RasteriserTest : public EngineTest {};
 INSTANTIATE_TEST_SUITE_P(Engine, RasteriserTest, testing::Values(kEgl, kOsmesa), EngineName);
 
-// Calls from several threads wait for each other; earlier calls with other cameras and exposures leave nothing behind;
-// nor does another rasteriser in the same process, on any platform.
+// Image as a function of the arguments alone: no influence of concurrent calls, of earlier calls with other cameras and
+// exposures, or of another rasteriser in the same process, on any platform.
 TEST_P(RasteriserTest, ResultsDependOnTheArgumentsAlone) {
   const SteadyMotion motion(Pose{}, {0.8, 0.4, 0.1}, {0.05, -0.1, 0.15});
   const Camera small(SmallCamera()), distorted(DistortedCamera());
@@ -63,7 +63,7 @@ TEST_P(RasteriserTest, NothingIsBackground) {
   EXPECT_EQ(image.pixel(8, 4)[2], 1.5f);
 }
 
-// The mean of a picture's samples does not move it, whatever their number: an edge at 41.0 covers half of pixel 41.
+// Mean place of an image's samples: the pixel's centre, for any number. An edge at 41.0 covers half of pixel 41.
 TEST_P(RasteriserTest, SamplesDoNotShiftThePicture) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.0f), glm::vec3(1.0f));
@@ -78,7 +78,7 @@ TEST_P(RasteriserTest, SamplesDoNotShiftThePicture) {
   }
 }
 
-// Nor does a lens move what is out of focus: here a square in the middle of the picture, over a disc 28 px in radius.
+// Centroid of a defocused square in the middle of the image: not shifted by a blur disc of 28 px radius.
 TEST_P(RasteriserTest, ALensDoesNotShiftWhatItBlurs) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.0f), glm::vec3(1.0f));
@@ -101,8 +101,8 @@ TEST_P(RasteriserTest, ALensDoesNotShiftWhatItBlurs) {
   }
 }
 
-// The line of sampling_test.cpp that leans under a rolling shutter: each strip has the moment of its middle row, so
-// that with strips of one row all rows are right, and with strips of eight they are off by three and a half rows' turn.
+// Skew of the edge of sampling_test.cpp under a rolling shutter, by strips with the time of their middle row: exact for
+// strips of one row, off by the rotation during up to three and a half rows for strips of eight.
 TEST_P(RasteriserTest, RollingShutterStrips) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.0f), glm::vec3(1.0f));
@@ -144,7 +144,7 @@ TEST_P(RasteriserTest, RefusesWhatItCannotDo) {
   const auto renderer = MakeRasteriser(BusyWorld(), On(GetParam()));
   EXPECT_THROW(Expose(*renderer, Camera(SmallCamera()), SteadyMotion(Pose{}), Exposure{0, 0, 0, 0}),
                std::invalid_argument);
-  // A lens whose pixels are 800 times narrower in the middle than they are wide at the border.
+  // A lens whose pixels are 800 times narrower in the middle than at the border.
   CameraParams params = SmallCamera(640, 480);
   params.lens = Lens::fisheye;
   params.fx = params.fy = 20000;
@@ -152,7 +152,7 @@ TEST_P(RasteriserTest, RefusesWhatItCannotDo) {
   params.width = 16384, params.height = 16;
   params.cx = 8191.5, params.cy = 7.5;
   EXPECT_THROW(Expose(*renderer, Camera(params), SteadyMotion(Pose{}), Exposure{}), std::invalid_argument);
-  // And works on after that.
+  // The renderer stays usable.
   EXPECT_NO_THROW(Expose(*renderer, Camera(SmallCamera()), SteadyMotion(Pose{}), Exposure{}));
 }
 
@@ -182,11 +182,11 @@ TEST_P(RasteriserTest, NamesWhatItDoesNotRender) {
                                    "rasteriser: the sky is not seen; world.background is"));
 }
 
-// Every ray of a lens, at the rims of its pixels too, falls into the view of its face.
+// View of each face: contains every ray of the lens, at the borders of its pixels too.
 TEST(RasterViews, HoldEveryRay) {
   CameraParams fisheye = SmallCamera(97, 61);
   fisheye.lens = Lens::fisheye;
-  fisheye.fx = fisheye.fy = 25;  // 131 degrees aside in the corners
+  fisheye.fx = fisheye.fy = 25;  // 131 degrees from the axis in the corners
   CameraParams wide = SmallCamera(97, 61);
   wide.fx = wide.fy = 24;
   wide.k1 = 0.01;

@@ -1,4 +1,5 @@
-// Metal and gloss: mirrors against the mirrored world, lobes against sums over the hemisphere, energy in a furnace.
+// Specular reflection: mirrors against the mirrored world, lobes against quadrature over the hemisphere, energy in a
+// furnace.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,8 +36,8 @@ glm::dvec3 Mean(const RadianceImage& image) {
   return sum / static_cast<double>(image.width * image.height);
 }
 
-// A mirror, all of the picture, in the plane z = 3 shows what is behind the camera as a camera behind the mirror would
-// see it, left and right exchanged; a metal colours it.
+// Image in a mirror that fills the view, in the plane z = 3: that of a camera behind the mirror with left and right
+// exchanged, times the metal's Fresnel reflectance.
 TEST(Reflection, AFlatMirrorShowsTheMirroredWorld) {
   Scene behind;
   const int red = AddMaterial(behind, {0.8f, 0.1f, 0.1f}), blue = AddMaterial(behind, {0.1f, 0.2f, 0.9f}),
@@ -53,7 +54,7 @@ TEST(Reflection, AFlatMirrorShowsTheMirroredWorld) {
   params.cx = 41;  // pixels have mirror images
   const Camera camera(params);
   const RadianceImage seen = Render(scene, camera, Pose{}, Mirroring(1));
-  // The camera's mirror image at (0, 0, 6) looks along -z; its picture is turned about its y axis, a real camera's.
+  // The mirrored camera at (0, 0, 6) looks along -z; its orientation is a half turn about y, without the reflection.
   const RadianceImage expected = Render(behind, camera, Pose{{0, 0, 6}, glm::dquat(0, 0, 1, 0)}, Mirroring(1));
   int compared = 0, off = 0;
   for (int v = 1; v + 1 < camera.height(); ++v) {
@@ -69,7 +70,7 @@ TEST(Reflection, AFlatMirrorShowsTheMirroredWorld) {
             high = std::max(high, expected.pixel(m + i, v + j)[c]);
           }
         }
-        if (high > 1.05f * low) continue;  // at an edge it is a matter of rounding what a ray meets
+        if (high > 1.05f * low) continue;  // an edge, where rounding decides the hit
         const double f0 = std::array{0.9, 0.6, 0.3}[static_cast<std::size_t>(c)];
         const double want = (f0 + (1 - f0) * fresnel) * expected.pixel(m, v)[c];
         ++compared;
@@ -83,7 +84,7 @@ TEST(Reflection, AFlatMirrorShowsTheMirroredWorld) {
   EXPECT_GT(std::abs(Mean(lambert).x - Mean(seen).x), 0.05) << "without reflections it is another picture";
 }
 
-// Of D and G2 by their definitions, in another form than the renderer's.
+// D G2 / (4 n.v), GGX, from the definitions of D and G2 in another form than the renderer's.
 double MicrofacetTimesCosine(const glm::dvec3& n, const glm::dvec3& v, const glm::dvec3& l, double alpha) {
   const glm::dvec3 h = glm::normalize(v + l);
   const auto lambda = [&](const glm::dvec3& w) {
@@ -95,8 +96,8 @@ double MicrofacetTimesCosine(const glm::dvec3& n, const glm::dvec3& v, const glm
   return D * G2 / (4 * glm::dot(n, v));
 }
 
-// Under a sky of radiance 1 a metal of base colour 1 reflects the albedo of its lobe, by quadrature over the
-// hemisphere; a mirror all of it. 4096 rays of a small picture: a standard error of 2e-4 or less.
+// Directional albedo of the specular lobe: a metal of base colour 1 under a sky of radiance 1, against quadrature over
+// the hemisphere; 1 for a mirror. 4096 rays of a small image: a standard error of 2e-4 or less.
 TEST(Reflection, MetalUnderAWhiteSky) {
   for (const double roughness : {0.0, 0.3, 0.6, 1.0}) {
     for (const double angle : {0.2, 1.0, 1.35}) {
@@ -134,8 +135,8 @@ TEST(Reflection, MetalUnderAWhiteSky) {
   }
 }
 
-// What is no metal: 4 % and the Fresnel term are mirrored, the rest is left to the Lambert surface. Never more light
-// than falls on it.
+// F = 0.04 + 0.96 (1 - cos)^5 is reflected by a dielectric's mirror, 1 - F by its Lambertian base: at most the incident
+// light.
 TEST(Reflection, PaintKeepsItsEnergy) {
   for (const double angle : {0.1, 0.8, 1.3}) {
     Scene scene;
@@ -154,7 +155,7 @@ TEST(Reflection, PaintKeepsItsEnergy) {
   }
 }
 
-// The highlight of a point light on a plane, pixel by pixel, from the definitions.
+// Highlight of a point light on a metal plane, pixel by pixel, from the definitions.
 TEST(Reflection, APointLightsHighlight) {
   for (const double roughness : {0.25, 0.5, 0.8}) {
     Scene scene;
@@ -183,8 +184,7 @@ TEST(Reflection, APointLightsHighlight) {
   }
 }
 
-// An area lamp in a mirror is a parallelogram of its radiance, one-sided; in a rough metal its light is that of the
-// same lamp made of a surface that shines, which rays meet as any other.
+// Area light in a mirror and in a rough metal: equal to an emitting quad of the same radiance, and one-sided.
 TEST(Reflection, AnAreaLampIsSeenInWhatMirrors) {
   const RectLight lamp{{-0.5, -0.4, 1.0}, {0, 0.8, 0}, {1, 0, 0}, {4, 3, 2}};
   for (const float roughness : {0.0f, 0.5f}) {
@@ -196,7 +196,7 @@ TEST(Reflection, AnAreaLampIsSeenInWhatMirrors) {
     lit.lights.push_back(facing);
     AddQuad(glowing, glm::vec3(lamp.corner), glm::vec3(lamp.side_u), glm::vec3(lamp.side_v),
             AddMaterial(glowing, glm::vec3(0.0f), glm::vec3(lamp.radiance)));
-    // Seen from the side, so that the glowing quad itself is not in the picture.
+    // From the side, with the emitting quad itself out of view.
     CameraParams params = SmallCamera();
     params.fx = params.fy = 120;
     const Camera camera(params);

@@ -32,7 +32,7 @@ TEST(Exposure, SameBytesWithOneAndTwoThreads) {
   const SteadyMotion motion = Moving();
   for (const Exposure& exposure : {Open(4), Open(4, 0.01, 1e-4)}) {
     const RadianceImage image = Expose(*a, motion, exposure, 7, camera);
-    Expose(*b, motion, exposure, 8, camera);  // an earlier call leaves nothing behind
+    Expose(*b, motion, exposure, 8, camera);  // an earlier call, without influence
     EXPECT_EQ(image.rgb, Expose(*b, motion, exposure, 7, camera).rgb);
     EXPECT_EQ(image.rgb, Expose(*c, motion, exposure, 7, camera).rgb);
     EXPECT_NE(image.rgb, Expose(*a, motion, exposure, 8, camera).rgb);  // the key matters
@@ -52,7 +52,7 @@ double WorstDifference(const RadianceImage& a, const RadianceImage& b, const std
   return worst;
 }
 
-// A smooth world, so that the last bit of a ray does not decide which side of an edge it meets.
+// A smooth world, without edges at which rounding decides the hit.
 Scene SmoothWorld() {
   Scene scene;
   scene.textures.emplace_back("ramp", 2, 2,
@@ -76,7 +76,7 @@ TEST(Exposure, IsTheMeanOfItsTimeSamples) {
   for (std::size_t i = 0; i < mean.size(); ++i) ASSERT_NEAR(blurred.rgb[i], mean[i], 2e-5 * (1 + mean[i])) << i;
 }
 
-// Row y of a rolling shutter is row y of the picture that a global shutter takes at the row's own moment.
+// Row y of a rolling shutter: row y of a global shutter's image at the row's own time.
 TEST(Exposure, EachRowOfARollingShutterHasItsOwnMoment) {
   const Camera camera(SmallCamera(83, 62));
   const auto renderer = MakeRayTracer(SmoothWorld(), Centred());
@@ -88,7 +88,7 @@ TEST(Exposure, EachRowOfARollingShutterHasItsOwnMoment) {
       EXPECT_LT(WorstDifference(rolling, Expose(*renderer, motion, Open(3, 0.006, 0.0, middle_s), 1, camera), {y}),
                 2e-5)
           << y;
-      // The control: one row's time off.
+      // Control: one row's delay off.
       EXPECT_GT(
           WorstDifference(rolling, Expose(*renderer, motion, Open(3, 0.006, 0.0, middle_s + delay_s), 1, camera), {y}),
           1e-4)
@@ -97,8 +97,8 @@ TEST(Exposure, EachRowOfARollingShutterHasItsOwnMoment) {
   }
 }
 
-// The straight line at u0 seen by a camera that turns at rate w about its vertical axis leans in closed form: in row y
-// it is at cx + fx tan(atan((u0 - cx) / fx) - w t(y)).
+// cx + fx tan(atan((u0 - cx) / fx) - w t(y)): place in row y of a vertical line at u0, for a camera that turns at rate
+// w about its vertical axis.
 TEST(Exposure, AVerticalEdgeLeansUnderARollingShutter) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.0f), glm::vec3(1.0f));
@@ -113,13 +113,13 @@ TEST(Exposure, AVerticalEdgeLeansUnderARollingShutter) {
   for (int y = 0; y < 60; ++y) {
     double bright = 0;
     for (int x = 0; x < 80; ++x) bright += image.pixel(x, y)[0];
-    // Where the edge crosses the row's middle: it is a line in the picture too, so the row's mean is there.
+    // The edge is a line in the image too: the row's mean is its place at the row's middle.
     const double edge = params.cx + params.fx * std::tan(std::atan(0.1) - w * delay_s * (y - 29.5));
     EXPECT_NEAR(79.5 - bright, edge, 0.03) << y;
   }
 }
 
-// What a time sample sees is spread over its part of the exposure: long blur is grain, not copies.
+// Jitter of the time samples within their parts of the exposure: long blur is noise about the right mean, not copies.
 TEST(Exposure, FewTimeSamplesMakeGrainAroundTheRightMean) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.0f), glm::vec3(1.0f));
@@ -137,10 +137,10 @@ TEST(Exposure, FewTimeSamplesMakeGrainAroundTheRightMean) {
   }
 }
 
-// A wall whose brightness is linear in X, seen in passing: a pixel is as bright as what its centre meets in the middle
-// of the exposure, but for how far its moments and places are off on the mean. 16 even moments of each pixel are off by
-// less than a tenth of a part of the exposure, 0.6 mm here; moments that were late in every part together would be off
-// by up to half a part, 3.1 mm. The places add 1/32 px, 0.45 mm.
+// Mean time of a pixel's samples: the middle of the exposure. The radiance of a passing wall is linear in X, so a pixel
+// differs from the radiance at its centre by the mean errors of its times and places. 16 even times of each pixel have
+// an error below a tenth of a part of the exposure, 0.6 mm here; times that are late in every part together have up to
+// half a part, 3.1 mm. The places add 1/32 px, 0.45 mm.
 TEST(Exposure, TheMomentsOfAPixelAreTogetherInTheMiddle) {
   Scene scene;
   AddMaterial(scene, glm::vec3(1.0f));
@@ -160,8 +160,8 @@ TEST(Exposure, TheMomentsOfAPixelAreTogetherInTheMiddle) {
   EXPECT_LT(worst, 0.0011);
 }
 
-// The edge of a bright half plane crosses each pixel of a row at a known place: what the pixel collects is the bright
-// part of its area. n points of the (0, 2)-sequence err by at most 1/n on a vertical edge.
+// Bright fraction of a pixel's area with the edge of a half plane at a known place: box filter. n points of the
+// (0, 2)-sequence err by at most 1/n on a vertical edge.
 TEST(Exposure, PixelsAreAveragesOverTheirArea) {
   constexpr int n = 64;
   for (const double edge : {10.0, 10.17, 10.5, 10.73}) {
@@ -182,8 +182,8 @@ TEST(Exposure, PixelsAreAveragesOverTheirArea) {
   }
 }
 
-// A thin lens of diameter A focused at F smears an edge at depth Z over a disc of radius f A |1/Z - 1/F| / 2: what is
-// bright of the disc is 1/2 + (x sqrt(1 - x^2) + asin x) / pi at x radii from the edge.
+// f A |1/Z - 1/F| / 2: radius of the blur disc at depth Z of a thin lens of diameter A focused at F. The bright part of
+// a disc at x radii from an edge is 1/2 + (x sqrt(1 - x^2) + asin x) / pi.
 TEST(Exposure, ALensBlursWhatIsOutOfFocusIntoDiscs) {
   Scene scene;
   AddMaterial(scene, glm::vec3(0.0f), glm::vec3(1.0f));
@@ -205,8 +205,8 @@ TEST(Exposure, ALensBlursWhatIsOutOfFocusIntoDiscs) {
       }
       for (int v = 0; v < 40; ++v) worst = std::max(worst, std::abs(image.pixel(u, v)[0] - expected));
     }
-    // The worst of 3000 pixels stays below two standard deviations of independent points, 0.5 / sqrt(2048). A radius
-    // that is off by a tenth is off by 0.05.
+    // The worst of 3000 pixels is below two standard deviations of independent points, 0.5 / sqrt(2048). A radius with
+    // an error of a tenth gives 0.05.
     EXPECT_LT(worst, 0.022) << "focus " << focus << ", radius " << radius << " px";
   }
 }

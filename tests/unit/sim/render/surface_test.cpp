@@ -1,4 +1,4 @@
-// Sky, cut-outs, emission, normal maps, visible lamps and flicker, as the ray tracer shows them, in closed form.
+// Sky, cut-outs, emission, normal maps, visible lamps and flicker by the ray tracer, in closed form.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ TEST(Surface, SkyIsSeenAsItIsDescribed) {
   }
 }
 
-// A chequered cut-out of 2 x 2 texels in front of a white wall: what is seen and what is in shadow.
+// Chequered cut-out (alpha test) of 2 x 2 texels in front of a white wall: visibility and shadow.
 Texture Chequer() {
   const std::vector<std::uint8_t> rgb(12, 255), alpha{255, 0, 0, 255};
   return Texture("chequer", 2, 2, rgb, alpha);
@@ -128,8 +128,8 @@ TEST(Surface, EmissionTimesItsPicture) {
   EXPECT_EQ(at(0.2, 0.3)[0], 5.0f);
 }
 
-// A normal map that tilts everything by the same angle, under a sun: the cosine with the tilted normal; from behind, with
-// its opposite. With the green channel's sign or the picture's handedness wrong, another cosine comes out.
+// Cosine between a sun and the normal of a uniformly tilting normal map; from behind, with its opposite. Upright and
+// mirrored texture coordinates. Control: the wrong sign of the green channel.
 TEST(Surface, NormalMapTurnsTheNormal) {
   const glm::dvec3 tilted = glm::normalize(glm::dvec3(0.4, 0.3, 1.0));  // right, up, out
   const auto code = [](double n) { return static_cast<std::uint8_t>(std::lround((n + 1) / 2 * 255)); };
@@ -197,8 +197,7 @@ TEST(Surface, VisibleLampIsSeenFromItsSideAndCastsNoShadow) {
   EXPECT_EQ(Render(scene, camera, back).pixel(40, 30)[0], 0.0f);
 }
 
-// A lamp's flicker over an exposure and a rolling shutter: the mean of its sine over what each row sees, in each mode
-// of light.
+// Mean of a lamp's flicker over the exposure of each row of a rolling shutter, in each light mode.
 TEST(Surface, FlickerInEachRow) {
   const Flicker mains{100, 0.4, 0.2};
   Scene steady, flickers;

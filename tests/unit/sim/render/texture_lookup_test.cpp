@@ -24,7 +24,7 @@ Scene Picture(int width, int height, float z) {
   return scene;
 }
 
-// One texel per pixel, centre on centre: the picture itself comes back, upright.
+// One texel per pixel, centre on centre: the image is the texture, upright.
 TEST(TextureLookup, TexelCentres) {
   const int size = 64;
   Scene scene = Picture(size, size, 1.0f);
@@ -54,7 +54,7 @@ TEST(TextureLookup, AgreesWithTheTexturesOwnFilterAtAllDistances) {
         if (uv.x < 0.01f || uv.x > 0.99f || uv.y < 0.01f || uv.y > 0.99f) continue;
         ++seen;
         const glm::vec3 expected = Sample(scene.textures[0], uv, static_cast<float>(texels));
-        // The loop's log2 is good to 0.01 levels, and neighbouring levels differ by less than 1. Uv are good to 1e-5
+        // Error of the loop's log2: 0.01 mip levels, and neighbouring levels differ by less than 1. Error of uv: 1e-5
         // texels x 100.
         for (int c = 0; c < 3; ++c) ASSERT_NEAR(image.pixel(u, v)[c], expected[c], 0.01) << z << ": " << u << ", " << v;
       }
@@ -93,7 +93,7 @@ TEST(TextureLookup, VertexColoursMultiply) {
   AddQuad(scene, {-1, -1, 2}, {9, 0, 0}, {0, 9, 0}, 0);  // a mesh without colours beside: white
   const Camera camera(SmallCamera(63, 63));
   const RadianceImage image = Render(scene, camera, Pose{});
-  const glm::dvec2 uv(0.25, 0.125);  // in the triangle of corners 0, 3, 2? below the diagonal: corners 0, 1, 2
+  const glm::dvec2 uv(0.25, 0.125);  // below the diagonal: the triangle of corners 0, 1, 2
   const Pose at{{2 * uv.x - 1, 2 * uv.y - 1, 0}, {1, 0, 0, 0}};
   const RadianceImage seen = Render(scene, camera, at);
   // Triangle (0, 1, 2): weights 1 - u, u - v, v of red, green, white.
@@ -109,7 +109,7 @@ void ExpectNothingNegative(const RadianceImage& image) {
   for (const float light : image.rgb) ASSERT_GE(light, 0.0f);
 }
 
-// Where weights vanish they are rounded to either side of nothing, and beside what is black a negative one would be negative light.
+// Rounding of barycentric weights near zero: beside black a negative weight would give negative radiance.
 TEST(TextureLookup, NothingIsNegativeOnABlackEdge) {
   Scene scene = Picture(1, 1, 1.0f);
   scene.meshes[0].colors = {{0, 0, 0},

@@ -1,4 +1,4 @@
-// Small worlds and cameras whose pictures are known in closed form.
+// Small worlds and cameras with images in closed form.
 #pragma once
 
 #include <cmath>
@@ -31,7 +31,7 @@ inline CameraParams SmallCamera(int width = 83, int height = 61) {
   return params;
 }
 
-// A picture of strong distortion in all five terms.
+// Camera with strong distortion in all five terms.
 inline CameraParams DistortedCamera() {
   CameraParams params = SmallCamera(120, 90);
   params.k1 = 0.12;
@@ -93,7 +93,7 @@ inline void AddSphere(Scene& scene, glm::dvec3 center, double radius, int rings,
   scene.meshes.push_back(mesh);
 }
 
-// Something with texture, light and shadow in every part of the picture.
+// Scene with texture, light and shadow in every part of the image.
 inline Scene BusyWorld() {
   Scene scene;
   std::vector<std::uint8_t> rgb;
@@ -108,7 +108,7 @@ inline Scene BusyWorld() {
   return scene;
 }
 
-// Irradiance of a polygon of radiance 1 seen from x (Lambert 1760): sum over its edges of angle * (normal of the edge's
+// Irradiance at x from a polygon of radiance 1 (Lambert 1760): sum over its edges of angle * (normal of the edge's
 // fan . n) / 2.
 inline double PolygonIrradiance(const std::vector<glm::dvec3>& corners, glm::dvec3 x, glm::dvec3 n) {
   double sum = 0;
@@ -119,7 +119,7 @@ inline double PolygonIrradiance(const std::vector<glm::dvec3>& corners, glm::dve
   return std::abs(sum) / 2;
 }
 
-// Some pose that is not aligned with anything.
+// Pose aligned with no axis.
 inline Pose TiltedPose() { return {{0.2, -0.1, -0.3}, glm::normalize(glm::dquat(0.97, 0.08, -0.12, 0.06))}; }
 
 inline glm::dvec3 RayInWorld(const Camera& camera, const Pose& pose, double u, double v) {
@@ -152,7 +152,7 @@ inline std::unique_ptr<Renderer> MakeBaked(const Scene& scene, LightMode mode, c
   return MakeRayTracer(scene, LitScene(scene, mode, bake, {}, warnings), options);
 }
 
-// [dB], of a peak of 1.
+// Peak signal-to-noise ratio [dB] for a peak of 1.
 inline double Psnr(const std::vector<float>& a, const std::vector<float>& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (double{a[i]} - b[i]) * (double{a[i]} - b[i]);
@@ -169,7 +169,7 @@ inline RadianceImage Render(const Scene& scene, const Camera& camera, const Pose
   return Render(*MakeRayTracer(scene, options), camera, pose);
 }
 
-// Z in C of what each pixel's centre sees; 0: nothing.
+// Z in C of the surface at each pixel's centre; 0: none.
 inline std::vector<float> DepthOf(const Renderer& ray_tracer, const Camera& camera, const View& view) {
   std::vector<SurfacePoint> points;
   ray_tracer.surfaces()->Trace(camera, view, points);

@@ -34,7 +34,7 @@ TEST(Flow, OfAPlaneThroughADistortedLensByHand) {
       const glm::dvec3 ray = RayInWorld(traced.camera, here, u, v);
       const glm::dvec3 X_W = here.p_WC + glm::dot(n, at - here.p_WC) / glm::dot(n, ray) * ray;
       const glm::dvec2 pixel = traced.camera.Project(glm::conjugate(there.q_WC) * (X_W - there.p_WC));
-      // 1e-6 px of the ray through the pixel, and a float's rounding.
+      // Error of the pixel's ray, 1e-6 px, and rounding to float.
       ASSERT_NEAR(flow.uv[2 * i], pixel.x - u, 3e-6) << u << ", " << v;
       ASSERT_NEAR(flow.uv[2 * i + 1], pixel.y - v, 3e-6) << u << ", " << v;
       const bool in_image = pixel.x >= -0.5 && pixel.y >= -0.5 && pixel.x <= 119.5 && pixel.y <= 89.5;
@@ -46,7 +46,7 @@ TEST(Flow, OfAPlaneThroughADistortedLensByHand) {
   EXPECT_GT(hidden, 100);
 }
 
-// A square before a wall: a point of the wall is hidden when the ray to it passes through the square.
+// Occlusion by a square in front of a wall: a point of the wall is hidden when the ray to it crosses the square.
 TEST(Flow, OcclusionBehindASquare) {
   Scene scene;
   AddMaterial(scene, glm::vec3(1.0f));
@@ -89,7 +89,7 @@ TEST(Flow, UnknownWhereNothingIsOrWhatIsBehind) {
   }
 }
 
-// Beyond where x (1 + k1 x^2) has its maximum the formula goes back into the image; no lens does.
+// Points beyond the maximum of x (1 + k1 x^2): folded back into the image by the formula, but not in the image.
 TEST(Flow, WhatTheLensFoldsBackIsNotInTheImage) {
   CameraParams params = SmallCamera();
   params.k1 = -0.15;
@@ -113,7 +113,7 @@ TEST(SurfaceTracer, PointsOfACorner) {
     ASSERT_NE(p.triangle, kNoTriangle);
     const glm::dvec3 X = pose.p_WC + pose.q_WC * p.X_C;
     points_W.push_back(X);
-    // On one of the six planes, which is the one that the normal is of.
+    // On the one of the six planes that has the normal.
     const glm::dvec3 n = glm::normalize(traced.surfaces.Normal(p.triangle));
     const double planes[3][2] = {{-2, 2}, {-1, 3}, {-3, 4}};
     int on = 0;
@@ -128,12 +128,12 @@ TEST(SurfaceTracer, PointsOfACorner) {
     const glm::dvec2 pixel = traced.camera.Project(p.X_C);
     ASSERT_LT(glm::length(pixel - glm::dvec2(i % 120, i / 120)), 2e-6);
   }
-  // All of it is seen from anywhere inside.
+  // A convex room: all points are visible from inside.
   std::vector<std::uint8_t> visible;
   traced.surfaces.Visible(Pose{{1.2, 2.1, -2.3}}, points_W, visible);
   for (std::size_t i = 0; i < visible.size(); ++i) ASSERT_EQ(visible[i], 1) << i;
   traced.surfaces.Visible(Pose{{1.2, 2.1, -3.5}}, points_W,
-                          visible);  // and nothing from outside, but what is on that side
+                          visible);  // from outside: the points of the near side alone
   for (std::size_t i = 0; i < visible.size(); ++i) ASSERT_EQ(visible[i], points_W[i].z < -2.999999 ? 1 : 0) << i;
 }
 

@@ -35,7 +35,7 @@ TEST(Imu, AtRestItFeelsTheFloor) {
   EXPECT_EQ(glm::length(sample.w_I), 0);
 }
 
-// A unit on a turntable: 0.2 m from an axis through the camera, 3 rad/s: w^2 r inwards.
+// f = w^2 r inwards: an IMU on a turntable, 0.2 m from an axis through the camera, 3 rad/s.
 TEST(Imu, OnATurntable) {
   class Turntable : public Trajectory {
    public:
@@ -79,7 +79,8 @@ Drift Integrate(const Trajectory& trajectory, ImuParams imu, double rate_hz) {
   return {glm::length(p - p_end), glm::length(v - v_end), glm::length(Log(glm::conjugate(q) * q_end))};
 }
 
-// The error falls with the square of the step, as the rule's does: what is read are the path's own derivatives.
+// Second order of the integration error in the step, as of the trapezoidal rule: the readings are the derivatives of
+// the path.
 TEST(Imu, IntegratedItGivesThePathToSecondOrder) {
   const SplineTrajectory flight = Flight();
   for (const ImuParams& imu : {ImuParams{}, OffCentre()}) {
@@ -90,14 +91,15 @@ TEST(Imu, IntegratedItGivesThePathToSecondOrder) {
     EXPECT_LT(fine.p, 1e-4);
     EXPECT_LT(fine.q, 1e-5);
   }
-  // Seen to fail: gravity of the wrong sign does not shrink with the step.
+  // Control: gravity of the wrong sign changes a reading by more than 19 m/s^2.
   ImuParams wrong = OffCentre();
   wrong.gravity_W = -wrong.gravity_W;
   const auto samples = ImuReadings(flight, wrong, 1, 0, 0);
   EXPECT_GT(glm::length(samples[0].f_I - ImuReadings(flight, OffCentre(), 1, 0, 0)[0].f_I), 19);
 }
 
-// Of a path whose acceleration jumps the means give turn and velocity exactly, and instants do not.
+// Mean readings on a path whose acceleration jumps: exact rotation and velocity. Control: instantaneous readings are
+// not exact.
 TEST(Imu, MeansOfARoughPathAreExact) {
   SampledMotion motion;
   motion.position_noise = 0.5;
@@ -133,9 +135,9 @@ TEST(Imu, MeansOfARoughPathAreExact) {
   }
 }
 
-// Allan variance of `m` readings' means, without overlap: N^2 / tau of white noise of density N, K^2 tau / 3 of a walk
-// of density K. Its relative standard deviation over M clusters is at most sqrt(1.5 / M) for either (white noise:
-// (3 M - 4) / (2 (M - 1)^2) of the variance squared; the walk's differences are less correlated).
+// Allan variance of non-overlapping means of `m` readings: N^2 / tau for white noise of density N, K^2 tau / 3 for a
+// random walk of density K. Its relative standard deviation over M clusters is at most sqrt(1.5 / M) for either (white
+// noise: (3 M - 4) / (2 (M - 1)^2) of the variance squared; the walk's differences are less correlated).
 double AllanVariance(const std::vector<double>& values, std::size_t m, std::size_t& clusters) {
   std::vector<double> means(values.size() / m, 0.0);
   for (std::size_t i = 0; i < means.size() * m; ++i) means[i / m] += values[i] / static_cast<double>(m);
@@ -145,7 +147,7 @@ double AllanVariance(const std::vector<double>& values, std::size_t m, std::size
   return sum / (2 * static_cast<double>(means.size() - 1));
 }
 
-// 12 comparisons within 5 standard deviations, in each of which a correct generator errs less than once in 10^6.
+// Allan variance at 12 points, within 5 standard deviations; false-alarm rate below 1 in 10^6 each.
 TEST(Imu, NoiseHasItsDensities) {
   const SplineTrajectory rest = AtRest({1, 0, 0, 0});
   ImuParams imu;
@@ -165,13 +167,13 @@ TEST(Imu, NoiseHasItsDensities) {
       }
       const double N = gyroscope ? imu.gyroscope_noise : imu.accelerometer_noise,
                    K = gyroscope ? imu.gyroscope_walk : imu.accelerometer_walk;
-      for (const std::size_t m : {std::size_t{1}, std::size_t{1000}}) {  // white noise rules, the walk rules
+      for (const std::size_t m : {std::size_t{1}, std::size_t{1000}}) {  // mostly white noise, mostly the walk
         std::size_t clusters = 0;
         const double tau = static_cast<double>(m) / imu.rate_hz, found = AllanVariance(values, m, clusters),
                      expected = N * N / tau + K * K * tau / 3,
                      bound = 5 * std::sqrt(1.5 / static_cast<double>(clusters));
         EXPECT_NEAR(found / expected, 1, bound) << axis << gyroscope << " tau " << tau;
-        // Seen to fail: densities twice as large, and a standard deviation that forgets the rate.
+        // Controls: densities twice as large, and a variance of N^2, without the rate.
         EXPECT_GT(std::abs(found / (4 * expected) - 1), bound);
         if (m == 1) {
           EXPECT_GT(std::abs(found / (N * N) - 1), bound);

@@ -15,7 +15,7 @@
 namespace sim {
 namespace {
 
-// SmallWorld's wall, a copy of half its size before its left half, a lamp that is seen, and a board that moves.
+// SmallWorld's wall, a copy of half its size in front of its left half, a visible lamp, and a moving board.
 Scenario Labelled(const SmallWorld& world) {
   return LoadScenario(
       world.scenario(),
@@ -97,7 +97,7 @@ TEST(Labels, PicturesAndBoxesAgree) {
   EXPECT_FALSE(std::getline(lines, line));
 }
 
-// The corners of the board's box, projected, are those of its pixels: to one pixel.
+// Projected corners of the board's box against the bounds of its pixels, to one pixel.
 TEST(Labels, TheBoxInSpaceIsTheOneInThePicture) {
   const SmallWorld world;
   const Simulator simulator(Labelled(world), 1);
@@ -119,7 +119,7 @@ TEST(Labels, TheBoxInSpaceIsTheOneInThePicture) {
       low = glm::min(low, pixel);
       high = glm::max(high, pixel);
     }
-    low = glm::max(low, glm::dvec2(0));  // what is cut off by the picture's edge
+    low = glm::max(low, glm::dvec2(0));  // clipped at the image's border
     high = glm::min(high, glm::dvec2(63, 47));
     EXPECT_TRUE(n[2] - low.x >= 0 && n[2] - low.x <= 1 && n[3] - low.y >= 0 && n[3] - low.y <= 1)
         << index << ": " << n[2] - low.x << " " << n[3] - low.y;

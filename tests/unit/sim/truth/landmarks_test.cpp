@@ -21,8 +21,8 @@ TEST(Landmarks, LieOnTheWallAndAreSpread) {
     EXPECT_NEAR(landmarks[i].X_W.z, -2, 1e-12);
     for (std::size_t k = 0; k < i; ++k) nearest = std::min(nearest, glm::length(landmarks[i].X_W - landmarks[k].X_W));
   }
-  // About 2.5 m x 1.9 m are seen, 0.35 m between neighbours on a square grid of 40. Random places have some within 5
-  // cm.
+  // About 2.5 m x 1.9 m are in view: 0.35 m between neighbours on a square grid of 40, some within 5 cm at random
+  // places.
   EXPECT_GT(nearest, 0.2);
 }
 

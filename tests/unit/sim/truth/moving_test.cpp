@@ -1,4 +1,4 @@
-// What truth says of objects that move: closed forms, and the files.
+// Ground truth of moving objects: closed forms, and the files.
 #include <gmock/gmock.h>
 
 #include <glm/geometric.hpp>
@@ -18,7 +18,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A square of 1 m at Z = 2 goes aside before a wall at Z = 4; the camera stands still.
+// f v dt / Z: flow of a square of 1 m that moves at Z = 2 in front of a wall at Z = 4; the camera is at rest.
 TEST(MovingTruth, FlowOfASquareIsItsVelocity) {
   const glm::dvec3 v(0.9, -0.6, 0.0);
   constexpr double kStep = 1.0 / 30, t_s = 0.2;
@@ -62,7 +62,8 @@ TEST(MovingTruth, FlowOfASquareIsItsVelocity) {
   }
 }
 
-// An object that turns under a moving camera, against a world that stands still seen by the other motion.
+// Exchange of object and camera motion: a moving object and a camera at rest against a static world and a camera with
+// the relative motion.
 TEST(MovingTruth, ObjectAndCameraChangePlaces) {
   Scene still;
   test::AddMaterial(still, glm::vec3(1.0f));
@@ -102,7 +103,7 @@ TEST(MovingTruth, ObjectAndCameraChangePlaces) {
   EXPECT_GT(hidden, 100);
 }
 
-// A board of 1 m x 0.75 m at z = -1, before SmallWorld's wall, goes to the right and comes back.
+// A board of 1 m x 0.75 m at z = -1, in front of SmallWorld's wall, on a trajectory of its own.
 Scenario WithBoard(const SmallWorld& world, const std::string& trajectory) {
   return LoadScenario(
       world.scenario(),
@@ -152,7 +153,7 @@ TEST(MovingTruth, StreamsOfABoard) {
   EXPECT_NE(simulator.Render(4).image.data, simulator.Render(5).image.data);
 }
 
-// Landmarks are on what stands still, and are hidden while something is before them.
+// Landmarks: on static surfaces alone, and occluded by the objects in front of them.
 TEST(MovingTruth, LandmarksStandStill) {
   const SmallWorld world;
   const Simulator simulator(WithBoard(world, kDolly), 1);
@@ -175,7 +176,7 @@ TEST(MovingTruth, LandmarksStandStill) {
   EXPECT_GT(changes, 5);
 }
 
-// Each sampled object has a motion of its own, which is not the camera's.
+// Sampled motions: different for each object and for the camera.
 TEST(MovingTruth, SampledObjectsDiffer) {
   const SmallWorld world;
   constexpr char kSampled[] =

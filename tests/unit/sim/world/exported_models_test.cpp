@@ -24,7 +24,7 @@ struct Picture {
   std::vector<float> depth;
 };
 
-// Under ambient light of radiance 1 radiance is albedo.
+// Albedo and depth: ambient light of radiance 1 makes radiance the albedo.
 Picture PictureOf(const Scene& scene, const glm::dvec3& eye) {
   CameraParams lens = SmallCamera(320, 240);
   lens.fx = lens.fy = 262.5;
@@ -34,7 +34,7 @@ Picture PictureOf(const Scene& scene, const glm::dvec3& eye) {
   return {Render(scene, camera, pose), SurfaceTracer(rays, 1).Depth(camera, {pose, 0})};
 }
 
-// Largest relative difference; infinite where one picture has a surface and the other none.
+// Largest relative difference; infinite where only one image has a surface.
 double DepthDifference(const Picture& a, const Picture& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.depth.size(); ++i) {
@@ -70,7 +70,7 @@ TEST_F(ExportedModels, LookTheSameInAllFormats) {
                                     {"assimp/model.obj", 1.0},
                                     {"assimp/model.ply", 1.0},
                                     {"assimp/model.dae", 1.0},
-                                    {"assimp/model.ascii.fbx", 100.0}}) {  // it calls its metres centimetres
+                                    {"assimp/model.ascii.fbx", 100.0}}) {  // metres with a unit of centimetres
     SCOPED_TRACE(name);
     const Scene scene = Load(name, scale);
     EXPECT_THAT(scene.warnings,
@@ -83,7 +83,7 @@ TEST_F(ExportedModels, LookTheSameInAllFormats) {
   }
 }
 
-// The measures see a picture upside down and a model that is 1e-4 too large.
+// Controls: a texture upside down and a model that is 1e-4 too large are rejected.
 TEST_F(ExportedModels, DoNotWithThePictureUpsideDownNorInAnotherSize) {
   const Scene reference = Load("blender/model.glb");
   Scene turned = reference;
@@ -94,7 +94,7 @@ TEST_F(ExportedModels, DoNotWithThePictureUpsideDownNorInAnotherSize) {
   EXPECT_GT(DepthDifference(PictureOf(Load("blender/model.glb", 1.0001), kEyes[0]), expected), 1e-5);
 }
 
-// Blender's reader refuses it as well: a record of it does not end where it says.
+// A record with a wrong end offset, which Blender's reader refuses as well.
 TEST_F(ExportedModels, BinaryFbxOfAssimpIsRefused) {
   EXPECT_THAT(ProblemTextOf([] { Load("assimp/model.fbx"); }), HasSubstr("out of range"));
 }

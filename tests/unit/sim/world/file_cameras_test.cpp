@@ -1,4 +1,4 @@
-// Cameras of glTF files in scenarios: places and focal lengths worked by hand, and what is refused.
+// Cameras of glTF files in scenarios: poses and focal lengths worked by hand, and refusals.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -76,14 +76,14 @@ void ExpectPose(const Pose& pose, const glm::dvec3& position, const glm::dvec3& 
 
 TEST(FileCameras, PlaceIsThatOfTheNode) {
   ExpectPose(PoseOf({}), {2, 2, 3}, {0, 0, -1}, {-1, 0, 0});
-  // The mesh is set into the world: turned by 90 degrees about x (y to z), three times as large, moved by x.
+  // Pose of the mesh in the world: a turn of 90 degrees about x (y to z), scale 3, a shift along x.
   const Parts moved{.mesh =
                         "{file: hall.gltf, position: [10, 0, 0], scale: 3, "
                         "orientation: [0.7071067811865476, 0, 0, 0.7071067811865476]}"};
   ExpectPose(PoseOf(moved), {16, -9, 6}, {0, 1, 0}, {-1, 0, 0});
 }
 
-// Scaling is ignored, a mirror image's too: what is up and ahead stays so.
+// Scale of the nodes is ignored, with that of a mirror: up and ahead keep their directions.
 TEST(FileCameras, CameraBelowAMirrorIsStillUpright) {
   ExpectPose(PoseOf({.start = "{camera: own}"}), {1, 2, 3}, {0, 0, -1}, {-1, 0, 0});
 }

@@ -1,4 +1,4 @@
-// Small pictures, and the folder and the problems of the tests that read meshes.
+// Small image files, and the folder and the problems of the tests that read meshes.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace sim::test {
 
 using Folder = vobench_test::TemporaryFolder;
 
-// A picture file of random-looking content, or of one colour.
+// Image file of pseudo-random content, or of one colour.
 inline std::string EncodeNoise(const std::string& extension, int width, int height) {
   cv::Mat picture(height, width, CV_8UC3);
   for (int i = 0; i < width * height * 3; ++i) {
@@ -38,7 +38,7 @@ inline WorldDescription WorldOf(const std::filesystem::path& file) {
   return world;
 }
 
-// Of the SceneError of `load`; empty where it throws none.
+// Problems of the SceneError of `load`; empty where it throws none.
 template <class Load>
 std::vector<std::string> ProblemsOf(const Load& load) {
   try {

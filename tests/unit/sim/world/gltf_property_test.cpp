@@ -1,4 +1,4 @@
-// Random valid glTF files, held against their own description: each pair of the choices below occurs.
+// Random valid glTF files against their descriptions: each pair of the choices below occurs.
 #include <draco/compression/encode.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -36,7 +36,7 @@ struct Corner {
 };
 using Triangle = std::array<Corner, 3>;
 
-// What a file is made of, an index of each choice.
+// Properties of a file, an index for each choice.
 struct Choices {
   static constexpr std::array<int, 10> kCounts = {5, 3, 2, 2, 4, 3, 3, 3, 2, 3};
   std::array<int, 10> of{};
@@ -90,7 +90,7 @@ class FileMaker {
     }
     const int accessor = Attribute(position_rows, position_type, normalised, c_.is_sparse());
     json attributes = {{"POSITION", accessor}};
-    // Sets below the one that is used are there too, and others.
+    // Coordinate sets below the used one, with other values.
     for (int set = 0; set <= c_.uv_set(); ++set) {
       std::vector<std::vector<float>> rows = uv_rows;
       if (set != c_.uv_set()) rows.assign(n, {0, 0});
@@ -166,7 +166,7 @@ class FileMaker {
     if (type == kUnsignedShort) Put(bytes, static_cast<std::uint16_t>(value));
     if (type == kUnsignedInt) Put(bytes, static_cast<std::uint32_t>(value));
   }
-  // A view of bytes that are put into the buffer, at a multiple of four.
+  // View of bytes that are appended to the buffer at a multiple of four.
   int View(const std::string& bytes, std::size_t stride) {
     data.resize((data.size() + 3) / 4 * 4);
     json view = {{"buffer", 0}, {"byteOffset", data.size()}, {"byteLength", bytes.size()}};
@@ -249,7 +249,7 @@ class FileMaker {
     std::string bytes;
     for (const std::uint32_t i : indices) PutComponent(bytes, type, static_cast<float>(i));
     const bool compress = c_.compression() == 1 && type != kUnsignedByte;
-    // A strip's order counts, a list's triangles may be turned by the encoder.
+    // The order of a strip is fixed; the encoder may rotate the corners of a list's triangles.
     const int view = compress
                          ? Compressed(bytes, indices.size(), SizeOf(type), c_.mode() == 4 ? "TRIANGLES" : "INDICES")
                          : View(bytes, 0);
@@ -298,7 +298,7 @@ class FileMaker {
     for (std::size_t set = 0; set < other_ids.size(); ++set) ids["TEXCOORD_" + std::to_string(set)] = other_ids[set];
     primitive["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", View({buffer.data(), buffer.size()}, 0)},
                                                              {"attributes", ids}};
-    // What is not compressed would not fit the points that Draco makes.
+    // Uncompressed attributes would not match Draco's points.
     for (const auto& [name, index] : attributes.items()) {
       if (!ids.contains(name)) primitive["attributes"].erase(name);
     }
@@ -312,7 +312,7 @@ class FileMaker {
   std::size_t fallback_ = 0;
 };
 
-// Whether two triangles are the same, from whichever corner on.
+// Equality of two triangles up to a rotation of their corners.
 bool IsSame(const Triangle& a, const Triangle& b) {
   for (std::size_t turn = 0; turn < 3; ++turn) {
     bool same = true;
@@ -328,7 +328,7 @@ bool IsSame(const Triangle& a, const Triangle& b) {
 
 TEST(GltfProperty, RandomFilesAreWhatTheyDescribe) {
   const Folder folder;
-  folder.Write("a picture.png", EncodeColor(".png", 10, 20, 30));  // 4 x 4: nothing is within half a texel of an edge
+  folder.Write("a picture.png", EncodeColor(".png", 10, 20, 30));  // 4 x 4: uv are half a texel or more from an edge
   const char* keep = std::getenv("VOBENCH_KEEP_GLTF");             // for tools/dev/validate-gltf
   std::mt19937 random(20);
   std::set<std::array<int, 4>> pairs;

@@ -1,5 +1,5 @@
-// What glTF says about surfaces: cut-outs, texture transforms, emission, normal maps; and what is said about the rest.
-// Files are written here by hand.
+// Surfaces of glTF: cut-outs, texture transforms, emission, normal maps; and warnings about other features. Files are
+// written by hand.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -116,7 +116,7 @@ TEST(Gltf, TextureTransform) {
   const Mesh& mesh = scene.meshes.at(0);
   ASSERT_THAT(mesh.uvs, SizeIs(3));
   for (std::size_t i = 0; i < 3; ++i) {
-    // The corner tells which vertex it is.
+    // Texture coordinates of the vertex, by its position.
     const double u = mesh.positions[i].x > 0.5f ? 0.75 : 0.25, v = mesh.positions[i].y > 0.5f ? 0.125 : 0.5;
     EXPECT_NEAR(mesh.uvs[i].x, ox + std::cos(r) * sx * u + std::sin(r) * sy * v, 1e-5) << i;
     EXPECT_NEAR(mesh.uvs[i].y, oy - std::sin(r) * sx * u + std::cos(r) * sy * v, 1e-5) << i;
@@ -189,7 +189,7 @@ trajectory: {type: rpy, start: {position: [0, 0, 3], look_at: [0, 0, 0]}, angles
       testing::Contains(testing::AllOf(HasSubstr("render.reflections is false"), HasSubstr("material 'cloth'"))));
   EXPECT_THAT(Simulator(LoadScenario(file, {{"render.reflections", "true"}}), 1).warnings(),
               testing::Not(testing::Contains(HasSubstr("reflections"))));
-  // What the picture says counts: roughness is its green, metallic its blue. other.png has 128 and 255.
+  // Factors times the texture: roughness in green, metallic in blue. other.png has 128 and 255.
   for (const auto& [factors, is_said] : {std::pair{R"("metallicFactor": 0.4, "roughnessFactor": 1)", false},
                                          {R"("metallicFactor": 1, "roughnessFactor": 1)", true},
                                          {R"("metallicFactor": 0, "roughnessFactor": 0.9)", true}}) {
@@ -229,7 +229,7 @@ TEST(Gltf, HugeCoordinates) {
               testing::AllOf(HasSubstr("flag.gltf"), HasSubstr("4.19"), HasSubstr("position")));
   parts.node = R"(, "translation": [0, 0, 1024])";
   EXPECT_THAT(Load(folder, parts).warnings, ElementsAre(HasSubstr("coarse")));
-  // Moved back near the origin, in double, all is well.
+  // Control: moved back near the origin in double, without a loss.
   parts.node = R"(, "translation": [0, 0, 4194304])";
   WorldDescription world;
   world.meshes.push_back({folder.Write("far.gltf", Gltf(parts)), {0, 0, -4194304.0}, {1, 0, 0, 0}, 1.0, {}, {}});
@@ -238,7 +238,7 @@ TEST(Gltf, HugeCoordinates) {
   for (const glm::vec3& x : scene.meshes.at(0).positions) EXPECT_NEAR(x.z, 0.0, 1e-6);
 }
 
-// What is coarse in the file stays so, wherever it is moved.
+// Coordinates that are coarse in the file, wherever the mesh is moved.
 TEST(Gltf, HugeCoordinatesOfVertices) {
   const Folder folder;
   Parts parts;
@@ -299,7 +299,7 @@ TEST(Gltf, MaterialExtensions) {
   EXPECT_EQ(material.emission, glm::vec3(4, 0, 0));
   EXPECT_EQ(material.metallic, 1.0f) << "glTF's default";
 
-  // Radiance is the base colour times its picture, and nothing is reflected.
+  // Unlit: radiance is the base colour times its texture, without reflection.
   parts.material = R"("extensions": {"KHR_materials_unlit": {}},
     "pbrMetallicRoughness": {"baseColorFactor": [0.5, 1, 1, 1], "baseColorTexture": {"index": 0}})";
   parts.more = R"(, "extensionsRequired": ["KHR_materials_unlit"])";
@@ -310,7 +310,7 @@ TEST(Gltf, MaterialExtensions) {
   EXPECT_FALSE(material.Mirrors());
 }
 
-// The transform's set takes the place of the texture's.
+// Coordinate set of the transform, which overrides that of the texture.
 TEST(Gltf, TextureTransformNamesASet) {
   const Folder folder;
   Parts parts;
@@ -343,7 +343,7 @@ TEST(Gltf, VersionsOfAPicture) {
               testing::AllOf(HasSubstr("KHR_texture_basisu"), HasSubstr("convert them to PNG")));
 }
 
-// Instances of a node, of which only the places are given.
+// Instances of a node, with translations only.
 TEST(Gltf, GpuInstancing) {
   const Folder folder;
   Parts parts;

@@ -1,4 +1,4 @@
-// Mesh files that want what is not theirs: files outside their folder, more than they weigh, an importer's life.
+// Hostile mesh files: paths outside their folder, more memory than their size justifies, crashes of the importer.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
@@ -26,7 +26,7 @@ std::string Triangle(const std::string& library) {
   return "mtllib " + library + "\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 }
 
-// A mesh in in/ whose red material lies in out/, beside it. Whether the mesh got at it.
+// A mesh in in/ whose red material lies in out/, beside it; GetsRed: whether the material was opened.
 class Outside : public testing::Test {
  protected:
   Outside() { folder_.Write("out/red.mtl", "newmtl paint\nKd 1 0 0\n"); }
@@ -100,7 +100,7 @@ TEST(HostileMesh, GltfDataByDotsOrFromTheNetIsNotRead) {
   }
 }
 
-// Without the limit on side files this waits for ever.
+// A pipe as a side file: blocks for ever without the limit on side files.
 TEST(HostileMesh, APipeIsNotOpened) {
   const Folder folder;
   const fs::path mesh = folder.Write("a.obj", Triangle("pipe.mtl"));
@@ -108,8 +108,8 @@ TEST(HostileMesh, APipeIsNotOpened) {
   EXPECT_THAT(LoadScene(WorldOf(mesh)).warnings, Contains(HasSubstr("pipe.mtl, which cannot be opened")));
 }
 
-// assimp 5.2 ends the program here, by a failed assertion where it is built with them (as Debian's is); other versions
-// read it.
+// assimp 5.2 aborts on this file by a failed assertion where it is built with assertions (as Debian's is); other
+// versions read it.
 TEST(HostileMesh, ACrashOfTheImporterIsAProblemOfTheFile) {
   const Folder folder;
   const fs::path mesh = folder.Write("quads.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 -1\nl 1 2\np 1\n");

@@ -41,7 +41,7 @@ TEST(ImageFile, WhatTheDecoderRefusesAfterAGoodHeader) {
   EXPECT_EQ(Complaint("P6\n4 4\n255\nshort"), "not a picture that can be decoded");
 }
 
-// Wherever a file is cut off, it is refused: also where the decoder by itself would fill the rest up.
+// Truncation at every length: refused, also where the decoder itself would fill in the rest.
 TEST(ImageFile, EveryTruncationIsRefused) {
   for (const char* extension : {".png", ".jpg"}) {
     const std::string whole = EncodeNoise(extension, 24, 17);
@@ -105,7 +105,7 @@ TEST(ImageFile, TgaOfEveryKind) {
   EXPECT_EQ(DecodeImage(Tga(2, 24, 32, from_top)).rgb, rgb);
   EXPECT_EQ(DecodeImage(Tga(2, 24, 0, from_below)).rgb, rgb);
   EXPECT_EQ(DecodeImage(Tga(2, 24, 48, from_right)).rgb, rgb);
-  // A packet of three as they are, one of one, one of two equal ones.
+  // Packets: three raw pixels, one raw pixel, a run of two.
   const std::vector<std::uint8_t> packets = {2, 0, 0, 255, 0, 255, 0, 255, 0, 0, 0, 9, 9, 9, 0x81, 7, 7, 7};
   const DecodedImage runs = DecodeImage(Tga(10, 24, 32, packets));
   EXPECT_EQ(runs.rgb, (std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 9, 9, 9, 7, 7, 7, 7, 7, 7}));

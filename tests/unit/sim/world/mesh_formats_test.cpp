@@ -137,7 +137,7 @@ void ExpectTriangle(const Scene& loaded, const std::string& name, bool has_mater
   EXPECT_NEAR(color.z, 0.75f, 1e-5) << name;
 }
 
-// What would change the picture is said, once for each kind.
+// Warning about a feature that is not rendered, once for each kind.
 TEST(MeshFormats, BumpMapsAreSaid) {
   const Folder folder;
   folder.Write("bumps.png", EncodeColor(".png", 9, 9, 9));
@@ -158,13 +158,13 @@ TEST(MeshFormats, AsAssimpWritesThem) {
     Assimp::Exporter exporter;
     const std::string file = (folder.path() / name).string();
     ASSERT_EQ(exporter.Export(scene.get(), format, file), AI_SUCCESS) << exporter.GetErrorString();
-    // assimp's FBX says that its unit is a centimetre
+    // The unit of assimp's FBX is a centimetre.
     ExpectTriangle(LoadScene(WorldOf(file)), name, std::string(format) != "ply", format[0] == 'f' ? 0.01f : 1.0f);
   }
 }
 
-// Binary FBX by hand, since assimp 5.2 cannot read back what it writes. A record is: end offset, number and size of the
-// properties, name, properties, nested records and 13 zeros after the last of them.
+// Binary FBX by hand, since assimp 5.2 cannot read its own. A record is: end offset, number and size of the properties,
+// name, properties, nested records and 13 zeros after the last of them.
 struct Record {
   std::string name;
   std::vector<std::string> properties;
@@ -218,7 +218,7 @@ Record Vector(const std::string& name, double x, double y, double z) {
   return {"P", {Text(name), Text("Vector3D"), Text(""), Text("A"), Real(x), Real(y), Real(z)}, {}};
 }
 
-// What FBX says of itself: a unit in centimetres, and which of its axes points up and to the front.
+// Global setting of FBX: the unit in centimetres, and the axes that point up and to the front.
 Record Setting(const std::string& name, int value) {
   return {"P", {Text(name), Text("int"), Text("Integer"), Text(""), Int(value)}, {}};
 }
@@ -275,7 +275,7 @@ TEST(MeshFormats, BinaryFbx) {
   EXPECT_THAT(z_up.meshes.at(0).positions, testing::Contains(glm::vec3(11, 3, -2)));
 }
 
-// As 3ds Max writes COLLADA: a set of coordinates by a name that is bound nowhere, and blanks before numbers.
+// COLLADA of 3ds Max: a coordinate set with a name that is bound nowhere, and blanks ahead of numbers.
 TEST(MeshFormats, ColladaOfOtherPrograms) {
   const Folder folder;
   folder.Write("paint.png", EncodeNoise(".png", 8, 4));
@@ -314,8 +314,7 @@ TEST(MeshFormats, ColladaOfOtherPrograms) {
   EXPECT_FLOAT_EQ(material.emission.x, 0.25f);
 }
 
-// Cut off anywhere, a file is refused or is a smaller world (a PLY or OBJ that lost its end may be whole): it never
-// hangs.
+// Truncation: a file is refused or gives a smaller world (a PLY or OBJ without its end may be valid).
 TEST(MeshFormats, TruncatedFilesEndWell) {
   const Folder folder;
   const std::unique_ptr<aiScene> scene(TriangleForExport());

@@ -1,4 +1,4 @@
-// Loading a world: transforms, materials, texture coordinates, and every kind of bad file.
+// Loading of a world: transforms, materials, texture coordinates, and bad files.
 #include <gmock/gmock.h>
 #include <tbb/task_arena.h>
 
@@ -48,7 +48,7 @@ TEST(World, ObjWithMaterial) {
   EXPECT_EQ(material.texture, -1);
 }
 
-// OBJ's v points up, ours down: the corner (0, 1) of the mesh shows the picture's upper left texel.
+// v points up in OBJ and down in the scene: the corner (0, 1) of the mesh has the texture's upper left texel.
 TEST(World, TextureIsUpright) {
   const Folder folder;
   folder.Write("square.mtl", Textured("pictures\\paint.png"));
@@ -109,7 +109,7 @@ TEST(World, OneTextureForManyMeshesIsReadOnce) {
   EXPECT_THAT(LoadScene(world).textures, SizeIs(1));
 }
 
-// Each in its place, however many threads decode; the renderer's copy has the same texels.
+// Textures in their order for any number of decoding threads; the renderer's copy has the same texels.
 TEST(World, ManyPicturesAreDecodedAtOnce) {
   const Folder folder;
   std::string library, mesh = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n";

@@ -1,4 +1,4 @@
-// OBJ and MTL as programs write them: what the format allows, and what it means.
+// Dialects of OBJ and MTL files.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -35,7 +35,7 @@ class Obj : public testing::Test {
   static const Material& MaterialOf(const Scene& scene) {
     return scene.materials.at(static_cast<std::size_t>(scene.meshes.at(0).material));
   }
-  // Of the first mesh, where its second corner lies, in what its material shows.
+  // File name of the texture of the first mesh's material.
   static std::string Picture(const Scene& scene) {
     return std::filesystem::path(scene.textures.at(static_cast<std::size_t>(MaterialOf(scene).texture)).name())
         .filename()
@@ -84,7 +84,7 @@ TEST_F(Obj, ProblemsHaveTheirLines) {
   EXPECT_THAT(Problems("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n"), HasSubstr("line 4: -4 names a vertex"));
 }
 
-// A polygon of an L: its triangles cover three quarters of the square, whatever corner it begins with.
+// L-shaped polygon: its triangles cover three quarters of the square for every first corner.
 TEST_F(Obj, ConcavePolygons) {
   const std::vector<std::string> corners = {"0 0 0", "1 0 0", "1 0.5 0", "0.5 0.5 0", "0.5 1 0", "0 1 0"};
   for (std::size_t first = 0; first < corners.size(); ++first) {
@@ -104,7 +104,7 @@ TEST_F(Obj, ConcavePolygons) {
   }
 }
 
-// Survey coordinates are moved by the position in double, before they are rounded.
+// Survey coordinates: the shift by the position is in double, ahead of the rounding to float.
 TEST_F(Obj, CoordinatesOfASurvey) {
   position_ = {-691608.25, -5335808.5, -520};
   const Scene scene =
@@ -123,7 +123,7 @@ TEST_F(Obj, VertexColours) {
   EXPECT_THAT(bytes.warnings, ElementsAre(HasSubstr("0 ... 255")));
 }
 
-// A picture takes the place of vertex colours, which photogrammetry writes beside it; said where it is seen.
+// A texture replaces vertex colours, which photogrammetry writes beside it; a warning where the colours are not white.
 TEST_F(Obj, PictureInPlaceOfVertexColours) {
   folder_.Write("grey.png", EncodeColor(".png", 128, 128, 128));
   folder_.Write("m.mtl", "newmtl a\nmap_Kd grey.png\nnewmtl black\nKd 0 0 0\nmap_Kd grey.png\n");
@@ -198,14 +198,14 @@ TEST_F(Obj, AlphaOfThePictureCutsOut) {
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("below 0.5 everywhere")));
 }
 
-// A library in a folder of its own names its pictures from there; then from the OBJ's; then by their last part.
+// Search order of a library's textures: its own folder, the OBJ's folder, then by file name alone.
 TEST_F(Obj, TexturesWhereTheyAre) {
   folder_.Write("models/mats/m.mtl", "newmtl a\nmap_Kd wood.png\n");
   const std::string text = std::string("mtllib mats/m.mtl\n") + kFace;
   const auto loads = [&] { return Load(text, "models/m.obj"); };
   for (const char* place : {"pictures/wood.png", "models/wood.png", "models/mats/wood.png"}) {
     folder_.Write(place, EncodeColor(".png", 1, 2, 3));
-    if (std::string(place).starts_with("pictures")) continue;  // in no folder that is looked into
+    if (std::string(place).starts_with("pictures")) continue;  // in none of the searched folders
     const Scene scene = loads();
     EXPECT_THAT(scene.warnings, IsEmpty()) << place;
     EXPECT_EQ(scene.textures.at(0).name(), (folder_.path() / place).string());
@@ -240,7 +240,7 @@ TEST_F(Obj, BumpMapsAreSaid) {
   EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("2 ×"), HasSubstr("bump maps (heights) are not rendered"))));
 }
 
-// Warnings of a kind are one, with how often.
+// Warnings of one kind: a single line with their number.
 TEST_F(Obj, WarningsAreSummed) {
   std::string library, text = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
   for (const char* name : {"a", "b", "c"}) {

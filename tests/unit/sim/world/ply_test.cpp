@@ -62,7 +62,7 @@ TEST_F(Ply, AsciiAndBinary) {
   }
 }
 
-// MeshLab's coordinates of corners: an edge's vertices are shared, their coordinates are not.
+// Texture coordinates by corner, as of MeshLab: the vertices of an edge are shared, their coordinates are not.
 TEST_F(Ply, SeamsOfCorners) {
   folder_.Write("my atlas.png", EncodeColor(".png", 1, 2, 3));
   const Scene scene = Load(

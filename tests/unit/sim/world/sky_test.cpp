@@ -1,4 +1,4 @@
-// The sky's closed forms and pictures, and what a lamp's flicker is.
+// Sky in closed form and from images, and the flicker of lamps.
 #include "sim/world/sky.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -46,7 +46,7 @@ TEST(Sky, Gradient) {
   EXPECT_EQ(sky.Radiance({0.6, 0.5, 0.6}), glm::dvec3(2, 2.5, 3));
 }
 
-// 8 x 4 pixels of known places: the middle of the picture is -z, to its right +x, its top the zenith.
+// Orientation of a sky image of 8 x 4 pixels: its middle is -z, to its right +x, its top the zenith.
 TEST(Sky, PictureIsTheRightWayRound) {
   const Folder folder;
   cv::Mat picture(4, 8, CV_32FC3);
@@ -119,7 +119,7 @@ TEST(Flicker, MeanIsOne) {
   EXPECT_EQ(FlickerFactor({}, 5), 1);
 }
 
-// The mean over an interval against Simpson's rule on the instants.
+// Mean of the flicker over an interval against Simpson's rule.
 TEST(Flicker, MeanOverAnInterval) {
   const Flicker flicker{100, 0.4, 0.3};
   for (const double width : {1e-4, 0.003, 0.01, 0.0123}) {

@@ -1,4 +1,4 @@
-// Cache of decoded textures: what it gives is what decoding gives, whatever happens to its files and to the pictures.
+// Cache of decoded textures: equal to fresh decoding, also after damage to its files and changes of the images.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using testing::SizeIs;
 constexpr char kTriangle[] =
     "mtllib a.mtl\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n";
 
-// A triangle with a picture of so many texels a side, and where its texture is kept.
+// A triangle with a texture of `side` texels a side, and the folder of its cache.
 struct World {
   explicit World(int side, const std::string& library = "newmtl paint\nmap_Kd paint.png\n") {
     folder.Write("a.mtl", library);
@@ -56,7 +56,7 @@ TEST(TextureCache, WhatIsKeptIsWhatIsDecoded) {
   ASSERT_THAT(world.Kept(), SizeIs(1));
   EXPECT_TRUE(Same(world.Load(), decoded));
   EXPECT_THAT(world.Kept(), SizeIs(1));
-  // It is read: the other picture's file under this one's name would be taken, but for its hash.
+  // Control: the cache file of another image under this one's name is rejected by its hash.
   const World other(700);
   other.Load();
   fs::copy_file(other.Kept().at(0), world.Kept().at(0), fs::copy_options::overwrite_existing);

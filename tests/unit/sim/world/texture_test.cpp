@@ -14,7 +14,7 @@ std::vector<std::uint8_t> Noise(int width, int height) {
   return rgb;
 }
 
-// Half a step of the square root's 10 bits.
+// Quantisation error of 10 bits of the square root: half a step.
 double CodingError(double linear) { return std::sqrt(linear) / 1023 + 0.25 / (1023.0 * 1023.0); }
 
 TEST(Srgb, KnownValues) {
@@ -39,7 +39,7 @@ TEST(Texture, TexelCentresGiveThePicture) {
   }
 }
 
-// What 8 bits distinguish stays distinct.
+// Neighbouring 8-bit codes have different texels.
 TEST(Texture, AllCodesStayApart) {
   for (int code = 0; code + 1 < 256; ++code) {
     const auto a = static_cast<std::uint8_t>(code), b = static_cast<std::uint8_t>(code + 1);
@@ -64,7 +64,7 @@ TEST(Texture, EveryLevelHasTheMeanOfThePicture) {
         for (int x = 0; x < level.width; ++x)
           mean += glm::dvec3(texture.Texel(static_cast<int>(l), x, y)) / (1.0 * level.width * level.height);
       }
-      // The rounding of single texels, which averages out over many.
+      // Quantisation error of single texels, which averages out over many.
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c], exact[c], 0.0011) << width << " x " << height << " level " << l;
     }
     EXPECT_EQ(texture.levels().back().width, 1);
@@ -72,7 +72,7 @@ TEST(Texture, EveryLevelHasTheMeanOfThePicture) {
   }
 }
 
-// A level is the area average of the picture, place by place: 6 texels into 3.
+// Area average of a mip level: 7 texels into 3.
 TEST(Texture, LevelsAverageByPlace) {
   std::vector<std::uint8_t> rgb;
   for (const int code : {0, 255, 255, 255, 0, 0, 255}) {  // 7 into 3: each covers 7/3 texels
@@ -122,7 +122,7 @@ TEST(Texture, TiledLevelsAreMeansOfFour) {
   }
 }
 
-// Of any size: weights at the last column and row end with the picture.
+// Mip levels of a uniform texture of any size: the weights at the last column and row end with the image.
 TEST(Texture, LevelsOfOneColourHaveIt) {
   for (int width = 1; width <= 70; ++width) {
     const int height = 71 - width;

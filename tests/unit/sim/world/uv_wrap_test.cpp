@@ -1,4 +1,4 @@
-// Pieces of triangles whose texture is clamped or mirrored: their coordinates are those of the rule, everywhere.
+// Triangles with clamped or mirrored textures, cut into pieces whose coordinates follow the wrap mode everywhere.
 #include "sim/world/uv_wrap.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace sim {
 namespace {
 
-// In the plane z = 0, with coordinates that are an affine map of the position.
+// Triangle in the plane z = 0, with texture coordinates equal to its positions.
 Mesh RandomMesh(std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-2, 3);
   Mesh mesh;
