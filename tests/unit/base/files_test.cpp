@@ -46,7 +46,7 @@ TEST(WriteFile, FullDiskLeavesTheOldFile) {
 
 std::ptrdiff_t OpenFiles() { return std::distance(fs::directory_iterator("/proc/self/fd"), {}); }
 
-// In pieces, with more and less than is kept back, and in one that is more than that.
+// Pieces smaller and larger than the buffer.
 TEST(AtomicFile, HoldsWhatWasAppended) {
   const TemporaryFolder folder;
   const std::ptrdiff_t open = OpenFiles();
@@ -74,7 +74,7 @@ TEST(AtomicFile, LeavesNothingUncommitted) {
   AtomicFile(folder.path() / "a").Append("x");
   EXPECT_TRUE(fs::is_empty(folder.path()));
   EXPECT_EQ(OpenFiles(), open);
-  // The name is that of a folder: nothing takes its place.
+  // The name of a folder: it is not replaced.
   fs::create_directory(folder.path() / "b");
   folder.Write("b/c", "kept");
   EXPECT_THROW(WriteFile(folder.path() / "b", "x"), std::runtime_error);
@@ -125,7 +125,7 @@ TEST(WriteFile, ManyWritersShareNoTemporaryName) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
 
-// Where nothing new can be written, a file can be shortened all the same.
+// A file is shortened in place, where no new one can be written.
 TEST(ShortenFile, NeedsNoRoom) {
   const TemporaryFolder folder;
   const fs::path file = folder.Write("list.txt", "one\ntwo\nthree\n");
@@ -144,7 +144,7 @@ TEST(AppendToFile, KeepsWhatIsThere) {
 
 void OnAlarm(int) {}
 
-// A pipe that is full: each signal interrupts the write.
+// Full pipe: each signal interrupts the write.
 TEST(WriteAll, GoesOnAfterSignals) {
   int ends[2];
   ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);

@@ -10,7 +10,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// The last line's words in order, the stamp in seconds, or why there are none.
+// Words of the last line in order, the stamp in seconds; or the problem.
 std::vector<std::string> LastOf(const std::string& text, bool is_euroc = false) {
   PoseTable table(is_euroc);
   std::vector<std::string> last;
@@ -25,7 +25,7 @@ std::vector<std::string> LastOf(const std::string& text, bool is_euroc = false) 
   return last;
 }
 
-// The same pose, whatever order of columns a header tells.
+// The same pose under headers of different column orders.
 TEST(PoseTable, TakesTheOrderOfItsHeader) {
   for (const std::string text :
        {"# timestamp tx ty tz qx qy qz qw\n7.5 1 2 3 4 5 6 9", "% timestamp tx ty tz qw qx qy qz\n7.5 1 2 3 9 4 5 6",
@@ -40,7 +40,7 @@ TEST(PoseTable, TakesTheOrderOfItsHeader) {
   }
 }
 
-// Of EuRoC's, VINS' and ROS' tables whole stamps count nanoseconds; the stamp is not the time of its arrival.
+// Integer stamps of EuRoC's, VINS' and ROS' tables are nanoseconds; ROS: the header's stamp, not the time of arrival.
 TEST(PoseTable, NanosecondsWhereTheTableHasThem) {
   for (const std::string text :
        {"#timestamp [ns],x,y,z,qw,qx,qy,qz\n75,1,2,3,9,4,5,6,",

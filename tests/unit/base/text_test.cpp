@@ -85,7 +85,7 @@ TEST(ParseSeconds, IsExactWhereADoubleIsNot) {
   EXPECT_EQ(ParseSeconds("-3999999999.999999999"), -3999999999'999999999);
 }
 
-// Sums and differences of two stamps, and of a stamp and a gap, must fit.
+// Range of stamps: sums and differences of two stamps, and of a stamp and a gap, fit.
 TEST(ParseSeconds, EndsAtFourBillionSeconds) {
   EXPECT_EQ(ParseSeconds("4e9"), kLatest_ns);
   EXPECT_EQ(ParseSeconds("-4e9"), -kLatest_ns);

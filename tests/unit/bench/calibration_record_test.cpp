@@ -1,4 +1,4 @@
-// What an odometry has found out about its camera: through its files, and in words.
+// Camera calibration estimated by an odometry: its record in files, and in words.
 #include "tools/bench/result/calibration_record.h"
 
 #include <gmock/gmock.h>

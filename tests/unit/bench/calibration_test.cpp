@@ -1,4 +1,4 @@
-// Calibration files of other people's systems.
+// Calibration files of external systems.
 #include "tools/bench/run/calibration.h"
 
 #include <gmock/gmock.h>
@@ -119,7 +119,7 @@ TEST(Calibration, IsReadBackAsItWasWritten) {
   }
 }
 
-// Worked by hand after each system's documentation: writer and reader here could share a mistake.
+// Values worked by hand from each system's documentation: writer and reader here could share an error.
 TEST(Calibration, SaysWhatEachSystemDocuments) {
   Camera c = Plain();
   c.width = 640, c.height = 400, c.fx = 320, c.fy = 300, c.cx = 319.5, c.cy = 199.5;

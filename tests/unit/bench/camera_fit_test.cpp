@@ -1,4 +1,4 @@
-// Statistics of a camera on pictures whose noise, edges and shading are known.
+// Camera statistics from images of known noise, edges and shading.
 #include "tools/bench/camera_fit/camera_fit.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace vobench {
 namespace {
 
-constexpr double kZ = 4.8916;  // |z| beyond it: 1e-6, two-sided
+constexpr double kZ = 4.8916;  // P(|z| > kZ) = 1e-6, two-sided
 
 cv::Mat Noisy(const cv::Mat& mean, double sigma, std::uint64_t seed) {  // CV_32FC1
   cv::Mat noise(mean.size(), CV_32F);
@@ -32,9 +32,9 @@ Pair Still(const cv::Mat& picture, const cv::Mat& next) {
   return pair;
 }
 
-// A block's variance has the relative variance 2 c / 256, c = (1 + 2 (4/6)^2 + 2 (1/6)^2)^2 = 3.78 for the correlation
-// that the filter makes; its root half of that deviation; a median of n 1.2533 times that over sqrt(n). The smaller of
-// two medians lies lower by 0.56 of that. Rounding adds 1/12 to the variance. A sigma 6 % off is rejected.
+// White noise. Relative variance of a block's variance: 2 c / 256, c = (1 + 2 (4/6)^2 + 2 (1/6)^2)^2 = 3.78 for the
+// filter's correlation; the deviation of its root is half of that, of a median of n 1.2533 times that over sqrt(n). The
+// smaller of two medians lies lower by 0.56 of that. Rounding adds 1/12 to the variance. Control: a sigma 6 % off.
 TEST(MeasureNoise, OfWhiteNoise) {
   const cv::Mat flat(960, 1280, CV_32F, cv::Scalar(101));
   const Pair pair = Still(Noisy(flat, 2, 1), Noisy(flat, 2, 2));
@@ -46,8 +46,8 @@ TEST(MeasureNoise, OfWhiteNoise) {
   EXPECT_NEAR(noise.levels[0].sigma / expected, 1, (kZ + 0.56) * deviation);
   EXPECT_GT(std::abs(noise.levels[0].sigma / (1.06 * expected) - 1), (kZ + 0.56) * deviation) << "6 % off is rejected";
   EXPECT_NEAR(noise.lattice, 1, 0.1);
-  // A Gaussian of 2 px is taken out: (g4(1) g4(0) - 2 g2(1) g2(0)) / (1 - 2 g2(0)^2 + g4(0)^2), g2 of variance 4, g4 of
-  // 8; and the block's mean, 1/256. 1130 blocks: a standard deviation of 0.002.
+  // Correlation after removal of a Gaussian of 2 px: (g4(1) g4(0) - 2 g2(1) g2(0)) / (1 - 2 g2(0)^2 + g4(0)^2), g2 of
+  // variance 4, g4 of 8; and of the block's mean: 1/256. 1130 blocks: standard deviation 0.002.
   EXPECT_NEAR(noise.correlation[0], -0.0548 - 0.0039, kZ * 0.002);
 }
 
@@ -74,7 +74,7 @@ TEST(MeasureNoise, OfCorrelatedNoiseAndOfAMosaic) {
   EXPECT_NEAR(MeasureNoise({&mosaic, 1}).lattice, 4, 0.6);
 }
 
-// A texture that moves by whole pixels is not taken for noise.
+// A texture that moves by whole pixels does not add to the noise.
 TEST(MeasureNoise, OfATextureInMotion) {
   cv::Mat texture = Noisy(cv::Mat(480, 648, CV_32F, cv::Scalar(101)), 8, 3);
   Pair pair = Still(Noisy(texture.colRange(8, 648), 1.5, 1), Noisy(texture.colRange(0, 640), 1.5, 2));
@@ -111,7 +111,7 @@ TEST(FindEdges, WidthAndHalo) {
   EXPECT_NEAR(halo.bright, halo.dark, 0.01);
 }
 
-// Pairs that move by 0 ... 24 px in a frame; exposure: a share of the period of 40 ms.
+// Pairs that move by 0 ... `fastest` px in a frame; exposure: `share` of the period of 40 ms.
 Recording InMotion(double share, double fastest) {
   Recording recording;
   recording.period_s = 0.04;
@@ -136,7 +136,7 @@ TEST(FitExposure, WithinTwoMilliseconds) {
   EXPECT_FALSE(FitExposure(InMotion(0.0, 20), at_rest)) << "no exposure at all";
 }
 
-// A texture that moves under a vignetting of 1 - 0.4 r^2.
+// A texture that moves under a vignetting of 1 + v2 r^2.
 Recording Shaded(double v2, int step) {
   cv::Mat texture = Noisy(cv::Mat(600, 1200, CV_32F, cv::Scalar(0)), 300, 5);
   cv::GaussianBlur(texture, texture, {}, 4);

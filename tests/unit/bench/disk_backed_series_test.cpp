@@ -32,7 +32,7 @@ std::vector<std::int64_t> Numbers(const DiskBackedSeries<Record>& spool) {
   return numbers;
 }
 
-// Before, at and behind the end of what memory has room for, and read again while it grows on.
+// Series below, at and above the capacity of memory, read repeatedly while it grows.
 TEST(DiskBackedSeries, GivesBackAllInOrder) {
   const TemporaryFolder folder;
   DiskBackedSeries<Record> spool(folder.path(), 4);

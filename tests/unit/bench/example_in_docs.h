@@ -1,4 +1,4 @@
-// An example of the docs is compiled and run: what stands between two marks in a test's source must stand on the page.
+// Examples of the docs, compiled and run: the text between two marks in a test's source equals that of the page.
 #pragma once
 
 #include <gtest/gtest.h>

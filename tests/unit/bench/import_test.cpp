@@ -1,4 +1,4 @@
-// Worlds of Gazebo become scenarios: places held against poses worked out by hand, in SDF's axes.
+// Gazebo worlds as scenarios: places against poses worked out by hand, in SDF's axes.
 #include <gmock/gmock.h>
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// A sequence in each layout, written by the simulator, is what the odometry's reader, the camera's reader and the
-// judge's truth read: stamps, pixels, poses.
+// Sequence of the simulator in each layout, through the odometry's reader, the camera's and the judge's: stamps,
+// pixels, poses.
 #include <gmock/gmock.h>
 #include <yaml-cpp/yaml.h>
 
@@ -63,7 +63,7 @@ TEST_P(LayoutRoundTrip, StampsImagesAndPosesAreThoseOfTheSimulator) {
 INSTANTIATE_TEST_SUITE_P(All, LayoutRoundTrip, testing::Values(sim::Layout::tum, sim::Layout::euroc, sim::Layout::icl),
                          [](const auto& instance) { return sim::ToString(instance.param); });
 
-// The odometry sees the same bytes whether frames come by memory or by file, with every depth of the converter.
+// Frames from memory and from file: the same bytes at every depth of the converter.
 TEST(DeepSequences, AreReadAsTheyAreHandedOver) {
   for (const int bits : {8, 9, 12, 16}) {
     const sim::SmallWorld world;
@@ -131,7 +131,7 @@ TEST(EurocLayout, NamesAFisheyeLensAsKalibrDoes) {
   EXPECT_EQ(found, 1);
 }
 
-// The numbers of a line, by hand: EuRoC writes w first, and the biases of a sensor that has none are 0.
+// Numbers of a line, by hand: EuRoC has w first, and the biases of an absent sensor are 0.
 TEST(EurocLayout, TruthByHand) {
   sim::Scenario scenario;
   sim::StampedTruth frame;

@@ -22,7 +22,7 @@ std::vector<vo::MapPoint> SomePoints() {
   return {known, vague, other};
 }
 
-// As any reader of the format does: the header says what the columns are.
+// Reader of the format: columns by the header's names.
 std::vector<std::map<std::string, double>> Read(const std::string& text) {
   std::istringstream stream(text);
   std::string line, word;
@@ -111,7 +111,7 @@ TEST(MapFile, PathsAreCheckedBeforeTheWork) {
   EXPECT_EQ(MapPathOf("out/map.ply", run, true), "out/map_rb2pf_seed_3.ply");
 }
 
-// The result replaces its folder, and all that is in it.
+// A map inside the result's folder, which the result replaces, is refused.
 TEST(MapFile, IsNotPutWhereTheResultReplacesIt) {
   const std::filesystem::path here = std::filesystem::path(testing::TempDir()) / "map_file_test";
   std::filesystem::create_directories(here / "out/inner");

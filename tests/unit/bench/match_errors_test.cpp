@@ -1,5 +1,5 @@
-// Errors of matches against the truth, where they are known: a plane before a camera that turns and moves, with a
-// rolling shutter and a lens.
+// Errors of matches against known truth: a plane before a camera that rotates and translates, with a rolling shutter
+// and a distorted lens.
 #include "tools/bench/tracking/match_errors.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ vo::Pose PoseAt(double t) {
   return {Vector3d(0.3 * std::sin(2 * t), 0.1 * std::sin(3 * t), 0.2 * std::sin(t)), Eigen::Quaterniond(yaw * pitch)};
 }
 
-// Velocities by differences, so that nothing is shared with what is tested.
+// Velocities by finite differences, independent of the code under test.
 Truth TruthOf(double late_s = 0) {
   Truth truth;
   truth.velocities.emplace();
@@ -79,7 +79,7 @@ Vector2d Seen(const vo::Camera& camera, const Vector3d& X_W, std::int64_t stamp_
   return pixel;
 }
 
-// A sequence of which there is no more than the depth of its first frame.
+// Sequence with nothing but the depth of its first frame.
 void WriteDepth(const vobench_test::TemporaryFolder& folder, const vo::Camera& camera) {
   cv::Mat depth(camera.height, camera.width, CV_16UC1);
   const vo::Pose pose = PoseAt(0);

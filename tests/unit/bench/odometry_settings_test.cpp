@@ -101,7 +101,7 @@ TEST(OdometrySettingsTest, ResolvedSettingsReadAgainAreTheSame) {
   const vo::Params again = Read(resolved);
   EXPECT_EQ(again.features.max_view_angle, params.features.max_view_angle);
   EXPECT_EQ(again.score.gate, params.score.gate);
-  // All that there is: two levels of keys, of which the sections are five.
+  // Keys that are not set have their defaults.
   EXPECT_THAT(resolved, HasSubstr("max_searched"));
   EXPECT_THAT(resolved, HasSubstr("orientation_noise"));
 }
@@ -120,7 +120,7 @@ TEST(OdometrySettingsTest, OldKeyNamesTheNew) {
   }
 }
 
-// Ranges that two places once stated differently.
+// Ranges: the same for settings files and structs.
 TEST(OdometrySettingsTest, RangeIsOneForFilesAndStructs) {
   for (const auto& [text, rule] : {std::pair{"landmark: {max_landmarks: 9}", "'9' must be at least 10"},
                                    {"filter: {ukf_alpha: 0}", "'0' must be above 0 and at most 1"},

@@ -1,5 +1,5 @@
-// scenes/points.yaml is drawn from the prior that it gives the odometry: after the first update, before sampling has
-// cost anything, the odometry must be exactly as uncertain as it is wrong.
+// Consistency after the first update: scenes/points.yaml is drawn from the prior of the odometry, and sampling has no
+// effect yet.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,8 +16,8 @@ namespace {
 
 constexpr int kWorlds = 400;
 
-// The sum over worlds of the joint NEES at the second frame, in standard deviations of a chi-square from what is
-// expected; beyond five: once in 1.7 million.
+// Joint NEES at the second frame, summed over worlds: standard deviations of the chi-square from its mean. Beyond five:
+// once in 1.7 million.
 double Score(const Overrides& changes, double claimed_covariance = 1) {
   Overrides overrides = {{"time.duration", "66.7 ms"}};
   overrides.insert(overrides.end(), changes.begin(), changes.end());
@@ -37,7 +37,8 @@ double Score(const Overrides& changes, double claimed_covariance = 1) {
   return (sum - 12 * kWorlds) / std::sqrt(24 * kWorlds);
 }
 
-// So fast that one step shows depths: an inverse depth that is off by its sigma of 0.0125 / m moves a point by 0.4 px.
+// Fast motion makes depth observable in one step: an inverse depth off by its sigma of 0.0125 / m moves a point by 0.4
+// px.
 const std::pair<std::string, std::string> kFast = {"trajectory.start.velocity", "[2, 0, 0]"};
 
 TEST(OwnPrior, FirstUpdatesAreConsistent) {

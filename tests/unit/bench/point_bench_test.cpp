@@ -23,8 +23,7 @@ sim::PointWorld ShortWorld(std::uint64_t seed) {
   return sim::PointWorld(scenario);
 }
 
-// Knows the truth but for a metre along x and a tenth of a radian about z; claims a sigma of half a metre, 0.2 rad, 1
-// m/s.
+// Filter with known errors, 1 m along x and 0.1 rad about z, and sigmas of 0.5 m, 0.2 rad, 1 m/s.
 PointFilter Cheat(const sim::PointWorld& world, int& frames) {
   return [&](std::int64_t stamp_ns, const std::vector<sim::PointObservation>& seen) {
     EXPECT_GE(seen.size(), 100u);
@@ -91,7 +90,7 @@ TEST(PointBound, TheProblemIsTheWorldThatWasPlayed) {
     views += 1 + landmark.frames.size();
     EXPECT_EQ(landmark.inverse_depth_sigma, 0.0125);
     EXPECT_NEAR(landmark.inverse_depth, 0.25, 6 * 0.0125);
-    // Seen by the judge's own projection where the world says it is.
+    // Views by the judge's projection against the world's.
     for (const std::size_t frame : landmark.frames) {
       const auto& id = world.landmarks()[static_cast<std::size_t>(&landmark - problem.landmarks.data())];
       const glm::dvec2 seen = world.Project(id, static_cast<std::int64_t>(frame)).value();
@@ -106,7 +105,7 @@ TEST(PointBound, TheProblemIsTheWorldThatWasPlayed) {
   std::size_t observations = 0;
   for (const sim::PointFrame& frame : frames) observations += frame.observations.size();
   EXPECT_EQ(views, observations);
-  // More views, less doubt: below what the motion alone would leave.
+  // The bound with further views is below that of the motion alone.
   const auto bound = evaluation::SimulateLinearised(problem, 0).bound;
   EXPECT_LT(bound[5](0, 0), bound[0](0, 0) + 25 * bound[0](6, 6) / 900);
 }
@@ -122,7 +121,7 @@ TEST(PointBound, RefusesAWorldWithoutAPrior) {
 }
 
 // Two runs of three frames: ANEES of the position, per degree of freedom, is (3 + 6) / 2 / 3 = 1.5 and (9 + 12) / 2 / 3
-// = 3.5. The band of two honest runs with three degrees of freedom is [1.237, 14.449] / 6.
+// = 3.5. The band of two consistent runs with three degrees of freedom is [1.237, 14.449] / 6.
 SystemRuns TwoRuns() {
   SystemRuns runs;
   runs.system = "rb2pf";

@@ -1,5 +1,5 @@
-// The consistency test of somebody's own filter: an honest one passes, one that is over-confident, timid or late does
-// not.
+// Consistency test of a user's filter: an exact one passes; half or twice the covariance and another motion model are
+// rejected.
 #include "tools/bench/points/point_consistency.h"
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// Half a second with 20 points: an honest filter fails one of sixteen checks in at most 1.6 % of tests with fresh
+// Half a second with 20 points: a consistent filter fails one of sixteen checks in at most 1.6 % of tests with fresh
 // seeds.
 Experiment HalfASecond(const Overrides& more = {}) {
   Overrides overrides{{"time.duration", "0.5 s"}, {"world.points.count", "20"}};
@@ -29,7 +29,7 @@ Experiment HalfASecond(const Overrides& more = {}) {
   return LoadExperiment(VOBENCH_SOURCE_DIR "/scenes/points.yaml", overrides);
 }
 
-// EKF-SLAM, which is exact enough here, with what is done to its answers.
+// EKF-SLAM, exact enough here; `tamper` alters its estimates.
 using Tamper = std::function<void(PointEstimate&)>;
 MakePointFilter EkfSlam(
     const Experiment& experiment, const Tamper& tamper = [](PointEstimate&) {}) {

@@ -12,7 +12,7 @@ namespace vobench {
 namespace {
 namespace fs = std::filesystem;
 
-// Frame k is of one brightness, 8 k.
+// Frame k has the uniform brightness 8 k.
 std::vector<PreviewFrame> Frames(const fs::path& folder, int count) {
   std::vector<PreviewFrame> frames;
   for (int k = 0; k < count; ++k) {

@@ -12,7 +12,7 @@ evaluation::StampedPose SomePose() {
 }
 evaluation::StampedVelocity SomeVelocity() { return {5, {0.5, -0.25, 1}, {0.1, 0.2, -0.3}}; }
 
-// Sum over many seeds of the squared errors of the velocity, divided by their covariance: chi-square with 6 per seed.
+// NEES of the velocity, summed over seeds: chi-square with 6 degrees of freedom per seed.
 double Nees(int seeds, double claimed_over_drawn) {
   const PriorSettings settings{PriorSettings::Start::truth, 0.2, 0.05};
   double sum = 0;
@@ -37,7 +37,7 @@ TEST(PriorTest, VelocityErrorHasItsCovariance) {
   // Chi-square with 6 * 1000 degrees of freedom: mean 6000, sigma 109.5. The band of 5 sigma is left once in 1.7
   // million.
   EXPECT_NEAR(Nees(1000, 1), 6000, 5 * std::sqrt(2 * 6000.0));
-  // A prior that claimed 10 % less noise than is drawn is rejected.
+  // Control: sigmas 10 % below those of the draws.
   EXPECT_GT(Nees(1000, 0.9), 6000 + 5 * std::sqrt(2 * 6000.0));
 }
 
@@ -50,7 +50,7 @@ TEST(PriorTest, IsAFunctionOfTheSeed) {
   EXPECT_NE(a.v_WC, PriorFromTruth({}, SomePose(), SomeVelocity(), 7 + (1ULL << 32)).v_WC) << "all 64 bits count";
 }
 
-// Where the scenario draws the velocity itself, the odometry is told what it was drawn about, and no truth.
+// Velocity drawn by the scenario: the prior is centred on the mean of the distribution, not on the truth.
 TEST(PriorTest, DrawnVelocityGivesTheMean) {
   sim::SampledMotion motion;
   motion.velocity = {1, 2, 3};

@@ -1,4 +1,4 @@
-// What a terminal shows, and what Ctrl-C does to work whose end is known or not.
+// Progress bar on a terminal, and Ctrl-C during work of known and unknown length.
 #include "tools/bench/progress.h"
 
 #include <fcntl.h>
@@ -18,7 +18,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// stderr is a terminal as long as it lives.
+// Pseudo-terminal in place of stderr, for the object's lifetime.
 class Terminal {
  public:
   Terminal() : master_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)), before_(dup(STDERR_FILENO)) {
@@ -35,7 +35,7 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  // What has been written since.
+  // Output since the last call.
   std::string Shown() const {
     char text[4096];
     const ssize_t got = read(master_, text, sizeof text);
@@ -55,16 +55,16 @@ TEST(Progress, TheBarEndsFull) {
 
 TEST(Progress, MoreThanTheTotalIsSaidAndTheBarStaysFull) {
   const Terminal terminal;
-  Progress progress("tracking", 2);  // as a video file may say
+  Progress progress("tracking", 2);  // too small a total, as a video file may have
   progress.Step(2);
   progress.Step();
   EXPECT_THAT(terminal.Shown(), HasSubstr("tracking [" + std::string(30, '#') + "] 3/2, took 0:0"));
-  std::this_thread::sleep_for(std::chrono::milliseconds(150));  // it is drawn after some time, too
+  std::this_thread::sleep_for(std::chrono::milliseconds(150));  // redrawn after some time, too
   progress.Step(100);
   EXPECT_THAT(terminal.Shown(), HasSubstr("tracking [" + std::string(30, '#') + "] 103/2, took 0:0"));
 }
 
-// SIGINT waits, as it does in the program.
+// Pending SIGINT, blocked as in the program.
 class PendingInterrupt {
  public:
   PendingInterrupt() {

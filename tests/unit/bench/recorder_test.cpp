@@ -19,7 +19,7 @@ vo::Estimate Drawn(std::mt19937& engine, std::int64_t stamp_ns) {
   estimate.pose.q_WC = Eigen::Quaterniond(draw(), draw(), draw(), draw()).normalized();
   estimate.v_WC = {draw(), draw(), draw()};
   estimate.w_WC_C = {draw(), draw(), draw()};
-  for (double& entry : estimate.covariance.reshaped()) entry = draw();  // to the bit, symmetric or not
+  for (double& entry : estimate.covariance.reshaped()) entry = draw();  // exact, symmetric or not
   estimate.diagnostics.searched = static_cast<int>(engine() % 100);
   estimate.diagnostics.matched = static_cast<int>(engine() % 100);
   estimate.diagnostics.nis = draw();
@@ -27,7 +27,7 @@ vo::Estimate Drawn(std::mt19937& engine, std::int64_t stamp_ns) {
   return estimate;
 }
 
-// More answers than memory has room for: all of them come back, to the bit.
+// More estimates than the capacity of memory: all are returned exactly.
 TEST(Recorder, RoundTrip) {
   const evaluation::TemporaryFolder folder;
   Recorder recorder(folder.path());
@@ -62,7 +62,7 @@ TEST(Recorder, RoundTrip) {
   }
 }
 
-// The trajectory has the re-issued poses, the answers stay as they were given, and what is none changes nothing.
+// Re-issued poses replace those of the trajectory; the live estimates stay; an empty list changes nothing.
 TEST(Recorder, ReissuedPosesReplaceThoseOfTheTrajectory) {
   Recorder recorder(std::nullopt);
   std::mt19937 engine(2);

@@ -32,7 +32,7 @@ TEST(SequenceTruth, MirrorsOriginalIclNuimPoses) {
   fs::remove_all(folder);
 }
 
-// As many frames as the pictures listed, whichever layout lists them.
+// Stamps of the frames: those of the layout's list of pictures.
 TEST(FrameStamps, AreOfTheListThatTheLayoutHas) {
   const fs::path folder = fs::path(testing::TempDir()) / "frame_stamps";
   fs::remove_all(folder);

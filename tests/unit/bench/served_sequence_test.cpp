@@ -1,4 +1,4 @@
-// What external programs are given of a rendered sequence: rectified pictures, and the photometric calibration.
+// Sequences served to external programs: rectified images, and the photometric calibration.
 #include "tools/bench/run/served_sequence.h"
 
 #include <gmock/gmock.h>
@@ -62,7 +62,7 @@ double MeanDifference(const cv::Mat& a, const cv::Mat& b) {
   return cv::mean(difference)[0];
 }
 
-// Largest shift between two pictures in nine parts of them, by least squares on the gradient [px].
+// Largest shift between two images in nine parts of them, by least squares on the gradient [px].
 double LargestShift(const cv::Mat& a, const cv::Mat& b) {
   cv::Mat as, bs, dx, dy;
   a.convertTo(as, CV_64F), b.convertTo(bs, CV_64F);
@@ -86,7 +86,7 @@ cv::Mat Moved(const cv::Mat& image, double dx) {
   return moved;
 }
 
-// A rectified picture is the one that a pinhole takes, in all its parts.
+// Rectified image against the rendering of a pinhole camera, in all parts.
 TEST_F(ServedSequenceTest, ARectifiedPictureIsThatOfThePinhole) {
   for (const Overrides& lens : {kFreiburg1, kBarrel, kFisheye}) {
     fs::remove_all(here_.path() / "ke");
@@ -102,7 +102,7 @@ TEST_F(ServedSequenceTest, ARectifiedPictureIsThatOfThePinhole) {
     ASSERT_EQ(rectified.size(), expected.size());
     EXPECT_LT(LargestShift(rectified, expected), 0.1);
     EXPECT_GT(LargestShift(Moved(rectified, 0.3), expected), 0.2) << "control";
-    // No black border: all it shows is in the distorted picture.
+    // No black border: every pixel lies in the distorted image.
     const sim::Camera camera(distorted.camera);
     for (const int x : {0, 160, 319}) {
       for (const int y : {0, 120, 239}) {
@@ -129,14 +129,14 @@ TEST_F(ServedSequenceTest, PicturesThatNeedNothingAreServedAsTheyAre) {
   const sim::Scenario scenario = With({{{"camera.width", "320"}, {"camera.height", "240"}}});
   const fs::path folder = Served(scenario, true, campaign::SequenceLayout::tum).folder;
   EXPECT_TRUE(fs::equivalent(folder / "rgb", cache_.PathOf("key") / "rgb"));
-  // And nothing that says where the camera was: neither the truth, nor the scenario.
+  // Neither truth nor scenario is served.
   std::set<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename());
   EXPECT_THAT(names, testing::ElementsAre("camera.yaml", "rgb", "rgb.txt"));
   EXPECT_TRUE(fs::exists(cache_.PathOf("key") / "groundtruth.txt")) << "control: it is there to be given away";
 }
 
-// A rig with an IMU in EuRoC's layout, to each what it takes; a scenario without them as ever.
+// Rig with IMU in EuRoC's layout: each system gets the sensors that it takes.
 TEST_F(ServedSequenceTest, ARigIsServedAsEuroc) {
   SeenSequence seen;
   seen.experiment.scenario =
@@ -153,7 +153,7 @@ TEST_F(ServedSequenceTest, ARigIsServedAsEuroc) {
   seen.sensors = {true, true};
   MakeIn(cache_, "key", seen, 2);
   fs::rename(cache_.PathOf("key"),
-             cache_.PathOf("key").string() + ".partial");  // as a kill before the last step has it
+             cache_.PathOf("key").string() + ".partial");  // as after a kill before the last step
   MakeIn(cache_, "key", seen, 2);
   campaign::ExternalSystem system;
   const auto files = [&](campaign::Sensors sensors) {
@@ -173,7 +173,7 @@ TEST_F(ServedSequenceTest, ARigIsServedAsEuroc) {
   for (const char* file :
        {"mav0/cam0/sensor.yaml", "mav0/cam1/sensor.yaml", "mav0/imu0/data.csv", "mav0/imu0/sensor.yaml"})
     EXPECT_TRUE(fs::exists(folder / file)) << file;
-  // Each picture is listed, and the one of its camera; the stamps of cam1 have its offset.
+  // Each image is listed, and of its own camera; the stamps of cam1 have its offset.
   for (const int k : {0, 1}) {
     const vo::SequenceReader reader(folder, vo::SequenceReader::Images::needed, k);
     ASSERT_EQ(reader.size(), 3u);
@@ -198,7 +198,7 @@ TEST_F(ServedSequenceTest, ARigIsServedAsEuroc) {
   }
 }
 
-// The names of what is in the cache already.
+// Keys of the cache: unchanged unless there are more sensors.
 TEST_F(ServedSequenceTest, OnlyWhatHasMoreSensorsHasAnotherKey) {
   SeenSequence seen;
   seen.experiment.scenario = With({});
@@ -213,8 +213,8 @@ TEST_F(ServedSequenceTest, OnlyWhatHasMoreSensorsHasAnotherKey) {
   EXPECT_EQ(SequenceKey(seen, cache_), one);
 }
 
-// G(code) / V is the linear picture without vignetting, to the steps of the codes: an sRGB code's half step is 1.2 of
-// 255 at white, a linear one's a half.
+// Photometric calibration: G(code) / V is the linear image without vignetting, up to quantisation: half a step of an
+// sRGB code is 1.2 of 255 at white, of a linear one a half.
 TEST_F(ServedSequenceTest, ThePhotometricCalibrationUndoesResponseAndVignetting) {
   const Overrides fall_off = {{"sensor.optics.vignetting_2", "-0.4"}, {"sensor.optics.natural_vignetting", "true"}};
   for (const bool rectified : {false, true}) {

@@ -1,4 +1,4 @@
-// Input of the consistency verdict from a run, and its words. Whether it tells right from wrong: tests/consistency.
+// Input of the consistency verdict from a run, and its wording. Its power and false-alarm rate: tests/consistency.
 #include "tools/bench/result/verdict.h"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ TEST(RankFrames, AreASecondApartAndTheLastIsAmongThem) {
   EXPECT_THAT(RankFrames(1, 30), ElementsAre());
 }
 
-// The judge's moments of the mixture are the estimate's: mean zero, covariance as told.
+// Moments of the mixture about the estimate: mean zero, covariance of the estimate.
 TEST(MixtureAbout, HasTheMomentsOfTheEstimate) {
   std::vector<vo::BeliefComponent> mixture;
   for (int i = 0; i < 3; ++i) {
@@ -99,7 +99,7 @@ TEST(VerdictSentence, FailedChecks) {
   EXPECT_FALSE(Verdict("rb2pf", 2).verdict.consistent());
 }
 
-// Of Binomial(100, 1/10) P(<= 4) = 0.0237, P(<= 5) = 0.0576, P(<= 15) = 0.9601, P(<= 16) = 0.9794: 5 to 16.
+// Binomial(100, 1/10): P(<= 4) = 0.0237, P(<= 5) = 0.0576, P(<= 15) = 0.9601, P(<= 16) = 0.9794; band 5 to 16.
 TEST(RankTables, HaveTheBandOfAConsistentBar) {
   evaluation::ConsistencyVerdict verdict;
   verdict.rank_histograms.resize(24);  // two frames of twelve dimensions

@@ -1,6 +1,6 @@
-// What --compat prints on small trajectories of our own. The texts in compat/expected.txt were printed when every
-// golden value of the reference tools was met (tests/unit/judge/evaluation/golden_test.cpp, which needs files that are not
-// ours).
+// Output of --compat on small trajectories of the project's own. The texts in compat/expected.txt are those of a
+// version that meets every golden value of the reference tools (tests/unit/judge/evaluation/golden_test.cpp, which
+// needs files that are not in the repository).
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -35,7 +35,7 @@ std::string Printed(const std::string& request) {
   return tool.Run(Estimate(tool.reading), TruthRead(tool.reading));
 }
 
-// "$ REQUEST" and what it prints, again and again.
+// Pairs of "$ REQUEST" and its output.
 std::vector<std::pair<std::string, std::string>> Expected() {
   std::ifstream file(Folder() / "expected.txt");
   std::vector<std::pair<std::string, std::string>> all;
@@ -55,7 +55,8 @@ TEST(Compat, PrintsTheGoldenTexts) {
   for (const auto& [request, text] : expected) EXPECT_EQ(Printed(request), text) << request;
 }
 
-// Three standard errors: one seed of 370 fails it; the seed is the script's own. A mean over other pairs does fail.
+// Mean over random pairs against that over all: three standard errors, left by one seed of 370; the seed is the
+// script's own. Control: the mean over pairs of fixed distance.
 TEST(Compat, TumRandomPairs) {
   using namespace evaluation::compat;
   const evaluation::Rpe drawn = ComputeTumRpe(Estimate(), TruthRead(), {});
@@ -71,7 +72,8 @@ TEST(Compat, TumRandomPairs) {
   EXPECT_GT(std::abs(fixed.position_statistics.mean - all.position_statistics.mean), 3 * error);
 }
 
-// The four ways in which evo measures one error are bound to each other.
+// Relations between evo's measures of one error: full^2 = translation^2 + rotation^2; degrees and radians; the chordal
+// distance of a rotation.
 TEST(Compat, EvosRelationsAgree) {
   using namespace evaluation::compat;
   const auto errors = [](EvoRelation relation) {

@@ -1,4 +1,4 @@
-// One table of options: --help fits a terminal, its defaults are the structs', and its examples are commands.
+// Table of options: --help fits a terminal, its defaults are the structs', and its examples are commands.
 #include "tools/vobench/option_table.h"
 
 #include <gmock/gmock.h>

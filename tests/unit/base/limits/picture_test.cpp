@@ -1,5 +1,5 @@
-// Sizes that headers tell. The headers are written by hand here; that decoders see the same sizes is held by the
-// readers' own tests and by tests/fuzz, which run them on files that OpenCV wrote.
+// Image sizes in file headers, written by hand here. That decoders read the same sizes is tested by the readers' own
+// tests and by tests/fuzz, on files written by OpenCV.
 #include "tools/base/limits/picture.h"
 
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ std::string Problem(const std::string& file) {
   return PictureProblem({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()});
 }
 
-// The header of each kind of file, of a picture of this size.
+// Headers of each kind of file, for an image of this size.
 std::vector<std::pair<std::string, std::string>> Headers(std::uint64_t w, std::uint64_t h) {
   const auto entry = [](int tag, std::uint64_t value) {
     return Little(static_cast<std::uint64_t>(tag), 2) + Little(4, 2) + Little(1, 4) + Little(value, 4);
@@ -74,7 +74,7 @@ TEST(Picture, CutOffHeadersTellNoSize) {
   }
 }
 
-// Decoders take the numbers of such a file as they are, so that it comes out dark.
+// Scale of PNM: decoders do not rescale its numbers, so that any other largest value gives a dark image.
 TEST(Picture, ScaleOfPnmIsThatOfWholeBytes) {
   for (const char kind : {'2', '3', '5', '6'}) {
     const std::string begin = std::string("P") + kind + " 4 4 ";

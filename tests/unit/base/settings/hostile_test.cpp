@@ -1,4 +1,4 @@
-// Whatever bytes a file holds, reading it ends with values or with settings::Error.
+// Arbitrary bytes: reading a file ends with values or with settings::Error.
 #include <gmock/gmock.h>
 #include <rapidcheck.h>
 

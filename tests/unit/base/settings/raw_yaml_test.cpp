@@ -1,4 +1,4 @@
-// Values that are handed on to another reader, and items of a list in short.
+// Raw values for another reader, and short forms of list items.
 #include <gmock/gmock.h>
 
 #include "tools/base/settings/settings.h"
@@ -26,7 +26,7 @@ TEST(RawYaml, GivesTheSameValuesToAnotherReader) {
   ASSERT_EQ(one.size(), 1u);
   EXPECT_EQ(one[0].text, "4 px");
   EXPECT_THAT(set, ElementsAre(Pair("a.b", "\"3\""), Pair("c", "[\"1\"]")));
-  // What Override takes is what was meant.
+  // Raw values keep their meaning through Override.
   Document other = Document::FromText("", "g");
   other.Override("t", values[0].yaml);
   other.Override("n", values[3].yaml);
@@ -39,7 +39,7 @@ TEST(RawYaml, GivesTheSameValuesToAnotherReader) {
   EXPECT_THAT(n, ElementsAre(1, 2));
 }
 
-// What is recorded of it is JSON, and both readers know it for nothing.
+// Missing values: null in the recorded JSON, invalid as a number.
 TEST(RawYaml, NothingIsNullOfJson) {
   Document document = Document::FromText("values: [~, 3]\nset: {a: ~, b: }\n", "f");
   std::vector<RawYaml> values;

@@ -1,4 +1,4 @@
-// The search on planted systems, whose mildest breaking combination is known.
+// Attack search on planted systems, whose mildest breaking combination is known.
 #include "tools/bench/breaking/attack_search.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ const std::vector<Surface>& Surfaces() {
   return surfaces;
 }
 
-// The least norm on a fine grid, and whether both parameters are needed there.
+// Least norm of a breaking combination, on a grid of step 1e-3.
 double MildestOf(const Surface& surface) {
   double mildest = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= 1000; ++i) {
@@ -96,7 +96,7 @@ TEST(AttackSearch, SaysThatNothingIsFound) {
   EXPECT_LE(result.evaluations, 33);
 }
 
-// The control: without the search over directions, the norm along the diagonal is too large by more than what is allowed.
+// Control without the search over directions: the norm along the diagonal exceeds the least by more than the tolerance.
 TEST(AttackSearch, TheDiagonalAloneIsNotTheMildest) {
   const Surface& corner = Surfaces()[1];
   EXPECT_GT(std::sqrt(2) * 0.7, 1.1 * MildestOf(corner));

@@ -1,4 +1,4 @@
-// Bisection of a stress of planted shares.
+// Bisection of a stress, with planted logistic shares.
 #include "tools/bench/breaking/bisection.h"
 
 #include <gtest/gtest.h>
@@ -62,9 +62,9 @@ TEST(Bisection, Ends) {
   EXPECT_FALSE(FindBreaking({}, kSteps));
 }
 
-// Planted logistic shares, 200 bisections each. An interval of 90 % misses more than BinomialLimit(200, 0.1, 0.001) with a
-// probability of 0.1 %: a false alarm in 0.4 % of streams for the four of them. The control is what a bisection says that
-// takes each majority of eight for certain: the last two steps. It misses more often.
+// Coverage of the 90 % interval for planted logistic shares, 200 bisections each. More than BinomialLimit(200, 0.1,
+// 0.001) miss with probability 0.1 %: false-alarm rate 0.4 % for the four. Control: the last two steps of a bisection
+// that takes each majority of eight as certain; it misses more often.
 TEST(Bisection, TheIntervalHoldsThePlantedMidpoint) {
   constexpr int kSets = 200;
   const auto limit = evaluation::BinomialLimit(kSets, 0.1, 0.001);
@@ -83,8 +83,8 @@ TEST(Bisection, TheIntervalHoldsThePlantedMidpoint) {
   }
 }
 
-// Of the same planted system by bisection and on all 33 doses: intervals of 90 % that overlap, in all of 40 (two that are
-// apart have a probability below 2 %: 4 or more of 40 below 1 %).
+// Bisection against all 33 doses of the same planted system: the 90 % intervals overlap. They are disjoint with
+// probability below 2 %: 4 or more of 40 below 1 %.
 TEST(Bisection, AgreesWithADenseGrid) {
   int apart = 0;
   for (std::uint64_t set = 0; set < 40; ++set) {

@@ -1,4 +1,4 @@
-// The campaign's file: which task is which, and every problem with its place.
+// Campaign file: numbering of the tasks, and every problem with its place.
 #include "tools/bench/campaign/campaign_file.h"
 
 #include <gmock/gmock.h>

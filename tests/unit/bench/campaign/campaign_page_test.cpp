@@ -1,5 +1,4 @@
-// The curves of a campaign as figures: what is lost is on the edge, in either direction of the doses, and told in
-// words.
+// Figures of a campaign's curves: lost runs are at the edge, for rising and falling doses, and in words.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -19,7 +18,7 @@ using testing::HasSubstr;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Two systems at 1, 2 and 4 ms: one is never lost; of the other one run of two is at 2 ms, both are at 4 ms.
+// Two systems at 1, 2 and 4 ms: one is never lost; the other in one of two runs at 2 ms and in both at 4 ms.
 campaign::Curve Sample(bool falling) {
   campaign::Curve curve;
   curve.spec = {"exposure", {1e-3, 2e-3, 4e-3}, "ms", 1e-3, {"ate_m"}, {"scenario"}, 0.05};
@@ -110,7 +109,7 @@ TEST(CampaignPage, BreakingPointsAndEscapedNames) {
   EXPECT_THAT(html, HasSubstr("<b>RB-PF</b> breaks at <b>2 ms</b>"));
 }
 
-// A program of somebody else: how it ended, and no NEES, which it does not say.
+// Runs of an external program: how they ended, and no NEES.
 TEST(CampaignPage, ExternalRunsSayHowTheyEnded) {
   campaign::Campaign campaign;
   campaign.seeds = {1, 2};

@@ -1,4 +1,4 @@
-// Curves: which are refused, what is counted, and what is written.
+// Curves of a campaign: invalid ones, counts, and output.
 #include "tools/bench/campaign/curves.h"
 
 #include <gmock/gmock.h>
@@ -41,8 +41,8 @@ seeds: 1..8
   Folder here_;
 };
 
-// 4 exposures x 2 systems x 8 seeds. rb2pf: 1 cm at each dose; rbpf is lost with seed s from dose 0 (s > 6) on, from
-// dose 2 on (s > 2), and else 1, 2, 4, 8 cm.
+// 4 exposures x 2 systems x 8 seeds. rb2pf: 1 cm at each dose. rbpf: lost at all doses for seeds s > 6, from dose 2 on
+// for s > 2; else 1, 2, 4, 8 cm.
 Campaign Small() {
   Campaign c;
   c.scenarios.push_back({"s", "s.yaml", {}, {}});

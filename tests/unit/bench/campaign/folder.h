@@ -1,4 +1,4 @@
-// A folder that is gone when the test is, with files below it.
+// Temporary folder of a test, with files in subfolders.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@ namespace vobench::campaign {
 class Folder : public evaluation::TemporaryFolder {
  public:
   std::filesystem::path operator/(const std::string& name) const { return path() / name; }
-  // Folders on the way are made.
+  // Creates missing parent folders.
   std::filesystem::path Write(const std::string& name, const std::string& text) const {
     std::filesystem::create_directories((path() / name).parent_path());
     return TemporaryFolder::Write(name, text);

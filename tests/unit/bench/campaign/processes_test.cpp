@@ -1,4 +1,4 @@
-// Processes that crash, hang, or take too much; commands of other people; locks and folders that survive them.
+// Processes that crash, hang, or take too much; external commands; locks and folders that survive them.
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <unistd.h>
@@ -169,7 +169,7 @@ bool Runs(const std::string& process) {
   return stream >> number >> name >> state && state != "Z";
 }
 
-// A process that runs a command, ended in the three ways that a campaign knows.
+// A process that runs a command, ended by the timeout, by a kill, and with the pool.
 TEST_F(CommandTest, EndsWithItsParent) {
   const auto work = [this] {
     here_.Write("caller", std::to_string(getpid()));
@@ -274,8 +274,7 @@ TEST(SequenceCache, ChangedFilesMiss) {
   EXPECT_FALSE(SequenceCache(here / "cache").Inputs("world")) << "what was not found then would be now";
 }
 
-// Tasks of one campaign that are started at the same time begin in the same empty folder. (Before, about one in fifty said
-// that it is no campaign's folder.)
+// Concurrent start: tasks of one campaign begin in the same empty folder.
 TEST(PrepareOutput, ManyMayBeginAtOnce) {
   const Folder here;
   for (int trial = 0; trial < 200; ++trial) {

@@ -51,7 +51,7 @@ TEST(Columns, NamesEndWithTheirUnits) {
   }
 }
 
-// Each column has the value that its name says: all values differ.
+// Columns against the metrics: all values differ.
 TEST(Columns, Values) {
   using evaluation::Ate;
   evaluation::Metrics m;
@@ -138,7 +138,7 @@ TEST(Results, ARecordIsReadAsItWasWritten) {
   EXPECT_EQ(ToJson(again), ToJson(record));
   EXPECT_EQ(again.metrics, record.metrics) << "to the last bit";
   EXPECT_EQ(again.seed, record.seed);
-  std::string older = ToJson(record);  // of a program that did not have the column: the key tells it from today's
+  std::string older = ToJson(record);  // a record of another version: without the column, with an unknown one
   older.replace(older.find("\"nis_per_dof\""), 13, "\"unknown\"");
   EXPECT_EQ(RecordFromJson(older).metrics, record.metrics);
   EXPECT_THROW(RecordFromJson(""), std::invalid_argument);
@@ -157,7 +157,7 @@ TEST(Results, ARecordIsReadAsItWasWritten) {
   }
 }
 
-// A line of results.csv is a task, for whoever counts or sorts lines.
+// results.csv has one line per task.
 TEST(Results, AReasonIsOneLine) {
   TaskRecord record = Sample(0, Status::no_answer, 0);
   record.reason = "t.txt:1:5: 'x' is not a finite number\r\nt.txt:2:1: 3 columns\n";
@@ -220,7 +220,7 @@ TEST(Table, HasItsUnitAndTheNumbersOfOthers) {
   EXPECT_THAT(Latex({table}), HasSubstr("4\\_ms & $\\times$ & $\\times$ & 7 \\\\\n"));
 }
 
-// Whatever its texts are, a table has as many columns and lines as before.
+// Escaping: columns and lines of a table do not depend on its texts.
 TEST(Table, TextsAreEscaped) {
   Campaign c = Small();
   c.factors[0].levels[0].name = "a|b\n^~";
@@ -237,7 +237,7 @@ TEST(Table, TextsAreEscaped) {
                                         "4\\_ms & 3 & $\\times$ \\\\\n"));
 }
 
-// Metric systems are never judged by Sim(3), and never beside what is.
+// One alignment per table: metric systems are not aligned by Sim(3), nor listed beside those that are.
 TEST(Table, NoneMixesAlignments) {
   Campaign c = Small();
   c.systems.push_back({"stereo", "", {}, {}});
@@ -252,15 +252,15 @@ TEST(Table, NoneMixesAlignments) {
   EXPECT_THAT(text, HasSubstr("| blur | rbpf | paper |\n|---|---:|---:|\n| 0 ms | 1 | 5.59 |\n| 4_ms | 3 | - |\n"));
   EXPECT_THAT(text, HasSubstr("### ATE, se3\n\nMedian [quartiles] after alignment se3, over 1 runs"));
   EXPECT_THAT(text, HasSubstr("| blur | stereo |\n|---|---:|\n| 0 ms | 2 |\n| 4_ms | 4 |\n"));
-  // Pooled over systems it would mix them, too.
+  // Pooled over systems: one table per alignment as well.
   EXPECT_EQ(MakeTables(c, {"ate_m", "ATE", {"blur"}, {}}, records).size(), 2u);
-  // What no alignment changes is side by side.
+  // A metric independent of the alignment: one table.
   EXPECT_THAT(Markdown(MakeTables(c, {"pose_coverage", "pose", {"blur"}, {"system"}}, records)),
               testing::AllOf(HasSubstr("| blur | rbpf | stereo |"), testing::Not(HasSubstr("alignment"))));
   const std::string csv = ResultsCsv(c, records);
   EXPECT_THAT(csv, HasSubstr(",ok,sim3,1,"));
   EXPECT_THAT(csv, HasSubstr(",ok,se3,2,"));
-  c.align = evaluation::Alignment::none;  // as the campaign asks
+  c.align = evaluation::Alignment::none;  // alignment set by the campaign
   EXPECT_EQ(MakeTables(c, spec, records).size(), 1u);
 }
 
@@ -273,7 +273,7 @@ TEST(Table, FailedTasksAreNoRunsAndAreCounted) {
   EXPECT_THAT(text, HasSubstr("| 0 ms | 3 [2.5, 3.5] (1 failed) |\n| 4_ms | - (3 failed) |\n"));
 }
 
-// An error of half of the frames is not that of all.
+// Coverage beside an error, where it is below 95 %.
 TEST(Table, FewPosesAreSaidBesideAnError) {
   Campaign c = Small();
   std::vector<TaskRecord> records;
@@ -290,7 +290,7 @@ TEST(Table, FewPosesAreSaidBesideAnError) {
     return Markdown(MakeTables(c, one, records)).find('@') != std::string::npos;
   };
   EXPECT_FALSE(said({"pose_coverage", "pose", {"blur"}, {"system"}}));
-  c.systems[0].external.keyframes = true;  // it says so itself
+  c.systems[0].external.keyframes = true;  // declared by the system
   EXPECT_FALSE(said(spec));
 }
 

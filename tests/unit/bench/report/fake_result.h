@@ -1,6 +1,5 @@
-// A result folder as a real run would leave it, made up: a camera that walks a spiral, estimates that drift
-// from it with
-// the uncertainty they claim (or with less).
+// Synthetic result folder: a camera on a spiral, estimates that drift from it, with the covariance of the drift or a
+// smaller one.
 #pragma once
 
 #include <filesystem>
@@ -28,7 +27,7 @@ struct FakeOptions {
   std::vector<FakeSystem> systems = {{"rb2pf", 0.01, 1, 1.02, true}, {"rbpf", 0.03, 0.5, 0.93}};
 };
 
-// Writes everything but report.html; returns what it judged.
+// Writes everything but report.html; returns the metrics.
 std::vector<RunMetrics> WriteFakeResult(const std::filesystem::path& out, const FakeOptions& options);
 
 }  // namespace vobench::report

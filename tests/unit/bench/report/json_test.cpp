@@ -96,7 +96,7 @@ TEST(MetricsJson, GivesEveryNumberItsUnitAndOrigin) {
   EXPECT_EQ(run.at("coverage").at("tracked_coverage").at("value").get<double>(), *metrics.coverage->tracked_coverage());
   EXPECT_EQ(run.at("baselines").at("constant_pose").at("ate").at("sim3").at("position").at("rmse").get<double>(),
             metrics.constant_pose.sim3.position.rmse);
-  // Wherever there is a statistic or a value, there is a unit and a how.
+  // Every statistic and every value has a unit and a description, `how`.
   int numbers = 0;
   const std::function<void(const nlohmann::json&)> visit = [&](const nlohmann::json& node) {
     if (node.is_object() && (node.contains("rmse") || node.contains("value") || node.contains("mean"))) {

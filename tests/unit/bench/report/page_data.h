@@ -1,4 +1,4 @@
-// The data that a page carries, read back as a browser would.
+// Data of a page, parsed as by a browser.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,7 +7,7 @@
 
 namespace vobench::report {
 
-// What stands in the element "data"; fails the test where the page has none.
+// Content of the element "data"; the test fails where the page has none.
 nlohmann::json DataOf(const std::string& html);
 
 // The figure of this title; null where there is none.

@@ -1,4 +1,4 @@
-// The page's frame: what is put in comes out unharmed, whatever it is called.
+// Frame of the page: texts and data are escaped and unchanged, whatever their names.
 #include <gmock/gmock.h>
 
 #include "tests/unit/bench/report/page_data.h"

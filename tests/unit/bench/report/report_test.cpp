@@ -100,7 +100,7 @@ TEST(WriteReport, ShowsWhatWasFound) {
   EXPECT_THAT(html, Not(HasSubstr("class=\"warning\"")));
 }
 
-// That it loads nothing while it runs is held by its policy, in a browser (tests/system/report_page.mjs).
+// No external resources in the markup. At run time: by the policy, in a browser (tests/system/report_page.mjs).
 TEST(WriteReport, LoadsNothing) {
   const TemporaryFolder folder;
   WriteFakeResult(folder.path(), {});
@@ -112,7 +112,7 @@ TEST(WriteReport, LoadsNothing) {
   EXPECT_THAT(html, HasSubstr("prefers-color-scheme:dark"));
 }
 
-// What a reader reads off a figure are the judge's numbers.
+// Numbers of the figures against the judge's.
 TEST(WriteReport, FiguresHaveTheNumbersOfTheJudge) {
   const TemporaryFolder folder;
   WriteFakeResult(folder.path(), {});
@@ -174,14 +174,13 @@ TEST(WriteReport, OverConfidentAndCautious) {
   }
 }
 
-// Worlds of points draw a path for every seed: an estimate is shown beside its own.
+// Point worlds with a path for every seed: an estimate is shown beside the truth of its own seed.
 TEST(WriteReport, ShowsAnEstimateBesideTheTruthOfItsOwnSeed) {
   const TemporaryFolder folder;
   const auto judged = WriteFakeResult(folder.path(), {});
   EXPECT_THAT(PageOf(folder), Not(HasSubstr("a path of its own")));
   for (const RunMetrics& run : judged) {
-    for (const char* name :
-         {"truth.txt", "estimate.txt", "live.txt"}) {  // moved as a whole: nothing that is judged changes but the place
+    for (const char* name : {"truth.txt", "estimate.txt", "live.txt"}) {  // a common translation: no error changes
       const auto file = folder.path() / run.run.path / name;
       if (!std::filesystem::exists(file)) continue;  // live.txt of the second system
       evaluation::Trajectory trajectory = evaluation::ReadTrajectory(file);
@@ -205,7 +204,7 @@ TEST(WriteReport, ShowsAnEstimateBesideTheTruthOfItsOwnSeed) {
   }
 }
 
-// Of a hundred seeds ten are drawn: the typical one, the best, the worst, and some between.
+// Ten of 25 seeds are drawn: the typical one, the best, the worst, and some between.
 TEST(WriteReport, OfManySeedsDrawsAFew) {
   const TemporaryFolder folder;
   FakeOptions options;
@@ -280,8 +279,8 @@ TEST(WriteReport, ListsTheProblemsOfAllRunsAndWritesNothing) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "report.html"));
 }
 
-// Three minutes at 30 Hz, six seeds of two systems, pictures of a usual size: the page stays below 3 MB, pictures are
-// left, and the largest error with them.
+// Size of the page for three minutes at 30 Hz, six seeds of two systems, pictures of a usual size: below 3 MB, with
+// pictures left, and the largest error.
 TEST(WriteReport, StaysSmall) {
   const TemporaryFolder folder;
   FakeOptions options;

@@ -72,7 +72,7 @@ TEST(TextSummary, ShowsMediansOfEachSystemAndTheBaselines) {
   EXPECT_EQ(TextSummary({}), "");
 }
 
-// Where each seed has a path of its own, so has each a baseline; the table has the median, as the terminal does.
+// Seeds with paths, and baselines, of their own: the table has the median, as the terminal does.
 TEST(RunTable, HasTheBaselinesOfTheSummary) {
   const evaluation::TemporaryFolder folder;
   auto judged = WriteFakeResult(folder.path(), {});

@@ -55,7 +55,7 @@ TEST(Thin, KeepsBothSidesOfABand) {
 }
 
 TEST(Thin, KeepsTheCornersOfAPath) {
-  Series path;  // a long straight line with one jump aside, which no value along x or y alone tells
+  Series path;  // a long straight line with one jump aside, visible in neither x nor y alone
   for (int i = 0; i < 4'000; ++i) {
     const double aside = i == 1'500 ? 0.5 : 0;
     path.x.push_back(0.01 * i + aside);

@@ -48,7 +48,7 @@ TEST(Align, FindsTheSimilarityThatWasApplied) {
   }
 }
 
-// The alignment is the best one: no small change of scale, rotation or translation makes the errors smaller.
+// Optimality of the alignment: no small change of scale, rotation or translation reduces the errors.
 TEST(Align, IsAMinimum) {
   TestRandom random(6);
   const MatchedTrajectories matched = NoisyPair(random, 60);
@@ -87,14 +87,14 @@ TEST(Align, Undetermined) {
   EXPECT_FALSE(still.similarity.scale_determined);
   EXPECT_FALSE(still.similarity.rotation_determined);
   EXPECT_TRUE(still.orientation_errors.empty());
-  // All that is left is the spread of the truth about its mean.
+  // The RMSE is then the spread of the truth about its mean.
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const StampedPose& pose : truth) mean += pose.p_WC / 50;
   double variance = 0;
   for (const StampedPose& pose : truth) variance += (pose.p_WC - mean).squaredNorm() / 50;
   EXPECT_NEAR(still.position.rmse, std::sqrt(variance), 1e-12);
 
-  // A truth that stands has no scale either: a factor of 0 would fit whatever the estimate does.
+  // A stationary truth has no scale either: a factor of 0 fits every estimate.
   const Ate still_truth = ComputeAte({truth, standing.estimate}, Alignment::sim3);
   EXPECT_FALSE(still_truth.similarity.scale_determined);
   EXPECT_NEAR(still_truth.position.rmse, std::sqrt(variance), 1e-12);
@@ -107,7 +107,7 @@ TEST(Align, Undetermined) {
   EXPECT_LE(line.position.rmse, still.position.rmse);
 }
 
-// Rounding grows with the distance from the origin: a hundred kilometres away, 1e-11 m is none that was gone.
+// Rounding errors far from the origin: at 1e5 m, differences of some 1e-11 m are not an extent.
 TEST(Align, RoundingFarFromTheOriginIsNoMotion) {
   TestRandom random(9);
   const Trajectory truth = random.Walk(50);
@@ -121,7 +121,7 @@ TEST(Align, RoundingFarFromTheOriginIsNoMotion) {
   }
 }
 
-// Where the line is drawn, on both sides: positions `d` from their mean on one axis, and then a second axis that is small.
+// Thresholds of degeneracy, from both sides: positions `d` from their mean on one axis; below, a small second axis.
 TEST(Align, NoExtentThreshold) {
   const auto scale_determined = [](double d, double mean) {
     MatchedTrajectories matched;
@@ -161,7 +161,7 @@ TEST(Align, RefusesWhatIsNotMatched) {
   EXPECT_THROW(Align({{}, matched.truth}, Alignment::se3), std::logic_error);
 }
 
-// The aligned error does not depend on the world the estimate was given in.
+// Invariance of the aligned error under similarities of the estimate's world frame.
 TEST(Ate, IsInvariantUnderSimilaritiesOfTheEstimate) {
   TestRandom random(9);
   for (int trial = 0; trial < 30; ++trial) {
@@ -174,14 +174,14 @@ TEST(Ate, IsInvariantUnderSimilaritiesOfTheEstimate) {
       EXPECT_NEAR(before.orientation_errors[i], after.orientation_errors[i], 1e-9);
     }
     EXPECT_NEAR(before.similarity.scale, after.similarity.scale * moved.scale, 1e-9);
-    // And with scale left out it does depend on it: the test above is not blind.
+    // Control: without scale the error does depend on the frame.
     EXPECT_GT(
         std::abs(ComputeAte(other, Alignment::se3).position.rmse - ComputeAte(matched, Alignment::se3).position.rmse),
         1e-3 * std::abs(std::log(moved.scale)));
   }
 }
 
-// Turned by 0.1 and 0.3 rad, moved by 0.2 and 0.4 m.
+// Two poses, rotated by 0.1 and 0.3 rad, translated by 0.2 and 0.4 m.
 TEST(Ate, ByHand) {
   MatchedTrajectories matched;
   for (const double turn : {0.1, 0.3}) {
@@ -209,8 +209,8 @@ TEST(Ate, MoreFreedomNeverHurts) {
   }
 }
 
-// The closed form against a search: for every angle the best translation is that of the means; the angle by a grid of
-// 0.1 degrees and golden sections. Estimates are turned about z, tilted a little, and noisy.
+// Closed form of the yaw alignment against a search over the angle: a grid of 0.1 degrees, then ternary search; the
+// translation is that of the means. Estimates are rotated about z, tilted a little, and noisy.
 TEST(Align, YawIsWhatASearchFinds) {
   TestRandom random(11);
   for (int trial = 0; trial < 20; ++trial) {
@@ -245,7 +245,7 @@ TEST(Align, YawIsWhatASearchFinds) {
   }
 }
 
-// What only rises has no yaw.
+// A vertical line: its yaw is unobservable.
 TEST(Align, YawOfAVerticalLineIsNotDetermined) {
   MatchedTrajectories matched;
   for (int k = 0; k < 5; ++k) matched.truth.push_back({k, Eigen::Vector3d(1, 2, k), Eigen::Quaterniond::Identity()});

@@ -30,7 +30,7 @@ TEST(LinearFilter, HasTheSteadyStateThatWasAsked) {
     LinearFilter filter;
     filter.sigma_position = sigma;
     const double r = std::pow(MeasurementSigma(filter), 2), dt = filter.dt;
-    // The Riccati recursion written out, from a poor start.
+    // The Riccati recursion from a poor start.
     Eigen::Matrix2d F, Q, P = 100 * Eigen::Matrix2d::Identity();
     F << 1, dt, 0, 1;
     Q << dt * dt * dt / 3, dt * dt / 2, dt * dt / 2, dt;
@@ -42,8 +42,8 @@ TEST(LinearFilter, HasTheSteadyStateThatWasAsked) {
   }
 }
 
-// Mean NEES over independent runs at the first and the last frame: the simulated filter is honest from the first frame
-// on, also where a metre counts for more than a metre a second. False alarm rate 1.2e-5.
+// Consistency of the simulated filter: mean NEES over independent runs at the first and the last frame, also with the
+// position's sigma [m] above the velocity's [m/s]. False-alarm rate 1.2e-5.
 TEST(LinearFilter, IsConsistentAtEveryFrame) {
   LinearFilter slow;
   slow.dt = 10, slow.psd = 1e-4, slow.sigma_position = 1;
@@ -64,8 +64,8 @@ TEST(LinearFilter, IsConsistentAtEveryFrame) {
   }
 }
 
-// Squares of neighbouring errors are correlated by rho^2, rho = (1 - alpha) (1 + beta / alpha), alpha and beta from the
-// measurement's sigma. Of 40 000 pairs the correlation has a standard error below 0.01: five of those.
+// Correlation of NEES at lag one, for one axis: rho^2, rho = (1 - alpha) (1 + beta / alpha), alpha and beta from the
+// measurement's sigma. Its standard error over 40 000 pairs is below 0.01; the limit is five of those.
 TEST(LinearFilter, RemembersWhatItsGainLeaves) {
   LinearFilter filter;
   filter.axes = 1;
@@ -110,7 +110,7 @@ TEST(LinearFilter, IsRefusedWhereItIsNone) {
   EXPECT_EQ(ExactAneesOfPool({{1}}, 3, 1, 1).shares.size(), 1u);
 }
 
-// Each trial's figures are those of the runs that it is of.
+// Share and mean of each trial: those of the runs simulated with its seed and stream.
 TEST(ExactAnees, AreThoseOfSimulatedRuns) {
   LinearFilter filter;
   filter.judged = LinearFilter::Judged::both;
@@ -125,14 +125,14 @@ TEST(ExactAnees, AreThoseOfSimulatedRuns) {
 }
 
 TEST(ShareInBand, ByHand) {
-  // One run, three degrees: band 0.216 ... 9.348.
+  // One run, three degrees of freedom: band 0.216 ... 9.348.
   const AneesShare share = ShareInBand({{1, 9, 10, 0.1, NAN}}, 3);
   EXPECT_EQ(share.frames, 4u);
   EXPECT_EQ(share.share, 0.5);
   EXPECT_EQ(share.above, 0.25);
   EXPECT_EQ(share.below, 0.25);
   EXPECT_NEAR(share.mean, 20.1 / 12, 1e-12);
-  // Where a run has no value the band is of those that have.
+  // A frame without a value in some runs: the band is that of the remaining runs.
   EXPECT_EQ(ShareInBand({{9}, {NAN}}, 3).share, 1);
   EXPECT_EQ(ShareInBand({{9}, {9}}, 3).share, 0);
   EXPECT_EQ(ShareInBand({}, 3).frames, 0u);
@@ -142,9 +142,9 @@ TEST(ShareInBand, ByHand) {
   EXPECT_NEAR(lengths.mean, (3 + 6 + 12) / 9., 1e-12);
 }
 
-// The stated rate of 1 %, 100 runs of 300 frames. Of 100 sets more than 5 are rejected once in 2000 times (binomial of
-// 0.01; of 0.019, as the threshold's own Monte Carlo may have it, once in 80: the seeds are fixed and were not chosen
-// by the outcome). Power against P x 0.5 and P x 2: every set, and with a share that is nowhere near the threshold.
+// False-alarm rate of 1 %, 100 runs of 300 frames. More than 5 of 100 sets are rejected with probability 1/2000
+// (binomial of 0.01; of 0.019, within the Monte Carlo error of the threshold, 1/80: the seeds are fixed and not chosen
+// by the outcome). Power against P x 0.5 and P x 2: every set, with a share far from the threshold.
 TEST(TestAnees, KeepsItsFalseAlarmRate) {
   for (const int d : {3, 6}) {
     LinearFilter filter;
@@ -178,8 +178,8 @@ TEST(TestAnees, KeepsItsFalseAlarmRate) {
   }
 }
 
-// Why not a bare binomial: where the estimate remembers for long, an honest filter's share spreads far more than that
-// of independent frames, whose 1 % quantile is 0.917 of 300.
+// Control: a binomial threshold. With correlated errors the share of a consistent filter spreads far more than that of
+// independent frames, whose 1 % quantile is 0.917 for 300 frames.
 TEST(TestAnees, BareBinomialRejectsConsistentFilters) {
   LinearFilter slow;
   slow.sigma_position = 1;  // the filter averages over many frames
@@ -188,8 +188,8 @@ TEST(TestAnees, BareBinomialRejectsConsistentFilters) {
   EXPECT_GT(rejected, 20) << "more than a tenth, in place of a hundredth";
 }
 
-// One frame's delay: an exact filter whose answer is held against the truth of a frame later. Between frames the body
-// moves by v dt, at 0.3 m/s as much as the filter's sigma.
+// Power against a delay of one frame: the estimates of an exact filter against the truth of the next frame. Between
+// frames the body moves by v dt, at 0.3 m/s as much as the filter's sigma.
 TEST(TestAnees, OneFramesDelayIsRejected) {
   LinearFilter filter;
   const ExactAnees exact = ExactAneesOf(filter, kRuns, kFrames, 400);
@@ -226,8 +226,8 @@ TEST(TestAnees, OneFramesDelayIsRejected) {
   EXPECT_FALSE(TestAnees(late, 3, exact).pass());
 }
 
-// A pool of exact runs gives the same distribution as sets drawn afresh: medians and 1 % quantiles to within what 400
-// trials and a pool of 1500 runs leave open.
+// Resampling from a pool of exact runs against sets drawn afresh: medians and 1 % quantiles agree within the Monte
+// Carlo error of 400 trials and a pool of 1500 runs.
 TEST(ExactAneesOfPool, AgreeWithFreshRuns) {
   LinearFilter filter;
   const ExactAnees fresh = ExactAneesOf(filter, 50, 100, 400);
@@ -242,8 +242,8 @@ TEST(ExactAneesOfPool, AgreeWithFreshRuns) {
   EXPECT_THROW(ExactAneesOfPool({{1, 2}}, 3, 2), std::invalid_argument);
 }
 
-// A trial of the whole pool is the pool; of two of three runs it is any two, none twice. The share of each pair is
-// a third of 3000 trials: 5 standard deviations of the count are 129, false alarm rate 2e-6.
+// Sampling without replacement. A trial of the whole pool is the pool; two of three runs are each pair with probability
+// 1/3. Five standard deviations of the count in 3000 trials are 129: false-alarm rate 2e-6.
 TEST(ExactAneesOfPool, TakesEachRunAtMostOnce) {
   const Nees pool = {{1, 4, 20, 0.01}, {3, 5, 30, 0.02}};
   const AneesShare whole = ShareInBand(pool, 3);
@@ -260,7 +260,7 @@ TEST(ExactAneesOfPool, TakesEachRunAtMostOnce) {
   for (const double mean : {11, 101, 110}) EXPECT_NEAR(pairs[mean], 1000, 129) << mean;
 }
 
-// 399 trials: four are beyond 1 % on one side, two on each of two sides.
+// Quantiles of 399 trials at 1 %: four beyond a one-sided limit, two beyond each of two-sided limits.
 TEST(TestAnees, Figures) {
   ExactAnees exact;
   for (int i = 0; i < 399; ++i) {
@@ -279,9 +279,9 @@ TEST(TestAnees, Figures) {
   EXPECT_FALSE(TestAnees({{3}, {6.5}}, 3, exact, 0.01).mean_pass);
   EXPECT_FALSE(TestAnees({{2.1}, {2.1}}, 3, exact, 0.01).mean_pass);
   EXPECT_FALSE(TestAnees({{30, 0.01, 3}}, 3, exact, 0.01).share_pass);
-  exact.means.resize(199);  // as many as both have
+  exact.means.resize(199);  // trials: the smaller number of the two
   EXPECT_EQ(TestAnees({{3}}, 3, exact, 0.01).threshold, exact.shares[1]);
-  // 0.29 times 100 is 28.999999999999996.
+  // 0.29 * 100 = 28.999999999999996 in double precision.
   exact.shares.resize(99);
   exact.means.resize(99);
   EXPECT_EQ(TestAnees({{3}}, 3, exact, 0.29).threshold, exact.shares[28]);

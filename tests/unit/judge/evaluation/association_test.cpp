@@ -24,11 +24,11 @@ std::vector<std::pair<std::size_t, std::size_t>> Pairs(const std::vector<Match>&
 using P = std::vector<std::pair<std::size_t, std::size_t>>;
 
 TEST(Associate, GivesEachPoseOnceClosestFirst) {
-  // Both estimates are nearest to truth 1; the closer one gets it, the other takes what is left within the gap.
+  // Both estimates are nearest to truth 1: the closer is matched to it, the other to what is left within the gap.
   EXPECT_EQ(Pairs(Associate({100'000'000, 104'000'000}, {85'000'000, 103'000'000}, kOneToOne)), (P{{0, 0}, {1, 1}}));
   EXPECT_EQ(Pairs(Associate({100'000'000, 104'000'000, 200'000'000}, {85'000'000, 103'000'000}, kNearest)),
             (P{{0, 0}, {1, 1}}));
-  // Of as many poses, for each of the estimate, as evo has it.
+  // Equal numbers of poses: matched for each pose of the estimate, as in evo.
   EXPECT_EQ(Pairs(Associate({100'000'000, 104'000'000}, {103'000'000, 900'000'000}, kNearest)), (P{{0, 0}, {1, 0}}));
   EXPECT_EQ(Pairs(Associate({100'000'000, 104'000'000}, {0, 103'000'000, 900'000'000}, kNearest)), (P{{0, 1}, {1, 1}}));
 }
@@ -44,9 +44,8 @@ TEST(Associate, TheGapIsOpenForOneRuleAndClosedForTheOther) {
   EXPECT_THROW(Associate({2, 1}, {1}, kOneToOne), std::logic_error);
 }
 
-// Above a hundred poses a second two may each be within the gap of the other's truth.
-// Stamps that lie the gap apart, exactly or but for some nanoseconds: which pairs that takes is a matter of rounding, and
-// the tools' own, which subtract the doubles that a stamp is read as.
+// Differences equal to the gap, exactly or to some nanoseconds: the matches are those of the reference tools, which
+// subtract stamps read as doubles.
 TEST(Associate, HoldsTheGapAgainstWhatTheToolsSubtract) {
   for (const std::int64_t begin_ns : {std::int64_t{0}, std::int64_t{1'305'031'102'000'000'000}}) {
     for (const std::int64_t apart_ns : {20'000'000, -20'000'000, 20'000'050, -20'000'050}) {
@@ -60,7 +59,7 @@ TEST(Associate, HoldsTheGapAgainstWhatTheToolsSubtract) {
         if (apart < 0.02) tum.emplace_back(k, k);
         if (apart <= 0.02) evo.emplace_back(k, k);
       }
-      const bool decides = begin_ns > 0 || std::abs(apart_ns) == 20'000'000;  // near zero doubles know a nanosecond
+      const bool decides = begin_ns > 0 || std::abs(apart_ns) == 20'000'000;  // near zero doubles resolve 1 ns
       ASSERT_EQ(tum.size() > 20, decides) << apart_ns;
       ASSERT_LT(evo.size(), 190u);
       EXPECT_EQ(Pairs(Associate(estimate, truth, kTum)), tum) << apart_ns;
@@ -69,6 +68,7 @@ TEST(Associate, HoldsTheGapAgainstWhatTheToolsSubtract) {
   }
 }
 
+// Crossing pairs: above 100 poses per second two poses may each be within the gap of the other's truth.
 TEST(Associate, GoesForwardInBothButForTumsRule) {
   const Stamps estimate = {0, 4'000'000, 20'000'000}, truth = {3'000'000, 6'000'000, 21'000'000};
   EXPECT_EQ(Pairs(Associate(estimate, truth, kOneToOne)), (P{{1, 0}, {2, 2}}));
@@ -76,8 +76,8 @@ TEST(Associate, GoesForwardInBothButForTumsRule) {
   EXPECT_EQ(Pairs(Associate(estimate, truth, kTum)), (P{{0, 1}, {1, 0}, {2, 2}}));
 }
 
-// Against the definition, by brute force on random stamps: greedy over all pairs, with and without those that cross a
-// closer one, and nearest.
+// Definitions by brute force on random stamps: greedy over all pairs, with and without those that cross a closer one;
+// nearest.
 TEST(Associate, EqualsTheDefinitionByBruteForce) {
   TestRandom random(3);
   int differ = 0;

@@ -1,4 +1,4 @@
-// What a call that must be refused says.
+// Message of an expected exception.
 #pragma once
 
 #include <string>

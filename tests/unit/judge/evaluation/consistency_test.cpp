@@ -1,5 +1,5 @@
-// Statistical tests here use fixed seeds that were not chosen by their outcome; each states how often it would fail on
-// an honest estimate with another seed, and has a dishonest twin that must fail.
+// NEES, ANEES and their bands. Seeds are fixed and not chosen by the outcome; each statistical test states its
+// false-alarm rate and has an inconsistent control that must fail.
 #include "tools/judge/evaluation/consistency.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ Matrix12d RandomCovariance(TestRandom& random) {
   Matrix12d A;
   for (int i = 0; i < 12; ++i) A.col(i) = random.Normals(12);
   Vector12d size;
-  size << 0.03, 0.1, 0.02, 0.02, 0.004, 0.05, 0.2, 0.05, 0.1, 0.1, 0.3, 0.05;  // units and axes differ: a mix-up shows
+  size << 0.03, 0.1, 0.02, 0.02, 0.004, 0.05, 0.2, 0.05, 0.1, 0.1, 0.3, 0.05;  // all differ: a permutation shows
   return size.asDiagonal() * Matrix12d(A * A.transpose() / 12 + 0.1 * Matrix12d::Identity()) * size.asDiagonal();
 }
 
@@ -28,7 +28,7 @@ struct World {
   Velocities velocities;
 };
 
-// Frames whose errors are independent draws from their own covariances: as honest as can be. q = q^ Exp(dphi).
+// Consistent world: independent frames, each error drawn from the frame's own covariance. q = q^ Exp(dphi).
 World HonestWorld(TestRandom& random, int frames, std::vector<Vector12d>* errors = nullptr,
                   bool left_perturbation = false) {
   World world;
@@ -72,7 +72,7 @@ TEST(ComputeConsistency, FindsTheErrorsThatWereMade) {
   }
 }
 
-// Frames and beliefs go together by their stamps; a frame without a belief is left out, wherever it is.
+// Association of frames and beliefs by stamps: a frame without a belief is left out, wherever it is.
 TEST(ComputeConsistency, JudgesTheFramesThatHaveABelief) {
   TestRandom random(30);
   World world = HonestWorld(random, 6);
@@ -91,7 +91,7 @@ TEST(ComputeConsistency, JudgesTheFramesThatHaveABelief) {
   EXPECT_TRUE(Judge(world).empty());
 }
 
-// The mean of n independent NEES, against the band that it leaves once in a million honest runs.
+// Mean of n independent NEES inside its band, which consistent errors leave with probability 1e-6.
 bool InBand(const std::vector<FrameConsistency>& frames, double FrameConsistency::*member, int dof) {
   double sum = 0;
   for (const FrameConsistency& frame : frames) sum += frame.*member;
@@ -100,15 +100,14 @@ bool InBand(const std::vector<FrameConsistency>& frames, double FrameConsistency
   return mean > band.low && mean < band.high;
 }
 
-// False alarm rate: 5e-6 (five means). The frames of this world are independent by construction, so that averaging them
-// is right.
+// False-alarm rate: 5e-6 (five means). Averaging over frames is valid here: they are independent by construction.
 TEST(ComputeConsistency, ConsistentErrorsAreInsideTheirBands) {
   TestRandom random(21);
   const auto frames = Judge(HonestWorld(random, 2000));
   EXPECT_TRUE(InBand(frames, &FrameConsistency::nees_pose, 6));
   EXPECT_TRUE(InBand(frames, &FrameConsistency::nees_velocity, 6));
   EXPECT_TRUE(InBand(frames, &FrameConsistency::nees_joint, 12));
-  const std::vector<FrameConsistency> moving(frames.begin() + 1, frames.end());  // at the start the scale does not show
+  const std::vector<FrameConsistency> moving(frames.begin() + 1, frames.end());  // scale unobservable at the start
   EXPECT_TRUE(InBand(moving, &FrameConsistency::nees_pose_scale_free, 5));
   EXPECT_TRUE(InBand(moving, &FrameConsistency::nees_joint_scale_free, 11));
   EXPECT_FALSE(InBand(moving, &FrameConsistency::nees_joint_scale_free, 12)) << "11 degrees are told from 12";
@@ -139,7 +138,7 @@ TEST(ComputeConsistency, ADelayOfOneFrameIsRejected) {
   EXPECT_FALSE(InBand(Judge(world), &FrameConsistency::nees_pose, 6));
 }
 
-// The share of frames inside the 95 % band of one run: binomial, five standard deviations (false alarm 6e-7).
+// Share of frames inside the 95 % band of one run: binomial, five standard deviations (false-alarm rate 6e-7).
 TEST(SummariseNees, TheBandHoldsItsShare) {
   TestRandom random(24);
   std::vector<double> nees;
@@ -152,7 +151,7 @@ TEST(SummariseNees, TheBandHoldsItsShare) {
   EXPECT_LT(SummariseNees(nees, 12).share_inside, 0.95 - 5 * std::sqrt(0.95 * 0.05 / 3000));
 }
 
-// A wrong scale, however large, leaves the scale-free NEES as it was; what is left is chi-square with one degree less.
+// Scale-free NEES: invariant under any error of scale, chi-square with one degree of freedom less.
 TEST(NeesWithoutDirection, IsBlindToTheDirectionAndToNothingElse) {
   TestRandom random(25);
   double sum = 0;
@@ -186,7 +185,7 @@ TEST(ComputeConsistency, ScaleFreeNees) {
   World world = HonestWorld(random, 300);
   const Eigen::Vector3d start = world.truth[0].p_WC;
   const auto before = Judge(world);
-  for (std::size_t k = 0; k < world.truth.size(); ++k) {  // the truth is thrice as large as the estimate has it
+  for (std::size_t k = 0; k < world.truth.size(); ++k) {  // the scale of the truth is 3 times the estimate's
     world.truth[k].p_WC = start + 3 * (world.truth[k].p_WC - start);
     world.velocities[k].v_WC *= 3;
   }
@@ -209,7 +208,7 @@ TEST(Nees, NeedsAPositiveDefiniteCovariance) {
   EXPECT_TRUE(std::isnan(Nees(Eigen::VectorXd::Ones(6), P)));
   P(0, 1) = P(1, 0) = 0.5;
   EXPECT_NEAR(Nees(Eigen::VectorXd::Unit(6, 0), P), 4.0 / 3, 1e-12);
-  // The line is a pivot of 1e-12, of the correlations.
+  // Threshold: a pivot of 1e-12 of the correlation matrix.
   for (const double pivot : {0.97e-12, 1.03e-12}) {
     P(0, 1) = P(1, 0) = std::sqrt(1 - pivot);
     EXPECT_EQ(std::isnan(Nees(Eigen::VectorXd::Ones(6), P)), pivot < 1e-12) << pivot;
@@ -224,11 +223,11 @@ TEST(Nees, NeedsAPositiveDefiniteCovariance) {
     P(3, 3) = variance;
     EXPECT_TRUE(std::isnan(Nees(Eigen::VectorXd::Ones(6), P))) << variance;
   }
-  // Scales of units do not count as singular.
+  // Invariance under the scale of units.
   EXPECT_NEAR(Nees(1e-9 * Eigen::VectorXd::Ones(6), 1e-18 * Eigen::MatrixXd::Identity(6, 6)), 6, 1e-9);
 }
 
-// Six degrees: the band is 1.237 to 14.449.
+// Six degrees of freedom: the band is 1.237 to 14.449.
 TEST(SummariseNees, Figures) {
   const NeesSummary summary = SummariseNees({4, 1, 20, 6, 3}, 6);
   EXPECT_EQ(summary.dof, 6);
@@ -257,7 +256,7 @@ TEST(SummariseNees, CountsWhatHasNoAnswer) {
 TEST(ComputeConsistency, FirstPoseGauge) {
   TestRandom random(27);
   World world = HonestWorld(random, 40);
-  world.run.trajectory[0] = world.truth[0];  // a start that is known
+  world.run.trajectory[0] = world.truth[0];  // exact start
   const auto before = Judge(world);
   Similarity away;
   away.R = random.Orientation().toRotationMatrix();
@@ -294,10 +293,10 @@ TEST(Anees, AveragesOverRunsAtEachTime) {
   EXPECT_THROW(Anees({{1, 2}}, {{4}}, 6), std::logic_error);
 }
 
-// Why nothing is aligned before NEES. Random-walk drift with exactly the covariance that it has, from a known start:
-// unaligned, ANEES is right at every frame. Laid upon the truth by SE(3) first, the same honest errors look several
-// times too confident at the start (where the alignment leaves an error and the covariance has none) and several times
-// too timid at the end. False alarm rate of the unaligned figures: 1e-6 each.
+// NEES needs unaligned errors. Random-walk drift with its exact covariance from a known start: unaligned, ANEES is
+// consistent at every frame. After SE(3) alignment the same errors appear several times over-confident at the start
+// (where the alignment leaves an error and the covariance has none) and several times under-confident at the end.
+// False-alarm rate of the unaligned figures: 1e-6 each.
 TEST(Anees, AlignmentBeforehandDestroysIt) {
   TestRandom random(29);
   const int runs = 400, steps = 100;

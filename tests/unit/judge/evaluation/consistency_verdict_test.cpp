@@ -1,4 +1,4 @@
-// The whole verdict, over runs of the exact filter of a linearised point world and of ones that lie.
+// Consistency verdict on runs of the exact filter of a linearised point world, and on inconsistent controls.
 #include "tools/judge/evaluation/consistency_verdict.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,8 @@ class Verdict : public testing::Test {
     delete judged_;
     delete pool_;
   }
-  // The belief is the bound times `factor`, in two components that make up that Gaussian or, `split`, do not.
+  // Belief: the bound times `factor`, as a mixture of two equal Gaussians. NIS: chi-square with 10 degrees of freedom
+  // times `nis_factor`. Innovations: AR(1) with coefficient `colour`.
   static std::vector<VerdictRun> Runs(double factor, double nis_factor = 1, double colour = 0) {
     TestRandom random(91);
     std::vector<VerdictRun> runs;
@@ -67,7 +68,7 @@ class Verdict : public testing::Test {
 };
 LinearisedRuns *Verdict::judged_ = nullptr, *Verdict::pool_ = nullptr;
 
-// False alarm rate: 0.036, the sum over eighteen checks of 0.002 each; the seed was not chosen by its outcome.
+// False-alarm rate: 0.036, the sum over eighteen checks of 0.002 each; the seed is not chosen by the outcome.
 TEST_F(Verdict, ConsistentFilterPasses) {
   const ConsistencyVerdict verdict = JudgeConsistency(Runs(1), Options(0.002));
   for (const Check& check : verdict.checks) {
@@ -103,7 +104,7 @@ TEST_F(Verdict, DoubledCovarianceIsRejected) {
 }
 
 TEST_F(Verdict, WrongInnovationsAreRejected) {
-  const ConsistencyVerdict large = JudgeConsistency(Runs(1, 2), Options());  // R halved, with nothing else uncertain
+  const ConsistencyVerdict large = JudgeConsistency(Runs(1, 2), Options());  // NIS of R halved, where S = R
   EXPECT_FALSE(Named(large, "NIS").pass);
   EXPECT_TRUE(Named(large, "whiteness").pass);
   EXPECT_FALSE(Named(JudgeConsistency(Runs(1, 1, 0.5), Options()), "whiteness").pass);
@@ -116,7 +117,7 @@ TEST_F(Verdict, ErrorsAboveTheBoundAreRejected) {
   EXPECT_FALSE(Named(JudgeConsistency(runs, Options()), "RMSE / bound, position").pass);
 }
 
-// A lost run, or a covariance that is none, is not left out in silence.
+// Missing frames: those of a lost run, and those without a NEES, are counted and rejected.
 TEST_F(Verdict, MissingFramesAreRejected) {
   auto runs = Runs(1);
   runs[3].resize(31);
@@ -126,7 +127,7 @@ TEST_F(Verdict, MissingFramesAreRejected) {
   EXPECT_FALSE(verdict.pass());
 }
 
-// Where ranks are asked for, too: a run that has none there takes no part in them.
+// Missing beliefs at a frame with ranks: those runs are left out of its histograms.
 TEST_F(Verdict, AFrameWithoutABeliefHasNoRank) {
   const auto last_gone = [](std::size_t first_gone) {
     auto runs = Runs(1);
@@ -137,7 +138,7 @@ TEST_F(Verdict, AFrameWithoutABeliefHasNoRank) {
     }
     return JudgeConsistency(runs, Options(0.002));
   };
-  for (const std::size_t first_gone : {0, 30}) {  // before and behind those that have a rank
+  for (const std::size_t first_gone : {0, 30}) {  // the first runs, or runs in the middle
     const ConsistencyVerdict verdict = last_gone(first_gone);
     EXPECT_EQ(Named(verdict, "frames without").value, 40);
     EXPECT_EQ(verdict.rank_histograms.size(), 48u);
@@ -149,7 +150,7 @@ TEST_F(Verdict, AFrameWithoutABeliefHasNoRank) {
   }
 }
 
-// The histograms of a frame stay where they belong.
+// Order of the histograms: those of a frame without draws are empty and keep their place.
 TEST_F(Verdict, AFrameWithoutAnyBeliefHasEmptyHistograms) {
   auto runs = Runs(1);
   for (VerdictRun& run : runs) run[10].scores.draws = 0;
@@ -181,7 +182,7 @@ TEST_F(Verdict, AneesAndRanksAlone) {
   EXPECT_THROW(JudgeConsistency({VerdictRun(1)}, options), std::invalid_argument);
 }
 
-// A belief that nobody drew from has no ranks; that is not a rank of zero among none.
+// Beliefs without draws: no rank histograms, no rank checks.
 TEST_F(Verdict, WithoutDrawsThereAreNoRanks) {
   VerdictOptions options;
   options.trials = 200;
@@ -205,8 +206,8 @@ TEST_F(Verdict, WithoutDrawsThereAreNoRanks) {
   EXPECT_EQ(ranked(without), 0);
 }
 
-// Seven runs of ten frames whose numbers are made up, so that each figure can be told by hand or by the tests that the
-// verdict is made of: from frame 2 on.
+// Verdict from frame 2 on, for seven runs of ten frames with synthetic numbers: each figure against its closed form or
+// the test that it comes from.
 class VerdictByHand : public testing::Test {
  protected:
   VerdictByHand() {
@@ -218,7 +219,7 @@ class VerdictByHand : public testing::Test {
         for (std::size_t b = 0; b < 7; ++b) frame.scores.nees[b] = kStateBlocks[b].size * (0.5 + random_.Uniform());
         frame.scores.draws = 9;
         for (std::size_t d = 0; d < 12; ++d)
-          frame.scores.rank[d] = (k + static_cast<int>(d) * (m + 1)) % 10;  // of the first number: the frame
+          frame.scores.rank[d] = (k + static_cast<int>(d) * (m + 1)) % 10;  // dimension 0: k
         for (double& mass : frame.scores.hpd_mass) mass = random_.Uniform();
         frame.scores.effective_components = k < 2 ? 99 : 1 + m;
         for (std::size_t b = 0; b < 4; ++b)
@@ -234,7 +235,7 @@ class VerdictByHand : public testing::Test {
     options_.trials = 100;
     options_.false_alarm = 0.02;
   }
-  // [run][frame] of one number, of frames 2 to 9.
+  // One quantity as [run][frame], frames 2 to 9.
   template <class Get>
   auto Judged(Get get) const {
     std::vector<std::vector<std::decay_t<decltype(get(runs_[0][0]))>>> values;
@@ -277,7 +278,7 @@ class VerdictByHand : public testing::Test {
 };
 
 TEST_F(VerdictByHand, AneesAgainstTheLinearFilter) {
-  for (const double size : {1.0, 1.3}) {  // on either side of the mean
+  for (const double size : {1.0, 1.3}) {  // on either side of the expected mean
     for (VerdictRun& run : runs_)
       for (JudgedFrame& frame : run)
         for (double& nees : frame.scores.nees) nees *= size;
@@ -338,14 +339,14 @@ TEST_F(VerdictByHand, RanksAtTheFramesThatThereAre) {
   for (VerdictRun& run : runs_) run.resize(4);
   verdict_ = JudgeConsistency(runs_, options_);
   EXPECT_EQ(verdict_.rank_histograms.size(), 24u) << "two frames, neither twice";
-  // One number drawn: as many bins as ranks, whatever the runs are worth.
+  // One draw: two bins, as many as ranks, whatever the number of runs.
   const auto seven = runs_;
   for (int i = 0; i < 3; ++i) runs_.insert(runs_.end(), seven.begin(), seven.end());
   for (VerdictRun& run : runs_)
     for (JudgedFrame& frame : run) frame.scores.draws = 1, frame.scores.rank.fill(1);
   verdict_ = JudgeConsistency(runs_, options_);
   EXPECT_EQ(verdict_.rank_histograms[0].counts, (std::vector<int>{0, 28}));
-  // A run that ends early, and a frame that nobody drew at: its histograms stay where they belong.
+  // A run that ends early, and a frame without draws: its histograms keep their place.
   runs_[0].resize(3);
   for (VerdictRun& run : runs_) run[2].scores.draws = 0;
   verdict_ = JudgeConsistency(runs_, options_);
@@ -387,7 +388,7 @@ TEST_F(VerdictByHand, Innovations) {
     ExpectCheck("NIS / dof, mean over runs", mean.per_dof, low ? mean.low : mean.high, low, mean.pass, 0.02);
     EXPECT_TRUE(verdict_.nis_mean);
   }
-  runs_.resize(5);  // no spread to speak of
+  runs_.resize(5);  // too few runs for a standard error
   verdict_ = JudgeConsistency(runs_, options_);
   EXPECT_TRUE(Named("NIS").empty());
   EXPECT_FALSE(verdict_.nis_mean);
@@ -404,7 +405,7 @@ TEST_F(VerdictByHand, Bound) {
       for (int d = 0; d < 12; ++d) run[k].error[d] = k < 2 || k == 5 ? 99 : d < 3 ? 0.1 : d < 6 ? 0.12 : 0.2;
     run[5].bound.reset();
   }
-  for (JudgedFrame& frame : runs_[0]) frame.error *= std::sqrt(2);  // as large as this, the others smaller by as much
+  for (JudgedFrame& frame : runs_[0]) frame.error *= std::sqrt(2);  // mean square unchanged: (2 + 6 * 5 / 6) / 7 = 1
   for (std::size_t m = 1; m < 7; ++m)
     for (JudgedFrame& frame : runs_[m]) frame.error *= std::sqrt(5. / 6);
   verdict_ = JudgeConsistency(runs_, options_);
@@ -432,16 +433,16 @@ TEST_F(VerdictByHand, Bound) {
 
 TEST_F(VerdictByHand, MeansAndWhatIsMissing) {
   verdict_ = JudgeConsistency(runs_, options_);
-  EXPECT_NEAR(verdict_.effective_components, 4, 1e-12);  // 1 ... 7
+  EXPECT_NEAR(verdict_.effective_components, 4, 1e-12);  // mean of 1 ... 7
   for (std::size_t b = 0; b < 4; ++b) EXPECT_NEAR(verdict_.energy[b], static_cast<double>(b) + 0.1 * (3 + 5.5), 1e-12);
   ExpectCheck("frames without a belief", 0, 0, false, true, 0);
   EXPECT_NEAR(verdict_.false_alarm(), 18 * 0.02, 1e-12);
-  for (std::size_t k = 0; k < 10; ++k) {  // of one run there is no energy, of another not of the second part
+  for (std::size_t k = 0; k < 10; ++k) {  // one run without energy scores, another without that of the second block
     runs_[6][k].scores.draws = 0;
     runs_[0][k].scores.energy[1] = NAN;
   }
   runs_[1].resize(6);
-  runs_[2][1].scores.nees.fill(NAN);  // before the first that is judged
+  runs_[2][1].scores.nees.fill(NAN);  // before the first frame of the verdict
   runs_[2][9].scores.nees.fill(NAN);
   options_.rank_frames = {3};
   verdict_ = JudgeConsistency(runs_, options_);

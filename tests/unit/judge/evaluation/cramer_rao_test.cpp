@@ -1,5 +1,5 @@
-// The bound against the inverse of the dense information matrix of the whole problem in its
-// anchored form (the recursion uses another), and against closed forms.
+// Linearised Cramer-Rao bound against the inverse of the dense information matrix of the whole problem in anchored form
+// (the recursion uses another), and against closed forms.
 #include "tools/judge/evaluation/cramer_rao.h"
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ using Eigen::MatrixXd;
 
 using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 
-// Covariance of the last frame's state from the information matrix of every frame's state and every landmark's (x, y,
-// rho), with views in their anchored form.
+// Covariance of the last frame's state, from the information matrix of all states and all landmarks (x, y, rho), with
+// views in anchored form.
 Matrix12d BatchBound(const PointWorldProblem& problem, std::size_t last) {
   const Eigen::Index frames = static_cast<Eigen::Index>(last) + 1;
   const Eigen::Index n = 12 * frames + 3 * static_cast<Eigen::Index>(problem.landmarks.size());
@@ -93,7 +93,7 @@ double Difference(const Matrix12d& a, const Matrix12d& b) {
   return (w.asDiagonal() * (a - b) * w.asDiagonal()).cwiseAbs().maxCoeff();
 }
 
-// Nine frames with interruptions, a second anchor, a point that leaves early, one that is never seen again and an uneven step.
+// Nine frames: interrupted tracks, a second anchor, a track that ends early, a point never seen again, an uneven step.
 PointWorldProblem InterruptedWorld() {
   TestRandom random(83);
   PointWorldProblem problem = MakePointWorld(random, 9, 7, 3);
@@ -116,14 +116,14 @@ TEST(LinearisedBound, IsTheInverseOfTheWholeInformation) {
   for (std::size_t k = 0; k < 9; ++k) worst = std::max(worst, Difference(bound[k], BatchBound(problem, k)));
   RecordProperty("worst_1e12", std::to_string(1e12 * worst));
   EXPECT_LT(worst, 1e-9);
-  // And the comparison sees a hundredth of a pixel.
+  // Control: a sigma 1 % larger (a hundredth of a pixel) is detected.
   problem.sigma *= 1.01;
   EXPECT_GT(Difference(bound[8], BatchBound(problem, 8)), 1e-4);
 }
 
-// A camera that stands still, its orientation known, its velocity unknown but constant; one point straight ahead with
-// known inverse depth. The x of the view at t is x_0 - rho v t + noise: a regression with known intercept or one known
-// with the noise of the first view.
+// Closed form: a stationary camera of known orientation and constant unknown velocity, one point straight ahead of
+// known inverse depth. The x of the view at t is x_0 - rho v t + noise: linear regression with known intercept, or with
+// one known up to the noise of the first view.
 TEST(LinearisedBound, OfAConstantVelocityIsALinearRegression) {
   const double rho = 0.25, sigma = 2e-3, P0 = 1e-4, V0 = 0.04;
   for (const double anchor_sigma : {0.0, 3e-3}) {
@@ -135,7 +135,7 @@ TEST(LinearisedBound, OfAConstantVelocityIsALinearRegression) {
     problem.start_covariance(6, 6) = V0;
     PointLandmark landmark;
     landmark.inverse_depth = rho;
-    landmark.inverse_depth_sigma = 0.15;  // tells nothing while nothing moves
+    landmark.inverse_depth_sigma = 0.15;  // no information without motion
     double tt = 0, t1 = 0, count = 0;
     for (std::size_t k = 0; k < 50; ++k) {
       problem.truth.push_back(
@@ -158,7 +158,8 @@ TEST(LinearisedBound, OfAConstantVelocityIsALinearRegression) {
   }
 }
 
-// Without points the bound is the motion model's: P = F P F' + Q, in closed form for constant orientation.
+// Dead reckoning: without points the bound is the motion model's, P = F P F' + Q, in closed form for constant
+// orientation.
 TEST(LinearisedBound, WithoutPointsIsDeadReckoning) {
   PointWorldProblem problem;
   problem.start_covariance(6, 6) = 0.04;
@@ -179,8 +180,8 @@ TEST(LinearisedBound, RefusesWhatCannotBe) {
   EXPECT_THROW(SimulateLinearised(problem, 0), InputError);
 }
 
-// The linearised world's exact filter is honest, at every block: mean NEES of 400 runs at three frames against a band
-// left once in a million (false alarm rate 3e-5), and a bound halved is rejected.
+// Consistency of the linearised world's exact filter in every block: mean NEES of 400 runs at three frames in a band
+// left with probability 1e-6 (false-alarm rate 3e-5). Control: the bound halved is rejected.
 TEST(SimulateLinearised, HasTheBoundAsItsCovariance) {
   TestRandom random(85);
   const LinearisedRuns runs = SimulateLinearised(MakePointWorld(random, 60, 15), 400, 3);
@@ -198,7 +199,7 @@ TEST(SimulateLinearised, HasTheBoundAsItsCovariance) {
                                    runs.bound[20].block(block.start, block.start, block.size, block.size)),
                 1, 1e-6);
   }
-  // RMSE / bound of all frames and runs; frames are dependent, so wide: 400 runs leave about 2 %.
+  // RMSE / bound over all frames and runs. Frames are dependent, hence wide limits: 400 runs leave about 2 %.
   const std::vector<std::vector<Matrix12d>> bounds(400, runs.bound);
   const BoundRatio ratio = CompareWithBound(runs.error, bounds);
   for (std::size_t b = 0; b < 4; ++b) EXPECT_NEAR(ratio.overall[b], 1, 0.1);
@@ -211,9 +212,10 @@ TEST(SimulateLinearised, HasTheBoundAsItsCovariance) {
   }
 }
 
-// Points that join and leave are part of it: the errors of 1200 runs, in units of the bound, are uncorrelated and of variance one at each of
-// nine frames. 702 numbers against six of their standard deviations: false alarm rate below 1e-5 (a variance's upper tail is heavier
-// than a Gaussian's: 1e-8 at six). With the errors of the frame before, or a fifth more of one number, they are not.
+// Whitened errors of 1200 runs, in units of the bound, with points that join and leave: uncorrelated, of variance one
+// at each of nine frames. 702 entries within six standard deviations: false-alarm rate below 1e-5 (a variance's upper
+// tail is heavier than a Gaussian's: 1e-8 at six). Controls: the errors of the previous frame; one component a fifth
+// larger.
 TEST(SimulateLinearised, HasIndependentErrorsInUnitsOfTheBound) {
   constexpr int kRuns = 1200;
   const LinearisedRuns runs = SimulateLinearised(InterruptedWorld(), kRuns, 5);
@@ -239,7 +241,7 @@ TEST(SimulateLinearised, HasIndependentErrorsInUnitsOfTheBound) {
   }
 }
 
-// A hundred features for ten seconds. The time is written into the test's record, not judged.
+// A hundred features for ten seconds: the bound is positive definite. The run time is recorded, not checked.
 TEST(LinearisedBound, OfAHundredFeaturesAndTenSeconds) {
   TestRandom random(86);
   const PointWorldProblem problem = MakePointWorld(random, 300, 100, 0.3);

@@ -8,7 +8,7 @@
 namespace evaluation {
 namespace {
 
-// Computed with 40 digits (bisection on the regularised incomplete gamma function in arbitrary precision).
+// Reference values of 40 digits: bisection on the regularised incomplete gamma function in arbitrary precision.
 TEST(Chi2Quantile, AgreesWithFortyDigits) {
   const struct {
     double dof, probability, quantile;
@@ -23,7 +23,7 @@ TEST(Chi2Quantile, AgreesWithFortyDigits) {
   for (const auto& row : table) {
     EXPECT_NEAR(Chi2Quantile(row.probability, row.dof) / row.quantile, 1, 1e-11) << row.dof << " " << row.probability;
   }
-  // 1 - probability is all that is left of the argument up here: 1e-8 with 8 digits.
+  // Cancellation in 1 - probability: 1e-8 with 8 digits.
   EXPECT_NEAR(Chi2Quantile(0.99999999, 99) / 199.23814234317295, 1, 1e-9);
 }
 
@@ -41,7 +41,7 @@ TEST(Chi2Quantile, IsTheInverseOfTheProbability) {
   }
 }
 
-// The probability function against the sum that it is for even degrees: P(X > x) = e^(-x/2) sum (x/2)^k / k!.
+// Distribution function for even degrees of freedom: P(X > x) = e^(-x/2) sum (x/2)^k / k!.
 TEST(Chi2Cdf, IsThePoissonSumForEvenDegrees) {
   for (const int dof : {2, 6, 12, 60, 200}) {
     for (double x = 0.05 * dof; x < 3 * dof; x *= 1.3) {
@@ -53,7 +53,7 @@ TEST(Chi2Cdf, IsThePoissonSumForEvenDegrees) {
   }
 }
 
-// Where nothing of 1 - P is left: of two degrees it is e^(-x/2).
+// Upper tail where 1 - P cancels: e^(-x/2) for two degrees of freedom.
 TEST(Chi2Survival, IsAccurateFarOut) {
   for (const double x : {1.0, 10.0, 100.0, 1000.0}) {
     EXPECT_NEAR(Chi2Survival(x, 2) / std::exp(-x / 2), 1, 1e-13) << x;
@@ -81,7 +81,8 @@ TEST(Chi2, RefusesNonsense) {
   EXPECT_TRUE(std::isnan(Chi2Survival(NAN, 3)));
 }
 
-// By bisection on the incomplete beta function in forty digits; of one and two degrees there are closed forms.
+// Reference values of 40 digits: bisection on the incomplete beta function; closed forms for one and two degrees of
+// freedom.
 TEST(StudentQuantile, AgreesWithFortyDigits) {
   for (const double p : {0.001, 0.3, 0.9, 0.995}) {
     EXPECT_NEAR(StudentQuantile(p, 1) / std::tan(M_PI * (p - 0.5)), 1, 1e-12) << p;

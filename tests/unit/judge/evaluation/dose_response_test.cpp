@@ -1,4 +1,4 @@
-// Dose-response curves: closed forms, and whether the intervals hold the truth as often as they say.
+// Dose-response curves: closed forms, and coverage of the confidence intervals.
 #include "tools/judge/evaluation/dose_response.h"
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ using testing::ElementsAre;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Kind = Crossing::Kind;
 
-// `shares[d]` of `runs` runs have failed at dose d, each a block of its own.
+// `shares[d]` of `runs` runs fail at dose d; each run is a block of its own.
 std::vector<DoseRun> Failures(const std::vector<double>& shares, std::size_t runs) {
   std::vector<DoseRun> all;
   for (std::size_t d = 0; d < shares.size(); ++d) {
@@ -45,7 +45,7 @@ TEST(IsotonicFit, PoolsWhatFalls) {
   EXPECT_THROW(IsotonicFit({1, 2}, {1}), std::invalid_argument);
 }
 
-// The definition: no sequence that does not fall is nearer. Every one on a grid is tried.
+// Isotonic regression by its definition: no non-decreasing sequence on a grid is nearer.
 TEST(IsotonicFit, IsTheNearestOfAllThatDoNotFall) {
   TestRandom random(1);
   for (int trial = 0; trial < 20; ++trial) {
@@ -85,7 +85,7 @@ TEST(DoseSpacing, IsGeometricWhereRatiosAreMoreAlike) {
 }
 
 TEST(BreakingPoint, OfAStepIsBetweenItsDosesAndNoFiner) {
-  // Linear: half way from 3 to 4. All runs agree, so that no resample differs: the interval is the gap.
+  // Linear doses: half way from 3 to 4. All runs agree, so do all resamples: the interval is the gap.
   auto point = FindBreakingPoint({1, 2, 3, 4, 5}, Failures({0, 0, 0, 1, 1}, 8));
   ASSERT_TRUE(point);
   EXPECT_EQ(point->at.kind, Kind::inside);
@@ -94,7 +94,7 @@ TEST(BreakingPoint, OfAStepIsBetweenItsDosesAndNoFiner) {
   EXPECT_EQ(point->high.dose, 4);
   EXPECT_DOUBLE_EQ(FindBreakingPoint({1, 3, 5, 7}, Failures({0, 0.25, 0.75, 1}, 8))->at.dose, 4);
   EXPECT_DOUBLE_EQ(FindBreakingPoint({1, 3, 5, 7}, Failures({0, 0.25, 1, 1}, 8))->at.dose, 3 + 2 / 3.);
-  // The same with a constant factor, falling: sqrt(8 * 4).
+  // Geometric doses, falling: sqrt(8 * 4).
   point = FindBreakingPoint({32, 16, 8, 4, 2}, Failures({0, 0, 0, 1, 1}, 8));
   EXPECT_DOUBLE_EQ(point->at.dose, std::sqrt(32));
   EXPECT_EQ(point->low.dose, 8) << "the milder end first";
@@ -102,7 +102,7 @@ TEST(BreakingPoint, OfAStepIsBetweenItsDosesAndNoFiner) {
 }
 
 TEST(BreakingPoint, OfALogisticIsItsMiddle) {
-  // Symmetric about log dose = log 6: the doses at its sides have shares that add up to one.
+  // Symmetry about log dose = log 6: the shares at the doses on either side add up to one.
   std::vector<double> doses, shares;
   for (int i = 0; i < 8; ++i) {
     doses.push_back(6 * std::pow(2, (i - 3.5) / 2));
@@ -123,13 +123,13 @@ TEST(BreakingPoint, Unobserved) {
   EXPECT_EQ(point->low.kind, Kind::at_the_first);
   EXPECT_EQ(point->high.kind, Kind::inside);
   EXPECT_EQ(point->high.dose, 1);
-  // One half itself is half of the runs.
+  // A share of exactly one half is a crossing.
   point = FindBreakingPoint(doses, Failures({0, 0, 0.5}, 4));
   EXPECT_EQ(point->at.kind, Kind::inside);
   EXPECT_DOUBLE_EQ(point->at.dose, 4);
   EXPECT_EQ(point->high.kind, Kind::not_reached) << "one run less would not have";
   EXPECT_FALSE(FindBreakingPoint(doses, {}));
-  // A dose without runs is passed over: between 1 and 4 in the logarithm.
+  // A dose without runs is skipped: the geometric mean of 1 and 4.
   auto gap = Failures({0, 0, 1}, 4);
   std::erase_if(gap, [](const DoseRun& run) { return run.dose == 1; });
   EXPECT_DOUBLE_EQ(FindBreakingPoint(doses, gap)->at.dose, 2);
@@ -144,12 +144,12 @@ TEST(BreakingPoint, Unobserved) {
 }
 
 TEST(BreakingPoint, PoolsNeighbours) {
-  // Raw shares cross one half at the second dose and come back; 4 of 10 at both once pooled.
+  // Raw shares cross one half at the second dose and fall again; 4 of 10 at both once pooled.
   const auto point = FindBreakingPoint({1, 2, 3, 4}, Failures({0, 0.6, 0.2, 1}, 10));
   EXPECT_DOUBLE_EQ(point->at.dose, 3 + 0.1 / 0.6);
 }
 
-// 16 of 32 runs are one half, though their shares of 12 of 12, 3 of 10 and 1 of 10, pooled, are 1.1e-16 less.
+// Rounding: 16 of 32 runs are one half, though the pooled shares of 12 of 12, 3 of 10 and 1 of 10 are 1.1e-16 less.
 TEST(BreakingPoint, HalfOfTheRuns) {
   std::vector<DoseRun> runs;
   const std::size_t failed[] = {0, 12, 3, 1}, count[] = {5, 12, 10, 10};
@@ -160,7 +160,7 @@ TEST(BreakingPoint, HalfOfTheRuns) {
   EXPECT_EQ(point->at.dose, 2);
 }
 
-// One block, one resample: what is drawn is what there is.
+// One block, one resample: the resample equals the data.
 TEST(BreakingPoint, OfOneBlockHasTheGapForItsInterval) {
   const auto point = FindBreakingPoint({1, 2, 3}, {{0, 7, 0}, {1, 7, 1}, {2, 7, 1}}, {0.9, 1, 1});
   EXPECT_EQ(point->at.dose, 1.5);
@@ -187,7 +187,7 @@ TEST(Bootstrap, RefusesOptionsThatMakeNoSense) {
   EXPECT_THROW(MeansByDose(1, {{1, 0, 1}}), std::invalid_argument);
 }
 
-// Of values 0 and 1 a resample's mean is 0, 1/2 and 1 with probabilities of 1/4, 1/2 and 1/4.
+// Bootstrap of the values 0 and 1: resampled means 0, 1/2 and 1 with probabilities 1/4, 1/2 and 1/4.
 TEST(DoseMeans, HaveTheIntervalOfTheirResamples) {
   const std::vector<DoseRun> runs = {{0, 0, 0}, {0, 1, 1}};
   const auto interval = [&](double level, int resamples) {
@@ -198,7 +198,7 @@ TEST(DoseMeans, HaveTheIntervalOfTheirResamples) {
   };
   EXPECT_EQ(interval(0.4, 4000), std::pair(0.5, 0.5));
   EXPECT_EQ(interval(0.6, 4000), std::pair(0., 1.));
-  // Those of a few resamples, sorted: the ends of three without a third of a third, of eight without one at either end.
+  // Percentile ends of few sorted resamples at level 0.5: none of 3 is cut, two of 8 at either end.
   const auto means = [](int resamples) {
     std::vector<double> all;
     for (int i = 0; i < resamples; ++i) {
@@ -230,8 +230,8 @@ TEST(DoseMedians, CountLostRunsAsWorseThanAnyNumber) {
   EXPECT_TRUE(std::isnan(medians[2].value));
 }
 
-// A resample's median of 5 is the least or the greatest with a probability of 5.8 % each: more than 2.5 %, so that the
-// interval is from one to the other; of 20 values it is narrower. By counting, no simulation.
+// Bootstrap of the median of 5 values: the least and the greatest with probability 5.8 % each (exact), above 2.5 %, so
+// that the interval is the whole range; of 20 values it is narrower.
 TEST(DoseMedians, IntervalOfFiveValuesIsAllOfThem) {
   std::vector<DoseRun> runs;
   for (std::size_t i = 0; i < 5; ++i) runs.push_back({0, i, static_cast<double>(i)});
@@ -258,8 +258,8 @@ TEST(DoseMedians, DependOnTheDataAlone) {
   }
 }
 
-// What is the same for a block at all doses is drawn as one: of values that differ by a constant from dose to dose, so
-// do the intervals.
+// Block bootstrap: a block is drawn at all doses together. Values that differ by a constant between doses have
+// intervals that differ by it.
 TEST(DoseMedians, ABlockIsDrawnAtAllDosesTogether) {
   std::vector<DoseRun> runs;
   TestRandom random(3);
@@ -274,10 +274,9 @@ TEST(DoseMedians, ABlockIsDrawnAtAllDosesTogether) {
   }
 }
 
-// How many of 400 experiments of 25 runs have an interval of 90 % with the truth in it. The percentile bootstrap of a
-// median holds its level to within a few per cent at this size (exactly: the ends are order statistics; those of ranks
-// 8 to 18 hold 95.7 %, of 9 to 17 89.2 %). The bands are three standard deviations of 400 trials about these two, 84.5
-// % to 98.7 %: false-alarm rate below 0.3 %.
+// Coverage of a 90 % interval in 400 experiments of 25 runs. Percentile bootstrap of a median: the ends are order
+// statistics; ranks 8 to 18 cover 95.7 %, 9 to 17 cover 89.2 % (exact). Band: three standard deviations of 400 trials
+// about these two, 84.5 % to 98.7 %; false-alarm rate below 0.3 %.
 constexpr int kExperiments = 400;
 constexpr std::size_t kRuns = 25;
 constexpr double kBandLow = 0.845, kBandHigh = 0.987;
@@ -303,8 +302,9 @@ TEST(DoseMedians, IntervalCoverage) {
   EXPECT_LT(CoverageOfMedian(0.5), kBandLow) << "half as long they must be found out";
 }
 
-// Each run breaks at a dose of its own, log-normal about 10; doses are 3 % apart, so that the gaps are small beside the
-// interval. The breaking point is then the median of these doses, and its interval that of a median.
+// Coverage of the breaking point's interval. Each run breaks at a dose of its own, log-normal about 10; doses are 3 %
+// apart, so that gaps are small against the interval. The breaking point is the median of these doses, its interval
+// that of a median.
 double CoverageOfBreak(double truth, bool same_runs_at_all_doses) {
   TestRandom random(5);
   std::vector<double> doses;
@@ -333,8 +333,7 @@ TEST(BreakingPoint, IntervalCoverage) {
   EXPECT_LT(CoverageOfBreak(12, true), kBandLow) << "another breaking point must be found out";
 }
 
-// Runs of different doses have nothing in common: neighbours together say more, and isotonic intervals say no less than
-// they should.
+// Independent runs at each dose: neighbours are pooled, and the isotonic intervals are conservative.
 TEST(BreakingPoint, IntervalsOfIndependentDoses) {
   const double coverage = CoverageOfBreak(10, false);
   EXPECT_GT(coverage, kBandLow);

@@ -32,7 +32,8 @@ TEST(Draws, AreAFunctionOfSeedAndStream) {
   EXPECT_NE(values, other_seed.Normals(50));
 }
 
-// Words of Philox in their order, both halves of each number among its arguments; normals by Box and Muller, in pairs.
+// Definition of the draws: words of Philox in order, both halves of seed and stream in its arguments; normals by
+// Box-Muller, in pairs.
 TEST(Draws, AreMadeOfThoseWords) {
   const std::uint64_t seed = 0x0123456789abcdef, stream = 0xfedcba9876543210;
   std::vector<double> uniform;
@@ -48,8 +49,8 @@ TEST(Draws, AreMadeOfThoseWords) {
   }
 }
 
-// Mean, variance, fourth moment and dependence of neighbours of 200 000 normals, five standard deviations each: false
-// alarm rate 3e-6.
+// Mean, variance, fourth moment and dependence of neighbours of 200 000 normals, five standard deviations each:
+// false-alarm rate 3e-6.
 TEST(Draws, AreStandardNormal) {
   const int n = 200'000;
   Draws random(3);

@@ -71,7 +71,7 @@ TEST(EstimateRun, ReadsBackTheSame) {
   }
 }
 
-// A start that is known exactly.
+// Removal of the interval [from, until) from a run: whole frames.
 TEST(EstimateRun, OutsideLeavesOutWholeFrames) {
   const EstimateRun run = Sample();
   const auto stamp = [&](std::size_t k) { return run.trajectory[k].stamp_ns; };
@@ -88,6 +88,7 @@ TEST(EstimateRun, OutsideLeavesOutWholeFrames) {
   EXPECT_EQ(Outside(run, stamp(1), stamp(1)).trajectory.size(), 4u);
 }
 
+// Zero covariance: an exact start.
 TEST(EstimateRun, AVarianceMayBeZero) {
   const TemporaryFolder folder;
   EstimateRun run = Sample();
@@ -106,7 +107,7 @@ TEST(EstimateRun, FramesMayComeWithoutEvents) {
       "filter,status";
   EXPECT_THAT(TemporaryFolder::Read(folder.path() / "frames.csv"), testing::StartsWith(header + "\n"));
   for (const FrameRecord& frame : ReadEstimateRun(folder.path()).frames) EXPECT_FALSE(frame.events);
-  // Of a program that did not count repetitions; what its status says stays.
+  // Columns of events without repetitions: status and events are read, repetitions are absent.
   const std::string events = ",not_converged,behind_camera,not_positive_definite,non_finite_weight";
   folder.Write("frames.csv", header + events + "\n1,30,11,0,0,0,0,8,0,0,0,tracked,0,0,0,0\n");
   const FrameRecord former = ReadEstimateRun(folder.path()).frames.at(0);
@@ -187,7 +188,7 @@ TEST(EstimateRun, ListsTheProblemsOfAllFilesAtOnce) {
   }
 }
 
-// One digit or sign a column, so that the n-th begins at character 2 n + 1.
+// Columns of one character: the n-th begins at character 2 n + 1.
 TEST(EstimateRun, BeliefErrorsHavePlaces) {
   const TemporaryFolder folder;
   WriteEstimateRun(folder.path(), Sample());
@@ -280,7 +281,7 @@ TEST(EstimateRun, Digits) {
       testing::EndsWith("\n1.000000000,50,40,120,7,33.3333333,80,33.3333,33.3333,33.3333,33.3333,tracked,3,1,4,2,1\n"));
 }
 
-// What is not tracked has matches, or none.
+// Status of a frame: tracked; otherwise weak with matches, coasted without.
 TEST(EstimateRun, StatusOfAFrame) {
   const TemporaryFolder folder;
   EstimateRun run = Sample();

@@ -63,7 +63,7 @@ class Golden : public testing::Test {
     const std::pair<const char*, const char*>* input = nullptr;
     std::string before;
     for (std::string line; std::getline(values, line); before = line) {
-      // ov_eval greets each file; where no header stands before, it is a file that is not here.
+      // A greeting of ov_eval without a header before it belongs to a file that is not among the inputs.
       const bool unnamed = line.starts_with("Setting printing level") && !before.starts_with("==");
       if (line.starts_with("==") || unnamed) input = nullptr;
       for (const auto& candidate : inputs) {
@@ -172,7 +172,7 @@ TEST_F(Golden, RpgLengthsOfSubTrajectories) {
   EXPECT_EQ(figures_, 2);
 }
 
-// A block of the file begins with a mode's ATE; lines of RPE follow, without the mode's name.
+// A block of the file: the ATE of a mode, then lines of RPE without the mode's name.
 TEST_F(Golden, OpenVins) {
   reading_ = Reading::as_written;
   const std::pair<const char*, OvAlignment> modes[] = {
@@ -241,7 +241,7 @@ TEST_F(Golden, EvoRpe) {
   EXPECT_EQ(figures_, 2 * 7 * 5);
 }
 
-// Whole lines, the pairs that the script draws at random included: Python's generator is reproduced.
+// Whole lines, including the pairs drawn at random: Python's generator is reproduced.
 TEST_F(Golden, TumRpe) {
   TumRpeOptions fixed{.fixed_delta = true, .verbose = true};
   TumRpeOptions frame = fixed, ten = fixed;

@@ -25,7 +25,7 @@ TEST(LogisticDose, TheLargestLikelihoodByHand) {
   EXPECT_NEAR(fit->at, 0.5, 1e-3);
   EXPECT_NEAR(fit->steepness, 10 * std::log(3.0), 0.1);
   EXPECT_NEAR(fit->high - 0.5, 0.5 - fit->low, 2e-3);
-  // Wald's interval of the same data, with two degrees of freedom: 2.920 / (k sqrt(sum n p q)).
+  // Wald interval of the same data, Student's t with two degrees of freedom: 2.920 / (k sqrt(sum n p q)).
   EXPECT_NEAR(fit->high - 0.5, 2.920 / (10 * std::log(3.0) * std::sqrt(2 * 80 * 0.1875)), 0.003);
 }
 
@@ -54,9 +54,9 @@ TEST(LogisticDose, RefusesWhatIsNoCount) {
   EXPECT_THROW(FitLogisticBreak({{0, 8, 0}}, 1), std::invalid_argument);
 }
 
-// Nine doses of eight runs each. A correct interval of 90 % misses fewer than 41 of 250 with a probability of 99.9 %; five
-// midpoints and slopes: a false alarm in 0.5 % of streams of random numbers. Counts that pretend to be eight times as many
-// runs give intervals that are too narrow, and are seen.
+// Coverage of the 90 % interval of a logistic dose-response, nine doses of eight runs each. At most 41 of 250 intervals
+// miss with probability 99.9 %; five midpoints and slopes: false-alarm rate 0.5 %. Control: the same counts as of eight
+// times as many runs; their intervals are too narrow and are rejected.
 TEST(LogisticDose, TheIntervalHoldsTheTruth) {
   constexpr int kSets = 250;
   const auto limit = BinomialLimit(kSets, 0.1, 0.001);

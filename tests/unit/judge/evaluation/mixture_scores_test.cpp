@@ -1,5 +1,5 @@
-// Scores of mixtures against closed forms, and calibration: truth drawn from the belief, with generators that share
-// nothing with the code under test, must look uniform, and truth drawn from another must not.
+// Scores of mixtures: closed forms, and calibration. Ranks and coverage are uniform for a truth drawn from the belief,
+// by generators independent of the code under test, and not for one drawn from another.
 #include "tools/judge/evaluation/mixture_scores.h"
 
 #include <gtest/gtest.h>
@@ -85,22 +85,22 @@ TEST(HpdMass, OfOneGaussianIsItsChiSquare) {
   EXPECT_TRUE(std::isnan(HpdMass({Gaussian1(1, 0, 0)}, Eigen::MatrixXd(1, 0), Scalar(0))));
 }
 
-// Two components that are one Gaussian: the nearer to its middle, the higher.
+// Two components that make up one Gaussian: the density falls with the distance from its mean.
 TEST(HpdMass, CountsTheDrawsThatAreHigher) {
   const Mixture twice{Gaussian1(1, 0, 2), Gaussian1(2, 0, 2)};
   EXPECT_EQ(HpdMass(twice, Eigen::RowVector4d(-0.5, 1.5, -3, 0.1), Scalar(1)), 2.5 / 5);
   EXPECT_EQ(HpdMass(twice, Eigen::RowVector4d(-5, 1.5, -3, 4), Scalar(1)), 0.5 / 5);
   EXPECT_TRUE(std::isnan(HpdMass(twice, Eigen::MatrixXd(1, 0), Scalar(1))));
   EXPECT_NEAR(HpdMass({Gaussian1(1, 3, 2)}, Eigen::MatrixXd(1, 0), Scalar(1)), 2 * NormalCdf(1) - 1, 1e-12);
-  // Far out, where densities are below any double.
+  // Far out: densities underflow a double.
   EXPECT_EQ(HpdMass({Gaussian1(1, -3, 1), Gaussian1(3, 1, 2)}, Eigen::RowVector2d(2000, 2002), Scalar(2001)), 1.5 / 3);
-  // A component of no weight does not matter, one without a width has no density.
+  // A component of weight zero does not matter; one of width zero has no density.
   EXPECT_EQ(HpdMass({Gaussian1(1, 0, 2), Gaussian1(0, 0, 0)}, Eigen::RowVector2d(0.5, 9), Scalar(1)), 1.5 / 3);
   EXPECT_TRUE(std::isnan(HpdMass({Gaussian1(0, 0, 0), Gaussian1(1, 0, 2), Gaussian1(1, 0, 0), Gaussian1(1, 0, 2)},
                                  Eigen::RowVector2d(0.5, 9), Scalar(1))));
 }
 
-// The first number of the stream says which component, the next ones where in it.
+// The first number of the stream selects the component, the next ones are the draw from it.
 TEST(Draw, TakesComponentsByTheirWeight) {
   const Mixture mixture{Gaussian1(0.5, -1, 0), Gaussian1(0, 50, 1), Gaussian1(1.5, 1, 0), Gaussian1(2, 3, 0.5)};
   const Eigen::MatrixXd draws = Draw(mixture, 200, 8, 3);
@@ -121,8 +121,8 @@ TEST(Draw, HasTheMomentsOfTheMixture) {
   EXPECT_NEAR((draws.array() == 1).cast<double>().mean(), 0.75, 5 * 0.44 / 200) << "one component has no width";
 }
 
-// Eight components that are far from one Gaussian; correlated, of different widths. Heavy ones lie on one side: were
-// weights independent of all else, equal ones would be an honest belief too, of someone who does not know them.
+// Eight correlated components of different widths, far from one Gaussian. Weights correlate with offsets: were they
+// independent, equal weights would be calibrated too.
 Mixture Ragged(TestRandom& random) {
   Mixture mixture;
   for (int i = 0; i < 8; ++i) {
@@ -150,7 +150,7 @@ Vector12d Truth(const Mixture& mixture, TestRandom& random) {
 
 enum class Belief { honest, half_covariance, equal_weights, one_gaussian };
 
-// Histograms over 400 independent frames: ranks and coverage by turns. `judged`: what the scores are given.
+// Histograms of ranks and of coverage over independent frames.
 struct Calibration {
   std::vector<RankHistogram> ranks, coverage;
 };
@@ -180,7 +180,7 @@ Calibration Calibrate(Belief belief, std::uint32_t seed, int frames = 400) {
   return result;
 }
 
-// False alarm rate 2e-4: two tests of 1e-4.
+// False-alarm rate 2e-4: two tests of 1e-4.
 TEST(ScoreMixture, ConsistentMixtureIsUniform) {
   const Calibration honest = Calibrate(Belief::honest, 40);
   EXPECT_TRUE(TestUniformity(honest.ranks, 1e-4).pass) << TestUniformity(honest.ranks).smallest_p;
@@ -191,17 +191,17 @@ TEST(ScoreMixture, HalvedCovarianceAndWrongWeightsAreRejected) {
   const Calibration half = Calibrate(Belief::half_covariance, 41), equal = Calibrate(Belief::equal_weights, 41);
   EXPECT_FALSE(TestUniformity(half.ranks, 1e-4).pass);
   EXPECT_FALSE(TestUniformity(half.coverage, 1e-4).pass);
-  // Coverage does not see which of several like components is meant.
+  // Coverage is insensitive to the weights of similar components.
   EXPECT_FALSE(TestUniformity(equal.ranks, 1e-4).pass);
 }
 
-// What NEES cannot see: one Gaussian with the mixture's own moments.
+// One Gaussian with the mixture's moments: consistent by NEES, rejected by its coverage.
 TEST(ScoreMixture, GaussianOfTheRightMomentsIsRejected) {
   EXPECT_FALSE(TestUniformity(Calibrate(Belief::one_gaussian, 42).coverage, 1e-4).pass);
 }
 
-// A proper score is best, on average, for the belief that the truth was drawn from: paired differences, at least five
-// standard errors.
+// Propriety of the energy score: best in expectation for the distribution of the truth; paired differences, at least
+// five standard errors.
 TEST(ScoreMixture, ProperScores) {
   TestRandom random(43);
   const int n = 800;
@@ -241,7 +241,7 @@ TEST(ScoreMixture, OfOneGaussianAgreesWithNees) {
   EXPECT_THROW(ScoreMixture(mixture, error, 0, 1), std::invalid_argument);
 }
 
-// Each score is that of its block, of the draws of the whole.
+// Scores by block, from draws of the whole state.
 TEST(ScoreMixture, IsMadeOfItsParts) {
   TestRandom random(45);
   Mixture mixture = Ragged(random);

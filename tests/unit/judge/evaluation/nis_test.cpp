@@ -6,7 +6,7 @@
 namespace evaluation {
 namespace {
 
-// NIS of frames with a varying number of features; `memory` makes the innovations of neighbouring frames alike.
+// NIS of frames with a varying number of features; `memory` is the correlation of neighbouring innovations.
 std::vector<FrameRecord> Frames(TestRandom& random, int count, double scale, double memory = 0) {
   std::vector<FrameRecord> frames;
   Eigen::VectorXd innovation = random.Normals(80);
@@ -22,7 +22,7 @@ std::vector<FrameRecord> Frames(TestRandom& random, int count, double scale, dou
   return frames;
 }
 
-// All limits at five standard deviations: false alarm below 1e-6 each.
+// Limits at five standard deviations: false-alarm rate below 1e-6 each.
 TEST(SummariseNis, AcceptsAndRejects) {
   const int n = 2000;
   const double share_limit = 5 * std::sqrt(0.95 * 0.05 / n), mean_limit = 5 * std::sqrt(2.0 / (n * 49.0));

@@ -1,4 +1,4 @@
-// The Jacobians of motion and view against finite differences, and what is refused.
+// Jacobians of motion and view against finite differences, and invalid problems.
 #include "tools/judge/evaluation/point_problem.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ MatrixXd Differences(const std::function<VectorXd(const VectorXd&)>& f, int n, d
   return J;
 }
 
-// One step of the model from a disturbed state with given noise; error of the result against the undisturbed one.
+// One step of the model from a disturbed state with given noise: the error against the undisturbed result.
 VectorXd Step(const StampedPose& from, const StampedPose& to, double dt, const VectorXd& state, const VectorXd& noise) {
   const Eigen::Vector3d v = (to.p_WC - from.p_WC) / dt, w = Log(from.q_WC.conjugate() * to.q_WC) / dt;
   const StampedPose start = Moved(from, state);
@@ -65,7 +65,7 @@ void ExpectAcross(const HomogeneousPoint& point) {
   EXPECT_LT((point.across * point.direction).norm(), 1e-14 * point.direction.norm());
 }
 
-// The right Jacobian against its series, sum (-A)^n / (n + 1)!, to the last digits where closed forms would cancel.
+// Right Jacobian against its series, sum (-A)^n / (n + 1)!, to the last digits where closed forms cancel.
 TEST(LinearisedMotion, TurnsBySmallAnglesAsByLargeOnes) {
   using Wide3 = Eigen::Matrix<long double, 3, 3>;
   for (const auto& [angle, tolerance] : {std::pair{1e-5, 1e-18}, {5e-4, 1e-18}, {2e-3, 1e-12}, {0.3, 1e-14}}) {
@@ -92,7 +92,8 @@ TEST(PointOf, IsAcrossVeryNearPoints) {
   }
 }
 
-// d(view) / d(pose, anchor, (x, y, rho)) of the pieces put together, against See(); also at rho = 0 and below.
+// Jacobian of the view, d(view) / d(pose, anchor, (x, y, rho)), composed of its factors, against See(); also for rho <=
+// 0.
 TEST(LinearisedView, AgreesWithFiniteDifferences) {
   TestRandom random(81);
   for (const double rho : {0.4, 1e-3, 0.0, -0.1}) {
@@ -111,7 +112,7 @@ TEST(LinearisedView, AgreesWithFiniteDifferences) {
       EXPECT_LT((J - differences).norm(), 1e-8 * (1 + J.norm())) << "rho " << rho;
     };
     agree(view.of_pose, Differences([&](const VectorXd& d) { return See(anchor, x_y_rho, Moved(pose, d)); }, 6));
-    const MatrixXd H = view.of_point * point.across.transpose() * point.across;  // what the recursion keeps of it
+    const MatrixXd H = view.of_point * point.across.transpose() * point.across;  // the part kept by the recursion
     agree(H * of_anchor.of_pose,
           Differences([&](const VectorXd& d) { return See(Moved(anchor, d), x_y_rho, pose); }, 6));
     agree(H * of_anchor.of_landmark, Differences([&](const VectorXd& d) { return See(anchor, x_y_rho + d, pose); }, 3));

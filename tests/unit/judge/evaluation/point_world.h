@@ -1,4 +1,4 @@
-// Small worlds of points for the judge's tests: a camera with random acceleration among points around it.
+// Small point worlds: a camera with random acceleration among points around it.
 #pragma once
 
 #include "tests/unit/judge/evaluation/random.h"
@@ -6,7 +6,7 @@
 
 namespace evaluation {
 
-// Where a point that was anchored is seen now: written out, without a Jacobian.
+// View of an anchored point, without a Jacobian.
 inline Eigen::Vector2d See(const StampedPose& anchor, const Eigen::Vector3d& x_y_rho, const StampedPose& pose) {
   const Eigen::Vector3d ray(x_y_rho[0], x_y_rho[1], 1);
   const Eigen::Vector3d X = pose.q_WC.conjugate() * (x_y_rho[2] * (anchor.p_WC - pose.p_WC) + anchor.q_WC * ray);
@@ -20,8 +20,7 @@ inline bool InView(const StampedPose& anchor, const PointLandmark& landmark, con
   return X.z() > 0.05 && std::abs(X.x() / X.z()) < 0.6 && std::abs(X.y() / X.z()) < 0.45;
 }
 
-// The camera moves as the problem's own model has it; as many points as `features` are followed at a time, each until
-// it leaves the view, and replaced then.
+// Motion by the problem's own model; `features` points tracked at a time, each until it leaves the view, then replaced.
 inline PointWorldProblem MakePointWorld(TestRandom& random, int frames, int features, double motion = 1) {
   PointWorldProblem problem;
   problem.position_noise *= motion;

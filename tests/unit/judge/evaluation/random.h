@@ -14,7 +14,7 @@
 
 namespace evaluation {
 
-// Each call gives the next number of the stream that the seed names.
+// Stream of random numbers, defined by its seed.
 class TestRandom {
  public:
   explicit TestRandom(std::uint32_t seed) : seed_(seed) {}
@@ -37,7 +37,7 @@ class TestRandom {
     const Eigen::Vector4d q = Normals(4).normalized();
     return Eigen::Quaterniond(q[3], q[0], q[1], q[2]);
   }
-  // Poses that turn and wander, dt apart.
+  // Random walk of poses, dt apart.
   Trajectory Walk(int poses, std::int64_t dt_ns = 33'333'333, double step_m = 0.05, double step_rad = 0.05) {
     Trajectory trajectory{{1'000'000'000, Normals(3), Orientation()}};
     while (static_cast<int>(trajectory.size()) < poses) {

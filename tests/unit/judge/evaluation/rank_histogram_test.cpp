@@ -49,7 +49,7 @@ TEST(RankHistogram, RefusesWhatIsNoRank) {
   EXPECT_THROW(HistogramOfValues({0.5}, 1), std::invalid_argument);
 }
 
-// 48 histograms (12 dimensions, four frames) over 100 runs of ranks whose true spread is `sigma` times the stated one.
+// 48 histograms (12 dimensions, four frames) over 100 runs; the ranks' true spread is `sigma` times the stated one.
 UniformityVerdict Simulate(TestRandom& random, double sigma, double false_alarm) {
   std::vector<RankHistogram> histograms;
   for (int i = 0; i < 48; ++i) {
@@ -61,8 +61,8 @@ UniformityVerdict Simulate(TestRandom& random, double sigma, double false_alarm)
   return TestUniformity(histograms, false_alarm);
 }
 
-// The false-alarm rate of 1 % is kept, though ten runs per bin are few for chi-square so far out: at most 22 of 1000
-// sets (a binomial of 0.01 exceeds that once in 5000 times).
+// False-alarm rate of 1 %, despite only ten runs per bin for chi-square far in the tail: at most 22 of 1000 sets
+// (exceeded by a binomial of 0.01 once in 5000 times).
 TEST(TestUniformity, KeepsItsFalseAlarmRate) {
   TestRandom random(50);
   int rejected = 0;
@@ -71,7 +71,7 @@ TEST(TestUniformity, KeepsItsFalseAlarmRate) {
   EXPECT_LE(rejected, 22);
 }
 
-// P x 0.5 and P x 2: rejected in at least 99 of 100 sets.
+// Power against P x 0.5 and P x 2: at least 99 of 100 sets rejected.
 TEST(TestUniformity, RejectsAWrongSpread) {
   TestRandom random(51);
   int halved = 0, doubled = 0;

@@ -26,7 +26,7 @@ TEST(PairsByTime, TakesTheNearestAndDropsWhatMisses) {
   EXPECT_EQ(PairsByTime({At(0), At(1), At(2)}), (std::vector<IndexPair>{{0, 1}, {1, 2}}));
   EXPECT_EQ(PairsByTime({At(0), At(1.05)}).size(), 1u) << "the tolerance itself";
   EXPECT_EQ(PairsByTime({At(0), At(0.96), At(1.04)}), (std::vector<IndexPair>{{0, 1}})) << "of two as near, the first";
-  // However near, a pose is not its own partner.
+  // A pose is never its own partner.
   EXPECT_TRUE(PairsByTime({At(0), At(0.5), At(1)}, 10'000'000, 20'000'000).empty());
 }
 
@@ -73,7 +73,7 @@ TEST(PairsByPath, AsEvo) {
   EXPECT_TRUE(PairsByPath({At(0)}, 1, PairSelection::consecutive).empty());
 }
 
-// Steps are multiples of 1/8, some of none at all, so that ties and misses of just the tolerance occur.
+// Steps are multiples of 1/8, some of zero: ties and misses of exactly the tolerance occur.
 TEST(PairsByPath, EqualsTheDefinitionByBruteForce) {
   TestRandom random(13);
   for (int trial = 0; trial < 200; ++trial) {
@@ -97,8 +97,8 @@ TEST(PairsByPath, EqualsTheDefinitionByBruteForce) {
   }
 }
 
-// Worked by hand: the camera turns by 90 degrees about z while it goes 1 m along its x, the estimate sees 1.1 m and 91
-// degrees.
+// Worked by hand: the camera turns by 90 degrees about z and moves 1 m along its x; the estimate has 91 degrees and 1.1
+// m.
 TEST(ComputeRpe, IsTheErrorWorkedByHand) {
   MatchedTrajectories matched;
   matched.truth = {At(0), At(1, 1)};
@@ -118,7 +118,7 @@ TEST(ComputeRpe, IsTheErrorWorkedByHand) {
   EXPECT_THROW(ComputeRpe(matched, {{0, 2}}), std::logic_error) << "the truth has no third";
 }
 
-// In TUM's order the same error is seen from the other end: |t_A - A B^-1 t_B| differs once orientations do.
+// TUM's order of factors: |t_A - A B^-1 t_B|, which differs where orientations do.
 TEST(ComputeRpe, OrderMatters) {
   MatchedTrajectories matched;
   matched.truth = {At(0), At(1, 1), At(2, 2)};
@@ -152,7 +152,7 @@ TEST(ComputeRpe, DoesNotDependOnTheWorldsOfEstimateAndTruth) {
       EXPECT_NEAR(before.position[i], after.position[i], 1e-12);
       EXPECT_NEAR(before.orientation[i], after.orientation[i], 1e-9);
     }
-    // A turn of the estimate's camera is no change of world, and is seen.
+    // Control: a rotation of the estimate's camera frame, no change of the world, changes the RPE.
     for (StampedPose& pose : matched.estimate) pose.q_WC = pose.q_WC * Exp({0.2, 0, 0});
     EXPECT_GT(std::abs(ComputeRpe(matched, pairs).position_statistics.rmse - after.position_statistics.rmse), 1e-4);
   }

@@ -30,7 +30,7 @@ TEST(SquareRoot, OfASingularOneIsStillARoot) {
   EXPECT_EQ(SquareRootOf(Eigen::Matrix3d::Zero()).L, Eigen::Matrix3d::Zero());
 }
 
-// Scales of units do not count: the line is a pivot of 1e-12 of the correlations.
+// Threshold: a pivot of 1e-12 of the correlation matrix, independent of units.
 TEST(SquareRoot, Threshold) {
   for (const double pivot : {0.97e-12, 1.03e-12}) {
     Eigen::Matrix2d P;
@@ -40,7 +40,7 @@ TEST(SquareRoot, Threshold) {
   EXPECT_TRUE(SquareRootOf(1e-30 * Eigen::Matrix2d::Identity()).full);
 }
 
-// What is negative counts as zero: of correlations 1.5 the eigenvalues are 2.5 and -0.5.
+// Negative eigenvalues count as zero: for correlations of 1.5 they are 2.5 and -0.5.
 TEST(SquareRoot, LeavesOutWhatIsNegative) {
   Eigen::Matrix2d P;
   P << 1, 1.5, 1.5, 1;

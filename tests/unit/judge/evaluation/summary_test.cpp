@@ -43,7 +43,7 @@ TEST(Judge, APerfectEstimateHasNoError) {
   EXPECT_GT(metrics.constant_pose.sim3.position.rmse, 0.05);
 }
 
-// A tracker that gives up after a third of the way has small errors; what it did not answer is counted.
+// Tracking lost after a third of the way: small errors, low coverage, few RPE pairs.
 TEST(Judge, GivingUpShowsInCoverageAndInPairs) {
   TestRandom random(51);
   const Trajectory truth = random.Walk(150);
@@ -51,7 +51,7 @@ TEST(Judge, GivingUpShowsInCoverageAndInPairs) {
   const Metrics metrics = Judge(RunOf(third, StampsOf(truth), 50), truth, std::nullopt);
   EXPECT_LT(metrics.errors.sim3.position.max, 1e-12);
   EXPECT_NEAR(metrics.coverage->pose_coverage(), 1.0 / 3, 1e-12);
-  // 30 frames are a second; the last pair of each is one frame short of it, which the tolerance admits.
+  // One second is 30 frames; the last pair of each is one frame short of it, within the tolerance.
   EXPECT_EQ(metrics.errors.rpe_pairs_offered, 121u);
   EXPECT_EQ(metrics.errors.rpe.pairs.size(), 21u);
   EXPECT_EQ(metrics.constant_pose.pairs, 150u) << "the baselines answer on every frame";
@@ -90,7 +90,7 @@ TEST(Judge, WithoutFrameListCoverageIsUnknown) {
   EXPECT_EQ(metrics.options.frame_stamps_ns, options.frame_stamps_ns);
 }
 
-// Six decimals, as many systems write their stamps.
+// Stamps rounded to six decimals, as many systems write them.
 TEST(Judge, PoseCoverageBearsRoundedStamps) {
   TestRandom random(58);
   const Trajectory truth = random.Walk(60);
@@ -100,7 +100,7 @@ TEST(Judge, PoseCoverageBearsRoundedStamps) {
   JudgeOptions options;
   options.frame_stamps_ns = StampsOf(truth);
   EXPECT_EQ(Judge(run, truth, std::nullopt, options).coverage->pose_coverage(), 0.75);
-  // A second pose beside that of a frame is not a frame more.
+  // A second pose near a frame's stamp does not add to the coverage.
   StampedPose beside = run.trajectory.front();
   beside.stamp_ns += 1'000'000;
   run.trajectory.insert(run.trajectory.begin() + 1, beside);
@@ -143,7 +143,7 @@ TEST(Baseline, ConstantVelocityIsExactOnAScrew) {
   EXPECT_GT(metrics.constant_pose.none.position.max, 0.1);
 }
 
-// A tenth of a second is waited for, and what is measured by then is the start's velocity.
+// Start velocity: difference quotient over the first 0.1 s.
 TEST(Baseline, TheStartIsATenthOfASecond) {
   Trajectory path;
   for (const std::int64_t ms : {0, 40, 100, 140})
@@ -161,7 +161,7 @@ TEST(Baseline, TheStartIsATenthOfASecond) {
   EXPECT_EQ(still[1].p_WC, path[1].p_WC);
 }
 
-// Each figure is of its own NEES, with as many degrees of freedom as that has.
+// NEES summaries: each of its own series, with its own degrees of freedom.
 TEST(Judge, SumsUpConsistency) {
   TestRandom random(59);
   const Trajectory truth = random.Walk(30);
@@ -199,7 +199,8 @@ TEST(Judge, SumsUpConsistency) {
   EXPECT_FALSE(without.consistency->velocity || without.consistency->joint || without.consistency->joint_scale_free);
 }
 
-// Errors are those of the trajectory, with the answers' beside them; covariances belong to the answers.
+// ATE of the trajectory and of the live estimates, separately; NEES is of the live estimates, whose covariances it
+// uses.
 TEST(Judge, TellsTheAnswersFromTheTrajectory) {
   TestRandom random(60);
   const Trajectory truth = random.Walk(40);

@@ -56,7 +56,7 @@ TEST(Lines, SplitsAndCountsColumns) {
   EXPECT_EQ(csv[0].tokens[2].column, 4);
 }
 
-// A line's memory serves the next one: nothing of a longer one may be left.
+// Buffer reuse: no token of a longer line remains in the next one.
 TEST(Lines, KeepsNothingOfTheLineBefore) {
   const TemporaryFolder folder;
   const auto lines = AllLines(folder.Write("a.txt", "one two three\nfour\n\nfive six\n"));

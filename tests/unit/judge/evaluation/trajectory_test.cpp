@@ -42,7 +42,7 @@ TEST(ReadTrajectory, ListsEveryProblemWithItsPlace) {
   EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 5) << said;
 }
 
-// Where the lines are drawn, from both sides: the quaternion's norm, and what passes for the same pose.
+// Thresholds, from both sides: the quaternion's norm, and the difference up to which poses are the same.
 TEST(ReadTrajectory, Thresholds) {
   for (const char* norm : {"1.00097", "0.99903"}) EXPECT_EQ(Complaint("1 0 0 0 0 0 0 " + std::string(norm)), "");
   for (const char* norm : {"1.00103", "0.99897"}) EXPECT_NE(Complaint("1 0 0 0 0 0 0 " + std::string(norm)), "");
@@ -55,7 +55,7 @@ TEST(ReadTrajectory, Thresholds) {
   EXPECT_NE(Complaint(first + "2 0 0 0 0 0.00898846 0.99995960\n"), "") << "1.03 degrees";
 }
 
-// What is wrong in a line is not what later ones are held against.
+// Lines after an invalid one are compared with the last valid line.
 TEST(ReadTrajectory, GoesOnFromTheLastGoodLine) {
   const std::string said =
       Complaint("5 0 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n4 0 0 0 0 0 0 1\n9 0 0 0 0 0 0 2\n6 0 0 0 0 0 0 1\n");
@@ -74,7 +74,7 @@ TEST(ReadTrajectory, NormalisesUnlessAskedForWhatIsThere) {
   EXPECT_EQ(ReadTrajectory(file, Reading::as_written)[0].q_WC.w(), 1.0005);
 }
 
-// The same two poses as other programs write them.
+// The same two poses in the formats of other programs.
 TEST(ReadTrajectory, OfOtherPrograms) {
   const TemporaryFolder folder;
   for (const std::string text :

@@ -1,4 +1,4 @@
-// Innovations of a linear Kalman filter that is exact, and of ones that are not.
+// Whiteness and NIS of the innovations of a linear Kalman filter, exact and mismatched.
 #include "tools/judge/evaluation/whiteness.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(TestWhiteness, PublishedSeries) {
   for (std::size_t l = 0; l < 4; ++l) EXPECT_NEAR(result.autocorrelation[l], printed[l], 6e-4);
 }
 
-// The figures are SciPy's.
+// Reference values of SciPy.
 TEST(TestWhiteness, Figures) {
   const Whiteness result = TestWhiteness({1.2, -0.4, 0.7, 0.1, -1.5, 0.3, 2.0, -0.6, -0.2, 0.9, -1.1, 0.5}, 4);
   const double rho[] = {-0.3281229923161925, -0.3690668928121707, 0.3921632873332819, -0.2444170328681931};
@@ -55,10 +55,10 @@ TEST(TestWhiteness, OfTwoValuesHasOneLag) {
   EXPECT_EQ(two.autocorrelation[0], -0.5);
 }
 
-// A run is rejected at 5 %, not a little above; as many may be as the quantile says.
+// Level of a run's test: 5 %, not 5.2 %. Rejections allowed among 400 runs: the binomial quantile.
 TEST(TestWhiteness, RunsAreRejectedAtFivePerCent) {
   const auto run = [](double last) { return std::vector<double>{1, 2, 3, 4, 5, 6, last}; };
-  double low = 0, high = 5;  // p falls as the last value comes nearer to the line of the others
+  double low = 0, high = 5;  // p falls as the last value approaches the line of the others
   for (int i = 0; i < 60; ++i) {
     const double middle = (low + high) / 2;
     (TestWhiteness(run(middle), 1).p_value > 0.052 ? low : high) = middle;
@@ -76,7 +76,7 @@ TEST(TestWhiteness, RunsAreRejectedAtFivePerCent) {
 }
 
 TEST(TestWhiteness, OfRunsIsOfThoseThatHaveOne) {
-  // Rising, falling (both: rho = 0.4, -0.1), shorter (rho = 0), and two that have no correlation.
+  // Rising, falling (both: rho = 0.4, -0.1), shorter (rho = 0), and two without a correlation.
   const WhitenessVerdict verdict =
       TestWhiteness({{1, 2, 3, 4, 5}, {5, 4, 3, 2, 1}, {1, 2, 3}, {7}, {4, 4, 4, 4}}, 2, 0.01);
   EXPECT_EQ(verdict.runs, 3u);
@@ -86,7 +86,7 @@ TEST(TestWhiteness, OfRunsIsOfThoseThatHaveOne) {
   EXPECT_NEAR(verdict.mean_autocorrelation[0], (0.4 + 0.4 + 0) / 3, 1e-15);
   EXPECT_NEAR(verdict.mean_autocorrelation[1], (-0.1 - 0.1 - 0.5) / 3, 1e-15);
   EXPECT_TRUE(verdict.pass);
-  // A run that is anything but white: one rejection may be chance, three of three are not.
+  // Ramps, far from white: one rejection of three is allowed, three are not.
   std::vector<double> ramp(40);
   for (std::size_t i = 0; i < ramp.size(); ++i) ramp[i] = static_cast<double>(i);
   EXPECT_TRUE(TestWhiteness({ramp, {1, 2, 3}, {1, 2, 3}}, 2, 0.01).pass);
@@ -102,8 +102,8 @@ struct Run {
   std::vector<int> dof;
 };
 
-// A body with random acceleration whose position and speed are measured; in `late_position` the position that comes is
-// that of the frame before.
+// Body with random acceleration; its position and speed are measured. `late_position`: the position measured is that of
+// the previous frame.
 Run Simulate(TestRandom& random, Filter kind, const Eigen::Vector2d& variances, int frames = 300) {
   const double dt = 1.0 / 30, psd = 6.25;
   Eigen::Matrix2d F, Q, R = variances.asDiagonal();
@@ -152,14 +152,14 @@ Runs SimulateRuns(std::uint32_t seed, Filter kind, const Eigen::Vector2d& varian
   return all;
 }
 
-// False alarm rate: 1e-4 for each of the two.
+// False-alarm rate: 1e-4 for each of the two tests.
 TEST(Innovations, OfAnExactFilterAreWhiteAndOfTheirSize) {
   const Runs runs = SimulateRuns(60, Filter::exact);
   EXPECT_TRUE(TestNisMean(runs.nis, runs.dof, 0, 1e-4).pass);
   const WhitenessVerdict white = TestWhiteness(runs.innovation, 10, 1e-4);
   EXPECT_TRUE(white.pass) << white.rejected;
   EXPECT_EQ(white.mean_autocorrelation.size(), 10u);
-  // At each frame over runs: binomial of 300 frames, five standard deviations.
+  // Mean NIS at each frame over runs: binomial of 300 frames, five standard deviations.
   const Band band = Chi2MeanBand(2, 100);
   int inside = 0;
   for (std::size_t k = 0; k < 300; ++k) {
@@ -178,10 +178,10 @@ TEST(Innovations, OfAFilterWithTheWrongNoiseAreOfTheWrongSize) {
   EXPECT_LT(TestNisMean(doubled.nis, doubled.dof, 0).per_dof, 0.9);
 }
 
-// One frame's delay between the two sensors shows in how a frame's innovations depend on those of the frame before: in
-// a scalar that mixes them all, not in the position's alone. (A delay of all that a filter sees shows nowhere here: it
-// then estimates, perfectly, the state of a frame ago. NEES and ranks see that one.) False alarm rate of the honest
-// twin: 1e-4.
+// Delay of one frame between two sensors: the innovations correlate with those of the previous frame, in a scalar that
+// mixes all components, not in the position's alone. (A delay common to all sensors leaves the innovations white: the
+// filter is exact for the state of the previous frame. NEES and ranks detect it.) False-alarm rate of the exact
+// control: 1e-4.
 TEST(Innovations, OfASensorOneFrameLateAreNotWhite) {
   const WhitenessVerdict late = TestWhiteness(SimulateRuns(62, Filter::late_position, kFine).innovation, 10, 1e-4);
   EXPECT_FALSE(late.pass);
@@ -189,7 +189,7 @@ TEST(Innovations, OfASensorOneFrameLateAreNotWhite) {
   EXPECT_TRUE(TestWhiteness(SimulateRuns(62, Filter::exact, kFine).innovation, 10, 1e-4).pass);
 }
 
-// The stated rate of 1 %, at most 13 of 400 sets of 25 runs (a binomial of 0.01 exceeds that once in 10 000 times).
+// False-alarm rate of 1 %: at most 13 of 400 sets of 25 runs (exceeded by a binomial of 0.01 once in 10 000 times).
 TEST(Innovations, WhitenessKeepsItsFalseAlarmRate) {
   int rejected = 0;
   TestRandom random(63);
@@ -204,7 +204,8 @@ TEST(Innovations, WhitenessKeepsItsFalseAlarmRate) {
   EXPECT_LE(rejected, 13);
 }
 
-// Runs whose terms share half of their variance: their sum is far from a chi-square of as many degrees. By the runs' own spread 1 % is 1 %: at most 13 of 400 (exceeded once in 10 000 times).
+// Dependent terms that share half of their variance: their sum is far from chi-square. With the standard error from the
+// spread between runs the false-alarm rate is 1 %: at most 13 of 400 (exceeded once in 10 000 times).
 TEST(Innovations, MeanOfDependentTerms) {
   TestRandom random(64);
   int of_mean = 0, of_wrong = 0;

@@ -1,4 +1,4 @@
-// The verifier on a sequence of the simulator's: untouched it passes, and each kind of damage is noticed and named.
+// Verification of a simulated sequence: untouched it passes; each kind of damage is detected and named.
 #include "tools/judge/verification/verify.h"
 
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ constexpr const char* kAll =
 
 void Render(const fs::path& folder, std::vector<std::pair<std::string, std::string>> settings, std::int64_t frames,
             const std::string& scenario = "tiny.yaml") {
-  const fs::path file = fs::path(VOBENCH_SOURCE_DIR) / "scenes" / scenario;  // or `scenario`, where that is absolute
+  const fs::path file = fs::path(VOBENCH_SOURCE_DIR) / "scenes" / scenario;  // `scenario` itself where it is absolute
   const sim::Simulator simulator(sim::LoadScenario(file, settings), 2);
   const sim::SequenceContent content{sim::Layout::tum, 0, frames, "test"};
   sim::SequenceWriter writer(simulator, folder, content, 2, sim::SequenceWriter::Start::fresh);
@@ -62,7 +62,7 @@ std::string Stamp(int k) {
       "0.133333333", "0.166666667", "0.200000000", "0.233333333"}[static_cast<std::size_t>(k)];
 }
 
-// Rendered once: `full` with all streams, `plain` as a scenario without `truth` has it.
+// Two sequences, rendered once: `full` with all streams, `plain` of a scenario without `truth`.
 class VerifyTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -72,7 +72,7 @@ class VerifyTest : public testing::Test {
   }
   static void TearDownTestSuite() { delete rendered_; }
 
-  // A copy to spoil.
+  // Copy to be damaged.
   fs::path Copy(const std::string& which = "full") {
     fs::copy(rendered_->path() / which, here_.path() / which, fs::copy_options::recursive);
     return here_.path() / which;
@@ -83,7 +83,7 @@ class VerifyTest : public testing::Test {
     Write(one, Read(two));
     Write(two, bytes);
   }
-  // A number of a table's line (0: the header) gets `change` added.
+  // Adds `change` to a number of a table's line (0: the header).
   static void Alter(const fs::path& file, std::size_t line, std::size_t word, double change, char separator = ' ') {
     std::vector<std::string> lines = Lines(file);
     std::stringstream in(lines.at(line)), out;
@@ -125,7 +125,7 @@ TEST_F(VerifyTest, AnUntouchedSequencePassesEveryCheck) {
   EXPECT_THAT(Failures(rendered_->path() / "plain"), IsEmpty());
 }
 
-// Another kind of motion, a distorted lens, an IMU off the camera with noise, a range from the middle.
+// Another motion, a distorted lens, a noisy IMU away from the camera, a range of frames from the middle.
 TEST_F(VerifyTest, OtherSequencesPass) {
   std::vector<std::pair<std::string, std::string>> settings = {
       {"truth", kAll},
@@ -147,7 +147,7 @@ TEST_F(VerifyTest, OtherSequencesPass) {
   EXPECT_THAT(Failures(here_.path() / "sampled"), IsEmpty());
 }
 
-// Pixels so wide that a lens bends what is between them.
+// Coarse pixels: the distortion is not linear between them.
 TEST_F(VerifyTest, SmallPicturesThroughALensPass) {
   const std::vector<std::pair<std::string, std::string>> camera[2] = {
       {{"camera", "{width: 80, height: 60, fx: 45, fy: 45, cx: 39.5, cy: 29.5, distortion: {k1: -0.28, k2: 0.07}}"}},
@@ -190,7 +190,7 @@ TEST_F(VerifyTest, TwoPicturesSwapped) {
   }
 }
 
-// All pictures are those of the next frame: each fits its neighbours, only depth and poses know.
+// All images of the next frame: consistent with one another; the offset appears only with depth and poses.
 TEST_F(VerifyTest, AllPicturesOneFrameLate) {
   const fs::path folder = Copy("plain");
   for (int k = 0; k < 7; ++k) {
@@ -251,7 +251,7 @@ TEST_F(VerifyTest, ANormalWithTheOtherSign) {
   const std::span<const float> numbers(reinterpret_cast<const float*>(normals.data), normals.total() * 3);
   WriteBytes(file, sim::EncodeExr(numbers, normals.cols, normals.rows, 3, true));
   EXPECT_THAT(Failures(folder), Contains(HasSubstr("normals: unit, towards the camera: normals " + Stamp(3))));
-  // All with x the other way: unit and towards the camera still.
+  // x mirrored in all normals: still of unit length and towards the camera.
   normals = ReadPicture(rendered_->path() / "full" / "normals" / (Stamp(3) + ".exr"));
   for (int i = 0; i < static_cast<int>(normals.total()); ++i) normals.at<cv::Vec3f>(i)[0] *= -1.0f;
   const std::span<const float> mirrored(reinterpret_cast<const float*>(normals.data), normals.total() * 3);
@@ -290,7 +290,7 @@ TEST_F(VerifyTest, VelocityAccelerationAndImu) {
   EXPECT_THAT(Failures(other), Contains(HasSubstr("IMU against poses: velocity")));
 }
 
-// The scene whose objects move, at 160 x 120.
+// Scene with moving objects, at 160 x 120.
 void RenderMoving(const fs::path& folder, const std::string& truth) {
   Render(folder,
          {{"truth", truth},
@@ -301,7 +301,7 @@ void RenderMoving(const fs::path& folder, const std::string& truth) {
 }
 std::string AllAndMoving() { return std::string(kAll).replace(0, 1, "[moving, "); }
 
-// Each kind of a wrong label, on the scene with objects.
+// Each kind of wrong label, in the scene with objects.
 TEST_F(VerifyTest, Labels) {
   const fs::path good = here_.path() / "labels";
   RenderMoving(good, "[depth, instance, semantic, boxes]");
@@ -323,7 +323,7 @@ TEST_F(VerifyTest, Labels) {
                                             std::span(picture.ptr<std::uint16_t>(), picture.total())));
     });
   };
-  // One pixel of another instance; the same in both pictures, where the legend has nothing to say.
+  // One pixel of another instance contradicts the boxes; one of an unknown instance or another class, the legend.
   EXPECT_THAT(with_pixel("instance", [](cv::Mat& ids) { ids.at<std::uint16_t>(0, 0) = 2; }),
               Contains(HasSubstr("boxes against the instances: boxes/" + Stamp(2) + ".csv instance 2")));
   EXPECT_THAT(with_pixel("instance", [](cv::Mat& ids) { ids.at<std::uint16_t>(0, 0) = 9; }),
@@ -344,7 +344,7 @@ TEST_F(VerifyTest, MovingObjectsPass) {
     EXPECT_GT(check.count(), 0u) << check.name();
     EXPECT_THAT(check.failures(), IsEmpty()) << check.name() << ": " << check.value() << " > " << check.bound();
   }
-  // Without the mask any pixel may be an object's.
+  // Without the mask any pixel may belong to an object.
   fs::remove(here_.path() / "moving" / "moving.txt");
   EXPECT_THAT(Failures(here_.path() / "moving"), IsEmpty());
 }
@@ -415,7 +415,7 @@ TEST_F(VerifyTest, FilesThatAreNotAsTheyShould) {
   EXPECT_THROW(Verify(folder / "rgb"), std::runtime_error);
 }
 
-// Nothing is made for pixels that no picture of the sequence can have.
+// Implausible image sizes are refused.
 TEST_F(VerifyTest, ACameraOfAnySizeIsRefused) {
   const fs::path folder = Copy("plain");
   const std::string camera = Read(folder / "camera.yaml");
@@ -436,7 +436,7 @@ TEST_F(VerifyTest, ACameraOfAnySizeIsRefused) {
   }
 }
 
-// Two cameras side by side before a smooth path, with an IMU off the body.
+// Two cameras side by side on a smooth path, with an IMU away from the body's origin.
 void RenderRig(const fs::path& folder, const std::vector<std::pair<std::string, std::string>>& more = {}) {
   const std::string lens = "width: 160, height: 120, fx: 131.25, fy: 131.25, cx: 79.5, cy: 59.5, ";
   std::vector<std::pair<std::string, std::string>> settings = {
@@ -487,7 +487,7 @@ TEST_F(VerifyTest, ARigAndEachFaultOfOne) {
               Contains(HasSubstr("cameras' poses against the body's: cam0/groundtruth.txt")));
   EXPECT_THAT(spoilt([&] { Replace(bad / "rig.yaml", right, "position: [-0.06, 0, -0.02]"); }),
               Contains(HasSubstr("cameras' poses against the body's: cam1/groundtruth.txt")));
-  // The pictures of one camera in the other's folder, all poses as they should be.
+  // Depth of one camera in the other's folder; all poses are correct.
   EXPECT_THAT(spoilt([&] {
                 fs::remove_all(bad / "cam1/depth_exr");
                 fs::copy(bad / "cam0/depth_exr", bad / "cam1/depth_exr");
@@ -498,7 +498,7 @@ TEST_F(VerifyTest, ARigAndEachFaultOfOne) {
               Contains(HasSubstr("depth in the first camera: median: cam1")));
   EXPECT_THAT(spoilt([&] { Replace(bad / "cam1/camera.yaml", "k1: 0", "k1: 0.02"); }),
               Contains(HasSubstr("depth in the first camera: median: cam1")));
-  // An instance; the base of the pair; the IMU's place.
+  // An instance; a disparity of another frame; the IMU's orientation.
   EXPECT_THAT(spoilt([&] {
                 const fs::path file = bad / "cam1/instance" / (Stamp(2) + ".png");
                 cv::Mat ids = ReadPicture(file);
@@ -521,7 +521,7 @@ TEST_F(VerifyTest, TheSignOfATriggerOffset) {
   EXPECT_THAT(Failures(good), Contains(HasSubstr("stamps less the trigger offsets: cam1")));
 }
 
-// Pictures taken before their stamps, on a rig whose files agree.
+// Images taken before their stamps, on a rig whose files agree.
 TEST_F(VerifyTest, PicturesOfAnotherTriggerOffset) {
   const fs::path good = here_.path() / "rig", other = here_.path() / "other/rig";
   fs::create_directories(other.parent_path());
@@ -535,7 +535,7 @@ TEST_F(VerifyTest, PicturesOfAnotherTriggerOffset) {
   EXPECT_THAT(Failures(good), Contains(HasSubstr("depth in the first camera: median: cam1")));
 }
 
-// Where the path is rough, a camera's arm takes the body's turns.
+// Rough (sampled) path: the camera's lever arm turns with the body.
 TEST_F(VerifyTest, ARigOnASampledPath) {
   const fs::path folder = here_.path() / "rig";
   RenderRig(folder,
