@@ -8,7 +8,7 @@
 //
 // Key: C library's mathematical functions (a digest of their values), compiler and Eigen. All kernel instruction sets
 // give the same bits.
-// Settings whose names begin with "paper_" are those of Zhou & Maskell: their digests stay as they are.
+// Settings whose names begin with "paper_" are those of Zhou & Maskell: their digests must not change.
 #include <Eigen/Core>
 #include <atomic>
 #include <bit>
@@ -83,13 +83,13 @@ class Trace {
   std::string lines_;
 };
 
-// What happens to the filter besides the images.
+// Events of a run besides the measurements.
 struct Events {
   bool rolling = false;
   bool known_depths = false;
   bool unknown_start = false;
   int blackout_from = kFrames, blackout_to = kFrames;  // frames without matches
-  int poisoned = 0;                                    // frame before which a particle's weight becomes no number
+  int poisoned = 0;                                    // frame before which a particle's weight becomes NaN
   bool bad_matches = false;
 };
 
@@ -157,7 +157,7 @@ class Player {
   }
 
  private:
-  // In camera coordinates of a true pose, through a rolling shutter where there is one.
+  // Noisy image of a point from the true pose; with a rolling shutter, from the pose at the time of its row.
   vo::RowView Seen(const Eigen::Vector3d& point) {
     vo::RowView row;
     for (int i = 0; i < (setting_.events.rolling ? 5 : 1); ++i) {
@@ -223,7 +223,7 @@ class Player {
     return chosen;
   }
 
-  // One particle's weight becomes NaN. No image leads to it, so the state is written to behind its owner's back.
+  // Sets one particle's weight to NaN. No image leads to this state: written by const_cast.
   void Poison() {
     const_cast<vo::Particle&>(particles_->particles()[3]).log_weight = std::numeric_limits<double>::quiet_NaN();
   }
@@ -379,7 +379,7 @@ std::vector<Setting> Settings() {
   };
 }
 
-// Each setting's trace, by that many threads: the numbers depend on none of them.
+// Traces of all settings, by `threads` threads. The values do not depend on the number of threads.
 std::vector<Trace> Run(const std::vector<Setting>& settings, unsigned threads, bool text) {
   std::vector<Trace> traces(settings.size(), Trace(text));
   std::atomic<std::size_t> next = 0;
@@ -392,7 +392,7 @@ std::vector<Trace> Run(const std::vector<Setting>& settings, unsigned threads, b
   return pool.clear(), traces;
 }
 
-// Identifies the mathematical functions by what they answer.
+// Digest of values of the C library's mathematical functions.
 std::uint64_t LibraryDigest() {
   Trace trace(false);
   for (int i = 1; i <= 2000; ++i) {

@@ -1,5 +1,5 @@
-// Cramer-Rao bound, attained where the problem is nearly linear, by the filter that samples nothing. Worlds drawn from
-// its own prior, noise of 0.2 px, depths known to 5 %.
+// Cramer-Rao bound, attained by EKF-SLAM where the problem is nearly linear: worlds drawn from its own prior, noise of
+// 0.2 px, depths known to 5 %.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -34,8 +34,8 @@ Vector12d ErrorOf(const vo::Estimate& estimate, const sim::Truth& truth) {
   return error;
 }
 
-// Squared error of the pose at the last frame, by the bound and by the filter's covariance. Sums over runs: chi-square
-// with 6 degrees of freedom each for an efficient and consistent filter.
+// NEES of the pose at the last frame, by the bound and by the filter's covariance. Sums over runs: chi-square with 6
+// degrees of freedom each for an efficient and consistent filter.
 struct Nees {
   double by_bound = 0, by_filter = 0;
 };
@@ -69,8 +69,9 @@ Nees Play(const Overrides& settings) {
   return nees;
 }
 
-// False alarms: 1e-3 each, two-sided (an error far below the bound is a mistake in the bound). The upper end of the
-// band is 1.32 in the mean: an RMSE of 1.15 times the bound is rejected with a probability of one half.
+// False-alarm rate: 1e-3 each, two-sided (an error far below the bound is a mistake in the bound). The upper end of the
+// band is 1.32 for the mean: an RMSE of 1.15 times the bound is rejected with a probability of one half. Control: the
+// joint mode.
 TEST(Bound, EkfSlamReachesIt) {
   const Nees textbook = Play({});
   const evaluation::Band band = evaluation::Chi2MeanBand(6, kRuns, 0.999);

@@ -44,7 +44,7 @@ std::size_t ResidentBytes() {
   return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-// What a child process writes, read here. Both run on the same machine: memory is written as it is.
+// Pipe from a child process that runs `write`. Objects are sent as raw memory: both processes run on one machine.
 class Stream {
  public:
   explicit Stream(const std::function<void(Stream&)>& write) {
@@ -57,7 +57,7 @@ class Stream {
     if (child_ > 0) return;
     write(*this);
     std::fclose(file_);
-    _exit(0);  // nothing of the parent's is to be ended twice
+    _exit(0);  // without the parent's destructors and exit handlers
   }
   ~Stream() {
     std::fclose(file_);
@@ -68,7 +68,7 @@ class Stream {
 
   template <class T>
   void Put(const T* items, std::size_t count) {
-    if (std::fwrite(items, sizeof(T), count, file_) != count) _exit(1);  // nobody reads any more
+    if (std::fwrite(items, sizeof(T), count, file_) != count) _exit(1);  // the reader is gone
   }
   template <class T>
   void Put(const T& item) {
@@ -89,14 +89,14 @@ class Stream {
 };
 
 struct Memory {
-  std::size_t early = 0, most = 0;  // resident bytes: then, and since
+  std::size_t early = 0, most = 0;  // resident bytes at frame `early`; maximum since
   void Add(bool is_early, std::size_t bytes) {
     if (is_early) early = most = bytes;
     if (early > 0) most = std::max(most, bytes);
   }
 };
 
-// Frame by frame: how long, and how large.
+// CPU time per frame and resident memory of a run.
 class Watch {
  public:
   explicit Watch(const Length& length) : length_(length), last_(length.window), last_reference_(length.window) {}
@@ -132,14 +132,14 @@ class Watch {
   }
 
  private:
-  // What nine tenths of the frames take longer than: as the odometry is when nothing else disturbs it.
+  // Tenth percentile: the time of a frame without disturbance by other processes.
   static double Quiet(std::vector<double> times) {
     const auto tenth = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 10);
     std::nth_element(times.begin(), tenth, times.end());
     return *tenth;
   }
 
-  // Time of a fixed calculation: what a neighbour on the same core takes from a frame, it takes from this one.
+  // CPU time of a fixed calculation; other processes on the same core slow it down as much as a frame.
   double ReferenceSeconds() {
     const double before = CpuSeconds();
     reference_.compute(matrix_);

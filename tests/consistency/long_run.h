@@ -1,25 +1,25 @@
-// Hours of motion through ever new landmarks: does the odometry stay as fast, and as small, as it was?
-// How:     the world is a process of its own, so that what it keeps is not counted as the odometry's.
+// Time per frame and memory over hours of motion through ever new landmarks.
+// The world runs in a process of its own: its memory is not counted as the odometry's.
 #pragma once
 
 #include <cstddef>
 
 namespace long_run {
 
-// Time:    CPU time of the thread, the tenth percentile of `window` frames: of those from `early` on, when the map is
+// Time:    CPU time of the thread, tenth percentile of `window` frames: of those from `early` on, when the map is
 //          full, and of the last ones. Each is divided by the same percentile of a fixed calculation made after every
-//          frame, so that a machine which is slower at the end is not a frame that grows. Bound 25 %; printed.
-// Memory:  resident, from frame `early` on at most 1 % above that of frame `early` (of a short run, 2 %).
-// An answer that is no number ends it (vo/filter/watched_filter.h).
+//          frame, which cancels changes in the machine's speed. Bound on the growth: 25 %; printed.
+// Memory:  resident, from frame `early` on at most 1 % above that of frame `early` (2 % up to 10 000 frames).
+// A non-finite estimate ends the run (vo/filter/watched_filter.h).
 struct Length {
   std::size_t frames = 0, early = 0, window = 0;
 };
 
-// scenes/points.yaml with a motion that is drawn back to its start. Landmarks: those seen in the last forget_after
-// frames, no others: exactly, in every frame.
+// scenes/points.yaml with a mean-reverting motion. In every frame the map has exactly the landmarks seen in the last
+// forget_after frames.
 void ExpectNothingGrowsOnPoints(const Length& length);
 
-// tests/consistency/long_flight.yaml: images of 160 x 120. The simulator must not grow, either.
+// tests/consistency/long_flight.yaml: images of 160 x 120. The same bound holds for the simulator's memory.
 void ExpectNothingGrowsOnImages(const Length& length);
 
 }  // namespace long_run

@@ -1,4 +1,4 @@
-// Ten minutes of motion in a world of points, and two minutes in images. VOBENCH_LONG_RUN=H: so many hours of either.
+// Time and memory over ten minutes in a point world and two minutes of images. VOBENCH_LONG_RUN=H: H hours of each.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Under a minute of motion; hours of it are in long_run_slow_test.cpp.
+// Time and memory of a run of under a minute. Long runs: long_run_slow_test.cpp.
 #include "tests/consistency/long_run.h"
 
 #include <gtest/gtest.h>

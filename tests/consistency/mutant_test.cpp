@@ -1,5 +1,5 @@
-// Linked with a filter that has one mistake: tests/consistency/CMakeLists.txt says which. The verdict that passes the
-// right filter (own_model_test.cpp: same worlds, same thresholds) must reject it, in one of two settings.
+// Mutation test of the verdict: a filter with one planted error (tests/consistency/CMakeLists.txt) is rejected in one
+// of two settings. The correct filter passes in the same worlds with the same thresholds (own_model_test.cpp).
 #include <gtest/gtest.h>
 
 #include "tests/consistency/own_model.h"
@@ -15,7 +15,7 @@ TEST(Mutant, IsRejected) {
     const auto verdict = Judge(Play(kRuns));
     std::cout << Failures(verdict);
     EXPECT_FALSE(verdict.consistent());
-  } catch (const std::invalid_argument& error) {  // a belief that is not finite cannot be judged
+  } catch (const std::invalid_argument& error) {  // no verdict on a non-finite belief
     std::cout << "no verdict: " << error.what() << '\n';
   }
 }

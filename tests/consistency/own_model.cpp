@@ -33,7 +33,7 @@ Overrides Setting(const Overrides& more) {
   return all;
 }
 
-// A belief narrower or wider about the same mean.
+// Scales the covariance of estimate and mixture about the mean.
 void Scale(double factor, vo::Estimate& estimate, std::vector<vo::BeliefComponent>& mixture) {
   if (factor == 1) return;
   estimate.covariance *= factor;

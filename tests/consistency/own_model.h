@@ -1,4 +1,4 @@
-// Verdict on the odometry in worlds drawn from its own prior, where it is consistent, as it is or with a planted error.
+// Consistency verdict on the odometry in worlds drawn from its own prior, without and with a planted error.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace own_model {
 
-struct Played;  // what is left of the runs
+struct Played;  // record of one run
 using Runs = std::shared_ptr<const std::vector<Played>>;
 
-// scenes/points.yaml with 12 points, motion noise 0.6 and 0.4, ten frames; marginal mode, 128 particles, lag 3: six of
-// nine poses are sampled by the end, and the particles have not collapsed. (With 32 particles the highest-density
-// regions of the mixture are too small: the smallest p-value of coverage is below 0.00033 in two of six sets of seeds;
-// with 128 above 0.06 in all of four.) `settings`: changes.
+// Monte Carlo runs of scenes/points.yaml with 12 points, motion noise 0.6 and 0.4, ten frames; marginal mode, 128
+// particles, lag 3: six of nine poses are sampled by the end, and the particles have not collapsed. (With 32 particles
+// the highest-density regions of the mixture are too small: the smallest p-value of coverage is below 0.00033 in two of
+// six sets of seeds; with 128 above 0.06 in all of four.) `settings`: overrides.
 Runs Play(int runs, const vobench::Overrides& settings = {}, std::uint64_t first_seed = 1);
 
 // No lag, three frames, 128 particles: the velocity is estimated by (37)-(43) alone, without a window.
@@ -36,9 +36,9 @@ bool PassesButCoverage(const evaluation::ConsistencyVerdict& verdict);
 // Which checks failed, one per line, with value and threshold; all of them where `all` is set.
 std::string Failures(const evaluation::ConsistencyVerdict& verdict, bool all = false);
 
-// False alarm per check: 1e-3. Of the seventeen together: at most 1.7 %. The seeds are fixed.
+// False-alarm rate: 1e-3 per check, at most 1.7 % for all seventeen. The seeds are fixed.
 inline constexpr double kFalseAlarm = 0.001;
 inline constexpr int kRuns = 60;       // of the quick tests
-inline constexpr int kWrongRuns = 20;  // of a filter that is wrong by far
+inline constexpr int kWrongRuns = 20;  // of a filter with a large error
 
 }  // namespace own_model

@@ -1,4 +1,4 @@
-// As own_model_test.cpp with four times the particles, on runs that nothing was tuned on.
+// Consistency as in own_model_test.cpp, on seeds that no setting was tuned on.
 #include <gtest/gtest.h>
 
 #include "tests/consistency/own_model.h"
@@ -6,9 +6,9 @@
 namespace own_model {
 namespace {
 
-// False alarms: 0.1 % per check, 1.6 % in all. 500 such runs show what is left of the filter's own mistakes: joint
-// ANEES 1.027 (the limit is 1.0269), and the coverage of the mixture's highest-density regions, which 128 narrow
-// components in twelve dimensions do not give (docs/point_world.md).
+// False-alarm rate: 0.1 % per check, 1.6 % in all. 500 such runs resolve the remaining inconsistency of the filter:
+// joint ANEES 1.027 (limit 1.0269), and the coverage of the mixture's highest-density regions, for which 128 narrow
+// components in twelve dimensions are too few (docs/point_world.md). Control: P x 0.8.
 TEST(OwnModelSlow, ConsistentOnFreshRuns) {
   const Runs runs = Play(100, {{"odometry.filter.particles", "128"}, {"odometry.filter.lag", "0"}}, 1001);
   const auto verdict = Judge(runs);
@@ -17,8 +17,8 @@ TEST(OwnModelSlow, ConsistentOnFreshRuns) {
   EXPECT_FALSE(PassesButCoverage(Judge(runs, {0.8, 0})));
 }
 
-// Ten seconds, a hundred points, equal weights: ten runs do not see the 5 % by which the position is over-confident
-// (docs/odometry.md has the verdict of 100); they see what resampling does.
+// Ten seconds, a hundred points, equal weights. Ten runs do not resolve the 5 % by which the position is over-confident
+// (docs/odometry.md: verdict of 100 runs). Control: weights by the evidence.
 TEST(OwnModelSlow, EqualWeightsForTenSeconds) {
   const vobench::Overrides ten_seconds = {{"time.duration", "10 s"},
                                           {"world.points.count", "100"},

@@ -1,5 +1,5 @@
-// The real filter, on worlds drawn from its own prior: passed as it is, rejected as soon as it, or what is claimed of
-// it, is wrong. tests/consistency/mutants holds the wrong ones that take another filter. False alarms: own_model.h.
+// Consistency of the filter in worlds drawn from its own prior, with controls: wrong models, covariances and truth are
+// rejected. Errors in the filter's code: tests/consistency/mutants. False-alarm rate: own_model.h.
 #include "tests/consistency/own_model.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ void ExpectRejected(const evaluation::ConsistencyVerdict& verdict, const char* w
   std::cout << what << ":\n" << Failures(verdict);
 }
 
-// One set of runs for those whose filter is as it should be.
+// Controls on the same runs: half the covariance, and the truth of the previous frame.
 TEST(OwnModel, FilterIsConsistent) {
   const Runs runs = Play(kRuns);
   const auto verdict = Judge(runs);
@@ -29,8 +29,8 @@ TEST(OwnModel, TheFilterIsConsistentWithoutDelay) {
   EXPECT_TRUE(PassesButCoverage(verdict)) << Failures(verdict);
 }
 
-// Two seconds of sampled poses. Weights tell the particles apart by the accidents of their draws, and each resampling
-// costs what they knew of the drift: the same filter with them is rejected, as is P x 0.5 without.
+// Equal weights over two seconds of sampled poses. Controls: P x 0.5, and weights by the evidence, which vary with the
+// sampling errors of the particles; each resampling then loses information on the drift.
 TEST(OwnModel, EqualWeightsStayConsistent) {
   const vobench::Overrides long_run = {{"time.duration", "2 s"},
                                        {"world.points.count", "20"},

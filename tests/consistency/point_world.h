@@ -1,5 +1,5 @@
-// A world of points for the filter's own tests: landmarks on the walls of a room, a camera in smooth hand-held motion,
-// known association and Gaussian pixel noise. Truth and filter share no code: projection is written out here.
+// Point world for tests of the filter: landmarks on the walls of a room, a camera in smooth hand-held motion, known
+// data association and Gaussian pixel noise. The projection is implemented here: truth and filter share no code.
 #pragma once
 
 #include <Eigen/Core>

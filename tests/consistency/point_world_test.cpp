@@ -1,5 +1,4 @@
-// The filter against a world of points drawn without its own code. Quick twins of the study's figures
-// (docs/odometry.md).
+// Filter in a point world that shares no code with it: short versions of the study's figures (docs/odometry.md).
 
 #include "tests/consistency/point_world.h"
 
@@ -23,7 +22,7 @@ vo::Params OnePixel() {
   vo::Params params;
   params.filter = vo_test::SampledAtOnce();
   params.features.sigma_px = 1;
-  params.filter.start_window = 0;  // the filter itself
+  params.filter.start_window = 0;  // the filter alone
   return params;
 }
 
@@ -67,9 +66,8 @@ TEST(PointWorld, EqualSeedsGiveEqualBeliefsAndOthersDoNot) {
   EXPECT_NE(a.beliefs.back().pose.p_WC, c.beliefs.back().pose.p_WC);
 }
 
-// Consistency of one step, where everything is drawn from the filter's own prior: pose error and velocity error after
-// the first update, over independent worlds. NEES of 12 degrees of freedom; with N runs the sum is chi-square with 12
-// N.
+// NEES of pose and velocity (12 degrees of freedom) after the first update, over independent worlds drawn from the
+// filter's own prior. The sum over N runs is chi-square with 12 N degrees of freedom.
 struct Nees {
   double sum = 0;
   int runs = 0;
@@ -136,7 +134,7 @@ TEST(PointWorld, FirstStepIsConsistent) {
   EXPECT_GT(std::abs(Score(FirstStepNees(200, 2.0))), 3.3);
 }
 
-// Blackout: no matches for ten frames. The covariance grows, the filter goes on and comes back.
+// Blackout: no matches for ten frames. The covariance grows in each of them and falls when the matches return.
 TEST(PointWorld, CoastsThroughABlackout) {
   World world = MakeRoom(2, 90, 1.0);
   for (int k = 45; k < 55; ++k) world.views[static_cast<std::size_t>(k)].clear();
@@ -150,8 +148,8 @@ TEST(PointWorld, CoastsThroughABlackout) {
   EXPECT_LT(Ate(world, result), 0.03);
 }
 
-// RB2-PF keeps the velocity as a Gaussian; RB-PF samples it, and its answer carries the sampling noise of a few
-// particles.
+// Angular rate of RB2-PF (velocity as a Gaussian) against RB-PF (velocity sampled), whose estimate has the sampling
+// noise of a few particles.
 TEST(PointWorld, FilteredVelocityBeatsSampled) {
   const auto angular_rate_error = [](vo::Sampled sampled) {  // RMS against the central difference of truth [rad/s]
     vo::Params params = OnePixel();

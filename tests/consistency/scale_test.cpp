@@ -1,5 +1,4 @@
-// Scale as an unknown: worlds whose inverse depths share a factor of which the filter knows the standard deviation
-// alone.
+// Unknown scale: the inverse depths of a world share a random factor. The filter's prior has its standard deviation.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -47,8 +46,8 @@ double Anees(const char* told) {
   return evaluation::Summarise(nees).mean;
 }
 
-// False alarm below 5e-3: 1e-3 for Gaussian errors, whose sum is chi-square. Errors of a scale are log-normal; with a
-// standard deviation of 0.3 the variance of their squares is a third larger.
+// False-alarm rate below 5e-3: 1e-3 for Gaussian errors, whose sum of squares is chi-square. Errors of a scale are
+// log-normal; with a standard deviation of 0.3 the variance of their squares is a third larger. Control: known scale.
 TEST(Scale, UnknownScaleIsPartOfTheCovariance) {
   const evaluation::Band band = evaluation::Chi2MeanBand(3, kRuns, 0.999);
   const double unknown = Anees("0.3"), known = Anees("0");

@@ -1,4 +1,4 @@
-// Start with an uncertain velocity: the solution of the window is the camera's path, not its mirror image.
+// Mirror ambiguity of the start with an uncertain velocity: the window's solution is the path, not its mirror image.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kWorlds = 200, kStartFrames = 10;
 
-// Position after kStartFrames of a camera with uncertain velocity that circles what it looks at.
+// Position after kStartFrames of a camera that orbits its target, with an uncertain velocity.
 struct Start {
   Eigen::Vector3d estimate, truth;
 };
@@ -40,8 +40,8 @@ Start PlayStart(unsigned world, const vo::FilterParams& params, double noise_px,
   return {filter.belief().pose.p_WC, camera.p_WC};
 }
 
-// Worlds in which the estimate has the opposite direction: over few frames, from afar, a scene and its mirror image
-// (near and far exchanged, opposite motion) have nearly the same views.
+// Number of worlds whose estimate has the opposite direction. Over few frames, from afar, a scene and its mirror image
+// (near and far exchanged, opposite motion) have nearly the same images.
 int StartsMirrored(const vo::FilterParams& params) {
   int mirrored = 0;
   for (unsigned world = 1; world <= kWorlds; ++world) {
@@ -67,8 +67,8 @@ TEST(Start, IsNotMirrored) {
   EXPECT_GT(at_once, 2 * window);
 }
 
-// Wall seen face on. The other explanation is a deep scene with little parallax and unknown depths, which the evidence
-// would prefer: with it 129 of these 200 worlds are wrong.
+// Fronto-parallel wall. The second solution is a deep scene with little parallax and unknown depths; selection by the
+// evidence prefers it, and 129 of these 200 worlds are wrong.
 TEST(Start, OfAWall) {
   vo::FilterParams params = vo_test::SampledAtOnce();
   params.particles = 1;

@@ -1,6 +1,6 @@
-// Rolling shutter: in the start rows are corrected again in every frame, by the present velocities of the window; with
-// a lag once the next frame is solved.
-// Reference: exact views of a camera that moves while it reads its rows.
+// Rolling shutter: rows in the start window are corrected again in every frame, with the window's current velocities;
+// with a lag, once the next frame is solved.
+// Reference: exact images of a camera that moves during the readout.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ vo::Pose PoseAt(double t) {
   return {{0.1 * t, 0.05 * std::sin(2 * t), 0.02 * t}, vo::Exp({0.15 * std::sin(3 * t), -0.2 * t, 0.1 * t})};
 }
 
-// The same by a hand that shakes: its turn changes by up to 6 rad/s^2 about each axis.
+// The same motion with hand tremor: angular acceleration of about 6 rad/s^2 about each axis.
 vo::Pose ShakenPoseAt(double t) {
   constexpr double kAmplitude = 0.006;
   vo::Pose pose = PoseAt(t);
@@ -30,7 +30,7 @@ vo::Pose ShakenPoseAt(double t) {
   return pose;
 }
 
-// Image in a camera that exposes the row at height y of its field of view kReadout y / kHeight after the stamp.
+// Image in a camera that exposes the row at height y of its field of view at kReadout y / kHeight after the stamp.
 vo::RowView Seen(const Vector3d& point, double stamp, vo::Pose (*pose_at)(double) = PoseAt) {
   vo::RowView row;
   for (int i = 0; i < 30; ++i) {
@@ -41,8 +41,8 @@ vo::RowView Seen(const Vector3d& point, double stamp, vo::Pose (*pose_at)(double
   return row;
 }
 
-// NEES of the orientation at the end of the start's window, of matches as seen by a camera that stands still during
-// the readout; `rows`: with the row times, by which they are corrected.
+// NEES of the orientation at the end of the start window. `rows`: matches have row times, by which they are corrected;
+// else they are taken as those of a global shutter.
 double Error(unsigned world, bool rows) {
   vo_test::Draws draws(world);
   vo::ParticleFilter filter = vo_test::StartingFilter(world);
@@ -73,8 +73,8 @@ double Error(unsigned world, bool rows) {
   return error.tail<3>().dot(P.inverse() * error.tail<3>());
 }
 
-// Chi-square with three degrees of freedom: one of 20 worlds is beyond 25 with a probability of 1/3000. Control:
-// without row times each of the first five worlds is beyond 1000.
+// Chi-square with three degrees of freedom: one of 20 worlds exceeds 25 with a probability of 1/3000. Control: without
+// row times each of the first five worlds exceeds 1000.
 TEST(StartRows, FollowTheVelocity) {
   for (unsigned world = 1; world <= kWorlds; ++world) {
     EXPECT_LT(Error(world, true), 25) << world;
@@ -84,8 +84,9 @@ TEST(StartRows, FollowTheVelocity) {
   }
 }
 
-// Mean square error of the orientation in the second and third second of a shaken sequence, whose rows are referred to
-// the stamp by the filter's velocity; half of the landmarks are begun after the start. `rows`: with what they measured.
+// Mean squared error of the orientation in the second and third second of a sequence with hand tremor. Rows are
+// referred to the stamp by the filter's velocity; half of the landmarks are added after the start. `rows`: matches keep
+// the measured rows.
 double ShakenError(unsigned world, bool rows) {
   constexpr int kLandmarks = 60, kFirst = 30, kAdded = 20, kEnd = 90;
   vo_test::Draws draws(world);
@@ -131,7 +132,7 @@ double ShakenError(unsigned world, bool rows) {
   return sum;
 }
 
-// Control: corrected once, as they come.
+// Control: rows corrected once, on arrival.
 TEST(LagRows, AreCorrectedAgainOnceTheNextFrameIsSolved) {
   double anew = 0, once = 0;
   for (unsigned world = 1; world <= kWorlds; ++world) {

@@ -1,5 +1,5 @@
-// Scale during the start: each solution of the window has a scale of its own, known by the priors of the depths alone.
-// FilterAnswer::scale_change brings all answers to one scale.
+// Scale during the start: each solution of the window has its own scale, determined by the priors of the depths alone.
+// FilterAnswer::scale_change brings all estimates to one scale.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 constexpr int kFrames = 30, kWorlds = 10;
 constexpr double kSigma = 0.25 / 525;
 
-// Change of the logarithm of scale from a frame of the start to its last: of the filter's path, and of the answers.
+// Change of the log scale from a frame of the start to its last one: of the filter's path and of the answers.
 struct Change {
   double filter = 0, answers = 0;
 };
@@ -66,7 +66,7 @@ Change Fly(double speed, double spread, int from) {
   return {Median(filter), Median(answers)};
 }
 
-// The weights of near depths in the scale grow as depths are told apart. Measured 0.029 and 0.184.
+// Spread depths: near depths gain weight in the scale as the depths become observable. Measured 0.029 and 0.184.
 TEST(StartScale, SpreadDepths) {
   for (const double speed : {1.0, 0.3}) {
     const Change change = Fly(speed, 0.2, 6);
@@ -75,15 +75,15 @@ TEST(StartScale, SpreadDepths) {
   }
 }
 
-// Lengths that are known by noise alone are not kept: past a wall the filter's next answers are the better ones.
-// Measured 0.49 and 0.31.
+// Wall: the scale is not held where noise alone determines it, since the filter's later estimates are better. Measured
+// 0.49 and 0.31.
 TEST(StartScale, PlaneWithLittleInformation) {
   const Change change = Fly(0.3, 0, 3);
   EXPECT_GT(change.filter, 0.2);
   EXPECT_GT(change.answers, 0.5 * change.filter);
 }
 
-// A change of scale is reported in one frame.
+// scale_change differs from 1 in more than half of the start's frames and is 1 after the start.
 TEST(StartScale, ConstantAfterTheStart) {
   vo_test::Draws draws(1);
   vo::ParticleFilter filter({}, vo::FilterParams{}, vo::LandmarkParams{}, vo::FilterPrior{}, 1);

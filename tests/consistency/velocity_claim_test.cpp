@@ -1,5 +1,5 @@
-// The second Rao-Blackwellisation: RB2-PF keeps the velocity as a Gaussian per particle, RB-PF as samples. What eight
-// samples say of it, and what eight Gaussians do, in worlds drawn from the filter's own prior.
+// Second Rao-Blackwellisation: NEES of the velocity as a Gaussian per particle (RB2-PF) and as samples (RB-PF), with
+// eight particles in worlds drawn from the filter's own prior.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -68,10 +68,10 @@ Nees Play(vo::Sampled sampled, const Overrides& settings) {
 
 double Mean(const std::vector<double>& values) { return evaluation::Summarise(values).mean; }
 
-// False alarm 1e-3: the mean over independent runs is chi-square. What RB-PF carries from frame to frame is eight
-// draws, seldom more than four of weight, in six dimensions: the median over runs was 116, of RB2-PF's particles 2.5.
-// (RB-PF's answer, which takes the velocity before it is drawn, was 2.7 in the mean.) Without a lag RB2-PF's answer
-// is 1.7: the poses, sampled at once, are what is over-confident then.
+// False-alarm rate 1e-3: the sum of NEES over independent runs is chi-square. The velocity of RB-PF is carried from
+// frame to frame by eight samples in six dimensions, seldom more than four with weight: median NEES over runs 116, of
+// RB2-PF's particles 2.5. (RB-PF's estimate, from the velocity before sampling: mean 2.7.) Without a lag RB2-PF's
+// estimate has 1.7, since the poses, sampled at once, are over-confident.
 TEST(VelocityClaim, GaussianVelocityIsConsistent) {
   const Nees gaussians = Play(vo::Sampled::pose, {{"odometry.filter.particles", "8"}});
   const evaluation::Band band = evaluation::Chi2MeanBand(6, kRuns, 0.999);

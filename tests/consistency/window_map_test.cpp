@@ -1,4 +1,4 @@
-// Uncertainty of the map in a window: it contains the measurements of the window and the covariance of its poses.
+// Uncertainty of the map in a window, from the measurements of the window and the covariance of its poses.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 // NEES of the first landmark of a world drawn from the filter's own prior, after half a second in a window.
 struct Scores {
   double inverse_depth = 0, place = 0;
-  double as_sampled = 0;  // of the inverse depth, given the sampled poses: there are none
+  double as_sampled = 0;  // of the inverse depth, conditional on the sampled poses, of which there are none
 };
 
 Scores Play(unsigned world) {
@@ -70,7 +70,7 @@ Scores Play(unsigned world) {
           std::pow(error / belief.inverse_depth_sigma, 2)};
 }
 
-// Sums over 200 worlds of one landmark each: chi-square with 200 and 600 degrees of freedom. False alarms: 1e-3 each.
+// Sums over 200 worlds, one landmark each: chi-square with 200 and 600 degrees of freedom. False-alarm rates: 1e-3.
 TEST(WindowMap, CovarianceMatchesErrors) {
   constexpr int kWorlds = 200;
   Scores sum;
@@ -89,9 +89,10 @@ TEST(WindowMap, CovarianceMatchesErrors) {
   EXPECT_LT(sum.as_sampled, 140.7) << "the prior of the depths must show";
 }
 
-// Sideways past sixty points: the standard deviation of depths falls in every frame of the start's window, within 1 %
-// for the change of linearisation, and not at once where its poses are sampled. The common part of the depths' error is
-// then the spread of eight draws, below a third of its value with a probability of 1/500.
+// Mean standard deviation of the inverse depths for sideways motion past sixty points. In the start window it falls in
+// every frame, within 1 % for changes of linearisation; after it, where poses are sampled, it changes by less than a
+// factor of 3 per frame: the common part of the depths' error is then the spread of eight samples, below a third of its
+// value with a probability of 1/500.
 TEST(WindowMap, CovarianceShrinks) {
   const vo::Camera camera;
   vo_test::Draws draws(5);

@@ -1,5 +1,5 @@
-// The simulator's camera and the odometry's, each held against the numbers worked by hand in docs/conventions.md, and
-// against each other. They share no code.
+// Camera models of simulator and odometry, which share no code: against the worked examples of docs/conventions.md and
+// against each other.
 #include "sim/sensor/camera.h"
 
 #include <gtest/gtest.h>
@@ -76,7 +76,7 @@ TEST(CameraContract, TheMiddleOfTheFirstPixelIsTheOrigin) {
   EXPECT_NEAR(std::hypot(b.x, b.y), 0, 1e-12);
 }
 
-// What the one projects, the other finds back, over the whole image of a real lens.
+// Projection by the one and undistortion by the other are inverse to each other, over the whole image of a real lens.
 TEST(CameraContract, EachUndoesTheOther) {
   const vo::Camera odometry = Freiburg1();
   const sim::Camera simulator(Simulator(odometry));
@@ -96,7 +96,7 @@ TEST(CameraContract, EachUndoesTheOther) {
   }
 }
 
-// The comparison can fail: swapping the tangential terms moves a pixel at the border by more than the tolerance above.
+// Control: swapped tangential terms move a pixel at the border by more than the tolerance above.
 TEST(CameraContract, ASwappedTangentialTermWouldBeSeen) {
   const vo::Camera right = Freiburg1();
   vo::Camera wrong = right;
@@ -124,7 +124,7 @@ vo::Camera FisheyeByHand() {
   camera.lens = vo::Lens::fisheye;
   return camera;
 }
-// 512 x 512, 195 degrees from corner to corner.
+// 512 x 512 pixels, 195 degrees from corner to corner.
 vo::Camera Wide() {
   vo::Camera camera = Odometry(512, 512, 190.97847715128717, 190.9733070521226, 254.93170605935475, 256.8974428996504,
                                0.0034823894022493434, 0.0007150348452162257, 0, 0, -0.0020532361418706202);
@@ -164,7 +164,7 @@ TEST(CameraContract, BothUndoTheFisheyeWhereTheOdometryUsesIt) {
       EXPECT_LT(std::hypot(ray.x() - same.x, ray.y() - same.y), 1e-11 * (1 + ray.squaredNorm())) << u << " " << v;
       const Eigen::Vector2d back = odometry.Project({ray.x(), ray.y(), 1});
       EXPECT_LT((back - Eigen::Vector2d(u, v)).norm(), 1e-9);
-      // The lens's Jacobian against differences of the simulator's projection.
+      // Jacobian of the lens against differences of the simulator's projection.
       const double h = 1e-6 * (1 + ray.squaredNorm());
       const Eigen::Matrix2d J = odometry.LensJacobian(ray);
       for (int k = 0; k < 2; ++k) {

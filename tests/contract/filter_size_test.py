@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Size limits of vo/filter: data members of a class (with those that it inherits), lines of a file, virtual functions of Filter.
+"""Size limits of vo/filter: data members of a class (inherited ones included), lines of a file, virtual functions of
+Filter.
 
-filter_size_test.py FOLDER     prints what exceeds a limit; first it shows that it finds planted violations
+filter_size_test.py FOLDER     prints what exceeds a limit, after a self-check with planted violations
 """
 import pathlib
 import re

@@ -1,4 +1,4 @@
-// What the simulator writes, the odometry and the judge read: stamps, cameras, colours, truth.
+// Files written by the simulator and read by the odometry and the judge: stamps, cameras, colours, truth.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -27,7 +27,7 @@ class FormatContract : public testing::Test {
   const fs::path here_ = folder_.path();
 };
 
-// Times that no double holds to the nanosecond.
+// Stamps that no double represents to the nanosecond.
 const std::vector<std::int64_t> kStamps = {33'333'333, 1'305'031'102'175'304'001, 1'305'031'102'175'304'002};
 
 TEST_F(FormatContract, StampsAreExact) {

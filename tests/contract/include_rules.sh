@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Include rules of docs/conventions.md and of the top-level layout, as far as a search can see them.
+# Include rules of docs/conventions.md and of the top-level layout, as far as a text search checks them.
 # Usage: include_rules.sh PROJECT_ROOT
-# Prints each violation as file:line and exits 1; exits 2 when there is nothing to look at.
+# Prints each violation as file:line. Exit status: 1 with violations, 2 without C++ sources.
 set -euo pipefail
 here=$(cd -- "$(dirname -- "$0")" && pwd)
 cd -- "$1"
@@ -15,7 +15,7 @@ report() { while read -r line; do echo "$line   ($1)"; violations=$((violations 
 # forbid FOLDER PATTERN WHY: no header that matches; allow FOLDER PATTERN WHY: no header but those that match.
 forbid() { report "$3" < <(includes "$1" | grep -E "^[^:]+:[0-9]+:($2)" || true); }
 allow() { report "$3" < <(includes "$1" | grep -vE "^[^:]+:[0-9]+:($2)\$" || true); }
-# No target of the others is linked either.
+# unlinked FOLDER TARGETS WHY: no CMake file of the folder links one of these targets.
 unlinked() { report "$3" < <(find "$1" -name CMakeLists.txt -o -name '*.cmake' | sort | xargs -r grep -HnoE "vobench(::|_)($2)\>" || true); }
 
 for folder in sim vo tools/base tools/judge tools/bench tools/vobench; do

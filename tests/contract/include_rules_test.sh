@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The include rules hold, and the check that says so rejects each kind of violation when one is planted in a copy.
+# Include rules of the project. Controls: the check rejects each kind of violation planted in a copy.
 # Usage: include_rules_test.sh PROJECT_ROOT
 set -euo pipefail
 root=$1
@@ -12,7 +12,7 @@ trap 'rm -rf "$copy"' EXIT
 bash "$check" "$copy"
 
 failures=0
-# plant FILE LINE: the check must now fail and name the file.
+# plant FILE LINE: with this line the check fails and names the file.
 plant() {
   local kept="$copy/kept"
   if [[ -e $copy/$1 ]]; then cp "$copy/$1" "$kept"; else rm -f "$kept"; fi

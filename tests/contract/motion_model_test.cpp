@@ -1,5 +1,5 @@
-// The nearly-constant-velocity model: the odometry's matrices against numbers worked by hand, and the simulator's
-// sampled motion against the odometry's matrices. "position_noise: 2 m/s^1.5" must mean the same to both.
+// Nearly-constant-velocity model: the odometry's matrices against a worked example, and the simulator's sampled motion
+// against these matrices. "position_noise: 2 m/s^1.5" has the same meaning in both.
 #include "vo/filter/motion_model.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ TEST(MotionModelContract, AsWorkedByHand) {
 Eigen::Vector3d ToEigen(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 Eigen::Quaterniond ToEigen(const glm::dquat& q) { return {q.w, q.x, q.y, q.z}; }
 
-// What the simulator added to its own prediction, from knot to knot, in the odometry's order (p, delta, v, w).
+// Process noise of the simulator's motion, from knot to knot, in the odometry's order (p, delta, v, w).
 std::vector<Eigen::Matrix<double, 12, 1>> Innovations(double step) {
   sim::SampledMotion motion;
   motion.position_noise = kPositionNoise;
@@ -62,7 +62,7 @@ std::vector<Eigen::Matrix<double, 12, 1>> Innovations(double step) {
   return all;
 }
 
-// Mean of n' Q^-1 n in standard deviations from what the model expects, 12. Chi-square, nearly normal.
+// Sum of n' Q^-1 n minus its expectation, in standard deviations. Chi-square, nearly normal.
 double Surprise(const std::vector<Eigen::Matrix<double, 12, 1>>& innovations, const vo::Matrix12& Q) {
   const Eigen::LLT<vo::Matrix12> factor(Q);
   double sum = 0;
@@ -76,8 +76,8 @@ TEST(MotionModelContract, TheSimulatorsMotionIsTheOdometrysModel) {
   const auto innovations = Innovations(step);
   ASSERT_GE(innovations.size(), 1900U);
   const vo::Matrix12 Q = vo::NearlyConstantVelocity(Params(), step).Q;
-  EXPECT_LT(std::abs(Surprise(innovations, Q)), 5);  // a false alarm in 1.7 million
-  // Rejected: a density off by 10 %, and sigma taken for sigma^2.
+  EXPECT_LT(std::abs(Surprise(innovations, Q)), 5);  // false-alarm rate: one in 1.7 million
+  // Controls: a spectral density off by 10 %, and sigma^2 in the place of sigma.
   EXPECT_GT(std::abs(Surprise(innovations, 1.1 * Q)), 5);
   EXPECT_GT(std::abs(Surprise(innovations, 0.9 * Q)), 5);
   vo::MotionParams squared = Params();
@@ -85,9 +85,8 @@ TEST(MotionModelContract, TheSimulatorsMotionIsTheOdometrysModel) {
   EXPECT_GT(std::abs(Surprise(innovations, vo::NearlyConstantVelocity(squared, step).Q)), 5);
 }
 
-// Of noises drawn without their correlation the surprise above can look right: the correlation is checked by itself. It
-// is sqrt(3)/2 = 0.866 in the model, and estimated here with a standard deviation of (1 - 0.75) / sqrt(3 * 1920) =
-// 0.0033.
+// Correlation of position noise and velocity noise: without it the sum above can be within its limit. It is sqrt(3)/2 =
+// 0.866 in the model, and estimated here with a standard deviation of (1 - 0.75) / sqrt(3 * 1920) = 0.0033.
 TEST(MotionModelContract, PositionAndVelocityNoiseAreCorrelated) {
   const auto innovations = Innovations(1.0 / 240);
   vo::Matrix12 covariance = vo::Matrix12::Zero();

@@ -1,5 +1,5 @@
-// The simulator's point world against the odometry's own landmark model and camera, which share no code with it; and
-// the worlds of scenes/points.yaml against the odometry's motion model.
+// Point world of the simulator against the odometry's landmark model and camera, which share no code with it, and the
+// worlds of scenes/points.yaml against the odometry's motion model and prior.
 #include "sim/points/point_world.h"
 
 #include <gtest/gtest.h>
@@ -32,8 +32,8 @@ sim::Scenario Scene(std::uint64_t seed, double noise_px) {
   return scenario;
 }
 
-// The largest distance between where the simulator sees landmarks and where the odometry's camera does, given each
-// landmark's first view, its inverse depth there and the true poses.
+// Largest distance between the simulator's image of a landmark and the odometry's projection of it, given the
+// landmark's first image, its inverse depth there and the true poses.
 double LargestDisagreementPx(bool swap_tangential_terms) {
   sim::Scenario scenario = Scene(3, 0);
   const vo::Camera freiburg = vo::CameraPreset("freiburg1");
@@ -74,11 +74,11 @@ TEST(PointWorldContract, WithoutNoiseItSeesWhatTheOdometrysCameraSees) {
   EXPECT_GT(LargestDisagreementPx(true), 0.01) << "a wrong lens would be noticed";
 }
 
-// Of a chi-square sum, in standard deviations from what is expected; beyond five: once in 1.7 million.
+// Chi-square sum minus its expectation, in standard deviations. Beyond five: false-alarm rate of one in 1.7 million.
 double Score(double sum, double dof) { return (sum - dof) / std::sqrt(2 * dof); }
 
-// What the motion adds to the odometry's prediction from frame to frame, over 100 worlds: 12 degrees of freedom per
-// frame.
+// Score of the motion's deviation from the odometry's prediction, from frame to frame, over 100 worlds: 12 degrees of
+// freedom per frame.
 double MotionScore(double position_noise, double orientation_noise) {
   double sum = 0, dof = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
@@ -106,7 +106,7 @@ TEST(PointWorldContract, TheMotionIsTheOdometrysModelAtTheFrames) {
   EXPECT_GT(std::abs(MotionScore(0.5, 0.306)), 5);
 }
 
-// Of 1000 worlds, against the prior that scenes/points.yaml gives the odometry.
+// Score of the start of 1000 worlds, by the prior of the odometry in scenes/points.yaml.
 double StartScore(double velocity_sigma, double angular_rate_sigma) {
   double sum = 0;
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {

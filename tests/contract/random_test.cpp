@@ -1,4 +1,4 @@
-// Simulator and odometry draw from the same generator, and often with the same seed, 1: none of the numbers may be the same.
+// Random streams of simulator and odometry: one generator, often with the same seed, 1, but no number in common.
 #include "sim/random/random.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST(RandomContract, TheOdometryHasStreamsOfItsOwn) {
   }
   for (const vo::Stream stream : {vo::Stream::prior_pose, vo::Stream::prior_velocity, vo::Stream::pose,
                                   vo::Stream::velocity, vo::Stream::resampling}) {
-    // The key's numbers lie in another order there: the same block of the generator, were the streams one.
+    // The fields of the key are in another order here: equal streams would give the same block of the generator.
     const double ours = vo::Uniform({.seed = 1, .stream = stream, .frame = 4, .particle = 3}, 2);
     for (const double other : theirs) EXPECT_GT(std::abs(ours - other), 1e-9);
   }

@@ -1,5 +1,5 @@
-// Poses and rates as docs/conventions.md defines them, worked by hand, in the simulator and in the odometry; and the
-// one's motion in the other's terms.
+// Poses and angular rates of docs/conventions.md: worked examples in the simulator and in the odometry, and the
+// simulator's motion in the odometry's terms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,8 +32,8 @@ TEST(RotationContract, AQuarterTurnAboutZTakesXToY) {
   EXPECT_NEAR(glm::length(b * glm::dvec3(1, 0, 0) - glm::dvec3(0, 1, 0)), 0, 1e-15);
 }
 
-// q_WC: z by 90 degrees, then about the turned x by 90: i (x) j order matters. By hand: (1 + k)/sqrt2 (1 + i)/sqrt2 =
-// (1 + i + k + ki)/2 = (1 + i + j + k)/2, since ki = j.
+// q_WC: 90 degrees about z, then 90 degrees about the rotated x. By hand: (1 + k)/sqrt2 (1 + i)/sqrt2 = (1 + i + k +
+// ki)/2 = (1 + i + j + k)/2, since ki = j.
 TEST(RotationContract, ProductsAreHamiltons) {
   const Eigen::Quaterniond a = vo::Exp({0, 0, kPi / 2}) * vo::Exp({kPi / 2, 0, 0});
   EXPECT_NEAR((a.coeffs() - Eigen::Vector4d(0.5, 0.5, 0.5, 0.5)).norm(), 0, 1e-15);
@@ -58,8 +58,8 @@ sim::SplineTrajectory SomeMotion() {
                                 {2, {{0.6, 0.2, 0.9}, sim::Exp({-0.2, 0.4, 0.6})}}});
 }
 
-// How far the simulator's rate is from the convention's q(t + dt) = q(t) (x) Exp(w dt), by a central difference with
-// the odometry's logarithm; and from the same with the rate taken in W, which must not fit.
+// q(t + dt) = q(t) (x) Exp(w dt): the simulator's angular rate against a central difference with the odometry's
+// logarithm. Control: the rate taken in W.
 TEST(RotationContract, TheSimulatorsRatesAreInTheCameraFrame) {
   const sim::SplineTrajectory motion = SomeMotion();
   const double dt = 1e-4;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The odometry and the judge need no GLM, Embree, assimp or TBB: they are configured where those cannot be found, and with --build
-# built as well. Usage: without_simulator.sh CMAKE PROJECT_ROOT [--build]
+# Odometry and judge without GLM, Embree, assimp and TBB: configured without these; with --build built as well.
+# Usage: without_simulator.sh CMAKE PROJECT_ROOT [--build]
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,4 +1,4 @@
-// Calibration files: ours, EuRoC's, Kalibr's, ROS's and OpenCV's (YAML and XML).
+// Calibration files: the project's, EuRoC's, Kalibr's, ROS's and OpenCV's (YAML and XML).
 #include "tests/fuzz/hold.h"
 #include "vo/geometry/camera_file.h"
 

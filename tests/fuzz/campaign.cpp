@@ -1,4 +1,4 @@
-// campaign.yaml, and systems.yaml of other people's systems.
+// campaign.yaml, and systems.yaml of external systems.
 #include "tests/fuzz/hold.h"
 #include "tools/bench/campaign/campaign_file.h"
 #include "tools/bench/campaign/external_system.h"

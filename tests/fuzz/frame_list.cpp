@@ -1,5 +1,4 @@
-// rgb.txt (TUM), associations.txt (ICL-NUIM) and mav0/cam0/data.csv (EuRoC): the same bytes as each. Their picture is
-// a.png.
+// rgb.txt (TUM), associations.txt (ICL-NUIM) and mav0/cam0/data.csv (EuRoC): the same bytes as each. Image: a.png.
 #include <opencv2/imgcodecs.hpp>
 
 #include "tests/fuzz/hold.h"

@@ -1,7 +1,6 @@
-// The contract of every fuzz target: whatever bytes a file holds, its reader returns, or throws an exception
-// that names the
-// file. Anything else stops the program: another exception is told here, a crash by the sanitizers, time and
-// memory by whoever runs the target.
+// Contract of all fuzz targets: for any input bytes a reader returns, or throws a std::exception that names the file.
+// All else is a finding and ends the program: other exceptions here, memory errors by the sanitizers, time and memory
+// limits by the caller of the target.
 #pragma once
 
 #include <cstddef>
@@ -16,20 +15,20 @@ namespace fuzz {
 
 using Bytes = std::span<const std::uint8_t>;
 
-// A folder of its own for each process, in memory where the system has such a place; it goes away with the process, which works in it from
-// the first call on.
+// Temporary folder of the process, in /dev/shm where available. The first call makes it the working folder; it is
+// deleted at exit.
 const std::filesystem::path& Folder();
 
-// A file whose content changes from run to run, always under the same name. Kept open: a run costs one write.
+// Input file of a fixed name, rewritten in each run. Kept open: one write per run.
 class InputFile {
  public:
-  // `name` is below Folder(); its folders are made.
+  // `name`: relative to Folder(). Creates the parent folders.
   explicit InputFile(const std::string& name);
   ~InputFile();
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 
-  // Relative to Folder(): short, so that a reader's many copies of it take no memory.
+  // Relative to Folder(): a short string, whose copies in a reader take no heap memory.
   const std::filesystem::path& path() const { return path_; }
   void Write(Bytes bytes);
 
@@ -38,17 +37,16 @@ class InputFile {
   int file_ = -1;
 };
 
-// Writes a file beside the input, once.
+// Writes another file below Folder().
 void WriteBeside(const std::string& name, const std::string& content);
 
-// A finding: says what it was and stops.
+// Reports a finding on stderr and aborts.
 [[noreturn]] void Finding(const std::string& what);
 
-// Runs a reader. An exception that is none of std's, or whose text does not have `named` (the file's path), is a
-// finding.
+// Runs a reader. A finding: an exception that is no std::exception, or whose text lacks `named` (the file's path).
 void Hold(const std::string& named, const std::function<void()>& read);
 
-// The same for a reader of text, which knows no file: only E may be thrown.
+// The same for a reader of text without a file: only E may be thrown.
 template <class E>
 void HoldText(const std::function<void()>& read) {
   try {

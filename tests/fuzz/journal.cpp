@@ -1,5 +1,4 @@
-// frames.journal of an unfinished sequence, and a file of baked light: the program's own files, after a disk has
-// spoiled them.
+// frames.journal of an unfinished sequence, and a file of baked light: the program's own files, damaged.
 #include "sim/sequence/journal.h"
 
 #include "sim/light/cache.h"

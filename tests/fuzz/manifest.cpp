@@ -1,4 +1,4 @@
-// manifest.json of a sequence: by who goes on with it, and by who verifies it.
+// manifest.json of a sequence, as read by a resumed rendering and by the verification.
 #include "sim/sequence/content.h"
 #include "tests/fuzz/hold.h"
 #include "tools/judge/verification/check.h"

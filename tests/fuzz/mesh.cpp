@@ -1,5 +1,4 @@
-// Mesh files of each kind that is read, told apart by how they begin; an OBJ's materials and a glTF's data lie beside
-// it.
+// Mesh files of all formats, distinguished by their first bytes. Materials of an OBJ and data of a glTF are beside it.
 #include <map>
 #include <memory>
 #include <string_view>

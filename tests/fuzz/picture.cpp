@@ -1,5 +1,5 @@
-// Pictures: textures (with alpha and without), frames of a sequence, streams of truth. Chunks of a PNG get the checksum
-// that belongs to them in half of the runs, or nothing would come past it.
+// Images: textures (with alpha and without), frames of a sequence, truth streams. In half of the runs the chunks of a
+// PNG get correct checksums, so that the input reaches the code behind their check.
 #include "sim/world/image_file.h"
 #include "sim/world/texture.h"
 #include "tests/fuzz/hold.h"
@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const bool with_alpha : {false, true}) {
     fuzz::HoldText<std::runtime_error>([&] {
       const sim::DecodedImage image = sim::DecodeImage(bytes, with_alpha);
-      constexpr std::int64_t kSmall = 1 << 20;  // a texture of more is the same work, and no decoder's
+      constexpr std::int64_t kSmall = 1 << 20;  // larger textures cost time outside the decoder
       if (std::int64_t{image.width} * image.height > kSmall) return;
       sim::test::Sample(sim::Texture("picture", image.width, image.height, image.rgb, image.alpha), {0.5f, 0.5f}, 2);
     });

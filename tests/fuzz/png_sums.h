@@ -1,4 +1,4 @@
-// The checksums of a PNG's chunks, put right.
+// Correction of the checksums of a PNG's chunks.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace fuzz {
 
-// Of as many chunks as there are; what is no PNG is left alone.
+// Corrects all complete chunks. Bytes that are no PNG stay unchanged.
 void MendPngSums(std::vector<std::uint8_t>& bytes);
 
 }  // namespace fuzz

@@ -1,6 +1,8 @@
-// The short run of a fuzz target, with any compiler: every file of the folders that are named, then so many changes of
-// them, the same each time. Usage: NAME CHANGES FOLDER...   Folders may be missing. Without any input it fails: nothing
-// would be tested. A run may take a second of this processor and 64 KiB of input; what takes longer is a finding.
+// Short run of a fuzz target, with any compiler: all files of the folders, then a number of reproducible mutations of
+// them.
+// Usage:  NAME CHANGES FOLDER...     Folders may be missing.
+// Exit:   2 without any input.
+// Limits: 64 KiB of input for a mutation; more than one second of CPU time in a run is a finding.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -39,8 +41,8 @@ class Random {
   std::uint64_t state_ = 1;
 };
 
-// One to four of: another byte, a bit turned, bytes left out, bytes doubled, a piece of another input, the end cut off,
-// a number that is seldom thought of.
+// One to four mutations: byte replaced, bit flipped, bytes deleted, bytes duplicated, piece of another input inserted,
+// end cut off, extreme value inserted.
 Input Changed(Random& random, const std::vector<Input>& inputs) {
   static constexpr std::array<const char*, 10> kWords = {
       "nan", "-1", "0", "1e400", "2147483648", "99999999999999999999", "..", "/", "[[[[", "\xff\xff\xff\xff"};
@@ -97,7 +99,7 @@ double ProcessorSeconds() {
 }
 
 void Run(const Input& input, const std::string& what) {
-  // Kept until the run is over, so that an input that crashes can be seen.
+  // Kept until the run ends: after a crash the file holds its input.
   const fs::path last = fs::temp_directory_path() / ("vobench_fuzz_last_" + std::to_string(getpid()));
   std::ofstream(last, std::ios::binary)
       .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));

@@ -1,5 +1,5 @@
-// The JSON of a result folder and of a campaign's tasks: metrics.json, run.json, pictures.json, truth/scale.json,
-// task.json; the same bytes as each, which their "format" tells apart.
+// JSON of a result folder and of a campaign's tasks: metrics.json, run.json, pictures.json, truth/scale.json,
+// task.json. The same bytes as each; their "format" distinguishes them.
 #include "tests/fuzz/hold.h"
 #include "tools/bench/campaign/results.h"
 #include "tools/bench/result/metrics_json.h"

@@ -1,4 +1,4 @@
-// scenario.yaml: the simulator's part and the odometry's.
+// scenario.yaml: the settings of the simulator and of the odometry.
 #include "sim/scenario/scenario.h"
 
 #include "tests/fuzz/hold.h"

@@ -1,4 +1,4 @@
-// Pictures of light: OpenEXR (skies, and a verification's streams), Radiance HDR, and flow (.flo).
+// Floating-point images: OpenEXR (skies and truth streams), Radiance HDR, and optical flow (.flo).
 #include "sim/world/sky.h"
 
 #include "tests/fuzz/hold.h"

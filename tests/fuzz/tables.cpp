@@ -1,5 +1,4 @@
-// Tables of numbers that a verification or a report reads: one file after the other gets the bytes, the others are as
-// they should be.
+// Tables read by the verification or a report: one file has the input bytes, the others are valid.
 #include <array>
 #include <memory>
 
@@ -39,7 +38,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       files[i] = std::make_unique<fuzz::InputFile>(folder + kTables[i].name);
     }
   }
-  // Chosen by the size, so that one run does not pay for all.
+  // One table per run, chosen by the size of the input: saves time.
   const std::size_t chosen = size % kTables.size();
   files[chosen]->Write({data, size});
   const std::filesystem::path folder = fuzz::Folder() / kTables[chosen].folder;

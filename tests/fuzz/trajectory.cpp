@@ -1,4 +1,5 @@
-// `timestamp tx ty tz qx qy qz qw`, by the judge and by the simulator, and `timestamp vx vy vz wx wy wz`.
+// Trajectories, `timestamp tx ty tz qx qy qz qw`, by the readers of judge and simulator; velocities, `timestamp vx vy
+// vz wx wy wz`.
 #include "tools/judge/evaluation/trajectory.h"
 
 #include "sim/motion/recorded.h"

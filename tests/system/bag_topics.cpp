@@ -21,7 +21,7 @@ std::string Text(const char* format, Values... values) {
   return text;
 }
 
-// What the library makes of a message; it refuses one whose type has another MD5 sum.
+// Text of a message as read by rosbag, which refuses a type with another MD5 sum.
 std::string TextOf(const rosbag::MessageInstance& message) {
   if (const auto image = message.instantiate<sensor_msgs::Image>()) {
     float first = 0;

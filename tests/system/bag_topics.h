@@ -1,4 +1,4 @@
-// Topics of a ROS 1 bag as the library reads them back. Compiled as C++17: rosbag's headers are not C++20.
+// Topics of a ROS 1 bag, read by rosbag. Compiled as C++17: rosbag's headers are not C++20.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ namespace vobench::system_test {
 // Message counts by topic, "TOPIC TYPE COUNT" each.
 std::vector<std::string> BagTopics(const std::string& file);
 
-// Each message, in order of time: "SECONDS TOPIC CONTENT", the content by the library's own types.
+// Each message, in order of time: "SECONDS TOPIC CONTENT", the content by ROS's own types.
 std::vector<std::string> BagMessages(const std::string& file);
 
 }  // namespace vobench::system_test

@@ -1,5 +1,5 @@
-// `vobench bench` with a command as the system that breaks as planted: where the focal length that it is told, or the
-// number of frames, is too large.
+// `vobench bench` with a command as the system and a planted breaking point: too large a focal length in the
+// calibration, or too many frames.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
 
-// Any answer counts as long as it is there: a line along x for every frame, none where the condition holds of fx and n.
+// System that moves along x in every frame, and has no pose where `condition`, in fx and n, holds.
 std::string BreaksWhere(const std::string& condition) {
   return "fx=$(sed -nE 's/^fx: //p' {sequence}/camera.yaml); n=$(grep -c png {sequence}/rgb.txt); "
          "awk -v fx=$fx -v n=$n '/^[0-9]/ { if (!(" +
@@ -117,7 +117,7 @@ TEST_F(BenchTest, AttackFindsTheTwoThatBreakIt) {
   std::size_t broken = 0;
   for (std::size_t at = 0; (at = csv.find(",no_answer,", at)) != std::string::npos; ++at) ++broken;
   EXPECT_GE(broken, 9u);
-  // Of one that never breaks.
+  // Control: a system that never breaks.
   words[1] = BreaksWhere("0");
   words[3] = "nothing";
   const Outcome nothing = RunVobench(words, here_.path());

@@ -1,4 +1,4 @@
-// What tests in a headless Chromium have in common: the program, the browser, an empty folder.
+// Common parts of tests in a headless Chromium: the program, the browser, a temporary folder.
 // Arguments: VOBENCH MODULES [...]     MODULES has node_modules, and beside it are the scenes
 // Exit:  77 where there is no Chromium.
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
@@ -24,7 +24,7 @@ const flags = [
   "--disable-sync",
 ];
 
-// `check` with a browser that has nothing of its own.
+// Runs `check` with a new browser.
 export async function withBrowser(check) {
   const executablePath = ["chromium", "chromium-browser", "google-chrome"]
     .flatMap((name) => process.env.PATH.split(delimiter).map((folder) => join(folder, name)))

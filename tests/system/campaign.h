@@ -1,4 +1,4 @@
-// A small campaign in a folder of its own, for tests of what a user would do with it.
+// Fixture with small campaigns in a temporary folder.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@
 
 namespace vobench::system_test {
 
-// Lines of results.csv by their system, fields by their column.
+// Lines of results.csv by system, fields by column.
 using Row = std::map<std::string, std::string>;
 std::map<std::string, Row> BySystem(const std::string& csv);
 
@@ -23,14 +23,14 @@ class CampaignTest : public testing::Test {
   // 2 exposures x 2 systems x 2 seeds on the first 12 frames of scenes/tiny.yaml.
   static std::string Images(const std::filesystem::path& scenario = TinyScenario());
 
-  // `vobench campaign c.yaml -o OUT ...`, after c.yaml was given this text.
+  // Writes `text` to c.yaml and runs `vobench campaign c.yaml -o OUT ...`.
   Outcome Run(const std::string& text, const std::string& out, const std::vector<std::string>& more = {});
   std::vector<std::string> Words(const std::string& out, const std::vector<std::string>& more = {}) const;
-  // Must be done.
+  // The same; must succeed.
   void MustRun(const std::string& text, const std::string& out, const std::vector<std::string>& more = {});
 
   std::string Results(const std::string& out) const { return ReadFile(here_ / out / "results.csv"); }
-  // All files of all tasks and the tables, but for times and logs.
+  // All files of all tasks and the tables, except times and logs.
   std::map<std::string, std::string> Lasting(const std::string& out) const;
   std::size_t Done(const std::string& out) const;  // tasks that have a folder
 

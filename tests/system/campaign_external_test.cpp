@@ -1,4 +1,4 @@
-// Other people's systems in a campaign: one that works, and ones that crash, hang, lose frames or say nothing.
+// External systems in a campaign: ones that work, crash, hang, lose frames or write nothing.
 #include <signal.h>
 #include <sys/wait.h>
 
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using Json = nlohmann::json;
 
-// `vobench track` as somebody else's program, and what can go wrong with one.
+// `vobench track` as an external program, and programs with all kinds of failures.
 std::string Systems() {
   const std::string track = Program() + " track {sequence} -o run --seed {seed} > said.txt 2>&1 && ";
   return "systems:\n"
@@ -75,21 +75,21 @@ TEST_F(CampaignTest, ExternalOutcomesAreResults) {
   EXPECT_THAT(rows["silent"]["reason"], "the program wrote no trajectory.txt (`trajectory:` names it)");
   EXPECT_THAT(rows["nonsense"]["reason"], HasSubstr("trajectory.txt:1:"));
   EXPECT_THAT(ReadFile(here_ / "out/tables.md"), HasSubstr("| X |"));
-  // What it said, and the calibration that it was given, are kept.
+  // The log and the calibration are kept.
   EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000006/log.txt"), "one\nno calibration\n\n");
   EXPECT_THAT(ReadFile(here_ / "out/tasks/00/000003/log.txt"), HasSubstr("000001 0.033333333 10\n"));
   EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000003/calibration.txt"),
             "Pinhole 0.8203125 1.09375 0.5 0.5 0\n160 120\ncrop\n160 112\n")
       << "sides that it can halve";
   EXPECT_FALSE(fs::exists(here_ / "out/tasks/00/000001/work"));
-  // The same again, and by itself.
+  // A single task again, and the campaign in another folder.
   const auto all = Lasting("out");
   EXPECT_THAT(Run(text, "out", {"--task", "1"}).out, HasSubstr("the same as before, byte for byte"));
   MustRun(text, "again", {"--jobs", "1", "--cache", "out/cache"});
   EXPECT_TRUE(Lasting("again") == all);
 }
 
-// What programs of other people do that is no crash: each is named, and judged where it can be.
+// Irregular output and exit status of external programs: reported by name, evaluated where possible.
 TEST_F(CampaignTest, PeculiarProgramsAreJudgedAsWhatTheyAre) {
   const std::string poses = "awk '/^[^#]/ {print $1, NR, 0, 0, 0, 0, 0, 1}' {sequence}/rgb.txt";
   WriteFile(here_ / "systems.yaml",
@@ -146,8 +146,8 @@ TEST_F(CampaignTest, PeculiarProgramsAreJudgedAsWhatTheyAre) {
   EXPECT_THAT(ReadFile(here_ / "out/times.csv"), HasSubstr(",,,\n")) << "no times of frames that nobody measured";
 }
 
-// The whole way of a program that is not ours, from pictures and calibration to the table: an ATE below 5 % of the
-// path; at rest it is 29 %, the standard deviation of a uniform distribution.
+// External program from images and calibration to the table: ATE below 5 % of the path. A constant pose has 29 %, the
+// standard deviation of a uniform distribution.
 TEST_F(CampaignTest, TheOdometryOfAnotherKindFindsItsWay) {
   if (std::system("/usr/bin/python3 -c 'import cv2' 2> /dev/null") != 0) GTEST_SKIP() << "no python3-opencv";
   const std::string scenes = VOBENCH_SOURCE_DIR "/scenes/";
@@ -172,7 +172,7 @@ TEST_F(CampaignTest, AProgramThatIsNotThereIsNoResult) {
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.err, HasSubstr("gone: cannot be started (status 127)"));
   EXPECT_EQ(BySystem(Results("out"))["gone"]["status"], "failed");
-  // A script that the interpreter does not find: its message is the reason, without the folder of the run.
+  // Script that the interpreter does not find: the reason is its message, without the folder of the run.
   WriteFile(here_ / "systems.yaml",
             "systems:\n  - {name: gone, command: \"/bin/sh {here}/gone.sh; echo $PWD/x; exit 2\"}\n");
   const std::string said = "gone: '{here}/gone.sh', which the command names, is not there";
@@ -202,7 +202,7 @@ TEST_F(CampaignTest, AProgramThatIsBuiltAnewIsRunAnew) {
   build("NR");
   MustRun(CampaignOf("[mine]"), "out");
   const auto mine = written(0);
-  MustRun(CampaignOf("[other, mine]"), "out");  // tasks have other numbers: what is done stays
+  MustRun(CampaignOf("[other, mine]"), "out");  // other task numbers: finished tasks are kept
   EXPECT_GE(written(0), mine);
   EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000001/task.json").find("\"system\": \"other\""), std::string::npos);
   const auto other = written(0);
@@ -230,7 +230,7 @@ TEST_F(CampaignTest, AnotherProgramIsJudgedAsOursIs) {
   const Json track = Json::parse(ReadFile(here_ / "tracked/metrics.json")).at("runs").at(0);
   const Json task = Json::parse(ReadFile(here_ / "out/tasks/00/000000/metrics.json")).at("runs").at(0);
   for (const char* alignment : {"none", "se3", "sim3", "first"}) {
-    // Truth and estimates have gone through text with twelve digits.
+    // Truth and estimates are read from text with twelve digits.
     const double a = track.at("errors").at("ate").at(alignment).at("position").at("rmse");
     const double b = task.at("errors").at("ate").at(alignment).at("position").at("rmse");
     EXPECT_NEAR(a, b, 1e-10) << alignment;
@@ -260,7 +260,7 @@ TEST_F(CampaignTest, StopsExternalPrograms) {
     EXPECT_TRUE(runs());
     kill(campaign, signal);
     ASSERT_EQ(waitpid(campaign, &status, 0), campaign);
-    // SIGKILL leaves nobody who could wait for it.
+    // After SIGKILL no process is left that waits for it.
     for (int tries = 0; signal == SIGKILL && runs() && tries < 5000; ++tries)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     EXPECT_FALSE(runs()) << "signal " << signal;
@@ -274,20 +274,20 @@ TEST_F(CampaignTest, EntriesAreCheckedBeforeAnythingRuns) {
   EXPECT_THAT(bad.err, HasSubstr("systems.yaml:2:24: 'command': {vocabulary}"));
   EXPECT_EQ(bad.err.find("there is no system"), std::string::npos) << "nobody knows that before it can be read";
   EXPECT_FALSE(fs::exists(here_ / "out"));
-  // A lens that the calibration cannot say: the task fails, with the reason.
+  // A lens that the calibration format cannot represent: the task fails with this reason.
   WriteFile(here_ / "systems.yaml", "systems:\n  - {name: a, calibration: svo, command: \"x {calibration}\"}\n");
   std::string text = CampaignOf("[a]");
   text.replace(text.find("time.duration"), 0, "camera.distortion.k3: 0.01, ");
   const Outcome lens = Run(text, "out");
   EXPECT_EQ(lens.status, 1);
   EXPECT_THAT(lens.err, HasSubstr("failed, a calibration for svo has no place for k3"));
-  // Points have no pictures.
+  // Point worlds have no images.
   WriteFile(here_ / "systems.yaml", "systems:\n  - {name: a, command: \"x\"}\n");
   std::string points = Points();
   points.replace(points.find("[rb2pf, "), 8, "[a, ");
   EXPECT_THAT(Run("external: systems.yaml\n" + points, "points").err,
               HasSubstr("a world of points has no pictures for 'a'"));
-  // What would not reach it is refused.
+  // A setting without effect on an external system is refused.
   WriteFile(here_ / "systems.yaml", "systems:\n  - {name: a, command: \"x\", sensors: mono_imu, layout: euroc}\n");
   text = CampaignOf("[a]");
   text.replace(text.find("time.duration"), 0, "prior.focal_error: 0.02, ");
@@ -296,7 +296,7 @@ TEST_F(CampaignTest, EntriesAreCheckedBeforeAnythingRuns) {
               HasSubstr("c.yaml:1:" + column + ": 'prior.focal_error': 'a' is given the cameras"));
 }
 
-// A wrong calibration is what other people's programs are given, too: of a focal length of 131.25 px.
+// prior.focal_error in the calibration of an external program: a focal length of 131.25 px times 1.2.
 TEST_F(CampaignTest, AWrongFocalLengthReachesIt) {
   WriteFile(here_ / "systems.yaml",
             "systems:\n  - {name: a, calibration: orb_slam2, command: \"cat {calibration} {sequence}/camera.yaml; exit "

@@ -1,4 +1,4 @@
-// Whatever is killed, nothing is lost: the next start ends with the same bytes as a campaign that was never stopped.
+// Resume after SIGKILL: the next start of a campaign ends with the bytes of an uninterrupted one.
 #include <signal.h>
 #include <sys/wait.h>
 
@@ -15,7 +15,6 @@ namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using testing::HasSubstr;
 
-// Processes that this one has started.
 std::vector<int> ChildrenOf(int process) {
   const std::string number = std::to_string(process);
   std::ifstream stream("/proc/" + number + "/task/" + number + "/children");
@@ -24,7 +23,7 @@ std::vector<int> ChildrenOf(int process) {
 
 class CampaignKillTest : public CampaignTest {
  protected:
-  std::mt19937 random_{std::random_device{}()};  // any moment will do; the test prints which
+  std::mt19937 random_{std::random_device{}()};  // random moments, printed by the test
   int Draw(int largest) { return std::uniform_int_distribution<>(0, largest)(random_); }
 };
 

@@ -1,4 +1,4 @@
-// Recorded sequences in a campaign: what `vobench track` and `evaluate` say of them, in the tables of all others.
+// Recorded sequences in a campaign: the results are those of `vobench track`, in the common tables.
 #include <signal.h>
 
 #include <nlohmann/json.hpp>
@@ -31,7 +31,7 @@ std::string Later(const std::string& text, long seconds) {
 
 class CampaignRecordedTest : public CampaignTest {
  protected:
-  // What a camera might have left in `rec`: 12 frames at some time of the day, and their truth; its calibration beside.
+  // Recording in `rec`: 12 frames with Unix time stamps, and their truth; its calibration beside.
   void Record() {
     ASSERT_EQ(RunVobench({"render", TinyScenario().string(), "-o", "seq", "--set", "time.duration=0.4 s"}, here_.path())
                   .status,
@@ -76,15 +76,15 @@ TEST_F(CampaignRecordedTest, IsTrackedAndJudgedAsByTheSingleCommands) {
   EXPECT_EQ(Task("out", 1).at("errors"), tracked.at("errors")) << "to the last digit";
   EXPECT_EQ(Task("out", 1).at("coverage"), tracked.at("coverage"));
   EXPECT_NE(Ate(Task("out", 0)), Ate(tracked)) << "images alone: not how long the shutter rolls";
-  // The same as an external program, from links and camera.yaml; in EuRoC's layout, which has no shutter, as alone.
+  // The same odometry as an external program, from links and camera.yaml.
   EXPECT_NEAR(Ate(Task("out", 2)), Ate(tracked), 1e-10);
   EXPECT_EQ(Task("out", 2).at("coverage").at("pose_coverage").at("value"), 1);
   EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000004/log.txt").substr(0, 29), "000000 1305031102.000000000\n0")
       << "no exposure: nobody knows it";
-  // Nothing is copied.
+  // Images are links.
   for (const auto& entry : fs::recursive_directory_iterator(here_ / "out/cache"))
     EXPECT_TRUE(entry.path().extension() != ".png" || entry.is_symlink()) << entry.path();
-  // By itself, with other jobs, and in other columns.
+  // A single task again, and the campaign with another number of jobs.
   const auto all = Lasting("out");
   EXPECT_THAT(Run(Campaign(), "out", {"--task", "1"}).out, HasSubstr("the same as before, byte for byte"));
   MustRun(Campaign(), "again", {"--jobs", "1"});
@@ -125,8 +125,8 @@ TEST_F(CampaignRecordedTest, ResultsDependOnTheBytesAndNotOnThePlace) {
   EXPECT_EQ(Run(moved, "out").status, 2) << "another picture";
 }
 
-// EuRoC's layout with both cameras and the IMU: a part of it is served with the recording's own sensor.yaml files; one
-// that has one camera alone is refused.
+// EuRoC layout with both cameras and the IMU: a range of its frames is passed on with the recording's own sensor.yaml
+// files; with one camera a stereo system is refused.
 TEST_F(CampaignRecordedTest, EurocIsServedWithAllItsSensors) {
   const std::string camera = "width: 160, height: 120, fx: 110, fy: 110, cx: 79.5, cy: 59.5";
   ASSERT_EQ(RunVobench({"render", std::string(VOBENCH_SOURCE_DIR) + "/scenes/stereo.yaml", "-o", "rig", "--format",
@@ -220,7 +220,7 @@ TEST_F(CampaignRecordedTest, ThroughSlurmTheTableIsThatOfALocalCampaign) {
   EXPECT_TRUE(Lasting("slurm") == Lasting("local"));
 }
 
-// A real one, where it is at hand: the lens that has k3, rectified for a program that knows none.
+// Real recording, where available: a lens with k3, rectified for a program without a lens model.
 TEST_F(CampaignRecordedTest, APieceOfFreiburg1) {
   const auto sequence = RecordedSequence("tum_fr1_xyz");
   if (!sequence) GTEST_SKIP() << "no recorded sequence tum_fr1_xyz; VOBENCH_DATA names the folder it is looked for in";

@@ -1,4 +1,4 @@
-// Other people's systems with two cameras, or an IMU, in a campaign: what they are given, and how they are judged.
+// External systems with two cameras or an IMU in a campaign: inputs and evaluation.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -12,9 +12,9 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-// Two cameras give the metre: after SE(3) the error of stereo_flow is below 2 % of the path, and the scale that Sim(3)
-// would have fitted is 1 within 2 %. Control: with half the baseline in cam1's sensor.yaml everything is half as large.
-// Sim(3) would hide it; SE(3) does not.
+// Metric scale by stereo: after SE(3) the error of stereo_flow is below 2 % of the path, and the scale of a Sim(3)
+// alignment is 1 within 2 %. Control: half the baseline in cam1's sensor.yaml halves all lengths. Sim(3) would hide it;
+// SE(3) does not.
 TEST_F(CampaignTest, StereoFindsItsWayInMetres) {
   if (std::system("/usr/bin/python3 -c 'import cv2' 2> /dev/null") != 0) GTEST_SKIP() << "no python3-opencv";
   const std::string example = VOBENCH_SOURCE_DIR "/tools/python/examples/";
@@ -66,9 +66,9 @@ TEST_F(CampaignTest, StereoFindsItsWayInMetres) {
     const double rmse_cm = std::stod(evaluated.out.substr(evaluated.out.find("rmse") + 4));
     EXPECT_EQ(rmse_cm < 300 * number("stereo", "ate_m"), small) << evaluated.out;
   }
-  // With the IMU, beside one that takes the first camera alone: no table has two alignments, and none sees the truth.
-  // `turned` is what a perfect visual-inertial odometry says: the truth of the IMU in EuRoC's own form, of a world that
-  // is turned about gravity.
+  // Systems with an IMU beside monocular ones: one alignment in each table, and no access to the truth. `turned` is the
+  // output of a perfect visual-inertial odometry: the truth of the IMU in EuRoC's format, in a world rotated about
+  // gravity.
   const std::string tiny = "width: 16, height: 12, fx: 9, fy: 9, cx: 7.5, cy: 5.5";
   const std::string cameras = "cameras=[{name: a, " + tiny + "}, {name: b, " + tiny + "}]";
   ASSERT_EQ(RunVobench({"render", std::string(VOBENCH_SOURCE_DIR) + "/scenes/stereo.yaml", "-o", "truth", "--format",
@@ -83,7 +83,7 @@ TEST_F(CampaignTest, StereoFindsItsWayInMetres) {
     std::ranges::replace(line, ',', ' ');
     double t_ns = 0, x = 0, y = 0, z = 0, w = 0, a = 0, b = 0, c = 0;
     if (!(std::istringstream(line) >> t_ns >> x >> y >> z >> w >> a >> b >> c)) continue;
-    const double h = std::sqrt(0.5);  // of 90 degrees
+    const double h = std::sqrt(0.5);  // rotation by 90 degrees
     poses << t_ns / 1e9 << ' ' << 1 - y << ' ' << x << ' ' << z << ' ' << h * (a - b) << ' ' << h * (b + a) << ' '
           << h * (c + w) << ' ' << h * (w - c) << '\n';
   }
@@ -114,8 +114,8 @@ TEST_F(CampaignTest, StereoFindsItsWayInMetres) {
   EXPECT_EQ(ReadFile(here_ / "imu/tasks/00/000001/log.txt"), "camera.yaml\nrgb\nrgb.txt\n");
 }
 
-// The shipped entries of programs that are not here, with stand-ins that write what their own documentation says:
-// shell, configuration files, times and quaternions arrive. Each says that it moved along x of the IMU by half a metre.
+// Shipped entries of programs that are not installed, with stand-ins that write the documented output: shell text,
+// configuration files, times and quaternions are correct. Each reports a motion of half a metre along x of the IMU.
 TEST_F(CampaignTest, TheShippedEntriesOfOthersAreGoodShell) {
   const auto program = [&](const std::string& name, const std::string& text) {
     fs::create_directories((here_ / name).parent_path());

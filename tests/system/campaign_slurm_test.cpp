@@ -1,4 +1,4 @@
-// A campaign through a real Slurm gives the table of one that ran here, whatever is killed in between.
+// Campaign on a real Slurm: the table of a local campaign, also after kills.
 #include <algorithm>
 
 #include "tests/system/campaign.h"
@@ -28,13 +28,13 @@ TEST_F(CampaignSlurmTest, TheTableIsThatOfALocalCampaign) {
   ASSERT_EQ(outcome.status, 0) << outcome.err << cluster.Log();
   EXPECT_TRUE(Lasting("slurm") == Lasting("local"));
   EXPECT_THAT(ReadFile(here_ / "slurm/slurm/job.sh"), HasSubstr("#SBATCH --partition=all\n#SBATCH --time=5\n"));
-  // Only what is missing is submitted.
+  // Only missing tasks are submitted.
   fs::remove_all(here_ / "slurm/tasks/00/000002");
   fs::remove_all(here_ / "slurm/tasks/00/000007");
   ASSERT_EQ(Run(Images(), "slurm", Slurm()).status, 0);
   EXPECT_EQ(ReadFile(here_ / "slurm/slurm/tasks.txt"), "2 7\n");
   EXPECT_TRUE(Lasting("slurm") == Lasting("local"));
-  // What sbatch does not like is said in its words.
+  // Errors of sbatch are passed on.
   const Outcome refused = Run(Images(), "other", Slurm({"--partition", "none"}));
   EXPECT_EQ(refused.status, 1);
   EXPECT_THAT(refused.err, HasSubstr("sbatch: "));
@@ -47,11 +47,11 @@ TEST_F(CampaignSlurmTest, TheCampaignTheDaemonAndTheNodeAreKilled) {
   MustRun(text, "local");
   SlurmCluster cluster;
   WriteFile(here_ / "c.yaml", text);
-  // The one who waits: the jobs go on.
+  // SIGKILL for the waiting campaign: its jobs go on.
   EXPECT_TRUE(KillVobench(Words("slurm", Slurm()), here_.path(), [&] { return Done("slurm") >= 2; }));
   cluster.KillNodeDaemon();
   cluster.StartNode();
-  // The node with all that runs on it, while somebody waits again.
+  // SIGKILL for the campaign, then for the node with all its processes.
   EXPECT_TRUE(KillVobench(Words("slurm", Slurm()), here_.path(), [&] { return Done("slurm") >= 8; }));
   cluster.KillNode();
   EXPECT_LT(Done("slurm"), 30u) << "nothing was left to be lost";
@@ -62,7 +62,7 @@ TEST_F(CampaignSlurmTest, TheCampaignTheDaemonAndTheNodeAreKilled) {
   EXPECT_TRUE(Lasting("slurm") == Lasting("local"));
 }
 
-// A controller that is away for a while: its jobs may well be in the queue.
+// Slurm controller out of reach: the jobs may be in its queue, so none is submitted.
 TEST_F(CampaignTest, SubmitsNothingIntoAnUnknownQueue) {
   const auto command = [&](const std::string& name, const std::string& script) {
     WriteFile(here_ / ("bin/" + name), "#!/bin/sh\n" + script);

@@ -1,4 +1,4 @@
-// A campaign gives what `run` gives, one by one or all together, and says what is wrong before it begins.
+// Campaigns: the results are those of `run`, task by task or all together; errors are reported before the start.
 #include "tests/system/campaign.h"
 
 #include <sys/wait.h>
@@ -46,7 +46,7 @@ TEST_F(CampaignTest, ASweepWritesItsCurves) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (3 * 3 + 1)) << "2 systems, 3 doses, 3 numbers";
   EXPECT_THAT(csv, HasSubstr("\n1,noise,points,rbpf_16,0.5,0.5 px,ate_m,5,0,"));
   EXPECT_THAT(ReadFile(here_ / "one/tables.md"), HasSubstr("\nHalf of the runs have broken at rb2pf: "));
-  // Another threshold is no reason to run anything again; without curves there are none.
+  // Another threshold repeats no task; without `curves` there are no curves.
   std::string other = text;
   other.replace(other.find("2 cm"), 4, "1 cm");
   const auto before = fs::last_write_time(here_ / "one/tasks/00/000000/times.json");
@@ -58,7 +58,7 @@ TEST_F(CampaignTest, ASweepWritesItsCurves) {
   EXPECT_THAT(ReadFile(here_ / "two/report.html"), testing::Not(HasSubstr("Along noise")));
 }
 
-// Each shipped sweep is read with all its scenarios, and every stress that the documentation names is there.
+// Shipped sweeps: all their scenarios are read, and every stress of the documentation has one.
 TEST_F(CampaignTest, ShippedSweepsAreGood) {
   const fs::path sweeps = TinyScenario().parent_path() / "sweeps";
   std::set<std::string> names;
@@ -107,7 +107,7 @@ TEST_F(CampaignTest, NumbersAreThoseOfRun) {
       << "10 ms is the scenario's own exposure; the pictures have gone through files";
 }
 
-// Pictures of more than 8 bits are rounded alike on both ways.
+// Images of more than 8 bits: the same rounding through files and in memory.
 TEST_F(CampaignTest, NumbersAreThoseOfRunWithTwelveBits) {
   MustRun("scenarios: [{file: " + TinyScenario().string() +
               ", set: {time.duration: 0.4 s, sensor.bit_depth: 12}}]\nsystems: [rb2pf]\n",
@@ -131,8 +131,8 @@ TEST_F(CampaignTest, NumbersAloneAreTheSameNumbers) {
   EXPECT_THAT(left, testing::UnorderedElementsAre("task.json", "times.json"));
 }
 
-// prior.focal_error reaches the odometry alone, in both commands, both kinds of worlds and whatever ours knows: the
-// truth stays.
+// prior.focal_error changes the odometry's calibration and not the truth: in both commands, in both kinds of worlds,
+// with and without `knows: images`.
 TEST_F(CampaignTest, FocalErrorReachesTheOdometryAlone) {
   const auto text = [](const fs::path& scenario) {
     return "scenarios: [{file: " + scenario.string() + ", set: {time.duration: 0.4 s}}]\n" +
@@ -165,11 +165,11 @@ TEST_F(CampaignTest, OneTaskAgainAndAnyOrder) {
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_THAT(again.out, HasSubstr("task 5 (tiny, exposure 2 ms, rbpf, seed 2): ok"));
   EXPECT_THAT(again.out, HasSubstr("the same as before, byte for byte"));
-  // It would say otherwise.
+  // Control: a changed file is reported.
   WriteFile(here_ / "out/tasks/00/000005/estimate.txt", "something else");
   EXPECT_THAT(Run(Images(), "out", {"--task", "5"}).err, HasSubstr("came out different from before"));
   EXPECT_TRUE(Lasting("out") == all) << "and what it has found out now is there";
-  // As GNU parallel does: each alone, in an order of its own, into an empty folder.
+  // Single tasks in another order into an empty folder, as by GNU parallel.
   for (const char* task : {"3", "7", "0", "1", "6", "5", "4", "2"}) {
     EXPECT_EQ(Run(Images(), "alone", {"--task", task, "--cache", "out/cache"}).status, 0);
   }
@@ -206,14 +206,14 @@ TEST_F(CampaignTest, AChangedFileIsRefusedAndUpdatedWhenAsked) {
   EXPECT_EQ(fs::last_write_time(here_ / "out/tasks/00/000000/times.json"), kept);
   MustRun(changed, "fresh");
   EXPECT_TRUE(Lasting("out") == Lasting("fresh"));
-  // Names, tables and what counts as lost are no reason to do anything again.
+  // Tables and the criterion for lost runs repeat no task.
   MustRun(changed + "judge: {lost: {error: 1 mm}}\ntables: [rpe_m]\n", "out");
   EXPECT_EQ(fs::last_write_time(here_ / "out/tasks/00/000000/times.json"), kept);
   EXPECT_THAT(Results("out"), HasSubstr(",lost,"));
 }
 
-// What is varied may get another name, order or a companion of one value, where no setting changes: results.csv has the
-// columns of the file as it is now.
+// Columns of results.csv: those of the current file. Another order in `vary`, or an additional entry with one value,
+// changes no setting and repeats no task.
 TEST_F(CampaignTest, ResultsHaveTheColumnsOfTheFileAsItIsNow) {
   const auto text = [](const std::string& vary) {
     return "scenarios: [{file: " + (TinyScenario().parent_path() / "points.yaml").string() +
@@ -247,7 +247,7 @@ TEST_F(CampaignTest, SequencesAreSharedAndKnowTheirFiles) {
     for (const auto& [name, content] : Tree(here_ / cache)) count += name.ends_with("rgb.txt");
     return count;
   };
-  // Two campaigns at the same time: each sequence is made once.
+  // Two campaigns at the same time: each sequence is rendered once.
   WriteFile(here_ / "c.yaml", text);
   const int other = StartVobench(Words("a", {"--cache", "cache"}), here_.path());
   const Outcome outcome = RunVobench(Words("b", {"--cache", "cache"}), here_.path());
@@ -259,7 +259,7 @@ TEST_F(CampaignTest, SequencesAreSharedAndKnowTheirFiles) {
   EXPECT_TRUE(Lasting("a") == Lasting("b"));
   EXPECT_EQ(sequences("cache"), 2u);
   for (const auto& [name, content] : Tree(here_ / "cache")) EXPECT_THAT(name, testing::Not(HasSubstr("partial")));
-  // Another setting, or another content of a file that the mesh names, is another sequence.
+  // Another setting, or other content of a file named by the mesh, gives another sequence.
   std::string darker = text;
   darker.replace(darker.find("10 ms"), 5, "5 ms");
   MustRun(darker, "c", {"--cache", "cache"});
@@ -268,7 +268,7 @@ TEST_F(CampaignTest, SequencesAreSharedAndKnowTheirFiles) {
   EXPECT_EQ(Run(text, "a", {"--cache", "cache"}).status, 2) << "results of other pictures";
   MustRun(text, "d", {"--cache", "cache"});
   EXPECT_EQ(sequences("cache"), 5u);
-  // Of an object, too: its mesh, and the file that it moves by.
+  // The same for the mesh of an object and its trajectory file.
   const fs::path path = here_ / "scenes/path.txt";
   WriteFile(path, "0 2 1 2 0 0 0 1\n1 2.5 1 2 0 0 0 1\n2 2 1 2 0 0 0 1\n");
   std::string scenario = ReadFile(here_ / "scenes/tiny.yaml");
@@ -287,7 +287,7 @@ TEST_F(CampaignTest, SequencesAreSharedAndKnowTheirFiles) {
   EXPECT_EQ(sequences("cache"), 11u);
 }
 
-// A world of points has no pictures; what it is read from are its settings and the file that the camera moves by.
+// Point worlds have no images; their results depend on the settings and on the camera's trajectory file.
 TEST_F(CampaignTest, PointsKnowTheFileThatTheCameraMovesBy) {
   const fs::path path = here_ / "path.txt";
   WriteFile(here_ / "points.yaml",

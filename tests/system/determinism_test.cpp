@@ -1,5 +1,5 @@
-// The same scenario and seed give the same bytes, whatever the number of threads, the range of frames, and the way:
-// through the disk or in memory.
+// Determinism: equal scenario and seed give equal bytes, for any number of threads and range of frames, through files
+// or in memory.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -37,12 +37,12 @@ TEST_F(DeterminismTest, RenderedBytesDoNotDependOnThreads) {
     Succeeds({"render", "-o", "jobs" + jobs, "--frames", "0:6", "--jobs", jobs});
     EXPECT_TRUE(one == Tree(here_ / ("jobs" + jobs))) << jobs;
   }
-  // The check can fail: another seed gives other pictures.
+  // Control: another seed gives other images.
   Succeeds({"render", "-o", "other", "--frames", "0:6", "--seed", "12345"});
   EXPECT_FALSE(Tree(here_ / "one" / "rgb") == Tree(here_ / "other" / "rgb"));
 }
 
-// Objects that move: each frame places them anew, in whichever thread.
+// Moving objects, which every thread places for its own frames.
 TEST_F(DeterminismTest, MovingObjectsDoNotDependOnThreads) {
   const std::string scenario = (TinyScenario().parent_path() / "moving.yaml").string();
   const auto render = [&](const std::string& folder, const std::string& jobs) {
@@ -75,7 +75,7 @@ TEST_F(DeterminismTest, ARangeHasTheFramesOfTheWhole) {
       }
     }
   }
-  // Its truth is a piece of the whole's, character for character.
+  // The truth of a range is a substring of the truth of the whole.
   const std::string truth = Read("part/groundtruth.txt"), all = Read("whole/groundtruth.txt");
   const std::string lines = truth.substr(truth.find("\n0.") + 1);
   EXPECT_THAT(all, HasSubstr(lines));
@@ -124,7 +124,7 @@ TEST_F(DeterminismTest, RunsOnPointsDoNotDependOnThreads) {
   EXPECT_TRUE(Read("jobs1/rb2pf/seed_2/estimate.txt") == Read("alone/rb2pf/seed_2/estimate.txt"));
 }
 
-// `track` gives the odometry nothing of the truth; `run` without the truth must come to the same.
+// `track` has no truth; `run` without the truth gives the same bytes.
 TEST_F(DeterminismTest, ThroughTheDiskOrInMemoryIsTheSame) {
   const std::string duration = "time.duration=0.3 s";
   Succeeds({"render", "-o", "seq", "--set", duration});
@@ -134,7 +134,7 @@ TEST_F(DeterminismTest, ThroughTheDiskOrInMemoryIsTheSame) {
   for (const std::string file : {"estimate.txt", "live.txt", "covariance.txt", "landmarks.csv"}) {
     EXPECT_TRUE(Read("disk/" + file) == Read("memory/rb2pf/seed_3/" + file)) << file;
   }
-  // Told the true start, it comes to something else: the comparison can fail.
+  // Control: with the true start the estimate differs.
   Succeeds({"run", "-o", "told", "--seed", "3", "--set", duration});
   EXPECT_FALSE(Read("disk/estimate.txt") == Read("told/rb2pf/seed_3/estimate.txt"));
 }

@@ -13,7 +13,7 @@ namespace vobench::system_test {
 namespace fs = std::filesystem;
 namespace {
 
-// What the comment before a block says of it.
+// Comment before a block.
 struct Directive {
   std::string file;
   bool slow = false, not_run = false;
@@ -73,7 +73,7 @@ void Add(const Block& block, DocPage& page) {
   if (!block.directive.slow) page.quick_script += commands;
 }
 
-// As GitHub makes it of a heading.
+// Anchor of a heading, as by GitHub.
 std::string AnchorOf(const std::string& heading) {
   std::string anchor;
   for (const unsigned char c : heading) {

@@ -1,4 +1,4 @@
-// The commands of the docs that take more than seconds, after those that do not.
+// All commands of the docs pages that have slow ones.
 #include <gtest/gtest.h>
 
 #include "tests/system/doc_page.h"

@@ -1,4 +1,4 @@
-// What the docs say is so: their commands work, their links lead somewhere, what they name exists.
+// Documentation: its commands work, its links have targets, the names in it exist.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ TEST(DocPage, CommandsThatFailOrAreForgottenAreSeen) {
   EXPECT_THAT(ParsePage("a page", "<!-- notrun -->\n\n    vobench fly\n").problems, testing::SizeIs(1));
 }
 
-// The reader of pages is worth nothing if it sees nothing.
+// Control for ParsePage: it finds the commands of real pages.
 TEST(DocPage, SeesTheCommandsOfThePagesThatHaveSome) {
   const DocPage scene = ReadPage("docs/your_scene.md");
   EXPECT_THAT(scene.quick_script, testing::HasSubstr("cat > 'mine.yaml' <<'END_OF_FILE'\nworld:\n  meshes: ["));
@@ -84,7 +84,7 @@ std::vector<std::string> Rows(const std::string& page) {
   return rows;
 }
 
-// "`name` in `file`": the file has the name. "`file`" alone: it exists.
+// "`name` in `file`": the file contains the name. "`file`" alone: it exists.
 TEST(Equations, FunctionsAndTestsExist) {
   const std::regex named("((?:`[A-Za-z_:.]+`, )*`[A-Za-z_:.]+`) in `([a-z_/0-9]+\\.[a-zA-Z]+)`"), word("`([^`]+)`");
   int names = 0;
@@ -108,7 +108,7 @@ TEST(Equations, FunctionsAndTestsExist) {
   EXPECT_GT(names, 20);
 }
 
-// All sources in one text, string literals that go on in the next line joined.
+// All sources in one text, adjacent string literals joined.
 std::string Sources() {
   std::string all;
   for (const char* folder : {"sim", "vo", "tools"}) {

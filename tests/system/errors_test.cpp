@@ -1,5 +1,4 @@
-// What goes wrong is said in one message that names the file; the exit status is 2 for the caller's mistakes and 1 for
-// failed work, and nothing half-written stays behind.
+// Errors: one message that names the file, exit status 2 for errors of the caller, 1 for failed work; no partial files.
 #include <gmock/gmock.h>
 
 #include <csignal>
@@ -17,7 +16,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-// The program must have said why, in its own words, and left the folder as it was.
+// Exit status, a message of the program that contains `named`, and an unchanged folder.
 void ExpectFailure(const Outcome& outcome, int status, const std::string& named, const fs::path& where,
                    const std::map<std::string, std::string>& before) {
   EXPECT_EQ(outcome.status, status) << outcome.err;
@@ -40,14 +39,14 @@ class ErrorsTest : public testing::Test {
         RunVobench({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:5"}, here_.path());
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   }
-  // The small scenario and its room, to be spoiled, in here_/scenes.
+  // Copy of the small scenario and its room in here_/scenes, to be damaged.
   fs::path CopyScenes() {
     fs::create_directory(here_ / "scenes");
     fs::copy(TinyScenario(), here_ / "scenes");
     fs::copy(TinyScenario().parent_path() / "room", here_ / "scenes" / "room", fs::copy_options::recursive);
     return here_ / "scenes";
   }
-  // The first file below a folder whose name ends so.
+  // First file below a folder with one of the extensions.
   static fs::path FirstFile(const fs::path& folder, const std::vector<std::string>& extensions) {
     for (const auto& [name, content] : Tree(folder)) {
       for (const std::string& extension : extensions) {
@@ -113,7 +112,7 @@ TEST_F(ErrorsTest, CorruptMesh) {
 
 TEST_F(ErrorsTest, MissingTexture) {
   const fs::path scenes = CopyScenes();
-  ASSERT_EQ(RunVobench({"check", "scenes/tiny.yaml"}, here_.path()).status, 0);  // keeps decoded pictures
+  ASSERT_EQ(RunVobench({"check", "scenes/tiny.yaml"}, here_.path()).status, 0);  // caches the decoded images
   const fs::path texture = FirstFile(scenes / "room", {".jpg", ".jpeg", ".png"});
   fs::resize_file(texture, fs::file_size(texture) / 2);
   Fails({"render", "scenes/tiny.yaml", "-o", "out"}, 2, texture.filename().string());
@@ -135,7 +134,7 @@ TEST_F(ErrorsTest, NanInATrajectory) {
   Fails({"check", TinyScenario().string(), "--set", recorded, "--set", "time.duration=0.1 s"}, 2, "bad.txt:2");
 }
 
-// No figure where any estimate would have it: two pairs determine no alignment, a truth that stands no scale.
+// Undetermined quantities: two pairs determine no alignment, a truth at rest no scale.
 TEST_F(ErrorsTest, FiguresWithoutABasis) {
   std::string moving, still;
   for (int i = 0; i < 5; ++i) {
@@ -244,8 +243,8 @@ TEST_F(ErrorsTest, AnOldResultOutlivesAFailure) {
   Fails({"track", "seq", "-o", "out"}, 2, image.filename().string());
 }
 
-// A disk of so many kilobytes where root (or a user namespace) allows to mount one; a limit on the size of files
-// elsewhere, which fails the same writes. What is left behind is listed on stdout after the program's own output.
+// Runs on a disk of `kilobytes` where root (or a user namespace) can mount one; elsewhere with a limit on the size of
+// files, which fails the same writes. The files left are listed on stdout after the program's output.
 Outcome RunOnAFullDisk(const std::vector<std::string>& arguments, const fs::path& where, int kilobytes) {
   const std::string end = "status=$?; echo; echo LEFT: $(ls -A disk); exit $status";
   const std::string size = std::to_string(kilobytes);
@@ -254,7 +253,7 @@ Outcome RunOnAFullDisk(const std::vector<std::string>& arguments, const fs::path
     for (const std::string& argument : arguments) inner += " " + Quoted(argument);
     return RunVobench({}, where, "mkdir -p disk; exec unshare -rm sh -c " + Quoted(inner + "\n" + end) + "\n");
   }
-  // In blocks of 512 bytes; the signal ignored, writing fails with an error as it does on a full disk.
+  // In blocks of 512 bytes. With SIGXFSZ ignored, writing fails with an error as on a full disk.
   return RunVobench(arguments, where, "mkdir -p disk; trap '' XFSZ; ulimit -f 8", end);
 }
 
@@ -276,7 +275,7 @@ TEST_F(ErrorsTest, FullDiskWhileRunning) {
 }
 
 TEST_F(ErrorsTest, AnInterruptedRunLeavesNothing) {
-  // timeout sends SIGINT, in the middle of tens of thousands of frames.
+  // SIGINT by timeout, in the middle of tens of thousands of frames.
   const auto before = Tree(here_.path());
   const Outcome outcome =
       RunVobench({"run", TinyScenario().string(), "-o", "out", "--set", "time.duration=1000 s", "--set",
@@ -290,7 +289,7 @@ TEST_F(ErrorsTest, AnInterruptedRunLeavesNothing) {
 TEST_F(ErrorsTest, BakingEndsWhenItIsAskedTo) {
   const auto before = Tree(here_.path());
   for (const std::string signal : {"INT", "TERM"}) {
-    // Baked for minutes; timeout would kill it 2 s after the signal, and say so by its status.
+    // The bake takes minutes; 2 s after the signal timeout kills the program, which the exit status shows.
     const Outcome outcome = RunVobench({"render", TinyScenario().string(), "-o", "out", "--set", "render.light=baked",
                                         "--set", "render.bake.paths=1048576"},
                                        here_.path(), "exec timeout --preserve-status -k 2 -s " + signal + " 1 \\");

@@ -1,5 +1,5 @@
-// EuRoC's layout as other programs take it: read by the dataset's own description (Burri et al. 2016, "The EuRoC micro
-// aerial vehicle datasets", section III) with nothing of ours, integrated, and its configuration files parsed.
+// EuRoC layout, read without the project's readers by the dataset's description (Burri et al. 2016, "The EuRoC micro
+// aerial vehicle datasets", section III): dead reckoning, extrinsics, and configuration files of other programs.
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
@@ -20,11 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Isometry3d, Eigen::Quaterniond, Eigen::Vector3d;
 
-// ---- The reader. A line of a data.csv: nanoseconds, then numbers.
+// Line of a data.csv: nanoseconds, then numbers.
 struct Row {
   std::int64_t t_ns;
   std::vector<double> values;
-  std::string text;  // the last word
+  std::string text;  // the last field
 };
 std::vector<Row> ReadCsv(const fs::path& file) {
   std::vector<Row> rows;
@@ -44,7 +44,7 @@ std::vector<Row> ReadCsv(const fs::path& file) {
   return rows;
 }
 
-// The numbers in brackets behind a key of a sensor.yaml.
+// Numbers in brackets after a key of a sensor.yaml.
 std::vector<double> Numbers(const std::string& yaml, const std::string& key) {
   const std::size_t open = yaml.find('[', yaml.find(key + ":"));
   std::string list = yaml.substr(open + 1, yaml.find(']', open) - open - 1);
@@ -69,7 +69,7 @@ State StateOf(const Row& row) {
   const std::vector<double>& x = row.values;
   return {{x[0], x[1], x[2]}, {x[7], x[8], x[9]}, Quaterniond(x[3], x[4], x[5], x[6]).normalized()};
 }
-// q' = q w / 2, v' = R f + g, p' = v by the rule of Runge and Kutta of the given order; 4 takes two readings at a time.
+// q' = q w / 2, v' = R f + g, p' = v by a Runge-Kutta method of the given order; order 4 has steps of two readings.
 State Integrate(State x, const std::vector<Row>& imu, int order) {
   const Vector3d g(0, 0, -9.81);
   const auto w = [&](std::size_t k) { return Vector3d(imu[k].values[0], imu[k].values[1], imu[k].values[2]); };
@@ -114,7 +114,7 @@ State Integrate(State x, const std::vector<Row>& imu, int order) {
 
 class EurocTest : public testing::Test {
  protected:
-  // Two cameras and an IMU on a body that swings, at 100 Hz for 0.34 s.
+  // Two cameras and an IMU on a swinging body, at 100 Hz for 0.34 s.
   void Render(const std::string& layout, const std::string& lens = "") {
     const std::string camera = "width: 32, height: 24, fx: 26.25, fy: 26.5, cx: 15.5, cy: 11.5" + lens;
     const std::string mesh = (TinyScenario().parent_path() / "room/room.obj").string();
@@ -158,7 +158,7 @@ TEST_F(EurocTest, DeadReckoningFallsWithTheOrder) {
   EXPECT_GT(error[1], 1e-6) << "the test can fail";
 }
 
-// The poses of both cameras are those of the layout that has them, whose y is up.
+// Poses of both cameras from body pose and extrinsics, against those of the TUM layout, whose y is up.
 TEST_F(EurocTest, ExtrinsicsAndWorld) {
   Render("euroc");
   Render("tum");
@@ -186,7 +186,7 @@ TEST_F(EurocTest, ExtrinsicsAndWorld) {
     EXPECT_EQ(lens, (std::vector<double>{26.25, 26.5, 15.5, 11.5}));
   }
   EXPECT_THAT(RunVobench({"check", "rig.yaml"}, here_.path()).out, testing::HasSubstr("camera cam1: 32 x 24"));
-  // Without an IMU the body is the rig's, in the scenario's world.
+  // Without an IMU the body is the rig, in the world of the scenario.
   const Outcome outcome =
       RunVobench({"render", "rig.yaml", "-o", "plain", "--format", "euroc", "--truth", "depth"}, here_.path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -208,7 +208,7 @@ Isometry3d OfRows(const cv::FileNode& node) {
   return T;
 }
 
-// As the programs themselves read them: OpenCV's storage, JSON; and lens by lens by the odometry's reader.
+// Configuration files, parsed as by their programs (OpenCV's storage, JSON), and lenses by the odometry's reader.
 class ConfigsTest : public EurocTest, public testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(
     Lenses, ConfigsTest,
@@ -253,7 +253,7 @@ TEST_P(ConfigsTest, AreParsedBack) {
   expect(OfRows(chain["cam1"]["T_cn_cnm1"]), T_BS[1].inverse() * T_BS[0], 1e-10, "Kalibr's chain");
   expect(OfMatrix(orb["Stereo.T_c1_c2"]), T_BS[0].inverse() * T_BS[1], 1e-6, "ORB-SLAM3, floats");
   expect(OfMatrix(orb["IMU.T_b_c1"]), T_BS[0], 1e-6, "ORB-SLAM3, floats");
-  // ORB-SLAM3 ends where a number that it takes for real is written as whole.
+  // ORB-SLAM3 exits where a real number is written as an integer.
   for (const char* real : {"Camera1.fx", "Camera2.fy", "Camera1.k1", "IMU.NoiseGyro", "IMU.AccWalk", "IMU.Frequency",
                            "Stereo.ThDepth", "ORBextractor.scaleFactor", "Viewer.PointSize"})
     EXPECT_TRUE(orb[real].isReal()) << real;

@@ -1,5 +1,4 @@
-// A sequence in other forms: a ROS 1 bag, read back with the library where it is installed; COCO's file. MCAP:
-// mcap_read.mjs.
+// Export of a sequence: ROS 1 bag, read back with rosbag where it is installed; COCO labels. MCAP: mcap_read.mjs.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -49,7 +48,7 @@ TEST_F(ExportTest, EveryLayoutGivesTheSameMessages) {
   EXPECT_EQ(BagTopics((here_ / "tum.bag").string()), BagTopics((here_ / "euroc.bag").string()));
 }
 
-// More than one chunk, by the types of ROS.
+// Bag of more than one chunk, by ROS's types.
 TEST_F(ExportTest, MessagesOfABag) {
   ASSERT_EQ(Run({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:4", "--truth", "depth,imu", "--set",
                  "camera={width: 640, height: 480, fx: 525, fy: 520, cx: 319.5, cy: 239.5}"})
@@ -103,7 +102,7 @@ TEST_F(ExportTest, NothingIsLeftOfAFailure) {
   EXPECT_TRUE(Tree(here_.path()) == spoiled) << "no half of a bag";
 }
 
-// A header that tells 30000 x 30000 pixels of 16 bits is not believed.
+// A depth image whose header has 30000 x 30000 pixels of 16 bits.
 TEST_F(ExportTest, DepthOfAnySizeIsRefused) {
   ASSERT_EQ(Run({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:1"}).status, 0);
   const std::filesystem::path depth = here_ / "seq/depth/0.000000000.png";
@@ -115,7 +114,7 @@ TEST_F(ExportTest, DepthOfAnySizeIsRefused) {
   EXPECT_THAT(outcome.err, HasSubstr("0.000000000.png: 30000 x 30000 pixels: a picture may have"));
 }
 
-// COCO's file, read as its description says: instances by their run lengths, against the pictures and their boxes.
+// COCO labels by their format description: instances from run lengths, against the rendered images and the boxes.
 TEST_F(ExportTest, CocoIsReadBack) {
   const std::string scenario = (TinyScenario().parent_path() / "moving.yaml").string();
   ASSERT_EQ(Run({"render", scenario, "-o", "seq", "--frames", "9:12", "--truth", "instance", "--set",
@@ -129,7 +128,7 @@ TEST_F(ExportTest, CocoIsReadBack) {
   EXPECT_THAT(classes,
               testing::ElementsAre(testing::Pair(1, "ball"), testing::Pair(2, "parcel"), testing::Pair(3, "room")));
   ASSERT_EQ(coco.at("images").size(), 3u);
-  std::map<int, cv::Mat> masks;  // by image: instances, put together from the annotations
+  std::map<int, cv::Mat> masks;  // instances by image, from the annotations
   for (const auto& image : coco.at("images")) {
     EXPECT_TRUE(std::filesystem::exists(here_ / "seq" / image.at("file_name").get<std::string>()));
     masks[image.at("id")] = cv::Mat::zeros(image.at("height"), image.at("width"), CV_16UC1);
@@ -148,7 +147,7 @@ TEST_F(ExportTest, CocoIsReadBack) {
     for (const int count : rle.at("counts")) {
       for (int i = 0; i < count; ++i, ++at) {
         if (!inside) continue;
-        const cv::Rect pixel(at / mask.rows, at % mask.rows, 1, 1);  // down the columns
+        const cv::Rect pixel(at / mask.rows, at % mask.rows, 1, 1);  // column by column
         mask.at<std::uint16_t>(pixel.y, pixel.x) = annotation.at("instance");
         box = area++ == 0 ? pixel : box | pixel;
       }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# A project outside finds an installed vobench, builds against it and runs: its filter is consistent, and with half the covariance is not.
+# Installed vobench in an external project: found, built against and run. Its filter is consistent, and with half the
+# covariance is not.
 # Usage: install_test.sh CMAKE BUILD_FOLDER SOURCE_FOLDER
 set -euo pipefail
 cmake=$1 build=$2 source=$3
@@ -24,7 +25,7 @@ said=$("$folder/outside/own_filter_test" "$source/scenes/points.yaml" 1) || fail
 ! said=$("$folder/outside/own_filter_test" "$source/scenes/points.yaml" 0.5) || fail "half the covariance was not rejected"
 [[ $said == *"ANEES mean, pose: "*", not <= "* ]] || fail "rejected, but not for its ANEES: $said"
 
-# The judge alone needs nothing of the simulator; what there is not is named.
+# The judge alone does not need the simulator; a missing component is named.
 try() {  # COMPONENT [ARGUMENT...]
   mkdir -p "$folder/$1"
   printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(other LANGUAGES CXX)' "find_package(vobench REQUIRED COMPONENTS $1)" \

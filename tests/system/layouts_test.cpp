@@ -1,4 +1,4 @@
-// What the program writes is what others read: trajectories by TUM's rules, sequences that are the same in each layout.
+// Output formats: trajectories by TUM's rules, and one sequence in each layout.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 // TUM's rules: comments begin with '#'; every other line is `timestamp tx ty tz qx qy qz qw`, eight numbers separated
 // by single spaces; time increases; quaternions are unit. evo, TUM's scripts and most others read such a file without
-// options. What is wrong, or nothing.
+// options. Returns the first violation, or "".
 std::string AgainstTumsRules(const std::string& text) {
   std::istringstream lines(text);
   double last = -INFINITY;
@@ -118,7 +118,7 @@ TEST_F(LayoutsTest, EveryRunLeavesTrajectoriesAndAMap) {
   EXPECT_THAT(evo.out, testing::StartsWith("APE w.r.t. translation part (m)\n(with SE(3) Umeyama alignment)\n\n"));
 }
 
-// The NEES of metrics.json, whether a run began in its own world (`track`) or in the truth's.
+// NEES of metrics.json, for a run with a start of its own (`track`) and for one that starts at the truth.
 TEST_F(LayoutsTest, EvaluateJudgesARunAsItWasJudged) {
   Run({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:8"});
   Run({"track", "seq", "-o", "tracked"});
@@ -144,7 +144,7 @@ TEST_F(LayoutsTest, EvaluateJudgesARunAsItWasJudged) {
   EXPECT_THAT(printed("tracked", "seq"), testing::StartsWith("none: "));
 }
 
-// A tracker that answers in one frame of three has small errors, and is seen to.
+// Pose coverage of an estimate in one frame of three, whose errors are small.
 TEST_F(LayoutsTest, EvaluateCountsTheFramesWithoutAPose) {
   Run({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:9"});
   std::istringstream truth(ReadFile(here_ / "seq/groundtruth.txt"));
@@ -169,7 +169,7 @@ TEST_F(LayoutsTest, EvaluateCountsTheFramesWithoutAPose) {
   }
 }
 
-// The truth of a run's folder is a file in it; the folder itself is an estimate, and no truth for anybody.
+// Folder of a run in place of the truth: it is an estimate; the truth of the run is a file in it.
 TEST_F(LayoutsTest, EvaluateTakesNoEstimateForTheTruth) {
   Run({"run", (TinyScenario().parent_path() / "points.yaml").string(), "-o", "out", "--set", "time.duration=0.3 s"});
   for (const char* compat : {"tum ate", "evo ape -a"}) {
@@ -179,7 +179,7 @@ TEST_F(LayoutsTest, EvaluateTakesNoEstimateForTheTruth) {
   }
 }
 
-// ov_eval does not normalise quaternions, whether their file is named or its folder.
+// ov_eval does not normalise quaternions: the same numbers for the truth's file and for its folder.
 TEST_F(LayoutsTest, ASequencesTruthIsReadAsTheToolReadsIt) {
   fs::create_directories(here_ / "seq");
   std::ofstream truth(here_ / "seq/groundtruth.txt"), estimate(here_ / "estimate.txt");
@@ -199,7 +199,7 @@ TEST_F(LayoutsTest, ASequencesTruthIsReadAsTheToolReadsIt) {
             of_file);
 }
 
-// A start that is known exactly, and a filter that sees nothing: no covariance is positive definite, nothing is matched.
+// Exactly known start and no measurements: no covariance is positive definite, no feature matched.
 TEST_F(LayoutsTest, EvaluateGivesNoNumberWhereThereIsNone) {
   const std::string points = (TinyScenario().parent_path() / "points.yaml").string();
   Run({"run", points, "-o", "out", "--set", "time.duration=0.3 s", "--set", "world.points.measurement.drops=1"});
@@ -207,7 +207,7 @@ TEST_F(LayoutsTest, EvaluateGivesNoNumberWhereThereIsNone) {
               testing::HasSubstr("NIS, per dof                 none: no frame has a matched feature"));
 }
 
-// The table of ANEES and the verdict's checks.
+// RMSE / bound: equal in the table of ANEES and in the verdict's checks.
 TEST_F(LayoutsTest, AVerdictHasOneRatioToTheBound) {
   const std::string points = (TinyScenario().parent_path() / "points.yaml").string();
   const std::string out = Run({"run", points, "--runs", "10", "--verdict", "--set", "time.duration=0.07 s", "--set",

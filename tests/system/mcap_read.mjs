@@ -1,6 +1,6 @@
-// `vobench export --mcap`, read back by the format's own library and by a reader of ROS 2's messages.
+// `vobench export --mcap`, read back by the MCAP library and by a reader of ROS 2 messages.
 // Usage: node mcap_read.mjs VOBENCH MODULES     MODULES has node_modules; the scenes are beside it
-// Exit:  0 all good, 1 something is not.
+// Exit:  0 for success, 1 for a failure.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -62,7 +62,7 @@ assert.deepEqual(counts, {
 const total = Object.values(counts).reduce((a, b) => a + b);
 assert.equal(reader.statistics.messageCount, BigInt(total));
 
-// What is in them.
+// Contents of the messages.
 messages.get("/cam1/image_raw").forEach((image, k) => {
   assert.equal(image.time, BigInt(Math.round((k * 1e9) / 30)) + 5_000_000n);
   assert.deepEqual([image.width, image.height, image.encoding, image.step], [640, 480, "bgr8", 1920]);
@@ -91,7 +91,7 @@ messages.get("/ground_truth/pose").forEach(({ pose: { position: p, orientation: 
   [p.x, p.y, p.z, q.x, q.y, q.z, q.w].forEach((x, i) => assert(Math.abs(x - numbers[i]) < 1e-11));
 });
 
-// From the beginning to the end without the index, as a stream: the same number.
+// Read as a stream, without the index: the same number of messages.
 const stream = new McapStreamReader();
 const file = await open(join(here, "seq.mcap"));
 let streamed = 0;

@@ -1,4 +1,4 @@
-// `vobench run` for as long as one likes: memory stays what it was. Ten minutes of video; VOBENCH_LONG_RUN=H: so many hours.
+// Memory of `vobench run` over ten minutes of video. VOBENCH_LONG_RUN=H: H hours.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -24,17 +24,17 @@ std::size_t ResidentBytes(int process) {
   return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-// Pictures of 24 frames, evenly spread, are written on the way: they tell how far it is.
+// Progress of the run: number of images written, of 24 evenly spaced frames.
 std::size_t Pictures(const fs::path& where) {
   std::size_t count = 0;
-  std::error_code gone;  // folders get their last names while we look
+  std::error_code gone;  // folders are renamed meanwhile
   for (fs::recursive_directory_iterator at(where, gone), end; !gone && at != end; at.increment(gone))
     count += at->path().extension() == ".jpg" && at->path().parent_path().filename() == "frames";
   return count;
 }
 
-// From the third picture (a tenth of the way) to the last (at 47/48; what follows is the judge) never more than 1 % above
-// what it is there.
+// Resident memory from the third image (a tenth of the way) to the last (at 47/48, before the evaluation): at most 1 %
+// above its value at the third.
 TEST(MemorySlowTest, OfARunDoesNotGrow) {
   const char* hours = std::getenv("VOBENCH_LONG_RUN");
   const double seconds = hours != nullptr ? std::atof(hours) * 3600 : 600;

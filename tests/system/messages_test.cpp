@@ -1,5 +1,4 @@
-// What a user can do wrong, and what is then said: what, where and what to do. The table below triggers a message of
-// what can be said without a broken machine.
+// Messages for errors of the user: what is wrong, where, and the remedy. The table has those without hardware faults.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -12,15 +11,15 @@ namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
 struct Message {
-  std::string source;  // that says it
+  std::string source;  // file of the message
   Words arguments;     // TINY and POINTS stand for the two small scenarios
-  Words says;          // all of these: what is wrong, where it stands, what would be right
+  Words says;          // all of these: error, place, remedy
 };
 
-// In a folder with the files of SpoiltFiles().
+// Run in a folder with the files of SpoiltFiles().
 const std::vector<Message>& Messages() {
   static const std::vector<Message> all = {
-      // Settings: file, line and column, or the --set that is at fault; nearest key, range or choice.
+      // Settings: file, line and column, or the --set option; nearest key, range or choice.
       {"tools/base/settings/settings.cpp", {"check", "broken.yaml"}, {"broken.yaml:2:1", "not valid YAML"}},
       {"tools/base/settings/settings.cpp",
        {"check", "nowhere.yaml"},
@@ -307,7 +306,7 @@ class MessagesTest : public testing::Test {
               "scenarios: [{file: " + TinyScenario().string() + "}]\nsystems: [nosuch]\nseeds: 3..1\n");
   }
   std::string Filled(std::string word) const {
-    std::string lamps;  // each flickers in its own way: more than can be baked
+    std::string lamps;  // more different flickers than can be baked
     for (int i = 0; i < 40; ++i) {
       lamps +=
           "{type: point, position: [0, 2.5, 0], intensity: [1, 1, 1], flicker: {frequency: " + std::to_string(50 + i) +

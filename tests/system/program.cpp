@@ -29,7 +29,7 @@ Outcome RunVobench(const std::vector<std::string>& arguments, const fs::path& wh
   for (const std::string& argument : arguments) command += " " + Quoted(argument);
   command += "\n" + after + "\n} > " + Quoted((output / "out").string()) + " 2> " + Quoted((output / "err").string()) +
              " < /dev/null";
-  // The shell of the command line is sh; what tests ask of it (ulimit, trap) all shells have.
+  // std::system runs sh; ulimit and trap, which tests use, are in every shell.
   const int status = std::system(command.c_str());
   Outcome outcome;
   outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -1,6 +1,5 @@
-// The program on recorded sequences, which are not part of the project: they are looked for in $VOBENCH_DATA,
-// or else
-// in ../shared/data beside the checkout.
+// Runs of the program on recorded sequences, which are not part of the project: in $VOBENCH_DATA, or else in
+// ../shared/data beside the checkout.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +10,13 @@
 
 namespace vobench::system_test {
 
-// The folder of a sequence, if it is at hand.
+// Folder of a sequence, if it is there.
 std::optional<std::filesystem::path> RecordedSequence(const std::string& name);
 
-// A sequence of the frames [first, last) of another, in `folder`. Images are linked, truth is copied.
+// Writes the frames [first, last) of a sequence to `folder`. Images are linked, truth is copied.
 void SomeFrames(const std::filesystem::path& sequence, int first, int last, const std::filesystem::path& folder);
 
-// What metrics.json says of one `vobench track`.
+// Metrics of one `vobench track`, from metrics.json.
 struct Scores {
   double ate_cm = 0, constant_pose_ate_cm = 0, constant_velocity_ate_cm = 0;  // position RMSE after Sim(3)
   double rpe_cm_per_s = 0;

@@ -1,4 +1,4 @@
-// Recorded sequences to the last frame, ten seeds each. recorded_test.cpp is the quick twin.
+// Errors on whole recorded sequences, ten seeds each. Short version: recorded_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 struct Limits {
   double ate_cm, rpe_cm_per_s;  // of the median over seeds
   double worst_ate_cm = 100;
-  double below_baselines = 3;  // the baselines err by at least this factor more
+  double below_baselines = 3;  // least ratio of the baselines' ATE to the median
   double least_tracked = 0.9;
 };
 
@@ -44,21 +44,21 @@ void ExpectWithin(const Limits& limits, const std::string& name, const std::stri
   EXPECT_LE(limits.below_baselines * evaluation::Median(ate), constant_velocity);
 }
 
-// As they come: default settings.
+// Default settings.
 TEST(RecordedSlowTest, Freiburg1) { ExpectWithin({0.9, 2, 2}, "tum_fr1_xyz", "freiburg1"); }
 TEST(RecordedSlowTest, IclOffice) { ExpectWithin({0.6, 1, 0.9}, "icl_office_kt0", "icl"); }
 
-// Quick motion: turns about all axes, a drone, a headset at 10 Hz. Limits are twice what was measured.
+// Quick motion: rotations about all axes, a drone, a headset at 10 Hz. Limits are twice the measured values.
 std::string OwnCamera(const std::string& name) {
   const auto sequence = RecordedSequence(name);
   return sequence ? (*sequence / "camera.yaml").string() : "";
 }
-// It hardly moves: standing still errs by 4 cm.
+// Little translation: the constant pose has an ATE of 4 cm.
 TEST(RecordedSlowTest, Freiburg1Rpy) { ExpectWithin({2.5, 7, 6, 2}, "tum_fr1_rpy", "freiburg1"); }
 TEST(RecordedSlowTest, EurocMh05) { ExpectWithin({5, 5, 6}, "euroc_mh05", OwnCamera("euroc_mh05")); }
 // Some predictions fail: the frames are 8 cm apart.
 TEST(RecordedSlowTest, Hololens) { ExpectWithin({8, 30, 17, 3, 0.85}, "hololens", OwnCamera("hololens")); }
-// Boxes fly and turn before the camera.
+// Boxes that move and rotate in front of the camera.
 TEST(RecordedSlowTest, MovingObjects) { ExpectWithin({3, 3, 8}, "moving_objects", OwnCamera("moving_objects")); }
 
 // Without the joint mode's bias: docs/odometry.md.

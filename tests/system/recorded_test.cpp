@@ -1,4 +1,4 @@
-// A piece of recorded sequences: the quick twin of recorded_slow_test.cpp.
+// Errors on short parts of recorded sequences. Whole sequences: recorded_slow_test.cpp.
 #include "tests/system/recorded.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ void ExpectTracked(const std::string& name, const std::string& camera, int first
 }
 
 TEST(RecordedTest, APieceOfFreiburg1) { ExpectTracked("tum_fr1_xyz", "freiburg1", 0, 40); }
-// Its first second hardly moves: a constant pose is right to 7 mm there.
+// Not from its start: in the first second there is little motion, and a constant pose has an error of 7 mm.
 TEST(RecordedTest, APieceOfIclOffice) { ExpectTracked("icl_office_kt0", "icl", 50, 101); }
 
 }  // namespace

@@ -1,7 +1,7 @@
-// The report in a real browser: every figure has its data, reading, zooming, hiding, saving, sorting and copying work,
-// nothing is loaded, nobody is left out (axe), at 1280 and 400 pixels, in light and dark, on paper and without scripts.
+// Report in a real browser: every figure has its data; reading, zooming, hiding, saving, sorting and copying work;
+// no network access; accessibility (axe); at 1280 and 400 pixels, in light and dark, in print and without scripts.
 // Usage: node report_page.mjs VOBENCH MODULES [SHOTS]     MODULES has node_modules; SHOTS is a folder for pictures
-// Exit:  0 all good, 1 something is not, 77 no Chromium here.
+// Exit:  0 for success, 1 for a failure, 77 without Chromium.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync, statSync, writeFileSync } from "node:fs";
@@ -29,7 +29,7 @@ curves: [{along: noise, of: [ate_m, nees_pose_per_dof], break_at: {error: 2 cm}}
   return ["images", "points", "campaign"].map((name) => ({ name, file: join(here, name, "report.html") }));
 }
 
-// A page with all its figures drawn; anything that it complains of or asks for fails.
+// Opens a page and draws all its figures; collects its errors, warnings and network requests.
 async function open(browser, file, options) {
   const context = await browser.newContext({
     viewport: { width: options.width, height: 900 },
@@ -53,8 +53,7 @@ async function open(browser, file, options) {
   return { context, page, complaints };
 }
 
-// Every figure has all its numbers in its drawing, marks on its axes, and words that are neither cut nor on top of each
-// other.
+// Every figure has all its numbers in its drawing, marks on its axes, and texts that are neither cut nor overlapping.
 async function checkFigures(page, name) {
   const figures = await page.evaluate(() =>
     window.vobench.figures.map((figure) => {
@@ -208,7 +207,7 @@ async function checkHiding(page) {
   assert.deepEqual(await count(), before);
 }
 
-// A tap reads, and what was read stays until something else is tapped.
+// A tap shows a reading, which stays until something else is tapped.
 async function checkTouch(page) {
   const frame = page.locator(`#${await idOf(page, "Position error")} .frame`);
   await frame.tap({ position: { x: 200, y: 80 } });
@@ -217,7 +216,7 @@ async function checkTouch(page) {
   assert.ok(await frame.locator(".readout").isHidden(), "what was read stays");
 }
 
-// A saved drawing stands by itself: well-formed, with colours in the place of the page's variables.
+// A saved drawing is self-contained: well-formed, with colours instead of the page's variables.
 async function checkSaving(page) {
   const button = page.getByRole("button", { name: "Save Position error as SVG" });
   const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
@@ -340,7 +339,7 @@ async function checkPage(browser, { name, file }) {
     await context.close();
     console.log(`${label}: ${figures} figures`);
   }
-  // The page's own policy forbids what a test would add to it.
+  // The page's own policy forbids what the test adds to it.
   const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, bypassCSP: true });
   const page = await context.newPage();
   await page.goto(pathToFileURL(file).href);

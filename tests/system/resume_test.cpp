@@ -1,5 +1,5 @@
-// A run that is killed, interrupted or out of room leaves frames that can be used and gone on from; gone on from, it
-// ends with the same bytes as one that was never stopped.
+// Resume of a rendering after a kill, an interrupt or a full disk: the frames left are usable, and the resumed run ends
+// with the same bytes as an uninterrupted one.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace vobench::system_test {
 namespace {
-constexpr std::size_t kComments = 3;  // lines of rgb.txt
+constexpr std::size_t kComments = 3;  // comment lines of rgb.txt
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using testing::HasSubstr;
@@ -35,7 +35,7 @@ class ResumeTest : public testing::Test {
     return KillVobench(arguments, here_.path(), now);
   }
 
-  // That a folder has, at any depth, whole or not.
+  // Number of images in a folder, at any depth, partial ones included.
   std::size_t Pictures(const std::string& folder) const {
     std::size_t count = 0;
     std::error_code error;
@@ -56,8 +56,7 @@ TEST_F(ResumeTest, KilledAgainAndAgainItEndsWithTheSameBytes) {
     ASSERT_EQ(Run(whole, {"--format", format}).status, 0);
     const double all_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
     const auto expected = Tree(here_ / whole);
-    // Any moment will do: some of time, while the program starts, too, and some by how many pictures there are. They
-    // differ from run to run, and are printed where the test fails.
+    // Random moments, by time (also during the start of the program) and by number of images; printed on failure.
     std::mt19937 random(std::random_device{}());
     const auto draw = [&](int largest) { return std::uniform_int_distribution<>(0, largest)(random); };
     std::string moments;
@@ -74,7 +73,7 @@ TEST_F(ResumeTest, KilledAgainAndAgainItEndsWithTheSameBytes) {
     SCOPED_TRACE(format + ", killed after " + moments + "of " + std::to_string(all_ms) + " ms");
     EXPECT_GT(kills, 1);
     EXPECT_FALSE(fs::exists(here_ / seq) && fs::exists(here_ / partial));
-    // Both kinds of damage that a loss of power adds: files that break off and files without a name of their own.
+    // Both kinds of damage by a loss of power: truncated files and temporary files.
     if (fs::exists(here_ / partial / "rgb") && !fs::is_empty(here_ / partial / "rgb")) {
       const auto frames = Tree(here_ / partial / "rgb");
       fs::resize_file(here_ / partial / "rgb" / frames.rbegin()->first, 50);
@@ -112,15 +111,15 @@ TEST_F(ResumeTest, InterruptedRun) {
   EXPECT_THAT(outcome.err, HasSubstr("interrupted"));
   EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("out.partial"), HasSubstr("--resume")));
   EXPECT_FALSE(fs::exists(here_ / "out"));
-  // What is left can be used as it is.
+  // The partial sequence is usable as it is.
   const auto listed = ReadFile(here_ / "out.partial" / "rgb.txt");
   const auto lines = static_cast<std::size_t>(std::count(listed.begin(), listed.end(), '\n')) - kComments;
   EXPECT_EQ(Tree(here_ / "out.partial" / "rgb").size(), lines);
   EXPECT_EQ(Tree(here_ / "out.partial" / "depth").size(), lines);
   EXPECT_EQ(RunVobench({"track", "out.partial", "-o", "tracked"}, here_.path()).status, 0);
-  // What a killed run had just begun to write is ours, too.
+  // A temporary file of a killed run belongs to the sequence.
   WriteFile(here_ / "out.partial" / ".velocity.txt.part", "1");
-  // Hours of work are not thrown away by the same command once more, nor by another scenario.
+  // Neither the same command nor another scenario overwrites the partial sequence.
   const auto before = Tree(here_.path());
   const Outcome again = RunVobench(arguments, here_.path());
   EXPECT_EQ(again.status, 2);
@@ -134,7 +133,7 @@ TEST_F(ResumeTest, InterruptedRun) {
               HasSubstr("notes.txt"));
 }
 
-// A disk that is full after some frames, and is then made larger.
+// Disk that is full after some frames and is then enlarged.
 TEST_F(ResumeTest, AFullDiskLeavesThePrefixAndResumes) {
   if (std::system("unshare -rm sh -c 'mount -t tmpfs none /tmp' > /dev/null 2>&1") != 0) {
     GTEST_SKIP() << "no disk of a given size can be mounted here";
@@ -174,7 +173,7 @@ TEST_F(ResumeTest, PreviewsAreMadeAlso) {
   ASSERT_EQ(Run("seq", {"--frames", "0:5", "--preview"}).status, 0);
   EXPECT_GT(fs::file_size(here_ / "seq" / "preview.mp4"), 1000u);
   EXPECT_GT(fs::file_size(here_ / "seq" / "contact.jpg"), 1000u);
-  // Afterwards, too; the frames stay as they are.
+  // Preview of a finished sequence; the frames stay as they are.
   ASSERT_EQ(Run("plain", {"--frames", "0:5"}).status, 0);
   auto before = Tree(here_ / "plain");
   ASSERT_EQ(Run("plain", {"--frames", "0:5", "--resume", "--preview"}).status, 0);

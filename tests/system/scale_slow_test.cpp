@@ -1,5 +1,5 @@
-// Lengths of another unit: one camera knows no metre, so that all lengths of the priors times a factor are all lengths of the answer times
-// it. Recorded sequences, with the settings of `vobench track`.
+// Independence of the unit of length: the scale of a single camera is unobservable, so that a factor on all lengths of
+// the priors is a factor on all lengths of the estimate. Recorded sequences, with the settings of `vobench track`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,10 +17,10 @@ namespace {
 
 struct Lengths {
   double factor = 1;
-  bool noise_too = true;  // the control: false
+  bool noise_too = true;  // false: control
 };
 
-// Positions over the factor [m].
+// Positions divided by the factor [m].
 std::vector<Eigen::Vector3d> Track(const std::filesystem::path& sequence, const vo::Camera& camera, int frames,
                                    const Lengths& lengths) {
   const double s = lengths.factor;
@@ -53,7 +53,8 @@ double Difference(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen
   return difference / extent;
 }
 
-// Six digits and more of every position, and so of the ATE. Powers of two change no bit of a product; sums with constants round.
+// Difference below 1e-7: six digits and more of every position, and so of the ATE. A factor that is a power of two
+// rounds no product, only sums with constants. Control: motion noise in metres.
 void ExpectNoMetre(const std::string& name, const std::string& own_camera) {
   const auto sequence = RecordedSequence(name);
   if (!sequence)
@@ -67,7 +68,7 @@ void ExpectNoMetre(const std::string& name, const std::string& own_camera) {
   EXPECT_GT(Difference(whole, Track(*sequence, camera, kAll, {8, false})), 1e-4) << "the motion noise in metres";
 }
 
-// Other factors round every product.
+// Factors that are no powers of two: every product is rounded.
 TEST(ScaleSlowTest, Freiburg1TakesAnyUnit) {
   const auto sequence = RecordedSequence("tum_fr1_xyz");
   if (!sequence) GTEST_SKIP() << "no recorded sequence tum_fr1_xyz; VOBENCH_DATA names the folder it is looked for in";

@@ -22,7 +22,7 @@ namespace vobench::system_test {
 namespace fs = std::filesystem;
 namespace {
 
-// A port of 127.0.0.1 that nobody has.
+// Unused port of 127.0.0.1.
 int FreePort() {
   const int file = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
@@ -69,7 +69,7 @@ std::string SlurmCluster::WhyNot() {
 }
 
 SlurmCluster::SlurmCluster() {
-  // What a killed slurmd leaves behind becomes a child of this process, and can be found.
+  // Orphans of a killed slurmd become children of this process.
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   for (const char* name : {"munge", "state", "spool"}) {
     fs::create_directories(here_ / name);
@@ -159,7 +159,7 @@ void SlurmCluster::KillNodeDaemon() { End(node_, SIGKILL); }
 
 void SlurmCluster::KillNode() {
   KillNodeDaemon();
-  // Its steps are ours now, and those below them soon.
+  // Its job steps are children of this process now, and their children will be.
   for (int rounds = 0; rounds < 20; ++rounds) {
     for (const int child : OwnChildren()) {
       if (child == munged_ || child == controller_) continue;
@@ -168,7 +168,7 @@ void SlurmCluster::KillNode() {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  // What the controller finds out by itself after SlurmdTimeout, five minutes: its jobs go back into the queue.
+  // State that the controller sets after SlurmdTimeout, five minutes: the node's jobs go back into the queue.
   std::system("scontrol update NodeName=node State=DOWN Reason=lost");
 }
 

@@ -1,5 +1,5 @@
-// A real Slurm of one node, on the loopback interface alone: munged, slurmctld and slurmd with a configuration
-// of their own in a temporary folder.
+// Slurm of one node, on the loopback interface alone: munged, slurmctld and slurmd, with their configuration in a
+// temporary folder.
 #pragma once
 
 #include <string>
@@ -12,22 +12,22 @@ namespace vobench::system_test {
 
 class SlurmCluster {
  public:
-  // Why there can be none here; empty: there can.
+  // Reason why none can run here; empty if one can.
   static std::string WhyNot();
 
-  // Starts the daemons and waits until the node is idle; from now on this process's environment points to them. Throws
-  // std::runtime_error with their last words.
+  // Starts the daemons, waits until the node is ready and sets this process's environment for them. Throws
+  // std::runtime_error with their logs.
   SlurmCluster();
   // Ends the jobs and the daemons.
   ~SlurmCluster();
   SlurmCluster(const SlurmCluster&) = delete;
   SlurmCluster& operator=(const SlurmCluster&) = delete;
 
-  // As if the node lost power: its daemon and all that runs there, with SIGKILL; and the controller notices.
+  // Power loss of the node: SIGKILL for its daemon and all its processes, then state DOWN in the controller.
   void KillNode();
-  // The daemon alone: what runs there goes on.
+  // SIGKILL for the daemon alone; its jobs go on.
   void KillNodeDaemon();
-  // After either.
+  // Starts the daemon again, after either.
   void StartNode();
 
   std::string Log() const;
@@ -39,7 +39,7 @@ class SlurmCluster {
 
   TemporaryFolder here_;
   int munged_ = 0, controller_ = 0, node_ = 0;
-  std::jthread reaper_;  // of what killed daemons leave behind
+  std::jthread reaper_;  // of orphans of killed daemons
 };
 
 }  // namespace vobench::system_test

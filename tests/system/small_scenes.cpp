@@ -1,4 +1,4 @@
-// Copy of the scenes with textures of a quarter of the width: small pictures of them look alike, and are loaded in a fifth of the time.
+// Copy of the scenes with textures of a quarter of the width: alike in small images, and loaded in a fifth of the time.
 // Usage: small_scenes FROM TO
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>

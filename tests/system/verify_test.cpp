@@ -1,4 +1,4 @@
-// Truth streams from the command line, and `vobench verify` on them as a user sees it.
+// Truth streams chosen on the command line, and `vobench verify` on them.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -45,7 +45,7 @@ TEST(Verify, DepthAloneIsTheDefaultAndTruthCanBeLeftOut) {
   }
 }
 
-// What a camera's processing does to the pictures leaves them where they are; another frame's picture is still noticed.
+// Image processing of a phone: the images pass. Control: the image of another frame fails.
 TEST(Verify, PicturesOfAPhone) {
   const TemporaryFolder here;
   const Outcome rendered = RunVobench({"render", TinyScenario().string(), "-o", "seq", "--frames", "0:6", "--set",

@@ -1,4 +1,4 @@
-// A video is a sequence like any other: frames that were rendered, as `render --preview` writes them.
+// Video files and live streams as sequences, from rendered frames.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace vobench::system_test {
 namespace {
 
-// Puts a stream of the pictures of s, over and over, beside what is run.
+// Shell text: an endless stream of the images in s, written in the background.
 constexpr const char* kFilmed =
     "rm -rf stream out\nmkfifo stream\n(while cat s/rgb/*.png; do :; done > stream) 2> /dev/null &\n";
 
@@ -30,7 +30,7 @@ TEST(Video, IsTrackedFrameByFrame) {
   EXPECT_FALSE(std::filesystem::exists(here / "other"));
 }
 
-// A stream that nobody knows the end of; whenever it is stopped, what has been tracked by then is the result.
+// Live stream without an end: at any moment Ctrl-C ends it, and the frames tracked so far are the result.
 TEST(Video, CtrlCEndsALiveOneAndTheResultIsWritten) {
   const TemporaryFolder here;
   ASSERT_EQ(RunVobench({"render", TinyScenario().string(), "-o", "s", "--frames", "0:12"}, here.path()).status, 0);
@@ -51,7 +51,8 @@ TEST(Video, CtrlCEndsALiveOneAndTheResultIsWritten) {
   }
 }
 
-// A stream cannot be had again: where the filter ends it (here by a noise that no number can hold), what was tracked before is written.
+// Fault of the filter (here by a process noise that overflows) in a live stream, which cannot be repeated: the frames
+// tracked until then are written.
 TEST(Video, FaultKeepsWhatCameBefore) {
   const TemporaryFolder here;
   ASSERT_EQ(RunVobench({"render", TinyScenario().string(), "-o", "s", "--frames", "0:12"}, here.path()).status, 0);

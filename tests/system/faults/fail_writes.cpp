@@ -1,15 +1,14 @@
-// A library for LD_PRELOAD: what writes below a folder is counted, over all processes of a program, and the n-th call
-// fails once.
+// Library for LD_PRELOAD: counts the writing calls below a folder over all processes of a program; the n-th call fails.
 //
-//   VOBENCH_FAULT_FOLDER   absolute; calls on files and folders below it count
-//   VOBENCH_FAULT_COUNTER  a file of 8 bytes, shared by the processes: how many there were
+//   VOBENCH_FAULT_FOLDER   absolute; calls on files and folders below it are counted
+//   VOBENCH_FAULT_COUNTER  a file of 8 bytes, shared by the processes: number of calls so far
 //   VOBENCH_FAULT_LOG      optional: a line "NUMBER CALL PATH" for each
-//   VOBENCH_FAULT_AT       which fails, from 1; 0 for none
-//   VOBENCH_FAULT_KIND     ENOSPC, EIO, EINTR or short (half of the bytes are written). A call that cannot have it goes
-//   on.
+//   VOBENCH_FAULT_AT       number of the call that fails, from 1; 0 for none
+//   VOBENCH_FAULT_KIND     ENOSPC, EIO, EINTR or short (half of the bytes are written); ignored by a call that cannot
+//                          have it
 //
 // Counted: open and creat for writing, fopen, write, pwrite, writev, fwrite, fflush, close, fclose, fsync, rename,
-// link, mkdir, ftruncate, fallocate, copy_file_range, sendfile, under all the names that the C library has for them.
+// link, mkdir, ftruncate, fallocate, copy_file_range, sendfile, under all their names in the C library.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <stdarg.h>
@@ -32,7 +31,7 @@
 
 namespace {
 
-constexpr int kStdioError = 0x20;  // _IO_ERR_SEEN of glibc's FILE: what ferror() asks for
+constexpr int kStdioError = 0x20;  // _IO_ERR_SEEN of glibc's FILE: tested by ferror()
 
 enum class Fault { none, error, cut };
 
@@ -51,7 +50,7 @@ Plan MakePlan() {
   plan.at = strtoull(word("VOBENCH_FAULT_AT"), nullptr, 10);
   const std::string kind = word("VOBENCH_FAULT_KIND");
   plan.error = kind == "ENOSPC" ? ENOSPC : kind == "EIO" ? EIO : kind == "EINTR" ? EINTR : 0;
-  // By the kernel's own numbers: the functions below are not to count what is done here.
+  // Direct system calls: the functions below must not count them.
   const auto file = [](const char* path, int flags) {
     return *path == 0 ? -1 : static_cast<int>(syscall(SYS_openat, AT_FDCWD, path, flags | O_CLOEXEC, 0666));
   };
@@ -90,7 +89,7 @@ std::string PathOf(int folder, const char* path) {
   return from + "/" + path;
 }
 
-// Counts a call; whether it is to fail, and errno is set then.
+// Counts a call. Returns its fault; sets errno for an error.
 Fault Next(const char* call, const std::string& path, bool can_be_interrupted, bool can_be_cut = false) {
   if (!IsBelow(path)) return Fault::none;
   const Plan& plan = ThePlan();
@@ -118,7 +117,7 @@ std::size_t Half(std::size_t size) { return std::max<std::size_t>(1, size / 2); 
 
 }  // namespace
 
-// The real one of the same name, called by its own type.
+// Function of the same name and type in the C library.
 #define REAL(name) static const auto real = Real(#name, &name)
 
 extern "C" {
@@ -193,7 +192,7 @@ ssize_t writev(int file, const iovec* parts, int count) {
   return real(file, &first, 1);
 }
 
-// Stdio tries the rest of a short write itself, and does not try again what a signal interrupted.
+// stdio itself writes the rest of a short write, and does not repeat an interrupted one.
 size_t fwrite(const void* bytes, size_t size, size_t count, FILE* stream) {
   REAL(fwrite);
   if (Next("fwrite", PathOf(fileno(stream)), true) == Fault::error) {
@@ -222,7 +221,7 @@ int fclose(FILE* stream) {
   return EOF;
 }
 
-// As Linux does: closed, whatever it says.
+// As on Linux: the file is closed in any case.
 int close(int file) {
   REAL(close);
   const int flags = fcntl(file, F_GETFL);

@@ -12,7 +12,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-// What strerror says of a fault.
+// Text of strerror for a fault.
 const char* ReasonOf(const std::string& kind) {
   if (kind == "ENOSPC") return "No space left on device";
   if (kind == "EIO") return "Input/output error";
@@ -129,7 +129,7 @@ std::string FaultTrial::Problem(std::size_t number, const std::string& kind) {
   if (const std::string problem = ProblemOfMessage(outcome, call, kind); !problem.empty())
     return where + problem + said;
   if (!command_.leaves_partial && !command_.prints_into_file) {
-    Files but_whole = left;  // a file of its own that was whole by then
+    Files but_whole = left;  // a second output, complete by then
     if (left.contains("map.ply") && left.at("map.ply") == whole_.at("map.ply")) but_whole.erase("map.ply");
     if (const std::string difference = Difference(but_whole, before_); !difference.empty())
       return where + "after it" + difference;
@@ -164,7 +164,7 @@ std::vector<FaultCommand> FaultCommands() {
       {.name = "render_preview",
        .words = with(render, {"--preview"}),
        .again = with(render, {"--preview", "--resume"}),
-       .volatile_files = {"preview.mp4"},  // a codec that cannot be opened is one that is not there: the next is taken
+       .volatile_files = {"preview.mp4"},  // file differs: a codec that cannot be opened is replaced by the next one
        .leaves_partial = true,
        .names_no_reason = true,
        .by_stdio = true});

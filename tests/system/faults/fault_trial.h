@@ -1,4 +1,4 @@
-// One write of one command fails; what the program then says and leaves.
+// Fault injection: one write of one command fails; checks of the message and of the files left.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,21 @@
 
 namespace vobench::system_test {
 
-// A command that writes below the folder it runs in.
+// Command that writes below its working folder.
 struct FaultCommand {
   std::string name;
   std::vector<std::string> words;
-  std::vector<std::string> again = words;  // to go on after a failure; the same words where nothing else is said
-  std::vector<std::string> prepare = {};  // the folder of inputs that is copied to "out" before; none: nothing is there
-  // Files that differ from run to run (times, the command line): that they are there is all that is asked of them.
+  std::vector<std::string> again = words;  // command after a failure; default: the same
+  std::vector<std::string> prepare = {};   // folder of inputs, copied to "out" before; none: no such folder
+  // Files that differ from run to run (times, the command line): only their existence is checked.
   std::vector<std::string> volatile_files = {};
-  bool leaves_partial = false;    // what is done by then stays, for `again`; else everything is as before
-  bool names_no_reason = false;   // a library does not say why; the message names what may be
+  bool leaves_partial = false;    // finished work stays, for `again`; else the folder is as before
+  bool names_no_reason = false;   // a library gives no reason; the message has a possible one
   bool by_stdio = false;          // a library writes with stdio, for which an interrupted write has failed
-  bool prints_into_file = false;  // to stdout, which is a file here
+  bool prints_into_file = false;  // output to stdout, redirected to a file
 };
 
-// A call that was counted: the number is its place.
+// Counted call; its number is its position, from 1.
 struct CountedCall {
   std::string call;  // "write"
   std::string path;
@@ -34,14 +34,14 @@ struct CountedCall {
 
 class FaultTrial {
  public:
-  // `inputs`: what `words` and `prepare` name, as "../inputs/...".
+  // `inputs`: folder of the inputs, "../inputs" in `words`; has the folders of `prepare`.
   FaultTrial(FaultCommand command, const std::filesystem::path& inputs);
 
   const std::vector<CountedCall>& calls() const { return calls_; }
-  // Whether this call can have it: a rename is not interrupted, only a write is cut short.
+  // Whether the fault exists for this call: no EINTR for a rename, a short write for writes only.
   bool CanHave(std::size_t number, const std::string& kind) const;
 
-  // The number-th call (from 1) has the fault. What is wrong with what follows; empty where nothing is.
+  // Runs the command with the fault in the number-th call (from 1). Returns what is wrong afterwards, or "".
   std::string Problem(std::size_t number, const std::string& kind);
 
  private:
@@ -49,7 +49,7 @@ class FaultTrial {
 
   void Prepare();
   Outcome Run(const std::vector<std::string>& words, std::size_t at, const std::string& kind);
-  Files Result() const;  // of the command, without what changes
+  Files Result() const;  // files of the command, volatile ones without content
   std::string ProblemOfMessage(const Outcome& outcome, const CountedCall& call, const std::string& kind) const;
 
   FaultCommand command_;
@@ -63,9 +63,9 @@ const std::vector<std::string>& FaultKinds();  // ENOSPC, EIO, EINTR, short
 
 // render, run, track, campaign, export, report, evaluate on the smallest inputs.
 std::vector<FaultCommand> FaultCommands();
-// A parcel in small pictures, 30 a second: nearly all of a short run is then its start.
+// Parcel in small images at 30 Hz: a short run is nearly all start-up.
 std::string SmallScenario(const std::string& duration);
-// What they read, made by the program: a sequence and a result.
+// Inputs of the commands, made by the program: a sequence and a result.
 void MakeFaultInputs(const std::filesystem::path& folder);
 
 }  // namespace vobench::system_test

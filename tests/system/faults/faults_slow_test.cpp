@@ -1,5 +1,5 @@
-// Each write of each command fails once, in each of four ways. With VOBENCH_FAULTS_REPORT=FILE the figures of
-// docs/reliability.md are appended to FILE.
+// Fault injection: each write of each command fails once, in each of four ways. VOBENCH_FAULTS_REPORT=FILE appends the
+// figures of docs/reliability.md to FILE.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -1,6 +1,6 @@
-// A write that fails, once, anywhere: the program ends with one message that names the file and the reason, or goes on
-// rightly; nothing is left that a later command would take for whole; the same command again gives the bytes of an
-// undisturbed run. Here a fixed part of the places, faults_slow_test.cpp has all.
+// Fault injection: after one failed write the program ends with one message that names the file and the reason, or
+// succeeds; no partial output has its final name; the same command again gives the bytes of an undisturbed run. A fixed
+// subset of the writes; all of them: faults_slow_test.cpp.
 #include <gmock/gmock.h>
 
 #include "tests/system/faults/fault_trial.h"
@@ -8,7 +8,7 @@
 namespace vobench::system_test {
 namespace {
 
-// Each command at three places, spread over all, with another kind of fault at each.
+// Each command at three places, spread over all, with alternating kinds of faults.
 TEST(FaultsTest, AWriteThatFailsAtSomePlaces) {
   const TemporaryFolder inputs;
   MakeFaultInputs(inputs.path());
@@ -29,7 +29,7 @@ TEST(FaultsTest, AWriteThatFailsAtSomePlaces) {
   EXPECT_GE(tried, 25u);
 }
 
-// The library is worth nothing if nothing ever fails.
+// Control: with a wrong command after the failure, the fault is reported.
 TEST(FaultsTest, TheFaultsAreReal) {
   const TemporaryFolder inputs;
   MakeFaultInputs(inputs.path());

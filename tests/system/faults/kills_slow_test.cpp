@@ -1,6 +1,5 @@
-// SIGKILL at random moments: what is left is used or refused, and the same command goes on to the bytes of a run that
-// was never stopped. VOBENCH_KILLS says how many (20 without it); VOBENCH_FAULTS_REPORT=FILE appends the figures to
-// FILE.
+// SIGKILL at random moments: the files left are complete or not used, and the same command then ends with the bytes of
+// an uninterrupted run. VOBENCH_KILLS=N: kills (20 by default). VOBENCH_FAULTS_REPORT=FILE appends the figures to FILE.
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -23,8 +22,8 @@ double SecondsSince(Clock::time_point start) { return std::chrono::duration<doub
 
 class KillsTest : public CampaignTest {
  protected:
-  // One command from its beginning to its end, killed after some part of what is left, again and again. Returns the
-  // kills.
+  // Runs one command until it ends by itself or was killed `most` times, each time at a random moment within `whole_s`;
+  // look() after each kill. Returns the number of kills.
   int KilledUntilDone(const std::vector<std::string>& words, double whole_s, int most,
                       const std::function<void()>& look) {
     int kills = 0;
@@ -45,7 +44,7 @@ class KillsTest : public CampaignTest {
     }
   }
 
-  std::mt19937 random_{std::random_device{}()};  // any moment will do; a failure prints which
+  std::mt19937 random_{std::random_device{}()};  // random moments, printed by a failure
   std::string moments_;
 };
 
@@ -63,7 +62,7 @@ TEST_F(KillsTest, Render) {
     moments_.clear();
     kills += KilledUntilDone(words("seq"), whole_s, Kills() - kills, [&] {
       EXPECT_FALSE(fs::exists(here_ / "seq") && fs::exists(here_ / "seq.partial")) << moments_;
-      // Under its last name it is whole; the journal may still be there.
+      // Under its final name the sequence is complete; the journal may still be there.
       if (!fs::exists(here_ / "seq")) return;
       auto there = Tree(here_ / "seq");
       std::erase_if(there, [&](const auto& file) { return !expected.contains(file.first); });
@@ -91,7 +90,7 @@ TEST_F(KillsTest, Campaign) {
     for (; kills < most; ++runs) {
       moments_.clear();
       kills += KilledUntilDone(Words("out"), whole_s, most - kills, [&] {
-        // A table is there when all tasks are, and then it is the table.
+        // The table exists only after all tasks, and is then complete.
         if (!fs::exists(here_ / "out" / "results.csv")) return;
         EXPECT_EQ(Results("out"), expected.at("results.csv")) << moments_;
       });

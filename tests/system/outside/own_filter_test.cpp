@@ -1,11 +1,10 @@
-// Somebody else's project against an installed vobench: is MyFilter consistent? Usage: own_filter_test SCENARIO FACTOR
+// External project with an installed vobench: consistency of MyFilter. Usage: own_filter_test SCENARIO FACTOR
 #include <tools/bench/points/point_consistency.h>
 #include <vo/point_odometry.h>
 
 #include <iostream>
 
-// Stands for whatever you want to test: here EKF-SLAM, told what scenes/points.yaml says, its covariance times a
-// factor.
+// Placeholder for a filter under test: EKF-SLAM with the parameters of scenes/points.yaml, covariance times a factor.
 struct MyFilter {
   MyFilter(const sim::PointWorld& world, double factor_)
       : factor(factor_), ekf(vo::Camera(), Params(), Start(world), 1) {}
@@ -24,7 +23,7 @@ struct MyFilter {
     params.features.sigma_px = 1;
     return params;
   }
-  static vo::Prior Start(const sim::PointWorld&) {  // at the origin; its velocity is drawn about zero with these sigmas
+  static vo::Prior Start(const sim::PointWorld&) {  // at the origin; velocity drawn about zero with this covariance
     vo::Prior prior;
     prior.pose_covariance = vo::Matrix6::Identity() * 1e-12;
     prior.velocity_covariance = vo::Matrix6::Identity() * 0.01;
